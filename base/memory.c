@@ -1,0 +1,72 @@
+#include "base/memory.h"
+#include <stdarg.h>
+#include <stdatomic.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { ALIGNMENT = 64 };
+
+static atomic_long live;
+
+static _Noreturn void out_of_memory(size_t count, size_t size)
+{
+    fprintf(stderr, "slender: out of memory: %zu blocks of %zu bytes were asked for\n", count, size);
+    exit(1);
+}
+
+void *mem_alloc(size_t count, size_t size)
+{
+    if (size && count > SIZE_MAX / 2 / size) out_of_memory(count, size);
+    size_t bytes = (count * size + ALIGNMENT) / ALIGNMENT * ALIGNMENT; /* never 0 */
+    void *block = aligned_alloc(ALIGNMENT, bytes);
+    if (!block) out_of_memory(count, size);
+    atomic_fetch_add(&live, 1);
+    return memset(block, 0, bytes);
+}
+
+void *mem_resize(void *block, size_t old_count, size_t new_count, size_t size)
+{
+    void *grown = mem_alloc(new_count, size);
+    if (block) memcpy(grown, block, (old_count < new_count ? old_count : new_count) * size);
+    mem_free(block);
+    return grown;
+}
+
+void *mem_copy(const void *from, size_t count, size_t size)
+{
+    void *copy = mem_alloc(count, size);
+    if (count && size) memcpy(copy, from, count * size);
+    return copy;
+}
+
+char *mem_text(const char *text)
+{
+    return text ? mem_copy(text, strlen(text) + 1, 1) : NULL;
+}
+
+char *mem_format(const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    int length = vsnprintf(NULL, 0, format, args);
+    va_end(args);
+    char *text = mem_alloc((size_t)length + 1, 1);
+    va_start(args, format);
+    vsnprintf(text, (size_t)length + 1, format, args);
+    va_end(args);
+    return text;
+}
+
+void mem_free(void *block)
+{
+    if (!block) return;
+    atomic_fetch_sub(&live, 1);
+    free(block);
+}
+
+long mem_live_count(void)
+{
+    return atomic_load(&live);
+}

@@ -1,0 +1,27 @@
+/* memory.h - zeroed allocation that never returns NULL.
+ *
+ * Running out of memory prints one message and ends the program. The number of live blocks is
+ * counted, so that a test can show that everything was freed. */
+#pragma once
+#include <stddef.h>
+
+/* count*size zeroed bytes, aligned to 64 (a cache line, and any vector). count may be 0. Thread-safe. */
+void *mem_alloc(size_t count, size_t size);
+
+/* Grows block from old_count to new_count elements; new ones are zero. block may be NULL. */
+void *mem_resize(void *block, size_t old_count, size_t new_count, size_t size);
+
+/* A copy of count*size bytes. */
+void *mem_copy(const void *from, size_t count, size_t size);
+
+/* A copy of the text, NULL for NULL. */
+char *mem_text(const char *text);
+
+/* Formats into a new text. */
+char *mem_format(const char *format, ...) __attribute__((format(printf, 1, 2)));
+
+/* Frees the block; NULL is fine. */
+void mem_free(void *block);
+
+/* Blocks allocated and not yet freed. */
+long mem_live_count(void);

@@ -1,0 +1,18 @@
+# Finds CHOLMOD: SuiteSparse 7 ships a CMake package, Debian 12's 5.12 neither a package nor a .pc file.
+# Defines the target slender_cholmod.
+find_package(CHOLMOD CONFIG QUIET)
+if(TARGET SuiteSparse::CHOLMOD)
+    add_library(slender_cholmod INTERFACE)
+    target_link_libraries(slender_cholmod INTERFACE SuiteSparse::CHOLMOD)
+    set(CHOLMOD_FOUND TRUE)
+    return()
+endif()
+find_path(CHOLMOD_INCLUDE_DIR cholmod.h PATH_SUFFIXES suitesparse)
+find_library(CHOLMOD_LIBRARY cholmod)
+include(FindPackageHandleStandardArgs)
+find_package_handle_standard_args(CHOLMOD REQUIRED_VARS CHOLMOD_LIBRARY CHOLMOD_INCLUDE_DIR)
+if(CHOLMOD_FOUND)
+    add_library(slender_cholmod INTERFACE)
+    target_include_directories(slender_cholmod SYSTEM INTERFACE ${CHOLMOD_INCLUDE_DIR})
+    target_link_libraries(slender_cholmod INTERFACE ${CHOLMOD_LIBRARY})
+endif()
