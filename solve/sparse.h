@@ -1,0 +1,50 @@
+/* sparse.h - symmetric sparse matrices that are assembled in place, factored and solved: the one door to CHOLMOD.
+ *
+ * The pattern comes from the elements' dof lists, is ordered once for low fill (AMD; METIS for large ones) and stored
+ * in the permuted order, so that factoring needs neither a transpose nor a new analysis. Positive definiteness is
+ * news, not an error: sparse_factor returns false. Another direct solver would stand behind these same functions. */
+#pragma once
+#include <stdbool.h>
+
+typedef struct Sparse Sparse;
+
+/* The pattern of n unknowns coupled by elements: element e couples element_dofs[element_start[e] ..
+ * element_start[e+1]), entries < 0 are skipped. */
+Sparse *sparse_create(int n, int element_count, const long *element_start, const int *element_dofs);
+void sparse_destroy(Sparse *matrix);
+
+/* Where entry (i, j) is stored in sparse_values(); either triangle. The pattern must hold it. */
+int sparse_slot(const Sparse *matrix, int i, int j);
+
+/* The stored lower triangle of the permuted matrix, [sparse_nonzeros() + 1]; the last place is a bin that may be
+ * written to and is never read. */
+double *sparse_values(Sparse *matrix);
+int sparse_nonzeros(const Sparse *matrix);
+
+/* diagonal[i] = A(i, i). */
+void sparse_diagonal(const Sparse *matrix, double *diagonal);
+
+/* Cholesky factor of A + diag(shift) (shift NULL: of A). False when that is not positive definite or not finite: the
+ * factor is then unusable. */
+bool sparse_factor(Sparse *matrix, const double *shift);
+
+/* x = (A + diag(shift))^-1 b with the last factor; b and x may be the same. */
+void sparse_solve(Sparse *matrix, const double *b, double *x);
+
+/* y = A x. */
+void sparse_multiply(const Sparse *matrix, const double *x, double *y);
+
+/* What it cost. */
+typedef struct SparseInfo {
+    long factor_nonzeros;        /* of L                                              */
+    double factor_flops;         /* of one factorisation                              */
+    long factorizations, solves; /* so far, failed factorisations included            */
+    double factor_seconds, solve_seconds;
+} SparseInfo;
+SparseInfo sparse_info(const Sparse *matrix);
+
+/* "CHOLMOD 3.0.14", and what BLAS is loaded ("OpenBLAS 0.3.21 ..."); static texts. sparse_blas_is_fast is false when
+ * the loaded BLAS is not OpenBLAS: the reference BLAS is ten times slower, and silent. */
+const char *sparse_version(void);
+const char *sparse_blas_version(void);
+bool sparse_blas_is_fast(void);

@@ -1,0 +1,85 @@
+/* system.h - a sum of Terms over n dofs, some of them fixed: energy, gradient, Hessian, factor, solve, and the two
+ * products with d2E/dx dp.
+ *
+ * Vectors over dofs (x, g, w) always have all dof_count entries; fixed dofs keep their x, and solves leave zero
+ * there. The terms are owned. Assembly adds elements in their fixed order: the same input gives the same bits. */
+#pragma once
+#include "solve/sparse.h"
+#include "solve/term.h"
+
+/* Dofs of one kind, which lie together: positions in metres, edge angles in radians. */
+typedef struct DofClass {
+    int first, count;
+    double size; /* a large change of such a dof: the body's diagonal, or 1 rad */
+} DofClass;
+
+enum { SYSTEM_MAX_CLASSES = 3, SYSTEM_MAX_TERMS = 16 };
+
+typedef struct System System;
+
+/* The first class are the positions. classes are copied. */
+System *system_create(int dof_count, const DofClass *classes, int class_count);
+void system_destroy(System *sys);
+
+void system_add(System *sys, Term term);
+void system_fix(System *sys, int dof);
+
+/* base shift, in parts of each class's mean diagonal, that is always added: 1e-10 for bodies with free rigid motions
+ * in statics, else 0 (physics: a zero eigenvalue decides nothing). */
+void system_set_base_shift(System *sys, double base);
+
+/* After the last add and fix: builds the pattern and the slots, once. */
+void system_prepare(System *sys);
+
+int system_dof_count(const System *sys);
+int system_free_count(const System *sys);
+bool system_is_fixed(const System *sys, int dof);
+double system_base_shift(const System *sys);
+int system_term_count(const System *sys);
+const Term *system_term(const System *sys, int t);
+
+/* Largest |d_i| over the class's size, over all classes: the length of a step in the body's own measure. */
+double system_step_size(const System *sys, const double *d);
+
+/* Energies of the elements of term t, energy[count of the term]; NULL for the sum only. */
+double system_term_energy(const System *sys, int t, const Point *at, double *energy);
+
+typedef struct Evaluation {
+    double energy;       /* J                                                                           */
+    double energy_scale; /* sum of |energy| over the terms: what round-off is relative to               */
+    double gradient_max; /* largest |dE/dx| of the free position dofs, N                                */
+    double force_scale;  /* largest sum of |element force| over the position dofs, N (with the gradient) */
+    bool finite;         /* false where any number asked for is not                                     */
+} Evaluation;
+
+Evaluation system_energy(System *sys, const Point *at);
+
+/* gradient[dof_count], at fixed dofs too (there it is the support's force on the body). */
+Evaluation system_gradient(System *sys, const Point *at, double *gradient);
+
+/* The same, and assembles the Hessian of the free dofs. */
+Evaluation system_hessian(System *sys, const Point *at, double *gradient);
+
+/* Factor of H + (base + shift) D, D = each class's mean |H_ii|. False where not positive definite. */
+bool system_factor(System *sys, double shift);
+
+/* y = (H + (base + shift) D)^-1 b with the last factor. */
+void system_solve(System *sys, const double *b, double *y);
+
+/* y = H v, unshifted. */
+void system_multiply(const System *sys, const double *v, double *y);
+
+/* The diagonal D of the last Hessian, D[dof_count], 0 at fixed dofs; and the largest H_ii of the positions. */
+const double *system_scale(const System *sys);
+double system_stiffness_max(const System *sys);
+
+/* dp += w^T d2E/dx dp. */
+void system_param(System *sys, const Point *at, const double *w, double *dp);
+
+/* r = d2E/dx dp . dp, r[dof_count]. */
+void system_param_forward(System *sys, const Point *at, const double *dp, double *r);
+
+/* Tells the terms that x is an accepted state. */
+void system_accept(System *sys, const Point *at);
+
+SparseInfo system_info(const System *sys);

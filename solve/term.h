@@ -1,0 +1,54 @@
+/* term.h - the interface of one energy term.
+ *
+ * Everything that moves a model is a row of functions over small elements: membrane, bending, magnetic, gravity and
+ * loads alike. A term is a potential E(x; p): its value, its first two derivatives in x, and the two products with
+ * d2E/dx dp that let an adjoint run without knowing any physics. Add a term by writing one file that ends in one
+ * TermOps, and one row in the model's term list (docs/adding_a_term.md).
+ *
+ * Elements come in packs of PACK_LANES side by side (base/pack.h): lane l of pack k is element k*PACK_LANES + l, and
+ * the last pack is filled up by repeating the last element. A term may hold its own constants as packs. */
+#pragma once
+#include "base/pack.h"
+
+enum { TERM_MAX_DOF = 24 }; /* largest element, in degrees of freedom */
+
+/* Entry (i, j), j <= i, of an element Hessian's packed lower triangle. */
+#define TERM_LOWER(i, j) ((i) * ((i) + 1) / 2 + (j))
+
+/* Where a term is evaluated: whole vectors. */
+typedef struct Point {
+    const double *x; /* positions and other dofs                     */
+    const double *p; /* all model parameters (params.h)              */
+    double time;     /* s; fields may depend on it                   */
+} Point;
+
+typedef struct TermOps {
+    const char *name; /* also the name of its energy in the result, e.g. "bending" */
+
+    int (*count)(const void *self); /* elements                                    */
+    int (*size)(const void *self);  /* dofs per element, <= TERM_MAX_DOF           */
+
+    /* The global dofs of element e, dof[size]; a dof may appear twice. */
+    void (*dofs)(const void *self, int e, int *dof);
+
+    /* Energies of a pack, J; writes dE/dx to g[size] and the lower triangle of d2E/dx2 to H[TERM_LOWER(size, 0)].
+     * H NULL: value and gradient; g NULL too: value only. x[size] are the elements' own dofs. Pure and re-entrant. */
+    Pack (*eval)(const void *self, int pack, const Point *at, const Pack *x, Pack *g, Pack *H);
+
+    /* dp += w^T d2E/dx dp for the first `lanes` elements of the pack, dp laid out as Point.p; w[size].
+     * NULL when no parameter enters the forces. */
+    void (*param)(const void *self, int pack, int lanes, const Point *at, const Pack *x, const Pack *w, double *dp);
+
+    /* r = d2E/dx dp . dp, r[size]: the tangent of param. */
+    void (*param_forward)(const void *self, int pack, const Point *at, const Pack *x, const double *dp, Pack *r);
+
+    /* After an accepted step: remembers what must be (the turns of a fold angle). NULL if nothing. */
+    void (*accept)(void *self, const Point *at);
+
+    void (*destroy)(void *self);
+} TermOps;
+
+typedef struct Term {
+    const TermOps *ops;
+    void *self;
+} Term;
