@@ -1,0 +1,380 @@
+#include "solve/system.h"
+#include "base/memory.h"
+#include <assert.h>
+#include <math.h>
+#include <string.h>
+
+enum { MAX_LOWER = TERM_LOWER(TERM_MAX_DOF, 0) };
+
+/* A term and where its packs come from and go to. */
+typedef struct Entry {
+    Term term;
+    int count, size, packs, lower; /* elements, dofs each, packs, Hessian entries each                  */
+    int (*dofs)[PACK_LANES];       /* [pack*size + i] global dof                                         */
+    int (*slots)[PACK_LANES];      /* [pack*lower + k] place in the matrix; the bin for fixed dofs        */
+    int *twice;                    /* [3*twice_count] pack, entry, lane: two different dofs of an element */
+    int twice_count;               /*   that are the same global dof: (i, j) and (j, i) both count        */
+} Entry;
+
+struct System {
+    int dof_count, free_count, term_count, class_count;
+    Entry entries[SYSTEM_MAX_TERMS];
+    DofClass classes[SYSTEM_MAX_CLASSES];
+    bool *fixed;
+    int *unknown; /* [dof] number among the free ones, -1 if fixed */
+    Sparse *matrix;
+    double base, stiffness_max;
+    double *scale;       /* [dof] D                                     */
+    double *force_sum;   /* [dof] sum of absolute element forces        */
+    double *work, *diag; /* [free]                                      */
+};
+
+System *system_create(int dof_count, const DofClass *classes, int class_count)
+{
+    assert(class_count <= SYSTEM_MAX_CLASSES);
+    System *sys = mem_alloc(1, sizeof *sys);
+    size_t n = (size_t)dof_count;
+    sys->dof_count = dof_count;
+    sys->class_count = class_count;
+    memcpy(sys->classes, classes, (size_t)class_count * sizeof *classes);
+    sys->fixed = mem_alloc(n, sizeof(bool));
+    sys->unknown = mem_alloc(n, sizeof(int));
+    sys->scale = mem_alloc(n, sizeof(double));
+    sys->force_sum = mem_alloc(n, sizeof(double));
+    return sys;
+}
+
+void system_destroy(System *sys)
+{
+    if (!sys) return;
+    for (int t = 0; t < sys->term_count; t++) {
+        Entry *entry = &sys->entries[t];
+        entry->term.ops->destroy(entry->term.self);
+        mem_free(entry->dofs);
+        mem_free(entry->slots);
+        mem_free(entry->twice);
+    }
+    sparse_destroy(sys->matrix);
+    mem_free(sys->fixed);
+    mem_free(sys->unknown);
+    mem_free(sys->scale);
+    mem_free(sys->force_sum);
+    mem_free(sys->work);
+    mem_free(sys->diag);
+    mem_free(sys);
+}
+
+static void gather_dofs(Entry *entry)
+{
+    const TermOps *ops = entry->term.ops;
+    for (int k = 0; k < entry->packs; k++)
+        for (int l = 0; l < PACK_LANES; l++) {
+            int e = k * PACK_LANES + l, dof[TERM_MAX_DOF];
+            ops->dofs(entry->term.self, e < entry->count ? e : entry->count - 1, dof);
+            for (int i = 0; i < entry->size; i++) entry->dofs[k * entry->size + i][l] = dof[i];
+        }
+}
+
+void system_add(System *sys, Term term)
+{
+    assert(sys->term_count < SYSTEM_MAX_TERMS && !sys->matrix);
+    Entry *entry = &sys->entries[sys->term_count++];
+    *entry = (Entry){.term = term, .count = term.ops->count(term.self), .size = term.ops->size(term.self)};
+    assert(entry->size <= TERM_MAX_DOF);
+    entry->packs = (entry->count + PACK_LANES - 1) / PACK_LANES;
+    entry->lower = TERM_LOWER(entry->size, 0);
+    entry->dofs = mem_alloc((size_t)entry->packs * (size_t)entry->size, sizeof *entry->dofs);
+    gather_dofs(entry);
+}
+
+void system_fix(System *sys, int dof)
+{
+    sys->fixed[dof] = true;
+}
+
+void system_set_base_shift(System *sys, double base)
+{
+    sys->base = base;
+}
+
+static Sparse *create_matrix(const System *sys)
+{
+    long elements = 0, places = 0;
+    for (int t = 0; t < sys->term_count; t++) {
+        elements += sys->entries[t].count;
+        places += (long)sys->entries[t].count * sys->entries[t].size;
+    }
+    long *start = mem_alloc((size_t)elements + 1, sizeof *start);
+    int *dofs = mem_alloc((size_t)places, sizeof *dofs);
+    long e = 0, k = 0;
+    for (int t = 0; t < sys->term_count; t++) {
+        const Entry *entry = &sys->entries[t];
+        for (int i = 0; i < entry->count; i++) {
+            for (int d = 0; d < entry->size; d++)
+                dofs[k++] = sys->unknown[entry->dofs[i / PACK_LANES * entry->size + d][i % PACK_LANES]];
+            start[++e] = k;
+        }
+    }
+    Sparse *matrix = sparse_create(sys->free_count, (int)elements, start, dofs);
+    mem_free(start);
+    mem_free(dofs);
+    return matrix;
+}
+
+static void find_slots(System *sys, Entry *entry)
+{
+    int bin = sparse_nonzeros(sys->matrix), room = 0;
+    entry->slots = mem_alloc((size_t)entry->packs * (size_t)entry->lower, sizeof *entry->slots);
+    for (int k = 0; k < entry->packs; k++)
+        for (int i = 0; i < entry->size; i++)
+            for (int j = 0; j <= i; j++)
+                for (int l = 0; l < PACK_LANES; l++) {
+                    int *slot = &entry->slots[k * entry->lower + TERM_LOWER(i, j)][l];
+                    int a = entry->dofs[k * entry->size + i][l], b = entry->dofs[k * entry->size + j][l];
+                    bool used = k * PACK_LANES + l < entry->count && sys->unknown[a] >= 0 && sys->unknown[b] >= 0;
+                    *slot = used ? sparse_slot(sys->matrix, sys->unknown[a], sys->unknown[b]) : bin;
+                    if (!used || i == j || a != b) continue;
+                    if (entry->twice_count == room) {
+                        entry->twice = mem_resize(entry->twice, 3 * (size_t)room, 6 * (size_t)room + 24, sizeof(int));
+                        room = 2 * room + 8;
+                    }
+                    int *place = &entry->twice[3 * entry->twice_count++];
+                    place[0] = k, place[1] = TERM_LOWER(i, j), place[2] = l;
+                }
+}
+
+void system_prepare(System *sys)
+{
+    assert(!sys->matrix);
+    for (int i = 0; i < sys->dof_count; i++) sys->unknown[i] = sys->fixed[i] ? -1 : sys->free_count++;
+    sys->matrix = create_matrix(sys);
+    sys->work = mem_alloc((size_t)sys->free_count, sizeof(double));
+    sys->diag = mem_alloc((size_t)sys->free_count, sizeof(double));
+    for (int t = 0; t < sys->term_count; t++) find_slots(sys, &sys->entries[t]);
+}
+
+int system_dof_count(const System *sys) { return sys->dof_count; }
+int system_free_count(const System *sys) { return sys->free_count; }
+bool system_is_fixed(const System *sys, int dof) { return sys->fixed[dof]; }
+double system_base_shift(const System *sys) { return sys->base; }
+int system_term_count(const System *sys) { return sys->term_count; }
+const Term *system_term(const System *sys, int t) { return &sys->entries[t].term; }
+const double *system_scale(const System *sys) { return sys->scale; }
+double system_stiffness_max(const System *sys) { return sys->stiffness_max; }
+SparseInfo system_info(const System *sys) { return sparse_info(sys->matrix); }
+
+double system_step_size(const System *sys, const double *d)
+{
+    double size = 0;
+    for (int c = 0; c < sys->class_count; c++) {
+        const DofClass *class = &sys->classes[c];
+        for (int i = class->first; i < class->first + class->count; i++) size = fmax(size, fabs(d[i]) / class->size);
+    }
+    return size;
+}
+
+static void gather(const Entry *entry, int pack, const double *from, Pack *to)
+{
+    int(*dofs)[PACK_LANES] = &entry->dofs[pack * entry->size];
+    for (int i = 0; i < entry->size; i++)
+        for (int l = 0; l < PACK_LANES; l++) to[i][l] = from[dofs[i][l]];
+}
+
+static int lanes_of(const Entry *entry, int pack)
+{
+    int left = entry->count - pack * PACK_LANES;
+    return left < PACK_LANES ? left : PACK_LANES;
+}
+
+static void scatter(const Entry *entry, int pack, const Pack *from, double *to)
+{
+    int(*dofs)[PACK_LANES] = &entry->dofs[pack * entry->size], lanes = lanes_of(entry, pack);
+    for (int i = 0; i < entry->size; i++)
+        for (int l = 0; l < lanes; l++) to[dofs[i][l]] += from[i][l];
+}
+
+static void scatter_gradient(System *sys, const Entry *entry, int pack, const Pack *g, double *gradient)
+{
+    int(*dofs)[PACK_LANES] = &entry->dofs[pack * entry->size], lanes = lanes_of(entry, pack);
+    for (int i = 0; i < entry->size; i++)
+        for (int l = 0; l < lanes; l++) {
+            gradient[dofs[i][l]] += g[i][l];
+            sys->force_sum[dofs[i][l]] += fabs(g[i][l]);
+        }
+}
+
+static void scatter_hessian(const Entry *entry, int pack, const Pack *H, double *values)
+{
+    int(*slots)[PACK_LANES] = &entry->slots[(long)pack * entry->lower];
+    for (int k = 0; k < entry->lower; k++)
+        for (int l = 0; l < PACK_LANES; l++) values[slots[k][l]] += H[k][l];
+}
+
+static void scatter_twice(const Entry *entry, int pack, const Pack *H, double *values, int *next)
+{
+    for (; *next < entry->twice_count && entry->twice[3 * *next] == pack; (*next)++) {
+        int k = entry->twice[3 * *next + 1], l = entry->twice[3 * *next + 2];
+        values[entry->slots[pack * entry->lower + k][l]] += H[k][l];
+    }
+}
+
+/* Energy of one term; adds to the gradient and to the matrix where they are asked for. */
+static double evaluate_term(System *sys, const Entry *entry, const Point *at, double *gradient, double *values)
+{
+    Pack x[TERM_MAX_DOF], g[TERM_MAX_DOF], H[MAX_LOWER];
+    double energy = 0;
+    int next_twice = 0;
+    for (int k = 0; k < entry->packs; k++) {
+        gather(entry, k, at->x, x);
+        Pack e = entry->term.ops->eval(entry->term.self, k, at, x, gradient ? g : NULL, values ? H : NULL);
+        energy += pack_sum(e, lanes_of(entry, k));
+        if (gradient) scatter_gradient(sys, entry, k, g, gradient);
+        if (values) {
+            scatter_hessian(entry, k, H, values);
+            scatter_twice(entry, k, H, values, &next_twice);
+        }
+    }
+    return energy;
+}
+
+double system_term_energy(const System *sys, int t, const Point *at, double *energy)
+{
+    const Entry *entry = &sys->entries[t];
+    Pack x[TERM_MAX_DOF];
+    double sum = 0;
+    for (int k = 0; k < entry->packs; k++) {
+        gather(entry, k, at->x, x);
+        Pack e = entry->term.ops->eval(entry->term.self, k, at, x, NULL, NULL);
+        sum += pack_sum(e, lanes_of(entry, k));
+        for (int l = 0; energy && l < lanes_of(entry, k); l++) energy[k * PACK_LANES + l] = e[l];
+    }
+    return sum;
+}
+
+static Evaluation evaluate(System *sys, const Point *at, double *gradient, double *values)
+{
+    Evaluation result = {0};
+    if (gradient) {
+        memset(gradient, 0, (size_t)sys->dof_count * sizeof *gradient);
+        memset(sys->force_sum, 0, (size_t)sys->dof_count * sizeof *sys->force_sum);
+    }
+    if (values) memset(values, 0, ((size_t)sparse_nonzeros(sys->matrix) + 1) * sizeof *values);
+    for (int t = 0; t < sys->term_count; t++) {
+        double energy = evaluate_term(sys, &sys->entries[t], at, gradient, values);
+        result.energy += energy;
+        result.energy_scale += fabs(energy);
+    }
+    double total = 0;
+    for (int i = 0; gradient && i < sys->dof_count; i++) total += gradient[i] * 0;
+    for (int i = 0; gradient && i < sys->classes[0].count; i++) {
+        result.force_scale = fmax(result.force_scale, sys->force_sum[i]);
+        if (!sys->fixed[i]) result.gradient_max = fmax(result.gradient_max, fabs(gradient[i]));
+    }
+    result.finite = isfinite(result.energy) && total == 0;
+    return result;
+}
+
+Evaluation system_energy(System *sys, const Point *at)
+{
+    return evaluate(sys, at, NULL, NULL);
+}
+
+Evaluation system_gradient(System *sys, const Point *at, double *gradient)
+{
+    return evaluate(sys, at, gradient, NULL);
+}
+
+/* D: the mean |H_ii| of each class over its free dofs, so that a shift has no unit. */
+static void measure_scale(System *sys)
+{
+    sparse_diagonal(sys->matrix, sys->diag);
+    sys->stiffness_max = 0;
+    for (int c = 0; c < sys->class_count; c++) {
+        const DofClass *class = &sys->classes[c];
+        double sum = 0;
+        int count = 0;
+        for (int i = class->first; i < class->first + class->count; i++) {
+            if (sys->fixed[i]) continue;
+            double stiffness = fabs(sys->diag[sys->unknown[i]]);
+            sum += stiffness;
+            count++;
+            if (c == 0) sys->stiffness_max = fmax(sys->stiffness_max, stiffness);
+        }
+        for (int i = class->first; i < class->first + class->count; i++)
+            sys->scale[i] = sys->fixed[i] || !count ? 0 : sum / count;
+    }
+}
+
+Evaluation system_hessian(System *sys, const Point *at, double *gradient)
+{
+    Evaluation result = evaluate(sys, at, gradient, sparse_values(sys->matrix));
+    measure_scale(sys);
+    return result;
+}
+
+/* Free dofs of a whole vector. */
+static double *pick(const System *sys, const double *whole)
+{
+    for (int i = 0; i < sys->dof_count; i++)
+        if (sys->unknown[i] >= 0) sys->work[sys->unknown[i]] = whole[i];
+    return sys->work;
+}
+
+static void spread(const System *sys, const double *free, double *whole)
+{
+    for (int i = 0; i < sys->dof_count; i++) whole[i] = sys->unknown[i] >= 0 ? free[sys->unknown[i]] : 0;
+}
+
+bool system_factor(System *sys, double shift)
+{
+    double *diagonal = pick(sys, sys->scale);
+    for (int i = 0; i < sys->free_count; i++) diagonal[i] *= sys->base + shift;
+    return sparse_factor(sys->matrix, sys->base + shift > 0 ? diagonal : NULL);
+}
+
+void system_solve(System *sys, const double *b, double *y)
+{
+    double *work = pick(sys, b);
+    sparse_solve(sys->matrix, work, work);
+    spread(sys, work, y);
+}
+
+void system_multiply(const System *sys, const double *v, double *y)
+{
+    double *work = pick(sys, v);
+    sparse_multiply(sys->matrix, work, work);
+    spread(sys, work, y);
+}
+
+void system_param(System *sys, const Point *at, const double *w, double *dp)
+{
+    Pack x[TERM_MAX_DOF], v[TERM_MAX_DOF];
+    for (int t = 0; t < sys->term_count; t++) {
+        const Entry *entry = &sys->entries[t];
+        for (int k = 0; entry->term.ops->param && k < entry->packs; k++) {
+            gather(entry, k, at->x, x);
+            gather(entry, k, w, v);
+            entry->term.ops->param(entry->term.self, k, lanes_of(entry, k), at, x, v, dp);
+        }
+    }
+}
+
+void system_param_forward(System *sys, const Point *at, const double *dp, double *r)
+{
+    Pack x[TERM_MAX_DOF], v[TERM_MAX_DOF];
+    memset(r, 0, (size_t)sys->dof_count * sizeof *r);
+    for (int t = 0; t < sys->term_count; t++) {
+        const Entry *entry = &sys->entries[t];
+        for (int k = 0; entry->term.ops->param_forward && k < entry->packs; k++) {
+            gather(entry, k, at->x, x);
+            entry->term.ops->param_forward(entry->term.self, k, at, x, dp, v);
+            scatter(entry, k, v, r);
+        }
+    }
+}
+
+void system_accept(System *sys, const Point *at)
+{
+    for (int t = 0; t < sys->term_count; t++)
+        if (sys->entries[t].term.ops->accept) sys->entries[t].term.ops->accept(sys->entries[t].term.self, at);
+}
