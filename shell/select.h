@@ -1,7 +1,7 @@
 /* select.h - which vertices an entry of a scene means (fix, loads, objectives).
  *
- * An entry may give several conditions; a vertex must satisfy all of them ({boundary: true, box: ..} is the boundary
- * within the box). Positions are those at rest. */
+ * An entry may give several conditions; a vertex must satisfy all of them ({boundary: true, box: ..} is the
+ * boundary within the box). Positions are those at rest. */
 #pragma once
 #include "shell/mesh.h"
 
@@ -22,11 +22,13 @@ typedef struct Selection {
     bool boundary;            /* vertices on the boundary */
 } Selection;
 
-/* The selected vertices of the mesh, ascending and unique; the caller frees found->items. Refused with a sentence: no
- * condition at all, a vertex or group that does not exist, an empty box or ball, a selection that catches nothing. */
+/* The selected vertices of the mesh, ascending and unique; the caller frees found->items. Refused with a
+ * sentence: no condition at all, a vertex or group that does not exist, an empty box or ball, a selection
+ * that catches nothing. */
 bool select_vertices(const Mesh *mesh, const Selection *selection, Indices *found, Error *err);
 
-/* Edges of the mesh with both ends among the vertices, ascending (clamps); the caller frees items. May be empty. */
+/* Edges of the mesh with both ends among the vertices, ascending (clamps); the caller frees items. May be
+ * empty. */
 Indices select_edges(const Mesh *mesh, const Indices *vertices);
 
 /* The same, boundary edges only (line loads). */
