@@ -378,3 +378,35 @@ void system_accept(System *sys, const Point *at)
     for (int t = 0; t < sys->term_count; t++)
         if (sys->entries[t].term.ops->accept) sys->entries[t].term.ops->accept(sys->entries[t].term.self, at);
 }
+
+static double *term_memory(const Entry *entry, int *count)
+{
+    *count = 0;
+    return entry->term.ops->memory ? entry->term.ops->memory(entry->term.self, count) : NULL;
+}
+
+int system_memory_count(const System *sys)
+{
+    int total = 0, count;
+    for (int t = 0; t < sys->term_count; t++) {
+        term_memory(&sys->entries[t], &count);
+        total += count;
+    }
+    return total;
+}
+
+void system_memory_read(const System *sys, double *memory)
+{
+    for (int t = 0, count; t < sys->term_count; t++, memory += count) {
+        const double *from = term_memory(&sys->entries[t], &count);
+        if (count) memcpy(memory, from, (size_t)count * sizeof *memory);
+    }
+}
+
+void system_memory_write(System *sys, const double *memory)
+{
+    for (int t = 0, count; t < sys->term_count; t++, memory += count) {
+        double *to = term_memory(&sys->entries[t], &count);
+        if (count) memcpy(to, memory, (size_t)count * sizeof *memory);
+    }
+}

@@ -82,4 +82,9 @@ void system_param_forward(System *sys, const Point *at, const double *dp, double
 /* Tells the terms that x is an accepted state. */
 void system_accept(System *sys, const Point *at);
 
+/* What the terms remember beside x, system_memory_count() numbers; read into or set from memory. */
+int system_memory_count(const System *sys);
+void system_memory_read(const System *sys, double *memory);
+void system_memory_write(System *sys, const double *memory);
+
 SparseInfo system_info(const System *sys);

@@ -45,6 +45,9 @@ typedef struct TermOps {
     /* After an accepted step: remembers what must be (the turns of a fold angle). NULL if nothing. */
     void (*accept)(void *self, const Point *at);
 
+    /* What accept remembers, count numbers: part of the model's state beside x. NULL if nothing. */
+    double *(*memory)(void *self, int *count);
+
     void (*destroy)(void *self);
 } TermOps;
 
