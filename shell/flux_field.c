@@ -1,0 +1,116 @@
+#include "shell/flux_field.h"
+#include "base/memory.h"
+#include "base/vec3.h"
+
+struct FluxField {
+    Formula *formula; /* NULL: a dipole */
+    double step;      /* m              */
+    Vec3 at, moment;
+};
+
+FluxField *flux_field_formula(Formula *formula, double length)
+{
+    FluxField *field = mem_alloc(1, sizeof *field);
+    field->formula = formula;
+    field->step = length / 64;
+    return field;
+}
+
+FluxField *flux_field_dipole(const double at[3], const double moment[3])
+{
+    FluxField *field = mem_alloc(1, sizeof *field);
+    field->at = vec3_load(at);
+    field->moment = vec3_load(moment);
+    return field;
+}
+
+void flux_field_destroy(FluxField *field)
+{
+    if (!field) return;
+    formula_destroy(field->formula);
+    mem_free(field);
+}
+
+static Vec3 formula_at(const FluxField *field, Vec3 x, double time)
+{
+    double variables[5] = {x.x, x.y, x.z, hypot(x.x, x.y), time}, B[3];
+    if (!formula_eval(field->formula, variables, B, NULL)) return vec3(NAN, NAN, NAN);
+    return vec3_load(B);
+}
+
+/* First and second derivative along a line, central differences of eighth order: for a field that varies on the
+ * body's scale L, a step of L/64 leaves truncation and round-off both near 1e-12 (docs/theory.md). */
+static void differences(const FluxField *field, Vec3 x, Vec3 direction, double time, Vec3 *first, Vec3 *second)
+{
+    static const double c1[] = {4.0 / 5, -1.0 / 5, 4.0 / 105, -1.0 / 280};
+    static const double c2[] = {8.0 / 5, -1.0 / 5, 8.0 / 315, -1.0 / 560};
+    double h = field->step;
+    *first = vec3(0, 0, 0);
+    *second = vec3_scale(-205.0 / 72, formula_at(field, x, time));
+    for (int k = 1; k <= 4; k++) {
+        Vec3 plus = formula_at(field, vec3_axpy(k * h, direction, x), time);
+        Vec3 minus = formula_at(field, vec3_axpy(-k * h, direction, x), time);
+        *first = vec3_axpy(c1[k - 1], vec3_sub(plus, minus), *first);
+        *second = vec3_axpy(c2[k - 1], vec3_add(plus, minus), *second);
+    }
+    *first = vec3_scale(1 / h, *first);
+    *second = vec3_scale(1 / (h * h), *second);
+}
+
+static void sample_formula(const FluxField *field, Vec3 x, double time, FluxSample *sample)
+{
+    static const Vec3 axis[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    vec3_store(sample->flux, formula_at(field, x, time));
+    for (int l = 0; l < 3; l++) {
+        double first[3], second[3];
+        Vec3 d1, d2;
+        differences(field, x, axis[l], time, &d1, &d2);
+        vec3_store(first, d1);
+        vec3_store(second, d2);
+        for (int k = 0; k < 3; k++) sample->gradient[k][l] = first[k], sample->curvature[k][l][l] = second[k];
+    }
+    for (int l = 0; l < 3; l++) { /* d2/dl dm = (d2/d(l+m)^2 - d2/dl^2 - d2/dm^2)/2 */
+        int m = (l + 1) % 3;
+        double second[3];
+        Vec3 d1, d2;
+        differences(field, x, vec3_add(axis[l], axis[m]), time, &d1, &d2);
+        vec3_store(second, d2);
+        for (int k = 0; k < 3; k++) {
+            double mixed = 0.5 * (second[k] - sample->curvature[k][l][l] - sample->curvature[k][m][m]);
+            sample->curvature[k][l][m] = sample->curvature[k][m][l] = mixed;
+        }
+    }
+}
+
+/* B = mu_0/4 pi (3 r (m.r)/r^5 - m/r^3), differentiated twice. */
+static void sample_dipole(const FluxField *field, Vec3 x, FluxSample *sample)
+{
+    double r[3], m[3];
+    Vec3 away = vec3_sub(x, field->at);
+    vec3_store(r, away);
+    vec3_store(m, field->moment);
+    double d = vec3_length(away), mr = vec3_dot(field->moment, away);
+    double s3 = 1e-7 / (d * d * d), s5 = s3 / (d * d), s7 = s5 / (d * d), s9 = s7 / (d * d);
+    for (int k = 0; k < 3; k++) {
+        sample->flux[k] = 3 * r[k] * mr * s5 - m[k] * s3;
+        for (int l = 0; l < 3; l++) {
+            double kl = k == l;
+            sample->gradient[k][l] = 3 * s5 * (kl * mr + r[k] * m[l] + m[k] * r[l]) - 15 * s7 * mr * r[k] * r[l];
+            for (int n = 0; n < 3; n++) {
+                double kn = k == n, ln = l == n;
+                sample->curvature[k][l][n] = 3 * s5 * (kl * m[n] + kn * m[l] + ln * m[k]) -
+                                             15 * s7 * (kl * mr * r[n] + r[k] * m[l] * r[n] + m[k] * r[l] * r[n]) -
+                                             15 * s7 * (m[n] * r[k] * r[l] + mr * (kn * r[l] + ln * r[k])) +
+                                             105 * s9 * mr * r[k] * r[l] * r[n];
+            }
+        }
+    }
+}
+
+void flux_field_eval(const FluxField *field, const double x[3], double time, FluxSample *sample)
+{
+    if (field->formula)
+        sample_formula(field, vec3_load(x), time, sample);
+    else
+        sample_dipole(field, vec3_load(x), sample);
+}

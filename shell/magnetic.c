@@ -1,0 +1,269 @@
+/* Hard-magnetic energy [Chen 2022, eq. 24]: E = -A h (F0 M).B with F0 the deformation gradient of the mid-surface
+ * whose third column is the current unit normal.
+ *
+ * Q = F0 M = sum_i c_i x_i + mu n, with c_i = b_i.M (b_i the hat functions' rest gradients) and mu = N.M (N the rest
+ * normal). B is uniform (block flux_density) plus a field taken at the face's current barycentre, so its gradient
+ * enters the forces. The derivatives of n (eqs. 62, 63) are the corrected ones of docs/theory.md. */
+#include "base/memory.h"
+#include "shell/face.h"
+#include "shell/terms.h"
+#include "solve/element.h"
+
+typedef struct MagneticPack {
+    Pack3 hat[3], normal; /* at rest; 1/m, 1 */
+    Pack volume;          /* A h, m^3        */
+} MagneticPack;
+
+typedef struct Magnetic {
+    const Shell *shell;
+    MagneticPack *packs;
+} Magnetic;
+
+/* The flux density at the barycentres, and its derivatives where it varies. */
+typedef struct Flux {
+    Pack3 B;
+    PackMat gradient;     /* rows k: dB_k/dx              */
+    PackMat curvature[3]; /* [k]: d2B_k/dx dx             */
+} Flux;
+
+/* The current normal and its change with the vertices. */
+typedef struct Normal {
+    Pack3 n, edge[3]; /* edge[i] opposite to vertex i     */
+    Pack inverse;     /* 1/(2 A)                          */
+} Normal;
+
+static int magnetic_count(const void *self)
+{
+    return ((const Magnetic *)self)->shell->mesh->face_count;
+}
+
+static int magnetic_size(const void *self)
+{
+    (void)self;
+    return 9;
+}
+
+static void magnetic_dofs(const void *self, int face, int *dof)
+{
+    face_dofs(((const Magnetic *)self)->shell, face, dof);
+}
+
+static void add_field(const Shell *shell, const Point *at, const Pack *x, Flux *flux)
+{
+    double scale = at->p[shell->field_scale];
+    double B[3][PACK_LANES], gradient[9][PACK_LANES], curvature[27][PACK_LANES];
+    for (int l = 0; l < PACK_LANES; l++) {
+        double center[3];
+        for (int i = 0; i < 3; i++) center[i] = (x[i][l] + x[3 + i][l] + x[6 + i][l]) / 3;
+        FluxSample sample;
+        flux_field_eval(shell->field, center, at->time, &sample);
+        for (int k = 0; k < 3; k++) B[k][l] = scale * sample.flux[k];
+        for (int k = 0; k < 9; k++) gradient[k][l] = scale * sample.gradient[k / 3][k % 3];
+        for (int k = 0; k < 27; k++) curvature[k][l] = scale * sample.curvature[k / 9][k / 3 % 3][k % 3];
+    }
+    Pack pack[27];
+    memcpy(pack, B, sizeof B);
+    flux->B = pack3_add(flux->B, pack3_load(pack));
+    memcpy(pack, gradient, sizeof gradient);
+    flux->gradient = (PackMat){pack3_load(pack), pack3_load(pack + 3), pack3_load(pack + 6)};
+    memcpy(pack, curvature, sizeof curvature);
+    for (int k = 0; k < 3; k++)
+        flux->curvature[k] = (PackMat){pack3_load(pack + 9 * k), pack3_load(pack + 9 * k + 3), pack3_load(pack + 9 * k + 6)};
+}
+
+static Flux flux_at(const Shell *shell, const Point *at, const Pack *x)
+{
+    const double *B = at->p + shell->flux_density;
+    Flux flux = {.B = pack3(pack_set(B[0]), pack_set(B[1]), pack_set(B[2]))};
+    if (shell->field) add_field(shell, at, x, &flux);
+    return flux;
+}
+
+static Normal normal_of(const Pack *x)
+{
+    Normal r;
+    for (int i = 0; i < 3; i++) r.edge[i] = pack3_sub(pack3_load(x + 3 * ((i + 2) % 3)), pack3_load(x + 3 * ((i + 1) % 3)));
+    Pack3 N = pack3_cross(r.edge[2], pack3_neg(r.edge[1]));
+    r.inverse = 1 / pack_sqrt(pack3_dot(N, N));
+    r.n = pack3_scale(r.inverse, N);
+    return r;
+}
+
+/* d(n.b)/dx_i = (b - n (n.b)) x edge_i ... with N = sum over corners: dN = -edge_i x dx_i, so d(n.b) = (edge_i x b')/2A
+ * with b' the part of b across n. */
+static Pack3 normal_gradient(const Normal *r, Pack3 b, int i)
+{
+    Pack3 across = pack3_axpy(-pack3_dot(r->n, b), r->n, b);
+    return pack3_scale(r->inverse, pack3_cross(r->edge[i], across));
+}
+
+static Pack3 magnetization_of(const Shell *shell, int pack, const double *values)
+{
+    const double *M = values + shell->magnetization;
+    return pack3(face_param(shell, pack, M, 3, 0), face_param(shell, pack, M, 3, 1), face_param(shell, pack, M, 3, 2));
+}
+
+/* Q = F0 M: the magnetisation carried along by the face. */
+static Pack3 carried(const MagneticPack *face, const Normal *normal, Pack3 M, const Pack *x)
+{
+    Pack3 Q = pack3_scale(pack3_dot(face->normal, M), normal->n);
+    for (int i = 0; i < 3; i++) Q = pack3_axpy(pack3_dot(face->hat[i], M), pack3_load(x + 3 * i), Q);
+    return Q;
+}
+
+/* dE/dx over -A h, for magnetisation M, flux density B with gradient G: c_i B + mu d(n.B)/dx_i + G^T Q/3. */
+static void forces(const MagneticPack *face, const Normal *normal, Pack3 M, const Flux *flux, Pack3 Q, Pack *g)
+{
+    Pack mu = pack3_dot(face->normal, M);
+    Pack3 pull = pack3_scale(pack_set(1.0 / 3), pack_mat_left(Q, flux->gradient));
+    for (int i = 0; i < 3; i++) {
+        Pack3 f = pack3_axpy(pack3_dot(face->hat[i], M), flux->B, pull);
+        pack3_store(g + 3 * i, pack3_axpy(mu, normal_gradient(normal, flux->B, i), f));
+    }
+}
+
+/* d2(n.b)/dx_i dx_j = [e_i]x W [e_j]x^T + (second derivative of N) with
+ * W = -(n b'^T + b' n^T + (n.b) (I - n n^T))/(2A)^2 and N = e_2 x -e_1: b'.d2N = -/+ [b']x/(2A) between corners. */
+static PackMat normal_hessian(const Normal *r, Pack3 b, int i, int j)
+{
+    Pack height = pack3_dot(r->n, b);
+    Pack3 across = pack3_axpy(-height, r->n, b);
+    PackMat W = pack_mat_add(pack_mat_symmetric(r->n, across), pack_mat_diagonal(height));
+    W = pack_mat_add(W, pack_mat_outer(pack3_scale(-height, r->n), r->n));
+    W = pack_mat_scale(-r->inverse * r->inverse, W);
+    PackMat left = pack_mat_cross(r->edge[i]), right = pack_mat_cross(r->edge[j]);
+    PackMat block = pack_mat_neg(pack_mat_product(left, pack_mat_product(W, right)));
+    if (i == j) return block;
+    Pack turn = (j == (i + 1) % 3 ? -1 : 1) * r->inverse;
+    return pack_mat_add(block, pack_mat_scale(turn, pack_mat_cross(across)));
+}
+
+/* dQ/dx_i = c_i I + mu dn/dx_i, the latter row by row. */
+static PackMat carried_gradient(const Normal *normal, Pack c, Pack mu, int i)
+{
+    Pack one = pack_set(1), zero = {0};
+    PackMat turn = {normal_gradient(normal, pack3(one, zero, zero), i),
+                    normal_gradient(normal, pack3(zero, one, zero), i),
+                    normal_gradient(normal, pack3(zero, zero, one), i)};
+    return pack_mat_add(pack_mat_diagonal(c), pack_mat_scale(mu, turn));
+}
+
+/* What a varying field adds: (dQ_i^T G + G^T dQ_j)/3 + Q.curvature/9. */
+static PackMat field_hessian(const Flux *flux, Pack3 Q, PackMat dQi, PackMat dQj)
+{
+    PackMat sum = pack_mat_product(pack_mat_transpose(dQi), flux->gradient);
+    sum = pack_mat_add(sum, pack_mat_product(pack_mat_transpose(flux->gradient), dQj));
+    sum = pack_mat_scale(pack_set(1.0 / 3), sum);
+    Pack ninth = pack_set(1.0 / 9);
+    sum = pack_mat_add(sum, pack_mat_scale(ninth * Q.x, flux->curvature[0]));
+    sum = pack_mat_add(sum, pack_mat_scale(ninth * Q.y, flux->curvature[1]));
+    return pack_mat_add(sum, pack_mat_scale(ninth * Q.z, flux->curvature[2]));
+}
+
+static void hessian(const Magnetic *magnetic, int pack, const Normal *normal, Pack3 M, const Flux *flux, Pack3 Q, Pack *H)
+{
+    const MagneticPack *face = &magnetic->packs[pack];
+    Pack mu = pack3_dot(face->normal, M);
+    PackMat dQ[3];
+    for (int i = 0; magnetic->shell->field && i < 3; i++)
+        dQ[i] = carried_gradient(normal, pack3_dot(face->hat[i], M), mu, i);
+    element_clear(H, 9);
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j <= i; j++) {
+            PackMat block = pack_mat_scale(mu, normal_hessian(normal, flux->B, i, j));
+            if (magnetic->shell->field) block = pack_mat_add(block, field_hessian(flux, Q, dQ[i], dQ[j]));
+            block = pack_mat_scale(-face->volume, block);
+            if (i == j)
+                element_add_diagonal(H, i, block);
+            else
+                element_add_block(H, i, j, block);
+        }
+}
+
+static Pack magnetic_eval(const void *self, int pack, const Point *at, const Pack *x, Pack *g, Pack *H)
+{
+    const Magnetic *magnetic = self;
+    const MagneticPack *face = &magnetic->packs[pack];
+    Flux flux = flux_at(magnetic->shell, at, x);
+    Normal normal = normal_of(x);
+    Pack3 M = magnetization_of(magnetic->shell, pack, at->p), Q = carried(face, &normal, M, x);
+    if (g) {
+        forces(face, &normal, M, &flux, Q, g);
+        for (int i = 0; i < 9; i++) g[i] *= -face->volume;
+    }
+    if (H) hessian(magnetic, pack, &normal, M, &flux, Q, H);
+    return -face->volume * pack3_dot(Q, flux.B);
+}
+
+/* Both blocks are linear in the force: with W = dQ.w the change of Q and w' the mean of w,
+ * w.d/dB = -A h W,  w.d/dM = -A h (F0^T (G w') + sum_i (w_i.B) b_i + N sum_i w_i.d(n.B)/dx_i). */
+static void magnetic_param(const void *self, int pack, int lanes, const Point *at, const Pack *x, const Pack *w, double *dp)
+{
+    const Magnetic *magnetic = self;
+    const Shell *shell = magnetic->shell;
+    const MagneticPack *face = &magnetic->packs[pack];
+    Flux flux = flux_at(shell, at, x);
+    Normal normal = normal_of(x);
+    Pack3 M = magnetization_of(shell, pack, at->p), dB = {0}, dM = {0}, mean = {0};
+    Pack mu = pack3_dot(face->normal, M), along = {0};
+    for (int i = 0; i < 3; i++) mean = pack3_axpy(pack_set(1.0 / 3), pack3_load(w + 3 * i), mean);
+    Pack3 pull = pack_mat_times(flux.gradient, mean);
+    for (int i = 0; i < 3; i++) {
+        Pack3 wi = pack3_load(w + 3 * i);
+        dB = pack3_add(dB, pack_mat_times(carried_gradient(&normal, pack3_dot(face->hat[i], M), mu, i), wi));
+        along += pack3_dot(wi, normal_gradient(&normal, flux.B, i));
+        dM = pack3_axpy(pack3_dot(wi, flux.B) + pack3_dot(pack3_load(x + 3 * i), pull), face->hat[i], dM);
+    }
+    dM = pack3_axpy(along + pack3_dot(normal.n, pull), face->normal, dM);
+    dB = pack3_scale(-face->volume, dB);
+    dM = pack3_scale(-face->volume, dM);
+    for (int l = 0; l < lanes; l++) {
+        double *m = dp + shell->magnetization + 3 * face_of_lane(shell, pack, l), *b = dp + shell->flux_density;
+        m[0] += dM.x[l], m[1] += dM.y[l], m[2] += dM.z[l];
+        b[0] += dB.x[l], b[1] += dB.y[l], b[2] += dB.z[l];
+    }
+}
+
+static void magnetic_param_forward(const void *self, int pack, const Point *at, const Pack *x, const double *dp, Pack *r)
+{
+    const Magnetic *magnetic = self;
+    const Shell *shell = magnetic->shell;
+    const MagneticPack *face = &magnetic->packs[pack];
+    const double *b = dp + shell->flux_density;
+    Flux flux = flux_at(shell, at, x), change = {.B = pack3(pack_set(b[0]), pack_set(b[1]), pack_set(b[2]))};
+    Normal normal = normal_of(x);
+    Pack3 M = magnetization_of(shell, pack, at->p), dM = magnetization_of(shell, pack, dp);
+    Pack with_M[9];
+    forces(face, &normal, dM, &flux, carried(face, &normal, dM, x), with_M);
+    forces(face, &normal, M, &change, carried(face, &normal, M, x), r);
+    for (int i = 0; i < 9; i++) r[i] = -face->volume * (r[i] + with_M[i]);
+}
+
+static void magnetic_destroy(void *self)
+{
+    mem_free(((Magnetic *)self)->packs);
+    mem_free(self);
+}
+
+static const TermOps magnetic_ops = {
+    .name = "magnetic", .count = magnetic_count, .size = magnetic_size, .dofs = magnetic_dofs,
+    .eval = magnetic_eval, .param = magnetic_param, .param_forward = magnetic_param_forward,
+    .destroy = magnetic_destroy,
+};
+
+Term shell_magnetic_term(const Shell *shell)
+{
+    Magnetic *magnetic = mem_alloc(1, sizeof *magnetic);
+    magnetic->shell = shell;
+    magnetic->packs = mem_alloc((size_t)face_pack_count(shell), sizeof *magnetic->packs);
+    for (int k = 0; k < face_pack_count(shell) * PACK_LANES; k++) {
+        int l = k % PACK_LANES, face = face_of_lane(shell, k / PACK_LANES, l);
+        MagneticPack *pack = &magnetic->packs[k / PACK_LANES];
+        FaceFrame frame = face_frame(shell, face);
+        for (int i = 0; i < 3; i++)
+            pack->hat[i].x[l] = frame.hat[i][0], pack->hat[i].y[l] = frame.hat[i][1], pack->hat[i].z[l] = frame.hat[i][2];
+        pack->normal.x[l] = frame.normal[0], pack->normal.y[l] = frame.normal[1], pack->normal.z[l] = frame.normal[2];
+        pack->volume[l] = shell->mesh->rest_area[face] * shell->thickness;
+    }
+    return (Term){&magnetic_ops, magnetic};
+}

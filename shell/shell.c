@@ -1,0 +1,123 @@
+#include "shell/shell.h"
+#include "base/memory.h"
+#include "base/vec3.h"
+#include "shell/hinge.h"
+#include "shell/terms.h"
+#include "solve/lumped.h"
+
+static Pack3 spread(const double *x)
+{
+    return pack3(pack_set(x[0]), pack_set(x[1]), pack_set(x[2]));
+}
+
+static double rest_angle(const Mesh *mesh, int edge)
+{
+    int left = mesh->edge_faces[edge][0], right = mesh->edge_faces[edge][1];
+    if (left < 0 || right < 0) return 0;
+    int o = mesh->faces[left][mesh_corner(mesh, left, edge)], y = mesh->faces[right][mesh_corner(mesh, right, edge)];
+    int a = mesh->edges[edge][0], b = mesh->edges[edge][1];
+    return dihedral_angle(spread(mesh->rest[a]), spread(mesh->rest[b]), spread(mesh->rest[o]), spread(mesh->rest[y]))
+        .angle[0];
+}
+
+Shell *shell_create(Mesh *mesh)
+{
+    Shell *shell = mem_alloc(1, sizeof *shell);
+    shell->mesh = mesh;
+    shell->rest_angle = mem_alloc((size_t)mesh->edge_count, sizeof(double));
+    for (int e = 0; e < mesh->edge_count; e++) shell->rest_angle[e] = rest_angle(mesh, e);
+    shell->fixed = mem_alloc(3 * (size_t)mesh->vertex_count, sizeof(bool));
+    shell->clamped = mem_alloc((size_t)mesh->edge_count, sizeof(bool));
+    Params *params = &shell->params;
+    shell->young = params_add(params, "young", "Pa", mesh->face_count, 1, false);
+    shell->fold = params_add(params, "fold", "", mesh->edge_count, 1, false);
+    shell->magnetization = params_add(params, "magnetization", "A/m", mesh->face_count, 3, false);
+    shell->flux_density = params_add(params, "flux_density", "T", 1, 3, true);
+    shell->field_scale = params_add(params, "field_scale", "", 1, 1, true);
+    shell->gravity = params_add(params, "gravity", "m/s^2", 1, 3, true);
+    shell->load = params_add(params, "load", "N", mesh->vertex_count, 3, true);
+    return shell;
+}
+
+void shell_destroy(Shell *shell)
+{
+    if (!shell) return;
+    mesh_destroy(shell->mesh);
+    flux_field_destroy(shell->field);
+    mem_free(shell->rest_angle);
+    mem_free(shell->fixed);
+    mem_free(shell->clamped);
+    mem_free(shell);
+}
+
+void shell_fix(Shell *shell, int vertex, int axis)
+{
+    shell->fixed[3 * vertex + axis] = true;
+}
+
+void shell_clamp(Shell *shell, int edge)
+{
+    shell->clamped[edge] = true;
+}
+
+bool shell_face_is_rigid(const Shell *shell, int face)
+{
+    for (int i = 0; i < 3; i++) {
+        const bool *fixed = &shell->fixed[3 * shell->mesh->faces[face][i]];
+        if (!fixed[0] || !fixed[1] || !fixed[2] || !shell->clamped[shell->mesh->face_edges[face][i]]) return false;
+    }
+    return true;
+}
+
+System *shell_system(const Shell *shell)
+{
+    const Mesh *mesh = shell->mesh;
+    int positions = 3 * mesh->vertex_count;
+    DofClass classes[] = {{0, positions, mesh_diagonal(mesh)}, {positions, mesh->edge_count, 1}};
+    System *sys = system_create(shell_dof_count(shell), classes, 2);
+    for (int t = 0; t < shell_term_row_count; t++) system_add(sys, shell_term_rows[t].create(shell));
+    for (int i = 0; i < positions; i++)
+        if (shell->fixed[i]) system_fix(sys, i);
+    for (int e = 0; e < mesh->edge_count; e++)
+        if (shell->clamped[e] || shell->bending == BENDING_HINGE) system_fix(sys, shell_angle_dof(shell, e));
+    system_prepare(sys);
+    return sys;
+}
+
+void shell_default_params(const Shell *shell, double *p)
+{
+    for (int i = 0; i < shell->params.size; i++) p[i] = 0;
+    for (int f = 0; f < shell->mesh->face_count; f++) p[shell->young + f] = 1e6;
+    for (int e = 0; e < shell->mesh->edge_count; e++) p[shell->fold + e] = 1;
+    p[shell->field_scale] = 1;
+}
+
+void shell_rest_state(const Shell *shell, double *x)
+{
+    const Mesh *mesh = shell->mesh;
+    for (int v = 0; v < mesh->vertex_count; v++) vec3_store(x + 3 * v, vec3_load(mesh->rest[v]));
+    for (int e = 0; e < mesh->edge_count; e++) x[shell_angle_dof(shell, e)] = 0;
+}
+
+void shell_vertex_mass(const Shell *shell, double *mass)
+{
+    const Mesh *mesh = shell->mesh;
+    for (int v = 0; v < mesh->vertex_count; v++) mass[v] = 0;
+    for (int f = 0; f < mesh->face_count; f++)
+        for (int i = 0; i < 3; i++)
+            mass[mesh->faces[f][i]] += shell->density * shell->thickness * mesh->rest_area[f] / 3;
+}
+
+Term shell_gravity_term(const Shell *shell)
+{
+    double *mass = mem_alloc((size_t)shell->mesh->vertex_count, sizeof *mass);
+    shell_vertex_mass(shell, mass);
+    Term term = lumped_gravity_term(shell->mesh->vertex_count, mass, shell->gravity);
+    mem_free(mass);
+    return term;
+}
+
+Term shell_load_term(const Shell *shell)
+{
+    return lumped_load_term(shell->mesh->vertex_count, shell->load);
+}
