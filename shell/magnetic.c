@@ -48,35 +48,49 @@ static void magnetic_dofs(const void *self, int face, int *dof)
     face_dofs(((const Magnetic *)self)->shell, face, dof);
 }
 
-static void add_field(const Shell *shell, const Point *at, const Pack *x, Flux *flux)
+/* Uniform, with the numbers of flux_density in values. */
+static Flux uniform_flux(const Shell *shell, const double *values)
 {
-    double scale = at->p[shell->field_scale];
-    double B[3][PACK_LANES], gradient[9][PACK_LANES], curvature[27][PACK_LANES];
-    for (int l = 0; l < PACK_LANES; l++) {
+    const double *B = values + shell->flux_density;
+    return (Flux){.B = pack3(pack_set(B[0]), pack_set(B[1]), pack_set(B[2]))};
+}
+
+/* The field's part, before field_scale; zero where there is none. */
+static Flux field_flux(const Shell *shell, const Point *at, const Pack *x)
+{
+    double numbers[39][PACK_LANES] = {{0}};
+    for (int l = 0; shell->field && l < PACK_LANES; l++) {
         double center[3];
         for (int i = 0; i < 3; i++) center[i] = (x[i][l] + x[3 + i][l] + x[6 + i][l]) / 3;
         FluxSample sample;
         flux_field_eval(shell->field, center, at->time, &sample);
-        for (int k = 0; k < 3; k++) B[k][l] = scale * sample.flux[k];
-        for (int k = 0; k < 9; k++) gradient[k][l] = scale * sample.gradient[k / 3][k % 3];
-        for (int k = 0; k < 27; k++) curvature[k][l] = scale * sample.curvature[k / 9][k / 3 % 3][k % 3];
+        for (int k = 0; k < 3; k++) numbers[k][l] = sample.flux[k];
+        for (int k = 0; k < 9; k++) numbers[3 + k][l] = sample.gradient[k / 3][k % 3];
+        for (int k = 0; k < 27; k++) numbers[12 + k][l] = sample.curvature[k / 9][k / 3 % 3][k % 3];
     }
-    Pack pack[27];
-    memcpy(pack, B, sizeof B);
-    flux->B = pack3_add(flux->B, pack3_load(pack));
-    memcpy(pack, gradient, sizeof gradient);
-    flux->gradient = (PackMat){pack3_load(pack), pack3_load(pack + 3), pack3_load(pack + 6)};
-    memcpy(pack, curvature, sizeof curvature);
-    for (int k = 0; k < 3; k++)
-        flux->curvature[k] = (PackMat){pack3_load(pack + 9 * k), pack3_load(pack + 9 * k + 3), pack3_load(pack + 9 * k + 6)};
+    Pack3 rows[13];
+    memcpy(rows, numbers, sizeof rows);
+    Flux flux = {.B = rows[0], .gradient = {rows[1], rows[2], rows[3]}};
+    for (int k = 0; k < 3; k++) flux.curvature[k] = (PackMat){rows[4 + 3 * k], rows[5 + 3 * k], rows[6 + 3 * k]};
+    return flux;
+}
+
+/* a + scale b */
+static Flux flux_add(Flux a, double scale, const Flux *b)
+{
+    Pack s = pack_set(scale);
+    a.B = pack3_axpy(s, b->B, a.B);
+    a.gradient = pack_mat_add(a.gradient, pack_mat_scale(s, b->gradient));
+    for (int k = 0; k < 3; k++) a.curvature[k] = pack_mat_add(a.curvature[k], pack_mat_scale(s, b->curvature[k]));
+    return a;
 }
 
 static Flux flux_at(const Shell *shell, const Point *at, const Pack *x)
 {
-    const double *B = at->p + shell->flux_density;
-    Flux flux = {.B = pack3(pack_set(B[0]), pack_set(B[1]), pack_set(B[2]))};
-    if (shell->field) add_field(shell, at, x, &flux);
-    return flux;
+    Flux flux = uniform_flux(shell, at->p);
+    if (!shell->field) return flux;
+    Flux field = field_flux(shell, at, x);
+    return flux_add(flux, at->p[shell->field_scale], &field);
 }
 
 static Normal normal_of(const Pack *x)
@@ -89,12 +103,11 @@ static Normal normal_of(const Pack *x)
     return r;
 }
 
-/* d(n.b)/dx_i = (b - n (n.b)) x edge_i ... with N = sum over corners: dN = -edge_i x dx_i, so d(n.b) = (edge_i x b')/2A
- * with b' the part of b across n. */
+/* N = 2 A n changes by edge_i x dx_i, so d(n.b)/dx_i = (b' x edge_i)/(2 A), b' the part of b across n. */
 static Pack3 normal_gradient(const Normal *r, Pack3 b, int i)
 {
     Pack3 across = pack3_axpy(-pack3_dot(r->n, b), r->n, b);
-    return pack3_scale(r->inverse, pack3_cross(r->edge[i], across));
+    return pack3_scale(r->inverse, pack3_cross(across, r->edge[i]));
 }
 
 static Pack3 magnetization_of(const Shell *shell, int pack, const double *values)
@@ -122,8 +135,8 @@ static void forces(const MagneticPack *face, const Normal *normal, Pack3 M, cons
     }
 }
 
-/* d2(n.b)/dx_i dx_j = [e_i]x W [e_j]x^T + (second derivative of N) with
- * W = -(n b'^T + b' n^T + (n.b) (I - n n^T))/(2A)^2 and N = e_2 x -e_1: b'.d2N = -/+ [b']x/(2A) between corners. */
+/* d2(n.b)/dx_i dx_j = [e_i]x^T W [e_j]x -/+ [b']x/(2 A) for j = i + 1 / i - 1 (N is bilinear in the corners), with
+ * W = -(n b'^T + b' n^T + (n.b) (I - n n^T))/(2 A)^2. */
 static PackMat normal_hessian(const Normal *r, Pack3 b, int i, int j)
 {
     Pack height = pack3_dot(r->n, b);
@@ -195,32 +208,35 @@ static Pack magnetic_eval(const void *self, int pack, const Point *at, const Pac
     return -face->volume * pack3_dot(Q, flux.B);
 }
 
-/* Both blocks are linear in the force: with W = dQ.w the change of Q and w' the mean of w,
- * w.d/dB = -A h W,  w.d/dM = -A h (F0^T (G w') + sum_i (w_i.B) b_i + N sum_i w_i.d(n.B)/dx_i). */
+/* All blocks enter the force linearly. With W = sum_i dQ/dx_i w_i, w' the mean of w and G = dB/dx:
+ *     w.d/dB     = -A h W,    w.d/dscale = -A h (W.B_field + Q.(G_field w'))
+ *     w.d/dM     = -A h (F0^T (G w') + sum_i (w_i.B) b_i + N sum_i w_i.d(n.B)/dx_i). */
 static void magnetic_param(const void *self, int pack, int lanes, const Point *at, const Pack *x, const Pack *w, double *dp)
 {
     const Magnetic *magnetic = self;
     const Shell *shell = magnetic->shell;
     const MagneticPack *face = &magnetic->packs[pack];
-    Flux flux = flux_at(shell, at, x);
+    Flux field = field_flux(shell, at, x), flux = flux_add(uniform_flux(shell, at->p), at->p[shell->field_scale], &field);
     Normal normal = normal_of(x);
-    Pack3 M = magnetization_of(shell, pack, at->p), dB = {0}, dM = {0}, mean = {0};
+    Pack3 M = magnetization_of(shell, pack, at->p), W = {0}, dM = {0}, mean = {0};
     Pack mu = pack3_dot(face->normal, M), along = {0};
     for (int i = 0; i < 3; i++) mean = pack3_axpy(pack_set(1.0 / 3), pack3_load(w + 3 * i), mean);
     Pack3 pull = pack_mat_times(flux.gradient, mean);
     for (int i = 0; i < 3; i++) {
         Pack3 wi = pack3_load(w + 3 * i);
-        dB = pack3_add(dB, pack_mat_times(carried_gradient(&normal, pack3_dot(face->hat[i], M), mu, i), wi));
+        W = pack3_add(W, pack_mat_times(carried_gradient(&normal, pack3_dot(face->hat[i], M), mu, i), wi));
         along += pack3_dot(wi, normal_gradient(&normal, flux.B, i));
         dM = pack3_axpy(pack3_dot(wi, flux.B) + pack3_dot(pack3_load(x + 3 * i), pull), face->hat[i], dM);
     }
     dM = pack3_axpy(along + pack3_dot(normal.n, pull), face->normal, dM);
-    dB = pack3_scale(-face->volume, dB);
-    dM = pack3_scale(-face->volume, dM);
+    Pack3 Q = carried(face, &normal, M, x);
+    Pack scale = pack3_dot(W, field.B) + pack3_dot(Q, pack_mat_times(field.gradient, mean));
     for (int l = 0; l < lanes; l++) {
         double *m = dp + shell->magnetization + 3 * face_of_lane(shell, pack, l), *b = dp + shell->flux_density;
-        m[0] += dM.x[l], m[1] += dM.y[l], m[2] += dM.z[l];
-        b[0] += dB.x[l], b[1] += dB.y[l], b[2] += dB.z[l];
+        double volume = face->volume[l];
+        m[0] -= volume * dM.x[l], m[1] -= volume * dM.y[l], m[2] -= volume * dM.z[l];
+        b[0] -= volume * W.x[l], b[1] -= volume * W.y[l], b[2] -= volume * W.z[l];
+        dp[shell->field_scale] -= volume * scale[l];
     }
 }
 
@@ -229,8 +245,8 @@ static void magnetic_param_forward(const void *self, int pack, const Point *at, 
     const Magnetic *magnetic = self;
     const Shell *shell = magnetic->shell;
     const MagneticPack *face = &magnetic->packs[pack];
-    const double *b = dp + shell->flux_density;
-    Flux flux = flux_at(shell, at, x), change = {.B = pack3(pack_set(b[0]), pack_set(b[1]), pack_set(b[2]))};
+    Flux field = field_flux(shell, at, x), flux = flux_add(uniform_flux(shell, at->p), at->p[shell->field_scale], &field);
+    Flux change = flux_add(uniform_flux(shell, dp), dp[shell->field_scale], &field);
     Normal normal = normal_of(x);
     Pack3 M = magnetization_of(shell, pack, at->p), dM = magnetization_of(shell, pack, dp);
     Pack with_M[9];
