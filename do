@@ -1,0 +1,42 @@
+#!/bin/sh
+# The project's commands: each installs what is missing, then does its work.
+#   ./do setup            install the Debian packages that slender needs
+#   ./do build            Release build in build/
+#   ./do test [NAME]      build, then run all tests (or those whose name matches)
+set -eu
+cd "$(dirname "$0")"
+
+packages="gcc cmake make pkg-config libsuitesparse-dev libopenblas-dev libmuparser-dev libcmocka-dev"
+
+setup() {
+    missing=""
+    for package in $packages; do
+        dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing="$missing $package"
+    done
+    [ -n "$missing" ] || return 0
+    echo "slender needs:$missing"
+    root=""
+    [ "$(id -u)" = 0 ] || root=sudo
+    $root apt-get update -qq
+    # shellcheck disable=SC2086
+    $root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $missing
+}
+
+build() {
+    setup
+    cmake --preset release > build.log 2>&1 || { cat build.log; exit 1; }
+    rm build.log
+    cmake --build build -j"$(nproc)"
+}
+
+command=${1:-help}
+[ $# -eq 0 ] || shift
+case $command in
+setup) setup ;;
+build) build ;;
+test)
+    build
+    ctest --test-dir build --output-on-failure ${1:+-R "$1"}
+    ;;
+*) sed -n '2,5s/^# \{0,1\}//p' do ;;
+esac

@@ -1,0 +1,273 @@
+#include "solve/newton.h"
+#include "base/memory.h"
+#include "base/random.h"
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+enum { HALVINGS = 30, INVERSE_ITERATIONS = 8, CURVATURE_TRIES = 25 };
+
+static const double SHIFT_LAST = 1e8;        /* D: beyond this a step is no longer a Newton step       */
+static const double STALL_SHIFT = 1e6;       /* D: no decrease even with such a shift                  */
+static const double CURVATURE_STEP = 0.05;   /* body's measure: first step along negative curvature    */
+static const double CURVATURE_LAST = 0.5;    /* ... and the last                                       */
+static const double ZERO_CURVATURE = 1e-12;  /* v'Hv with v'Dv = 1 that counts as zero                 */
+
+typedef struct Search {
+    System *sys;
+    const NewtonDef *def;
+    int n;
+    Point at;                       /* at.x is x                                               */
+    double *x, *gradient, *step;    /* [n]                                                     */
+    double *trial, *trial_gradient; /* [n]                                                     */
+    double *mode, *product;         /* [n] direction of lowest curvature, kept between uses    */
+    bool mode_known;
+    double shift, shift_kept; /* in use; remembered                                      */
+    int shifted;              /* iterations in a row that needed one                     */
+    Evaluation now;
+    NewtonInfo info;
+} Search;
+
+NewtonDef newton_default(void)
+{
+    return (NewtonDef){.max_iterations = 300, .step_tol = 1e-8, .force_tol = 1e-6, .step_cap = 0.25,
+                       .shift_first = 1e-8, .shift_growth = 4, .armijo = 1e-4, .shifted_max = 3};
+}
+
+static const struct {
+    const char *name, *text;
+} status_rows[] = {
+    [NEWTON_CONVERGED] = {"converged", "a stable equilibrium"},
+    [NEWTON_SADDLE] = {"saddle", "in equilibrium but unstable, and no way down was found"},
+    [NEWTON_NEUTRAL] = {"neutral", "in equilibrium with a mode of zero stiffness (a buckling point or a free motion)"},
+    [NEWTON_STALLED] = {"stalled", "no step lowers the energy any more, but the forces are not in balance"},
+    [NEWTON_MAX_ITERATIONS] = {"max_iterations", "the energy was still falling at the last iteration"},
+    [NEWTON_NOT_FINITE] = {"not_finite", "energy or forces at the start are not finite numbers"},
+    [NEWTON_STOPPED] = {"stopped", "interrupted"},
+};
+
+const char *newton_status_name(NewtonStatus status)
+{
+    return status_rows[status].name;
+}
+
+const char *newton_status_text(NewtonStatus status)
+{
+    return status_rows[status].text;
+}
+
+static double dot(int n, const double *a, const double *b)
+{
+    double sum = 0;
+    for (int i = 0; i < n; i++) sum += a[i] * b[i];
+    return sum;
+}
+
+static bool factor(Search *s, double shift)
+{
+    s->info.factorizations++;
+    return system_factor(s->sys, shift);
+}
+
+/* The smallest shift, from the remembered one on, that makes the matrix positive definite. */
+static bool factor_shifted(Search *s)
+{
+    const NewtonDef *def = s->def;
+    s->shift = s->shift_kept < def->shift_growth * def->shift_first ? 0 : s->shift_kept / def->shift_growth;
+    while (!factor(s, s->shift)) {
+        s->shift = fmax(def->shift_first, def->shift_growth * s->shift);
+        if (s->shift > SHIFT_LAST) return false;
+    }
+    return true;
+}
+
+static double energy_at(Search *s, const double *direction, double a, Evaluation *evaluation)
+{
+    for (int i = 0; i < s->n; i++) s->trial[i] = s->x[i] + a * direction[i];
+    Point at = s->at;
+    at.x = s->trial;
+    *evaluation = system_energy(s->sys, &at);
+    s->info.evaluations++;
+    return evaluation->finite ? evaluation->energy : INFINITY;
+}
+
+/* Near a minimum energies differ by less than their rounding: there the slope at the new point decides. */
+static bool slope_is_fine(Search *s, const Evaluation *trial, double slope)
+{
+    if (!(trial->energy <= s->now.energy + 1e-12 * s->now.energy_scale)) return false;
+    Point at = s->at;
+    at.x = s->trial;
+    system_gradient(s->sys, &at, s->trial_gradient);
+    s->info.evaluations++;
+    for (int i = 0; i < s->n; i++)
+        if (system_is_fixed(s->sys, i)) s->trial_gradient[i] = 0;
+    return dot(s->n, s->trial_gradient, s->step) <= (2 * s->def->armijo - 1) * slope;
+}
+
+/* Largest of 1, 1/2, 1/4 ... along the step that satisfies Armijo's rule; leaves the point in trial; 0: none. */
+static double line_search(Search *s)
+{
+    double slope = dot(s->n, s->gradient, s->step), a = 1;
+    for (int k = 0; k < HALVINGS; k++, a /= 2) {
+        Evaluation trial;
+        double energy = energy_at(s, s->step, a, &trial);
+        if (energy <= s->now.energy + s->def->armijo * a * slope) return a;
+        if (isfinite(energy) && slope_is_fine(s, &trial, slope)) return a;
+    }
+    return 0;
+}
+
+/* Inverse iteration with the factor at hand: the mode of lowest curvature v'Hv/v'Dv, scaled to v'Dv = 1 and pointing
+ * downhill. Returns its curvature. */
+static double lowest_mode(Search *s)
+{
+    const double *scale = system_scale(s->sys);
+    Random random = random_seed(1);
+    for (int i = 0; !s->mode_known && i < s->n; i++)
+        s->mode[i] = system_is_fixed(s->sys, i) ? 0 : random_signed(&random) / sqrt(scale[i]);
+    s->mode_known = true;
+    for (int k = 0; k < INVERSE_ITERATIONS; k++) {
+        for (int i = 0; i < s->n; i++) s->product[i] = scale[i] * s->mode[i];
+        system_solve(s->sys, s->product, s->mode);
+        double norm = 0;
+        for (int i = 0; i < s->n; i++) norm += scale[i] * s->mode[i] * s->mode[i];
+        norm = 1 / sqrt(norm);
+        for (int i = 0; i < s->n; i++) s->mode[i] *= norm;
+    }
+    system_multiply(s->sys, s->mode, s->product);
+    if (dot(s->n, s->mode, s->gradient) > 0)
+        for (int i = 0; i < s->n; i++) s->mode[i] = -s->mode[i];
+    return dot(s->n, s->mode, s->product);
+}
+
+/* A step along the mode that lowers the energy by a quarter of what its curvature promises; 0: none. */
+static double curvature_step(Search *s, double curvature)
+{
+    double size = system_step_size(s->sys, s->mode), slope = dot(s->n, s->gradient, s->mode);
+    double a = CURVATURE_STEP / size;
+    for (int k = 0; k < CURVATURE_TRIES; k++, a /= 4) {
+        Evaluation trial;
+        double energy = energy_at(s, s->mode, a, &trial);
+        if (!(energy < s->now.energy + (a * slope + a * a * curvature / 2) / 4)) continue;
+        while (k == 0 && 2 * a * size <= CURVATURE_LAST) {
+            double further = energy_at(s, s->mode, 2 * a, &trial);
+            if (!(further < energy)) break;
+            energy = further;
+            a *= 2;
+        }
+        return a;
+    }
+    return 0;
+}
+
+static void move(Search *s, const double *direction, double a)
+{
+    for (int i = 0; i < s->n; i++) s->x[i] += a * direction[i];
+    system_accept(s->sys, &s->at);
+}
+
+/* The last step, squared small: taken if it does not raise the forces. */
+static void finish(Search *s)
+{
+    Point at = s->at;
+    for (int i = 0; i < s->n; i++) s->trial[i] = s->x[i] + s->step[i];
+    at.x = s->trial;
+    Evaluation last = system_gradient(s->sys, &at, s->trial_gradient);
+    s->info.evaluations++;
+    if (!last.finite || last.gradient_max > s->now.gradient_max) return;
+    memcpy(s->x, s->trial, (size_t)s->n * sizeof *s->x);
+    system_accept(s->sys, &s->at);
+    s->now = last;
+}
+
+/* Leaves along negative curvature where there is some. Returns true when the iteration is decided. */
+static bool leave_saddle(Search *s, bool small, double floor, NewtonStatus *status)
+{
+    double curvature = lowest_mode(s);
+    s->info.curvature = curvature;
+    double a = curvature < 0 ? curvature_step(s, curvature) : 0;
+    if (a > 0) {
+        move(s, s->mode, a);
+        s->shifted = 0;
+        return true;
+    }
+    if (!small || s->shift == 0) return false;
+    if (fabs(curvature) < ZERO_CURVATURE) *status = NEWTON_NEUTRAL;
+    else if (s->now.gradient_max <= floor) *status = curvature < 0 ? NEWTON_SADDLE : NEWTON_NEUTRAL;
+    return *status != NEWTON_MAX_ITERATIONS;
+}
+
+static void newton_step(Search *s)
+{
+    system_solve(s->sys, s->gradient, s->step);
+    for (int i = 0; i < s->n; i++) s->step[i] = -s->step[i];
+    s->info.step = system_step_size(s->sys, s->step);
+}
+
+/* A largest force below this is rounding of the coordinates times the stiffness. */
+static double round_off(const Search *s)
+{
+    double largest = 0;
+    for (int i = 0; i < s->n; i++) largest = fmax(largest, fabs(s->x[i]));
+    return 8 * DBL_EPSILON * system_stiffness_max(s->sys) * largest;
+}
+
+/* One iteration; the status stays MAX_ITERATIONS while there is more to do. */
+static NewtonStatus iterate(Search *s)
+{
+    NewtonStatus status = NEWTON_MAX_ITERATIONS;
+    s->now = system_hessian(s->sys, &s->at, s->gradient);
+    s->info.evaluations++;
+    if (!s->now.finite) return NEWTON_NOT_FINITE;
+    if (!factor_shifted(s)) return NEWTON_STALLED;
+
+    double floor = round_off(s);
+    bool small = s->now.gradient_max <= fmax(s->def->force_tol * s->now.force_scale, floor);
+    if (small && s->shift > 0 && s->shift_kept > 0) { /* a remembered shift proves nothing */
+        if (factor(s, 0))
+            s->shift = 0;
+        else
+            factor(s, s->shift);
+    }
+    s->shift_kept = s->shift;
+    s->shifted = s->shift > 0 ? s->shifted + 1 : 0;
+    newton_step(s);
+    if (small && s->shift == 0 && s->info.step <= s->def->step_tol) {
+        finish(s);
+        return NEWTON_CONVERGED;
+    }
+    if (((small && s->shift > 0) || s->shifted >= s->def->shifted_max) && leave_saddle(s, small, floor, &status))
+        return status;
+
+    double shrink = fmin(1, s->def->step_cap / s->info.step);
+    for (int i = 0; i < s->n; i++) s->step[i] *= shrink;
+    double a = line_search(s);
+    if (a > 0) {
+        move(s, s->step, a);
+        return status;
+    }
+    s->shift_kept = 160 * fmax(s->shift, s->def->shift_first);
+    return s->shift_kept > STALL_SHIFT ? NEWTON_STALLED : status;
+}
+
+NewtonInfo newton_minimize(System *sys, const NewtonDef *def, const double *p, double time, double *x,
+                           const NewtonObserver *observer)
+{
+    int n = system_dof_count(sys);
+    double *work = mem_alloc(6 * (size_t)n, sizeof *work);
+    Search s = {.sys = sys, .def = def, .n = n, .at = {.x = x, .p = p, .time = time}, .x = x, .gradient = work,
+                .step = work + n, .trial = work + 2 * n, .trial_gradient = work + 3 * n, .mode = work + 4 * n,
+                .product = work + 5 * n};
+    s.info.status = NEWTON_MAX_ITERATIONS;
+    while (s.info.iterations < def->max_iterations && s.info.status == NEWTON_MAX_ITERATIONS) {
+        s.info.iterations++;
+        s.info.status = iterate(&s);
+        s.info.energy = s.now.energy;
+        s.info.gradient_max = s.now.gradient_max;
+        s.info.force_scale = s.now.force_scale;
+        if (observer && s.info.status == NEWTON_MAX_ITERATIONS && !observer->iteration(observer->self, &s.info))
+            s.info.status = NEWTON_STOPPED;
+    }
+    mem_free(work);
+    return s.info;
+}

@@ -1,0 +1,55 @@
+/* newton.h - minimise a System's energy over its free dofs: regularised Newton with line search.
+ *
+ * The one nonlinear solver of the project; shells and rods differ only in their terms. Each iteration factors
+ * H + (base + shift) D, with a shift in parts of each dof class's mean diagonal that is remembered from one iteration
+ * to the next; steps are capped, accepted by Armijo's rule with a guard against round-off, and saddles are left along
+ * a direction of negative curvature. The method and its constants were measured on 19 problems (docs/newton.md). */
+#pragma once
+#include "solve/system.h"
+
+typedef struct NewtonDef {
+    int max_iterations;  /* default 300                                                                          */
+    double step_tol;     /* converged when the Newton step is smaller, in the body's measure; default 1e-8        */
+    double force_tol;    /* ... and no force exceeds this part of the element forces; default 1e-6               */
+    double step_cap;     /* largest step, body's measure; default 0.25                                           */
+    double shift_first;  /* smallest shift tried, in parts of D; default 1e-8                                    */
+    double shift_growth; /* factor between tries, and back after a success; default 4                            */
+    double armijo;       /* sufficient decrease; default 1e-4                                                    */
+    int shifted_max;     /* shifted iterations in a row before negative curvature is looked for; default 3       */
+} NewtonDef;
+
+NewtonDef newton_default(void);
+
+typedef enum NewtonStatus {
+    NEWTON_CONVERGED,      /* stationary and the (base-shifted) Hessian positive definite: a stable equilibrium */
+    NEWTON_SADDLE,         /* stationary, not positive definite, and no way down was found                     */
+    NEWTON_NEUTRAL,        /* stationary with a zero mode: a buckling point, or a rigid motion                 */
+    NEWTON_STALLED,        /* no step lowers the energy                                                        */
+    NEWTON_MAX_ITERATIONS, /* still falling                                                                    */
+    NEWTON_NOT_FINITE,     /* energy or forces at the start are not finite                                     */
+    NEWTON_STOPPED,        /* the observer asked for it                                                        */
+} NewtonStatus;
+
+typedef struct NewtonInfo {
+    NewtonStatus status;
+    int iterations, factorizations, evaluations;
+    double energy, gradient_max, force_scale; /* at the final x: J, N, N                            */
+    double step;                              /* the last Newton step, body's measure                */
+    double curvature;                         /* lowest v'Hv/v'Dv seen at a saddle or neutral point  */
+} NewtonInfo;
+
+/* Called after each iteration; returns false to stop. */
+typedef struct NewtonObserver {
+    bool (*iteration)(void *self, const NewtonInfo *info);
+    void *self;
+} NewtonObserver;
+
+/* Starts from x and leaves the final iterate there; observer may be NULL. After NEWTON_CONVERGED the system holds the
+ * factor of the (base-shifted) Hessian at the point from which the last, negligible step was taken, ready for an
+ * adjoint. p and time are those of all evaluations. */
+NewtonInfo newton_minimize(System *sys, const NewtonDef *def, const double *p, double time, double *x,
+                           const NewtonObserver *observer);
+
+/* One word: "converged", "saddle", ... and a sentence for the user. */
+const char *newton_status_name(NewtonStatus status);
+const char *newton_status_text(NewtonStatus status);

@@ -1,0 +1,66 @@
+#include "base/memory.h"
+#include "io/formula.h"
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+static const char *const variables[] = {"x", "y", "t", NULL};
+
+static void test_values(void **state)
+{
+    (void)state;
+    long blocks = mem_live_count();
+    Error err;
+    const char *const expressions[] = {"rint(atan2(y, x)/(pi/3))", "a + b^2", "0"};
+    const FormulaHelper helpers[] = {{"a", "2*x"}, {"b", "a + y"}};
+    Formula *formula = formula_create(expressions, 3, helpers, 2, variables, &err);
+    assert_non_null(formula);
+    double r[3];
+    assert_true(formula_eval(formula, (double[]){1, 2, 0}, r, &err));
+    assert_true(r[0] == rint(atan2(2, 1) / (M_PI / 3)) && r[1] == 2 + 16 && r[2] == 0);
+    assert_true(formula_uses(formula, "x") && formula_uses(formula, "y") && !formula_uses(formula, "t"));
+    formula_destroy(formula);
+    assert_int_equal(mem_live_count(), blocks);
+}
+
+static void check_refused(const char *expression, const char *sentence)
+{
+    Error err = {""};
+    long blocks = mem_live_count();
+    assert_null(formula_create(&expression, 1, NULL, 0, variables, &err));
+    assert_string_equal(err.text, sentence);
+    assert_int_equal(mem_live_count(), blocks);
+}
+
+static void test_refused(void **state)
+{
+    (void)state;
+    check_refused("x + q", "unknown name 'q' in \"x + q\"; known are x, y, t, pi, e");
+    check_refused("", "an expression is empty");
+}
+
+static void test_not_finite(void **state)
+{
+    (void)state;
+    Error err;
+    const char *expression = "1/x";
+    Formula *formula = formula_create(&expression, 1, NULL, 0, variables, &err);
+    double r;
+    assert_non_null(formula);
+    assert_false(formula_eval(formula, (double[]){0, 1, 2}, &r, &err));
+    assert_string_equal(err.text, "\"1/x\" is not a finite number at x = 0, y = 1, t = 2");
+    formula_destroy(formula);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_values),
+        cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_not_finite),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
