@@ -135,9 +135,10 @@ static double lowest_mode(Search *s)
         for (int i = 0; i < s->n; i++) s->mode[i] *= norm;
     }
     system_multiply(s->sys, s->mode, s->product);
+    double curvature = dot(s->n, s->mode, s->product);
     if (dot(s->n, s->mode, s->gradient) > 0)
         for (int i = 0; i < s->n; i++) s->mode[i] = -s->mode[i];
-    return dot(s->n, s->mode, s->product);
+    return curvature;
 }
 
 /* A step along the mode that lowers the energy by a quarter of what its curvature promises; 0: none. */
