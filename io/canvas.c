@@ -1,0 +1,369 @@
+#include "io/canvas.h"
+#include "base/memory.h"
+#include <cairo-pdf.h>
+#include <cairo-svg.h>
+#include <cairo.h>
+#include <errno.h>
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+#include <strings.h>
+#include <unistd.h>
+
+enum { MAX_POINTS = 10000, MAX_SIDE = 32000, PNG_MAX_PIXELS = 100000000 };
+
+typedef enum Format { FORMAT_PNG, FORMAT_SVG, FORMAT_PDF, FORMAT_COUNT } Format;
+
+static const char *const endings[FORMAT_COUNT] = {".png", ".svg", ".pdf"};
+
+/* The file's bytes until they are saved. */
+typedef struct Bytes {
+    unsigned char *data;
+    size_t length, capacity;
+} Bytes;
+
+struct Canvas {
+    cairo_t *cairo;
+    cairo_surface_t *surface;
+    Format format;
+    double resolution;
+    char *path;
+    Bytes file;
+};
+
+static cairo_status_t bytes_append(void *self, const unsigned char *data, unsigned length)
+{
+    Bytes *bytes = self;
+    if (bytes->length + length > bytes->capacity) {
+        size_t capacity = 2 * (bytes->length + length);
+        bytes->data = mem_resize(bytes->data, bytes->capacity, capacity, 1);
+        bytes->capacity = capacity;
+    }
+    memcpy(bytes->data + bytes->length, data, length);
+    bytes->length += length;
+    return CAIRO_STATUS_SUCCESS;
+}
+
+/* FORMAT_COUNT for an unknown ending. */
+static Format format_from_path(const char *path)
+{
+    const char *ending = strrchr(path, '.');
+    int format = 0;
+    while (format < FORMAT_COUNT && (!ending || strcasecmp(ending, endings[format]) != 0)) format++;
+    return (Format)format;
+}
+
+static cairo_surface_t *surface_create(Canvas *canvas, double width, double height)
+{
+    if (canvas->format == FORMAT_SVG)
+        return cairo_svg_surface_create_for_stream(bytes_append, &canvas->file, width, height);
+    if (canvas->format == FORMAT_PDF)
+        return cairo_pdf_surface_create_for_stream(bytes_append, &canvas->file, width, height);
+    return cairo_image_surface_create(CAIRO_FORMAT_RGB24, (int)lround(width * canvas->resolution),
+                                      (int)lround(height * canvas->resolution));
+}
+
+/* Glyphs are placed the same at every resolution and in every format. */
+static void disable_hinting(cairo_t *cairo)
+{
+    cairo_font_options_t *options = cairo_font_options_create();
+    cairo_font_options_set_hint_style(options, CAIRO_HINT_STYLE_NONE);
+    cairo_font_options_set_hint_metrics(options, CAIRO_HINT_METRICS_OFF);
+    cairo_font_options_set_antialias(options, CAIRO_ANTIALIAS_GRAY);
+    cairo_set_font_options(cairo, options);
+    cairo_font_options_destroy(options);
+}
+
+Canvas *canvas_create(const char *path, double width, double height, double resolution, Error *err)
+{
+    Format format = format_from_path(path);
+    if (format == FORMAT_COUNT) {
+        error_set(err, "%s: pictures are written as .png, .svg or .pdf; give the file one of these endings",
+                  path);
+        return NULL;
+    }
+    double side = fmax(width, height) * (format == FORMAT_PNG ? resolution : 1);
+    if (!(fmin(width, height) >= 1 && fmax(width, height) <= MAX_POINTS && resolution > 0 &&
+          side <= MAX_SIDE)) {
+        error_set(err, "%s: a page of %g x %g points; 1 to %d points are allowed, and %d pixels in a PNG",
+                  path, width, height, MAX_POINTS, MAX_SIDE);
+        return NULL;
+    }
+    Canvas *canvas = mem_alloc(1, sizeof *canvas);
+    canvas->format = format;
+    canvas->resolution = resolution;
+    canvas->path = mem_text(path);
+    canvas->surface = surface_create(canvas, width, height);
+    canvas->cairo = cairo_create(canvas->surface);
+    if (format == FORMAT_PNG) cairo_scale(canvas->cairo, resolution, resolution);
+    disable_hinting(canvas->cairo);
+    cairo_set_line_cap(canvas->cairo, CAIRO_LINE_CAP_ROUND);
+    cairo_set_line_join(canvas->cairo, CAIRO_LINE_JOIN_ROUND);
+    canvas_fill(canvas, (Box){0, 0, width, height}, (Color){1, 1, 1, 1});
+    return canvas;
+}
+
+void canvas_destroy(Canvas *canvas)
+{
+    if (!canvas) return;
+    cairo_destroy(canvas->cairo);
+    cairo_surface_destroy(canvas->surface);
+    mem_free(canvas->file.data);
+    mem_free(canvas->path);
+    mem_free(canvas);
+}
+
+double canvas_resolution(const Canvas *canvas)
+{
+    return canvas->resolution;
+}
+
+static bool file_write(const char *path, const Bytes *bytes)
+{
+    FILE *file = fopen(path, "wb");
+    if (!file) return false;
+    bool ok = fwrite(bytes->data, 1, bytes->length, file) == bytes->length && fflush(file) == 0 &&
+              fsync(fileno(file)) == 0;
+    int reason = errno;
+    if (fclose(file) != 0 && ok) return false;
+    errno = reason;
+    return ok;
+}
+
+bool canvas_save(Canvas *canvas, Error *err)
+{
+    cairo_status_t status = cairo_status(canvas->cairo);
+    if (status == CAIRO_STATUS_SUCCESS && canvas->format == FORMAT_PNG)
+        status = cairo_surface_write_to_png_stream(canvas->surface, bytes_append, &canvas->file);
+    cairo_surface_finish(canvas->surface);
+    if (status == CAIRO_STATUS_SUCCESS) status = cairo_surface_status(canvas->surface);
+    if (status != CAIRO_STATUS_SUCCESS)
+        return error_set(err, "%s: cannot be drawn: %s", canvas->path, cairo_status_to_string(status));
+
+    char *temporary = mem_format("%s.tmp", canvas->path);
+    bool ok = file_write(temporary, &canvas->file) && rename(temporary, canvas->path) == 0;
+    if (!ok) {
+        error_set(err, "%s: cannot be written: %s", canvas->path, strerror(errno));
+        unlink(temporary);
+    }
+    mem_free(temporary);
+    return ok;
+}
+
+static void set_color(Canvas *canvas, Color color)
+{
+    cairo_set_source_rgba(canvas->cairo, color.r, color.g, color.b, color.a);
+}
+
+static void trace(Canvas *canvas, const Vec2 *points, int count)
+{
+    for (int i = 0; i < count; i++) cairo_line_to(canvas->cairo, points[i].x, points[i].y);
+}
+
+static void stroke(Canvas *canvas, Pen pen)
+{
+    set_color(canvas, pen.color);
+    cairo_set_line_width(canvas->cairo, pen.width);
+    cairo_set_dash(canvas->cairo, &pen.dash, pen.dash > 0, 0);
+    cairo_stroke(canvas->cairo);
+}
+
+void canvas_line(Canvas *canvas, Vec2 from, Vec2 to, Pen pen)
+{
+    canvas_polyline(canvas, (const Vec2[]){from, to}, 2, pen);
+}
+
+void canvas_polyline(Canvas *canvas, const Vec2 *points, int count, Pen pen)
+{
+    trace(canvas, points, count);
+    stroke(canvas, pen);
+}
+
+void canvas_polygon(Canvas *canvas, const Vec2 *points, int count, Color fill)
+{
+    trace(canvas, points, count);
+    cairo_close_path(canvas->cairo);
+    set_color(canvas, fill);
+    cairo_fill(canvas->cairo);
+}
+
+void canvas_circle(Canvas *canvas, Vec2 center, double radius, Color fill)
+{
+    cairo_arc(canvas->cairo, center.x, center.y, radius, 0, 2 * acos(-1));
+    set_color(canvas, fill);
+    cairo_fill(canvas->cairo);
+}
+
+void canvas_fill(Canvas *canvas, Box box, Color fill)
+{
+    cairo_rectangle(canvas->cairo, box.x, box.y, box.width, box.height);
+    set_color(canvas, fill);
+    cairo_fill(canvas->cairo);
+}
+
+void canvas_frame(Canvas *canvas, Box box, Pen pen)
+{
+    cairo_rectangle(canvas->cairo, box.x, box.y, box.width, box.height);
+    stroke(canvas, pen);
+}
+
+void canvas_arrow(Canvas *canvas, Vec2 tail, Vec2 tip, Pen pen)
+{
+    double dx = tip.x - tail.x, dy = tip.y - tail.y, length = hypot(dx, dy);
+    if (!(length > 0)) return;
+    double head = 5 * pen.width, shrink = fmin(1, length / head);
+    head *= shrink;
+    pen.width *= shrink;
+    dx *= head / length;
+    dy *= head / length;
+    Vec2 neck = {tip.x - 0.9 * dx, tip.y - 0.9 * dy};
+    canvas_line(canvas, tail, neck, pen);
+    canvas_polygon(canvas,
+                   (const Vec2[]){tip,
+                                  {tip.x - dx - 0.35 * dy, tip.y - dy + 0.35 * dx},
+                                  neck,
+                                  {tip.x - dx + 0.35 * dy, tip.y - dy - 0.35 * dx}},
+                   4, pen.color);
+}
+
+static void select_font(Canvas *canvas, TextStyle style)
+{
+    cairo_select_font_face(canvas->cairo, "sans-serif", CAIRO_FONT_SLANT_NORMAL,
+                           style.bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
+    cairo_set_font_size(canvas->cairo, style.size);
+}
+
+double canvas_text_width(Canvas *canvas, const char *text, TextStyle style)
+{
+    cairo_text_extents_t extents;
+    select_font(canvas, style);
+    cairo_text_extents(canvas->cairo, text, &extents);
+    return extents.x_advance;
+}
+
+void canvas_text(Canvas *canvas, Vec2 at, const char *text, TextStyle style)
+{
+    double width = canvas_text_width(canvas, text, style);
+    cairo_save(canvas->cairo);
+    cairo_translate(canvas->cairo, at.x, at.y);
+    if (style.upwards) cairo_rotate(canvas->cairo, -acos(-1) / 2);
+    cairo_move_to(canvas->cairo, -0.5 * style.align * width, 0);
+    set_color(canvas, style.color);
+    cairo_show_text(canvas->cairo, text);
+    cairo_restore(canvas->cairo);
+    cairo_new_path(canvas->cairo);
+}
+
+void canvas_clip(Canvas *canvas, Box box)
+{
+    cairo_save(canvas->cairo);
+    cairo_rectangle(canvas->cairo, box.x, box.y, box.width, box.height);
+    cairo_clip(canvas->cairo);
+}
+
+void canvas_unclip(Canvas *canvas)
+{
+    cairo_restore(canvas->cairo);
+}
+
+/* Cairo's pixels are native 32-bit words, alpha first, with the colours already multiplied by alpha. */
+static uint32_t pixel_premultiplied(const unsigned char rgba[4])
+{
+    uint32_t a = rgba[3], word = a << 24;
+    for (int c = 0; c < 3; c++) word |= ((rgba[c] * a + 127) / 255) << (16 - 8 * c);
+    return word;
+}
+
+void canvas_image(Canvas *canvas, const unsigned char *rgba, int width, int height, Box box)
+{
+    cairo_surface_t *image = cairo_image_surface_create(CAIRO_FORMAT_ARGB32, width, height);
+    unsigned char *data = cairo_image_surface_get_data(image);
+    int stride = cairo_image_surface_get_stride(image);
+    for (int i = 0; data && i < height; i++)
+        for (int j = 0; j < width; j++) {
+            uint32_t word = pixel_premultiplied(rgba + 4 * ((size_t)i * (size_t)width + (size_t)j));
+            memcpy(data + (size_t)i * (size_t)stride + 4 * (size_t)j, &word, sizeof word);
+        }
+    cairo_surface_mark_dirty(image);
+    cairo_save(canvas->cairo);
+    cairo_translate(canvas->cairo, box.x, box.y);
+    cairo_scale(canvas->cairo, box.width / width, box.height / height);
+    cairo_set_source_surface(canvas->cairo, image, 0, 0);
+    cairo_paint(canvas->cairo);
+    cairo_restore(canvas->cairo);
+    cairo_surface_destroy(image);
+}
+
+/* The size in the file's first chunk, checked before Cairo reserves memory for it. */
+static bool png_check_header(const char *path, Error *err)
+{
+    FILE *file = fopen(path, "rb");
+    if (!file) return error_set(err, "%s: cannot be read: %s", path, strerror(errno));
+    unsigned char head[24] = {0};
+    size_t got = fread(head, 1, sizeof head, file);
+    fclose(file);
+    if (got < sizeof head || memcmp(head, "\x89PNG\r\n\x1a\n", 8) != 0 || memcmp(head + 12, "IHDR", 4) != 0)
+        return error_set(err, "%s: not a PNG file", path);
+    uint32_t size[2];
+    for (int k = 0; k < 2; k++) {
+        const unsigned char *b = head + 16 + 4 * k;
+        size[k] = (uint32_t)b[0] << 24 | (uint32_t)b[1] << 16 | (uint32_t)b[2] << 8 | b[3];
+    }
+    if (size[0] == 0 || size[1] == 0) return error_set(err, "%s: the image has no pixels", path);
+    if (size[0] > MAX_SIDE || size[1] > MAX_SIDE || (uint64_t)size[0] * size[1] > PNG_MAX_PIXELS)
+        return error_set(err, "%s: an image of %u x %u pixels; at most %d a side and 100 million are read",
+                         path, size[0], size[1], MAX_SIDE);
+    return true;
+}
+
+/* Paints the image over white, so that Cairo turns any kind of PNG into the same pixels. */
+static cairo_surface_t *surface_flatten(cairo_surface_t *png)
+{
+    cairo_surface_t *flat = cairo_image_surface_create(CAIRO_FORMAT_RGB24, cairo_image_surface_get_width(png),
+                                                       cairo_image_surface_get_height(png));
+    cairo_t *cairo = cairo_create(flat);
+    cairo_set_source_rgb(cairo, 1, 1, 1);
+    cairo_paint(cairo);
+    cairo_set_source_surface(cairo, png, 0, 0);
+    cairo_paint(cairo);
+    cairo_destroy(cairo);
+    cairo_surface_flush(flat);
+    return flat;
+}
+
+static unsigned char *surface_rgb(cairo_surface_t *surface, int width, int height)
+{
+    const unsigned char *data = cairo_image_surface_get_data(surface);
+    size_t stride = (size_t)cairo_image_surface_get_stride(surface);
+    unsigned char *rgb = mem_alloc(3 * (size_t)width * (size_t)height, 1), *out = rgb;
+    for (int i = 0; i < height; i++)
+        for (int j = 0; j < width; j++) {
+            uint32_t word;
+            memcpy(&word, data + (size_t)i * stride + 4 * (size_t)j, sizeof word);
+            for (int c = 0; c < 3; c++) *out++ = (unsigned char)(word >> (16 - 8 * c));
+        }
+    return rgb;
+}
+
+bool canvas_read_png(const char *path, unsigned char **rgb, int *width, int *height, Error *err)
+{
+    *rgb = NULL;
+    if (!png_check_header(path, err)) return false;
+    cairo_surface_t *png = cairo_image_surface_create_from_png(path);
+    cairo_status_t status = cairo_surface_status(png);
+    if (status != CAIRO_STATUS_SUCCESS) {
+        cairo_surface_destroy(png);
+        return error_set(err, "%s: the PNG data are broken: %s", path, cairo_status_to_string(status));
+    }
+    cairo_surface_t *flat = surface_flatten(png);
+    cairo_surface_destroy(png);
+    status = cairo_surface_status(flat);
+    if (status == CAIRO_STATUS_SUCCESS) {
+        *width = cairo_image_surface_get_width(flat);
+        *height = cairo_image_surface_get_height(flat);
+        *rgb = surface_rgb(flat, *width, *height);
+    }
+    cairo_surface_destroy(flat);
+    return *rgb || error_set(err, "%s: %s", path, cairo_status_to_string(status));
+}

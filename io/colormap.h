@@ -1,0 +1,29 @@
+/* colormap.h - colours, and the two maps that turn a number into one.
+ *
+ * COLORMAP_VIRIDIS (dark blue to yellow) for quantities of one sign, COLORMAP_DIVERGING (blue, white, red)
+ * for those of both. Both are even to the eye: equal steps of the number are equal steps of lightness.
+ * Between its anchors a map is interpolated in Oklab [Ottosson 2020]. */
+#pragma once
+
+/* sRGB components and opacity, each 0..1, not premultiplied. */
+typedef struct Color {
+    double r, g, b, a;
+} Color;
+
+typedef enum Colormap { COLORMAP_VIRIDIS, COLORMAP_DIVERGING } Colormap;
+
+/* The colour at t in 0..1; t outside is clamped, NaN is a neutral grey. */
+Color colormap_color(Colormap map, double t);
+
+/* Which number has which colour. */
+typedef struct ColorScale {
+    Colormap map;
+    double low, high; /* the ends of the map, low < high */
+} ColorScale;
+
+/* A scale for count numbers (NaN and infinities are left out): viridis from the least to the greatest;
+ * symmetric about 0 and diverging where both signs are present. Where a range of one sign begins below a
+ * fifth of its end, it starts at 0. Constant or no numbers still give a range. */
+ColorScale color_scale_fit(const double *values, int count);
+
+Color color_scale_color(const ColorScale *scale, double value);
