@@ -6,7 +6,8 @@
 set -eu
 cd "$(dirname "$0")"
 
-packages="gcc cmake make pkg-config libsuitesparse-dev libopenblas-dev libmuparser-dev libcmocka-dev"
+packages="gcc cmake make pkg-config libsuitesparse-dev libopenblas-dev libmuparser-dev libcairo2-dev
+          fonts-dejavu-core libcmocka-dev"
 
 setup() {
     missing=""
