@@ -1,0 +1,23 @@
+/* objective.h - what a design wants to be small: a function of the state x and the parameters p.
+ *
+ * A plain sum of rows, each with its weight and without hidden normalisation. A row gives its value, gradient and its
+ * own Gauss-Newton product (zero for what is no sum of squares), so that optimisers need not know what it measures. */
+#pragma once
+
+typedef struct ObjectiveOps {
+    const char *name; /* its key in the scene */
+
+    /* Value; adds weight*gradient to dx[dofs] and dp[params]; both may be NULL together. */
+    double (*value)(const void *self, double weight, const double *x, const double *p, double *dx, double *dp);
+
+    /* hx, hp += weight J^T J (vx, vp), J the derivative of the residuals whose squares are summed. */
+    void (*product)(const void *self, double weight, const double *vx, const double *vp, double *hx, double *hp);
+
+    void (*destroy)(void *self);
+} ObjectiveOps;
+
+typedef struct Objective {
+    const ObjectiveOps *ops;
+    void *self;
+    double weight;
+} Objective;
