@@ -1,0 +1,50 @@
+/* static_design.h - F(u) of a quasi-static design, its gradient by the adjoint and its Gauss-Newton product.
+ *
+ * Each load case finds its equilibrium x(p) from the best design's (never from a rejected trial's), moved by the
+ * tangent -H^-1 (d2E/dx dp) dp where that lowers the energy. With H at the equilibrium factored,
+ *     adjoint   H w = dF/dx,   dF/dp - (d2E/dx dp)^T w                      [Chen 2022, eqs. 29-33]
+ *     tangent   dx = -H^-1 (d2E/dx dp) dp.
+ * Cases are independent of each other and may run in parallel threads; their sums are taken in order, so the result
+ * does not depend on the number of threads. */
+#pragma once
+#include "optim/design.h"
+#include "optim/objective.h"
+#include "solve/newton.h"
+
+typedef struct LoadCase {
+    const char *name; /* borrowed, all of them */
+    System *sys;
+    double *p; /* [params] the case's loads; design_apply overwrites the unknown blocks   */
+    double *x; /* [dofs] equilibrium of the best design; at first, where to start from    */
+    const Objective *objectives;
+    int objective_count;
+    double weight;
+} LoadCase;
+
+typedef struct StaticDesign StaticDesign;
+
+/* Borrows design and cases. */
+StaticDesign *static_design_create(const Design *design, const Params *params, LoadCase *cases, const NewtonDef *newton);
+void static_design_destroy(StaticDesign *sd);
+
+typedef struct CaseInfo {
+    NewtonInfo newton;
+    double objective; /* weighted */
+} CaseInfo;
+
+/* F at u and, where gradient is not NULL, dF/du[size]. INFINITY with a zero gradient where an equilibrium was not
+ * found; case_info[case_count] says how each went. */
+double static_design_evaluate(StaticDesign *sd, const double *u, double *gradient, CaseInfo *case_info);
+
+/* Makes the last evaluation the best design: the next ones start from it. */
+void static_design_accept(StaticDesign *sd);
+
+/* out = J^T J v at the best design (of the sum of squares); the first call after an evaluation that was not accepted
+ * factors again. */
+void static_design_product(StaticDesign *sd, const double *v, double *out);
+
+/* Factorisations and Newton iterations so far, all cases. */
+long static_design_factorizations(const StaticDesign *sd);
+
+/* dF/dp of the last evaluation of a case, params->size numbers; weighted, in the blocks' own units. */
+const double *static_design_param_gradient(const StaticDesign *sd, int load_case);
