@@ -6,7 +6,7 @@
 set -eu
 cd "$(dirname "$0")"
 
-packages="gcc cmake make pkg-config libsuitesparse-dev libopenblas-dev libmuparser-dev libcairo2-dev
+packages="gcc cmake make pkg-config libsuitesparse-dev libopenblas-dev libnlopt-dev libmuparser-dev libcairo2-dev
           fonts-dejavu-core libcmocka-dev"
 
 setup() {

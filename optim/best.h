@@ -1,0 +1,29 @@
+/* best.h - the bookkeeping that all optimisers share: evaluations counted, the best point kept. Private to optim/. */
+#pragma once
+#include "optim/optimiser.h"
+
+typedef struct Best {
+    const Problem *problem;
+    const OptimiserDef *def;
+    double *u, *gradient; /* [n] of the best point                               */
+    double objective;     /* INFINITY before the first success                   */
+    double first_norm;    /* projected gradient of the first success             */
+    bool stopped;
+    OptimiserInfo info;
+} Best;
+
+Best best_create(const Problem *problem, const OptimiserDef *def);
+void best_destroy(Best *best);
+
+/* Evaluates; keeps and accepts the point if it is the best so far. */
+double best_evaluate(Best *best, const double *u, double *gradient);
+
+/* No more evaluations: too many, stopped, or converged; sets info.status. */
+bool best_is_done(Best *best);
+
+/* Norm of the gradient without what pushes against the bounds. */
+double best_projected_norm(const Problem *problem, const double *u, const double *gradient);
+
+/* The three methods, from u. */
+void gauss_newton_run(Best *best, double *u);
+void nlopt_run(Best *best, double *u);

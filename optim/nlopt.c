@@ -1,0 +1,45 @@
+/* NLopt's MMA [Svanberg 2002] and L-BFGS. Traps of 2.7.1: it asks for a gradient at every inner evaluation, counts
+ * MAXEVAL as a success, and one NaN in a gradient silently ruins a run; so counting, stopping and the best point are
+ * ours (best.h), and a failed simulation is +Inf with a zero gradient. */
+#include "base/memory.h"
+#include "optim/best.h"
+#include <math.h>
+#include <nlopt.h>
+#include <string.h>
+
+typedef struct Run {
+    Best *best;
+    nlopt_opt opt;
+    double *gradient;
+} Run;
+
+static double objective(unsigned n, const double *u, double *gradient, void *data)
+{
+    Run *run = data;
+    Best *best = run->best;
+    bool known = isfinite(best->objective) && !memcmp(u, best->u, n * sizeof *u); /* L-BFGS after Gauss-Newton */
+    double value = best->objective;
+    if (known)
+        memcpy(run->gradient, best->gradient, n * sizeof *gradient);
+    else
+        value = best_evaluate(best, u, run->gradient);
+    if (gradient) memcpy(gradient, run->gradient, n * sizeof *gradient);
+    if (best_is_done(best)) nlopt_force_stop(run->opt);
+    return value;
+}
+
+void nlopt_run(Best *best, double *u)
+{
+    const Problem *problem = best->problem;
+    unsigned n = (unsigned)problem->n;
+    Run run = {.best = best, .gradient = mem_alloc(n, sizeof(double))};
+    run.opt = nlopt_create(best->def->method == OPTIMISER_MMA ? NLOPT_LD_MMA : NLOPT_LD_LBFGS, n);
+    nlopt_set_min_objective(run.opt, objective, &run);
+    nlopt_set_lower_bounds(run.opt, problem->lower);
+    nlopt_set_upper_bounds(run.opt, problem->upper);
+    double value;
+    nlopt_optimize(run.opt, u, &value);
+    nlopt_destroy(run.opt);
+    mem_free(run.gradient);
+    if (!best_is_done(best)) best->info.status = OPTIMISER_STALLED;
+}

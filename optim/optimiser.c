@@ -1,0 +1,86 @@
+#include "optim/optimiser.h"
+#include "base/memory.h"
+#include "optim/best.h"
+#include <math.h>
+#include <string.h>
+
+OptimiserDef optimiser_default(void)
+{
+    return (OptimiserDef){.method = OPTIMISER_MMA, .evaluations = 50, .gradient_tol = 1e-6};
+}
+
+const char *optimiser_status_name(OptimiserStatus status)
+{
+    static const char *const names[] = {"converged", "evaluations", "stalled", "failed", "stopped"};
+    return names[status];
+}
+
+Best best_create(const Problem *problem, const OptimiserDef *def)
+{
+    size_t n = (size_t)problem->n;
+    return (Best){.problem = problem, .def = def, .u = mem_alloc(n, sizeof(double)),
+                  .gradient = mem_alloc(n, sizeof(double)), .objective = INFINITY,
+                  .info = {.status = OPTIMISER_FAILED, .objective = INFINITY}};
+}
+
+void best_destroy(Best *best)
+{
+    mem_free(best->u);
+    mem_free(best->gradient);
+}
+
+double best_projected_norm(const Problem *problem, const double *u, const double *gradient)
+{
+    double sum = 0;
+    for (int i = 0; i < problem->n; i++) {
+        bool held = (u[i] <= problem->lower[i] && gradient[i] > 0) || (u[i] >= problem->upper[i] && gradient[i] < 0);
+        if (!held) sum += gradient[i] * gradient[i];
+    }
+    return sqrt(sum);
+}
+
+double best_evaluate(Best *best, const double *u, double *gradient)
+{
+    const Problem *problem = best->problem;
+    double objective = problem->evaluate(problem->self, u, gradient);
+    best->info.evaluations++;
+    if (objective < best->objective) {
+        best->objective = best->info.objective = objective;
+        memcpy(best->u, u, (size_t)problem->n * sizeof *u);
+        memcpy(best->gradient, gradient, (size_t)problem->n * sizeof *gradient);
+        best->info.gradient_norm = best_projected_norm(problem, u, gradient);
+        if (best->first_norm == 0) best->first_norm = best->info.gradient_norm;
+        problem->accept(problem->self);
+    }
+    if (!problem->go_on(problem->self)) best->stopped = true;
+    return objective;
+}
+
+bool best_is_done(Best *best)
+{
+    OptimiserInfo *info = &best->info;
+    if (best->stopped)
+        info->status = OPTIMISER_STOPPED;
+    else if (isfinite(best->objective) && info->gradient_norm <= best->def->gradient_tol * best->first_norm)
+        info->status = OPTIMISER_CONVERGED;
+    else if (info->evaluations >= best->def->evaluations)
+        info->status = OPTIMISER_EVALUATIONS;
+    else
+        return false;
+    return true;
+}
+
+OptimiserInfo optimise(const Problem *problem, const OptimiserDef *def, double *u)
+{
+    Best best = best_create(problem, def);
+    for (int i = 0; i < problem->n; i++) u[i] = fmin(fmax(u[i], problem->lower[i]), problem->upper[i]);
+    if (def->method == OPTIMISER_GAUSS_NEWTON)
+        gauss_newton_run(&best, u);
+    else
+        nlopt_run(&best, u);
+    OptimiserInfo info = best.info;
+    if (!isfinite(best.objective)) info.status = OPTIMISER_FAILED;
+    else memcpy(u, best.u, (size_t)problem->n * sizeof *u);
+    best_destroy(&best);
+    return info;
+}

@@ -1,0 +1,56 @@
+/* optimiser.h - minimise F(u) within bounds: NLopt's MMA and L-BFGS, and a matrix-free Gauss-Newton of our own, behind
+ * one interface.
+ *
+ * Evaluations are counted, not iterations: NLopt's inner ones cannot be told apart. Every optimiser keeps the best
+ * point so far, tests convergence on the gradient projected on the bounds, and replays recorded evaluations first, so
+ * that a resumed run goes the same way bit by bit. */
+#pragma once
+#include <stdbool.h>
+
+typedef struct Problem {
+    int n;
+    const double *lower, *upper; /* [n] may be infinite */
+    void *self;
+
+    /* F and its gradient[n]; INFINITY and zeros where the simulation failed. */
+    double (*evaluate)(void *self, const double *u, double *gradient);
+
+    /* The last evaluation is the best so far: start the next ones from it. */
+    void (*accept)(void *self);
+
+    /* out = J^T J v at the best point; for Gauss-Newton. */
+    void (*product)(void *self, const double *v, double *out);
+
+    /* Asked after each evaluation, before the next: false stops. */
+    bool (*go_on)(void *self);
+} Problem;
+
+typedef enum OptimiserMethod { OPTIMISER_MMA, OPTIMISER_LBFGS, OPTIMISER_GAUSS_NEWTON } OptimiserMethod;
+
+typedef struct OptimiserDef {
+    OptimiserMethod method; /* default mma                                                               */
+    int evaluations;        /* at most; default 50                                                       */
+    double gradient_tol;    /* converged when the projected gradient fell to this part of the first one; 1e-6 */
+} OptimiserDef;
+
+OptimiserDef optimiser_default(void);
+
+typedef enum OptimiserStatus {
+    OPTIMISER_CONVERGED,   /* the projected gradient is small              */
+    OPTIMISER_EVALUATIONS, /* as many evaluations as were allowed          */
+    OPTIMISER_STALLED,     /* no better point is found                     */
+    OPTIMISER_FAILED,      /* no evaluation succeeded                      */
+    OPTIMISER_STOPPED,     /* go_on said so                                */
+} OptimiserStatus;
+
+typedef struct OptimiserInfo {
+    OptimiserStatus status;
+    int evaluations;
+    long products;
+    double objective, gradient_norm; /* at the best point; the norm is that of the projected gradient */
+} OptimiserInfo;
+
+/* From u, which ends as the best point. */
+OptimiserInfo optimise(const Problem *problem, const OptimiserDef *def, double *u);
+
+const char *optimiser_status_name(OptimiserStatus status);
