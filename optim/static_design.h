@@ -8,7 +8,7 @@
  * does not depend on the number of threads. */
 #pragma once
 #include "optim/design.h"
-#include "optim/objective.h"
+#include "solve/objective.h"
 #include "solve/newton.h"
 
 typedef struct LoadCase {

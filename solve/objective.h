@@ -10,7 +10,7 @@ typedef struct ObjectiveOps {
     /* Value; adds weight*gradient to dx[dofs] and dp[params]; both may be NULL together. */
     double (*value)(const void *self, double weight, const double *x, const double *p, double *dx, double *dp);
 
-    /* hx, hp += weight J^T J (vx, vp), J the derivative of the residuals whose squares are summed. */
+    /* hx, hp += weight 2 J^T J (vx, vp), J the derivative of the residuals whose squares are summed. */
     void (*product)(const void *self, double weight, const double *vx, const double *vp, double *hx, double *hp);
 
     void (*destroy)(void *self);

@@ -1,0 +1,83 @@
+#include "optim/objectives.h"
+#include "base/memory.h"
+
+typedef struct Vertices {
+    int count;
+    int *vertices;
+    double (*target)[3]; /* NULL for heights */
+} Vertices;
+
+static double target_value(const void *self, double weight, const double *x, const double *p, double *dx, double *dp)
+{
+    (void)p, (void)dp;
+    const Vertices *chosen = self;
+    double sum = 0;
+    for (int k = 0; k < chosen->count; k++)
+        for (int i = 0; i < 3; i++) {
+            double distance = x[3 * chosen->vertices[k] + i] - chosen->target[k][i];
+            sum += distance * distance;
+            if (dx) dx[3 * chosen->vertices[k] + i] += 2 * weight * distance;
+        }
+    return sum;
+}
+
+/* Twice J^T J, as the gradient is 2 J^T r. */
+static void target_product(const void *self, double weight, const double *vx, const double *vp, double *hx, double *hp)
+{
+    (void)vp, (void)hp;
+    const Vertices *chosen = self;
+    for (int k = 0; k < chosen->count; k++)
+        for (int i = 0; i < 3; i++) {
+            int dof = 3 * chosen->vertices[k] + i;
+            hx[dof] += 2 * weight * vx[dof];
+        }
+}
+
+static double height_value(const void *self, double weight, const double *x, const double *p, double *dx, double *dp)
+{
+    (void)p, (void)dp;
+    const Vertices *chosen = self;
+    double sum = 0;
+    for (int k = 0; k < chosen->count; k++) {
+        int dof = 3 * chosen->vertices[k] + 2;
+        sum += x[dof] / chosen->count;
+        if (dx) dx[dof] += weight / chosen->count;
+    }
+    return sum;
+}
+
+static void height_product(const void *self, double weight, const double *vx, const double *vp, double *hx, double *hp)
+{
+    (void)self, (void)weight, (void)vx, (void)vp, (void)hx, (void)hp;
+}
+
+static void vertices_destroy(void *self)
+{
+    Vertices *chosen = self;
+    mem_free(chosen->vertices);
+    mem_free(chosen->target);
+    mem_free(chosen);
+}
+
+static const ObjectiveOps target_ops = {"target", target_value, target_product, vertices_destroy};
+static const ObjectiveOps height_ops = {"height", height_value, height_product, vertices_destroy};
+
+static Vertices *choose(int count, const int *vertices)
+{
+    Vertices *chosen = mem_alloc(1, sizeof *chosen);
+    chosen->count = count;
+    chosen->vertices = mem_copy(vertices, (size_t)count, sizeof *vertices);
+    return chosen;
+}
+
+Objective objective_target(int count, const int *vertices, const double (*target)[3], double weight)
+{
+    Vertices *chosen = choose(count, vertices);
+    chosen->target = mem_copy(target, (size_t)count, sizeof *target);
+    return (Objective){&target_ops, chosen, weight};
+}
+
+Objective objective_height(int count, const int *vertices, double weight)
+{
+    return (Objective){&height_ops, choose(count, vertices), weight};
+}
