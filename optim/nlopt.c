@@ -17,6 +17,7 @@ static double objective(unsigned n, const double *u, double *gradient, void *dat
 {
     Run *run = data;
     Best *best = run->best;
+    if (best_is_done(best)) return best->objective; /* asked once more after the stop */
     bool known = isfinite(best->objective) && !memcmp(u, best->u, n * sizeof *u); /* L-BFGS after Gauss-Newton */
     double value = best->objective;
     if (known)
