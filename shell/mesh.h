@@ -14,23 +14,21 @@
 #include "io/mesh_file.h"
 
 typedef struct Mesh {
-    int vertex_count, face_count, edge_count, component_count, group_count;
-    double (*rest)[3];    /* [vertex] rest position, m */
-    int (*faces)[3];      /* [face] vertices; the normal is (x1 - x0) x (x2 - x0) */
-    int (*edges)[2];      /* [edge] v0 < v1; sorted by v0, then v1 */
-    int (*edge_faces)[2]; /* [edge] left face (runs v0 -> v1), right face (runs v1 -> v0); -1 where there is
-                             none */
-    int (*face_edges)[3]; /* [face][i] the edge OPPOSITE to the face's vertex i: from vertex i+1 to i+2 (mod
-                             3) */
-    signed char (
-        *face_edge_sign)[3]; /* [face][i] +1 where the face runs along face_edges[i] from v0 to v1, else -1 */
-    double *rest_area;       /* [face] m^2 */
-    int *vertex_component;   /* [vertex] connected part, numbered by first vertex; touching in one vertex
-                                connects */
-    MeshGroup *groups;       /* [group_count] the file's, in this mesh's numbering; faces as they were */
-    int *file_vertex;        /* [vertex] its number in the file (the lowest of those joined) */
-    int file_vertex_count;
-    int *vertex_of_file; /* [file_vertex_count] the mesh's vertex, -1 where removed */
+    int vertex_count, face_count, edge_count, component_count, group_count, file_vertex_count;
+    double (*rest)[3]; /* [vertex] rest position, m */
+    int (*faces)[3];   /* [face] vertices; the normal is (x1 - x0) x (x2 - x0) */
+    int (*edges)[2];   /* [edge] v0 < v1; sorted by v0, then v1 */
+    /* [edge] left face (runs v0 -> v1) and right face (runs v1 -> v0); -1 where there is none */
+    int (*edge_faces)[2];
+    /* [face][i] the edge OPPOSITE to the face's vertex i: from vertex i+1 to i+2 (mod 3) */
+    int (*face_edges)[3];
+    /* [face][i] +1 where the face runs along face_edges[i] from v0 to v1, else -1 */
+    signed char (*face_edge_sign)[3];
+    double *rest_area;     /* [face] m^2 */
+    int *vertex_component; /* [vertex] connected part, by first vertex; a common vertex connects */
+    MeshGroup *groups;     /* [group_count] the file's, in this mesh's numbering; faces as they were */
+    int *file_vertex;      /* [vertex] its number in the file (the lowest of those joined) */
+    int *vertex_of_file;   /* [file_vertex_count] the mesh's vertex, -1 where removed */
 } Mesh;
 
 /* What the user should know about a mesh that was accepted. */
@@ -39,12 +37,13 @@ typedef struct MeshReport {
     char **warnings; /* sentences "file:line: ..."; owned */
 } MeshReport;
 
-/* Checks the file's surface and builds the mesh; copies what it needs. Vertices closer than weld (m; 0 = off)
- * to one of lower number are joined first. report may be NULL. On bad input returns NULL and a sentence that
- * names file, line and element: a coordinate that is not finite or beyond 1e6 m, an index out of range or
- * repeated in its face, a face of no area (below 1e-12 L^2, L the bounding box's diagonal) or a sliver
- * (height below 1e-6 of its longest edge), an edge with three faces, two faces that run along their edge the
- * same way or have the same three vertices, a mesh without vertices or faces. */
+/* Checks the file's surface and builds the mesh; copies what it needs. Vertices closer than weld (m; 0 =
+ * off) to one of lower number are joined first. report may be NULL; else clear it, also after a
+ * failure. On bad input returns NULL and a sentence that names file, line and element: a coordinate
+ * that is not finite or beyond 1e6 m, an index out of range or repeated in its face, a face of no area
+ * (below 1e-12 L^2, L the bounding box's diagonal) or a sliver (height below 1e-6 of its longest edge),
+ * an edge with three faces, two faces that run along their edge the same way or have the same three
+ * vertices, a mesh without vertices or faces. */
 Mesh *mesh_create(const MeshFile *file, double weld, MeshReport *report, Error *err);
 
 void mesh_destroy(Mesh *mesh);

@@ -86,9 +86,9 @@ static bool make_sheet(const char *shape, const double size[2], const int cells[
                        MeshFile *mesh, Error *err)
 {
     bool crossed = pattern == PATTERN_CROSSED;
-    int row = cells[0] + 1, per_cell = crossed ? 4 : 2;
+    int per_cell = crossed ? 4 : 2;
     if (!check_faces(shape, (double)per_cell * cells[0] * cells[1], err)) return false;
-    int cell_count = cells[0] * cells[1], corner_count = row * (cells[1] + 1);
+    int row = cells[0] + 1, cell_count = cells[0] * cells[1], corner_count = row * (cells[1] + 1);
     *mesh = start(shape, corner_count + (crossed ? cell_count : 0), per_cell * cell_count, 2);
     sheet_vertices(mesh, size, cells, crossed);
     for (int cell = 0; cell < cell_count; cell++) {

@@ -23,8 +23,9 @@ static uint64_t bucket(const Grid *grid, double cx, double cy, double cz)
     double cell[3] = {cx, cy, cz};
     uint64_t bits[3], hash = 0;
     memcpy(bits, cell, sizeof bits);
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0; k < 3; k++) { /* twice: small whole numbers differ only in their 12 highest bits */
         hash = (hash ^ bits[k]) * 0x9e3779b97f4a7c15u;
+        hash = (hash ^ hash >> 32) * 0x9e3779b97f4a7c15u;
         hash ^= hash >> 32;
     }
     return hash & grid->mask;
