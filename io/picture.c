@@ -7,7 +7,7 @@
 
 /* Points; see the sketch in picture.h. */
 static const double PAGE = 576, MARGIN = 28, GAP = 16, TITLE = 15, SMALL = 8.5, LEADING = 12, HEADING = 18;
-static const double TRIAD = 24, PADDING = 6, KEYS = 180, CHART_HEIGHT = 150;
+static const double MEASURES = 24, PADDING = 6, KEYS = 180, CHART_HEIGHT = 150;
 
 static const Color ink = {0.15, 0.15, 0.17, 1}, soft = {0.42, 0.42, 0.45, 1};
 
@@ -28,10 +28,16 @@ static double snap(double length, double resolution)
     return round(length * resolution) / resolution;
 }
 
+static bool any_wires(const PictureScene *scene)
+{
+    bool any = false;
+    for (int i = 0; i < scene->panel_count; i++) any = any || scene->panels[i].target;
+    return any && scene->target != PICTURE_TARGET_BESIDE;
+}
+
 static int keys_count(const PictureScene *scene)
 {
-    bool length = scene->panel_count > 0 && !(scene->perspective > 0);
-    return panel_any_field(scene) + panel_any_vectors(scene) + length;
+    return panel_any_field(scene) + panel_any_vectors(scene) + any_wires(scene);
 }
 
 static int scene_columns(const PictureScene *scene)
@@ -60,7 +66,7 @@ static double layout_cells(const PanelStyle *style, double top, double width, Bo
             cells[i] = (Box){snap(MARGIN + (i - first) * (width + GAP), style->resolution),
                              snap(top + HEADING, style->resolution), width,
                              snap(height + 2 * PADDING, style->resolution)};
-        top += HEADING + height + 2 * PADDING + TRIAD + GAP;
+        top += HEADING + height + 2 * PADDING + MEASURES + GAP;
     }
     return top;
 }
@@ -78,30 +84,37 @@ static Layout layout_page(const PictureScene *scene, const PanelStyle *style, do
     return page;
 }
 
+/* Text in a smaller font where it would be wider than the given width; returns where it ends. */
+static double draw_fitted(Canvas *canvas, Vec2 at, const char *text, TextStyle style, double width)
+{
+    style.size *= fmin(1, width / fmax(canvas_text_width(canvas, text, style), 1e-6));
+    canvas_text(canvas, at, text, style);
+    return at.x + canvas_text_width(canvas, text, style);
+}
+
 static void draw_heading(Canvas *canvas, const PictureScene *scene)
 {
-    double y = MARGIN;
+    const TextStyle title = {.color = ink, .size = TITLE, .bold = true},
+                    small = {.color = soft, .size = SMALL};
+    double y = MARGIN, width = PAGE - 2 * MARGIN;
     if (scene->title) {
         y += TITLE;
-        canvas_text(canvas, (Vec2){MARGIN, y - 2}, scene->title,
-                    (TextStyle){.color = ink, .size = TITLE, .bold = true});
+        draw_fitted(canvas, (Vec2){MARGIN, y - 2}, scene->title, title, width);
         y += 6;
     }
     for (int i = 0; i < scene->line_count; i++) {
         y += LEADING;
-        canvas_text(canvas, (Vec2){MARGIN, y - 3}, scene->lines[i],
-                    (TextStyle){.color = soft, .size = SMALL});
+        draw_fitted(canvas, (Vec2){MARGIN, y - 3}, scene->lines[i], small, width);
     }
 }
 
-/* Bold name, then small print. */
-static void draw_cell_heading(Canvas *canvas, Vec2 at, const char *name, const char *note)
+/* Bold name, then small print, above a panel. */
+static void draw_cell_heading(Canvas *canvas, Box cell, const char *name, const char *note)
 {
-    const TextStyle bold = {.color = ink, .size = 10, .bold = true};
-    canvas_text(canvas, at, name, bold);
-    if (!note) return;
-    at.x += canvas_text_width(canvas, name, bold) + 8;
-    canvas_text(canvas, at, note, (TextStyle){.color = soft, .size = SMALL});
+    const TextStyle bold = {.color = ink, .size = 10, .bold = true}, small = {.color = soft, .size = SMALL};
+    double y = cell.y - 6;
+    double end = draw_fitted(canvas, (Vec2){cell.x, y}, name, bold, 0.6 * cell.width) + 8;
+    draw_fitted(canvas, (Vec2){end, y}, note, small, cell.x + cell.width - end);
 }
 
 /* Root of the mean square distance of the vertices that have a target; NaN where none has. */
@@ -118,12 +131,25 @@ static double target_distance(const PictureScene *scene, const PicturePanel *pan
     return sqrt(sum / count);
 }
 
+/* Name and note; how far the target is away, unless its own panel says so. */
+static void draw_result_heading(Canvas *canvas, const PictureScene *scene, const PicturePanel *panel, Box box)
+{
+    char number[64], note[256];
+    const char *given = panel->note ? panel->note : "";
+    snprintf(note, sizeof note, "%s", given);
+    if (panel->target && scene->target == PICTURE_TARGET_OVER) {
+        unit_format(target_distance(scene, panel), "m", number, sizeof number);
+        snprintf(note, sizeof note, "%s%starget %s away (rms)", given, given[0] ? ", " : "", number);
+    }
+    draw_cell_heading(canvas, box, panel->name ? panel->name : "result", note);
+}
+
 static void draw_target_cell(Canvas *canvas, const PanelStyle *style, int index, Box box)
 {
     char number[64], note[96];
     unit_format(target_distance(style->scene, &style->scene->panels[index]), "m", number, sizeof number);
     snprintf(note, sizeof note, "%s away (rms)", number);
-    draw_cell_heading(canvas, (Vec2){box.x, box.y - 6}, "target", note);
+    draw_cell_heading(canvas, box, "target", note);
     panel_draw_target(canvas, style, index, box);
 }
 
@@ -131,14 +157,12 @@ static void draw_panels(Canvas *canvas, const PanelStyle *style, const Layout *p
 {
     const PictureScene *scene = style->scene;
     for (int i = 0; i < scene->panel_count; i++) {
-        const PicturePanel *panel = &scene->panels[i];
         Box box = page->cells[i];
-        draw_cell_heading(canvas, (Vec2){box.x, box.y - 6}, panel->name ? panel->name : "result",
-                          panel->note);
+        draw_result_heading(canvas, scene, &scene->panels[i], box);
         panel_draw_result(canvas, style, i, box);
-        panel_draw_triad(canvas, style, i, (Box){box.x, box.y, box.width, box.height + TRIAD});
+        panel_draw_measures(canvas, style, i, (Box){box.x, box.y, box.width, box.height + MEASURES});
         box.x = snap(box.x + page->cell_width + GAP, style->resolution);
-        if (panel->target && panel_any_beside(scene)) draw_target_cell(canvas, style, i, box);
+        if (scene->panels[i].target && panel_any_beside(scene)) draw_target_cell(canvas, style, i, box);
     }
 }
 
@@ -155,9 +179,9 @@ static void draw_color_key(Canvas *canvas, const PanelStyle *style, Box box)
     canvas_text(canvas, (Vec2){box.x, box.y + 8}, title, (TextStyle){.color = ink, .size = 8});
     Box bar = {box.x, box.y + 14, box.width, 9};
     enum { SLICES = 128 };
-    for (int i = 0; i < SLICES; i++) { /* each covers the rest of the bar, so that no seams show */
-        double left = bar.width * i / SLICES;
-        canvas_fill(canvas, (Box){bar.x + left, bar.y, bar.width - left, bar.height},
+    for (int i = 0; i < SLICES; i++) { /* each reaches under the next, so that no seams show */
+        double left = bar.width * i / SLICES, right = fmin(bar.width, bar.width * (i + 2) / SLICES);
+        canvas_fill(canvas, (Box){bar.x + left, bar.y, right - left, bar.height},
                     colormap_color(scale->map, (i + 0.5) / SLICES));
     }
     Ticks ticks = ticks_linear(scale->low * unit.factor, scale->high * unit.factor, 5);
@@ -184,18 +208,11 @@ static void draw_arrow_key(Canvas *canvas, const PanelStyle *style, Box box)
     canvas_text(canvas, (Vec2){box.x + length + 8, y + 3}, text, (TextStyle){.color = ink, .size = 8});
 }
 
-static void draw_length_key(Canvas *canvas, const PanelStyle *style, Box box)
+static void draw_wire_key(Canvas *canvas, Box box)
 {
-    double points = style->scale / style->resolution; /* per metre */
-    double shown = ticks_round_down(60 / points), length = shown * points;
-    char text[64];
-    unit_format(shown, "m", text, sizeof text);
-    const Pen pen = {ink, 1, 0};
     double y = box.y + 11;
-    canvas_line(canvas, (Vec2){box.x, y}, (Vec2){box.x + length, y}, pen);
-    canvas_line(canvas, (Vec2){box.x, y - 3}, (Vec2){box.x, y + 3}, pen);
-    canvas_line(canvas, (Vec2){box.x + length, y - 3}, (Vec2){box.x + length, y + 3}, pen);
-    canvas_text(canvas, (Vec2){box.x + length + 8, y + 3}, text, (TextStyle){.color = ink, .size = 8});
+    canvas_line(canvas, (Vec2){box.x, y}, (Vec2){box.x + 22, y}, (Pen){panel_target_ink, 0.8, 0});
+    canvas_text(canvas, (Vec2){box.x + 30, y + 3}, "target", (TextStyle){.color = ink, .size = 8});
 }
 
 /* Below each other beside a chart, otherwise in a row. */
@@ -212,7 +229,7 @@ static void draw_keys(Canvas *canvas, const PanelStyle *style, const Layout *pag
         draw_arrow_key(canvas, style, box);
         *(stacked ? &box.y : &box.x) += stacked ? 24 : KEYS;
     }
-    if (!(scene->perspective > 0)) draw_length_key(canvas, style, box);
+    if (any_wires(scene)) draw_wire_key(canvas, box);
 }
 
 static void draw_page(Canvas *canvas, const PictureScene *scene, const PanelStyle *style, const Layout *page)

@@ -5,11 +5,12 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { ARROWS = 100 };
+static const double ARROW_SPACING = 24; /* points */
+enum { ARROWS_LEAST = 12, ARROWS_MOST = 250 };
 
 static const Color ink = {0.15, 0.15, 0.17, 1}, soft = {0.42, 0.42, 0.45, 1}, plain = {0.8, 0.82, 0.85, 1};
-static const Color target_ink = {0.835, 0.369, 0, 1}, vector_ink = {0.86, 0.2, 0.14, 1},
-                   field_ink = {0, 0.447, 0.698, 1};
+const Color panel_target_ink = {0.835, 0.369, 0, 1};
+static const Color vector_ink = {0.86, 0.2, 0.14, 1}, field_ink = {0, 0.447, 0.698, 1};
 
 bool panel_any_beside(const PictureScene *scene)
 {
@@ -111,14 +112,13 @@ static double faces_area(const PictureScene *scene, const double (*x)[3])
 
 /* Each next face is the one farthest from all chosen ones: evenly spread, whatever the mesh. [Gonzalez 1985]
  */
-static int *faces_spread(const PictureScene *scene, const double (*x)[3], int *count)
+static int *faces_spread(const PictureScene *scene, const double (*x)[3], int count)
 {
     int nf = scene->face_count, next = 0;
-    *count = nf < ARROWS ? nf : ARROWS;
-    int *chosen = mem_alloc((size_t)*count, sizeof *chosen);
+    int *chosen = mem_alloc((size_t)count, sizeof *chosen);
     double *distance = mem_alloc((size_t)nf, sizeof *distance);
     for (int f = 0; f < nf; f++) distance[f] = INFINITY;
-    for (int i = 0; i < *count; i++) {
+    for (int i = 0; i < count; i++) {
         chosen[i] = next;
         Vec3 center = face_center(scene, x, next);
         for (int f = 0; f < nf; f++) {
@@ -150,8 +150,11 @@ PanelStyle panel_style_create(const PictureScene *scene, double resolution, doub
     if (!(style.arrow_greatest > 0)) return style;
     const double(*x)[3] = scene->panels[0].x;
     style.arrow_color = panel_any_field(scene) && style.colors.map == COLORMAP_DIVERGING ? ink : vector_ink;
-    style.arrow_faces = faces_spread(scene, x, &style.arrow_count);
-    style.arrow_length = 1.1 * sqrt(faces_area(scene, x) / style.arrow_count);
+    double area = faces_area(scene, x), spacing = ARROW_SPACING * resolution / style.scale;
+    style.arrow_count =
+        (int)fmin(fmax(area / (spacing * spacing), ARROWS_LEAST), fmin(ARROWS_MOST, scene->face_count));
+    style.arrow_faces = faces_spread(scene, x, style.arrow_count);
+    style.arrow_length = 1.1 * sqrt(area / style.arrow_count);
     return style;
 }
 
@@ -192,7 +195,7 @@ static void draw_wires(Raster *raster, const PanelStyle *style, const Camera *ca
                        .face_count = style->scene->face_count,
                        .vertices = x,
                        .faces = style->scene->faces,
-                       .edge_color = edge_color(style, target_ink, 0.9),
+                       .edge_color = edge_color(style, panel_target_ink, 0.9),
                        .edge_width = 0.4 * style->resolution,
                        .hidden = 0.25,
                        .raise = style->resolution / style->scale};
@@ -269,23 +272,40 @@ static Vec2 seen_along(const Camera *camera, Vec2 from, Vec3 direction, double l
                   from.y - length * vec3_dot(direction, camera->up)};
 }
 
-void panel_draw_triad(Canvas *canvas, const PanelStyle *style, int index, Box box)
+/* A round length over the lower right corner; in a perspective view no length holds everywhere. */
+static void draw_length(Canvas *canvas, const PanelStyle *style, Box box)
+{
+    if (style->scene->perspective > 0) return;
+    double points = style->scale / style->resolution; /* per metre */
+    double shown = ticks_round_down(60 / points), length = shown * points;
+    char text[64];
+    unit_format(shown, "m", text, sizeof text);
+    double right = box.x + box.width - 6, left = right - length, y = box.y + box.height - 10;
+    const Pen pen = {ink, 0.9, 0};
+    canvas_line(canvas, (Vec2){left, y}, (Vec2){right, y}, pen);
+    canvas_line(canvas, (Vec2){left, y - 2.5}, (Vec2){left, y + 2.5}, pen);
+    canvas_line(canvas, (Vec2){right, y - 2.5}, (Vec2){right, y + 2.5}, pen);
+    canvas_text(canvas, (Vec2){0.5 * (left + right), y - 5}, text,
+                (TextStyle){.color = ink, .size = 8, .align = TEXT_CENTER});
+}
+
+static void draw_axes(Canvas *canvas, const Camera *camera, Vec2 origin)
 {
     static const char *const names[3] = {"x", "y", "z"};
     const Vec3 axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    const Camera *camera = &style->cameras[index];
-    Vec2 origin = {box.x + 18, box.y + box.height - 16};
     for (int k = 0; k < 3; k++) {
         Vec2 name = seen_along(camera, origin, axes[k], 18);
         canvas_line(canvas, origin, seen_along(camera, origin, axes[k], 13), (Pen){soft, 0.6, 0});
         canvas_text(canvas, (Vec2){name.x, name.y + 2.2}, names[k],
                     (TextStyle){.color = soft, .size = 7, .align = TEXT_CENTER});
     }
-    const double *flux_density = style->scene->panels[index].flux_density;
-    double size = flux_density ? vec3_length(vec3_load(flux_density)) : 0;
+}
+
+static void draw_flux_density(Canvas *canvas, const Camera *camera, const double *flux_density, Vec2 middle)
+{
+    double size = vec3_length(vec3_load(flux_density));
     if (!(size > 0)) return;
     Vec3 along = vec3_scale(1 / size, vec3_load(flux_density));
-    Vec2 middle = {origin.x + 42, origin.y - 6};
     Vec2 tail = seen_along(camera, middle, along, -13), tip = seen_along(camera, middle, along, 13);
     canvas_arrow(canvas, tail, tip, (Pen){field_ink, 1.5, 0});
     char label[96], number[80];
@@ -293,4 +313,14 @@ void panel_draw_triad(Canvas *canvas, const PanelStyle *style, int index, Box bo
     snprintf(label, sizeof label, "B = %s", number);
     canvas_text(canvas, (Vec2){fmax(tail.x, tip.x) + 8, middle.y + 3}, label,
                 (TextStyle){.color = field_ink, .size = 8});
+}
+
+void panel_draw_measures(Canvas *canvas, const PanelStyle *style, int index, Box box)
+{
+    const double *flux_density = style->scene->panels[index].flux_density;
+    Vec2 origin = {box.x + 18, box.y + box.height - 16};
+    draw_axes(canvas, &style->cameras[index], origin);
+    if (flux_density)
+        draw_flux_density(canvas, &style->cameras[index], flux_density, (Vec2){origin.x + 42, origin.y - 6});
+    draw_length(canvas, style, box);
 }
