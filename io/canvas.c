@@ -100,7 +100,8 @@ Canvas *canvas_create(const char *path, double width, double height, double reso
     disable_hinting(canvas->cairo);
     cairo_set_line_cap(canvas->cairo, CAIRO_LINE_CAP_ROUND);
     cairo_set_line_join(canvas->cairo, CAIRO_LINE_JOIN_ROUND);
-    canvas_fill(canvas, (Box){0, 0, width, height}, (Color){1, 1, 1, 1});
+    cairo_set_source_rgb(canvas->cairo, 1, 1, 1);
+    cairo_paint(canvas->cairo);
     return canvas;
 }
 

@@ -91,7 +91,8 @@ bool image_parse_pgm(const char *path, const unsigned char *bytes, size_t length
         return error_set(err, "%s: an image of %d x %d pixels; at most 100 million are read", path, width,
                          height);
     if (!read_number(&reader, "greatest grey level", 1, 65535, &maxval, err)) return false;
-    if (reader.place < length) reader.place++; /* the one blank before the pixels */
+    if (reader.place < length && isspace(bytes[reader.place]))
+        reader.place++; /* exactly one: pixels follow */
 
     /* Before memory is reserved: can the pixels be there at all? In text each takes a digit and all but one a
      * blank. */

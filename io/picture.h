@@ -41,14 +41,15 @@ typedef struct PictureScene {
     const PicturePanel *panels;
     const char *field_name, *field_unit;     /* "magnetization", "A/m" */
     const char *vectors_name, *vectors_unit; /* the same for the arrows */
-    double field_low, field_high;            /* the colour scale's ends; both 0: fitted to all panels */
+    double field_low, field_high;            /* the colour scale's ends; both 0: fitted to all panels.
+                                                Diverging colours if low = -high */
 
     PictureTarget target;
     bool edges;            /* draw the mesh's edges                                       */
     double view[3], up[3]; /* direction to the eye, and upwards; zeros: three quarters, z */
     double perspective;    /* camera_fit's; 0: parallel                                   */
     const Chart *history;  /* NULL: none                                                  */
-    int width; /* of the PNG, pixels, 400..8000; a page is 576 pt (8 inches) wide in SVG and PDF */
+    int width; /* of the PNG, pixels, 400..4000; a page is 576 pt (8 inches) wide in SVG and PDF */
 } PictureScene;
 
 /* Nothing to show, target beside, edges drawn, 1600 pixels wide. */

@@ -32,16 +32,25 @@ Camera camera_view(Vec3 from, Vec3 up);
 void camera_fit(Camera *camera, const double (*points)[3], int count, double width, double height,
                 double margin, double perspective);
 
-/* The pixel position of a point, and in z its height towards the eye in length units. */
+/* The pixel position of a point, and in z its height above the centre towards the eye, in length units; in a
+ * perspective view D h/(D - h), which is linear across the image of a face. NaN for what is beside or behind
+ * the eye. */
 Vec3 camera_project(const Camera *camera, Vec3 point);
+
+/* The range of the points' pixel positions: low and high corner, z as in camera_project. Points that cannot
+ * be seen are left out; false where none is left. */
+bool camera_bounds(const Camera *camera, const double (*points)[3], int count, Vec3 *low, Vec3 *high);
 
 typedef struct RasterMesh {
     int vertex_count, face_count;
-    const double (*vertices)[3]; /* a face with a NaN vertex is left out   */
+    const double (*vertices)[3]; /* a face with a NaN vertex is left out                        */
     const int (*faces)[3];
-    const Color *face_colors; /* [face]; NULL: color                    */
-    Color color;
-    double raise; /* lifts towards the eye by this length in the depth test only */
+    const Color *face_colors; /* [face]; NULL: color                                         */
+    Color color;              /* transparent: wires only                                     */
+    Color edge_color;
+    double edge_width; /* of the faces' edges, pixels; 0: none                        */
+    double hidden;     /* what lies behind other things shows with this much of its opacity */
+    double raise;      /* lifts towards the eye by this length in the depth test only */
 } RasterMesh;
 
 typedef struct Raster Raster;
@@ -52,12 +61,14 @@ void raster_destroy(Raster *raster);
 
 void raster_mesh(Raster *raster, const Camera *camera, const RasterMesh *mesh);
 
-/* The mesh's edges, `width` pixels wide, in color, where they are in front; hidden parts with color.a times
- * `hidden`. */
-void raster_edges(Raster *raster, const Camera *camera, const RasterMesh *mesh, double width, double hidden);
+/* A round arrow with its middle at `middle`; thickness is the shaft's diameter, the head is 2.6 times as
+ * thick. It is raised by its own depth: lying on a surface that faces the eye, it shows whole. */
+void raster_arrow(Raster *raster, const Camera *camera, Vec3 middle, Vec3 vector, double thickness,
+                  Color color);
 
-/* A round arrow centred at `middle`, with shaft and head in proportion to its length. */
-void raster_arrow(Raster *raster, const Camera *camera, Vec3 middle, Vec3 vector, Color color);
+/* Darkens what lies up to `reach` (length units) below its surroundings: creases, and the places where one
+ * part passes over another. strength 0..1. Call it when everything is drawn. */
+void raster_occlude(Raster *raster, const Camera *camera, double reach, double strength);
 
 /* Averages the samples into rgba[height][width][4] bytes, not premultiplied. */
 void raster_resolve(const Raster *raster, unsigned char *rgba);

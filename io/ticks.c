@@ -23,27 +23,31 @@ static void power_text(int exponent, char text[TICKS_TEXT])
 /* Prints with so many decimals and a typographic minus; never "-0". */
 static void number_text(double number, int decimals, char *text, size_t size)
 {
-    char digits[TICKS_TEXT];
+    char digits[TICKS_TEXT - 8];
     snprintf(digits, sizeof digits, "%.*f", decimals, fabs(number));
     bool zero = strspn(digits, "0.") == strlen(digits);
     snprintf(text, size, "%s%s", number < 0 && !zero ? MINUS : "", digits);
 }
 
-/* The least of 1, 2, 5 times a power of ten that is not below `least`. */
-static double nice_step(double least)
+double ticks_round_up(double number)
 {
-    double power = pow(10, floor(log10(least)));
+    double power = pow(10, floor(log10(number)));
     for (int i = 0; i < 3; i++) {
         double step = (const double[]){1, 2, 5}[i] * power;
-        if (step >= least * (1 - 1e-9)) return step;
+        if (step >= number * (1 - 1e-9)) return step;
     }
     return 10 * power;
+}
+
+double ticks_round_down(double number)
+{
+    return 1 / ticks_round_up(1 / number);
 }
 
 Ticks ticks_linear(double low, double high, int wanted)
 {
     Ticks ticks = {.count = 0};
-    double step = high > low ? nice_step((high - low) / wanted) : fabs(low) > 0 ? fabs(low) : 1;
+    double step = high > low ? ticks_round_up((high - low) / wanted) : fabs(low) > 0 ? fabs(low) : 1;
     int decimals = (int)fmin(fmax(-floor(log10(step) + 1e-9), 0), 12);
     double first = high > low ? ceil(low / step - 1e-6) : 1;
     for (int i = 0; i < TICKS_MAX; i++) {

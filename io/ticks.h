@@ -21,6 +21,10 @@ Ticks ticks_linear(double low, double high, int wanted);
  * remain. Texts are "10⁻³". */
 Ticks ticks_log(double low, double high, int wanted);
 
+/* The nearest 1, 2 or 5 times a power of ten that is not below (not above) the number, which is > 0. */
+double ticks_round_up(double number);
+double ticks_round_down(double number);
+
 /* How numbers up to some size are shown in a unit: shown = factor * number, followed by `unit`. */
 typedef struct UnitScale {
     double factor;
