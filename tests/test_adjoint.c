@@ -1,0 +1,175 @@
+/* dF/du of a quasi-static design against central differences and against the forward tangent, for every kind of
+ * unknown and both bending models. */
+#include "base/memory.h"
+#include "base/random.h"
+#include "optim/objectives.h"
+#include "optim/static_design.h"
+#include "shell/shapes.h"
+#include "shell/shell.h"
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+#include <cmocka.h>
+
+typedef struct Fixture {
+    Shell *shell;
+    Design design;
+    LoadCase cases[2];
+    Objective objective;
+    StaticDesign *sd;
+    double *u;
+} Fixture;
+
+static Shell *make_shell(BendingModel bending)
+{
+    MeshFile file = {0};
+    Error err;
+    assert_true(shape_hexagram(0.04, 3, &file, &err));
+    Mesh *mesh = mesh_create(&file, 0, NULL, &err);
+    mesh_file_clear(&file);
+    Shell *shell = shell_create(mesh);
+    shell->thickness = 1e-3, shell->poisson = 0.4, shell->density = 1000, shell->bending = bending;
+    for (int i = 0; i < 3 * mesh->vertex_count; i++)
+        if (hypot(mesh->rest[i / 3][0], mesh->rest[i / 3][1]) < 5e-3) shell_fix(shell, i / 3, i % 3);
+    return shell;
+}
+
+static void make_cases(Fixture *f, Random *random)
+{
+    const Shell *shell = f->shell;
+    int count = shell->mesh->vertex_count;
+    int *all = mem_alloc((size_t)count, sizeof *all);
+    double(*target)[3] = mem_alloc((size_t)count, sizeof *target);
+    for (int v = 0; v < count; v++) {
+        all[v] = v;
+        memcpy(target[v], shell->mesh->rest[v], sizeof *target);
+        target[v][2] = 20 * (target[v][0] * target[v][0] + target[v][1] * target[v][1]);
+    }
+    f->objective = objective_target(count, all, (const double(*)[3])target, 1);
+    mem_free(all);
+    mem_free(target);
+    double *M = mem_alloc(3 * (size_t)shell->mesh->face_count, sizeof *M);
+    for (int i = 0; i < 3 * shell->mesh->face_count; i++) M[i] = 2e4 * random_signed(random);
+    for (int c = 0; c < 2; c++) {
+        double *p = mem_alloc((size_t)shell->params.size, sizeof *p);
+        double *x = mem_alloc((size_t)shell_dof_count(shell), sizeof *x);
+        shell_default_params(shell, p);
+        for (int i = 0; i < shell->mesh->face_count; i++) p[shell->young + i] = 1e5;
+        memcpy(p + shell->magnetization, M, 3 * (size_t)shell->mesh->face_count * sizeof *M);
+        p[shell->flux_density] = 0.01, p[shell->flux_density + 2] = c ? -0.03 : 0.05;
+        shell_rest_state(shell, x);
+        f->cases[c] = (LoadCase){c ? "down" : "up", shell_system(shell), p, x, &f->objective, 1, c ? 0.5 : 1};
+    }
+    mem_free(M);
+}
+
+static Fixture make_fixture(BendingModel bending, Unknown unknown, const char *block)
+{
+    Fixture f = {.shell = make_shell(bending)};
+    unknown.block = params_find(&f.shell->params, block); /* the shell outlives the fixture */
+    f.design.case_count = 2;
+    design_add(&f.design, unknown);
+    return f;
+}
+
+static void free_fixture(Fixture *f)
+{
+    static_design_destroy(f->sd);
+    for (int c = 0; c < 2; c++) {
+        system_destroy(f->cases[c].sys);
+        mem_free(f->cases[c].p);
+        mem_free(f->cases[c].x);
+    }
+    f->objective.ops->destroy(f->objective.self);
+    mem_free(f->u);
+    design_clear(&f->design);
+    shell_destroy(f->shell);
+}
+
+/* dF along v by the tangent dx = -H^-1 (d2E/dx dp) dp at the equilibrium that was accepted. */
+static double tangent_slope(const Fixture *f, const double *v)
+{
+    double slope = 0;
+    int dofs = shell_dof_count(f->shell);
+    double *dp = mem_alloc((size_t)f->shell->params.size, sizeof *dp), *dx = mem_alloc((size_t)dofs, sizeof *dx);
+    double *gx = mem_alloc((size_t)dofs, sizeof *gx);
+    for (int c = 0; c < 2; c++) {
+        const LoadCase *load = &f->cases[c];
+        double *p = mem_copy(load->p, (size_t)f->shell->params.size, sizeof *p);
+        design_apply(&f->design, c, f->u, p);
+        design_forward(&f->design, c, f->u, v, dp);
+        Point at = {.x = load->x, .p = p};
+        system_param_forward(load->sys, &at, dp, dx);
+        system_solve(load->sys, dx, dx);
+        memset(gx, 0, (size_t)dofs * sizeof *gx);
+        f->objective.ops->value(f->objective.self, load->weight, load->x, p, gx, dp);
+        for (int i = 0; i < dofs; i++) slope -= gx[i] * dx[i];
+        mem_free(p);
+    }
+    mem_free(dp);
+    mem_free(dx);
+    mem_free(gx);
+    return slope;
+}
+
+static void check(BendingModel bending, const char *block, Unknown unknown)
+{
+    long blocks = mem_live_count();
+    Random random = random_seed(5);
+    Fixture f = make_fixture(bending, unknown, block);
+    make_cases(&f, &random);
+    int n = f.design.size;
+    f.u = mem_alloc((size_t)n, sizeof *f.u);
+    for (int c = 0; c < 2; c++) design_read(&f.design, c, f.cases[c].p, f.u);
+    NewtonDef newton = newton_default();
+    f.sd = static_design_create(&f.design, &f.shell->params, f.cases, &newton);
+
+    double *g = mem_alloc((size_t)n, sizeof *g), *v = mem_alloc((size_t)n, sizeof *v), *moved = mem_alloc((size_t)n, sizeof *v);
+    CaseInfo info[2];
+    double F = static_design_evaluate(f.sd, f.u, g, info), slope = 0, F4[4];
+    assert_true(isfinite(F));
+    static_design_accept(f.sd);
+    for (int i = 0; i < n; i++) v[i] = random_signed(&random), slope += g[i] * v[i];
+    double tangent = tangent_slope(&f, v), h = 1e-3;
+    for (int k = 0; k < 4; k++) {
+        static const double steps[4] = {-2, -1, 1, 2};
+        for (int i = 0; i < n; i++) moved[i] = f.u[i] + steps[k] * h * v[i];
+        F4[k] = static_design_evaluate(f.sd, moved, NULL, info);
+    }
+    double difference = (8 * (F4[2] - F4[1]) - (F4[3] - F4[0])) / (12 * h);
+    print_message("%-14s %s: tangent %.1e, differences %.1e\n", block, bending == BENDING_HINGE ? "hinge  " : "midedge",
+                  fabs(slope / tangent - 1), fabs(slope / difference - 1));
+    assert_true(fabs(slope / tangent - 1) < 1e-10);
+    assert_true(fabs(slope / difference - 1) < 1e-6);
+    mem_free(g);
+    mem_free(v);
+    mem_free(moved);
+    free_fixture(&f);
+    assert_int_equal(mem_live_count(), blocks);
+}
+
+static void test_gradients(void **state)
+{
+    (void)state;
+    for (BendingModel bending = BENDING_MIDEDGE; bending <= BENDING_HINGE; bending++) {
+        Unknown open = {.lower = -INFINITY, .upper = INFINITY, .scale = 1e4};
+        check(bending, "magnetization", open);
+        open.limit = 5e4, open.map = UNKNOWN_CAPPED_LENGTH;
+        check(bending, "magnetization", open);
+        open.limit = 2e4, open.map = UNKNOWN_FIXED_LENGTH;
+        check(bending, "magnetization", open);
+        check(bending, "young", (Unknown){.map = UNKNOWN_LOG, .lower = 1e4, .upper = 1e8});
+        check(bending, "fold", (Unknown){.map = UNKNOWN_LOG, .lower = 0.01, .upper = 100});
+        check(bending, "flux_density", (Unknown){.scale = 0.05, .lower = -1, .upper = 1, .per_case = true});
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_gradients)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
