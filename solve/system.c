@@ -161,6 +161,7 @@ int system_term_count(const System *sys) { return sys->term_count; }
 const Term *system_term(const System *sys, int t) { return &sys->entries[t].term; }
 const double *system_scale(const System *sys) { return sys->scale; }
 double system_stiffness_max(const System *sys) { return sys->stiffness_max; }
+int system_position_count(const System *sys) { return sys->classes[0].count; }
 SparseInfo system_info(const System *sys) { return sparse_info(sys->matrix); }
 
 double system_step_size(const System *sys, const double *d)
@@ -330,6 +331,20 @@ bool system_factor(System *sys, double shift)
     double *diagonal = pick(sys, sys->scale);
     for (int i = 0; i < sys->free_count; i++) diagonal[i] *= sys->base + shift;
     return sparse_factor(sys->matrix, sys->base + shift > 0 ? diagonal : NULL);
+}
+
+bool system_factor_positions(System *sys, double sigma)
+{
+    for (int i = 0; i < sys->dof_count; i++)
+        if (sys->unknown[i] >= 0) sys->work[sys->unknown[i]] = i < sys->classes[0].count ? sigma : 0;
+    return sparse_factor(sys->matrix, sys->work);
+}
+
+double system_scale_mean(const System *sys)
+{
+    double mean = 0;
+    for (int i = 0; i < sys->classes[0].count; i++) mean = fmax(mean, sys->scale[i]);
+    return mean;
 }
 
 void system_solve(System *sys, const double *b, double *y)

@@ -63,6 +63,9 @@ Evaluation system_hessian(System *sys, const Point *at, double *gradient);
 /* Factor of H + (base + shift) D, D = each class's mean |H_ii|. False where not positive definite. */
 bool system_factor(System *sys, double shift);
 
+/* Factor of H + sigma on the diagonal of the free positions only (N/m), without the base shift; for eigen.h. */
+bool system_factor_positions(System *sys, double sigma);
+
 /* y = (H + (base + shift) D)^-1 b with the last factor. */
 void system_solve(System *sys, const double *b, double *y);
 
@@ -72,6 +75,10 @@ void system_multiply(const System *sys, const double *v, double *y);
 /* The diagonal D of the last Hessian, D[dof_count], 0 at fixed dofs; and the largest H_ii of the positions. */
 const double *system_scale(const System *sys);
 double system_stiffness_max(const System *sys);
+
+/* Dofs of the first class, and D of it, N/m. */
+int system_position_count(const System *sys);
+double system_scale_mean(const System *sys);
 
 /* dp += w^T d2E/dx dp. */
 void system_param(System *sys, const Point *at, const double *w, double *dp);

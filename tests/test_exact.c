@@ -2,6 +2,7 @@
 #include "base/memory.h"
 #include "shell/shapes.h"
 #include "shell/shell.h"
+#include "solve/eigen.h"
 #include "solve/newton.h"
 #include <math.h>
 #include <setjmp.h>
@@ -100,13 +101,32 @@ static void test_elastica(void **state)
     assert_int_equal(mem_live_count(), blocks);
 }
 
-/* Antiparallel: the straight strip buckles at q = pi^2/4. */
+/* The equilibrium that stays in the plane. */
+static void compress(Strip *s)
+{
+    Shell *shell = s->shell;
+    for (int v = 0; v < shell->mesh->vertex_count; v++) shell_fix(shell, v, 2);
+    System *planar = shell_system(shell);
+    NewtonDef def = newton_default();
+    assert_int_equal(newton_minimize(planar, &def, s->p, 0, s->x, NULL).status, NEWTON_CONVERGED);
+    system_destroy(planar);
+}
+
+/* Antiparallel: the straight strip's lowest eigenvalue changes sign at q = pi^2/4, and above it the strip buckles. */
 static void test_buckling(void **state)
 {
     (void)state;
     for (int above = 0; above < 2; above++) {
         double q = (above ? 1.01 : 0.99) * M_PI * M_PI / 4, along, up;
         Strip s = make_problem(PATTERN_RIGHT, 32, q, (double[]){-1, 0, 0});
+        double lowest[3];
+        compress(&s);
+        Point straight = {.x = s.x, .p = s.p};
+        assert_true(eigen_lowest(s.sys, &straight, 3, lowest, NULL));
+        print_message("q = %.4f: lowest eigenvalues of the straight strip %.3e %.3e %.3e N/m\n", q, lowest[0], lowest[1],
+                      lowest[2]);
+        assert_true(above ? lowest[0] < 0 : lowest[0] > 0);
+        assert_true(lowest[0] < lowest[1] && lowest[1] < lowest[2]);
         NewtonDef def = newton_default();
         NewtonInfo info = newton_minimize(s.sys, &def, s.p, 0, s.x, NULL);
         assert_int_equal(info.status, NEWTON_CONVERGED);
