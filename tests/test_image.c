@@ -1,0 +1,199 @@
+#include "base/memory.h"
+#include "io/image.h"
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+#include <cmocka.h>
+
+/* 3x1, grey, 16 bits: 0, 0x8080, 0xffff */
+static const unsigned char png_grey16[] = {
+    0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a, 0x00, 0x00, 0x00, 0x0d, 0x49, 0x48, 0x44,
+    0x52, 0x00, 0x00, 0x00, 0x03, 0x00, 0x00, 0x00, 0x01, 0x10, 0x00, 0x00, 0x00, 0x00, 0x6e,
+    0x1b, 0x97, 0x2b, 0x00, 0x00, 0x00, 0x0f, 0x49, 0x44, 0x41, 0x54, 0x78, 0x9c, 0x63, 0x60,
+    0x60, 0x68, 0x68, 0xf8, 0xff, 0x1f, 0x00, 0x06, 0x84, 0x02, 0xff, 0x46, 0x60, 0xde, 0xb6,
+    0x00, 0x00, 0x00, 0x00, 0x49, 0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82};
+
+/* 2x2, RGBA: red, green / black half transparent, blue fully transparent */
+static const unsigned char png_rgba[] = {
+    0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a, 0x00, 0x00, 0x00, 0x0d, 0x49, 0x48, 0x44, 0x52,
+    0x00, 0x00, 0x00, 0x02, 0x00, 0x00, 0x00, 0x02, 0x08, 0x06, 0x00, 0x00, 0x00, 0x72, 0xb6, 0x0d,
+    0x24, 0x00, 0x00, 0x00, 0x13, 0x49, 0x44, 0x41, 0x54, 0x78, 0x9c, 0x63, 0xf8, 0xcf, 0xc0, 0xf0,
+    0x1f, 0x0c, 0x81, 0xa0, 0x01, 0xc4, 0x06, 0x00, 0x39, 0x5b, 0x05, 0x7c, 0xcd, 0xf4, 0x56, 0x3d,
+    0x00, 0x00, 0x00, 0x00, 0x49, 0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82};
+
+/* 2x1, palette: white, blue */
+static const unsigned char png_palette[] = {
+    0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a, 0x00, 0x00, 0x00, 0x0d, 0x49, 0x48, 0x44,
+    0x52, 0x00, 0x00, 0x00, 0x02, 0x00, 0x00, 0x00, 0x01, 0x08, 0x03, 0x00, 0x00, 0x00, 0xc3,
+    0xfc, 0x8f, 0xb8, 0x00, 0x00, 0x00, 0x06, 0x50, 0x4c, 0x54, 0x45, 0x00, 0x00, 0xff, 0xff,
+    0xff, 0xff, 0x7b, 0xdc, 0x99, 0x2c, 0x00, 0x00, 0x00, 0x0b, 0x49, 0x44, 0x41, 0x54, 0x78,
+    0x9c, 0x63, 0x60, 0x64, 0x00, 0x00, 0x00, 0x05, 0x00, 0x02, 0xd1, 0x66, 0x33, 0x78, 0x00,
+    0x00, 0x00, 0x00, 0x49, 0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82};
+
+static void expect_close(double value, double expected, double tolerance)
+{
+    if (!(fabs(value - expected) <= tolerance)) fail_msg("%.17g is not %.17g", value, expected);
+}
+
+static void write_file(const char *path, const void *bytes, size_t length)
+{
+    FILE *file = fopen(path, "wb");
+    assert_non_null(file);
+    assert_int_equal(fwrite(bytes, 1, length, file), length);
+    assert_int_equal(fclose(file), 0);
+}
+
+static void expect_grey(const char *path, int width, int height, const double *grey)
+{
+    Image image;
+    Error err = {""};
+    if (!image_read(path, &image, &err)) fail_msg("%s", err.text);
+    assert_int_equal(image.width, width);
+    assert_int_equal(image.height, height);
+    for (int i = 0; i < width * height; i++) expect_close(image.grey[i], grey[i], 1e-15);
+    image_clear(&image);
+}
+
+static void pgm_kinds(void **state)
+{
+    (void)state;
+    const char text[] = "P2 # made by hand\n3 2\n# levels\n10\n0 5 10\n1 2 3";
+    write_file("image_text.pgm", text, sizeof text - 1);
+    expect_grey("image_text.pgm", 3, 2, (const double[]){0, 0.5, 1, 0.1, 0.2, 0.3});
+    write_file("image_bytes.pgm", "P5\n2 2\n255\n\x00\x33\xff\n", 15);
+    expect_grey("image_bytes.pgm", 2, 2, (const double[]){0, 0.2, 1, 10 / 255.0});
+    write_file("image_wide.pgm", "P5 2 1 65535\n\x01\x00\xff\xff", 17);
+    expect_grey("image_wide.pgm", 2, 1, (const double[]){256 / 65535.0, 1});
+    write_file("image_one.pgm", "P2 1 1 1 1", 10);
+    expect_grey("image_one.pgm", 1, 1, (const double[]){1});
+}
+
+static void png_kinds(void **state)
+{
+    (void)state;
+    write_file("image_grey16.png", png_grey16, sizeof png_grey16);
+    expect_grey("image_grey16.png", 3, 1, (const double[]){0, 128 / 255.0, 1});
+    write_file("image_rgba.png", png_rgba, sizeof png_rgba);
+    expect_grey("image_rgba.png", 2, 2, (const double[]){0.2126, 0.7152, 127 / 255.0, 1});
+    write_file("image_palette.png", png_palette, sizeof png_palette);
+    expect_grey("image_palette.png", 2, 1, (const double[]){1, 0.0722});
+}
+
+static void expect_refused(const char *path, const char *sentence)
+{
+    Image image;
+    Error err = {""};
+    assert_false(image_read(path, &image, &err));
+    assert_string_equal(err.text, sentence);
+    assert_null(image.grey);
+    assert_int_equal(image.width, 0);
+}
+
+static void pgm_refused(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text, *sentence;
+    } bad[] = {
+        {"P5", "bad.pgm:1: the file ends where the width should be"},
+        {"P5\nwide 2 255 ", "bad.pgm:2: the width must be a whole number from 1 to 100000000"},
+        {"P5\n0 2 255 ", "bad.pgm:2: the width must be a whole number from 1 to 100000000"},
+        {"P5\n2 -2 255 ", "bad.pgm:2: the height must be a whole number from 1 to 100000000"},
+        {"P5 99999999999999999999 1 255 ", "bad.pgm:1: the width must be a whole number from 1 to 100000000"},
+        {"P5 20000 20000 255 ", "bad.pgm: an image of 20000 x 20000 pixels; at most 100 million are read"},
+        {"P5 10000 10000 255 abc", "bad.pgm: the file ends before the last of 10000 x 10000 pixels"},
+        {"P5 2 2 255 abc", "bad.pgm: the file ends before the last of 2 x 2 pixels"},
+        {"P5 2 1 65535 abc", "bad.pgm: the file ends before the last of 2 x 1 pixels"},
+        {"P5 1 1 65536 a", "bad.pgm:1: the greatest grey level must be a whole number from 1 to 65535"},
+        {"P5 1 1 0 a", "bad.pgm:1: the greatest grey level must be a whole number from 1 to 65535"},
+        {"P5 2 1 96 aa", "bad.pgm: grey level 97 of pixel 0 exceeds the file's maximum 96"},
+        {"P2 2 1 255\n1\n256", "bad.pgm:3: the grey level must be a whole number from 0 to 255"},
+        {"P2 2 1 255\n1 x", "bad.pgm:2: the grey level must be a whole number from 0 to 255"},
+        {"P2 2 1 255\n123 \n", "bad.pgm:3: the file ends where the grey level should be"},
+        {"P2 2 1 255\n1", "bad.pgm: the file ends before the last of 2 x 1 pixels"},
+        {"P6 1 1 255 abc", "bad.pgm: neither a PNG nor a PGM image (P2, P5); convert it to PNG"},
+        {"\xff\xd8\xff\xe0", "bad.pgm: neither a PNG nor a PGM image (P2, P5); convert it to PNG"},
+        {"", "bad.pgm: the file is empty"},
+    };
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
+        write_file("bad.pgm", bad[i].text, strlen(bad[i].text));
+        expect_refused("bad.pgm", bad[i].sentence);
+    }
+    remove("bad.pgm");
+    expect_refused("bad.pgm", "bad.pgm: cannot be read: No such file or directory");
+    expect_refused("/", "/: cannot be read: Is a directory");
+}
+
+static void png_refused(void **state)
+{
+    (void)state;
+    unsigned char bytes[sizeof png_rgba];
+    memcpy(bytes, png_rgba, sizeof bytes);
+    write_file("bad.png", bytes, 20);
+    expect_refused("bad.png", "bad.png: not a PNG file");
+    Image image;
+    Error err = {""};
+    for (size_t length = 24; length < sizeof bytes - 12; length++) { /* without any of the last chunk */
+        write_file("bad.png", bytes, length);
+        assert_false(image_read("bad.png", &image, &err));
+        assert_non_null(strstr(err.text, "bad.png: the PNG data are broken: "));
+    }
+    bytes[45] ^= 1; /* the check sum sees it */
+    write_file("bad.png", bytes, sizeof bytes);
+    assert_false(image_read("bad.png", &image, &err));
+    assert_non_null(strstr(err.text, "bad.png: the PNG data are broken: "));
+
+    memcpy(bytes + 16, "\0\0\x4e\x20\0\0\x4e\x20", 8);
+    write_file("bad.png", bytes, sizeof bytes);
+    expect_refused(
+        "bad.png",
+        "bad.png: an image of 20000 x 20000 pixels; at most 32000 a side and 100 million are read");
+    memcpy(bytes + 16, "\0\0\0\0\0\0\0\1", 8);
+    write_file("bad.png", bytes, sizeof bytes);
+    expect_refused("bad.png", "bad.png: the image has no pixels");
+}
+
+/* Pixel centres give the pixels, the middle between two their mean; beyond the edges nothing changes any
+ * more. */
+static void samples(void **state)
+{
+    (void)state;
+    double grey[] = {0, 1, 0.5, 0.25, 0.75, 1};
+    Image image = {3, 2, grey};
+    for (int i = 0; i < 2; i++)
+        for (int j = 0; j < 3; j++)
+            expect_close(image_sample(&image, (j + 0.5) / 3, (i + 0.5) / 2), grey[3 * i + j], 1e-15);
+    expect_close(image_sample(&image, 1.0 / 3, 0.25), 0.5, 1e-15);
+    expect_close(image_sample(&image, 1.0 / 3, 0.5), 0.5, 1e-15);
+    expect_close(image_sample(&image, 0.5, 0.5), 0.875, 1e-15);
+    expect_close(image_sample(&image, 0.5 / 3 + 0.1 / 3, 0.25), 0.1, 1e-15);
+    expect_close(image_sample(&image, -7, -7), 0, 0);
+    expect_close(image_sample(&image, 9, 9), 1, 0);
+    expect_close(image_sample(&image, 0, 1), 0.25, 0);
+    double one = 0.3;
+    Image pixel = {1, 1, &one};
+    expect_close(image_sample(&pixel, 0.9, 0.1), 0.3, 0);
+}
+
+static int nothing_leaks(void **state)
+{
+    (void)state;
+    assert_int_equal(mem_live_count(), 0);
+    return 0;
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_teardown(pgm_kinds, nothing_leaks),
+        cmocka_unit_test_teardown(png_kinds, nothing_leaks),
+        cmocka_unit_test_teardown(pgm_refused, nothing_leaks),
+        cmocka_unit_test_teardown(png_refused, nothing_leaks),
+        cmocka_unit_test_teardown(samples, nothing_leaks),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
