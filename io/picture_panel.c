@@ -117,7 +117,10 @@ static int *faces_spread(const PictureScene *scene, const double (*x)[3], int co
     int nf = scene->face_count, next = 0;
     int *chosen = mem_alloc((size_t)count, sizeof *chosen);
     double *distance = mem_alloc((size_t)nf, sizeof *distance);
-    for (int f = 0; f < nf; f++) distance[f] = INFINITY;
+    for (int f = 0; f < nf; f++) { /* a face that is nowhere is never the farthest */
+        Vec3 center = face_center(scene, x, f);
+        distance[f] = isfinite(center.x + center.y + center.z) ? INFINITY : -1;
+    }
     for (int i = 0; i < count; i++) {
         chosen[i] = next;
         Vec3 center = face_center(scene, x, next);
