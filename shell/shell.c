@@ -2,8 +2,12 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "shell/hinge.h"
+#include "shell/rigid.h"
 #include "shell/terms.h"
 #include "solve/lumped.h"
+
+/* Of D, for bodies with free rigid motions: decides nothing physical, drifts less than 1e-7 of the size (docs/newton.md). */
+static const double BASE_SHIFT = 1e-10;
 
 static Pack3 spread(const double *x)
 {
@@ -80,6 +84,7 @@ System *shell_system(const Shell *shell)
         if (shell->fixed[i]) system_fix(sys, i);
     for (int e = 0; e < mesh->edge_count; e++)
         if (shell->clamped[e] || shell->bending == BENDING_HINGE) system_fix(sys, shell_angle_dof(shell, e));
+    if (rigid_free_count(shell)) system_set_base_shift(sys, BASE_SHIFT);
     system_prepare(sys);
     return sys;
 }
