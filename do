@@ -7,7 +7,7 @@ set -eu
 cd "$(dirname "$0")"
 
 packages="gcc cmake make pkg-config libsuitesparse-dev libopenblas-dev libnlopt-dev libmuparser-dev libcairo2-dev
-          fonts-dejavu-core libcmocka-dev"
+          libyaml-dev libsqlite3-dev libhdf5-dev zlib1g-dev fonts-dejavu-core libcmocka-dev"
 
 setup() {
     missing=""
