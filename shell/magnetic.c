@@ -2,7 +2,7 @@
  * whose third column is the current unit normal.
  *
  * Q = F0 M = sum_i c_i x_i + mu n, with c_i = b_i.M (b_i the hat functions' rest gradients) and mu = N.M (N the rest
- * normal). B is uniform (block flux_density) plus a field taken at the face's current barycentre, so its gradient
+ * normal). B is uniform (block flux_density) plus fields taken at the face's current barycentre, so its gradient
  * enters the forces. The derivatives of n (eqs. 62, 63) are the corrected ones of docs/theory.md. */
 #include "base/memory.h"
 #include "shell/face.h"
@@ -55,15 +55,15 @@ static Flux uniform_flux(const Shell *shell, const double *values)
     return (Flux){.B = pack3(pack_set(B[0]), pack_set(B[1]), pack_set(B[2]))};
 }
 
-/* The field's part, before field_scale; zero where there is none. */
-static Flux field_flux(const Shell *shell, const Point *at, const Pack *x)
+/* One field's part, before its factor. */
+static Flux field_flux(const FluxField *field, const Point *at, const Pack *x)
 {
-    double numbers[39][PACK_LANES] = {{0}};
-    for (int l = 0; shell->field && l < PACK_LANES; l++) {
+    double numbers[39][PACK_LANES];
+    for (int l = 0; l < PACK_LANES; l++) {
         double center[3];
         for (int i = 0; i < 3; i++) center[i] = (x[i][l] + x[3 + i][l] + x[6 + i][l]) / 3;
         FluxSample sample;
-        flux_field_eval(shell->field, center, at->time, &sample);
+        flux_field_eval(field, center, at->time, &sample);
         for (int k = 0; k < 3; k++) numbers[k][l] = sample.flux[k];
         for (int k = 0; k < 9; k++) numbers[3 + k][l] = sample.gradient[k / 3][k % 3];
         for (int k = 0; k < 27; k++) numbers[12 + k][l] = sample.curvature[k / 9][k / 3 % 3][k % 3];
@@ -85,12 +85,16 @@ static Flux flux_add(Flux a, double scale, const Flux *b)
     return a;
 }
 
-static Flux flux_at(const Shell *shell, const Point *at, const Pack *x)
+/* Uniform part and fields, with the numbers in values. Fields whose factor at the point is 0 are off. */
+static Flux flux_with(const Shell *shell, const Point *at, const Pack *x, const double *values)
 {
-    Flux flux = uniform_flux(shell, at->p);
-    if (!shell->field) return flux;
-    Flux field = field_flux(shell, at, x);
-    return flux_add(flux, at->p[shell->field_scale], &field);
+    Flux flux = uniform_flux(shell, values);
+    for (int k = 0; k < shell->field_count; k++) {
+        if (at->p[shell->field_scale + k] == 0) continue;
+        Flux field = field_flux(shell->fields[k], at, x);
+        flux = flux_add(flux, values[shell->field_scale + k], &field);
+    }
+    return flux;
 }
 
 static Normal normal_of(const Pack *x)
@@ -178,13 +182,14 @@ static void hessian(const Magnetic *magnetic, int pack, const Normal *normal, Pa
     const MagneticPack *face = &magnetic->packs[pack];
     Pack mu = pack3_dot(face->normal, M);
     PackMat dQ[3];
-    for (int i = 0; magnetic->shell->field && i < 3; i++)
+    bool varies = magnetic->shell->field_count > 0;
+    for (int i = 0; varies && i < 3; i++)
         dQ[i] = carried_gradient(normal, pack3_dot(face->hat[i], M), mu, i);
     element_clear(H, 9);
     for (int i = 0; i < 3; i++)
         for (int j = 0; j <= i; j++) {
             PackMat block = pack_mat_scale(mu, normal_hessian(normal, flux->B, i, j));
-            if (magnetic->shell->field) block = pack_mat_add(block, field_hessian(flux, Q, dQ[i], dQ[j]));
+            if (varies) block = pack_mat_add(block, field_hessian(flux, Q, dQ[i], dQ[j]));
             block = pack_mat_scale(-face->volume, block);
             if (i == j)
                 element_add_diagonal(H, i, block);
@@ -197,7 +202,7 @@ static Pack magnetic_eval(const void *self, int pack, const Point *at, const Pac
 {
     const Magnetic *magnetic = self;
     const MagneticPack *face = &magnetic->packs[pack];
-    Flux flux = flux_at(magnetic->shell, at, x);
+    Flux flux = flux_with(magnetic->shell, at, x, at->p);
     Normal normal = normal_of(x);
     Pack3 M = magnetization_of(magnetic->shell, pack, at->p), Q = carried(face, &normal, M, x);
     if (g) {
@@ -216,7 +221,7 @@ static void magnetic_param(const void *self, int pack, int lanes, const Point *a
     const Magnetic *magnetic = self;
     const Shell *shell = magnetic->shell;
     const MagneticPack *face = &magnetic->packs[pack];
-    Flux field = field_flux(shell, at, x), flux = flux_add(uniform_flux(shell, at->p), at->p[shell->field_scale], &field);
+    Flux flux = flux_with(shell, at, x, at->p);
     Normal normal = normal_of(x);
     Pack3 M = magnetization_of(shell, pack, at->p), W = {0}, dM = {0}, mean = {0};
     Pack mu = pack3_dot(face->normal, M), along = {0};
@@ -230,13 +235,17 @@ static void magnetic_param(const void *self, int pack, int lanes, const Point *a
     }
     dM = pack3_axpy(along + pack3_dot(normal.n, pull), face->normal, dM);
     Pack3 Q = carried(face, &normal, M, x);
-    Pack scale = pack3_dot(W, field.B) + pack3_dot(Q, pack_mat_times(field.gradient, mean));
     for (int l = 0; l < lanes; l++) {
         double *m = dp + shell->magnetization + 3 * face_of_lane(shell, pack, l), *b = dp + shell->flux_density;
         double volume = face->volume[l];
         m[0] -= volume * dM.x[l], m[1] -= volume * dM.y[l], m[2] -= volume * dM.z[l];
         b[0] -= volume * W.x[l], b[1] -= volume * W.y[l], b[2] -= volume * W.z[l];
-        dp[shell->field_scale] -= volume * scale[l];
+    }
+    for (int k = 0; k < shell->field_count; k++) {
+        if (at->p[shell->field_scale + k] == 0) continue;
+        Flux field = field_flux(shell->fields[k], at, x);
+        Pack scale = face->volume * (pack3_dot(W, field.B) + pack3_dot(Q, pack_mat_times(field.gradient, mean)));
+        for (int l = 0; l < lanes; l++) dp[shell->field_scale + k] -= scale[l];
     }
 }
 
@@ -245,8 +254,7 @@ static void magnetic_param_forward(const void *self, int pack, const Point *at, 
     const Magnetic *magnetic = self;
     const Shell *shell = magnetic->shell;
     const MagneticPack *face = &magnetic->packs[pack];
-    Flux field = field_flux(shell, at, x), flux = flux_add(uniform_flux(shell, at->p), at->p[shell->field_scale], &field);
-    Flux change = flux_add(uniform_flux(shell, dp), dp[shell->field_scale], &field);
+    Flux flux = flux_with(shell, at, x, at->p), change = flux_with(shell, at, x, dp);
     Normal normal = normal_of(x);
     Pack3 M = magnetization_of(shell, pack, at->p), dM = magnetization_of(shell, pack, dp);
     Pack with_M[9];

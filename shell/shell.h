@@ -18,7 +18,8 @@ typedef struct Shell {
     Mesh *mesh;                         /* owned                                                          */
     double thickness, poisson, density; /* m, 1, kg/m^3                                                   */
     BendingModel bending;
-    FluxField *field;  /* position-dependent part of the flux density; NULL: none; owned                  */
+    int field_count;
+    FluxField **fields; /* position-dependent parts of the flux density; owned                          */
     double *rest_angle; /* [edge] dihedral angle of the rest shape, rad; 0 on the boundary; owned         */
     bool *fixed;        /* [3*vertex_count] coordinates that are held; owned                              */
     bool *clamped;      /* [edge] the slope is held as at rest; owned                                     */
@@ -28,9 +29,9 @@ typedef struct Shell {
     int fold;          /* [edge] factor on the edge's curvature                                */
     int magnetization; /* [face][3] A/m, in material space                                     */
     int flux_density;  /* [3] T, the uniform part                                              */
-    int field_scale;   /* [1] factor on the position-dependent part                            */
     int gravity;       /* [3] m/s^2                                                            */
     int load;          /* [vertex][3] N, dead                                                  */
+    int field_scale;   /* [field] factors on the fields; 0 switches a field off, derivatives too */
 } Shell;
 
 /* Takes the mesh. Sets up the parameter layout, rest angles and nothing held. */
@@ -39,6 +40,9 @@ void shell_destroy(Shell *shell);
 
 static inline int shell_dof_count(const Shell *shell) { return 3 * shell->mesh->vertex_count + shell->mesh->edge_count; }
 static inline int shell_angle_dof(const Shell *shell, int edge) { return 3 * shell->mesh->vertex_count + edge; }
+
+/* Adds a field of its own factor in p, and returns its number. Before the first vector p and the first system. */
+int shell_add_field(Shell *shell, FluxField *field);
 
 /* Holds one coordinate (axis 0, 1, 2) of a vertex; holds the slope of an edge. */
 void shell_fix(Shell *shell, int vertex, int axis);

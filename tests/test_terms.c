@@ -32,7 +32,7 @@ static Shell *make_shell(BendingModel bending, FluxField *field)
     assert_non_null(mesh);
     Shell *shell = shell_create(mesh);
     shell->thickness = 1e-3, shell->poisson = 0.4, shell->density = 1200, shell->bending = bending;
-    shell->field = field;
+    if (field) shell_add_field(shell, field);
     for (int e = 0; e < mesh->edge_count; e++) {
         const int *v = mesh->edges[e];
         if (v[0] % (CELLS + 1) || v[1] % (CELLS + 1) || v[1] >= (CELLS + 1) * (CELLS - 1)) continue;

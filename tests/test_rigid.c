@@ -1,0 +1,89 @@
+/* Rigid motions that nothing holds: counted, refused under a net force, and solved with a base shift. */
+#include "base/memory.h"
+#include "shell/rigid.h"
+#include "shell/shapes.h"
+#include "solve/newton.h"
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+#include <cmocka.h>
+
+static Shell *make_sheet(void)
+{
+    MeshFile file = {0};
+    Error err;
+    assert_true(shape_sheet((double[]){0.02, 0.01}, (int[]){6, 3}, PATTERN_RIGHT, &file, &err));
+    Mesh *mesh = mesh_create(&file, 0, NULL, &err);
+    mesh_file_clear(&file);
+    Shell *shell = shell_create(mesh);
+    shell->thickness = 1e-3, shell->poisson = 0.3, shell->density = 1000;
+    return shell;
+}
+
+static void test_count(void **state)
+{
+    (void)state;
+    Shell *shell = make_sheet();
+    assert_int_equal(rigid_free_count(shell), 6);
+    for (int i = 0; i < 3; i++) shell_fix(shell, 0, i);
+    assert_int_equal(rigid_free_count(shell), 3);
+    for (int i = 0; i < 3; i++) shell_fix(shell, 6, i); /* the other end of the edge y = 0 */
+    assert_int_equal(rigid_free_count(shell), 1);
+    shell_clamp(shell, mesh_edge(shell->mesh, 0, 1));
+    assert_int_equal(rigid_free_count(shell), 0);
+    shell_destroy(shell);
+}
+
+static void test_net_force(void **state)
+{
+    (void)state;
+    Shell *shell = make_sheet();
+    double *p = mem_alloc((size_t)shell->params.size, sizeof *p);
+    Error err;
+    shell_default_params(shell, p);
+    assert_true(rigid_check_force(shell, p, &err));
+    p[shell->load + 3 * 5 + 1] = 1e-3, p[shell->load + 3 * 9 + 1] = -1e-3;
+    assert_true(rigid_check_force(shell, p, &err));
+    p[shell->gravity + 2] = -10;
+    assert_false(rigid_check_force(shell, p, &err));
+    assert_string_equal(err.text, "a net force of -0.002 N along z acts on a body that nothing holds along z: it has no "
+                                  "equilibrium; fix a vertex, or take the force away");
+    shell_fix(shell, 3, 2);
+    assert_true(rigid_check_force(shell, p, &err));
+    mem_free(p);
+    shell_destroy(shell);
+}
+
+/* A free sheet in a uniform field turns until its magnetisation lies along it. */
+static void test_compass(void **state)
+{
+    (void)state;
+    Shell *shell = make_sheet();
+    System *sys = shell_system(shell);
+    assert_true(system_base_shift(sys) > 0);
+    double *p = mem_alloc((size_t)shell->params.size, sizeof *p);
+    double *x = mem_alloc((size_t)shell_dof_count(shell), sizeof *x);
+    shell_default_params(shell, p);
+    shell_rest_state(shell, x);
+    for (int f = 0; f < shell->mesh->face_count; f++) p[shell->magnetization + 3 * f] = 1e5;
+    p[shell->flux_density] = 1e-3, p[shell->flux_density + 2] = 2e-3;
+    NewtonDef def = newton_default();
+    NewtonInfo info = newton_minimize(sys, &def, p, 0, x, NULL);
+    assert_int_equal(info.status, NEWTON_CONVERGED);
+    double along = x[3 * 6] - x[0], up = x[3 * 6 + 2] - x[2];
+    assert_true(fabs(atan2(up, along) - atan2(2, 1)) < 1e-6);
+    mem_free(p);
+    mem_free(x);
+    system_destroy(sys);
+    shell_destroy(shell);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_count), cmocka_unit_test(test_net_force),
+                                       cmocka_unit_test(test_compass)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
