@@ -4,6 +4,7 @@
  * Constants measured in docs/optimisers.md. */
 #include "base/memory.h"
 #include "optim/best.h"
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -41,14 +42,13 @@ static void find_held(const Best *best, Cg *cg)
                       (best->u[i] >= problem->upper[i] && best->gradient[i] < 0);
 }
 
-/* |J^T J g|/|g|: the size of the curvature along the gradient, which damping is measured in. */
-static double curvature_scale(Best *best, Cg *cg)
+/* A lower bound of |2 J^T J|, which damping is measured in: g = 2 J^T r and F = |r|^2 give |g|^2 <= 4 |J|^2 F. */
+static double curvature_scale(const Best *best, const Cg *cg)
 {
-    int n = best->problem->n;
-    for (int i = 0; i < n; i++) cg->direction[i] = cg->held[i] ? 0 : best->gradient[i];
-    product(best, cg, cg->direction, cg->product);
-    double size = sqrt(dot(n, cg->direction, cg->direction));
-    return size > 0 ? sqrt(dot(n, cg->product, cg->product)) / size : 0;
+    double sum = 0;
+    for (int i = 0; i < best->problem->n; i++)
+        if (!cg->held[i]) sum += best->gradient[i] * best->gradient[i];
+    return sum / (2 * fabs(best->objective) + DBL_MIN);
 }
 
 /* (J^T J + damping) step = -gradient by conjugate gradients. */
@@ -76,6 +76,15 @@ static void solve_step(Best *best, Cg *cg, double damping)
     }
 }
 
+static void find_trial(Best *best, Cg *cg, double damping)
+{
+    const Problem *problem = best->problem;
+    find_held(best, cg);
+    solve_step(best, cg, damping);
+    for (int i = 0; i < problem->n; i++)
+        cg->trial[i] = fmin(fmax(best->u[i] + cg->step[i], problem->lower[i]), problem->upper[i]);
+}
+
 static void run(Best *best, Cg *cg, const double *u)
 {
     const Problem *problem = best->problem;
@@ -85,10 +94,7 @@ static void run(Best *best, Cg *cg, const double *u)
     double damping = DAMPING_FIRST * curvature_scale(best, cg);
     for (int refused = 0; refused < REFUSED_MAX && !best_is_done(best);) {
         double before = best->objective;
-        find_held(best, cg);
-        solve_step(best, cg, damping);
-        for (int i = 0; i < problem->n; i++)
-            cg->trial[i] = fmin(fmax(best->u[i] + cg->step[i], problem->lower[i]), problem->upper[i]);
+        if (!problem->recall(problem->self, cg->trial)) find_trial(best, cg, damping);
         bool better = best_evaluate(best, cg->trial, cg->trial_gradient) < before;
         damping *= better ? 1 / DAMPING_DOWN : DAMPING_UP;
         refused = better ? 0 : refused + 1;

@@ -21,6 +21,9 @@ typedef struct Problem {
     /* out = J^T J v at the best point; for Gauss-Newton. */
     void (*product)(void *self, const double *v, double *out);
 
+    /* The next trial of a run that is being replayed: Gauss-Newton then need not find it. False: there is none. */
+    bool (*recall)(void *self, double *u);
+
     /* Asked after each evaluation, before the next: false stops. */
     bool (*go_on)(void *self);
 } Problem;

@@ -1,12 +1,14 @@
 #include "optim/static_design.h"
 #include "base/memory.h"
 #include <math.h>
+#include <pthread.h>
 #include <string.h>
 
 /* One case at work. */
 typedef struct Work {
     double *p, *x;          /* of the last evaluation                                 */
     double *best_p;         /* p of the best design; x of it is LoadCase.x            */
+    double *best_linearised; /* [dofs] where its factor stands                        */
     double *dp, *dx, *w;    /* directions and gradients                               */
     double *hp;             /* [params] second parameter vector                       */
     double *memory, *best_memory; /* what the terms remember                          */
@@ -18,15 +20,21 @@ struct StaticDesign {
     const Design *design;
     const Params *params;
     LoadCase *cases;
-    NewtonDef newton;
+    StaticDesignDef def;
     Work *work;
     double *u, *best_u;
 };
 
-StaticDesign *static_design_create(const Design *design, const Params *params, LoadCase *cases, const NewtonDef *newton)
+StaticDesignDef static_design_default(void)
+{
+    return (StaticDesignDef){.newton = newton_default(), .threads = 1};
+}
+
+StaticDesign *static_design_create(const Design *design, const Params *params, LoadCase *cases,
+                                   const StaticDesignDef *def)
 {
     StaticDesign *sd = mem_alloc(1, sizeof *sd);
-    *sd = (StaticDesign){design, params, cases, *newton, NULL, NULL, NULL};
+    *sd = (StaticDesign){.design = design, .params = params, .cases = cases, .def = *def};
     sd->u = mem_alloc((size_t)design->size, sizeof(double));
     sd->best_u = mem_alloc((size_t)design->size, sizeof(double));
     sd->work = mem_alloc((size_t)design->case_count, sizeof *sd->work);
@@ -37,6 +45,7 @@ StaticDesign *static_design_create(const Design *design, const Params *params, L
         work->p = mem_copy(cases[c].p, size, sizeof(double));
         work->best_p = mem_copy(cases[c].p, size, sizeof(double));
         work->x = mem_copy(cases[c].x, dofs, sizeof(double));
+        work->best_linearised = mem_alloc(dofs, sizeof(double));
         work->dx = mem_alloc(dofs, sizeof(double));
         work->w = mem_alloc(dofs, sizeof(double));
         work->dp = mem_alloc(size, sizeof(double));
@@ -53,8 +62,8 @@ void static_design_destroy(StaticDesign *sd)
     if (!sd) return;
     for (int c = 0; c < sd->design->case_count; c++) {
         Work *work = &sd->work[c];
-        double *owned[] = {work->p, work->best_p, work->x, work->dx, work->w, work->dp, work->hp, work->memory,
-                           work->best_memory};
+        double *owned[] = {work->p,  work->best_p, work->best_linearised, work->x,          work->dx, work->w,
+                           work->dp, work->hp,     work->memory,          work->best_memory};
         for (size_t k = 0; k < sizeof owned / sizeof *owned; k++) mem_free(owned[k]);
     }
     mem_free(sd->work);
@@ -75,7 +84,7 @@ static bool factor_best(StaticDesign *sd, int c)
     const LoadCase *load = &sd->cases[c];
     if (work->factored_best) return true;
     system_memory_write(load->sys, work->best_memory);
-    Point at = point(load->x, work->best_p);
+    Point at = point(work->best_linearised, work->best_p);
     system_hessian(load->sys, &at, work->w);
     work->factored_best = system_factor(load->sys, 0);
     return work->factored_best;
@@ -115,23 +124,20 @@ static void predict(StaticDesign *sd, int c)
         memcpy(work->x, work->w, (size_t)dofs * sizeof *work->x);
 }
 
-/* Objective and, where asked for, its gradient over the parameters in work->dp. */
-static double evaluate_objective(StaticDesign *sd, int c, bool with_gradient)
+/* Objectives at the point and, where dp is not NULL, dF/dp by the adjoint with the factor at hand. */
+static double evaluate_objective(StaticDesign *sd, int c, const Point *at, double *dp)
 {
     Work *work = &sd->work[c];
     const LoadCase *load = &sd->cases[c];
     double value = 0;
     memset(work->dx, 0, (size_t)system_dof_count(load->sys) * sizeof *work->dx);
-    memset(work->dp, 0, (size_t)sd->params->size * sizeof *work->dp);
+    if (dp) memset(dp, 0, (size_t)sd->params->size * sizeof *dp);
     for (int k = 0; k < load->objective_count; k++) {
         const Objective *objective = &load->objectives[k];
-        value += load->weight * objective->weight *
-                 objective->ops->value(objective->self, load->weight * objective->weight, work->x, work->p,
-                                       with_gradient ? work->dx : NULL, with_gradient ? work->dp : NULL);
+        double weight = load->weight * objective->weight;
+        value += weight * objective->ops->value(objective->self, weight, at->x, at->p, dp ? work->dx : NULL, dp);
     }
-    if (!with_gradient) return value;
-    Point at = point(work->x, work->p);
-    adjoint(load->sys, &at, work->dx, work->dp);
+    if (dp) adjoint(load->sys, at, work->dx, dp);
     return value;
 }
 
@@ -139,25 +145,70 @@ static CaseInfo evaluate_case(StaticDesign *sd, int c, const double *u, bool wit
 {
     Work *work = &sd->work[c];
     const LoadCase *load = &sd->cases[c];
+    const NewtonObserver *observer = sd->def.observer.iteration ? &sd->def.observer : NULL;
     CaseInfo info = {.objective = INFINITY};
     design_apply(sd->design, c, u, work->p);
     predict(sd, c);
     system_memory_write(load->sys, work->best_memory);
     work->factored_best = false;
-    info.newton = newton_minimize(load->sys, &sd->newton, work->p, 0, work->x, NULL);
+    info.newton = newton_minimize(load->sys, &sd->def.newton, work->p, 0, work->x, observer);
     system_memory_read(load->sys, work->memory);
-    if (info.newton.status == NEWTON_CONVERGED) info.objective = evaluate_objective(sd, c, with_gradient);
+    Point at = point(work->x, work->p);
+    if (info.newton.status == NEWTON_CONVERGED)
+        info.objective = evaluate_objective(sd, c, &at, with_gradient ? work->dp : NULL);
     return info;
+}
+
+/* What one thread does: cases first, first + stride, ... of an evaluation or, with v, of a product. */
+typedef struct Share {
+    StaticDesign *sd;
+    int first, stride;
+    const double *u, *v;
+    bool with_gradient;
+    CaseInfo *info;
+} Share;
+
+static void product_case(StaticDesign *sd, int c, const double *v);
+
+static void *do_share(void *data)
+{
+    const Share *share = data;
+    for (int c = share->first; c < share->sd->design->case_count; c += share->stride)
+        if (share->v)
+            product_case(share->sd, c, share->v);
+        else
+            share->info[c] = evaluate_case(share->sd, c, share->u, share->with_gradient);
+    return NULL;
+}
+
+/* All cases, the first share in the calling thread. A thread that cannot be had is done without. */
+static void do_cases(Share share)
+{
+    enum { THREADS_MAX = 64 };
+    Share shares[THREADS_MAX];
+    pthread_t threads[THREADS_MAX];
+    bool started[THREADS_MAX] = {false};
+    int count = share.sd->def.threads, cases = share.sd->design->case_count;
+    if (count > cases) count = cases;
+    if (count > THREADS_MAX) count = THREADS_MAX;
+    for (int t = 0; t < count; t++) {
+        shares[t] = share;
+        shares[t].first = t;
+        shares[t].stride = count;
+        if (t > 0) started[t] = pthread_create(&threads[t], NULL, do_share, &shares[t]) == 0;
+    }
+    for (int t = 0; t < count; t++)
+        if (!started[t]) do_share(&shares[t]);
+    for (int t = 1; t < count; t++)
+        if (started[t]) pthread_join(threads[t], NULL);
 }
 
 double static_design_evaluate(StaticDesign *sd, const double *u, double *gradient, CaseInfo *case_info)
 {
     double F = 0;
     memcpy(sd->u, u, (size_t)sd->design->size * sizeof *u);
-    for (int c = 0; c < sd->design->case_count; c++) {
-        case_info[c] = evaluate_case(sd, c, u, gradient != NULL);
-        F += case_info[c].objective;
-    }
+    do_cases((Share){.sd = sd, .u = u, .with_gradient = gradient != NULL, .info = case_info});
+    for (int c = 0; c < sd->design->case_count; c++) F += case_info[c].objective;
     if (!gradient) return F;
     memset(gradient, 0, (size_t)sd->design->size * sizeof *gradient);
     for (int c = 0; isfinite(F) && c < sd->design->case_count; c++)
@@ -173,34 +224,64 @@ void static_design_accept(StaticDesign *sd)
         System *sys = sd->cases[c].sys;
         memcpy(work->best_p, work->p, (size_t)sd->params->size * sizeof *work->p);
         memcpy(sd->cases[c].x, work->x, (size_t)system_dof_count(sys) * sizeof *work->x);
+        memcpy(work->best_linearised, system_linearised(sys), (size_t)system_dof_count(sys) * sizeof *work->x);
         memcpy(work->best_memory, work->memory, (size_t)system_memory_count(sys) * sizeof *work->memory);
         work->has_best = work->factored_best = true;
     }
 }
 
-static void product_case(StaticDesign *sd, int c, const double *v, double *out)
+CaseState static_design_state(StaticDesign *sd, int load_case)
+{
+    const Work *work = &sd->work[load_case];
+    return (CaseState){sd->cases[load_case].x, work->best_linearised, work->best_memory};
+}
+
+void static_design_restore(StaticDesign *sd, const double *u)
+{
+    memcpy(sd->best_u, u, (size_t)sd->design->size * sizeof *u);
+    for (int c = 0; c < sd->design->case_count; c++) {
+        design_apply(sd->design, c, u, sd->work[c].best_p);
+        sd->work[c].has_best = true;
+        sd->work[c].factored_best = false;
+    }
+}
+
+/* The case's part of J^T J v over the parameters, in work->dp. */
+static void product_case(StaticDesign *sd, int c, const double *v)
 {
     Work *work = &sd->work[c];
     const LoadCase *load = &sd->cases[c];
-    if (!factor_best(sd, c)) return;
     memset(work->hp, 0, (size_t)sd->params->size * sizeof *work->hp);
+    memset(work->dp, 0, (size_t)sd->params->size * sizeof *work->dp);
+    if (!factor_best(sd, c)) return;
     design_forward(sd->design, c, sd->best_u, v, work->hp);
     tangent(sd, c, work->hp, work->dx);
     memset(work->w, 0, (size_t)system_dof_count(load->sys) * sizeof *work->w);
-    memset(work->dp, 0, (size_t)sd->params->size * sizeof *work->dp);
     for (int k = 0; k < load->objective_count; k++) {
         const Objective *objective = &load->objectives[k];
         objective->ops->product(objective->self, load->weight * objective->weight, work->dx, work->hp, work->w, work->dp);
     }
     Point at = point(load->x, work->best_p);
     adjoint(load->sys, &at, work->w, work->dp);
-    design_transpose(sd->design, c, sd->best_u, work->dp, out);
 }
 
 void static_design_product(StaticDesign *sd, const double *v, double *out)
 {
     memset(out, 0, (size_t)sd->design->size * sizeof *out);
-    for (int c = 0; c < sd->design->case_count; c++) product_case(sd, c, v, out);
+    do_cases((Share){.sd = sd, .v = v});
+    for (int c = 0; c < sd->design->case_count; c++) design_transpose(sd->design, c, sd->best_u, sd->work[c].dp, out);
+}
+
+void static_design_param_gradient(StaticDesign *sd, int load_case, double *dp)
+{
+    Point at = point(sd->cases[load_case].x, sd->work[load_case].best_p);
+    memset(dp, 0, (size_t)sd->params->size * sizeof *dp);
+    if (factor_best(sd, load_case)) evaluate_objective(sd, load_case, &at, dp);
+}
+
+const double *static_design_params(const StaticDesign *sd, int load_case)
+{
+    return sd->work[load_case].best_p;
 }
 
 long static_design_factorizations(const StaticDesign *sd)
@@ -208,9 +289,4 @@ long static_design_factorizations(const StaticDesign *sd)
     long count = 0;
     for (int c = 0; c < sd->design->case_count; c++) count += system_info(sd->cases[c].sys).factorizations;
     return count;
-}
-
-const double *static_design_param_gradient(const StaticDesign *sd, int load_case)
-{
-    return sd->work[load_case].dp;
 }

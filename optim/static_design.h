@@ -23,8 +23,17 @@ typedef struct LoadCase {
 
 typedef struct StaticDesign StaticDesign;
 
+typedef struct StaticDesignDef {
+    NewtonDef newton;
+    NewtonObserver observer; /* may stop a solve, which then counts as not found; called from all threads; may be zero */
+    int threads;             /* at most this many cases at once; default 1 */
+} StaticDesignDef;
+
+StaticDesignDef static_design_default(void);
+
 /* Borrows design and cases. */
-StaticDesign *static_design_create(const Design *design, const Params *params, LoadCase *cases, const NewtonDef *newton);
+StaticDesign *static_design_create(const Design *design, const Params *params, LoadCase *cases,
+                                   const StaticDesignDef *def);
 void static_design_destroy(StaticDesign *sd);
 
 typedef struct CaseInfo {
@@ -39,12 +48,27 @@ double static_design_evaluate(StaticDesign *sd, const double *u, double *gradien
 /* Makes the last evaluation the best design: the next ones start from it. */
 void static_design_accept(StaticDesign *sd);
 
-/* out = J^T J v at the best design (of the sum of squares); the first call after an evaluation that was not accepted
- * factors again. */
+/* What the best design's case is, beyond u: with it, static_design_restore goes on bit by bit as the run that saved
+ * it. */
+typedef struct CaseState {
+    double *x;          /* [dofs] the equilibrium                                              */
+    double *linearised; /* [dofs] where its factor stands: before Newton's last, negligible step */
+    double *memory;     /* [system_memory_count] what the terms remember                       */
+} CaseState;
+
+/* Borrowed; to be read, or filled before static_design_restore. */
+CaseState static_design_state(StaticDesign *sd, int load_case);
+
+/* Makes u, with the states filled in, the best design. */
+void static_design_restore(StaticDesign *sd, const double *u);
+
+/* out = J^T J v at the best design (of the sum of squares), 2 J^T J as the gradient is 2 J^T r; the first call after an
+ * evaluation that was not accepted factors again. */
 void static_design_product(StaticDesign *sd, const double *v, double *out);
 
-/* Factorisations and Newton iterations so far, all cases. */
-long static_design_factorizations(const StaticDesign *sd);
+/* dF/dp[params] of one case at the best design, weighted, in the blocks' own units; p of it may be had too. */
+void static_design_param_gradient(StaticDesign *sd, int load_case, double *dp);
+const double *static_design_params(const StaticDesign *sd, int load_case);
 
-/* dF/dp of the last evaluation of a case, params->size numbers; weighted, in the blocks' own units. */
-const double *static_design_param_gradient(const StaticDesign *sd, int load_case);
+/* Factorisations so far, all cases. */
+long static_design_factorizations(const StaticDesign *sd);

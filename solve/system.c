@@ -26,6 +26,7 @@ struct System {
     double base, stiffness_max;
     double *scale;       /* [dof] D                                     */
     double *force_sum;   /* [dof] sum of absolute element forces        */
+    double *linearised;  /* [dof] x of the last Hessian                 */
     double *work, *diag; /* [free]                                      */
 };
 
@@ -41,6 +42,7 @@ System *system_create(int dof_count, const DofClass *classes, int class_count)
     sys->unknown = mem_alloc(n, sizeof(int));
     sys->scale = mem_alloc(n, sizeof(double));
     sys->force_sum = mem_alloc(n, sizeof(double));
+    sys->linearised = mem_alloc(n, sizeof(double));
     return sys;
 }
 
@@ -59,6 +61,7 @@ void system_destroy(System *sys)
     mem_free(sys->unknown);
     mem_free(sys->scale);
     mem_free(sys->force_sum);
+    mem_free(sys->linearised);
     mem_free(sys->work);
     mem_free(sys->diag);
     mem_free(sys);
@@ -160,6 +163,7 @@ double system_base_shift(const System *sys) { return sys->base; }
 int system_term_count(const System *sys) { return sys->term_count; }
 const Term *system_term(const System *sys, int t) { return &sys->entries[t].term; }
 const double *system_scale(const System *sys) { return sys->scale; }
+const double *system_linearised(const System *sys) { return sys->linearised; }
 double system_stiffness_max(const System *sys) { return sys->stiffness_max; }
 int system_position_count(const System *sys) { return sys->classes[0].count; }
 SparseInfo system_info(const System *sys) { return sparse_info(sys->matrix); }
@@ -310,6 +314,7 @@ Evaluation system_hessian(System *sys, const Point *at, double *gradient)
 {
     Evaluation result = evaluate(sys, at, gradient, sparse_values(sys->matrix));
     measure_scale(sys);
+    memcpy(sys->linearised, at->x, (size_t)sys->dof_count * sizeof *at->x);
     return result;
 }
 

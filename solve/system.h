@@ -60,6 +60,9 @@ Evaluation system_gradient(System *sys, const Point *at, double *gradient);
 /* The same, and assembles the Hessian of the free dofs. */
 Evaluation system_hessian(System *sys, const Point *at, double *gradient);
 
+/* x[dof_count] of the last Hessian: where the factor stands. */
+const double *system_linearised(const System *sys);
+
 /* Factor of H + (base + shift) D, D = each class's mean |H_ii|. False where not positive definite. */
 bool system_factor(System *sys, double shift);
 

@@ -125,8 +125,8 @@ static void check(BendingModel bending, const char *block, Unknown unknown)
     int n = f.design.size;
     f.u = mem_alloc((size_t)n, sizeof *f.u);
     for (int c = 0; c < 2; c++) design_read(&f.design, c, f.cases[c].p, f.u);
-    NewtonDef newton = newton_default();
-    f.sd = static_design_create(&f.design, &f.shell->params, f.cases, &newton);
+    StaticDesignDef def = static_design_default();
+    f.sd = static_design_create(&f.design, &f.shell->params, f.cases, &def);
 
     double *g = mem_alloc((size_t)n, sizeof *g), *v = mem_alloc((size_t)n, sizeof *v), *moved = mem_alloc((size_t)n, sizeof *v);
     CaseInfo info[2];
