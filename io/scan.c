@@ -1,0 +1,138 @@
+#include "io/scan.h"
+#include "base/memory.h"
+#include <errno.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const size_t MAX_BYTES = (size_t)2 << 30;
+
+bool scan_file(const char *path, char **text, size_t *length, Error *err)
+{
+    FILE *file = fopen(path, "rb");
+    *text = NULL;
+    *length = 0;
+    if (!file) return error_set(err, "%s: cannot be read: %s", path, strerror(errno));
+    size_t room = 0, got = 1;
+    while (got > 0 && *length <= MAX_BYTES) {
+        if (room - *length < 65536) {
+            size_t larger = 2 * room + 65536;
+            *text = mem_resize(*text, room, larger, 1);
+            room = larger;
+        }
+        got = fread(*text + *length, 1, room - *length - 1, file);
+        *length += got;
+    }
+    bool ok = !ferror(file) || error_set(err, "%s: cannot be read: %s", path, strerror(errno));
+    if (ok && *length > MAX_BYTES) ok = error_set(err, "%s: the file is larger than 2 GiB", path);
+    fclose(file);
+    if (ok) return true;
+    mem_free(*text);
+    *text = NULL;
+    return false;
+}
+
+Scan scan_start(const char *path, const char *text, size_t length, char comment, const char *separators, Error *err)
+{
+    return (Scan){.path = path, .next = text, .end = text + length, .word_end = text, .at = text, .comment = comment,
+                  .separators = separators, .err = err};
+}
+
+static bool splits(const Scan *scan, char c)
+{
+    return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v' || (c && strchr(scan->separators, c));
+}
+
+static void skip_blanks(Scan *scan)
+{
+    while (scan->at < scan->word_end && splits(scan, *scan->at)) scan->at++;
+}
+
+bool scan_line(Scan *scan)
+{
+    while (scan->next < scan->end) {
+        const char *start = scan->next, *newline = memchr(start, '\n', (size_t)(scan->end - start));
+        const char *stop = newline ? newline : scan->end, *comment = NULL;
+        scan->next = newline ? newline + 1 : scan->end;
+        scan->line++;
+        if (scan->comment) comment = memchr(start, scan->comment, (size_t)(stop - start));
+        scan->at = start;
+        scan->word_end = comment ? comment : stop;
+        skip_blanks(scan);
+        if (scan_more(scan)) return true;
+    }
+    scan->at = scan->word_end = scan->end;
+    return false;
+}
+
+bool scan_word(Scan *scan, Word *word)
+{
+    if (!scan_more(scan)) return false;
+    word->text = scan->at;
+    while (scan->at < scan->word_end && !splits(scan, *scan->at)) scan->at++;
+    word->length = (int)(scan->at - word->text);
+    skip_blanks(scan);
+    return true;
+}
+
+bool word_is(Word word, const char *text)
+{
+    return strlen(text) == (size_t)word.length && !strncmp(word.text, text, (size_t)word.length);
+}
+
+enum { NUMBER_LENGTH = 63 };
+
+/* The word as a C text; words longer than any number are none. */
+static bool copy_word(Word word, char text[NUMBER_LENGTH + 1])
+{
+    if (word.length > NUMBER_LENGTH || word.length == 0) return false;
+    memcpy(text, word.text, (size_t)word.length);
+    text[word.length] = 0;
+    return true;
+}
+
+bool word_integer(Word word, long *value)
+{
+    char text[NUMBER_LENGTH + 1], *end;
+    if (!copy_word(word, text)) return false;
+    errno = 0;
+    *value = strtol(text, &end, 10);
+    return *end == 0 && errno == 0;
+}
+
+bool word_number(Word word, double *value)
+{
+    char text[NUMBER_LENGTH + 1], *end;
+    if (!copy_word(word, text) || strpbrk(text, "xXnN")) return false;
+    *value = strtod(text, &end);
+    return *end == 0 && isfinite(*value);
+}
+
+bool scan_refuse(const Scan *scan, const char *format, ...)
+{
+    char sentence[512];
+    va_list args;
+    va_start(args, format);
+    vsnprintf(sentence, sizeof sentence, format, args);
+    va_end(args);
+    return error_set(scan->err, "%s:%d: %s", scan->path, scan->line, sentence);
+}
+
+bool scan_number(Scan *scan, const char *what, double *value)
+{
+    Word word;
+    if (!scan_word(scan, &word)) return scan_refuse(scan, "%s is missing", what);
+    return word_number(word, value) || scan_refuse(scan, "%s must be a finite number, not '%.*s'", what, word.length > 40 ? 40 : word.length, word.text);
+}
+
+bool scan_integer(Scan *scan, const char *what, long low, long high, long *value)
+{
+    Word word;
+    if (!scan_word(scan, &word)) return scan_refuse(scan, "%s is missing", what);
+    if (!word_integer(word, value))
+        return scan_refuse(scan, "%s must be a whole number, not '%.*s'", what, word.length > 40 ? 40 : word.length, word.text);
+    if (*value >= low && *value <= high) return true;
+    return scan_refuse(scan, "%s is %ld; it must be from %ld to %ld", what, *value, low, high);
+}

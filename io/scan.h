@@ -1,0 +1,46 @@
+/* scan.h - lines and words of a text file, with sentences that name the line. Private to the readers of io/. */
+#pragma once
+#include "base/error.h"
+#include <stddef.h>
+
+typedef struct Scan {
+    const char *path;
+    const char *next, *end; /* what is still to be read                                */
+    const char *word_end;   /* end of the current line's content                       */
+    const char *at;         /* where the next word of the line begins                  */
+    int line;               /* number of the current line, from 1; 0 before the first  */
+    char comment;           /* what follows it on a line is skipped; 0: none           */
+    const char *separators; /* beside blanks, what splits words; "" for none           */
+    Error *err;
+} Scan;
+
+typedef struct Word {
+    const char *text;
+    int length;
+} Word;
+
+/* A whole file in memory; *text is the caller's (mem_free). Refused: what cannot be read, more than 2 GiB. */
+bool scan_file(const char *path, char **text, size_t *length, Error *err);
+
+Scan scan_start(const char *path, const char *text, size_t length, char comment, const char *separators, Error *err);
+
+/* The next line that has words on it; false at the end. */
+bool scan_line(Scan *scan);
+
+/* The next word of the line; false at its end. */
+bool scan_word(Scan *scan, Word *word);
+
+static inline bool scan_more(const Scan *scan) { return scan->at < scan->word_end; }
+
+bool word_is(Word word, const char *text);
+
+/* A word that is a whole number or a finite number, and nothing else. */
+bool word_integer(Word word, long *value);
+bool word_number(Word word, double *value);
+
+/* "path:line: sentence"; returns false. */
+bool scan_refuse(const Scan *scan, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* The next word as a number; refused with what it should be ("a coordinate"). */
+bool scan_number(Scan *scan, const char *what, double *value);
+bool scan_integer(Scan *scan, const char *what, long low, long high, long *value);

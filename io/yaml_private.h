@@ -1,0 +1,83 @@
+/* yaml_private.h - the tree that scene files are read into, and what the parts of yaml.h share. */
+#pragma once
+#include "io/yaml.h"
+
+typedef enum NodeKind { NODE_SCALAR, NODE_LIST, NODE_MAP } NodeKind;
+
+typedef struct Node Node;
+
+/* A value; of a mapping, keys[i] stands at key_line[i] and has items[i]. Owned all the way down. */
+struct Node {
+    NodeKind kind;
+    bool quoted;       /* a scalar in quotes is a text, never a number */
+    int line, column;  /* from 1; 0: from --set or a default           */
+    const char *origin; /* the --set assignment that it comes from, borrowed from the file; NULL: the file itself */
+    char *text;
+    int count, room;
+    Node **items;
+    char **keys;
+    int (*key_place)[2];
+};
+
+struct YamlFile {
+    char *path, *folder, *text;
+    size_t length;
+    Node *root; /* NULL: not readable */
+    int set_count;
+    char **set; /* assignments, borrowed by nodes */
+    int error_count, stored_count;
+    YamlError *errors;
+    bool *error_is_set; /* [stored] the sentence begins with --set, not with a place */
+};
+
+enum { YAML_MAX_ERRORS = 100, YAML_MAX_DEPTH = 32, YAML_MAX_VALUES = 4000000, YAML_MAX_BYTES = 64 << 20 };
+
+Node *node_create(NodeKind kind, int line, int column);
+void node_destroy(Node *node);
+
+/* Takes key (NULL in lists) and item. */
+void node_append(Node *node, char *key, int line, int column, Node *item);
+
+/* The item under a key, or NULL. */
+Node *node_find(const Node *map, const char *key);
+
+/* The tree of a text; errors go to the file (NULL: a default, which must be right). NULL where there is none. */
+Node *tree_parse(YamlFile *file, const char *text, size_t length);
+
+/* Adds an error at a node's place. */
+void yaml_error(YamlFile *file, const Node *at, const char *format, ...) __attribute__((format(printf, 3, 4)));
+void yaml_error_at(YamlFile *file, int line, int column, const char *format, ...) __attribute__((format(printf, 4, 5)));
+
+/* Follows "a.b[2].c" from the root as far as it is written; *rest is what is left. */
+Node *tree_follow(const YamlFile *file, const char *key, const char **rest);
+
+/* The next step of a key path: a name (length of it) or an index (>= 0). False at the end or where it is malformed. */
+bool path_step(const char **path, const char **name, int *length, int *index);
+
+/* ---- Numbers -------------------------------------------------------------------------------------------- */
+
+/* Does the text look like a number, with a unit or not, and not like an expression? */
+bool unit_is_number(const char *text);
+
+/* The number in SI. False with a phrase that says what is wrong: "must be a number in m, not 'x'". unit as in YamlField. */
+bool unit_parse(const char *text, const char *unit, double *value, char *wrong, size_t size);
+
+/* Is it a unit that the table of units can read? */
+bool unit_is_known(const char *unit);
+
+/* Shortest text that reads back bit by bit. */
+void number_format(double value, char text[40]);
+
+/* ---- Tables --------------------------------------------------------------------------------------------- */
+
+const YamlField *table_row(const YamlTable *table, const char *key);
+
+/* The member of a struct, and the count beside it. */
+static inline void *row_member(const YamlField *row, const void *scene) { return (char *)scene + row->offset; }
+static inline int *row_count(const YamlField *row, const void *scene) { return (int *)((char *)scene + row->count_offset); }
+
+/* Is the value there, or as it is when absent? */
+bool row_is_given(const YamlField *row, const void *scene);
+
+/* The known word nearest to a misspelt one; NULL if none is near. words(self, i) gives them, NULL at the end. */
+const char *nearest_word(const char *word, const char *(*words)(const void *self, int i), const void *self);

@@ -1,0 +1,87 @@
+/* --set key=value: changes of the tree before it is loaded. */
+#include "base/memory.h"
+#include "io/yaml_private.h"
+#include <string.h>
+
+/* Every node of the value says where it came from. */
+static void mark(Node *node, const char *origin)
+{
+    node->origin = origin;
+    node->line = node->column = 0;
+    for (int i = 0; i < node->count; i++) mark(node->items[i], origin);
+}
+
+static bool refuse(YamlFile *file, const char *assignment, const char *what)
+{
+    Node at = {.origin = assignment};
+    yaml_error(file, &at, "%s", what);
+    return false;
+}
+
+/* The slot of a name or an index in a container; made where it is missing. NULL with a sentence where it cannot be. */
+static Node **slot(Node *node, const char *name, int length, int index, const char **what)
+{
+    if (index >= 0) {
+        if (node->kind != NODE_LIST) return *what = "there is no list at this index", NULL;
+        if (index > node->count) return *what = "the index is beyond the end of the list", NULL;
+        if (index == node->count) node_append(node, NULL, 0, 0, NULL);
+        return &node->items[index];
+    }
+    if (node->kind != NODE_MAP) return *what = "there is no mapping with that key", NULL;
+    for (int i = 0; i < node->count; i++)
+        if (!strncmp(node->keys[i], name, (size_t)length) && !node->keys[i][length]) return &node->items[i];
+    node_append(node, mem_format("%.*s", length, name), 0, 0, NULL);
+    return &node->items[node->count - 1];
+}
+
+/* The container that the next step needs. */
+static Node *make_container(const char *path, const char *origin)
+{
+    Node *node = node_create(*path == '[' ? NODE_LIST : NODE_MAP, 0, 0);
+    node->origin = origin;
+    return node;
+}
+
+/* Walks the key and puts the value there; takes the value in any case. */
+static bool put(YamlFile *file, const char *assignment, const char *key, Node *value)
+{
+    Node **place = &file->root;
+    const char *path = key, *name, *what = NULL;
+    int length, index, depth = 0;
+    while (*path) {
+        if (++depth >= YAML_MAX_DEPTH || !path_step(&path, &name, &length, &index)) {
+            what = "the key is malformed; it is like shell.mesh.n or fix[0].ball.radius";
+            break;
+        }
+        const char *step = index >= 0 ? "[" : name;
+        bool leaf = *place && (*place)->kind == NODE_SCALAR;
+        if (leaf) node_destroy(*place), *place = NULL; /* a short form makes way for the long one */
+        if (!*place) *place = make_container(step, assignment);
+        place = slot(*place, name, length, index, &what);
+        if (!place) break;
+    }
+    if (what || !*key) {
+        node_destroy(value);
+        return refuse(file, assignment, what ? what : "the key is missing; it is like shell.mesh.n=7");
+    }
+    node_destroy(*place);
+    *place = value;
+    return true;
+}
+
+bool yaml_override(YamlFile *file, const char *assignment)
+{
+    file->set = mem_resize(file->set, (size_t)file->set_count, (size_t)file->set_count + 1, sizeof *file->set);
+    char *kept = file->set[file->set_count++] = mem_text(assignment);
+    const char *equal = strchr(kept, '=');
+    if (!file->root) return false; /* its error is there already */
+    if (!equal) return refuse(file, kept, "it must be key=value, e.g. shell.thickness=1mm");
+    int before = file->error_count;
+    Node *value = tree_parse(file, equal + 1, strlen(equal + 1));
+    if (!value) return file->error_count == before ? refuse(file, kept, "the value is missing") : false;
+    mark(value, kept);
+    char *key = mem_format("%.*s", (int)(equal - kept), kept);
+    bool ok = put(file, kept, key, value);
+    mem_free(key);
+    return ok;
+}

@@ -1,0 +1,14 @@
+/* yaml_text.h - a text that grows. Private to the writers of yaml.h. */
+#pragma once
+#include <stddef.h>
+
+typedef struct Text {
+    char *text; /* owned; "" at least after the first add */
+    size_t length, room;
+} Text;
+
+void text_add(Text *text, const char *format, ...) __attribute__((format(printf, 2, 3)));
+void text_indent(Text *text, int depth);
+
+/* In double quotes, with the escapes that YAML and JSON share. */
+void text_add_quoted(Text *text, const char *string);

@@ -1,0 +1,171 @@
+/* Numbers with units: "1.5 mm", "20 mT", "120 kA/m", "N s/m". */
+#include "io/yaml_private.h"
+#include <ctype.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Exponents of m, kg, s, A, rad. */
+enum { DIMENSIONS = 5 };
+
+typedef struct Unit {
+    double factor;
+    int exponent[DIMENSIONS];
+} Unit;
+
+static const struct {
+    const char *symbol;
+    bool prefixed; /* takes k, m, .. */
+    Unit unit;
+} units[] = {
+    {"m", true, {1, {1}}},
+    {"g", true, {1e-3, {0, 1}}},
+    {"s", true, {1, {0, 0, 1}}},
+    {"A", true, {1, {0, 0, 0, 1}}},
+    {"rad", true, {1, {0, 0, 0, 0, 1}}},
+    {"deg", false, {M_PI / 180, {0, 0, 0, 0, 1}}},
+    {"min", false, {60, {0, 0, 1}}},
+    {"h", false, {3600, {0, 0, 1}}},
+    {"Hz", true, {1, {0, 0, -1}}},
+    {"N", true, {1, {1, 1, -2}}},
+    {"Pa", true, {1, {-1, 1, -2}}},
+    {"bar", true, {1e5, {-1, 1, -2}}},
+    {"J", true, {1, {2, 1, -2}}},
+    {"W", true, {1, {2, 1, -3}}},
+    {"T", true, {1, {0, 1, -2, -1}}},
+};
+
+static const struct {
+    const char *symbol;
+    double factor;
+} prefixes[] = {{"G", 1e9}, {"M", 1e6}, {"k", 1e3}, {"d", 1e-1}, {"c", 1e-2}, {"m", 1e-3}, {"u", 1e-6},
+                {"\xc2\xb5", 1e-6}, {"\xce\xbc", 1e-6}, {"n", 1e-9}, {"p", 1e-12}};
+
+static const Unit *find_unit(const char *symbol, size_t length, bool prefixed)
+{
+    for (size_t k = 0; k < sizeof units / sizeof *units; k++)
+        if (strlen(units[k].symbol) == length && !strncmp(units[k].symbol, symbol, length) && (!prefixed || units[k].prefixed))
+            return &units[k].unit;
+    return NULL;
+}
+
+static bool symbol_unit(const char *symbol, size_t length, Unit *unit)
+{
+    const Unit *whole = find_unit(symbol, length, false);
+    if (whole) return *unit = *whole, true;
+    for (size_t k = 0; k < sizeof prefixes / sizeof *prefixes; k++) {
+        size_t size = strlen(prefixes[k].symbol);
+        if (size >= length || strncmp(prefixes[k].symbol, symbol, size)) continue;
+        const Unit *rest = find_unit(symbol + size, length - size, true);
+        if (!rest) continue;
+        *unit = *rest;
+        unit->factor *= prefixes[k].factor;
+        return true;
+    }
+    return false;
+}
+
+static bool is_symbol(char c) { return isalpha((unsigned char)c) || (unsigned char)c >= 0x80; }
+
+/* A product of symbols with powers; after a slash they divide. */
+static bool parse_unit(const char *text, Unit *product)
+{
+    *product = (Unit){.factor = 1};
+    for (int sign = 1; *text;) {
+        if (*text == ' ' || *text == '*') {
+            text++;
+            continue;
+        }
+        if (*text == '/') {
+            if (sign < 0) return false;
+            sign = -1;
+            text++;
+            continue;
+        }
+        size_t length = 0;
+        while (is_symbol(text[length])) length++;
+        Unit unit;
+        if (!length || !symbol_unit(text, length, &unit)) return false;
+        text += length;
+        int power = 1;
+        if (*text == '^') {
+            if (!isdigit((unsigned char)text[1]) || isdigit((unsigned char)text[2])) return false;
+            power = text[1] - '0';
+            text += 2;
+        }
+        product->factor *= pow(unit.factor, sign * power);
+        for (int d = 0; d < DIMENSIONS; d++) product->exponent[d] += sign * power * unit.exponent[d];
+    }
+    return true;
+}
+
+bool unit_is_known(const char *unit)
+{
+    Unit parsed;
+    return !unit || (parse_unit(unit, &parsed) && parsed.factor == 1);
+}
+
+/* Decimal only: strtod would take hexadecimal, "inf" and "nan" too. */
+static bool decimal(const char *text, double *value, const char **rest)
+{
+    const char *c = text + (*text == '-' || *text == '+');
+    if (!isdigit((unsigned char)*c) && !(*c == '.' && isdigit((unsigned char)c[1]))) return false;
+    if (c[0] == '0' && (c[1] == 'x' || c[1] == 'X')) return false;
+    char *end;
+    *value = strtod(text, &end);
+    *rest = end;
+    return true;
+}
+
+bool unit_is_number(const char *text)
+{
+    double value;
+    const char *rest;
+    if (!decimal(text, &value, &rest)) return false;
+    if (*rest && *rest != ' ' && !is_symbol(*rest)) return false;
+    while (*rest == ' ') rest++;
+    for (const char *c = rest; *c; c++)
+        if (!is_symbol(*c) && !isdigit((unsigned char)*c) && !strchr(" /^", *c)) return false;
+    return *rest == 0 || is_symbol(*rest);
+}
+
+bool unit_parse(const char *text, const char *unit, double *value, char *wrong, size_t size)
+{
+    const char *in = unit ? " in " : "", *name = unit ? unit : "", *rest;
+    if (!decimal(text, value, &rest) || (*rest && *rest != ' ' && !is_symbol(*rest))) {
+        snprintf(wrong, size, "must be a number%s%s, not '%.60s'", in, name, text);
+        return false;
+    }
+    while (*rest == ' ') rest++;
+    if (*rest) {
+        Unit given, wanted;
+        if (!unit) {
+            snprintf(wrong, size, "must be a plain number, without the unit in '%.60s'", text);
+            return false;
+        }
+        bool fits = parse_unit(rest, &given) && parse_unit(unit, &wanted) && !memcmp(given.exponent, wanted.exponent, sizeof given.exponent);
+        if (!fits) {
+            snprintf(wrong, size, "must be a number in %s, and '%.60s' is none", unit, text);
+            return false;
+        }
+        *value *= given.factor;
+    }
+    if (isfinite(*value)) return true;
+    snprintf(wrong, size, "must be a finite number%s%s, not '%.60s'", in, name, text);
+    return false;
+}
+
+void number_format(double value, char text[40])
+{
+    for (int digits = 15; digits <= 17; digits++) {
+        snprintf(text, 40, "%.*g", digits, value);
+        if (strtod(text, NULL) == value) break;
+    }
+    /* 1e+05 is a text to other YAML readers, 1.0e+05 is not. */
+    char *e = strchr(text, 'e');
+    if (!e || strchr(text, '.')) return;
+    char tail[16];
+    snprintf(tail, sizeof tail, "%s", e);
+    snprintf(e, (size_t)(text + 40 - e), ".0%s", tail);
+}

@@ -1,0 +1,188 @@
+/* The effective scene as text, and the comparison of two of them. */
+#include "base/memory.h"
+#include "io/yaml_private.h"
+#include "io/yaml_text.h"
+#include <math.h>
+#include <string.h>
+
+static void write_table(Text *text, const YamlTable *table, const void *scene, int depth);
+
+bool row_is_given(const YamlField *row, const void *scene)
+{
+    const void *member = row_member(row, scene);
+    switch (row->kind) {
+    case FIELD_NUMBER: return !isnan(*(const double *)member);
+    case FIELD_INTEGER: return *(const int *)member != YAML_ABSENT;
+    case FIELD_CHOICE: return *(const int *)member >= 0;
+    case FIELD_BOOL: return *(const bool *)member;
+    case FIELD_TABLE: return true;
+    case FIELD_NUMBERS:
+        if (!row->count_offset) return !isnan(*(const double *)member);
+        break;
+    case FIELD_INTEGERS:
+        if (!row->count_offset) return *(const int *)member != YAML_ABSENT;
+        break;
+    default: break;
+    }
+    return *(void *const *)member != NULL;
+}
+
+static void write_number(Text *text, double value)
+{
+    char number[40];
+    number_format(value, number);
+    text_add(text, "%s", number);
+}
+
+static void write_entry(Text *text, const YamlField *row, const void *array, int i)
+{
+    switch (row->kind) {
+    case FIELD_NUMBERS: write_number(text, ((const double *)array)[i]); break;
+    case FIELD_INTEGERS: text_add(text, "%d", ((const int *)array)[i]); break;
+    case FIELD_TEXTS: text_add_quoted(text, ((char *const *)array)[i]); break;
+    case FIELD_CHOICES: text_add(text, "%s", row->choices[((const int *)array)[i]]); break;
+    default: /* FIELD_ROWS */
+        text_add(text, "[");
+        for (int k = 0; k < row->width; k++) {
+            if (k) text_add(text, ", ");
+            write_number(text, ((const double *)array)[i * row->width + k]);
+        }
+        text_add(text, "]");
+    }
+}
+
+static void write_list(Text *text, const YamlField *row, const void *scene)
+{
+    const void *member = row_member(row, scene);
+    int count = row->count_offset ? *row_count(row, scene) : row->width;
+    const void *array = row->count_offset ? *(void *const *)member : member;
+    text_add(text, "[");
+    for (int i = 0; i < count; i++) {
+        if (i) text_add(text, ", ");
+        write_entry(text, row, array, i);
+    }
+    text_add(text, "]\n");
+}
+
+/* Lists and maps of tables, one entry below the other. */
+static void write_tables(Text *text, const YamlField *row, const void *scene, int depth)
+{
+    const char *array = *(char *const *)row_member(row, scene);
+    int count = *row_count(row, scene);
+    text_add(text, count ? "\n" : row->kind == FIELD_MAP ? "{}\n" : "[]\n");
+    for (int i = 0; i < count; i++) {
+        const char *entry = array + (size_t)i * row->size;
+        text_indent(text, depth);
+        if (row->kind == FIELD_MAP) {
+            text_add_quoted(text, *(char *const *)entry);
+            text_add(text, ":\n");
+        } else {
+            text_add(text, "-\n");
+        }
+        write_table(text, row->table, entry, depth + 1);
+    }
+}
+
+static void write_row(Text *text, const YamlField *row, const void *scene, int depth)
+{
+    const void *member = row_member(row, scene);
+    text_indent(text, depth);
+    text_add(text, "%s: ", row->key);
+    switch (row->kind) {
+    case FIELD_NUMBER: write_number(text, *(const double *)member); break;
+    case FIELD_INTEGER: text_add(text, "%d", *(const int *)member); break;
+    case FIELD_BOOL: text_add(text, "true"); break;
+    case FIELD_CHOICE: text_add(text, "%s", row->choices[*(const int *)member]); break;
+    case FIELD_TEXT:
+    case FIELD_FILE: text_add_quoted(text, *(char *const *)member); break;
+    case FIELD_TABLE:
+    case FIELD_OPTIONAL:
+        text_add(text, "\n");
+        write_table(text, row->table, row->kind == FIELD_TABLE ? member : *(void *const *)member, depth + 1);
+        return;
+    case FIELD_LIST:
+    case FIELD_MAP: write_tables(text, row, scene, depth + 1); return;
+    default: write_list(text, row, scene); return;
+    }
+    text_add(text, "\n");
+}
+
+/* A table in which nothing is given is written as {}, because YAML reads nothing as a null. */
+static void write_table(Text *text, const YamlTable *table, const void *scene, int depth)
+{
+    int written = 0;
+    for (const YamlField *row = table->fields; row->key; row++) {
+        if (!row_is_given(row, scene)) continue;
+        write_row(text, row, scene, depth);
+        written++;
+    }
+    if (written) return;
+    text_indent(text, depth);
+    text_add(text, "{}\n");
+}
+
+char *yaml_write(const YamlTable *table, const void *scene)
+{
+    Text text = {0};
+    text_add(&text, "slender: 1\n");
+    write_table(&text, table, scene, 0);
+    return text.text;
+}
+
+/* ---- Comparison ----------------------------------------------------------------------------------------- */
+
+static bool is_below(const char *path, const char *const *ignored)
+{
+    for (; ignored && *ignored; ignored++) {
+        size_t length = strlen(*ignored);
+        if (!strncmp(path, *ignored, length) && (!path[length] || strchr(".[", path[length]))) return true;
+    }
+    return false;
+}
+
+static char *difference(const Node *a, const Node *b, const char *path, const char *const *ignored);
+
+static char *map_difference(const Node *a, const Node *b, const char *path, const char *const *ignored, bool both_ways)
+{
+    char *found = NULL;
+    for (int i = 0; !found && i < a->count; i++) {
+        char *below = mem_format("%s%s%s", path, *path ? "." : "", a->keys[i]);
+        const Node *other = node_find(b, a->keys[i]);
+        if (!other && !is_below(below, ignored)) found = mem_text(below);
+        if (other && both_ways) found = difference(a->items[i], other, below, ignored);
+        mem_free(below);
+    }
+    return found;
+}
+
+static char *list_difference(const Node *a, const Node *b, const char *path, const char *const *ignored)
+{
+    char *found = NULL;
+    for (int i = 0; !found && i < a->count; i++) {
+        char *below = mem_format("%s[%d]", path, i);
+        found = difference(a->items[i], b->items[i], below, ignored);
+        mem_free(below);
+    }
+    return found;
+}
+
+static char *difference(const Node *a, const Node *b, const char *path, const char *const *ignored)
+{
+    if (is_below(path, ignored)) return NULL;
+    if (a->kind == NODE_MAP && b->kind == NODE_MAP) {
+        char *found = map_difference(a, b, path, ignored, true);
+        return found ? found : map_difference(b, a, path, ignored, false);
+    }
+    if (a->kind == NODE_LIST && b->kind == NODE_LIST && a->count == b->count) return list_difference(a, b, path, ignored);
+    if (a->kind == NODE_SCALAR && b->kind == NODE_SCALAR && !strcmp(a->text, b->text)) return NULL;
+    return mem_text(*path ? path : "the scene");
+}
+
+char *yaml_difference(const char *scene, const char *other, const char *const *ignored)
+{
+    YamlFile *a = yaml_parse("scene", scene, strlen(scene)), *b = yaml_parse("scene", other, strlen(other));
+    char *found = a->root && b->root ? difference(a->root, b->root, "", ignored) : mem_text("the scene");
+    yaml_destroy(a);
+    yaml_destroy(b);
+    return found;
+}
