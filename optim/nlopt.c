@@ -5,6 +5,7 @@
 #include "optim/best.h"
 #include <math.h>
 #include <nlopt.h>
+#include <stdio.h>
 #include <string.h>
 
 typedef struct Run {
@@ -43,4 +44,13 @@ void nlopt_run(Best *best, double *u)
     nlopt_destroy(run.opt);
     mem_free(run.gradient);
     if (!best_is_done(best)) best->info.status = OPTIMISER_STALLED;
+}
+
+const char *optimiser_nlopt_version(void)
+{
+    static _Thread_local char text[32];
+    int major, minor, bugfix;
+    nlopt_version(&major, &minor, &bugfix);
+    snprintf(text, sizeof text, "%d.%d.%d", major, minor, bugfix);
+    return text;
 }

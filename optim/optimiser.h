@@ -57,3 +57,6 @@ typedef struct OptimiserInfo {
 OptimiserInfo optimise(const Problem *problem, const OptimiserDef *def, double *u);
 
 const char *optimiser_status_name(OptimiserStatus status);
+
+/* The linked NLopt's version, e.g. "2.7.1"; static text. */
+const char *optimiser_nlopt_version(void);

@@ -72,9 +72,9 @@ void static_design_destroy(StaticDesign *sd)
     mem_free(sd);
 }
 
-static Point point(const double *x, const double *p)
+static Point point(const LoadCase *load, const double *x, const double *p)
 {
-    return (Point){.x = x, .p = p};
+    return (Point){.x = x, .p = p, .time = load->time};
 }
 
 /* Leaves the factor of the best design in the system, shifted by nothing but the base. */
@@ -84,7 +84,7 @@ static bool factor_best(StaticDesign *sd, int c)
     const LoadCase *load = &sd->cases[c];
     if (work->factored_best) return true;
     system_memory_write(load->sys, work->best_memory);
-    Point at = point(work->best_linearised, work->best_p);
+    Point at = point(load, work->best_linearised, work->best_p);
     system_hessian(load->sys, &at, work->w);
     work->factored_best = system_factor(load->sys, 0);
     return work->factored_best;
@@ -93,7 +93,7 @@ static bool factor_best(StaticDesign *sd, int c)
 /* dx = -H^-1 (d2E/dx dp) dp at the best design. */
 static void tangent(StaticDesign *sd, int c, const double *dp, double *dx)
 {
-    Point at = point(sd->cases[c].x, sd->work[c].best_p);
+    Point at = point(&sd->cases[c], sd->cases[c].x, sd->work[c].best_p);
     system_param_forward(sd->cases[c].sys, &at, dp, dx);
     system_solve(sd->cases[c].sys, dx, dx);
     for (int i = 0; i < system_dof_count(sd->cases[c].sys); i++) dx[i] = -dx[i];
@@ -117,7 +117,7 @@ static void predict(StaticDesign *sd, int c)
     if (!work->has_best || !factor_best(sd, c)) return;
     for (int i = 0; i < sd->params->size; i++) work->dp[i] = work->p[i] - work->best_p[i];
     tangent(sd, c, work->dp, work->dx);
-    Point from = point(load->x, work->p), to = point(work->w, work->p);
+    Point from = point(load, load->x, work->p), to = point(load, work->w, work->p);
     for (int i = 0; i < dofs; i++) work->w[i] = load->x[i] + work->dx[i];
     Evaluation moved = system_energy(load->sys, &to);
     if (moved.finite && moved.energy < system_energy(load->sys, &from).energy)
@@ -151,9 +151,9 @@ static CaseInfo evaluate_case(StaticDesign *sd, int c, const double *u, bool wit
     predict(sd, c);
     system_memory_write(load->sys, work->best_memory);
     work->factored_best = false;
-    info.newton = newton_minimize(load->sys, &sd->def.newton, work->p, 0, work->x, observer);
+    info.newton = newton_minimize(load->sys, &sd->def.newton, work->p, load->time, work->x, observer);
     system_memory_read(load->sys, work->memory);
-    Point at = point(work->x, work->p);
+    Point at = point(load, work->x, work->p);
     if (info.newton.status == NEWTON_CONVERGED)
         info.objective = evaluate_objective(sd, c, &at, with_gradient ? work->dp : NULL);
     return info;
@@ -261,7 +261,7 @@ static void product_case(StaticDesign *sd, int c, const double *v)
         const Objective *objective = &load->objectives[k];
         objective->ops->product(objective->self, load->weight * objective->weight, work->dx, work->hp, work->w, work->dp);
     }
-    Point at = point(load->x, work->best_p);
+    Point at = point(load, load->x, work->best_p);
     adjoint(load->sys, &at, work->w, work->dp);
 }
 
@@ -274,7 +274,7 @@ void static_design_product(StaticDesign *sd, const double *v, double *out)
 
 void static_design_param_gradient(StaticDesign *sd, int load_case, double *dp)
 {
-    Point at = point(sd->cases[load_case].x, sd->work[load_case].best_p);
+    Point at = point(&sd->cases[load_case], sd->cases[load_case].x, sd->work[load_case].best_p);
     memset(dp, 0, (size_t)sd->params->size * sizeof *dp);
     if (factor_best(sd, load_case)) evaluate_objective(sd, load_case, &at, dp);
 }

@@ -18,7 +18,7 @@ typedef struct LoadCase {
     double *x; /* [dofs] equilibrium of the best design; at first, where to start from    */
     const Objective *objectives;
     int objective_count;
-    double weight;
+    double weight, time; /* s, of fields that vary */
 } LoadCase;
 
 typedef struct StaticDesign StaticDesign;

@@ -21,3 +21,8 @@ typedef struct Objective {
     void *self;
     double weight;
 } Objective;
+
+static inline void objective_destroy(Objective objective)
+{
+    if (objective.ops->destroy) objective.ops->destroy(objective.self);
+}

@@ -1,0 +1,9 @@
+#include "cli/job.h"
+
+const char *const job_names[] = {"equilibrium", "evaluate", "design", NULL};
+
+RunStatus job_run(Run *run, Error *err)
+{
+    static RunStatus (*const jobs[])(Run *, Error *) = {job_equilibrium, job_evaluate, job_design};
+    return jobs[run->scene->job](run, err);
+}

@@ -1,0 +1,16 @@
+/* job.h - what a scene may ask for, one row each. */
+#pragma once
+#include "cli/run.h"
+
+typedef enum JobKind { JOB_EQUILIBRIUM, JOB_EVALUATE, JOB_DESIGN } JobKind;
+
+extern const char *const job_names[]; /* by JobKind, NULL-terminated: the choices of the scene's key `job` */
+
+/* Runs the scene's job: everything it acknowledges goes into the journal, its final arrays too. On RUN_CANNOT_WRITE err
+ * says why. */
+RunStatus job_run(Run *run, Error *err);
+
+/* The rows, each in its own file. */
+RunStatus job_equilibrium(Run *run, Error *err);
+RunStatus job_evaluate(Run *run, Error *err);
+RunStatus job_design(Run *run, Error *err);

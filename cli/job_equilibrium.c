@@ -1,0 +1,106 @@
+/* Equilibria of all cases, and of the stages of a sequence, each from the one before. */
+#include "base/memory.h"
+#include "cli/job.h"
+#include "solve/ramp.h"
+#include <string.h>
+
+typedef struct Mover {
+    const Model *model;
+    double time;
+    Error *err;
+    bool failed;
+} Mover;
+
+static bool move(void *self, double part, double *x)
+{
+    Mover *mover = self;
+    mover->failed = !model_move(mover->model, mover->time, part, x, mover->err);
+    return !mover->failed;
+}
+
+static RampInfo solve_stage(Run *run, const ModelCase *c, int stage, double *x)
+{
+    Mover mover = {.model = run->model, .time = c->stages[stage].time};
+    RampDef def = ramp_default();
+    def.newton = run_newton(run);
+    def.observer = run_observer(run);
+    if (run->scene->load_steps.mode < 0) def.steps = run->scene->load_steps.count;
+    if (run->model->motion_count) def.move = move, def.self = &mover;
+    const double *from = stage > 0 ? c->stages[stage - 1].p : NULL;
+    return ramp_solve(c->sys, &run->model->shell->params, &def, from, c->stages[stage].p, c->stages[stage].time, x);
+}
+
+/* What a resumed run needs: x and what the terms remember after each stage. */
+static bool put_progress(Run *run, int frame, const State *state, double *memory, Error *err)
+{
+    System *sys = state->load_case->sys;
+    double status = state->status;
+    system_memory_read(sys, memory);
+    return run_put_state(run, frame, "x", state->x, (size_t)system_dof_count(sys), err) &&
+           run_put_state(run, frame, "memory", memory, (size_t)system_memory_count(sys), err) &&
+           run_put_frame(run, frame, state, frame == 0, err) &&
+           run_put_state(run, frame, "status", &status, 1, err);
+}
+
+static bool get_progress(Run *run, int frame, State *state, double *x, double *memory)
+{
+    System *sys = state->load_case->sys;
+    double status;
+    if (!run_get_state(run, frame, "status", &status, 1) ||
+        !run_get_state(run, frame, "x", x, (size_t)system_dof_count(sys)) ||
+        !run_get_state(run, frame, "memory", memory, (size_t)system_memory_count(sys)))
+        return false;
+    system_memory_write(sys, memory);
+    state->status = (NewtonStatus)status;
+    return true;
+}
+
+static int total_stages(const Model *model)
+{
+    int total = 0;
+    for (int c = 0; c < model->case_count; c++) total += model->cases[c].stage_count;
+    return total;
+}
+
+/* One case, its stages from frame number *frame on. False where err has to be said. */
+static bool solve_case(Run *run, ModelCase *c, State *state, int *frame, bool *interrupted, Error *err)
+{
+    double *memory = mem_alloc((size_t)system_memory_count(c->sys), sizeof *memory);
+    bool ok = true;
+    int total = total_stages(run->model);
+    NewtonStatus worst = NEWTON_CONVERGED;
+    for (int s = 0; ok && !*interrupted && s < c->stage_count; s++, (*frame)++) {
+        *state = (State){c, c->stages[s].p, c->x, c->stages[s].time, NEWTON_CONVERGED};
+        if (!get_progress(run, *frame, state, c->x, memory)) {
+            RampInfo info = solve_stage(run, c, s, c->x);
+            state->status = info.newton.status;
+            *interrupted = info.newton.status == NEWTON_STOPPED;
+            if (*interrupted) break;
+            progress_step(run->progress, *frame + 1, total, "%s: %s, %d Newton iterations in %d load steps", c->name,
+                          newton_status_name(state->status), info.newton.iterations, info.steps + info.refused);
+            ok = put_progress(run, *frame, state, memory, err);
+        }
+        if (state->status > worst) worst = state->status;
+    }
+    if (!*interrupted) state->status = worst;
+    mem_free(memory);
+    return ok;
+}
+
+RunStatus job_equilibrium(Run *run, Error *err)
+{
+    Model *model = run->model;
+    State *states = mem_alloc((size_t)model->case_count, sizeof *states);
+    NewtonStatus worst = NEWTON_CONVERGED;
+    bool ok = true, interrupted = false;
+    int frame = 0, done = 0;
+    for (; ok && !interrupted && done < model->case_count; done++) {
+        ok = solve_case(run, &model->cases[done], &states[done], &frame, &interrupted, err);
+        if (states[done].status > worst) worst = states[done].status;
+    }
+    if (ok) ok = run_put_final(run, states, done, interrupted ? "interrupted" : newton_status_name(worst), err);
+    if (ok && !interrupted && worst != NEWTON_CONVERGED) progress_say(run->progress, "%s", newton_status_text(worst));
+    mem_free(states);
+    if (!ok) return RUN_CANNOT_WRITE;
+    return interrupted ? RUN_INTERRUPTED : worst == NEWTON_CONVERGED ? RUN_DONE : RUN_NOT_CONVERGED;
+}

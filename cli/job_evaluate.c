@@ -1,0 +1,56 @@
+/* Energies, forces and stability of a given pose: positions stay, only edge angles are relaxed. */
+#include "base/memory.h"
+#include "cli/job.h"
+#include "solve/eigen.h"
+#include <string.h>
+
+/* Edge angles of the pose, with all positions held. */
+static NewtonStatus relax_angles(Run *run, ModelCase *c)
+{
+    Shell *shell = run->model->shell;
+    size_t positions = 3 * (size_t)shell->mesh->vertex_count;
+    bool *fixed = mem_copy(shell->fixed, positions, sizeof *fixed);
+    for (size_t i = 0; i < positions; i++) shell->fixed[i] = true;
+    System *held = shell_system(shell);
+    memcpy(shell->fixed, fixed, positions * sizeof *fixed);
+    mem_free(fixed);
+    NewtonStatus status = NEWTON_CONVERGED;
+    NewtonDef def = run_newton(run);
+    Point at = {.x = c->x, .p = c->stages[0].p, .time = c->stages[0].time};
+    system_accept(held, &at);
+    if (system_free_count(held)) status = newton_minimize(held, &def, at.p, at.time, c->x, NULL).status;
+    system_destroy(held);
+    system_accept(c->sys, &at);
+    return status;
+}
+
+/* The body may move: is the pose stable, whether or not it is an equilibrium? */
+static NewtonStatus stability(const ModelCase *c)
+{
+    Point at = {.x = c->x, .p = c->stages[0].p, .time = c->stages[0].time};
+    double lowest;
+    if (!system_free_count(c->sys)) return NEWTON_CONVERGED;
+    if (!eigen_lowest(c->sys, &at, 1, &lowest, NULL)) return NEWTON_NOT_FINITE;
+    return lowest < 0 ? NEWTON_SADDLE : NEWTON_CONVERGED;
+}
+
+RunStatus job_evaluate(Run *run, Error *err)
+{
+    Model *model = run->model;
+    State *states = mem_alloc((size_t)model->case_count, sizeof *states);
+    NewtonStatus worst = NEWTON_CONVERGED;
+    bool ok = true;
+    for (int k = 0; ok && k < model->case_count; k++) {
+        ModelCase *c = &model->cases[k];
+        NewtonStatus relaxed = relax_angles(run, c);
+        if (relaxed > worst) worst = relaxed;
+        states[k] = (State){c, c->stages[0].p, c->x, c->stages[0].time, stability(c)};
+        ok = run_put_frame(run, k, &states[k], k == 0, err);
+        progress_step(run->progress, k + 1, model->case_count, "%s: %s", c->name,
+                      states[k].status == NEWTON_CONVERGED ? "stable" : "unstable");
+    }
+    ok = ok && run_put_final(run, states, model->case_count, worst == NEWTON_CONVERGED ? "evaluated" : newton_status_name(worst), err);
+    mem_free(states);
+    if (!ok) return RUN_CANNOT_WRITE;
+    return worst == NEWTON_CONVERGED ? RUN_DONE : RUN_NOT_CONVERGED;
+}

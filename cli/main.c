@@ -1,0 +1,56 @@
+/* slender - simulates and designs slender things: the verbs, and what they return. */
+#include "base/memory.h"
+#include "cli/verb.h"
+#include <stdio.h>
+#include <string.h>
+
+static int verb_help(int argc, char **argv);
+static int verb_version(int argc, char **argv);
+
+static const struct {
+    const char *name;
+    int (*run)(int argc, char **argv);
+    const char *doc;
+} verbs[] = {
+    {"run", verb_run, "run a scene file and write its result"},
+    {"check", verb_check, "check a scene file: what it says, and how long it may take"},
+    {"info", verb_info, "say what is in a result or a running job"},
+    {"export", verb_export, "CSV of a dataset, OBJ of a frame, or the result of a running job"},
+    {"picture", verb_picture, "draw a result: PNG, SVG or PDF"},
+    {"schema", verb_schema, "JSON Schema, or the manual, of scene files"},
+    {"mesh", verb_mesh, "write a scene's mesh as OBJ"},
+    {"help", verb_help, "say this"},
+    {"version", verb_version, "name the program and the libraries that it found"},
+};
+
+enum { VERB_COUNT = sizeof verbs / sizeof *verbs };
+
+static int verb_help(int argc, char **argv)
+{
+    (void)argc, (void)argv;
+    printf("slender simulates and designs magnetised thin shells.\n\n");
+    for (int k = 0; k < VERB_COUNT; k++) printf("  slender %-8s  %s\n", verbs[k].name, verbs[k].doc);
+    printf("\nEach verb explains its options: slender run --help\n"
+           "Exit codes: 0 done; 1 computed but did not converge; 2 usage; 3 scene or mesh refused; 4 cannot write;\n"
+           "75 interrupted, state saved: run again with --resume\n");
+    return RUN_DONE;
+}
+
+static int verb_version(int argc, char **argv)
+{
+    (void)argc, (void)argv;
+    char *text = run_versions();
+    fputs(text, stdout);
+    mem_free(text);
+    return RUN_DONE;
+}
+
+int main(int argc, char **argv)
+{
+    const char *name = argc > 1 ? argv[1] : "help";
+    if (!strncmp(name, "--", 2)) name += 2;
+    for (int k = 0; k < VERB_COUNT; k++)
+        if (!strcmp(name, verbs[k].name)) return verbs[k].run(argc - 1, argv + 1);
+    fprintf(stderr, "slender: there is no verb '%s'; slender help lists them\n", name);
+    return RUN_USAGE;
+}

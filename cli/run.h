@@ -1,0 +1,52 @@
+/* run.h - a job on its way: model, journal, progress and interruption. */
+#pragma once
+#include "cli/model.h"
+#include "cli/progress.h"
+#include "io/journal.h"
+#include "solve/newton.h"
+
+/* Exit codes of `slender run`. */
+typedef enum RunStatus {
+    RUN_DONE = 0,
+    RUN_NOT_CONVERGED = 1, /* computed, and said so in the result */
+    RUN_USAGE = 2,
+    RUN_REFUSED = 3,       /* scene or mesh */
+    RUN_CANNOT_WRITE = 4,
+    RUN_INTERRUPTED = 75,  /* state saved: go on with --resume */
+} RunStatus;
+
+typedef struct Run {
+    const Scene *scene;
+    Model *model;
+    Journal *journal;
+    Progress *progress;
+    int threads;
+} Run;
+
+/* The program and the libraries that it runs with, a line each. The caller frees. */
+char *run_versions(void);
+
+/* Stops a solve after an interruption (progress.h). */
+NewtonObserver run_observer(Run *run);
+
+/* Tolerances of the scene. */
+NewtonDef run_newton(const Run *run);
+
+/* One state to be shown or stored: x[dofs] in equilibrium with p[params] of a case. */
+typedef struct State {
+    const ModelCase *load_case;
+    const double *p, *x;
+    double time;
+    NewtonStatus status;
+} State;
+
+/* A frame of the result. Values per face that are those of the frame before are left out unless `whole`. */
+bool run_put_frame(Run *run, int index, const State *state, bool whole, Error *err);
+
+/* final/.. and cases/<name>/..; the plain paths are those of the last state. */
+bool run_put_final(Run *run, const State *states, int count, const char *status, Error *err);
+
+/* What a job goes on from, under the kind "state": a vector of numbers by name. Getting is false where it is not there or
+ * has another length. */
+bool run_put_state(Run *run, int index, const char *name, const double *values, size_t count, Error *err);
+bool run_get_state(Run *run, int index, const char *name, double *values, size_t count);

@@ -1,0 +1,220 @@
+/* scene.h - what a scene file says, as plain structs; scene_table is their field table (io/yaml.h) and so the list of
+ * all keys. Nothing here is resolved yet: files are not read, groups not looked up (build.h does that).
+ *
+ * Numbers are SI; an absent number is NAN, an absent choice -1, an absent list or table NULL (YamlKind). */
+#pragma once
+#include "io/yaml.h"
+
+/* ---- Values over faces, edges or space ------------------------------------------------------------------ */
+
+/* Helper of a formula: where: {a: "atan2(y, x)"} */
+typedef struct WhereScene {
+    char *name, *formula;
+} WhereScene;
+
+typedef struct NumberGroup {
+    char *group;
+    double value;
+} NumberGroup;
+
+/* One number per face or edge. */
+typedef struct NumberScene {
+    double value;
+    char *file, *formula;
+    WhereScene *where;
+    NumberGroup *groups;
+    double other; /* outside all groups */
+    int where_count, groups_count;
+} NumberScene;
+
+typedef struct VectorGroup {
+    char *group;
+    double value[3];
+} VectorGroup;
+
+/* One vector per face. */
+typedef struct VectorScene {
+    double value[3];
+    char *file, **formula;
+    WhereScene *where;
+    VectorGroup *groups;
+    double other[3];
+    int formula_count, where_count, groups_count;
+} VectorScene;
+
+typedef struct DipoleScene {
+    double at[3], moment[3];
+} DipoleScene;
+
+typedef struct MagnetScene {
+    double at[3], remanence[3], volume;
+} MagnetScene;
+
+typedef struct FluxScene {
+    double value[3];
+    char **formula;
+    WhereScene *where;
+    DipoleScene *dipole;
+    MagnetScene *magnet;
+    int formula_count, where_count;
+} FluxScene;
+
+/* ---- The shell ------------------------------------------------------------------------------------------ */
+
+typedef enum MeshShape { MESH_SHEET, MESH_STRIP, MESH_HEXAGRAM, MESH_DISC } MeshShape;
+
+typedef struct MeshScene {
+    char *file;
+    int shape;    /* MeshShape */
+    double *size; /* one or two lengths */
+    int *cells, n, pattern, size_count, cells_count;
+    double scale, weld;
+} MeshScene;
+
+typedef struct PoseScene {
+    char *file;
+} PoseScene;
+
+typedef struct ShellScene {
+    MeshScene mesh;
+    PoseScene *pose;
+    double thickness, poisson, density, gravity[3];
+    NumberScene young, fold;
+    VectorScene magnetization;
+    int bending; /* BendingModel */
+} ShellScene;
+
+typedef struct BallScene {
+    double center[3], radius;
+} BallScene;
+
+/* Members of every entry that means some vertices. */
+#define SELECTION_MEMBERS                                                                                      \
+    int *vertices;                                                                                             \
+    double (*box)[3];                                                                                          \
+    BallScene *ball;                                                                                           \
+    char *group;                                                                                               \
+    bool boundary;                                                                                             \
+    int vertices_count, box_count
+
+typedef struct SelectionScene {
+    SELECTION_MEMBERS;
+} SelectionScene;
+
+typedef struct FixScene {
+    SELECTION_MEMBERS;
+    char *axes, **move;
+    bool clamp;
+    int move_count;
+} FixScene;
+
+typedef struct LoadScene {
+    double force[3], line[3], area[3]; /* one of them */
+    SelectionScene *on;
+} LoadScene;
+
+/* ---- Load cases ----------------------------------------------------------------------------------------- */
+
+typedef struct TargetScene {
+    char *file, *height_map, **formula;
+    double (*strokes)[4], width, height;
+    WhereScene *where;
+    SelectionScene *on;
+    int formula_count, strokes_count, where_count;
+} TargetScene;
+
+typedef struct CaseScene {
+    char *name;
+    double weight, gravity[3];
+    FluxScene *flux_density;
+    LoadScene *loads;
+    TargetScene *target;
+    int loads_count;
+} CaseScene;
+
+/* One stage of a sequence; what it does not say stays as in the stage before. */
+typedef struct StageScene {
+    double gravity[3], time;
+    FluxScene *flux_density;
+    LoadScene *loads;
+    int loads_count;
+} StageScene;
+
+/* ---- Design --------------------------------------------------------------------------------------------- */
+
+typedef enum UnknownPer { PER_FACE, PER_GROUP } UnknownPer; /* young, magnetization */
+
+typedef enum UnknownScale { SCALE_LOG, SCALE_LINEAR } UnknownScale;
+
+typedef struct NumberUnknown {
+    double bounds[2], noise;
+    int scale; /* UnknownScale */
+    int per;
+    NumberScene *start;
+} NumberUnknown;
+
+typedef struct VectorUnknown {
+    double bounds[2], noise, scale, magnitude, max_magnitude;
+    int per;
+    VectorScene *start;
+} VectorUnknown;
+
+typedef struct FluxUnknown {
+    double bounds[2], noise, scale;
+} FluxUnknown;
+
+typedef struct UnknownsScene {
+    VectorUnknown *magnetization;
+    NumberUnknown *young, *fold;
+    FluxUnknown *flux_density;
+} UnknownsScene;
+
+typedef struct ObjectiveScene {
+    double target, height, magnetization_smoothness; /* weights; one of them */
+    char *of;                                        /* height: a group, or all */
+} ObjectiveScene;
+
+typedef struct DesignScene {
+    UnknownsScene unknowns;
+    ObjectiveScene *objectives;
+    int objectives_count, optimizer, iterations, seed;
+    double tolerance;
+} DesignScene;
+
+/* ---- The whole ------------------------------------------------------------------------------------------ */
+
+typedef struct SolverScene {
+    int max_iterations;
+    double step_tolerance, force_tolerance;
+} SolverScene;
+
+/* auto, or a number */
+typedef struct LoadStepsScene {
+    int mode, count; /* mode 0: auto */
+} LoadStepsScene;
+
+typedef struct OutputScene {
+    int every, precision;
+} OutputScene;
+
+enum { OUTPUT_SINGLE, OUTPUT_DOUBLE };
+
+typedef struct Scene {
+    int job; /* row of job_rows (job.h) */
+    ShellScene shell;
+    FluxScene flux_density;
+    FixScene *fix;
+    LoadScene *loads;
+    TargetScene *target;
+    CaseScene *cases;
+    StageScene *sequence;
+    DesignScene *design;
+    SolverScene solver;
+    LoadStepsScene load_steps;
+    double time; /* of formulas in statics */
+    int modes;
+    OutputScene output;
+    int fix_count, loads_count, cases_count, sequence_count;
+} Scene;
+
+extern const YamlTable scene_table;

@@ -1,0 +1,243 @@
+#include "cli/show.h"
+#include "base/memory.h"
+#include "base/vec3.h"
+#include "io/result.h"
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { PANELS_MAX = 12, KEPT_MAX = 128 };
+
+/* Everything that a page borrows, freed at the end. */
+typedef struct Show {
+    Result *result;
+    const ShowDef *def;
+    int vertex_count, face_count;
+    const int (*faces)[3];
+    const double (*rest)[3], (*magnetization)[3];
+    char *field;
+    char names[PANELS_MAX][128], notes[PANELS_MAX][64];
+    PicturePanel panels[PANELS_MAX];
+    int panel_count, kept_count;
+    Array kept[KEPT_MAX];
+    void *blocks[KEPT_MAX];
+    int block_count;
+} Show;
+
+ShowDef show_default(void)
+{
+    return (ShowDef){.frame = -1, .arrows = true, .history = true, .width = 1600};
+}
+
+static void *block(Show *show, size_t count, size_t size)
+{
+    return show->blocks[show->block_count++] = mem_alloc(count, size);
+}
+
+static void *keep(Show *show, Array array)
+{
+    show->kept[show->kept_count++] = array;
+    return (void *)array.data;
+}
+
+/* A dataset of this many numbers; NULL where there is none. */
+static void *dataset(Show *show, const char *path, ArrayType type, size_t count)
+{
+    Array array;
+    if (!result_has(show->result, path) || !result_read(show->result, path, &array, NULL)) return NULL;
+    if (array.type == type && array_count(&array) == count) return keep(show, array);
+    array_clear(&array);
+    return NULL;
+}
+
+static bool read_mesh(Show *show, Error *err)
+{
+    Array faces, rest;
+    if (!result_read(show->result, "slender/faces", &faces, err)) return false;
+    keep(show, faces);
+    if (!result_read(show->result, "slender/rest", &rest, err)) return false;
+    keep(show, rest);
+    if (faces.type != ARRAY_INT32 || rest.type != ARRAY_FLOAT64 || faces.rank != 2 || rest.rank != 2)
+        return error_set(err, "the result's mesh is not as slender writes it");
+    show->face_count = faces.dims[0];
+    show->vertex_count = rest.dims[0];
+    show->faces = (void *)faces.data;
+    show->rest = (void *)rest.data;
+    show->magnetization = dataset(show, "slender/design/magnetization", ARRAY_FLOAT64, 3 * (size_t)show->face_count);
+    return true;
+}
+
+/* ---- What is drawn on the faces ------------------------------------------------------------------------- */
+
+typedef struct Edges {
+    Vec3 e1, e2, n;
+} Edges;
+
+static Edges face_edges(const Show *show, const double (*x)[3], int face)
+{
+    const int *v = show->faces[face];
+    Vec3 x0 = vec3_load(x[v[0]]), e1 = vec3_sub(vec3_load(x[v[1]]), x0), e2 = vec3_sub(vec3_load(x[v[2]]), x0);
+    return (Edges){e1, e2, vec3_unit(vec3_cross(e1, e2))};
+}
+
+/* Magnetisation as the faces carry it: M = a e1 + b e2 + c n at rest is a e1' + b e2' + c n' now. */
+static const double (*carried(Show *show, const double (*x)[3], const double (*M)[3]))[3]
+{
+    double (*vectors)[3] = block(show, (size_t)show->face_count, sizeof *vectors);
+    for (int f = 0; f < show->face_count; f++) {
+        Edges rest = face_edges(show, show->rest, f), now = face_edges(show, x, f);
+        Vec3 m = vec3_load(M[f]);
+        double e11 = vec3_dot(rest.e1, rest.e1), e12 = vec3_dot(rest.e1, rest.e2), e22 = vec3_dot(rest.e2, rest.e2);
+        double m1 = vec3_dot(rest.e1, m), m2 = vec3_dot(rest.e2, m), det = e11 * e22 - e12 * e12;
+        double a = (e22 * m1 - e12 * m2) / det, b = (e11 * m2 - e12 * m1) / det;
+        Vec3 turned = vec3_scale(vec3_dot(rest.n, m), now.n);
+        vec3_store(vectors[f], vec3_axpy(a, now.e1, vec3_axpy(b, now.e2, turned)));
+    }
+    return (const double (*)[3])vectors;
+}
+
+static bool varies(const double *values, int count)
+{
+    for (int f = 1; values && f < count; f++)
+        if (fabs(values[f] - values[0]) > 1e-9 * fabs(values[0])) return true;
+    return false;
+}
+
+static const double *lengths(Show *show, const double (*vectors)[3])
+{
+    double *r = block(show, (size_t)show->face_count, sizeof *r);
+    for (int f = 0; f < show->face_count; f++) r[f] = vec3_length(vec3_load(vectors[f]));
+    return r;
+}
+
+/* Numbers per face of the field that was asked for; NULL: a plain surface. False where there is no such field. */
+static bool face_field(Show *show, int step, const double **values, const char **name, const char **unit, Error *err)
+{
+    const double *young = dataset(show, "slender/design/young", ARRAY_FLOAT64, (size_t)show->face_count);
+    const char *asked = show->def->field;
+    *values = NULL;
+    if (!asked) asked = varies(young, show->face_count) ? "young" : show->magnetization ? "magnetization" : "none";
+    *name = asked, *unit = "";
+    if (!strcmp(asked, "none")) return true;
+    if (!strcmp(asked, "young") && young) return *values = young, *unit = "Pa", true;
+    if (!strcmp(asked, "magnetization") && show->magnetization)
+        return *values = lengths(show, show->magnetization), *unit = "A/m", true;
+    Array array;
+    char path[160];
+    snprintf(path, sizeof path, "CellData/%.120s", asked);
+    int steps = result_step_count(show->result);
+    if (!result_read_step(show->result, path, step < 0 ? steps - 1 : step, &array, err)) return false;
+    *values = keep(show, array);
+    *unit = array.unit && array.unit[0] ? array.unit : "";
+    if (array_count(&array) != (size_t)show->face_count) return error_set(err, "'%s' is not one number per face", asked);
+    return true;
+}
+
+/* ---- Panels --------------------------------------------------------------------------------------------- */
+
+static bool add_panel(Show *show, const char *name, const double (*x)[3])
+{
+    if (show->panel_count == PANELS_MAX) return false;
+    PicturePanel *panel = &show->panels[show->panel_count];
+    snprintf(show->names[show->panel_count], sizeof show->names[0], "%s", name);
+    *panel = (PicturePanel){.name = show->names[show->panel_count], .x = x};
+    if (show->def->arrows && show->magnetization) panel->vectors = carried(show, x, show->magnetization);
+    show->panel_count++;
+    return true;
+}
+
+static bool add_frame(Show *show, int frame, Error *err)
+{
+    Array array;
+    if (frame >= result_step_count(show->result))
+        return error_set(err, "the result has %d frames, from 0", result_step_count(show->result));
+    if (!result_read_step(show->result, "Points", frame, &array, err)) return false;
+    char name[32];
+    snprintf(name, sizeof name, "frame %d", frame);
+    add_panel(show, name, keep(show, array));
+    return true;
+}
+
+static void add_case(Show *show, const char *name)
+{
+    char path[256];
+    size_t count = 3 * (size_t)show->vertex_count;
+    snprintf(path, sizeof path, "slender/cases/%.200s/x", name);
+    const double (*x)[3] = dataset(show, path, ARRAY_FLOAT64, count);
+    int k = show->panel_count;
+    if (!x || !add_panel(show, name, x)) return;
+    snprintf(path, sizeof path, "slender/cases/%.200s/target", name);
+    show->panels[k].target = dataset(show, path, ARRAY_FLOAT64, count);
+    snprintf(path, sizeof path, "slender/cases/%.200s/flux_density", name);
+    const double *flux = dataset(show, path, ARRAY_FLOAT64, 3);
+    if (flux && vec3_length(vec3_load(flux)) > 0) show->panels[k].flux_density = flux;
+    Array status;
+    snprintf(path, sizeof path, "slender/cases/%.200s/status", name);
+    if (result_read(show->result, path, &status, NULL)) {
+        snprintf(show->notes[k], sizeof show->notes[0], "%s", (const char *)status.data);
+        show->panels[k].note = show->notes[k];
+        array_clear(&status);
+    }
+}
+
+/* The cases in the scene's order, or the one asked for. */
+static bool add_cases(Show *show, Error *err)
+{
+    Array names;
+    if (!result_has(show->result, "slender/case_names")) return error_set(err, "the result has no state yet");
+    if (!result_read(show->result, "slender/case_names", &names, err)) return false;
+    char *rest = NULL;
+    for (char *name = strtok_r((char *)names.data, "\n", &rest); name; name = strtok_r(NULL, "\n", &rest))
+        if (!show->def->only || !strcmp(show->def->only, name)) add_case(show, name);
+    array_clear(&names);
+    if (show->panel_count == 0) return error_set(err, "the result has no load case '%s'", show->def->only ? show->def->only : "");
+    return true;
+}
+
+/* The colours, and what the arrows are. */
+static bool dress(Show *show, PictureScene *page, Error *err)
+{
+    const double *values;
+    if (!face_field(show, show->def->frame, &values, &page->field_name, &page->field_unit, err)) return false;
+    page->vectors_name = "magnetization", page->vectors_unit = "A/m";
+    for (int k = 0; k < show->panel_count; k++) show->panels[k].field = values;
+    return true;
+}
+
+static bool write_page(Show *show, const char *result, const char *picture, Error *err)
+{
+    const ShowDef *def = show->def;
+    PictureScene page = picture_default();
+    if (!read_mesh(show, err)) return false;
+    if (!(def->frame >= 0 ? add_frame(show, def->frame, err) : add_cases(show, err))) return false;
+    if (!dress(show, &page, err)) return false;
+    const char *slash = strrchr(result, '/');
+    page.title = slash ? slash + 1 : result;
+    page.vertex_count = show->vertex_count, page.face_count = show->face_count, page.faces = show->faces;
+    page.panel_count = show->panel_count, page.panels = show->panels;
+    page.target = def->target, page.width = def->width;
+    memcpy(page.view, def->view, sizeof page.view);
+    Array history = {0};
+    ChartSeries series = {.name = "objective"};
+    Chart chart = {.x_label = "evaluation", .x_unit = "", .y_label = "objective", .y_unit = "m^2", .series_count = 1, .series = &series};
+    if (def->history && result_has(show->result, "slender/history/objective") &&
+        result_read(show->result, "slender/history/objective", &history, NULL)) {
+        keep(show, history);
+        series.count = (int)array_count(&history), series.y = history.data;
+        page.history = &chart;
+    }
+    return picture_write(picture, &page, err);
+}
+
+bool show_result(const char *result, const char *picture, const ShowDef *def, Error *err)
+{
+    Show *show = mem_alloc(1, sizeof *show);
+    show->def = def;
+    show->result = result_open(result, err);
+    bool ok = show->result && write_page(show, result, picture, err);
+    for (int k = 0; k < show->kept_count; k++) array_clear(&show->kept[k]);
+    for (int k = 0; k < show->block_count; k++) mem_free(show->blocks[k]);
+    result_close(show->result);
+    mem_free(show);
+    return ok;
+}

@@ -1,0 +1,55 @@
+#include "cli/verb.h"
+#include "base/memory.h"
+#include <stdio.h>
+#include <string.h>
+
+int verb_usage(const char *usage)
+{
+    fprintf(stderr, "usage: slender %s\n", usage);
+    return RUN_USAGE;
+}
+
+int verb_fail(int code, const char *sentence)
+{
+    fprintf(stderr, "slender: %s\n", sentence);
+    return code;
+}
+
+static void print_report(YamlFile *file)
+{
+    char *report = yaml_report(file);
+    fputs(report, stderr);
+    mem_free(report);
+}
+
+bool verb_load_scene(const char *path, char *const *set, int set_count, YamlFile **file, Scene *scene)
+{
+    *scene = (Scene){0};
+    *file = yaml_read(path);
+    for (int k = 0; k < set_count; k++) yaml_override(*file, set[k]);
+    if (yaml_load(*file, &scene_table, scene)) return true;
+    print_report(*file);
+    return false;
+}
+
+Model *verb_build_model(const Scene *scene, YamlFile *file)
+{
+    Model *model = model_create(scene, file);
+    if (!model) print_report(file);
+    for (int k = 0; model && k < model->report.warning_count; k++)
+        fprintf(stderr, "warning: %s\n", model->report.warnings[k]);
+    return model;
+}
+
+char *verb_base_name(const char *path)
+{
+    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path, *dot = strrchr(name, '.');
+    return mem_format("%.*s", (int)(dot && dot > name ? dot - name : (long)strlen(name)), name);
+}
+
+char *verb_without_ending(const char *path, const char *ending)
+{
+    size_t length = strlen(path), cut = strlen(ending);
+    bool has = length > cut && !strcmp(path + length - cut, ending);
+    return mem_format("%.*s", (int)(has ? length - cut : length), path);
+}

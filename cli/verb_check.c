@@ -1,0 +1,148 @@
+/* slender check: everything that can be said about a scene without running it. */
+#include "base/clock.h"
+#include "base/memory.h"
+#include "base/random.h"
+#include "base/vec3.h"
+#include "cli/job.h"
+#include "cli/verb.h"
+#include "solve/check.h"
+#include <getopt.h>
+#include <math.h>
+#include <stdio.h>
+
+static const char usage[] = "check SCENE [--set key=value].. [--derivatives]\n"
+                            "  Reads the scene and its files, says what they make and what one solve costs.\n"
+                            "  --derivatives  checks every term's gradient and Hessian on this scene by differences";
+
+enum { SET_MAX = 64 };
+
+static const double LARGE_BODY = 2;            /* m: most likely a mesh in millimetres          */
+static const double CELLS_PER_LENGTH = 3;      /* of the magnetic bending length, at least      */
+static const double DERIVATIVE_TOL = 1e-6;
+
+static double mean_edge(const Mesh *mesh)
+{
+    double sum = 0;
+    for (int e = 0; e < mesh->edge_count; e++)
+        sum += vec3_length(vec3_sub(vec3_load(mesh->rest[mesh->edges[e][0]]), vec3_load(mesh->rest[mesh->edges[e][1]])));
+    return sum / mesh->edge_count;
+}
+
+static void check_size(const Model *model)
+{
+    double size = mesh_diagonal(model->shell->mesh);
+    if (size > LARGE_BODY)
+        printf("warning: the body is %.3g m long; if its file is in millimetres, give the mesh `scale: 1.0e-3`\n", size);
+    if (model->shell->thickness > size / 5)
+        printf("warning: the thickness, %.3g m, is more than a fifth of the body's size, %.3g m: no thin shell\n",
+               model->shell->thickness, size);
+}
+
+/* Over a length h sqrt(Y/(12 M B)) a field bends the sheet by about a radian: cells must be smaller. */
+static void check_bending_length(const Model *model, const Scene *scene)
+{
+    const Shell *shell = model->shell;
+    double largest = 0, young = INFINITY, M_max = 0;
+    for (int c = 0; c < model->case_count; c++)
+        for (int s = 0; s < model->cases[c].stage_count; s++) {
+            const double *p = model->cases[c].stages[s].p;
+            double B = vec3_length(vec3_load(p + shell->flux_density));
+            for (int f = 0; f < shell->mesh->face_count; f++) {
+                M_max = fmax(M_max, vec3_length(vec3_load(p + shell->magnetization + 3 * f)));
+                young = fmin(young, p[shell->young + f]);
+            }
+            if (scene->job == JOB_DESIGN && scene->design->unknowns.magnetization)
+                M_max = fmax(M_max, scene->design->unknowns.magnetization->scale);
+            largest = fmax(largest, M_max * B);
+        }
+    if (!(largest > 0)) return;
+    double length = shell->thickness * sqrt(young / (12 * largest)), cell = mean_edge(shell->mesh);
+    printf("magnetic bending length: %.3g m, %.3g cells\n", length, length / cell);
+    if (length < CELLS_PER_LENGTH * cell)
+        printf("warning: fewer than %g cells over the magnetic bending length: the mesh is too coarse for this field\n", CELLS_PER_LENGTH);
+}
+
+/* One assembly and one factorisation, as they will be. */
+static void measure(const Model *model, const Scene *scene)
+{
+    const ModelCase *c = &model->cases[0];
+    double *gradient = mem_alloc((size_t)system_dof_count(c->sys), sizeof *gradient);
+    Point at = {.x = c->x, .p = c->stages[0].p, .time = c->stages[0].time};
+    double start = clock_seconds();
+    system_hessian(c->sys, &at, gradient);
+    bool stable = system_factor(c->sys, 0) || system_factor(c->sys, 1e-6);
+    double seconds = clock_seconds() - start;
+    SparseInfo info = system_info(c->sys);
+    printf("one Newton iteration: %.3g s, factor %.3g million numbers (%.3g MB)%s\n", seconds, 1e-6 * (double)info.factor_nonzeros,
+           8e-6 * (double)info.factor_nonzeros, stable ? "" : ", not stable at the start");
+    double solves = 0;
+    for (int k = 0; k < model->case_count; k++) solves += model->cases[k].stage_count;
+    if (scene->job == JOB_DESIGN) solves *= scene->design->iterations + 1;
+    double each = scene->job == JOB_DESIGN ? 6 : 20; /* Newton iterations, measured on the scenes */
+    printf("estimated: %.2g s, %.3g MB\n", solves * each * seconds,
+           model->case_count * 24e-6 * (double)info.factor_nonzeros + 2e-3 * shell_dof_count(model->shell));
+    mem_free(gradient);
+}
+
+/* Of the first case, near its start: moved by a tenth of an edge's length, angles by 0.3 rad. */
+static bool check_derivatives(const Model *model)
+{
+    const ModelCase *c = &model->cases[0];
+    int dofs = shell_dof_count(model->shell), positions = 3 * model->shell->mesh->vertex_count;
+    double edge = mean_edge(model->shell->mesh), dof_size[TERM_MAX_DOF], *x = mem_copy(c->x, (size_t)dofs, sizeof *x);
+    Random random = random_seed(1);
+    for (int i = 0; i < dofs; i++) x[i] += (i < positions ? 0.1 * edge : 0.3) * random_signed(&random);
+    for (int i = 0; i < TERM_MAX_DOF; i++) dof_size[i] = i < 18 ? edge : 1;
+    Point at = {.x = x, .p = c->stages[0].p, .time = c->stages[0].time};
+    bool ok = true;
+    system_accept(c->sys, &at);
+    for (int t = 0; t < system_term_count(c->sys); t++) {
+        const Term *term = system_term(c->sys, t);
+        TermError error = check_term(term, &model->shell->params, &at, dof_size, &random);
+        double worst = fmax(fmax(error.gradient, error.hessian), error.forward);
+        printf("derivatives of %-10s gradient %.1e  Hessian %.1e  parameters %.1e, adjoint %.1e%s\n", term->ops->name,
+               error.gradient, error.hessian, error.forward, error.adjoint, worst <= DERIVATIVE_TOL ? "" : "  WRONG");
+        ok = ok && worst <= DERIVATIVE_TOL;
+    }
+    mem_free(x);
+    return ok;
+}
+
+static bool report(const Model *model, const Scene *scene, bool derivatives)
+{
+    const Mesh *mesh = model->shell->mesh;
+    int held = 0;
+    for (int i = 0; i < 3 * mesh->vertex_count; i++) held += model->shell->fixed[i];
+    printf("%d vertices, %d faces, %d edges, %d parts; %d load cases; %d unknowns of motion, %d coordinates held\n",
+           mesh->vertex_count, mesh->face_count, mesh->edge_count, mesh->component_count, model->case_count,
+           system_free_count(model->cases[0].sys), held);
+    if (scene->job == JOB_DESIGN) printf("%d design unknowns\n", model->design.size);
+    if (system_base_shift(model->cases[0].sys) > 0) printf("the body has free rigid motions\n");
+    check_size(model);
+    check_bending_length(model, scene);
+    measure(model, scene);
+    return !derivatives || check_derivatives(model);
+}
+
+int verb_check(int argc, char **argv)
+{
+    enum { SET = 256, DERIVATIVES, HELP };
+    static const struct option table[] = {{"set", required_argument, NULL, SET}, {"derivatives", no_argument, NULL, DERIVATIVES},
+                                          {"help", no_argument, NULL, HELP}, {0}};
+    char *set[SET_MAX];
+    int set_count = 0, code = RUN_REFUSED;
+    bool derivatives = false;
+    for (int c; (c = getopt_long(argc, argv, "", table, NULL)) >= 0;)
+        if (c == SET && set_count < SET_MAX) set[set_count++] = optarg;
+        else if (c == DERIVATIVES) derivatives = true;
+        else return verb_usage(usage);
+    if (optind != argc - 1) return verb_usage(usage);
+    YamlFile *file;
+    Scene scene;
+    Model *model = verb_load_scene(argv[optind], set, set_count, &file, &scene) ? verb_build_model(&scene, file) : NULL;
+    if (model) code = report(model, &scene, derivatives) ? RUN_DONE : RUN_NOT_CONVERGED;
+    model_destroy(model);
+    yaml_clear(&scene_table, &scene);
+    yaml_destroy(file);
+    return code;
+}

@@ -1,0 +1,158 @@
+/* slender run: scene -> journal -> result and picture. */
+#include "base/memory.h"
+#include "cli/job.h"
+#include "cli/show.h"
+#include "cli/verb.h"
+#include "io/result.h"
+#include <getopt.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { SET_MAX = 64, THREADS_MAX = 64 };
+
+typedef struct RunOptions {
+    const char *scene, *output;
+    char *set[SET_MAX];
+    int set_count, threads;
+    bool resume, force, no_picture;
+    ProgressMode mode;
+} RunOptions;
+
+static const char usage[] =
+    "run SCENE [-o NAME] [--set key=value].. [--resume | --force] [--threads N] [--quiet | --log=json] [--no-picture]\n"
+    "  Writes NAME.vtkhdf and NAME.xdmf (the result), NAME.png (a picture) and NAME.run (the journal).\n"
+    "  -o NAME          default: the scene's name, here\n"
+    "  --set key=value  overrides a value of the scene: --set shell.thickness=1mm; may be repeated\n"
+    "  --resume         goes on with a run that was interrupted, or extends one that has finished\n"
+    "  --force          discards an unfinished run of that name\n"
+    "  --threads N      load cases at once; default: as many as there are processors\n"
+    "  --quiet          says nothing but errors; --log=json: one JSON object per line";
+
+static bool parse(int argc, char **argv, RunOptions *options)
+{
+    enum { SET = 256, RESUME, FORCE, THREADS, QUIET, LOG, NO_PICTURE, HELP };
+    static const struct option table[] = {
+        {"output", required_argument, NULL, 'o'}, {"set", required_argument, NULL, SET},
+        {"resume", no_argument, NULL, RESUME},    {"force", no_argument, NULL, FORCE},
+        {"threads", required_argument, NULL, THREADS}, {"quiet", no_argument, NULL, QUIET},
+        {"log", required_argument, NULL, LOG},    {"no-picture", no_argument, NULL, NO_PICTURE},
+        {"help", no_argument, NULL, HELP},        {0}};
+    options->threads = (int)sysconf(_SC_NPROCESSORS_ONLN);
+    for (int c; (c = getopt_long(argc, argv, "o:", table, NULL)) >= 0;) {
+        if (c == 'o') options->output = optarg;
+        else if (c == SET && options->set_count < SET_MAX) options->set[options->set_count++] = optarg;
+        else if (c == RESUME) options->resume = true;
+        else if (c == FORCE) options->force = true;
+        else if (c == THREADS) options->threads = atoi(optarg);
+        else if (c == QUIET) options->mode = PROGRESS_QUIET;
+        else if (c == LOG && !strcmp(optarg, "json")) options->mode = PROGRESS_JSON;
+        else if (c == NO_PICTURE) options->no_picture = true;
+        else return false;
+    }
+    options->scene = argv[optind];
+    return optind == argc - 1 && options->threads >= 1 && options->threads <= THREADS_MAX && !(options->resume && options->force);
+}
+
+/* ---- The journal's beginning ---------------------------------------------------------------------------- */
+
+/* Keys that a resumed run may change: how far it goes, and what it writes. */
+static const char *const free_keys[] = {"design.iterations", "design.tolerance", "output", "modes", NULL};
+
+static bool check_scene(Journal *journal, const char *scene, Error *err)
+{
+    Array old;
+    if (!journal_get(journal, "meta", 0, "scene", &old, err)) return false;
+    char *difference = yaml_difference(old.data, scene, free_keys);
+    array_clear(&old);
+    if (!difference) return true;
+    error_set(err, "the scene has changed since that run: %s is not the same; only iterations and output may change with "
+                   "--resume", difference);
+    mem_free(difference);
+    return false;
+}
+
+static bool begin(Run *run, const RunOptions *options, Error *err)
+{
+    const Mesh *mesh = run->model->shell->mesh;
+    char *scene = yaml_write(&scene_table, run->scene), *versions = run_versions();
+    bool ok = !options->resume || check_scene(run->journal, scene, err);
+    Array meta[] = {array_text("scene", scene), array_text("versions", versions)};
+    Array statics[] = {array_float("rest", "m", mesh->rest[0], 2, mesh->vertex_count, 3),
+                       array_int("faces", mesh->faces[0], 2, mesh->face_count, 3),
+                       array_int("edges", mesh->edges[0], 2, mesh->edge_count, 2)};
+    ok = ok && journal_put(run->journal, "meta", 0, meta, 2, err) && journal_put(run->journal, "static", 0, statics, 3, err);
+    if (ok && options->resume && journal_is_finished(run->journal)) ok = journal_set_finished(run->journal, false, err);
+    mem_free(scene);
+    mem_free(versions);
+    return ok;
+}
+
+/* ---- The result ----------------------------------------------------------------------------------------- */
+
+static bool write_result(Run *run, const char *path, bool finished, Error *err)
+{
+    ResultDef def = {.double_frames = run->scene->output.precision == OUTPUT_DOUBLE};
+    if (!journal_flush(run->journal, err) || !result_write(run->journal, path, def, err)) return false;
+    return !finished || journal_set_finished(run->journal, true, err);
+}
+
+static void draw(Run *run, const char *result)
+{
+    Error err;
+    char *name = verb_without_ending(result, ".vtkhdf"), *picture = mem_format("%s.png", name);
+    ShowDef def = show_default();
+    if (show_result(result, picture, &def, &err))
+        progress_say(run->progress, "picture: %s", picture);
+    else
+        progress_say(run->progress, "no picture: %s", err.text);
+    mem_free(name);
+    mem_free(picture);
+}
+
+static int do_job(Run *run, const RunOptions *options, const char *result)
+{
+    Error err;
+    if (!begin(run, options, &err)) return verb_fail(options->resume ? RUN_REFUSED : RUN_CANNOT_WRITE, err.text);
+    RunStatus status = job_run(run, &err);
+    if (status == RUN_CANNOT_WRITE) return verb_fail(status, err.text);
+    if (!write_result(run, result, status != RUN_INTERRUPTED, &err)) return verb_fail(RUN_CANNOT_WRITE, err.text);
+    progress_say(run->progress, "result: %s", result);
+    if (!options->no_picture) draw(run, result);
+    if (status == RUN_INTERRUPTED) progress_say(run->progress, "interrupted; all is saved: run again with --resume");
+    return status;
+}
+
+static int run_model(const RunOptions *options, const Scene *scene, Model *model)
+{
+    Error err;
+    Progress progress = progress_start(options->mode);
+    char *name = options->output ? verb_without_ending(options->output, ".vtkhdf") : verb_base_name(options->scene);
+    char *result = mem_format("%s.vtkhdf", name), *journal = mem_format("%s.run", name);
+    Run run = {.scene = scene, .model = model, .progress = &progress, .threads = options->threads};
+    run.journal = journal_open(journal, options->resume ? JOURNAL_RESUME : options->force ? JOURNAL_FORCE : JOURNAL_NEW, &err);
+    int code = run.journal ? do_job(&run, options, result) : verb_fail(RUN_CANNOT_WRITE, err.text);
+    if (run.journal && !journal_close(run.journal, &err) && code != RUN_CANNOT_WRITE) code = verb_fail(RUN_CANNOT_WRITE, err.text);
+    mem_free(name);
+    mem_free(result);
+    mem_free(journal);
+    return code;
+}
+
+int verb_run(int argc, char **argv)
+{
+    RunOptions options = {0};
+    if (!parse(argc, argv, &options)) return verb_usage(usage);
+    YamlFile *file;
+    Scene scene;
+    int code = RUN_REFUSED;
+    if (verb_load_scene(options.scene, options.set, options.set_count, &file, &scene)) {
+        Model *model = verb_build_model(&scene, file);
+        if (model) code = run_model(&options, &scene, model);
+        model_destroy(model);
+    }
+    yaml_clear(&scene_table, &scene);
+    yaml_destroy(file);
+    return code;
+}

@@ -1,0 +1,73 @@
+#include "solve/ramp.h"
+#include "base/memory.h"
+#include <math.h>
+#include <string.h>
+
+RampDef ramp_default(void)
+{
+    return (RampDef){.newton = newton_default(), .steps = 1, .step_min = 1.0 / 1024};
+}
+
+/* p at a part of the way; what is no load is as in `to`. */
+static void interpolate(const Params *params, const double *from, const double *to, double part, double *p)
+{
+    memcpy(p, to, (size_t)params->size * sizeof *p);
+    for (int b = 0; part < 1 && b < params->block_count; b++) {
+        const ParamBlock *block = &params->blocks[b];
+        for (int i = block->offset; block->load && i < block->offset + block->count * block->width; i++) {
+            double start = from ? from[i] : 0;
+            p[i] = start + part * (to[i] - start);
+        }
+    }
+}
+
+static bool reached(NewtonStatus status)
+{
+    return status == NEWTON_CONVERGED || status == NEWTON_SADDLE || status == NEWTON_NEUTRAL;
+}
+
+static void add_counts(NewtonInfo *total, const NewtonInfo *step)
+{
+    NewtonInfo sum = *step;
+    sum.iterations += total->iterations;
+    sum.factorizations += total->factorizations;
+    sum.evaluations += total->evaluations;
+    *total = sum;
+}
+
+RampInfo ramp_solve(System *sys, const Params *params, const RampDef *def, const double *from, const double *to, double time,
+                    double *x)
+{
+    size_t n = (size_t)system_dof_count(sys), memory_count = (size_t)system_memory_count(sys);
+    double *p = mem_alloc((size_t)params->size, sizeof *p), *kept = mem_alloc(n, sizeof *kept);
+    double *memory = mem_alloc(memory_count, sizeof *memory);
+    const NewtonObserver *observer = def->observer.iteration ? &def->observer : NULL;
+    RampInfo info = {0};
+    double step = 1.0 / def->steps;
+    while (info.reached < 1) {
+        double part = info.reached + step > 1 - 1e-9 ? 1 : info.reached + step;
+        memcpy(kept, x, n * sizeof *x);
+        system_memory_read(sys, memory);
+        interpolate(params, from, to, part, p);
+        NewtonInfo newton = {.status = NEWTON_NOT_FINITE};
+        if (!def->move || def->move(def->self, (part - info.reached) / (1 - info.reached), x))
+            newton = newton_minimize(sys, &def->newton, p, time, x, observer);
+        add_counts(&info.newton, &newton);
+        if (reached(newton.status)) {
+            info.reached = part;
+            info.steps++;
+            continue;
+        }
+        bool hopeless = newton.status == NEWTON_STOPPED || step / 2 < def->step_min;
+        if (hopeless && info.steps == 0 && newton.status != NEWTON_STOPPED) break; /* the iterate says more than the start */
+        memcpy(x, kept, n * sizeof *x);
+        system_memory_write(sys, memory);
+        if (hopeless) break;
+        info.refused++;
+        step /= 2;
+    }
+    mem_free(p);
+    mem_free(kept);
+    mem_free(memory);
+    return info;
+}
