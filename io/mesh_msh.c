@@ -203,7 +203,7 @@ static bool check_type(Msh *msh, long type)
 /* Reads the element's nodes; members are what a group of it holds. */
 static bool read_element(Msh *msh, int dim, int *members)
 {
-    int vertices[3];
+    int vertices[3] = {0};
     if (!corners(msh, dim + 1, vertices)) return false;
     memcpy(members, vertices, 2 * sizeof *members);
     if (dim < 2) return true;

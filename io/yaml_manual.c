@@ -1,7 +1,7 @@
 /* What a field table says of itself: JSON Schema for editors, the manual for readers, and a check for its tests. */
 #include "base/memory.h"
 #include "io/yaml_private.h"
-#include "io/yaml_text.h"
+#include "io/text.h"
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,4 +1,4 @@
-#include "io/yaml_text.h"
+#include "io/text.h"
 #include "base/memory.h"
 #include <stdarg.h>
 #include <stdio.h>

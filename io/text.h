@@ -1,4 +1,4 @@
-/* yaml_text.h - a text that grows. Private to the writers of yaml.h. */
+/* text.h - a text that grows. Private to the writers of io/. */
 #pragma once
 #include <stddef.h>
 
