@@ -2,6 +2,7 @@
 # The project's commands: each installs what is missing, then does its work.
 #   ./do setup            install the Debian packages that slender needs
 #   ./do build            Release build in build/
+#   ./do run SCENE ..     build, then run a scene (options: build/slender run --help)
 #   ./do test [NAME]      build, then run all tests (or those whose name matches)
 set -eu
 cd "$(dirname "$0")"
@@ -23,11 +24,21 @@ setup() {
     $root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $missing
 }
 
+# Runs a command without a word, unless it fails.
+quietly() {
+    "$@" > build.log 2>&1 || { cat build.log; exit 1; }
+    rm -f build.log
+}
+
 build() {
     setup
-    cmake --preset release > build.log 2>&1 || { cat build.log; exit 1; }
-    rm build.log
-    cmake --build build -j"$(nproc)"
+    quietly cmake --preset release
+    if [ "${1:-}" = quiet ]; then
+        [ -x build/slender ] || echo "building slender: a minute, this once"
+        quietly cmake --build build -j"$(nproc)" --target slender
+    else
+        cmake --build build -j"$(nproc)"
+    fi
 }
 
 command=${1:-help}
@@ -35,9 +46,13 @@ command=${1:-help}
 case $command in
 setup) setup ;;
 build) build ;;
+run)
+    build quiet
+    exec build/slender run "$@"
+    ;;
 test)
     build
     ctest --test-dir build --output-on-failure ${1:+-R "$1"}
     ;;
-*) sed -n '2,5s/^# \{0,1\}//p' do ;;
+*) sed -n '2,6s/^# \{0,1\}//p' do ;;
 esac
