@@ -73,7 +73,11 @@ static bool load_integer(Load *load, const YamlField *row, const Node *node, int
     YamlField plain = *row;
     plain.unit = NULL;
     if (!load_number(load, &plain, node, &number)) return false;
-    if (number != floor(number) || fabs(number) >= INT_MAX) return wrong(load, node, "must be a whole number below 2147483647");
+    if (number != floor(number) || fabs(number) >= INT_MAX) {
+        char what[128];
+        snprintf(what, sizeof what, "must be a whole number below 2147483647, not '%.40s'", node->text);
+        return wrong(load, node, what);
+    }
     *value = (int)number;
     return true;
 }

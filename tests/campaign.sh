@@ -1,0 +1,37 @@
+#!/bin/sh
+# Kills and interrupts a small design at random moments and resumes it: the end must be that of an undisturbed run, bit
+# by bit, seconds aside.    tests/campaign.sh PROGRAM [TRIALS] [OPTIMIZER]
+program=$1 trials=${2:-20} optimizer=${3:-gauss_newton}
+here=$(cd "$(dirname "$0")" && pwd)
+work=$(mktemp -d) || exit 2
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 2
+run() { "$program" run "$here/scene_small.yaml" --set design.optimizer="$optimizer" --quiet --no-picture -o "$@"; }
+numbers() { # what must be the same
+    for path in design/magnetization state/x cases/up/x history/objective history/newton_iterations unknowns; do
+        "$program" export "$1" -o out.csv --dataset $path 2>/dev/null && cat out.csv
+    done
+}
+run whole || exit 1
+numbers whole.vtkhdf > whole.txt
+[ -s whole.txt ] || { echo "nothing to compare"; exit 1; }
+start=$(date +%s%N); run again --force || exit 1; took=$(( ($(date +%s%N) - start) / 1000000 ))
+bad=0
+for trial in $(seq "$trials"); do
+    for signal in KILL INT; do
+        rm -f part.*
+        run part & pid=$!
+        pause=$(awk -v seed="$trial$signal" -v ms="$took" 'BEGIN { srand(seed + length(seed) * 7919); print rand() * ms / 1000 }')
+        sleep "$pause"
+        kill -$signal $pid 2>/dev/null
+        wait $pid; code=$?
+        if [ $signal = INT ] && [ $code != 0 ] && [ $code != 75 ]; then
+            [ -e part.run ] && { echo "Ctrl-C after $pause s: exit code $code"; bad=1; }
+        fi
+        if [ -s part.run ]; then run part --resume || run part --force; else run part; fi
+        numbers part.vtkhdf > part.txt
+        cmp -s whole.txt part.txt || { echo "$signal after $pause s: another end"; bad=1; }
+    done
+done 2>/dev/null
+[ $bad = 0 ] && echo "$trials kills and $trials interruptions of $took ms runs: all ends the same"
+exit $bad

@@ -1,0 +1,191 @@
+/* The result file: what goes in comes out, steps share what does not change, and damage is refused. */
+#include "base/memory.h"
+#include "io/result.h"
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+#include <cmocka.h>
+
+enum { VERTICES = 4, FACES = 2, FRAMES = 3 };
+
+static const char PATH[] = "test_result.vtkhdf";
+
+static double position(int frame, int i) { return frame + i / 16.0; } /* exact in single precision */
+
+static void put_frame(Journal *journal, int frame)
+{
+    Error err;
+    double x[3 * VERTICES], time = 0.5 * frame, young[FACES] = {frame, frame + 1}, M[3 * FACES] = {frame};
+    for (int i = 0; i < 3 * VERTICES; i++) x[i] = position(frame, i);
+    Array arrays[] = {array_float("x", "m", x, 2, VERTICES, 3), array_float("time", "s", &time, 0, 0, 0),
+                      array_float("cell/young", "Pa", young, 1, FACES, 0), array_float("cell/magnetization", "A/m", M, 2, FACES, 3)};
+    assert_true(journal_put(journal, "frame", frame, arrays, frame == 1 ? 3 : 4, &err)); /* frame 1 has no magnetization */
+}
+
+static Journal *make_journal(void)
+{
+    Error err;
+    unlink("test_result.run");
+    Journal *journal = journal_open("test_result.run", JOURNAL_NEW, &err);
+    if (!journal) fail_msg("%s", err.text);
+    int faces[3 * FACES] = {0, 1, 2, 1, 3, 2};
+    double gradient[3 * VERTICES] = {1.0 / 3};
+    Array meta = array_text("scene", "slender: 1\n"), statics = array_int("faces", faces, 2, FACES, 3);
+    Array final[] = {array_float("final/gradient", "N", gradient, 2, VERTICES, 3), array_text("status", "converged")};
+    assert_true(journal_put(journal, "meta", 0, &meta, 1, &err) && journal_put(journal, "static", 0, &statics, 1, &err));
+    assert_true(journal_put(journal, "final", 0, final, 2, &err));
+    for (int k = 0; k < FRAMES; k++) put_frame(journal, k);
+    for (int k = 0; k < 4; k++) {
+        double F = 1.0 / (1 + k), u[2] = {k, k};
+        Array arrays[] = {array_float("objective", "", &F, 0, 0, 0), array_float("unknowns", "", u, 1, 2, 0)};
+        assert_true(journal_put(journal, "evaluation", k, arrays, 2, &err));
+    }
+    return journal;
+}
+
+static void write_result(bool double_frames)
+{
+    Error err;
+    Journal *journal = make_journal();
+    if (!result_write(journal, PATH, (ResultDef){double_frames}, &err)) fail_msg("%s", err.text);
+    journal_close(journal, &err);
+}
+
+static void test_read_back(void **state)
+{
+    (void)state;
+    long blocks = mem_live_count();
+    Error err;
+    Array array;
+    write_result(false);
+    Result *result = result_open(PATH, &err);
+    if (!result) fail_msg("%s", err.text);
+    assert_int_equal(result_step_count(result), FRAMES);
+    for (int k = 0; k < FRAMES; k++) {
+        assert_true(result_read_step(result, "Points", k, &array, &err) && array.dims[0] == VERTICES && array.dims[1] == 3);
+        for (int i = 0; i < 3 * VERTICES; i++) assert_true(((const double *)array.data)[i] == position(k, i));
+        array_clear(&array);
+        assert_true(result_read_step(result, "CellData/magnetization", k, &array, &err));
+        assert_true(*(const double *)array.data == (k == 1 ? 0 : k)); /* frame 1 shows that of frame 0 */
+        array_clear(&array);
+    }
+    assert_true(result_read(result, "VTKHDF/CellData/magnetization", &array, &err) && array.dims[0] == 2 * FACES);
+    array_clear(&array);
+    assert_true(result_read(result, "slender/final/gradient", &array, &err) && *(const double *)array.data == 1.0 / 3);
+    assert_string_equal(array.unit, "N");
+    array_clear(&array);
+    assert_true(result_read(result, "slender/history/objective", &array, &err) && array.dims[0] == 4 && ((const double *)array.data)[3] == 0.25);
+    array_clear(&array);
+    assert_true(result_read(result, "slender/status", &array, &err));
+    assert_string_equal(array.data, "converged");
+    array_clear(&array);
+    assert_true(result_read(result, "slender/state/x", &array, &err) && *(const double *)array.data == position(FRAMES - 1, 0));
+    array_clear(&array);
+    assert_true(result_read_rows(result, "slender/faces", 1, 1, &array, &err) && ((const int *)array.data)[1] == 3);
+    array_clear(&array);
+    assert_false(result_read(result, "slender/nothing", &array, &err));
+    assert_false(result_read_step(result, "Points", FRAMES, &array, &err));
+    char **paths;
+    int count;
+    assert_true(result_list(result, &paths, &count, &err) && count > 15);
+    mem_free(paths);
+    result_close(result);
+    assert_int_equal(mem_live_count(), blocks);
+}
+
+static char *read_all(const char *path, size_t *size)
+{
+    FILE *file = fopen(path, "rb");
+    assert_non_null(file);
+    fseek(file, 0, SEEK_END);
+    *size = (size_t)ftell(file);
+    rewind(file);
+    char *bytes = malloc(*size + 1);
+    assert_int_equal(fread(bytes, 1, *size, file), *size);
+    bytes[*size] = 0;
+    fclose(file);
+    return bytes;
+}
+
+/* The same journal gives the same bytes. */
+static void test_deterministic(void **state)
+{
+    (void)state;
+    size_t size, size_again;
+    write_result(true);
+    char *first = read_all(PATH, &size);
+    sleep(1);
+    write_result(true);
+    char *second = read_all(PATH, &size_again);
+    assert_int_equal(size, size_again);
+    assert_memory_equal(first, second, size);
+    free(first);
+    free(second);
+}
+
+static void write_all(const char *bytes, size_t size)
+{
+    FILE *file = fopen(PATH, "wb");
+    fwrite(bytes, 1, size, file);
+    fclose(file);
+}
+
+static void test_damage(void **state)
+{
+    (void)state;
+    Error err;
+    size_t size;
+    write_result(false);
+    char *bytes = read_all(PATH, &size);
+    for (size_t at = 0; at < size; at += size / 200) {
+        bytes[at] = (char)(bytes[at] ^ 4);
+        write_all(bytes, size);
+        bytes[at] = (char)(bytes[at] ^ 4);
+        assert_null(result_open(PATH, &err));
+        write_all(bytes, at);
+        assert_null(result_open(PATH, &err));
+    }
+    free(bytes);
+    assert_null(result_open("missing.vtkhdf", &err));
+    assert_string_equal(err.text, "missing.vtkhdf: cannot be read: No such file or directory");
+}
+
+/* Where it cannot be written the sentence says so, and nothing is left lying about. */
+static void test_unwritable(void **state)
+{
+    (void)state;
+    Error err;
+    Journal *journal = make_journal();
+    assert_false(result_write(journal, "no/such/folder/x.vtkhdf", (ResultDef){0}, &err));
+    assert_string_equal(err.text, "no/such/folder/x.vtkhdf: cannot be written: No such file or directory");
+    journal_close(journal, &err);
+}
+
+/* h5py sees the same; skipped where there is none. */
+static void test_h5py(void **state)
+{
+    (void)state;
+    if (system("/usr/bin/python3 -c 'import h5py' 2>/dev/null")) {
+        print_message("no h5py here\n");
+        return;
+    }
+    write_result(true);
+    assert_int_equal(system("/usr/bin/python3 -c \""
+                            "import h5py; f = h5py.File('test_result.vtkhdf'); s = f['slender']; v = f['VTKHDF'];"
+                            "assert v.attrs['Type'] == b'UnstructuredGrid' and list(v.attrs['Version']) == [2, 0];"
+                            "assert v['Steps'].attrs['NSteps'] == 3 and v['Points'].shape == (12, 3);"
+                            "assert s.attrs['status'] in (b'converged', 'converged') and s['frames/x'].shape[0] == 12;"
+                            "assert s['final/gradient'].attrs['unit'] in (b'N', 'N')\""), 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_read_back), cmocka_unit_test(test_deterministic), cmocka_unit_test(test_damage),
+                                       cmocka_unit_test(test_unwritable), cmocka_unit_test(test_h5py)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
