@@ -4,6 +4,7 @@
 #   ./do build            Release build in build/
 #   ./do run SCENE ..     build, then run a scene (options: build/slender run --help)
 #   ./do test [NAME]      build, then run all tests (or those whose name matches)
+#   ./do bench [NAME ..]  build, then measure (bench/README.md)
 set -eu
 cd "$(dirname "$0")"
 
@@ -50,9 +51,13 @@ run)
     build quiet
     exec build/slender run "$@"
     ;;
+bench)
+    build > /dev/null
+    cd build && exec bench/bench "$@"
+    ;;
 test)
     build
     ctest --test-dir build --output-on-failure ${1:+-R "$1"}
     ;;
-*) sed -n '2,6s/^# \{0,1\}//p' do ;;
+*) sed -n '2,7s/^# \{0,1\}//p' do ;;
 esac

@@ -7,6 +7,7 @@ work=$(mktemp -d) || exit 2
 trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 2
 run() { "$program" run "$here/scene_small.yaml" --set design.optimizer="$optimizer" --quiet --no-picture -o "$@"; }
+start() { exec "$program" run "$here/scene_small.yaml" --set design.optimizer="$optimizer" --quiet --no-picture -o "$@"; }
 numbers() { # what must be the same
     for path in design/magnetization state/x cases/up/x history/objective history/newton_iterations unknowns; do
         "$program" export "$1" -o out.csv --dataset $path 2>/dev/null && cat out.csv
@@ -20,7 +21,7 @@ bad=0
 for trial in $(seq "$trials"); do
     for signal in KILL INT; do
         rm -f part.*
-        run part & pid=$!
+        start part & pid=$!
         pause=$(awk -v seed="$trial$signal" -v ms="$took" 'BEGIN { srand(seed + length(seed) * 7919); print rand() * ms / 1000 }')
         sleep "$pause"
         kill -$signal $pid 2>/dev/null

@@ -1,0 +1,9 @@
+/* bench.h - the cases, each of which prints its figures. */
+#pragma once
+
+void bench_print(const char *name, double value, const char *unit);
+
+void bench_shell_hessian(void);
+void bench_newton(void);
+void bench_factor(void);
+void bench_design(void);

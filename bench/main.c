@@ -1,0 +1,39 @@
+/* Speed of what slender exists for: one line per figure, "name value unit". Without arguments all cases run, else those
+ * that are named. bench/README.md says how they are measured and against what. */
+#include "bench/bench.h"
+#include <stdio.h>
+#include <string.h>
+
+static const struct {
+    const char *name;
+    void (*run)(void);
+} cases[] = {
+    {"shell_hessian", bench_shell_hessian}, {"newton", bench_newton}, {"factor", bench_factor}, {"design", bench_design},
+};
+
+enum { CASE_COUNT = sizeof cases / sizeof *cases };
+
+void bench_print(const char *name, double value, const char *unit)
+{
+    printf("%s %.4g %s\n", name, value, unit);
+    fflush(stdout);
+}
+
+int main(int argc, char **argv)
+{
+    for (int a = 1; a < argc; a++) {
+        int known = 0;
+        for (int k = 0; k < CASE_COUNT; k++) known |= !strcmp(argv[a], cases[k].name);
+        if (known) continue;
+        fprintf(stderr, "there is no case '%s'; there are", argv[a]);
+        for (int k = 0; k < CASE_COUNT; k++) fprintf(stderr, " %s", cases[k].name);
+        fprintf(stderr, "\n");
+        return 2;
+    }
+    for (int k = 0; k < CASE_COUNT; k++) {
+        int wanted = argc == 1;
+        for (int a = 1; a < argc; a++) wanted |= !strcmp(argv[a], cases[k].name);
+        if (wanted) cases[k].run();
+    }
+    return 0;
+}
