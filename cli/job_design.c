@@ -183,9 +183,10 @@ static bool go_on(void *self)
         if (job->accepted && !(put_best(job) && put_improvement(job))) job->failed = true;
         if (!job->failed && !put_evaluation(job)) job->failed = true;
     }
+    if (job->failed) return false;
     job->evaluations++;
     show(job);
-    return !job->failed && !progress_interrupted();
+    return !progress_interrupted();
 }
 
 static void product(void *self, const double *v, double *out)

@@ -272,7 +272,7 @@ static bool skip_section(Msh *msh, Word name)
     char section[64];
     snprintf(section, sizeof section, "%.*s", name.length > 60 ? 60 : name.length, name.text);
     for (Word word; line(msh, section);)
-        if (scan_word(msh->scan, &word) && word.length > 4 && !strncmp(word.text, "$End", 4)) return true;
+        if (scan_word(msh->scan, &word) && word_begins(word, "$End")) return true;
     return false;
 }
 

@@ -1,7 +1,6 @@
 /* PLY 1.0, ASCII: elements vertex (x, y, z) and face (a list of vertices); other elements and properties are passed
  * over. */
 #include "io/mesh_reader.h"
-#include <string.h>
 
 enum { ELEMENTS_MAX = 16, PROPERTIES_MAX = 64 };
 
@@ -58,7 +57,7 @@ static bool read_format(Scan *scan)
 {
     Word format = {0}, version = {0};
     if (scan_word(scan, &format) && word_is(format, "ascii") && scan_word(scan, &version) && word_is(version, "1.0")) return true;
-    if (format.length && strncmp(format.text, "binary", 6) == 0)
+    if (format.length && word_begins(format, "binary"))
         return scan_refuse(scan, "a binary PLY file: save it as ASCII (in Blender or MeshLab: untick 'binary')");
     return scan_refuse(scan, "the format must be ascii 1.0");
 }

@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 static const size_t MAX_BYTES = (size_t)2 << 30;
 
@@ -80,6 +81,12 @@ bool scan_word(Scan *scan, Word *word)
 bool word_is(Word word, const char *text)
 {
     return strlen(text) == (size_t)word.length && !strncmp(word.text, text, (size_t)word.length);
+}
+
+bool word_begins(Word word, const char *text)
+{
+    size_t length = strlen(text);
+    return (size_t)word.length >= length && !strncasecmp(word.text, text, length);
 }
 
 enum { NUMBER_LENGTH = 63 };

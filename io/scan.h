@@ -33,6 +33,7 @@ bool scan_word(Scan *scan, Word *word);
 static inline bool scan_more(const Scan *scan) { return scan->at < scan->word_end; }
 
 bool word_is(Word word, const char *text);
+bool word_begins(Word word, const char *text); /* any case */
 
 /* A word that is a whole number or a finite number, and nothing else. */
 bool word_integer(Word word, long *value);

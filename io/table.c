@@ -4,7 +4,6 @@
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
-#include <strings.h>
 
 /* Numbers and line numbers that fit before the arrays grow. */
 typedef struct Room {
@@ -14,7 +13,7 @@ typedef struct Room {
 /* A first line that begins with a word is a header; "nan" and "inf" are no words but bad numbers. */
 static bool is_header(Word word)
 {
-    return !strchr("0123456789+-.", word.text[0]) && strncasecmp(word.text, "nan", 3) && strncasecmp(word.text, "inf", 3);
+    return !strchr("0123456789+-.", word.text[0]) && !word_begins(word, "nan") && !word_begins(word, "inf");
 }
 
 /* Appends the line's numbers. */

@@ -1,0 +1,24 @@
+/* libFuzzer: mesh files, the format by the first byte; what is read goes through the mesh's own checks. */
+#include "base/memory.h"
+#include "shell/mesh.h"
+#include <stdint.h>
+#include <stdlib.h>
+
+int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size);
+
+int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size)
+{
+    static const char *const formats[] = {"obj", "ply", "msh"};
+    MeshFile file;
+    Error err;
+    if (size == 0) return 0;
+    if (mesh_file_parse("fuzz", formats[bytes[0] % 3], (const char *)bytes + 1, (long)size - 1, &file, &err)) {
+        MeshReport report;
+        Mesh *mesh = mesh_create(&file, bytes[0] & 4 ? 1e-3 : 0, &report, &err);
+        mesh_destroy(mesh);
+        mesh_report_clear(&report);
+        mesh_file_clear(&file);
+    }
+    if (mem_live_count()) abort();
+    return 0;
+}
