@@ -8,9 +8,9 @@
 #include <math.h>
 #include <string.h>
 
-enum { CG_MAX = 60, REFUSED_MAX = 3 };
+enum { CG_MAX = 60, REFUSED_MAX = 3, WINDOW = 4 };
 
-static const double CG_TOL = 1e-2, DAMPING_FIRST = 1e-2, DAMPING_DOWN = 5, DAMPING_UP = 5;
+static const double CG_TOL = 1e-2, DAMPING_FIRST = 1e-2, DAMPING_DOWN = 5, DAMPING_UP = 5, GAIN_MIN = 0.05;
 
 typedef struct Cg {
     double *step, *residual, *direction, *product, *trial, *trial_gradient; /* [n] */
@@ -91,12 +91,16 @@ static void run(Best *best, Cg *cg, const double *u)
     best_evaluate(best, u, cg->trial_gradient);
     if (!isfinite(best->objective)) return;
     find_held(best, cg);
-    double damping = DAMPING_FIRST * curvature_scale(best, cg);
-    for (int refused = 0; refused < REFUSED_MAX && !best_is_done(best);) {
+    double damping = DAMPING_FIRST * curvature_scale(best, cg), history[WINDOW];
+    for (int k = 0; k < WINDOW; k++) history[k] = INFINITY;
+    for (int step = 0, refused = 0; refused < REFUSED_MAX && !best_is_done(best); step++) {
         double before = best->objective;
+        if (!(before < (1 - GAIN_MIN) * history[step % WINDOW])) return;
+        history[step % WINDOW] = before;
         if (!problem->recall(problem->self, cg->trial)) find_trial(best, cg, damping);
         bool better = best_evaluate(best, cg->trial, cg->trial_gradient) < before;
-        damping *= better ? 1 / DAMPING_DOWN : DAMPING_UP;
+        if (!better) damping *= DAMPING_UP;
+        else if (refused == 0) damping /= DAMPING_DOWN; /* after a refusal it stays: the model has just been found too bold */
         refused = better ? 0 : refused + 1;
     }
 }
