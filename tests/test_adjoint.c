@@ -62,7 +62,7 @@ static void make_cases(Fixture *f, Random *random)
         memcpy(p + shell->magnetization, M, 3 * (size_t)shell->mesh->face_count * sizeof *M);
         p[shell->flux_density] = 0.01, p[shell->flux_density + 2] = c ? -0.03 : 0.05;
         shell_rest_state(shell, x);
-        f->cases[c] = (LoadCase){c ? "down" : "up", shell_system(shell), p, x, &f->objective, 1, c ? 0.5 : 1};
+        f->cases[c] = (LoadCase){c ? "down" : "up", shell_system(shell), p, x, &f->objective, 1, c ? 0.5 : 1, 0};
     }
     mem_free(M);
 }
