@@ -147,11 +147,26 @@ static bool export_result(const char *input, const char *dataset, int frame, con
     return ok;
 }
 
+/* As the run itself would write it. */
+static ResultDef result_def(Journal *journal)
+{
+    ResultDef def = {0};
+    Array text;
+    Scene scene;
+    if (!journal_get(journal, "meta", 0, "scene", &text, NULL)) return def;
+    YamlFile *file = yaml_parse("scene", text.data, strlen(text.data));
+    if (yaml_load(file, &scene_table, &scene)) def.double_frames = scene.output.precision == OUTPUT_DOUBLE;
+    yaml_clear(&scene_table, &scene);
+    yaml_destroy(file);
+    array_clear(&text);
+    return def;
+}
+
 static bool export_journal(const char *input, const char *path, Error *err)
 {
     Journal *journal = journal_open(input, JOURNAL_READ, err);
     if (!journal) return false;
-    bool ok = result_write(journal, path, (ResultDef){0}, err);
+    bool ok = result_write(journal, path, result_def(journal), err);
     return journal_close(journal, ok ? err : NULL) && ok;
 }
 

@@ -43,7 +43,7 @@ typedef struct SparseInfo {
 } SparseInfo;
 SparseInfo sparse_info(const Sparse *matrix);
 
-/* "CHOLMOD 3.0.14", and what BLAS is loaded ("OpenBLAS 0.3.21 ..."); static texts. sparse_blas_is_fast is false when
+/* "3.0.14" of CHOLMOD, and what BLAS is loaded ("OpenBLAS 0.3.21 ..."); static texts. sparse_blas_is_fast is false when
  * the loaded BLAS is not OpenBLAS: the reference BLAS is ten times slower, and silent. */
 const char *sparse_version(void);
 const char *sparse_blas_version(void);

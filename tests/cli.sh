@@ -1,0 +1,80 @@
+#!/bin/sh
+# The program as its users meet it: verbs, files, exit codes.    tests/cli.sh PROGRAM
+program=$1
+here=$(cd "$(dirname "$0")" && pwd)
+work=$(mktemp -d) || exit 2
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 2
+bad=0
+expect() { # exit code, command ..
+    wanted=$1; shift
+    "$@" > out.txt 2> err.txt
+    code=$?
+    [ $code = "$wanted" ] && return
+    echo "$* ends with $code, not $wanted"; cat out.txt err.txt; bad=1
+}
+says() { grep -q -- "$1" out.txt err.txt || { echo "nothing says '$1':"; cat out.txt err.txt; bad=1; }; }
+exists() { [ -s "$1" ] || { echo "$1 is missing or empty"; bad=1; }; }
+
+expect 0 "$program" help;                       says "slender run"
+expect 0 "$program" --version;                  says "CHOLMOD"; says "OpenBLAS"; says "NLopt"; says "HDF5"
+expect 2 "$program" fly;                        says "no verb 'fly'"
+expect 2 "$program" run;                        says "usage: slender run SCENE"
+expect 2 "$program" run --no-such-option x.yaml
+expect 3 "$program" run missing.yaml;           says "missing.yaml: cannot be read"
+expect 3 "$program" run "$here/broken/wrong_unit.yaml"; says "must be a number in Pa"
+
+# An equilibrium and everything that can be made of it.
+scene=$here/../scenes/cantilever.yaml
+expect 0 "$program" check "$scene" --derivatives; says "derivatives of bending"
+mkdir out
+expect 0 "$program" run "$scene" -o out/beam.vtkhdf; says "result: out/beam.vtkhdf"
+expect 0 "$program" run "$scene" --quiet -o beam; [ ! -s out.txt ] || { echo "--quiet is not quiet"; bad=1; }
+for file in beam.vtkhdf beam.xdmf beam.png beam.run; do exists $file; done
+expect 0 "$program" info beam.vtkhdf;           says "slender/final/lowest_eigenvalue"
+expect 0 "$program" info beam.run;              says "finished"
+expect 0 "$program" export beam.vtkhdf -o beam.obj; exists beam.obj
+expect 0 "$program" export beam.vtkhdf -o x.csv --dataset state/x; exists x.csv
+expect 4 "$program" export beam.vtkhdf -o x.csv --dataset state/y; says "no dataset"
+expect 0 "$program" export beam.run -o again.vtkhdf
+cmp -s beam.vtkhdf again.vtkhdf || { echo "the journal gives another result"; bad=1; }
+for ending in svg pdf png; do expect 0 "$program" picture beam.vtkhdf -o p.$ending --field energy_bending --view 0,-1,0.3; exists p.$ending; done
+expect 4 "$program" picture beam.vtkhdf -o p.png --field nothing
+expect 4 "$program" run "$scene" -o no/such/folder; says "cannot be"
+expect 1 "$program" run "$scene" -o short --set solver.max_iterations=2 --set "load_steps=1"; says "short.vtkhdf"
+expect 0 "$program" info short.vtkhdf;          says "state/x"
+expect 0 "$program" run "$scene" -o json --log=json; says '"step": 1'
+expect 0 "$program" schema;                     says "json-schema.org"
+expect 0 "$program" schema --manual;            says "| .thickness. |"
+"$program" schema --manual | cmp -s - "$here/../docs/scene.md" || { echo "docs/scene.md is not what slender schema --manual says"; bad=1; }
+
+# The mesh as a file, the pose evaluated: the energies are those of the equilibrium.
+expect 0 "$program" mesh "$scene" -o rest.obj;  exists rest.obj
+sed "s/^job: .*/job: evaluate/; s/{shape: strip.*}/rest.obj/; s/^  thickness/  pose: beam.obj\n  thickness/; s/{group: root, clamp: true}/{box: [[-1, -1, -1], [1e-9, 1, 1]], clamp: true}/" "$scene" > evaluate.yaml
+expect 0 "$program" run evaluate.yaml;          says "stable"
+for term in membrane bending gravity load; do
+    "$program" info beam.vtkhdf | awk "/final.energy.$term/ {print \$3}" > a.txt
+    "$program" info evaluate.vtkhdf | awk "/final.energy.$term/ {print \$3}" > b.txt
+    awk -v a="$(cat a.txt)" -v b="$(cat b.txt)" 'BEGIN { exit !(a != "" && (a - b)^2 <= 1e-12 * a * a) }' || { echo "energy of $term: $(cat a.txt b.txt)"; bad=1; }
+done
+
+# A run that lives keeps others away; one that was stopped is not overwritten.
+"$program" run "$here/scene_small.yaml" --quiet --no-picture -o live & pid=$!
+sleep 0.3
+expect 4 "$program" run "$here/scene_small.yaml" --quiet -o live --force; says "another run is writing"
+sleep 0.5
+kill -INT $pid; wait $pid; code=$?
+if [ $code = 75 ]; then
+    expect 4 "$program" run "$here/scene_small.yaml" --quiet -o live; says "unfinished run"
+    expect 3 "$program" run "$here/scene_small.yaml" --quiet -o live --resume --set shell.young=2e5; says "shell.young"
+    expect 0 "$program" run "$here/scene_small.yaml" --quiet --no-picture -o live --resume
+elif [ $code != 0 ]; then
+    echo "Ctrl-C ends with $code"; bad=1
+fi
+# A finished design goes on when it is given more iterations.
+expect 0 "$program" run "$here/scene_small.yaml" --quiet --no-picture -o more --set design.iterations=4
+expect 0 "$program" run "$here/scene_small.yaml" --quiet --no-picture -o more --resume --set design.iterations=8
+expect 0 "$program" run "$here/scene_small.yaml" --quiet --no-picture -o once --set design.iterations=8
+"$program" export more.vtkhdf -o a.csv --dataset design/magnetization; "$program" export once.vtkhdf -o b.csv --dataset design/magnetization
+cmp -s a.csv b.csv || { echo "an extended design ends elsewhere"; bad=1; }
+exit $bad
