@@ -58,7 +58,7 @@ static bool read_face(Scan *scan, MeshReader *reader, const Names *names)
 /* l: edges of a polyline; p: vertices. */
 static bool read_members(Scan *scan, MeshReader *reader, const Names *names, int dim)
 {
-    int pair[2], count = 0;
+    int pair[2] = {0}, count = 0;
     for (Word word; scan_word(scan, &word); count++) {
         pair[0] = pair[1];
         if (!index_word(scan, word, reader->mesh->vertex_count, &pair[1])) return false;

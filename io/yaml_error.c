@@ -85,8 +85,8 @@ bool path_step(const char **path, const char **name, int *length, int *index)
 Node *tree_follow(const YamlFile *file, const char *key, const char **rest)
 {
     Node *node = file->root;
-    const char *name;
-    int length, index;
+    const char *name = NULL;
+    int length = 0, index;
     *rest = key;
     for (const char *next = key; node && path_step(&next, &name, &length, &index); *rest = next) {
         Node *item = NULL;
