@@ -171,7 +171,7 @@ static bool put_improvement(DesignJob *job)
 
 static void show(const DesignJob *job)
 {
-    progress_step(job->run->progress, job->evaluations, job->run->scene->design->iterations + 1, "F %.3e m^2, %.3g of the start%s",
+    progress_step(job->run->progress, job->evaluations, job->run->scene->design->iterations + 1, "F %.3e, %.3g of the start%s",
                   job->best, job->best / job->first, isfinite(job->objective) ? "" : "  (no equilibrium, refused)");
 }
 
@@ -274,7 +274,7 @@ static RunStatus finish(DesignJob *job, const OptimiserInfo *info)
         return journal_put(job->run->journal, "final", 0, &status, 1, job->err) ? RUN_NOT_CONVERGED : RUN_CANNOT_WRITE;
     }
     if (!put_results(job, interrupted ? "interrupted" : "converged")) return RUN_CANNOT_WRITE;
-    progress_say(job->run->progress, "%s after %d evaluations: F %.4g m^2, %.4g of the start; projected gradient %.3g",
+    progress_say(job->run->progress, "%s after %d evaluations: F %.4g, %.4g of the start; projected gradient %.3g",
                  optimiser_status_name(info->status), job->evaluations, job->best, job->best / job->first, info->gradient_norm);
     return interrupted ? RUN_INTERRUPTED : RUN_DONE;
 }

@@ -219,7 +219,7 @@ static bool write_page(Show *show, const char *result, const char *picture, Erro
     memcpy(page.view, def->view, sizeof page.view);
     Array history = {0};
     ChartSeries series = {.name = "objective"};
-    Chart chart = {.x_label = "evaluation", .x_unit = "", .y_label = "objective", .y_unit = "m^2", .series_count = 1, .series = &series};
+    Chart chart = {.x_label = "evaluation", .x_unit = "", .y_label = "objective", .y_unit = "", .series_count = 1, .series = &series};
     if (def->history && result_has(show->result, "slender/history/objective") &&
         result_read(show->result, "slender/history/objective", &history, NULL)) {
         keep(show, history);
