@@ -31,13 +31,15 @@ static Sheet make_sheet(BendingModel bending)
     for (int v = 0; v < mesh->vertex_count; v++)
         for (int i = 0; mesh->rest[v][0] < 1e-9 && i < 3; i++) shell_fix(s.shell, v, i);
     for (int e = 0; e < mesh->edge_count; e++)
-        if (mesh->rest[mesh->edges[e][0]][0] < 1e-9 && mesh->rest[mesh->edges[e][1]][0] < 1e-9) shell_clamp(s.shell, e);
+        if (mesh->rest[mesh->edges[e][0]][0] < 1e-9 && mesh->rest[mesh->edges[e][1]][0] < 1e-9)
+            shell_clamp(s.shell, e);
     s.sys = shell_system(s.shell);
     s.p = mem_alloc((size_t)s.shell->params.size, sizeof(double));
     s.x = mem_alloc((size_t)shell_dof_count(s.shell), sizeof(double));
     s.gradient = mem_alloc((size_t)shell_dof_count(s.shell), sizeof(double));
     shell_default_params(s.shell, s.p);
-    for (int f = 0; f < mesh->face_count; f++) s.p[s.shell->young + f] = 1e5, s.p[s.shell->magnetization + 3 * f] = 1e4;
+    for (int f = 0; f < mesh->face_count; f++)
+        s.p[s.shell->young + f] = 1e5, s.p[s.shell->magnetization + 3 * f] = 1e4;
     s.p[s.shell->flux_density + 2] = 2e-3;
     shell_rest_state(s.shell, s.x);
     return s;
@@ -121,8 +123,9 @@ void bench_newton(void)
     }
 }
 
-void dgemm_(const char *ta, const char *tb, const int *m, const int *n, const int *k, const double *alpha, const double *a,
-            const int *lda, const double *b, const int *ldb, const double *beta, double *c, const int *ldc, size_t la, size_t lb);
+void dgemm_(const char *ta, const char *tb, const int *m, const int *n, const int *k, const double *alpha,
+            const double *a, const int *lda, const double *b, const int *ldb, const double *beta, double *c,
+            const int *ldc, size_t la, size_t lb);
 
 static double dgemm_flops(void)
 {
@@ -144,7 +147,8 @@ void bench_factor(void)
 {
     Sheet s = make_sheet(BENDING_MIDEDGE);
     bend(&s);
-    double assembly = hessian_seconds(&s), factor = factor_seconds(&s), speed = system_info(s.sys).factor_flops / factor;
+    double assembly = hessian_seconds(&s), factor = factor_seconds(&s),
+           speed = system_info(s.sys).factor_flops / factor;
     bench_print("factor_ms", 1e3 * factor, "ms");
     bench_print("assembly_over_factor", assembly / factor, "ratio");
     bench_print("factor_over_dgemm", speed / dgemm_flops(), "ratio");

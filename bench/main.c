@@ -1,5 +1,5 @@
-/* Speed of what slender exists for: one line per figure, "name value unit". Without arguments all cases run, else those
- * that are named. bench/README.md says how they are measured and against what. */
+/* Speed of what slender exists for: one line per figure, "name value unit". Without arguments all cases run,
+ * else those that are named. bench/README.md says how they are measured and against what. */
 #include "bench/bench.h"
 #include <stdio.h>
 #include <string.h>
@@ -8,7 +8,10 @@ static const struct {
     const char *name;
     void (*run)(void);
 } cases[] = {
-    {"shell_hessian", bench_shell_hessian}, {"newton", bench_newton}, {"factor", bench_factor}, {"design", bench_design},
+    {"shell_hessian", bench_shell_hessian},
+    {"newton", bench_newton},
+    {"factor", bench_factor},
+    {"design", bench_design},
 };
 
 enum { CASE_COUNT = sizeof cases / sizeof *cases };

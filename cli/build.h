@@ -1,7 +1,8 @@
-/* build.h - what the parts of a scene become once a mesh is there: values, selections, loads, fields, targets.
+/* build.h - what the parts of a scene become once a mesh is there: values, selections, loads, fields,
+ * targets.
  *
- * Each function takes the entry and the key under which it stands in the scene file, so that refusals point at the
- * line: they return false after adding an error to the file (yaml_refuse). */
+ * Each function takes the entry and the key under which it stands in the scene file, so that refusals point
+ * at the line: they return false after adding an error to the file (yaml_refuse). */
 #pragma once
 #include "cli/scene.h"
 #include "shell/select.h"
@@ -21,8 +22,8 @@ typedef struct Key {
 Key key(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
 /* A formula of these variables (NULL-terminated) with its helpers; NULL after a refusal at that key. */
-Formula *build_formula(const Build *b, Key at, char *const *formula, int count, const WhereScene *where, int where_count,
-                       const char *const *variables);
+Formula *build_formula(const Build *b, Key at, char *const *formula, int count, const WhereScene *where,
+                       int where_count, const char *const *variables);
 
 /* x, y, z, r of a position, and with time t: the variables of formulas, in order. */
 extern const char *const build_variables[], *const build_variables_time[];
@@ -35,10 +36,13 @@ bool build_edge_numbers(const Build *b, Key at, const NumberScene *scene, double
 bool build_face_vectors(const Build *b, Key at, const VectorScene *scene, double *values);
 
 /* The vertices of any entry with SELECTION_MEMBERS; NULL: all. found->items is the caller's. */
-#define SELECTION_OF(entry)                                                                                    \
-    (SelectionScene){.vertices = (entry)->vertices, .box = (entry)->box, .ball = (entry)->ball,                \
-                     .group = (entry)->group, .boundary = (entry)->boundary,                                   \
-                     .vertices_count = (entry)->vertices_count, .box_count = (entry)->box_count}
+#define SELECTION_OF(entry)                                                                                  \
+    (SelectionScene)                                                                                         \
+    {                                                                                                        \
+        .vertices = (entry)->vertices, .box = (entry)->box, .ball = (entry)->ball, .group = (entry)->group,  \
+        .boundary = (entry)->boundary, .vertices_count = (entry)->vertices_count,                            \
+        .box_count = (entry)->box_count                                                                      \
+    }
 bool build_selection(const Build *b, Key at, const SelectionScene *scene, Indices *found);
 
 /* load[3*vertex_count] N: the sum of all entries; the key is the list's. */

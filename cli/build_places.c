@@ -15,7 +15,9 @@ bool build_selection(const Build *b, Key at, const SelectionScene *scene, Indice
         for (int v = 0; v < found->count; v++) found->items[v] = v;
         return true;
     }
-    Selection selection = {.vertices = {scene->vertices_count, scene->vertices}, .group = scene->group, .boundary = scene->boundary};
+    Selection selection = {.vertices = {scene->vertices_count, scene->vertices},
+                           .group = scene->group,
+                           .boundary = scene->boundary};
     if ((selection.has_box = scene->box_count > 0)) memcpy(selection.box, scene->box, sizeof selection.box);
     if ((selection.has_ball = scene->ball != NULL)) {
         memcpy(selection.center, scene->ball->center, sizeof selection.center);
@@ -25,7 +27,7 @@ bool build_selection(const Build *b, Key at, const SelectionScene *scene, Indice
     return select_vertices(b->mesh, &selection, found, &err) || yaml_refuse(b->file, at.text, "%s", err.text);
 }
 
-/* ---- Dead loads ----------------------------------------------------------------------------------------- */
+/* ---- Dead loads ---- */
 
 static void add_force(double *load, int vertex, double amount, const double *force)
 {
@@ -85,13 +87,14 @@ bool build_loads(const Build *b, Key at, const LoadScene *loads, int count, doub
     return ok;
 }
 
-/* ---- Fields --------------------------------------------------------------------------------------------- */
+/* ---- Fields ---- */
 
 /* A formula that depends on time only is a uniform field: *uniform is then filled and the formula freed. */
 static bool flux_formula(const Build *b, Key at, const FluxScene *scene, FluxField **field, double *uniform)
 {
     at = key("%s.formula", at.text);
-    Formula *formula = build_formula(b, at, scene->formula, 3, scene->where, scene->where_count, build_variables_time);
+    Formula *formula =
+        build_formula(b, at, scene->formula, 3, scene->where, scene->where_count, build_variables_time);
     if (!formula) return false;
     bool varies = false;
     for (int k = 0; k < 4; k++) varies |= formula_uses(formula, build_variables_time[k]);
@@ -127,7 +130,7 @@ bool build_flux(const Build *b, Key at, const FluxScene *scene, Shell *shell, do
     return ok;
 }
 
-/* ---- Targets -------------------------------------------------------------------------------------------- */
+/* ---- Targets ---- */
 
 static bool target_from_file(const Build *b, Key at, const char *path, double (*target)[3])
 {
@@ -135,8 +138,8 @@ static bool target_from_file(const Build *b, Key at, const char *path, double (*
     Error err;
     if (!mesh_file_read(path, &file, &err)) return yaml_refuse(b->file, at.text, "%s", err.text);
     bool ok = file.vertex_count == b->mesh->file_vertex_count ||
-              yaml_refuse(b->file, at.text, "%s has %d vertices, and the mesh %d: they must be the same ones", path,
-                          file.vertex_count, b->mesh->file_vertex_count);
+              yaml_refuse(b->file, at.text, "%s has %d vertices, and the mesh %d: they must be the same ones",
+                          path, file.vertex_count, b->mesh->file_vertex_count);
     for (int v = 0; ok && v < b->mesh->vertex_count; v++)
         memcpy(target[v], file.vertices[b->mesh->file_vertex[v]], sizeof *target);
     mesh_file_clear(&file);
@@ -161,7 +164,8 @@ static bool target_from_image(const Build *b, Key at, const TargetScene *scene, 
 
 static double segment_distance(const double *segment, const double *x)
 {
-    double ax = segment[2] - segment[0], ay = segment[3] - segment[1], bx = x[0] - segment[0], by = x[1] - segment[1];
+    double ax = segment[2] - segment[0], ay = segment[3] - segment[1], bx = x[0] - segment[0],
+           by = x[1] - segment[1];
     double length2 = ax * ax + ay * ay, s = length2 > 0 ? (ax * bx + ay * by) / length2 : 0;
     s = fmin(fmax(s, 0), 1);
     return hypot(bx - s * ax, by - s * ay);
@@ -172,20 +176,23 @@ static void target_from_strokes(const Build *b, const TargetScene *scene, double
 {
     for (int v = 0; v < b->mesh->vertex_count; v++) {
         double d = INFINITY;
-        for (int k = 0; k < scene->strokes_count; k++) d = fmin(d, segment_distance(scene->strokes[k], b->mesh->rest[v]));
+        for (int k = 0; k < scene->strokes_count; k++)
+            d = fmin(d, segment_distance(scene->strokes[k], b->mesh->rest[v]));
         target[v][2] = d < scene->width ? scene->height * (1 + cos(M_PI * d / scene->width)) / 2 : 0;
     }
 }
 
 static bool target_from_formula(const Build *b, Key at, const TargetScene *scene, double (*target)[3])
 {
-    Formula *formula = build_formula(b, at, scene->formula, 3, scene->where, scene->where_count, build_variables);
+    Formula *formula =
+        build_formula(b, at, scene->formula, 3, scene->where, scene->where_count, build_variables);
     bool ok = formula != NULL;
     Error err;
     for (int v = 0; ok && v < b->mesh->vertex_count; v++) {
         double variables[BUILD_VARIABLES];
         build_position(variables, b->mesh->rest[v], 0);
-        ok = formula_eval(formula, variables, target[v], &err) || yaml_refuse(b->file, at.text, "%s", err.text);
+        ok = formula_eval(formula, variables, target[v], &err) ||
+             yaml_refuse(b->file, at.text, "%s", err.text);
     }
     formula_destroy(formula);
     return ok;

@@ -6,8 +6,8 @@ typedef enum JobKind { JOB_EQUILIBRIUM, JOB_EVALUATE, JOB_DESIGN } JobKind;
 
 extern const char *const job_names[]; /* by JobKind, NULL-terminated: the choices of the scene's key `job` */
 
-/* Runs the scene's job: everything it acknowledges goes into the journal, its final arrays too. On RUN_CANNOT_WRITE err
- * says why. */
+/* Runs the scene's job: everything it acknowledges goes into the journal, its final arrays too. On
+ * RUN_CANNOT_WRITE err says why. */
 RunStatus job_run(Run *run, Error *err);
 
 /* The rows, each in its own file. */

@@ -1,8 +1,9 @@
 /* Quasi-static design: unknowns that bring all cases' equilibria near their targets.
  *
- * Every evaluation is a unit of the journal. A resumed run feeds the recorded ones to the optimiser, which goes the same
- * way without solving anything; the state of the best design (x, where its factor stands, what the terms remember) is
- * kept in two slots by turns, each written before the evaluation that it belongs to, so that one of them always fits. */
+ * Every evaluation is a unit of the journal. A resumed run feeds the recorded ones to the optimiser, which
+ * goes the same way without solving anything; the state of the best design (x, where its factor stands, what
+ * the terms remember) is kept in two slots by turns, each written before the evaluation that it belongs to,
+ * so that one of them always fits. */
 #include "base/clock.h"
 #include "base/memory.h"
 #include "cli/job.h"
@@ -19,15 +20,15 @@ typedef struct DesignJob {
     const Design *design;
     LoadCase *cases;
     StaticDesign *sd;
-    CaseInfo *info;          /* [case] of the last evaluation                         */
-    double *u, *gradient;    /* [n] of the last evaluation                            */
+    CaseInfo *info;       /* [case] of the last evaluation                         */
+    double *u, *gradient; /* [n] of the last evaluation                            */
     double *lower, *upper;
     double objective, first, best, started;
     int evaluations, recorded, improvements, slot;
     bool accepted, failed, aborted; /* aborted: interrupted within an evaluation      */
 } DesignJob;
 
-/* ---- The journal ---------------------------------------------------------------------------------------- */
+/* ---- The journal ---- */
 
 static double case_norm(const double *v, int n)
 {
@@ -55,7 +56,8 @@ static bool put_evaluation(DesignJob *job)
         array_float("newton_iterations", "", &newton, 0, 0, 0),
         array_float("seconds", "s", &seconds, 0, 0, 0),
     };
-    bool ok = journal_put(job->run->journal, "evaluation", job->evaluations, arrays, sizeof arrays / sizeof *arrays, job->err);
+    bool ok = journal_put(job->run->journal, "evaluation", job->evaluations, arrays,
+                          sizeof arrays / sizeof *arrays, job->err);
     mem_free(objectives);
     return ok;
 }
@@ -91,7 +93,8 @@ static bool restore_best(DesignJob *job)
     for (int slot = 0; slot < 2; slot++) {
         double number, *vector;
         char name[32];
-        if (!run_get_state(job->run, slot, "evaluation", &number, 1) || (int)number != job->evaluations) continue;
+        if (!run_get_state(job->run, slot, "evaluation", &number, 1) || (int)number != job->evaluations)
+            continue;
         for (int k = 0; k < 3 * job->run->model->case_count; k++) {
             size_t count = case_vector(job, k / 3, k % 3, &vector, name);
             if (!run_get_state(job->run, slot, name, vector, count)) return false;
@@ -109,15 +112,20 @@ static bool recorded(const DesignJob *job, int evaluation, const char *name, dou
     Array array;
     if (!journal_get(job->run->journal, "evaluation", evaluation, name, &array, job->err)) return false;
     bool ok = array_count(&array) == count && array.type == ARRAY_FLOAT64;
-    if (ok) memcpy(values, array.data, count * sizeof *values);
-    else error_set(job->err, "the journal's evaluation %d is of another scene", evaluation);
+    if (ok)
+        memcpy(values, array.data, count * sizeof *values);
+    else
+        error_set(job->err, "the journal's evaluation %d is of another scene", evaluation);
     array_clear(&array);
     return ok;
 }
 
-/* ---- What the optimiser calls --------------------------------------------------------------------------- */
+/* ---- What the optimiser calls ---- */
 
-static bool is_replaying(const DesignJob *job) { return job->evaluations < job->recorded; }
+static bool is_replaying(const DesignJob *job)
+{
+    return job->evaluations < job->recorded;
+}
 
 static double evaluate(void *self, const double *u, double *gradient)
 {
@@ -131,13 +139,17 @@ static double evaluate(void *self, const double *u, double *gradient)
                   recorded(job, job->evaluations, "gradient", gradient, n) &&
                   recorded(job, job->evaluations, "objective", &job->objective, 1);
         if (ok && memcmp(known, u, n * sizeof *u))
-            ok = error_set(job->err, "this program does not repeat evaluation %d of the journal bit by bit: it was written by "
-                                     "another version or on another machine; start anew with --force", job->evaluations);
+            ok = error_set(
+                job->err,
+                "this program does not repeat evaluation %d of the journal bit by bit: it was written by "
+                "another version or on another machine; start anew with --force",
+                job->evaluations);
         mem_free(known);
         job->failed |= !ok;
     } else {
         job->objective = static_design_evaluate(job->sd, u, gradient, job->info);
-        for (int c = 0; c < job->run->model->case_count; c++) job->aborted |= job->info[c].newton.status == NEWTON_STOPPED;
+        for (int c = 0; c < job->run->model->case_count; c++)
+            job->aborted |= job->info[c].newton.status == NEWTON_STOPPED;
     }
     memcpy(job->gradient, gradient, n * sizeof *gradient);
     return job->failed || job->aborted ? INFINITY : job->objective;
@@ -171,8 +183,9 @@ static bool put_improvement(DesignJob *job)
 
 static void show(const DesignJob *job)
 {
-    progress_step(job->run->progress, job->evaluations, job->run->scene->design->iterations + 1, "F %.3e, %.3g of the start%s",
-                  job->best, job->best / job->first, isfinite(job->objective) ? "" : "  (no equilibrium, refused)");
+    progress_step(job->run->progress, job->evaluations, job->run->scene->design->iterations + 1,
+                  "F %.3e, %.3g of the start%s", job->best, job->best / job->first,
+                  isfinite(job->objective) ? "" : "  (no equilibrium, refused)");
 }
 
 static bool go_on(void *self)
@@ -202,7 +215,7 @@ static bool recall(void *self, double *u)
     return !job->failed;
 }
 
-/* ---- The job -------------------------------------------------------------------------------------------- */
+/* ---- The job ---- */
 
 /* Equilibria of the start, by load steps where that is needed. */
 static void find_start(DesignJob *job)
@@ -213,7 +226,8 @@ static void find_start(DesignJob *job)
     for (int c = 0; c < job->run->model->case_count; c++) {
         LoadCase *load = &job->cases[c];
         design_apply(job->design, c, job->u, load->p);
-        if (load->objective_count) ramp_solve(load->sys, &job->run->model->shell->params, &def, NULL, load->p, load->time, load->x);
+        if (load->objective_count)
+            ramp_solve(load->sys, &job->run->model->shell->params, &def, NULL, load->p, load->time, load->x);
     }
 }
 
@@ -221,7 +235,8 @@ static bool put_gradients(DesignJob *job)
 {
     const Params *params = &job->run->model->shell->params;
     int cases = job->run->model->case_count;
-    double *dp = mem_alloc((size_t)params->size, sizeof *dp), *sum = mem_alloc((size_t)params->size, sizeof *sum);
+    double *dp = mem_alloc((size_t)params->size, sizeof *dp),
+           *sum = mem_alloc((size_t)params->size, sizeof *sum);
     double *flux = mem_alloc(3 * (size_t)cases, sizeof *flux);
     const ParamBlock *flux_block = params_find(params, "flux_density");
     for (int c = 0; c < cases; c++) {
@@ -235,8 +250,9 @@ static bool put_gradients(DesignJob *job)
         char name[64], unit[64];
         snprintf(name, sizeof name, "design/gradient/%s", block->name);
         snprintf(unit, sizeof unit, block->unit[0] ? "m^2/(%s)" : "m^2", block->unit);
-        Array array = array_float(name, unit, block == flux_block ? flux : sum + block->offset, block->width > 1 ? 2 : 1,
-                                  block == flux_block ? cases : block->count, block->width);
+        Array array =
+            array_float(name, unit, block == flux_block ? flux : sum + block->offset,
+                        block->width > 1 ? 2 : 1, block == flux_block ? cases : block->count, block->width);
         ok = journal_put(job->run->journal, "final", 0, &array, 1, job->err);
     }
     mem_free(dp);
@@ -267,15 +283,19 @@ static RunStatus finish(DesignJob *job, const OptimiserInfo *info)
     bool interrupted = info->status == OPTIMISER_STOPPED;
     if (job->failed) return RUN_CANNOT_WRITE;
     if (job->improvements == 0) {
-        progress_say(job->run->progress, interrupted ? "interrupted before the first evaluation was done"
-                                                     : "no equilibrium was found for the start of the design");
+        progress_say(job->run->progress, interrupted
+                                             ? "interrupted before the first evaluation was done"
+                                             : "no equilibrium was found for the start of the design");
         if (interrupted) return RUN_INTERRUPTED;
         Array status = array_text("status", newton_status_name(job->info[0].newton.status));
-        return journal_put(job->run->journal, "final", 0, &status, 1, job->err) ? RUN_NOT_CONVERGED : RUN_CANNOT_WRITE;
+        return journal_put(job->run->journal, "final", 0, &status, 1, job->err) ? RUN_NOT_CONVERGED
+                                                                                : RUN_CANNOT_WRITE;
     }
     if (!put_results(job, interrupted ? "interrupted" : "converged")) return RUN_CANNOT_WRITE;
-    progress_say(job->run->progress, "%s after %d evaluations: F %.4g, %.4g of the start; projected gradient %.3g",
-                 optimiser_status_name(info->status), job->evaluations, job->best, job->best / job->first, info->gradient_norm);
+    progress_say(job->run->progress,
+                 "%s after %d evaluations: F %.4g, %.4g of the start; projected gradient %.3g",
+                 optimiser_status_name(info->status), job->evaluations, job->best, job->best / job->first,
+                 info->gradient_norm);
     return interrupted ? RUN_INTERRUPTED : RUN_DONE;
 }
 
@@ -287,8 +307,15 @@ static RunStatus optimise_design(DesignJob *job)
     def.method = methods[scene->optimizer];
     def.evaluations = scene->iterations + 1;
     def.gradient_tol = scene->tolerance;
-    Problem problem = {.n = job->design->size, .lower = job->lower, .upper = job->upper, .self = job, .evaluate = evaluate,
-                       .accept = accept, .product = product, .recall = recall, .go_on = go_on};
+    Problem problem = {.n = job->design->size,
+                       .lower = job->lower,
+                       .upper = job->upper,
+                       .self = job,
+                       .evaluate = evaluate,
+                       .accept = accept,
+                       .product = product,
+                       .recall = recall,
+                       .go_on = go_on};
     double *u = mem_copy(job->u, (size_t)problem.n, sizeof *u);
     OptimiserInfo info = optimise(&problem, &def, u);
     mem_free(u);
@@ -300,8 +327,9 @@ static LoadCase *make_cases(Model *model)
     LoadCase *cases = mem_alloc((size_t)model->case_count, sizeof *cases);
     for (int c = 0; c < model->case_count; c++) {
         ModelCase *from = &model->cases[c];
-        cases[c] = (LoadCase){from->name, from->sys, from->stages[0].p, from->x, from->objectives, from->objective_count, from->weight,
-                              from->stages[0].time};
+        cases[c] = (LoadCase){from->name,   from->sys,           from->stages[0].p,
+                              from->x,      from->objectives,    from->objective_count,
+                              from->weight, from->stages[0].time};
     }
     return cases;
 }
@@ -310,12 +338,19 @@ RunStatus job_design(Run *run, Error *err)
 {
     Model *model = run->model;
     size_t n = (size_t)model->design.size;
-    DesignJob job = {.run = run, .err = err, .design = &model->design, .cases = make_cases(model), .started = clock_seconds(),
-                     .best = INFINITY, .recorded = journal_count(run->journal, "evaluation"), .slot = 1};
+    DesignJob job = {.run = run,
+                     .err = err,
+                     .design = &model->design,
+                     .cases = make_cases(model),
+                     .started = clock_seconds(),
+                     .best = INFINITY,
+                     .recorded = journal_count(run->journal, "evaluation"),
+                     .slot = 1};
     job.info = mem_alloc((size_t)model->case_count, sizeof *job.info);
     double *work = mem_alloc(4 * n, sizeof *work);
     job.u = work, job.gradient = work + n, job.lower = work + 2 * n, job.upper = work + 3 * n;
-    for (int c = 0; c < model->case_count; c++) design_read(&model->design, c, model->cases[c].stages[0].p, job.u);
+    for (int c = 0; c < model->case_count; c++)
+        design_read(&model->design, c, model->cases[c].stages[0].p, job.u);
     design_bounds(&model->design, job.lower, job.upper);
     if (job.recorded <= 0) find_start(&job);
     StaticDesignDef def = static_design_default();

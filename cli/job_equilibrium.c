@@ -27,7 +27,8 @@ static RampInfo solve_stage(Run *run, const ModelCase *c, int stage, double *x)
     if (run->scene->load_steps.mode < 0) def.steps = run->scene->load_steps.count;
     if (run->model->motion_count) def.move = move, def.self = &mover;
     const double *from = stage > 0 ? c->stages[stage - 1].p : NULL;
-    return ramp_solve(c->sys, &run->model->shell->params, &def, from, c->stages[stage].p, c->stages[stage].time, x);
+    return ramp_solve(c->sys, &run->model->shell->params, &def, from, c->stages[stage].p,
+                      c->stages[stage].time, x);
 }
 
 /* What a resumed run needs: x and what the terms remember after each stage. */
@@ -76,8 +77,9 @@ static bool solve_case(Run *run, ModelCase *c, State *state, int *frame, bool *i
             state->status = info.newton.status;
             *interrupted = info.newton.status == NEWTON_STOPPED;
             if (*interrupted) break;
-            progress_step(run->progress, *frame + 1, total, "%s: %s, %d Newton iterations in %d load steps", c->name,
-                          newton_status_name(state->status), info.newton.iterations, info.steps + info.refused);
+            progress_step(run->progress, *frame + 1, total, "%s: %s, %d Newton iterations in %d load steps",
+                          c->name, newton_status_name(state->status), info.newton.iterations,
+                          info.steps + info.refused);
             ok = put_progress(run, *frame, state, memory, err);
         }
         if (state->status > worst) worst = state->status;
@@ -98,8 +100,10 @@ RunStatus job_equilibrium(Run *run, Error *err)
         ok = solve_case(run, &model->cases[done], &states[done], &frame, &interrupted, err);
         if (states[done].status > worst) worst = states[done].status;
     }
-    if (ok) ok = run_put_final(run, states, done, interrupted ? "interrupted" : newton_status_name(worst), err);
-    if (ok && !interrupted && worst != NEWTON_CONVERGED) progress_say(run->progress, "%s", newton_status_text(worst));
+    if (ok)
+        ok = run_put_final(run, states, done, interrupted ? "interrupted" : newton_status_name(worst), err);
+    if (ok && !interrupted && worst != NEWTON_CONVERGED)
+        progress_say(run->progress, "%s", newton_status_text(worst));
     mem_free(states);
     if (!ok) return RUN_CANNOT_WRITE;
     return interrupted ? RUN_INTERRUPTED : worst == NEWTON_CONVERGED ? RUN_DONE : RUN_NOT_CONVERGED;

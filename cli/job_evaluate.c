@@ -49,7 +49,8 @@ RunStatus job_evaluate(Run *run, Error *err)
         progress_step(run->progress, k + 1, model->case_count, "%s: %s", c->name,
                       states[k].status == NEWTON_CONVERGED ? "stable" : "unstable");
     }
-    ok = ok && run_put_final(run, states, model->case_count, worst == NEWTON_CONVERGED ? "evaluated" : newton_status_name(worst), err);
+    ok = ok && run_put_final(run, states, model->case_count,
+                             worst == NEWTON_CONVERGED ? "evaluated" : newton_status_name(worst), err);
     mem_free(states);
     if (!ok) return RUN_CANNOT_WRITE;
     return worst == NEWTON_CONVERGED ? RUN_DONE : RUN_NOT_CONVERGED;

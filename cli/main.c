@@ -31,7 +31,8 @@ static int verb_help(int argc, char **argv)
     printf("slender simulates and designs magnetised thin shells.\n\n");
     for (int k = 0; k < VERB_COUNT; k++) printf("  slender %-8s  %s\n", verbs[k].name, verbs[k].doc);
     printf("\nEach verb explains its options: slender run --help\n"
-           "Exit codes: 0 done; 1 computed but did not converge; 2 usage; 3 scene or mesh refused; 4 cannot write;\n"
+           "Exit codes: 0 done; 1 computed but did not converge; 2 usage; 3 scene or mesh refused; 4 cannot "
+           "write;\n"
            "75 interrupted, state saved: run again with --resume\n");
     return RUN_DONE;
 }

@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-/* ---- The mesh ------------------------------------------------------------------------------------------- */
+/* ---- The mesh ---- */
 
 static bool generate(const MeshScene *scene, YamlFile *yaml, MeshFile *file)
 {
@@ -15,10 +15,18 @@ static bool generate(const MeshScene *scene, YamlFile *yaml, MeshFile *file)
     double size[2] = {scene->size[0], scene->size_count > 1 ? scene->size[1] : scene->size[0]};
     bool ok = false;
     switch ((MeshShape)scene->shape) {
-    case MESH_SHEET: ok = shape_sheet(size, scene->cells, (ShapePattern)scene->pattern, file, &err); break;
-    case MESH_STRIP: ok = shape_strip(size[0], size[1], scene->n, (ShapePattern)scene->pattern, file, &err); break;
-    case MESH_HEXAGRAM: ok = shape_hexagram(size[0], scene->n, file, &err); break;
-    case MESH_DISC: ok = shape_disc(size[0], scene->n, file, &err); break;
+    case MESH_SHEET:
+        ok = shape_sheet(size, scene->cells, (ShapePattern)scene->pattern, file, &err);
+        break;
+    case MESH_STRIP:
+        ok = shape_strip(size[0], size[1], scene->n, (ShapePattern)scene->pattern, file, &err);
+        break;
+    case MESH_HEXAGRAM:
+        ok = shape_hexagram(size[0], scene->n, file, &err);
+        break;
+    case MESH_DISC:
+        ok = shape_disc(size[0], scene->n, file, &err);
+        break;
     }
     return ok || yaml_refuse(yaml, "shell.mesh", "%s", err.text);
 }
@@ -28,12 +36,14 @@ static bool check_shape(const MeshScene *scene, YamlFile *yaml)
 {
     bool rectangle = scene->shape == MESH_SHEET || scene->shape == MESH_STRIP;
     if (scene->size_count != (rectangle ? 2 : 1))
-        return yaml_refuse(yaml, "shell.mesh", "a %s needs `size`: %s", rectangle ? "sheet or strip" : "hexagram or disc",
-                           rectangle ? "its length and width, e.g. [65 mm, 65 mm]" : "its diameter, e.g. 40 mm");
+        return yaml_refuse(
+            yaml, "shell.mesh", "a %s needs `size`: %s", rectangle ? "sheet or strip" : "hexagram or disc",
+            rectangle ? "its length and width, e.g. [65 mm, 65 mm]" : "its diameter, e.g. 40 mm");
     if (scene->shape == MESH_SHEET && scene->cells_count != 2)
         return yaml_refuse(yaml, "shell.mesh", "a sheet needs `cells` along x and y, e.g. [64, 64]");
     if (scene->shape != MESH_SHEET && scene->n == YAML_ABSENT)
-        return yaml_refuse(yaml, "shell.mesh", "a strip, hexagram or disc needs `n`, the number of its divisions");
+        return yaml_refuse(yaml, "shell.mesh",
+                           "a strip, hexagram or disc needs `n`, the number of its divisions");
     return true;
 }
 
@@ -59,9 +69,10 @@ static Mesh *build_mesh(const MeshScene *scene, YamlFile *yaml, MeshReport *repo
     return mesh;
 }
 
-/* ---- What is held --------------------------------------------------------------------------------------- */
+/* ---- What is held ---- */
 
-static bool add_motion(Model *model, const Build *b, Key at, const FixScene *fix, const bool *axis, Indices vertices)
+static bool add_motion(Model *model, const Build *b, Key at, const FixScene *fix, const bool *axis,
+                       Indices vertices)
 {
     Motion motion = {.vertices = vertices, .axis = {axis[0], axis[1], axis[2]}};
     motion.formula = build_formula(b, at, fix->move, 3, NULL, 0, build_variables_time);
@@ -77,7 +88,8 @@ static bool fix_entry(Model *model, const Build *b, Key at, const FixScene *fix)
 {
     bool axis[3] = {false};
     for (const char *c = fix->axes; *c; c++) {
-        if (!strchr("xyz", *c)) return yaml_refuse(b->file, at.text, "axes is '%s'; it must be some of xyz", fix->axes);
+        if (!strchr("xyz", *c))
+            return yaml_refuse(b->file, at.text, "axes is '%s'; it must be some of xyz", fix->axes);
         axis[*c - 'x'] = true;
     }
     Indices found = {0};
@@ -111,7 +123,7 @@ bool model_move(const Model *model, double time, double part, double *x, Error *
     return true;
 }
 
-/* ---- Loads of a case ------------------------------------------------------------------------------------ */
+/* ---- Loads of a case ---- */
 
 static bool put_flux(Model *model, const Build *b, Key at, const FluxScene *flux, double *p)
 {
@@ -145,8 +157,8 @@ static double *base_params(Model *model, const Scene *scene, const Build *b, siz
 }
 
 /* Field, loads and gravity of a case or stage, where it says them. */
-static bool put_loads(Model *model, const Build *b, Key at, const FluxScene *flux, const LoadScene *loads, int count,
-                      const double *gravity, double *p)
+static bool put_loads(Model *model, const Build *b, Key at, const FluxScene *flux, const LoadScene *loads,
+                      int count, const double *gravity, double *p)
 {
     const Shell *shell = model->shell;
     if (!isnan(gravity[0])) memcpy(p + shell->gravity, gravity, 3 * sizeof *gravity);
@@ -159,7 +171,8 @@ static ModelCase *add_case(Model *model, const char *name, const double *p, size
     size_t count = (size_t)model->case_count++;
     model->cases = mem_resize(model->cases, count, count + 1, sizeof *model->cases);
     ModelCase *c = &model->cases[count];
-    *c = (ModelCase){.name = name ? mem_text(name) : mem_format("case%zu", count + 1), .weight = 1, .stage_count = 1};
+    *c = (ModelCase){
+        .name = name ? mem_text(name) : mem_format("case%zu", count + 1), .weight = 1, .stage_count = 1};
     c->stages = mem_alloc(1, sizeof *c->stages);
     c->stages[0] = (Stage){mem_copy(p, room, sizeof *p), time};
     return c;
@@ -181,11 +194,13 @@ static bool add_stages(Model *model, const Build *b, const Scene *scene, const d
     for (int k = 0; k < scene->sequence_count; k++) {
         const StageScene *stage = &scene->sequence[k];
         Build now = *b;
-        if (k > 0) c->stages[k] = (Stage){mem_copy(c->stages[k - 1].p, room, sizeof *p), c->stages[k - 1].time};
+        if (k > 0)
+            c->stages[k] = (Stage){mem_copy(c->stages[k - 1].p, room, sizeof *p), c->stages[k - 1].time};
         if (!isnan(stage->time)) c->stages[k].time = stage->time;
         now.time = c->stages[k].time;
-        ok = put_loads(model, &now, key("sequence[%d]", k), stage->flux_density, stage->loads, stage->loads_count,
-                       stage->gravity, c->stages[k].p) && ok;
+        ok = put_loads(model, &now, key("sequence[%d]", k), stage->flux_density, stage->loads,
+                       stage->loads_count, stage->gravity, c->stages[k].p) &&
+             ok;
     }
     return ok;
 }
@@ -202,17 +217,24 @@ static bool add_cases(Model *model, const Build *b, const Scene *scene, const do
         c->weight = from->weight;
         Key at = key("cases[%d]", k);
         for (int i = 0; i < k; i++)
-            if (!strcmp(model->cases[i].name, c->name)) ok = yaml_refuse(b->file, at.text, "there are two cases named '%s'", c->name);
-        if (strchr(c->name, '/') || !*c->name) ok = yaml_refuse(b->file, at.text, "a case's name is a word without '/'");
-        ok = put_loads(model, b, at, from->flux_density, from->loads, from->loads_count, from->gravity, c->stages[0].p) && ok;
+            if (!strcmp(model->cases[i].name, c->name))
+                ok = yaml_refuse(b->file, at.text, "there are two cases named '%s'", c->name);
+        if (strchr(c->name, '/') || !*c->name)
+            ok = yaml_refuse(b->file, at.text, "a case's name is a word without '/'");
+        ok = put_loads(model, b, at, from->flux_density, from->loads, from->loads_count, from->gravity,
+                       c->stages[0].p) &&
+             ok;
         bool own = from->target != NULL;
-        ok = add_target(b, own ? key("%s.target", at.text) : key("target"), own ? from->target : scene->target, c) && ok;
+        ok = add_target(b, own ? key("%s.target", at.text) : key("target"),
+                        own ? from->target : scene->target, c) &&
+             ok;
     }
-    if (!scene->cases_count) ok = add_target(b, key("target"), scene->target, add_case(model, NULL, p, room, scene->time));
+    if (!scene->cases_count)
+        ok = add_target(b, key("target"), scene->target, add_case(model, NULL, p, room, scene->time));
     return ok;
 }
 
-/* ---- The whole ------------------------------------------------------------------------------------------ */
+/* ---- The whole ---- */
 
 static bool read_pose(const Build *b, const PoseScene *pose, double *x)
 {
@@ -220,12 +242,15 @@ static bool read_pose(const Build *b, const PoseScene *pose, double *x)
     const Mesh *mesh = b->mesh;
     MeshFile file = {0};
     Error err;
-    if (!mesh_file_read(pose->file, &file, &err)) return yaml_refuse(b->file, "shell.pose.file", "%s", err.text);
+    if (!mesh_file_read(pose->file, &file, &err))
+        return yaml_refuse(b->file, "shell.pose.file", "%s", err.text);
     bool ok = file.vertex_count == mesh->file_vertex_count && file.face_count == mesh->face_count;
     for (int f = 0; ok && f < mesh->face_count; f++)
         for (int i = 0; i < 3; i++) ok = ok && mesh->vertex_of_file[file.faces[f][i]] == mesh->faces[f][i];
-    if (!ok) yaml_refuse(b->file, "shell.pose.file", "%s has other vertices or faces than the mesh", pose->file);
-    for (int v = 0; ok && v < mesh->vertex_count; v++) memcpy(x + 3 * v, file.vertices[mesh->file_vertex[v]], 3 * sizeof *x);
+    if (!ok)
+        yaml_refuse(b->file, "shell.pose.file", "%s has other vertices or faces than the mesh", pose->file);
+    for (int v = 0; ok && v < mesh->vertex_count; v++)
+        memcpy(x + 3 * v, file.vertices[mesh->file_vertex[v]], 3 * sizeof *x);
     mesh_file_clear(&file);
     return ok;
 }
@@ -242,7 +267,8 @@ static bool finish_cases(Model *model, const Build *b, bool balanced)
         Point at = {.x = c->x, .p = c->stages[0].p};
         system_accept(c->sys, &at);
         for (int s = 0; ok && balanced && s < c->stage_count; s++)
-            ok = rigid_check_force(model->shell, c->stages[s].p, &err) || yaml_refuse(b->file, "", "%s", err.text);
+            ok = rigid_check_force(model->shell, c->stages[s].p, &err) ||
+                 yaml_refuse(b->file, "", "%s", err.text);
     }
     return ok;
 }
@@ -255,7 +281,8 @@ static bool fill(Model *model, const Scene *scene, const Build *b)
     shell->density = scene->shell.density;
     shell->bending = (BendingModel)scene->shell.bending;
     bool ok = true;
-    for (int k = 0; k < scene->fix_count; k++) ok = fix_entry(model, b, key("fix[%d]", k), &scene->fix[k]) && ok;
+    for (int k = 0; k < scene->fix_count; k++)
+        ok = fix_entry(model, b, key("fix[%d]", k), &scene->fix[k]) && ok;
     model->x = mem_alloc((size_t)shell_dof_count(shell), sizeof *model->x);
     shell_rest_state(shell, model->x);
     ok = read_pose(b, scene->shell.pose, model->x) && ok;
@@ -273,7 +300,8 @@ Model *model_create(const Scene *scene, YamlFile *file)
     if (mesh) {
         model->shell = shell_create(mesh);
         Build b = {file, mesh, scene->time};
-        if (fill(model, scene, &b) && (scene->job != JOB_DESIGN || model_design(model, scene, file))) return model;
+        if (fill(model, scene, &b) && (scene->job != JOB_DESIGN || model_design(model, scene, file)))
+            return model;
     }
     model_destroy(model);
     return NULL;

@@ -42,14 +42,14 @@ typedef struct Model {
     Design design; /* of a design job */
 } Model;
 
-/* Reads the files that the scene names and builds everything. On bad input NULL, and the errors are in the file's
- * list. */
+/* Reads the files that the scene names and builds everything. On bad input NULL, and the errors are in the
+ * file's list. */
 Model *model_create(const Scene *scene, YamlFile *file);
 void model_destroy(Model *model);
 
 /* Puts the moved coordinates where they are at that time, a part of the way (0..1) from where x has them. */
 bool model_move(const Model *model, double time, double part, double *x, Error *err);
 
-/* The scene's unknowns, with their starts (noise included) written into the p of all cases, and the objectives of all
- * cases. Part of model_create for a design job; false after a refusal. */
+/* The scene's unknowns, with their starts (noise included) written into the p of all cases, and the
+ * objectives of all cases. Part of model_create for a design job; false after a refusal. */
 bool model_design(Model *model, const Scene *scene, YamlFile *file);

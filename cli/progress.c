@@ -22,7 +22,8 @@ Progress progress_start(ProgressMode mode)
     sigemptyset(&action.sa_mask);
     sigaction(SIGINT, &action, NULL);
     sigaction(SIGTERM, &action, NULL);
-    return (Progress){.mode = mode, .terminal = isatty(STDOUT_FILENO) != 0, .started = clock_seconds(), .shown = -1};
+    return (Progress){
+        .mode = mode, .terminal = isatty(STDOUT_FILENO) != 0, .started = clock_seconds(), .shown = -1};
 }
 
 bool progress_interrupted(void)
@@ -46,7 +47,8 @@ void progress_step(Progress *progress, int step, int total, const char *format, 
 {
     double now = clock_seconds(), seconds = now - progress->started, pause = progress->terminal ? 0.1 : 2;
     bool last = step >= total;
-    if (progress->mode == PROGRESS_QUIET || (!last && progress->shown >= 0 && now - progress->shown < pause)) return;
+    if (progress->mode == PROGRESS_QUIET || (!last && progress->shown >= 0 && now - progress->shown < pause))
+        return;
     progress->shown = now;
     char detail[256];
     va_list args;
@@ -54,7 +56,8 @@ void progress_step(Progress *progress, int step, int total, const char *format, 
     vsnprintf(detail, sizeof detail, format, args);
     va_end(args);
     if (progress->mode == PROGRESS_JSON)
-        printf("{\"step\": %d, \"of\": %d, \"seconds\": %.3f, \"detail\": \"%s\"}\n", step, total, seconds, detail);
+        printf("{\"step\": %d, \"of\": %d, \"seconds\": %.3f, \"detail\": \"%s\"}\n", step, total, seconds,
+               detail);
     else if (progress->terminal) {
         show_bar(seconds, step, total);
         printf("%s%s", detail, last ? "\n" : "");

@@ -12,15 +12,17 @@ typedef struct Progress {
     double started, shown; /* s */
 } Progress;
 
-/* Catches Ctrl-C and SIGTERM: the first one asks the run to save and stop, the second one ends the program. */
+/* Catches Ctrl-C and SIGTERM: the first one asks the run to save and stop, the second one ends the program.
+ */
 Progress progress_start(ProgressMode mode);
 
 /* Has the user asked to stop? */
 bool progress_interrupted(void);
 
-/* A step of `total` is done; `detail` says what it brought ("F 0.02 F0"). Shown at most twice a second, the last one
- * always. */
-void progress_step(Progress *progress, int step, int total, const char *format, ...) __attribute__((format(printf, 4, 5)));
+/* A step of `total` is done; `detail` says what it brought ("F 0.02 F0"). Shown at most twice a second, the
+ * last one always. */
+void progress_step(Progress *progress, int step, int total, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
 
 /* A line that stays. */
 void progress_say(Progress *progress, const char *format, ...) __attribute__((format(printf, 2, 3)));

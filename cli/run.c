@@ -24,7 +24,7 @@ NewtonDef run_newton(const Run *run)
     return def;
 }
 
-/* ---- A growing list of arrays, with the texts and numbers that belong to it ------------------------------ */
+/* ---- A growing list of arrays, with the texts and numbers that belong to it ---- */
 
 enum { LIST_MAX = 64 };
 
@@ -69,7 +69,7 @@ static Array block_array(const char *name, const ParamBlock *block, const double
     return array_float(name, block->unit, p + block->offset, rank, block->count, block->width);
 }
 
-/* ---- Frames --------------------------------------------------------------------------------------------- */
+/* ---- Frames ---- */
 
 static Point state_point(const State *state)
 {
@@ -90,7 +90,8 @@ bool run_put_frame(Run *run, int index, const State *state, bool whole, Error *e
         if (count != shell->mesh->face_count) continue;
         double *energy = numbers(&list, (size_t)count);
         system_term_energy(sys, t, &at, energy);
-        add(&list, array_float(keep(&list, mem_format("cell/energy_%s", term->ops->name)), "J", energy, 1, count, 0));
+        add(&list, array_float(keep(&list, mem_format("cell/energy_%s", term->ops->name)), "J", energy, 1,
+                               count, 0));
     }
     if (whole) {
         add(&list, block_array("cell/magnetization", params_find(&shell->params, "magnetization"), state->p));
@@ -99,7 +100,7 @@ bool run_put_frame(Run *run, int index, const State *state, bool whole, Error *e
     return put(run, "frame", index, &list, err);
 }
 
-/* ---- Final arrays --------------------------------------------------------------------------------------- */
+/* ---- Final arrays ---- */
 
 /* What both the plain paths and cases/<name> have. */
 static void add_state(List *list, const char *x_name, const char *prefix, const State *state)
@@ -108,12 +109,14 @@ static void add_state(List *list, const char *x_name, const char *prefix, const 
     Point at = state_point(state);
     int positions = system_position_count(sys);
     add(list, array_float(keep(list, mem_text(x_name)), "m", state->x, 2, positions / 3, 3));
-    double *gradient = numbers(list, (size_t)system_dof_count(sys)), *energy = numbers(list, (size_t)system_term_count(sys));
+    double *gradient = numbers(list, (size_t)system_dof_count(sys)),
+           *energy = numbers(list, (size_t)system_term_count(sys));
     system_gradient(sys, &at, gradient);
     add(list, array_float(keep(list, mem_format("%s/gradient", prefix)), "N", gradient, 2, positions / 3, 3));
     for (int t = 0; t < system_term_count(sys); t++) {
         energy[t] = system_term_energy(sys, t, &at, NULL);
-        add(list, array_float(keep(list, mem_format("%s/energy/%s", prefix, system_term(sys, t)->ops->name)), "J", &energy[t], 0, 0, 0));
+        add(list, array_float(keep(list, mem_format("%s/energy/%s", prefix, system_term(sys, t)->ops->name)),
+                              "J", &energy[t], 0, 0, 0));
     }
 }
 
@@ -165,10 +168,11 @@ static bool put_case(Run *run, const State *state, Error *err)
     add_state(&list, x_name, prefix, state);
     add(&list, array_text(keep(&list, mem_format("%s/status", prefix)), newton_status_name(state->status)));
     const ParamBlock *flux = params_find(&run->model->shell->params, "flux_density");
-    add(&list, array_float(keep(&list, mem_format("%s/flux_density", prefix)), "T", state->p + flux->offset, 1, 3, 0));
+    add(&list, array_float(keep(&list, mem_format("%s/flux_density", prefix)), "T", state->p + flux->offset,
+                           1, 3, 0));
     if (state->load_case->target)
-        add(&list, array_float(keep(&list, mem_format("%s/target", prefix)), "m", state->load_case->target[0], 2,
-                               run->model->shell->mesh->vertex_count, 3));
+        add(&list, array_float(keep(&list, mem_format("%s/target", prefix)), "m", state->load_case->target[0],
+                               2, run->model->shell->mesh->vertex_count, 3));
     return put(run, "final", 0, &list, err);
 }
 
@@ -198,7 +202,7 @@ bool run_put_final(Run *run, const State *states, int count, const char *status,
     return true;
 }
 
-/* ---- State ---------------------------------------------------------------------------------------------- */
+/* ---- State ---- */
 
 bool run_put_state(Run *run, int index, const char *name, const double *values, size_t count, Error *err)
 {
@@ -209,7 +213,8 @@ bool run_put_state(Run *run, int index, const char *name, const double *values, 
 bool run_get_state(Run *run, int index, const char *name, double *values, size_t count)
 {
     Array array;
-    if (!journal_has(run->journal, "state", index, name) || !journal_get(run->journal, "state", index, name, &array, NULL))
+    if (!journal_has(run->journal, "state", index, name) ||
+        !journal_get(run->journal, "state", index, name, &array, NULL))
         return false;
     bool ok = array.type == ARRAY_FLOAT64 && array_count(&array) == count;
     if (ok) memcpy(values, array.data, count * sizeof *values);

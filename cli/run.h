@@ -10,9 +10,9 @@ typedef enum RunStatus {
     RUN_DONE = 0,
     RUN_NOT_CONVERGED = 1, /* computed, and said so in the result */
     RUN_USAGE = 2,
-    RUN_REFUSED = 3,       /* scene or mesh */
+    RUN_REFUSED = 3, /* scene or mesh */
     RUN_CANNOT_WRITE = 4,
-    RUN_INTERRUPTED = 75,  /* state saved: go on with --resume */
+    RUN_INTERRUPTED = 75, /* state saved: go on with --resume */
 } RunStatus;
 
 typedef struct Run {
@@ -46,7 +46,7 @@ bool run_put_frame(Run *run, int index, const State *state, bool whole, Error *e
 /* final/.. and cases/<name>/..; the plain paths are those of the last state. */
 bool run_put_final(Run *run, const State *states, int count, const char *status, Error *err);
 
-/* What a job goes on from, under the kind "state": a vector of numbers by name. Getting is false where it is not there or
- * has another length. */
+/* What a job goes on from, under the kind "state": a vector of numbers by name. Getting is false where it is
+ * not there or has another length. */
 bool run_put_state(Run *run, int index, const char *name, const double *values, size_t count, Error *err);
 bool run_get_state(Run *run, int index, const char *name, double *values, size_t count);

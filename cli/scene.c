@@ -2,59 +2,74 @@
 #include "cli/scene.h"
 #include "cli/job.h"
 
-/* ---- Values --------------------------------------------------------------------------------------------- */
+/* ---- Values ---- */
 
-#define WHERE_ROW(S)                                                                                           \
-    {YAML_MAP(S, where, &where_table), .doc = "names for parts of the formula, evaluated in order"}
+#define WHERE_ROW(S)                                                                                         \
+    {                                                                                                        \
+        YAML_MAP(S, where, &where_table), .doc = "names for parts of the formula, evaluated in order"        \
+    }
 
 static const YamlTable where_table = {
-    .name = "where", .size = sizeof(WhereScene),
-    .doc = "Helper names of a formula, each an expression of the formula's variables and of the names before it.",
+    .name = "where",
+    .size = sizeof(WhereScene),
+    .doc = "Helper names of a formula, each an expression of the formula's variables and of the names before "
+           "it.",
     .fields = (const YamlField[]){
         {YAML_TEXT(WhereScene, formula), .required = true, .short_form = true, .doc = "the expression"},
         {0}}};
 
 /* A number per face or edge, with the unit and range of its parameter. */
-#define NUMBER_TABLE(id, of, u, r)                                                                             \
-    static const YamlTable id##_group_table = {                                                                \
-        .name = #id " of a group", .size = sizeof(NumberGroup), .doc = "The value on one named group.",        \
-        .fields = (const YamlField[]){                                                                         \
-            {YAML_NUMBER(NumberGroup, value), .unit = u, .range = r, .required = true, .short_form = true,     \
-             .doc = "the value"},                                                                              \
-            {0}}};                                                                                             \
-    static const YamlTable id##_table = {                                                                      \
-        .name = #id, .size = sizeof(NumberScene), .doc = of,                                                   \
-        .fields = (const YamlField[]){                                                                         \
-            {YAML_NUMBER(NumberScene, value), .unit = u, .range = r, .one_of = 1, .required = true,            \
-             .short_form = true, .doc = "the same everywhere"},                                                \
-            {YAML_FILE(NumberScene, file), .one_of = 1, .required = true, .doc = "a CSV file"},                \
-            {YAML_TEXT(NumberScene, formula), .one_of = 1, .required = true, .short_form = true,               \
-             .doc = "an expression of the rest position x, y, z, r"},                                          \
-            {YAML_MAP(NumberScene, groups, &id##_group_table), .one_of = 1, .required = true,                  \
-             .doc = "a value for each named group"},                                                           \
-            {YAML_NUMBER(NumberScene, other), .unit = u, .range = r, .doc = "with groups: the value elsewhere"}, \
-            WHERE_ROW(NumberScene),                                                                            \
+#define NUMBER_TABLE(id, of, u, r)                                                                           \
+    static const YamlTable id##_group_table = {                                                              \
+        .name = #id " of a group",                                                                           \
+        .size = sizeof(NumberGroup),                                                                         \
+        .doc = "The value on one named group.",                                                              \
+        .fields = (const YamlField[]){{YAML_NUMBER(NumberGroup, value), .unit = u, .range = r,               \
+                                       .required = true, .short_form = true, .doc = "the value"},            \
+                                      {0}}};                                                                 \
+    static const YamlTable id##_table = {                                                                    \
+        .name = #id,                                                                                         \
+        .size = sizeof(NumberScene),                                                                         \
+        .doc = of,                                                                                           \
+        .fields = (const YamlField[]){                                                                       \
+            {YAML_NUMBER(NumberScene, value), .unit = u, .range = r, .one_of = 1, .required = true,          \
+             .short_form = true, .doc = "the same everywhere"},                                              \
+            {YAML_FILE(NumberScene, file), .one_of = 1, .required = true, .doc = "a CSV file"},              \
+            {YAML_TEXT(NumberScene, formula), .one_of = 1, .required = true, .short_form = true,             \
+             .doc = "an expression of the rest position x, y, z, r"},                                        \
+            {YAML_MAP(NumberScene, groups, &id##_group_table), .one_of = 1, .required = true,                \
+             .doc = "a value for each named group"},                                                         \
+            {YAML_NUMBER(NumberScene, other), .unit = u, .range = r,                                         \
+             .doc = "with groups: the value elsewhere"},                                                     \
+            WHERE_ROW(NumberScene),                                                                          \
             {0}}}
 
 NUMBER_TABLE(young, "Young's modulus, per face. A file has one number per face.", "Pa", "(0, inf)");
-NUMBER_TABLE(fold, "Factor on the curvature of each edge's fold; the energy goes with its square. A file has rows v0, v1, "
-                   "value (vertices of an edge, from 0) and 1 elsewhere.", NULL, "[0, inf)");
+NUMBER_TABLE(
+    fold,
+    "Factor on the curvature of each edge's fold; the energy goes with its square. A file has rows v0, v1, "
+    "value (vertices of an edge, from 0) and 1 elsewhere.",
+    NULL, "[0, inf)");
 
 static const YamlTable magnetization_group_table = {
-    .name = "magnetization of a group", .size = sizeof(VectorGroup), .doc = "The value on one named group.",
-    .fields = (const YamlField[]){
-        {YAML_VECTOR(VectorGroup, value), .unit = "A/m", .required = true, .short_form = true, .doc = "the value"},
-        {0}}};
+    .name = "magnetization of a group",
+    .size = sizeof(VectorGroup),
+    .doc = "The value on one named group.",
+    .fields = (const YamlField[]){{YAML_VECTOR(VectorGroup, value), .unit = "A/m", .required = true,
+                                   .short_form = true, .doc = "the value"},
+                                  {0}}};
 
 static const YamlTable magnetization_table = {
-    .name = "magnetization", .size = sizeof(VectorScene),
+    .name = "magnetization",
+    .size = sizeof(VectorScene),
     .doc = "Remanent magnetisation in material space, per face. A file has one row x, y, z per face.",
     .fields = (const YamlField[]){
         {YAML_VECTOR(VectorScene, value), .unit = "A/m", .one_of = 1, .required = true, .short_form = true,
          .doc = "the same everywhere"},
         {YAML_FILE(VectorScene, file), .one_of = 1, .required = true, .doc = "a CSV file"},
         {YAML_TEXTS(VectorScene, formula), .one_of = 1, .required = true, .short_form = true, .min_count = 3,
-         .max_count = 3, .doc = "three expressions of the rest position x, y, z, r of a face's barycentre, in A/m"},
+         .max_count = 3,
+         .doc = "three expressions of the rest position x, y, z, r of a face's barycentre, in A/m"},
         {YAML_MAP(VectorScene, groups, &magnetization_group_table), .one_of = 1, .required = true,
          .doc = "a value for each named group"},
         {YAML_VECTOR(VectorScene, other), .unit = "A/m", .doc = "with groups: the value elsewhere"},
@@ -62,43 +77,54 @@ static const YamlTable magnetization_table = {
         {0}}};
 
 static const YamlTable dipole_table = {
-    .name = "dipole", .size = sizeof(DipoleScene), .doc = "The field of a point dipole.",
+    .name = "dipole",
+    .size = sizeof(DipoleScene),
+    .doc = "The field of a point dipole.",
     .fields = (const YamlField[]){
         {YAML_VECTOR(DipoleScene, at), .unit = "m", .required = true, .doc = "where it is"},
         {YAML_VECTOR(DipoleScene, moment), .unit = "A m^2", .required = true, .doc = "its moment"},
         {0}}};
 
 static const YamlTable magnet_table = {
-    .name = "magnet", .size = sizeof(MagnetScene),
-    .doc = "The field of a permanent magnet, taken as a dipole of moment remanence*volume/mu_0 at its centre.",
+    .name = "magnet",
+    .size = sizeof(MagnetScene),
+    .doc =
+        "The field of a permanent magnet, taken as a dipole of moment remanence*volume/mu_0 at its centre.",
     .fields = (const YamlField[]){
         {YAML_VECTOR(MagnetScene, at), .unit = "m", .required = true, .doc = "its centre"},
-        {YAML_VECTOR(MagnetScene, remanence), .unit = "T", .required = true, .doc = "its remanence, along its axis"},
-        {YAML_NUMBER(MagnetScene, volume), .unit = "m^3", .range = "(0, inf)", .required = true, .doc = "its volume"},
+        {YAML_VECTOR(MagnetScene, remanence), .unit = "T", .required = true,
+         .doc = "its remanence, along its axis"},
+        {YAML_NUMBER(MagnetScene, volume), .unit = "m^3", .range = "(0, inf)", .required = true,
+         .doc = "its volume"},
         {0}}};
 
 static const YamlTable flux_density_table = {
-    .name = "flux_density", .size = sizeof(FluxScene),
+    .name = "flux_density",
+    .size = sizeof(FluxScene),
     .doc = "The applied magnetic flux density B. Where it varies in space, forces follow from its gradient.",
     .fields = (const YamlField[]){
         {YAML_VECTOR(FluxScene, value), .unit = "T", .one_of = 1, .required = true, .short_form = true,
          .doc = "uniform"},
-        {YAML_TEXTS(FluxScene, formula), .one_of = 1, .required = true, .short_form = true, .min_count = 3, .max_count = 3,
-         .doc = "three expressions, in T, of the current position x, y, z, r and the time t"},
-        {YAML_OPTIONAL(FluxScene, dipole, &dipole_table), .one_of = 1, .required = true, .doc = "a point dipole"},
-        {YAML_OPTIONAL(FluxScene, magnet, &magnet_table), .one_of = 1, .required = true, .doc = "a permanent magnet"},
+        {YAML_TEXTS(FluxScene, formula), .one_of = 1, .required = true, .short_form = true, .min_count = 3,
+         .max_count = 3, .doc = "three expressions, in T, of the current position x, y, z, r and the time t"},
+        {YAML_OPTIONAL(FluxScene, dipole, &dipole_table), .one_of = 1, .required = true,
+         .doc = "a point dipole"},
+        {YAML_OPTIONAL(FluxScene, magnet, &magnet_table), .one_of = 1, .required = true,
+         .doc = "a permanent magnet"},
         WHERE_ROW(FluxScene),
         {0}}};
 
-/* ---- The shell ------------------------------------------------------------------------------------------ */
+/* ---- The shell ---- */
 
 static const YamlTable mesh_table = {
-    .name = "mesh", .size = sizeof(MeshScene),
+    .name = "mesh",
+    .size = sizeof(MeshScene),
     .doc = "The triangle mesh of the shell at rest, from a file or generated.",
     .fields = (const YamlField[]){
         {YAML_FILE(MeshScene, file), .one_of = 1, .required = true, .short_form = true,
          .doc = "an OBJ, PLY (ASCII) or Gmsh .msh (2.2 or 4.1, ASCII) file"},
-        {YAML_CHOICE(MeshScene, shape), .one_of = 1, .required = true, .choices = YAML_NAMES("sheet", "strip", "hexagram", "disc"),
+        {YAML_CHOICE(MeshScene, shape), .one_of = 1, .required = true,
+         .choices = YAML_NAMES("sheet", "strip", "hexagram", "disc"),
          .doc = "a generated mesh in the plane z = 0"},
         {YAML_NUMBERS(MeshScene, size), .unit = "m", .range = "(0, inf)", .min_count = 1, .max_count = 2,
          .doc = "of a sheet or strip: length along x and width along y; of a hexagram or disc: the diameter"},
@@ -106,8 +132,8 @@ static const YamlTable mesh_table = {
          .doc = "of a sheet: cells along x and y"},
         {YAML_INTEGER(MeshScene, n), .range = "[1, inf)",
          .doc = "of a strip: cells along x; of a hexagram: 12 n^2 faces; of a disc: 6 n^2 faces"},
-        {YAML_CHOICE(MeshScene, pattern), .choices = YAML_NAMES("right", "alternate", "crossed"), .fallback = "right",
-         .doc = "of a sheet or strip: how cells are split"},
+        {YAML_CHOICE(MeshScene, pattern), .choices = YAML_NAMES("right", "alternate", "crossed"),
+         .fallback = "right", .doc = "of a sheet or strip: how cells are split"},
         {YAML_NUMBER(MeshScene, scale), .range = "(0, inf)", .fallback = "1",
          .doc = "of a file: factor on its coordinates, 1.0e-3 for a file in millimetres"},
         {YAML_NUMBER(MeshScene, weld), .unit = "m", .range = "[0, inf)", .fallback = "0",
@@ -115,48 +141,67 @@ static const YamlTable mesh_table = {
         {0}}};
 
 static const YamlTable pose_table = {
-    .name = "pose", .size = sizeof(PoseScene), .doc = "A state to start from.",
-    .fields = (const YamlField[]){
-        {YAML_FILE(PoseScene, file), .required = true, .short_form = true, .doc = "a mesh file with the faces of the mesh"},
-        {0}}};
+    .name = "pose",
+    .size = sizeof(PoseScene),
+    .doc = "A state to start from.",
+    .fields = (const YamlField[]){{YAML_FILE(PoseScene, file), .required = true, .short_form = true,
+                                   .doc = "a mesh file with the faces of the mesh"},
+                                  {0}}};
 
 static const YamlTable shell_table = {
-    .name = "shell", .size = sizeof(ShellScene), .doc = "A magnetised thin shell.",
+    .name = "shell",
+    .size = sizeof(ShellScene),
+    .doc = "A magnetised thin shell.",
     .fields = (const YamlField[]){
         {YAML_TABLE(ShellScene, mesh, &mesh_table), .required = true, .doc = "its mesh at rest"},
         {YAML_OPTIONAL(ShellScene, pose, &pose_table), .doc = "where a job starts; at rest if absent"},
-        {YAML_NUMBER(ShellScene, thickness), .unit = "m", .range = "(0, inf)", .required = true, .doc = "thickness h"},
+        {YAML_NUMBER(ShellScene, thickness), .unit = "m", .range = "(0, inf)", .required = true,
+         .doc = "thickness h"},
         {YAML_TABLE(ShellScene, young, &young_table), .required = true, .doc = "Young's modulus"},
-        {YAML_NUMBER(ShellScene, poisson), .range = "[0, 0.5]", .required = true, .doc = "Poisson's ratio (plane stress)"},
-        {YAML_NUMBER(ShellScene, density), .unit = "kg/m^3", .range = "(0, inf)", .fallback = "1000", .doc = "mass density"},
+        {YAML_NUMBER(ShellScene, poisson), .range = "[0, 0.5]", .required = true,
+         .doc = "Poisson's ratio (plane stress)"},
+        {YAML_NUMBER(ShellScene, density), .unit = "kg/m^3", .range = "(0, inf)", .fallback = "1000",
+         .doc = "mass density"},
         {YAML_CHOICE(ShellScene, bending), .choices = YAML_NAMES("midedge", "hinge"), .fallback = "midedge",
-         .doc = "midedge converges on any mesh; hinge is faster, and 5 to 57 % off on crossed and unstructured meshes"},
-        {YAML_TABLE(ShellScene, fold, &fold_table), .fallback = "1", .doc = "factor on the curvature of each edge"},
-        {YAML_TABLE(ShellScene, magnetization, &magnetization_table), .fallback = "[0, 0, 0]", .doc = "remanent magnetisation"},
-        {YAML_VECTOR(ShellScene, gravity), .unit = "m/s^2", .fallback = "[0, 0, 0]", .doc = "acceleration of gravity"},
+         .doc = "midedge converges on any mesh; hinge is faster, and 5 to 57 % off on crossed and "
+                "unstructured meshes"},
+        {YAML_TABLE(ShellScene, fold, &fold_table), .fallback = "1",
+         .doc = "factor on the curvature of each edge"},
+        {YAML_TABLE(ShellScene, magnetization, &magnetization_table), .fallback = "[0, 0, 0]",
+         .doc = "remanent magnetisation"},
+        {YAML_VECTOR(ShellScene, gravity), .unit = "m/s^2", .fallback = "[0, 0, 0]",
+         .doc = "acceleration of gravity"},
         {0}}};
 
 static const YamlTable ball_table = {
-    .name = "ball", .size = sizeof(BallScene), .doc = "All vertices in a ball.",
+    .name = "ball",
+    .size = sizeof(BallScene),
+    .doc = "All vertices in a ball.",
     .fields = (const YamlField[]){
         {YAML_VECTOR(BallScene, center), .unit = "m", .required = true, .doc = "its centre"},
-        {YAML_NUMBER(BallScene, radius), .unit = "m", .range = "(0, inf)", .required = true, .doc = "its radius"},
+        {YAML_NUMBER(BallScene, radius), .unit = "m", .range = "(0, inf)", .required = true,
+         .doc = "its radius"},
         {0}}};
 
-#define SELECTION_ROWS(S)                                                                                      \
-    {YAML_INTEGERS(S, vertices), .range = "[0, inf)", .doc = "these vertices of the mesh file, from 0"},       \
-    {YAML_ROWS(S, box), .unit = "m", .min_count = 2, .max_count = 2, .doc = "lower and upper corner of a box"}, \
-    {YAML_OPTIONAL(S, ball, &ball_table), .doc = "a ball"},                                                    \
-    {YAML_TEXT(S, group), .short_form = true, .doc = "a named group of the mesh"},                             \
-    {YAML_BOOL(S, boundary), .doc = "vertices on the boundary"}
+#define SELECTION_ROWS(S)                                                                                    \
+    {YAML_INTEGERS(S, vertices), .range = "[0, inf)", .doc = "these vertices of the mesh file, from 0"},     \
+        {YAML_ROWS(S, box), .unit = "m", .min_count = 2, .max_count = 2,                                     \
+         .doc = "lower and upper corner of a box"},                                                          \
+        {YAML_OPTIONAL(S, ball, &ball_table), .doc = "a ball"},                                              \
+        {YAML_TEXT(S, group), .short_form = true, .doc = "a named group of the mesh"},                       \
+    {                                                                                                        \
+        YAML_BOOL(S, boundary), .doc = "vertices on the boundary"                                            \
+    }
 
 static const YamlTable selection_table = {
-    .name = "selection", .size = sizeof(SelectionScene),
+    .name = "selection",
+    .size = sizeof(SelectionScene),
     .doc = "Some vertices, by their rest positions. A vertex must satisfy all conditions that are given.",
     .fields = (const YamlField[]){SELECTION_ROWS(SelectionScene), {0}}};
 
 static const YamlTable fix_table = {
-    .name = "fix", .size = sizeof(FixScene),
+    .name = "fix",
+    .size = sizeof(FixScene),
     .doc = "Vertices that are held. A vertex must satisfy all conditions that are given.",
     .fields = (const YamlField[]){
         SELECTION_ROWS(FixScene),
@@ -167,34 +212,46 @@ static const YamlTable fix_table = {
         {0}}};
 
 static const YamlTable load_table = {
-    .name = "loads", .size = sizeof(LoadScene), .doc = "A dead load: a force that keeps its direction.",
+    .name = "loads",
+    .size = sizeof(LoadScene),
+    .doc = "A dead load: a force that keeps its direction.",
     .fields = (const YamlField[]){
-        {YAML_VECTOR(LoadScene, force), .unit = "N", .one_of = 1, .required = true, .doc = "in all, shared equally by the vertices"},
-        {YAML_VECTOR(LoadScene, line), .unit = "N/m", .one_of = 1, .required = true, .doc = "per rest length of boundary edges"},
-        {YAML_VECTOR(LoadScene, area), .unit = "N/m^2", .one_of = 1, .required = true, .doc = "per rest area"},
+        {YAML_VECTOR(LoadScene, force), .unit = "N", .one_of = 1, .required = true,
+         .doc = "in all, shared equally by the vertices"},
+        {YAML_VECTOR(LoadScene, line), .unit = "N/m", .one_of = 1, .required = true,
+         .doc = "per rest length of boundary edges"},
+        {YAML_VECTOR(LoadScene, area), .unit = "N/m^2", .one_of = 1, .required = true,
+         .doc = "per rest area"},
         {YAML_OPTIONAL(LoadScene, on, &selection_table), .doc = "where; everywhere if absent"},
         {0}}};
 
-/* ---- Load cases ----------------------------------------------------------------------------------------- */
+/* ---- Load cases ---- */
 
 static const YamlTable target_table = {
-    .name = "target", .size = sizeof(TargetScene), .doc = "Where vertices should be.",
+    .name = "target",
+    .size = sizeof(TargetScene),
+    .doc = "Where vertices should be.",
     .fields = (const YamlField[]){
-        {YAML_FILE(TargetScene, file), .one_of = 1, .required = true, .doc = "a mesh file with the vertices of the mesh"},
+        {YAML_FILE(TargetScene, file), .one_of = 1, .required = true,
+         .doc = "a mesh file with the vertices of the mesh"},
         {YAML_FILE(TargetScene, height_map), .one_of = 1, .required = true,
-         .doc = "a PNG or PGM image over the body's rectangle in x and y: black is 0, white is height, row 0 at +y"},
+         .doc = "a PNG or PGM image over the body's rectangle in x and y: black is 0, white is height, row 0 "
+                "at +y"},
         {YAML_ROWS(TargetScene, strokes), .unit = "m", .one_of = 1, .required = true,
          .doc = "segments x0, y0, x1, y1: ridges of height, round across"},
-        {YAML_TEXTS(TargetScene, formula), .one_of = 1, .required = true, .short_form = true, .min_count = 3, .max_count = 3,
-         .doc = "three expressions, in m, of the rest position x, y, z, r"},
+        {YAML_TEXTS(TargetScene, formula), .one_of = 1, .required = true, .short_form = true, .min_count = 3,
+         .max_count = 3, .doc = "three expressions, in m, of the rest position x, y, z, r"},
         {YAML_NUMBER(TargetScene, height), .unit = "m", .doc = "of a height map or strokes"},
-        {YAML_NUMBER(TargetScene, width), .unit = "m", .range = "(0, inf)", .doc = "of strokes, at half their height"},
+        {YAML_NUMBER(TargetScene, width), .unit = "m", .range = "(0, inf)",
+         .doc = "of strokes, at half their height"},
         WHERE_ROW(TargetScene),
         {YAML_OPTIONAL(TargetScene, on, &selection_table), .doc = "for these vertices only"},
         {0}}};
 
 static const YamlTable case_table = {
-    .name = "cases", .size = sizeof(CaseScene), .doc = "A load case: a field or loads, and what the body should then do.",
+    .name = "cases",
+    .size = sizeof(CaseScene),
+    .doc = "A load case: a field or loads, and what the body should then do.",
     .fields = (const YamlField[]){
         {YAML_TEXT(CaseScene, name), .doc = "its name in the result; case1, case2, .. if absent"},
         {YAML_NUMBER(CaseScene, weight), .range = "[0, inf)", .fallback = "1", .doc = "of its objectives"},
@@ -205,8 +262,10 @@ static const YamlTable case_table = {
         {0}}};
 
 static const YamlTable stage_table = {
-    .name = "sequence", .size = sizeof(StageScene),
-    .doc = "A stage of an equilibrium job: each starts from the one before, and is a frame of the result. What a stage does "
+    .name = "sequence",
+    .size = sizeof(StageScene),
+    .doc = "A stage of an equilibrium job: each starts from the one before, and is a frame of the result. "
+           "What a stage does "
            "not say stays as it was.",
     .fields = (const YamlField[]){
         {YAML_OPTIONAL(StageScene, flux_density, &flux_density_table), .doc = "the field"},
@@ -215,15 +274,22 @@ static const YamlTable stage_table = {
         {YAML_NUMBER(StageScene, time), .unit = "s", .doc = "the time t of formulas"},
         {0}}};
 
-/* ---- Design --------------------------------------------------------------------------------------------- */
+/* ---- Design ---- */
 
-#define BOUNDS_ROW(S, u) {YAML_VECTOR(S, bounds), .unit = u, .doc = "lower and upper bound"}
-#define PER_ROW(S)                                                                                             \
-    {YAML_CHOICE(S, per), .choices = YAML_NAMES("face", "group"), .fallback = "face",                          \
-     .doc = "an unknown for each face, or for each group of faces"}
+#define BOUNDS_ROW(S, u)                                                                                     \
+    {                                                                                                        \
+        YAML_VECTOR(S, bounds), .unit = u, .doc = "lower and upper bound"                                    \
+    }
+#define PER_ROW(S)                                                                                           \
+    {                                                                                                        \
+        YAML_CHOICE(S, per), .choices = YAML_NAMES("face", "group"), .fallback = "face",                     \
+                             .doc = "an unknown for each face, or for each group of faces"                   \
+    }
 
 static const YamlTable magnetization_unknown_table = {
-    .name = "unknown magnetization", .size = sizeof(VectorUnknown), .doc = "The magnetisation as an unknown.",
+    .name = "unknown magnetization",
+    .size = sizeof(VectorUnknown),
+    .doc = "The magnetisation as an unknown.",
     .fields = (const YamlField[]){
         {YAML_NUMBER(VectorUnknown, noise), .unit = "A/m", .range = "[0, inf)", .fallback = "0",
          .doc = "size of seeded noise that is added to the start"},
@@ -232,13 +298,16 @@ static const YamlTable magnetization_unknown_table = {
         BOUNDS_ROW(VectorUnknown, "A/m"),
         {YAML_NUMBER(VectorUnknown, magnitude), .unit = "A/m", .range = "(0, inf)", .one_of = 1,
          .doc = "fixes |M|: only its direction is free"},
-        {YAML_NUMBER(VectorUnknown, max_magnitude), .unit = "A/m", .range = "(0, inf)", .one_of = 1, .doc = "a cap on |M|"},
+        {YAML_NUMBER(VectorUnknown, max_magnitude), .unit = "A/m", .range = "(0, inf)", .one_of = 1,
+         .doc = "a cap on |M|"},
         PER_ROW(VectorUnknown),
         {YAML_OPTIONAL(VectorUnknown, start, &magnetization_table), .doc = "in place of the shell's"},
         {0}}};
 
 static const YamlTable young_unknown_table = {
-    .name = "unknown young", .size = sizeof(NumberUnknown), .doc = "Young's modulus as an unknown.",
+    .name = "unknown young",
+    .size = sizeof(NumberUnknown),
+    .doc = "Young's modulus as an unknown.",
     .fields = (const YamlField[]){
         BOUNDS_ROW(NumberUnknown, "Pa"),
         {YAML_CHOICE(NumberUnknown, scale), .choices = YAML_NAMES("log", "linear"), .fallback = "log",
@@ -250,7 +319,9 @@ static const YamlTable young_unknown_table = {
         {0}}};
 
 static const YamlTable fold_unknown_table = {
-    .name = "unknown fold", .size = sizeof(NumberUnknown), .doc = "The factor on each edge's curvature as an unknown.",
+    .name = "unknown fold",
+    .size = sizeof(NumberUnknown),
+    .doc = "The factor on each edge's curvature as an unknown.",
     .fields = (const YamlField[]){
         BOUNDS_ROW(NumberUnknown, NULL),
         {YAML_CHOICE(NumberUnknown, scale), .choices = YAML_NAMES("log", "linear"), .fallback = "log",
@@ -261,27 +332,33 @@ static const YamlTable fold_unknown_table = {
         {0}}};
 
 static const YamlTable flux_unknown_table = {
-    .name = "unknown flux_density", .size = sizeof(FluxUnknown),
+    .name = "unknown flux_density",
+    .size = sizeof(FluxUnknown),
     .doc = "The uniform part of the flux density as an unknown, one for each load case.",
-    .fields = (const YamlField[]){
-        {YAML_NUMBER(FluxUnknown, noise), .unit = "T", .range = "[0, inf)", .fallback = "0",
-         .doc = "size of seeded noise that is added to the start"},
-        {YAML_NUMBER(FluxUnknown, scale), .unit = "T", .range = "(0, inf)", .fallback = "0.01 T",
-         .doc = "a natural size: optimisers see the value over it"},
-        BOUNDS_ROW(FluxUnknown, "T"),
-        {0}}};
+    .fields =
+        (const YamlField[]){{YAML_NUMBER(FluxUnknown, noise), .unit = "T", .range = "[0, inf)",
+                             .fallback = "0", .doc = "size of seeded noise that is added to the start"},
+                            {YAML_NUMBER(FluxUnknown, scale), .unit = "T", .range = "(0, inf)",
+                             .fallback = "0.01 T", .doc = "a natural size: optimisers see the value over it"},
+                            BOUNDS_ROW(FluxUnknown, "T"),
+                            {0}}};
 
 static const YamlTable unknowns_table = {
-    .name = "unknowns", .size = sizeof(UnknownsScene), .doc = "What the optimiser may change; starts at the shell's values.",
+    .name = "unknowns",
+    .size = sizeof(UnknownsScene),
+    .doc = "What the optimiser may change; starts at the shell's values.",
     .fields = (const YamlField[]){
-        {YAML_OPTIONAL(UnknownsScene, magnetization, &magnetization_unknown_table), .doc = "three numbers per face"},
+        {YAML_OPTIONAL(UnknownsScene, magnetization, &magnetization_unknown_table),
+         .doc = "three numbers per face"},
         {YAML_OPTIONAL(UnknownsScene, young, &young_unknown_table), .doc = "a number per face"},
         {YAML_OPTIONAL(UnknownsScene, fold, &fold_unknown_table), .doc = "a number per edge"},
-        {YAML_OPTIONAL(UnknownsScene, flux_density, &flux_unknown_table), .doc = "three numbers per load case"},
+        {YAML_OPTIONAL(UnknownsScene, flux_density, &flux_unknown_table),
+         .doc = "three numbers per load case"},
         {0}}};
 
 static const YamlTable objective_table = {
-    .name = "objectives", .size = sizeof(ObjectiveScene),
+    .name = "objectives",
+    .size = sizeof(ObjectiveScene),
     .doc = "What should be small: a sum of rows, each times its weight and without hidden normalisation.",
     .fields = (const YamlField[]){
         {YAML_NUMBER(ObjectiveScene, target), .one_of = 1, .required = true,
@@ -294,11 +371,15 @@ static const YamlTable objective_table = {
         {0}}};
 
 static const YamlTable design_table = {
-    .name = "design", .size = sizeof(DesignScene), .doc = "A design job: parameters that make the body do what its cases say.",
+    .name = "design",
+    .size = sizeof(DesignScene),
+    .doc = "A design job: parameters that make the body do what its cases say.",
     .fields = (const YamlField[]){
         {YAML_TABLE(DesignScene, unknowns, &unknowns_table), .required = true, .doc = "what may change"},
-        {YAML_LIST(DesignScene, objectives, &objective_table), .required = true, .min_count = 1, .doc = "what should be small"},
-        {YAML_CHOICE(DesignScene, optimizer), .choices = YAML_NAMES("mma", "lbfgs", "gauss_newton"), .fallback = "mma",
+        {YAML_LIST(DesignScene, objectives, &objective_table), .required = true, .min_count = 1,
+         .doc = "what should be small"},
+        {YAML_CHOICE(DesignScene, optimizer), .choices = YAML_NAMES("mma", "lbfgs", "gauss_newton"),
+         .fallback = "mma",
          .doc = "NLopt's method of moving asymptotes, NLopt's L-BFGS, or a matrix-free Gauss-Newton"},
         {YAML_INTEGER(DesignScene, iterations), .range = "[0, inf)", .fallback = "50",
          .doc = "evaluations of the objective after the first; 0 evaluates the start and its gradient"},
@@ -307,12 +388,15 @@ static const YamlTable design_table = {
         {YAML_INTEGER(DesignScene, seed), .range = "[0, inf)", .fallback = "1", .doc = "of the noise"},
         {0}}};
 
-/* ---- The whole ------------------------------------------------------------------------------------------ */
+/* ---- The whole ---- */
 
 static const YamlTable solver_table = {
-    .name = "solver", .size = sizeof(SolverScene), .doc = "When the equilibrium solver is content.",
+    .name = "solver",
+    .size = sizeof(SolverScene),
+    .doc = "When the equilibrium solver is content.",
     .fields = (const YamlField[]){
-        {YAML_INTEGER(SolverScene, max_iterations), .range = "[1, inf)", .fallback = "300", .doc = "Newton iterations of a solve"},
+        {YAML_INTEGER(SolverScene, max_iterations), .range = "[1, inf)", .fallback = "300",
+         .doc = "Newton iterations of a solve"},
         {YAML_NUMBER(SolverScene, step_tolerance), .range = "(0, 1)", .fallback = "1.0e-8",
          .doc = "largest last step, in parts of the body's size (radians of edge angles)"},
         {YAML_NUMBER(SolverScene, force_tolerance), .range = "(0, 1)", .fallback = "1.0e-6",
@@ -320,16 +404,20 @@ static const YamlTable solver_table = {
         {0}}};
 
 static const YamlTable load_steps_table = {
-    .name = "load_steps", .size = sizeof(LoadStepsScene), .doc = "Over how many steps loads, fields and prescribed motion come on.",
+    .name = "load_steps",
+    .size = sizeof(LoadStepsScene),
+    .doc = "Over how many steps loads, fields and prescribed motion come on.",
     .fields = (const YamlField[]){
-        {YAML_CHOICE(LoadStepsScene, mode), .choices = YAML_NAMES("auto"), .one_of = 1, .short_form = true, .required = true,
-         .doc = "one step, halved where it fails"},
-        {YAML_INTEGER(LoadStepsScene, count), .range = "[1, 10000]", .one_of = 1, .short_form = true, .required = true,
-         .doc = "this many, halved where one fails"},
+        {YAML_CHOICE(LoadStepsScene, mode), .choices = YAML_NAMES("auto"), .one_of = 1, .short_form = true,
+         .required = true, .doc = "one step, halved where it fails"},
+        {YAML_INTEGER(LoadStepsScene, count), .range = "[1, 10000]", .one_of = 1, .short_form = true,
+         .required = true, .doc = "this many, halved where one fails"},
         {0}}};
 
 static const YamlTable output_table = {
-    .name = "output", .size = sizeof(OutputScene), .doc = "What goes into the result file.",
+    .name = "output",
+    .size = sizeof(OutputScene),
+    .doc = "What goes into the result file.",
     .fields = (const YamlField[]){
         {YAML_INTEGER(OutputScene, every), .range = "[0, inf)", .fallback = "0",
          .doc = "of a design: a frame for every so many improvements; 0: the final design only"},
@@ -338,22 +426,28 @@ static const YamlTable output_table = {
         {0}}};
 
 const YamlTable scene_table = {
-    .name = "scene", .size = sizeof(Scene),
-    .doc = "A scene file is YAML (or JSON); its first key is `slender: 1`, the format's version. Numbers are SI, or carry a "
+    .name = "scene",
+    .size = sizeof(Scene),
+    .doc = "A scene file is YAML (or JSON); its first key is `slender: 1`, the format's version. Numbers are "
+           "SI, or carry a "
            "unit: `1 mm`, `20 mT`, `0.3 MPa`.",
     .fields = (const YamlField[]){
         {YAML_CHOICE(Scene, job), .choices = job_names, .required = true, .doc = "what to do"},
         {YAML_TABLE(Scene, shell, &shell_table), .required = true, .doc = "the body"},
-        {YAML_TABLE(Scene, flux_density, &flux_density_table), .fallback = "[0, 0, 0]", .doc = "applied field"},
+        {YAML_TABLE(Scene, flux_density, &flux_density_table), .fallback = "[0, 0, 0]",
+         .doc = "applied field"},
         {YAML_LIST(Scene, fix, &fix_table), .doc = "what is held"},
         {YAML_LIST(Scene, loads, &load_table), .doc = "dead loads"},
-        {YAML_OPTIONAL(Scene, target, &target_table), .doc = "where vertices should be, in all cases without one of their own"},
-        {YAML_LIST(Scene, cases, &case_table), .doc = "load cases of a design; one with the scene's loads if absent"},
+        {YAML_OPTIONAL(Scene, target, &target_table),
+         .doc = "where vertices should be, in all cases without one of their own"},
+        {YAML_LIST(Scene, cases, &case_table),
+         .doc = "load cases of a design; one with the scene's loads if absent"},
         {YAML_LIST(Scene, sequence, &stage_table), .doc = "stages of an equilibrium"},
         {YAML_OPTIONAL(Scene, design, &design_table), .doc = "what a design job looks for"},
         {YAML_TABLE(Scene, solver, &solver_table), .fallback = "{}", .doc = "tolerances"},
         {YAML_TABLE(Scene, load_steps, &load_steps_table), .fallback = "auto", .doc = "how loads come on"},
         {YAML_NUMBER(Scene, time), .unit = "s", .fallback = "0", .doc = "the time t of formulas"},
-        {YAML_INTEGER(Scene, modes), .range = "[0, 100]", .fallback = "0", .doc = "lowest eigenmodes to put into the result"},
+        {YAML_INTEGER(Scene, modes), .range = "[0, 100]", .fallback = "0",
+         .doc = "lowest eigenmodes to put into the result"},
         {YAML_TABLE(Scene, output, &output_table), .fallback = "{}", .doc = "what to keep"},
         {0}}};

@@ -1,11 +1,12 @@
-/* scene.h - what a scene file says, as plain structs; scene_table is their field table (io/yaml.h) and so the list of
- * all keys. Nothing here is resolved yet: files are not read, groups not looked up (build.h does that).
+/* scene.h - what a scene file says, as plain structs; scene_table is their field table (io/yaml.h) and so the
+ * list of all keys. Nothing here is resolved yet: files are not read, groups not looked up (build.h does
+ * that).
  *
  * Numbers are SI; an absent number is NAN, an absent choice -1, an absent list or table NULL (YamlKind). */
 #pragma once
 #include "io/yaml.h"
 
-/* ---- Values over faces, edges or space ------------------------------------------------------------------ */
+/* ---- Values over faces, edges or space ---- */
 
 /* Helper of a formula: where: {a: "atan2(y, x)"} */
 typedef struct WhereScene {
@@ -59,7 +60,7 @@ typedef struct FluxScene {
     int formula_count, where_count;
 } FluxScene;
 
-/* ---- The shell ------------------------------------------------------------------------------------------ */
+/* ---- The shell ---- */
 
 typedef enum MeshShape { MESH_SHEET, MESH_STRIP, MESH_HEXAGRAM, MESH_DISC } MeshShape;
 
@@ -89,12 +90,12 @@ typedef struct BallScene {
 } BallScene;
 
 /* Members of every entry that means some vertices. */
-#define SELECTION_MEMBERS                                                                                      \
-    int *vertices;                                                                                             \
-    double (*box)[3];                                                                                          \
-    BallScene *ball;                                                                                           \
-    char *group;                                                                                               \
-    bool boundary;                                                                                             \
+#define SELECTION_MEMBERS                                                                                    \
+    int *vertices;                                                                                           \
+    double(*box)[3];                                                                                         \
+    BallScene *ball;                                                                                         \
+    char *group;                                                                                             \
+    bool boundary;                                                                                           \
     int vertices_count, box_count
 
 typedef struct SelectionScene {
@@ -113,7 +114,7 @@ typedef struct LoadScene {
     SelectionScene *on;
 } LoadScene;
 
-/* ---- Load cases ----------------------------------------------------------------------------------------- */
+/* ---- Load cases ---- */
 
 typedef struct TargetScene {
     char *file, *height_map, **formula;
@@ -140,7 +141,7 @@ typedef struct StageScene {
     int loads_count;
 } StageScene;
 
-/* ---- Design --------------------------------------------------------------------------------------------- */
+/* ---- Design ---- */
 
 typedef enum UnknownPer { PER_FACE, PER_GROUP } UnknownPer; /* young, magnetization */
 
@@ -181,7 +182,7 @@ typedef struct DesignScene {
     double tolerance;
 } DesignScene;
 
-/* ---- The whole ------------------------------------------------------------------------------------------ */
+/* ---- The whole ---- */
 
 typedef struct SolverScene {
     int max_iterations;

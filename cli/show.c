@@ -63,11 +63,12 @@ static bool read_mesh(Show *show, Error *err)
     show->vertex_count = rest.dims[0];
     show->faces = (void *)faces.data;
     show->rest = (void *)rest.data;
-    show->magnetization = dataset(show, "slender/design/magnetization", ARRAY_FLOAT64, 3 * (size_t)show->face_count);
+    show->magnetization =
+        dataset(show, "slender/design/magnetization", ARRAY_FLOAT64, 3 * (size_t)show->face_count);
     return true;
 }
 
-/* ---- What is drawn on the faces ------------------------------------------------------------------------- */
+/* ---- What is drawn on the faces ---- */
 
 typedef struct Edges {
     Vec3 e1, e2, n;
@@ -76,24 +77,26 @@ typedef struct Edges {
 static Edges face_edges(const Show *show, const double (*x)[3], int face)
 {
     const int *v = show->faces[face];
-    Vec3 x0 = vec3_load(x[v[0]]), e1 = vec3_sub(vec3_load(x[v[1]]), x0), e2 = vec3_sub(vec3_load(x[v[2]]), x0);
+    Vec3 x0 = vec3_load(x[v[0]]), e1 = vec3_sub(vec3_load(x[v[1]]), x0),
+         e2 = vec3_sub(vec3_load(x[v[2]]), x0);
     return (Edges){e1, e2, vec3_unit(vec3_cross(e1, e2))};
 }
 
 /* Magnetisation as the faces carry it: M = a e1 + b e2 + c n at rest is a e1' + b e2' + c n' now. */
 static const double (*carried(Show *show, const double (*x)[3], const double (*M)[3]))[3]
 {
-    double (*vectors)[3] = block(show, (size_t)show->face_count, sizeof *vectors);
+    double(*vectors)[3] = block(show, (size_t)show->face_count, sizeof *vectors);
     for (int f = 0; f < show->face_count; f++) {
         Edges rest = face_edges(show, show->rest, f), now = face_edges(show, x, f);
         Vec3 m = vec3_load(M[f]);
-        double e11 = vec3_dot(rest.e1, rest.e1), e12 = vec3_dot(rest.e1, rest.e2), e22 = vec3_dot(rest.e2, rest.e2);
+        double e11 = vec3_dot(rest.e1, rest.e1), e12 = vec3_dot(rest.e1, rest.e2),
+               e22 = vec3_dot(rest.e2, rest.e2);
         double m1 = vec3_dot(rest.e1, m), m2 = vec3_dot(rest.e2, m), det = e11 * e22 - e12 * e12;
         double a = (e22 * m1 - e12 * m2) / det, b = (e11 * m2 - e12 * m1) / det;
         Vec3 turned = vec3_scale(vec3_dot(rest.n, m), now.n);
         vec3_store(vectors[f], vec3_axpy(a, now.e1, vec3_axpy(b, now.e2, turned)));
     }
-    return (const double (*)[3])vectors;
+    return (const double(*)[3])vectors;
 }
 
 static bool varies(const double *values, int count)
@@ -110,13 +113,16 @@ static const double *lengths(Show *show, const double (*vectors)[3])
     return r;
 }
 
-/* Numbers per face of the field that was asked for; NULL: a plain surface. False where there is no such field. */
-static bool face_field(Show *show, int step, const double **values, const char **name, const char **unit, Error *err)
+/* Numbers per face of the field that was asked for; NULL: a plain surface. False where there is no such
+ * field. */
+static bool face_field(Show *show, int step, const double **values, const char **name, const char **unit,
+                       Error *err)
 {
     const double *young = dataset(show, "slender/design/young", ARRAY_FLOAT64, (size_t)show->face_count);
     const char *asked = show->def->field;
     *values = NULL;
-    if (!asked) asked = varies(young, show->face_count) ? "young" : show->magnetization ? "magnetization" : "none";
+    if (!asked)
+        asked = varies(young, show->face_count) ? "young" : show->magnetization ? "magnetization" : "none";
     *name = asked, *unit = "";
     if (!strcmp(asked, "none")) return true;
     if (!strcmp(asked, "young") && young) return *values = young, *unit = "Pa", true;
@@ -129,11 +135,12 @@ static bool face_field(Show *show, int step, const double **values, const char *
     if (!result_read_step(show->result, path, step < 0 ? steps - 1 : step, &array, err)) return false;
     *values = keep(show, array);
     *unit = array.unit && array.unit[0] ? array.unit : "";
-    if (array_count(&array) != (size_t)show->face_count) return error_set(err, "'%s' is not one number per face", asked);
+    if (array_count(&array) != (size_t)show->face_count)
+        return error_set(err, "'%s' is not one number per face", asked);
     return true;
 }
 
-/* ---- Panels --------------------------------------------------------------------------------------------- */
+/* ---- Panels ---- */
 
 static bool add_panel(Show *show, const char *name, const double (*x)[3])
 {
@@ -163,7 +170,7 @@ static void add_case(Show *show, const char *name)
     char path[256];
     size_t count = 3 * (size_t)show->vertex_count;
     snprintf(path, sizeof path, "slender/cases/%.200s/x", name);
-    const double (*x)[3] = dataset(show, path, ARRAY_FLOAT64, count);
+    const double(*x)[3] = dataset(show, path, ARRAY_FLOAT64, count);
     int k = show->panel_count;
     if (!x || !add_panel(show, name, x)) return;
     snprintf(path, sizeof path, "slender/cases/%.200s/target", name);
@@ -190,7 +197,8 @@ static bool add_cases(Show *show, Error *err)
     for (char *name = strtok_r((char *)names.data, "\n", &rest); name; name = strtok_r(NULL, "\n", &rest))
         if (!show->def->only || !strcmp(show->def->only, name)) add_case(show, name);
     array_clear(&names);
-    if (show->panel_count == 0) return error_set(err, "the result has no load case '%s'", show->def->only ? show->def->only : "");
+    if (show->panel_count == 0)
+        return error_set(err, "the result has no load case '%s'", show->def->only ? show->def->only : "");
     return true;
 }
 
@@ -219,7 +227,12 @@ static bool write_page(Show *show, const char *result, const char *picture, Erro
     memcpy(page.view, def->view, sizeof page.view);
     Array history = {0};
     ChartSeries series = {.name = "objective"};
-    Chart chart = {.x_label = "evaluation", .x_unit = "", .y_label = "objective", .y_unit = "", .series_count = 1, .series = &series};
+    Chart chart = {.x_label = "evaluation",
+                   .x_unit = "",
+                   .y_label = "objective",
+                   .y_unit = "",
+                   .series_count = 1,
+                   .series = &series};
     if (def->history && result_has(show->result, "slender/history/objective") &&
         result_read(show->result, "slender/history/objective", &history, NULL)) {
         keep(show, history);

@@ -1,20 +1,23 @@
-/* show.h - a picture of a result: its load cases or one frame, targets, arrows and the history of a design. */
+/* show.h - a picture of a result: its load cases or one frame, targets, arrows and the history of a design.
+ */
 #pragma once
 #include "base/error.h"
 #include "io/picture.h"
 
 typedef struct ShowDef {
-    int frame;         /* of /VTKHDF; -1: the final state of every load case */
-    const char *only;  /* one load case; NULL: all                           */
-    const char *field; /* per face: magnetization, young, energy_..; NULL: young if it varies, else |M|; "none" */
-    bool arrows;       /* of the magnetisation, as the faces carry it        */
-    bool history;      /* a chart of the objective, if there is one          */
+    int frame;        /* of /VTKHDF; -1: the final state of every load case */
+    const char *only; /* one load case; NULL: all                           */
+    const char
+        *field;   /* per face: magnetization, young, energy_..; NULL: young if it varies, else |M|; "none" */
+    bool arrows;  /* of the magnetisation, as the faces carry it        */
+    bool history; /* a chart of the objective, if there is one          */
     PictureTarget target;
-    double view[3];    /* direction to the eye; zeros: three quarters        */
-    int width;         /* pixels                                             */
+    double view[3]; /* direction to the eye; zeros: three quarters        */
+    int width;      /* pixels                                             */
 } ShowDef;
 
 ShowDef show_default(void);
 
-/* Writes picture (.png, .svg or .pdf) from the result file. False and a sentence where either cannot be used. */
+/* Writes picture (.png, .svg or .pdf) from the result file. False and a sentence where either cannot be used.
+ */
 bool show_result(const char *result, const char *picture, const ShowDef *def, Error *err);

@@ -1,4 +1,5 @@
-/* verb.h - the program's verbs. Each parses its own options and returns an exit code (RunStatus); main.c has the table. */
+/* verb.h - the program's verbs. Each parses its own options and returns an exit code (RunStatus); main.c has
+ * the table. */
 #pragma once
 #include "base/error.h"
 #include "cli/run.h"
@@ -11,21 +12,23 @@ int verb_picture(int argc, char **argv);
 int verb_schema(int argc, char **argv);
 int verb_mesh(int argc, char **argv);
 
-/* ---- What verbs share ----------------------------------------------------------------------------------- */
+/* ---- What verbs share ---- */
 
-/* An option that is not known, or an argument too many or too few: says how the verb is used. Returns RUN_USAGE. */
+/* An option that is not known, or an argument too many or too few: says how the verb is used. Returns
+ * RUN_USAGE. */
 int verb_usage(const char *usage);
 
 /* "slender: sentence" on the error stream; returns the code. */
 int verb_fail(int code, const char *sentence);
 
-/* A scene file, its --set assignments made and its table filled in: false after printing what is wrong. Clear the scene
- * and destroy the file in any case. */
+/* A scene file, its --set assignments made and its table filled in: false after printing what is wrong. Clear
+ * the scene and destroy the file in any case. */
 bool verb_load_scene(const char *path, char *const *set, int set_count, YamlFile **file, Scene *scene);
 
 /* The model of a scene; NULL after printing what is wrong. Warnings about the mesh are printed. */
 Model *verb_build_model(const Scene *scene, YamlFile *file);
 
-/* "dir/name.ext" without its folder and ending; "dir/name.ext" without that ending, if it has it. The caller frees. */
+/* "dir/name.ext" without its folder and ending; "dir/name.ext" without that ending, if it has it. The caller
+ * frees. */
 char *verb_base_name(const char *path);
 char *verb_without_ending(const char *path, const char *ending);

@@ -10,21 +10,23 @@
 #include <math.h>
 #include <stdio.h>
 
-static const char usage[] = "check SCENE [--set key=value].. [--derivatives]\n"
-                            "  Reads the scene and its files, says what they make and what one solve costs.\n"
-                            "  --derivatives  checks every term's gradient and Hessian on this scene by differences";
+static const char usage[] =
+    "check SCENE [--set key=value].. [--derivatives]\n"
+    "  Reads the scene and its files, says what they make and what one solve costs.\n"
+    "  --derivatives  checks every term's gradient and Hessian on this scene by differences";
 
 enum { SET_MAX = 64 };
 
-static const double LARGE_BODY = 2;            /* m: most likely a mesh in millimetres          */
-static const double CELLS_PER_LENGTH = 3;      /* of the magnetic bending length, at least      */
+static const double LARGE_BODY = 2;       /* m: most likely a mesh in millimetres          */
+static const double CELLS_PER_LENGTH = 3; /* of the magnetic bending length, at least      */
 static const double DERIVATIVE_TOL = 1e-6;
 
 static double mean_edge(const Mesh *mesh)
 {
     double sum = 0;
     for (int e = 0; e < mesh->edge_count; e++)
-        sum += vec3_length(vec3_sub(vec3_load(mesh->rest[mesh->edges[e][0]]), vec3_load(mesh->rest[mesh->edges[e][1]])));
+        sum += vec3_length(
+            vec3_sub(vec3_load(mesh->rest[mesh->edges[e][0]]), vec3_load(mesh->rest[mesh->edges[e][1]])));
     return sum / mesh->edge_count;
 }
 
@@ -32,9 +34,12 @@ static void check_size(const Model *model)
 {
     double size = mesh_diagonal(model->shell->mesh);
     if (size > LARGE_BODY)
-        printf("warning: the body is %.3g m long; if its file is in millimetres, give the mesh `scale: 1.0e-3`\n", size);
+        printf("warning: the body is %.3g m long; if its file is in millimetres, give the mesh `scale: "
+               "1.0e-3`\n",
+               size);
     if (model->shell->thickness > size / 5)
-        printf("warning: the thickness, %.3g m, is more than a fifth of the body's size, %.3g m: no thin shell\n",
+        printf("warning: the thickness, %.3g m, is more than a fifth of the body's size, %.3g m: no thin "
+               "shell\n",
                model->shell->thickness, size);
 }
 
@@ -59,7 +64,9 @@ static void check_bending_length(const Model *model, const Scene *scene)
     double length = shell->thickness * sqrt(young / (12 * largest)), cell = mean_edge(shell->mesh);
     printf("magnetic bending length: %.3g m, %.3g cells\n", length, length / cell);
     if (length < CELLS_PER_LENGTH * cell)
-        printf("warning: fewer than %g cells over the magnetic bending length: the mesh is too coarse for this field\n", CELLS_PER_LENGTH);
+        printf("warning: fewer than %g cells over the magnetic bending length: the mesh is too coarse for "
+               "this field\n",
+               CELLS_PER_LENGTH);
 }
 
 /* One assembly and one factorisation, as they will be. */
@@ -73,8 +80,9 @@ static void measure(const Model *model, const Scene *scene)
     bool stable = system_factor(c->sys, 0) || system_factor(c->sys, 1e-6);
     double seconds = clock_seconds() - start;
     SparseInfo info = system_info(c->sys);
-    printf("one Newton iteration: %.3g s, factor %.3g million numbers (%.3g MB)%s\n", seconds, 1e-6 * (double)info.factor_nonzeros,
-           8e-6 * (double)info.factor_nonzeros, stable ? "" : ", not stable at the start");
+    printf("one Newton iteration: %.3g s, factor %.3g million numbers (%.3g MB)%s\n", seconds,
+           1e-6 * (double)info.factor_nonzeros, 8e-6 * (double)info.factor_nonzeros,
+           stable ? "" : ", not stable at the start");
     double solves = 0;
     for (int k = 0; k < model->case_count; k++) solves += model->cases[k].stage_count;
     if (scene->job == JOB_DESIGN) solves *= scene->design->iterations + 1;
@@ -89,7 +97,8 @@ static bool check_derivatives(const Model *model)
 {
     const ModelCase *c = &model->cases[0];
     int dofs = shell_dof_count(model->shell), positions = 3 * model->shell->mesh->vertex_count;
-    double edge = mean_edge(model->shell->mesh), dof_size[TERM_MAX_DOF], *x = mem_copy(c->x, (size_t)dofs, sizeof *x);
+    double edge = mean_edge(model->shell->mesh), dof_size[TERM_MAX_DOF],
+           *x = mem_copy(c->x, (size_t)dofs, sizeof *x);
     Random random = random_seed(1);
     for (int i = 0; i < dofs; i++) x[i] += (i < positions ? 0.1 * edge : 0.3) * random_signed(&random);
     for (int i = 0; i < TERM_MAX_DOF; i++) dof_size[i] = i < 18 ? edge : 1;
@@ -100,8 +109,9 @@ static bool check_derivatives(const Model *model)
         const Term *term = system_term(c->sys, t);
         TermError error = check_term(term, &model->shell->params, &at, dof_size, &random);
         double worst = fmax(fmax(error.gradient, error.hessian), error.forward);
-        printf("derivatives of %-10s gradient %.1e  Hessian %.1e  parameters %.1e, adjoint %.1e%s\n", term->ops->name,
-               error.gradient, error.hessian, error.forward, error.adjoint, worst <= DERIVATIVE_TOL ? "" : "  WRONG");
+        printf("derivatives of %-10s gradient %.1e  Hessian %.1e  parameters %.1e, adjoint %.1e%s\n",
+               term->ops->name, error.gradient, error.hessian, error.forward, error.adjoint,
+               worst <= DERIVATIVE_TOL ? "" : "  WRONG");
         ok = ok && worst <= DERIVATIVE_TOL;
     }
     mem_free(x);
@@ -113,7 +123,8 @@ static bool report(const Model *model, const Scene *scene, bool derivatives)
     const Mesh *mesh = model->shell->mesh;
     int held = 0;
     for (int i = 0; i < 3 * mesh->vertex_count; i++) held += model->shell->fixed[i];
-    printf("%d vertices, %d faces, %d edges, %d parts; %d load cases; %d unknowns of motion, %d coordinates held\n",
+    printf("%d vertices, %d faces, %d edges, %d parts; %d load cases; %d unknowns of motion, %d coordinates "
+           "held\n",
            mesh->vertex_count, mesh->face_count, mesh->edge_count, mesh->component_count, model->case_count,
            system_free_count(model->cases[0].sys), held);
     if (scene->job == JOB_DESIGN) printf("%d design unknowns\n", model->design.size);
@@ -127,19 +138,25 @@ static bool report(const Model *model, const Scene *scene, bool derivatives)
 int verb_check(int argc, char **argv)
 {
     enum { SET = 256, DERIVATIVES, HELP };
-    static const struct option table[] = {{"set", required_argument, NULL, SET}, {"derivatives", no_argument, NULL, DERIVATIVES},
-                                          {"help", no_argument, NULL, HELP}, {0}};
+    static const struct option table[] = {{"set", required_argument, NULL, SET},
+                                          {"derivatives", no_argument, NULL, DERIVATIVES},
+                                          {"help", no_argument, NULL, HELP},
+                                          {0}};
     char *set[SET_MAX];
     int set_count = 0, code = RUN_REFUSED;
     bool derivatives = false;
     for (int c; (c = getopt_long(argc, argv, "", table, NULL)) >= 0;)
-        if (c == SET && set_count < SET_MAX) set[set_count++] = optarg;
-        else if (c == DERIVATIVES) derivatives = true;
-        else return verb_usage(usage);
+        if (c == SET && set_count < SET_MAX)
+            set[set_count++] = optarg;
+        else if (c == DERIVATIVES)
+            derivatives = true;
+        else
+            return verb_usage(usage);
     if (optind != argc - 1) return verb_usage(usage);
     YamlFile *file;
     Scene scene;
-    Model *model = verb_load_scene(argv[optind], set, set_count, &file, &scene) ? verb_build_model(&scene, file) : NULL;
+    Model *model =
+        verb_load_scene(argv[optind], set, set_count, &file, &scene) ? verb_build_model(&scene, file) : NULL;
     if (model) code = report(model, &scene, derivatives) ? RUN_DONE : RUN_NOT_CONVERGED;
     model_destroy(model);
     yaml_clear(&scene_table, &scene);

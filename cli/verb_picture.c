@@ -8,7 +8,8 @@
 #include <string.h>
 
 static const char usage[] =
-    "picture RESULT [-o FILE.png|.svg|.pdf] [--frame N | --case NAME] [--field NAME] [--target beside|over|both]\n"
+    "picture RESULT [-o FILE.png|.svg|.pdf] [--frame N | --case NAME] [--field NAME] [--target "
+    "beside|over|both]\n"
     "               [--view X,Y,Z] [--width PIXELS] [--no-arrows] [--no-history]\n"
     "  -o FILE        default: the result's name with .png\n"
     "  --frame N      a frame of the run, from 0; default: the final state of every load case\n"
@@ -28,32 +29,49 @@ static bool parse_target(const char *word, PictureTarget *target)
 int verb_picture(int argc, char **argv)
 {
     enum { FRAME = 256, CASE, FIELD, TARGET, VIEW, WIDTH, NO_ARROWS, NO_HISTORY, HELP };
-    static const struct option table[] = {
-        {"output", required_argument, NULL, 'o'}, {"frame", required_argument, NULL, FRAME},
-        {"case", required_argument, NULL, CASE},  {"field", required_argument, NULL, FIELD},
-        {"target", required_argument, NULL, TARGET}, {"view", required_argument, NULL, VIEW},
-        {"width", required_argument, NULL, WIDTH}, {"no-arrows", no_argument, NULL, NO_ARROWS},
-        {"no-history", no_argument, NULL, NO_HISTORY}, {"help", no_argument, NULL, HELP}, {0}};
+    static const struct option table[] = {{"output", required_argument, NULL, 'o'},
+                                          {"frame", required_argument, NULL, FRAME},
+                                          {"case", required_argument, NULL, CASE},
+                                          {"field", required_argument, NULL, FIELD},
+                                          {"target", required_argument, NULL, TARGET},
+                                          {"view", required_argument, NULL, VIEW},
+                                          {"width", required_argument, NULL, WIDTH},
+                                          {"no-arrows", no_argument, NULL, NO_ARROWS},
+                                          {"no-history", no_argument, NULL, NO_HISTORY},
+                                          {"help", no_argument, NULL, HELP},
+                                          {0}};
     ShowDef def = show_default();
     const char *output = NULL;
     bool ok = true;
     for (int c; ok && (c = getopt_long(argc, argv, "o:", table, NULL)) >= 0;) {
         char end;
-        if (c == 'o') output = optarg;
-        else if (c == FRAME) ok = sscanf(optarg, "%d%c", &def.frame, &end) == 1 && def.frame >= 0;
-        else if (c == CASE) def.only = optarg;
-        else if (c == FIELD) def.field = optarg;
-        else if (c == TARGET) ok = parse_target(optarg, &def.target);
-        else if (c == VIEW) ok = sscanf(optarg, "%lf,%lf,%lf%c", &def.view[0], &def.view[1], &def.view[2], &end) == 3;
-        else if (c == WIDTH) ok = sscanf(optarg, "%d%c", &def.width, &end) == 1 && def.width >= 400 && def.width <= 4000;
-        else if (c == NO_ARROWS) def.arrows = false;
-        else if (c == NO_HISTORY) def.history = false;
-        else ok = false;
+        if (c == 'o')
+            output = optarg;
+        else if (c == FRAME)
+            ok = sscanf(optarg, "%d%c", &def.frame, &end) == 1 && def.frame >= 0;
+        else if (c == CASE)
+            def.only = optarg;
+        else if (c == FIELD)
+            def.field = optarg;
+        else if (c == TARGET)
+            ok = parse_target(optarg, &def.target);
+        else if (c == VIEW)
+            ok = sscanf(optarg, "%lf,%lf,%lf%c", &def.view[0], &def.view[1], &def.view[2], &end) == 3;
+        else if (c == WIDTH)
+            ok = sscanf(optarg, "%d%c", &def.width, &end) == 1 && def.width >= 400 && def.width <= 4000;
+        else if (c == NO_ARROWS)
+            def.arrows = false;
+        else if (c == NO_HISTORY)
+            def.history = false;
+        else
+            ok = false;
     }
     if (!ok || optind != argc - 1) return verb_usage(usage);
     Error err;
-    char *name = verb_without_ending(argv[optind], ".vtkhdf"), *picture = output ? mem_text(output) : mem_format("%s.png", name);
-    int code = show_result(argv[optind], picture, &def, &err) ? RUN_DONE : verb_fail(RUN_CANNOT_WRITE, err.text);
+    char *name = verb_without_ending(argv[optind], ".vtkhdf"),
+         *picture = output ? mem_text(output) : mem_format("%s.png", name);
+    int code =
+        show_result(argv[optind], picture, &def, &err) ? RUN_DONE : verb_fail(RUN_CANNOT_WRITE, err.text);
     mem_free(name);
     mem_free(picture);
     return code;

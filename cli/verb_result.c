@@ -16,7 +16,7 @@ static bool has_ending(const char *path, const char *ending)
     return length > size && !strcmp(path + length - size, ending);
 }
 
-/* ---- info ----------------------------------------------------------------------------------------------- */
+/* ---- info ---- */
 
 static void print_array(const char *path, const Array *array)
 {
@@ -24,8 +24,10 @@ static void print_array(const char *path, const Array *array)
     printf("  %-44s %-8s", path, types[array->type]);
     if (array->type == ARRAY_TEXT) {
         const char *text = array->data, *line = strchr(text, '\n');
-        if (line) printf(" %d bytes\n", array->dims[0]);
-        else printf(" %s\n", text);
+        if (line)
+            printf(" %d bytes\n", array->dims[0]);
+        else
+            printf(" %s\n", text);
         return;
     }
     for (int r = 0; r < array->rank; r++) printf("%s%d", r ? " x " : " ", array->dims[r]);
@@ -63,7 +65,8 @@ static double evaluation_number(Journal *journal, int index, const char *name)
 {
     Array array;
     if (!journal_get(journal, "evaluation", index, name, &array, NULL)) return NAN;
-    double value = array_count(&array) == 1 && array.type == ARRAY_FLOAT64 ? *(const double *)array.data : NAN;
+    double value =
+        array_count(&array) == 1 && array.type == ARRAY_FLOAT64 ? *(const double *)array.data : NAN;
     array_clear(&array);
     return value;
 }
@@ -74,11 +77,13 @@ static int info_journal(const char *path)
     Journal *journal = journal_open(path, JOURNAL_READ, &err);
     if (!journal) return verb_fail(RUN_REFUSED, err.text);
     int evaluations = journal_count(journal, "evaluation");
-    printf("%s: %s, %d evaluations, %d frames, %d states\n", path, journal_is_finished(journal) ? "finished" : "not finished",
-           evaluations, journal_count(journal, "frame"), journal_count(journal, "state"));
+    printf("%s: %s, %d evaluations, %d frames, %d states\n", path,
+           journal_is_finished(journal) ? "finished" : "not finished", evaluations,
+           journal_count(journal, "frame"), journal_count(journal, "state"));
     for (int k = 0; k < evaluations; k++)
-        printf("  %4d  objective %.6e  gradient %.3e  %.1f s\n", k, evaluation_number(journal, k, "objective"),
-               evaluation_number(journal, k, "gradient_norm"), evaluation_number(journal, k, "seconds"));
+        printf("  %4d  objective %.6e  gradient %.3e  %.1f s\n", k,
+               evaluation_number(journal, k, "objective"), evaluation_number(journal, k, "gradient_norm"),
+               evaluation_number(journal, k, "seconds"));
     bool ok = journal_check(journal, &err);
     if (!ok) fprintf(stderr, "slender: %s\n", err.text);
     journal_close(journal, NULL);
@@ -88,22 +93,26 @@ static int info_journal(const char *path)
 int verb_info(int argc, char **argv)
 {
     if (argc != 2 || argv[1][0] == '-')
-        return verb_usage("info NAME.vtkhdf | NAME.run\n  Lists what is in a result, or how far a run has come.");
+        return verb_usage(
+            "info NAME.vtkhdf | NAME.run\n  Lists what is in a result, or how far a run has come.");
     return has_ending(argv[1], ".run") ? info_journal(argv[1]) : info_result(argv[1]);
 }
 
-/* ---- export --------------------------------------------------------------------------------------------- */
+/* ---- export ---- */
 
 /* Integers as numbers, so that one writer serves both. */
 static bool write_csv(const Array *array, const char *path, Error *err)
 {
-    if (array->type == ARRAY_TEXT) return error_set(err, "'%s' is a text, not numbers; slender info shows it", array->name);
+    if (array->type == ARRAY_TEXT)
+        return error_set(err, "'%s' is a text, not numbers; slender info shows it", array->name);
     size_t count = array_count(array);
     int columns = array->rank > 1 ? array->dims[array->rank - 1] : 1;
     double *values = mem_alloc(count, sizeof *values);
     for (size_t i = 0; i < count; i++)
-        values[i] = array->type == ARRAY_INT32 ? ((const int *)array->data)[i] : ((const double *)array->data)[i];
-    char *header = array->unit && array->unit[0] ? mem_format("# %s, %s", array->name, array->unit) : mem_format("# %s", array->name);
+        values[i] =
+            array->type == ARRAY_INT32 ? ((const int *)array->data)[i] : ((const double *)array->data)[i];
+    char *header = array->unit && array->unit[0] ? mem_format("# %s, %s", array->name, array->unit)
+                                                 : mem_format("# %s", array->name);
     bool ok = table_write(path, header, values, (int)(count / (size_t)columns), columns, err);
     mem_free(values);
     mem_free(header);
@@ -125,12 +134,16 @@ static bool export_dataset(Result *result, const char *dataset, const char *path
 static bool export_frame(Result *result, int frame, const char *path, Error *err)
 {
     Array faces, points;
-    if (frame >= result_step_count(result)) return error_set(err, "the result has %d frames, from 0", result_step_count(result));
+    if (frame >= result_step_count(result))
+        return error_set(err, "the result has %d frames, from 0", result_step_count(result));
     if (!result_read(result, "slender/faces", &faces, err)) return false;
-    bool ok = frame < 0 ? result_read(result, "slender/state/x", &points, err) : result_read_step(result, "Points", frame, &points, err);
+    bool ok = frame < 0 ? result_read(result, "slender/state/x", &points, err)
+                        : result_read_step(result, "Points", frame, &points, err);
     if (ok) {
-        MeshFile file = {.vertex_count = points.dims[0], .face_count = faces.dims[0], .vertices = (double (*)[3])points.data,
-                         .faces = (int (*)[3])faces.data};
+        MeshFile file = {.vertex_count = points.dims[0],
+                         .face_count = faces.dims[0],
+                         .vertices = (double(*)[3])points.data,
+                         .faces = (int(*)[3])faces.data};
         ok = mesh_file_write_obj(path, &file, err);
         array_clear(&points);
     }
@@ -175,19 +188,27 @@ int verb_export(int argc, char **argv)
     static const char usage[] =
         "export NAME.vtkhdf -o FILE.csv --dataset PATH      numbers, e.g. --dataset design/magnetization\n"
         "       slender export NAME.vtkhdf -o FILE.obj [--frame N]  a mesh; default: the final state\n"
-        "       slender export NAME.run -o NAME.vtkhdf              the result of a running or interrupted job";
-    static const struct option table[] = {{"output", required_argument, NULL, 'o'}, {"dataset", required_argument, NULL, 'd'},
-                                          {"frame", required_argument, NULL, 'f'}, {"help", no_argument, NULL, 'h'}, {0}};
+        "       slender export NAME.run -o NAME.vtkhdf              the result of a running or interrupted "
+        "job";
+    static const struct option table[] = {{"output", required_argument, NULL, 'o'},
+                                          {"dataset", required_argument, NULL, 'd'},
+                                          {"frame", required_argument, NULL, 'f'},
+                                          {"help", no_argument, NULL, 'h'},
+                                          {0}};
     const char *output = NULL, *dataset = NULL;
     int frame = -1;
     char end;
     for (int c; (c = getopt_long(argc, argv, "o:", table, NULL)) >= 0;)
-        if (c == 'o') output = optarg;
-        else if (c == 'd') dataset = optarg;
-        else if (c != 'f' || sscanf(optarg, "%d%c", &frame, &end) != 1 || frame < 0) return verb_usage(usage);
+        if (c == 'o')
+            output = optarg;
+        else if (c == 'd')
+            dataset = optarg;
+        else if (c != 'f' || sscanf(optarg, "%d%c", &frame, &end) != 1 || frame < 0)
+            return verb_usage(usage);
     if (!output || optind != argc - 1) return verb_usage(usage);
     Error err;
     const char *input = argv[optind];
-    bool ok = has_ending(input, ".run") ? export_journal(input, output, &err) : export_result(input, dataset, frame, output, &err);
+    bool ok = has_ending(input, ".run") ? export_journal(input, output, &err)
+                                        : export_result(input, dataset, frame, output, &err);
     return ok ? RUN_DONE : verb_fail(RUN_CANNOT_WRITE, err.text);
 }

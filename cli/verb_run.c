@@ -21,7 +21,8 @@ typedef struct RunOptions {
 } RunOptions;
 
 static const char usage[] =
-    "run SCENE [-o NAME] [--set key=value].. [--resume | --force] [--threads N] [--quiet | --log=json] [--no-picture]\n"
+    "run SCENE [-o NAME] [--set key=value].. [--resume | --force] [--threads N] [--quiet | --log=json] "
+    "[--no-picture]\n"
     "  Writes NAME.vtkhdf and NAME.xdmf (the result), NAME.png (a picture) and NAME.run (the journal).\n"
     "  -o NAME          default: the scene's name, here\n"
     "  --set key=value  overrides a value of the scene: --set shell.thickness=1mm; may be repeated\n"
@@ -33,29 +34,43 @@ static const char usage[] =
 static bool parse(int argc, char **argv, RunOptions *options)
 {
     enum { SET = 256, RESUME, FORCE, THREADS, QUIET, LOG, NO_PICTURE, HELP };
-    static const struct option table[] = {
-        {"output", required_argument, NULL, 'o'}, {"set", required_argument, NULL, SET},
-        {"resume", no_argument, NULL, RESUME},    {"force", no_argument, NULL, FORCE},
-        {"threads", required_argument, NULL, THREADS}, {"quiet", no_argument, NULL, QUIET},
-        {"log", required_argument, NULL, LOG},    {"no-picture", no_argument, NULL, NO_PICTURE},
-        {"help", no_argument, NULL, HELP},        {0}};
+    static const struct option table[] = {{"output", required_argument, NULL, 'o'},
+                                          {"set", required_argument, NULL, SET},
+                                          {"resume", no_argument, NULL, RESUME},
+                                          {"force", no_argument, NULL, FORCE},
+                                          {"threads", required_argument, NULL, THREADS},
+                                          {"quiet", no_argument, NULL, QUIET},
+                                          {"log", required_argument, NULL, LOG},
+                                          {"no-picture", no_argument, NULL, NO_PICTURE},
+                                          {"help", no_argument, NULL, HELP},
+                                          {0}};
     options->threads = (int)sysconf(_SC_NPROCESSORS_ONLN);
     for (int c; (c = getopt_long(argc, argv, "o:", table, NULL)) >= 0;) {
-        if (c == 'o') options->output = optarg;
-        else if (c == SET && options->set_count < SET_MAX) options->set[options->set_count++] = optarg;
-        else if (c == RESUME) options->resume = true;
-        else if (c == FORCE) options->force = true;
-        else if (c == THREADS) options->threads = atoi(optarg);
-        else if (c == QUIET) options->mode = PROGRESS_QUIET;
-        else if (c == LOG && !strcmp(optarg, "json")) options->mode = PROGRESS_JSON;
-        else if (c == NO_PICTURE) options->no_picture = true;
-        else return false;
+        if (c == 'o')
+            options->output = optarg;
+        else if (c == SET && options->set_count < SET_MAX)
+            options->set[options->set_count++] = optarg;
+        else if (c == RESUME)
+            options->resume = true;
+        else if (c == FORCE)
+            options->force = true;
+        else if (c == THREADS)
+            options->threads = atoi(optarg);
+        else if (c == QUIET)
+            options->mode = PROGRESS_QUIET;
+        else if (c == LOG && !strcmp(optarg, "json"))
+            options->mode = PROGRESS_JSON;
+        else if (c == NO_PICTURE)
+            options->no_picture = true;
+        else
+            return false;
     }
     options->scene = argv[optind];
-    return optind == argc - 1 && options->threads >= 1 && options->threads <= THREADS_MAX && !(options->resume && options->force);
+    return optind == argc - 1 && options->threads >= 1 && options->threads <= THREADS_MAX &&
+           !(options->resume && options->force);
 }
 
-/* ---- The journal's beginning ---------------------------------------------------------------------------- */
+/* ---- The journal's beginning ---- */
 
 /* Keys that a resumed run may change: how far it goes, and what it writes. */
 static const char *const free_keys[] = {"design.iterations", "design.tolerance", "output", "modes", NULL};
@@ -67,8 +82,11 @@ static bool check_scene(Journal *journal, const char *scene, Error *err)
     char *difference = yaml_difference(old.data, scene, free_keys);
     array_clear(&old);
     if (!difference) return true;
-    error_set(err, "the scene has changed since that run: %s is not the same; only iterations and output may change with "
-                   "--resume", difference);
+    error_set(err,
+              "the scene has changed since that run: %s is not the same; only iterations and output may "
+              "change with "
+              "--resume",
+              difference);
     mem_free(difference);
     return false;
 }
@@ -82,14 +100,16 @@ static bool begin(Run *run, const RunOptions *options, Error *err)
     Array statics[] = {array_float("rest", "m", mesh->rest[0], 2, mesh->vertex_count, 3),
                        array_int("faces", mesh->faces[0], 2, mesh->face_count, 3),
                        array_int("edges", mesh->edges[0], 2, mesh->edge_count, 2)};
-    ok = ok && journal_put(run->journal, "meta", 0, meta, 2, err) && journal_put(run->journal, "static", 0, statics, 3, err);
-    if (ok && options->resume && journal_is_finished(run->journal)) ok = journal_set_finished(run->journal, false, err);
+    ok = ok && journal_put(run->journal, "meta", 0, meta, 2, err) &&
+         journal_put(run->journal, "static", 0, statics, 3, err);
+    if (ok && options->resume && journal_is_finished(run->journal))
+        ok = journal_set_finished(run->journal, false, err);
     mem_free(scene);
     mem_free(versions);
     return ok;
 }
 
-/* ---- The result ----------------------------------------------------------------------------------------- */
+/* ---- The result ---- */
 
 static bool write_result(Run *run, const char *path, bool finished, Error *err)
 {
@@ -114,13 +134,16 @@ static void draw(Run *run, const char *result)
 static int do_job(Run *run, const RunOptions *options, const char *result)
 {
     Error err;
-    if (!begin(run, options, &err)) return verb_fail(options->resume ? RUN_REFUSED : RUN_CANNOT_WRITE, err.text);
+    if (!begin(run, options, &err))
+        return verb_fail(options->resume ? RUN_REFUSED : RUN_CANNOT_WRITE, err.text);
     RunStatus status = job_run(run, &err);
     if (status == RUN_CANNOT_WRITE) return verb_fail(status, err.text);
-    if (!write_result(run, result, status != RUN_INTERRUPTED, &err)) return verb_fail(RUN_CANNOT_WRITE, err.text);
+    if (!write_result(run, result, status != RUN_INTERRUPTED, &err))
+        return verb_fail(RUN_CANNOT_WRITE, err.text);
     progress_say(run->progress, "result: %s", result);
     if (!options->no_picture) draw(run, result);
-    if (status == RUN_INTERRUPTED) progress_say(run->progress, "interrupted; all is saved: run again with --resume");
+    if (status == RUN_INTERRUPTED)
+        progress_say(run->progress, "interrupted; all is saved: run again with --resume");
     return status;
 }
 
@@ -128,12 +151,18 @@ static int run_model(const RunOptions *options, const Scene *scene, Model *model
 {
     Error err;
     Progress progress = progress_start(options->mode);
-    char *name = options->output ? verb_without_ending(options->output, ".vtkhdf") : verb_base_name(options->scene);
+    char *name =
+        options->output ? verb_without_ending(options->output, ".vtkhdf") : verb_base_name(options->scene);
     char *result = mem_format("%s.vtkhdf", name), *journal = mem_format("%s.run", name);
     Run run = {.scene = scene, .model = model, .progress = &progress, .threads = options->threads};
-    run.journal = journal_open(journal, options->resume ? JOURNAL_RESUME : options->force ? JOURNAL_FORCE : JOURNAL_NEW, &err);
+    run.journal = journal_open(journal,
+                               options->resume  ? JOURNAL_RESUME
+                               : options->force ? JOURNAL_FORCE
+                                                : JOURNAL_NEW,
+                               &err);
     int code = run.journal ? do_job(&run, options, result) : verb_fail(RUN_CANNOT_WRITE, err.text);
-    if (run.journal && !journal_close(run.journal, &err) && code != RUN_CANNOT_WRITE) code = verb_fail(RUN_CANNOT_WRITE, err.text);
+    if (run.journal && !journal_close(run.journal, &err) && code != RUN_CANNOT_WRITE)
+        code = verb_fail(RUN_CANNOT_WRITE, err.text);
     mem_free(name);
     mem_free(result);
     mem_free(journal);

@@ -9,8 +9,10 @@ int verb_schema(int argc, char **argv)
 {
     bool manual = argc == 2 && !strcmp(argv[1], "--manual");
     if (argc > 2 || (argc == 2 && !manual))
-        return verb_usage("schema [--manual]\n  JSON Schema of scene files for editors; with --manual the manual of all keys (docs/scene.md)");
-    char *text = manual ? yaml_manual(&scene_table, "Scene files") : yaml_schema(&scene_table, "slender scene");
+        return verb_usage("schema [--manual]\n  JSON Schema of scene files for editors; with --manual the "
+                          "manual of all keys (docs/scene.md)");
+    char *text =
+        manual ? yaml_manual(&scene_table, "Scene files") : yaml_schema(&scene_table, "slender scene");
     fputs(text, stdout);
     mem_free(text);
     return RUN_DONE;
@@ -19,27 +21,37 @@ int verb_schema(int argc, char **argv)
 /* A mesh as a file again, in its own numbering. */
 static bool write_mesh(const Mesh *mesh, const char *path, Error *err)
 {
-    MeshFile file = {.vertex_count = mesh->vertex_count, .face_count = mesh->face_count, .vertices = mesh->rest,
-                     .faces = mesh->faces, .group_count = mesh->group_count, .groups = mesh->groups};
+    MeshFile file = {.vertex_count = mesh->vertex_count,
+                     .face_count = mesh->face_count,
+                     .vertices = mesh->rest,
+                     .faces = mesh->faces,
+                     .group_count = mesh->group_count,
+                     .groups = mesh->groups};
     return mesh_file_write_obj(path, &file, err);
 }
 
 int verb_mesh(int argc, char **argv)
 {
-    static const char usage[] = "mesh SCENE [-o FILE.obj]\n  Writes the scene's mesh, generated or read, as OBJ with its groups.";
-    static const struct option table[] = {{"output", required_argument, NULL, 'o'}, {"help", no_argument, NULL, 'h'}, {0}};
+    static const char usage[] =
+        "mesh SCENE [-o FILE.obj]\n  Writes the scene's mesh, generated or read, as OBJ with its groups.";
+    static const struct option table[] = {
+        {"output", required_argument, NULL, 'o'}, {"help", no_argument, NULL, 'h'}, {0}};
     const char *output = NULL;
     for (int c; (c = getopt_long(argc, argv, "o:", table, NULL)) >= 0;)
-        if (c == 'o') output = optarg;
-        else return verb_usage(usage);
+        if (c == 'o')
+            output = optarg;
+        else
+            return verb_usage(usage);
     if (optind != argc - 1) return verb_usage(usage);
     YamlFile *file;
     Scene scene;
     Error err;
     int code = RUN_REFUSED;
     char *name = verb_base_name(argv[optind]), *path = output ? mem_text(output) : mem_format("%s.obj", name);
-    Model *model = verb_load_scene(argv[optind], NULL, 0, &file, &scene) ? verb_build_model(&scene, file) : NULL;
-    if (model) code = write_mesh(model->shell->mesh, path, &err) ? RUN_DONE : verb_fail(RUN_CANNOT_WRITE, err.text);
+    Model *model =
+        verb_load_scene(argv[optind], NULL, 0, &file, &scene) ? verb_build_model(&scene, file) : NULL;
+    if (model)
+        code = write_mesh(model->shell->mesh, path, &err) ? RUN_DONE : verb_fail(RUN_CANNOT_WRITE, err.text);
     model_destroy(model);
     yaml_clear(&scene_table, &scene);
     yaml_destroy(file);

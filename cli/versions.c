@@ -8,7 +8,8 @@
 
 char *run_versions(void)
 {
-    return mem_format("slender %s\nCHOLMOD %s\n%s%s\nNLopt %s\nHDF5 %s\nSQLite %s\n", SLENDER_VERSION, sparse_version(),
-                      sparse_blas_version(), sparse_blas_is_fast() ? "" : " (slow: OpenBLAS is ten times faster)",
+    return mem_format("slender %s\nCHOLMOD %s\n%s%s\nNLopt %s\nHDF5 %s\nSQLite %s\n", SLENDER_VERSION,
+                      sparse_version(), sparse_blas_version(),
+                      sparse_blas_is_fast() ? "" : " (slow: OpenBLAS is ten times faster)",
                       optimiser_nlopt_version(), result_hdf5_version(), journal_sqlite_version());
 }

@@ -11,9 +11,9 @@ typedef struct Array {
     const char *name; /* path below its place, e.g. "design/young"                       */
     const char *unit; /* e.g. "Pa"; "" where there is none                              */
     ArrayType type;
-    int rank;                   /* 0: a scalar                                                     */
-    int dims[ARRAY_MAX_RANK];   /* of a text: dims[0] = bytes without the closing 0, rank 1 */
-    const void *data;           /* row-major; borrowed by writers, owned after a read (array_clear) */
+    int rank;                 /* 0: a scalar                                                     */
+    int dims[ARRAY_MAX_RANK]; /* of a text: dims[0] = bytes without the closing 0, rank 1 */
+    const void *data;         /* row-major; borrowed by writers, owned after a read (array_clear) */
 } Array;
 
 /* Borrowing constructors; dims beyond rank are ignored. */
@@ -26,3 +26,6 @@ size_t array_count(const Array *array);
 
 /* Frees name, unit and data of an array that a reader filled. */
 void array_clear(Array *array);
+
+/* CRC32 over the bytes, over all that is said of them, and over the key under which they are kept. */
+uint32_t array_crc(const Array *array, const char *kind, int index);

@@ -32,10 +32,13 @@ struct Canvas {
     Bytes file;
 };
 
-/* Read by the leak checker of sanitized builds: Cairo and fontconfig keep a few fonts for good, behind offsets that the
- * checker cannot follow. */
+/* Read by the leak checker of sanitized builds: Cairo and fontconfig keep a few fonts for good, behind
+ * offsets that the checker cannot follow. */
 const char *__lsan_default_suppressions(void);
-const char *__lsan_default_suppressions(void) { return "leak:libfontconfig"; }
+const char *__lsan_default_suppressions(void)
+{
+    return "leak:libfontconfig";
+}
 
 static cairo_status_t bytes_append(void *self, const unsigned char *data, unsigned length)
 {

@@ -16,14 +16,23 @@ typedef struct Expression {
 
 struct Formula {
     int variable_count, helper_count, expression_count;
-    char **names;     /* [variable_count + helper_count]                               */
-    double *values;   /* the same; muParser points into it                             */
+    char **names;      /* [variable_count + helper_count]                               */
+    double *values;    /* the same; muParser points into it                             */
     Expression *items; /* [helper_count + expression_count], in the order of evaluation */
 };
 
-static double fun_mod(double a, double b) { return a - b * floor(a / b); }
-static double fun_clamp(double x, double low, double high) { return fmin(fmax(x, low), high); }
-static double fun_step(double x) { return x < 0 ? 0 : 1; }
+static double fun_mod(double a, double b)
+{
+    return a - b * floor(a / b);
+}
+static double fun_clamp(double x, double low, double high)
+{
+    return fmin(fmax(x, low), high);
+}
+static double fun_step(double x)
+{
+    return x < 0 ? 0 : 1;
+}
 
 /* Keeps muParser from printing; the error is asked for after each call. */
 static void ignore_error(muParserHandle_t parser)
@@ -52,11 +61,13 @@ static bool check_text(const char *text, Error *err)
     int depth = 0;
     size_t length = strlen(text);
     if (length == 0) return error_set(err, "an expression is empty");
-    if (length > MAX_LENGTH) return error_set(err, "an expression has %zu characters; %d are allowed", length, MAX_LENGTH);
+    if (length > MAX_LENGTH)
+        return error_set(err, "an expression has %zu characters; %d are allowed", length, MAX_LENGTH);
     for (const char *c = text; *c; c++) {
         if (*c == '(') depth++;
         if (*c == ')') depth--;
-        if (depth > MAX_DEPTH) return error_set(err, "an expression nests deeper than %d parentheses", MAX_DEPTH);
+        if (depth > MAX_DEPTH)
+            return error_set(err, "an expression nests deeper than %d parentheses", MAX_DEPTH);
     }
     return true;
 }
@@ -110,7 +121,8 @@ Formula *formula_create(const char *const *expressions, int expression_count, co
     formula->values = mem_alloc(slots, sizeof *formula->values);
     formula->items = mem_alloc((size_t)(helper_count + expression_count), sizeof *formula->items);
     for (int i = 0; i < formula->variable_count; i++) formula->names[i] = mem_text(variables[i]);
-    for (int i = 0; i < helper_count; i++) formula->names[formula->variable_count + i] = mem_text(helpers[i].name);
+    for (int i = 0; i < helper_count; i++)
+        formula->names[formula->variable_count + i] = mem_text(helpers[i].name);
 
     bool ok = true;
     for (int i = 0; ok && i < helper_count; i++)
@@ -149,7 +161,8 @@ bool formula_eval(Formula *formula, const double *variables, double *result, Err
         char at[256] = "";
         size_t used = 0;
         for (int k = 0; k < formula->variable_count && used < sizeof at; k++)
-            used += (size_t)snprintf(at + used, sizeof at - used, "%s%s = %g", k ? ", " : "", formula->names[k], variables[k]);
+            used += (size_t)snprintf(at + used, sizeof at - used, "%s%s = %g", k ? ", " : "",
+                                     formula->names[k], variables[k]);
         return error_set(err, "\"%s\" is not a finite number at %s", item->text, at);
     }
     return true;

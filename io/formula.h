@@ -1,7 +1,8 @@
 /* formula.h - expressions of named variables, evaluated by muParser through its C interface.
  *
- * A Formula holds one or more expressions over the same variables, with named helpers (`where`) that are evaluated
- * first, in order. Beside muParser's own functions there are pi, e, atan2, mod(a, b), clamp(x, lo, hi), step(x). */
+ * A Formula holds one or more expressions over the same variables, with named helpers (`where`) that are
+ * evaluated first, in order. Beside muParser's own functions there are pi, e, atan2, mod(a, b), clamp(x, lo,
+ * hi), step(x). */
 #pragma once
 #include "base/error.h"
 
@@ -11,15 +12,15 @@ typedef struct FormulaHelper {
     const char *name, *expression;
 } FormulaHelper;
 
-/* variables: NULL-terminated list of names, e.g. {"x", "y", "z", "r", "t", NULL}. On failure returns NULL and one
- * sentence that quotes the expression, points at the place and names the variables that are known. */
+/* variables: NULL-terminated list of names, e.g. {"x", "y", "z", "r", "t", NULL}. On failure returns NULL and
+ * one sentence that quotes the expression, points at the place and names the variables that are known. */
 Formula *formula_create(const char *const *expressions, int expression_count, const FormulaHelper *helpers,
                         int helper_count, const char *const *variables, Error *err);
 
 void formula_destroy(Formula *formula);
 
-/* result[expression_count] at the variables' values (in their order). Returns false and a sentence with the values of
- * the variables where a result is not finite. Not re-entrant: one Formula per thread. */
+/* result[expression_count] at the variables' values (in their order). Returns false and a sentence with the
+ * values of the variables where a result is not finite. Not re-entrant: one Formula per thread. */
 bool formula_eval(Formula *formula, const double *variables, double *result, Error *err);
 
 /* Does any expression (through its helpers too) depend on that variable? */

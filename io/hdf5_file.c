@@ -1,5 +1,5 @@
-/* The only file that includes hdf5.h. Every return value is checked: HDF5 reports a full disk as late as the close of a
- * dataset, and a file that is not checked may be wrong without an error. */
+/* The only file that includes hdf5.h. Every return value is checked: HDF5 reports a full disk as late as the
+ * close of a dataset, and a file that is not checked may be wrong without an error. */
 #include "io/hdf5_file.h"
 #include "base/memory.h"
 #include <hdf5.h>
@@ -24,7 +24,7 @@ static bool failed(const char *what, const char *path, Error *err)
     return error_set(err, "HDF5 cannot %s %s", what, path);
 }
 
-/* ---- Files ---------------------------------------------------------------------------------------------- */
+/* ---- Files ---- */
 
 static Hdf5 *wrap(hid_t file)
 {
@@ -86,7 +86,7 @@ bool hdf5_image(Hdf5 *file, void **bytes, size_t *size, Error *err)
     return failed("finish", "the file", err);
 }
 
-/* ---- Writing -------------------------------------------------------------------------------------------- */
+/* ---- Writing ---- */
 
 static bool put_text_attribute(hid_t object, const char *name, const char *text)
 {
@@ -133,7 +133,8 @@ static bool write_text(Hdf5 *file, const char *path, const Array *array)
     H5Tset_strpad(type, H5T_STR_NULLPAD);
     H5Tset_cset(type, H5T_CSET_UTF8);
     hid_t dataset = H5Dcreate2(file->file, path, type, space, file->links, properties, H5P_DEFAULT);
-    bool ok = dataset >= 0 && H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, length ? array->data : "\0") >= 0;
+    bool ok = dataset >= 0 &&
+              H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, length ? array->data : "\0") >= 0;
     ok = dataset >= 0 && H5Dclose(dataset) >= 0 && ok;
     H5Pclose(properties);
     H5Sclose(space);
@@ -148,10 +149,13 @@ static bool write_numbers(Hdf5 *file, const char *path, const Array *array, Hdf5
     hid_t space = array->rank ? H5Screate_simple(array->rank, dims, NULL) : H5Screate(H5S_SCALAR);
     hid_t properties = creation(array->rank, dims, layout.chunk_rows);
     hid_t memory = array->type == ARRAY_FLOAT64 ? H5T_NATIVE_DOUBLE : H5T_NATIVE_INT32;
-    hid_t dataset = H5Dcreate2(file->file, path, file_type(array, layout), space, file->links, properties, H5P_DEFAULT);
+    hid_t dataset =
+        H5Dcreate2(file->file, path, file_type(array, layout), space, file->links, properties, H5P_DEFAULT);
     bool ok = dataset >= 0 && H5Dwrite(dataset, memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, array->data) >= 0;
-    if (ok && array->unit && array->unit[0]) ok = put_text_attribute(dataset, "unit", array->unit);
-    else if (ok && array->type == ARRAY_FLOAT64) ok = put_text_attribute(dataset, "unit", "");
+    if (ok && array->unit && array->unit[0])
+        ok = put_text_attribute(dataset, "unit", array->unit);
+    else if (ok && array->type == ARRAY_FLOAT64)
+        ok = put_text_attribute(dataset, "unit", "");
     ok = dataset >= 0 && H5Dclose(dataset) >= 0 && ok;
     H5Pclose(properties);
     H5Sclose(space);
@@ -160,22 +164,26 @@ static bool write_numbers(Hdf5 *file, const char *path, const Array *array, Hdf5
 
 bool hdf5_write(Hdf5 *file, const char *path, const Array *array, Hdf5Layout layout, Error *err)
 {
-    bool ok = array->type == ARRAY_TEXT ? write_text(file, path, array) : write_numbers(file, path, array, layout);
+    bool ok =
+        array->type == ARRAY_TEXT ? write_text(file, path, array) : write_numbers(file, path, array, layout);
     return ok || failed("write", path, err);
 }
 
-Hdf5Rows *hdf5_rows_create(Hdf5 *file, const char *path, const char *unit, int chunk_rows, int width, bool single, Error *err)
+Hdf5Rows *hdf5_rows_create(Hdf5 *file, const char *path, const char *unit, int chunk_rows, int width,
+                           bool single, Error *err)
 {
     Hdf5Rows *rows = mem_alloc(1, sizeof *rows);
     int rank = width ? 2 : 1;
-    hsize_t dims[2] = {0, (hsize_t)width}, most[2] = {H5S_UNLIMITED, (hsize_t)width}, chunk[2] = {(hsize_t)chunk_rows, (hsize_t)width};
+    hsize_t dims[2] = {0, (hsize_t)width}, most[2] = {H5S_UNLIMITED, (hsize_t)width},
+            chunk[2] = {(hsize_t)chunk_rows, (hsize_t)width};
     *rows = (Hdf5Rows){.chunk = chunk[0], .width = (hsize_t)width};
     hid_t space = H5Screate_simple(rank, dims, most), properties = H5Pcreate(H5P_DATASET_CREATE);
     H5Pset_obj_track_times(properties, 0);
     H5Pset_chunk(properties, rank, chunk);
     H5Pset_shuffle(properties);
     H5Pset_deflate(properties, 1);
-    rows->dataset = H5Dcreate2(file->file, path, single ? H5T_IEEE_F32LE : H5T_IEEE_F64LE, space, file->links, properties, H5P_DEFAULT);
+    rows->dataset = H5Dcreate2(file->file, path, single ? H5T_IEEE_F32LE : H5T_IEEE_F64LE, space, file->links,
+                               properties, H5P_DEFAULT);
     H5Pclose(properties);
     H5Sclose(space);
     if (rows->dataset >= 0 && put_text_attribute(rows->dataset, "unit", unit)) return rows;
@@ -188,7 +196,8 @@ Hdf5Rows *hdf5_rows_create(Hdf5 *file, const char *path, const char *unit, int c
 bool hdf5_rows_append(Hdf5Rows *rows, const double *values, Error *err)
 {
     int rank = rows->width ? 2 : 1;
-    hsize_t total[2] = {rows->rows + rows->chunk, rows->width}, first[2] = {rows->rows, 0}, count[2] = {rows->chunk, rows->width};
+    hsize_t total[2] = {rows->rows + rows->chunk, rows->width}, first[2] = {rows->rows, 0},
+            count[2] = {rows->chunk, rows->width};
     if (H5Dset_extent(rows->dataset, total) < 0) return failed("write", "a frame", err);
     hid_t space = H5Dget_space(rows->dataset), memory = H5Screate_simple(rank, count, NULL);
     bool ok = H5Sselect_hyperslab(space, H5S_SELECT_SET, first, NULL, count, NULL) >= 0 &&
@@ -222,11 +231,14 @@ bool hdf5_attribute_text(Hdf5 *file, const char *group, const char *name, const 
     return ok || failed("write", name, err);
 }
 
-bool hdf5_attribute_ints(Hdf5 *file, const char *group, const char *name, const int *values, int count, Error *err)
+bool hdf5_attribute_ints(Hdf5 *file, const char *group, const char *name, const int *values, int count,
+                         Error *err)
 {
     hsize_t dims[1] = {(hsize_t)count};
-    hid_t object = open_group(file, group), space = count == 1 ? H5Screate(H5S_SCALAR) : H5Screate_simple(1, dims, NULL);
-    hid_t attribute = object >= 0 ? H5Acreate2(object, name, H5T_STD_I64LE, space, H5P_DEFAULT, H5P_DEFAULT) : -1;
+    hid_t object = open_group(file, group),
+          space = count == 1 ? H5Screate(H5S_SCALAR) : H5Screate_simple(1, dims, NULL);
+    hid_t attribute =
+        object >= 0 ? H5Acreate2(object, name, H5T_STD_I64LE, space, H5P_DEFAULT, H5P_DEFAULT) : -1;
     bool ok = attribute >= 0 && H5Awrite(attribute, H5T_NATIVE_INT32, values) >= 0;
     ok = attribute >= 0 && H5Aclose(attribute) >= 0 && ok;
     H5Sclose(space);
@@ -234,7 +246,7 @@ bool hdf5_attribute_ints(Hdf5 *file, const char *group, const char *name, const 
     return ok || failed("write", name, err);
 }
 
-/* ---- Reading -------------------------------------------------------------------------------------------- */
+/* ---- Reading ---- */
 
 /* H5Lexists wants every group on the way to exist. */
 bool hdf5_has(Hdf5 *file, const char *path)
@@ -294,7 +306,8 @@ static bool select_rows(hid_t space, int first, int count, Array *array)
     if (total > 1e10) return false;
     array->rank = rank;
     dims[0] = (hsize_t)count;
-    return rank == 0 || total == 0 || H5Sselect_hyperslab(space, H5S_SELECT_SET, start, NULL, dims, NULL) >= 0;
+    return rank == 0 || total == 0 ||
+           H5Sselect_hyperslab(space, H5S_SELECT_SET, start, NULL, dims, NULL) >= 0;
 }
 
 static bool narrow(const int64_t *wide, size_t count, int32_t *values)
@@ -317,7 +330,8 @@ static bool read_numbers(hid_t dataset, hid_t type, int first, int count, Array 
         hid_t memory = array->rank ? H5Screate_simple(1, size, NULL) : H5Screate(H5S_SCALAR);
         void *data = mem_alloc(total, 8);
         array->data = data;
-        ok = total == 0 || H5Dread(dataset, integer ? H5T_NATIVE_INT64 : H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, data) >= 0;
+        ok = total == 0 || H5Dread(dataset, integer ? H5T_NATIVE_INT64 : H5T_NATIVE_DOUBLE, memory, space,
+                                   H5P_DEFAULT, data) >= 0;
         if (ok && integer) {
             array->data = mem_alloc(total, sizeof(int32_t));
             ok = narrow(data, total, (int32_t *)array->data);
@@ -340,7 +354,8 @@ bool hdf5_read(Hdf5 *file, const char *path, int first, int count, Array *array,
     array->name = mem_text(path);
     array->unit = unit_of(dataset);
     bool ok = class == H5T_STRING ? read_text(dataset, type, array)
-                                  : (class == H5T_INTEGER || class == H5T_FLOAT) && read_numbers(dataset, type, first, count, array);
+                                  : (class == H5T_INTEGER || class == H5T_FLOAT) &&
+                                        read_numbers(dataset, type, first, count, array);
     H5Tclose(type);
     H5Dclose(dataset);
     if (ok) return true;
@@ -365,7 +380,7 @@ bool hdf5_read_attribute_text(Hdf5 *file, const char *group, const char *name, c
     return ok || failed("read", name, err);
 }
 
-/* ---- Listing -------------------------------------------------------------------------------------------- */
+/* ---- Listing ---- */
 
 typedef struct Names {
     int count;
@@ -394,7 +409,8 @@ bool hdf5_list(Hdf5 *file, char ***paths, int *count, Error *err)
 {
     Names names = {0};
     bool ok = H5Ovisit2(file->file, H5_INDEX_NAME, H5_ITER_INC, visit, &names, H5O_INFO_BASIC) >= 0;
-    char **table = mem_alloc((size_t)names.count * sizeof *table + names.used, 1), *text = (char *)(table + names.count);
+    char **table = mem_alloc((size_t)names.count * sizeof *table + names.used, 1),
+         *text = (char *)(table + names.count);
     if (names.used) memcpy(text, names.text, names.used);
     for (int k = 0; k < names.count; k++, text += strlen(text) + 1) table[k] = text;
     mem_free(names.text);

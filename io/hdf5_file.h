@@ -1,5 +1,5 @@
-/* hdf5_file.h - HDF5 files as images in memory: built whole, and read only after their bytes have been checked. Private
- * to result.c. A failing disk or a damaged file never meets the HDF5 library. */
+/* hdf5_file.h - HDF5 files as images in memory: built whole, and read only after their bytes have been
+ * checked. Private to result.c. A failing disk or a damaged file never meets the HDF5 library. */
 #pragma once
 #include "base/error.h"
 #include "io/array.h"
@@ -26,21 +26,24 @@ bool hdf5_write(Hdf5 *file, const char *path, const Array *array, Hdf5Layout lay
 
 /* A dataset of rows (of `width` numbers, 0: numbers) that is filled chunk by chunk. */
 typedef struct Hdf5Rows Hdf5Rows;
-Hdf5Rows *hdf5_rows_create(Hdf5 *file, const char *path, const char *unit, int chunk_rows, int width, bool single, Error *err);
+Hdf5Rows *hdf5_rows_create(Hdf5 *file, const char *path, const char *unit, int chunk_rows, int width,
+                           bool single, Error *err);
 bool hdf5_rows_append(Hdf5Rows *rows, const double *values, Error *err); /* chunk_rows of them */
 bool hdf5_rows_close(Hdf5Rows *rows, Error *err);
 
 bool hdf5_attribute_text(Hdf5 *file, const char *group, const char *name, const char *text, Error *err);
-bool hdf5_attribute_ints(Hdf5 *file, const char *group, const char *name, const int *values, int count, Error *err);
+bool hdf5_attribute_ints(Hdf5 *file, const char *group, const char *name, const int *values, int count,
+                         Error *err);
 
 /* The whole file; the caller frees the bytes. */
 bool hdf5_image(Hdf5 *file, void **bytes, size_t *size, Error *err);
 
-/* ---- Reading -------------------------------------------------------------------------------------------- */
+/* ---- Reading ---- */
 
 bool hdf5_has(Hdf5 *file, const char *path);
 
-/* Rows first .. first+count-1 of the first dimension; count < 0: all. Floating point as float64, integers as int32. */
+/* Rows first .. first+count-1 of the first dimension; count < 0: all. Floating point as float64, integers as
+ * int32. */
 bool hdf5_read(Hdf5 *file, const char *path, int first, int count, Array *array, Error *err);
 bool hdf5_read_attribute_text(Hdf5 *file, const char *group, const char *name, char **text, Error *err);
 

@@ -1,8 +1,9 @@
-/* Units wait in memory until their commit succeeds, so that a disk that was full for a while costs nothing. The only
- * file that includes sqlite3.h. */
+/* Units wait in memory until their commit succeeds, so that a disk that was full for a while costs nothing.
+ * The only file that includes sqlite3.h. */
 #include "io/journal.h"
 #include "base/clock.h"
 #include "base/memory.h"
+#include "io/waiting.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <sqlite3.h>
@@ -10,18 +11,10 @@
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
-#include <zlib.h>
 
 enum { APPLICATION_ID = 0x534c4e44 /* "SLND" */, FORMAT_VERSION = 1, BUSY_MS = 5000 };
 
 static const double COMMIT_INTERVAL = 0.5; /* s */
-
-/* An array that waits for its commit. */
-typedef struct Pending {
-    char *kind;
-    int index;
-    Array array; /* owned */
-} Pending;
 
 struct Journal {
     char *path;
@@ -29,19 +22,20 @@ struct Journal {
     int lock; /* file descriptor, -1 for readers */
     bool reader;
     double committed; /* when */
-    Pending *pending;
-    size_t pending_count, pending_room;
-    bool finished;     /* as it should be, and as it is in the file */
+    Waiting waiting;
+    bool finished; /* as it should be, and as it is in the file */
     bool finished_dirty;
 };
 
-/* ---- SQLite --------------------------------------------------------------------------------------------- */
+/* ---- SQLite ---- */
 
 static bool sql_error(const Journal *journal, const char *what, Error *err)
 {
     int code = sqlite3_extended_errcode(journal->db) & 0xff;
-    if (code == SQLITE_NOTADB) return error_set(err, "%s is not a journal of slender; it has not been touched", journal->path);
-    if (code == SQLITE_CORRUPT) return error_set(err, "%s is damaged: %s", journal->path, sqlite3_errmsg(journal->db));
+    if (code == SQLITE_NOTADB)
+        return error_set(err, "%s is not a journal of slender; it has not been touched", journal->path);
+    if (code == SQLITE_CORRUPT)
+        return error_set(err, "%s is damaged: %s", journal->path, sqlite3_errmsg(journal->db));
     return error_set(err, "%s: cannot be %s: %s", journal->path, what, sqlite3_errmsg(journal->db));
 }
 
@@ -59,7 +53,8 @@ static sqlite3_stmt *prepare(Journal *journal, const char *sql, Error *err)
 }
 
 /* A single number; `absent` where there is no row. False where it cannot be read. */
-static bool query_number(Journal *journal, const char *sql, const char *text, long absent, long *value, Error *err)
+static bool query_number(Journal *journal, const char *sql, const char *text, long absent, long *value,
+                         Error *err)
 {
     sqlite3_stmt *statement = prepare(journal, sql, err);
     if (!statement) return false;
@@ -72,7 +67,7 @@ static bool query_number(Journal *journal, const char *sql, const char *text, lo
     return ok;
 }
 
-/* ---- Opening -------------------------------------------------------------------------------------------- */
+/* ---- Opening ---- */
 
 static bool take_lock(Journal *journal, Error *err)
 {
@@ -80,9 +75,12 @@ static bool take_lock(Journal *journal, Error *err)
     journal->lock = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
     int code = errno;
     mem_free(path);
-    if (journal->lock < 0) return error_set(err, "%s-lock: cannot be written: %s", journal->path, strerror(code));
+    if (journal->lock < 0)
+        return error_set(err, "%s-lock: cannot be written: %s", journal->path, strerror(code));
     if (flock(journal->lock, LOCK_EX | LOCK_NB) == 0) return true;
-    return error_set(err, "another run is writing %s at this moment; wait for it, or choose another name with -o", journal->path);
+    return error_set(err,
+                     "another run is writing %s at this moment; wait for it, or choose another name with -o",
+                     journal->path);
 }
 
 static bool exists(const char *path)
@@ -93,7 +91,8 @@ static bool exists(const char *path)
 
 static bool open_database(Journal *journal, int flags, Error *err)
 {
-    if (sqlite3_open_v2(journal->path, &journal->db, flags, NULL) != SQLITE_OK) return sql_error(journal, "opened", err);
+    if (sqlite3_open_v2(journal->path, &journal->db, flags, NULL) != SQLITE_OK)
+        return sql_error(journal, "opened", err);
     sqlite3_busy_timeout(journal->db, BUSY_MS);
     return true;
 }
@@ -109,10 +108,12 @@ static bool check_identity(Journal *journal, Error *err)
 {
     long id, version;
     if (!query_number(journal, "PRAGMA application_id", NULL, 0, &id, err)) return false;
-    if (id != APPLICATION_ID) return error_set(err, "%s is not a journal of slender; it has not been touched", journal->path);
+    if (id != APPLICATION_ID)
+        return error_set(err, "%s is not a journal of slender; it has not been touched", journal->path);
     if (!query_number(journal, "PRAGMA user_version", NULL, 0, &version, err)) return false;
     return version == FORMAT_VERSION ||
-           error_set(err, "%s is of version %ld of the journal, and this program reads version %d", journal->path, version, FORMAT_VERSION);
+           error_set(err, "%s is of version %ld of the journal, and this program reads version %d",
+                     journal->path, version, FORMAT_VERSION);
 }
 
 static bool read_finished(Journal *journal, Error *err)
@@ -130,15 +131,19 @@ static bool create_tables(Journal *journal, Error *err)
     sqlite3_snprintf(sizeof sql, sql,
                      "BEGIN; PRAGMA application_id=%d; PRAGMA user_version=%d;"
                      "CREATE TABLE run(finished INTEGER NOT NULL); INSERT INTO run VALUES(0);"
-                     "CREATE TABLE arrays(kind TEXT NOT NULL, idx INTEGER NOT NULL, name TEXT NOT NULL, unit TEXT NOT NULL,"
-                     " type INTEGER NOT NULL, rank INTEGER NOT NULL, d0 INTEGER, d1 INTEGER, d2 INTEGER, crc INTEGER NOT NULL,"
-                     " bytes BLOB NOT NULL, PRIMARY KEY(kind, idx, name)); COMMIT;", APPLICATION_ID, FORMAT_VERSION);
+                     "CREATE TABLE arrays(kind TEXT NOT NULL, idx INTEGER NOT NULL, name TEXT NOT NULL, unit "
+                     "TEXT NOT NULL,"
+                     " type INTEGER NOT NULL, rank INTEGER NOT NULL, d0 INTEGER, d1 INTEGER, d2 INTEGER, crc "
+                     "INTEGER NOT NULL,"
+                     " bytes BLOB NOT NULL, PRIMARY KEY(kind, idx, name)); COMMIT;",
+                     APPLICATION_ID, FORMAT_VERSION);
     return execute(journal, sql, "written", err);
 }
 
 static bool remove_file(const char *path, Error *err)
 {
-    return unlink(path) == 0 || errno == ENOENT || error_set(err, "%s: cannot be replaced: %s", path, strerror(errno));
+    return unlink(path) == 0 || errno == ENOENT ||
+           error_set(err, "%s: cannot be replaced: %s", path, strerror(errno));
 }
 
 /* The database first: without it, what is left in the log means nothing. */
@@ -162,7 +167,9 @@ static bool may_discard(Journal *journal, JournalMode mode, Error *err)
         ok = check_identity(journal, err) && read_finished(journal, err) &&
              query_number(journal, "SELECT count(*) FROM arrays", NULL, 0, &arrays, err);
         if (ok && mode == JOURNAL_NEW && !journal->finished && arrays > 0)
-            ok = error_set(err, "%s holds an unfinished run: go on with it with --resume, or discard it with --force", journal->path);
+            ok = error_set(
+                err, "%s holds an unfinished run: go on with it with --resume, or discard it with --force",
+                journal->path);
     }
     close_database(journal);
     journal->finished = false;
@@ -173,7 +180,9 @@ static bool open_new(Journal *journal, JournalMode mode, Error *err)
 {
     if (exists(journal->path) && (!may_discard(journal, mode, err) || !discard(journal, err))) return false;
     return open_database(journal, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, err) &&
-           execute(journal, "PRAGMA auto_vacuum=INCREMENTAL; PRAGMA journal_mode=WAL; PRAGMA synchronous=FULL;", "written", err) &&
+           execute(journal,
+                   "PRAGMA auto_vacuum=INCREMENTAL; PRAGMA journal_mode=WAL; PRAGMA synchronous=FULL;",
+                   "written", err) &&
            create_tables(journal, err);
 }
 
@@ -181,20 +190,19 @@ static bool open_old(Journal *journal, JournalMode mode, Error *err)
 {
     if (!exists(journal->path)) return error_set(err, "%s: there is no such run", journal->path);
     int flags = mode == JOURNAL_READ ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE;
-    if (!open_database(journal, flags, err) || !check_identity(journal, err) || !read_finished(journal, err)) return false;
+    if (!open_database(journal, flags, err) || !check_identity(journal, err) || !read_finished(journal, err))
+        return false;
     if (mode == JOURNAL_READ) return true;
-    return execute(journal, "PRAGMA journal_mode=WAL; PRAGMA synchronous=FULL;", "written", err) && journal_check(journal, err);
+    return execute(journal, "PRAGMA journal_mode=WAL; PRAGMA synchronous=FULL;", "written", err) &&
+           journal_check(journal, err);
 }
 
 static void destroy(Journal *journal)
 {
     close_database(journal);
-    if (journal->lock >= 0) close(journal->lock); /* the lock file stays: to remove it would race with the next writer */
-    for (size_t k = 0; k < journal->pending_count; k++) {
-        mem_free(journal->pending[k].kind);
-        array_clear(&journal->pending[k].array);
-    }
-    mem_free(journal->pending);
+    if (journal->lock >= 0)
+        close(journal->lock); /* the lock file stays: to remove it would race with the next writer */
+    waiting_clear(&journal->waiting);
     mem_free(journal->path);
     mem_free(journal);
 }
@@ -207,7 +215,8 @@ Journal *journal_open(const char *path, JournalMode mode, Error *err)
     journal->reader = mode == JOURNAL_READ;
     journal->committed = clock_seconds();
     bool old = mode == JOURNAL_READ || mode == JOURNAL_RESUME;
-    bool ok = (journal->reader || take_lock(journal, err)) && (old ? open_old(journal, mode, err) : open_new(journal, mode, err));
+    bool ok = (journal->reader || take_lock(journal, err)) &&
+              (old ? open_old(journal, mode, err) : open_new(journal, mode, err));
     if (ok) return journal;
     destroy(journal);
     return NULL;
@@ -221,22 +230,7 @@ bool journal_close(Journal *journal, Error *err)
     return ok;
 }
 
-/* ---- Writing -------------------------------------------------------------------------------------------- */
-
-static uint32_t add_text_crc(uint32_t crc, const char *text)
-{
-    return (uint32_t)crc32(crc, (const Bytef *)text, (uInt)strlen(text) + 1);
-}
-
-/* Over the key and everything that is said of the array. */
-static uint32_t array_crc(const char *kind, int index, const Array *array)
-{
-    int32_t numbers[6] = {index, (int32_t)array->type, array->rank, 0, 0, 0};
-    for (int r = 0; r < array->rank; r++) numbers[3 + r] = array->dims[r];
-    uint32_t crc = add_text_crc(add_text_crc(add_text_crc(0, kind), array->name), array->unit);
-    crc = (uint32_t)crc32(crc, (const Bytef *)numbers, sizeof numbers);
-    return (uint32_t)crc32_z(crc, array->data, array_bytes(array));
-}
+/* ---- Writing ---- */
 
 static bool insert(Journal *journal, sqlite3_stmt *statement, const Pending *pending, Error *err)
 {
@@ -248,68 +242,57 @@ static bool insert(Journal *journal, sqlite3_stmt *statement, const Pending *pen
     sqlite3_bind_text(statement, 4, array->unit, -1, SQLITE_STATIC);
     sqlite3_bind_int(statement, 5, (int)array->type);
     sqlite3_bind_int(statement, 6, array->rank);
-    for (int r = 0; r < ARRAY_MAX_RANK; r++) sqlite3_bind_int(statement, 7 + r, r < array->rank ? array->dims[r] : 0);
-    sqlite3_bind_int64(statement, 10, array_crc(pending->kind, pending->index, array));
+    for (int r = 0; r < ARRAY_MAX_RANK; r++)
+        sqlite3_bind_int(statement, 7 + r, r < array->rank ? array->dims[r] : 0);
+    sqlite3_bind_int64(statement, 10, array_crc(array, pending->kind, pending->index));
     sqlite3_bind_blob64(statement, 11, array->data, array_bytes(array), SQLITE_STATIC);
     return sqlite3_step(statement) == SQLITE_DONE || sql_error(journal, "written", err);
 }
 
 static bool insert_all(Journal *journal, Error *err)
 {
-    sqlite3_stmt *statement = prepare(journal, "INSERT OR REPLACE INTO arrays VALUES(?,?,?,?,?,?,?,?,?,?,?)", err);
+    sqlite3_stmt *statement =
+        prepare(journal, "INSERT OR REPLACE INTO arrays VALUES(?,?,?,?,?,?,?,?,?,?,?)", err);
     bool ok = statement != NULL;
-    for (size_t k = 0; ok && k < journal->pending_count; k++) ok = insert(journal, statement, &journal->pending[k], err);
+    for (size_t k = 0; ok && k < journal->waiting.count; k++)
+        ok = insert(journal, statement, &journal->waiting.items[k], err);
     sqlite3_finalize(statement);
     if (!ok || !journal->finished_dirty) return ok;
-    return execute(journal, journal->finished ? "UPDATE run SET finished=1" : "UPDATE run SET finished=0", "written", err);
+    return execute(journal, journal->finished ? "UPDATE run SET finished=1" : "UPDATE run SET finished=0",
+                   "written", err);
 }
 
 bool journal_flush(Journal *journal, Error *err)
 {
-    if (!journal->pending_count && !journal->finished_dirty) return true;
-    bool ok = execute(journal, "BEGIN IMMEDIATE", "written", err) && insert_all(journal, err) && execute(journal, "COMMIT", "written", err);
+    if (!journal->waiting.count && !journal->finished_dirty) return true;
+    bool ok = execute(journal, "BEGIN IMMEDIATE", "written", err) && insert_all(journal, err) &&
+              execute(journal, "COMMIT", "written", err);
     if (!ok) {
         if (!sqlite3_get_autocommit(journal->db)) sqlite3_exec(journal->db, "ROLLBACK", NULL, NULL, NULL);
         return false;
     }
-    for (size_t k = 0; k < journal->pending_count; k++) {
-        mem_free(journal->pending[k].kind);
-        array_clear(&journal->pending[k].array);
-    }
-    journal->pending_count = 0;
+    waiting_clear(&journal->waiting);
     journal->finished_dirty = false;
     journal->committed = clock_seconds();
     return true;
 }
 
-static void push(Journal *journal, const char *kind, int index, const Array *array)
-{
-    if (journal->pending_count == journal->pending_room) {
-        size_t room = 2 * journal->pending_room + 16;
-        journal->pending = mem_resize(journal->pending, journal->pending_room, room, sizeof *journal->pending);
-        journal->pending_room = room;
-    }
-    Pending *pending = &journal->pending[journal->pending_count++];
-    *pending = (Pending){mem_text(kind), index, *array};
-    pending->array.name = mem_text(array->name);
-    pending->array.unit = mem_text(array->unit ? array->unit : "");
-    pending->array.data = mem_copy(array->data, array_bytes(array), 1);
-}
-
 bool journal_put(Journal *journal, const char *kind, int index, const Array *arrays, int count, Error *err)
 {
-    for (int k = 0; k < count; k++) push(journal, kind, index, &arrays[k]);
+    for (int k = 0; k < count; k++) waiting_push(&journal->waiting, kind, index, &arrays[k]);
     return clock_seconds() - journal->committed < COMMIT_INTERVAL || journal_flush(journal, err);
 }
 
 bool journal_remove(Journal *journal, const char *kind, Error *err)
 {
-    sqlite3_stmt *statement = journal_flush(journal, err) ? prepare(journal, "DELETE FROM arrays WHERE kind=?", err) : NULL;
+    sqlite3_stmt *statement =
+        journal_flush(journal, err) ? prepare(journal, "DELETE FROM arrays WHERE kind=?", err) : NULL;
     if (!statement) return false;
     sqlite3_bind_text(statement, 1, kind, -1, SQLITE_STATIC);
     bool ok = sqlite3_step(statement) == SQLITE_DONE || sql_error(journal, "written", err);
     sqlite3_finalize(statement);
-    return ok && execute(journal, "PRAGMA incremental_vacuum; PRAGMA wal_checkpoint(TRUNCATE);", "written", err);
+    return ok &&
+           execute(journal, "PRAGMA incremental_vacuum; PRAGMA wal_checkpoint(TRUNCATE);", "written", err);
 }
 
 bool journal_set_finished(Journal *journal, bool finished, Error *err)
@@ -319,18 +302,27 @@ bool journal_set_finished(Journal *journal, bool finished, Error *err)
     return journal_flush(journal, err);
 }
 
-bool journal_is_finished(Journal *journal) { return journal->finished; }
+bool journal_is_finished(Journal *journal)
+{
+    return journal->finished;
+}
 
-/* ---- Reading -------------------------------------------------------------------------------------------- */
+/* ---- Reading ---- */
 
 /* Readers see what is committed; the writer commits first. */
-static bool settle(Journal *journal, Error *err) { return journal->reader || journal_flush(journal, err); }
+static bool settle(Journal *journal, Error *err)
+{
+    return journal->reader || journal_flush(journal, err);
+}
 
 /* The array in the columns name, unit, type, rank, d0, d1, d2, crc, bytes of a row. */
 static bool take_row(sqlite3_stmt *row, const char *kind, int index, Array *array)
 {
-    const char *name = (const char *)sqlite3_column_text(row, 0), *unit = (const char *)sqlite3_column_text(row, 1);
-    *array = (Array){.name = name ? name : "", .unit = unit ? unit : "", .type = (ArrayType)sqlite3_column_int(row, 2),
+    const char *name = (const char *)sqlite3_column_text(row, 0),
+               *unit = (const char *)sqlite3_column_text(row, 1);
+    *array = (Array){.name = name ? name : "",
+                     .unit = unit ? unit : "",
+                     .type = (ArrayType)sqlite3_column_int(row, 2),
                      .rank = sqlite3_column_int(row, 3)};
     if (array->type > ARRAY_TEXT || array->rank < 0 || array->rank > ARRAY_MAX_RANK) return false;
     for (int r = 0; r < array->rank; r++) {
@@ -339,7 +331,9 @@ static bool take_row(sqlite3_stmt *row, const char *kind, int index, Array *arra
     }
     size_t bytes = (size_t)sqlite3_column_bytes(row, 8);
     array->data = sqlite3_column_blob(row, 8);
-    if (bytes != array_bytes(array) || array_crc(kind, index, array) != (uint32_t)sqlite3_column_int64(row, 7)) return false;
+    if (bytes != array_bytes(array) ||
+        array_crc(array, kind, index) != (uint32_t)sqlite3_column_int64(row, 7))
+        return false;
     char *data = mem_alloc(bytes + 1, 1); /* a text ends with 0 */
     if (bytes) memcpy(data, array->data, bytes);
     array->name = mem_text(array->name);
@@ -350,14 +344,18 @@ static bool take_row(sqlite3_stmt *row, const char *kind, int index, Array *arra
 
 static bool damaged(const Journal *journal, const char *kind, int index, const char *name, Error *err)
 {
-    return error_set(err, "%s is damaged: %s %d, %s is not as it was written", journal->path, kind, index, name);
+    return error_set(err, "%s is damaged: %s %d, %s is not as it was written", journal->path, kind, index,
+                     name);
 }
 
 bool journal_get(Journal *journal, const char *kind, int index, const char *name, Array *array, Error *err)
 {
     *array = (Array){0};
     if (!settle(journal, err)) return false;
-    sqlite3_stmt *row = prepare(journal, "SELECT name, unit, type, rank, d0, d1, d2, crc, bytes FROM arrays WHERE kind=? AND idx=? AND name=?", err);
+    sqlite3_stmt *row = prepare(
+        journal,
+        "SELECT name, unit, type, rank, d0, d1, d2, crc, bytes FROM arrays WHERE kind=? AND idx=? AND name=?",
+        err);
     if (!row) return false;
     sqlite3_bind_text(row, 1, kind, -1, SQLITE_STATIC);
     sqlite3_bind_int(row, 2, index);
@@ -378,7 +376,9 @@ bool journal_get(Journal *journal, const char *kind, int index, const char *name
 
 bool journal_has(Journal *journal, const char *kind, int index, const char *name)
 {
-    sqlite3_stmt *row = settle(journal, NULL) ? prepare(journal, "SELECT 1 FROM arrays WHERE kind=? AND idx=? AND name=?", NULL) : NULL;
+    sqlite3_stmt *row = settle(journal, NULL)
+                            ? prepare(journal, "SELECT 1 FROM arrays WHERE kind=? AND idx=? AND name=?", NULL)
+                            : NULL;
     if (!row) return false;
     sqlite3_bind_text(row, 1, kind, -1, SQLITE_STATIC);
     sqlite3_bind_int(row, 2, index);
@@ -392,7 +392,10 @@ bool journal_indices(Journal *journal, const char *kind, int **indices, int *cou
 {
     *indices = NULL;
     *count = 0;
-    sqlite3_stmt *row = settle(journal, err) ? prepare(journal, "SELECT DISTINCT idx FROM arrays WHERE kind=? ORDER BY idx", err) : NULL;
+    sqlite3_stmt *row =
+        settle(journal, err)
+            ? prepare(journal, "SELECT DISTINCT idx FROM arrays WHERE kind=? ORDER BY idx", err)
+            : NULL;
     if (!row) return false;
     sqlite3_bind_text(row, 1, kind, -1, SQLITE_STATIC);
     size_t room = 0;
@@ -416,7 +419,10 @@ bool journal_names(Journal *journal, const char *kind, int index, char ***names,
 {
     *names = NULL;
     *count = 0;
-    sqlite3_stmt *row = settle(journal, err) ? prepare(journal, "SELECT name FROM arrays WHERE kind=? AND idx=? ORDER BY name", err) : NULL;
+    sqlite3_stmt *row =
+        settle(journal, err)
+            ? prepare(journal, "SELECT name FROM arrays WHERE kind=? AND idx=? ORDER BY name", err)
+            : NULL;
     if (!row) return false;
     sqlite3_bind_text(row, 1, kind, -1, SQLITE_STATIC);
     sqlite3_bind_int(row, 2, index);
@@ -449,14 +455,17 @@ bool journal_names(Journal *journal, const char *kind, int index, char ***names,
 int journal_count(Journal *journal, const char *kind)
 {
     long count;
-    bool ok = settle(journal, NULL) && query_number(journal, "SELECT count(DISTINCT idx) FROM arrays WHERE kind=?", kind, 0, &count, NULL);
+    bool ok =
+        settle(journal, NULL) &&
+        query_number(journal, "SELECT count(DISTINCT idx) FROM arrays WHERE kind=?", kind, 0, &count, NULL);
     return ok ? (int)count : -2;
 }
 
 int journal_last_index(Journal *journal, const char *kind)
 {
     long last;
-    bool ok = settle(journal, NULL) && query_number(journal, "SELECT max(idx) FROM arrays WHERE kind=?", kind, -1, &last, NULL);
+    bool ok = settle(journal, NULL) &&
+              query_number(journal, "SELECT max(idx) FROM arrays WHERE kind=?", kind, -1, &last, NULL);
     return ok ? (int)last : -2;
 }
 
@@ -467,22 +476,32 @@ bool journal_check(Journal *journal, Error *err)
     if (!row) return false;
     bool ok = sqlite3_step(row) == SQLITE_ROW || sql_error(journal, "read", err);
     const char *said = ok ? (const char *)sqlite3_column_text(row, 0) : NULL;
-    if (ok && (!said || strcmp(said, "ok"))) ok = error_set(err, "%s is damaged: %.200s", journal->path, said ? said : "it cannot be read");
+    if (ok && (!said || strcmp(said, "ok")))
+        ok = error_set(err, "%s is damaged: %.200s", journal->path, said ? said : "it cannot be read");
     sqlite3_finalize(row);
     if (!ok) return false;
-    row = prepare(journal, "SELECT name, unit, type, rank, d0, d1, d2, crc, bytes, kind, idx FROM arrays ORDER BY kind, idx, name", err);
+    row = prepare(journal,
+                  "SELECT name, unit, type, rank, d0, d1, d2, crc, bytes, kind, idx FROM arrays ORDER BY "
+                  "kind, idx, name",
+                  err);
     if (!row) return false;
     int code;
     while (ok && (code = sqlite3_step(row)) == SQLITE_ROW) {
         Array array;
-        const char *kind = (const char *)sqlite3_column_text(row, 9), *name = (const char *)sqlite3_column_text(row, 0);
+        const char *kind = (const char *)sqlite3_column_text(row, 9),
+                   *name = (const char *)sqlite3_column_text(row, 0);
         ok = take_row(row, kind ? kind : "", sqlite3_column_int(row, 10), &array);
-        if (ok) array_clear(&array);
-        else damaged(journal, kind ? kind : "?", sqlite3_column_int(row, 10), name ? name : "?", err);
+        if (ok)
+            array_clear(&array);
+        else
+            damaged(journal, kind ? kind : "?", sqlite3_column_int(row, 10), name ? name : "?", err);
     }
     if (ok && code != SQLITE_DONE) ok = sql_error(journal, "read", err);
     sqlite3_finalize(row);
     return ok;
 }
 
-const char *journal_sqlite_version(void) { return sqlite3_libversion(); }
+const char *journal_sqlite_version(void)
+{
+    return sqlite3_libversion();
+}

@@ -6,9 +6,12 @@
 #include <string.h>
 #include <strings.h>
 
-/* ---- Growing -------------------------------------------------------------------------------------------- */
+/* ---- Growing ---- */
 
-static size_t larger(size_t count) { return 2 * count + 64; }
+static size_t larger(size_t count)
+{
+    return 2 * count + 64;
+}
 
 void reader_add_vertex(MeshReader *reader, const double *x, int line)
 {
@@ -43,7 +46,9 @@ int reader_group(MeshReader *reader, const char *name, int length, int dim)
     MeshFile *mesh = reader->mesh;
     for (int g = 0; g < mesh->group_count; g++) {
         const MeshGroup *group = &mesh->groups[g];
-        if (group->dim == dim && strlen(group->name) == (size_t)length && !strncmp(group->name, name, (size_t)length)) return g;
+        if (group->dim == dim && strlen(group->name) == (size_t)length &&
+            !strncmp(group->name, name, (size_t)length))
+            return g;
     }
     size_t count = (size_t)mesh->group_count;
     mesh->groups = mem_resize(mesh->groups, count, count + 1, sizeof *mesh->groups);
@@ -64,7 +69,7 @@ void reader_group_add(MeshReader *reader, int index, const int *members)
     group->count++;
 }
 
-/* ---- Reading -------------------------------------------------------------------------------------------- */
+/* ---- Reading ---- */
 
 static const struct {
     const char *format;
@@ -77,13 +82,16 @@ static void drop_empty_groups(MeshFile *mesh)
 {
     int kept = 0;
     for (int g = 0; g < mesh->group_count; g++) {
-        if (mesh->groups[g].count > 0) mesh->groups[kept++] = mesh->groups[g];
-        else mem_free(mesh->groups[g].name);
+        if (mesh->groups[g].count > 0)
+            mesh->groups[kept++] = mesh->groups[g];
+        else
+            mem_free(mesh->groups[g].name);
     }
     mesh->group_count = kept;
 }
 
-bool mesh_file_parse(const char *path, const char *format, const char *text, long length, MeshFile *mesh, Error *err)
+bool mesh_file_parse(const char *path, const char *format, const char *text, long length, MeshFile *mesh,
+                     Error *err)
 {
     *mesh = (MeshFile){0};
     for (size_t k = 0; k < sizeof formats / sizeof *formats; k++) {
@@ -94,8 +102,10 @@ bool mesh_file_parse(const char *path, const char *format, const char *text, lon
         bool ok = formats[k].read(&scan, &reader);
         if (ok && mesh->face_count == 0) ok = error_set(err, "%s: there are no triangles in it", path);
         mem_free(reader.group_room);
-        if (ok) drop_empty_groups(mesh);
-        else mesh_file_clear(mesh);
+        if (ok)
+            drop_empty_groups(mesh);
+        else
+            mesh_file_clear(mesh);
         return ok;
     }
     return error_set(err, "%s: a mesh is read from .obj, .ply or .msh", path);
@@ -113,7 +123,7 @@ bool mesh_file_read(const char *path, MeshFile *mesh, Error *err)
     return ok;
 }
 
-/* ---- Writing -------------------------------------------------------------------------------------------- */
+/* ---- Writing ---- */
 
 /* OBJ has groups of faces and, by `l`, of edges. A face is in one g line with all its groups. */
 static void write_faces(FILE *file, const MeshFile *mesh)
@@ -143,8 +153,10 @@ static void write_groups(FILE *file, const MeshFile *mesh)
         if (group->dim == 2) continue;
         fprintf(file, "g %s\n", group->name);
         for (int k = 0; k < group->count; k++)
-            if (group->dim == 1) fprintf(file, "l %d %d\n", group->members[2 * k] + 1, group->members[2 * k + 1] + 1);
-            else fprintf(file, "p %d\n", group->members[k] + 1);
+            if (group->dim == 1)
+                fprintf(file, "l %d %d\n", group->members[2 * k] + 1, group->members[2 * k + 1] + 1);
+            else
+                fprintf(file, "p %d\n", group->members[k] + 1);
     }
 }
 
@@ -153,7 +165,8 @@ bool mesh_file_write_obj(const char *path, const MeshFile *mesh, Error *err)
     FILE *file = fopen(path, "w");
     if (!file) return error_set(err, "%s: cannot be written: %s", path, strerror(errno));
     for (int v = 0; v < mesh->vertex_count; v++)
-        fprintf(file, "v %.17g %.17g %.17g\n", mesh->vertices[v][0], mesh->vertices[v][1], mesh->vertices[v][2]);
+        fprintf(file, "v %.17g %.17g %.17g\n", mesh->vertices[v][0], mesh->vertices[v][1],
+                mesh->vertices[v][2]);
     write_faces(file, mesh);
     write_groups(file, mesh);
     bool failed = ferror(file) != 0;
@@ -161,7 +174,7 @@ bool mesh_file_write_obj(const char *path, const MeshFile *mesh, Error *err)
     return !failed || error_set(err, "%s: cannot be written: %s", path, strerror(errno));
 }
 
-/* ---- The struct ----------------------------------------------------------------------------------------- */
+/* ---- The struct ---- */
 
 void mesh_file_clear(MeshFile *mesh)
 {

@@ -1,8 +1,8 @@
 /* mesh_file.h - triangle meshes from files: OBJ, PLY (ASCII) and Gmsh .msh 2.2 and 4.1 (ASCII).
  *
- * Reads what the file says, with the line of every face, and judges only the file (syntax, numbers, indices out of
- * range); whether the mesh is a valid shell is for shell/mesh.h. Polygons are refused with a sentence: a
- * quadrilateral has no unique split. Coordinates in metres unless the scene gives a unit. */
+ * Reads what the file says, with the line of every face, and judges only the file (syntax, numbers, indices
+ * out of range); whether the mesh is a valid shell is for shell/mesh.h. Polygons are refused with a sentence:
+ * a quadrilateral has no unique split. Coordinates in metres unless the scene gives a unit. */
 #pragma once
 #include "base/error.h"
 
@@ -29,7 +29,8 @@ typedef struct MeshFile {
 bool mesh_file_read(const char *path, MeshFile *mesh, Error *err);
 
 /* The same from memory (tests and fuzzing); format is "obj", "ply" or "msh". */
-bool mesh_file_parse(const char *path, const char *format, const char *text, long length, MeshFile *mesh, Error *err);
+bool mesh_file_parse(const char *path, const char *format, const char *text, long length, MeshFile *mesh,
+                     Error *err);
 
 /* Writes OBJ with groups; numbers keep every bit (%.17g). */
 bool mesh_file_write_obj(const char *path, const MeshFile *mesh, Error *err);

@@ -48,7 +48,7 @@ static bool line(Msh *msh, const char *section)
     return scan_line(msh->scan) || scan_refuse(msh->scan, "the file ends within %s", section);
 }
 
-/* ---- Groups --------------------------------------------------------------------------------------------- */
+/* ---- Groups ---- */
 
 static bool read_names(Msh *msh)
 {
@@ -57,7 +57,8 @@ static bool read_names(Msh *msh)
     msh->names = mem_resize(msh->names, 0, (size_t)count, sizeof *msh->names);
     for (long k = 0; k < count; k++) {
         Physical *name = &msh->names[k];
-        if (!line(msh, "$PhysicalNames") || !integer(msh, "a dimension", 0, 3, &dim) || !integer(msh, "a tag", -LARGEST, LARGEST, &name->tag))
+        if (!line(msh, "$PhysicalNames") || !integer(msh, "a dimension", 0, 3, &dim) ||
+            !integer(msh, "a tag", -LARGEST, LARGEST, &name->tag))
             return false;
         const char *open = memchr(msh->scan->at, '"', (size_t)(msh->scan->word_end - msh->scan->at));
         const char *close = open ? memchr(open + 1, '"', (size_t)(msh->scan->word_end - open - 1)) : NULL;
@@ -110,7 +111,7 @@ static bool read_entities(Msh *msh)
     return true;
 }
 
-/* ---- Nodes ---------------------------------------------------------------------------------------------- */
+/* ---- Nodes ---- */
 
 static int compare_nodes(const void *a, const void *b)
 {
@@ -141,8 +142,10 @@ static void push_node(Msh *msh, size_t *room, int index, long tag)
 static bool read_node_block(Msh *msh, size_t *room)
 {
     long dim, entity, parametric, count, tag;
-    if (!line(msh, "$Nodes") || !integer(msh, "a dimension", 0, 3, &dim) || !integer(msh, "an entity", -LARGEST, LARGEST, &entity) ||
-        !integer(msh, "the parametric flag", 0, 1, &parametric) || !integer(msh, "the number of nodes", 0, READER_MAX_INDEX, &count))
+    if (!line(msh, "$Nodes") || !integer(msh, "a dimension", 0, 3, &dim) ||
+        !integer(msh, "an entity", -LARGEST, LARGEST, &entity) ||
+        !integer(msh, "the parametric flag", 0, 1, &parametric) ||
+        !integer(msh, "the number of nodes", 0, READER_MAX_INDEX, &count))
         return false;
     int first = msh->reader->mesh->vertex_count;
     for (long k = 0; k < count; k++) {
@@ -159,7 +162,8 @@ static bool read_nodes(Msh *msh)
     long count, tag;
     size_t room = 0;
     if (msh->nodes) return scan_refuse(msh->scan, "a second $Nodes section");
-    if (!line(msh, "$Nodes") || !integer(msh, "the number of nodes", 0, READER_MAX_INDEX, &count)) return false;
+    if (!line(msh, "$Nodes") || !integer(msh, "the number of nodes", 0, READER_MAX_INDEX, &count))
+        return false;
     for (long k = 0; k < count; k++) {
         if (msh->new_format) {
             if (!read_node_block(msh, &room)) return false;
@@ -172,7 +176,8 @@ static bool read_nodes(Msh *msh)
     int vertices = msh->reader->mesh->vertex_count;
     if (vertices) qsort(msh->nodes, (size_t)vertices, sizeof *msh->nodes, compare_nodes);
     for (int v = 1; v < vertices; v++)
-        if (msh->nodes[v].tag == msh->nodes[v - 1].tag) return scan_refuse(msh->scan, "node %ld is there twice", msh->nodes[v].tag);
+        if (msh->nodes[v].tag == msh->nodes[v - 1].tag)
+            return scan_refuse(msh->scan, "node %ld is there twice", msh->nodes[v].tag);
     return true;
 }
 
@@ -183,21 +188,27 @@ static bool corners(Msh *msh, int count, int *vertices)
         if (!integer(msh, "a node", 0, LARGEST, &wanted.tag)) return false;
         const Node *node = NULL;
         if (msh->reader->mesh->vertex_count)
-            node = bsearch(&wanted, msh->nodes, (size_t)msh->reader->mesh->vertex_count, sizeof *msh->nodes, compare_nodes);
+            node = bsearch(&wanted, msh->nodes, (size_t)msh->reader->mesh->vertex_count, sizeof *msh->nodes,
+                           compare_nodes);
         if (!node) return scan_refuse(msh->scan, "node %ld does not exist", wanted.tag);
         vertices[i] = node->vertex;
     }
     return true;
 }
 
-/* ---- Elements ------------------------------------------------------------------------------------------- */
+/* ---- Elements ---- */
 
-static int type_dim(long type) { return type == TYPE_POINT ? 0 : type == TYPE_LINE ? 1 : type == TYPE_TRIANGLE ? 2 : -1; }
+static int type_dim(long type)
+{
+    return type == TYPE_POINT ? 0 : type == TYPE_LINE ? 1 : type == TYPE_TRIANGLE ? 2 : -1;
+}
 
 static bool check_type(Msh *msh, long type)
 {
-    return type_dim(type) >= 0 ||
-           scan_refuse(msh->scan, "elements of Gmsh's type %ld: a shell is made of 3-node triangles (type 2), and lines and points in groups", type);
+    return type_dim(type) >= 0 || scan_refuse(msh->scan,
+                                              "elements of Gmsh's type %ld: a shell is made of 3-node "
+                                              "triangles (type 2), and lines and points in groups",
+                                              type);
 }
 
 /* Reads the element's nodes; members are what a group of it holds. */
@@ -216,7 +227,8 @@ static bool read_old_element(Msh *msh)
 {
     long number, type, tags, physical = 0, tag;
     int members[2] = {0};
-    if (!integer(msh, "an element's number", 0, LARGEST, &number) || !integer(msh, "a type", 1, 1000, &type) || !check_type(msh, type) ||
+    if (!integer(msh, "an element's number", 0, LARGEST, &number) ||
+        !integer(msh, "a type", 1, 1000, &type) || !check_type(msh, type) ||
         !integer(msh, "the number of tags", 0, 100, &tags))
         return false;
     for (long k = 0; k < tags; k++) {
@@ -232,14 +244,17 @@ static bool read_element_block(Msh *msh)
 {
     long dim, entity, type, count, number;
     if (!integer(msh, "a dimension", 0, 3, &dim) || !integer(msh, "an entity", -LARGEST, LARGEST, &entity) ||
-        !integer(msh, "a type", 1, 1000, &type) || !check_type(msh, type) || !integer(msh, "the number of elements", 0, READER_MAX_INDEX, &count))
+        !integer(msh, "a type", 1, 1000, &type) || !check_type(msh, type) ||
+        !integer(msh, "the number of elements", 0, READER_MAX_INDEX, &count))
         return false;
     for (long k = 0; k < count; k++) {
         int members[2] = {0};
-        if (!line(msh, "$Elements") || !integer(msh, "an element's tag", 0, LARGEST, &number) || !read_element(msh, type_dim(type), members))
+        if (!line(msh, "$Elements") || !integer(msh, "an element's tag", 0, LARGEST, &number) ||
+            !read_element(msh, type_dim(type), members))
             return false;
         for (int e = 0; e < msh->entity_count; e++)
-            if (msh->entities[e].dim == dim && msh->entities[e].tag == entity) add_to_group(msh, (int)dim, msh->entities[e].physical, members);
+            if (msh->entities[e].dim == dim && msh->entities[e].tag == entity)
+                add_to_group(msh, (int)dim, msh->entities[e].physical, members);
     }
     return true;
 }
@@ -247,13 +262,15 @@ static bool read_element_block(Msh *msh)
 static bool read_elements(Msh *msh)
 {
     long count;
-    if (!line(msh, "$Elements") || !integer(msh, "the number of elements", 0, READER_MAX_INDEX, &count)) return false;
+    if (!line(msh, "$Elements") || !integer(msh, "the number of elements", 0, READER_MAX_INDEX, &count))
+        return false;
     for (long k = 0; k < count; k++)
-        if (!line(msh, "$Elements") || !(msh->new_format ? read_element_block(msh) : read_old_element(msh))) return false;
+        if (!line(msh, "$Elements") || !(msh->new_format ? read_element_block(msh) : read_old_element(msh)))
+            return false;
     return true;
 }
 
-/* ---- The file ------------------------------------------------------------------------------------------- */
+/* ---- The file ---- */
 
 static bool read_format(Msh *msh)
 {
@@ -262,7 +279,8 @@ static bool read_format(Msh *msh)
     if (!line(msh, "$MeshFormat") || !scan_word(msh->scan, &version)) return false;
     msh->new_format = word_is(version, "4.1");
     if (!msh->new_format && !word_is(version, "2.2"))
-        return scan_refuse(msh->scan, "version %.*s: save it as 2.2 or 4.1 (gmsh -format msh41)", version.length > 10 ? 10 : version.length, version.text);
+        return scan_refuse(msh->scan, "version %.*s: save it as 2.2 or 4.1 (gmsh -format msh41)",
+                           version.length > 10 ? 10 : version.length, version.text);
     if (!integer(msh, "the file type", 0, 1, &binary)) return false;
     return !binary || scan_refuse(msh->scan, "a binary file: save it as ASCII (gmsh -bin 0)");
 }
@@ -278,10 +296,11 @@ static bool skip_section(Msh *msh, Word name)
 
 static bool read_section(Msh *msh, Word name)
 {
-    bool (*read)(Msh *) = word_is(name, "$PhysicalNames") ? read_names
-                          : word_is(name, "$Nodes")       ? read_nodes
-                          : word_is(name, "$Elements")    ? read_elements
-                          : word_is(name, "$Entities") && msh->new_format ? read_entities : NULL;
+    bool (*read)(Msh *) = word_is(name, "$PhysicalNames")                 ? read_names
+                          : word_is(name, "$Nodes")                       ? read_nodes
+                          : word_is(name, "$Elements")                    ? read_elements
+                          : word_is(name, "$Entities") && msh->new_format ? read_entities
+                                                                          : NULL;
     if (read == read_names && msh->names) return scan_refuse(msh->scan, "a second $PhysicalNames section");
     return (!read || read(msh)) && skip_section(msh, name);
 }
@@ -296,7 +315,9 @@ static bool read_msh(Msh *msh)
     if (!read_format(msh) || !skip_section(msh, word)) return false;
     while (scan_line(msh->scan)) {
         scan_word(msh->scan, &word);
-        if (word.text[0] != '$') return scan_refuse(msh->scan, "'%.*s' where a section should begin", word.length > 40 ? 40 : word.length, word.text);
+        if (word.text[0] != '$')
+            return scan_refuse(msh->scan, "'%.*s' where a section should begin",
+                               word.length > 40 ? 40 : word.length, word.text);
         if (!read_section(msh, word)) return false;
     }
     return true;

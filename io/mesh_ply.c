@@ -1,5 +1,5 @@
-/* PLY 1.0, ASCII: elements vertex (x, y, z) and face (a list of vertices); other elements and properties are passed
- * over. */
+/* PLY 1.0, ASCII: elements vertex (x, y, z) and face (a list of vertices); other elements and properties are
+ * passed over. */
 #include "io/mesh_reader.h"
 
 enum { ELEMENTS_MAX = 16, PROPERTIES_MAX = 64 };
@@ -26,7 +26,8 @@ typedef struct Header {
 static bool read_element(Scan *scan, Header *header)
 {
     Word name;
-    if (header->element_count == ELEMENTS_MAX) return scan_refuse(scan, "more than %d elements", ELEMENTS_MAX);
+    if (header->element_count == ELEMENTS_MAX)
+        return scan_refuse(scan, "more than %d elements", ELEMENTS_MAX);
     if (!scan_word(scan, &name)) return scan_refuse(scan, "the element's name is missing");
     Element *element = &header->elements[header->element_count++];
     if (word_is(name, "vertex")) element->kind = ELEMENT_VERTEX;
@@ -38,7 +39,8 @@ static bool read_property(Scan *scan, Header *header)
 {
     if (header->element_count == 0) return scan_refuse(scan, "a property before the first element");
     Element *element = &header->elements[header->element_count - 1];
-    if (element->property_count == PROPERTIES_MAX) return scan_refuse(scan, "more than %d properties", PROPERTIES_MAX);
+    if (element->property_count == PROPERTIES_MAX)
+        return scan_refuse(scan, "more than %d properties", PROPERTIES_MAX);
     Property *property = &element->properties[element->property_count++];
     Word type, name;
     if (!scan_word(scan, &type)) return scan_refuse(scan, "the property's type is missing");
@@ -47,8 +49,12 @@ static bool read_property(Scan *scan, Header *header)
         if (!scan_word(scan, &type)) return scan_refuse(scan, "the list's types are missing");
     if (!scan_word(scan, &name)) return scan_refuse(scan, "the property's name is missing");
     if (element->kind == ELEMENT_VERTEX && !property->list)
-        property->meaning = word_is(name, "x") ? MEANING_X : word_is(name, "y") ? MEANING_Y : word_is(name, "z") ? MEANING_Z : MEANING_NONE;
-    if (element->kind == ELEMENT_FACE && property->list && (word_is(name, "vertex_indices") || word_is(name, "vertex_index")))
+        property->meaning = word_is(name, "x")   ? MEANING_X
+                            : word_is(name, "y") ? MEANING_Y
+                            : word_is(name, "z") ? MEANING_Z
+                                                 : MEANING_NONE;
+    if (element->kind == ELEMENT_FACE && property->list &&
+        (word_is(name, "vertex_indices") || word_is(name, "vertex_index")))
         property->meaning = MEANING_CORNERS;
     return true;
 }
@@ -56,9 +62,12 @@ static bool read_property(Scan *scan, Header *header)
 static bool read_format(Scan *scan)
 {
     Word format = {0}, version = {0};
-    if (scan_word(scan, &format) && word_is(format, "ascii") && scan_word(scan, &version) && word_is(version, "1.0")) return true;
+    if (scan_word(scan, &format) && word_is(format, "ascii") && scan_word(scan, &version) &&
+        word_is(version, "1.0"))
+        return true;
     if (format.length && word_begins(format, "binary"))
-        return scan_refuse(scan, "a binary PLY file: save it as ASCII (in Blender or MeshLab: untick 'binary')");
+        return scan_refuse(scan,
+                           "a binary PLY file: save it as ASCII (in Blender or MeshLab: untick 'binary')");
     return scan_refuse(scan, "the format must be ascii 1.0");
 }
 
@@ -73,12 +82,17 @@ static bool read_header(Scan *scan, Header *header)
     while (scan_line(scan)) {
         scan_word(scan, &word);
         bool ok = true;
-        if (word_is(word, "end_header")) return formatted || scan_refuse(scan, "the format is missing: ascii 1.0");
-        if (word_is(word, "format")) ok = formatted = read_format(scan);
-        else if (word_is(word, "element")) ok = read_element(scan, header);
-        else if (word_is(word, "property")) ok = read_property(scan, header);
+        if (word_is(word, "end_header"))
+            return formatted || scan_refuse(scan, "the format is missing: ascii 1.0");
+        if (word_is(word, "format"))
+            ok = formatted = read_format(scan);
+        else if (word_is(word, "element"))
+            ok = read_element(scan, header);
+        else if (word_is(word, "property"))
+            ok = read_property(scan, header);
         else if (!word_is(word, "comment") && !word_is(word, "obj_info"))
-            ok = scan_refuse(scan, "'%.*s' is no word of a PLY header", word.length > 40 ? 40 : word.length, word.text);
+            ok = scan_refuse(scan, "'%.*s' is no word of a PLY header", word.length > 40 ? 40 : word.length,
+                             word.text);
         if (!ok) return false;
     }
     return scan_refuse(scan, "the header does not end");
@@ -114,9 +128,12 @@ static bool read_entry(Scan *scan, MeshReader *reader, const Element *element)
     for (int k = 0; k < element->property_count; k++) {
         const Property *property = &element->properties[k];
         bool ok;
-        if (property->meaning == MEANING_CORNERS) ok = read_corners(scan, reader);
-        else if (property->meaning == MEANING_NONE) ok = skip_property(scan, property->list);
-        else ok = scan_number(scan, "a coordinate", &x[property->meaning - MEANING_X]);
+        if (property->meaning == MEANING_CORNERS)
+            ok = read_corners(scan, reader);
+        else if (property->meaning == MEANING_NONE)
+            ok = skip_property(scan, property->list);
+        else
+            ok = scan_number(scan, "a coordinate", &x[property->meaning - MEANING_X]);
         if (!ok) return false;
     }
     if (element->kind == ELEMENT_VERTEX) reader_add_vertex(reader, x, scan->line);
@@ -128,8 +145,10 @@ static bool check_element(Scan *scan, const Element *element)
 {
     int seen = 0;
     for (int k = 0; k < element->property_count; k++) seen |= 1 << element->properties[k].meaning;
-    if (element->kind == ELEMENT_VERTEX && (seen & 0xe) != 0xe) return scan_refuse(scan, "vertices need the properties x, y and z");
-    if (element->kind == ELEMENT_FACE && !(seen & 0x10)) return scan_refuse(scan, "faces need the list property vertex_indices");
+    if (element->kind == ELEMENT_VERTEX && (seen & 0xe) != 0xe)
+        return scan_refuse(scan, "vertices need the properties x, y and z");
+    if (element->kind == ELEMENT_FACE && !(seen & 0x10))
+        return scan_refuse(scan, "faces need the list property vertex_indices");
     return true;
 }
 
@@ -139,7 +158,8 @@ static bool check_corners(Scan *scan, const MeshFile *mesh)
         for (int i = 0; i < 3; i++) {
             if (mesh->faces[f][i] < mesh->vertex_count) continue;
             scan->line = mesh->face_line[f];
-            return scan_refuse(scan, "vertex %d does not exist: there are %d, from 0", mesh->faces[f][i], mesh->vertex_count);
+            return scan_refuse(scan, "vertex %d does not exist: there are %d, from 0", mesh->faces[f][i],
+                               mesh->vertex_count);
         }
     return true;
 }
@@ -152,8 +172,11 @@ bool mesh_read_ply(Scan *scan, MeshReader *reader)
         const Element *element = &header.elements[e];
         if (!check_element(scan, element)) return false;
         for (long k = 0; k < element->count; k++) {
-            if (!scan_line(scan)) return scan_refuse(scan, "the file ends before its %ld %s", element->count,
-                                                     element->kind == ELEMENT_VERTEX ? "vertices" : element->kind == ELEMENT_FACE ? "faces" : "entries");
+            if (!scan_line(scan))
+                return scan_refuse(scan, "the file ends before its %ld %s", element->count,
+                                   element->kind == ELEMENT_VERTEX ? "vertices"
+                                   : element->kind == ELEMENT_FACE ? "faces"
+                                                                   : "entries");
             if (!read_entry(scan, reader, element)) return false;
         }
     }

@@ -21,7 +21,7 @@ typedef struct Writer {
     int field_count;
 } Writer;
 
-/* ---- /slender ------------------------------------------------------------------------------------------- */
+/* ---- /slender ---- */
 
 /* Every array of a kind at its own name; final/status is an attribute instead. */
 static bool put_kind(Writer *w, const char *kind, Error *err)
@@ -45,7 +45,8 @@ static bool put_kind(Writer *w, const char *kind, Error *err)
 static bool put_status(Writer *w, Error *err)
 {
     Array status = {0};
-    if (!journal_has(w->journal, "final", 0, "status")) return hdf5_attribute_text(w->file, "slender", "status", "unfinished", err);
+    if (!journal_has(w->journal, "final", 0, "status"))
+        return hdf5_attribute_text(w->file, "slender", "status", "unfinished", err);
     bool ok = journal_get(w->journal, "final", 0, "status", &status, err) &&
               hdf5_attribute_text(w->file, "slender", "status", status.data, err);
     array_clear(&status);
@@ -53,7 +54,8 @@ static bool put_status(Writer *w, Error *err)
 }
 
 /* history/<name> from the scalar of that name in all evaluations. */
-static bool put_history(Writer *w, const char *name, const int *indices, int count, const char *unit, Error *err)
+static bool put_history(Writer *w, const char *name, const int *indices, int count, const char *unit,
+                        Error *err)
 {
     char path[512];
     double *values = mem_alloc((size_t)count, sizeof *values);
@@ -83,7 +85,8 @@ static bool put_histories(Writer *w, Error *err)
         Array array;
         ok = journal_get(w->journal, "evaluation", indices[0], names[k], &array, err);
         if (!ok) break;
-        if (array.rank == 0 && array.type == ARRAY_FLOAT64) ok = put_history(w, names[k], indices, count, array.unit, err);
+        if (array.rank == 0 && array.type == ARRAY_FLOAT64)
+            ok = put_history(w, names[k], indices, count, array.unit, err);
         array_clear(&array);
     }
     mem_free(names);
@@ -91,9 +94,10 @@ static bool put_histories(Writer *w, Error *err)
     return ok;
 }
 
-/* ---- /VTKHDF -------------------------------------------------------------------------------------------- */
+/* ---- /VTKHDF ---- */
 
-static bool put_ints(Writer *w, const char *path, const int *values, int rank, int d0, int d1, Hdf5Layout layout, Error *err)
+static bool put_ints(Writer *w, const char *path, const int *values, int rank, int d0, int d1,
+                     Hdf5Layout layout, Error *err)
 {
     Array array = array_int(path, values, rank, d0, d1);
     return hdf5_write(w->file, path, &array, layout, err);
@@ -121,7 +125,8 @@ static bool put_cells(Writer *w, const int *faces, Error *err)
 /* Where in the long arrays each step begins. */
 static bool put_steps(Writer *w, Error *err)
 {
-    int steps = w->frame_count, *zeros = mem_alloc((size_t)steps, sizeof *zeros), *ones = mem_alloc((size_t)steps, sizeof *ones);
+    int steps = w->frame_count, *zeros = mem_alloc((size_t)steps, sizeof *zeros),
+        *ones = mem_alloc((size_t)steps, sizeof *ones);
     int *points = mem_alloc((size_t)steps, sizeof *points);
     for (int k = 0; k < steps; k++) ones[k] = 1, points[k] = k * w->vertex_count;
     Hdf5Layout wide = {.wide = true};
@@ -139,8 +144,10 @@ static bool put_steps(Writer *w, Error *err)
     return ok;
 }
 
-/* One array of the frames: a chunk per frame that has it, and for every step the offset of the chunk that holds. */
-static bool put_frames_array(Writer *w, const char *name, const char *path, const char *offsets_path, Error *err)
+/* One array of the frames: a chunk per frame that has it, and for every step the offset of the chunk that
+ * holds. */
+static bool put_frames_array(Writer *w, const char *name, const char *path, const char *offsets_path,
+                             Error *err)
 {
     Hdf5Rows *rows = NULL;
     int *offsets = mem_alloc((size_t)w->frame_count, sizeof *offsets), stored = 0, chunk = 0, width = 0;
@@ -153,7 +160,8 @@ static bool put_frames_array(Writer *w, const char *name, const char *path, cons
                 chunk = array.dims[0], width = array.rank > 1 ? array.dims[1] : 0;
                 rows = hdf5_rows_create(w->file, path, array.unit, chunk, width, !w->def.double_frames, err);
             }
-            bool fits = array.type == ARRAY_FLOAT64 && array.dims[0] == chunk && (array.rank > 1 ? array.dims[1] : 0) == width;
+            bool fits = array.type == ARRAY_FLOAT64 && array.dims[0] == chunk &&
+                        (array.rank > 1 ? array.dims[1] : 0) == width;
             if (ok && !fits) ok = error_set(err, "the frames' %s change their shape", name);
             ok = ok && rows && hdf5_rows_append(rows, array.data, err);
             stored++;
@@ -162,7 +170,8 @@ static bool put_frames_array(Writer *w, const char *name, const char *path, cons
         offsets[k] = (stored - 1) * chunk;
     }
     ok = hdf5_rows_close(rows, ok ? err : NULL) && ok;
-    if (ok && offsets_path) ok = put_ints(w, offsets_path, offsets, 1, w->frame_count, 0, (Hdf5Layout){.wide = true}, err);
+    if (ok && offsets_path)
+        ok = put_ints(w, offsets_path, offsets, 1, w->frame_count, 0, (Hdf5Layout){.wide = true}, err);
     mem_free(offsets);
     return ok;
 }
@@ -193,13 +202,14 @@ static bool put_vtk(Writer *w, Error *err)
     if (!journal_get(w->journal, "static", 0, "faces", &faces, err)) return false;
     w->face_count = faces.dims[0];
     bool ok = hdf5_attribute_ints(w->file, "VTKHDF", "Version", version, 2, err) &&
-              hdf5_attribute_text(w->file, "VTKHDF", "Type", "UnstructuredGrid", err) && put_cells(w, faces.data, err) &&
-              put_steps(w, err) && put_frames_array(w, "x", "VTKHDF/Points", NULL, err) && put_fields(w, err);
+              hdf5_attribute_text(w->file, "VTKHDF", "Type", "UnstructuredGrid", err) &&
+              put_cells(w, faces.data, err) && put_steps(w, err) &&
+              put_frames_array(w, "x", "VTKHDF/Points", NULL, err) && put_fields(w, err);
     array_clear(&faces);
     return ok;
 }
 
-/* ---- The whole file ------------------------------------------------------------------------------------- */
+/* ---- The whole file ---- */
 
 static bool read_times(Writer *w, Error *err)
 {
@@ -227,7 +237,8 @@ static bool put_last_x(Writer *w, Error *err)
 static bool fill(Writer *w, Error *err)
 {
     Array x;
-    if (!put_kind(w, "meta", err) || !put_kind(w, "static", err) || !put_kind(w, "final", err) || !put_status(w, err) || !put_histories(w, err))
+    if (!put_kind(w, "meta", err) || !put_kind(w, "static", err) || !put_kind(w, "final", err) ||
+        !put_status(w, err) || !put_histories(w, err))
         return false;
     if (w->frame_count == 0 || !journal_has(w->journal, "static", 0, "faces")) return true;
     if (!journal_get(w->journal, "frame", w->frames[0], "x", &x, err)) return false;
@@ -242,8 +253,12 @@ static bool write_sidecar(const Writer *w, const char *path, Error *err)
     if (w->vertex_count == 0) return true;
     size_t length = strlen(path), cut = length > 7 && !strcmp(path + length - 7, ".vtkhdf") ? 7 : 0;
     char *sidecar = mem_format("%.*s.xdmf", (int)(length - cut), path);
-    XdmfDef def = {.result = path, .vertex_count = w->vertex_count, .face_count = w->face_count, .step_count = w->frame_count,
-                   .times = w->times, .double_points = w->def.double_frames};
+    XdmfDef def = {.result = path,
+                   .vertex_count = w->vertex_count,
+                   .face_count = w->face_count,
+                   .step_count = w->frame_count,
+                   .times = w->times,
+                   .double_points = w->def.double_frames};
     char *text = xdmf_text(&def, w->fields, w->field_count, w->journal, w->frames);
     bool ok = safe_file_write(sidecar, text, strlen(text), false, err);
     mem_free(text);
@@ -257,7 +272,8 @@ bool result_write(Journal *journal, const char *path, ResultDef def, Error *err)
     void *bytes = NULL;
     size_t size;
     bool ok = w.file != NULL || error_set(err, "HDF5 cannot make a file");
-    ok = ok && journal_indices(journal, "frame", &w.frames, &w.frame_count, err) && fill(&w, err) && hdf5_image(w.file, &bytes, &size, err);
+    ok = ok && journal_indices(journal, "frame", &w.frames, &w.frame_count, err) && fill(&w, err) &&
+         hdf5_image(w.file, &bytes, &size, err);
     hdf5_close(w.file);
     ok = ok && safe_file_write(path, bytes, size, true, err) && write_sidecar(&w, path, err);
     mem_free(bytes);
@@ -267,7 +283,7 @@ bool result_write(Journal *journal, const char *path, ResultDef def, Error *err)
     return ok;
 }
 
-/* ---- Reading -------------------------------------------------------------------------------------------- */
+/* ---- Reading ---- */
 
 struct Result {
     Hdf5 *file;
@@ -301,18 +317,32 @@ void result_close(Result *result)
     mem_free(result);
 }
 
-bool result_list(Result *result, char ***paths, int *count, Error *err) { return hdf5_list(result->file, paths, count, err); }
+bool result_list(Result *result, char ***paths, int *count, Error *err)
+{
+    return hdf5_list(result->file, paths, count, err);
+}
 
-static bool is_status(const char *path) { return !strcmp(path, "slender/status"); }
+static bool is_status(const char *path)
+{
+    return !strcmp(path, "slender/status");
+}
 
-bool result_has(Result *result, const char *path) { return is_status(path) || hdf5_has(result->file, path); }
+bool result_has(Result *result, const char *path)
+{
+    return is_status(path) || hdf5_has(result->file, path);
+}
 
 bool result_read(Result *result, const char *path, Array *array, Error *err)
 {
     char *text;
     if (!is_status(path)) return hdf5_read(result->file, path, 0, -1, array, err);
     if (!hdf5_read_attribute_text(result->file, "slender", "status", &text, err)) return false;
-    *array = (Array){.name = mem_text("status"), .unit = mem_text(""), .type = ARRAY_TEXT, .rank = 1, .dims = {(int)strlen(text)}, .data = text};
+    *array = (Array){.name = mem_text("status"),
+                     .unit = mem_text(""),
+                     .type = ARRAY_TEXT,
+                     .rank = 1,
+                     .dims = {(int)strlen(text)},
+                     .data = text};
     return true;
 }
 
@@ -321,7 +351,10 @@ bool result_read_rows(Result *result, const char *path, int first, int count, Ar
     return hdf5_read(result->file, path, first, count, array, err);
 }
 
-int result_step_count(Result *result) { return result->step_count; }
+int result_step_count(Result *result)
+{
+    return result->step_count;
+}
 
 /* The number in a dataset of int64 at an index, or its only one. */
 static bool offset_at(Result *result, const char *path, int index, int *value, Error *err)
@@ -341,13 +374,20 @@ bool result_read_step(Result *result, const char *name, int step, Array *array, 
     int first = 0, count = 0;
     snprintf(path, sizeof path, "VTKHDF/%.400s", name);
     const char *field = strchr(name, '/');
-    if (points) snprintf(offsets, sizeof offsets, "VTKHDF/Steps/PointOffsets");
-    else snprintf(offsets, sizeof offsets, "VTKHDF/Steps/%s%.400s", cell ? "CellDataOffsets" : "PointDataOffsets", field ? field : "");
+    if (points)
+        snprintf(offsets, sizeof offsets, "VTKHDF/Steps/PointOffsets");
+    else
+        snprintf(offsets, sizeof offsets, "VTKHDF/Steps/%s%.400s",
+                 cell ? "CellDataOffsets" : "PointDataOffsets", field ? field : "");
     if (!hdf5_has(result->file, path)) return error_set(err, "the result has no %s", name);
-    if (step < 0 || step >= result->step_count) return error_set(err, "the result has %d steps, from 0", result->step_count);
+    if (step < 0 || step >= result->step_count)
+        return error_set(err, "the result has %d steps, from 0", result->step_count);
     return offset_at(result, offsets, step, &first, err) &&
            offset_at(result, cell ? "VTKHDF/NumberOfCells" : "VTKHDF/NumberOfPoints", 0, &count, err) &&
            hdf5_read(result->file, path, first, count, array, err);
 }
 
-const char *result_hdf5_version(void) { return hdf5_version(); }
+const char *result_hdf5_version(void)
+{
+    return hdf5_version();
+}

@@ -2,19 +2,22 @@
  *
  * An HDF5 file in two groups; every dataset of numbers has a text attribute `unit`.
  *
- * /VTKHDF, if the journal has static/faces and frames: an UnstructuredGrid over time (VTKHDF 2.0) for ParaView 5.12 and
- * later. The triangles are stored once; Points float32 [T*n_v,3], CellData/<name> [T*n_f] or [T*n_f,3] from the frames'
- * arrays cell/<name>, PointData/<name> from point/<name>, one chunk per step, gzip 1 and shuffle, float32 unless
- * double_frames. An array that a frame does not have is the one of the frame before it (Steps/CellDataOffsets says
- * which), so that what never changes need only be in the first frame.
+ * /VTKHDF, if the journal has static/faces and frames: an UnstructuredGrid over time (VTKHDF 2.0) for
+ * ParaView 5.12 and later. The triangles are stored once; Points float32 [T*n_v,3], CellData/<name> [T*n_f]
+ * or [T*n_f,3] from the frames' arrays cell/<name>, PointData/<name> from point/<name>, one chunk per step,
+ * gzip 1 and shuffle, float32 unless double_frames. An array that a frame does not have is the one of the
+ * frame before it (Steps/CellDataOffsets says which), so that what never changes need only be in the first
+ * frame.
  *
- * /slender: every array of meta, static and final at its own name (scene, versions, rest, faces, edges, state/x,
- * design/<block>, cases/<name>/.., ..) with its type and shape; history/<name> [evaluations], one for each scalar that
- * the evaluations hold; frames/x [T,n_v,3] float64 if double_frames. The text final/status becomes the attribute
- * `status`: "unfinished" if there is none yet; state/x is the last frame's x until final has it.
+ * /slender: every array of meta, static and final at its own name (scene, versions, rest, faces, edges,
+ * state/x, design/<block>, cases/<name>/.., ..) with its type and shape; history/<name> [evaluations], one
+ * for each scalar that the evaluations hold; frames/x [T,n_v,3] float64 if double_frames. The text
+ * final/status becomes the attribute `status`: "unfinished" if there is none yet; state/x is the last frame's
+ * x until final has it.
  *
- * The file ends with a trailer of 20 bytes that HDF5 does not look at: "SLENDRCK", the length before it (uint64) and
- * the CRC32 of these bytes (uint32), little-endian. A file whose trailer does not fit is never handed to HDF5.
+ * The file ends with a trailer of 20 bytes that HDF5 does not look at: "SLENDRCK", the length before it
+ * (uint64) and the CRC32 of these bytes (uint32), little-endian. A file whose trailer does not fit is never
+ * handed to HDF5.
  *
  * NAME.xdmf beside it shows the same steps to ParaView 5.11, whose VTKHDF reader cannot do time. */
 #pragma once
@@ -26,14 +29,15 @@ typedef struct ResultDef {
     bool double_frames; /* scene key output.precision: double */
 } ResultDef;
 
-/* Writes the result and its sidecar. The file is built in memory (so it needs its own size in memory, twice for a
- * moment), written to a temporary file beside path, read back, synced to the disk and renamed: at every moment path is
- * the old file or the new one, whole. On false the old one is still there. */
+/* Writes the result and its sidecar. The file is built in memory (so it needs its own size in memory, twice
+ * for a moment), written to a temporary file beside path, read back, synced to the disk and renamed: at every
+ * moment path is the old file or the new one, whole. On false the old one is still there. */
 bool result_write(Journal *journal, const char *path, ResultDef def, Error *err);
 
 typedef struct Result Result;
 
-/* Opens a result for reading, after checking every byte against the trailer. NULL and a sentence on refusal. */
+/* Opens a result for reading, after checking every byte against the trailer. NULL and a sentence on refusal.
+ */
 Result *result_open(const char *path, Error *err);
 void result_close(Result *result);
 
@@ -42,8 +46,8 @@ bool result_list(Result *result, char ***paths, int *count, Error *err);
 
 bool result_has(Result *result, const char *path);
 
-/* Reads a dataset: floating point as float64, integers as int32 (a number that does not fit is refused), texts as text.
- * "slender/status" reads the attribute. To be freed by array_clear. */
+/* Reads a dataset: floating point as float64, integers as int32 (a number that does not fit is refused),
+ * texts as text. "slender/status" reads the attribute. To be freed by array_clear. */
 bool result_read(Result *result, const char *path, Array *array, Error *err);
 
 /* Reads only rows first .. first + count - 1 of the first dimension. */
@@ -52,8 +56,8 @@ bool result_read_rows(Result *result, const char *path, int first, int count, Ar
 /* Stored steps, 0 if there is no /VTKHDF. */
 int result_step_count(Result *result);
 
-/* One step of /VTKHDF: name is "Points", "CellData/<name>" or "PointData/<name>"; the array has one row per vertex or
- * face. */
+/* One step of /VTKHDF: name is "Points", "CellData/<name>" or "PointData/<name>"; the array has one row per
+ * vertex or face. */
 bool result_read_step(Result *result, const char *name, int step, Array *array, Error *err);
 
 /* The linked library's version, e.g. "1.10.8". */

@@ -124,7 +124,8 @@ bool safe_file_read(const char *path, void **bytes, size_t *size, Error *err)
         ok = error_set(err, "%s is no result of slender, or it has been cut off", path);
     if (ok) {
         make_trailer(all, total - TRAILER, trailer);
-        ok = !memcmp(trailer, all + total - TRAILER, TRAILER) || error_set(err, "%s is damaged: its check sum is wrong", path);
+        ok = !memcmp(trailer, all + total - TRAILER, TRAILER) ||
+             error_set(err, "%s is damaged: its check sum is wrong", path);
     }
     if (!ok) {
         mem_free(all);

@@ -1,7 +1,8 @@
-/* safe_file.h - files that are old or new, never half: written beside, read back, synced, renamed. Private to io/.
+/* safe_file.h - files that are old or new, never half: written beside, read back, synced, renamed. Private to
+ * io/.
  *
- * A checked file ends with a trailer of 20 bytes: "SLENDRCK", the length before it (uint64) and the CRC32 of these bytes
- * (uint32), little-endian. */
+ * A checked file ends with a trailer of 20 bytes: "SLENDRCK", the length before it (uint64) and the CRC32 of
+ * these bytes (uint32), little-endian. */
 #pragma once
 #include "base/error.h"
 #include <stddef.h>

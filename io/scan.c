@@ -35,10 +35,17 @@ bool scan_file(const char *path, char **text, size_t *length, Error *err)
     return false;
 }
 
-Scan scan_start(const char *path, const char *text, size_t length, char comment, const char *separators, Error *err)
+Scan scan_start(const char *path, const char *text, size_t length, char comment, const char *separators,
+                Error *err)
 {
-    return (Scan){.path = path, .next = text, .end = text + length, .word_end = text, .at = text, .comment = comment,
-                  .separators = separators, .err = err};
+    return (Scan){.path = path,
+                  .next = text,
+                  .end = text + length,
+                  .word_end = text,
+                  .at = text,
+                  .comment = comment,
+                  .separators = separators,
+                  .err = err};
 }
 
 static bool splits(const Scan *scan, char c)
@@ -131,7 +138,8 @@ bool scan_number(Scan *scan, const char *what, double *value)
 {
     Word word;
     if (!scan_word(scan, &word)) return scan_refuse(scan, "%s is missing", what);
-    return word_number(word, value) || scan_refuse(scan, "%s must be a finite number, not '%.*s'", what, word.length > 40 ? 40 : word.length, word.text);
+    return word_number(word, value) || scan_refuse(scan, "%s must be a finite number, not '%.*s'", what,
+                                                   word.length > 40 ? 40 : word.length, word.text);
 }
 
 bool scan_integer(Scan *scan, const char *what, long low, long high, long *value)
@@ -139,7 +147,8 @@ bool scan_integer(Scan *scan, const char *what, long low, long high, long *value
     Word word;
     if (!scan_word(scan, &word)) return scan_refuse(scan, "%s is missing", what);
     if (!word_integer(word, value))
-        return scan_refuse(scan, "%s must be a whole number, not '%.*s'", what, word.length > 40 ? 40 : word.length, word.text);
+        return scan_refuse(scan, "%s must be a whole number, not '%.*s'", what,
+                           word.length > 40 ? 40 : word.length, word.text);
     if (*value >= low && *value <= high) return true;
     return scan_refuse(scan, "%s is %ld; it must be from %ld to %ld", what, *value, low, high);
 }

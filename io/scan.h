@@ -1,4 +1,5 @@
-/* scan.h - lines and words of a text file, with sentences that name the line. Private to the readers of io/. */
+/* scan.h - lines and words of a text file, with sentences that name the line. Private to the readers of io/.
+ */
 #pragma once
 #include "base/error.h"
 #include <stddef.h>
@@ -22,7 +23,8 @@ typedef struct Word {
 /* A whole file in memory; *text is the caller's (mem_free). Refused: what cannot be read, more than 2 GiB. */
 bool scan_file(const char *path, char **text, size_t *length, Error *err);
 
-Scan scan_start(const char *path, const char *text, size_t length, char comment, const char *separators, Error *err);
+Scan scan_start(const char *path, const char *text, size_t length, char comment, const char *separators,
+                Error *err);
 
 /* The next line that has words on it; false at the end. */
 bool scan_line(Scan *scan);
@@ -30,7 +32,10 @@ bool scan_line(Scan *scan);
 /* The next word of the line; false at its end. */
 bool scan_word(Scan *scan, Word *word);
 
-static inline bool scan_more(const Scan *scan) { return scan->at < scan->word_end; }
+static inline bool scan_more(const Scan *scan)
+{
+    return scan->at < scan->word_end;
+}
 
 bool word_is(Word word, const char *text);
 bool word_begins(Word word, const char *text); /* any case */

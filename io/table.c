@@ -24,7 +24,8 @@ static bool read_row(Scan *scan, Table *table, Room *room)
         double value;
         if (!word_number(word, &value)) {
             if (table->rows == 0 && columns == 0 && is_header(word)) return true;
-            return scan_refuse(scan, "'%.*s' is no finite number", word.length > 40 ? 40 : word.length, word.text);
+            return scan_refuse(scan, "'%.*s' is no finite number", word.length > 40 ? 40 : word.length,
+                               word.text);
         }
         size_t place = (size_t)table->rows * (size_t)table->columns + (size_t)columns;
         if (place >= room->values) {
@@ -35,7 +36,8 @@ static bool read_row(Scan *scan, Table *table, Room *room)
     }
     if (table->columns == 0) table->columns = columns;
     if (columns != table->columns)
-        return scan_refuse(scan, "%d number%s in this row, and %d are needed", columns, columns == 1 ? "" : "s", table->columns);
+        return scan_refuse(scan, "%d number%s in this row, and %d are needed", columns,
+                           columns == 1 ? "" : "s", table->columns);
     size_t rows = (size_t)table->rows;
     if (rows == room->rows) {
         table->line = mem_resize(table->line, rows, 2 * rows + 64, sizeof *table->line);
@@ -61,12 +63,14 @@ bool table_read(const char *path, int columns, Table *table, Error *err)
     return ok;
 }
 
-bool table_write(const char *path, const char *header, const double *values, int rows, int columns, Error *err)
+bool table_write(const char *path, const char *header, const double *values, int rows, int columns,
+                 Error *err)
 {
     FILE *file = fopen(path, "w");
     if (!file) return error_set(err, "%s: cannot be written: %s", path, strerror(errno));
     if (header) fprintf(file, "%s\n", header);
-    for (long i = 0; i < (long)rows * columns; i++) fprintf(file, "%.17g%s", values[i], (i + 1) % columns ? ", " : "\n");
+    for (long i = 0; i < (long)rows * columns; i++)
+        fprintf(file, "%.17g%s", values[i], (i + 1) % columns ? ", " : "\n");
     bool failed = ferror(file) != 0;
     failed |= fclose(file) != 0;
     return !failed || error_set(err, "%s: cannot be written: %s", path, strerror(errno));

@@ -8,11 +8,12 @@ typedef struct Table {
     int *line;      /* [rows] line in the file, from 1; owned */
 } Table;
 
-/* Reads rows that all have `columns` numbers (0: as many as the first row). A row of another length, a word, NaN or
- * an infinity is refused with file:line. A first line of words (a header) is skipped. */
+/* Reads rows that all have `columns` numbers (0: as many as the first row). A row of another length, a word,
+ * NaN or an infinity is refused with file:line. A first line of words (a header) is skipped. */
 bool table_read(const char *path, int columns, Table *table, Error *err);
 
 /* Writes with every bit; header may be NULL. */
-bool table_write(const char *path, const char *header, const double *values, int rows, int columns, Error *err);
+bool table_write(const char *path, const char *header, const double *values, int rows, int columns,
+                 Error *err);
 
 void table_clear(Table *table);

@@ -24,17 +24,25 @@ void text_add(Text *text, const char *format, ...)
     va_end(again);
 }
 
-void text_indent(Text *text, int depth) { text_add(text, "%*s", 2 * depth, ""); }
+void text_indent(Text *text, int depth)
+{
+    text_add(text, "%*s", 2 * depth, "");
+}
 
 void text_add_quoted(Text *text, const char *string)
 {
     text_add(text, "\"");
     for (const char *c = string; *c; c++) {
-        if (*c == '"' || *c == '\\') text_add(text, "\\%c", *c);
-        else if (*c == '\n') text_add(text, "\\n");
-        else if (*c == '\t') text_add(text, "\\t");
-        else if ((unsigned char)*c < 0x20 || *c == 0x7f) text_add(text, "\\u%04x", (unsigned)*c);
-        else text_add(text, "%c", *c);
+        if (*c == '"' || *c == '\\')
+            text_add(text, "\\%c", *c);
+        else if (*c == '\n')
+            text_add(text, "\\n");
+        else if (*c == '\t')
+            text_add(text, "\\t");
+        else if ((unsigned char)*c < 0x20 || *c == 0x7f)
+            text_add(text, "\\u%04x", (unsigned)*c);
+        else
+            text_add(text, "%c", *c);
     }
     text_add(text, "\"");
 }

@@ -9,5 +9,7 @@ typedef struct XdmfDef {
     bool double_points;
 } XdmfDef;
 
-/* The file's text, the caller's. fields: names of the frames' arrays, cell/.. and point/..; frames: their indices. */
-char *xdmf_text(const XdmfDef *def, char *const *fields, int field_count, Journal *journal, const int *frames);
+/* The file's text, the caller's. fields: names of the frames' arrays, cell/.. and point/..; frames: their
+ * indices. */
+char *xdmf_text(const XdmfDef *def, char *const *fields, int field_count, Journal *journal,
+                const int *frames);

@@ -60,7 +60,7 @@ void yaml_error_at(YamlFile *file, int line, int column, const char *format, ...
     va_end(args);
 }
 
-/* ---- Keys ----------------------------------------------------------------------------------------------- */
+/* ---- Keys ---- */
 
 bool path_step(const char **path, const char **name, int *length, int *index)
 {
@@ -92,7 +92,8 @@ Node *tree_follow(const YamlFile *file, const char *key, const char **rest)
         Node *item = NULL;
         if (index >= 0 && node->kind == NODE_LIST && index < node->count) item = node->items[index];
         for (int i = 0; index < 0 && node->kind == NODE_MAP && i < node->count; i++)
-            if (!strncmp(node->keys[i], name, (size_t)length) && !node->keys[i][length]) item = node->items[i];
+            if (!strncmp(node->keys[i], name, (size_t)length) && !node->keys[i][length])
+                item = node->items[i];
         if (!item) return node;
         node = item;
     }
@@ -124,9 +125,12 @@ char *yaml_where(const YamlFile *file, const char *key)
     return mem_format("%s:%d:%d", file->path, node->line, node->column);
 }
 
-/* ---- Reports -------------------------------------------------------------------------------------------- */
+/* ---- Reports ---- */
 
-int yaml_error_count(const YamlFile *file) { return file->error_count; }
+int yaml_error_count(const YamlFile *file)
+{
+    return file->error_count;
+}
 
 const YamlError *yaml_errors(const YamlFile *file, int *count)
 {
@@ -134,7 +138,8 @@ const YamlError *yaml_errors(const YamlFile *file, int *count)
     return file->errors;
 }
 
-/* The source line, cut where it is long, and a caret below the column. Tabs stay tabs, so that the caret stands right. */
+/* The source line, cut where it is long, and a caret below the column. Tabs stay tabs, so that the caret
+ * stands right. */
 static char *source_line(const YamlFile *file, int line, int column)
 {
     enum { SHOWN = 160 };
@@ -144,7 +149,9 @@ static char *source_line(const YamlFile *file, int line, int column)
         start = newline ? newline + 1 : end;
     }
     int length = 0, caret = 0;
-    while (start + length < end && start[length] && start[length] != '\n' && start[length] != '\r' && length < SHOWN) length++;
+    while (start + length < end && start[length] && start[length] != '\n' && start[length] != '\r' &&
+           length < SHOWN)
+        length++;
     char blanks[SHOWN + 1];
     for (int characters = 1; caret < length && characters < column; caret++) {
         blanks[caret] = start[caret] == '\t' ? '\t' : ' ';
@@ -163,7 +170,8 @@ static char *error_text(const YamlFile *file, int k)
     if (file->error_is_set[k]) return mem_format("%s\n", error->sentence);
     if (!error->line) return mem_format("%s: %s\n", file->path, error->sentence);
     char *line = source_line(file, error->line, error->column);
-    char *text = mem_format("%s:%d:%d: %s\n%s", file->path, error->line, error->column, error->sentence, line);
+    char *text =
+        mem_format("%s:%d:%d: %s\n%s", file->path, error->line, error->column, error->sentence, line);
     mem_free(line);
     return text;
 }
@@ -183,9 +191,10 @@ char *yaml_report(const YamlFile *file)
     return longer;
 }
 
-/* ---- Misspelt words ------------------------------------------------------------------------------------- */
+/* ---- Misspelt words ---- */
 
-/* Edits (one letter more, less, other, or two swapped) from a to b; words longer than the table count as far. */
+/* Edits (one letter more, less, other, or two swapped) from a to b; words longer than the table count as far.
+ */
 static int distance(const char *a, const char *b)
 {
     enum { LONGEST = 40 };
@@ -197,9 +206,11 @@ static int distance(const char *a, const char *b)
                 d[i][j] = i + j;
                 continue;
             }
-            int other = d[i - 1][j - 1] + (tolower((unsigned char)a[i - 1]) != tolower((unsigned char)b[j - 1]));
+            int other =
+                d[i - 1][j - 1] + (tolower((unsigned char)a[i - 1]) != tolower((unsigned char)b[j - 1]));
             int least = d[i - 1][j] < d[i][j - 1] ? d[i - 1][j] + 1 : d[i][j - 1] + 1;
-            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] && d[i - 2][j - 2] + 1 < least) least = d[i - 2][j - 2] + 1;
+            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] && d[i - 2][j - 2] + 1 < least)
+                least = d[i - 2][j - 2] + 1;
             d[i][j] = other < least ? other : least;
         }
     return d[n][m];

@@ -1,155 +1,35 @@
 /* The tree to a struct, row by row. */
 #include "base/memory.h"
-#include "io/yaml_private.h"
-#include <limits.h>
+#include "io/yaml_load.h"
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-
-/* Where loading stands: the key path, for sentences. */
-typedef struct Load {
-    YamlFile *file;
-    char path[512];
-} Load;
 
 static bool load_table(Load *load, const YamlTable *table, const Node *node, void *scene);
 static bool load_value(Load *load, const YamlField *row, const Node *node, void *scene);
 
-/* ---- The path ------------------------------------------------------------------------------------------- */
-
-static size_t enter(Load *load, const char *key, int index)
-{
-    size_t length = strlen(load->path);
-    char *end = load->path + length;
-    size_t room = sizeof load->path - length;
-    if (key) snprintf(end, room, "%s%s", length ? "." : "", key);
-    else snprintf(end, room, "[%d]", index);
-    return length;
-}
-
-static void leave(Load *load, size_t length) { load->path[length] = 0; }
-
-static bool wrong(Load *load, const Node *at, const char *what)
-{
-    yaml_error(load->file, at, "%s %s", load->path[0] ? load->path : "the scene", what);
-    return false;
-}
-
-/* ---- Scalars -------------------------------------------------------------------------------------------- */
-
-/* "(0, inf)", "[0, 0.5]": ends belong to it or not. */
-static bool in_range(double value, const char *range)
-{
-    double low, high;
-    char open = range[0], close = range[strlen(range) - 1];
-    const char *comma = strchr(range, ',');
-    low = strtod(range + 1, NULL);
-    high = strtod(comma + 1, NULL);
-    return (open == '[' ? value >= low : value > low) && (close == ']' ? value <= high : value < high);
-}
-
-static const char *kind_name(const Node *node)
-{
-    return node->kind == NODE_LIST ? "a list" : node->kind == NODE_MAP ? "a mapping" : "a text";
-}
-
-static bool load_number(Load *load, const YamlField *row, const Node *node, double *value)
-{
-    char what[256];
-    if (node->kind != NODE_SCALAR || node->quoted) {
-        snprintf(what, sizeof what, "must be a number%s%s, not %s", row->unit ? " in " : "", row->unit ? row->unit : "", kind_name(node));
-        return wrong(load, node, what);
-    }
-    if (!unit_parse(node->text, row->unit, value, what, sizeof what)) return wrong(load, node, what);
-    if (!row->range || in_range(*value, row->range)) return true;
-    snprintf(what, sizeof what, "is %g; it must be in %s%s%s", *value, row->range, row->unit ? " " : "", row->unit ? row->unit : "");
-    return wrong(load, node, what);
-}
-
-static bool load_integer(Load *load, const YamlField *row, const Node *node, int *value)
-{
-    double number;
-    YamlField plain = *row;
-    plain.unit = NULL;
-    if (!load_number(load, &plain, node, &number)) return false;
-    if (number != floor(number) || fabs(number) >= INT_MAX) {
-        char what[128];
-        snprintf(what, sizeof what, "must be a whole number below 2147483647, not '%.40s'", node->text);
-        return wrong(load, node, what);
-    }
-    *value = (int)number;
-    return true;
-}
-
-static bool load_text(Load *load, const Node *node, char **value)
-{
-    if (node->kind != NODE_SCALAR) {
-        char what[64];
-        snprintf(what, sizeof what, "must be a text, not %s", kind_name(node));
-        return wrong(load, node, what);
-    }
-    *value = mem_text(node->text);
-    return true;
-}
-
-static bool load_bool(Load *load, const Node *node, bool *value)
-{
-    bool yes = node->kind == NODE_SCALAR && !strcmp(node->text, "true");
-    if (!yes && (node->kind != NODE_SCALAR || strcmp(node->text, "false"))) return wrong(load, node, "must be true or false");
-    *value = yes;
-    return true;
-}
-
-static const char *choice_word(const void *self, int i) { return ((const char *const *)self)[i]; }
-
-static bool load_choice(Load *load, const YamlField *row, const Node *node, int *value)
-{
-    for (int k = 0; node->kind == NODE_SCALAR && row->choices[k]; k++)
-        if (!strcmp(node->text, row->choices[k])) return *value = k, true;
-    char what[512];
-    int length = snprintf(what, sizeof what, "must be ");
-    for (int k = 0; row->choices[k] && length < 400; k++)
-        length += snprintf(what + length, sizeof what - (size_t)length, "%s%s", k == 0 ? "" : row->choices[k + 1] ? ", " : " or ", row->choices[k]);
-    if (node->kind == NODE_SCALAR) {
-        const char *near = nearest_word(node->text, choice_word, row->choices);
-        length += snprintf(what + length, sizeof what - (size_t)length, ", not '%.40s'", node->text);
-        if (near && length < 480) snprintf(what + length, sizeof what - (size_t)length, "; did you mean '%s'?", near);
-    }
-    return wrong(load, node, what);
-}
-
-static bool load_file(Load *load, const Node *node, char **value)
-{
-    char *text = NULL;
-    if (!load_text(load, node, &text)) return false;
-    if (!*text) {
-        mem_free(text);
-        return wrong(load, node, "must name a file");
-    }
-    *value = *text == '/' ? mem_text(text) : mem_format("%s/%s", load->file->folder, text);
-    mem_free(text);
-    return true;
-}
-
-/* ---- Lists ---------------------------------------------------------------------------------------------- */
+/* ---- Lists ---- */
 
 static bool check_count(Load *load, const YamlField *row, const Node *node, int least, int most)
 {
     char what[128];
     if (node->kind != NODE_LIST) {
-        snprintf(what, sizeof what, "must be a list%s, not %s", least == most && least ? "" : " of entries", kind_name(node));
-        if (least == most && least) snprintf(what, sizeof what, "must be a list of %d %s, not %s", least, row->kind == FIELD_ROWS ? "rows" : "entries", kind_name(node));
-        return wrong(load, node, what);
+        snprintf(what, sizeof what, "must be a list%s, not %s", least == most && least ? "" : " of entries",
+                 node_kind_name(node));
+        if (least == most && least)
+            snprintf(what, sizeof what, "must be a list of %d %s, not %s", least,
+                     row->kind == FIELD_ROWS ? "rows" : "entries", node_kind_name(node));
+        return load_wrong(load, node, what);
     }
     if (node->count >= least && (!most || node->count <= most)) return true;
     if (least == most)
         snprintf(what, sizeof what, "must be a list of %d entries, not %d", least, node->count);
     else if (node->count < least)
-        snprintf(what, sizeof what, "must have %d entr%s at least, not %d", least, least == 1 ? "y" : "ies", node->count);
+        snprintf(what, sizeof what, "must have %d entr%s at least, not %d", least, least == 1 ? "y" : "ies",
+                 node->count);
     else
         snprintf(what, sizeof what, "must have %d entries at most, not %d", most, node->count);
-    return wrong(load, node, what);
+    return load_wrong(load, node, what);
 }
 
 /* Entries of a list into an array of this many bytes each; a lone value is a list of one. */
@@ -158,18 +38,33 @@ static bool load_entries(Load *load, const YamlField *row, const Node *node, cha
 {
     bool ok = true;
     for (int i = 0; i < node->count; i++) {
-        size_t length = enter(load, NULL, i);
+        size_t length = load_enter(load, NULL, i);
         ok = entry(load, row, node->items[i], array + (size_t)i * size) && ok;
-        leave(load, length);
+        load_leave(load, length);
     }
     return ok;
 }
 
-static bool number_entry(Load *load, const YamlField *row, const Node *node, void *value) { return load_number(load, row, node, value); }
-static bool integer_entry(Load *load, const YamlField *row, const Node *node, void *value) { return load_integer(load, row, node, value); }
-static bool choice_entry(Load *load, const YamlField *row, const Node *node, void *value) { return load_choice(load, row, node, value); }
-static bool text_entry(Load *load, const YamlField *row, const Node *node, void *value) { return (void)row, load_text(load, node, value); }
-static bool table_entry(Load *load, const YamlField *row, const Node *node, void *value) { return load_table(load, row->table, node, value); }
+static bool number_entry(Load *load, const YamlField *row, const Node *node, void *value)
+{
+    return load_number(load, row, node, value);
+}
+static bool integer_entry(Load *load, const YamlField *row, const Node *node, void *value)
+{
+    return load_integer(load, row, node, value);
+}
+static bool choice_entry(Load *load, const YamlField *row, const Node *node, void *value)
+{
+    return load_choice(load, row, node, value);
+}
+static bool text_entry(Load *load, const YamlField *row, const Node *node, void *value)
+{
+    return (void)row, load_text(load, node, value);
+}
+static bool table_entry(Load *load, const YamlField *row, const Node *node, void *value)
+{
+    return load_table(load, row->table, node, value);
+}
 
 static bool row_entry(Load *load, const YamlField *row, const Node *node, void *value)
 {
@@ -182,12 +77,17 @@ static bool row_entry(Load *load, const YamlField *row, const Node *node, void *
 static size_t entry_size(const YamlField *row)
 {
     switch (row->kind) {
-    case FIELD_NUMBERS: return sizeof(double);
+    case FIELD_NUMBERS:
+        return sizeof(double);
     case FIELD_INTEGERS:
-    case FIELD_CHOICES: return sizeof(int);
-    case FIELD_TEXTS: return sizeof(char *);
-    case FIELD_ROWS: return (size_t)row->width * sizeof(double);
-    default: return row->size;
+    case FIELD_CHOICES:
+        return sizeof(int);
+    case FIELD_TEXTS:
+        return sizeof(char *);
+    case FIELD_ROWS:
+        return (size_t)row->width * sizeof(double);
+    default:
+        return row->size;
     }
 }
 
@@ -197,9 +97,11 @@ static bool load_list(Load *load, const YamlField *row, const Node *node, void *
     static bool (*const entries[])(Load *, const YamlField *, const Node *, void *) = {
         [FIELD_NUMBERS] = number_entry, [FIELD_INTEGERS] = integer_entry, [FIELD_CHOICES] = choice_entry,
         [FIELD_TEXTS] = text_entry,     [FIELD_ROWS] = row_entry,         [FIELD_LIST] = table_entry};
-    Node alone = {.kind = NODE_LIST, .line = node->line, .column = node->column, .origin = node->origin, .count = 1};
+    Node alone = {
+        .kind = NODE_LIST, .line = node->line, .column = node->column, .origin = node->origin, .count = 1};
     Node *item = (Node *)node;
-    bool scalar_list = row->count_offset && (row->kind == FIELD_NUMBERS || row->kind == FIELD_INTEGERS || row->kind == FIELD_CHOICES);
+    bool scalar_list = row->count_offset && (row->kind == FIELD_NUMBERS || row->kind == FIELD_INTEGERS ||
+                                             row->kind == FIELD_CHOICES);
     if (node->kind == NODE_SCALAR && scalar_list) alone.items = &item, node = &alone;
     if (!row->count_offset) {
         return check_count(load, row, node, row->width, row->width) &&
@@ -214,16 +116,16 @@ static bool load_list(Load *load, const YamlField *row, const Node *node, void *
 
 static bool load_map(Load *load, const YamlField *row, const Node *node, void *scene)
 {
-    if (node->kind != NODE_MAP) return wrong(load, node, "must be a mapping of names");
+    if (node->kind != NODE_MAP) return load_wrong(load, node, "must be a mapping of names");
     char *array = mem_alloc((size_t)node->count, row->size);
     *(void **)row_member(row, scene) = array;
     *row_count(row, scene) = node->count;
     bool ok = true;
     for (int i = 0; i < node->count; i++) {
-        size_t length = enter(load, node->keys[i], 0);
+        size_t length = load_enter(load, node->keys[i], 0);
         ok = load_table(load, row->table, node->items[i], array + (size_t)i * row->size) && ok;
         *(char **)(array + (size_t)i * row->size) = mem_text(node->keys[i]);
-        leave(load, length);
+        load_leave(load, length);
     }
     return ok;
 }
@@ -239,20 +141,30 @@ static bool load_value(Load *load, const YamlField *row, const Node *node, void 
 {
     void *member = row_member(row, scene);
     switch (row->kind) {
-    case FIELD_NUMBER: return load_number(load, row, node, member);
-    case FIELD_INTEGER: return load_integer(load, row, node, member);
-    case FIELD_BOOL: return load_bool(load, node, member);
-    case FIELD_TEXT: return load_text(load, node, member);
-    case FIELD_FILE: return load_file(load, node, member);
-    case FIELD_CHOICE: return load_choice(load, row, node, member);
-    case FIELD_TABLE: return load_table(load, row->table, node, member);
-    case FIELD_OPTIONAL: return load_optional(load, row, node, scene);
-    case FIELD_MAP: return load_map(load, row, node, scene);
-    default: return load_list(load, row, node, scene);
+    case FIELD_NUMBER:
+        return load_number(load, row, node, member);
+    case FIELD_INTEGER:
+        return load_integer(load, row, node, member);
+    case FIELD_BOOL:
+        return load_bool(load, node, member);
+    case FIELD_TEXT:
+        return load_text(load, node, member);
+    case FIELD_FILE:
+        return load_file(load, node, member);
+    case FIELD_CHOICE:
+        return load_choice(load, row, node, member);
+    case FIELD_TABLE:
+        return load_table(load, row->table, node, member);
+    case FIELD_OPTIONAL:
+        return load_optional(load, row, node, scene);
+    case FIELD_MAP:
+        return load_map(load, row, node, scene);
+    default:
+        return load_list(load, row, node, scene);
     }
 }
 
-/* ---- Tables --------------------------------------------------------------------------------------------- */
+/* ---- Tables ---- */
 
 /* What a member holds when its key is absent: zero, or this. */
 static void set_absent(const YamlField *row, void *scene)
@@ -278,29 +190,35 @@ static bool load_default(Load *load, const YamlField *row, void *scene)
     return ok;
 }
 
-/* May the row take this value in place of a mapping? Kinds are told apart, so that the first that may, must. */
+/* May the row take this value in place of a mapping? Kinds are told apart, so that the first that may, must.
+ */
 static bool accepts(const YamlField *row, const Node *node)
 {
     bool number = node->kind == NODE_SCALAR && !node->quoted && unit_is_number(node->text);
     switch (row->kind) {
     case FIELD_NUMBER:
-    case FIELD_INTEGER: return number;
+    case FIELD_INTEGER:
+        return number;
     case FIELD_TEXT:
-    case FIELD_FILE: return node->kind == NODE_SCALAR;
+    case FIELD_FILE:
+        return node->kind == NODE_SCALAR;
     case FIELD_CHOICE:
         for (int k = 0; node->kind == NODE_SCALAR && row->choices[k]; k++)
             if (!strcmp(node->text, row->choices[k])) return true;
         return false;
     case FIELD_NUMBERS:
         for (int i = 0; node->kind == NODE_LIST && i < node->count; i++)
-            if (node->items[i]->kind != NODE_SCALAR || node->items[i]->quoted || !unit_is_number(node->items[i]->text)) return false;
+            if (node->items[i]->kind != NODE_SCALAR || node->items[i]->quoted ||
+                !unit_is_number(node->items[i]->text))
+                return false;
         return node->kind == NODE_LIST;
-    default: return node->kind == NODE_LIST;
+    default:
+        return node->kind == NODE_LIST;
     }
 }
 
-/* The row that a value which is no mapping goes to: the first that accepts it, else the first of all, whose refusal
- * tells what is wanted. */
+/* The row that a value which is no mapping goes to: the first that accepts it, else the first of all, whose
+ * refusal tells what is wanted. */
 static const YamlField *short_row(const YamlTable *table, const Node *node)
 {
     const YamlField *first = NULL;
@@ -319,24 +237,31 @@ const YamlField *table_row(const YamlTable *table, const char *key)
     return NULL;
 }
 
-static const char *field_word(const void *self, int i) { return ((const YamlField *)self)[i].key; }
+static const char *field_word(const void *self, int i)
+{
+    return ((const YamlField *)self)[i].key;
+}
 
 static void list_keys(const YamlTable *table, char *text, size_t size)
 {
     size_t length = 0;
     for (const YamlField *row = table->fields; row->key && length < size; row++)
-        length += (size_t)snprintf(text + length, size - length, "%s%s", row == table->fields ? "" : ", ", row->key);
+        length += (size_t)snprintf(text + length, size - length, "%s%s", row == table->fields ? "" : ", ",
+                                   row->key);
 }
 
 static bool unknown_key(Load *load, const YamlTable *table, const Node *node, int i)
 {
     char known[700];
     const char *near = nearest_word(node->keys[i], field_word, table->fields);
-    Node at = {.line = node->key_place[i][0], .column = node->key_place[i][1], .origin = node->items[i]->origin};
+    Node at = {
+        .line = node->key_place[i][0], .column = node->key_place[i][1], .origin = node->items[i]->origin};
     list_keys(table, known, sizeof known);
     const char *where = load->path[0] ? load->path : "the scene";
-    if (near) yaml_error(load->file, &at, "%s has no key '%.60s'; did you mean '%s'?", where, node->keys[i], near);
-    else yaml_error(load->file, &at, "%s has no key '%.60s'; its keys are %s", where, node->keys[i], known);
+    if (near)
+        yaml_error(load->file, &at, "%s has no key '%.60s'; did you mean '%s'?", where, node->keys[i], near);
+    else
+        yaml_error(load->file, &at, "%s has no key '%.60s'; its keys are %s", where, node->keys[i], known);
     return false;
 }
 
@@ -357,13 +282,17 @@ static bool check_one_of(Load *load, const YamlTable *table, const Node *node, i
         required |= row->required;
         snprintf(all + strlen(all), sizeof all - strlen(all), "%s%s", all[0] ? ", " : "", row->key);
         if (!is_given(row, node)) continue;
-        snprintf(given + strlen(given), sizeof given - strlen(given), "%s%s", count++ ? " and " : "", row->key);
+        snprintf(given + strlen(given), sizeof given - strlen(given), "%s%s", count++ ? " and " : "",
+                 row->key);
     }
     char what[600];
-    if (count > 1) snprintf(what, sizeof what, "has %s; give only one of %s", given, all);
-    else if (count == 0 && required) snprintf(what, sizeof what, "needs one of %s", all);
-    else return true;
-    return wrong(load, node, what);
+    if (count > 1)
+        snprintf(what, sizeof what, "has %s; give only one of %s", given, all);
+    else if (count == 0 && required)
+        snprintf(what, sizeof what, "needs one of %s", all);
+    else
+        return true;
+    return load_wrong(load, node, what);
 }
 
 static bool group_is_given(const YamlTable *table, const Node *node, int group)
@@ -376,18 +305,19 @@ static bool group_is_given(const YamlTable *table, const Node *node, int group)
 static bool load_row(Load *load, const YamlTable *table, const YamlField *row, const Node *node, void *scene)
 {
     const Node *item = node_find(node, row->key);
-    size_t length = enter(load, row->key, 0);
+    size_t length = load_enter(load, row->key, 0);
     bool ok = true;
     set_absent(row, scene);
     if (item) {
         ok = load_value(load, row, item, scene);
     } else if (row->required && !row->one_of) {
-        yaml_error(load->file, node, "%s is missing%s%s", load->path, row->doc ? ": " : "", row->doc ? row->doc : "");
+        yaml_error(load->file, node, "%s is missing%s%s", load->path, row->doc ? ": " : "",
+                   row->doc ? row->doc : "");
         ok = false;
     } else if (!row->one_of || !group_is_given(table, node, row->one_of)) {
         ok = load_default(load, row, scene);
     }
-    leave(load, length);
+    load_leave(load, length);
     return ok;
 }
 
@@ -396,7 +326,8 @@ static bool load_map_node(Load *load, const YamlTable *table, const Node *node, 
     bool ok = true;
     for (int i = 0; i < node->count; i++)
         if (!table_row(table, node->keys[i])) ok = unknown_key(load, table, node, i);
-    for (const YamlField *row = table->fields; row->key; row++) ok = load_row(load, table, row, node, scene) && ok;
+    for (const YamlField *row = table->fields; row->key; row++)
+        ok = load_row(load, table, row, node, scene) && ok;
     for (int group = 1, more = 1; more; group++) {
         more = 0;
         for (const YamlField *row = table->fields; row->key; row++) more |= row->one_of >= group;
@@ -412,29 +343,38 @@ static bool load_table(Load *load, const YamlTable *table, const Node *node, voi
     if (!row) {
         char what[800] = "must be a mapping with the keys ";
         list_keys(table, what + strlen(what), sizeof what - strlen(what));
-        return wrong(load, node, what);
+        return load_wrong(load, node, what);
     }
     /* As if the key had been written. */
     Node *item = (Node *)node;
     char *key = (char *)row->key;
     int place[1][2] = {{node->line, node->column}};
-    Node map = {.kind = NODE_MAP, .line = node->line, .column = node->column, .origin = node->origin, .count = 1,
-                .items = &item, .keys = &key, .key_place = place};
+    Node map = {.kind = NODE_MAP,
+                .line = node->line,
+                .column = node->column,
+                .origin = node->origin,
+                .count = 1,
+                .items = &item,
+                .keys = &key,
+                .key_place = place};
     return load_map_node(load, table, &map, scene);
 }
 
 bool yaml_load(YamlFile *file, const YamlTable *table, void *scene)
 {
     memset(scene, 0, table->size);
-    if (!file->root && !file->error_count) yaml_error_at(file, 1, 1, "the file is empty; a scene begins with `slender: 1`");
+    if (!file->root && !file->error_count)
+        yaml_error_at(file, 1, 1, "the file is empty; a scene begins with `slender: 1`");
     if (!file->root) return false;
     if (file->root->kind != NODE_MAP) {
         yaml_error(file, file->root, "a scene is a mapping that begins with `slender: 1`");
         return false;
     }
-    const Node *version = file->root->count && !strcmp(file->root->keys[0], "slender") ? file->root->items[0] : NULL;
+    const Node *version =
+        file->root->count && !strcmp(file->root->keys[0], "slender") ? file->root->items[0] : NULL;
     if (!version || version->kind != NODE_SCALAR || strcmp(version->text, "1"))
-        yaml_error(file, version ? version : file->root, "the first key of a scene must be `slender: 1`, the format's version");
+        yaml_error(file, version ? version : file->root,
+                   "the first key of a scene must be `slender: 1`, the format's version");
     /* The version's key is no row of the table. */
     Node rest = *file->root;
     int skip = version ? 1 : 0;
@@ -446,7 +386,7 @@ bool yaml_load(YamlFile *file, const YamlTable *table, void *scene)
     return false;
 }
 
-/* ---- Freeing -------------------------------------------------------------------------------------------- */
+/* ---- Freeing ---- */
 
 static void clear_row(const YamlField *row, void *scene)
 {
@@ -455,14 +395,16 @@ static void clear_row(const YamlField *row, void *scene)
         yaml_clear(row->table, member);
         return;
     }
-    bool pointer = row->count_offset || row->kind == FIELD_TEXT || row->kind == FIELD_FILE || row->kind == FIELD_OPTIONAL;
+    bool pointer = row->count_offset || row->kind == FIELD_TEXT || row->kind == FIELD_FILE ||
+                   row->kind == FIELD_OPTIONAL;
     if (!pointer) return;
     void *block = *(void **)member;
     int count = row->count_offset ? *row_count(row, scene) : 1;
     for (int i = 0; block && i < count; i++) {
         if (row->kind == FIELD_TEXTS) mem_free(((char **)block)[i]);
         if (row->kind == FIELD_MAP) mem_free(*(char **)((char *)block + (size_t)i * row->size));
-        if (row->kind == FIELD_LIST || row->kind == FIELD_MAP) yaml_clear(row->table, (char *)block + (size_t)i * row->size);
+        if (row->kind == FIELD_LIST || row->kind == FIELD_MAP)
+            yaml_clear(row->table, (char *)block + (size_t)i * row->size);
         if (row->kind == FIELD_OPTIONAL) yaml_clear(row->table, block);
     }
     mem_free(block);

@@ -1,4 +1,5 @@
-/* What a field table says of itself: JSON Schema for editors, the manual for readers, and a check for its tests. */
+/* What a field table says of itself: JSON Schema for editors, the manual for readers, and a check for its
+ * tests. */
 #include "base/memory.h"
 #include "io/yaml_private.h"
 #include "io/text.h"
@@ -24,13 +25,14 @@ static void collect(Tables *tables, const YamlTable *table)
         if (row->table) collect(tables, row->table);
 }
 
-/* ---- Schema --------------------------------------------------------------------------------------------- */
+/* ---- Schema ---- */
 
 /* A number, or a number with a unit in a text; ranges hold for plain numbers. */
 static void schema_number(Text *text, const YamlField *row)
 {
-    text_add(text, row->unit ? "{\"type\": [\"number\", \"string\"]" : row->kind == FIELD_INTEGER || row->kind == FIELD_INTEGERS
-                                                                          ? "{\"type\": \"integer\"" : "{\"type\": \"number\"");
+    text_add(text, row->unit ? "{\"type\": [\"number\", \"string\"]"
+                   : row->kind == FIELD_INTEGER || row->kind == FIELD_INTEGERS ? "{\"type\": \"integer\""
+                                                                               : "{\"type\": \"number\"");
     if (row->range) {
         const char *comma = strchr(row->range, ',');
         bool low_open = row->range[0] == '(', high_open = row->range[strlen(row->range) - 1] == ')';
@@ -70,12 +72,21 @@ static void schema_entry(Text *text, const YamlField *row)
 {
     switch (row->kind) {
     case FIELD_NUMBERS:
-    case FIELD_INTEGERS: schema_number(text, row); break;
-    case FIELD_TEXTS: text_add(text, "{\"type\": [\"string\", \"number\"]}"); break;
-    case FIELD_CHOICES: schema_choice(text, row); break;
-    case FIELD_LIST: schema_reference(text, row->table); break;
+    case FIELD_INTEGERS:
+        schema_number(text, row);
+        break;
+    case FIELD_TEXTS:
+        text_add(text, "{\"type\": [\"string\", \"number\"]}");
+        break;
+    case FIELD_CHOICES:
+        schema_choice(text, row);
+        break;
+    case FIELD_LIST:
+        schema_reference(text, row->table);
+        break;
     default: /* FIELD_ROWS */
-        text_add(text, "{\"type\": \"array\", \"minItems\": %d, \"maxItems\": %d, \"items\": ", row->width, row->width);
+        text_add(text, "{\"type\": \"array\", \"minItems\": %d, \"maxItems\": %d, \"items\": ", row->width,
+                 row->width);
         schema_number(text, row);
         text_add(text, "}");
     }
@@ -83,8 +94,10 @@ static void schema_entry(Text *text, const YamlField *row)
 
 static void schema_list(Text *text, const YamlField *row)
 {
-    int least = row->count_offset ? row->min_count : row->width, most = row->count_offset ? row->max_count : row->width;
-    bool alone = row->count_offset && (row->kind == FIELD_NUMBERS || row->kind == FIELD_INTEGERS || row->kind == FIELD_CHOICES);
+    int least = row->count_offset ? row->min_count : row->width,
+        most = row->count_offset ? row->max_count : row->width;
+    bool alone = row->count_offset &&
+                 (row->kind == FIELD_NUMBERS || row->kind == FIELD_INTEGERS || row->kind == FIELD_CHOICES);
     if (alone) {
         text_add(text, "{\"anyOf\": [");
         schema_entry(text, row);
@@ -102,29 +115,44 @@ static void schema_value(Text *text, const YamlField *row)
 {
     switch (row->kind) {
     case FIELD_NUMBER:
-    case FIELD_INTEGER: schema_number(text, row); break;
-    case FIELD_BOOL: text_add(text, "{\"type\": \"boolean\"}"); break;
-    case FIELD_TEXT: text_add(text, "{\"type\": [\"string\", \"number\"]}"); break;
-    case FIELD_FILE: text_add(text, "{\"type\": \"string\"}"); break;
-    case FIELD_CHOICE: schema_choice(text, row); break;
+    case FIELD_INTEGER:
+        schema_number(text, row);
+        break;
+    case FIELD_BOOL:
+        text_add(text, "{\"type\": \"boolean\"}");
+        break;
+    case FIELD_TEXT:
+        text_add(text, "{\"type\": [\"string\", \"number\"]}");
+        break;
+    case FIELD_FILE:
+        text_add(text, "{\"type\": \"string\"}");
+        break;
+    case FIELD_CHOICE:
+        schema_choice(text, row);
+        break;
     case FIELD_TABLE:
-    case FIELD_OPTIONAL: schema_reference(text, row->table); break;
+    case FIELD_OPTIONAL:
+        schema_reference(text, row->table);
+        break;
     case FIELD_MAP:
         text_add(text, "{\"type\": \"object\", \"additionalProperties\": ");
         schema_reference(text, row->table);
         text_add(text, "}");
         break;
-    default: schema_list(text, row);
+    default:
+        schema_list(text, row);
     }
 }
 
-/* The property, its description beside it: draft-07 ignores what stands beside a $ref, so both go into allOf. */
+/* The property, its description beside it: draft-07 ignores what stands beside a $ref, so both go into allOf.
+ */
 static void schema_property(Text *text, const YamlField *row)
 {
     text_add(text, "        ");
     text_add_quoted(text, row->key);
     text_add(text, ": {\"description\": ");
-    char *doc = mem_format("%s%s%s%s", row->doc, row->unit ? " [" : "", row->unit ? row->unit : "", row->unit ? "]" : "");
+    char *doc = mem_format("%s%s%s%s", row->doc, row->unit ? " [" : "", row->unit ? row->unit : "",
+                           row->unit ? "]" : "");
     text_add_quoted(text, doc);
     mem_free(doc);
     text_add(text, ", \"allOf\": [");
@@ -137,7 +165,8 @@ static void schema_object(Text *text, const YamlTable *table, bool root)
     text_add(text, "{\"type\": \"object\", \"description\": ");
     text_add_quoted(text, table->doc);
     text_add(text, ", \"additionalProperties\": false, \"properties\": {\n");
-    if (root) text_add(text, "        \"slender\": {\"description\": \"the format's version\", \"const\": 1}");
+    if (root)
+        text_add(text, "        \"slender\": {\"description\": \"the format's version\", \"const\": 1}");
     for (const YamlField *row = table->fields; row->key; row++) {
         if (root || row != table->fields) text_add(text, ",\n");
         schema_property(text, row);
@@ -188,19 +217,33 @@ char *yaml_schema(const YamlTable *table, const char *title)
     return text.text;
 }
 
-/* ---- Manual --------------------------------------------------------------------------------------------- */
+/* ---- Manual ---- */
 
 static void manual_kind(Text *text, const YamlField *row)
 {
-    static const char *const names[] = {
-        [FIELD_NUMBER] = "number", [FIELD_INTEGER] = "whole number", [FIELD_BOOL] = "true or false", [FIELD_TEXT] = "text",
-        [FIELD_FILE] = "file", [FIELD_CHOICE] = "one of", [FIELD_NUMBERS] = "numbers", [FIELD_INTEGERS] = "whole numbers",
-        [FIELD_TEXTS] = "texts", [FIELD_CHOICES] = "some of", [FIELD_ROWS] = "rows of numbers", [FIELD_TABLE] = "", [FIELD_OPTIONAL] = "",
-        [FIELD_LIST] = "list of", [FIELD_MAP] = "names with"};
-    if (row->width) text_add(text, row->kind == FIELD_ROWS ? "rows of %d numbers" : "%d numbers", row->width);
-    else text_add(text, "%s", names[row->kind]);
-    for (int k = 0; row->choices && row->choices[k]; k++) text_add(text, "%s `%s`", k ? "," : "", row->choices[k]);
-    if (row->table) text_add(text, "%s[%s](#%s)", names[row->kind][0] ? " " : "", row->table->name, row->table->name);
+    static const char *const names[] = {[FIELD_NUMBER] = "number",
+                                        [FIELD_INTEGER] = "whole number",
+                                        [FIELD_BOOL] = "true or false",
+                                        [FIELD_TEXT] = "text",
+                                        [FIELD_FILE] = "file",
+                                        [FIELD_CHOICE] = "one of",
+                                        [FIELD_NUMBERS] = "numbers",
+                                        [FIELD_INTEGERS] = "whole numbers",
+                                        [FIELD_TEXTS] = "texts",
+                                        [FIELD_CHOICES] = "some of",
+                                        [FIELD_ROWS] = "rows of numbers",
+                                        [FIELD_TABLE] = "",
+                                        [FIELD_OPTIONAL] = "",
+                                        [FIELD_LIST] = "list of",
+                                        [FIELD_MAP] = "names with"};
+    if (row->width)
+        text_add(text, row->kind == FIELD_ROWS ? "rows of %d numbers" : "%d numbers", row->width);
+    else
+        text_add(text, "%s", names[row->kind]);
+    for (int k = 0; row->choices && row->choices[k]; k++)
+        text_add(text, "%s `%s`", k ? "," : "", row->choices[k]);
+    if (row->table)
+        text_add(text, "%s[%s](#%s)", names[row->kind][0] ? " " : "", row->table->name, row->table->name);
     if (row->unit) text_add(text, ", %s", row->unit);
     if (row->range) text_add(text, ", in %s", row->range);
 }
@@ -210,9 +253,12 @@ static void manual_row(Text *text, const YamlField *row)
     text_add(text, "| `%s` | ", row->key);
     manual_kind(text, row);
     text_add(text, " | ");
-    if (row->fallback) text_add(text, "`%s`", row->fallback);
-    else if (row->required) text_add(text, row->one_of ? "one of these (%d)" : "needed", row->one_of);
-    else if (row->one_of) text_add(text, "one of these (%d)", row->one_of);
+    if (row->fallback)
+        text_add(text, "`%s`", row->fallback);
+    else if (row->required)
+        text_add(text, row->one_of ? "one of these (%d)" : "needed", row->one_of);
+    else if (row->one_of)
+        text_add(text, "one of these (%d)", row->one_of);
     text_add(text, " | %s%s |\n", row->doc, row->short_form ? "; may stand alone" : "");
 }
 
@@ -221,17 +267,21 @@ char *yaml_manual(const YamlTable *table, const char *title)
     Tables tables = {0};
     collect(&tables, table);
     Text text = {0};
-    text_add(&text, "# %s\n\nMade by `slender schema --manual` from the field tables of the program; do not edit.\n\n", title);
+    text_add(
+        &text,
+        "# %s\n\nMade by `slender schema --manual` from the field tables of the program; do not edit.\n\n",
+        title);
     for (int k = 0; k < tables.count; k++) {
-        text_add(&text, "%s <a name=\"%s\"></a>%s\n\n%s\n\n| key | value | default | meaning |\n|---|---|---|---|\n", "##",
-                 tables.tables[k]->name, tables.tables[k]->name, tables.tables[k]->doc);
+        text_add(&text,
+                 "%s <a name=\"%s\"></a>%s\n\n%s\n\n| key | value | default | meaning |\n|---|---|---|---|\n",
+                 "##", tables.tables[k]->name, tables.tables[k]->name, tables.tables[k]->doc);
         for (const YamlField *row = tables.tables[k]->fields; row->key; row++) manual_row(&text, row);
         text_add(&text, "\n");
     }
     return text.text;
 }
 
-/* ---- Check ---------------------------------------------------------------------------------------------- */
+/* ---- Check ---- */
 
 static void check_row(const YamlField *row)
 {
@@ -255,7 +305,10 @@ void yaml_check_table(const YamlTable *table)
             assert(row->table != tables.tables[k]);
             if (!row->fallback) continue;
             /* The default must load: a table of this one row, filled from nothing. */
-            YamlTable alone = {.name = "default", .doc = "", .size = tables.tables[k]->size, .fields = (const YamlField[]){*row, {0}}};
+            YamlTable alone = {.name = "default",
+                               .doc = "",
+                               .size = tables.tables[k]->size,
+                               .fields = (const YamlField[]){*row, {0}}};
             void *scene = mem_alloc(1, alone.size);
             YamlFile *file = yaml_parse("default", "slender: 1", 10);
             bool ok = yaml_load(file, &alone, scene);

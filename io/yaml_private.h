@@ -9,9 +9,10 @@ typedef struct Node Node;
 /* A value; of a mapping, keys[i] stands at key_line[i] and has items[i]. Owned all the way down. */
 struct Node {
     NodeKind kind;
-    bool quoted;       /* a scalar in quotes is a text, never a number */
-    int line, column;  /* from 1; 0: from --set or a default           */
-    const char *origin; /* the --set assignment that it comes from, borrowed from the file; NULL: the file itself */
+    bool quoted;      /* a scalar in quotes is a text, never a number */
+    int line, column; /* from 1; 0: from --set or a default           */
+    const char
+        *origin; /* the --set assignment that it comes from, borrowed from the file; NULL: the file itself */
     char *text;
     int count, room;
     Node **items;
@@ -41,25 +42,30 @@ void node_append(Node *node, char *key, int line, int column, Node *item);
 /* The item under a key, or NULL. */
 Node *node_find(const Node *map, const char *key);
 
-/* The tree of a text; errors go to the file (NULL: a default, which must be right). NULL where there is none. */
+/* The tree of a text; errors go to the file (NULL: a default, which must be right). NULL where there is none.
+ */
 Node *tree_parse(YamlFile *file, const char *text, size_t length);
 
 /* Adds an error at a node's place. */
-void yaml_error(YamlFile *file, const Node *at, const char *format, ...) __attribute__((format(printf, 3, 4)));
-void yaml_error_at(YamlFile *file, int line, int column, const char *format, ...) __attribute__((format(printf, 4, 5)));
+void yaml_error(YamlFile *file, const Node *at, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+void yaml_error_at(YamlFile *file, int line, int column, const char *format, ...)
+    __attribute__((format(printf, 4, 5)));
 
 /* Follows "a.b[2].c" from the root as far as it is written; *rest is what is left. */
 Node *tree_follow(const YamlFile *file, const char *key, const char **rest);
 
-/* The next step of a key path: a name (length of it) or an index (>= 0). False at the end or where it is malformed. */
+/* The next step of a key path: a name (length of it) or an index (>= 0). False at the end or where it is
+ * malformed. */
 bool path_step(const char **path, const char **name, int *length, int *index);
 
-/* ---- Numbers -------------------------------------------------------------------------------------------- */
+/* ---- Numbers ---- */
 
 /* Does the text look like a number, with a unit or not, and not like an expression? */
 bool unit_is_number(const char *text);
 
-/* The number in SI. False with a phrase that says what is wrong: "must be a number in m, not 'x'". unit as in YamlField. */
+/* The number in SI. False with a phrase that says what is wrong: "must be a number in m, not 'x'". unit as in
+ * YamlField. */
 bool unit_parse(const char *text, const char *unit, double *value, char *wrong, size_t size);
 
 /* Is it a unit that the table of units can read? */
@@ -68,16 +74,23 @@ bool unit_is_known(const char *unit);
 /* Shortest text that reads back bit by bit. */
 void number_format(double value, char text[40]);
 
-/* ---- Tables --------------------------------------------------------------------------------------------- */
+/* ---- Tables ---- */
 
 const YamlField *table_row(const YamlTable *table, const char *key);
 
 /* The member of a struct, and the count beside it. */
-static inline void *row_member(const YamlField *row, const void *scene) { return (char *)scene + row->offset; }
-static inline int *row_count(const YamlField *row, const void *scene) { return (int *)((char *)scene + row->count_offset); }
+static inline void *row_member(const YamlField *row, const void *scene)
+{
+    return (char *)scene + row->offset;
+}
+static inline int *row_count(const YamlField *row, const void *scene)
+{
+    return (int *)((char *)scene + row->count_offset);
+}
 
 /* Is the value there, or as it is when absent? */
 bool row_is_given(const YamlField *row, const void *scene);
 
-/* The known word nearest to a misspelt one; NULL if none is near. words(self, i) gives them, NULL at the end. */
+/* The known word nearest to a misspelt one; NULL if none is near. words(self, i) gives them, NULL at the end.
+ */
 const char *nearest_word(const char *word, const char *(*words)(const void *self, int i), const void *self);

@@ -18,7 +18,8 @@ static bool refuse(YamlFile *file, const char *assignment, const char *what)
     return false;
 }
 
-/* The slot of a name or an index in a container; made where it is missing. NULL with a sentence where it cannot be. */
+/* The slot of a name or an index in a container; made where it is missing. NULL with a sentence where it
+ * cannot be. */
 static Node **slot(Node *node, const char *name, int length, int index, const char **what)
 {
     if (index >= 0) {
@@ -71,7 +72,8 @@ static bool put(YamlFile *file, const char *assignment, const char *key, Node *v
 
 bool yaml_override(YamlFile *file, const char *assignment)
 {
-    file->set = mem_resize(file->set, (size_t)file->set_count, (size_t)file->set_count + 1, sizeof *file->set);
+    file->set =
+        mem_resize(file->set, (size_t)file->set_count, (size_t)file->set_count + 1, sizeof *file->set);
     char *kept = file->set[file->set_count++] = mem_text(assignment);
     const char *equal = strchr(kept, '=');
     if (!file->root) return false; /* its error is there already */

@@ -7,7 +7,7 @@
 #include <string.h>
 #include <yaml.h>
 
-/* ---- Nodes ---------------------------------------------------------------------------------------------- */
+/* ---- Nodes ---- */
 
 Node *node_create(NodeKind kind, int line, int column)
 {
@@ -54,7 +54,7 @@ Node *node_find(const Node *map, const char *key)
     return NULL;
 }
 
-/* ---- Events --------------------------------------------------------------------------------------------- */
+/* ---- Events ---- */
 
 /* The containers that are open, and the key that waits for its value in each. */
 typedef struct Builder {
@@ -80,7 +80,8 @@ static bool take_key(Builder *b, const yaml_event_t *event)
     const char *text = (const char *)event->data.scalar.value;
     for (int i = 0; i < map->count; i++)
         if (!strcmp(map->keys[i], text)) {
-            yaml_error_at(b->file, line, column, "the key '%.60s' is there twice; it is in line %d already", text, map->key_place[i][0]);
+            yaml_error_at(b->file, line, column, "the key '%.60s' is there twice; it is in line %d already",
+                          text, map->key_place[i][0]);
             return false;
         }
     b->key[b->depth - 1] = mem_text(text);
@@ -123,10 +124,13 @@ static const char *forbidden(const yaml_event_t *event)
     const yaml_char_t *anchor = NULL, *tag = NULL;
     if (event->type == YAML_SCALAR_EVENT) {
         anchor = event->data.scalar.anchor, tag = event->data.scalar.tag;
-        if (strlen((const char *)event->data.scalar.value) != event->data.scalar.length) return "a text must not contain NUL";
+        if (strlen((const char *)event->data.scalar.value) != event->data.scalar.length)
+            return "a text must not contain NUL";
     }
-    if (event->type == YAML_SEQUENCE_START_EVENT) anchor = event->data.sequence_start.anchor, tag = event->data.sequence_start.tag;
-    if (event->type == YAML_MAPPING_START_EVENT) anchor = event->data.mapping_start.anchor, tag = event->data.mapping_start.tag;
+    if (event->type == YAML_SEQUENCE_START_EVENT)
+        anchor = event->data.sequence_start.anchor, tag = event->data.sequence_start.tag;
+    if (event->type == YAML_MAPPING_START_EVENT)
+        anchor = event->data.mapping_start.anchor, tag = event->data.mapping_start.tag;
     if (anchor) return "anchors (&name) are not allowed; write the value out";
     if (tag) return "tags (!name) are not allowed";
     return NULL;
@@ -137,16 +141,25 @@ static bool take(Builder *b, const yaml_event_t *event)
     const char *what = forbidden(event);
     if (what) return refuse(b, event, what);
     int line = (int)event->start_mark.line + 1, column = (int)event->start_mark.column + 1;
-    bool value = event->type == YAML_SCALAR_EVENT || event->type == YAML_SEQUENCE_START_EVENT || event->type == YAML_MAPPING_START_EVENT;
-    if (value && b->depth && b->open[b->depth - 1]->kind == NODE_MAP && !b->key[b->depth - 1]) return take_key(b, event);
+    bool value = event->type == YAML_SCALAR_EVENT || event->type == YAML_SEQUENCE_START_EVENT ||
+                 event->type == YAML_MAPPING_START_EVENT;
+    if (value && b->depth && b->open[b->depth - 1]->kind == NODE_MAP && !b->key[b->depth - 1])
+        return take_key(b, event);
     switch (event->type) {
-    case YAML_DOCUMENT_START_EVENT: return !b->root || refuse(b, event, "a scene file holds one document");
-    case YAML_SCALAR_EVENT: return add(b, event, scalar(event));
-    case YAML_SEQUENCE_START_EVENT: return add(b, event, node_create(NODE_LIST, line, column));
-    case YAML_MAPPING_START_EVENT: return add(b, event, node_create(NODE_MAP, line, column));
+    case YAML_DOCUMENT_START_EVENT:
+        return !b->root || refuse(b, event, "a scene file holds one document");
+    case YAML_SCALAR_EVENT:
+        return add(b, event, scalar(event));
+    case YAML_SEQUENCE_START_EVENT:
+        return add(b, event, node_create(NODE_LIST, line, column));
+    case YAML_MAPPING_START_EVENT:
+        return add(b, event, node_create(NODE_MAP, line, column));
     case YAML_SEQUENCE_END_EVENT:
-    case YAML_MAPPING_END_EVENT: b->depth--; return true;
-    default: return true;
+    case YAML_MAPPING_END_EVENT:
+        b->depth--;
+        return true;
+    default:
+        return true;
     }
 }
 
@@ -154,10 +167,12 @@ static void syntax_error(YamlFile *file, const yaml_parser_t *parser)
 {
     yaml_mark_t mark = parser->problem_mark;
     if (parser->error == YAML_READER_ERROR)
-        yaml_error_at(file, 0, 0, "byte %zu: %s; a scene file is UTF-8 text", parser->problem_offset, parser->problem);
+        yaml_error_at(file, 0, 0, "byte %zu: %s; a scene file is UTF-8 text", parser->problem_offset,
+                      parser->problem);
     else
-        yaml_error_at(file, (int)mark.line + 1, (int)mark.column + 1, "no YAML: %s%s%s", parser->problem ? parser->problem : "?",
-                      parser->context ? ", " : "", parser->context ? parser->context : "");
+        yaml_error_at(file, (int)mark.line + 1, (int)mark.column + 1, "no YAML: %s%s%s",
+                      parser->problem ? parser->problem : "?", parser->context ? ", " : "",
+                      parser->context ? parser->context : "");
 }
 
 Node *tree_parse(YamlFile *file, const char *text, size_t length)
@@ -185,7 +200,7 @@ Node *tree_parse(YamlFile *file, const char *text, size_t length)
     return NULL;
 }
 
-/* ---- Files ---------------------------------------------------------------------------------------------- */
+/* ---- Files ---- */
 
 static char *folder_of(const char *path)
 {

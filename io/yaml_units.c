@@ -39,13 +39,14 @@ static const struct {
 static const struct {
     const char *symbol;
     double factor;
-} prefixes[] = {{"G", 1e9}, {"M", 1e6}, {"k", 1e3}, {"d", 1e-1}, {"c", 1e-2}, {"m", 1e-3}, {"u", 1e-6},
-                {"\xc2\xb5", 1e-6}, {"\xce\xbc", 1e-6}, {"n", 1e-9}, {"p", 1e-12}};
+} prefixes[] = {{"G", 1e9},  {"M", 1e6},         {"k", 1e3},         {"d", 1e-1}, {"c", 1e-2}, {"m", 1e-3},
+                {"u", 1e-6}, {"\xc2\xb5", 1e-6}, {"\xce\xbc", 1e-6}, {"n", 1e-9}, {"p", 1e-12}};
 
 static const Unit *find_unit(const char *symbol, size_t length, bool prefixed)
 {
     for (size_t k = 0; k < sizeof units / sizeof *units; k++)
-        if (strlen(units[k].symbol) == length && !strncmp(units[k].symbol, symbol, length) && (!prefixed || units[k].prefixed))
+        if (strlen(units[k].symbol) == length && !strncmp(units[k].symbol, symbol, length) &&
+            (!prefixed || units[k].prefixed))
             return &units[k].unit;
     return NULL;
 }
@@ -66,7 +67,10 @@ static bool symbol_unit(const char *symbol, size_t length, Unit *unit)
     return false;
 }
 
-static bool is_symbol(char c) { return isalpha((unsigned char)c) || (unsigned char)c >= 0x80; }
+static bool is_symbol(char c)
+{
+    return isalpha((unsigned char)c) || (unsigned char)c >= 0x80;
+}
 
 /* A product of symbols with powers; after a slash they divide. */
 static bool parse_unit(const char *text, Unit *product)
@@ -144,7 +148,8 @@ bool unit_parse(const char *text, const char *unit, double *value, char *wrong, 
             snprintf(wrong, size, "must be a plain number, without the unit in '%.60s'", text);
             return false;
         }
-        bool fits = parse_unit(rest, &given) && parse_unit(unit, &wanted) && !memcmp(given.exponent, wanted.exponent, sizeof given.exponent);
+        bool fits = parse_unit(rest, &given) && parse_unit(unit, &wanted) &&
+                    !memcmp(given.exponent, wanted.exponent, sizeof given.exponent);
         if (!fits) {
             snprintf(wrong, size, "must be a number in %s, and '%.60s' is none", unit, text);
             return false;

@@ -11,18 +11,24 @@ bool row_is_given(const YamlField *row, const void *scene)
 {
     const void *member = row_member(row, scene);
     switch (row->kind) {
-    case FIELD_NUMBER: return !isnan(*(const double *)member);
-    case FIELD_INTEGER: return *(const int *)member != YAML_ABSENT;
-    case FIELD_CHOICE: return *(const int *)member >= 0;
-    case FIELD_BOOL: return *(const bool *)member;
-    case FIELD_TABLE: return true;
+    case FIELD_NUMBER:
+        return !isnan(*(const double *)member);
+    case FIELD_INTEGER:
+        return *(const int *)member != YAML_ABSENT;
+    case FIELD_CHOICE:
+        return *(const int *)member >= 0;
+    case FIELD_BOOL:
+        return *(const bool *)member;
+    case FIELD_TABLE:
+        return true;
     case FIELD_NUMBERS:
         if (!row->count_offset) return !isnan(*(const double *)member);
         break;
     case FIELD_INTEGERS:
         if (!row->count_offset) return *(const int *)member != YAML_ABSENT;
         break;
-    default: break;
+    default:
+        break;
     }
     return *(void *const *)member != NULL;
 }
@@ -37,10 +43,18 @@ static void write_number(Text *text, double value)
 static void write_entry(Text *text, const YamlField *row, const void *array, int i)
 {
     switch (row->kind) {
-    case FIELD_NUMBERS: write_number(text, ((const double *)array)[i]); break;
-    case FIELD_INTEGERS: text_add(text, "%d", ((const int *)array)[i]); break;
-    case FIELD_TEXTS: text_add_quoted(text, ((char *const *)array)[i]); break;
-    case FIELD_CHOICES: text_add(text, "%s", row->choices[((const int *)array)[i]]); break;
+    case FIELD_NUMBERS:
+        write_number(text, ((const double *)array)[i]);
+        break;
+    case FIELD_INTEGERS:
+        text_add(text, "%d", ((const int *)array)[i]);
+        break;
+    case FIELD_TEXTS:
+        text_add_quoted(text, ((char *const *)array)[i]);
+        break;
+    case FIELD_CHOICES:
+        text_add(text, "%s", row->choices[((const int *)array)[i]]);
+        break;
     default: /* FIELD_ROWS */
         text_add(text, "[");
         for (int k = 0; k < row->width; k++) {
@@ -89,20 +103,34 @@ static void write_row(Text *text, const YamlField *row, const void *scene, int d
     text_indent(text, depth);
     text_add(text, "%s: ", row->key);
     switch (row->kind) {
-    case FIELD_NUMBER: write_number(text, *(const double *)member); break;
-    case FIELD_INTEGER: text_add(text, "%d", *(const int *)member); break;
-    case FIELD_BOOL: text_add(text, "true"); break;
-    case FIELD_CHOICE: text_add(text, "%s", row->choices[*(const int *)member]); break;
+    case FIELD_NUMBER:
+        write_number(text, *(const double *)member);
+        break;
+    case FIELD_INTEGER:
+        text_add(text, "%d", *(const int *)member);
+        break;
+    case FIELD_BOOL:
+        text_add(text, "true");
+        break;
+    case FIELD_CHOICE:
+        text_add(text, "%s", row->choices[*(const int *)member]);
+        break;
     case FIELD_TEXT:
-    case FIELD_FILE: text_add_quoted(text, *(char *const *)member); break;
+    case FIELD_FILE:
+        text_add_quoted(text, *(char *const *)member);
+        break;
     case FIELD_TABLE:
     case FIELD_OPTIONAL:
         text_add(text, "\n");
         write_table(text, row->table, row->kind == FIELD_TABLE ? member : *(void *const *)member, depth + 1);
         return;
     case FIELD_LIST:
-    case FIELD_MAP: write_tables(text, row, scene, depth + 1); return;
-    default: write_list(text, row, scene); return;
+    case FIELD_MAP:
+        write_tables(text, row, scene, depth + 1);
+        return;
+    default:
+        write_list(text, row, scene);
+        return;
     }
     text_add(text, "\n");
 }
@@ -129,7 +157,7 @@ char *yaml_write(const YamlTable *table, const void *scene)
     return text.text;
 }
 
-/* ---- Comparison ----------------------------------------------------------------------------------------- */
+/* ---- Comparison ---- */
 
 static bool is_below(const char *path, const char *const *ignored)
 {
@@ -142,7 +170,8 @@ static bool is_below(const char *path, const char *const *ignored)
 
 static char *difference(const Node *a, const Node *b, const char *path, const char *const *ignored);
 
-static char *map_difference(const Node *a, const Node *b, const char *path, const char *const *ignored, bool both_ways)
+static char *map_difference(const Node *a, const Node *b, const char *path, const char *const *ignored,
+                            bool both_ways)
 {
     char *found = NULL;
     for (int i = 0; !found && i < a->count; i++) {
@@ -173,7 +202,8 @@ static char *difference(const Node *a, const Node *b, const char *path, const ch
         char *found = map_difference(a, b, path, ignored, true);
         return found ? found : map_difference(b, a, path, ignored, false);
     }
-    if (a->kind == NODE_LIST && b->kind == NODE_LIST && a->count == b->count) return list_difference(a, b, path, ignored);
+    if (a->kind == NODE_LIST && b->kind == NODE_LIST && a->count == b->count)
+        return list_difference(a, b, path, ignored);
     if (a->kind == NODE_SCALAR && b->kind == NODE_SCALAR && !strcmp(a->text, b->text)) return NULL;
     return mem_text(*path ? path : "the scene");
 }

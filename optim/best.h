@@ -1,4 +1,5 @@
-/* best.h - the bookkeeping that all optimisers share: evaluations counted, the best point kept. Private to optim/. */
+/* best.h - the bookkeeping that all optimisers share: evaluations counted, the best point kept. Private to
+ * optim/. */
 #pragma once
 #include "optim/optimiser.h"
 

@@ -1,13 +1,19 @@
-/* design.h - which parameters are unknown: the map between the optimiser's scaled vector u and the blocks of p.
+/* design.h - which parameters are unknown: the map between the optimiser's scaled vector u and the blocks of
+ * p.
  *
- * An unknown is a block of p, one row per face (or edge, ...) or one row per group of them, the same in all load cases
- * or one for each. Its values are scaled before an optimiser sees them:
- *     linear   p = scale u             log      p = exp(u)
- *     fixed    p = limit u/|u|         capped   p = scale u/sqrt(1 + |scale u|^2/limit^2)     (|.| over a row) */
+ * An unknown is a block of p, one row per face (or edge, ...) or one row per group of them, the same in all
+ * load cases or one for each. Its values are scaled before an optimiser sees them: linear   p = scale u log
+ * p = exp(u) fixed    p = limit u/|u|         capped   p = scale u/sqrt(1 + |scale u|^2/limit^2)     (|.|
+ * over a row) */
 #pragma once
 #include "solve/params.h"
 
-typedef enum UnknownMap { UNKNOWN_LINEAR, UNKNOWN_LOG, UNKNOWN_FIXED_LENGTH, UNKNOWN_CAPPED_LENGTH } UnknownMap;
+typedef enum UnknownMap {
+    UNKNOWN_LINEAR,
+    UNKNOWN_LOG,
+    UNKNOWN_FIXED_LENGTH,
+    UNKNOWN_CAPPED_LENGTH
+} UnknownMap;
 
 typedef struct Unknown {
     const ParamBlock *block; /* borrowed                                                                  */

@@ -1,7 +1,7 @@
-/* Levenberg-Marquardt, matrix-free: min |r + J d|^2 + mu |d|^2 by conjugate gradients with products J^T J v, mu down
- * after a success and up after a failure, bounds by projection. It stalls where an equilibrium is about to snap (J
- * grows without limit in the soft mode): after three refused steps in a row L-BFGS goes on from the best point.
- * Constants measured in docs/optimisers.md. */
+/* Levenberg-Marquardt, matrix-free: min |r + J d|^2 + mu |d|^2 by conjugate gradients with products J^T J v,
+ * mu down after a success and up after a failure, bounds by projection. It stalls where an equilibrium is
+ * about to snap (J grows without limit in the soft mode): after three refused steps in a row L-BFGS goes on
+ * from the best point. Constants measured in docs/optimisers.md. */
 #include "base/memory.h"
 #include "optim/best.h"
 #include <float.h>
@@ -14,7 +14,7 @@ static const double CG_TOL = 1e-2, DAMPING_FIRST = 1e-2, DAMPING_DOWN = 5, DAMPI
 
 typedef struct Cg {
     double *step, *residual, *direction, *product, *trial, *trial_gradient; /* [n] */
-    bool *held;                                                             /* [n] at a bound, gradient outwards */
+    bool *held; /* [n] at a bound, gradient outwards */
 } Cg;
 
 static double dot(int n, const double *a, const double *b)
@@ -24,8 +24,8 @@ static double dot(int n, const double *a, const double *b)
     return sum;
 }
 
-/* out = (J^T J) v over the free unknowns. F is the sum of squares, its gradient g = 2 J^T r, and products come as
- * 2 J^T J v. */
+/* out = (J^T J) v over the free unknowns. F is the sum of squares, its gradient g = 2 J^T r, and products
+ * come as 2 J^T J v. */
 static void product(Best *best, const Cg *cg, const double *v, double *out)
 {
     best->problem->product(best->problem->self, v, out);
@@ -42,7 +42,8 @@ static void find_held(const Best *best, Cg *cg)
                       (best->u[i] >= problem->upper[i] && best->gradient[i] < 0);
 }
 
-/* A lower bound of |2 J^T J|, which damping is measured in: g = 2 J^T r and F = |r|^2 give |g|^2 <= 4 |J|^2 F. */
+/* A lower bound of |2 J^T J|, which damping is measured in: g = 2 J^T r and F = |r|^2 give |g|^2 <= 4 |J|^2
+ * F. */
 static double curvature_scale(const Best *best, const Cg *cg)
 {
     double sum = 0;
@@ -99,8 +100,10 @@ static void run(Best *best, Cg *cg, const double *u)
         history[step % WINDOW] = before;
         if (!problem->recall(problem->self, cg->trial)) find_trial(best, cg, damping);
         bool better = best_evaluate(best, cg->trial, cg->trial_gradient) < before;
-        if (!better) damping *= DAMPING_UP;
-        else if (refused == 0) damping /= DAMPING_DOWN; /* after a refusal it stays: the model has just been found too bold */
+        if (!better)
+            damping *= DAMPING_UP;
+        else if (refused == 0)
+            damping /= DAMPING_DOWN; /* after a refusal it stays: the model has just been found too bold */
         refused = better ? 0 : refused + 1;
     }
 }
@@ -109,7 +112,8 @@ void gauss_newton_run(Best *best, double *u)
 {
     size_t n = (size_t)best->problem->n;
     double *work = mem_alloc(6 * n, sizeof *work);
-    Cg cg = {work, work + n, work + 2 * n, work + 3 * n, work + 4 * n, work + 5 * n, mem_alloc(n, sizeof(bool))};
+    Cg cg = {
+        work, work + n, work + 2 * n, work + 3 * n, work + 4 * n, work + 5 * n, mem_alloc(n, sizeof(bool))};
     run(best, &cg, u);
     mem_free(work);
     mem_free(cg.held);

@@ -1,6 +1,6 @@
-/* NLopt's MMA [Svanberg 2002] and L-BFGS. Traps of 2.7.1: it asks for a gradient at every inner evaluation, counts
- * MAXEVAL as a success, and one NaN in a gradient silently ruins a run; so counting, stopping and the best point are
- * ours (best.h), and a failed simulation is +Inf with a zero gradient. */
+/* NLopt's MMA [Svanberg 2002] and L-BFGS. Traps of 2.7.1: it asks for a gradient at every inner evaluation,
+ * counts MAXEVAL as a success, and one NaN in a gradient silently ruins a run; so counting, stopping and the
+ * best point are ours (best.h), and a failed simulation is +Inf with a zero gradient. */
 #include "base/memory.h"
 #include "optim/best.h"
 #include <math.h>
@@ -19,7 +19,8 @@ static double objective(unsigned n, const double *u, double *gradient, void *dat
     Run *run = data;
     Best *best = run->best;
     if (best_is_done(best)) return best->objective; /* asked once more after the stop */
-    bool known = isfinite(best->objective) && !memcmp(u, best->u, n * sizeof *u); /* L-BFGS after Gauss-Newton */
+    bool known =
+        isfinite(best->objective) && !memcmp(u, best->u, n * sizeof *u); /* L-BFGS after Gauss-Newton */
     double value = best->objective;
     if (known)
         memcpy(run->gradient, best->gradient, n * sizeof *gradient);

@@ -7,7 +7,8 @@ typedef struct Vertices {
     double (*target)[3]; /* NULL for heights */
 } Vertices;
 
-static double target_value(const void *self, double weight, const double *x, const double *p, double *dx, double *dp)
+static double target_value(const void *self, double weight, const double *x, const double *p, double *dx,
+                           double *dp)
 {
     (void)p, (void)dp;
     const Vertices *chosen = self;
@@ -22,7 +23,8 @@ static double target_value(const void *self, double weight, const double *x, con
 }
 
 /* Twice J^T J, as the gradient is 2 J^T r. */
-static void target_product(const void *self, double weight, const double *vx, const double *vp, double *hx, double *hp)
+static void target_product(const void *self, double weight, const double *vx, const double *vp, double *hx,
+                           double *hp)
 {
     (void)vp, (void)hp;
     const Vertices *chosen = self;
@@ -33,7 +35,8 @@ static void target_product(const void *self, double weight, const double *vx, co
         }
 }
 
-static double height_value(const void *self, double weight, const double *x, const double *p, double *dx, double *dp)
+static double height_value(const void *self, double weight, const double *x, const double *p, double *dx,
+                           double *dp)
 {
     (void)p, (void)dp;
     const Vertices *chosen = self;
@@ -46,7 +49,8 @@ static double height_value(const void *self, double weight, const double *x, con
     return sum;
 }
 
-static void height_product(const void *self, double weight, const double *vx, const double *vp, double *hx, double *hp)
+static void height_product(const void *self, double weight, const double *vx, const double *vp, double *hx,
+                           double *hp)
 {
     (void)self, (void)weight, (void)vx, (void)vp, (void)hx, (void)hp;
 }

@@ -18,8 +18,11 @@ const char *optimiser_status_name(OptimiserStatus status)
 Best best_create(const Problem *problem, const OptimiserDef *def)
 {
     size_t n = (size_t)problem->n;
-    return (Best){.problem = problem, .def = def, .u = mem_alloc(n, sizeof(double)),
-                  .gradient = mem_alloc(n, sizeof(double)), .objective = INFINITY,
+    return (Best){.problem = problem,
+                  .def = def,
+                  .u = mem_alloc(n, sizeof(double)),
+                  .gradient = mem_alloc(n, sizeof(double)),
+                  .objective = INFINITY,
                   .info = {.status = OPTIMISER_FAILED, .objective = INFINITY}};
 }
 
@@ -33,7 +36,8 @@ double best_projected_norm(const Problem *problem, const double *u, const double
 {
     double sum = 0;
     for (int i = 0; i < problem->n; i++) {
-        bool held = (u[i] <= problem->lower[i] && gradient[i] > 0) || (u[i] >= problem->upper[i] && gradient[i] < 0);
+        bool held =
+            (u[i] <= problem->lower[i] && gradient[i] > 0) || (u[i] >= problem->upper[i] && gradient[i] < 0);
         if (!held) sum += gradient[i] * gradient[i];
     }
     return sqrt(sum);
@@ -79,8 +83,10 @@ OptimiserInfo optimise(const Problem *problem, const OptimiserDef *def, double *
     else
         nlopt_run(&best, u);
     OptimiserInfo info = best.info;
-    if (!isfinite(best.objective)) info.status = OPTIMISER_FAILED;
-    else memcpy(u, best.u, (size_t)problem->n * sizeof *u);
+    if (!isfinite(best.objective))
+        info.status = OPTIMISER_FAILED;
+    else
+        memcpy(u, best.u, (size_t)problem->n * sizeof *u);
     best_destroy(&best);
     return info;
 }

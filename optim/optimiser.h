@@ -1,9 +1,9 @@
-/* optimiser.h - minimise F(u) within bounds: NLopt's MMA and L-BFGS, and a matrix-free Gauss-Newton of our own, behind
- * one interface.
+/* optimiser.h - minimise F(u) within bounds: NLopt's MMA and L-BFGS, and a matrix-free Gauss-Newton of our
+ * own, behind one interface.
  *
- * Evaluations are counted, not iterations: NLopt's inner ones cannot be told apart. Every optimiser keeps the best
- * point so far, tests convergence on the gradient projected on the bounds, and replays recorded evaluations first, so
- * that a resumed run goes the same way bit by bit. */
+ * Evaluations are counted, not iterations: NLopt's inner ones cannot be told apart. Every optimiser keeps the
+ * best point so far, tests convergence on the gradient projected on the bounds, and replays recorded
+ * evaluations first, so that a resumed run goes the same way bit by bit. */
 #pragma once
 #include <stdbool.h>
 
@@ -21,7 +21,8 @@ typedef struct Problem {
     /* out = J^T J v at the best point; for Gauss-Newton. */
     void (*product)(void *self, const double *v, double *out);
 
-    /* The next trial of a run that is being replayed: Gauss-Newton then need not find it. False: there is none. */
+    /* The next trial of a run that is being replayed: Gauss-Newton then need not find it. False: there is
+     * none. */
     bool (*recall)(void *self, double *u);
 
     /* Asked after each evaluation, before the next: false stops. */
@@ -33,7 +34,7 @@ typedef enum OptimiserMethod { OPTIMISER_MMA, OPTIMISER_LBFGS, OPTIMISER_GAUSS_N
 typedef struct OptimiserDef {
     OptimiserMethod method; /* default mma                                                               */
     int evaluations;        /* at most; default 50                                                       */
-    double gradient_tol;    /* converged when the projected gradient fell to this part of the first one; 1e-6 */
+    double gradient_tol; /* converged when the projected gradient fell to this part of the first one; 1e-6 */
 } OptimiserDef;
 
 OptimiserDef optimiser_default(void);

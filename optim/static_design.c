@@ -6,13 +6,13 @@
 
 /* One case at work. */
 typedef struct Work {
-    double *p, *x;          /* of the last evaluation                                 */
-    double *best_p;         /* p of the best design; x of it is LoadCase.x            */
-    double *best_linearised; /* [dofs] where its factor stands                        */
-    double *dp, *dx, *w;    /* directions and gradients                               */
-    double *hp;             /* [params] second parameter vector                       */
+    double *p, *x;                /* of the last evaluation                                 */
+    double *best_p;               /* p of the best design; x of it is LoadCase.x            */
+    double *best_linearised;      /* [dofs] where its factor stands                        */
+    double *dp, *dx, *w;          /* directions and gradients                               */
+    double *hp;                   /* [params] second parameter vector                       */
     double *memory, *best_memory; /* what the terms remember                          */
-    bool factored_best;     /* the system's factor is that of the best design         */
+    bool factored_best;           /* the system's factor is that of the best design         */
     bool has_best;
 } Work;
 
@@ -135,7 +135,8 @@ static double evaluate_objective(StaticDesign *sd, int c, const Point *at, doubl
     for (int k = 0; k < load->objective_count; k++) {
         const Objective *objective = &load->objectives[k];
         double weight = load->weight * objective->weight;
-        value += weight * objective->ops->value(objective->self, weight, at->x, at->p, dp ? work->dx : NULL, dp);
+        value +=
+            weight * objective->ops->value(objective->self, weight, at->x, at->p, dp ? work->dx : NULL, dp);
     }
     if (dp) adjoint(load->sys, at, work->dx, dp);
     return value;
@@ -224,7 +225,8 @@ void static_design_accept(StaticDesign *sd)
         System *sys = sd->cases[c].sys;
         memcpy(work->best_p, work->p, (size_t)sd->params->size * sizeof *work->p);
         memcpy(sd->cases[c].x, work->x, (size_t)system_dof_count(sys) * sizeof *work->x);
-        memcpy(work->best_linearised, system_linearised(sys), (size_t)system_dof_count(sys) * sizeof *work->x);
+        memcpy(work->best_linearised, system_linearised(sys),
+               (size_t)system_dof_count(sys) * sizeof *work->x);
         memcpy(work->best_memory, work->memory, (size_t)system_memory_count(sys) * sizeof *work->memory);
         work->has_best = work->factored_best = true;
     }
@@ -259,7 +261,8 @@ static void product_case(StaticDesign *sd, int c, const double *v)
     memset(work->w, 0, (size_t)system_dof_count(load->sys) * sizeof *work->w);
     for (int k = 0; k < load->objective_count; k++) {
         const Objective *objective = &load->objectives[k];
-        objective->ops->product(objective->self, load->weight * objective->weight, work->dx, work->hp, work->w, work->dp);
+        objective->ops->product(objective->self, load->weight * objective->weight, work->dx, work->hp,
+                                work->w, work->dp);
     }
     Point at = point(load, load->x, work->best_p);
     adjoint(load->sys, &at, work->w, work->dp);
@@ -269,7 +272,8 @@ void static_design_product(StaticDesign *sd, const double *v, double *out)
 {
     memset(out, 0, (size_t)sd->design->size * sizeof *out);
     do_cases((Share){.sd = sd, .v = v});
-    for (int c = 0; c < sd->design->case_count; c++) design_transpose(sd->design, c, sd->best_u, sd->work[c].dp, out);
+    for (int c = 0; c < sd->design->case_count; c++)
+        design_transpose(sd->design, c, sd->best_u, sd->work[c].dp, out);
 }
 
 void static_design_param_gradient(StaticDesign *sd, int load_case, double *dp)

@@ -5,11 +5,11 @@
 #include <string.h>
 
 /* LAPACK: eigenvalues of a symmetric matrix, ascending. */
-void dsyev_(const char *jobz, const char *uplo, const int *n, double *a, const int *lda, double *w, double *work,
-            const int *lwork, int *info, size_t jobz_length, size_t uplo_length);
+void dsyev_(const char *jobz, const char *uplo, const int *n, double *a, const int *lda, double *w,
+            double *work, const int *lwork, int *info, size_t jobz_length, size_t uplo_length);
 
-static const double RANK_TOL = 1e-10;  /* of the largest eigenvalue: a motion that is held           */
-static const double FORCE_TOL = 1e-9;  /* of the sum of absolute forces: a part's forces are in balance */
+static const double RANK_TOL = 1e-10; /* of the largest eigenvalue: a motion that is held           */
+static const double FORCE_TOL = 1e-9; /* of the sum of absolute forces: a part's forces are in balance */
 
 /* Adds row row^T to the part's 6x6 matrix: a rigid motion (t, w) is held where row.(t, w) is not 0. */
 static void hold(double *gram, Vec3 translation, Vec3 rotation)
@@ -32,7 +32,7 @@ static int free_motions(double *gram)
 int rigid_free_count(const Shell *shell)
 {
     const Mesh *mesh = shell->mesh;
-    double (*gram)[36] = mem_alloc((size_t)mesh->component_count, sizeof *gram);
+    double(*gram)[36] = mem_alloc((size_t)mesh->component_count, sizeof *gram);
     double scale = 1 / mesh_diagonal(mesh);
     for (int i = 0; i < 3 * mesh->vertex_count; i++) {
         if (!shell->fixed[i]) continue;
@@ -69,8 +69,11 @@ bool rigid_check_force(const Shell *shell, const double *p, Error *err)
     }
     for (size_t part = 0; ok && part < parts; part++)
         if (!held[part] && fabs(net[part]) > FORCE_TOL * size[part])
-            ok = error_set(err, "a net force of %.3g N along %c acts on a body that nothing holds along %c: it has no "
-                                "equilibrium; fix a vertex, or take the force away", net[part], "xyz"[part % 3], "xyz"[part % 3]);
+            ok = error_set(
+                err,
+                "a net force of %.3g N along %c acts on a body that nothing holds along %c: it has no "
+                "equilibrium; fix a vertex, or take the force away",
+                net[part], "xyz"[part % 3], "xyz"[part % 3]);
     mem_free(mass);
     mem_free(net);
     mem_free(size);

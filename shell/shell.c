@@ -6,7 +6,8 @@
 #include "shell/terms.h"
 #include "solve/lumped.h"
 
-/* Of D, for bodies with free rigid motions: decides nothing physical, drifts less than 1e-7 of the size (docs/newton.md). */
+/* Of D, for bodies with free rigid motions: decides nothing physical, drifts less than 1e-7 of the size
+ * (docs/newton.md). */
 static const double BASE_SHIFT = 1e-10;
 
 static Pack3 spread(const double *x)
@@ -18,9 +19,11 @@ static double rest_angle(const Mesh *mesh, int edge)
 {
     int left = mesh->edge_faces[edge][0], right = mesh->edge_faces[edge][1];
     if (left < 0 || right < 0) return 0;
-    int o = mesh->faces[left][mesh_corner(mesh, left, edge)], y = mesh->faces[right][mesh_corner(mesh, right, edge)];
+    int o = mesh->faces[left][mesh_corner(mesh, left, edge)],
+        y = mesh->faces[right][mesh_corner(mesh, right, edge)];
     int a = mesh->edges[edge][0], b = mesh->edges[edge][1];
-    return dihedral_angle(spread(mesh->rest[a]), spread(mesh->rest[b]), spread(mesh->rest[o]), spread(mesh->rest[y]))
+    return dihedral_angle(spread(mesh->rest[a]), spread(mesh->rest[b]), spread(mesh->rest[o]),
+                          spread(mesh->rest[y]))
         .angle[0];
 }
 
@@ -80,7 +83,8 @@ bool shell_face_is_rigid(const Shell *shell, int face)
 {
     for (int i = 0; i < 3; i++) {
         const bool *fixed = &shell->fixed[3 * shell->mesh->faces[face][i]];
-        if (!fixed[0] || !fixed[1] || !fixed[2] || !shell->clamped[shell->mesh->face_edges[face][i]]) return false;
+        if (!fixed[0] || !fixed[1] || !fixed[2] || !shell->clamped[shell->mesh->face_edges[face][i]])
+            return false;
     }
     return true;
 }

@@ -14,7 +14,8 @@ static void add_jump(const Shell *shell, double amount, int edge, int i, double 
     dp[shell->magnetization + 3 * faces[1] + i] -= amount;
 }
 
-static double smoothness_value(const void *self, double weight, const double *x, const double *p, double *dx, double *dp)
+static double smoothness_value(const void *self, double weight, const double *x, const double *p, double *dx,
+                               double *dp)
 {
     (void)x, (void)dx;
     const Shell *shell = self;
@@ -28,7 +29,8 @@ static double smoothness_value(const void *self, double weight, const double *x,
     return sum;
 }
 
-static void smoothness_product(const void *self, double weight, const double *vx, const double *vp, double *hx, double *hp)
+static void smoothness_product(const void *self, double weight, const double *vx, const double *vp,
+                               double *hx, double *hp)
 {
     (void)vx, (void)hx;
     const Shell *shell = self;

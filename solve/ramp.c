@@ -35,8 +35,8 @@ static void add_counts(NewtonInfo *total, const NewtonInfo *step)
     *total = sum;
 }
 
-RampInfo ramp_solve(System *sys, const Params *params, const RampDef *def, const double *from, const double *to, double time,
-                    double *x)
+RampInfo ramp_solve(System *sys, const Params *params, const RampDef *def, const double *from,
+                    const double *to, double time, double *x)
 {
     size_t n = (size_t)system_dof_count(sys), memory_count = (size_t)system_memory_count(sys);
     double *p = mem_alloc((size_t)params->size, sizeof *p), *kept = mem_alloc(n, sizeof *kept);
@@ -59,7 +59,8 @@ RampInfo ramp_solve(System *sys, const Params *params, const RampDef *def, const
             continue;
         }
         bool hopeless = newton.status == NEWTON_STOPPED || step / 2 < def->step_min;
-        if (hopeless && info.steps == 0 && newton.status != NEWTON_STOPPED) break; /* the iterate says more than the start */
+        if (hopeless && info.steps == 0 && newton.status != NEWTON_STOPPED)
+            break; /* the iterate says more than the start */
         memcpy(x, kept, n * sizeof *x);
         system_memory_write(sys, memory);
         if (hopeless) break;

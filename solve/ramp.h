@@ -1,18 +1,20 @@
 /* ramp.h - an equilibrium whose loads come on in steps: as few as it takes.
  *
- * The blocks of p that are loads go from one vector to the other, and prescribed motion goes its way, over `steps`
- * equal steps; a step that fails is halved. An equilibrium under dead loads and fixed fields does not depend on the way,
- * as long as it is the only one near; so one step is the default, and the rest is for where Newton does not get there. */
+ * The blocks of p that are loads go from one vector to the other, and prescribed motion goes its way, over
+ * `steps` equal steps; a step that fails is halved. An equilibrium under dead loads and fixed fields does not
+ * depend on the way, as long as it is the only one near; so one step is the default, and the rest is for
+ * where Newton does not get there. */
 #pragma once
 #include "solve/newton.h"
 #include "solve/params.h"
 
 typedef struct RampDef {
     NewtonDef newton;
-    int steps;        /* at first; default 1 */
-    double step_min;  /* of the whole, before it gives up; default 1/1024 */
+    int steps;               /* at first; default 1 */
+    double step_min;         /* of the whole, before it gives up; default 1/1024 */
     NewtonObserver observer; /* may be zero */
-    bool (*move)(void *self, double part, double *x); /* moves held coordinates a part of the way that is left; may be NULL */
+    bool (*move)(void *self, double part,
+                 double *x); /* moves held coordinates a part of the way that is left; may be NULL */
     void *self;
 } RampDef;
 
@@ -24,7 +26,7 @@ typedef struct RampInfo {
     double reached; /* part of the loads that x is in equilibrium with; 1: all */
 } RampInfo;
 
-/* From x, in equilibrium with from (NULL: no loads), to x in equilibrium with to. Stationary points that are no minima
- * count as reached: the status says so. On failure x is the last state that was found. */
-RampInfo ramp_solve(System *sys, const Params *params, const RampDef *def, const double *from, const double *to, double time,
-                    double *x);
+/* From x, in equilibrium with from (NULL: no loads), to x in equilibrium with to. Stationary points that are
+ * no minima count as reached: the status says so. On failure x is the last state that was found. */
+RampInfo ramp_solve(System *sys, const Params *params, const RampDef *def, const double *from,
+                    const double *to, double time, double *x);

@@ -1,5 +1,5 @@
-/* A disk that fails: preloaded, it lets the FAULT_AT-th write, sync, truncation or rename of a regular file fail, and
- * all later ones too where FAULT_STAYS is set (a full disk). FAULT_LOG gets a line when it strikes.
+/* A disk that fails: preloaded, it lets the FAULT_AT-th write, sync, truncation or rename of a regular file
+ * fail, and all later ones too where FAULT_STAYS is set (a full disk). FAULT_LOG gets a line when it strikes.
  * The monotonic clock runs fast, a second with every look at it, so that the journal commits every unit. */
 #include <dlfcn.h>
 #include <errno.h>

@@ -12,7 +12,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size)
     MeshFile file;
     Error err;
     if (size == 0) return 0;
-    if (mesh_file_parse("fuzz", formats[bytes[0] % 3], (const char *)bytes + 1, (long)size - 1, &file, &err)) {
+    if (mesh_file_parse("fuzz", formats[bytes[0] % 3], (const char *)bytes + 1, (long)size - 1, &file,
+                        &err)) {
         MeshReport report;
         Mesh *mesh = mesh_create(&file, bytes[0] & 4 ? 1e-3 : 0, &report, &err);
         mesh_destroy(mesh);

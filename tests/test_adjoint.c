@@ -1,5 +1,5 @@
-/* dF/du of a quasi-static design against central differences and against the forward tangent, for every kind of
- * unknown and both bending models. */
+/* dF/du of a quasi-static design against central differences and against the forward tangent, for every kind
+ * of unknown and both bending models. */
 #include "base/memory.h"
 #include "base/random.h"
 #include "optim/objectives.h"
@@ -62,7 +62,8 @@ static void make_cases(Fixture *f, Random *random)
         memcpy(p + shell->magnetization, M, 3 * (size_t)shell->mesh->face_count * sizeof *M);
         p[shell->flux_density] = 0.01, p[shell->flux_density + 2] = c ? -0.03 : 0.05;
         shell_rest_state(shell, x);
-        f->cases[c] = (LoadCase){c ? "down" : "up", shell_system(shell), p, x, &f->objective, 1, c ? 0.5 : 1, 0};
+        f->cases[c] =
+            (LoadCase){c ? "down" : "up", shell_system(shell), p, x, &f->objective, 1, c ? 0.5 : 1, 0};
     }
     mem_free(M);
 }
@@ -95,7 +96,8 @@ static double tangent_slope(const Fixture *f, const double *v)
 {
     double slope = 0;
     int dofs = shell_dof_count(f->shell);
-    double *dp = mem_alloc((size_t)f->shell->params.size, sizeof *dp), *dx = mem_alloc((size_t)dofs, sizeof *dx);
+    double *dp = mem_alloc((size_t)f->shell->params.size, sizeof *dp),
+           *dx = mem_alloc((size_t)dofs, sizeof *dx);
     double *gx = mem_alloc((size_t)dofs, sizeof *gx);
     for (int c = 0; c < 2; c++) {
         const LoadCase *load = &f->cases[c];
@@ -128,7 +130,8 @@ static void check(BendingModel bending, const char *block, Unknown unknown)
     StaticDesignDef def = static_design_default();
     f.sd = static_design_create(&f.design, &f.shell->params, f.cases, &def);
 
-    double *g = mem_alloc((size_t)n, sizeof *g), *v = mem_alloc((size_t)n, sizeof *v), *moved = mem_alloc((size_t)n, sizeof *v);
+    double *g = mem_alloc((size_t)n, sizeof *g), *v = mem_alloc((size_t)n, sizeof *v),
+           *moved = mem_alloc((size_t)n, sizeof *v);
     CaseInfo info[2];
     double F = static_design_evaluate(f.sd, f.u, g, info), slope = 0, F4[4];
     assert_true(isfinite(F));
@@ -141,8 +144,9 @@ static void check(BendingModel bending, const char *block, Unknown unknown)
         F4[k] = static_design_evaluate(f.sd, moved, NULL, info);
     }
     double difference = (8 * (F4[2] - F4[1]) - (F4[3] - F4[0])) / (12 * h);
-    print_message("%-14s %s: tangent %.1e, differences %.1e\n", block, bending == BENDING_HINGE ? "hinge  " : "midedge",
-                  fabs(slope / tangent - 1), fabs(slope / difference - 1));
+    print_message("%-14s %s: tangent %.1e, differences %.1e\n", block,
+                  bending == BENDING_HINGE ? "hinge  " : "midedge", fabs(slope / tangent - 1),
+                  fabs(slope / difference - 1));
     assert_true(fabs(slope / tangent - 1) < 1e-10);
     assert_true(fabs(slope / difference - 1) < 1e-6);
     mem_free(g);

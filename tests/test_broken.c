@@ -25,7 +25,8 @@ static void strip_folder(char *text)
     char folder[4096];
     assert_non_null(getcwd(folder, sizeof folder - 1));
     strcat(folder, "/");
-    for (char *at; (at = strstr(text, folder));) memmove(at, at + strlen(folder), strlen(at + strlen(folder)) + 1);
+    for (char *at; (at = strstr(text, folder));)
+        memmove(at, at + strlen(folder), strlen(at + strlen(folder)) + 1);
 }
 
 static char *scene_sentence(const char *path)

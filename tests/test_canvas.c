@@ -137,7 +137,7 @@ static void texts(void **state)
     double width = canvas_text_width(canvas, "magnetization", style);
     assert_true(width > 40 && width < 100);
     expect_close(canvas_text_width(canvas, "magnetization", (TextStyle){.size = 20}), 2 * width,
-                        0.02 * width);
+                 0.02 * width);
     assert_true(canvas_text_width(canvas, "magnetization", (TextStyle){.size = 10, .bold = true}) > width);
     expect_close(canvas_text_width(canvas, "", style), 0, 0);
     canvas_text(canvas, (Vec2){60, 15}, "HHHH", (TextStyle){.color = black, .size = 10, .align = TEXT_RIGHT});

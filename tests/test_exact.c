@@ -112,7 +112,8 @@ static void compress(Strip *s)
     system_destroy(planar);
 }
 
-/* Antiparallel: the straight strip's lowest eigenvalue changes sign at q = pi^2/4, and above it the strip buckles. */
+/* Antiparallel: the straight strip's lowest eigenvalue changes sign at q = pi^2/4, and above it the strip
+ * buckles. */
 static void test_buckling(void **state)
 {
     (void)state;
@@ -123,8 +124,8 @@ static void test_buckling(void **state)
         compress(&s);
         Point straight = {.x = s.x, .p = s.p};
         assert_true(eigen_lowest(s.sys, &straight, 3, lowest, NULL));
-        print_message("q = %.4f: lowest eigenvalues of the straight strip %.3e %.3e %.3e N/m\n", q, lowest[0], lowest[1],
-                      lowest[2]);
+        print_message("q = %.4f: lowest eigenvalues of the straight strip %.3e %.3e %.3e N/m\n", q, lowest[0],
+                      lowest[1], lowest[2]);
         assert_true(above ? lowest[0] < 0 : lowest[0] > 0);
         assert_true(lowest[0] < lowest[1] && lowest[1] < lowest[2]);
         NewtonDef def = newton_default();

@@ -1,4 +1,5 @@
-/* Closed forms and published numbers: stretching, plate bending, magnetic identities, Sze's cantilever and annulus. */
+/* Closed forms and published numbers: stretching, plate bending, magnetic identities, Sze's cantilever and
+ * annulus. */
 #include "base/memory.h"
 #include "base/random.h"
 #include "base/vec3.h"
@@ -49,7 +50,8 @@ static void free_body(Body *b)
     mem_free(b->x);
 }
 
-static Shell *make_sheet(double size, int n, ShapePattern pattern, double thickness, double poisson, BendingModel bending)
+static Shell *make_sheet(double size, int n, ShapePattern pattern, double thickness, double poisson,
+                         BendingModel bending)
 {
     MeshFile file;
     Error err;
@@ -87,15 +89,17 @@ static void test_rolled(void **state)
         double angle = (k - 1) * M_PI / N, length = 0.1 / N;
         line[k][0] = line[k - 1][0] + length * cos(angle), line[k][1] = line[k - 1][1] + length * sin(angle);
     }
-    for (int v = 0; v < b.shell->mesh->vertex_count; v++) b.x[3 * v] = line[v % (N + 1)][0], b.x[3 * v + 2] = line[v % (N + 1)][1];
+    for (int v = 0; v < b.shell->mesh->vertex_count; v++)
+        b.x[3 * v] = line[v % (N + 1)][0], b.x[3 * v + 2] = line[v % (N + 1)][1];
     Point at = {.x = b.x, .p = b.p};
     system_accept(b.sys, &at);
     assert_true(fabs(term_energy(&b, 1) / 4.511966484301568e-05 - 1) < 1e-12);
     free_body(&b);
 }
 
-/* Shallow height k1 x^2/2 + k2 y^2/2 with all positions held and the edge angles relaxed: the energy of the inner quarter
- * of the plate. (At the border the relaxed angles let the moment go to zero, as at a free edge, over about a cell.) */
+/* Shallow height k1 x^2/2 + k2 y^2/2 with all positions held and the edge angles relaxed: the energy of the
+ * inner quarter of the plate. (At the border the relaxed angles let the moment go to zero, as at a free edge,
+ * over about a cell.) */
 static double bent_energy(ShapePattern pattern, int n, double k1, double k2)
 {
     Shell *shell = make_sheet(0.1, n, pattern, 1e-3, 0.3, BENDING_MIDEDGE);
@@ -113,7 +117,9 @@ static double bent_energy(ShapePattern pattern, int n, double k1, double k2)
     system_term_energy(b.sys, 1, &at, energy);
     for (int f = 0; f < shell->mesh->face_count; f++) {
         const int *v = shell->mesh->faces[f];
-        Vec3 center = vec3_add(vec3_load(shell->mesh->rest[v[0]]), vec3_add(vec3_load(shell->mesh->rest[v[1]]), vec3_load(shell->mesh->rest[v[2]])));
+        Vec3 center =
+            vec3_add(vec3_load(shell->mesh->rest[v[0]]),
+                     vec3_add(vec3_load(shell->mesh->rest[v[1]]), vec3_load(shell->mesh->rest[v[2]])));
         if (fabs(center.x / 3 - 0.05) < 0.025 && fabs(center.y / 3 - 0.05) < 0.025) sum += energy[f];
     }
     mem_free(energy);
@@ -134,18 +140,20 @@ static void test_plate_energies(void **state)
         for (int form = 0; form < 3; form++) {
             double coarse = bent_energy(pattern, 12, forms[form].k1, forms[form].k2) / forms[form].exact - 1;
             double fine = bent_energy(pattern, 24, forms[form].k1, forms[form].k2) / forms[form].exact - 1;
-            print_message("pattern %d, %s: %.2e at 12 cells, %.2e at 24\n", (int)pattern, forms[form].name, coarse, fine);
+            print_message("pattern %d, %s: %.2e at 12 cells, %.2e at 24\n", (int)pattern, forms[form].name,
+                          coarse, fine);
             assert_true(fabs(fine) < 1e-5 && fabs(fine) < 0.1 * fabs(coarse));
         }
 }
 
 static void randomise(Body *b, Random *random)
 {
-    for (int i = 0; i < shell_dof_count(b->shell); i++) b->x[i] += (i < 3 * b->shell->mesh->vertex_count ? 2e-3 : 0.1) * random_signed(random);
+    for (int i = 0; i < shell_dof_count(b->shell); i++)
+        b->x[i] += (i < 3 * b->shell->mesh->vertex_count ? 2e-3 : 0.1) * random_signed(random);
 }
 
-/* Uniform in-plane M and uniform B: the energy is linear in x. Gradient 0 inside, h (M.nu) B length/2 at boundary edges'
- * ends; Hessian 0. */
+/* Uniform in-plane M and uniform B: the energy is linear in x. Gradient 0 inside, h (M.nu) B length/2 at
+ * boundary edges' ends; Hessian 0. */
 static void test_linear_magnetic(void **state)
 {
     (void)state;
@@ -156,7 +164,8 @@ static void test_linear_magnetic(void **state)
     double M[3] = {3e4, -2e4, 0}, B[3] = {0.01, 0.02, -0.05}, *load = mem_alloc((size_t)dofs, sizeof *load);
     double *gradient = mem_alloc((size_t)dofs, sizeof *gradient);
     for (int f = 0; f < mesh->face_count; f++)
-        for (int i = 0; i < 3; i++) b.p[b.shell->magnetization + 3 * f + i] = M[i], b.p[b.shell->young + f] = 0;
+        for (int i = 0; i < 3; i++)
+            b.p[b.shell->magnetization + 3 * f + i] = M[i], b.p[b.shell->young + f] = 0;
     for (int i = 0; i < 3; i++) b.p[b.shell->flux_density + i] = B[i];
     for (int e = 0; e < mesh->edge_count; e++) {
         if (!mesh_edge_is_boundary(mesh, e)) continue;
@@ -176,22 +185,26 @@ static void test_linear_magnetic(void **state)
         worst = fmax(worst, fabs(gradient[i] - load[i]));
         stiffness = fmax(stiffness, scale[i]);
     }
-    print_message("linear magnetic energy: forces off by %.1e of the largest, stiffness %.1e N/m\n", worst / largest, stiffness);
+    print_message("linear magnetic energy: forces off by %.1e of the largest, stiffness %.1e N/m\n",
+                  worst / largest, stiffness);
     assert_true(worst < 1e-12 * largest && stiffness < 1e-12);
     mem_free(load);
     mem_free(gradient);
     free_body(&b);
 }
 
-/* A free body: forces add up to 0, and their torque is that of the field on the moments: sum x x f + sum m x B = 0. */
+/* A free body: forces add up to 0, and their torque is that of the field on the moments: sum x x f + sum m x
+ * B = 0. */
 static void test_balance(void **state)
 {
     (void)state;
     Random random = random_seed(8);
     Body b = make_body(make_sheet(0.05, 4, PATTERN_CROSSED, 1e-3, 0.3, BENDING_MIDEDGE), 1e5);
     const Shell *shell = b.shell;
-    double *gradient = mem_alloc((size_t)shell_dof_count(shell), sizeof *gradient), *with_B = mem_alloc((size_t)shell_dof_count(shell), sizeof *with_B);
-    for (int i = 0; i < 3 * shell->mesh->face_count; i++) b.p[shell->magnetization + i] = 5e4 * random_signed(&random);
+    double *gradient = mem_alloc((size_t)shell_dof_count(shell), sizeof *gradient),
+           *with_B = mem_alloc((size_t)shell_dof_count(shell), sizeof *with_B);
+    for (int i = 0; i < 3 * shell->mesh->face_count; i++)
+        b.p[shell->magnetization + i] = 5e4 * random_signed(&random);
     randomise(&b, &random);
     double B[3] = {0.02, -0.03, 0.05}, moment[3];
     for (int i = 0; i < 3; i++) { /* E_magnetic = -m.B: m from three unit fields */
@@ -200,7 +213,8 @@ static void test_balance(void **state)
         b.p[shell->flux_density + i] = 0;
     }
     for (int i = 0; i < 3; i++) b.p[shell->flux_density + i] = B[i];
-    /* Edge angles must be relaxed for a balance of positions alone: a rigid turn does not change them, so it holds for any. */
+    /* Edge angles must be relaxed for a balance of positions alone: a rigid turn does not change them, so it
+     * holds for any. */
     Point at = {.x = b.x, .p = b.p};
     system_gradient(b.sys, &at, gradient);
     Vec3 force = vec3(0, 0, 0), torque = vec3_cross(vec3_load(moment), vec3_load(B));
@@ -211,7 +225,8 @@ static void test_balance(void **state)
         torque = vec3_sub(torque, vec3_cross(vec3_load(b.x + 3 * v), f));
         size += vec3_length(f);
     }
-    print_message("free body: net force %.1e, torque %.1e of the forces\n", vec3_length(force) / size, vec3_length(torque) / size / 0.05);
+    print_message("free body: net force %.1e, torque %.1e of the forces\n", vec3_length(force) / size,
+                  vec3_length(torque) / size / 0.05);
     assert_true(vec3_length(force) < 1e-12 * size && vec3_length(torque) < 1e-12 * size * 0.05);
     mem_free(gradient);
     mem_free(with_B);
@@ -227,13 +242,17 @@ static void clamp_where(Shell *shell, bool (*held)(const double *x))
         if (held(mesh->rest[mesh->edges[e][0]]) && held(mesh->rest[mesh->edges[e][1]])) shell_clamp(shell, e);
 }
 
-static bool at_root(const double *x) { return x[0] < 1e-9; }
+static bool at_root(const double *x)
+{
+    return x[0] < 1e-9;
+}
 
 /* Loads per length along the edge between the vertices in order. */
 static void load_edge(Body *b, const int *vertices, int count, double per_length)
 {
     for (int k = 0; k + 1 < count; k++) {
-        double length = vec3_length(vec3_sub(vec3_load(b->shell->mesh->rest[vertices[k]]), vec3_load(b->shell->mesh->rest[vertices[k + 1]])));
+        double length = vec3_length(vec3_sub(vec3_load(b->shell->mesh->rest[vertices[k]]),
+                                             vec3_load(b->shell->mesh->rest[vertices[k + 1]])));
         b->p[b->shell->load + 3 * vertices[k] + 2] += per_length * length / 2;
         b->p[b->shell->load + 3 * vertices[k + 1] + 2] += per_length * length / 2;
     }
@@ -248,7 +267,8 @@ static void scale_loads(Body *b, double factor)
 static void test_sze_cantilever(void **state)
 {
     (void)state;
-    static const double exact[4][2] = {{.5643323628, 3.0172077}, {1.6064172, 4.9345748}, {2.5442018, 6.0325344}, {3.2894124, 6.6996418}};
+    static const double exact[4][2] = {
+        {.5643323628, 3.0172077}, {1.6064172, 4.9345748}, {2.5442018, 6.0325344}, {3.2894124, 6.6996418}};
     enum { N = 40, ACROSS = 4 };
     MeshFile file;
     Error err;
@@ -265,8 +285,8 @@ static void test_sze_cantilever(void **state)
         assert_int_equal(newton_minimize(b.sys, &def, b.p, 0, b.x, NULL).status, NEWTON_CONVERGED);
         int tip = end[ACROSS / 2];
         double U = 10 - b.x[3 * tip], W = b.x[3 * tip + 2];
-        print_message("cantilever at %.2f: U %.4f (%+.2f %%), W %.4f (%+.2f %%)\n", 0.25 * (step + 1), U, 100 * (U / exact[step][0] - 1), W,
-                      100 * (W / exact[step][1] - 1));
+        print_message("cantilever at %.2f: U %.4f (%+.2f %%), W %.4f (%+.2f %%)\n", 0.25 * (step + 1), U,
+                      100 * (U / exact[step][0] - 1), W, 100 * (W / exact[step][1] - 1));
         assert_true(fabs(U / exact[step][0] - 1) < 0.005 && fabs(W / exact[step][1] - 1) < 0.005);
     }
     free_body(&b);
@@ -297,7 +317,9 @@ static Shell *make_annulus(void)
 static void test_sze_annulus(void **state)
 {
     (void)state;
-    static const double part[4] = {.1, .25, .5, 1}, published[4][2] = {{4.277, 5.876}, {7.602, 10.288}, {10.468, 13.768}, {13.891, 17.528}};
+    static const double part[4] = {.1, .25, .5, 1},
+                        published[4][2] = {
+                            {4.277, 5.876}, {7.602, 10.288}, {10.468, 13.768}, {13.891, 17.528}};
     Shell *shell = make_annulus();
     int end[RADIAL + 1];
     for (int i = 0; i <= RADIAL; i++) {
@@ -314,8 +336,9 @@ static void test_sze_annulus(void **state)
         NewtonInfo info = newton_minimize(b.sys, &def, b.p, 0, b.x, NULL);
         assert_int_equal(info.status, NEWTON_CONVERGED);
         double A = b.x[3 * end[0] + 2], B = b.x[3 * end[RADIAL] + 2];
-        print_message("annulus at %.2f: A %.3f (%+.2f %%), B %.3f (%+.2f %%), %d iterations\n", part[step], A, 100 * (A / published[step][0] - 1), B,
-                      100 * (B / published[step][1] - 1), info.iterations);
+        print_message("annulus at %.2f: A %.3f (%+.2f %%), B %.3f (%+.2f %%), %d iterations\n", part[step], A,
+                      100 * (A / published[step][0] - 1), B, 100 * (B / published[step][1] - 1),
+                      info.iterations);
         assert_true(fabs(A / published[step][0] - 1) < 0.01 && fabs(B / published[step][1] - 1) < 0.01);
     }
     free_body(&b);
@@ -324,7 +347,9 @@ static void test_sze_annulus(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_stretch), cmocka_unit_test(test_rolled), cmocka_unit_test(test_plate_energies), cmocka_unit_test(test_linear_magnetic),
-        cmocka_unit_test(test_balance), cmocka_unit_test(test_sze_cantilever), cmocka_unit_test(test_sze_annulus)};
+        cmocka_unit_test(test_stretch),        cmocka_unit_test(test_rolled),
+        cmocka_unit_test(test_plate_energies), cmocka_unit_test(test_linear_magnetic),
+        cmocka_unit_test(test_balance),        cmocka_unit_test(test_sze_cantilever),
+        cmocka_unit_test(test_sze_annulus)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

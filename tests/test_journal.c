@@ -1,4 +1,5 @@
-/* The journal: bits, units, modes, damage, and kills at random moments. The full campaigns are in tests/campaign.sh. */
+/* The journal: bits, units, modes, damage, and kills at random moments. The full campaigns are in
+ * tests/campaign.sh. */
 #include "base/memory.h"
 #include "base/random.h"
 #include "io/journal.h"
@@ -58,8 +59,9 @@ static void test_round_trip(void **state)
     Error err;
     double numbers[6] = {1.0 / 3, -0.0, 5e-324, 1e308, 2, 3};
     int whole[2] = {-7, 2147483647};
-    Array arrays[] = {array_float("x", "m", numbers, 2, 2, 3), array_int("faces", whole, 1, 2, 0), array_text("scene", "slender: 1\n"),
-                      array_float("nothing", "", numbers, 2, 0, 3)}, got;
+    Array arrays[] = {array_float("x", "m", numbers, 2, 2, 3), array_int("faces", whole, 1, 2, 0),
+                      array_text("scene", "slender: 1\n"), array_float("nothing", "", numbers, 2, 0, 3)},
+          got;
     assert_true(journal_put(journal, "static", 3, arrays, 4, &err));
     assert_true(journal_get(journal, "static", 3, "x", &got, &err));
     assert_true(got.rank == 2 && got.dims[0] == 2 && got.dims[1] == 3 && !strcmp(got.unit, "m"));
@@ -83,7 +85,8 @@ static void test_round_trip(void **state)
     put_number(journal, "frame", 2, 2);
     put_number(journal, "frame", 5, 3); /* replaces */
     assert_true(get_number(journal, "frame", 5) == 3);
-    assert_true(journal_indices(journal, "frame", &indices, &count, &err) && count == 2 && indices[0] == 2 && indices[1] == 5);
+    assert_true(journal_indices(journal, "frame", &indices, &count, &err) && count == 2 && indices[0] == 2 &&
+                indices[1] == 5);
     mem_free(indices);
     assert_int_equal(journal_count(journal, "frame"), 2);
     assert_int_equal(journal_last_index(journal, "frame"), 5);
@@ -112,7 +115,8 @@ static void test_modes(void **state)
     assert_non_null(reader);
     assert_true(get_number(reader, "meta", 0) == 1);
     pid_t child = fork();
-    if (child == 0) _exit(journal_open(PATH, JOURNAL_FORCE, &err) || !strstr(err.text, "another run is writing"));
+    if (child == 0)
+        _exit(journal_open(PATH, JOURNAL_FORCE, &err) || !strstr(err.text, "another run is writing"));
     int status;
     waitpid(child, &status, 0);
     assert_int_equal(status, 0);
@@ -121,7 +125,8 @@ static void test_modes(void **state)
     journal_close(reader, &err);
     assert_true(journal_close(journal, &err));
 
-    expect_refusal(JOURNAL_NEW, "holds an unfinished run: go on with it with --resume, or discard it with --force");
+    expect_refusal(JOURNAL_NEW,
+                   "holds an unfinished run: go on with it with --resume, or discard it with --force");
     journal = journal_open(PATH, JOURNAL_RESUME, &err);
     assert_true(journal && !journal_is_finished(journal) && get_number(journal, "meta", 1) == 2);
     assert_true(journal_set_finished(journal, true, &err) && journal_close(journal, &err));
@@ -143,12 +148,14 @@ static void test_modes(void **state)
 static void test_foreign(void **state)
 {
     (void)state;
-    static const char text[] = "my only copy of the thesis, which is longer than an SQLite header of one hundred bytes, to be sure";
+    static const char text[] =
+        "my only copy of the thesis, which is longer than an SQLite header of one hundred bytes, to be sure";
     clean();
     FILE *file = fopen(PATH, "w");
     fputs(text, file);
     fclose(file);
-    for (JournalMode mode = JOURNAL_NEW; mode <= JOURNAL_READ; mode++) expect_refusal(mode, "is not a journal of slender");
+    for (JournalMode mode = JOURNAL_NEW; mode <= JOURNAL_READ; mode++)
+        expect_refusal(mode, "is not a journal of slender");
     char back[256] = {0};
     file = fopen(PATH, "r");
     assert_int_equal(fread(back, 1, sizeof back, file), sizeof text - 1);
@@ -261,7 +268,8 @@ static void test_kill(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_round_trip), cmocka_unit_test(test_modes), cmocka_unit_test(test_foreign),
-                                       cmocka_unit_test(test_damage), cmocka_unit_test(test_kill)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_round_trip), cmocka_unit_test(test_modes),
+                                       cmocka_unit_test(test_foreign), cmocka_unit_test(test_damage),
+                                       cmocka_unit_test(test_kill)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,5 @@
-/* Every objective: gradient against differences of the value, Gauss-Newton product against differences of the gradient. */
+/* Every objective: gradient against differences of the value, Gauss-Newton product against differences of the
+ * gradient. */
 #include "base/memory.h"
 #include "base/random.h"
 #include "optim/objectives.h"
@@ -56,7 +57,8 @@ static double dot(int n, const double *a, const double *b)
     return sum;
 }
 
-/* Values and gradients at x + s vx, p + s vp; all objectives are at most quadratic, so central differences are exact. */
+/* Values and gradients at x + s vx, p + s vp; all objectives are at most quadratic, so central differences
+ * are exact. */
 static double value_at(Fixture *f, Objective objective, double s, double *dx, double *dp)
 {
     double *x = mem_copy(f->x, (size_t)f->dofs, sizeof *x), *p = mem_copy(f->p, (size_t)f->params, sizeof *p);
@@ -72,7 +74,9 @@ static double value_at(Fixture *f, Objective objective, double s, double *dx, do
 
 static void check(Fixture *f, Objective objective, bool squares)
 {
-    double weight = objective.weight, slope = weight * (value_at(f, objective, 1, NULL, NULL) - value_at(f, objective, -1, NULL, NULL)) / 2;
+    double weight = objective.weight,
+           slope =
+               weight * (value_at(f, objective, 1, NULL, NULL) - value_at(f, objective, -1, NULL, NULL)) / 2;
     value_at(f, objective, 0, f->dx, f->dp);
     double exact = dot(f->dofs, f->dx, f->vx) + dot(f->params, f->dp, f->vp);
     assert_true(fabs(slope - exact) < 1e-12 * (fabs(slope) + 1));
@@ -81,7 +85,8 @@ static void check(Fixture *f, Objective objective, bool squares)
     memset(f->hp, 0, (size_t)f->params * sizeof *f->hp);
     objective.ops->product(objective.self, weight, f->vx, f->vp, f->hx, f->hp);
     double curvature = dot(f->dofs, f->hx, f->vx) + dot(f->params, f->hp, f->vp);
-    double second = weight * (value_at(f, objective, 1, NULL, NULL) + value_at(f, objective, -1, NULL, NULL) - 2 * value_at(f, objective, 0, NULL, NULL));
+    double second = weight * (value_at(f, objective, 1, NULL, NULL) + value_at(f, objective, -1, NULL, NULL) -
+                              2 * value_at(f, objective, 0, NULL, NULL));
     assert_true(squares ? curvature > 0 && fabs(curvature - second) < 1e-11 * curvature : curvature == 0);
     objective_destroy(objective);
 }
@@ -93,7 +98,7 @@ static void test_rows(void **state)
     Fixture f = make_fixture();
     int vertices[3] = {0, 4, 7};
     double target[3][3] = {{1, 2, 3}, {-1, 0, 1}, {0.5, 0.5, 0.5}};
-    check(&f, objective_target(3, vertices, (const double (*)[3])target, 0.7), true);
+    check(&f, objective_target(3, vertices, (const double(*)[3])target, 0.7), true);
     check(&f, objective_height(3, vertices, -2), false);
     check(&f, shell_magnetization_smoothness(f.shell, 1.5), true);
     free_fixture(&f);
@@ -109,7 +114,7 @@ static void test_values(void **state)
     double target[2][3] = {{0}, {0}};
     memset(f.x, 0, (size_t)f.dofs * sizeof *f.x);
     f.x[3] = 3, f.x[4] = 4, f.x[8] = 2;
-    Objective objective = objective_target(2, vertices, (const double (*)[3])target, 1);
+    Objective objective = objective_target(2, vertices, (const double(*)[3])target, 1);
     assert_true(objective.ops->value(objective.self, 1, f.x, f.p, NULL, NULL) == 29);
     objective_destroy(objective);
     objective = objective_height(2, vertices, 1);
@@ -120,7 +125,8 @@ static void test_values(void **state)
     assert_true(objective.ops->value(objective.self, 1, f.x, f.p, NULL, NULL) == 0);
     f.p[f.shell->magnetization] = 7; /* one face: 4 for each of its inner edges */
     int inner = 0;
-    for (int i = 0; i < 3; i++) inner += !mesh_edge_is_boundary(f.shell->mesh, f.shell->mesh->face_edges[0][i]);
+    for (int i = 0; i < 3; i++)
+        inner += !mesh_edge_is_boundary(f.shell->mesh, f.shell->mesh->face_edges[0][i]);
     assert_true(objective.ops->value(objective.self, 1, f.x, f.p, NULL, NULL) == 4 * inner);
     free_fixture(&f);
 }

@@ -30,7 +30,8 @@ static Strip make_strip(void)
     for (int i = 0; i < 3 * mesh->vertex_count; i++)
         if (mesh->rest[i / 3][0] < 1e-9) shell_fix(s.shell, i / 3, i % 3);
     for (int e = 0; e < mesh->edge_count; e++)
-        if (mesh->rest[mesh->edges[e][0]][0] < 1e-9 && mesh->rest[mesh->edges[e][1]][0] < 1e-9) shell_clamp(s.shell, e);
+        if (mesh->rest[mesh->edges[e][0]][0] < 1e-9 && mesh->rest[mesh->edges[e][1]][0] < 1e-9)
+            shell_clamp(s.shell, e);
     s.sys = shell_system(s.shell);
     s.p = mem_alloc((size_t)s.shell->params.size, sizeof *s.p);
     s.x = mem_alloc((size_t)shell_dof_count(s.shell), sizeof *s.x);
@@ -51,7 +52,8 @@ static void free_strip(Strip *s)
 static double farthest(const Strip *a, const Strip *b)
 {
     double largest = 0;
-    for (int i = 0; i < 3 * a->shell->mesh->vertex_count; i++) largest = fmax(largest, fabs(a->x[i] - b->x[i]));
+    for (int i = 0; i < 3 * a->shell->mesh->vertex_count; i++)
+        largest = fmax(largest, fabs(a->x[i] - b->x[i]));
     return largest;
 }
 
@@ -62,7 +64,8 @@ static void test_same_end(void **state)
     Strip once = make_strip(), halved = make_strip(), four = make_strip();
     RampDef def = ramp_default();
     RampInfo info = ramp_solve(once.sys, &once.shell->params, &def, NULL, once.p, 0, once.x);
-    assert_true(info.newton.status == NEWTON_CONVERGED && info.steps == 1 && info.refused == 0 && info.reached == 1);
+    assert_true(info.newton.status == NEWTON_CONVERGED && info.steps == 1 && info.refused == 0 &&
+                info.reached == 1);
     int needed = info.newton.iterations;
     def.newton.max_iterations = needed - 2; /* too few for the whole load */
     info = ramp_solve(halved.sys, &halved.shell->params, &def, NULL, halved.p, 0, halved.x);

@@ -15,7 +15,10 @@ enum { VERTICES = 4, FACES = 2, FRAMES = 3 };
 
 static const char PATH[] = "test_result.vtkhdf";
 
-static double position(int frame, int i) { return frame + i / 16.0; } /* exact in single precision */
+static double position(int frame, int i)
+{
+    return frame + i / 16.0;
+} /* exact in single precision */
 
 static void put_frame(Journal *journal, int frame)
 {
@@ -23,8 +26,10 @@ static void put_frame(Journal *journal, int frame)
     double x[3 * VERTICES], time = 0.5 * frame, young[FACES] = {frame, frame + 1}, M[3 * FACES] = {frame};
     for (int i = 0; i < 3 * VERTICES; i++) x[i] = position(frame, i);
     Array arrays[] = {array_float("x", "m", x, 2, VERTICES, 3), array_float("time", "s", &time, 0, 0, 0),
-                      array_float("cell/young", "Pa", young, 1, FACES, 0), array_float("cell/magnetization", "A/m", M, 2, FACES, 3)};
-    assert_true(journal_put(journal, "frame", frame, arrays, frame == 1 ? 3 : 4, &err)); /* frame 1 has no magnetization */
+                      array_float("cell/young", "Pa", young, 1, FACES, 0),
+                      array_float("cell/magnetization", "A/m", M, 2, FACES, 3)};
+    assert_true(journal_put(journal, "frame", frame, arrays, frame == 1 ? 3 : 4,
+                            &err)); /* frame 1 has no magnetization */
 }
 
 static Journal *make_journal(void)
@@ -36,8 +41,10 @@ static Journal *make_journal(void)
     int faces[3 * FACES] = {0, 1, 2, 1, 3, 2};
     double gradient[3 * VERTICES] = {1.0 / 3};
     Array meta = array_text("scene", "slender: 1\n"), statics = array_int("faces", faces, 2, FACES, 3);
-    Array final[] = {array_float("final/gradient", "N", gradient, 2, VERTICES, 3), array_text("status", "converged")};
-    assert_true(journal_put(journal, "meta", 0, &meta, 1, &err) && journal_put(journal, "static", 0, &statics, 1, &err));
+    Array final[] = {array_float("final/gradient", "N", gradient, 2, VERTICES, 3),
+                     array_text("status", "converged")};
+    assert_true(journal_put(journal, "meta", 0, &meta, 1, &err) &&
+                journal_put(journal, "static", 0, &statics, 1, &err));
     assert_true(journal_put(journal, "final", 0, final, 2, &err));
     for (int k = 0; k < FRAMES; k++) put_frame(journal, k);
     for (int k = 0; k < 4; k++) {
@@ -67,26 +74,32 @@ static void test_read_back(void **state)
     if (!result) fail_msg("%s", err.text);
     assert_int_equal(result_step_count(result), FRAMES);
     for (int k = 0; k < FRAMES; k++) {
-        assert_true(result_read_step(result, "Points", k, &array, &err) && array.dims[0] == VERTICES && array.dims[1] == 3);
+        assert_true(result_read_step(result, "Points", k, &array, &err) && array.dims[0] == VERTICES &&
+                    array.dims[1] == 3);
         for (int i = 0; i < 3 * VERTICES; i++) assert_true(((const double *)array.data)[i] == position(k, i));
         array_clear(&array);
         assert_true(result_read_step(result, "CellData/magnetization", k, &array, &err));
         assert_true(*(const double *)array.data == (k == 1 ? 0 : k)); /* frame 1 shows that of frame 0 */
         array_clear(&array);
     }
-    assert_true(result_read(result, "VTKHDF/CellData/magnetization", &array, &err) && array.dims[0] == 2 * FACES);
+    assert_true(result_read(result, "VTKHDF/CellData/magnetization", &array, &err) &&
+                array.dims[0] == 2 * FACES);
     array_clear(&array);
-    assert_true(result_read(result, "slender/final/gradient", &array, &err) && *(const double *)array.data == 1.0 / 3);
+    assert_true(result_read(result, "slender/final/gradient", &array, &err) &&
+                *(const double *)array.data == 1.0 / 3);
     assert_string_equal(array.unit, "N");
     array_clear(&array);
-    assert_true(result_read(result, "slender/history/objective", &array, &err) && array.dims[0] == 4 && ((const double *)array.data)[3] == 0.25);
+    assert_true(result_read(result, "slender/history/objective", &array, &err) && array.dims[0] == 4 &&
+                ((const double *)array.data)[3] == 0.25);
     array_clear(&array);
     assert_true(result_read(result, "slender/status", &array, &err));
     assert_string_equal(array.data, "converged");
     array_clear(&array);
-    assert_true(result_read(result, "slender/state/x", &array, &err) && *(const double *)array.data == position(FRAMES - 1, 0));
+    assert_true(result_read(result, "slender/state/x", &array, &err) &&
+                *(const double *)array.data == position(FRAMES - 1, 0));
     array_clear(&array);
-    assert_true(result_read_rows(result, "slender/faces", 1, 1, &array, &err) && ((const int *)array.data)[1] == 3);
+    assert_true(result_read_rows(result, "slender/faces", 1, 1, &array, &err) &&
+                ((const int *)array.data)[1] == 3);
     array_clear(&array);
     assert_false(result_read(result, "slender/nothing", &array, &err));
     assert_false(result_read_step(result, "Points", FRAMES, &array, &err));
@@ -175,17 +188,20 @@ static void test_h5py(void **state)
         return;
     }
     write_result(true);
-    assert_int_equal(system("/usr/bin/python3 -c \""
-                            "import h5py; f = h5py.File('test_result.vtkhdf'); s = f['slender']; v = f['VTKHDF'];"
-                            "assert v.attrs['Type'] == b'UnstructuredGrid' and list(v.attrs['Version']) == [2, 0];"
-                            "assert v['Steps'].attrs['NSteps'] == 3 and v['Points'].shape == (12, 3);"
-                            "assert s.attrs['status'] in (b'converged', 'converged') and s['frames/x'].shape[0] == 12;"
-                            "assert s['final/gradient'].attrs['unit'] in (b'N', 'N')\""), 0);
+    assert_int_equal(
+        system("/usr/bin/python3 -c \""
+               "import h5py; f = h5py.File('test_result.vtkhdf'); s = f['slender']; v = f['VTKHDF'];"
+               "assert v.attrs['Type'] == b'UnstructuredGrid' and list(v.attrs['Version']) == [2, 0];"
+               "assert v['Steps'].attrs['NSteps'] == 3 and v['Points'].shape == (12, 3);"
+               "assert s.attrs['status'] in (b'converged', 'converged') and s['frames/x'].shape[0] == 12;"
+               "assert s['final/gradient'].attrs['unit'] in (b'N', 'N')\""),
+        0);
 }
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_read_back), cmocka_unit_test(test_deterministic), cmocka_unit_test(test_damage),
-                                       cmocka_unit_test(test_unwritable), cmocka_unit_test(test_h5py)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_read_back), cmocka_unit_test(test_deterministic),
+                                       cmocka_unit_test(test_damage), cmocka_unit_test(test_unwritable),
+                                       cmocka_unit_test(test_h5py)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

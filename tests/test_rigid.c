@@ -49,8 +49,9 @@ static void test_net_force(void **state)
     assert_true(rigid_check_force(shell, p, &err));
     p[shell->gravity + 2] = -10;
     assert_false(rigid_check_force(shell, p, &err));
-    assert_string_equal(err.text, "a net force of -0.002 N along z acts on a body that nothing holds along z: it has no "
-                                  "equilibrium; fix a vertex, or take the force away");
+    assert_string_equal(
+        err.text, "a net force of -0.002 N along z acts on a body that nothing holds along z: it has no "
+                  "equilibrium; fix a vertex, or take the force away");
     shell_fix(shell, 3, 2);
     assert_true(rigid_check_force(shell, p, &err));
     mem_free(p);

@@ -74,8 +74,8 @@ static void check_rows(BendingModel bending, FluxField *field)
         Term term = shell_term_rows[r].create(shell);
         if (term.ops->accept) term.ops->accept(term.self, &at);
         TermError worst = check_term(&term, &shell->params, &at, dof_size, &random);
-        print_message("%-10s gradient %.1e  hessian %.1e  param_forward %.1e  param %.1e\n", shell_term_rows[r].name,
-                      worst.gradient, worst.hessian, worst.forward, worst.adjoint);
+        print_message("%-10s gradient %.1e  hessian %.1e  param_forward %.1e  param %.1e\n",
+                      shell_term_rows[r].name, worst.gradient, worst.hessian, worst.forward, worst.adjoint);
         assert_true(worst.gradient < 1e-7);
         assert_true(worst.hessian < 1e-7);
         assert_true(worst.forward < 1e-7);

@@ -1,5 +1,5 @@
-/* The field table: every kind of row, units, defaults, overrides, the way back to text. Sentences about broken scenes
- * are in tests/broken. */
+/* The field table: every kind of row, units, defaults, overrides, the way back to text. Sentences about
+ * broken scenes are in tests/broken. */
 #include "base/memory.h"
 #include "io/yaml.h"
 #include <math.h>
@@ -27,14 +27,18 @@ typedef struct Outer {
 } Outer;
 
 static const YamlTable inner_table = {
-    .name = "inner", .doc = "A number or a formula.", .size = sizeof(Inner),
+    .name = "inner",
+    .doc = "A number or a formula.",
+    .size = sizeof(Inner),
     .fields = (const YamlField[]){
         {YAML_NUMBER(Inner, value), .unit = "Pa", .one_of = 1, .short_form = true, .doc = "the value"},
         {YAML_TEXT(Inner, formula), .one_of = 1, .short_form = true, .doc = "an expression"},
         {0}}};
 
 static const YamlTable outer_table = {
-    .name = "scene", .doc = "All kinds.", .size = sizeof(Outer),
+    .name = "scene",
+    .doc = "All kinds.",
+    .size = sizeof(Outer),
     .fields = (const YamlField[]){
         {YAML_NUMBER(Outer, length), .unit = "m", .range = "(0, inf)", .required = true, .doc = "a length"},
         {YAML_NUMBER(Outer, angle), .unit = "rad", .fallback = "90 deg", .doc = "an angle"},
@@ -43,7 +47,8 @@ static const YamlTable outer_table = {
         {YAML_NUMBERS(Outer, list), .unit = "T", .doc = "any numbers"},
         {YAML_ROWS(Outer, rows), .doc = "pairs"},
         {YAML_INTEGER(Outer, count), .range = "[0, 10]", .fallback = "3", .doc = "a count"},
-        {YAML_CHOICE(Outer, kind), .choices = YAML_NAMES("hinge", "midedge"), .fallback = "midedge", .doc = "a choice"},
+        {YAML_CHOICE(Outer, kind), .choices = YAML_NAMES("hinge", "midedge"), .fallback = "midedge",
+         .doc = "a choice"},
         {YAML_INTEGER_VECTOR(Outer, pair), .doc = "two whole numbers"},
         {YAML_CHOICES(Outer, kinds), .choices = YAML_NAMES("one", "two", "three"), .doc = "choices"},
         {YAML_BOOL(Outer, flag), .doc = "a switch"},
@@ -56,13 +61,17 @@ static const YamlTable outer_table = {
         {YAML_MAP(Outer, names, &inner_table), .doc = "tables with names"},
         {0}}};
 
-static YamlFile *parse(const char *text) { return yaml_parse("/somewhere/test.yaml", text, strlen(text)); }
+static YamlFile *parse(const char *text)
+{
+    return yaml_parse("/somewhere/test.yaml", text, strlen(text));
+}
 
-static const char full[] = "slender: 1\n"
-                           "length: 1.5 mm\nangle: 0.5\nvector: [1, 2 m/s^2, 3e3 mm/s^2]\nlist: 20 mT\nrows: [[1, 2], [3, 4]]\n"
-                           "count: 7\nkind: hinge\npair: [1, 2]\nkinds: [two, one]\nflag: true\ntext: 'a \"b\" \\ c'\n"
-                           "file: mesh.obj\ntexts: [\"x\", y]\ninner: 2 MPa\noptional: \"3*x\"\n"
-                           "entries: [1, {formula: z}]\nnames: {up: 5 kPa, \"down: x\": {value: 6}}\n";
+static const char full[] =
+    "slender: 1\n"
+    "length: 1.5 mm\nangle: 0.5\nvector: [1, 2 m/s^2, 3e3 mm/s^2]\nlist: 20 mT\nrows: [[1, 2], [3, 4]]\n"
+    "count: 7\nkind: hinge\npair: [1, 2]\nkinds: [two, one]\nflag: true\ntext: 'a \"b\" \\ c'\n"
+    "file: mesh.obj\ntexts: [\"x\", y]\ninner: 2 MPa\noptional: \"3*x\"\n"
+    "entries: [1, {formula: z}]\nnames: {up: 5 kPa, \"down: x\": {value: 6}}\n";
 
 static void test_kinds(void **state)
 {
@@ -96,8 +105,10 @@ static void test_defaults(void **state)
     Outer o;
     YamlFile *file = parse("{\"slender\": 1, \"length\": 2}"); /* JSON is YAML */
     assert_true(yaml_load(file, &outer_table, &o));
-    assert_true(o.length == 2 && fabs(o.angle - M_PI / 2) < 1e-15 && o.vector[2] == -9.81 && o.count == 3 && o.kind == 1);
-    assert_true(o.pair[0] == YAML_ABSENT && !o.list && !o.text && !o.optional && !o.entries && o.inner.value == 1000);
+    assert_true(o.length == 2 && fabs(o.angle - M_PI / 2) < 1e-15 && o.vector[2] == -9.81 && o.count == 3 &&
+                o.kind == 1);
+    assert_true(o.pair[0] == YAML_ABSENT && !o.list && !o.text && !o.optional && !o.entries &&
+                o.inner.value == 1000);
     yaml_clear(&outer_table, &o);
     yaml_destroy(file);
 }
@@ -130,17 +141,23 @@ static void test_units(void **state)
     static const struct {
         const char *text;
         double value;
-    } good[] = {{"1", 1}, {"-2.5e3", -2500}, {"1 m/s^2", 1}, {"1mm/s^2", 1e-3}, {"2 km/h^2", 2000.0 / 3600 / 3600}, {".5", 0.5}, {"3 cm/s^2", 0.03}};
-    static const char *const bad[] = {"1 m", "1 m/s", "1 m/s^2 x", "1e", "0x10", "inf", "nan", "one", "1,5", "1 2", "m/s^2", "1e999", "1 m/s/s", "''"};
+    } good[] = {
+        {"1", 1},    {"-2.5e3", -2500}, {"1 m/s^2", 1}, {"1mm/s^2", 1e-3}, {"2 km/h^2", 2000.0 / 3600 / 3600},
+        {".5", 0.5}, {"3 cm/s^2", 0.03}};
+    static const char *const bad[] = {"1 m", "1 m/s", "1 m/s^2 x", "1e",    "0x10",  "inf",     "nan",
+                                      "one", "1,5",   "1 2",       "m/s^2", "1e999", "1 m/s/s", "''"};
     const YamlTable table = {
-        .name = "scene", .doc = "", .size = sizeof(double[3]),
+        .name = "scene",
+        .doc = "",
+        .size = sizeof(double[3]),
         .fields = (const YamlField[]){{.key = "a", .kind = FIELD_NUMBER, .unit = "m/s^2", .doc = ""}, {0}}};
     double value[3];
     char text[64];
     for (size_t k = 0; k < sizeof good / sizeof *good; k++) {
         snprintf(text, sizeof text, "slender: 1\na: %s\n", good[k].text);
         YamlFile *file = parse(text);
-        if (!yaml_load(file, &table, value) || fabs(value[0] - good[k].value) > 1e-15 * fabs(good[k].value)) fail_msg("%s", good[k].text);
+        if (!yaml_load(file, &table, value) || fabs(value[0] - good[k].value) > 1e-15 * fabs(good[k].value))
+            fail_msg("%s", good[k].text);
         yaml_destroy(file);
     }
     for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {
@@ -169,10 +186,13 @@ static void test_overrides(void **state)
     (void)state;
     Outer o;
     YamlFile *file = parse(full);
-    assert_true(yaml_override(file, "length=2 mm") && yaml_override(file, "inner.formula=x+1") && yaml_override(file, "entries[0]=9"));
-    assert_true(yaml_override(file, "entries[2].value=10") && yaml_override(file, "vector=[0, 0, 1]") && yaml_override(file, "names.left=4"));
+    assert_true(yaml_override(file, "length=2 mm") && yaml_override(file, "inner.formula=x+1") &&
+                yaml_override(file, "entries[0]=9"));
+    assert_true(yaml_override(file, "entries[2].value=10") && yaml_override(file, "vector=[0, 0, 1]") &&
+                yaml_override(file, "names.left=4"));
     if (!yaml_load(file, &outer_table, &o)) fail_msg("%s", yaml_report(file));
-    assert_true(o.length == 0.002 && o.entries_count == 3 && o.entries[0].value == 9 && o.entries[2].value == 10 && o.vector[2] == 1);
+    assert_true(o.length == 0.002 && o.entries_count == 3 && o.entries[0].value == 9 &&
+                o.entries[2].value == 10 && o.vector[2] == 1);
     assert_true(o.names_count == 3 && !strcmp(o.names[2].name, "left"));
     assert_string_equal(o.inner.formula, "x+1");
     char *where = yaml_where(file, "entries[0]");
@@ -208,9 +228,10 @@ static void test_report(void **state)
     YamlFile *file = parse("slender: 1\nlength: 1\nkind: hing\n");
     assert_false(yaml_load(file, &outer_table, &o));
     char *report = yaml_report(file);
-    assert_string_equal(report, "/somewhere/test.yaml:3:7: kind must be hinge or midedge, not 'hing'; did you mean 'hinge'?\n"
-                                "    kind: hing\n"
-                                "          ^\n");
+    assert_string_equal(
+        report, "/somewhere/test.yaml:3:7: kind must be hinge or midedge, not 'hing'; did you mean 'hinge'?\n"
+                "    kind: hing\n"
+                "          ^\n");
     mem_free(report);
     assert_false(yaml_refuse(file, "length", "that is %s", "long"));
     int count;
@@ -243,8 +264,9 @@ static void test_manual(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_kinds), cmocka_unit_test(test_defaults), cmocka_unit_test(test_round_trip), cmocka_unit_test(test_units),
-        cmocka_unit_test(test_overrides), cmocka_unit_test(test_difference), cmocka_unit_test(test_report), cmocka_unit_test(test_manual)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_kinds),      cmocka_unit_test(test_defaults),
+                                       cmocka_unit_test(test_round_trip), cmocka_unit_test(test_units),
+                                       cmocka_unit_test(test_overrides),  cmocka_unit_test(test_difference),
+                                       cmocka_unit_test(test_report),     cmocka_unit_test(test_manual)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

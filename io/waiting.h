@@ -1,0 +1,20 @@
+/* waiting.h - arrays that wait for their commit. Private to journal.c. */
+#pragma once
+#include "io/array.h"
+
+typedef struct Pending {
+    char *kind;
+    int index;
+    Array array; /* owned */
+} Pending;
+
+typedef struct Waiting {
+    size_t count, room;
+    Pending *items;
+} Waiting;
+
+/* Copies the array. */
+void waiting_push(Waiting *waiting, const char *kind, int index, const Array *array);
+
+/* Frees everything. */
+void waiting_clear(Waiting *waiting);

@@ -1,0 +1,27 @@
+/* yaml_load.h - where loading stands, and the scalars. Private to yaml_load.c and yaml_value.c. */
+#pragma once
+#include "io/yaml_private.h"
+
+/* Where loading stands: the key path, for sentences. */
+typedef struct Load {
+    YamlFile *file;
+    char path[512];
+} Load;
+
+/* Goes down to a key or (key NULL) an index; returns what load_leave needs. */
+size_t load_enter(Load *load, const char *key, int index);
+void load_leave(Load *load, size_t length);
+
+/* Adds "key what" at the node; returns false. */
+bool load_wrong(Load *load, const Node *at, const char *what);
+
+/* "a list", "a mapping", "a text" */
+const char *node_kind_name(const Node *node);
+
+/* One value; false after adding an error. */
+bool load_number(Load *load, const YamlField *row, const Node *node, double *value);
+bool load_integer(Load *load, const YamlField *row, const Node *node, int *value);
+bool load_text(Load *load, const Node *node, char **value);
+bool load_bool(Load *load, const Node *node, bool *value);
+bool load_choice(Load *load, const YamlField *row, const Node *node, int *value);
+bool load_file(Load *load, const Node *node, char **value);
