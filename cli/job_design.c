@@ -280,7 +280,7 @@ static bool put_results(DesignJob *job, const char *status)
 
 static RunStatus finish(DesignJob *job, const OptimiserInfo *info)
 {
-    bool interrupted = info->status == OPTIMISER_STOPPED;
+    bool interrupted = job->aborted || info->status == OPTIMISER_STOPPED;
     if (job->failed) return RUN_CANNOT_WRITE;
     if (job->improvements == 0) {
         progress_say(job->run->progress, interrupted

@@ -180,9 +180,7 @@ static bool open_new(Journal *journal, JournalMode mode, Error *err)
 {
     if (exists(journal->path) && (!may_discard(journal, mode, err) || !discard(journal, err))) return false;
     return open_database(journal, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, err) &&
-           execute(journal,
-                   "PRAGMA auto_vacuum=INCREMENTAL; PRAGMA journal_mode=WAL; PRAGMA synchronous=FULL;",
-                   "written", err) &&
+           execute(journal, "PRAGMA journal_mode=WAL; PRAGMA synchronous=FULL;", "written", err) &&
            create_tables(journal, err);
 }
 
@@ -281,18 +279,6 @@ bool journal_put(Journal *journal, const char *kind, int index, const Array *arr
 {
     for (int k = 0; k < count; k++) waiting_push(&journal->waiting, kind, index, &arrays[k]);
     return clock_seconds() - journal->committed < COMMIT_INTERVAL || journal_flush(journal, err);
-}
-
-bool journal_remove(Journal *journal, const char *kind, Error *err)
-{
-    sqlite3_stmt *statement =
-        journal_flush(journal, err) ? prepare(journal, "DELETE FROM arrays WHERE kind=?", err) : NULL;
-    if (!statement) return false;
-    sqlite3_bind_text(statement, 1, kind, -1, SQLITE_STATIC);
-    bool ok = sqlite3_step(statement) == SQLITE_DONE || sql_error(journal, "written", err);
-    sqlite3_finalize(statement);
-    return ok &&
-           execute(journal, "PRAGMA incremental_vacuum; PRAGMA wal_checkpoint(TRUNCATE);", "written", err);
 }
 
 bool journal_set_finished(Journal *journal, bool finished, Error *err)

@@ -67,9 +67,6 @@ bool journal_names(Journal *journal, const char *kind, int index, char ***names,
 int journal_count(Journal *journal, const char *kind);
 int journal_last_index(Journal *journal, const char *kind);
 
-/* Commits the removal of a kind: frames leave the journal once the result is safe. The file shrinks. */
-bool journal_remove(Journal *journal, const char *kind, Error *err);
-
 /* A finished run may be replaced by JOURNAL_NEW. A resumed run that goes on sets it back to false. */
 bool journal_set_finished(Journal *journal, bool finished, Error *err);
 bool journal_is_finished(Journal *journal);
