@@ -219,6 +219,19 @@ char *yaml_schema(const YamlTable *table, const char *title)
 
 /* ---- Manual ---- */
 
+/* A section's name as an anchor: without blanks. */
+static void manual_anchor(Text *text, const char *name)
+{
+    for (; *name; name++) text_add(text, "%c", *name == ' ' ? '-' : *name);
+}
+
+static void manual_link(Text *text, const char *before, const char *name)
+{
+    text_add(text, "%s[%s](#", before, name);
+    manual_anchor(text, name);
+    text_add(text, ")");
+}
+
 static void manual_kind(Text *text, const YamlField *row)
 {
     static const char *const names[] = {[FIELD_NUMBER] = "number",
@@ -242,8 +255,7 @@ static void manual_kind(Text *text, const YamlField *row)
         text_add(text, "%s", names[row->kind]);
     for (int k = 0; row->choices && row->choices[k]; k++)
         text_add(text, "%s `%s`", k ? "," : "", row->choices[k]);
-    if (row->table)
-        text_add(text, "%s[%s](#%s)", names[row->kind][0] ? " " : "", row->table->name, row->table->name);
+    if (row->table) manual_link(text, names[row->kind][0] ? " " : "", row->table->name);
     if (row->unit) text_add(text, ", %s", row->unit);
     if (row->range) text_add(text, ", in %s", row->range);
 }
@@ -272,9 +284,10 @@ char *yaml_manual(const YamlTable *table, const char *title)
         "# %s\n\nMade by `slender schema --manual` from the field tables of the program; do not edit.\n\n",
         title);
     for (int k = 0; k < tables.count; k++) {
-        text_add(&text,
-                 "%s <a name=\"%s\"></a>%s\n\n%s\n\n| key | value | default | meaning |\n|---|---|---|---|\n",
-                 "##", tables.tables[k]->name, tables.tables[k]->name, tables.tables[k]->doc);
+        text_add(&text, "## <a name=\"");
+        manual_anchor(&text, tables.tables[k]->name);
+        text_add(&text, "\"></a>%s\n\n%s\n\n", tables.tables[k]->name, tables.tables[k]->doc);
+        text_add(&text, "| key | value | default | meaning |\n|---|---|---|---|\n");
         for (const YamlField *row = tables.tables[k]->fields; row->key; row++) manual_row(&text, row);
         text_add(&text, "\n");
     }
