@@ -1,0 +1,187 @@
+/* Mesh and table files that are right. Those that are wrong are in tests/broken. */
+#include "base/memory.h"
+#include "io/mesh_file.h"
+#include "io/table.h"
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+#include <cmocka.h>
+
+static MeshFile parse(const char *format, const char *text)
+{
+    MeshFile mesh;
+    Error err;
+    if (!mesh_file_parse("test", format, text, (long)strlen(text), &mesh, &err)) fail_msg("%s", err.text);
+    return mesh;
+}
+
+/* The unit square in two faces, vertices in order. */
+static void check_square(const MeshFile *mesh)
+{
+    static const double vertices[4][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0.5}};
+    static const int faces[2][3] = {{0, 1, 2}, {0, 2, 3}};
+    assert_int_equal(mesh->vertex_count, 4);
+    assert_int_equal(mesh->face_count, 2);
+    assert_memory_equal(mesh->vertices, vertices, sizeof vertices);
+    assert_memory_equal(mesh->faces, faces, sizeof faces);
+}
+
+static void check_group(const MeshFile *mesh, const char *name, int dim, int count, const int *members)
+{
+    const MeshGroup *group = mesh_file_group(mesh, name);
+    if (!group) fail_msg("no group %s", name);
+    assert_int_equal(group->dim, dim);
+    assert_int_equal(group->count, count);
+    assert_memory_equal(group->members, members, (size_t)(count * (dim == 1 ? 2 : 1)) * sizeof(int));
+}
+
+static void test_obj(void **state)
+{
+    (void)state;
+    long blocks = mem_live_count();
+    MeshFile mesh =
+        parse("obj", "# a square\r\nmtllib x.mtl\r\nv 0 0 0\r\nv 1.0 0 0 0.5\r\nv 1 1 0\r\nv 0 1e0 .5 # "
+                     "last\r\nvn 0 0 1\r\n"
+                     "o sheet\r\ng left hub left\r\nf 1/1/1 2//1 3/2\r\ng\r\nusemtl red\r\nf -4 -2 -1\r\n"
+                     "g rim\r\nl 1 2 3\r\ng corner\r\np 4\r\n");
+    check_square(&mesh);
+    assert_int_equal(mesh.face_line[1], 13);
+    check_group(&mesh, "left", 2, 1, (int[]){0});
+    check_group(&mesh, "hub", 2, 1, (int[]){0});
+    check_group(&mesh, "sheet", 2, 2, (int[]){0, 1});
+    check_group(&mesh, "rim", 1, 2, (int[]){0, 1, 1, 2});
+    check_group(&mesh, "corner", 0, 1, (int[]){3});
+    mesh_file_clear(&mesh);
+    assert_int_equal(mem_live_count(), blocks);
+}
+
+static void test_ply(void **state)
+{
+    (void)state;
+    MeshFile mesh = parse(
+        "ply",
+        "ply\nformat ascii 1.0\ncomment of a square\nelement vertex 4\nproperty float z\nproperty float x\n"
+        "property uchar red\nproperty double y\nelement face 2\nproperty float quality\n"
+        "property list uchar int vertex_index\nelement edge 1\nproperty int a\nend_header\n"
+        "0 0 255 0\n0 1 255 0\n0 1 255 1\n0.5 0 255 1\n0.1 3 0 1 2\n0.2 3 0 2 3\n7\n");
+    check_square(&mesh);
+    mesh_file_clear(&mesh);
+}
+
+static void test_msh22(void **state)
+{
+    (void)state;
+    MeshFile mesh =
+        parse("msh",
+              "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n3\n0 7 \"corner\"\n1 2 \"my rim\"\n2 9 "
+              "\"hub\"\n"
+              "$EndPhysicalNames\n$Comments\nanything\n$EndComments\n$Nodes\n4\n10 0 0 0\n20 1 0 0\n5 1 1 0\n"
+              "40 0 1 0.5\n$EndNodes\n$Elements\n4\n1 15 2 7 1 40\n2 1 2 2 1 10 20\n3 2 2 9 1 10 20 5\n"
+              "4 2 2 3 1 10 5 40\n$EndElements\n");
+    check_square(&mesh);
+    check_group(&mesh, "corner", 0, 1, (int[]){3});
+    check_group(&mesh, "my rim", 1, 1, (int[]){0, 1});
+    check_group(&mesh, "hub", 2, 1, (int[]){0});
+    check_group(&mesh, "physical_3", 2, 1, (int[]){1});
+    mesh_file_clear(&mesh);
+}
+
+static void test_msh41(void **state)
+{
+    (void)state;
+    MeshFile mesh = parse(
+        "msh", "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n1 2 \"rim\"\n2 9 "
+               "\"hub\"\n$EndPhysicalNames\n"
+               "$Entities\n1 1 2 0\n1 0 0 0 0\n3 0 0 0 1 0 0 1 2 2 1 -1\n5 0 0 0 1 1 0 1 9 1 3\n6 0 0 0 1 1 "
+               "0 0 1 3\n"
+               "$EndEntities\n$Nodes\n2 4 1 9\n2 5 0 3\n1\n2\n9\n0 0 0\n1 0 0\n1 1 0\n2 6 0 1\n4\n0 1 "
+               "0.5\n$EndNodes\n"
+               "$Elements\n3 3 1 3\n1 3 1 1\n1 1 2\n2 5 2 1\n2 1 2 9\n2 6 2 1\n3 1 9 4\n$EndElements\n");
+    check_square(&mesh);
+    check_group(&mesh, "rim", 1, 1, (int[]){0, 1});
+    check_group(&mesh, "hub", 2, 1, (int[]){0});
+    mesh_file_clear(&mesh);
+}
+
+/* Every bit, and the groups. */
+static void test_write(void **state)
+{
+    (void)state;
+    Error err;
+    MeshFile again,
+        mesh = parse(
+            "obj",
+            "v 0.1 -0 1e-300\nv 1.0000000000000002 0 0\nv 0 3 0\nv 1 1 1\ng a\nf 1 2 3\ng a b\nf 2 4 3\n"
+            "g rim\nl 1 2\ng tip\np 3\n");
+    assert_true(mesh_file_write_obj("test_write.obj", &mesh, &err));
+    if (!mesh_file_read("test_write.obj", &again, &err)) fail_msg("%s", err.text);
+    assert_memory_equal(mesh.vertices, again.vertices, 4 * sizeof *mesh.vertices);
+    assert_memory_equal(mesh.faces, again.faces, 2 * sizeof *mesh.faces);
+    check_group(&again, "a", 2, 2, (int[]){0, 1});
+    check_group(&again, "b", 2, 1, (int[]){1});
+    check_group(&again, "rim", 1, 1, (int[]){0, 1});
+    check_group(&again, "tip", 0, 1, (int[]){2});
+    mesh_file_clear(&mesh);
+    mesh_file_clear(&again);
+    unlink("test_write.obj");
+}
+
+static bool read_table(const char *text, int columns, Table *table, Error *err)
+{
+    FILE *file = fopen("test_table.csv", "w");
+    fputs(text, file);
+    fclose(file);
+    bool ok = table_read("test_table.csv", columns, table, err);
+    unlink("test_table.csv");
+    return ok;
+}
+
+static void test_table(void **state)
+{
+    (void)state;
+    long blocks = mem_live_count();
+    Error err;
+    Table table;
+    assert_true(read_table("x, y; z\n# comment\n1,2,3\r\n\n 4 ; 5e-1 ;-6 # end\n7\t8\t9", 0, &table, &err));
+    assert_true(table.rows == 3 && table.columns == 3 && table.line[1] == 5);
+    assert_memory_equal(table.values, ((double[]){1, 2, 3, 4, 0.5, -6, 7, 8, 9}), 9 * sizeof(double));
+    table_clear(&table);
+    static const struct {
+        const char *text;
+        int columns;
+        const char *sentence;
+    } broken[] = {
+        {"1, 2\n3\n", 0, "test_table.csv:2: 1 number in this row, and 2 are needed"},
+        {"1, 2\n", 3, "test_table.csv:1: 2 numbers in this row, and 3 are needed"},
+        {"1\ntwo\n", 1, "test_table.csv:2: 'two' is no finite number"},
+        {"nan\n", 1, "test_table.csv:1: 'nan' is no finite number"},
+        {"1\n-inf\n", 1, "test_table.csv:2: '-inf' is no finite number"},
+        {"1\n1e999\n", 1, "test_table.csv:2: '1e999' is no finite number"},
+        {"1\n0x10\n", 1, "test_table.csv:2: '0x10' is no finite number"},
+        {"# nothing\n", 1, "test_table.csv: there are no numbers in it"},
+        {"header only\n", 1, "test_table.csv: there are no numbers in it"},
+    };
+    for (size_t k = 0; k < sizeof broken / sizeof *broken; k++) {
+        assert_false(read_table(broken[k].text, broken[k].columns, &table, &err));
+        assert_string_equal(err.text, broken[k].sentence);
+    }
+    double values[4] = {1.0 / 3, -5e-324, 1e308, 0.1};
+    assert_true(table_write("test_table.csv", "# bits", values, 2, 2, &err) &&
+                table_read("test_table.csv", 2, &table, &err));
+    assert_memory_equal(table.values, values, sizeof values);
+    table_clear(&table);
+    unlink("test_table.csv");
+    assert_int_equal(mem_live_count(), blocks);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_obj),   cmocka_unit_test(test_ply),
+                                       cmocka_unit_test(test_msh22), cmocka_unit_test(test_msh41),
+                                       cmocka_unit_test(test_write), cmocka_unit_test(test_table)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,186 @@
+/* What the entries of a scene become: values, loads, motion, fields, unknowns. */
+#include "base/memory.h"
+#include "cli/model.h"
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+#include <cmocka.h>
+
+typedef struct Built {
+    YamlFile *file;
+    Scene scene;
+    Model *model;
+} Built;
+
+/* A scene of a 4 x 2 sheet, 40 x 20 mm, with these lines below. */
+static Built build(const char *job, const char *shell, const char *lines)
+{
+    Built b;
+    char *text = mem_format(
+        "slender: 1\njob: %s\nshell:\n  mesh: {shape: sheet, size: [40 mm, 20 mm], cells: [4, 2]}\n"
+        "  thickness: 1 mm\n  poisson: 0.3\n%s%s",
+        job, shell, lines);
+    b.file = yaml_parse("test.yaml", text, strlen(text));
+    b.model = yaml_load(b.file, &scene_table, &b.scene) ? model_create(&b.scene, b.file) : NULL;
+    if (!b.model) fail_msg("%s", yaml_report(b.file));
+    mem_free(text);
+    return b;
+}
+
+static void clear(Built *b)
+{
+    model_destroy(b->model);
+    yaml_clear(&scene_table, &b->scene);
+    yaml_destroy(b->file);
+}
+
+static const double *params_of(const Built *b, int load_case, int stage)
+{
+    return b->model->cases[load_case].stages[stage].p;
+}
+
+static void sum_loads(const Built *b, const double *p, double *sum)
+{
+    memset(sum, 0, 3 * sizeof *sum);
+    for (int i = 0; i < 3 * b->model->shell->mesh->vertex_count; i++)
+        sum[i % 3] += p[b->model->shell->load + i];
+}
+
+static void test_values(void **state)
+{
+    (void)state;
+    long blocks = mem_live_count();
+    Built b = build("equilibrium",
+                    "  young: \"1e6*(1 + step(x - 0.02))\"\n  magnetization: {formula: [\"a\", \"0\", "
+                    "\"x\"], where: {a: \"2*y\"}}\n",
+                    "fix: [{group: root, clamp: true}, {vertices: [9], axes: z}]\n");
+    const Shell *shell = b.model->shell;
+    const Mesh *mesh = shell->mesh;
+    const double *p = params_of(&b, 0, 0);
+    for (int f = 0; f < mesh->face_count; f++) {
+        double x = 0, y = 0;
+        for (int i = 0; i < 3; i++)
+            x += mesh->rest[mesh->faces[f][i]][0] / 3, y += mesh->rest[mesh->faces[f][i]][1] / 3;
+        assert_true(p[shell->young + f] == (x > 0.02 ? 2e6 : 1e6));
+        assert_true(fabs(p[shell->magnetization + 3 * f] - 2 * y) < 1e-15 &&
+                    fabs(p[shell->magnetization + 3 * f + 2] - x) < 1e-15);
+    }
+    int fixed = 0, clamped = 0;
+    for (int i = 0; i < 3 * mesh->vertex_count; i++) fixed += shell->fixed[i];
+    for (int e = 0; e < mesh->edge_count; e++) clamped += shell->clamped[e];
+    assert_int_equal(fixed, 3 * 3 + 1);
+    assert_int_equal(clamped, 2);
+    clear(&b);
+    assert_int_equal(mem_live_count(), blocks);
+}
+
+/* N in all, N/m along the boundary, N/m^2 of rest area. */
+static void test_loads(void **state)
+{
+    (void)state;
+    double sum[3];
+    Built b = build("equilibrium", "  young: 1 MPa\n",
+                    "fix: [{group: root}]\n"
+                    "sequence:\n"
+                    "  - {loads: [{force: [1, 2, 3], on: tip}]}\n"
+                    "  - {loads: [{line: [0, 0, 5 N/m], on: {box: [[0.0399, -1, -1], [1, 1, 1]]}}]}\n"
+                    "  - {loads: [{area: [0, 0, 100]}, {force: [1, 0, 0]}], gravity: [0, -10, 0]}\n"
+                    "  - {time: 2 s}\n");
+    sum_loads(&b, params_of(&b, 0, 0), sum);
+    assert_true(fabs(sum[0] - 1) < 1e-14 && fabs(sum[2] - 3) < 1e-14);
+    sum_loads(&b, params_of(&b, 0, 1), sum);
+    assert_true(sum[0] == 0 && fabs(sum[2] - 5 * 0.02) < 1e-14);
+    sum_loads(&b, params_of(&b, 0, 3), sum); /* what a stage does not say stays */
+    assert_true(fabs(sum[0] - 1) < 1e-14 && fabs(sum[2] - 100 * 0.04 * 0.02) < 1e-14);
+    assert_true(params_of(&b, 0, 3)[b.model->shell->gravity + 1] == -10 &&
+                params_of(&b, 0, 1)[b.model->shell->gravity + 1] == 0);
+    assert_true(b.model->cases[0].stages[3].time == 2);
+    clear(&b);
+}
+
+static void test_motion(void **state)
+{
+    (void)state;
+    Error err;
+    Built b = build("equilibrium", "  young: 1 MPa\n",
+                    "fix: [{group: root}, {group: tip, axes: xz, move: [\"x - 0.001*t\", \"y + 9\", \"z + "
+                    "0.004*t\"]}]\n");
+    const Indices *tip = &b.model->motions[0].vertices;
+    double *x = mem_copy(b.model->x, (size_t)shell_dof_count(b.model->shell), sizeof *x);
+    int v = tip->items[0];
+    double y = x[3 * v + 1];
+    assert_true(model_move(b.model, 2, 0.5, x, &err));
+    assert_true(fabs(x[3 * v] - 0.039) < 1e-15 && fabs(x[3 * v + 2] - 0.004) < 1e-15 && x[3 * v + 1] == y);
+    assert_true(model_move(b.model, 2, 1, x, &err));
+    assert_true(fabs(x[3 * v] - 0.038) < 1e-15 && fabs(x[3 * v + 2] - 0.008) < 1e-15);
+    mem_free(x);
+    clear(&b);
+}
+
+/* Uniform fields go into flux_density; each varying one is switched on in its case only. */
+static void test_fields(void **state)
+{
+    (void)state;
+    Built b = build(
+        "design", "  young: 1 MPa\n",
+        "fix: [{group: root}]\ntime: 0.25 s\nflux_density: [\"0\", \"0\", \"0.02*sin(2*pi*t)\"]\ntarget: "
+        "[\"x\", \"y\", \"z\"]\n"
+        "cases:\n  - {name: uniform}\n  - {flux_density: {dipole: {at: [0, 0, 1], moment: [0, 0, 2]}}}\n"
+        "  - {flux_density: {magnet: {at: [0, 0, 1], remanence: [0, 0, 1.2], volume: 1e-6}}}\n"
+        "design: {unknowns: {flux_density: {noise: 1 mT}}, objectives: [{target: 1}]}\n");
+    const Shell *shell = b.model->shell;
+    assert_int_equal(shell->field_count, 2);
+    assert_true(fabs(params_of(&b, 0, 0)[shell->flux_density + 2] - 0.02) < 1.01e-3);
+    for (int c = 0; c < 3; c++)
+        for (int k = 0; k < 2; k++) assert_true(params_of(&b, c, 0)[shell->field_scale + k] == (c == k + 1));
+    assert_string_equal(b.model->cases[1].name, "case2");
+    assert_int_equal(b.model->design.size, 9); /* three numbers for each case */
+    clear(&b);
+}
+
+static void test_unknowns(void **state)
+{
+    (void)state;
+    const char *lines =
+        "fix: [{ball: {center: [0, 0, 0], radius: 5 mm}}]\ntarget: [\"x\", \"y\", \"z\"]\n"
+        "design:\n  unknowns:\n    magnetization: {noise: 10, start: [0, 0, 5e3], max_magnitude: 1e4}\n"
+        "    young: {per: group, bounds: [1e4, 1e7], start: {groups: {hub: 2e5}, other: 1e5}}\n"
+        "    fold: {scale: linear, start: 2}\n  objectives: [{target: 1}, {height: 1, of: all}, "
+        "{magnetization_smoothness: 1}]\n";
+    char *text = mem_format("slender: 1\njob: design\nshell: {mesh: {shape: hexagram, size: 40 mm, n: 2}, "
+                            "thickness: 1 mm, young: 1 MPa, poisson: 0.3}\n%s",
+                            lines);
+    Built b;
+    b.file = yaml_parse("test.yaml", text, strlen(text));
+    b.model = yaml_load(b.file, &scene_table, &b.scene) ? model_create(&b.scene, b.file) : NULL;
+    if (!b.model) fail_msg("%s", yaml_report(b.file));
+    const Shell *shell = b.model->shell;
+    const double *p = params_of(&b, 0, 0);
+    const MeshGroup *hub = mesh_group(shell->mesh, "hub");
+    assert_true(p[shell->young + hub->members[0]] == 2e5 && p[shell->fold] == 2);
+    assert_true(fabs(p[shell->magnetization + 2] - 5e3) <= 10 && p[shell->magnetization + 2] != 5e3);
+    assert_int_equal(b.model->design.size, 3 * shell->mesh->face_count + 7 + shell->mesh->edge_count);
+    assert_int_equal(b.model->cases[0].objective_count, 3);
+    /* p -> u -> p */
+    double *u = mem_alloc((size_t)b.model->design.size, sizeof *u),
+           *back = mem_copy(p, (size_t)shell->params.size, sizeof *back);
+    design_read(&b.model->design, 0, p, u);
+    design_apply(&b.model->design, 0, u, back);
+    for (int i = 0; i < shell->params.size; i++) assert_true(fabs(back[i] - p[i]) <= 1e-12 * fabs(p[i]));
+    mem_free(u);
+    mem_free(back);
+    mem_free(text);
+    clear(&b);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_values), cmocka_unit_test(test_loads),
+                                       cmocka_unit_test(test_motion), cmocka_unit_test(test_fields),
+                                       cmocka_unit_test(test_unknowns)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
