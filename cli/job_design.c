@@ -306,6 +306,7 @@ static RunStatus optimise_design(DesignJob *job)
     OptimiserDef def = optimiser_default();
     def.method = methods[scene->optimizer];
     def.evaluations = scene->iterations + 1;
+    if (def.evaluations < job->recorded) def.evaluations = job->recorded; /* what has been done stays done */
     def.gradient_tol = scene->tolerance;
     Problem problem = {.n = job->design->size,
                        .lower = job->lower,

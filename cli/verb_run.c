@@ -150,6 +150,12 @@ static int do_job(Run *run, const RunOptions *options, const char *result)
 static int run_model(const RunOptions *options, const Scene *scene, Model *model)
 {
     Error err;
+    size_t length = options->output ? strlen(options->output) : 1;
+    if (options->output && (length == 0 || options->output[length - 1] == '/')) {
+        error_set(&err, "the output '%s' is a folder; give a name in it, e.g. -o %sresult", options->output,
+                  options->output);
+        return verb_fail(RUN_CANNOT_WRITE, err.text);
+    }
     Progress progress = progress_start(options->mode);
     char *name =
         options->output ? verb_without_ending(options->output, ".vtkhdf") : verb_base_name(options->scene);

@@ -58,19 +58,23 @@ for term in membrane bending gravity load; do
     awk -v a="$(cat a.txt)" -v b="$(cat b.txt)" 'BEGIN { exit !(a != "" && (a - b)^2 <= 1e-12 * a * a) }' || { echo "energy of $term: $(cat a.txt b.txt)"; bad=1; }
 done
 
-# A run that lives keeps others away; one that was stopped is not overwritten.
-"$program" run "$here/scene_small.yaml" --quiet --no-picture -o live & pid=$!
-sleep 0.3
+# A run that lives keeps others away; one that was stopped is not overwritten, and goes on with --resume.
+long="$here/scene_small.yaml --set design.iterations=100000 --set design.tolerance=0 --set design.optimizer=mma"
+# shellcheck disable=SC2086
+"$program" run $long --quiet --no-picture -o live & pid=$!
+until "$program" info live.run 2> err.txt | grep -q objective; do sleep 0.1; kill -0 $pid || break; done
 expect 4 "$program" run "$here/scene_small.yaml" --quiet -o live --force; says "another run is writing"
-sleep 0.5
 kill -INT $pid; wait $pid; code=$?
-if [ $code = 75 ]; then
-    expect 4 "$program" run "$here/scene_small.yaml" --quiet -o live; says "unfinished run"
-    expect 3 "$program" run "$here/scene_small.yaml" --quiet -o live --resume --set shell.young=2e5; says "shell.young"
-    expect 0 "$program" run "$here/scene_small.yaml" --quiet --no-picture -o live --resume
-elif [ $code != 0 ]; then
-    echo "Ctrl-C ends with $code"; bad=1
-fi
+[ $code = 75 ] || { echo "Ctrl-C ends with $code"; bad=1; }
+expect 0 "$program" info live.vtkhdf;           says "state/x"
+expect 4 "$program" run "$here/scene_small.yaml" --quiet -o live; says "unfinished run"
+# shellcheck disable=SC2086
+expect 3 "$program" run $long --quiet -o live --resume --set shell.young=2e5; says "shell.young"
+# shellcheck disable=SC2086
+expect 0 "$program" run $long --quiet --no-picture -o live --resume --set design.iterations=1
+expect 4 "$program" run "$scene" -o out/;       says "is a folder"
+expect 3 "$program" run out;                    says "Is a directory"
+
 # A finished design goes on when it is given more iterations.
 expect 0 "$program" run "$here/scene_small.yaml" --quiet --no-picture -o more --set design.iterations=4
 expect 0 "$program" run "$here/scene_small.yaml" --quiet --no-picture -o more --resume --set design.iterations=8
