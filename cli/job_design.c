@@ -178,7 +178,7 @@ static bool put_improvement(DesignJob *job)
     int every = job->run->scene->output.every, index = job->improvements - 1;
     if (every == 0 || index % every) return true;
     State state = best_state(job, job->run->model->case_count - 1);
-    return run_put_frame(job->run, index / every, &state, true, job->err);
+    return run_put_frame(job->run, index / every, index / every, &state, true, job->err);
 }
 
 static void show(const DesignJob *job)
@@ -269,9 +269,7 @@ static bool put_results(DesignJob *job, const char *status)
     bool ok = true;
     for (int c = 0; ok && c < cases; c++) {
         states[c] = best_state(job, c);
-        states[c].time = frame + c;
-        ok = run_put_frame(job->run, frame + c, &states[c], c == 0, job->err);
-        states[c].time = job->run->model->cases[c].stages[0].time;
+        ok = run_put_frame(job->run, frame + c, frame + c, &states[c], true, job->err);
     }
     ok = ok && put_gradients(job) && run_put_final(job->run, states, cases, status, job->err);
     mem_free(states);

@@ -31,6 +31,14 @@ static RampInfo solve_stage(Run *run, const ModelCase *c, int stage, double *x)
                       c->stages[stage].time, x);
 }
 
+/* Frames are shown at the times of their stages, if those go on; else they are numbered. */
+static double shown_time(const ModelCase *c, const State *state, int frame)
+{
+    bool goes_on = c->stage_count > 1;
+    for (int s = 1; s < c->stage_count; s++) goes_on = goes_on && c->stages[s].time > c->stages[s - 1].time;
+    return goes_on ? state->time : frame;
+}
+
 /* What a resumed run needs: x and what the terms remember after each stage. */
 static bool put_progress(Run *run, int frame, const State *state, double *memory, Error *err)
 {
@@ -39,7 +47,7 @@ static bool put_progress(Run *run, int frame, const State *state, double *memory
     system_memory_read(sys, memory);
     return run_put_state(run, frame, "x", state->x, (size_t)system_dof_count(sys), err) &&
            run_put_state(run, frame, "memory", memory, (size_t)system_memory_count(sys), err) &&
-           run_put_frame(run, frame, state, frame == 0, err) &&
+           run_put_frame(run, frame, shown_time(state->load_case, state, frame), state, frame == 0, err) &&
            run_put_state(run, frame, "status", &status, 1, err);
 }
 

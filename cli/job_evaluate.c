@@ -45,7 +45,7 @@ RunStatus job_evaluate(Run *run, Error *err)
         NewtonStatus relaxed = relax_angles(run, c);
         if (relaxed > worst) worst = relaxed;
         states[k] = (State){c, c->stages[0].p, c->x, c->stages[0].time, stability(c)};
-        ok = run_put_frame(run, k, &states[k], k == 0, err);
+        ok = run_put_frame(run, k, k, &states[k], k == 0, err);
         progress_step(run->progress, k + 1, model->case_count, "%s: %s", c->name,
                       states[k].status == NEWTON_CONVERGED ? "stable" : "unstable");
     }

@@ -76,14 +76,14 @@ static Point state_point(const State *state)
     return (Point){.x = state->x, .p = state->p, .time = state->time};
 }
 
-bool run_put_frame(Run *run, int index, const State *state, bool whole, Error *err)
+bool run_put_frame(Run *run, int index, double shown, const State *state, bool whole, Error *err)
 {
     const Shell *shell = run->model->shell;
     System *sys = state->load_case->sys;
     Point at = state_point(state);
     List list = {0};
     add(&list, array_float("x", "m", state->x, 2, shell->mesh->vertex_count, 3));
-    add(&list, array_float("time", "s", &state->time, 0, 0, 0));
+    add(&list, array_float("time", "s", &shown, 0, 0, 0));
     for (int t = 0; t < system_term_count(sys); t++) {
         const Term *term = system_term(sys, t);
         int count = term->ops->count(term->self);

@@ -36,12 +36,13 @@ NewtonDef run_newton(const Run *run);
 typedef struct State {
     const ModelCase *load_case;
     const double *p, *x;
-    double time;
+    double time; /* s, of fields that vary */
     NewtonStatus status;
 } State;
 
-/* A frame of the result. Values per face that are those of the frame before are left out unless `whole`. */
-bool run_put_frame(Run *run, int index, const State *state, bool whole, Error *err);
+/* A frame of the result, shown at a time of its own: viewers want each frame's time to be later than that of
+ * the one before. Parameters per face, which seldom change, are left out unless `whole`. */
+bool run_put_frame(Run *run, int index, double shown, const State *state, bool whole, Error *err);
 
 /* final/.. and cases/<name>/..; the plain paths are those of the last state. */
 bool run_put_final(Run *run, const State *states, int count, const char *status, Error *err);
