@@ -264,7 +264,8 @@ static bool put_gradients(DesignJob *job)
 /* One frame for each case of the final design, after those of the improvements. */
 static bool put_results(DesignJob *job, const char *status)
 {
-    int cases = job->run->model->case_count, frame = journal_last_index(job->run->journal, "frame") + 1;
+    int cases = job->run->model->case_count, every = job->run->scene->output.every;
+    int frame = every ? (job->improvements + every - 1) / every : 0; /* a resumed run has at least as many */
     State *states = mem_alloc((size_t)cases, sizeof *states);
     bool ok = true;
     for (int c = 0; ok && c < cases; c++) {

@@ -81,4 +81,7 @@ expect 0 "$program" run "$here/scene_small.yaml" --quiet --no-picture -o more --
 expect 0 "$program" run "$here/scene_small.yaml" --quiet --no-picture -o once --set design.iterations=8
 "$program" export more.vtkhdf -o a.csv --dataset design/magnetization; "$program" export once.vtkhdf -o b.csv --dataset design/magnetization
 cmp -s a.csv b.csv || { echo "an extended design ends elsewhere"; bad=1; }
+expect 0 "$program" run "$here/scene_small.yaml" --quiet --no-picture -o more --resume --set design.iterations=8
+"$program" info more.vtkhdf | head -1 | sed 's/more//' > a.txt; "$program" info once.vtkhdf | head -1 | sed 's/once//' > b.txt
+cmp -s a.txt b.txt || { echo "an extended design has other frames"; cat a.txt b.txt; bad=1; }
 exit $bad
