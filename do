@@ -6,7 +6,9 @@
 #   ./do test [NAME]      build, then run all tests (or those whose name matches)
 #   ./do bench [NAME ..]  build, then measure (bench/README.md)
 set -eu
+here=$(pwd) # scenes and results are where the user is
 cd "$(dirname "$0")"
+root=$(pwd)
 
 packages="gcc cmake make pkg-config libsuitesparse-dev libopenblas-dev libnlopt-dev libmuparser-dev libcairo2-dev
           libyaml-dev libsqlite3-dev libhdf5-dev zlib1g-dev fonts-dejavu-core libcmocka-dev"
@@ -49,7 +51,8 @@ setup) setup ;;
 build) build ;;
 run)
     build quiet
-    exec build/slender run "$@"
+    cd "$here"
+    exec "$root/build/slender" run "$@"
     ;;
 bench)
     build > /dev/null
