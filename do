@@ -13,24 +13,24 @@ root=$(pwd)
 packages="gcc cmake make pkg-config libsuitesparse-dev libopenblas-dev libnlopt-dev libmuparser-dev libcairo2-dev
           libyaml-dev libsqlite3-dev libhdf5-dev zlib1g-dev fonts-dejavu-core libcmocka-dev"
 
+# Runs a command without a word, unless it fails.
+quietly() {
+    "$@" > build.log 2>&1 || { cat build.log; exit 1; }
+    rm -f build.log
+}
+
 setup() {
     missing=""
     for package in $packages; do
         dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing="$missing $package"
     done
     [ -n "$missing" ] || return 0
-    echo "slender needs:$missing"
-    root=""
-    [ "$(id -u)" = 0 ] || root=sudo
-    $root apt-get update -qq
+    echo "slender needs, and installs:$missing"
+    sudo=""
+    [ "$(id -u)" = 0 ] || sudo=sudo
+    quietly $sudo apt-get update
     # shellcheck disable=SC2086
-    $root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $missing
-}
-
-# Runs a command without a word, unless it fails.
-quietly() {
-    "$@" > build.log 2>&1 || { cat build.log; exit 1; }
-    rm -f build.log
+    quietly $sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends $missing
 }
 
 build() {
