@@ -48,6 +48,8 @@ expect 0 "$program" schema;                     says "json-schema.org"
 expect 0 "$program" schema --manual;            says "| .thickness. |"
 "$program" schema --manual | cmp -s - "$here/../docs/scene.md" || { echo "docs/scene.md is not what slender schema --manual says"; bad=1; }
 
+"$program" schema | cmp -s - "$here/../docs/scene.schema.json" || { echo "docs/scene.schema.json is not what slender schema says"; bad=1; }
+
 # The mesh as a file, the pose evaluated: the energies are those of the equilibrium.
 expect 0 "$program" mesh "$scene" -o rest.obj;  exists rest.obj
 sed "s/^job: .*/job: evaluate/; s/{shape: strip.*}/rest.obj/; s/^  thickness/  pose: beam.obj\n  thickness/; s/{group: root, clamp: true}/{box: [[-1, -1, -1], [1e-9, 1, 1]], clamp: true}/" "$scene" > evaluate.yaml
