@@ -111,7 +111,7 @@ void bench_newton(void)
         NewtonDef def = newton_default();
         char name[80];
         double start = clock_seconds();
-        NewtonInfo info = newton_minimize(s.sys, &def, s.p, 0, s.x, NULL);
+        NewtonInfo info = newton_minimize(s.sys, &def, &(Point){.p = s.p}, s.x, NULL);
         double seconds = clock_seconds() - start;
         SparseInfo sparse = system_info(s.sys);
         if (info.status != NEWTON_CONVERGED) abort();

@@ -18,7 +18,8 @@ static NewtonStatus relax_angles(Run *run, ModelCase *c)
     NewtonDef def = run_newton(run);
     Point at = {.x = c->x, .p = c->stages[0].p, .time = c->stages[0].time};
     system_accept(held, &at);
-    if (system_free_count(held)) status = newton_minimize(held, &def, at.p, at.time, c->x, NULL).status;
+    if (system_free_count(held))
+        status = newton_minimize(held, &def, &(Point){.p = at.p, .time = at.time}, c->x, NULL).status;
     system_destroy(held);
     system_accept(c->sys, &at);
     return status;

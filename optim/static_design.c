@@ -152,7 +152,8 @@ static CaseInfo evaluate_case(StaticDesign *sd, int c, const double *u, bool wit
     predict(sd, c);
     system_memory_write(load->sys, work->best_memory);
     work->factored_best = false;
-    info.newton = newton_minimize(load->sys, &sd->def.newton, work->p, load->time, work->x, observer);
+    info.newton = newton_minimize(load->sys, &sd->def.newton, &(Point){.p = work->p, .time = load->time},
+                                  work->x, observer);
     system_memory_read(load->sys, work->memory);
     Point at = point(load, work->x, work->p);
     if (info.newton.status == NEWTON_CONVERGED)

@@ -251,14 +251,14 @@ static NewtonStatus iterate(Search *s)
     return s->shift_kept > STALL_SHIFT ? NEWTON_STALLED : status;
 }
 
-NewtonInfo newton_minimize(System *sys, const NewtonDef *def, const double *p, double time, double *x,
-                           const NewtonObserver *observer)
+NewtonInfo newton_minimize(System *sys, const NewtonDef *def, const Point *at, double *x, const NewtonObserver *observer)
 {
     int n = system_dof_count(sys);
     double *work = mem_alloc(6 * (size_t)n, sizeof *work);
-    Search s = {.sys = sys, .def = def, .n = n, .at = {.x = x, .p = p, .time = time}, .x = x, .gradient = work,
+    Search s = {.sys = sys, .def = def, .n = n, .at = *at, .x = x, .gradient = work,
                 .step = work + n, .trial = work + 2 * n, .trial_gradient = work + 3 * n, .mode = work + 4 * n,
                 .product = work + 5 * n};
+    s.at.x = x;
     s.info.status = NEWTON_MAX_ITERATIONS;
     while (s.info.iterations < def->max_iterations && s.info.status == NEWTON_MAX_ITERATIONS) {
         s.info.iterations++;

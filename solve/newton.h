@@ -44,11 +44,11 @@ typedef struct NewtonObserver {
     void *self;
 } NewtonObserver;
 
-/* Starts from x and leaves the final iterate there; observer may be NULL. After NEWTON_CONVERGED the system holds the
- * factor of the (base-shifted) Hessian at the point from which the last, negligible step was taken, ready for an
- * adjoint. p and time are those of all evaluations. */
-NewtonInfo newton_minimize(System *sys, const NewtonDef *def, const double *p, double time, double *x,
-                           const NewtonObserver *observer);
+/* Starts from x and leaves the final iterate there; observer may be NULL. `at` gives p and time and, in a step of time,
+ * x_prev, v_prev and dt; its x is not looked at. After NEWTON_CONVERGED the system holds the factor of the
+ * (base-shifted) Hessian at the point from which the last, negligible step was taken (system_linearised), ready for an
+ * adjoint. */
+NewtonInfo newton_minimize(System *sys, const NewtonDef *def, const Point *at, double *x, const NewtonObserver *observer);
 
 /* One word: "converged", "saddle", ... and a sentence for the user. */
 const char *newton_status_name(NewtonStatus status);

@@ -51,7 +51,7 @@ RampInfo ramp_solve(System *sys, const Params *params, const RampDef *def, const
         interpolate(params, from, to, part, p);
         NewtonInfo newton = {.status = NEWTON_NOT_FINITE};
         if (!def->move || def->move(def->self, (part - info.reached) / (1 - info.reached), x))
-            newton = newton_minimize(sys, &def->newton, p, time, x, observer);
+            newton = newton_minimize(sys, &def->newton, &(Point){.p = p, .time = time}, x, observer);
         add_counts(&info.newton, &newton);
         if (reached(newton.status)) {
             info.reached = part;

@@ -20,6 +20,8 @@ typedef struct Point {
     const double *x; /* positions and other dofs                     */
     const double *p; /* all model parameters (params.h)              */
     double time;     /* s; fields may depend on it                   */
+    const double *x_prev, *v_prev; /* start of the step of time, whole vectors; NULL in statics */
+    double dt;                     /* s; 0 in statics                                           */
 } Point;
 
 typedef struct TermOps {
@@ -41,6 +43,13 @@ typedef struct TermOps {
 
     /* r = d2E/dx dp . dp, r[size]: the tangent of param. */
     void (*param_forward)(const void *self, int pack, const Point *at, const Pack *x, const double *dp, Pack *r);
+
+    /* dx, dv = w^T d2E/dx d(x_prev, v_prev), on the elements' own dofs, [size] each. NULL where the energy does not
+     * depend on the start of the step. */
+    void (*prev)(const void *self, int pack, const Point *at, const Pack *x, const Pack *w, Pack *dx, Pack *dv);
+
+    /* r = d2E/dx d(x_prev, v_prev) . (dx, dv): the tangent of prev. */
+    void (*prev_forward)(const void *self, int pack, const Point *at, const Pack *x, const Pack *dx, const Pack *dv, Pack *r);
 
     /* After an accepted step: remembers what must be (the turns of a fold angle). NULL if nothing. */
     void (*accept)(void *self, const Point *at);

@@ -109,7 +109,7 @@ static void test_elastica(void **state)
     for (int pattern = PATTERN_RIGHT; pattern <= UNSTRUCTURED; pattern++) {
         Strip s = make_problem((ShapePattern)pattern, 32, 4, (double[]){0, 0, 1});
         NewtonDef def = newton_default();
-        NewtonInfo info = newton_minimize(s.sys, &def, s.p, 0, s.x, NULL);
+        NewtonInfo info = newton_minimize(s.sys, &def, &(Point){.p = s.p}, s.x, NULL);
         assert_int_equal(info.status, NEWTON_CONVERGED);
         double along, up;
         mean_tip(&s, &along, &up);
@@ -127,7 +127,7 @@ static void compress(Strip *s)
     for (int v = 0; v < shell->mesh->vertex_count; v++) shell_fix(shell, v, 2);
     System *planar = shell_system(shell);
     NewtonDef def = newton_default();
-    assert_int_equal(newton_minimize(planar, &def, s->p, 0, s->x, NULL).status, NEWTON_CONVERGED);
+    assert_int_equal(newton_minimize(planar, &def, &(Point){.p = s->p}, s->x, NULL).status, NEWTON_CONVERGED);
     system_destroy(planar);
 }
 
@@ -148,7 +148,7 @@ static void test_buckling(void **state)
         assert_true(above ? lowest[0] < 0 : lowest[0] > 0);
         assert_true(lowest[0] < lowest[1] && lowest[1] < lowest[2]);
         NewtonDef def = newton_default();
-        NewtonInfo info = newton_minimize(s.sys, &def, s.p, 0, s.x, NULL);
+        NewtonInfo info = newton_minimize(s.sys, &def, &(Point){.p = s.p}, s.x, NULL);
         assert_int_equal(info.status, NEWTON_CONVERGED);
         mean_tip(&s, &along, &up);
         print_message("q = %.4f: tip height %.2e L, %d iterations\n", q, up, info.iterations);

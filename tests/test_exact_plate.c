@@ -110,7 +110,7 @@ static double bent_energy(ShapePattern pattern, int n, double k1, double k2)
         b.x[3 * v + 2] = (k1 * x * x + k2 * y * y) / 2;
     }
     NewtonDef def = newton_default();
-    assert_int_equal(newton_minimize(b.sys, &def, b.p, 0, b.x, NULL).status, NEWTON_CONVERGED);
+    assert_int_equal(newton_minimize(b.sys, &def, &(Point){.p = b.p}, b.x, NULL).status, NEWTON_CONVERGED);
     double sum = 0, *energy = mem_alloc((size_t)shell->mesh->face_count, sizeof *energy);
     Point at = {.x = b.x, .p = b.p};
     assert_int_equal(system_term(b.sys, 1)->ops->count(system_term(b.sys, 1)->self), shell->mesh->face_count);
@@ -282,7 +282,8 @@ static void test_sze_cantilever(void **state)
     for (int step = 0; step < 4; step++) {
         for (int i = 0; i < 3 * shell->mesh->vertex_count; i++) b.p[shell->load + i] = 0;
         load_edge(&b, end, ACROSS + 1, step + 1);
-        assert_int_equal(newton_minimize(b.sys, &def, b.p, 0, b.x, NULL).status, NEWTON_CONVERGED);
+        assert_int_equal(newton_minimize(b.sys, &def, &(Point){.p = b.p}, b.x, NULL).status,
+                         NEWTON_CONVERGED);
         int tip = end[ACROSS / 2];
         double U = 10 - b.x[3 * tip], W = b.x[3 * tip + 2];
         print_message("cantilever at %.2f: U %.4f (%+.2f %%), W %.4f (%+.2f %%)\n", 0.25 * (step + 1), U,
@@ -333,7 +334,7 @@ static void test_sze_annulus(void **state)
         for (int i = 0; i < 3 * shell->mesh->vertex_count; i++) b.p[shell->load + i] = 0;
         load_edge(&b, end, RADIAL + 1, 0.8);
         scale_loads(&b, part[step]);
-        NewtonInfo info = newton_minimize(b.sys, &def, b.p, 0, b.x, NULL);
+        NewtonInfo info = newton_minimize(b.sys, &def, &(Point){.p = b.p}, b.x, NULL);
         assert_int_equal(info.status, NEWTON_CONVERGED);
         double A = b.x[3 * end[0] + 2], B = b.x[3 * end[RADIAL] + 2];
         print_message("annulus at %.2f: A %.3f (%+.2f %%), B %.3f (%+.2f %%), %d iterations\n", part[step], A,

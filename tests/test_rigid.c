@@ -72,7 +72,7 @@ static void test_compass(void **state)
     for (int f = 0; f < shell->mesh->face_count; f++) p[shell->magnetization + 3 * f] = 1e5;
     p[shell->flux_density] = 1e-3, p[shell->flux_density + 2] = 2e-3;
     NewtonDef def = newton_default();
-    NewtonInfo info = newton_minimize(sys, &def, p, 0, x, NULL);
+    NewtonInfo info = newton_minimize(sys, &def, &(Point){.p = p}, x, NULL);
     assert_int_equal(info.status, NEWTON_CONVERGED);
     double along = x[3 * 6] - x[0], up = x[3 * 6 + 2] - x[2];
     assert_true(fabs(atan2(up, along) - atan2(2, 1)) < 1e-6);
