@@ -4,6 +4,7 @@
 #include "shell/hinge.h"
 #include "shell/rigid.h"
 #include "shell/terms.h"
+#include "solve/kinetic.h"
 #include "solve/lumped.h"
 
 /* Of D, for bodies with free rigid motions: decides nothing physical, drifts less than 1e-7 of the size
@@ -42,6 +43,7 @@ Shell *shell_create(Mesh *mesh)
     shell->flux_density = params_add(params, "flux_density", "T", 1, 3, true);
     shell->gravity = params_add(params, "gravity", "m/s^2", 1, 3, true);
     shell->load = params_add(params, "load", "N", mesh->vertex_count, 3, true);
+    shell->damping = params_add(params, "damping", "N s/m", 1, 1, false);
     shell->field_scale = params_add(params, "field_scale", "", 0, 1, true);
     return shell;
 }
@@ -89,20 +91,41 @@ bool shell_face_is_rigid(const Shell *shell, int face)
     return true;
 }
 
-System *shell_system(const Shell *shell)
+static void add_kinetic_terms(const Shell *shell, System *sys)
+{
+    int vertices = shell->mesh->vertex_count;
+    double *mass = mem_alloc((size_t)vertices, sizeof *mass);
+    shell_vertex_mass(shell, mass);
+    system_add(sys, kinetic_inertia_term(vertices, mass));
+    system_add(sys, kinetic_damping_term(vertices, shell->damping));
+    mem_free(mass);
+}
+
+static System *make_system(const Shell *shell, bool dynamic)
 {
     const Mesh *mesh = shell->mesh;
     int positions = 3 * mesh->vertex_count;
     DofClass classes[] = {{0, positions, mesh_diagonal(mesh)}, {positions, mesh->edge_count, 1}};
     System *sys = system_create(shell_dof_count(shell), classes, 2);
     for (int t = 0; t < shell_term_row_count; t++) system_add(sys, shell_term_rows[t].create(shell));
+    if (dynamic) add_kinetic_terms(shell, sys);
     for (int i = 0; i < positions; i++)
         if (shell->fixed[i]) system_fix(sys, i);
     for (int e = 0; e < mesh->edge_count; e++)
         if (shell->clamped[e] || shell->bending == BENDING_HINGE) system_fix(sys, shell_angle_dof(shell, e));
-    if (rigid_free_count(shell)) system_set_base_shift(sys, BASE_SHIFT);
+    if (!dynamic && rigid_free_count(shell)) system_set_base_shift(sys, BASE_SHIFT);
     system_prepare(sys);
     return sys;
+}
+
+System *shell_system(const Shell *shell)
+{
+    return make_system(shell, false);
+}
+
+System *shell_dynamic_system(const Shell *shell)
+{
+    return make_system(shell, true);
 }
 
 void shell_default_params(const Shell *shell, double *p)

@@ -31,6 +31,7 @@ typedef struct Shell {
     int flux_density;  /* [3] T, the uniform part                                              */
     int gravity;       /* [3] m/s^2                                                            */
     int load;          /* [vertex][3] N, dead                                                  */
+    int damping;       /* [1] N s/m at every vertex, in steps of time                          */
     int field_scale;   /* [field] factors on the fields; 0 switches a field off, derivatives too */
 } Shell;
 
@@ -53,6 +54,9 @@ bool shell_face_is_rigid(const Shell *shell, int face);
 
 /* All terms over the shell's dofs, prepared. Thin call after fixing; the shell must outlive the system. */
 System *shell_system(const Shell *shell);
+
+/* The same with inertia and damping, for steps of time (march.h). */
+System *shell_dynamic_system(const Shell *shell);
 
 /* Default values of every block: young 1e6, fold 1, field_scale 1, the rest 0. p[params.size]. */
 void shell_default_params(const Shell *shell, double *p);

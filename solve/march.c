@@ -1,0 +1,86 @@
+#include "solve/march.h"
+#include "base/memory.h"
+#include <string.h>
+
+/* One march_step at work. */
+typedef struct March {
+    System *sys;
+    const MarchDef *def;
+    double *p;
+    MarchState *state;
+    MarchInfo *info;
+    double *x, *inertial, *memory; /* the trial, the other start, what the terms remember */
+} March;
+
+MarchDef march_default(void)
+{
+    return (MarchDef){.newton = newton_default(), .cuts = 10};
+}
+
+/* The previous state or the inertial guess x + dt v, whichever has less energy. */
+static void choose_start(March *m, Point *at)
+{
+    int dofs = system_dof_count(m->sys), positions = system_position_count(m->sys);
+    size_t bytes = (size_t)dofs * sizeof *m->x;
+    memcpy(m->x, m->state->x, bytes);
+    if (m->def->move) m->def->move(m->def->self, at->time, m->x);
+    memcpy(m->inertial, m->x, bytes);
+    for (int i = 0; i < positions; i++)
+        if (!system_is_fixed(m->sys, i)) m->inertial[i] += at->dt * m->state->v[i];
+    at->x = m->x;
+    Evaluation rest = system_energy(m->sys, at);
+    at->x = m->inertial;
+    Evaluation guess = system_energy(m->sys, at);
+    if (guess.finite && guess.energy < rest.energy) memcpy(m->x, m->inertial, bytes);
+}
+
+static void add_counts(MarchInfo *info, const NewtonInfo *newton)
+{
+    NewtonInfo sum = *newton;
+    sum.iterations += info->newton.iterations;
+    sum.factorizations += info->newton.factorizations;
+    sum.evaluations += info->newton.evaluations;
+    info->newton = sum;
+}
+
+static bool try_step(March *m, double dt)
+{
+    MarchState *state = m->state;
+    const NewtonObserver *observer = m->def->observer.iteration ? &m->def->observer : NULL;
+    Point at = {.p = m->p, .time = state->time + dt, .x_prev = state->x, .v_prev = state->v, .dt = dt};
+    if (m->def->load) m->def->load(m->def->self, at.time, m->p);
+    system_memory_read(m->sys, m->memory);
+    choose_start(m, &at);
+    NewtonInfo newton = newton_minimize(m->sys, &m->def->newton, &at, m->x, observer);
+    add_counts(m->info, &newton);
+    if (newton.status != NEWTON_CONVERGED) {
+        system_memory_write(m->sys, m->memory);
+        return false;
+    }
+    for (int i = 0; i < system_position_count(m->sys); i++) state->v[i] = (m->x[i] - state->x[i]) / dt;
+    memcpy(state->x, m->x, (size_t)system_dof_count(m->sys) * sizeof *m->x);
+    state->time += dt;
+    m->info->steps++;
+    if (m->def->stored) m->def->stored(m->def->self, state, dt);
+    return true;
+}
+
+/* The step, or its two halves. */
+static bool advance(March *m, double dt, int cuts)
+{
+    if (try_step(m, dt)) return true;
+    if (cuts == 0 || m->info->newton.status == NEWTON_STOPPED) return false;
+    m->info->refused++;
+    return advance(m, dt / 2, cuts - 1) && advance(m, dt / 2, cuts - 1);
+}
+
+bool march_step(System *sys, const MarchDef *def, double dt, double *p, MarchState *state, MarchInfo *info)
+{
+    size_t dofs = (size_t)system_dof_count(sys);
+    double *work = mem_alloc(2 * dofs + (size_t)system_memory_count(sys), sizeof *work);
+    *info = (MarchInfo){0};
+    March m = {sys, def, p, state, info, work, work + dofs, work + 2 * dofs};
+    bool ok = advance(&m, dt, def->cuts);
+    mem_free(work);
+    return ok;
+}

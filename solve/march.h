@@ -1,0 +1,34 @@
+/* march.h - implicit Euler in time: each step is a call of newton_minimize on the incremental potential
+ * (kinetic.h).
+ *
+ * A step that fails is cut in halves, down to a thousandth; the sub-steps are real steps of the discrete
+ * motion. Dofs beyond the positions (edge angles) have no inertia: they are in equilibrium at the end of
+ * every step. */
+#pragma once
+#include "solve/newton.h"
+
+typedef struct MarchState {
+    double *x, *v; /* [dofs] m, m/s; v is 0 where there is no inertia; owned by the caller */
+    double time;   /* s */
+} MarchState;
+
+typedef struct MarchDef {
+    NewtonDef newton;
+    NewtonObserver observer;                          /* may be zero */
+    int cuts;                                         /* how often a step may be halved; default 10 */
+    void (*load)(void *self, double time, double *p); /* what depends on time; may be NULL          */
+    bool (*move)(void *self, double time, double *x); /* held coordinates at that time; may be NULL */
+    void (*stored)(void *self, const MarchState *state, double dt); /* after each (sub-)step; may be NULL */
+    void *self;
+} MarchDef;
+
+MarchDef march_default(void);
+
+typedef struct MarchInfo {
+    NewtonInfo newton; /* of the last try; iterations and factorisations those of all */
+    int steps, refused;
+} MarchInfo;
+
+/* From state to state at time + dt; p[params] holds the parameters, of which load fills in those of each
+ * step's end. False where even the smallest step failed: state is then the last one that was reached. */
+bool march_step(System *sys, const MarchDef *def, double dt, double *p, MarchState *state, MarchInfo *info);

@@ -1,0 +1,276 @@
+/* Implicit Euler: a linear oscillator's amplitude and phase, the momenta of a free sheet, cut steps, and the
+ * derivatives of the kinetic terms. */
+#include "base/memory.h"
+#include "base/random.h"
+#include "base/vec3.h"
+#include "shell/shapes.h"
+#include "shell/shell.h"
+#include "solve/element.h"
+#include "solve/kinetic.h"
+#include "solve/march.h"
+#include <complex.h>
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+#include <cmocka.h>
+
+/* A spring of stiffness k from the origin to one vertex: E = k/2 |x|^2. */
+static int spring_count(const void *self)
+{
+    return (void)self, 1;
+}
+static int spring_size(const void *self)
+{
+    return (void)self, 3;
+}
+
+static void spring_dofs(const void *self, int e, int *dof)
+{
+    (void)self, (void)e;
+    for (int i = 0; i < 3; i++) dof[i] = i;
+}
+
+static Pack spring_eval(const void *self, int pack, const Point *at, const Pack *x, Pack *g, Pack *H)
+{
+    (void)pack, (void)at;
+    double k = *(const double *)self;
+    Pack energy = {0};
+    if (H) element_clear(H, 3);
+    for (int i = 0; i < 3; i++) {
+        energy += k / 2 * x[i] * x[i];
+        if (g) g[i] = k * x[i];
+        if (H) H[TERM_LOWER(i, i)] = pack_set(k);
+    }
+    return energy;
+}
+
+static void spring_destroy(void *self)
+{
+    (void)self;
+}
+
+static const TermOps spring_ops = {.name = "spring",
+                                   .count = spring_count,
+                                   .size = spring_size,
+                                   .dofs = spring_dofs,
+                                   .eval = spring_eval,
+                                   .destroy = spring_destroy};
+
+/* x_n = Re(A l^n), l = 1/(1 - i w dt): the amplitude falls by (1 + w^2 dt^2)^(-1/2) and turns by atan(w dt)
+ * each step. */
+static void test_oscillator(void **state)
+{
+    (void)state;
+    double k = 40, mass = 0.1, dt = 0.01, w = sqrt(k / mass), p[1] = {0}, x[3] = {1, 0, 0}, v[3] = {0},
+           worst = 0;
+    System *sys = system_create(3, &(DofClass){0, 3, 1}, 1);
+    system_add(sys, (Term){&spring_ops, &k});
+    system_add(sys, kinetic_inertia_term(1, &mass));
+    system_prepare(sys);
+    MarchDef def = march_default();
+    MarchState now = {x, v, 0};
+    double complex l = 1 / (1 - I * w * dt);
+    assert_true(fabs(cabs(l) - 1 / sqrt(1 + w * w * dt * dt)) < 1e-15 &&
+                fabs(carg(l) - atan(w * dt)) < 1e-15);
+    /* x_0 = 1 and x_-1 = x_0 - dt v_0 = 1: Re A = 1, Re(A/l) = 1 */
+    double complex inverse = 1 / l, A = 1 + I * (creal(inverse) - 1) / cimag(inverse);
+    for (int n = 1; n <= 100; n++) {
+        MarchInfo info;
+        assert_true(march_step(sys, &def, dt, p, &now, &info));
+        worst = fmax(worst, fabs(x[0] - creal(A * cpow(l, n))));
+    }
+    print_message("oscillator: off by %.1e of the amplitude after 100 steps\n", worst);
+    assert_true(worst < 1e-10 && fabs(now.time - 1) < 1e-12);
+    system_destroy(sys);
+}
+
+typedef struct Sheet {
+    Shell *shell;
+    System *sys;
+    double *p, *mass;
+    MarchState now;
+} Sheet;
+
+static Sheet make_sheet(void)
+{
+    Sheet s = {0};
+    MeshFile file;
+    Error err;
+    assert_true(shape_sheet((double[]){0.04, 0.02}, (int[]){8, 4}, PATTERN_ALTERNATE, &file, &err));
+    Mesh *mesh = mesh_create(&file, 0, NULL, &err);
+    mesh_file_clear(&file);
+    s.shell = shell_create(mesh);
+    s.shell->thickness = 1e-3, s.shell->poisson = 0.3, s.shell->density = 1000;
+    s.sys = shell_dynamic_system(s.shell);
+    s.p = mem_alloc((size_t)s.shell->params.size, sizeof *s.p);
+    s.now.x = mem_alloc((size_t)shell_dof_count(s.shell), sizeof(double));
+    s.now.v = mem_alloc((size_t)shell_dof_count(s.shell), sizeof(double));
+    s.mass = mem_alloc((size_t)mesh->vertex_count, sizeof *s.mass);
+    shell_default_params(s.shell, s.p);
+    shell_rest_state(s.shell, s.now.x);
+    shell_vertex_mass(s.shell, s.mass);
+    for (int f = 0; f < mesh->face_count; f++) s.p[s.shell->young + f] = 1e5;
+    return s;
+}
+
+static void free_sheet(Sheet *s)
+{
+    system_destroy(s->sys);
+    shell_destroy(s->shell);
+    mem_free(s->p);
+    mem_free(s->mass);
+    mem_free(s->now.x);
+    mem_free(s->now.v);
+}
+
+static Vec3 momentum(const Sheet *s)
+{
+    Vec3 sum = vec3(0, 0, 0);
+    for (int v = 0; v < s->shell->mesh->vertex_count; v++)
+        sum = vec3_axpy(s->mass[v], vec3_load(s->now.v + 3 * v), sum);
+    return sum;
+}
+
+static Vec3 angular_momentum(const Sheet *s)
+{
+    Vec3 sum = vec3(0, 0, 0);
+    for (int v = 0; v < s->shell->mesh->vertex_count; v++)
+        sum =
+            vec3_axpy(s->mass[v], vec3_cross(vec3_load(s->now.x + 3 * v), vec3_load(s->now.v + 3 * v)), sum);
+    return sum;
+}
+
+/* A free sheet, spinning and shaking, keeps its momentum; implicit Euler loses angular momentum by the
+ * identity L_n - L_{n-1} = dt sum m v_n x v_{n-1}. */
+static void test_momenta(void **state)
+{
+    (void)state;
+    long blocks = mem_live_count();
+    Sheet s = make_sheet();
+    Random random = random_seed(3);
+    int vertices = s.shell->mesh->vertex_count;
+    for (int v = 0; v < vertices; v++) {
+        Vec3 arm = vec3_sub(vec3_load(s.now.x + 3 * v), vec3(0.02, 0.01, 0));
+        Vec3 speed = vec3_add(vec3(0.1, 0, 0.05), vec3_cross(vec3(3, 10, 5), arm));
+        for (int i = 0; i < 3; i++)
+            s.now.v[3 * v + i] = (i == 0   ? speed.x
+                                  : i == 1 ? speed.y
+                                           : speed.z) +
+                                 0.02 * random_signed(&random);
+    }
+    double *before = mem_alloc(3 * (size_t)vertices, sizeof *before), dt = 2e-3, worst = 0, drift = 0;
+    MarchDef def = march_default();
+    def.newton.step_tol = 1e-12, def.newton.force_tol = 1e-11;
+    Vec3 P = momentum(&s);
+    for (int n = 0; n < 20; n++) {
+        MarchInfo info;
+        Vec3 L = angular_momentum(&s), change = vec3(0, 0, 0);
+        memcpy(before, s.now.v, 3 * (size_t)vertices * sizeof *before);
+        assert_true(march_step(s.sys, &def, dt, s.p, &s.now, &info));
+        for (int v = 0; v < vertices; v++)
+            change = vec3_axpy(dt * s.mass[v],
+                               vec3_cross(vec3_load(s.now.v + 3 * v), vec3_load(before + 3 * v)), change);
+        Vec3 off = vec3_sub(vec3_sub(angular_momentum(&s), L), change);
+        worst = fmax(worst, vec3_length(off) / vec3_length(L));
+        drift = fmax(drift, vec3_length(vec3_sub(momentum(&s), P)) / vec3_length(P));
+    }
+    print_message("free sheet: momentum drifts by %.1e, angular momentum is off its identity by %.1e\n",
+                  drift, worst);
+    assert_true(drift < 1e-10 && worst < 1e-10);
+    mem_free(before);
+    free_sheet(&s);
+    assert_int_equal(mem_live_count(), blocks);
+}
+
+/* No step raises the incremental energy, and one that fails is cut. */
+static void count_steps(void *self, const MarchState *state, double dt)
+{
+    (void)state, (void)dt;
+    (*(int *)self)++;
+}
+
+static void test_cuts(void **state)
+{
+    (void)state;
+    Sheet s = make_sheet();
+    for (int v = 0; v < s.shell->mesh->vertex_count; v++) s.now.v[3 * v + 2] = 40 * sin(80 * s.now.x[3 * v]);
+    double *x = mem_copy(s.now.x, (size_t)shell_dof_count(s.shell), sizeof *x),
+           *v = mem_copy(s.now.v, (size_t)shell_dof_count(s.shell), sizeof *v);
+    int stored = 0;
+    MarchDef def = march_default();
+    def.newton.max_iterations = 12;
+    def.stored = count_steps, def.self = &stored;
+    MarchInfo info;
+    assert_true(march_step(s.sys, &def, 4e-3, s.p, &s.now, &info));
+    assert_true(info.refused > 0 && info.steps == stored && stored > 1 && fabs(s.now.time - 4e-3) < 1e-15);
+    def.cuts = 0, def.newton.max_iterations = 1;
+    assert_false(march_step(s.sys, &def, 4e-3, s.p, &s.now, &info));
+    assert_true(fabs(s.now.time - 4e-3) < 1e-15); /* the last state that was reached */
+    def = march_default();
+    memcpy(s.now.x, x, (size_t)shell_dof_count(s.shell) * sizeof *x);
+    Point start = {.x = x, .p = s.p, .x_prev = x, .v_prev = v, .dt = 1e-4}, end = start;
+    memcpy(s.now.v, v, (size_t)shell_dof_count(s.shell) * sizeof *v);
+    assert_true(march_step(s.sys, &def, 1e-4, s.p, &s.now, &info) && info.steps == 1);
+    end.x = s.now.x;
+    assert_true(system_energy(s.sys, &end).energy <= system_energy(s.sys, &start).energy);
+    mem_free(x);
+    mem_free(v);
+    free_sheet(&s);
+}
+
+/* prev_forward against differences of the force in (x_prev, v_prev), prev against prev_forward, and the
+ * parameters. */
+static void check_kinetic(Term term, const Point *at, Random *random)
+{
+    Pack x[3], w[3], dx[3], dv[3], r[3], back_x[3], back_v[3], g[2][3];
+    double x_prev[3 * PACK_LANES], v_prev[3 * PACK_LANES], h = 1e-3, left = 0, right = 0;
+    for (int i = 0; i < 3; i++)
+        for (int l = 0; l < PACK_LANES; l++) {
+            x[i][l] = at->x[3 * l + i], w[i][l] = random_signed(random);
+            dx[i][l] = random_signed(random), dv[i][l] = random_signed(random);
+        }
+    for (int side = 0; side < 2; side++) {
+        Point moved = *at;
+        for (int i = 0; i < 3 * PACK_LANES; i++) {
+            double s = side ? h : -h;
+            x_prev[i] = at->x_prev[i] + s * dx[i % 3][i / 3],
+            v_prev[i] = at->v_prev[i] + s * dv[i % 3][i / 3];
+        }
+        moved.x_prev = x_prev, moved.v_prev = v_prev;
+        term.ops->eval(term.self, 0, &moved, x, g[side], NULL);
+    }
+    term.ops->prev_forward(term.self, 0, at, x, dx, dv, r);
+    term.ops->prev(term.self, 0, at, x, w, back_x, back_v);
+    for (int i = 0; i < 3; i++) {
+        Pack slope = (g[1][i] - g[0][i]) / (2 * h);
+        for (int l = 0; l < PACK_LANES; l++)
+            assert_true(fabs(slope[l] - r[i][l]) < 1e-9 * (1 + fabs(r[i][l])));
+        left += pack_sum(w[i] * r[i], PACK_LANES);
+        right += pack_sum(back_x[i] * dx[i] + back_v[i] * dv[i], PACK_LANES);
+    }
+    assert_true(fabs(left - right) < 1e-12 * fabs(left));
+    term.ops->destroy(term.self);
+}
+
+static void test_prev(void **state)
+{
+    (void)state;
+    Random random = random_seed(5);
+    double x[3 * PACK_LANES], x_prev[3 * PACK_LANES], v_prev[3 * PACK_LANES], mass[PACK_LANES], p[1] = {0.7};
+    for (int i = 0; i < 3 * PACK_LANES; i++)
+        x[i] = random_signed(&random), x_prev[i] = random_signed(&random), v_prev[i] = random_signed(&random);
+    for (int l = 0; l < PACK_LANES; l++) mass[l] = 1 + random_uniform(&random);
+    Point at = {.x = x, .p = p, .x_prev = x_prev, .v_prev = v_prev, .dt = 0.3};
+    check_kinetic(kinetic_inertia_term(PACK_LANES, mass), &at, &random);
+    check_kinetic(kinetic_damping_term(PACK_LANES, 0), &at, &random);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_oscillator), cmocka_unit_test(test_momenta),
+                                       cmocka_unit_test(test_cuts), cmocka_unit_test(test_prev)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
