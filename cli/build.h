@@ -11,7 +11,8 @@
 typedef struct Build {
     YamlFile *file;
     const Mesh *mesh;
-    double time; /* s, of formulas */
+    double time;     /* s, of formulas */
+    Formula **timed; /* where a uniform field that depends on time leaves its formula; NULL: in statics */
 } Build;
 
 /* The path of a key: key("cases[%d].target", c). */

@@ -107,6 +107,10 @@ static bool flux_formula(const Build *b, Key at, const FluxScene *scene, FluxFie
         return true;
     }
     if (ok) memcpy(uniform, B, sizeof B);
+    if (ok && b->timed && formula_uses(formula, "t")) {
+        *b->timed = formula;
+        return true;
+    }
     formula_destroy(formula);
     return ok;
 }

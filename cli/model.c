@@ -123,6 +123,14 @@ bool model_move(const Model *model, double time, double part, double *x, Error *
     return true;
 }
 
+bool model_load(const Model *model, double time, double *p, Error *err)
+{
+    double variables[BUILD_VARIABLES];
+    build_position(variables, model->shell->mesh->rest[0], time);
+    return !model->flux_of_time ||
+           formula_eval(model->flux_of_time, variables, p + model->shell->flux_density, err);
+}
+
 /* ---- Loads of a case ---- */
 
 static bool put_flux(Model *model, const Build *b, Key at, const FluxScene *flux, double *p)
@@ -150,6 +158,7 @@ static double *base_params(Model *model, const Scene *scene, const Build *b, siz
     ok = build_edge_numbers(b, key("shell.fold"), &s->fold, p + shell->fold) && ok;
     ok = build_face_vectors(b, key("shell.magnetization"), &s->magnetization, p + shell->magnetization) && ok;
     memcpy(p + shell->gravity, s->gravity, sizeof s->gravity);
+    p[shell->damping] = s->damping;
     ok = build_loads(b, key("loads"), scene->loads, scene->loads_count, p + shell->load) && ok;
     if (ok && put_flux(model, b, key("flux_density"), &scene->flux_density, p)) return p;
     mem_free(p);
@@ -187,7 +196,7 @@ static bool add_target(const Build *b, Key at, const TargetScene *target, ModelC
 
 static bool add_stages(Model *model, const Build *b, const Scene *scene, const double *p, size_t room)
 {
-    ModelCase *c = add_case(model, "sequence", p, room, scene->time);
+    ModelCase *c = add_case(model, "sequence", p, room, scene->time.at);
     c->stages = mem_resize(c->stages, 1, (size_t)scene->sequence_count, sizeof *c->stages);
     c->stage_count = scene->sequence_count;
     bool ok = true;
@@ -213,7 +222,7 @@ static bool add_cases(Model *model, const Build *b, const Scene *scene, const do
     bool ok = true;
     for (int k = 0; k < scene->cases_count; k++) {
         const CaseScene *from = &scene->cases[k];
-        ModelCase *c = add_case(model, from->name, p, room, scene->time);
+        ModelCase *c = add_case(model, from->name, p, room, scene->time.at);
         c->weight = from->weight;
         Key at = key("cases[%d]", k);
         for (int i = 0; i < k; i++)
@@ -230,7 +239,7 @@ static bool add_cases(Model *model, const Build *b, const Scene *scene, const do
              ok;
     }
     if (!scene->cases_count)
-        ok = add_target(b, key("target"), scene->target, add_case(model, NULL, p, room, scene->time));
+        ok = add_target(b, key("target"), scene->target, add_case(model, NULL, p, room, scene->time.at));
     return ok;
 }
 
@@ -256,13 +265,13 @@ static bool read_pose(const Build *b, const PoseScene *pose, double *x)
 }
 
 /* Systems last: fields and what is held are known by then. An equilibrium needs forces in balance. */
-static bool finish_cases(Model *model, const Build *b, bool balanced)
+static bool finish_cases(Model *model, const Build *b, JobKind job)
 {
-    bool ok = true;
+    bool ok = true, balanced = job == JOB_EQUILIBRIUM || job == JOB_DESIGN;
     for (int k = 0; ok && k < model->case_count; k++) {
         ModelCase *c = &model->cases[k];
         Error err;
-        c->sys = shell_system(model->shell);
+        c->sys = job == JOB_SIMULATE ? shell_dynamic_system(model->shell) : shell_system(model->shell);
         c->x = mem_copy(model->x, (size_t)shell_dof_count(model->shell), sizeof *c->x);
         Point at = {.x = c->x, .p = c->stages[0].p};
         system_accept(c->sys, &at);
@@ -271,6 +280,16 @@ static bool finish_cases(Model *model, const Build *b, bool balanced)
                  yaml_refuse(b->file, "", "%s", err.text);
     }
     return ok;
+}
+
+static bool check_simulation(const Scene *scene, YamlFile *file)
+{
+    if (scene->job != JOB_SIMULATE) return true;
+    if (isnan(scene->time.step) || scene->time.steps == YAML_ABSENT)
+        return yaml_refuse(file, "time", "a simulation needs `time`, e.g. time: {step: 1 ms, steps: 100}");
+    return (!scene->cases_count && !scene->sequence_count) ||
+           yaml_refuse(file, "job",
+                       "a simulation has neither cases nor a sequence; a field may be a formula of t");
 }
 
 static bool fill(Model *model, const Scene *scene, const Build *b)
@@ -290,7 +309,7 @@ static bool fill(Model *model, const Scene *scene, const Build *b)
     double *p = base_params(model, scene, b, room);
     ok = p && add_cases(model, b, scene, p, room) && ok;
     mem_free(p);
-    return ok && finish_cases(model, b, scene->job != JOB_EVALUATE);
+    return ok && check_simulation(scene, b->file) && finish_cases(model, b, (JobKind)scene->job);
 }
 
 Model *model_create(const Scene *scene, YamlFile *file)
@@ -299,7 +318,7 @@ Model *model_create(const Scene *scene, YamlFile *file)
     Mesh *mesh = build_mesh(&scene->shell.mesh, file, &model->report);
     if (mesh) {
         model->shell = shell_create(mesh);
-        Build b = {file, mesh, scene->time};
+        Build b = {file, mesh, scene->time.at, scene->job == JOB_SIMULATE ? &model->flux_of_time : NULL};
         if (fill(model, scene, &b) && (scene->job != JOB_DESIGN || model_design(model, scene, file)))
             return model;
     }
@@ -328,6 +347,7 @@ void model_destroy(Model *model)
         mem_free(model->motions[m].vertices.items);
     }
     design_clear(&model->design);
+    formula_destroy(model->flux_of_time);
     mesh_report_clear(&model->report);
     shell_destroy(model->shell);
     mem_free(model->cases);

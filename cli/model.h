@@ -38,8 +38,9 @@ typedef struct Model {
     int case_count, motion_count;
     ModelCase *cases;
     Motion *motions;
-    double *x;     /* [dofs] rest or pose */
-    Design design; /* of a design job */
+    double *x;             /* [dofs] rest or pose */
+    Design design;         /* of a design job */
+    Formula *flux_of_time; /* of a simulation: the uniform flux density, if it changes */
 } Model;
 
 /* Reads the files that the scene names and builds everything. On bad input NULL, and the errors are in the
@@ -49,6 +50,9 @@ void model_destroy(Model *model);
 
 /* Puts the moved coordinates where they are at that time, a part of the way (0..1) from where x has them. */
 bool model_move(const Model *model, double time, double part, double *x, Error *err);
+
+/* Puts what depends on time into p. */
+bool model_load(const Model *model, double time, double *p, Error *err);
 
 /* The scene's unknowns, with their starts (noise included) written into the p of all cases, and the
  * objectives of all cases. Part of model_create for a design job; false after a refusal. */

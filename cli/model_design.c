@@ -237,7 +237,7 @@ static bool add_objectives(Model *model, const Scene *scene, const Build *b)
 
 bool model_design(Model *model, const Scene *scene, YamlFile *file)
 {
-    Build b = {file, model->shell->mesh, scene->time};
+    Build b = {.file = file, .mesh = model->shell->mesh, .time = scene->time.at};
     if (!scene->design) return yaml_refuse(file, "job", "a design job needs the key `design`");
     if (scene->sequence_count) return yaml_refuse(file, "sequence", "a design has cases, not a sequence");
     bool ok = add_unknowns(model, scene, &b);

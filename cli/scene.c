@@ -169,6 +169,8 @@ static const YamlTable shell_table = {
          .doc = "factor on the curvature of each edge"},
         {YAML_TABLE(ShellScene, magnetization, &magnetization_table), .fallback = "[0, 0, 0]",
          .doc = "remanent magnetisation"},
+        {YAML_NUMBER(ShellScene, damping), .unit = "N s/m", .range = "[0, inf)", .fallback = "0",
+         .doc = "of a simulation: viscous damping at every vertex"},
         {YAML_VECTOR(ShellScene, gravity), .unit = "m/s^2", .fallback = "[0, 0, 0]",
          .doc = "acceleration of gravity"},
         {0}}};
@@ -414,16 +416,29 @@ static const YamlTable load_steps_table = {
          .required = true, .doc = "this many, halved where one fails"},
         {0}}};
 
+static const YamlTable time_table = {
+    .name = "time",
+    .size = sizeof(TimeScene),
+    .doc = "The time t of formulas in statics, or the steps of a simulation.",
+    .fields = (const YamlField[]){
+        {YAML_NUMBER(TimeScene, at), .unit = "s", .fallback = "0 s", .short_form = true,
+         .doc = "t in statics; where a simulation begins"},
+        {YAML_NUMBER(TimeScene, step), .unit = "s", .range = "(0, inf)",
+         .doc = "of a simulation: the step of implicit Euler"},
+        {YAML_INTEGER(TimeScene, steps), .range = "[1, inf)", .doc = "of a simulation: how many"},
+        {0}}};
+
 static const YamlTable output_table = {
     .name = "output",
     .size = sizeof(OutputScene),
     .doc = "What goes into the result file.",
-    .fields = (const YamlField[]){
-        {YAML_INTEGER(OutputScene, every), .range = "[0, inf)", .fallback = "0",
-         .doc = "of a design: a frame for every so many improvements; 0: the final design only"},
-        {YAML_CHOICE(OutputScene, precision), .choices = YAML_NAMES("single", "double"), .fallback = "single",
-         .doc = "of frames"},
-        {0}}};
+    .fields =
+        (const YamlField[]){{YAML_INTEGER(OutputScene, every), .range = "[0, inf)", .fallback = "0",
+                             .doc = "a frame for every so many steps of a simulation (0: every step) or "
+                                    "improvements of a design (0: the final one only)"},
+                            {YAML_CHOICE(OutputScene, precision), .choices = YAML_NAMES("single", "double"),
+                             .fallback = "single", .doc = "of frames"},
+                            {0}}};
 
 const YamlTable scene_table = {
     .name = "scene",
@@ -446,7 +461,8 @@ const YamlTable scene_table = {
         {YAML_OPTIONAL(Scene, design, &design_table), .doc = "what a design job looks for"},
         {YAML_TABLE(Scene, solver, &solver_table), .fallback = "{}", .doc = "tolerances"},
         {YAML_TABLE(Scene, load_steps, &load_steps_table), .fallback = "auto", .doc = "how loads come on"},
-        {YAML_NUMBER(Scene, time), .unit = "s", .fallback = "0", .doc = "the time t of formulas"},
+        {YAML_TABLE(Scene, time, &time_table), .fallback = "0 s",
+         .doc = "the time t of formulas, or the steps of a simulation"},
         {YAML_INTEGER(Scene, modes), .range = "[0, 100]", .fallback = "0",
          .doc = "lowest eigenmodes to put into the result"},
         {YAML_TABLE(Scene, output, &output_table), .fallback = "{}", .doc = "what to keep"},

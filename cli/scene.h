@@ -79,7 +79,7 @@ typedef struct PoseScene {
 typedef struct ShellScene {
     MeshScene mesh;
     PoseScene *pose;
-    double thickness, poisson, density, gravity[3];
+    double thickness, poisson, density, damping, gravity[3];
     NumberScene young, fold;
     VectorScene magnetization;
     int bending; /* BendingModel */
@@ -194,6 +194,12 @@ typedef struct LoadStepsScene {
     int mode, count; /* mode 0: auto */
 } LoadStepsScene;
 
+/* The time t of formulas in statics, or the steps of a simulation. */
+typedef struct TimeScene {
+    double at, step;
+    int steps;
+} TimeScene;
+
 typedef struct OutputScene {
     int every, precision;
 } OutputScene;
@@ -212,7 +218,7 @@ typedef struct Scene {
     DesignScene *design;
     SolverScene solver;
     LoadStepsScene load_steps;
-    double time; /* of formulas in statics */
+    TimeScene time;
     int modes;
     OutputScene output;
     int fix_count, loads_count, cases_count, sequence_count;

@@ -73,7 +73,8 @@ static bool parse(int argc, char **argv, RunOptions *options)
 /* ---- The journal's beginning ---- */
 
 /* Keys that a resumed run may change: how far it goes, and what it writes. */
-static const char *const free_keys[] = {"design.iterations", "design.tolerance", "output", "modes", NULL};
+static const char *const free_keys[] = {
+    "design.iterations", "design.tolerance", "time.steps", "output.precision", "modes", NULL};
 
 static bool check_scene(Journal *journal, const char *scene, Error *err)
 {

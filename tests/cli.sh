@@ -77,6 +77,25 @@ expect 0 "$program" run $long --quiet --no-picture -o live --resume --set design
 expect 4 "$program" run "$scene" -o out/;       says "is a folder"
 expect 3 "$program" run out;                    says "Is a directory"
 
+# A simulation that is killed or extended ends as one that is not.
+vibration="$here/../scenes/strip_vibration.yaml --set shell.mesh.n=12 --set output.every=7 --quiet --no-picture"
+# shellcheck disable=SC2086
+{
+    expect 0 "$program" run $vibration --set time.steps=200 -o straight
+    expect 0 "$program" run $vibration --set time.steps=30 -o halves
+    expect 0 "$program" run $vibration --set time.steps=200 -o halves --resume
+    "$program" run $vibration --set time.steps=200 -o killed & pid=$!
+    until [ "$("$program" info killed.run 2> err.txt | sed -n 's/.* \([0-9]*\) frames.*/\1/p')" -gt 2 ] 2> err.txt; do sleep 0.02; kill -0 $pid 2> err.txt || break; done
+    kill -9 $pid 2> err.txt; wait $pid 2> err.txt
+    expect 0 "$program" run $vibration --set time.steps=200 -o killed --resume
+}
+for name in halves killed; do
+    for path in state/x state/v VTKHDF/Points history/newton_iterations; do
+        "$program" export straight.vtkhdf -o a.csv --dataset $path; "$program" export $name.vtkhdf -o b.csv --dataset $path
+        cmp -s a.csv b.csv || { echo "$name: $path is another than without the break"; bad=1; }
+    done
+done
+
 # A finished design goes on when it is given more iterations.
 expect 0 "$program" run "$here/scene_small.yaml" --quiet --no-picture -o more --set design.iterations=4
 expect 0 "$program" run "$here/scene_small.yaml" --quiet --no-picture -o more --resume --set design.iterations=8

@@ -1,0 +1,165 @@
+/* Motion in time by implicit Euler, from rest at the pose.
+ *
+ * With every stored frame goes the state to go on from, in two slots by turns, each closed by its step's
+ * number: a run that is killed goes on from the last frame and repeats the steps since bit by bit. */
+#include "base/memory.h"
+#include "cli/job.h"
+#include "solve/march.h"
+#include <string.h>
+
+typedef struct Simulation {
+    Run *run;
+    Error *err;
+    ModelCase *c;
+    double *p, *memory;
+    MarchState now;
+    int step;     /* the last one that was reached */
+    bool refused; /* a formula of time is not finite; err says so */
+} Simulation;
+
+static void load(void *self, double time, double *p)
+{
+    Simulation *s = self;
+    s->refused |= !model_load(s->run->model, time, p, s->err);
+}
+
+static bool move(void *self, double time, double *x)
+{
+    Simulation *s = self;
+    s->refused |= !model_move(s->run->model, time, 1, x, s->err);
+    return !s->refused;
+}
+
+static State shown_state(const Simulation *s)
+{
+    return (State){s->c, s->p, s->now.x, s->now.time, NEWTON_CONVERGED};
+}
+
+static bool put_step(Simulation *s, int frame, int step)
+{
+    int slot = frame % 2;
+    double number = step;
+    size_t dofs = (size_t)system_dof_count(s->c->sys);
+    State state = shown_state(s);
+    system_memory_read(s->c->sys, s->memory);
+    return run_put_frame(s->run, frame, s->now.time, &state, frame == 0, s->err) &&
+           run_put_state(s->run, slot, "x", s->now.x, dofs, s->err) &&
+           run_put_state(s->run, slot, "v", s->now.v, dofs, s->err) &&
+           run_put_state(s->run, slot, "memory", s->memory, (size_t)system_memory_count(s->c->sys), s->err) &&
+           run_put_state(s->run, slot, "time", &s->now.time, 1, s->err) &&
+           run_put_state(s->run, slot, "step", &number, 1, s->err);
+}
+
+static bool get_slot(Simulation *s, int slot)
+{
+    size_t dofs = (size_t)system_dof_count(s->c->sys);
+    if (!run_get_state(s->run, slot, "x", s->now.x, dofs) ||
+        !run_get_state(s->run, slot, "v", s->now.v, dofs) ||
+        !run_get_state(s->run, slot, "memory", s->memory, (size_t)system_memory_count(s->c->sys)) ||
+        !run_get_state(s->run, slot, "time", &s->now.time, 1))
+        return false;
+    system_memory_write(s->c->sys, s->memory);
+    return true;
+}
+
+/* The step to go on from; 0 after putting the start. -1: err says what is wrong. */
+static int find_start(Simulation *s)
+{
+    int last = 0;
+    double number[2] = {-1, -1};
+    for (int slot = 0; slot < 2; slot++) run_get_state(s->run, slot, "step", &number[slot], 1);
+    int newest = number[1] > number[0];
+    if (number[newest] >= 0) {
+        last = (int)number[newest];
+        return get_slot(s, newest) ? last
+                                   : (error_set(s->err, "the journal's state is of another scene"), -1);
+    }
+    s->now.time = s->run->scene->time.at;
+    load(s, s->now.time, s->p);
+    return put_step(s, 0, 0) ? 0 : -1;
+}
+
+/* How a step went, for history/. */
+static bool put_history(Simulation *s, int step, const MarchInfo *info)
+{
+    double iterations = info->newton.iterations, factorizations = info->newton.factorizations;
+    Array arrays[] = {array_float("newton_iterations", "", &iterations, 0, 0, 0),
+                      array_float("factorizations", "", &factorizations, 0, 0, 0),
+                      array_float("time", "s", &s->now.time, 0, 0, 0)};
+    return journal_put(s->run->journal, "evaluation", step, arrays, sizeof arrays / sizeof *arrays, s->err);
+}
+
+static int frame_interval(const Simulation *s)
+{
+    int every = s->run->scene->output.every;
+    return every ? every : 1;
+}
+
+/* One step, and what it leaves. */
+static RunStatus make_step(Simulation *s, const MarchDef *def)
+{
+    const Scene *scene = s->run->scene;
+    int every = frame_interval(s), step = s->step + 1;
+    MarchInfo info;
+    bool reached = march_step(s->c->sys, def, scene->time.step, s->p, &s->now, &info);
+    if (s->refused) return RUN_CANNOT_WRITE;
+    if (progress_interrupted()) return RUN_INTERRUPTED;
+    if (!reached) {
+        progress_say(s->run->progress, "step %d failed at t = %g s: %s", step, s->now.time,
+                     newton_status_text(info.newton.status));
+        return RUN_NOT_CONVERGED;
+    }
+    s->step = step;
+    if (!put_history(s, step, &info) || (step % every == 0 && !put_step(s, step / every, step)))
+        return RUN_CANNOT_WRITE;
+    progress_step(s->run->progress, step, scene->time.steps, "t %.4g s, %d Newton iterations", s->now.time,
+                  info.newton.iterations);
+    return RUN_DONE;
+}
+
+/* Steps until the end, an interruption or a failure. */
+static RunStatus march(Simulation *s)
+{
+    s->step = find_start(s);
+    if (s->step < 0) return RUN_CANNOT_WRITE;
+    MarchDef def = march_default();
+    def.newton = run_newton(s->run);
+    def.observer = run_observer(s->run);
+    def.load = load, def.self = s;
+    if (s->run->model->motion_count) def.move = move;
+    RunStatus status = RUN_DONE;
+    while (status == RUN_DONE && s->step < s->run->scene->time.steps) status = make_step(s, &def);
+    return status;
+}
+
+/* The last state, also where it is between two frames: a resumed run replaces that frame by the one that is
+ * due. */
+static bool put_end(Simulation *s, const char *status)
+{
+    State state = shown_state(s);
+    int every = frame_interval(s);
+    Array v = array_float("state/v", "m/s", s->now.v, 2, s->run->model->shell->mesh->vertex_count, 3);
+    if (s->step % every && !run_put_frame(s->run, s->step / every + 1, s->now.time, &state, false, s->err))
+        return false;
+    return run_put_final(s->run, &state, 1, status, s->err) &&
+           journal_put(s->run->journal, "final", 0, &v, 1, s->err);
+}
+
+RunStatus job_simulate(Run *run, Error *err)
+{
+    static const char *const texts[] = {[RUN_DONE] = "converged", [RUN_NOT_CONVERGED] = "stalled"};
+    ModelCase *c = &run->model->cases[0];
+    size_t dofs = (size_t)system_dof_count(c->sys);
+    Simulation s = {.run = run,
+                    .err = err,
+                    .c = c,
+                    .p = c->stages[0].p,
+                    .now = {.x = c->x, .v = mem_alloc(dofs, sizeof(double))}};
+    s.memory = mem_alloc((size_t)system_memory_count(c->sys), sizeof *s.memory);
+    RunStatus status = march(&s);
+    if (status != RUN_CANNOT_WRITE && !put_end(&s, status == RUN_INTERRUPTED ? "interrupted" : texts[status]))
+        status = RUN_CANNOT_WRITE;
+    mem_free(s.now.v);
+    mem_free(s.memory);
+    return status;
+}
