@@ -221,6 +221,54 @@ static void test_cuts(void **state)
     free_sheet(&s);
 }
 
+/* A clamped strip, nu = 0, swinging in its first mode: w = 3.51602 sqrt(EI/(rho A L^4)), seen by implicit
+ * Euler as atan(w dt)/dt. */
+static void test_strip_frequency(void **state)
+{
+    (void)state;
+    const double L = 0.04, h = 1e-3, young = 6e6, rho = 1000,
+                 w = 3.51602 * sqrt(young * h * h / (12 * rho * L * L * L * L));
+    MeshFile file;
+    Error err;
+    assert_true(shape_strip(L, 0.01, 16, PATTERN_ALTERNATE, &file, &err));
+    Mesh *mesh = mesh_create(&file, 0, NULL, &err);
+    mesh_file_clear(&file);
+    Sheet s = {.shell = shell_create(mesh)};
+    s.shell->thickness = h, s.shell->poisson = 0, s.shell->density = rho;
+    for (int v = 0; v < mesh->vertex_count; v++)
+        for (int i = 0; mesh->rest[v][0] < 1e-9 && i < 3; i++) shell_fix(s.shell, v, i);
+    for (int e = 0; e < mesh->edge_count; e++)
+        if (mesh->rest[mesh->edges[e][0]][0] < 1e-9 && mesh->rest[mesh->edges[e][1]][0] < 1e-9)
+            shell_clamp(s.shell, e);
+    s.sys = shell_dynamic_system(s.shell);
+    s.p = mem_alloc((size_t)s.shell->params.size, sizeof *s.p);
+    s.now.x = mem_alloc((size_t)shell_dof_count(s.shell), sizeof(double));
+    s.now.v = mem_alloc((size_t)shell_dof_count(s.shell), sizeof(double));
+    shell_default_params(s.shell, s.p);
+    shell_rest_state(s.shell, s.now.x);
+    for (int f = 0; f < mesh->face_count; f++) s.p[s.shell->young + f] = young;
+    for (int v = 0; v < mesh->vertex_count; v++) { /* the beam's mode, small */
+        double b = 1.8751041 / L, x = mesh->rest[v][0];
+        s.now.v[3 * v + 2] = 1e-3 * (cosh(b * x) - cos(b * x) - 0.7340955 * (sinh(b * x) - sin(b * x)));
+    }
+    const MeshGroup *tip = mesh_group(mesh, "tip");
+    double dt = 2 * M_PI / w / 200, before = 0, crossing[2] = {0}, seen = atan(w * dt) / dt;
+    int found = 0;
+    MarchDef def = march_default();
+    for (int n = 0; n < 260 && found < 2; n++) {
+        MarchInfo info;
+        assert_true(march_step(s.sys, &def, dt, s.p, &s.now, &info));
+        double z = s.now.x[3 * tip->members[0] + 2];
+        if (n > 0 && z * before < 0) crossing[found++] = s.now.time - dt * z / (z - before);
+        before = z;
+    }
+    assert_int_equal(found, 2);
+    double measured = M_PI / (crossing[1] - crossing[0]);
+    print_message("strip: %.4f rad/s, exact %.4f (%+.2f %%)\n", measured, seen, 100 * (measured / seen - 1));
+    assert_true(fabs(measured / seen - 1) < 0.01);
+    free_sheet(&s);
+}
+
 /* prev_forward against differences of the force in (x_prev, v_prev), prev against prev_forward, and the
  * parameters. */
 static void check_kinetic(Term term, const Point *at, Random *random)
@@ -271,6 +319,7 @@ static void test_prev(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_oscillator), cmocka_unit_test(test_momenta),
-                                       cmocka_unit_test(test_cuts), cmocka_unit_test(test_prev)};
+                                       cmocka_unit_test(test_strip_frequency), cmocka_unit_test(test_cuts),
+                                       cmocka_unit_test(test_prev)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
