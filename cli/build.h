@@ -5,14 +5,15 @@
  * at the line: they return false after adding an error to the file (yaml_refuse). */
 #pragma once
 #include "cli/scene.h"
+#include "cli/timed_flux.h"
 #include "shell/select.h"
 #include "shell/shell.h"
 
 typedef struct Build {
     YamlFile *file;
     const Mesh *mesh;
-    double time;     /* s, of formulas */
-    Formula **timed; /* where a uniform field that depends on time leaves its formula; NULL: in statics */
+    double time;      /* s, of formulas */
+    TimedFlux *timed; /* where a uniform field that depends on time is left; NULL: in statics */
 } Build;
 
 /* The path of a key: key("cases[%d].target", c). */

@@ -89,7 +89,20 @@ bool build_loads(const Build *b, Key at, const LoadScene *loads, int count, doub
 
 /* ---- Fields ---- */
 
-/* A formula that depends on time only is a uniform field: *uniform is then filled and the formula freed. */
+/* A uniform field: its value now, and where time matters later, what it follows from. Takes timed. */
+static bool put_uniform(const Build *b, Key at, TimedFlux timed, bool changes, double *uniform)
+{
+    Error err;
+    bool ok =
+        timed_flux_eval(&timed, b->time, uniform, &err) || yaml_refuse(b->file, at.text, "%s", err.text);
+    if (ok && b->timed && changes)
+        *b->timed = timed;
+    else
+        timed_flux_clear(&timed);
+    return ok;
+}
+
+/* A formula that depends on time only is a uniform field. */
 static bool flux_formula(const Build *b, Key at, const FluxScene *scene, FluxField **field, double *uniform)
 {
     at = key("%s.formula", at.text);
@@ -98,21 +111,19 @@ static bool flux_formula(const Build *b, Key at, const FluxScene *scene, FluxFie
     if (!formula) return false;
     bool varies = false;
     for (int k = 0; k < 4; k++) varies |= formula_uses(formula, build_variables_time[k]);
-    double variables[BUILD_VARIABLES], B[3];
-    build_position(variables, b->mesh->rest[0], b->time);
+    if (!varies)
+        return put_uniform(b, at, (TimedFlux){.formula = formula}, formula_uses(formula, "t"), uniform);
+    *field = flux_field_formula(formula, mesh_diagonal(b->mesh));
+    return true;
+}
+
+static bool flux_table(const Build *b, Key at, const char *path, double *uniform)
+{
+    TimedFlux timed = {0};
     Error err;
-    bool ok = formula_eval(formula, variables, B, &err) || yaml_refuse(b->file, at.text, "%s", err.text);
-    if (ok && varies) {
-        *field = flux_field_formula(formula, mesh_diagonal(b->mesh));
-        return true;
-    }
-    if (ok) memcpy(uniform, B, sizeof B);
-    if (ok && b->timed && formula_uses(formula, "t")) {
-        *b->timed = formula;
-        return true;
-    }
-    formula_destroy(formula);
-    return ok;
+    at = key("%s.file", at.text);
+    if (!timed_flux_read(path, &timed, &err)) return yaml_refuse(b->file, at.text, "%s", err.text);
+    return put_uniform(b, at, timed, true, uniform);
 }
 
 bool build_flux(const Build *b, Key at, const FluxScene *scene, Shell *shell, double *uniform, int *field)
@@ -122,6 +133,8 @@ bool build_flux(const Build *b, Key at, const FluxScene *scene, Shell *shell, do
     memset(uniform, 0, 3 * sizeof *uniform);
     if (scene->formula_count)
         ok = flux_formula(b, at, scene, &made, uniform);
+    else if (scene->file)
+        ok = flux_table(b, at, scene->file, uniform);
     else if (scene->dipole)
         made = flux_field_dipole(scene->dipole->at, scene->dipole->moment);
     else if (scene->magnet) {

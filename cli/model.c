@@ -125,10 +125,8 @@ bool model_move(const Model *model, double time, double part, double *x, Error *
 
 bool model_load(const Model *model, double time, double *p, Error *err)
 {
-    double variables[BUILD_VARIABLES];
-    build_position(variables, model->shell->mesh->rest[0], time);
-    return !model->flux_of_time ||
-           formula_eval(model->flux_of_time, variables, p + model->shell->flux_density, err);
+    const TimedFlux *timed = &model->flux_of_time;
+    return !timed_flux_is_given(timed) || timed_flux_eval(timed, time, p + model->shell->flux_density, err);
 }
 
 /* ---- Loads of a case ---- */
@@ -347,7 +345,7 @@ void model_destroy(Model *model)
         mem_free(model->motions[m].vertices.items);
     }
     design_clear(&model->design);
-    formula_destroy(model->flux_of_time);
+    timed_flux_clear(&model->flux_of_time);
     mesh_report_clear(&model->report);
     shell_destroy(model->shell);
     mem_free(model->cases);

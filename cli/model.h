@@ -1,6 +1,7 @@
 /* model.h - a scene made ready to run: the shell, its load cases and what is prescribed over time. */
 #pragma once
 #include "cli/scene.h"
+#include "cli/timed_flux.h"
 #include "io/formula.h"
 #include "optim/design.h"
 #include "shell/select.h"
@@ -38,9 +39,9 @@ typedef struct Model {
     int case_count, motion_count;
     ModelCase *cases;
     Motion *motions;
-    double *x;             /* [dofs] rest or pose */
-    Design design;         /* of a design job */
-    Formula *flux_of_time; /* of a simulation: the uniform flux density, if it changes */
+    double *x;              /* [dofs] rest or pose */
+    Design design;          /* of a design job */
+    TimedFlux flux_of_time; /* of a simulation: the uniform flux density, if it changes */
 } Model;
 
 /* Reads the files that the scene names and builds everything. On bad input NULL, and the errors are in the

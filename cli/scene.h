@@ -53,7 +53,7 @@ typedef struct MagnetScene {
 
 typedef struct FluxScene {
     double value[3];
-    char **formula;
+    char **formula, *file;
     WhereScene *where;
     DipoleScene *dipole;
     MagnetScene *magnet;

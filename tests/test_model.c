@@ -8,6 +8,7 @@
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 #include <cmocka.h>
 
 typedef struct Built {
@@ -142,6 +143,35 @@ static void test_fields(void **state)
     clear(&b);
 }
 
+/* Fields of time: by formula, and by a table that is linear between its rows. */
+static void test_timed(void **state)
+{
+    (void)state;
+    Error err;
+    FILE *file = fopen("test_model_field.csv", "w");
+    fputs("t, Bx, By, Bz\n0, 0, 0, 0.01\n1, 0.02, 0, 0.03\n3, 0, 0, 0\n", file);
+    fclose(file);
+    char folder[4096], *lines;
+    assert_non_null(getcwd(folder, sizeof folder));
+    lines = mem_format("fix: [{group: root}]\ntime: {at: 0.5 s, step: 1 ms, steps: 2}\nflux_density: {file: "
+                       "%s/test_model_field.csv}\n",
+                       folder);
+    Built b = build("simulate", "  young: 1 MPa\n  damping: 1e-4\n", lines);
+    double *p = b.model->cases[0].stages[0].p, *B = p + b.model->shell->flux_density;
+    assert_true(fabs(B[0] - 0.01) < 1e-16 && fabs(B[2] - 0.02) < 1e-16 && p[b.model->shell->damping] == 1e-4);
+    const double times[4] = {-1, 1, 2, 9}, exact[4] = {0.01, 0.03, 0.015, 0};
+    for (int k = 0; k < 4; k++)
+        assert_true(model_load(b.model, times[k], p, &err) && fabs(B[2] - exact[k]) < 1e-16);
+    clear(&b);
+    mem_free(lines);
+    unlink("test_model_field.csv");
+    b = build("simulate", "  young: 1 MPa\n",
+              "fix: [{group: root}]\ntime: {step: 1 ms, steps: 2}\nflux_density: [\"0\", \"t\", \"2*t\"]\n");
+    p = b.model->cases[0].stages[0].p, B = p + b.model->shell->flux_density;
+    assert_true(B[1] == 0 && model_load(b.model, 0.25, p, &err) && B[1] == 0.25 && B[2] == 0.5);
+    clear(&b);
+}
+
 static void test_unknowns(void **state)
 {
     (void)state;
@@ -181,6 +211,6 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_values), cmocka_unit_test(test_loads),
                                        cmocka_unit_test(test_motion), cmocka_unit_test(test_fields),
-                                       cmocka_unit_test(test_unknowns)};
+                                       cmocka_unit_test(test_timed),  cmocka_unit_test(test_unknowns)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
