@@ -1,6 +1,7 @@
 #include "solve/kinetic.h"
 #include "base/memory.h"
 #include "solve/element.h"
+#include "solve/vertex_term.h"
 
 /* Both are c/2 |x - y|^2 with y = x_prev + a v_prev. */
 typedef struct Kinetic {
@@ -8,29 +9,6 @@ typedef struct Kinetic {
     double *mass; /* [vertex_count]; NULL: damping */
     int damping;  /* first entry in p              */
 } Kinetic;
-
-static int kinetic_count(const void *self)
-{
-    return ((const Kinetic *)self)->vertex_count;
-}
-
-static int kinetic_size(const void *self)
-{
-    (void)self;
-    return 3;
-}
-
-static void kinetic_dofs(const void *self, int vertex, int *dof)
-{
-    (void)self;
-    for (int i = 0; i < 3; i++) dof[i] = 3 * vertex + i;
-}
-
-static int vertex_of_lane(const Kinetic *kinetic, int pack, int lane)
-{
-    int vertex = pack * PACK_LANES + lane, last = kinetic->vertex_count - 1;
-    return vertex < last ? vertex : last;
-}
 
 /* c, N/m; 0 in statics. */
 static Pack stiffness(const Kinetic *kinetic, int pack, const Point *at)
@@ -111,9 +89,9 @@ static void kinetic_destroy(void *self)
 
 static const TermOps inertia_ops = {
     .name = "inertia",
-    .count = kinetic_count,
-    .size = kinetic_size,
-    .dofs = kinetic_dofs,
+    .count = vertex_term_count,
+    .size = vertex_term_size,
+    .dofs = vertex_term_dofs,
     .eval = kinetic_eval,
     .prev = kinetic_prev,
     .prev_forward = kinetic_prev_forward,
@@ -122,9 +100,9 @@ static const TermOps inertia_ops = {
 
 static const TermOps damping_ops = {
     .name = "damping",
-    .count = kinetic_count,
-    .size = kinetic_size,
-    .dofs = kinetic_dofs,
+    .count = vertex_term_count,
+    .size = vertex_term_size,
+    .dofs = vertex_term_dofs,
     .eval = kinetic_eval,
     .param = damping_param,
     .param_forward = damping_param_forward,

@@ -1,35 +1,13 @@
 #include "solve/lumped.h"
 #include "base/memory.h"
 #include "solve/element.h"
+#include "solve/vertex_term.h"
 
 typedef struct Lumped {
     int vertex_count;
     int block;    /* gravity: first of three numbers in p; load: first of three per vertex */
     double *mass; /* [vertex_count]; NULL for loads                                        */
 } Lumped;
-
-static int lumped_count(const void *self)
-{
-    return ((const Lumped *)self)->vertex_count;
-}
-
-static int lumped_size(const void *self)
-{
-    (void)self;
-    return 3;
-}
-
-static void lumped_dofs(const void *self, int vertex, int *dof)
-{
-    (void)self;
-    for (int i = 0; i < 3; i++) dof[i] = 3 * vertex + i;
-}
-
-static int vertex_of_lane(const Lumped *lumped, int pack, int lane)
-{
-    int vertex = pack * PACK_LANES + lane, last = lumped->vertex_count - 1;
-    return vertex < last ? vertex : last;
-}
 
 /* The potential's gradient -f of coordinate i, for values laid out as p. */
 static Pack slope(const Lumped *lumped, int pack, int i, const double *values)
@@ -55,7 +33,8 @@ static Pack lumped_eval(const void *self, int pack, const Point *at, const Pack 
     return energy;
 }
 
-static void lumped_param(const void *self, int pack, int lanes, const Point *at, const Pack *x, const Pack *w, double *dp)
+static void lumped_param(const void *self, int pack, int lanes, const Point *at, const Pack *x, const Pack *w,
+                         double *dp)
 {
     (void)at, (void)x;
     const Lumped *lumped = self;
@@ -69,7 +48,8 @@ static void lumped_param(const void *self, int pack, int lanes, const Point *at,
         }
 }
 
-static void lumped_param_forward(const void *self, int pack, const Point *at, const Pack *x, const double *dp, Pack *r)
+static void lumped_param_forward(const void *self, int pack, const Point *at, const Pack *x, const double *dp,
+                                 Pack *r)
 {
     (void)at, (void)x;
     for (int i = 0; i < 3; i++) r[i] = slope(self, pack, i, dp);
@@ -81,10 +61,11 @@ static void lumped_destroy(void *self)
     mem_free(self);
 }
 
-#define LUMPED_OPS(row_name)                                                                                       \
-    {                                                                                                              \
-        .name = row_name, .count = lumped_count, .size = lumped_size, .dofs = lumped_dofs, .eval = lumped_eval,    \
-        .param = lumped_param, .param_forward = lumped_param_forward, .destroy = lumped_destroy,                   \
+#define LUMPED_OPS(row_name)                                                                                 \
+    {                                                                                                        \
+        .name = row_name, .count = vertex_term_count, .size = vertex_term_size, .dofs = vertex_term_dofs,    \
+        .eval = lumped_eval, .param = lumped_param, .param_forward = lumped_param_forward,                   \
+        .destroy = lumped_destroy,                                                                           \
     }
 
 static const TermOps gravity_ops = LUMPED_OPS("gravity");
