@@ -7,3 +7,4 @@ void bench_shell_hessian(void);
 void bench_newton(void);
 void bench_factor(void);
 void bench_design(void);
+void bench_march(void);

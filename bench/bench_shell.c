@@ -2,68 +2,13 @@
 #include "base/clock.h"
 #include "base/memory.h"
 #include "bench/bench.h"
-#include "shell/shapes.h"
-#include "shell/shell.h"
+#include "bench/sheet.h"
 #include "solve/newton.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-enum { CELLS = 64, REPEATS = 30 };
-
-typedef struct Sheet {
-    Shell *shell;
-    System *sys;
-    double *p, *x, *gradient;
-} Sheet;
-
-/* 0.1 m square, held at x = 0, magnetised along x in a field across. */
-static Sheet make_sheet(BendingModel bending)
-{
-    Sheet s;
-    MeshFile file;
-    Error err;
-    if (!shape_sheet((double[]){0.1, 0.1}, (int[]){CELLS, CELLS}, PATTERN_RIGHT, &file, &err)) abort();
-    Mesh *mesh = mesh_create(&file, 0, NULL, &err);
-    mesh_file_clear(&file);
-    s.shell = shell_create(mesh);
-    s.shell->thickness = 1e-3, s.shell->poisson = 0.45, s.shell->density = 1000, s.shell->bending = bending;
-    for (int v = 0; v < mesh->vertex_count; v++)
-        for (int i = 0; mesh->rest[v][0] < 1e-9 && i < 3; i++) shell_fix(s.shell, v, i);
-    for (int e = 0; e < mesh->edge_count; e++)
-        if (mesh->rest[mesh->edges[e][0]][0] < 1e-9 && mesh->rest[mesh->edges[e][1]][0] < 1e-9)
-            shell_clamp(s.shell, e);
-    s.sys = shell_system(s.shell);
-    s.p = mem_alloc((size_t)s.shell->params.size, sizeof(double));
-    s.x = mem_alloc((size_t)shell_dof_count(s.shell), sizeof(double));
-    s.gradient = mem_alloc((size_t)shell_dof_count(s.shell), sizeof(double));
-    shell_default_params(s.shell, s.p);
-    for (int f = 0; f < mesh->face_count; f++)
-        s.p[s.shell->young + f] = 1e5, s.p[s.shell->magnetization + 3 * f] = 1e4;
-    s.p[s.shell->flux_density + 2] = 2e-3;
-    shell_rest_state(s.shell, s.x);
-    return s;
-}
-
-/* Rolled by half a radian in all. */
-static void bend(Sheet *s)
-{
-    const double k = 5;
-    for (int v = 0; v < s->shell->mesh->vertex_count; v++) {
-        double x = s->shell->mesh->rest[v][0];
-        s->x[3 * v] = sin(k * x) / k;
-        s->x[3 * v + 2] = (1 - cos(k * x)) / k;
-    }
-}
-
-static void free_sheet(Sheet *s)
-{
-    system_destroy(s->sys);
-    shell_destroy(s->shell);
-    mem_free(s->p);
-    mem_free(s->x);
-    mem_free(s->gradient);
-}
+enum { REPEATS = 30 };
 
 /* Best of many: the machine's other work only ever adds. */
 static double hessian_seconds(Sheet *s)
@@ -93,13 +38,13 @@ void bench_shell_hessian(void)
 {
     static const char *const names[] = {[BENDING_MIDEDGE] = "midedge", [BENDING_HINGE] = "hinge"};
     for (BendingModel bending = BENDING_MIDEDGE; bending <= BENDING_HINGE; bending++) {
-        Sheet s = make_sheet(bending);
+        Sheet s = sheet_create(bending, false);
         char name[80];
-        bend(&s);
+        sheet_bend(&s);
         double seconds = hessian_seconds(&s);
         snprintf(name, sizeof name, "shell_hessian_%s_us_per_triangle", names[bending]);
         bench_print(name, 1e6 * seconds / s.shell->mesh->face_count, "us");
-        free_sheet(&s);
+        sheet_clear(&s);
     }
 }
 
@@ -107,7 +52,7 @@ void bench_newton(void)
 {
     static const char *const names[] = {[BENDING_MIDEDGE] = "midedge", [BENDING_HINGE] = "hinge"};
     for (BendingModel bending = BENDING_MIDEDGE; bending <= BENDING_HINGE; bending++) {
-        Sheet s = make_sheet(bending);
+        Sheet s = sheet_create(bending, false);
         NewtonDef def = newton_default();
         char name[80];
         double start = clock_seconds();
@@ -119,7 +64,7 @@ void bench_newton(void)
         bench_print(name, 1e3 * seconds / info.iterations, "ms");
         snprintf(name, sizeof name, "other_over_newton%s", bending == BENDING_HINGE ? "_hinge" : "");
         bench_print(name, 1 - (sparse.factor_seconds + sparse.solve_seconds) / seconds, "ratio");
-        free_sheet(&s);
+        sheet_clear(&s);
     }
 }
 
@@ -145,12 +90,12 @@ static double dgemm_flops(void)
 
 void bench_factor(void)
 {
-    Sheet s = make_sheet(BENDING_MIDEDGE);
-    bend(&s);
+    Sheet s = sheet_create(BENDING_MIDEDGE, false);
+    sheet_bend(&s);
     double assembly = hessian_seconds(&s), factor = factor_seconds(&s),
            speed = system_info(s.sys).factor_flops / factor;
     bench_print("factor_ms", 1e3 * factor, "ms");
     bench_print("assembly_over_factor", assembly / factor, "ratio");
     bench_print("factor_over_dgemm", speed / dgemm_flops(), "ratio");
-    free_sheet(&s);
+    sheet_clear(&s);
 }

@@ -11,6 +11,7 @@ static const struct {
     {"shell_hessian", bench_shell_hessian},
     {"newton", bench_newton},
     {"factor", bench_factor},
+    {"march", bench_march},
     {"design", bench_design},
 };
 

@@ -221,7 +221,7 @@ static bool recall(void *self, double *u)
 static void find_start(DesignJob *job)
 {
     RampDef def = ramp_default();
-    def.newton = run_newton(job->run);
+    run_newton(job->run, &def.newton);
     def.observer = run_observer(job->run);
     for (int c = 0; c < job->run->model->case_count; c++) {
         LoadCase *load = &job->cases[c];
@@ -354,7 +354,7 @@ RunStatus job_design(Run *run, Error *err)
     design_bounds(&model->design, job.lower, job.upper);
     if (job.recorded <= 0) find_start(&job);
     StaticDesignDef def = static_design_default();
-    def.newton = run_newton(run);
+    run_newton(run, &def.newton);
     def.observer = run_observer(run);
     def.threads = run->threads;
     job.sd = static_design_create(&model->design, &model->shell->params, job.cases, &def);

@@ -22,7 +22,7 @@ static RampInfo solve_stage(Run *run, const ModelCase *c, int stage, double *x)
 {
     Mover mover = {.model = run->model, .time = c->stages[stage].time};
     RampDef def = ramp_default();
-    def.newton = run_newton(run);
+    run_newton(run, &def.newton);
     def.observer = run_observer(run);
     if (run->scene->load_steps.mode < 0) def.steps = run->scene->load_steps.count;
     if (run->model->motion_count) def.move = move, def.self = &mover;

@@ -15,7 +15,8 @@ static NewtonStatus relax_angles(Run *run, ModelCase *c)
     memcpy(shell->fixed, fixed, positions * sizeof *fixed);
     mem_free(fixed);
     NewtonStatus status = NEWTON_CONVERGED;
-    NewtonDef def = run_newton(run);
+    NewtonDef def = newton_default();
+    run_newton(run, &def);
     Point at = {.x = c->x, .p = c->stages[0].p, .time = c->stages[0].time};
     system_accept(held, &at);
     if (system_free_count(held))

@@ -123,7 +123,7 @@ static RunStatus march(Simulation *s)
     s->step = find_start(s);
     if (s->step < 0) return RUN_CANNOT_WRITE;
     MarchDef def = march_default();
-    def.newton = run_newton(s->run);
+    run_newton(s->run, &def.newton);
     def.observer = run_observer(s->run);
     def.load = load, def.self = s;
     if (s->run->model->motion_count) def.move = move;

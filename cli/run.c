@@ -15,13 +15,11 @@ NewtonObserver run_observer(Run *run)
     return (NewtonObserver){go_on, run};
 }
 
-NewtonDef run_newton(const Run *run)
+void run_newton(const Run *run, NewtonDef *def)
 {
-    NewtonDef def = newton_default();
-    def.max_iterations = run->scene->solver.max_iterations;
-    def.step_tol = run->scene->solver.step_tolerance;
-    def.force_tol = run->scene->solver.force_tolerance;
-    return def;
+    def->max_iterations = run->scene->solver.max_iterations;
+    def->step_tol = run->scene->solver.step_tolerance;
+    def->force_tol = run->scene->solver.force_tolerance;
 }
 
 /* ---- A growing list of arrays, with the texts and numbers that belong to it ---- */

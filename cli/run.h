@@ -29,8 +29,8 @@ char *run_versions(void);
 /* Stops a solve after an interruption (progress.h). */
 NewtonObserver run_observer(Run *run);
 
-/* Tolerances of the scene. */
-NewtonDef run_newton(const Run *run);
+/* Puts the scene's tolerances over the defaults. */
+void run_newton(const Run *run, NewtonDef *def);
 
 /* One state to be shown or stored: x[dofs] in equilibrium with p[params] of a case. */
 typedef struct State {

@@ -14,7 +14,10 @@ typedef struct March {
 
 MarchDef march_default(void)
 {
-    return (MarchDef){.newton = newton_default(), .cuts = 10};
+    MarchDef def = {.newton = newton_default(), .cuts = 10};
+    def.newton.energy_tol = 1e-10;
+    def.newton.cg_iterations = 12;
+    return def;
 }
 
 /* The previous state or the inertial guess x + dt v, whichever has less energy. */
@@ -39,6 +42,7 @@ static void add_counts(MarchInfo *info, const NewtonInfo *newton)
     NewtonInfo sum = *newton;
     sum.iterations += info->newton.iterations;
     sum.factorizations += info->newton.factorizations;
+    sum.cg_iterations += info->newton.cg_iterations;
     sum.evaluations += info->newton.evaluations;
     info->newton = sum;
 }

@@ -31,7 +31,7 @@ typedef struct Search {
 NewtonDef newton_default(void)
 {
     return (NewtonDef){.max_iterations = 300, .step_tol = 1e-8, .force_tol = 1e-6, .step_cap = 0.25,
-                       .shift_first = 1e-8, .shift_growth = 4, .armijo = 1e-4, .shifted_max = 3};
+                       .cg_tol = 1e-3, .shift_first = 1e-8, .shift_growth = 4, .armijo = 1e-4, .shifted_max = 3};
 }
 
 static const struct {
@@ -198,11 +198,36 @@ static bool leave_saddle(Search *s, bool small, double floor, NewtonStatus *stat
     return *status != NEWTON_MAX_ITERATIONS;
 }
 
-static void newton_step(Search *s)
+/* step = -H^-1 gradient: by conjugate gradients where they do, else with a new factor, shifted if need be. False where no
+ * shift makes the matrix positive definite. */
+static bool newton_step(Search *s, bool small)
 {
-    system_solve(s->sys, s->gradient, s->step);
+    int iterations = -1;
+    if (s->def->cg_iterations > 0 && s->shift_kept == 0)
+        iterations = system_solve_cg(s->sys, s->gradient, s->def->cg_tol, s->def->cg_iterations, s->step);
+    if (iterations >= 0) {
+        s->info.cg_iterations += iterations;
+    } else {
+        if (!factor_shifted(s)) return false;
+        if (small && s->shift > 0 && s->shift_kept > 0) { /* a remembered shift proves nothing */
+            if (factor(s, 0))
+                s->shift = 0;
+            else
+                factor(s, s->shift);
+        }
+        s->shift_kept = s->shift;
+        system_solve(s->sys, s->gradient, s->step);
+    }
     for (int i = 0; i < s->n; i++) s->step[i] = -s->step[i];
     s->info.step = system_step_size(s->sys, s->step);
+    return true;
+}
+
+static bool is_converged(const Search *s, bool small)
+{
+    if (s->shift > 0) return false;
+    double gain = -dot(s->n, s->gradient, s->step);
+    return (small && s->info.step <= s->def->step_tol) || gain <= s->def->energy_tol * s->now.energy_scale;
 }
 
 /* A largest force below this is rounding of the coordinates times the stiffness. */
@@ -220,20 +245,12 @@ static NewtonStatus iterate(Search *s)
     s->now = system_hessian(s->sys, &s->at, s->gradient);
     s->info.evaluations++;
     if (!s->now.finite) return NEWTON_NOT_FINITE;
-    if (!factor_shifted(s)) return NEWTON_STALLED;
 
     double floor = round_off(s);
     bool small = s->now.gradient_max <= fmax(s->def->force_tol * s->now.force_scale, floor);
-    if (small && s->shift > 0 && s->shift_kept > 0) { /* a remembered shift proves nothing */
-        if (factor(s, 0))
-            s->shift = 0;
-        else
-            factor(s, s->shift);
-    }
-    s->shift_kept = s->shift;
+    if (!newton_step(s, small)) return NEWTON_STALLED;
     s->shifted = s->shift > 0 ? s->shifted + 1 : 0;
-    newton_step(s);
-    if (small && s->shift == 0 && s->info.step <= s->def->step_tol) {
+    if (is_converged(s, small)) {
         finish(s);
         return NEWTON_CONVERGED;
     }

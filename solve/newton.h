@@ -11,6 +11,9 @@ typedef struct NewtonDef {
     int max_iterations;  /* default 300                                                                          */
     double step_tol;     /* converged when the Newton step is smaller, in the body's measure; default 1e-8        */
     double force_tol;    /* ... and no force exceeds this part of the element forces; default 1e-6               */
+    double energy_tol;   /* ... or when what the step will gain is less than this part of the energies; 0: not   */
+    int cg_iterations;   /* at most so many conjugate gradients with the last factor before a new one; default 0  */
+    double cg_tol;       /* ... until the residual fell to this part; default 1e-3                               */
     double step_cap;     /* largest step, body's measure; default 0.25                                           */
     double shift_first;  /* smallest shift tried, in parts of D; default 1e-8                                    */
     double shift_growth; /* factor between tries, and back after a success; default 4                            */
@@ -32,7 +35,7 @@ typedef enum NewtonStatus {
 
 typedef struct NewtonInfo {
     NewtonStatus status;
-    int iterations, factorizations, evaluations;
+    int iterations, factorizations, cg_iterations, evaluations;
     double energy, gradient_max, force_scale; /* at the final x: J, N, N                            */
     double step;                              /* the last Newton step, body's measure                */
     double curvature;                         /* lowest v'Hv/v'Dv seen at a saddle or neutral point  */
@@ -45,9 +48,10 @@ typedef struct NewtonObserver {
 } NewtonObserver;
 
 /* Starts from x and leaves the final iterate there; observer may be NULL. `at` gives p and time and, in a step of time,
- * x_prev, v_prev and dt; its x is not looked at. After NEWTON_CONVERGED the system holds the factor of the
- * (base-shifted) Hessian at the point from which the last, negligible step was taken (system_linearised), ready for an
- * adjoint. */
+ * x_prev, v_prev and dt; its x is not looked at. Without conjugate gradients the system holds, after NEWTON_CONVERGED, the
+ * factor of the (base-shifted) Hessian at the point from which the last, negligible step was taken (system_linearised),
+ * ready for an adjoint. With them, the factor is an older one, and that the point is a minimum is known only of the
+ * directions that they have seen. */
 NewtonInfo newton_minimize(System *sys, const NewtonDef *def, const Point *at, double *x, const NewtonObserver *observer);
 
 /* One word: "converged", "saddle", ... and a sentence for the user. */

@@ -19,10 +19,12 @@ struct Sparse {
     cholmod_common common;
     cholmod_sparse *a; /* lower triangle, permuted; every diagonal entry is the first of its column */
     cholmod_factor *factor;
+    const cholmod_factor *at_hand; /* factor, or one that was kept */
     cholmod_dense *b, *x, *work_y, *work_e;
     int *rank; /* [n] where unknown i went */
     double *values;
     double *diagonal; /* [n] kept aside while a shift stands on the diagonal */
+    double *cg;       /* [4][n] x, residual, direction, product of it; permuted  */
     SparseInfo info;
 };
 
@@ -134,6 +136,12 @@ static void start_cholmod(cholmod_common *common)
     common->quick_return_if_not_posdef = 1;
 }
 
+static long factor_bytes(const cholmod_factor *factor)
+{
+    long numbers = (long)(factor->is_super ? factor->xsize : factor->nzmax);
+    return numbers * (long)sizeof(double) + (factor->is_super ? 0 : numbers * (long)sizeof(int));
+}
+
 Sparse *sparse_create(int n, int element_count, const long *element_start, const int *element_dofs)
 {
     Sparse *matrix = mem_alloc(1, sizeof *matrix);
@@ -155,7 +163,9 @@ Sparse *sparse_create(int n, int element_count, const long *element_start, const
     matrix->common.postorder = 0; /* the ordering above is already postordered */
     matrix->factor = cholmod_analyze(matrix->a, &matrix->common);
     check_memory(&matrix->common);
+    matrix->at_hand = matrix->factor;
     matrix->info.factor_nonzeros = (long)matrix->common.lnz;
+    matrix->info.factor_bytes = factor_bytes(matrix->factor);
     matrix->info.factor_flops = matrix->common.fl;
     matrix->b = cholmod_zeros((size_t)n, 1, CHOLMOD_REAL, &matrix->common);
     return matrix;
@@ -179,6 +189,7 @@ void sparse_destroy(Sparse *matrix)
     mem_free(matrix->rank);
     mem_free(matrix->values);
     mem_free(matrix->diagonal);
+    mem_free(matrix->cg);
     mem_free(matrix);
 }
 
@@ -235,6 +246,7 @@ bool sparse_factor(Sparse *matrix, const double *shift)
         if (shift) *entry += shift[i];
     }
     bool finite = all_finite(matrix->values, sparse_nonzeros(matrix));
+    matrix->at_hand = matrix->factor;
     if (finite) cholmod_factorize(matrix->a, matrix->factor, &matrix->common);
     check_memory(&matrix->common);
     for (int i = 0; i < matrix->n; i++) matrix->values[start[matrix->rank[i]]] = matrix->diagonal[i];
@@ -244,37 +256,112 @@ bool sparse_factor(Sparse *matrix, const double *shift)
     return finite && matrix->common.status == CHOLMOD_OK && matrix->factor->minor == (size_t)matrix->n;
 }
 
+/* Permuted, from matrix->b to matrix->x. */
+static void solve_permuted(Sparse *matrix)
+{
+    double begin = clock_seconds();
+    /* cholmod_solve2 does not change the factor, although it does not say so. */
+    cholmod_solve2(CHOLMOD_A, (cholmod_factor *)matrix->at_hand, matrix->b, NULL, &matrix->x, NULL, &matrix->work_y,
+                   &matrix->work_e, &matrix->common);
+    check_memory(&matrix->common);
+    matrix->info.solves++;
+    matrix->info.solve_seconds += clock_seconds() - begin;
+}
+
 void sparse_solve(Sparse *matrix, const double *b, double *x)
 {
     if (matrix->n == 0) return;
-    double begin = clock_seconds();
     double *from = matrix->b->x;
     for (int i = 0; i < matrix->n; i++) from[matrix->rank[i]] = b[i];
-    cholmod_solve2(CHOLMOD_A, matrix->factor, matrix->b, NULL, &matrix->x, NULL, &matrix->work_y, &matrix->work_e,
-                   &matrix->common);
-    check_memory(&matrix->common);
+    solve_permuted(matrix);
     const double *to = matrix->x->x;
     for (int i = 0; i < matrix->n; i++) x[i] = to[matrix->rank[i]];
-    matrix->info.solves++;
-    matrix->info.solve_seconds += clock_seconds() - begin;
+}
+
+static void multiply_permuted(const Sparse *matrix, const double *from, double *to)
+{
+    const int *start = matrix->a->p, *rows = matrix->a->i;
+    memset(to, 0, (size_t)matrix->n * sizeof *to);
+    for (int column = 0; column < matrix->n; column++) {
+        double x = from[column], sum = matrix->values[start[column]] * x;
+        for (int k = start[column] + 1; k < start[column + 1]; k++) {
+            to[rows[k]] += matrix->values[k] * x;
+            sum += matrix->values[k] * from[rows[k]];
+        }
+        to[column] += sum;
+    }
 }
 
 void sparse_multiply(const Sparse *matrix, const double *x, double *y)
 {
     int n = matrix->n;
     if (n == 0) return;
-    const int *start = matrix->a->p, *rows = matrix->a->i;
     double *from = mem_alloc(2 * (size_t)n, sizeof *from), *to = from + n;
     for (int i = 0; i < n; i++) from[matrix->rank[i]] = x[i];
-    for (int column = 0; column < n; column++) {
-        to[column] += matrix->values[start[column]] * from[column];
-        for (int k = start[column] + 1; k < start[column + 1]; k++) {
-            to[rows[k]] += matrix->values[k] * from[column];
-            to[column] += matrix->values[k] * from[rows[k]];
-        }
-    }
+    multiply_permuted(matrix, from, to);
     for (int i = 0; i < n; i++) y[i] = to[matrix->rank[i]];
     mem_free(from);
+}
+
+static double dot(int n, const double *a, const double *b)
+{
+    double sum = 0;
+    for (int i = 0; i < n; i++) sum += a[i] * b[i];
+    return sum;
+}
+
+/* matrix->x = M^-1 residual; returns the residual's size in that measure. */
+static double precondition(Sparse *matrix, const double *residual)
+{
+    memcpy(matrix->b->x, residual, (size_t)matrix->n * sizeof *residual);
+    solve_permuted(matrix);
+    return dot(matrix->n, residual, matrix->x->x);
+}
+
+int sparse_solve_cg(Sparse *matrix, const double *b, double tolerance, int max_iterations, double *x)
+{
+    int n = matrix->n, k = 0;
+    if (n == 0) return 0;
+    if (!matrix->cg) matrix->cg = mem_alloc(4 * (size_t)n, sizeof *matrix->cg);
+    double *solution = matrix->cg, *residual = solution + n, *direction = residual + n, *product = direction + n;
+    memset(solution, 0, (size_t)n * sizeof *solution);
+    for (int i = 0; i < n; i++) residual[matrix->rank[i]] = b[i];
+    double size = precondition(matrix, residual), stop = tolerance * tolerance * size;
+    memcpy(direction, matrix->x->x, (size_t)n * sizeof *direction);
+    for (; size > stop; k++) {
+        multiply_permuted(matrix, direction, product);
+        double curvature = dot(n, direction, product), a = size / curvature;
+        if (k == max_iterations || !(curvature > 0)) return -1;
+        for (int i = 0; i < n; i++) {
+            solution[i] += a * direction[i];
+            residual[i] -= a * product[i];
+        }
+        double next = precondition(matrix, residual), ratio = next / size;
+        const double *z = matrix->x->x;
+        for (int i = 0; i < n; i++) direction[i] = z[i] + ratio * direction[i];
+        size = next;
+    }
+    for (int i = 0; i < n; i++) x[i] = solution[matrix->rank[i]];
+    return isfinite(size) ? k : -1;
+}
+
+SparseFactor *sparse_keep(Sparse *matrix)
+{
+    if (matrix->n == 0) return NULL;
+    cholmod_factor *copy = cholmod_copy_factor((cholmod_factor *)matrix->at_hand, &matrix->common);
+    check_memory(&matrix->common);
+    return (SparseFactor *)copy;
+}
+
+void sparse_use(Sparse *matrix, const SparseFactor *factor)
+{
+    matrix->at_hand = (const cholmod_factor *)factor;
+}
+
+void sparse_factor_destroy(Sparse *matrix, SparseFactor *factor)
+{
+    cholmod_factor *owned = (cholmod_factor *)factor;
+    if (owned) cholmod_free_factor(&owned, &matrix->common);
 }
 
 SparseInfo sparse_info(const Sparse *matrix)

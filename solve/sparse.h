@@ -34,10 +34,23 @@ void sparse_solve(Sparse *matrix, const double *b, double *x);
 /* y = A x. */
 void sparse_multiply(const Sparse *matrix, const double *x, double *y);
 
+/* Solves A x = b by conjugate gradients with the factor at hand, of a matrix nearby, as preconditioner M, from x = 0
+ * until r'M^-1 r fell by tolerance^2. Returns the iterations; -1 when max_iterations were too few or A showed itself not
+ * positive definite. b and x may be the same. */
+int sparse_solve_cg(Sparse *matrix, const double *b, double tolerance, int max_iterations, double *x);
+
+/* A factor kept aside, by a copy of the one at hand; and made the one at hand again, until the next sparse_factor. The
+ * caller destroys it before the matrix, and not while it is at hand. */
+typedef struct SparseFactor SparseFactor;
+SparseFactor *sparse_keep(Sparse *matrix);
+void sparse_use(Sparse *matrix, const SparseFactor *factor);
+void sparse_factor_destroy(Sparse *matrix, SparseFactor *factor);
+
 /* What it cost. */
 typedef struct SparseInfo {
     long factor_nonzeros;        /* of L                                              */
     double factor_flops;         /* of one factorisation                              */
+    long factor_bytes;           /* of a factor that is kept                          */
     long factorizations, solves; /* so far, failed factorisations included            */
     double factor_seconds, solve_seconds;
 } SparseInfo;

@@ -1,34 +1,10 @@
-#include "solve/system.h"
+#include "solve/system_private.h"
 #include "base/memory.h"
 #include <assert.h>
 #include <math.h>
 #include <string.h>
 
 enum { MAX_LOWER = TERM_LOWER(TERM_MAX_DOF, 0) };
-
-/* A term and where its packs come from and go to. */
-typedef struct Entry {
-    Term term;
-    int count, size, packs, lower; /* elements, dofs each, packs, Hessian entries each                  */
-    int (*dofs)[PACK_LANES];       /* [pack*size + i] global dof                                         */
-    int (*slots)[PACK_LANES];      /* [pack*lower + k] place in the matrix; the bin for fixed dofs        */
-    int *twice;                    /* [3*twice_count] pack, entry, lane: two different dofs of an element */
-    int twice_count;               /*   that are the same global dof: (i, j) and (j, i) both count        */
-} Entry;
-
-struct System {
-    int dof_count, free_count, term_count, class_count;
-    Entry entries[SYSTEM_MAX_TERMS];
-    DofClass classes[SYSTEM_MAX_CLASSES];
-    bool *fixed;
-    int *unknown; /* [dof] number among the free ones, -1 if fixed */
-    Sparse *matrix;
-    double base, stiffness_max;
-    double *scale;       /* [dof] D                                     */
-    double *force_sum;   /* [dof] sum of absolute element forces        */
-    double *linearised;  /* [dof] x of the last Hessian                 */
-    double *work, *diag; /* [free]                                      */
-};
 
 System *system_create(int dof_count, const DofClass *classes, int class_count)
 {
@@ -42,7 +18,6 @@ System *system_create(int dof_count, const DofClass *classes, int class_count)
     sys->unknown = mem_alloc(n, sizeof(int));
     sys->scale = mem_alloc(n, sizeof(double));
     sys->force_sum = mem_alloc(n, sizeof(double));
-    sys->linearised = mem_alloc(n, sizeof(double));
     return sys;
 }
 
@@ -62,6 +37,7 @@ void system_destroy(System *sys)
     mem_free(sys->scale);
     mem_free(sys->force_sum);
     mem_free(sys->linearised);
+    mem_free(sys->anchor);
     mem_free(sys->work);
     mem_free(sys->diag);
     mem_free(sys);
@@ -153,6 +129,8 @@ void system_prepare(System *sys)
     sys->matrix = create_matrix(sys);
     sys->work = mem_alloc((size_t)sys->free_count, sizeof(double));
     sys->diag = mem_alloc((size_t)sys->free_count, sizeof(double));
+    sys->linearised = mem_alloc((size_t)system_anchor_count(sys), sizeof(double));
+    sys->anchor = mem_alloc((size_t)system_anchor_count(sys), sizeof(double));
     for (int t = 0; t < sys->term_count; t++) find_slots(sys, &sys->entries[t]);
 }
 
@@ -163,7 +141,7 @@ double system_base_shift(const System *sys) { return sys->base; }
 int system_term_count(const System *sys) { return sys->term_count; }
 const Term *system_term(const System *sys, int t) { return &sys->entries[t].term; }
 const double *system_scale(const System *sys) { return sys->scale; }
-const double *system_linearised(const System *sys) { return sys->linearised; }
+const double *system_linearised(const System *sys) { return sys->linearised + ANCHOR_X; }
 double system_stiffness_max(const System *sys) { return sys->stiffness_max; }
 int system_position_count(const System *sys) { return sys->classes[0].count; }
 SparseInfo system_info(const System *sys) { return sparse_info(sys->matrix); }
@@ -178,29 +156,29 @@ double system_step_size(const System *sys, const double *d)
     return size;
 }
 
-static void gather(const Entry *entry, int pack, const double *from, Pack *to)
+void system_gather(const Entry *entry, int pack, const double *from, Pack *to)
 {
     int(*dofs)[PACK_LANES] = &entry->dofs[pack * entry->size];
     for (int i = 0; i < entry->size; i++)
         for (int l = 0; l < PACK_LANES; l++) to[i][l] = from[dofs[i][l]];
 }
 
-static int lanes_of(const Entry *entry, int pack)
+int system_lanes(const Entry *entry, int pack)
 {
     int left = entry->count - pack * PACK_LANES;
     return left < PACK_LANES ? left : PACK_LANES;
 }
 
-static void scatter(const Entry *entry, int pack, const Pack *from, double *to)
+void system_scatter(const Entry *entry, int pack, const Pack *from, double *to)
 {
-    int(*dofs)[PACK_LANES] = &entry->dofs[pack * entry->size], lanes = lanes_of(entry, pack);
+    int(*dofs)[PACK_LANES] = &entry->dofs[pack * entry->size], lanes = system_lanes(entry, pack);
     for (int i = 0; i < entry->size; i++)
         for (int l = 0; l < lanes; l++) to[dofs[i][l]] += from[i][l];
 }
 
 static void scatter_gradient(System *sys, const Entry *entry, int pack, const Pack *g, double *gradient)
 {
-    int(*dofs)[PACK_LANES] = &entry->dofs[pack * entry->size], lanes = lanes_of(entry, pack);
+    int(*dofs)[PACK_LANES] = &entry->dofs[pack * entry->size], lanes = system_lanes(entry, pack);
     for (int i = 0; i < entry->size; i++)
         for (int l = 0; l < lanes; l++) {
             gradient[dofs[i][l]] += g[i][l];
@@ -230,9 +208,9 @@ static double evaluate_term(System *sys, const Entry *entry, const Point *at, do
     double energy = 0;
     int next_twice = 0;
     for (int k = 0; k < entry->packs; k++) {
-        gather(entry, k, at->x, x);
+        system_gather(entry, k, at->x, x);
         Pack e = entry->term.ops->eval(entry->term.self, k, at, x, gradient ? g : NULL, values ? H : NULL);
-        energy += pack_sum(e, lanes_of(entry, k));
+        energy += pack_sum(e, system_lanes(entry, k));
         if (gradient) scatter_gradient(sys, entry, k, g, gradient);
         if (values) {
             scatter_hessian(entry, k, H, values);
@@ -248,10 +226,10 @@ double system_term_energy(const System *sys, int t, const Point *at, double *ene
     Pack x[TERM_MAX_DOF];
     double sum = 0;
     for (int k = 0; k < entry->packs; k++) {
-        gather(entry, k, at->x, x);
+        system_gather(entry, k, at->x, x);
         Pack e = entry->term.ops->eval(entry->term.self, k, at, x, NULL, NULL);
-        sum += pack_sum(e, lanes_of(entry, k));
-        for (int l = 0; energy && l < lanes_of(entry, k); l++) energy[k * PACK_LANES + l] = e[l];
+        sum += pack_sum(e, system_lanes(entry, k));
+        for (int l = 0; energy && l < system_lanes(entry, k); l++) energy[k * PACK_LANES + l] = e[l];
     }
     return sum;
 }
@@ -314,119 +292,6 @@ Evaluation system_hessian(System *sys, const Point *at, double *gradient)
 {
     Evaluation result = evaluate(sys, at, gradient, sparse_values(sys->matrix));
     measure_scale(sys);
-    memcpy(sys->linearised, at->x, (size_t)sys->dof_count * sizeof *at->x);
+    system_note_point(sys, at);
     return result;
-}
-
-/* Free dofs of a whole vector. */
-static double *pick(const System *sys, const double *whole)
-{
-    for (int i = 0; i < sys->dof_count; i++)
-        if (sys->unknown[i] >= 0) sys->work[sys->unknown[i]] = whole[i];
-    return sys->work;
-}
-
-static void spread(const System *sys, const double *free, double *whole)
-{
-    for (int i = 0; i < sys->dof_count; i++) whole[i] = sys->unknown[i] >= 0 ? free[sys->unknown[i]] : 0;
-}
-
-bool system_factor(System *sys, double shift)
-{
-    double *diagonal = pick(sys, sys->scale);
-    for (int i = 0; i < sys->free_count; i++) diagonal[i] *= sys->base + shift;
-    return sparse_factor(sys->matrix, sys->base + shift > 0 ? diagonal : NULL);
-}
-
-bool system_factor_positions(System *sys, double sigma)
-{
-    for (int i = 0; i < sys->dof_count; i++)
-        if (sys->unknown[i] >= 0) sys->work[sys->unknown[i]] = i < sys->classes[0].count ? sigma : 0;
-    return sparse_factor(sys->matrix, sys->work);
-}
-
-double system_scale_mean(const System *sys)
-{
-    double mean = 0;
-    for (int i = 0; i < sys->classes[0].count; i++) mean = fmax(mean, sys->scale[i]);
-    return mean;
-}
-
-void system_solve(System *sys, const double *b, double *y)
-{
-    double *work = pick(sys, b);
-    sparse_solve(sys->matrix, work, work);
-    spread(sys, work, y);
-}
-
-void system_multiply(const System *sys, const double *v, double *y)
-{
-    double *work = pick(sys, v);
-    sparse_multiply(sys->matrix, work, work);
-    spread(sys, work, y);
-}
-
-void system_param(System *sys, const Point *at, const double *w, double *dp)
-{
-    Pack x[TERM_MAX_DOF], v[TERM_MAX_DOF];
-    for (int t = 0; t < sys->term_count; t++) {
-        const Entry *entry = &sys->entries[t];
-        for (int k = 0; entry->term.ops->param && k < entry->packs; k++) {
-            gather(entry, k, at->x, x);
-            gather(entry, k, w, v);
-            entry->term.ops->param(entry->term.self, k, lanes_of(entry, k), at, x, v, dp);
-        }
-    }
-}
-
-void system_param_forward(System *sys, const Point *at, const double *dp, double *r)
-{
-    Pack x[TERM_MAX_DOF], v[TERM_MAX_DOF];
-    memset(r, 0, (size_t)sys->dof_count * sizeof *r);
-    for (int t = 0; t < sys->term_count; t++) {
-        const Entry *entry = &sys->entries[t];
-        for (int k = 0; entry->term.ops->param_forward && k < entry->packs; k++) {
-            gather(entry, k, at->x, x);
-            entry->term.ops->param_forward(entry->term.self, k, at, x, dp, v);
-            scatter(entry, k, v, r);
-        }
-    }
-}
-
-void system_accept(System *sys, const Point *at)
-{
-    for (int t = 0; t < sys->term_count; t++)
-        if (sys->entries[t].term.ops->accept) sys->entries[t].term.ops->accept(sys->entries[t].term.self, at);
-}
-
-static double *term_memory(const Entry *entry, int *count)
-{
-    *count = 0;
-    return entry->term.ops->memory ? entry->term.ops->memory(entry->term.self, count) : NULL;
-}
-
-int system_memory_count(const System *sys)
-{
-    int total = 0, count;
-    for (int t = 0; t < sys->term_count; t++) {
-        term_memory(&sys->entries[t], &count);
-        total += count;
-    }
-    return total;
-}
-
-void system_memory_read(const System *sys, double *memory)
-{
-    for (int t = 0, count; t < sys->term_count; t++, memory += count) {
-        const double *from = term_memory(&sys->entries[t], &count);
-        if (count) memcpy(memory, from, (size_t)count * sizeof *memory);
-    }
-}
-
-void system_memory_write(System *sys, const double *memory)
-{
-    for (int t = 0, count; t < sys->term_count; t++, memory += count) {
-        double *to = term_memory(&sys->entries[t], &count);
-        if (count) memcpy(to, memory, (size_t)count * sizeof *memory);
-    }
 }

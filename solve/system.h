@@ -60,7 +60,7 @@ Evaluation system_gradient(System *sys, const Point *at, double *gradient);
 /* The same, and assembles the Hessian of the free dofs. */
 Evaluation system_hessian(System *sys, const Point *at, double *gradient);
 
-/* x[dof_count] of the last Hessian: where the factor stands. */
+/* x[dof_count] of the last Hessian. */
 const double *system_linearised(const System *sys);
 
 /* Factor of H + (base + shift) D, D = each class's mean |H_ii|. False where not positive definite. */
@@ -71,6 +71,22 @@ bool system_factor_positions(System *sys, double sigma);
 
 /* y = (H + (base + shift) D)^-1 b with the last factor. */
 void system_solve(System *sys, const double *b, double *y);
+
+/* Solves H y = b, H the last Hessian, by conjugate gradients with the last factor, of a Hessian nearby, as
+ * preconditioner; -1: not reached in max_iterations, no usable factor, or H not positive definite (sparse_solve_cg). */
+int system_solve_cg(System *sys, const double *b, double tolerance, int max_iterations, double *y);
+
+/* Factors kept aside and made the last one again (sparse_keep). */
+SparseFactor *system_keep_factor(System *sys);
+void system_use_factor(System *sys, const SparseFactor *factor);
+void system_free_factor(System *sys, SparseFactor *factor);
+
+/* What the last factor depends on beside p, in system_anchor_count() numbers, of which the second is the time: with it,
+ * and with p of that time, system_restore_factor makes the same factor again, bit by bit. A first number of 0 says that
+ * there is no usable factor. */
+int system_anchor_count(const System *sys);
+const double *system_anchor(const System *sys);
+void system_restore_factor(System *sys, const double *anchor, const double *p);
 
 /* y = H v, unshifted. */
 void system_multiply(const System *sys, const double *v, double *y);
@@ -88,6 +104,10 @@ void system_param(System *sys, const Point *at, const double *w, double *dp);
 
 /* r = d2E/dx dp . dp, r[dof_count]. */
 void system_param_forward(System *sys, const Point *at, const double *dp, double *r);
+
+/* dx, dv -= w^T d2E/dx d(x_prev, v_prev), and r += d2E/dx d(x_prev, v_prev) . (dx, dv); all [dof_count]. */
+void system_prev(System *sys, const Point *at, const double *w, double *dx, double *dv);
+void system_prev_forward(System *sys, const Point *at, const double *dx, const double *dv, double *r);
 
 /* Tells the terms that x is an accepted state. */
 void system_accept(System *sys, const Point *at);

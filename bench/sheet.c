@@ -1,0 +1,54 @@
+#include "bench/sheet.h"
+#include "base/memory.h"
+#include "shell/shapes.h"
+#include <math.h>
+#include <stdlib.h>
+
+enum { CELLS = 64 };
+
+Sheet sheet_create(BendingModel bending, bool dynamic)
+{
+    Sheet s;
+    MeshFile file;
+    Error err;
+    if (!shape_sheet((double[]){0.1, 0.1}, (int[]){CELLS, CELLS}, PATTERN_RIGHT, &file, &err)) abort();
+    Mesh *mesh = mesh_create(&file, 0, NULL, &err);
+    mesh_file_clear(&file);
+    s.shell = shell_create(mesh);
+    s.shell->thickness = 1e-3, s.shell->poisson = 0.45, s.shell->density = 1000, s.shell->bending = bending;
+    for (int v = 0; v < mesh->vertex_count; v++)
+        for (int i = 0; mesh->rest[v][0] < 1e-9 && i < 3; i++) shell_fix(s.shell, v, i);
+    for (int e = 0; e < mesh->edge_count; e++)
+        if (mesh->rest[mesh->edges[e][0]][0] < 1e-9 && mesh->rest[mesh->edges[e][1]][0] < 1e-9)
+            shell_clamp(s.shell, e);
+    s.sys = dynamic ? shell_dynamic_system(s.shell) : shell_system(s.shell);
+    s.p = mem_alloc((size_t)s.shell->params.size, sizeof(double));
+    s.x = mem_alloc((size_t)shell_dof_count(s.shell), sizeof(double));
+    s.gradient = mem_alloc((size_t)shell_dof_count(s.shell), sizeof(double));
+    shell_default_params(s.shell, s.p);
+    for (int f = 0; f < mesh->face_count; f++)
+        s.p[s.shell->young + f] = 1e5, s.p[s.shell->magnetization + 3 * f] = 1e4;
+    s.p[s.shell->flux_density + 2] = dynamic ? 0 : 2e-3;
+    s.p[s.shell->gravity + 2] = dynamic ? -9.81 : 0;
+    shell_rest_state(s.shell, s.x);
+    return s;
+}
+
+void sheet_bend(Sheet *s)
+{
+    const double k = 5;
+    for (int v = 0; v < s->shell->mesh->vertex_count; v++) {
+        double x = s->shell->mesh->rest[v][0];
+        s->x[3 * v] = sin(k * x) / k;
+        s->x[3 * v + 2] = (1 - cos(k * x)) / k;
+    }
+}
+
+void sheet_clear(Sheet *s)
+{
+    system_destroy(s->sys);
+    shell_destroy(s->shell);
+    mem_free(s->p);
+    mem_free(s->x);
+    mem_free(s->gradient);
+}

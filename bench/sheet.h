@@ -1,0 +1,16 @@
+/* sheet.h - the sheet of 8192 triangles that most cases measure: 0.1 m square, 1 mm thick, held at x = 0. */
+#pragma once
+#include "shell/shell.h"
+
+typedef struct Sheet {
+    Shell *shell;
+    System *sys;
+    double *p, *x, *gradient;
+} Sheet;
+
+/* In statics it is magnetised along x in a field across; in motion (dynamic) its weight is all there is. */
+Sheet sheet_create(BendingModel bending, bool dynamic);
+void sheet_clear(Sheet *s);
+
+/* Rolled by half a radian in all. */
+void sheet_bend(Sheet *s);

@@ -1,0 +1,220 @@
+#include "solve/system_private.h"
+#include "base/memory.h"
+#include <math.h>
+#include <string.h>
+
+/* Free dofs of a whole vector. */
+static double *pick(const System *sys, const double *whole)
+{
+    for (int i = 0; i < sys->dof_count; i++)
+        if (sys->unknown[i] >= 0) sys->work[sys->unknown[i]] = whole[i];
+    return sys->work;
+}
+
+static void spread(const System *sys, const double *free, double *whole)
+{
+    for (int i = 0; i < sys->dof_count; i++) whole[i] = sys->unknown[i] >= 0 ? free[sys->unknown[i]] : 0;
+}
+
+void system_note_point(System *sys, const Point *at)
+{
+    size_t n = (size_t)sys->dof_count;
+    double *to = sys->linearised + ANCHOR_X;
+    sys->linearised[ANCHOR_USABLE] = 1;
+    sys->linearised[ANCHOR_TIME] = at->time;
+    sys->linearised[ANCHOR_DT] = at->dt;
+    memcpy(to, at->x, n * sizeof *to);
+    if (at->x_prev) memcpy(to + n, at->x_prev, n * sizeof *to);
+    if (at->v_prev) memcpy(to + 2 * n, at->v_prev, n * sizeof *to);
+    system_memory_read(sys, to + 3 * n);
+}
+
+bool system_factor(System *sys, double shift)
+{
+    double *diagonal = pick(sys, sys->scale);
+    for (int i = 0; i < sys->free_count; i++) diagonal[i] *= sys->base + shift;
+    bool ok = sparse_factor(sys->matrix, sys->base + shift > 0 ? diagonal : NULL);
+    memcpy(sys->anchor, sys->linearised, (size_t)system_anchor_count(sys) * sizeof *sys->anchor);
+    sys->anchor[ANCHOR_USABLE] = sys->factored = ok;
+    sys->anchor[ANCHOR_SHIFT] = shift;
+    return ok;
+}
+
+int system_anchor_count(const System *sys)
+{
+    return ANCHOR_X + 3 * sys->dof_count + system_memory_count(sys);
+}
+
+const double *system_anchor(const System *sys)
+{
+    return sys->anchor;
+}
+
+void system_restore_factor(System *sys, const double *anchor, const double *p)
+{
+    size_t n = (size_t)sys->dof_count;
+    const double *x = anchor + ANCHOR_X;
+    sys->anchor[ANCHOR_USABLE] = sys->factored = false;
+    if (anchor[ANCHOR_USABLE] == 0) return;
+    int memory_count = system_memory_count(sys);
+    double *gradient = mem_alloc(n + (size_t)memory_count, sizeof *gradient), *memory = gradient + n;
+    system_memory_read(sys, memory);
+    system_memory_write(sys, x + 3 * n);
+    Point at = {.x = x, .p = p, .time = anchor[ANCHOR_TIME], .x_prev = x + n, .v_prev = x + 2 * n, .dt = anchor[ANCHOR_DT]};
+    system_hessian(sys, &at, gradient);
+    system_factor(sys, anchor[ANCHOR_SHIFT]);
+    system_memory_write(sys, memory);
+    mem_free(gradient);
+}
+
+bool system_factor_positions(System *sys, double sigma)
+{
+    for (int i = 0; i < sys->dof_count; i++)
+        if (sys->unknown[i] >= 0) sys->work[sys->unknown[i]] = i < sys->classes[0].count ? sigma : 0;
+    sys->anchor[ANCHOR_USABLE] = 0;
+    return sys->factored = sparse_factor(sys->matrix, sys->work);
+}
+
+double system_scale_mean(const System *sys)
+{
+    double mean = 0;
+    for (int i = 0; i < sys->classes[0].count; i++) mean = fmax(mean, sys->scale[i]);
+    return mean;
+}
+
+void system_solve(System *sys, const double *b, double *y)
+{
+    double *work = pick(sys, b);
+    sparse_solve(sys->matrix, work, work);
+    spread(sys, work, y);
+}
+
+int system_solve_cg(System *sys, const double *b, double tolerance, int max_iterations, double *y)
+{
+    if (!sys->factored) return -1;
+    double *work = pick(sys, b);
+    int iterations = sparse_solve_cg(sys->matrix, work, tolerance, max_iterations, work);
+    if (iterations >= 0) spread(sys, work, y);
+    return iterations;
+}
+
+SparseFactor *system_keep_factor(System *sys)
+{
+    return sparse_keep(sys->matrix);
+}
+
+/* It may serve solves, but where it stands is not known here any more. */
+void system_use_factor(System *sys, const SparseFactor *factor)
+{
+    sparse_use(sys->matrix, factor);
+    sys->anchor[ANCHOR_USABLE] = 0;
+    sys->factored = true;
+}
+
+void system_free_factor(System *sys, SparseFactor *factor)
+{
+    sparse_factor_destroy(sys->matrix, factor);
+}
+
+void system_multiply(const System *sys, const double *v, double *y)
+{
+    double *work = pick(sys, v);
+    sparse_multiply(sys->matrix, work, work);
+    spread(sys, work, y);
+}
+
+void system_param(System *sys, const Point *at, const double *w, double *dp)
+{
+    Pack x[TERM_MAX_DOF], v[TERM_MAX_DOF];
+    for (int t = 0; t < sys->term_count; t++) {
+        const Entry *entry = &sys->entries[t];
+        for (int k = 0; entry->term.ops->param && k < entry->packs; k++) {
+            system_gather(entry, k, at->x, x);
+            system_gather(entry, k, w, v);
+            entry->term.ops->param(entry->term.self, k, system_lanes(entry, k), at, x, v, dp);
+        }
+    }
+}
+
+void system_param_forward(System *sys, const Point *at, const double *dp, double *r)
+{
+    Pack x[TERM_MAX_DOF], v[TERM_MAX_DOF];
+    memset(r, 0, (size_t)sys->dof_count * sizeof *r);
+    for (int t = 0; t < sys->term_count; t++) {
+        const Entry *entry = &sys->entries[t];
+        for (int k = 0; entry->term.ops->param_forward && k < entry->packs; k++) {
+            system_gather(entry, k, at->x, x);
+            entry->term.ops->param_forward(entry->term.self, k, at, x, dp, v);
+            system_scatter(entry, k, v, r);
+        }
+    }
+}
+
+void system_prev(System *sys, const Point *at, const double *w, double *dx, double *dv)
+{
+    Pack x[TERM_MAX_DOF], v[TERM_MAX_DOF], from_x[TERM_MAX_DOF], from_v[TERM_MAX_DOF];
+    for (int t = 0; t < sys->term_count; t++) {
+        const Entry *entry = &sys->entries[t];
+        for (int k = 0; entry->term.ops->prev && k < entry->packs; k++) {
+            system_gather(entry, k, at->x, x);
+            system_gather(entry, k, w, v);
+            entry->term.ops->prev(entry->term.self, k, at, x, v, from_x, from_v);
+            for (int i = 0; i < entry->size; i++) from_x[i] = -from_x[i], from_v[i] = -from_v[i];
+            system_scatter(entry, k, from_x, dx);
+            system_scatter(entry, k, from_v, dv);
+        }
+    }
+}
+
+void system_prev_forward(System *sys, const Point *at, const double *dx, const double *dv, double *r)
+{
+    Pack x[TERM_MAX_DOF], to_x[TERM_MAX_DOF], to_v[TERM_MAX_DOF], out[TERM_MAX_DOF];
+    for (int t = 0; t < sys->term_count; t++) {
+        const Entry *entry = &sys->entries[t];
+        for (int k = 0; entry->term.ops->prev_forward && k < entry->packs; k++) {
+            system_gather(entry, k, at->x, x);
+            system_gather(entry, k, dx, to_x);
+            system_gather(entry, k, dv, to_v);
+            entry->term.ops->prev_forward(entry->term.self, k, at, x, to_x, to_v, out);
+            system_scatter(entry, k, out, r);
+        }
+    }
+}
+
+void system_accept(System *sys, const Point *at)
+{
+    for (int t = 0; t < sys->term_count; t++)
+        if (sys->entries[t].term.ops->accept) sys->entries[t].term.ops->accept(sys->entries[t].term.self, at);
+}
+
+static double *term_memory(const Entry *entry, int *count)
+{
+    *count = 0;
+    return entry->term.ops->memory ? entry->term.ops->memory(entry->term.self, count) : NULL;
+}
+
+int system_memory_count(const System *sys)
+{
+    int total = 0, count;
+    for (int t = 0; t < sys->term_count; t++) {
+        term_memory(&sys->entries[t], &count);
+        total += count;
+    }
+    return total;
+}
+
+void system_memory_read(const System *sys, double *memory)
+{
+    for (int t = 0, count; t < sys->term_count; t++, memory += count) {
+        const double *from = term_memory(&sys->entries[t], &count);
+        if (count) memcpy(memory, from, (size_t)count * sizeof *memory);
+    }
+}
+
+void system_memory_write(System *sys, const double *memory)
+{
+    for (int t = 0, count; t < sys->term_count; t++, memory += count) {
+        double *to = term_memory(&sys->entries[t], &count);
+        if (count) memcpy(to, memory, (size_t)count * sizeof *memory);
+    }
+}

@@ -1,0 +1,39 @@
+/* system_private.h - what system.c (evaluation, assembly) and system_linear.c (factor, solve, products) share. */
+#pragma once
+#include "solve/system.h"
+
+/* A term and where its packs come from and go to. */
+typedef struct Entry {
+    Term term;
+    int count, size, packs, lower; /* elements, dofs each, packs, Hessian entries each                  */
+    int (*dofs)[PACK_LANES];       /* [pack*size + i] global dof                                         */
+    int (*slots)[PACK_LANES];      /* [pack*lower + k] place in the matrix; the bin for fixed dofs        */
+    int *twice;                    /* [3*twice_count] pack, entry, lane: two different dofs of an element */
+    int twice_count;               /*   that are the same global dof: (i, j) and (j, i) both count        */
+} Entry;
+
+struct System {
+    int dof_count, free_count, term_count, class_count;
+    Entry entries[SYSTEM_MAX_TERMS];
+    DofClass classes[SYSTEM_MAX_CLASSES];
+    bool *fixed, factored; /* factored: the last factor may be used */
+    int *unknown; /* [dof] number among the free ones, -1 if fixed */
+    Sparse *matrix;
+    double base, stiffness_max;
+    double *scale;       /* [dof] D                                     */
+    double *force_sum;   /* [dof] sum of absolute element forces        */
+    double *linearised;  /* [anchor_count] where the last Hessian stands: see system_anchor */
+    double *anchor;      /* [anchor_count] where the last factor stands                     */
+    double *work, *diag; /* [free]                                      */
+};
+
+/* Entries of an anchor before its vectors x, x_prev, v_prev [dof] each and the terms' memory. */
+enum { ANCHOR_USABLE, ANCHOR_TIME, ANCHOR_DT, ANCHOR_SHIFT, ANCHOR_X };
+
+/* x of a pack's elements from a whole vector, and the sum of its elements' numbers into one. */
+void system_gather(const Entry *entry, int pack, const double *from, Pack *to);
+void system_scatter(const Entry *entry, int pack, const Pack *from, double *to);
+int system_lanes(const Entry *entry, int pack);
+
+/* Notes where the Hessian that was just assembled stands. */
+void system_note_point(System *sys, const Point *at);
