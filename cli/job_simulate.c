@@ -35,6 +35,11 @@ static State shown_state(const Simulation *s)
     return (State){s->c, s->p, s->now.x, s->now.time, NEWTON_CONVERGED};
 }
 
+static size_t anchor_count(const Simulation *s)
+{
+    return (size_t)system_anchor_count(s->c->sys);
+}
+
 static bool put_step(Simulation *s, int frame, int step)
 {
     int slot = frame % 2;
@@ -46,8 +51,22 @@ static bool put_step(Simulation *s, int frame, int step)
            run_put_state(s->run, slot, "x", s->now.x, dofs, s->err) &&
            run_put_state(s->run, slot, "v", s->now.v, dofs, s->err) &&
            run_put_state(s->run, slot, "memory", s->memory, (size_t)system_memory_count(s->c->sys), s->err) &&
+           run_put_state(s->run, slot, "anchor", system_anchor(s->c->sys), anchor_count(s), s->err) &&
            run_put_state(s->run, slot, "time", &s->now.time, 1, s->err) &&
            run_put_state(s->run, slot, "step", &number, 1, s->err);
+}
+
+/* The factor that the next step's conjugate gradients begin with, as it was. */
+static bool restore_factor(Simulation *s, int slot)
+{
+    double *anchor = mem_alloc(anchor_count(s), sizeof *anchor);
+    bool ok = run_get_state(s->run, slot, "anchor", anchor, anchor_count(s));
+    if (ok) {
+        load(s, system_anchor_time(anchor), s->p);
+        system_restore_factor(s->c->sys, anchor, s->p);
+    }
+    mem_free(anchor);
+    return ok;
 }
 
 static bool get_slot(Simulation *s, int slot)
@@ -56,7 +75,7 @@ static bool get_slot(Simulation *s, int slot)
     if (!run_get_state(s->run, slot, "x", s->now.x, dofs) ||
         !run_get_state(s->run, slot, "v", s->now.v, dofs) ||
         !run_get_state(s->run, slot, "memory", s->memory, (size_t)system_memory_count(s->c->sys)) ||
-        !run_get_state(s->run, slot, "time", &s->now.time, 1))
+        !run_get_state(s->run, slot, "time", &s->now.time, 1) || !restore_factor(s, slot))
         return false;
     system_memory_write(s->c->sys, s->memory);
     return true;
@@ -82,9 +101,11 @@ static int find_start(Simulation *s)
 /* How a step went, for history/. */
 static bool put_history(Simulation *s, int step, const MarchInfo *info)
 {
-    double iterations = info->newton.iterations, factorizations = info->newton.factorizations;
+    double iterations = info->newton.iterations, factorizations = info->newton.factorizations,
+           cg_iterations = info->newton.cg_iterations;
     Array arrays[] = {array_float("newton_iterations", "", &iterations, 0, 0, 0),
                       array_float("factorizations", "", &factorizations, 0, 0, 0),
+                      array_float("cg_iterations", "", &cg_iterations, 0, 0, 0),
                       array_float("time", "s", &s->now.time, 0, 0, 0)};
     return journal_put(s->run->journal, "evaluation", step, arrays, sizeof arrays / sizeof *arrays, s->err);
 }

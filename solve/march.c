@@ -16,7 +16,7 @@ MarchDef march_default(void)
 {
     MarchDef def = {.newton = newton_default(), .cuts = 10};
     def.newton.energy_tol = 1e-10;
-    def.newton.cg_iterations = 12;
+    def.newton.cg_iterations = 8;
     return def;
 }
 

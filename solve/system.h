@@ -81,11 +81,11 @@ SparseFactor *system_keep_factor(System *sys);
 void system_use_factor(System *sys, const SparseFactor *factor);
 void system_free_factor(System *sys, SparseFactor *factor);
 
-/* What the last factor depends on beside p, in system_anchor_count() numbers, of which the second is the time: with it,
- * and with p of that time, system_restore_factor makes the same factor again, bit by bit. A first number of 0 says that
- * there is no usable factor. */
+/* What the last factor depends on beside p, in system_anchor_count() numbers: with it, and with p of its time,
+ * system_restore_factor makes the same factor again, bit by bit; or none, where there was no usable one. */
 int system_anchor_count(const System *sys);
 const double *system_anchor(const System *sys);
+double system_anchor_time(const double *anchor);
 void system_restore_factor(System *sys, const double *anchor, const double *p);
 
 /* y = H v, unshifted. */

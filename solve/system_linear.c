@@ -50,6 +50,11 @@ const double *system_anchor(const System *sys)
     return sys->anchor;
 }
 
+double system_anchor_time(const double *anchor)
+{
+    return anchor[ANCHOR_TIME];
+}
+
 void system_restore_factor(System *sys, const double *anchor, const double *p)
 {
     size_t n = (size_t)sys->dof_count;
