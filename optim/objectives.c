@@ -23,10 +23,10 @@ static double target_value(const void *self, double weight, const double *x, con
 }
 
 /* Twice J^T J, as the gradient is 2 J^T r. */
-static void target_product(const void *self, double weight, const double *vx, const double *vp, double *hx,
-                           double *hp)
+static void target_product(const void *self, double weight, const double *x, const double *p, const double *vx,
+                           const double *vp, double *hx, double *hp)
 {
-    (void)vp, (void)hp;
+    (void)x, (void)p, (void)vp, (void)hp;
     const Vertices *chosen = self;
     for (int k = 0; k < chosen->count; k++)
         for (int i = 0; i < 3; i++) {
@@ -49,12 +49,6 @@ static double height_value(const void *self, double weight, const double *x, con
     return sum;
 }
 
-static void height_product(const void *self, double weight, const double *vx, const double *vp, double *hx,
-                           double *hp)
-{
-    (void)self, (void)weight, (void)vx, (void)vp, (void)hx, (void)hp;
-}
-
 static void vertices_destroy(void *self)
 {
     Vertices *chosen = self;
@@ -64,7 +58,7 @@ static void vertices_destroy(void *self)
 }
 
 static const ObjectiveOps target_ops = {"target", target_value, target_product, vertices_destroy};
-static const ObjectiveOps height_ops = {"height", height_value, height_product, vertices_destroy};
+static const ObjectiveOps height_ops = {"height", height_value, NULL, vertices_destroy};
 
 static Vertices *choose(int count, const int *vertices)
 {
@@ -78,10 +72,10 @@ Objective objective_target(int count, const int *vertices, const double (*target
 {
     Vertices *chosen = choose(count, vertices);
     chosen->target = mem_copy(target, (size_t)count, sizeof *target);
-    return (Objective){&target_ops, chosen, weight};
+    return (Objective){&target_ops, chosen, weight, 0, 0};
 }
 
 Objective objective_height(int count, const int *vertices, double weight)
 {
-    return (Objective){&height_ops, choose(count, vertices), weight};
+    return (Objective){&height_ops, choose(count, vertices), weight, 0, 0};
 }

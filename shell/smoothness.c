@@ -29,10 +29,10 @@ static double smoothness_value(const void *self, double weight, const double *x,
     return sum;
 }
 
-static void smoothness_product(const void *self, double weight, const double *vx, const double *vp,
-                               double *hx, double *hp)
+static void smoothness_product(const void *self, double weight, const double *x, const double *p, const double *vx,
+                               const double *vp, double *hx, double *hp)
 {
-    (void)vx, (void)hx;
+    (void)x, (void)p, (void)vx, (void)hx;
     const Shell *shell = self;
     for (int k = 0; k < 3 * shell->mesh->edge_count; k++)
         if (!mesh_edge_is_boundary(shell->mesh, k / 3))
@@ -44,5 +44,5 @@ static const ObjectiveOps smoothness_ops = {
 
 Objective shell_magnetization_smoothness(const Shell *shell, double weight)
 {
-    return (Objective){&smoothness_ops, (void *)shell, weight};
+    return (Objective){&smoothness_ops, (void *)shell, weight, 0, 0};
 }

@@ -1,5 +1,6 @@
 #include "solve/march.h"
 #include "base/memory.h"
+#include <math.h>
 #include <string.h>
 
 /* One march_step at work. */
@@ -9,7 +10,7 @@ typedef struct March {
     double *p;
     MarchState *state;
     MarchInfo *info;
-    double *x, *inertial, *memory; /* the trial, the other start, what the terms remember */
+    double *x, *other, *memory; /* the trial, another start, what the terms remember */
 } March;
 
 MarchDef march_default(void)
@@ -20,21 +21,31 @@ MarchDef march_default(void)
     return def;
 }
 
-/* The previous state or the inertial guess x + dt v, whichever has less energy. */
+/* Takes the other start if its energy is less. */
+static void compare_start(March *m, Point *at, double *energy)
+{
+    at->x = m->other;
+    Evaluation other = system_energy(m->sys, at);
+    if (!other.finite || other.energy >= *energy) return;
+    *energy = other.energy;
+    memcpy(m->x, m->other, (size_t)system_dof_count(m->sys) * sizeof *m->x);
+}
+
+/* The previous state, the inertial guess x + dt v or the caller's, whichever has least energy. */
 static void choose_start(March *m, Point *at)
 {
-    int dofs = system_dof_count(m->sys), positions = system_position_count(m->sys);
-    size_t bytes = (size_t)dofs * sizeof *m->x;
+    int positions = system_position_count(m->sys);
+    size_t bytes = (size_t)system_dof_count(m->sys) * sizeof *m->x;
     memcpy(m->x, m->state->x, bytes);
     if (m->def->move) m->def->move(m->def->self, at->time, m->x);
-    memcpy(m->inertial, m->x, bytes);
-    for (int i = 0; i < positions; i++)
-        if (!system_is_fixed(m->sys, i)) m->inertial[i] += at->dt * m->state->v[i];
+    memcpy(m->other, m->x, bytes);
     at->x = m->x;
     Evaluation rest = system_energy(m->sys, at);
-    at->x = m->inertial;
-    Evaluation guess = system_energy(m->sys, at);
-    if (guess.finite && guess.energy < rest.energy) memcpy(m->x, m->inertial, bytes);
+    double energy = rest.finite ? rest.energy : INFINITY;
+    for (int i = 0; i < positions; i++)
+        if (!system_is_fixed(m->sys, i)) m->other[i] += at->dt * m->state->v[i];
+    compare_start(m, at, &energy);
+    if (m->def->guess && m->def->guess(m->def->self, at->time, at->dt, m->other)) compare_start(m, at, &energy);
 }
 
 static void add_counts(MarchInfo *info, const NewtonInfo *newton)

@@ -19,6 +19,8 @@ typedef struct MarchDef {
     int cuts;                                         /* how often a step may be halved; default 10 */
     void (*load)(void *self, double time, double *p); /* what depends on time; may be NULL          */
     bool (*move)(void *self, double time, double *x); /* held coordinates at that time; may be NULL */
+    /* Another start of the step that ends at that time, free dofs only; false: none. May be NULL. */
+    bool (*guess)(void *self, double time, double dt, double *x);
     void (*stored)(void *self, const MarchState *state, double dt); /* after each (sub-)step; may be NULL */
     void *self;
 } MarchDef;

@@ -10,8 +10,10 @@ typedef struct ObjectiveOps {
     /* Value; adds weight*gradient to dx[dofs] and dp[params]; both may be NULL together. */
     double (*value)(const void *self, double weight, const double *x, const double *p, double *dx, double *dp);
 
-    /* hx, hp += weight 2 J^T J (vx, vp), J the derivative of the residuals whose squares are summed. */
-    void (*product)(const void *self, double weight, const double *vx, const double *vp, double *hx, double *hp);
+    /* hx, hp += weight 2 J^T J (vx, vp), J the derivative at (x, p) of the residuals whose squares are summed. NULL for
+     * what is no sum of squares. */
+    void (*product)(const void *self, double weight, const double *x, const double *p, const double *vx, const double *vp,
+                    double *hx, double *hp);
 
     void (*destroy)(void *self);
 } ObjectiveOps;
@@ -20,6 +22,7 @@ typedef struct Objective {
     const ObjectiveOps *ops;
     void *self;
     double weight;
+    int first, last; /* frames of a motion at which it counts; both 0 for what depends on parameters only */
 } Objective;
 
 static inline void objective_destroy(Objective objective)

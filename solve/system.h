@@ -76,7 +76,7 @@ void system_solve(System *sys, const double *b, double *y);
  * preconditioner; -1: not reached in max_iterations, no usable factor, or H not positive definite (sparse_solve_cg). */
 int system_solve_cg(System *sys, const double *b, double tolerance, int max_iterations, double *y);
 
-/* Factors kept aside and made the last one again (sparse_keep). */
+/* Factors kept aside and made the last one again (sparse_keep); NULL: there is none from now on. */
 SparseFactor *system_keep_factor(System *sys);
 void system_use_factor(System *sys, const SparseFactor *factor);
 void system_free_factor(System *sys, SparseFactor *factor);

@@ -111,9 +111,9 @@ SparseFactor *system_keep_factor(System *sys)
 /* It may serve solves, but where it stands is not known here any more. */
 void system_use_factor(System *sys, const SparseFactor *factor)
 {
-    sparse_use(sys->matrix, factor);
+    if (factor) sparse_use(sys->matrix, factor);
     sys->anchor[ANCHOR_USABLE] = 0;
-    sys->factored = true;
+    sys->factored = factor != NULL;
 }
 
 void system_free_factor(System *sys, SparseFactor *factor)

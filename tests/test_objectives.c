@@ -83,7 +83,8 @@ static void check(Fixture *f, Objective objective, bool squares)
     /* 2 J^T J v is the whole second derivative of a sum of squares of linear residuals. */
     memset(f->hx, 0, (size_t)f->dofs * sizeof *f->hx);
     memset(f->hp, 0, (size_t)f->params * sizeof *f->hp);
-    objective.ops->product(objective.self, weight, f->vx, f->vp, f->hx, f->hp);
+    if (objective.ops->product)
+        objective.ops->product(objective.self, weight, f->x, f->p, f->vx, f->vp, f->hx, f->hp);
     double curvature = dot(f->dofs, f->hx, f->vx) + dot(f->params, f->hp, f->vp);
     double second = weight * (value_at(f, objective, 1, NULL, NULL) + value_at(f, objective, -1, NULL, NULL) -
                               2 * value_at(f, objective, 0, NULL, NULL));
@@ -103,6 +104,127 @@ static void test_rows(void **state)
     check(&f, shell_magnetization_smoothness(f.shell, 1.5), true);
     free_fixture(&f);
     assert_int_equal(mem_live_count(), blocks);
+}
+
+/* Rows that are not quadratic: gradient against small differences, and where all residuals vanish (x, p as given by the
+ * caller) 2 J^T J v against the second difference. */
+static void check_curved(Fixture *f, Objective objective, bool at_zero)
+{
+    double weight = objective.weight, h = 1e-4, F[5];
+    for (int k = -2; k <= 2; k++) F[k + 2] = weight * value_at(f, objective, k * h, NULL, NULL);
+    value_at(f, objective, 0, f->dx, f->dp);
+    double exact = dot(f->dofs, f->dx, f->vx) + dot(f->params, f->dp, f->vp);
+    double slope = (8 * (F[3] - F[1]) - (F[4] - F[0])) / (12 * h);
+    if (!at_zero) {
+        assert_true(fabs(slope - exact) < 1e-8 * (fabs(slope) + 1e-3));
+    } else {
+        memset(f->hx, 0, (size_t)f->dofs * sizeof *f->hx);
+        memset(f->hp, 0, (size_t)f->params * sizeof *f->hp);
+        objective.ops->product(objective.self, weight, f->x, f->p, f->vx, f->vp, f->hx, f->hp);
+        double curvature = dot(f->dofs, f->hx, f->vx) + dot(f->params, f->hp, f->vp);
+        double second = (16 * (F[1] + F[3]) - (F[0] + F[4]) - 30 * F[2]) / (12 * h * h);
+        assert_true(fabs(F[2]) < 1e-20 && fabs(curvature - second) < 1e-6 * fabs(second));
+    }
+    objective_destroy(objective);
+}
+
+static void test_point_rows(void **state)
+{
+    (void)state;
+    Fixture f = make_fixture();
+    int vertices[3] = {1, 5, 6};
+    double weights[3] = {0.2, 0.5, 0.3}, one = 1;
+    Probe centre = {3, vertices, weights}, vertex = {1, &vertices[1], &one};
+    const double points[3][3] = {{-1, 0, 0.1}, {0.2, 0.1, 0}, {0.3, 0.9, -0.2}};
+    for (int k = 0; k < 5; k++) { /* at five places */
+        for (int i = 0; i < f.dofs; i++) f.x[i] = sin(7 * i + k);
+        check_curved(&f, objective_waypoint(centre, points[0], 0.7), false);
+        check_curved(&f, objective_polyline(centre, 3, points, 0.4, 1.3), false);
+        check_curved(&f, objective_polyline(vertex, 3, points, 1e-3, 1.3), false);
+        check_curved(&f, objective_arc(vertex, points, 0.9), false);
+    }
+    for (int i = 0; i < 3; i++) f.x[15 + i] = points[1][i];
+    check_curved(&f, objective_waypoint(vertex, points[1], 0.7), true);
+    check_curved(&f, objective_arc(vertex, points, 0.9), true);
+    for (int i = 0; i < 3; i++) f.x[15 + i] = (points[0][i] + points[1][i]) / 2; /* inside a segment */
+    check_curved(&f, objective_polyline(vertex, 3, points, 0.01, 1.3), true);
+    free_fixture(&f);
+}
+
+static void test_curve_distances(void **state)
+{
+    (void)state;
+    double x[3] = {0.5, 0.25, 0}, one = 1, r = sqrt(0.5);
+    int vertex = 0;
+    Probe probe = {1, &vertex, &one};
+    const double corner[3][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}}, quarter[3][3] = {{1, 0, 0}, {r, r, 0}, {0, 1, 0}};
+    Objective polyline = objective_polyline(probe, 3, corner, 1e-3, 1), arc = objective_arc(probe, quarter, 1);
+    assert_true(fabs(objective_curve_distance(&polyline, x) - 0.25) < 1e-15);
+    assert_true(fabs(polyline.ops->value(polyline.self, 1, x, NULL, NULL, NULL) - 0.0625) < 1e-15);
+    assert_true(fabs(objective_curve_distance(&arc, x) - (1 - sqrt(0.3125))) < 1e-14);
+    x[0] = 0.5, x[1] = -0.5; /* beyond the arc's start, and of two equal segments */
+    assert_true(fabs(objective_curve_distance(&arc, x) - r) < 1e-14);
+    x[0] = x[1] = 0, x[2] = 2;
+    assert_true(fabs(objective_curve_distance(&arc, x) - sqrt(5)) < 1e-14);
+    Objective waypoint = objective_waypoint(probe, corner[0], 1);
+    assert_true(isnan(objective_curve_distance(&waypoint, x)));
+    objective_destroy(polyline);
+    objective_destroy(arc);
+    objective_destroy(waypoint);
+}
+
+enum { CONTROL_STEPS = 9, PAIRS = 2 };
+
+/* A control in the shell's first rows of magnetisation, the pairs after it. */
+static void test_field_rows(void **state)
+{
+    (void)state;
+    Fixture f = make_fixture();
+    int at = f.shell->magnetization, omega = at + 3 * CONTROL_STEPS, alpha = omega + PAIRS, beta = alpha + 3 * PAIRS;
+    for (ControlKind kind = CONTROL_FRAME; kind <= CONTROL_HARMONIC; kind++) {
+        Control control = {.kind = kind, .from = at, .rows = control_rows(kind, CONTROL_STEPS, kind == CONTROL_KNOT ? 4 : 3),
+                           .width = 3, .steps = CONTROL_STEPS, .duration = 2};
+        check(&f, objective_field_magnitude(&control, 0.3), true);
+        check(&f, objective_field_smoothness(&control, 0.3), true);
+        check_curved(&f, objective_dmp(&control, PAIRS, omega, alpha, beta, 0.8), false);
+    }
+    Control control = {.kind = CONTROL_FRAME, .from = at, .rows = CONTROL_STEPS, .width = 3, .steps = CONTROL_STEPS, .duration = 2};
+    for (int n = 1; n <= CONTROL_STEPS; n++)
+        for (int i = 0; i < 3; i++) {
+            double t = control_time(&control, n), *b = &f.p[at + 3 * (n - 1) + i];
+            *b = 0;
+            for (int j = 0; j < PAIRS; j++)
+                *b += f.p[alpha + 3 * j + i] * cos(f.p[omega + j] * t) + f.p[beta + 3 * j + i] * sin(f.p[omega + j] * t);
+        }
+    check_curved(&f, objective_dmp(&control, PAIRS, omega, alpha, beta, 0.8), true);
+    free_fixture(&f);
+}
+
+/* A spline goes through its knots and is linear where they are; harmonics have the whole time as period. */
+static void test_controls(void **state)
+{
+    (void)state;
+    double p[15], value[3], before[3], after[3];
+    Control knots = {.kind = CONTROL_KNOT, .rows = 5, .width = 3, .steps = 8, .start = 1, .duration = 4};
+    for (int k = 0; k < 15; k++) p[k] = sin(k);
+    for (int k = 0; k < 5; k++) {
+        control_value(&knots, 1, 1 + k, p, value);
+        for (int i = 0; i < 3; i++) assert_true(fabs(value[i] - p[3 * k + i]) < 1e-15);
+        double h = 1e-6; /* one slope on both sides */
+        control_value(&knots, 1, 1 + k - h, p, before);
+        control_value(&knots, 1, 1 + k + h, p, after);
+        for (int i = 0; k > 0 && k < 4 && i < 3; i++)
+            assert_true(fabs((after[i] - value[i]) - (value[i] - before[i])) < 1e-10);
+    }
+    for (int k = 0; k < 15; k++) p[k] = 2 + k / 3;
+    control_value(&knots, 1, 3.3, p, value);
+    assert_true(fabs(value[1] - 4.3) < 1e-14);
+    Control harmonics = {.kind = CONTROL_HARMONIC, .rows = 3, .width = 1, .steps = 8, .start = 1, .duration = 4};
+    p[0] = 5, p[1] = 2, p[2] = 3;
+    control_value(&harmonics, 1, 2, p, value); /* a quarter of the period */
+    assert_true(fabs(value[0] - 8) < 1e-14);
+    control_value(&harmonics, 8, 5, p, value);
+    assert_true(fabs(value[0] - 7) < 1e-14);
 }
 
 /* Closed forms. */
@@ -133,6 +255,7 @@ static void test_values(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_rows), cmocka_unit_test(test_values)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_rows), cmocka_unit_test(test_point_rows), cmocka_unit_test(test_field_rows),
+                                       cmocka_unit_test(test_curve_distances), cmocka_unit_test(test_controls), cmocka_unit_test(test_values)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,222 @@
+/* Objectives of one point of the body: waypoints and distances to curves. */
+#include "base/memory.h"
+#include "base/vec3.h"
+#include "optim/objectives.h"
+#include <math.h>
+#include <stdbool.h>
+#include <string.h>
+
+typedef struct Tracked {
+    int count;
+    int *vertices;
+    double *weights;
+    double at[3]; /* waypoint */
+    int point_count;
+    double (*points)[3]; /* polyline */
+    double blend;
+    Vec3 center, e1, e2, axis; /* arc: e1 to its start, e2 ahead of it */
+    double radius, angle;      /* ... from e1 towards e2               */
+} Tracked;
+
+static Vec3 probe_position(const Tracked *tracked, const double *x)
+{
+    Vec3 q = vec3(0, 0, 0);
+    for (int k = 0; k < tracked->count; k++)
+        q = vec3_axpy(tracked->weights[k], vec3_load(x + 3 * tracked->vertices[k]), q);
+    return q;
+}
+
+static void probe_add(const Tracked *tracked, double amount, Vec3 g, double *dx)
+{
+    for (int k = 0; k < tracked->count; k++) {
+        double *to = dx + 3 * tracked->vertices[k], factor = amount * tracked->weights[k];
+        to[0] += factor * g.x, to[1] += factor * g.y, to[2] += factor * g.z;
+    }
+}
+
+/* ---- Waypoint ---- */
+
+static double waypoint_value(const void *self, double weight, const double *x, const double *p, double *dx, double *dp)
+{
+    (void)p, (void)dp;
+    const Tracked *tracked = self;
+    Vec3 d = vec3_sub(probe_position(tracked, x), vec3_load(tracked->at));
+    if (dx) probe_add(tracked, 2 * weight, d, dx);
+    return vec3_dot(d, d);
+}
+
+static void waypoint_product(const void *self, double weight, const double *x, const double *p, const double *vx,
+                             const double *vp, double *hx, double *hp)
+{
+    (void)x, (void)p, (void)vp, (void)hp;
+    probe_add(self, 2 * weight, probe_position(self, vx), hx);
+}
+
+/* ---- Polyline ---- */
+
+/* From the nearest point of segment s to q; t: the segment's direction where that is inside it, else 0. */
+static Vec3 from_segment(const Tracked *tracked, int s, Vec3 q, Vec3 *t)
+{
+    Vec3 a = vec3_load(tracked->points[s]), edge = vec3_sub(vec3_load(tracked->points[s + 1]), a), d = vec3_sub(q, a);
+    double length2 = vec3_dot(edge, edge), part = length2 > 0 ? vec3_dot(d, edge) / length2 : 0;
+    *t = part > 0 && part < 1 ? vec3_scale(1 / sqrt(length2), edge) : vec3(0, 0, 0);
+    return vec3_axpy(-fmin(fmax(part, 0), 1), edge, d);
+}
+
+static double least_distance2(const Tracked *tracked, Vec3 q)
+{
+    double least = INFINITY;
+    for (int s = 0; s + 1 < tracked->point_count; s++) {
+        Vec3 t, d = from_segment(tracked, s, q, &t);
+        least = fmin(least, vec3_dot(d, d));
+    }
+    return least;
+}
+
+/* The weight of a segment, not yet divided by their sum. */
+static double segment_weight(const Tracked *tracked, double distance2, double least)
+{
+    return exp((least - distance2) / (tracked->blend * tracked->blend));
+}
+
+static double polyline_value(const void *self, double weight, const double *x, const double *p, double *dx, double *dp)
+{
+    (void)p, (void)dp;
+    const Tracked *tracked = self;
+    Vec3 q = probe_position(tracked, x), t;
+    double least = least_distance2(tracked, q), sum = 0, mean = 0;
+    for (int s = 0; s + 1 < tracked->point_count; s++) {
+        Vec3 d = from_segment(tracked, s, q, &t);
+        double d2 = vec3_dot(d, d), w = segment_weight(tracked, d2, least);
+        sum += w;
+        mean += w * d2;
+    }
+    mean /= sum;
+    for (int s = 0; dx && s + 1 < tracked->point_count; s++) {
+        Vec3 d = from_segment(tracked, s, q, &t);
+        double d2 = vec3_dot(d, d), w = segment_weight(tracked, d2, least) / sum;
+        probe_add(tracked, 2 * weight * w * (1 - (d2 - mean) / (tracked->blend * tracked->blend)), d, dx);
+    }
+    return mean;
+}
+
+/* The distance's projector is I - t t^T inside a segment and I at its ends. */
+static void polyline_product(const void *self, double weight, const double *x, const double *p, const double *vx,
+                             const double *vp, double *hx, double *hp)
+{
+    (void)p, (void)vp, (void)hp;
+    const Tracked *tracked = self;
+    Vec3 q = probe_position(tracked, x), v = probe_position(tracked, vx), t;
+    double least = least_distance2(tracked, q), sum = 0;
+    for (int pass = 0; pass < 2; pass++)
+        for (int s = 0; s + 1 < tracked->point_count; s++) {
+            Vec3 d = from_segment(tracked, s, q, &t);
+            double w = segment_weight(tracked, vec3_dot(d, d), least);
+            if (pass == 0)
+                sum += w;
+            else
+                probe_add(tracked, 2 * weight * w / sum, vec3_axpy(-vec3_dot(t, v), t, v), hx);
+        }
+}
+
+/* ---- Arc ---- */
+
+/* From the nearest point of the arc to q; t: its tangent there, 0 at an end. */
+static Vec3 from_arc(const Tracked *tracked, Vec3 q, Vec3 *t)
+{
+    Vec3 d = vec3_sub(q, tracked->center);
+    double u = vec3_dot(d, tracked->e1), v = vec3_dot(d, tracked->e2), angle = atan2(v, u);
+    if (angle < 0) angle += 2 * M_PI;
+    bool inside = angle <= tracked->angle;
+    if (!inside) angle = angle - tracked->angle < 2 * M_PI - angle ? tracked->angle : 0; /* the end that is nearer */
+    double c = cos(angle), s = sin(angle);
+    *t = inside ? vec3_axpy(c, tracked->e2, vec3_scale(-s, tracked->e1)) : vec3(0, 0, 0);
+    Vec3 out = vec3_axpy(s, tracked->e2, vec3_scale(c, tracked->e1));
+    return vec3_axpy(-tracked->radius, out, d);
+}
+
+static double arc_value(const void *self, double weight, const double *x, const double *p, double *dx, double *dp)
+{
+    (void)p, (void)dp;
+    Vec3 t, d = from_arc(self, probe_position(self, x), &t);
+    if (dx) probe_add(self, 2 * weight, d, dx);
+    return vec3_dot(d, d);
+}
+
+static void arc_product(const void *self, double weight, const double *x, const double *p, const double *vx, const double *vp,
+                        double *hx, double *hp)
+{
+    (void)p, (void)vp, (void)hp;
+    Vec3 v = probe_position(self, vx), t;
+    from_arc(self, probe_position(self, x), &t);
+    probe_add(self, 2 * weight, vec3_axpy(-vec3_dot(t, v), t, v), hx);
+}
+
+/* ---- Rows ---- */
+
+static void tracked_destroy(void *self)
+{
+    Tracked *tracked = self;
+    mem_free(tracked->vertices);
+    mem_free(tracked->weights);
+    mem_free(tracked->points);
+    mem_free(tracked);
+}
+
+static const ObjectiveOps waypoint_ops = {"waypoint", waypoint_value, waypoint_product, tracked_destroy};
+static const ObjectiveOps polyline_ops = {"curve", polyline_value, polyline_product, tracked_destroy};
+static const ObjectiveOps arc_ops = {"curve", arc_value, arc_product, tracked_destroy};
+
+static Tracked *track(Probe probe)
+{
+    Tracked *tracked = mem_alloc(1, sizeof *tracked);
+    tracked->count = probe.count;
+    tracked->vertices = mem_copy(probe.vertices, (size_t)probe.count, sizeof *probe.vertices);
+    tracked->weights = mem_copy(probe.weights, (size_t)probe.count, sizeof *probe.weights);
+    return tracked;
+}
+
+Objective objective_waypoint(Probe probe, const double at[3], double weight)
+{
+    Tracked *tracked = track(probe);
+    memcpy(tracked->at, at, sizeof tracked->at);
+    return (Objective){&waypoint_ops, tracked, weight, 0, 0};
+}
+
+Objective objective_polyline(Probe probe, int count, const double (*points)[3], double blend, double weight)
+{
+    Tracked *tracked = track(probe);
+    tracked->point_count = count;
+    tracked->points = mem_copy(points, (size_t)count, sizeof *points);
+    tracked->blend = blend;
+    return (Objective){&polyline_ops, tracked, weight, 0, 0};
+}
+
+Objective objective_arc(Probe probe, const double points[3][3], double weight)
+{
+    Tracked *tracked = track(probe);
+    Vec3 a = vec3_load(points[0]), ab = vec3_sub(vec3_load(points[1]), a), ac = vec3_sub(vec3_load(points[2]), a);
+    Vec3 normal = vec3_cross(ab, ac);
+    /* The circumcentre of three points in space. */
+    Vec3 to_center = vec3_scale(1 / (2 * vec3_dot(normal, normal)),
+                                vec3_add(vec3_scale(vec3_dot(ac, ac), vec3_cross(normal, ab)),
+                                         vec3_scale(vec3_dot(ab, ab), vec3_cross(ac, normal))));
+    tracked->center = vec3_add(a, to_center);
+    tracked->radius = vec3_length(to_center);
+    tracked->axis = vec3_scale(1 / vec3_length(normal), normal);
+    tracked->e1 = vec3_scale(-1 / tracked->radius, to_center);
+    tracked->e2 = vec3_cross(tracked->axis, tracked->e1);
+    Vec3 end = vec3_sub(vec3_load(points[2]), tracked->center);
+    tracked->angle = atan2(vec3_dot(end, tracked->e2), vec3_dot(end, tracked->e1));
+    if (tracked->angle < 0) tracked->angle += 2 * M_PI;
+    return (Objective){&arc_ops, tracked, weight, 0, 0};
+}
+
+double objective_curve_distance(const Objective *objective, const double *x)
+{
+    Vec3 t;
+    if (objective->ops == &polyline_ops)
+        return sqrt(least_distance2(objective->self, probe_position(objective->self, x)));
+    if (objective->ops == &arc_ops) return vec3_length(from_arc(objective->self, probe_position(objective->self, x), &t));
+    return NAN;
+}

@@ -1,0 +1,188 @@
+#include "optim/path.h"
+#include "base/memory.h"
+#include <string.h>
+
+static double *state(const Path *path, int k)
+{
+    return path->x + (size_t)k * (size_t)path->dofs;
+}
+
+static double *memory_of(const Path *path, int k)
+{
+    return path->memory + (size_t)k * (size_t)path->memory_count;
+}
+
+static void make_room(Path *path, int room)
+{
+    size_t from = (size_t)path->room, to = (size_t)room, n = (size_t)path->dofs, m = (size_t)path->memory_count;
+    path->frame = mem_resize(path->frame, from, to, sizeof *path->frame);
+    path->dt = mem_resize(path->dt, from, to, sizeof *path->dt);
+    path->time = mem_resize(path->time, from, to, sizeof *path->time);
+    path->x = mem_resize(path->x, n * from, n * to, sizeof *path->x);
+    path->memory = mem_resize(path->memory, m * from, m * to, sizeof *path->memory);
+    path->factor = mem_resize(path->factor, from, to, sizeof(SparseFactor *));
+    path->room = room;
+}
+
+Path path_create(const TrajectoryProblem *problem, const MarchDef *march, int factor_max)
+{
+    Path path = {.problem = problem,
+                 .march = march,
+                 .dofs = system_dof_count(problem->sys),
+                 .memory_count = system_memory_count(problem->sys),
+                 .factor_max = factor_max};
+    make_room(&path, problem->steps + 1);
+    path.end = mem_alloc((size_t)problem->steps + 1, sizeof(int));
+    path.p = mem_copy(problem->p, (size_t)problem->params->size, sizeof(double));
+    path.v = mem_alloc((size_t)path.dofs, sizeof(double));
+    path.gradient = mem_alloc((size_t)path.dofs, sizeof(double));
+    memcpy(path.x, problem->x, (size_t)path.dofs * sizeof(double));
+    system_memory_read(problem->sys, path.memory);
+    path.time[0] = problem->start;
+    return path;
+}
+
+void path_clear(Path *path)
+{
+    for (int k = 0; k <= path->count; k++) {
+        system_free_factor(path->problem->sys, path->factor[k]);
+        path->factor[k] = NULL;
+    }
+    path->count = path->factor_count = 0;
+}
+
+void path_destroy(Path *path)
+{
+    path_clear(path);
+    mem_free(path->frame);
+    mem_free(path->dt);
+    mem_free(path->time);
+    mem_free(path->x);
+    mem_free(path->memory);
+    mem_free(path->factor);
+    mem_free(path->end);
+    mem_free(path->p);
+    mem_free(path->v);
+    mem_free(path->gradient);
+}
+
+void path_load(Path *path, int frame, double time)
+{
+    const TrajectoryProblem *problem = path->problem;
+    if (path->march->load) path->march->load(path->march->self, time, path->p);
+    for (int c = 0; c < problem->control_count; c++)
+        control_apply(&problem->controls[c], frame > 0 ? frame : 1, time, path->p);
+}
+
+/* v at the end of step k - 1, from the states. */
+static const double *start_velocity(Path *path, int k)
+{
+    if (k == 1) return path->problem->v;
+    const double *now = state(path, k - 1), *before = state(path, k - 2);
+    for (int i = 0; i < system_position_count(path->problem->sys); i++)
+        path->v[i] = (now[i] - before[i]) / path->dt[k - 1];
+    return path->v;
+}
+
+/* Step k at its end, with its parameters. */
+static Point point(Path *path, int k)
+{
+    path_load(path, path->frame[k], path->time[k]);
+    return (Point){.x = state(path, k),
+                   .p = path->p,
+                   .time = path->time[k],
+                   .x_prev = state(path, k - 1),
+                   .v_prev = start_velocity(path, k),
+                   .dt = path->dt[k]};
+}
+
+static bool factor_at(Path *path, const Point *at)
+{
+    system_hessian(path->problem->sys, at, path->gradient);
+    return system_factor(path->problem->sys, 0);
+}
+
+bool path_add(Path *path, int frame, const double *x, double time, double dt)
+{
+    int k = ++path->count;
+    if (k == path->room) make_room(path, 2 * path->room);
+    memcpy(state(path, k), x, (size_t)path->dofs * sizeof *x);
+    system_memory_read(path->problem->sys, memory_of(path, k));
+    path->end[frame] = k;
+    path->frame[k] = frame;
+    path->time[k] = time;
+    path->dt[k] = dt;
+    path->factor[k] = NULL;
+    Point at = point(path, k);
+    if (!factor_at(path, &at)) return false;
+    if (path->factor_count < path->factor_max) {
+        path->factor[k] = system_keep_factor(path->problem->sys);
+        path->factor_count++;
+    }
+    return true;
+}
+
+/* The end of step k, with what the terms remember there and its factor at hand. */
+static Point stand_at(Path *path, int k)
+{
+    Point at = point(path, k);
+    system_memory_write(path->problem->sys, memory_of(path, k));
+    if (path->factor[k])
+        system_use_factor(path->problem->sys, path->factor[k]);
+    else
+        factor_at(path, &at);
+    return at;
+}
+
+void path_tangent(Path *path, double *dp, const double *dv, double *dx)
+{
+    const TrajectoryProblem *problem = path->problem;
+    System *sys = problem->sys;
+    int positions = system_position_count(sys);
+    double *speed = mem_copy(dv, (size_t)path->dofs, sizeof *speed);
+    for (int k = 1; k <= path->count; k++) {
+        Point at = stand_at(path, k);
+        double *before = dx + (size_t)(k - 1) * (size_t)path->dofs, *now = before + path->dofs;
+        for (int c = 0; c < problem->control_count; c++)
+            control_apply(&problem->controls[c], path->frame[k], path->time[k], dp);
+        system_param_forward(sys, &at, dp, now);
+        system_prev_forward(sys, &at, before, speed, now);
+        system_solve(sys, now, now);
+        for (int i = 0; i < path->dofs; i++) now[i] = -now[i];
+        for (int i = 0; i < positions; i++) speed[i] = (now[i] - before[i]) / path->dt[k];
+    }
+    mem_free(speed);
+}
+
+/* v_k = (x_k - x_{k-1})/dt: what v* asks of the two states. */
+static void pull_velocity(int positions, double dt, double *v, double *now, double *before)
+{
+    for (int i = 0; i < positions; i++) {
+        now[i] += v[i] / dt;
+        before[i] -= v[i] / dt;
+    }
+}
+
+void path_adjoint(Path *path, double *seed, double *dp, double *dv)
+{
+    const TrajectoryProblem *problem = path->problem;
+    System *sys = problem->sys;
+    size_t n = (size_t)path->dofs;
+    double *w = mem_alloc(n, sizeof *w);
+    memset(dv, 0, n * sizeof *dv);
+    for (int k = path->count; k > 0; k--) {
+        Point at = stand_at(path, k);
+        double *before = seed + (size_t)(k - 1) * n, *now = before + n;
+        pull_velocity(system_position_count(sys), path->dt[k], dv, now, before);
+        system_solve(sys, now, w);
+        memset(dv, 0, n * sizeof *dv);
+        system_prev(sys, &at, w, before, dv);
+        for (int i = 0; i < path->dofs; i++) w[i] = -w[i];
+        system_param(sys, &at, w, dp);
+        for (int c = 0; c < problem->control_count; c++)
+            control_transpose(&problem->controls[c], path->frame[k], path->time[k], dp);
+    }
+    for (int i = 0; i < path->dofs; i++)
+        if (system_is_fixed(sys, i)) seed[i] = dv[i] = 0;
+    mem_free(w);
+}

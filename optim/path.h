@@ -1,0 +1,39 @@
+/* path.h - a stored motion: its states, the factor of each step where memory allows, and the two linear sweeps along it.
+ * Private to optim/. */
+#pragma once
+#include "optim/trajectory_adjoint.h"
+
+typedef struct Path {
+    const TrajectoryProblem *problem;
+    const MarchDef *march;
+    int dofs, memory_count;
+    int count, room;       /* steps, sub-steps of cut ones included                     */
+    int *end;              /* [problem->steps + 1] the state at the end of each frame    */
+    int *frame;            /* [room] the frame that step 1.. belongs to, from 1          */
+    double *dt, *time;     /* [room] s: of a step, and at the end of each state          */
+    double *x, *memory;    /* [room][dofs], [room][memory_count] states                  */
+    SparseFactor **factor; /* [room] of the step that ends at a state; NULL: not kept    */
+    int factor_count, factor_max;
+    double *p;    /* [params] controls as of the last use                        */
+    double *v, *gradient; /* [dofs] */
+} Path;
+
+Path path_create(const TrajectoryProblem *problem, const MarchDef *march, int factor_max);
+void path_destroy(Path *path);
+
+/* No steps: only the problem's start. */
+void path_clear(Path *path);
+
+/* Adds a state that the system has just reached and accepted, and factors there; false where that fails. */
+bool path_add(Path *path, int frame, const double *x, double time, double dt);
+
+/* The parameters of a step, in path->p. */
+void path_load(Path *path, int frame, double time);
+
+/* dx[count + 1][dofs] of the states, from those of the start, (dx_0 in its first row, dv_0), and dp[params], of which the
+ * current values of controls are overwritten. */
+void path_tangent(Path *path, double *dp, const double *dv, double *dx);
+
+/* seed[count + 1][dofs] holds dF/dx of each state and is overwritten; dp += dF/dp. The first row becomes dF/dx_0, and
+ * dv[dofs] dF/dv_0. */
+void path_adjoint(Path *path, double *seed, double *dp, double *dv);

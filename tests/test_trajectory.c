@@ -1,0 +1,337 @@
+/* The adjoint of a motion in time: against the tangent, against differences, with and without kept factors, for fields
+ * over time, magnetisation, stiffness, folds and the start; cut steps and moved vertices included. */
+#include "base/memory.h"
+#include "base/random.h"
+#include "optim/objectives.h"
+#include "optim/trajectory_adjoint.h"
+#include "shell/shapes.h"
+#include "shell/shell.h"
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+#include <cmocka.h>
+
+enum { STEPS = 12, ROWS = STEPS };
+
+typedef struct Fixture {
+    Shell *shell;
+    Design design;
+    Control control;
+    Objective objectives[3];
+    TrajectoryProblem problem;
+    TrajectoryDef def;
+    double *u, *v, *gradient, *x0, *v0;
+} Fixture;
+
+/* The held edge shakes. */
+static bool shake(void *self, double time, double *x)
+{
+    const Shell *shell = self;
+    for (int v = 0; v < shell->mesh->vertex_count; v++)
+        if (shell->mesh->rest[v][0] < 1e-9) x[3 * v + 2] = 2e-4 * sin(400 * time);
+    return true;
+}
+
+static Shell *make_shell(BendingModel bending)
+{
+    MeshFile file;
+    Error err;
+    assert_true(shape_sheet((double[]){0.012, 0.004}, (int[]){6, 2}, PATTERN_ALTERNATE, &file, &err));
+    Mesh *mesh = mesh_create(&file, 0, NULL, &err);
+    mesh_file_clear(&file);
+    Shell *shell = shell_create(mesh);
+    shell->thickness = 4e-4, shell->poisson = 0.4, shell->density = 1000, shell->bending = bending;
+    for (int v = 0; v < mesh->vertex_count; v++)
+        for (int i = 0; mesh->rest[v][0] < 1e-9 && i < 3; i++) shell_fix(shell, v, i);
+    for (int e = 0; e < mesh->edge_count; e++)
+        if (mesh->rest[mesh->edges[e][0]][0] < 1e-9 && mesh->rest[mesh->edges[e][1]][0] < 1e-9) shell_clamp(shell, e);
+    return shell;
+}
+
+static void add_unknowns(Fixture *f, ControlKind kind)
+{
+    Params *params = &f->shell->params;
+    int rows = control_rows(kind, STEPS, kind == CONTROL_KNOT ? 5 : 2);
+    f->control = (Control){.kind = kind,
+                           .from = params_add(params, "control", "T", rows, 3, false),
+                           .to = f->shell->flux_density,
+                           .rows = rows,
+                           .width = 3,
+                           .steps = STEPS,
+                           .duration = 1e-3 * STEPS};
+    f->design.case_count = 1;
+    const char *const names[] = {"control", "magnetization", "young", "fold"};
+    const double scales[] = {0.01, 1e4, 0, 0};
+    for (int k = 0; k < 4; k++) {
+        const ParamBlock *block = params_find(params, names[k]);
+        design_add(&f->design, (Unknown){.block = block,
+                                         .group_count = block->count,
+                                         .map = k < 2 ? UNKNOWN_LINEAR : UNKNOWN_LOG,
+                                         .scale = scales[k],
+                                         .lower = -INFINITY,
+                                         .upper = INFINITY});
+    }
+}
+
+static void start_params(Fixture *f, double *p, Random *random)
+{
+    shell_default_params(f->shell, p);
+    for (int k = 0; k < f->shell->mesh->face_count; k++) {
+        p[f->shell->young + k] = 1e5 * (1 + 0.2 * random_signed(random));
+        for (int i = 0; i < 3; i++)
+            p[f->shell->magnetization + 3 * k + i] = (i == 0 ? 5e4 : 0) + 1e4 * random_signed(random);
+    }
+    p[f->shell->damping] = 1e-5;
+    for (int i = 0; i < 3 * f->control.rows; i++) p[f->control.from + i] = 0.02 * random_signed(random);
+}
+
+static void make(Fixture *f, BendingModel bending, ControlKind kind, bool moving)
+{
+    Random random = random_seed(7);
+    *f = (Fixture){.shell = make_shell(bending), .def = trajectory_default()};
+    add_unknowns(f, kind);
+    size_t dofs = (size_t)shell_dof_count(f->shell), size = (size_t)f->design.size;
+    double *p = mem_alloc((size_t)f->shell->params.size, sizeof *p);
+    f->x0 = mem_alloc(dofs, sizeof(double));
+    f->v0 = mem_alloc(dofs, sizeof(double));
+    f->u = mem_alloc(size, sizeof(double));
+    f->v = mem_alloc(size, sizeof(double));
+    f->gradient = mem_alloc(size, sizeof(double));
+    start_params(f, p, &random);
+    design_read(&f->design, 0, p, f->u);
+    for (size_t i = 0; i < size; i++) f->v[i] = random_signed(&random);
+    shell_rest_state(f->shell, f->x0);
+    System *sys = shell_dynamic_system(f->shell);
+    for (int i = 0; i < system_position_count(sys); i++)
+        if (!system_is_fixed(sys, i)) f->x0[i] += 5e-5 * random_signed(&random), f->v0[i] = 0.05 * random_signed(&random);
+    Point at = {.x = f->x0, .p = p};
+    system_accept(sys, &at);
+    int tip = mesh_group(f->shell->mesh, "tip")->members[0], others[2] = {tip, 3};
+    const double goal[1][3] = {{0.010, 0.002, 0.004}}, goals[2][3] = {{0.011, 0.001, 0.003}, {0.006, 0, 0.001}};
+    f->objectives[0] = objective_target(1, &tip, goal, 1e4);
+    f->objectives[0].first = 4, f->objectives[0].last = STEPS;
+    f->objectives[1] = objective_target(2, others, goals, 2e4);
+    f->objectives[1].first = f->objectives[1].last = 7;
+    f->objectives[2] = objective_height(1, &tip, -3);
+    f->objectives[2].first = f->objectives[2].last = STEPS;
+    if (moving) f->def.march.move = shake, f->def.march.self = f->shell;
+    f->problem = (TrajectoryProblem){.sys = sys, .design = &f->design, .params = &f->shell->params, .controls = &f->control,
+                                     .objectives = f->objectives, .control_count = 1, .objective_count = 3, .step = 1e-3,
+                                     .steps = STEPS, .x = f->x0, .v = f->v0, .p = p};
+}
+
+static void clear(Fixture *f)
+{
+    for (int k = 0; k < 3; k++) objective_destroy(f->objectives[k]);
+    system_destroy(f->problem.sys);
+    mem_free(f->problem.p);
+    design_clear(&f->design);
+    shell_destroy(f->shell);
+    double *owned[] = {f->u, f->v, f->gradient, f->x0, f->v0};
+    for (int k = 0; k < 5; k++) mem_free(owned[k]);
+}
+
+static double dot(int n, const double *a, const double *b)
+{
+    double sum = 0;
+    for (int i = 0; i < n; i++) sum += a[i] * b[i];
+    return sum;
+}
+
+/* dF by the tangent's motion. */
+static double by_tangent(Fixture *f, Trajectory *t)
+{
+    int dofs = shell_dof_count(f->shell);
+    size_t all = (size_t)(STEPS + 1) * (size_t)dofs;
+    double *dx = mem_alloc(all, sizeof *dx), *seed = mem_alloc((size_t)dofs, sizeof *seed), sum = 0;
+    trajectory_tangent(t, f->v, dx);
+    for (int k = 0; k < 3; k++)
+        for (int n = f->objectives[k].first; n <= f->objectives[k].last; n++) {
+            memset(seed, 0, (size_t)dofs * sizeof *seed);
+            f->objectives[k].ops->value(f->objectives[k].self, f->objectives[k].weight, trajectory_frame(t, n),
+                                        trajectory_params(t, n), seed, NULL);
+            sum += dot(dofs, seed, dx + (size_t)n * (size_t)dofs);
+        }
+    mem_free(dx);
+    mem_free(seed);
+    return sum;
+}
+
+/* dF by central differences along f->v, or of the start along its own free positions' (dx, dv). */
+static double by_differences(Fixture *f, double h, const double *dx, const double *dv)
+{
+    int dofs = shell_dof_count(f->shell), size = f->design.size;
+    double F[2], *u = mem_alloc((size_t)size, sizeof *u), *x = mem_alloc(2 * (size_t)dofs, sizeof *x), *v = x + dofs;
+    for (int side = 0; side < 2; side++) {
+        double s = side ? h : -h;
+        Fixture g = *f;
+        TrajectoryInfo info;
+        for (int i = 0; i < size; i++) u[i] = f->u[i] + (dx ? 0 : s * f->v[i]);
+        for (int i = 0; i < dofs; i++) x[i] = f->x0[i] + (dx ? s * dx[i] : 0), v[i] = f->v0[i] + (dv ? s * dv[i] : 0);
+        g.problem.x = x, g.problem.v = v;
+        Trajectory *t = trajectory_create(&g.problem, &g.def);
+        F[side] = trajectory_evaluate(t, u, NULL, &info);
+        trajectory_destroy(t);
+    }
+    mem_free(u);
+    mem_free(x);
+    return (F[1] - F[0]) / (2 * h);
+}
+
+static void check_start(Fixture *f, Trajectory *t, double *worst)
+{
+    size_t dofs = (size_t)shell_dof_count(f->shell);
+    double *work = mem_alloc(4 * dofs, sizeof *work), *gx = work, *gv = work + dofs, *dx = gv + dofs, *dv = dx + dofs;
+    Random random = random_seed(9);
+    trajectory_gradients(t, NULL, gx, gv);
+    for (int i = 0; i < system_position_count(f->problem.sys); i++)
+        if (!system_is_fixed(f->problem.sys, i)) dx[i] = 1e-3 * random_signed(&random), dv[i] = random_signed(&random);
+    double exact = dot((int)dofs, gx, dx) + dot((int)dofs, gv, dv), seen = by_differences(f, 1e-4, dx, dv);
+    *worst = fabs(exact - seen) / fabs(exact);
+    mem_free(work);
+}
+
+static const char *const kinds[] = {"frame", "knot", "harmonic"};
+
+static void check(BendingModel bending, ControlKind kind, bool moving, bool cuts)
+{
+    Fixture f;
+    TrajectoryInfo info;
+    make(&f, bending, kind, moving);
+    if (cuts) f.def.march.newton.max_iterations = 6;
+    f.def.march.newton.energy_tol = 1e-14;
+    Trajectory *t = trajectory_create(&f.problem, &f.def);
+    double F = trajectory_evaluate(t, f.u, f.gradient, &info), start_error;
+    assert_true(isfinite(F));
+    assert_true(!cuts || info.march.refused > 0);
+    trajectory_accept(t);
+    double adjoint = dot(f.design.size, f.gradient, f.v), tangent = by_tangent(&f, t);
+    double seen = by_differences(&f, 1e-4, NULL, NULL);
+    check_start(&f, t, &start_error);
+    trajectory_destroy(t);
+
+    f.def.factor_memory = 0; /* nothing is kept */
+    double *again = mem_alloc((size_t)f.design.size, sizeof *again), worst = 0;
+    t = trajectory_create(&f.problem, &f.def);
+    trajectory_evaluate(t, f.u, again, &info);
+    for (int i = 0; i < f.design.size; i++) worst = fmax(worst, fabs(again[i] - f.gradient[i]));
+    trajectory_destroy(t);
+    mem_free(again);
+    print_message("%s %-8s%s%s: tangent %.1e, differences %.1e, of the start %.1e\n",
+                  bending == BENDING_HINGE ? "hinge  " : "midedge", kinds[kind], moving ? " moving" : "", cuts ? " cuts" : "",
+                  fabs(adjoint - tangent) / fabs(tangent), fabs(adjoint - seen) / fabs(seen), start_error);
+    assert_true(fabs(adjoint - tangent) < 1e-11 * fabs(tangent));
+    assert_true(fabs(adjoint - seen) < 1e-6 * fabs(seen) && start_error < 1e-6);
+    assert_true(worst == 0); /* the same factors, made again */
+    clear(&f);
+}
+
+static void test_gradients(void **state)
+{
+    (void)state;
+    long blocks = mem_live_count();
+    for (ControlKind kind = CONTROL_FRAME; kind <= CONTROL_HARMONIC; kind++) {
+        check(BENDING_HINGE, kind, false, false);
+        check(BENDING_MIDEDGE, kind, true, false);
+    }
+    check(BENDING_HINGE, CONTROL_KNOT, true, true);
+    check(BENDING_MIDEDGE, CONTROL_FRAME, false, true);
+    assert_int_equal(mem_live_count(), blocks);
+}
+
+/* v'(2 J^T J)v is twice the squared residuals' change to first order. */
+static void test_product(void **state)
+{
+    (void)state;
+    Fixture f;
+    TrajectoryInfo info;
+    make(&f, BENDING_HINGE, CONTROL_FRAME, false);
+    f.problem.objective_count = 2;
+    Trajectory *t = trajectory_create(&f.problem, &f.def);
+    int dofs = shell_dof_count(f.shell), tip = mesh_group(f.shell->mesh, "tip")->members[0];
+    double *dx = mem_alloc((size_t)(STEPS + 1) * (size_t)dofs, sizeof *dx), *out = mem_alloc((size_t)f.design.size, sizeof *out);
+    assert_true(isfinite(trajectory_evaluate(t, f.u, f.gradient, &info)));
+    trajectory_accept(t);
+    trajectory_product(t, f.v, out);
+    trajectory_tangent(t, f.v, dx);
+    double expected = 0;
+    for (int i = 0; i < 3; i++) {
+        for (int n = 4; n <= STEPS; n++) expected += 2e4 * pow(dx[n * dofs + 3 * tip + i], 2);
+        expected += 4e4 * (pow(dx[7 * dofs + 3 * tip + i], 2) + pow(dx[7 * dofs + 9 + i], 2));
+    }
+    assert_true(fabs(dot(f.design.size, out, f.v) - expected) < 1e-10 * expected);
+    mem_free(dx);
+    mem_free(out);
+    trajectory_destroy(t);
+    clear(&f);
+}
+
+/* A restored motion goes on bit by bit. */
+static void test_restore(void **state)
+{
+    (void)state;
+    Fixture f;
+    TrajectoryInfo info;
+    make(&f, BENDING_MIDEDGE, CONTROL_KNOT, false);
+    f.def.march.newton.max_iterations = 6; /* with sub-steps */
+    size_t size = (size_t)f.design.size;
+    Trajectory *a = trajectory_create(&f.problem, &f.def);
+    assert_true(isfinite(trajectory_evaluate(a, f.u, f.gradient, &info)));
+    trajectory_accept(a);
+    TrajectoryState kept = trajectory_state(a);
+    System *other = shell_dynamic_system(f.shell);
+    Fixture g = f;
+    g.problem.sys = other;
+    Trajectory *b = trajectory_create(&g.problem, &g.def);
+    trajectory_restore(b, f.u, &kept);
+    double *work = mem_alloc(4 * size, sizeof *work), F[2];
+    trajectory_product(a, f.v, work);
+    trajectory_product(b, f.v, work + size);
+    assert_memory_equal(work, work + size, size * sizeof *work);
+    for (size_t i = 0; i < size; i++) f.u[i] += 0.02 * f.v[i];
+    F[0] = trajectory_evaluate(a, f.u, work, &info);
+    F[1] = trajectory_evaluate(b, f.u, work + size, &info);
+    assert_true(F[0] == F[1] && isfinite(F[0]));
+    assert_memory_equal(work, work + size, size * sizeof *work);
+    mem_free(work);
+    trajectory_destroy(a);
+    trajectory_destroy(b);
+    system_destroy(other);
+    clear(&f);
+}
+
+/* The default tolerance leaves less than 1e-7 in a gradient. */
+static void test_tolerance(void **state)
+{
+    (void)state;
+    for (BendingModel bending = BENDING_MIDEDGE; bending <= BENDING_HINGE; bending++) {
+        Fixture f;
+        TrajectoryInfo info;
+        make(&f, bending, CONTROL_FRAME, false);
+        int size = f.design.size;
+        double *exact = mem_alloc((size_t)size, sizeof *exact), norm = 0, off = 0;
+        Trajectory *t = trajectory_create(&f.problem, &f.def);
+        trajectory_evaluate(t, f.u, f.gradient, &info);
+        trajectory_destroy(t);
+        f.def.march.newton.energy_tol = 0, f.def.march.newton.step_tol = 1e-13, f.def.march.newton.force_tol = 1e-12;
+        f.def.march.newton.cg_iterations = 0;
+        t = trajectory_create(&f.problem, &f.def);
+        trajectory_evaluate(t, f.u, exact, &info);
+        for (int i = 0; i < size; i++) norm = fmax(norm, fabs(exact[i])), off = fmax(off, fabs(exact[i] - f.gradient[i]));
+        print_message("gradient at the default tolerance: off by %.1e\n", off / norm);
+        assert_true(off < 1e-7 * norm);
+        mem_free(exact);
+        trajectory_destroy(t);
+        clear(&f);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_gradients), cmocka_unit_test(test_product),
+                                       cmocka_unit_test(test_restore), cmocka_unit_test(test_tolerance)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
