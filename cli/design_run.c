@@ -42,7 +42,8 @@ static bool put_evaluation(DesignRun *d)
         array_float("newton_iterations", "", &newton, 0, 0, 0),
         array_float("seconds", "s", &seconds, 0, 0, 0),
     };
-    return journal_put(d->run->journal, "evaluation", d->evaluations, arrays, sizeof arrays / sizeof *arrays, d->err);
+    return journal_put(d->run->journal, "evaluation", d->evaluations, arrays, sizeof arrays / sizeof *arrays,
+                       d->err);
 }
 
 /* The best design's state, which is that of the evaluation about to be put. */
@@ -93,10 +94,11 @@ static bool replay(DesignRun *d, const double *u, double *gradient)
     bool ok = recorded(d, "unknowns", known, n) && recorded(d, "gradient", gradient, n) &&
               recorded(d, "objective", &d->objective, 1);
     if (ok && memcmp(known, u, n * sizeof *u))
-        ok = error_set(d->err,
-                       "this program does not repeat evaluation %d of the journal bit by bit: it was written by another "
-                       "version or on another machine; start anew with --force",
-                       d->evaluations);
+        ok = error_set(
+            d->err,
+            "this program does not repeat evaluation %d of the journal bit by bit: it was written by another "
+            "version or on another machine; start anew with --force",
+            d->evaluations);
     mem_free(known);
     return ok;
 }
@@ -179,13 +181,17 @@ static RunStatus finish(DesignRun *d, const OptimiserInfo *info)
                                                    : "no solution was found for the start of the design");
         if (interrupted) return RUN_INTERRUPTED;
         Array status = array_text("status", newton_status_name(d->evaluated.status));
-        return journal_put(d->run->journal, "final", 0, &status, 1, d->err) ? RUN_NOT_CONVERGED : RUN_CANNOT_WRITE;
+        return journal_put(d->run->journal, "final", 0, &status, 1, d->err) ? RUN_NOT_CONVERGED
+                                                                            : RUN_CANNOT_WRITE;
     }
     int every = d->ops->put_frame ? d->run->scene->output.every : 0;
     int first = every ? (d->improvements + every - 1) / every : 0; /* a resumed run has at least as many */
-    if (!d->ops->put_results(d->self, first, interrupted ? "interrupted" : "converged", d->err)) return RUN_CANNOT_WRITE;
-    progress_say(d->run->progress, "%s after %d evaluations: F %.4g, %.4g of the start; projected gradient %.3g",
-                 optimiser_status_name(info->status), d->evaluations, d->best, d->best / d->first, info->gradient_norm);
+    if (!d->ops->put_results(d->self, first, interrupted ? "interrupted" : "converged", d->err))
+        return RUN_CANNOT_WRITE;
+    progress_say(d->run->progress,
+                 "%s after %d evaluations: F %.4g, %.4g of the start; projected gradient %.3g",
+                 optimiser_status_name(info->status), d->evaluations, d->best, d->best / d->first,
+                 info->gradient_norm);
     return interrupted ? RUN_INTERRUPTED : RUN_DONE;
 }
 
@@ -195,17 +201,34 @@ RunStatus design_run(Run *run, const DesignOps *ops, void *self, const double *u
     const DesignScene *scene = run->scene->design;
     int n = run->model->design.size;
     double *work = mem_alloc(5 * (size_t)n, sizeof *work);
-    DesignRun d = {.run = run, .ops = ops, .self = self, .err = err, .n = n, .u = work, .gradient = work + n,
-                   .lower = work + 2 * n, .upper = work + 3 * n, .best = INFINITY, .started = clock_seconds(),
-                   .recorded = journal_count(run->journal, "evaluation"), .slot = 1};
+    DesignRun d = {.run = run,
+                   .ops = ops,
+                   .self = self,
+                   .err = err,
+                   .n = n,
+                   .u = work,
+                   .gradient = work + n,
+                   .lower = work + 2 * n,
+                   .upper = work + 3 * n,
+                   .best = INFINITY,
+                   .started = clock_seconds(),
+                   .recorded = journal_count(run->journal, "evaluation"),
+                   .slot = 1};
     design_bounds(&run->model->design, d.lower, d.upper);
     OptimiserDef def = optimiser_default();
     def.method = methods[scene->optimizer];
     def.evaluations = scene->iterations + 1;
     if (def.evaluations < d.recorded) def.evaluations = d.recorded; /* what has been done stays done */
     def.gradient_tol = scene->tolerance;
-    Problem problem = {.n = n, .lower = d.lower, .upper = d.upper, .self = &d, .evaluate = evaluate, .accept = accept,
-                       .product = product, .recall = recall, .go_on = go_on};
+    Problem problem = {.n = n,
+                       .lower = d.lower,
+                       .upper = d.upper,
+                       .self = &d,
+                       .evaluate = evaluate,
+                       .accept = accept,
+                       .product = product,
+                       .recall = recall,
+                       .go_on = go_on};
     double *start = work + 4 * n;
     memcpy(start, u, (size_t)n * sizeof *u);
     OptimiserInfo info = optimise(&problem, &def, start);
@@ -214,7 +237,8 @@ RunStatus design_run(Run *run, const DesignOps *ops, void *self, const double *u
     return status;
 }
 
-bool design_put_gradient(Run *run, const char *name, const char *unit, const double *values, int count, int width, Error *err)
+bool design_put_gradient(Run *run, const char *name, const char *unit, const double *values, int count,
+                         int width, Error *err)
 {
     char path[64], of[64];
     snprintf(path, sizeof path, "design/gradient/%s", name);

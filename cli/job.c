@@ -1,10 +1,10 @@
 #include "cli/job.h"
 
-const char *const job_names[] = {"equilibrium", "evaluate", "design", "simulate", NULL};
+const char *const job_names[] = {"equilibrium", "evaluate", "design", "simulate", "trajectory", NULL};
 
 RunStatus job_run(Run *run, Error *err)
 {
     static RunStatus (*const jobs[])(Run *, Error *) = {job_equilibrium, job_evaluate, job_design,
-                                                        job_simulate};
+                                                        job_simulate, job_trajectory};
     return jobs[run->scene->job](run, err);
 }

@@ -2,7 +2,7 @@
 #pragma once
 #include "cli/run.h"
 
-typedef enum JobKind { JOB_EQUILIBRIUM, JOB_EVALUATE, JOB_DESIGN, JOB_SIMULATE } JobKind;
+typedef enum JobKind { JOB_EQUILIBRIUM, JOB_EVALUATE, JOB_DESIGN, JOB_SIMULATE, JOB_TRAJECTORY } JobKind;
 
 extern const char *const job_names[]; /* by JobKind, NULL-terminated: the choices of the scene's key `job` */
 
@@ -15,3 +15,4 @@ RunStatus job_equilibrium(Run *run, Error *err);
 RunStatus job_evaluate(Run *run, Error *err);
 RunStatus job_design(Run *run, Error *err);
 RunStatus job_simulate(Run *run, Error *err);
+RunStatus job_trajectory(Run *run, Error *err);

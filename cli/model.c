@@ -262,6 +262,11 @@ static bool read_pose(const Build *b, const PoseScene *pose, double *x)
     return ok;
 }
 
+static bool is_motion(int job)
+{
+    return job == JOB_SIMULATE || job == JOB_TRAJECTORY;
+}
+
 /* Systems last: fields and what is held are known by then. An equilibrium needs forces in balance. */
 static bool finish_cases(Model *model, const Build *b, JobKind job)
 {
@@ -269,7 +274,7 @@ static bool finish_cases(Model *model, const Build *b, JobKind job)
     for (int k = 0; ok && k < model->case_count; k++) {
         ModelCase *c = &model->cases[k];
         Error err;
-        c->sys = job == JOB_SIMULATE ? shell_dynamic_system(model->shell) : shell_system(model->shell);
+        c->sys = is_motion(job) ? shell_dynamic_system(model->shell) : shell_system(model->shell);
         c->x = mem_copy(model->x, (size_t)shell_dof_count(model->shell), sizeof *c->x);
         Point at = {.x = c->x, .p = c->stages[0].p};
         system_accept(c->sys, &at);
@@ -280,14 +285,14 @@ static bool finish_cases(Model *model, const Build *b, JobKind job)
     return ok;
 }
 
-static bool check_simulation(const Scene *scene, YamlFile *file)
+static bool check_motion(const Scene *scene, YamlFile *file)
 {
-    if (scene->job != JOB_SIMULATE) return true;
+    const char *what = scene->job == JOB_SIMULATE ? "simulation" : "trajectory";
+    if (!is_motion(scene->job)) return true;
     if (isnan(scene->time.step) || scene->time.steps == YAML_ABSENT)
-        return yaml_refuse(file, "time", "a simulation needs `time`, e.g. time: {step: 1 ms, steps: 100}");
+        return yaml_refuse(file, "time", "a %s needs `time`, e.g. time: {step: 1 ms, steps: 100}", what);
     return (!scene->cases_count && !scene->sequence_count) ||
-           yaml_refuse(file, "job",
-                       "a simulation has neither cases nor a sequence; a field may be a formula of t");
+           yaml_refuse(file, "job", "a %s has neither cases nor a sequence; a field may be a formula of t", what);
 }
 
 static bool fill(Model *model, const Scene *scene, const Build *b)
@@ -307,7 +312,7 @@ static bool fill(Model *model, const Scene *scene, const Build *b)
     double *p = base_params(model, scene, b, room);
     ok = p && add_cases(model, b, scene, p, room) && ok;
     mem_free(p);
-    return ok && check_simulation(scene, b->file) && finish_cases(model, b, (JobKind)scene->job);
+    return ok && check_motion(scene, b->file) && finish_cases(model, b, (JobKind)scene->job);
 }
 
 Model *model_create(const Scene *scene, YamlFile *file)
@@ -316,8 +321,9 @@ Model *model_create(const Scene *scene, YamlFile *file)
     Mesh *mesh = build_mesh(&scene->shell.mesh, file, &model->report);
     if (mesh) {
         model->shell = shell_create(mesh);
-        Build b = {file, mesh, scene->time.at, scene->job == JOB_SIMULATE ? &model->flux_of_time : NULL};
-        if (fill(model, scene, &b) && (scene->job != JOB_DESIGN || model_design(model, scene, file)))
+        Build b = {file, mesh, scene->time.at, is_motion(scene->job) ? &model->flux_of_time : NULL};
+        bool designed = scene->job == JOB_DESIGN || scene->job == JOB_TRAJECTORY;
+        if (fill(model, scene, &b) && (!designed || model_design(model, scene, file)))
             return model;
     }
     model_destroy(model);

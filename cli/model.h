@@ -3,6 +3,7 @@
 #include "cli/scene.h"
 #include "cli/timed_flux.h"
 #include "io/formula.h"
+#include "optim/control.h"
 #include "optim/design.h"
 #include "shell/select.h"
 #include "shell/shell.h"
@@ -40,8 +41,9 @@ typedef struct Model {
     ModelCase *cases;
     Motion *motions;
     double *x;              /* [dofs] rest or pose */
-    Design design;          /* of a design job */
-    TimedFlux flux_of_time; /* of a simulation: the uniform flux density, if it changes */
+    Design design;          /* of a design or trajectory */
+    Control control;        /* of a trajectory: the unknown flux density; no rows: none */
+    TimedFlux flux_of_time; /* of a motion: the uniform flux density, if it changes */
 } Model;
 
 /* Reads the files that the scene names and builds everything. On bad input NULL, and the errors are in the
@@ -55,6 +57,7 @@ bool model_move(const Model *model, double time, double part, double *x, Error *
 /* Puts what depends on time into p. */
 bool model_load(const Model *model, double time, double *p, Error *err);
 
-/* The scene's unknowns, with their starts (noise included) written into the p of all cases, and the
- * objectives of all cases. Part of model_create for a design job; false after a refusal. */
+/* The scene's unknowns, with their starts (noise included) written into the p of all cases, and (model_objectives)
+ * the objectives of all cases. Parts of model_create for designs and trajectories; false after a refusal. */
 bool model_design(Model *model, const Scene *scene, YamlFile *file);
+bool model_objectives(Model *model, const Scene *scene, YamlFile *file);

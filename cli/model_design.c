@@ -1,10 +1,9 @@
-/* The scene's unknowns and objectives. */
+/* The scene's unknowns. */
 #include "base/memory.h"
 #include "base/random.h"
 #include "cli/build.h"
 #include "cli/model.h"
-#include "optim/objectives.h"
-#include "shell/smoothness.h"
+#include "cli/job.h"
 #include <math.h>
 #include <string.h>
 
@@ -144,18 +143,102 @@ static bool magnetization_unknown(Model *model, const Build *b, Design *design, 
 }
 
 /* One value per case, each from its own start. */
-static bool flux_unknown(Model *model, const Build *b, Design *design, const FluxUnknown *from, int seed)
+static void flux_per_case(Model *model, const FluxUnknown *from, const ParamBlock *block, Random *random,
+                          Unknown unknown)
 {
-    bool ok = check_bounds(b->file, "flux_density", from->bounds);
-    const ParamBlock *block = params_find(&model->shell->params, "flux_density");
-    Random random =
-        random_seed((uint64_t)seed * PARAMS_MAX_BLOCKS + (uint64_t)(block - model->shell->params.blocks));
     for (int c = 0; c < model->case_count; c++)
         for (int i = 0; i < 3; i++)
-            model->cases[c].stages[0].p[block->offset + i] += from->noise * random_signed(&random);
-    Unknown unknown = {.block = block, .group_count = block->count, .scale = from->scale, .per_case = true};
+            model->cases[c].stages[0].p[block->offset + i] += from->noise * random_signed(random);
+    unknown.block = block, unknown.group_count = block->count, unknown.per_case = true;
+    design_add(&model->design, unknown);
+}
+
+/* Appends a block to the parameters of a trajectory's only case. */
+static double *add_block(Model *model, const char *name, const char *unit, int count, int width)
+{
+    Params *params = &model->shell->params;
+    double **p = &model->cases[0].stages[0].p;
+    int before = params->size, offset = params_add(params, name, unit, count, width, false);
+    *p = mem_resize(*p, (size_t)before, (size_t)params->size, sizeof **p);
+    return *p + offset;
+}
+
+/* The scene's field at the times of a control's rows: of harmonics its Fourier sums over the steps. */
+static bool sample_flux(Model *model, const Build *b, const Control *control, double *rows)
+{
+    double *p = model->cases[0].stages[0].p;
+    int count = control->kind == CONTROL_KNOT ? control->rows : control->steps;
+    Error err;
+    for (int k = 0; k < count; k++) {
+        double part = control->kind == CONTROL_KNOT ? (double)k / (count - 1) : (double)(k + 1) / count;
+        if (!model_load(model, control->start + part * control->duration, p, &err))
+            return yaml_refuse(b->file, "flux_density", "%s", err.text);
+        const double *B = p + control->to;
+        if (control->kind != CONTROL_HARMONIC) memcpy(rows + 3 * k, B, 3 * sizeof *B);
+        for (int r = 0; control->kind == CONTROL_HARMONIC && r < control->rows; r++) {
+            double angle = 2 * M_PI * ((r + 1) / 2) * part;
+            double w = r == 0 ? 1.0 / count : 2.0 / count * (r % 2 ? cos(angle) : sin(angle));
+            for (int i = 0; i < 3; i++) rows[3 * r + i] += w * B[i];
+        }
+    }
+    return true;
+}
+
+static bool start_control(Model *model, const Build *b, const FluxStart *start, double *rows)
+{
+    const Control *control = &model->control;
+    const char *at = "design.unknowns.flux_density.start.file";
+    if (!start) return sample_flux(model, b, control, rows);
+    if (!start->file) {
+        int copies = control->kind == CONTROL_HARMONIC ? 1 : control->rows;
+        for (int k = 0; k < copies; k++) memcpy(rows + 3 * k, start->value, sizeof start->value);
+        return true;
+    }
+    Table table;
+    Error err;
+    if (!table_read(start->file, 3, &table, &err)) return yaml_refuse(b->file, at, "%s", err.text);
+    bool ok = table.rows == control->rows ||
+              yaml_refuse(b->file, at, "%s has %d rows; the unknown flux density has %d", start->file,
+                          table.rows, control->rows);
+    if (ok) memcpy(rows, table.values, 3 * (size_t)table.rows * sizeof *rows);
+    table_clear(&table);
+    return ok;
+}
+
+/* A row for each step, knot or coefficient. */
+static bool flux_over_time(Model *model, const Build *b, const Scene *scene, Random *random, Unknown unknown)
+{
+    const FluxUnknown *from = scene->design->unknowns.flux_density;
+    Control *control = &model->control;
+    *control = (Control){.kind = (ControlKind)from->per,
+                         .to = unknown.block->offset,
+                         .width = 3,
+                         .steps = scene->time.steps,
+                         .start = scene->time.at,
+                         .duration = scene->time.step * scene->time.steps};
+    control->rows = control_rows(control->kind, control->steps,
+                                 control->kind == CONTROL_KNOT ? from->knots : from->harmonics);
+    double *rows = add_block(model, "control", "T", control->rows, 3);
+    control->from = (int)(rows - model->cases[0].stages[0].p);
+    if (!start_control(model, b, from->start, rows)) return false;
+    for (int i = 0; i < 3 * control->rows; i++) rows[i] += from->noise * random_signed(random);
+    unknown.block = params_find(&model->shell->params, "control");
+    unknown.group_count = control->rows;
+    design_add(&model->design, unknown);
+    return true;
+}
+
+static bool flux_unknown(Model *model, const Build *b, const Scene *scene)
+{
+    const FluxUnknown *from = scene->design->unknowns.flux_density;
+    bool ok = check_bounds(b->file, "flux_density", from->bounds);
+    const ParamBlock *block = params_find(&model->shell->params, "flux_density");
+    Random random = random_seed((uint64_t)scene->design->seed * PARAMS_MAX_BLOCKS +
+                                (uint64_t)(block - model->shell->params.blocks));
+    Unknown unknown = {.block = block, .scale = from->scale};
     put_bounds(&unknown, from->bounds);
-    design_add(design, unknown);
+    if (scene->job == JOB_TRAJECTORY) return flux_over_time(model, b, scene, &random, unknown) && ok;
+    flux_per_case(model, from, block, &random, unknown);
     return ok;
 }
 
@@ -170,76 +253,52 @@ static bool add_unknowns(Model *model, const Scene *scene, const Build *b)
         ok = magnetization_unknown(model, b, design, unknowns->magnetization, seed) && ok;
     if (unknowns->young) ok = number_unknown(model, b, design, "young", unknowns->young, seed) && ok;
     if (unknowns->fold) ok = number_unknown(model, b, design, "fold", unknowns->fold, seed) && ok;
-    if (unknowns->flux_density) ok = flux_unknown(model, b, design, unknowns->flux_density, seed) && ok;
+    if (unknowns->flux_density) ok = flux_unknown(model, b, scene) && ok;
     if (ok && !design->unknown_count)
         ok = yaml_refuse(b->file, "design.unknowns",
                          "a design needs an unknown: magnetization, young, fold or flux_density");
     return ok;
 }
 
-/* ---- Objectives ---- */
-
-static bool target_objective(const ModelCase *c, int vertex_count, YamlFile *file, Key at, double weight,
-                             Objective *objective)
+/* Frequencies and amplitudes of a DMP row: the first harmonics of the whole time, with no amplitude. */
+static bool add_dmp(Model *model, const Scene *scene, const Build *b)
 {
-    if (!c->target) return yaml_refuse(file, at.text, "the case '%s' has no target", c->name);
-    int *vertices = mem_alloc((size_t)vertex_count, sizeof *vertices), count = 0;
-    double(*target)[3] = mem_alloc((size_t)vertex_count, sizeof *target);
-    for (int v = 0; v < vertex_count; v++) {
-        if (isnan(c->target[v][0])) continue;
-        vertices[count] = v;
-        memcpy(target[count++], c->target[v], sizeof *target);
+    const ObjectiveScene *row = NULL;
+    for (int k = 0; k < scene->design->objectives_count; k++) {
+        if (isnan(scene->design->objectives[k].dmp)) continue;
+        Key at = key("design.objectives[%d]", k);
+        if (row) return yaml_refuse(b->file, at.text, "there is a dmp already; one is enough");
+        if (!model->control.rows)
+            return yaml_refuse(b->file, at.text, "dmp needs the unknown flux_density of a trajectory");
+        row = &scene->design->objectives[k];
     }
-    *objective = objective_target(count, vertices, (const double(*)[3])target, weight);
-    mem_free(vertices);
-    mem_free(target);
-    return true;
-}
-
-static bool height_objective(const Build *b, Key at, const ObjectiveScene *from, Objective *objective)
-{
-    SelectionScene group = {.group = from->of};
-    Indices chosen = {0};
-    if (!build_selection(b, at, strcmp(from->of, "all") ? &group : NULL, &chosen)) return false;
-    *objective = objective_height(chosen.count, chosen.items, from->height);
-    mem_free(chosen.items);
-    return true;
-}
-
-/* What depends on parameters only counts once, in the first case. */
-static bool add_objective(Model *model, const Build *b, Key at, const ObjectiveScene *from, int case_index)
-{
-    ModelCase *c = &model->cases[case_index];
-    Objective *objective = &c->objectives[c->objective_count];
-    if (!isnan(from->magnetization_smoothness)) {
-        if (case_index > 0) return true;
-        *objective = shell_magnetization_smoothness(model->shell, from->magnetization_smoothness / c->weight);
-    } else if (!isnan(from->target)
-                   ? !target_objective(c, b->mesh->vertex_count, b->file, at, from->target, objective)
-                   : !height_objective(b, at, from, objective))
-        return false;
-    c->objective_count++;
-    return true;
-}
-
-static bool add_objectives(Model *model, const Scene *scene, const Build *b)
-{
-    int count = scene->design->objectives_count;
-    bool ok = true;
-    for (int c = 0; c < model->case_count; c++) {
-        model->cases[c].objectives = mem_alloc((size_t)count, sizeof(Objective));
-        for (int k = 0; k < count; k++)
-            ok = add_objective(model, b, key("design.objectives[%d]", k), &scene->design->objectives[k], c) &&
-                 ok;
+    if (!row) return true;
+    static const struct {
+        const char *name, *unit;
+        int width;
+    } blocks[] = {{"dmp_omega", "rad/s", 1}, {"dmp_alpha", "T", 3}, {"dmp_beta", "T", 3}};
+    double base = 2 * M_PI / model->control.duration;
+    for (int k = 0; k < 3; k++) {
+        double *values = add_block(model, blocks[k].name, blocks[k].unit, row->pairs, blocks[k].width);
+        for (int j = 0; k == 0 && j < row->pairs; j++) values[j] = base * (j + 1);
+        Unknown unknown = {.block = params_find(&model->shell->params, blocks[k].name),
+                           .group_count = row->pairs,
+                           .scale = k == 0 ? base : scene->design->unknowns.flux_density->scale,
+                           .lower = k == 0 ? 0 : -INFINITY,
+                           .upper = INFINITY};
+        design_add(&model->design, unknown);
     }
-    return ok;
+    return true;
 }
 
 bool model_design(Model *model, const Scene *scene, YamlFile *file)
 {
     Build b = {.file = file, .mesh = model->shell->mesh, .time = scene->time.at};
-    if (!scene->design) return yaml_refuse(file, "job", "a design job needs the key `design`");
+    bool trajectory = scene->job == JOB_TRAJECTORY;
+    if (!scene->design)
+        return yaml_refuse(file, "job", "a %s job needs the key `design`",
+                           trajectory ? "trajectory" : "design");
     if (scene->sequence_count) return yaml_refuse(file, "sequence", "a design has cases, not a sequence");
-    bool ok = add_unknowns(model, scene, &b);
-    return add_objectives(model, scene, &b) && ok;
+    bool ok = add_unknowns(model, scene, &b) && add_dmp(model, scene, &b);
+    return model_objectives(model, scene, file) && ok;
 }

@@ -82,6 +82,7 @@ bool run_put_frame(Run *run, int index, double shown, const State *state, bool w
     List list = {0};
     add(&list, array_float("x", "m", state->x, 2, shell->mesh->vertex_count, 3));
     add(&list, array_float("time", "s", &shown, 0, 0, 0));
+    add(&list, array_float("flux_density", "T", state->p + shell->flux_density, 2, 1, 3));
     for (int t = 0; t < system_term_count(sys); t++) {
         const Term *term = system_term(sys, t);
         int count = term->ops->count(term->self);

@@ -1,6 +1,6 @@
 /* The field tables of scene files. Every key of the program is a row here. */
-#include "cli/scene.h"
 #include "cli/job.h"
+#include "cli/scene_tables.h"
 
 /* ---- Values ---- */
 
@@ -27,7 +27,7 @@ static const YamlTable where_table = {
         .fields = (const YamlField[]){{YAML_NUMBER(NumberGroup, value), .unit = u, .range = r,               \
                                        .required = true, .short_form = true, .doc = "the value"},            \
                                       {0}}};                                                                 \
-    static const YamlTable id##_table = {                                                                    \
+    const YamlTable id##_table = {                                                                           \
         .name = #id,                                                                                         \
         .size = sizeof(NumberScene),                                                                         \
         .doc = of,                                                                                           \
@@ -59,7 +59,7 @@ static const YamlTable magnetization_group_table = {
                                    .short_form = true, .doc = "the value"},
                                   {0}}};
 
-static const YamlTable magnetization_table = {
+const YamlTable magnetization_table = {
     .name = "magnetization",
     .size = sizeof(VectorScene),
     .doc = "Remanent magnetisation in material space, per face. A file has one row x, y, z per face.",
@@ -278,120 +278,6 @@ static const YamlTable stage_table = {
         {YAML_NUMBER(StageScene, time), .unit = "s", .doc = "the time t of formulas"},
         {0}}};
 
-/* ---- Design ---- */
-
-#define BOUNDS_ROW(S, u)                                                                                     \
-    {                                                                                                        \
-        YAML_VECTOR(S, bounds), .unit = u, .doc = "lower and upper bound"                                    \
-    }
-#define PER_ROW(S)                                                                                           \
-    {                                                                                                        \
-        YAML_CHOICE(S, per), .choices = YAML_NAMES("face", "group"), .fallback = "face",                     \
-                             .doc = "an unknown for each face, or for each group of faces"                   \
-    }
-
-static const YamlTable magnetization_unknown_table = {
-    .name = "unknown magnetization",
-    .size = sizeof(VectorUnknown),
-    .doc = "The magnetisation as an unknown.",
-    .fields = (const YamlField[]){
-        {YAML_NUMBER(VectorUnknown, noise), .unit = "A/m", .range = "[0, inf)", .fallback = "0",
-         .doc = "size of seeded noise that is added to the start"},
-        {YAML_NUMBER(VectorUnknown, scale), .unit = "A/m", .range = "(0, inf)", .fallback = "1.0e+4 A/m",
-         .doc = "a natural size: optimisers see the value over it"},
-        BOUNDS_ROW(VectorUnknown, "A/m"),
-        {YAML_NUMBER(VectorUnknown, magnitude), .unit = "A/m", .range = "(0, inf)", .one_of = 1,
-         .doc = "fixes |M|: only its direction is free"},
-        {YAML_NUMBER(VectorUnknown, max_magnitude), .unit = "A/m", .range = "(0, inf)", .one_of = 1,
-         .doc = "a cap on |M|"},
-        PER_ROW(VectorUnknown),
-        {YAML_OPTIONAL(VectorUnknown, start, &magnetization_table), .doc = "in place of the shell's"},
-        {0}}};
-
-static const YamlTable young_unknown_table = {
-    .name = "unknown young",
-    .size = sizeof(NumberUnknown),
-    .doc = "Young's modulus as an unknown.",
-    .fields = (const YamlField[]){
-        BOUNDS_ROW(NumberUnknown, "Pa"),
-        {YAML_CHOICE(NumberUnknown, scale), .choices = YAML_NAMES("log", "linear"), .fallback = "log",
-         .doc = "optimisers see its logarithm, or its ratio to the start's mean"},
-        {YAML_NUMBER(NumberUnknown, noise), .unit = "Pa", .range = "[0, inf)", .fallback = "0",
-         .doc = "size of seeded noise that is added to the start"},
-        PER_ROW(NumberUnknown),
-        {YAML_OPTIONAL(NumberUnknown, start, &young_table), .doc = "in place of the shell's"},
-        {0}}};
-
-static const YamlTable fold_unknown_table = {
-    .name = "unknown fold",
-    .size = sizeof(NumberUnknown),
-    .doc = "The factor on each edge's curvature as an unknown.",
-    .fields = (const YamlField[]){
-        BOUNDS_ROW(NumberUnknown, NULL),
-        {YAML_CHOICE(NumberUnknown, scale), .choices = YAML_NAMES("log", "linear"), .fallback = "log",
-         .doc = "optimisers see its logarithm, or its ratio to the start's mean"},
-        {YAML_NUMBER(NumberUnknown, noise), .range = "[0, inf)", .fallback = "0",
-         .doc = "size of seeded noise that is added to the start"},
-        {YAML_OPTIONAL(NumberUnknown, start, &fold_table), .doc = "in place of the shell's"},
-        {0}}};
-
-static const YamlTable flux_unknown_table = {
-    .name = "unknown flux_density",
-    .size = sizeof(FluxUnknown),
-    .doc = "The uniform part of the flux density as an unknown, one for each load case.",
-    .fields =
-        (const YamlField[]){{YAML_NUMBER(FluxUnknown, noise), .unit = "T", .range = "[0, inf)",
-                             .fallback = "0", .doc = "size of seeded noise that is added to the start"},
-                            {YAML_NUMBER(FluxUnknown, scale), .unit = "T", .range = "(0, inf)",
-                             .fallback = "0.01 T", .doc = "a natural size: optimisers see the value over it"},
-                            BOUNDS_ROW(FluxUnknown, "T"),
-                            {0}}};
-
-static const YamlTable unknowns_table = {
-    .name = "unknowns",
-    .size = sizeof(UnknownsScene),
-    .doc = "What the optimiser may change; starts at the shell's values.",
-    .fields = (const YamlField[]){
-        {YAML_OPTIONAL(UnknownsScene, magnetization, &magnetization_unknown_table),
-         .doc = "three numbers per face"},
-        {YAML_OPTIONAL(UnknownsScene, young, &young_unknown_table), .doc = "a number per face"},
-        {YAML_OPTIONAL(UnknownsScene, fold, &fold_unknown_table), .doc = "a number per edge"},
-        {YAML_OPTIONAL(UnknownsScene, flux_density, &flux_unknown_table),
-         .doc = "three numbers per load case"},
-        {0}}};
-
-static const YamlTable objective_table = {
-    .name = "objectives",
-    .size = sizeof(ObjectiveScene),
-    .doc = "What should be small: a sum of rows, each times its weight and without hidden normalisation.",
-    .fields = (const YamlField[]){
-        {YAML_NUMBER(ObjectiveScene, target), .one_of = 1, .required = true,
-         .doc = "weight of the squared distances to each case's target, m^2"},
-        {YAML_NUMBER(ObjectiveScene, height), .one_of = 1, .required = true,
-         .doc = "weight of the mean height (z), m; a negative one asks for height"},
-        {YAML_NUMBER(ObjectiveScene, magnetization_smoothness), .one_of = 1, .required = true,
-         .doc = "weight of the squared jumps of the magnetisation over inner edges, (A/m)^2"},
-        {YAML_TEXT(ObjectiveScene, of), .fallback = "all", .doc = "of height: a named group, or all"},
-        {0}}};
-
-static const YamlTable design_table = {
-    .name = "design",
-    .size = sizeof(DesignScene),
-    .doc = "A design job: parameters that make the body do what its cases say.",
-    .fields = (const YamlField[]){
-        {YAML_TABLE(DesignScene, unknowns, &unknowns_table), .required = true, .doc = "what may change"},
-        {YAML_LIST(DesignScene, objectives, &objective_table), .required = true, .min_count = 1,
-         .doc = "what should be small"},
-        {YAML_CHOICE(DesignScene, optimizer), .choices = YAML_NAMES("mma", "lbfgs", "gauss_newton"),
-         .fallback = "mma",
-         .doc = "NLopt's method of moving asymptotes, NLopt's L-BFGS, or a matrix-free Gauss-Newton"},
-        {YAML_INTEGER(DesignScene, iterations), .range = "[0, inf)", .fallback = "50",
-         .doc = "evaluations of the objective after the first; 0 evaluates the start and its gradient"},
-        {YAML_NUMBER(DesignScene, tolerance), .range = "[0, 1)", .fallback = "1.0e-6",
-         .doc = "done when the gradient, projected on the bounds, fell to this part of the first one"},
-        {YAML_INTEGER(DesignScene, seed), .range = "[0, inf)", .fallback = "1", .doc = "of the noise"},
-        {0}}};
-
 /* ---- The whole ---- */
 
 static const YamlTable solver_table = {
@@ -421,13 +307,13 @@ static const YamlTable load_steps_table = {
 static const YamlTable time_table = {
     .name = "time",
     .size = sizeof(TimeScene),
-    .doc = "The time t of formulas in statics, or the steps of a simulation.",
+    .doc = "The time t of formulas in statics, or the steps of a simulation or trajectory.",
     .fields = (const YamlField[]){
         {YAML_NUMBER(TimeScene, at), .unit = "s", .fallback = "0 s", .short_form = true,
          .doc = "t in statics; where a simulation begins"},
         {YAML_NUMBER(TimeScene, step), .unit = "s", .range = "(0, inf)",
-         .doc = "of a simulation: the step of implicit Euler"},
-        {YAML_INTEGER(TimeScene, steps), .range = "[1, inf)", .doc = "of a simulation: how many"},
+         .doc = "of a simulation or trajectory: the step of implicit Euler"},
+        {YAML_INTEGER(TimeScene, steps), .range = "[1, inf)", .doc = "of a simulation or trajectory: how many"},
         {0}}};
 
 static const YamlTable output_table = {
@@ -436,7 +322,7 @@ static const YamlTable output_table = {
     .doc = "What goes into the result file.",
     .fields =
         (const YamlField[]){{YAML_INTEGER(OutputScene, every), .range = "[0, inf)", .fallback = "0",
-                             .doc = "a frame for every so many steps of a simulation (0: every step) or "
+                             .doc = "a frame for every so many steps of a motion (0: every step) or "
                                     "improvements of a design (0: the final one only)"},
                             {YAML_CHOICE(OutputScene, precision), .choices = YAML_NAMES("single", "double"),
                              .fallback = "single", .doc = "of frames"},
@@ -460,7 +346,7 @@ const YamlTable scene_table = {
         {YAML_LIST(Scene, cases, &case_table),
          .doc = "load cases of a design; one with the scene's loads if absent"},
         {YAML_LIST(Scene, sequence, &stage_table), .doc = "stages of an equilibrium"},
-        {YAML_OPTIONAL(Scene, design, &design_table), .doc = "what a design job looks for"},
+        {YAML_OPTIONAL(Scene, design, &design_table), .doc = "what a design or trajectory job looks for"},
         {YAML_TABLE(Scene, solver, &solver_table), .fallback = "{}", .doc = "tolerances"},
         {YAML_TABLE(Scene, load_steps, &load_steps_table), .fallback = "auto", .doc = "how loads come on"},
         {YAML_TABLE(Scene, time, &time_table), .fallback = "0 s",

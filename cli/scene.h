@@ -160,8 +160,17 @@ typedef struct VectorUnknown {
     VectorScene *start;
 } VectorUnknown;
 
+/* A row for each of a control's values, or one for all. */
+typedef struct FluxStart {
+    double value[3];
+    char *file;
+} FluxStart;
+
 typedef struct FluxUnknown {
     double bounds[2], noise, scale;
+    int per; /* ControlKind, of a trajectory */
+    int knots, harmonics;
+    FluxStart *start;
 } FluxUnknown;
 
 typedef struct UnknownsScene {
@@ -170,9 +179,40 @@ typedef struct UnknownsScene {
     FluxUnknown *flux_density;
 } UnknownsScene;
 
+/* Members of every objective of one point of the body; and frames at which it counts. */
+#define TRACKED_MEMBERS                                                                                      \
+    char *vertex;                                                                                            \
+    bool mass_center;                                                                                        \
+    int frame, *frames, frames_count
+
+typedef struct WaypointScene {
+    TRACKED_MEMBERS;
+    double at[3];
+} WaypointScene;
+
+typedef struct CurveScene {
+    TRACKED_MEMBERS;
+    double (*points)[3], (*arc)[3], blend;
+    int points_count, arc_count;
+} CurveScene;
+
+typedef struct ReachScene {
+    char *vertex;
+    bool mass_center;
+    double (*targets)[3], every, delay;
+    int targets_count;
+} ReachScene;
+
 typedef struct ObjectiveScene {
-    double target, height, magnetization_smoothness; /* weights; one of them */
-    char *of;                                        /* height: a group, or all */
+    /* One of these: a weight, or a table, to which `weight` belongs. */
+    double target, height, magnetization_smoothness, field_magnitude, field_smoothness, dmp;
+    WaypointScene *waypoint;
+    CurveScene *curve;
+    ReachScene *reach;
+    double weight;
+    char *of;                         /* height: a group, or all */
+    int frame, *frames, frames_count; /* target, height          */
+    int pairs;                        /* dmp                     */
 } ObjectiveScene;
 
 typedef struct DesignScene {

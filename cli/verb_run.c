@@ -72,15 +72,19 @@ static bool parse(int argc, char **argv, RunOptions *options)
 
 /* ---- The journal's beginning ---- */
 
-/* Keys that a resumed run may change: how far it goes, and what it writes. */
+/* Keys that a resumed run may change: how far it goes (a trajectory's steps are part of its problem), and what it
+ * writes. */
 static const char *const free_keys[] = {
-    "design.iterations", "design.tolerance", "time.steps", "output.precision", "modes", NULL};
+    "design.iterations", "design.tolerance", "output.precision", "modes", "time.steps", NULL};
+static const char *const free_keys_trajectory[] = {
+    "design.iterations", "design.tolerance", "output.precision", "modes", NULL};
 
-static bool check_scene(Journal *journal, const char *scene, Error *err)
+static bool check_scene(Journal *journal, int job, const char *scene, Error *err)
 {
+    const char *const *keys = job == JOB_TRAJECTORY ? free_keys_trajectory : free_keys;
     Array old;
     if (!journal_get(journal, "meta", 0, "scene", &old, err)) return false;
-    char *difference = yaml_difference(old.data, scene, free_keys);
+    char *difference = yaml_difference(old.data, scene, keys);
     array_clear(&old);
     if (!difference) return true;
     error_set(err,
@@ -96,7 +100,7 @@ static bool begin(Run *run, const RunOptions *options, Error *err)
 {
     const Mesh *mesh = run->model->shell->mesh;
     char *scene = yaml_write(&scene_table, run->scene), *versions = run_versions();
-    bool ok = !options->resume || check_scene(run->journal, scene, err);
+    bool ok = !options->resume || check_scene(run->journal, run->scene->job, scene, err);
     Array meta[] = {array_text("scene", scene), array_text("versions", versions)};
     Array statics[] = {array_float("rest", "m", mesh->rest[0], 2, mesh->vertex_count, 3),
                        array_int("faces", mesh->faces[0], 2, mesh->face_count, 3),

@@ -245,6 +245,10 @@ static bool fill(Writer *w, Error *err)
     w->vertex_count = x.dims[0];
     array_clear(&x);
     if (!read_times(w, err) || !put_last_x(w, err) || !put_vtk(w, err)) return false;
+    for (int k = 0; k < w->field_count; k++)
+        if (!strcmp(w->fields[k], "flux_density") &&
+            !put_frames_array(w, "flux_density", "slender/frames/flux_density", NULL, err))
+            return false;
     return !w->def.double_frames || put_frames_array(w, "x", "slender/frames/x", NULL, err);
 }
 

@@ -11,7 +11,8 @@
  *
  * /slender: every array of meta, static and final at its own name (scene, versions, rest, faces, edges,
  * state/x, design/<block>, cases/<name>/.., ..) with its type and shape; history/<name> [evaluations], one
- * for each scalar that the evaluations hold; frames/x [T,n_v,3] float64 if double_frames. The text
+ * for each scalar that the evaluations hold; frames/flux_density [T,3] where the frames have it; frames/x
+ * [T,n_v,3] float64 if double_frames. The text
  * final/status becomes the attribute `status`: "unfinished" if there is none yet; state/x is the last frame's
  * x until final has it.
  *

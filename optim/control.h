@@ -1,8 +1,8 @@
 /* control.h - a parameter that changes from step to step, as rows of unknowns in the parameter vector.
  *
- * The rows [rows][width] are a block of p like any other; the entry `to` of p keeps the current value, which is a sum of
- * rows with weights that depend on the step. So terms know nothing of it: what they add to the derivative of the current
- * value goes back to the rows with the same weights. */
+ * The rows [rows][width] are a block of p like any other; the entry `to` of p keeps the current value, which
+ * is a sum of rows with weights that depend on the step. So terms know nothing of it: what they add to the
+ * derivative of the current value goes back to the rows with the same weights. */
 #pragma once
 
 typedef enum ControlKind {

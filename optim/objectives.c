@@ -23,8 +23,8 @@ static double target_value(const void *self, double weight, const double *x, con
 }
 
 /* Twice J^T J, as the gradient is 2 J^T r. */
-static void target_product(const void *self, double weight, const double *x, const double *p, const double *vx,
-                           const double *vp, double *hx, double *hp)
+static void target_product(const void *self, double weight, const double *x, const double *p,
+                           const double *vx, const double *vp, double *hx, double *hp)
 {
     (void)x, (void)p, (void)vp, (void)hp;
     const Vertices *chosen = self;

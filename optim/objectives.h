@@ -1,5 +1,6 @@
-/* objectives.h - what a design may want: rows of functions of vertex positions (three dofs per vertex, first in x) and of
- * controls. All that is passed is copied. They count at frame 0 until told otherwise (Objective.first, .last). */
+/* objectives.h - what a design may want: rows of functions of vertex positions (three dofs per vertex, first
+ * in x) and of controls. All that is passed is copied. They count at frame 0 until told otherwise
+ * (Objective.first, .last). */
 #pragma once
 #include "optim/control.h"
 #include "solve/objective.h"
@@ -20,22 +21,23 @@ typedef struct Probe {
 /* |q - at|^2, m^2. */
 Objective objective_waypoint(Probe probe, const double at[3], double weight);
 
-/* The squared distance of q to a polyline of count >= 2 points: that to the nearest segment, blended between segments
- * whose squared distances differ by less than blend^2 (their mean with weights exp(-d^2/blend^2)), so that the gradient
- * has no jump where two segments meet. blend > 0, m. */
+/* The squared distance of q to a polyline of count >= 2 points: that to the nearest segment, blended between
+ * segments whose squared distances differ by less than blend^2 (their mean with weights exp(-d^2/blend^2)),
+ * so that the gradient has no jump where two segments meet. blend > 0, m. */
 Objective objective_polyline(Probe probe, int count, const double (*points)[3], double blend, double weight);
 
-/* The squared distance of q to the arc from points[0] through points[1] to points[2], which are not on one line. */
+/* The squared distance of q to the arc from points[0] through points[1] to points[2], which are not on one
+ * line. */
 Objective objective_arc(Probe probe, const double points[3][3], double weight);
 
-/* Distance of q to the curve of a polyline or an arc, m; NAN for other rows. */
-double objective_curve_distance(const Objective *objective, const double *x);
+/* Distance of q to a waypoint or to the curve of a polyline or an arc, m; NAN for other rows. */
+double objective_distance(const Objective *objective, const double *x);
 
 /* Of a control B: sum over the steps of |B_n|^2, and of |B_n - B_{n-1}|^2 from the second step on. */
 Objective objective_field_magnitude(const Control *control, double weight);
 Objective objective_field_smoothness(const Control *control, double weight);
 
 /* sum over steps n and components i of (B_n,i - sum_j alpha_ji cos(w_j t_n) + beta_ji sin(w_j t_n))^2 with
- * w = p[omega ..][pairs], alpha = p[alpha ..][pairs][3], beta likewise: keeps a field near few frequencies, which are
- * unknowns too [Chen 2022, after eq. 44; alpha and beta with an index i of their own]. */
+ * w = p[omega ..][pairs], alpha = p[alpha ..][pairs][3], beta likewise: keeps a field near few frequencies,
+ * which are unknowns too [Chen 2022, after eq. 44; alpha and beta with an index i of their own]. */
 Objective objective_dmp(const Control *control, int pairs, int omega, int alpha, int beta, double weight);

@@ -33,7 +33,8 @@ static void add_sample(const Field *field, int n, const double *value, double *d
     control_add(control, n - 1, control_time(control, n - 1), minus, dp);
 }
 
-static double field_value(const void *self, double weight, const double *x, const double *p, double *dx, double *dp)
+static double field_value(const void *self, double weight, const double *x, const double *p, double *dx,
+                          double *dp)
 {
     (void)x, (void)dx;
     const Field *field = self;
@@ -61,7 +62,8 @@ static void field_product(const void *self, double weight, const double *x, cons
 /* Derivative of the pair's sum in step n with respect to w_j, component i. */
 static double frequency_slope(const Field *field, const double *p, int j, int i, double t)
 {
-    double w = p[field->omega + j], alpha = p[field->alpha + WIDTH * j + i], beta = p[field->beta + WIDTH * j + i];
+    double w = p[field->omega + j], alpha = p[field->alpha + WIDTH * j + i],
+           beta = p[field->beta + WIDTH * j + i];
     return t * (beta * cos(w * t) - alpha * sin(w * t));
 }
 
@@ -104,7 +106,8 @@ static void dmp_tangent(const Field *field, int n, const double *p, const double
     }
 }
 
-static double dmp_value(const void *self, double weight, const double *x, const double *p, double *dx, double *dp)
+static double dmp_value(const void *self, double weight, const double *x, const double *p, double *dx,
+                        double *dp)
 {
     (void)x, (void)dx;
     const Field *field = self;
@@ -120,8 +123,8 @@ static double dmp_value(const void *self, double weight, const double *x, const 
     return sum;
 }
 
-static void dmp_product(const void *self, double weight, const double *x, const double *p, const double *vx, const double *vp,
-                        double *hx, double *hp)
+static void dmp_product(const void *self, double weight, const double *x, const double *p, const double *vx,
+                        const double *vp, double *hx, double *hp)
 {
     (void)x, (void)vx, (void)hx;
     const Field *field = self;
@@ -154,6 +157,7 @@ Objective objective_field_smoothness(const Control *control, double weight)
 
 Objective objective_dmp(const Control *control, int pairs, int omega, int alpha, int beta, double weight)
 {
-    return field_row(&dmp_ops, (Field){.control = *control, .pairs = pairs, .omega = omega, .alpha = alpha, .beta = beta},
-                     weight);
+    return field_row(
+        &dmp_ops, (Field){.control = *control, .pairs = pairs, .omega = omega, .alpha = alpha, .beta = beta},
+        weight);
 }

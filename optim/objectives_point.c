@@ -36,7 +36,8 @@ static void probe_add(const Tracked *tracked, double amount, Vec3 g, double *dx)
 
 /* ---- Waypoint ---- */
 
-static double waypoint_value(const void *self, double weight, const double *x, const double *p, double *dx, double *dp)
+static double waypoint_value(const void *self, double weight, const double *x, const double *p, double *dx,
+                             double *dp)
 {
     (void)p, (void)dp;
     const Tracked *tracked = self;
@@ -45,8 +46,8 @@ static double waypoint_value(const void *self, double weight, const double *x, c
     return vec3_dot(d, d);
 }
 
-static void waypoint_product(const void *self, double weight, const double *x, const double *p, const double *vx,
-                             const double *vp, double *hx, double *hp)
+static void waypoint_product(const void *self, double weight, const double *x, const double *p,
+                             const double *vx, const double *vp, double *hx, double *hp)
 {
     (void)x, (void)p, (void)vp, (void)hp;
     probe_add(self, 2 * weight, probe_position(self, vx), hx);
@@ -57,7 +58,8 @@ static void waypoint_product(const void *self, double weight, const double *x, c
 /* From the nearest point of segment s to q; t: the segment's direction where that is inside it, else 0. */
 static Vec3 from_segment(const Tracked *tracked, int s, Vec3 q, Vec3 *t)
 {
-    Vec3 a = vec3_load(tracked->points[s]), edge = vec3_sub(vec3_load(tracked->points[s + 1]), a), d = vec3_sub(q, a);
+    Vec3 a = vec3_load(tracked->points[s]), edge = vec3_sub(vec3_load(tracked->points[s + 1]), a),
+         d = vec3_sub(q, a);
     double length2 = vec3_dot(edge, edge), part = length2 > 0 ? vec3_dot(d, edge) / length2 : 0;
     *t = part > 0 && part < 1 ? vec3_scale(1 / sqrt(length2), edge) : vec3(0, 0, 0);
     return vec3_axpy(-fmin(fmax(part, 0), 1), edge, d);
@@ -79,7 +81,8 @@ static double segment_weight(const Tracked *tracked, double distance2, double le
     return exp((least - distance2) / (tracked->blend * tracked->blend));
 }
 
-static double polyline_value(const void *self, double weight, const double *x, const double *p, double *dx, double *dp)
+static double polyline_value(const void *self, double weight, const double *x, const double *p, double *dx,
+                             double *dp)
 {
     (void)p, (void)dp;
     const Tracked *tracked = self;
@@ -101,8 +104,8 @@ static double polyline_value(const void *self, double weight, const double *x, c
 }
 
 /* The distance's projector is I - t t^T inside a segment and I at its ends. */
-static void polyline_product(const void *self, double weight, const double *x, const double *p, const double *vx,
-                             const double *vp, double *hx, double *hp)
+static void polyline_product(const void *self, double weight, const double *x, const double *p,
+                             const double *vx, const double *vp, double *hx, double *hp)
 {
     (void)p, (void)vp, (void)hp;
     const Tracked *tracked = self;
@@ -128,14 +131,16 @@ static Vec3 from_arc(const Tracked *tracked, Vec3 q, Vec3 *t)
     double u = vec3_dot(d, tracked->e1), v = vec3_dot(d, tracked->e2), angle = atan2(v, u);
     if (angle < 0) angle += 2 * M_PI;
     bool inside = angle <= tracked->angle;
-    if (!inside) angle = angle - tracked->angle < 2 * M_PI - angle ? tracked->angle : 0; /* the end that is nearer */
+    if (!inside)
+        angle = angle - tracked->angle < 2 * M_PI - angle ? tracked->angle : 0; /* the end that is nearer */
     double c = cos(angle), s = sin(angle);
     *t = inside ? vec3_axpy(c, tracked->e2, vec3_scale(-s, tracked->e1)) : vec3(0, 0, 0);
     Vec3 out = vec3_axpy(s, tracked->e2, vec3_scale(c, tracked->e1));
     return vec3_axpy(-tracked->radius, out, d);
 }
 
-static double arc_value(const void *self, double weight, const double *x, const double *p, double *dx, double *dp)
+static double arc_value(const void *self, double weight, const double *x, const double *p, double *dx,
+                        double *dp)
 {
     (void)p, (void)dp;
     Vec3 t, d = from_arc(self, probe_position(self, x), &t);
@@ -143,8 +148,8 @@ static double arc_value(const void *self, double weight, const double *x, const 
     return vec3_dot(d, d);
 }
 
-static void arc_product(const void *self, double weight, const double *x, const double *p, const double *vx, const double *vp,
-                        double *hx, double *hp)
+static void arc_product(const void *self, double weight, const double *x, const double *p, const double *vx,
+                        const double *vp, double *hx, double *hp)
 {
     (void)p, (void)vp, (void)hp;
     Vec3 v = probe_position(self, vx), t;
@@ -195,7 +200,8 @@ Objective objective_polyline(Probe probe, int count, const double (*points)[3], 
 Objective objective_arc(Probe probe, const double points[3][3], double weight)
 {
     Tracked *tracked = track(probe);
-    Vec3 a = vec3_load(points[0]), ab = vec3_sub(vec3_load(points[1]), a), ac = vec3_sub(vec3_load(points[2]), a);
+    Vec3 a = vec3_load(points[0]), ab = vec3_sub(vec3_load(points[1]), a),
+         ac = vec3_sub(vec3_load(points[2]), a);
     Vec3 normal = vec3_cross(ab, ac);
     /* The circumcentre of three points in space. */
     Vec3 to_center = vec3_scale(1 / (2 * vec3_dot(normal, normal)),
@@ -212,11 +218,13 @@ Objective objective_arc(Probe probe, const double points[3][3], double weight)
     return (Objective){&arc_ops, tracked, weight, 0, 0};
 }
 
-double objective_curve_distance(const Objective *objective, const double *x)
+double objective_distance(const Objective *objective, const double *x)
 {
     Vec3 t;
-    if (objective->ops == &polyline_ops)
-        return sqrt(least_distance2(objective->self, probe_position(objective->self, x)));
-    if (objective->ops == &arc_ops) return vec3_length(from_arc(objective->self, probe_position(objective->self, x), &t));
+    const Tracked *tracked = objective->self;
+    if (objective->ops == &waypoint_ops)
+        return vec3_length(vec3_sub(probe_position(tracked, x), vec3_load(tracked->at)));
+    if (objective->ops == &polyline_ops) return sqrt(least_distance2(tracked, probe_position(tracked, x)));
+    if (objective->ops == &arc_ops) return vec3_length(from_arc(tracked, probe_position(tracked, x), &t));
     return NAN;
 }

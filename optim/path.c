@@ -14,7 +14,8 @@ static double *memory_of(const Path *path, int k)
 
 static void make_room(Path *path, int room)
 {
-    size_t from = (size_t)path->room, to = (size_t)room, n = (size_t)path->dofs, m = (size_t)path->memory_count;
+    size_t from = (size_t)path->room, to = (size_t)room, n = (size_t)path->dofs,
+           m = (size_t)path->memory_count;
     path->frame = mem_resize(path->frame, from, to, sizeof *path->frame);
     path->dt = mem_resize(path->dt, from, to, sizeof *path->dt);
     path->time = mem_resize(path->time, from, to, sizeof *path->time);

@@ -1,5 +1,5 @@
-/* path.h - a stored motion: its states, the factor of each step where memory allows, and the two linear sweeps along it.
- * Private to optim/. */
+/* path.h - a stored motion: its states, the factor of each step where memory allows, and the two linear
+ * sweeps along it. Private to optim/. */
 #pragma once
 #include "optim/trajectory_adjoint.h"
 
@@ -14,7 +14,7 @@ typedef struct Path {
     double *x, *memory;    /* [room][dofs], [room][memory_count] states                  */
     SparseFactor **factor; /* [room] of the step that ends at a state; NULL: not kept    */
     int factor_count, factor_max;
-    double *p;    /* [params] controls as of the last use                        */
+    double *p;            /* [params] controls as of the last use                        */
     double *v, *gradient; /* [dofs] */
 } Path;
 
@@ -30,10 +30,10 @@ bool path_add(Path *path, int frame, const double *x, double time, double dt);
 /* The parameters of a step, in path->p. */
 void path_load(Path *path, int frame, double time);
 
-/* dx[count + 1][dofs] of the states, from those of the start, (dx_0 in its first row, dv_0), and dp[params], of which the
- * current values of controls are overwritten. */
+/* dx[count + 1][dofs] of the states, from those of the start, (dx_0 in its first row, dv_0), and dp[params],
+ * of which the current values of controls are overwritten. */
 void path_tangent(Path *path, double *dp, const double *dv, double *dx);
 
-/* seed[count + 1][dofs] holds dF/dx of each state and is overwritten; dp += dF/dp. The first row becomes dF/dx_0, and
- * dv[dofs] dF/dv_0. */
+/* seed[count + 1][dofs] holds dF/dx of each state and is overwritten; dp += dF/dp. The first row becomes
+ * dF/dx_0, and dv[dofs] dF/dv_0. */
 void path_adjoint(Path *path, double *seed, double *dp, double *dv);

@@ -263,8 +263,8 @@ static void product_case(StaticDesign *sd, int c, const double *v)
     for (int k = 0; k < load->objective_count; k++) {
         const Objective *objective = &load->objectives[k];
         if (objective->ops->product)
-            objective->ops->product(objective->self, load->weight * objective->weight, load->x, work->best_p, work->dx,
-                                    work->hp, work->w, work->dp);
+            objective->ops->product(objective->self, load->weight * objective->weight, load->x, work->best_p,
+                                    work->dx, work->hp, work->w, work->dp);
     }
     Point at = point(load, load->x, work->best_p);
     adjoint(load->sys, &at, work->w, work->dp);

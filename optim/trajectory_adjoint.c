@@ -11,12 +11,12 @@ struct Trajectory {
     Path paths[2]; /* the best motion, and the one at work */
     int best;
     bool has_best;
-    double *u, *best_u;    /* [design->size]                                             */
-    double *dp, *hp;       /* [params]                                                   */
-    double *guess, *seed;  /* [rows][dofs] a tangent along the best path; dF/dx of states */
+    double *u, *best_u;   /* [design->size]                                             */
+    double *dp, *hp;      /* [params]                                                   */
+    double *guess, *seed; /* [rows][dofs] a tangent along the best path; dF/dx of states */
     int guess_rows, seed_rows;
-    double *dv;            /* [dofs] */
-    int frame;             /* that is being made */
+    double *dv; /* [dofs] */
+    int frame;  /* that is being made */
     bool guessed, failed;
 };
 
@@ -103,8 +103,8 @@ static void guess_motion(Trajectory *t)
     for (size_t i = 0; i < (size_t)(best->count + 1) * (size_t)dofs; i++) dx[i] += best->x[i];
 }
 
-/* The best motion's state at the end of this frame, moved along the tangent; its factor is a better preconditioner than
- * that of the step before. */
+/* The best motion's state at the end of this frame, moved along the tangent; its factor is a better
+ * preconditioner than that of the step before. */
 static bool find_guess(void *self, double time, double dt, double *x)
 {
     Trajectory *t = self;
@@ -174,7 +174,8 @@ static double objective(Trajectory *t, const Path *path, double *seed, double *d
         const Objective *row = &t->problem.objectives[k];
         for (int n = row->first; n <= row->last; n++) {
             size_t at = (size_t)path->end[n] * (size_t)path->dofs;
-            sum += row->weight * row->ops->value(row->self, row->weight, path->x + at, path->p, seed ? seed + at : NULL, dp);
+            sum += row->weight * row->ops->value(row->self, row->weight, path->x + at, path->p,
+                                                 seed ? seed + at : NULL, dp);
         }
     }
     return sum;
@@ -236,7 +237,8 @@ void trajectory_product(Trajectory *t, const double *v, double *out)
         const Objective *row = &t->problem.objectives[k];
         for (int n = row->first; row->ops->product && n <= row->last; n++) {
             size_t at = (size_t)best->end[n] * (size_t)best->dofs;
-            row->ops->product(row->self, row->weight, best->x + at, best->p, t->guess + at, t->hp, seed + at, t->dp);
+            row->ops->product(row->self, row->weight, best->x + at, best->p, t->guess + at, t->hp, seed + at,
+                              t->dp);
         }
     }
     path_adjoint(best, seed, t->dp, t->dv);

@@ -1,13 +1,13 @@
 /* trajectory_adjoint.h - F(u) of a motion in time, its exact discrete gradient and its Gauss-Newton product.
  *
- * The motion is that of solve/march: step k finds x_k with r(x_k; x_{k-1}, v_{k-1}, p_k) = 0, v_k = (x_k - x_{k-1})/dt_k.
- * Its states are stored, sub-steps of steps that were cut included, and A_k = dr/dx_k, positive definite and neither
- * shifted nor projected, is factored once at the end of each. Backwards [design after Chen 2022, eq. 40, with the terms
- * that it leaves out]
- *     x*_k += dF/dx_k + v*_k/dt_k,   A_k w = x*_k,   dF/dp -= (dr/dp)^T w,
- *     x*_{k-1} = -v*_k/dt_k - (dr/dx_{k-1})^T w,     v*_{k-1} = -(dr/dv_{k-1})^T w,
- * and forwards the tangent of the same equations. Factors are kept as far as memory allows and made again otherwise.
- * Each evaluation starts its steps from the best motion, moved along the tangent, where that has less energy. */
+ * The motion is that of solve/march: step k finds x_k with r(x_k; x_{k-1}, v_{k-1}, p_k) = 0, v_k = (x_k -
+ * x_{k-1})/dt_k. Its states are stored, sub-steps of steps that were cut included, and A_k = dr/dx_k,
+ * positive definite and neither shifted nor projected, is factored once at the end of each. Backwards [design
+ * after Chen 2022, eq. 40, with the terms that it leaves out] x*_k += dF/dx_k + v*_k/dt_k,   A_k w = x*_k,
+ * dF/dp -= (dr/dp)^T w, x*_{k-1} = -v*_k/dt_k - (dr/dx_{k-1})^T w,     v*_{k-1} = -(dr/dv_{k-1})^T w, and
+ * forwards the tangent of the same equations. Factors are kept as far as memory allows and made again
+ * otherwise. Each evaluation starts its steps from the best motion, moved along the tangent, where that has
+ * less energy. */
 #pragma once
 #include "optim/control.h"
 #include "optim/design.h"
@@ -29,8 +29,9 @@ typedef struct TrajectoryProblem {
 } TrajectoryProblem;
 
 typedef struct TrajectoryDef {
-    MarchDef march;     /* load and move with their self are used, as in march.h; load comes before the controls */
-    long factor_memory; /* bytes; default 2 GiB, for the best motion and the one at work together               */
+    MarchDef
+        march; /* load and move with their self are used, as in march.h; load comes before the controls */
+    long factor_memory; /* bytes; default 2 GiB, for the best motion and the one at work together */
 } TrajectoryDef;
 
 TrajectoryDef trajectory_default(void);
@@ -41,8 +42,8 @@ Trajectory *trajectory_create(const TrajectoryProblem *problem, const Trajectory
 void trajectory_destroy(Trajectory *t);
 
 typedef struct TrajectoryInfo {
-    MarchInfo march;      /* summed over the steps; the status is that of the last one    */
-    int reached;          /* steps; fewer than all: the motion failed there               */
+    MarchInfo march;          /* summed over the steps; the status is that of the last one    */
+    int reached;              /* steps; fewer than all: the motion failed there               */
     double forward, backward; /* s */
 } TrajectoryInfo;
 
@@ -58,8 +59,8 @@ void trajectory_product(Trajectory *t, const double *v, double *out);
 /* J v at the best motion: dx[steps + 1][dofs] at the frames. */
 void trajectory_tangent(Trajectory *t, const double *v, double *dx);
 
-/* dF/dp[params] in the blocks' own units, dF/dx and dF/dv at the start ([dofs], zero where held) of the best motion; any
- * may be NULL. */
+/* dF/dp[params] in the blocks' own units, dF/dx and dF/dv at the start ([dofs], zero where held) of the best
+ * motion; any may be NULL. */
 void trajectory_gradients(Trajectory *t, double *dp, double *dx, double *dv);
 
 /* The best motion's parameters, with controls as at frame n (0: as at the start); and its states. */
@@ -68,10 +69,10 @@ const double *trajectory_frame(const Trajectory *t, int frame);
 
 /* The best motion beyond u: with it, trajectory_restore goes on bit by bit as the run that saved it. */
 typedef struct TrajectoryState {
-    int count;           /* steps, and sub-steps                               */
-    const double *x;     /* [count + 1][dofs]                                  */
+    int count;            /* steps, and sub-steps                               */
+    const double *x;      /* [count + 1][dofs]                                  */
     const double *memory; /* [count + 1][system_memory_count]                   */
-    const double *dt;    /* [count] s                                          */
+    const double *dt;     /* [count] s                                          */
 } TrajectoryState;
 
 TrajectoryState trajectory_state(const Trajectory *t);

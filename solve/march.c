@@ -45,7 +45,8 @@ static void choose_start(March *m, Point *at)
     for (int i = 0; i < positions; i++)
         if (!system_is_fixed(m->sys, i)) m->other[i] += at->dt * m->state->v[i];
     compare_start(m, at, &energy);
-    if (m->def->guess && m->def->guess(m->def->self, at->time, at->dt, m->other)) compare_start(m, at, &energy);
+    if (m->def->guess && m->def->guess(m->def->self, at->time, at->dt, m->other))
+        compare_start(m, at, &energy);
 }
 
 static void add_counts(MarchInfo *info, const NewtonInfo *newton)

@@ -10,8 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* From this many unknowns on, nested dissection saves a quarter of the factor's work (docs/speed: about 32k triangles
- * with one angle per edge); its own analysis takes a few times longer, once. */
+/* From this many unknowns on, nested dissection saves a quarter of the factor's work (docs/speed: about 32k
+ * triangles with one angle per edge); its own analysis takes a few times longer, once. */
 enum { METIS_FROM = 90000 };
 
 struct Sparse {
@@ -28,8 +28,8 @@ struct Sparse {
     SparseInfo info;
 };
 
-/* libgomp, which CHOLMOD loads: its supernodal kernel has four threads compiled in and ignores OMP_NUM_THREADS, which
- * doubles the time on two cores. Declared here because clang ships no omp.h. */
+/* libgomp, which CHOLMOD loads: its supernodal kernel has four threads compiled in and ignores
+ * OMP_NUM_THREADS, which doubles the time on two cores. Declared here because clang ships no omp.h. */
 void omp_set_max_active_levels(int levels);
 
 typedef struct Pattern {
@@ -43,7 +43,8 @@ static int compare_int(const void *a, const void *b)
 }
 
 /* For each unknown, the elements that hold it. */
-static void list_elements(int n, int element_count, const long *start, const int *dofs, long **first, int **elements)
+static void list_elements(int n, int element_count, const long *start, const int *dofs, long **first,
+                          int **elements)
 {
     long *at = mem_alloc((size_t)n + 2, sizeof *at);
     for (long k = 0; k < start[element_count]; k++)
@@ -85,7 +86,8 @@ static Pattern build_pattern(int n, int element_count, const long *start, const 
                 int row = rank ? rank[dofs[m]] : dofs[m];
                 if (row > column && mark[row] != column) mark[row] = column, pattern.rows[count++] = row;
             }
-        qsort(pattern.rows + pattern.start[column], (size_t)(count - pattern.start[column]), sizeof(int), compare_int);
+        qsort(pattern.rows + pattern.start[column], (size_t)(count - pattern.start[column]), sizeof(int),
+              compare_int);
         pattern.start[column + 1] = (int)count;
     }
     mem_free(first);
@@ -99,9 +101,18 @@ static Pattern build_pattern(int n, int element_count, const long *start, const 
 static cholmod_sparse view(int n, const Pattern *pattern, double *values)
 {
     return (cholmod_sparse){
-        .nrow = (size_t)n, .ncol = (size_t)n, .nzmax = (size_t)pattern->start[n], .p = pattern->start,
-        .i = pattern->rows, .x = values, .stype = -1, .itype = CHOLMOD_INT,
-        .xtype = values ? CHOLMOD_REAL : CHOLMOD_PATTERN, .dtype = CHOLMOD_DOUBLE, .sorted = 1, .packed = 1,
+        .nrow = (size_t)n,
+        .ncol = (size_t)n,
+        .nzmax = (size_t)pattern->start[n],
+        .p = pattern->start,
+        .i = pattern->rows,
+        .x = values,
+        .stype = -1,
+        .itype = CHOLMOD_INT,
+        .xtype = values ? CHOLMOD_REAL : CHOLMOD_PATTERN,
+        .dtype = CHOLMOD_DOUBLE,
+        .sorted = 1,
+        .packed = 1,
     };
 }
 
@@ -261,8 +272,8 @@ static void solve_permuted(Sparse *matrix)
 {
     double begin = clock_seconds();
     /* cholmod_solve2 does not change the factor, although it does not say so. */
-    cholmod_solve2(CHOLMOD_A, (cholmod_factor *)matrix->at_hand, matrix->b, NULL, &matrix->x, NULL, &matrix->work_y,
-                   &matrix->work_e, &matrix->common);
+    cholmod_solve2(CHOLMOD_A, (cholmod_factor *)matrix->at_hand, matrix->b, NULL, &matrix->x, NULL,
+                   &matrix->work_y, &matrix->work_e, &matrix->common);
     check_memory(&matrix->common);
     matrix->info.solves++;
     matrix->info.solve_seconds += clock_seconds() - begin;
@@ -323,7 +334,8 @@ int sparse_solve_cg(Sparse *matrix, const double *b, double tolerance, int max_i
     int n = matrix->n, k = 0;
     if (n == 0) return 0;
     if (!matrix->cg) matrix->cg = mem_alloc(4 * (size_t)n, sizeof *matrix->cg);
-    double *solution = matrix->cg, *residual = solution + n, *direction = residual + n, *product = direction + n;
+    double *solution = matrix->cg, *residual = solution + n, *direction = residual + n,
+           *product = direction + n;
     memset(solution, 0, (size_t)n * sizeof *solution);
     for (int i = 0; i < n; i++) residual[matrix->rank[i]] = b[i];
     double size = precondition(matrix, residual), stop = tolerance * tolerance * size;
@@ -369,7 +381,7 @@ SparseInfo sparse_info(const Sparse *matrix)
     return matrix->info;
 }
 
-#define TEXT(x) #x
+#define TEXT(x)               #x
 #define VERSION_TEXT(a, b, c) TEXT(a) "." TEXT(b) "." TEXT(c)
 
 const char *sparse_version(void)

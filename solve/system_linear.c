@@ -65,7 +65,12 @@ void system_restore_factor(System *sys, const double *anchor, const double *p)
     double *gradient = mem_alloc(n + (size_t)memory_count, sizeof *gradient), *memory = gradient + n;
     system_memory_read(sys, memory);
     system_memory_write(sys, x + 3 * n);
-    Point at = {.x = x, .p = p, .time = anchor[ANCHOR_TIME], .x_prev = x + n, .v_prev = x + 2 * n, .dt = anchor[ANCHOR_DT]};
+    Point at = {.x = x,
+                .p = p,
+                .time = anchor[ANCHOR_TIME],
+                .x_prev = x + n,
+                .v_prev = x + 2 * n,
+                .dt = anchor[ANCHOR_DT]};
     system_hessian(sys, &at, gradient);
     system_factor(sys, anchor[ANCHOR_SHIFT]);
     system_memory_write(sys, memory);

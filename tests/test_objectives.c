@@ -159,15 +159,17 @@ static void test_curve_distances(void **state)
     Probe probe = {1, &vertex, &one};
     const double corner[3][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}}, quarter[3][3] = {{1, 0, 0}, {r, r, 0}, {0, 1, 0}};
     Objective polyline = objective_polyline(probe, 3, corner, 1e-3, 1), arc = objective_arc(probe, quarter, 1);
-    assert_true(fabs(objective_curve_distance(&polyline, x) - 0.25) < 1e-15);
+    assert_true(fabs(objective_distance(&polyline, x) - 0.25) < 1e-15);
     assert_true(fabs(polyline.ops->value(polyline.self, 1, x, NULL, NULL, NULL) - 0.0625) < 1e-15);
-    assert_true(fabs(objective_curve_distance(&arc, x) - (1 - sqrt(0.3125))) < 1e-14);
+    assert_true(fabs(objective_distance(&arc, x) - (1 - sqrt(0.3125))) < 1e-14);
     x[0] = 0.5, x[1] = -0.5; /* beyond the arc's start, and of two equal segments */
-    assert_true(fabs(objective_curve_distance(&arc, x) - r) < 1e-14);
+    assert_true(fabs(objective_distance(&arc, x) - r) < 1e-14);
     x[0] = x[1] = 0, x[2] = 2;
-    assert_true(fabs(objective_curve_distance(&arc, x) - sqrt(5)) < 1e-14);
+    assert_true(fabs(objective_distance(&arc, x) - sqrt(5)) < 1e-14);
     Objective waypoint = objective_waypoint(probe, corner[0], 1);
-    assert_true(isnan(objective_curve_distance(&waypoint, x)));
+    Objective height = objective_height(1, &vertex, 1);
+    assert_true(fabs(objective_distance(&waypoint, x) - 2) < 1e-15 && isnan(objective_distance(&height, x)));
+    objective_destroy(height);
     objective_destroy(polyline);
     objective_destroy(arc);
     objective_destroy(waypoint);

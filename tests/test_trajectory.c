@@ -1,5 +1,6 @@
-/* The adjoint of a motion in time: against the tangent, against differences, with and without kept factors, for fields
- * over time, magnetisation, stiffness, folds and the start; cut steps and moved vertices included. */
+/* The adjoint of a motion in time: against the tangent, against differences, with and without kept factors,
+ * for fields over time, magnetisation, stiffness, folds and the start; cut steps and moved vertices included.
+ */
 #include "base/memory.h"
 #include "base/random.h"
 #include "optim/objectives.h"
@@ -47,7 +48,8 @@ static Shell *make_shell(BendingModel bending)
     for (int v = 0; v < mesh->vertex_count; v++)
         for (int i = 0; mesh->rest[v][0] < 1e-9 && i < 3; i++) shell_fix(shell, v, i);
     for (int e = 0; e < mesh->edge_count; e++)
-        if (mesh->rest[mesh->edges[e][0]][0] < 1e-9 && mesh->rest[mesh->edges[e][1]][0] < 1e-9) shell_clamp(shell, e);
+        if (mesh->rest[mesh->edges[e][0]][0] < 1e-9 && mesh->rest[mesh->edges[e][1]][0] < 1e-9)
+            shell_clamp(shell, e);
     return shell;
 }
 
@@ -106,11 +108,13 @@ static void make(Fixture *f, BendingModel bending, ControlKind kind, bool moving
     shell_rest_state(f->shell, f->x0);
     System *sys = shell_dynamic_system(f->shell);
     for (int i = 0; i < system_position_count(sys); i++)
-        if (!system_is_fixed(sys, i)) f->x0[i] += 5e-5 * random_signed(&random), f->v0[i] = 0.05 * random_signed(&random);
+        if (!system_is_fixed(sys, i))
+            f->x0[i] += 5e-5 * random_signed(&random), f->v0[i] = 0.05 * random_signed(&random);
     Point at = {.x = f->x0, .p = p};
     system_accept(sys, &at);
     int tip = mesh_group(f->shell->mesh, "tip")->members[0], others[2] = {tip, 3};
-    const double goal[1][3] = {{0.010, 0.002, 0.004}}, goals[2][3] = {{0.011, 0.001, 0.003}, {0.006, 0, 0.001}};
+    const double goal[1][3] = {{0.010, 0.002, 0.004}},
+                 goals[2][3] = {{0.011, 0.001, 0.003}, {0.006, 0, 0.001}};
     f->objectives[0] = objective_target(1, &tip, goal, 1e4);
     f->objectives[0].first = 4, f->objectives[0].last = STEPS;
     f->objectives[1] = objective_target(2, others, goals, 2e4);
@@ -118,9 +122,18 @@ static void make(Fixture *f, BendingModel bending, ControlKind kind, bool moving
     f->objectives[2] = objective_height(1, &tip, -3);
     f->objectives[2].first = f->objectives[2].last = STEPS;
     if (moving) f->def.march.move = shake, f->def.march.self = f->shell;
-    f->problem = (TrajectoryProblem){.sys = sys, .design = &f->design, .params = &f->shell->params, .controls = &f->control,
-                                     .objectives = f->objectives, .control_count = 1, .objective_count = 3, .step = 1e-3,
-                                     .steps = STEPS, .x = f->x0, .v = f->v0, .p = p};
+    f->problem = (TrajectoryProblem){.sys = sys,
+                                     .design = &f->design,
+                                     .params = &f->shell->params,
+                                     .controls = &f->control,
+                                     .objectives = f->objectives,
+                                     .control_count = 1,
+                                     .objective_count = 3,
+                                     .step = 1e-3,
+                                     .steps = STEPS,
+                                     .x = f->x0,
+                                     .v = f->v0,
+                                     .p = p};
 }
 
 static void clear(Fixture *f)
@@ -151,8 +164,8 @@ static double by_tangent(Fixture *f, Trajectory *t)
     for (int k = 0; k < 3; k++)
         for (int n = f->objectives[k].first; n <= f->objectives[k].last; n++) {
             memset(seed, 0, (size_t)dofs * sizeof *seed);
-            f->objectives[k].ops->value(f->objectives[k].self, f->objectives[k].weight, trajectory_frame(t, n),
-                                        trajectory_params(t, n), seed, NULL);
+            f->objectives[k].ops->value(f->objectives[k].self, f->objectives[k].weight,
+                                        trajectory_frame(t, n), trajectory_params(t, n), seed, NULL);
             sum += dot(dofs, seed, dx + (size_t)n * (size_t)dofs);
         }
     mem_free(dx);
@@ -164,13 +177,15 @@ static double by_tangent(Fixture *f, Trajectory *t)
 static double by_differences(Fixture *f, double h, const double *dx, const double *dv)
 {
     int dofs = shell_dof_count(f->shell), size = f->design.size;
-    double F[2], *u = mem_alloc((size_t)size, sizeof *u), *x = mem_alloc(2 * (size_t)dofs, sizeof *x), *v = x + dofs;
+    double F[2], *u = mem_alloc((size_t)size, sizeof *u), *x = mem_alloc(2 * (size_t)dofs, sizeof *x),
+                 *v = x + dofs;
     for (int side = 0; side < 2; side++) {
         double s = side ? h : -h;
         Fixture g = *f;
         TrajectoryInfo info;
         for (int i = 0; i < size; i++) u[i] = f->u[i] + (dx ? 0 : s * f->v[i]);
-        for (int i = 0; i < dofs; i++) x[i] = f->x0[i] + (dx ? s * dx[i] : 0), v[i] = f->v0[i] + (dv ? s * dv[i] : 0);
+        for (int i = 0; i < dofs; i++)
+            x[i] = f->x0[i] + (dx ? s * dx[i] : 0), v[i] = f->v0[i] + (dv ? s * dv[i] : 0);
         g.problem.x = x, g.problem.v = v;
         Trajectory *t = trajectory_create(&g.problem, &g.def);
         F[side] = trajectory_evaluate(t, u, NULL, &info);
@@ -184,11 +199,13 @@ static double by_differences(Fixture *f, double h, const double *dx, const doubl
 static void check_start(Fixture *f, Trajectory *t, double *worst)
 {
     size_t dofs = (size_t)shell_dof_count(f->shell);
-    double *work = mem_alloc(4 * dofs, sizeof *work), *gx = work, *gv = work + dofs, *dx = gv + dofs, *dv = dx + dofs;
+    double *work = mem_alloc(4 * dofs, sizeof *work), *gx = work, *gv = work + dofs, *dx = gv + dofs,
+           *dv = dx + dofs;
     Random random = random_seed(9);
     trajectory_gradients(t, NULL, gx, gv);
     for (int i = 0; i < system_position_count(f->problem.sys); i++)
-        if (!system_is_fixed(f->problem.sys, i)) dx[i] = 1e-3 * random_signed(&random), dv[i] = random_signed(&random);
+        if (!system_is_fixed(f->problem.sys, i))
+            dx[i] = 1e-3 * random_signed(&random), dv[i] = random_signed(&random);
     double exact = dot((int)dofs, gx, dx) + dot((int)dofs, gv, dv), seen = by_differences(f, 1e-4, dx, dv);
     *worst = fabs(exact - seen) / fabs(exact);
     mem_free(work);
@@ -221,8 +238,9 @@ static void check(BendingModel bending, ControlKind kind, bool moving, bool cuts
     trajectory_destroy(t);
     mem_free(again);
     print_message("%s %-8s%s%s: tangent %.1e, differences %.1e, of the start %.1e\n",
-                  bending == BENDING_HINGE ? "hinge  " : "midedge", kinds[kind], moving ? " moving" : "", cuts ? " cuts" : "",
-                  fabs(adjoint - tangent) / fabs(tangent), fabs(adjoint - seen) / fabs(seen), start_error);
+                  bending == BENDING_HINGE ? "hinge  " : "midedge", kinds[kind], moving ? " moving" : "",
+                  cuts ? " cuts" : "", fabs(adjoint - tangent) / fabs(tangent),
+                  fabs(adjoint - seen) / fabs(seen), start_error);
     assert_true(fabs(adjoint - tangent) < 1e-11 * fabs(tangent));
     assert_true(fabs(adjoint - seen) < 1e-6 * fabs(seen) && start_error < 1e-6);
     assert_true(worst == 0); /* the same factors, made again */
@@ -252,7 +270,8 @@ static void test_product(void **state)
     f.problem.objective_count = 2;
     Trajectory *t = trajectory_create(&f.problem, &f.def);
     int dofs = shell_dof_count(f.shell), tip = mesh_group(f.shell->mesh, "tip")->members[0];
-    double *dx = mem_alloc((size_t)(STEPS + 1) * (size_t)dofs, sizeof *dx), *out = mem_alloc((size_t)f.design.size, sizeof *out);
+    double *dx = mem_alloc((size_t)(STEPS + 1) * (size_t)dofs, sizeof *dx),
+           *out = mem_alloc((size_t)f.design.size, sizeof *out);
     assert_true(isfinite(trajectory_evaluate(t, f.u, f.gradient, &info)));
     trajectory_accept(t);
     trajectory_product(t, f.v, out);
@@ -316,11 +335,13 @@ static void test_tolerance(void **state)
         Trajectory *t = trajectory_create(&f.problem, &f.def);
         trajectory_evaluate(t, f.u, f.gradient, &info);
         trajectory_destroy(t);
-        f.def.march.newton.energy_tol = 0, f.def.march.newton.step_tol = 1e-13, f.def.march.newton.force_tol = 1e-12;
+        f.def.march.newton.energy_tol = 0, f.def.march.newton.step_tol = 1e-13,
+        f.def.march.newton.force_tol = 1e-12;
         f.def.march.newton.cg_iterations = 0;
         t = trajectory_create(&f.problem, &f.def);
         trajectory_evaluate(t, f.u, exact, &info);
-        for (int i = 0; i < size; i++) norm = fmax(norm, fabs(exact[i])), off = fmax(off, fabs(exact[i] - f.gradient[i]));
+        for (int i = 0; i < size; i++)
+            norm = fmax(norm, fabs(exact[i])), off = fmax(off, fabs(exact[i] - f.gradient[i]));
         print_message("gradient at the default tolerance: off by %.1e\n", off / norm);
         assert_true(off < 1e-7 * norm);
         mem_free(exact);
