@@ -27,6 +27,9 @@ static bool generate(const MeshScene *scene, YamlFile *yaml, MeshFile *file)
     case MESH_DISC:
         ok = shape_disc(size[0], scene->n, file, &err);
         break;
+    case MESH_KIRIGAMI:
+        ok = shape_kirigami(size[0], scene->n, file, &err);
+        break;
     }
     return ok || yaml_refuse(yaml, "shell.mesh", "%s", err.text);
 }
@@ -37,13 +40,13 @@ static bool check_shape(const MeshScene *scene, YamlFile *yaml)
     bool rectangle = scene->shape == MESH_SHEET || scene->shape == MESH_STRIP;
     if (scene->size_count != (rectangle ? 2 : 1))
         return yaml_refuse(
-            yaml, "shell.mesh", "a %s needs `size`: %s", rectangle ? "sheet or strip" : "hexagram or disc",
-            rectangle ? "its length and width, e.g. [65 mm, 65 mm]" : "its diameter, e.g. 40 mm");
+            yaml, "shell.mesh", "a %s needs `size`: %s", rectangle ? "sheet or strip" : "hexagram, disc or kirigami",
+            rectangle ? "its length and width, e.g. [65 mm, 65 mm]" : "its diameter or side, e.g. 40 mm");
     if (scene->shape == MESH_SHEET && scene->cells_count != 2)
         return yaml_refuse(yaml, "shell.mesh", "a sheet needs `cells` along x and y, e.g. [64, 64]");
     if (scene->shape != MESH_SHEET && scene->n == YAML_ABSENT)
         return yaml_refuse(yaml, "shell.mesh",
-                           "a strip, hexagram or disc needs `n`, the number of its divisions");
+                           "a strip, hexagram, disc or kirigami needs `n`, the number of its divisions");
     return true;
 }
 

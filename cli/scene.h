@@ -62,7 +62,7 @@ typedef struct FluxScene {
 
 /* ---- The shell ---- */
 
-typedef enum MeshShape { MESH_SHEET, MESH_STRIP, MESH_HEXAGRAM, MESH_DISC } MeshShape;
+typedef enum MeshShape { MESH_SHEET, MESH_STRIP, MESH_HEXAGRAM, MESH_DISC, MESH_KIRIGAMI } MeshShape;
 
 typedef struct MeshScene {
     char *file;

@@ -219,3 +219,29 @@ bool shape_disc(double size, int n, MeshFile *mesh, Error *err)
     add_group(mesh, mem_text("rim"), 0, ring_vertex(n, 0, 0), 1, 6 * n);
     return true;
 }
+
+/* ---- kirigami ---- */
+
+bool shape_kirigami(double size, int n, MeshFile *mesh, Error *err)
+{
+    *mesh = (MeshFile){0};
+    if (!check_length("kirigami", "size", size, err) || !check_count("kirigami", "n", n, err) ||
+        !check_faces("kirigami", 2.0 * n * n + 2, err))
+        return false;
+    if (n % 2 == 0) return error_set(err, "kirigami: n must be odd, so that all corners are squares, not %d", n);
+    int row = n + 1, corners = row * row, squares = (n * n + 1) / 2;
+    double cell = size / n;
+    *mesh = start("kirigami", corners + squares, 4 * squares, 2);
+    for (int v = 0; v < corners; v++) set_vertex(mesh, v, (v % row - n / 2.0) * cell, (v / row - n / 2.0) * cell);
+    for (int k = 0; k < squares; k++) { /* every other cell */
+        int i = 2 * k % n, j = 2 * k / n, a = j * row + i;
+        set_vertex(mesh, corners + k, (i + 0.5 - n / 2.0) * cell, (j + 0.5 - n / 2.0) * cell);
+        split_cell(mesh, (int[4]){a, a + 1, a + row + 1, a + row}, corners + k, false);
+    }
+    add_group(mesh, mem_text("centre"), 0, corners + squares / 2, 1, 1);
+    add_group(mesh, mem_text("rim"), 0, 0, 1, 4 * n);
+    int *rim = mesh->groups[1].members;
+    for (int v = 0; v < corners; v++)
+        if (v % row == 0 || v % row == n || v / row == 0 || v / row == n) *rim++ = v;
+    return true;
+}

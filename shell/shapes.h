@@ -32,3 +32,8 @@ bool shape_hexagram(double size, int n, MeshFile *mesh, Error *err);
 /* Disc of diameter size around the origin (vertex 0): n rings, ring k of 6 k vertices, starting on +x; 6 n^2
  * faces. Vertex groups: centre, rim. */
 bool shape_disc(double size, int n, MeshFile *mesh, Error *err);
+
+/* Corner-connected squares: the black cells of a checkerboard of n x n cells (n odd), each split into four triangles; a
+ * square of that size around the origin. (n + 1)^2 + (n^2 + 1)/2 vertices, 2 (n^2 + 1) faces: grid points row by row, then
+ * the squares' middles. Vertex groups: centre, rim (grid points on the boundary of the whole). */
+bool shape_kirigami(double size, int n, MeshFile *mesh, Error *err);

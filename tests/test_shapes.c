@@ -189,6 +189,36 @@ static void hexagrams_of_other_sizes(void **state)
     }
 }
 
+/* The paper's counts; squares that meet in corners only. */
+static void kirigami(void **state)
+{
+    (void)state;
+    MeshFile file;
+    Error err;
+    assert_true(shape_kirigami(0.044, 11, &file, NULL));
+    Mesh *m = mesh_create(&file, 0, NULL, NULL);
+    assert_non_null(m);
+    assert_int_equal(m->vertex_count, 205);
+    assert_int_equal(m->face_count, 244);
+    double area = 0;
+    for (int f = 0; f < m->face_count; f++) area += m->rest_area[f];
+    assert_true(fabs(area - 61 * 16e-6) < 1e-15);
+    int inner = 0;
+    for (int e = 0; e < m->edge_count; e++) inner += !mesh_edge_is_boundary(m, e);
+    assert_int_equal(inner, 4 * 61); /* no square shares an edge with another */
+    const MeshGroup *centre = mesh_group(m, "centre"), *rim = mesh_group(m, "rim");
+    assert_int_equal(rim->count, 44);
+    assert_true(hypot(m->rest[centre->members[0]][0], m->rest[centre->members[0]][1]) < 1e-16);
+    for (int k = 0; k < rim->count; k++) {
+        const double *x = m->rest[rim->members[k]];
+        assert_true(fabs(fmax(fabs(x[0]), fabs(x[1])) - 0.022) < 1e-15);
+    }
+    mesh_destroy(m);
+    mesh_file_clear(&file);
+    assert_false(shape_kirigami(0.044, 10, &file, &err));
+    assert_string_equal(err.text, "kirigami: n must be odd, so that all corners are squares, not 10");
+}
+
 static double smallest_angle(const Mesh *m)
 {
     double smallest = pi;
@@ -279,6 +309,7 @@ int main(void)
                                        cmocka_unit_test(strips),
                                        cmocka_unit_test(hexagram),
                                        cmocka_unit_test(hexagrams_of_other_sizes),
+                                       cmocka_unit_test(kirigami),
                                        cmocka_unit_test(disc),
                                        cmocka_unit_test(refuses_bad_arguments),
                                        cmocka_unit_test(nothing_is_left)};
