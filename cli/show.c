@@ -2,11 +2,12 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "io/result.h"
+#include "io/ticks.h"
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-enum { PANELS_MAX = 12, KEPT_MAX = 128 };
+enum { STILLS = 6, FRAMES_PER_SECOND = 25 };
 
 /* Everything that a page borrows, freed at the end. */
 typedef struct Show {
@@ -16,12 +17,12 @@ typedef struct Show {
     const int (*faces)[3];
     const double (*rest)[3], (*magnetization)[3];
     char *field;
-    char names[PANELS_MAX][128], notes[PANELS_MAX][64];
-    PicturePanel panels[PANELS_MAX];
-    int panel_count, kept_count;
-    Array kept[KEPT_MAX];
-    void *blocks[KEPT_MAX];
-    int block_count;
+    PicturePanel *panels;
+    int *steps;  /* [panel] the frame that it shows; -1: the last */
+    bool motion; /* frames are moments in time */
+    int panel_count, kept_count, block_count;
+    Array *kept;
+    void **blocks;
 } Show;
 
 ShowDef show_default(void)
@@ -31,12 +32,16 @@ ShowDef show_default(void)
 
 static void *block(Show *show, size_t count, size_t size)
 {
-    return show->blocks[show->block_count++] = mem_alloc(count, size);
+    size_t blocks = (size_t)show->block_count++;
+    show->blocks = mem_resize(show->blocks, blocks, blocks + 1, sizeof *show->blocks);
+    return show->blocks[blocks] = mem_alloc(count, size);
 }
 
 static void *keep(Show *show, Array array)
 {
-    show->kept[show->kept_count++] = array;
+    size_t count = (size_t)show->kept_count++;
+    show->kept = mem_resize(show->kept, count, count + 1, sizeof *show->kept);
+    show->kept[count] = array;
     return (void *)array.data;
 }
 
@@ -142,27 +147,59 @@ static bool face_field(Show *show, int step, const double **values, const char *
 
 /* ---- Panels ---- */
 
-static bool add_panel(Show *show, const char *name, const double (*x)[3])
+/* A text that lives as long as the page. */
+static char *text(Show *show, const char *from)
 {
-    if (show->panel_count == PANELS_MAX) return false;
-    PicturePanel *panel = &show->panels[show->panel_count];
-    snprintf(show->names[show->panel_count], sizeof show->names[0], "%s", name);
-    *panel = (PicturePanel){.name = show->names[show->panel_count], .x = x};
-    if (show->def->arrows && show->magnetization) panel->vectors = carried(show, x, show->magnetization);
-    show->panel_count++;
-    return true;
+    char *copy = block(show, strlen(from) + 1, 1);
+    return strcpy(copy, from);
 }
 
+static PicturePanel *add_panel(Show *show, const char *name, const double (*x)[3])
+{
+    size_t count = (size_t)show->panel_count++;
+    show->panels = mem_resize(show->panels, count, count + 1, sizeof *show->panels);
+    show->steps = mem_resize(show->steps, count, count + 1, sizeof *show->steps);
+    show->steps[count] = -1;
+    PicturePanel *panel = &show->panels[count];
+    *panel = (PicturePanel){.name = text(show, name), .x = x};
+    if (show->def->arrows && show->magnetization) panel->vectors = carried(show, x, show->magnetization);
+    return panel;
+}
+
+/* A frame, with its field; of a motion its time is its name. */
 static bool add_frame(Show *show, int frame, Error *err)
 {
-    Array array;
+    Array array, flux, times;
+    char name[64];
     if (frame >= result_step_count(show->result))
         return error_set(err, "the result has %d frames, from 0", result_step_count(show->result));
     if (!result_read_step(show->result, "Points", frame, &array, err)) return false;
-    char name[32];
     snprintf(name, sizeof name, "frame %d", frame);
-    add_panel(show, name, keep(show, array));
+    if (show->motion && result_read_rows(show->result, "VTKHDF/Steps/Values", frame, 1, &times, NULL)) {
+        snprintf(name, sizeof name, "t = %.4g s", *(const double *)times.data);
+        array_clear(&times);
+    }
+    PicturePanel *panel = add_panel(show, name, keep(show, array));
+    show->steps[show->panel_count - 1] = frame;
+    if (result_has(show->result, "slender/frames/flux_density") &&
+        result_read_rows(show->result, "slender/frames/flux_density", frame, 1, &flux, NULL)) {
+        char number[64], note[80];
+        panel->flux_density = keep(show, flux);
+        unit_format(vec3_length(vec3_load(panel->flux_density)), "T", number, sizeof number);
+        snprintf(note, sizeof note, "B = %s", number);
+        panel->note = text(show, note);
+    }
     return true;
+}
+
+/* Frames at equal distances, the first and the last among them. */
+static bool add_frames(Show *show, int most, Error *err)
+{
+    int frames = result_step_count(show->result), count = frames < most ? frames : most;
+    for (int k = 0; k < count; k++)
+        if (!add_frame(show, count > 1 ? (int)lround((double)k * (frames - 1) / (count - 1)) : 0, err))
+            return false;
+    return count > 0 || error_set(err, "the result has no frames");
 }
 
 static void add_case(Show *show, const char *name)
@@ -171,18 +208,17 @@ static void add_case(Show *show, const char *name)
     size_t count = 3 * (size_t)show->vertex_count;
     snprintf(path, sizeof path, "slender/cases/%.200s/x", name);
     const double(*x)[3] = dataset(show, path, ARRAY_FLOAT64, count);
-    int k = show->panel_count;
-    if (!x || !add_panel(show, name, x)) return;
+    if (!x) return;
+    PicturePanel *panel = add_panel(show, name, x);
     snprintf(path, sizeof path, "slender/cases/%.200s/target", name);
-    show->panels[k].target = dataset(show, path, ARRAY_FLOAT64, count);
+    panel->target = dataset(show, path, ARRAY_FLOAT64, count);
     snprintf(path, sizeof path, "slender/cases/%.200s/flux_density", name);
     const double *flux = dataset(show, path, ARRAY_FLOAT64, 3);
-    if (flux && vec3_length(vec3_load(flux)) > 0) show->panels[k].flux_density = flux;
+    if (flux && vec3_length(vec3_load(flux)) > 0) panel->flux_density = flux;
     Array status;
     snprintf(path, sizeof path, "slender/cases/%.200s/status", name);
     if (result_read(show->result, path, &status, NULL)) {
-        snprintf(show->notes[k], sizeof show->notes[0], "%s", (const char *)status.data);
-        show->panels[k].note = show->notes[k];
+        panel->note = text(show, status.data);
         array_clear(&status);
     }
 }
@@ -205,11 +241,22 @@ static bool add_cases(Show *show, Error *err)
 /* The colours, and what the arrows are. */
 static bool dress(Show *show, PictureScene *page, Error *err)
 {
-    const double *values;
-    if (!face_field(show, show->def->frame, &values, &page->field_name, &page->field_unit, err)) return false;
     page->vectors_name = "magnetization", page->vectors_unit = "A/m";
-    for (int k = 0; k < show->panel_count; k++) show->panels[k].field = values;
+    for (int k = 0; k < show->panel_count; k++)
+        if (!face_field(show, show->steps[k], &show->panels[k].field, &page->field_name, &page->field_unit,
+                        err))
+            return false;
     return true;
+}
+
+/* What was asked for: moments for an animation or stills, one frame, or the final state of each case. */
+static bool add_panels(Show *show, Error *err)
+{
+    const ShowDef *def = show->def;
+    int stills = def->stills ? def->stills : show->motion && !def->only ? STILLS : 0;
+    if (def->frame >= 0) return add_frame(show, def->frame, err);
+    if (def->seconds > 0) return add_frames(show, (int)ceil(def->seconds * FRAMES_PER_SECOND), err);
+    return stills ? add_frames(show, stills, err) : add_cases(show, err);
 }
 
 static bool write_page(Show *show, const char *result, const char *picture, Error *err)
@@ -217,7 +264,9 @@ static bool write_page(Show *show, const char *result, const char *picture, Erro
     const ShowDef *def = show->def;
     PictureScene page = picture_default();
     if (!read_mesh(show, err)) return false;
-    if (!(def->frame >= 0 ? add_frame(show, def->frame, err) : add_cases(show, err))) return false;
+    show->motion = result_has(show->result, "slender/history/time") ||
+                   result_has(show->result, "slender/trajectory/flux_density");
+    if (!add_panels(show, err)) return false;
     if (!dress(show, &page, err)) return false;
     const char *slash = strrchr(result, '/');
     page.title = slash ? slash + 1 : result;
@@ -225,6 +274,8 @@ static bool write_page(Show *show, const char *result, const char *picture, Erro
     page.panel_count = show->panel_count, page.panels = show->panels;
     page.target = def->target, page.width = def->width;
     memcpy(page.view, def->view, sizeof page.view);
+    page.same_view = show->steps[0] >= 0;
+    if (def->seconds > 0) return picture_animate(picture, &page, def->seconds / show->panel_count, err);
     Array history = {0};
     ChartSeries series = {.name = "objective"};
     Chart chart = {.x_label = "evaluation",
@@ -250,6 +301,10 @@ bool show_result(const char *result, const char *picture, const ShowDef *def, Er
     bool ok = show->result && write_page(show, result, picture, err);
     for (int k = 0; k < show->kept_count; k++) array_clear(&show->kept[k]);
     for (int k = 0; k < show->block_count; k++) mem_free(show->blocks[k]);
+    mem_free(show->kept);
+    mem_free(show->blocks);
+    mem_free(show->panels);
+    mem_free(show->steps);
     result_close(show->result);
     mem_free(show);
     return ok;

@@ -6,6 +6,8 @@
 
 typedef struct ShowDef {
     int frame;        /* of /VTKHDF; -1: the final state of every load case */
+    int stills;       /* so many moments of the run side by side; 0: 6 of a motion, else none */
+    double seconds;   /* how long an animation takes, at 25 moments a second; 0: no animation */
     const char *only; /* one load case; NULL: all                           */
     const char
         *field;   /* per face: magnetization, young, energy_..; NULL: young if it varies, else |M|; "none" */
@@ -18,6 +20,6 @@ typedef struct ShowDef {
 
 ShowDef show_default(void);
 
-/* Writes picture (.png, .svg or .pdf) from the result file. False and a sentence where either cannot be used.
+/* Writes picture (.png, .svg or .pdf; an animation .webp) from the result file. False and a sentence where either cannot be used.
  */
 bool show_result(const char *result, const char *picture, const ShowDef *def, Error *err);

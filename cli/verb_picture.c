@@ -1,4 +1,4 @@
-/* slender picture: a result as PNG, SVG or PDF. */
+/* slender picture: a result as PNG, SVG or PDF, or in motion as animated WebP. */
 #include "base/memory.h"
 #include "cli/show.h"
 #include "cli/verb.h"
@@ -8,11 +8,16 @@
 #include <string.h>
 
 static const char usage[] =
-    "picture RESULT [-o FILE.png|.svg|.pdf] [--frame N | --case NAME] [--field NAME] [--target "
-    "beside|over|both]\n"
-    "               [--view X,Y,Z] [--width PIXELS] [--no-arrows] [--no-history]\n"
-    "  -o FILE        default: the result's name with .png\n"
-    "  --frame N      a frame of the run, from 0; default: the final state of every load case\n"
+    "picture RESULT [-o FILE.png|.svg|.pdf|.webp] [--animation | --stills N | --frame N | --case NAME] "
+    "[--field NAME]\n"
+    "               [--target beside|over|both] [--view X,Y,Z] [--width PIXELS] [--seconds S] [--no-arrows] "
+    "[--no-history]\n"
+    "  -o FILE        default: the result's name with .png, of an animation .webp\n"
+    "  --animation    all frames one after the other, 25 a second; so does a FILE.webp\n"
+    "  --seconds S    how long that takes; default: 6\n"
+    "  --stills N     N moments side by side; default for a motion: 6\n"
+    "  --frame N      a frame of the run, from 0\n"
+    "                 without any of these: the final state of every load case\n"
     "  --case NAME    one load case\n"
     "  --field NAME   colours: magnetization, young, energy_membrane, .., or none\n"
     "  --target WHERE the target beside the body, over it as wires, or both\n"
@@ -28,27 +33,44 @@ static bool parse_target(const char *word, PictureTarget *target)
 
 int verb_picture(int argc, char **argv)
 {
-    enum { FRAME = 256, CASE, FIELD, TARGET, VIEW, WIDTH, NO_ARROWS, NO_HISTORY, HELP };
-    static const struct option table[] = {{"output", required_argument, NULL, 'o'},
-                                          {"frame", required_argument, NULL, FRAME},
-                                          {"case", required_argument, NULL, CASE},
-                                          {"field", required_argument, NULL, FIELD},
-                                          {"target", required_argument, NULL, TARGET},
-                                          {"view", required_argument, NULL, VIEW},
-                                          {"width", required_argument, NULL, WIDTH},
-                                          {"no-arrows", no_argument, NULL, NO_ARROWS},
-                                          {"no-history", no_argument, NULL, NO_HISTORY},
-                                          {"help", no_argument, NULL, HELP},
-                                          {0}};
+    enum {
+        FRAME = 256,
+        ANIMATION,
+        SECONDS,
+        STILLS,
+        CASE,
+        FIELD,
+        TARGET,
+        VIEW,
+        WIDTH,
+        NO_ARROWS,
+        NO_HISTORY,
+        HELP
+    };
+    static const struct option table[] = {
+        {"output", required_argument, NULL, 'o'},    {"frame", required_argument, NULL, FRAME},
+        {"animation", no_argument, NULL, ANIMATION}, {"seconds", required_argument, NULL, SECONDS},
+        {"stills", required_argument, NULL, STILLS}, {"case", required_argument, NULL, CASE},
+        {"field", required_argument, NULL, FIELD},   {"target", required_argument, NULL, TARGET},
+        {"view", required_argument, NULL, VIEW},     {"width", required_argument, NULL, WIDTH},
+        {"no-arrows", no_argument, NULL, NO_ARROWS}, {"no-history", no_argument, NULL, NO_HISTORY},
+        {"help", no_argument, NULL, HELP},           {0}};
     ShowDef def = show_default();
     const char *output = NULL;
-    bool ok = true;
+    double seconds = 6;
+    bool ok = true, animation = false, wide = false;
     for (int c; ok && (c = getopt_long(argc, argv, "o:", table, NULL)) >= 0;) {
         char end;
         if (c == 'o')
             output = optarg;
         else if (c == FRAME)
             ok = sscanf(optarg, "%d%c", &def.frame, &end) == 1 && def.frame >= 0;
+        else if (c == ANIMATION)
+            animation = true;
+        else if (c == SECONDS)
+            ok = sscanf(optarg, "%lf%c", &seconds, &end) == 1 && seconds > 0 && seconds <= 600;
+        else if (c == STILLS)
+            ok = sscanf(optarg, "%d%c", &def.stills, &end) == 1 && def.stills >= 1 && def.stills <= 100;
         else if (c == CASE)
             def.only = optarg;
         else if (c == FIELD)
@@ -58,7 +80,8 @@ int verb_picture(int argc, char **argv)
         else if (c == VIEW)
             ok = sscanf(optarg, "%lf,%lf,%lf%c", &def.view[0], &def.view[1], &def.view[2], &end) == 3;
         else if (c == WIDTH)
-            ok = sscanf(optarg, "%d%c", &def.width, &end) == 1 && def.width >= 400 && def.width <= 4000;
+            wide = ok =
+                sscanf(optarg, "%d%c", &def.width, &end) == 1 && def.width >= 400 && def.width <= 4000;
         else if (c == NO_ARROWS)
             def.arrows = false;
         else if (c == NO_HISTORY)
@@ -69,7 +92,12 @@ int verb_picture(int argc, char **argv)
     if (!ok || optind != argc - 1) return verb_usage(usage);
     Error err;
     char *name = verb_without_ending(argv[optind], ".vtkhdf"),
-         *picture = output ? mem_text(output) : mem_format("%s.png", name);
+         *picture = output ? mem_text(output) : mem_format(animation ? "%s.webp" : "%s.png", name);
+    const char *ending = strrchr(picture, '.');
+    if (animation || (ending && !strcmp(ending, ".webp"))) {
+        def.seconds = seconds;
+        if (!wide) def.width = 800; /* pixels; a page of paper's worth is too much for a moving one */
+    }
     int code =
         show_result(argv[optind], picture, &def, &err) ? RUN_DONE : verb_fail(RUN_CANNOT_WRITE, err.text);
     mem_free(name);

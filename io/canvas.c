@@ -161,6 +161,16 @@ bool canvas_save(Canvas *canvas, Error *err)
     return ok;
 }
 
+const unsigned char *canvas_pixels(Canvas *canvas, int *width, int *height, int *stride)
+{
+    cairo_surface_flush(canvas->surface);
+    *width = cairo_image_surface_get_width(canvas->surface);
+    *height = cairo_image_surface_get_height(canvas->surface);
+    *stride = cairo_image_surface_get_stride(canvas->surface);
+    return cairo_image_surface_get_data(
+        canvas->surface); /* native words ARGB, on little-endian machines B, G, R, A */
+}
+
 static void set_color(Canvas *canvas, Color color)
 {
     cairo_set_source_rgba(canvas->cairo, color.r, color.g, color.b, color.a);

@@ -46,6 +46,9 @@ double canvas_resolution(const Canvas *canvas);
  */
 bool canvas_save(Canvas *canvas, Error *err);
 
+/* What has been drawn on a .png canvas: [height][stride] bytes B, G, R, A; borrowed, until more is drawn. */
+const unsigned char *canvas_pixels(Canvas *canvas, int *width, int *height, int *stride);
+
 void canvas_line(Canvas *canvas, Vec2 from, Vec2 to, Pen pen);
 void canvas_polyline(Canvas *canvas, const Vec2 *points, int count, Pen pen);
 void canvas_polygon(Canvas *canvas, const Vec2 *points, int count, Color fill);

@@ -1,5 +1,6 @@
 #include "io/picture.h"
 #include "base/memory.h"
+#include "io/animation.h"
 #include "io/picture_panel.h"
 #include "io/ticks.h"
 #include <math.h>
@@ -242,12 +243,18 @@ static void draw_page(Canvas *canvas, const PictureScene *scene, const PanelStyl
     chart_draw(canvas, scene->history, (Box){left, page->footer, PAGE - MARGIN - left, page->footer_height});
 }
 
-bool picture_write(const char *path, const PictureScene *scene, Error *err)
+static bool check_scene(const char *path, const PictureScene *scene, Error *err)
 {
     if (scene->panel_count == 0 && !scene->history)
         return error_set(err, "%s: there is nothing to draw: neither a frame nor a history", path);
     if (scene->width < 400 || scene->width > 4000)
         return error_set(err, "%s: a width of %d pixels; 400 to 4000 are allowed", path, scene->width);
+    return true;
+}
+
+bool picture_write(const char *path, const PictureScene *scene, Error *err)
+{
+    if (!check_scene(path, scene, err)) return false;
     double resolution = scene->width / PAGE, width = scene_cell_width(scene, resolution);
     PanelStyle style = panel_style_create(scene, resolution, width - 2 * PADDING,
                                           width * (scene_columns(scene) == 1 ? 0.62 : 1));
@@ -259,6 +266,49 @@ bool picture_write(const char *path, const PictureScene *scene, Error *err)
         ok = canvas_save(canvas, err);
     }
     canvas_destroy(canvas);
+    mem_free(page.cells);
+    panel_style_clear(&style);
+    return ok;
+}
+
+/* One page: the whole width is the panel's. */
+static bool animate_panel(Animation *animation, const PanelStyle *style, const Layout *page, int index,
+                          double seconds, Error *err)
+{
+    const PictureScene *scene = style->scene;
+    Canvas *canvas = canvas_create("page.png", PAGE, page->height, style->resolution, err);
+    if (!canvas) return false;
+    Box box = page->cells[0];
+    draw_heading(canvas, scene);
+    draw_result_heading(canvas, scene, &scene->panels[index], box);
+    panel_draw_result(canvas, style, index, box);
+    panel_draw_measures(canvas, style, index, (Box){box.x, box.y, box.width, box.height + MEASURES});
+    draw_keys(canvas, style, page);
+    bool ok = animation_add(animation, canvas, seconds, err);
+    canvas_destroy(canvas);
+    return ok;
+}
+
+bool picture_animate(const char *path, const PictureScene *scene, double seconds, Error *err)
+{
+    if (!check_scene(path, scene, err)) return false;
+    PictureScene one = *scene; /* as a page with one panel is laid out */
+    one.panel_count = 1, one.history = NULL, one.target = PICTURE_TARGET_OVER;
+    double resolution = scene->width / PAGE, width = snap(PAGE - 2 * MARGIN, resolution);
+    Animation *animation = animation_create(path, err);
+    if (!animation) return false;
+    PanelStyle style = panel_style_create(scene, resolution, width - 2 * PADDING, 0.62 * width);
+    Layout page;
+    style.scene = &one;
+    page = layout_page(&one, &style, width);
+    PictureScene all = *scene;
+    all.history = NULL, all.target = PICTURE_TARGET_OVER;
+    style.scene = &all;
+    bool ok = true;
+    for (int i = 0; ok && i < scene->panel_count; i++)
+        ok = animate_panel(animation, &style, &page, i, seconds, err);
+    ok = ok && animation_save(animation, err);
+    animation_destroy(animation);
     mem_free(page.cells);
     panel_style_clear(&style);
     return ok;

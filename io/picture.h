@@ -45,6 +45,7 @@ typedef struct PictureScene {
                                                 Diverging colours if low = -high */
 
     PictureTarget target;
+    bool same_view;        /* one camera for all panels: moments of one motion             */
     bool edges;            /* draw the mesh's edges                                       */
     double view[3], up[3]; /* direction to the eye, and upwards; zeros: three quarters, z */
     double perspective;    /* camera_fit's; 0: parallel                                   */
@@ -58,3 +59,7 @@ PictureScene picture_default(void);
 /* Writes .png, .svg or .pdf as path's ending says (canvas.h). Nothing is printed; false and a sentence where
  * the file cannot be written or the scene has neither panels nor history. */
 bool picture_write(const char *path, const PictureScene *scene, Error *err);
+
+/* Writes an animated .webp: each panel is a page, under the same title, shown for so many seconds. The history is left
+ * out. */
+bool picture_animate(const char *path, const PictureScene *scene, double seconds, Error *err);

@@ -44,6 +44,27 @@ static double (*panel_points(const PictureScene *scene, const PicturePanel *pane
     return points;
 }
 
+/* One camera that has room for all panels, each at its place. */
+static void fit_one_camera(PanelStyle *style, Camera view, double width, double height)
+{
+    const PictureScene *scene = style->scene;
+    int count = scene->panel_count * scene->vertex_count;
+    double(*points)[3] = mem_alloc((size_t)count, sizeof *points);
+    for (int i = 0; i < scene->panel_count; i++)
+        memcpy(points + i * scene->vertex_count, scene->panels[i].x,
+               (size_t)scene->vertex_count * sizeof *points);
+    camera_fit(&view, (const double(*)[3])points, count, width, height, 0, scene->perspective);
+    view.x -= 0.5 * width, view.y -= 0.5 * height;
+    style->scale = view.scale;
+    Vec3 low, high;
+    bool seen = camera_bounds(&view, (const double(*)[3])points, count, &low, &high);
+    for (int i = 0; i < scene->panel_count; i++) {
+        style->cameras[i] = view;
+        if (seen) style->heights[i] = (high.y - low.y) / style->resolution;
+    }
+    mem_free(points);
+}
+
 /* Fits each panel by itself, takes the least scale for all, and measures the heights that this gives. */
 static void fit_cameras(PanelStyle *style, double width, double height)
 {
@@ -51,6 +72,10 @@ static void fit_cameras(PanelStyle *style, double width, double height)
     Vec3 from = vec3_load(scene->view);
     if (!(vec3_length(from) > 0)) from = CAMERA_THREE_QUARTER;
     Camera view = camera_view(from, vec3_load(scene->up));
+    if (scene->same_view) {
+        fit_one_camera(style, view, width, height);
+        return;
+    }
     style->scale = INFINITY;
     for (int i = 0; i < scene->panel_count; i++) {
         int count;
@@ -143,6 +168,15 @@ static double vectors_greatest(const PictureScene *scene)
     return greatest;
 }
 
+static double flux_greatest(const PictureScene *scene)
+{
+    double greatest = 0;
+    for (int i = 0; i < scene->panel_count; i++)
+        if (scene->panels[i].flux_density)
+            greatest = fmax(greatest, vec3_length(vec3_load(scene->panels[i].flux_density)));
+    return greatest;
+}
+
 PanelStyle panel_style_create(const PictureScene *scene, double resolution, double width, double height)
 {
     PanelStyle style = {.scene = scene, .resolution = resolution, .colors = scene_color_scale(scene)};
@@ -150,6 +184,7 @@ PanelStyle panel_style_create(const PictureScene *scene, double resolution, doub
     style.heights = mem_alloc((size_t)scene->panel_count, sizeof *style.heights);
     fit_cameras(&style, resolution * width, resolution * height);
     style.arrow_greatest = vectors_greatest(scene);
+    style.flux_greatest = scene->same_view ? flux_greatest(scene) : 0;
     if (!(style.arrow_greatest > 0)) return style;
     const double(*x)[3] = scene->panels[0].x;
     style.arrow_color = panel_any_field(scene) && style.colors.map == COLORMAP_DIVERGING ? ink : vector_ink;
@@ -304,13 +339,17 @@ static void draw_axes(Canvas *canvas, const Camera *camera, Vec2 origin)
     }
 }
 
-static void draw_flux_density(Canvas *canvas, const Camera *camera, const double *flux_density, Vec2 middle)
+/* An arrow of 26 points with the field's size, or one whose length goes with its root beside `greatest`. */
+static void draw_flux_density(Canvas *canvas, const Camera *camera, const double *flux_density,
+                              double greatest, Vec2 middle)
 {
     double size = vec3_length(vec3_load(flux_density));
     if (!(size > 0)) return;
     Vec3 along = vec3_scale(1 / size, vec3_load(flux_density));
-    Vec2 tail = seen_along(camera, middle, along, -13), tip = seen_along(camera, middle, along, 13);
+    double half = 13 * (greatest > 0 ? sqrt(size / greatest) : 1);
+    Vec2 tail = seen_along(camera, middle, along, -half), tip = seen_along(camera, middle, along, half);
     canvas_arrow(canvas, tail, tip, (Pen){field_ink, 1.5, 0});
+    if (greatest > 0) return; /* its size stands in the panel's heading */
     char label[96], number[80];
     unit_format(size, "T", number, sizeof number);
     snprintf(label, sizeof label, "B = %s", number);
@@ -324,6 +363,7 @@ void panel_draw_measures(Canvas *canvas, const PanelStyle *style, int index, Box
     Vec2 origin = {box.x + 18, box.y + box.height - 16};
     draw_axes(canvas, &style->cameras[index], origin);
     if (flux_density)
-        draw_flux_density(canvas, &style->cameras[index], flux_density, (Vec2){origin.x + 42, origin.y - 6});
+        draw_flux_density(canvas, &style->cameras[index], flux_density, style->flux_greatest,
+                          (Vec2){origin.x + 42, origin.y - 6});
     draw_length(canvas, style, box);
 }

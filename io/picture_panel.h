@@ -16,6 +16,7 @@ typedef struct PanelStyle {
     double arrow_length;   /* m, of the greatest vector                                      */
     double arrow_greatest; /* its size in its unit                                           */
     Color arrow_color;
+    double flux_greatest; /* T, over all panels */
 } PanelStyle;
 
 /* Fits all panels into width x height points. */

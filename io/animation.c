@@ -1,0 +1,95 @@
+#include "io/animation.h"
+#include "base/memory.h"
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <strings.h>
+#include <unistd.h>
+#include <webp/encode.h>
+#include <webp/mux.h>
+
+struct Animation {
+    char *path;
+    WebPAnimEncoder *encoder; /* from the first page on */
+    WebPConfig config;
+    double seconds; /* when the next page begins */
+};
+
+Animation *animation_create(const char *path, Error *err)
+{
+    const char *ending = strrchr(path, '.');
+    if (!ending || strcasecmp(ending, ".webp")) {
+        error_set(err, "%s: animations are written as .webp; give the file this ending", path);
+        return NULL;
+    }
+    Animation *animation = mem_alloc(1, sizeof *animation);
+    animation->path = mem_text(path);
+    WebPConfigPreset(&animation->config, WEBP_PRESET_DRAWING, 75);
+    animation->config.method = 2; /* a third of the time of the best, a few percent larger */
+    return animation;
+}
+
+void animation_destroy(Animation *animation)
+{
+    if (!animation) return;
+    WebPAnimEncoderDelete(animation->encoder);
+    mem_free(animation->path);
+    mem_free(animation);
+}
+
+static int milliseconds(const Animation *animation)
+{
+    return (int)lround(1000 * animation->seconds);
+}
+
+bool animation_add(Animation *animation, Canvas *page, double seconds, Error *err)
+{
+    int width, height, stride;
+    const unsigned char *pixels = canvas_pixels(page, &width, &height, &stride);
+    if (!animation->encoder) {
+        WebPAnimEncoderOptions options;
+        WebPAnimEncoderOptionsInit(&options);
+        options.anim_params.bgcolor = 0xffffffff;
+        options.kmin = 9, options.kmax = 17;
+        animation->encoder = WebPAnimEncoderNew(width, height, &options);
+    }
+    WebPPicture picture;
+    WebPPictureInit(&picture);
+    picture.width = width, picture.height = height, picture.use_argb = 1;
+    bool ok = animation->encoder && WebPPictureImportBGRX(&picture, pixels, stride) &&
+              WebPAnimEncoderAdd(animation->encoder, &picture, milliseconds(animation), &animation->config);
+    WebPPictureFree(&picture);
+    if (!ok)
+        return error_set(err, "%s: a page of %d x %d pixels cannot be encoded: %s", animation->path, width,
+                         height,
+                         animation->encoder ? WebPAnimEncoderGetError(animation->encoder) : "out of memory");
+    animation->seconds += seconds;
+    return true;
+}
+
+static bool write_file(const char *path, const WebPData *data)
+{
+    FILE *file = fopen(path, "wb");
+    if (!file) return false;
+    bool ok = fwrite(data->bytes, 1, data->size, file) == data->size;
+    return fclose(file) == 0 && ok;
+}
+
+bool animation_save(Animation *animation, Error *err)
+{
+    WebPData data = {0};
+    bool ok = animation->encoder &&
+              WebPAnimEncoderAdd(animation->encoder, NULL, milliseconds(animation), NULL) &&
+              WebPAnimEncoderAssemble(animation->encoder, &data);
+    if (!ok) return error_set(err, "%s: the animation cannot be put together", animation->path);
+    char *temporary = mem_format("%s.tmp", animation->path);
+    ok = write_file(temporary, &data) && rename(temporary, animation->path) == 0;
+    if (!ok) {
+        error_set(err, "%s: cannot be written: %s", animation->path, strerror(errno));
+        unlink(temporary);
+    }
+    mem_free(temporary);
+    WebPDataClear(&data);
+    return ok;
+}
