@@ -99,7 +99,8 @@ static bool put_gradients(DesignJob *job, Error *err)
     const Model *model = job->run->model;
     const Params *params = &model->shell->params;
     int cases = model->case_count;
-    double *dp = mem_alloc((size_t)params->size, sizeof *dp), *sum = mem_alloc((size_t)params->size, sizeof *sum);
+    double *dp = mem_alloc((size_t)params->size, sizeof *dp),
+           *sum = mem_alloc((size_t)params->size, sizeof *sum);
     double *flux = mem_alloc(3 * (size_t)cases, sizeof *flux);
     for (int c = 0; c < cases; c++) {
         static_design_param_gradient(job->sd, c, dp);
@@ -173,7 +174,8 @@ RunStatus job_design(Run *run, Error *err)
                      .info = mem_alloc(cases, sizeof *job.info),
                      .case_objectives = mem_alloc(cases, sizeof *job.case_objectives)};
     double *u = mem_alloc((size_t)model->design.size, sizeof *u);
-    for (int c = 0; c < model->case_count; c++) design_read(&model->design, c, model->cases[c].stages[0].p, u);
+    for (int c = 0; c < model->case_count; c++)
+        design_read(&model->design, c, model->cases[c].stages[0].p, u);
     if (journal_count(run->journal, "evaluation") <= 0) find_start(&job, u);
     StaticDesignDef def = static_design_default();
     run_newton(run, &def.newton);

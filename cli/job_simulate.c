@@ -1,4 +1,4 @@
-/* Motion in time by implicit Euler, from rest at the pose.
+/* Motion in time by implicit Euler, from the pose and the velocities given.
  *
  * With every stored frame goes the state to go on from, in two slots by turns, each closed by its step's
  * number: a run that is killed goes on from the last frame and repeats the steps since bit by bit. */
@@ -175,7 +175,7 @@ RunStatus job_simulate(Run *run, Error *err)
                     .err = err,
                     .c = c,
                     .p = c->stages[0].p,
-                    .now = {.x = c->x, .v = mem_alloc(dofs, sizeof(double))}};
+                    .now = {.x = c->x, .v = mem_copy(run->model->v, dofs, sizeof(double))}};
     s.memory = mem_alloc((size_t)system_memory_count(c->sys), sizeof *s.memory);
     RunStatus status = march(&s);
     if (status != RUN_CANNOT_WRITE && !put_end(&s, status == RUN_INTERRUPTED ? "interrupted" : texts[status]))

@@ -188,7 +188,6 @@ RunStatus job_trajectory(Run *run, Error *err)
     const TimeScene *time = &run->scene->time;
     ModelCase *c = &model->cases[0];
     TrajectoryJob job = {.run = run, .c = c};
-    double *v = mem_alloc((size_t)system_dof_count(c->sys), sizeof *v);
     TrajectoryProblem problem = {.sys = c->sys,
                                  .design = &model->design,
                                  .params = &model->shell->params,
@@ -200,7 +199,7 @@ RunStatus job_trajectory(Run *run, Error *err)
                                  .step = time->step,
                                  .steps = time->steps,
                                  .x = c->x,
-                                 .v = v,
+                                 .v = model->v,
                                  .p = c->stages[0].p};
     TrajectoryDef def = trajectory_default();
     run_newton(run, &def.march.newton);
@@ -217,6 +216,5 @@ RunStatus job_trajectory(Run *run, Error *err)
     }
     trajectory_destroy(job.t);
     mem_free(u);
-    mem_free(v);
     return status;
 }

@@ -39,9 +39,10 @@ static bool check_shape(const MeshScene *scene, YamlFile *yaml)
 {
     bool rectangle = scene->shape == MESH_SHEET || scene->shape == MESH_STRIP;
     if (scene->size_count != (rectangle ? 2 : 1))
-        return yaml_refuse(
-            yaml, "shell.mesh", "a %s needs `size`: %s", rectangle ? "sheet or strip" : "hexagram, disc or kirigami",
-            rectangle ? "its length and width, e.g. [65 mm, 65 mm]" : "its diameter or side, e.g. 40 mm");
+        return yaml_refuse(yaml, "shell.mesh", "a %s needs `size`: %s",
+                           rectangle ? "sheet or strip" : "hexagram, disc or kirigami",
+                           rectangle ? "its length and width, e.g. [65 mm, 65 mm]"
+                                     : "its diameter or side, e.g. 40 mm");
     if (scene->shape == MESH_SHEET && scene->cells_count != 2)
         return yaml_refuse(yaml, "shell.mesh", "a sheet needs `cells` along x and y, e.g. [64, 64]");
     if (scene->shape != MESH_SHEET && scene->n == YAML_ABSENT)
@@ -270,6 +271,30 @@ static bool is_motion(int job)
     return job == JOB_SIMULATE || job == JOB_TRAJECTORY;
 }
 
+/* Of the free coordinates. */
+static bool read_velocity(Model *model, const Build *b, const VelocityScene *scene)
+{
+    const Shell *shell = model->shell;
+    Key at = key("shell.velocity");
+    Error err;
+    model->v = mem_alloc((size_t)shell_dof_count(shell), sizeof *model->v);
+    if (!scene) return true;
+    Formula *formula = NULL;
+    if (scene->formula)
+        formula = build_formula(b, at, scene->formula, 3, scene->where, scene->where_count, build_variables);
+    bool ok = formula || !scene->formula;
+    for (int v = 0; ok && v < b->mesh->vertex_count; v++) {
+        double variables[BUILD_VARIABLES], speed[3];
+        memcpy(speed, scene->value, sizeof speed);
+        build_position(variables, b->mesh->rest[v], 0);
+        if (formula && !formula_eval(formula, variables, speed, &err))
+            ok = yaml_refuse(b->file, at.text, "%s", err.text);
+        for (int i = 0; i < 3; i++) model->v[3 * v + i] = shell->fixed[3 * v + i] ? 0 : speed[i];
+    }
+    formula_destroy(formula);
+    return ok;
+}
+
 /* Systems last: fields and what is held are known by then. An equilibrium needs forces in balance. */
 static bool finish_cases(Model *model, const Build *b, JobKind job)
 {
@@ -291,11 +316,15 @@ static bool finish_cases(Model *model, const Build *b, JobKind job)
 static bool check_motion(const Scene *scene, YamlFile *file)
 {
     const char *what = scene->job == JOB_SIMULATE ? "simulation" : "trajectory";
-    if (!is_motion(scene->job)) return true;
+    if (!is_motion(scene->job))
+        return !scene->shell.velocity ||
+               yaml_refuse(file, "shell.velocity",
+                           "velocities are for jobs in time: simulate and trajectory");
     if (isnan(scene->time.step) || scene->time.steps == YAML_ABSENT)
         return yaml_refuse(file, "time", "a %s needs `time`, e.g. time: {step: 1 ms, steps: 100}", what);
     return (!scene->cases_count && !scene->sequence_count) ||
-           yaml_refuse(file, "job", "a %s has neither cases nor a sequence; a field may be a formula of t", what);
+           yaml_refuse(file, "job", "a %s has neither cases nor a sequence; a field may be a formula of t",
+                       what);
 }
 
 static bool fill(Model *model, const Scene *scene, const Build *b)
@@ -311,6 +340,7 @@ static bool fill(Model *model, const Scene *scene, const Build *b)
     model->x = mem_alloc((size_t)shell_dof_count(shell), sizeof *model->x);
     shell_rest_state(shell, model->x);
     ok = read_pose(b, scene->shell.pose, model->x) && ok;
+    ok = read_velocity(model, b, scene->shell.velocity) && ok;
     size_t room = params_room(model, scene);
     double *p = base_params(model, scene, b, room);
     ok = p && add_cases(model, b, scene, p, room) && ok;
@@ -326,8 +356,7 @@ Model *model_create(const Scene *scene, YamlFile *file)
         model->shell = shell_create(mesh);
         Build b = {file, mesh, scene->time.at, is_motion(scene->job) ? &model->flux_of_time : NULL};
         bool designed = scene->job == JOB_DESIGN || scene->job == JOB_TRAJECTORY;
-        if (fill(model, scene, &b) && (!designed || model_design(model, scene, file)))
-            return model;
+        if (fill(model, scene, &b) && (!designed || model_design(model, scene, file))) return model;
     }
     model_destroy(model);
     return NULL;
@@ -360,5 +389,6 @@ void model_destroy(Model *model)
     mem_free(model->cases);
     mem_free(model->motions);
     mem_free(model->x);
+    mem_free(model->v);
     mem_free(model);
 }

@@ -40,7 +40,7 @@ typedef struct Model {
     int case_count, motion_count;
     ModelCase *cases;
     Motion *motions;
-    double *x;              /* [dofs] rest or pose */
+    double *x, *v;          /* [dofs] rest or pose; velocities at the start of a motion */
     Design design;          /* of a design or trajectory */
     Control control;        /* of a trajectory: the unknown flux density; no rows: none */
     TimedFlux flux_of_time; /* of a motion: the uniform flux density, if it changes */

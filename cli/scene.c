@@ -129,7 +129,8 @@ static const YamlTable mesh_table = {
          .choices = YAML_NAMES("sheet", "strip", "hexagram", "disc", "kirigami"),
          .doc = "a generated mesh in the plane z = 0"},
         {YAML_NUMBERS(MeshScene, size), .unit = "m", .range = "(0, inf)", .min_count = 1, .max_count = 2,
-         .doc = "of a sheet or strip: length along x and width along y; of a hexagram or disc: the diameter; of a kirigami: its side"},
+         .doc = "of a sheet or strip: length along x and width along y; of a hexagram or disc: the diameter; "
+                "of a kirigami: its side"},
         {YAML_INTEGERS(MeshScene, cells), .range = "[1, inf)", .min_count = 2, .max_count = 2,
          .doc = "of a sheet: cells along x and y"},
         {YAML_INTEGER(MeshScene, n), .range = "[1, inf)",
@@ -151,6 +152,19 @@ static const YamlTable pose_table = {
                                    .doc = "a mesh file with the faces of the mesh"},
                                   {0}}};
 
+static const YamlTable velocity_table = {
+    .name = "velocity",
+    .size = sizeof(VelocityScene),
+    .doc = "Velocities at the start of a motion.",
+    .fields =
+        (const YamlField[]){{YAML_VECTOR(VelocityScene, value), .unit = "m/s", .one_of = 1, .required = true,
+                             .short_form = true, .doc = "the same everywhere"},
+                            {YAML_TEXTS(VelocityScene, formula), .one_of = 1, .required = true,
+                             .short_form = true, .min_count = 3, .max_count = 3,
+                             .doc = "three expressions of the rest position x, y, z, r of a vertex, in m/s"},
+                            WHERE_ROW(VelocityScene),
+                            {0}}};
+
 static const YamlTable shell_table = {
     .name = "shell",
     .size = sizeof(ShellScene),
@@ -158,6 +172,8 @@ static const YamlTable shell_table = {
     .fields = (const YamlField[]){
         {YAML_TABLE(ShellScene, mesh, &mesh_table), .required = true, .doc = "its mesh at rest"},
         {YAML_OPTIONAL(ShellScene, pose, &pose_table), .doc = "where a job starts; at rest if absent"},
+        {YAML_OPTIONAL(ShellScene, velocity, &velocity_table),
+         .doc = "of the free coordinates at the start of a motion; at rest if absent"},
         {YAML_NUMBER(ShellScene, thickness), .unit = "m", .range = "(0, inf)", .required = true,
          .doc = "thickness h"},
         {YAML_TABLE(ShellScene, young, &young_table), .required = true, .doc = "Young's modulus"},
@@ -309,13 +325,13 @@ static const YamlTable time_table = {
     .name = "time",
     .size = sizeof(TimeScene),
     .doc = "The time t of formulas in statics, or the steps of a simulation or trajectory.",
-    .fields = (const YamlField[]){
-        {YAML_NUMBER(TimeScene, at), .unit = "s", .fallback = "0 s", .short_form = true,
-         .doc = "t in statics; where a simulation begins"},
-        {YAML_NUMBER(TimeScene, step), .unit = "s", .range = "(0, inf)",
-         .doc = "of a simulation or trajectory: the step of implicit Euler"},
-        {YAML_INTEGER(TimeScene, steps), .range = "[1, inf)", .doc = "of a simulation or trajectory: how many"},
-        {0}}};
+    .fields = (const YamlField[]){{YAML_NUMBER(TimeScene, at), .unit = "s", .fallback = "0 s",
+                                   .short_form = true, .doc = "t in statics; where a simulation begins"},
+                                  {YAML_NUMBER(TimeScene, step), .unit = "s", .range = "(0, inf)",
+                                   .doc = "of a simulation or trajectory: the step of implicit Euler"},
+                                  {YAML_INTEGER(TimeScene, steps), .range = "[1, inf)",
+                                   .doc = "of a simulation or trajectory: how many"},
+                                  {0}}};
 
 static const YamlTable output_table = {
     .name = "output",

@@ -76,9 +76,18 @@ typedef struct PoseScene {
     char *file;
 } PoseScene;
 
+/* Velocities of the vertices at the start. */
+typedef struct VelocityScene {
+    double value[3];
+    char **formula;
+    WhereScene *where;
+    int formula_count, where_count;
+} VelocityScene;
+
 typedef struct ShellScene {
     MeshScene mesh;
     PoseScene *pose;
+    VelocityScene *velocity;
     double thickness, poisson, density, damping, gravity[3];
     NumberScene young, fold;
     VectorScene magnetization;
