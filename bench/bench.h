@@ -8,3 +8,4 @@ void bench_newton(void);
 void bench_factor(void);
 void bench_design(void);
 void bench_march(void);
+void bench_trajectory(void);

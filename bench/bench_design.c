@@ -19,6 +19,7 @@ void bench_design(void)
     job("hexagram_gauss_newton_seconds", "hexagram", "");
     job("hexagram_mma_seconds", "hexagram", "--set design.optimizer=mma --set design.iterations=50");
     job("hexagram_lbfgs_seconds", "hexagram", "--set design.optimizer=lbfgs --set design.iterations=50");
+    job("kirigami_height_seconds", "kirigami_height", "");
     job("letter_a_m_seconds", "letter_a_m", "");
     job("letter_a_seconds", "letter_a", "");
     job("letter_a_hinge_seconds", "letter_a", "--set shell.bending=hinge");

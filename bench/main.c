@@ -12,6 +12,7 @@ static const struct {
     {"newton", bench_newton},
     {"factor", bench_factor},
     {"march", bench_march},
+    {"trajectory", bench_trajectory},
     {"design", bench_design},
 };
 
