@@ -78,6 +78,7 @@ static bool get_slot(Simulation *s, int slot)
         !run_get_state(s->run, slot, "time", &s->now.time, 1) || !restore_factor(s, slot))
         return false;
     system_memory_write(s->c->sys, s->memory);
+    load(s, s->now.time, s->p);
     return true;
 }
 

@@ -110,7 +110,8 @@ static bool put_frames(const Build *b, Key at, int frame, const int *frames, int
     objective->first = frames ? frames[0] : frame == YAML_ABSENT ? steps : frame;
     objective->last = frames ? frames[1] : objective->first;
     if (objective->first <= objective->last && objective->last <= steps) return true;
-    return yaml_refuse(b->file, at.text, "frames %d to %d; they must ascend and end at %d (time.steps)",
+    return yaml_refuse(b->file, at.text,
+                       "frames %d to %d; they must ascend, and the last one is %d (time.steps)",
                        objective->first, objective->last, steps);
 }
 
@@ -175,15 +176,17 @@ static bool field_objective(Model *model, const Build *b, Key at, const Objectiv
     const Control *control = &model->control;
     if (!control->rows)
         return yaml_refuse(b->file, at.text, "this objective needs the unknown flux_density of a trajectory");
+    const ParamBlock *omega = params_find(params, "dmp_omega");
+    if (!isnan(from->dmp) && !omega) return false; /* refused before */
     Objective *objective = next_objective(&model->cases[0]);
     if (!isnan(from->field_magnitude))
         *objective = objective_field_magnitude(control, from->weight * from->field_magnitude);
     else if (!isnan(from->field_smoothness))
         *objective = objective_field_smoothness(control, from->weight * from->field_smoothness);
     else
-        *objective = objective_dmp(control, from->pairs, params_find(params, "dmp_omega")->offset,
-                                   params_find(params, "dmp_alpha")->offset,
-                                   params_find(params, "dmp_beta")->offset, from->weight * from->dmp);
+        *objective =
+            objective_dmp(control, from->pairs, omega->offset, params_find(params, "dmp_alpha")->offset,
+                          params_find(params, "dmp_beta")->offset, from->weight * from->dmp);
     return true;
 }
 

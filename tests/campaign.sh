@@ -1,15 +1,21 @@
 #!/bin/sh
-# Kills and interrupts a small design at random moments and resumes it: the end must be that of an undisturbed run, bit
-# by bit, seconds aside.    tests/campaign.sh PROGRAM [TRIALS] [OPTIMIZER]
-program=$1 trials=${2:-20} optimizer=${3:-gauss_newton}
+# Kills and interrupts a small job at random moments and resumes it: the end must be that of an undisturbed run, bit by
+# bit, seconds aside.
+#   tests/campaign.sh PROGRAM [TRIALS] [KIND]      KIND: gauss_newton, mma, lbfgs (quasi-static), simulate, trajectory
+program=$1 trials=${2:-20} kind=${3:-gauss_newton}
 here=$(cd "$(dirname "$0")" && pwd)
+case $kind in
+    simulate | trajectory) scene=$here/scene_$kind.yaml set=output.every=3 ;;
+    *) scene=$here/scene_small.yaml set=design.optimizer=$kind ;;
+esac
 work=$(mktemp -d) || exit 2
 trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 2
-run() { "$program" run "$here/scene_small.yaml" --set design.optimizer="$optimizer" --quiet --no-picture -o "$@"; }
-start() { exec "$program" run "$here/scene_small.yaml" --set design.optimizer="$optimizer" --quiet --no-picture -o "$@"; }
-numbers() { # what must be the same
-    for path in design/magnetization state/x cases/up/x history/objective history/newton_iterations unknowns; do
+run() { "$program" run "$scene" --set "$set" --quiet --no-picture -o "$@"; }
+start() { exec "$program" run "$scene" --set "$set" --quiet --no-picture -o "$@"; }
+numbers() { # what must be the same; a kind of job has some of them
+    for path in design/magnetization design/young design/flux_density design/gradient/young trajectory/flux_density state/x \
+        state/v cases/up/x frames/x history/objective history/newton_iterations history/cg_iterations unknowns; do
         "$program" export "$1" -o out.csv --dataset $path 2>/dev/null && cat out.csv
     done
 }
@@ -34,5 +40,5 @@ for trial in $(seq "$trials"); do
         cmp -s whole.txt part.txt || { echo "$signal after $pause s: another end"; bad=1; }
     done
 done 2>/dev/null
-[ $bad = 0 ] && echo "$trials kills and $trials interruptions of $took ms runs: all ends the same"
+[ $bad = 0 ] && echo "$kind: $trials kills and $trials interruptions of $took ms runs: all ends the same"
 exit $bad
