@@ -71,6 +71,21 @@ static double evaluation_number(Journal *journal, int index, const char *name)
     return value;
 }
 
+/* An evaluation of a design, or a step of a simulation. */
+static void print_evaluation(Journal *journal, int index)
+{
+    if (journal_has(journal, "evaluation", index, "objective"))
+        printf("  %4d  objective %.6e  gradient %.3e  %.1f s\n", index,
+               evaluation_number(journal, index, "objective"),
+               evaluation_number(journal, index, "gradient_norm"),
+               evaluation_number(journal, index, "seconds"));
+    else
+        printf("  %4d  t %.6g s  %g Newton iterations  %g factorizations\n", index,
+               evaluation_number(journal, index, "time"),
+               evaluation_number(journal, index, "newton_iterations"),
+               evaluation_number(journal, index, "factorizations"));
+}
+
 static int info_journal(const char *path)
 {
     Error err;
@@ -80,10 +95,10 @@ static int info_journal(const char *path)
     printf("%s: %s, %d evaluations, %d frames, %d states\n", path,
            journal_is_finished(journal) ? "finished" : "not finished", evaluations,
            journal_count(journal, "frame"), journal_count(journal, "state"));
-    for (int k = 0; k < evaluations; k++)
-        printf("  %4d  objective %.6e  gradient %.3e  %.1f s\n", k,
-               evaluation_number(journal, k, "objective"), evaluation_number(journal, k, "gradient_norm"),
-               evaluation_number(journal, k, "seconds"));
+    int *indices = NULL, count = 0;
+    if (journal_indices(journal, "evaluation", &indices, &count, NULL))
+        for (int k = 0; k < count; k++) print_evaluation(journal, indices[k]);
+    mem_free(indices);
     bool ok = journal_check(journal, &err);
     if (!ok) fprintf(stderr, "slender: %s\n", err.text);
     journal_close(journal, NULL);
@@ -179,7 +194,9 @@ static bool export_journal(const char *input, const char *path, Error *err)
 {
     Journal *journal = journal_open(input, JOURNAL_READ, err);
     if (!journal) return false;
-    bool ok = result_write(journal, path, result_def(journal), err);
+    bool ok = !journal_is_finished(journal) || journal_count(journal, "frame") > 0 ||
+              error_set(err, "%s: the run has finished; its frames are in its result", input);
+    ok = ok && result_write(journal, path, result_def(journal), err);
     return journal_close(journal, ok ? err : NULL) && ok;
 }
 

@@ -1,6 +1,7 @@
 /* slender run: scene -> journal -> result and picture. */
 #include "base/memory.h"
 #include "cli/job.h"
+#include "cli/recall.h"
 #include "cli/show.h"
 #include "cli/verb.h"
 #include "io/result.h"
@@ -96,7 +97,7 @@ static bool check_scene(Journal *journal, int job, const char *scene, Error *err
     return false;
 }
 
-static bool begin(Run *run, const RunOptions *options, Error *err)
+static bool begin(Run *run, const RunOptions *options, const char *result, Error *err)
 {
     const Mesh *mesh = run->model->shell->mesh;
     char *scene = yaml_write(&scene_table, run->scene), *versions = run_versions();
@@ -105,6 +106,8 @@ static bool begin(Run *run, const RunOptions *options, Error *err)
     Array statics[] = {array_float("rest", "m", mesh->rest[0], 2, mesh->vertex_count, 3),
                        array_int("faces", mesh->faces[0], 2, mesh->face_count, 3),
                        array_int("edges", mesh->edges[0], 2, mesh->edge_count, 2)};
+    if (ok && options->resume && journal_is_finished(run->journal) && run->scene->job == JOB_SIMULATE)
+        ok = recall_frames(run->journal, result, err);
     ok = ok && journal_put(run->journal, "meta", 0, meta, 2, err) &&
          journal_put(run->journal, "static", 0, statics, 3, err);
     if (ok && options->resume && journal_is_finished(run->journal))
@@ -120,7 +123,11 @@ static bool write_result(Run *run, const char *path, bool finished, Error *err)
 {
     ResultDef def = {.double_frames = run->scene->output.precision == OUTPUT_DOUBLE};
     if (!journal_flush(run->journal, err) || !result_write(run->journal, path, def, err)) return false;
-    return !finished || journal_set_finished(run->journal, true, err);
+    if (!finished) return true;
+    if (!journal_set_finished(run->journal, true, err)) return false;
+    bool made_again = run->scene->job == JOB_TRAJECTORY; /* from the best motion's states */
+    if (made_again || run->scene->job == JOB_SIMULATE) journal_forget(run->journal, "frame", NULL);
+    return true;
 }
 
 static void draw(Run *run, const char *result)
@@ -139,7 +146,7 @@ static void draw(Run *run, const char *result)
 static int do_job(Run *run, const RunOptions *options, const char *result)
 {
     Error err;
-    if (!begin(run, options, &err))
+    if (!begin(run, options, result, &err))
         return verb_fail(options->resume ? RUN_REFUSED : RUN_CANNOT_WRITE, err.text);
     RunStatus status = job_run(run, &err);
     if (status == RUN_CANNOT_WRITE) return verb_fail(status, err.text);

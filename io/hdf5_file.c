@@ -14,7 +14,8 @@ struct Hdf5 {
 
 struct Hdf5Rows {
     hid_t dataset;
-    hsize_t chunk, width, rows;
+    int rank;
+    hsize_t dims[3], chunk[3]; /* so far, and of a chunk */
 };
 
 enum { IMAGE_STEP = 1 << 20, CHUNK_MAX_BYTES = 1 << 30 };
@@ -170,16 +171,16 @@ bool hdf5_write(Hdf5 *file, const char *path, const Array *array, Hdf5Layout lay
 }
 
 Hdf5Rows *hdf5_rows_create(Hdf5 *file, const char *path, const char *unit, int chunk_rows, int width,
-                           bool single, Error *err)
+                           bool stacked, bool single, Error *err)
 {
     Hdf5Rows *rows = mem_alloc(1, sizeof *rows);
-    int rank = width ? 2 : 1;
-    hsize_t dims[2] = {0, (hsize_t)width}, most[2] = {H5S_UNLIMITED, (hsize_t)width},
-            chunk[2] = {(hsize_t)chunk_rows, (hsize_t)width};
-    *rows = (Hdf5Rows){.chunk = chunk[0], .width = (hsize_t)width};
-    hid_t space = H5Screate_simple(rank, dims, most), properties = H5Pcreate(H5P_DATASET_CREATE);
+    hsize_t n = (hsize_t)chunk_rows, m = (hsize_t)width;
+    *rows = stacked ? (Hdf5Rows){.rank = 3, .dims = {0, n, m}, .chunk = {1, n, m}}
+                    : (Hdf5Rows){.rank = width ? 2 : 1, .dims = {0, m}, .chunk = {n, m}};
+    hsize_t most[3] = {H5S_UNLIMITED, rows->dims[1], rows->dims[2]};
+    hid_t space = H5Screate_simple(rows->rank, rows->dims, most), properties = H5Pcreate(H5P_DATASET_CREATE);
     H5Pset_obj_track_times(properties, 0);
-    H5Pset_chunk(properties, rank, chunk);
+    H5Pset_chunk(properties, rows->rank, rows->chunk);
     H5Pset_shuffle(properties);
     H5Pset_deflate(properties, 1);
     rows->dataset = H5Dcreate2(file->file, path, single ? H5T_IEEE_F32LE : H5T_IEEE_F64LE, space, file->links,
@@ -195,16 +196,14 @@ Hdf5Rows *hdf5_rows_create(Hdf5 *file, const char *path, const char *unit, int c
 
 bool hdf5_rows_append(Hdf5Rows *rows, const double *values, Error *err)
 {
-    int rank = rows->width ? 2 : 1;
-    hsize_t total[2] = {rows->rows + rows->chunk, rows->width}, first[2] = {rows->rows, 0},
-            count[2] = {rows->chunk, rows->width};
-    if (H5Dset_extent(rows->dataset, total) < 0) return failed("write", "a frame", err);
-    hid_t space = H5Dget_space(rows->dataset), memory = H5Screate_simple(rank, count, NULL);
-    bool ok = H5Sselect_hyperslab(space, H5S_SELECT_SET, first, NULL, count, NULL) >= 0 &&
+    hsize_t first[3] = {rows->dims[0]};
+    rows->dims[0] += rows->chunk[0];
+    if (H5Dset_extent(rows->dataset, rows->dims) < 0) return failed("write", "a frame", err);
+    hid_t space = H5Dget_space(rows->dataset), memory = H5Screate_simple(rows->rank, rows->chunk, NULL);
+    bool ok = H5Sselect_hyperslab(space, H5S_SELECT_SET, first, NULL, rows->chunk, NULL) >= 0 &&
               H5Dwrite(rows->dataset, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, values) >= 0;
     H5Sclose(space);
     H5Sclose(memory);
-    rows->rows += rows->chunk;
     return ok || failed("write", "a frame", err);
 }
 

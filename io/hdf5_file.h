@@ -24,10 +24,11 @@ typedef struct Hdf5Layout {
 /* Writes an array at a path; groups on the way are made. With a unit it gets the attribute `unit`. */
 bool hdf5_write(Hdf5 *file, const char *path, const Array *array, Hdf5Layout layout, Error *err);
 
-/* A dataset of rows (of `width` numbers, 0: numbers) that is filled chunk by chunk. */
+/* A dataset that is filled chunk by chunk, each chunk_rows rows of `width` numbers (0: numbers): [all rows,width], or
+ * stacked, [chunks,chunk_rows,width]. */
 typedef struct Hdf5Rows Hdf5Rows;
 Hdf5Rows *hdf5_rows_create(Hdf5 *file, const char *path, const char *unit, int chunk_rows, int width,
-                           bool single, Error *err);
+                           bool stacked, bool single, Error *err);
 bool hdf5_rows_append(Hdf5Rows *rows, const double *values, Error *err); /* chunk_rows of them */
 bool hdf5_rows_close(Hdf5Rows *rows, Error *err);
 

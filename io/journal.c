@@ -447,12 +447,14 @@ int journal_count(Journal *journal, const char *kind)
     return ok ? (int)count : -2;
 }
 
-int journal_last_index(Journal *journal, const char *kind)
+bool journal_forget(Journal *journal, const char *kind, Error *err)
 {
-    long last;
-    bool ok = settle(journal, NULL) &&
-              query_number(journal, "SELECT max(idx) FROM arrays WHERE kind=?", kind, -1, &last, NULL);
-    return ok ? (int)last : -2;
+    sqlite3_stmt *row = settle(journal, err) ? prepare(journal, "DELETE FROM arrays WHERE kind=?", err) : NULL;
+    if (!row) return false;
+    sqlite3_bind_text(row, 1, kind, -1, SQLITE_STATIC);
+    bool ok = sqlite3_step(row) == SQLITE_DONE || sql_error(journal, "written", err);
+    sqlite3_finalize(row);
+    return ok && execute(journal, "VACUUM", "written", err);
 }
 
 bool journal_check(Journal *journal, Error *err)

@@ -62,10 +62,11 @@ bool journal_has(Journal *journal, const char *kind, int index, const char *name
 bool journal_indices(Journal *journal, const char *kind, int **indices, int *count, Error *err);
 bool journal_names(Journal *journal, const char *kind, int index, char ***names, int *count, Error *err);
 
-/* How many indices a kind has, and the last of them: -1 if there is none. Both -2 if the journal cannot be
- * read. */
+/* How many indices a kind has; -2 if the journal cannot be read. */
 int journal_count(Journal *journal, const char *kind);
-int journal_last_index(Journal *journal, const char *kind);
+
+/* Lets all of a kind go and gives its space back. */
+bool journal_forget(Journal *journal, const char *kind, Error *err);
 
 /* A finished run may be replaced by JOURNAL_NEW. A resumed run that goes on sets it back to false. */
 bool journal_set_finished(Journal *journal, bool finished, Error *err);

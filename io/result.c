@@ -147,7 +147,7 @@ static bool put_steps(Writer *w, Error *err)
 /* One array of the frames: a chunk per frame that has it, and for every step the offset of the chunk that
  * holds. */
 static bool put_frames_array(Writer *w, const char *name, const char *path, const char *offsets_path,
-                             Error *err)
+                             bool stacked, Error *err)
 {
     Hdf5Rows *rows = NULL;
     int *offsets = mem_alloc((size_t)w->frame_count, sizeof *offsets), stored = 0, chunk = 0, width = 0;
@@ -158,7 +158,8 @@ static bool put_frames_array(Writer *w, const char *name, const char *path, cons
             ok = journal_get(w->journal, "frame", w->frames[k], name, &array, err);
             if (ok && !rows) {
                 chunk = array.dims[0], width = array.rank > 1 ? array.dims[1] : 0;
-                rows = hdf5_rows_create(w->file, path, array.unit, chunk, width, !w->def.double_frames, err);
+                rows = hdf5_rows_create(w->file, path, array.unit, chunk, width, stacked,
+                                        !w->def.double_frames, err);
             }
             bool fits = array.type == ARRAY_FLOAT64 && array.dims[0] == chunk &&
                         (array.rank > 1 ? array.dims[1] : 0) == width;
@@ -190,7 +191,7 @@ static bool put_fields(Writer *w, Error *err)
             const char *name = w->fields[k] + length;
             snprintf(path, sizeof path, "VTKHDF/%s/%.400s", kinds[d].data, name);
             snprintf(offsets, sizeof offsets, "VTKHDF/Steps/%s/%.400s", kinds[d].offsets, name);
-            ok = put_frames_array(w, w->fields[k], path, offsets, err);
+            ok = put_frames_array(w, w->fields[k], path, offsets, false, err);
         }
     return ok;
 }
@@ -204,7 +205,7 @@ static bool put_vtk(Writer *w, Error *err)
     bool ok = hdf5_attribute_ints(w->file, "VTKHDF", "Version", version, 2, err) &&
               hdf5_attribute_text(w->file, "VTKHDF", "Type", "UnstructuredGrid", err) &&
               put_cells(w, faces.data, err) && put_steps(w, err) &&
-              put_frames_array(w, "x", "VTKHDF/Points", NULL, err) && put_fields(w, err);
+              put_frames_array(w, "x", "VTKHDF/Points", NULL, false, err) && put_fields(w, err);
     array_clear(&faces);
     return ok;
 }
@@ -247,9 +248,9 @@ static bool fill(Writer *w, Error *err)
     if (!read_times(w, err) || !put_last_x(w, err) || !put_vtk(w, err)) return false;
     for (int k = 0; k < w->field_count; k++)
         if (!strcmp(w->fields[k], "flux_density") &&
-            !put_frames_array(w, "flux_density", "slender/frames/flux_density", NULL, err))
+            !put_frames_array(w, "flux_density", "slender/frames/flux_density", NULL, false, err))
             return false;
-    return !w->def.double_frames || put_frames_array(w, "x", "slender/frames/x", NULL, err);
+    return !w->def.double_frames || put_frames_array(w, "x", "slender/frames/x", NULL, true, err);
 }
 
 static bool write_sidecar(const Writer *w, const char *path, Error *err)
