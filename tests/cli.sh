@@ -96,6 +96,12 @@ for name in halves killed; do
     done
 done
 
+expect 4 "$program" export straight.run -o again.vtkhdf;      says "its frames are in its result"
+expect 0 "$program" picture halves.vtkhdf --animation --seconds 0.4 --width 400
+[ "$(head -c 12 halves.webp | tail -c 4)" = WEBP ] && grep -q ANMF halves.webp || { echo "halves.webp is no animation"; bad=1; }
+expect 0 "$program" picture halves.vtkhdf --stills 3 -o stills.svg; [ -s stills.svg ] || { echo "no stills"; bad=1; }
+expect 2 "$program" picture halves.vtkhdf --stills none
+
 # A finished design goes on when it is given more iterations.
 expect 0 "$program" run "$here/scene_small.yaml" --quiet --no-picture -o more --set design.iterations=4
 expect 0 "$program" run "$here/scene_small.yaml" --quiet --no-picture -o more --resume --set design.iterations=8

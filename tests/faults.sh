@@ -1,18 +1,23 @@
 #!/bin/sh
-# Lets the i-th write, sync, truncation or rename of a small design fail, for every i (or every STEP-th) until a run
+# Lets the i-th write, sync, truncation or rename of a small job fail, for every i (or every STEP-th) until a run
 # passes untouched. Each time: the run ends with a sentence and exit code 4, or is done; the old result is there or the
 # new one, whole; what the journal has acknowledged is there, and a resumed run comes to the same end.
-#   tests/faults.sh PROGRAM SHIM [STEP]
-program=$1 shim=$2 step=${3:-1}
+#   tests/faults.sh PROGRAM SHIM [STEP] [KIND]      KIND: design, simulate
+program=$1 shim=$2 step=${3:-1} kind=${4:-design}
 here=$(cd "$(dirname "$0")" && pwd)
 work=$(mktemp -d) || exit 2
 trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 2
-scene="$here/scene_small.yaml --set shell.mesh.n=2 --set design.iterations=3 --set design.optimizer=mma --no-picture"
-design() { "$program" export "$1" -o out.csv --dataset design/magnetization && cat out.csv; }
+case $kind in
+    design) scene="$here/scene_small.yaml --set shell.mesh.n=2 --set design.iterations=3 --set design.optimizer=mma"
+        dataset=design/magnetization unit=objective ;;
+    simulate) scene="$here/scene_simulate.yaml --set shell.mesh.n=4 --set time.steps=9" dataset=frames/x unit="Newton iterations" ;;
+esac
+scene="$scene --no-picture"
+numbers() { "$program" export "$1" -o out.csv --dataset $dataset && cat out.csv; }
 # shellcheck disable=SC2086
 "$program" run $scene -o whole --quiet || exit 1
-design whole.vtkhdf > whole.txt
+numbers whole.vtkhdf > whole.txt
 struck=0 bad=0 i=1
 fail() { echo "fault $i ($stays): $1"; cat said.txt; bad=1; }
 for stays in "" 1; do
@@ -31,16 +36,16 @@ for stays in "" 1; do
         "$program" info part.vtkhdf > /dev/null 2> said.txt || fail "the result is damaged"
         if [ "${acknowledged:-0}" -gt 0 ]; then
             "$program" info part.run > info.txt 2> said.txt || fail "the journal is damaged"
-            [ "$(grep -c objective info.txt)" -ge "$acknowledged" ] || fail "an acknowledged evaluation is lost"
+            [ "$(grep -c "$unit" info.txt)" -ge "$acknowledged" ] || fail "an acknowledged unit is lost"
         fi
         # shellcheck disable=SC2086
         { "$program" run $scene --quiet -o part --resume || "$program" run $scene --quiet -o part; } 2> said.txt ||
             fail "cannot go on"
-        design part.vtkhdf > part.txt
+        numbers part.vtkhdf > part.txt
         cmp -s whole.txt part.txt || fail "another end"
         i=$((i + step))
     done
     [ -n "$stays" ] || [ $code = 0 ] || fail "a run without a fault ends with $code"
 done
-[ $bad = 0 ] && echo "$struck faults: each said, nothing lost"
+[ $bad = 0 ] && echo "$kind: $struck faults: each said, nothing lost"
 exit $bad
