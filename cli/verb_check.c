@@ -5,6 +5,7 @@
 #include "base/vec3.h"
 #include "cli/job.h"
 #include "cli/verb.h"
+#include "optim/trajectory_adjoint.h"
 #include "solve/check.h"
 #include <getopt.h>
 #include <math.h>
@@ -43,6 +44,20 @@ static void check_size(const Model *model)
                model->shell->thickness, size);
 }
 
+/* Of a case, over the whole time of a motion; of an unknown field its bounds. */
+static double largest_field(const Model *model, const Scene *scene, const double *p)
+{
+    const FluxUnknown *unknown = scene->design ? scene->design->unknowns.flux_density : NULL;
+    double largest = vec3_length(vec3_load(p + model->shell->flux_density));
+    if (unknown && !isnan(unknown->bounds[0]))
+        largest = fmax(largest, fmax(fabs(unknown->bounds[0]), fabs(unknown->bounds[1])));
+    double now[3] = {0};
+    for (int n = 0; timed_flux_is_given(&model->flux_of_time) && n <= scene->time.steps; n++)
+        if (timed_flux_eval(&model->flux_of_time, scene->time.at + n * scene->time.step, now, NULL))
+            largest = fmax(largest, vec3_length(vec3_load(now)));
+    return largest;
+}
+
 /* Over a length h sqrt(Y/(12 M B)) a field bends the sheet by about a radian: cells must be smaller. */
 static void check_bending_length(const Model *model, const Scene *scene)
 {
@@ -51,12 +66,12 @@ static void check_bending_length(const Model *model, const Scene *scene)
     for (int c = 0; c < model->case_count; c++)
         for (int s = 0; s < model->cases[c].stage_count; s++) {
             const double *p = model->cases[c].stages[s].p;
-            double B = vec3_length(vec3_load(p + shell->flux_density));
+            double B = largest_field(model, scene, p);
             for (int f = 0; f < shell->mesh->face_count; f++) {
                 M_max = fmax(M_max, vec3_length(vec3_load(p + shell->magnetization + 3 * f)));
                 young = fmin(young, p[shell->young + f]);
             }
-            if (scene->job == JOB_DESIGN && scene->design->unknowns.magnetization)
+            if (scene->design && scene->design->unknowns.magnetization)
                 M_max = fmax(M_max, scene->design->unknowns.magnetization->scale);
             largest = fmax(largest, M_max * B);
         }
@@ -67,6 +82,32 @@ static void check_bending_length(const Model *model, const Scene *scene)
         printf("warning: fewer than %g cells over the magnetic bending length: the mesh is too coarse for "
                "this field\n",
                CELLS_PER_LENGTH);
+}
+
+/* Newton iterations of the whole job, as measured on the scenes; in time those that pay for a factor. */
+static double estimated_iterations(const Model *model, const Scene *scene)
+{
+    static const double each[] = {[JOB_EQUILIBRIUM] = 20,
+                                  [JOB_EVALUATE] = 1,
+                                  [JOB_DESIGN] = 6,
+                                  [JOB_SIMULATE] = 1.5,
+                                  [JOB_TRAJECTORY] = 6};
+    double solves = 0;
+    for (int k = 0; k < model->case_count; k++) solves += model->cases[k].stage_count;
+    if (scene->job == JOB_SIMULATE || scene->job == JOB_TRAJECTORY) solves *= scene->time.steps;
+    if (scene->design) solves *= scene->design->iterations + 1;
+    return solves * each[scene->job];
+}
+
+/* Factors and what CHOLMOD works in; of a trajectory the states of two motions and their factors, as far as
+ * they are kept. */
+static double estimated_megabytes(const Model *model, const Scene *scene, SparseInfo info)
+{
+    double dofs = shell_dof_count(model->shell), steps = scene->job == JOB_TRAJECTORY ? scene->time.steps : 0;
+    double kept =
+        fmin(2e-6 * steps * (double)info.factor_bytes, 1e-6 * (double)trajectory_default().factor_memory);
+    return model->case_count * 24e-6 * (double)info.factor_nonzeros + 2e-3 * dofs + 32e-6 * steps * dofs +
+           kept;
 }
 
 /* One assembly and one factorisation, as they will be. */
@@ -83,12 +124,8 @@ static void measure(const Model *model, const Scene *scene)
     printf("one Newton iteration: %.3g s, factor %.3g million numbers (%.3g MB)%s\n", seconds,
            1e-6 * (double)info.factor_nonzeros, 8e-6 * (double)info.factor_nonzeros,
            stable ? "" : ", not stable at the start");
-    double solves = 0;
-    for (int k = 0; k < model->case_count; k++) solves += model->cases[k].stage_count;
-    if (scene->job == JOB_DESIGN) solves *= scene->design->iterations + 1;
-    double each = scene->job == JOB_DESIGN ? 6 : 20; /* Newton iterations, measured on the scenes */
-    printf("estimated: %.2g s, %.3g MB\n", solves * each * seconds,
-           model->case_count * 24e-6 * (double)info.factor_nonzeros + 2e-3 * shell_dof_count(model->shell));
+    printf("estimated: %.2g s, %.3g MB\n", estimated_iterations(model, scene) * seconds,
+           estimated_megabytes(model, scene, info));
     mem_free(gradient);
 }
 
@@ -127,7 +164,7 @@ static bool report(const Model *model, const Scene *scene, bool derivatives)
            "held\n",
            mesh->vertex_count, mesh->face_count, mesh->edge_count, mesh->component_count, model->case_count,
            system_free_count(model->cases[0].sys), held);
-    if (scene->job == JOB_DESIGN) printf("%d design unknowns\n", model->design.size);
+    if (scene->design) printf("%d design unknowns\n", model->design.size);
     if (system_base_shift(model->cases[0].sys) > 0) printf("the body has free rigid motions\n");
     check_size(model);
     check_bending_length(model, scene);
