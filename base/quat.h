@@ -1,0 +1,37 @@
+/* quat.h - unit quaternions as rotations: (w, v) turns by 2 acos(w) about v. quat_mul(a, b) turns by b first. */
+#pragma once
+#include "base/vec3.h"
+
+typedef struct Quat {
+    double w;
+    Vec3 v;
+} Quat;
+
+static inline Quat quat_identity(void) { return (Quat){1, {0, 0, 0}}; }
+static inline Quat quat_conj(Quat q) { return (Quat){q.w, vec3_scale(-1, q.v)}; }
+
+static inline Quat quat_mul(Quat a, Quat b)
+{
+    Vec3 v = vec3_axpy(a.w, b.v, vec3_axpy(b.w, a.v, vec3_cross(a.v, b.v)));
+    return (Quat){a.w * b.w - vec3_dot(a.v, b.v), v};
+}
+
+static inline Quat quat_unit(Quat q)
+{
+    double f = 1 / sqrt(q.w * q.w + vec3_dot(q.v, q.v));
+    return (Quat){f * q.w, vec3_scale(f, q.v)};
+}
+
+/* Turns by |r| about r. */
+static inline Quat quat_exp(Vec3 r)
+{
+    double half2 = vec3_dot(r, r) / 4, half = sqrt(half2);
+    double sinc = half2 < 1e-4 ? 1 - half2 / 6 * (1 - half2 / 20 * (1 - half2 / 42)) : sin(half) / half;
+    return (Quat){half2 < 1e-4 ? 1 - half2 / 2 * (1 - half2 / 12 * (1 - half2 / 30)) : cos(half), vec3_scale(sinc / 2, r)};
+}
+
+static inline Vec3 quat_rotate(Quat q, Vec3 x)
+{
+    Vec3 twice = vec3_scale(2, vec3_cross(q.v, x));
+    return vec3_add(x, vec3_axpy(q.w, twice, vec3_cross(q.v, twice)));
+}
