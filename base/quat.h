@@ -1,4 +1,5 @@
-/* quat.h - unit quaternions as rotations: (w, v) turns by 2 acos(w) about v. quat_mul(a, b) turns by b first. */
+/* quat.h - unit quaternions as rotations: (w, v) turns by 2 acos(w) about v. quat_mul(a, b) turns by b first.
+ */
 #pragma once
 #include "base/vec3.h"
 
@@ -7,8 +8,14 @@ typedef struct Quat {
     Vec3 v;
 } Quat;
 
-static inline Quat quat_identity(void) { return (Quat){1, {0, 0, 0}}; }
-static inline Quat quat_conj(Quat q) { return (Quat){q.w, vec3_scale(-1, q.v)}; }
+static inline Quat quat_identity(void)
+{
+    return (Quat){1, {0, 0, 0}};
+}
+static inline Quat quat_conj(Quat q)
+{
+    return (Quat){q.w, vec3_scale(-1, q.v)};
+}
 
 static inline Quat quat_mul(Quat a, Quat b)
 {
@@ -27,7 +34,8 @@ static inline Quat quat_exp(Vec3 r)
 {
     double half2 = vec3_dot(r, r) / 4, half = sqrt(half2);
     double sinc = half2 < 1e-4 ? 1 - half2 / 6 * (1 - half2 / 20 * (1 - half2 / 42)) : sin(half) / half;
-    return (Quat){half2 < 1e-4 ? 1 - half2 / 2 * (1 - half2 / 12 * (1 - half2 / 30)) : cos(half), vec3_scale(sinc / 2, r)};
+    return (Quat){half2 < 1e-4 ? 1 - half2 / 2 * (1 - half2 / 12 * (1 - half2 / 30)) : cos(half),
+                  vec3_scale(sinc / 2, r)};
 }
 
 static inline Vec3 quat_rotate(Quat q, Vec3 x)

@@ -15,7 +15,7 @@ typedef struct Path {
     void *self;
     double u0, u1;
     int panels;
-    double *s; /* [panels + 1] arclength at the panels' ends */
+    double *s;  /* [panels + 1] arclength at the panels' ends */
     double bad; /* a parameter without a finite place; NAN: none so far */
 } Path;
 
@@ -67,7 +67,8 @@ static Vec3 slope(Path *path, double u, Vec3 *bend)
 static double length_between(Path *path, double a, double b)
 {
     double sum = 0;
-    for (int k = 0; k < GAUSS; k++) sum += gauss_weight[k] * vec3_length(slope(path, a + (b - a) * gauss_at[k], NULL));
+    for (int k = 0; k < GAUSS; k++)
+        sum += gauss_weight[k] * vec3_length(slope(path, a + (b - a) * gauss_at[k], NULL));
     return sum * fabs(b - a);
 }
 
@@ -91,10 +92,15 @@ static double parameter_at(Path *path, int panel, double s)
     return u;
 }
 
-bool rod_curve_create(RodCurvePoint *point, void *self, double u0, double u1, int elements, RodCurve *curve, Error *err)
+bool rod_curve_create(RodCurvePoint *point, void *self, double u0, double u1, int elements, RodCurve *curve,
+                      Error *err)
 {
     *curve = (RodCurve){.elements = elements};
-    Path path = {.point = point, .self = self, .u0 = u0, .u1 = u1, .panels = elements > PANELS_LEAST ? elements : PANELS_LEAST,
+    Path path = {.point = point,
+                 .self = self,
+                 .u0 = u0,
+                 .u1 = u1,
+                 .panels = elements > PANELS_LEAST ? elements : PANELS_LEAST,
                  .bad = NAN};
     path.s = mem_alloc((size_t)path.panels + 1, sizeof *path.s);
     for (int k = 0; k < path.panels; k++)
@@ -117,8 +123,10 @@ bool rod_curve_create(RodCurvePoint *point, void *self, double u0, double u1, in
     }
     mem_free(path.s);
     bool ok = !still && isnan(path.bad);
-    if (!isnan(path.bad)) error_set(err, "the curve has no finite place near %g", path.bad);
-    else if (still) error_set(err, "the curve stands still somewhere: it has no tangent there");
+    if (!isnan(path.bad))
+        error_set(err, "the curve has no finite place near %g", path.bad);
+    else if (still)
+        error_set(err, "the curve stands still somewhere: it has no tangent there");
     if (!ok) rod_curve_clear(curve);
     return ok;
 }

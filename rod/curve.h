@@ -1,6 +1,7 @@
 /* curve.h - a smooth curve as a rod sees it: places and tangents at equal arclengths.
  *
- * A rod of N elements has 2 N + 1 stations: its nodes (even ones) and the middles of its elements (odd ones). */
+ * A rod of N elements has 2 N + 1 stations: its nodes (even ones) and the middles of its elements (odd ones).
+ */
 #pragma once
 #include "base/error.h"
 #include "base/vec3.h"
@@ -15,8 +16,10 @@ typedef struct RodCurve {
 /* The place at parameter u; false where there is none. */
 typedef bool RodCurvePoint(void *self, double u, Vec3 *x);
 
-/* Reparametrises the curve from u0 to u1 by its arclength: to 1e-12 of its length where it is smooth (composite Gauss
- * quadrature of the speed, which comes from differences of eighth order; only places between u0 and u1 are asked for). False and a sentence where a point is missing or
- * not finite, or where the curve stands still. */
-bool rod_curve_create(RodCurvePoint *point, void *self, double u0, double u1, int elements, RodCurve *curve, Error *err);
+/* Reparametrises the curve from u0 to u1 by its arclength: to 1e-12 of its length where it is smooth
+ * (composite Gauss quadrature of the speed, which comes from differences of eighth order; only places between
+ * u0 and u1 are asked for). False and a sentence where a point is missing or not finite, or where the curve
+ * stands still. */
+bool rod_curve_create(RodCurvePoint *point, void *self, double u0, double u1, int elements, RodCurve *curve,
+                      Error *err);
 void rod_curve_clear(RodCurve *curve);

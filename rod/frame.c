@@ -7,7 +7,8 @@ static Vec3 reflect(Vec3 v, Vec3 across)
     return size2 > 0 ? vec3_axpy(-2 * vec3_dot(across, v) / size2, across, v) : v;
 }
 
-/* n1 of the station before, carried to the next: reflected in the plane between the places, then between the tangents. */
+/* n1 of the station before, carried to the next: reflected in the plane between the places, then between the
+ * tangents. */
 static Vec3 carry(const RodCurve *curve, int j, Vec3 n1)
 {
     Vec3 step = vec3_sub(curve->x[j], curve->x[j - 1]);
@@ -60,7 +61,11 @@ RodFrame rod_turned(RodFrame f, double angle)
 /* Differences on five neighbouring values, one-sided at the ends. */
 static double derivative(const double *f, int count, int j, double h)
 {
-    static const double rows[5][5] = {{-25, 48, -36, 16, -3}, {-3, -10, 18, -6, 1}, {1, -8, 0, 8, -1}, {-1, 6, -18, 10, 3}, {3, -16, 36, -48, 25}};
+    static const double rows[5][5] = {{-25, 48, -36, 16, -3},
+                                      {-3, -10, 18, -6, 1},
+                                      {1, -8, 0, 8, -1},
+                                      {-1, 6, -18, 10, 3},
+                                      {3, -16, 36, -48, 25}};
     int first = j - 2 < 0 ? 0 : j - 2 > count - 5 ? count - 5 : j - 2;
     double sum = 0;
     for (int k = 0; k < 5; k++) sum += rows[j - first][k] * f[first + k];

@@ -1,6 +1,8 @@
-/* frame.h - orthonormal frames (n0 tangent, n1, n2) along a curve: Frenet, Bishop, and turned about the tangent.
+/* frame.h - orthonormal frames (n0 tangent, n1, n2) along a curve: Frenet, Bishop, and turned about the
+ * tangent.
  *
- * The Darboux vector k = (twist, k1, k2) in the frame: n0' = k2 n1 - k1 n2, n1' = k0 n2 - k2 n0, n2' = k1 n0 - k0 n1. */
+ * The Darboux vector k = (twist, k1, k2) in the frame: n0' = k2 n1 - k1 n2, n1' = k0 n2 - k2 n0, n2' = k1 n0
+ * - k0 n1. */
 #pragma once
 #include "rod/curve.h"
 
@@ -8,8 +10,8 @@ typedef struct RodFrame {
     Vec3 n0, n1, n2;
 } RodFrame;
 
-/* The frame that turns least about the tangent, from n1 = the part of `normal` across the first tangent on, at all
- * stations. Double reflection, fourth order [Wang 2008]. */
+/* The frame that turns least about the tangent, from n1 = the part of `normal` across the first tangent on,
+ * at all stations. Double reflection, fourth order [Wang 2008]. */
 void rod_bishop(const RodCurve *curve, Vec3 normal, RodFrame *frames);
 
 /* n1 along the curvature. Where there is none, the last n1 is carried on without turning. */
@@ -19,12 +21,15 @@ void rod_frenet(const RodCurve *curve, RodFrame *frames);
 RodFrame rod_turned(RodFrame frame, double angle);
 
 /* A vector of the world in the frame, and the other way. */
-static inline Vec3 rod_to_frame(RodFrame f, Vec3 v) { return vec3(vec3_dot(f.n0, v), vec3_dot(f.n1, v), vec3_dot(f.n2, v)); }
+static inline Vec3 rod_to_frame(RodFrame f, Vec3 v)
+{
+    return vec3(vec3_dot(f.n0, v), vec3_dot(f.n1, v), vec3_dot(f.n2, v));
+}
 static inline Vec3 rod_to_world(RodFrame f, Vec3 v)
 {
     return vec3_axpy(v.x, f.n0, vec3_axpy(v.y, f.n1, vec3_scale(v.z, f.n2)));
 }
 
-/* Twist of a frame along the curve from station to station, by differences of fourth order of the angle to the Bishop
- * frame. twist[stations]. */
+/* Twist of a frame along the curve from station to station, by differences of fourth order of the angle to
+ * the Bishop frame. twist[stations]. */
 void rod_twist(const RodCurve *curve, const RodFrame *frames, double *twist);

@@ -30,14 +30,16 @@ static Vec3 rate(const RodCurve *curve, RodSection section, const Vec3 *moment, 
     return vec3_scale(-1, vec3_axpy(1 / section.bend1, across, vec3_scale(1 / section.twist, along)));
 }
 
-void rod_invert(const RodCurve *curve, RodSection section, const Vec3 *moment, const RodFrame *frames, Vec3 *natural)
+void rod_invert(const RodCurve *curve, RodSection section, const Vec3 *moment, const RodFrame *frames,
+                Vec3 *natural)
 {
     double h = curve->length / curve->elements;
     Quat Q = quat_identity();
     Vec3 w0 = rate(curve, section, moment, frames, 0);
     natural[0] = curve->x[0];
     for (int e = 0; e < curve->elements; e++) {
-        Vec3 w1 = rate(curve, section, moment, frames, 2 * e + 1), w2 = rate(curve, section, moment, frames, 2 * e + 2);
+        Vec3 w1 = rate(curve, section, moment, frames, 2 * e + 1),
+             w2 = rate(curve, section, moment, frames, 2 * e + 2);
         /* Magnus with Simpson's rule; to the middle with the parabola through the three rates. */
         Vec3 whole = vec3_axpy(h / 6, vec3_add(w0, w2), vec3_scale(4 * h / 6, w1));
         Vec3 half = vec3_axpy(5 * h / 24, w0, vec3_axpy(8 * h / 24, w1, vec3_scale(-h / 24, w2)));
@@ -46,9 +48,11 @@ void rod_invert(const RodCurve *curve, RodSection section, const Vec3 *moment, c
         Quat middle = quat_mul(Q, quat_exp(half));
         Q = quat_unit(quat_mul(Q, quat_exp(whole)));
         /* int Q dx by parts: exact for a constant Q, however sharply the curve bends within the element. */
-        Vec3 d1 = vec3_sub(curve->x[2 * e + 1], curve->x[2 * e]), d2 = vec3_sub(curve->x[2 * e + 2], curve->x[2 * e]);
+        Vec3 d1 = vec3_sub(curve->x[2 * e + 1], curve->x[2 * e]),
+             d2 = vec3_sub(curve->x[2 * e + 2], curve->x[2 * e]);
         Vec3 turned = quat_rotate(Q, vec3_axpy(-h / 6, vec3_cross(w2, d2), d2));
-        natural[e + 1] = vec3_add(natural[e], vec3_axpy(-4 * h / 6, quat_rotate(middle, vec3_cross(w1, d1)), turned));
+        natural[e + 1] =
+            vec3_add(natural[e], vec3_axpy(-4 * h / 6, quat_rotate(middle, vec3_cross(w1, d1)), turned));
         w0 = w2;
     }
 }
@@ -60,11 +64,13 @@ static void own_strains(const RodCurve *curve, const RodFrame *frames, Vec3 *str
     double *twist = mem_alloc((size_t)stations, sizeof *twist);
     rod_twist(curve, frames, twist);
     for (int j = 0; j < stations; j++)
-        strains[j] = vec3(twist[j], -vec3_dot(curve->c[j], frames[j].n2), vec3_dot(curve->c[j], frames[j].n1));
+        strains[j] =
+            vec3(twist[j], -vec3_dot(curve->c[j], frames[j].n2), vec3_dot(curve->c[j], frames[j].n1));
     mem_free(twist);
 }
 
-void rod_natural_strains(const RodCurve *curve, RodSection section, const Vec3 *moment, const RodFrame *frames, Vec3 *strains)
+void rod_natural_strains(const RodCurve *curve, RodSection section, const Vec3 *moment,
+                         const RodFrame *frames, Vec3 *strains)
 {
     own_strains(curve, frames, strains);
     for (int j = 0; j <= 2 * curve->elements; j++)
@@ -74,12 +80,14 @@ void rod_natural_strains(const RodCurve *curve, RodSection section, const Vec3 *
 /* d of -K^-1 R^T M over ds: K^-1 ([ex]x R^T T + K d x k), T = line (L - s) the pull of what hangs beyond. */
 static Vec3 strain_rate(RodSection section, RodFrame frame, Vec3 k, Vec3 pull, Vec3 d)
 {
-    Vec3 Kd = vec3(section.twist * d.x, section.bend1 * d.y, section.bend2 * d.z), T = rod_to_frame(frame, pull);
+    Vec3 Kd = vec3(section.twist * d.x, section.bend1 * d.y, section.bend2 * d.z),
+         T = rod_to_frame(frame, pull);
     Vec3 r = vec3_add(vec3_cross(vec3(1, 0, 0), T), vec3_cross(Kd, k));
     return vec3(r.x / section.twist, r.y / section.bend1, r.z / section.bend2);
 }
 
-void rod_strain_route(const RodCurve *curve, RodSection section, RodLoads loads, const RodFrame *frames, Vec3 *d)
+void rod_strain_route(const RodCurve *curve, RodSection section, RodLoads loads, const RodFrame *frames,
+                      Vec3 *d)
 {
     int last = 2 * curve->elements;
     double h = curve->length / curve->elements;
@@ -95,7 +103,10 @@ void rod_strain_route(const RodCurve *curve, RodSection section, RodLoads loads,
         rates[3] = strain_rate(section, frames[j - 2], k[j - 2], pull[2], vec3_axpy(-h, rates[2], at));
         Vec3 sum = vec3_add(vec3_add(rates[0], rates[3]), vec3_scale(2, vec3_add(rates[1], rates[2])));
         d[j - 2] = vec3_axpy(-h / 6, sum, at);
-        d[j - 1] = vec3_axpy(0.5, vec3_add(d[j], d[j - 2]), vec3_scale(h / 8, vec3_sub(strain_rate(section, frames[j - 2], k[j - 2], pull[2], d[j - 2]), rates[0])));
+        d[j - 1] = vec3_axpy(
+            0.5, vec3_add(d[j], d[j - 2]),
+            vec3_scale(h / 8,
+                       vec3_sub(strain_rate(section, frames[j - 2], k[j - 2], pull[2], d[j - 2]), rates[0])));
     }
     mem_free(k);
 }

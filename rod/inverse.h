@@ -1,10 +1,11 @@
-/* inverse.h - the one natural shape that sags into a given curve, clamped at its first end [Hafner 2021 after the errata of
- * docs/theory.md; the frame-free form is ours].
+/* inverse.h - the one natural shape that sags into a given curve, clamped at its first end [Hafner 2021 after
+ * the errata of docs/theory.md; the frame-free form is ours].
  *
- * What hangs beyond a station pulls on it with the moment M(s) = int_s^L (x(u) - x(s)) x p du, a plain integral. The curve
- * is in equilibrium if its strains differ from the natural ones by K^-1 R^T M; so a material frame of the natural shape
- * turns against the same frame of the curve by Q' = Q [w]x, w = -R K^-1 R^T M, and the natural curve is
- * xbar' = Q t. For a circular section no frame is needed at all: w = -(M_across/EI + M_along/GJ). Fourth order. */
+ * What hangs beyond a station pulls on it with the moment M(s) = int_s^L (x(u) - x(s)) x p du, a plain
+ * integral. The curve is in equilibrium if its strains differ from the natural ones by K^-1 R^T M; so a
+ * material frame of the natural shape turns against the same frame of the curve by Q' = Q [w]x, w = -R K^-1
+ * R^T M, and the natural curve is xbar' = Q t. For a circular section no frame is needed at all: w =
+ * -(M_across/EI + M_along/GJ). Fourth order. */
 #pragma once
 #include "rod/frame.h"
 #include "rod/section.h"
@@ -17,13 +18,18 @@ typedef struct RodLoads {
 /* M at all stations, N m. */
 void rod_moments(const RodCurve *curve, RodLoads loads, Vec3 *moment);
 
-/* natural[elements + 1]: the natural shape's nodes, from the curve's first place and tangent on. frames[stations] tell where
- * the section's axes are; NULL for a section that bends alike in all directions. */
-void rod_invert(const RodCurve *curve, RodSection section, const Vec3 *moment, const RodFrame *frames, Vec3 *natural);
+/* natural[elements + 1]: the natural shape's nodes, from the curve's first place and tangent on.
+ * frames[stations] tell where the section's axes are; NULL for a section that bends alike in all directions.
+ */
+void rod_invert(const RodCurve *curve, RodSection section, const Vec3 *moment, const RodFrame *frames,
+                Vec3 *natural);
 
-/* Natural strains (twist, k1, k2) in the given frames, at all stations, 1/m: those of the curve less K^-1 R^T M. */
-void rod_natural_strains(const RodCurve *curve, RodSection section, const Vec3 *moment, const RodFrame *frames, Vec3 *strains);
+/* Natural strains (twist, k1, k2) in the given frames, at all stations, 1/m: those of the curve less K^-1 R^T
+ * M. */
+void rod_natural_strains(const RodCurve *curve, RodSection section, const Vec3 *moment,
+                         const RodFrame *frames, Vec3 *strains);
 
-/* The same strains less the curve's by the way of eq. (10) of the paper, an equation for the strain alone that is integrated
- * from the free end: an independent check. */
-void rod_strain_route(const RodCurve *curve, RodSection section, RodLoads loads, const RodFrame *frames, Vec3 *difference);
+/* The same strains less the curve's by the way of eq. (10) of the paper, an equation for the strain alone
+ * that is integrated from the free end: an independent check. */
+void rod_strain_route(const RodCurve *curve, RodSection section, RodLoads loads, const RodFrame *frames,
+                      Vec3 *difference);

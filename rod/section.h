@@ -19,6 +19,6 @@ static inline RodSection rod_circle(double radius, double young, double poisson,
 static inline RodSection rod_ellipse(double a1, double a2, double young, double poisson, double density)
 {
     double shear = young / (2 * (1 + poisson)), a = M_PI * a1 * a2;
-    return (RodSection){shear * M_PI * pow(a1 * a2, 3) / (a1 * a1 + a2 * a2), young * a * a2 * a2 / 4, young * a * a1 * a1 / 4,
-                        density * a, fmax(a1, a2)};
+    return (RodSection){shear * M_PI * pow(a1 * a2, 3) / (a1 * a1 + a2 * a2), young * a * a2 * a2 / 4,
+                        young * a * a1 * a1 / 4, density * a, fmax(a1, a2)};
 }

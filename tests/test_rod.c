@@ -1,4 +1,5 @@
-/* Curves by arclength, frames, and the natural shape of hanging rods: reference end points, boxes and strains. */
+/* Curves by arclength, frames, and the natural shape of hanging rods: reference end points, boxes and
+ * strains. */
 #include "base/memory.h"
 #include "base/quat.h"
 #include "rod/inverse.h"
@@ -43,16 +44,46 @@ typedef struct Reference {
 } Reference;
 
 static const Reference references[] = {
-    {"helix", helix, NULL, 19.565163762857, 0.3, 5e6, {.011892357209, .010567181870, -.003405014154},
-     {-.011014064320, -.001405880674, .018765670659}, {-.01426136320, -.00942009031, -.00340501415},
+    {"helix",
+     helix,
+     NULL,
+     19.565163762857,
+     0.3,
+     5e6,
+     {.011892357209, .010567181870, -.003405014154},
+     {-.011014064320, -.001405880674, .018765670659},
+     {-.01426136320, -.00942009031, -.00340501415},
      {.01798017285, .01991371092, .02287705541}},
-    {"conical", conical, NULL, 7.88691715750555, 0.23, 3.5e6, {-.035372611385, -.006441328786, -.061033604576},
-     {-0.01279269031455, .026624904273, -.088809232130}, {-.03537261138, -.00644132879, -.08913418816},
+    {"conical",
+     conical,
+     NULL,
+     7.88691715750555,
+     0.23,
+     3.5e6,
+     {-.035372611385, -.006441328786, -.061033604576},
+     {-0.01279269031455, .026624904273, -.088809232130},
+     {-.03537261138, -.00644132879, -.08913418816},
      {.00339294820, .04127335461, 0}},
-    {"wave_20pi", wave, &omega_20pi, .302598403658, 0.7, 23e6, {-.085699964467, 0, .024204359773},
-     {.014666091248, 0, .014769637846}, {-.08569996447, 0, -.04019703502}, {.03874835735, 0, .06905477374}},
-    {"wave_63", wave, &omega_63, .301915337162638, 0.7, 23e6, {-.085366588041, 0, .023514813217},
-     {.014864498647, 0, .015050683422}, {-.08536658804, 0, -.04023536166}, {.03877137465, 0, .06891239728}},
+    {"wave_20pi",
+     wave,
+     &omega_20pi,
+     .302598403658,
+     0.7,
+     23e6,
+     {-.085699964467, 0, .024204359773},
+     {.014666091248, 0, .014769637846},
+     {-.08569996447, 0, -.04019703502},
+     {.03874835735, 0, .06905477374}},
+    {"wave_63",
+     wave,
+     &omega_63,
+     .301915337162638,
+     0.7,
+     23e6,
+     {-.085366588041, 0, .023514813217},
+     {.014864498647, 0, .015050683422},
+     {-.08536658804, 0, -.04023536166},
+     {.03877137465, 0, .06891239728}},
 };
 
 enum { REFERENCES = sizeof references / sizeof *references };
@@ -73,7 +104,8 @@ static Vec3 *invert(const Reference *r, int elements, RodCurve *curve)
     Error err;
     assert_true(rod_curve_create(r->point, (void *)r->omega, 0, r->range, elements, curve, &err));
     RodSection section = rod_circle(1.5e-3, r->young, 0.5, 1200);
-    Vec3 *moment = mem_alloc(2 * (size_t)elements + 1, sizeof *moment), *natural = mem_alloc((size_t)elements + 1, sizeof *natural);
+    Vec3 *moment = mem_alloc(2 * (size_t)elements + 1, sizeof *moment),
+         *natural = mem_alloc((size_t)elements + 1, sizeof *natural);
     rod_moments(curve, weight(section.mass), moment);
     rod_invert(curve, section, moment, NULL, natural);
     mem_free(moment);
@@ -115,8 +147,8 @@ static void test_natural_shapes(void **state)
         assert_true(off_the_box(natural, 20001, r->low, r->high) < 1e-7);
         rod_curve_clear(&curve);
         mem_free(natural);
-        print_message("%-9s end off by %.1e m at 200 elements; orders %.2f, %.2f\n", r->name, off[2], log2(off[1] / off[2]),
-                      log2(off[2] / off[3]));
+        print_message("%-9s end off by %.1e m at 200 elements; orders %.2f, %.2f\n", r->name, off[2],
+                      log2(off[1] / off[2]), log2(off[2] / off[3]));
         assert_true(log2(off[1] / off[2]) > 3.9);
     }
     assert_int_equal(mem_live_count(), blocks);
@@ -157,33 +189,35 @@ static void test_natural_strains(void **state)
         assert_int_equal(read_rows(r->name, rows), 31);
         rod_moments(&curve, weight(section.mass), moment);
         /* The conical one's file starts with the Frenet normal. */
-        if (k == 1)
-            rod_frenet(&curve, frames);
+        if (k == 1) rod_frenet(&curve, frames);
         rod_bishop(&curve, k == 1 ? frames[0].n1 : normals[k], frames);
         rod_natural_strains(&curve, section, moment, frames, strains);
         for (int i = 0; i < 31; i++) {
             int j = i * 2 * N / 30;
             scale = fmax(scale, vec3_length(vec3_load(rows[i] + 7)));
             worst = fmax(worst, distance(strains[j], rows[i] + 7));
-            assert_true(distance(curve.x[j], rows[i] + 1) < 1e-10 && distance(natural[j / 2], rows[i] + 4) < 1e-7);
+            assert_true(distance(curve.x[j], rows[i] + 1) < 1e-10 &&
+                        distance(natural[j / 2], rows[i] + 4) < 1e-7);
             moment_off = fmax(moment_off, distance(moment[j], rows[i] + 10));
         }
-        print_message("%-9s natural strains off by %.1e of their largest, moments by %.1e N m\n", r->name, worst / scale,
-                      moment_off);
+        print_message("%-9s natural strains off by %.1e of their largest, moments by %.1e N m\n", r->name,
+                      worst / scale, moment_off);
         assert_true(worst < 1e-6 * scale && moment_off < 1e-11);
         rod_curve_clear(&curve);
         mem_free(natural);
     }
 }
 
-/* Frenet, Bishop, and Frenet turned by a straight and by an exponential angle: kbar of the paper's section 5.2, and the
- * strain route from the free end, seen from the world, is in all of them what the moments say. */
+/* Frenet, Bishop, and Frenet turned by a straight and by an exponential angle: kbar of the paper's
+ * section 5.2, and the strain route from the free end, seen from the world, is in all of them what the
+ * moments say. */
 static void test_framings(void **state)
 {
     (void)state;
-    enum { N = 1600 };
+    enum { N = 3000 };
     const Reference *r = &references[0];
-    const double start[3][3] = {{13.159058565, -.235912494, 67.570682114}, {26.684504266, -.235912494, 67.570682114},
+    const double start[3][3] = {{13.159058565, -.235912494, 67.570682114},
+                                {26.684504266, -.235912494, 67.570682114},
                                 {-49.672794507, -.235912494, 67.570682114}};
     RodCurve curve;
     mem_free(invert(r, N, &curve));
@@ -197,7 +231,8 @@ static void test_framings(void **state)
         if (k == 1) rod_bishop(&curve, frames[0].n1, frames);
         for (int j = 0; k > 1 && j <= 2 * N; j++) {
             double part = j / (2.0 * N);
-            frames[j] = rod_turned(frames[j], k == 2 ? -6 * M_PI * part : -6 * M_PI * (exp(part) - 1) / (exp(1) - 1));
+            frames[j] =
+                rod_turned(frames[j], k == 2 ? -6 * M_PI * part : -6 * M_PI * (exp(part) - 1) / (exp(1) - 1));
         }
         rod_natural_strains(&curve, section, moment, frames, strains);
         rod_strain_route(&curve, section, weight(section.mass), frames, route);
@@ -207,8 +242,9 @@ static void test_framings(void **state)
             worst = fmax(worst, vec3_length(vec3_sub(route[j], direct)));
             largest = fmax(largest, vec3_length(direct));
         }
-        print_message("framing %d: the strain route is off by %.1e of the largest strain; kbar(0) %.6f %.6f %.6f\n", k,
-                      worst / largest, strains[0].x, strains[0].y, strains[0].z);
+        print_message(
+            "framing %d: the strain route is off by %.1e of the largest strain; kbar(0) %.6f %.6f %.6f\n", k,
+            worst / largest, strains[0].x, strains[0].y, strains[0].z);
         assert_true(worst < 1e-9 * largest);
         if (k < 3) assert_true(distance(strains[0], start[k]) < 1e-6 * 80);
     }
@@ -217,7 +253,8 @@ static void test_framings(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_natural_shapes), cmocka_unit_test(test_natural_strains),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_natural_shapes),
+                                       cmocka_unit_test(test_natural_strains),
                                        cmocka_unit_test(test_framings)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
