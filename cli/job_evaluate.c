@@ -18,11 +18,11 @@ static NewtonStatus relax_angles(Run *run, ModelCase *c)
     NewtonDef def = newton_default();
     run_newton(run, &def);
     Point at = {.x = c->x, .p = c->stages[0].p, .time = c->stages[0].time};
-    system_accept(held, &at);
+    system_accept(held, c->x);
     if (system_free_count(held))
         status = newton_minimize(held, &def, &(Point){.p = at.p, .time = at.time}, c->x, NULL).status;
     system_destroy(held);
-    system_accept(c->sys, &at);
+    system_accept(c->sys, c->x);
     return status;
 }
 

@@ -304,8 +304,7 @@ static bool finish_cases(Model *model, const Build *b, JobKind job)
         Error err;
         c->sys = is_motion(job) ? shell_dynamic_system(model->shell) : shell_system(model->shell);
         c->x = mem_copy(model->x, (size_t)shell_dof_count(model->shell), sizeof *c->x);
-        Point at = {.x = c->x, .p = c->stages[0].p};
-        system_accept(c->sys, &at);
+        system_accept(c->sys, c->x);
         for (int s = 0; ok && balanced && s < c->stage_count; s++)
             ok = rigid_check_force(model->shell, c->stages[s].p, &err) ||
                  yaml_refuse(b->file, "", "%s", err.text);

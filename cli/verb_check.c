@@ -141,7 +141,7 @@ static bool check_derivatives(const Model *model)
     for (int i = 0; i < TERM_MAX_DOF; i++) dof_size[i] = i < 18 ? edge : 1;
     Point at = {.x = x, .p = c->stages[0].p, .time = c->stages[0].time};
     bool ok = true;
-    system_accept(c->sys, &at);
+    system_accept(c->sys, x);
     for (int t = 0; t < system_term_count(c->sys); t++) {
         const Term *term = system_term(c->sys, t);
         TermError error = check_term(term, &model->shell->params, &at, dof_size, &random);

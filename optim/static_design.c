@@ -119,6 +119,7 @@ static void predict(StaticDesign *sd, int c)
     tangent(sd, c, work->dp, work->dx);
     Point from = point(load, load->x, work->p), to = point(load, work->w, work->p);
     for (int i = 0; i < dofs; i++) work->w[i] = load->x[i] + work->dx[i];
+    system_project(load->sys, work->w);
     Evaluation moved = system_energy(load->sys, &to);
     if (moved.finite && moved.energy < system_energy(load->sys, &from).energy)
         memcpy(work->x, work->w, (size_t)dofs * sizeof *work->x);

@@ -258,7 +258,7 @@ static void bending_param_forward(const void *self, int pack, const Point *at, c
     }
 }
 
-static void bending_accept(void *self, const Point *at)
+static void bending_accept(void *self, double *positions)
 {
     Bending *bending = self;
     int packs = (bending_count(self) + PACK_LANES - 1) / PACK_LANES;
@@ -267,7 +267,7 @@ static void bending_accept(void *self, const Point *at)
         for (int l = 0; l < PACK_LANES; l++) {
             int dof[TERM_MAX_DOF];
             bending_dofs(self, bending->packs[k].face[l], dof);
-            for (int i = 0; i < 18; i++) x[i][l] = at->x[dof[i]];
+            for (int i = 0; i < 18; i++) x[i][l] = positions[dof[i]];
         }
         for (int i = 0; i < 3; i++) {
             Pack angle = unwrap(angle_of(&bending->packs[k], x, i).angle, accepted_angle(bending, k, i));

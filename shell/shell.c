@@ -105,7 +105,8 @@ static System *make_system(const Shell *shell, bool dynamic)
 {
     const Mesh *mesh = shell->mesh;
     int positions = 3 * mesh->vertex_count;
-    DofClass classes[] = {{0, positions, mesh_diagonal(mesh)}, {positions, mesh->edge_count, 1}};
+    DofClass classes[] = {{.count = positions, .size = mesh_diagonal(mesh)},
+                          {.first = positions, .count = mesh->edge_count, .size = 1}};
     System *sys = system_create(shell_dof_count(shell), classes, 2);
     for (int t = 0; t < shell_term_row_count; t++) system_add(sys, shell_term_rows[t].create(shell));
     if (dynamic) add_kinetic_terms(shell, sys);

@@ -24,6 +24,7 @@ MarchDef march_default(void)
 /* Takes the other start if its energy is less. */
 static void compare_start(March *m, Point *at, double *energy)
 {
+    system_project(m->sys, m->other);
     at->x = m->other;
     Evaluation other = system_energy(m->sys, at);
     if (!other.finite || other.energy >= *energy) return;
@@ -38,6 +39,7 @@ static void choose_start(March *m, Point *at)
     size_t bytes = (size_t)system_dof_count(m->sys) * sizeof *m->x;
     memcpy(m->x, m->state->x, bytes);
     if (m->def->move) m->def->move(m->def->self, at->time, m->x);
+    system_project(m->sys, m->x);
     memcpy(m->other, m->x, bytes);
     at->x = m->x;
     Evaluation rest = system_energy(m->sys, at);

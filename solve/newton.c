@@ -84,6 +84,7 @@ static bool factor_shifted(Search *s)
 static double energy_at(Search *s, const double *direction, double a, Evaluation *evaluation)
 {
     for (int i = 0; i < s->n; i++) s->trial[i] = s->x[i] + a * direction[i];
+    system_project(s->sys, s->trial);
     Point at = s->at;
     at.x = s->trial;
     *evaluation = system_energy(s->sys, &at);
@@ -124,7 +125,7 @@ static double lowest_mode(Search *s)
     const double *scale = system_scale(s->sys);
     Random random = random_seed(1);
     for (int i = 0; !s->mode_known && i < s->n; i++)
-        s->mode[i] = system_is_fixed(s->sys, i) ? 0 : random_signed(&random) / sqrt(scale[i]);
+        s->mode[i] = scale[i] > 0 ? random_signed(&random) / sqrt(scale[i]) : 0;
     s->mode_known = true;
     for (int k = 0; k < INVERSE_ITERATIONS; k++) {
         for (int i = 0; i < s->n; i++) s->product[i] = scale[i] * s->mode[i];
@@ -164,7 +165,8 @@ static double curvature_step(Search *s, double curvature)
 static void move(Search *s, const double *direction, double a)
 {
     for (int i = 0; i < s->n; i++) s->x[i] += a * direction[i];
-    system_accept(s->sys, &s->at);
+    system_project(s->sys, s->x);
+    system_accept(s->sys, s->x);
 }
 
 /* The last step, squared small: taken if it does not raise the forces. */
@@ -172,12 +174,13 @@ static void finish(Search *s)
 {
     Point at = s->at;
     for (int i = 0; i < s->n; i++) s->trial[i] = s->x[i] + s->step[i];
+    system_project(s->sys, s->trial);
     at.x = s->trial;
     Evaluation last = system_gradient(s->sys, &at, s->trial_gradient);
     s->info.evaluations++;
     if (!last.finite || last.gradient_max > s->now.gradient_max) return;
     memcpy(s->x, s->trial, (size_t)s->n * sizeof *s->x);
-    system_accept(s->sys, &s->at);
+    system_accept(s->sys, s->x);
     s->now = last;
 }
 
@@ -230,6 +233,20 @@ static bool is_converged(const Search *s, bool small)
     return (small && s->info.step <= s->def->step_tol) || gain <= s->def->energy_tol * s->now.energy_scale;
 }
 
+/* Lagrange multipliers take their whole step at once; the line search is for the other dofs, with the energy and the
+ * forces that belong to the new multipliers. (What must vanish does not, while a held end is being reached.) */
+static void take_multipliers(Search *s)
+{
+    if (system_multiplier_count(s->sys) == 0) return;
+    for (int i = 0; i < s->n; i++)
+        if (system_is_multiplier(s->sys, i)) {
+            s->x[i] += s->step[i];
+            s->step[i] = 0;
+        }
+    s->now = system_gradient(s->sys, &s->at, s->gradient);
+    s->info.evaluations++;
+}
+
 /* A largest force below this is rounding of the coordinates times the stiffness. */
 static double round_off(const Search *s)
 {
@@ -257,6 +274,7 @@ static NewtonStatus iterate(Search *s)
     if (((small && s->shift > 0) || s->shifted >= s->def->shifted_max) && leave_saddle(s, small, floor, &status))
         return status;
 
+    take_multipliers(s);
     double shrink = fmin(1, s->def->step_cap / s->info.step);
     for (int i = 0; i < s->n; i++) s->step[i] *= shrink;
     double a = line_search(s);
@@ -277,6 +295,7 @@ NewtonInfo newton_minimize(System *sys, const NewtonDef *def, const Point *at, d
                 .product = work + 5 * n};
     s.at.x = x;
     s.info.status = NEWTON_MAX_ITERATIONS;
+    system_accept(sys, x);
     while (s.info.iterations < def->max_iterations && s.info.status == NEWTON_MAX_ITERATIONS) {
         s.info.iterations++;
         s.info.status = iterate(&s);

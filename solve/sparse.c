@@ -15,7 +15,7 @@
 enum { METIS_FROM = 90000 };
 
 struct Sparse {
-    int n;
+    int n, negative; /* SparseDef */
     cholmod_common common;
     cholmod_sparse *a; /* lower triangle, permuted; every diagonal entry is the first of its column */
     cholmod_factor *factor;
@@ -123,27 +123,35 @@ static void check_memory(const cholmod_common *common)
     exit(1);
 }
 
-/* rank[i] = where the fill-reducing ordering puts unknown i. */
-static int *order(int n, const Pattern *pattern, cholmod_common *common)
+/* rank[i] = where unknown i comes in an order. */
+static int *rank_of(int n, const int *order)
+{
+    int *rank = mem_alloc((size_t)n, sizeof *rank);
+    for (int k = 0; k < n; k++) rank[order[k]] = k;
+    return rank;
+}
+
+/* rank[i] = where a fill-reducing ordering puts unknown i. */
+static int *find_rank(int n, const Pattern *pattern, cholmod_common *common)
 {
     cholmod_sparse a = view(n, pattern, NULL);
     common->nmethods = 1;
     common->method[0].ordering = n >= METIS_FROM ? CHOLMOD_METIS : CHOLMOD_AMD;
     cholmod_factor *factor = cholmod_analyze(&a, common);
     check_memory(common);
-    int *rank = mem_alloc((size_t)n, sizeof *rank);
-    for (int k = 0; k < n; k++) rank[((int *)factor->Perm)[k]] = k;
+    int *rank = rank_of(n, factor->Perm);
     cholmod_free_factor(&factor, common);
     return rank;
 }
 
-static void start_cholmod(cholmod_common *common)
+static void start_cholmod(cholmod_common *common, bool definite)
 {
     openblas_set_num_threads(1); /* the same bits every time; threads are ours to use elsewhere */
     omp_set_max_active_levels(0);
     cholmod_start(common);
     common->print = 0;
-    common->final_ll = 1; /* simplicial LDL' would accept an indefinite matrix */
+    common->final_ll = definite; /* simplicial LDL' would accept an indefinite matrix */
+    if (!definite) common->supernodal = CHOLMOD_SIMPLICIAL;
     common->quick_return_if_not_posdef = 1;
 }
 
@@ -153,17 +161,22 @@ static long factor_bytes(const cholmod_factor *factor)
     return numbers * (long)sizeof(double) + (factor->is_super ? 0 : numbers * (long)sizeof(int));
 }
 
-Sparse *sparse_create(int n, int element_count, const long *element_start, const int *element_dofs)
+Sparse *sparse_create(int n, int element_count, const long *element_start, const int *element_dofs, SparseDef def)
 {
     Sparse *matrix = mem_alloc(1, sizeof *matrix);
     matrix->n = n;
-    start_cholmod(&matrix->common);
+    matrix->negative = def.negative;
+    start_cholmod(&matrix->common, def.negative == 0);
     if (n == 0) return matrix;
 
-    Pattern plain = build_pattern(n, element_count, element_start, element_dofs, NULL);
-    matrix->rank = order(n, &plain, &matrix->common);
-    mem_free(plain.start);
-    mem_free(plain.rows);
+    if (def.order) {
+        matrix->rank = rank_of(n, def.order);
+    } else {
+        Pattern plain = build_pattern(n, element_count, element_start, element_dofs, NULL);
+        matrix->rank = find_rank(n, &plain, &matrix->common);
+        mem_free(plain.start);
+        mem_free(plain.rows);
+    }
 
     Pattern pattern = build_pattern(n, element_count, element_start, element_dofs, matrix->rank);
     matrix->values = mem_alloc((size_t)pattern.start[n] + 1, sizeof(double));
@@ -245,6 +258,16 @@ static bool all_finite(const double *values, int count)
     return sum == 0;
 }
 
+/* Negative pivots of a simplicial LDL^T; they head the columns of L. */
+static int count_negative(const cholmod_factor *factor)
+{
+    const int *start = factor->p;
+    const double *values = factor->x;
+    int count = 0;
+    for (size_t k = 0; k < factor->n; k++) count += values[start[k]] < 0;
+    return count;
+}
+
 bool sparse_factor(Sparse *matrix, const double *shift)
 {
     if (matrix->n == 0) return true;
@@ -264,7 +287,8 @@ bool sparse_factor(Sparse *matrix, const double *shift)
     matrix->info.factorizations++;
     matrix->info.factor_seconds += clock_seconds() - begin;
     /* cholmod_factorize returns true for an indefinite matrix, too. */
-    return finite && matrix->common.status == CHOLMOD_OK && matrix->factor->minor == (size_t)matrix->n;
+    bool complete = finite && matrix->common.status == CHOLMOD_OK && matrix->factor->minor == (size_t)matrix->n;
+    return complete && (matrix->negative == 0 || count_negative(matrix->factor) == matrix->negative);
 }
 
 /* Permuted, from matrix->b to matrix->x. */

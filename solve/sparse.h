@@ -8,9 +8,16 @@
 
 typedef struct Sparse Sparse;
 
+typedef struct SparseDef {
+    const int *order; /* [n] the unknowns in the order of elimination; NULL: one for low fill is found (AMD, METIS) */
+    int negative;     /* so many unknowns are Lagrange multipliers: the matrix counts as definite where exactly so many
+                       * pivots of its LDL^T are negative, that is, where it is definite on what the multipliers allow.
+                       * Each must come after unknowns that it is coupled with, for there is no pivoting. */
+} SparseDef;
+
 /* The pattern of n unknowns coupled by elements: element e couples element_dofs[element_start[e] ..
  * element_start[e+1]), entries < 0 are skipped. */
-Sparse *sparse_create(int n, int element_count, const long *element_start, const int *element_dofs);
+Sparse *sparse_create(int n, int element_count, const long *element_start, const int *element_dofs, SparseDef def);
 void sparse_destroy(Sparse *matrix);
 
 /* Where entry (i, j) is stored in sparse_values(); either triangle. The pattern must hold it. */
@@ -24,8 +31,8 @@ int sparse_nonzeros(const Sparse *matrix);
 /* diagonal[i] = A(i, i). */
 void sparse_diagonal(const Sparse *matrix, double *diagonal);
 
-/* Cholesky factor of A + diag(shift) (shift NULL: of A). False when that is not positive definite or not finite: the
- * factor is then unusable. */
+/* Cholesky factor (with multipliers LDL^T) of A + diag(shift) (shift NULL: of A). False when that is not positive definite
+ * (see SparseDef) or not finite: the factor is then unusable. */
 bool sparse_factor(Sparse *matrix, const double *shift);
 
 /* x = (A + diag(shift))^-1 b with the last factor; b and x may be the same. */

@@ -32,6 +32,7 @@ void system_destroy(System *sys)
         mem_free(entry->twice);
     }
     sparse_destroy(sys->matrix);
+    mem_free(sys->order);
     mem_free(sys->fixed);
     mem_free(sys->unknown);
     mem_free(sys->scale);
@@ -76,6 +77,22 @@ void system_set_base_shift(System *sys, double base)
     sys->base = base;
 }
 
+void system_set_order(System *sys, const int *order)
+{
+    mem_free(sys->order);
+    sys->order = mem_copy(order, (size_t)sys->dof_count, sizeof *order);
+}
+
+/* The order among the unknowns; NULL: none given. */
+static int *unknown_order(const System *sys)
+{
+    if (!sys->order) return NULL;
+    int *order = mem_alloc((size_t)sys->free_count, sizeof *order), count = 0;
+    for (int k = 0; k < sys->dof_count; k++)
+        if (sys->unknown[sys->order[k]] >= 0) order[count++] = sys->unknown[sys->order[k]];
+    return order;
+}
+
 static Sparse *create_matrix(const System *sys)
 {
     long elements = 0, places = 0;
@@ -94,7 +111,10 @@ static Sparse *create_matrix(const System *sys)
             start[++e] = k;
         }
     }
-    Sparse *matrix = sparse_create(sys->free_count, (int)elements, start, dofs);
+    int *order = unknown_order(sys);
+    Sparse *matrix =
+        sparse_create(sys->free_count, (int)elements, start, dofs, (SparseDef){order, sys->multiplier_count});
+    mem_free(order);
     mem_free(start);
     mem_free(dofs);
     return matrix;
@@ -126,6 +146,9 @@ void system_prepare(System *sys)
 {
     assert(!sys->matrix);
     for (int i = 0; i < sys->dof_count; i++) sys->unknown[i] = sys->fixed[i] ? -1 : sys->free_count++;
+    for (int c = 0; c < sys->class_count; c++)
+        for (int i = 0; sys->classes[c].multipliers && i < sys->classes[c].count; i++)
+            sys->multiplier_count += !sys->fixed[sys->classes[c].first + i];
     sys->matrix = create_matrix(sys);
     sys->work = mem_alloc((size_t)sys->free_count, sizeof(double));
     sys->diag = mem_alloc((size_t)sys->free_count, sizeof(double));
@@ -136,8 +159,19 @@ void system_prepare(System *sys)
 
 int system_dof_count(const System *sys) { return sys->dof_count; }
 int system_free_count(const System *sys) { return sys->free_count; }
+int system_multiplier_count(const System *sys) { return sys->multiplier_count; }
 bool system_is_fixed(const System *sys, int dof) { return sys->fixed[dof]; }
 double system_base_shift(const System *sys) { return sys->base; }
+
+bool system_is_multiplier(const System *sys, int dof)
+{
+    for (int c = 0; c < sys->class_count; c++) {
+        const DofClass *class = &sys->classes[c];
+        if (dof >= class->first && dof < class->first + class->count) return class->multipliers;
+    }
+    return false;
+}
+
 int system_term_count(const System *sys) { return sys->term_count; }
 const Term *system_term(const System *sys, int t) { return &sys->entries[t].term; }
 const double *system_scale(const System *sys) { return sys->scale; }

@@ -10,19 +10,25 @@
 /* Dofs of one kind, which lie together: positions in metres, edge angles in radians. */
 typedef struct DofClass {
     int first, count;
-    double size; /* a large change of such a dof: the body's diagonal, or 1 rad */
+    double size; /* a large change of such a dof: the body's diagonal, or 1 rad; INFINITY: of no interest */
+    bool multipliers; /* Lagrange multipliers: the energy is that of the others plus theirs times what must vanish */
 } DofClass;
 
 enum { SYSTEM_MAX_CLASSES = 3, SYSTEM_MAX_TERMS = 16 };
 
 typedef struct System System;
 
-/* The first class are the positions. classes are copied. */
+/* The first class are the positions, or what stands for them. classes are copied. Dofs in no class are no unknowns: to be
+ * fixed. */
 System *system_create(int dof_count, const DofClass *classes, int class_count);
 void system_destroy(System *sys);
 
 void system_add(System *sys, Term term);
 void system_fix(System *sys, int dof);
+
+/* The order in which unknowns are eliminated: all dofs, fixed ones are passed over. Before system_prepare; else an order
+ * for low fill is found. For chains, and needed with multipliers (SparseDef). */
+void system_set_order(System *sys, const int *order);
 
 /* base shift, in parts of each class's mean diagonal, that is always added: 1e-10 for bodies with free rigid motions
  * in statics, else 0 (physics: a zero eigenvalue decides nothing). */
@@ -33,6 +39,8 @@ void system_prepare(System *sys);
 
 int system_dof_count(const System *sys);
 int system_free_count(const System *sys);
+int system_multiplier_count(const System *sys);
+bool system_is_multiplier(const System *sys, int dof);
 bool system_is_fixed(const System *sys, int dof);
 double system_base_shift(const System *sys);
 int system_term_count(const System *sys);
@@ -63,7 +71,8 @@ Evaluation system_hessian(System *sys, const Point *at, double *gradient);
 /* x[dof_count] of the last Hessian. */
 const double *system_linearised(const System *sys);
 
-/* Factor of H + (base + shift) D, D = each class's mean |H_ii|. False where not positive definite. */
+/* Factor of H + (base + shift) D, D = each class's mean |H_ii|. False where not positive definite; with multipliers, where
+ * not so on what they allow. */
 bool system_factor(System *sys, double shift);
 
 /* Factor of H + sigma on the diagonal of the free positions only (N/m), without the base shift; for eigen.h. */
@@ -109,8 +118,9 @@ void system_param_forward(System *sys, const Point *at, const double *dp, double
 void system_prev(System *sys, const Point *at, const double *w, double *dx, double *dv);
 void system_prev_forward(System *sys, const Point *at, const double *dx, const double *dv, double *r);
 
-/* Tells the terms that x is an accepted state. */
-void system_accept(System *sys, const Point *at);
+/* Makes a trial x admissible, and tells the terms that x is an accepted state; both may write to x (TermOps). */
+void system_project(const System *sys, double *x);
+void system_accept(System *sys, double *x);
 
 /* What the terms remember beside x, system_memory_count() numbers; read into or set from memory. */
 int system_memory_count(const System *sys);

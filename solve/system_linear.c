@@ -191,10 +191,16 @@ void system_prev_forward(System *sys, const Point *at, const double *dx, const d
     }
 }
 
-void system_accept(System *sys, const Point *at)
+void system_project(const System *sys, double *x)
 {
     for (int t = 0; t < sys->term_count; t++)
-        if (sys->entries[t].term.ops->accept) sys->entries[t].term.ops->accept(sys->entries[t].term.self, at);
+        if (sys->entries[t].term.ops->project) sys->entries[t].term.ops->project(sys->entries[t].term.self, x);
+}
+
+void system_accept(System *sys, double *x)
+{
+    for (int t = 0; t < sys->term_count; t++)
+        if (sys->entries[t].term.ops->accept) sys->entries[t].term.ops->accept(sys->entries[t].term.self, x);
 }
 
 static double *term_memory(const Entry *entry, int *count)

@@ -13,7 +13,8 @@ typedef struct Entry {
 } Entry;
 
 struct System {
-    int dof_count, free_count, term_count, class_count;
+    int dof_count, free_count, term_count, class_count, multiplier_count;
+    int *order; /* [dof_count] NULL: none given */
     Entry entries[SYSTEM_MAX_TERMS];
     DofClass classes[SYSTEM_MAX_CLASSES];
     bool *fixed, factored; /* factored: the last factor may be used */

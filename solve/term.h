@@ -51,8 +51,13 @@ typedef struct TermOps {
     /* r = d2E/dx d(x_prev, v_prev) . (dx, dv): the tangent of prev. */
     void (*prev_forward)(const void *self, int pack, const Point *at, const Pack *x, const Pack *dx, const Pack *dv, Pack *r);
 
-    /* After an accepted step: remembers what must be (the turns of a fold angle). NULL if nothing. */
-    void (*accept)(void *self, const Point *at);
+    /* Makes a trial admissible: what follows from other dofs (the positions of an inextensible rod from its rotations)
+     * is put into the whole vector x. NULL if nothing. */
+    void (*project)(void *self, double *x);
+
+    /* After an accepted step: remembers what must be (the turns of a fold angle), and may write the same state otherwise
+     * (rotations that are increments from a reference in x become 0, the reference turns). NULL if nothing. */
+    void (*accept)(void *self, double *x);
 
     /* What accept remembers, count numbers: part of the model's state beside x. NULL if nothing. */
     double *(*memory)(void *self, int *count);

@@ -66,7 +66,7 @@ static void test_oscillator(void **state)
     (void)state;
     double k = 40, mass = 0.1, dt = 0.01, w = sqrt(k / mass), p[1] = {0}, x[3] = {1, 0, 0}, v[3] = {0},
            worst = 0;
-    System *sys = system_create(3, &(DofClass){0, 3, 1}, 1);
+    System *sys = system_create(3, &(DofClass){.count = 3, .size = 1}, 1);
     system_add(sys, (Term){&spring_ops, &k});
     system_add(sys, kinetic_inertia_term(1, &mass));
     system_prepare(sys);
@@ -293,7 +293,7 @@ static void test_older_factor(void **state)
             mem_copy(system_anchor(s[2].sys), (size_t)system_anchor_count(s[2].sys), sizeof *anchor);
         system_destroy(s[2].sys);
         s[2].sys = other;
-        system_accept(other, &(Point){.x = s[2].now.x, .p = s[2].p});
+        system_accept(other, s[2].now.x);
         system_restore_factor(other, anchor, s[2].p);
         mem_free(anchor);
     }

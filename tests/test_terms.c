@@ -72,7 +72,7 @@ static void check_rows(BendingModel bending, FluxField *field)
     Point at = {.x = x, .p = p, .time = 0.3};
     for (int r = 0; r < shell_term_row_count; r++) {
         Term term = shell_term_rows[r].create(shell);
-        if (term.ops->accept) term.ops->accept(term.self, &at);
+        if (term.ops->accept) term.ops->accept(term.self, x);
         TermError worst = check_term(&term, &shell->params, &at, dof_size, &random);
         print_message("%-10s gradient %.1e  hessian %.1e  param_forward %.1e  param %.1e\n",
                       shell_term_rows[r].name, worst.gradient, worst.hessian, worst.forward, worst.adjoint);
