@@ -43,3 +43,19 @@ static inline Vec3 quat_rotate(Quat q, Vec3 x)
     Vec3 twice = vec3_scale(2, vec3_cross(q.v, x));
     return vec3_add(x, vec3_axpy(q.w, twice, vec3_cross(q.v, twice)));
 }
+
+/* The rotation whose columns are these three orthonormal vectors. */
+static inline Quat quat_from_axes(Vec3 a, Vec3 b, Vec3 c)
+{
+    double trace = a.x + b.y + c.z;
+    Quat q;
+    if (trace > 0)
+        q = (Quat){1 + trace, {b.z - c.y, c.x - a.z, a.y - b.x}};
+    else if (a.x >= b.y && a.x >= c.z)
+        q = (Quat){b.z - c.y, {1 + a.x - b.y - c.z, b.x + a.y, c.x + a.z}};
+    else if (b.y >= c.z)
+        q = (Quat){c.x - a.z, {b.x + a.y, 1 + b.y - a.x - c.z, c.y + b.z}};
+    else
+        q = (Quat){a.y - b.x, {c.x + a.z, c.y + b.z, 1 + c.z - a.x - b.y}};
+    return quat_unit(q);
+}

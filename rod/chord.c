@@ -1,0 +1,57 @@
+#include "rod/chord.h"
+
+Chord chord_at(const RodTerm *term, int pack, const double *x, const Pack *turns)
+{
+    Chord chord = {.s = segment_at(&term->layout, pack, x, turns), .h = rod_element_length(term->rod)};
+    Pack3 bow = rod_term_vector(term, pack, &term->rod->bow[0].x);
+    chord.C = pack3_axpy(pack_set(chord.h), segment_chord(&chord.s), bow);
+    return chord;
+}
+
+Pack3 chord_world(const Chord *chord)
+{
+    return segment_to_world(&chord->s, chord->C);
+}
+
+/* dC of turns, in the frame of a. */
+static Pack3 body_rate(const Chord *chord, Pack3 turn_a, Pack3 turn_b)
+{
+    return pack3_scale(pack_set(chord->h), segment_chord_rate(&chord->s, segment_rate(&chord->s, turn_a, turn_b)));
+}
+
+Pack3 chord_rate(const Chord *chord, Pack3 turn_a, Pack3 turn_b)
+{
+    return segment_to_world(&chord->s, pack3_add(body_rate(chord, turn_a, turn_b), pack3_cross(turn_a, chord->C)));
+}
+
+/* The force in the frame of a is F = R_a^T T, which changes by -phi_a x F: so -F.C gains phi_a.(F x C). */
+void chord_gradient(const Chord *chord, Pack3 T, Pack *g)
+{
+    Pack3 F = segment_to_body(&chord->s, T), own = pack3_cross(F, chord->C);
+    Jet jet = segment_chord_jet(&chord->s, pack3_scale(pack_set(-chord->h), F), false);
+    segment_pull_gradient(&chord->s, &jet, g);
+    pack3_store(g, pack3_add(pack3_load(g), own));
+}
+
+/* [F]x dC of the turns of a or of b. */
+static PackMat mixed(const Chord *chord, Pack3 F, bool b)
+{
+    Pack3 zero = {{0}, {0}, {0}}, row[3];
+    for (int i = 0; i < 3; i++) {
+        Pack3 unit = pack3(pack_set(i == 0), pack_set(i == 1), pack_set(i == 2));
+        row[i] = pack3_cross(F, b ? body_rate(chord, zero, unit) : body_rate(chord, unit, zero));
+    }
+    return pack_mat_transpose((PackMat){row[0], row[1], row[2]});
+}
+
+void chord_hessian(const Chord *chord, Pack3 T, PackMat block[3])
+{
+    Pack3 F = segment_to_body(&chord->s, T), C = chord->C;
+    Jet jet = segment_chord_jet(&chord->s, pack3_scale(pack_set(-chord->h), F), true);
+    segment_pull_hessian(&chord->s, &jet, block);
+    PackMat a = mixed(chord, F, false);
+    block[0] = pack_mat_add(block[0], pack_mat_add(a, pack_mat_transpose(a)));
+    block[0] = pack_mat_add(block[0], pack_mat_scale(pack_set(-0.5), pack_mat_symmetric(C, F)));
+    block[0] = pack_mat_add(block[0], pack_mat_diagonal(pack3_dot(C, F)));
+    block[1] = pack_mat_add(block[1], mixed(chord, F, true));
+}

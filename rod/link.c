@@ -1,0 +1,101 @@
+/* Inextensibility of a rod with positions: c = x_b - x_a - R_a C = 0 for each element, by its multiplier lambda, the force of
+ * the element on its first node:
+ *
+ *     E = lambda.c + hold/2 |c|^2
+ *
+ * The second part (an augmented Lagrangian) is 0 wherever a rod may be and changes no solution, but makes the matrix
+ * definite in the positions, so that its LDL^T needs no pivoting. Trials are made admissible by putting the positions where
+ * the rotations have them; only a held end is reached by Newton's steps. */
+#include "rod/chord.h"
+
+enum { XA, XB, TURN_A, TURN_B, LAMBDA, BLOCKS }; /* an element's dofs, three each */
+
+static int link_size(const void *self)
+{
+    (void)self;
+    return 3 * BLOCKS;
+}
+
+static void link_dofs(const void *self, int e, int *dof)
+{
+    const RodLayout *layout = &((const RodTerm *)self)->layout;
+    for (int i = 0; i < 6; i++) {
+        dof[i] = layout->position + 3 * e + i;
+        dof[3 * TURN_A + i] = layout->turn + 3 * e + i;
+        if (i < 3) dof[3 * LAMBDA + i] = layout->multiplier + 3 * e + i;
+    }
+}
+
+/* -d(R_a C) of the turns of a or of b: the rows are the three turns. */
+static PackMat turn_rows(const Chord *chord, bool b)
+{
+    Pack3 zero = {{0}, {0}, {0}}, row[3];
+    for (int i = 0; i < 3; i++) {
+        Pack3 unit = pack3(pack_set(i == 0), pack_set(i == 1), pack_set(i == 2));
+        row[i] = pack3_neg(b ? chord_rate(chord, zero, unit) : chord_rate(chord, unit, zero));
+    }
+    return (PackMat){row[0], row[1], row[2]};
+}
+
+static void hessian(const Chord *chord, Pack hold, Pack3 force, Pack *H)
+{
+    PackMat block[3], rows[2] = {turn_rows(chord, false), turn_rows(chord, true)};
+    chord_hessian(chord, force, block);
+    PackMat held[2] = {pack_mat_scale(hold, rows[0]), pack_mat_scale(hold, rows[1])};
+    block[0] = pack_mat_add(block[0], pack_mat_product(held[0], pack_mat_transpose(rows[0])));
+    block[1] = pack_mat_add(block[1], pack_mat_product(held[0], pack_mat_transpose(rows[1])));
+    block[2] = pack_mat_add(block[2], pack_mat_product(held[1], pack_mat_transpose(rows[1])));
+    element_clear(H, 3 * BLOCKS);
+    rod_term_add_blocks(H, TURN_A, block);
+    for (int k = 0; k < 2; k++) {
+        Pack sign = pack_set(k == 0 ? -1 : 1);
+        element_add_diagonal(H, XA + k, pack_mat_diagonal(hold));
+        element_add_block(H, LAMBDA, XA + k, pack_mat_diagonal(sign));
+        element_add_block(H, LAMBDA, TURN_A + k, pack_mat_transpose(rows[k]));
+        for (int i = 0; i < 2; i++) element_add_block(H, TURN_A + i, XA + k, pack_mat_scale(sign, held[i]));
+    }
+    element_add_block(H, XA, XB, pack_mat_diagonal(-hold));
+}
+
+static Pack link_eval(const void *self, int pack, const Point *at, const Pack *x, Pack *g, Pack *H)
+{
+    const RodTerm *term = self;
+    Chord chord = chord_at(term, pack, at->x, x + 3 * TURN_A);
+    Pack hold = pack_set(term->hold);
+    Pack3 lambda = pack3_load(x + 3 * LAMBDA),
+          c = pack3_sub(pack3_sub(pack3_load(x + 3 * XB), pack3_load(x)), chord_world(&chord));
+    Pack3 force = pack3_axpy(hold, c, lambda);
+    if (g) {
+        rod_term_clear(g, 3 * BLOCKS);
+        pack3_store(g + 3 * XA, pack3_neg(force));
+        pack3_store(g + 3 * XB, force);
+        chord_gradient(&chord, force, g + 3 * TURN_A);
+        rod_term_turn_gradient(&chord.s, g + 3 * TURN_A);
+        pack3_store(g + 3 * LAMBDA, c);
+    }
+    if (H) hessian(&chord, hold, force, H);
+    return pack3_dot(lambda, c) + hold / 2 * pack3_dot(c, c);
+}
+
+/* Positions where the rotations have them; a held end stays. */
+static void link_project(void *self, double *x)
+{
+    const RodTerm *term = self;
+    int nodes = term->layout.nodes;
+    rod_places(term->rod, &term->layout, x, term->rod->end == ROD_FREE ? nodes : nodes - 1, x + term->layout.position);
+}
+
+static const TermOps link_ops = {
+    .name = "link",
+    .count = rod_term_count,
+    .size = link_size,
+    .dofs = link_dofs,
+    .eval = link_eval,
+    .project = link_project,
+    .destroy = mem_free,
+};
+
+Term rod_link_term(const Rod *rod, RodLayout layout, double hold)
+{
+    return rod_term_make(&link_ops, rod, layout, hold);
+}

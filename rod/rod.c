@@ -1,0 +1,134 @@
+#include "rod/rod.h"
+#include "base/memory.h"
+#include "rod/terms.h"
+#include "solve/kinetic.h"
+#include "solve/lumped.h"
+#include <math.h>
+
+Rod *rod_create(int elements, double length, RodSection unit, double area)
+{
+    Rod *rod = mem_alloc(1, sizeof *rod);
+    *rod = (Rod){.elements = elements,
+                 .length = length,
+                 .unit = unit,
+                 .area = area,
+                 .frame = quat_identity(),
+                 .start = ROD_CLAMPED};
+    rod->bow = mem_alloc((size_t)elements, sizeof *rod->bow);
+    Params *params = &rod->params;
+    rod->young = params_add(params, "young", "Pa", elements, 1, false);
+    rod->natural_strain = params_add(params, "natural_strain", "1/m", elements, 3, false);
+    rod->magnetization = params_add(params, "magnetization", "A/m", elements, 3, false);
+    rod->flux_density = params_add(params, "flux_density", "T", 1, 3, true);
+    rod->gravity = params_add(params, "gravity", "m/s^2", 1, 3, true);
+    rod->load = params_add(params, "load", "N", elements + 1, 3, true);
+    rod->pull = params_add(params, "pull", "N", elements, 3, true);
+    rod->damping = params_add(params, "damping", "N s/m", 1, 1, false);
+    return rod;
+}
+
+void rod_destroy(Rod *rod)
+{
+    if (!rod) return;
+    mem_free(rod->bow);
+    mem_free(rod);
+}
+
+void rod_node_mass(const Rod *rod, double *mass)
+{
+    double element = rod->unit.mass * rod_element_length(rod);
+    for (int i = 0; i <= rod->elements; i++) mass[i] = i == 0 || i == rod->elements ? element / 2 : element;
+}
+
+void rod_default_params(const Rod *rod, double young, double *p)
+{
+    for (int i = 0; i < rod->params.size; i++) p[i] = 0;
+    for (int e = 0; e < rod->elements; e++) p[rod->young + e] = young;
+}
+
+void rod_sum_loads(const Rod *rod, double *p)
+{
+    Vec3 sum = vec3(0, 0, 0);
+    for (int e = rod->elements - 1; e >= 0; e--) {
+        sum = vec3_add(sum, vec3_load(p + rod->load + 3 * (e + 1)));
+        vec3_store(p + rod->pull + 3 * e, sum);
+    }
+}
+
+/* ---- Systems ---- */
+
+static void add_terms(System *sys, const Rod *rod, const RodLayout *layout, double hold)
+{
+    RodForm form = layout->position >= 0 ? ROD_WITH_POSITIONS : ROD_HANGING;
+    for (int r = 0; r < rod_term_row_count; r++)
+        if (rod_term_rows[r].form == ROD_ANY_FORM || rod_term_rows[r].form == form)
+            system_add(sys, rod_term_rows[r].create(rod, *layout, hold));
+}
+
+/* Weight and loads on positions; in motion inertia and damping. */
+static void add_lumped_terms(System *sys, const Rod *rod, bool dynamic)
+{
+    int nodes = rod_node_count(rod);
+    double *mass = mem_alloc((size_t)nodes, sizeof *mass);
+    rod_node_mass(rod, mass);
+    system_add(sys, lumped_gravity_term(nodes, mass, rod->gravity));
+    system_add(sys, lumped_load_term(nodes, rod->load));
+    if (dynamic) {
+        system_add(sys, kinetic_inertia_term(nodes, mass));
+        system_add(sys, kinetic_damping_term(nodes, rod->damping));
+    }
+    mem_free(mass);
+}
+
+static void fix(System *sys, int first, int count, bool held)
+{
+    for (int i = first; held && i < first + count; i++) system_fix(sys, i);
+}
+
+/* Node after node along the rod; an element's multipliers after both its nodes. */
+static void set_order(System *sys, const RodLayout *layout)
+{
+    int *order = mem_alloc((size_t)layout->dofs, sizeof *order), count = 0;
+    for (int i = 0; i < layout->nodes; i++) {
+        for (int k = 0; layout->position >= 0 && k < 3; k++) order[count++] = layout->position + 3 * i + k;
+        for (int k = 0; k < 3; k++) order[count++] = layout->turn + 3 * i + k;
+        for (int k = 0; layout->multiplier >= 0 && i > 0 && k < 3; k++)
+            order[count++] = layout->multiplier + 3 * (i - 1) + k;
+    }
+    for (; count < layout->dofs; count++) order[count] = count;
+    system_set_order(sys, order);
+    mem_free(order);
+}
+
+System *rod_hanging_system(const Rod *rod)
+{
+    RodLayout layout = rod_layout(rod, false);
+    System *sys = system_create(layout.dofs, &(DofClass){.count = 3 * layout.nodes, .size = 1}, 1);
+    add_terms(sys, rod, &layout, 0);
+    fix(sys, layout.turn, 3, true);
+    fix(sys, layout.reference, 4 * layout.nodes, true);
+    set_order(sys, &layout);
+    system_prepare(sys);
+    return sys;
+}
+
+System *rod_system(const Rod *rod, double hold, bool dynamic)
+{
+    RodLayout layout = rod_layout(rod, true);
+    int end = 3 * (layout.nodes - 1);
+    DofClass classes[] = {
+        {.first = layout.position, .count = 3 * layout.nodes, .size = rod->length},
+        {.first = layout.turn, .count = 3 * layout.nodes, .size = 1},
+        {.first = layout.multiplier, .count = 3 * rod->elements, .size = INFINITY, .multipliers = true}};
+    System *sys = system_create(layout.dofs, classes, 3);
+    add_terms(sys, rod, &layout, hold);
+    add_lumped_terms(sys, rod, dynamic);
+    fix(sys, layout.position, 3, true);
+    fix(sys, layout.turn, 3, rod->start == ROD_CLAMPED);
+    fix(sys, layout.position + end, 3, rod->end != ROD_FREE);
+    fix(sys, layout.turn + end, 3, rod->end == ROD_CLAMPED);
+    fix(sys, layout.reference, 4 * layout.nodes, true);
+    set_order(sys, &layout);
+    system_prepare(sys);
+    return sys;
+}

@@ -1,0 +1,151 @@
+/* States of a rod (rod.h). */
+#include "base/memory.h"
+#include "rod/chord.h"
+
+RodLayout rod_layout(const Rod *rod, bool positions)
+{
+    int nodes = rod_node_count(rod), turn = positions ? 3 * nodes : 0, multiplier = turn + 3 * nodes;
+    int reference = positions ? multiplier + 3 * rod->elements : multiplier;
+    return (RodLayout){.nodes = nodes,
+                       .position = positions ? 0 : -1,
+                       .turn = turn,
+                       .multiplier = positions ? multiplier : -1,
+                       .reference = reference,
+                       .dofs = reference + 4 * nodes};
+}
+
+static void gather_turns(const RodLayout *layout, int pack, const double *x, Pack turns[6])
+{
+    for (int l = 0; l < PACK_LANES; l++)
+        for (int i = 0; i < 6; i++) turns[i][l] = x[layout->turn + 3 * segment_lane(layout, pack, l) + i];
+}
+
+static int pack_count(const Rod *rod)
+{
+    return (rod->elements + PACK_LANES - 1) / PACK_LANES;
+}
+
+void rod_places(const Rod *rod, const RodLayout *layout, const double *x, int count, double *place)
+{
+    RodTerm term = {.rod = rod, .layout = *layout};
+    Vec3 now = layout->position >= 0 ? vec3_load(x + layout->position) : rod->position;
+    vec3_store(place, now);
+    for (int k = 0; k < pack_count(rod); k++) {
+        Pack turns[6];
+        gather_turns(layout, k, x, turns);
+        Chord chord = chord_at(&term, k, x, turns);
+        Pack3 step = chord_world(&chord);
+        for (int l = 0, node = k * PACK_LANES + 1; l < PACK_LANES && node < count; l++, node++) {
+            now = vec3_add(now, vec3(step.x[l], step.y[l], step.z[l]));
+            vec3_store(place + 3 * node, now);
+        }
+    }
+}
+
+void rod_set_state(const Rod *rod, const RodLayout *layout, const Quat *q, double *x)
+{
+    for (int i = 0; i < layout->reference; i++) x[i] = 0;
+    for (int i = 0; i < layout->nodes; i++) {
+        double *to = x + layout->reference + 4 * i;
+        to[0] = q[i].w;
+        vec3_store(to + 1, q[i].v);
+    }
+    if (layout->position < 0) return;
+    vec3_store(x + layout->position, rod->position);
+    rod_places(rod, layout, x, layout->nodes, x + layout->position);
+}
+
+void rod_natural_state(const Rod *rod, const RodLayout *layout, const double *p, double *x)
+{
+    double h = rod_element_length(rod);
+    Quat *q = mem_alloc((size_t)layout->nodes, sizeof *q);
+    q[0] = rod->frame;
+    for (int e = 0; e < rod->elements; e++)
+        q[e + 1] = quat_unit(quat_mul(q[e], quat_exp(vec3_scale(h, vec3_load(p + rod->natural_strain + 3 * e)))));
+    rod_set_state(rod, layout, q, x);
+    mem_free(q);
+}
+
+void rod_element_strains(const Rod *rod, const RodLayout *layout, const double *x, Vec3 *strain)
+{
+    double h = rod_element_length(rod);
+    for (int k = 0; k < pack_count(rod); k++) {
+        Pack turns[6];
+        gather_turns(layout, k, x, turns);
+        Segment s = segment_at(layout, k, x, turns);
+        Pack3 theta = segment_theta(&s);
+        for (int l = 0, e = k * PACK_LANES; l < PACK_LANES && e < rod->elements; l++, e++)
+            strain[e] = vec3(theta.x[l] / h, theta.y[l] / h, theta.z[l] / h);
+    }
+}
+
+void rod_follow_curve(Rod *rod, const RodCurve *curve, const RodFrame *frames, double *x)
+{
+    RodLayout layout = rod_layout(rod, false);
+    double *place = mem_alloc(3 * (size_t)layout.nodes, sizeof *place);
+    Quat *q = mem_alloc((size_t)layout.nodes, sizeof *q);
+    for (int i = 0; i < layout.nodes; i++) {
+        RodFrame f = frames[2 * i];
+        q[i] = quat_from_axes(f.n0, f.n1, f.n2);
+    }
+    rod->length = curve->length;
+    rod->position = curve->x[0];
+    rod->frame = q[0];
+    for (int e = 0; e < rod->elements; e++) rod->bow[e] = vec3(0, 0, 0);
+    rod_set_state(rod, &layout, q, x);
+    rod_places(rod, &layout, x, layout.nodes, place);
+    for (int e = 0; e < rod->elements; e++) {
+        Vec3 wanted = vec3_sub(curve->x[2 * e + 2], curve->x[2 * e]),
+             chord = vec3_sub(vec3_load(place + 3 * e + 3), vec3_load(place + 3 * e));
+        rod->bow[e] = quat_rotate(quat_conj(q[e]), vec3_sub(wanted, chord));
+    }
+    mem_free(place);
+    mem_free(q);
+}
+
+/* m with rows m = b. */
+static Vec3 solve(const Vec3 rows[3], Vec3 b)
+{
+    Vec3 c0 = vec3_cross(rows[1], rows[2]), c1 = vec3_cross(rows[2], rows[0]), c2 = vec3_cross(rows[0], rows[1]);
+    Vec3 sum = vec3_axpy(b.x, c0, vec3_axpy(b.y, c1, vec3_scale(b.z, c2)));
+    return vec3_scale(1 / vec3_dot(rows[0], c0), sum);
+}
+
+/* What a moment m of each element does on a turn of its node: rows.m; rows of nodes a (0..2) and b (3..5). */
+static void turn_rows(const RodLayout *layout, const double *x, Vec3 (*rows)[6])
+{
+    static const Pack none[6] = {{0}};
+    Pack3 zero = {{0}, {0}, {0}};
+    for (int k = 0; k * PACK_LANES < layout->nodes - 1; k++) {
+        Segment s = segment_at(layout, k, x, none);
+        for (int i = 0; i < 6; i++) {
+            Pack3 unit = pack3(pack_set(i % 3 == 0), pack_set(i % 3 == 1), pack_set(i % 3 == 2));
+            Pack3 row = segment_theta_rate(&s, i < 3 ? segment_rate(&s, unit, zero) : segment_rate(&s, zero, unit));
+            for (int l = 0, e = k * PACK_LANES; l < PACK_LANES && e < layout->nodes - 1; l++, e++)
+                rows[e][i] = vec3(row.x[l], row.y[l], row.z[l]);
+        }
+    }
+}
+
+void rod_balance(const Rod *rod, System *hanging, const double *x, double *p)
+{
+    RodLayout layout = rod_layout(rod, false);
+    size_t elements = (size_t)rod->elements;
+    Vec3 *strain = mem_alloc(elements, sizeof *strain), (*rows)[6] = mem_alloc(elements, sizeof *rows);
+    double *force = mem_alloc((size_t)layout.dofs, sizeof *force);
+    rod_element_strains(rod, &layout, x, strain);
+    for (int e = 0; e < rod->elements; e++) vec3_store(p + rod->natural_strain + 3 * e, strain[e]);
+    system_gradient(hanging, &(Point){.x = x, .p = p}, force);
+    turn_rows(&layout, x, rows);
+    Vec3 carried = vec3(0, 0, 0); /* what the element beyond does to the node */
+    for (int e = rod->elements - 1; e >= 0; e--) {
+        Vec3 load = vec3_add(vec3_load(force + layout.turn + 3 * (e + 1)), carried);
+        Vec3 m = solve(rows[e] + 3, vec3_scale(-1, load));
+        for (int i = 0; i < 3; i++) (&carried.x)[i] = vec3_dot(rows[e][i], m);
+        double young = p[rod->young + e], K[3] = {rod->unit.twist, rod->unit.bend1, rod->unit.bend2};
+        for (int i = 0; i < 3; i++) p[rod->natural_strain + 3 * e + i] -= (&m.x)[i] / (young * K[i]);
+    }
+    mem_free(strain);
+    mem_free(rows);
+    mem_free(force);
+}
