@@ -135,7 +135,6 @@ static int *rank_of(int n, const int *order)
 static int *find_rank(int n, const Pattern *pattern, cholmod_common *common)
 {
     cholmod_sparse a = view(n, pattern, NULL);
-    common->nmethods = 1;
     common->method[0].ordering = n >= METIS_FROM ? CHOLMOD_METIS : CHOLMOD_AMD;
     cholmod_factor *factor = cholmod_analyze(&a, common);
     check_memory(common);
@@ -153,6 +152,7 @@ static void start_cholmod(cholmod_common *common, bool definite)
     common->final_ll = definite; /* simplicial LDL' would accept an indefinite matrix */
     if (!definite) common->supernodal = CHOLMOD_SIMPLICIAL;
     common->quick_return_if_not_posdef = 1;
+    common->nmethods = 1;
 }
 
 static long factor_bytes(const cholmod_factor *factor)
