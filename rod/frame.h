@@ -4,6 +4,7 @@
  * The Darboux vector k = (twist, k1, k2) in the frame: n0' = k2 n1 - k1 n2, n1' = k0 n2 - k2 n0, n2' = k1 n0
  * - k0 n1. */
 #pragma once
+#include "base/quat.h"
 #include "rod/curve.h"
 
 typedef struct RodFrame {
@@ -33,3 +34,7 @@ static inline Vec3 rod_to_world(RodFrame f, Vec3 v)
 /* Twist of a frame along the curve from station to station, by differences of fourth order of the angle to
  * the Bishop frame. twist[stations]. */
 void rod_twist(const RodCurve *curve, const RodFrame *frames, double *twist);
+
+/* The rotation from an element's start to its end, seen from its start, and the one to its middle: R' = R
+ * [w]x with the rates w at its start, middle and end. Fourth order. */
+Quat rod_turn(double h, Vec3 w0, Vec3 w1, Vec3 w2, Quat *half);

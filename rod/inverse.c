@@ -40,13 +40,8 @@ void rod_invert(const RodCurve *curve, RodSection section, const Vec3 *moment, c
     for (int e = 0; e < curve->elements; e++) {
         Vec3 w1 = rate(curve, section, moment, frames, 2 * e + 1),
              w2 = rate(curve, section, moment, frames, 2 * e + 2);
-        /* Magnus with Simpson's rule; to the middle with the parabola through the three rates. */
-        Vec3 whole = vec3_axpy(h / 6, vec3_add(w0, w2), vec3_scale(4 * h / 6, w1));
-        Vec3 half = vec3_axpy(5 * h / 24, w0, vec3_axpy(8 * h / 24, w1, vec3_scale(-h / 24, w2)));
-        whole = vec3_axpy(h * h / 12, vec3_cross(w0, w2), whole);
-        half = vec3_axpy(h * h / 48, vec3_cross(w0, w1), half);
-        Quat middle = quat_mul(Q, quat_exp(half));
-        Q = quat_unit(quat_mul(Q, quat_exp(whole)));
+        Quat half, whole = rod_turn(h, w0, w1, w2, &half), middle = quat_mul(Q, half);
+        Q = quat_unit(quat_mul(Q, whole));
         /* int Q dx by parts: exact for a constant Q, however sharply the curve bends within the element. */
         Vec3 d1 = vec3_sub(curve->x[2 * e + 1], curve->x[2 * e]),
              d2 = vec3_sub(curve->x[2 * e + 2], curve->x[2 * e]);
@@ -57,8 +52,7 @@ void rod_invert(const RodCurve *curve, RodSection section, const Vec3 *moment, c
     }
 }
 
-/* The curve's own strains in the frames. */
-static void own_strains(const RodCurve *curve, const RodFrame *frames, Vec3 *strains)
+void rod_strains(const RodCurve *curve, const RodFrame *frames, Vec3 *strains)
 {
     int stations = 2 * curve->elements + 1;
     double *twist = mem_alloc((size_t)stations, sizeof *twist);
@@ -72,7 +66,7 @@ static void own_strains(const RodCurve *curve, const RodFrame *frames, Vec3 *str
 void rod_natural_strains(const RodCurve *curve, RodSection section, const Vec3 *moment,
                          const RodFrame *frames, Vec3 *strains)
 {
-    own_strains(curve, frames, strains);
+    rod_strains(curve, frames, strains);
     for (int j = 0; j <= 2 * curve->elements; j++)
         strains[j] = vec3_sub(strains[j], strain_of(section, frames[j], moment[j]));
 }
@@ -92,7 +86,7 @@ void rod_strain_route(const RodCurve *curve, RodSection section, RodLoads loads,
     int last = 2 * curve->elements;
     double h = curve->length / curve->elements;
     Vec3 *k = mem_alloc((size_t)last + 1, sizeof *k);
-    own_strains(curve, frames, k);
+    rod_strains(curve, frames, k);
     for (int j = 0; j <= last; j++) d[j] = vec3(0, 0, 0);
     for (int j = last; j > 0; j -= 2) { /* Runge-Kutta over an element, backwards */
         Vec3 pull[3], rates[4], at = d[j];

@@ -24,6 +24,9 @@ void rod_moments(const RodCurve *curve, RodLoads loads, Vec3 *moment);
 void rod_invert(const RodCurve *curve, RodSection section, const Vec3 *moment, const RodFrame *frames,
                 Vec3 *natural);
 
+/* The curve's own strains (twist, k1, k2) in the given frames, at all stations, 1/m. */
+void rod_strains(const RodCurve *curve, const RodFrame *frames, Vec3 *strains);
+
 /* Natural strains (twist, k1, k2) in the given frames, at all stations, 1/m: those of the curve less K^-1 R^T
  * M. */
 void rod_natural_strains(const RodCurve *curve, RodSection section, const Vec3 *moment,
