@@ -38,6 +38,14 @@ static inline Quat quat_exp(Vec3 r)
                   vec3_scale(sinc / 2, r)};
 }
 
+/* The shortest rotation vector r with quat_exp(r) = +-q. */
+static inline Vec3 quat_log(Quat q)
+{
+    double sine = vec3_length(q.v), angle = 2 * atan2(sine, fabs(q.w));
+    double scale = sine > 1e-8 ? angle / sine : 2;
+    return vec3_scale(q.w < 0 ? -scale : scale, q.v);
+}
+
 static inline Vec3 quat_rotate(Quat q, Vec3 x)
 {
     Vec3 twice = vec3_scale(2, vec3_cross(q.v, x));

@@ -2,6 +2,26 @@
 #include "base/memory.h"
 #include "base/quat.h"
 
+/* The place at arclength s: cubic between stations. */
+static Vec3 place_at(const RodCurve *curve, double s)
+{
+    int last = 2 * curve->elements;
+    double h = curve->length / last, part = fmin(fmax(s / h, 0), last);
+    int j = part < last ? (int)part : last - 1;
+    double a = part - j, b = 1 - a;
+    Vec3 x = vec3_axpy(b * b * (1 + 2 * a), curve->x[j], vec3_scale(a * a * (1 + 2 * b), curve->x[j + 1]));
+    return vec3_axpy(h * a * b * b, curve->t[j], vec3_axpy(-h * a * a * b, curve->t[j + 1], x));
+}
+
+/* What a force at arclength s does to all stations before it. */
+static void add_point(const RodCurve *curve, double s, Vec3 force, Vec3 *moment)
+{
+    Vec3 place = place_at(curve, s);
+    double h = curve->length / (2 * curve->elements);
+    for (int j = 0; j <= 2 * curve->elements && j * h < s; j++)
+        moment[j] = vec3_add(moment[j], vec3_cross(vec3_sub(place, curve->x[j]), force));
+}
+
 void rod_moments(const RodCurve *curve, RodLoads loads, Vec3 *moment)
 {
     int last = 2 * curve->elements;
@@ -13,6 +33,20 @@ void rod_moments(const RodCurve *curve, RodLoads loads, Vec3 *moment)
         integral = vec3_axpy(h / 2, ends, vec3_axpy(h * h / 12, turn, integral));
         Vec3 arm = vec3_axpy(-(curve->length - j * h), curve->x[j], integral);
         moment[j] = vec3_cross(arm, loads.line);
+    }
+    for (int k = 0; k < loads.point_count; k++) add_point(curve, loads.points[k].s, loads.points[k].force, moment);
+    add_point(curve, curve->length, loads.end, moment);
+}
+
+void rod_pulls(const RodCurve *curve, RodLoads loads, Vec3 *pull)
+{
+    double h = curve->length / curve->elements;
+    for (int i = 0; i < 3 * curve->elements; i++) {
+        int e = i / 3;
+        double s = (e + i % 3 / 2.0) * h, inside = (e + (i % 3 == 1 ? 0.5 : i % 3 ? 1 - 1e-9 : 1e-9)) * h;
+        pull[i] = vec3_axpy(curve->length - s, loads.line, loads.end);
+        for (int k = 0; k < loads.point_count; k++)
+            if (loads.points[k].s > inside) pull[i] = vec3_add(pull[i], loads.points[k].force);
     }
 }
 
@@ -85,22 +119,24 @@ void rod_strain_route(const RodCurve *curve, RodSection section, RodLoads loads,
 {
     int last = 2 * curve->elements;
     double h = curve->length / curve->elements;
-    Vec3 *k = mem_alloc((size_t)last + 1, sizeof *k);
+    Vec3 *k = mem_alloc((size_t)last + 1, sizeof *k), *pulls = mem_alloc(3 * (size_t)curve->elements, sizeof *pulls);
     rod_strains(curve, frames, k);
+    rod_pulls(curve, loads, pulls);
     for (int j = 0; j <= last; j++) d[j] = vec3(0, 0, 0);
     for (int j = last; j > 0; j -= 2) { /* Runge-Kutta over an element, backwards */
-        Vec3 pull[3], rates[4], at = d[j];
-        for (int i = 0; i < 3; i++) pull[i] = vec3_scale(curve->length - (j - i) * h / 2, loads.line);
-        rates[0] = strain_rate(section, frames[j], k[j], pull[0], at);
+        const Vec3 *pull = pulls + 3 * (j / 2 - 1);
+        Vec3 rates[4], at = d[j];
+        rates[0] = strain_rate(section, frames[j], k[j], pull[2], at);
         rates[1] = strain_rate(section, frames[j - 1], k[j - 1], pull[1], vec3_axpy(-h / 2, rates[0], at));
         rates[2] = strain_rate(section, frames[j - 1], k[j - 1], pull[1], vec3_axpy(-h / 2, rates[1], at));
-        rates[3] = strain_rate(section, frames[j - 2], k[j - 2], pull[2], vec3_axpy(-h, rates[2], at));
+        rates[3] = strain_rate(section, frames[j - 2], k[j - 2], pull[0], vec3_axpy(-h, rates[2], at));
         Vec3 sum = vec3_add(vec3_add(rates[0], rates[3]), vec3_scale(2, vec3_add(rates[1], rates[2])));
         d[j - 2] = vec3_axpy(-h / 6, sum, at);
         d[j - 1] = vec3_axpy(
             0.5, vec3_add(d[j], d[j - 2]),
             vec3_scale(h / 8,
-                       vec3_sub(strain_rate(section, frames[j - 2], k[j - 2], pull[2], d[j - 2]), rates[0])));
+                       vec3_sub(strain_rate(section, frames[j - 2], k[j - 2], pull[0], d[j - 2]), rates[0])));
     }
     mem_free(k);
+    mem_free(pulls);
 }

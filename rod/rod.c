@@ -5,6 +5,9 @@
 #include "solve/lumped.h"
 #include <math.h>
 
+static const double HOLD = 10;          /* of the link, in parts of the whole rod's stiffness */
+static const double BASE_SHIFT = 1e-10; /* for a rod that may spin freely (system.h) */
+
 Rod *rod_create(int elements, double length, RodSection unit, double area)
 {
     Rod *rod = mem_alloc(1, sizeof *rod);
@@ -112,7 +115,7 @@ System *rod_hanging_system(const Rod *rod)
     return sys;
 }
 
-System *rod_system(const Rod *rod, double hold, bool dynamic)
+System *rod_system(const Rod *rod, double young, bool dynamic)
 {
     RodLayout layout = rod_layout(rod, true);
     int end = 3 * (layout.nodes - 1);
@@ -121,12 +124,13 @@ System *rod_system(const Rod *rod, double hold, bool dynamic)
         {.first = layout.turn, .count = 3 * layout.nodes, .size = 1},
         {.first = layout.multiplier, .count = 3 * rod->elements, .size = INFINITY, .multipliers = true}};
     System *sys = system_create(layout.dofs, classes, 3);
-    add_terms(sys, rod, &layout, hold);
+    add_terms(sys, rod, &layout, HOLD * young * fmax(rod->unit.bend1, rod->unit.bend2) / pow(rod->length, 3));
     add_lumped_terms(sys, rod, dynamic);
     fix(sys, layout.position, 3, true);
     fix(sys, layout.turn, 3, rod->start == ROD_CLAMPED);
     fix(sys, layout.position + end, 3, rod->end != ROD_FREE);
     fix(sys, layout.turn + end, 3, rod->end == ROD_CLAMPED);
+    if (rod->start == ROD_PINNED && rod->end != ROD_CLAMPED) system_set_base_shift(sys, BASE_SHIFT);
     fix(sys, layout.reference, 4 * layout.nodes, true);
     set_order(sys, &layout);
     system_prepare(sys);

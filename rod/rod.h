@@ -82,6 +82,9 @@ void rod_set_state(const Rod *rod, const RodLayout *layout, const Quat *q, doubl
 /* The natural shape, from the clamp on. */
 void rod_natural_state(const Rod *rod, const RodLayout *layout, const double *p, double *x);
 
+/* The same state in another form. */
+void rod_copy_state(const Rod *rod, const RodLayout *from, const double *x, const RodLayout *to, double *y);
+
 /* Places of the first `count` nodes, place[count][3], from the first one (of x, or the rod's) and the rotations, turns
  * included. place may be x's own positions. */
 void rod_places(const Rod *rod, const RodLayout *layout, const double *x, int count, double *place);
@@ -93,9 +96,9 @@ void rod_follow_curve(Rod *rod, const RodCurve *curve, const RodFrame *frames, d
 /* ---- Systems ---- */
 
 /* All terms, prepared. hanging: rotations only; the rod is clamped and free. Else with positions: statics, or with inertia
- * and damping. hold: N/m, about the stiffness of one element (it decides nothing). The rod must outlive the system. */
+ * and damping; young is about the rod's modulus (it decides nothing). The rod must outlive the system. */
 System *rod_hanging_system(const Rod *rod);
-System *rod_system(const Rod *rod, double hold, bool dynamic);
+System *rod_system(const Rod *rod, double young, bool dynamic);
 
 /* Strains (twist, k1, k2) of the elements, strain[elements], 1/m. */
 void rod_element_strains(const Rod *rod, const RodLayout *layout, const double *x, Vec3 *strain);

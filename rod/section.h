@@ -15,6 +15,13 @@ static inline RodSection rod_circle(double radius, double young, double poisson,
     return (RodSection){bend / (1 + poisson), bend, bend, density * M_PI * radius * radius, radius};
 }
 
+/* A section of a Young's modulus of 1 Pa, with another one. */
+static inline RodSection rod_section_of(RodSection unit, double young)
+{
+    unit.twist *= young, unit.bend1 *= young, unit.bend2 *= young;
+    return unit;
+}
+
 /* An ellipse with half-axis a1 along n1 and a2 along n2; twist by Saint-Venant, not by the polar moment. */
 static inline RodSection rod_ellipse(double a1, double a2, double young, double poisson, double density)
 {

@@ -55,6 +55,14 @@ void rod_set_state(const Rod *rod, const RodLayout *layout, const Quat *q, doubl
     rod_places(rod, layout, x, layout->nodes, x + layout->position);
 }
 
+void rod_copy_state(const Rod *rod, const RodLayout *from, const double *x, const RodLayout *to, double *y)
+{
+    Quat *q = mem_alloc((size_t)from->nodes, sizeof *q);
+    for (int i = 0; i < from->nodes; i++) q[i] = rod_reference(from, x, i);
+    rod_set_state(rod, to, q, y);
+    mem_free(q);
+}
+
 void rod_natural_state(const Rod *rod, const RodLayout *layout, const double *p, double *x)
 {
     double h = rod_element_length(rod);

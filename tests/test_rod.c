@@ -90,7 +90,7 @@ enum { REFERENCES = sizeof references / sizeof *references };
 
 static RodLoads weight(double mass)
 {
-    return (RodLoads){vec3(0, 0, -9.8 * mass)};
+    return (RodLoads){.line = vec3(0, 0, -9.8 * mass)};
 }
 
 static double distance(Vec3 a, const double *b)

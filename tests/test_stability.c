@@ -85,7 +85,7 @@ static Rod rod_of(const Reference *r, int elements, Framing framing)
     int stations = 2 * elements + 1;
     assert_true(rod_curve_create(r->point, r->self, 0, r->range, elements, &curve, &err));
     Rod rod = rod_create(elements, curve.length, rod_circle(1.5e-3, r->young, 0.5, 1200));
-    RodLoads weight = {vec3(0, 0, -9.8 * rod.at.section.mass)};
+    RodLoads weight = {.line = vec3(0, 0, -9.8 * rod.at.section.mass)};
     RodFrame *frames = mem_alloc((size_t)stations, sizeof *frames);
     rod_frenet(&curve, frames);
     if (framing == BISHOP) rod_bishop(&curve, frames[0].n1, frames);

@@ -1,0 +1,95 @@
+#include "rod/stations.h"
+#include "base/memory.h"
+#include <math.h>
+
+/* Values of elements, put at odd stations; means between them, and straight on to the ends. */
+static void fill_nodes(int elements, Vec3 *v)
+{
+    int last = 2 * elements;
+    for (int j = 2; j < last; j += 2) v[j] = vec3_scale(0.5, vec3_add(v[j - 1], v[j + 1]));
+    v[0] = elements > 1 ? vec3_axpy(-0.5, vec3_sub(v[3], v[1]), v[1]) : v[1];
+    v[last] = elements > 1 ? vec3_axpy(0.5, vec3_sub(v[last - 1], v[last - 3]), v[last - 1]) : v[1];
+}
+
+/* The force beyond an element's middle, and by how much weight changes it over the element. */
+static Vec3 element_pull(const Rod *rod, const double *p, int e, Vec3 *weight)
+{
+    double element = rod->unit.mass * rod_element_length(rod);
+    Vec3 g = vec3_load(p + rod->gravity), B = vec3_load(p + rod->flux_density);
+    *weight = vec3_scale(element, g);
+    Vec3 pull = vec3_axpy(rod->elements - e - 0.5, *weight, vec3_load(p + rod->pull + 3 * e));
+    return vec3_axpy(rod->area * p[rod->magnetization + 3 * e], B, pull);
+}
+
+void rod_stations(const Rod *rod, const RodLayout *layout, const double *x, const double *p, Vec3 *k, Vec3 *m, Vec3 *F)
+{
+    double h = rod_element_length(rod);
+    Vec3 *strain = mem_alloc((size_t)rod->elements, sizeof *strain);
+    rod_element_strains(rod, layout, x, strain);
+    for (int e = 0; e < rod->elements; e++) {
+        Vec3 off = vec3_sub(strain[e], vec3_load(p + rod->natural_strain + 3 * e)), weight;
+        double young = p[rod->young + e];
+        k[2 * e + 1] = strain[e];
+        m[2 * e + 1] = vec3_scale(young, vec3(rod->unit.twist * off.x, rod->unit.bend1 * off.y, rod->unit.bend2 * off.z));
+        Vec3 pull = element_pull(rod, p, e, &weight);
+        Quat a = rod_reference(layout, x, e), middle = quat_mul(a, quat_exp(vec3_scale(h / 2, strain[e])));
+        Quat frame[3] = {a, middle, rod_reference(layout, x, e + 1)};
+        for (int i = 0; i < 3; i++)
+            F[3 * e + i] = quat_rotate(quat_conj(frame[i]), vec3_axpy(0.5 * (1 - i), weight, pull));
+    }
+    fill_nodes(rod->elements, k);
+    fill_nodes(rod->elements, m);
+    if (rod->end == ROD_FREE) m[2 * rod->elements] = vec3(0, 0, 0);
+    mem_free(strain);
+}
+
+/* What a helix with strain k is after a length h, from its start and in the frame there. */
+static Vec3 helix_chord(Vec3 k, double h)
+{
+    Vec3 theta = vec3_scale(h, k), along = vec3(1, 0, 0);
+    double angle2 = vec3_dot(theta, theta), angle = sqrt(angle2);
+    bool small = angle < 1e-2;
+    double s = small ? 1 - angle2 / 6 * (1 - angle2 / 20) : sin(angle) / angle; /* sin a/a, (1 - cos a)/a^2, (1 - s)/a^2 */
+    double c = small ? 0.5 - angle2 / 24 * (1 - angle2 / 30) : (1 - cos(angle)) / angle2;
+    double d = small ? 1.0 / 6 - angle2 / 120 * (1 - angle2 / 42) : (1 - s) / angle2;
+    Vec3 sum = vec3_axpy(d * theta.x, theta, vec3_axpy(c, vec3_cross(theta, along), vec3_scale(s, along)));
+    return vec3_scale(h, sum);
+}
+
+void rod_curve_of(const Rod *rod, const RodLayout *layout, const double *x, RodCurve *curve)
+{
+    size_t stations = 2 * (size_t)rod->elements + 1;
+    double h = rod_element_length(rod), *place = mem_alloc(3 * (size_t)layout->nodes, sizeof *place);
+    Vec3 *strain = mem_alloc((size_t)rod->elements, sizeof *strain);
+    *curve = (RodCurve){.elements = rod->elements, .length = rod->length};
+    curve->x = mem_alloc(stations, sizeof *curve->x);
+    curve->t = mem_alloc(stations, sizeof *curve->t);
+    curve->c = mem_alloc(stations, sizeof *curve->c);
+    rod_places(rod, layout, x, layout->nodes, place);
+    rod_element_strains(rod, layout, x, strain);
+    for (int j = 0; j < (int)stations; j++) {
+        int node = j / 2, e = node < rod->elements ? node : node - 1;
+        Quat q = rod_reference(layout, x, node);
+        Vec3 k = strain[e];
+        curve->x[j] = vec3_load(place + 3 * node);
+        if (j % 2) {
+            curve->x[j] = vec3_add(curve->x[j], quat_rotate(q, helix_chord(k, h / 2)));
+            q = quat_mul(q, quat_exp(vec3_scale(h / 2, k)));
+        } else if (node > 0 && node < rod->elements) {
+            k = vec3_scale(0.5, vec3_add(strain[node - 1], strain[node]));
+        }
+        curve->t[j] = quat_rotate(q, vec3(1, 0, 0));
+        curve->c[j] = quat_rotate(q, vec3(0, k.z, -k.y));
+    }
+    mem_free(place);
+    mem_free(strain);
+}
+
+void rod_node_moments(const Rod *rod, const RodLayout *layout, const double *x, const double *p, Vec3 *moment)
+{
+    size_t stations = 2 * (size_t)rod->elements + 1;
+    Vec3 *work = mem_alloc(2 * stations + 3 * (size_t)rod->elements, sizeof *work), *m = work + stations;
+    rod_stations(rod, layout, x, p, work, m, m + stations);
+    for (int i = 0; i < layout->nodes; i++) moment[i] = quat_rotate(rod_reference(layout, x, i), m[2 * i]);
+    mem_free(work);
+}

@@ -1,0 +1,78 @@
+/* rod_fixture.h - a discrete rod that rests on a reference curve, for tests. */
+#pragma once
+#include "base/memory.h"
+#include "rod/rod.h"
+#include "solve/ramp.h"
+#include "tests/rod_reference.h"
+
+typedef struct Resting {
+    RodCurve curve;
+    RodFrame *frames; /* [stations] Bishop */
+    Rod *rod;
+    RodLayout layout; /* of the hanging form */
+    System *hanging;
+    double *p, *x; /* natural strains that make it rest in x */
+} Resting;
+
+static inline Resting resting_create(const ReferenceRod *r, double young, int elements)
+{
+    Resting o = {0};
+    Error err;
+    if (!rod_curve_create(r->point, (void *)r->omega, 0, r->range, elements, &o.curve, &err)) return o;
+    o.frames = mem_alloc(2 * (size_t)elements + 1, sizeof *o.frames);
+    rod_frenet(&o.curve, o.frames);
+    rod_bishop(&o.curve, o.frames[0].n1, o.frames);
+    o.rod = rod_create(elements, o.curve.length, reference_section(1), M_PI * reference_radius * reference_radius);
+    o.p = mem_alloc((size_t)o.rod->params.size, sizeof *o.p);
+    rod_default_params(o.rod, young, o.p);
+    o.p[o.rod->gravity + 2] = -reference_gravity;
+    o.layout = rod_layout(o.rod, false);
+    o.x = mem_alloc((size_t)o.layout.dofs, sizeof *o.x);
+    o.hanging = rod_hanging_system(o.rod);
+    rod_follow_curve(o.rod, &o.curve, o.frames, o.x);
+    rod_balance(o.rod, o.hanging, o.x, o.p);
+    return o;
+}
+
+static inline void resting_clear(Resting *o)
+{
+    system_destroy(o->hanging);
+    rod_destroy(o->rod);
+    rod_curve_clear(&o->curve);
+    mem_free(o->frames);
+    mem_free(o->p);
+    mem_free(o->x);
+}
+
+/* Largest distance of places[nodes][3] to the curve. */
+static inline double resting_distance(const Resting *o, const double *place)
+{
+    double worst = 0;
+    for (int i = 0; i <= o->rod->elements; i++)
+        worst = fmax(worst, vec3_length(vec3_sub(vec3_load(place + 3 * i), o->curve.x[2 * i])));
+    return worst;
+}
+
+static inline double resting_distance_of(const Resting *o, const double *x)
+{
+    double *place = mem_alloc(3 * (size_t)o->layout.nodes, sizeof *place);
+    rod_places(o->rod, &o->layout, x, o->layout.nodes, place);
+    double worst = resting_distance(o, place);
+    mem_free(place);
+    return worst;
+}
+
+static inline NewtonDef rod_newton(void)
+{
+    NewtonDef def = newton_default();
+    def.step_cap = 1.5;
+    return def;
+}
+
+static inline RampInfo rod_relax(const Rod *rod, System *sys, int steps, const double *p, double *x)
+{
+    RampDef def = ramp_default();
+    def.newton = rod_newton();
+    def.steps = steps;
+    return ramp_solve(sys, &rod->params, &def, NULL, p, 0, x);
+}

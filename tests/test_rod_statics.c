@@ -1,0 +1,250 @@
+/* Equilibria of discrete rods: the exact discrete inverse, convergence to the curve, the cantilevers of the paper's section
+ * 5.3, both forms against each other, point loads, magnetised rods, and rods held at both ends. */
+#include "base/random.h"
+#include "rod/stations.h"
+#include "tests/rod_fixture.h"
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+#include <cmocka.h>
+
+/* The conical one falls into another equilibrium unless its weight comes on in steps. */
+static const int ramp_steps[REFERENCE_COUNT] = {1, 10, 10};
+
+static void test_discrete_inverse(void **state)
+{
+    (void)state;
+    long blocks = mem_live_count();
+    for (int c = 0; c < REFERENCE_COUNT; c++) {
+        double young = c == REFERENCE_WAVE ? 27e6 : reference_rods[c].young;
+        Resting o = resting_create(&reference_rods[c], young, 200);
+        double *g = mem_alloc((size_t)o.layout.dofs, sizeof *g), *x = mem_alloc((size_t)o.layout.dofs, sizeof *x);
+        Evaluation left = system_gradient(o.hanging, &(Point){.x = o.x, .p = o.p}, g);
+        rod_natural_state(o.rod, &o.layout, o.p, x);
+        RampInfo info = rod_relax(o.rod, o.hanging, ramp_steps[c], o.p, x);
+        double off = resting_distance_of(&o, x);
+        print_message("%-8s residual %.1e of the forces, round trip %.1e m in %d iterations\n", reference_rods[c].name,
+                      left.gradient_max / left.force_scale, off, info.newton.iterations);
+        assert_int_equal(info.newton.status, NEWTON_CONVERGED);
+        assert_true(left.gradient_max <= 1e-13 * left.force_scale && off <= 1e-12);
+        mem_free(g);
+        mem_free(x);
+        resting_clear(&o);
+    }
+    assert_int_equal(mem_live_count(), blocks);
+}
+
+/* From the natural strains of the continuous rod, taken in the elements' middles: second order. */
+static double forward_error(int c, int elements)
+{
+    double young = c == REFERENCE_WAVE ? 27e6 : reference_rods[c].young;
+    Resting o = resting_create(&reference_rods[c], young, elements);
+    size_t stations = 2 * (size_t)elements + 1;
+    Vec3 *moment = mem_alloc(2 * stations, sizeof *moment), *strain = moment + stations;
+    RodSection section = reference_section(young);
+    rod_moments(&o.curve, reference_weight(section), moment);
+    rod_natural_strains(&o.curve, section, moment, o.frames, strain);
+    for (int e = 0; e < elements; e++) {
+        vec3_store(o.p + o.rod->natural_strain + 3 * e, strain[2 * e + 1]);
+        o.rod->bow[e] = vec3(0, 0, 0);
+    }
+    rod_natural_state(o.rod, &o.layout, o.p, o.x);
+    assert_int_equal(rod_relax(o.rod, o.hanging, ramp_steps[c], o.p, o.x).newton.status, NEWTON_CONVERGED);
+    double off = resting_distance_of(&o, o.x);
+    mem_free(moment);
+    resting_clear(&o);
+    return off;
+}
+
+/* The errors that docs/rods.md quotes for N = 200, measured with another program, are upper bounds. */
+static void test_forward(void **state)
+{
+    (void)state;
+    static const double known[] = {1.8e-5, 6.0e-5, 5.2e-5}; /* m; the wave's at N = 800 */
+    for (int c = 0; c < REFERENCE_COUNT; c++) {
+        int elements = c == REFERENCE_WAVE ? 800 : 200;
+        double coarse = forward_error(c, elements / 2), off = forward_error(c, elements), fine = forward_error(c, 2 * elements);
+        print_message("%-8s %.2e m off at %d elements; orders %.3f, %.3f\n", reference_rods[c].name, off, elements,
+                      log2(coarse / off), log2(off / fine));
+        assert_true(off <= known[c] && fabs(log2(coarse / off) - 2) < 0.1 && fabs(log2(off / fine) - 2) < 0.1);
+    }
+}
+
+/* A straight rod clamped horizontally falls; the shape that it takes, inverted, is straight again [the paper's section 5.3,
+ * which loses more than a hundredth of the length of the softest one]. */
+static void test_cantilevers(void **state)
+{
+    (void)state;
+    static const double young[] = {1e5, 3.1622776601683795e5, 1e6, 1e7, 1e9};
+    static const double tip_angle[] = {-90.000, -89.989, -89.121, -52.350, -0.726}; /* degrees */
+    enum { N = 200 };
+    for (int k = 0; k < 5; k++) {
+        double radius = 2.225e-3, off = 0;
+        RodSection section = rod_circle(radius, young[k], 0.5, reference_density);
+        Rod *rod = rod_create(N, 0.2, rod_circle(radius, 1, 0.5, reference_density), M_PI * radius * radius);
+        double *p = mem_alloc((size_t)rod->params.size, sizeof *p);
+        rod_default_params(rod, young[k], p);
+        p[rod->gravity + 2] = -reference_gravity;
+        RodLayout layout = rod_layout(rod, false);
+        System *sys = rod_hanging_system(rod);
+        double *x = mem_alloc((size_t)layout.dofs, sizeof *x);
+        rod_natural_state(rod, &layout, p, x);
+        RampInfo info = rod_relax(rod, sys, 1, p, x);
+        RodCurve curve;
+        Vec3 moment[2 * N + 1], natural[N + 1];
+        rod_curve_of(rod, &layout, x, &curve);
+        rod_moments(&curve, reference_weight(section), moment);
+        rod_invert(&curve, section, moment, NULL, natural);
+        for (int i = 0; i <= N; i++) off = fmax(off, fabs(natural[i].z));
+        double angle = atan2(curve.t[2 * N].z, curve.t[2 * N].x) * 180 / M_PI;
+        print_message("E = %8.3g Pa: tip at %.3f degrees, %d iterations; inverted: max |z| = %.1e L\n", young[k], angle,
+                      info.newton.iterations, off / 0.2);
+        assert_int_equal(info.newton.status, NEWTON_CONVERGED);
+        assert_true(off <= 1e-4 * 0.2 && fabs(angle - tip_angle[k]) < 2e-3);
+        system_destroy(sys);
+        rod_destroy(rod);
+        rod_curve_clear(&curve);
+        mem_free(p);
+        mem_free(x);
+    }
+}
+
+/* The form with positions and multipliers finds the same equilibrium; its multipliers are what hangs below. */
+static void test_both_forms(void **state)
+{
+    (void)state;
+    for (int c = 0; c < 2; c++) {
+        Resting o = resting_create(&reference_rods[c], reference_rods[c].young, 100);
+        Rod *rod = o.rod;
+        RodLayout layout = rod_layout(rod, true);
+        System *sys = rod_system(rod, reference_rods[c].young, false);
+        double *x = mem_alloc((size_t)layout.dofs, sizeof *x), off = 0;
+        rod_natural_state(rod, &layout, o.p, x);
+        RampInfo info = rod_relax(rod, sys, ramp_steps[c], o.p, x);
+        for (int e = 0; e < rod->elements; e++) {
+            double weight = rod->unit.mass * rod_element_length(rod) * (rod->elements - e - 0.5) * reference_gravity;
+            off = fmax(off, fabs(x[layout.multiplier + 3 * e + 2] + weight));
+        }
+        print_message("%-8s with positions %.1e m off, multipliers %.1e N\n", reference_rods[c].name, resting_distance(&o, x), off);
+        assert_int_equal(info.newton.status, NEWTON_CONVERGED);
+        assert_true(resting_distance(&o, x) < 1e-12 && off < 1e-12);
+        system_destroy(sys);
+        mem_free(x);
+        resting_clear(&o);
+    }
+}
+
+/* A straight rod along x without weight. */
+static Rod *plain_rod(int elements, double length, double young, double **params)
+{
+    Rod *rod = rod_create(elements, length, rod_circle(1e-3, 1, 0.4, 1000), M_PI * 1e-6);
+    *params = mem_alloc((size_t)rod->params.size, sizeof **params);
+    rod_default_params(rod, young, *params);
+    return rod;
+}
+
+/* Moments at the clamp are those of statics, for a force at the end and a field along and across the tangent. */
+static void test_moments(void **state)
+{
+    (void)state;
+    enum { N = 400 };
+    double *p;
+    Rod *rod = plain_rod(N, 0.1, 1e6, &p);
+    Vec3 force = vec3(2e-4, 3e-4, -5e-4), M = vec3(3e4, -1e4, 2e4), B = vec3(0.01, -0.02, 0.03);
+    for (int e = 0; e < N; e++) vec3_store(p + rod->magnetization + 3 * e, M);
+    vec3_store(p + rod->flux_density, B);
+    vec3_store(p + rod->load + 3 * N, force);
+    rod_sum_loads(rod, p);
+    RodLayout layout = rod_layout(rod, false);
+    System *sys = rod_hanging_system(rod);
+    double *x = mem_alloc((size_t)layout.dofs, sizeof *x), *place = mem_alloc(3 * (N + 1), sizeof *place);
+    rod_natural_state(rod, &layout, p, x);
+    assert_int_equal(rod_relax(rod, sys, 1, p, x).newton.status, NEWTON_CONVERGED);
+    rod_places(rod, &layout, x, N + 1, place);
+    Vec3 couple = vec3(0, 0, 0), moment[N + 1];
+    for (int e = 0; e < N; e++)
+        for (int k = 0; k < 2; k++)
+            couple = vec3_axpy(rod->area * rod_element_length(rod) / 2,
+                               vec3_cross(quat_rotate(rod_reference(&layout, x, e + k), M), B), couple);
+    Vec3 expected = vec3_add(couple, vec3_cross(vec3_load(place + 3 * N), force));
+    rod_node_moments(rod, &layout, x, p, moment);
+    double off = vec3_length(vec3_sub(moment[0], expected));
+    print_message("moment at the clamp: %.1e of it off\n", off / vec3_length(expected));
+    assert_true(off < 3e-4 * vec3_length(expected));
+    system_destroy(sys);
+    rod_destroy(rod);
+    mem_free(p);
+    mem_free(x);
+    mem_free(place);
+}
+
+typedef struct Ends {
+    RodLayout layout;
+    double shortening;
+} Ends;
+
+static bool push_end(void *self, double part, double *x)
+{
+    const Ends *ends = self;
+    double *place = x + 3 * (ends->layout.nodes - 1);
+    place[0] += part * (1 - ends->shortening - place[0]);
+    for (int i = 1; i < 3; i++) place[i] -= part * place[i];
+    return true;
+}
+
+/* Euler's elastica between hinges, pushed together by d = 2 (1 - E(k)/K(k)) of its length: P L^2/EI = 4 K(k)^2 and the
+ * deflection k/K(k); k = sin 30 degrees. */
+static double elastica_force(int elements, double *deflection, NewtonStatus *status)
+{
+    const double K = 1.6857503548125961, E = 1.4674622093394272;
+    double *p, young = 1e6;
+    Rod *rod = plain_rod(elements, 1, young, &p);
+    rod->start = rod->end = ROD_PINNED;
+    Ends ends = {rod_layout(rod, true), 2 * (1 - E / K)};
+    System *sys = rod_system(rod, young, false);
+    double *x = mem_alloc((size_t)ends.layout.dofs, sizeof *x);
+    /* A straight rod cannot be pushed along itself: it starts as an arc. */
+    for (int e = 0; e < elements; e++) p[rod->natural_strain + 3 * e + 1] = 0.5;
+    rod_natural_state(rod, &ends.layout, p, x);
+    for (int e = 0; e < elements; e++) p[rod->natural_strain + 3 * e + 1] = 0;
+    RampDef def = ramp_default();
+    def.newton = rod_newton();
+    def.steps = 10, def.move = push_end, def.self = &ends;
+    *status = ramp_solve(sys, &rod->params, &def, NULL, p, 0, x).newton.status;
+    *deflection = 0;
+    for (int i = 0; i <= elements; i++) *deflection = fmax(*deflection, hypot(x[3 * i + 1], x[3 * i + 2]));
+    double force = fabs(x[ends.layout.multiplier]) / (young * rod->unit.bend1);
+    system_destroy(sys);
+    rod_destroy(rod);
+    mem_free(p);
+    mem_free(x);
+    return force;
+}
+
+static void test_held_ends(void **state)
+{
+    (void)state;
+    const double K = 1.6857503548125961;
+    double deflection, off[2];
+    for (int k = 0; k < 2; k++) {
+        NewtonStatus status;
+        double force = elastica_force(k ? 100 : 50, &deflection, &status);
+        off[k] = fabs(force / (4 * K * K) - 1);
+        print_message("elastica between hinges, %d elements: %s, force %.1e off, deflection %.1e L off\n", k ? 100 : 50,
+                      newton_status_name(status), off[k], fabs(deflection - 0.5 / K));
+        assert_true(status == NEWTON_CONVERGED || status == NEWTON_NEUTRAL);
+        assert_true(off[k] < (k ? 5e-4 : 2e-3) && fabs(deflection - 0.5 / K) < (k ? 2e-4 : 8e-4));
+    }
+    assert_true(fabs(log2(off[0] / off[1]) - 2) < 0.2);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_discrete_inverse), cmocka_unit_test(test_forward),    cmocka_unit_test(test_cantilevers),
+        cmocka_unit_test(test_both_forms),       cmocka_unit_test(test_moments),    cmocka_unit_test(test_held_ends),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
