@@ -52,18 +52,17 @@ static inline Vec3 quat_rotate(Quat q, Vec3 x)
     return vec3_add(x, vec3_axpy(q.w, twice, vec3_cross(q.v, twice)));
 }
 
-/* The rotation whose columns are these three orthonormal vectors. */
-static inline Quat quat_from_axes(Vec3 a, Vec3 b, Vec3 c)
+static inline double quat_dot(Quat a, Quat b)
 {
-    double trace = a.x + b.y + c.z;
-    Quat q;
-    if (trace > 0)
-        q = (Quat){1 + trace, {b.z - c.y, c.x - a.z, a.y - b.x}};
-    else if (a.x >= b.y && a.x >= c.z)
-        q = (Quat){b.z - c.y, {1 + a.x - b.y - c.z, b.x + a.y, c.x + a.z}};
-    else if (b.y >= c.z)
-        q = (Quat){c.x - a.z, {b.x + a.y, 1 + b.y - a.x - c.z, c.y + b.z}};
-    else
-        q = (Quat){a.y - b.x, {c.x + a.z, c.y + b.z, 1 + c.z - a.x - b.y}};
-    return quat_unit(q);
+    return a.w * b.w + vec3_dot(a.v, b.v);
+}
+
+/* The rotation that takes the axes to x, y, z (orthonormal, right-handed); the largest component first. */
+static inline Quat quat_from_axes(Vec3 x, Vec3 y, Vec3 z)
+{
+    double w = 1 + x.x + y.y + z.z, i = 1 + x.x - y.y - z.z, j = 1 - x.x + y.y - z.z, k = 1 - x.x - y.y + z.z;
+    if (w >= i && w >= j && w >= k) return quat_unit((Quat){w, {y.z - z.y, z.x - x.z, x.y - y.x}});
+    if (i >= j && i >= k) return quat_unit((Quat){y.z - z.y, {i, x.y + y.x, z.x + x.z}});
+    if (j >= k) return quat_unit((Quat){z.x - x.z, {x.y + y.x, j, y.z + z.y}});
+    return quat_unit((Quat){x.y - y.x, {z.x + x.z, y.z + z.y, k}});
 }

@@ -1,0 +1,269 @@
+#include "rod/pbd.h"
+#include "base/memory.h"
+#include "base/quat.h"
+
+struct PbdRod {
+    int elements, substeps, sweeps;
+    bool free_start;
+    double h, drag;
+    Vec3 gravity, *force;           /* force [nodes] */
+    double mass, *inverse_mass;     /* of an element; [nodes] 0: held                               */
+    double inverse_inertia;         /* of an element                                                */
+    double stretch_compliance;      /* of an element's chord in parts of h, 1/J                     */
+    Vec3 turn_compliance;           /* of half the angle between two elements (twist, 1, 2), 1/J    */
+    Vec3 *chord;                    /* [elements] natural chord over h, in the element's frame      */
+    Quat clamp, *turn;              /* [elements] natural rotation from the element before, or from
+                                       the clamp, in the frame of either                            */
+    Vec3 *x, *x_before, *v;         /* [nodes]                                                      */
+    Quat *q, *q_before;             /* [elements] frames                                            */
+    Vec3 *spin;                     /* [elements] rate of turning in its frame, 1/s                 */
+    Vec3 *stretch_load, *turn_load; /* [elements] the constraints' multipliers, J                   */
+    bool backwards;                 /* the first sweep of the next substep                          */
+};
+
+/* Chord over h of an element with constant strain, in the frame of its middle. */
+static Vec3 natural_chord(Vec3 strain, double h)
+{
+    double half2 = vec3_dot(strain, strain) * h * h / 4, half = sqrt(half2);
+    double lost_of_half2 = half2 < 1e-4 ? (1 - half2 / 20) / 6 : (1 - sin(half) / half) / half2;
+    double sinc = 1 - half2 * lost_of_half2;
+    return vec3_axpy(lost_of_half2 * h * h / 4 * strain.x, strain, vec3(sinc, 0, 0));
+}
+
+/* Rotation from the middle of the element before (the clamp, for the first) to that of the element. */
+static Quat rotation_to(const Vec3 *strain, int e, double h)
+{
+    Quat half = quat_exp(vec3_scale(h / 2, strain[e]));
+    return e == 0 ? half : quat_mul(quat_exp(vec3_scale(h / 2, strain[e - 1])), half);
+}
+
+static void allocate(PbdRod *rod)
+{
+    size_t elements = (size_t)rod->elements, nodes = elements + 1;
+    rod->force = mem_alloc(nodes, sizeof *rod->force);
+    rod->inverse_mass = mem_alloc(nodes, sizeof *rod->inverse_mass);
+    rod->chord = mem_alloc(elements, sizeof *rod->chord);
+    rod->turn = mem_alloc(elements, sizeof *rod->turn);
+    rod->x = mem_alloc(nodes, sizeof *rod->x);
+    rod->x_before = mem_alloc(nodes, sizeof *rod->x_before);
+    rod->v = mem_alloc(nodes, sizeof *rod->v);
+    rod->q = mem_alloc(elements, sizeof *rod->q);
+    rod->q_before = mem_alloc(elements, sizeof *rod->q_before);
+    rod->spin = mem_alloc(elements, sizeof *rod->spin);
+    rod->stretch_load = mem_alloc(elements, sizeof *rod->stretch_load);
+    rod->turn_load = mem_alloc(elements, sizeof *rod->turn_load);
+}
+
+void pbd_rod_destroy(PbdRod *rod)
+{
+    void *blocks[] = {rod->force,
+                      rod->inverse_mass,
+                      rod->chord,
+                      rod->turn,
+                      rod->x,
+                      rod->x_before,
+                      rod->v,
+                      rod->q,
+                      rod->q_before,
+                      rod->spin,
+                      rod->stretch_load,
+                      rod->turn_load,
+                      rod};
+    for (size_t k = 0; k < sizeof blocks / sizeof *blocks; k++) mem_free(blocks[k]);
+}
+
+static void fill_nodes(PbdRod *rod, const PbdRodDef *def)
+{
+    int last = rod->elements;
+    for (int i = 0; i <= last; i++) {
+        bool held = (i == 0 && !def->free_start) || (i == last && def->hold_end);
+        rod->inverse_mass[i] = held ? 0 : (i == 0 || i == last ? 2 : 1) / rod->mass;
+        if (def->force) rod->force[i] = def->force[i];
+    }
+}
+
+static void fill_elements(PbdRod *rod, const PbdRodDef *def)
+{
+    const Vec3 *start = def->start_strain ? def->start_strain : def->natural_strain;
+    double h = rod->h;
+    rod->x[0] = def->position;
+    for (int e = 0; e < rod->elements; e++) {
+        rod->turn[e] = rotation_to(def->natural_strain, e, h);
+        rod->chord[e] = natural_chord(def->natural_strain[e], h);
+        rod->q[e] = quat_mul(e == 0 ? rod->clamp : rod->q[e - 1], rotation_to(start, e, h));
+        rod->x[e + 1] = vec3_axpy(h, quat_rotate(rod->q[e], rod->chord[e]), rod->x[e]);
+    }
+}
+
+PbdRod *pbd_rod_create(const PbdRodDef *def)
+{
+    const double reach = 2; /* see the header; in parts of h */
+    PbdRod *rod = mem_alloc(1, sizeof *rod);
+    int n = def->elements;
+    double h = def->length / n, m = def->section.mass * h;
+    *rod = (PbdRod){.elements = n,
+                    .substeps = def->substeps,
+                    .sweeps = def->sweeps,
+                    .free_start = def->free_start,
+                    .h = h,
+                    .drag = def->drag,
+                    .gravity = def->gravity,
+                    .mass = m,
+                    .inverse_inertia = 1 / (reach * reach * m * h * h),
+                    .stretch_compliance = 1 / (def->stretch * h),
+                    .turn_compliance = vec3(h / (4 * def->section.twist), h / (4 * def->section.bend1),
+                                            h / (4 * def->section.bend2)),
+                    .clamp = quat_from_axes(def->clamp.n0, def->clamp.n1, def->clamp.n2)};
+    allocate(rod);
+    fill_nodes(rod, def);
+    fill_elements(rod, def);
+    return rod;
+}
+
+/* By the small angle in its own frame. */
+static Quat turned(Quat q, Vec3 angle)
+{
+    double e = vec3_dot(angle, angle) / 4, f = e < 1e-5 ? 1 - e * (0.5 - e * 0.375) : 1 / sqrt(1 + e);
+    return quat_mul(q, (Quat){f, vec3_scale(f / 2, angle)});
+}
+
+/* Of an element: over h, in its frame. */
+static Vec3 chord_of(const PbdRod *rod, int e)
+{
+    Vec3 chord = vec3_scale(1 / rod->h, vec3_sub(rod->x[e + 1], rod->x[e]));
+    return quat_rotate(quat_conj(rod->q[e]), chord);
+}
+
+/* The rotation to an element from the one before, of the two quaternions that mean it the one near the
+ * natural rotation: all four components decide, or a rod bent beyond straight takes its mirror image for its
+ * natural shape. */
+static Quat turn_to(const PbdRod *rod, int e)
+{
+    Quat p = quat_mul(quat_conj(e == 0 ? rod->clamp : rod->q[e - 1]), rod->q[e]);
+    return quat_dot(p, rod->turn[e]) < 0 ? (Quat){-p.w, vec3_scale(-1, p.v)} : p;
+}
+
+/* The forces act on the true chord, not on the frame's tangent: with the torque they are in balance, and the
+ * step along the chord is not held back by the inertia against turning. */
+static void solve_stretch(PbdRod *rod, int e, double dt2)
+{
+    Vec3 y = chord_of(rod, e), *load = &rod->stretch_load[e];
+    Vec3 r = vec3_axpy(-rod->stretch_compliance, *load, vec3_sub(rod->chord[e], y));
+    double w0 = dt2 / rod->h * rod->inverse_mass[e], w1 = dt2 / rod->h * rod->inverse_mass[e + 1];
+    double a = (w0 + w1) / rod->h + rod->stretch_compliance, b = dt2 * rod->inverse_inertia;
+    double inverse = 1 / (a * (a + b * vec3_dot(y, y)));
+    /* (a + b |y|^2 - b y y^T)^-1 r */
+    Vec3 step = vec3_axpy(inverse * b * vec3_dot(y, r), y, vec3_scale(inverse * a, r));
+    Vec3 push = quat_rotate(rod->q[e], step);
+    *load = vec3_add(*load, step);
+    rod->x[e] = vec3_axpy(-w0, push, rod->x[e]);
+    rod->x[e + 1] = vec3_axpy(w1, push, rod->x[e + 1]);
+    rod->q[e] = turned(rod->q[e], vec3_scale(b, vec3_cross(step, y)));
+}
+
+static void solve_turn(PbdRod *rod, int e, double dt2)
+{
+    bool clamped = e == 0;
+    double part = clamped ? 0.5 : 1, b = dt2 * rod->inverse_inertia, a = clamped ? b / 4 : b / 2;
+    Quat p = turn_to(rod, e);
+    Vec3 C = vec3_sub(p.v, rod->turn[e].v), *load = &rod->turn_load[e];
+    Vec3 c = vec3_scale(part, rod->turn_compliance);
+    Vec3 step = vec3(-(C.x + c.x * load->x) / (a + c.x), -(C.y + c.y * load->y) / (a + c.y),
+                     -(C.z + c.z * load->z) / (a + c.z));
+    *load = vec3_add(*load, step);
+    Vec3 along = vec3_scale(p.w * b / 2, step), across = vec3_scale(b / 2, vec3_cross(p.v, step));
+    rod->q[e] = turned(rod->q[e], vec3_sub(along, across));
+    if (!clamped) rod->q[e - 1] = turned(rod->q[e - 1], vec3_scale(-1, vec3_add(along, across)));
+}
+
+static void sweep(PbdRod *rod, bool backwards, double dt2)
+{
+    int last = rod->elements - 1, first = rod->free_start ? 1 : 0;
+    for (int k = 0; k <= last; k++) {
+        int e = backwards ? last - k : k;
+        if (backwards) solve_stretch(rod, e, dt2);
+        if (e >= first) solve_turn(rod, e, dt2);
+        if (!backwards) solve_stretch(rod, e, dt2);
+    }
+}
+
+static void substep(PbdRod *rod, double dt)
+{
+    double slowed = 1 / (1 + rod->drag * dt);
+    for (int i = 0; i <= rod->elements; i++) {
+        rod->x_before[i] = rod->x[i];
+        if (rod->inverse_mass[i] == 0) continue;
+        Vec3 rate = vec3_axpy(rod->inverse_mass[i], rod->force[i], rod->gravity);
+        rod->x[i] = vec3_axpy(dt * slowed, vec3_axpy(dt, rate, rod->v[i]), rod->x[i]);
+    }
+    for (int e = 0; e < rod->elements; e++) {
+        rod->q_before[e] = rod->q[e];
+        rod->q[e] = quat_unit(quat_mul(rod->q[e], quat_exp(vec3_scale(dt * slowed, rod->spin[e]))));
+        rod->stretch_load[e] = rod->turn_load[e] = vec3(0, 0, 0);
+    }
+    for (int k = 0; k < rod->sweeps; k++) sweep(rod, (k % 2 == 1) != rod->backwards, dt * dt * slowed);
+    rod->backwards = !rod->backwards;
+    for (int i = 0; i <= rod->elements; i++)
+        rod->v[i] = vec3_scale(1 / dt, vec3_sub(rod->x[i], rod->x_before[i]));
+    for (int e = 0; e < rod->elements; e++) {
+        Quat step = quat_mul(quat_conj(rod->q_before[e]), rod->q[e]);
+        rod->spin[e] = vec3_scale((step.w < 0 ? -2 : 2) / dt, step.v);
+    }
+}
+
+void pbd_rod_step(PbdRod *rod, double dt)
+{
+    for (int k = 0; k < rod->substeps; k++) substep(rod, dt / rod->substeps);
+}
+
+void pbd_rod_move_end(PbdRod *rod, Vec3 place)
+{
+    rod->x[rod->elements] = place;
+}
+
+const Vec3 *pbd_rod_positions(const PbdRod *rod)
+{
+    return rod->x;
+}
+
+const Vec3 *pbd_rod_velocities(const PbdRod *rod)
+{
+    return rod->v;
+}
+
+void pbd_rod_frames(const PbdRod *rod, RodFrame *frames)
+{
+    for (int e = 0; e < rod->elements; e++)
+        frames[e] = (RodFrame){quat_rotate(rod->q[e], vec3(1, 0, 0)), quat_rotate(rod->q[e], vec3(0, 1, 0)),
+                               quat_rotate(rod->q[e], vec3(0, 0, 1))};
+}
+
+static double elastic_energy(const PbdRod *rod, int e)
+{
+    Vec3 chord = vec3_sub(chord_of(rod, e), rod->chord[e]);
+    double energy = vec3_dot(chord, chord) / (2 * rod->stretch_compliance);
+    if (e == 0 && rod->free_start) return energy;
+    Vec3 turn = vec3_sub(turn_to(rod, e).v, rod->turn[e].v),
+         c = vec3_scale(e == 0 ? 1 : 2, rod->turn_compliance);
+    return energy + turn.x * turn.x / c.x + turn.y * turn.y / c.y + turn.z * turn.z / c.z;
+}
+
+PbdRodSums pbd_rod_sums(const PbdRod *rod)
+{
+    PbdRodSums sums = {0};
+    int last = rod->elements;
+    for (int i = 0; i <= last; i++) {
+        double m = i == 0 || i == last ? rod->mass / 2 : rod->mass;
+        Vec3 momentum = vec3_scale(m, rod->v[i]);
+        sums.kinetic += vec3_dot(momentum, rod->v[i]) / 2;
+        sums.potential -= vec3_dot(vec3_axpy(m, rod->gravity, rod->force[i]), rod->x[i]);
+        sums.momentum = vec3_add(sums.momentum, momentum);
+        sums.spin = vec3_add(sums.spin, vec3_cross(rod->x[i], momentum));
+    }
+    for (int e = 0; e < last; e++) {
+        sums.kinetic += vec3_dot(rod->spin[e], rod->spin[e]) / (2 * rod->inverse_inertia);
+        sums.spin = vec3_axpy(1 / rod->inverse_inertia, quat_rotate(rod->q[e], rod->spin[e]), sums.spin);
+        sums.elastic += elastic_energy(rod, e);
+    }
+    return sums;
+}
