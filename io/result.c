@@ -1,30 +1,17 @@
 #include "io/result.h"
 #include "base/memory.h"
 #include "io/hdf5_file.h"
+#include "io/result_vtk.h"
 #include "io/safe_file.h"
 #include "io/xdmf.h"
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-enum { VTK_TRIANGLE = 5 };
-
-/* What is being written. */
-typedef struct Writer {
-    Journal *journal;
-    Hdf5 *file;
-    ResultDef def;
-    int vertex_count, face_count, frame_count;
-    int *frames; /* indices of the journal */
-    double *times;
-    char **fields; /* names of the first frame: those that the file has */
-    int field_count;
-} Writer;
-
 /* ---- /slender ---- */
 
 /* Every array of a kind at its own name; final/status is an attribute instead. */
-static bool put_kind(Writer *w, const char *kind, Error *err)
+static bool put_kind(VtkFrames *w, const char *kind, Error *err)
 {
     char **names, path[512];
     int count;
@@ -42,7 +29,7 @@ static bool put_kind(Writer *w, const char *kind, Error *err)
     return ok;
 }
 
-static bool put_status(Writer *w, Error *err)
+static bool put_status(VtkFrames *w, Error *err)
 {
     Array status = {0};
     if (!journal_has(w->journal, "final", 0, "status"))
@@ -54,7 +41,7 @@ static bool put_status(Writer *w, Error *err)
 }
 
 /* history/<name> from the scalar of that name in all evaluations. */
-static bool put_history(Writer *w, const char *name, const int *indices, int count, const char *unit,
+static bool put_history(VtkFrames *w, const char *name, const int *indices, int count, const char *unit,
                         Error *err)
 {
     char path[512];
@@ -75,7 +62,7 @@ static bool put_history(Writer *w, const char *name, const int *indices, int cou
     return ok;
 }
 
-static bool put_histories(Writer *w, Error *err)
+static bool put_histories(VtkFrames *w, Error *err)
 {
     int *indices, count, name_count = 0;
     char **names = NULL;
@@ -94,177 +81,38 @@ static bool put_histories(Writer *w, Error *err)
     return ok;
 }
 
-/* ---- /VTKHDF ---- */
-
-static bool put_ints(Writer *w, const char *path, const int *values, int rank, int d0, int d1,
-                     Hdf5Layout layout, Error *err)
-{
-    Array array = array_int(path, values, rank, d0, d1);
-    return hdf5_write(w->file, path, &array, layout, err);
-}
-
-/* The triangles, stored once: connectivity, offsets and types. */
-static bool put_cells(Writer *w, const int *faces, Error *err)
-{
-    int n = w->face_count, cells = 3 * n;
-    int *offsets = mem_alloc((size_t)n + 1, sizeof *offsets), *types = mem_alloc((size_t)n, sizeof *types);
-    for (int f = 0; f <= n; f++) offsets[f] = 3 * f;
-    for (int f = 0; f < n; f++) types[f] = VTK_TRIANGLE;
-    Hdf5Layout wide = {.wide = true}, bytes = {.bytes = true};
-    bool ok = put_ints(w, "VTKHDF/Connectivity", faces, 1, cells, 0, wide, err) &&
-              put_ints(w, "VTKHDF/Offsets", offsets, 1, n + 1, 0, wide, err) &&
-              put_ints(w, "VTKHDF/Types", types, 1, n, 0, bytes, err) &&
-              put_ints(w, "VTKHDF/NumberOfPoints", &w->vertex_count, 1, 1, 0, wide, err) &&
-              put_ints(w, "VTKHDF/NumberOfCells", &n, 1, 1, 0, wide, err) &&
-              put_ints(w, "VTKHDF/NumberOfConnectivityIds", &cells, 1, 1, 0, wide, err);
-    mem_free(offsets);
-    mem_free(types);
-    return ok;
-}
-
-/* Where in the long arrays each step begins. */
-static bool put_steps(Writer *w, Error *err)
-{
-    int steps = w->frame_count, *zeros = mem_alloc((size_t)steps, sizeof *zeros),
-        *ones = mem_alloc((size_t)steps, sizeof *ones);
-    int *points = mem_alloc((size_t)steps, sizeof *points);
-    for (int k = 0; k < steps; k++) ones[k] = 1, points[k] = k * w->vertex_count;
-    Hdf5Layout wide = {.wide = true};
-    Array times = array_float("VTKHDF/Steps/Values", "s", w->times, 1, steps, 0);
-    bool ok = hdf5_attribute_ints(w->file, "VTKHDF/Steps", "NSteps", &steps, 1, err) &&
-              hdf5_write(w->file, "VTKHDF/Steps/Values", &times, (Hdf5Layout){0}, err) &&
-              put_ints(w, "VTKHDF/Steps/PartOffsets", zeros, 1, steps, 0, wide, err) &&
-              put_ints(w, "VTKHDF/Steps/NumberOfParts", ones, 1, steps, 0, wide, err) &&
-              put_ints(w, "VTKHDF/Steps/PointOffsets", points, 1, steps, 0, wide, err) &&
-              put_ints(w, "VTKHDF/Steps/CellOffsets", zeros, 2, steps, 1, wide, err) &&
-              put_ints(w, "VTKHDF/Steps/ConnectivityIdOffsets", zeros, 2, steps, 1, wide, err);
-    mem_free(zeros);
-    mem_free(ones);
-    mem_free(points);
-    return ok;
-}
-
-/* One array of the frames: a chunk per frame that has it, and for every step the offset of the chunk that
- * holds. */
-static bool put_frames_array(Writer *w, const char *name, const char *path, const char *offsets_path,
-                             bool stacked, Error *err)
-{
-    Hdf5Rows *rows = NULL;
-    int *offsets = mem_alloc((size_t)w->frame_count, sizeof *offsets), stored = 0, chunk = 0, width = 0;
-    bool ok = true;
-    for (int k = 0; ok && k < w->frame_count; k++) {
-        Array array = {0};
-        if (k == 0 || journal_has(w->journal, "frame", w->frames[k], name)) {
-            ok = journal_get(w->journal, "frame", w->frames[k], name, &array, err);
-            if (ok && !rows) {
-                chunk = array.dims[0], width = array.rank > 1 ? array.dims[1] : 0;
-                rows = hdf5_rows_create(w->file, path, array.unit, chunk, width, stacked,
-                                        !w->def.double_frames, err);
-            }
-            bool fits = array.type == ARRAY_FLOAT64 && array.dims[0] == chunk &&
-                        (array.rank > 1 ? array.dims[1] : 0) == width;
-            if (ok && !fits) ok = error_set(err, "the frames' %s change their shape", name);
-            ok = ok && rows && hdf5_rows_append(rows, array.data, err);
-            stored++;
-            array_clear(&array);
-        }
-        offsets[k] = (stored - 1) * chunk;
-    }
-    ok = hdf5_rows_close(rows, ok ? err : NULL) && ok;
-    if (ok && offsets_path)
-        ok = put_ints(w, offsets_path, offsets, 1, w->frame_count, 0, (Hdf5Layout){.wide = true}, err);
-    mem_free(offsets);
-    return ok;
-}
-
-static bool put_fields(Writer *w, Error *err)
-{
-    static const struct {
-        const char *prefix, *data, *offsets;
-    } kinds[] = {{"cell/", "CellData", "CellDataOffsets"}, {"point/", "PointData", "PointDataOffsets"}};
-    char path[512], offsets[512];
-    bool ok = true;
-    for (int k = 0; ok && k < w->field_count; k++)
-        for (int d = 0; ok && d < 2; d++) {
-            size_t length = strlen(kinds[d].prefix);
-            if (strncmp(w->fields[k], kinds[d].prefix, length)) continue;
-            const char *name = w->fields[k] + length;
-            snprintf(path, sizeof path, "VTKHDF/%s/%.400s", kinds[d].data, name);
-            snprintf(offsets, sizeof offsets, "VTKHDF/Steps/%s/%.400s", kinds[d].offsets, name);
-            ok = put_frames_array(w, w->fields[k], path, offsets, false, err);
-        }
-    return ok;
-}
-
-static bool put_vtk(Writer *w, Error *err)
-{
-    Array faces;
-    int version[2] = {2, 0};
-    if (!journal_get(w->journal, "static", 0, "faces", &faces, err)) return false;
-    w->face_count = faces.dims[0];
-    bool ok = hdf5_attribute_ints(w->file, "VTKHDF", "Version", version, 2, err) &&
-              hdf5_attribute_text(w->file, "VTKHDF", "Type", "UnstructuredGrid", err) &&
-              put_cells(w, faces.data, err) && put_steps(w, err) &&
-              put_frames_array(w, "x", "VTKHDF/Points", NULL, false, err) && put_fields(w, err);
-    array_clear(&faces);
-    return ok;
-}
-
 /* ---- The whole file ---- */
 
-static bool read_times(Writer *w, Error *err)
-{
-    w->times = mem_alloc((size_t)w->frame_count, sizeof *w->times);
-    for (int k = 0; k < w->frame_count; k++) {
-        Array time;
-        if (!journal_get(w->journal, "frame", w->frames[k], "time", &time, err)) return false;
-        if (time.type == ARRAY_FLOAT64 && time.rank == 0) w->times[k] = *(const double *)time.data;
-        array_clear(&time);
-    }
-    return journal_names(w->journal, "frame", w->frames[0], &w->fields, &w->field_count, err);
-}
-
 /* The last frame's x, until there is a final one. */
-static bool put_last_x(Writer *w, Error *err)
+static bool put_last_x(VtkFrames *w, Error *err)
 {
     Array x;
     if (journal_has(w->journal, "final", 0, "state/x")) return true;
-    if (!journal_get(w->journal, "frame", w->frames[w->frame_count - 1], "x", &x, err)) return false;
+    if (!journal_get(w->journal, "frame", w->frames[w->count - 1], "x", &x, err)) return false;
     bool ok = hdf5_write(w->file, "slender/state/x", &x, (Hdf5Layout){0}, err);
     array_clear(&x);
     return ok;
 }
 
-static bool fill(Writer *w, Error *err)
+static bool fill(VtkFrames *w, Error *err)
 {
-    Array x;
     if (!put_kind(w, "meta", err) || !put_kind(w, "static", err) || !put_kind(w, "final", err) ||
         !put_status(w, err) || !put_histories(w, err))
         return false;
-    if (w->frame_count == 0 || !journal_has(w->journal, "static", 0, "faces")) return true;
-    if (!journal_get(w->journal, "frame", w->frames[0], "x", &x, err)) return false;
-    w->vertex_count = x.dims[0];
-    array_clear(&x);
-    if (!read_times(w, err) || !put_last_x(w, err) || !put_vtk(w, err)) return false;
+    if (w->count == 0 || !vtk_frames_exist(w->journal)) return true;
+    if (!vtk_frames_read(w, err) || !put_last_x(w, err) || !vtk_frames_write(w, err)) return false;
     for (int k = 0; k < w->field_count; k++)
         if (!strcmp(w->fields[k], "flux_density") &&
-            !put_frames_array(w, "flux_density", "slender/frames/flux_density", NULL, false, err))
+            !vtk_frames_put(w, "flux_density", "slender/frames/flux_density", NULL, false, err))
             return false;
-    return !w->def.double_frames || put_frames_array(w, "x", "slender/frames/x", NULL, true, err);
+    return w->single || vtk_frames_put(w, "x", "slender/frames/x", NULL, true, err);
 }
 
-static bool write_sidecar(const Writer *w, const char *path, Error *err)
+static bool write_sidecar(const VtkFrames *w, const char *path, Error *err)
 {
     if (w->vertex_count == 0) return true;
     size_t length = strlen(path), cut = length > 7 && !strcmp(path + length - 7, ".vtkhdf") ? 7 : 0;
-    char *sidecar = mem_format("%.*s.xdmf", (int)(length - cut), path);
-    XdmfDef def = {.result = path,
-                   .vertex_count = w->vertex_count,
-                   .face_count = w->face_count,
-                   .step_count = w->frame_count,
-                   .times = w->times,
-                   .double_points = w->def.double_frames};
-    char *text = xdmf_text(&def, w->fields, w->field_count, w->journal, w->frames);
+    char *sidecar = mem_format("%.*s.xdmf", (int)(length - cut), path), *text = xdmf_text(path, w);
     bool ok = safe_file_write(sidecar, text, strlen(text), false, err);
     mem_free(text);
     mem_free(sidecar);
@@ -273,18 +121,17 @@ static bool write_sidecar(const Writer *w, const char *path, Error *err)
 
 bool result_write(Journal *journal, const char *path, ResultDef def, Error *err)
 {
-    Writer w = {.journal = journal, .def = def, .file = hdf5_create()};
+    VtkFrames w = {.journal = journal, .single = !def.double_frames, .file = hdf5_create()};
     void *bytes = NULL;
     size_t size;
     bool ok = w.file != NULL || error_set(err, "HDF5 cannot make a file");
-    ok = ok && journal_indices(journal, "frame", &w.frames, &w.frame_count, err) && fill(&w, err) &&
+    ok = ok && journal_indices(journal, "frame", &w.frames, &w.count, err) && fill(&w, err) &&
          hdf5_image(w.file, &bytes, &size, err);
     hdf5_close(w.file);
     ok = ok && safe_file_write(path, bytes, size, true, err) && write_sidecar(&w, path, err);
     mem_free(bytes);
     mem_free(w.frames);
-    mem_free(w.times);
-    mem_free(w.fields);
+    vtk_frames_clear(&w);
     return ok;
 }
 

@@ -5,15 +5,23 @@
 #include "io/text.h"
 #include <string.h>
 
-/* One row of a long array of rows: which file, path and part. */
-static void add_item(Text *text, const XdmfDef *def, const char *path, int first, int count, int width,
-                     int total, const char *type)
+/* What is being written. */
+typedef struct Sidecar {
+    Text text;
+    const char *result; /* the file's name without its folder */
+    const char *real;   /* how positions and fields are stored */
+    const VtkFrames *frames;
+} Sidecar;
+
+/* Some rows of a long array of rows: which file, path and part. */
+static void add_item(Sidecar *sidecar, const char *path, int first, int count, int width, int total,
+                     const char *type)
 {
-    const char *slash = strrchr(def->result, '/'), *name = slash ? slash + 1 : def->result;
+    Text *text = &sidecar->text;
     bool wide = width > 1;
     text_add(text, "<DataItem Dimensions=\"%d", count);
     if (wide) text_add(text, " %d", width);
-    text_add(text, "\" %s Format=\"HDF\">%s:/VTKHDF/%s|", type, name, path);
+    text_add(text, "\" %s Format=\"HDF\">%s:/%s|", type, sidecar->result, path);
     if (wide)
         text_add(text, "%d 0:1 1:%d %d:%d %d", first, count, width, total, width);
     else
@@ -25,67 +33,86 @@ static void add_item(Text *text, const XdmfDef *def, const char *path, int first
 typedef struct Field {
     const char *name;
     bool cell;
-    int width, stored, rows; /* rows in all */
-    int *first;              /* [step] */
+    int width, stored, count; /* rows of a step */
+    int *first;               /* [step] */
 } Field;
 
-static Field make_field(const XdmfDef *def, const char *name, Journal *journal, const int *frames)
+static Field make_field(const VtkFrames *frames, const char *name)
 {
     Field field = {.name = strchr(name, '/') + 1, .cell = name[0] == 'c', .width = 1};
-    int count = field.cell ? def->face_count : def->vertex_count;
-    field.first = mem_alloc((size_t)def->step_count, sizeof *field.first);
-    for (int k = 0; k < def->step_count; k++) {
-        field.stored += k == 0 || journal_has(journal, "frame", frames[k], name);
-        field.first[k] = (field.stored - 1) * count;
+    field.count = field.cell ? frames->cells.count : frames->vertex_count;
+    field.first = mem_alloc((size_t)frames->count, sizeof *field.first);
+    for (int k = 0; k < frames->count; k++) {
+        field.stored += k == 0 || journal_has(frames->journal, "frame", frames->frames[k], name);
+        field.first[k] = (field.stored - 1) * field.count;
     }
-    field.rows = field.stored * count;
     Array array;
-    if (journal_get(journal, "frame", frames[0], name, &array, NULL)) {
+    if (journal_get(frames->journal, "frame", frames->frames[0], name, &array, NULL)) {
         if (array.rank > 1) field.width = array.dims[1];
         array_clear(&array);
     }
     return field;
 }
 
-static void add_field(Text *text, const XdmfDef *def, const Field *field, int step, const char *type)
+static void add_field(Sidecar *sidecar, const Field *field, int step)
 {
-    char *path = mem_format("%s/%s", field->cell ? "CellData" : "PointData", field->name);
-    text_add(text, "        <Attribute Name=\"%s\" AttributeType=\"%s\" Center=\"%s\">", field->name,
-             field->width == 3 ? "Vector" : "Scalar", field->cell ? "Cell" : "Node");
-    add_item(text, def, path, field->first[step], field->cell ? def->face_count : def->vertex_count,
-             field->width, field->rows, type);
-    text_add(text, "        </Attribute>\n");
+    char *path = mem_format("VTKHDF/%s/%s", field->cell ? "CellData" : "PointData", field->name);
+    text_add(&sidecar->text, "        <Attribute Name=\"%s\" AttributeType=\"%s\" Center=\"%s\">",
+             field->name, field->width == 3 ? "Vector" : "Scalar", field->cell ? "Cell" : "Node");
+    add_item(sidecar, path, field->first[step], field->count, field->width, field->stored * field->count,
+             sidecar->real);
+    text_add(&sidecar->text, "        </Attribute>\n");
     mem_free(path);
 }
 
-char *xdmf_text(const XdmfDef *def, char *const *fields, int field_count, Journal *journal, const int *frames)
+/* Polylines of different lengths are listed with their types and lengths among the points. */
+static void add_topology(Sidecar *sidecar)
 {
-    Text text = {0};
-    const char *real =
-        def->double_points ? "NumberType=\"Float\" Precision=\"8\"" : "NumberType=\"Float\" Precision=\"4\"";
-    Field *known = mem_alloc((size_t)field_count, sizeof *known);
+    const VtkCells *cells = &sidecar->frames->cells;
+    const char *type = cells->mixed ? "Mixed" : cells->lines ? "Polyline" : "Triangle";
+    text_add(&sidecar->text, "        <Topology TopologyType=\"%s\" NumberOfElements=\"%d\"", type,
+             cells->count);
+    if (cells->lines && cells->uniform) text_add(&sidecar->text, " NodesPerElement=\"%d\"", cells->uniform);
+    text_add(&sidecar->text, ">");
+    int size = cells->mixed ? 2 * cells->count + cells->id_count : cells->id_count;
+    add_item(sidecar, cells->mixed ? "slender/xdmf_topology" : "VTKHDF/Connectivity", 0, size, 1, size,
+             "NumberType=\"Int\" Precision=\"8\"");
+    text_add(&sidecar->text, "        </Topology>\n");
+}
+
+static void add_step(Sidecar *sidecar, const Field *fields, int field_count, int step)
+{
+    const VtkFrames *frames = sidecar->frames;
+    text_add(&sidecar->text,
+             "      <Grid Name=\"%s\" GridType=\"Uniform\">\n        <Time Value=\"%.17g\"/>\n",
+             frames->cells.lines ? "curves" : "shell", frames->times[step]);
+    add_topology(sidecar);
+    text_add(&sidecar->text, "        <Geometry GeometryType=\"XYZ\">");
+    add_item(sidecar, "VTKHDF/Points", step * frames->vertex_count, frames->vertex_count, 3,
+             frames->count * frames->vertex_count, sidecar->real);
+    text_add(&sidecar->text, "        </Geometry>\n");
+    for (int k = 0; k < field_count; k++) add_field(sidecar, &fields[k], step);
+    text_add(&sidecar->text, "      </Grid>\n");
+}
+
+char *xdmf_text(const char *result, const VtkFrames *frames)
+{
+    const char *slash = strrchr(result, '/');
+    Sidecar sidecar = {.result = slash ? slash + 1 : result,
+                       .real = frames->single ? "NumberType=\"Float\" Precision=\"4\""
+                                              : "NumberType=\"Float\" Precision=\"8\"",
+                       .frames = frames};
+    Field *known = mem_alloc((size_t)frames->field_count, sizeof *known);
     int count = 0;
-    for (int k = 0; k < field_count; k++)
-        if (!strncmp(fields[k], "cell/", 5) || !strncmp(fields[k], "point/", 6))
-            known[count++] = make_field(def, fields[k], journal, frames);
-    text_add(&text, "<?xml version=\"1.0\" ?>\n<Xdmf Version=\"2.0\">\n  <Domain>\n"
-                    "    <Grid Name=\"slender\" GridType=\"Collection\" CollectionType=\"Temporal\">\n");
-    for (int step = 0; step < def->step_count; step++) {
-        text_add(&text, "      <Grid Name=\"shell\" GridType=\"Uniform\">\n        <Time Value=\"%.17g\"/>\n",
-                 def->times[step]);
-        text_add(&text, "        <Topology TopologyType=\"Triangle\" NumberOfElements=\"%d\">",
-                 def->face_count);
-        add_item(&text, def, "Connectivity", 0, 3 * def->face_count, 1, 3 * def->face_count,
-                 "NumberType=\"Int\" Precision=\"8\"");
-        text_add(&text, "        </Topology>\n        <Geometry GeometryType=\"XYZ\">");
-        add_item(&text, def, "Points", step * def->vertex_count, def->vertex_count, 3,
-                 def->step_count * def->vertex_count, real);
-        text_add(&text, "        </Geometry>\n");
-        for (int k = 0; k < count; k++) add_field(&text, def, &known[k], step, real);
-        text_add(&text, "      </Grid>\n");
-    }
-    text_add(&text, "    </Grid>\n  </Domain>\n</Xdmf>\n");
+    for (int k = 0; k < frames->field_count; k++)
+        if (!strncmp(frames->fields[k], "cell/", 5) || !strncmp(frames->fields[k], "point/", 6))
+            known[count++] = make_field(frames, frames->fields[k]);
+    text_add(&sidecar.text,
+             "<?xml version=\"1.0\" ?>\n<Xdmf Version=\"2.0\">\n  <Domain>\n"
+             "    <Grid Name=\"slender\" GridType=\"Collection\" CollectionType=\"Temporal\">\n");
+    for (int step = 0; step < frames->count; step++) add_step(&sidecar, known, count, step);
+    text_add(&sidecar.text, "    </Grid>\n  </Domain>\n</Xdmf>\n");
     for (int k = 0; k < count; k++) mem_free(known[k].first);
     mem_free(known);
-    return text.text;
+    return sidecar.text.text;
 }

@@ -1,0 +1,217 @@
+#include "io/result_vtk.h"
+#include "base/memory.h"
+#include <stdio.h>
+#include <string.h>
+
+enum { VTK_POLY_LINE = 4, VTK_TRIANGLE = 5, XDMF_POLYLINE = 2 };
+
+/* ---- Cells ---- */
+
+static void read_triangles(VtkCells *cells, const Array *faces)
+{
+    cells->count = faces->dims[0];
+    cells->uniform = 3;
+    cells->id_count = 3 * cells->count;
+    cells->ids = mem_copy(faces->data, (size_t)cells->id_count, sizeof *cells->ids);
+    cells->offsets = mem_alloc((size_t)cells->count + 1, sizeof *cells->offsets);
+    for (int f = 0; f <= cells->count; f++) cells->offsets[f] = 3 * f;
+}
+
+static bool check_lines(const Array *lines, int vertex_count, Error *err)
+{
+    bool fits = lines->type == ARRAY_INT32 && lines->rank == 2 && lines->dims[1] == 2;
+    const int *line = lines->data;
+    for (int k = 0; fits && k < lines->dims[0]; k++, line += 2)
+        fits = line[0] >= 0 && line[1] >= 2 && line[0] <= vertex_count - line[1];
+    return fits || error_set(err,
+                             "static/lines must be rows of a first point and a number of points, 2 or "
+                             "more, among the %d of a frame",
+                             vertex_count);
+}
+
+/* Lines given by their first point and number of points. */
+static void read_lines(VtkCells *cells, const int (*lines)[2], int count)
+{
+    cells->lines = true;
+    cells->count = count;
+    cells->uniform = count ? lines[0][1] : 2;
+    cells->offsets = mem_alloc((size_t)count + 1, sizeof *cells->offsets);
+    for (int k = 0; k < count; k++) {
+        cells->offsets[k + 1] = cells->offsets[k] + lines[k][1];
+        if (lines[k][1] != lines[0][1]) cells->uniform = 0;
+    }
+    cells->id_count = cells->offsets[count];
+    cells->ids = mem_alloc((size_t)cells->id_count, sizeof *cells->ids);
+    for (int k = 0; k < count; k++)
+        for (int i = 0; i < lines[k][1]; i++) cells->ids[cells->offsets[k] + i] = lines[k][0] + i;
+}
+
+/* For each line its type, its number of points, and these. */
+static int *mixed_topology(const VtkCells *cells)
+{
+    int *mixed = mem_alloc(2 * (size_t)cells->count + (size_t)cells->id_count, sizeof *mixed), *next = mixed;
+    for (int k = 0; k < cells->count; k++) {
+        *next++ = XDMF_POLYLINE;
+        *next++ = cells->offsets[k + 1] - cells->offsets[k];
+        for (int i = cells->offsets[k]; i < cells->offsets[k + 1]; i++) *next++ = cells->ids[i];
+    }
+    return mixed;
+}
+
+bool vtk_frames_exist(Journal *journal)
+{
+    return journal_has(journal, "static", 0, "faces") || journal_has(journal, "static", 0, "lines");
+}
+
+static bool read_cells(VtkFrames *frames, Error *err)
+{
+    Array array;
+    bool lines = !journal_has(frames->journal, "static", 0, "faces");
+    if (!journal_get(frames->journal, "static", 0, lines ? "lines" : "faces", &array, err)) return false;
+    bool ok = !lines || check_lines(&array, frames->vertex_count, err);
+    if (ok && lines) read_lines(&frames->cells, (void *)array.data, array.dims[0]);
+    if (ok && !lines) read_triangles(&frames->cells, &array);
+    if (ok && !frames->cells.uniform) frames->cells.mixed = mixed_topology(&frames->cells);
+    array_clear(&array);
+    return ok;
+}
+
+static bool read_times(VtkFrames *frames, Error *err)
+{
+    frames->times = mem_alloc((size_t)frames->count, sizeof *frames->times);
+    for (int k = 0; k < frames->count; k++) {
+        Array time;
+        if (!journal_get(frames->journal, "frame", frames->frames[k], "time", &time, err)) return false;
+        if (time.type == ARRAY_FLOAT64 && time.rank == 0) frames->times[k] = *(const double *)time.data;
+        array_clear(&time);
+    }
+    return true;
+}
+
+bool vtk_frames_read(VtkFrames *frames, Error *err)
+{
+    Array x;
+    if (!journal_get(frames->journal, "frame", frames->frames[0], "x", &x, err)) return false;
+    frames->vertex_count = x.dims[0];
+    array_clear(&x);
+    return read_cells(frames, err) && read_times(frames, err) &&
+           journal_names(frames->journal, "frame", frames->frames[0], &frames->fields, &frames->field_count,
+                         err);
+}
+
+void vtk_frames_clear(VtkFrames *frames)
+{
+    mem_free(frames->cells.ids);
+    mem_free(frames->cells.offsets);
+    mem_free(frames->cells.mixed);
+    mem_free(frames->times);
+    mem_free(frames->fields);
+}
+
+/* ---- Writing ---- */
+
+static bool put_ints(VtkFrames *frames, const char *path, const int *values, int rank, int d0, int d1,
+                     Hdf5Layout layout, Error *err)
+{
+    Array array = array_int(path, values, rank, d0, d1);
+    return hdf5_write(frames->file, path, &array, layout, err);
+}
+
+/* The cells, stored once: connectivity, offsets and types. */
+static bool put_cells(VtkFrames *frames, Error *err)
+{
+    const VtkCells *cells = &frames->cells;
+    int n = cells->count, *types = mem_alloc((size_t)n, sizeof *types);
+    for (int k = 0; k < n; k++) types[k] = cells->lines ? VTK_POLY_LINE : VTK_TRIANGLE;
+    Hdf5Layout wide = {.wide = true}, bytes = {.bytes = true};
+    bool ok = put_ints(frames, "VTKHDF/Connectivity", cells->ids, 1, cells->id_count, 0, wide, err) &&
+              put_ints(frames, "VTKHDF/Offsets", cells->offsets, 1, n + 1, 0, wide, err) &&
+              put_ints(frames, "VTKHDF/Types", types, 1, n, 0, bytes, err) &&
+              put_ints(frames, "VTKHDF/NumberOfPoints", &frames->vertex_count, 1, 1, 0, wide, err) &&
+              put_ints(frames, "VTKHDF/NumberOfCells", &n, 1, 1, 0, wide, err) &&
+              put_ints(frames, "VTKHDF/NumberOfConnectivityIds", &cells->id_count, 1, 1, 0, wide, err);
+    mem_free(types);
+    if (!ok || !cells->mixed) return ok;
+    return put_ints(frames, "slender/xdmf_topology", cells->mixed, 1, 2 * n + cells->id_count, 0, wide, err);
+}
+
+/* Where in the long arrays each step begins. */
+static bool put_steps(VtkFrames *frames, Error *err)
+{
+    int steps = frames->count, *zeros = mem_alloc((size_t)steps, sizeof *zeros),
+        *ones = mem_alloc((size_t)steps, sizeof *ones);
+    int *points = mem_alloc((size_t)steps, sizeof *points);
+    for (int k = 0; k < steps; k++) ones[k] = 1, points[k] = k * frames->vertex_count;
+    Hdf5Layout wide = {.wide = true};
+    Array times = array_float("VTKHDF/Steps/Values", "s", frames->times, 1, steps, 0);
+    bool ok = hdf5_attribute_ints(frames->file, "VTKHDF/Steps", "NSteps", &steps, 1, err) &&
+              hdf5_write(frames->file, "VTKHDF/Steps/Values", &times, (Hdf5Layout){0}, err) &&
+              put_ints(frames, "VTKHDF/Steps/PartOffsets", zeros, 1, steps, 0, wide, err) &&
+              put_ints(frames, "VTKHDF/Steps/NumberOfParts", ones, 1, steps, 0, wide, err) &&
+              put_ints(frames, "VTKHDF/Steps/PointOffsets", points, 1, steps, 0, wide, err) &&
+              put_ints(frames, "VTKHDF/Steps/CellOffsets", zeros, 2, steps, 1, wide, err) &&
+              put_ints(frames, "VTKHDF/Steps/ConnectivityIdOffsets", zeros, 2, steps, 1, wide, err);
+    mem_free(zeros);
+    mem_free(ones);
+    mem_free(points);
+    return ok;
+}
+
+bool vtk_frames_put(VtkFrames *frames, const char *name, const char *path, const char *offsets_path,
+                    bool stacked, Error *err)
+{
+    Hdf5Rows *rows = NULL;
+    int *offsets = mem_alloc((size_t)frames->count, sizeof *offsets), stored = 0, chunk = 0, width = 0;
+    bool ok = true;
+    for (int k = 0; ok && k < frames->count; k++) {
+        Array array = {0};
+        if (k == 0 || journal_has(frames->journal, "frame", frames->frames[k], name)) {
+            ok = journal_get(frames->journal, "frame", frames->frames[k], name, &array, err);
+            if (ok && !rows) {
+                chunk = array.dims[0], width = array.rank > 1 ? array.dims[1] : 0;
+                rows = hdf5_rows_create(frames->file, path, array.unit, chunk, width, stacked, frames->single,
+                                        err);
+            }
+            bool fits = array.type == ARRAY_FLOAT64 && array.dims[0] == chunk &&
+                        (array.rank > 1 ? array.dims[1] : 0) == width;
+            if (ok && !fits) ok = error_set(err, "the frames' %s change their shape", name);
+            ok = ok && rows && hdf5_rows_append(rows, array.data, err);
+            stored++;
+            array_clear(&array);
+        }
+        offsets[k] = (stored - 1) * chunk;
+    }
+    ok = hdf5_rows_close(rows, ok ? err : NULL) && ok;
+    if (ok && offsets_path)
+        ok = put_ints(frames, offsets_path, offsets, 1, frames->count, 0, (Hdf5Layout){.wide = true}, err);
+    mem_free(offsets);
+    return ok;
+}
+
+static bool put_fields(VtkFrames *frames, Error *err)
+{
+    static const struct {
+        const char *prefix, *data, *offsets;
+    } kinds[] = {{"cell/", "CellData", "CellDataOffsets"}, {"point/", "PointData", "PointDataOffsets"}};
+    char path[512], offsets[512];
+    bool ok = true;
+    for (int k = 0; ok && k < frames->field_count; k++)
+        for (int d = 0; ok && d < 2; d++) {
+            size_t length = strlen(kinds[d].prefix);
+            if (strncmp(frames->fields[k], kinds[d].prefix, length)) continue;
+            const char *name = frames->fields[k] + length;
+            snprintf(path, sizeof path, "VTKHDF/%s/%.400s", kinds[d].data, name);
+            snprintf(offsets, sizeof offsets, "VTKHDF/Steps/%s/%.400s", kinds[d].offsets, name);
+            ok = vtk_frames_put(frames, frames->fields[k], path, offsets, false, err);
+        }
+    return ok;
+}
+
+bool vtk_frames_write(VtkFrames *frames, Error *err)
+{
+    int version[2] = {2, 0};
+    return hdf5_attribute_ints(frames->file, "VTKHDF", "Version", version, 2, err) &&
+           hdf5_attribute_text(frames->file, "VTKHDF", "Type", "UnstructuredGrid", err) &&
+           put_cells(frames, err) && put_steps(frames, err) &&
+           vtk_frames_put(frames, "x", "VTKHDF/Points", NULL, false, err) && put_fields(frames, err);
+}
