@@ -1,18 +1,11 @@
 #include "io/chart.h"
 #include "base/memory.h"
+#include "io/page.h"
 #include "io/ticks.h"
 #include <math.h>
 #include <stdio.h>
 
-static const Color ink = {0.15, 0.15, 0.17, 1}, soft = {0.42, 0.42, 0.45, 1}, grid = {0.9, 0.9, 0.91, 1};
-
-/* Distinguishable with every kind of colour blindness. [Okabe and Ito 2008] */
-static const Color palette[] = {{0, 0.447, 0.698, 1},   {0.835, 0.369, 0, 1}, {0, 0.62, 0.451, 1},
-                                {0.8, 0.475, 0.655, 1}, {0.902, 0.624, 0, 1}, {0.337, 0.706, 0.914, 1},
-                                {0.25, 0.25, 0.27, 1}};
-enum { PALETTE_COUNT = sizeof palette / sizeof palette[0] };
-
-static const double FONT = 8;
+static const Color grid = {0.9, 0.9, 0.91, 1};
 
 /* One axis: numbers low..high, shown times factor, mapped to from..to on the page. */
 typedef struct Axis {
@@ -117,28 +110,28 @@ static double ticks_width(Canvas *canvas, const Ticks *ticks)
 {
     double width = 0;
     for (int i = 0; i < ticks->count; i++)
-        width = fmax(width, canvas_text_width(canvas, ticks->text[i], (TextStyle){.size = FONT}));
+        width = fmax(width, canvas_text_width(canvas, ticks->text[i], (TextStyle){.size = PAGE_LABEL}));
     return width;
 }
 
 static void draw_axes(Canvas *canvas, const Axis *x, const Axis *y)
 {
-    const Pen line = {grid, 0.6, 0}, axis = {soft, 0.7, 0};
+    const Pen line = {grid, 0.6, 0}, axis = {page_soft, 0.7, 0};
     for (int i = 0; i < y->ticks.count; i++) {
         double at = axis_place(y, y->ticks.value[i] / y->factor);
         canvas_line(canvas, (Vec2){x->from, at}, (Vec2){x->to, at}, line);
-        canvas_text(canvas, (Vec2){x->from - 5, at + 0.36 * FONT}, y->ticks.text[i],
-                    (TextStyle){.color = ink, .size = FONT, .align = TEXT_RIGHT});
+        canvas_text(canvas, (Vec2){x->from - 5, at + 0.36 * PAGE_LABEL}, y->ticks.text[i],
+                    (TextStyle){.color = page_ink, .size = PAGE_LABEL, .align = TEXT_RIGHT});
     }
     for (int i = 0; i < x->ticks.count; i++) {
         double at = axis_place(x, x->ticks.value[i] / x->factor);
         canvas_line(canvas, (Vec2){at, y->from}, (Vec2){at, y->from + 3}, axis);
-        canvas_text(canvas, (Vec2){at, y->from + 5 + FONT}, x->ticks.text[i],
-                    (TextStyle){.color = ink, .size = FONT, .align = TEXT_CENTER});
+        canvas_text(canvas, (Vec2){at, y->from + 5 + PAGE_LABEL}, x->ticks.text[i],
+                    (TextStyle){.color = page_ink, .size = PAGE_LABEL, .align = TEXT_CENTER});
     }
     canvas_line(canvas, (Vec2){x->from, y->from}, (Vec2){x->to, y->from}, axis);
-    canvas_text(canvas, (Vec2){0.5 * (x->from + x->to), y->from + 8 + 2.2 * FONT}, x->label,
-                (TextStyle){.color = ink, .size = FONT, .align = TEXT_CENTER});
+    canvas_text(canvas, (Vec2){0.5 * (x->from + x->to), y->from + 8 + 2.2 * PAGE_LABEL}, x->label,
+                (TextStyle){.color = page_ink, .size = PAGE_LABEL, .align = TEXT_CENTER});
 }
 
 /* Runs of points that can be shown become one line each. Dots where they are few, and for a lone point. */
@@ -164,12 +157,12 @@ static void draw_legend(Canvas *canvas, const Chart *chart, double right, double
 {
     for (int s = chart->series_count - 1; s >= 0; s--) {
         const char *name = chart->series[s].name ? chart->series[s].name : "";
-        const TextStyle style = {.color = ink, .size = FONT, .align = TEXT_RIGHT};
+        const TextStyle style = {.color = page_ink, .size = PAGE_LABEL, .align = TEXT_RIGHT};
         canvas_text(canvas, (Vec2){right, baseline}, name, style);
         right -= canvas_text_width(canvas, name, style) + 5;
-        double y = baseline - 0.32 * FONT;
+        double y = baseline - 0.32 * PAGE_LABEL;
         canvas_line(canvas, (Vec2){right - 12, y}, (Vec2){right, y},
-                    (Pen){palette[s % PALETTE_COUNT], 1.6, 0});
+                    (Pen){colormap_series(chart->first_color + s), 1.6, 0});
         right -= 26;
     }
 }
@@ -180,17 +173,17 @@ void chart_draw(Canvas *canvas, const Chart *chart, Box box)
     axis_set_x(&x, chart);
     axis_set_y(&y, chart);
     bool head = chart->title || chart->series_count > 1;
-    y.to = box.y + (head ? 2.4 * FONT : 0.5 * FONT);
-    y.from = box.y + box.height - 11 - 2.2 * FONT;
-    x.from = box.x + ticks_width(canvas, &y.ticks) + 2 * FONT + 5;
+    y.to = box.y + (head ? 2.4 * PAGE_LABEL : 0.5 * PAGE_LABEL);
+    y.from = box.y + box.height - 11 - 2.2 * PAGE_LABEL;
+    x.from = box.x + ticks_width(canvas, &y.ticks) + 2 * PAGE_LABEL + 5;
     x.to = box.x + box.width;
     draw_axes(canvas, &x, &y);
-    canvas_text(canvas, (Vec2){box.x + FONT, 0.5 * (y.from + y.to)}, y.label,
-                (TextStyle){.color = ink, .size = FONT, .align = TEXT_CENTER, .upwards = true});
+    canvas_text(canvas, (Vec2){box.x + PAGE_LABEL, 0.5 * (y.from + y.to)}, y.label,
+                (TextStyle){.color = page_ink, .size = PAGE_LABEL, .align = TEXT_CENTER, .upwards = true});
     for (int s = 0; s < chart->series_count; s++)
-        draw_series(canvas, &chart->series[s], &x, &y, palette[s % PALETTE_COUNT]);
+        draw_series(canvas, &chart->series[s], &x, &y, colormap_series(chart->first_color + s));
     if (chart->title)
-        canvas_text(canvas, (Vec2){x.from, box.y + FONT}, chart->title,
-                    (TextStyle){.color = ink, .size = FONT + 1, .bold = true});
-    if (chart->series_count > 1) draw_legend(canvas, chart, x.to, box.y + FONT);
+        canvas_text(canvas, (Vec2){x.from, box.y + PAGE_LABEL}, chart->title,
+                    (TextStyle){.color = page_ink, .size = PAGE_LABEL + 1, .bold = true});
+    if (chart->series_count > 1) draw_legend(canvas, chart, x.to, box.y + PAGE_LABEL);
 }

@@ -23,6 +23,7 @@ typedef struct Chart {
     ChartAxis y_axis;
     int series_count;
     const ChartSeries *series;
+    int first_color; /* of the series, see colormap_series: other ones than those of the page's other parts */
 } Chart;
 
 /* Draws into the box, labels included. No point at all gives empty axes. */

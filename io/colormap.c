@@ -68,6 +68,14 @@ Color colormap_color(Colormap map, double t)
     return (Color){c.x, c.y, c.z, 1};
 }
 
+Color colormap_series(int index)
+{
+    static const Color palette[] = {{0, 0.447, 0.698, 1},   {0.835, 0.369, 0, 1}, {0, 0.62, 0.451, 1},
+                                    {0.8, 0.475, 0.655, 1}, {0.902, 0.624, 0, 1}, {0.337, 0.706, 0.914, 1},
+                                    {0.25, 0.25, 0.27, 1}};
+    return palette[index % (int)(sizeof palette / sizeof palette[0])];
+}
+
 ColorScale color_scale_fit(const double *values, int count)
 {
     double low = INFINITY, high = -INFINITY;

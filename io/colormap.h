@@ -15,6 +15,10 @@ typedef enum Colormap { COLORMAP_VIRIDIS, COLORMAP_DIVERGING } Colormap;
 /* The colour at t in 0..1; t outside is clamped, NaN is a neutral grey. */
 Color colormap_color(Colormap map, double t);
 
+/* Colours for kinds of things, told apart with every kind of colour blindness: blue, vermilion, green, purple, orange,
+ * sky blue, black, and again from the start. [Okabe and Ito 2008] */
+Color colormap_series(int index);
+
 /* Which number has which colour. */
 typedef struct ColorScale {
     Colormap map;

@@ -1,16 +1,14 @@
 #include "io/picture.h"
 #include "base/memory.h"
 #include "io/animation.h"
+#include "io/page.h"
 #include "io/picture_panel.h"
 #include "io/ticks.h"
 #include <math.h>
 #include <stdio.h>
 
 /* Points; see the sketch in picture.h. */
-static const double PAGE = 576, MARGIN = 28, GAP = 16, TITLE = 15, SMALL = 8.5, LEADING = 12, HEADING = 18;
-static const double MEASURES = 24, PADDING = 6, KEYS = 180, CHART_HEIGHT = 150;
-
-static const Color ink = {0.15, 0.15, 0.17, 1}, soft = {0.42, 0.42, 0.45, 1};
+static const double HEADING = 18, MEASURES = 24, PADDING = 6, KEYS = 180, CHART_HEIGHT = 150;
 
 /* Where everything goes. Lengths that a raster image fills are whole pixels. */
 typedef struct Layout {
@@ -50,7 +48,7 @@ static int scene_columns(const PictureScene *scene)
 static double scene_cell_width(const PictureScene *scene, double resolution)
 {
     int columns = scene_columns(scene);
-    return snap((PAGE - 2 * MARGIN - (columns - 1) * GAP) / columns, resolution);
+    return snap((PAGE_WIDTH - 2 * PAGE_MARGIN - (columns - 1) * PAGE_GAP) / columns, resolution);
 }
 
 /* Rows are as high as their highest panel; cases beside their targets have a row each. Returns the lowest
@@ -64,58 +62,39 @@ static double layout_cells(const PanelStyle *style, double top, double width, Bo
         double height = 40;
         for (int i = first; i < end; i++) height = fmax(height, style->heights[i]);
         for (int i = first; i < end; i++)
-            cells[i] = (Box){snap(MARGIN + (i - first) * (width + GAP), style->resolution),
+            cells[i] = (Box){snap(PAGE_MARGIN + (i - first) * (width + PAGE_GAP), style->resolution),
                              snap(top + HEADING, style->resolution), width,
                              snap(height + 2 * PADDING, style->resolution)};
-        top += HEADING + height + 2 * PADDING + MEASURES + GAP;
+        top += HEADING + height + 2 * PADDING + MEASURES + PAGE_GAP;
     }
     return top;
+}
+
+static PageHead scene_head(const PictureScene *scene)
+{
+    return (PageHead){scene->title, scene->lines, scene->line_count};
 }
 
 static Layout layout_page(const PictureScene *scene, const PanelStyle *style, double width)
 {
     Layout page = {.cell_width = width};
     page.cells = mem_alloc((size_t)scene->panel_count, sizeof *page.cells);
-    double top = MARGIN + (scene->title ? TITLE + 8 : 0) + scene->line_count * LEADING + 6;
-    page.footer = layout_cells(style, top, width, page.cells);
+    page.footer = layout_cells(style, page_head_end(scene_head(scene)), width, page.cells);
     int keys = keys_count(scene);
     page.footer_height = keys ? 44 : 0;
     if (scene->history) page.footer_height = keys ? CHART_HEIGHT : 2 * CHART_HEIGHT;
-    page.height = page.footer + page.footer_height + MARGIN;
+    page.height = page.footer + page.footer_height + PAGE_MARGIN;
     return page;
-}
-
-/* Text in a smaller font where it would be wider than the given width; returns where it ends. */
-static double draw_fitted(Canvas *canvas, Vec2 at, const char *text, TextStyle style, double width)
-{
-    style.size *= fmin(1, width / fmax(canvas_text_width(canvas, text, style), 1e-6));
-    canvas_text(canvas, at, text, style);
-    return at.x + canvas_text_width(canvas, text, style);
-}
-
-static void draw_heading(Canvas *canvas, const PictureScene *scene)
-{
-    const TextStyle title = {.color = ink, .size = TITLE, .bold = true},
-                    small = {.color = soft, .size = SMALL};
-    double y = MARGIN, width = PAGE - 2 * MARGIN;
-    if (scene->title) {
-        y += TITLE;
-        draw_fitted(canvas, (Vec2){MARGIN, y - 2}, scene->title, title, width);
-        y += 6;
-    }
-    for (int i = 0; i < scene->line_count; i++) {
-        y += LEADING;
-        draw_fitted(canvas, (Vec2){MARGIN, y - 3}, scene->lines[i], small, width);
-    }
 }
 
 /* Bold name, then small print, above a panel. */
 static void draw_cell_heading(Canvas *canvas, Box cell, const char *name, const char *note)
 {
-    const TextStyle bold = {.color = ink, .size = 10, .bold = true}, small = {.color = soft, .size = SMALL};
+    const TextStyle bold = {.color = page_ink, .size = 10, .bold = true},
+                    small = {.color = page_soft, .size = PAGE_SMALL};
     double y = cell.y - 6;
-    double end = draw_fitted(canvas, (Vec2){cell.x, y}, name, bold, 0.6 * cell.width) + 8;
-    draw_fitted(canvas, (Vec2){end, y}, note, small, cell.x + cell.width - end);
+    double end = page_draw_fitted(canvas, (Vec2){cell.x, y}, name, bold, 0.6 * cell.width) + 8;
+    page_draw_fitted(canvas, (Vec2){end, y}, note, small, cell.x + cell.width - end);
 }
 
 /* Root of the mean square distance of the vertices that have a target; NaN where none has. */
@@ -162,7 +141,7 @@ static void draw_panels(Canvas *canvas, const PanelStyle *style, const Layout *p
         draw_result_heading(canvas, scene, &scene->panels[i], box);
         panel_draw_result(canvas, style, i, box);
         panel_draw_measures(canvas, style, i, (Box){box.x, box.y, box.width, box.height + MEASURES});
-        box.x = snap(box.x + page->cell_width + GAP, style->resolution);
+        box.x = snap(box.x + page->cell_width + PAGE_GAP, style->resolution);
         if (scene->panels[i].target && panel_any_beside(scene)) draw_target_cell(canvas, style, i, box);
     }
 }
@@ -177,7 +156,7 @@ static void draw_color_key(Canvas *canvas, const PanelStyle *style, Box box)
     char title[160];
     snprintf(title, sizeof title, unit.unit[0] ? "%s (%s)" : "%s", scene->field_name ? scene->field_name : "",
              unit.unit);
-    canvas_text(canvas, (Vec2){box.x, box.y + 8}, title, (TextStyle){.color = ink, .size = 8});
+    canvas_text(canvas, (Vec2){box.x, box.y + 8}, title, (TextStyle){.color = page_ink, .size = 8});
     Box bar = {box.x, box.y + 14, box.width, 9};
     enum { SLICES = 128 };
     for (int i = 0; i < SLICES; i++) { /* each reaches under the next, so that no seams show */
@@ -189,9 +168,9 @@ static void draw_color_key(Canvas *canvas, const PanelStyle *style, Box box)
     for (int i = 0; i < ticks.count; i++) {
         double t = (ticks.value[i] / unit.factor - scale->low) / (scale->high - scale->low);
         Vec2 at = {bar.x + t * bar.width, bar.y + bar.height};
-        canvas_line(canvas, at, (Vec2){at.x, at.y + 2.5}, (Pen){soft, 0.6, 0});
+        canvas_line(canvas, at, (Vec2){at.x, at.y + 2.5}, (Pen){page_soft, 0.6, 0});
         canvas_text(canvas, (Vec2){at.x, at.y + 11}, ticks.text[i],
-                    (TextStyle){.color = ink, .size = 8, .align = TEXT_CENTER});
+                    (TextStyle){.color = page_ink, .size = 8, .align = TEXT_CENTER});
     }
 }
 
@@ -206,14 +185,14 @@ static void draw_arrow_key(Canvas *canvas, const PanelStyle *style, Box box)
     snprintf(text, sizeof text, "%s %s", scene->vectors_name ? scene->vectors_name : "", number);
     double y = box.y + 11;
     canvas_arrow(canvas, (Vec2){box.x, y}, (Vec2){box.x + length, y}, (Pen){style->arrow_color, 1.6, 0});
-    canvas_text(canvas, (Vec2){box.x + length + 8, y + 3}, text, (TextStyle){.color = ink, .size = 8});
+    canvas_text(canvas, (Vec2){box.x + length + 8, y + 3}, text, (TextStyle){.color = page_ink, .size = 8});
 }
 
 static void draw_wire_key(Canvas *canvas, Box box)
 {
     double y = box.y + 11;
     canvas_line(canvas, (Vec2){box.x, y}, (Vec2){box.x + 22, y}, (Pen){panel_target_ink, 0.8, 0});
-    canvas_text(canvas, (Vec2){box.x + 30, y + 3}, "target", (TextStyle){.color = ink, .size = 8});
+    canvas_text(canvas, (Vec2){box.x + 30, y + 3}, "target", (TextStyle){.color = page_ink, .size = 8});
 }
 
 /* Below each other beside a chart, otherwise in a row. */
@@ -221,7 +200,7 @@ static void draw_keys(Canvas *canvas, const PanelStyle *style, const Layout *pag
 {
     const PictureScene *scene = style->scene;
     bool stacked = scene->history;
-    Box box = {MARGIN, page->footer, KEYS - 20, 40};
+    Box box = {PAGE_MARGIN, page->footer, KEYS - 20, 40};
     if (panel_any_field(scene)) {
         draw_color_key(canvas, style, box);
         *(stacked ? &box.y : &box.x) += stacked ? 48 : KEYS;
@@ -235,31 +214,30 @@ static void draw_keys(Canvas *canvas, const PanelStyle *style, const Layout *pag
 
 static void draw_page(Canvas *canvas, const PictureScene *scene, const PanelStyle *style, const Layout *page)
 {
-    draw_heading(canvas, scene);
+    page_draw_head(canvas, scene_head(scene));
     draw_panels(canvas, style, page);
     if (scene->panel_count) draw_keys(canvas, style, page);
     if (!scene->history) return;
-    double left = keys_count(scene) ? MARGIN + KEYS + GAP : MARGIN;
-    chart_draw(canvas, scene->history, (Box){left, page->footer, PAGE - MARGIN - left, page->footer_height});
+    double left = keys_count(scene) ? PAGE_MARGIN + KEYS + PAGE_GAP : PAGE_MARGIN;
+    chart_draw(canvas, scene->history,
+               (Box){left, page->footer, PAGE_WIDTH - PAGE_MARGIN - left, page->footer_height});
 }
 
 static bool check_scene(const char *path, const PictureScene *scene, Error *err)
 {
     if (scene->panel_count == 0 && !scene->history)
         return error_set(err, "%s: there is nothing to draw: neither a frame nor a history", path);
-    if (scene->width < 400 || scene->width > 4000)
-        return error_set(err, "%s: a width of %d pixels; 400 to 4000 are allowed", path, scene->width);
-    return true;
+    return page_check_width(path, scene->width, err);
 }
 
 bool picture_write(const char *path, const PictureScene *scene, Error *err)
 {
     if (!check_scene(path, scene, err)) return false;
-    double resolution = scene->width / PAGE, width = scene_cell_width(scene, resolution);
+    double resolution = scene->width / PAGE_WIDTH, width = scene_cell_width(scene, resolution);
     PanelStyle style = panel_style_create(scene, resolution, width - 2 * PADDING,
                                           width * (scene_columns(scene) == 1 ? 0.62 : 1));
     Layout page = layout_page(scene, &style, width);
-    Canvas *canvas = canvas_create(path, PAGE, page.height, resolution, err);
+    Canvas *canvas = canvas_create(path, PAGE_WIDTH, page.height, resolution, err);
     bool ok = canvas;
     if (canvas) {
         draw_page(canvas, scene, &style, &page);
@@ -276,10 +254,10 @@ static bool animate_panel(Animation *animation, const PanelStyle *style, const L
                           double seconds, Error *err)
 {
     const PictureScene *scene = style->scene;
-    Canvas *canvas = canvas_create("page.png", PAGE, page->height, style->resolution, err);
+    Canvas *canvas = canvas_create("page.png", PAGE_WIDTH, page->height, style->resolution, err);
     if (!canvas) return false;
     Box box = page->cells[0];
-    draw_heading(canvas, scene);
+    page_draw_head(canvas, scene_head(scene));
     draw_result_heading(canvas, scene, &scene->panels[index], box);
     panel_draw_result(canvas, style, index, box);
     panel_draw_measures(canvas, style, index, (Box){box.x, box.y, box.width, box.height + MEASURES});
@@ -294,7 +272,7 @@ bool picture_animate(const char *path, const PictureScene *scene, double seconds
     if (!check_scene(path, scene, err)) return false;
     PictureScene one = *scene; /* as a page with one panel is laid out */
     one.panel_count = 1, one.history = NULL, one.target = PICTURE_TARGET_OVER;
-    double resolution = scene->width / PAGE, width = snap(PAGE - 2 * MARGIN, resolution);
+    double resolution = scene->width / PAGE_WIDTH, width = snap(PAGE_WIDTH - 2 * PAGE_MARGIN, resolution);
     Animation *animation = animation_create(path, err);
     if (!animation) return false;
     PanelStyle style = panel_style_create(scene, resolution, width - 2 * PADDING, 0.62 * width);

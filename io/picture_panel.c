@@ -1,5 +1,6 @@
 #include "io/picture_panel.h"
 #include "base/memory.h"
+#include "io/page.h"
 #include "io/ticks.h"
 #include <math.h>
 #include <stdio.h>
@@ -8,7 +9,7 @@
 static const double ARROW_SPACING = 24; /* points */
 enum { ARROWS_LEAST = 12, ARROWS_MOST = 250 };
 
-static const Color ink = {0.15, 0.15, 0.17, 1}, soft = {0.42, 0.42, 0.45, 1}, plain = {0.8, 0.82, 0.85, 1};
+static const Color plain = {0.8, 0.82, 0.85, 1};
 const Color panel_target_ink = {0.835, 0.369, 0, 1};
 static const Color vector_ink = {0.86, 0.2, 0.14, 1}, field_ink = {0, 0.447, 0.698, 1};
 
@@ -187,7 +188,8 @@ PanelStyle panel_style_create(const PictureScene *scene, double resolution, doub
     style.flux_greatest = scene->same_view ? flux_greatest(scene) : 0;
     if (!(style.arrow_greatest > 0)) return style;
     const double(*x)[3] = scene->panels[0].x;
-    style.arrow_color = panel_any_field(scene) && style.colors.map == COLORMAP_DIVERGING ? ink : vector_ink;
+    style.arrow_color =
+        panel_any_field(scene) && style.colors.map == COLORMAP_DIVERGING ? page_ink : vector_ink;
     double area = faces_area(scene, x), spacing = ARROW_SPACING * resolution / style.scale;
     style.arrow_count =
         (int)fmin(fmax(area / (spacing * spacing), ARROWS_LEAST), fmin(ARROWS_MOST, scene->face_count));
@@ -222,7 +224,7 @@ static void draw_mesh(Raster *raster, const PanelStyle *style, const Camera *cam
                        .faces = style->scene->faces,
                        .face_colors = colors,
                        .color = plain,
-                       .edge_color = edge_color(style, ink, 0.3),
+                       .edge_color = edge_color(style, page_ink, 0.3),
                        .edge_width = style->scene->edges ? 0.25 * style->resolution : 0};
     raster_mesh(raster, camera, &mesh);
 }
@@ -310,35 +312,6 @@ static Vec2 seen_along(const Camera *camera, Vec2 from, Vec3 direction, double l
                   from.y - length * vec3_dot(direction, camera->up)};
 }
 
-/* A round length over the lower right corner; in a perspective view no length holds everywhere. */
-static void draw_length(Canvas *canvas, const PanelStyle *style, Box box)
-{
-    if (style->scene->perspective > 0) return;
-    double points = style->scale / style->resolution; /* per metre */
-    double shown = ticks_round_down(60 / points), length = shown * points;
-    char text[64];
-    unit_format(shown, "m", text, sizeof text);
-    double right = box.x + box.width - 6, left = right - length, y = box.y + box.height - 10;
-    const Pen pen = {ink, 0.9, 0};
-    canvas_line(canvas, (Vec2){left, y}, (Vec2){right, y}, pen);
-    canvas_line(canvas, (Vec2){left, y - 2.5}, (Vec2){left, y + 2.5}, pen);
-    canvas_line(canvas, (Vec2){right, y - 2.5}, (Vec2){right, y + 2.5}, pen);
-    canvas_text(canvas, (Vec2){0.5 * (left + right), y - 5}, text,
-                (TextStyle){.color = ink, .size = 8, .align = TEXT_CENTER});
-}
-
-static void draw_axes(Canvas *canvas, const Camera *camera, Vec2 origin)
-{
-    static const char *const names[3] = {"x", "y", "z"};
-    const Vec3 axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    for (int k = 0; k < 3; k++) {
-        Vec2 name = seen_along(camera, origin, axes[k], 18);
-        canvas_line(canvas, origin, seen_along(camera, origin, axes[k], 13), (Pen){soft, 0.6, 0});
-        canvas_text(canvas, (Vec2){name.x, name.y + 2.2}, names[k],
-                    (TextStyle){.color = soft, .size = 7, .align = TEXT_CENTER});
-    }
-}
-
 /* An arrow of 26 points with the field's size, or one whose length goes with its root beside `greatest`. */
 static void draw_flux_density(Canvas *canvas, const Camera *camera, const double *flux_density,
                               double greatest, Vec2 middle)
@@ -361,9 +334,11 @@ void panel_draw_measures(Canvas *canvas, const PanelStyle *style, int index, Box
 {
     const double *flux_density = style->scene->panels[index].flux_density;
     Vec2 origin = {box.x + 18, box.y + box.height - 16};
-    draw_axes(canvas, &style->cameras[index], origin);
+    page_draw_axes(canvas, &style->cameras[index], origin);
     if (flux_density)
         draw_flux_density(canvas, &style->cameras[index], flux_density, style->flux_greatest,
                           (Vec2){origin.x + 42, origin.y - 6});
-    draw_length(canvas, style, box);
+    if (!(style->scene->perspective > 0)) /* in a perspective view no length holds everywhere */
+        page_draw_length(canvas, style->scale / style->resolution,
+                         (Vec2){box.x + box.width - 6, box.y + box.height - 10});
 }

@@ -44,21 +44,25 @@ double ticks_round_down(double number)
     return 1 / ticks_round_up(1 / number);
 }
 
-Ticks ticks_linear(double low, double high, int wanted)
+Ticks ticks_every(double step, double low, double high)
 {
     Ticks ticks = {.count = 0};
-    double step = high > low ? ticks_round_up((high - low) / wanted) : fabs(low) > 0 ? fabs(low) : 1;
     int decimals = (int)fmin(fmax(-floor(log10(step) + 1e-9), 0), 12);
-    double first = high > low ? ceil(low / step - 1e-6) : 1;
+    double first = ceil(low / step - 1e-6);
     for (int i = 0; i < TICKS_MAX; i++) {
-        double value = high > low ? (first + i) * step : low;
+        double value = (first + i) * step;
         if (value > high + 1e-6 * step) break;
         ticks.value[i] = value;
         number_text(value, decimals, ticks.text[i], TICKS_TEXT);
         ticks.count = i + 1;
-        if (high <= low) break;
     }
     return ticks;
+}
+
+Ticks ticks_linear(double low, double high, int wanted)
+{
+    if (high > low) return ticks_every(ticks_round_up((high - low) / wanted), low, high);
+    return ticks_every(fabs(low) > 0 ? fabs(low) : 1, low, low);
 }
 
 Ticks ticks_log(double low, double high, int wanted)

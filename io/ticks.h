@@ -17,6 +17,9 @@ typedef struct Ticks {
  * high gives one tick there. */
 Ticks ticks_linear(double low, double high, int wanted);
 
+/* Multiples of step within [low, high], the first TICKS_MAX of them. */
+Ticks ticks_every(double step, double low, double high);
+
 /* Powers of ten within [low, high], both > 0: every one, every second, ... so that no more than `wanted` + 1
  * remain. Texts are "10⁻³". */
 Ticks ticks_log(double low, double high, int wanted);
