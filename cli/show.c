@@ -1,28 +1,24 @@
 #include "cli/show.h"
 #include "base/memory.h"
 #include "base/vec3.h"
-#include "io/result.h"
+#include "cli/show_data.h"
+#include "cli/show_rod.h"
 #include "io/ticks.h"
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-enum { STILLS = 6, FRAMES_PER_SECOND = 25 };
-
-/* Everything that a page borrows, freed at the end. */
+/* A page of a mesh. */
 typedef struct Show {
-    Result *result;
+    ShowData *data;
     const ShowDef *def;
     int vertex_count, face_count;
     const int (*faces)[3];
     const double (*rest)[3], (*magnetization)[3];
     char *field;
     PicturePanel *panels;
-    int *steps;  /* [panel] the frame that it shows; -1: the last */
-    bool motion; /* frames are moments in time */
-    int panel_count, kept_count, block_count;
-    Array *kept;
-    void **blocks;
+    int *steps; /* [panel] the frame that it shows; -1: the last */
+    int panel_count;
 } Show;
 
 ShowDef show_default(void)
@@ -30,38 +26,13 @@ ShowDef show_default(void)
     return (ShowDef){.frame = -1, .arrows = true, .history = true, .width = 1600};
 }
 
-static void *block(Show *show, size_t count, size_t size)
-{
-    size_t blocks = (size_t)show->block_count++;
-    show->blocks = mem_resize(show->blocks, blocks, blocks + 1, sizeof *show->blocks);
-    return show->blocks[blocks] = mem_alloc(count, size);
-}
-
-static void *keep(Show *show, Array array)
-{
-    size_t count = (size_t)show->kept_count++;
-    show->kept = mem_resize(show->kept, count, count + 1, sizeof *show->kept);
-    show->kept[count] = array;
-    return (void *)array.data;
-}
-
-/* A dataset of this many numbers; NULL where there is none. */
-static void *dataset(Show *show, const char *path, ArrayType type, size_t count)
-{
-    Array array;
-    if (!result_has(show->result, path) || !result_read(show->result, path, &array, NULL)) return NULL;
-    if (array.type == type && array_count(&array) == count) return keep(show, array);
-    array_clear(&array);
-    return NULL;
-}
-
 static bool read_mesh(Show *show, Error *err)
 {
     Array faces, rest;
-    if (!result_read(show->result, "slender/faces", &faces, err)) return false;
-    keep(show, faces);
-    if (!result_read(show->result, "slender/rest", &rest, err)) return false;
-    keep(show, rest);
+    if (!result_read(show->data->result, "slender/faces", &faces, err)) return false;
+    show_keep(show->data, faces);
+    if (!result_read(show->data->result, "slender/rest", &rest, err)) return false;
+    show_keep(show->data, rest);
     if (faces.type != ARRAY_INT32 || rest.type != ARRAY_FLOAT64 || faces.rank != 2 || rest.rank != 2)
         return error_set(err, "the result's mesh is not as slender writes it");
     show->face_count = faces.dims[0];
@@ -69,7 +40,7 @@ static bool read_mesh(Show *show, Error *err)
     show->faces = (void *)faces.data;
     show->rest = (void *)rest.data;
     show->magnetization =
-        dataset(show, "slender/design/magnetization", ARRAY_FLOAT64, 3 * (size_t)show->face_count);
+        show_dataset(show->data, "slender/design/magnetization", ARRAY_FLOAT64, 3 * (size_t)show->face_count);
     return true;
 }
 
@@ -90,7 +61,7 @@ static Edges face_edges(const Show *show, const double (*x)[3], int face)
 /* Magnetisation as the faces carry it: M = a e1 + b e2 + c n at rest is a e1' + b e2' + c n' now. */
 static const double (*carried(Show *show, const double (*x)[3], const double (*M)[3]))[3]
 {
-    double(*vectors)[3] = block(show, (size_t)show->face_count, sizeof *vectors);
+    double(*vectors)[3] = show_block(show->data, (size_t)show->face_count, sizeof *vectors);
     for (int f = 0; f < show->face_count; f++) {
         Edges rest = face_edges(show, show->rest, f), now = face_edges(show, x, f);
         Vec3 m = vec3_load(M[f]);
@@ -113,7 +84,7 @@ static bool varies(const double *values, int count)
 
 static const double *lengths(Show *show, const double (*vectors)[3])
 {
-    double *r = block(show, (size_t)show->face_count, sizeof *r);
+    double *r = show_block(show->data, (size_t)show->face_count, sizeof *r);
     for (int f = 0; f < show->face_count; f++) r[f] = vec3_length(vec3_load(vectors[f]));
     return r;
 }
@@ -123,7 +94,7 @@ static const double *lengths(Show *show, const double (*vectors)[3])
 static bool face_field(Show *show, int step, const double **values, const char **name, const char **unit,
                        Error *err)
 {
-    const double *young = dataset(show, "slender/design/young", ARRAY_FLOAT64, (size_t)show->face_count);
+    const double *young = show_dataset(show->data, "slender/design/young", ARRAY_FLOAT64, (size_t)show->face_count);
     const char *asked = show->def->field;
     *values = NULL;
     if (!asked)
@@ -136,9 +107,9 @@ static bool face_field(Show *show, int step, const double **values, const char *
     Array array;
     char path[160];
     snprintf(path, sizeof path, "CellData/%.120s", asked);
-    int steps = result_step_count(show->result);
-    if (!result_read_step(show->result, path, step < 0 ? steps - 1 : step, &array, err)) return false;
-    *values = keep(show, array);
+    int steps = result_step_count(show->data->result);
+    if (!result_read_step(show->data->result, path, step < 0 ? steps - 1 : step, &array, err)) return false;
+    *values = show_keep(show->data, array);
     *unit = array.unit && array.unit[0] ? array.unit : "";
     if (array_count(&array) != (size_t)show->face_count)
         return error_set(err, "'%s' is not one number per face", asked);
@@ -147,13 +118,6 @@ static bool face_field(Show *show, int step, const double **values, const char *
 
 /* ---- Panels ---- */
 
-/* A text that lives as long as the page. */
-static char *text(Show *show, const char *from)
-{
-    char *copy = block(show, strlen(from) + 1, 1);
-    return strcpy(copy, from);
-}
-
 static PicturePanel *add_panel(Show *show, const char *name, const double (*x)[3])
 {
     size_t count = (size_t)show->panel_count++;
@@ -161,45 +125,29 @@ static PicturePanel *add_panel(Show *show, const char *name, const double (*x)[3
     show->steps = mem_resize(show->steps, count, count + 1, sizeof *show->steps);
     show->steps[count] = -1;
     PicturePanel *panel = &show->panels[count];
-    *panel = (PicturePanel){.name = text(show, name), .x = x};
+    *panel = (PicturePanel){.name = name, .x = x};
     if (show->def->arrows && show->magnetization) panel->vectors = carried(show, x, show->magnetization);
     return panel;
 }
 
-/* A frame, with its field; of a motion its time is its name. */
+/* A frame, with its field. */
 static bool add_frame(Show *show, int frame, Error *err)
 {
-    Array array, flux, times;
-    char name[64];
-    if (frame >= result_step_count(show->result))
-        return error_set(err, "the result has %d frames, from 0", result_step_count(show->result));
-    if (!result_read_step(show->result, "Points", frame, &array, err)) return false;
-    snprintf(name, sizeof name, "frame %d", frame);
-    if (show->motion && result_read_rows(show->result, "VTKHDF/Steps/Values", frame, 1, &times, NULL)) {
-        snprintf(name, sizeof name, "t = %.4g s", *(const double *)times.data);
-        array_clear(&times);
-    }
-    PicturePanel *panel = add_panel(show, name, keep(show, array));
+    Array array, flux;
+    Result *result = show->data->result;
+    if (!show_check_frame(show->data, frame, err)) return false;
+    if (!result_read_step(result, "Points", frame, &array, err)) return false;
+    PicturePanel *panel =
+        add_panel(show, show_frame_name(show->data, frame), show_keep(show->data, array));
     show->steps[show->panel_count - 1] = frame;
-    if (result_has(show->result, "slender/frames/flux_density") &&
-        result_read_rows(show->result, "slender/frames/flux_density", frame, 1, &flux, NULL)) {
-        char number[64], note[80];
-        panel->flux_density = keep(show, flux);
+    if (result_has(result, "slender/frames/flux_density") &&
+        result_read_rows(result, "slender/frames/flux_density", frame, 1, &flux, NULL)) {
+        char number[64];
+        panel->flux_density = show_keep(show->data, flux);
         unit_format(vec3_length(vec3_load(panel->flux_density)), "T", number, sizeof number);
-        snprintf(note, sizeof note, "B = %s", number);
-        panel->note = text(show, note);
+        panel->note = show_text(show->data, "B = %s", number);
     }
     return true;
-}
-
-/* Frames at equal distances, the first and the last among them. */
-static bool add_frames(Show *show, int most, Error *err)
-{
-    int frames = result_step_count(show->result), count = frames < most ? frames : most;
-    for (int k = 0; k < count; k++)
-        if (!add_frame(show, count > 1 ? (int)lround((double)k * (frames - 1) / (count - 1)) : 0, err))
-            return false;
-    return count > 0 || error_set(err, "the result has no frames");
 }
 
 static void add_case(Show *show, const char *name)
@@ -207,18 +155,18 @@ static void add_case(Show *show, const char *name)
     char path[256];
     size_t count = 3 * (size_t)show->vertex_count;
     snprintf(path, sizeof path, "slender/cases/%.200s/x", name);
-    const double(*x)[3] = dataset(show, path, ARRAY_FLOAT64, count);
+    const double(*x)[3] = show_dataset(show->data, path, ARRAY_FLOAT64, count);
     if (!x) return;
-    PicturePanel *panel = add_panel(show, name, x);
+    PicturePanel *panel = add_panel(show, show_text(show->data, "%s", name), x);
     snprintf(path, sizeof path, "slender/cases/%.200s/target", name);
-    panel->target = dataset(show, path, ARRAY_FLOAT64, count);
+    panel->target = show_dataset(show->data, path, ARRAY_FLOAT64, count);
     snprintf(path, sizeof path, "slender/cases/%.200s/flux_density", name);
-    const double *flux = dataset(show, path, ARRAY_FLOAT64, 3);
+    const double *flux = show_dataset(show->data, path, ARRAY_FLOAT64, 3);
     if (flux && vec3_length(vec3_load(flux)) > 0) panel->flux_density = flux;
     Array status;
     snprintf(path, sizeof path, "slender/cases/%.200s/status", name);
-    if (result_read(show->result, path, &status, NULL)) {
-        panel->note = text(show, status.data);
+    if (result_read(show->data->result, path, &status, NULL)) {
+        panel->note = show_text(show->data, "%s", (const char *)status.data);
         array_clear(&status);
     }
 }
@@ -227,8 +175,8 @@ static void add_case(Show *show, const char *name)
 static bool add_cases(Show *show, Error *err)
 {
     Array names;
-    if (!result_has(show->result, "slender/case_names")) return error_set(err, "the result has no state yet");
-    if (!result_read(show->result, "slender/case_names", &names, err)) return false;
+    if (!result_has(show->data->result, "slender/case_names")) return error_set(err, "the result has no state yet");
+    if (!result_read(show->data->result, "slender/case_names", &names, err)) return false;
     char *rest = NULL;
     for (char *name = strtok_r((char *)names.data, "\n", &rest); name; name = strtok_r(NULL, "\n", &rest))
         if (!show->def->only || !strcmp(show->def->only, name)) add_case(show, name);
@@ -252,11 +200,13 @@ static bool dress(Show *show, PictureScene *page, Error *err)
 /* What was asked for: moments for an animation or stills, one frame, or the final state of each case. */
 static bool add_panels(Show *show, Error *err)
 {
-    const ShowDef *def = show->def;
-    int stills = def->stills ? def->stills : show->motion && !def->only ? STILLS : 0;
-    if (def->frame >= 0) return add_frame(show, def->frame, err);
-    if (def->seconds > 0) return add_frames(show, (int)ceil(def->seconds * FRAMES_PER_SECOND), err);
-    return stills ? add_frames(show, stills, err) : add_cases(show, err);
+    if (show->def->frame >= 0) return add_frame(show, show->def->frame, err);
+    int count = show_frame_count(show->data);
+    for (int k = 0; k < count; k++)
+        if (!add_frame(show, show_frame(show->data, k), err)) return false;
+    if (count > 0) return true;
+    bool frames = show->def->seconds > 0 || show->def->stills > 0;
+    return frames ? show_check_frame(show->data, 0, err) : add_cases(show, err);
 }
 
 static bool write_page(Show *show, const char *result, const char *picture, Error *err)
@@ -264,8 +214,6 @@ static bool write_page(Show *show, const char *result, const char *picture, Erro
     const ShowDef *def = show->def;
     PictureScene page = picture_default();
     if (!read_mesh(show, err)) return false;
-    show->motion = result_has(show->result, "slender/history/time") ||
-                   result_has(show->result, "slender/trajectory/flux_density");
     if (!add_panels(show, err)) return false;
     if (!dress(show, &page, err)) return false;
     const char *slash = strrchr(result, '/');
@@ -276,36 +224,22 @@ static bool write_page(Show *show, const char *result, const char *picture, Erro
     memcpy(page.view, def->view, sizeof page.view);
     page.same_view = show->steps[0] >= 0;
     if (def->seconds > 0) return picture_animate(picture, &page, def->seconds / show->panel_count, err);
-    Array history = {0};
-    ChartSeries series = {.name = "objective"};
-    Chart chart = {.x_label = "evaluation",
-                   .x_unit = "",
-                   .y_label = "objective",
-                   .y_unit = "",
-                   .series_count = 1,
-                   .series = &series};
-    if (def->history && result_has(show->result, "slender/history/objective") &&
-        result_read(show->result, "slender/history/objective", &history, NULL)) {
-        keep(show, history);
-        series.count = (int)array_count(&history), series.y = history.data;
-        page.history = &chart;
-    }
+    Chart history;
+    if (show_history(show->data, &history)) page.history = &history;
     return picture_write(picture, &page, err);
 }
 
 bool show_result(const char *result, const char *picture, const ShowDef *def, Error *err)
 {
-    Show *show = mem_alloc(1, sizeof *show);
-    show->def = def;
-    show->result = result_open(result, err);
-    bool ok = show->result && write_page(show, result, picture, err);
-    for (int k = 0; k < show->kept_count; k++) array_clear(&show->kept[k]);
-    for (int k = 0; k < show->block_count; k++) mem_free(show->blocks[k]);
-    mem_free(show->kept);
-    mem_free(show->blocks);
-    mem_free(show->panels);
-    mem_free(show->steps);
-    result_close(show->result);
-    mem_free(show);
+    ShowData data;
+    Show show = {.data = &data, .def = def};
+    bool ok = show_data_open(&data, result, def, err);
+    if (ok && show_has_rod(&data))
+        ok = show_rod(&data, result, picture, err);
+    else
+        ok = ok && write_page(&show, result, picture, err);
+    mem_free(show.panels);
+    mem_free(show.steps);
+    show_data_clear(&data);
     return ok;
 }

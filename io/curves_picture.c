@@ -27,13 +27,7 @@ static PageHead scene_head(const CurvesScene *scene)
 
 /* ---- The legend ---- */
 
-static bool set_shown(const CurvesScene *scene, int s, int only)
-{
-    return scene->sets[s].name && (!scene->sets[s].moment || only < 0 || s == only);
-}
-
-/* A piece of the line, in rows from the left; draws nothing where canvas is NULL, and returns where the rows
- * end. ruler: a canvas to measure texts with. */
+/* Entries in rows from the left. */
 typedef struct Legend {
     Canvas *canvas, *ruler; /* to draw on, NULL: nothing is drawn; to measure texts with */
     double x, y;
@@ -56,22 +50,29 @@ static Vec2 legend_place(Legend *legend, double sample, const char *name)
     return at;
 }
 
-/* Names of the curves with a piece of their line each, in rows; returns where they end. canvas: NULL to
- * measure only. */
+/* Sets that are moments, or those that are none: names with a piece of their line each. */
+static void legend_add_sets(Legend *legend, const CurvesScene *scene, bool moments, int only)
+{
+    for (int s = 0; s < scene->set_count; s++) {
+        const CurvesSet *set = &scene->sets[s];
+        if (!set->name || set->moment != moments || (moments && only >= 0 && s != only)) continue;
+        Vec2 at = legend_place(legend, SAMPLE, set->name);
+        if (legend->canvas)
+            canvas_line(legend->canvas, at, (Vec2){at.x + SAMPLE, at.y},
+                        (Pen){set->color, set->width, set->dash});
+    }
+}
+
+/* Returns where the legend ends. The names of moments come last: in an animation nothing else moves. */
 static double draw_legend(Canvas *canvas, Canvas *ruler, const CurvesScene *scene, int only)
 {
     Legend legend = {canvas, ruler, PAGE_MARGIN, page_head_end(scene_head(scene)) + 0.5 * LEGEND_ROW};
-    for (int s = 0; s < scene->set_count; s++) {
-        const CurvesSet *set = &scene->sets[s];
-        if (!set_shown(scene, s, only)) continue;
-        Vec2 at = legend_place(&legend, SAMPLE, set->name);
-        if (canvas)
-            canvas_line(canvas, at, (Vec2){at.x + SAMPLE, at.y}, (Pen){set->color, set->width, set->dash});
-    }
+    legend_add_sets(&legend, scene, false, only);
     if (scene->clamp_count) {
         Vec2 at = legend_place(&legend, SQUARE, "clamp");
         if (canvas) curves_draw_clamp(canvas, (Vec2){at.x + 0.5 * SQUARE, at.y}, SQUARE);
     }
+    legend_add_sets(&legend, scene, true, only);
     return legend.x > PAGE_MARGIN ? legend.y + LEGEND_ROW : legend.y;
 }
 

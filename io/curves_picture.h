@@ -6,10 +6,10 @@
  *     [ front: x, z ]  [ side: y, z ]  [ top: x, y ]
  *     [ chart ]  [ chart ]
  *
- * All views have the same scale. They are arranged in a row, a column or with the top view over the front
- * one, and the charts beside or below them, as the curves become largest; of plane curves only the view of
- * their plane is shown. Knows arrays only, positions in metres. A scene is plain data that borrows
- * everything; start from curves_default() and fill in what there is. */
+ * All views have the same scale. They are arranged in a row, in a column or with the top view over the front
+ * one, and the charts below them, beside them or in their free corner, so that the curves become as large as
+ * they can; of plane curves only the view of their plane is shown. Knows arrays only, positions in metres. A
+ * scene is plain data that borrows everything; start from curves_default() and fill in what there is. */
 #pragma once
 #include "base/error.h"
 #include "io/chart.h"
