@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { LINES_MAX = 4, LINE_LENGTH = 110, CHARTED_STRANDS = 20 };
+enum { LINES_MAX = 4, LINE_LENGTH = 110, STRANDS_MANY = 20 };
 
 static const Color input_ink = {0.62, 0.62, 0.64, 1};
 
@@ -117,37 +117,61 @@ static bool read_frame(RodPage *page, int frame, const double (**points)[3], Err
 static bool add_frame(RodPage *page, int frame, Error *err)
 {
     if (!read_frame(page, frame, &page->x, err)) return false;
-    add_simulated(page, show_frame_name(page->data, frame), page->x);
+    add_simulated(page, show_text(page->data, "simulated, %s", show_frame_name(page->data, frame)), page->x);
     return true;
 }
 
-/* Later moments are darker; in an animation each is seen alone. */
-static bool add_moments(RodPage *page, int count, Error *err)
+/* Moments over each other, later ones darker. */
+static bool add_stills(RodPage *page, int count, Error *err)
 {
-    bool still = !(page->data->def->seconds > 0);
     page->x = NULL;
     for (int k = 0; k < count; k++) {
         int frame = show_frame(page->data, k);
         const double(*points)[3];
         if (!read_frame(page, frame, &points, err)) return false;
         CurvesSet *set = add_set(page, show_frame_name(page->data, frame), points, colormap_series(1));
-        if (still && count > 1) set->color = curves_fade(set->color, (double)k / (count - 1));
+        if (count > 1) set->color = curves_fade(set->color, (double)k / (count - 1));
         set->moment = true;
     }
     return true;
 }
 
-/* What was asked for: one frame, moments of a motion, or the final state. */
+/* Moments one after the other. */
+static bool add_motion(RodPage *page, int count, Error *err)
+{
+    for (int k = 0; k < count; k++) {
+        if (!add_frame(page, show_frame(page->data, k), err)) return false;
+        CurvesSet *set = &page->sets[page->set_count - 1];
+        set->moment = true, set->dash = 0; /* dashes that crawl along a moving curve are no help */
+    }
+    return true;
+}
+
+/* The final state, or that of the last frame. */
+static bool add_final(RodPage *page, Error *err)
+{
+    int frames = result_step_count(page->data->result);
+    if (!page->x && frames > 0 && !read_frame(page, frames - 1, &page->x, err)) return false;
+    if (page->x) add_simulated(page, "simulated", page->x);
+    return true;
+}
+
+/* What was asked for: one frame, moments of a motion, or the final state. Many strands in moments over each
+ * other would show nothing but their hull: they are shown so only when that is asked for. */
 static bool add_curves(RodPage *page, Error *err)
 {
     const ShowDef *def = page->data->def;
+    bool moving = def->seconds > 0, asked = moving || def->stills > 0;
     int count = show_frame_count(page->data);
+    if (!asked && page->strand_count > STRANDS_MANY) count = 0;
+    bool stills = count > 0 && !moving && def->frame < 0;
     if (page->input) add_set(page, "input", page->input, input_ink)->width = 3.4;
-    if (page->natural) add_set(page, "natural", page->natural, colormap_series(0));
+    if (page->natural && !stills) add_set(page, "natural", page->natural, colormap_series(0));
     if (def->frame >= 0) return add_frame(page, def->frame, err);
-    if (count > 0) return add_moments(page, count, err);
-    if (def->seconds > 0 || def->stills > 0) return show_check_frame(page->data, 0, err);
-    if (page->x) add_simulated(page, "simulated", page->x);
+    if (count == 0) return asked ? show_check_frame(page->data, 0, err) : add_final(page, err);
+    if (moving) return add_motion(page, count, err);
+    if (!add_stills(page, count, err)) return false;
+    if (page->natural) add_set(page, "natural", page->natural, colormap_series(0))->width = 1;
     return true;
 }
 
@@ -218,7 +242,7 @@ static void add_stability(RodPage *page)
         add_text(page, stable ? "stable" : "unstable");
     add_number(page, "slender/rod/lowest_eigenvalue", "lowest eigenvalue", true);
     add_number(page, "slender/rod/critical_young", "stable above a Young's modulus of", false);
-    add_number(page, "slender/rod/morse_index", "Morse index", false);
+    if (values && stable < count) add_number(page, "slender/rod/morse_index", "Morse index", false);
 }
 
 /* Each number below a group, named as it is: metrics/largest_distance is "largest distance". */
@@ -308,7 +332,7 @@ static void add_distance(RodPage *page, const double *s)
     *series = make_series(page, "simulated", s, distance, 1);
     add_chart(page, (Chart){.x_label = "s",
                             .x_unit = "m",
-                            .y_label = "distance to the input",
+                            .y_label = "distance to input",
                             .y_unit = "m",
                             .y_axis = CHART_LINEAR,
                             .series_count = 1,
@@ -319,7 +343,7 @@ static void add_distance(RodPage *page, const double *s)
 static void add_charts(RodPage *page)
 {
     const double *s = show_dataset(page->data, "slender/rod/s", ARRAY_FLOAT64, (size_t)page->point_count);
-    bool few = s && page->strand_count <= CHARTED_STRANDS;
+    bool few = s && page->strand_count <= STRANDS_MANY;
     Chart history;
     if (few) add_strains(page, s);
     if (show_history(page->data, &history)) add_chart(page, history);

@@ -15,13 +15,13 @@ static const char usage[] =
     "  -o FILE        default: the result's name with .png, of an animation .webp\n"
     "  --animation    all frames one after the other, 25 a second; so does a FILE.webp\n"
     "  --seconds S    how long that takes; default: 6\n"
-    "  --stills N     N moments side by side; default for a motion: 6\n"
+    "  --stills N     N moments side by side, of rods over each other; default for a motion: 6\n"
     "  --frame N      a frame of the run, from 0\n"
     "                 without any of these: the final state of every load case\n"
     "  --case NAME    one load case\n"
     "  --field NAME   colours: magnetization, young, energy_membrane, .., or none\n"
     "  --target WHERE the target beside the body, over it as wires, or both\n"
-    "  --view X,Y,Z   direction to the eye; default: three quarters from above";
+    "  --view X,Y,Z   direction to the eye; default: three quarters from above; of rods: front, side and top";
 
 static bool parse_target(const char *word, PictureTarget *target)
 {

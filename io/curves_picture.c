@@ -57,9 +57,9 @@ static void legend_add_sets(Legend *legend, const CurvesScene *scene, bool momen
         const CurvesSet *set = &scene->sets[s];
         if (!set->name || set->moment != moments || (moments && only >= 0 && s != only)) continue;
         Vec2 at = legend_place(legend, SAMPLE, set->name);
-        if (legend->canvas)
-            canvas_line(legend->canvas, at, (Vec2){at.x + SAMPLE, at.y},
-                        (Pen){set->color, set->width, set->dash});
+        Pen pen = curves_pen(set);
+        pen.color = set->color, pen.width = set->width;
+        if (legend->canvas) canvas_line(legend->canvas, at, (Vec2){at.x + SAMPLE, at.y}, pen);
     }
 }
 

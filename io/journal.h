@@ -8,7 +8,7 @@
  *
  * Kinds used by slender (index 0 where there is only one):
  *   meta        scene (text), versions (text)
- *   static      rest [n_v,3], faces [n_f,3], edges [n_e,2]
+ *   static      rest [n_v,3], faces [n_f,3], edges [n_e,2]; of curves lines [L,2]: first point, number of points
  *   frame       index n: x [n_v,3], time, turns, cell/<name> [n_f] or [n_f,3], point/<name>
  *   evaluation  index k: unknowns, gradient, and the scalars objective, gradient_norm, newton_iterations,
  * seconds state       what the run needs to go on final       arrays of the result, named by their path below

@@ -2,8 +2,9 @@
  *
  * An HDF5 file in two groups; every dataset of numbers has a text attribute `unit`.
  *
- * /VTKHDF, if the journal has static/faces and frames: an UnstructuredGrid over time (VTKHDF 2.0) for
- * ParaView 5.12 and later. The triangles are stored once; Points float32 [T*n_v,3], CellData/<name> [T*n_f]
+ * /VTKHDF, if the journal has frames and static/faces or static/lines: an UnstructuredGrid over time (VTKHDF
+ * 2.0) for ParaView 5.12 and later, of triangles or, as rows of static/lines say (first point and number of
+ * points), of polylines. The cells are stored once; Points float32 [T*n_v,3], CellData/<name> [T*n_f]
  * or [T*n_f,3] from the frames' arrays cell/<name>, PointData/<name> from point/<name>, one chunk per step,
  * gzip 1 and shuffle, float32 unless double_frames. An array that a frame does not have is the one of the
  * frame before it (Steps/CellDataOffsets says which), so that what never changes need only be in the first
@@ -20,7 +21,8 @@
  * (uint64) and the CRC32 of these bytes (uint32), little-endian. A file whose trailer does not fit is never
  * handed to HDF5.
  *
- * NAME.xdmf beside it shows the same steps to ParaView 5.11, whose VTKHDF reader cannot do time. */
+ * NAME.xdmf beside it shows the same steps to ParaView 5.11, whose VTKHDF reader cannot do time. Polylines of
+ * different lengths are listed for it in /slender/xdmf_topology (2, the number of points, the points; and so on). */
 #pragma once
 #include "base/error.h"
 #include "io/array.h"
@@ -58,7 +60,7 @@ bool result_read_rows(Result *result, const char *path, int first, int count, Ar
 int result_step_count(Result *result);
 
 /* One step of /VTKHDF: name is "Points", "CellData/<name>" or "PointData/<name>"; the array has one row per
- * vertex or face. */
+ * vertex or cell. */
 bool result_read_step(Result *result, const char *name, int step, Array *array, Error *err);
 
 /* The linked library's version, e.g. "1.10.8". */

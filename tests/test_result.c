@@ -198,10 +198,134 @@ static void test_h5py(void **state)
         0);
 }
 
+/* ---- Polylines ---- */
+
+enum { LINES = 3, POINTS = 12 };
+
+/* Two frames of three lines; a number for each line, one for each point. */
+static Journal *make_lines(const int (*lines)[2])
+{
+    Error err;
+    unlink("test_lines.run");
+    Journal *journal = journal_open("test_lines.run", JOURNAL_NEW, &err);
+    if (!journal) fail_msg("%s", err.text);
+    Array statics = array_int("lines", lines[0], 2, LINES, 2);
+    assert_true(journal_put(journal, "static", 0, &statics, 1, &err));
+    for (int frame = 0; frame < 2; frame++) {
+        double x[POINTS][3], time = frame, cell[LINES] = {frame, frame + 1, frame + 2}, s[POINTS];
+        for (int i = 0; i < POINTS; i++) {
+            s[i] = i;
+            for (int k = 0; k < 3; k++) x[i][k] = position(frame, 3 * i + k);
+        }
+        Array arrays[] = {array_float("x", "m", x[0], 2, POINTS, 3), array_float("time", "s", &time, 0, 0, 0),
+                          array_float("cell/strand", "", cell, 1, LINES, 0),
+                          array_float("point/s", "m", s, 1, POINTS, 0)};
+        assert_true(journal_put(journal, "frame", frame, arrays, 4, &err));
+    }
+    return journal;
+}
+
+static void expect_ints(Result *result, const char *path, const int *expected, int count)
+{
+    Error err;
+    Array array;
+    if (!result_read(result, path, &array, &err)) fail_msg("%s", err.text);
+    assert_int_equal(array.type, ARRAY_INT32);
+    assert_int_equal(array_count(&array), count);
+    assert_memory_equal(array.data, expected, (size_t)count * sizeof *expected);
+    array_clear(&array);
+}
+
+static Result *write_lines(const int (*lines)[2])
+{
+    Error err;
+    Journal *journal = make_lines(lines);
+    if (!result_write(journal, "test_lines.vtkhdf", (ResultDef){true}, &err)) fail_msg("%s", err.text);
+    journal_close(journal, &err);
+    Result *result = result_open("test_lines.vtkhdf", &err);
+    if (!result) fail_msg("%s", err.text);
+    return result;
+}
+
+static void expect_sidecar(const char *words)
+{
+    size_t size;
+    char *text = read_all("test_lines.xdmf", &size);
+    if (!strstr(text, words)) fail_msg("the sidecar does not say %s:\n%s", words, text);
+    free(text);
+}
+
+static void test_lines(void **state)
+{
+    (void)state;
+    long blocks = mem_live_count();
+    Error err;
+    Array array;
+    const int lines[LINES][2] = {{0, 4}, {4, 3}, {7, 5}};
+    Result *result = write_lines(lines);
+    expect_ints(result, "slender/lines", lines[0], 2 * LINES);
+    expect_ints(result, "VTKHDF/Types", (const int[]){4, 4, 4}, LINES);
+    expect_ints(result, "VTKHDF/Offsets", (const int[]){0, 4, 7, 12}, LINES + 1);
+    expect_ints(result, "VTKHDF/Connectivity", (const int[]){0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11}, POINTS);
+    expect_ints(result, "slender/xdmf_topology",
+                (const int[]){2, 4, 0, 1, 2, 3, 2, 3, 4, 5, 6, 2, 5, 7, 8, 9, 10, 11}, 2 * LINES + POINTS);
+    expect_sidecar("<Topology TopologyType=\"Mixed\" NumberOfElements=\"3\"><DataItem Dimensions=\"18\" "
+                   "NumberType=\"Int\" Precision=\"8\" Format=\"HDF\">test_lines.vtkhdf:/slender/"
+                   "xdmf_topology|0:1:18:18</DataItem>");
+    assert_true(result_read_step(result, "Points", 1, &array, &err) && array.dims[0] == POINTS);
+    assert_true(((const double *)array.data)[35] == position(1, 35));
+    array_clear(&array);
+    assert_true(result_read_step(result, "CellData/strand", 1, &array, &err) && array.dims[0] == LINES);
+    assert_true(((const double *)array.data)[2] == 3);
+    array_clear(&array);
+    assert_true(result_read_step(result, "PointData/s", 1, &array, &err) && array.dims[0] == POINTS);
+    assert_true(((const double *)array.data)[11] == 11);
+    array_clear(&array);
+    assert_true(result_read(result, "slender/state/x", &array, &err) &&
+                ((const double *)array.data)[35] == position(1, 35));
+    array_clear(&array);
+    assert_true(result_read(result, "slender/frames/x", &array, &err) && array.rank == 3 &&
+                array.dims[1] == POINTS);
+    array_clear(&array);
+    result_close(result);
+    assert_int_equal(mem_live_count(), blocks);
+}
+
+/* XDMF's own kind of polylines has one length; these begin at any points. */
+static void test_equal_lines(void **state)
+{
+    (void)state;
+    Result *result = write_lines((const int[LINES][2]){{8, 4}, {0, 4}, {4, 4}});
+    expect_ints(result, "VTKHDF/Connectivity", (const int[]){8, 9, 10, 11, 0, 1, 2, 3, 4, 5, 6, 7}, POINTS);
+    assert_false(result_has(result, "slender/xdmf_topology"));
+    expect_sidecar(
+        "<Topology TopologyType=\"Polyline\" NumberOfElements=\"3\" NodesPerElement=\"4\"><DataItem "
+        "Dimensions=\"12\"");
+    result_close(result);
+}
+
+static void test_bad_lines(void **state)
+{
+    (void)state;
+    const int bad[][LINES][2] = {
+        {{0, 4}, {4, 3}, {7, 6}}, {{0, 4}, {-1, 3}, {7, 5}}, {{0, 1}, {4, 3}, {7, 5}}};
+    for (int k = 0; k < 3; k++) {
+        Error err;
+        Journal *journal = make_lines(bad[k]);
+        assert_false(result_write(journal, "test_lines.vtkhdf", (ResultDef){0}, &err));
+        assert_string_equal(err.text,
+                            "static/lines must be rows of a first point and a number of points, 2 or more, "
+                            "among the 12 of a frame");
+        journal_close(journal, &err);
+    }
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_read_back), cmocka_unit_test(test_deterministic),
-                                       cmocka_unit_test(test_damage), cmocka_unit_test(test_unwritable),
-                                       cmocka_unit_test(test_h5py)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_read_back),   cmocka_unit_test(test_deterministic),
+        cmocka_unit_test(test_damage),      cmocka_unit_test(test_unwritable),
+        cmocka_unit_test(test_h5py),        cmocka_unit_test(test_lines),
+        cmocka_unit_test(test_equal_lines), cmocka_unit_test(test_bad_lines)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
