@@ -66,14 +66,15 @@ static void legend_add_sets(Legend *legend, const CurvesScene *scene, bool momen
 /* Returns where the legend ends. The names of moments come last: in an animation nothing else moves. */
 static double draw_legend(Canvas *canvas, Canvas *ruler, const CurvesScene *scene, int only)
 {
-    Legend legend = {canvas, ruler, PAGE_MARGIN, page_head_end(scene_head(scene)) + 0.5 * LEGEND_ROW};
+    double top = page_head_end(scene_head(scene));
+    Legend legend = {canvas, ruler, PAGE_MARGIN, top + 0.5 * LEGEND_ROW};
     legend_add_sets(&legend, scene, false, only);
     if (scene->clamp_count) {
         Vec2 at = legend_place(&legend, SQUARE, "clamp");
         if (canvas) curves_draw_clamp(canvas, (Vec2){at.x + 0.5 * SQUARE, at.y}, SQUARE);
     }
     legend_add_sets(&legend, scene, true, only);
-    return legend.x > PAGE_MARGIN ? legend.y + LEGEND_ROW : legend.y;
+    return legend.x > PAGE_MARGIN ? legend.y + LEGEND_ROW : top;
 }
 
 /* ---- The page ---- */
