@@ -94,7 +94,8 @@ static const double *lengths(Show *show, const double (*vectors)[3])
 static bool face_field(Show *show, int step, const double **values, const char **name, const char **unit,
                        Error *err)
 {
-    const double *young = show_dataset(show->data, "slender/design/young", ARRAY_FLOAT64, (size_t)show->face_count);
+    const double *young =
+        show_dataset(show->data, "slender/design/young", ARRAY_FLOAT64, (size_t)show->face_count);
     const char *asked = show->def->field;
     *values = NULL;
     if (!asked)
@@ -137,8 +138,7 @@ static bool add_frame(Show *show, int frame, Error *err)
     Result *result = show->data->result;
     if (!show_check_frame(show->data, frame, err)) return false;
     if (!result_read_step(result, "Points", frame, &array, err)) return false;
-    PicturePanel *panel =
-        add_panel(show, show_frame_name(show->data, frame), show_keep(show->data, array));
+    PicturePanel *panel = add_panel(show, show_frame_name(show->data, frame), show_keep(show->data, array));
     show->steps[show->panel_count - 1] = frame;
     if (result_has(result, "slender/frames/flux_density") &&
         result_read_rows(result, "slender/frames/flux_density", frame, 1, &flux, NULL)) {
@@ -175,7 +175,8 @@ static void add_case(Show *show, const char *name)
 static bool add_cases(Show *show, Error *err)
 {
     Array names;
-    if (!result_has(show->data->result, "slender/case_names")) return error_set(err, "the result has no state yet");
+    if (!result_has(show->data->result, "slender/case_names"))
+        return error_set(err, "the result has no state yet");
     if (!result_read(show->data->result, "slender/case_names", &names, err)) return false;
     char *rest = NULL;
     for (char *name = strtok_r((char *)names.data, "\n", &rest); name; name = strtok_r(NULL, "\n", &rest))

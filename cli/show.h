@@ -1,12 +1,13 @@
-/* show.h - a picture of a result: its load cases or one frame, targets, arrows and the history of a design.
- */
+/* show.h - a picture of a result: its load cases or one frame, targets, arrows and the history of a design;
+ * of rods their curves (show_rod.h). */
 #pragma once
 #include "base/error.h"
 #include "io/picture.h"
 
 typedef struct ShowDef {
-    int frame;        /* of /VTKHDF; -1: the final state of every load case */
-    int stills;       /* so many moments of the run side by side; 0: 6 of a motion, else none */
+    int frame;  /* of /VTKHDF; -1: the final state of every load case */
+    int stills; /* so many moments of the run side by side, of rods over each other; 0: 6 of a motion, else
+                   none */
     double seconds;   /* how long an animation takes, at 25 moments a second; 0: no animation */
     const char *only; /* one load case; NULL: all                           */
     const char
@@ -20,6 +21,7 @@ typedef struct ShowDef {
 
 ShowDef show_default(void);
 
-/* Writes picture (.png, .svg or .pdf; an animation .webp) from the result file. False and a sentence where either cannot be used.
+/* Writes picture (.png, .svg or .pdf; an animation .webp) from the result file. False and a sentence where
+ * either cannot be used.
  */
 bool show_result(const char *result, const char *picture, const ShowDef *def, Error *err);
