@@ -13,7 +13,7 @@ typedef struct Names {
 
 /* Indices of f, l and p lines: from 1, or from the end when negative; what follows a slash is passed over.
  * Vertices may come later in the file, so the upper end is checked at the end. */
-static bool index_word(const Scan *scan, Word word, int vertex_count, int *index)
+bool obj_index(const Scan *scan, Word word, int vertex_count, int *index)
 {
     const char *slash = memchr(word.text, '/', (size_t)word.length);
     Word number = {word.text, slash ? (int)(slash - word.text) : word.length};
@@ -28,7 +28,7 @@ static bool index_word(const Scan *scan, Word word, int vertex_count, int *index
     return true;
 }
 
-static bool read_vertex(Scan *scan, MeshReader *reader)
+bool obj_vertex(Scan *scan, MeshReader *reader)
 {
     double x[3];
     for (int i = 0; i < 3; i++)
@@ -52,7 +52,7 @@ static bool read_face(Scan *scan, MeshReader *reader, const Names *names)
 {
     int v[3], count = 0, face = reader->mesh->face_count;
     for (Word word; scan_word(scan, &word); count++)
-        if (count < 3 && !index_word(scan, word, reader->mesh->vertex_count, &v[count])) return false;
+        if (count < 3 && !obj_index(scan, word, reader->mesh->vertex_count, &v[count])) return false;
     if (count != 3)
         return scan_refuse(scan, "a face with %d corner%s: slender takes triangles only", count,
                            count == 1 ? "" : "s");
@@ -67,7 +67,7 @@ static bool read_members(Scan *scan, MeshReader *reader, const Names *names, int
     int pair[2] = {0}, count = 0;
     for (Word word; scan_word(scan, &word); count++) {
         pair[0] = pair[1];
-        if (!index_word(scan, word, reader->mesh->vertex_count, &pair[1])) return false;
+        if (!obj_index(scan, word, reader->mesh->vertex_count, &pair[1])) return false;
         if (dim == 0) add_to_groups(reader, names, 0, &pair[1]);
         if (dim == 1 && count > 0) add_to_groups(reader, names, 1, pair);
     }
@@ -121,7 +121,7 @@ bool mesh_read_obj(Scan *scan, MeshReader *reader)
         Word word;
         scan_word(scan, &word);
         if (word_is(word, "v"))
-            ok = read_vertex(scan, reader);
+            ok = obj_vertex(scan, reader);
         else if (word_is(word, "f"))
             ok = read_face(scan, reader, &names);
         else if (word_is(word, "l"))

@@ -1,4 +1,5 @@
-/* mesh_reader.h - a MeshFile that grows while it is read. Private to the mesh readers. */
+/* mesh_reader.h - a MeshFile that grows while it is read. Private to the mesh readers and, for OBJ,
+ * polyline_file.c. */
 #pragma once
 #include "io/mesh_file.h"
 #include "io/scan.h"
@@ -24,3 +25,7 @@ void reader_group_add(MeshReader *reader, int group, const int *members);
 bool mesh_read_obj(Scan *scan, MeshReader *reader);
 bool mesh_read_ply(Scan *scan, MeshReader *reader);
 bool mesh_read_msh(Scan *scan, MeshReader *reader);
+
+/* Of OBJ: the coordinates of a v line, and a word of an f, l or p line as an index from 0. */
+bool obj_vertex(Scan *scan, MeshReader *reader);
+bool obj_index(const Scan *scan, Word word, int vertex_count, int *index);

@@ -47,19 +47,26 @@ static bool read_row(Scan *scan, Table *table, Room *room)
     return true;
 }
 
+bool table_parse(const char *path, const char *text, long length, int columns, Table *table, Error *err)
+{
+    Room room = {0};
+    *table = (Table){.columns = columns};
+    Scan scan = scan_start(path, text, (size_t)length, '#', ",;", err);
+    bool ok = true;
+    while (ok && scan_line(&scan)) ok = read_row(&scan, table, &room);
+    if (ok && table->rows == 0) ok = error_set(err, "%s: there are no numbers in it", path);
+    if (!ok) table_clear(table);
+    return ok;
+}
+
 bool table_read(const char *path, int columns, Table *table, Error *err)
 {
     char *text;
     size_t length;
-    Room room = {0};
-    *table = (Table){.columns = columns};
+    *table = (Table){0};
     if (!scan_file(path, &text, &length, err)) return false;
-    Scan scan = scan_start(path, text, length, '#', ",;", err);
-    bool ok = true;
-    while (ok && scan_line(&scan)) ok = read_row(&scan, table, &room);
-    if (ok && table->rows == 0) ok = error_set(err, "%s: there are no numbers in it", path);
+    bool ok = table_parse(path, text, (long)length, columns, table, err);
     mem_free(text);
-    if (!ok) table_clear(table);
     return ok;
 }
 

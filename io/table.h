@@ -12,6 +12,9 @@ typedef struct Table {
  * NaN or an infinity is refused with file:line. A first line of words (a header) is skipped. */
 bool table_read(const char *path, int columns, Table *table, Error *err);
 
+/* The same from memory. */
+bool table_parse(const char *path, const char *text, long length, int columns, Table *table, Error *err);
+
 /* Writes with every bit; header may be NULL. */
 bool table_write(const char *path, const char *header, const double *values, int rows, int columns,
                  Error *err);

@@ -12,6 +12,7 @@ static const double gauss_weight[GAUSS] = {0.11846344252809454, 0.23931433524968
 
 typedef struct Path {
     RodCurvePoint *point;
+    RodCurveJet *jet; /* NULL: derivatives by differences of point's places */
     void *self;
     double u0, u1;
     int panels;
@@ -21,8 +22,13 @@ typedef struct Path {
 
 static Vec3 place(Path *path, double u)
 {
-    Vec3 x = vec3(0, 0, 0);
-    if (path->point(path->self, u, &x) && isfinite(x.x + x.y + x.z)) return x;
+    Vec3 jet[3] = {{0, 0, 0}};
+    bool known = true;
+    if (path->jet)
+        path->jet(path->self, u, jet);
+    else
+        known = path->point(path->self, u, jet);
+    if (known && isfinite(jet->x + jet->y + jet->z)) return *jet;
     path->bad = u;
     return vec3(0, 0, 0);
 }
@@ -48,8 +54,8 @@ static void difference_weights(double z, double *first, double *second)
     for (int i = 0; i < POINTS; i++) first[i] = w[i][1], second[i] = w[i][2];
 }
 
-/* dx/du and, where it is asked for, d2x/du2 by differences of eighth order on points within the range. */
-static Vec3 slope(Path *path, double u, Vec3 *bend)
+/* By differences of eighth order on points within the range. */
+static Vec3 difference_slope(Path *path, double u, Vec3 *bend)
 {
     double h = (path->u1 - path->u0) / 1024, first[POINTS], second[POINTS];
     double place_of_u = (u - path->u0) / h, middle = fmin(fmax(rint(place_of_u), REACH), 1024 - REACH);
@@ -62,6 +68,16 @@ static Vec3 slope(Path *path, double u, Vec3 *bend)
     }
     if (bend) *bend = sum2;
     return sum;
+}
+
+/* dx/du and, where it is asked for, d2x/du2. */
+static Vec3 slope(Path *path, double u, Vec3 *bend)
+{
+    if (!path->jet) return difference_slope(path, u, bend);
+    Vec3 jet[3];
+    path->jet(path->self, u, jet);
+    if (bend) *bend = jet[2];
+    return jet[1];
 }
 
 static double length_between(Path *path, double a, double b)
@@ -92,43 +108,59 @@ static double parameter_at(Path *path, int panel, double s)
     return u;
 }
 
-bool rod_curve_create(RodCurvePoint *point, void *self, double u0, double u1, int elements, RodCurve *curve,
-                      Error *err)
+/* Places, tangents and curvatures at equal arclengths; false where there is no tangent. */
+static bool fill_stations(Path *path, RodCurve *curve)
 {
-    *curve = (RodCurve){.elements = elements};
-    Path path = {.point = point,
-                 .self = self,
-                 .u0 = u0,
-                 .u1 = u1,
-                 .panels = elements > PANELS_LEAST ? elements : PANELS_LEAST,
-                 .bad = NAN};
+    int stations = 2 * curve->elements + 1, panel = 0;
+    double way = path->u1 >= path->u0 ? 1 : -1;
+    bool moves = curve->length > 0;
+    for (int j = 0; moves && isnan(path->bad) && j < stations; j++) {
+        double s = curve->length * j / (stations - 1);
+        while (panel + 1 < path->panels && path->s[panel + 1] < s) panel++;
+        double u = j == 0 ? path->u0 : j == stations - 1 ? path->u1 : parameter_at(path, panel, s);
+        Vec3 bend, along = slope(path, u, &bend);
+        curve->x[j] = place(path, u);
+        moves = vec3_length(along) > 0;
+        Vec3 t = curve->t[j] = vec3_scale(way / vec3_length(along), along);
+        curve->c[j] = vec3_scale(1 / vec3_dot(along, along), vec3_axpy(-vec3_dot(bend, t), t, bend));
+    }
+    return moves;
+}
+
+/* The number of panels is a multiple of `pieces`, so that the curve is smooth within each panel. */
+static bool create(Path path, int pieces, int elements, RodCurve *curve, Error *err)
+{
+    int least = elements > PANELS_LEAST ? elements : PANELS_LEAST, stations = 2 * elements + 1;
+    path.panels = (least + pieces - 1) / pieces * pieces;
+    path.bad = NAN;
     path.s = mem_alloc((size_t)path.panels + 1, sizeof *path.s);
     for (int k = 0; k < path.panels; k++)
         path.s[k + 1] = path.s[k] + length_between(&path, panel_start(&path, k), panel_start(&path, k + 1));
-    int stations = 2 * elements + 1, panel = 0;
-    curve->length = path.s[path.panels];
-    curve->x = mem_alloc((size_t)stations, sizeof *curve->x);
-    curve->t = mem_alloc((size_t)stations, sizeof *curve->t);
-    curve->c = mem_alloc((size_t)stations, sizeof *curve->c);
-    bool still = !(curve->length > 0);
-    for (int j = 0; !still && isnan(path.bad) && j < stations; j++) {
-        double s = curve->length * j / (stations - 1);
-        while (panel + 1 < path.panels && path.s[panel + 1] < s) panel++;
-        double u = j == 0 ? u0 : j == stations - 1 ? u1 : parameter_at(&path, panel, s);
-        Vec3 bend, along = slope(&path, u, &bend);
-        curve->x[j] = place(&path, u);
-        still = !(vec3_length(along) > 0);
-        Vec3 t = curve->t[j] = vec3_scale((u1 >= u0 ? 1 : -1) / vec3_length(along), along);
-        curve->c[j] = vec3_scale(1 / vec3_dot(along, along), vec3_axpy(-vec3_dot(bend, t), t, bend));
-    }
-    mem_free(path.s);
-    bool ok = !still && isnan(path.bad);
+    *curve = (RodCurve){.elements = elements,
+                        .length = path.s[path.panels],
+                        .x = mem_alloc((size_t)stations, sizeof *curve->x),
+                        .t = mem_alloc((size_t)stations, sizeof *curve->t),
+                        .c = mem_alloc((size_t)stations, sizeof *curve->c)};
+    bool moves = fill_stations(&path, curve), ok = moves && isnan(path.bad);
     if (!isnan(path.bad))
         error_set(err, "the curve has no finite place near %g", path.bad);
-    else if (still)
+    else if (!moves)
         error_set(err, "the curve stands still somewhere: it has no tangent there");
+    mem_free(path.s);
     if (!ok) rod_curve_clear(curve);
     return ok;
+}
+
+bool rod_curve_create(RodCurvePoint *point, void *self, double u0, double u1, int elements, RodCurve *curve,
+                      Error *err)
+{
+    return create((Path){.point = point, .self = self, .u0 = u0, .u1 = u1}, 1, elements, curve, err);
+}
+
+bool rod_curve_create_pieces(RodCurveJet *jet, void *self, int pieces, int elements, RodCurve *curve,
+                             Error *err)
+{
+    return create((Path){.jet = jet, .self = self, .u1 = pieces}, pieces, elements, curve, err);
 }
 
 void rod_curve_clear(RodCurve *curve)

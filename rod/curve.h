@@ -22,4 +22,14 @@ typedef bool RodCurvePoint(void *self, double u, Vec3 *x);
  * stands still. */
 bool rod_curve_create(RodCurvePoint *point, void *self, double u0, double u1, int elements, RodCurve *curve,
                       Error *err);
+
+/* The place at parameter u, dx/du and d2x/du2. */
+typedef void RodCurveJet(void *self, double u, Vec3 jet[3]);
+
+/* The same of a curve that knows its derivatives and is smooth on each of `pieces` equal parts of its range,
+ * u from 0 to `pieces`: a spline whose u counts the knots. Where two pieces meet, the parameter's speed may
+ * jump; place, tangent and curvature should not. */
+bool rod_curve_create_pieces(RodCurveJet *jet, void *self, int pieces, int elements, RodCurve *curve,
+                             Error *err);
+
 void rod_curve_clear(RodCurve *curve);

@@ -1,0 +1,32 @@
+/* polyline_file.h - strands of points from files: CSV, OBJ lines and SVG paths.
+ *
+ *   .csv  rows x, y, z, or s, x, y, z, of which s is passed over: one strand (table.h).
+ *   .obj  each `l` line is a strand; one that begins with the vertex at which the `l` line before it ended
+ * goes on with that strand, since some programs write every edge by itself. A file of vertices only is one
+ *         strand in their order.
+ *   .svg  each subpath of a path, polyline, polygon or line is a strand: its corners where all of it is
+ * straight, else points on its curves, 512 or a few more, evenly along it. In metres by the drawing's size (a
+ * unit is 1/96 inch where it says none), x to the right, y up, z = 0, from the page's upper left corner. What
+ * is not displayed or only defined, and other shapes, texts and `use`, are passed over.
+ *
+ * CSV and OBJ are in metres unless the caller scales them. A closed path ends with its first point. */
+#pragma once
+#include "base/error.h"
+#include "base/vec3.h"
+
+typedef struct PolylineFile {
+    int point_count, strand_count;
+    Vec3 *points; /* [point_count] m; owned                                                           */
+    int *first;   /* [strand_count + 1] strand k has the points first[k] to first[k + 1] - 1; owned   */
+} PolylineFile;
+
+/* Format by the ending (.csv, .obj, .svg), any case. Each strand has two points at least, and there is one at
+ * least. False, an empty *lines and a sentence with file and, where there is one, line, where the file cannot
+ * be read or is none of these, and for more than twenty million points. */
+bool polyline_file_read(const char *path, PolylineFile *lines, Error *err);
+
+/* The same from memory (tests and fuzzing); format is "csv", "obj" or "svg". */
+bool polyline_file_parse(const char *path, const char *format, const char *text, long length,
+                         PolylineFile *lines, Error *err);
+
+void polyline_file_clear(PolylineFile *lines);
