@@ -50,7 +50,8 @@ bool build_selection(const Build *b, Key at, const SelectionScene *scene, Indice
 /* load[3*vertex_count] N: the sum of all entries; the key is the list's. */
 bool build_loads(const Build *b, Key at, const LoadScene *loads, int count, double *load);
 
-/* uniform[3] in T, or 0 and the number of a field that is added to the shell (else -1). */
+/* uniform[3] in T, or 0 and the number of a field that is added to the shell (else -1). shell NULL: only
+ * uniform ones. */
 bool build_flux(const Build *b, Key at, const FluxScene *scene, Shell *shell, double *uniform, int *field);
 
 /* target[vertex_count][3] m; a row of NAN where a vertex has none. */

@@ -143,6 +143,12 @@ bool build_flux(const Build *b, Key at, const FluxScene *scene, Shell *shell, do
         made = flux_field_dipole(scene->magnet->at, moment);
     } else
         memcpy(uniform, scene->value, sizeof scene->value);
+    if (made && !shell) {
+        flux_field_destroy(made);
+        return yaml_refuse(
+            b->file, at.text,
+            "the flux density around a rod is uniform: three numbers, formulas of t, or a file");
+    }
     *field = made ? shell_add_field(shell, made) : -1;
     return ok;
 }

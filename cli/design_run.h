@@ -1,8 +1,8 @@
 /* design_run.h - an optimiser at work on a journal: what quasi-static and trajectory designs have in common.
  *
- * Every evaluation is a unit of the journal. A resumed run feeds the recorded ones to the optimiser, which goes the same
- * way without solving anything; the state of the best design is kept in two slots by turns, each written before the
- * evaluation that it belongs to, so that one of them always fits. */
+ * Every evaluation is a unit of the journal. A resumed run feeds the recorded ones to the optimiser, which
+ * goes the same way without solving anything; the state of the best design is kept in two slots by turns,
+ * each written before the evaluation that it belongs to, so that one of them always fits. */
 #pragma once
 #include "cli/run.h"
 
@@ -25,7 +25,8 @@ typedef struct DesignOps {
     bool (*put_best)(void *self, int slot, Error *err);
     bool (*get_best)(void *self, int slot, const double *u);
 
-    /* A frame of the best design as number `index` of the frames, where improvements are shown; may be NULL. */
+    /* A frame of the best design as number `index` of the frames, where improvements are shown; may be NULL.
+     */
     bool (*put_frame)(void *self, int index, Error *err);
 
     /* Everything final; frames from number `first` on. */
@@ -36,4 +37,5 @@ typedef struct DesignOps {
 RunStatus design_run(Run *run, const DesignOps *ops, void *self, const double *u, Error *err);
 
 /* design/gradient/<name> of an unknown block. */
-bool design_put_gradient(Run *run, const char *name, const char *unit, const double *values, int count, int width, Error *err);
+bool design_put_gradient(Run *run, const char *name, const char *unit, const double *values, int count,
+                         int width, Error *err);

@@ -1,10 +1,11 @@
 #include "cli/job.h"
 
-const char *const job_names[] = {"equilibrium", "evaluate", "design", "simulate", "trajectory", NULL};
+const char *const job_names[] = {"equilibrium", "evaluate", "design",   "simulate",
+                                 "trajectory",  "invert",   "identify", NULL};
 
 RunStatus job_run(Run *run, Error *err)
 {
-    static RunStatus (*const jobs[])(Run *, Error *) = {job_equilibrium, job_evaluate, job_design,
-                                                        job_simulate, job_trajectory};
+    static RunStatus (*const jobs[])(Run *, Error *) = {
+        job_equilibrium, job_evaluate, job_design, job_simulate, job_trajectory, job_invert, job_identify};
     return jobs[run->scene->job](run, err);
 }

@@ -2,7 +2,15 @@
 #pragma once
 #include "cli/run.h"
 
-typedef enum JobKind { JOB_EQUILIBRIUM, JOB_EVALUATE, JOB_DESIGN, JOB_SIMULATE, JOB_TRAJECTORY } JobKind;
+typedef enum JobKind {
+    JOB_EQUILIBRIUM,
+    JOB_EVALUATE,
+    JOB_DESIGN,
+    JOB_SIMULATE,
+    JOB_TRAJECTORY,
+    JOB_INVERT,
+    JOB_IDENTIFY,
+} JobKind;
 
 extern const char *const job_names[]; /* by JobKind, NULL-terminated: the choices of the scene's key `job` */
 
@@ -16,3 +24,8 @@ RunStatus job_evaluate(Run *run, Error *err);
 RunStatus job_design(Run *run, Error *err);
 RunStatus job_simulate(Run *run, Error *err);
 RunStatus job_trajectory(Run *run, Error *err);
+RunStatus job_invert(Run *run, Error *err);
+RunStatus job_identify(Run *run, Error *err);
+
+/* Of job_simulate, for rods with solver: pbd. */
+RunStatus job_preview(Run *run, Error *err);

@@ -97,7 +97,7 @@ static bool put_frame(void *self, int index, Error *err)
 static bool put_gradients(DesignJob *job, Error *err)
 {
     const Model *model = job->run->model;
-    const Params *params = &model->shell->params;
+    const Params *params = model->params;
     int cases = model->case_count;
     double *dp = mem_alloc((size_t)params->size, sizeof *dp),
            *sum = mem_alloc((size_t)params->size, sizeof *sum);
@@ -105,12 +105,12 @@ static bool put_gradients(DesignJob *job, Error *err)
     for (int c = 0; c < cases; c++) {
         static_design_param_gradient(job->sd, c, dp);
         for (int i = 0; i < params->size; i++) sum[i] += dp[i];
-        memcpy(flux + 3 * c, dp + model->shell->flux_density, 3 * sizeof *flux);
+        memcpy(flux + 3 * c, dp + model->flux_density, 3 * sizeof *flux);
     }
     bool ok = true;
     for (int k = 0; ok && k < model->design.unknown_count; k++) {
         const ParamBlock *block = model->design.unknowns[k].block;
-        bool per_case = block->offset == model->shell->flux_density;
+        bool per_case = block->offset == model->flux_density;
         ok = design_put_gradient(job->run, block->name, block->unit, per_case ? flux : sum + block->offset,
                                  per_case ? cases : block->count, block->width, err);
     }
@@ -148,7 +148,7 @@ static void find_start(DesignJob *job, const double *u)
         LoadCase *load = &job->cases[c];
         design_apply(&job->run->model->design, c, u, load->p);
         if (load->objective_count)
-            ramp_solve(load->sys, &job->run->model->shell->params, &def, NULL, load->p, load->time, load->x);
+            ramp_solve(load->sys, job->run->model->params, &def, NULL, load->p, load->time, load->x);
     }
 }
 
@@ -181,7 +181,7 @@ RunStatus job_design(Run *run, Error *err)
     run_newton(run, &def.newton);
     def.observer = run_observer(run);
     def.threads = run->threads;
-    job.sd = static_design_create(&model->design, &model->shell->params, job.cases, &def);
+    job.sd = static_design_create(&model->design, model->params, job.cases, &def);
     RunStatus status = design_run(run, &ops, &job, u, err);
     static_design_destroy(job.sd);
     mem_free(job.cases);

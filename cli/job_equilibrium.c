@@ -24,11 +24,10 @@ static RampInfo solve_stage(Run *run, const ModelCase *c, int stage, double *x)
     RampDef def = ramp_default();
     run_newton(run, &def.newton);
     def.observer = run_observer(run);
-    if (run->scene->load_steps.mode < 0) def.steps = run->scene->load_steps.count;
-    if (run->model->motion_count) def.move = move, def.self = &mover;
+    def.steps = run->scene->load_steps.mode < 0 ? run->scene->load_steps.count : run->model->load_steps;
+    if (run->model->moves) def.move = move, def.self = &mover;
     const double *from = stage > 0 ? c->stages[stage - 1].p : NULL;
-    return ramp_solve(c->sys, &run->model->shell->params, &def, from, c->stages[stage].p,
-                      c->stages[stage].time, x);
+    return ramp_solve(c->sys, run->model->params, &def, from, c->stages[stage].p, c->stages[stage].time, x);
 }
 
 /* Frames are shown at the times of their stages, if those go on; else they are numbered. */

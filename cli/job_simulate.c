@@ -148,7 +148,7 @@ static RunStatus march(Simulation *s)
     run_newton(s->run, &def.newton);
     def.observer = run_observer(s->run);
     def.load = load, def.self = s;
-    if (s->run->model->motion_count) def.move = move;
+    if (s->run->model->moves) def.move = move;
     RunStatus status = RUN_DONE;
     while (status == RUN_DONE && s->step < s->run->scene->time.steps) status = make_step(s, &def);
     return status;
@@ -160,7 +160,7 @@ static bool put_end(Simulation *s, const char *status)
 {
     State state = shown_state(s);
     int every = frame_interval(s);
-    Array v = array_float("state/v", "m/s", s->now.v, 2, s->run->model->shell->mesh->vertex_count, 3);
+    Array v = array_float("state/v", "m/s", s->now.v, 2, s->run->model->point_count, 3);
     if (s->step % every && !run_put_frame(s->run, s->step / every + 1, s->now.time, &state, false, s->err))
         return false;
     return run_put_final(s->run, &state, 1, status, s->err) &&
@@ -169,6 +169,7 @@ static bool put_end(Simulation *s, const char *status)
 
 RunStatus job_simulate(Run *run, Error *err)
 {
+    if (run->scene->rod && run->scene->rod->solver == ROD_SOLVER_PBD) return job_preview(run, err);
     static const char *const texts[] = {[RUN_DONE] = "converged", [RUN_NOT_CONVERGED] = "stalled"};
     ModelCase *c = &run->model->cases[0];
     size_t dofs = (size_t)system_dof_count(c->sys);

@@ -114,7 +114,7 @@ static bool put_frames(TrajectoryJob *job, int first, Error *err)
 /* trajectory/flux_density: what acts in each step. */
 static bool put_field(TrajectoryJob *job, Error *err)
 {
-    int steps = job->run->scene->time.steps, flux = job->run->model->shell->flux_density;
+    int steps = job->run->scene->time.steps, flux = job->run->model->flux_density;
     double *rows = mem_alloc(3 * (size_t)steps, sizeof *rows);
     for (int n = 1; n <= steps; n++)
         memcpy(rows + 3 * (n - 1), trajectory_params(job->t, n) + flux, 3 * sizeof *rows);
@@ -129,8 +129,7 @@ static bool put_gradients(TrajectoryJob *job, Error *err)
 {
     const Model *model = job->run->model;
     size_t dofs = (size_t)system_dof_count(job->c->sys);
-    double *dp = mem_alloc((size_t)model->shell->params.size, sizeof *dp),
-           *dx = mem_alloc(2 * dofs, sizeof *dx);
+    double *dp = mem_alloc((size_t)model->params->size, sizeof *dp), *dx = mem_alloc(2 * dofs, sizeof *dx);
     trajectory_gradients(job->t, dp, dx, dx + dofs);
     bool ok = true;
     for (int k = 0; ok && k < model->design.unknown_count; k++) {
@@ -142,7 +141,7 @@ static bool put_gradients(TrajectoryJob *job, Error *err)
                                    2, block->count, 3);
         if (ok && control) ok = journal_put(job->run->journal, "final", 0, &values, 1, err);
     }
-    int vertices = model->shell->mesh->vertex_count;
+    int vertices = model->point_count;
     ok = ok && design_put_gradient(job->run, "start_x", "m", dx, vertices, 3, err) &&
          design_put_gradient(job->run, "start_v", "m/s", dx + dofs, vertices, 3, err);
     mem_free(dp);
@@ -190,7 +189,7 @@ RunStatus job_trajectory(Run *run, Error *err)
     TrajectoryJob job = {.run = run, .c = c};
     TrajectoryProblem problem = {.sys = c->sys,
                                  .design = &model->design,
-                                 .params = &model->shell->params,
+                                 .params = model->params,
                                  .controls = &model->control,
                                  .objectives = c->objectives,
                                  .control_count = model->control.rows > 0,
@@ -205,7 +204,7 @@ RunStatus job_trajectory(Run *run, Error *err)
     run_newton(run, &def.march.newton);
     def.march.observer = run_observer(run);
     def.march.load = load, def.march.self = &job;
-    if (model->motion_count) def.march.move = move;
+    if (model->moves) def.march.move = move;
     job.t = trajectory_create(&problem, &def);
     double *u = mem_alloc((size_t)model->design.size, sizeof *u);
     design_read(&model->design, 0, problem.p, u);

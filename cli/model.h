@@ -1,5 +1,6 @@
-/* model.h - a scene made ready to run: the shell, its load cases and what is prescribed over time. */
+/* model.h - a scene made ready to run: a shell or a rod, its load cases and what is prescribed over time. */
 #pragma once
+#include "cli/arrays.h"
 #include "cli/scene.h"
 #include "cli/timed_flux.h"
 #include "io/formula.h"
@@ -7,6 +8,7 @@
 #include "optim/design.h"
 #include "shell/select.h"
 #include "shell/shell.h"
+#include "solve/newton.h"
 #include "solve/objective.h"
 
 /* Loads at a moment: one, or the stages of a sequence. */
@@ -34,8 +36,61 @@ typedef struct Motion {
     bool axis[3];
 } Motion;
 
-typedef struct Model {
-    Shell *shell;
+/* One state to be shown or stored: x[dofs] in equilibrium with p[params] of a case. */
+typedef struct State {
+    const ModelCase *load_case;
+    const double *p, *x;
+    double time; /* s, of fields that vary */
+    NewtonStatus status;
+} State;
+
+typedef struct Model Model;
+
+struct Build;
+
+/* What is not alike for shells and rods: how scenes become numbers, and how states are written into the
+ * journal. */
+typedef struct BodyOps {
+    /* Of a case or stage into its p: the field, dead loads; places of its target, NAN where there is none.
+     * False after a refusal at that key. */
+    bool (*put_flux)(Model *model, const struct Build *b, const char *at, const FluxScene *flux, double *p);
+    bool (*put_loads)(Model *model, const struct Build *b, const char *at, const LoadScene *loads, int count,
+                      double *p);
+    bool (*put_target)(Model *model, const struct Build *b, const char *at, const TargetScene *scene,
+                       double (*target)[3]);
+
+    /* Held coordinates where they are at that time, a part of the way (0..1) from where x has them. */
+    bool (*move)(const Model *model, double time, double part, double *x, Error *err);
+
+    /* What does not change: rest shape, faces or lines. */
+    void (*add_static)(const Model *model, Arrays *list);
+
+    /* Places of its points, place[point_count][3], in the state x[dofs]. */
+    void (*places)(const Model *model, const double *x, double *place);
+
+    /* Of a frame beside places and field: numbers per cell. `whole`: those too that seldom change. */
+    void (*add_frame)(const Model *model, const State *state, bool whole, Arrays *list);
+
+    /* Of a state beside places and energies, under prefix/.. */
+    void (*add_state)(const Model *model, const State *state, const char *prefix, Arrays *list);
+
+    /* Of the final state, once: its stability, so many modes, and what else it shows. */
+    void (*add_final)(const Model *model, const State *state, int modes, Arrays *list);
+} BodyOps;
+
+struct RodModel;
+
+struct Model {
+    Shell *shell;         /* one of these two */
+    struct RodModel *rod; /* rod_model.h      */
+    const BodyOps *body;
+    Params *params; /* the body's                                          */
+    int gravity;    /* first entries in p                                  */
+    int flux_density;
+    int point_count;   /* vertices or nodes                                   */
+    int load_steps;    /* of an equilibrium, unless the scene says            */
+    double step_cap;   /* of Newton                                           */
+    bool moves;        /* held coordinates do: BodyOps.move                   */
     MeshReport report; /* warnings about the mesh */
     int case_count, motion_count;
     ModelCase *cases;
@@ -44,7 +99,7 @@ typedef struct Model {
     Design design;          /* of a design or trajectory */
     Control control;        /* of a trajectory: the unknown flux density; no rows: none */
     TimedFlux flux_of_time; /* of a motion: the uniform flux density, if it changes */
-} Model;
+};
 
 /* Reads the files that the scene names and builds everything. On bad input NULL, and the errors are in the
  * file's list. */
@@ -57,7 +112,22 @@ bool model_move(const Model *model, double time, double part, double *x, Error *
 /* Puts what depends on time into p. */
 bool model_load(const Model *model, double time, double *p, Error *err);
 
-/* The scene's unknowns, with their starts (noise included) written into the p of all cases, and (model_objectives)
- * the objectives of all cases. Parts of model_create for designs and trajectories; false after a refusal. */
+/* Parts of model_create, by body: false after a refusal. */
+bool model_shell(Model *model, const Scene *scene, YamlFile *file);
+bool model_rod(Model *model, const Scene *scene, YamlFile *file);
+
+/* The load cases or stages of a scene, each with p[room] as a copy; false after a refusal. */
+bool model_cases(Model *model, const struct Build *b, const Scene *scene, const double *p, size_t room);
+
+/* Velocities at the start of a motion, of the free coordinates; place[point_count][3] is what formulas know.
+ */
+bool model_velocity(Model *model, const struct Build *b, const char *at, const VelocityScene *scene,
+                    const double *place);
+
+bool model_is_motion(int job);
+
+/* The scene's unknowns, with their starts (noise included) written into the p of all cases, and
+ * (model_objectives) the objectives of all cases. Parts of model_create for designs and trajectories; false
+ * after a refusal. */
 bool model_design(Model *model, const Scene *scene, YamlFile *file);
 bool model_objectives(Model *model, const Scene *scene, YamlFile *file);

@@ -4,6 +4,7 @@
 #include "cli/build.h"
 #include "cli/model.h"
 #include "cli/job.h"
+#include "cli/rod_model.h"
 #include <math.h>
 #include <string.h>
 
@@ -20,12 +21,12 @@ typedef struct Start {
 
 static Start start_of(Model *model, const char *name, const double *p, double noise, int seed)
 {
-    Start start = {.name = name, .block = params_find(&model->shell->params, name), .noise = noise};
+    Start start = {.name = name, .block = params_find(model->params, name), .noise = noise};
     size_t size = (size_t)(start.block->count * start.block->width);
     start.values = mem_copy(p + start.block->offset, size, sizeof(double));
     /* Each block has a sequence of its own, so that another unknown beside it changes nothing. */
-    start.random = random_seed((uint64_t)seed * PARAMS_MAX_BLOCKS +
-                               (uint64_t)(start.block - model->shell->params.blocks));
+    start.random =
+        random_seed((uint64_t)seed * PARAMS_MAX_BLOCKS + (uint64_t)(start.block - model->params->blocks));
     return start;
 }
 
@@ -50,8 +51,11 @@ static bool add_unknown(Model *model, YamlFile *file, Design *design, Start *sta
     bool ok = true;
     const ParamBlock *block = unknown.block = start->block;
     unknown.group_count = block->count;
-    if (per == PER_GROUP) unknown.group = face_groups(model->shell->mesh, &unknown.group_count);
-    if (unknown.group_count == 0)
+    if (per == PER_GROUP && model->rod)
+        ok = yaml_refuse(file, key("design.unknowns.%s.per", start->name).text, "a rod has no groups");
+    else if (per == PER_GROUP)
+        unknown.group = face_groups(model->shell->mesh, &unknown.group_count);
+    if (ok && unknown.group_count == 0)
         ok = yaml_refuse(file, key("design.unknowns.%s.per", start->name).text,
                          "the mesh has no groups of faces");
     double *noise = mem_alloc((size_t)(unknown.group_count * block->width), sizeof *noise);
@@ -87,8 +91,11 @@ static bool number_unknown(Model *model, const Build *b, Design *design, const c
 {
     Start start = start_of(model, name, model->cases[0].stages[0].p, from->noise, seed);
     Key at = key("design.unknowns.%s", name), at_start = key("%s.start", at.text);
-    bool edges = start.block->offset == model->shell->fold, ok = check_bounds(b->file, name, from->bounds);
-    if (from->start)
+    bool edges = model->shell && start.block->offset == model->shell->fold,
+         ok = check_bounds(b->file, name, from->bounds);
+    if (from->start && model->rod)
+        ok = yaml_refuse(b->file, at_start.text, "the unknown %s of a rod starts at rod.%s", name, name);
+    else if (from->start)
         ok = (edges ? build_edge_numbers(b, at_start, from->start, start.values)
                     : build_face_numbers(b, at_start, from->start, start.values)) &&
              ok;
@@ -120,7 +127,12 @@ static bool magnetization_unknown(Model *model, const Build *b, Design *design, 
     if ((capped || fixed) && !isnan(from->bounds[0]))
         ok =
             yaml_refuse(b->file, key("%s.bounds", at.text).text, "bounds and a magnitude exclude each other");
-    if (from->start) ok = build_face_vectors(b, key("%s.start", at.text), from->start, start.values) && ok;
+    if (from->start) {
+        Key at_start = key("%s.start", at.text);
+        ok = (model->rod ? rod_model_vectors(b, at_start.text, from->start, model->rod->rod, start.values)
+                         : build_face_vectors(b, at_start, from->start, start.values)) &&
+             ok;
+    }
     Unknown unknown = {.map = fixed    ? UNKNOWN_FIXED_LENGTH
                               : capped ? UNKNOWN_CAPPED_LENGTH
                                        : UNKNOWN_LINEAR,
@@ -156,7 +168,7 @@ static void flux_per_case(Model *model, const FluxUnknown *from, const ParamBloc
 /* Appends a block to the parameters of a trajectory's only case. */
 static double *add_block(Model *model, const char *name, const char *unit, int count, int width)
 {
-    Params *params = &model->shell->params;
+    Params *params = model->params;
     double **p = &model->cases[0].stages[0].p;
     int before = params->size, offset = params_add(params, name, unit, count, width, false);
     *p = mem_resize(*p, (size_t)before, (size_t)params->size, sizeof **p);
@@ -222,7 +234,7 @@ static bool flux_over_time(Model *model, const Build *b, const Scene *scene, Ran
     control->from = (int)(rows - model->cases[0].stages[0].p);
     if (!start_control(model, b, from->start, rows)) return false;
     for (int i = 0; i < 3 * control->rows; i++) rows[i] += from->noise * random_signed(random);
-    unknown.block = params_find(&model->shell->params, "control");
+    unknown.block = params_find(model->params, "control");
     unknown.group_count = control->rows;
     design_add(&model->design, unknown);
     return true;
@@ -232,9 +244,9 @@ static bool flux_unknown(Model *model, const Build *b, const Scene *scene)
 {
     const FluxUnknown *from = scene->design->unknowns.flux_density;
     bool ok = check_bounds(b->file, "flux_density", from->bounds);
-    const ParamBlock *block = params_find(&model->shell->params, "flux_density");
+    const ParamBlock *block = params_find(model->params, "flux_density");
     Random random = random_seed((uint64_t)scene->design->seed * PARAMS_MAX_BLOCKS +
-                                (uint64_t)(block - model->shell->params.blocks));
+                                (uint64_t)(block - model->params->blocks));
     Unknown unknown = {.block = block, .scale = from->scale};
     put_bounds(&unknown, from->bounds);
     if (scene->job == JOB_TRAJECTORY) return flux_over_time(model, b, scene, &random, unknown) && ok;
@@ -252,7 +264,10 @@ static bool add_unknowns(Model *model, const Scene *scene, const Build *b)
     if (unknowns->magnetization)
         ok = magnetization_unknown(model, b, design, unknowns->magnetization, seed) && ok;
     if (unknowns->young) ok = number_unknown(model, b, design, "young", unknowns->young, seed) && ok;
-    if (unknowns->fold) ok = number_unknown(model, b, design, "fold", unknowns->fold, seed) && ok;
+    if (unknowns->fold && model->rod)
+        ok = yaml_refuse(b->file, "design.unknowns.fold", "a rod has no folds");
+    else if (unknowns->fold)
+        ok = number_unknown(model, b, design, "fold", unknowns->fold, seed) && ok;
     if (unknowns->flux_density) ok = flux_unknown(model, b, scene) && ok;
     if (ok && !design->unknown_count)
         ok = yaml_refuse(b->file, "design.unknowns",
@@ -281,7 +296,7 @@ static bool add_dmp(Model *model, const Scene *scene, const Build *b)
     for (int k = 0; k < 3; k++) {
         double *values = add_block(model, blocks[k].name, blocks[k].unit, row->pairs, blocks[k].width);
         for (int j = 0; k == 0 && j < row->pairs; j++) values[j] = base * (j + 1);
-        Unknown unknown = {.block = params_find(&model->shell->params, blocks[k].name),
+        Unknown unknown = {.block = params_find(model->params, blocks[k].name),
                            .group_count = row->pairs,
                            .scale = k == 0 ? base : scene->design->unknowns.flux_density->scale,
                            .lower = k == 0 ? 0 : -INFINITY,
@@ -293,7 +308,7 @@ static bool add_dmp(Model *model, const Scene *scene, const Build *b)
 
 bool model_design(Model *model, const Scene *scene, YamlFile *file)
 {
-    Build b = {.file = file, .mesh = model->shell->mesh, .time = scene->time.at};
+    Build b = {.file = file, .mesh = model->shell ? model->shell->mesh : NULL, .time = scene->time.at};
     bool trajectory = scene->job == JOB_TRAJECTORY;
     if (!scene->design)
         return yaml_refuse(file, "job", "a %s job needs the key `design`",

@@ -28,9 +28,23 @@ static bool target_objective(const ModelCase *c, int vertex_count, YamlFile *fil
     return true;
 }
 
-static bool height_objective(const Build *b, Key at, const ObjectiveScene *from, double weight,
-                             Objective *objective)
+/* Of a rod: all nodes, or its end. */
+static bool rod_height(const Model *model, const Build *b, Key at, const char *of, double weight,
+                       Objective *objective)
 {
+    bool tip = !strcmp(of, "tip");
+    if (!tip && strcmp(of, "all")) return yaml_refuse(b->file, at.text, "of a rod it is `all` or `tip`");
+    int count = tip ? 1 : model->point_count, *nodes = mem_alloc((size_t)count, sizeof *nodes);
+    for (int i = 0; i < count; i++) nodes[i] = tip ? model->point_count - 1 : i;
+    *objective = objective_height(count, nodes, weight);
+    mem_free(nodes);
+    return true;
+}
+
+static bool height_objective(const Model *model, const Build *b, Key at, const ObjectiveScene *from,
+                             double weight, Objective *objective)
+{
+    if (model->rod) return rod_height(model, b, at, from->of, weight, objective);
     SelectionScene group = {.group = from->of};
     Indices chosen = {0};
     if (!build_selection(b, at, strcmp(from->of, "all") ? &group : NULL, &chosen)) return false;
@@ -172,7 +186,7 @@ static bool point_objectives(Model *model, const Build *b, Key at, const Scene *
 
 static bool field_objective(Model *model, const Build *b, Key at, const ObjectiveScene *from)
 {
-    const Params *params = &model->shell->params;
+    const Params *params = model->params;
     const Control *control = &model->control;
     if (!control->rows)
         return yaml_refuse(b->file, at.text, "this objective needs the unknown flux_density of a trajectory");
@@ -206,13 +220,14 @@ static bool add_objective(Model *model, const Build *b, Key at, const Scene *sce
     if (field) return field_objective(model, b, at, from);
     Objective objective;
     if (!isnan(from->magnetization_smoothness)) {
+        if (model->rod) return yaml_refuse(b->file, at.text, "magnetization_smoothness is for shells");
         if (case_index > 0) return true;
         objective = shell_magnetization_smoothness(model->shell,
                                                    from->weight * from->magnetization_smoothness / c->weight);
     } else if (!isnan(from->target)
-                   ? !target_objective(c, b->mesh->vertex_count, b->file, at, from->weight * from->target,
+                   ? !target_objective(c, model->point_count, b->file, at, from->weight * from->target,
                                        &objective)
-                   : !height_objective(b, at, from, from->weight * from->height, &objective)) {
+                   : !height_objective(model, b, at, from, from->weight * from->height, &objective)) {
         return false;
     } else if (trajectory && !put_frames(b, at, from->frame, from->frames, scene->time.steps, &objective)) {
         objective_destroy(objective);
@@ -224,7 +239,7 @@ static bool add_objective(Model *model, const Build *b, Key at, const Scene *sce
 
 bool model_objectives(Model *model, const Scene *scene, YamlFile *file)
 {
-    Build b = {.file = file, .mesh = model->shell->mesh, .time = scene->time.at};
+    Build b = {.file = file, .mesh = model->shell ? model->shell->mesh : NULL, .time = scene->time.at};
     bool ok = true;
     for (int c = 0; c < model->case_count; c++)
         for (int k = 0; k < scene->design->objectives_count; k++)

@@ -42,10 +42,18 @@ static bool recall_field(Journal *journal, Result *result, const char *field, in
     return ok;
 }
 
-/* Positions of a step: float64 where the result has them. */
+/* Positions of a step, without the points that stand still: float64 where the result has them. */
 static bool read_positions(Result *result, int step, Array *x, Error *err)
 {
-    if (!result_has(result, "slender/frames/x")) return result_read_step(result, "Points", step, x, err);
+    Array still;
+    if (!result_has(result, "slender/frames/x")) {
+        if (!result_read_step(result, "Points", step, x, err)) return false;
+        if (result_has(result, "slender/still") && result_read(result, "slender/still", &still, NULL)) {
+            x->dims[0] -= still.dims[0];
+            array_clear(&still);
+        }
+        return true;
+    }
     return result_read_rows(result, "slender/frames/x", step, 1, x, err);
 }
 

@@ -32,14 +32,6 @@ NewtonObserver run_observer(Run *run);
 /* Puts the scene's tolerances over the defaults. */
 void run_newton(const Run *run, NewtonDef *def);
 
-/* One state to be shown or stored: x[dofs] in equilibrium with p[params] of a case. */
-typedef struct State {
-    const ModelCase *load_case;
-    const double *p, *x;
-    double time; /* s, of fields that vary */
-    NewtonStatus status;
-} State;
-
 /* A frame of the result, shown at a time of its own: viewers want each frame's time to be later than that of
  * the one before. Parameters per face, which seldom change, are left out unless `whole`. */
 bool run_put_frame(Run *run, int index, double shown, const State *state, bool whole, Error *err);

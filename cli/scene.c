@@ -4,12 +4,7 @@
 
 /* ---- Values ---- */
 
-#define WHERE_ROW(S)                                                                                         \
-    {                                                                                                        \
-        YAML_MAP(S, where, &where_table), .doc = "names for parts of the formula, evaluated in order"        \
-    }
-
-static const YamlTable where_table = {
+const YamlTable where_table = {
     .name = "where",
     .size = sizeof(WhereScene),
     .doc = "Helper names of a formula, each an expression of the formula's variables and of the names before "
@@ -152,7 +147,7 @@ static const YamlTable pose_table = {
                                    .doc = "a mesh file with the faces of the mesh"},
                                   {0}}};
 
-static const YamlTable velocity_table = {
+const YamlTable velocity_table = {
     .name = "velocity",
     .size = sizeof(VelocityScene),
     .doc = "Velocities at the start of a motion.",
@@ -353,7 +348,9 @@ const YamlTable scene_table = {
            "unit: `1 mm`, `20 mT`, `0.3 MPa`.",
     .fields = (const YamlField[]){
         {YAML_CHOICE(Scene, job), .choices = job_names, .required = true, .doc = "what to do"},
-        {YAML_TABLE(Scene, shell, &shell_table), .required = true, .doc = "the body"},
+        {YAML_OPTIONAL(Scene, shell, &shell_table), .one_of = 1, .required = true,
+         .doc = "the body: a shell"},
+        {YAML_OPTIONAL(Scene, rod, &rod_table), .one_of = 1, .required = true, .doc = "the body: a rod"},
         {YAML_TABLE(Scene, flux_density, &flux_density_table), .fallback = "[0, 0, 0]",
          .doc = "applied field"},
         {YAML_LIST(Scene, fix, &fix_table), .doc = "what is held"},
@@ -370,5 +367,7 @@ const YamlTable scene_table = {
          .doc = "the time t of formulas, or the steps of a simulation"},
         {YAML_INTEGER(Scene, modes), .range = "[0, 100]", .fallback = "0",
          .doc = "lowest eigenmodes to put into the result"},
+        {YAML_CHOICES(Scene, checks), .choices = YAML_NAMES("stability", "self_contact", "round_trip"),
+         .doc = "of a rod: what else to find out"},
         {YAML_TABLE(Scene, output, &output_table), .fallback = "{}", .doc = "what to keep"},
         {0}}};

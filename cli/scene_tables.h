@@ -2,5 +2,12 @@
 #pragma once
 #include "cli/scene.h"
 
+extern const YamlTable where_table, velocity_table;                  /* scene.c        */
 extern const YamlTable young_table, fold_table, magnetization_table; /* scene.c        */
 extern const YamlTable design_table;                                 /* scene_design.c */
+extern const YamlTable rod_table;                                    /* scene_rod.c    */
+
+#define WHERE_ROW(S)                                                                                         \
+    {                                                                                                        \
+        YAML_MAP(S, where, &where_table), .doc = "names for parts of the formula, evaluated in order"        \
+    }

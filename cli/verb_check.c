@@ -4,6 +4,7 @@
 #include "base/random.h"
 #include "base/vec3.h"
 #include "cli/job.h"
+#include "cli/rod_model.h"
 #include "cli/verb.h"
 #include "optim/trajectory_adjoint.h"
 #include "solve/check.h"
@@ -103,7 +104,8 @@ static double estimated_iterations(const Model *model, const Scene *scene)
  * they are kept. */
 static double estimated_megabytes(const Model *model, const Scene *scene, SparseInfo info)
 {
-    double dofs = shell_dof_count(model->shell), steps = scene->job == JOB_TRAJECTORY ? scene->time.steps : 0;
+    double dofs = system_dof_count(model->cases[0].sys),
+           steps = scene->job == JOB_TRAJECTORY ? scene->time.steps : 0;
     double kept =
         fmin(2e-6 * steps * (double)info.factor_bytes, 1e-6 * (double)trajectory_default().factor_memory);
     return model->case_count * 24e-6 * (double)info.factor_nonzeros + 2e-3 * dofs + 32e-6 * steps * dofs +
@@ -129,22 +131,34 @@ static void measure(const Model *model, const Scene *scene)
     mem_free(gradient);
 }
 
-/* Of the first case, near its start: moved by a tenth of an edge's length, angles by 0.3 rad. */
+/* An edge's or element's length, a radian, or of a rod's multipliers a force. */
+static double dof_size(const Model *model, int dof)
+{
+    if (model->shell) return dof < 3 * model->point_count ? mean_edge(model->shell->mesh) : 1;
+    const RodLayout *layout = &model->rod->layout;
+    const Rod *rod = model->rod->rod;
+    if (layout->position >= 0 && dof < layout->turn) return rod_element_length(rod);
+    return layout->multiplier >= 0 && dof >= layout->multiplier ? rod->unit.mass * rod->length : 1;
+}
+
+/* Of the first case, near its start: moved by a tenth of a cell's length, angles of edges by 0.3 rad. */
 static bool check_derivatives(const Model *model)
 {
     const ModelCase *c = &model->cases[0];
-    int dofs = shell_dof_count(model->shell), positions = 3 * model->shell->mesh->vertex_count;
-    double edge = mean_edge(model->shell->mesh), dof_size[TERM_MAX_DOF],
-           *x = mem_copy(c->x, (size_t)dofs, sizeof *x);
+    int dofs = system_dof_count(c->sys), positions = system_position_count(c->sys);
+    double *x = mem_copy(c->x, (size_t)dofs, sizeof *x), size[TERM_MAX_DOF];
     Random random = random_seed(1);
-    for (int i = 0; i < dofs; i++) x[i] += (i < positions ? 0.1 * edge : 0.3) * random_signed(&random);
-    for (int i = 0; i < TERM_MAX_DOF; i++) dof_size[i] = i < 18 ? edge : 1;
+    for (int i = 0; i < (model->shell ? dofs : positions); i++)
+        x[i] += (i < positions ? 0.1 : 0.3) * dof_size(model, i) * random_signed(&random);
     Point at = {.x = x, .p = c->stages[0].p, .time = c->stages[0].time};
     bool ok = true;
     system_accept(c->sys, x);
     for (int t = 0; t < system_term_count(c->sys); t++) {
         const Term *term = system_term(c->sys, t);
-        TermError error = check_term(term, &model->shell->params, &at, dof_size, &random);
+        int dof[TERM_MAX_DOF];
+        term->ops->dofs(term->self, 0, dof);
+        for (int i = 0; i < term->ops->size(term->self); i++) size[i] = dof_size(model, dof[i]);
+        TermError error = check_term(term, model->params, &at, size, &random);
         double worst = fmax(fmax(error.gradient, error.hessian), error.forward);
         printf("derivatives of %-10s gradient %.1e  Hessian %.1e  parameters %.1e, adjoint %.1e%s\n",
                term->ops->name, error.gradient, error.hessian, error.forward, error.adjoint,
@@ -155,7 +169,7 @@ static bool check_derivatives(const Model *model)
     return ok;
 }
 
-static bool report(const Model *model, const Scene *scene, bool derivatives)
+static void report_shell(const Model *model, const Scene *scene)
 {
     const Mesh *mesh = model->shell->mesh;
     int held = 0;
@@ -164,10 +178,38 @@ static bool report(const Model *model, const Scene *scene, bool derivatives)
            "held\n",
            mesh->vertex_count, mesh->face_count, mesh->edge_count, mesh->component_count, model->case_count,
            system_free_count(model->cases[0].sys), held);
-    if (scene->design) printf("%d design unknowns\n", model->design.size);
     if (system_base_shift(model->cases[0].sys) > 0) printf("the body has free rigid motions\n");
     check_size(model);
     check_bending_length(model, scene);
+}
+
+static void report_rod(const Model *model)
+{
+    const RodModel *rm = model->rod;
+    double longest = rm->rod ? rm->rod->length : 0;
+    for (int k = 0; k < rm->strand_count; k++) longest = fmax(longest, rm->curves[k].length);
+    printf("%d rods of %d elements, up to %.4g m long\n", rm->strand_count > 1 ? rm->strand_count : 1,
+           model->point_count - 1, longest);
+    if (longest > LARGE_BODY)
+        printf(
+            "warning: a rod is %.3g m long; if its file is in millimetres, give the curve `scale: 1.0e-3`\n",
+            longest);
+    if (rm->section.reach > longest / 5 && longest > 0)
+        printf("warning: the section, %.3g m, is more than a fifth of the length: no thin rod\n",
+               rm->section.reach);
+    if (model->case_count)
+        printf("%d load cases; %d unknowns of motion\n", model->case_count,
+               system_free_count(model->cases[0].sys));
+}
+
+static bool report(const Model *model, const Scene *scene, bool derivatives)
+{
+    if (model->rod)
+        report_rod(model);
+    else
+        report_shell(model, scene);
+    if (scene->design) printf("%d design unknowns\n", model->design.size);
+    if (!model->case_count) return true;
     measure(model, scene);
     return !derivatives || check_derivatives(model);
 }

@@ -73,12 +73,12 @@ static bool parse(int argc, char **argv, RunOptions *options)
 
 /* ---- The journal's beginning ---- */
 
-/* Keys that a resumed run may change: how far it goes (a trajectory's steps are part of its problem), and what it
- * writes. */
+/* Keys that a resumed run may change: how far it goes (a trajectory's steps are part of its problem), and
+ * what it writes. */
 static const char *const free_keys[] = {
     "design.iterations", "design.tolerance", "output.precision", "modes", "time.steps", NULL};
-static const char *const free_keys_trajectory[] = {
-    "design.iterations", "design.tolerance", "output.precision", "modes", NULL};
+static const char *const free_keys_trajectory[] = {"design.iterations", "design.tolerance",
+                                                   "output.precision", "modes", NULL};
 
 static bool check_scene(Journal *journal, int job, const char *scene, Error *err)
 {
@@ -99,17 +99,16 @@ static bool check_scene(Journal *journal, int job, const char *scene, Error *err
 
 static bool begin(Run *run, const RunOptions *options, const char *result, Error *err)
 {
-    const Mesh *mesh = run->model->shell->mesh;
+    Arrays statics = {0};
+    run->model->body->add_static(run->model, &statics);
     char *scene = yaml_write(&scene_table, run->scene), *versions = run_versions();
     bool ok = !options->resume || check_scene(run->journal, run->scene->job, scene, err);
     Array meta[] = {array_text("scene", scene), array_text("versions", versions)};
-    Array statics[] = {array_float("rest", "m", mesh->rest[0], 2, mesh->vertex_count, 3),
-                       array_int("faces", mesh->faces[0], 2, mesh->face_count, 3),
-                       array_int("edges", mesh->edges[0], 2, mesh->edge_count, 2)};
     if (ok && options->resume && journal_is_finished(run->journal) && run->scene->job == JOB_SIMULATE)
         ok = recall_frames(run->journal, result, err);
     ok = ok && journal_put(run->journal, "meta", 0, meta, 2, err) &&
-         journal_put(run->journal, "static", 0, statics, 3, err);
+         arrays_put(&statics, run->journal, "static", 0, err);
+    arrays_clear(&statics);
     if (ok && options->resume && journal_is_finished(run->journal))
         ok = journal_set_finished(run->journal, false, err);
     mem_free(scene);

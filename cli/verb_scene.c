@@ -50,7 +50,9 @@ int verb_mesh(int argc, char **argv)
     char *name = verb_base_name(argv[optind]), *path = output ? mem_text(output) : mem_format("%s.obj", name);
     Model *model =
         verb_load_scene(argv[optind], NULL, 0, &file, &scene) ? verb_build_model(&scene, file) : NULL;
-    if (model)
+    if (model && !model->shell)
+        code = verb_fail(RUN_REFUSED, "the scene has a rod, no mesh");
+    else if (model)
         code = write_mesh(model->shell->mesh, path, &err) ? RUN_DONE : verb_fail(RUN_CANNOT_WRITE, err.text);
     model_destroy(model);
     yaml_clear(&scene_table, &scene);

@@ -88,19 +88,35 @@ static bool read_times(VtkFrames *frames, Error *err)
     return true;
 }
 
+static bool read_still(VtkFrames *frames, Error *err)
+{
+    Array still;
+    if (!journal_has(frames->journal, "static", 0, "still")) return true;
+    if (!journal_get(frames->journal, "static", 0, "still", &still, err)) return false;
+    bool fits = still.type == ARRAY_FLOAT64 && still.rank == 2 && still.dims[1] == 3;
+    if (fits) {
+        frames->still_count = still.dims[0];
+        frames->still = mem_copy(still.data, (size_t)still.dims[0], sizeof *frames->still);
+        frames->vertex_count += still.dims[0];
+    }
+    array_clear(&still);
+    return fits || error_set(err, "static/still must be rows of three numbers");
+}
+
 bool vtk_frames_read(VtkFrames *frames, Error *err)
 {
     Array x;
     if (!journal_get(frames->journal, "frame", frames->frames[0], "x", &x, err)) return false;
     frames->vertex_count = x.dims[0];
     array_clear(&x);
-    return read_cells(frames, err) && read_times(frames, err) &&
+    return read_still(frames, err) && read_cells(frames, err) && read_times(frames, err) &&
            journal_names(frames->journal, "frame", frames->frames[0], &frames->fields, &frames->field_count,
                          err);
 }
 
 void vtk_frames_clear(VtkFrames *frames)
 {
+    mem_free(frames->still);
     mem_free(frames->cells.ids);
     mem_free(frames->cells.offsets);
     mem_free(frames->cells.mixed);
@@ -188,6 +204,29 @@ bool vtk_frames_put(VtkFrames *frames, const char *name, const char *path, const
     return ok;
 }
 
+/* Each frame's points, and those that stand still. */
+static bool put_points(VtkFrames *frames, Error *err)
+{
+    static const char PATH[] = "VTKHDF/Points";
+    if (!frames->still) return vtk_frames_put(frames, "x", PATH, NULL, false, err);
+    int moving = frames->vertex_count - frames->still_count;
+    double(*points)[3] = mem_alloc((size_t)frames->vertex_count, sizeof *points);
+    memcpy(points + moving, frames->still, (size_t)frames->still_count * sizeof *points);
+    Hdf5Rows *rows = hdf5_rows_create(frames->file, PATH, "m", frames->vertex_count, 3, false, frames->single, err);
+    bool ok = rows != NULL;
+    for (int k = 0; ok && k < frames->count; k++) {
+        Array x = {0};
+        ok = journal_get(frames->journal, "frame", frames->frames[k], "x", &x, err);
+        if (ok && array_count(&x) != 3 * (size_t)moving) ok = error_set(err, "the frames' x change their shape");
+        if (ok) memcpy(points, x.data, (size_t)moving * sizeof *points);
+        ok = ok && hdf5_rows_append(rows, points[0], err);
+        array_clear(&x);
+    }
+    ok = hdf5_rows_close(rows, ok ? err : NULL) && ok;
+    mem_free(points);
+    return ok;
+}
+
 static bool put_fields(VtkFrames *frames, Error *err)
 {
     static const struct {
@@ -213,5 +252,5 @@ bool vtk_frames_write(VtkFrames *frames, Error *err)
     return hdf5_attribute_ints(frames->file, "VTKHDF", "Version", version, 2, err) &&
            hdf5_attribute_text(frames->file, "VTKHDF", "Type", "UnstructuredGrid", err) &&
            put_cells(frames, err) && put_steps(frames, err) &&
-           vtk_frames_put(frames, "x", "VTKHDF/Points", NULL, false, err) && put_fields(frames, err);
+           put_points(frames, err) && put_fields(frames, err);
 }

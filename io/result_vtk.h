@@ -1,7 +1,7 @@
 /* result_vtk.h - the frames of a journal as the group /VTKHDF of a result. Private to result.c.
  *
  * An UnstructuredGrid over time (VTKHDF 2.0) of triangles, from static/faces, or of poly lines, from
- * static/lines. */
+ * static/lines; points that never move, static/still, follow those of each frame. */
 #pragma once
 #include "io/hdf5_file.h"
 #include "io/journal.h"
@@ -23,7 +23,9 @@ typedef struct VtkFrames {
     Hdf5 *file;
     bool single; /* positions and fields as float32 */
     VtkCells cells;
-    int vertex_count, count;
+    int vertex_count, count; /* vertices with those that stand still */
+    int still_count;
+    double (*still)[3]; /* [still_count] points of static/still, the last ones of every frame */
     int *frames;   /* [count] indices of the journal */
     double *times; /* [count] s */
     char **fields; /* names of the first frame: those that the file has */

@@ -76,6 +76,7 @@ static bool is_symbol(char c)
 static bool parse_unit(const char *text, Unit *product)
 {
     *product = (Unit){.factor = 1};
+    if (text[0] == '1' && text[1] == '/') text++;
     for (int sign = 1; *text;) {
         if (*text == ' ' || *text == '*') {
             text++;

@@ -16,12 +16,14 @@ Pack3 chord_world(const Chord *chord)
 /* dC of turns, in the frame of a. */
 static Pack3 body_rate(const Chord *chord, Pack3 turn_a, Pack3 turn_b)
 {
-    return pack3_scale(pack_set(chord->h), segment_chord_rate(&chord->s, segment_rate(&chord->s, turn_a, turn_b)));
+    return pack3_scale(pack_set(chord->h),
+                       segment_chord_rate(&chord->s, segment_rate(&chord->s, turn_a, turn_b)));
 }
 
 Pack3 chord_rate(const Chord *chord, Pack3 turn_a, Pack3 turn_b)
 {
-    return segment_to_world(&chord->s, pack3_add(body_rate(chord, turn_a, turn_b), pack3_cross(turn_a, chord->C)));
+    return segment_to_world(&chord->s,
+                            pack3_add(body_rate(chord, turn_a, turn_b), pack3_cross(turn_a, chord->C)));
 }
 
 /* The force in the frame of a is F = R_a^T T, which changes by -phi_a x F: so -F.C gains phi_a.(F x C). */

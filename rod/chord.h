@@ -1,4 +1,5 @@
-/* chord.h - the work of a force on an element's chord, which weight (hang.c) and inextensibility (link.c) share. */
+/* chord.h - the work of a force on an element's chord, which weight (hang.c) and inextensibility (link.c)
+ * share. */
 #pragma once
 #include "rod/term.h"
 
@@ -16,6 +17,7 @@ Pack3 chord_world(const Chord *chord);
 /* d(R_a C) of turns. */
 Pack3 chord_rate(const Chord *chord, Pack3 turn_a, Pack3 turn_b);
 
-/* -T.R_a C for a force T of the world: adds its gradient to g[6]; writes its second derivatives as blocks aa, ab, bb. */
+/* -T.R_a C for a force T of the world: adds its gradient to g[6]; writes its second derivatives as blocks aa,
+ * ab, bb. */
 void chord_gradient(const Chord *chord, Pack3 T, Pack *g);
 void chord_hessian(const Chord *chord, Pack3 T, PackMat block[3]);

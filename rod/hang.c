@@ -1,5 +1,6 @@
-/* Weight and dead loads of a rod without positions: E = -sum_e T_e.(chord of e), T_e the sum of the loads beyond the element,
- * which is the potential of the nodes' weights and loads but for that of the first node. */
+/* Weight and dead loads of a rod without positions: E = -sum_e T_e.(chord of e), T_e the sum of the loads
+ * beyond the element, which is the potential of the nodes' weights and loads but for that of the first node.
+ */
 #include "rod/chord.h"
 
 /* Mass beyond the element, kg. */
@@ -15,7 +16,8 @@ static Pack beyond(const RodTerm *term, int pack)
 static Pack3 pull(const RodTerm *term, int pack, const double *p)
 {
     const Rod *rod = term->rod;
-    return pack3_axpy(beyond(term, pack), rod_term_uniform(p + rod->gravity), rod_term_vector(term, pack, p + rod->pull));
+    return pack3_axpy(beyond(term, pack), rod_term_uniform(p + rod->gravity),
+                      rod_term_vector(term, pack, p + rod->pull));
 }
 
 static void gradient(const Chord *chord, Pack3 T, Pack *g)
@@ -39,7 +41,8 @@ static Pack hang_eval(const void *self, int pack, const Point *at, const Pack *x
     return -pack3_dot(T, chord_world(&chord));
 }
 
-static void hang_param(const void *self, int pack, int lanes, const Point *at, const Pack *x, const Pack *w, double *dp)
+static void hang_param(const void *self, int pack, int lanes, const Point *at, const Pack *x, const Pack *w,
+                       double *dp)
 {
     const RodTerm *term = self;
     Chord chord = chord_at(term, pack, at->x, x);
@@ -52,7 +55,8 @@ static void hang_param(const void *self, int pack, int lanes, const Point *at, c
     }
 }
 
-static void hang_param_forward(const void *self, int pack, const Point *at, const Pack *x, const double *dp, Pack *r)
+static void hang_param_forward(const void *self, int pack, const Point *at, const Pack *x, const double *dp,
+                               Pack *r)
 {
     Chord chord = chord_at(self, pack, at->x, x);
     gradient(&chord, pull(self, pack, dp), r);

@@ -77,7 +77,7 @@ static Match match_create(const RodIdentifyDef *def)
         m.clamps[p] = orthonormal(def->poses[p].clamp);
         m.moments[p] = mem_alloc(2 * nodes - 1, sizeof *m.moments[p]);
         m.shapes[p] = mem_alloc(nodes, sizeof *m.shapes[p]);
-        RodLoads loads = {vec3_scale(line_mass(def), def->gravity)};
+        RodLoads loads = {.line = vec3_scale(line_mass(def), def->gravity)};
         rod_moments(def->poses[p].curve, loads, m.moments[p]);
     }
     return m;

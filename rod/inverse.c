@@ -34,7 +34,8 @@ void rod_moments(const RodCurve *curve, RodLoads loads, Vec3 *moment)
         Vec3 arm = vec3_axpy(-(curve->length - j * h), curve->x[j], integral);
         moment[j] = vec3_cross(arm, loads.line);
     }
-    for (int k = 0; k < loads.point_count; k++) add_point(curve, loads.points[k].s, loads.points[k].force, moment);
+    for (int k = 0; k < loads.point_count; k++)
+        add_point(curve, loads.points[k].s, loads.points[k].force, moment);
     add_point(curve, curve->length, loads.end, moment);
 }
 
@@ -119,7 +120,8 @@ void rod_strain_route(const RodCurve *curve, RodSection section, RodLoads loads,
 {
     int last = 2 * curve->elements;
     double h = curve->length / curve->elements;
-    Vec3 *k = mem_alloc((size_t)last + 1, sizeof *k), *pulls = mem_alloc(3 * (size_t)curve->elements, sizeof *pulls);
+    Vec3 *k = mem_alloc((size_t)last + 1, sizeof *k),
+         *pulls = mem_alloc(3 * (size_t)curve->elements, sizeof *pulls);
     rod_strains(curve, frames, k);
     rod_pulls(curve, loads, pulls);
     for (int j = 0; j <= last; j++) d[j] = vec3(0, 0, 0);

@@ -15,8 +15,8 @@ typedef struct RodPointLoad {
     Vec3 force;
 } RodPointLoad;
 
-/* All dead. A rod that is magnetised along its tangent by m (A m^2 per metre) in a uniform flux density B feels the couple
- * m t x B, which is that of a force m B at its end. */
+/* All dead. A rod that is magnetised along its tangent by m (A m^2 per metre) in a uniform flux density B
+ * feels the couple m t x B, which is that of a force m B at its end. */
 typedef struct RodLoads {
     Vec3 line; /* weight and what else pulls on each metre, N/m, the same all along */
     Vec3 end;  /* at the free end, N                                                */
@@ -27,7 +27,8 @@ typedef struct RodLoads {
 /* M at all stations, N m. Fourth order; second order in an element that a point load acts within. */
 void rod_moments(const RodCurve *curve, RodLoads loads, Vec3 *moment);
 
-/* T = what pulls beyond, at each element's start, middle and end, pull[3 elements]: point loads make it jump at nodes. */
+/* T = what pulls beyond, at each element's start, middle and end, pull[3 elements]: point loads make it jump
+ * at nodes. */
 void rod_pulls(const RodCurve *curve, RodLoads loads, Vec3 *pull);
 
 /* natural[elements + 1]: the natural shape's nodes, from the curve's first place and tangent on.

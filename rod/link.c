@@ -1,11 +1,11 @@
-/* Inextensibility of a rod with positions: c = x_b - x_a - R_a C = 0 for each element, by its multiplier lambda, the force of
- * the element on its first node:
+/* Inextensibility of a rod with positions: c = x_b - x_a - R_a C = 0 for each element, by its multiplier
+ * lambda, the force of the element on its first node:
  *
  *     E = lambda.c + hold/2 |c|^2
  *
- * The second part (an augmented Lagrangian) is 0 wherever a rod may be and changes no solution, but makes the matrix
- * definite in the positions, so that its LDL^T needs no pivoting. Trials are made admissible by putting the positions where
- * the rotations have them; only a held end is reached by Newton's steps. */
+ * The second part (an augmented Lagrangian) is 0 wherever a rod may be and changes no solution, but makes the
+ * matrix definite in the positions, so that its LDL^T needs no pivoting. Trials are made admissible by
+ * putting the positions where the rotations have them; only a held end is reached by Newton's steps. */
 #include "rod/chord.h"
 
 enum { XA, XB, TURN_A, TURN_B, LAMBDA, BLOCKS }; /* an element's dofs, three each */
@@ -82,7 +82,8 @@ static void link_project(void *self, double *x)
 {
     const RodTerm *term = self;
     int nodes = term->layout.nodes;
-    rod_places(term->rod, &term->layout, x, term->rod->end == ROD_FREE ? nodes : nodes - 1, x + term->layout.position);
+    rod_places(term->rod, &term->layout, x, term->rod->end == ROD_FREE ? nodes : nodes - 1,
+               x + term->layout.position);
 }
 
 static const TermOps link_ops = {

@@ -1,8 +1,10 @@
-/* Hard-magnetic energy E = -V/2 sum over both nodes of M.R^T B: M the remanent magnetisation of an element in the material
- * frame, V its volume, B uniform. Magnetised along the tangent it acts like an additional pull M V/h B. */
+/* Hard-magnetic energy E = -V/2 sum over both nodes of M.R^T B: M the remanent magnetisation of an element in
+ * the material frame, V its volume, B uniform. Magnetised along the tangent it acts like an additional pull M
+ * V/h B. */
 #include "rod/term.h"
 
-static Pack3 node_field(const RodTerm *term, int pack, int offset, const double *x, Pack3 turn, const double *B)
+static Pack3 node_field(const RodTerm *term, int pack, int offset, const double *x, Pack3 turn,
+                        const double *B)
 {
     Pack3 u;
     for (int l = 0; l < PACK_LANES; l++) {
@@ -34,15 +36,16 @@ static Pack magnetic_eval(const void *self, int pack, const Point *at, const Pac
         energy -= pack3_dot(M, u);
         if (g) pack3_store(g + 3 * k, segment_turned(turn, pack3_cross(u, M)));
         if (H)
-            element_add_diagonal(H, k, pack_mat_add(pack_mat_diagonal(pack3_dot(M, u)),
-                                                    pack_mat_scale(pack_set(-0.5), pack_mat_symmetric(M, u))));
+            element_add_diagonal(H, k,
+                                 pack_mat_add(pack_mat_diagonal(pack3_dot(M, u)),
+                                              pack_mat_scale(pack_set(-0.5), pack_mat_symmetric(M, u))));
     }
     return energy;
 }
 
 /* The force on a turn is u x M, u = R^T B. */
-static void magnetic_param(const void *self, int pack, int lanes, const Point *at, const Pack *x, const Pack *w,
-                           double *dp)
+static void magnetic_param(const void *self, int pack, int lanes, const Point *at, const Pack *x,
+                           const Pack *w, double *dp)
 {
     const RodTerm *term = self;
     const Rod *rod = term->rod;
@@ -62,17 +65,19 @@ static void magnetic_param(const void *self, int pack, int lanes, const Point *a
     }
 }
 
-static void magnetic_param_forward(const void *self, int pack, const Point *at, const Pack *x, const double *dp,
-                                   Pack *r)
+static void magnetic_param_forward(const void *self, int pack, const Point *at, const Pack *x,
+                                   const double *dp, Pack *r)
 {
     const RodTerm *term = self;
     const Rod *rod = term->rod;
     Pack3 M = rod_term_vector(term, pack, at->p + rod->magnetization),
           dM = rod_term_vector(term, pack, dp + rod->magnetization);
     for (int k = 0; k < 2; k++) {
-        Pack3 turn = pack3_load(x + 3 * k), u = node_field(term, pack, k, at->x, turn, at->p + rod->flux_density),
+        Pack3 turn = pack3_load(x + 3 * k),
+              u = node_field(term, pack, k, at->x, turn, at->p + rod->flux_density),
               du = node_field(term, pack, k, at->x, turn, dp + rod->flux_density);
-        pack3_store(r + 3 * k, pack3_scale(half_volume(term), pack3_add(pack3_cross(u, dM), pack3_cross(du, M))));
+        pack3_store(r + 3 * k,
+                    pack3_scale(half_volume(term), pack3_add(pack3_cross(u, dM), pack3_cross(du, M))));
     }
 }
 

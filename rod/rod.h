@@ -1,18 +1,19 @@
 /* rod.h - an inextensible, unshearable rod (Kirchhoff) in N elements of constant strain, and its states.
  *
- * Its shape is a rotation at each node; between two nodes strain is constant, so an element is a piece of a helix and its
- * chord is known in closed form: positions follow from rotations exactly, and never stretch [Bertails et al. 2006, with
- * rotations in place of curvatures as unknowns]. A node's frame is R = R(q): tangent R e_x, section's axes R e_y, R e_z.
+ * Its shape is a rotation at each node; between two nodes strain is constant, so an element is a piece of a
+ * helix and its chord is known in closed form: positions follow from rotations exactly, and never stretch
+ * [Bertails et al. 2006, with rotations in place of curvatures as unknowns]. A node's frame is R = R(q):
+ * tangent R e_x, section's axes R e_y, R e_z.
  *
- * A state x[dofs] holds, in this order (RodLayout)
- *     positions   [nodes][3]  m, of the forms that have them
- *     turns       [nodes][3]  increments from the reference, in the body's frame: q = reference (1, turn/2)/|..|;
- *                             terms differentiate at turn 0, and after each accepted step the reference takes the turn
- *     multipliers [elements][3]  N, force from each element on its first node, of the forms that have positions
- *     references  [nodes][4]  unit quaternions (w, v); no unknowns
- * so that x is the whole state. Two forms serve: `hanging` (rotations only: clamped at the first end, free at the other,
- * statics; 3 unknowns per node and a positive definite matrix), and with positions and multipliers for motion, designs and
- * held ends. Both have the same equilibria. */
+ * A state x[dofs] holds, in this order (RodLayout),
+ *     positions    [nodes][3], m, of the forms that have them;
+ *     turns        [nodes][3], increments from the reference in the body's frame, q = reference (1, turn/2)
+ *                  made a unit: terms differentiate at turn 0, and accepted turns go into the references;
+ *     multipliers  [elements][3], N, what an element does to its first node, where there are positions;
+ *     references   [nodes][4], unit quaternions (w, v), which are no unknowns;
+ * so that x is the whole state. Two forms serve: `hanging`, of rotations only, for statics of a rod that is
+ * clamped at its first end and free at the other (3 unknowns per node, a positive definite matrix); and with
+ * positions and multipliers for motion, designs and held ends. Both have the same equilibria. */
 #pragma once
 #include "base/quat.h"
 #include "rod/frame.h"
@@ -24,32 +25,38 @@ typedef enum RodSupport { ROD_FREE, ROD_PINNED, ROD_CLAMPED } RodSupport;
 
 typedef struct Rod {
     int elements;
-    double length;         /* m                                                                           */
-    RodSection unit;       /* of a Young's modulus of 1 Pa; mass in kg/m                                  */
-    double area;           /* of the section, m^2                                                         */
-    Vec3 position;         /* of the first node, m                                                        */
-    Quat frame;            /* of the first node                                                           */
-    RodSupport start, end; /* start: clamped or pinned                                                    */
-    Vec3 *bow;             /* [elements] m, in the first node's frame: what an element's chord is longer and
-                            * elsewhere than the helix's, because strain varies within it; usually 0; owned */
+    double length;         /* m                                            */
+    RodSection unit;       /* of a Young's modulus of 1 Pa; mass in kg/m   */
+    double area;           /* of the section, m^2                          */
+    Vec3 position;         /* of the first node, m                         */
+    Quat frame;            /* of the first node                            */
+    RodSupport start, end; /* start: clamped or pinned                     */
+    Vec3 *bow; /* [elements] m, in the first node's frame: how far an element's chord is off that of a
+                * helix, because strain varies within it; usually 0; owned */
 
-    Params params;      /* blocks and their first entries in p:                                                */
-    int young;          /* [element] Pa                                                                        */
-    int natural_strain; /* [element][3] twist, k1, k2, 1/m                                                     */
-    int magnetization;  /* [element][3] A/m, in the material frame                                             */
-    int flux_density;   /* [3] T, uniform                                                                      */
-    int gravity;        /* [3] m/s^2                                                                           */
-    int load;           /* [node][3] N, dead                                                                   */
-    int pull;           /* [element][3] N, sum of the loads beyond the element (rod_sum_loads)                 */
-    int damping;        /* [1] N s/m at every node, in steps of time                                           */
+    Params params;      /* blocks and their first entries in p:                           */
+    int young;          /* [element] Pa                                                   */
+    int natural_strain; /* [element][3] twist, k1, k2, 1/m                                */
+    int magnetization;  /* [element][3] A/m, in the material frame                        */
+    int flux_density;   /* [3] T, uniform                                                 */
+    int gravity;        /* [3] m/s^2                                                      */
+    int load;           /* [node][3] N, dead                                              */
+    int pull;           /* [element][3] N, the loads beyond the element (rod_sum_loads)   */
+    int damping;        /* [1] N s/m at every node, in steps of time                      */
 } Rod;
 
 /* Clamped at the origin along x, free at the other end; material, strains and loads are up to p. */
 Rod *rod_create(int elements, double length, RodSection unit, double area);
 void rod_destroy(Rod *rod);
 
-static inline int rod_node_count(const Rod *rod) { return rod->elements + 1; }
-static inline double rod_element_length(const Rod *rod) { return rod->length / rod->elements; }
+static inline int rod_node_count(const Rod *rod)
+{
+    return rod->elements + 1;
+}
+static inline double rod_element_length(const Rod *rod)
+{
+    return rod->length / rod->elements;
+}
 
 /* Mass of each node, mass[nodes], kg: half an element at the ends. */
 void rod_node_mass(const Rod *rod, double *mass);
@@ -85,24 +92,26 @@ void rod_natural_state(const Rod *rod, const RodLayout *layout, const double *p,
 /* The same state in another form. */
 void rod_copy_state(const Rod *rod, const RodLayout *from, const double *x, const RodLayout *to, double *y);
 
-/* Places of the first `count` nodes, place[count][3], from the first one (of x, or the rod's) and the rotations, turns
- * included. place may be x's own positions. */
+/* Places of the first `count` nodes, place[count][3], from the first one (of x, or the rod's) and the
+ * rotations, turns included. place may be x's own positions. */
 void rod_places(const Rod *rod, const RodLayout *layout, const double *x, int count, double *place);
 
-/* The hanging state x that follows a curve of as many elements: rotations from its frames[stations] at the nodes; and bow so
- * that the rod has the curve's places, to rounding. Takes position, frame and length from the curve. */
+/* The hanging state x that follows a curve of as many elements: rotations from its frames[stations] at the
+ * nodes; and bow so that the rod has the curve's places, to rounding. Takes position, frame and length from
+ * the curve. */
 void rod_follow_curve(Rod *rod, const RodCurve *curve, const RodFrame *frames, double *x);
 
 /* ---- Systems ---- */
 
-/* All terms, prepared. hanging: rotations only; the rod is clamped and free. Else with positions: statics, or with inertia
- * and damping; young is about the rod's modulus (it decides nothing). The rod must outlive the system. */
+/* All terms, prepared. hanging: rotations only; the rod is clamped and free. Else with positions: statics, or
+ * with inertia and damping; young is about the rod's modulus (it decides nothing). The rod must outlive the
+ * system. */
 System *rod_hanging_system(const Rod *rod);
 System *rod_system(const Rod *rod, double young, bool dynamic);
 
 /* Strains (twist, k1, k2) of the elements, strain[elements], 1/m. */
 void rod_element_strains(const Rod *rod, const RodLayout *layout, const double *x, Vec3 *strain);
 
-/* Puts the natural strains into p with which the state x of a hanging system is in equilibrium, to rounding: moments from
- * node to node, from the free end on. */
+/* Puts the natural strains into p with which the state x of a hanging system is in equilibrium, to rounding:
+ * moments from node to node, from the free end on. */
 void rod_balance(const Rod *rod, System *hanging, const double *x, double *p);

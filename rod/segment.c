@@ -18,7 +18,8 @@ static PackQuat turned(PackQuat q, Pack3 turn)
     return (PackQuat){scale * r.w, pack3_scale(scale, r.v)};
 }
 
-/* acos(w)/sqrt(1 - w^2) = sum a_n u^n with a_0 = 1, a_n = a_(n-1) n/(2n + 1); r = (that - 1)/u and derivatives in u. */
+/* acos(w)/sqrt(1 - w^2) = sum a_n u^n with a_0 = 1, a_n = a_(n-1) n/(2n + 1); r = (that - 1)/u and
+ * derivatives in u. */
 static void series(Pack u, Pack r[3])
 {
     double a[SERIES + 1] = {1};
@@ -134,7 +135,8 @@ Pack3 segment_chord_rate(const Segment *s, PackQuat dp)
     const Radial *r = &s->radial;
     Pack3 v = s->p.v;
     Pack3 c = pack3_add(pack3_scale(r->b1 * dp.w * v.x + r->b * dp.v.x, v), pack3_scale(r->b * v.x, dp.v));
-    c = pack3_add(c, pack3_add(pack3_scale(r->f1 * dp.w, cross_tangent(v)), pack3_scale(r->f, cross_tangent(dp.v))));
+    c = pack3_add(
+        c, pack3_add(pack3_scale(r->f1 * dp.w, cross_tangent(v)), pack3_scale(r->f, cross_tangent(dp.v))));
     c.x += (r->f + s->p.w * r->f1) * dp.w;
     return c;
 }

@@ -1,10 +1,14 @@
-/* segment.h - the relative rotation of an element's two nodes, p = conj(q_a) q_b = (w, v), for a pack of elements: strain,
- * chord, and how functions of p change with the two turns.
+/* segment.h - the relative rotation of an element's two nodes, p = conj(q_a) q_b = (w, v), for a pack of
+ * elements: strain, chord, and how functions of p change with the two turns.
  *
- * theta = 2 g(w) v is the rotation vector from a to b (g = acos(w)/sqrt(1 - w^2)), theta/h the strain; the chord of the
- * helix, in the frame of a and over h, is c(p) = w f e_x + b v (v.e_x) + f v x e_x, f = 1/g, b = (1 - w f)/(1 - w^2).
- * A turn phi of a node changes q to second order by q (1, phi/2 - ..), so that [docs/theory.md]
- *     dp = (p phi_b - phi_a p)/2,   d2p = -(|phi_a|^2 + |phi_b|^2) p/4 - phi_a p phi_b/2 */
+ * theta = 2 g(w) v is the rotation vector from a to b, g = acos(w)/sqrt(1 - w^2), and theta/h the strain. The
+ * chord of the helix over h, in the frame of a, is
+ *
+ *     c(p) = w f e_x + b v (v.e_x) + f v x e_x,   f = 1/g,   b = (1 - w f)/(1 - w^2).
+ *
+ * A turn phi of a node makes q (1, phi/2), of length 1, of q: to second order
+ *
+ *     dp = (p phi_b - phi_a p)/2,   d2p = -(|phi_a|^2 + |phi_b|^2) p/4 - phi_a p phi_b/2. */
 #pragma once
 #include "rod/rod.h"
 #include "solve/element.h"
@@ -74,5 +78,6 @@ void segment_pull_gradient(const Segment *s, const Jet *jet, Pack *g);
 /* Second derivatives with respect to the turns, as blocks aa, ab (rows a), bb. */
 void segment_pull_hessian(const Segment *s, const Jet *jet, PackMat block[3]);
 
-/* The derivative with respect to a turn that is not 0, from that with respect to a further one: for trial points. */
+/* The derivative with respect to a turn that is not 0, from that with respect to a further one: for trial
+ * points. */
 Pack3 segment_turned(Pack3 turn, Pack3 gradient);

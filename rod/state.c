@@ -69,7 +69,8 @@ void rod_natural_state(const Rod *rod, const RodLayout *layout, const double *p,
     Quat *q = mem_alloc((size_t)layout->nodes, sizeof *q);
     q[0] = rod->frame;
     for (int e = 0; e < rod->elements; e++)
-        q[e + 1] = quat_unit(quat_mul(q[e], quat_exp(vec3_scale(h, vec3_load(p + rod->natural_strain + 3 * e)))));
+        q[e + 1] =
+            quat_unit(quat_mul(q[e], quat_exp(vec3_scale(h, vec3_load(p + rod->natural_strain + 3 * e)))));
     rod_set_state(rod, layout, q, x);
     mem_free(q);
 }
@@ -114,7 +115,8 @@ void rod_follow_curve(Rod *rod, const RodCurve *curve, const RodFrame *frames, d
 /* m with rows m = b. */
 static Vec3 solve(const Vec3 rows[3], Vec3 b)
 {
-    Vec3 c0 = vec3_cross(rows[1], rows[2]), c1 = vec3_cross(rows[2], rows[0]), c2 = vec3_cross(rows[0], rows[1]);
+    Vec3 c0 = vec3_cross(rows[1], rows[2]), c1 = vec3_cross(rows[2], rows[0]),
+         c2 = vec3_cross(rows[0], rows[1]);
     Vec3 sum = vec3_axpy(b.x, c0, vec3_axpy(b.y, c1, vec3_scale(b.z, c2)));
     return vec3_scale(1 / vec3_dot(rows[0], c0), sum);
 }
@@ -128,7 +130,8 @@ static void turn_rows(const RodLayout *layout, const double *x, Vec3 (*rows)[6])
         Segment s = segment_at(layout, k, x, none);
         for (int i = 0; i < 6; i++) {
             Pack3 unit = pack3(pack_set(i % 3 == 0), pack_set(i % 3 == 1), pack_set(i % 3 == 2));
-            Pack3 row = segment_theta_rate(&s, i < 3 ? segment_rate(&s, unit, zero) : segment_rate(&s, zero, unit));
+            Pack3 row =
+                segment_theta_rate(&s, i < 3 ? segment_rate(&s, unit, zero) : segment_rate(&s, zero, unit));
             for (int l = 0, e = k * PACK_LANES; l < PACK_LANES && e < layout->nodes - 1; l++, e++)
                 rows[e][i] = vec3(row.x[l], row.y[l], row.z[l]);
         }

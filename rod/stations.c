@@ -21,7 +21,8 @@ static Vec3 element_pull(const Rod *rod, const double *p, int e, Vec3 *weight)
     return vec3_axpy(rod->area * p[rod->magnetization + 3 * e], B, pull);
 }
 
-void rod_stations(const Rod *rod, const RodLayout *layout, const double *x, const double *p, Vec3 *k, Vec3 *m, Vec3 *F)
+void rod_stations(const Rod *rod, const RodLayout *layout, const double *x, const double *p, Vec3 *k, Vec3 *m,
+                  Vec3 *F)
 {
     double h = rod_element_length(rod);
     Vec3 *strain = mem_alloc((size_t)rod->elements, sizeof *strain);
@@ -30,7 +31,8 @@ void rod_stations(const Rod *rod, const RodLayout *layout, const double *x, cons
         Vec3 off = vec3_sub(strain[e], vec3_load(p + rod->natural_strain + 3 * e)), weight;
         double young = p[rod->young + e];
         k[2 * e + 1] = strain[e];
-        m[2 * e + 1] = vec3_scale(young, vec3(rod->unit.twist * off.x, rod->unit.bend1 * off.y, rod->unit.bend2 * off.z));
+        m[2 * e + 1] = vec3_scale(
+            young, vec3(rod->unit.twist * off.x, rod->unit.bend1 * off.y, rod->unit.bend2 * off.z));
         Vec3 pull = element_pull(rod, p, e, &weight);
         Quat a = rod_reference(layout, x, e), middle = quat_mul(a, quat_exp(vec3_scale(h / 2, strain[e])));
         Quat frame[3] = {a, middle, rod_reference(layout, x, e + 1)};
@@ -49,7 +51,8 @@ static Vec3 helix_chord(Vec3 k, double h)
     Vec3 theta = vec3_scale(h, k), along = vec3(1, 0, 0);
     double angle2 = vec3_dot(theta, theta), angle = sqrt(angle2);
     bool small = angle < 1e-2;
-    double s = small ? 1 - angle2 / 6 * (1 - angle2 / 20) : sin(angle) / angle; /* sin a/a, (1 - cos a)/a^2, (1 - s)/a^2 */
+    double s = small ? 1 - angle2 / 6 * (1 - angle2 / 20)
+                     : sin(angle) / angle; /* sin a/a, (1 - cos a)/a^2, (1 - s)/a^2 */
     double c = small ? 0.5 - angle2 / 24 * (1 - angle2 / 30) : (1 - cos(angle)) / angle2;
     double d = small ? 1.0 / 6 - angle2 / 120 * (1 - angle2 / 42) : (1 - s) / angle2;
     Vec3 sum = vec3_axpy(d * theta.x, theta, vec3_axpy(c, vec3_cross(theta, along), vec3_scale(s, along)));

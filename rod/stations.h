@@ -1,14 +1,18 @@
-/* stations.h - a discrete rod in equilibrium, seen at the stations of a curve (nodes and middles of elements), as stability.h
- * takes it. */
+/* stations.h - a discrete rod in equilibrium, seen at the stations of a curve (nodes and middles of
+ * elements), as stability.h takes it. */
 #pragma once
 #include "rod/rod.h"
 
-/* Strains k[stations], moments K (k - kbar) m[stations] and pulls F[3 elements] in the frames: what elements have, with means
- * at nodes and continued to the ends; no moment at a free end. Magnetisation counts along the tangent only. */
-void rod_stations(const Rod *rod, const RodLayout *layout, const double *x, const double *p, Vec3 *k, Vec3 *m, Vec3 *F);
+/* Strains k[stations], moments K (k - kbar) m[stations] and pulls F[3 elements] in the frames: what elements
+ * have, with means at nodes and continued to the ends; no moment at a free end. Magnetisation counts along
+ * the tangent only. */
+void rod_stations(const Rod *rod, const RodLayout *layout, const double *x, const double *p, Vec3 *k, Vec3 *m,
+                  Vec3 *F);
 
-/* The rod as a curve: the pieces of helices that its elements are, at their nodes and middles. To be cleared. */
+/* The rod as a curve: the pieces of helices that its elements are, at their nodes and middles. To be cleared.
+ */
 void rod_curve_of(const Rod *rod, const RodLayout *layout, const double *x, RodCurve *curve);
 
 /* Moments at the nodes in the world, moment[nodes], N m. */
-void rod_node_moments(const Rod *rod, const RodLayout *layout, const double *x, const double *p, Vec3 *moment);
+void rod_node_moments(const Rod *rod, const RodLayout *layout, const double *x, const double *p,
+                      Vec3 *moment);

@@ -1,5 +1,5 @@
-/* Bending and twist: E = h/2 (k - kbar).K (k - kbar), k = theta/h the strain of an element in its frame, K = young times
- * the section's (twist, bend1, bend2). The accepted turns go into the references here. */
+/* Bending and twist: E = h/2 (k - kbar).K (k - kbar), k = theta/h the strain of an element in its frame, K =
+ * young times the section's (twist, bend1, bend2). The accepted turns go into the references here. */
 #include "rod/term.h"
 
 typedef struct Strained {
@@ -42,7 +42,8 @@ static void hessian(const Strained *o, Pack3 moment, Pack *H)
 {
     PackMat block[3], a = theta_rows(&o->s, false), b = theta_rows(&o->s, true);
     Pack3 K = pack3_scale(o->young / o->h, o->unit);
-    PackMat Ka = {times(K, a.r0), times(K, a.r1), times(K, a.r2)}, Kb = {times(K, b.r0), times(K, b.r1), times(K, b.r2)};
+    PackMat Ka = {times(K, a.r0), times(K, a.r1), times(K, a.r2)},
+            Kb = {times(K, b.r0), times(K, b.r1), times(K, b.r2)};
     Jet jet = segment_theta_jet(&o->s, moment, true);
     segment_pull_hessian(&o->s, &jet, block);
     block[0] = pack_mat_add(block[0], pack_mat_product(a, pack_mat_transpose(Ka)));
@@ -87,7 +88,8 @@ static void strain_param(const void *self, int pack, int lanes, const Point *at,
     }
 }
 
-static void strain_param_forward(const void *self, int pack, const Point *at, const Pack *x, const double *dp, Pack *r)
+static void strain_param_forward(const void *self, int pack, const Point *at, const Pack *x, const double *dp,
+                                 Pack *r)
 {
     const RodTerm *term = self;
     Strained o = strained(term, pack, at, x);
@@ -101,7 +103,8 @@ static void strain_accept(void *self, double *x)
     const RodLayout *layout = &((const RodTerm *)self)->layout;
     for (int i = 0; i < layout->nodes; i++) {
         double *turn = x + layout->turn + 3 * i, *to = x + layout->reference + 4 * i;
-        Quat q = quat_unit(quat_mul(rod_reference(layout, x, i), (Quat){1, vec3_scale(0.5, vec3_load(turn))}));
+        Quat q =
+            quat_unit(quat_mul(rod_reference(layout, x, i), (Quat){1, vec3_scale(0.5, vec3_load(turn))}));
         to[0] = q.w;
         vec3_store(to + 1, q.v);
         vec3_store(turn, vec3(0, 0, 0));

@@ -1,16 +1,17 @@
-/* terms.h - the energy terms of a rod. This list is the only place that names them all (with positions, the lumped terms of
- * solve/ come to them: weight, loads, inertia, damping).
+/* terms.h - the energy terms of a rod. This list is the only place that names them all (with positions, the
+ * lumped terms of solve/ come to them: weight, loads, inertia, damping).
  *
- * To add a term: write rod/<name>.c that defines rod_<name>_term() and ends in one private TermOps, and add a row here. */
+ * To add a term: write rod/<name>.c that defines rod_<name>_term() and ends in one private TermOps, and add a
+ * row here. */
 #pragma once
 #include "rod/rod.h"
 #include "solve/term.h"
 
 #define ROD_TERMS(X)                                                                                         \
-    X(strain, ROD_ANY_FORM)     /* bending and twist, h/2 |k - kbar|_K^2                                  */ \
-    X(magnetic, ROD_ANY_FORM)   /* hard-magnetic work -V M.R^T B                                          */ \
-    X(hang, ROD_HANGING)        /* weight and dead loads on positions that follow from rotations          */ \
-    X(link, ROD_WITH_POSITIONS) /* inextensibility, by multipliers                                        */
+    X(strain, ROD_ANY_FORM)     /* bending and twist, h/2 |k - kbar|_K^2                         */          \
+    X(magnetic, ROD_ANY_FORM)   /* hard-magnetic work -V M.R^T B                                 */          \
+    X(hang, ROD_HANGING)        /* weight and dead loads on positions that follow from rotations */          \
+    X(link, ROD_WITH_POSITIONS) /* inextensibility, by multipliers                               */
 
 typedef enum RodForm { ROD_ANY_FORM, ROD_HANGING, ROD_WITH_POSITIONS } RodForm;
 

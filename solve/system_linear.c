@@ -101,7 +101,7 @@ void system_solve(System *sys, const double *b, double *y)
 
 int system_solve_cg(System *sys, const double *b, double tolerance, int max_iterations, double *y)
 {
-    if (!sys->factored) return -1;
+    if (!sys->factored || sys->multiplier_count) return -1; /* for positive definite matrices only */
     double *work = pick(sys, b);
     int iterations = sparse_solve_cg(sys->matrix, work, tolerance, max_iterations, work);
     if (iterations >= 0) spread(sys, work, y);

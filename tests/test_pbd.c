@@ -42,7 +42,7 @@ static PbdRodDef sagging_helix(int elements, Vec3 *places)
     RodCurve curve;
     assert_true(rod_curve_create(helix, NULL, 0, 19.565163762857, elements, &curve, NULL));
     RodSection section = rod_circle(1.5e-3, 5e6, 0.5, 1200);
-    rod_moments(&curve, (RodLoads){vec3(0, 0, -9.8 * section.mass)}, moment);
+    rod_moments(&curve, (RodLoads){.line = vec3(0, 0, -9.8 * section.mass)}, moment);
     rod_frenet(&curve, frames);
     rod_natural_strains(&curve, section, moment, frames, strains);
     for (int e = 0; e < elements; e++) strain[e] = strains[2 * e + 1];

@@ -1,5 +1,5 @@
-/* Rods in motion: back to the curve from the natural shape, frequencies, a pendulum, and what a small push does to the wave
- * that is unstable at 23 MPa and stable at 27. */
+/* Rods in motion: back to the curve from the natural shape, frequencies, a pendulum, and what a small push
+ * does to the wave that is unstable at 23 MPa and stable at 27. */
 #include "base/random.h"
 #include "solve/eigen.h"
 #include "solve/march.h"
@@ -20,7 +20,8 @@ typedef struct Moving {
 
 static Moving moving_create(const Rod *rod, double young, double *p)
 {
-    Moving m = {.layout = rod_layout(rod, true), .sys = rod_system(rod, young, true), .def = march_default(), .p = p};
+    Moving m = {
+        .layout = rod_layout(rod, true), .sys = rod_system(rod, young, true), .def = march_default(), .p = p};
     m.def.newton.cg_iterations = 0;
     m.def.newton.step_cap = 1.5;
     m.now.x = mem_alloc((size_t)m.layout.dofs, sizeof(double));
@@ -53,8 +54,8 @@ static void test_relaxing(void **state)
         rod_natural_state(o.rod, &m.layout, o.p, m.now.x);
         int iterations = 0;
         for (int k = 0; k < 300; k++) iterations += step(&m, 1 / 60.0);
-        print_message("%-8s from its natural shape: %.1e m off after 5 s, %.2f iterations a step\n", reference_rods[c].name,
-                      resting_distance(&o, m.now.x), iterations / 300.0);
+        print_message("%-8s from its natural shape: %.1e m off after 5 s, %.2f iterations a step\n",
+                      reference_rods[c].name, resting_distance(&o, m.now.x), iterations / 300.0);
         assert_true(resting_distance(&o, m.now.x) < 1e-6);
         moving_clear(&m);
         resting_clear(&o);
@@ -78,16 +79,18 @@ static double frequency(Moving *m, int dof, double mean, double dt, int steps)
     return crossings > 1 ? (crossings - 1) / (last - first) : 0;
 }
 
-/* The lowest frequency of a rod at rest, Hz, and its mode. The Hessian's eigenvalue is that of unit masses; the mode's
- * Rayleigh quotient with the nodes' masses is off by the square of what they differ by, at the ends. */
+/* The lowest frequency of a rod at rest, Hz, and its mode. The Hessian's eigenvalue is that of unit masses;
+ * the mode's Rayleigh quotient with the nodes' masses is off by the square of what they differ by, at the
+ * ends. */
 static double lowest_frequency(const Resting *o, const Moving *m, double young, double *mode)
 {
     System *sys = rod_system(o->rod, young, false);
     double lambda, inertia = 0, *mass = mem_alloc((size_t)m->layout.nodes, sizeof *mass);
     double *x = mem_copy(m->now.x, (size_t)m->layout.dofs, sizeof *x);
-    for (int e = o->rod->elements - 1, i = 2; e >= 0; e--, i = 2) /* the multipliers of rest: what hangs below */
-        x[m->layout.multiplier + 3 * e + i] =
-            o->p[o->rod->gravity + 2] * o->rod->unit.mass * rod_element_length(o->rod) * (o->rod->elements - e - 0.5);
+    for (int e = o->rod->elements - 1, i = 2; e >= 0;
+         e--, i = 2) /* the multipliers of rest: what hangs below */
+        x[m->layout.multiplier + 3 * e + i] = o->p[o->rod->gravity + 2] * o->rod->unit.mass *
+                                              rod_element_length(o->rod) * (o->rod->elements - e - 0.5);
     assert_true(eigen_lowest(sys, &(Point){.x = x, .p = o->p}, 1, &lambda, mode));
     rod_node_mass(o->rod, mass);
     for (int i = 0; i < 3 * m->layout.nodes; i++) inertia += mass[i / 3] * mode[i] * mode[i];
@@ -97,8 +100,8 @@ static double lowest_frequency(const Resting *o, const Moving *m, double young, 
     return sqrt(lambda / inertia) / (2 * M_PI);
 }
 
-/* The second variation with inertia has lowest frequencies of 2.16 Hz (helix) and 1.35 Hz (conical); pushed along its
- * lowest mode the rod swings with that of the mode. */
+/* The second variation with inertia has lowest frequencies of 2.16 Hz (helix) and 1.35 Hz (conical); pushed
+ * along its lowest mode the rod swings with that of the mode. */
 static void test_frequencies(void **state)
 {
     (void)state;
@@ -108,7 +111,8 @@ static void test_frequencies(void **state)
         Resting o = resting_create(&reference_rods[c], reference_rods[c].young, N);
         Moving m = moving_create(o.rod, reference_rods[c].young, o.p);
         rod_copy_state(o.rod, &o.layout, o.x, &m.layout, m.now.x);
-        double *mode = mem_alloc((size_t)m.layout.dofs, sizeof *mode), f = lowest_frequency(&o, &m, reference_rods[c].young, mode);
+        double *mode = mem_alloc((size_t)m.layout.dofs, sizeof *mode),
+               f = lowest_frequency(&o, &m, reference_rods[c].young, mode);
         int axis = 3 * N + (fabs(mode[3 * N]) > fabs(mode[3 * N + 1]) ? 0 : 1);
         for (int i = 0; i < 3 * (N + 1); i++) m.now.v[i] = 0.1 * mode[i]; /* about 1 mm */
         double swing = frequency(&m, axis, m.now.x[axis], 2e-3, 4000);

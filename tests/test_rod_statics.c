@@ -1,5 +1,6 @@
-/* Equilibria of discrete rods: the exact discrete inverse, convergence to the curve, the cantilevers of the paper's section
- * 5.3, both forms against each other, point loads, magnetised rods, and rods held at both ends. */
+/* Equilibria of discrete rods: the exact discrete inverse, convergence to the curve, the cantilevers of the
+ * paper's section 5.3, both forms against each other, point loads, magnetised rods, and rods held at both
+ * ends. */
 #include "base/random.h"
 #include "rod/stations.h"
 #include "tests/rod_fixture.h"
@@ -20,13 +21,15 @@ static void test_discrete_inverse(void **state)
     for (int c = 0; c < REFERENCE_COUNT; c++) {
         double young = c == REFERENCE_WAVE ? 27e6 : reference_rods[c].young;
         Resting o = resting_create(&reference_rods[c], young, 200);
-        double *g = mem_alloc((size_t)o.layout.dofs, sizeof *g), *x = mem_alloc((size_t)o.layout.dofs, sizeof *x);
+        double *g = mem_alloc((size_t)o.layout.dofs, sizeof *g),
+               *x = mem_alloc((size_t)o.layout.dofs, sizeof *x);
         Evaluation left = system_gradient(o.hanging, &(Point){.x = o.x, .p = o.p}, g);
         rod_natural_state(o.rod, &o.layout, o.p, x);
         RampInfo info = rod_relax(o.rod, o.hanging, ramp_steps[c], o.p, x);
         double off = resting_distance_of(&o, x);
-        print_message("%-8s residual %.1e of the forces, round trip %.1e m in %d iterations\n", reference_rods[c].name,
-                      left.gradient_max / left.force_scale, off, info.newton.iterations);
+        print_message("%-8s residual %.1e of the forces, round trip %.1e m in %d iterations\n",
+                      reference_rods[c].name, left.gradient_max / left.force_scale, off,
+                      info.newton.iterations);
         assert_int_equal(info.newton.status, NEWTON_CONVERGED);
         assert_true(left.gradient_max <= 1e-13 * left.force_scale && off <= 1e-12);
         mem_free(g);
@@ -65,15 +68,17 @@ static void test_forward(void **state)
     static const double known[] = {1.8e-5, 6.0e-5, 5.2e-5}; /* m; the wave's at N = 800 */
     for (int c = 0; c < REFERENCE_COUNT; c++) {
         int elements = c == REFERENCE_WAVE ? 800 : 200;
-        double coarse = forward_error(c, elements / 2), off = forward_error(c, elements), fine = forward_error(c, 2 * elements);
-        print_message("%-8s %.2e m off at %d elements; orders %.3f, %.3f\n", reference_rods[c].name, off, elements,
-                      log2(coarse / off), log2(off / fine));
-        assert_true(off <= known[c] && fabs(log2(coarse / off) - 2) < 0.1 && fabs(log2(off / fine) - 2) < 0.1);
+        double coarse = forward_error(c, elements / 2), off = forward_error(c, elements),
+               fine = forward_error(c, 2 * elements);
+        print_message("%-8s %.2e m off at %d elements; orders %.3f, %.3f\n", reference_rods[c].name, off,
+                      elements, log2(coarse / off), log2(off / fine));
+        assert_true(off <= known[c] && fabs(log2(coarse / off) - 2) < 0.1 &&
+                    fabs(log2(off / fine) - 2) < 0.1);
     }
 }
 
-/* A straight rod clamped horizontally falls; the shape that it takes, inverted, is straight again [the paper's section 5.3,
- * which loses more than a hundredth of the length of the softest one]. */
+/* A straight rod clamped horizontally falls; the shape that it takes, inverted, is straight again [the
+ * paper's section 5.3, which loses more than a hundredth of the length of the softest one]. */
 static void test_cantilevers(void **state)
 {
     (void)state;
@@ -99,8 +104,8 @@ static void test_cantilevers(void **state)
         rod_invert(&curve, section, moment, NULL, natural);
         for (int i = 0; i <= N; i++) off = fmax(off, fabs(natural[i].z));
         double angle = atan2(curve.t[2 * N].z, curve.t[2 * N].x) * 180 / M_PI;
-        print_message("E = %8.3g Pa: tip at %.3f degrees, %d iterations; inverted: max |z| = %.1e L\n", young[k], angle,
-                      info.newton.iterations, off / 0.2);
+        print_message("E = %8.3g Pa: tip at %.3f degrees, %d iterations; inverted: max |z| = %.1e L\n",
+                      young[k], angle, info.newton.iterations, off / 0.2);
         assert_int_equal(info.newton.status, NEWTON_CONVERGED);
         assert_true(off <= 1e-4 * 0.2 && fabs(angle - tip_angle[k]) < 2e-3);
         system_destroy(sys);
@@ -111,7 +116,8 @@ static void test_cantilevers(void **state)
     }
 }
 
-/* The form with positions and multipliers finds the same equilibrium; its multipliers are what hangs below. */
+/* The form with positions and multipliers finds the same equilibrium; its multipliers are what hangs below.
+ */
 static void test_both_forms(void **state)
 {
     (void)state;
@@ -124,10 +130,12 @@ static void test_both_forms(void **state)
         rod_natural_state(rod, &layout, o.p, x);
         RampInfo info = rod_relax(rod, sys, ramp_steps[c], o.p, x);
         for (int e = 0; e < rod->elements; e++) {
-            double weight = rod->unit.mass * rod_element_length(rod) * (rod->elements - e - 0.5) * reference_gravity;
+            double weight =
+                rod->unit.mass * rod_element_length(rod) * (rod->elements - e - 0.5) * reference_gravity;
             off = fmax(off, fabs(x[layout.multiplier + 3 * e + 2] + weight));
         }
-        print_message("%-8s with positions %.1e m off, multipliers %.1e N\n", reference_rods[c].name, resting_distance(&o, x), off);
+        print_message("%-8s with positions %.1e m off, multipliers %.1e N\n", reference_rods[c].name,
+                      resting_distance(&o, x), off);
         assert_int_equal(info.newton.status, NEWTON_CONVERGED);
         assert_true(resting_distance(&o, x) < 1e-12 && off < 1e-12);
         system_destroy(sys);
@@ -145,7 +153,8 @@ static Rod *plain_rod(int elements, double length, double young, double **params
     return rod;
 }
 
-/* Moments at the clamp are those of statics, for a force at the end and a field along and across the tangent. */
+/* Moments at the clamp are those of statics, for a force at the end and a field along and across the tangent.
+ */
 static void test_moments(void **state)
 {
     (void)state;
@@ -194,8 +203,8 @@ static bool push_end(void *self, double part, double *x)
     return true;
 }
 
-/* Euler's elastica between hinges, pushed together by d = 2 (1 - E(k)/K(k)) of its length: P L^2/EI = 4 K(k)^2 and the
- * deflection k/K(k); k = sin 30 degrees. */
+/* Euler's elastica between hinges, pushed together by d = 2 (1 - E(k)/K(k)) of its length: P L^2/EI = 4
+ * K(k)^2 and the deflection k/K(k); k = sin 30 degrees. */
 static double elastica_force(int elements, double *deflection, NewtonStatus *status)
 {
     const double K = 1.6857503548125961, E = 1.4674622093394272;
@@ -232,8 +241,8 @@ static void test_held_ends(void **state)
         NewtonStatus status;
         double force = elastica_force(k ? 100 : 50, &deflection, &status);
         off[k] = fabs(force / (4 * K * K) - 1);
-        print_message("elastica between hinges, %d elements: %s, force %.1e off, deflection %.1e L off\n", k ? 100 : 50,
-                      newton_status_name(status), off[k], fabs(deflection - 0.5 / K));
+        print_message("elastica between hinges, %d elements: %s, force %.1e off, deflection %.1e L off\n",
+                      k ? 100 : 50, newton_status_name(status), off[k], fabs(deflection - 0.5 / K));
         assert_true(status == NEWTON_CONVERGED || status == NEWTON_NEUTRAL);
         assert_true(off[k] < (k ? 5e-4 : 2e-3) && fabs(deflection - 0.5 / K) < (k ? 2e-4 : 8e-4));
     }
@@ -243,8 +252,9 @@ static void test_held_ends(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_discrete_inverse), cmocka_unit_test(test_forward),    cmocka_unit_test(test_cantilevers),
-        cmocka_unit_test(test_both_forms),       cmocka_unit_test(test_moments),    cmocka_unit_test(test_held_ends),
+        cmocka_unit_test(test_discrete_inverse), cmocka_unit_test(test_forward),
+        cmocka_unit_test(test_cantilevers),      cmocka_unit_test(test_both_forms),
+        cmocka_unit_test(test_moments),          cmocka_unit_test(test_held_ends),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,5 @@
-/* Every term of a rod, in both forms, against differences; both forms against each other; the discrete inverse; how far and
- * how fast equilibria converge. */
+/* Every term of a rod, in both forms, against differences; both forms against each other; the discrete
+ * inverse; how far and how fast equilibria converge. */
 #include "base/memory.h"
 #include "base/random.h"
 #include "rod/inverse.h"
@@ -71,7 +71,8 @@ static void test_derivatives(void **state)
         TermError worst = check_term(&term, &rod->params, &(Point){.x = x, .p = p}, dof_size, &random);
         print_message("%-10s gradient %.1e  hessian %.1e  param_forward %.1e  param %.1e\n", row->name,
                       worst.gradient, worst.hessian, worst.forward, worst.adjoint);
-        assert_true(worst.gradient < 1e-9 && worst.hessian < 1e-9 && worst.forward < 1e-9 && worst.adjoint < 1e-11);
+        assert_true(worst.gradient < 1e-9 && worst.hessian < 1e-9 && worst.forward < 1e-9 &&
+                    worst.adjoint < 1e-11);
         term.ops->destroy(term.self);
         mem_free(x);
     }

@@ -44,7 +44,7 @@ static Vec3 *natural_of(RodCurvePoint *point, void *self, double range, double y
     RodSection section = rod_circle(1.5e-3, young, 0.5, 1200);
     Vec3 *moment = mem_alloc(2 * (size_t)elements + 1, sizeof *moment),
          *natural = mem_alloc((size_t)elements + 1, sizeof *natural);
-    rod_moments(&curve, (RodLoads){vec3(0, 0, -9.8 * section.mass)}, moment);
+    rod_moments(&curve, (RodLoads){.line = vec3(0, 0, -9.8 * section.mass)}, moment);
     rod_invert(&curve, section, moment, NULL, natural);
     mem_free(moment);
     rod_curve_clear(&curve);

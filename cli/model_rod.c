@@ -1,0 +1,264 @@
+/* Models of rods. */
+#include "base/memory.h"
+#include "cli/body.h"
+#include "cli/job.h"
+#include "cli/rod_curves.h"
+#include "cli/rod_model.h"
+#include "solve/ramp.h"
+#include <math.h>
+#include <string.h>
+
+enum { LOAD_STEPS = 10 }; /* a natural shape is far from the loaded one; the way matters (docs/rods.md) */
+static const double STEP_CAP = 1.5; /* rad */
+
+/* ---- Fields, loads and targets ---- */
+
+static bool put_flux(Model *model, const Build *b, const char *at, const FluxScene *flux, double *p)
+{
+    int field;
+    return build_flux(b, key("%s", at), flux, NULL, p + model->flux_density, &field);
+}
+
+static bool put_loads(Model *model, const Build *b, const char *at, const LoadScene *loads, int count,
+                      double *p)
+{
+    (void)model, (void)loads, (void)count, (void)p;
+    return yaml_refuse(b->file, at, "loads of a rod are under rod.loads");
+}
+
+/* Places for the nodes, at equal arclengths of a curve or by formula. */
+static bool put_target(Model *model, const Build *b, const char *at, const TargetScene *scene,
+                       double (*target)[3])
+{
+    static const char *const variables[] = {"s", "L", NULL};
+    const Rod *rod = model->rod->rod;
+    Error err;
+    if (scene->height_map || scene->strokes || scene->on)
+        return yaml_refuse(b->file, at,
+                           "the target of a rod is a file with a polyline, or three formulas of s and L");
+    if (scene->file) {
+        RodCurve curve;
+        if (!rod_curve_read(b, at, scene->file, 1, (NoiseScene){-1, 0}, rod->elements, &curve)) return false;
+        for (int i = 0; i <= rod->elements; i++) vec3_store(target[i], curve.x[2 * i]);
+        rod_curve_clear(&curve);
+        return true;
+    }
+    Formula *formula = build_formula(b, key("%s.formula", at), scene->formula, 3, scene->where,
+                                     scene->where_count, variables);
+    bool ok = formula != NULL;
+    for (int i = 0; ok && i <= rod->elements; i++) {
+        double place[] = {i * rod_element_length(rod), rod->length};
+        ok = formula_eval(formula, place, target[i], &err) || yaml_refuse(b->file, at, "%s", err.text);
+    }
+    formula_destroy(formula);
+    return ok;
+}
+
+/* The held end, a part of the way from where x has it. */
+static bool move(const Model *model, double time, double part, double *x, Error *err)
+{
+    (void)time, (void)err;
+    const RodModel *rm = model->rod;
+    int last = rm->layout.nodes - 1;
+    double *place = x + rm->layout.position + 3 * last, *to = x + rm->layout.reference + 4 * last;
+    vec3_store(place, vec3_axpy(part, vec3_sub(rm->end_position, vec3_load(place)), vec3_load(place)));
+    if (rm->rod->end != ROD_CLAMPED) return true;
+    Quat now = rod_reference(&rm->layout, x, last), turn = quat_mul(quat_conj(now), rm->end_frame);
+    Quat next = quat_unit(quat_mul(now, quat_exp(vec3_scale(part, quat_log(turn)))));
+    to[0] = next.w;
+    vec3_store(to + 1, next.v);
+    return true;
+}
+
+/* ---- The rod ---- */
+
+/* How its ends are held. */
+static bool read_supports(RodModel *rm, const RodScene *scene, const Build *b)
+{
+    Rod *rod = rm->rod;
+    RodFrame frame;
+    bool ok = true;
+    if (scene->clamp.frame) {
+        ok = rod_model_frame(b, "rod.clamp.frame", (const double(*)[3])scene->clamp.frame, &frame);
+        if (ok) rod->frame = quat_from_axes(frame.n0, frame.n1, frame.n2);
+    }
+    rod->position = vec3_load(scene->clamp.position);
+    rod->start = scene->hold == HOLD_PINNED ? ROD_PINNED : ROD_CLAMPED;
+    if (!scene->end) return ok;
+    rm->held = true;
+    rod->end = scene->end->hold == HOLD_CLAMPED ? ROD_CLAMPED : ROD_PINNED;
+    rm->end_position = vec3_load(scene->end->position);
+    if (rod->end == ROD_CLAMPED && !scene->end->frame)
+        return yaml_refuse(b->file, "rod.end", "a clamped end needs its `frame`: tangent, n1, n2");
+    if (rod->end == ROD_CLAMPED &&
+        !rod_model_frame(b, "rod.end.frame", (const double(*)[3])scene->end->frame, &frame))
+        return false;
+    if (rod->end == ROD_CLAMPED) rm->end_frame = quat_from_axes(frame.n0, frame.n1, frame.n2);
+    double apart = vec3_length(vec3_sub(rm->end_position, rm->curves ? rm->curves[0].x[0] : rod->position));
+    if (apart > rod->length)
+        return yaml_refuse(b->file, "rod.end.position",
+                           "it is %g m from the other end, and the rod %g m long", apart, rod->length);
+    return ok;
+}
+
+static bool make_rod(RodModel *rm, const Scene *scene, const Build *b)
+{
+    const RodScene *from = scene->rod;
+    bool given = rm->curves != NULL;
+    if (from->poses) return yaml_refuse(b->file, "rod.poses", "poses are for the job identify");
+    if (given && rm->strand_count > 1)
+        return yaml_refuse(b->file, "rod.curve", "there are %d curves; jobs other than invert take one rod",
+                           rm->strand_count);
+    if (!given && isnan(from->length))
+        return yaml_refuse(b->file, "rod", "with natural strains, `length` is needed");
+    if (from->start == ROD_START_CURVE && !given)
+        return yaml_refuse(b->file, "rod.start", "there is no curve to start from");
+    rm->rod = rod_create(from->elements, given ? rm->curves[0].length : from->length, rm->unit, rm->area);
+    return read_supports(rm, from, b) && rod_model_check_points(rm, b, rm->rod->length);
+}
+
+/* The natural strains that make the rod rest on its curve, hanging under its loads in p; leaves the curve's
+ * state in x. */
+static void balance(RodModel *rm, double *p, double *x)
+{
+    rod_follow_curve(rm->rod, &rm->curves[0], rm->frames[0], x);
+    System *hanging = rod_hanging_system(rm->rod);
+    rod_balance(rm->rod, hanging, x, p);
+    system_destroy(hanging);
+}
+
+static bool settle_move(void *self, double part, double *x)
+{
+    return move(self, 0, part, x, NULL);
+}
+
+/* Before a motion or a design, the rod is brought to its supports without loads. */
+static bool settle(Model *model, const Build *b, const double *p)
+{
+    RodModel *rm = model->rod;
+    double *unloaded = mem_copy(p, (size_t)model->params->size, sizeof *p);
+    for (int k = 0; k < model->params->block_count; k++) {
+        const ParamBlock *block = &model->params->blocks[k];
+        if (block->load)
+            memset(unloaded + block->offset, 0, (size_t)(block->count * block->width) * sizeof *p);
+    }
+    System *sys = rod_system(rm->rod, rm->young, false);
+    RampDef def = ramp_default();
+    def.newton.step_cap = STEP_CAP;
+    def.steps = LOAD_STEPS;
+    def.move = settle_move, def.self = model;
+    RampInfo info = ramp_solve(sys, model->params, &def, NULL, unloaded, 0, model->x);
+    system_destroy(sys);
+    mem_free(unloaded);
+    return info.reached >= 1 ||
+           yaml_refuse(b->file, "rod.end", "the rod could not be brought to where its end is held (%s)",
+                       newton_status_text(info.newton.status));
+}
+
+/* Where the job starts, in model->x, and the natural shape to be shown. */
+static void make_states(Model *model, const RodScene *scene, bool hanging, double *p)
+{
+    RodModel *rm = model->rod;
+    Rod *rod = rm->rod;
+    RodLayout turns = rod_layout(rod, false);
+    double *x = mem_alloc((size_t)turns.dofs, sizeof *x);
+    if (rm->curves) balance(rm, p, x);
+    rm->layout = rod_layout(rod, !hanging);
+    model->x = mem_alloc((size_t)rm->layout.dofs, sizeof *model->x);
+    if (scene->start == ROD_START_CURVE)
+        rod_copy_state(rod, &turns, x, &rm->layout, model->x);
+    else
+        rod_natural_state(rod, &rm->layout, p, model->x);
+    rm->natural = mem_alloc(3 * (size_t)turns.nodes, sizeof *rm->natural);
+    rod_natural_state(rod, &turns, p, x);
+    rod_places(rod, &turns, x, turns.nodes, rm->natural);
+    mem_free(x);
+}
+
+static void make_systems(Model *model, bool hanging, bool motion)
+{
+    RodModel *rm = model->rod;
+    for (int k = 0; k < model->case_count; k++) {
+        ModelCase *c = &model->cases[k];
+        c->sys = hanging ? rod_hanging_system(rm->rod) : rod_system(rm->rod, rm->young, motion);
+        c->x = mem_copy(model->x, (size_t)rm->layout.dofs, sizeof *c->x);
+    }
+}
+
+/* Jobs that move one rod. */
+static bool fill(Model *model, const Scene *scene, const Build *b)
+{
+    RodModel *rm = model->rod;
+    if (!make_rod(rm, scene, b)) return false;
+    Rod *rod = rm->rod;
+    bool motion = model_is_motion(scene->job);
+    bool hanging = scene->job == JOB_EQUILIBRIUM && rod->start == ROD_CLAMPED && rod->end == ROD_FREE;
+    model->params = &rod->params;
+    model->gravity = rod->gravity;
+    model->flux_density = rod->flux_density;
+    double *p = mem_alloc((size_t)rod->params.size, sizeof *p);
+    bool ok = rod_model_params(rm, scene, b, p);
+    ok = put_flux(model, b, "flux_density", &scene->flux_density, p) && ok;
+    if (ok) {
+        make_states(model, scene->rod, hanging, p);
+        ok = model_cases(model, b, scene, p, (size_t)rod->params.size);
+    }
+    model->moves = rm->held && scene->job == JOB_EQUILIBRIUM;
+    if (ok && rm->held && !model->moves) ok = settle(model, b, p);
+    mem_free(p);
+    if (!ok) return false;
+    make_systems(model, hanging, motion);
+    return !motion ||
+           model_velocity(model, b, "rod.velocity", scene->rod->velocity, model->x + rm->layout.position);
+}
+
+static const BodyOps rod_ops = {
+    .put_flux = put_flux,
+    .put_loads = put_loads,
+    .put_target = put_target,
+    .move = move,
+    .add_static = body_rod_static,
+    .places = body_rod_places,
+    .add_frame = body_rod_frame,
+    .add_state = body_rod_state,
+    .add_final = body_rod_final,
+};
+
+/* What is said of shells only. */
+static bool check_keys(const Scene *scene, YamlFile *file)
+{
+    bool ok = true;
+    if (scene->fix) ok = yaml_refuse(file, "fix", "a rod is held by rod.clamp, rod.hold and rod.end");
+    if (scene->loads) ok = yaml_refuse(file, "loads", "loads of a rod are under rod.loads");
+    if (scene->modes) ok = yaml_refuse(file, "modes", "modes are for shells");
+    bool preview = scene->rod->solver == ROD_SOLVER_PBD;
+    if (preview && scene->job != JOB_SIMULATE)
+        ok = yaml_refuse(file, "rod.solver", "the solver pbd is for simulations");
+    if (preview && (scene->rod->end || scene->rod->hold == HOLD_PINNED || scene->rod->velocity ||
+                    scene->rod->magnetization.formula || scene->rod->magnetization.file ||
+                    scene->rod->magnetization.value[0] != 0 || scene->rod->magnetization.value[1] != 0 ||
+                    scene->rod->magnetization.value[2] != 0))
+        ok = yaml_refuse(
+            file, "rod.solver",
+            "the solver pbd shows rods that are clamped and free, start at rest and are not magnetised");
+    return ok;
+}
+
+bool model_rod(Model *model, const Scene *scene, YamlFile *file)
+{
+    Build b = {file, NULL, scene->time.at, model_is_motion(scene->job) ? &model->flux_of_time : NULL};
+    model->body = &rod_ops;
+    model->point_count = scene->rod->elements + 1;
+    model->load_steps = LOAD_STEPS;
+    model->step_cap = STEP_CAP;
+    if (!check_keys(scene, file)) return false;
+    model->rod = rod_model_create(scene, &b);
+    if (!model->rod) return false;
+    if (scene->job == JOB_INVERT)
+        return scene->rod->curve ||
+               yaml_refuse(file, "rod", "an inversion needs `curve`, the shape that is given");
+    if (scene->job == JOB_IDENTIFY)
+        return scene->rod->poses_count >= 2 ||
+               yaml_refuse(file, "rod", "an identification needs two or more `poses` of the rod");
+    return fill(model, scene, &b);
+}

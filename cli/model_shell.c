@@ -1,0 +1,265 @@
+/* Models of shells. */
+#include "base/memory.h"
+#include "cli/body.h"
+#include "cli/build.h"
+#include "cli/job.h"
+#include "shell/rigid.h"
+#include "shell/shapes.h"
+#include <math.h>
+#include <string.h>
+
+/* ---- The mesh ---- */
+
+static bool generate(const MeshScene *scene, YamlFile *yaml, MeshFile *file)
+{
+    Error err;
+    double size[2] = {scene->size[0], scene->size_count > 1 ? scene->size[1] : scene->size[0]};
+    bool ok = false;
+    switch ((MeshShape)scene->shape) {
+    case MESH_SHEET:
+        ok = shape_sheet(size, scene->cells, (ShapePattern)scene->pattern, file, &err);
+        break;
+    case MESH_STRIP:
+        ok = shape_strip(size[0], size[1], scene->n, (ShapePattern)scene->pattern, file, &err);
+        break;
+    case MESH_HEXAGRAM:
+        ok = shape_hexagram(size[0], scene->n, file, &err);
+        break;
+    case MESH_DISC:
+        ok = shape_disc(size[0], scene->n, file, &err);
+        break;
+    case MESH_KIRIGAMI:
+        ok = shape_kirigami(size[0], scene->n, file, &err);
+        break;
+    }
+    return ok || yaml_refuse(yaml, "shell.mesh", "%s", err.text);
+}
+
+/* What each shape needs, in one sentence. */
+static bool check_shape(const MeshScene *scene, YamlFile *yaml)
+{
+    bool rectangle = scene->shape == MESH_SHEET || scene->shape == MESH_STRIP;
+    if (scene->size_count != (rectangle ? 2 : 1))
+        return yaml_refuse(yaml, "shell.mesh", "a %s needs `size`: %s",
+                           rectangle ? "sheet or strip" : "hexagram, disc or kirigami",
+                           rectangle ? "its length and width, e.g. [65 mm, 65 mm]"
+                                     : "its diameter or side, e.g. 40 mm");
+    if (scene->shape == MESH_SHEET && scene->cells_count != 2)
+        return yaml_refuse(yaml, "shell.mesh", "a sheet needs `cells` along x and y, e.g. [64, 64]");
+    if (scene->shape != MESH_SHEET && scene->n == YAML_ABSENT)
+        return yaml_refuse(yaml, "shell.mesh",
+                           "a strip, hexagram, disc or kirigami needs `n`, the number of its divisions");
+    return true;
+}
+
+static bool read_mesh_file(const MeshScene *scene, YamlFile *yaml, MeshFile *file)
+{
+    if (!scene->file) return check_shape(scene, yaml) && generate(scene, yaml, file);
+    Error err;
+    if (!mesh_file_read(scene->file, file, &err)) return yaml_refuse(yaml, "shell.mesh.file", "%s", err.text);
+    for (int i = 0; i < 3 * file->vertex_count; i++) file->vertices[i / 3][i % 3] *= scene->scale;
+    return true;
+}
+
+static Mesh *build_mesh(const MeshScene *scene, YamlFile *yaml, MeshReport *report)
+{
+    MeshFile file = {0};
+    Error err;
+    Mesh *mesh = NULL;
+    if (read_mesh_file(scene, yaml, &file)) {
+        mesh = mesh_create(&file, scene->weld, report, &err);
+        if (!mesh) yaml_refuse(yaml, "shell.mesh", "%s", err.text);
+    }
+    mesh_file_clear(&file);
+    return mesh;
+}
+
+/* ---- What is held ---- */
+
+static bool add_motion(Model *model, const Build *b, Key at, const FixScene *fix, const bool *axis,
+                       Indices vertices)
+{
+    Motion motion = {.vertices = vertices, .axis = {axis[0], axis[1], axis[2]}};
+    motion.formula = build_formula(b, at, fix->move, 3, NULL, 0, build_variables_time);
+    if (!motion.formula) return false;
+    size_t count = (size_t)model->motion_count++;
+    model->moves = true;
+    model->motions = mem_resize(model->motions, count, count + 1, sizeof *model->motions);
+    motion.vertices.items = mem_copy(vertices.items, (size_t)vertices.count, sizeof(int));
+    model->motions[count] = motion;
+    return true;
+}
+
+static bool fix_entry(Model *model, const Build *b, Key at, const FixScene *fix)
+{
+    bool axis[3] = {false};
+    for (const char *c = fix->axes; *c; c++) {
+        if (!strchr("xyz", *c))
+            return yaml_refuse(b->file, at.text, "axes is '%s'; it must be some of xyz", fix->axes);
+        axis[*c - 'x'] = true;
+    }
+    Indices found = {0};
+    SelectionScene selection = SELECTION_OF(fix);
+    bool ok = build_selection(b, at, &selection, &found);
+    for (int i = 0; i < 3 * found.count; i++)
+        if (axis[i % 3]) shell_fix(model->shell, found.items[i / 3], i % 3);
+    if (ok && fix->clamp) {
+        Indices edges = select_edges(b->mesh, &found);
+        for (int k = 0; k < edges.count; k++) shell_clamp(model->shell, edges.items[k]);
+        mem_free(edges.items);
+    }
+    if (ok && fix->move_count) ok = add_motion(model, b, key("%s.move", at.text), fix, axis, found);
+    mem_free(found.items);
+    return ok;
+}
+
+static bool move(const Model *model, double time, double part, double *x, Error *err)
+{
+    for (int m = 0; m < model->motion_count; m++) {
+        const Motion *motion = &model->motions[m];
+        for (int k = 0; k < motion->vertices.count; k++) {
+            int v = motion->vertices.items[k];
+            double variables[BUILD_VARIABLES], place[3];
+            build_position(variables, model->shell->mesh->rest[v], time);
+            if (!formula_eval(motion->formula, variables, place, err)) return false;
+            for (int i = 0; i < 3; i++)
+                if (motion->axis[i]) x[3 * v + i] += part * (place[i] - x[3 * v + i]);
+        }
+    }
+    return true;
+}
+
+/* ---- Loads ---- */
+
+static bool put_flux(Model *model, const Build *b, const char *at, const FluxScene *flux, double *p)
+{
+    int field;
+    Shell *shell = model->shell;
+    if (!build_flux(b, key("%s", at), flux, shell, p + shell->flux_density, &field)) return false;
+    for (int k = 0; k < shell->field_count; k++) p[shell->field_scale + k] = k == field;
+    return true;
+}
+
+static bool put_loads(Model *model, const Build *b, const char *at, const LoadScene *loads, int count,
+                      double *p)
+{
+    return build_loads(b, key("%s", at), loads, count, p + model->shell->load);
+}
+
+static bool put_target(Model *model, const Build *b, const char *at, const TargetScene *scene,
+                       double (*target)[3])
+{
+    (void)model;
+    return build_target(b, key("%s", at), scene, target);
+}
+
+/* Fields grow the parameter vector, so every p is made as large as it may become. */
+static size_t params_room(const Model *model, const Scene *scene)
+{
+    return (size_t)(model->shell->params.size + 1 + scene->cases_count + scene->sequence_count);
+}
+
+static double *base_params(Model *model, const Scene *scene, const Build *b, size_t room)
+{
+    Shell *shell = model->shell;
+    double *p = mem_alloc(room, sizeof *p);
+    shell_default_params(shell, p);
+    const ShellScene *s = scene->shell;
+    bool ok = build_face_numbers(b, key("shell.young"), &s->young, p + shell->young);
+    ok = build_edge_numbers(b, key("shell.fold"), &s->fold, p + shell->fold) && ok;
+    ok = build_face_vectors(b, key("shell.magnetization"), &s->magnetization, p + shell->magnetization) && ok;
+    memcpy(p + shell->gravity, s->gravity, sizeof s->gravity);
+    p[shell->damping] = s->damping;
+    ok = build_loads(b, key("loads"), scene->loads, scene->loads_count, p + shell->load) && ok;
+    if (ok && put_flux(model, b, "flux_density", &scene->flux_density, p)) return p;
+    mem_free(p);
+    return NULL;
+}
+
+/* ---- The whole ---- */
+
+static bool read_pose(const Build *b, const PoseScene *pose, double *x)
+{
+    if (!pose) return true;
+    const Mesh *mesh = b->mesh;
+    MeshFile file = {0};
+    Error err;
+    if (!mesh_file_read(pose->file, &file, &err))
+        return yaml_refuse(b->file, "shell.pose.file", "%s", err.text);
+    bool ok = file.vertex_count == mesh->file_vertex_count && file.face_count == mesh->face_count;
+    for (int f = 0; ok && f < mesh->face_count; f++)
+        for (int i = 0; i < 3; i++) ok = ok && mesh->vertex_of_file[file.faces[f][i]] == mesh->faces[f][i];
+    if (!ok)
+        yaml_refuse(b->file, "shell.pose.file", "%s has other vertices or faces than the mesh", pose->file);
+    for (int v = 0; ok && v < mesh->vertex_count; v++)
+        memcpy(x + 3 * v, file.vertices[mesh->file_vertex[v]], 3 * sizeof *x);
+    mesh_file_clear(&file);
+    return ok;
+}
+
+/* Systems last: fields and what is held are known by then. An equilibrium needs forces in balance. */
+static bool finish_cases(Model *model, const Build *b, JobKind job)
+{
+    bool ok = true, balanced = job == JOB_EQUILIBRIUM || job == JOB_DESIGN;
+    for (int k = 0; ok && k < model->case_count; k++) {
+        ModelCase *c = &model->cases[k];
+        Error err;
+        c->sys = model_is_motion(job) ? shell_dynamic_system(model->shell) : shell_system(model->shell);
+        c->x = mem_copy(model->x, (size_t)shell_dof_count(model->shell), sizeof *c->x);
+        system_accept(c->sys, c->x);
+        for (int s = 0; ok && balanced && s < c->stage_count; s++)
+            ok = rigid_check_force(model->shell, c->stages[s].p, &err) ||
+                 yaml_refuse(b->file, "", "%s", err.text);
+    }
+    return ok;
+}
+
+static bool fill(Model *model, const Scene *scene, const Build *b)
+{
+    Shell *shell = model->shell;
+    shell->thickness = scene->shell->thickness;
+    shell->poisson = scene->shell->poisson;
+    shell->density = scene->shell->density;
+    shell->bending = (BendingModel)scene->shell->bending;
+    bool ok = true;
+    for (int k = 0; k < scene->fix_count; k++)
+        ok = fix_entry(model, b, key("fix[%d]", k), &scene->fix[k]) && ok;
+    model->x = mem_alloc((size_t)shell_dof_count(shell), sizeof *model->x);
+    shell_rest_state(shell, model->x);
+    ok = read_pose(b, scene->shell->pose, model->x) && ok;
+    size_t room = params_room(model, scene);
+    double *p = base_params(model, scene, b, room);
+    ok = p && model_cases(model, b, scene, p, room) && ok;
+    mem_free(p);
+    return ok && finish_cases(model, b, (JobKind)scene->job) &&
+           (!model_is_motion(scene->job) ||
+            model_velocity(model, b, "shell.velocity", scene->shell->velocity, b->mesh->rest[0]));
+}
+
+static const BodyOps shell_ops = {
+    .put_flux = put_flux,
+    .put_loads = put_loads,
+    .put_target = put_target,
+    .move = move,
+    .add_static = body_shell_static,
+    .places = body_shell_places,
+    .add_frame = body_shell_frame,
+    .add_state = body_shell_state,
+    .add_final = body_shell_final,
+};
+
+bool model_shell(Model *model, const Scene *scene, YamlFile *file)
+{
+    Mesh *mesh = build_mesh(&scene->shell->mesh, file, &model->report);
+    if (!mesh) return false;
+    Shell *shell = model->shell = shell_create(mesh);
+    model->body = &shell_ops;
+    model->params = &shell->params;
+    model->gravity = shell->gravity;
+    model->flux_density = shell->flux_density;
+    model->point_count = mesh->vertex_count;
+    model->load_steps = 1;
+    model->step_cap = newton_default().step_cap;
+    Build b = {file, mesh, scene->time.at, model_is_motion(scene->job) ? &model->flux_of_time : NULL};
+    return fill(model, scene, &b);
+}

@@ -1,0 +1,24 @@
+/* rod_curves.h - the curves of a scene's rod, from formulas or files, and the frames along them. */
+#pragma once
+#include "cli/build.h"
+#include "io/table.h"
+#include "rod/frame.h"
+
+typedef struct RodStrands {
+    int count;
+    RodCurve *curves;  /* [count]           */
+    RodFrame **frames; /* [count][stations] */
+} RodStrands;
+
+/* Of scene->curve; false after a refusal. To be cleared in any case. */
+bool rod_strands_read(const Build *b, const RodScene *scene, RodStrands *strands);
+void rod_strands_clear(RodStrands *strands);
+
+/* The curve through the points of a file with one polyline, times scale; a refusal is at that key. Else to be
+ * cleared. */
+bool rod_curve_read(const Build *b, const char *at, const char *path, double scale, NoiseScene noise,
+                    int elements, RodCurve *curve);
+
+/* Columns 1, 2, .. of a table at s, its first one, which ascends: linear between the rows, constant beyond.
+ */
+void rod_table_at(const Table *table, double s, double *values);
