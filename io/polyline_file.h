@@ -1,13 +1,16 @@
 /* polyline_file.h - strands of points from files: CSV, OBJ lines and SVG paths.
  *
- *   .csv  rows x, y, z, or s, x, y, z, of which s is passed over: one strand (table.h).
- *   .obj  each `l` line is a strand; one that begins with the vertex at which the `l` line before it ended
- * goes on with that strand, since some programs write every edge by itself. A file of vertices only is one
- *         strand in their order.
- *   .svg  each subpath of a path, polyline, polygon or line is a strand: its corners where all of it is
- * straight, else points on its curves, 512 or a few more, evenly along it. In metres by the drawing's size (a
- * unit is 1/96 inch where it says none), x to the right, y up, z = 0, from the page's upper left corner. What
- * is not displayed or only defined, and other shapes, texts and `use`, are passed over.
+ * .csv: one strand; rows x, y, z, or s, x, y, z, of which s is passed over (table.h).
+ *
+ * .obj: each `l` line is a strand. One that begins with the vertex at which the `l` line before it ended goes
+ * on with that strand, since some programs write every edge by itself. A file of vertices only is one strand,
+ * in their order.
+ *
+ * .svg: each subpath of a path, polyline, polygon or line is a strand: its corners where all of it is
+ * straight, else points evenly on its curves, about 512 or eight per piece of curve. In metres by the
+ * drawing's size (a unit is 1/96 inch where it says none), x to the right, y up, z = 0, from the upper left
+ * corner of the page. What is not displayed or only defined, and other shapes, texts and `use`, are passed
+ * over.
  *
  * CSV and OBJ are in metres unless the caller scales them. A closed path ends with its first point. */
 #pragma once

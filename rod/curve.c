@@ -93,7 +93,7 @@ static double panel_start(const Path *path, int panel)
     return path->u0 + (path->u1 - path->u0) * panel / path->panels;
 }
 
-/* The parameter at an arclength: Newton within its panel. */
+/* The parameter at an arclength: Newton, kept within its panel. */
 static double parameter_at(Path *path, int panel, double s)
 {
     double a = panel_start(path, panel), b = panel_start(path, panel + 1);
@@ -102,7 +102,7 @@ static double parameter_at(Path *path, int panel, double s)
         double off = path->s[panel] + length_between(path, a, u) * (u >= a ? 1 : -1) * (b >= a ? 1 : -1) - s;
         double speed = vec3_length(slope(path, u, NULL)) * (b >= a ? 1 : -1);
         if (!(fabs(speed) > 0)) break;
-        u -= off / speed;
+        u = fmin(fmax(u - off / speed, fmin(a, b)), fmax(a, b));
         if (fabs(off) <= 1e-15 * path->s[path->panels]) break;
     }
     return u;

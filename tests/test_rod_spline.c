@@ -51,6 +51,29 @@ static void test_pieces(void **state)
     rod_curve_clear(&pieces);
 }
 
+/* Turns back on itself all but in the middle, where Newton's first step is a giant's; only what lies in the
+ * range may be asked for. */
+static void cusp(void *self, double at, Vec3 jet[3])
+{
+    bool *beyond = self;
+    double off = at - (1.5 + 1e-13);
+    *beyond |= !(at >= 0 && at <= 3);
+    jet[0] = vec3(pow(off, 4), 0, 0);
+    jet[1] = vec3(4 * pow(off, 3), 0, 0);
+    jet[2] = vec3(12 * pow(off, 2), 0, 0);
+}
+
+static void test_cusp(void **state)
+{
+    (void)state;
+    bool beyond = false;
+    RodCurve curve;
+    assert_true(rod_curve_create_pieces(cusp, &beyond, 3, 8, &curve, NULL));
+    for (int j = 0; j <= 16; j++) assert_true(fabs(curve.x[j].x - pow(1.5, 4) * fabs(j - 8.) / 8) < 1e-9);
+    assert_false(beyond);
+    rod_curve_clear(&curve);
+}
+
 /* The parameter that counts knots, at u. */
 static double count_knots(const RodSpline *spline, double u)
 {
@@ -162,6 +185,7 @@ static void test_spline(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_pieces), cmocka_unit_test(test_spline)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_pieces), cmocka_unit_test(test_cusp),
+                                       cmocka_unit_test(test_spline)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

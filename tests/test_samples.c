@@ -114,15 +114,16 @@ static const Case cases[] = {
     {"conical", conical, &conical_end, 800, 3.5e6, {1.9e-5, 1.3e-4, 3.5e-4, 9.6e-4}},
 };
 
-/* Of 12 draws: root mean squares, and the mean of the noise found. */
+/* Of 8 draws: root mean squares, and the mean of the noise found. */
 static Errors mean_errors(const Case *c, double sigma, double noise, Random *random)
 {
-    enum { DRAWS = 12 };
+    enum { DRAWS = 8 };
     Errors mean = {0};
     RodCurve exact;
     assert_true(rod_curve_create(c->point, NULL, 0, *c->end, ELEMENTS, &exact, NULL));
+    Vec3 *clean = sample(c->point, *c->end, c->samples);
     for (int draw = 0; draw < DRAWS; draw++) {
-        Vec3 *x = sample(c->point, *c->end, c->samples);
+        Vec3 *x = mem_copy(clean, (size_t)c->samples, sizeof *x);
         shake(x, c->samples, sigma, random);
         Errors one = compare(x, c->samples, noise, &exact, c->young);
         mean.natural += one.natural * one.natural / DRAWS;
@@ -130,6 +131,7 @@ static Errors mean_errors(const Case *c, double sigma, double noise, Random *ran
         mean.noise += one.noise / DRAWS;
         mem_free(x);
     }
+    mem_free(clean);
     rod_curve_clear(&exact);
     mean.natural = sqrt(mean.natural);
     mean.curvature = sqrt(mean.curvature);
