@@ -29,6 +29,13 @@ static inline Quat quat_unit(Quat q)
     return (Quat){f * q.w, vec3_scale(f, q.v)};
 }
 
+/* The same of a quaternion whose length is off 1 by rounding only: neither root nor division. */
+static inline Quat quat_trim(Quat q)
+{
+    double f = 1.5 - (q.w * q.w + vec3_dot(q.v, q.v)) / 2;
+    return (Quat){f * q.w, vec3_scale(f, q.v)};
+}
+
 /* Turns by |r| about r. */
 static inline Quat quat_exp(Vec3 r)
 {

@@ -14,6 +14,7 @@ static const struct {
     {"march", bench_march},
     {"trajectory", bench_trajectory},
     {"design", bench_design},
+    {"rod", bench_rod},
 };
 
 enum { CASE_COUNT = sizeof cases / sizeof *cases };

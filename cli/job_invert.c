@@ -10,6 +10,7 @@
 #include <string.h>
 
 enum { LOAD_STEPS = 10 };
+static const double ELSEWHERE = 1e-4; /* of the length: another equilibrium */
 
 /* Everything about all strands, one after the other: nodes N + 1 and elements N each. */
 typedef struct Inversion {
@@ -194,7 +195,7 @@ static void add_checks(const Inversion *o, Arrays *list)
     if (is_asked(scene, CHECK_SELF_CONTACT)) {
         arrays_add(list, flag_per_strand(o, "rod/self_contact", o->touching));
         arrays_add(list, per_strand(o, "rod/contact_distance", "m", o->contact));
-        arrays_add(list, array_int("rod/contact_pairs", o->pairs, 2, o->pair_count, 3));
+        if (o->pair_count) arrays_add(list, array_int("rod/contact_pairs", o->pairs, 2, o->pair_count, 3));
     }
     if (o->x) {
         arrays_add(list, per_node(o, "rod/x", "m", o->x));
@@ -247,21 +248,27 @@ static bool put_results(const Inversion *o, const char *status, Error *err)
 static void say(const Inversion *o)
 {
     Progress *progress = o->run->progress;
-    int unstable = 0, touching = 0;
+    int unstable = 0, touching = 0, elsewhere = 0;
     double worst = 0;
     for (int k = 0; k < o->strands; k++) {
         unstable += is_asked(o->run->scene, CHECK_STABILITY) && !o->stable[k];
         touching += o->touching[k];
+        elsewhere += o->round_trip[k] > ELSEWHERE * o->rm->curves[k].length;
         worst = fmax(worst, o->round_trip[k]);
     }
     if (unstable)
-        progress_say(
-            progress,
-            "%d of %d curves are unstable: the rod would not stay there (rod/critical_young says from which "
-            "Young's modulus on it would)",
-            unstable, o->strands);
+        progress_say(progress,
+                     "%d of %d curves unstable: the rod would not stay there (rod/critical_young says from "
+                     "which Young's modulus on it would)",
+                     unstable, o->strands);
     if (touching) progress_say(progress, "%d of %d natural shapes touch themselves", touching, o->strands);
-    if (o->x) progress_say(progress, "the simulated rod rests %.2g m from its curve", worst);
+    if (elsewhere)
+        progress_say(progress,
+                     "%d of %d rods come to rest elsewhere when they are let down from their natural shape, "
+                     "up to %.2g m away",
+                     elsewhere, o->strands, worst);
+    else if (o->x)
+        progress_say(progress, "the simulated rod rests %.2g m from its curve", worst);
 }
 
 RunStatus job_invert(Run *run, Error *err)

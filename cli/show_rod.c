@@ -17,6 +17,7 @@ typedef struct RodPage {
     int strand_count, point_count;
     const int *strands; /* [strand_count + 1] first point of each */
     const double (*input)[3], (*natural)[3], (*x)[3];
+    const char *input_name; /* "input", or the "target" of a design */
     CurvesSet *sets; /* owned */
     int set_count;
     const char *lines[LINES_MAX];
@@ -57,6 +58,21 @@ static bool read_one_strand(RodPage *page, Error *err)
     return true;
 }
 
+/* Of a design: where the first case should be. */
+static void read_target(RodPage *page)
+{
+    Array names;
+    if (!result_has(page->data->result, "slender/case_names") ||
+        !result_read(page->data->result, "slender/case_names", &names, NULL))
+        return;
+    const char *first = names.data;
+    char *path = mem_format("slender/cases/%.*s/target", (int)strcspn(first, "\n"), first);
+    page->input = show_dataset(page->data, path, ARRAY_FLOAT64, 3 * (size_t)page->point_count);
+    page->input_name = "target";
+    mem_free(path);
+    array_clear(&names);
+}
+
 static bool read_curves(RodPage *page, Error *err)
 {
     static const char STRANDS[] = "slender/rod/strands";
@@ -74,6 +90,8 @@ static bool read_curves(RodPage *page, Error *err)
     page->input = show_dataset(page->data, "slender/rod/input", ARRAY_FLOAT64, numbers);
     page->natural = show_dataset(page->data, "slender/rod/natural", ARRAY_FLOAT64, numbers);
     page->x = show_dataset(page->data, "slender/rod/x", ARRAY_FLOAT64, numbers);
+    page->input_name = "input";
+    if (!page->input) read_target(page);
     return page->input || page->x || error_set(err, "the result's curves are not as slender writes them");
 }
 
@@ -151,7 +169,8 @@ static bool add_motion(RodPage *page, int count, Error *err)
 static bool add_final(RodPage *page, Error *err)
 {
     int frames = result_step_count(page->data->result);
-    if (!page->x && frames > 0 && !read_frame(page, frames - 1, &page->x, err)) return false;
+    bool moves = result_has(page->data->result, "slender/history/time");
+    if (!page->x && moves && frames > 0 && !read_frame(page, frames - 1, &page->x, err)) return false;
     if (page->x) add_simulated(page, "simulated", page->x);
     return true;
 }
@@ -165,7 +184,7 @@ static bool add_curves(RodPage *page, Error *err)
     int count = show_frame_count(page->data);
     if (!asked && page->strand_count > STRANDS_MANY) count = 0;
     bool stills = count > 0 && !moving && def->frame < 0;
-    if (page->input) add_set(page, "input", page->input, input_ink)->width = 3.4;
+    if (page->input) add_set(page, page->input_name, page->input, input_ink)->width = 3.4;
     if (page->natural && !stills) add_set(page, "natural", page->natural, colormap_series(0));
     if (def->frame >= 0) return add_frame(page, def->frame, err);
     if (count == 0) return asked ? show_check_frame(page->data, 0, err) : add_final(page, err);

@@ -2,7 +2,7 @@
 #include "base/memory.h"
 #include <math.h>
 
-enum { GAUSS = 5, REACH = 4, POINTS = 2 * REACH + 1, PANELS_LEAST = 512 };
+enum { GAUSS = 5, REACH = 4, POINTS = 2 * REACH + 1, PANELS_LEAST = 128, GRID = 1024 };
 
 /* Gauss-Legendre on [0, 1]. */
 static const double gauss_at[GAUSS] = {0.04691007703066800, 0.23076534494715845, 0.5, 0.76923465505284155,
@@ -13,6 +13,7 @@ static const double gauss_weight[GAUSS] = {0.11846344252809454, 0.23931433524968
 typedef struct Path {
     RodCurvePoint *point;
     RodCurveJet *jet; /* NULL: derivatives by differences of point's places */
+    Vec3 *grid;       /* [GRID + 1] places at equal parameters, for these   */
     void *self;
     double u0, u1;
     int panels;
@@ -57,12 +58,13 @@ static void difference_weights(double z, double *first, double *second)
 /* By differences of eighth order on points within the range. */
 static Vec3 difference_slope(Path *path, double u, Vec3 *bend)
 {
-    double h = (path->u1 - path->u0) / 1024, first[POINTS], second[POINTS];
-    double place_of_u = (u - path->u0) / h, middle = fmin(fmax(rint(place_of_u), REACH), 1024 - REACH);
+    double h = (path->u1 - path->u0) / GRID, first[POINTS], second[POINTS];
+    double place_of_u = (u - path->u0) / h;
+    int middle = (int)fmin(fmax(rint(place_of_u), REACH), GRID - REACH);
     difference_weights(place_of_u - middle, first, second);
     Vec3 sum = vec3(0, 0, 0), sum2 = sum;
     for (int k = 0; k < POINTS; k++) {
-        Vec3 x = place(path, path->u0 + (middle + k - REACH) * h);
+        Vec3 x = path->grid[middle + k - REACH];
         sum = vec3_axpy(first[k] / h, x, sum);
         sum2 = vec3_axpy(second[k] / (h * h), x, sum2);
     }
@@ -127,6 +129,13 @@ static bool fill_stations(Path *path, RodCurve *curve)
     return moves;
 }
 
+static void fill_grid(Path *path)
+{
+    path->grid = mem_alloc(GRID + 1, sizeof *path->grid);
+    for (int k = 0; k <= GRID && isnan(path->bad); k++)
+        path->grid[k] = place(path, path->u0 + k * ((path->u1 - path->u0) / GRID));
+}
+
 /* The number of panels is a multiple of `pieces`, so that the curve is smooth within each panel. */
 static bool create(Path path, int pieces, int elements, RodCurve *curve, Error *err)
 {
@@ -134,6 +143,7 @@ static bool create(Path path, int pieces, int elements, RodCurve *curve, Error *
     path.panels = (least + pieces - 1) / pieces * pieces;
     path.bad = NAN;
     path.s = mem_alloc((size_t)path.panels + 1, sizeof *path.s);
+    if (!path.jet) fill_grid(&path);
     for (int k = 0; k < path.panels; k++)
         path.s[k + 1] = path.s[k] + length_between(&path, panel_start(&path, k), panel_start(&path, k + 1));
     *curve = (RodCurve){.elements = elements,
@@ -147,6 +157,7 @@ static bool create(Path path, int pieces, int elements, RodCurve *curve, Error *
     else if (!moves)
         error_set(err, "the curve stands still somewhere: it has no tangent there");
     mem_free(path.s);
+    mem_free(path.grid);
     if (!ok) rod_curve_clear(curve);
     return ok;
 }

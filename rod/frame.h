@@ -37,4 +37,10 @@ void rod_twist(const RodCurve *curve, const RodFrame *frames, double *twist);
 
 /* The rotation from an element's start to its end, seen from its start, and the one to its middle: R' = R
  * [w]x with the rates w at its start, middle and end. Fourth order. */
-Quat rod_turn(double h, Vec3 w0, Vec3 w1, Vec3 w2, Quat *half);
+static inline Quat rod_turn(double h, Vec3 w0, Vec3 w1, Vec3 w2, Quat *half)
+{
+    Vec3 whole = vec3_axpy(h / 6, vec3_add(w0, w2), vec3_scale(4 * h / 6, w1));
+    Vec3 first = vec3_axpy(5 * h / 24, w0, vec3_axpy(8 * h / 24, w1, vec3_scale(-h / 24, w2)));
+    *half = quat_exp(vec3_axpy(h * h / 48, vec3_cross(w0, w1), first));
+    return quat_exp(vec3_axpy(h * h / 12, vec3_cross(w0, w2), whole));
+}

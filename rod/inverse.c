@@ -76,7 +76,7 @@ void rod_invert(const RodCurve *curve, RodSection section, const Vec3 *moment, c
         Vec3 w1 = rate(curve, section, moment, frames, 2 * e + 1),
              w2 = rate(curve, section, moment, frames, 2 * e + 2);
         Quat half, whole = rod_turn(h, w0, w1, w2, &half), middle = quat_mul(Q, half);
-        Q = quat_unit(quat_mul(Q, whole));
+        Q = quat_trim(quat_mul(Q, whole));
         /* int Q dx by parts: exact for a constant Q, however sharply the curve bends within the element. */
         Vec3 d1 = vec3_sub(curve->x[2 * e + 1], curve->x[2 * e]),
              d2 = vec3_sub(curve->x[2 * e + 2], curve->x[2 * e]);
