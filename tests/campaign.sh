@@ -1,11 +1,13 @@
 #!/bin/sh
 # Kills and interrupts a small job at random moments and resumes it: the end must be that of an undisturbed run, bit by
 # bit, seconds aside.
-#   tests/campaign.sh PROGRAM [TRIALS] [KIND]      KIND: gauss_newton, mma, lbfgs (quasi-static), simulate, trajectory
+#   tests/campaign.sh PROGRAM [TRIALS] [KIND]      KIND: gauss_newton, mma, lbfgs (quasi-static), simulate, trajectory,
+#                                              rod_simulate, rod_design
 program=$1 trials=${2:-20} kind=${3:-gauss_newton}
 here=$(cd "$(dirname "$0")" && pwd)
 case $kind in
-    simulate | trajectory) scene=$here/scene_$kind.yaml set=output.every=3 ;;
+    rod_design) scene=$here/scene_rod_design.yaml set=design.iterations=60 ;;
+    simulate | trajectory | rod_simulate) scene=$here/scene_$kind.yaml set=output.every=3 ;;
     *) scene=$here/scene_small.yaml set=design.optimizer=$kind ;;
 esac
 work=$(mktemp -d) || exit 2
@@ -15,7 +17,7 @@ run() { "$program" run "$scene" --set "$set" --quiet --no-picture -o "$@"; }
 start() { exec "$program" run "$scene" --set "$set" --quiet --no-picture -o "$@"; }
 numbers() { # what must be the same; a kind of job has some of them
     for path in design/magnetization design/young design/flux_density design/gradient/young trajectory/flux_density state/x \
-        state/v cases/up/x frames/x history/objective history/newton_iterations history/cg_iterations unknowns; do
+        state/v cases/up/x rod/x rod/moment frames/x history/objective history/newton_iterations history/cg_iterations unknowns; do
         "$program" export "$1" -o out.csv --dataset $path 2>/dev/null && cat out.csv
     done
 }
