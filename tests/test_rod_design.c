@@ -52,7 +52,7 @@ static Fixture fixture_create(RodSupport end, Random *random)
     }
     rod_natural_state(rod, &f.layout, p, x);
     f.objective = objective_target(N + 1, nodes, (const double(*)[3])target, 1);
-    f.load = (LoadCase){"only", rod_system(rod, young, false), p, x, &f.objective, 1, 1, 0};
+    f.load = (LoadCase){"only", rod_system(rod, young, false), p, x, NULL, 1, 1, 0};
     f.design.case_count = 1;
     return f;
 }
@@ -61,6 +61,7 @@ static void fixture_start(Fixture *f, const char *block, Unknown unknown)
 {
     StaticDesignDef def = static_design_default();
     def.newton.step_cap = 1.5;
+    f->load.objectives = &f->objective;
     unknown.block = params_find(&f->rod->params, block);
     unknown.group_count = unknown.block->count;
     design_add(&f->design, unknown);
