@@ -4,6 +4,7 @@
 #include "rod/inverse.h"
 #include "rod/pbd.h"
 #include <math.h>
+#include "tests/rod_reference.h"
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -26,13 +27,6 @@ static double length_of(const Vec3 *x, int elements)
     return sum;
 }
 
-static bool helix(void *self, double u, Vec3 *x)
-{
-    (void)self;
-    *x = vec3(0.015 * cos(u), 0.015 * sin(u), -0.00318 * u);
-    return true;
-}
-
 /* The rod whose equilibrium is the helix of test_rod.c, with places[elements + 1] of that equilibrium. */
 static PbdRodDef sagging_helix(int elements, Vec3 *places)
 {
@@ -40,7 +34,7 @@ static PbdRodDef sagging_helix(int elements, Vec3 *places)
     static Vec3 moment[2 * MOST + 1], strains[2 * MOST + 1];
     static RodFrame frames[2 * MOST + 1];
     RodCurve curve;
-    assert_true(rod_curve_create(helix, NULL, 0, 19.565163762857, elements, &curve, NULL));
+    assert_true(rod_curve_create(reference_helix, NULL, 0, 19.565163762857, elements, &curve, NULL));
     RodSection section = rod_circle(1.5e-3, 5e6, 0.5, 1200);
     rod_moments(&curve, (RodLoads){.line = vec3(0, 0, -9.8 * section.mass)}, moment);
     rod_frenet(&curve, frames);

@@ -4,6 +4,7 @@
 #include "base/quat.h"
 #include "rod/inverse.h"
 #include <math.h>
+#include "tests/rod_reference.h"
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -11,27 +12,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <cmocka.h>
-
-static bool helix(void *self, double u, Vec3 *x)
-{
-    (void)self;
-    *x = vec3(0.015 * cos(u), 0.015 * sin(u), -0.00318 * u);
-    return true;
-}
-
-static bool conical(void *self, double u, Vec3 *x)
-{
-    (void)self;
-    double r = 0.8e-3 * exp(u / 2);
-    *x = vec3(r * cos(2 * u), r * sin(2 * u), -0.016 * u);
-    return true;
-}
-
-static bool wave(void *self, double u, Vec3 *x)
-{
-    *x = vec3(0.05 * sin(*(const double *)self * u), 0, -u);
-    return true;
-}
 
 static const double omega_20pi = 62.83185307179586, omega_63 = 63;
 
@@ -45,7 +25,7 @@ typedef struct Reference {
 
 static const Reference references[] = {
     {"helix",
-     helix,
+     reference_helix,
      NULL,
      19.565163762857,
      0.3,
@@ -55,7 +35,7 @@ static const Reference references[] = {
      {-.01426136320, -.00942009031, -.00340501415},
      {.01798017285, .01991371092, .02287705541}},
     {"conical",
-     conical,
+     reference_conical,
      NULL,
      7.88691715750555,
      0.23,
@@ -65,7 +45,7 @@ static const Reference references[] = {
      {-.03537261138, -.00644132879, -.08913418816},
      {.00339294820, .04127335461, 0}},
     {"wave_20pi",
-     wave,
+     reference_wave,
      &omega_20pi,
      .302598403658,
      0.7,
@@ -75,7 +55,7 @@ static const Reference references[] = {
      {-.08569996447, 0, -.04019703502},
      {.03874835735, 0, .06905477374}},
     {"wave_63",
-     wave,
+     reference_wave,
      &omega_63,
      .301915337162638,
      0.7,

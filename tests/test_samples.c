@@ -4,6 +4,7 @@
 #include "base/random.h"
 #include "rod/inverse.h"
 #include "rod/samples.h"
+#include "tests/rod_reference.h"
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -11,21 +12,6 @@
 #include <cmocka.h>
 
 static const double helix_end = 19.565163762857, conical_end = 7.88691715750555;
-
-static bool helix(void *self, double u, Vec3 *x)
-{
-    (void)self;
-    *x = vec3(0.015 * cos(u), 0.015 * sin(u), -0.00318 * u);
-    return true;
-}
-
-static bool conical(void *self, double u, Vec3 *x)
-{
-    (void)self;
-    double r = 0.8e-3 * exp(u / 2);
-    *x = vec3(r * cos(2 * u), r * sin(2 * u), -0.016 * u);
-    return true;
-}
 
 /* By Box and Muller. */
 static double normal(Random *random)
@@ -108,10 +94,10 @@ static const double sigmas[4] = {1e-5, 1e-4, 3e-4, 1e-3};
 
 /* Largest errors of the natural shape, m, as measured with another program. */
 static const Case cases[] = {
-    {"helix", helix, &helix_end, 200, 5e6, {3.4e-5, 2.5e-4, 7.1e-4, 2.1e-3}},
-    {"helix", helix, &helix_end, 800, 5e6, {2.5e-5, 1.6e-4, 4.8e-4, 1.3e-3}},
-    {"conical", conical, &conical_end, 200, 3.5e6, {3.5e-5, 2.9e-4, 7.4e-4, 2.0e-3}},
-    {"conical", conical, &conical_end, 800, 3.5e6, {1.9e-5, 1.3e-4, 3.5e-4, 9.6e-4}},
+    {"helix", reference_helix, &helix_end, 200, 5e6, {3.4e-5, 2.5e-4, 7.1e-4, 2.1e-3}},
+    {"helix", reference_helix, &helix_end, 800, 5e6, {2.5e-5, 1.6e-4, 4.8e-4, 1.3e-3}},
+    {"conical", reference_conical, &conical_end, 200, 3.5e6, {3.5e-5, 2.9e-4, 7.4e-4, 2.0e-3}},
+    {"conical", reference_conical, &conical_end, 800, 3.5e6, {1.9e-5, 1.3e-4, 3.5e-4, 9.6e-4}},
 };
 
 /* Of 8 draws: root mean squares, and the mean of the noise found. */
@@ -195,10 +181,10 @@ static void test_few_samples(void **state)
     static const int counts[] = {4, 6, 8, 12, 20};
     const double end = 2;
     RodCurve exact;
-    assert_true(rod_curve_create(helix, NULL, 0, end, ELEMENTS, &exact, NULL));
+    assert_true(rod_curve_create(reference_helix, NULL, 0, end, ELEMENTS, &exact, NULL));
     double before = INFINITY, worst = 0;
     for (size_t k = 0; k < sizeof counts / sizeof *counts; k++) {
-        Vec3 *x = sample(helix, end, counts[k]);
+        Vec3 *x = sample(reference_helix, end, counts[k]);
         double off = compare(x, counts[k], NAN, &exact, 5e6).natural;
         print_message("%d clean samples of a third of a turn: off by %.1e m\n", counts[k], off);
         assert_true(off < before && off < 1e-4);
@@ -206,10 +192,10 @@ static void test_few_samples(void **state)
         mem_free(x);
     }
     rod_curve_clear(&exact);
-    assert_true(rod_curve_create(helix, NULL, 0, helix_end, ELEMENTS, &exact, NULL));
+    assert_true(rod_curve_create(reference_helix, NULL, 0, helix_end, ELEMENTS, &exact, NULL));
     Random random = random_seed(3);
     for (int draw = 0; draw < 16; draw++) {
-        Vec3 *x = sample(helix, helix_end, 50);
+        Vec3 *x = sample(reference_helix, helix_end, 50);
         shake(x, 50, 1e-4, &random);
         worst = fmax(worst, compare(x, 50, NAN, &exact, 5e6).natural);
         mem_free(x);
@@ -252,7 +238,7 @@ static void test_refused_samples(void **state)
     long blocks = mem_live_count();
     RodSamplesDef def = rod_samples_default();
     RodCurve once, twice;
-    Vec3 *x = sample(conical, conical_end, 60), doubled[120];
+    Vec3 *x = sample(reference_conical, conical_end, 60), doubled[120];
     for (int i = 0; i < 120; i++) doubled[i] = x[i / 2];
     assert_true(rod_samples_curve(x, 60, &def, 20, &once, NULL, NULL));
     assert_true(rod_samples_curve(doubled, 120, &def, 20, &twice, NULL, NULL));
@@ -312,8 +298,8 @@ static void test_many_samples(void **state)
     enum { SAMPLES = 10000 };
     Random random = random_seed(6);
     RodCurve exact;
-    assert_true(rod_curve_create(helix, NULL, 0, helix_end, ELEMENTS, &exact, NULL));
-    Vec3 *x = sample(helix, helix_end, SAMPLES);
+    assert_true(rod_curve_create(reference_helix, NULL, 0, helix_end, ELEMENTS, &exact, NULL));
+    Vec3 *x = sample(reference_helix, helix_end, SAMPLES);
     shake(x, SAMPLES, 1e-4, &random);
     double start = clock_seconds();
     Errors errors = compare(x, SAMPLES, NAN, &exact, 5e6);

@@ -5,6 +5,7 @@
 #include "rod/inverse.h"
 #include "rod/self_contact.h"
 #include <math.h>
+#include "tests/rod_reference.h"
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdbool.h>
@@ -12,26 +13,6 @@
 #include <stdint.h>
 #include <stdio.h>
 #include <cmocka.h>
-
-static bool helix(void *pitch, double u, Vec3 *x)
-{
-    *x = vec3(0.015 * cos(u), 0.015 * sin(u), *(const double *)pitch * u);
-    return true;
-}
-
-static bool conical(void *self, double u, Vec3 *x)
-{
-    (void)self;
-    double r = 0.8e-3 * exp(u / 2);
-    *x = vec3(r * cos(2 * u), r * sin(2 * u), -0.016 * u);
-    return true;
-}
-
-static bool wave(void *omega, double u, Vec3 *x)
-{
-    *x = vec3(0.05 * sin(*(const double *)omega * u), 0, -u);
-    return true;
-}
 
 static double down = -0.00318, up = 0.00318, omega_20pi = 62.83185307179586, omega_63 = 63;
 
@@ -60,11 +41,11 @@ static void test_natural_shapes(void **state)
         void *self;
         double range, young;
         bool touches;
-    } shapes[] = {{"helix", helix, &down, 19.565163762857, 5e6, true},
-                  {"conical", conical, NULL, 7.88691715750555, 3.5e6, false},
-                  {"wave_20pi", wave, &omega_20pi, .302598403658, 23e6, true},
-                  {"wave_63", wave, &omega_63, .301915337162638, 23e6, true},
-                  {"standing", helix, &up, 19.565163762857, 5e6, false}};
+    } shapes[] = {{"helix", reference_helix, &down, 19.565163762857, 5e6, true},
+                  {"conical", reference_conical, NULL, 7.88691715750555, 3.5e6, false},
+                  {"wave_20pi", reference_wave, &omega_20pi, .302598403658, 23e6, true},
+                  {"wave_63", reference_wave, &omega_63, .301915337162638, 23e6, true},
+                  {"standing", reference_helix, &up, 19.565163762857, 5e6, false}};
     long blocks = mem_live_count();
     double nearest[5];
     for (int i = 0; i < 5; i++)
@@ -84,7 +65,7 @@ static void test_natural_shapes(void **state)
                 nearest[3] < 1e-7); /* plane waves cross */
     assert_true(isinf(nearest[1]) && isinf(nearest[4]));
     /* The conical one passes itself at 9.66 mm. */
-    Vec3 *x = natural_of(conical, NULL, 7.88691715750555, 3.5e6, 2000);
+    Vec3 *x = natural_of(reference_conical, NULL, 7.88691715750555, 3.5e6, 2000);
     RodContacts wide = rod_self_contacts(x, 2001, 12e-3);
     assert_true(fabs(wide.nearest.distance - 9.6635e-3) < 1e-6);
     rod_contacts_clear(&wide);

@@ -4,32 +4,13 @@
 #include "rod/inverse.h"
 #include "rod/stability.h"
 #include <math.h>
+#include "tests/rod_reference.h"
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <cmocka.h>
-
-static bool helix(void *pitch, double u, Vec3 *x)
-{
-    *x = vec3(0.015 * cos(u), 0.015 * sin(u), *(const double *)pitch * u);
-    return true;
-}
-
-static bool conical(void *self, double u, Vec3 *x)
-{
-    (void)self;
-    double r = 0.8e-3 * exp(u / 2);
-    *x = vec3(r * cos(2 * u), r * sin(2 * u), -0.016 * u);
-    return true;
-}
-
-static bool wave(void *omega, double u, Vec3 *x)
-{
-    *x = vec3(0.05 * sin(*(const double *)omega * u), 0, -u);
-    return true;
-}
 
 static double down = -0.00318, up = 0.00318, omega_20pi = 62.83185307179586, omega_63 = 63;
 
@@ -44,11 +25,11 @@ typedef struct Reference {
 } Reference;
 
 static const Reference references[] = {
-    {"helix", helix, &down, 19.565163762857, 5e6, 0, 25.780, 5e-4, 1.97845, 0, 1e-6},
-    {"conical", conical, NULL, 7.88691715750555, 3.5e6, 0, 24.434, 5e-4, 2.23759, 0, 1e-6},
-    {"wave_20pi", wave, &omega_20pi, .302598403658, 23e6, 1, -8.08, 5e-3, 24.5274, .0168, 5e-5},
-    {"wave_63", wave, &omega_63, .301915337162638, 23e6, 1, -8.19, 5e-3, 24.5392, .0169, 5e-4},
-    {"standing", helix, &up, 19.565163762857, 5e6, 2, -128.8, 5e-2, 20.3696, .1195, 1e-6},
+    {"helix", reference_helix, &down, 19.565163762857, 5e6, 0, 25.780, 5e-4, 1.97845, 0, 1e-6},
+    {"conical", reference_conical, NULL, 7.88691715750555, 3.5e6, 0, 24.434, 5e-4, 2.23759, 0, 1e-6},
+    {"wave_20pi", reference_wave, &omega_20pi, .302598403658, 23e6, 1, -8.08, 5e-3, 24.5274, .0168, 5e-5},
+    {"wave_63", reference_wave, &omega_63, .301915337162638, 23e6, 1, -8.19, 5e-3, 24.5392, .0169, 5e-4},
+    {"standing", reference_helix, &up, 19.565163762857, 5e6, 2, -128.8, 5e-2, 20.3696, .1195, 1e-6},
 };
 
 enum { REFERENCES = sizeof references / sizeof *references };
