@@ -230,6 +230,8 @@ static bool is_converged(const Search *s, bool small)
 {
     if (s->shift > 0) return false;
     double gain = -dot(s->n, s->gradient, s->step);
+    for (int i = 0; system_multiplier_count(s->sys) && i < s->n; i++) /* what must vanish and does not counts in full */
+        if (system_is_multiplier(s->sys, i)) gain += s->gradient[i] * s->step[i] + fabs(s->gradient[i] * s->step[i]);
     return (small && s->info.step <= s->def->step_tol) || gain <= s->def->energy_tol * s->now.energy_scale;
 }
 

@@ -231,10 +231,53 @@ static void test_framings(void **state)
     rod_curve_clear(&curve);
 }
 
+static bool straight(void *self, double u, Vec3 *x)
+{
+    (void)self;
+    *x = vec3(0.3 * u, 0, 0);
+    return true;
+}
+
+static bool inflected(void *self, double u, Vec3 *x)
+{
+    (void)self;
+    *x = vec3(u, u * u * u, 0);
+    return true;
+}
+
+/* No curvature anywhere, or none in one point: every frame and strain is finite; what lies in a plane with
+ * the weight stays there, and has no twist. */
+static void test_straight_and_inflected(void **state)
+{
+    (void)state;
+    enum { N = 100 };
+    RodCurvePoint *points[] = {straight, inflected};
+    for (int k = 0; k < 2; k++) {
+        RodCurve curve;
+        Error err;
+        assert_true(rod_curve_create(points[k], NULL, k ? -1 : 0, 1, N, &curve, &err));
+        RodSection section = reference_section(1e7);
+        RodLoads loads = {.line = vec3(0, -1e-2, 0)};
+        Vec3 moment[2 * N + 1], natural[N + 1], strains[2 * N + 1];
+        RodFrame frames[2 * N + 1];
+        rod_moments(&curve, loads, moment);
+        rod_invert(&curve, section, moment, NULL, natural);
+        for (int f = 0; f < 2; f++) {
+            rod_frenet(&curve, frames);
+            if (f) rod_bishop(&curve, frames[0].n1, frames);
+            rod_natural_strains(&curve, section, moment, frames, strains);
+            for (int j = 0; j <= 2 * N; j++) assert_true(isfinite(vec3_length(strains[j])));
+            for (int j = 0; f && j <= 2 * N; j++) assert_true(fabs(strains[j].x) < 1e-12);
+        }
+        for (int i = 0; i <= N; i++) assert_true(isfinite(natural[i].x) && fabs(natural[i].z) < 1e-15);
+        rod_curve_clear(&curve);
+    }
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_natural_shapes),
-                                       cmocka_unit_test(test_natural_strains),
-                                       cmocka_unit_test(test_framings)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_natural_shapes), cmocka_unit_test(test_natural_strains),
+        cmocka_unit_test(test_framings), cmocka_unit_test(test_straight_and_inflected)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
