@@ -147,7 +147,7 @@ typedef struct Page {
 
 static Page page_write(const CurvesScene *scene)
 {
-    Page page;
+    Page page = {0};
     Error err = {""};
     if (!curves_write("curves.png", scene, &err) ||
         !canvas_read_png("curves.png", &page.rgb, &page.width, &page.height, &err))
