@@ -76,7 +76,7 @@ static int find_pairs(const Strokes *strokes, JoinDef def, Pair *pairs)
         points[e] = join_end(strokes, e);
         group[e] = e / 2;
     }
-    Near *near = near_create(points, group, ends, 0);
+    Near *near = near_create(points, group, ends);
     for (int e = 0; e < ends; e++) {
         int most = near_find(near, points[e], e / 2, def.gap, CANDIDATES, found);
         for (int k = 0; k < most; k++) {

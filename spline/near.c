@@ -2,7 +2,7 @@
 #include "base/memory.h"
 #include <stdbool.h>
 
-enum { NEAR_MOST = 64, SIDE_MOST = 4096 };
+enum { NEAR_MOST = 64 };
 
 struct Near {
     int count, columns, rows;
@@ -28,7 +28,8 @@ static int cell_of(const Near *near, Vec2 p)
     return j * near->columns + i;
 }
 
-static void fit_cells(Near *near, double cell)
+/* Two points per cell on the average, also where all are near a line. */
+static void fit_cells(Near *near)
 {
     Vec2 low = near->count ? near->points[0] : (Vec2){0, 0}, high = low;
     for (int k = 1; k < near->count; k++) {
@@ -37,21 +38,20 @@ static void fit_cells(Near *near, double cell)
         high = (Vec2){fmax(high.x, p.x), fmax(high.y, p.y)};
     }
     double width = high.x - low.x, height = high.y - low.y, longer = fmax(width, height);
-    if (!(cell > 0)) cell = sqrt(2 * width * height / fmax(1, near->count));
-    cell = fmax(cell, longer / SIDE_MOST); /* also where all are on a line */
+    double count = fmax(1, near->count), cell = fmax(sqrt(2 * width * height / count), 2 * longer / count);
     near->low = low;
     near->cell = cell > 0 ? cell : 1;
     near->columns = 1 + (int)(width / near->cell);
     near->rows = 1 + (int)(height / near->cell);
 }
 
-Near *near_create(const Vec2 *points, const int *group, int count, double cell)
+Near *near_create(const Vec2 *points, const int *group, int count)
 {
     Near *near = mem_alloc(1, sizeof *near);
     near->count = count;
     near->points = mem_copy(points, (size_t)count, sizeof *points);
     near->group = mem_copy(group, (size_t)count, sizeof *group);
-    fit_cells(near, cell);
+    fit_cells(near);
     size_t cells = (size_t)near->columns * (size_t)near->rows;
     near->first = mem_alloc(cells + 1, sizeof(int));
     near->alive = mem_alloc(cells, sizeof(int));

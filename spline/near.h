@@ -4,9 +4,8 @@
 
 typedef struct Near Near;
 
-/* Points are copied; group[i] >= 0 (copied) tells which belong together. Distances near `cell` are found
- * fastest; 0: two points per cell on the average. */
-Near *near_create(const Vec2 *points, const int *group, int count, double cell);
+/* Points are copied; group[i] >= 0 (copied) tells which belong together. */
+Near *near_create(const Vec2 *points, const int *group, int count);
 void near_destroy(Near *near);
 
 /* Later searches do not find the point. */

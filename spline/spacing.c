@@ -97,7 +97,7 @@ void spacing_measure(const SplineSpacing *spacing, const Strokes *strokes, doubl
     *mean = *cv = *crowded = 0;
     if (strokes->count < 2) return;
     for (int k = 0; k < strokes->count; k++) sample_stroke(&samples, strokes, k, spacing->page.pen);
-    Near *near = near_create(samples.at, samples.stroke, samples.count, 2 * spacing->page.pen);
+    Near *near = near_create(samples.at, samples.stroke, samples.count);
     for (int k = 0; k < samples.count; k += 4) {
         int other;
         if (!near_find(near, samples.at[k], samples.stroke[k], INFINITY, 1, &other)) continue;

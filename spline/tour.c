@@ -29,7 +29,7 @@ static Near *near_ends(const Vec2 *end, const int *which, int count)
         points[k] = end[which[k]];
         group[k] = which[k] >> 1;
     }
-    Near *near = near_create(points, group, count, 0);
+    Near *near = near_create(points, group, count);
     mem_free(points);
     mem_free(group);
     return near;
