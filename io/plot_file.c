@@ -1,0 +1,130 @@
+#include "io/plot_file.h"
+#include "base/cubic.h"
+#include "io/plot_text.h"
+#include "io/safe_file.h"
+#include "base/memory.h"
+#include <math.h>
+
+void plot_add_number(Text *text, double number, int decimals)
+{
+    long long scale = 1;
+    for (int k = 0; k < decimals; k++) scale *= 10;
+    long long ticks = llround(number * (double)scale), whole, part;
+    const char *sign = ticks < 0 ? "-" : "";
+    if (ticks < 0) ticks = -ticks;
+    whole = ticks / scale;
+    part = ticks % scale;
+    if (part == 0) {
+        text_add(text, "%s%lld", sign, whole);
+        return;
+    }
+    for (; part % 10 == 0; part /= 10) decimals--;
+    text_add(text, "%s%lld.%0*lld", sign, whole, decimals, part);
+}
+
+bool plot_check(const char *path, const Plot *plot, Error *err)
+{
+    for (int k = 0; k < plot->layer_count; k++) {
+        const PlotLayer *layer = &plot->layers[k];
+        for (int i = 0; i < (layer->count ? layer->start[layer->count] : 0); i++) {
+            Vec2 p = layer->points[i];
+            if (!(fabs(p.x) <= 2 * plot->paper[0] && fabs(p.y) <= 2 * plot->paper[1]))
+                return error_set(err, "%s: layer %d has a point at (%g, %g) mm, on a paper of %g x %g mm",
+                                 path, k + 1, p.x, p.y, plot->paper[0], plot->paper[1]);
+        }
+    }
+    return true;
+}
+
+/* What XML allows in a quoted attribute. */
+static void add_attribute(Text *text, const char *value)
+{
+    for (const char *c = value; *c; c++) {
+        if (*c == '"' || *c == '&' || *c == '<')
+            text_add(text, "&#%d;", *c);
+        else if ((unsigned char)*c >= 0x20)
+            text_add(text, "%c", *c);
+    }
+}
+
+static void add_point(Text *text, char before, Vec2 p)
+{
+    text_add(text, "%c", before);
+    plot_add_number(text, p.x, 3);
+    text_add(text, " ");
+    plot_add_number(text, p.y, 3);
+}
+
+static void add_layer(Text *text, const PlotLayer *layer, int number)
+{
+    unsigned rgb[3] = {(unsigned)lround(255 * layer->color.r), (unsigned)lround(255 * layer->color.g),
+                       (unsigned)lround(255 * layer->color.b)};
+    text_add(text, "<g id=\"layer%d\" inkscape:groupmode=\"layer\" inkscape:label=\"%d-", number, number);
+    add_attribute(text, layer->name);
+    text_add(text, "\" fill=\"none\" stroke=\"#%02x%02x%02x\" stroke-width=\"", rgb[0], rgb[1], rgb[2]);
+    plot_add_number(text, layer->pen, 3);
+    text_add(text, "\" stroke-linecap=\"round\" stroke-linejoin=\"round\">\n");
+    for (int k = 0; k < layer->count; k++) {
+        text_add(text, "<path d=\"");
+        for (int i = layer->start[k]; i < layer->start[k + 1]; i++)
+            add_point(text,
+                      i == layer->start[k]       ? 'M'
+                      : i == layer->start[k] + 1 ? 'C'
+                                                 : ' ',
+                      layer->points[i]);
+        text_add(text, "\"/>\n");
+    }
+    text_add(text, "</g>\n");
+}
+
+bool plot_write_svg(const char *path, const Plot *plot, Error *err)
+{
+    Text text = {0}, width = {0}, height = {0};
+    if (!plot_check(path, plot, err)) return false;
+    plot_add_number(&width, plot->paper[0], 3);
+    plot_add_number(&height, plot->paper[1], 3);
+    text_add(&text,
+             "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" "
+             "xmlns:inkscape=\"http://www.inkscape.org/namespaces/inkscape\" width=\"%smm\" height=\"%smm\" "
+             "viewBox=\"0 0 %s %s\">\n",
+             width.text, height.text, width.text, height.text);
+    for (int k = 0; k < plot->layer_count; k++)
+        if (plot->layers[k].count) add_layer(&text, &plot->layers[k], k + 1);
+    text_add(&text, "</svg>\n");
+    bool ok = safe_file_write(path, text.text, text.length, false, err);
+    mem_free(width.text);
+    mem_free(height.text);
+    mem_free(text.text);
+    return ok;
+}
+
+PlotSpeed plot_speed_default(void)
+{
+    return (PlotSpeed){.down = 40, .up = 100, .lift = 0.3};
+}
+
+static double distance(Vec2 a, Vec2 b)
+{
+    return hypot(b.x - a.x, b.y - a.y);
+}
+
+PlotEstimate plot_estimate(const PlotLayer *layer, PlotSpeed speed)
+{
+    PlotEstimate estimate = {0};
+    Vec2 home = {0, 0}, at = home;
+    for (int k = 0; k < layer->count; k++) {
+        const Vec2 *c = layer->points + layer->start[k], *end = layer->points + layer->start[k + 1] - 1;
+        estimate.travel += distance(at, *c);
+        for (at = *c; c < end; c += 3) {
+            int steps = cubic_steps(c, 0.001);
+            for (int i = 1; i <= steps; i++) {
+                Vec2 next = cubic_at(c, (double)i / steps);
+                estimate.ink += distance(at, next);
+                at = next;
+            }
+        }
+    }
+    estimate.travel += distance(at, home);
+    estimate.seconds = estimate.ink / speed.down + estimate.travel / speed.up + layer->count * speed.lift;
+    return estimate;
+}

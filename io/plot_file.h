@@ -1,0 +1,75 @@
+/* plot_file.h - drawings of lines as files for pen plotters: SVG, G-code, HPGL; and how long plotting takes.
+ *
+ * A plot is curves by layer, a layer what one pen draws. Lengths are mm, as in the files: x right, y down
+ * from the paper's top left corner. Curves are drawn in their order; nothing is sorted, cut or joined here.
+ * Equal plots give equal bytes. Files are replaced as a whole or not at all. */
+#pragma once
+#include "base/error.h"
+#include "base/vec3.h"
+#include "io/colormap.h"
+
+/* Curve k has the points [start[k]] to [start[k+1] - 1]: 3n + 1 control points of n >= 1 cubic Bezier curves
+ * end to end. */
+typedef struct PlotLayer {
+    const char *name; /* "black"; borrowed by writers */
+    Color color;
+    double pen; /* width of the line, mm */
+    int count;
+    int *start;   /* [count + 1] */
+    Vec2 *points; /* [start[count]] */
+} PlotLayer;
+
+typedef struct Plot {
+    double paper[2]; /* width and height, mm */
+    int layer_count;
+    PlotLayer *layers;
+} Plot;
+
+/* Writes an SVG in millimetres: width and height in mm, one user unit a millimetre, cubic curves rounded to
+ * micrometres, a layer "1-black" of Inkscape's kind at the top level for each pen (AxiDraw and vpype read the
+ * number), no transforms, no frame. Layers without curves are left out, but count. */
+bool plot_write_svg(const char *path, const Plot *plot, Error *err);
+
+/* How fast a plotter is: from lift to touch and between them. */
+typedef struct PlotSpeed {
+    double down, up; /* mm/s, pen down and pen up */
+    double lift;     /* s, to lift and to lower the pen, together */
+} PlotSpeed;
+
+/* A common pen plotter: 40 and 100 mm/s, 0.3 s. */
+PlotSpeed plot_speed_default(void);
+
+/* Of one layer. Its pen comes from the paper's top left corner and returns there. */
+typedef struct PlotEstimate {
+    double ink, travel; /* mm drawn, mm moved with the pen up */
+    double seconds;
+} PlotEstimate;
+
+/* Constant speeds, no acceleration: short curves take longer than this on a heavy machine. */
+PlotEstimate plot_estimate(const PlotLayer *layer, PlotSpeed speed);
+
+/* The words of a machine's language. Templates may hold {x} and {y} (where to go), {feed} and {travel_feed}
+ * (speeds, mm/min), {pen} (from 1) and {name} (of the layer); any of them may be "". */
+typedef struct PlotProfile {
+    const char *header, *footer;
+    const char *change; /* before every layer but the first */
+    const char *layer;  /* at the start of every layer */
+    const char *travel; /* to the start of a curve, the pen is up */
+    const char *down;
+    const char *line; /* straight on to the next point, the pen is down */
+    const char *up;
+    double units;     /* of {x} and {y} per mm */
+    int decimals;     /* of {x} and {y} */
+    double tolerance; /* mm, of the chords that replace a curve */
+    bool y_up;        /* y counts from the lower edge of the paper */
+} PlotProfile;
+
+/* By name; a sentence for an unknown one.
+ *   gcode        mm, pen on a z axis: up at z = 5, down at z = 0 (Marlin, GRBL, LinuxCNC)
+ *   gcode_servo  mm, pen on a servo that M3 S30 lowers and M5 lifts, with pauses (GRBL)
+ *   hpgl         40 units per mm, SP per pen, x to the right and y up from the lower left corner */
+bool plot_profile(const char *name, PlotProfile *profile, Error *err);
+
+/* Writes the plot in the words of a profile, curves as chords. */
+bool plot_write_machine(const char *path, const Plot *plot, const PlotProfile *profile, PlotSpeed speed,
+                        Error *err);

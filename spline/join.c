@@ -1,0 +1,118 @@
+#include "spline/join.h"
+#include "base/memory.h"
+#include "spline/near.h"
+#include <stdlib.h>
+
+enum { CANDIDATES = 8 };
+
+typedef struct Pair {
+    double square; /* of the distance */
+    int a, b;
+} Pair;
+
+Vec2 join_end(const Strokes *strokes, int end)
+{
+    const double *q = strokes->q + 4 * (end & 1 ? strokes->start[end / 2 + 1] - 1 : strokes->start[end / 2]);
+    return (Vec2){q[0], q[1]};
+}
+
+/* At an end: the node's place, the unit vector that leads out of the stroke, |v|, and the stroke's next node.
+ */
+typedef struct Tip {
+    Vec2 at, out, inner;
+    double speed;
+} Tip;
+
+static Tip tip(const Strokes *strokes, int end)
+{
+    int node = end & 1 ? strokes->start[end / 2 + 1] - 1 : strokes->start[end / 2], sign = end & 1 ? 1 : -1;
+    const double *q = strokes->q + 4 * node, *inner = q - 4 * sign;
+    double speed = hypot(q[2], q[3]);
+    return (Tip){.at = {q[0], q[1]},
+                 .out = {sign * q[2] / speed, sign * q[3] / speed},
+                 .inner = {inner[0], inner[1]},
+                 .speed = speed};
+}
+
+/* Whether the angle between a unit vector and any vector is at most that with the given cosine. */
+static bool within(Vec2 unit, Vec2 vector, double cosine)
+{
+    return unit.x * vector.x + unit.y * vector.y >= cosine * hypot(vector.x, vector.y);
+}
+
+bool join_node(const Strokes *strokes, int a, int b, double angle, double node[4])
+{
+    Tip from = tip(strokes, a), to = tip(strokes, b);
+    double cosine = cos(angle);
+    Vec2 p = {0.5 * (from.at.x + to.at.x), 0.5 * (from.at.y + to.at.y)};
+    Vec2 mean = {from.out.x - to.out.x, from.out.y - to.out.y};
+    double length = hypot(mean.x, mean.y);
+    Vec2 along = {mean.x / length, mean.y / length};
+    double speed = fmin(from.speed, to.speed);
+    if (!(speed > 0 && length > 0)) return false;
+    node[0] = p.x;
+    node[1] = p.y;
+    node[2] = speed * along.x;
+    node[3] = speed * along.y;
+    return within(from.out, (Vec2){-to.out.x, -to.out.y}, cosine) &&
+           within(along, (Vec2){p.x - from.inner.x, p.y - from.inner.y}, cosine) &&
+           within(along, (Vec2){to.inner.x - p.x, to.inner.y - p.y}, cosine);
+}
+
+static int by_distance(const void *left, const void *right)
+{
+    const Pair *l = left, *r = right;
+    if (l->square != r->square) return l->square < r->square ? -1 : 1;
+    if (l->a != r->a) return l->a < r->a ? -1 : 1;
+    return (l->b > r->b) - (l->b < r->b);
+}
+
+static int find_pairs(const Strokes *strokes, JoinDef def, Pair *pairs)
+{
+    int ends = 2 * strokes->count, count = 0, found[CANDIDATES];
+    Vec2 *points = mem_alloc((size_t)ends, sizeof *points);
+    int *group = mem_alloc((size_t)ends, sizeof *group);
+    for (int e = 0; e < ends; e++) {
+        points[e] = join_end(strokes, e);
+        group[e] = e / 2;
+    }
+    Near *near = near_create(points, group, ends);
+    for (int e = 0; e < ends; e++) {
+        int most = near_find(near, points[e], e / 2, def.gap, CANDIDATES, found);
+        for (int k = 0; k < most; k++) {
+            double node[4], dx = points[found[k]].x - points[e].x, dy = points[found[k]].y - points[e].y;
+            if (strokes->layer[found[k] / 2] == strokes->layer[e / 2] &&
+                join_node(strokes, e, found[k], def.angle, node))
+                pairs[count++] = (Pair){dx * dx + dy * dy, e, found[k]};
+        }
+    }
+    near_destroy(near);
+    mem_free(points);
+    mem_free(group);
+    return count;
+}
+
+int join_find(const Strokes *strokes, JoinDef def, int *partner)
+{
+    size_t ends = 2 * (size_t)strokes->count;
+    for (size_t e = 0; e < ends; e++) partner[e] = -1;
+    if (!(def.gap > 0)) return 0;
+    Pair *pairs = mem_alloc(CANDIDATES * ends, sizeof *pairs);
+    int *far = mem_alloc(ends, sizeof *far); /* of what an end's stroke has been joined to */
+    int count = find_pairs(strokes, def, pairs), joined = 0;
+    qsort(pairs, (size_t)count, sizeof *pairs, by_distance);
+    for (size_t e = 0; e < ends; e++) far[e] = (int)(e ^ 1);
+    for (int k = 0; k < count; k++) {
+        int a = pairs[k].a, b = pairs[k].b;
+        if (partner[a] >= 0 || partner[b] >= 0 || far[a] == b) continue;
+        partner[a] = b;
+        partner[b] = a;
+        int begin = far[a], end = far[b];
+        far[begin] = end;
+        far[end] = begin;
+        joined++;
+    }
+    mem_free(pairs);
+    mem_free(far);
+    return joined;
+}

@@ -1,0 +1,27 @@
+/* join.h - strokes whose ends all but meet become one, so that the pen need not lift.
+ *
+ * End 2k is the beginning of stroke k, end 2k + 1 its other end. Two ends may be joined where they are at
+ * most `gap` apart and one stroke goes on as the other does: the turn from one end's direction to the other's
+ * is at most `angle`, and so is, on either side, the turn from the joint's direction to the chord of the
+ * segment that ends there. The two nodes become one in the middle between them; its direction is the mean,
+ * its speed |v| the lesser of both, so that no segment can overshoot. The joined stroke is C1 like any other.
+ * With a gap of a pen's width nothing is seen of it: the round ends overlapped before, and both move by half
+ * of that at most. */
+#pragma once
+#include "spline/strokes.h"
+#include <stdbool.h>
+
+typedef struct JoinDef {
+    double gap;   /* in units of the page; 0: nothing is joined, even where ends meet */
+    double angle; /* rad */
+} JoinDef;
+
+Vec2 join_end(const Strokes *strokes, int end);
+
+/* partner[2 count] of ends: the end that it is joined to, -1: none. Ends of one layer only, each end once,
+ * nearest pairs first; no stroke closes on itself. Returns how many pairs. */
+int join_find(const Strokes *strokes, JoinDef def, int *partner);
+
+/* The node (p, v) that takes the place of both ends, as seen by a pen that arrives at end a and goes on from
+ * end b. false where they do not go on as each other. */
+bool join_node(const Strokes *strokes, int a, int b, double angle, double node[4]);

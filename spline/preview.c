@@ -1,0 +1,70 @@
+#include "spline/preview.h"
+#include "base/cubic.h"
+#include "base/memory.h"
+#include "io/canvas.h"
+
+static const double POINTS = 72 / 25.4;       /* per mm */
+static const Color edge = {0.6, 0.6, 0.6, 1}; /* between the two papers */
+
+static void draw_target(Canvas *canvas, const SplinePage *page, const SplineGrid *target)
+{
+    size_t pixels = (size_t)target->columns * (size_t)target->rows;
+    unsigned char *rgba = mem_alloc(pixels, 4);
+    for (size_t k = 0; k < pixels; k++) {
+        double white = 1 - target->values[k * (size_t)target->width];
+        unsigned char level = (unsigned char)lround(255 * fmin(fmax(white, 0), 1));
+        for (int c = 0; c < 3; c++) rgba[4 * k + (size_t)c] = level;
+        rgba[4 * k + 3] = 255;
+    }
+    double points = 1e3 * POINTS;
+    canvas_image(canvas, rgba, target->columns, target->rows,
+                 (Box){points * page->left, points * page->top, points * page->unit * page->width,
+                       points * page->unit * page->height});
+    mem_free(rgba);
+}
+
+/* c to end: control points of a curve. Chords stay within a quarter of a pixel. */
+static void draw_curve(Canvas *canvas, const Vec2 *c, const Vec2 *end, Vec2 origin, Pen pen)
+{
+    double tolerance = 0.25 / (POINTS * canvas_resolution(canvas));
+    int count = 1, room = 1;
+    for (const Vec2 *k = c; k < end; k += 3) room += cubic_steps(k, tolerance);
+    Vec2 *points = mem_alloc((size_t)room, sizeof *points);
+    points[0] = *c;
+    for (; c < end; c += 3) {
+        int steps = cubic_steps(c, tolerance);
+        for (int i = 1; i <= steps; i++) points[count++] = cubic_at(c, (double)i / steps);
+    }
+    for (int k = 0; k < count; k++)
+        points[k] = (Vec2){origin.x + POINTS * points[k].x, origin.y + POINTS * points[k].y};
+    canvas_polyline(canvas, points, count, pen);
+    mem_free(points);
+}
+
+static void draw_plot(Canvas *canvas, const Plot *plot, Vec2 origin)
+{
+    for (int k = 0; k < plot->layer_count; k++) {
+        const PlotLayer *layer = &plot->layers[k];
+        Pen pen = {.color = layer->color, .width = POINTS * layer->pen};
+        for (int i = 0; i < layer->count; i++)
+            draw_curve(canvas, layer->points + layer->start[i], layer->points + layer->start[i + 1] - 1,
+                       origin, pen);
+    }
+}
+
+bool spline_preview(const char *path, const Plot *plot, const SplinePage *page, const SplineGrid *target,
+                    int width, Error *err)
+{
+    double paper[2] = {POINTS * plot->paper[0], POINTS * plot->paper[1]};
+    Canvas *canvas = canvas_create(path, target ? 2 * paper[0] : paper[0], paper[1], width / paper[0], err);
+    if (!canvas) return false;
+    if (target) {
+        double x = paper[0];
+        draw_target(canvas, page, target);
+        canvas_line(canvas, (Vec2){x, 0}, (Vec2){x, paper[1]}, (Pen){.color = edge, .width = 0.5});
+    }
+    draw_plot(canvas, plot, (Vec2){target ? paper[0] : 0, 0});
+    bool ok = canvas_save(canvas, err);
+    canvas_destroy(canvas);
+    return ok;
+}

@@ -1,0 +1,10 @@
+/* preview.h - a picture of a plot as it will look: every pen with its own width and colour. */
+#pragma once
+#include "io/plot_file.h"
+#include "spline/grid.h"
+#include "spline/page.h"
+
+/* Draws the paper `width` pixels wide to a .png (or .svg, .pdf) file; layers in their order. target (its
+ * first numbers: 0 white .. 1 black) is shown to the left of it on a paper of its own; NULL: no target. */
+bool spline_preview(const char *path, const Plot *plot, const SplinePage *page, const SplineGrid *target,
+                    int width, Error *err);

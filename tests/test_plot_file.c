@@ -1,0 +1,358 @@
+/* Plots as files: SVG word for word, XML that can be read, machines' points read back; times; sizes of paper.
+ */
+#include "base/cubic.h"
+#include "base/memory.h"
+#include "io/paper.h"
+#include "io/plot_file.h"
+#include <ctype.h>
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+#include <cmocka.h>
+
+/* Two curves of the first pen (the second of two segments), none of the second, a straight one of the third.
+ */
+static Vec2 black[] = {{10, 20}, {12.5, 20.0004}, {14.99996, 21}, {15, 25},      {40, 30},   {50, 10},
+                       {60, 50}, {70, 30},        {75, 20},       {90, -0.0001}, {100, 47.5}};
+static int black_start[] = {0, 4, 11};
+static Vec2 red[] = {{5, 5}, {5, 15}, {5, 25}, {5, 35}};
+static int red_start[] = {0, 4};
+static PlotLayer layers[] = {
+    {.name = "black", .color = {0, 0, 0, 1}, .pen = 0.5, .count = 2, .start = black_start, .points = black},
+    {.name = "none", .color = {0, 1, 0, 1}, .pen = 0.3},
+    {.name = "a \"red\" <&\xc3\xa9>\n",
+     .color = {1, 0.5, 0, 1},
+     .pen = 0.25,
+     .count = 1,
+     .start = red_start,
+     .points = red}};
+static const Plot plot = {.paper = {148, 105}, .layer_count = 3, .layers = layers};
+
+static char *file_text(const char *path)
+{
+    FILE *file = fopen(path, "rb");
+    assert_non_null(file);
+    char *text = mem_alloc(1 << 20, 1);
+    assert_true(fread(text, 1, (1 << 20) - 1, file) > 0);
+    fclose(file);
+    return text;
+}
+
+static char *written_svg(const Plot *what)
+{
+    Error err = {""};
+    unlink("plot.svg");
+    if (!plot_write_svg("plot.svg", what, &err)) fail_msg("%s", err.text);
+    return file_text("plot.svg");
+}
+
+static void svg_words(void **state)
+{
+    (void)state;
+    char *text = written_svg(&plot), *again = written_svg(&plot);
+    assert_string_equal(
+        text,
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" "
+        "xmlns:inkscape=\"http://www.inkscape.org/namespaces/inkscape\" width=\"148mm\" height=\"105mm\" "
+        "viewBox=\"0 0 148 105\">\n"
+        "<g id=\"layer1\" inkscape:groupmode=\"layer\" inkscape:label=\"1-black\" fill=\"none\" "
+        "stroke=\"#000000\" stroke-width=\"0.5\" stroke-linecap=\"round\" stroke-linejoin=\"round\">\n"
+        "<path d=\"M10 20C12.5 20 15 21 15 25\"/>\n"
+        "<path d=\"M40 30C50 10 60 50 70 30 75 20 90 0 100 47.5\"/>\n"
+        "</g>\n"
+        "<g id=\"layer3\" inkscape:groupmode=\"layer\" inkscape:label=\"3-a &#34;red&#34; "
+        "&#60;&#38;\xc3\xa9>\" "
+        "fill=\"none\" stroke=\"#ff8000\" stroke-width=\"0.25\" stroke-linecap=\"round\" "
+        "stroke-linejoin=\"round\">\n"
+        "<path d=\"M5 5C5 15 5 25 5 35\"/>\n"
+        "</g>\n"
+        "</svg>\n");
+    assert_string_equal(text, again);
+    mem_free(text);
+    mem_free(again);
+}
+
+/* One tag that begins at <: its name and whether it ends or begins an element; what follows it. Attributes
+ * must be name="value" with nothing in the value that XML forbids there. */
+static const char *read_tag(const char *c, char name[32], int *depth)
+{
+    bool ends = c[1] == '/';
+    int length = 0;
+    for (c += ends ? 2 : 1; isalnum((unsigned char)*c) && length < 31; c++) name[length++] = *c;
+    name[length] = 0;
+    assert_true(length > 0);
+    for (;;) {
+        while (isspace((unsigned char)*c)) c++;
+        if (*c == '>' || !strncmp(c, "/>", 2)) break;
+        assert_true(!ends && isalpha((unsigned char)*c));
+        while (isalnum((unsigned char)*c) || *c == '-' || *c == ':') c++;
+        assert_true(c[0] == '=' && c[1] == '"');
+        for (c += 2; *c && *c != '"'; c++) {
+            assert_true(*c != '<' && (unsigned char)*c >= 0x20);
+            if (*c == '&') assert_true(strcspn(c, ";") < 6 && c[1] == '#');
+        }
+        assert_int_equal(*c++, '"');
+    }
+    *depth = *c == '/' ? 0 : ends ? -1 : 1;
+    return strchr(c, '>') + 1;
+}
+
+static void svg_is_xml(void **state)
+{
+    (void)state;
+    char *text = written_svg(&plot), open[8][32], name[32];
+    int depth = 0, paths = 0, change;
+    const char *c = strchr(text, '\n');
+    assert_true(!strncmp(text, "<?xml version=\"1.0\"", 19));
+    while ((c = strchr(c, '<'))) {
+        c = read_tag(c, name, &change);
+        if (change > 0) strcpy(open[depth++], name);
+        if (change < 0) assert_string_equal(open[--depth], name);
+        paths += !strcmp(name, "path");
+        if (!strcmp(name, "g")) assert_int_equal(depth, change > 0 ? 2 : 1); /* layers are not wrapped */
+        assert_true(depth < 8 && (depth > 0 || !strchr(c, '<')));
+    }
+    assert_int_equal(depth, 0);
+    assert_int_equal(paths, 3);
+    mem_free(text);
+}
+
+static void refused_plots(void **state)
+{
+    (void)state;
+    Error err = {""};
+    Vec2 points[] = {{1, 1}, {2, 2}, {NAN, 3}, {4, 4}};
+    PlotLayer bad = {.name = "bad", .pen = 1, .count = 1, .start = red_start, .points = points};
+    Plot wrong = {.paper = {100, 100}, .layer_count = 1, .layers = &bad};
+    PlotProfile profile;
+    assert_true(plot_profile("hpgl", &profile, &err));
+    char *before = written_svg(&plot);
+    assert_false(plot_write_svg("plot.svg", &wrong, &err));
+    assert_non_null(strstr(err.text, "layer 1 has a point at (nan, 3) mm"));
+    assert_false(plot_write_machine("plot.svg", &wrong, &profile, plot_speed_default(), &err));
+    points[2].x = 201;
+    assert_false(plot_write_svg("plot.svg", &wrong, &err));
+    char *after = file_text("plot.svg");
+    assert_string_equal(before, after);
+    assert_false(plot_write_svg("no/such/folder.svg", &plot, &err));
+    assert_non_null(strstr(err.text, "no/such/folder.svg: cannot be written"));
+    assert_false(plot_profile("gerber", &profile, &err));
+    assert_non_null(strstr(err.text, "gcode, gcode_servo or hpgl"));
+    mem_free(before);
+    mem_free(after);
+}
+
+/* What a machine would do: polylines drawn with the pen down, mm, y down. */
+typedef struct Drawn {
+    int lines, points, line[400], pens, pen[8];
+    Vec2 at[400];
+} Drawn;
+
+static void draw_to(Drawn *drawn, Vec2 p)
+{
+    drawn->line[drawn->points] = drawn->lines - 1;
+    drawn->at[drawn->points++] = p;
+    assert_true(drawn->points < 400);
+}
+
+static Drawn read_hpgl(const char *c)
+{
+    Drawn drawn = {0};
+    Vec2 at = {0, 0};
+    bool down = false;
+    for (; *c; c = strchr(c, ';') + 1 + (strchr(c, ';')[1] == '\n')) {
+        int x, y, pen, given = sscanf(c + 2, "%d,%d;", &x, &y);
+        if (sscanf(c, "SP%d;", &pen) == 1) drawn.pen[drawn.pens++] = pen;
+        bool lowers = !strncmp(c, "PD", 2), lifts = !strncmp(c, "PU", 2);
+        assert_true(lowers || lifts || !strncmp(c, "SP", 2) || !strncmp(c, "IN;", 3));
+        if (lowers && !down) drawn.lines++, draw_to(&drawn, at);
+        down = lowers || (down && !lifts);
+        if (given == 2 && (lowers || lifts)) at = (Vec2){x / 40.0, 105 - y / 40.0};
+        if (given == 2 && lowers) draw_to(&drawn, at);
+    }
+    return drawn;
+}
+
+static Drawn read_gcode(const char *c, const char *down_words, const char *up_words)
+{
+    Drawn drawn = {0};
+    bool down = false;
+    Vec2 at = {NAN, NAN};
+    for (; *c; c = strchr(c, '\n') + 1) {
+        double x, y, feed;
+        int g;
+        if (!strncmp(c, down_words, strlen(down_words))) {
+            drawn.lines++;
+            down = true;
+            draw_to(&drawn, at);
+        }
+        if (!strncmp(c, up_words, strlen(up_words))) down = false;
+        if (sscanf(c, "G%d X%lf Y%lf F%lf", &g, &x, &y, &feed) == 4) {
+            at = (Vec2){x, 105 - y};
+            assert_int_equal(g, down ? 1 : 0);
+            assert_true(feed == (down ? 2400 : 6000));
+            if (down) draw_to(&drawn, at);
+        }
+        if (sscanf(c, "; layer %d-", &g) == 1) drawn.pen[drawn.pens++] = g;
+    }
+    return drawn;
+}
+
+static double to_chord(Vec2 p, Vec2 a, Vec2 b)
+{
+    double dx = b.x - a.x, dy = b.y - a.y, square = dx * dx + dy * dy;
+    double t = square > 0 ? ((p.x - a.x) * dx + (p.y - a.y) * dy) / square : 0;
+    t = fmin(fmax(t, 0), 1);
+    return hypot(p.x - a.x - t * dx, p.y - a.y - t * dy);
+}
+
+/* The farthest that a point of the curves is from what was drawn for them; ends must be ends. */
+static double deviation(const Drawn *drawn, double rounding)
+{
+    double worst = 0;
+    int line = 0, first = 0;
+    for (int l = 0; l < 3; l++) {
+        for (int k = 0; k < layers[l].count; k++, line++) {
+            const Vec2 *c = layers[l].points + layers[l].start[k],
+                       *end = layers[l].points + layers[l].start[k + 1] - 1;
+            int last = first;
+            while (last + 1 < drawn->points && drawn->line[last + 1] == line) last++;
+            assert_true(drawn->line[first] == line);
+            assert_true(hypot(drawn->at[first].x - c->x, drawn->at[first].y - c->y) < rounding);
+            assert_true(hypot(drawn->at[last].x - end->x, drawn->at[last].y - end->y) < rounding);
+            for (; c < end; c += 3) {
+                for (int s = 0; s <= 100; s++) {
+                    double nearest = INFINITY;
+                    for (int i = first; i < last; i++)
+                        nearest =
+                            fmin(nearest, to_chord(cubic_at(c, s / 100.0), drawn->at[i], drawn->at[i + 1]));
+                    worst = fmax(worst, nearest);
+                }
+            }
+            first = last + 1;
+        }
+    }
+    assert_int_equal(line, drawn->lines);
+    return worst;
+}
+
+static void machines(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"hpgl", "gcode", "gcode_servo"};
+    for (int m = 0; m < 3; m++) {
+        Error err = {""};
+        PlotProfile profile;
+        assert_true(plot_profile(names[m], &profile, &err));
+        if (!plot_write_machine("plot.out", &plot, &profile, plot_speed_default(), &err))
+            fail_msg("%s", err.text);
+        char *text = file_text("plot.out");
+        Drawn drawn = m == 0   ? read_hpgl(text)
+                      : m == 1 ? read_gcode(text, "G1 Z0", "G0 Z5")
+                               : read_gcode(text, "M3 S30", "M5");
+        double rounding = m ? 0.001 : 0.018, worst = deviation(&drawn, rounding);
+        print_message("%s: %d points, at most %.4f mm from the curves\n", names[m], drawn.points, worst);
+        assert_true(worst < 0.05 + rounding);
+        assert_true(drawn.pens >= 2 && drawn.pen[0] == 1 && drawn.pen[1] == 3);
+        if (m)
+            assert_true(strstr(text, "M0") && !strstr(strstr(text, "M0") + 1, "M0")); /* one change of pens */
+        mem_free(text);
+    }
+}
+
+static void own_profile(void **state)
+{
+    (void)state;
+    PlotProfile profile = {.header = "{ {y\n",
+                           .footer = "end",
+                           .change = "wait {pen}\n",
+                           .layer = "[{name}]\n",
+                           .travel = "({x};{y})",
+                           .down = "{nothing}",
+                           .line = ">{x},{y}@{feed}",
+                           .up = "^{travel_feed}\n",
+                           .units = 0.1,
+                           .decimals = 2,
+                           .tolerance = 1000};
+    Error err = {""};
+    if (!plot_write_machine("plot.out", &plot, &profile, (PlotSpeed){.down = 0.5, .up = 1}, &err))
+        fail_msg("%s", err.text);
+    char *text = file_text("plot.out");
+    assert_string_equal(text, "{ {y\n[black]\n"
+                              "(1;2){nothing}>1.5,2.5@30^60\n"
+                              "(4;3){nothing}>7,3@30>10,4.75@30^60\n"
+                              "wait 3\n[a \"red\" <&\xc3\xa9> ]\n"
+                              "(0.5;0.5){nothing}>0.5,3.5@30^60\n"
+                              "end");
+    mem_free(text);
+}
+
+static void times(void **state)
+{
+    (void)state;
+    Vec2 points[] = {{30, 40}, {30, 50}, {30, 60}, {30, 70}, {60, 70}, {70, 70}, {80, 70}, {90, 70}};
+    int start[] = {0, 4, 8};
+    PlotLayer layer = {.name = "x", .pen = 1, .count = 2, .start = start, .points = points};
+    PlotEstimate estimate = plot_estimate(&layer, (PlotSpeed){.down = 10, .up = 20, .lift = 0.25});
+    assert_true(fabs(estimate.ink - 60) < 1e-9);
+    assert_true(fabs(estimate.travel - (50 + 30 + hypot(90, 70))) < 1e-9);
+    assert_true(fabs(estimate.seconds - (6 + estimate.travel / 20 + 0.5)) < 1e-9);
+    PlotEstimate empty = plot_estimate(&layers[1], plot_speed_default());
+    assert_true(empty.ink == 0 && empty.travel == 0 && empty.seconds == 0);
+
+    /* A quarter of a circle of 10 mm as a cubic: its length is known to 1e-6. */
+    Vec2 arc[] = {{10, 0}, {10, 5.5228475}, {5.5228475, 10}, {0, 10}};
+    PlotLayer quarter = {.name = "x", .pen = 1, .count = 1, .start = red_start, .points = arc};
+    assert_true(fabs(plot_estimate(&quarter, plot_speed_default()).ink - 15.7091) < 2e-3);
+}
+
+static void papers(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text;
+        double width, height;
+    } rows[] = {{"a4", 0.21, 0.297},
+                {"A3", 0.297, 0.42},
+                {"a5 landscape", 0.21, 0.148},
+                {"Letter", 0.2159, 0.2794},
+                {"210x297mm", 0.21, 0.297},
+                {"210x297mm landscape", 0.297, 0.21},
+                {"30x20cm portrait", 0.2, 0.3},
+                {"8.5x11in", 0.2159, 0.2794},
+                {" 1.5x2m ", 1.5, 2}};
+    static const char *const wrong[] = {"",         "a7",           "a4 sideways", "210x297",       "210mm",
+                                        "0x10mm",   "11x1m",        "nanx10mm",    "10x10mm x y z", "a4 a4",
+                                        "10x10mmm", "10 x 10 mm ft"};
+    Error err = {""};
+    double size[2];
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        if (!paper_size(rows[k].text, size, &err)) fail_msg("%s", err.text);
+        assert_true(fabs(size[0] - rows[k].width) < 1e-12 && fabs(size[1] - rows[k].height) < 1e-12);
+    }
+    for (size_t k = 0; k < sizeof wrong / sizeof *wrong; k++)
+        if (paper_size(wrong[k], size, &err)) fail_msg("\"%s\" is a paper", wrong[k]);
+    assert_non_null(strstr(err.text, "210x297mm"));
+}
+
+static int live(void **state)
+{
+    (void)state;
+    return mem_live_count() == 0 ? 0 : -1;
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(svg_words),     cmocka_unit_test(svg_is_xml),
+                                       cmocka_unit_test(refused_plots), cmocka_unit_test(machines),
+                                       cmocka_unit_test(own_profile),   cmocka_unit_test(times),
+                                       cmocka_unit_test(papers)};
+    return cmocka_run_group_tests(tests, NULL, live);
+}
