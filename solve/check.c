@@ -124,3 +124,54 @@ TermError check_term(const Term *term, const Params *params, const Point *at, co
     mem_free(dp);
     return (TermError){ratio(gradient), ratio(hessian), ratio(forward), ratio(adjoint)};
 }
+
+typedef struct Dense {
+    int n;
+    double *entries; /* [n][n] */
+} Dense;
+
+static void add_dense(void *self, int row, int column, int n, const double *block)
+{
+    Dense *dense = self;
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j < n; j++) {
+            dense->entries[(row + i) * dense->n + column + j] += block[i * n + j];
+            if (row != column) dense->entries[(column + j) * dense->n + row + i] += block[i * n + j];
+        }
+}
+
+/* Energy at x with dof i moved; the gradient goes to g[n]. */
+static double moved_bulk(const Bulk *bulk, const Point *at, double *x, int i, double step, Dense g)
+{
+    double keep = x[i];
+    Point moved = *at;
+    moved.x = x;
+    x[i] += step;
+    memset(g.entries, 0, (size_t)g.n * sizeof *g.entries);
+    double energy = bulk->ops->eval(bulk->self, &moved, g.entries, NULL);
+    x[i] = keep;
+    return energy;
+}
+
+TermError check_bulk(const Bulk *bulk, const Point *at, int dof_count, double dof_size)
+{
+    size_t n = (size_t)dof_count;
+    double *x = mem_copy(at->x, n, sizeof *x), *g = mem_alloc(5 * n, sizeof *g), h = 1e-3 * dof_size;
+    Dense H = {dof_count, mem_alloc(n * n, sizeof(double))};
+    Worst gradient = {0}, hessian = {0};
+    bulk->ops->eval(bulk->self, at, g, &(BulkMatrix){add_dense, &H});
+    for (int i = 0; i < dof_count; i++) {
+        Pack E[4] = {{0}}, column[4] = {{0}};
+        for (int k = 0; k < 4; k++)
+            E[k][0] = moved_bulk(bulk, at, x, i, stencil[k] * h, (Dense){dof_count, g + (size_t)(k + 1) * n});
+        compare(&gradient, pack_set(g[i]), difference(E, h), 1);
+        for (int j = 0; j < dof_count; j++) {
+            for (int k = 0; k < 4; k++) column[k][0] = g[(size_t)(k + 1) * n + (size_t)j];
+            compare(&hessian, pack_set(H.entries[j * dof_count + i]), difference(column, h), 1);
+        }
+    }
+    mem_free(x);
+    mem_free(g);
+    mem_free(H.entries);
+    return (TermError){.gradient = ratio(gradient), .hessian = ratio(hessian)};
+}

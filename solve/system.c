@@ -31,7 +31,9 @@ void system_destroy(System *sys)
         mem_free(entry->slots);
         mem_free(entry->twice);
     }
+    for (int b = 0; b < sys->bulk_count; b++) sys->bulks[b].ops->destroy(sys->bulks[b].self);
     sparse_destroy(sys->matrix);
+    mem_free(sys->bulk_gradient);
     mem_free(sys->order);
     mem_free(sys->fixed);
     mem_free(sys->unknown);
@@ -67,6 +69,18 @@ void system_add(System *sys, Term term)
     gather_dofs(entry);
 }
 
+void system_add_bulk(System *sys, Bulk bulk)
+{
+    assert(sys->bulk_count < SYSTEM_MAX_BULKS && !sys->matrix);
+    sys->bulks[sys->bulk_count++] = bulk;
+    if (!sys->bulk_gradient) sys->bulk_gradient = mem_alloc((size_t)sys->dof_count, sizeof(double));
+}
+
+void system_set_workers(System *sys, Workers *workers)
+{
+    sys->workers = workers;
+}
+
 void system_fix(System *sys, int dof)
 {
     sys->fixed[dof] = true;
@@ -83,65 +97,6 @@ void system_set_order(System *sys, const int *order)
     sys->order = mem_copy(order, (size_t)sys->dof_count, sizeof *order);
 }
 
-/* The order among the unknowns; NULL: none given. */
-static int *unknown_order(const System *sys)
-{
-    if (!sys->order) return NULL;
-    int *order = mem_alloc((size_t)sys->free_count, sizeof *order), count = 0;
-    for (int k = 0; k < sys->dof_count; k++)
-        if (sys->unknown[sys->order[k]] >= 0) order[count++] = sys->unknown[sys->order[k]];
-    return order;
-}
-
-static Sparse *create_matrix(const System *sys)
-{
-    long elements = 0, places = 0;
-    for (int t = 0; t < sys->term_count; t++) {
-        elements += sys->entries[t].count;
-        places += (long)sys->entries[t].count * sys->entries[t].size;
-    }
-    long *start = mem_alloc((size_t)elements + 1, sizeof *start);
-    int *dofs = mem_alloc((size_t)places, sizeof *dofs);
-    long e = 0, k = 0;
-    for (int t = 0; t < sys->term_count; t++) {
-        const Entry *entry = &sys->entries[t];
-        for (int i = 0; i < entry->count; i++) {
-            for (int d = 0; d < entry->size; d++)
-                dofs[k++] = sys->unknown[entry->dofs[i / PACK_LANES * entry->size + d][i % PACK_LANES]];
-            start[++e] = k;
-        }
-    }
-    int *order = unknown_order(sys);
-    Sparse *matrix =
-        sparse_create(sys->free_count, (int)elements, start, dofs, (SparseDef){order, sys->multiplier_count});
-    mem_free(order);
-    mem_free(start);
-    mem_free(dofs);
-    return matrix;
-}
-
-static void find_slots(System *sys, Entry *entry)
-{
-    int bin = sparse_nonzeros(sys->matrix), room = 0;
-    entry->slots = mem_alloc((size_t)entry->packs * (size_t)entry->lower, sizeof *entry->slots);
-    for (int k = 0; k < entry->packs; k++)
-        for (int i = 0; i < entry->size; i++)
-            for (int j = 0; j <= i; j++)
-                for (int l = 0; l < PACK_LANES; l++) {
-                    int *slot = &entry->slots[k * entry->lower + TERM_LOWER(i, j)][l];
-                    int a = entry->dofs[k * entry->size + i][l], b = entry->dofs[k * entry->size + j][l];
-                    bool used = k * PACK_LANES + l < entry->count && sys->unknown[a] >= 0 && sys->unknown[b] >= 0;
-                    *slot = used ? sparse_slot(sys->matrix, sys->unknown[a], sys->unknown[b]) : bin;
-                    if (!used || i == j || a != b) continue;
-                    if (entry->twice_count == room) {
-                        entry->twice = mem_resize(entry->twice, 3 * (size_t)room, 6 * (size_t)room + 24, sizeof(int));
-                        room = 2 * room + 8;
-                    }
-                    int *place = &entry->twice[3 * entry->twice_count++];
-                    place[0] = k, place[1] = TERM_LOWER(i, j), place[2] = l;
-                }
-}
-
 void system_prepare(System *sys)
 {
     assert(!sys->matrix);
@@ -149,12 +104,11 @@ void system_prepare(System *sys)
     for (int c = 0; c < sys->class_count; c++)
         for (int i = 0; sys->classes[c].multipliers && i < sys->classes[c].count; i++)
             sys->multiplier_count += !sys->fixed[sys->classes[c].first + i];
-    sys->matrix = create_matrix(sys);
+    system_build_matrix(sys);
     sys->work = mem_alloc((size_t)sys->free_count, sizeof(double));
     sys->diag = mem_alloc((size_t)sys->free_count, sizeof(double));
     sys->linearised = mem_alloc((size_t)system_anchor_count(sys), sizeof(double));
     sys->anchor = mem_alloc((size_t)system_anchor_count(sys), sizeof(double));
-    for (int t = 0; t < sys->term_count; t++) find_slots(sys, &sys->entries[t]);
 }
 
 int system_dof_count(const System *sys) { return sys->dof_count; }
@@ -174,6 +128,9 @@ bool system_is_multiplier(const System *sys, int dof)
 
 int system_term_count(const System *sys) { return sys->term_count; }
 const Term *system_term(const System *sys, int t) { return &sys->entries[t].term; }
+int system_bulk_count(const System *sys) { return sys->bulk_count; }
+const Bulk *system_bulk(const System *sys, int b) { return &sys->bulks[b]; }
+const double *system_energies(const System *sys) { return sys->energies; }
 const double *system_scale(const System *sys) { return sys->scale; }
 const double *system_linearised(const System *sys) { return sys->linearised + ANCHOR_X; }
 double system_stiffness_max(const System *sys) { return sys->stiffness_max; }
@@ -235,22 +192,59 @@ static void scatter_twice(const Entry *entry, int pack, const Pack *H, double *v
     }
 }
 
-/* Energy of one term; adds to the gradient and to the matrix where they are asked for. */
+/* Packs of a term in a row: each is evaluated into a place of its own, by whichever thread, before all are summed in
+ * their order. */
+typedef struct Batch {
+    const Entry *entry;
+    const Point *at;
+    int first, count;
+    Pack *energy, *g, *H; /* [count], [count][size], [count][lower]; the latter NULL where not asked for */
+} Batch;
+
+enum { BATCH_PACKS = 512, TASK_PACKS = 16 };
+
+static void evaluate_task(void *self, int task)
+{
+    const Batch *b = self;
+    const Entry *entry = b->entry;
+    Pack x[TERM_MAX_DOF];
+    for (int k = task * TASK_PACKS; k < (task + 1) * TASK_PACKS && k < b->count; k++) {
+        Pack *g = b->g ? b->g + k * entry->size : NULL, *H = b->H ? b->H + k * entry->lower : NULL;
+        system_gather(entry, b->first + k, b->at->x, x);
+        b->energy[k] = entry->term.ops->eval(entry->term.self, b->first + k, b->at, x, g, H);
+    }
+}
+
+/* Energy of a batch; adds to the gradient and to the matrix where they are asked for. */
+static double take_batch(System *sys, const Batch *b, double *gradient, double *values, int *next_twice, double energy)
+{
+    for (int k = 0; k < b->count; k++) {
+        int pack = b->first + k;
+        energy += pack_sum(b->energy[k], system_lanes(b->entry, pack));
+        if (gradient) scatter_gradient(sys, b->entry, pack, b->g + k * b->entry->size, gradient);
+        if (!values) continue;
+        const Pack *H = b->H + k * b->entry->lower;
+        scatter_hessian(b->entry, pack, H, values);
+        scatter_twice(b->entry, pack, H, values, next_twice);
+    }
+    return energy;
+}
+
 static double evaluate_term(System *sys, const Entry *entry, const Point *at, double *gradient, double *values)
 {
-    Pack x[TERM_MAX_DOF], g[TERM_MAX_DOF], H[MAX_LOWER];
+    Pack own[1 + TERM_MAX_DOF + MAX_LOWER], *work = NULL;
+    int next_twice = 0, most = workers_count(sys->workers) > 1 ? BATCH_PACKS : 1;
+    if (most > 1) work = mem_alloc((size_t)most * (size_t)(1 + entry->size + (values ? entry->lower : 0)), sizeof *work);
+    Batch b = {.entry = entry, .at = at, .energy = work ? work : own};
+    if (gradient) b.g = b.energy + most;
+    if (values) b.H = b.energy + most * (1 + entry->size);
     double energy = 0;
-    int next_twice = 0;
-    for (int k = 0; k < entry->packs; k++) {
-        system_gather(entry, k, at->x, x);
-        Pack e = entry->term.ops->eval(entry->term.self, k, at, x, gradient ? g : NULL, values ? H : NULL);
-        energy += pack_sum(e, system_lanes(entry, k));
-        if (gradient) scatter_gradient(sys, entry, k, g, gradient);
-        if (values) {
-            scatter_hessian(entry, k, H, values);
-            scatter_twice(entry, k, H, values, &next_twice);
-        }
+    for (b.first = 0; b.first < entry->packs; b.first += b.count) {
+        b.count = most < entry->packs - b.first ? most : entry->packs - b.first;
+        workers_run(sys->workers, (b.count + TASK_PACKS - 1) / TASK_PACKS, evaluate_task, &b);
+        energy = take_batch(sys, &b, gradient, values, &next_twice, energy);
     }
+    mem_free(work);
     return energy;
 }
 
@@ -278,9 +272,11 @@ static Evaluation evaluate(System *sys, const Point *at, double *gradient, doubl
     if (values) memset(values, 0, ((size_t)sparse_nonzeros(sys->matrix) + 1) * sizeof *values);
     for (int t = 0; t < sys->term_count; t++) {
         double energy = evaluate_term(sys, &sys->entries[t], at, gradient, values);
+        sys->energies[t] = energy;
         result.energy += energy;
         result.energy_scale += fabs(energy);
     }
+    system_evaluate_bulks(sys, at, gradient, values, &result);
     double total = 0;
     for (int i = 0; gradient && i < sys->dof_count; i++) total += gradient[i] * 0;
     for (int i = 0; gradient && i < sys->classes[0].count; i++) {
@@ -324,6 +320,7 @@ static void measure_scale(System *sys)
 
 Evaluation system_hessian(System *sys, const Point *at, double *gradient)
 {
+    system_couple(sys, at->x);
     Evaluation result = evaluate(sys, at, gradient, sparse_values(sys->matrix));
     measure_scale(sys);
     system_note_point(sys, at);

@@ -1,11 +1,12 @@
-/* system.h - a sum of Terms over n dofs, some of them fixed: energy, gradient, Hessian, factor, solve, and the two
- * products with d2E/dx dp.
+/* system.h - a sum of Terms (and of Bulks) over n dofs, some of them fixed: energy, gradient, Hessian, factor, solve, and
+ * the two products with d2E/dx dp.
  *
  * Vectors over dofs (x, g, w) always have all dof_count entries; fixed dofs keep their x, and solves leave zero
  * there. The terms are owned. Assembly adds elements in their fixed order: the same input gives the same bits. */
 #pragma once
+#include "base/workers.h"
+#include "solve/bulk.h"
 #include "solve/sparse.h"
-#include "solve/term.h"
 
 /* Dofs of one kind, which lie together: positions in metres, edge angles in radians. */
 typedef struct DofClass {
@@ -14,7 +15,7 @@ typedef struct DofClass {
     bool multipliers; /* Lagrange multipliers: the energy is that of the others plus theirs times what must vanish */
 } DofClass;
 
-enum { SYSTEM_MAX_CLASSES = 3, SYSTEM_MAX_TERMS = 16 };
+enum { SYSTEM_MAX_CLASSES = 3, SYSTEM_MAX_TERMS = 16, SYSTEM_MAX_BULKS = 4 };
 
 typedef struct System System;
 
@@ -24,6 +25,10 @@ System *system_create(int dof_count, const DofClass *classes, int class_count);
 void system_destroy(System *sys);
 
 void system_add(System *sys, Term term);
+
+/* What a Bulk couples may change with x: system_hessian then makes pattern and order anew, and factors that were kept are
+ * lost. Products with d2E/dx dp leave Bulks out. */
+void system_add_bulk(System *sys, Bulk bulk);
 void system_fix(System *sys, int dof);
 
 /* The order in which unknowns are eliminated: all dofs, fixed ones are passed over. Before system_prepare; else an order
@@ -33,6 +38,9 @@ void system_set_order(System *sys, const int *order);
 /* base shift, in parts of each class's mean diagonal, that is always added: 1e-10 for bodies with free rigid motions
  * in statics, else 0 (physics: a zero eigenvalue decides nothing). */
 void system_set_base_shift(System *sys, double base);
+
+/* Elements are evaluated by these threads, from now on (borrowed; NULL: by the calling one). No bit depends on them. */
+void system_set_workers(System *sys, Workers *workers);
 
 /* After the last add and fix: builds the pattern and the slots, once. */
 void system_prepare(System *sys);
@@ -45,6 +53,8 @@ bool system_is_fixed(const System *sys, int dof);
 double system_base_shift(const System *sys);
 int system_term_count(const System *sys);
 const Term *system_term(const System *sys, int t);
+int system_bulk_count(const System *sys);
+const Bulk *system_bulk(const System *sys, int b);
 
 /* Largest |d_i| over the class's size, over all classes: the length of a step in the body's own measure. */
 double system_step_size(const System *sys, const double *d);
@@ -67,6 +77,9 @@ Evaluation system_gradient(System *sys, const Point *at, double *gradient);
 
 /* The same, and assembles the Hessian of the free dofs. */
 Evaluation system_hessian(System *sys, const Point *at, double *gradient);
+
+/* Of the last evaluation: the energy of each term, and after these of each Bulk. */
+const double *system_energies(const System *sys);
 
 /* x[dof_count] of the last Hessian. */
 const double *system_linearised(const System *sys);

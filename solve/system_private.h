@@ -13,9 +13,14 @@ typedef struct Entry {
 } Entry;
 
 struct System {
-    int dof_count, free_count, term_count, class_count, multiplier_count;
+    int dof_count, free_count, term_count, bulk_count, class_count, multiplier_count;
     int *order; /* [dof_count] NULL: none given */
     Entry entries[SYSTEM_MAX_TERMS];
+    Bulk bulks[SYSTEM_MAX_BULKS];
+    BulkCoupling couplings[SYSTEM_MAX_BULKS];                /* as given last              */
+    double *bulk_gradient;                                   /* [dof] of one of them; NULL without Bulks */
+    double energies[SYSTEM_MAX_TERMS + SYSTEM_MAX_BULKS];    /* of the last evaluation     */
+    Workers *workers;                                        /* borrowed                   */
     DofClass classes[SYSTEM_MAX_CLASSES];
     bool *fixed, factored; /* factored: the last factor may be used */
     int *unknown; /* [dof] number among the free ones, -1 if fixed */
@@ -35,6 +40,15 @@ enum { ANCHOR_USABLE, ANCHOR_TIME, ANCHOR_DT, ANCHOR_SHIFT, ANCHOR_X };
 void system_gather(const Entry *entry, int pack, const double *from, Pack *to);
 void system_scatter(const Entry *entry, int pack, const Pack *from, double *to);
 int system_lanes(const Entry *entry, int pack);
+
+/* Pattern and slots for the terms and for what the Bulks couple. */
+void system_build_matrix(System *sys);
+
+/* Asks the Bulks what they couple at x, and makes the matrix anew where that is more than before. */
+void system_couple(System *sys, const double *x);
+
+/* Energies of the Bulks, with gradients and Hessians as in an evaluation of terms. */
+void system_evaluate_bulks(System *sys, const Point *at, double *gradient, double *values, Evaluation *result);
 
 /* Notes where the Hessian that was just assembled stands. */
 void system_note_point(System *sys, const Point *at);
