@@ -1,9 +1,42 @@
-/* grid.h - numbers on a raster over the drawable part of a page: target density, directions, grey values. */
+/* grid.h - values on a regular grid over the page: tones, directions.
+ *
+ * Pixel (row i, column j) has its centre at x = (j + 0.5)/columns * page.width, y = (i + 0.5)/rows *
+ * page.height.
+ */
 #pragma once
+#include "base/vec3.h"
+#include "spline/page.h"
 
 typedef struct SplineGrid {
     int columns, rows;
-    int width;            /* numbers per pixel */
-    const double *values; /* [rows][columns][width], at pixel centres: column i is x = (i + 0.5)/columns *
-                             page.width, row j is y = (j + 0.5)/rows * page.height */
+    int width;            /* values of a pixel             */
+    const double *values; /* [rows][columns][width]; borrowed */
 } SplineGrid;
+
+/* A grid that owns its values. */
+typedef struct SplineField {
+    int columns, rows, width;
+    double *values; /* [rows][columns][width]; owned */
+} SplineField;
+
+/* Zeros in square pixels of about that size; from 4 to 4000 of them a side. */
+SplineField spline_field_create(const SplinePage *page, double pixel, int width);
+SplineField spline_field_like(const SplineField *field, int width);
+void spline_field_clear(SplineField *field);
+
+static inline SplineGrid spline_grid(const SplineField *field)
+{
+    return (SplineGrid){field->columns, field->rows, field->width, field->values};
+}
+
+/* values[width] at (x, y), bilinear; the outermost pixels' values continue to the page's edges and beyond. */
+void spline_grid_sample(const SplineGrid *grid, const SplinePage *page, Vec2 at, double *values);
+
+double spline_grid_mean(const SplineGrid *grid, int value);
+
+/* Convolves every value with a Gaussian of that standard deviation, in units of the page; what is beyond the
+ * page mirrors what is on it. */
+void spline_field_blur(SplineField *field, const SplinePage *page, double deviation);
+
+/* The same values in larger or smaller pixels, by bilinear sampling. */
+SplineField spline_field_resize(const SplineField *field, const SplinePage *page, double pixel);
