@@ -115,7 +115,7 @@ typedef struct Page {
 
 static Page draw(const ShowDef *def)
 {
-    Page page;
+    Page page = {0};
     Error err = {""};
     if (!show_result(RESULT, "test_show_rod.png", def, &err) ||
         !canvas_read_png("test_show_rod.png", &page.rgb, &page.width, &page.height, &err))
