@@ -251,7 +251,8 @@ static const YamlTable target_table = {
         {YAML_FILE(TargetScene, file), .one_of = 1, .required = true,
          .doc = "a mesh file with the vertices of the mesh"},
         {YAML_FILE(TargetScene, height_map), .one_of = 1, .required = true,
-         .doc = "a PNG or PGM image over the body's rectangle in x and y: black is 0, white is height, row 0 "
+         .doc = "a PNG, JPEG, PGM or PPM image over the body's rectangle in x and y: black is 0, white is "
+                "height, row 0 "
                 "at +y"},
         {YAML_ROWS(TargetScene, strokes), .unit = "m", .one_of = 1, .required = true,
          .doc = "segments x0, y0, x1, y1: ridges of height, round across"},

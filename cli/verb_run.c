@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 enum { SET_MAX = 64, THREADS_MAX = 64 };
@@ -158,25 +159,33 @@ static int do_job(Run *run, const RunOptions *options, const char *result)
     return status;
 }
 
+static bool is_folder(const char *path)
+{
+    struct stat info;
+    size_t length = strlen(path);
+    return length == 0 || path[length - 1] == '/' || (stat(path, &info) == 0 && S_ISDIR(info.st_mode));
+}
+
+/* A folder where a file is to be written is refused before hours of work, not after. */
+static bool check_output(const char *output, const char *result, Error *err)
+{
+    if (output && is_folder(output))
+        return error_set(err, "the output '%s' is a folder; give the name of a result in it", output);
+    if (is_folder(result))
+        return error_set(err, "the result '%s' is a folder; give another name by -o", result);
+    return true;
+}
+
 static int run_model(const RunOptions *options, const Scene *scene, Model *model)
 {
     Error err;
-    size_t length = options->output ? strlen(options->output) : 1;
-    if (options->output && (length == 0 || options->output[length - 1] == '/')) {
-        error_set(&err, "the output '%s' is a folder; give a name in it, e.g. -o %sresult", options->output,
-                  options->output);
-        return verb_fail(RUN_CANNOT_WRITE, err.text);
-    }
     Progress progress = progress_start(options->mode);
     char *name =
         options->output ? verb_without_ending(options->output, ".vtkhdf") : verb_base_name(options->scene);
     char *result = mem_format("%s.vtkhdf", name), *journal = mem_format("%s.run", name);
     Run run = {.scene = scene, .model = model, .progress = &progress, .threads = options->threads};
-    run.journal = journal_open(journal,
-                               options->resume  ? JOURNAL_RESUME
-                               : options->force ? JOURNAL_FORCE
-                                                : JOURNAL_NEW,
-                               &err);
+    JournalMode mode = options->resume ? JOURNAL_RESUME : options->force ? JOURNAL_FORCE : JOURNAL_NEW;
+    if (check_output(options->output, result, &err)) run.journal = journal_open(journal, mode, &err);
     int code = run.journal ? do_job(&run, options, result) : verb_fail(RUN_CANNOT_WRITE, err.text);
     if (run.journal && !journal_close(run.journal, &err) && code != RUN_CANNOT_WRITE)
         code = verb_fail(RUN_CANNOT_WRITE, err.text);

@@ -74,7 +74,12 @@ expect 4 "$program" run "$here/scene_small.yaml" --quiet -o live; says "unfinish
 expect 3 "$program" run $long --quiet -o live --resume --set shell.young=2e5; says "shell.young"
 # shellcheck disable=SC2086
 expect 0 "$program" run $long --quiet --no-picture -o live --resume --set design.iterations=1
-expect 4 "$program" run "$scene" -o out/;       says "is a folder"
+for folder in out out/; do
+    expect 4 "$program" run "$scene" -o $folder; says "is a folder"
+done
+mkdir folder.vtkhdf
+expect 4 "$program" run "$scene" -o folder;     says "'folder.vtkhdf' is a folder"
+[ ! -e folder.run ] || { echo "a run that cannot be written has begun"; bad=1; }
 expect 3 "$program" run out;                    says "Is a directory"
 
 # A simulation that is killed or extended ends as one that is not.
