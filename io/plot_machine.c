@@ -10,33 +10,18 @@ typedef struct Named {
 } Named;
 
 /* Every G0 and G1 says its speed: some controllers know only one for both. */
+#define GCODE_PROFILE(begin, lower, raise)                                                                   \
+    {                                                                                                        \
+        .header = "G21 ; mm\nG90 ; absolute\n" begin, .footer = "G0 X0 Y0 F{travel_feed}\nM2\n",             \
+        .change = "G0 X0 Y0 F{travel_feed}\nM0 ; pen {pen}, then go on\n",                                   \
+        .layer = "; layer {pen}-{name}\n", .travel = "G0 X{x} Y{y} F{travel_feed}\n", .down = lower,         \
+        .line = "G1 X{x} Y{y} F{feed}\n", .up = raise, .units = 1, .decimals = 3, .tolerance = 0.05,         \
+        .y_up = true                                                                                         \
+    }
+
 static const Named profiles[] = {
-    {"gcode",
-     {.header = "G21 ; mm\nG90 ; absolute\nG0 Z5 F600\n",
-      .footer = "G0 X0 Y0 F{travel_feed}\nM2\n",
-      .change = "G0 X0 Y0 F{travel_feed}\nM0 ; pen {pen}, then go on\n",
-      .layer = "; layer {pen}-{name}\n",
-      .travel = "G0 X{x} Y{y} F{travel_feed}\n",
-      .down = "G1 Z0 F600\n",
-      .line = "G1 X{x} Y{y} F{feed}\n",
-      .up = "G0 Z5 F600\n",
-      .units = 1,
-      .decimals = 3,
-      .tolerance = 0.05,
-      .y_up = true}},
-    {"gcode_servo",
-     {.header = "G21 ; mm\nG90 ; absolute\nM5\nG4 P0.3\n",
-      .footer = "G0 X0 Y0 F{travel_feed}\nM2\n",
-      .change = "G0 X0 Y0 F{travel_feed}\nM0 ; pen {pen}, then go on\n",
-      .layer = "; layer {pen}-{name}\n",
-      .travel = "G0 X{x} Y{y} F{travel_feed}\n",
-      .down = "M3 S30\nG4 P0.15\n",
-      .line = "G1 X{x} Y{y} F{feed}\n",
-      .up = "M5\nG4 P0.15\n",
-      .units = 1,
-      .decimals = 3,
-      .tolerance = 0.05,
-      .y_up = true}},
+    {"gcode", GCODE_PROFILE("G0 Z5 F600\n", "G1 Z0 F600\n", "G0 Z5 F600\n")},
+    {"gcode_servo", GCODE_PROFILE("M5\nG4 P0.3\n", "M3 S30\nG4 P0.15\n", "M5\nG4 P0.15\n")},
     {"hpgl",
      {.header = "IN;\n",
       .footer = "PU;SP0;\n",

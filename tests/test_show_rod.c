@@ -4,6 +4,7 @@
 #include "io/curves_picture.h"
 #include "io/result.h"
 #include "io/table.h"
+#include "leaks.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -229,13 +230,6 @@ static void refused(void **state)
     expect_refusal(def, "--no-arrows: curves carry no arrows of magnetization");
     def = show_default(), def.stills = 3;
     expect_refusal(def, "the result has no frames");
-}
-
-static int nothing_leaks(void **state)
-{
-    (void)state;
-    assert_int_equal(mem_live_count(), 0);
-    return 0;
 }
 
 int main(void)
