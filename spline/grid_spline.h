@@ -1,0 +1,25 @@
+/* grid_spline.h - the smooth function through numbers on a grid over the page.
+ *
+ * The cubic B-spline that interpolates them is C2 everywhere, so that energies of it have a Hessian [Unser
+ * 1999]; it is mirrored at the outermost pixels' centres. */
+#pragma once
+#include "base/pack.h"
+#include "spline/grid.h"
+#include "spline/page.h"
+
+enum { GRID_MAX_WIDTH = 3 }; /* numbers per pixel, at most */
+
+typedef struct GridSpline GridSpline;
+
+/* NULL for a grid without values. */
+GridSpline *grid_spline_create(const SplineGrid *grid, const SplinePage *page);
+void grid_spline_destroy(GridSpline *spline);
+
+/* Value and derivatives of each number at a pack of points. */
+typedef struct GridSample {
+    Pack value[GRID_MAX_WIDTH], x[GRID_MAX_WIDTH], y[GRID_MAX_WIDTH];
+    Pack xx[GRID_MAX_WIDTH], xy[GRID_MAX_WIDTH], yy[GRID_MAX_WIDTH];
+} GridSample;
+
+/* Derivatives up to `order`, 0 to 2; outside of the page it continues without change across the edge. */
+void grid_spline_sample(const GridSpline *spline, Pack x, Pack y, int order, GridSample *sample);

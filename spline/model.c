@@ -1,0 +1,58 @@
+#include "spline/model.h"
+#include "base/memory.h"
+
+SplineModelDef spline_model_default(void)
+{
+    return (SplineModelDef){.points = 4, .pair_kernel = PAIR_WENDLAND, .pair_radius = 1.6};
+}
+
+static void number_segments(SplineModel *model)
+{
+    int segment = 0;
+    for (int k = 0; k < model->stroke_count; k++)
+        for (int node = model->start[k]; node < model->start[k + 1] - 1; node++)
+            model->segment_node[segment++] = node;
+}
+
+static Pack *packs_of(const double *values, int count)
+{
+    int packs = (count + PACK_LANES - 1) / PACK_LANES;
+    Pack *to = mem_alloc((size_t)packs, sizeof *to);
+    for (int k = 0; k < packs * PACK_LANES; k++)
+        to[k / PACK_LANES][k % PACK_LANES] = values[k < count ? k : count - 1];
+    return to;
+}
+
+SplineModel *spline_model_create(const SplineTarget *target, const Strokes *strokes, const double *rest,
+                                 const SplineModelDef *def)
+{
+    SplineModel *model = mem_alloc(1, sizeof *model);
+    *model = (SplineModel){.target = target,
+                           .workers = def->workers,
+                           .stroke_count = strokes->count,
+                           .node_count = strokes_node_count(strokes),
+                           .segment_count = strokes_segment_count(strokes),
+                           .rule = spline_rule_gauss(def->points),
+                           .wall_rule = spline_rule_lobatto(),
+                           .pair_kernel = def->pair_kernel,
+                           .pair_radius = def->pair_radius * target->spacing};
+    size_t segments = (size_t)model->segment_count;
+    model->start = mem_alloc((size_t)strokes->count + 1, sizeof *model->start);
+    if (strokes->count)
+        memcpy(model->start, strokes->start, ((size_t)strokes->count + 1) * sizeof *model->start);
+    model->segment_node = mem_alloc(segments, sizeof *model->segment_node);
+    number_segments(model);
+    model->rest = mem_copy(rest, segments, sizeof *rest);
+    model->rest_pack = packs_of(rest, model->segment_count);
+    return model;
+}
+
+void spline_model_destroy(SplineModel *model)
+{
+    if (!model) return;
+    mem_free(model->start);
+    mem_free(model->segment_node);
+    mem_free(model->rest);
+    mem_free(model->rest_pack);
+    mem_free(model);
+}

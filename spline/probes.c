@@ -1,0 +1,214 @@
+#include "spline/probes.h"
+#include "base/memory.h"
+#include <math.h>
+
+enum { MAX_TILES = 512 };
+
+/* Probes in the making. */
+typedef struct Build {
+    const SplinePage *page;
+    const ProbesDef *def;
+    Probes *probes;
+    double *mean, *most; /* [probes->size] of the density in each cell */
+} Build;
+
+ProbesDef probes_default(void)
+{
+    return (ProbesDef){.radius = 1.6, .radius_min = 1.5, .radius_max = 0.15, .cell = 0.4, .faint = 0.03};
+}
+
+static double bound(double density)
+{
+    return fmin(fmax(density, 0), 1);
+}
+
+static double radius_for(const Build *b, double density)
+{
+    double R = b->def->radius * b->page->pen / fmax(density, 1e-9);
+    return fmin(fmax(R, b->def->radius_min * b->page->pen), b->def->radius_max);
+}
+
+static double largest(const SplineGrid *grid)
+{
+    double most = 0;
+    for (long k = 0; k < (long)grid->columns * grid->rows; k++) most = fmax(most, grid->values[k]);
+    return bound(most);
+}
+
+/* From the coarsest level, whose cells suit the largest radius, to the one whose cells suit the darkest
+ * place. */
+static void lay_out_levels(Build *b, const SplineGrid *density)
+{
+    Probes *probes = b->probes;
+    double width = b->page->width, finest = b->def->cell * radius_for(b, largest(density));
+    int coarse = (int)ceil(width / (b->def->cell * b->def->radius_max)), fine = (int)ceil(width / finest);
+    while (probes->level_count < PROBES_MAX_LEVELS - 1 && coarse << (probes->level_count + 1) <= fine)
+        probes->level_count++;
+    int columns = (fine + (1 << probes->level_count) - 1) >> probes->level_count;
+    int rows = (int)ceil(b->page->height * columns / width - 1e-9);
+    probes->level_count++;
+    for (int l = 0; l < probes->level_count; l++) {
+        ProbeLevel *level = &probes->levels[l];
+        *level = (ProbeLevel){.columns = columns << l, .rows = rows << l, .first = probes->size};
+        level->stride = (level->columns + 2 * PACK_LANES - 1) / PACK_LANES * PACK_LANES;
+        level->dx = width / level->columns;
+        level->dy = b->page->height / level->rows;
+        probes->size += (long)level->stride * level->rows + PACK_LANES;
+    }
+}
+
+static long cell_index(const ProbeLevel *level, int i, int j)
+{
+    return level->first + (long)j * level->stride + i;
+}
+
+/* Mean and maximum of the density over the finest cells, from as many samples in each as it has pixels. */
+static void sample_finest(Build *b, const SplineGrid *grid)
+{
+    GridSpline *spline = grid_spline_create(grid, b->page);
+    const ProbeLevel *level = &b->probes->levels[b->probes->level_count - 1];
+    int nx = (grid->columns + level->columns - 1) / level->columns,
+        ny = (grid->rows + level->rows - 1) / level->rows;
+    long count = (long)level->columns * nx;
+    for (int j = 0; j < level->rows * ny; j++) {
+        Pack y = pack_set((j + 0.5) * level->dy / ny), x = y;
+        for (long k = 0; k < count; k += PACK_LANES) {
+            GridSample sample;
+            for (int l = 0; l < PACK_LANES; l++) x[l] = ((double)(k + l) + 0.5) * level->dx / nx;
+            grid_spline_sample(spline, x, y, 0, &sample);
+            for (int l = 0; l < PACK_LANES && k + l < count; l++) {
+                long cell = cell_index(level, (int)((k + l) / nx), j / ny);
+                double density = bound(sample.value[0][l]);
+                b->mean[cell] += density / (nx * ny);
+                b->most[cell] = fmax(b->most[cell], density);
+            }
+        }
+    }
+    grid_spline_destroy(spline);
+}
+
+static void coarsen(Build *b, int l)
+{
+    const ProbeLevel *level = &b->probes->levels[l], *finer = level + 1;
+    for (int j = 0; j < level->rows; j++)
+        for (int i = 0; i < level->columns; i++) {
+            long cell = cell_index(level, i, j);
+            for (int k = 0; k < 4; k++) {
+                long child = cell_index(finer, 2 * i + k % 2, 2 * j + k / 2);
+                b->mean[cell] += b->mean[child] / 4;
+                b->most[cell] = fmax(b->most[cell], b->most[child]);
+            }
+        }
+}
+
+/* A probe here, or in the four cells below. */
+static void place(Build *b, int l, int i, int j)
+{
+    Probes *probes = b->probes;
+    ProbeLevel *level = &probes->levels[l];
+    double size = fmax(level->dx, level->dy);
+    long cell = cell_index(level, i, j);
+    if (l + 1 < probes->level_count && size > b->def->cell * radius_for(b, b->most[cell])) {
+        for (int k = 0; k < 4; k++) place(b, l + 1, 2 * i + k % 2, 2 * j + k / 2);
+        return;
+    }
+    /* A light cell among dark ones is small; so is its radius, or it would see far beyond them. */
+    double R = fmin(radius_for(b, b->mean[cell]), 2 * size / b->def->cell);
+    probes->inverse[cell] = 1 / (R * R);
+    probes->count++;
+    level->reach = fmax(level->reach, R);
+}
+
+/* The density seen through a probe's W; beyond the page there is none. */
+static double blurred(const Build *b, const ProbeLevel *level, int i, int j)
+{
+    double inverse = b->probes->inverse[cell_index(level, i, j)], sum = 0, total = 0;
+    int across = (int)(1 / (sqrt(inverse) * level->dx)), down = (int)(1 / (sqrt(inverse) * level->dy));
+    for (int m = j - down; m <= j + down; m++)
+        for (int k = i - across; k <= i + across; k++) {
+            double x = (k - i) * level->dx, y = (m - j) * level->dy, z = 1 - (x * x + y * y) * inverse;
+            if (z <= 0) continue;
+            total += z * z * z;
+            if (k >= 0 && m >= 0 && k < level->columns && m < level->rows)
+                sum += z * z * z * b->mean[cell_index(level, k, m)];
+        }
+    return sum / total;
+}
+
+static void set_targets(Build *b, const ProbeLevel *level)
+{
+    Probes *probes = b->probes;
+    for (int j = 0; j < level->rows; j++)
+        for (int i = 0; i < level->columns; i++) {
+            long cell = cell_index(level, i, j);
+            if (probes->inverse[cell] == 0) continue;
+            probes->target[cell] = blurred(b, level, i, j);
+            probes->gain[cell] = level->dx * level->dy / fmax(probes->target[cell], b->def->faint);
+        }
+}
+
+static int tile_of(double x, double size, int count)
+{
+    int k = (int)floor(x / size);
+    return k < 0 ? 0 : k < count ? k : count - 1;
+}
+
+static void mark_tiles(Probes *probes, int l)
+{
+    const ProbeLevel *level = &probes->levels[l];
+    for (int j = 0; j < level->rows; j++)
+        for (int i = 0; i < level->columns; i++) {
+            double inverse = probes->inverse[cell_index(level, i, j)];
+            if (inverse == 0) continue;
+            double x = (i + 0.5) * level->dx, y = (j + 0.5) * level->dy, R = 1 / sqrt(inverse);
+            int left = tile_of(x - R, probes->tile_dx, probes->tile_columns);
+            int right = tile_of(x + R, probes->tile_dx, probes->tile_columns);
+            int bottom = tile_of(y + R, probes->tile_dy, probes->tile_rows);
+            for (int m = tile_of(y - R, probes->tile_dy, probes->tile_rows); m <= bottom; m++)
+                for (int k = left; k <= right; k++)
+                    probes->tiles[m * probes->tile_columns + k] |= (uint16_t)(1 << l);
+        }
+}
+
+static void create_tiles(Probes *probes, const SplinePage *page)
+{
+    const ProbeLevel *finest = &probes->levels[probes->level_count - 1];
+    probes->tile_columns = finest->columns < MAX_TILES ? finest->columns : MAX_TILES;
+    probes->tile_rows = finest->rows < MAX_TILES ? finest->rows : MAX_TILES;
+    probes->tile_dx = page->width / probes->tile_columns;
+    probes->tile_dy = page->height / probes->tile_rows;
+    probes->tiles =
+        mem_alloc((size_t)probes->tile_columns * (size_t)probes->tile_rows, sizeof *probes->tiles);
+    for (int l = 0; l < probes->level_count; l++) mark_tiles(probes, l);
+}
+
+Probes *probes_create(const SplinePage *page, const SplineGrid *density, const ProbesDef *def)
+{
+    Probes *probes = mem_alloc(1, sizeof *probes);
+    Build b = {.page = page, .def = def, .probes = probes};
+    lay_out_levels(&b, density);
+    size_t size = (size_t)probes->size;
+    probes->inverse = mem_alloc(size, sizeof *probes->inverse);
+    probes->target = mem_alloc(size, sizeof *probes->target);
+    probes->gain = mem_alloc(size, sizeof *probes->gain);
+    b.mean = mem_alloc(2 * size, sizeof *b.mean);
+    b.most = b.mean + size;
+    sample_finest(&b, density);
+    for (int l = probes->level_count - 2; l >= 0; l--) coarsen(&b, l);
+    for (int j = 0; j < probes->levels[0].rows; j++)
+        for (int i = 0; i < probes->levels[0].columns; i++) place(&b, 0, i, j);
+    for (int l = 0; l < probes->level_count; l++) set_targets(&b, &probes->levels[l]);
+    create_tiles(probes, page);
+    mem_free(b.mean);
+    return probes;
+}
+
+void probes_destroy(Probes *probes)
+{
+    if (!probes) return;
+    mem_free(probes->inverse);
+    mem_free(probes->target);
+    mem_free(probes->gain);
+    mem_free(probes->tiles);
+    mem_free(probes);
+}

@@ -1,0 +1,34 @@
+/* target.h - what the strokes of a drawing are to look like: the page with its fields, made ready for
+ * energies.
+ *
+ * density D is the part of the paper that ink covers, 0 to 1: lines at distance pen/D give it. align is a
+ * symmetric matrix M (xx, xy, yy): a line of unit direction u costs u.M u, which takes no notice of the
+ * line's sense. potential and flow are for the energies of Linewise. All but the density may be left out. */
+#pragma once
+#include "spline/grid_spline.h"
+#include "spline/probes.h"
+
+typedef struct SplineFields {
+    SplineGrid density;   /* width 1 */
+    SplineGrid align;     /* width 3 */
+    SplineGrid potential; /* width 1 */
+    SplineGrid flow;      /* width 2 */
+} SplineFields;
+
+typedef struct SplineTarget {
+    SplinePage page;
+    double density; /* mean over the page                            */
+    double spacing; /* pen/density, the mean distance between lines  */
+    Probes *probes; /* of tone                                       */
+    GridSpline *align, *potential, *flow;
+} SplineTarget;
+
+/* The grids are copied into what is made of them. A page without ink (density 0) counts as one line across.
+ */
+SplineTarget *spline_target_create(const SplinePage *page, const SplineFields *fields, const ProbesDef *def);
+void spline_target_destroy(SplineTarget *target);
+
+/* Length of all lines that give the mean density, and how many strokes of so many segments of length L0 that
+ * is. */
+double spline_ink_budget(const SplineTarget *target);
+int spline_stroke_budget(const SplineTarget *target, int segments, double rest);

@@ -1,0 +1,36 @@
+/* tone.h - ink and the tone that it makes: what `tone` as an energy, Monte Carlo's moves and the insertion of
+ * strokes share.
+ *
+ *     E = K/2 sum_c gain_c (rho_c - D_c)^2,   rho_c = pen sum over points of w n W_c
+ *
+ * over the probes c (probes.h): the ink around each, less what the picture asks for there. */
+#pragma once
+#include "spline/points.h"
+#include "spline/probes_kernel.h"
+
+typedef struct Tone {
+    const Probes *probes;
+    double pen;
+    Workers *workers; /* borrowed */
+    double *ink;      /* [probes->size] rho_c  */
+    double *force;    /* [probes->size] dE/drho_c at K = 1 */
+    double *rows;     /* [row_count] energy of each row of cells, over K */
+    int row_count;
+} Tone;
+
+Tone tone_create(const SplineTarget *target, Workers *workers);
+void tone_clear(Tone *tone);
+
+/* Ink of all points, and then energy and forces of it. Returns E/K. */
+double tone_update(Tone *tone, const SplinePoints *points);
+
+/* Root mean square over the page of rho_c - D_c, after tone_update. */
+double tone_error(const Tone *tone);
+
+/* What the probes do to a point: E/K per length of ink there, and its derivatives in the place. */
+static inline ProbeSums tone_sums(const Tone *tone, double x, double y, int order)
+{
+    ProbeSums sums = probes_gather(tone->probes, x, y, tone->force, order);
+    double c = 4 * tone->pen / M_PI;
+    return (ProbeSums){c * sums.value, c * sums.x, c * sums.y, c * sums.xx, c * sums.xy, c * sums.yy};
+}

@@ -1,0 +1,83 @@
+#include "spline/walls.h"
+#include <math.h>
+
+static const double FRACTION = 0.9;
+
+Pack wall_psi_of(const SegmentTerm *term, double weight, const Barrier *barrier, const SegmentPoint *s,
+                 int order, Psi *psi)
+{
+    Pack zero = {0}, R = pack_set(weight), Rn = R * s->n;
+    if (order > 0) {
+        psi->r = pack2_scale(Rn, barrier->slope);
+        psi->t = pack2_scale(R * barrier->value, s->u);
+    }
+    if (order > 1) {
+        Pack2 across = pack2_across(s->u);
+        psi->rr = (PackMat2){Rn * barrier->xx, zero, zero, Rn * barrier->yy};
+        psi->tt = pack_mat2_scale(R * barrier->value / s->n, pack_mat2_outer(across, across));
+        if (!term->positive) psi->rt = pack_mat2_scale(R, pack_mat2_outer(barrier->slope, s->u));
+    }
+    return Rn * barrier->value;
+}
+
+/* Largest part of a move by which a coordinate from a to b stays on its side of both walls, with a reserve.
+ */
+static double part_of(double a, double b, double size)
+{
+    double part = 1;
+    if (b < a) part = FRACTION * a / (a - b);
+    if (b > a) part = FRACTION * (size - a) / (b - a);
+    return fmin(part, 1);
+}
+
+static double coordinate(const double basis[4], const double *x, int axis)
+{
+    double r = 0;
+    for (int k = 0; k < 4; k++) r += basis[k] * x[2 * k + axis];
+    return r;
+}
+
+/* r(s) is linear in the dofs, so this is exact. */
+static double allowed_part(const SegmentTerm *term, int node, const double *from, const double *to)
+{
+    const double size[2] = {term->model->target->page.width, term->model->target->page.height};
+    double part = 1;
+    for (int k = 0; k < term->rule->count; k++)
+        for (int axis = 0; axis < 2; axis++)
+            part = fmin(part, part_of(coordinate(term->rule->value[k], from + 4 * node, axis),
+                                      coordinate(term->rule->value[k], to + 4 * node, axis), size[axis]));
+    return part;
+}
+
+void wall_project(void *self, double *x)
+{
+    const WallTerm *wall = self;
+    const SplineModel *model = wall->segment.model;
+    for (int k = 0; k < model->stroke_count; k++) {
+        double part = 1;
+        for (int node = model->start[k]; node < model->start[k + 1] - 1; node++)
+            part = fmin(part, allowed_part(&wall->segment, node, wall->accepted, x));
+        if (!(part < 1)) continue;
+        for (int i = 4 * model->start[k]; i < 4 * model->start[k + 1]; i++)
+            x[i] = wall->accepted[i] + part * (x[i] - wall->accepted[i]);
+    }
+}
+
+void wall_accept(void *self, double *x)
+{
+    const WallTerm *wall = self;
+    memcpy(wall->accepted, x, 4 * (size_t)wall->segment.model->node_count * sizeof *x);
+}
+
+void wall_destroy(void *self)
+{
+    mem_free(((WallTerm *)self)->accepted);
+    mem_free(self);
+}
+
+Term wall_term_create(const TermOps *ops, SegmentTerm term)
+{
+    WallTerm *wall = mem_alloc(1, sizeof *wall);
+    *wall = (WallTerm){term, mem_alloc(4 * (size_t)term.model->node_count, sizeof(double))};
+    return (Term){ops, wall};
+}

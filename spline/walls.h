@@ -1,0 +1,35 @@
+/* walls.h - the four edges of the page as walls: what their two energies share. */
+#pragma once
+#include "spline/segment_term.h"
+
+/* Sums over the walls of some function of the distance. */
+typedef struct Barrier {
+    Pack value;
+    Pack2 slope;
+    Pack xx, yy; /* no wall is oblique: xy is 0 */
+} Barrier;
+
+/* Distances of a point to the walls x = 0, x = width, y = 0, y = height, and their derivatives in x or y: 1
+ * or -1. */
+static inline void wall_distances(const SplinePage *page, Pack2 r, Pack distance[4])
+{
+    distance[0] = r.x, distance[1] = page->width - r.x;
+    distance[2] = r.y, distance[3] = page->height - r.y;
+}
+
+/* psi = R n b(r) */
+Pack wall_psi_of(const SegmentTerm *term, double weight, const Barrier *barrier, const SegmentPoint *s,
+                 int order, Psi *psi);
+
+/* TermOps.accept and project for a term that is infinite outside of the page: of the way from the last
+ * accepted x to a trial, no stroke goes further than nine tenths of the way to the wall, be it at a point of
+ * the rule. Each stroke is stopped for itself, so that one at the edge does not hold up all others. */
+typedef struct WallTerm {
+    SegmentTerm segment;
+    double *accepted; /* [4 node_count] */
+} WallTerm;
+
+Term wall_term_create(const TermOps *ops, SegmentTerm term);
+void wall_accept(void *self, double *x);
+void wall_project(void *self, double *x);
+void wall_destroy(void *self);
