@@ -28,8 +28,11 @@ static void leash_project(void *self, double *x)
     for (int k = 0; k < model->stroke_count; k++) {
         const double *from = leash->accepted;
         double way = 0;
-        for (int i = 4 * model->start[k]; i < 4 * model->start[k + 1]; i += 2)
-            way = fmax(way, hypot(x[i] - from[i], x[i + 1] - from[i + 1]));
+        for (int i = 4 * model->start[k]; i < 4 * model->start[k + 1]; i += 2) {
+            double dx = x[i] - from[i], dy = x[i + 1] - from[i + 1];
+            way = fmax(way, dx * dx + dy * dy);
+        }
+        way = sqrt(way);
         if (!(way > leash->length)) continue;
         for (int i = 4 * model->start[k]; i < 4 * model->start[k + 1]; i++)
             x[i] = from[i] + leash->length / way * (x[i] - from[i]);

@@ -87,12 +87,11 @@ bool relax_tell(Relaxation *r)
     return !r->observer || r->observer->iteration(r->observer->self, &r->info, r->strokes);
 }
 
-bool relax_has_settled(RelaxPast *past, double energy, double tolerance)
+bool relax_has_settled(RelaxPast *past, int window, double energy, double tolerance)
 {
-    enum { WINDOW = sizeof past->energy / sizeof *past->energy };
-    double *place = &past->energy[past->count++ % WINDOW], before = *place;
+    double *place = &past->energy[past->count++ % window], before = *place;
     *place = energy;
-    return past->count > WINDOW && before - energy <= tolerance * fabs(energy);
+    return past->count > window && before - energy <= tolerance * fabs(energy);
 }
 
 static void add_energies(Relaxation *r, SplineHessian hessian)

@@ -112,7 +112,8 @@ static void cap_strokes(Descent *d)
     for (int k = 0; k < model->stroke_count; k++) {
         double way = 0;
         for (int i = 4 * model->start[k]; i < 4 * model->start[k + 1]; i += 2)
-            way = fmax(way, hypot(d->direction[i], d->direction[i + 1]));
+            way = fmax(way, d->direction[i] * d->direction[i] + d->direction[i + 1] * d->direction[i + 1]);
+        way = sqrt(way);
         if (!(way > cap)) continue;
         for (int i = 4 * model->start[k]; i < 4 * model->start[k + 1]; i++) d->direction[i] *= cap / way;
     }
@@ -235,7 +236,7 @@ static RelaxStatus iterate(Descent *d)
             if (!relax_tell(d->r)) return RELAX_STOPPED;
         }
         if (info->gradient_max <= d->def->gradient_tol) return RELAX_CONVERGED;
-        if (relax_has_settled(&past, d->energy, d->def->energy_tol)) return RELAX_SETTLED;
+        if (relax_has_settled(&past, d->def->window, d->energy, d->def->energy_tol)) return RELAX_SETTLED;
     }
     return RELAX_MAX_ITERATIONS;
 }
@@ -256,6 +257,7 @@ void relax_descent(Relaxation *r)
     DescentDef def = {.memory = plain ? 0 : r->def->memory,
                       .refresh = plain ? 0 : r->def->refresh,
                       .max_iterations = r->def->max_iterations,
+                      .window = RELAX_WINDOW,
                       .energy_tol = r->def->energy_tol,
                       .gradient_tol = r->def->gradient_tol,
                       .tell = true};

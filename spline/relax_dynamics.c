@@ -4,9 +4,9 @@
 #include "base/memory.h"
 #include "spline/relax_private.h"
 
-enum { STEP_ITERATIONS = 30 };
+enum { STEP_ITERATIONS = 30, STEP_WINDOW = 4 };
 
-static const double STEP_TOL = 1e-3; /* of the energies: what a step's last 20 iterations may still gain */
+static const double STEP_TOL = 1e-4; /* of the energies: what a step's last four iterations may still gain */
 
 void relax_dynamics(Relaxation *r)
 {
@@ -16,6 +16,7 @@ void relax_dynamics(Relaxation *r)
     DescentDef def = {.memory = r->def->memory,
                       .refresh = r->def->refresh,
                       .max_iterations = STEP_ITERATIONS,
+                      .window = STEP_WINDOW,
                       .energy_tol = STEP_TOL,
                       .gradient_tol = r->def->gradient_tol};
     r->info.status = RELAX_MAX_ITERATIONS;

@@ -28,7 +28,7 @@ static bool watch(void *self, const NewtonInfo *newton)
     w->stopped = RELAX_CONVERGED;
     if (info->gradient_max <= w->r->def->gradient_tol) return false;
     w->stopped = RELAX_SETTLED;
-    return !relax_has_settled(&w->past, info->energy, w->energy_tol);
+    return !relax_has_settled(&w->past, RELAX_WINDOW, info->energy, w->energy_tol);
 }
 
 static RelaxStatus status_of(NewtonStatus status, const Watch *watch)

@@ -33,17 +33,19 @@ void relax_take_energies(Relaxation *relaxation);
 /* Tells the observer: false when it wants to stop. */
 bool relax_tell(Relaxation *relaxation);
 
-/* Energies of the last 20 iterations. */
+/* Energies of the last iterations. */
+enum { RELAX_WINDOW = 20 };
 typedef struct RelaxPast {
     int count;
-    double energy[20];
+    double energy[RELAX_WINDOW];
 } RelaxPast;
 
-/* Notes an energy: true when it is less than 20 iterations ago by no more than that part. */
-bool relax_has_settled(RelaxPast *past, double energy, double tolerance);
+/* Notes an energy: true when it is less than `window` iterations ago by no more than that part. */
+bool relax_has_settled(RelaxPast *past, int window, double energy, double tolerance);
 
 typedef struct DescentDef {
     int memory, refresh, max_iterations;
+    int window; /* <= RELAX_WINDOW iterations, over which energy_tol is */
     double energy_tol, gradient_tol;
     bool tell; /* the observer, of each iteration */
 } DescentDef;
