@@ -130,14 +130,13 @@ void relax_create_system(Relaxation *r, SplineHessian hessian)
     system_prepare(r->sys);
 }
 
-static double *rest_lengths(const Relaxation *r)
+double *spline_rest_lengths(const SplineTarget *target, const RelaxDef *def, const Strokes *strokes)
 {
-    int segments = strokes_segment_count(r->strokes);
-    double *rest = mem_alloc((size_t)segments, sizeof *rest);
-    for (int k = 0, segment = 0; k < r->strokes->count; k++)
-        for (int node = r->strokes->start[k]; node < r->strokes->start[k + 1] - 1; node++)
-            rest[segment++] = r->def->rest > 0 ? r->def->rest * r->target->spacing
-                                               : strokes_segment_length(r->strokes, node);
+    double *rest = mem_alloc((size_t)strokes_segment_count(strokes), sizeof *rest);
+    for (int k = 0, segment = 0; k < strokes->count; k++)
+        for (int node = strokes->start[k]; node < strokes->start[k + 1] - 1; node++)
+            rest[segment++] =
+                def->rest > 0 ? def->rest * target->spacing : strokes_segment_length(strokes, node);
     return rest;
 }
 
@@ -199,7 +198,7 @@ RelaxInfo spline_relax(const SplineTarget *target, const RelaxDef *def, Strokes 
     r.workers = def->threads > 1 ? workers_create(def->threads) : NULL;
     SplineModelDef model = def->model;
     model.workers = r.workers;
-    double *rest = rest_lengths(&r);
+    double *rest = spline_rest_lengths(target, def, strokes);
     r.model = spline_model_create(target, strokes, rest, &model);
     relax_create_system(&r, methods[def->method].hessian);
     methods[def->method].run(&r);

@@ -24,6 +24,9 @@ RelaxFunction relax_descent, relax_newton, relax_monte_carlo, relax_dynamics;
 /* The point at x: the weights are the parameters. */
 Point relax_point(const Relaxation *relaxation, const double *x);
 
+/* L0 of all segments; the caller frees it. */
+double *spline_rest_lengths(const SplineTarget *target, const RelaxDef *def, const Strokes *strokes);
+
 /* Makes the system (again), with these second derivatives. */
 void relax_create_system(Relaxation *relaxation, SplineHessian hessian);
 
