@@ -182,6 +182,17 @@ static void bring_strokes_inside(const SplinePage *page, Strokes *strokes)
     }
 }
 
+/* Of the strokes as they are left. */
+static void take_final_figures(Relaxation *r)
+{
+    Point at = relax_point(r, r->strokes->q);
+    double *gradient = mem_alloc((size_t)r->n, sizeof *gradient);
+    r->info.gradient_max = system_gradient(r->sys, &at, gradient).gradient_max;
+    relax_take_energies(r);
+    r->info.seconds = clock_seconds() - r->started;
+    mem_free(gradient);
+}
+
 RelaxInfo spline_relax(const SplineTarget *target, const RelaxDef *def, Strokes *strokes,
                        const RelaxObserver *observer)
 {
@@ -202,7 +213,7 @@ RelaxInfo spline_relax(const SplineTarget *target, const RelaxDef *def, Strokes 
     r.model = spline_model_create(target, strokes, rest, &model);
     relax_create_system(&r, methods[def->method].hessian);
     methods[def->method].run(&r);
-    r.info.seconds = clock_seconds() - r.started;
+    take_final_figures(&r);
     system_destroy(r.sys);
     spline_model_destroy(r.model);
     workers_destroy(r.workers);

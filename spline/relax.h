@@ -71,7 +71,7 @@ typedef struct RelaxInfo {
     double seconds;                       /* since the start                                          */
     double energy;                        /* of all                                                   */
     double energies[SPLINE_WEIGHT_COUNT]; /* of each, by the names of spline_term_rows (terms.h)      */
-    double gradient_max;                  /* largest |dE/dx|; 0 where a method has none               */
+    double gradient_max;                  /* largest |dE/dx|; Monte Carlo: only at the end            */
     double kinetic;                       /* dynamics: energy of motion                               */
     double temperature, acceptance;       /* monte_carlo: and the part of the tries that were taken   */
 } RelaxInfo;

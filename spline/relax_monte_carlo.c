@@ -59,6 +59,9 @@ static double rotate(Vary *s, double size)
     return 0;
 }
 
+/* About the middle of its chord; its tangents by parts of the angle, half of it in the mean. (By half of it
+ * always, as Linewise does, the alternating sum of the angles of an even number of nodes would never change.)
+ */
 static double rotate_segment(Vary *s, double size)
 {
     int first = (int)(random_uniform(&s->random) * (s->nodes - 1));
@@ -66,8 +69,8 @@ static double rotate_segment(Vary *s, double size)
     Vec2 center = {(a[0] + b[0]) / 2, (a[1] + b[1]) / 2};
     turn_about(a, center, angle);
     turn_about(b, center, angle);
-    turn_vector(a + 2, angle / 2);
-    turn_vector(b + 2, angle / 2);
+    turn_vector(a + 2, angle * random_uniform(&s->random));
+    turn_vector(b + 2, angle * random_uniform(&s->random));
     return 0;
 }
 
@@ -199,7 +202,6 @@ void relax_monte_carlo(Relaxation *r)
     for (int k = 0; k < steps && r->info.status == RELAX_MAX_ITERATIONS; k++)
         if (!anneal(&a, first * pow(ratio, steps > 1 ? (double)k / (steps - 1) : 0)))
             r->info.status = RELAX_STOPPED;
-    settle_accounts(&a);
     mem_free(a.vary.q);
     local_destroy(a.local);
 }

@@ -112,15 +112,16 @@ def stroke(first,n):
     return np.stack([0.35+0.17*k%0.5+0.02*np.cos(3*k),0.3+0.04*k%0.25+0.05*np.sin(2*k),0.07+0.02*np.cos(k),0.05*np.sin(1.3*k)],1)
 SA,SB=stroke(0,3),stroke(3,2)
 n=20; b=np.cos(1.7*np.arange(n))
-def lobatto(_):
-    c=np.sqrt(.2); return np.array([0,(1-c)/2,(1+c)/2,1]),np.array([1,5,5,1])/12
-def whole(kind,p,rule=None):
-    global gauss; old=gauss
-    if rule: gauss=rule
+def whole_hull(kind,p): # the four control points, with r' at thirds
+    global basis,gauss; old=basis,gauss
+    hull=np.array([[1,0,0,0],[1,1,0,0],[0,0,1,-1],[0,0,1,0]],float)
+    gauss=lambda _:(np.arange(4)/3,np.full(4,.25)); basis=lambda s:(hull[int(round(3*s))],)+old[0](s)[1:]
+    r=whole(kind,p); basis,gauss=old; return r
+def whole(kind,p):
     E=0;G=np.zeros(n);H=np.zeros((n,n))
     for q,o in((SA,0),(SB,12)):
         e,g,h=energy(kind,q,p,ng); m=q.size; E+=e;G[o:o+m]+=g;H[o:o+m,o:o+m]+=h
-    gauss=old; return E,G,H
+    return E,G,H
 old_g=pair_g
 def pair_g(kind,p,d2):
     if kind!='wendland': return old_g(kind,p,d2)
@@ -153,7 +154,7 @@ def two_tone():
     return .5*(f*d*d).sum(),J.T@(f*d),J.T@(f[:,None]*J)
 M=[[.9,.3,-.2],[.2,-.4,.3],[.7,-.1,.5]]; phi=[.4,.8,-.6,1.1,-.7,.9]; v=[.3,.5,-.8,-.2,.9,.4]
 rows=[('strain',whole('strain_point',dict(S=2.,L0=L0))),('bend',whole('bend_lin',dict(B=.3,L0=L0))),
-('align',whole('tensor',dict(P=1.5,M=M))),('wall',whole('bound_log',dict(R=.7,X=X,Y=Y,dhat=2*pen),lobatto)),
+('align',whole('tensor',dict(P=1.5,M=M))),('wall',whole_hull('bound_log',dict(R=.7,X=X,Y=Y,dhat=2*pen))),
 ('stretch',whole('strain_seg',dict(S=2.5,L0=L0))),('curvature',whole('bend_kappa',dict(B=.02))),
 ('potential',whole('potential',dict(Q=1.3,phi=phi))),('flow',whole('field',dict(P=.6,v=v))),('boundary',whole('bound_inv2',dict(R=.05,X=X,Y=Y))),
 ('tone',two_tone()),('wendland',pairs('wendland',dict(C=1.7,R=.25))),('triweight',pairs('tri',dict(C=1.7,R=.25)))]

@@ -105,9 +105,9 @@ static void test_rule(void **state)
 {
     (void)state;
     static const int counts[] = {3, 4, 5, 8};
-    for (int c = 0; c < 5; c++) {
-        SplineRule rule = c < 4 ? spline_rule_gauss(counts[c]) : spline_rule_lobatto();
-        int degree = c < 4 ? 2 * counts[c] - 1 : 5;
+    for (int c = 0; c < 4; c++) {
+        SplineRule rule = spline_rule_gauss(counts[c]);
+        int degree = 2 * counts[c] - 1;
         for (int d = 0; d <= degree + 1; d++) {
             double sum = 0;
             for (int q = 0; q < rule.count; q++) sum += rule.weight[q] * pow(rule.s[q], d);
