@@ -9,3 +9,4 @@ void bench_factor(void);
 void bench_design(void);
 void bench_march(void);
 void bench_trajectory(void);
+void bench_spline(void);

@@ -14,6 +14,7 @@ static const struct {
     {"march", bench_march},
     {"trajectory", bench_trajectory},
     {"design", bench_design},
+    {"spline", bench_spline},
 };
 
 enum { CASE_COUNT = sizeof cases / sizeof *cases };

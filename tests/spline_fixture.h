@@ -27,9 +27,10 @@ static inline void clear_fields(SplineFields *fields)
     mem_free((void *)fields->flow.values);
 }
 
-/* Strokes of `segments` segments of length `rest` at random places and in random directions, slightly bent, all on the
- * page. */
-static inline Strokes random_strokes(const SplinePage *page, int count, int segments, double rest, Random *random)
+/* Strokes of `segments` segments of length `rest` at random places and in random directions, slightly bent,
+ * all on the page. */
+static inline Strokes random_strokes(const SplinePage *page, int count, int segments, double rest,
+                                     Random *random)
 {
     Strokes strokes = {0};
     double(*q)[4] = mem_alloc((size_t)segments + 1, sizeof *q);

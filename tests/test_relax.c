@@ -1,5 +1,5 @@
-/* Relaxation of strokes: that all methods lower the same energy, what threads and seeds do to the result, walls, changes of
- * single strokes, Metropolis' distribution, inertia, and the number of strokes. */
+/* Relaxation of strokes: that all methods lower the same energy, what threads and seeds do to the result,
+ * walls, changes of single strokes, Metropolis' distribution, inertia, and the number of strokes. */
 #include "solve/check.h"
 #include "spline/local.h"
 #include "spline/relax_private.h"
@@ -20,12 +20,30 @@ static double ball(double x, double y)
 }
 
 /* M = I - v v^T, v at 30 degrees. */
-static double m_xx(double x, double y) { return (void)x, (void)y, 0.25; }
-static double m_xy(double x, double y) { return (void)x, (void)y, -0.4330127018922193; }
-static double m_yy(double x, double y) { return (void)x, (void)y, 0.75; }
-static double slope_of(double x, double y) { return -x - 0.5 * y; }
-static double v_x(double x, double y) { return 0.3 * y + 0.1 * x; }
-static double v_y(double x, double y) { return 0.2 - 0.4 * x * y; }
+static double m_xx(double x, double y)
+{
+    return (void)x, (void)y, 0.25;
+}
+static double m_xy(double x, double y)
+{
+    return (void)x, (void)y, -0.4330127018922193;
+}
+static double m_yy(double x, double y)
+{
+    return (void)x, (void)y, 0.75;
+}
+static double slope_of(double x, double y)
+{
+    return -x - 0.5 * y;
+}
+static double v_x(double x, double y)
+{
+    return 0.3 * y + 0.1 * x;
+}
+static double v_y(double x, double y)
+{
+    return 0.2 - 0.4 * x * y;
+}
 
 typedef struct Scene {
     SplinePage page;
@@ -95,9 +113,10 @@ static void test_methods(void **state)
         RelaxInfo info = spline_relax(s.target, &def, &s.strokes, NULL);
         double end = energy_of(s.target, &def, &s.strokes), sum = 0;
         for (int k = 0; k < SPLINE_WEIGHT_COUNT; k++) sum += info.energies[k];
-        print_message("%-11s %-14s E %.3f -> %.4f, |g| %.1e, %4d iterations, %4d evaluations, %4d factors, %.2f s\n",
-                      relax_method_name(method), relax_status_name(info.status), start, end, info.gradient_max,
-                      info.iterations, info.evaluations, info.factorizations, info.seconds);
+        print_message(
+            "%-11s %-14s E %.3f -> %.4f, |g| %.1e, %4d iterations, %4d evaluations, %4d factors, %.2f s\n",
+            relax_method_name(method), relax_status_name(info.status), start, end, info.gradient_max,
+            info.iterations, info.evaluations, info.factorizations, info.seconds);
         assert_true(fabs(info.energy - end) < 1e-12 * start && fabs(sum - end) < 1e-12 * start);
         assert_true(end < 0.1 * start);
         assert_true(method != RELAX_NEWTON || (info.status == RELAX_CONVERGED && info.gradient_max <= 1e-6));
@@ -122,7 +141,8 @@ static bool watch_inside(void *self, const RelaxInfo *info, const Strokes *strok
             for (int i = 0; i <= 20; i++) {
                 Vec2 c[4];
                 strokes_bezier(strokes, node, c);
-                double t = i / 20.0, u = 1 - t, w[4] = {u * u * u, 3 * u * u * t, 3 * u * t * t, t * t * t}, x = 0, y = 0;
+                double t = i / 20.0, u = 1 - t, w[4] = {u * u * u, 3 * u * u * t, 3 * u * t * t, t * t * t},
+                       x = 0, y = 0;
                 for (int j = 0; j < 4; j++) x += w[j] * c[j].x, y += w[j] * c[j].y;
                 double d = fmin(fmin(x, inside->page.width - x), fmin(y, inside->page.height - y));
                 inside->nearest = fmin(inside->nearest, d);
@@ -183,8 +203,17 @@ static void test_local(void **state)
     (void)state;
     Scene s = scene_create(0.02, 0.7, 4, 3);
     RelaxDef def = relax_default();
-    def.weights = (SplineWeights){.strain = 0.5, .bend = 0.1, .align = 0.5, .wall = 0.1, .stretch = 0.2, .curvature = 0.05,
-                                  .potential = 0.3, .flow = 0.4, .boundary = 0.01, .tone = 1, .pair = 0.3};
+    def.weights = (SplineWeights){.strain = 0.5,
+                                  .bend = 0.1,
+                                  .align = 0.5,
+                                  .wall = 0.1,
+                                  .stretch = 0.2,
+                                  .curvature = 0.05,
+                                  .potential = 0.3,
+                                  .flow = 0.4,
+                                  .boundary = 0.01,
+                                  .tone = 1,
+                                  .pair = 0.3};
     SplineWeights weights = spline_weights_scaled(def.weights, s.page.pen, s.target->spacing);
     double *rest = spline_rest_lengths(s.target, &def, &s.strokes);
     SplineModel *model = spline_model_create(s.target, &s.strokes, rest, &def.model);
@@ -204,7 +233,8 @@ static void test_local(void **state)
         local_accept(local);
         memcpy(at, q, sizeof q);
         double after = energy_of(s.target, &def, &s.strokes);
-        if (isfinite(after) || isfinite(change)) worst = fmax(worst, fabs(after - before - change) / fabs(before));
+        if (isfinite(after) || isfinite(change))
+            worst = fmax(worst, fabs(after - before - change) / fabs(before));
         before = after;
     }
     print_message("changes of single strokes: %.1e of the energy\n", worst);
@@ -228,8 +258,8 @@ static void test_local(void **state)
     scene_clear(&s);
 }
 
-/* Sums over samples of one stroke of one segment: energy of bending over T and its square, ends apart squared, place and
- * place squared of an end, length of v squared. */
+/* Sums over samples of one stroke of one segment: energy of bending over T and its square, ends apart
+ * squared, place and place squared of an end, length of v squared. */
 enum { FIGURES = 6 };
 
 typedef struct Samples {
@@ -293,7 +323,10 @@ static void sample_directly(Samples *s, int tries)
     }
 }
 
-static double tenth(double x, double y) { return (void)x, (void)y, 0.1; }
+static double tenth(double x, double y)
+{
+    return (void)x, (void)y, 0.1;
+}
 
 /* One stroke that bends, between hard walls, at one temperature: its distribution is known. */
 static void test_balance(void **state)
@@ -336,7 +369,8 @@ static void test_inertia(void **state)
     SplineModel *model = spline_model_create(s.target, &s.strokes, rest, &def.model);
     int n = 4 * model->node_count;
     Random random = random_seed(6);
-    double *x = mem_copy(s.strokes.q, (size_t)n, sizeof *x), *v = mem_alloc((size_t)n, sizeof *v), dof_size[TERM_MAX_DOF];
+    double *x = mem_copy(s.strokes.q, (size_t)n, sizeof *x), *v = mem_alloc((size_t)n, sizeof *v),
+           dof_size[TERM_MAX_DOF];
     for (int i = 0; i < n; i++) v[i] = i % 4 == 0 ? 0.3 : i % 4 == 1 ? -0.4 : 0;
     for (int m = 0; m < model->segment_count; m++) length += rest[m];
     assert_true(fabs(spline_kinetic_energy(model, v) - length * 0.25 / 2) < 1e-14 * length);
@@ -350,12 +384,14 @@ static void test_inertia(void **state)
     System *sys = system_create(n, &(DofClass){.count = n, .size = 1}, 1);
     system_add(sys, term);
     system_prepare(sys);
-    double *work = mem_alloc(7 * (size_t)n, sizeof *work), *w = work, *dx = w + n, *dv = dx + n, *r = dv + n, *g[2] = {r + n, r + 2 * n};
+    double *work = mem_alloc(7 * (size_t)n, sizeof *work), *w = work, *dx = w + n, *dv = dx + n, *r = dv + n,
+           *g[2] = {r + n, r + 2 * n};
     for (int i = 0; i < n; i++) w[i] = random_signed(&random);
     system_prev(sys, &at, w, dx, dv); /* minus the transposed products */
     double *start = mem_copy(s.strokes.q, (size_t)n, sizeof *start), along = 0, difference = 0;
     for (int side = 0; side < 2; side++) { /* linear: one difference is exact */
-        for (int i = 0; i < n; i++) start[i] += (side ? 2e-3 : -1e-3) * cos(i), v[i] += (side ? 2e-3 : -1e-3) * sin(2 * i);
+        for (int i = 0; i < n; i++)
+            start[i] += (side ? 2e-3 : -1e-3) * cos(i), v[i] += (side ? 2e-3 : -1e-3) * sin(2 * i);
         at.x_prev = start;
         system_gradient(sys, &at, g[side]);
     }
@@ -419,8 +455,8 @@ static void test_refine(void **state)
         RelaxInfo once = spline_relax(s.target, &def, &plain, NULL);
         RelaxInfo info = spline_refine(s.target, &def, 6, 4, &s.strokes, NULL);
         double budget = spline_ink_budget(s.target), ink = strokes_length(&s.strokes) / budget;
-        print_message("%d strokes, E %.3f, ink %.3f -> %d strokes, E %.3f, ink %.3f\n", plain.count, once.energy,
-                      strokes_length(&plain) / budget, s.strokes.count, info.energy, ink);
+        print_message("%d strokes, E %.3f, ink %.3f -> %d strokes, E %.3f, ink %.3f\n", plain.count,
+                      once.energy, strokes_length(&plain) / budget, s.strokes.count, info.energy, ink);
         assert_true(info.energy < 0.6 * once.energy && fabs(ink - 1) < 0.04);
         assert_true(fabs(info.energy - energy_of(s.target, &def, &s.strokes)) < 1e-12);
         strokes_clear(&plain);
@@ -437,9 +473,10 @@ static void test_status(void **state)
     Strokes none = {0};
     assert_int_equal(spline_relax(s.target, &def, &none, NULL).status, RELAX_CONVERGED);
     assert_int_equal(spline_remove_strokes(s.target, &def, 3, &none), 0);
-    for (int i = 0; i < 4; i++) s.strokes.q[4 + i] = s.strokes.q[8 + i] = s.strokes.q[12 + i] = s.strokes.q[i];
-    s.strokes.q[2] = s.strokes.q[3] = s.strokes.q[6] = s.strokes.q[7] = s.strokes.q[10] = s.strokes.q[11] = s.strokes.q[14] =
-        s.strokes.q[15] = 0;
+    for (int i = 0; i < 4; i++)
+        s.strokes.q[4 + i] = s.strokes.q[8 + i] = s.strokes.q[12 + i] = s.strokes.q[i];
+    s.strokes.q[2] = s.strokes.q[3] = s.strokes.q[6] = s.strokes.q[7] = s.strokes.q[10] = s.strokes.q[11] =
+        s.strokes.q[14] = s.strokes.q[15] = 0;
     RelaxInfo info = spline_relax(s.target, &def, &s.strokes, NULL);
     assert_int_equal(info.status, RELAX_NOT_FINITE);
     scene_clear(&s);
@@ -454,8 +491,8 @@ static void test_leaks(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_methods), cmocka_unit_test(test_wall),     cmocka_unit_test(test_repeatable),
-        cmocka_unit_test(test_local),   cmocka_unit_test(test_balance),  cmocka_unit_test(test_inertia),
+        cmocka_unit_test(test_methods),  cmocka_unit_test(test_wall),    cmocka_unit_test(test_repeatable),
+        cmocka_unit_test(test_local),    cmocka_unit_test(test_balance), cmocka_unit_test(test_inertia),
         cmocka_unit_test(test_dynamics), cmocka_unit_test(test_refine),  cmocka_unit_test(test_status),
         cmocka_unit_test(test_leaks),
     };

@@ -1,5 +1,5 @@
-/* Quadrature, fields, and every energy of strokes: against an independent program, against differences, semidefinite where
- * it says so, and the same with any number of threads. */
+/* Quadrature, fields, and every energy of strokes: against an independent program, against differences,
+ * semidefinite where it says so, and the same with any number of threads. */
 #include "solve/check.h"
 #include "solve/system.h"
 #include "spline/points.h"
@@ -15,13 +15,34 @@
 
 enum { DOFS = 20, REFERENCES = sizeof spline_reference / sizeof *spline_reference };
 
-static double m_xx(double x, double y) { return 0.9 + 0.3 * x - 0.2 * y; }
-static double m_xy(double x, double y) { return 0.2 - 0.4 * x + 0.3 * y; }
-static double m_yy(double x, double y) { return 0.7 - 0.1 * x + 0.5 * y; }
-static double v_x(double x, double y) { return 0.3 + 0.5 * x - 0.8 * y; }
-static double v_y(double x, double y) { return -0.2 + 0.9 * x + 0.4 * y; }
-static double phi(double x, double y) { return 0.4 + 0.8 * x - 0.6 * y + 1.1 * x * x - 0.7 * x * y + 0.9 * y * y; }
-static double tone_of(double x, double y) { return 0.5 + 0.3 * sin(3 * x) * cos(4 * y); }
+static double m_xx(double x, double y)
+{
+    return 0.9 + 0.3 * x - 0.2 * y;
+}
+static double m_xy(double x, double y)
+{
+    return 0.2 - 0.4 * x + 0.3 * y;
+}
+static double m_yy(double x, double y)
+{
+    return 0.7 - 0.1 * x + 0.5 * y;
+}
+static double v_x(double x, double y)
+{
+    return 0.3 + 0.5 * x - 0.8 * y;
+}
+static double v_y(double x, double y)
+{
+    return -0.2 + 0.9 * x + 0.4 * y;
+}
+static double phi(double x, double y)
+{
+    return 0.4 + 0.8 * x - 0.6 * y + 1.1 * x * x - 0.7 * x * y + 0.9 * y * y;
+}
+static double tone_of(double x, double y)
+{
+    return 0.5 + 0.3 * sin(3 * x) * cos(4 * y);
+}
 
 /* The drawing of spline_reference.h. */
 typedef struct Fixture {
@@ -80,7 +101,8 @@ static Fixture fixture_create(PairKernel kernel)
     f.fields.align = grid_of(&f.page, 100, 3, (Surface *[]){m_xx, m_xy, m_yy});
     f.fields.potential = grid_of(&f.page, 100, 1, (Surface *[]){phi});
     f.fields.flow = grid_of(&f.page, 100, 2, (Surface *[]){v_x, v_y});
-    ProbesDef probes = {.radius = 0, .radius_min = 0.1251 / 0.22, .radius_max = 0.2501, .cell = 0.5, .faint = 0.03};
+    ProbesDef probes = {
+        .radius = 0, .radius_min = 0.1251 / 0.22, .radius_max = 0.2501, .cell = 0.5, .faint = 0.03};
     f.target = spline_target_create(&f.page, &f.fields, &probes);
     double *rest = same_rest(&f.strokes, 0.3);
     SplineModelDef def = spline_model_default();
@@ -88,8 +110,17 @@ static Fixture fixture_create(PairKernel kernel)
     def.pair_radius = 0.25 / f.target->spacing;
     f.model = spline_model_create(f.target, &f.strokes, rest, &def);
     mem_free(rest);
-    f.weights = (SplineWeights){.strain = 2, .bend = 0.3, .align = 1.5, .wall = 0.7, .stretch = 2.5, .curvature = 0.02,
-                                .potential = 1.3, .flow = 0.6, .boundary = 0.05, .tone = 3, .pair = 1.7};
+    f.weights = (SplineWeights){.strain = 2,
+                                .bend = 0.3,
+                                .align = 1.5,
+                                .wall = 0.7,
+                                .stretch = 2.5,
+                                .curvature = 0.02,
+                                .potential = 1.3,
+                                .flow = 0.6,
+                                .boundary = 0.05,
+                                .tone = 3,
+                                .pair = 1.7};
     return f;
 }
 
@@ -138,8 +169,10 @@ static void test_arc(void **state)
     double exact = 0; /* 64 times 8 points */
     for (int m = 0; m < 64; m++)
         for (int q = 0; q < 8; q++) {
-            double s = (m + fine.s[q]) / 64, u = 1 - s, T[4] = {-6 * u * s, 3 * u * (u - 2 * s), 6 * u * s, 3 * s * (s - 2 * u)};
-            exact += fine.weight[q] / 64 * hypot(T[0] * x[0] + T[2] * x[4] + T[3] * x[6], T[1] * x[3] + T[2] * x[5]);
+            double s = (m + fine.s[q]) / 64, u = 1 - s,
+                   T[4] = {-6 * u * s, 3 * u * (u - 2 * s), 6 * u * s, 3 * s * (s - 2 * u)};
+            exact += fine.weight[q] / 64 *
+                     hypot(T[0] * x[0] + T[2] * x[4] + T[3] * x[6], T[1] * x[3] + T[2] * x[5]);
         }
     for (int c = 0; c < 4; c++) {
         double error = fabs(length[c] / exact - 1);
@@ -148,7 +181,10 @@ static void test_arc(void **state)
     }
 }
 
-static double wave(double x, double y) { return sin(9 * x) * cos(7 * y) + x * y; }
+static double wave(double x, double y)
+{
+    return sin(9 * x) * cos(7 * y) + x * y;
+}
 
 /* Through the pixels; derivatives as differences say; C2 across pixels and the page's edge. */
 static void test_grid_spline(void **state)
@@ -231,11 +267,14 @@ static void test_reference(void **state)
         System *sys = system_of(f.model, row_of(reference->name), tone ? SPLINE_POSITIVE : SPLINE_EXACT);
         double gradient[DOFS], product[DOFS], b[DOFS];
         for (int i = 0; i < DOFS; i++) b[i] = cos(1.7 * i);
-        Evaluation e = system_hessian(sys, &(Point){.x = f.strokes.q, .p = (const double *)&f.weights}, gradient);
+        Evaluation e =
+            system_hessian(sys, &(Point){.x = f.strokes.q, .p = (const double *)&f.weights}, gradient);
         system_multiply(sys, b, product);
-        double energy = fabs(e.energy / reference->energy - 1), first = distance(gradient, reference->gradient),
+        double energy = fabs(e.energy / reference->energy - 1),
+               first = distance(gradient, reference->gradient),
                second = distance(product, reference->product);
-        print_message("%-10s energy %.1e  gradient %.1e  Hessian %.1e\n", reference->name, energy, first, second);
+        print_message("%-10s energy %.1e  gradient %.1e  Hessian %.1e\n", reference->name, energy, first,
+                      second);
         assert_true(energy < 1e-10 && first < 1e-10 && second < 1e-10);
         system_destroy(sys);
         fixture_clear(&f);
@@ -258,7 +297,8 @@ static void test_derivatives(void **state)
             TermError error = system_term_count(sys)
                                   ? check_term(system_term(sys, 0), &(Params){0}, &at, dof_size, &random)
                                   : check_bulk(system_bulk(sys, 0), &at, DOFS, 0.1);
-            print_message("%-10s gradient %.1e  Hessian %.1e\n", spline_term_rows[row].name, error.gradient, error.hessian);
+            print_message("%-10s gradient %.1e  Hessian %.1e\n", spline_term_rows[row].name, error.gradient,
+                          error.hessian);
             /* Kernels end with a jump of the third derivative. */
             assert_true(error.gradient < 1e-7 && error.hessian < 1e-6);
             system_destroy(sys);
@@ -275,7 +315,8 @@ static double form(System *sys, const double *w, double *product)
     return sum;
 }
 
-/* Value and gradient as ever; the Hessian semidefinite, and with the OWN part of it free of any coupling of strokes. */
+/* Value and gradient as ever; the Hessian semidefinite, and with the OWN part of it free of any coupling of
+ * strokes. */
 static void test_positive(void **state)
 {
     (void)state;
@@ -304,10 +345,14 @@ static void test_positive(void **state)
     fixture_clear(&f);
 }
 
-static double third(double x, double y) { return (void)x, (void)y, 1.0 / 3; }
+static double third(double x, double y)
+{
+    return (void)x, (void)y, 1.0 / 3;
+}
 
-/* A straight line through the page at distance d from a probe makes rho = pen 4/(pi R) 32/35 (1 - d^2/R^2)^3.5; on a page of
- * even tone all probes away from the edge ask for just that tone, and lines at the right distance give it. */
+/* A straight line through the page at distance d from a probe makes rho = pen 4/(pi R) 32/35 (1 -
+ * d^2/R^2)^3.5; on a page of even tone all probes away from the edge ask for just that tone, and lines at the
+ * right distance give it. */
 static void test_tone_of_lines(void **state)
 {
     (void)state;
@@ -354,7 +399,8 @@ static void test_tone_of_lines(void **state)
         spline_points_clear(&points);
         spline_model_destroy(model);
     }
-    print_message("one line: %.1e of rho; lines at 0.03: ripple %.1e of 1/3; %d probes\n", worst, ripple, target->probes->count);
+    print_message("one line: %.1e of rho; lines at 0.03: ripple %.1e of 1/3; %d probes\n", worst, ripple,
+                  target->probes->count);
     assert_true(worst < 1e-4 && ripple < 6e-3);
     mem_free(rest);
     strokes_clear(&strokes);
@@ -374,8 +420,8 @@ static void test_threads(void **state)
     Random random = random_seed(4);
     Strokes strokes = random_strokes(&page, 300, 5, 0.012, &random);
     int dofs = 4 * strokes_node_count(&strokes);
-    double *rest = same_rest(&strokes, 0.012), *first = mem_alloc(3 * (size_t)dofs, sizeof *first), *w = first + dofs,
-           *product = w + dofs, *again = mem_alloc(2 * (size_t)dofs, sizeof *again);
+    double *rest = same_rest(&strokes, 0.012), *first = mem_alloc(3 * (size_t)dofs, sizeof *first),
+           *w = first + dofs, *product = w + dofs, *again = mem_alloc(2 * (size_t)dofs, sizeof *again);
     SplineWeights weights = spline_weights_default();
     weights.pair = 1;
     weights = spline_weights_scaled(weights, page.pen, target->spacing);
@@ -390,8 +436,10 @@ static void test_threads(void **state)
         System *sys = system_create(dofs, &(DofClass){.count = dofs, .size = 0.1}, 1);
         for (int row = 0; row < SPLINE_WEIGHT_COUNT; row++) {
             if (((const double *)&weights)[row] == 0) continue;
-            if (spline_term_rows[row].term) system_add(sys, spline_term_rows[row].term(model, SPLINE_EXACT));
-            else system_add_bulk(sys, spline_term_rows[row].bulk(model, SPLINE_EXACT));
+            if (spline_term_rows[row].term)
+                system_add(sys, spline_term_rows[row].term(model, SPLINE_EXACT));
+            else
+                system_add_bulk(sys, spline_term_rows[row].bulk(model, SPLINE_EXACT));
         }
         system_set_workers(sys, def.workers);
         system_prepare(sys);
@@ -440,10 +488,11 @@ static void test_leaks(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_rule),        cmocka_unit_test(test_arc),           cmocka_unit_test(test_grid_spline),
-        cmocka_unit_test(test_reference),   cmocka_unit_test(test_derivatives),   cmocka_unit_test(test_positive),
-        cmocka_unit_test(test_tone_of_lines), cmocka_unit_test(test_threads),     cmocka_unit_test(test_workers),
-        cmocka_unit_test(test_leaks),
+        cmocka_unit_test(test_rule),          cmocka_unit_test(test_arc),
+        cmocka_unit_test(test_grid_spline),   cmocka_unit_test(test_reference),
+        cmocka_unit_test(test_derivatives),   cmocka_unit_test(test_positive),
+        cmocka_unit_test(test_tone_of_lines), cmocka_unit_test(test_threads),
+        cmocka_unit_test(test_workers),       cmocka_unit_test(test_leaks),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
