@@ -23,31 +23,32 @@ typedef enum RelaxMethod {
 /* "auto", "newton", ... */
 const char *relax_method_name(RelaxMethod method);
 
+/* Lengths are in mean line distances (SplineTarget.spacing). */
 typedef struct RelaxDef {
-    RelaxMethod method; /* default RELAX_AUTO                                                              */
-    SplineWeights weights; /* pure numbers (weights.h); default spline_weights_default() */
-    SplineModelDef model;  /* quadrature and kernels; its workers are not looked at  */
-    double rest; /* L0 in mean line distances, default 1.2; 0: of each segment its length at the start */
-    int threads; /* default 1                                                                       */
-    int max_iterations;  /* default 500; sweeps of Monte Carlo and steps of dynamics are below              */
-    double energy_tol;   /* settled when the energy fell by less than this part in 20 iterations; 1e-3      */
-    double gradient_tol; /* converged when no |dE/dx| (a pure number) exceeds this; default 1e-6            */
+    RelaxMethod method;    /* default RELAX_AUTO                                                          */
+    SplineWeights weights; /* pure numbers (weights.h); default spline_weights_default()                  */
+    SplineModelDef model;  /* quadrature and kernels; its workers are not looked at                       */
+    double rest;           /* L0; default 1.2; 0: of each segment its length at the start                 */
+    int threads;           /* default 1                                                                   */
+    int max_iterations;    /* of auto, newton and gradient; default 500                                   */
+    double energy_tol;     /* settled when the energy fell by less than this part in 20 iterations; 1e-3  */
+    double gradient_tol;   /* converged when no |dE/dx| (a pure number) exceeds this; default 1e-6        */
+    double step_cap;       /* no stroke goes further in one step (not monte_carlo's moves); default 1     */
 
-    /* auto, gradient */
-    int memory;      /* steps that L-BFGS remembers; default 20                                  */
-    int refresh;     /* a new factor after so many steps; default 20; 0: no preconditioner       */
-    double step_cap; /* no stroke goes further in one step, in mean line distances; default 1    */
+    /* auto, dynamics */
+    int memory;  /* steps that L-BFGS remembers; default 20                            */
+    int refresh; /* a new factor after so many steps; default 20; 0: no preconditioner */
 
-    /* monte_carlo: temperatures fall geometrically from first to last */
-    double temperature_first,
-        temperature_last;     /* of an energy per length of ink times the mean line distance; 0.03, 3e-4 */
-    int temperatures, sweeps; /* how many, and at each so many tries per stroke; default 20, 50  */
-    uint64_t seed;            /* default 1                                                       */
+    /* monte_carlo: temperatures fall geometrically, in energies per length of ink times line distance */
+    double temperature_first; /* default 0.03                                               */
+    double temperature_last;  /* default 3e-4                                               */
+    int temperatures, sweeps; /* how many, and at each so many tries per stroke; default 20, 50 */
+    uint64_t seed;            /* default 1                                                  */
 
-    /* dynamics: implicit Euler; mass per rest length 1 */
-    double time_step; /* in mean line distances (speeds are then of order 1); default 1      */
-    int time_steps;   /* default 100                                                         */
-    double damping;   /* part of the velocity lost in unit time (of the same unit); default 0.1 */
+    /* dynamics: implicit Euler with mass 1 per rest length; times are of the same unit as lengths */
+    double time_step; /* default 1                                              */
+    int time_steps;   /* default 100                                            */
+    double damping;   /* part of the velocity lost in a time of 1; default 0.1  */
 } RelaxDef;
 
 RelaxDef relax_default(void);
@@ -57,8 +58,8 @@ typedef enum RelaxStatus {
     RELAX_SETTLED,        /* the energy hardly falls any more                                         */
     RELAX_STALLED,        /* no step lowers the energy                                                */
     RELAX_MAX_ITERATIONS, /* all iterations done (the usual end of monte_carlo and dynamics)          */
-    RELAX_NOT_FINITE, /* the energy at the start is not: a stroke crosses the page's edge, or has no length */
-    RELAX_STOPPED,    /* the observer asked for it                                                */
+    RELAX_NOT_FINITE,     /* the energy at the start is not: a stroke has no length                   */
+    RELAX_STOPPED,        /* the observer asked for it                                                */
 } RelaxStatus;
 
 /* One word: "converged", ... and a sentence for the user. */
@@ -82,6 +83,7 @@ typedef struct RelaxObserver {
     void *self;
 } RelaxObserver;
 
-/* Moves the strokes; observer may be NULL. A weight other than 0 needs its field in the target. */
+/* Moves the strokes; those that cross the page's edge are first brought inside where there is a wall.
+ * observer may be NULL. A weight other than 0 needs its field in the target. */
 RelaxInfo spline_relax(const SplineTarget *target, const RelaxDef *def, Strokes *strokes,
                        const RelaxObserver *observer);
