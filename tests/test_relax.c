@@ -155,7 +155,7 @@ static void test_wall(void **state)
 {
     (void)state;
     for (RelaxMethod method = RELAX_AUTO; method < RELAX_METHOD_COUNT; method++) {
-        Scene s = scene_create(0.02, 1, 3, 2);
+        Scene s = scene_create(0.03, 1, 3, 2);
         for (int node = 0; node < 8; node++) s.strokes.q[4 * node] -= 1;
         RelaxDef def = relax_default();
         def.method = method;
@@ -179,7 +179,7 @@ static void test_repeatable(void **state)
     for (RelaxMethod method = RELAX_AUTO; method < RELAX_METHOD_COUNT; method++) {
         double *first = NULL;
         for (int run = 0; run < 4; run++) {
-            Scene s = scene_create(0.02, 1, 4, 1);
+            Scene s = scene_create(0.03, 1, 4, 1);
             RelaxDef def = relax_default();
             def.method = method;
             def.weights.pair = 0.1;
