@@ -9,14 +9,18 @@ struct Workers {
     pthread_t *threads;
     pthread_mutex_t lock;
     pthread_cond_t begin, end;
-    long run;      /* number of the run at hand */
-    int busy;      /* threads that are at it    */
-    bool finished; /* for good                  */
+    atomic_long run; /* number of the run at hand */
+    atomic_int busy; /* threads that are at it    */
+    bool finished;   /* for good                  */
     void (*task)(void *self, int k);
     void *self;
     int tasks;
     atomic_int next;
 };
+
+/* Runs follow each other within microseconds, in which a sleeping thread would hardly wake: so each looks out
+ * for a while. */
+enum { PATIENCE = 5000 };
 
 static void do_tasks(Workers *workers)
 {
@@ -26,20 +30,20 @@ static void do_tasks(Workers *workers)
 static void *work(void *data)
 {
     Workers *workers = data;
-    pthread_mutex_lock(&workers->lock);
-    for (long done = 0; !workers->finished;) {
-        if (workers->run == done) {
-            pthread_cond_wait(&workers->begin, &workers->lock);
-            continue;
+    for (long done = 0;; done++) {
+        for (int k = 0; k < PATIENCE && atomic_load_explicit(&workers->run, memory_order_relaxed) == done;
+             k++) {
         }
-        done = workers->run;
+        pthread_mutex_lock(&workers->lock);
+        while (workers->run == done && !workers->finished) pthread_cond_wait(&workers->begin, &workers->lock);
+        bool finished = workers->finished;
         pthread_mutex_unlock(&workers->lock);
+        if (finished) return NULL;
         do_tasks(workers);
         pthread_mutex_lock(&workers->lock);
         if (--workers->busy == 0) pthread_cond_signal(&workers->end);
+        pthread_mutex_unlock(&workers->lock);
     }
-    pthread_mutex_unlock(&workers->lock);
-    return NULL;
 }
 
 Workers *workers_create(int threads)
@@ -92,6 +96,8 @@ void workers_run(Workers *workers, int tasks, void (*task)(void *self, int k), v
     pthread_cond_broadcast(&workers->begin);
     pthread_mutex_unlock(&workers->lock);
     do_tasks(workers);
+    for (int k = 0; k < PATIENCE && atomic_load_explicit(&workers->busy, memory_order_relaxed) > 0; k++) {
+    }
     pthread_mutex_lock(&workers->lock);
     while (workers->busy > 0) pthread_cond_wait(&workers->end, &workers->lock);
     pthread_mutex_unlock(&workers->lock);

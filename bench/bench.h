@@ -10,3 +10,4 @@ void bench_design(void);
 void bench_march(void);
 void bench_trajectory(void);
 void bench_rod(void);
+void bench_spline(void);

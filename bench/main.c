@@ -15,6 +15,7 @@ static const struct {
     {"trajectory", bench_trajectory},
     {"design", bench_design},
     {"rod", bench_rod},
+    {"spline", bench_spline},
 };
 
 enum { CASE_COUNT = sizeof cases / sizeof *cases };

@@ -26,8 +26,8 @@ void system_destroy(System *sys);
 
 void system_add(System *sys, Term term);
 
-/* What a Bulk couples may change with x: system_hessian then makes pattern and order anew, and factors that were kept are
- * lost. Products with d2E/dx dp leave Bulks out. */
+/* What a Bulk couples may change with x: system_hessian then makes pattern and order anew: factors that were kept are
+ * lost, and the counts of system_info begin again. Products with d2E/dx dp leave Bulks out. */
 void system_add_bulk(System *sys, Bulk bulk);
 void system_fix(System *sys, int dof);
 

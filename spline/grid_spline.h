@@ -5,8 +5,9 @@
 #pragma once
 #include "base/pack.h"
 #include "spline/grid.h"
+#include "spline/page.h"
 
-enum { GRID_MAX_WIDTH = 3 };
+enum { GRID_SPLINE_WIDTH = 3 }; /* numbers per pixel, at most */
 
 typedef struct GridSpline GridSpline;
 
@@ -16,8 +17,8 @@ void grid_spline_destroy(GridSpline *spline);
 
 /* Value and derivatives of each number at a pack of points. */
 typedef struct GridSample {
-    Pack value[GRID_MAX_WIDTH], x[GRID_MAX_WIDTH], y[GRID_MAX_WIDTH];
-    Pack xx[GRID_MAX_WIDTH], xy[GRID_MAX_WIDTH], yy[GRID_MAX_WIDTH];
+    Pack value[GRID_SPLINE_WIDTH], x[GRID_SPLINE_WIDTH], y[GRID_SPLINE_WIDTH];
+    Pack xx[GRID_SPLINE_WIDTH], xy[GRID_SPLINE_WIDTH], yy[GRID_SPLINE_WIDTH];
 } GridSample;
 
 /* Derivatives up to `order`, 0 to 2; outside of the page it continues without change across the edge. */

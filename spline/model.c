@@ -33,7 +33,7 @@ SplineModel *spline_model_create(const SplineTarget *target, const Strokes *stro
                            .node_count = strokes_node_count(strokes),
                            .segment_count = strokes_segment_count(strokes),
                            .rule = spline_rule_gauss(def->points),
-                           .wall_rule = spline_rule_lobatto(),
+                           .wall_rule = spline_rule_hull(),
                            .pair_kernel = def->pair_kernel,
                            .pair_radius = def->pair_radius * target->spacing};
     size_t segments = (size_t)model->segment_count;

@@ -25,12 +25,12 @@ typedef struct SplineModel {
     const SplineTarget *target; /* borrowed */
     Workers *workers;
     int stroke_count, node_count, segment_count;
-    int *start;        /* [stroke_count + 1] first node of each stroke                    */
-    int *segment_node; /* [segment_count] first node of each segment                      */
-    double *rest;      /* [segment_count] L0                                              */
-    Pack *rest_pack;   /* the same in packs, as TermOps count them                        */
-    SplineRule rule;   /* of the energies; the wall's has the ends of segments, too       */
-    SplineRule wall_rule;
+    int *start;           /* [stroke_count + 1] first node of each stroke                    */
+    int *segment_node;    /* [segment_count] first node of each segment                      */
+    double *rest;         /* [segment_count] L0                                              */
+    Pack *rest_pack;      /* the same in packs, as TermOps count them                        */
+    SplineRule rule;      /* quadrature of the energies                                      */
+    SplineRule wall_rule; /* the hull's                                                      */
     PairKernel pair_kernel;
     double pair_radius; /* units of the page */
 } SplineModel;

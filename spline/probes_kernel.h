@@ -6,10 +6,11 @@
 #include "spline/probes.h"
 #include <math.h>
 
-/* Rows [from, to) of each level: a part of the page, so that threads can share out what is written to probes.
- */
+/* Rows [from, to) of each level: a part of the page, so that threads can share out what is written to probes;
+ * and between which y the points are that its probes may see. */
 typedef struct ProbeRows {
     int from[PROBES_MAX_LEVELS], to[PROBES_MAX_LEVELS];
+    double low[PROBES_MAX_LEVELS], high[PROBES_MAX_LEVELS];
 } ProbeRows;
 
 /* Rows whose probes are at y in [from, to). */
@@ -20,6 +21,8 @@ static inline ProbeRows probe_rows(const Probes *probes, double from, double to)
         const ProbeLevel *level = &probes->levels[l];
         rows.from[l] = (int)fmin(fmax(ceil(from / level->dy - 0.5), 0), level->rows);
         rows.to[l] = (int)fmin(fmax(ceil(to / level->dy - 0.5), 0), level->rows);
+        rows.low[l] = from - level->reach;
+        rows.high[l] = to + level->reach;
     }
     return rows;
 }
@@ -79,7 +82,7 @@ static inline void probes_spread(const Probes *probes, const ProbeRows *rows, do
 {
     unsigned seen = probe_levels(probes, x, y);
     for (int l = 0; seen >> l; l++) {
-        if (!(seen >> l & 1)) continue;
+        if (!(seen >> l & 1) || y < rows->low[l] || y > rows->high[l]) continue;
         const ProbeLevel *level = &probes->levels[l];
         ProbeWindow w = probe_window(level, x, y);
         int top = w.top > rows->from[l] ? w.top : rows->from[l];

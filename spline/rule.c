@@ -1,6 +1,5 @@
 #include "spline/rule.h"
 #include <assert.h>
-#include <math.h>
 
 /* The points right of the middle, as offsets from it in half lengths, with their weights; `middle` is the
  * weight of the middle itself, where it is a point. */
@@ -63,7 +62,13 @@ SplineRule spline_rule_gauss(int count)
     return build(half);
 }
 
-SplineRule spline_rule_lobatto(void)
+SplineRule spline_rule_hull(void)
 {
-    return build(&(Half){4, {sqrt(0.2), 1}, {5.0 / 6, 1.0 / 6}, 0});
+    static const double control[4][4] = {{1, 0, 0, 0}, {1, 1, 0, 0}, {0, 0, 1, -1}, {0, 0, 1, 0}};
+    SplineRule rule = {0};
+    for (int k = 0; k < 4; k++) {
+        add_point(&rule, k / 3.0, 0.25);
+        for (int i = 0; i < 4; i++) rule.value[k][i] = control[k][i];
+    }
+    return rule;
 }

@@ -19,5 +19,6 @@ bool spline_rule_exists(int count);
 /* Gauss-Legendre, exact to degree 2 count - 1. */
 SplineRule spline_rule_gauss(int count);
 
-/* Gauss-Lobatto with four points, of which two are the ends; exact to degree 5. */
-SplineRule spline_rule_lobatto(void);
+/* No quadrature points but the four control points, with r' at thirds: where these are, in whose convex hull
+ * the segment lies, none of it can be elsewhere. */
+SplineRule spline_rule_hull(void);

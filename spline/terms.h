@@ -25,9 +25,9 @@
 
 /* Which second derivatives a term gives. */
 typedef enum SplineHessian {
-    SPLINE_EXACT, /* of the energy                                                                          */
-    SPLINE_POSITIVE, /* positive semidefinite: what bends energies down is left out (Gauss-Newton) */
-    SPLINE_OWN, /* the same, and of Bulks only the part within each segment: coupled along strokes only   */
+    SPLINE_EXACT,    /* of the energy                                                             */
+    SPLINE_POSITIVE, /* semidefinite: what bends energies down is left out (Gauss-Newton)         */
+    SPLINE_OWN,      /* the same, and of Bulks the part within segments: coupled along strokes only */
 } SplineHessian;
 
 /* The terms borrow the model. */

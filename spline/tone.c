@@ -20,7 +20,7 @@ typedef struct ToneTerm {
 enum { TASK_POINTS = 256 };
 
 static const double MARGIN =
-    0.2; /* of the mean line distance: how far points may go before lists are made anew */
+    0.02; /* of the mean line distance: how far points may go before lists are made anew */
 
 static void gather_task(void *self, int task)
 {

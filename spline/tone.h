@@ -24,9 +24,6 @@ void tone_clear(Tone *tone);
 /* Ink of all points, and then energy and forces of it. Returns E/K. */
 double tone_update(Tone *tone, const SplinePoints *points);
 
-/* Root mean square over the page of rho_c - D_c, after tone_update. */
-double tone_error(const Tone *tone);
-
 /* What the probes do to a point: E/K per length of ink there, and its derivatives in the place. */
 static inline ProbeSums tone_sums(const Tone *tone, double x, double y, int order)
 {

@@ -8,20 +8,27 @@ static bool ink_gradient(const Probes *probes, const ProbeLevel *level, int i, i
                          const SplinePoints *points, int m, Pack gradient[8])
 {
     const SplineRule *rule = points->rule;
-    Pack inverse = probe_load(probes->inverse + level->first + (long)j * level->stride + i), total = {0};
+    Pack inverse = probe_load(probes->inverse + level->first + (long)j * level->stride + i), near = {0};
+    Pack dx[RULE_MAX_POINTS], z[RULE_MAX_POINTS];
+    for (int q = 0; q < rule->count; q++) {
+        int p = m * rule->count + q;
+        dx[q] = probe_dx(level, points->x[p], i);
+        z[q] = probe_closeness(dx[q], points->y[p] - (j + 0.5) * level->dy, inverse);
+        near += z[q];
+    }
+    if (!(pack_sum(near * inverse, PACK_LANES) > 0)) return false;
     memset(gradient, 0, 8 * sizeof *gradient);
     for (int q = 0; q < rule->count; q++) {
         int p = m * rule->count + q;
         double dy = points->y[p] - (j + 0.5) * level->dy, n = points->n[p], w = rule->weight[q];
-        Pack dx = probe_dx(level, points->x[p], i), z = probe_closeness(dx, dy, inverse);
-        Pack along = w / n * inverse * z * z * z, slope = -6 * w * n * inverse * inverse * z * z;
-        total += z;
+        Pack along = w / n * inverse * z[q] * z[q] * z[q],
+             slope = -6 * w * n * inverse * inverse * z[q] * z[q];
         for (int k = 0; k < 4; k++) {
-            gradient[2 * k] += rule->value[q][k] * slope * dx + rule->first[q][k] * along * points->tx[p];
+            gradient[2 * k] += rule->value[q][k] * slope * dx[q] + rule->first[q][k] * along * points->tx[p];
             gradient[2 * k + 1] += rule->value[q][k] * slope * dy + rule->first[q][k] * along * points->ty[p];
         }
     }
-    return pack_sum(total * inverse, PACK_LANES) > 0;
+    return true;
 }
 
 /* Cells of a level that may see a segment within a margin. */
@@ -246,7 +253,7 @@ static void sight_gradient(const Tone *tone, const SplinePoints *points, int m, 
     while (l + 1 < probes->level_count && cell >= probes->levels[l + 1].first) l++;
     const ProbeLevel *level = &probes->levels[l];
     long place = cell - level->first;
-    Pack packs[8];
+    Pack packs[8] = {{0}};
     ink_gradient(probes, level, (int)(place % level->stride), (int)(place / level->stride), points, m, packs);
     for (int i = 0; i < 8; i++) gradient[i] = packs[i][0];
 }

@@ -110,21 +110,3 @@ double tone_update(Tone *tone, const SplinePoints *points)
     for (int k = 0; k < tone->row_count; k++) energy += tone->rows[k];
     return energy;
 }
-
-double tone_error(const Tone *tone)
-{
-    const Probes *probes = tone->probes;
-    double sum = 0, area = 0;
-    for (int l = 0; l < probes->level_count; l++) {
-        const ProbeLevel *level = &probes->levels[l];
-        for (int j = 0; j < level->rows; j++)
-            for (int i = 0; i < level->columns; i++) {
-                long k = level->first + (long)j * level->stride + i;
-                double off = tone->ink[k] - probes->target[k];
-                if (probes->inverse[k] == 0) continue;
-                sum += level->dx * level->dy * off * off;
-                area += level->dx * level->dy;
-            }
-    }
-    return sqrt(sum / area);
-}

@@ -1,5 +1,6 @@
 /* Wall: psi = R n sum of b(d) over the edges, b = -(1 - d/dh)^2 ln(d/dh) for d < dh = two pens, else 0: C2,
- * convex, and infinite at the edge [Li 2020, incremental potential contact]. */
+ * convex, and infinite at the edge [Li 2020, incremental potential contact]. The distances are those of the
+ * control points, so that no part of a stroke can slip through between two points. */
 #include "spline/walls.h"
 #include <math.h>
 

@@ -37,11 +37,25 @@ static double coordinate(const double basis[4], const double *x, int axis)
     return r;
 }
 
+/* Are all control points of a segment so far inside that no limit applies? */
+static bool is_far_inside(const SplinePage *page, const double *q)
+{
+    double size[2] = {page->width, page->height};
+    bool inside = true;
+    for (int i = 0; i < 8; i += 4)
+        for (int axis = 0; axis < 2; axis++) {
+            double p = q[i + axis], v = fabs(q[i + 2 + axis]);
+            inside &= p - v > (1 - FRACTION) * size[axis] && p + v < FRACTION * size[axis];
+        }
+    return inside;
+}
+
 /* r(s) is linear in the dofs, so this is exact. */
 static double allowed_part(const SegmentTerm *term, int node, const double *from, const double *to)
 {
     const double size[2] = {term->model->target->page.width, term->model->target->page.height};
     double part = 1;
+    if (is_far_inside(&term->model->target->page, to + 4 * node)) return part;
     for (int k = 0; k < term->rule->count; k++)
         for (int axis = 0; axis < 2; axis++)
             part = fmin(part, part_of(coordinate(term->rule->value[k], from + 4 * node, axis),
