@@ -11,7 +11,7 @@ cd "$(dirname "$0")"
 root=$(pwd)
 
 packages="gcc cmake make pkg-config libsuitesparse-dev libopenblas-dev libnlopt-dev libmuparser-dev libcairo2-dev
-          libyaml-dev libsqlite3-dev libhdf5-dev libwebp-dev zlib1g-dev fonts-dejavu-core libcmocka-dev"
+          libyaml-dev libsqlite3-dev libhdf5-dev libwebp-dev libjpeg-dev zlib1g-dev fonts-dejavu-core libcmocka-dev"
 
 # Runs a command without a word, unless it fails.
 quietly() {

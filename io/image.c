@@ -1,175 +1,107 @@
 #include "io/image.h"
 #include "base/memory.h"
 #include "io/canvas.h"
-#include <ctype.h>
-#include <errno.h>
+#include "io/image_reader.h"
+#include "io/scan.h"
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
-/* A PGM's text, read number by number. */
-typedef struct Reader {
-    const char *path;
-    const unsigned char *bytes;
-    size_t length, place;
-} Reader;
-
-static int reader_line(const Reader *reader)
+bool levels_create(const ImageBytes *file, Levels *levels, size_t least_bytes, Error *err)
 {
-    int line = 1;
-    for (size_t i = 0; i < reader->place; i++) line += reader->bytes[i] == '\n';
-    return line;
-}
-
-static void skip_blanks(Reader *reader)
-{
-    while (reader->place < reader->length) {
-        unsigned char c = reader->bytes[reader->place];
-        if (c == '#')
-            while (reader->place < reader->length && reader->bytes[reader->place] != '\n') reader->place++;
-        else if (!isspace(c))
-            return;
-        else
-            reader->place++;
-    }
-}
-
-/* A whole number in low..high; what names it in the sentence. */
-static bool read_number(Reader *reader, const char *what, int low, int high, int *number, Error *err)
-{
-    skip_blanks(reader);
-    long value = 0;
-    size_t start = reader->place;
-    while (reader->place < reader->length && isdigit(reader->bytes[reader->place]) && value <= high)
-        value = 10 * value + reader->bytes[reader->place++] - '0';
-    if (reader->place == reader->length && start == reader->place)
-        return error_set(err, "%s:%d: the file ends where the %s should be", reader->path,
-                         reader_line(reader), what);
-    if (start == reader->place || value < low || value > high)
-        return error_set(err, "%s:%d: the %s must be a whole number from %d to %d", reader->path,
-                         reader_line(reader), what, low, high);
-    *number = (int)value;
+    size_t pixels = (size_t)levels->width * (size_t)levels->height;
+    if (pixels > IMAGE_MAX_PIXELS)
+        return error_set(err, "%s: an image of %d x %d pixels; at most 100 million are read", file->path,
+                         levels->width, levels->height);
+    if (file->length < least_bytes)
+        return error_set(err, "%s: the file ends before the last of %d x %d pixels", file->path,
+                         levels->width, levels->height);
+    levels->level = mem_alloc(pixels * (size_t)levels->channels, sizeof *levels->level);
     return true;
 }
 
-static bool read_text_pixels(Reader *reader, int maxval, size_t count, double *grey, Error *err)
-{
-    for (size_t i = 0; i < count; i++) {
-        int level;
-        if (!read_number(reader, "grey level", 0, maxval, &level, err)) return false;
-        grey[i] = (double)level / maxval;
-    }
-    return true;
-}
-
-/* One byte a pixel, or two with the greater first where maxval exceeds 255. */
-static bool read_binary_pixels(Reader *reader, int maxval, size_t count, double *grey, Error *err)
-{
-    int wide = maxval > 255;
-    const unsigned char *b = reader->bytes + reader->place;
-    for (size_t i = 0; i < count; i++, b += 1 + wide) {
-        int level = wide ? b[0] << 8 | b[1] : b[0];
-        if (level > maxval)
-            return error_set(err, "%s: grey level %d of pixel %zu exceeds the file's maximum %d",
-                             reader->path, level, i, maxval);
-        grey[i] = (double)level / maxval;
-    }
-    return true;
-}
-
-bool image_parse_pgm(const char *path, const unsigned char *bytes, size_t length, Image *image, Error *err)
-{
-    *image = (Image){0};
-    if (length < 2 || bytes[0] != 'P' || (bytes[1] != '2' && bytes[1] != '5'))
-        return error_set(err, "%s: not a PGM file (P2 or P5)", path);
-    bool binary = bytes[1] == '5';
-    Reader reader = {path, bytes, length, 2};
-    int width, height, maxval;
-    if (!read_number(&reader, "width", 1, IMAGE_MAX_PIXELS, &width, err)) return false;
-    if (!read_number(&reader, "height", 1, IMAGE_MAX_PIXELS, &height, err)) return false;
-    if ((size_t)width * (size_t)height > IMAGE_MAX_PIXELS)
-        return error_set(err, "%s: an image of %d x %d pixels; at most 100 million are read", path, width,
-                         height);
-    if (!read_number(&reader, "greatest grey level", 1, 65535, &maxval, err)) return false;
-    if (reader.place < length && isspace(bytes[reader.place]))
-        reader.place++; /* exactly one: pixels follow */
-
-    /* Before memory is reserved: can the pixels be there at all? In text each takes a digit and all but one a
-     * blank. */
-    size_t count = (size_t)width * (size_t)height;
-    size_t least = !binary ? 2 * count - 1 : maxval > 255 ? 2 * count : count;
-    if (length - reader.place < least)
-        return error_set(err, "%s: the file ends before the last of %d x %d pixels", path, width, height);
-    image->width = width;
-    image->height = height;
-    image->grey = mem_alloc(count, sizeof *image->grey);
-    bool ok = (binary ? read_binary_pixels : read_text_pixels)(&reader, maxval, count, image->grey, err);
-    if (!ok) image_clear(image);
-    return ok;
-}
-
-static bool read_png(const char *path, Image *image, Error *err)
+static bool levels_read_png(const ImageBytes *file, Levels *levels, Error *err)
 {
     unsigned char *rgb;
-    if (!canvas_read_png(path, &rgb, &image->width, &image->height, err)) {
-        *image = (Image){0};
-        return false;
-    }
-    size_t count = (size_t)image->width * (size_t)image->height;
-    image->grey = mem_alloc(count, sizeof *image->grey);
-    for (size_t i = 0; i < count; i++)
-        image->grey[i] = (2126 * rgb[3 * i] + 7152 * rgb[3 * i + 1] + 722 * rgb[3 * i + 2]) / (10000 * 255.0);
+    *levels = (Levels){.channels = 3, .maximum = 255};
+    if (!canvas_read_png(file->path, &rgb, &levels->width, &levels->height, err)) return false;
+    bool ok = levels_create(file, levels, 0, err);
+    size_t count = 3 * (size_t)levels->width * (size_t)levels->height;
+    for (size_t i = 0; ok && i < count; i++) levels->level[i] = rgb[i];
     mem_free(rgb);
-    return true;
+    return ok;
 }
 
-/* All bytes of the open file; NULL with errno set where that fails. */
-static unsigned char *file_bytes(FILE *file, size_t *length)
+/* PGM, PPM, JPEG. */
+static bool parse(const ImageBytes *file, Levels *levels, Error *err)
 {
-    size_t capacity = 1 << 16;
-    unsigned char *bytes = mem_alloc(capacity, 1);
-    *length = 0;
-    for (;;) {
-        *length += fread(bytes + *length, 1, capacity - *length, file);
-        if (*length < capacity) break;
-        bytes = mem_resize(bytes, capacity, 2 * capacity, 1);
-        capacity *= 2;
-    }
-    if (!ferror(file)) return bytes;
-    mem_free(bytes);
-    return NULL;
+    const unsigned char *b = file->bytes;
+    *levels = (Levels){0};
+    if (file->length == 0) return error_set(err, "%s: the file is empty", file->path);
+    if (file->length >= 2 && b[0] == 'P' && b[1] && strchr("2356", b[1]))
+        return levels_read_pnm(file, levels, err);
+    if (file->length >= 3 && memcmp(b, "\xff\xd8\xff", 3) == 0) return levels_read_jpeg(file, levels, err);
+    return error_set(err, "%s: not a PNG, JPEG, PGM or PPM image; convert it to PNG", file->path);
 }
 
-static bool read_pgm(const char *path, FILE *file, Image *image, Error *err)
+static bool read_file(const char *path, Levels *levels, Error *err)
 {
+    char *bytes;
     size_t length;
-    unsigned char *bytes = file_bytes(file, &length);
-    if (!bytes) return error_set(err, "%s: cannot be read: %s", path, strerror(errno));
-    bool ok = image_parse_pgm(path, bytes, length, image, err);
+    *levels = (Levels){0};
+    if (!scan_file(path, &bytes, &length, err)) return false;
+    ImageBytes file = {path, (unsigned char *)bytes, length};
+    bool png = length >= 4 && memcmp(bytes, "\x89PNG", 4) == 0;
+    bool ok = (png ? levels_read_png : parse)(&file, levels, err);
     mem_free(bytes);
     return ok;
 }
+
+/* The weighted sum of the channels; weights are 1/10000. */
+static Image levels_image(const Levels *levels, const int weights[3])
+{
+    size_t count = (size_t)levels->width * (size_t)levels->height, channels = (size_t)levels->channels;
+    Image image = {levels->width, levels->height, mem_alloc(count, sizeof *image.grey)};
+    for (size_t i = 0; i < count; i++) {
+        const uint16_t *level = levels->level + channels * i;
+        if (channels == 1)
+            image.grey[i] = (double)level[0] / levels->maximum;
+        else
+            image.grey[i] = (weights[0] * level[0] + weights[1] * level[1] + weights[2] * level[2]) /
+                            (10000.0 * levels->maximum);
+    }
+    return image;
+}
+
+static const int luma[3] = {2126, 7152, 722};
 
 bool image_read(const char *path, Image *image, Error *err)
 {
+    Levels levels;
     *image = (Image){0};
-    FILE *file = fopen(path, "rb");
-    if (!file) return error_set(err, "%s: cannot be read: %s", path, strerror(errno));
-    unsigned char magic[4] = {0};
-    size_t got = fread(magic, 1, sizeof magic, file);
-    bool ok;
-    if (ferror(file))
-        ok = error_set(err, "%s: cannot be read: %s", path, strerror(errno));
-    else if (got == 0)
-        ok = error_set(err, "%s: the file is empty", path);
-    else if (memcmp(magic, "\x89PNG", 4) == 0)
-        ok = read_png(path, image, err);
-    else if (magic[0] == 'P' && (magic[1] == '2' || magic[1] == '5') && fseek(file, 0, SEEK_SET) == 0)
-        ok = read_pgm(path, file, image, err);
-    else
-        ok = error_set(err, "%s: neither a PNG nor a PGM image (P2, P5); convert it to PNG", path);
-    fclose(file);
+    if (!read_file(path, &levels, err)) return false;
+    *image = levels_image(&levels, luma);
+    mem_free(levels.level);
+    return true;
+}
+
+bool image_read_rgb(const char *path, Image rgb[3], Error *err)
+{
+    static const int one[3][3] = {{10000, 0, 0}, {0, 10000, 0}, {0, 0, 10000}};
+    Levels levels;
+    bool ok = read_file(path, &levels, err);
+    for (int c = 0; c < 3; c++) rgb[c] = ok ? levels_image(&levels, one[c]) : (Image){0};
+    mem_free(levels.level);
     return ok;
+}
+
+bool image_parse(const char *path, const unsigned char *bytes, size_t length, Image *image, Error *err)
+{
+    Levels levels;
+    *image = (Image){0};
+    if (!parse(&(ImageBytes){path, bytes, length}, &levels, err)) return false;
+    *image = levels_image(&levels, luma);
+    mem_free(levels.level);
+    return true;
 }
 
 double image_sample(const Image *image, double u, double v)

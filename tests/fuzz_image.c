@@ -1,4 +1,5 @@
-/* fuzz_image.c - libFuzzer: any bytes are either a PGM with levels 0..1 or refused with a sentence. */
+/* fuzz_image.c - libFuzzer: any bytes are either a PGM, PPM or JPEG with levels 0..1 or refused with a
+ * sentence. */
 #include "io/image.h"
 #include <assert.h>
 #include <stdint.h>
@@ -9,7 +10,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t length)
 {
     Image image;
     Error err = {""};
-    if (!image_parse_pgm("fuzz.pgm", bytes, length, &image, &err)) {
+    if (!image_parse("fuzz.image", bytes, length, &image, &err)) {
         assert(err.text[0] && !image.grey);
         return 0;
     }

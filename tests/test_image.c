@@ -72,12 +72,65 @@ static void pgm_kinds(void **state)
     expect_grey("image_one.pgm", 1, 1, (const double[]){1});
 }
 
+static void expect_rgb(const char *path, int width, int height, const double (*rgb)[3], double tolerance)
+{
+    Image planes[3];
+    Error err = {""};
+    if (!image_read_rgb(path, planes, &err)) fail_msg("%s", err.text);
+    for (int c = 0; c < 3; c++) {
+        assert_int_equal(planes[c].width, width);
+        assert_int_equal(planes[c].height, height);
+        for (int i = 0; i < width * height; i++) expect_close(planes[c].grey[i], rgb[i][c], tolerance);
+        image_clear(&planes[c]);
+    }
+}
+
+static void ppm_kinds(void **state)
+{
+    (void)state;
+    const char text[] = "P3 2 1 4\n4 0 0  1 2 3";
+    write_file("image_text.ppm", text, sizeof text - 1);
+    expect_grey("image_text.ppm", 2, 1, (const double[]){0.2126, (0.2126 + 2 * 0.7152 + 3 * 0.0722) / 4});
+    expect_rgb("image_text.ppm", 2, 1, (const double[][3]){{1, 0, 0}, {0.25, 0.5, 0.75}}, 1e-15);
+    write_file("image_bytes.ppm", "P6 1 1 255\n\x00\x33\xff", 14);
+    expect_rgb("image_bytes.ppm", 1, 1, (const double[][3]){{0, 0.2, 1}}, 1e-15);
+    write_file("image_wide.ppm", "P6 1 1 65535\n\x01\x00\x00\x00\xff\xff", 19);
+    expect_rgb("image_wide.ppm", 1, 1, (const double[][3]){{256 / 65535.0, 0, 1}}, 1e-15);
+    write_file("image_grey.pgm", "P5 1 1 255\n\x33", 12);
+    expect_rgb("image_grey.pgm", 1, 1, (const double[][3]){{0.2, 0.2, 0.2}}, 1e-15);
+}
+
+/* 16x8, black beside white; and red beside blue, which the tag turns to stand above it. */
+static void jpeg_kinds(void **state)
+{
+    (void)state;
+    Image image, rgb[3];
+    Error err = {""};
+    if (!image_read(SOURCE_DIR "/tests/images/grey.jpg", &image, &err)) fail_msg("%s", err.text);
+    assert_int_equal(image.width, 16);
+    assert_int_equal(image.height, 8);
+    for (int i = 0; i < 128; i++) expect_close(image.grey[i], i % 16 >= 8, 0.01);
+    image_clear(&image);
+    if (!image_read_rgb(SOURCE_DIR "/tests/images/turned.jpg", rgb, &err)) fail_msg("%s", err.text);
+    assert_int_equal(rgb[0].width, 8);
+    assert_int_equal(rgb[0].height, 16);
+    for (int i = 0; i < 128; i++) {
+        expect_close(rgb[0].grey[i], i < 64, 0.01);
+        expect_close(rgb[1].grey[i], 0, 0.01);
+        expect_close(rgb[2].grey[i], i >= 64, 0.01);
+    }
+    for (int c = 0; c < 3; c++) image_clear(&rgb[c]);
+}
+
 static void png_kinds(void **state)
 {
     (void)state;
     write_file("image_grey16.png", png_grey16, sizeof png_grey16);
     expect_grey("image_grey16.png", 3, 1, (const double[]){0, 128 / 255.0, 1});
     write_file("image_rgba.png", png_rgba, sizeof png_rgba);
+    expect_rgb("image_rgba.png", 2, 2,
+               (const double[][3]){{1, 0, 0}, {0, 1, 0}, {127 / 255.0, 127 / 255.0, 127 / 255.0}, {1, 1, 1}},
+               1e-15);
     expect_grey("image_rgba.png", 2, 2, (const double[]){0.2126, 0.7152, 127 / 255.0, 1});
     write_file("image_palette.png", png_palette, sizeof png_palette);
     expect_grey("image_palette.png", 2, 1, (const double[]){1, 0.0722});
@@ -108,15 +161,17 @@ static void pgm_refused(void **state)
         {"P5 10000 10000 255 abc", "bad.pgm: the file ends before the last of 10000 x 10000 pixels"},
         {"P5 2 2 255 abc", "bad.pgm: the file ends before the last of 2 x 2 pixels"},
         {"P5 2 1 65535 abc", "bad.pgm: the file ends before the last of 2 x 1 pixels"},
-        {"P5 1 1 65536 a", "bad.pgm:1: the greatest grey level must be a whole number from 1 to 65535"},
-        {"P5 1 1 0 a", "bad.pgm:1: the greatest grey level must be a whole number from 1 to 65535"},
-        {"P5 2 1 96 aa", "bad.pgm: grey level 97 of pixel 0 exceeds the file's maximum 96"},
-        {"P2 2 1 255\n1\n256", "bad.pgm:3: the grey level must be a whole number from 0 to 255"},
-        {"P2 2 1 255\n1 x", "bad.pgm:2: the grey level must be a whole number from 0 to 255"},
-        {"P2 2 1 255\n123 \n", "bad.pgm:3: the file ends where the grey level should be"},
+        {"P5 1 1 65536 a", "bad.pgm:1: the greatest level must be a whole number from 1 to 65535"},
+        {"P5 1 1 0 a", "bad.pgm:1: the greatest level must be a whole number from 1 to 65535"},
+        {"P5 2 1 96 aa", "bad.pgm: level 97 of pixel 0 exceeds the file's maximum 96"},
+        {"P2 2 1 255\n1\n256", "bad.pgm:3: the level must be a whole number from 0 to 255"},
+        {"P2 2 1 255\n1 x", "bad.pgm:2: the level must be a whole number from 0 to 255"},
+        {"P2 2 1 255\n123 \n", "bad.pgm:3: the file ends where the level should be"},
         {"P2 2 1 255\n1", "bad.pgm: the file ends before the last of 2 x 1 pixels"},
-        {"P6 1 1 255 abc", "bad.pgm: neither a PNG nor a PGM image (P2, P5); convert it to PNG"},
-        {"\xff\xd8\xff\xe0", "bad.pgm: neither a PNG nor a PGM image (P2, P5); convert it to PNG"},
+        {"P6 1 1 255 ab", "bad.pgm: the file ends before the last of 1 x 1 pixels"},
+        {"P3 1 1 9 1 2 10", "bad.pgm:1: the level must be a whole number from 0 to 9"},
+        {"P4 1 1 a", "bad.pgm: not a PNG, JPEG, PGM or PPM image; convert it to PNG"},
+        {"P", "bad.pgm: not a PNG, JPEG, PGM or PPM image; convert it to PNG"},
         {"", "bad.pgm: the file is empty"},
     };
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++) {
@@ -126,6 +181,33 @@ static void pgm_refused(void **state)
     remove("bad.pgm");
     expect_refused("bad.pgm", "bad.pgm: cannot be read: No such file or directory");
     expect_refused("/", "/: cannot be read: Is a directory");
+}
+
+static void jpeg_refused(void **state)
+{
+    (void)state;
+    expect_refused(SOURCE_DIR "/tests/images/cmyk.jpg",
+                   SOURCE_DIR "/tests/images/cmyk.jpg: a JPEG of 4 colours; save it as RGB or grey");
+    FILE *file = fopen(SOURCE_DIR "/tests/images/turned.jpg", "rb");
+    assert_non_null(file);
+    unsigned char bytes[1024];
+    size_t length = fread(bytes, 1, sizeof bytes, file);
+    fclose(file);
+    for (size_t cut = 3; cut < length - 2; cut++) {
+        Image image;
+        Error err = {""};
+        assert_false(image_parse("cut.jpg", bytes, cut, &image, &err));
+        assert_non_null(strstr(err.text, "cut.jpg: the JPEG data are broken: "));
+        assert_null(image.grey);
+    }
+    unsigned char *size = memmem(bytes, length, "\xff\xc2\x00\x11\x08", 5);
+    assert_non_null(size);
+    memcpy(size + 5, "\xff\xdc\xff\xdc", 4);
+    write_file("bad.jpg", bytes, length);
+    expect_refused("bad.jpg", "bad.jpg: an image of 65500 x 65500 pixels; at most 100 million are read");
+    memcpy(size + 5, "\x10\x00\x10\x00", 4);
+    write_file("bad.jpg", bytes, length);
+    expect_refused("bad.jpg", "bad.jpg: the file ends before the last of 4096 x 4096 pixels");
 }
 
 static void png_refused(void **state)
@@ -190,6 +272,9 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_teardown(pgm_kinds, nothing_leaks),
+        cmocka_unit_test_teardown(ppm_kinds, nothing_leaks),
+        cmocka_unit_test_teardown(jpeg_kinds, nothing_leaks),
+        cmocka_unit_test_teardown(jpeg_refused, nothing_leaks),
         cmocka_unit_test_teardown(png_kinds, nothing_leaks),
         cmocka_unit_test_teardown(pgm_refused, nothing_leaks),
         cmocka_unit_test_teardown(png_refused, nothing_leaks),
