@@ -3,6 +3,7 @@
 
 enum { SWEEPS = 8, COARSEST = 4 };
 
+/* Means of 2 x 2 pixels; where half of them would jut out, the last ones count twice. */
 static SplineField coarsen(const SplineField *fine)
 {
     SplineField coarse = {(fine->columns + 1) / 2, (fine->rows + 1) / 2, fine->width, NULL};
@@ -11,9 +12,8 @@ static SplineField coarsen(const SplineField *fine)
     for (int i = 0; i < 2 * coarse.rows; i++)
         for (int j = 0; j < 2 * coarse.columns; j++) {
             int row = i < fine->rows ? i : fine->rows - 1, column = j < fine->columns ? j : fine->columns - 1;
-            const double *from =
-                fine->values + ((size_t)row * (size_t)fine->columns + (size_t)column) * width;
-            double *to = coarse.values + ((size_t)(i / 2) * (size_t)coarse.columns + (size_t)(j / 2)) * width;
+            const double *from = spline_field_pixel(fine, row, column);
+            double *to = spline_field_pixel(&coarse, i / 2, j / 2);
             for (size_t k = 0; k < width; k++) to[k] += from[k] / 4;
         }
     return coarse;
@@ -21,15 +21,11 @@ static SplineField coarsen(const SplineField *fine)
 
 static void prolong(const SplineField *coarse, SplineField *fine)
 {
-    SplinePage page = {.width = fine->columns,
-                       .height = fine->rows}; /* pixels; half a coarse one may jut out */
+    SplinePage page = {.width = 2 * coarse->columns, .height = 2 * coarse->rows}; /* in fine pixels */
     SplineGrid grid = spline_grid(coarse);
-    page.width = 2 * coarse->columns;
-    page.height = 2 * coarse->rows;
     for (int i = 0; i < fine->rows; i++)
         for (int j = 0; j < fine->columns; j++)
-            spline_grid_sample(&grid, &page, (Vec2){j + 0.5, i + 0.5},
-                               fine->values + 2 * ((size_t)i * (size_t)fine->columns + (size_t)j));
+            spline_grid_sample(&grid, &page, (Vec2){j + 0.5, i + 0.5}, spline_field_pixel(fine, i, j));
 }
 
 static void relax(const SplineField *source, double stiffness, SplineField *u)
@@ -37,17 +33,17 @@ static void relax(const SplineField *source, double stiffness, SplineField *u)
     int columns = u->columns, rows = u->rows;
     for (int i = 0; i < rows; i++)
         for (int j = 0; j < columns; j++) {
-            size_t at = (size_t)i * (size_t)columns + (size_t)j;
-            double *value = u->values + 2 * at, sum[2] = {0}, neighbours = 0;
+            double *value = spline_field_pixel(u, i, j), around[2] = {0};
             const double *near[4] = {j > 0 ? value - 2 : NULL, j + 1 < columns ? value + 2 : NULL,
-                                     i > 0 ? value - 2 * (size_t)columns : NULL,
-                                     i + 1 < rows ? value + 2 * (size_t)columns : NULL};
+                                     i > 0 ? value - 2 * columns : NULL,
+                                     i + 1 < rows ? value + 2 * columns : NULL};
             for (int k = 0; k < 4; k++)
-                if (near[k]) sum[0] += near[k][0], sum[1] += near[k][1], neighbours++;
-            const double *b = source->values + 3 * at;
-            double u0 = b[0] + stiffness * sum[0], u1 = b[1] + stiffness * sum[1];
-            double scale = 1 / (b[2] + stiffness * neighbours);
-            value[0] = u0 * scale, value[1] = u1 * scale;
+                if (near[k]) around[0] += near[k][0], around[1] += near[k][1];
+            const double *b = spline_field_pixel(source, i, j);
+            double x = b[0] + stiffness * around[0], y = b[1] + stiffness * around[1];
+            double length = sqrt(x * x + y * y), scale = length > 0 ? 1 / length : 0;
+            value[0] = x * scale;
+            value[1] = y * scale;
         }
 }
 

@@ -2,47 +2,54 @@
 #include "base/memory.h"
 #include "spline/diffuse.h"
 
-static const double NOISE = 0.1;  /* gradients below this part of the mean square one are not believed */
-static const double LEAST = 1e-4; /* weight of the angle that holds where nothing else does          */
-
-SplineDirectionDef spline_direction_default(void)
+SplineDirectionDef spline_direction_default(const SplinePage *page)
 {
-    return (SplineDirectionDef){.detail = 0.006, .smooth = 0.02, .spread = 0.02};
+    double pen = fmin(fmax(page->pen, 0.002), 0.01);
+    return (SplineDirectionDef){.detail = pen, .smooth = 3.3 * pen, .spread = 5 * pen};
 }
 
-/* M of the doubled angle c (cos 2 phi, sin 2 phi). */
-static void tensor_store(double *tensor, double cosine, double sine, double coherence)
+/* Turns u (width 2), the coherence times (cos 2 phi, sin 2 phi), into M. u is freed. */
+static SplineField tensors(SplineField *u)
 {
-    double length = hypot(cosine, sine), scale = length > 0 ? coherence / length : 0;
-    tensor[0] = (coherence - scale * cosine) / 2;
-    tensor[1] = -scale * sine / 2;
-    tensor[2] = (coherence + scale * cosine) / 2;
+    SplineField direction = spline_field_like(u, 3);
+    size_t count = (size_t)u->columns * (size_t)u->rows;
+    for (size_t i = 0; i < count; i++) {
+        const double *value = u->values + 2 * i;
+        double *m = direction.values + 3 * i, coherence = hypot(value[0], value[1]);
+        m[0] = (coherence - value[0]) / 2;
+        m[1] = -value[1] / 2;
+        m[2] = (coherence + value[0]) / 2;
+    }
+    spline_field_clear(u);
+    return direction;
 }
 
 Vec2 spline_direction_at(const SplineGrid *direction, const SplinePage *page, Vec2 at, double *coherence)
 {
     double m[3];
     spline_grid_sample(direction, page, at, m);
-    double cosine = m[2] - m[0], sine = -2 * m[1], length = hypot(cosine, sine);
+    double cosine = m[2] - m[0], sine = -2 * m[1], length = sqrt(cosine * cosine + sine * sine);
     if (coherence) *coherence = length;
     if (!(length > 0)) return (Vec2){1, 0};
-    double c = sqrt(fmax(1 + cosine / length, 0) / 2), s = sqrt(fmax(1 - cosine / length, 0) / 2);
-    return (Vec2){c, copysign(s, sine)};
+    double x = sqrt(fmax(1 + cosine / length, 0) / 2), y = sqrt(fmax(1 - cosine / length, 0) / 2);
+    return (Vec2){x, copysign(y, sine)};
 }
 
-/* (z1, z2, |z|) of the gradient, z the doubled angle of the edge across it. */
-static SplineField edge_field(const SplineField *tone, const SplinePage *page)
+/* ---- From edges ---- */
+
+/* (z, |z|) of the gradient, z the doubled angle of the edge across it. It says nothing within `margin` of the
+ * page's edges, where what was mirrored to smooth the tone bends it. */
+static SplineField edge_field(const SplineField *tone, const SplinePage *page, double margin)
 {
     SplineField edges = spline_field_like(tone, 3);
     int columns = tone->columns, rows = tone->rows;
-    double per_x = columns / page->width / 2, per_y = rows / page->height / 2;
-    for (int i = 0; i < rows; i++)
-        for (int j = 0; j < columns; j++) {
-            const double *row = tone->values + (size_t)i * (size_t)columns;
-            int above = i > 0 ? columns : 0, below = i + 1 < rows ? columns : 0;
-            double gx = (row[j + (j + 1 < columns)] - row[j - (j > 0)]) * per_x;
-            double gy = (row[j + below] - row[j - above]) * per_y;
-            double *z = edges.values + 3 * ((size_t)i * (size_t)columns + (size_t)j);
+    double per_x = columns / page->width, per_y = rows / page->height;
+    int left = (int)ceil(margin * per_x), top = (int)ceil(margin * per_y);
+    for (int i = top; i < rows - top; i++)
+        for (int j = left; j < columns - left; j++) {
+            const double *here = spline_field_pixel(tone, i, j);
+            double gx = (here[1] - here[-1]) * per_x / 2, gy = (here[columns] - here[-columns]) * per_y / 2;
+            double *z = spline_field_pixel(&edges, i, j);
             z[0] = gy * gy - gx * gx;
             z[1] = -2 * gx * gy;
             z[2] = gx * gx + gy * gy;
@@ -50,19 +57,20 @@ static SplineField edge_field(const SplineField *tone, const SplinePage *page)
     return edges;
 }
 
-/* What is believed: (a cos 2 phi, a sin 2 phi, a), with a little of the angle that holds where nothing else
- * does. */
+/* From (z, <|grad D|^2>) to what is believed, (a cos 2 phi, a sin 2 phi, a), with a little of the angle that
+ * holds where nothing else does. */
 static void weigh_edges(SplineField *edges, double angle)
 {
     SplineGrid grid = spline_grid(edges);
-    double noise = NOISE * spline_grid_mean(&grid, 2);
+    double mean = spline_grid_mean(&grid, 2), noise = 0.02 * mean + 1e-9, least = 1e-4;
     size_t count = (size_t)edges->columns * (size_t)edges->rows;
     for (size_t i = 0; i < count; i++) {
-        double *z = edges->values + 3 * i, scale = 1 / (z[2] + noise + 1e-9);
-        double a = hypot(z[0], z[1]) * scale;
-        z[0] = z[0] * scale + LEAST * cos(2 * angle);
-        z[1] = z[1] * scale + LEAST * sin(2 * angle);
-        z[2] = a + LEAST;
+        double *z = edges->values + 3 * i;
+        double strong = 1 + 4 * z[2] / (z[2] + mean + 1e-9), scale = strong / (z[2] + noise);
+        double a = scale * hypot(z[0], z[1]);
+        z[0] = scale * z[0] + least * cos(2 * angle);
+        z[1] = scale * z[1] + least * sin(2 * angle);
+        z[2] = a + least;
     }
 }
 
@@ -71,50 +79,96 @@ SplineField spline_direction_from_tone(const SplineField *tone, const SplinePage
 {
     SplineField fine = spline_field_resize(tone, page, def->detail / 2);
     spline_field_blur(&fine, page, def->detail);
-    SplineField sharp = edge_field(&fine, page);
+    SplineField sharp = edge_field(&fine, page, 2 * def->detail);
     SplineField edges = spline_field_resize(&sharp, page, def->detail);
-    spline_field_clear(&fine);
-    spline_field_clear(&sharp);
     spline_field_blur(&edges, page, def->smooth);
     weigh_edges(&edges, def->angle);
 
-    SplineField u = spline_field_like(&edges, 2), direction = spline_field_like(&edges, 3);
+    SplineField u = spline_field_like(&edges, 2);
     double pixels = def->spread * edges.columns / page->width;
     spline_diffuse(&edges, pixels * pixels, &u);
-    size_t count = (size_t)u.columns * (size_t)u.rows;
-    for (size_t i = 0; i < count; i++) {
-        double *z = u.values + 2 * i;
-        tensor_store(direction.values + 3 * i, z[0], z[1], fmin(hypot(z[0], z[1]), 1));
-    }
+    spline_field_blur(&u, page, def->smooth / 2);
+    spline_field_clear(&fine);
+    spline_field_clear(&sharp);
     spline_field_clear(&edges);
-    spline_field_clear(&u);
-    return direction;
+    return tensors(&u);
+}
+
+/* ---- As given ---- */
+
+enum { GIVEN_SIDE = 200 }; /* pixels along a page of area 1 of what is given by formulas and pictures */
+
+/* u of a vector, its length over 1 cut off. */
+static void double_angle(double x, double y, double *u)
+{
+    double length = hypot(x, y), scale = length > 0 ? fmin(length, 1) / (length * length) : 0;
+    u[0] = scale * (x * x - y * y);
+    u[1] = scale * 2 * x * y;
 }
 
 SplineField spline_direction_constant(const SplinePage *page, double angle)
 {
-    SplineField direction = spline_field_create(page, 0.01, 3);
-    for (int i = 0; i < direction.columns * direction.rows; i++)
-        tensor_store(direction.values + 3 * i, cos(2 * angle), sin(2 * angle), 1);
-    return direction;
+    SplineField u = spline_field_create(page, 1, 2);
+    for (int i = 0; i < u.columns * u.rows; i++) double_angle(cos(angle), sin(angle), u.values + 2 * i);
+    return tensors(&u);
 }
 
 bool spline_direction_from_formula(Formula *formula, const SplinePage *page, SplineField *direction,
                                    Error *err)
 {
-    *direction = spline_field_create(page, 0.005, 3);
-    for (int j = 0; j < direction->rows; j++)
-        for (int i = 0; i < direction->columns; i++) {
-            double place[] = {(i + 0.5) / direction->columns * page->width,
-                              (j + 0.5) / direction->rows * page->height},
-                   v[2];
-            if (!formula_eval(formula, place, v, err)) {
-                spline_field_clear(direction);
+    SplineField u = spline_field_create(page, 1.0 / GIVEN_SIDE, 2);
+    for (int i = 0; i < u.rows; i++)
+        for (int j = 0; j < u.columns; j++) {
+            Vec2 at = spline_field_center(&u, page, i, j);
+            double v[2];
+            if (!formula_eval(formula, (const double[]){at.x, at.y}, v, err)) {
+                spline_field_clear(&u);
                 return false;
             }
-            double angle = atan2(v[1], v[0]);
-            tensor_store(direction->values + 3 * (j * direction->columns + i), cos(2 * angle), sin(2 * angle),
-                         fmin(hypot(v[0], v[1]), 1));
+            double_angle(v[0], v[1], spline_field_pixel(&u, i, j));
         }
+    *direction = tensors(&u);
     return true;
+}
+
+/* first and second are red and green, or the grey and NULL. Doubled angles, which have no jump, are what is
+ * interpolated. */
+static SplineField from_pictures(const Image *first, const Image *second, const SplinePage *page)
+{
+    SplineField full = {first->width, first->height, 2, NULL};
+    size_t count = (size_t)full.columns * (size_t)full.rows;
+    full.values = mem_alloc(2 * count, sizeof *full.values);
+    for (size_t i = 0; i < count; i++) {
+        double value = first->grey[i];
+        if (second)
+            double_angle(2 * value - 1, 2 * second->grey[i] - 1, full.values + 2 * i);
+        else
+            double_angle(cos(M_PI * value), sin(M_PI * value), full.values + 2 * i);
+    }
+    SplineField u = spline_field_resize(&full, page, 1.0 / GIVEN_SIDE);
+    spline_field_clear(&full);
+    return tensors(&u);
+}
+
+SplineField spline_direction_from_grey(const Image *image, const SplinePage *page)
+{
+    return from_pictures(image, NULL, page);
+}
+
+SplineField spline_direction_from_rgb(const Image rgb[3], const SplinePage *page)
+{
+    return from_pictures(&rgb[0], &rgb[1], page);
+}
+
+void spline_direction_turn(SplineField *direction, double angle)
+{
+    double c = cos(2 * angle), s = sin(2 * angle);
+    size_t count = (size_t)direction->columns * (size_t)direction->rows;
+    for (size_t i = 0; i < count; i++) {
+        double *m = direction->values + 3 * i, trace = m[0] + m[2];
+        double cosine = m[2] - m[0], sine = -2 * m[1], turned = c * cosine - s * sine;
+        m[0] = (trace - turned) / 2;
+        m[1] = -(s * cosine + c * sine) / 2;
+        m[2] = (trace + turned) / 2;
+    }
 }

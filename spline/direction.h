@@ -11,21 +11,22 @@
 #include "spline/grid.h"
 
 typedef struct SplineDirectionDef {
-    double detail; /* deviation of the Gaussian before the gradient; default 0.006      */
-    double smooth; /* of the one over the structure tensor; default 0.02                */
-    double spread; /* edges are followed so far where nothing contradicts; default 0.02 */
-    double angle;  /* of strokes where the picture says nothing at all, rad; default 0  */
+    double detail; /* deviation of the Gaussian before the gradient                                   */
+    double smooth; /* of the one over the structure tensor                                            */
+    double spread; /* over this distance sure directions are bent towards each other; more is calmer  */
+    double angle;  /* of strokes on a picture without any edge, rad; default 0                        */
 } SplineDirectionDef;
 
-SplineDirectionDef spline_direction_default(void);
+/* detail 1, smooth 3.3 and spread 5 widths of the pen, of one between 0.002 and 0.01 of the page. */
+SplineDirectionDef spline_direction_default(const SplinePage *page);
 
-/* Along the edges and isophotes of a density (width 1; made with `extend`, so that a frame is no edge).
+/* Along the edges and isophotes of a density (width 1; made with `extend`, so that its frame is no edge).
  *
- * The gradient's structure tensor, as the doubled angle z of the edges (|z| = |grad D|^2), is smoothed; where
- * it is strong and of one mind it is believed with the weight a = |z|/(<|grad D|^2> + noise), and the field u
- * = (cos 2 phi, sin 2 phi) minimises integral a |u - z/|z||^2 + spread^2 |grad u|^2 with free values at the
- * page's edges: flat parts take over the directions around them, creases become curves, and conflicts leave
- * |u| small [Knoeppel et al. 2013]. */
+ * The structure tensor of the gradient, as the doubled angle z of the edges (|z| = |grad D|^2), is smoothed,
+ * and believed with the weight a = |z|/<|grad D|^2>, its coherence, times up to 5 where the edge is strong.
+ * The unit field u = (cos 2 phi, sin 2 phi) then minimises integral a |u - z/|z||^2 + spread^2 |grad u|^2
+ * (diffuse.h), free at the page's edges: flat parts take over what surrounds them, creases become bends, and
+ * what is left of conflicts are points. Around these the last smoothing lets c = |u| fall to 0. */
 SplineField spline_direction_from_tone(const SplineField *tone, const SplinePage *page,
                                        const SplineDirectionDef *def);
 
@@ -36,6 +37,14 @@ SplineField spline_direction_constant(const SplinePage *page, double angle);
  * length), so that a vector of zero leaves the place free. */
 bool spline_direction_from_formula(Formula *formula, const SplinePage *page, SplineField *direction,
                                    Error *err);
+
+/* From a picture stretched over the page: its grey is the angle, black 0 .. white pi; or, of red, green and
+ * blue, the vector (2R - 1, 2G - 1) with c = min(1, length). */
+SplineField spline_direction_from_grey(const Image *image, const SplinePage *page);
+SplineField spline_direction_from_rgb(const Image rgb[3], const SplinePage *page);
+
+/* Turns every direction by an angle, rad. */
+void spline_direction_turn(SplineField *direction, double angle);
 
 /* The unit vector v at a place; *coherence may be NULL. */
 Vec2 spline_direction_at(const SplineGrid *direction, const SplinePage *page, Vec2 at, double *coherence);

@@ -1,6 +1,7 @@
 #include "spline/grid.h"
 #include "base/memory.h"
-#include <string.h>
+
+enum { GRID_MAX_WIDTH = 4, SIDE_LEAST = 4, SIDE_MOST = 4000 };
 
 static int clamp(int i, int low, int high)
 {
@@ -9,8 +10,8 @@ static int clamp(int i, int low, int high)
 
 SplineField spline_field_create(const SplinePage *page, double pixel, int width)
 {
-    SplineField field = {.columns = (int)lround(fmin(fmax(page->width / pixel, 4), 4000)),
-                         .rows = (int)lround(fmin(fmax(page->height / pixel, 4), 4000)),
+    SplineField field = {.columns = (int)lround(fmin(fmax(page->width / pixel, SIDE_LEAST), SIDE_MOST)),
+                         .rows = (int)lround(fmin(fmax(page->height / pixel, SIDE_LEAST), SIDE_MOST)),
                          .width = width};
     field.values =
         mem_alloc((size_t)field.columns * (size_t)field.rows * (size_t)width, sizeof *field.values);
@@ -91,16 +92,29 @@ void spline_field_blur(SplineField *field, const SplinePage *page, double deviat
     }
 }
 
+/* Adds the mean over the pixel around `center`, of samples as close as the grid's own pixels. */
+static void pixel_mean(const SplineGrid *grid, const SplinePage *page, Vec2 center,
+                       const SplineField *resized, double *mean)
+{
+    int down = (grid->rows + resized->rows - 1) / resized->rows;
+    int across = (grid->columns + resized->columns - 1) / resized->columns;
+    double value[GRID_MAX_WIDTH];
+    for (int i = 0; i < down; i++)
+        for (int j = 0; j < across; j++) {
+            Vec2 at = {center.x + ((j + 0.5) / across - 0.5) * page->width / resized->columns,
+                       center.y + ((i + 0.5) / down - 0.5) * page->height / resized->rows};
+            spline_grid_sample(grid, page, at, value);
+            for (int k = 0; k < grid->width; k++) mean[k] += value[k] / (down * across);
+        }
+}
+
 SplineField spline_field_resize(const SplineField *field, const SplinePage *page, double pixel)
 {
     SplineField resized = spline_field_create(page, pixel, field->width);
     SplineGrid grid = spline_grid(field);
     for (int i = 0; i < resized.rows; i++)
-        for (int j = 0; j < resized.columns; j++) {
-            Vec2 at = {(j + 0.5) / resized.columns * page->width, (i + 0.5) / resized.rows * page->height};
-            spline_grid_sample(&grid, page, at,
-                               resized.values +
-                                   ((size_t)i * (size_t)resized.columns + (size_t)j) * (size_t)resized.width);
-        }
+        for (int j = 0; j < resized.columns; j++)
+            pixel_mean(&grid, page, spline_field_center(&resized, page, i, j), &resized,
+                       spline_field_pixel(&resized, i, j));
     return resized;
 }

@@ -6,6 +6,7 @@
 #pragma once
 #include "base/vec3.h"
 #include "spline/page.h"
+#include <stddef.h>
 
 typedef struct SplineGrid {
     int columns, rows;
@@ -29,6 +30,16 @@ static inline SplineGrid spline_grid(const SplineField *field)
     return (SplineGrid){field->columns, field->rows, field->width, field->values};
 }
 
+static inline double *spline_field_pixel(const SplineField *field, int row, int column)
+{
+    return field->values + ((size_t)row * (size_t)field->columns + (size_t)column) * (size_t)field->width;
+}
+
+static inline Vec2 spline_field_center(const SplineField *field, const SplinePage *page, int row, int column)
+{
+    return (Vec2){(column + 0.5) / field->columns * page->width, (row + 0.5) / field->rows * page->height};
+}
+
 /* values[width] at (x, y), bilinear; the outermost pixels' values continue to the page's edges and beyond. */
 void spline_grid_sample(const SplineGrid *grid, const SplinePage *page, Vec2 at, double *values);
 
@@ -38,5 +49,5 @@ double spline_grid_mean(const SplineGrid *grid, int value);
  * page mirrors what is on it. */
 void spline_field_blur(SplineField *field, const SplinePage *page, double deviation);
 
-/* The same values in larger or smaller pixels, by bilinear sampling. */
+/* The same in pixels of about that size: means over larger ones, bilinear between smaller ones. */
 SplineField spline_field_resize(const SplineField *field, const SplinePage *page, double pixel);

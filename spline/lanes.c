@@ -4,6 +4,8 @@
 
 enum { LEVELS_MAX = 12 };
 
+static const double least_cell = 1.0 / 4000; /* of a page of area 1: 64 MB */
+
 typedef struct Sample {
     Vec2 at;
     int curve, along;
@@ -29,7 +31,7 @@ struct Lanes {
 Lanes *lanes_create(const SplinePage *page, double step, double reach)
 {
     Lanes *lanes = mem_alloc(1, sizeof *lanes);
-    double cell = 2 * step;
+    double cell = fmax(2 * step, least_cell);
     while (lanes->levels < LEVELS_MAX && (lanes->levels == 0 || cell < 2 * reach)) {
         Level *level = &lanes->level[lanes->levels];
         *level = (Level){.cell = cell, .stride = 1 << (lanes->levels > 0 ? lanes->levels - 1 : 0)};

@@ -2,40 +2,54 @@
 #include "base/memory.h"
 #include "base/random.h"
 #include "spline/direction.h"
+#include "spline/sheet.h"
 #include "spline/trace.h"
-#include <math.h>
 
-static const double SHORTEST = 0.7;  /* of a stroke, in nodes' distances; and no shorter than its spacing */
-static const double FARTHEST = 0.15; /* of neighbours, in units of the page                               */
-static const double SEED_ROOM = 0.9; /* around a new curve's seed, in spacings                            */
+enum { TRIES = 3 }; /* to meet the ink */
 
 /* An evenly spaced drawing under way. */
 typedef struct Spread {
     Tracer tracer;
     SplineStartDef def;
     Random random;
-    int layer;
     Points seeds, curve;
-    Strokes *strokes;
+    Sheet sheet;
 } Spread;
 
 SplineStartDef spline_start_default(void)
 {
-    return (SplineStartDef){.separation = 0.8, .ink = 1, .longest = 0.3, .segments = 8, .seed = 1};
+    return (SplineStartDef){.separation = 0.86, .ink = 1, .longest = 0.3, .segments = 8, .seed = 1};
 }
 
-static double blank_density(const SplinePage *page)
+/* What a tone asks for where it is not blank. */
+typedef struct Demand {
+    double blank;    /* density below which the paper stays so */
+    double greatest; /* density                                */
+    double mean;     /* of what is drawn                       */
+    double length;   /* of all lines                           */
+} Demand;
+
+static Demand tone_demand(const SplineGrid *tone, const SplinePage *page)
 {
-    return page->pen / 0.3;
+    Demand demand = {.blank = page->pen / 0.3};
+    int count = tone->columns * tone->rows, drawn = 0;
+    double sum = 0;
+    for (int i = 0; i < count; i++) {
+        double density = tone->values[i];
+        if (!(density >= demand.blank)) continue;
+        sum += density;
+        drawn++;
+        demand.greatest = fmax(demand.greatest, density);
+    }
+    demand.mean = drawn ? sum / drawn : 0;
+    demand.length = sum / count / page->pen;
+    return demand;
 }
 
 double spline_rest_length(const SplineGrid *tone, const SplinePage *page)
 {
-    double sum = 0, blank = blank_density(page);
-    int count = tone->columns * tone->rows, drawn = 0;
-    for (int i = 0; i < count; i++)
-        if (tone->values[i] >= blank) sum += tone->values[i], drawn++;
-    return drawn ? fmin(1.2 * page->pen * drawn / sum, 0.05) : 0;
+    double mean = tone_demand(tone, page).mean;
+    return mean > 0 ? fmin(1.2 * page->pen / mean, 0.05) : 0;
 }
 
 /* The point so many steps along a curve. */
@@ -49,10 +63,10 @@ static Vec2 curve_point(const Points *curve, double at)
 
 /* The part from..to of a curve, in steps, as a stroke. */
 static void add_stroke(const Tracer *tracer, const Points *curve, double from, double to, int segments,
-                       int layer, Strokes *strokes)
+                       Sheet *sheet)
 {
     double each = (to - from) / segments, third = each * tracer->step / 3;
-    double(*q)[4] = mem_alloc((size_t)segments + 1, sizeof *q);
+    double(*q)[4] = sheet_add(sheet, segments + 1);
     for (int k = 0; k <= segments; k++) {
         double at = from + k * each;
         Vec2 p = curve_point(curve, at), a = curve_point(curve, at - 0.5), b = curve_point(curve, at + 0.5);
@@ -63,26 +77,32 @@ static void add_stroke(const Tracer *tracer, const Points *curve, double from, d
         q[k][2] = length * v.x;
         q[k][3] = length * v.y;
     }
-    strokes_add(strokes, segments + 1, (const double(*)[4])q, layer);
-    mem_free(q);
 }
 
-/* Pieces of whole segments. They aim at three quarters of the greatest length, so that chance can shift their
- * ends: cuts side by side would show as a seam. */
+static double sheet_length(const Sheet *sheet)
+{
+    Strokes strokes = {.count = sheet->count, .start = sheet->start, .q = (double *)sheet->q}; /* borrowed */
+    return strokes_length(&strokes);
+}
+
+/* Pieces of whole segments, half to all of the greatest length by chance: cuts side by side would show as a
+ * seam. */
 static void cut_curve(Spread *spread)
 {
     const Tracer *tracer = &spread->tracer;
     double steps = spread->curve.count - 1, gap = tracer->page->pen / tracer->step;
     int segments = (int)fmax(lround(steps * tracer->step / spread->def.segment), 1);
-    double each = steps / segments, longest = spread->def.longest / (each * tracer->step);
-    int pieces = segments <= longest ? 1 : (int)ceil(segments / fmax(0.75 * longest, 1)), from = 0;
-    for (int k = 1; k <= pieces; k++) {
-        double shift = random_signed(&spread->random) / 6;
-        int to = k == pieces ? segments : (int)lround((k + shift) * segments / pieces);
-        if (to <= from) continue;
+    double each = steps / segments;
+    int longest = (int)fmax(spread->def.longest / (each * tracer->step), 1);
+    for (int from = 0, to; from < segments; from = to) {
+        int left = segments - from, piece = (int)ceil(longest * (1 + random_uniform(&spread->random)) / 2);
+        if (left <= longest)
+            piece = left;
+        else if (left - piece <= longest / 4) /* no rest that is a mere dash */
+            piece = (left + 1) / 2;
+        to = from + piece;
         add_stroke(tracer, &spread->curve, from * each + (from > 0 ? gap / 2 : 0),
-                   to * each - (to < segments ? gap / 2 : 0), to - from, spread->layer, spread->strokes);
-        from = to;
+                   to * each - (to < segments ? gap / 2 : 0), piece, &spread->sheet);
     }
 }
 
@@ -112,10 +132,10 @@ static void try_seed(Spread *spread, Vec2 seed)
 {
     Tracer *tracer = &spread->tracer;
     double spacing = trace_spacing(tracer, seed);
-    if (!(spacing > 0) || lanes_near(tracer->lanes, seed, SEED_ROOM * spacing, -1, 0, 0)) return;
+    if (!(spacing > 0) || lanes_near(tracer->lanes, seed, 0.9 * spacing, -1, 0, 0)) return;
     int before = lanes_count(tracer->lanes), most = (int)(4 / tracer->step);
     trace_curve(tracer, seed, most, 2 * most, &spread->curve);
-    double least = fmax(SHORTEST * spread->def.segment, spacing);
+    double least = 1.5 * fmax(spread->def.segment, spacing);
     if ((spread->curve.count - 1) * tracer->step < least) {
         lanes_shrink(tracer->lanes, before);
         return;
@@ -140,102 +160,89 @@ static void spread_curves(Spread *spread)
         }
 }
 
-static double greatest_density(const SplineGrid *tone)
+static Sheet even_strokes(const Tracer *base, const SplineStartDef *def, double separation)
 {
-    double most = 0;
-    for (int i = 0; i < tone->columns * tone->rows; i++) most = fmax(most, tone->values[i]);
-    return most;
-}
-
-static Strokes even_strokes(const Tracer *base, const SplineStartDef *def, double separation, int layer)
-{
-    Strokes strokes = {0};
-    Spread spread = {
-        .tracer = *base, .def = *def, .random = random_seed(def->seed), .layer = layer, .strokes = &strokes};
-    Tracer *tracer = &spread.tracer;
-    tracer->separation = separation;
-    tracer->lanes = lanes_create(tracer->page, tracer->step, tracer->farthest);
+    Spread spread = {.tracer = *base, .def = *def, .random = random_seed(def->seed)};
+    spread.tracer.separation = separation;
+    spread.tracer.lanes = lanes_create(base->page, base->step, separation * base->page->pen / base->blank);
     spread_curves(&spread);
-    lanes_destroy(tracer->lanes);
+    lanes_destroy(spread.tracer.lanes);
     mem_free(spread.seeds.at);
     mem_free(spread.curve.at);
-    return strokes;
-}
-
-static void append(Strokes *strokes, const Strokes *more)
-{
-    for (int k = 0; k < more->count; k++)
-        strokes_add(strokes, more->start[k + 1] - more->start[k],
-                    (const double(*)[4])more->q + more->start[k], more->layer[k]);
+    return spread.sheet;
 }
 
 void spline_streamlines(const SplineGrid *tone, const SplineGrid *direction, const SplinePage *page,
                         const SplineStartDef *def, int layer, Strokes *strokes)
 {
-    double most = greatest_density(tone), budget = spline_grid_mean(tone, 0) / page->pen;
-    if (most < blank_density(page)) return;
+    Demand demand = tone_demand(tone, page);
+    if (!(demand.length > 0)) return;
     SplineStartDef whole = *def;
     if (!(whole.segment > 0)) whole.segment = spline_rest_length(tone, page);
-    Tracer tracer = {.tone = tone,
-                     .direction = direction,
-                     .page = page,
-                     .blank = blank_density(page),
-                     .farthest = FARTHEST,
-                     .step = fmax(whole.separation * page->pen / most / 4, 2e-5)};
-    double separation = whole.separation;
-    for (int tries = 1;; tries++) {
-        Strokes even = even_strokes(&tracer, &whole, separation, layer);
-        double ink = strokes_length(&even) / (budget * (whole.ink > 0 ? whole.ink : 1));
-        if (!(whole.ink > 0) || tries == 3 || fabs(ink - 1) < 0.03) {
-            append(strokes, &even);
-            strokes_clear(&even);
-            return;
-        }
-        strokes_clear(&even);
-        separation *= ink;
+    Tracer tracer = {.tone = tone, .direction = direction, .page = page, .blank = demand.blank};
+    tracer.step = def->separation * page->pen / demand.greatest / 4;
+    double separation = def->separation;
+    Sheet sheet = even_strokes(&tracer, &whole, separation);
+    for (int tries = 1; def->ink > 0 && tries < TRIES; tries++) {
+        double ink = sheet_length(&sheet) / (def->ink * demand.length);
+        if (fabs(ink - 1) < 0.03) break;
+        separation = fmin(fmax(separation * ink, def->separation / 1.3), 1.3 * def->separation);
+        sheet_clear(&sheet);
+        sheet = even_strokes(&tracer, &whole, separation);
     }
+    sheet_hand_over(&sheet, layer, strokes);
 }
 
-/* A curve through a random place that is as dark as chance wants it; false: there was none this time. */
-static bool random_curve(Tracer *tracer, double most, int steps, Random *random, Points *curve)
+/* Sums of the density over all pixels up to each, so that a share of the last one finds a pixel. */
+static double *density_sums(const SplineGrid *tone, double blank)
 {
-    Vec2 at = {tracer->page->width * random_uniform(random), tracer->page->height * random_uniform(random)};
-    double density;
-    spline_grid_sample(tracer->tone, tracer->page, at, &density);
-    bool wanted = random_uniform(random) * most <= density;
-    curve->count = 0;
-    if (!wanted || !(trace_spacing(tracer, at) > 0)) return false;
-    trace_curve(tracer, at, (int)(random_uniform(random) * steps), steps, curve);
-    return curve->count > 1;
+    int count = tone->columns * tone->rows;
+    double *sums = mem_alloc((size_t)count, sizeof *sums), sum = 0;
+    for (int i = 0; i < count; i++) sums[i] = sum += tone->values[i] >= blank ? tone->values[i] : 0;
+    return sums;
+}
+
+static Vec2 random_place(const SplineGrid *tone, const double *sums, const SplinePage *page, Random *random)
+{
+    int low = 0, high = tone->columns * tone->rows - 1;
+    double share = random_uniform(random) * sums[high];
+    while (low < high) {
+        int middle = low + (high - low) / 2;
+        if (sums[middle] > share)
+            high = middle;
+        else
+            low = middle + 1;
+    }
+    double x = low % tone->columns + random_uniform(random), y = low / tone->columns + random_uniform(random);
+    return (Vec2){x / tone->columns * page->width, y / tone->rows * page->height};
 }
 
 void spline_random_strokes(const SplineGrid *tone, const SplineGrid *direction, const SplinePage *page,
                            const SplineStartDef *def, int layer, Strokes *strokes)
 {
-    enum { STEPS = 4, TRIES = 1000 }; /* steps of a segment; failures in a row that end the search */
-    double most = greatest_density(tone),
-           left = spline_grid_mean(tone, 0) / page->pen * (def->ink > 0 ? def->ink : 1);
-    if (most < blank_density(page)) return;
+    Demand demand = tone_demand(tone, page);
+    if (!(demand.length > 0)) return;
     double segment = def->segment > 0 ? def->segment : spline_rest_length(tone, page);
-    Tracer tracer = {.tone = tone,
-                     .direction = direction,
-                     .page = page,
-                     .blank = blank_density(page),
-                     .separation = def->separation,
-                     .farthest = FARTHEST,
-                     .step = segment / STEPS};
+    double left = (def->ink > 0 ? def->ink : 1) * demand.length, each = def->segments * segment;
+    Tracer tracer = {
+        .tone = tone, .direction = direction, .page = page, .blank = demand.blank, .separation = 1};
+    tracer.step = fmin(segment / 8, 0.003);
+    int steps = (int)lround(each / tracer.step), tries = 100 + (int)(10 * left / each);
+    double *sums = density_sums(tone, demand.blank);
     Random random = random_seed(def->seed);
     Points curve = {0};
-    for (int failed = 0; left > 0 && failed < TRIES;) {
-        bool made = random_curve(&tracer, most, def->segments * STEPS, &random, &curve);
-        double segments = made ? rint((curve.count - 1.0) / STEPS) : 0;
-        if (segments < 1) {
-            failed++;
-            continue;
-        }
-        add_stroke(&tracer, &curve, 0, curve.count - 1, (int)segments, layer, strokes);
-        left -= strokes_stroke_length(strokes, strokes->count - 1);
-        failed = 0;
+    Sheet sheet = {0};
+    for (; left > each / 2 && tries > 0; tries--) {
+        Vec2 seed = random_place(tone, sums, page, &random);
+        int behind = (int)(random_uniform(&random) * steps);
+        if (!(trace_spacing(&tracer, seed) > 0)) continue;
+        trace_curve(&tracer, seed, behind, steps, &curve);
+        double length = (curve.count - 1) * tracer.step;
+        if (length < segment / 2) continue;
+        add_stroke(&tracer, &curve, 0, curve.count - 1, (int)fmax(lround(length / segment), 1), &sheet);
+        left -= length;
     }
+    mem_free(sums);
     mem_free(curve.at);
+    sheet_hand_over(&sheet, layer, strokes);
 }

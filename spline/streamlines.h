@@ -1,23 +1,23 @@
 /* streamlines.h - strokes to start a relaxation from: along the directions, with the ink that the tone asks
  * for.
  *
- * A density D drawn with a pen of width w takes lines of the total length mean(D)/w in a page of area 1.
- * Nodes of a stroke are equally far apart, about `segment`, with v a third of that along the stroke. Places
- * lighter than w/0.3 stay blank: less than one line in a third of the page. The same seed gives the same
- * strokes. */
+ * A density D drawn with a pen of width w takes lines of the total length mean(D)/w in a page of area 1 (the
+ * budget; where it is not blank). Nodes of a stroke are equally far apart, about `segment`, with v a third of
+ * that along the stroke. Places lighter than w/0.3 stay blank: less than one line in a third of the page. The
+ * same seed gives the same strokes. */
 #pragma once
 #include "spline/grid.h"
 #include "spline/strokes.h"
 #include <stdint.h>
 
 typedef struct SplineStartDef {
-    double separation; /* of neighbours, in units of w/D; default 0.8                                  */
-    double ink;        /* streamlines: total length in units of mean(D)/w, reached within 3 % by adapting the
-                        * separation; 0: the separation as given. Default 1                            */
-    double longest;    /* of a stroke, in units of the page; default 0.3                               */
-    double segment;    /* distance of nodes; default 0: spline_rest_length() of the tone               */
-    int segments;      /* of a random stroke; default 8                                                */
-    uint64_t seed;     /* default 1                                                                    */
+    double separation; /* of neighbours, in units of w/D; default 0.86, near which the ink comes out right */
+    double ink;     /* total length in units of the budget; default 1. Streamlines meet it within 3 %, or in
+                     * three tries, by adapting the separation; 0: they take the separation as given */
+    double longest; /* of a stroke, in units of the page; default 0.3                               */
+    double segment; /* distance of nodes; default 0: spline_rest_length() of the tone               */
+    int segments;   /* of a random stroke; default 8                                                */
+    uint64_t seed;  /* default 1                                                                    */
 } SplineStartDef;
 
 SplineStartDef spline_start_default(void);

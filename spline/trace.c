@@ -1,11 +1,10 @@
 #include "spline/trace.h"
 #include "base/memory.h"
 #include "spline/direction.h"
-#include <math.h>
 
-static const double NEAREST = 0.8;  /* to another curve, in spacings                    */
-static const double SHARPEST = 0.5; /* turn between two steps, rad                      */
-static const double SURE = 0.1;     /* least coherence of a direction that is followed  */
+static const double closest = 0.75;        /* of the spacing                */
+static const double least_coherence = 0.1; /* of a direction to follow      */
+static const double straight = 0.88;       /* cos of the sharpest turn in half a step */
 
 void points_add(Points *points, Vec2 at)
 {
@@ -25,7 +24,7 @@ double trace_spacing(const Tracer *tracer, Vec2 at)
         return 0;
     spline_grid_sample(tracer->tone, page, at, &density);
     if (density < tracer->blank) return 0;
-    return fmin(tracer->separation * page->pen / density, tracer->farthest);
+    return tracer->separation * page->pen / density;
 }
 
 static Vec2 along(Vec2 from, double length, Vec2 v)
@@ -48,8 +47,8 @@ static void trace_way(Tracer *tracer, Vec2 from, Vec2 v, int steps, int sign, Po
         double coherence;
         Vec2 turned = heading(tracer, along(from, tracer->step / 2, v), v, &coherence);
         Vec2 to = along(from, tracer->step, turned);
-        double near = NEAREST * trace_spacing(tracer, to);
-        if (!(near > 0) || coherence < SURE || v.x * turned.x + v.y * turned.y < cos(SHARPEST)) return;
+        double near = closest * trace_spacing(tracer, to);
+        if (!(near > 0) || coherence < least_coherence || v.x * turned.x + v.y * turned.y < straight) return;
         int gap = (int)(M_PI / 2 * near / tracer->step) + 2;
         if (tracer->lanes && lanes_near(tracer->lanes, to, near, tracer->curve, sign * k, gap)) return;
         if (tracer->lanes) lanes_add(tracer->lanes, to, tracer->curve, sign * k);

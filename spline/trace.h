@@ -16,8 +16,7 @@ typedef struct Tracer {
     const SplinePage *page;
     double step;       /* from point to point                                                            */
     double blank;      /* density below which nothing is drawn                                           */
-    double separation; /* of neighbours, in units of w/D, at most `farthest`                             */
-    double farthest;
+    double separation; /* of neighbours, in units of w/D                                                 */
     Lanes *lanes; /* the curves that exist; the one under way adds its points. NULL: none are in the way */
     int curve;    /* the number of the one under way                                                     */
 } Tracer;
@@ -28,5 +27,6 @@ double trace_spacing(const Tracer *tracer, Vec2 at);
 
 /* The curve through a seed, which is in the drawn part: at most `behind` steps back from it and `total` in
  * all. It ends where nothing is drawn, where no direction is sure or it turns within less than a step or two,
- * and where it comes nearer than 0.8 of the spacing to another curve or to another part of itself. */
+ * and where it comes nearer than three quarters of the spacing to another curve or to another part of itself.
+ */
 void trace_curve(Tracer *tracer, Vec2 seed, int behind, int total, Points *curve);
