@@ -21,22 +21,9 @@ static Pack boundary_psi(const SegmentTerm *term, const SplineWeights *weights, 
     return wall_psi_of(term, weights->boundary, &near, s, order, psi);
 }
 
-static const TermOps boundary_ops = {.name = "boundary",
-                                     .count = segment_term_count,
-                                     .size = segment_term_size,
-                                     .dofs = segment_term_dofs,
-                                     .eval = segment_term_eval,
-                                     .project = wall_project,
-                                     .accept = wall_accept,
-                                     .destroy = wall_destroy};
+static const TermOps boundary_ops = WALL_OPS("boundary");
 
 Term spline_boundary_term(const SplineModel *model, SplineHessian hessian)
 {
-    bool positive = hessian != SPLINE_EXACT;
-    return wall_term_create(
-        &boundary_ops, (SegmentTerm){.model = model,
-                                     .rule = &model->rule,
-                                     .positive = positive,
-                                     .psi = boundary_psi,
-                                     .parts = PSI_R | PSI_T | PSI_RR | PSI_TT | (positive ? 0 : PSI_RT)});
+    return wall_term_create(&boundary_ops, model, &model->rule, hessian, boundary_psi);
 }

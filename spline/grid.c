@@ -1,12 +1,8 @@
 #include "spline/grid.h"
 #include "base/memory.h"
+#include "spline/smooth.h"
 
-enum { GRID_MAX_WIDTH = 4, SIDE_LEAST = 4, SIDE_MOST = 4000 };
-
-static int clamp(int i, int low, int high)
-{
-    return i < low ? low : i > high ? high : i;
-}
+enum { SIDE_LEAST = 4, SIDE_MOST = 4000 };
 
 SplineField spline_field_create(const SplinePage *page, double pixel, int width)
 {
@@ -53,68 +49,40 @@ double spline_grid_mean(const SplineGrid *grid, int value)
     return sum / (double)count;
 }
 
-/* Convolves `count` values that lie `stride` apart with the half kernel weight[radius + 1]. */
-static void blur_line(double *line, int count, size_t stride, const double *weight, int radius,
-                      double *padded)
+/* Number k of every pixel, side by side; and back. */
+static void take_plane(const SplineField *field, int k, double *plane)
 {
-    for (int i = -radius; i < count + radius; i++) {
-        int mirrored = i < 0 ? -1 - i : i >= count ? 2 * count - 1 - i : i;
-        padded[i + radius] = line[(size_t)clamp(mirrored, 0, count - 1) * stride];
-    }
-    for (int i = 0; i < count; i++) {
-        const double *middle = padded + i + radius;
-        double sum = weight[0] * middle[0];
-        for (int k = 1; k <= radius; k++) sum += weight[k] * (middle[-k] + middle[k]);
-        line[(size_t)i * stride] = sum;
-    }
+    size_t count = (size_t)field->columns * (size_t)field->rows, width = (size_t)field->width;
+    for (size_t i = 0; i < count; i++) plane[i] = field->values[i * width + (size_t)k];
+}
+
+static void put_plane(SplineField *field, int k, const double *plane)
+{
+    size_t count = (size_t)field->columns * (size_t)field->rows, width = (size_t)field->width;
+    for (size_t i = 0; i < count; i++) field->values[i * width + (size_t)k] = plane[i];
 }
 
 void spline_field_blur(SplineField *field, const SplinePage *page, double deviation)
 {
-    int columns = field->columns, rows = field->rows, width = field->width;
-    int longest = columns > rows ? columns : rows;
-    for (int along = 0; along < 2; along++) {
-        double pixels = deviation * (along ? rows / page->height : columns / page->width), sum = 1;
-        int radius = clamp((int)ceil(4 * pixels), 0, longest), count = along ? columns : rows;
-        double *weight = mem_alloc((size_t)radius + 1, sizeof *weight);
-        double *padded = mem_alloc((size_t)(longest + 2 * radius), sizeof *padded);
-        weight[0] = 1;
-        for (int k = 1; k <= radius; k++) sum += 2 * (weight[k] = exp(-0.5 * k * k / (pixels * pixels)));
-        for (int k = 0; k <= radius; k++) weight[k] /= sum;
-        size_t step = (size_t)width * (along ? (size_t)columns : 1);
-        for (int i = 0; i < count; i++) {
-            double *line = field->values + (size_t)i * (size_t)width * (along ? 1 : (size_t)columns);
-            for (int k = 0; k < width; k++)
-                blur_line(line + k, along ? rows : columns, step, weight, radius, padded);
-        }
-        mem_free(padded);
-        mem_free(weight);
+    double sigma[2] = {deviation * field->columns / page->width, deviation * field->rows / page->height};
+    double *plane = mem_alloc((size_t)field->columns * (size_t)field->rows, sizeof *plane);
+    for (int k = 0; k < field->width; k++) {
+        take_plane(field, k, plane);
+        smooth_blur(plane, field->columns, field->rows, sigma, SMOOTH_MIRROR);
+        put_plane(field, k, plane);
     }
-}
-
-/* Adds the mean over the pixel around `center`, of samples as close as the grid's own pixels. */
-static void pixel_mean(const SplineGrid *grid, const SplinePage *page, Vec2 center,
-                       const SplineField *resized, double *mean)
-{
-    int down = (grid->rows + resized->rows - 1) / resized->rows;
-    int across = (grid->columns + resized->columns - 1) / resized->columns;
-    double value[GRID_MAX_WIDTH];
-    for (int i = 0; i < down; i++)
-        for (int j = 0; j < across; j++) {
-            Vec2 at = {center.x + ((j + 0.5) / across - 0.5) * page->width / resized->columns,
-                       center.y + ((i + 0.5) / down - 0.5) * page->height / resized->rows};
-            spline_grid_sample(grid, page, at, value);
-            for (int k = 0; k < grid->width; k++) mean[k] += value[k] / (down * across);
-        }
+    mem_free(plane);
 }
 
 SplineField spline_field_resize(const SplineField *field, const SplinePage *page, double pixel)
 {
     SplineField resized = spline_field_create(page, pixel, field->width);
     SplineGrid grid = spline_grid(field);
-    for (int i = 0; i < resized.rows; i++)
-        for (int j = 0; j < resized.columns; j++)
-            pixel_mean(&grid, page, spline_field_center(&resized, page, i, j), &resized,
-                       spline_field_pixel(&resized, i, j));
+    double *plane = mem_alloc((size_t)resized.columns * (size_t)resized.rows, sizeof *plane);
+    for (int k = 0; k < field->width; k++, grid.values++) {
+        smooth_resample(&grid, resized.columns, resized.rows, plane);
+        put_plane(&resized, k, plane);
+    }
+    mem_free(plane);
     return resized;
 }

@@ -34,22 +34,9 @@ static Pack wall_psi(const SegmentTerm *term, const SplineWeights *weights, cons
     return wall_psi_of(term, weights->wall, &sum, s, order, psi);
 }
 
-static const TermOps wall_ops = {.name = "wall",
-                                 .count = segment_term_count,
-                                 .size = segment_term_size,
-                                 .dofs = segment_term_dofs,
-                                 .eval = segment_term_eval,
-                                 .project = wall_project,
-                                 .accept = wall_accept,
-                                 .destroy = wall_destroy};
+static const TermOps wall_ops = WALL_OPS("wall");
 
 Term spline_wall_term(const SplineModel *model, SplineHessian hessian)
 {
-    bool positive = hessian != SPLINE_EXACT;
-    return wall_term_create(
-        &wall_ops, (SegmentTerm){.model = model,
-                                 .rule = &model->wall_rule,
-                                 .positive = positive,
-                                 .psi = wall_psi,
-                                 .parts = PSI_R | PSI_T | PSI_RR | PSI_TT | (positive ? 0 : PSI_RT)});
+    return wall_term_create(&wall_ops, model, &model->wall_rule, hessian, wall_psi);
 }

@@ -89,9 +89,16 @@ void wall_destroy(void *self)
     mem_free(self);
 }
 
-Term wall_term_create(const TermOps *ops, SegmentTerm term)
+Term wall_term_create(const TermOps *ops, const SplineModel *model, const SplineRule *rule,
+                      SplineHessian hessian, SegmentPsi *psi)
 {
+    bool positive = hessian != SPLINE_EXACT;
     WallTerm *wall = mem_alloc(1, sizeof *wall);
-    *wall = (WallTerm){term, mem_alloc(4 * (size_t)term.model->node_count, sizeof(double))};
+    wall->segment = (SegmentTerm){.model = model,
+                                  .rule = rule,
+                                  .positive = positive,
+                                  .psi = psi,
+                                  .parts = PSI_R | PSI_T | PSI_RR | PSI_TT | (positive ? 0 : PSI_RT)};
+    wall->accepted = mem_alloc(4 * (size_t)model->node_count, sizeof *wall->accepted);
     return (Term){ops, wall};
 }

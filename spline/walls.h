@@ -29,7 +29,15 @@ typedef struct WallTerm {
     double *accepted; /* [4 node_count] */
 } WallTerm;
 
-Term wall_term_create(const TermOps *ops, SegmentTerm term);
+Term wall_term_create(const TermOps *ops, const SplineModel *model, const SplineRule *rule,
+                      SplineHessian hessian, SegmentPsi *psi);
+
+/* The ops of both. */
+#define WALL_OPS(row_name)                                                                                   \
+    {                                                                                                        \
+        .name = row_name, .count = segment_term_count, .size = segment_term_size, .dofs = segment_term_dofs, \
+        .eval = segment_term_eval, .project = wall_project, .accept = wall_accept, .destroy = wall_destroy,  \
+    }
 void wall_accept(void *self, double *x);
 void wall_project(void *self, double *x);
 void wall_destroy(void *self);
