@@ -32,14 +32,16 @@ typedef struct ProbeWindow {
     int left, right, top, bottom; /* inclusive */
 } ProbeWindow;
 
+/* Empty for a point that is nowhere. */
 static inline ProbeWindow probe_window(const ProbeLevel *level, double x, double y)
 {
-    int left = (int)ceil((x - level->reach) / level->dx - 0.5),
-        right = (int)floor((x + level->reach) / level->dx - 0.5);
-    int top = (int)ceil((y - level->reach) / level->dy - 0.5),
-        bottom = (int)floor((y + level->reach) / level->dy - 0.5);
-    return (ProbeWindow){left < 0 ? 0 : left, right < level->columns ? right : level->columns - 1,
-                         top < 0 ? 0 : top, bottom < level->rows ? bottom : level->rows - 1};
+    double left = ceil((x - level->reach) / level->dx - 0.5),
+           right = floor((x + level->reach) / level->dx - 0.5);
+    double top = ceil((y - level->reach) / level->dy - 0.5),
+           bottom = floor((y + level->reach) / level->dy - 0.5);
+    return (ProbeWindow){(int)fmin(fmax(left, 0), level->columns),
+                         (int)fmin(fmax(right, -1), level->columns - 1), (int)fmin(fmax(top, 0), level->rows),
+                         (int)fmin(fmax(bottom, -1), level->rows - 1)};
 }
 
 /* Levels with a probe that sees the point, as bits; none for a point that is nowhere. */
