@@ -1,6 +1,7 @@
 #include "spline/direction.h"
 #include "base/memory.h"
 #include "spline/diffuse.h"
+#include "spline/formula_field.h"
 
 SplineDirectionDef spline_direction_default(const SplinePage *page)
 {
@@ -116,17 +117,10 @@ SplineField spline_direction_constant(const SplinePage *page, double angle)
 bool spline_direction_from_formula(Formula *formula, const SplinePage *page, SplineField *direction,
                                    Error *err)
 {
-    SplineField u = spline_field_create(page, 1.0 / GIVEN_SIDE, 2);
-    for (int i = 0; i < u.rows; i++)
-        for (int j = 0; j < u.columns; j++) {
-            Vec2 at = spline_field_center(&u, page, i, j);
-            double v[2];
-            if (!formula_eval(formula, (const double[]){at.x, at.y}, v, err)) {
-                spline_field_clear(&u);
-                return false;
-            }
-            double_angle(v[0], v[1], spline_field_pixel(&u, i, j));
-        }
+    SplineField u;
+    if (!spline_field_from_formula(formula, page, 1.0 / GIVEN_SIDE, 2, &u, err)) return false;
+    for (int i = 0; i < u.columns * u.rows; i++)
+        double_angle(u.values[2 * i], u.values[2 * i + 1], u.values + 2 * i);
     *direction = tensors(&u);
     return true;
 }

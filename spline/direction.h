@@ -33,8 +33,8 @@ SplineField spline_direction_from_tone(const SplineField *tone, const SplinePage
 /* One angle everywhere, rad, from x towards y (clockwise on paper, as y runs down). */
 SplineField spline_direction_constant(const SplinePage *page, double angle);
 
-/* From expressions of the vector's two components, of the variables x, y in units of the page; c = min(1,
- * length), so that a vector of zero leaves the place free. */
+/* From expressions (formula_field.h) of the vector's two components, y down; c = min(1, length), so that a
+ * vector of zero leaves the place free. */
 bool spline_direction_from_formula(Formula *formula, const SplinePage *page, SplineField *direction,
                                    Error *err);
 

@@ -120,7 +120,7 @@ Plot spline_plot(const Strokes *strokes, const SplinePage *page, const SplinePen
     for (int layer = 0; layer < pen_count; layer++) {
         Builder builder = {.layer = {.name = mem_text(pens[layer].name),
                                      .color = pens[layer].color,
-                                     .pen = scale * page->pen}};
+                                     .pen = scale * pens[layer].width}};
         for (int k = 0; k < strokes->count; k++)
             if (strokes->layer[k] == layer) add_stroke(&builder, page, strokes, k);
         for (size_t k = 0; k < builder.points; k++) {

@@ -7,6 +7,7 @@
 typedef struct SplinePen {
     const char *name; /* "black" */
     Color color;
+    double width; /* of its line, in units of the page */
 } SplinePen;
 
 /* The strokes of layer k are drawn by pens[k], in their order; those of layers beyond the last pen are left

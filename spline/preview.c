@@ -11,9 +11,11 @@ static void draw_target(Canvas *canvas, const SplinePage *page, const SplineGrid
     size_t pixels = (size_t)target->columns * (size_t)target->rows;
     unsigned char *rgba = mem_alloc(pixels, 4);
     for (size_t k = 0; k < pixels; k++) {
-        double white = 1 - target->values[k * (size_t)target->width];
-        unsigned char level = (unsigned char)lround(255 * fmin(fmax(white, 0), 1));
-        for (int c = 0; c < 3; c++) rgba[4 * k + (size_t)c] = level;
+        const double *dark = target->values + k * (size_t)target->width;
+        for (size_t c = 0; c < 3; c++) {
+            double white = 1 - dark[target->width == 3 ? c : 0];
+            rgba[4 * k + c] = (unsigned char)lround(255 * fmin(fmax(white, 0), 1));
+        }
         rgba[4 * k + 3] = 255;
     }
     double points = 1e3 * POINTS;

@@ -4,7 +4,8 @@
 #include "spline/grid.h"
 #include "spline/page.h"
 
-/* Draws the paper `width` pixels wide to a .png (or .svg, .pdf) file; layers in their order. target (its
- * first numbers: 0 white .. 1 black) is shown to the left of it on a paper of its own; NULL: no target. */
+/* Draws the paper `width` pixels wide to a .png (or .svg, .pdf) file; layers in their order. target (0 white
+ * .. 1 black, or three such numbers for what takes away red, green and blue) is shown to the left of it on a
+ * paper of its own; NULL: no target. */
 bool spline_preview(const char *path, const Plot *plot, const SplinePage *page, const SplineGrid *target,
                     int width, Error *err);

@@ -114,26 +114,35 @@ static int surplus(const SplineTarget *target, const RelaxDef *def, const Stroke
     return excess > 0 ? (int)lround(excess * strokes->count / ink) : 0;
 }
 
+bool spline_refine_once(const SplineTarget *target, const RelaxDef *def, int segments, Strokes *strokes,
+                        RelaxInfo *best, const RelaxObserver *observer)
+{
+    Strokes trial = strokes_copy(strokes), candidates = {0};
+    int changed = spline_remove_strokes(target, def, surplus(target, def, strokes), &trial);
+    spline_propose_strokes(target, def, &trial, segments, &candidates);
+    changed += spline_insert_strokes(target, def, &candidates, candidates.count, &trial);
+    strokes_clear(&candidates);
+    RelaxInfo info = *best;
+    if (changed) info = spline_relax(target, def, &trial, observer);
+    bool better = changed && info.energy < best->energy;
+    if (info.status == RELAX_STOPPED) best->status = RELAX_STOPPED;
+    if (better) {
+        Strokes old = *strokes;
+        *strokes = trial, trial = old;
+        info.iterations += best->iterations;
+        info.seconds += best->seconds;
+        *best = info;
+    }
+    strokes_clear(&trial);
+    return better && info.status != RELAX_STOPPED;
+}
+
 RelaxInfo spline_refine(const SplineTarget *target, const RelaxDef *def, int rounds, int segments,
                         Strokes *strokes, const RelaxObserver *observer)
 {
     RelaxInfo best = spline_relax(target, def, strokes, observer);
-    for (int round = 0; round < rounds && best.status != RELAX_STOPPED; round++) {
-        Strokes trial = strokes_copy(strokes), candidates = {0};
-        int changed = spline_remove_strokes(target, def, surplus(target, def, strokes), &trial);
-        spline_propose_strokes(target, def, &trial, segments, &candidates);
-        changed += spline_insert_strokes(target, def, &candidates, candidates.count, &trial);
-        strokes_clear(&candidates);
-        RelaxInfo info = best;
-        if (changed) info = spline_relax(target, def, &trial, observer);
-        if (!changed || info.energy >= best.energy) {
-            strokes_clear(&trial);
-            break;
-        }
-        info.iterations += best.iterations;
-        best = info;
-        strokes_clear(strokes);
-        *strokes = trial;
-    }
+    bool better = best.status != RELAX_STOPPED;
+    for (int round = 0; round < rounds && better; round++)
+        better = spline_refine_once(target, def, segments, strokes, &best, observer);
     return best;
 }

@@ -22,8 +22,13 @@ int spline_insert_strokes(const SplineTarget *target, const RelaxDef *def, const
 void spline_propose_strokes(const SplineTarget *target, const RelaxDef *def, const Strokes *strokes,
                             int segments, Strokes *candidates);
 
-/* Relaxes; then at most so many times takes out what is too much of the ink, puts in all candidates and
- * relaxes again, as long as the energy falls. Strokes are those of least energy, the info that of their
- * relaxation with the number of all iterations. */
+/* Takes out what is too much of the ink, puts in all candidates (of up to so many segments) and relaxes, from
+ * strokes that are relaxed (*best says how). True where that lowers the energy: strokes and *best are then
+ * the new ones, with iterations and seconds added up; else they stay. False, too, after the observer stopped
+ * it (best->status says so). */
+bool spline_refine_once(const SplineTarget *target, const RelaxDef *def, int segments, Strokes *strokes,
+                        RelaxInfo *best, const RelaxObserver *observer);
+
+/* Relaxes, and refines at most so many times, as long as the energy falls. */
 RelaxInfo spline_refine(const SplineTarget *target, const RelaxDef *def, int rounds, int segments,
                         Strokes *strokes, const RelaxObserver *observer);

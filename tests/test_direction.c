@@ -2,6 +2,7 @@
  */
 #include "base/memory.h"
 #include "spline/direction.h"
+#include "spline/formula_field.h"
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -194,8 +195,7 @@ static void angles(void **state)
 static Formula *formula_of(const char *x, const char *y)
 {
     Error err = {""};
-    Formula *formula =
-        formula_create((const char *[]){x, y}, 2, NULL, 0, (const char *[]){"x", "y", NULL}, &err);
+    Formula *formula = formula_create((const char *[]){x, y}, 2, NULL, 0, spline_formula_variables, &err);
     if (!formula) fail_msg("%s", err.text);
     return formula;
 }
@@ -206,7 +206,8 @@ static void formulas(void **state)
     SplinePage page = spline_page(0.2, 0.1, 0, 5e-4);
     Error err = {""};
     SplineField direction;
-    Formula *formula = formula_of("-(y - 0.3)*5", "(x - 0.3)*5");
+    Formula *formula =
+        formula_of("-(v/sqrt(2) - 0.3)*5", "(x/sqrt(0.02) - 0.3)*5"); /* in units of the page */
     assert_true(spline_direction_from_formula(formula, &page, &direction, &err));
     expect_tensors(&direction);
     for (int i = 0; i < direction.rows; i += 7)
@@ -218,7 +219,7 @@ static void formulas(void **state)
         }
     spline_field_clear(&direction);
     formula_destroy(formula);
-    formula = formula_of("sqrt(x - 1)", "1");
+    formula = formula_of("sqrt(x - 1)", "u");
     assert_false(spline_direction_from_formula(formula, &page, &direction, &err));
     assert_non_null(strstr(err.text, "sqrt(x - 1)"));
     formula_destroy(formula);

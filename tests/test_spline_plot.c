@@ -64,12 +64,17 @@ static void cubics(void **state)
     assert_int_equal(cubic_steps((const Vec2[]){{0, 0}, {1, 1}, {2, 2}, {3, 3}}, 1e-9), 1);
 }
 
-static const SplinePen pens[] = {{"black", {0, 0, 0, 1}}, {"red", {1, 0, 0, 1}}};
-
 /* A paper of 60 x 40 mm, margins of 10 mm; the pen is 1 mm wide. */
 static SplinePage small_page(void)
 {
     return spline_page(0.06, 0.04, 0.01, 0.001);
+}
+
+/* A black pen as wide as the page's, and a red one of that many times its width. */
+static Plot plot_of(const Strokes *strokes, const SplinePage *page, int pen_count, double red)
+{
+    SplinePen pens[] = {{"black", {0, 0, 0, 1}, page->pen}, {"red", {1, 0, 0, 1}, red * page->pen}};
+    return spline_plot(strokes, page, pens, pen_count);
 }
 
 static void expect_point(Vec2 p, double x, double y)
@@ -90,12 +95,13 @@ static void inside_is_kept(void **state)
                     {10 * mm, 10 * mm, 2 * mm, mm}, {20 * mm, 10 * mm, 3 * mm, 0}, {30 * mm, 12 * mm, 0, mm}},
                 0);
     strokes_add(&strokes, 2, (const double[2][4]){{0, 0, mm, 0}, {mm, mm, mm, 0}}, 2); /* no pen for it */
-    Plot plot = spline_plot(&strokes, &page, pens, 2);
+    Plot plot = plot_of(&strokes, &page, 2, 1.5);
     expect_close(plot.paper[0], 60, 1e-12);
     expect_close(plot.paper[1], 40, 1e-12);
     assert_int_equal(plot.layer_count, 2);
     assert_string_equal(plot.layers[1].name, "red");
-    expect_close(plot.layers[1].pen, 1, 1e-12);
+    expect_close(plot.layers[0].pen, 1, 1e-12);
+    expect_close(plot.layers[1].pen, 1.5, 1e-12);
     assert_int_equal(plot.layers[0].count, 1);
     assert_int_equal(plot.layers[0].start[1], 7);
     assert_int_equal(plot.layers[1].count, 1);
@@ -148,7 +154,7 @@ static void outside_is_cut(void **state)
                                      {35 * mm, 15 * mm, -5 * mm, 0}},
                 0);
     strokes_add(&strokes, 2, (const double[2][4]){{-5 * mm, 0, mm, mm}, {-1 * mm, 10 * mm, mm, mm}}, 0);
-    Plot plot = spline_plot(&strokes, &page, pens, 1);
+    Plot plot = plot_of(&strokes, &page, 1, 1);
     const PlotLayer *layer = &plot.layers[0];
     assert_int_equal(layer->count, 5);
     expect_point(layer->points[0], 10, 15);
@@ -184,14 +190,14 @@ static void previews(void **state)
 {
     (void)state;
     SplinePage page = small_page();
-    double mm = 1e-3 / page.unit, grey[4] = {0, 0.25, 0.5, 1};
+    double mm = 1e-3 / page.unit, ink[4][3] = {{0, 0.1, 0.2}, {0.25, 0, 1}, {0.5, 0.5, 0.5}, {1, 0, 0.75}};
     Strokes strokes = {0};
     strokes_add(&strokes, 2,
                 (const double[2][4]){{5 * mm, 5 * mm, 10 * mm, 0}, {35 * mm, 5 * mm, 10 * mm, 0}}, 0);
     strokes_add(&strokes, 2,
                 (const double[2][4]){{20 * mm, 2 * mm, 0, 5 * mm}, {20 * mm, 17 * mm, 0, 5 * mm}}, 1);
-    Plot plot = spline_plot(&strokes, &page, pens, 2);
-    SplineGrid target = {.columns = 4, .rows = 1, .width = 1, .values = grey};
+    Plot plot = plot_of(&strokes, &page, 2, 1);
+    SplineGrid target = {.columns = 4, .rows = 1, .width = 3, .values = ink[0]};
     for (int beside = 0; beside < 2; beside++) {
         Error err = {""};
         unsigned char *rgb;
@@ -209,8 +215,9 @@ static void previews(void **state)
         }
         assert_int_equal(dark, 10);
         assert_true(red >= 150 && red <= 162); /* with round ends */
-        for (int k = 0; beside && k < 4; k++)
-            expect_close(rgb[3 * (200 * width + 150 + 100 * k)], 255 * (1 - grey[k]), 1);
+        for (int k = 0; beside && k < 12; k++)
+            expect_close(rgb[3 * (200 * width + 150 + 100 * (k / 3)) + k % 3], 255 * (1 - ink[k / 3][k % 3]),
+                         1);
         if (beside) assert_int_equal(rgb[3 * (5 * width + 5)], 255); /* the margin */
         mem_free(rgb);
     }

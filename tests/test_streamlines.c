@@ -2,6 +2,7 @@
 #include "base/clock.h"
 #include "base/memory.h"
 #include "spline/direction.h"
+#include "spline/formula_field.h"
 #include "spline/streamlines.h"
 #include <setjmp.h>
 #include <stdarg.h>
@@ -178,8 +179,8 @@ static void circles(void **state)
     SplinePage page = spline_page(0.1, 0.1, 0, 8e-4);
     Error err = {""};
     SplineField direction;
-    Formula *formula = formula_create((const char *[]){"-(y - 0.5)*100", "(x - 0.5)*100"}, 2, NULL, 0,
-                                      (const char *[]){"x", "y", NULL}, &err);
+    Formula *formula = formula_create((const char *[]){"-(v - 0.5)*100", "(u - 0.5)*100"}, 2, NULL, 0,
+                                      spline_formula_variables, &err);
     assert_true(spline_direction_from_formula(formula, &page, &direction, &err));
     formula_destroy(formula);
     SplineStartDef def = spline_start_default();
