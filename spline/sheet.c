@@ -22,19 +22,9 @@ double (*sheet_add(Sheet *sheet, int nodes))[4]
 
 void sheet_hand_over(Sheet *sheet, int layer, Strokes *strokes)
 {
-    int count = strokes->count, nodes = strokes_node_count(strokes);
-    size_t all = (size_t)(count + sheet->count), added = (size_t)sheet_node_count(sheet);
-    if (sheet->count == 0) return;
-    strokes->start = mem_resize(strokes->start, (size_t)count + 1, all + 1, sizeof *strokes->start);
-    strokes->layer = mem_resize(strokes->layer, (size_t)count, all, sizeof *strokes->layer);
-    strokes->q = mem_resize(strokes->q, 4 * (size_t)nodes, 4 * ((size_t)nodes + added), sizeof *strokes->q);
-    for (int k = 0; k < sheet->count; k++) {
-        strokes->start[count + k] = nodes + sheet->start[k];
-        strokes->layer[count + k] = layer;
-    }
-    strokes->start[all] = nodes + sheet->start[sheet->count];
-    memcpy(strokes->q + 4 * nodes, sheet->q, added * sizeof *sheet->q);
-    strokes->count = (int)all;
+    for (int k = 0; k < sheet->count; k++)
+        strokes_add(strokes, sheet->start[k + 1] - sheet->start[k],
+                    (const double(*)[4])(sheet->q + sheet->start[k]), layer);
     sheet_clear(sheet);
 }
 

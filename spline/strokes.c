@@ -2,16 +2,31 @@
 #include "base/memory.h"
 #include <string.h>
 
+/* Room for one more stroke and its nodes: more than that, so that many one by one are not copied each time.
+ */
+static void reserve(Strokes *strokes, int nodes)
+{
+    int count = strokes->count, before = strokes_node_count(strokes);
+    if (count >= strokes->room) {
+        size_t room = 2 * (size_t)count + 1;
+        strokes->start = mem_resize(strokes->start, (size_t)count + 1, room + 1, sizeof *strokes->start);
+        strokes->layer = mem_resize(strokes->layer, (size_t)count, room, sizeof *strokes->layer);
+        strokes->room = (int)room;
+    }
+    if (before + nodes > strokes->node_room) {
+        size_t room = 2 * (size_t)before + (size_t)nodes;
+        strokes->q = mem_resize(strokes->q, 4 * (size_t)before, 4 * room, sizeof *strokes->q);
+        strokes->node_room = (int)room;
+    }
+}
+
 void strokes_add(Strokes *strokes, int nodes, const double (*q)[4], int layer)
 {
-    size_t count = (size_t)strokes->count, before = (size_t)strokes_node_count(strokes),
-           added = (size_t)nodes;
-    strokes->start = mem_resize(strokes->start, count + 1, count + 2, sizeof *strokes->start);
-    strokes->layer = mem_resize(strokes->layer, count, count + 1, sizeof *strokes->layer);
-    strokes->q = mem_resize(strokes->q, 4 * before, 4 * (before + added), sizeof *strokes->q);
-    memcpy(strokes->q + 4 * before, q, 4 * added * sizeof *strokes->q);
-    strokes->start[count] = (int)before;
-    strokes->start[count + 1] = (int)(before + added);
+    reserve(strokes, nodes);
+    int count = strokes->count, before = strokes_node_count(strokes);
+    memcpy(strokes->q + 4 * before, q, 4 * (size_t)nodes * sizeof *strokes->q);
+    strokes->start[count] = before;
+    strokes->start[count + 1] = before + nodes;
     strokes->layer[count] = layer;
     strokes->count++;
 }

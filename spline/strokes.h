@@ -8,9 +8,10 @@
 
 typedef struct Strokes {
     int count;
-    int *start; /* [count + 1] first node of each stroke; at least two nodes each; owned */
-    int *layer; /* [count] pen or tone that draws it, from 0; owned                      */
-    double *q;  /* [start[count]][4] owned                                               */
+    int *start;          /* [count + 1] first node of each stroke; at least two nodes each; owned */
+    int *layer;          /* [count] pen or tone that draws it, from 0; owned                      */
+    double *q;           /* [start[count]][4] owned                                               */
+    int room, node_room; /* strokes and nodes that there is room for, if more            */
 } Strokes;
 
 static inline int strokes_node_count(const Strokes *strokes)
