@@ -35,7 +35,7 @@ static void march(BendingModel bending, double dt, const char *name)
     snprintf(text, sizeof text, "march_%s_force_left", name);
     bench_print(text, force, "N");
     mem_free(now.v);
-    sheet_clear(&s);
+    sheet_destroy(&s);
 }
 
 void bench_march(void)

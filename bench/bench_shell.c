@@ -44,7 +44,7 @@ void bench_shell_hessian(void)
         double seconds = hessian_seconds(&s);
         snprintf(name, sizeof name, "shell_hessian_%s_us_per_triangle", names[bending]);
         bench_print(name, 1e6 * seconds / s.shell->mesh->face_count, "us");
-        sheet_clear(&s);
+        sheet_destroy(&s);
     }
 }
 
@@ -64,7 +64,7 @@ void bench_newton(void)
         bench_print(name, 1e3 * seconds / info.iterations, "ms");
         snprintf(name, sizeof name, "other_over_newton%s", bending == BENDING_HINGE ? "_hinge" : "");
         bench_print(name, 1 - (sparse.factor_seconds + sparse.solve_seconds) / seconds, "ratio");
-        sheet_clear(&s);
+        sheet_destroy(&s);
     }
 }
 
@@ -97,5 +97,5 @@ void bench_factor(void)
     bench_print("factor_ms", 1e3 * factor, "ms");
     bench_print("assembly_over_factor", assembly / factor, "ratio");
     bench_print("factor_over_dgemm", speed / dgemm_flops(), "ratio");
-    sheet_clear(&s);
+    sheet_destroy(&s);
 }

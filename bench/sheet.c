@@ -44,7 +44,7 @@ void sheet_bend(Sheet *s)
     }
 }
 
-void sheet_clear(Sheet *s)
+void sheet_destroy(Sheet *s)
 {
     system_destroy(s->sys);
     shell_destroy(s->shell);

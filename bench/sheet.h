@@ -10,7 +10,7 @@ typedef struct Sheet {
 
 /* In statics it is magnetised along x in a field across; in motion (dynamic) its weight is all there is. */
 Sheet sheet_create(BendingModel bending, bool dynamic);
-void sheet_clear(Sheet *s);
+void sheet_destroy(Sheet *s);
 
 /* Rolled by half a radian in all. */
 void sheet_bend(Sheet *s);

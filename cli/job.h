@@ -10,6 +10,7 @@ typedef enum JobKind {
     JOB_TRAJECTORY,
     JOB_INVERT,
     JOB_IDENTIFY,
+    JOB_DRAW,
 } JobKind;
 
 extern const char *const job_names[]; /* by JobKind, NULL-terminated: the choices of the scene's key `job` */
@@ -26,6 +27,7 @@ RunStatus job_simulate(Run *run, Error *err);
 RunStatus job_trajectory(Run *run, Error *err);
 RunStatus job_invert(Run *run, Error *err);
 RunStatus job_identify(Run *run, Error *err);
+RunStatus job_draw(Run *run, Error *err);
 
 /* Of job_simulate, for rods with solver: pbd. */
 RunStatus job_preview(Run *run, Error *err);

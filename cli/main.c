@@ -15,7 +15,8 @@ static const struct {
     {"run", verb_run, "run a scene file and write its result"},
     {"check", verb_check, "check a scene file: what it says, and how long it may take"},
     {"info", verb_info, "say what is in a result or a running job"},
-    {"export", verb_export, "CSV of a dataset, OBJ of a frame, or the result of a running job"},
+    {"export", verb_export,
+     "CSV of a dataset, OBJ of a frame, SVG or G-code of a drawing, the result of a running job"},
     {"picture", verb_picture, "draw a result: PNG, SVG or PDF"},
     {"schema", verb_schema, "JSON Schema, or the manual, of scene files"},
     {"mesh", verb_mesh, "write a scene's mesh as OBJ"},
@@ -28,7 +29,8 @@ enum { VERB_COUNT = sizeof verbs / sizeof *verbs };
 static int verb_help(int argc, char **argv)
 {
     (void)argc, (void)argv;
-    printf("slender simulates and designs magnetised thin shells.\n\n");
+    printf(
+        "slender simulates and designs magnetised thin shells and elastic rods, and draws with splines.\n\n");
     for (int k = 0; k < VERB_COUNT; k++) printf("  slender %-8s  %s\n", verbs[k].name, verbs[k].doc);
     printf("\nEach verb explains its options: slender run --help\n"
            "Exit codes: 0 done; 1 computed but did not converge; 2 usage; 3 scene or mesh refused; 4 cannot "

@@ -1,6 +1,7 @@
 #include "cli/model.h"
 #include "base/memory.h"
 #include "cli/build.h"
+#include "cli/drawing.h"
 #include "cli/job.h"
 #include "cli/rod_model.h"
 #include <math.h>
@@ -142,24 +143,55 @@ static bool check_motion(const Scene *scene, YamlFile *file)
                        what);
 }
 
-/* Which jobs a body knows. */
+/* Which jobs there are for what. */
 static bool check_job(const Scene *scene, YamlFile *file)
 {
-    bool rods_only = scene->job == JOB_INVERT || scene->job == JOB_IDENTIFY;
-    bool shells_only = scene->job == JOB_EVALUATE || scene->job == JOB_TRAJECTORY;
-    if (scene->rod ? !shells_only : !rods_only) return true;
-    return yaml_refuse(file, "job", "%s is a job for %s", job_names[scene->job],
-                       scene->rod ? "shells" : "rods");
+    int job = scene->job;
+    bool rods_only = job == JOB_INVERT || job == JOB_IDENTIFY;
+    bool shells_only = job == JOB_EVALUATE || job == JOB_TRAJECTORY;
+    bool fits = scene->spline ? job == JOB_DRAW
+                : scene->rod  ? job != JOB_DRAW && !shells_only
+                              : job != JOB_DRAW && !rods_only;
+    const char *has = scene->spline ? "a drawing" : scene->rod ? "a rod" : "a shell";
+    return fits || yaml_refuse(file, "job", "%s is a job for %s, and the scene has %s", job_names[job],
+                               rods_only         ? "rods"
+                               : shells_only     ? "shells"
+                               : job == JOB_DRAW ? "drawings"
+                                                 : "shells and rods",
+                               has);
+}
+
+/* Files that only a drawing has. */
+static bool check_output(const OutputScene *output, YamlFile *file)
+{
+    const struct {
+        const char *key, *name;
+    } files[] = {{"output.svg", output->svg},
+                 {"output.png", output->png},
+                 {"output.gcode", output->gcode},
+                 {"output.gcode_servo", output->gcode_servo},
+                 {"output.hpgl", output->hpgl}};
+    for (int k = 0; k < 5; k++)
+        if (files[k].name)
+            return yaml_refuse(file, files[k].key,
+                               "only a drawing is written so; slender picture shows results");
+    return true;
+}
+
+static bool build_body(Model *model, const Scene *scene, YamlFile *file)
+{
+    if (!check_output(&scene->output, file) || !check_motion(scene, file)) return false;
+    return scene->rod ? model_rod(model, scene, file) : model_shell(model, scene, file);
 }
 
 Model *model_create(const Scene *scene, YamlFile *file)
 {
     Model *model = mem_alloc(1, sizeof *model);
     bool designed = scene->job == JOB_DESIGN || scene->job == JOB_TRAJECTORY;
-    if (check_job(scene, file) && check_motion(scene, file) &&
-        (scene->rod ? model_rod(model, scene, file) : model_shell(model, scene, file)) &&
-        (!designed || model_design(model, scene, file)))
-        return model;
+    bool ok = check_job(scene, file) &&
+              (scene->spline ? model_drawing(model, scene, file) : build_body(model, scene, file)) &&
+              (!designed || model_design(model, scene, file));
+    if (ok) return model;
     model_destroy(model);
     return NULL;
 }
@@ -189,6 +221,7 @@ void model_destroy(Model *model)
     mesh_report_clear(&model->report);
     shell_destroy(model->shell);
     rod_model_destroy(model->rod);
+    drawing_destroy(model->drawing);
     mem_free(model->cases);
     mem_free(model->motions);
     mem_free(model->x);

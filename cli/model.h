@@ -1,4 +1,5 @@
-/* model.h - a scene made ready to run: a shell or a rod, its load cases and what is prescribed over time. */
+/* model.h - a scene made ready to run: a shell or a rod, its load cases and what is prescribed over time; or
+ * a drawing. */
 #pragma once
 #include "cli/arrays.h"
 #include "cli/scene.h"
@@ -48,8 +49,8 @@ typedef struct Model Model;
 
 struct Build;
 
-/* What is not alike for shells and rods: how scenes become numbers, and how states are written into the
- * journal. */
+/* What is not alike for shells, rods and drawings: how scenes become numbers, and how states are written into
+ * the journal. */
 typedef struct BodyOps {
     /* Of a case or stage into its p: the field, dead loads; places of its target, NAN where there is none.
      * False after a refusal at that key. */
@@ -81,8 +82,9 @@ typedef struct BodyOps {
 struct RodModel;
 
 struct Model {
-    Shell *shell;         /* one of these two */
-    struct RodModel *rod; /* rod_model.h      */
+    Shell *shell;            /* one of these three */
+    struct RodModel *rod;    /* rod_model.h        */
+    struct Drawing *drawing; /* drawing.h; nothing below is of it but body->add_static */
     const BodyOps *body;
     Params *params; /* the body's                                          */
     int gravity;    /* first entries in p                                  */
@@ -115,6 +117,7 @@ bool model_load(const Model *model, double time, double *p, Error *err);
 /* Parts of model_create, by body: false after a refusal. */
 bool model_shell(Model *model, const Scene *scene, YamlFile *file);
 bool model_rod(Model *model, const Scene *scene, YamlFile *file);
+bool model_drawing(Model *model, const Scene *scene, YamlFile *file);
 
 /* The load cases or stages of a scene, each with p[room] as a copy; false after a refusal. */
 bool model_cases(Model *model, const struct Build *b, const Scene *scene, const double *p, size_t room);

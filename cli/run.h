@@ -20,6 +20,7 @@ typedef struct Run {
     Model *model;
     Journal *journal;
     Progress *progress;
+    const char *result; /* NAME.vtkhdf */
     int threads;
 } Run;
 

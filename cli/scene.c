@@ -329,17 +329,27 @@ static const YamlTable time_table = {
                                    .doc = "of a simulation or trajectory: how many"},
                                   {0}}};
 
+#define DRAWING_FILE(m, d)                                                                                   \
+    {                                                                                                        \
+        YAML_TEXT(OutputScene, m), .doc = "of a drawing: " d                                                 \
+    }
 static const YamlTable output_table = {
     .name = "output",
     .size = sizeof(OutputScene),
-    .doc = "What goes into the result file.",
-    .fields =
-        (const YamlField[]){{YAML_INTEGER(OutputScene, every), .range = "[0, inf)", .fallback = "0",
-                             .doc = "a frame for every so many steps of a motion (0: every step) or "
-                                    "improvements of a design (0: the final one only)"},
-                            {YAML_CHOICE(OutputScene, precision), .choices = YAML_NAMES("single", "double"),
-                             .fallback = "single", .doc = "of frames"},
-                            {0}}};
+    .doc =
+        "What goes into the result file, and further files. Their names are relative to the result's folder.",
+    .fields = (const YamlField[]){
+        {YAML_INTEGER(OutputScene, every), .range = "[0, inf)", .fallback = "0",
+         .doc = "a frame for every so many steps of a motion (0: every step) or improvements of a design (0: "
+                "the final one only); of a drawing: NAME-N.svg after every so many iterations N (0: none)"},
+        {YAML_CHOICE(OutputScene, precision), .choices = YAML_NAMES("single", "double"), .fallback = "single",
+         .doc = "of frames"},
+        DRAWING_FILE(svg, "curves in mm, a layer for each pen; NAME.svg if absent"),
+        DRAWING_FILE(png, "target and drawing side by side; NAME.png if absent"),
+        DRAWING_FILE(gcode, "for a pen on a z axis; none if absent"),
+        DRAWING_FILE(gcode_servo, "for a pen on a servo (M3 S30, M5); none if absent"),
+        DRAWING_FILE(hpgl, "none if absent"),
+        {0}}};
 
 const YamlTable scene_table = {
     .name = "scene",
@@ -352,6 +362,8 @@ const YamlTable scene_table = {
         {YAML_OPTIONAL(Scene, shell, &shell_table), .one_of = 1, .required = true,
          .doc = "the body: a shell"},
         {YAML_OPTIONAL(Scene, rod, &rod_table), .one_of = 1, .required = true, .doc = "the body: a rod"},
+        {YAML_OPTIONAL(Scene, spline, &spline_table), .one_of = 1, .required = true,
+         .doc = "no body, but a drawing"},
         {YAML_TABLE(Scene, flux_density, &flux_density_table), .fallback = "[0, 0, 0]",
          .doc = "applied field"},
         {YAML_LIST(Scene, fix, &fix_table), .doc = "what is held"},

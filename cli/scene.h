@@ -4,14 +4,10 @@
  *
  * Numbers are SI; an absent number is NAN, an absent choice -1, an absent list or table NULL (YamlKind). */
 #pragma once
+#include "cli/scene_spline.h"
 #include "io/yaml.h"
 
 /* ---- Values over faces, edges or space ---- */
-
-/* Helper of a formula: where: {a: "atan2(y, x)"} */
-typedef struct WhereScene {
-    char *name, *formula;
-} WhereScene;
 
 typedef struct NumberGroup {
     char *group;
@@ -332,14 +328,16 @@ typedef struct TimeScene {
 
 typedef struct OutputScene {
     int every, precision;
+    char *svg, *png, *gcode, *gcode_servo, *hpgl; /* of a drawing: names of files */
 } OutputScene;
 
 enum { OUTPUT_SINGLE, OUTPUT_DOUBLE };
 
 typedef struct Scene {
     int job;           /* row of job_rows (job.h) */
-    ShellScene *shell; /* one of these two */
+    ShellScene *shell; /* one of these three */
     RodScene *rod;
+    SplineScene *spline;
     FluxScene flux_density;
     FixScene *fix;
     LoadScene *loads;

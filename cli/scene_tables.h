@@ -6,6 +6,7 @@ extern const YamlTable where_table, velocity_table;                  /* scene.c 
 extern const YamlTable young_table, fold_table, magnetization_table; /* scene.c        */
 extern const YamlTable design_table;                                 /* scene_design.c */
 extern const YamlTable rod_table;                                    /* scene_rod.c    */
+extern const YamlTable spline_table;                                 /* scene_spline.c */
 
 #define WHERE_ROW(S)                                                                                         \
     {                                                                                                        \

@@ -1,7 +1,9 @@
 #include "cli/show.h"
 #include "base/memory.h"
 #include "base/vec3.h"
+#include "cli/drawn.h"
 #include "cli/show_data.h"
+#include "cli/show_drawing.h"
 #include "cli/show_rod.h"
 #include "io/ticks.h"
 #include <math.h>
@@ -235,7 +237,9 @@ bool show_result(const char *result, const char *picture, const ShowDef *def, Er
     ShowData data;
     Show show = {.data = &data, .def = def};
     bool ok = show_data_open(&data, result, def, err);
-    if (ok && show_has_rod(&data))
+    if (ok && drawn_has(data.result))
+        ok = show_drawing(&data, picture, err);
+    else if (ok && show_has_rod(&data))
         ok = show_rod(&data, result, picture, err);
     else
         ok = ok && write_page(&show, result, picture, err);

@@ -1,5 +1,5 @@
 /* show.h - a picture of a result: its load cases or one frame, targets, arrows and the history of a design;
- * of rods their curves (show_rod.h). */
+ * of rods their curves (show_rod.h), of drawings their lines (show_drawing.h). */
 #pragma once
 #include "base/error.h"
 #include "io/picture.h"
@@ -16,7 +16,7 @@ typedef struct ShowDef {
     bool history; /* a chart of the objective, if there is one          */
     PictureTarget target;
     double view[3]; /* direction to the eye; zeros: three quarters        */
-    int width;      /* pixels                                             */
+    int width;      /* pixels; of a drawing those of its paper            */
 } ShowDef;
 
 ShowDef show_default(void);

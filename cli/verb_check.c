@@ -3,6 +3,7 @@
 #include "base/memory.h"
 #include "base/random.h"
 #include "base/vec3.h"
+#include "cli/drawing.h"
 #include "cli/job.h"
 #include "cli/rod_model.h"
 #include "cli/verb.h"
@@ -202,9 +203,27 @@ static void report_rod(const Model *model)
                system_free_count(model->cases[0].sys));
 }
 
+static void report_drawing(const Drawing *d)
+{
+    const SplinePage *page = &d->page;
+    printf("%d pens; %.4g x %.4g mm within margins of %.4g mm\n", d->pen_count,
+           1e3 * page->unit * page->width, 1e3 * page->unit * page->height, 1e3 * page->left);
+    for (int k = 0; k < d->part_count; k++) {
+        const DrawingPart *part = &d->parts[k];
+        SplineGrid tone = spline_grid(&part->tone);
+        double mean = spline_grid_mean(&tone, 0), ink = mean / part->page.pen,
+               rest = spline_rest_length(&tone, &part->page);
+        printf("%s, %.3g mm: covers %.3g of the page, %.3g m of ink, about %.0f segments\n",
+               d->pens[part->pen].name, 1e3 * page->unit * part->page.pen, mean, page->unit * ink,
+               rest > 0 ? ink / rest : 0);
+    }
+}
+
 static bool report(const Model *model, const Scene *scene, bool derivatives)
 {
-    if (model->rod)
+    if (model->drawing)
+        report_drawing(model->drawing);
+    else if (model->rod)
         report_rod(model);
     else
         report_shell(model, scene);

@@ -1,5 +1,6 @@
 /* slender info and slender export: what is in a result, or in the journal of a running job. */
 #include "base/memory.h"
+#include "cli/drawn.h"
 #include "cli/verb.h"
 #include "io/mesh_file.h"
 #include "io/result.h"
@@ -71,7 +72,7 @@ static double evaluation_number(Journal *journal, int index, const char *name)
     return value;
 }
 
-/* An evaluation of a design, or a step of a simulation. */
+/* An evaluation of a design, an iteration of a drawing, or a step of a simulation. */
 static void print_evaluation(Journal *journal, int index)
 {
     if (journal_has(journal, "evaluation", index, "objective"))
@@ -79,6 +80,9 @@ static void print_evaluation(Journal *journal, int index)
                evaluation_number(journal, index, "objective"),
                evaluation_number(journal, index, "gradient_norm"),
                evaluation_number(journal, index, "seconds"));
+    else if (journal_has(journal, "evaluation", index, "energy"))
+        printf("  %4d  energy %.6e  %g strokes  %.1f s\n", index, evaluation_number(journal, index, "energy"),
+               evaluation_number(journal, index, "strokes"), evaluation_number(journal, index, "seconds"));
     else
         printf("  %4d  t %.6g s  %g Newton iterations  %g factorizations\n", index,
                evaluation_number(journal, index, "time"),
@@ -166,11 +170,36 @@ static bool export_frame(Result *result, int frame, const char *path, Error *err
     return ok;
 }
 
-static bool export_result(const char *input, const char *dataset, int frame, const char *path, Error *err)
+/* In that plotter's language, or as the name's ending says. */
+static bool export_drawing(Result *result, const char *language, const char *path, Error *err)
+{
+    static const struct {
+        const char *ending, *language;
+    } endings[] = {{".svg", "svg"},  {".gcode", "gcode"}, {".ngc", "gcode"},
+                   {".nc", "gcode"}, {".hpgl", "hpgl"},   {".plt", "hpgl"}};
+    Drawn drawn = {0};
+    for (size_t k = 0; !language && k < sizeof endings / sizeof *endings; k++)
+        if (has_ending(path, endings[k].ending)) language = endings[k].language;
+    if (!language)
+        return error_set(err, "%s: a drawing is exported as .svg, .gcode or .hpgl, or numbers with --dataset",
+                         path);
+    bool ok = drawn_read(result, &drawn, err) && drawn_write(&drawn, language, path, err);
+    drawn_clear(&drawn);
+    return ok;
+}
+
+typedef struct Export {
+    const char *output, *dataset, *language;
+    int frame;
+} Export;
+
+static bool export_result(const char *input, const Export *what, Error *err)
 {
     Result *result = result_open(input, err);
     if (!result) return false;
-    bool ok = dataset ? export_dataset(result, dataset, path, err) : export_frame(result, frame, path, err);
+    bool ok = what->dataset       ? export_dataset(result, what->dataset, what->output, err)
+              : drawn_has(result) ? export_drawing(result, what->language, what->output, err)
+                                  : export_frame(result, what->frame, what->output, err);
     result_close(result);
     return ok;
 }
@@ -205,27 +234,30 @@ int verb_export(int argc, char **argv)
     static const char usage[] =
         "export NAME.vtkhdf -o FILE.csv --dataset PATH      numbers, e.g. --dataset design/magnetization\n"
         "       slender export NAME.vtkhdf -o FILE.obj [--frame N]  a mesh; default: the final state\n"
+        "       slender export NAME.vtkhdf -o FILE.svg | .gcode | .hpgl [--plotter gcode | gcode_servo | "
+        "hpgl]  a "
+        "drawing\n"
         "       slender export NAME.run -o NAME.vtkhdf              the result of a running or interrupted "
         "job";
-    static const struct option table[] = {{"output", required_argument, NULL, 'o'},
-                                          {"dataset", required_argument, NULL, 'd'},
-                                          {"frame", required_argument, NULL, 'f'},
-                                          {"help", no_argument, NULL, 'h'},
-                                          {0}};
-    const char *output = NULL, *dataset = NULL;
-    int frame = -1;
+    static const struct option table[] = {
+        {"output", required_argument, NULL, 'o'}, {"dataset", required_argument, NULL, 'd'},
+        {"frame", required_argument, NULL, 'f'},  {"plotter", required_argument, NULL, 'p'},
+        {"help", no_argument, NULL, 'h'},         {0}};
+    Export what = {.frame = -1};
     char end;
     for (int c; (c = getopt_long(argc, argv, "o:", table, NULL)) >= 0;)
         if (c == 'o')
-            output = optarg;
+            what.output = optarg;
         else if (c == 'd')
-            dataset = optarg;
-        else if (c != 'f' || sscanf(optarg, "%d%c", &frame, &end) != 1 || frame < 0)
+            what.dataset = optarg;
+        else if (c == 'p')
+            what.language = optarg;
+        else if (c != 'f' || sscanf(optarg, "%d%c", &what.frame, &end) != 1 || what.frame < 0)
             return verb_usage(usage);
-    if (!output || optind != argc - 1) return verb_usage(usage);
+    if (!what.output || optind != argc - 1) return verb_usage(usage);
     Error err;
     const char *input = argv[optind];
-    bool ok = has_ending(input, ".run") ? export_journal(input, output, &err)
-                                        : export_result(input, dataset, frame, output, &err);
+    bool ok = has_ending(input, ".run") ? export_journal(input, what.output, &err)
+                                        : export_result(input, &what, &err);
     return ok ? RUN_DONE : verb_fail(RUN_CANNOT_WRITE, err.text);
 }

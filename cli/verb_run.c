@@ -1,6 +1,7 @@
 /* slender run: scene -> journal -> result and picture. */
 #include "base/memory.h"
 #include "cli/job.h"
+#include "cli/outputs.h"
 #include "cli/recall.h"
 #include "cli/show.h"
 #include "cli/verb.h"
@@ -16,28 +17,44 @@ enum { SET_MAX = 64, THREADS_MAX = 64 };
 
 typedef struct RunOptions {
     const char *scene, *output;
-    char *set[SET_MAX];
+    char *set[SET_MAX]; /* owned */
     int set_count, threads;
     bool resume, force, no_picture;
     ProgressMode mode;
 } RunOptions;
 
 static const char usage[] =
-    "run SCENE [-o NAME] [--set key=value].. [--resume | --force] [--threads N] [--quiet | --log=json] "
-    "[--no-picture]\n"
-    "  Writes NAME.vtkhdf and NAME.xdmf (the result), NAME.png (a picture) and NAME.run (the journal).\n"
+    "run SCENE [-o NAME] [--set key=value].. [--page SIZE] [--margin LENGTH] [--resume | --force] "
+    "[--threads N]\n"
+    "          [--quiet | --log=json] [--no-picture]\n"
+    "  Writes NAME.vtkhdf and NAME.xdmf (the result), NAME.png (a picture) and NAME.run (the journal); of a "
+    "drawing\n"
+    "  NAME.svg too, and what else its key `output` names.\n"
     "  -o NAME          default: the scene's name, here\n"
     "  --set key=value  overrides a value of the scene: --set shell.thickness=1mm; may be repeated\n"
+    "  --page SIZE      of a drawing: a4, a3, .., 'a4 landscape', 210x297mm\n"
+    "  --margin LENGTH  of a drawing: 10mm\n"
     "  --resume         goes on with a run that was interrupted, or extends one that has finished\n"
     "  --force          discards an unfinished run of that name\n"
-    "  --threads N      load cases at once; default: as many as there are processors\n"
+    "  --threads N      load cases at once, parts of a drawing's tone; default: as many as there are "
+    "processors\n"
     "  --quiet          says nothing but errors; --log=json: one JSON object per line";
+
+/* key=value, over what the scene says. */
+static bool add_setting(RunOptions *options, const char *key, const char *value)
+{
+    if (options->set_count == SET_MAX) return false;
+    options->set[options->set_count++] = mem_format("%s%s", key, value);
+    return true;
+}
 
 static bool parse(int argc, char **argv, RunOptions *options)
 {
-    enum { SET = 256, RESUME, FORCE, THREADS, QUIET, LOG, NO_PICTURE, HELP };
+    enum { SET = 256, PAGE, MARGIN, RESUME, FORCE, THREADS, QUIET, LOG, NO_PICTURE, HELP };
     static const struct option table[] = {{"output", required_argument, NULL, 'o'},
                                           {"set", required_argument, NULL, SET},
+                                          {"page", required_argument, NULL, PAGE},
+                                          {"margin", required_argument, NULL, MARGIN},
                                           {"resume", no_argument, NULL, RESUME},
                                           {"force", no_argument, NULL, FORCE},
                                           {"threads", required_argument, NULL, THREADS},
@@ -50,8 +67,12 @@ static bool parse(int argc, char **argv, RunOptions *options)
     for (int c; (c = getopt_long(argc, argv, "o:", table, NULL)) >= 0;) {
         if (c == 'o')
             options->output = optarg;
-        else if (c == SET && options->set_count < SET_MAX)
-            options->set[options->set_count++] = optarg;
+        else if (c == SET && add_setting(options, "", optarg))
+            continue;
+        else if (c == PAGE && add_setting(options, "spline.page.size=", optarg))
+            continue;
+        else if (c == MARGIN && add_setting(options, "spline.page.margin=", optarg))
+            continue;
         else if (c == RESUME)
             options->resume = true;
         else if (c == FORCE)
@@ -81,9 +102,14 @@ static const char *const free_keys[] = {
 static const char *const free_keys_trajectory[] = {"design.iterations", "design.tolerance",
                                                    "output.precision", "modes", NULL};
 
+static const char *const free_keys_draw[] = {"output", "spline.rounds", "spline.order", "spline.plotter",
+                                             NULL};
+
 static bool check_scene(Journal *journal, int job, const char *scene, Error *err)
 {
-    const char *const *keys = job == JOB_TRAJECTORY ? free_keys_trajectory : free_keys;
+    const char *const *keys = job == JOB_TRAJECTORY ? free_keys_trajectory
+                              : job == JOB_DRAW     ? free_keys_draw
+                                                    : free_keys;
     Array old;
     if (!journal_get(journal, "meta", 0, "scene", &old, err)) return false;
     char *difference = yaml_difference(old.data, scene, keys);
@@ -98,7 +124,7 @@ static bool check_scene(Journal *journal, int job, const char *scene, Error *err
     return false;
 }
 
-static bool begin(Run *run, const RunOptions *options, const char *result, Error *err)
+static bool begin(Run *run, const RunOptions *options, Error *err)
 {
     Arrays statics = {0};
     run->model->body->add_static(run->model, &statics);
@@ -106,7 +132,7 @@ static bool begin(Run *run, const RunOptions *options, const char *result, Error
     bool ok = !options->resume || check_scene(run->journal, run->scene->job, scene, err);
     Array meta[] = {array_text("scene", scene), array_text("versions", versions)};
     if (ok && options->resume && journal_is_finished(run->journal) && run->scene->job == JOB_SIMULATE)
-        ok = recall_frames(run->journal, result, err);
+        ok = recall_frames(run->journal, run->result, err);
     ok = ok && journal_put(run->journal, "meta", 0, meta, 2, err) &&
          arrays_put(&statics, run->journal, "static", 0, err);
     arrays_clear(&statics);
@@ -130,30 +156,30 @@ static bool write_result(Run *run, const char *path, bool finished, Error *err)
     return true;
 }
 
-static void draw(Run *run, const char *result)
+static void draw(Run *run)
 {
     Error err;
-    char *name = verb_without_ending(result, ".vtkhdf"), *picture = mem_format("%s.png", name);
+    char *picture = outputs_picture(run->scene, run->result);
     ShowDef def = show_default();
-    if (show_result(result, picture, &def, &err))
+    if (show_result(run->result, picture, &def, &err))
         progress_say(run->progress, "picture: %s", picture);
     else
         progress_say(run->progress, "no picture: %s", err.text);
-    mem_free(name);
     mem_free(picture);
 }
 
-static int do_job(Run *run, const RunOptions *options, const char *result)
+static int do_job(Run *run, const RunOptions *options)
 {
     Error err;
-    if (!begin(run, options, result, &err))
+    if (!begin(run, options, &err))
         return verb_fail(options->resume ? RUN_REFUSED : RUN_CANNOT_WRITE, err.text);
     RunStatus status = job_run(run, &err);
     if (status == RUN_CANNOT_WRITE) return verb_fail(status, err.text);
-    if (!write_result(run, result, status != RUN_INTERRUPTED, &err))
+    if (!write_result(run, run->result, status != RUN_INTERRUPTED, &err))
         return verb_fail(RUN_CANNOT_WRITE, err.text);
-    progress_say(run->progress, "result: %s", result);
-    if (!options->no_picture) draw(run, result);
+    progress_say(run->progress, "result: %s", run->result);
+    if (!outputs_write(run, &err)) return verb_fail(RUN_CANNOT_WRITE, err.text);
+    if (!options->no_picture) draw(run);
     if (status == RUN_INTERRUPTED)
         progress_say(run->progress, "interrupted; all is saved: run again with --resume");
     return status;
@@ -183,10 +209,12 @@ static int run_model(const RunOptions *options, const Scene *scene, Model *model
     char *name =
         options->output ? verb_without_ending(options->output, ".vtkhdf") : verb_base_name(options->scene);
     char *result = mem_format("%s.vtkhdf", name), *journal = mem_format("%s.run", name);
-    Run run = {.scene = scene, .model = model, .progress = &progress, .threads = options->threads};
+    Run run = {
+        .scene = scene, .model = model, .progress = &progress, .result = result, .threads = options->threads};
     JournalMode mode = options->resume ? JOURNAL_RESUME : options->force ? JOURNAL_FORCE : JOURNAL_NEW;
-    if (check_output(options->output, result, &err)) run.journal = journal_open(journal, mode, &err);
-    int code = run.journal ? do_job(&run, options, result) : verb_fail(RUN_CANNOT_WRITE, err.text);
+    if (check_output(options->output, result, &err) && outputs_check(scene, result, &err))
+        run.journal = journal_open(journal, mode, &err);
+    int code = run.journal ? do_job(&run, options) : verb_fail(RUN_CANNOT_WRITE, err.text);
     if (run.journal && !journal_close(run.journal, &err) && code != RUN_CANNOT_WRITE)
         code = verb_fail(RUN_CANNOT_WRITE, err.text);
     mem_free(name);
@@ -209,5 +237,6 @@ int verb_run(int argc, char **argv)
     }
     yaml_clear(&scene_table, &scene);
     yaml_destroy(file);
+    for (int k = 0; k < options.set_count; k++) mem_free(options.set[k]);
     return code;
 }

@@ -51,7 +51,7 @@ int verb_mesh(int argc, char **argv)
     Model *model =
         verb_load_scene(argv[optind], NULL, 0, &file, &scene) ? verb_build_model(&scene, file) : NULL;
     if (model && !model->shell)
-        code = verb_fail(RUN_REFUSED, "the scene has a rod, no mesh");
+        code = verb_fail(RUN_REFUSED, "the scene has no mesh");
     else if (model)
         code = write_mesh(model->shell->mesh, path, &err) ? RUN_DONE : verb_fail(RUN_CANNOT_WRITE, err.text);
     model_destroy(model);

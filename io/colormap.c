@@ -2,6 +2,8 @@
 #include "base/vec3.h"
 #include <math.h>
 #include <stddef.h>
+#include <stdlib.h>
+#include <string.h>
 
 enum { VIRIDIS_COUNT = 16, DIVERGING_COUNT = 17 };
 
@@ -66,6 +68,30 @@ Color colormap_color(Colormap map, double t)
     Vec3 a = oklab_from_rgb(rgb_unpack(anchors[k])), b = oklab_from_rgb(rgb_unpack(anchors[k + 1]));
     Vec3 c = rgb_from_oklab(vec3_axpy(place - k, vec3_sub(b, a), a));
     return (Color){c.x, c.y, c.z, 1};
+}
+
+/* Inks of pens rather than lights of a screen: pure red, green and blue would be too bright on paper. */
+static const struct {
+    const char *name;
+    unsigned rgb;
+} named[] = {{"black", 0x000000},  {"white", 0xffffff},  {"grey", 0x808080},  {"red", 0xd62728},
+             {"green", 0x2ca02c},  {"blue", 0x1f55b4},   {"cyan", 0x00aeef},  {"magenta", 0xec008c},
+             {"yellow", 0xfff200}, {"orange", 0xff7f0e}, {"brown", 0x8c564b}, {"purple", 0x7b3fa0}};
+
+bool color_parse(const char *text, Color *color, Error *err)
+{
+    unsigned long rgb = 0;
+    bool known = text[0] == '#' && strspn(text + 1, "0123456789abcdefABCDEF") == 6 && strlen(text) == 7;
+    if (known) rgb = strtoul(text + 1, NULL, 16);
+    for (size_t k = 0; !known && k < sizeof named / sizeof *named; k++)
+        if ((known = !strcmp(text, named[k].name))) rgb = named[k].rgb;
+    if (!known)
+        return error_set(err,
+                         "'%s' is no colour; write #rrggbb, or black, white, grey, red, green, blue, "
+                         "cyan, magenta, yellow, orange, brown or purple",
+                         text);
+    *color = (Color){(double)(rgb >> 16) / 255, (double)(rgb >> 8 & 255) / 255, (double)(rgb & 255) / 255, 1};
+    return true;
 }
 
 Color colormap_series(int index)

@@ -4,19 +4,24 @@
  * for those of both. Both are even to the eye: equal steps of the number are equal steps of lightness.
  * Between its anchors a map is interpolated in Oklab [Ottosson 2020]. */
 #pragma once
+#include "base/error.h"
 
 /* sRGB components and opacity, each 0..1, not premultiplied. */
 typedef struct Color {
     double r, g, b, a;
 } Color;
 
+/* "#1f77b4", or a name: black, white, grey, red, green, blue, cyan, magenta, yellow, orange, brown, purple. A
+ * sentence for anything else. */
+bool color_parse(const char *text, Color *color, Error *err);
+
 typedef enum Colormap { COLORMAP_VIRIDIS, COLORMAP_DIVERGING } Colormap;
 
 /* The colour at t in 0..1; t outside is clamped, NaN is a neutral grey. */
 Color colormap_color(Colormap map, double t);
 
-/* Colours for kinds of things, told apart with every kind of colour blindness: blue, vermilion, green, purple, orange,
- * sky blue, black, and again from the start. [Okabe and Ito 2008] */
+/* Colours for kinds of things, told apart with every kind of colour blindness: blue, vermilion, green,
+ * purple, orange, sky blue, black, and again from the start. [Okabe and Ito 2008] */
 Color colormap_series(int index);
 
 /* Which number has which colour. */

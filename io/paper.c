@@ -59,6 +59,6 @@ bool paper_size(const char *text, double size[2], Error *err)
                  (words == 1 || turn(word[1], size));
     return known || error_set(err,
                               "\"%s\" is no size of paper; say a0 to a6, letter, legal, tabloid or a size as "
-                              "210x297mm (1 mm to 10 m), and landscape behind it where it is",
+                              "210x297mm (1 mm to 10 m), and landscape behind it for one on its side",
                               text);
 }

@@ -21,6 +21,14 @@ SplineField spline_field_like(const SplineField *field, int width)
     return copy;
 }
 
+SplineField spline_field_copy(const SplineField *field)
+{
+    SplineField copy = *field;
+    copy.values = mem_copy(field->values, (size_t)copy.columns * (size_t)copy.rows * (size_t)copy.width,
+                           sizeof *copy.values);
+    return copy;
+}
+
 void spline_field_clear(SplineField *field)
 {
     mem_free(field->values);

@@ -23,6 +23,7 @@ typedef struct SplineField {
 /* Zeros in square pixels of about that size; from 4 to 4000 of them a side. */
 SplineField spline_field_create(const SplinePage *page, double pixel, int width);
 SplineField spline_field_like(const SplineField *field, int width);
+SplineField spline_field_copy(const SplineField *field);
 void spline_field_clear(SplineField *field);
 
 static inline SplineGrid spline_grid(const SplineField *field)

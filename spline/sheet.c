@@ -1,6 +1,5 @@
 #include "spline/sheet.h"
 #include "base/memory.h"
-#include <string.h>
 
 double (*sheet_add(Sheet *sheet, int nodes))[4]
 {

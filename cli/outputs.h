@@ -1,0 +1,13 @@
+/* outputs.h - the files of a drawing beside its result, as the scene's key `output` names them: relative to
+ * the result's folder. */
+#pragma once
+#include "cli/run.h"
+
+/* Can they be written? A missing folder is refused before the work, not after it. */
+bool outputs_check(const Scene *scene, const char *result, Error *err);
+
+/* Writes them from the result; false and a sentence where one cannot be. Of other scenes there are none. */
+bool outputs_write(Run *run, Error *err);
+
+/* Where the picture goes; the caller frees. */
+char *outputs_picture(const Scene *scene, const char *result);

@@ -1,0 +1,117 @@
+/* scene_spline.h - what a scene says of a drawing; part of scene.h, in whose terms it is written. */
+#pragma once
+#include "spline/weights.h"
+#include <stdbool.h>
+
+/* Helper of a formula: where: {a: "atan2(y, x)"} */
+typedef struct WhereScene {
+    char *name, *formula;
+} WhereScene;
+
+typedef enum ToneFit { TONE_CONTAIN, TONE_COVER } ToneFit;
+
+typedef struct ToneScene {
+    double crop[4], black, white, gamma, density;
+    double (*curve)[2];
+    int fit, curve_count; /* ToneFit */
+    bool invert;
+} ToneScene;
+
+/* A name, or two sides. */
+typedef struct PaperScene {
+    char *name;
+    double *sides;
+    int sides_count;
+} PaperScene;
+
+typedef struct PageScene {
+    PaperScene size;
+    double margin;
+} PageScene;
+
+typedef struct PenScene {
+    char *name, *color;
+    double width, from, turn;
+} PenScene;
+
+typedef enum SeparationKind { SEPARATE_CMYK, SEPARATE_TONES } SeparationKind;
+
+typedef struct SeparationScene {
+    int kind; /* SeparationKind */
+    double black;
+} SeparationScene;
+
+typedef struct CrossScene {
+    double angle, *from;
+    int from_count;
+} CrossScene;
+
+typedef struct DirectionScene {
+    int image; /* 0: structure tensor */
+    double angle, detail, smooth, spread, turn;
+    char **formula, *file;
+    WhereScene *where;
+    int formula_count, where_count;
+} DirectionScene;
+
+typedef enum StrokesStart { START_STREAMLINES, START_RANDOM } StrokesStart;
+
+typedef struct StrokesScene {
+    int kind, segments; /* StrokesStart */
+    double separation, ink, longest;
+} StrokesScene;
+
+/* A density, or a potential. */
+typedef struct FieldScene {
+    char *formula;
+    WhereScene *where;
+    int where_count;
+} FieldScene;
+
+typedef struct FlowScene {
+    char **formula;
+    WhereScene *where;
+    int formula_count, where_count;
+} FlowScene;
+
+typedef struct PairScene {
+    int kernel; /* PairKernel */
+    double radius;
+} PairScene;
+
+typedef struct MonteCarloScene {
+    int temperatures, sweeps;
+    double first, last;
+} MonteCarloScene;
+
+typedef struct DynamicsScene {
+    double step, damping;
+    int steps;
+} DynamicsScene;
+
+typedef struct PlotterScene {
+    double down, up, lift;
+} PlotterScene;
+
+typedef struct SplineScene {
+    char *image;
+    FieldScene *density, *potential;
+    FlowScene *flow;
+    ToneScene tone;
+    PageScene page;
+    double pen;
+    PenScene *pens;
+    SeparationScene *separation;
+    CrossScene *cross;
+    DirectionScene direction;
+    StrokesScene start;
+    SplineWeights energies;
+    PairScene pair;
+    int method, iterations, rounds, seed, order, pens_count; /* RelaxMethod; DrawOrder */
+    double tolerance, rest;
+    MonteCarloScene monte_carlo;
+    DynamicsScene dynamics;
+    PlotterScene plotter;
+} SplineScene;
+
+typedef enum DrawOrder { ORDER_SHORTEST, ORDER_AS_MADE } DrawOrder;
