@@ -275,6 +275,19 @@ void canvas_text(Canvas *canvas, Vec2 at, const char *text, TextStyle style)
     cairo_new_path(canvas->cairo);
 }
 
+void canvas_begin_ink(Canvas *canvas)
+{
+    cairo_push_group(canvas->cairo);
+}
+
+void canvas_end_ink(Canvas *canvas)
+{
+    cairo_pop_group_to_source(canvas->cairo);
+    cairo_set_operator(canvas->cairo, CAIRO_OPERATOR_MULTIPLY);
+    cairo_paint(canvas->cairo);
+    cairo_set_operator(canvas->cairo, CAIRO_OPERATOR_OVER);
+}
+
 void canvas_clip(Canvas *canvas, Box box)
 {
     cairo_save(canvas->cairo);

@@ -69,6 +69,10 @@ double canvas_text_width(Canvas *canvas, const char *text, TextStyle style);
 void canvas_clip(Canvas *canvas, Box box);
 void canvas_unclip(Canvas *canvas);
 
+/* What is drawn between the two is one coat of transparent ink: its colours are multiplied with those below. */
+void canvas_begin_ink(Canvas *canvas);
+void canvas_end_ink(Canvas *canvas);
+
 /* Draws [height][width][4] bytes R, G, B, A (not premultiplied), row 0 on top, stretched over the box. */
 void canvas_image(Canvas *canvas, const unsigned char *rgba, int width, int height, Box box);
 

@@ -48,9 +48,11 @@ static void draw_plot(Canvas *canvas, const Plot *plot, Vec2 origin)
     for (int k = 0; k < plot->layer_count; k++) {
         const PlotLayer *layer = &plot->layers[k];
         Pen pen = {.color = layer->color, .width = POINTS * layer->pen};
+        canvas_begin_ink(canvas);
         for (int i = 0; i < layer->count; i++)
             draw_curve(canvas, layer->points + layer->start[i], layer->points + layer->start[i + 1] - 1,
                        origin, pen);
+        canvas_end_ink(canvas);
     }
 }
 

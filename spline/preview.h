@@ -1,4 +1,5 @@
-/* preview.h - a picture of a plot as it will look: every pen with its own width and colour. */
+/* preview.h - a picture of a plot as it will look: every pen with its own width and colour, one ink
+ * shining through the other. */
 #pragma once
 #include "io/plot_file.h"
 #include "spline/grid.h"

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Makes still_life.png: a vase, a lemon, spheres and a cloth on a table before a curtain, lit from the left.
+"""Makes still_life.png, and still_life.jpg in colours: a vase, a lemon, spheres and a cloth on a table before a curtain, lit from the left.
 
 Distances to the bodies are followed along rays [sphere tracing, Hart 1996], with a soft shadow from a lamp of some
 size, ambient occlusion and a little grain. Needs numpy and PIL; takes about ten seconds."""
@@ -57,6 +57,9 @@ def cloth(p):
     return smooth_min(y, np.maximum((y - wave) * 0.7, 0.7 * edge), 0.03)
 
 
+TINTS = [  # of the bodies below: red, green, blue
+    [1.0, 0.72, 0.5], [0.95, 0.45, 0.4], [0.45, 0.75, 1.05], [1.05, 1.0, 0.9], [0.75, 1.1, 0.4], [1.1, 0.6, 0.25], [1.12, 1.02, 0.25], [0.9, 0.3, 0.75],
+]
 BODIES = [  # distance, brightness, gloss
     (lambda p: p[..., 1], 0.55, 0.05),
     (curtain, 0.34, 0.0),
@@ -122,10 +125,15 @@ def main():
         ambient -= 0.55 ** k * np.clip(0.09 * k - distance(p + 0.09 * k * normal), 0, 1) / 0.09
     half = norm(to_lamp - ray)
     shine = gloss * np.clip((normal * half).sum(-1), 0, 1) ** 60 * (lit > 0.05)
-    light = base * (0.95 * lit + 0.16 * np.clip(ambient, 0.1, 1)) + shine
-    grey = np.clip(light / (0.35 + light) * 1.2, 0, 1) ** 0.9
-    grey += np.random.default_rng(1).normal(0, 0.006, grey.shape)
-    Image.fromarray((255 * np.clip(grey, 0, 1)).round().astype(np.uint8)).save('still_life.png', optimize=True)
+    matt = base * (0.95 * lit + 0.16 * np.clip(ambient, 0.1, 1))
+    grain = np.random.default_rng(1).normal(0, 0.006, matt.shape)
+
+    def bytes_of(light, grain):
+        level = np.clip(light / (0.35 + light) * 1.2, 0, 1) ** 0.9 + grain
+        return Image.fromarray((255 * np.clip(level, 0, 1)).round().astype(np.uint8))
+
+    bytes_of(matt + shine, grain).save('still_life.png', optimize=True)
+    bytes_of(matt[..., None] * np.array(TINTS)[which] + shine[..., None], grain[..., None]).save('still_life.jpg', quality=90)
 
 
 main()
