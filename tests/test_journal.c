@@ -73,6 +73,9 @@ static void test_round_trip(void **state)
     assert_true(journal_get(journal, "static", 3, "scene", &got, &err));
     assert_string_equal(got.data, "slender: 1\n");
     array_clear(&got);
+    assert_true(journal_get(journal, "static", 3, "nothing", &got, &err) && array_count(&got) == 0 &&
+                got.dims[1] == 3);
+    array_clear(&got);
     assert_false(journal_get(journal, "static", 4, "x", &got, &err));
     assert_string_equal(err.text, "test_journal.run has no static 4, x");
     char **names;

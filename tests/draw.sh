@@ -1,0 +1,80 @@
+#!/bin/sh
+# Drawings as their users meet them: files, options, pictures of every kind.    tests/draw.sh PROGRAM
+program=$1
+here=$(cd "$(dirname "$0")" && pwd)
+work=$(mktemp -d) || exit 2
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 2
+bad=0
+expect() { # exit code, command ..
+    wanted=$1; shift
+    "$@" > out.txt 2> err.txt
+    code=$?
+    [ $code = "$wanted" ] && return
+    echo "$* ends with $code, not $wanted"; cat out.txt err.txt; bad=1
+}
+says() { grep -q -- "$1" out.txt err.txt || { echo "nothing says '$1':"; cat out.txt err.txt; bad=1; }; }
+exists() { [ -s "$1" ] || { echo "$1 is missing or empty"; bad=1; }; }
+same() { cmp -s "$1" "$2" || { echo "$1 and $2 differ"; bad=1; }; }
+
+scene=$here/scene_draw.yaml
+mkdir out
+expect 0 "$program" check "$scene";             says "80 x 50 mm within margins of 5 mm"; says "segments"
+expect 0 "$program" run "$scene" -o out/a --set output.gcode=a.gcode --set output.hpgl="$work/b.plt" --set output.every=20
+says "pen moves"; says "min to plot"; says "svg: out/a.svg"; says "tone error"
+for file in out/a.svg out/a.png out/a.gcode b.plt out/a-000020.svg out/a.vtkhdf; do exists $file; done
+for path in spline/nodes spline/strokes spline/pen metrics/tone_rmse metrics/ssim metrics/spacing_cv metrics/crowded metrics/travel final/energy/tone history/energy; do
+    expect 0 "$program" info out/a.vtkhdf;      says "slender/$path "
+done
+
+# The same drawing again, byte by byte: with other threads, from the result, after an extension of its rounds.
+expect 0 "$program" run "$scene" --quiet --no-picture -o b --threads 1; same out/a.svg b.svg
+[ ! -e b.png ] || { echo "--no-picture has made one"; bad=1; }
+expect 0 "$program" export out/a.vtkhdf -o c.svg; same out/a.svg c.svg
+expect 0 "$program" export out/a.vtkhdf -o c.gcode; same out/a.gcode c.gcode
+expect 0 "$program" export out/a.vtkhdf -o c.nc --plotter gcode_servo; grep -q "M3 S30" c.nc || { echo "no servo"; bad=1; }
+expect 4 "$program" export out/a.vtkhdf -o c.dwg; says "exported as .svg"
+expect 0 "$program" picture out/a.vtkhdf -o c.pdf --width 800; exists c.pdf
+expect 4 "$program" picture out/a.vtkhdf -o c.png --frame 0; says "no frames"
+expect 0 "$program" run "$scene" --quiet --no-picture -o d --set spline.rounds=0
+expect 0 "$program" run "$scene" --quiet --no-picture -o d --resume; same out/a.svg d.svg
+expect 3 "$program" run "$scene" --quiet -o d --resume --set spline.pen=1mm; says "spline.pen"
+expect 0 "$program" run "$scene" --quiet --no-picture -o e --set spline.seed=2; cmp -s out/a.svg e.svg && { echo "another seed, the same drawing"; bad=1; }
+
+# Paper and margin; what cannot be written is refused before the work.
+expect 0 "$program" run "$scene" --quiet --no-picture -o f --page "a6 landscape" --margin 12mm
+grep -q 'width="148mm" height="105mm" viewBox="0 0 148 105"' f.svg || { echo "no A6"; head -3 f.svg; bad=1; }
+expect 3 "$program" run "$scene" --quiet -o f --force --page a9; says "no size of paper"
+expect 4 "$program" run "$scene" -o g --set output.svg=no/such/g.svg; says "its folder is not there"
+[ ! -e g.run ] || { echo "a drawing that cannot be written has begun"; bad=1; }
+expect 1 "$program" run "$scene" --no-picture -o h --set spline.iterations=3; says "h.svg"
+expect 0 "$program" run "$scene" --quiet --no-picture -o i --set spline.order=as_made
+for method in newton gradient monte_carlo dynamics; do
+    expect 0 "$program" run "$scene" --quiet --no-picture -o m --force --set spline.method=$method --set spline.rounds=0 --set spline.pen=1mm \
+        --set spline.iterations=100000 --set spline.tolerance=0.02 --set spline.monte_carlo.sweeps=5 --set spline.dynamics.steps=10
+    exists m.svg
+done
+
+# Pictures that ask for nothing, or are hardly any; and broken ones.
+printf 'P2 1 1 255 40\n' > dot.pgm; printf 'P2 2 2 255 255 255 255 255\n' > white.pgm; printf 'P2 3 1 65535 0 30000 65535\n' > deep.pgm
+printf 'P5 100000 100000 255\n' > huge.pgm; printf 'P5 8 8 255\nshort' > cut.pgm; printf '\211PNG\r\n\032\n broken' > broken.png
+cat > picture.yaml <<'S'
+slender: 1
+job: draw
+spline: {image: dot.pgm, page: {size: [60 mm, 60 mm], margin: 5 mm}, pen: 1 mm}
+S
+expect 0 "$program" run picture.yaml -o dot;    says "dot.png"
+expect 0 "$program" run picture.yaml -o deep --set spline.image="$work/deep.pgm"
+expect 0 "$program" run picture.yaml -o white --set spline.image="$work/white.pgm"; says "0 strokes"
+exists white.svg; exists white.png; grep -q "<path" white.svg && { echo "strokes on white paper"; bad=1; }
+for name in huge.pgm cut.pgm broken.png; do
+    expect 3 "$program" run picture.yaml -o x --set spline.image="$work/$name"; says "$name"
+    [ "$(grep -c . err.txt)" -le 3 ] || { echo "$name: more than a sentence"; cat err.txt; bad=1; }
+done
+
+# Four inks: a layer and a number for each.
+printf 'P3 2 2 255  0 255 255  255 0 255  255 255 0  40 40 40\n' > inks.ppm
+expect 0 "$program" run picture.yaml -o inks --set spline.image="$work/inks.ppm" --set spline.separation=cmyk
+for layer in 1-cyan 2-magenta 3-yellow 4-black; do grep -q "label=\"$layer\"" inks.svg || { echo "no layer $layer"; bad=1; }; done
+expect 0 "$program" info inks.vtkhdf;           says "metrics/tone_rmse  *float64  4"
+exit $bad
