@@ -1,0 +1,194 @@
+/* Drawings from scenes: pages, pens, what each part shall cover, directions. */
+#include "base/memory.h"
+#include "cli/drawing.h"
+#include "spline/direction.h"
+#include "tests/leaks.h"
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static void expect_close(double value, double expected, double tolerance)
+{
+    if (!(fabs(value - expected) <= tolerance)) fail_msg("%.15g is not %.15g", value, expected);
+}
+
+/* The drawing of a scene's spline entry in flow style; the refused sentence in place of it fails. */
+static Drawing *drawing_of(const char *entry)
+{
+    char text[1000];
+    Scene scene;
+    snprintf(text, sizeof text, "slender: 1\njob: draw\nspline: {%s}\n", entry);
+    YamlFile *file = yaml_parse("test_drawing.yaml", text, strlen(text));
+    Drawing *drawing = yaml_load(file, &scene_table, &scene) ? drawing_create(scene.spline, file) : NULL;
+    if (!drawing) fail_msg("%s", yaml_report(file));
+    yaml_clear(&scene_table, &scene);
+    yaml_destroy(file);
+    return drawing;
+}
+
+static void write_file(const char *path, const char *text)
+{
+    FILE *file = fopen(path, "w");
+    assert_true(file && fputs(text, file) >= 0 && fclose(file) == 0);
+}
+
+static double value_at(const SplineField *field, const SplinePage *page, double u, double v)
+{
+    SplineGrid grid = spline_grid(field);
+    double value;
+    assert_int_equal(field->width, 1);
+    spline_grid_sample(&grid, page, (Vec2){u * page->width, v * page->height}, &value);
+    return value;
+}
+
+static void pages(void **state)
+{
+    (void)state;
+    Drawing *d = drawing_of("density: 0.5, page: {size: a5 landscape, margin: 10 mm}, pen: 0.4 mm, seed: 7");
+    expect_close(d->page.paper[0], 0.210, 1e-12);
+    expect_close(d->page.paper[1], 0.148, 1e-12);
+    expect_close(d->page.unit * d->page.width, 0.190, 1e-12);
+    expect_close(d->page.unit * d->page.pen, 0.4e-3, 1e-15);
+    assert_true(d->part_count == 1 && d->pen_count == 1 && d->start.seed == 7 && d->relax.seed == 7);
+    assert_string_equal(d->pens[0].name, "black");
+    drawing_destroy(d);
+    d = drawing_of("density: 0.5, page: {size: 80x40mm, margin: 0}, pen: 1 mm, method: gradient, rest: 0, "
+                   "energies: {bend: 3}");
+    expect_close(d->page.unit * d->page.height, 0.040, 1e-12);
+    assert_true(d->relax.method == RELAX_GRADIENT && d->relax.rest == 0 && d->relax.weights.bend == 3 &&
+                d->relax.weights.tone == 1);
+    drawing_destroy(d);
+}
+
+/* Formulas know metres and parts of the page; densities end at 0 and 1. */
+static void formulas(void **state)
+{
+    (void)state;
+    Drawing *d = drawing_of(
+        "density: {formula: \"a + 0.2*v\", where: {a: \"4*(x - 0.02)\"}}, page: {size: [120 mm, 70 mm], "
+        "margin: 10 mm}, pen: 0.5 mm, direction: {formula: [\"cos(2*u)\", \"sin(2*u)\"], turn: 30 deg}");
+    for (double u = 0.05; u < 0.96; u += 0.1)
+        for (double v = 0.1; v < 1; v += 0.2) {
+            double want = fmin(fmax(4 * (0.1 * u - 0.02) + 0.2 * v, 0), 1);
+            if (want > 0.02) expect_close(value_at(&d->tones[0], &d->page, u, v), want, 1e-4);
+            SplineGrid along = spline_grid(&d->direction);
+            Vec2 t =
+                spline_direction_at(&along, &d->page, (Vec2){u * d->page.width, v * d->page.height}, NULL);
+            expect_close(fabs(cos(2 * u + M_PI / 6) * t.x + sin(2 * u + M_PI / 6) * t.y), 1, 1e-4);
+        }
+    expect_close(value_at(&d->tones[0], &d->page, 0.01, 0.01), 0, 0);
+    drawing_destroy(d);
+}
+
+/* Four pure inks side by side; black is the greatest density. */
+static void inks(void **state)
+{
+    (void)state;
+    write_file("inks.ppm", "P3 4 1 255  0 255 255  255 0 255  255 255 0  0 0 0\n");
+    Drawing *d = drawing_of("image: inks.ppm, page: {size: [80 mm, 20 mm], margin: 0}, pen: 0.5 mm, "
+                            "separation: cmyk, tone: {density: 0.8}");
+    assert_true(d->pen_count == 4 && d->part_count == 4 && d->picture.width == 3);
+    for (int pen = 0; pen < 4; pen++)
+        for (int k = 0; k < 4; k++)
+            expect_close(value_at(&d->tones[pen], &d->page, (k + 0.5) / 4, 0.5), pen == k ? 0.8 : 0, 0.02);
+    expect_close(d->parts[0].turn, -M_PI / 6, 1e-12);
+    expect_close(d->parts[2].turn, M_PI / 2, 1e-12);
+    drawing_destroy(d);
+    d = drawing_of("image: inks.ppm, page: {size: [80 mm, 20 mm], margin: 0}, separation: cmyk, pens: "
+                   "[{name: black, width: 0.7 mm}, {name: cyan, color: \"#0080ff\", turn: 0}]");
+    assert_true(d->pen_count == 2);
+    expect_close(d->pens[1].color.g, 128 / 255.0, 1e-12);
+    expect_close(d->parts[1].turn, 0, 0);
+    expect_close(d->page.unit * d->parts[0].page.pen, 0.7e-3, 1e-15);
+    expect_close(value_at(&d->tones[0], &d->page, 0.875, 0.5), 0.85, 0.02);
+    drawing_destroy(d);
+}
+
+static void tones(void **state)
+{
+    (void)state;
+    Drawing *d =
+        drawing_of("density: \"u\", page: {size: [80 mm, 20 mm], margin: 0}, pen: 0.5 mm, separation: tones, "
+                   "pens: [grey, {name: bold, from: 0.4, width: 1 mm}]");
+    for (double u = 0.1; u < 0.96; u += 0.1) {
+        if (fabs(u - 0.4) < 0.02) continue;
+        expect_close(value_at(&d->tones[0], &d->page, u, 0.5), u < 0.4 ? u : 0, 1e-3);
+        expect_close(value_at(&d->tones[1], &d->page, u, 0.5), u < 0.4 ? 0 : u, 1e-3);
+    }
+    expect_close(d->pens[1].color.r, 0, 0); /* a name that is no colour */
+    expect_close(d->page.unit * d->parts[1].page.pen, 1e-3, 1e-15);
+    expect_close(d->page.unit * d->page.pen, 0.5e-3, 1e-15);
+    drawing_destroy(d);
+}
+
+/* Sets that cross cover together what was asked for, the second one only where it is dark. */
+static void crossed(void **state)
+{
+    (void)state;
+    Drawing *d = drawing_of(
+        "density: \"0.9*u\", page: {size: [80 mm, 20 mm], margin: 0}, pen: 0.5 mm, direction: 20 deg, "
+        "cross: {angle: 70 deg, from: [0, 0.3]}");
+    assert_int_equal(d->part_count, 2);
+    for (double u = 0.05; u < 0.96; u += 0.1) {
+        double a = value_at(&d->parts[0].tone, &d->page, u, 0.5),
+               b = value_at(&d->parts[1].tone, &d->page, u, 0.5);
+        expect_close(1 - (1 - a) * (1 - b), 0.9 * u, 1e-4);
+        if (0.9 * u < 0.29) expect_close(b, 0, 0);
+    }
+    expect_close(d->parts[1].turn - d->parts[0].turn, 70 * M_PI / 180, 1e-12);
+    drawing_destroy(d);
+}
+
+/* Strokes start and have a target: all on the page, along their part's direction. */
+static void starts(void **state)
+{
+    (void)state;
+    static const char *const kinds[] = {"streamlines", "random"};
+    for (int kind = 0; kind < 2; kind++) {
+        char entry[300];
+        snprintf(entry, sizeof entry,
+                 "density: 0.4, page: {size: [60 mm, 40 mm]}, pen: 1 mm, direction: 10 deg, cross: {from: "
+                 "[0, 0]}, start: %s",
+                 kinds[kind]);
+        Drawing *d = drawing_of(entry);
+        for (int part = 0; part < 2; part++) {
+            Strokes strokes = drawing_start(d, part);
+            SplineTarget *target = drawing_target(d, part);
+            assert_true(strokes.count > 3);
+            expect_close(strokes_length(&strokes) / spline_ink_budget(target), 1, 0.25);
+            for (int i = 0; i < strokes_node_count(&strokes); i++) {
+                const double *q = strokes.q + 4 * i, angle = (10 + 90 * part) * M_PI / 180;
+                assert_true(q[0] >= 0 && q[0] <= d->page.width && q[1] >= 0 && q[1] <= d->page.height);
+                expect_close(fabs(q[2] * cos(angle) + q[3] * sin(angle)) / hypot(q[2], q[3]), 1, 1e-6);
+            }
+            spline_target_destroy(target);
+            strokes_clear(&strokes);
+        }
+        drawing_destroy(d);
+    }
+}
+
+static void colors(void **state)
+{
+    (void)state;
+    Color color;
+    Error err = {""};
+    assert_true(color_parse("#1A2b3c", &color, &err));
+    expect_close(color.r, 0x1a / 255.0, 1e-12);
+    expect_close(color.b, 0x3c / 255.0, 1e-12);
+    assert_true(color_parse("black", &color, &err) && color.r == 0 && color.a == 1);
+    static const char *const wrong[] = {"", "#12", "#12345g", "#1234567", "Black", "ultraviolet"};
+    for (size_t k = 0; k < sizeof wrong / sizeof *wrong; k++)
+        assert_false(color_parse(wrong[k], &color, &err));
+    assert_non_null(strstr(err.text, "'ultraviolet' is no colour"));
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_teardown(pages, nothing_leaks),   cmocka_unit_test_teardown(formulas, nothing_leaks),
+        cmocka_unit_test_teardown(inks, nothing_leaks),    cmocka_unit_test_teardown(tones, nothing_leaks),
+        cmocka_unit_test_teardown(crossed, nothing_leaks), cmocka_unit_test_teardown(starts, nothing_leaks),
+        cmocka_unit_test_teardown(colors, nothing_leaks)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
