@@ -11,3 +11,4 @@ void bench_march(void);
 void bench_trajectory(void);
 void bench_rod(void);
 void bench_spline(void);
+void bench_draw(void);

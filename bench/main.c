@@ -16,6 +16,7 @@ static const struct {
     {"design", bench_design},
     {"rod", bench_rod},
     {"spline", bench_spline},
+    {"draw", bench_draw},
 };
 
 enum { CASE_COUNT = sizeof cases / sizeof *cases };
