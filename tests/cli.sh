@@ -1,20 +1,6 @@
 #!/bin/sh
 # The program as its users meet it: verbs, files, exit codes.    tests/cli.sh PROGRAM
-program=$1
-here=$(cd "$(dirname "$0")" && pwd)
-work=$(mktemp -d) || exit 2
-trap 'rm -rf "$work"' EXIT
-cd "$work" || exit 2
-bad=0
-expect() { # exit code, command ..
-    wanted=$1; shift
-    "$@" > out.txt 2> err.txt
-    code=$?
-    [ $code = "$wanted" ] && return
-    echo "$* ends with $code, not $wanted"; cat out.txt err.txt; bad=1
-}
-says() { grep -q -- "$1" out.txt err.txt || { echo "nothing says '$1':"; cat out.txt err.txt; bad=1; }; }
-exists() { [ -s "$1" ] || { echo "$1 is missing or empty"; bad=1; }; }
+. "$(dirname "$0")/expect.sh"
 
 expect 0 "$program" help;                       says "slender run"
 expect 0 "$program" --version;                  says "CHOLMOD"; says "OpenBLAS"; says "NLopt"; says "HDF5"
