@@ -2,7 +2,7 @@
 # Lets the i-th write, sync, truncation or rename of a small job fail, for every i (or every STEP-th) until a run
 # passes untouched. Each time: the run ends with a sentence and exit code 4, or is done; the old result is there or the
 # new one, whole; what the journal has acknowledged is there, and a resumed run comes to the same end.
-#   tests/faults.sh PROGRAM SHIM [STEP] [KIND]      KIND: design, simulate
+#   tests/faults.sh PROGRAM SHIM [STEP] [KIND]      KIND: design, simulate, draw
 program=$1 shim=$2 step=${3:-1} kind=${4:-design}
 here=$(cd "$(dirname "$0")" && pwd)
 work=$(mktemp -d) || exit 2
@@ -12,6 +12,7 @@ case $kind in
     design) scene="$here/scene_small.yaml --set shell.mesh.n=2 --set design.iterations=3 --set design.optimizer=mma"
         dataset=design/magnetization unit=objective ;;
     simulate) scene="$here/scene_simulate.yaml --set shell.mesh.n=4 --set time.steps=9" dataset=frames/x unit="Newton iterations" ;;
+    draw) scene="$here/scene_draw.yaml --set spline.pen=1mm --set spline.rounds=1 --set output.hpgl=part.plt" dataset=spline/nodes unit=energy ;;
 esac
 scene="$scene --no-picture"
 numbers() { "$program" export "$1" -o out.csv --dataset $dataset && cat out.csv; }
@@ -43,6 +44,7 @@ for stays in "" 1; do
             fail "cannot go on"
         numbers part.vtkhdf > part.txt
         cmp -s whole.txt part.txt || fail "another end"
+        [ "$kind" != draw ] || cmp -s whole.svg part.svg || fail "another drawing"
         i=$((i + step))
     done
     [ -n "$stays" ] || [ $code = 0 ] || fail "a run without a fault ends with $code"
