@@ -118,38 +118,46 @@ static void add_plot(const Drawing *d, const Strokes *strokes, const OrderInfo *
 
 /* ---- For ParaView: strokes as chords ---- */
 
+/* The points of a stroke, from number `at` on; y upwards, as scenes in space have it. Returns where the next
+ * one begins. */
+static int put_chords(const SplinePage *page, const Strokes *strokes, int stroke, double (*x)[3], int at)
+{
+    int end = strokes->start[stroke + 1] - 1;
+    for (int node = strokes->start[stroke]; node <= end; node++) {
+        bool last = node == end;
+        Vec2 c[4];
+        strokes_bezier(strokes, node - last, c);
+        for (int i = 0; i < (last ? 1 : STEPS); i++, at++) {
+            Vec2 p = cubic_at(c, last ? 1 : (double)i / STEPS);
+            x[at][0] = page->left + page->unit * p.x;
+            x[at][1] = page->paper[1] - page->top - page->unit * p.y;
+        }
+    }
+    return at;
+}
+
 static bool put_frame(Run *run, const Drawing *d, const Strokes *strokes, Error *err)
 {
-    const SplinePage *page = &d->page;
-    Arrays list = {0}, statics = {0};
     int lines = strokes->count, points = STEPS * strokes_segment_count(strokes) + lines, at = 0;
+    if (lines == 0) return true;
+    Arrays list = {0}, statics = {0};
     int *range = arrays_keep(&statics, mem_alloc(2 * (size_t)lines, sizeof *range));
     double *x = arrays_numbers(&list, 3 * (size_t)points), time = 0,
            *pen = arrays_numbers(&list, (size_t)lines);
-    if (lines == 0) return true;
     for (int k = 0; k < lines; k++) {
-        range[2 * k] = at;
+        int next = put_chords(&d->page, strokes, k, (double(*)[3])x, at);
+        range[2 * k] = at, range[2 * k + 1] = next - at;
         pen[k] = strokes->layer[k];
-        for (int node = strokes->start[k]; node < strokes->start[k + 1]; node++) {
-            bool last = node == strokes->start[k + 1] - 1;
-            Vec2 c[4];
-            strokes_bezier(strokes, node - last, c);
-            for (int i = 0; i < (last ? 1 : STEPS); i++, at++) {
-                Vec2 p = cubic_at(c, last ? 1 : (double)i / STEPS);
-                x[3 * at] = page->left + page->unit * p.x;
-                x[3 * at + 1] =
-                    page->paper[1] - page->top - page->unit * p.y; /* y up, as scenes in space have it */
-            }
-        }
-        range[2 * k + 1] = at - range[2 * k];
+        at = next;
     }
     arrays_add(&statics, array_int("lines", range, 2, lines, 2));
     arrays_add(&list, array_float("x", "m", x, 2, points, 3));
     arrays_add(&list, array_float("time", "s", &time, 0, 0, 0));
     arrays_add(&list, array_float("cell/pen", "", pen, 1, lines, 0));
-    bool ok = arrays_put(&statics, run->journal, "static", 0, err);
-    if (!ok) arrays_clear(&list);
-    return ok && arrays_put(&list, run->journal, "frame", 0, err);
+    bool ok = arrays_put(&statics, run->journal, "static", 0, err) &&
+              arrays_put(&list, run->journal, "frame", 0, err);
+    arrays_clear(&list);
+    return ok;
 }
 
 /* ---- The whole ---- */
