@@ -138,7 +138,8 @@ static Tone tone_of(const SplineTarget *target, const RelaxDef *def, const Strok
 {
     double *rest = spline_rest_lengths(target, def, strokes);
     SplineModel *model = spline_model_create(target, strokes, rest, &def->model);
-    SplinePoints points = spline_points_create(&model->rule, model->segment_count);
+    SplinePoints points =
+        spline_points_create(&model->rule, model->segment_count, spline_pen_cap(&target->page));
     spline_points_update(&points, model, strokes->q);
     Tone tone = tone_create(target, NULL);
     tone_update(&tone, &points);

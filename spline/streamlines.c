@@ -79,10 +79,10 @@ static void add_stroke(const Tracer *tracer, const Points *curve, double from, d
     }
 }
 
-static double sheet_length(const Sheet *sheet)
+static double sheet_ink(const Sheet *sheet, const SplinePage *page)
 {
     Strokes strokes = {.count = sheet->count, .start = sheet->start, .q = (double *)sheet->q}; /* borrowed */
-    return strokes_length(&strokes);
+    return strokes_length(&strokes) + 2 * sheet->count * spline_pen_cap(page);
 }
 
 /* Pieces of whole segments, half to all of the greatest length by chance: cuts side by side would show as a
@@ -184,7 +184,7 @@ void spline_streamlines(const SplineGrid *tone, const SplineGrid *direction, con
     double separation = def->separation;
     Sheet sheet = even_strokes(&tracer, &whole, separation);
     for (int tries = 1; def->ink > 0 && tries < TRIES; tries++) {
-        double ink = sheet_length(&sheet) / (def->ink * demand.length);
+        double ink = sheet_ink(&sheet, page) / (def->ink * demand.length);
         if (fabs(ink - 1) < 0.03) break;
         separation = fmin(fmax(separation * ink, def->separation / 1.3), 1.3 * def->separation);
         sheet_clear(&sheet);
@@ -240,7 +240,7 @@ void spline_random_strokes(const SplineGrid *tone, const SplineGrid *direction, 
         double length = (curve.count - 1) * tracer.step;
         if (length < segment / 2) continue;
         add_stroke(&tracer, &curve, 0, curve.count - 1, (int)fmax(lround(length / segment), 1), &sheet);
-        left -= length;
+        left -= length + 2 * spline_pen_cap(page);
     }
     mem_free(sums);
     mem_free(curve.at);

@@ -40,5 +40,5 @@ double spline_ink_budget(const SplineTarget *target)
 
 int spline_stroke_budget(const SplineTarget *target, int segments, double rest)
 {
-    return (int)lround(spline_ink_budget(target) / (segments * rest));
+    return (int)lround(spline_ink_budget(target) / (segments * rest + 2 * spline_pen_cap(&target->page)));
 }

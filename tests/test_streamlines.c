@@ -144,7 +144,7 @@ static double ink_of(const Strokes *strokes, double (*density)(double x, double 
     SplineGrid grid = spline_grid(&tone);
     double budget = spline_grid_mean(&grid, 0) / page->pen;
     spline_field_clear(&tone);
-    return strokes_length(strokes) / budget;
+    return (strokes_length(strokes) + 2 * strokes->count * spline_pen_cap(page)) / budget;
 }
 
 /* One tone, one direction: parallel lines, their distance near w/D. */
