@@ -3,7 +3,7 @@
 #include "spline/near.h"
 #include <stdlib.h>
 
-enum { CANDIDATES = 8 };
+enum { CANDIDATES = 8, RING_LEAST = 3 /* segments, or its two ends would meet its middle */ };
 
 typedef struct Pair {
     double square; /* of the distance */
@@ -78,8 +78,9 @@ static int find_pairs(const Strokes *strokes, JoinDef def, Pair *pairs)
     }
     Near *near = near_create(points, group, ends);
     for (int e = 0; e < ends; e++) {
-        int most = near_find(near, points[e], e / 2, def.gap, CANDIDATES, found);
+        int most = near_find(near, points[e], -1, def.gap, CANDIDATES, found);
         for (int k = 0; k < most; k++) {
+            if (found[k] == e) continue;
             double node[4], dx = points[found[k]].x - points[e].x, dy = points[found[k]].y - points[e].y;
             if (strokes->layer[found[k] / 2] == strokes->layer[e / 2] &&
                 join_node(strokes, e, found[k], def.angle, node))
@@ -98,18 +99,24 @@ int join_find(const Strokes *strokes, JoinDef def, int *partner)
     for (size_t e = 0; e < ends; e++) partner[e] = -1;
     if (!(def.gap > 0)) return 0;
     Pair *pairs = mem_alloc(CANDIDATES * ends, sizeof *pairs);
-    int *far = mem_alloc(ends, sizeof *far); /* of what an end's stroke has been joined to */
+    int *far =
+        mem_alloc(2 * ends, sizeof *far); /* the other end of what an end's stroke has been joined to */
+    int *segments = far + ends;           /* in all of that */
     int count = find_pairs(strokes, def, pairs), joined = 0;
     qsort(pairs, (size_t)count, sizeof *pairs, by_distance);
-    for (size_t e = 0; e < ends; e++) far[e] = (int)(e ^ 1);
+    for (size_t e = 0; e < ends; e++) {
+        far[e] = (int)(e ^ 1);
+        segments[e] = strokes->start[e / 2 + 1] - strokes->start[e / 2] - 1;
+    }
     for (int k = 0; k < count; k++) {
-        int a = pairs[k].a, b = pairs[k].b;
-        if (partner[a] >= 0 || partner[b] >= 0 || far[a] == b) continue;
+        int a = pairs[k].a, b = pairs[k].b, begin = far[a], end = far[b];
+        bool ring = begin == b;
+        if (partner[a] >= 0 || partner[b] >= 0 || (ring && segments[a] < RING_LEAST)) continue;
         partner[a] = b;
         partner[b] = a;
-        int begin = far[a], end = far[b];
         far[begin] = end;
         far[end] = begin;
+        segments[begin] = segments[end] = segments[a] + segments[b];
         joined++;
     }
     mem_free(pairs);
