@@ -67,11 +67,20 @@ static int by_distance(const void *left, const void *right)
     return (l->b > r->b) - (l->b < r->b);
 }
 
+/* Its ends are near each other, and it is no dash. */
+static bool is_ring(const Strokes *strokes, int stroke, double gap)
+{
+    Vec2 a = join_end(strokes, 2 * stroke), b = join_end(strokes, 2 * stroke + 1);
+    return hypot(b.x - a.x, b.y - a.y) < 3 * gap && strokes_stroke_length(strokes, stroke) > 12 * gap;
+}
+
 static int find_pairs(const Strokes *strokes, JoinDef def, Pair *pairs)
 {
     int ends = 2 * strokes->count, count = 0, found[CANDIDATES];
     Vec2 *points = mem_alloc((size_t)ends, sizeof *points);
     int *group = mem_alloc((size_t)ends, sizeof *group);
+    bool *ring = mem_alloc((size_t)strokes->count, sizeof *ring);
+    for (int k = 0; k < strokes->count; k++) ring[k] = is_ring(strokes, k, def.gap);
     for (int e = 0; e < ends; e++) {
         points[e] = join_end(strokes, e);
         group[e] = e / 2;
@@ -80,7 +89,7 @@ static int find_pairs(const Strokes *strokes, JoinDef def, Pair *pairs)
     for (int e = 0; e < ends; e++) {
         int most = near_find(near, points[e], -1, def.gap, CANDIDATES, found);
         for (int k = 0; k < most; k++) {
-            if (found[k] == e) continue;
+            if (found[k] == e || (found[k] / 2 != e / 2 && (ring[e / 2] || ring[found[k] / 2]))) continue;
             double node[4], dx = points[found[k]].x - points[e].x, dy = points[found[k]].y - points[e].y;
             if (strokes->layer[found[k] / 2] == strokes->layer[e / 2] &&
                 join_node(strokes, e, found[k], def.angle, node))
@@ -90,6 +99,7 @@ static int find_pairs(const Strokes *strokes, JoinDef def, Pair *pairs)
     near_destroy(near);
     mem_free(points);
     mem_free(group);
+    mem_free(ring);
     return count;
 }
 

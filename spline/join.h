@@ -19,7 +19,9 @@ typedef struct JoinDef {
 Vec2 join_end(const Strokes *strokes, int end);
 
 /* partner[2 count] of ends: the end that it is joined to, -1: none. Ends of one layer only, each end once,
- * nearest pairs first; rings close on themselves. Returns how many pairs. */
+ * nearest pairs first. A stroke that comes back to within three gaps
+ * of its beginning closes on itself or not at all: joined to others, rings would become spirals. Returns how
+ * many pairs. */
 int join_find(const Strokes *strokes, JoinDef def, int *partner);
 
 /* The node (p, v) that takes the place of both ends, as seen by a pen that arrives at end a and goes on from

@@ -188,7 +188,7 @@ static bool take_tile(const Missing *missing, bool *taken, int tile)
 void spline_propose_strokes(const SplineTarget *target, const RelaxDef *def, const Strokes *strokes,
                             int segments, Strokes *candidates)
 {
-    double rest = (def->rest > 0 ? def->rest : relax_default().rest) * target->spacing,
+    double rest = spline_segment_length(def->rest > 0 ? def->rest : relax_default().rest, target->spacing),
            length = segments * rest;
     Missing missing = missing_create(&target->page, length / 3);
     Tone tone = tone_of(target, def, strokes);
