@@ -71,35 +71,58 @@ static int by_distance(const void *left, const void *right)
 static bool is_ring(const Strokes *strokes, int stroke, double gap)
 {
     Vec2 a = join_end(strokes, 2 * stroke), b = join_end(strokes, 2 * stroke + 1);
-    return hypot(b.x - a.x, b.y - a.y) < 3 * gap && strokes_stroke_length(strokes, stroke) > 12 * gap;
+    return hypot(b.x - a.x, b.y - a.y) < 2 * gap && strokes_stroke_length(strokes, stroke) > 8 * gap;
 }
 
+/* Ends of strokes, where they are, and which strokes are rings. */
+typedef struct Ends {
+    Vec2 *points;
+    int *stroke;
+    bool *ring;
+    Near *near;
+} Ends;
+
+static Ends ends_create(const Strokes *strokes, double gap)
+{
+    size_t count = 2 * (size_t)strokes->count;
+    Ends ends = {.points = mem_alloc(count, sizeof *ends.points),
+                 .stroke = mem_alloc(count, sizeof *ends.stroke),
+                 .ring = mem_alloc(count / 2, sizeof *ends.ring)};
+    for (int e = 0; e < 2 * strokes->count; e++) {
+        ends.points[e] = join_end(strokes, e);
+        ends.stroke[e] = e / 2;
+        ends.ring[e / 2] = is_ring(strokes, e / 2, gap);
+    }
+    ends.near = near_create(ends.points, ends.stroke, (int)count);
+    return ends;
+}
+
+static void ends_clear(Ends *ends)
+{
+    near_destroy(ends->near);
+    mem_free(ends->points);
+    mem_free(ends->stroke);
+    mem_free(ends->ring);
+}
+
+/* Each end with others within the gap; those of a ring with each other alone. */
 static int find_pairs(const Strokes *strokes, JoinDef def, Pair *pairs)
 {
-    int ends = 2 * strokes->count, count = 0, found[CANDIDATES];
-    Vec2 *points = mem_alloc((size_t)ends, sizeof *points);
-    int *group = mem_alloc((size_t)ends, sizeof *group);
-    bool *ring = mem_alloc((size_t)strokes->count, sizeof *ring);
-    for (int k = 0; k < strokes->count; k++) ring[k] = is_ring(strokes, k, def.gap);
-    for (int e = 0; e < ends; e++) {
-        points[e] = join_end(strokes, e);
-        group[e] = e / 2;
-    }
-    Near *near = near_create(points, group, ends);
-    for (int e = 0; e < ends; e++) {
-        int most = near_find(near, points[e], -1, def.gap, CANDIDATES, found);
+    Ends ends = ends_create(strokes, def.gap);
+    int count = 0;
+    for (int e = 0; e < 2 * strokes->count; e++) {
+        int found[CANDIDATES] = {e ^ 1}, most = 1;
+        if (!ends.ring[e / 2]) most = near_find(ends.near, ends.points[e], e / 2, def.gap, CANDIDATES, found);
         for (int k = 0; k < most; k++) {
-            if (found[k] == e || (found[k] / 2 != e / 2 && (ring[e / 2] || ring[found[k] / 2]))) continue;
-            double node[4], dx = points[found[k]].x - points[e].x, dy = points[found[k]].y - points[e].y;
-            if (strokes->layer[found[k] / 2] == strokes->layer[e / 2] &&
+            Vec2 a = ends.points[e], b = ends.points[found[k]];
+            double node[4], dx = b.x - a.x, dy = b.y - a.y;
+            if (ends.ring[found[k] / 2] == ends.ring[e / 2] &&
+                strokes->layer[found[k] / 2] == strokes->layer[e / 2] &&
                 join_node(strokes, e, found[k], def.angle, node))
                 pairs[count++] = (Pair){dx * dx + dy * dy, e, found[k]};
         }
     }
-    near_destroy(near);
-    mem_free(points);
-    mem_free(group);
-    mem_free(ring);
+    ends_clear(&ends);
     return count;
 }
 
@@ -109,9 +132,8 @@ int join_find(const Strokes *strokes, JoinDef def, int *partner)
     for (size_t e = 0; e < ends; e++) partner[e] = -1;
     if (!(def.gap > 0)) return 0;
     Pair *pairs = mem_alloc(CANDIDATES * ends, sizeof *pairs);
-    int *far =
-        mem_alloc(2 * ends, sizeof *far); /* the other end of what an end's stroke has been joined to */
-    int *segments = far + ends;           /* in all of that */
+    int *far = mem_alloc(2 * ends, sizeof *far); /* of what an end's stroke has been joined to */
+    int *segments = far + ends;                  /* in that */
     int count = find_pairs(strokes, def, pairs), joined = 0;
     qsort(pairs, (size_t)count, sizeof *pairs, by_distance);
     for (size_t e = 0; e < ends; e++) {

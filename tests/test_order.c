@@ -242,8 +242,8 @@ static int count_joints(double gap, double turn, int layer)
 static void joints(void **state)
 {
     (void)state;
-    assert_int_equal(count_joints(0.0099, 0, 0), 1);
-    assert_int_equal(count_joints(0.0101, 0, 0), 0);
+    assert_int_equal(count_joints(0.0149, 0, 0), 1);
+    assert_int_equal(count_joints(0.0151, 0, 0), 0);
     assert_int_equal(count_joints(0.005, 29.5 * PI / 180, 0), 1);
     assert_int_equal(count_joints(0.005, -29.5 * PI / 180, 0), 1);
     assert_int_equal(count_joints(0.005, 30.5 * PI / 180, 0), 0);
