@@ -3,7 +3,7 @@
 #include "spline/near.h"
 #include <stdlib.h>
 
-enum { CANDIDATES = 8 };
+enum { CANDIDATES = 8, RING_LEAST = 3 /* segments, or its two ends would meet its middle */ };
 
 typedef struct Pair {
     double square; /* of the distance */
@@ -67,28 +67,62 @@ static int by_distance(const void *left, const void *right)
     return (l->b > r->b) - (l->b < r->b);
 }
 
+/* Its ends are near each other, and it is no dash. */
+static bool is_ring(const Strokes *strokes, int stroke, double gap)
+{
+    Vec2 a = join_end(strokes, 2 * stroke), b = join_end(strokes, 2 * stroke + 1);
+    return hypot(b.x - a.x, b.y - a.y) < 2 * gap && strokes_stroke_length(strokes, stroke) > 8 * gap;
+}
+
+/* Ends of strokes, where they are, and which strokes are rings. */
+typedef struct Ends {
+    Vec2 *points;
+    int *stroke;
+    bool *ring;
+    Near *near;
+} Ends;
+
+static Ends ends_create(const Strokes *strokes, double gap)
+{
+    size_t count = 2 * (size_t)strokes->count;
+    Ends ends = {.points = mem_alloc(count, sizeof *ends.points),
+                 .stroke = mem_alloc(count, sizeof *ends.stroke),
+                 .ring = mem_alloc(count / 2, sizeof *ends.ring)};
+    for (int e = 0; e < 2 * strokes->count; e++) {
+        ends.points[e] = join_end(strokes, e);
+        ends.stroke[e] = e / 2;
+        ends.ring[e / 2] = is_ring(strokes, e / 2, gap);
+    }
+    ends.near = near_create(ends.points, ends.stroke, (int)count);
+    return ends;
+}
+
+static void ends_clear(Ends *ends)
+{
+    near_destroy(ends->near);
+    mem_free(ends->points);
+    mem_free(ends->stroke);
+    mem_free(ends->ring);
+}
+
+/* Each end with others within the gap; those of a ring with each other alone. */
 static int find_pairs(const Strokes *strokes, JoinDef def, Pair *pairs)
 {
-    int ends = 2 * strokes->count, count = 0, found[CANDIDATES];
-    Vec2 *points = mem_alloc((size_t)ends, sizeof *points);
-    int *group = mem_alloc((size_t)ends, sizeof *group);
-    for (int e = 0; e < ends; e++) {
-        points[e] = join_end(strokes, e);
-        group[e] = e / 2;
-    }
-    Near *near = near_create(points, group, ends);
-    for (int e = 0; e < ends; e++) {
-        int most = near_find(near, points[e], e / 2, def.gap, CANDIDATES, found);
+    Ends ends = ends_create(strokes, def.gap);
+    int count = 0;
+    for (int e = 0; e < 2 * strokes->count; e++) {
+        int found[CANDIDATES] = {e ^ 1}, most = 1;
+        if (!ends.ring[e / 2]) most = near_find(ends.near, ends.points[e], e / 2, def.gap, CANDIDATES, found);
         for (int k = 0; k < most; k++) {
-            double node[4], dx = points[found[k]].x - points[e].x, dy = points[found[k]].y - points[e].y;
-            if (strokes->layer[found[k] / 2] == strokes->layer[e / 2] &&
+            Vec2 a = ends.points[e], b = ends.points[found[k]];
+            double node[4], dx = b.x - a.x, dy = b.y - a.y;
+            if (ends.ring[found[k] / 2] == ends.ring[e / 2] &&
+                strokes->layer[found[k] / 2] == strokes->layer[e / 2] &&
                 join_node(strokes, e, found[k], def.angle, node))
                 pairs[count++] = (Pair){dx * dx + dy * dy, e, found[k]};
         }
     }
-    near_destroy(near);
-    mem_free(points);
-    mem_free(group);
+    ends_clear(&ends);
     return count;
 }
 
@@ -98,18 +132,23 @@ int join_find(const Strokes *strokes, JoinDef def, int *partner)
     for (size_t e = 0; e < ends; e++) partner[e] = -1;
     if (!(def.gap > 0)) return 0;
     Pair *pairs = mem_alloc(CANDIDATES * ends, sizeof *pairs);
-    int *far = mem_alloc(ends, sizeof *far); /* of what an end's stroke has been joined to */
+    int *far = mem_alloc(2 * ends, sizeof *far); /* of what an end's stroke has been joined to */
+    int *segments = far + ends;                  /* in that */
     int count = find_pairs(strokes, def, pairs), joined = 0;
     qsort(pairs, (size_t)count, sizeof *pairs, by_distance);
-    for (size_t e = 0; e < ends; e++) far[e] = (int)(e ^ 1);
+    for (size_t e = 0; e < ends; e++) {
+        far[e] = (int)(e ^ 1);
+        segments[e] = strokes->start[e / 2 + 1] - strokes->start[e / 2] - 1;
+    }
     for (int k = 0; k < count; k++) {
-        int a = pairs[k].a, b = pairs[k].b;
-        if (partner[a] >= 0 || partner[b] >= 0 || far[a] == b) continue;
+        int a = pairs[k].a, b = pairs[k].b, begin = far[a], end = far[b];
+        bool ring = begin == b;
+        if (partner[a] >= 0 || partner[b] >= 0 || (ring && segments[a] < RING_LEAST)) continue;
         partner[a] = b;
         partner[b] = a;
-        int begin = far[a], end = far[b];
         far[begin] = end;
         far[end] = begin;
+        segments[begin] = segments[end] = segments[a] + segments[b];
         joined++;
     }
     mem_free(pairs);

@@ -5,8 +5,8 @@
  * is at most `angle`, and so is, on either side, the turn from the joint's direction to the chord of the
  * segment that ends there. The two nodes become one in the middle between them; its direction is the mean,
  * its speed |v| the lesser of both, so that no segment can overshoot. The joined stroke is C1 like any other.
- * With a gap of a pen's width nothing is seen of it: the round ends overlapped before, and both move by half
- * of that at most. */
+ * Of a gap of a pen's width nothing is seen: round ends overlap there, and each moves by half of it at most.
+ */
 #pragma once
 #include "spline/strokes.h"
 #include <stdbool.h>
@@ -19,7 +19,8 @@ typedef struct JoinDef {
 Vec2 join_end(const Strokes *strokes, int end);
 
 /* partner[2 count] of ends: the end that it is joined to, -1: none. Ends of one layer only, each end once,
- * nearest pairs first; no stroke closes on itself. Returns how many pairs. */
+ * nearest pairs first. A stroke that comes back to within two gaps of its beginning closes on itself or not
+ * at all: joined to others, rings would become spirals. Returns how many pairs. */
 int join_find(const Strokes *strokes, JoinDef def, int *partner);
 
 /* The node (p, v) that takes the place of both ends, as seen by a pen that arrives at end a and goes on from

@@ -44,7 +44,8 @@ static void set_ink(const Local *local, Ink *ink, int stroke, const double *q)
     int segments = local->model->start[stroke + 1] - local->model->start[stroke] - 1;
     ink->there = q != NULL;
     ink->points.count = q ? segments * local->model->rule.count : 0;
-    for (int m = 0; q && m < segments; m++) spline_points_set(&ink->points, m, q + 4 * m);
+    for (int m = 0; q && m < segments; m++)
+        spline_points_set(&ink->points, m, m == 0, m == segments - 1, q + 4 * m);
 }
 
 /* One term's energy of a stroke: packs that hold some of its segments; other lanes repeat one of them. */
@@ -84,8 +85,7 @@ static void spread_ink(const Local *local, const Ink *ink, double sign)
     ProbeRows rows = probe_rows(probes, -INFINITY, INFINITY);
     double c = sign * 4 * local->tone.pen / M_PI;
     for (int p = 0; p < points->count; p++)
-        probes_spread(probes, &rows, points->x[p], points->y[p],
-                      c * points->rule->weight[p % points->rule->count] * points->n[p], local->delta);
+        probes_spread(probes, &rows, points->x[p], points->y[p], c * points->ink[p], local->delta);
 }
 
 /* Cells whose ink may change. */
@@ -232,8 +232,9 @@ Local *local_create(const SplineModel *model, const SplineWeights *weights, cons
                            : mem_alloc((size_t)strokes, sizeof *absent);
     local->delta = mem_alloc((size_t)local->tone.probes->size, sizeof *local->delta);
     local->q = mem_alloc(4 * (size_t)longest, sizeof *local->q);
-    local->before.points = spline_points_create(&model->rule, longest);
-    local->after.points = spline_points_create(&model->rule, longest);
+    double cap = spline_pen_cap(&model->target->page);
+    local->before.points = spline_points_create(&model->rule, longest, cap);
+    local->after.points = spline_points_create(&model->rule, longest, cap);
     local->pair = local_pair_create(model, weights->pair);
     for (local->stroke = 0; local->stroke < strokes; local->stroke++) {
         if (local->absent[local->stroke]) continue;

@@ -6,10 +6,10 @@
 
 OrderDef order_default(void)
 {
-    return (OrderDef){.join_gap = 1, .join_angle = acos(-1) / 6, .work = 3000000000};
+    return (OrderDef){.join_gap = 1.5, .join_angle = acos(-1) / 6, .work = 3000000000};
 }
 
-/* One stroke, or several joined end to end. */
+/* One stroke, or several joined end to end; a ring where the last is joined to the first. */
 typedef struct Chain {
     Vec2 ends[2];
     int begin[2]; /* the ends (join.h) from which it can be drawn */
@@ -29,10 +29,10 @@ static int find_chains(const Strokes *strokes, const int *partner, Chain *chains
     for (int k = 0; k < strokes->count; k++) {
         if (used[k]) continue;
         int begin = 2 * k, end;
-        while (partner[begin] >= 0) begin = partner[begin] ^ 1;
+        while (partner[begin] >= 0 && (partner[begin] ^ 1) != 2 * k) begin = partner[begin] ^ 1;
         for (end = begin ^ 1;; end = partner[end] ^ 1) {
             used[end / 2] = true;
-            if (partner[end] < 0) break;
+            if (partner[end] < 0 || partner[end] == begin) break;
         }
         chains[count++] = (Chain){.ends = {join_end(strokes, begin), join_end(strokes, end)},
                                   .begin = {begin, end},
@@ -61,14 +61,25 @@ static void add_nodes(Strokes *to, const Strokes *from, int begin, int joined_to
         copy_node(to->q + 4 * *end, from->q + 4 * (first + (sign > 0 ? k : nodes - 1 - k)), sign);
 }
 
+/* The last stroke begins and ends in the joint of those two ends. */
+static void close_ring(Strokes *to, const Strokes *from, int end, int begin)
+{
+    double node[4];
+    join_node(from, end, begin, acos(-1), node);
+    copy_node(to->q + 4 * to->start[to->count - 1], node, 1);
+    copy_node(to->q + 4 * (to->start[to->count] - 1), node, 1);
+}
+
 static void add_chain(Strokes *to, const Strokes *from, const int *partner, int begin)
 {
     to->layer[to->count] = from->layer[begin / 2];
     to->count++;
     to->start[to->count] = to->start[to->count - 1];
     add_nodes(to, from, begin, -1);
-    for (int end = begin ^ 1; partner[end] >= 0; end = partner[end] ^ 1)
+    int end = begin ^ 1;
+    for (; partner[end] >= 0 && partner[end] != begin; end = partner[end] ^ 1)
         add_nodes(to, from, partner[end], end);
+    if (partner[end] == begin) close_ring(to, from, end, begin);
 }
 
 static Vec2 home(const SplinePage *page)

@@ -15,6 +15,12 @@ typedef struct SplinePage {
     double pen;           /* width of the line, in units of the page                      */
 } SplinePage;
 
+/* The pen is round: beyond each end of a line it covers half a disc, as much as this further length does. */
+static inline double spline_pen_cap(const SplinePage *page)
+{
+    return M_PI / 8 * page->pen;
+}
+
 /* A paper of paper[0] x paper[1] m with the same margin all around (less than half of the shorter side), and
  * a pen, m. */
 static inline SplinePage spline_page(double paper_width, double paper_height, double margin, double pen)

@@ -242,7 +242,7 @@ Bulk spline_pair_bulk(const SplineModel *model, SplineHessian hessian)
     PairTerm *t = mem_alloc(1, sizeof *t);
     *t = (PairTerm){.model = model,
                     .hessian = hessian,
-                    .points = spline_points_create(&model->rule, model->segment_count)};
+                    .points = spline_points_create(&model->rule, model->segment_count, 0)};
     t->forces = point_forces_create(t->points.count);
     t->cells = point_cells_create(&model->target->page, (1 + MARGIN) * model->pair_radius, t->points.count);
     return (Bulk){&pair_ops, t};

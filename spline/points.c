@@ -2,14 +2,22 @@
 #include "base/memory.h"
 #include <math.h>
 
-enum { TASK_SEGMENTS = 64, TASK_STROKES = 16 };
+enum { TASK_STROKES = 16 };
 
-SplinePoints spline_points_create(const SplineRule *rule, int segments)
+SplinePoints spline_points_create(const SplineRule *rule, int segments, double cap)
 {
     int count = segments * rule->count;
     size_t n = (size_t)count;
-    double *work = mem_alloc(5 * n, sizeof *work);
-    return (SplinePoints){rule, count, work, work + n, work + 2 * n, work + 3 * n, work + 4 * n};
+    double *work = mem_alloc(6 * n, sizeof *work);
+    return (SplinePoints){.rule = rule,
+                          .count = count,
+                          .cap = cap,
+                          .x = work,
+                          .y = work + n,
+                          .tx = work + 2 * n,
+                          .ty = work + 3 * n,
+                          .n = work + 4 * n,
+                          .ink = work + 5 * n};
 }
 
 void spline_points_clear(SplinePoints *points)
@@ -29,7 +37,7 @@ void point_forces_clear(PointForces *forces)
     mem_free(forces->S);
 }
 
-void spline_points_set(const SplinePoints *points, int segment, const double x[8])
+void spline_points_set(const SplinePoints *points, int segment, bool first, bool last, const double x[8])
 {
     const SplineRule *rule = points->rule;
     for (int q = 0; q < rule->count; q++) {
@@ -40,7 +48,10 @@ void spline_points_set(const SplinePoints *points, int segment, const double x[8
         points->tx[k] = T[0] * x[0] + T[1] * x[2] + T[2] * x[4] + T[3] * x[6];
         points->ty[k] = T[0] * x[1] + T[1] * x[3] + T[2] * x[5] + T[3] * x[7];
         points->n[k] = sqrt(points->tx[k] * points->tx[k] + points->ty[k] * points->ty[k]);
+        points->ink[k] = rule->weight[q] * points->n[k];
     }
+    if (first) points->ink[segment * rule->count] += points->cap;
+    if (last) points->ink[(segment + 1) * rule->count - 1] += points->cap;
 }
 
 typedef struct Update {
@@ -52,14 +63,17 @@ typedef struct Update {
 static void update_task(void *self, int task)
 {
     const Update *u = self;
-    for (int m = task * TASK_SEGMENTS; m < (task + 1) * TASK_SEGMENTS && m < u->model->segment_count; m++)
-        spline_points_set(u->points, m, u->x + 4 * u->model->segment_node[m]);
+    for (int k = task * TASK_STROKES; k < (task + 1) * TASK_STROKES && k < u->model->stroke_count; k++) {
+        int first = spline_first_segment(u->model, k), end = spline_first_segment(u->model, k + 1);
+        for (int m = first; m < end; m++)
+            spline_points_set(u->points, m, m == first, m == end - 1, u->x + 4 * u->model->segment_node[m]);
+    }
 }
 
 void spline_points_update(const SplinePoints *points, const SplineModel *model, const double *x)
 {
     Update u = {points, model, x};
-    workers_run(model->workers, (model->segment_count + TASK_SEGMENTS - 1) / TASK_SEGMENTS, update_task, &u);
+    workers_run(model->workers, (model->stroke_count + TASK_STROKES - 1) / TASK_STROKES, update_task, &u);
 }
 
 typedef struct Scatter {
@@ -75,8 +89,8 @@ static void scatter_segment(const Scatter *s, int m)
     double *to = s->g + 4 * s->model->segment_node[m];
     for (int q = 0; q < rule->count; q++) {
         int p = m * rule->count + q;
-        double w = rule->weight[q], n = s->points->n[p], along = w * s->forces->S[p] / n;
-        double x = w * n * s->forces->x[p], y = w * n * s->forces->y[p];
+        double along = rule->weight[q] * s->forces->S[p] / s->points->n[p], ink = s->points->ink[p];
+        double x = ink * s->forces->x[p], y = ink * s->forces->y[p];
         for (int k = 0; k < 4; k++) {
             to[2 * k] += rule->value[q][k] * x + rule->first[q][k] * along * s->points->tx[p];
             to[2 * k + 1] += rule->value[q][k] * y + rule->first[q][k] * along * s->points->ty[p];

@@ -4,21 +4,24 @@
 #include "solve/bulk.h"
 #include "spline/model.h"
 
-/* Point q of segment m has number m rule->count + q. Arrays are [count]. */
+/* Point q of segment m has number m rule->count + q. Arrays are [count]. The pen is round: beyond each end of
+ * a stroke it covers half a disc, which counts as a further length `cap` of line at the last point. */
 typedef struct SplinePoints {
     const SplineRule *rule;
     int count;
+    double cap;
     double *x, *y;   /* r                                   */
     double *tx, *ty; /* t = r'                              */
-    double *n;       /* |t|: with the weight, length of ink */
+    double *n;       /* |t|                                 */
+    double *ink;     /* length of ink: the weight's part of n, and caps */
 } SplinePoints;
 
 /* Arrays for so many segments; the caller fills them by the functions below. */
-SplinePoints spline_points_create(const SplineRule *rule, int segments);
+SplinePoints spline_points_create(const SplineRule *rule, int segments, double cap);
 void spline_points_clear(SplinePoints *points);
 
-/* Points of a segment from its eight dofs. */
-void spline_points_set(const SplinePoints *points, int segment, const double x[8]);
+/* Points of a segment from its eight dofs; does its stroke begin, or end, with it? */
+void spline_points_set(const SplinePoints *points, int segment, bool first, bool last, const double x[8]);
 
 /* Points of all segments of the model. */
 void spline_points_update(const SplinePoints *points, const SplineModel *model, const double *x);
@@ -32,7 +35,7 @@ typedef struct PointForces {
 PointForces point_forces_create(int count);
 void point_forces_clear(PointForces *forces);
 
-/* g += dE/dx, per segment w_q (N_k n (x, y) + N'_k S u). */
+/* g += dE/dx, per segment N_k ink_q (x, y) + N'_k w_q S u. */
 void spline_points_add_gradient(const SplinePoints *points, const SplineModel *model,
                                 const PointForces *forces, double *g);
 

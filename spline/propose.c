@@ -138,7 +138,8 @@ static Tone tone_of(const SplineTarget *target, const RelaxDef *def, const Strok
 {
     double *rest = spline_rest_lengths(target, def, strokes);
     SplineModel *model = spline_model_create(target, strokes, rest, &def->model);
-    SplinePoints points = spline_points_create(&model->rule, model->segment_count);
+    SplinePoints points =
+        spline_points_create(&model->rule, model->segment_count, spline_pen_cap(&target->page));
     spline_points_update(&points, model, strokes->q);
     Tone tone = tone_create(target, NULL);
     tone_update(&tone, &points);
@@ -187,7 +188,7 @@ static bool take_tile(const Missing *missing, bool *taken, int tile)
 void spline_propose_strokes(const SplineTarget *target, const RelaxDef *def, const Strokes *strokes,
                             int segments, Strokes *candidates)
 {
-    double rest = (def->rest > 0 ? def->rest : relax_default().rest) * target->spacing,
+    double rest = spline_segment_length(def->rest > 0 ? def->rest : relax_default().rest, target->spacing),
            length = segments * rest;
     Missing missing = missing_create(&target->page, length / 3);
     Tone tone = tone_of(target, def, strokes);

@@ -133,10 +133,10 @@ void relax_create_system(Relaxation *r, SplineHessian hessian)
 double *spline_rest_lengths(const SplineTarget *target, const RelaxDef *def, const Strokes *strokes)
 {
     double *rest = mem_alloc((size_t)strokes_segment_count(strokes), sizeof *rest);
+    double same = spline_segment_length(def->rest, target->spacing);
     for (int k = 0, segment = 0; k < strokes->count; k++)
         for (int node = strokes->start[k]; node < strokes->start[k + 1] - 1; node++)
-            rest[segment++] =
-                def->rest > 0 ? def->rest * target->spacing : strokes_segment_length(strokes, node);
+            rest[segment++] = same > 0 ? same : strokes_segment_length(strokes, node);
     return rest;
 }
 

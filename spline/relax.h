@@ -28,7 +28,7 @@ typedef struct RelaxDef {
     RelaxMethod method;    /* default RELAX_AUTO                                                          */
     SplineWeights weights; /* pure numbers (weights.h); default spline_weights_default()                  */
     SplineModelDef model;  /* quadrature and kernels; its workers are not looked at                       */
-    double rest;           /* L0; default 1.2; 0: of each segment its length at the start                 */
+    double rest;           /* L0 (spline_segment_length); default 1.2; 0: as at the start                 */
     int threads;           /* default 1                                                                   */
     int max_iterations;    /* of auto, newton and gradient; default 500                                   */
     double energy_tol;     /* settled when the energy fell by less than this part in 20 iterations; 1e-3  */

@@ -107,7 +107,8 @@ int spline_insert_strokes(const SplineTarget *target, const RelaxDef *def, const
 /* How many strokes are too many, at their rest lengths: a crowd has pressed itself together. */
 static int surplus(const SplineTarget *target, const RelaxDef *def, const Strokes *strokes)
 {
-    double *rest = spline_rest_lengths(target, def, strokes), ink = 0;
+    double *rest = spline_rest_lengths(target, def, strokes);
+    double ink = 2 * strokes->count * spline_pen_cap(&target->page);
     for (int k = 0; k < strokes_segment_count(strokes); k++) ink += rest[k];
     mem_free(rest);
     double excess = ink - spline_ink_budget(target);

@@ -3,6 +3,7 @@
 #include "base/random.h"
 #include "spline/direction.h"
 #include "spline/sheet.h"
+#include "spline/target.h"
 #include "spline/trace.h"
 
 enum { TRIES = 3 }; /* to meet the ink */
@@ -18,38 +19,34 @@ typedef struct Spread {
 
 SplineStartDef spline_start_default(void)
 {
-    return (SplineStartDef){.separation = 0.86, .ink = 1, .longest = 0.3, .segments = 8, .seed = 1};
+    return (SplineStartDef){.separation = 0.86, .ink = 1, .longest = 4, .segments = 8, .seed = 1};
 }
 
 /* What a tone asks for where it is not blank. */
 typedef struct Demand {
     double blank;    /* density below which the paper stays so */
     double greatest; /* density                                */
-    double mean;     /* of what is drawn                       */
     double length;   /* of all lines                           */
 } Demand;
 
 static Demand tone_demand(const SplineGrid *tone, const SplinePage *page)
 {
-    Demand demand = {.blank = page->pen / 0.3};
-    int count = tone->columns * tone->rows, drawn = 0;
+    Demand demand = {.blank = spline_blank_density(page)};
+    int count = tone->columns * tone->rows;
     double sum = 0;
     for (int i = 0; i < count; i++) {
         double density = tone->values[i];
         if (!(density >= demand.blank)) continue;
         sum += density;
-        drawn++;
         demand.greatest = fmax(demand.greatest, density);
     }
-    demand.mean = drawn ? sum / drawn : 0;
     demand.length = sum / count / page->pen;
     return demand;
 }
 
-double spline_rest_length(const SplineGrid *tone, const SplinePage *page)
+static double segment_length(const SplineStartDef *def, const SplineGrid *tone, const SplinePage *page)
 {
-    double mean = tone_demand(tone, page).mean;
-    return mean > 0 ? fmin(1.2 * page->pen / mean, 0.05) : 0;
+    return def->segment > 0 ? def->segment : spline_segment_length(1.2, spline_line_distance(tone, page));
 }
 
 /* The point so many steps along a curve. */
@@ -79,10 +76,10 @@ static void add_stroke(const Tracer *tracer, const Points *curve, double from, d
     }
 }
 
-static double sheet_length(const Sheet *sheet)
+static double sheet_ink(const Sheet *sheet, const SplinePage *page)
 {
     Strokes strokes = {.count = sheet->count, .start = sheet->start, .q = (double *)sheet->q}; /* borrowed */
-    return strokes_length(&strokes);
+    return strokes_length(&strokes) + 2 * sheet->count * spline_pen_cap(page);
 }
 
 /* Pieces of whole segments, half to all of the greatest length by chance: cuts side by side would show as a
@@ -126,6 +123,48 @@ static void add_seeds(Spread *spread)
     }
 }
 
+/* From the last point of a curve to the first: how far along the mean of both directions, and how far across
+ * it; far, where they differ by more than 48 degrees. */
+static Vec2 missing(const Points *curve)
+{
+    const Vec2 *a = curve->at, *b = a + curve->count - 1;
+    Vec2 first = {a[1].x - a->x, a[1].y - a->y}, last = {b->x - b[-1].x, b->y - b[-1].y};
+    Vec2 v = {first.x + last.x, first.y + last.y}, d = {a->x - b->x, a->y - b->y};
+    double speed = hypot(v.x, v.y);
+    if (!(first.x * last.x + first.y * last.y > 0.2 * speed * speed)) return (Vec2){INFINITY, 0};
+    return (Vec2){(d.x * v.x + d.y * v.y) / speed, (d.y * v.x - d.x * v.y) / speed};
+}
+
+/* Moves the end of a curve across, and every other point by its share. */
+static void shift_across(Points *curve, double across)
+{
+    Vec2 before = curve->at[0];
+    for (int k = 1; k < curve->count; k++) {
+        Vec2 here = curve->at[k], chord = {here.x - before.x, here.y - before.y};
+        double shift = across * k / ((curve->count - 1) * hypot(chord.x, chord.y));
+        curve->at[k] = (Vec2){here.x - shift * chord.y, here.y + shift * chord.x};
+        before = here;
+    }
+}
+
+/* A curve that has come back to its beginning becomes a ring, with a pen's width between its ends. */
+static void close_ring(Points *curve, double step, double pen, double near)
+{
+    int least = (int)(M_PI * near / step) + 2;
+    if (curve->count <= least) return;
+    Vec2 gap = missing(curve);
+    if (!(hypot(gap.x, gap.y) < near)) return;
+    while (gap.x < pen && curve->count > least) {
+        curve->count--;
+        gap = missing(curve);
+    }
+    shift_across(curve, gap.y);
+    Vec2 from = curve->at[curve->count - 1], begin = curve->at[0];
+    for (double s = step; s < gap.x - pen; s += step)
+        points_add(curve,
+                   (Vec2){from.x + s / gap.x * (begin.x - from.x), from.y + s / gap.x * (begin.y - from.y)});
+}
+
 /* The curve through a seed, kept if it has room and becomes long enough: not a mere dash beside its
  * neighbours. */
 static void try_seed(Spread *spread, Vec2 seed)
@@ -140,6 +179,7 @@ static void try_seed(Spread *spread, Vec2 seed)
         lanes_shrink(tracer->lanes, before);
         return;
     }
+    close_ring(&spread->curve, tracer->step, tracer->page->pen, 1.5 * spacing);
     cut_curve(spread);
     add_seeds(spread);
     tracer->curve++;
@@ -178,13 +218,13 @@ void spline_streamlines(const SplineGrid *tone, const SplineGrid *direction, con
     Demand demand = tone_demand(tone, page);
     if (!(demand.length > 0)) return;
     SplineStartDef whole = *def;
-    if (!(whole.segment > 0)) whole.segment = spline_rest_length(tone, page);
+    whole.segment = segment_length(def, tone, page);
     Tracer tracer = {.tone = tone, .direction = direction, .page = page, .blank = demand.blank};
     tracer.step = def->separation * page->pen / demand.greatest / 4;
     double separation = def->separation;
     Sheet sheet = even_strokes(&tracer, &whole, separation);
     for (int tries = 1; def->ink > 0 && tries < TRIES; tries++) {
-        double ink = sheet_length(&sheet) / (def->ink * demand.length);
+        double ink = sheet_ink(&sheet, page) / (def->ink * demand.length);
         if (fabs(ink - 1) < 0.03) break;
         separation = fmin(fmax(separation * ink, def->separation / 1.3), 1.3 * def->separation);
         sheet_clear(&sheet);
@@ -222,7 +262,7 @@ void spline_random_strokes(const SplineGrid *tone, const SplineGrid *direction, 
 {
     Demand demand = tone_demand(tone, page);
     if (!(demand.length > 0)) return;
-    double segment = def->segment > 0 ? def->segment : spline_rest_length(tone, page);
+    double segment = segment_length(def, tone, page);
     double left = (def->ink > 0 ? def->ink : 1) * demand.length, each = def->segments * segment;
     Tracer tracer = {
         .tone = tone, .direction = direction, .page = page, .blank = demand.blank, .separation = 1};
@@ -240,7 +280,7 @@ void spline_random_strokes(const SplineGrid *tone, const SplineGrid *direction, 
         double length = (curve.count - 1) * tracer.step;
         if (length < segment / 2) continue;
         add_stroke(&tracer, &curve, 0, curve.count - 1, (int)fmax(lround(length / segment), 1), &sheet);
-        left -= length;
+        left -= length + 2 * spline_pen_cap(page);
     }
     mem_free(sums);
     mem_free(curve.at);

@@ -3,7 +3,7 @@
  *
  * A density D drawn with a pen of width w takes lines of the total length mean(D)/w in a page of area 1 (the
  * budget; where it is not blank). Nodes of a stroke are equally far apart, about `segment`, with v a third of
- * that along the stroke. Places lighter than w/0.3 stay blank: less than one line in a third of the page. The
+ * that along the stroke. Blank paper (target.h) stays so. The
  * same seed gives the same strokes. */
 #pragma once
 #include "spline/grid.h"
@@ -14,16 +14,13 @@ typedef struct SplineStartDef {
     double separation; /* of neighbours, in units of w/D; default 0.86, near which the ink comes out right */
     double ink;     /* total length in units of the budget; default 1. Streamlines meet it within 3 %, or in
                      * three tries, by adapting the separation; 0: they take the separation as given */
-    double longest; /* of a stroke, in units of the page; default 0.3                               */
-    double segment; /* distance of nodes; default 0: spline_rest_length() of the tone               */
+    double longest; /* of a stroke, in units of the page; default 4, as good as any                 */
+    double segment; /* distance of nodes; default 0: of 1.2 line distances, as RelaxDef.rest        */
     int segments;   /* of a random stroke; default 8                                                */
     uint64_t seed;  /* default 1                                                                    */
 } SplineStartDef;
 
 SplineStartDef spline_start_default(void);
-
-/* L0 = 1.2 w/mean(D), the mean over what is not blank, at most 0.05; 0 for blank paper. */
-double spline_rest_length(const SplineGrid *tone, const SplinePage *page);
 
 /* Evenly spaced streamlines [Jobard and Lefer 1997], appended: each new one starts beside one that exists and
  * is followed until it comes too near to another; long ones are then cut, at places that differ from

@@ -10,16 +10,28 @@ static double mean_density(const SplineGrid *grid)
     return sum / (double)count;
 }
 
+double spline_line_distance(const SplineGrid *density, const SplinePage *page)
+{
+    double sum = 0, drawn = 0, blank = spline_blank_density(page);
+    long count = (long)density->columns * density->rows;
+    for (long k = 0; k < count; k++) {
+        if (!(density->values[k] >= blank)) continue;
+        sum += fmin(density->values[k], 1);
+        drawn++;
+    }
+    return page->pen / (drawn > 0 ? sum / drawn : blank);
+}
+
 SplineTarget *spline_target_create(const SplinePage *page, const SplineFields *fields, const ProbesDef *def)
 {
     SplineTarget *target = mem_alloc(1, sizeof *target);
     *target = (SplineTarget){.page = *page,
                              .density = mean_density(&fields->density),
+                             .spacing = spline_line_distance(&fields->density, page),
                              .probes = probes_create(page, &fields->density, def),
                              .align = grid_spline_create(&fields->align, page),
                              .potential = grid_spline_create(&fields->potential, page),
                              .flow = grid_spline_create(&fields->flow, page)};
-    target->spacing = fmin(page->pen / fmax(target->density, 1e-9), 1);
     return target;
 }
 
@@ -40,5 +52,5 @@ double spline_ink_budget(const SplineTarget *target)
 
 int spline_stroke_budget(const SplineTarget *target, int segments, double rest)
 {
-    return (int)lround(spline_ink_budget(target) / (segments * rest));
+    return (int)lround(spline_ink_budget(target) / (segments * rest + 2 * spline_pen_cap(&target->page)));
 }

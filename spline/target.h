@@ -18,15 +18,30 @@ typedef struct SplineFields {
 typedef struct SplineTarget {
     SplinePage page;
     double density; /* mean over the page                            */
-    double spacing; /* pen/density, the mean distance between lines  */
+    double spacing; /* spline_line_distance of it                    */
     Probes *probes; /* of tone                                       */
     GridSpline *align, *potential, *flow;
 } SplineTarget;
 
-/* The grids are copied into what is made of them. A page without ink (density 0) counts as one line across.
- */
+/* The grids are copied into what is made of them. */
 SplineTarget *spline_target_create(const SplinePage *page, const SplineFields *fields, const ProbesDef *def);
 void spline_target_destroy(SplineTarget *target);
+
+/* Paper lighter than one line in a third of the page stays blank. */
+static inline double spline_blank_density(const SplinePage *page)
+{
+    return page->pen / 0.3;
+}
+
+/* The mean distance of lines: pen/density, the mean over what is not blank; 0.3 where all is. */
+double spline_line_distance(const SplineGrid *density, const SplinePage *page);
+
+/* Length of segments that are to be so many line distances long: at most a 20th of the page, which has bends
+ * too. */
+static inline double spline_segment_length(double distances, double spacing)
+{
+    return fmin(distances * spacing, 0.05);
+}
 
 /* Length of all lines that give the mean density, and how many strokes of so many segments of length L0 that
  * is. */

@@ -12,7 +12,7 @@ _Static_assert(sizeof spline_term_rows / sizeof *spline_term_rows == SPLINE_WEIG
 
 SplineWeights spline_weights_default(void)
 {
-    return (SplineWeights){.tone = 1, .strain = 0.5, .bend = 0.1, .align = 0.5, .wall = 0.1};
+    return (SplineWeights){.tone = 1, .strain = 0.05, .bend = 0.05, .align = 0.1, .wall = 0.02};
 }
 
 SplineWeights spline_weights_scaled(SplineWeights weights, double pen, double spacing)

@@ -96,7 +96,8 @@ Bulk spline_tone_bulk(const SplineModel *model, SplineHessian hessian)
     *t = (ToneTerm){.model = model,
                     .hessian = hessian,
                     .tone = tone_create(model->target, model->workers),
-                    .points = spline_points_create(&model->rule, model->segment_count),
+                    .points = spline_points_create(&model->rule, model->segment_count,
+                                                   spline_pen_cap(&model->target->page)),
                     .coupling = {.margin = MARGIN * model->target->spacing}};
     t->forces = point_forces_create(t->points.count);
     return (Bulk){&tone_ops, t};

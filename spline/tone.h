@@ -1,7 +1,7 @@
 /* tone.h - ink and the tone that it makes: what `tone` as an energy, Monte Carlo's moves and the insertion of
  * strokes share.
  *
- *     E = K/2 sum_c gain_c (rho_c - D_c)^2,   rho_c = pen sum over points of w n W_c
+ *     E = K/2 sum_c gain_c (rho_c - D_c)^2,   rho_c = pen sum over points of their ink times W_c
  *
  * over the probes c (probes.h): the ink around each, less what the picture asks for there. */
 #pragma once

@@ -20,9 +20,9 @@ static bool ink_gradient(const Probes *probes, const ProbeLevel *level, int i, i
     memset(gradient, 0, 8 * sizeof *gradient);
     for (int q = 0; q < rule->count; q++) {
         int p = m * rule->count + q;
-        double dy = points->y[p] - (j + 0.5) * level->dy, n = points->n[p], w = rule->weight[q];
-        Pack along = w / n * inverse * z[q] * z[q] * z[q],
-             slope = -6 * w * n * inverse * inverse * z[q] * z[q];
+        double dy = points->y[p] - (j + 0.5) * level->dy;
+        Pack along = rule->weight[q] / points->n[p] * inverse * z[q] * z[q] * z[q],
+             slope = -6 * points->ink[p] * inverse * inverse * z[q] * z[q];
         for (int k = 0; k < 4; k++) {
             gradient[2 * k] += rule->value[q][k] * slope * dx[q] + rule->first[q][k] * along * points->tx[p];
             gradient[2 * k + 1] += rule->value[q][k] * slope * dy + rule->first[q][k] * along * points->ty[p];
@@ -124,15 +124,16 @@ void tone_add_curvature(const Tone *tone, const SplineModel *model, const Spline
             int p = m * rule->count + q;
             ProbeSums s = tone_sums(tone, points->x[p], points->y[p], 2);
             double w = K * rule->weight[q], n = points->n[p], u[2] = {points->tx[p] / n, points->ty[p] / n};
-            double rr[2][2] = {{n * s.xx, n * s.xy}, {n * s.xy, n * s.yy}}, slope[2] = {s.x, s.y};
+            double ink = K * points->ink[p], slope[2] = {s.x, s.y};
+            double rr[2][2] = {{ink * s.xx, ink * s.xy}, {ink * s.xy, ink * s.yy}};
             for (int a = 0; a < 8; a++)
                 for (int b = 0; b < 8; b++) {
                     int i = a % 2, j = b % 2;
                     double Na = rule->value[q][a / 2], Ta = rule->first[q][a / 2];
                     double Nb = rule->value[q][b / 2], Tb = rule->first[q][b / 2];
                     double tt = s.value * ((i == j) - u[i] * u[j]) / n;
-                    block[8 * a + b] += w * (Na * Nb * rr[i][j] + Na * Tb * slope[i] * u[j] +
-                                             Ta * Nb * u[i] * slope[j] + Ta * Tb * tt);
+                    block[8 * a + b] += Na * Nb * rr[i][j] + w * (Na * Tb * slope[i] * u[j] +
+                                                                  Ta * Nb * u[i] * slope[j] + Ta * Tb * tt);
                 }
         }
         spline_add_block(H, model, m, m, block);

@@ -57,7 +57,6 @@ static void spread_task(void *self, int strip)
 {
     const Strips *s = self;
     const SplinePoints *points = s->points;
-    const SplineRule *rule = points->rule;
     const Probes *probes = s->tone->probes;
     double *ink = s->tone->ink, c = 4 * s->tone->pen / M_PI;
     ProbeRows rows = probe_rows(probes, s->edge[strip], s->edge[strip + 1]);
@@ -67,8 +66,8 @@ static void spread_task(void *self, int strip)
             memset(ink + level->first + (long)rows.from[l] * level->stride, 0,
                    (size_t)(rows.to[l] - rows.from[l]) * (size_t)level->stride * sizeof *ink);
     }
-    for (int p = 0, q = 0; p < points->count; p++, q = q + 1 < rule->count ? q + 1 : 0)
-        probes_spread(probes, &rows, points->x[p], points->y[p], c * rule->weight[q] * points->n[p], ink);
+    for (int p = 0; p < points->count; p++)
+        probes_spread(probes, &rows, points->x[p], points->y[p], c * points->ink[p], ink);
 }
 
 /* Energies and forces of the rows of one level, from one on. */

@@ -53,7 +53,10 @@ static void trace_way(Tracer *tracer, Vec2 from, Vec2 v, int steps, int sign, Po
         if (tracer->lanes && lanes_near(tracer->lanes, to, near, tracer->curve, sign * k, gap)) return;
         if (tracer->lanes) lanes_add(tracer->lanes, to, tracer->curve, sign * k);
         points_add(curve, to);
-        v = heading(tracer, to, turned, NULL);
+        Vec2 next = heading(tracer, to, turned, NULL);
+        tracer->turn += sign * atan2(v.x * next.y - v.y * next.x, v.x * next.x + v.y * next.y);
+        if (fabs(tracer->turn) > 2 * M_PI) return;
+        v = next;
         from = to;
     }
 }
@@ -62,6 +65,7 @@ void trace_curve(Tracer *tracer, Vec2 seed, int behind, int total, Points *curve
 {
     Vec2 v = spline_direction_at(tracer->direction, tracer->page, seed, NULL);
     curve->count = 0;
+    tracer->turn = 0;
     if (tracer->lanes) lanes_add(tracer->lanes, seed, tracer->curve, 0);
     trace_way(tracer, seed, (Vec2){-v.x, -v.y}, behind, -1, curve);
     for (int i = 0, j = curve->count - 1; i < j; i++, j--) {

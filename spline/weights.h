@@ -17,7 +17,7 @@ typedef struct SplineWeights {
 
 enum { SPLINE_WEIGHT_COUNT = sizeof(SplineWeights) / sizeof(double) };
 
-/* tone 1, strain 0.5, bend 0.1, align 0.5, wall 0.1. */
+/* tone 1, strain 0.05, bend 0.05, align 0.1, wall 0.02. */
 SplineWeights spline_weights_default(void);
 
 /* Times the powers of the pen's width and of the mean distance of lines that make factors of them. */

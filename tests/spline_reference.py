@@ -96,13 +96,14 @@ def tone(q,p,ng):
     q=np.asarray(q,float);n=q.size;s,w=gauss(ng);pr=np.array(p['probes'],float);rho=np.zeros(len(pr));J=np.zeros((len(pr),n))
     for m in range(len(q)-1):
         x=np.concatenate([q[m],q[m+1]]).reshape(4,2);ix=np.arange(8)+4*m
-        for si,wi in zip(s,w):
+        for k,(si,wi) in enumerate(zip(s,w)):
             N,dN,_=basis(si);r=N@x;t=dN@x;l=np.hypot(*t);u=t/l
+            ends=(m==0 and k==0)+(m==len(q)-2 and k==ng-1); ink=wi*l+ends*np.pi/8*p['w'] # half a disc beyond each end
             for c in range(len(pr)):
                 de=r-pr[c,:2];R2=pr[c,3]**2;z=1-de@de/R2
                 if z<=0: continue
-                k0=4/(np.pi*R2)*p['w']*wi;rho[c]+=k0*l*z**3
-                J[c,ix]+=(np.outer(N,-6*k0*l*z*z/R2*de)+np.outer(dN,k0*z**3*u)).ravel()
+                k0=4/(np.pi*R2)*p['w'];rho[c]+=k0*ink*z**3
+                J[c,ix]+=(np.outer(N,-6*k0*ink*z*z/R2*de)+np.outer(dN,k0*wi*z**3*u)).ravel()
     f=p['K']*pr[:,5]*pr[:,2]; e=rho-pr[:,4]; return .5*(f*e*e).sum(),J.T@(f*e),J.T@(f[:,None]*J)  # last: Gauss-Newton Hessian
 
 # What follows builds the drawing of tests/test_spline_terms.c and prints the header.
@@ -145,7 +146,7 @@ def two_tone():
     p={'K':3.,'w':pen,'probes':pr}
     rho=np.zeros(len(pr));J=np.zeros((len(pr),n))
     for st,o in((SA,0),(SB,12)):
-        p1=dict(p,probes=[r[:4]+[0.,1.] for r in pr],K=1.)
+        p1=dict(p,K=1.)
         for c in range(len(pr)):
             pc=dict(p1,probes=[[pr[c][0],pr[c][1],1.,pr[c][3],0.,1.]])
             e,g,h=tone(st,pc,ng); r=np.sqrt(2*e); rho[c]+=r

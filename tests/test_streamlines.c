@@ -144,7 +144,7 @@ static double ink_of(const Strokes *strokes, double (*density)(double x, double 
     SplineGrid grid = spline_grid(&tone);
     double budget = spline_grid_mean(&grid, 0) / page->pen;
     spline_field_clear(&tone);
-    return strokes_length(strokes) / budget;
+    return (strokes_length(strokes) + 2 * strokes->count * spline_pen_cap(page)) / budget;
 }
 
 /* One tone, one direction: parallel lines, their distance near w/D. */
@@ -201,6 +201,37 @@ static void circles(void **state)
     assert_true(variation < 0.25);
     assert_true(worst < 1e-3);
     assert_true(longest_turns < 1 && longest_turns > 0.8);
+    strokes_clear(&strokes);
+    spline_field_clear(&direction);
+}
+
+/* What would wind inwards becomes rings: a pen's width between their ends, which go on as each other. */
+static void spirals(void **state)
+{
+    (void)state;
+    SplinePage page = spline_page(0.1, 0.1, 0, 8e-4);
+    Error err = {""};
+    SplineField direction;
+    Formula *formula =
+        formula_create((const char *[]){"-(v - 0.5)*100 + 0.6*(u - 0.5)", "(u - 0.5)*100 + 0.6*(v - 0.5)"}, 2,
+                       NULL, 0, spline_formula_variables, &err);
+    assert_true(spline_direction_from_formula(formula, &page, &direction, &err));
+    formula_destroy(formula);
+    SplineStartDef def = spline_start_default();
+    Strokes strokes = start(spline_streamlines, even, &direction, &page, &def);
+    int rings = 0;
+    for (int k = 0; k < strokes.count; k++) {
+        const double *p = strokes.q + 4 * strokes.start[k], *q = strokes.q + 4 * strokes.start[k + 1] - 4;
+        double radius = (hypot(p[0] - 0.5, p[1] - 0.5) + hypot(q[0] - 0.5, q[1] - 0.5)) / 2;
+        double turns = strokes_stroke_length(&strokes, k) / (2 * M_PI * radius);
+        assert_true(turns < 1);
+        double gap = hypot(p[0] - q[0], p[1] - q[1]) / page.pen;
+        if (turns < 0.9 || gap > 3) continue; /* it met another one */
+        expect_close(gap, 1.25, 0.3);
+        rings++;
+    }
+    print_message("spiral: %d rings\n", rings);
+    assert_true(rings >= 15);
     strokes_clear(&strokes);
     spline_field_clear(&direction);
 }
@@ -303,7 +334,6 @@ static void blank(void **state)
         spline_streamlines(&tone, &directions, &page, &def, 0, &strokes);
         spline_random_strokes(&tone, &directions, &page, &def, 0, &strokes);
         assert_int_equal(strokes.count, 0);
-        expect_close(spline_rest_length(&tone, &page), 0, 0);
         for (int i = 0; i < white.columns * white.rows; i++) white.values[i] = 0.019;
     }
     spline_field_clear(&white);
@@ -354,6 +384,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_teardown(parallel, nothing_leaks),
         cmocka_unit_test_teardown(circles, nothing_leaks),
+        cmocka_unit_test_teardown(spirals, nothing_leaks),
         cmocka_unit_test_teardown(shaded, nothing_leaks),
         cmocka_unit_test_teardown(same_seed, nothing_leaks),
         cmocka_unit_test_teardown(random_strokes, nothing_leaks),
