@@ -56,15 +56,19 @@ static bool check_cross(const CrossScene *cross, YamlFile *file)
     return true;
 }
 
+double drawing_segments(const DrawingPart *part)
+{
+    SplineGrid tone = spline_grid(&part->tone);
+    double distance = spline_line_distance(&tone, &part->page);
+    return spline_grid_mean(&tone, 0) /
+           (part->page.pen * spline_segment_length(relax_default().rest, distance));
+}
+
 /* What would take days, and more memory than there is, is refused. */
 static bool check_size(const Drawing *d, YamlFile *file)
 {
     double segments = 0;
-    for (int k = 0; k < d->part_count; k++) {
-        SplineGrid tone = spline_grid(&d->parts[k].tone);
-        double rest = spline_rest_length(&tone, &d->parts[k].page);
-        if (rest > 0) segments += spline_grid_mean(&tone, 0) / (d->parts[k].page.pen * rest);
-    }
+    for (int k = 0; k < d->part_count; k++) segments += drawing_segments(&d->parts[k]);
     return segments <= SEGMENTS_MAX ||
            yaml_refuse(file, "spline.pen",
                        "so fine a pen takes about %.0f segments on this page, and %d are the most", segments,

@@ -32,6 +32,9 @@ typedef struct Drawing {
     double speed[2], lift; /* of the plotter: m/s pen down and up, s */
 } Drawing;
 
+/* About how many segments its strokes will have. */
+double drawing_segments(const DrawingPart *part);
+
 /* Reads the pictures. NULL after a refusal, which is in the file's list. */
 Drawing *drawing_create(const SplineScene *scene, YamlFile *file);
 void drawing_destroy(Drawing *drawing);

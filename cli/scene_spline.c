@@ -130,7 +130,7 @@ static const YamlTable strokes_table = {
          .doc = "length of all strokes, of that which gives the tone; 0: streamlines take the separation as "
                 "it is"},
         {YAML_NUMBER(StrokesScene, longest), .unit = "m", .range = "(0, 100]",
-         .doc = "of a streamline; 0.3 of the page's mean side if absent"},
+         .doc = "of a streamline; as long as it will be if absent"},
         {YAML_INTEGER(StrokesScene, segments), .range = "[1, 1000]", .fallback = "8",
          .doc = "of a random stroke, and of one that a round puts in"},
         {0}}};
@@ -147,10 +147,10 @@ static const YamlTable energies_table = {
         "with every pen; 0 switches one off. docs/line_art.md has the formulas.",
     .fields =
         (const YamlField[]){ENERGY(tone, "1", "the ink around each place is what the picture asks for"),
-                            ENERGY(strain, "0.5", "segments keep their length, and an even speed along it"),
-                            ENERGY(bend, "0.1", "strokes are smooth"),
-                            ENERGY(align, "0.5", "strokes run along the direction"),
-                            ENERGY(wall, "0.1", "strokes stay on the page"),
+                            ENERGY(strain, "0.05", "segments keep their length, and an even speed along it"),
+                            ENERGY(bend, "0.05", "strokes are smooth"),
+                            ENERGY(align, "0.1", "strokes run along the direction"),
+                            ENERGY(wall, "0.02", "strokes stay on the page"),
                             ENERGY(stretch, "0", "[Linewise], strain: length of each segment"),
                             ENERGY(curvature, "0", "[Linewise], bending: curvature squared"),
                             ENERGY(potential, "0", "[Linewise]: strokes go where `potential` is low"),

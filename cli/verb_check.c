@@ -211,11 +211,10 @@ static void report_drawing(const Drawing *d)
     for (int k = 0; k < d->part_count; k++) {
         const DrawingPart *part = &d->parts[k];
         SplineGrid tone = spline_grid(&part->tone);
-        double mean = spline_grid_mean(&tone, 0), ink = mean / part->page.pen,
-               rest = spline_rest_length(&tone, &part->page);
+        double mean = spline_grid_mean(&tone, 0);
         printf("%s, %.3g mm: covers %.3g of the page, %.3g m of ink, about %.0f segments\n",
-               d->pens[part->pen].name, 1e3 * page->unit * part->page.pen, mean, page->unit * ink,
-               rest > 0 ? ink / rest : 0);
+               d->pens[part->pen].name, 1e3 * page->unit * part->page.pen, mean,
+               page->unit * mean / part->page.pen, drawing_segments(part));
     }
 }
 

@@ -60,6 +60,31 @@ static void pages(void **state)
     drawing_destroy(d);
 }
 
+/* What a scene does not say is what the library takes. */
+static void defaults(void **state)
+{
+    (void)state;
+    Drawing *d = drawing_of("density: 0.5");
+    RelaxDef relax = relax_default();
+    SplineStartDef start = spline_start_default();
+    assert_memory_equal(&d->relax.weights, &relax.weights, sizeof relax.weights);
+    assert_true(d->relax.method == relax.method && d->relax.rest == relax.rest &&
+                d->relax.seed == relax.seed && d->relax.max_iterations == relax.max_iterations &&
+                d->relax.energy_tol == relax.energy_tol &&
+                d->relax.temperature_first == relax.temperature_first &&
+                d->relax.temperature_last == relax.temperature_last &&
+                d->relax.temperatures == relax.temperatures && d->relax.sweeps == relax.sweeps &&
+                d->relax.time_step == relax.time_step && d->relax.time_steps == relax.time_steps &&
+                d->relax.damping == relax.damping && d->relax.model.pair_kernel == relax.model.pair_kernel &&
+                d->relax.model.pair_radius == relax.model.pair_radius);
+    assert_true(d->start.separation == start.separation && d->start.ink == start.ink &&
+                d->start.longest == start.longest && d->start.segments == start.segments &&
+                d->start.seed == start.seed);
+    PlotSpeed speed = plot_speed_default();
+    assert_true(1e3 * d->speed[0] == speed.down && 1e3 * d->speed[1] == speed.up && d->lift == speed.lift);
+    drawing_destroy(d);
+}
+
 /* Formulas know metres and parts of the page; densities end at 0 and 1. */
 static void formulas(void **state)
 {
@@ -185,10 +210,13 @@ static void colors(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_teardown(pages, nothing_leaks),   cmocka_unit_test_teardown(formulas, nothing_leaks),
-        cmocka_unit_test_teardown(inks, nothing_leaks),    cmocka_unit_test_teardown(tones, nothing_leaks),
-        cmocka_unit_test_teardown(crossed, nothing_leaks), cmocka_unit_test_teardown(starts, nothing_leaks),
-        cmocka_unit_test_teardown(colors, nothing_leaks)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test_teardown(pages, nothing_leaks),
+                                       cmocka_unit_test_teardown(defaults, nothing_leaks),
+                                       cmocka_unit_test_teardown(formulas, nothing_leaks),
+                                       cmocka_unit_test_teardown(inks, nothing_leaks),
+                                       cmocka_unit_test_teardown(tones, nothing_leaks),
+                                       cmocka_unit_test_teardown(crossed, nothing_leaks),
+                                       cmocka_unit_test_teardown(starts, nothing_leaks),
+                                       cmocka_unit_test_teardown(colors, nothing_leaks)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
