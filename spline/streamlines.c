@@ -150,13 +150,16 @@ static void shift_across(Points *curve, double across)
 /* A curve that has come back to its beginning becomes a ring, with a pen's width between its ends. */
 static void close_ring(Points *curve, double step, double pen, double near)
 {
-    int least = (int)(M_PI * near / step) + 2;
-    if (curve->count <= least) return;
+    int least = (int)(M_PI * near / step) + 2, whole = curve->count;
+    if (whole <= least) return;
     Vec2 gap = missing(curve);
-    if (!(hypot(gap.x, gap.y) < near)) return;
-    while (gap.x < pen && curve->count > least) {
+    while (gap.x < pen && hypot(gap.x, gap.y) < near && curve->count > least) {
         curve->count--;
         gap = missing(curve);
+    }
+    if (!(gap.x >= pen && hypot(gap.x, gap.y) < near)) {
+        curve->count = whole;
+        return;
     }
     shift_across(curve, gap.y);
     Vec2 from = curve->at[curve->count - 1], begin = curve->at[0];

@@ -47,6 +47,12 @@ static double spot(double x, double y)
     return hypot(x - 0.3, y - 0.6) < 0.1 ? 0.7 : 0;
 }
 
+static double tiles(double x, double y)
+{
+    double u = 4 * x - floor(4 * x) - 0.5, v = 4 * y - floor(4 * y) - 0.5;
+    return fmax(fabs(u), fabs(v)) < 0.3 ? 0.6 - 0.4 * v : 0;
+}
+
 static SplineField tone_of(double (*density)(double x, double y), const SplinePage *page, double pixel)
 {
     SplineField tone = spline_field_create(page, pixel, 1);
@@ -236,6 +242,25 @@ static void spirals(void **state)
     spline_field_clear(&direction);
 }
 
+/* Small curves that turn sharply, of many kinds: whatever comes back or nearly so, all that is drawn is
+ * sound. */
+static void tight_rings(void **state)
+{
+    (void)state;
+    SplinePage page = spline_page(0.1, 0.1, 0, 6e-4);
+    SplineStartDef def = spline_start_default();
+    for (int k = 0; k < 40; k++) {
+        def.seed = (uint64_t)k, def.separation = 0.7 + 0.01 * k;
+        Strokes strokes = start(spline_streamlines, tiles, NULL, &page, &def);
+        assert_true(strokes.count > 16);
+        for (int i = 0; i < strokes.count; i++) {
+            double length = strokes_stroke_length(&strokes, i);
+            assert_true(length > 0.01 && length < 1);
+        }
+        strokes_clear(&strokes);
+    }
+}
+
 /* Lit ball: the ink, and no mere dashes; where it is twice as dark lines are twice as dense. */
 static void shaded(void **state)
 {
@@ -385,6 +410,7 @@ int main(void)
         cmocka_unit_test_teardown(parallel, nothing_leaks),
         cmocka_unit_test_teardown(circles, nothing_leaks),
         cmocka_unit_test_teardown(spirals, nothing_leaks),
+        cmocka_unit_test_teardown(tight_rings, nothing_leaks),
         cmocka_unit_test_teardown(shaded, nothing_leaks),
         cmocka_unit_test_teardown(same_seed, nothing_leaks),
         cmocka_unit_test_teardown(random_strokes, nothing_leaks),
