@@ -10,18 +10,11 @@
 
 enum { STEPS = 4 }; /* chords of a segment as ParaView sees it */
 
-void draw_append(Strokes *to, const Strokes *from)
-{
-    for (int k = 0; k < from->count; k++)
-        strokes_add(to, from->start[k + 1] - from->start[k],
-                    (const double(*)[4])(from->q + 4 * from->start[k]), from->layer[k]);
-}
-
 bool draw_put_strokes(Run *run, const Drawing *d, const Strokes *parts, int count, Error *err)
 {
     Arrays list = {0};
     Strokes all = {0};
-    for (int k = 0; k < count; k++) draw_append(&all, &parts[k]);
+    for (int k = 0; k < count; k++) strokes_append(&all, &parts[k]);
     drawn_add_strokes(d, &all, &list);
     bool ok = arrays_put(&list, run->journal, "final", 0, err);
     strokes_clear(&all);
@@ -49,9 +42,7 @@ static Strokes of_pen(const Strokes *strokes, int pen)
 {
     Strokes some = {0};
     for (int k = 0; k < strokes->count; k++)
-        if (strokes->layer[k] == pen)
-            strokes_add(&some, strokes->start[k + 1] - strokes->start[k],
-                        (const double(*)[4])(strokes->q + 4 * strokes->start[k]), pen);
+        if (strokes->layer[k] == pen) strokes_add_from(&some, strokes, k);
     return some;
 }
 
@@ -167,7 +158,7 @@ bool draw_finish(Run *run, const Drawing *d, const Strokes *parts, const RelaxIn
 {
     Arrays list = {0};
     Strokes all = {0};
-    for (int k = 0; k < d->part_count; k++) draw_append(&all, &parts[k]);
+    for (int k = 0; k < d->part_count; k++) strokes_append(&all, &parts[k]);
     OrderInfo order = {0};
     if (d->order == ORDER_SHORTEST)
         order = order_strokes(&all, &d->page, order_default());

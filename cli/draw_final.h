@@ -4,9 +4,6 @@
 #include "cli/drawing.h"
 #include "cli/run.h"
 
-/* Appends all strokes of one to another. */
-void draw_append(Strokes *to, const Strokes *from);
-
 /* The strokes of the first parts, as they are, for those who look at a run that goes on. */
 bool draw_put_strokes(Run *run, const Drawing *drawing, const Strokes *parts, int count, Error *err);
 

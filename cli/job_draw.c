@@ -134,8 +134,8 @@ static bool write_svg(DrawJob *job, const Strokes *strokes)
     char *name = mem_format("%.*s-%06d.svg", (int)(strlen(job->run->result) - strlen(".vtkhdf")),
                             job->run->result, job->iteration);
     Strokes all = {0};
-    for (int k = 0; k < job->part; k++) draw_append(&all, &job->strokes[k]);
-    draw_append(&all, strokes);
+    for (int k = 0; k < job->part; k++) strokes_append(&all, &job->strokes[k]);
+    strokes_append(&all, strokes);
     Plot plot = spline_plot(&all, &job->d->page, job->d->pens, job->d->pen_count);
     bool ok = plot_write_svg(name, &plot, job->err);
     spline_plot_clear(&plot);

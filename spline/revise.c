@@ -54,19 +54,12 @@ static int choose(Local *local, const SplineModel *model, const Choice *c)
     return changed;
 }
 
-static void add_stroke(Strokes *to, const Strokes *from, int stroke)
-{
-    int first = from->start[stroke];
-    strokes_add(to, from->start[stroke + 1] - first, (const double(*)[4])(from->q + 4 * first),
-                from->layer[stroke]);
-}
-
 /* Of the strokes those that are not absent. */
 static Strokes present(const Strokes *strokes, const bool *absent)
 {
     Strokes left = {0};
     for (int k = 0; k < strokes->count; k++)
-        if (!absent[k]) add_stroke(&left, strokes, k);
+        if (!absent[k]) strokes_add_from(&left, strokes, k);
     return left;
 }
 
@@ -100,7 +93,7 @@ int spline_insert_strokes(const SplineTarget *target, const RelaxDef *def, const
                           int least, Strokes *strokes)
 {
     int before = strokes->count;
-    for (int k = 0; k < candidates->count; k++) add_stroke(strokes, candidates, k);
+    strokes_append(strokes, candidates);
     return candidates->count ? revise(target, def, before, least, strokes) : 0;
 }
 

@@ -2,7 +2,6 @@
 #include "base/memory.h"
 #include "base/random.h"
 #include "spline/direction.h"
-#include "spline/sheet.h"
 #include "spline/target.h"
 #include "spline/trace.h"
 
@@ -14,7 +13,8 @@ typedef struct Spread {
     SplineStartDef def;
     Random random;
     Points seeds, curve;
-    Sheet sheet;
+    int layer;
+    Strokes strokes;
 } Spread;
 
 SplineStartDef spline_start_default(void)
@@ -60,10 +60,10 @@ static Vec2 curve_point(const Points *curve, double at)
 
 /* The part from..to of a curve, in steps, as a stroke. */
 static void add_stroke(const Tracer *tracer, const Points *curve, double from, double to, int segments,
-                       Sheet *sheet)
+                       int layer, Strokes *strokes)
 {
     double each = (to - from) / segments, third = each * tracer->step / 3;
-    double(*q)[4] = sheet_add(sheet, segments + 1);
+    double(*q)[4] = strokes_extend(strokes, segments + 1, layer);
     for (int k = 0; k <= segments; k++) {
         double at = from + k * each;
         Vec2 p = curve_point(curve, at), a = curve_point(curve, at - 0.5), b = curve_point(curve, at + 0.5);
@@ -76,10 +76,9 @@ static void add_stroke(const Tracer *tracer, const Points *curve, double from, d
     }
 }
 
-static double sheet_ink(const Sheet *sheet, const SplinePage *page)
+static double ink_of(const Strokes *strokes, const SplinePage *page)
 {
-    Strokes strokes = {.count = sheet->count, .start = sheet->start, .q = (double *)sheet->q}; /* borrowed */
-    return strokes_length(&strokes) + 2 * sheet->count * spline_pen_cap(page);
+    return strokes_length(strokes) + 2 * strokes->count * spline_pen_cap(page);
 }
 
 /* Pieces of whole segments, half to all of the greatest length by chance: cuts side by side would show as a
@@ -99,7 +98,7 @@ static void cut_curve(Spread *spread)
             piece = (left + 1) / 2;
         to = from + piece;
         add_stroke(tracer, &spread->curve, from * each + (from > 0 ? gap / 2 : 0),
-                   to * each - (to < segments ? gap / 2 : 0), piece, &spread->sheet);
+                   to * each - (to < segments ? gap / 2 : 0), piece, spread->layer, &spread->strokes);
     }
 }
 
@@ -203,16 +202,16 @@ static void spread_curves(Spread *spread)
         }
 }
 
-static Sheet even_strokes(const Tracer *base, const SplineStartDef *def, double separation)
+static Strokes even_strokes(const Tracer *base, const SplineStartDef *def, int layer, double separation)
 {
-    Spread spread = {.tracer = *base, .def = *def, .random = random_seed(def->seed)};
+    Spread spread = {.tracer = *base, .def = *def, .random = random_seed(def->seed), .layer = layer};
     spread.tracer.separation = separation;
     spread.tracer.lanes = lanes_create(base->page, base->step, separation * base->page->pen / base->blank);
     spread_curves(&spread);
     lanes_destroy(spread.tracer.lanes);
     mem_free(spread.seeds.at);
     mem_free(spread.curve.at);
-    return spread.sheet;
+    return spread.strokes;
 }
 
 void spline_streamlines(const SplineGrid *tone, const SplineGrid *direction, const SplinePage *page,
@@ -225,15 +224,16 @@ void spline_streamlines(const SplineGrid *tone, const SplineGrid *direction, con
     Tracer tracer = {.tone = tone, .direction = direction, .page = page, .blank = demand.blank};
     tracer.step = def->separation * page->pen / demand.greatest / 4;
     double separation = def->separation;
-    Sheet sheet = even_strokes(&tracer, &whole, separation);
+    Strokes even = even_strokes(&tracer, &whole, layer, separation);
     for (int tries = 1; def->ink > 0 && tries < TRIES; tries++) {
-        double ink = sheet_ink(&sheet, page) / (def->ink * demand.length);
+        double ink = ink_of(&even, page) / (def->ink * demand.length);
         if (fabs(ink - 1) < 0.03) break;
         separation = fmin(fmax(separation * ink, def->separation / 1.3), 1.3 * def->separation);
-        sheet_clear(&sheet);
-        sheet = even_strokes(&tracer, &whole, separation);
+        strokes_clear(&even);
+        even = even_strokes(&tracer, &whole, layer, separation);
     }
-    sheet_hand_over(&sheet, layer, strokes);
+    strokes_append(strokes, &even);
+    strokes_clear(&even);
 }
 
 /* Sums of the density over all pixels up to each, so that a share of the last one finds a pixel. */
@@ -274,7 +274,6 @@ void spline_random_strokes(const SplineGrid *tone, const SplineGrid *direction, 
     double *sums = density_sums(tone, demand.blank);
     Random random = random_seed(def->seed);
     Points curve = {0};
-    Sheet sheet = {0};
     for (; left > each / 2 && tries > 0; tries--) {
         Vec2 seed = random_place(tone, sums, page, &random);
         int behind = (int)(random_uniform(&random) * steps);
@@ -282,10 +281,10 @@ void spline_random_strokes(const SplineGrid *tone, const SplineGrid *direction, 
         trace_curve(&tracer, seed, behind, steps, &curve);
         double length = (curve.count - 1) * tracer.step;
         if (length < segment / 2) continue;
-        add_stroke(&tracer, &curve, 0, curve.count - 1, (int)fmax(lround(length / segment), 1), &sheet);
+        add_stroke(&tracer, &curve, 0, curve.count - 1, (int)fmax(lround(length / segment), 1), layer,
+                   strokes);
         left -= length + 2 * spline_pen_cap(page);
     }
     mem_free(sums);
     mem_free(curve.at);
-    sheet_hand_over(&sheet, layer, strokes);
 }

@@ -20,15 +20,32 @@ static void reserve(Strokes *strokes, int nodes)
     }
 }
 
-void strokes_add(Strokes *strokes, int nodes, const double (*q)[4], int layer)
+double (*strokes_extend(Strokes *strokes, int nodes, int layer))[4]
 {
     reserve(strokes, nodes);
     int count = strokes->count, before = strokes_node_count(strokes);
-    memcpy(strokes->q + 4 * before, q, 4 * (size_t)nodes * sizeof *strokes->q);
     strokes->start[count] = before;
     strokes->start[count + 1] = before + nodes;
     strokes->layer[count] = layer;
     strokes->count++;
+    return (double(*)[4])strokes->q + before;
+}
+
+void strokes_add(Strokes *strokes, int nodes, const double (*q)[4], int layer)
+{
+    memcpy(strokes_extend(strokes, nodes, layer), q, (size_t)nodes * sizeof *q);
+}
+
+void strokes_add_from(Strokes *strokes, const Strokes *from, int stroke)
+{
+    int first = from->start[stroke];
+    strokes_add(strokes, from->start[stroke + 1] - first, (const double(*)[4])(from->q + 4 * first),
+                from->layer[stroke]);
+}
+
+void strokes_append(Strokes *strokes, const Strokes *more)
+{
+    for (int k = 0; k < more->count; k++) strokes_add_from(strokes, more, k);
 }
 
 Strokes strokes_copy(const Strokes *strokes)

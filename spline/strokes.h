@@ -24,8 +24,15 @@ static inline int strokes_segment_count(const Strokes *strokes)
     return strokes_node_count(strokes) - strokes->count;
 }
 
+/* Appends a stroke of so many nodes, which the caller fills in before the next one. */
+double (*strokes_extend(Strokes *strokes, int nodes, int layer))[4];
+
 /* Appends a stroke of so many nodes (copied). strokes may be zeroed before the first one. */
 void strokes_add(Strokes *strokes, int nodes, const double (*q)[4], int layer);
+
+/* Appends one stroke of others, or all of them. */
+void strokes_add_from(Strokes *strokes, const Strokes *from, int stroke);
+void strokes_append(Strokes *strokes, const Strokes *more);
 
 /* A copy; and frees what it owns. */
 Strokes strokes_copy(const Strokes *strokes);
