@@ -262,7 +262,7 @@ const YamlTable spline_table = {
          .doc = "auto is the best one; the others are there to compare with (docs/line_art.md)"},
         {YAML_INTEGER(SplineScene, iterations), .range = "[0, 1000000]", .fallback = "500",
          .doc = "of auto, newton and gradient, in each round, at most"},
-        {YAML_NUMBER(SplineScene, tolerance), .range = "[0, 1)", .fallback = "1.0e-3",
+        {YAML_NUMBER(SplineScene, tolerance), .range = "[0, 1)", .fallback = "3.0e-3",
          .doc = "settled when the energy fell by less than this part in 20 iterations"},
         {YAML_INTEGER(SplineScene, rounds), .range = "[0, 1000]", .fallback = "2",
          .doc = "after the first relaxation: strokes come and go where that helps, then all relax again"},

@@ -49,7 +49,7 @@ RelaxDef relax_default(void)
                       .rest = 1.2,
                       .threads = 1,
                       .max_iterations = 500,
-                      .energy_tol = 1e-3,
+                      .energy_tol = 3e-3,
                       .gradient_tol = 1e-6,
                       .memory = 20,
                       .refresh = 20,

@@ -31,7 +31,7 @@ typedef struct RelaxDef {
     double rest;           /* L0 (spline_segment_length); default 1.2; 0: as at the start                 */
     int threads;           /* default 1                                                                   */
     int max_iterations;    /* of auto, newton and gradient; default 500                                   */
-    double energy_tol;     /* settled when the energy fell by less than this part in 20 iterations; 1e-3  */
+    double energy_tol;     /* settled when the energy fell by less than this part in 20 iterations; 3e-3  */
     double gradient_tol;   /* converged when no |dE/dx| (a pure number) exceeds this; default 1e-6        */
     double step_cap;       /* no stroke goes further in one step (not monte_carlo's moves); default 1     */
 
