@@ -63,7 +63,8 @@ static void add_layer(Text *text, const PlotLayer *layer, int number)
     add_attribute(text, layer->name);
     text_add(text, "\" fill=\"none\" stroke=\"#%02x%02x%02x\" stroke-width=\"", rgb[0], rgb[1], rgb[2]);
     plot_add_number(text, layer->pen, 3);
-    text_add(text, "\" stroke-linecap=\"round\" stroke-linejoin=\"round\">\n");
+    text_add(text, "\" stroke-linecap=\"round\" stroke-linejoin=\"round\" "
+                   "style=\"mix-blend-mode:multiply\">\n");
     for (int k = 0; k < layer->count; k++) {
         text_add(text, "<path d=\"");
         for (int i = layer->start[k]; i < layer->start[k + 1]; i++)

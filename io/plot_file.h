@@ -27,7 +27,8 @@ typedef struct Plot {
 
 /* Writes an SVG in millimetres: width and height in mm, one user unit a millimetre, cubic curves rounded to
  * micrometres, a layer "1-black" of Inkscape's kind at the top level for each pen (AxiDraw and vpype read the
- * number), no transforms, no frame. Layers without curves are left out, but count. */
+ * number) whose ink lets those below shine through, no transforms, no frame. Layers without curves are left
+ * out, but count. */
 bool plot_write_svg(const char *path, const Plot *plot, Error *err);
 
 /* How fast a plotter is: from lift to touch and between them. */
