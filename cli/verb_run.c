@@ -212,7 +212,8 @@ static int run_model(const RunOptions *options, const Scene *scene, Model *model
     Run run = {
         .scene = scene, .model = model, .progress = &progress, .result = result, .threads = options->threads};
     JournalMode mode = options->resume ? JOURNAL_RESUME : options->force ? JOURNAL_FORCE : JOURNAL_NEW;
-    if (check_output(options->output, result, &err) && outputs_check(scene, result, &err))
+    if (check_output(options->output, result, &err) &&
+        outputs_check(scene, options->scene, result, !options->no_picture, &err))
         run.journal = journal_open(journal, mode, &err);
     int code = run.journal ? do_job(&run, options) : verb_fail(RUN_CANNOT_WRITE, err.text);
     if (run.journal && !journal_close(run.journal, &err) && code != RUN_CANNOT_WRITE)
