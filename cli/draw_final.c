@@ -10,18 +10,18 @@
 
 enum { STEPS = 4 }; /* chords of a segment as ParaView sees it */
 
-void draw_append(Strokes *to, const Strokes *from)
+void draw_append(Strokes *to, const Strokes *from, int pen)
 {
     for (int k = 0; k < from->count; k++)
         strokes_add(to, from->start[k + 1] - from->start[k],
-                    (const double(*)[4])(from->q + 4 * from->start[k]), from->layer[k]);
+                    (const double(*)[4])(from->q + 4 * from->start[k]), pen);
 }
 
 bool draw_put_strokes(Run *run, const Drawing *d, const Strokes *parts, int count, Error *err)
 {
     Arrays list = {0};
     Strokes all = {0};
-    for (int k = 0; k < count; k++) draw_append(&all, &parts[k]);
+    for (int k = 0; k < count; k++) draw_append(&all, &parts[k], d->parts[k].pen);
     drawn_add_strokes(d, &all, &list);
     bool ok = arrays_put(&list, run->journal, "final", 0, err);
     strokes_clear(&all);
@@ -167,7 +167,7 @@ bool draw_finish(Run *run, const Drawing *d, const Strokes *parts, const RelaxIn
 {
     Arrays list = {0};
     Strokes all = {0};
-    for (int k = 0; k < d->part_count; k++) draw_append(&all, &parts[k]);
+    for (int k = 0; k < d->part_count; k++) draw_append(&all, &parts[k], d->parts[k].pen);
     OrderInfo order = {0};
     if (d->order == ORDER_SHORTEST)
         order = order_strokes(&all, &d->page, order_default());

@@ -4,8 +4,8 @@
 #include "cli/drawing.h"
 #include "cli/run.h"
 
-/* Appends all strokes of one to another. */
-void draw_append(Strokes *to, const Strokes *from);
+/* Appends all strokes of a part, which that pen draws, whatever layer they say. */
+void draw_append(Strokes *to, const Strokes *from, int pen);
 
 /* The strokes of the first parts, as they are, for those who look at a run that goes on. */
 bool draw_put_strokes(Run *run, const Drawing *drawing, const Strokes *parts, int count, Error *err);
