@@ -23,7 +23,7 @@ expect 0 "$program" picture out/a.vtkhdf -o c.pdf --width 800; exists c.pdf
 expect 4 "$program" picture out/a.vtkhdf -o c.png --frame 0; says "no frames"
 expect 0 "$program" run "$scene" --quiet --no-picture -o d --set spline.rounds=0
 expect 0 "$program" run "$scene" --quiet --no-picture -o d --resume; same out/a.svg d.svg
-expect 3 "$program" run "$scene" --quiet -o d --resume --set spline.pen=1mm; says "spline.pen"
+expect 3 "$program" run "$scene" --quiet -o d --resume --set spline.pen=1mm; says "spline.pen is not the same"; says "spline.rounds"
 expect 0 "$program" run "$scene" --quiet --no-picture -o e --set spline.seed=2; cmp -s out/a.svg e.svg && { echo "another seed, the same drawing"; bad=1; }
 
 # Paper and margin; what cannot be written is refused before the work.
@@ -52,7 +52,7 @@ for method in newton gradient monte_carlo dynamics; do
 done
 
 # Pictures that ask for nothing, or are hardly any; and broken ones.
-printf 'P2 1 1 255 40\n' > dot.pgm; printf 'P2 2 2 255 255 255 255 255\n' > white.pgm; printf 'P2 3 1 65535 0 30000 65535\n' > deep.pgm
+printf 'P2 1 1 255 40\n' > dot.pgm; printf 'P2 2 2 255 255 255 255 255\n' > white.pgm; printf 'P2 1 1 255 250\n' > light.pgm; printf 'P2 3 1 65535 0 30000 65535\n' > deep.pgm
 printf 'P5 100000 100000 255\n' > huge.pgm; printf 'P5 8 8 255\nshort' > cut.pgm; printf '\211PNG\r\n\032\n broken' > broken.png
 cat > picture.yaml <<'S'
 slender: 1
@@ -62,6 +62,7 @@ S
 expect 0 "$program" run picture.yaml -o dot;    says "dot.png"
 expect 0 "$program" run picture.yaml -o deep --set spline.image="$work/deep.pgm"
 expect 0 "$program" run picture.yaml -o white --set spline.image="$work/white.pgm"; says "0 strokes"
+expect 0 "$program" run picture.yaml --no-picture -o light --set spline.image="$work/light.pgm"; says "a finer pen helps"
 exists white.svg; exists white.png; grep -q "<path" white.svg && { echo "strokes on white paper"; bad=1; }
 
 # Neither the picture nor the scene is written over: picture.yaml draws picture.png.
