@@ -78,10 +78,11 @@ static void weigh_edges(SplineField *edges, double angle)
 SplineField spline_direction_from_tone(const SplineField *tone, const SplinePage *page,
                                        const SplineDirectionDef *def)
 {
-    SplineField fine = spline_field_resize(tone, page, def->detail / 2);
+    double pixel = page->width / tone->columns / 8; /* nothing is to be seen in smaller ones */
+    SplineField fine = spline_field_resize(tone, page, fmax(def->detail / 2, pixel));
     spline_field_blur(&fine, page, def->detail);
     SplineField sharp = edge_field(&fine, page, 2 * def->detail);
-    SplineField edges = spline_field_resize(&sharp, page, def->detail);
+    SplineField edges = spline_field_resize(&sharp, page, fmax(def->detail, pixel));
     spline_field_blur(&edges, page, def->smooth);
     weigh_edges(&edges, def->angle);
 

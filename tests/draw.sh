@@ -79,6 +79,7 @@ job: draw
 spline: {density: {formula: 0.2 + 0.2*u}, page: {size: [40 mm, 30 mm], margin: 3 mm}, pen: 0.8 mm}
 S
 for set in 'direction={formula: ["0", "0"]}' 'direction={formula: ["1e300", "1e300"]}' 'direction={formula: ["1e-300", "0"]}' \
+    'direction={image: structure_tensor, detail: 1.0e-300 m}' 'direction={image: structure_tensor, smooth: 1.0e-300 m}' \
     'start={kind: random, ink: 1e-9}' 'start={kind: random, segments: 1000}' 'seed=2147483647'; do
     expect 0 "$program" run field.yaml --quiet --no-picture -o field --force --set "spline.$set"
     grep -q "<path" field.svg || { echo "$set: no strokes"; bad=1; }
