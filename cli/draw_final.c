@@ -5,6 +5,7 @@
 #include "spline/metrics.h"
 #include "spline/order.h"
 #include "spline/terms.h"
+#include <math.h>
 #include <stddef.h>
 #include <string.h>
 
@@ -14,7 +15,7 @@ bool draw_put_strokes(Run *run, const Drawing *d, const Strokes *parts, int coun
 {
     Arrays list = {0};
     Strokes all = {0};
-    for (int k = 0; k < count; k++) strokes_append(&all, &parts[k]);
+    for (int k = 0; k < count; k++) strokes_append(&all, &parts[k], d->parts[k].pen);
     drawn_add_strokes(d, &all, &list);
     bool ok = arrays_put(&list, run->journal, "final", 0, err);
     strokes_clear(&all);
@@ -107,6 +108,21 @@ static void add_plot(const Drawing *d, const Strokes *strokes, const OrderInfo *
     spline_plot_clear(&plot);
 }
 
+/* Why an empty drawing is one. */
+static void explain_blank(const Drawing *d, Run *run)
+{
+    double most = 0;
+    for (int k = 0; k < d->part_count; k++) {
+        SplineGrid tone = spline_grid(&d->parts[k].tone);
+        most = fmax(most, spline_grid_mean(&tone, 0));
+    }
+    if (most > 0)
+        progress_say(
+            run->progress,
+            "nothing was drawn: paper stays blank where lines would be farther apart than a third of "
+            "the page, or have no room; a finer pen helps");
+}
+
 /* ---- For ParaView: strokes as chords ---- */
 
 /* The points of a stroke, from number `at` on; y upwards, as scenes in space have it. Returns where the next
@@ -158,7 +174,7 @@ bool draw_finish(Run *run, const Drawing *d, const Strokes *parts, const RelaxIn
 {
     Arrays list = {0};
     Strokes all = {0};
-    for (int k = 0; k < d->part_count; k++) strokes_append(&all, &parts[k]);
+    for (int k = 0; k < d->part_count; k++) strokes_append(&all, &parts[k], d->parts[k].pen);
     OrderInfo order = {0};
     if (d->order == ORDER_SHORTEST)
         order = order_strokes(&all, &d->page, order_default());
@@ -173,6 +189,7 @@ bool draw_finish(Run *run, const Drawing *d, const Strokes *parts, const RelaxIn
     arrays_add(&list, array_text("status", status));
     add_metrics(d, &all, run, &list);
     add_plot(d, &all, &order, run, &list);
+    if (all.count == 0) explain_blank(d, run);
     bool ok = arrays_put(&list, run->journal, "final", 0, err) && put_frame(run, d, &all, err);
     strokes_clear(&all);
     return ok;

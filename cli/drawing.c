@@ -10,6 +10,8 @@
 
 enum { SEGMENTS_MAX = 3000000 };
 
+static const double REST_LEAST = 0.05; /* mean distances of lines */
+
 /* ---- Page and parts ---- */
 
 static bool read_page(const SplineScene *scene, YamlFile *file, SplinePage *page)
@@ -77,6 +79,14 @@ static bool check_size(const Drawing *d, YamlFile *file)
 
 /* ---- Settings ---- */
 
+/* Segments far shorter than the lines are apart take long, and say no more. */
+static bool check_rest(double rest, YamlFile *file)
+{
+    return rest == 0 || rest >= REST_LEAST ||
+           yaml_refuse(file, "spline.rest", "a rest length of %g is too short; say 0, or %g to 10", rest,
+                       REST_LEAST);
+}
+
 static RelaxDef relax_def(const SplineScene *scene)
 {
     RelaxDef def = relax_default();
@@ -114,8 +124,9 @@ static SplineStartDef start_def(const SplineScene *scene, const SplinePage *page
 
 static bool fill(Drawing *d, const SplineScene *scene, YamlFile *file)
 {
-    if (!check_cross(scene->cross, file) || !read_page(scene, file, &d->page) ||
-        !pens_read(scene, file, &d->page, &d->pens, &d->pen_count) || !drawing_read_fields(d, scene, file))
+    if (!check_cross(scene->cross, file) || !check_rest(scene->rest, file) ||
+        !read_page(scene, file, &d->page) || !pens_read(scene, file, &d->page, &d->pens, &d->pen_count) ||
+        !drawing_read_fields(d, scene, file))
         return false;
     for (int k = 0; k < d->pen_count; k++) add_parts(d, scene, k);
     d->relax = relax_def(scene);

@@ -4,7 +4,8 @@
 #include <math.h>
 #include <string.h>
 
-static const double PEN_MAX = 0.2; /* of the page */
+static const double PEN_MAX = 0.2;    /* of the page                                                      */
+static const double PEN_ACROSS = 0.4; /* of its shorter side: lines keep a pen's width away from the edges */
 
 /* Inks of spline_separate in their order, and their screens: lines 30 degrees apart do not beat visibly, and
  * yellow, which shows least, is the one across. */
@@ -74,17 +75,39 @@ static bool check_from(const SplineScene *scene, YamlFile *file)
     return true;
 }
 
+/* Names are a line each in the result, and words of the SVG file's XML, which cannot say U+FFFE and U+FFFF.
+ */
+static bool is_name(const char *name)
+{
+    for (const char *c = name; *c; c++)
+        if ((unsigned char)*c < 0x20 || *c == 0x7f || !strncmp(c, "\xef\xbf\xbe", 3) ||
+            !strncmp(c, "\xef\xbf\xbf", 3))
+            return false;
+    return *name != 0;
+}
+
+static bool check_name(const SplineScene *scene, YamlFile *file, int pen)
+{
+    const char *name = scene->pens[pen].name;
+    Key at = key("spline.pens[%d]", pen);
+    if (!is_name(name)) return yaml_refuse(file, at.text, "the name of a pen is a line of text");
+    if (is_cmyk(scene) && pens_ink(name) < 0)
+        return yaml_refuse(file, at.text, "the pens of cmyk are cyan, magenta, yellow and black");
+    for (int k = 0; is_cmyk(scene) && k < pen; k++)
+        if (!strcmp(name, scene->pens[k].name))
+            return yaml_refuse(file, at.text, "%s is there twice, and would draw all of its ink twice", name);
+    return true;
+}
+
 static bool read_pen(const SplineScene *scene, YamlFile *file, const SplinePage *page, const PenScene *from,
                      Key at, SplinePen *pen)
 {
     Error err;
     double width = isnan(from->width) ? scene->pen : from->width;
     pen->width = width / page->unit;
-    if (pen->width > PEN_MAX)
+    if (pen->width > PEN_MAX || pen->width > PEN_ACROSS * fmin(page->width, page->height))
         return yaml_refuse(file, at.text, "a pen of %g m is too wide for a page of %g x %g m", width,
                            page->paper[0], page->paper[1]);
-    if (is_cmyk(scene) && pens_ink(from->name) < 0)
-        return yaml_refuse(file, at.text, "the pens of cmyk are cyan, magenta, yellow and black");
     if (color_parse(from->color ? from->color : from->name, &pen->color, &err)) return true;
     if (from->color) return yaml_refuse(file, at.text, "%s", err.text);
     pen->color = (Color){0, 0, 0, 1}; /* of a pen whose name is no colour */
@@ -103,7 +126,8 @@ bool pens_read(const SplineScene *scene, YamlFile *file, const SplinePage *page,
         Key at = own ? key("spline.pens[%d]", k) : key("spline.pen");
         if (own) given = scene->pens[k];
         (*pens)[k].name = mem_text(given.name);
-        ok = read_pen(scene, file, page, &given, at, &(*pens)[k]) && ok;
+        ok = ok && (!own || check_name(scene, file, k)) &&
+             read_pen(scene, file, page, &given, at, &(*pens)[k]);
     }
     return ok;
 }

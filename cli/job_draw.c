@@ -134,8 +134,8 @@ static bool write_svg(DrawJob *job, const Strokes *strokes)
     char *name = mem_format("%.*s-%06d.svg", (int)(strlen(job->run->result) - strlen(".vtkhdf")),
                             job->run->result, job->iteration);
     Strokes all = {0};
-    for (int k = 0; k < job->part; k++) strokes_append(&all, &job->strokes[k]);
-    strokes_append(&all, strokes);
+    for (int k = 0; k <= job->part; k++)
+        strokes_append(&all, k < job->part ? &job->strokes[k] : strokes, job->d->parts[k].pen);
     Plot plot = spline_plot(&all, &job->d->page, job->d->pens, job->d->pen_count);
     bool ok = plot_write_svg(name, &plot, job->err);
     spline_plot_clear(&plot);
@@ -175,11 +175,8 @@ static bool watch(void *self, const RelaxInfo *info, const Strokes *strokes)
 static bool keep(DrawJob *job, const RelaxInfo *info, bool better)
 {
     Part *part = &job->parts[job->part];
-    Strokes *strokes = &job->strokes[job->part];
     take_info(part, info);
     if (info->status == RELAX_STOPPED) return false;
-    for (int k = 0; k < strokes->count; k++)
-        strokes->layer[k] = job->d->parts[job->part].pen; /* new ones too */
     part->rounds++;
     part->better = better;
     part->iteration = job->iteration;

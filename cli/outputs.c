@@ -2,7 +2,9 @@
 #include "base/memory.h"
 #include "cli/drawn.h"
 #include "cli/verb.h"
+#include "io/replace.h"
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 enum { FILES = 5 };
@@ -39,22 +41,87 @@ static void clear_files(OutputFile files[FILES])
     for (int k = 0; k < FILES; k++) mem_free(files[k].path);
 }
 
-static bool check_file(const char *path, Error *err)
+static bool is_one_place(const char *a, const char *b)
+{
+    struct stat x, y;
+    return stat(a, &x) == 0 && stat(b, &y) == 0 && x.st_dev == y.st_dev && x.st_ino == y.st_ino;
+}
+
+static char *folder_of(const char *path)
 {
     const char *slash = strrchr(path, '/');
-    char *folder = slash ? mem_format("%.*s/", (int)(slash - path), path) : mem_text(".");
+    return slash ? mem_format("%.*s/", (int)(slash - path), path) : mem_text(".");
+}
+
+static bool check_file(const char *path, Error *err)
+{
+    char *folder = folder_of(path);
     bool ok = access(folder, W_OK) == 0 ||
               error_set(err, "'%s' cannot be written: its folder is not there, or is read-only", path);
     mem_free(folder);
     return ok;
 }
 
-bool outputs_check(const Scene *scene, const char *result, Error *err)
+/* One file, or one name in one folder. */
+static bool is_same(const char *a, const char *b)
+{
+    const char *slash_a = strrchr(a, '/'), *slash_b = strrchr(b, '/');
+    if (is_one_place(a, b)) return true;
+    if (strcmp(slash_a ? slash_a + 1 : a, slash_b ? slash_b + 1 : b)) return false;
+    char *folder_a = folder_of(a), *folder_b = folder_of(b);
+    bool same = is_one_place(folder_a, folder_b);
+    mem_free(folder_a);
+    mem_free(folder_b);
+    return same;
+}
+
+static bool check_read(const Scene *scene, const char *path, const char *output, Error *err)
+{
+    const SplineScene *spline = scene->spline;
+    const char *const read[] = {path, spline ? spline->image : NULL, spline ? spline->direction.file : NULL};
+    for (int k = 0; k < 3; k++)
+        if (read[k] && is_same(output, read[k]))
+            return error_set(err,
+                             "'%s' is to be written, but the scene is made of it; give another name by -o or "
+                             "in `output`",
+                             output);
+    return true;
+}
+
+/* What a run writes itself. */
+static bool is_own(const char *result, const char *output)
+{
+    static const char *const endings[] = {".vtkhdf", ".xdmf", ".run", ".run-lock"};
+    char *base = verb_without_ending(result, ".vtkhdf");
+    bool own = false;
+    for (int k = 0; k < 4; k++) {
+        char *file = mem_format("%s%s", base, endings[k]);
+        own = own || is_same(output, file);
+        mem_free(file);
+    }
+    mem_free(base);
+    return own;
+}
+
+static bool check_once(const OutputFile *files, int file, const char *result, Error *err)
+{
+    bool twice = is_own(result, files[file].path);
+    for (int k = 0; k < file; k++)
+        twice = twice || (files[k].path && is_same(files[k].path, files[file].path));
+    return !twice ||
+           error_set(err, "'%s' would be written twice; give another name in `output`", files[file].path);
+}
+
+bool outputs_check(const Scene *scene, const char *path, const char *result, bool picture, Error *err)
 {
     OutputFile files[FILES];
     bool ok = true;
     files_of(scene, result, files);
-    for (int k = 0; ok && k < FILES; k++) ok = !files[k].path || check_file(files[k].path, err);
+    if (!picture) mem_free(files[0].path), files[0].path = NULL;
+    for (int k = 0; ok && k < FILES; k++)
+        ok = !files[k].path ||
+             (check_file(files[k].path, err) && replace_check(files[k].path, err) &&
+              check_read(scene, path, files[k].path, err) && check_once(files, k, result, err));
     clear_files(files);
     return ok;
 }

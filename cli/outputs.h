@@ -3,8 +3,9 @@
 #pragma once
 #include "cli/run.h"
 
-/* Can they be written? A missing folder is refused before the work, not after it. */
-bool outputs_check(const Scene *scene, const char *result, Error *err);
+/* Can they be written, the picture if it is wanted, and is nothing lost by it: each a file of its own, none
+ * of them the scene of that path or a picture that it draws? Refused before the work, not after it. */
+bool outputs_check(const Scene *scene, const char *path, const char *result, bool picture, Error *err);
 
 /* Writes them from the result; false and a sentence where one cannot be. Of other scenes there are none. */
 bool outputs_write(Run *run, Error *err);

@@ -191,7 +191,7 @@ static const YamlTable pair_table = {
     .fields =
         (const YamlField[]){{YAML_CHOICE(PairScene, kernel), .choices = YAML_NAMES("wendland", "triweight"),
                              .fallback = "wendland", .doc = "how it falls off"},
-                            {YAML_NUMBER(PairScene, radius), .range = "(0, 20]", .fallback = "1.6",
+                            {YAML_NUMBER(PairScene, radius), .range = "[0.1, 20]", .fallback = "1.6",
                              .doc = "where it is 0, in mean distances of lines"},
                             {0}}};
 
@@ -223,9 +223,9 @@ static const YamlTable plotter_table = {
     .name = "plotter",
     .size = sizeof(PlotterScene),
     .doc = "How fast the plotter is, for its files and the time that plotting takes.",
-    .fields = (const YamlField[]){{YAML_NUMBER(PlotterScene, down), .unit = "m/s", .range = "(0, 10]",
+    .fields = (const YamlField[]){{YAML_NUMBER(PlotterScene, down), .unit = "m/s", .range = "[1.0e-5, 10]",
                                    .fallback = "40 mm/s", .doc = "with the pen on the paper"},
-                                  {YAML_NUMBER(PlotterScene, up), .unit = "m/s", .range = "(0, 10]",
+                                  {YAML_NUMBER(PlotterScene, up), .unit = "m/s", .range = "[1.0e-5, 10]",
                                    .fallback = "100 mm/s", .doc = "with the pen lifted"},
                                   {YAML_NUMBER(PlotterScene, lift), .unit = "s", .range = "[0, 60]",
                                    .fallback = "0.3 s", .doc = "to lift and to lower it, together"},
@@ -267,7 +267,8 @@ const YamlTable spline_table = {
         {YAML_INTEGER(SplineScene, rounds), .range = "[0, 1000]", .fallback = "2",
          .doc = "after the first relaxation: strokes come and go where that helps, then all relax again"},
         {YAML_NUMBER(SplineScene, rest), .range = "[0, 10]", .fallback = "1.2",
-         .doc = "rest length of a segment in mean distances of lines; 0: its length at the start"},
+         .doc = "rest length of a segment in mean distances of lines, 0.05 at least; 0: its length at the "
+                "start"},
         {YAML_TABLE(SplineScene, monte_carlo, &monte_carlo_table), .fallback = "{}", .doc = "of that method"},
         {YAML_TABLE(SplineScene, dynamics, &dynamics_table), .fallback = "{}", .doc = "of that method"},
         {YAML_INTEGER(SplineScene, seed), .range = "[0, 2147483647]", .fallback = "1",

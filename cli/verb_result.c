@@ -37,6 +37,16 @@ static void print_array(const char *path, const Array *array)
     printf(" %s\n", array->unit ? array->unit : "");
 }
 
+/* "a.vtkhdf: settled, 1 frames" */
+static void print_title(Result *result, const char *path)
+{
+    Array status = {0};
+    bool known = result_read(result, "slender/status", &status, NULL);
+    printf("%s: %s%s%d frames\n", path, known ? (const char *)status.data : "", known ? ", " : "",
+           result_step_count(result));
+    array_clear(&status);
+}
+
 static int info_result(const char *path)
 {
     Error err;
@@ -47,7 +57,7 @@ static int info_result(const char *path)
         result_close(result);
         return verb_fail(RUN_REFUSED, err.text);
     }
-    printf("%s: %d frames\n", path, result_step_count(result));
+    print_title(result, path);
     for (int k = 0; k < count; k++) {
         Array array;
         if (!result_read(result, paths[k], &array, &err)) {
@@ -221,6 +231,8 @@ static ResultDef result_def(Journal *journal)
 
 static bool export_journal(const char *input, const char *path, Error *err)
 {
+    if (!has_ending(path, ".vtkhdf"))
+        return error_set(err, "%s: a run is exported as .vtkhdf, and that as other files", path);
     Journal *journal = journal_open(input, JOURNAL_READ, err);
     if (!journal) return false;
     bool ok = !journal_is_finished(journal) || journal_count(journal, "frame") > 0 ||
@@ -254,7 +266,7 @@ int verb_export(int argc, char **argv)
             what.language = optarg;
         else if (c != 'f' || sscanf(optarg, "%d%c", &what.frame, &end) != 1 || what.frame < 0)
             return verb_usage(usage);
-    if (!what.output || optind != argc - 1) return verb_usage(usage);
+    if (!what.output || optind != argc - 1 || !strcmp(argv[optind], what.output)) return verb_usage(usage);
     Error err;
     const char *input = argv[optind];
     bool ok = has_ending(input, ".run") ? export_journal(input, what.output, &err)

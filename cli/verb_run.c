@@ -105,6 +105,18 @@ static const char *const free_keys_trajectory[] = {"design.iterations", "design.
 static const char *const free_keys_draw[] = {"output", "spline.rounds", "spline.order", "spline.plotter",
                                              NULL};
 
+/* "a, b and c" */
+static char *list_of(const char *const *keys)
+{
+    char *list = mem_text(keys[0]);
+    for (int k = 1; keys[k]; k++) {
+        char *longer = mem_format("%s%s%s", list, keys[k + 1] ? ", " : " and ", keys[k]);
+        mem_free(list);
+        list = longer;
+    }
+    return list;
+}
+
 static bool check_scene(Journal *journal, int job, const char *scene, Error *err)
 {
     const char *const *keys = job == JOB_TRAJECTORY ? free_keys_trajectory
@@ -115,11 +127,11 @@ static bool check_scene(Journal *journal, int job, const char *scene, Error *err
     char *difference = yaml_difference(old.data, scene, keys);
     array_clear(&old);
     if (!difference) return true;
+    char *list = list_of(keys);
     error_set(err,
-              "the scene has changed since that run: %s is not the same; only iterations and output may "
-              "change with "
-              "--resume",
-              difference);
+              "the scene has changed since that run: %s is not the same; with --resume only %s may change",
+              difference, list);
+    mem_free(list);
     mem_free(difference);
     return false;
 }
@@ -212,7 +224,8 @@ static int run_model(const RunOptions *options, const Scene *scene, Model *model
     Run run = {
         .scene = scene, .model = model, .progress = &progress, .result = result, .threads = options->threads};
     JournalMode mode = options->resume ? JOURNAL_RESUME : options->force ? JOURNAL_FORCE : JOURNAL_NEW;
-    if (check_output(options->output, result, &err) && outputs_check(scene, result, &err))
+    if (check_output(options->output, result, &err) &&
+        outputs_check(scene, options->scene, result, !options->no_picture, &err))
         run.journal = journal_open(journal, mode, &err);
     int code = run.journal ? do_job(&run, options) : verb_fail(RUN_CANNOT_WRITE, err.text);
     if (run.journal && !journal_close(run.journal, &err) && code != RUN_CANNOT_WRITE)

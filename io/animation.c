@@ -1,5 +1,6 @@
 #include "io/animation.h"
 #include "base/memory.h"
+#include "io/replace.h"
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
@@ -79,6 +80,7 @@ static bool write_file(const char *path, const WebPData *data)
 bool animation_save(Animation *animation, Error *err)
 {
     WebPData data = {0};
+    if (!replace_check(animation->path, err)) return false;
     bool ok = animation->encoder &&
               WebPAnimEncoderAdd(animation->encoder, NULL, milliseconds(animation), NULL) &&
               WebPAnimEncoderAssemble(animation->encoder, &data);

@@ -1,5 +1,6 @@
 #include "io/canvas.h"
 #include "base/memory.h"
+#include "io/replace.h"
 #include <cairo-pdf.h>
 #include <cairo-svg.h>
 #include <cairo.h>
@@ -150,6 +151,7 @@ bool canvas_save(Canvas *canvas, Error *err)
     if (status == CAIRO_STATUS_SUCCESS) status = cairo_surface_status(canvas->surface);
     if (status != CAIRO_STATUS_SUCCESS)
         return error_set(err, "%s: cannot be drawn: %s", canvas->path, cairo_status_to_string(status));
+    if (!replace_check(canvas->path, err)) return false;
 
     char *temporary = mem_format("%s.tmp", canvas->path);
     bool ok = file_write(temporary, &canvas->file) && rename(temporary, canvas->path) == 0;
@@ -385,9 +387,9 @@ bool canvas_read_png(const char *path, unsigned char **rgb, int *width, int *hei
     if (!png_check_header(path, err)) return false;
     cairo_surface_t *png = cairo_image_surface_create_from_png(path);
     cairo_status_t status = cairo_surface_status(png);
-    if (status != CAIRO_STATUS_SUCCESS) {
+    if (status != CAIRO_STATUS_SUCCESS) { /* Cairo's reason may be anything, even a lack of memory */
         cairo_surface_destroy(png);
-        return error_set(err, "%s: the PNG data are broken: %s", path, cairo_status_to_string(status));
+        return error_set(err, "%s: the PNG data are broken", path);
     }
     cairo_surface_t *flat = surface_flatten(png);
     cairo_surface_destroy(png);

@@ -1,5 +1,6 @@
 #include "io/safe_file.h"
 #include "base/memory.h"
+#include "io/replace.h"
 #include <errno.h>
 #include <fcntl.h>
 #include <stdint.h>
@@ -85,6 +86,7 @@ static bool write_beside(const char *path, const void *bytes, size_t size)
 
 bool safe_file_write(const char *path, const void *bytes, size_t size, bool checked, Error *err)
 {
+    if (!replace_check(path, err)) return false;
     char *beside = mem_format("%s.%d.tmp", path, (int)getpid());
     char *whole = mem_alloc(size + TRAILER, 1);
     size_t total = size + (checked ? TRAILER : 0);

@@ -71,9 +71,9 @@ bool load_integer(Load *load, const YamlField *row, const Node *node, int *value
     YamlField plain = *row;
     plain.unit = NULL;
     if (!load_number(load, &plain, node, &number)) return false;
-    if (number != floor(number) || fabs(number) >= INT_MAX) {
+    if (number != floor(number) || fabs(number) > INT_MAX) {
         char what[128];
-        snprintf(what, sizeof what, "must be a whole number below 2147483647, not '%.40s'", node->text);
+        snprintf(what, sizeof what, "must be a whole number up to 2147483647, not '%.40s'", node->text);
         return load_wrong(load, node, what);
     }
     *value = (int)number;

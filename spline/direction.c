@@ -78,10 +78,11 @@ static void weigh_edges(SplineField *edges, double angle)
 SplineField spline_direction_from_tone(const SplineField *tone, const SplinePage *page,
                                        const SplineDirectionDef *def)
 {
-    SplineField fine = spline_field_resize(tone, page, def->detail / 2);
+    double pixel = page->width / tone->columns / 8; /* nothing is to be seen in smaller ones */
+    SplineField fine = spline_field_resize(tone, page, fmax(def->detail / 2, pixel));
     spline_field_blur(&fine, page, def->detail);
     SplineField sharp = edge_field(&fine, page, 2 * def->detail);
-    SplineField edges = spline_field_resize(&sharp, page, def->detail);
+    SplineField edges = spline_field_resize(&sharp, page, fmax(def->detail, pixel));
     spline_field_blur(&edges, page, def->smooth);
     weigh_edges(&edges, def->angle);
 
@@ -102,9 +103,10 @@ enum { GIVEN_SIDE = 200 }; /* pixels along a page of area 1 of what is given by 
 /* u of a vector, its length over 1 cut off. */
 static void double_angle(double x, double y, double *u)
 {
-    double length = hypot(x, y), scale = length > 0 ? fmin(length, 1) / (length * length) : 0;
-    u[0] = scale * (x * x - y * y);
-    u[1] = scale * 2 * x * y;
+    double length = hypot(x, y), sure = fmin(length, 1);
+    double c = length > 0 ? x / length : 0, s = length > 0 ? y / length : 0;
+    u[0] = sure * (c * c - s * s);
+    u[1] = sure * 2 * c * s;
 }
 
 SplineField spline_direction_constant(const SplinePage *page, double angle)

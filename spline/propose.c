@@ -188,9 +188,10 @@ static bool take_tile(const Missing *missing, bool *taken, int tile)
 void spline_propose_strokes(const SplineTarget *target, const RelaxDef *def, const Strokes *strokes,
                             int segments, Strokes *candidates)
 {
-    double rest = spline_segment_length(def->rest > 0 ? def->rest : relax_default().rest, target->spacing),
-           length = segments * rest;
-    Missing missing = missing_create(&target->page, length / 3);
+    double rest = spline_segment_length(def->rest > 0 ? def->rest : relax_default().rest, target->spacing);
+    segments = (int)fmax(fmin(segments, spline_ink_budget(target) / rest), 1);
+    double length = segments * rest;
+    Missing missing = missing_create(&target->page, fmax(length / 3, target->spacing / 2));
     Tone tone = tone_of(target, def, strokes);
     sum_missing(&missing, &tone);
     Tile *tiles = sorted_tiles(&missing);

@@ -204,7 +204,6 @@ RelaxInfo spline_relax(const SplineTarget *target, const RelaxDef *def, Strokes 
                     .started = clock_seconds(),
                     .weights = spline_weights_scaled(def->weights, target->page.pen, target->spacing)};
     r.info.status = RELAX_CONVERGED;
-    if (strokes->count == 0) return r.info;
     if (def->weights.wall != 0 || def->weights.boundary != 0) bring_strokes_inside(&target->page, strokes);
     r.workers = def->threads > 1 ? workers_create(def->threads) : NULL;
     SplineModelDef model = def->model;
@@ -212,7 +211,7 @@ RelaxInfo spline_relax(const SplineTarget *target, const RelaxDef *def, Strokes 
     double *rest = spline_rest_lengths(target, def, strokes);
     r.model = spline_model_create(target, strokes, rest, &model);
     relax_create_system(&r, methods[def->method].hessian);
-    methods[def->method].run(&r);
+    if (strokes->count > 0) methods[def->method].run(&r); /* blank paper has an energy all the same */
     take_final_figures(&r);
     system_destroy(r.sys);
     spline_model_destroy(r.model);

@@ -93,7 +93,7 @@ int spline_insert_strokes(const SplineTarget *target, const RelaxDef *def, const
                           int least, Strokes *strokes)
 {
     int before = strokes->count;
-    strokes_append(strokes, candidates);
+    strokes_append(strokes, candidates, before ? strokes->layer[0] : 0);
     return candidates->count ? revise(target, def, before, least, strokes) : 0;
 }
 

@@ -50,7 +50,7 @@ static double *gaussian(double sigma, int radius)
 {
     double *weight = mem_alloc((size_t)radius + 1, sizeof *weight), sum = 0;
     for (int k = 0; k <= radius; k++) {
-        weight[k] = exp(-0.5 * k * k / (sigma * sigma));
+        weight[k] = k ? exp(-0.5 * k * k / (sigma * sigma)) : 1; /* where sigma squared is 0, too */
         sum += k ? 2 * weight[k] : weight[k];
     }
     for (int k = 0; k <= radius; k++) weight[k] /= sum;

@@ -232,7 +232,7 @@ void spline_streamlines(const SplineGrid *tone, const SplineGrid *direction, con
         strokes_clear(&even);
         even = even_strokes(&tracer, &whole, layer, separation);
     }
-    strokes_append(strokes, &even);
+    strokes_append(strokes, &even, layer);
     strokes_clear(&even);
 }
 
@@ -266,7 +266,8 @@ void spline_random_strokes(const SplineGrid *tone, const SplineGrid *direction, 
     Demand demand = tone_demand(tone, page);
     if (!(demand.length > 0)) return;
     double segment = segment_length(def, tone, page);
-    double left = (def->ink > 0 ? def->ink : 1) * demand.length, each = def->segments * segment;
+    double left = (def->ink > 0 ? def->ink : 1) * demand.length;
+    double each = fmax(fmin(def->segments, floor(demand.length / segment)), 1) * segment;
     Tracer tracer = {
         .tone = tone, .direction = direction, .page = page, .blank = demand.blank, .separation = 1};
     tracer.step = fmin(segment / 8, 0.003);

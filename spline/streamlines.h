@@ -28,7 +28,7 @@ SplineStartDef spline_start_default(void);
 void spline_streamlines(const SplineGrid *tone, const SplineGrid *direction, const SplinePage *page,
                         const SplineStartDef *def, int layer, Strokes *strokes);
 
-/* Strokes of so many segments through random places, more where it is dark, until the ink is used up;
- * appended. Only an edge, blank paper or a singularity makes one shorter. */
+/* Strokes of so many segments, or of all the ink, through random places, more where it is dark, until the ink
+ * is used up; appended. Only an edge, blank paper or a singularity makes one shorter. */
 void spline_random_strokes(const SplineGrid *tone, const SplineGrid *direction, const SplinePage *page,
                            const SplineStartDef *def, int layer, Strokes *strokes);

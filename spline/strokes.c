@@ -43,9 +43,12 @@ void strokes_add_from(Strokes *strokes, const Strokes *from, int stroke)
                 from->layer[stroke]);
 }
 
-void strokes_append(Strokes *strokes, const Strokes *more)
+void strokes_append(Strokes *strokes, const Strokes *more, int layer)
 {
-    for (int k = 0; k < more->count; k++) strokes_add_from(strokes, more, k);
+    for (int k = 0; k < more->count; k++) {
+        strokes_add_from(strokes, more, k);
+        strokes->layer[strokes->count - 1] = layer;
+    }
 }
 
 Strokes strokes_copy(const Strokes *strokes)

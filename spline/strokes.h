@@ -30,9 +30,9 @@ double (*strokes_extend(Strokes *strokes, int nodes, int layer))[4];
 /* Appends a stroke of so many nodes (copied). strokes may be zeroed before the first one. */
 void strokes_add(Strokes *strokes, int nodes, const double (*q)[4], int layer);
 
-/* Appends one stroke of others, or all of them. */
+/* Appends one stroke of others; all of others, as strokes of one layer. */
 void strokes_add_from(Strokes *strokes, const Strokes *from, int stroke);
-void strokes_append(Strokes *strokes, const Strokes *more);
+void strokes_append(Strokes *strokes, const Strokes *more, int layer);
 
 /* A copy; and frees what it owns. */
 Strokes strokes_copy(const Strokes *strokes);

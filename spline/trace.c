@@ -4,6 +4,7 @@
 
 static const double closest = 0.75;        /* of the spacing                */
 static const double least_coherence = 0.1; /* of a direction to follow      */
+static const double no_direction = 1e-3;   /* below this coherence: any will do */
 static const double straight = 0.88;       /* cos of the sharpest turn in half a step */
 
 void points_add(Points *points, Vec2 at)
@@ -32,11 +33,17 @@ static Vec2 along(Vec2 from, double length, Vec2 v)
     return (Vec2){from.x + length * v.x, from.y + length * v.y};
 }
 
-/* The direction in the sense of `before`. */
+/* The direction in the sense of `before`; straight on where there is none. */
 static Vec2 heading(const Tracer *tracer, Vec2 at, Vec2 before, double *coherence)
 {
     Vec2 v = spline_direction_at(tracer->direction, tracer->page, at, coherence);
+    if (*coherence < no_direction) return before;
     return v.x * before.x + v.y * before.y < 0 ? (Vec2){-v.x, -v.y} : v;
+}
+
+static bool is_followed(double coherence)
+{
+    return coherence < no_direction || coherence >= least_coherence;
 }
 
 /* Steps by the midpoint rule; what is nearer along the curve than half a circle of that diameter is no
@@ -48,12 +55,12 @@ static void trace_way(Tracer *tracer, Vec2 from, Vec2 v, int steps, int sign, Po
         Vec2 turned = heading(tracer, along(from, tracer->step / 2, v), v, &coherence);
         Vec2 to = along(from, tracer->step, turned);
         double near = closest * trace_spacing(tracer, to);
-        if (!(near > 0) || coherence < least_coherence || v.x * turned.x + v.y * turned.y < straight) return;
+        if (!(near > 0) || !is_followed(coherence) || v.x * turned.x + v.y * turned.y < straight) return;
         int gap = (int)(M_PI / 2 * near / tracer->step) + 2;
         if (tracer->lanes && lanes_near(tracer->lanes, to, near, tracer->curve, sign * k, gap)) return;
         if (tracer->lanes) lanes_add(tracer->lanes, to, tracer->curve, sign * k);
         points_add(curve, to);
-        Vec2 next = heading(tracer, to, turned, NULL);
+        Vec2 next = heading(tracer, to, turned, &coherence);
         tracer->turn += sign * atan2(v.x * next.y - v.y * next.x, v.x * next.x + v.y * next.y);
         if (fabs(tracer->turn) > 2 * M_PI) return;
         v = next;

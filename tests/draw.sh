@@ -23,7 +23,7 @@ expect 0 "$program" picture out/a.vtkhdf -o c.pdf --width 800; exists c.pdf
 expect 4 "$program" picture out/a.vtkhdf -o c.png --frame 0; says "no frames"
 expect 0 "$program" run "$scene" --quiet --no-picture -o d --set spline.rounds=0
 expect 0 "$program" run "$scene" --quiet --no-picture -o d --resume; same out/a.svg d.svg
-expect 3 "$program" run "$scene" --quiet -o d --resume --set spline.pen=1mm; says "spline.pen"
+expect 3 "$program" run "$scene" --quiet -o d --resume --set spline.pen=1mm; says "spline.pen is not the same"; says "spline.rounds"
 expect 0 "$program" run "$scene" --quiet --no-picture -o e --set spline.seed=2; cmp -s out/a.svg e.svg && { echo "another seed, the same drawing"; bad=1; }
 
 # Paper and margin; what cannot be written is refused before the work.
@@ -32,6 +32,17 @@ grep -q 'width="148mm" height="105mm" viewBox="0 0 148 105"' f.svg || { echo "no
 expect 3 "$program" run "$scene" --quiet -o f --force --page a9; says "no size of paper"
 expect 4 "$program" run "$scene" -o g --set output.svg=no/such/g.svg; says "its folder is not there"
 [ ! -e g.run ] || { echo "a drawing that cannot be written has begun"; bad=1; }
+mkfifo pipe.svg; mkdir folder.svg
+expect 4 "$program" run "$scene" -o g --set output.svg=pipe.svg; says "no file, but a device or pipe"
+expect 4 "$program" run "$scene" -o g --set output.svg=folder.svg; says "it is a folder"
+expect 4 "$program" export out/a.vtkhdf -o pipe.svg; says "no file, but a device or pipe"
+[ -p pipe.svg ] || { echo "a pipe was replaced"; bad=1; }
+for name in g.run ./g.vtkhdf same.png; do
+    expect 4 "$program" run "$scene" -o g --set output.svg=$name --set output.png=same.png; says "would be written twice"
+done
+[ ! -e g.run ] || { echo "a drawing that would write over itself has begun"; bad=1; }
+expect 4 "$program" export out/a.run -o c.svg;  says "a run is exported as .vtkhdf"
+expect 0 "$program" info out/a.vtkhdf;          says "out/a.vtkhdf: settled, "
 expect 1 "$program" run "$scene" --no-picture -o h --set spline.iterations=3; says "h.svg"
 expect 0 "$program" run "$scene" --quiet --no-picture -o i --set spline.order=as_made
 for method in newton gradient monte_carlo dynamics; do
@@ -41,7 +52,7 @@ for method in newton gradient monte_carlo dynamics; do
 done
 
 # Pictures that ask for nothing, or are hardly any; and broken ones.
-printf 'P2 1 1 255 40\n' > dot.pgm; printf 'P2 2 2 255 255 255 255 255\n' > white.pgm; printf 'P2 3 1 65535 0 30000 65535\n' > deep.pgm
+printf 'P2 1 1 255 40\n' > dot.pgm; printf 'P2 2 2 255 255 255 255 255\n' > white.pgm; printf 'P2 1 1 255 250\n' > light.pgm; printf 'P2 3 1 65535 0 30000 65535\n' > deep.pgm
 printf 'P5 100000 100000 255\n' > huge.pgm; printf 'P5 8 8 255\nshort' > cut.pgm; printf '\211PNG\r\n\032\n broken' > broken.png
 cat > picture.yaml <<'S'
 slender: 1
@@ -51,7 +62,28 @@ S
 expect 0 "$program" run picture.yaml -o dot;    says "dot.png"
 expect 0 "$program" run picture.yaml -o deep --set spline.image="$work/deep.pgm"
 expect 0 "$program" run picture.yaml -o white --set spline.image="$work/white.pgm"; says "0 strokes"
+expect 0 "$program" run picture.yaml --no-picture -o light --set spline.image="$work/light.pgm"; says "a finer pen helps"
 exists white.svg; exists white.png; grep -q "<path" white.svg && { echo "strokes on white paper"; bad=1; }
+
+# Neither the picture nor the scene is written over: picture.yaml draws picture.png.
+awk 'BEGIN { print "P2 64 4 255"; for (i = 0; i < 256; i++) print 4 * (i % 64) }' > picture.png
+expect 4 "$program" run picture.yaml --set spline.image="$work/picture.png"; says "the scene is made of it"
+expect 4 "$program" run picture.yaml --no-picture -o y --set output.gcode=./picture.yaml; says "the scene is made of it"
+expect 0 "$program" run picture.yaml --quiet --no-picture --set spline.image="$work/picture.png"
+
+# Where ink is asked for there are strokes: a narrow strip, no direction anywhere, too few or too long strokes at the start.
+grep -q "<path" picture.svg || { echo "a strip without strokes"; bad=1; }
+cat > field.yaml <<'S'
+slender: 1
+job: draw
+spline: {density: {formula: 0.2 + 0.2*u}, page: {size: [40 mm, 30 mm], margin: 3 mm}, pen: 0.8 mm}
+S
+for set in 'direction={formula: ["0", "0"]}' 'direction={formula: ["1e300", "1e300"]}' 'direction={formula: ["1e-300", "0"]}' \
+    'direction={image: structure_tensor, detail: 1.0e-300 m}' 'direction={image: structure_tensor, smooth: 1.0e-300 m}' \
+    'start={kind: random, ink: 1e-9}' 'start={kind: random, segments: 1000}' 'seed=2147483647'; do
+    expect 0 "$program" run field.yaml --quiet --no-picture -o field --force --set "spline.$set"
+    grep -q "<path" field.svg || { echo "$set: no strokes"; bad=1; }
+done
 for name in huge.pgm cut.pgm broken.png; do
     expect 3 "$program" run picture.yaml -o x --set spline.image="$work/$name"; says "$name"
     [ "$(grep -c . err.txt)" -le 3 ] || { echo "$name: more than a sentence"; cat err.txt; bad=1; }
@@ -61,5 +93,10 @@ done
 printf 'P3 2 2 255  0 255 255  255 0 255  255 255 0  40 40 40\n' > inks.ppm
 expect 0 "$program" run picture.yaml -o inks --set spline.image="$work/inks.ppm" --set spline.separation=cmyk
 for layer in 1-cyan 2-magenta 3-yellow 4-black; do grep -q "label=\"$layer\"" inks.svg || { echo "no layer $layer"; bad=1; }; done
+printf 'P2 1 1 255 90\n' > grey.pgm # black alone: what a round puts in is black on the way, too
+expect 0 "$program" run picture.yaml --quiet --no-picture -o way --set spline.image="$work/grey.pgm" --set spline.separation=cmyk \
+    --set output.every=1 --set "spline.start={kind: random, ink: 0.1}"
+grep -q 4-black way.svg || { echo "no black"; bad=1; }
+grep -l 1-cyan way-*.svg && { echo "strokes of another pen on the way"; bad=1; }
 expect 0 "$program" info inks.vtkhdf;           says "metrics/tone_rmse  *float64  4"
 exit $bad
