@@ -32,6 +32,13 @@ bool verb_load_scene(const char *path, char *const *set, int set_count, YamlFile
     return false;
 }
 
+bool verb_stored_scene(const char *text, YamlFile **file, Scene *scene)
+{
+    *scene = (Scene){0};
+    *file = yaml_parse("scene", text, strlen(text));
+    return yaml_load(*file, &scene_table, scene);
+}
+
 Model *verb_build_model(const Scene *scene, YamlFile *file)
 {
     Model *model = model_create(scene, file);

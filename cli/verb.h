@@ -25,6 +25,10 @@ int verb_fail(int code, const char *sentence);
  * the scene and destroy the file in any case. */
 bool verb_load_scene(const char *path, char *const *set, int set_count, YamlFile **file, Scene *scene);
 
+/* The effective scene that a journal or result keeps as a text. False where it cannot be read; clear and destroy
+ * in any case. */
+bool verb_stored_scene(const char *text, YamlFile **file, Scene *scene);
+
 /* The model of a scene; NULL after printing what is wrong. Warnings about the mesh are printed. */
 Model *verb_build_model(const Scene *scene, YamlFile *file);
 

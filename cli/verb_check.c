@@ -206,7 +206,7 @@ static void report_rod(const Model *model)
 static void report_drawing(const Drawing *d)
 {
     const SplinePage *page = &d->page;
-    printf("%d pens; %.4g x %.4g mm within margins of %.4g mm\n", d->pen_count,
+    printf("%d pen%s; %.4g x %.4g mm within margins of %.4g mm\n", d->pen_count, d->pen_count == 1 ? "" : "s",
            1e3 * page->unit * page->width, 1e3 * page->unit * page->height, 1e3 * page->left);
     for (int k = 0; k < d->part_count; k++) {
         const DrawingPart *part = &d->parts[k];

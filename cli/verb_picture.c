@@ -1,7 +1,9 @@
 /* slender picture: a result as PNG, SVG or PDF, or in motion as animated WebP. */
 #include "base/memory.h"
+#include "cli/outputs.h"
 #include "cli/show.h"
 #include "cli/verb.h"
+#include "io/result.h"
 #include <getopt.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -29,6 +31,29 @@ static bool parse_target(const char *word, PictureTarget *target)
     for (int k = 0; k < 3; k++)
         if (!strcmp(word, names[k])) return *target = (PictureTarget)k, true;
     return false;
+}
+
+/* NAME.png, but never a picture that the scene was made of; of an animation .webp. The caller frees. */
+static char *default_name(const char *path, bool animation)
+{
+    char *base = verb_without_ending(path, ".vtkhdf"),
+         *name = mem_format(animation ? "%s.webp" : "%s.png", base);
+    Result *result = animation ? NULL : result_open(path, NULL);
+    Array text;
+    if (result && result_read(result, "slender/scene", &text, NULL)) {
+        Scene scene;
+        YamlFile *file;
+        if (verb_stored_scene(text.data, &file, &scene)) {
+            mem_free(name);
+            name = outputs_picture(&scene, path);
+        }
+        yaml_clear(&scene_table, &scene);
+        yaml_destroy(file);
+        array_clear(&text);
+    }
+    result_close(result);
+    mem_free(base);
+    return name;
 }
 
 int verb_picture(int argc, char **argv)
@@ -91,8 +116,7 @@ int verb_picture(int argc, char **argv)
     }
     if (!ok || optind != argc - 1) return verb_usage(usage);
     Error err;
-    char *name = verb_without_ending(argv[optind], ".vtkhdf"),
-         *picture = output ? mem_text(output) : mem_format(animation ? "%s.webp" : "%s.png", name);
+    char *picture = output ? mem_text(output) : default_name(argv[optind], animation);
     const char *ending = strrchr(picture, '.');
     if (animation || (ending && !strcmp(ending, ".webp"))) {
         def.seconds = seconds;
@@ -100,7 +124,6 @@ int verb_picture(int argc, char **argv)
     }
     int code =
         show_result(argv[optind], picture, &def, &err) ? RUN_DONE : verb_fail(RUN_CANNOT_WRITE, err.text);
-    mem_free(name);
     mem_free(picture);
     return code;
 }

@@ -220,9 +220,10 @@ static ResultDef result_def(Journal *journal)
     ResultDef def = {0};
     Array text;
     Scene scene;
+    YamlFile *file;
     if (!journal_get(journal, "meta", 0, "scene", &text, NULL)) return def;
-    YamlFile *file = yaml_parse("scene", text.data, strlen(text.data));
-    if (yaml_load(file, &scene_table, &scene)) def.double_frames = scene.output.precision == OUTPUT_DOUBLE;
+    if (verb_stored_scene(text.data, &file, &scene))
+        def.double_frames = scene.output.precision == OUTPUT_DOUBLE;
     yaml_clear(&scene_table, &scene);
     yaml_destroy(file);
     array_clear(&text);

@@ -8,7 +8,6 @@
 #include "io/result.h"
 #include <getopt.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -63,6 +62,7 @@ static bool parse(int argc, char **argv, RunOptions *options)
                                           {"no-picture", no_argument, NULL, NO_PICTURE},
                                           {"help", no_argument, NULL, HELP},
                                           {0}};
+    char end;
     options->threads = (int)sysconf(_SC_NPROCESSORS_ONLN);
     for (int c; (c = getopt_long(argc, argv, "o:", table, NULL)) >= 0;) {
         if (c == 'o')
@@ -77,8 +77,8 @@ static bool parse(int argc, char **argv, RunOptions *options)
             options->resume = true;
         else if (c == FORCE)
             options->force = true;
-        else if (c == THREADS)
-            options->threads = atoi(optarg);
+        else if (c == THREADS && sscanf(optarg, "%d%c", &options->threads, &end) == 1)
+            continue;
         else if (c == QUIET)
             options->mode = PROGRESS_QUIET;
         else if (c == LOG && !strcmp(optarg, "json"))

@@ -111,6 +111,7 @@ static int surplus(const SplineTarget *target, const RelaxDef *def, const Stroke
 bool spline_refine_once(const SplineTarget *target, const RelaxDef *def, int segments, Strokes *strokes,
                         RelaxInfo *best, const RelaxObserver *observer)
 {
+    if (best->status == RELAX_NOT_FINITE) return false; /* nothing can be judged */
     Strokes trial = strokes_copy(strokes), candidates = {0};
     int changed = spline_remove_strokes(target, def, surplus(target, def, strokes), &trial);
     spline_propose_strokes(target, def, &trial, segments, &candidates);

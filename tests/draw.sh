@@ -67,9 +67,13 @@ exists white.svg; exists white.png; grep -q "<path" white.svg && { echo "strokes
 
 # Neither the picture nor the scene is written over: picture.yaml draws picture.png.
 awk 'BEGIN { print "P2 64 4 255"; for (i = 0; i < 256; i++) print 4 * (i % 64) }' > picture.png
-expect 4 "$program" run picture.yaml --set spline.image="$work/picture.png"; says "the scene is made of it"
+cp picture.png before.png
+expect 4 "$program" run picture.yaml --set spline.image="$work/picture.png" --set output.png=picture.png; says "the scene is made of it"
+expect 4 "$program" run picture.yaml --set output.png=picture.gif; says "must be a .png, .svg or .pdf"
+expect 0 "$program" run picture.yaml --set spline.image="$work/picture.png"; says "picture: picture-picture.png"
+expect 0 "$program" picture picture.vtkhdf; same picture.png before.png; exists picture-picture.png
 expect 4 "$program" run picture.yaml --no-picture -o y --set output.gcode=./picture.yaml; says "the scene is made of it"
-expect 0 "$program" run picture.yaml --quiet --no-picture --set spline.image="$work/picture.png"
+expect 2 "$program" run picture.yaml --threads 2x
 
 # Where ink is asked for there are strokes: a narrow strip, no direction anywhere, too few or too long strokes at the start.
 grep -q "<path" picture.svg || { echo "a strip without strokes"; bad=1; }
