@@ -33,11 +33,13 @@ static bool read_page(const SplineScene *scene, YamlFile *file, SplinePage *page
 /* The parts of a pen: sets that cross share its tone. */
 static void add_parts(Drawing *d, const SplineScene *scene, int pen)
 {
-    static const double whole[] = {0};
     const CrossScene *cross = scene->cross;
     int sets = cross ? cross->from_count : 1;
     SplineField *share = mem_alloc((size_t)sets, sizeof *share);
-    spline_tone_cross(&d->tones[pen], sets, cross ? cross->from : whole, share);
+    if (cross)
+        spline_tone_cross(&d->tones[pen], sets, cross->from, share);
+    else
+        share[0] = spline_field_copy(&d->tones[pen]);
     d->parts = mem_resize(d->parts, (size_t)d->part_count, (size_t)(d->part_count + sets), sizeof *d->parts);
     for (int k = 0; k < sets; k++) {
         DrawingPart *part = &d->parts[d->part_count++];

@@ -142,6 +142,7 @@ static bool direction_from_tone(const Reader *r, Drawing *d)
     if (!isnan(from->detail)) def.detail = from->detail / d->page.unit;
     if (!isnan(from->smooth)) def.smooth = from->smooth / d->page.unit;
     if (!isnan(from->spread)) def.spread = from->spread / d->page.unit;
+    open.pixel = fmax(r->pixel, def.detail / 2); /* no more is looked at */
     if (!read_tone(&open, &d->page, &tone)) return false;
     d->direction = spline_direction_from_tone(&tone, &d->page, &def);
     spline_field_clear(&tone);

@@ -50,14 +50,16 @@ static double curve_at(const SplineToneDef *def, double grey)
     return (1 - s) * point[k - 1][1] + s * point[k][1];
 }
 
+static double brightness_of(const SplineToneDef *def, double grey)
+{
+    if (def->curve_points > 0) return curve_at(def, grey);
+    double level = fmin(fmax((grey - def->black) / (def->white - def->black), 0), 1);
+    return def->gamma == 1 ? level : pow(level, 1 / def->gamma);
+}
+
 static double density_of(const SplineToneDef *def, double grey)
 {
-    if (def->invert) grey = 1 - grey;
-    double brightness =
-        def->curve_points > 0
-            ? curve_at(def, grey)
-            : pow(fmin(fmax((grey - def->black) / (def->white - def->black), 0), 1), 1 / def->gamma);
-    return def->density * (1 - brightness);
+    return def->density * (1 - brightness_of(def, def->invert ? 1 - grey : grey));
 }
 
 /* Where the picture lies: u = u0 + x*du, v = v0 + y*dv, fractions of its sides. */
