@@ -17,9 +17,9 @@
 
 /* How far a part has come; kept as the numbers it is. */
 typedef struct Part {
-    double rounds;    /* done after the first relaxation; -1: not even that */
-    double better;    /* did the last one lower the energy?                 */
-    double iteration; /* of the whole job, when it was done                 */
+    double rounds;           /* done after the first relaxation; -1: not even that */
+    double better;           /* did the last one lower the energy?                 */
+    double iteration, clock; /* of the whole job, when it was done; s              */
     double status, iterations, evaluations, factorizations, seconds, energy, gradient_max, kinetic,
         temperature, acceptance, energies[SPLINE_WEIGHT_COUNT]; /* RelaxInfo */
 } Part;
@@ -114,6 +114,7 @@ static bool get_part(DrawJob *job)
     }
     array_clear(&nodes);
     job->iteration = (int)job->parts[job->part].iteration;
+    job->started = clock_seconds() - job->parts[job->part].clock;
     return true;
 }
 
@@ -180,6 +181,7 @@ static bool keep(DrawJob *job, const RelaxInfo *info, bool better)
     part->rounds++;
     part->better = better;
     part->iteration = job->iteration;
+    part->clock = clock_seconds() - job->started;
     job->failed =
         !put_part(job) || !draw_put_strokes(job->run, job->d, job->strokes, job->part + 1, job->err);
     return !job->failed;
