@@ -6,7 +6,7 @@
 
 OrderDef order_default(void)
 {
-    return (OrderDef){.join_gap = 1.5, .join_angle = acos(-1) / 6, .work = 3000000000};
+    return (OrderDef){.join_gap = 1.75, .join_angle = acos(-1) / 4, .work = 3000000000};
 }
 
 /* One stroke, or several joined end to end; a ring where the last is joined to the first. */

@@ -13,7 +13,7 @@ typedef struct OrderDef {
     long work;         /* bound of the search, about 1e9 per second */
 } OrderDef;
 
-/* 1.5 pen widths, 30 degrees, 3e9. */
+/* 1.75 pen widths, 45 degrees, 3e9. */
 OrderDef order_default(void);
 
 typedef struct OrderInfo {

@@ -242,11 +242,11 @@ static int count_joints(double gap, double turn, int layer)
 static void joints(void **state)
 {
     (void)state;
-    assert_int_equal(count_joints(0.0149, 0, 0), 1);
-    assert_int_equal(count_joints(0.0151, 0, 0), 0);
-    assert_int_equal(count_joints(0.005, 29.5 * PI / 180, 0), 1);
-    assert_int_equal(count_joints(0.005, -29.5 * PI / 180, 0), 1);
-    assert_int_equal(count_joints(0.005, 30.5 * PI / 180, 0), 0);
+    assert_int_equal(count_joints(0.0174, 0, 0), 1);
+    assert_int_equal(count_joints(0.0176, 0, 0), 0);
+    assert_int_equal(count_joints(0.005, 44.5 * PI / 180, 0), 1);
+    assert_int_equal(count_joints(0.005, -44.5 * PI / 180, 0), 1);
+    assert_int_equal(count_joints(0.005, 45.5 * PI / 180, 0), 0);
     assert_int_equal(count_joints(0.005, PI, 0), 0);
     assert_int_equal(count_joints(0, 0, 0), 1);
     assert_int_equal(count_joints(0.005, 0, 1), 0); /* of another pen */
