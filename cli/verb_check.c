@@ -227,6 +227,8 @@ static bool report(const Model *model, const Scene *scene, bool derivatives)
     else
         report_shell(model, scene);
     if (scene->design) printf("%d design unknowns\n", model->design.size);
+    if (!model->case_count && derivatives)
+        printf("derivatives: there is no load case whose terms could be checked\n");
     if (!model->case_count) return true;
     measure(model, scene);
     return !derivatives || check_derivatives(model);
