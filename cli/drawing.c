@@ -196,12 +196,13 @@ static SplineField brightness(const SplineField *tone)
     return light;
 }
 
-SplineTarget *drawing_target(const Drawing *d, int part)
+SplineTarget *drawing_target(const Drawing *d, int part, Workers *workers)
 {
     const DrawingPart *from = &d->parts[part];
     SplineField direction = direction_of(d, part), light = brightness(&from->tone);
     SplineFields fields = {.density = spline_grid(&from->tone), .align = spline_grid(&direction)};
     ProbesDef probes = probes_default();
+    probes.workers = workers;
     if (d->relax.weights.potential > 0)
         fields.potential = spline_grid(d->potential.columns ? &d->potential : &light);
     if (d->flow.columns) fields.flow = spline_grid(&d->flow);

@@ -39,6 +39,6 @@ double drawing_segments(const DrawingPart *part);
 Drawing *drawing_create(const SplineScene *scene, YamlFile *file);
 void drawing_destroy(Drawing *drawing);
 
-/* The strokes that a part starts from, and what they relax to. */
+/* The strokes that a part starts from, and what they relax to. workers: borrowed; NULL: one thread. */
 Strokes drawing_start(const Drawing *drawing, int part);
-SplineTarget *drawing_target(const Drawing *drawing, int part);
+SplineTarget *drawing_target(const Drawing *drawing, int part, Workers *workers);

@@ -215,7 +215,9 @@ static bool run_part(DrawJob *job, int part)
     const DrawingPart *from = &job->d->parts[part];
     SplineGrid tone = spline_grid(&from->tone);
     job->part = part;
-    job->target = drawing_target(job->d, part);
+    Workers *workers = job->run->threads > 1 ? workers_create(job->run->threads) : NULL;
+    job->target = drawing_target(job->d, part, workers);
+    workers_destroy(workers);
     if (job->run->progress->mode != PROGRESS_QUIET) job->judge = spline_judge_create(&from->page, &tone);
     job->judged = 0;
     bool going = relax_part(job);

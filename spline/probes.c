@@ -62,28 +62,44 @@ static long cell_index(const ProbeLevel *level, int i, int j)
     return level->first + (long)j * level->stride + i;
 }
 
-/* Mean and maximum of the density over the finest cells, from as many samples in each as it has pixels. */
+/* Samples of the density in the finest cells: nx x ny in each. */
+typedef struct Samples {
+    Build *build;
+    const GridSpline *spline;
+    const ProbeLevel *level;
+    int nx, ny;
+} Samples;
+
+/* Mean and maximum of a row of cells. */
+static void sample_row(void *self, int row)
+{
+    const Samples *s = self;
+    const ProbeLevel *level = s->level;
+    long count = (long)level->columns * s->nx;
+    for (int j = row * s->ny; j < (row + 1) * s->ny; j++) {
+        Pack y = pack_set((j + 0.5) * level->dy / s->ny), x = y;
+        for (long k = 0; k < count; k += PACK_LANES) {
+            GridSample sample;
+            for (int l = 0; l < PACK_LANES; l++) x[l] = ((double)(k + l) + 0.5) * level->dx / s->nx;
+            grid_spline_sample(s->spline, x, y, 0, &sample);
+            for (int l = 0; l < PACK_LANES && k + l < count; l++) {
+                long cell = cell_index(level, (int)((k + l) / s->nx), row);
+                double density = bound(sample.value[0][l]);
+                s->build->mean[cell] += density / (s->nx * s->ny);
+                s->build->most[cell] = fmax(s->build->most[cell], density);
+            }
+        }
+    }
+}
+
+/* As many samples in each of the finest cells as it has pixels. */
 static void sample_finest(Build *b, const SplineGrid *grid)
 {
     GridSpline *spline = grid_spline_create(grid, b->page);
     const ProbeLevel *level = &b->probes->levels[b->probes->level_count - 1];
-    int nx = (grid->columns + level->columns - 1) / level->columns,
-        ny = (grid->rows + level->rows - 1) / level->rows;
-    long count = (long)level->columns * nx;
-    for (int j = 0; j < level->rows * ny; j++) {
-        Pack y = pack_set((j + 0.5) * level->dy / ny), x = y;
-        for (long k = 0; k < count; k += PACK_LANES) {
-            GridSample sample;
-            for (int l = 0; l < PACK_LANES; l++) x[l] = ((double)(k + l) + 0.5) * level->dx / nx;
-            grid_spline_sample(spline, x, y, 0, &sample);
-            for (int l = 0; l < PACK_LANES && k + l < count; l++) {
-                long cell = cell_index(level, (int)((k + l) / nx), j / ny);
-                double density = bound(sample.value[0][l]);
-                b->mean[cell] += density / (nx * ny);
-                b->most[cell] = fmax(b->most[cell], density);
-            }
-        }
-    }
+    Samples samples = {b, spline, level, (grid->columns + level->columns - 1) / level->columns,
+                       (grid->rows + level->rows - 1) / level->rows};
+    workers_run(b->def->workers, level->rows, sample_row, &samples);
     grid_spline_destroy(spline);
 }
 
@@ -135,16 +151,27 @@ static double blurred(const Build *b, const ProbeLevel *level, int i, int j)
     return sum / total;
 }
 
-static void set_targets(Build *b, const ProbeLevel *level)
+typedef struct LevelBuild {
+    const Build *build;
+    const ProbeLevel *level;
+} LevelBuild;
+
+static void set_target_row(void *self, int row)
 {
-    Probes *probes = b->probes;
-    for (int j = 0; j < level->rows; j++)
-        for (int i = 0; i < level->columns; i++) {
-            long cell = cell_index(level, i, j);
-            if (probes->inverse[cell] == 0) continue;
-            probes->target[cell] = blurred(b, level, i, j);
-            probes->gain[cell] = level->dx * level->dy / fmax(probes->target[cell], b->def->faint);
-        }
+    const LevelBuild *b = self;
+    const ProbeLevel *level = b->level;
+    Probes *probes = b->build->probes;
+    for (int i = 0; i < level->columns; i++) {
+        long cell = cell_index(level, i, row);
+        if (probes->inverse[cell] == 0) continue;
+        probes->target[cell] = blurred(b->build, level, i, row);
+        probes->gain[cell] = level->dx * level->dy / fmax(probes->target[cell], b->build->def->faint);
+    }
+}
+
+static void set_targets(const Build *b, const ProbeLevel *level)
+{
+    workers_run(b->def->workers, level->rows, set_target_row, &(LevelBuild){b, level});
 }
 
 static int tile_of(double x, double size, int count)

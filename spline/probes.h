@@ -9,6 +9,7 @@
  * Each level of the tree is kept as a whole grid of cells, most of them no probes (inverse 0): a window of it
  * is a few short rows in memory, and the sums over it need neither lists nor gathers. */
 #pragma once
+#include "base/workers.h"
 #include "spline/grid_spline.h"
 #include <stdint.h>
 
@@ -18,6 +19,7 @@ typedef struct ProbesDef {
     double radius_max; /* in units of the page; default 0.15 */
     double cell;  /* largest leaf in R_c; default 0.4                                                      */
     double faint; /* errors count by 1/max(D_c, faint), so that light lines are as stiff as dark ones; 0.03 */
+    Workers *workers; /* borrowed; NULL: one thread */
 } ProbesDef;
 
 ProbesDef probes_default(void);

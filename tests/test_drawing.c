@@ -178,7 +178,7 @@ static void starts(void **state)
         Drawing *d = drawing_of(entry);
         for (int part = 0; part < 2; part++) {
             Strokes strokes = drawing_start(d, part);
-            SplineTarget *target = drawing_target(d, part);
+            SplineTarget *target = drawing_target(d, part, NULL);
             assert_true(strokes.count > 3);
             expect_close(strokes_length(&strokes) / spline_ink_budget(target), 1, 0.25);
             for (int i = 0; i < strokes_node_count(&strokes); i++) {
