@@ -1,8 +1,8 @@
 #include "spline/terms.h"
 #include <math.h>
 
-#define X(name, pen, spacing) {#name, spline_##name##_term, 0, pen, spacing},
-#define Y(name, pen, spacing) {#name, 0, spline_##name##_bulk, pen, spacing},
+#define X(name, scale, pen, spacing) {#name, spline_##name##_term, 0, scale, pen, spacing},
+#define Y(name, scale, pen, spacing) {#name, 0, spline_##name##_bulk, scale, pen, spacing},
 const SplineTermRow spline_term_rows[] = {SPLINE_TERMS(X) SPLINE_BULKS(Y)};
 #undef X
 #undef Y
@@ -12,13 +12,15 @@ _Static_assert(sizeof spline_term_rows / sizeof *spline_term_rows == SPLINE_WEIG
 
 SplineWeights spline_weights_default(void)
 {
-    return (SplineWeights){.tone = 1, .strain = 0.05, .bend = 0.05, .align = 0.1, .wall = 0.02};
+    return (SplineWeights){.tone = 1, .strain = 0.5, .bend = 0.1, .align = 0.5, .wall = 0.1};
 }
 
 SplineWeights spline_weights_scaled(SplineWeights weights, double pen, double spacing)
 {
     double *values = (double *)&weights;
-    for (int k = 0; k < SPLINE_WEIGHT_COUNT; k++)
-        values[k] *= pow(pen, spline_term_rows[k].pen) * pow(spacing, spline_term_rows[k].spacing);
+    for (int k = 0; k < SPLINE_WEIGHT_COUNT; k++) {
+        const SplineTermRow *row = &spline_term_rows[k];
+        values[k] *= row->scale * pow(pen, row->pen) * pow(spacing, row->spacing);
+    }
     return weights;
 }

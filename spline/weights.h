@@ -17,8 +17,9 @@ typedef struct SplineWeights {
 
 enum { SPLINE_WEIGHT_COUNT = sizeof(SplineWeights) / sizeof(double) };
 
-/* tone 1, strain 0.05, bend 0.05, align 0.1, wall 0.02. */
+/* tone 1, strain 0.5, bend 0.1, align 0.5, wall 0.1. */
 SplineWeights spline_weights_default(void);
 
-/* Times the powers of the pen's width and of the mean distance of lines that make factors of them. */
+/* Times what makes factors of them: powers of the pen's width and of the mean distance of lines, and numbers
+ * (terms.h) with which the defaults give the best drawings. */
 SplineWeights spline_weights_scaled(SplineWeights weights, double pen, double spacing);
