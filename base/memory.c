@@ -59,6 +59,13 @@ char *mem_format(const char *format, ...)
     return text;
 }
 
+char *mem_join(char *text, const char *second, const char *third)
+{
+    char *longer = mem_format("%s%s%s", text, second, third);
+    mem_free(text);
+    return longer;
+}
+
 void mem_free(void *block)
 {
     if (!block) return;

@@ -20,6 +20,9 @@ char *mem_text(const char *text);
 /* Formats into a new text. */
 char *mem_format(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
+/* One text of three; takes the first one over. */
+char *mem_join(char *text, const char *second, const char *third);
+
 /* Frees the block; NULL is fine. */
 void mem_free(void *block);
 

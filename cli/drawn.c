@@ -12,9 +12,7 @@ static void add_pens(const Drawing *d, Arrays *list)
     char *names = mem_text("");
     for (int k = 0; k < d->pen_count; k++) {
         const SplinePen *pen = &d->pens[k];
-        char *longer = mem_format("%s%s\n", names, pen->name);
-        mem_free(names);
-        names = longer;
+        names = mem_join(names, pen->name, "\n");
         width[k] = pen->width * d->page.unit;
         memcpy(color + 3 * k, (double[]){pen->color.r, pen->color.g, pen->color.b}, 3 * sizeof *color);
     }

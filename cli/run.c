@@ -108,11 +108,7 @@ static bool put_case(Run *run, const State *state, Error *err)
 static char *case_names(const State *states, int count)
 {
     char *names = mem_text("");
-    for (int k = 0; k < count; k++) {
-        char *longer = mem_format("%s%s\n", names, states[k].load_case->name);
-        mem_free(names);
-        names = longer;
-    }
+    for (int k = 0; k < count; k++) names = mem_join(names, states[k].load_case->name, "\n");
     return names;
 }
 

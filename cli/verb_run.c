@@ -109,11 +109,7 @@ static const char *const free_keys_draw[] = {"output", "spline.rounds", "spline.
 static char *list_of(const char *const *keys)
 {
     char *list = mem_text(keys[0]);
-    for (int k = 1; keys[k]; k++) {
-        char *longer = mem_format("%s%s%s", list, keys[k + 1] ? ", " : " and ", keys[k]);
-        mem_free(list);
-        list = longer;
-    }
+    for (int k = 1; keys[k]; k++) list = mem_join(list, keys[k + 1] ? ", " : " and ", keys[k]);
     return list;
 }
 

@@ -1,6 +1,7 @@
 #include "spline/local_pair.h"
 #include "base/memory.h"
 #include "spline/pair.h"
+#include "spline/point_cells.h"
 #include <math.h>
 
 LocalPair local_pair_create(const SplineModel *model, double C)
@@ -28,18 +29,12 @@ void local_pair_clear(LocalPair *pair)
     mem_free(pair->x);
 }
 
-static int place_of(double x, double size, int count)
-{
-    double k = fmin(fmax(x / size, 0), count - 1);
-    return (int)k;
-}
-
 void local_pair_insert(LocalPair *pair, int first, const SplinePoints *points)
 {
     double size = pair->model->pair_radius;
     for (int k = 0; k < points->count; k++) {
-        int p = first + k, column = place_of(points->x[k], size, pair->columns);
-        int cell = place_of(points->y[k], size, pair->rows) * pair->columns + column;
+        int p = first + k, column = point_cell(points->x[k], size, pair->columns);
+        int cell = point_cell(points->y[k], size, pair->rows) * pair->columns + column;
         pair->x[p] = points->x[k];
         pair->y[p] = points->y[k];
         pair->amount[p] = points->rule->weight[k % points->rule->count] * points->n[k];
@@ -71,7 +66,7 @@ static double kernel(const LocalPair *pair, double dx, double dy)
 static double sum_others(const LocalPair *pair, double x, double y)
 {
     double size = pair->model->pair_radius, sum = 0;
-    int i = place_of(x, size, pair->columns), j = place_of(y, size, pair->rows);
+    int i = point_cell(x, size, pair->columns), j = point_cell(y, size, pair->rows);
     for (int row = j - 1; row <= j + 1; row++)
         for (int column = i - 1; column <= i + 1; column++) {
             if (row < 0 || column < 0 || row >= pair->rows || column >= pair->columns) continue;

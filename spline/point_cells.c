@@ -24,15 +24,10 @@ void point_cells_clear(PointCells *cells)
     mem_free(cells->x);
 }
 
-static int place_of(double x, double size, int count)
-{
-    double k = fmin(fmax(x / size, 0), count - 1);
-    return (int)k;
-}
-
 static int cell_of(const PointCells *cells, double x, double y)
 {
-    return place_of(y, cells->size, cells->rows) * cells->columns + place_of(x, cells->size, cells->columns);
+    return point_cell(y, cells->size, cells->rows) * cells->columns +
+           point_cell(x, cells->size, cells->columns);
 }
 
 void point_cells_update(PointCells *cells, const SplinePoints *points)
@@ -58,7 +53,7 @@ void point_cells_update(PointCells *cells, const SplinePoints *points)
 
 PointRun point_cells_near(const PointCells *cells, double x, double y, int row)
 {
-    int j = place_of(y, cells->size, cells->rows) + row, i = place_of(x, cells->size, cells->columns);
+    int j = point_cell(y, cells->size, cells->rows) + row, i = point_cell(x, cells->size, cells->columns);
     if (j < 0 || j >= cells->rows) return (PointRun){0, 0};
     int left = i > 0 ? i - 1 : 0, right = i + 1 < cells->columns ? i + 1 : i;
     return (PointRun){cells->start[j * cells->columns + left], cells->start[j * cells->columns + right + 1]};

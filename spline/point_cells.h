@@ -2,6 +2,13 @@
  * memory. */
 #pragma once
 #include "spline/points.h"
+#include <math.h>
+
+/* The column or row of cells that x is in; beyond the page the outermost one. */
+static inline int point_cell(double x, double size, int count)
+{
+    return (int)fmin(fmax(x / size, 0), count - 1);
+}
 
 typedef struct PointCells {
     double size; /* of a cell: points nearer than that are in cells that touch */
