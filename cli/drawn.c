@@ -1,5 +1,6 @@
 #include "cli/drawn.h"
 #include "base/memory.h"
+#include "cli/drawing_pens.h"
 #include <stdio.h>
 #include <string.h>
 
@@ -114,10 +115,12 @@ static bool read_pens(Result *result, Drawn *drawn, Error *err)
     array_clear(&width);
     if (!ok || !read_array(result, "names", ARRAY_TEXT, -1, &names, err)) return false;
     char *rest = NULL, *name = strtok_r((char *)names.data, "\n", &rest);
-    for (int k = 0; k < count; k++, name = strtok_r(NULL, "\n", &rest))
+    for (int k = 0; k < count; k++, name = strtok_r(NULL, "\n", &rest)) {
         drawn->pens[k].name = mem_text(name ? name : "");
+        ok = ok && pens_is_name(drawn->pens[k].name);
+    }
     array_clear(&names);
-    return true;
+    return ok || error_set(err, "spline/names is not as slender writes it");
 }
 
 /* Offsets that grow from 0 to the number of nodes, two nodes a stroke at least. */

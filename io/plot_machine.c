@@ -58,10 +58,18 @@ typedef struct Writer {
     const char *name;
 } Writer;
 
-/* One line, for a comment. */
+/* For a comment. Machines obey bytes there, too: grbl takes ! ? ~ and all from 0x80 on out of the stream as
+ * they come, ( ) ; end comments or begin them, * is Marlin's checksum. Letters, digits and a few signs stay;
+ * each other character becomes _, and what would make the line longer than others is cut. */
 static void add_name(Text *text, const char *name)
 {
-    for (const char *c = name; *c; c++) text_add(text, "%c", (unsigned char)*c < 0x20 ? ' ' : *c);
+    int room = 60;
+    for (const char *c = name; *c && room > 0; c++) {
+        if (((unsigned char)*c & 0xc0) == 0x80) continue; /* a further byte of a character in UTF-8 */
+        bool plain = (*c >= 'a' && *c <= 'z') || (*c >= 'A' && *c <= 'Z') || (*c >= '0' && *c <= '9');
+        text_add(text, "%c", plain || strchr(" .,-+_", *c) ? *c : '_');
+        room--;
+    }
 }
 
 /* Writes what a word in braces stands for, if it is one. */

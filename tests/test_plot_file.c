@@ -268,6 +268,37 @@ static void machines(void **state)
     }
 }
 
+/* No byte of a name is one that a machine obeys in comments; the SVG has the name as it is. */
+static void names_for_machines(void **state)
+{
+    (void)state;
+    static const char *const languages[] = {"gcode", "gcode_servo", "hpgl"};
+    char name[512] = "Pen 0.5!?~ \xc4\x8c\xc4\x84 (x);%$*\r\n";
+    memset(name + strlen(name), 'n', 400);
+    PlotLayer layer = layers[0];
+    layer.name = name;
+    Plot one = {.paper = {148, 105}, .layer_count = 1, .layers = &layer};
+    for (int m = 0; m < 3; m++) {
+        Error err = {""};
+        PlotProfile profile;
+        assert_true(plot_profile(languages[m], &profile, &err));
+        if (!plot_write_machine("plot.out", &one, &profile, plot_speed_default(), &err))
+            fail_msg("%s", err.text);
+        char *text = file_text("plot.out");
+        if (m < 2) assert_non_null(strstr(text, "; layer 1-Pen 0.5___ __ _x_______nnn"));
+        int column = 0;
+        for (const char *c = text; *c; c++) {
+            assert_true(*c == '\n' || (*c >= 0x20 && *c < 0x7f && !strchr("!?~()%$*", *c)));
+            column = *c == '\n' ? 0 : column + 1;
+            assert_true(column < 80);
+        }
+        mem_free(text);
+    }
+    char *text = written_svg(&one);
+    assert_non_null(strstr(text, "1-Pen 0.5!?~ \xc4\x8c\xc4\x84 (x);%$*nnn"));
+    mem_free(text);
+}
+
 static void own_profile(void **state)
 {
     (void)state;
@@ -289,7 +320,7 @@ static void own_profile(void **state)
     assert_string_equal(text, "{ {y\n[black]\n"
                               "(1;2){nothing}>1.5,2.5@30^60\n"
                               "(4;3){nothing}>7,3@30>10,4.75@30^60\n"
-                              "wait 3\n[a \"red\" <&\xc3\xa9> ]\n"
+                              "wait 3\n[a _red_ _____]\n"
                               "(0.5;0.5){nothing}>0.5,3.5@30^60\n"
                               "end");
     mem_free(text);
@@ -351,9 +382,9 @@ static int live(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(svg_words),     cmocka_unit_test(svg_is_xml),
-                                       cmocka_unit_test(refused_plots), cmocka_unit_test(machines),
-                                       cmocka_unit_test(own_profile),   cmocka_unit_test(times),
-                                       cmocka_unit_test(papers)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(svg_words),   cmocka_unit_test(svg_is_xml), cmocka_unit_test(refused_plots),
+        cmocka_unit_test(machines),    cmocka_unit_test(names_for_machines),
+        cmocka_unit_test(own_profile), cmocka_unit_test(times),      cmocka_unit_test(papers)};
     return cmocka_run_group_tests(tests, NULL, live);
 }

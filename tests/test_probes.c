@@ -55,7 +55,8 @@ static void test_graded(void **state)
     for (int a = 0; a < probes->count; a++) {
         widest = fmax(widest, discs[a].R);
         for (int b = 0; b < probes->count; b++) {
-            double d = hypot(discs[a].x - discs[b].x, discs[a].y - discs[b].y) + discs[a].half + discs[b].half;
+            double d = hypot(discs[a].x - discs[b].x, discs[a].y - discs[b].y);
+            d += discs[a].half + discs[b].half;
             assert_true(discs[a].R <= discs[b].R + 1.083 * d);
         }
     }
