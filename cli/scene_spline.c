@@ -273,7 +273,8 @@ const YamlTable spline_table = {
     .doc = "A drawing: strokes, cubic splines, that relax until their ink has the tones of a picture.",
     .fields = (const YamlField[]){
         {YAML_FILE(SplineScene, image), .one_of = 1, .required = true,
-         .doc = "the picture: PNG, JPEG, PGM or PPM"},
+         .doc = "the picture: PNG, JPEG, PGM or PPM of at most 400 million pixels, turned upright as its Exif tag "
+                "says"},
         {YAML_OPTIONAL(SplineScene, density, &field_density_table), .one_of = 1, .required = true,
          .doc = "no picture, but the part of the paper that ink covers"},
         {YAML_TABLE(SplineScene, tone, &tone_table), .fallback = "{}", .doc = "of a picture"},
