@@ -87,12 +87,13 @@ static void add_metrics(const Drawing *d, const Strokes *strokes, Run *run, Arra
 /* What the plotter does: way of the lifted pen before and after ordering, time. */
 static void add_plot(const Drawing *d, const Strokes *strokes, const OrderInfo *order, Run *run, Arrays *list)
 {
-    PlotSpeed speed = {1e3 * d->speed[0], 1e3 * d->speed[1], d->lift};
+    Plotter plotter = d->plotter;
     Plot plot = spline_plot(strokes, &d->page, d->pens, d->pen_count);
     double *seconds = arrays_numbers(list, (size_t)d->pen_count), *travel = arrays_numbers(list, 2), sum = 0,
            ink = 0;
+    if (run->scene->output.gcode) plotter.lift = plotter_z_lift(&plotter);
     for (int k = 0; k < d->pen_count; k++) {
-        PlotEstimate estimate = plot_estimate(&plot.layers[k], speed);
+        PlotEstimate estimate = plot_estimate(&plot.layers[k], &plotter);
         seconds[k] = estimate.seconds;
         sum += estimate.seconds;
         ink += estimate.ink;

@@ -122,6 +122,36 @@ static SplineStartDef start_def(const SplineScene *scene, const SplinePage *page
     return def;
 }
 
+/* ---- The plotter ---- */
+
+static bool read_command(const char *from, const char *at, YamlFile *file, char *to)
+{
+    if (plotter_is_command(from)) return strcpy(to, from), true;
+    return yaml_refuse(file, at,
+                       "a plotter's command is a letter and up to %d more letters, digits, spaces and . - + "
+                       "_ =",
+                       PLOTTER_COMMAND_MAX - 1);
+}
+
+static bool read_z_axis(const ZAxisScene *from, YamlFile *file, Plotter *to)
+{
+    to->z_up = 1e3 * from->up, to->z_down = 1e3 * from->down, to->z_speed = 1e3 * from->speed;
+    return from->up != from->down ||
+           yaml_refuse(file, "spline.plotter.z", "the pen is at %g mm when it is up and when it is down",
+                       to->z_up);
+}
+
+static bool read_plotter(const PlotterScene *from, YamlFile *file, Plotter *to)
+{
+    const ServoScene *servo = from->servo;
+    *to = plotter_default();
+    to->down = 1e3 * from->down, to->up = 1e3 * from->up, to->lift = from->lift;
+    if (servo) to->pause = servo->pause == PAUSE_MILLISECONDS ? 1e-3 : 1;
+    return (!from->z || read_z_axis(from->z, file, to)) &&
+           (!servo || (read_command(servo->up, "spline.plotter.servo.up", file, to->servo_up) &&
+                       read_command(servo->down, "spline.plotter.servo.down", file, to->servo_down)));
+}
+
 /* ---- The whole ---- */
 
 static bool fill(Drawing *d, const SplineScene *scene, YamlFile *file)
@@ -136,9 +166,7 @@ static bool fill(Drawing *d, const SplineScene *scene, YamlFile *file)
     d->start_kind = (StrokesStart)scene->start.kind;
     d->rounds = scene->rounds;
     d->order = (DrawOrder)scene->order;
-    d->speed[0] = scene->plotter.down, d->speed[1] = scene->plotter.up;
-    d->lift = scene->plotter.lift;
-    return check_size(d, file);
+    return read_plotter(&scene->plotter, file, &d->plotter) && check_size(d, file);
 }
 
 Drawing *drawing_create(const SplineScene *scene, YamlFile *file)

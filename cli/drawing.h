@@ -29,7 +29,7 @@ typedef struct Drawing {
     SplineStartDef start;
     int rounds;
     DrawOrder order;
-    double speed[2], lift; /* of the plotter: m/s pen down and up, s */
+    Plotter plotter;
 } Drawing;
 
 /* About how many segments its strokes will have. */

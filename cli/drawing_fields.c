@@ -19,6 +19,11 @@ typedef struct Reader {
     Image rgb[3]; /* its colours, where they are separated  */
 } Reader;
 
+static double shown_pixel(const SplinePage *page)
+{
+    return fmax(page->width, page->height) / SHOWN;
+}
+
 static bool refuse(const Reader *r, const char *at, const Error *err)
 {
     return yaml_refuse(r->build.file, at, "%s", err->text);
@@ -60,15 +65,17 @@ static bool read_tone_def(Reader *r)
     return spline_tone_check(&r->tone, &err) || refuse(r, "spline.tone", &err);
 }
 
-static bool read_image(Reader *r)
+/* As large as its tones and what is shown of it can use. */
+static bool read_image(Reader *r, const SplinePage *page)
 {
     Error err;
     const char *path = r->scene->image;
     bool coloured = r->scene->separation && r->scene->separation->kind == SEPARATE_CMYK;
+    double useful[2];
     if (!path) return true;
-    return image_read(path, &r->grey, &err) && (!coloured || image_read_rgb(path, r->rgb, &err))
-               ? true
-               : refuse(r, "spline.image", &err);
+    spline_tone_useful(page, &r->tone, fmin(r->pixel, shown_pixel(page)), useful);
+    return image_read_useful(path, useful, &r->grey, coloured ? r->rgb : NULL, &err) ||
+           refuse(r, "spline.image", &err);
 }
 
 /* Of the picture, or of the formula. */
@@ -183,7 +190,7 @@ static bool read_energy_fields(const Reader *r, Drawing *d)
 
 static void make_picture(const Reader *r, const SplineField *tone, Drawing *d)
 {
-    double pixel = fmax(d->page.width, d->page.height) / SHOWN;
+    double pixel = shown_pixel(&d->page);
     SplineToneDef def = r->tone;
     if (!r->rgb[0].grey) {
         d->picture = spline_field_resize(tone, &d->page, pixel);
@@ -202,7 +209,7 @@ bool drawing_read_fields(Drawing *d, const SplineScene *scene, YamlFile *file)
 {
     Reader r = {.scene = scene, .build = {.file = file}, .pixel = spline_tone_pixel(&d->page)};
     SplineField tone = {0};
-    bool ok = read_tone_def(&r) && read_image(&r) && read_tone(&r, &d->page, &tone);
+    bool ok = read_tone_def(&r) && read_image(&r, &d->page) && read_tone(&r, &d->page, &tone);
     if (ok) {
         share_tone(&r, &tone, d);
         make_picture(&r, &tone, d);

@@ -75,14 +75,30 @@ static bool check_from(const SplineScene *scene, YamlFile *file)
     return true;
 }
 
-/* Names are a line each in the result, and words of the SVG file's XML, which cannot say U+FFFE and U+FFFF.
- */
-static bool is_name(const char *name)
+/* The bytes of a character in UTF-8, and its code; 0: of none. */
+static int read_character(const char *text, unsigned *code)
 {
-    for (const char *c = name; *c; c++)
-        if ((unsigned char)*c < 0x20 || *c == 0x7f || !strncmp(c, "\xef\xbf\xbe", 3) ||
-            !strncmp(c, "\xef\xbf\xbf", 3))
-            return false;
+    static const unsigned least[] = {0, 0, 0x80, 0x800, 0x10000};
+    unsigned char first = (unsigned char)text[0];
+    int length = first < 0x80 ? 1 : first >> 5 == 6 ? 2 : first >> 4 == 14 ? 3 : first >> 3 == 30 ? 4 : 0;
+    *code = length > 1 ? first & (0x7fu >> length) : first;
+    for (int k = 1; k < length; k++) {
+        if ((text[k] & 0xc0) != 0x80) return 0;
+        *code = *code << 6 | (text[k] & 0x3f);
+    }
+    return *code >= least[length] && *code < 0x110000 && *code >> 11 != 27 ? length : 0;
+}
+
+/* Names are a line each in the result and on the terminal, which obeys control characters (U+0080 to U+009F,
+ * too), and words of the SVG file's XML, which cannot say U+FFFE and U+FFFF. */
+bool pens_is_name(const char *name)
+{
+    unsigned code;
+    for (const char *c = name; *c;) {
+        int length = read_character(c, &code);
+        if (!length || code < 0x20 || (code >= 0x7f && code < 0xa0) || code >> 1 == 0x7fff) return false;
+        c += length;
+    }
     return *name != 0;
 }
 
@@ -90,7 +106,7 @@ static bool check_name(const SplineScene *scene, YamlFile *file, int pen)
 {
     const char *name = scene->pens[pen].name;
     Key at = key("spline.pens[%d]", pen);
-    if (!is_name(name)) return yaml_refuse(file, at.text, "the name of a pen is a line of text");
+    if (!pens_is_name(name)) return yaml_refuse(file, at.text, "the name of a pen is a line of text");
     if (is_cmyk(scene) && pens_ink(name) < 0)
         return yaml_refuse(file, at.text, "the pens of cmyk are cyan, magenta, yellow and black");
     for (int k = 0; is_cmyk(scene) && k < pen; k++)

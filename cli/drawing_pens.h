@@ -10,6 +10,9 @@ double pens_finest(const SplineScene *scene);
 bool pens_read(const SplineScene *scene, YamlFile *file, const SplinePage *page, SplinePen **pens,
                int *count);
 
+/* Is it a line of text that may name a pen? */
+bool pens_is_name(const char *name);
+
 /* Which of the inks of spline_separate the pen of that name draws; -1: none. */
 int pens_ink(const char *name);
 

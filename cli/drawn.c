@@ -1,5 +1,6 @@
 #include "cli/drawn.h"
 #include "base/memory.h"
+#include "cli/drawing_pens.h"
 #include <stdio.h>
 #include <string.h>
 
@@ -31,14 +32,26 @@ static void add_picture(const SplineField *picture, Arrays *list)
     arrays_add(list, array);
 }
 
+static void add_plotter(const Plotter *plotter, Arrays *list)
+{
+    double *speed = arrays_numbers(list, 2), *z = arrays_numbers(list, 3);
+    char *servo = arrays_keep(list, mem_format("%s\n%s\n", plotter->servo_up, plotter->servo_down));
+    speed[0] = 1e-3 * plotter->down, speed[1] = 1e-3 * plotter->up;
+    z[0] = 1e-3 * plotter->z_up, z[1] = 1e-3 * plotter->z_down, z[2] = 1e-3 * plotter->z_speed;
+    arrays_add(list, array_float("spline/speed", "m/s", speed, 1, 2, 0));
+    arrays_add(list, array_float("spline/lift", "s", &plotter->lift, 0, 0, 0));
+    arrays_add(list, array_float("spline/z", "m, m, m/s", z, 1, 3, 0));
+    arrays_add(list, array_text("spline/servo", servo));
+    arrays_add(list, array_float("spline/pause", "s", &plotter->pause, 0, 0, 0));
+}
+
 void drawn_add_static(const Drawing *d, Arrays *list)
 {
     add_pens(d, list);
     add_picture(&d->picture, list);
     arrays_add(list, array_float("spline/paper", "m", d->page.paper, 1, 2, 0));
     arrays_add(list, array_float("spline/margin", "m", &d->page.left, 0, 0, 0));
-    arrays_add(list, array_float("spline/speed", "m/s", d->speed, 1, 2, 0));
-    arrays_add(list, array_float("spline/lift", "s", &d->lift, 0, 0, 0));
+    add_plotter(&d->plotter, list);
 }
 
 void drawn_add_strokes(const Drawing *d, const Strokes *strokes, Arrays *list)
@@ -88,13 +101,44 @@ static bool read_numbers(Result *result, const char *name, int count, double *va
 
 static bool read_page(Result *result, Drawn *drawn, Error *err)
 {
-    double paper[2], margin, speed[2], lift;
-    if (!read_numbers(result, "paper", 2, paper, err) || !read_numbers(result, "margin", 1, &margin, err) ||
-        !read_numbers(result, "speed", 2, speed, err) || !read_numbers(result, "lift", 1, &lift, err))
+    double paper[2], margin;
+    if (!read_numbers(result, "paper", 2, paper, err) || !read_numbers(result, "margin", 1, &margin, err))
         return false;
     drawn->page = spline_page(paper[0], paper[1], margin, 0);
-    drawn->speed = (PlotSpeed){1e3 * speed[0], 1e3 * speed[1], lift};
     return true;
+}
+
+/* Two commands, a line each. */
+static bool read_servo(Result *result, Plotter *plotter, Error *err)
+{
+    Array text;
+    if (!read_array(result, "servo", ARRAY_TEXT, -1, &text, err)) return false;
+    char *to[] = {plotter->servo_up, plotter->servo_down}, *rest = NULL;
+    bool ok = true;
+    for (int k = 0; ok && k < 2; k++) {
+        const char *line = strtok_r(k ? NULL : (char *)text.data, "\n", &rest);
+        ok = line && plotter_is_command(line);
+        if (ok) strcpy(to[k], line);
+    }
+    array_clear(&text);
+    return ok || error_set(err, "spline/servo is not as slender writes it");
+}
+
+/* Results of versions that knew no more of plotters than their speeds have the default's other numbers. */
+static bool read_plotter(Result *result, Plotter *plotter, Error *err)
+{
+    double speed[2], z[3];
+    *plotter = plotter_default();
+    if (!read_numbers(result, "speed", 2, speed, err) ||
+        !read_numbers(result, "lift", 1, &plotter->lift, err))
+        return false;
+    plotter->down = 1e3 * speed[0], plotter->up = 1e3 * speed[1];
+    if (!result_has(result, "slender/spline/servo")) return plotter_check(plotter, err);
+    if (!read_numbers(result, "z", 3, z, err) || !read_numbers(result, "pause", 1, &plotter->pause, err) ||
+        !read_servo(result, plotter, err))
+        return false;
+    plotter->z_up = 1e3 * z[0], plotter->z_down = 1e3 * z[1], plotter->z_speed = 1e3 * z[2];
+    return plotter_check(plotter, err);
 }
 
 static bool read_pens(Result *result, Drawn *drawn, Error *err)
@@ -114,10 +158,12 @@ static bool read_pens(Result *result, Drawn *drawn, Error *err)
     array_clear(&width);
     if (!ok || !read_array(result, "names", ARRAY_TEXT, -1, &names, err)) return false;
     char *rest = NULL, *name = strtok_r((char *)names.data, "\n", &rest);
-    for (int k = 0; k < count; k++, name = strtok_r(NULL, "\n", &rest))
+    for (int k = 0; k < count; k++, name = strtok_r(NULL, "\n", &rest)) {
         drawn->pens[k].name = mem_text(name ? name : "");
+        ok = ok && pens_is_name(drawn->pens[k].name);
+    }
     array_clear(&names);
-    return true;
+    return ok || error_set(err, "spline/names is not as slender writes it");
 }
 
 /* Offsets that grow from 0 to the number of nodes, two nodes a stroke at least. */
@@ -172,7 +218,8 @@ bool drawn_read(Result *result, Drawn *drawn, Error *err)
     *drawn = (Drawn){0};
     Strokes strokes = {0};
     if (!drawn_has(result)) return error_set(err, "the result has no drawing");
-    bool ok = read_page(result, drawn, err) && read_pens(result, drawn, err) &&
+    bool ok = read_page(result, drawn, err) && read_plotter(result, &drawn->plotter, err) &&
+              read_pens(result, drawn, err) &&
               read_picture(result, &drawn->picture, err) && read_strokes(result, &drawn->page, &strokes, err);
     if (ok) drawn->plot = spline_plot(&strokes, &drawn->page, drawn->pens, drawn->pen_count);
     strokes_clear(&strokes);
@@ -193,5 +240,5 @@ bool drawn_write(const Drawn *drawn, const char *language, const char *path, Err
     PlotProfile profile;
     if (!strcmp(language, "svg")) return plot_write_svg(path, &drawn->plot, err);
     return plot_profile(language, &profile, err) &&
-           plot_write_machine(path, &drawn->plot, &profile, drawn->speed, err);
+           plot_write_machine(path, &drawn->plot, &profile, &drawn->plotter, err);
 }

@@ -4,7 +4,8 @@
  * In a result, under /slender/spline: nodes [K,4] m (p and v on the paper, from its top left corner, y down),
  * strokes [S+1] first node of each stroke in the order in which they are plotted, pen [S]; and names (of the
  * pens, a line each), width [pens] m, color [pens,3], paper [2] m, margin m, speed [2] m/s (pen down, up),
- * lift s, picture [rows,columns] or [rows,columns,3]: what was to be drawn, 0 white .. 255 black or, of a
+ * lift s, z [3] (up, down m; m/s), servo (two commands, a line each: up, down), pause s (what G4 P1 waits),
+ * picture [rows,columns] or [rows,columns,3]: what was to be drawn, 0 white .. 255 black or, of a
  * coloured one, what takes away red, green and blue. */
 #pragma once
 #include "cli/arrays.h"
@@ -17,7 +18,7 @@ typedef struct Drawn {
     SplinePen *pens; /* names owned */
     Plot plot;
     SplineField picture; /* as in Drawing */
-    PlotSpeed speed;
+    Plotter plotter;
 } Drawn;
 
 /* Into a list for the journal: what stays as it is, and strokes. */

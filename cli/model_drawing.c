@@ -29,9 +29,20 @@ static bool check_keys(const Scene *scene, YamlFile *file)
     return true;
 }
 
+/* What says how a pen is lifted needs the file that says so. */
+static bool check_plotter(const Scene *scene, YamlFile *file)
+{
+    if (scene->spline->plotter.z && !scene->output.gcode)
+        return yaml_refuse(file, "spline.plotter.z",
+                           "this is for the file `output.gcode`, which has no name");
+    return !scene->spline->plotter.servo || scene->output.gcode_servo ||
+           yaml_refuse(file, "spline.plotter.servo",
+                       "this is for the file `output.gcode_servo`, which has no name");
+}
+
 bool model_drawing(Model *model, const Scene *scene, YamlFile *file)
 {
-    if (!check_keys(scene, file)) return false;
+    if (!check_keys(scene, file) || !check_plotter(scene, file)) return false;
     model->body = &drawing_ops;
     model->drawing = drawing_create(scene->spline, file);
     return model->drawing != NULL;

@@ -347,7 +347,7 @@ static const YamlTable output_table = {
         DRAWING_FILE(svg, "curves in mm, a layer for each pen; NAME.svg if absent"),
         DRAWING_FILE(png, "target and drawing side by side; NAME.png if absent"),
         DRAWING_FILE(gcode, "for a pen on a z axis; none if absent"),
-        DRAWING_FILE(gcode_servo, "for a pen on a servo (M3 S30, M5); none if absent"),
+        DRAWING_FILE(gcode_servo, "for a pen on a servo; none if absent"),
         DRAWING_FILE(hpgl, "none if absent"),
         {0}}};
 

@@ -89,8 +89,21 @@ typedef struct DynamicsScene {
     int steps;
 } DynamicsScene;
 
+typedef struct ZAxisScene {
+    double up, down, speed;
+} ZAxisScene;
+
+typedef struct ServoScene {
+    char *up, *down;
+    int pause; /* ServoPause */
+} ServoScene;
+
+typedef enum ServoPause { PAUSE_SECONDS, PAUSE_MILLISECONDS } ServoPause;
+
 typedef struct PlotterScene {
     double down, up, lift;
+    ZAxisScene *z;     /* NULL: the default */
+    ServoScene *servo; /* NULL: the default */
 } PlotterScene;
 
 typedef struct SplineScene {

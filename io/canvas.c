@@ -12,7 +12,7 @@
 #include <strings.h>
 #include <unistd.h>
 
-enum { MAX_POINTS = 10000, MAX_SIDE = 32000, PNG_MAX_PIXELS = 100000000 };
+enum { MAX_POINTS = 10000, PNG_BAND = 64 };
 
 typedef enum Format { FORMAT_PNG, FORMAT_SVG, FORMAT_PDF, FORMAT_COUNT } Format;
 
@@ -94,10 +94,10 @@ Canvas *canvas_create(const char *path, double width, double height, double reso
     }
     double pixels = format == FORMAT_PNG ? resolution : 1;
     bool fits = width >= 1 && height >= 1 && width <= MAX_POINTS && height <= MAX_POINTS &&
-                width * pixels <= MAX_SIDE && height * pixels <= MAX_SIDE;
+                width * pixels <= CANVAS_MAX_SIDE && height * pixels <= CANVAS_MAX_SIDE;
     if (!fits || !(resolution > 0)) {
         error_set(err, "%s: a page of %g x %g points; 1 to %d points are allowed, and %d pixels in a PNG",
-                  path, width, height, MAX_POINTS, MAX_SIDE);
+                  path, width, height, MAX_POINTS, CANVAS_MAX_SIDE);
         return NULL;
     }
     Canvas *canvas = mem_alloc(1, sizeof *canvas);
@@ -330,75 +330,79 @@ void canvas_image(Canvas *canvas, const unsigned char *rgba, int width, int heig
     cairo_surface_destroy(image);
 }
 
-/* The size in the file's first chunk, checked before Cairo reserves memory for it. */
-static bool png_check_header(const char *path, Error *err)
+/* A PNG's bytes, and those of an IEND after them. */
+typedef struct PngBytes {
+    const unsigned char *at;
+    size_t left;
+    bool ending;
+} PngBytes;
+
+static cairo_status_t png_bytes_read(void *self, unsigned char *data, unsigned length)
 {
-    FILE *file = fopen(path, "rb");
-    if (!file) return error_set(err, "%s: cannot be read: %s", path, strerror(errno));
-    unsigned char head[24] = {0};
-    size_t got = fread(head, 1, sizeof head, file);
-    fclose(file);
-    if (got < sizeof head || memcmp(head, "\x89PNG\r\n\x1a\n", 8) != 0 || memcmp(head + 12, "IHDR", 4) != 0)
-        return error_set(err, "%s: not a PNG file", path);
-    uint32_t size[2];
-    for (int k = 0; k < 2; k++) {
-        const unsigned char *b = head + 16 + 4 * k;
-        size[k] = (uint32_t)b[0] << 24 | (uint32_t)b[1] << 16 | (uint32_t)b[2] << 8 | b[3];
+    static const unsigned char ending[] = "\0\0\0\0IEND\xae\x42\x60\x82";
+    PngBytes *bytes = self;
+    while (length > 0) {
+        if (bytes->left == 0 && bytes->ending) return CAIRO_STATUS_READ_ERROR;
+        if (bytes->left == 0) *bytes = (PngBytes){ending, 12, true};
+        size_t part = bytes->left < length ? bytes->left : length;
+        memcpy(data, bytes->at, part);
+        bytes->at += part, bytes->left -= part;
+        data += part, length -= (unsigned)part;
     }
-    if (size[0] == 0 || size[1] == 0) return error_set(err, "%s: the image has no pixels", path);
-    if (size[0] > MAX_SIDE || size[1] > MAX_SIDE || (uint64_t)size[0] * size[1] > PNG_MAX_PIXELS)
-        return error_set(err, "%s: an image of %u x %u pixels; at most %d a side and 100 million are read",
-                         path, size[0], size[1], MAX_SIDE);
-    return true;
+    return CAIRO_STATUS_SUCCESS;
 }
 
-/* Paints the image over white, so that Cairo turns any kind of PNG into the same pixels. */
-static cairo_surface_t *surface_flatten(cairo_surface_t *png)
+/* Paints rows of the image from `first` on over white, so that Cairo turns any kind of PNG into the same
+ * pixels. */
+static cairo_status_t flatten(cairo_surface_t *png, int first, cairo_surface_t *band)
 {
-    cairo_surface_t *flat = cairo_image_surface_create(CAIRO_FORMAT_RGB24, cairo_image_surface_get_width(png),
-                                                       cairo_image_surface_get_height(png));
-    cairo_t *cairo = cairo_create(flat);
+    cairo_t *cairo = cairo_create(band);
     cairo_set_source_rgb(cairo, 1, 1, 1);
     cairo_paint(cairo);
-    cairo_set_source_surface(cairo, png, 0, 0);
+    cairo_set_source_surface(cairo, png, 0, -first);
     cairo_paint(cairo);
+    cairo_status_t status = cairo_status(cairo);
     cairo_destroy(cairo);
-    cairo_surface_flush(flat);
-    return flat;
+    cairo_surface_flush(band);
+    return status;
 }
 
-static unsigned char *surface_rgb(cairo_surface_t *surface, int width, int height)
+static void pixels_rgb(const unsigned char *pixels, int width, unsigned char *rgb)
 {
-    const unsigned char *data = cairo_image_surface_get_data(surface);
-    size_t stride = (size_t)cairo_image_surface_get_stride(surface);
-    unsigned char *rgb = mem_alloc(3 * (size_t)width * (size_t)height, 1), *out = rgb;
-    for (int i = 0; i < height; i++)
-        for (int j = 0; j < width; j++) {
-            uint32_t word;
-            memcpy(&word, data + (size_t)i * stride + 4 * (size_t)j, sizeof word);
-            for (int c = 0; c < 3; c++) *out++ = (unsigned char)(word >> (16 - 8 * c));
-        }
-    return rgb;
+    for (int j = 0; j < width; j++) {
+        uint32_t word;
+        memcpy(&word, pixels + 4 * (size_t)j, sizeof word);
+        for (int c = 0; c < 3; c++) *rgb++ = (unsigned char)(word >> (16 - 8 * c));
+    }
 }
 
-bool canvas_read_png(const char *path, unsigned char **rgb, int *width, int *height, Error *err)
+static cairo_status_t take_rows(cairo_surface_t *png, CanvasRow *row, void *self)
 {
-    *rgb = NULL;
-    if (!png_check_header(path, err)) return false;
-    cairo_surface_t *png = cairo_image_surface_create_from_png(path);
-    cairo_status_t status = cairo_surface_status(png);
-    if (status != CAIRO_STATUS_SUCCESS) { /* Cairo's reason may be anything, even a lack of memory */
-        cairo_surface_destroy(png);
-        return error_set(err, "%s: the PNG data are broken", path);
+    int width = cairo_image_surface_get_width(png), height = cairo_image_surface_get_height(png);
+    cairo_surface_t *band = cairo_image_surface_create(CAIRO_FORMAT_RGB24, width, PNG_BAND);
+    cairo_status_t status = cairo_surface_status(band);
+    unsigned char *rgb = mem_alloc(3 * (size_t)width, 1);
+    for (int i = 0; status == CAIRO_STATUS_SUCCESS && i < height; i++) {
+        if (i % PNG_BAND == 0) status = flatten(png, i, band);
+        size_t stride = (size_t)cairo_image_surface_get_stride(band);
+        pixels_rgb(cairo_image_surface_get_data(band) + (size_t)(i % PNG_BAND) * stride, width, rgb);
+        row(self, i, rgb);
     }
-    cairo_surface_t *flat = surface_flatten(png);
-    cairo_surface_destroy(png);
-    status = cairo_surface_status(flat);
-    if (status == CAIRO_STATUS_SUCCESS) {
-        *width = cairo_image_surface_get_width(flat);
-        *height = cairo_image_surface_get_height(flat);
-        *rgb = surface_rgb(flat, *width, *height);
-    }
-    cairo_surface_destroy(flat);
-    return *rgb || error_set(err, "%s: %s", path, cairo_status_to_string(status));
+    mem_free(rgb);
+    cairo_surface_destroy(band);
+    return status;
+}
+
+bool canvas_read_png(const char *path, const unsigned char *png, size_t length, CanvasRow *row, void *self,
+                     Error *err)
+{
+    PngBytes bytes = {png, length, false};
+    cairo_surface_t *surface = cairo_image_surface_create_from_png_stream(png_bytes_read, &bytes);
+    cairo_status_t status = cairo_surface_status(surface);
+    if (status != CAIRO_STATUS_SUCCESS) /* Cairo's reason may be anything, even a lack of memory */
+        error_set(err, "%s: the PNG data are broken", path);
+    else if ((status = take_rows(surface, row, self)) != CAIRO_STATUS_SUCCESS)
+        error_set(err, "%s: %s", path, cairo_status_to_string(status));
+    cairo_surface_destroy(surface);
+    return status == CAIRO_STATUS_SUCCESS;
 }

@@ -9,6 +9,9 @@
 #include "base/error.h"
 #include "base/vec3.h"
 #include "io/colormap.h"
+#include <stddef.h>
+
+enum { CANVAS_MAX_SIDE = 32000 }; /* pixels of a PNG */
 
 typedef struct Canvas Canvas;
 
@@ -76,6 +79,10 @@ void canvas_end_ink(Canvas *canvas);
 /* Draws [height][width][4] bytes R, G, B, A (not premultiplied), row 0 on top, stretched over the box. */
 void canvas_image(Canvas *canvas, const unsigned char *rgba, int width, int height, Box box);
 
-/* Reads a PNG of any kind over white: (*rgb)[height][width][3] bytes, owned by the caller (mem_free). 16 bits
- * are reduced to 8. Files that are no PNG, broken, or larger than 100 megapixels get a sentence. */
-bool canvas_read_png(const char *path, unsigned char **rgb, int *width, int *height, Error *err);
+/* Gets the rows of a PNG, from the top, as bytes R, G, B. */
+typedef void CanvasRow(void *self, int row, const unsigned char *rgb);
+
+/* Reads a PNG of any kind over white, at most CANVAS_MAX_SIDE pixels a side. 16 bits are reduced to 8. One
+ * that lacks its last chunk, IEND, is read, too; a broken one gets a sentence, in which path names it. */
+bool canvas_read_png(const char *path, const unsigned char *png, size_t length, CanvasRow *row, void *self,
+                     Error *err);

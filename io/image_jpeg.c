@@ -20,6 +20,7 @@ typedef struct Decoder {
     const ImageBytes *file;
     Error *err;
     unsigned char *row;
+    bool ended; /* the file did, without its end marker */
     jmp_buf failed;
 } Decoder;
 
@@ -32,12 +33,14 @@ static _Noreturn void stop(j_common_ptr jpeg)
     longjmp(decoder->failed, 1);
 }
 
-/* libjpeg goes on with grey where data are missing; oddities that lose nothing pass. */
+/* libjpeg goes on with grey where data are missing; oddities that lose nothing pass. Where the file ends it
+ * takes an end marker for granted: whether something is missing shows later. */
 static void hear_warning(j_common_ptr jpeg, int level)
 {
     int code = jpeg->err->msg_code;
-    if (level < 0 && (code == JWRN_JPEG_EOF || code == JWRN_HIT_MARKER || code == JWRN_HUFF_BAD_CODE))
-        stop(jpeg);
+    if (level >= 0) return;
+    if (code == JWRN_JPEG_EOF) ((Decoder *)jpeg->err)->ended = true;
+    if (code == JWRN_HIT_MARKER || code == JWRN_HUFF_BAD_CODE) stop(jpeg);
 }
 
 static void check_scans(j_common_ptr jpeg)
@@ -49,54 +52,25 @@ static void check_scans(j_common_ptr jpeg)
     longjmp(decoder->failed, 1);
 }
 
-static unsigned read_word(const unsigned char *bytes, bool little, int size)
+static int orientation_of(const struct jpeg_decompress_struct *jpeg)
 {
-    unsigned word = 0;
-    for (int k = 0; k < size; k++) word = word << 8 | bytes[little ? size - 1 - k : k];
-    return word;
-}
-
-/* The tag 0x0112 of the first directory: 1 upright .. 8, as the Exif standard counts them. */
-static int exif_orientation(const struct jpeg_decompress_struct *jpeg)
-{
-    for (jpeg_saved_marker_ptr marker = jpeg->marker_list; marker; marker = marker->next) {
-        const unsigned char *tiff = marker->data + 6;
-        if (marker->data_length < 14 || memcmp(marker->data, "Exif\0", 6) != 0) continue;
-        size_t length = marker->data_length - 6;
-        bool little = tiff[0] == 'I';
-        size_t at = read_word(tiff + 4, little, 4);
-        if (at + 2 > length) continue;
-        unsigned entries = read_word(tiff + at, little, 2);
-        for (at += 2; entries > 0 && at + 12 <= length; entries--, at += 12)
-            if (read_word(tiff + at, little, 2) == 0x0112) {
-                unsigned value = read_word(tiff + at + 8, little, 2);
-                return value >= 1 && value <= 8 ? (int)value : 1;
-            }
-    }
+    for (jpeg_saved_marker_ptr marker = jpeg->marker_list; marker; marker = marker->next)
+        if (marker->data_length >= 14 && memcmp(marker->data, "Exif\0", 6) == 0)
+            return levels_exif_orientation(marker->data + 6, marker->data_length - 6);
     return 1;
 }
 
-/* Reads row by row, each pixel to its place in the upright picture: tags 5 to 8 exchange rows and columns,
- * then 2, 3, 6, 7 turn left and right around and 3, 4, 7, 8 top and bottom. */
-static void read_rows(Decoder *decoder, Levels *levels, int orientation)
+/* Of a file without its end marker: are all components there, and to the last bit? A scan that is cut short
+ * is heard before. */
+static bool has_all_scans(const struct jpeg_decompress_struct *jpeg)
 {
-    struct jpeg_decompress_struct *jpeg = &decoder->jpeg;
-    bool swap = orientation >= 5,
-         mirror = orientation == 2 || orientation == 3 || orientation == 6 || orientation == 7;
-    bool flip = orientation == 3 || orientation == 4 || orientation == 7 || orientation == 8;
-    int width = (int)jpeg->output_width, channels = levels->channels;
-    while (jpeg->output_scanline < jpeg->output_height) {
-        int i = (int)jpeg->output_scanline;
-        jpeg_read_scanlines(jpeg, &decoder->row, 1);
-        for (int j = 0; j < width; j++) {
-            int x = swap ? i : j, y = swap ? j : i;
-            if (mirror) x = levels->width - 1 - x;
-            if (flip) y = levels->height - 1 - y;
-            uint16_t *level =
-                levels->level + ((size_t)y * (size_t)levels->width + (size_t)x) * (size_t)channels;
-            for (int c = 0; c < channels; c++) level[c] = decoder->row[j * channels + c];
-        }
+    bool all = true;
+    for (int c = 0; c < jpeg->num_components; c++) {
+        all = all && jpeg->comp_info[c].quant_table;
+        for (int k = 0; jpeg->progressive_mode && k < DCTSIZE2; k++)
+            all = all && jpeg->coef_bits[c][k] == 0;
     }
+    return all;
 }
 
 static bool decode(Decoder *decoder, Levels *levels)
@@ -109,18 +83,23 @@ static bool decode(Decoder *decoder, Levels *levels)
         return error_set(decoder->err, "%s: a JPEG of %d colours; save it as RGB or grey",
                          decoder->file->path, jpeg->num_components);
     jpeg->out_color_space = jpeg->num_components == 1 ? JCS_GRAYSCALE : JCS_RGB;
-    int orientation = exif_orientation(jpeg), width = (int)jpeg->image_width,
-        height = (int)jpeg->image_height;
-    bool swap = orientation >= 5;
-    *levels = (Levels){.width = swap ? height : width,
-                       .height = swap ? width : height,
+    *levels = (Levels){.width = (int)jpeg->image_width,
+                       .height = (int)jpeg->image_height,
                        .channels = jpeg->num_components,
-                       .maximum = 255};
-    size_t blocks = (size_t)width * (size_t)height / 64; /* each takes at least a bit */
+                       .maximum = 255,
+                       .orientation = orientation_of(jpeg)};
+    size_t blocks = (size_t)levels->width * (size_t)levels->height / 64; /* each takes at least a bit */
     if (!levels_create(decoder->file, levels, blocks / 8, decoder->err)) return false;
-    decoder->row = mem_alloc((size_t)width * (size_t)levels->channels, 1);
+    decoder->row = mem_alloc((size_t)levels->width * (size_t)levels->channels, 1);
     jpeg_start_decompress(jpeg);
-    read_rows(decoder, levels, orientation);
+    while (jpeg->output_scanline < jpeg->output_height) {
+        int row = (int)jpeg->output_scanline;
+        jpeg_read_scanlines(jpeg, &decoder->row, 1);
+        levels_add_row(levels, row, decoder->row, 1);
+    }
+    if (decoder->ended && !has_all_scans(jpeg))
+        return error_set(decoder->err, "%s: the JPEG data are broken: the file ends before its last scan",
+                         decoder->file->path);
     jpeg_finish_decompress(jpeg);
     return true;
 }
@@ -145,7 +124,7 @@ bool levels_read_jpeg(const ImageBytes *file, Levels *levels, Error *err)
     mem_free(decoder->row);
     mem_free(decoder);
     if (ok) return true;
-    mem_free(levels->level);
+    mem_free(levels->sum);
     *levels = (Levels){0};
     return false;
 }

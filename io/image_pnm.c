@@ -51,26 +51,44 @@ static bool read_number(Reader *reader, const char *what, int low, int high, int
     return true;
 }
 
-static bool read_text_levels(Reader *reader, Levels *levels, size_t count, Error *err)
+/* A row of numbers, as two bytes each. */
+static bool read_text_row(Reader *reader, const Levels *levels, unsigned char *row, Error *err)
 {
-    for (size_t i = 0; i < count; i++) {
+    for (int i = 0; i < levels->width * levels->channels; i++) {
         int level;
         if (!read_number(reader, "level", 0, levels->maximum, &level, err)) return false;
-        levels->level[i] = (uint16_t)level;
+        row[2 * i] = (unsigned char)(level >> 8), row[2 * i + 1] = (unsigned char)level;
     }
     return true;
 }
 
-static bool read_binary_levels(Reader *reader, Levels *levels, size_t count, Error *err)
+static bool read_text_levels(Reader *reader, Levels *levels, Error *err)
 {
-    int wide = levels->maximum > 255;
+    unsigned char *row = mem_alloc((size_t)levels->width * (size_t)levels->channels, 2);
+    bool ok = true;
+    for (int i = 0; ok && i < levels->height; i++) {
+        ok = read_text_row(reader, levels, row, err);
+        if (ok) levels_add_row(levels, i, row, 2);
+    }
+    mem_free(row);
+    return ok;
+}
+
+static bool read_binary_levels(Reader *reader, Levels *levels, Error *err)
+{
+    int size = levels->maximum > 255 ? 2 : 1;
+    size_t count = (size_t)levels->width * (size_t)levels->channels;
     const unsigned char *b = reader->file->bytes + reader->place;
-    for (size_t i = 0; i < count; i++, b += 1 + wide) {
-        int level = wide ? b[0] << 8 | b[1] : b[0];
-        if (level > levels->maximum)
-            return error_set(err, "%s: level %d of pixel %zu exceeds the file's maximum %d",
-                             reader->file->path, level, i / (size_t)levels->channels, levels->maximum);
-        levels->level[i] = (uint16_t)level;
+    for (int i = 0; i < levels->height; i++, b += count * (size_t)size) {
+        for (size_t k = 0; k < count; k++) {
+            int level = size == 2 ? b[2 * k] << 8 | b[2 * k + 1] : b[k];
+            if (level > levels->maximum)
+                return error_set(err, "%s: level %d of pixel %zu exceeds the file's maximum %d",
+                                 reader->file->path, level,
+                                 (size_t)i * (size_t)levels->width + k / (size_t)levels->channels,
+                                 levels->maximum);
+        }
+        levels_add_row(levels, i, b, size);
     }
     return true;
 }
@@ -91,8 +109,8 @@ bool levels_read_pnm(const ImageBytes *file, Levels *levels, Error *err)
     size_t count = (size_t)levels->width * (size_t)levels->height * (size_t)levels->channels;
     size_t least = !binary ? 2 * count - 1 : levels->maximum > 255 ? 2 * count : count;
     if (!levels_create(file, levels, reader.place + least, err)) return false;
-    if ((binary ? read_binary_levels : read_text_levels)(&reader, levels, count, err)) return true;
-    mem_free(levels->level);
+    if ((binary ? read_binary_levels : read_text_levels)(&reader, levels, err)) return true;
+    mem_free(levels->sum);
     *levels = (Levels){0};
     return false;
 }

@@ -99,9 +99,30 @@ bool plot_write_svg(const char *path, const Plot *plot, Error *err)
     return ok;
 }
 
-PlotSpeed plot_speed_default(void)
+Plotter plotter_default(void)
 {
-    return (PlotSpeed){.down = 40, .up = 100, .lift = 0.3};
+    return (Plotter){.down = 40,
+                     .up = 100,
+                     .lift = 0.3,
+                     .z_up = 5,
+                     .z_speed = 10,
+                     .pause = 1,
+                     .servo_up = "M5",
+                     .servo_down = "M3 S30"};
+}
+
+bool plotter_check(const Plotter *p, Error *err)
+{
+    const double positive[] = {p->down, p->up, p->z_speed, p->pause}, any[] = {p->z_up, p->z_down, p->lift};
+    bool ok = p->lift >= 0 && p->z_up != p->z_down;
+    for (int k = 0; k < 4; k++) ok = ok && positive[k] >= 1e-6 && positive[k] <= 1e6;
+    for (int k = 0; k < 3; k++) ok = ok && fabs(any[k]) <= 1e6;
+    return ok || error_set(err, "the plotter's speeds, times or heights are none");
+}
+
+double plotter_z_lift(const Plotter *plotter)
+{
+    return fmax(plotter->lift, 2 * fabs(plotter->z_up - plotter->z_down) / plotter->z_speed);
 }
 
 static double distance(Vec2 a, Vec2 b)
@@ -109,7 +130,7 @@ static double distance(Vec2 a, Vec2 b)
     return hypot(b.x - a.x, b.y - a.y);
 }
 
-PlotEstimate plot_estimate(const PlotLayer *layer, PlotSpeed speed)
+PlotEstimate plot_estimate(const PlotLayer *layer, const Plotter *plotter)
 {
     PlotEstimate estimate = {0};
     Vec2 home = {0, 0}, at = home;
@@ -126,6 +147,7 @@ PlotEstimate plot_estimate(const PlotLayer *layer, PlotSpeed speed)
         }
     }
     estimate.travel += distance(at, home);
-    estimate.seconds = estimate.ink / speed.down + estimate.travel / speed.up + layer->count * speed.lift;
+    estimate.seconds =
+        estimate.ink / plotter->down + estimate.travel / plotter->up + layer->count * plotter->lift;
     return estimate;
 }

@@ -31,14 +31,30 @@ typedef struct Plot {
  * out, but count. */
 bool plot_write_svg(const char *path, const Plot *plot, Error *err);
 
-/* How fast a plotter is: from lift to touch and between them. */
-typedef struct PlotSpeed {
-    double down, up; /* mm/s, pen down and pen up */
-    double lift;     /* s, to lift and to lower the pen, together */
-} PlotSpeed;
+enum { PLOTTER_COMMAND_MAX = 60 }; /* characters */
 
-/* A common pen plotter: 40 and 100 mm/s, 0.3 s. */
-PlotSpeed plot_speed_default(void);
+/* How fast a plotter is, and how its pen is lifted. */
+typedef struct Plotter {
+    double down, up;     /* mm/s, pen down and pen up                 */
+    double lift;         /* s, to lift and to lower the pen, together */
+    double z_up, z_down; /* mm, of a pen on a z axis                  */
+    double z_speed;      /* mm/s, at most                             */
+    double pause;        /* s, what G4 P1 waits: 1, or 0.001 (Marlin) */
+    char servo_up[PLOTTER_COMMAND_MAX + 1], servo_down[PLOTTER_COMMAND_MAX + 1]; /* commands */
+} Plotter;
+
+/* A common pen plotter: 40 and 100 mm/s, 0.3 s; z = 5 and 0 at 10 mm/s; M5 and M3 S30, pauses in seconds.
+ */
+Plotter plotter_default(void);
+
+/* May it be a command in a file? Up to 60 letters, digits, spaces and . - + _ =, a letter first. */
+bool plotter_is_command(const char *command);
+
+/* False and a sentence where numbers of it are no numbers that a file could have (results of others). */
+bool plotter_check(const Plotter *plotter, Error *err);
+
+/* s, to lift and to lower a pen on a z axis: `lift`, or longer where z_speed asks for that. */
+double plotter_z_lift(const Plotter *plotter);
 
 /* Of one layer. Its pen comes from the paper's top left corner and returns there. */
 typedef struct PlotEstimate {
@@ -47,10 +63,13 @@ typedef struct PlotEstimate {
 } PlotEstimate;
 
 /* Constant speeds, no acceleration: short curves take longer than this on a heavy machine. */
-PlotEstimate plot_estimate(const PlotLayer *layer, PlotSpeed speed);
+PlotEstimate plot_estimate(const PlotLayer *layer, const Plotter *plotter);
 
 /* The words of a machine's language. Templates may hold {x} and {y} (where to go), {feed} and {travel_feed}
- * (speeds, mm/min), {pen} (from 1) and {name} (of the layer); any of them may be "". */
+ * (speeds, mm/min), {velocity} (pen down, whole cm/s, 1 at least), {z_up}, {z_down} (mm) and {z_feed}
+ * (mm/min, with which lifting and lowering take their time), {servo_up} and {servo_down} (commands), {pause}
+ * (for G4 P: the time to lift and to lower) and {half_pause}, {pen} (from 1) and {name} (of the layer); any
+ * template may be "". */
 typedef struct PlotProfile {
     const char *header, *footer;
     const char *change; /* before every layer but the first */
@@ -66,11 +85,12 @@ typedef struct PlotProfile {
 } PlotProfile;
 
 /* By name; a sentence for an unknown one.
- *   gcode        mm, pen on a z axis: up at z = 5, down at z = 0 (Marlin, GRBL, LinuxCNC)
- *   gcode_servo  mm, pen on a servo that M3 S30 lowers and M5 lifts, with pauses (GRBL)
- *   hpgl         40 units per mm, SP per pen, x to the right and y up from the lower left corner */
+ *   gcode        mm, pen on a z axis, whose speed makes the time of lifts (Marlin, GRBL, LinuxCNC)
+ *   gcode_servo  mm, pen on a servo, with pauses of half the time of a lift (GRBL, Marlin)
+ *   hpgl         40 units per mm, SP per pen, VS: its speed; x to the right and y up from the lower left
+ *                corner. The plotter lifts the pen as it can: no word of HPGL waits */
 bool plot_profile(const char *name, PlotProfile *profile, Error *err);
 
 /* Writes the plot in the words of a profile, curves as chords. */
-bool plot_write_machine(const char *path, const Plot *plot, const PlotProfile *profile, PlotSpeed speed,
-                        Error *err);
+bool plot_write_machine(const char *path, const Plot *plot, const PlotProfile *profile,
+                        const Plotter *plotter, Error *err);

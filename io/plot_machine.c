@@ -20,10 +20,11 @@ typedef struct Named {
     }
 
 static const Named profiles[] = {
-    {"gcode", GCODE_PROFILE("G0 Z5 F600\n", "G1 Z0 F600\n", "G0 Z5 F600\n")},
-    {"gcode_servo", GCODE_PROFILE("M5\nG4 P0.3\n", "M3 S30\nG4 P0.15\n", "M5\nG4 P0.15\n")},
+    {"gcode", GCODE_PROFILE("G0 Z{z_up} F{z_feed}\n", "G1 Z{z_down} F{z_feed}\n", "G0 Z{z_up} F{z_feed}\n")},
+    {"gcode_servo", GCODE_PROFILE("{servo_up}\nG4 P{pause}\n", "{servo_down}\nG4 P{half_pause}\n",
+                                  "{servo_up}\nG4 P{half_pause}\n")},
     {"hpgl",
-     {.header = "IN;\n",
+     {.header = "IN;VS{velocity};\n",
       .footer = "PU;SP0;\n",
       .change = "",
       .layer = "SP{pen};\n",
@@ -51,35 +52,74 @@ bool plot_profile(const char *name, PlotProfile *profile, Error *err)
 typedef struct Writer {
     Text text;
     const PlotProfile *profile;
-    PlotSpeed speed;
+    const Plotter *plotter;
     double height; /* of the paper, mm */
     Vec2 at;       /* {x} and {y} */
     int pen;
-    const char *name;
+    char *name;
 } Writer;
 
-/* One line, for a comment. */
-static void add_name(Text *text, const char *name)
+static bool is_letter(char c)
 {
-    for (const char *c = name; *c; c++) text_add(text, "%c", (unsigned char)*c < 0x20 ? ' ' : *c);
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
 }
 
-/* Writes what a word in braces stands for, if it is one. */
+/* Of a layer, for a comment; owned. Machines obey bytes there, too: grbl takes ! ? ~ and all from 0x80 on out
+ * of the stream as they come, ( ) ; end comments or begin them, * is Marlin's checksum. Letters, digits and a
+ * few signs stay; each other character becomes _, and what would make the line longer than others is cut. */
+static char *plain_name(const char *name)
+{
+    Text text = {0};
+    text_add(&text, "%s", "");
+    for (const char *c = name; *c && text.length < PLOTTER_COMMAND_MAX; c++) {
+        if (((unsigned char)*c & 0xc0) == 0x80) continue; /* a further byte of a character in UTF-8 */
+        bool plain = is_letter(*c) || strchr("0123456789 .,-+_", *c);
+        text_add(&text, "%c", plain ? *c : '_');
+    }
+    return text.text;
+}
+
+bool plotter_is_command(const char *command)
+{
+    size_t length = strlen(command);
+    for (const char *c = command; *c; c++)
+        if (!is_letter(*c) && !strchr("0123456789 .-+_=", *c)) return false;
+    return is_letter(command[0]) && length <= PLOTTER_COMMAND_MAX;
+}
+
+/* A word in braces, and what it stands for: a number, or a text. */
+typedef struct Word {
+    const char *word;
+    double number;
+    int decimals;
+    const char *text;
+} Word;
+
+/* Writes what a word stands for, if it is one. */
 static bool add_word(Writer *writer, const char *word, size_t length)
 {
-    static const char *const words[] = {"{x}", "{y}", "{feed}", "{travel_feed}"};
-    double numbers[] = {writer->at.x, writer->at.y, 60 * writer->speed.down, 60 * writer->speed.up};
-    for (int k = 0; k < 4; k++) {
-        if (strlen(words[k]) != length || memcmp(word, words[k], length) != 0) continue;
-        plot_add_number(&writer->text, numbers[k], k < 2 ? writer->profile->decimals : 1);
-        return true;
-    }
-    if (length == 5 && !memcmp(word, "{pen}", 5)) {
-        text_add(&writer->text, "%d", writer->pen);
-        return true;
-    }
-    if (length == 6 && !memcmp(word, "{name}", 6)) {
-        add_name(&writer->text, writer->name);
+    const Plotter *p = writer->plotter;
+    double z_feed = 120 * fabs(p->z_up - p->z_down) / plotter_z_lift(p);
+    const Word words[] = {{"{x}", writer->at.x, writer->profile->decimals, NULL},
+                          {"{y}", writer->at.y, writer->profile->decimals, NULL},
+                          {"{feed}", 60 * p->down, 1, NULL},
+                          {"{travel_feed}", 60 * p->up, 1, NULL},
+                          {"{velocity}", fmin(fmax(p->down / 10, 1), 127), 0, NULL},
+                          {"{z_up}", p->z_up, 3, NULL},
+                          {"{z_down}", p->z_down, 3, NULL},
+                          {"{z_feed}", z_feed, 1, NULL},
+                          {"{pause}", p->lift / p->pause, 4, NULL},
+                          {"{half_pause}", p->lift / (2 * p->pause), 4, NULL},
+                          {"{pen}", writer->pen, 0, NULL},
+                          {"{servo_up}", 0, 0, p->servo_up},
+                          {"{servo_down}", 0, 0, p->servo_down},
+                          {"{name}", 0, 0, writer->name}};
+    for (size_t k = 0; k < sizeof words / sizeof *words; k++) {
+        if (strlen(words[k].word) != length || memcmp(word, words[k].word, length) != 0) continue;
+        if (words[k].text)
+            text_add(&writer->text, "%s", words[k].text);
+        else
+            plot_add_number(&writer->text, words[k].number, words[k].decimals);
         return true;
     }
     return false;
@@ -126,10 +166,10 @@ static void add_curve(Writer *writer, const Vec2 *c, const Vec2 *end)
     add_template(writer, writer->profile->up);
 }
 
-bool plot_write_machine(const char *path, const Plot *plot, const PlotProfile *profile, PlotSpeed speed,
-                        Error *err)
+bool plot_write_machine(const char *path, const Plot *plot, const PlotProfile *profile,
+                        const Plotter *plotter, Error *err)
 {
-    Writer writer = {.profile = profile, .speed = speed, .height = plot->paper[1], .name = ""};
+    Writer writer = {.profile = profile, .plotter = plotter, .height = plot->paper[1]};
     bool first = true;
     if (!plot_check(path, plot, err)) return false;
     add_template(&writer, profile->header);
@@ -137,12 +177,13 @@ bool plot_write_machine(const char *path, const Plot *plot, const PlotProfile *p
         const PlotLayer *layer = &plot->layers[k];
         if (!layer->count) continue;
         writer.pen = k + 1;
-        writer.name = layer->name;
+        writer.name = plain_name(layer->name);
         if (!first) add_template(&writer, profile->change);
         add_template(&writer, profile->layer);
         first = false;
         for (int i = 0; i < layer->count; i++)
             add_curve(&writer, layer->points + layer->start[i], layer->points + layer->start[i + 1] - 1);
+        mem_free(writer.name);
     }
     add_template(&writer, profile->footer);
     bool ok = safe_file_write(path, writer.text.text, writer.text.length, false, err);

@@ -9,7 +9,8 @@ typedef struct Build {
     const SplinePage *page;
     const ProbesDef *def;
     Probes *probes;
-    double *mean, *most; /* [probes->size] of the density in each cell */
+    double *mean;   /* [probes->size] density of each cell   */
+    double *radius; /* [probes->size] the least of any in it */
 } Build;
 
 ProbesDef probes_default(void)
@@ -70,7 +71,7 @@ typedef struct Samples {
     int nx, ny;
 } Samples;
 
-/* Mean and maximum of a row of cells. */
+/* Mean and least radius of a row of cells. */
 static void sample_row(void *self, int row)
 {
     const Samples *s = self;
@@ -86,7 +87,7 @@ static void sample_row(void *self, int row)
                 long cell = cell_index(level, (int)((k + l) / s->nx), row);
                 double density = bound(sample.value[0][l]);
                 s->build->mean[cell] += density / (s->nx * s->ny);
-                s->build->most[cell] = fmax(s->build->most[cell], density);
+                s->build->radius[cell] = fmin(s->build->radius[cell], radius_for(s->build, density));
             }
         }
     }
@@ -103,6 +104,29 @@ static void sample_finest(Build *b, const SplineGrid *grid)
     grid_spline_destroy(spline);
 }
 
+/* A cell's radius, held to that of cell (i, j) and the distance from there. */
+static double graded(const Build *b, const ProbeLevel *level, double radius, int i, int j, double distance)
+{
+    if (i < 0 || j < 0 || i >= level->columns || j >= level->rows) return radius;
+    return fmin(radius, b->radius[cell_index(level, i, j)] + distance);
+}
+
+/* Cell by cell after those to the left and above (way 1), or to the right and below (-1): distances go by the
+ * eight neighbours, and are at most 8 % too long [Borgefors 1986]. */
+static void sweep(Build *b, int way)
+{
+    const ProbeLevel *level = &b->probes->levels[b->probes->level_count - 1];
+    double diagonal = hypot(level->dx, level->dy);
+    for (int m = 0; m < level->rows; m++)
+        for (int n = 0; n < level->columns; n++) {
+            int i = way > 0 ? n : level->columns - 1 - n, j = way > 0 ? m : level->rows - 1 - m;
+            double *radius = &b->radius[cell_index(level, i, j)];
+            *radius = graded(b, level, *radius, i - way, j, level->dx);
+            for (int k = -1; k <= 1; k++)
+                *radius = graded(b, level, *radius, i + k, j - way, k ? diagonal : level->dy);
+        }
+}
+
 static void coarsen(Build *b, int l)
 {
     const ProbeLevel *level = &b->probes->levels[l], *finer = level + 1;
@@ -112,7 +136,7 @@ static void coarsen(Build *b, int l)
             for (int k = 0; k < 4; k++) {
                 long child = cell_index(finer, 2 * i + k % 2, 2 * j + k / 2);
                 b->mean[cell] += b->mean[child] / 4;
-                b->most[cell] = fmax(b->most[cell], b->most[child]);
+                b->radius[cell] = fmin(b->radius[cell], b->radius[child]);
             }
         }
 }
@@ -122,14 +146,12 @@ static void place(Build *b, int l, int i, int j)
 {
     Probes *probes = b->probes;
     ProbeLevel *level = &probes->levels[l];
-    double size = fmax(level->dx, level->dy);
     long cell = cell_index(level, i, j);
-    if (l + 1 < probes->level_count && size > b->def->cell * radius_for(b, b->most[cell])) {
+    double R = b->radius[cell];
+    if (l + 1 < probes->level_count && fmax(level->dx, level->dy) > b->def->cell * R) {
         for (int k = 0; k < 4; k++) place(b, l + 1, 2 * i + k % 2, 2 * j + k / 2);
         return;
     }
-    /* A light cell among dark ones is small; so is its radius, or it would see far beyond them. */
-    double R = fmin(radius_for(b, b->mean[cell]), 2 * size / b->def->cell);
     probes->inverse[cell] = 1 / (R * R);
     probes->count++;
     level->reach = fmax(level->reach, R);
@@ -219,8 +241,11 @@ Probes *probes_create(const SplinePage *page, const SplineGrid *density, const P
     probes->target = mem_alloc(size, sizeof *probes->target);
     probes->gain = mem_alloc(size, sizeof *probes->gain);
     b.mean = mem_alloc(2 * size, sizeof *b.mean);
-    b.most = b.mean + size;
+    b.radius = b.mean + size;
+    for (size_t k = 0; k < size; k++) b.radius[k] = def->radius_max;
     sample_finest(&b, density);
+    sweep(&b, 1);
+    sweep(&b, -1);
     for (int l = probes->level_count - 2; l >= 0; l--) coarsen(&b, l);
     for (int j = 0; j < probes->levels[0].rows; j++)
         for (int i = 0; i < probes->levels[0].columns; i++) place(&b, 0, i, j);

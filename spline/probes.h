@@ -6,6 +6,10 @@
  * light; leaves are smaller than 0.4 R_c. As the radius belongs to the probe and not to the ink, gradients
  * stay simple while the scale follows the tone.
  *
+ * From place to place R_c grows no more than the distance (as sizes do in a graded mesh [Borouchaki, Hecht and
+ * Frey 1998]): no probe's disc has that of a finer one wholly inside. Beside a hard edge, wide probes on blank
+ * paper would take ink on it for that of the dark beyond the edge.
+ *
  * Each level of the tree is kept as a whole grid of cells, most of them no probes (inverse 0): a window of it
  * is a few short rows in memory, and the sums over it need neither lists nor gathers. */
 #pragma once

@@ -117,6 +117,12 @@ SplineField spline_tone(const Image *image, const SplinePage *page, const Spline
     return tone;
 }
 
+void spline_tone_useful(const SplinePage *page, const SplineToneDef *def, double pixel, double useful[2])
+{
+    useful[0] = 2 * page->width / (pixel * (def->crop[2] - def->crop[0]));
+    useful[1] = 2 * page->height / (pixel * (def->crop[3] - def->crop[1]));
+}
+
 void spline_separate(const Image rgb[3], double black, Image ink[4])
 {
     size_t count = (size_t)rgb[0].width * (size_t)rgb[0].height;

@@ -30,6 +30,10 @@ bool spline_tone_check(const SplineToneDef *def, Error *err);
 /* The density in pixels of about that size, each the mean of the picture over it. def has been checked. */
 SplineField spline_tone(const Image *image, const SplinePage *page, const SplineToneDef *def, double pixel);
 
+/* How many pixels of the whole picture, across and down, are of use for pixels of that size on the page: two
+ * in each. */
+void spline_tone_useful(const SplinePage *page, const SplineToneDef *def, double pixel, double useful[2]);
+
 /* The size of pixels that shows all a pen can draw: half its width. */
 static inline double spline_tone_pixel(const SplinePage *page)
 {

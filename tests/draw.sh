@@ -18,6 +18,16 @@ expect 0 "$program" run "$scene" --quiet --no-picture -o b --threads 1; same out
 expect 0 "$program" export out/a.vtkhdf -o c.svg; same out/a.svg c.svg
 expect 0 "$program" export out/a.vtkhdf -o c.gcode; same out/a.gcode c.gcode
 expect 0 "$program" export out/a.vtkhdf -o c.nc --plotter gcode_servo; grep -q "M3 S30" c.nc || { echo "no servo"; bad=1; }
+# How the pen is lifted is in the files, in the time, and in what is exported later.
+for lift in 0.3 9; do
+    expect 0 "$program" run "$scene" --quiet --no-picture -o "lift$lift" --set spline.rounds=0 --set output.gcode="lift$lift.gcode" --set output.gcode_servo=s.nc \
+        --set "spline.plotter={lift: $lift s, z: {up: 2 mm, down: -1 mm, speed: 1 mm/s}, servo: {up: M3 S90, down: M3 S10}}"
+done
+grep -q "^G1 Z-1 F60$" lift0.3.gcode || { echo "no z at its speed"; bad=1; }
+grep -q "^G1 Z-1 F40$" lift9.gcode || { echo "no z that takes its time"; bad=1; }
+[ "$(grep -A1 "^M3 S10$" s.nc | grep -c "^G4 P4.5$")" = "$(grep -c "^M3 S10$" s.nc)" ] || { echo "no pause after lowering"; bad=1; }
+expect 0 "$program" export lift9.vtkhdf -o c.gcode; same lift9.gcode c.gcode
+expect 0 "$program" export lift9.vtkhdf -o c.gcode --plotter gcode_servo; same s.nc c.gcode
 expect 4 "$program" export out/a.vtkhdf -o c.dwg; says "exported as .svg"
 expect 0 "$program" picture out/a.vtkhdf -o c.pdf --width 800; exists c.pdf
 expect 4 "$program" picture out/a.vtkhdf -o c.png --frame 0; says "no frames"

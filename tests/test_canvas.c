@@ -1,6 +1,7 @@
 #include "base/memory.h"
 #include "io/canvas.h"
 #include "leaks.h"
+#include "png_fixture.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -44,7 +45,7 @@ static Page page_read(const char *path)
 {
     Page page;
     Error err = {""};
-    if (!canvas_read_png(path, &page.rgb, &page.width, &page.height, &err)) fail_msg("%s", err.text);
+    if (!png_read(path, &page.rgb, &page.width, &page.height, &err)) fail_msg("%s", err.text);
     return page;
 }
 

@@ -3,6 +3,7 @@
 #include "io/curves_layout.h"
 #include "io/page.h"
 #include "leaks.h"
+#include "png_fixture.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -151,7 +152,7 @@ static Page page_write(const CurvesScene *scene)
     Page page = {0};
     Error err = {""};
     if (!curves_write("curves.png", scene, &err) ||
-        !canvas_read_png("curves.png", &page.rgb, &page.width, &page.height, &err))
+        !png_read("curves.png", &page.rgb, &page.width, &page.height, &err))
         fail_msg("%s", err.text);
     return page;
 }

@@ -80,8 +80,11 @@ static void defaults(void **state)
     assert_true(d->start.separation == start.separation && d->start.ink == start.ink &&
                 d->start.longest == start.longest && d->start.segments == start.segments &&
                 d->start.seed == start.seed);
-    PlotSpeed speed = plot_speed_default();
-    assert_true(1e3 * d->speed[0] == speed.down && 1e3 * d->speed[1] == speed.up && d->lift == speed.lift);
+    const Plotter *p = &d->plotter, q = plotter_default();
+    assert_true(p->down == q.down && p->up == q.up && p->lift == q.lift && p->pause == q.pause);
+    assert_true(p->z_up == q.z_up && p->z_down == q.z_down && p->z_speed == q.z_speed);
+    assert_string_equal(p->servo_up, q.servo_up);
+    assert_string_equal(p->servo_down, q.servo_down);
     drawing_destroy(d);
 }
 

@@ -154,11 +154,12 @@ static void pgm_refused(void **state)
         const char *text, *sentence;
     } bad[] = {
         {"P5", "bad.pgm:1: the file ends where the width should be"},
-        {"P5\nwide 2 255 ", "bad.pgm:2: the width must be a whole number from 1 to 100000000"},
-        {"P5\n0 2 255 ", "bad.pgm:2: the width must be a whole number from 1 to 100000000"},
-        {"P5\n2 -2 255 ", "bad.pgm:2: the height must be a whole number from 1 to 100000000"},
-        {"P5 99999999999999999999 1 255 ", "bad.pgm:1: the width must be a whole number from 1 to 100000000"},
-        {"P5 20000 20000 255 ", "bad.pgm: an image of 20000 x 20000 pixels; at most 100 million are read"},
+        {"P5\nwide 2 255 ", "bad.pgm:2: the width must be a whole number from 1 to 400000000"},
+        {"P5\n0 2 255 ", "bad.pgm:2: the width must be a whole number from 1 to 400000000"},
+        {"P5\n2 -2 255 ", "bad.pgm:2: the height must be a whole number from 1 to 400000000"},
+        {"P5 99999999999999999999 1 255 ", "bad.pgm:1: the width must be a whole number from 1 to 400000000"},
+        {"P5 20001 20000 255 ",
+         "bad.pgm: an image of 20001 x 20000 pixels; at most 400 million are read: make it smaller"},
         {"P5 10000 10000 255 abc", "bad.pgm: the file ends before the last of 10000 x 10000 pixels"},
         {"P5 2 2 255 abc", "bad.pgm: the file ends before the last of 2 x 2 pixels"},
         {"P5 2 1 65535 abc", "bad.pgm: the file ends before the last of 2 x 1 pixels"},
@@ -205,7 +206,8 @@ static void jpeg_refused(void **state)
     assert_non_null(size);
     memcpy(size + 5, "\xff\xdc\xff\xdc", 4);
     write_file("bad.jpg", bytes, length);
-    expect_refused("bad.jpg", "bad.jpg: an image of 65500 x 65500 pixels; at most 100 million are read");
+    expect_refused("bad.jpg",
+                   "bad.jpg: an image of 65500 x 65500 pixels; at most 400 million are read: make it smaller");
     memcpy(size + 5, "\x10\x00\x10\x00", 4);
     write_file("bad.jpg", bytes, length);
     expect_refused("bad.jpg", "bad.jpg: the file ends before the last of 4096 x 4096 pixels");
@@ -230,14 +232,144 @@ static void png_refused(void **state)
     assert_false(image_read("bad.png", &image, &err));
     assert_non_null(strstr(err.text, "bad.png: the PNG data are broken"));
 
+    memcpy(bytes + 16, "\0\0\x4e\x21\0\0\x4e\x20", 8);
+    write_file("bad.png", bytes, sizeof bytes);
+    expect_refused("bad.png",
+                   "bad.png: an image of 20001 x 20000 pixels; at most 400 million are read: make it smaller");
     memcpy(bytes + 16, "\0\0\x4e\x20\0\0\x4e\x20", 8);
     write_file("bad.png", bytes, sizeof bytes);
-    expect_refused(
-        "bad.png",
-        "bad.png: an image of 20000 x 20000 pixels; at most 32000 a side and 100 million are read");
+    expect_refused("bad.png", "bad.png: the file ends before the last of 20000 x 20000 pixels");
+    memcpy(bytes + 16, "\0\0\x7d\x01\0\0\0\1", 8);
+    write_file("bad.png", bytes, sizeof bytes);
+    expect_refused("bad.png", "bad.png: an image of 32001 x 1 pixels; at most 32000 a side are read");
     memcpy(bytes + 16, "\0\0\0\0\0\0\0\1", 8);
     write_file("bad.png", bytes, sizeof bytes);
     expect_refused("bad.png", "bad.png: the image has no pixels");
+}
+
+static size_t load(const char *path, unsigned char *bytes, size_t room)
+{
+    FILE *file = fopen(path, "rb");
+    assert_non_null(file);
+    size_t length = fread(bytes, 1, room, file);
+    fclose(file);
+    return length;
+}
+
+/* The pixels of these bytes are those of the whole. */
+static void expect_same(const unsigned char *bytes, size_t length, const Image *whole)
+{
+    Image image;
+    Error err = {""};
+    if (!image_parse("cut", bytes, length, &image, &err)) fail_msg("%zu bytes: %s", length, err.text);
+    assert_int_equal(image.width, whole->width);
+    assert_int_equal(image.height, whole->height);
+    assert_memory_equal(image.grey, whole->grey,
+                        (size_t)image.width * (size_t)image.height * sizeof *image.grey);
+    image_clear(&image);
+}
+
+/* What comes after the last pixel may be missing, or be anything: end markers of JPEG (one of a single scan,
+ * one of several), IEND of PNG, whatever follows. */
+static void without_ends(void **state)
+{
+    (void)state;
+    static const char *const paths[] = {SOURCE_DIR "/tests/images/grey.jpg",
+                                        SOURCE_DIR "/tests/images/turned.jpg", "image_rgba.png"};
+    static const size_t ends[] = {2, 2, 12};
+    write_file("image_rgba.png", png_rgba, sizeof png_rgba);
+    for (int k = 0; k < 3; k++) {
+        unsigned char bytes[2048];
+        Image whole;
+        Error err = {""};
+        size_t length = load(paths[k], bytes, sizeof bytes - 64);
+        if (!image_parse(paths[k], bytes, length, &whole, &err)) fail_msg("%s", err.text);
+        for (size_t cut = 1; cut <= ends[k]; cut++) expect_same(bytes, length - cut, &whole);
+        memset(bytes + length, 'x', 64);
+        expect_same(bytes, length + 64, &whole);
+        assert_false(image_parse("cut", bytes, length - ends[k] - 1, &(Image){0}, &err));
+        image_clear(&whole);
+    }
+    write_file("image_rest.pgm", "P5 2 1 255\n\0\xff and more", 22);
+    expect_grey("image_rest.pgm", 2, 1, (const double[]){0, 1});
+    write_file("image_rest.pgm", "P2 2 1 255\n0 255", 16);
+    expect_grey("image_rest.pgm", 2, 1, (const double[]){0, 1});
+}
+
+/* The cyclic redundancy check of PNG, bit by bit. */
+static unsigned crc_of(const unsigned char *bytes, size_t length)
+{
+    unsigned crc = ~0u;
+    for (size_t i = 0; i < length; i++) {
+        crc ^= bytes[i];
+        for (int k = 0; k < 8; k++) crc = crc >> 1 ^ (crc & 1 ? 0xedb88320u : 0);
+    }
+    return ~crc;
+}
+
+/* png_rgba with a chunk eXIf of one tag after its header; returns its length. */
+static size_t add_orientation(unsigned char *bytes, int tag)
+{
+    unsigned char chunk[38] = {0,   0, 0,  26, 'e', 'X', 'I', 'f', 'M', 'M',  0, 42, 0, 0,
+                               0,   8, 0,  1,  1,   0x12, 0, 3, 0, 0, 0, 1, 0, (unsigned char)tag};
+    unsigned crc = crc_of(chunk + 4, 30);
+    for (int k = 0; k < 4; k++) chunk[34 + k] = (unsigned char)(crc >> (24 - 8 * k));
+    memcpy(bytes, png_rgba, 33);
+    memcpy(bytes + 33, chunk, 38);
+    memcpy(bytes + 71, png_rgba + 33, sizeof png_rgba - 33);
+    return sizeof png_rgba + 38;
+}
+
+/* Red and green above grey and white, turned by each tag [Exif 2.3: where row 0 and column 0 are]. */
+static void png_orientation(void **state)
+{
+    (void)state;
+    static const int pixel[9][4] = {{0},          {0, 1, 2, 3}, {1, 0, 3, 2}, {3, 2, 1, 0}, {2, 3, 0, 1},
+                                    {0, 2, 1, 3}, {2, 0, 3, 1}, {3, 1, 2, 0}, {1, 3, 0, 2}};
+    static const double grey[4] = {0.2126, 0.7152, 127 / 255.0, 1};
+    for (int tag = 1; tag <= 8; tag++) {
+        unsigned char bytes[sizeof png_rgba + 38];
+        Image image;
+        Error err = {""};
+        if (!image_parse("turned.png", bytes, add_orientation(bytes, tag), &image, &err))
+            fail_msg("%s", err.text);
+        for (int k = 0; k < 4; k++) expect_close(image.grey[k], grey[pixel[tag][k]], 1e-15);
+        image_clear(&image);
+    }
+}
+
+/* 7 x 5 pixels of which 3 x 2 are useful: boxes of 2 or 3 a side, each its mean. */
+static void boxes(void **state)
+{
+    (void)state;
+    char text[256] = "P2 7 5 34";
+    static const int left[] = {0, 2, 4, 7}, top[] = {0, 2, 5};
+    Image image, rgb[3];
+    Error err = {""};
+    for (int i = 0; i < 35; i++) sprintf(text + strlen(text), " %d", i);
+    write_file("image_boxes.pgm", text, strlen(text));
+    if (!image_read_useful("image_boxes.pgm", (const double[]){3, 2.5}, &image, rgb, &err))
+        fail_msg("%s", err.text);
+    assert_true(image.width == 3 && image.height == 2);
+    for (int i = 0; i < 2; i++)
+        for (int j = 0; j < 3; j++) {
+            double sum = 0, count = 0;
+            for (int y = top[i]; y < top[i + 1]; y++)
+                for (int x = left[j]; x < left[j + 1]; x++) sum += 7 * y + x, count++;
+            expect_close(image.grey[3 * i + j], sum / count / 34, 1e-15);
+            expect_close(rgb[2].grey[3 * i + j], sum / count / 34, 1e-15);
+        }
+    image_clear(&image);
+    for (int c = 0; c < 3; c++) image_clear(&rgb[c]);
+
+    /* what is useful is counted upright: 16 x 8 pixels that stand */
+    const char *turned = SOURCE_DIR "/tests/images/turned.jpg";
+    assert_true(image_read_useful(turned, (const double[]){8, 8}, &image, NULL, &err));
+    assert_true(image.width == 8 && image.height == 16);
+    image_clear(&image);
+    assert_true(image_read_useful(turned, (const double[]){2, 4}, &image, NULL, &err));
+    assert_true(image.width == 2 && image.height == 4);
+    image_clear(&image);
 }
 
 /* Pixel centres give the pixels, the middle between two their mean; beyond the edges nothing changes any
@@ -272,6 +404,9 @@ int main(void)
         cmocka_unit_test_teardown(png_kinds, nothing_leaks),
         cmocka_unit_test_teardown(pgm_refused, nothing_leaks),
         cmocka_unit_test_teardown(png_refused, nothing_leaks),
+        cmocka_unit_test_teardown(without_ends, nothing_leaks),
+        cmocka_unit_test_teardown(png_orientation, nothing_leaks),
+        cmocka_unit_test_teardown(boxes, nothing_leaks),
         cmocka_unit_test_teardown(samples, nothing_leaks),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -34,6 +34,8 @@ static PlotLayer layers[] = {
      .points = red}};
 static const Plot plot = {.paper = {148, 105}, .layer_count = 3, .layers = layers};
 
+static Plotter usual;
+
 static char *file_text(const char *path)
 {
     FILE *file = fopen(path, "rb");
@@ -137,7 +139,7 @@ static void refused_plots(void **state)
     char *before = written_svg(&plot);
     assert_false(plot_write_svg("plot.svg", &wrong, &err));
     assert_non_null(strstr(err.text, "layer 1 has a point at (nan, 3) mm"));
-    assert_false(plot_write_machine("plot.svg", &wrong, &profile, plot_speed_default(), &err));
+    assert_false(plot_write_machine("plot.svg", &wrong, &profile, &usual, &err));
     points[2].x = 201;
     assert_false(plot_write_svg("plot.svg", &wrong, &err));
     char *after = file_text("plot.svg");
@@ -172,7 +174,7 @@ static Drawn read_hpgl(const char *c)
         int x, y, pen, given = sscanf(c + 2, "%d,%d;", &x, &y);
         if (sscanf(c, "SP%d;", &pen) == 1) drawn.pen[drawn.pens++] = pen;
         bool lowers = !strncmp(c, "PD", 2), lifts = !strncmp(c, "PU", 2);
-        assert_true(lowers || lifts || !strncmp(c, "SP", 2) || !strncmp(c, "IN;", 3));
+        assert_true(lowers || lifts || !strncmp(c, "SP", 2) || !strncmp(c, "IN;", 3) || !strncmp(c, "VS", 2));
         if (lowers && !down) drawn.lines++, draw_to(&drawn, at);
         down = lowers || (down && !lifts);
         if (given == 2 && (lowers || lifts)) at = (Vec2){x / 40.0, 105 - y / 40.0};
@@ -252,7 +254,7 @@ static void machines(void **state)
         Error err = {""};
         PlotProfile profile;
         assert_true(plot_profile(names[m], &profile, &err));
-        if (!plot_write_machine("plot.out", &plot, &profile, plot_speed_default(), &err))
+        if (!plot_write_machine("plot.out", &plot, &profile, &usual, &err))
             fail_msg("%s", err.text);
         char *text = file_text("plot.out");
         Drawn drawn = m == 0   ? read_hpgl(text)
@@ -264,6 +266,75 @@ static void machines(void **state)
         assert_true(drawn.pens >= 2 && drawn.pen[0] == 1 && drawn.pen[1] == 3);
         if (m)
             assert_true(strstr(text, "M0") && !strstr(strstr(text, "M0") + 1, "M0")); /* one change of pens */
+        mem_free(text);
+    }
+}
+
+/* No byte of a name is one that a machine obeys in comments; the SVG has the name as it is. */
+static void names_for_machines(void **state)
+{
+    (void)state;
+    static const char *const languages[] = {"gcode", "gcode_servo", "hpgl"};
+    char name[512] = "Pen 0.5!?~ \xc4\x8c\xc4\x84 (x);%$*\r\n";
+    memset(name + strlen(name), 'n', 400);
+    PlotLayer layer = layers[0];
+    layer.name = name;
+    Plot one = {.paper = {148, 105}, .layer_count = 1, .layers = &layer};
+    for (int m = 0; m < 3; m++) {
+        Error err = {""};
+        PlotProfile profile;
+        assert_true(plot_profile(languages[m], &profile, &err));
+        if (!plot_write_machine("plot.out", &one, &profile, &usual, &err))
+            fail_msg("%s", err.text);
+        char *text = file_text("plot.out");
+        if (m < 2) assert_non_null(strstr(text, "; layer 1-Pen 0.5___ __ _x_______nnn"));
+        int column = 0;
+        for (const char *c = text; *c; c++) {
+            assert_true(*c == '\n' || (*c >= 0x20 && *c < 0x7f && !strchr("!?~()%$*", *c)));
+            column = *c == '\n' ? 0 : column + 1;
+            assert_true(column < 80);
+        }
+        mem_free(text);
+    }
+    char *text = written_svg(&one);
+    assert_non_null(strstr(text, "1-Pen 0.5!?~ \xc4\x8c\xc4\x84 (x);%$*nnn"));
+    mem_free(text);
+}
+
+static int count_of(const char *text, const char *word)
+{
+    int count = 0;
+    for (const char *at = text; (at = strstr(at, word)); at += strlen(word)) count++;
+    return count;
+}
+
+/* The words that lift and lower the pen of three strokes, and how fast HPGL draws. */
+static void lifts(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *language, *up, *down;
+        Plotter plotter;
+    } rows[] = {
+        {"gcode", "G0 Z3 F210\n", "G1 Z-0.5 F210\n", {.lift = 2, .z_up = 3, .z_down = -0.5, .z_speed = 10}},
+        {"gcode", "G0 Z3 F60\n", "G1 Z-0.5 F60\n", {.lift = 2, .z_up = 3, .z_down = -0.5, .z_speed = 1}},
+        {"gcode", "G0 Z5 F600\n", "G1 Z0 F600\n", {.lift = 0, .z_up = 5, .z_speed = 10}},
+        {"gcode_servo", "M3 S90\nG4 P0.5\n", "M3 S10\nG4 P0.5\n",
+         {.lift = 1, .pause = 1, .z_speed = 1, .servo_up = "M3 S90", .servo_down = "M3 S10"}},
+        {"gcode_servo", "M280 P0 S90\nG4 P125\n", "M280 P0 S9\nG4 P125\n",
+         {.lift = 0.25, .pause = 1e-3, .z_speed = 1, .servo_up = "M280 P0 S90", .servo_down = "M280 P0 S9"}},
+        {"hpgl", "IN;VS4;\n", "PD;\n", {.z_speed = 1}},
+    };
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        Error err = {""};
+        PlotProfile profile;
+        Plotter plotter = rows[k].plotter;
+        plotter.down = 40, plotter.up = 100;
+        assert_true(plot_profile(rows[k].language, &profile, &err));
+        if (!plot_write_machine("plot.out", &plot, &profile, &plotter, &err)) fail_msg("%s", err.text);
+        char *text = file_text("plot.out");
+        assert_int_equal(count_of(text, rows[k].down), 3);
+        assert_int_equal(count_of(text, rows[k].up), !strcmp(rows[k].language, "gcode") ? 4 : k == 5 ? 1 : 3);
         mem_free(text);
     }
 }
@@ -283,13 +354,14 @@ static void own_profile(void **state)
                            .decimals = 2,
                            .tolerance = 1000};
     Error err = {""};
-    if (!plot_write_machine("plot.out", &plot, &profile, (PlotSpeed){.down = 0.5, .up = 1}, &err))
+    Plotter slow = {.down = 0.5, .up = 1};
+    if (!plot_write_machine("plot.out", &plot, &profile, &slow, &err))
         fail_msg("%s", err.text);
     char *text = file_text("plot.out");
     assert_string_equal(text, "{ {y\n[black]\n"
                               "(1;2){nothing}>1.5,2.5@30^60\n"
                               "(4;3){nothing}>7,3@30>10,4.75@30^60\n"
-                              "wait 3\n[a \"red\" <&\xc3\xa9> ]\n"
+                              "wait 3\n[a _red_ _____]\n"
                               "(0.5;0.5){nothing}>0.5,3.5@30^60\n"
                               "end");
     mem_free(text);
@@ -301,17 +373,18 @@ static void times(void **state)
     Vec2 points[] = {{30, 40}, {30, 50}, {30, 60}, {30, 70}, {60, 70}, {70, 70}, {80, 70}, {90, 70}};
     int start[] = {0, 4, 8};
     PlotLayer layer = {.name = "x", .pen = 1, .count = 2, .start = start, .points = points};
-    PlotEstimate estimate = plot_estimate(&layer, (PlotSpeed){.down = 10, .up = 20, .lift = 0.25});
+    Plotter plotter = {.down = 10, .up = 20, .lift = 0.25};
+    PlotEstimate estimate = plot_estimate(&layer, &plotter);
     assert_true(fabs(estimate.ink - 60) < 1e-9);
     assert_true(fabs(estimate.travel - (50 + 30 + hypot(90, 70))) < 1e-9);
     assert_true(fabs(estimate.seconds - (6 + estimate.travel / 20 + 0.5)) < 1e-9);
-    PlotEstimate empty = plot_estimate(&layers[1], plot_speed_default());
+    PlotEstimate empty = plot_estimate(&layers[1], &usual);
     assert_true(empty.ink == 0 && empty.travel == 0 && empty.seconds == 0);
 
     /* A quarter of a circle of 10 mm as a cubic: its length is known to 1e-6. */
     Vec2 arc[] = {{10, 0}, {10, 5.5228475}, {5.5228475, 10}, {0, 10}};
     PlotLayer quarter = {.name = "x", .pen = 1, .count = 1, .start = red_start, .points = arc};
-    assert_true(fabs(plot_estimate(&quarter, plot_speed_default()).ink - 15.7091) < 2e-3);
+    assert_true(fabs(plot_estimate(&quarter, &usual).ink - 15.7091) < 2e-3);
 }
 
 static void papers(void **state)
@@ -351,9 +424,11 @@ static int live(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(svg_words),     cmocka_unit_test(svg_is_xml),
-                                       cmocka_unit_test(refused_plots), cmocka_unit_test(machines),
-                                       cmocka_unit_test(own_profile),   cmocka_unit_test(times),
-                                       cmocka_unit_test(papers)};
+    usual = plotter_default();
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(svg_words),   cmocka_unit_test(svg_is_xml), cmocka_unit_test(refused_plots),
+        cmocka_unit_test(machines),    cmocka_unit_test(names_for_machines),
+        cmocka_unit_test(own_profile), cmocka_unit_test(times),      cmocka_unit_test(papers),
+        cmocka_unit_test(lifts)};
     return cmocka_run_group_tests(tests, NULL, live);
 }

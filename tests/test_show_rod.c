@@ -5,6 +5,7 @@
 #include "io/result.h"
 #include "io/table.h"
 #include "leaks.h"
+#include "png_fixture.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -119,7 +120,7 @@ static Page draw(const ShowDef *def)
     Page page = {0};
     Error err = {""};
     if (!show_result(RESULT, "test_show_rod.png", def, &err) ||
-        !canvas_read_png("test_show_rod.png", &page.rgb, &page.width, &page.height, &err))
+        !png_read("test_show_rod.png", &page.rgb, &page.width, &page.height, &err))
         fail_msg("%s", err.text);
     return page;
 }

@@ -4,6 +4,7 @@
 #include "io/canvas.h"
 #include "spline/plot.h"
 #include "spline/preview.h"
+#include "png_fixture.h"
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -204,7 +205,7 @@ static void previews(void **state)
         int width, height, dark = 0, red = 0, left = beside ? 600 : 0;
         if (!spline_preview("preview.png", &plot, &page, beside ? &target : NULL, 600, &err))
             fail_msg("%s", err.text);
-        if (!canvas_read_png("preview.png", &rgb, &width, &height, &err)) fail_msg("%s", err.text);
+        if (!png_read("preview.png", &rgb, &width, &height, &err)) fail_msg("%s", err.text);
         assert_int_equal(width, 600 + left);
         assert_int_equal(height, 400);
         for (int i = 0; i < height;
