@@ -324,8 +324,9 @@ static void hanging(const char *name, BendingModel bending, double thickness, do
 }
 
 /* A soft strip with a hard magnetic chip at its end, turned by 135 degrees. */
-static void chip(const char *name, BendingModel bending, double thickness, double young)
+static void chip(const char *name, BendingModel bending, double thickness, double field)
 {
+    const double young = 1e6;
     Body b = sheet_body(0.03, 0.003, 60, 6, bending, thickness, 0.45, young);
     const Mesh *mesh = b.shell->mesh;
     clamp_root(&b);
@@ -333,7 +334,7 @@ static void chip(const char *name, BendingModel bending, double thickness, doubl
     for (int f = 0; f < mesh->face_count; f++)
         if (mesh->rest[mesh->faces[f][0]][0] >= 0.027)
             magnetise(&b, f, 6e5, 0, 0), b.p[b.shell->young + f] = 1e5 * young;
-    set_field(&b, 0.02 * cos(0.75 * M_PI), 0, 0.02 * sin(0.75 * M_PI));
+    set_field(&b, field * cos(0.75 * M_PI), 0, field * sin(0.75 * M_PI));
     Count count = {0};
     solve(&b, 1, NULL, &count);
     print_count(name, bending, &count, out_of_plane(&b));
@@ -348,8 +349,9 @@ static void stiff_sheets(BendingModel bending)
     hanging("hung_steel", bending, 1e-3, 2e11, 7800, false);
     hanging("hung_paper_by_corner", bending, 1e-4, 3e9, 800, true);
     hanging("hinged_magnet", bending, 1e-4, 1e11, 0, false);
-    chip("chip_100um", bending, 1e-4, 1e6);
-    chip("chip_20um", bending, 2e-5, 1e6);
+    chip("chip_1mm_20mT", bending, 1e-3, 0.02);
+    chip("chip_300um_20mT", bending, 3e-4, 0.02);
+    chip("chip_100um_1mT", bending, 1e-4, 1e-3);
 }
 
 void bench_equilibria(void)
