@@ -12,3 +12,4 @@ void bench_trajectory(void);
 void bench_rod(void);
 void bench_spline(void);
 void bench_draw(void);
+void bench_equilibria(void);

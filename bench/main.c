@@ -13,6 +13,7 @@ static const struct {
     {"factor", bench_factor},
     {"march", bench_march},
     {"trajectory", bench_trajectory},
+    {"equilibria", bench_equilibria},
     {"design", bench_design},
     {"rod", bench_rod},
     {"spline", bench_spline},

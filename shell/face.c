@@ -17,3 +17,14 @@ FaceFrame face_frame(const Shell *shell, int face)
     }
     return frame;
 }
+
+void face_gradients(const Shell *shell, int face, double b[3][2])
+{
+    FaceFrame frame = face_frame(shell, face);
+    Vec3 along = vec3_unit(vec3_load(frame.hat[0])); /* any direction in the plane */
+    Vec3 across = vec3_cross(vec3_load(frame.normal), along);
+    for (int i = 0; i < 3; i++) {
+        b[i][0] = vec3_dot(vec3_load(frame.hat[i]), along);
+        b[i][1] = vec3_dot(vec3_load(frame.hat[i]), across);
+    }
+}

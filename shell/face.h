@@ -25,6 +25,9 @@ typedef struct FaceFrame {
 
 FaceFrame face_frame(const Shell *shell, int face);
 
+/* The same gradients in two axes of the face's rest plane, 1/m. */
+void face_gradients(const Shell *shell, int face, double b[3][2]);
+
 /* One parameter per face. */
 static inline Pack face_param(const Shell *shell, int pack, const double *values, int width, int component)
 {

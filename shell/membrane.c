@@ -5,7 +5,7 @@
 #include "base/memory.h"
 #include "shell/face.h"
 #include "shell/terms.h"
-#include "base/vec3.h"
+#include "shell/turn.h"
 #include "solve/element.h"
 
 typedef struct MembranePack {
@@ -16,6 +16,7 @@ typedef struct MembranePack {
 typedef struct Membrane {
     const Shell *shell;
     MembranePack *packs;
+    Turn *turn;
 } Membrane;
 
 static int membrane_count(const void *self)
@@ -40,22 +41,56 @@ typedef struct Strain {
     Pack s00, s01, s11; /* second Piola-Kirchhoff stress over Young's modulus */
 } Strain;
 
+/* f0, f1 = sum_i v_i b_i^T: the gradient of a field on the face. */
+static void gradient(const MembranePack *at, const Pack *v, Pack3 *f0, Pack3 *f1)
+{
+    *f0 = *f1 = (Pack3){0};
+    for (int i = 0; i < 3; i++) {
+        *f0 = pack3_axpy(at->b[i][0], pack3_load(v + 3 * i), *f0);
+        *f1 = pack3_axpy(at->b[i][1], pack3_load(v + 3 * i), *f1);
+    }
+}
+
+static void set_stress(Strain *s, double poisson)
+{
+    double shear = 1 / (1 + poisson), bulk = poisson / (1 - poisson * poisson);
+    Pack trace = bulk * (s->g00 + s->g11);
+    s->s00 = shear * s->g00 + trace;
+    s->s01 = shear * s->g01;
+    s->s11 = shear * s->g11 + trace;
+}
+
 static Strain strain(const MembranePack *at, double poisson, const Pack *x)
 {
     Strain s = {0};
-    for (int i = 0; i < 3; i++) {
-        s.f0 = pack3_axpy(at->b[i][0], pack3_load(x + 3 * i), s.f0);
-        s.f1 = pack3_axpy(at->b[i][1], pack3_load(x + 3 * i), s.f1);
-    }
+    gradient(at, x, &s.f0, &s.f1);
     s.g00 = 0.5 * (pack3_dot(s.f0, s.f0) - 1);
     s.g01 = 0.5 * pack3_dot(s.f0, s.f1);
     s.g11 = 0.5 * (pack3_dot(s.f1, s.f1) - 1);
-    double shear = 1 / (1 + poisson), bulk = poisson / (1 - poisson * poisson);
-    Pack trace = bulk * (s.g00 + s.g11);
-    s.s00 = shear * s.g00 + trace;
-    s.s01 = shear * s.g01;
-    s.s11 = shear * s.g11 + trace;
+    set_stress(&s, poisson);
     return s;
+}
+
+/* The stress that the last step was to bring, of the strain G(x0) + DG(x0) d: what a step stretches beside that, to second
+ * order, the next one takes back, and it must not pass for stiffness [mixed integration points: Magisano, Leonetti,
+ * Garcea 2017]. */
+static void extrapolate(const Membrane *membrane, int pack, const Point *at, Strain *s)
+{
+    const MembranePack *face = &membrane->packs[pack];
+    Pack x[9], d[9];
+    for (int l = 0; l < PACK_LANES; l++) {
+        int dof[9];
+        membrane_dofs(membrane, face_of_lane(membrane->shell, pack, l), dof);
+        for (int i = 0; i < 9; i++) x[i][l] = at->x_from[dof[i]], d[i][l] = at->step[dof[i]];
+    }
+    Strain from = strain(face, membrane->shell->poisson, x);
+    Pack3 e0, e1;
+    gradient(face, d, &e0, &e1);
+    from.g00 += pack3_dot(from.f0, e0);
+    from.g11 += pack3_dot(from.f1, e1);
+    from.g01 += 0.5 * (pack3_dot(from.f0, e1) + pack3_dot(from.f1, e0));
+    set_stress(&from, membrane->shell->poisson);
+    s->s00 = from.s00, s->s01 = from.s01, s->s11 = from.s11;
 }
 
 /* S b_i */
@@ -108,9 +143,11 @@ static Pack membrane_eval(const void *self, int pack, const Point *at, const Pac
     const MembranePack *face = &membrane->packs[pack];
     Strain s = strain(face, shell->poisson, x);
     Pack factor = face->volume * face_param(shell, pack, at->p + shell->young, 1, 0);
+    Pack energy = 0.5 * factor * (s.g00 * s.s00 + 2 * s.g01 * s.s01 + s.g11 * s.s11);
     if (g) forces(face, &s, factor, g);
+    if (H && at->x_from) extrapolate(membrane, pack, at, &s);
     if (H) stiffness(face, &s, shell->poisson, factor, H);
-    return 0.5 * factor * (s.g00 * s.s00 + 2 * s.g01 * s.s01 + s.g11 * s.s11);
+    return energy;
 }
 
 /* The force is linear in Young's modulus. */
@@ -137,8 +174,14 @@ static void membrane_param_forward(const void *self, int pack, const Point *at, 
     forces(face, &s, face->volume * face_param(shell, pack, dp + shell->young, 1, 0), r);
 }
 
+static void membrane_follow(void *self, const double *x, const double *d, double a, double *to)
+{
+    turn_follow(((Membrane *)self)->turn, x, d, a, to);
+}
+
 static void membrane_destroy(void *self)
 {
+    turn_destroy(((Membrane *)self)->turn);
     mem_free(((Membrane *)self)->packs);
     mem_free(self);
 }
@@ -146,24 +189,21 @@ static void membrane_destroy(void *self)
 static const TermOps membrane_ops = {
     .name = "membrane", .count = membrane_count, .size = membrane_size, .dofs = membrane_dofs,
     .eval = membrane_eval, .param = membrane_param, .param_forward = membrane_param_forward,
-    .destroy = membrane_destroy,
+    .follow = membrane_follow, .destroy = membrane_destroy,
 };
 
 Term shell_membrane_term(const Shell *shell)
 {
     Membrane *membrane = mem_alloc(1, sizeof *membrane);
     membrane->shell = shell;
+    membrane->turn = turn_create(shell);
     membrane->packs = mem_alloc((size_t)face_pack_count(shell), sizeof *membrane->packs);
     for (int k = 0; k < face_pack_count(shell) * PACK_LANES; k++) {
         int face = face_of_lane(shell, k / PACK_LANES, k % PACK_LANES), l = k % PACK_LANES;
         MembranePack *pack = &membrane->packs[k / PACK_LANES];
-        FaceFrame frame = face_frame(shell, face);
-        Vec3 along = vec3_unit(vec3_load(frame.hat[0])); /* any direction in the plane */
-        Vec3 across = vec3_cross(vec3_load(frame.normal), along);
-        for (int i = 0; i < 3; i++) {
-            pack->b[i][0][l] = vec3_dot(vec3_load(frame.hat[i]), along);
-            pack->b[i][1][l] = vec3_dot(vec3_load(frame.hat[i]), across);
-        }
+        double b[3][2];
+        face_gradients(shell, face, b);
+        for (int i = 0; i < 6; i++) pack->b[i / 2][i % 2][l] = b[i / 2][i % 2];
         pack->volume[l] = shell->mesh->rest_area[face] * shell->thickness;
     }
     return (Term){&membrane_ops, membrane};

@@ -1,37 +1,21 @@
-#include "solve/newton.h"
+#include "solve/newton_private.h"
 #include "base/memory.h"
-#include "base/random.h"
 #include <float.h>
 #include <math.h>
 #include <string.h>
 
-enum { HALVINGS = 30, INVERSE_ITERATIONS = 8, CURVATURE_TRIES = 25 };
+enum { HALVINGS = 30, BASE_CG_MAX = 12 };
 
 static const double SHIFT_LAST = 1e8;        /* D: beyond this a step is no longer a Newton step       */
 static const double STALL_SHIFT = 1e6;       /* D: no decrease even with such a shift                  */
-static const double CURVATURE_STEP = 0.05;   /* body's measure: first step along negative curvature    */
-static const double CURVATURE_LAST = 0.5;    /* ... and the last                                       */
-static const double ZERO_CURVATURE = 1e-12;  /* v'Hv with v'Dv = 1 that counts as zero                 */
-
-typedef struct Search {
-    System *sys;
-    const NewtonDef *def;
-    int n;
-    Point at;                       /* at.x is x                                               */
-    double *x, *gradient, *step;    /* [n]                                                     */
-    double *trial, *trial_gradient; /* [n]                                                     */
-    double *mode, *product;         /* [n] direction of lowest curvature, kept between uses    */
-    bool mode_known;
-    double shift, shift_kept; /* in use; remembered                                      */
-    int shifted;              /* iterations in a row that needed one                     */
-    Evaluation now;
-    NewtonInfo info;
-} Search;
+static const double LONG_STEP = 1e-4;        /* body's measure: shorter ones need no extrapolated stress */
+static const double BASE_CG_TOL = 1e-4;      /* what is left of the base shift's part in a step        */
 
 NewtonDef newton_default(void)
 {
     return (NewtonDef){.max_iterations = 300, .step_tol = 1e-8, .force_tol = 1e-6, .step_cap = 0.25,
-                       .cg_tol = 1e-3, .shift_first = 1e-8, .shift_growth = 4, .armijo = 1e-4, .shifted_max = 3};
+                       .cg_tol = 1e-3, .shift_first = 1e-8, .shift_least = 1e-10, .shift_growth = 4,
+                       .shift_decay = 16, .armijo = 1e-4, .shifted_max = 3};
 }
 
 static const struct {
@@ -41,7 +25,8 @@ static const struct {
     [NEWTON_SADDLE] = {"saddle", "in equilibrium but unstable, and no way down was found"},
     [NEWTON_NEUTRAL] = {"neutral", "in equilibrium with a mode of zero stiffness (a buckling point or a free motion)"},
     [NEWTON_STALLED] = {"stalled", "no step lowers the energy any more, but the forces are not in balance"},
-    [NEWTON_MAX_ITERATIONS] = {"max_iterations", "the energy was still falling at the last iteration"},
+    [NEWTON_MAX_ITERATIONS] = {"max_iterations",
+                               "the energy was still falling at the last iteration: raise solver.max_iterations"},
     [NEWTON_NOT_FINITE] = {"not_finite", "energy or forces at the start are not finite numbers"},
     [NEWTON_STOPPED] = {"stopped", "interrupted"},
 };
@@ -56,34 +41,37 @@ const char *newton_status_text(NewtonStatus status)
     return status_rows[status].text;
 }
 
-static double dot(int n, const double *a, const double *b)
-{
-    double sum = 0;
-    for (int i = 0; i < n; i++) sum += a[i] * b[i];
-    return sum;
-}
-
-static bool factor(Search *s, double shift)
+bool search_factor(Search *s, double shift)
 {
     s->info.factorizations++;
     return system_factor(s->sys, shift);
 }
 
-/* The smallest shift, from the remembered one on, that makes the matrix positive definite. */
+/* The smallest shift, from a part of the remembered one on, that makes the matrix positive definite. */
 static bool factor_shifted(Search *s)
 {
     const NewtonDef *def = s->def;
-    s->shift = s->shift_kept < def->shift_growth * def->shift_first ? 0 : s->shift_kept / def->shift_growth;
-    while (!factor(s, s->shift)) {
-        s->shift = fmax(def->shift_first, def->shift_growth * s->shift);
+    double kept = s->shift_kept;
+    s->shift = kept < def->shift_decay * def->shift_least ? 0 : kept / def->shift_decay;
+    while (!search_factor(s, s->shift)) {
+        s->shift = s->shift > 0 ? def->shift_growth * s->shift : kept > 0 ? def->shift_least : def->shift_first;
         if (s->shift > SHIFT_LAST) return false;
     }
     return true;
 }
 
-static double energy_at(Search *s, const double *direction, double a, Evaluation *evaluation)
+/* to = where a step leads: in statics along the way that the terms know. */
+static void advance(Search *s, const double *direction, double a, double *to)
 {
-    for (int i = 0; i < s->n; i++) s->trial[i] = s->x[i] + a * direction[i];
+    if (s->follows)
+        system_follow(s->sys, s->x, direction, a, to);
+    else
+        for (int i = 0; i < s->n; i++) to[i] = s->x[i] + a * direction[i];
+}
+
+double search_energy(Search *s, const double *direction, double a, Evaluation *evaluation)
+{
+    advance(s, direction, a, s->trial);
     system_project(s->sys, s->trial);
     Point at = s->at;
     at.x = s->trial;
@@ -102,69 +90,31 @@ static bool slope_is_fine(Search *s, const Evaluation *trial, double slope)
     s->info.evaluations++;
     for (int i = 0; i < s->n; i++)
         if (system_is_fixed(s->sys, i)) s->trial_gradient[i] = 0;
-    return dot(s->n, s->trial_gradient, s->step) <= (2 * s->def->armijo - 1) * slope;
+    return search_dot(s->n, s->trial_gradient, s->step) <= (2 * s->def->armijo - 1) * slope;
 }
 
 /* Largest of 1, 1/2, 1/4 ... along the step that satisfies Armijo's rule; leaves the point in trial; 0: none. */
 static double line_search(Search *s)
 {
-    double slope = dot(s->n, s->gradient, s->step), a = 1;
+    double slope = search_dot(s->n, s->gradient, s->step), a = 1;
     for (int k = 0; k < HALVINGS; k++, a /= 2) {
         Evaluation trial;
-        double energy = energy_at(s, s->step, a, &trial);
+        double energy = search_energy(s, s->step, a, &trial);
         if (energy <= s->now.energy + s->def->armijo * a * slope) return a;
         if (isfinite(energy) && slope_is_fine(s, &trial, slope)) return a;
     }
     return 0;
 }
 
-/* Inverse iteration with the factor at hand: the mode of lowest curvature v'Hv/v'Dv, scaled to v'Dv = 1 and pointing
- * downhill. Returns its curvature. */
-static double lowest_mode(Search *s)
+void search_move(Search *s, const double *direction, double a)
 {
-    const double *scale = system_scale(s->sys);
-    Random random = random_seed(1);
-    for (int i = 0; !s->mode_known && i < s->n; i++)
-        s->mode[i] = scale[i] > 0 ? random_signed(&random) / sqrt(scale[i]) : 0;
-    s->mode_known = true;
-    for (int k = 0; k < INVERSE_ITERATIONS; k++) {
-        for (int i = 0; i < s->n; i++) s->product[i] = scale[i] * s->mode[i];
-        system_solve(s->sys, s->product, s->mode);
-        double norm = 0;
-        for (int i = 0; i < s->n; i++) norm += scale[i] * s->mode[i] * s->mode[i];
-        norm = 1 / sqrt(norm);
-        for (int i = 0; i < s->n; i++) s->mode[i] *= norm;
+    if (s->follows) {
+        memcpy(s->from, s->x, (size_t)s->n * sizeof *s->x);
+        for (int i = 0; i < s->n; i++) s->moved[i] = a * direction[i];
+        s->extrapolate = true;
     }
-    system_multiply(s->sys, s->mode, s->product);
-    double curvature = dot(s->n, s->mode, s->product);
-    if (dot(s->n, s->mode, s->gradient) > 0)
-        for (int i = 0; i < s->n; i++) s->mode[i] = -s->mode[i];
-    return curvature;
-}
-
-/* A step along the mode that lowers the energy by a quarter of what its curvature promises; 0: none. */
-static double curvature_step(Search *s, double curvature)
-{
-    double size = system_step_size(s->sys, s->mode), slope = dot(s->n, s->gradient, s->mode);
-    double a = CURVATURE_STEP / size;
-    for (int k = 0; k < CURVATURE_TRIES; k++, a /= 4) {
-        Evaluation trial;
-        double energy = energy_at(s, s->mode, a, &trial);
-        if (!(energy < s->now.energy + (a * slope + a * a * curvature / 2) / 4)) continue;
-        while (k == 0 && 2 * a * size <= CURVATURE_LAST) {
-            double further = energy_at(s, s->mode, 2 * a, &trial);
-            if (!(further < energy)) break;
-            energy = further;
-            a *= 2;
-        }
-        return a;
-    }
-    return 0;
-}
-
-static void move(Search *s, const double *direction, double a)
-{
-    for (int i = 0; i < s->n; i++) s->x[i] += a * direction[i];
+    advance(s, direction, a, s->trial);
+    memcpy(s->x, s->trial, (size_t)s->n * sizeof *s->x);
     system_project(s->sys, s->x);
     system_accept(s->sys, s->x);
 }
@@ -184,21 +134,14 @@ static void finish(Search *s)
     s->now = last;
 }
 
-/* Leaves along negative curvature where there is some. Returns true when the iteration is decided. */
-static bool leave_saddle(Search *s, bool small, double floor, NewtonStatus *status)
+/* step = H^-1 gradient with the factor at hand. Where that has a base shift, which may be more than what holds a free hinge, a
+ * few conjugate gradients take its part out again; they end where a motion costs nothing at all. */
+static void solve(Search *s)
 {
-    double curvature = lowest_mode(s);
-    s->info.curvature = curvature;
-    double a = curvature < 0 ? curvature_step(s, curvature) : 0;
-    if (a > 0) {
-        move(s, s->mode, a);
-        s->shifted = 0;
-        return true;
-    }
-    if (!small || s->shift == 0) return false;
-    if (fabs(curvature) < ZERO_CURVATURE) *status = NEWTON_NEUTRAL;
-    else if (s->now.gradient_max <= floor) *status = curvature < 0 ? NEWTON_SADDLE : NEWTON_NEUTRAL;
-    return *status != NEWTON_MAX_ITERATIONS;
+    int iterations = -1;
+    if (s->shift == 0 && system_base_shift(s->sys) > 0)
+        iterations = system_solve_cg(s->sys, s->gradient, BASE_CG_TOL, BASE_CG_MAX, s->step);
+    if (iterations < 0) system_solve(s->sys, s->gradient, s->step);
 }
 
 /* step = -H^-1 gradient: by conjugate gradients where they do, else with a new factor, shifted if need be. False where no
@@ -213,13 +156,13 @@ static bool newton_step(Search *s, bool small)
     } else {
         if (!factor_shifted(s)) return false;
         if (small && s->shift > 0 && s->shift_kept > 0) { /* a remembered shift proves nothing */
-            if (factor(s, 0))
+            if (search_factor(s, 0))
                 s->shift = 0;
             else
-                factor(s, s->shift);
+                search_factor(s, s->shift);
         }
         s->shift_kept = s->shift;
-        system_solve(s->sys, s->gradient, s->step);
+        solve(s);
     }
     for (int i = 0; i < s->n; i++) s->step[i] = -s->step[i];
     s->info.step = system_step_size(s->sys, s->step);
@@ -229,7 +172,7 @@ static bool newton_step(Search *s, bool small)
 static bool is_converged(const Search *s, bool small)
 {
     if (s->shift > 0) return false;
-    double gain = -dot(s->n, s->gradient, s->step);
+    double gain = -search_dot(s->n, s->gradient, s->step);
     for (int i = 0; system_multiplier_count(s->sys) && i < s->n; i++) /* what must vanish and does not counts in full */
         if (system_is_multiplier(s->sys, i)) gain += s->gradient[i] * s->step[i] + fabs(s->gradient[i] * s->step[i]);
     return (small && s->info.step <= s->def->step_tol) || gain <= s->def->energy_tol * s->now.energy_scale;
@@ -257,23 +200,44 @@ static double round_off(const Search *s)
     return 8 * DBL_EPSILON * system_stiffness_max(s->sys) * largest;
 }
 
+/* Hessian at x, of the stress that the last step was to bring or of its own. */
+static void linearise(Search *s, bool extrapolate)
+{
+    Point at = s->at;
+    if (extrapolate) at.x_from = s->from, at.step = s->moved;
+    s->now = system_hessian(s->sys, &at, s->gradient);
+    s->info.evaluations++;
+}
+
+/* The step to take from x. Near the end the Hessian is the true one: so the end is quadratic, and its factor tells of a
+ * minimum. Returns MAX_ITERATIONS as long as there is more to do. */
+static NewtonStatus find_step(Search *s, double *floor, bool *small)
+{
+    for (bool extrapolate = s->extrapolate;; extrapolate = false) {
+        linearise(s, extrapolate);
+        if (!s->now.finite) return NEWTON_NOT_FINITE;
+        *floor = round_off(s);
+        *small = s->now.gradient_max <= fmax(s->def->force_tol * s->now.force_scale, *floor);
+        if (extrapolate && *small) continue;
+        if (!newton_step(s, *small)) return NEWTON_STALLED;
+        if (!extrapolate || s->info.step >= LONG_STEP) return NEWTON_MAX_ITERATIONS;
+    }
+}
+
 /* One iteration; the status stays MAX_ITERATIONS while there is more to do. */
 static NewtonStatus iterate(Search *s)
 {
-    NewtonStatus status = NEWTON_MAX_ITERATIONS;
-    s->now = system_hessian(s->sys, &s->at, s->gradient);
-    s->info.evaluations++;
-    if (!s->now.finite) return NEWTON_NOT_FINITE;
-
-    double floor = round_off(s);
-    bool small = s->now.gradient_max <= fmax(s->def->force_tol * s->now.force_scale, floor);
-    if (!newton_step(s, small)) return NEWTON_STALLED;
+    double floor;
+    bool small;
+    NewtonStatus status = find_step(s, &floor, &small);
+    if (status != NEWTON_MAX_ITERATIONS) return status;
+    s->extrapolate = false;
     s->shifted = s->shift > 0 ? s->shifted + 1 : 0;
     if (is_converged(s, small)) {
         finish(s);
         return NEWTON_CONVERGED;
     }
-    if (((small && s->shift > 0) || s->shifted >= s->def->shifted_max) && leave_saddle(s, small, floor, &status))
+    if (((small && s->shift > 0) || s->shifted >= s->def->shifted_max) && search_leave_saddle(s, small, floor, &status))
         return status;
 
     take_multipliers(s);
@@ -281,7 +245,7 @@ static NewtonStatus iterate(Search *s)
     for (int i = 0; i < s->n; i++) s->step[i] *= shrink;
     double a = line_search(s);
     if (a > 0) {
-        move(s, s->step, a);
+        search_move(s, s->step, a);
         return status;
     }
     s->shift_kept = 160 * fmax(s->shift, s->def->shift_first);
@@ -291,10 +255,11 @@ static NewtonStatus iterate(Search *s)
 NewtonInfo newton_minimize(System *sys, const NewtonDef *def, const Point *at, double *x, const NewtonObserver *observer)
 {
     int n = system_dof_count(sys);
-    double *work = mem_alloc(6 * (size_t)n, sizeof *work);
+    double *work = mem_alloc(8 * (size_t)n, sizeof *work);
     Search s = {.sys = sys, .def = def, .n = n, .at = *at, .x = x, .gradient = work,
                 .step = work + n, .trial = work + 2 * n, .trial_gradient = work + 3 * n, .mode = work + 4 * n,
-                .product = work + 5 * n};
+                .product = work + 5 * n, .from = work + 6 * n, .moved = work + 7 * n,
+                .follows = !at->x_prev && system_has_follow(sys)};
     s.at.x = x;
     s.info.status = NEWTON_MAX_ITERATIONS;
     system_accept(sys, x);

@@ -15,8 +15,10 @@ typedef struct NewtonDef {
     int cg_iterations;   /* at most so many conjugate gradients with the last factor before a new one; default 0  */
     double cg_tol;       /* ... until the residual fell to this part; default 1e-3                               */
     double step_cap;     /* largest step, body's measure; default 0.25                                           */
-    double shift_first;  /* smallest shift tried, in parts of D; default 1e-8                                    */
-    double shift_growth; /* factor between tries, and back after a success; default 4                            */
+    double shift_first;  /* shift tried first, in parts of D; default 1e-8                                       */
+    double shift_least;  /* smallest one that is remembered; default 1e-10                                       */
+    double shift_growth; /* factor between tries; default 4                                                      */
+    double shift_decay;  /* ... and back after a success; default 16                                             */
     double armijo;       /* sufficient decrease; default 1e-4                                                    */
     int shifted_max;     /* shifted iterations in a row before negative curvature is looked for; default 3       */
 } NewtonDef;

@@ -58,8 +58,9 @@ RampInfo ramp_solve(System *sys, const Params *params, const RampDef *def, const
             info.steps++;
             continue;
         }
-        bool hopeless = newton.status == NEWTON_STOPPED || step / 2 < def->step_min;
-        if (hopeless && info.steps == 0 && newton.status != NEWTON_STOPPED)
+        bool falling = newton.status == NEWTON_MAX_ITERATIONS; /* half a load would not get there sooner */
+        bool hopeless = falling || newton.status == NEWTON_STOPPED || step / 2 < def->step_min;
+        if (hopeless && (falling || info.steps == 0) && newton.status != NEWTON_STOPPED)
             break; /* the iterate says more than the start */
         memcpy(x, kept, n * sizeof *x);
         system_memory_write(sys, memory);

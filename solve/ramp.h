@@ -1,9 +1,9 @@
 /* ramp.h - an equilibrium whose loads come on in steps: as few as it takes.
  *
- * The blocks of p that are loads go from one vector to the other, and prescribed motion goes its way, over
- * `steps` equal steps; a step that fails is halved. An equilibrium under dead loads and fixed fields does not
- * depend on the way, as long as it is the only one near; so one step is the default, and the rest is for
- * where Newton does not get there. */
+ * The blocks of p that are loads go from one vector to the other, and prescribed motion goes its way, over `steps` equal
+ * steps. A step that fails is halved; one whose energy was still falling at the last iteration has not failed, half of it would
+ * get there no sooner: there the ramp ends, and says so. An equilibrium under dead loads and fixed fields does not depend on the
+ * way, as long as it is the only one near; so one step is the default, and the rest is for where Newton does not get there. */
 #pragma once
 #include "solve/newton.h"
 #include "solve/params.h"

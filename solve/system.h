@@ -131,6 +131,11 @@ void system_param_forward(System *sys, const Point *at, const double *dp, double
 void system_prev(System *sys, const Point *at, const double *w, double *dx, double *dv);
 void system_prev_forward(System *sys, const Point *at, const double *dx, const double *dv, double *r);
 
+/* to = where the motion from x with velocity d is after the time a: x + a d, or what the terms make of it (TermOps.follow).
+ * False from system_has_follow: no term makes anything of it. */
+void system_follow(System *sys, const double *x, const double *d, double a, double *to);
+bool system_has_follow(const System *sys);
+
 /* Makes a trial x admissible, and tells the terms that x is an accepted state; both may write to x (TermOps). */
 void system_project(const System *sys, double *x);
 void system_accept(System *sys, double *x);

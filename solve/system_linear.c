@@ -191,6 +191,22 @@ void system_prev_forward(System *sys, const Point *at, const double *dx, const d
     }
 }
 
+void system_follow(System *sys, const double *x, const double *d, double a, double *to)
+{
+    for (int i = 0; i < sys->dof_count; i++) to[i] = x[i] + a * d[i];
+    for (int t = 0; t < sys->term_count; t++) {
+        const Term *term = &sys->entries[t].term;
+        if (term->ops->follow) term->ops->follow(term->self, x, d, a, to);
+    }
+}
+
+bool system_has_follow(const System *sys)
+{
+    bool found = false;
+    for (int t = 0; t < sys->term_count; t++) found = found || sys->entries[t].term.ops->follow;
+    return found;
+}
+
 void system_project(const System *sys, double *x)
 {
     for (int t = 0; t < sys->term_count; t++)

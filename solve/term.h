@@ -22,6 +22,8 @@ typedef struct Point {
     double time;     /* s; fields may depend on it                   */
     const double *x_prev, *v_prev; /* start of the step of time, whole vectors; NULL in statics */
     double dt;                     /* s; 0 in statics                                           */
+    const double *x_from, *step; /* where the last Newton step began, and that step: the Hessian then takes the stresses that
+                                  * the step was to bring (TermOps.follow); NULL: its own                               */
 } Point;
 
 typedef struct TermOps {
@@ -50,6 +52,11 @@ typedef struct TermOps {
 
     /* r = d2E/dx d(x_prev, v_prev) . (dx, dv): the tangent of prev. */
     void (*prev_forward)(const void *self, int pack, const Point *at, const Pack *x, const Pack *dx, const Pack *dv, Pack *r);
+
+    /* Moves `to`, which is x + a d, to where the motion that begins at x with velocity d is better said to be after the time
+     * a: the same to first order in a; whole vectors. Such a term's Hessian heeds Point.x_from. NULL where the straight way
+     * is as good. */
+    void (*follow)(void *self, const double *x, const double *d, double a, double *to);
 
     /* Makes a trial admissible: what follows from other dofs (the positions of an inextensible rod from its rotations)
      * is put into the whole vector x. NULL if nothing. */

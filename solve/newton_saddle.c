@@ -1,0 +1,81 @@
+/* Ways out of a saddle: the mode of lowest curvature, and how far to go along it. */
+#include "solve/newton_private.h"
+#include "base/random.h"
+#include <float.h>
+#include <math.h>
+
+enum { INVERSE_ITERATIONS = 8, CURVATURE_TRIES = 25 };
+
+static const double CURVATURE_STEP = 0.05;             /* body's measure: first step along negative curvature */
+static const double CURVATURE_LAST = 0.5;              /* ... and the last                                    */
+static const double ZERO_CURVATURE = 16 * DBL_EPSILON; /* v'Hv with v'Dv = 1: no more than its rounding       */
+static const double LEAST_SHIFT = 1e-15;               /* D: below that a factorisation decides by rounding   */
+
+/* A factor with as little shift as there may be: the modes of a thin sheet lie closer together than any shift fit for a step
+ * (1e-12 of D for a strip of 1/5000), and inverse iteration tells them apart only with one that is smaller still. */
+static void near_singular(Search *s)
+{
+    while (s->shift > LEAST_SHIFT && search_factor(s, s->shift / 16)) s->shift /= 16;
+    search_factor(s, s->shift);
+}
+
+/* Inverse iteration with the factor at hand: the mode of lowest curvature v'Hv/v'Dv, scaled to v'Dv = 1 and pointing
+ * downhill. Returns its curvature. */
+static double lowest_mode(Search *s)
+{
+    const double *scale = system_scale(s->sys);
+    Random random = random_seed(1);
+    for (int i = 0; !s->mode_known && i < s->n; i++)
+        s->mode[i] = scale[i] > 0 ? random_signed(&random) / sqrt(scale[i]) : 0;
+    s->mode_known = true;
+    for (int k = 0; k < INVERSE_ITERATIONS; k++) {
+        for (int i = 0; i < s->n; i++) s->product[i] = scale[i] * s->mode[i];
+        system_solve(s->sys, s->product, s->mode);
+        double norm = 0;
+        for (int i = 0; i < s->n; i++) norm += scale[i] * s->mode[i] * s->mode[i];
+        norm = 1 / sqrt(norm);
+        for (int i = 0; i < s->n; i++) s->mode[i] *= norm;
+    }
+    system_multiply(s->sys, s->mode, s->product);
+    double curvature = search_dot(s->n, s->mode, s->product);
+    if (search_dot(s->n, s->mode, s->gradient) > 0)
+        for (int i = 0; i < s->n; i++) s->mode[i] = -s->mode[i];
+    return curvature;
+}
+
+/* A step along the mode that lowers the energy by a quarter of what its curvature promises; 0: none. */
+static double curvature_step(Search *s, double curvature)
+{
+    double size = system_step_size(s->sys, s->mode), slope = search_dot(s->n, s->gradient, s->mode);
+    double a = CURVATURE_STEP / size;
+    for (int k = 0; k < CURVATURE_TRIES; k++, a /= 4) {
+        Evaluation trial;
+        double energy = search_energy(s, s->mode, a, &trial);
+        if (!(energy < s->now.energy + (a * slope + a * a * curvature / 2) / 4)) continue;
+        while (2 * a * size <= CURVATURE_LAST) {
+            double further = search_energy(s, s->mode, 2 * a, &trial);
+            if (!(further < energy)) break;
+            energy = further;
+            a *= 2;
+        }
+        return a;
+    }
+    return 0;
+}
+
+bool search_leave_saddle(Search *s, bool small, double floor, NewtonStatus *status)
+{
+    if (small && s->shift > 0) near_singular(s);
+    double curvature = lowest_mode(s);
+    s->info.curvature = curvature;
+    double a = curvature < 0 ? curvature_step(s, curvature) : 0;
+    if (a > 0) {
+        search_move(s, s->mode, a);
+        s->shifted = 0;
+        return true;
+    }
+    if (!small || s->shift == 0) return false;
+    if (fabs(curvature) <= ZERO_CURVATURE) *status = NEWTON_NEUTRAL;
+    else if (s->now.gradient_max <= floor) *status = curvature < 0 ? NEWTON_SADDLE : NEWTON_NEUTRAL;
+    return *status != NEWTON_MAX_ITERATIONS;
+}
