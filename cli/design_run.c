@@ -3,7 +3,6 @@
 #include "base/memory.h"
 #include "optim/optimiser.h"
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 typedef struct DesignRun {
@@ -51,19 +50,24 @@ static bool put_best(DesignRun *d)
 {
     d->slot = 1 - d->slot;
     double number = d->evaluations;
-    return d->ops->put_best(d->self, d->slot, d->err) &&
-           run_put_state(d->run, d->slot, "evaluation", &number, 1, d->err);
+    Kept row = {"evaluation", &number, 1};
+    return d->ops->put_best(d->self, d->slot, d->err) && run_put_state(d->run, d->slot, &row, 1, d->err);
 }
 
 /* The best design's state from the slot that belongs to this evaluation, if it is still there. */
-static void get_best(DesignRun *d)
+static bool get_best(DesignRun *d)
 {
     for (int slot = 0; slot < 2; slot++) {
         double number;
-        if (!run_get_state(d->run, slot, "evaluation", &number, 1) || (int)number != d->evaluations) continue;
-        if (d->ops->get_best(d->self, slot, d->u)) d->slot = slot;
-        return;
+        Kept row = {"evaluation", &number, 1};
+        bool has;
+        if (!run_get_state(d->run, slot, &row, 1, &has, d->err)) return false;
+        if (!has || (int)number != d->evaluations) continue;
+        if (!d->ops->get_best(d->self, slot, d->u, &has, d->err)) return false;
+        if (has) d->slot = slot;
+        return true;
     }
+    return true;
 }
 
 /* A vector of a recorded evaluation. */
@@ -123,7 +127,7 @@ static void accept(void *self)
     d->best = d->objective;
     if (d->improvements++ == 0) d->first = d->objective;
     if (is_replaying(d))
-        get_best(d);
+        d->failed |= !get_best(d);
     else
         d->ops->accept(d->self);
 }
@@ -181,8 +185,8 @@ static RunStatus finish(DesignRun *d, const OptimiserInfo *info)
                                                    : "no solution was found for the start of the design");
         if (interrupted) return RUN_INTERRUPTED;
         Array status = array_text("status", newton_status_name(d->evaluated.status));
-        return journal_put(d->run->journal, "final", 0, &status, 1, d->err) ? RUN_NOT_CONVERGED
-                                                                            : RUN_CANNOT_WRITE;
+        return journal_replace(d->run->journal, "final", 0, &status, 1, d->err) ? RUN_NOT_CONVERGED
+                                                                                : RUN_CANNOT_WRITE;
     }
     int every = d->ops->put_frame ? d->run->scene->output.every : 0;
     int first = every ? (d->improvements + every - 1) / every : 0; /* a resumed run has at least as many */
@@ -212,8 +216,11 @@ RunStatus design_run(Run *run, const DesignOps *ops, void *self, const double *u
                    .upper = work + 3 * n,
                    .best = INFINITY,
                    .started = clock_seconds(),
-                   .recorded = journal_count(run->journal, "evaluation"),
                    .slot = 1};
+    if (!journal_count(run->journal, "evaluation", &d.recorded, err)) {
+        mem_free(work);
+        return RUN_CANNOT_WRITE;
+    }
     design_bounds(&run->model->design, d.lower, d.upper);
     OptimiserDef def = optimiser_default();
     def.method = methods[scene->optimizer];
@@ -237,12 +244,10 @@ RunStatus design_run(Run *run, const DesignOps *ops, void *self, const double *u
     return status;
 }
 
-bool design_put_gradient(Run *run, const char *name, const char *unit, const double *values, int count,
-                         int width, Error *err)
+void design_add_gradient(Arrays *list, const char *name, const char *unit, const double *values, int count,
+                         int width)
 {
-    char path[64], of[64];
-    snprintf(path, sizeof path, "design/gradient/%s", name);
-    snprintf(of, sizeof of, unit[0] ? "m^2/(%s)" : "m^2", unit);
-    Array array = array_float(path, of, values, width > 1 ? 2 : 1, count, width);
-    return journal_put(run->journal, "final", 0, &array, 1, err);
+    char *path = arrays_keep(list, mem_format("design/gradient/%s", name));
+    char *of = arrays_keep(list, unit[0] ? mem_format("m^2/(%s)", unit) : mem_text("m^2"));
+    arrays_add(list, array_float(path, of, values, width > 1 ? 2 : 1, count, width));
 }

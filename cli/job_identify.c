@@ -59,7 +59,7 @@ static bool put_results(const Identification *o, Error *err)
     arrays_add(&list, array_float("rod/natural", "m", natural, 2, o->count * nodes, 3));
     arrays_add(&list, array_float("rod/gravity", "m/s^2", o->run->scene->rod->gravity, 1, 3, 0));
     arrays_add(&list, array_int("rod/strands", starts, 1, o->count + 1, 0));
-    return arrays_put(&list, o->run->journal, "final", 0, err);
+    return arrays_replace(&list, o->run->journal, "final", err);
 }
 
 static void say(const Identification *o)

@@ -67,7 +67,7 @@ static bool put_final(const Preview *o, const char *status)
                       array_float("final/energy/kinetic", "J", &sums.kinetic, 0, 0, 0),
                       array_float("final/energy/elastic", "J", &sums.elastic, 0, 0, 0),
                       array_float("final/energy/gravity", "J", &sums.potential, 0, 0, 0)};
-    return journal_put(o->run->journal, "final", 0, arrays, sizeof arrays / sizeof *arrays, o->err);
+    return journal_replace(o->run->journal, "final", 0, arrays, sizeof arrays / sizeof *arrays, o->err);
 }
 
 RunStatus job_preview(Run *run, Error *err)

@@ -73,13 +73,48 @@ static bool recall_step(Journal *journal, Result *result, int step, Error *err)
     return ok;
 }
 
+bool recall_keep(Journal *journal, uint32_t sum, Error *err)
+{
+    double number = sum;
+    Array array = array_float("crc32", "", &number, 0, 0, 0);
+    return journal_put(journal, "result", 0, &array, 1, err);
+}
+
+/* Older journals do not know the sum; the scene is then what both have. */
+static bool has_same_scene(Journal *journal, Result *result, bool *same, Error *err)
+{
+    Array here, there;
+    if (!journal_get(journal, "meta", 0, "scene", &here, err)) return false;
+    bool ok = result_read(result, "slender/scene", &there, err);
+    *same = ok && !strcmp(here.data, there.data);
+    array_clear(&here);
+    if (ok) array_clear(&there);
+    return ok;
+}
+
+static bool check_result(Journal *journal, Result *result, const char *path, Error *err)
+{
+    Array sum;
+    bool same;
+    if (!journal_find(journal, "result", 0, "crc32", &sum, err)) return false;
+    if (!sum.data && !has_same_scene(journal, result, &same, err)) return false;
+    if (sum.data) same = *(const double *)sum.data == result_sum(result);
+    array_clear(&sum);
+    return same ||
+           error_set(err,
+                     "%s is not the result that this run has written, and to which its frames went: put "
+                     "that back, or start anew with --force",
+                     path);
+}
+
 bool recall_frames(Journal *journal, const char *path, Error *err)
 {
     Result *result = result_open(path, err);
     if (!result) return false;
     char **paths = NULL;
-    int count = 0, steps = result_step_count(result), cells = (int)strlen(CELLS);
-    bool ok = journal_count(journal, "frame") >= steps || result_list(result, &paths, &count, err);
+    int count = 0, steps = result_step_count(result), cells = (int)strlen(CELLS), kept;
+    bool ok = check_result(journal, result, path, err) && journal_count(journal, "frame", &kept, err) &&
+              (kept >= steps || result_list(result, &paths, &count, err));
     for (int step = 0; ok && paths && step < steps; step++) {
         ok = recall_step(journal, result, step, err);
         for (int k = 0; ok && k < count; k++)

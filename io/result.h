@@ -32,10 +32,10 @@ typedef struct ResultDef {
     bool double_frames; /* scene key output.precision: double */
 } ResultDef;
 
-/* Writes the result and its sidecar. The file is built in memory (so it needs its own size in memory, twice
+/* Writes the result and its sidecar; *sum, where it is not NULL, becomes the CRC32 of the trailer. The file is built in memory (so it needs its own size in memory, twice
  * for a moment), written to a temporary file beside path, read back, synced to the disk and renamed: at every
  * moment path is the old file or the new one, whole. On false the old one is still there. */
-bool result_write(Journal *journal, const char *path, ResultDef def, Error *err);
+bool result_write(Journal *journal, const char *path, ResultDef def, uint32_t *sum, Error *err);
 
 typedef struct Result Result;
 
@@ -43,6 +43,9 @@ typedef struct Result Result;
  */
 Result *result_open(const char *path, Error *err);
 void result_close(Result *result);
+
+/* The CRC32 of the trailer: no other result has it. */
+uint32_t result_sum(const Result *result);
 
 /* The paths of all datasets, e.g. "slender/state/x", sorted by group. One block, to be freed by mem_free. */
 bool result_list(Result *result, char ***paths, int *count, Error *err);

@@ -58,16 +58,22 @@ static int *mixed_topology(const VtkCells *cells)
     return mixed;
 }
 
-bool vtk_frames_exist(Journal *journal)
+bool vtk_frames_exist(Journal *journal, bool *exist, Error *err)
 {
-    return journal_has(journal, "static", 0, "faces") || journal_has(journal, "static", 0, "lines");
+    bool faces, lines;
+    if (!journal_has(journal, "static", 0, "faces", &faces, err) ||
+        !journal_has(journal, "static", 0, "lines", &lines, err))
+        return false;
+    *exist = faces || lines;
+    return true;
 }
 
 static bool read_cells(VtkFrames *frames, Error *err)
 {
     Array array;
-    bool lines = !journal_has(frames->journal, "static", 0, "faces");
-    if (!journal_get(frames->journal, "static", 0, lines ? "lines" : "faces", &array, err)) return false;
+    if (!journal_find(frames->journal, "static", 0, "faces", &array, err)) return false;
+    bool lines = !array.data;
+    if (lines && !journal_get(frames->journal, "static", 0, "lines", &array, err)) return false;
     bool ok = !lines || check_lines(&array, frames->vertex_count, err);
     if (ok && lines) read_lines(&frames->cells, (void *)array.data, array.dims[0]);
     if (ok && !lines) read_triangles(&frames->cells, &array);
@@ -91,8 +97,8 @@ static bool read_times(VtkFrames *frames, Error *err)
 static bool read_still(VtkFrames *frames, Error *err)
 {
     Array still;
-    if (!journal_has(frames->journal, "static", 0, "still")) return true;
-    if (!journal_get(frames->journal, "static", 0, "still", &still, err)) return false;
+    if (!journal_find(frames->journal, "static", 0, "still", &still, err)) return false;
+    if (!still.data) return true;
     bool fits = still.type == ARRAY_FLOAT64 && still.rank == 2 && still.dims[1] == 3;
     if (fits) {
         frames->still_count = still.dims[0];
@@ -180,10 +186,10 @@ bool vtk_frames_put(VtkFrames *frames, const char *name, const char *path, const
     int *offsets = mem_alloc((size_t)frames->count, sizeof *offsets), stored = 0, chunk = 0, width = 0;
     bool ok = true;
     for (int k = 0; ok && k < frames->count; k++) {
-        Array array = {0};
-        if (k == 0 || journal_has(frames->journal, "frame", frames->frames[k], name)) {
-            ok = journal_get(frames->journal, "frame", frames->frames[k], name, &array, err);
-            if (ok && !rows) {
+        Array array;
+        ok = journal_find(frames->journal, "frame", frames->frames[k], name, &array, err);
+        if (array.data) {
+            if (!rows) {
                 chunk = array.dims[0], width = array.rank > 1 ? array.dims[1] : 0;
                 rows = hdf5_rows_create(frames->file, path, array.unit, chunk, width, stacked, frames->single,
                                         err);

@@ -32,8 +32,8 @@ typedef struct VtkFrames {
     int field_count;
 } VtkFrames;
 
-/* Does the journal say on which cells its frames are shown? */
-bool vtk_frames_exist(Journal *journal);
+/* Does the journal say on which cells its frames are shown? False where that cannot be read. */
+bool vtk_frames_exist(Journal *journal, bool *exist, Error *err);
 
 /* Reads the cells, times and names of a VtkFrames that has its journal and frames. False and a sentence for
  * lines that are not within the frames' points. */

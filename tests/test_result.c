@@ -59,7 +59,7 @@ static void write_result(bool double_frames)
 {
     Error err;
     Journal *journal = make_journal();
-    if (!result_write(journal, PATH, (ResultDef){double_frames}, &err)) fail_msg("%s", err.text);
+    if (!result_write(journal, PATH, (ResultDef){double_frames}, NULL, &err)) fail_msg("%s", err.text);
     journal_close(journal, &err);
 }
 
@@ -174,7 +174,7 @@ static void test_unwritable(void **state)
     (void)state;
     Error err;
     Journal *journal = make_journal();
-    assert_false(result_write(journal, "no/such/folder/x.vtkhdf", (ResultDef){0}, &err));
+    assert_false(result_write(journal, "no/such/folder/x.vtkhdf", (ResultDef){0}, NULL, &err));
     assert_string_equal(err.text, "no/such/folder/x.vtkhdf: cannot be written: No such file or directory");
     journal_close(journal, &err);
 }
@@ -240,7 +240,7 @@ static Result *write_lines(const int (*lines)[2])
 {
     Error err;
     Journal *journal = make_lines(lines);
-    if (!result_write(journal, "test_lines.vtkhdf", (ResultDef){true}, &err)) fail_msg("%s", err.text);
+    if (!result_write(journal, "test_lines.vtkhdf", (ResultDef){true}, NULL, &err)) fail_msg("%s", err.text);
     journal_close(journal, &err);
     Result *result = result_open("test_lines.vtkhdf", &err);
     if (!result) fail_msg("%s", err.text);
@@ -312,7 +312,7 @@ static void test_bad_lines(void **state)
     for (int k = 0; k < 3; k++) {
         Error err;
         Journal *journal = make_lines(bad[k]);
-        assert_false(result_write(journal, "test_lines.vtkhdf", (ResultDef){0}, &err));
+        assert_false(result_write(journal, "test_lines.vtkhdf", (ResultDef){0}, NULL, &err));
         assert_string_equal(err.text,
                             "static/lines must be rows of a first point and a number of points, 2 or more, "
                             "among the 12 of a frame");
