@@ -37,6 +37,9 @@ typedef struct DesignOps {
 /* From u[size of the model's design] on. */
 RunStatus design_run(Run *run, const DesignOps *ops, void *self, const double *u, Error *err);
 
+/* As the scene and the result have it: rows of a field over time are its flux_density. */
+const char *design_unknown_name(const Model *model, const ParamBlock *block);
+
 /* design/gradient/<name> of an unknown block; the values are borrowed until the list is put. */
 void design_add_gradient(Arrays *list, const char *name, const char *unit, const double *values, int count,
                          int width);

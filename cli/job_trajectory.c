@@ -136,7 +136,7 @@ static void add_gradients(const TrajectoryJob *job, Arrays *list)
     for (int k = 0; k < model->design.unknown_count; k++) {
         const ParamBlock *block = model->design.unknowns[k].block;
         bool control = model->control.rows && block->offset == model->control.from;
-        design_add_gradient(list, control ? "flux_density" : block->name, block->unit, dp + block->offset,
+        design_add_gradient(list, design_unknown_name(model, block), block->unit, dp + block->offset,
                             block->count, block->width);
         if (control) /* its rows, in the place of what acts at the end */
             arrays_add(list, array_float("design/flux_density", "T",
