@@ -14,6 +14,7 @@
 /* Before frames go: the result of that sum has them. */
 bool recall_keep(Journal *journal, uint32_t sum, Error *err);
 
-/* Where the result has more frames than the journal. False with a sentence where it cannot be read, or is not
- * the one that the frames went to. */
-bool recall_frames(Journal *journal, const char *result, Error *err);
+/* Where the result has more frames than the journal. `exact`: they are needed as they were computed. False
+ * with a sentence where it cannot be read, has them in single precision only, or is not the one that the
+ * frames went to. */
+bool recall_frames(Journal *journal, const char *result, bool exact, Error *err);

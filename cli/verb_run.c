@@ -194,7 +194,7 @@ static bool begin(Run *run, const RunOptions *options, Error *err)
     char *scene = yaml_write(&scene_table, run->scene);
     bool ok = !options->resume || check_resumed(run, scene, inputs, err);
     if (ok && options->resume && journal_is_finished(run->journal) && run->scene->job == JOB_SIMULATE)
-        ok = recall_frames(run->journal, run->result, err);
+        ok = recall_frames(run->journal, run->result, run->scene->output.precision == OUTPUT_DOUBLE, err);
     ok = ok && put_start(run, scene, inputs, err);
     mem_free(scene);
     mem_free(inputs);

@@ -5,7 +5,6 @@
 #include "io/safe_file.h"
 #include "io/xdmf.h"
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 #include <zlib.h>
 
@@ -14,7 +13,7 @@
 /* Every array of a kind at its own name; final/status is an attribute instead. */
 static bool put_kind(VtkFrames *w, const char *kind, Error *err)
 {
-    char **names, path[512];
+    char **names;
     int count;
     bool ok = journal_names(w->journal, kind, 0, &names, &count, err);
     for (int k = 0; ok && k < count; k++) {
@@ -22,8 +21,9 @@ static bool put_kind(VtkFrames *w, const char *kind, Error *err)
         if (!strcmp(names[k], "status") && !strcmp(kind, "final")) continue;
         ok = journal_get(w->journal, kind, 0, names[k], &array, err);
         if (!ok) break;
-        snprintf(path, sizeof path, "slender/%.400s", names[k]);
+        char *path = mem_format("slender/%s", names[k]);
         ok = hdf5_write(w->file, path, &array, (Hdf5Layout){0}, err);
+        mem_free(path);
         array_clear(&array);
     }
     if (names) mem_free(names);
@@ -44,7 +44,6 @@ static bool put_status(VtkFrames *w, Error *err)
 static bool put_history(VtkFrames *w, const char *name, const int *indices, int count, const char *unit,
                         Error *err)
 {
-    char path[512];
     double *values = mem_alloc((size_t)count, sizeof *values);
     bool ok = true;
     for (int k = 0; ok && k < count; k++) {
@@ -54,9 +53,10 @@ static bool put_history(VtkFrames *w, const char *name, const int *indices, int 
         values[k] = scalar ? *(const double *)array.data : NAN;
         array_clear(&array);
     }
-    snprintf(path, sizeof path, "slender/history/%.400s", name);
+    char *path = mem_format("slender/history/%s", name);
     Array history = array_float(path, unit, values, 1, count, 0);
     ok = ok && hdf5_write(w->file, path, &history, (Hdf5Layout){0}, err);
+    mem_free(path);
     mem_free(values);
     return ok;
 }
@@ -232,24 +232,29 @@ static bool offset_at(Result *result, const char *path, int index, int *value, E
     return ok || error_set(err, "%s is not as slender writes it", path);
 }
 
+/* Where a step's rows of an array begin: Steps/CellDataOffsets/NAME, Steps/PointDataOffsets/NAME,
+ * Steps/PointOffsets. */
+static char *offsets_of(const char *name, bool cell)
+{
+    const char *field = strchr(name, '/');
+    if (!strcmp(name, "Points")) return mem_text("VTKHDF/Steps/PointOffsets");
+    return mem_format("VTKHDF/Steps/%s%s", cell ? "CellDataOffsets" : "PointDataOffsets", field ? field : "");
+}
+
 bool result_read_step(Result *result, const char *name, int step, Array *array, Error *err)
 {
-    bool cell = !strncmp(name, "CellData/", 9), points = !strcmp(name, "Points");
-    char path[512], offsets[512];
+    bool cell = !strncmp(name, "CellData/", 9);
     int first = 0, count = 0;
-    snprintf(path, sizeof path, "VTKHDF/%.400s", name);
-    const char *field = strchr(name, '/');
-    if (points)
-        snprintf(offsets, sizeof offsets, "VTKHDF/Steps/PointOffsets");
-    else
-        snprintf(offsets, sizeof offsets, "VTKHDF/Steps/%s%.400s",
-                 cell ? "CellDataOffsets" : "PointDataOffsets", field ? field : "");
-    if (!hdf5_has(result->file, path)) return error_set(err, "the result has no %s", name);
-    if (step < 0 || step >= result->step_count)
-        return error_set(err, "the result has %d steps, from 0", result->step_count);
-    return offset_at(result, offsets, step, &first, err) &&
-           offset_at(result, cell ? "VTKHDF/NumberOfCells" : "VTKHDF/NumberOfPoints", 0, &count, err) &&
-           hdf5_read(result->file, path, first, count, array, err);
+    char *path = mem_format("VTKHDF/%s", name), *offsets = offsets_of(name, cell);
+    bool ok = hdf5_has(result->file, path) || error_set(err, "the result has no %s", name);
+    if (ok && (step < 0 || step >= result->step_count))
+        ok = error_set(err, "the result has %d steps, from 0", result->step_count);
+    ok = ok && offset_at(result, offsets, step, &first, err) &&
+         offset_at(result, cell ? "VTKHDF/NumberOfCells" : "VTKHDF/NumberOfPoints", 0, &count, err) &&
+         hdf5_read(result->file, path, first, count, array, err);
+    mem_free(path);
+    mem_free(offsets);
+    return ok;
 }
 
 const char *result_hdf5_version(void)

@@ -29,7 +29,7 @@
 #include "io/journal.h"
 
 typedef struct ResultDef {
-    bool double_frames; /* scene key output.precision: double */
+    bool double_frames; /* scene key output.precision: double; else only where float32 cannot resolve the body */
 } ResultDef;
 
 /* Writes the result and its sidecar; *sum, where it is not NULL, becomes the CRC32 of the trailer. The file is built in memory (so it needs its own size in memory, twice

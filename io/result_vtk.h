@@ -21,7 +21,7 @@ typedef struct VtkCells {
 typedef struct VtkFrames {
     Journal *journal;
     Hdf5 *file;
-    bool single; /* positions and fields as float32 */
+    bool single; /* positions and fields as float32, as long as that resolves the body */
     VtkCells cells;
     int vertex_count, count; /* vertices with those that stand still */
     int still_count;
