@@ -124,10 +124,10 @@ static double evaluate(void *self, const double *u, double *gradient)
 static void say_idle(const DesignRun *d)
 {
     const Design *design = &d->run->model->design;
-    for (int k = 0; k < design->unknown_count && norm(d->gradient, d->n) > 0; k++) {
+    for (int k = 0; k < design->unknown_count && !optimiser_is_zero(d->gradient, d->n, d->objective); k++) {
         const Unknown *unknown = &design->unknowns[k];
         int end = k + 1 < design->unknown_count ? unknown[1].first : design->size;
-        if (norm(d->gradient + unknown->first, end - unknown->first) == 0)
+        if (optimiser_is_zero(d->gradient + unknown->first, end - unknown->first, d->objective))
             progress_say(d->run->progress, "the unknown %s does not act on the objective at the start",
                          design_unknown_name(d->run->model, unknown->block));
     }

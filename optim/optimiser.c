@@ -44,14 +44,12 @@ double best_projected_norm(const Problem *problem, const double *u, const double
     return sqrt(sum);
 }
 
-/* No unknown moves F, to first order: a whole unit of the scaled unknowns would not change its last digits.
- * At the bounds, where the gradient is not zero, or at F = 0, a start may well be the best there is. */
-static bool is_stationary(const Best *best)
+bool optimiser_is_zero(const double *gradient, int n, double objective)
 {
     const double digits = 1e-12;
     double sum = 0;
-    for (int i = 0; i < best->problem->n; i++) sum += best->gradient[i] * best->gradient[i];
-    return best->objective != 0 && sqrt(sum) <= digits * fabs(best->objective);
+    for (int i = 0; i < n; i++) sum += gradient[i] * gradient[i];
+    return objective != 0 && sqrt(sum) <= digits * fabs(objective);
 }
 
 double best_evaluate(Best *best, const double *u, double *gradient)
@@ -65,7 +63,7 @@ double best_evaluate(Best *best, const double *u, double *gradient)
         memcpy(best->gradient, gradient, (size_t)problem->n * sizeof *gradient);
         best->info.gradient_norm = best_projected_norm(problem, u, gradient);
         if (best->info.first_norm == 0) best->info.first_norm = best->info.gradient_norm;
-        if (!best->succeeded) best->stationary = is_stationary(best);
+        if (!best->succeeded) best->stationary = optimiser_is_zero(gradient, problem->n, objective);
         best->succeeded = true;
         problem->accept(problem->self);
     }

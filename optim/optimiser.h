@@ -59,6 +59,10 @@ typedef struct OptimiserInfo {
 /* From u, which ends as the best point. */
 OptimiserInfo optimise(const Problem *problem, const OptimiserDef *def, double *u);
 
+/* Zero to the last digits of F: a whole unit of the scaled unknowns would not change them. Where F itself is
+ * 0 a gradient of zero is no sign of anything. */
+bool optimiser_is_zero(const double *gradient, int n, double objective);
+
 /* One word: "converged", "max_iterations", .. */
 const char *optimiser_status_name(OptimiserStatus status);
 
