@@ -157,8 +157,13 @@ static bool put_improvement(DesignRun *d)
 
 static void show(const DesignRun *d)
 {
-    progress_step(d->run->progress, d->evaluations, d->run->scene->design->iterations + 1,
-                  "F %.3e, %.3g of the start%s", d->best, d->first != 0 ? d->best / d->first : 0,
+    int total = d->run->scene->design->iterations + 1;
+    if (d->improvements == 0) {
+        progress_step(d->run->progress, d->evaluations, total, "no solution yet");
+        return;
+    }
+    progress_step(d->run->progress, d->evaluations, total, "F %.3e, %.3g of the start%s", d->best,
+                  d->first != 0 ? d->best / d->first : 0,
                   isfinite(d->objective) ? "" : "  (no solution, refused)");
 }
 

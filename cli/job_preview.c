@@ -75,7 +75,8 @@ RunStatus job_preview(Run *run, Error *err)
     const TimeScene *time = &run->scene->time;
     Preview o = {.run = run, .rod = create(run), .nodes = run->model->point_count, .err = err};
     int every = run->scene->output.every ? run->scene->output.every : 1, step = 0;
-    bool ok = put_frame(&o, 0, time->at);
+    bool ok = journal_forget(run->journal, "frame", err) && journal_forget(run->journal, "evaluation", err) &&
+              put_frame(&o, 0, time->at);
     for (; ok && step < time->steps && !progress_interrupted();) {
         pbd_rod_step(o.rod, time->step);
         double now = time->at + ++step * time->step;

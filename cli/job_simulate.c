@@ -13,8 +13,9 @@ typedef struct Simulation {
     ModelCase *c;
     double *p, *memory;
     MarchState now;
-    int step;     /* the last one that was reached */
-    bool refused; /* a formula of time is not finite; err says so */
+    int step;            /* the last one that was reached */
+    NewtonStatus status; /* of the last step                                       */
+    bool refused;        /* a formula of time is not finite; err says so           */
 } Simulation;
 
 static void load(void *self, double time, double *p)
@@ -32,7 +33,7 @@ static bool move(void *self, double time, double *x)
 
 static State shown_state(const Simulation *s)
 {
-    return (State){s->c, s->p, s->now.x, s->now.time, NEWTON_CONVERGED};
+    return (State){s->c, s->p, s->now.x, s->now.time, s->status};
 }
 
 enum { KEPT = 6 };
@@ -121,8 +122,9 @@ static RunStatus make_step(Simulation *s, const MarchDef *def)
     int every = frame_interval(s), step = s->step + 1;
     MarchInfo info;
     bool reached = march_step(s->c->sys, def, scene->time.step, s->p, &s->now, &info);
-    if (s->refused) return RUN_CANNOT_WRITE;
+    if (s->refused) return RUN_REFUSED;
     if (progress_interrupted()) return RUN_INTERRUPTED;
+    s->status = reached ? NEWTON_CONVERGED : info.newton.status;
     if (!reached) {
         progress_say(s->run->progress, "step %d failed at t = %g s: %s", step, s->now.time,
                      newton_status_text(info.newton.status));
@@ -168,7 +170,6 @@ static bool put_end(Simulation *s, const char *status)
 RunStatus job_simulate(Run *run, Error *err)
 {
     if (run->scene->rod && run->scene->rod->solver == ROD_SOLVER_PBD) return job_preview(run, err);
-    static const char *const texts[] = {[RUN_DONE] = "converged", [RUN_NOT_CONVERGED] = "stalled"};
     ModelCase *c = &run->model->cases[0];
     size_t dofs = (size_t)system_dof_count(c->sys);
     Simulation s = {.run = run,
@@ -178,8 +179,9 @@ RunStatus job_simulate(Run *run, Error *err)
                     .now = {.x = c->x, .v = mem_copy(run->model->v, dofs, sizeof(double))}};
     s.memory = mem_alloc((size_t)system_memory_count(c->sys), sizeof *s.memory);
     RunStatus status = march(&s);
-    if (status != RUN_CANNOT_WRITE && !put_end(&s, status == RUN_INTERRUPTED ? "interrupted" : texts[status]))
-        status = RUN_CANNOT_WRITE;
+    const char *said = status == RUN_INTERRUPTED ? "interrupted" : newton_status_name(s.status);
+    bool ended = status != RUN_CANNOT_WRITE && status != RUN_REFUSED;
+    if (ended && !put_end(&s, said)) status = RUN_CANNOT_WRITE;
     mem_free(s.now.v);
     mem_free(s.memory);
     return status;

@@ -211,7 +211,7 @@ RunStatus job_trajectory(Run *run, Error *err)
     RunStatus status = design_run(run, &ops, &job, u, err);
     if (job.refused) {
         *err = job.err;
-        status = RUN_CANNOT_WRITE;
+        status = RUN_REFUSED;
     }
     trajectory_destroy(job.t);
     mem_free(u);

@@ -106,6 +106,17 @@ design: {unknowns: {magnetization: {scale: 1.0e+4}, young: {bounds: [1 kPa, 1 MP
 END
 expect 0 "$program" run idle.yaml --no-picture; says "the unknown young does not act on the objective at the start"
 
+# A formula of time that is no number is a scene that is refused, whenever that shows.
+cat > formula.yaml <<'END'
+slender: 1
+job: simulate
+shell: {mesh: {shape: strip, size: [20 mm, 5 mm], n: 4}, thickness: 1 mm, young: 1 MPa, poisson: 0.3, density: 1000}
+fix: [{group: root, clamp: true}]
+flux_density: ["sqrt(0.0025 - t)", "0", "0"]
+time: {step: 1 ms, steps: 4}
+END
+expect 3 run formula.yaml; says "is not a finite number"
+
 # ---- Names of cases ----
 name=$(printf '%0240d' 0)
 two_cases() { # their names
