@@ -187,18 +187,24 @@ static bool put_start(Run *run, const char *scene, const char *inputs, Error *er
     return ok && journal_set_finished(run->journal, false, err);
 }
 
-static bool begin(Run *run, const RunOptions *options, Error *err)
+/* A run that goes on must be the one that the journal holds, with its frames; a new one only has to be put.
+ */
+static RunStatus begin(Run *run, const RunOptions *options, Error *err)
 {
     char *inputs = inputs_text(run->scene, err);
-    if (!inputs) return false;
+    if (!inputs) return RUN_REFUSED;
     char *scene = yaml_write(&scene_table, run->scene);
-    bool ok = !options->resume || check_resumed(run, scene, inputs, err);
-    if (ok && options->resume && journal_is_finished(run->journal) && run->scene->job == JOB_SIMULATE)
-        ok = recall_frames(run->journal, run->result, run->scene->output.precision == OUTPUT_DOUBLE, err);
-    ok = ok && put_start(run, scene, inputs, err);
+    bool exact = run->scene->output.precision == OUTPUT_DOUBLE,
+         extended = options->resume && journal_is_finished(run->journal) && run->scene->job == JOB_SIMULATE;
+    RunStatus status = RUN_DONE;
+    if ((options->resume && !check_resumed(run, scene, inputs, err)) ||
+        (extended && !recall_frames(run->journal, run->result, exact, err)))
+        status = RUN_REFUSED;
+    else if (!put_start(run, scene, inputs, err))
+        status = RUN_CANNOT_WRITE;
     mem_free(scene);
     mem_free(inputs);
-    return ok;
+    return status;
 }
 
 /* ---- The result ---- */
@@ -230,9 +236,8 @@ static void draw(Run *run)
 static int do_job(Run *run, const RunOptions *options)
 {
     Error err;
-    if (!begin(run, options, &err))
-        return verb_fail(options->resume ? RUN_REFUSED : RUN_CANNOT_WRITE, err.text);
-    RunStatus status = job_run(run, &err);
+    RunStatus status = begin(run, options, &err);
+    if (status == RUN_DONE) status = job_run(run, &err);
     if (status == RUN_CANNOT_WRITE || status == RUN_REFUSED) return verb_fail(status, err.text);
     if (!write_result(run, run->result, status != RUN_INTERRUPTED, &err))
         return verb_fail(RUN_CANNOT_WRITE, err.text);
