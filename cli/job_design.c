@@ -137,8 +137,8 @@ static bool put_results(void *self, int first, const char *status, Error *err)
         ok = run_put_frame(job->run, first + c, first + c, &states[c], true, err);
     }
     Arrays list = {0};
+    if (ok) add_gradients(job, &list); /* first: by the factors of the best design */
     if (ok) run_add_final(job->run, states, cases, status, &list);
-    if (ok) add_gradients(job, &list);
     ok = ok && arrays_replace(&list, job->run->journal, "final", err);
     mem_free(states);
     return ok;

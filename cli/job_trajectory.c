@@ -173,6 +173,7 @@ static bool put_results(void *self, int first, const char *status, Error *err)
     if (!put_frames(job, first, err)) return false;
     Arrays list = {0};
     State end = frame_state(job, job->run->scene->time.steps);
+    end.p = arrays_keep(&list, mem_copy(end.p, (size_t)job->run->model->params->size, sizeof *end.p));
     run_add_final(job->run, &end, 1, status, &list);
     add_field(job, &list);
     add_distances(job, &list);
