@@ -7,11 +7,13 @@
  * and bytes, checked whenever it is read, so that damage gives a sentence and never a wrong number.
  *
  * Kinds used by slender (index 0 where there is only one):
- *   meta        scene (text), versions (text)
- *   static      rest [n_v,3], faces [n_f,3], edges [n_e,2]; of curves lines [L,2]: first point, number of
- * points frame       index n: x [n_v,3], time, turns, cell/<name> [n_f] or [n_f,3], point/<name> evaluation
- * index k: unknowns, gradient, and the scalars objective, gradient_norm, newton_iterations, seconds state
- * what the run needs to go on final       arrays of the result, named by their path below /slender
+ *   meta        scene (text), versions (text), inputs (text: CRC32, length and key of each file of the scene)
+ *   static      rest [n_v,3], faces [n_f,3], edges [n_e,2]; of curves lines [L,2]: first point, number of points
+ *   frame       index n: x [n_v,3], time, turns, cell/<name> [n_f] or [n_f,3], point/<name>
+ *   evaluation  index k: unknowns, gradient, and the scalars objective, gradient_norm, newton_iterations, seconds
+ *   state       what the run needs to go on
+ *   final       arrays of the result, named by their path below /slender
+ *   result      crc32: which result the frames of a finished simulation have gone to
  *
  * The file is an SQLite database (WAL, synchronous=FULL) on a local disk; while a run lives there are
  * NAME.run-wal and NAME.run-shm (SQLite's) and NAME.run-lock (the writer's lock) beside it. At its end the log
