@@ -16,9 +16,11 @@ static void job(const char *name, const char *scene, const char *options)
 
 void bench_design(void)
 {
-    job("hexagram_gauss_newton_seconds", "hexagram", "");
-    job("hexagram_mma_seconds", "hexagram", "--set design.optimizer=mma --set design.iterations=50");
-    job("hexagram_lbfgs_seconds", "hexagram", "--set design.optimizer=lbfgs --set design.iterations=50");
+    job("hexagram_gauss_newton_seconds", "hexagram", "--set design.tolerance=1e-6");
+    job("hexagram_mma_seconds", "hexagram",
+        "--set design.optimizer=mma --set design.iterations=50 --set design.tolerance=1e-6");
+    job("hexagram_lbfgs_seconds", "hexagram",
+        "--set design.optimizer=lbfgs --set design.iterations=50 --set design.tolerance=1e-6");
     job("kirigami_height_seconds", "kirigami_height", "");
     job("letter_a_m_seconds", "letter_a_m", "");
     job("letter_a_seconds", "letter_a", "");

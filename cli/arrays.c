@@ -1,10 +1,18 @@
 #include "cli/arrays.h"
 #include "base/memory.h"
-#include <assert.h>
+
+/* Room for one more. */
+static void *grow(void *block, size_t count, size_t *room, size_t size)
+{
+    if (count < *room) return block;
+    size_t more = 2 * *room + 16, before = *room;
+    *room = more;
+    return mem_resize(block, before, more, size);
+}
 
 void *arrays_keep(Arrays *list, void *block)
 {
-    assert(list->owned_count < 2 * ARRAYS_MAX);
+    list->owned = grow(list->owned, list->owned_count, &list->owned_room, sizeof *list->owned);
     list->owned[list->owned_count++] = block;
     return block;
 }
@@ -16,19 +24,28 @@ double *arrays_numbers(Arrays *list, size_t count)
 
 void arrays_add(Arrays *list, Array array)
 {
-    assert(list->count < ARRAYS_MAX);
+    list->arrays = grow(list->arrays, list->count, &list->room, sizeof *list->arrays);
     list->arrays[list->count++] = array;
 }
 
 void arrays_clear(Arrays *list)
 {
-    for (int k = 0; k < list->owned_count; k++) mem_free(list->owned[k]);
+    for (size_t k = 0; k < list->owned_count; k++) mem_free(list->owned[k]);
+    mem_free(list->owned);
+    mem_free(list->arrays);
     *list = (Arrays){0};
 }
 
 bool arrays_put(Arrays *list, Journal *journal, const char *kind, int index, Error *err)
 {
-    bool ok = journal_put(journal, kind, index, list->arrays, list->count, err);
+    bool ok = journal_put(journal, kind, index, list->arrays, (int)list->count, err);
+    arrays_clear(list);
+    return ok;
+}
+
+bool arrays_replace(Arrays *list, Journal *journal, const char *kind, Error *err)
+{
+    bool ok = journal_replace(journal, kind, 0, list->arrays, (int)list->count, err);
     arrays_clear(list);
     return ok;
 }

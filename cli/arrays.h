@@ -2,12 +2,10 @@
 #pragma once
 #include "io/journal.h"
 
-enum { ARRAYS_MAX = 96 };
-
 typedef struct Arrays {
-    int count, owned_count;
-    Array arrays[ARRAYS_MAX];
-    void *owned[2 * ARRAYS_MAX];
+    size_t count, room, owned_count, owned_room;
+    Array *arrays;
+    void **owned;
 } Arrays;
 
 /* Takes a block of memory, which is freed with the list. */
@@ -21,3 +19,6 @@ void arrays_clear(Arrays *list);
 
 /* Puts all as one unit into the journal, and clears the list. */
 bool arrays_put(Arrays *list, Journal *journal, const char *kind, int index, Error *err);
+
+/* The same in the place of all that is under this kind (journal_replace). */
+bool arrays_replace(Arrays *list, Journal *journal, const char *kind, Error *err);

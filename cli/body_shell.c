@@ -4,12 +4,23 @@
 #include "solve/eigen.h"
 #include <string.h>
 
+/* Edges are named as scenes and their tables name them: by the vertices of the file. Where some of these were
+ * removed or joined, file_vertex says which one each vertex of the result is. */
+static void add_edges(const Mesh *mesh, Arrays *list)
+{
+    int *edges = arrays_keep(list, mem_alloc(2 * (size_t)mesh->edge_count, sizeof *edges));
+    for (int i = 0; i < 2 * mesh->edge_count; i++) edges[i] = mesh->file_vertex[mesh->edges[i / 2][i % 2]];
+    arrays_add(list, array_int("edges", edges, 2, mesh->edge_count, 2));
+    if (mesh->vertex_count != mesh->file_vertex_count)
+        arrays_add(list, array_int("file_vertex", mesh->file_vertex, 1, mesh->vertex_count, 0));
+}
+
 void body_shell_static(const Model *model, Arrays *list)
 {
     const Mesh *mesh = model->shell->mesh;
     arrays_add(list, array_float("rest", "m", mesh->rest[0], 2, mesh->vertex_count, 3));
     arrays_add(list, array_int("faces", mesh->faces[0], 2, mesh->face_count, 3));
-    arrays_add(list, array_int("edges", mesh->edges[0], 2, mesh->edge_count, 2));
+    add_edges(mesh, list);
 }
 
 void body_shell_places(const Model *model, const double *x, double *place)

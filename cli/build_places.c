@@ -160,11 +160,11 @@ static bool target_from_file(const Build *b, Key at, const char *path, double (*
     MeshFile file = {0};
     Error err;
     if (!mesh_file_read(path, &file, &err)) return yaml_refuse(b->file, at.text, "%s", err.text);
-    bool ok = file.vertex_count == b->mesh->file_vertex_count ||
+    bool ok = mesh_fits(b->mesh, file.vertex_count) ||
               yaml_refuse(b->file, at.text, "%s has %d vertices, and the mesh %d: they must be the same ones",
                           path, file.vertex_count, b->mesh->file_vertex_count);
     for (int v = 0; ok && v < b->mesh->vertex_count; v++)
-        memcpy(target[v], file.vertices[b->mesh->file_vertex[v]], sizeof *target);
+        memcpy(target[v], file.vertices[mesh_row(b->mesh, file.vertex_count, v)], sizeof *target);
     mesh_file_clear(&file);
     return ok;
 }

@@ -3,7 +3,6 @@
 #include "base/memory.h"
 #include "optim/optimiser.h"
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 typedef struct DesignRun {
@@ -51,19 +50,24 @@ static bool put_best(DesignRun *d)
 {
     d->slot = 1 - d->slot;
     double number = d->evaluations;
-    return d->ops->put_best(d->self, d->slot, d->err) &&
-           run_put_state(d->run, d->slot, "evaluation", &number, 1, d->err);
+    Kept row = {"evaluation", &number, 1};
+    return d->ops->put_best(d->self, d->slot, d->err) && run_put_state(d->run, d->slot, &row, 1, d->err);
 }
 
 /* The best design's state from the slot that belongs to this evaluation, if it is still there. */
-static void get_best(DesignRun *d)
+static bool get_best(DesignRun *d)
 {
     for (int slot = 0; slot < 2; slot++) {
         double number;
-        if (!run_get_state(d->run, slot, "evaluation", &number, 1) || (int)number != d->evaluations) continue;
-        if (d->ops->get_best(d->self, slot, d->u)) d->slot = slot;
-        return;
+        Kept row = {"evaluation", &number, 1};
+        bool has;
+        if (!run_get_state(d->run, slot, &row, 1, &has, d->err)) return false;
+        if (!has || (int)number != d->evaluations) continue;
+        if (!d->ops->get_best(d->self, slot, d->u, &has, d->err)) return false;
+        if (has) d->slot = slot;
+        return true;
     }
+    return true;
 }
 
 /* A vector of a recorded evaluation. */
@@ -116,14 +120,30 @@ static double evaluate(void *self, const double *u, double *gradient)
     return d->failed || d->evaluated.aborted ? INFINITY : d->objective;
 }
 
+/* Unknowns without effect on the start, where others have one. */
+static void say_idle(const DesignRun *d)
+{
+    const Design *design = &d->run->model->design;
+    for (int k = 0; k < design->unknown_count && !optimiser_is_zero(d->gradient, d->n, d->objective); k++) {
+        const Unknown *unknown = &design->unknowns[k];
+        int end = k + 1 < design->unknown_count ? unknown[1].first : design->size;
+        if (optimiser_is_zero(d->gradient + unknown->first, end - unknown->first, d->objective))
+            progress_say(d->run->progress, "the unknown %s does not act on the objective at the start",
+                         design_unknown_name(d->run->model, unknown->block));
+    }
+}
+
 static void accept(void *self)
 {
     DesignRun *d = self;
     d->accepted = true;
     d->best = d->objective;
-    if (d->improvements++ == 0) d->first = d->objective;
+    if (d->improvements++ == 0) {
+        d->first = d->objective;
+        say_idle(d);
+    }
     if (is_replaying(d))
-        get_best(d);
+        d->failed |= !get_best(d);
     else
         d->ops->accept(d->self);
 }
@@ -137,8 +157,13 @@ static bool put_improvement(DesignRun *d)
 
 static void show(const DesignRun *d)
 {
-    progress_step(d->run->progress, d->evaluations, d->run->scene->design->iterations + 1,
-                  "F %.3e, %.3g of the start%s", d->best, d->best / d->first,
+    int total = d->run->scene->design->iterations + 1;
+    if (d->improvements == 0) {
+        progress_step(d->run->progress, d->evaluations, total, "no solution yet");
+        return;
+    }
+    progress_step(d->run->progress, d->evaluations, total, "F %.3e, %.3g of the start%s", d->best,
+                  d->first != 0 ? d->best / d->first : 0,
                   isfinite(d->objective) ? "" : "  (no solution, refused)");
 }
 
@@ -172,27 +197,82 @@ static bool recall(void *self, double *u)
 
 /* ---- The run ---- */
 
+/* Without a solution for the start there is nothing to show but why. */
+static RunStatus finish_unsolved(DesignRun *d, bool interrupted)
+{
+    progress_say(d->run->progress, interrupted ? "interrupted before the first evaluation was done"
+                                               : "no solution was found for the start of the design");
+    if (interrupted) return RUN_INTERRUPTED;
+    Array status = array_text("status", newton_status_name(d->evaluated.status));
+    return journal_replace(d->run->journal, "final", 0, &status, 1, d->err) ? RUN_NOT_CONVERGED
+                                                                            : RUN_CANNOT_WRITE;
+}
+
+/* "F 0.0012, 0.0023 of the start": of a start at 0 there are no parts. */
+static char *reached(const DesignRun *d, const OptimiserInfo *info)
+{
+    char *part = d->first != 0 ? mem_format(", %.4g of the start", d->best / d->first) : mem_text("");
+    char *text = mem_format("F %.4g%s; projected gradient %.3g, %.3g at the start", d->best, part,
+                            info->gradient_norm, info->first_norm);
+    mem_free(part);
+    return text;
+}
+
+/* What has happened, in a sentence. */
+static void say(const DesignRun *d, const OptimiserInfo *info)
+{
+    Progress *progress = d->run->progress;
+    int iterations = d->run->scene->design->iterations;
+    char *F = reached(d, info);
+    switch (info->status) {
+    case OPTIMISER_CONVERGED:
+        progress_say(progress, "converged after %d evaluations: %s", d->evaluations, F);
+        break;
+    case OPTIMISER_MAX_ITERATIONS:
+        if (iterations == 0)
+            progress_say(progress, "the start was evaluated: %s", F);
+        else
+            progress_say(
+                progress,
+                "stopped at design.iterations = %d, not yet converged: %s; --resume with more of them "
+                "goes on",
+                iterations, F);
+        break;
+    case OPTIMISER_STALLED:
+        progress_say(progress, "stalled after %d evaluations, no better design was found: %s", d->evaluations,
+                     F);
+        break;
+    case OPTIMISER_STATIONARY:
+        progress_say(
+            progress,
+            "the gradient is zero at the start: either no unknown acts on the objective (is something "
+            "magnetised, is there a field?), or the start is a symmetric point: give the unknowns "
+            "`noise` or another `start`");
+        break;
+    default: /* stopped: the verb says it */
+        break;
+    }
+    mem_free(F);
+}
+
+/* A start that was to be evaluated and nothing more is done; and so is a design that has used what it was
+ * given, whose status says that it could go on. */
 static RunStatus finish(DesignRun *d, const OptimiserInfo *info)
 {
     bool interrupted = d->evaluated.aborted || info->status == OPTIMISER_STOPPED;
     if (d->failed) return RUN_CANNOT_WRITE;
-    if (d->improvements == 0) {
-        progress_say(d->run->progress, interrupted ? "interrupted before the first evaluation was done"
-                                                   : "no solution was found for the start of the design");
-        if (interrupted) return RUN_INTERRUPTED;
-        Array status = array_text("status", newton_status_name(d->evaluated.status));
-        return journal_put(d->run->journal, "final", 0, &status, 1, d->err) ? RUN_NOT_CONVERGED
-                                                                            : RUN_CANNOT_WRITE;
-    }
+    if (d->improvements == 0) return finish_unsolved(d, interrupted);
     int every = d->ops->put_frame ? d->run->scene->output.every : 0;
     int first = every ? (d->improvements + every - 1) / every : 0; /* a resumed run has at least as many */
-    if (!d->ops->put_results(d->self, first, interrupted ? "interrupted" : "converged", d->err))
-        return RUN_CANNOT_WRITE;
-    progress_say(d->run->progress,
-                 "%s after %d evaluations: F %.4g, %.4g of the start; projected gradient %.3g",
-                 optimiser_status_name(info->status), d->evaluations, d->best, d->best / d->first,
-                 info->gradient_norm);
-    return interrupted ? RUN_INTERRUPTED : RUN_DONE;
+    bool limit = info->status == OPTIMISER_MAX_ITERATIONS,
+         start_only = d->run->scene->design->iterations == 0;
+    const char *status = interrupted           ? "interrupted"
+                         : limit && start_only ? "evaluated"
+                                               : optimiser_status_name(info->status);
+    if (!d->ops->put_results(d->self, first, status, d->err)) return RUN_CANNOT_WRITE;
+    say(d, info);
+    if (interrupted) return RUN_INTERRUPTED;
+    return limit || info->status == OPTIMISER_CONVERGED ? RUN_DONE : RUN_NOT_CONVERGED;
 }
 
 RunStatus design_run(Run *run, const DesignOps *ops, void *self, const double *u, Error *err)
@@ -212,8 +292,11 @@ RunStatus design_run(Run *run, const DesignOps *ops, void *self, const double *u
                    .upper = work + 3 * n,
                    .best = INFINITY,
                    .started = clock_seconds(),
-                   .recorded = journal_count(run->journal, "evaluation"),
                    .slot = 1};
+    if (!journal_count(run->journal, "evaluation", &d.recorded, err)) {
+        mem_free(work);
+        return RUN_CANNOT_WRITE;
+    }
     design_bounds(&run->model->design, d.lower, d.upper);
     OptimiserDef def = optimiser_default();
     def.method = methods[scene->optimizer];
@@ -237,12 +320,16 @@ RunStatus design_run(Run *run, const DesignOps *ops, void *self, const double *u
     return status;
 }
 
-bool design_put_gradient(Run *run, const char *name, const char *unit, const double *values, int count,
-                         int width, Error *err)
+const char *design_unknown_name(const Model *model, const ParamBlock *block)
 {
-    char path[64], of[64];
-    snprintf(path, sizeof path, "design/gradient/%s", name);
-    snprintf(of, sizeof of, unit[0] ? "m^2/(%s)" : "m^2", unit);
-    Array array = array_float(path, of, values, width > 1 ? 2 : 1, count, width);
-    return journal_put(run->journal, "final", 0, &array, 1, err);
+    bool control = model->control.rows && block->offset == model->control.from;
+    return control ? "flux_density" : block->name;
+}
+
+void design_add_gradient(Arrays *list, const char *name, const char *unit, const double *values, int count,
+                         int width)
+{
+    char *path = arrays_keep(list, mem_format("design/gradient/%s", name));
+    char *of = arrays_keep(list, unit[0] ? mem_format("m^2/(%s)", unit) : mem_text("m^2"));
+    arrays_add(list, array_float(path, of, values, width > 1 ? 2 : 1, count, width));
 }

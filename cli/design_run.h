@@ -21,9 +21,10 @@ typedef struct DesignOps {
     void (*accept)(void *self);
     void (*product)(void *self, const double *v, double *out);
 
-    /* The best design's state in a slot; get_best makes u, with that state, the best design. */
+    /* The best design's state in a slot; get_best makes u, with that state, the best design, if the slot *has
+     * it. */
     bool (*put_best)(void *self, int slot, Error *err);
-    bool (*get_best)(void *self, int slot, const double *u);
+    bool (*get_best)(void *self, int slot, const double *u, bool *has, Error *err);
 
     /* A frame of the best design as number `index` of the frames, where improvements are shown; may be NULL.
      */
@@ -36,6 +37,9 @@ typedef struct DesignOps {
 /* From u[size of the model's design] on. */
 RunStatus design_run(Run *run, const DesignOps *ops, void *self, const double *u, Error *err);
 
-/* design/gradient/<name> of an unknown block. */
-bool design_put_gradient(Run *run, const char *name, const char *unit, const double *values, int count,
-                         int width, Error *err);
+/* As the scene and the result have it: rows of a field over time are its flux_density. */
+const char *design_unknown_name(const Model *model, const ParamBlock *block);
+
+/* design/gradient/<name> of an unknown block; the values are borrowed until the list is put. */
+void design_add_gradient(Arrays *list, const char *name, const char *unit, const double *values, int count,
+                         int width);

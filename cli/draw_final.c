@@ -17,7 +17,7 @@ bool draw_put_strokes(Run *run, const Drawing *d, const Strokes *parts, int coun
     Strokes all = {0};
     for (int k = 0; k < count; k++) strokes_append(&all, &parts[k], d->parts[k].pen);
     drawn_add_strokes(d, &all, &list);
-    bool ok = arrays_put(&list, run->journal, "final", 0, err);
+    bool ok = arrays_replace(&list, run->journal, "final", err);
     strokes_clear(&all);
     return ok;
 }
@@ -191,7 +191,7 @@ bool draw_finish(Run *run, const Drawing *d, const Strokes *parts, const RelaxIn
     add_metrics(d, &all, run, &list);
     add_plot(d, &all, &order, run, &list);
     if (all.count == 0) explain_blank(d, run);
-    bool ok = arrays_put(&list, run->journal, "final", 0, err) && put_frame(run, d, &all, err);
+    bool ok = arrays_replace(&list, run->journal, "final", err) && put_frame(run, d, &all, err);
     strokes_clear(&all);
     return ok;
 }

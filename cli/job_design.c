@@ -43,40 +43,50 @@ static void product(void *self, const double *v, double *out)
 
 /* ---- The best design's state: x, where its factor stands, what the terms remember, of each case ---- */
 
-static size_t case_vector(const DesignJob *job, int c, int which, double **vector, char *name)
+enum { VECTORS = 3, NAME = 32 };
+
+typedef struct BestRows {
+    int count;
+    Kept *rows; /* [count] one block with the names */
+    char (*names)[NAME];
+} BestRows;
+
+static BestRows best_rows(const DesignJob *job)
 {
-    static const char *const names[] = {"x", "linearised", "memory"};
-    CaseState state = static_design_state(job->sd, c);
-    double *vectors[] = {state.x, state.linearised, state.memory};
-    const System *sys = job->cases[c].sys;
-    snprintf(name, 32, "%s/%d", names[which], c);
-    *vector = vectors[which];
-    return (size_t)(which < 2 ? system_dof_count(sys) : system_memory_count(sys));
+    static const char *const names[VECTORS] = {"x", "linearised", "memory"};
+    BestRows best = {.count = VECTORS * job->run->model->case_count};
+    size_t count = (size_t)best.count;
+    best.rows = mem_alloc(count, sizeof *best.rows + sizeof *best.names);
+    best.names = (char(*)[NAME])(best.rows + count);
+    for (int k = 0; k < best.count; k++) {
+        int c = k / VECTORS, which = k % VECTORS;
+        CaseState state = static_design_state(job->sd, c);
+        double *vectors[] = {state.x, state.linearised, state.memory};
+        const System *sys = job->cases[c].sys;
+        snprintf(best.names[k], NAME, "%s/%d", names[which], c);
+        best.rows[k] = (Kept){best.names[k], vectors[which],
+                              (size_t)(which < 2 ? system_dof_count(sys) : system_memory_count(sys))};
+    }
+    return best;
 }
 
 static bool put_best(void *self, int slot, Error *err)
 {
     DesignJob *job = self;
-    for (int k = 0; k < 3 * job->run->model->case_count; k++) {
-        double *vector;
-        char name[32];
-        size_t count = case_vector(job, k / 3, k % 3, &vector, name);
-        if (!run_put_state(job->run, slot, name, vector, count, err)) return false;
-    }
-    return true;
+    BestRows best = best_rows(job);
+    bool ok = run_put_state(job->run, slot, best.rows, best.count, err);
+    mem_free(best.rows);
+    return ok;
 }
 
-static bool get_best(void *self, int slot, const double *u)
+static bool get_best(void *self, int slot, const double *u, bool *has, Error *err)
 {
     DesignJob *job = self;
-    for (int k = 0; k < 3 * job->run->model->case_count; k++) {
-        double *vector;
-        char name[32];
-        size_t count = case_vector(job, k / 3, k % 3, &vector, name);
-        if (!run_get_state(job->run, slot, name, vector, count)) return false;
-    }
-    static_design_restore(job->sd, u);
-    return true;
+    BestRows best = best_rows(job);
+    bool ok = run_get_state(job->run, slot, best.rows, best.count, has, err);
+    mem_free(best.rows);
+    if (ok && *has) static_design_restore(job->sd, u);
+    return ok;
 }
 
 /* ---- What is shown ---- */
@@ -94,30 +104,25 @@ static bool put_frame(void *self, int index, Error *err)
     return run_put_frame(job->run, index, index, &state, true, err);
 }
 
-static bool put_gradients(DesignJob *job, Error *err)
+static void add_gradients(const DesignJob *job, Arrays *list)
 {
     const Model *model = job->run->model;
-    const Params *params = model->params;
+    size_t size = (size_t)model->params->size;
     int cases = model->case_count;
-    double *dp = mem_alloc((size_t)params->size, sizeof *dp),
-           *sum = mem_alloc((size_t)params->size, sizeof *sum);
-    double *flux = mem_alloc(3 * (size_t)cases, sizeof *flux);
+    double *dp = mem_alloc(size, sizeof *dp), *sum = arrays_numbers(list, size),
+           *flux = arrays_numbers(list, 3 * (size_t)cases);
     for (int c = 0; c < cases; c++) {
         static_design_param_gradient(job->sd, c, dp);
-        for (int i = 0; i < params->size; i++) sum[i] += dp[i];
+        for (size_t i = 0; i < size; i++) sum[i] += dp[i];
         memcpy(flux + 3 * c, dp + model->flux_density, 3 * sizeof *flux);
     }
-    bool ok = true;
-    for (int k = 0; ok && k < model->design.unknown_count; k++) {
+    mem_free(dp);
+    for (int k = 0; k < model->design.unknown_count; k++) {
         const ParamBlock *block = model->design.unknowns[k].block;
         bool per_case = block->offset == model->flux_density;
-        ok = design_put_gradient(job->run, block->name, block->unit, per_case ? flux : sum + block->offset,
-                                 per_case ? cases : block->count, block->width, err);
+        design_add_gradient(list, block->name, block->unit, per_case ? flux : sum + block->offset,
+                            per_case ? cases : block->count, block->width);
     }
-    mem_free(dp);
-    mem_free(sum);
-    mem_free(flux);
-    return ok;
 }
 
 /* One frame for each case of the final design, after those of the improvements. */
@@ -131,7 +136,10 @@ static bool put_results(void *self, int first, const char *status, Error *err)
         states[c] = best_state(job, c);
         ok = run_put_frame(job->run, first + c, first + c, &states[c], true, err);
     }
-    ok = ok && put_gradients(job, err) && run_put_final(job->run, states, cases, status, err);
+    Arrays list = {0};
+    if (ok) add_gradients(job, &list); /* first: by the factors of the best design */
+    if (ok) run_add_final(job->run, states, cases, status, &list);
+    ok = ok && arrays_replace(&list, job->run->journal, "final", err);
     mem_free(states);
     return ok;
 }
@@ -176,13 +184,15 @@ RunStatus job_design(Run *run, Error *err)
     double *u = mem_alloc((size_t)model->design.size, sizeof *u);
     for (int c = 0; c < model->case_count; c++)
         design_read(&model->design, c, model->cases[c].stages[0].p, u);
-    if (journal_count(run->journal, "evaluation") <= 0) find_start(&job, u);
+    int recorded;
+    bool ok = journal_count(run->journal, "evaluation", &recorded, err);
+    if (ok && recorded == 0) find_start(&job, u);
     StaticDesignDef def = static_design_default();
     run_newton(run, &def.newton);
     def.observer = run_observer(run);
     def.threads = run->threads;
     job.sd = static_design_create(&model->design, model->params, job.cases, &def);
-    RunStatus status = design_run(run, &ops, &job, u, err);
+    RunStatus status = ok ? design_run(run, &ops, &job, u, err) : RUN_CANNOT_WRITE;
     static_design_destroy(job.sd);
     mem_free(job.cases);
     mem_free(job.info);

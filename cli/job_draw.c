@@ -84,38 +84,41 @@ static bool put_part(DrawJob *job)
     return arrays_put(&list, job->run->journal, "state", 0, job->err);
 }
 
-/* One array of the part's state; false where there is none. */
+/* One array of the part's state; its data is NULL where there is none. */
 static bool get_array(const DrawJob *job, const char *what, ArrayType type, Array *array)
 {
     char name[32];
     snprintf(name, sizeof name, "%s/%d", what, job->part);
-    if (!journal_has(job->run->journal, "state", 0, name) ||
-        !journal_get(job->run->journal, "state", 0, name, array, NULL))
-        return false;
-    if (array->type == type) return true;
-    array_clear(array);
-    return false;
+    if (!journal_find(job->run->journal, "state", 0, name, array, job->err)) return false;
+    if (array->data && array->type != type) array_clear(array);
+    return true;
 }
 
-static bool get_part(DrawJob *job)
+static void take_part(DrawJob *job, const Array *part, const Array *nodes, const Array *start)
 {
-    Array part, nodes, start;
-    if (!get_array(job, "part", ARRAY_FLOAT64, &part)) return false;
-    if (array_count(&part) == PART_NUMBERS) memcpy(&job->parts[job->part], part.data, sizeof(Part));
-    array_clear(&part);
-    if (!get_array(job, "nodes", ARRAY_FLOAT64, &nodes)) return false;
-    if (get_array(job, "strokes", ARRAY_INT32, &start)) {
-        const int *first = start.data;
-        const double(*q)[4] = (const double(*)[4])nodes.data;
-        for (int k = 0; k + 1 < start.dims[0]; k++)
-            strokes_add(&job->strokes[job->part], first[k + 1] - first[k], q + first[k],
-                        job->d->parts[job->part].pen);
-        array_clear(&start);
-    }
-    array_clear(&nodes);
+    const int *first = start->data;
+    const double(*q)[4] = (const double(*)[4])nodes->data;
+    memcpy(&job->parts[job->part], part->data, sizeof(Part));
+    for (int k = 0; k + 1 < start->dims[0]; k++)
+        strokes_add(&job->strokes[job->part], first[k + 1] - first[k], q + first[k],
+                    job->d->parts[job->part].pen);
     job->iteration = (int)job->parts[job->part].iteration;
     job->started = clock_seconds() - job->parts[job->part].clock;
-    return true;
+}
+
+/* *has: the part is known from an earlier run. False where the journal cannot be read. */
+static bool get_part(DrawJob *job, bool *has)
+{
+    Array part = {0}, nodes = {0}, start = {0};
+    bool ok = get_array(job, "part", ARRAY_FLOAT64, &part) &&
+              get_array(job, "nodes", ARRAY_FLOAT64, &nodes) &&
+              get_array(job, "strokes", ARRAY_INT32, &start);
+    *has = ok && part.data && array_count(&part) == PART_NUMBERS && nodes.data && start.data;
+    if (*has) take_part(job, &part, &nodes, &start);
+    array_clear(&part);
+    array_clear(&nodes);
+    array_clear(&start);
+    return ok;
 }
 
 /* ---- Progress ---- */
@@ -195,7 +198,9 @@ static bool relax_part(DrawJob *job)
     Part *part = &job->parts[job->part];
     RelaxObserver observer = {watch, job};
     *part = (Part){.rounds = -1};
-    bool going = get_part(job);
+    bool going;
+    job->failed = !get_part(job, &going);
+    if (job->failed) return false;
     if (!going) {
         *strokes = drawing_start(d, job->part);
         RelaxInfo info = spline_relax(job->target, &job->relax, strokes, &observer);

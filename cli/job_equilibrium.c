@@ -38,26 +38,36 @@ static double shown_time(const ModelCase *c, const State *state, int frame)
     return goes_on ? state->time : frame;
 }
 
+enum { KEPT = 3 };
+
 /* What a resumed run needs: x and what the terms remember after each stage. */
-static bool put_progress(Run *run, int frame, const State *state, double *memory, Error *err)
+static void kept_rows(const System *sys, double *status, double *x, double *memory, Kept rows[KEPT])
+{
+    rows[0] = (Kept){"status", status, 1};
+    rows[1] = (Kept){"x", x, (size_t)system_dof_count(sys)};
+    rows[2] = (Kept){"memory", memory, (size_t)system_memory_count(sys)};
+}
+
+/* The frame first: what is kept says that it is there. */
+static bool put_progress(Run *run, int frame, const State *state, double *x, double *memory, Error *err)
 {
     System *sys = state->load_case->sys;
     double status = state->status;
+    Kept rows[KEPT];
     system_memory_read(sys, memory);
-    return run_put_state(run, frame, "x", state->x, (size_t)system_dof_count(sys), err) &&
-           run_put_state(run, frame, "memory", memory, (size_t)system_memory_count(sys), err) &&
-           run_put_frame(run, frame, shown_time(state->load_case, state, frame), state, frame == 0, err) &&
-           run_put_state(run, frame, "status", &status, 1, err);
+    kept_rows(sys, &status, x, memory, rows);
+    return run_put_frame(run, frame, shown_time(state->load_case, state, frame), state, frame == 0, err) &&
+           run_put_state(run, frame, rows, KEPT, err);
 }
 
-static bool get_progress(Run *run, int frame, State *state, double *x, double *memory)
+static bool get_progress(Run *run, int frame, State *state, double *x, double *memory, bool *has, Error *err)
 {
     System *sys = state->load_case->sys;
     double status;
-    if (!run_get_state(run, frame, "status", &status, 1) ||
-        !run_get_state(run, frame, "x", x, (size_t)system_dof_count(sys)) ||
-        !run_get_state(run, frame, "memory", memory, (size_t)system_memory_count(sys)))
-        return false;
+    Kept rows[KEPT];
+    kept_rows(sys, &status, x, memory, rows);
+    if (!run_get_state(run, frame, rows, KEPT, has, err)) return false;
+    if (!*has) return true;
     system_memory_write(sys, memory);
     state->status = (NewtonStatus)status;
     return true;
@@ -79,7 +89,9 @@ static bool solve_case(Run *run, ModelCase *c, State *state, int *frame, bool *i
     NewtonStatus worst = NEWTON_CONVERGED;
     for (int s = 0; ok && !*interrupted && s < c->stage_count; s++, (*frame)++) {
         *state = (State){c, c->stages[s].p, c->x, c->stages[s].time, NEWTON_CONVERGED};
-        if (!get_progress(run, *frame, state, c->x, memory)) {
+        bool has;
+        ok = get_progress(run, *frame, state, c->x, memory, &has, err);
+        if (ok && !has) {
             RampInfo info = solve_stage(run, c, s, c->x);
             state->status = info.newton.status;
             *interrupted = info.newton.status == NEWTON_STOPPED;
@@ -87,7 +99,7 @@ static bool solve_case(Run *run, ModelCase *c, State *state, int *frame, bool *i
             progress_step(run->progress, *frame + 1, total, "%s: %s, %d Newton iterations in %d load steps",
                           c->name, newton_status_name(state->status), info.newton.iterations,
                           info.steps + info.refused);
-            ok = put_progress(run, *frame, state, memory, err);
+            ok = put_progress(run, *frame, state, c->x, memory, err);
         }
         if (state->status > worst) worst = state->status;
     }
@@ -107,8 +119,9 @@ RunStatus job_equilibrium(Run *run, Error *err)
         ok = solve_case(run, &model->cases[done], &states[done], &frame, &interrupted, err);
         if (states[done].status > worst) worst = states[done].status;
     }
-    if (ok)
-        ok = run_put_final(run, states, done, interrupted ? "interrupted" : newton_status_name(worst), err);
+    Arrays list = {0};
+    if (ok) run_add_final(run, states, done, interrupted ? "interrupted" : newton_status_name(worst), &list);
+    ok = ok && arrays_replace(&list, run->journal, "final", err);
     if (ok && !interrupted && worst != NEWTON_CONVERGED)
         progress_say(run->progress, "%s", newton_status_text(worst));
     mem_free(states);

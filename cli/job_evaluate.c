@@ -51,8 +51,10 @@ RunStatus job_evaluate(Run *run, Error *err)
         progress_step(run->progress, k + 1, model->case_count, "%s: %s", c->name,
                       states[k].status == NEWTON_CONVERGED ? "stable" : "unstable");
     }
-    ok = ok && run_put_final(run, states, model->case_count,
-                             worst == NEWTON_CONVERGED ? "evaluated" : newton_status_name(worst), err);
+    Arrays list = {0};
+    const char *status = worst == NEWTON_CONVERGED ? "evaluated" : newton_status_name(worst);
+    if (ok) run_add_final(run, states, model->case_count, status, &list);
+    ok = ok && arrays_replace(&list, run->journal, "final", err);
     mem_free(states);
     if (!ok) return RUN_CANNOT_WRITE;
     return worst == NEWTON_CONVERGED ? RUN_DONE : RUN_NOT_CONVERGED;

@@ -48,7 +48,9 @@ static bool put_results(const Identification *o, Error *err)
             vec3_store(input + 3 * (k * nodes + i), o->curves[k].x[2 * i]);
         }
     natural_shapes(o, natural);
-    arrays_add(&list, array_text("status", found->young_known ? "converged" : "undetermined"));
+    arrays_add(&list, array_text("status", !found->young_known ? "undetermined"
+                                           : found->converged  ? "converged"
+                                                               : "max_iterations"));
     arrays_add(&list, array_float("rod/identified/young", "Pa", &found->young, 0, 0, 0));
     arrays_add(&list, array_float("rod/identified/poisson", "", &found->poisson, 0, 0, 0));
     arrays_add(&list, array_float("rod/identified/young_error", "Pa", &found->young_error, 0, 0, 0));
@@ -59,12 +61,15 @@ static bool put_results(const Identification *o, Error *err)
     arrays_add(&list, array_float("rod/natural", "m", natural, 2, o->count * nodes, 3));
     arrays_add(&list, array_float("rod/gravity", "m/s^2", o->run->scene->rod->gravity, 1, 3, 0));
     arrays_add(&list, array_int("rod/strands", starts, 1, o->count + 1, 0));
-    return arrays_put(&list, o->run->journal, "final", 0, err);
+    return arrays_replace(&list, o->run->journal, "final", err);
 }
 
 static void say(const Identification *o)
 {
     const RodMaterial *found = &o->found;
+    if (!found->converged)
+        progress_say(o->run->progress,
+                     "not converged: all iterations were done before the best match was found");
     if (found->young_known)
         progress_say(o->run->progress, "Young's modulus %.4g Pa (+- %.2g)", found->young, found->young_error);
     else
@@ -92,5 +97,5 @@ RunStatus job_identify(Run *run, Error *err)
     if (ok) say(&o);
     mem_free(o.poses);
     if (!possible) return RUN_REFUSED;
-    return !ok ? RUN_CANNOT_WRITE : o.found.young_known ? RUN_DONE : RUN_NOT_CONVERGED;
+    return !ok ? RUN_CANNOT_WRITE : o.found.young_known && o.found.converged ? RUN_DONE : RUN_NOT_CONVERGED;
 }

@@ -242,7 +242,7 @@ static bool put_results(const Inversion *o, const char *status, Error *err)
     arrays_add(&list, array_float("rod/gravity", "m/s^2", o->run->scene->rod->gravity, 1, 3, 0));
     if (o->strands > 1) arrays_add(&list, array_int("rod/strands", starts, 1, o->strands + 1, 0));
     add_checks(o, &list);
-    return put_shapes(o, err) && arrays_put(&list, o->run->journal, "final", 0, err);
+    return put_shapes(o, err) && arrays_replace(&list, o->run->journal, "final", err);
 }
 
 static void say(const Inversion *o)

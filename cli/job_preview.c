@@ -67,7 +67,7 @@ static bool put_final(const Preview *o, const char *status)
                       array_float("final/energy/kinetic", "J", &sums.kinetic, 0, 0, 0),
                       array_float("final/energy/elastic", "J", &sums.elastic, 0, 0, 0),
                       array_float("final/energy/gravity", "J", &sums.potential, 0, 0, 0)};
-    return journal_put(o->run->journal, "final", 0, arrays, sizeof arrays / sizeof *arrays, o->err);
+    return journal_replace(o->run->journal, "final", 0, arrays, sizeof arrays / sizeof *arrays, o->err);
 }
 
 RunStatus job_preview(Run *run, Error *err)
@@ -75,7 +75,8 @@ RunStatus job_preview(Run *run, Error *err)
     const TimeScene *time = &run->scene->time;
     Preview o = {.run = run, .rod = create(run), .nodes = run->model->point_count, .err = err};
     int every = run->scene->output.every ? run->scene->output.every : 1, step = 0;
-    bool ok = put_frame(&o, 0, time->at);
+    bool ok = journal_forget(run->journal, "frame", err) && journal_forget(run->journal, "evaluation", err) &&
+              put_frame(&o, 0, time->at);
     for (; ok && step < time->steps && !progress_interrupted();) {
         pbd_rod_step(o.rod, time->step);
         double now = time->at + ++step * time->step;

@@ -13,8 +13,9 @@ typedef struct Simulation {
     ModelCase *c;
     double *p, *memory;
     MarchState now;
-    int step;     /* the last one that was reached */
-    bool refused; /* a formula of time is not finite; err says so */
+    int step;            /* the last one that was reached */
+    NewtonStatus status; /* of the last step                                       */
+    bool refused;        /* a formula of time is not finite; err says so           */
 } Simulation;
 
 static void load(void *self, double time, double *p)
@@ -32,68 +33,65 @@ static bool move(void *self, double time, double *x)
 
 static State shown_state(const Simulation *s)
 {
-    return (State){s->c, s->p, s->now.x, s->now.time, NEWTON_CONVERGED};
+    return (State){s->c, s->p, s->now.x, s->now.time, s->status};
 }
 
-static size_t anchor_count(const Simulation *s)
+enum { KEPT = 6 };
+
+/* What a run goes on from: the last step that was stored. */
+static void kept_rows(Simulation *s, double *step, double *anchor, Kept rows[KEPT])
 {
-    return (size_t)system_anchor_count(s->c->sys);
+    size_t dofs = (size_t)system_dof_count(s->c->sys);
+    rows[0] = (Kept){"step", step, 1};
+    rows[1] = (Kept){"time", &s->now.time, 1};
+    rows[2] = (Kept){"x", s->now.x, dofs};
+    rows[3] = (Kept){"v", s->now.v, dofs};
+    rows[4] = (Kept){"memory", s->memory, (size_t)system_memory_count(s->c->sys)};
+    rows[5] = (Kept){"anchor", anchor, (size_t)system_anchor_count(s->c->sys)};
 }
 
 static bool put_step(Simulation *s, int frame, int step)
 {
-    int slot = frame % 2;
     double number = step;
-    size_t dofs = (size_t)system_dof_count(s->c->sys);
     State state = shown_state(s);
+    Kept rows[KEPT];
     system_memory_read(s->c->sys, s->memory);
+    kept_rows(s, &number, (double *)system_anchor(s->c->sys), rows);
     return run_put_frame(s->run, frame, s->now.time, &state, frame == 0, s->err) &&
-           run_put_state(s->run, slot, "x", s->now.x, dofs, s->err) &&
-           run_put_state(s->run, slot, "v", s->now.v, dofs, s->err) &&
-           run_put_state(s->run, slot, "memory", s->memory, (size_t)system_memory_count(s->c->sys), s->err) &&
-           run_put_state(s->run, slot, "anchor", system_anchor(s->c->sys), anchor_count(s), s->err) &&
-           run_put_state(s->run, slot, "time", &s->now.time, 1, s->err) &&
-           run_put_state(s->run, slot, "step", &number, 1, s->err);
+           run_put_state(s->run, frame % 2, rows, KEPT, s->err);
 }
 
-/* The factor that the next step's conjugate gradients begin with, as it was. */
-static bool restore_factor(Simulation *s, int slot)
+/* With the factor that the next step's conjugate gradients begin with, as it was. */
+static bool get_slot(Simulation *s, int slot)
 {
-    double *anchor = mem_alloc(anchor_count(s), sizeof *anchor);
-    bool ok = run_get_state(s->run, slot, "anchor", anchor, anchor_count(s));
+    double step, *anchor = mem_alloc((size_t)system_anchor_count(s->c->sys), sizeof *anchor);
+    bool has;
+    Kept rows[KEPT];
+    kept_rows(s, &step, anchor, rows);
+    bool ok = run_get_state(s->run, slot, rows, KEPT, &has, s->err) &&
+              (has || error_set(s->err, "the journal's state is of another scene"));
     if (ok) {
         load(s, system_anchor_time(anchor), s->p);
         system_restore_factor(s->c->sys, anchor, s->p);
+        system_memory_write(s->c->sys, s->memory);
+        load(s, s->now.time, s->p);
     }
     mem_free(anchor);
     return ok;
 }
 
-static bool get_slot(Simulation *s, int slot)
-{
-    size_t dofs = (size_t)system_dof_count(s->c->sys);
-    if (!run_get_state(s->run, slot, "x", s->now.x, dofs) ||
-        !run_get_state(s->run, slot, "v", s->now.v, dofs) ||
-        !run_get_state(s->run, slot, "memory", s->memory, (size_t)system_memory_count(s->c->sys)) ||
-        !run_get_state(s->run, slot, "time", &s->now.time, 1) || !restore_factor(s, slot))
-        return false;
-    system_memory_write(s->c->sys, s->memory);
-    load(s, s->now.time, s->p);
-    return true;
-}
-
 /* The step to go on from; 0 after putting the start. -1: err says what is wrong. */
 static int find_start(Simulation *s)
 {
-    int last = 0;
-    double number[2] = {-1, -1};
-    for (int slot = 0; slot < 2; slot++) run_get_state(s->run, slot, "step", &number[slot], 1);
-    int newest = number[1] > number[0];
-    if (number[newest] >= 0) {
-        last = (int)number[newest];
-        return get_slot(s, newest) ? last
-                                   : (error_set(s->err, "the journal's state is of another scene"), -1);
+    double number[2];
+    for (int slot = 0; slot < 2; slot++) {
+        Kept row = {"step", &number[slot], 1};
+        bool has;
+        if (!run_get_state(s->run, slot, &row, 1, &has, s->err)) return -1;
+        if (!has) number[slot] = -1;
     }
+    int newest = number[1] > number[0];
+    if (number[newest] >= 0) return get_slot(s, newest) ? (int)number[newest] : -1;
     s->now.time = s->run->scene->time.at;
     load(s, s->now.time, s->p);
     return put_step(s, 0, 0) ? 0 : -1;
@@ -124,8 +122,9 @@ static RunStatus make_step(Simulation *s, const MarchDef *def)
     int every = frame_interval(s), step = s->step + 1;
     MarchInfo info;
     bool reached = march_step(s->c->sys, def, scene->time.step, s->p, &s->now, &info);
-    if (s->refused) return RUN_CANNOT_WRITE;
+    if (s->refused) return RUN_REFUSED;
     if (progress_interrupted()) return RUN_INTERRUPTED;
+    s->status = reached ? NEWTON_CONVERGED : info.newton.status;
     if (!reached) {
         progress_say(s->run->progress, "step %d failed at t = %g s: %s", step, s->now.time,
                      newton_status_text(info.newton.status));
@@ -160,17 +159,17 @@ static bool put_end(Simulation *s, const char *status)
 {
     State state = shown_state(s);
     int every = frame_interval(s);
-    Array v = array_float("state/v", "m/s", s->now.v, 2, s->run->model->point_count, 3);
+    Arrays list = {0};
     if (s->step % every && !run_put_frame(s->run, s->step / every + 1, s->now.time, &state, false, s->err))
         return false;
-    return run_put_final(s->run, &state, 1, status, s->err) &&
-           journal_put(s->run->journal, "final", 0, &v, 1, s->err);
+    run_add_final(s->run, &state, 1, status, &list);
+    arrays_add(&list, array_float("state/v", "m/s", s->now.v, 2, s->run->model->point_count, 3));
+    return arrays_replace(&list, s->run->journal, "final", s->err);
 }
 
 RunStatus job_simulate(Run *run, Error *err)
 {
     if (run->scene->rod && run->scene->rod->solver == ROD_SOLVER_PBD) return job_preview(run, err);
-    static const char *const texts[] = {[RUN_DONE] = "converged", [RUN_NOT_CONVERGED] = "stalled"};
     ModelCase *c = &run->model->cases[0];
     size_t dofs = (size_t)system_dof_count(c->sys);
     Simulation s = {.run = run,
@@ -180,8 +179,9 @@ RunStatus job_simulate(Run *run, Error *err)
                     .now = {.x = c->x, .v = mem_copy(run->model->v, dofs, sizeof(double))}};
     s.memory = mem_alloc((size_t)system_memory_count(c->sys), sizeof *s.memory);
     RunStatus status = march(&s);
-    if (status != RUN_CANNOT_WRITE && !put_end(&s, status == RUN_INTERRUPTED ? "interrupted" : texts[status]))
-        status = RUN_CANNOT_WRITE;
+    const char *said = status == RUN_INTERRUPTED ? "interrupted" : newton_status_name(s.status);
+    bool ended = status != RUN_CANNOT_WRITE && status != RUN_REFUSED;
+    if (ended && !put_end(&s, said)) status = RUN_CANNOT_WRITE;
     mem_free(s.now.v);
     mem_free(s.memory);
     return status;

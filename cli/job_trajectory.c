@@ -55,36 +55,41 @@ static void product(void *self, const double *v, double *out)
 
 /* ---- The best motion's states ---- */
 
+enum { KEPT = 3 };
+
+/* Of so many steps. */
+static void kept_rows(const TrajectoryJob *job, size_t count, Kept rows[KEPT])
+{
+    rows[0] = (Kept){"dt", NULL, count};
+    rows[1] = (Kept){"x", NULL, (count + 1) * (size_t)system_dof_count(job->c->sys)};
+    rows[2] = (Kept){"memory", NULL, (count + 1) * (size_t)system_memory_count(job->c->sys)};
+}
+
 static bool put_best(void *self, int slot, Error *err)
 {
     TrajectoryJob *job = self;
     TrajectoryState state = trajectory_state(job->t);
-    size_t count = (size_t)state.count, dofs = (size_t)system_dof_count(job->c->sys),
-           memory = (size_t)system_memory_count(job->c->sys);
     double number = state.count;
-    return run_put_state(job->run, slot, "count", &number, 1, err) &&
-           run_put_state(job->run, slot, "dt", state.dt, count, err) &&
-           run_put_state(job->run, slot, "x", state.x, (count + 1) * dofs, err) &&
-           run_put_state(job->run, slot, "memory", state.memory, (count + 1) * memory, err);
+    Kept rows[1 + KEPT] = {{"count", &number, 1}};
+    kept_rows(job, (size_t)state.count, rows + 1);
+    rows[1].values = (double *)state.dt, rows[2].values = (double *)state.x,
+    rows[3].values = (double *)state.memory;
+    return run_put_state(job->run, slot, rows, 1 + KEPT, err);
 }
 
-static bool get_best(void *self, int slot, const double *u)
+static bool get_best(void *self, int slot, const double *u, bool *has, Error *err)
 {
     TrajectoryJob *job = self;
-    size_t dofs = (size_t)system_dof_count(job->c->sys), memory = (size_t)system_memory_count(job->c->sys);
     double number;
-    if (!run_get_state(job->run, slot, "count", &number, 1)) return false;
-    size_t count = (size_t)number;
-    double *dt = mem_alloc(count, sizeof *dt), *x = mem_alloc((count + 1) * dofs, sizeof *x),
-           *turns = mem_alloc((count + 1) * memory, sizeof *turns);
-    bool ok = run_get_state(job->run, slot, "dt", dt, count) &&
-              run_get_state(job->run, slot, "x", x, (count + 1) * dofs) &&
-              run_get_state(job->run, slot, "memory", turns, (count + 1) * memory);
-    TrajectoryState state = {(int)count, x, turns, dt};
-    if (ok) trajectory_restore(job->t, u, &state);
-    mem_free(dt);
-    mem_free(x);
-    mem_free(turns);
+    Kept first = {"count", &number, 1}, rows[KEPT];
+    if (!run_get_state(job->run, slot, &first, 1, has, err)) return false;
+    if (!*has) return true;
+    kept_rows(job, (size_t)number, rows);
+    for (int k = 0; k < KEPT; k++) rows[k].values = mem_alloc(rows[k].count, sizeof(double));
+    bool ok = run_get_state(job->run, slot, rows, KEPT, has, err);
+    TrajectoryState state = {(int)number, rows[1].values, rows[2].values, rows[0].values};
+    if (ok && *has) trajectory_restore(job->t, u, &state);
+    for (int k = 0; k < KEPT; k++) mem_free(rows[k].values);
     return ok;
 }
 
@@ -112,48 +117,41 @@ static bool put_frames(TrajectoryJob *job, int first, Error *err)
 }
 
 /* trajectory/flux_density: what acts in each step. */
-static bool put_field(TrajectoryJob *job, Error *err)
+static void add_field(const TrajectoryJob *job, Arrays *list)
 {
     int steps = job->run->scene->time.steps, flux = job->run->model->flux_density;
-    double *rows = mem_alloc(3 * (size_t)steps, sizeof *rows);
+    double *rows = arrays_numbers(list, 3 * (size_t)steps);
     for (int n = 1; n <= steps; n++)
         memcpy(rows + 3 * (n - 1), trajectory_params(job->t, n) + flux, 3 * sizeof *rows);
-    Array array = array_float("trajectory/flux_density", "T", rows, 2, steps, 3);
-    bool ok = journal_put(job->run->journal, "final", 0, &array, 1, err);
-    mem_free(rows);
-    return ok;
+    arrays_add(list, array_float("trajectory/flux_density", "T", rows, 2, steps, 3));
 }
 
 /* dF/dp of the unknowns, and what the start's places and velocities do to F. */
-static bool put_gradients(TrajectoryJob *job, Error *err)
+static void add_gradients(const TrajectoryJob *job, Arrays *list)
 {
     const Model *model = job->run->model;
     size_t dofs = (size_t)system_dof_count(job->c->sys);
-    double *dp = mem_alloc((size_t)model->params->size, sizeof *dp), *dx = mem_alloc(2 * dofs, sizeof *dx);
+    double *dp = arrays_numbers(list, (size_t)model->params->size), *dx = arrays_numbers(list, 2 * dofs);
     trajectory_gradients(job->t, dp, dx, dx + dofs);
-    bool ok = true;
-    for (int k = 0; ok && k < model->design.unknown_count; k++) {
+    for (int k = 0; k < model->design.unknown_count; k++) {
         const ParamBlock *block = model->design.unknowns[k].block;
         bool control = model->control.rows && block->offset == model->control.from;
-        ok = design_put_gradient(job->run, control ? "flux_density" : block->name, block->unit,
-                                 dp + block->offset, block->count, block->width, err);
-        Array values = array_float("design/flux_density", "T", trajectory_params(job->t, 0) + block->offset,
-                                   2, block->count, 3);
-        if (ok && control) ok = journal_put(job->run->journal, "final", 0, &values, 1, err);
+        design_add_gradient(list, design_unknown_name(model, block), block->unit, dp + block->offset,
+                            block->count, block->width);
+        if (control) /* its rows, in the place of what acts at the end */
+            arrays_add(list, array_float("design/flux_density", "T",
+                                         trajectory_params(job->t, 0) + block->offset, 2, block->count, 3));
     }
     int vertices = model->point_count;
-    ok = ok && design_put_gradient(job->run, "start_x", "m", dx, vertices, 3, err) &&
-         design_put_gradient(job->run, "start_v", "m/s", dx + dofs, vertices, 3, err);
-    mem_free(dp);
-    mem_free(dx);
-    return ok;
+    design_add_gradient(list, "start_x", "m", dx, vertices, 3);
+    design_add_gradient(list, "start_v", "m/s", dx + dofs, vertices, 3);
 }
 
 /* The largest distance of each row's point to its place or curve, over the frames at which it counts. */
-static bool put_distances(TrajectoryJob *job, Error *err)
+static void add_distances(const TrajectoryJob *job, Arrays *list)
 {
     int rows = job->c->objective_count;
-    double *largest = mem_alloc((size_t)rows, sizeof *largest);
+    double *largest = arrays_numbers(list, (size_t)rows);
     bool any = false;
     for (int k = 0; k < rows; k++) {
         const Objective *row = &job->c->objectives[k];
@@ -166,18 +164,21 @@ static bool put_distances(TrajectoryJob *job, Error *err)
         progress_say(job->run->progress, "%s, frames %d to %d: largest distance %.3g mm", row->ops->name,
                      row->first, row->last, 1e3 * largest[k]);
     }
-    Array array = array_float("metrics/largest_distance", "m", largest, 1, rows, 0);
-    bool ok = !any || journal_put(job->run->journal, "final", 0, &array, 1, err);
-    mem_free(largest);
-    return ok;
+    if (any) arrays_add(list, array_float("metrics/largest_distance", "m", largest, 1, rows, 0));
 }
 
 static bool put_results(void *self, int first, const char *status, Error *err)
 {
     TrajectoryJob *job = self;
-    bool ok = put_frames(job, first, err) && put_field(job, err) && put_distances(job, err);
+    if (!put_frames(job, first, err)) return false;
+    Arrays list = {0};
     State end = frame_state(job, job->run->scene->time.steps);
-    return ok && run_put_final(job->run, &end, 1, status, err) && put_gradients(job, err);
+    end.p = arrays_keep(&list, mem_copy(end.p, (size_t)job->run->model->params->size, sizeof *end.p));
+    run_add_final(job->run, &end, 1, status, &list);
+    add_field(job, &list);
+    add_distances(job, &list);
+    add_gradients(job, &list);
+    return arrays_replace(&list, job->run->journal, "final", err);
 }
 
 RunStatus job_trajectory(Run *run, Error *err)
@@ -211,7 +212,7 @@ RunStatus job_trajectory(Run *run, Error *err)
     RunStatus status = design_run(run, &ops, &job, u, err);
     if (job.refused) {
         *err = job.err;
-        status = RUN_CANNOT_WRITE;
+        status = RUN_REFUSED;
     }
     trajectory_destroy(job.t);
     mem_free(u);

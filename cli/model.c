@@ -4,6 +4,7 @@
 #include "cli/drawing.h"
 #include "cli/job.h"
 #include "cli/rod_model.h"
+#include <ctype.h>
 #include <math.h>
 #include <string.h>
 
@@ -68,6 +69,16 @@ static bool add_stages(Model *model, const Build *b, const Scene *scene, const d
     return ok;
 }
 
+enum { CASE_NAME_MAX = 250 };
+
+/* It becomes a group of the result, and a line of case_names. */
+static bool is_name(const char *name)
+{
+    const char *c = name;
+    while (*c && *c != '/' && !iscntrl((unsigned char)*c)) c++;
+    return !*c && c > name && c - name <= CASE_NAME_MAX && strcmp(name, ".");
+}
+
 bool model_cases(Model *model, const Build *b, const Scene *scene, const double *p, size_t room)
 {
     if (scene->sequence_count && scene->cases_count)
@@ -82,8 +93,12 @@ bool model_cases(Model *model, const Build *b, const Scene *scene, const double 
         for (int i = 0; i < k; i++)
             if (!strcmp(model->cases[i].name, c->name))
                 ok = yaml_refuse(b->file, at.text, "there are two cases named '%s'", c->name);
-        if (strchr(c->name, '/') || !*c->name)
-            ok = yaml_refuse(b->file, at.text, "a case's name is a word without '/'");
+        if (!is_name(c->name))
+            ok = yaml_refuse(
+                b->file, at.text,
+                "a case's name is a word without '/' or control characters, of at most %d bytes, and "
+                "not '.'",
+                CASE_NAME_MAX);
         ok = put_loads(model, b, at, from->flux_density, from->loads, from->loads_count, from->gravity,
                        c->stages[0].p) &&
              ok;

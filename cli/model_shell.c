@@ -178,6 +178,22 @@ static double *base_params(Model *model, const Scene *scene, const Build *b, siz
 
 /* ---- The whole ---- */
 
+/* A corner may be any of the vertices that were joined into the mesh's. */
+static bool is_vertex(const Mesh *mesh, const MeshFile *file, int corner, int vertex)
+{
+    if (corner < 0 || corner >= file->vertex_count) return false;
+    return (file->vertex_count == mesh->vertex_count ? corner : mesh->vertex_of_file[corner]) == vertex;
+}
+
+static bool has_same_faces(const Mesh *mesh, const MeshFile *file)
+{
+    bool same = mesh_fits(mesh, file->vertex_count) && file->face_count == mesh->face_count;
+    for (int f = 0; same && f < mesh->face_count; f++)
+        for (int i = 0; i < 3; i++)
+            same = same && is_vertex(mesh, file, file->faces[f][i], mesh->faces[f][i]);
+    return same;
+}
+
 static bool read_pose(const Build *b, const PoseScene *pose, double *x)
 {
     if (!pose) return true;
@@ -186,13 +202,11 @@ static bool read_pose(const Build *b, const PoseScene *pose, double *x)
     Error err;
     if (!mesh_file_read(pose->file, &file, &err))
         return yaml_refuse(b->file, "shell.pose.file", "%s", err.text);
-    bool ok = file.vertex_count == mesh->file_vertex_count && file.face_count == mesh->face_count;
-    for (int f = 0; ok && f < mesh->face_count; f++)
-        for (int i = 0; i < 3; i++) ok = ok && mesh->vertex_of_file[file.faces[f][i]] == mesh->faces[f][i];
+    bool ok = has_same_faces(mesh, &file);
     if (!ok)
         yaml_refuse(b->file, "shell.pose.file", "%s has other vertices or faces than the mesh", pose->file);
     for (int v = 0; ok && v < mesh->vertex_count; v++)
-        memcpy(x + 3 * v, file.vertices[mesh->file_vertex[v]], 3 * sizeof *x);
+        memcpy(x + 3 * v, file.vertices[mesh_row(mesh, file.vertex_count, v)], 3 * sizeof *x);
     mesh_file_clear(&file);
     return ok;
 }

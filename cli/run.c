@@ -1,7 +1,6 @@
 #include "cli/run.h"
 #include "base/memory.h"
 #include "cli/body.h"
-#include <stdio.h>
 #include <string.h>
 
 static bool go_on(void *self, const NewtonInfo *info)
@@ -86,22 +85,18 @@ static void add_params(Arrays *list, const Params *params, const State *states, 
     }
 }
 
-static bool put_case(Run *run, const State *state, Error *err)
+static void add_case(Arrays *list, const Model *model, const State *state)
 {
-    Arrays list = {0};
-    const char *name = state->load_case->name;
-    char prefix[256], x_name[300];
-    snprintf(prefix, sizeof prefix, "cases/%.200s", name);
-    snprintf(x_name, sizeof x_name, "%s/x", prefix);
-    add_state(&list, run->model, x_name, prefix, state);
-    arrays_add(&list, array_text(arrays_keep(&list, mem_format("%s/status", prefix)),
-                                 newton_status_name(state->status)));
-    arrays_add(&list, array_float(arrays_keep(&list, mem_format("%s/flux_density", prefix)), "T",
-                                  state->p + run->model->flux_density, 1, 3, 0));
+    const char *prefix = arrays_keep(list, mem_format("cases/%s", state->load_case->name));
+    const char *x_name = arrays_keep(list, mem_format("%s/x", prefix));
+    add_state(list, model, x_name, prefix, state);
+    arrays_add(list, array_text(arrays_keep(list, mem_format("%s/status", prefix)),
+                                newton_status_name(state->status)));
+    arrays_add(list, array_float(arrays_keep(list, mem_format("%s/flux_density", prefix)), "T",
+                                 state->p + model->flux_density, 1, 3, 0));
     if (state->load_case->target)
-        arrays_add(&list, array_float(arrays_keep(&list, mem_format("%s/target", prefix)), "m",
-                                      state->load_case->target[0], 2, run->model->point_count, 3));
-    return arrays_put(&list, run->journal, "final", 0, err);
+        arrays_add(list, array_float(arrays_keep(list, mem_format("%s/target", prefix)), "m",
+                                     state->load_case->target[0], 2, model->point_count, 3));
 }
 
 /* In the scene's order, a line each. */
@@ -112,36 +107,36 @@ static char *case_names(const State *states, int count)
     return names;
 }
 
-bool run_put_final(Run *run, const State *states, int count, const char *status, Error *err)
+void run_add_final(Run *run, const State *states, int count, const char *status, Arrays *list)
 {
-    Arrays list = {0};
-    add_state(&list, run->model, "state/x", "final", &states[count - 1]);
-    add_params(&list, run->model->params, states, count);
-    run->model->body->add_final(run->model, &states[count - 1], run->scene->modes, &list);
-    arrays_add(&list, array_text("status", status));
-    arrays_add(&list, array_text("case_names", arrays_keep(&list, case_names(states, count))));
-    if (!arrays_put(&list, run->journal, "final", 0, err)) return false;
-    for (int k = 0; k < count; k++)
-        if (!put_case(run, &states[k], err)) return false;
-    return true;
+    const Model *model = run->model;
+    add_state(list, model, "state/x", "final", &states[count - 1]);
+    add_params(list, model->params, states, count);
+    model->body->add_final(model, &states[count - 1], run->scene->modes, list);
+    arrays_add(list, array_text("status", status));
+    arrays_add(list, array_text("case_names", arrays_keep(list, case_names(states, count))));
+    for (int k = 0; k < count; k++) add_case(list, model, &states[k]);
 }
 
 /* ---- State ---- */
 
-bool run_put_state(Run *run, int index, const char *name, const double *values, size_t count, Error *err)
+bool run_put_state(Run *run, int index, const Kept *rows, int count, Error *err)
 {
-    Array array = array_float(name, "", values, 1, (int)count, 0);
-    return journal_put(run->journal, "state", index, &array, 1, err);
+    Arrays list = {0};
+    for (int k = 0; k < count; k++)
+        arrays_add(&list, array_float(rows[k].name, "", rows[k].values, 1, (int)rows[k].count, 0));
+    return arrays_put(&list, run->journal, "state", index, err);
 }
 
-bool run_get_state(Run *run, int index, const char *name, double *values, size_t count)
+bool run_get_state(Run *run, int index, const Kept *rows, int count, bool *has, Error *err)
 {
-    Array array;
-    if (!journal_has(run->journal, "state", index, name) ||
-        !journal_get(run->journal, "state", index, name, &array, NULL))
-        return false;
-    bool ok = array.type == ARRAY_FLOAT64 && array_count(&array) == count;
-    if (ok) memcpy(values, array.data, count * sizeof *values);
-    array_clear(&array);
-    return ok;
+    *has = true;
+    for (int k = 0; *has && k < count; k++) {
+        Array array;
+        if (!journal_find(run->journal, "state", index, rows[k].name, &array, err)) return false;
+        *has = array.data && array.type == ARRAY_FLOAT64 && array_count(&array) == rows[k].count;
+        if (*has && rows[k].count) memcpy(rows[k].values, array.data, rows[k].count * sizeof(double));
+        array_clear(&array);
+    }
+    return true;
 }

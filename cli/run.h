@@ -37,10 +37,19 @@ void run_newton(const Run *run, NewtonDef *def);
  * the one before. Parameters per face, which seldom change, are left out unless `whole`. */
 bool run_put_frame(Run *run, int index, double shown, const State *state, bool whole, Error *err);
 
-/* final/.. and cases/<name>/..; the plain paths are those of the last state. */
-bool run_put_final(Run *run, const State *states, int count, const char *status, Error *err);
+/* To the arrays of the kind "final": final/.. and cases/<name>/..; the plain paths are those of the last
+ * state. What a job puts there replaces all that an earlier end has left (arrays_replace). */
+void run_add_final(Run *run, const State *states, int count, const char *status, Arrays *list);
 
-/* What a job goes on from, under the kind "state": a vector of numbers by name. Getting is false where it is
- * not there or has another length. */
-bool run_put_state(Run *run, int index, const char *name, const double *values, size_t count, Error *err);
-bool run_get_state(Run *run, int index, const char *name, double *values, size_t count);
+/* What a job goes on from, under the kind "state": vectors of numbers by name. */
+typedef struct Kept {
+    const char *name;
+    double *values; /* [count] to be read, or filled */
+    size_t count;
+} Kept;
+
+/* Puts all as one unit. */
+bool run_put_state(Run *run, int index, const Kept *rows, int count, Error *err);
+
+/* *has: all are there, each of its length. False and a sentence where the journal cannot be read. */
+bool run_get_state(Run *run, int index, const Kept *rows, int count, bool *has, Error *err);

@@ -343,7 +343,8 @@ static const YamlTable output_table = {
          .doc = "a frame for every so many steps of a motion (0: every step) or improvements of a design (0: "
                 "the final one only); of a drawing: NAME-N.svg after every so many iterations N (0: none)"},
         {YAML_CHOICE(OutputScene, precision), .choices = YAML_NAMES("single", "double"), .fallback = "single",
-         .doc = "of frames"},
+         .doc = "of frames; single only as long as its numbers, where the body is, are closer than 1e-5 of "
+                "its size"},
         DRAWING_FILE(svg, "curves in mm, a layer for each pen; NAME.svg if absent"),
         DRAWING_FILE(png, "target and drawing side by side; NAME.png if absent"),
         DRAWING_FILE(gcode, "for a pen on a z axis; none if absent"),

@@ -108,10 +108,11 @@ static bool face_field(Show *show, int step, const double **values, const char *
     if (!strcmp(asked, "magnetization") && show->magnetization)
         return *values = lengths(show, show->magnetization), *unit = "A/m", true;
     Array array;
-    char path[160];
-    snprintf(path, sizeof path, "CellData/%.120s", asked);
+    char *path = mem_format("CellData/%s", asked);
     int steps = result_step_count(show->data->result);
-    if (!result_read_step(show->data->result, path, step < 0 ? steps - 1 : step, &array, err)) return false;
+    bool ok = result_read_step(show->data->result, path, step < 0 ? steps - 1 : step, &array, err);
+    mem_free(path);
+    if (!ok) return false;
     *values = show_keep(show->data, array);
     *unit = array.unit && array.unit[0] ? array.unit : "";
     if (array_count(&array) != (size_t)show->face_count)
@@ -152,25 +153,31 @@ static bool add_frame(Show *show, int frame, Error *err)
     return true;
 }
 
+/* An array of a case, or NULL. */
+static void *case_dataset(Show *show, const char *name, const char *what, size_t count)
+{
+    char *path = mem_format("slender/cases/%s/%s", name, what);
+    void *data = show_dataset(show->data, path, ARRAY_FLOAT64, count);
+    mem_free(path);
+    return data;
+}
+
 static void add_case(Show *show, const char *name)
 {
-    char path[256];
     size_t count = 3 * (size_t)show->vertex_count;
-    snprintf(path, sizeof path, "slender/cases/%.200s/x", name);
-    const double(*x)[3] = show_dataset(show->data, path, ARRAY_FLOAT64, count);
+    const double(*x)[3] = case_dataset(show, name, "x", count);
     if (!x) return;
     PicturePanel *panel = add_panel(show, show_text(show->data, "%s", name), x);
-    snprintf(path, sizeof path, "slender/cases/%.200s/target", name);
-    panel->target = show_dataset(show->data, path, ARRAY_FLOAT64, count);
-    snprintf(path, sizeof path, "slender/cases/%.200s/flux_density", name);
-    const double *flux = show_dataset(show->data, path, ARRAY_FLOAT64, 3);
+    panel->target = case_dataset(show, name, "target", count);
+    const double *flux = case_dataset(show, name, "flux_density", 3);
     if (flux && vec3_length(vec3_load(flux)) > 0) panel->flux_density = flux;
     Array status;
-    snprintf(path, sizeof path, "slender/cases/%.200s/status", name);
+    char *path = mem_format("slender/cases/%s/status", name);
     if (result_read(show->data->result, path, &status, NULL)) {
         panel->note = show_text(show->data, "%s", (const char *)status.data);
         array_clear(&status);
     }
+    mem_free(path);
 }
 
 /* The cases in the scene's order, or the one asked for. */

@@ -85,12 +85,15 @@ static double evaluation_number(Journal *journal, int index, const char *name)
 /* An evaluation of a design, an iteration of a drawing, or a step of a simulation. */
 static void print_evaluation(Journal *journal, int index)
 {
-    if (journal_has(journal, "evaluation", index, "objective"))
+    bool design = false, drawing = false;
+    journal_has(journal, "evaluation", index, "objective", &design, NULL); /* journal_check says more */
+    journal_has(journal, "evaluation", index, "energy", &drawing, NULL);
+    if (design)
         printf("  %4d  objective %.6e  gradient %.3e  %.1f s\n", index,
                evaluation_number(journal, index, "objective"),
                evaluation_number(journal, index, "gradient_norm"),
                evaluation_number(journal, index, "seconds"));
-    else if (journal_has(journal, "evaluation", index, "energy"))
+    else if (drawing)
         printf("  %4d  energy %.6e  %g strokes  %.1f s\n", index, evaluation_number(journal, index, "energy"),
                evaluation_number(journal, index, "strokes"), evaluation_number(journal, index, "seconds"));
     else
@@ -105,15 +108,17 @@ static int info_journal(const char *path)
     Error err;
     Journal *journal = journal_open(path, JOURNAL_READ, &err);
     if (!journal) return verb_fail(RUN_REFUSED, err.text);
-    int evaluations = journal_count(journal, "evaluation");
-    printf("%s: %s, %d evaluations, %d frames, %d states\n", path,
-           journal_is_finished(journal) ? "finished" : "not finished", evaluations,
-           journal_count(journal, "frame"), journal_count(journal, "state"));
-    int *indices = NULL, count = 0;
-    if (journal_indices(journal, "evaluation", &indices, &count, NULL))
-        for (int k = 0; k < count; k++) print_evaluation(journal, indices[k]);
+    int evaluations, frames, states, *indices = NULL, count = 0;
+    bool ok = journal_count(journal, "evaluation", &evaluations, &err) &&
+              journal_count(journal, "frame", &frames, &err) &&
+              journal_count(journal, "state", &states, &err);
+    if (ok)
+        printf("%s: %s, %d evaluations, %d frames, %d states\n", path,
+               journal_is_finished(journal) ? "finished" : "not finished", evaluations, frames, states);
+    ok = ok && journal_indices(journal, "evaluation", &indices, &count, &err);
+    for (int k = 0; ok && k < count; k++) print_evaluation(journal, indices[k]);
     mem_free(indices);
-    bool ok = journal_check(journal, &err);
+    ok = ok && journal_check(journal, &err);
     if (!ok) fprintf(stderr, "slender: %s\n", err.text);
     journal_close(journal, NULL);
     return ok ? RUN_DONE : RUN_REFUSED;
@@ -215,19 +220,20 @@ static bool export_result(const char *input, const Export *what, Error *err)
 }
 
 /* As the run itself would write it. */
-static ResultDef result_def(Journal *journal)
+static bool result_def(Journal *journal, ResultDef *def, Error *err)
 {
-    ResultDef def = {0};
     Array text;
     Scene scene;
     YamlFile *file;
-    if (!journal_get(journal, "meta", 0, "scene", &text, NULL)) return def;
+    *def = (ResultDef){0};
+    if (!journal_find(journal, "meta", 0, "scene", &text, err)) return false;
+    if (!text.data) return true;
     if (verb_stored_scene(text.data, &file, &scene))
-        def.double_frames = scene.output.precision == OUTPUT_DOUBLE;
+        def->double_frames = scene.output.precision == OUTPUT_DOUBLE;
     yaml_clear(&scene_table, &scene);
     yaml_destroy(file);
     array_clear(&text);
-    return def;
+    return true;
 }
 
 static bool export_journal(const char *input, const char *path, Error *err)
@@ -236,9 +242,12 @@ static bool export_journal(const char *input, const char *path, Error *err)
         return error_set(err, "%s: a run is exported as .vtkhdf, and that as other files", path);
     Journal *journal = journal_open(input, JOURNAL_READ, err);
     if (!journal) return false;
-    bool ok = !journal_is_finished(journal) || journal_count(journal, "frame") > 0 ||
-              error_set(err, "%s: the run has finished; its frames are in its result", input);
-    ok = ok && result_write(journal, path, result_def(journal), err);
+    int frames;
+    ResultDef def;
+    bool ok = journal_count(journal, "frame", &frames, err) &&
+              (!journal_is_finished(journal) || frames > 0 ||
+               error_set(err, "%s: the run has finished; its frames are in its result", input));
+    ok = ok && result_def(journal, &def, err) && result_write(journal, path, def, NULL, err);
     return journal_close(journal, ok ? err : NULL) && ok;
 }
 

@@ -1,5 +1,6 @@
 /* slender run: scene -> journal -> result and picture. */
 #include "base/memory.h"
+#include "cli/inputs.h"
 #include "cli/job.h"
 #include "cli/outputs.h"
 #include "cli/recall.h"
@@ -113,17 +114,35 @@ static char *list_of(const char *const *keys)
     return list;
 }
 
-static bool check_scene(Journal *journal, int job, const char *scene, Error *err)
+static const char *const *free_keys_of(int job)
 {
-    const char *const *keys = job == JOB_TRAJECTORY ? free_keys_trajectory
-                              : job == JOB_DRAW     ? free_keys_draw
-                                                    : free_keys;
+    return job == JOB_TRAJECTORY ? free_keys_trajectory : job == JOB_DRAW ? free_keys_draw : free_keys;
+}
+
+/* The free keys, and those of files, which are told by their contents; one block. */
+static const char **ignored_keys(const char *const *free, char *const *files)
+{
+    size_t free_count = 0, count = 0;
+    while (free[free_count]) free_count++;
+    while (files[count]) count++;
+    const char **keys = mem_alloc(free_count + count + 1, sizeof *keys);
+    memcpy(keys, free, free_count * sizeof *keys);
+    memcpy(keys + free_count, files, count * sizeof *keys);
+    return keys;
+}
+
+/* `files`: keys whose paths need not be the same. */
+static bool check_scene(Journal *journal, int job, const char *scene, char *const *files, Error *err)
+{
+    const char *const *free = free_keys_of(job);
     Array old;
     if (!journal_get(journal, "meta", 0, "scene", &old, err)) return false;
+    const char **keys = ignored_keys(free, files);
     char *difference = yaml_difference(old.data, scene, keys);
     array_clear(&old);
+    mem_free(keys);
     if (!difference) return true;
-    char *list = list_of(keys);
+    char *list = list_of(free);
     error_set(err,
               "the scene has changed since that run: %s is not the same; with --resume only %s may change",
               difference, list);
@@ -132,23 +151,60 @@ static bool check_scene(Journal *journal, int job, const char *scene, Error *err
     return false;
 }
 
-static bool begin(Run *run, const RunOptions *options, Error *err)
+/* Is this the run that the journal holds: the same scene, made of the same files? */
+static bool check_resumed(Run *run, const char *scene, const char *inputs, Error *err)
+{
+    static char *const none[] = {NULL};
+    Array old;
+    if (!journal_find(run->journal, "meta", 0, "inputs", &old, err)) return false;
+    if (!old.data) { /* an older journal: files are told by their names */
+        if (*inputs)
+            progress_say(run->progress,
+                         "whether the files of the scene have changed since that run is not known");
+        return check_scene(run->journal, run->scene->job, scene, none, err);
+    }
+    char **keys = inputs_keys(run->scene);
+    bool ok = check_scene(run->journal, run->scene->job, scene, keys, err) &&
+              inputs_check(run->scene, old.data, inputs, err);
+    mem_free(keys);
+    array_clear(&old);
+    return ok;
+}
+
+/* What is known from the start, in the place of what an earlier part of the run has put there; its end is
+ * none now. */
+static bool put_start(Run *run, const char *scene, const char *inputs, Error *err)
 {
     Arrays statics = {0};
+    char *versions = run_versions();
+    Array meta[] = {array_text("scene", scene), array_text("versions", versions),
+                    array_text("inputs", inputs)};
     run->model->body->add_static(run->model, &statics);
-    char *scene = yaml_write(&scene_table, run->scene), *versions = run_versions();
-    bool ok = !options->resume || check_scene(run->journal, run->scene->job, scene, err);
-    Array meta[] = {array_text("scene", scene), array_text("versions", versions)};
-    if (ok && options->resume && journal_is_finished(run->journal) && run->scene->job == JOB_SIMULATE)
-        ok = recall_frames(run->journal, run->result, err);
-    ok = ok && journal_put(run->journal, "meta", 0, meta, 2, err) &&
-         arrays_put(&statics, run->journal, "static", 0, err);
-    arrays_clear(&statics);
-    if (ok && options->resume && journal_is_finished(run->journal))
-        ok = journal_set_finished(run->journal, false, err);
-    mem_free(scene);
+    bool ok = journal_replace(run->journal, "meta", 0, meta, *inputs ? 3 : 2, err) &&
+              journal_replace(run->journal, "final", 0, NULL, 0, err);
+    ok = arrays_replace(&statics, run->journal, "static", ok ? err : NULL) && ok;
     mem_free(versions);
-    return ok;
+    return ok && journal_set_finished(run->journal, false, err);
+}
+
+/* A run that goes on must be the one that the journal holds, with its frames; a new one only has to be put.
+ */
+static RunStatus begin(Run *run, const RunOptions *options, Error *err)
+{
+    char *inputs = inputs_text(run->scene, err);
+    if (!inputs) return RUN_REFUSED;
+    char *scene = yaml_write(&scene_table, run->scene);
+    bool exact = run->scene->output.precision == OUTPUT_DOUBLE,
+         extended = options->resume && journal_is_finished(run->journal) && run->scene->job == JOB_SIMULATE;
+    RunStatus status = RUN_DONE;
+    if ((options->resume && !check_resumed(run, scene, inputs, err)) ||
+        (extended && !recall_frames(run->journal, run->result, exact, err)))
+        status = RUN_REFUSED;
+    else if (!put_start(run, scene, inputs, err))
+        status = RUN_CANNOT_WRITE;
+    mem_free(scene);
+    mem_free(inputs);
+    return status;
 }
 
 /* ---- The result ---- */
@@ -156,9 +212,10 @@ static bool begin(Run *run, const RunOptions *options, Error *err)
 static bool write_result(Run *run, const char *path, bool finished, Error *err)
 {
     ResultDef def = {.double_frames = run->scene->output.precision == OUTPUT_DOUBLE};
-    if (!journal_flush(run->journal, err) || !result_write(run->journal, path, def, err)) return false;
+    uint32_t sum;
+    if (!journal_flush(run->journal, err) || !result_write(run->journal, path, def, &sum, err)) return false;
     if (!finished) return true;
-    if (!journal_set_finished(run->journal, true, err)) return false;
+    if (!recall_keep(run->journal, sum, err) || !journal_set_finished(run->journal, true, err)) return false;
     bool made_again = run->scene->job == JOB_TRAJECTORY; /* from the best motion's states */
     if (made_again || run->scene->job == JOB_SIMULATE) journal_forget(run->journal, "frame", NULL);
     return true;
@@ -179,10 +236,9 @@ static void draw(Run *run)
 static int do_job(Run *run, const RunOptions *options)
 {
     Error err;
-    if (!begin(run, options, &err))
-        return verb_fail(options->resume ? RUN_REFUSED : RUN_CANNOT_WRITE, err.text);
-    RunStatus status = job_run(run, &err);
-    if (status == RUN_CANNOT_WRITE) return verb_fail(status, err.text);
+    RunStatus status = begin(run, options, &err);
+    if (status == RUN_DONE) status = job_run(run, &err);
+    if (status == RUN_CANNOT_WRITE || status == RUN_REFUSED) return verb_fail(status, err.text);
     if (!write_result(run, run->result, status != RUN_INTERRUPTED, &err))
         return verb_fail(RUN_CANNOT_WRITE, err.text);
     progress_say(run->progress, "result: %s", run->result);

@@ -57,3 +57,17 @@ uint32_t array_crc(const Array *array, const char *kind, int index)
     size_t bytes = array_bytes(array); /* zlib would begin anew where there are none and no place for them */
     return bytes ? (uint32_t)crc32_z(crc, array->data, bytes) : crc;
 }
+
+bool array_own(Array *array, size_t bytes, const char *kind, int index, uint32_t crc)
+{
+    if (array->type > ARRAY_TEXT || array->rank < 0 || array->rank > ARRAY_MAX_RANK) return false;
+    for (int r = 0; r < array->rank; r++)
+        if (array->dims[r] < 0) return false;
+    if (bytes != array_bytes(array) || array_crc(array, kind, index) != crc) return false;
+    char *data = mem_alloc(bytes + 1, 1); /* a text ends with 0 */
+    if (bytes) memcpy(data, array->data, bytes);
+    array->name = mem_text(array->name);
+    array->unit = mem_text(array->unit);
+    array->data = data;
+    return true;
+}

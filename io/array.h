@@ -1,5 +1,6 @@
 /* array.h - a named n-dimensional array of numbers or a text: what journal, result and export exchange. */
 #pragma once
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -26,6 +27,10 @@ size_t array_count(const Array *array);
 
 /* Frees name, unit and data of an array that a reader filled. */
 void array_clear(Array *array);
+
+/* Makes a borrowed array an owned one if it is what was kept under that key: so many bytes of data, of that
+ * CRC32. Else false, and nothing is owned. */
+bool array_own(Array *array, size_t bytes, const char *kind, int index, uint32_t crc);
 
 /* CRC32 over the bytes, over all that is said of them, and over the key under which they are kept. */
 uint32_t array_crc(const Array *array, const char *kind, int index);

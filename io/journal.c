@@ -3,13 +3,10 @@
 #include "io/journal.h"
 #include "base/clock.h"
 #include "base/memory.h"
+#include "io/journal_files.h"
 #include "io/waiting.h"
-#include <errno.h>
-#include <fcntl.h>
 #include <sqlite3.h>
 #include <string.h>
-#include <sys/file.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 enum { APPLICATION_ID = 0x534c4e44 /* "SLND" */, FORMAT_VERSION = 1, BUSY_MS = 5000 };
@@ -69,32 +66,38 @@ static bool query_number(Journal *journal, const char *sql, const char *text, lo
 
 /* ---- Opening ---- */
 
-static bool take_lock(Journal *journal, Error *err)
+static bool open_database(Journal *journal, const char *name, int flags, const char *vfs, Error *err)
 {
-    char *path = mem_format("%s-lock", journal->path);
-    journal->lock = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-    int code = errno;
-    mem_free(path);
-    if (journal->lock < 0)
-        return error_set(err, "%s-lock: cannot be written: %s", journal->path, strerror(code));
-    if (flock(journal->lock, LOCK_EX | LOCK_NB) == 0) return true;
-    return error_set(err,
-                     "another run is writing %s at this moment; wait for it, or choose another name with -o",
-                     journal->path);
-}
-
-static bool exists(const char *path)
-{
-    struct stat info;
-    return stat(path, &info) == 0 && info.st_size > 0;
-}
-
-static bool open_database(Journal *journal, int flags, Error *err)
-{
-    if (sqlite3_open_v2(journal->path, &journal->db, flags, NULL) != SQLITE_OK)
+    if (sqlite3_open_v2(name, &journal->db, flags, vfs) != SQLITE_OK)
         return sql_error(journal, "opened", err);
     sqlite3_busy_timeout(journal->db, BUSY_MS);
     return true;
+}
+
+static bool open_to_write(Journal *journal, int flags, Error *err)
+{
+    return open_database(journal, journal->path, SQLITE_OPEN_READWRITE | flags, NULL, err);
+}
+
+/* SQLite would make an index for a log that has none; with exclusive access and no locks it makes it in
+ * memory, and closing must not bring the log into the database. */
+static bool open_log(Journal *journal, Error *err)
+{
+    return open_database(journal, journal->path, SQLITE_OPEN_READONLY, "unix-none", err) &&
+           sqlite3_db_config(journal->db, SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, 1, NULL) == SQLITE_OK &&
+           execute(journal, "PRAGMA locking_mode=EXCLUSIVE", "read", err);
+}
+
+static bool open_to_read(Journal *journal, Error *err)
+{
+    JournalAccess access = journal_files_access(journal->path);
+    if (access == ACCESS_LOG) return open_log(journal, err);
+    if (access == ACCESS_SHARED)
+        return open_database(journal, journal->path, SQLITE_OPEN_READONLY, NULL, err);
+    char *uri = journal_files_still_uri(journal->path);
+    bool ok = open_database(journal, uri, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, NULL, err);
+    mem_free(uri);
+    return ok;
 }
 
 static void close_database(Journal *journal)
@@ -140,27 +143,11 @@ static bool create_tables(Journal *journal, Error *err)
     return execute(journal, sql, "written", err);
 }
 
-static bool remove_file(const char *path, Error *err)
-{
-    return unlink(path) == 0 || errno == ENOENT ||
-           error_set(err, "%s: cannot be replaced: %s", path, strerror(errno));
-}
-
-/* The database first: without it, what is left in the log means nothing. */
-static bool discard(const Journal *journal, Error *err)
-{
-    char *wal = mem_format("%s-wal", journal->path), *shm = mem_format("%s-shm", journal->path);
-    bool ok = remove_file(journal->path, err) && remove_file(wal, err) && remove_file(shm, err);
-    mem_free(wal);
-    mem_free(shm);
-    return ok;
-}
-
 /* What is in the file may go: it is ours, and finished or empty or no longer wanted. */
 static bool may_discard(Journal *journal, JournalMode mode, Error *err)
 {
     long arrays = 0;
-    bool ok = open_database(journal, SQLITE_OPEN_READWRITE, err);
+    bool ok = open_to_write(journal, 0, err);
     long objects = 0;
     ok = ok && query_number(journal, "SELECT count(*) FROM sqlite_master", NULL, 0, &objects, err);
     if (ok && objects > 0) {
@@ -178,19 +165,22 @@ static bool may_discard(Journal *journal, JournalMode mode, Error *err)
 
 static bool open_new(Journal *journal, JournalMode mode, Error *err)
 {
-    if (exists(journal->path) && (!may_discard(journal, mode, err) || !discard(journal, err))) return false;
-    return open_database(journal, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE, err) &&
+    if (journal_files_exist(journal->path) &&
+        (!may_discard(journal, mode, err) || !journal_files_remove(journal->path, err)))
+        return false;
+    return open_to_write(journal, SQLITE_OPEN_CREATE, err) &&
            execute(journal, "PRAGMA journal_mode=WAL; PRAGMA synchronous=FULL;", "written", err) &&
            create_tables(journal, err);
 }
 
 static bool open_old(Journal *journal, JournalMode mode, Error *err)
 {
-    if (!exists(journal->path)) return error_set(err, "%s: there is no such run", journal->path);
-    int flags = mode == JOURNAL_READ ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE;
-    if (!open_database(journal, flags, err) || !check_identity(journal, err) || !read_finished(journal, err))
+    bool reader = mode == JOURNAL_READ;
+    if (!journal_files_exist(journal->path)) return error_set(err, "%s: there is no such run", journal->path);
+    if (!(reader ? open_to_read(journal, err) : open_to_write(journal, 0, err)) ||
+        !check_identity(journal, err) || !read_finished(journal, err))
         return false;
-    if (mode == JOURNAL_READ) return true;
+    if (reader) return true;
     return execute(journal, "PRAGMA journal_mode=WAL; PRAGMA synchronous=FULL;", "written", err) &&
            journal_check(journal, err);
 }
@@ -198,8 +188,7 @@ static bool open_old(Journal *journal, JournalMode mode, Error *err)
 static void destroy(Journal *journal)
 {
     close_database(journal);
-    if (journal->lock >= 0)
-        close(journal->lock); /* the lock file stays: to remove it would race with the next writer */
+    if (journal->lock >= 0) close(journal->lock);
     waiting_clear(&journal->waiting);
     mem_free(journal->path);
     mem_free(journal);
@@ -213,7 +202,7 @@ Journal *journal_open(const char *path, JournalMode mode, Error *err)
     journal->reader = mode == JOURNAL_READ;
     journal->committed = clock_seconds();
     bool old = mode == JOURNAL_READ || mode == JOURNAL_RESUME;
-    bool ok = (journal->reader || take_lock(journal, err)) &&
+    bool ok = (journal->reader || journal_files_lock(path, &journal->lock, err)) &&
               (old ? open_old(journal, mode, err) : open_new(journal, mode, err));
     if (ok) return journal;
     destroy(journal);
@@ -247,13 +236,26 @@ static bool insert(Journal *journal, sqlite3_stmt *statement, const Pending *pen
     return sqlite3_step(statement) == SQLITE_DONE || sql_error(journal, "written", err);
 }
 
+static bool delete_kind(Journal *journal, const char *kind, Error *err)
+{
+    sqlite3_stmt *row = prepare(journal, "DELETE FROM arrays WHERE kind=?", err);
+    if (!row) return false;
+    sqlite3_bind_text(row, 1, kind, -1, SQLITE_STATIC);
+    bool ok = sqlite3_step(row) == SQLITE_DONE || sql_error(journal, "written", err);
+    sqlite3_finalize(row);
+    return ok;
+}
+
 static bool insert_all(Journal *journal, Error *err)
 {
     sqlite3_stmt *statement =
         prepare(journal, "INSERT OR REPLACE INTO arrays VALUES(?,?,?,?,?,?,?,?,?,?,?)", err);
     bool ok = statement != NULL;
-    for (size_t k = 0; ok && k < journal->waiting.count; k++)
-        ok = insert(journal, statement, &journal->waiting.items[k], err);
+    for (size_t k = 0; ok && k < journal->waiting.count; k++) {
+        const Pending *pending = &journal->waiting.items[k];
+        ok = pending->array.name ? insert(journal, statement, pending, err)
+                                 : delete_kind(journal, pending->kind, err);
+    }
     sqlite3_finalize(statement);
     if (!ok || !journal->finished_dirty) return ok;
     return execute(journal, journal->finished ? "UPDATE run SET finished=1" : "UPDATE run SET finished=0",
@@ -273,6 +275,13 @@ bool journal_flush(Journal *journal, Error *err)
     journal->finished_dirty = false;
     journal->committed = clock_seconds();
     return true;
+}
+
+bool journal_replace(Journal *journal, const char *kind, int index, const Array *arrays, int count,
+                     Error *err)
+{
+    waiting_push_end(&journal->waiting, kind);
+    return journal_put(journal, kind, index, arrays, count, err);
 }
 
 bool journal_put(Journal *journal, const char *kind, int index, const Array *arrays, int count, Error *err)
@@ -310,22 +319,10 @@ static bool take_row(sqlite3_stmt *row, const char *kind, int index, Array *arra
                      .unit = unit ? unit : "",
                      .type = (ArrayType)sqlite3_column_int(row, 2),
                      .rank = sqlite3_column_int(row, 3)};
-    if (array->type > ARRAY_TEXT || array->rank < 0 || array->rank > ARRAY_MAX_RANK) return false;
-    for (int r = 0; r < array->rank; r++) {
-        array->dims[r] = sqlite3_column_int(row, 4 + r);
-        if (array->dims[r] < 0) return false;
-    }
+    for (int r = 0; r < ARRAY_MAX_RANK; r++) array->dims[r] = sqlite3_column_int(row, 4 + r);
     size_t bytes = (size_t)sqlite3_column_bytes(row, 8);
     array->data = sqlite3_column_blob(row, 8);
-    if (bytes != array_bytes(array) ||
-        array_crc(array, kind, index) != (uint32_t)sqlite3_column_int64(row, 7))
-        return false;
-    char *data = mem_alloc(bytes + 1, 1); /* a text ends with 0 */
-    if (bytes) memcpy(data, array->data, bytes);
-    array->name = mem_text(array->name);
-    array->unit = mem_text(array->unit);
-    array->data = data;
-    return true;
+    return array_own(array, bytes, kind, index, (uint32_t)sqlite3_column_int64(row, 7));
 }
 
 static bool damaged(const Journal *journal, const char *kind, int index, const char *name, Error *err)
@@ -334,44 +331,55 @@ static bool damaged(const Journal *journal, const char *kind, int index, const c
                      name);
 }
 
-bool journal_get(Journal *journal, const char *kind, int index, const char *name, Array *array, Error *err)
+/* Rows of a kind, or of it and an index, or the one of that name too, as the text has room for them; the
+ * caller finalizes. NULL where the journal cannot be read. */
+static sqlite3_stmt *select_rows(Journal *journal, const char *sql, const char *kind, int index,
+                                 const char *name, Error *err)
 {
-    *array = (Array){0};
-    if (!settle(journal, err)) return false;
-    sqlite3_stmt *row = prepare(
-        journal,
-        "SELECT name, unit, type, rank, d0, d1, d2, crc, bytes FROM arrays WHERE kind=? AND idx=? AND name=?",
-        err);
-    if (!row) return false;
+    sqlite3_stmt *row = settle(journal, err) ? prepare(journal, sql, err) : NULL;
+    if (!row) return NULL;
     sqlite3_bind_text(row, 1, kind, -1, SQLITE_STATIC);
     sqlite3_bind_int(row, 2, index);
     sqlite3_bind_text(row, 3, name, -1, SQLITE_STATIC);
+    return row;
+}
+
+bool journal_find(Journal *journal, const char *kind, int index, const char *name, Array *array, Error *err)
+{
+    *array = (Array){0};
+    sqlite3_stmt *row = select_rows(
+        journal,
+        "SELECT name, unit, type, rank, d0, d1, d2, crc, bytes FROM arrays WHERE kind=? AND idx=? AND name=?",
+        kind, index, name, err);
+    if (!row) return false;
     int code = sqlite3_step(row);
-    bool ok = false;
+    bool ok = code == SQLITE_DONE;
     if (code == SQLITE_ROW) {
         ok = take_row(row, kind, index, array);
         if (!ok) *array = (Array){0}, damaged(journal, kind, index, name, err);
-    } else if (code == SQLITE_DONE) {
-        error_set(err, "%s has no %s %d, %s", journal->path, kind, index, name);
-    } else {
+    } else if (!ok) {
         sql_error(journal, "read", err);
     }
     sqlite3_finalize(row);
     return ok;
 }
 
-bool journal_has(Journal *journal, const char *kind, int index, const char *name)
+bool journal_get(Journal *journal, const char *kind, int index, const char *name, Array *array, Error *err)
 {
-    sqlite3_stmt *row = settle(journal, NULL)
-                            ? prepare(journal, "SELECT 1 FROM arrays WHERE kind=? AND idx=? AND name=?", NULL)
-                            : NULL;
+    return journal_find(journal, kind, index, name, array, err) &&
+           (array->data || error_set(err, "%s has no %s %d, %s", journal->path, kind, index, name));
+}
+
+bool journal_has(Journal *journal, const char *kind, int index, const char *name, bool *has, Error *err)
+{
+    sqlite3_stmt *row = select_rows(journal, "SELECT 1 FROM arrays WHERE kind=? AND idx=? AND name=?", kind,
+                                    index, name, err);
     if (!row) return false;
-    sqlite3_bind_text(row, 1, kind, -1, SQLITE_STATIC);
-    sqlite3_bind_int(row, 2, index);
-    sqlite3_bind_text(row, 3, name, -1, SQLITE_STATIC);
-    bool found = sqlite3_step(row) == SQLITE_ROW;
+    int code = sqlite3_step(row);
+    *has = code == SQLITE_ROW;
+    bool ok = *has || code == SQLITE_DONE || sql_error(journal, "read", err);
     sqlite3_finalize(row);
-    return found;
+    return ok;
 }
 
 bool journal_indices(Journal *journal, const char *kind, int **indices, int *count, Error *err)
@@ -379,11 +387,8 @@ bool journal_indices(Journal *journal, const char *kind, int **indices, int *cou
     *indices = NULL;
     *count = 0;
     sqlite3_stmt *row =
-        settle(journal, err)
-            ? prepare(journal, "SELECT DISTINCT idx FROM arrays WHERE kind=? ORDER BY idx", err)
-            : NULL;
+        select_rows(journal, "SELECT DISTINCT idx FROM arrays WHERE kind=? ORDER BY idx", kind, 0, NULL, err);
     if (!row) return false;
-    sqlite3_bind_text(row, 1, kind, -1, SQLITE_STATIC);
     size_t room = 0;
     int code;
     while ((code = sqlite3_step(row)) == SQLITE_ROW) {
@@ -405,13 +410,9 @@ bool journal_names(Journal *journal, const char *kind, int index, char ***names,
 {
     *names = NULL;
     *count = 0;
-    sqlite3_stmt *row =
-        settle(journal, err)
-            ? prepare(journal, "SELECT name FROM arrays WHERE kind=? AND idx=? ORDER BY name", err)
-            : NULL;
+    sqlite3_stmt *row = select_rows(journal, "SELECT name FROM arrays WHERE kind=? AND idx=? ORDER BY name",
+                                    kind, index, NULL, err);
     if (!row) return false;
-    sqlite3_bind_text(row, 1, kind, -1, SQLITE_STATIC);
-    sqlite3_bind_int(row, 2, index);
     /* One pass, so that a writer cannot come between: all names in a row first, then the table of them. */
     char *all = NULL;
     size_t used = 0, room = 0;
@@ -438,23 +439,20 @@ bool journal_names(Journal *journal, const char *kind, int index, char ***names,
     return ok;
 }
 
-int journal_count(Journal *journal, const char *kind)
+bool journal_count(Journal *journal, const char *kind, int *count, Error *err)
 {
-    long count;
+    long found = 0;
     bool ok =
-        settle(journal, NULL) &&
-        query_number(journal, "SELECT count(DISTINCT idx) FROM arrays WHERE kind=?", kind, 0, &count, NULL);
-    return ok ? (int)count : -2;
+        settle(journal, err) &&
+        query_number(journal, "SELECT count(DISTINCT idx) FROM arrays WHERE kind=?", kind, 0, &found, err);
+    *count = (int)found;
+    return ok;
 }
 
 bool journal_forget(Journal *journal, const char *kind, Error *err)
 {
-    sqlite3_stmt *row = settle(journal, err) ? prepare(journal, "DELETE FROM arrays WHERE kind=?", err) : NULL;
-    if (!row) return false;
-    sqlite3_bind_text(row, 1, kind, -1, SQLITE_STATIC);
-    bool ok = sqlite3_step(row) == SQLITE_DONE || sql_error(journal, "written", err);
-    sqlite3_finalize(row);
-    return ok && execute(journal, "VACUUM", "written", err);
+    return settle(journal, err) && delete_kind(journal, kind, err) &&
+           execute(journal, "VACUUM", "written", err);
 }
 
 bool journal_check(Journal *journal, Error *err)

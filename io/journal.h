@@ -7,16 +7,18 @@
  * and bytes, checked whenever it is read, so that damage gives a sentence and never a wrong number.
  *
  * Kinds used by slender (index 0 where there is only one):
- *   meta        scene (text), versions (text)
+ *   meta        scene (text), versions (text), inputs (text: CRC32, length and key of each file of the scene)
  *   static      rest [n_v,3], faces [n_f,3], edges [n_e,2]; of curves lines [L,2]: first point, number of points
  *   frame       index n: x [n_v,3], time, turns, cell/<name> [n_f] or [n_f,3], point/<name>
- *   evaluation  index k: unknowns, gradient, and the scalars objective, gradient_norm, newton_iterations,
- * seconds state       what the run needs to go on final       arrays of the result, named by their path below
- * /slender
+ *   evaluation  index k: unknowns, gradient, and the scalars objective, gradient_norm, newton_iterations, seconds
+ *   state       what the run needs to go on
+ *   final       arrays of the result, named by their path below /slender
+ *   result      crc32: which result the frames of a finished simulation have gone to
  *
  * The file is an SQLite database (WAL, synchronous=FULL) on a local disk; while a run lives there are
- * NAME.run-wal and NAME.run-shm (SQLite's) and NAME.run-lock (the writer's lock) beside it. Numbers are kept
- * bit for bit, as raw little-endian bytes. One thread at a time may use a Journal.
+ * NAME.run-wal and NAME.run-shm (SQLite's) and NAME.run-lock (the writer's lock) beside it. At its end the log
+ * goes into the database. Readers make no files (journal_files.h). Numbers are kept bit for bit, as raw
+ * little-endian bytes. One thread at a time may use a Journal.
  *
  * Damage to NAME.run-wal after a kill (bits flipped by the disk, or cut off) cannot always be told from a
  * commit that never happened: it takes away the last units, and never changes one. */
@@ -30,7 +32,8 @@ typedef enum JournalMode {
     JOURNAL_NEW,    /* start a run; an unfinished run in the file is refused, a finished one is discarded  */
     JOURNAL_FORCE,  /* start a run; an unfinished one is discarded too (never one that is being written)  */
     JOURNAL_RESUME, /* go on with the run in the file, checked as a whole; refused if anything is damaged  */
-    JOURNAL_READ,   /* see the run as it is at this moment, even while its writer lives; nothing is changed */
+    JOURNAL_READ,   /* see the run as it is at this moment, even while its writer lives; no file is changed or
+                       made */
 } JournalMode;
 
 /* Opens the journal; NULL and a sentence on refusal. A second writer is refused while the first one lives,
@@ -47,6 +50,11 @@ bool journal_close(Journal *journal, Error *err);
  * memory and goes with the next commit that succeeds; what was committed before stays. */
 bool journal_put(Journal *journal, const char *kind, int index, const Array *arrays, int count, Error *err);
 
+/* Puts them in the place of all that is under this kind, in one transaction: of an older state nothing stays.
+ */
+bool journal_replace(Journal *journal, const char *kind, int index, const Array *arrays, int count,
+                     Error *err);
+
 /* Commits what has been gathered: before a long computation, and where a unit must not be lost. After a
  * failure it may be tried again. */
 bool journal_flush(Journal *journal, Error *err);
@@ -54,16 +62,19 @@ bool journal_flush(Journal *journal, Error *err);
 /* Reads one array, to be freed by array_clear. False and a sentence if it is not there or damaged. */
 bool journal_get(Journal *journal, const char *kind, int index, const char *name, Array *array, Error *err);
 
-/* Is there such an array? False too if the journal cannot be read. */
-bool journal_has(Journal *journal, const char *kind, int index, const char *name);
+/* The same where it may be missing, which is no error: the array's data is NULL then. */
+bool journal_find(Journal *journal, const char *kind, int index, const char *name, Array *array, Error *err);
+
+/* Is there such an array? False and a sentence where that cannot be told. */
+bool journal_has(Journal *journal, const char *kind, int index, const char *name, bool *has, Error *err);
 
 /* The indices of a kind, ascending, and the names under a kind and index, sorted. One block each, to be freed
  * by mem_free (the names lie in the same block). */
 bool journal_indices(Journal *journal, const char *kind, int **indices, int *count, Error *err);
 bool journal_names(Journal *journal, const char *kind, int index, char ***names, int *count, Error *err);
 
-/* How many indices a kind has; -2 if the journal cannot be read. */
-int journal_count(Journal *journal, const char *kind);
+/* How many indices a kind has. */
+bool journal_count(Journal *journal, const char *kind, int *count, Error *err);
 
 /* Lets all of a kind go and gives its space back. */
 bool journal_forget(Journal *journal, const char *kind, Error *err);

@@ -5,15 +5,15 @@
 #include "io/safe_file.h"
 #include "io/xdmf.h"
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
+#include <zlib.h>
 
 /* ---- /slender ---- */
 
 /* Every array of a kind at its own name; final/status is an attribute instead. */
 static bool put_kind(VtkFrames *w, const char *kind, Error *err)
 {
-    char **names, path[512];
+    char **names;
     int count;
     bool ok = journal_names(w->journal, kind, 0, &names, &count, err);
     for (int k = 0; ok && k < count; k++) {
@@ -21,8 +21,9 @@ static bool put_kind(VtkFrames *w, const char *kind, Error *err)
         if (!strcmp(names[k], "status") && !strcmp(kind, "final")) continue;
         ok = journal_get(w->journal, kind, 0, names[k], &array, err);
         if (!ok) break;
-        snprintf(path, sizeof path, "slender/%.400s", names[k]);
+        char *path = mem_format("slender/%s", names[k]);
         ok = hdf5_write(w->file, path, &array, (Hdf5Layout){0}, err);
+        mem_free(path);
         array_clear(&array);
     }
     if (names) mem_free(names);
@@ -31,11 +32,10 @@ static bool put_kind(VtkFrames *w, const char *kind, Error *err)
 
 static bool put_status(VtkFrames *w, Error *err)
 {
-    Array status = {0};
-    if (!journal_has(w->journal, "final", 0, "status"))
-        return hdf5_attribute_text(w->file, "slender", "status", "unfinished", err);
-    bool ok = journal_get(w->journal, "final", 0, "status", &status, err) &&
-              hdf5_attribute_text(w->file, "slender", "status", status.data, err);
+    Array status;
+    bool ok =
+        journal_find(w->journal, "final", 0, "status", &status, err) &&
+        hdf5_attribute_text(w->file, "slender", "status", status.data ? status.data : "unfinished", err);
     array_clear(&status);
     return ok;
 }
@@ -44,20 +44,19 @@ static bool put_status(VtkFrames *w, Error *err)
 static bool put_history(VtkFrames *w, const char *name, const int *indices, int count, const char *unit,
                         Error *err)
 {
-    char path[512];
     double *values = mem_alloc((size_t)count, sizeof *values);
     bool ok = true;
     for (int k = 0; ok && k < count; k++) {
-        Array array = {0};
-        values[k] = NAN;
-        if (!journal_has(w->journal, "evaluation", indices[k], name)) continue;
-        ok = journal_get(w->journal, "evaluation", indices[k], name, &array, err);
-        if (ok && array.rank == 0 && array.type == ARRAY_FLOAT64) values[k] = *(const double *)array.data;
+        Array array;
+        ok = journal_find(w->journal, "evaluation", indices[k], name, &array, err);
+        bool scalar = array.data && array.rank == 0 && array.type == ARRAY_FLOAT64;
+        values[k] = scalar ? *(const double *)array.data : NAN;
         array_clear(&array);
     }
-    snprintf(path, sizeof path, "slender/history/%.400s", name);
+    char *path = mem_format("slender/history/%s", name);
     Array history = array_float(path, unit, values, 1, count, 0);
     ok = ok && hdf5_write(w->file, path, &history, (Hdf5Layout){0}, err);
+    mem_free(path);
     mem_free(values);
     return ok;
 }
@@ -87,7 +86,9 @@ static bool put_histories(VtkFrames *w, Error *err)
 static bool put_last_x(VtkFrames *w, Error *err)
 {
     Array x;
-    if (journal_has(w->journal, "final", 0, "state/x")) return true;
+    bool has;
+    if (!journal_has(w->journal, "final", 0, "state/x", &has, err)) return false;
+    if (has) return true;
     if (!journal_get(w->journal, "frame", w->frames[w->count - 1], "x", &x, err)) return false;
     bool ok = hdf5_write(w->file, "slender/state/x", &x, (Hdf5Layout){0}, err);
     array_clear(&x);
@@ -99,7 +100,9 @@ static bool fill(VtkFrames *w, Error *err)
     if (!put_kind(w, "meta", err) || !put_kind(w, "static", err) || !put_kind(w, "final", err) ||
         !put_status(w, err) || !put_histories(w, err))
         return false;
-    if (w->count == 0 || !vtk_frames_exist(w->journal)) return true;
+    bool shown;
+    if (!vtk_frames_exist(w->journal, &shown, err)) return false;
+    if (w->count == 0 || !shown) return true;
     if (!vtk_frames_read(w, err) || !put_last_x(w, err) || !vtk_frames_write(w, err)) return false;
     for (int k = 0; k < w->field_count; k++)
         if (!strcmp(w->fields[k], "flux_density") &&
@@ -112,14 +115,16 @@ static bool write_sidecar(const VtkFrames *w, const char *path, Error *err)
 {
     if (w->vertex_count == 0) return true;
     size_t length = strlen(path), cut = length > 7 && !strcmp(path + length - 7, ".vtkhdf") ? 7 : 0;
-    char *sidecar = mem_format("%.*s.xdmf", (int)(length - cut), path), *text = xdmf_text(path, w);
+    char *text = xdmf_text(path, w, err);
+    if (!text) return false;
+    char *sidecar = mem_format("%.*s.xdmf", (int)(length - cut), path);
     bool ok = safe_file_write(sidecar, text, strlen(text), false, err);
     mem_free(text);
     mem_free(sidecar);
     return ok;
 }
 
-bool result_write(Journal *journal, const char *path, ResultDef def, Error *err)
+bool result_write(Journal *journal, const char *path, ResultDef def, uint32_t *sum, Error *err)
 {
     VtkFrames w = {.journal = journal, .single = !def.double_frames, .file = hdf5_create()};
     void *bytes = NULL;
@@ -128,6 +133,7 @@ bool result_write(Journal *journal, const char *path, ResultDef def, Error *err)
     ok = ok && journal_indices(journal, "frame", &w.frames, &w.count, err) && fill(&w, err) &&
          hdf5_image(w.file, &bytes, &size, err);
     hdf5_close(w.file);
+    if (ok && sum) *sum = (uint32_t)crc32_z(0, bytes, size);
     ok = ok && safe_file_write(path, bytes, size, true, err) && write_sidecar(&w, path, err);
     mem_free(bytes);
     mem_free(w.frames);
@@ -140,6 +146,7 @@ bool result_write(Journal *journal, const char *path, ResultDef def, Error *err)
 struct Result {
     Hdf5 *file;
     int step_count;
+    uint32_t sum;
 };
 
 Result *result_open(const char *path, Error *err)
@@ -150,6 +157,7 @@ Result *result_open(const char *path, Error *err)
     Error inner;
     Result *result = mem_alloc(1, sizeof *result);
     result->file = hdf5_open(bytes, size, &inner);
+    result->sum = (uint32_t)crc32_z(0, bytes, size);
     mem_free(bytes);
     Array times;
     if (result->file && hdf5_read(result->file, "VTKHDF/Steps/Values", 0, -1, &times, NULL)) {
@@ -167,6 +175,11 @@ void result_close(Result *result)
     if (!result) return;
     hdf5_close(result->file);
     mem_free(result);
+}
+
+uint32_t result_sum(const Result *result)
+{
+    return result->sum;
 }
 
 bool result_list(Result *result, char ***paths, int *count, Error *err)
@@ -219,24 +232,29 @@ static bool offset_at(Result *result, const char *path, int index, int *value, E
     return ok || error_set(err, "%s is not as slender writes it", path);
 }
 
+/* Where a step's rows of an array begin: Steps/CellDataOffsets/NAME, Steps/PointDataOffsets/NAME,
+ * Steps/PointOffsets. */
+static char *offsets_of(const char *name, bool cell)
+{
+    const char *field = strchr(name, '/');
+    if (!strcmp(name, "Points")) return mem_text("VTKHDF/Steps/PointOffsets");
+    return mem_format("VTKHDF/Steps/%s%s", cell ? "CellDataOffsets" : "PointDataOffsets", field ? field : "");
+}
+
 bool result_read_step(Result *result, const char *name, int step, Array *array, Error *err)
 {
-    bool cell = !strncmp(name, "CellData/", 9), points = !strcmp(name, "Points");
-    char path[512], offsets[512];
+    bool cell = !strncmp(name, "CellData/", 9);
     int first = 0, count = 0;
-    snprintf(path, sizeof path, "VTKHDF/%.400s", name);
-    const char *field = strchr(name, '/');
-    if (points)
-        snprintf(offsets, sizeof offsets, "VTKHDF/Steps/PointOffsets");
-    else
-        snprintf(offsets, sizeof offsets, "VTKHDF/Steps/%s%.400s",
-                 cell ? "CellDataOffsets" : "PointDataOffsets", field ? field : "");
-    if (!hdf5_has(result->file, path)) return error_set(err, "the result has no %s", name);
-    if (step < 0 || step >= result->step_count)
-        return error_set(err, "the result has %d steps, from 0", result->step_count);
-    return offset_at(result, offsets, step, &first, err) &&
-           offset_at(result, cell ? "VTKHDF/NumberOfCells" : "VTKHDF/NumberOfPoints", 0, &count, err) &&
-           hdf5_read(result->file, path, first, count, array, err);
+    char *path = mem_format("VTKHDF/%s", name), *offsets = offsets_of(name, cell);
+    bool ok = hdf5_has(result->file, path) || error_set(err, "the result has no %s", name);
+    if (ok && (step < 0 || step >= result->step_count))
+        ok = error_set(err, "the result has %d steps, from 0", result->step_count);
+    ok = ok && offset_at(result, offsets, step, &first, err) &&
+         offset_at(result, cell ? "VTKHDF/NumberOfCells" : "VTKHDF/NumberOfPoints", 0, &count, err) &&
+         hdf5_read(result->file, path, first, count, array, err);
+    mem_free(path);
+    mem_free(offsets);
+    return ok;
 }
 
 const char *result_hdf5_version(void)

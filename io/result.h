@@ -6,14 +6,14 @@
  * 2.0) for ParaView 5.12 and later, of triangles or, as rows of static/lines say (first point and number of
  * points), of polylines. The cells are stored once; Points float32 [T*n_v,3], CellData/<name> [T*n_f]
  * or [T*n_f,3] from the frames' arrays cell/<name>, PointData/<name> from point/<name>, one chunk per step,
- * gzip 1 and shuffle, float32 unless double_frames. An array that a frame does not have is the one of the
+ * gzip 1 and shuffle, float32 unless double_frames or where that does not resolve the body. An array that a frame does not have is the one of the
  * frame before it (Steps/CellDataOffsets says which), so that what never changes need only be in the first
  * frame.
  *
  * /slender: every array of meta, static and final at its own name (scene, versions, rest, faces, edges,
  * state/x, design/<block>, cases/<name>/.., ..) with its type and shape; history/<name> [evaluations], one
  * for each scalar that the evaluations hold; frames/flux_density [T,3] where the frames have it; frames/x
- * [T,n_v,3] float64 if double_frames. The text
+ * [T,n_v,3] float64 if those are. The text
  * final/status becomes the attribute `status`: "unfinished" if there is none yet; state/x is the last frame's
  * x until final has it.
  *
@@ -32,10 +32,10 @@ typedef struct ResultDef {
     bool double_frames; /* scene key output.precision: double */
 } ResultDef;
 
-/* Writes the result and its sidecar. The file is built in memory (so it needs its own size in memory, twice
- * for a moment), written to a temporary file beside path, read back, synced to the disk and renamed: at every
+/* Writes the result and its sidecar; *sum, where it is not NULL, becomes the CRC32 of the trailer. The file is
+ * built in memory (so it needs its own size in memory, twice for a moment), written to a temporary file beside path, read back, synced to the disk and renamed: at every
  * moment path is the old file or the new one, whole. On false the old one is still there. */
-bool result_write(Journal *journal, const char *path, ResultDef def, Error *err);
+bool result_write(Journal *journal, const char *path, ResultDef def, uint32_t *sum, Error *err);
 
 typedef struct Result Result;
 
@@ -43,6 +43,9 @@ typedef struct Result Result;
  */
 Result *result_open(const char *path, Error *err);
 void result_close(Result *result);
+
+/* The CRC32 of the trailer: no other result has it. */
+uint32_t result_sum(const Result *result);
 
 /* The paths of all datasets, e.g. "slender/state/x", sorted by group. One block, to be freed by mem_free. */
 bool result_list(Result *result, char ***paths, int *count, Error *err);

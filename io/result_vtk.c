@@ -1,6 +1,7 @@
 #include "io/result_vtk.h"
 #include "base/memory.h"
-#include <stdio.h>
+#include <float.h>
+#include <math.h>
 #include <string.h>
 
 enum { VTK_POLY_LINE = 4, VTK_TRIANGLE = 5, XDMF_POLYLINE = 2 };
@@ -58,16 +59,22 @@ static int *mixed_topology(const VtkCells *cells)
     return mixed;
 }
 
-bool vtk_frames_exist(Journal *journal)
+bool vtk_frames_exist(Journal *journal, bool *exist, Error *err)
 {
-    return journal_has(journal, "static", 0, "faces") || journal_has(journal, "static", 0, "lines");
+    bool faces, lines;
+    if (!journal_has(journal, "static", 0, "faces", &faces, err) ||
+        !journal_has(journal, "static", 0, "lines", &lines, err))
+        return false;
+    *exist = faces || lines;
+    return true;
 }
 
 static bool read_cells(VtkFrames *frames, Error *err)
 {
     Array array;
-    bool lines = !journal_has(frames->journal, "static", 0, "faces");
-    if (!journal_get(frames->journal, "static", 0, lines ? "lines" : "faces", &array, err)) return false;
+    if (!journal_find(frames->journal, "static", 0, "faces", &array, err)) return false;
+    bool lines = !array.data;
+    if (lines && !journal_get(frames->journal, "static", 0, "lines", &array, err)) return false;
     bool ok = !lines || check_lines(&array, frames->vertex_count, err);
     if (ok && lines) read_lines(&frames->cells, (void *)array.data, array.dims[0]);
     if (ok && !lines) read_triangles(&frames->cells, &array);
@@ -91,8 +98,8 @@ static bool read_times(VtkFrames *frames, Error *err)
 static bool read_still(VtkFrames *frames, Error *err)
 {
     Array still;
-    if (!journal_has(frames->journal, "static", 0, "still")) return true;
-    if (!journal_get(frames->journal, "static", 0, "still", &still, err)) return false;
+    if (!journal_find(frames->journal, "static", 0, "still", &still, err)) return false;
+    if (!still.data) return true;
     bool fits = still.type == ARRAY_FLOAT64 && still.rank == 2 && still.dims[1] == 3;
     if (fits) {
         frames->still_count = still.dims[0];
@@ -103,13 +110,44 @@ static bool read_still(VtkFrames *frames, Error *err)
     return fits || error_set(err, "static/still must be rows of three numbers");
 }
 
+static void include_points(const double (*x)[3], int count, double low[3], double high[3])
+{
+    for (int k = 0; k < count; k++)
+        for (int i = 0; i < 3; i++) {
+            low[i] = fmin(low[i], x[k][i]);
+            high[i] = fmax(high[i], x[k][i]);
+        }
+}
+
+/* Double precision where single numbers, at the largest coordinate of any frame, are farther apart than
+ * RESOLUTION of the body (the diagonal of its first frame): one far from the origin would be shown in steps.
+ */
+static bool choose_precision(VtkFrames *frames, Error *err)
+{
+    const double RESOLUTION = 1e-5;
+    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY}, size = 0,
+           largest = 0;
+    for (int k = 0; frames->single && k < frames->count; k++) {
+        Array x;
+        if (!journal_get(frames->journal, "frame", frames->frames[k], "x", &x, err)) return false;
+        include_points((const double(*)[3])x.data, (int)(array_count(&x) / 3), low, high);
+        array_clear(&x);
+        if (k == 0)
+            size = sqrt(pow(high[0] - low[0], 2) + pow(high[1] - low[1], 2) + pow(high[2] - low[2], 2));
+        for (int i = 0; i < 3; i++) largest = fmax(largest, fmax(-low[i], high[i]));
+        frames->single = largest * FLT_EPSILON <= RESOLUTION * size;
+    }
+    return true;
+}
+
 bool vtk_frames_read(VtkFrames *frames, Error *err)
 {
     Array x;
     if (!journal_get(frames->journal, "frame", frames->frames[0], "x", &x, err)) return false;
     frames->vertex_count = x.dims[0];
     array_clear(&x);
-    return read_still(frames, err) && read_cells(frames, err) && read_times(frames, err) &&
+    return choose_precision(frames, err) && read_still(frames, err) && read_cells(frames, err) &&
+           read_times(frames, err) &&
            journal_names(frames->journal, "frame", frames->frames[0], &frames->fields, &frames->field_count,
                          err);
 }
@@ -180,10 +218,10 @@ bool vtk_frames_put(VtkFrames *frames, const char *name, const char *path, const
     int *offsets = mem_alloc((size_t)frames->count, sizeof *offsets), stored = 0, chunk = 0, width = 0;
     bool ok = true;
     for (int k = 0; ok && k < frames->count; k++) {
-        Array array = {0};
-        if (k == 0 || journal_has(frames->journal, "frame", frames->frames[k], name)) {
-            ok = journal_get(frames->journal, "frame", frames->frames[k], name, &array, err);
-            if (ok && !rows) {
+        Array array;
+        ok = journal_find(frames->journal, "frame", frames->frames[k], name, &array, err);
+        if (array.data) {
+            if (!rows) {
                 chunk = array.dims[0], width = array.rank > 1 ? array.dims[1] : 0;
                 rows = hdf5_rows_create(frames->file, path, array.unit, chunk, width, stacked, frames->single,
                                         err);
@@ -212,12 +250,14 @@ static bool put_points(VtkFrames *frames, Error *err)
     int moving = frames->vertex_count - frames->still_count;
     double(*points)[3] = mem_alloc((size_t)frames->vertex_count, sizeof *points);
     memcpy(points + moving, frames->still, (size_t)frames->still_count * sizeof *points);
-    Hdf5Rows *rows = hdf5_rows_create(frames->file, PATH, "m", frames->vertex_count, 3, false, frames->single, err);
+    Hdf5Rows *rows =
+        hdf5_rows_create(frames->file, PATH, "m", frames->vertex_count, 3, false, frames->single, err);
     bool ok = rows != NULL;
     for (int k = 0; ok && k < frames->count; k++) {
         Array x = {0};
         ok = journal_get(frames->journal, "frame", frames->frames[k], "x", &x, err);
-        if (ok && array_count(&x) != 3 * (size_t)moving) ok = error_set(err, "the frames' x change their shape");
+        if (ok && array_count(&x) != 3 * (size_t)moving)
+            ok = error_set(err, "the frames' x change their shape");
         if (ok) memcpy(points, x.data, (size_t)moving * sizeof *points);
         ok = ok && hdf5_rows_append(rows, points[0], err);
         array_clear(&x);
@@ -232,16 +272,17 @@ static bool put_fields(VtkFrames *frames, Error *err)
     static const struct {
         const char *prefix, *data, *offsets;
     } kinds[] = {{"cell/", "CellData", "CellDataOffsets"}, {"point/", "PointData", "PointDataOffsets"}};
-    char path[512], offsets[512];
     bool ok = true;
     for (int k = 0; ok && k < frames->field_count; k++)
         for (int d = 0; ok && d < 2; d++) {
             size_t length = strlen(kinds[d].prefix);
             if (strncmp(frames->fields[k], kinds[d].prefix, length)) continue;
             const char *name = frames->fields[k] + length;
-            snprintf(path, sizeof path, "VTKHDF/%s/%.400s", kinds[d].data, name);
-            snprintf(offsets, sizeof offsets, "VTKHDF/Steps/%s/%.400s", kinds[d].offsets, name);
+            char *path = mem_format("VTKHDF/%s/%s", kinds[d].data, name),
+                 *offsets = mem_format("VTKHDF/Steps/%s/%s", kinds[d].offsets, name);
             ok = vtk_frames_put(frames, frames->fields[k], path, offsets, false, err);
+            mem_free(path);
+            mem_free(offsets);
         }
     return ok;
 }
@@ -251,6 +292,6 @@ bool vtk_frames_write(VtkFrames *frames, Error *err)
     int version[2] = {2, 0};
     return hdf5_attribute_ints(frames->file, "VTKHDF", "Version", version, 2, err) &&
            hdf5_attribute_text(frames->file, "VTKHDF", "Type", "UnstructuredGrid", err) &&
-           put_cells(frames, err) && put_steps(frames, err) &&
-           put_points(frames, err) && put_fields(frames, err);
+           put_cells(frames, err) && put_steps(frames, err) && put_points(frames, err) &&
+           put_fields(frames, err);
 }

@@ -21,7 +21,7 @@ typedef struct VtkCells {
 typedef struct VtkFrames {
     Journal *journal;
     Hdf5 *file;
-    bool single; /* positions and fields as float32 */
+    bool single; /* positions and fields as float32, as long as that resolves the body */
     VtkCells cells;
     int vertex_count, count; /* vertices with those that stand still */
     int still_count;
@@ -32,8 +32,8 @@ typedef struct VtkFrames {
     int field_count;
 } VtkFrames;
 
-/* Does the journal say on which cells its frames are shown? */
-bool vtk_frames_exist(Journal *journal);
+/* Does the journal say on which cells its frames are shown? False where that cannot be read. */
+bool vtk_frames_exist(Journal *journal, bool *exist, Error *err);
 
 /* Reads the cells, times and names of a VtkFrames that has its journal and frames. False and a sentence for
  * lines that are not within the frames' points. */

@@ -37,21 +37,22 @@ typedef struct Field {
     int *first;               /* [step] */
 } Field;
 
-static Field make_field(const VtkFrames *frames, const char *name)
+static bool make_field(const VtkFrames *frames, const char *name, Field *field, Error *err)
 {
-    Field field = {.name = strchr(name, '/') + 1, .cell = name[0] == 'c', .width = 1};
-    field.count = field.cell ? frames->cells.count : frames->vertex_count;
-    field.first = mem_alloc((size_t)frames->count, sizeof *field.first);
+    *field = (Field){.name = strchr(name, '/') + 1, .cell = name[0] == 'c', .width = 1};
+    field->count = field->cell ? frames->cells.count : frames->vertex_count;
+    field->first = mem_alloc((size_t)frames->count, sizeof *field->first);
     for (int k = 0; k < frames->count; k++) {
-        field.stored += k == 0 || journal_has(frames->journal, "frame", frames->frames[k], name);
-        field.first[k] = (field.stored - 1) * field.count;
+        bool has;
+        if (!journal_has(frames->journal, "frame", frames->frames[k], name, &has, err)) return false;
+        field->stored += has;
+        field->first[k] = (field->stored - 1) * field->count;
     }
     Array array;
-    if (journal_get(frames->journal, "frame", frames->frames[0], name, &array, NULL)) {
-        if (array.rank > 1) field.width = array.dims[1];
-        array_clear(&array);
-    }
-    return field;
+    if (!journal_get(frames->journal, "frame", frames->frames[0], name, &array, err)) return false;
+    if (array.rank > 1) field->width = array.dims[1];
+    array_clear(&array);
+    return true;
 }
 
 static void add_field(Sidecar *sidecar, const Field *field, int step)
@@ -95,7 +96,7 @@ static void add_step(Sidecar *sidecar, const Field *fields, int field_count, int
     text_add(&sidecar->text, "      </Grid>\n");
 }
 
-char *xdmf_text(const char *result, const VtkFrames *frames)
+char *xdmf_text(const char *result, const VtkFrames *frames, Error *err)
 {
     const char *slash = strrchr(result, '/');
     Sidecar sidecar = {.result = slash ? slash + 1 : result,
@@ -104,15 +105,18 @@ char *xdmf_text(const char *result, const VtkFrames *frames)
                        .frames = frames};
     Field *known = mem_alloc((size_t)frames->field_count, sizeof *known);
     int count = 0;
-    for (int k = 0; k < frames->field_count; k++)
+    bool ok = true;
+    for (int k = 0; ok && k < frames->field_count; k++)
         if (!strncmp(frames->fields[k], "cell/", 5) || !strncmp(frames->fields[k], "point/", 6))
-            known[count++] = make_field(frames, frames->fields[k]);
+            ok = make_field(frames, frames->fields[k], &known[count++], err);
     text_add(&sidecar.text,
              "<?xml version=\"1.0\" ?>\n<Xdmf Version=\"2.0\">\n  <Domain>\n"
              "    <Grid Name=\"slender\" GridType=\"Collection\" CollectionType=\"Temporal\">\n");
-    for (int step = 0; step < frames->count; step++) add_step(&sidecar, known, count, step);
+    for (int step = 0; ok && step < frames->count; step++) add_step(&sidecar, known, count, step);
     text_add(&sidecar.text, "    </Grid>\n  </Domain>\n</Xdmf>\n");
     for (int k = 0; k < count; k++) mem_free(known[k].first);
     mem_free(known);
-    return sidecar.text.text;
+    if (ok) return sidecar.text.text;
+    mem_free(sidecar.text.text);
+    return NULL;
 }

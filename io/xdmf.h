@@ -2,5 +2,6 @@
 #pragma once
 #include "io/result_vtk.h"
 
-/* The file's text, the caller's, for the result file at a path that holds these frames. */
-char *xdmf_text(const char *result, const VtkFrames *frames);
+/* The file's text, the caller's, for the result file at a path that holds these frames; NULL and a sentence
+ * where the journal cannot be read. */
+char *xdmf_text(const char *result, const VtkFrames *frames, Error *err);

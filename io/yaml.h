@@ -181,6 +181,10 @@ char *yaml_write(const YamlTable *table, const void *scene);
  * `ignored` (NULL-terminated: {"output", "time.steps", NULL}; may be NULL) do not count. */
 char *yaml_difference(const char *scene, const char *other, const char *const *ignored);
 
+/* Visits every file that the struct names: its key as above ("cases.up.target.file") and its absolute path. */
+void yaml_files(const YamlTable *table, const void *scene,
+                void (*visit)(void *self, const char *key, const char *path), void *self);
+
 /* JSON Schema (draft-07), for editors that complete and check scenes. */
 char *yaml_schema(const YamlTable *table, const char *title);
 

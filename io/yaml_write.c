@@ -157,6 +157,48 @@ char *yaml_write(const YamlTable *table, const void *scene)
     return text.text;
 }
 
+/* ---- Files ---- */
+
+typedef struct Visit {
+    void (*visit)(void *self, const char *key, const char *path);
+    void *self;
+} Visit;
+
+static void visit_table(const Visit *visit, const YamlTable *table, const void *scene, const char *path);
+
+/* Entries of a list or map, or the one table. */
+static void visit_row(const Visit *visit, const YamlField *row, const void *scene, const char *key)
+{
+    const void *member = row_member(row, scene);
+    if (row->kind == FIELD_FILE) visit->visit(visit->self, key, *(char *const *)member);
+    if (row->kind == FIELD_TABLE) visit_table(visit, row->table, member, key);
+    if (row->kind == FIELD_OPTIONAL) visit_table(visit, row->table, *(void *const *)member, key);
+    if (row->kind != FIELD_LIST && row->kind != FIELD_MAP) return;
+    const char *entry = *(char *const *)member;
+    for (int i = 0; i < *row_count(row, scene); i++, entry += row->size) {
+        char *below = row->kind == FIELD_LIST ? mem_format("%s[%d]", key, i)
+                                              : mem_format("%s.%s", key, *(char *const *)entry);
+        visit_table(visit, row->table, entry, below);
+        mem_free(below);
+    }
+}
+
+static void visit_table(const Visit *visit, const YamlTable *table, const void *scene, const char *path)
+{
+    for (const YamlField *row = table->fields; row->key; row++) {
+        if (!row_is_given(row, scene)) continue;
+        char *key = mem_format("%s%s%s", path, *path ? "." : "", row->key);
+        visit_row(visit, row, scene, key);
+        mem_free(key);
+    }
+}
+
+void yaml_files(const YamlTable *table, const void *scene,
+                void (*visit)(void *self, const char *key, const char *path), void *self)
+{
+    visit_table(&(Visit){visit, self}, table, scene, "");
+}
+
 /* ---- Comparison ---- */
 
 static bool is_below(const char *path, const char *const *ignored)

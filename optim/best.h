@@ -6,10 +6,10 @@
 typedef struct Best {
     const Problem *problem;
     const OptimiserDef *def;
-    double *u, *gradient; /* [n] of the best point                               */
-    double objective;     /* INFINITY before the first success                   */
-    double first_norm;    /* projected gradient of the first success             */
-    bool stopped;
+    double *u, *gradient;    /* [n] of the best point                               */
+    double objective;        /* INFINITY before the first success                   */
+    bool stopped, succeeded; /* was any evaluation a success?                     */
+    bool stationary;         /* at the first success                                */
     OptimiserInfo info;
 } Best;
 

@@ -11,7 +11,8 @@ OptimiserDef optimiser_default(void)
 
 const char *optimiser_status_name(OptimiserStatus status)
 {
-    static const char *const names[] = {"converged", "evaluations", "stalled", "failed", "stopped"};
+    static const char *const names[] = {"converged",  "max_iterations", "stalled",
+                                        "stationary", "failed",         "stopped"};
     return names[status];
 }
 
@@ -43,6 +44,14 @@ double best_projected_norm(const Problem *problem, const double *u, const double
     return sqrt(sum);
 }
 
+bool optimiser_is_zero(const double *gradient, int n, double objective)
+{
+    const double digits = 1e-12;
+    double sum = 0;
+    for (int i = 0; i < n; i++) sum += gradient[i] * gradient[i];
+    return objective != 0 && sqrt(sum) <= digits * fabs(objective);
+}
+
 double best_evaluate(Best *best, const double *u, double *gradient)
 {
     const Problem *problem = best->problem;
@@ -53,7 +62,9 @@ double best_evaluate(Best *best, const double *u, double *gradient)
         memcpy(best->u, u, (size_t)problem->n * sizeof *u);
         memcpy(best->gradient, gradient, (size_t)problem->n * sizeof *gradient);
         best->info.gradient_norm = best_projected_norm(problem, u, gradient);
-        if (best->first_norm == 0) best->first_norm = best->info.gradient_norm;
+        if (best->info.first_norm == 0) best->info.first_norm = best->info.gradient_norm;
+        if (!best->succeeded) best->stationary = optimiser_is_zero(gradient, problem->n, objective);
+        best->succeeded = true;
         problem->accept(problem->self);
     }
     if (!problem->go_on(problem->self)) best->stopped = true;
@@ -65,10 +76,12 @@ bool best_is_done(Best *best)
     OptimiserInfo *info = &best->info;
     if (best->stopped)
         info->status = OPTIMISER_STOPPED;
-    else if (isfinite(best->objective) && info->gradient_norm <= best->def->gradient_tol * best->first_norm)
+    else if (best->stationary)
+        info->status = OPTIMISER_STATIONARY;
+    else if (isfinite(best->objective) && info->gradient_norm <= best->def->gradient_tol * info->first_norm)
         info->status = OPTIMISER_CONVERGED;
     else if (info->evaluations >= best->def->evaluations)
-        info->status = OPTIMISER_EVALUATIONS;
+        info->status = OPTIMISER_MAX_ITERATIONS;
     else
         return false;
     return true;

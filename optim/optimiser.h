@@ -40,11 +40,12 @@ typedef struct OptimiserDef {
 OptimiserDef optimiser_default(void);
 
 typedef enum OptimiserStatus {
-    OPTIMISER_CONVERGED,   /* the projected gradient is small              */
-    OPTIMISER_EVALUATIONS, /* as many evaluations as were allowed          */
-    OPTIMISER_STALLED,     /* no better point is found                     */
-    OPTIMISER_FAILED,      /* no evaluation succeeded                      */
-    OPTIMISER_STOPPED,     /* go_on said so                                */
+    OPTIMISER_CONVERGED,      /* the projected gradient is small, or F is 0 at the start       */
+    OPTIMISER_MAX_ITERATIONS, /* as many evaluations as were allowed                           */
+    OPTIMISER_STALLED,        /* no better point is found                                      */
+    OPTIMISER_STATIONARY,     /* the gradient is zero at the start: there is no way to go      */
+    OPTIMISER_FAILED,         /* no evaluation succeeded                                       */
+    OPTIMISER_STOPPED,        /* go_on said so                                                 */
 } OptimiserStatus;
 
 typedef struct OptimiserInfo {
@@ -52,11 +53,17 @@ typedef struct OptimiserInfo {
     int evaluations;
     long products;
     double objective, gradient_norm; /* at the best point; the norm is that of the projected gradient */
+    double first_norm;               /* of the start, or of the first success                         */
 } OptimiserInfo;
 
 /* From u, which ends as the best point. */
 OptimiserInfo optimise(const Problem *problem, const OptimiserDef *def, double *u);
 
+/* Zero to the last digits of F: a whole unit of the scaled unknowns would not change them. Where F itself is
+ * 0 a gradient of zero is no sign of anything. */
+bool optimiser_is_zero(const double *gradient, int n, double objective);
+
+/* One word: "converged", "max_iterations", .. */
 const char *optimiser_status_name(OptimiserStatus status);
 
 /* The linked NLopt's version, e.g. "2.7.1"; static text. */

@@ -174,12 +174,14 @@ static Guess next_guess(const Match *m, Normal n, double damping, Guess from)
     return (Guess){from.log_young + fmin(fmax(step, -1), 1), poisson};
 }
 
-/* Goes down to the minimum nearby. */
-static Guess descend(Match *m, Guess guess, int *iterations)
+/* Goes down to the minimum nearby; false where it has not come there. */
+static bool descend(Match *m, Guess *from, int *iterations)
 {
+    Guess guess = *from;
     double damping = 1e-3, sum = match_residuals(m, guess, m->residuals), moved = 1;
+    bool lower = true;
     match_slopes(m, guess);
-    for (int k = 0; k < 60 && moved > 1e-9; k++) {
+    for (int k = 0; lower && k < 60 && moved > 1e-9; k++) {
         Normal n = normal_equations(m);
         Guess next = next_guess(m, n, damping, guess);
         double less = match_residuals(m, next, m->others);
@@ -188,14 +190,16 @@ static Guess descend(Match *m, Guess guess, int *iterations)
             next = next_guess(m, n, damping, guess);
             less = match_residuals(m, next, m->others);
         }
-        if (!(less < sum)) break;
+        lower = less < sum;
+        if (!lower) break;
         moved = fabs(next.log_young - guess.log_young) + fabs(next.poisson - guess.poisson);
         guess = next, damping = fmax(damping / 10, 1e-12);
         sum = match_residuals(m, guess, m->residuals);
         match_slopes(m, guess);
         ++*iterations;
     }
-    return guess;
+    *from = guess;
+    return !lower || moved <= 1e-9;
 }
 
 enum { SCAN = 49, STARTS = 3 }; /* eight steps per decade of E */
@@ -267,9 +271,12 @@ bool rod_identify(const RodIdentifyDef *def, RodMaterial *material, Error *err)
     Start starts[STARTS], best = {.relative = INFINITY};
     int count = scan(&m, starts);
     for (int k = 0; k < count; k++) {
-        Guess guess = descend(&m, starts[k].guess, &material->iterations);
+        Guess guess = starts[k].guess;
+        bool converged = descend(&m, &guess, &material->iterations);
         double relative = match_residuals(&m, guess, m.residuals) / m.size;
-        if (relative < best.relative) best = (Start){guess, relative};
+        if (!(relative < best.relative)) continue;
+        best = (Start){guess, relative};
+        material->converged = converged;
     }
     double sum = match_residuals(&m, best.guess, m.residuals);
     match_slopes(&m, best.guess);

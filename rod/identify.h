@@ -36,6 +36,7 @@ typedef struct RodMaterial {
     bool poisson_at_limit;             /* the best value lies beyond [-0.9, 0.5]                     */
     double distance;                   /* of the natural shapes from their mean, rms, m              */
     int iterations;
+    bool converged; /* else all iterations were done before the best match was found */
 } RodMaterial;
 
 /* False and a sentence where the poses cannot be of one rod: fewer than two, other element counts, lengths

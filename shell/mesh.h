@@ -54,6 +54,19 @@ void mesh_report_clear(MeshReport *report);
  * removed. */
 bool mesh_vertex(const Mesh *mesh, int file_vertex, int *vertex, Error *err);
 
+/* Where a vertex stands in another file with so many: one that numbers them as the mesh's file does, or, without
+ * those that were removed or joined, as the mesh does and so all that results export. */
+static inline int mesh_row(const Mesh *mesh, int vertex_count, int vertex)
+{
+    return vertex_count == mesh->vertex_count ? vertex : mesh->file_vertex[vertex];
+}
+
+/* Has another file so many vertices as one of these two? */
+static inline bool mesh_fits(const Mesh *mesh, int vertex_count)
+{
+    return vertex_count == mesh->file_vertex_count || vertex_count == mesh->vertex_count;
+}
+
 /* The edge between two vertices of the mesh, in any order; -1 if they share none. */
 int mesh_edge(const Mesh *mesh, int a, int b);
 

@@ -159,7 +159,7 @@ static void test_exact(void **state)
                 rod.young, count, found.young / rod.young - 1, found.poisson - rod.poisson, found.distance,
                 found.iterations, seconds * 1e3);
             assert_true(fabs(found.young / rod.young - 1) < 1e-6 && fabs(found.poisson - rod.poisson) < 1e-6);
-            assert_true(found.young_known && found.poisson_known && found.distance < 1e-8);
+            assert_true(found.young_known && found.poisson_known && found.converged && found.distance < 1e-8);
             assert_int_equal(found.poisson_at_limit, k == 1);
         }
         if (k == 0) {
@@ -283,7 +283,7 @@ static void test_not_identifiable(void **state)
     static const RodFrame turned = {{0, 1, 0}, {-1, 0, 0}, {0, 0, 1}};
     for (int p = 0; p < 2; p++) poses[p] = equilibrium(&flat_rod, planar[p], &curves[p]);
     RodMaterial found = identify(poses, 2);
-    assert_true(found.young_known && fabs(found.young / 6e6 - 1) < 1e-6);
+    assert_true(found.young_known && found.converged && fabs(found.young / 6e6 - 1) < 1e-6);
     assert_true(!found.poisson_known && isnan(found.poisson) && isinf(found.poisson_error));
     for (int p = 0; p < 2; p++) noisy[p] = measured(&curves[p], 1e-4, &random), poses[p].curve = &noisy[p];
     found = identify(poses, 2);

@@ -51,6 +51,14 @@ static double get_number(Journal *journal, const char *kind, int index)
     return value;
 }
 
+static int count_of(Journal *journal, const char *kind)
+{
+    Error err;
+    int count;
+    if (!journal_count(journal, kind, &count, &err)) fail_msg("%s", err.text);
+    return count;
+}
+
 static void test_round_trip(void **state)
 {
     (void)state;
@@ -91,11 +99,106 @@ static void test_round_trip(void **state)
     assert_true(journal_indices(journal, "frame", &indices, &count, &err) && count == 2 && indices[0] == 2 &&
                 indices[1] == 5);
     mem_free(indices);
-    assert_int_equal(journal_count(journal, "frame"), 2);
-    assert_int_equal(journal_count(journal, "none"), 0);
-    assert_true(journal_forget(journal, "frame", &err) && journal_count(journal, "frame") == 0);
+    assert_int_equal(count_of(journal, "frame"), 2);
+    assert_int_equal(count_of(journal, "none"), 0);
+    assert_true(journal_forget(journal, "frame", &err) && count_of(journal, "frame") == 0);
     assert_true(journal_close(journal, &err));
     assert_int_equal(mem_live_count(), blocks);
+}
+
+static bool has_file(const char *path)
+{
+    return access(path, F_OK) == 0;
+}
+
+static void copy_file(const char *from, const char *to)
+{
+    char command[200];
+    snprintf(command, sizeof command, "cp %s %s", from, to);
+    assert_int_equal(system(command), 0);
+}
+
+/* A journal as a kill leaves it, copied without the log's index, and one that is closed: read from a folder
+ * where nothing may be written, which is to say that the reader leaves nothing behind. */
+static void test_readers_make_no_files(void **state)
+{
+    (void)state;
+    static const char COPY[] = "test_journal_%41?#copy.run";
+    static const char *const endings[] = {"", "-wal", "-shm"};
+    char copies[3][64];
+    for (int k = 0; k < 3; k++) snprintf(copies[k], sizeof copies[k], "%s%s", COPY, endings[k]);
+    Error err;
+    Journal *journal = open_fresh();
+    put_number(journal, "frame", 0, 7);
+    assert_true(journal_flush(journal, &err));
+    copy_file(PATH, "'test_journal_%41?#copy.run'");
+    copy_file("test_journal.run-wal", "'test_journal_%41?#copy.run-wal'");
+    assert_true(journal_close(journal, &err));
+    assert_false(has_file("test_journal.run-wal"));
+    Journal *reader = journal_open(COPY, JOURNAL_READ, &err);
+    if (!reader) fail_msg("%s", err.text);
+    assert_true(get_number(reader, "frame", 0) == 7); /* from the log */
+    assert_true(journal_close(reader, &err));
+    assert_true(has_file(copies[1]) && !has_file(copies[2]));
+    unlink(copies[1]);
+    copy_file(PATH, "'test_journal_%41?#copy.run'");
+    reader = journal_open(COPY, JOURNAL_READ, &err);
+    if (!reader) fail_msg("%s", err.text);
+    assert_true(get_number(reader, "frame", 0) == 7 && !has_file(copies[1]) && !has_file(copies[2]));
+    assert_true(journal_close(reader, &err));
+    unlink(COPY);
+}
+
+/* What is put in the place of a kind leaves nothing of it, and of others all; both or neither are there. */
+static void test_replace(void **state)
+{
+    (void)state;
+    Error err;
+    Journal *journal = open_fresh();
+    double value = 1;
+    Array old[] = {array_float("a", "m", &value, 0, 0, 0), array_float("b", "m", &value, 0, 0, 0)}, got;
+    assert_true(journal_put(journal, "final", 0, old, 2, &err) &&
+                journal_put(journal, "final", 3, old, 1, &err));
+    put_number(journal, "finally", 0, 5);
+    value = 2;
+    assert_true(journal_replace(journal, "final", 0, old, 1, &err));
+    assert_true(journal_get(journal, "final", 0, "a", &got, &err) && *(const double *)got.data == 2);
+    array_clear(&got);
+    assert_true(journal_find(journal, "final", 0, "b", &got, &err) && !got.data);
+    assert_true(journal_find(journal, "final", 3, "a", &got, &err) && !got.data);
+    assert_true(get_number(journal, "finally", 0) == 5);
+    assert_true(journal_replace(journal, "final", 0, NULL, 0, &err) && count_of(journal, "final") == 0);
+    assert_true(journal_close(journal, &err));
+}
+
+/* "Not there" and "cannot be read" are two answers. */
+static void test_unreadable(void **state)
+{
+    (void)state;
+    Error err;
+    Array got;
+    bool has = true;
+    int count;
+    Journal *journal = open_fresh();
+    for (int k = 0; k < 200; k++) put_number(journal, "frame", k, k);
+    assert_true(journal_close(journal, &err));
+    Journal *reader = journal_open(PATH, JOURNAL_READ, &err);
+    assert_true(reader && journal_has(reader, "frame", 200, "value", &has, &err) && !has);
+    assert_true(journal_has(reader, "frame", 199, "value", &has, &err) && has);
+    assert_true(journal_close(reader, &err));
+    FILE *file = fopen(PATH, "r+");
+    assert_true(file && fseek(file, 2 * 4096, SEEK_SET) == 0); /* the tables' pages follow the first two */
+    for (int k = 0; k < 30 * 4096; k++) fputc(0xa5, file);
+    fclose(file);
+    reader = journal_open(PATH, JOURNAL_READ, &err);
+    assert_non_null(reader);
+    bool told[] = {journal_has(reader, "frame", 3, "value", &has, &err),
+                   journal_find(reader, "frame", 3, "value", &got, &err),
+                   journal_count(reader, "frame", &count, &err)};
+    for (int k = 0; k < 3; k++) assert_false(told[k]);
+    assert_non_null(strstr(err.text, "test_journal.run is damaged"));
+    journal_close(reader, &err);
+    clean();
 }
 
 static void expect_refusal(JournalMode mode, const char *sentence)
@@ -136,11 +239,11 @@ static void test_modes(void **state)
     assert_true(journal && journal_is_finished(journal));
     journal_close(journal, &err);
     journal = journal_open(PATH, JOURNAL_NEW, &err); /* a finished one may go */
-    assert_true(journal && journal_count(journal, "meta") == 0);
+    assert_true(journal && count_of(journal, "meta") == 0);
     put_number(journal, "meta", 0, 3);
     assert_true(journal_close(journal, &err));
     journal = journal_open(PATH, JOURNAL_FORCE, &err);
-    assert_true(journal && journal_count(journal, "meta") == 0);
+    assert_true(journal && count_of(journal, "meta") == 0);
     assert_true(journal_close(journal, &err));
     clean();
     expect_refusal(JOURNAL_RESUME, "there is no such run");
@@ -256,7 +359,7 @@ static void test_kill(void **state)
         Error err;
         Journal *journal = journal_open(PATH, JOURNAL_RESUME, &err);
         if (!journal) fail_msg("%s", err.text);
-        assert_true(journal_count(journal, "frame") > acknowledged);
+        assert_true(count_of(journal, "frame") > acknowledged);
         for (k = 0; k <= acknowledged; k++) {
             Array array;
             assert_true(journal_get(journal, "frame", k, "numbers", &array, &err));
@@ -270,8 +373,10 @@ static void test_kill(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_round_trip), cmocka_unit_test(test_modes),
-                                       cmocka_unit_test(test_foreign), cmocka_unit_test(test_damage),
-                                       cmocka_unit_test(test_kill)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_round_trip), cmocka_unit_test(test_readers_make_no_files),
+        cmocka_unit_test(test_replace),    cmocka_unit_test(test_unreadable),
+        cmocka_unit_test(test_modes),      cmocka_unit_test(test_foreign),
+        cmocka_unit_test(test_damage),     cmocka_unit_test(test_kill)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

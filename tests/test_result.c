@@ -1,6 +1,7 @@
 /* The result file: what goes in comes out, steps share what does not change, and damage is refused. */
 #include "base/memory.h"
 #include "io/result.h"
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -15,10 +16,12 @@ enum { VERTICES = 4, FACES = 2, FRAMES = 3 };
 
 static const char PATH[] = "test_result.vtkhdf";
 
+static double away; /* m, from the origin */
+
 static double position(int frame, int i)
 {
-    return frame + i / 16.0;
-} /* exact in single precision */
+    return away + frame + i / 16.0;
+} /* exact in single precision where that is 0 */
 
 static void put_frame(Journal *journal, int frame)
 {
@@ -59,7 +62,7 @@ static void write_result(bool double_frames)
 {
     Error err;
     Journal *journal = make_journal();
-    if (!result_write(journal, PATH, (ResultDef){double_frames}, &err)) fail_msg("%s", err.text);
+    if (!result_write(journal, PATH, (ResultDef){double_frames}, NULL, &err)) fail_msg("%s", err.text);
     journal_close(journal, &err);
 }
 
@@ -109,6 +112,29 @@ static void test_read_back(void **state)
     mem_free(paths);
     result_close(result);
     assert_int_equal(mem_live_count(), blocks);
+}
+
+/* Single numbers resolve a body of about 1 m at 30 m to 2e-6, and one at 100 km to 8 mm: there they are
+ * double. */
+static void test_far_away(void **state)
+{
+    (void)state;
+    static const double places[] = {0, 30, 1e5 + 1e-4};
+    for (int k = 0; k < 3; k++) {
+        Error err;
+        Array array;
+        away = places[k];
+        write_result(false);
+        Result *result = result_open(PATH, &err);
+        if (!result) fail_msg("%s", err.text);
+        assert_true(result_has(result, "slender/frames/x") == (k == 2));
+        assert_true(result_read_step(result, "Points", 1, &array, &err));
+        for (int i = 0; i < 3 * VERTICES; i++)
+            assert_true(fabs(((const double *)array.data)[i] - position(1, i)) <= (k == 2 ? 0 : 1e-5));
+        array_clear(&array);
+        result_close(result);
+    }
+    away = 0;
 }
 
 static char *read_all(const char *path, size_t *size)
@@ -174,7 +200,7 @@ static void test_unwritable(void **state)
     (void)state;
     Error err;
     Journal *journal = make_journal();
-    assert_false(result_write(journal, "no/such/folder/x.vtkhdf", (ResultDef){0}, &err));
+    assert_false(result_write(journal, "no/such/folder/x.vtkhdf", (ResultDef){0}, NULL, &err));
     assert_string_equal(err.text, "no/such/folder/x.vtkhdf: cannot be written: No such file or directory");
     journal_close(journal, &err);
 }
@@ -240,7 +266,7 @@ static Result *write_lines(const int (*lines)[2])
 {
     Error err;
     Journal *journal = make_lines(lines);
-    if (!result_write(journal, "test_lines.vtkhdf", (ResultDef){true}, &err)) fail_msg("%s", err.text);
+    if (!result_write(journal, "test_lines.vtkhdf", (ResultDef){true}, NULL, &err)) fail_msg("%s", err.text);
     journal_close(journal, &err);
     Result *result = result_open("test_lines.vtkhdf", &err);
     if (!result) fail_msg("%s", err.text);
@@ -312,7 +338,7 @@ static void test_bad_lines(void **state)
     for (int k = 0; k < 3; k++) {
         Error err;
         Journal *journal = make_lines(bad[k]);
-        assert_false(result_write(journal, "test_lines.vtkhdf", (ResultDef){0}, &err));
+        assert_false(result_write(journal, "test_lines.vtkhdf", (ResultDef){0}, NULL, &err));
         assert_string_equal(err.text,
                             "static/lines must be rows of a first point and a number of points, 2 or more, "
                             "among the 12 of a frame");
@@ -323,9 +349,10 @@ static void test_bad_lines(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_read_back),   cmocka_unit_test(test_deterministic),
-        cmocka_unit_test(test_damage),      cmocka_unit_test(test_unwritable),
-        cmocka_unit_test(test_h5py),        cmocka_unit_test(test_lines),
-        cmocka_unit_test(test_equal_lines), cmocka_unit_test(test_bad_lines)};
+        cmocka_unit_test(test_read_back),  cmocka_unit_test(test_deterministic),
+        cmocka_unit_test(test_far_away),   cmocka_unit_test(test_damage),
+        cmocka_unit_test(test_unwritable), cmocka_unit_test(test_h5py),
+        cmocka_unit_test(test_lines),      cmocka_unit_test(test_equal_lines),
+        cmocka_unit_test(test_bad_lines)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -101,7 +101,7 @@ static void write_result(Rods rods)
     Journal *journal = journal_open("test_show_rod.run", JOURNAL_NEW, &err);
     if (!journal) fail_msg("%s", err.text);
     put_rods(journal, rods, &table);
-    if (!result_write(journal, RESULT, (ResultDef){0}, &err)) fail_msg("%s", err.text);
+    if (!result_write(journal, RESULT, (ResultDef){0}, NULL, &err)) fail_msg("%s", err.text);
     journal_close(journal, &err);
     table_clear(&table);
 }

@@ -1,0 +1,171 @@
+#!/bin/sh
+# What a run is, to a later one: what --resume accepts and refuses, what it leaves of an older end, and what statuses
+# say.    tests/runs.sh PROGRAM
+. "$(dirname "$0")/expect.sh"
+run() { "$program" run "$@" --quiet --no-picture; }
+status() { "$program" info "$1" | sed -n '1s/^[^:]*: \([a-z_]*\),.*/\1/p'; }
+is() { [ "$2" = "$3" ] || { echo "$1: '$2', not '$3'"; bad=1; }; }
+datasets() { "$program" info "$1" | sed -n 's/^  \([^ ]*\) .*/\1/p'; }
+
+# ---- Input files ----
+sheet() { # how far one vertex is from its place
+    printf 'v 0 0 0\nv %s 0 0\nv 0.02 0 0\nv 0 0.01 0\nv 0.01 0.01 0\nv 0.02 0.01 0\nf 1 2 5\nf 1 5 4\nf 2 3 6\nf 2 6 5\n' "$1"
+}
+mkdir cluster; cd cluster || exit 2
+sheet 0.01 > sheet.obj
+printf '0,0,1e4\n0,0,1e4\n0,0,1e4\n0,0,1e4\n' > m.csv
+cat > scene.yaml <<'END'
+slender: 1
+job: simulate
+shell: {mesh: sheet.obj, thickness: 1 mm, young: 1 MPa, poisson: 0.3, density: 1000, magnetization: {file: m.csv}}
+fix: [{vertices: [0, 3], clamp: true}]
+flux_density: [20 mT, 0, 0]
+time: {step: 1 ms, steps: 4}
+END
+expect 0 run scene.yaml -o r
+cp r.vtkhdf first.vtkhdf
+sheet 0.011 > sheet.obj
+expect 3 run scene.yaml -o r --resume --set time.steps=8; says "shell.mesh.file: .*sheet.obj is not the file that the run began with"
+same r.vtkhdf first.vtkhdf
+sheet 0.01 > sheet.obj
+printf '0,0,1e4\n0,0,1e4\n0,0,1e4\n0,0,2e4\n' > m.csv
+expect 3 run scene.yaml -o r --resume --set time.steps=8; says "shell.magnetization.file"
+printf '0,0,1e4\n0,0,1e4\n0,0,1e4\n0,0,1e4\n' > m.csv
+cd .. && mv cluster laptop && cd laptop || exit 2
+mv m.csv renamed.csv
+expect 0 run scene.yaml -o r --resume --set time.steps=8 --set shell.magnetization.file=renamed.csv
+mv renamed.csv m.csv
+expect 0 run scene.yaml -o whole --set time.steps=8
+for path in frames/flux_density VTKHDF/Points state/x history/time; do
+    "$program" export whole.vtkhdf -o a.csv --dataset $path; "$program" export r.vtkhdf -o b.csv --dataset $path
+    same a.csv b.csv
+done
+
+# ---- The result that frames are taken back from ----
+expect 0 run scene.yaml -o other --set time.steps=8 --set shell.young=2e6
+for foreign in other first; do # of another run, and an older one of the same run
+    cp r.vtkhdf mine.vtkhdf; cp $foreign.vtkhdf r.vtkhdf
+    expect 3 run scene.yaml -o r --resume --set time.steps=12; says "r.vtkhdf is not the result that this run has written"
+    same r.vtkhdf $foreign.vtkhdf
+    mv mine.vtkhdf r.vtkhdf
+done
+expect 3 run scene.yaml -o r --resume --set time.steps=12 --set output.precision=double; says "in single precision"
+mv r.vtkhdf away; expect 3 run scene.yaml -o r --resume --set time.steps=12; says "r.vtkhdf: cannot be"; mv away r.vtkhdf
+expect 0 run scene.yaml -o r --resume --set time.steps=12
+cd "$work" || exit 2
+
+# ---- Journals where nothing may be written ----
+if [ "$(id -u)" = 0 ] && command -v setpriv > /dev/null; then
+    chmod 755 "$work" laptop; chmod 644 laptop/r.run
+    expect 0 setpriv --reuid 65534 --regid 65534 --clear-groups "$program" info laptop/r.run; says "finished"
+fi
+ls laptop > before.txt; "$program" info laptop/r.run > out.txt; ls laptop > after.txt; same before.txt after.txt
+
+# ---- Ends ----
+# A design that is extended has nothing of its first end: after one evaluation the motion's end is a saddle with a mode.
+design="$here/scene_trajectory.yaml --set design.optimizer=lbfgs --set shell.mesh.cells=[5,2]"
+# shellcheck disable=SC2086
+{
+    expect 0 run $design --set design.iterations=6 -o straight
+    expect 0 run $design --set design.iterations=1 -o halves
+    datasets halves.vtkhdf | grep -q final/modes || { echo "the first end has no mode: the test tests nothing"; bad=1; }
+    expect 0 run $design --set design.iterations=6 -o halves --resume
+}
+datasets straight.vtkhdf > a.txt; datasets halves.vtkhdf > b.txt; same a.txt b.txt
+
+# Statuses say what has happened.
+is "limit" "$(status straight.vtkhdf)" max_iterations
+hexagram="$here/scene_small.yaml --set shell.mesh.n=2"
+# shellcheck disable=SC2086
+for optimizer in gauss_newton lbfgs mma; do
+    expect 0 run $hexagram --set design.optimizer=$optimizer --set design.iterations=2 -o h --force
+    is "$optimizer, 2 iterations" "$(status h.vtkhdf)" max_iterations
+    expect 0 run $hexagram --set design.optimizer=$optimizer --set design.iterations=0 -o h --force
+    is "$optimizer, none" "$(status h.vtkhdf)" evaluated
+    expect 0 run $hexagram --set design.optimizer=$optimizer --set design.tolerance=0.9 -o h --force
+    is "$optimizer, nine tenths of the gradient" "$(status h.vtkhdf)" converged
+    expect 1 run $hexagram --set design.optimizer=$optimizer --set design.unknowns.magnetization.noise=0 \
+        --set "cases[0].flux_density=[0,0,0]" --set "cases[1].flux_density=[0,0,0]" -o h --force
+    is "$optimizer, nothing acts" "$(status h.vtkhdf)" stationary
+done
+# shellcheck disable=SC2086
+{
+    expect 1 "$program" run $hexagram --set "cases[0].flux_density=[0,0,0]" --set "cases[1].flux_density=[0,0,0]" --no-picture -o h --force
+    says "the gradient is zero at the start"; says "noise"
+    expect 0 "$program" run $hexagram --set design.iterations=1 --no-picture -o h --force
+    says "stopped at design.iterations = 1, not yet converged"
+}
+cat > idle.yaml <<'END'
+slender: 1
+job: design
+shell: {mesh: {shape: strip, size: [20 mm, 5 mm], n: 4}, thickness: 0.5 mm, young: 0.1 MPa, poisson: 0.3}
+fix: [{group: root, clamp: true}]
+flux_density: [0, 0, 20 mT]
+target: ["x", "y", "10*x^2"]
+design: {unknowns: {magnetization: {scale: 1.0e+4}, young: {bounds: [1 kPa, 1 MPa]}}, objectives: [{target: 1}], iterations: 1}
+END
+expect 0 "$program" run idle.yaml --no-picture; says "the unknown young does not act on the objective at the start"
+
+# A formula of time that is no number is a scene that is refused, whenever that shows.
+cat > formula.yaml <<'END'
+slender: 1
+job: simulate
+shell: {mesh: {shape: strip, size: [20 mm, 5 mm], n: 4}, thickness: 1 mm, young: 1 MPa, poisson: 0.3, density: 1000}
+fix: [{group: root, clamp: true}]
+flux_density: ["sqrt(0.0025 - t)", "0", "0"]
+time: {step: 1 ms, steps: 4}
+END
+expect 3 run formula.yaml; says "is not a finite number"
+
+# ---- Names of cases ----
+name=$(printf '%0240d' 0)
+two_cases() { # their names
+    cat <<END
+slender: 1
+job: equilibrium
+shell: {mesh: {shape: strip, size: [20 mm, 5 mm], n: 4}, thickness: 1 mm, young: 1 MPa, poisson: 0.3}
+fix: [{group: root, clamp: true}]
+cases: [{name: $1, gravity: [0, 0, -9.81]}, {name: $2, gravity: [0, 0, 9.81]}]
+END
+}
+two_cases "a${name}b" "a${name}c" > names.yaml
+expect 0 run names.yaml
+is "cases of names that begin alike" "$(datasets names.vtkhdf | grep -c 'cases/.*/status')" 2
+for wrong in . a/b "a$(printf '%0250d' 0)" '"a\tb"'; do
+    two_cases "$wrong" b > wrong.yaml
+    expect 3 run wrong.yaml; says "a case's name is a word without"
+done
+
+# ---- Vertices that are in no face, and such as are joined ----
+cat > loose.obj <<'END'
+v 9 9 9
+v 0 0 0
+v 0.02 0 0
+v 0.04 0 0
+v 0 0.01 0
+v 0.02 0.01 0
+v 0.04 0.01 0
+v 0.02 0 0
+v 0.02 0.01 0
+f 2 3 6
+f 2 6 5
+f 8 4 7
+f 8 7 9
+END
+cat > loose.yaml <<'END'
+slender: 1
+job: equilibrium
+shell: {mesh: {file: loose.obj, weld: 1 um}, thickness: 1 mm, young: 1 MPa, poisson: 0.3, gravity: [0, 0, -9.81], fold: {formula: "1 + 10*x"}}
+fix: [{vertices: [1, 4], clamp: true}]
+END
+expect 0 run loose.yaml
+"$program" export loose.vtkhdf -o pose.obj
+"$program" export loose.vtkhdf -o edges.csv --dataset edges; "$program" export loose.vtkhdf -o fold.csv --dataset design/fold
+grep -v '#' edges.csv > e.txt; grep -v '#' fold.csv > k.txt; paste -d, e.txt k.txt > folds.csv
+"$program" export loose.vtkhdf -o v.csv --dataset file_vertex; is "vertices of the file" "$(grep -v '#' v.csv | tr '\n' ' ')" "1 2 3 4 5 6 "
+sed 's/fold: {.*}}/fold: {file: folds.csv}, pose: pose.obj}/' loose.yaml > again.yaml
+expect 0 run again.yaml
+for path in design/fold edges; do
+    "$program" export loose.vtkhdf -o a.csv --dataset $path; "$program" export again.vtkhdf -o b.csv --dataset $path; same a.csv b.csv
+done
+exit $bad
