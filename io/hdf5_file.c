@@ -4,6 +4,7 @@
 #include "base/memory.h"
 #include <hdf5.h>
 #include <limits.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -45,21 +46,33 @@ static hid_t memory_access(void)
     return access;
 }
 
+/* The core driver opens no image under the name of a file that exists, reads a file of that name before it makes
+ * an image, and takes two open images of one name for the same. So each has a number of its own, in a place below a
+ * file, where nothing can be. */
+static const char *image_name(char name[48])
+{
+    static atomic_long images;
+    snprintf(name, 48, "/dev/null/slender-%ld", atomic_fetch_add(&images, 1));
+    return name;
+}
+
 Hdf5 *hdf5_create(void)
 {
+    char name[48];
     hid_t access = memory_access();
-    Hdf5 *file = wrap(H5Fcreate("slender", H5F_ACC_TRUNC, H5P_DEFAULT, access));
+    Hdf5 *file = wrap(H5Fcreate(image_name(name), H5F_ACC_TRUNC, H5P_DEFAULT, access));
     H5Pclose(access);
     return file;
 }
 
 Hdf5 *hdf5_open(const void *bytes, size_t size, Error *err)
 {
+    char name[48];
     hid_t access = memory_access();
     void *copy = size ? mem_copy(bytes, size, 1) : NULL;
     bool ok = size && H5Pset_file_image(access, copy, size) >= 0;
     mem_free(copy);
-    Hdf5 *file = ok ? wrap(H5Fopen("slender", H5F_ACC_RDONLY, access)) : NULL;
+    Hdf5 *file = ok ? wrap(H5Fopen(image_name(name), H5F_ACC_RDONLY, access)) : NULL;
     H5Pclose(access);
     if (!file) error_set(err, "it is no HDF5 file");
     return file;
