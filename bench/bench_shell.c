@@ -6,7 +6,6 @@
 #include "solve/newton.h"
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 
 enum { REPEATS = 30 };
 
@@ -28,7 +27,7 @@ static double factor_seconds(Sheet *s)
     double best = INFINITY;
     for (int k = 0; k < REPEATS; k++) {
         double start = clock_seconds();
-        if (!system_factor(s->sys, 1e-6)) abort();
+        if (!system_factor(s->sys, 1e-6)) bench_fail("the sheet's Hessian has no factor");
         best = fmin(best, clock_seconds() - start);
     }
     return best;
@@ -59,7 +58,8 @@ void bench_newton(void)
         NewtonInfo info = newton_minimize(s.sys, &def, &(Point){.p = s.p}, s.x, NULL);
         double seconds = clock_seconds() - start;
         SparseInfo sparse = system_info(s.sys);
-        if (info.status != NEWTON_CONVERGED) abort();
+        if (info.status != NEWTON_CONVERGED)
+            bench_fail("newton_%s: %s", names[bending], newton_status_name(info.status));
         snprintf(name, sizeof name, "newton_%s_ms_per_iteration", names[bending]);
         bench_print(name, 1e3 * seconds / info.iterations, "ms");
         snprintf(name, sizeof name, "other_over_newton%s", bending == BENDING_HINGE ? "_hinge" : "");

@@ -1,7 +1,9 @@
 /* Speed of what slender exists for: one line per figure, "name value unit". Without arguments all cases run,
  * else those that are named. bench/README.md says how they are measured and against what. */
 #include "bench/bench.h"
+#include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 static const struct {
@@ -25,6 +27,17 @@ void bench_print(const char *name, double value, const char *unit)
 {
     printf("%s %.4g %s\n", name, value, unit);
     fflush(stdout);
+}
+
+_Noreturn void bench_fail(const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    fprintf(stderr, "bench: ");
+    vfprintf(stderr, format, args);
+    fprintf(stderr, "\n");
+    va_end(args);
+    exit(1);
 }
 
 int main(int argc, char **argv)
