@@ -5,15 +5,29 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 enum { ALIGNMENT = 64 };
 
 static atomic_long live;
 
+/* No destructors: they would wait for threads that are still at work. */
+static _Noreturn void end(void)
+{
+    fflush(stdout);
+    _exit(MEM_EXIT_CODE);
+}
+
+_Noreturn void mem_exhausted(const char *where)
+{
+    fprintf(stderr, "slender: out of memory in %s\n", where);
+    end();
+}
+
 static _Noreturn void out_of_memory(size_t count, size_t size)
 {
     fprintf(stderr, "slender: out of memory: %zu blocks of %zu bytes were asked for\n", count, size);
-    exit(1);
+    end();
 }
 
 void *mem_alloc(size_t count, size_t size)

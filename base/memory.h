@@ -1,9 +1,14 @@
 /* memory.h - zeroed allocation that never returns NULL.
  *
- * Running out of memory prints one message and ends the program. The number of live blocks is
+ * Running out of memory prints one message and ends the program, with an exit code of its own. The number of live blocks is
  * counted, so that a test can show that everything was freed. */
 #pragma once
 #include <stddef.h>
+
+enum { MEM_EXIT_CODE = 5 };
+
+/* Ends the program as an allocation here would; for libraries that say so: "the sparse factorisation". */
+_Noreturn void mem_exhausted(const char *where);
 
 /* count*size zeroed bytes, aligned to 64 (a cache line, and any vector). count may be 0. Thread-safe. */
 void *mem_alloc(size_t count, size_t size);

@@ -54,17 +54,18 @@ bool animation_add(Animation *animation, Canvas *page, double seconds, Error *er
         options.anim_params.bgcolor = 0xffffffff;
         options.kmin = 9, options.kmax = 17;
         animation->encoder = WebPAnimEncoderNew(width, height, &options);
+        if (!animation->encoder) mem_exhausted("libwebp");
     }
     WebPPicture picture;
     WebPPictureInit(&picture);
     picture.width = width, picture.height = height, picture.use_argb = 1;
-    bool ok = animation->encoder && WebPPictureImportBGRX(&picture, pixels, stride) &&
+    bool ok = WebPPictureImportBGRX(&picture, pixels, stride) &&
               WebPAnimEncoderAdd(animation->encoder, &picture, milliseconds(animation), &animation->config);
+    if (picture.error_code == VP8_ENC_ERROR_OUT_OF_MEMORY) mem_exhausted("libwebp");
     WebPPictureFree(&picture);
     if (!ok)
-        return error_set(err, "%s: a page of %d x %d pixels cannot be encoded: %s", animation->path, width,
-                         height,
-                         animation->encoder ? WebPAnimEncoderGetError(animation->encoder) : "out of memory");
+        return error_set(err, "%s: a page of %d x %d pixels cannot be encoded: %s", animation->path, width, height,
+                         WebPAnimEncoderGetError(animation->encoder));
     animation->seconds += seconds;
     return true;
 }

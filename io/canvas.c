@@ -63,14 +63,26 @@ static Format format_from_path(const char *path)
     return (Format)format;
 }
 
+static void check_memory(cairo_status_t status)
+{
+    if (status == CAIRO_STATUS_NO_MEMORY) mem_exhausted("Cairo");
+}
+
+static cairo_surface_t *image_create(cairo_format_t format, int width, int height)
+{
+    cairo_surface_t *image = cairo_image_surface_create(format, width, height);
+    check_memory(cairo_surface_status(image));
+    return image;
+}
+
 static cairo_surface_t *surface_create(Canvas *canvas, double width, double height)
 {
     if (canvas->format == FORMAT_SVG)
         return cairo_svg_surface_create_for_stream(bytes_append, &canvas->file, width, height);
     if (canvas->format == FORMAT_PDF)
         return cairo_pdf_surface_create_for_stream(bytes_append, &canvas->file, width, height);
-    return cairo_image_surface_create(CAIRO_FORMAT_RGB24, (int)lround(width * canvas->resolution),
-                                      (int)lround(height * canvas->resolution));
+    return image_create(CAIRO_FORMAT_RGB24, (int)lround(width * canvas->resolution),
+                        (int)lround(height * canvas->resolution));
 }
 
 /* Glyphs are placed the same at every resolution and in every format. */
@@ -149,6 +161,7 @@ bool canvas_save(Canvas *canvas, Error *err)
         status = cairo_surface_write_to_png_stream(canvas->surface, bytes_append, &canvas->file);
     cairo_surface_finish(canvas->surface);
     if (status == CAIRO_STATUS_SUCCESS) status = cairo_surface_status(canvas->surface);
+    check_memory(status);
     if (status != CAIRO_STATUS_SUCCESS)
         return error_set(err, "%s: cannot be drawn: %s", canvas->path, cairo_status_to_string(status));
     if (!replace_check(canvas->path, err)) return false;
@@ -312,7 +325,7 @@ static uint32_t pixel_premultiplied(const unsigned char rgba[4])
 
 void canvas_image(Canvas *canvas, const unsigned char *rgba, int width, int height, Box box)
 {
-    cairo_surface_t *image = cairo_image_surface_create(CAIRO_FORMAT_ARGB32, width, height);
+    cairo_surface_t *image = image_create(CAIRO_FORMAT_ARGB32, width, height);
     unsigned char *data = cairo_image_surface_get_data(image);
     int stride = cairo_image_surface_get_stride(image);
     for (int i = 0; data && i < height; i++)
@@ -355,8 +368,8 @@ static bool png_check_header(const char *path, Error *err)
 /* Paints the image over white, so that Cairo turns any kind of PNG into the same pixels. */
 static cairo_surface_t *surface_flatten(cairo_surface_t *png)
 {
-    cairo_surface_t *flat = cairo_image_surface_create(CAIRO_FORMAT_RGB24, cairo_image_surface_get_width(png),
-                                                       cairo_image_surface_get_height(png));
+    cairo_surface_t *flat = image_create(CAIRO_FORMAT_RGB24, cairo_image_surface_get_width(png),
+                                         cairo_image_surface_get_height(png));
     cairo_t *cairo = cairo_create(flat);
     cairo_set_source_rgb(cairo, 1, 1, 1);
     cairo_paint(cairo);
