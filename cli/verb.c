@@ -1,5 +1,6 @@
 #include "cli/verb.h"
 #include "base/memory.h"
+#include "solve/kernels.h"
 #include <stdio.h>
 #include <string.h>
 
@@ -41,6 +42,7 @@ bool verb_stored_scene(const char *text, YamlFile **file, Scene *scene)
 
 Model *verb_build_model(const Scene *scene, YamlFile *file)
 {
+    if (kernels_reserve(1) < 1) mem_exhausted("OpenBLAS, which works in 128 MB");
     Model *model = model_create(scene, file);
     if (!model) print_report(file);
     for (int k = 0; model && k < model->report.warning_count; k++)

@@ -9,6 +9,7 @@
 #include "cli/verb.h"
 #include "optim/trajectory_adjoint.h"
 #include "solve/check.h"
+#include "solve/kernels.h"
 #include <getopt.h>
 #include <math.h>
 #include <stdio.h>
@@ -124,6 +125,8 @@ static void measure(const Model *model, const Scene *scene)
     bool stable = system_factor(c->sys, 0) || system_factor(c->sys, 1e-6);
     double seconds = clock_seconds() - start;
     SparseInfo info = system_info(c->sys);
+    const char *note = kernels_note();
+    printf("OpenBLAS's kernels: %s%s%s\n", kernels_name(), *note ? ", " : "", note);
     printf("one Newton iteration: %.3g s, factor %.3g million numbers (%.3g MB)%s\n", seconds,
            1e-6 * (double)info.factor_nonzeros, 8e-6 * (double)info.factor_nonzeros,
            stable ? "" : ", not stable at the start");

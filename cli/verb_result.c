@@ -45,6 +45,10 @@ static void print_title(Result *result, const char *path)
     printf("%s: %s%s%d frames\n", path, known ? (const char *)status.data : "", known ? ", " : "",
            result_step_count(result));
     array_clear(&status);
+    Array kernels = {0};
+    if (result_read(result, "slender/kernels", &kernels, NULL))
+        printf("  OpenBLAS's kernels: %s\n", (const char *)kernels.data);
+    array_clear(&kernels);
 }
 
 static int info_result(const char *path)

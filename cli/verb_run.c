@@ -6,6 +6,7 @@
 #include "cli/show.h"
 #include "cli/verb.h"
 #include "io/result.h"
+#include "solve/kernels.h"
 #include <getopt.h>
 #include <stdio.h>
 #include <string.h>
@@ -35,7 +36,7 @@ static const char usage[] =
     "  --margin LENGTH  of a drawing: 10mm\n"
     "  --resume         goes on with a run that was interrupted, or extends one that has finished\n"
     "  --force          discards an unfinished run of that name\n"
-    "  --threads N      load cases at once, parts of a drawing's tone; default: as many as there are "
+    "  --threads N      load cases at once, parts of a drawing's tone, 1 to 64; default: as many as there are "
     "processors\n"
     "  --quiet          says nothing but errors; --log=json: one JSON object per line";
 
@@ -45,6 +46,13 @@ static bool add_setting(RunOptions *options, const char *key, const char *value)
     if (options->set_count == SET_MAX) return false;
     options->set[options->set_count++] = mem_format("%s%s", key, value);
     return true;
+}
+
+/* A machine may have more processors than are of use, or not know how many. */
+static int default_threads(void)
+{
+    long processors = sysconf(_SC_NPROCESSORS_ONLN);
+    return processors < 1 ? 1 : processors > THREADS_MAX ? THREADS_MAX : (int)processors;
 }
 
 static bool parse(int argc, char **argv, RunOptions *options)
@@ -63,7 +71,7 @@ static bool parse(int argc, char **argv, RunOptions *options)
                                           {"help", no_argument, NULL, HELP},
                                           {0}};
     char end;
-    options->threads = (int)sysconf(_SC_NPROCESSORS_ONLN);
+    options->threads = default_threads();
     for (int c; (c = getopt_long(argc, argv, "o:", table, NULL)) >= 0;) {
         if (c == 'o')
             options->output = optarg;
@@ -138,16 +146,18 @@ static bool begin(Run *run, const RunOptions *options, Error *err)
     run->model->body->add_static(run->model, &statics);
     char *scene = yaml_write(&scene_table, run->scene), *versions = run_versions();
     bool ok = !options->resume || check_scene(run->journal, run->scene->job, scene, err);
-    Array meta[] = {array_text("scene", scene), array_text("versions", versions)};
+    char *kernels = ok ? run_kernels(run->journal) : mem_text("");
+    Array meta[] = {array_text("scene", scene), array_text("versions", versions), array_text("kernels", kernels)};
     if (ok && options->resume && journal_is_finished(run->journal) && run->scene->job == JOB_SIMULATE)
         ok = recall_frames(run->journal, run->result, err);
-    ok = ok && journal_put(run->journal, "meta", 0, meta, 2, err) &&
+    ok = ok && journal_put(run->journal, "meta", 0, meta, 3, err) &&
          arrays_put(&statics, run->journal, "static", 0, err);
     arrays_clear(&statics);
     if (ok && options->resume && journal_is_finished(run->journal))
         ok = journal_set_finished(run->journal, false, err);
     mem_free(scene);
     mem_free(versions);
+    mem_free(kernels);
     return ok;
 }
 
@@ -164,16 +174,14 @@ static bool write_result(Run *run, const char *path, bool finished, Error *err)
     return true;
 }
 
-static void draw(Run *run)
+static bool draw(Run *run, Error *err)
 {
-    Error err;
     char *picture = outputs_picture(run->scene, run->result);
     ShowDef def = show_default();
-    if (show_result(run->result, picture, &def, &err))
-        progress_say(run->progress, "picture: %s", picture);
-    else
-        progress_say(run->progress, "no picture: %s", err.text);
+    bool ok = show_result(run->result, picture, &def, err);
+    if (ok) progress_say(run->progress, "picture: %s", picture);
     mem_free(picture);
+    return ok || error_prefix(err, "no picture");
 }
 
 static int do_job(Run *run, const RunOptions *options)
@@ -187,10 +195,11 @@ static int do_job(Run *run, const RunOptions *options)
         return verb_fail(RUN_CANNOT_WRITE, err.text);
     progress_say(run->progress, "result: %s", run->result);
     if (!outputs_write(run, &err)) return verb_fail(RUN_CANNOT_WRITE, err.text);
-    if (!options->no_picture) draw(run);
+    bool drawn = options->no_picture || draw(run, &err);
     if (status == RUN_INTERRUPTED)
         progress_say(run->progress, "interrupted; all is saved: run again with --resume");
-    return status;
+    if (drawn) return status;
+    return verb_fail(status == RUN_INTERRUPTED ? RUN_INTERRUPTED : RUN_CANNOT_WRITE, err.text);
 }
 
 static bool is_folder(const char *path)
@@ -210,6 +219,14 @@ static bool check_output(const char *output, const char *result, Error *err)
     return true;
 }
 
+/* Load cases at once, as far as there is memory for their BLAS; the same numbers come out. */
+static int threads_of(const RunOptions *options, const Model *model)
+{
+    int at_once = model->case_count < options->threads ? model->case_count : options->threads;
+    int room = kernels_reserve(at_once);
+    return room < at_once ? room : options->threads;
+}
+
 static int run_model(const RunOptions *options, const Scene *scene, Model *model)
 {
     Error err;
@@ -218,7 +235,7 @@ static int run_model(const RunOptions *options, const Scene *scene, Model *model
         options->output ? verb_without_ending(options->output, ".vtkhdf") : verb_base_name(options->scene);
     char *result = mem_format("%s.vtkhdf", name), *journal = mem_format("%s.run", name);
     Run run = {
-        .scene = scene, .model = model, .progress = &progress, .result = result, .threads = options->threads};
+        .scene = scene, .model = model, .progress = &progress, .result = result, .threads = threads_of(options, model)};
     JournalMode mode = options->resume ? JOURNAL_RESUME : options->force ? JOURNAL_FORCE : JOURNAL_NEW;
     if (check_output(options->output, result, &err) &&
         outputs_check(scene, options->scene, result, !options->no_picture, &err))

@@ -10,7 +10,21 @@
 
 /* ---- /slender ---- */
 
-/* Every array of a kind at its own name; final/status is an attribute instead. */
+/* Texts that are attributes of the group, not datasets in it. */
+static const struct {
+    const char *path, *kind, *name, *absent;
+} attributes[] = {{"slender/status", "final", "status", "unfinished"}, {"slender/kernels", "meta", "kernels", NULL}};
+
+enum { ATTRIBUTES = sizeof attributes / sizeof *attributes };
+
+static bool is_attribute(const char *kind, const char *name)
+{
+    for (int k = 0; k < ATTRIBUTES; k++)
+        if (!strcmp(name, attributes[k].name) && !strcmp(kind, attributes[k].kind)) return true;
+    return false;
+}
+
+/* Every other array of a kind at its own name. */
 static bool put_kind(VtkFrames *w, const char *kind, Error *err)
 {
     char **names, path[512];
@@ -18,7 +32,7 @@ static bool put_kind(VtkFrames *w, const char *kind, Error *err)
     bool ok = journal_names(w->journal, kind, 0, &names, &count, err);
     for (int k = 0; ok && k < count; k++) {
         Array array;
-        if (!strcmp(names[k], "status") && !strcmp(kind, "final")) continue;
+        if (is_attribute(kind, names[k])) continue;
         ok = journal_get(w->journal, kind, 0, names[k], &array, err);
         if (!ok) break;
         snprintf(path, sizeof path, "slender/%.400s", names[k]);
@@ -29,14 +43,22 @@ static bool put_kind(VtkFrames *w, const char *kind, Error *err)
     return ok;
 }
 
-static bool put_status(VtkFrames *w, Error *err)
+static bool put_attribute(VtkFrames *w, int k, Error *err)
 {
-    Array status = {0};
-    if (!journal_has(w->journal, "final", 0, "status"))
-        return hdf5_attribute_text(w->file, "slender", "status", "unfinished", err);
-    bool ok = journal_get(w->journal, "final", 0, "status", &status, err) &&
-              hdf5_attribute_text(w->file, "slender", "status", status.data, err);
-    array_clear(&status);
+    const char *kind = attributes[k].kind, *name = attributes[k].name, *absent = attributes[k].absent;
+    Array text = {0};
+    if (!journal_has(w->journal, kind, 0, name))
+        return !absent || hdf5_attribute_text(w->file, "slender", name, absent, err);
+    bool ok = journal_get(w->journal, kind, 0, name, &text, err) &&
+              hdf5_attribute_text(w->file, "slender", name, text.data, err);
+    array_clear(&text);
+    return ok;
+}
+
+static bool put_attributes(VtkFrames *w, Error *err)
+{
+    bool ok = true;
+    for (int k = 0; ok && k < ATTRIBUTES; k++) ok = put_attribute(w, k, err);
     return ok;
 }
 
@@ -97,7 +119,7 @@ static bool put_last_x(VtkFrames *w, Error *err)
 static bool fill(VtkFrames *w, Error *err)
 {
     if (!put_kind(w, "meta", err) || !put_kind(w, "static", err) || !put_kind(w, "final", err) ||
-        !put_status(w, err) || !put_histories(w, err))
+        !put_attributes(w, err) || !put_histories(w, err))
         return false;
     if (w->count == 0 || !vtk_frames_exist(w->journal)) return true;
     if (!vtk_frames_read(w, err) || !put_last_x(w, err) || !vtk_frames_write(w, err)) return false;
@@ -174,22 +196,26 @@ bool result_list(Result *result, char ***paths, int *count, Error *err)
     return hdf5_list(result->file, paths, count, err);
 }
 
-static bool is_status(const char *path)
+/* Its number, or -1: the path is that of a dataset. */
+static int find_attribute(const char *path)
 {
-    return !strcmp(path, "slender/status");
+    for (int k = 0; k < ATTRIBUTES; k++)
+        if (!strcmp(path, attributes[k].path)) return k;
+    return -1;
 }
 
 bool result_has(Result *result, const char *path)
 {
-    return is_status(path) || hdf5_has(result->file, path);
+    return find_attribute(path) >= 0 || hdf5_has(result->file, path);
 }
 
 bool result_read(Result *result, const char *path, Array *array, Error *err)
 {
     char *text;
-    if (!is_status(path)) return hdf5_read(result->file, path, 0, -1, array, err);
-    if (!hdf5_read_attribute_text(result->file, "slender", "status", &text, err)) return false;
-    *array = (Array){.name = mem_text("status"),
+    int k = find_attribute(path);
+    if (k < 0) return hdf5_read(result->file, path, 0, -1, array, err);
+    if (!hdf5_read_attribute_text(result->file, "slender", attributes[k].name, &text, err)) return false;
+    *array = (Array){.name = mem_text(attributes[k].name),
                      .unit = mem_text(""),
                      .type = ARRAY_TEXT,
                      .rank = 1,

@@ -14,7 +14,7 @@
  * state/x, design/<block>, cases/<name>/.., ..) with its type and shape; history/<name> [evaluations], one
  * for each scalar that the evaluations hold; frames/flux_density [T,3] where the frames have it; frames/x
  * [T,n_v,3] float64 if double_frames. The text
- * final/status becomes the attribute `status`: "unfinished" if there is none yet; state/x is the last frame's
+ * final/status becomes the attribute `status`: "unfinished" if there is none yet; meta/kernels becomes `kernels`; state/x is the last frame's
  * x until final has it.
  *
  * The file ends with a trailer of 20 bytes that HDF5 does not look at: "SLENDRCK", the length before it
@@ -50,7 +50,7 @@ bool result_list(Result *result, char ***paths, int *count, Error *err);
 bool result_has(Result *result, const char *path);
 
 /* Reads a dataset: floating point as float64, integers as int32 (a number that does not fit is refused),
- * texts as text. "slender/status" reads the attribute. To be freed by array_clear. */
+ * texts as text. "slender/status" and "slender/kernels" read the attributes. To be freed by array_clear. */
 bool result_read(Result *result, const char *path, Array *array, Error *err);
 
 /* Reads only rows first .. first + count - 1 of the first dimension. */

@@ -36,6 +36,19 @@ expect 0 "$program" schema --manual;            says "| .thickness. |"
 
 "$program" schema | cmp -s - "$here/../docs/scene.schema.json" || { echo "docs/scene.schema.json is not what slender schema says"; bad=1; }
 
+# What cannot be printed is said, and is no success.
+for words in schema help version "info beam.vtkhdf" "info beam.run" "check $scene" "run $scene --no-picture -o full --log=json"; do
+    # shellcheck disable=SC2086
+    "$program" $words > /dev/full 2> err.txt; code=$?
+    [ $code = 4 ] && grep -q "what it prints cannot be written" err.txt || { echo "$words to a full disk ends with $code"; bad=1; }
+    # shellcheck disable=SC2086
+    "$program" $words --force >&- 2> err.txt; code=$?
+    [ $code = 4 ] || [ $code = 2 ] || { echo "$words to a closed stream ends with $code"; bad=1; }
+done
+"$program" run "$scene" --quiet --no-picture -o closed >&- 2>&-; code=$?
+[ $code = 0 ] || { echo "a quiet run without streams ends with $code"; bad=1; }
+expect 0 "$program" info closed.vtkhdf
+
 # The mesh as a file, the pose evaluated: the energies are those of the equilibrium.
 expect 0 "$program" mesh "$scene" -o rest.obj;  exists rest.obj
 sed "s/^job: .*/job: evaluate/; s/{shape: strip.*}/rest.obj/; s/^  thickness/  pose: beam.obj\n  thickness/; s/{group: root, clamp: true}/{box: [[-1, -1, -1], [1e-9, 1, 1]], clamp: true}/" "$scene" > evaluate.yaml
