@@ -14,7 +14,7 @@ static bool has_own(Result *result, const char *field, int step)
     snprintf(path, sizeof path, "VTKHDF/Steps/CellDataOffsets/%.200s", field);
     if (step == 0 || !result_read_rows(result, path, step - 1, 2, &offsets, NULL)) return true;
     const int *at = offsets.data;
-    bool own = at[0] != at[1];
+    bool own = !array_is(&offsets, ARRAY_INT32, 1, 2) || at[0] != at[1];
     array_clear(&offsets);
     return own;
 }

@@ -33,10 +33,11 @@ bool verb_load_scene(const char *path, char *const *set, int set_count, YamlFile
     return false;
 }
 
-bool verb_stored_scene(const char *text, YamlFile **file, Scene *scene)
+bool verb_stored_scene(const Array *text, YamlFile **file, Scene *scene)
 {
+    const char *stored = text->type == ARRAY_TEXT ? text->data : "";
     *scene = (Scene){0};
-    *file = yaml_parse("scene", text, strlen(text));
+    *file = yaml_parse("scene", stored, strlen(stored));
     return yaml_load(*file, &scene_table, scene);
 }
 

@@ -43,7 +43,7 @@ static char *default_name(const char *path, bool animation)
     if (result && result_read(result, "slender/scene", &text, NULL)) {
         Scene scene;
         YamlFile *file;
-        if (verb_stored_scene(text.data, &file, &scene)) {
+        if (verb_stored_scene(&text, &file, &scene)) {
             mem_free(name);
             name = outputs_picture(&scene, path);
         }

@@ -58,6 +58,7 @@ static int info_result(const char *path)
     int count;
     Result *result = result_open(path, &err);
     if (!result || !result_list(result, &paths, &count, &err)) {
+        if (result) error_prefix(&err, "%s", path);
         result_close(result);
         return verb_fail(RUN_REFUSED, err.text);
     }
@@ -139,6 +140,7 @@ static bool write_csv(const Array *array, const char *path, Error *err)
     if (array->type == ARRAY_TEXT)
         return error_set(err, "'%s' is a text, not numbers; slender info shows it", array->name);
     size_t count = array_count(array);
+    if (count == 0) return error_set(err, "%s is empty: there are no numbers in it", array->name);
     int columns = array->rank > 1 ? array->dims[array->rank - 1] : 1;
     double *values = mem_alloc(count, sizeof *values);
     for (size_t i = 0; i < count; i++)
@@ -169,8 +171,8 @@ static bool export_frame(Result *result, int frame, const char *path, Error *err
     Array faces, points;
     if (frame >= result_step_count(result))
         return error_set(err, "the result has %d frames, from 0", result_step_count(result));
-    if (!result_read(result, "slender/faces", &faces, err)) return false;
-    bool ok = frame < 0 ? result_read(result, "slender/state/x", &points, err)
+    if (!result_read_as(result, "slender/faces", ARRAY_INT32, 2, 3, &faces, err)) return false;
+    bool ok = frame < 0 ? result_read_as(result, "slender/state/x", ARRAY_FLOAT64, 2, 3, &points, err)
                         : result_read_step(result, "Points", frame, &points, err);
     if (ok) {
         MeshFile file = {.vertex_count = points.dims[0],
@@ -215,7 +217,7 @@ static bool export_result(const char *input, const Export *what, Error *err)
               : drawn_has(result) ? export_drawing(result, what->language, what->output, err)
                                   : export_frame(result, what->frame, what->output, err);
     result_close(result);
-    return ok;
+    return ok || error_prefix(err, "%s", input);
 }
 
 /* As the run itself would write it. */
@@ -226,7 +228,7 @@ static ResultDef result_def(Journal *journal)
     Scene scene;
     YamlFile *file;
     if (!journal_get(journal, "meta", 0, "scene", &text, NULL)) return def;
-    if (verb_stored_scene(text.data, &file, &scene))
+    if (verb_stored_scene(&text, &file, &scene))
         def.double_frames = scene.output.precision == OUTPUT_DOUBLE;
     yaml_clear(&scene_table, &scene);
     yaml_destroy(file);

@@ -1,5 +1,6 @@
 /* array.h - a named n-dimensional array of numbers or a text: what journal, result and export exchange. */
 #pragma once
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -20,6 +21,9 @@ typedef struct Array {
 Array array_float(const char *name, const char *unit, const double *data, int rank, int d0, int d1);
 Array array_int(const char *name, const int *data, int rank, int d0, int d1);
 Array array_text(const char *name, const char *text);
+
+/* Of that type and rank, its last dimension being `width` (0: any). */
+bool array_is(const Array *array, ArrayType type, int rank, int width);
 
 size_t array_bytes(const Array *array);
 size_t array_count(const Array *array);

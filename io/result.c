@@ -175,7 +175,7 @@ Result *result_open(const char *path, Error *err)
     mem_free(bytes);
     Array times;
     if (result->file && hdf5_read(result->file, "VTKHDF/Steps/Values", 0, -1, &times, NULL)) {
-        result->step_count = times.dims[0];
+        if (array_is(&times, ARRAY_FLOAT64, 1, 0)) result->step_count = times.dims[0];
         array_clear(&times);
     }
     if (result->file) return result;
@@ -224,6 +224,19 @@ bool result_read(Result *result, const char *path, Array *array, Error *err)
     return true;
 }
 
+/* Keeps the array where it is as slender writes it. */
+static bool keep(bool fits, const char *path, Array *array, Error *err)
+{
+    if (fits) return true;
+    array_clear(array);
+    return error_set(err, "%s is not as slender writes it", path);
+}
+
+bool result_read_as(Result *result, const char *path, ArrayType type, int rank, int width, Array *array, Error *err)
+{
+    return result_read(result, path, array, err) && keep(array_is(array, type, rank, width), path, array, err);
+}
+
 bool result_read_rows(Result *result, const char *path, int first, int count, Array *array, Error *err)
 {
     return hdf5_read(result->file, path, first, count, array, err);
@@ -262,7 +275,9 @@ bool result_read_step(Result *result, const char *name, int step, Array *array, 
         return error_set(err, "the result has %d steps, from 0", result->step_count);
     return offset_at(result, offsets, step, &first, err) &&
            offset_at(result, cell ? "VTKHDF/NumberOfCells" : "VTKHDF/NumberOfPoints", 0, &count, err) &&
-           hdf5_read(result->file, path, first, count, array, err);
+           hdf5_read(result->file, path, first, count, array, err) &&
+           keep(array->type == ARRAY_FLOAT64 && array->rank >= 1 && (!points || array_is(array, ARRAY_FLOAT64, 2, 3)),
+                path, array, err);
 }
 
 const char *result_hdf5_version(void)

@@ -53,14 +53,17 @@ bool result_has(Result *result, const char *path);
  * texts as text. "slender/status" and "slender/kernels" read the attributes. To be freed by array_clear. */
 bool result_read(Result *result, const char *path, Array *array, Error *err);
 
+/* The same, refused where it has another type or rank, or rows of another width (0: any). */
+bool result_read_as(Result *result, const char *path, ArrayType type, int rank, int width, Array *array, Error *err);
+
 /* Reads only rows first .. first + count - 1 of the first dimension. */
 bool result_read_rows(Result *result, const char *path, int first, int count, Array *array, Error *err);
 
 /* Stored steps, 0 if there is no /VTKHDF. */
 int result_step_count(Result *result);
 
-/* One step of /VTKHDF: name is "Points", "CellData/<name>" or "PointData/<name>"; the array has one row per
- * vertex or cell. */
+/* One step of /VTKHDF: name is "Points", "CellData/<name>" or "PointData/<name>"; the array of doubles has one row per
+ * vertex or cell, those of Points three numbers. */
 bool result_read_step(Result *result, const char *name, int step, Array *array, Error *err);
 
 /* The linked library's version, e.g. "1.10.8". */
