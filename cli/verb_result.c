@@ -1,8 +1,10 @@
 /* slender info and slender export: what is in a result, or in the journal of a running job. */
 #include "base/memory.h"
 #include "cli/drawn.h"
+#include "cli/outputs.h"
 #include "cli/verb.h"
 #include "io/mesh_file.h"
+#include "io/replace.h"
 #include "io/result.h"
 #include "io/table.h"
 #include <getopt.h>
@@ -240,7 +242,10 @@ static bool export_journal(const char *input, const char *path, Error *err)
 {
     if (!has_ending(path, ".vtkhdf"))
         return error_set(err, "%s: a run is exported as .vtkhdf, and that as other files", path);
-    Journal *journal = journal_open(input, JOURNAL_READ, err);
+    char *sidecar = result_sidecar(path);
+    bool free = outputs_check_source(NULL, input, sidecar, err) && replace_check(sidecar, err);
+    mem_free(sidecar);
+    Journal *journal = free ? journal_open(input, JOURNAL_READ, err) : NULL;
     if (!journal) return false;
     bool ok = !journal_is_finished(journal) || journal_count(journal, "frame") > 0 ||
               error_set(err, "%s: the run has finished; its frames are in its result", input);
@@ -273,10 +278,10 @@ int verb_export(int argc, char **argv)
             what.language = optarg;
         else if (c != 'f' || sscanf(optarg, "%d%c", &what.frame, &end) != 1 || what.frame < 0)
             return verb_usage(usage);
-    if (!what.output || optind != argc - 1 || !strcmp(argv[optind], what.output)) return verb_usage(usage);
+    if (!what.output || optind != argc - 1) return verb_usage(usage);
     Error err;
     const char *input = argv[optind];
-    bool ok = has_ending(input, ".run") ? export_journal(input, what.output, &err)
-                                        : export_result(input, &what, &err);
+    bool ok = outputs_check_source(NULL, input, what.output, &err) &&
+              (has_ending(input, ".run") ? export_journal(input, what.output, &err) : export_result(input, &what, &err));
     return ok ? RUN_DONE : verb_fail(RUN_CANNOT_WRITE, err.text);
 }

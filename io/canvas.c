@@ -1,6 +1,6 @@
 #include "io/canvas.h"
 #include "base/memory.h"
-#include "io/replace.h"
+#include "io/safe_file.h"
 #include <cairo-pdf.h>
 #include <cairo-svg.h>
 #include <cairo.h>
@@ -10,7 +10,6 @@
 #include <stdio.h>
 #include <string.h>
 #include <strings.h>
-#include <unistd.h>
 
 enum { MAX_POINTS = 10000, MAX_SIDE = 32000, PNG_MAX_PIXELS = 100000000 };
 
@@ -142,18 +141,6 @@ double canvas_resolution(const Canvas *canvas)
     return canvas->resolution;
 }
 
-static bool file_write(const char *path, const Bytes *bytes)
-{
-    FILE *file = fopen(path, "wb");
-    if (!file) return false;
-    bool ok = fwrite(bytes->data, 1, bytes->length, file) == bytes->length && fflush(file) == 0 &&
-              fsync(fileno(file)) == 0;
-    int reason = errno;
-    if (fclose(file) != 0 && ok) return false;
-    errno = reason;
-    return ok;
-}
-
 bool canvas_save(Canvas *canvas, Error *err)
 {
     cairo_status_t status = cairo_status(canvas->cairo);
@@ -164,16 +151,7 @@ bool canvas_save(Canvas *canvas, Error *err)
     check_memory(status);
     if (status != CAIRO_STATUS_SUCCESS)
         return error_set(err, "%s: cannot be drawn: %s", canvas->path, cairo_status_to_string(status));
-    if (!replace_check(canvas->path, err)) return false;
-
-    char *temporary = mem_format("%s.tmp", canvas->path);
-    bool ok = file_write(temporary, &canvas->file) && rename(temporary, canvas->path) == 0;
-    if (!ok) {
-        error_set(err, "%s: cannot be written: %s", canvas->path, strerror(errno));
-        unlink(temporary);
-    }
-    mem_free(temporary);
-    return ok;
+    return safe_file_write(canvas->path, canvas->file.data, canvas->file.length, false, err);
 }
 
 const unsigned char *canvas_pixels(Canvas *canvas, int *width, int *height, int *stride)

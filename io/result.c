@@ -130,11 +130,16 @@ static bool fill(VtkFrames *w, Error *err)
     return w->single || vtk_frames_put(w, "x", "slender/frames/x", NULL, true, err);
 }
 
+char *result_sidecar(const char *path)
+{
+    size_t length = strlen(path), cut = length > 7 && !strcmp(path + length - 7, ".vtkhdf") ? 7 : 0;
+    return mem_format("%.*s.xdmf", (int)(length - cut), path);
+}
+
 static bool write_sidecar(const VtkFrames *w, const char *path, Error *err)
 {
     if (w->vertex_count == 0) return true;
-    size_t length = strlen(path), cut = length > 7 && !strcmp(path + length - 7, ".vtkhdf") ? 7 : 0;
-    char *sidecar = mem_format("%.*s.xdmf", (int)(length - cut), path), *text = xdmf_text(path, w);
+    char *sidecar = result_sidecar(path), *text = xdmf_text(path, w);
     bool ok = safe_file_write(sidecar, text, strlen(text), false, err);
     mem_free(text);
     mem_free(sidecar);

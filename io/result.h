@@ -37,6 +37,9 @@ typedef struct ResultDef {
  * moment path is the old file or the new one, whole. On false the old one is still there. */
 bool result_write(Journal *journal, const char *path, ResultDef def, Error *err);
 
+/* The name of the result's sidecar, which the caller frees. */
+char *result_sidecar(const char *path);
+
 typedef struct Result Result;
 
 /* Opens a result for reading, after checking every byte against the trailer. NULL and a sentence on refusal.
