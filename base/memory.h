@@ -3,6 +3,7 @@
  * Running out of memory prints one message and ends the program, with an exit code of its own. The number of live blocks is
  * counted, so that a test can show that everything was freed. */
 #pragma once
+#include <stdarg.h>
 #include <stddef.h>
 
 enum { MEM_EXIT_CODE = 5 };
@@ -24,6 +25,7 @@ char *mem_text(const char *text);
 
 /* Formats into a new text. */
 char *mem_format(const char *format, ...) __attribute__((format(printf, 1, 2)));
+char *mem_vformat(const char *format, va_list args) __attribute__((format(printf, 1, 0)));
 
 /* One text of three; takes the first one over. */
 char *mem_join(char *text, const char *second, const char *third);

@@ -1,5 +1,6 @@
 #include "cli/drawing_pens.h"
 #include "base/memory.h"
+#include "base/plain.h"
 #include "cli/build.h"
 #include <math.h>
 #include <string.h>
@@ -75,22 +76,11 @@ static bool check_from(const SplineScene *scene, YamlFile *file)
     return true;
 }
 
-/* Names are a line each in the result, and words of the SVG file's XML, which cannot say U+FFFE and U+FFFF.
- */
-static bool is_name(const char *name)
-{
-    for (const char *c = name; *c; c++)
-        if ((unsigned char)*c < 0x20 || *c == 0x7f || !strncmp(c, "\xef\xbf\xbe", 3) ||
-            !strncmp(c, "\xef\xbf\xbf", 3))
-            return false;
-    return *name != 0;
-}
-
 static bool check_name(const SplineScene *scene, YamlFile *file, int pen)
 {
     const char *name = scene->pens[pen].name;
     Key at = key("spline.pens[%d]", pen);
-    if (!is_name(name)) return yaml_refuse(file, at.text, "the name of a pen is a line of text");
+    if (!*name || !plain_is(name)) return yaml_refuse(file, at.text, "the name of a pen is a line of text");
     if (is_cmyk(scene) && pens_ink(name) < 0)
         return yaml_refuse(file, at.text, "the pens of cmyk are cyan, magenta, yellow and black");
     for (int k = 0; is_cmyk(scene) && k < pen; k++)

@@ -1,5 +1,6 @@
 /* slender - simulates and designs slender things: the verbs, and what they return. */
 #include "base/memory.h"
+#include "cli/say.h"
 #include "cli/verb.h"
 #include "solve/kernels.h"
 #include <fcntl.h>
@@ -74,6 +75,6 @@ int main(int argc, char **argv)
     if (!strncmp(name, "--", 2)) name += 2;
     for (int k = 0; k < VERB_COUNT; k++)
         if (!strcmp(name, verbs[k].name)) return finish(verbs[k].run(argc - 1, argv + 1));
-    fprintf(stderr, "slender: there is no verb '%s'; slender help lists them\n", name);
+    say(stderr, "slender: there is no verb '%s'; slender help lists them", name);
     return RUN_USAGE;
 }

@@ -1,5 +1,6 @@
 #include "cli/model.h"
 #include "base/memory.h"
+#include "base/plain.h"
 #include "cli/build.h"
 #include "cli/drawing.h"
 #include "cli/job.h"
@@ -82,8 +83,8 @@ bool model_cases(Model *model, const Build *b, const Scene *scene, const double 
         for (int i = 0; i < k; i++)
             if (!strcmp(model->cases[i].name, c->name))
                 ok = yaml_refuse(b->file, at.text, "there are two cases named '%s'", c->name);
-        if (strchr(c->name, '/') || !*c->name)
-            ok = yaml_refuse(b->file, at.text, "a case's name is a word without '/'");
+        if (strchr(c->name, '/') || !*c->name || !strcmp(c->name, ".") || !plain_is(c->name))
+            ok = yaml_refuse(b->file, at.text, "a case's name is a word without '/' and control characters");
         ok = put_loads(model, b, at, from->flux_density, from->loads, from->loads_count, from->gravity,
                        c->stages[0].p) &&
              ok;

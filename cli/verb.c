@@ -1,5 +1,6 @@
 #include "cli/verb.h"
 #include "base/memory.h"
+#include "cli/say.h"
 #include "solve/kernels.h"
 #include <stdio.h>
 #include <string.h>
@@ -12,14 +13,14 @@ int verb_usage(const char *usage)
 
 int verb_fail(int code, const char *sentence)
 {
-    fprintf(stderr, "slender: %s\n", sentence);
+    say(stderr, "slender: %s", sentence);
     return code;
 }
 
 static void print_report(YamlFile *file)
 {
     char *report = yaml_report(file);
-    fputs(report, stderr);
+    say_lines(stderr, report);
     mem_free(report);
 }
 
@@ -47,7 +48,7 @@ Model *verb_build_model(const Scene *scene, YamlFile *file)
     Model *model = model_create(scene, file);
     if (!model) print_report(file);
     for (int k = 0; model && k < model->report.warning_count; k++)
-        fprintf(stderr, "warning: %s\n", model->report.warnings[k]);
+        say(stderr, "warning: %s", model->report.warnings[k]);
     return model;
 }
 

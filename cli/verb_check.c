@@ -6,6 +6,7 @@
 #include "cli/drawing.h"
 #include "cli/job.h"
 #include "cli/rod_model.h"
+#include "cli/say.h"
 #include "cli/verb.h"
 #include "optim/trajectory_adjoint.h"
 #include "solve/check.h"
@@ -215,7 +216,7 @@ static void report_drawing(const Drawing *d)
         const DrawingPart *part = &d->parts[k];
         SplineGrid tone = spline_grid(&part->tone);
         double mean = spline_grid_mean(&tone, 0);
-        printf("%s, %.3g mm: covers %.3g of the page, %.3g m of ink, about %.0f segments\n",
+        say(stdout, "%s, %.3g mm: covers %.3g of the page, %.3g m of ink, about %.0f segments",
                d->pens[part->pen].name, 1e3 * page->unit * part->page.pen, mean,
                page->unit * mean / part->page.pen, drawing_segments(part));
     }

@@ -1,7 +1,9 @@
 /* slender info and slender export: what is in a result, or in the journal of a running job. */
 #include "base/memory.h"
+#include "base/plain.h"
 #include "cli/drawn.h"
 #include "cli/outputs.h"
+#include "cli/say.h"
 #include "cli/verb.h"
 #include "io/mesh_file.h"
 #include "io/replace.h"
@@ -21,22 +23,32 @@ static bool has_ending(const char *path, const char *ending)
 
 /* ---- info ---- */
 
+/* "4 x 3 m" */
+static char *shape_text(const Array *array, const char *unit)
+{
+    char *shape = mem_text("");
+    for (int r = 0; r < array->rank; r++) {
+        char *longer = mem_format("%s%s%d", shape, r ? " x " : "", array->dims[r]);
+        mem_free(shape);
+        shape = longer;
+    }
+    return mem_join(shape, " ", unit);
+}
+
 static void print_array(const char *path, const Array *array)
 {
     static const char *const types[] = {"float64", "int32", "text"};
-    printf("  %-44s %-8s", path, types[array->type]);
-    if (array->type == ARRAY_TEXT) {
-        const char *text = array->data, *line = strchr(text, '\n');
-        if (line)
-            printf(" %d bytes\n", array->dims[0]);
-        else
-            printf(" %s\n", text);
-        return;
-    }
-    for (int r = 0; r < array->rank; r++) printf("%s%d", r ? " x " : " ", array->dims[r]);
-    if (array->rank == 0 && array->type == ARRAY_FLOAT64) printf(" %.9g", *(const double *)array->data);
-    if (array->rank == 0 && array->type == ARRAY_INT32) printf(" %d", *(const int *)array->data);
-    printf(" %s\n", array->unit ? array->unit : "");
+    const char *unit = array->unit ? array->unit : "";
+    char *what;
+    if (array->type == ARRAY_TEXT)
+        what = strchr(array->data, '\n') ? mem_format("%d bytes", array->dims[0]) : mem_text(array->data);
+    else if (array->rank == 0)
+        what = array->type == ARRAY_FLOAT64 ? mem_format("%.9g %s", *(const double *)array->data, unit)
+                                            : mem_format("%d %s", *(const int *)array->data, unit);
+    else
+        what = shape_text(array, unit);
+    say(stdout, "  %-44s %-8s %s", path, types[array->type], what);
+    mem_free(what);
 }
 
 /* "a.vtkhdf: settled, 1 frames" */
@@ -44,12 +56,12 @@ static void print_title(Result *result, const char *path)
 {
     Array status = {0};
     bool known = result_read(result, "slender/status", &status, NULL);
-    printf("%s: %s%s%d frames\n", path, known ? (const char *)status.data : "", known ? ", " : "",
+    say(stdout, "%s: %s%s%d frames", path, known ? (const char *)status.data : "", known ? ", " : "",
            result_step_count(result));
     array_clear(&status);
     Array kernels = {0};
     if (result_read(result, "slender/kernels", &kernels, NULL))
-        printf("  OpenBLAS's kernels: %s\n", (const char *)kernels.data);
+        say(stdout, "  OpenBLAS's kernels: %s", (const char *)kernels.data);
     array_clear(&kernels);
 }
 
@@ -68,7 +80,7 @@ static int info_result(const char *path)
     for (int k = 0; k < count; k++) {
         Array array;
         if (!result_read(result, paths[k], &array, &err)) {
-            printf("  %-44s %s\n", paths[k], err.text);
+            say(stdout, "  %-44s %s", paths[k], err.text);
             continue;
         }
         print_array(paths[k], &array);
@@ -113,7 +125,7 @@ static int info_journal(const char *path)
     Journal *journal = journal_open(path, JOURNAL_READ, &err);
     if (!journal) return verb_fail(RUN_REFUSED, err.text);
     int evaluations = journal_count(journal, "evaluation");
-    printf("%s: %s, %d evaluations, %d frames, %d states\n", path,
+    say(stdout, "%s: %s, %d evaluations, %d frames, %d states", path,
            journal_is_finished(journal) ? "finished" : "not finished", evaluations,
            journal_count(journal, "frame"), journal_count(journal, "state"));
     int *indices = NULL, count = 0;
@@ -121,7 +133,7 @@ static int info_journal(const char *path)
         for (int k = 0; k < count; k++) print_evaluation(journal, indices[k]);
     mem_free(indices);
     bool ok = journal_check(journal, &err);
-    if (!ok) fprintf(stderr, "slender: %s\n", err.text);
+    if (!ok) say(stderr, "slender: %s", err.text);
     journal_close(journal, NULL);
     return ok ? RUN_DONE : RUN_REFUSED;
 }
@@ -150,9 +162,11 @@ static bool write_csv(const Array *array, const char *path, Error *err)
             array->type == ARRAY_INT32 ? ((const int *)array->data)[i] : ((const double *)array->data)[i];
     char *header = array->unit && array->unit[0] ? mem_format("# %s, %s", array->name, array->unit)
                                                  : mem_format("# %s", array->name);
-    bool ok = table_write(path, header, values, (int)(count / (size_t)columns), columns, err);
+    char *plain = plain_text(header, "");
+    bool ok = table_write(path, plain, values, (int)(count / (size_t)columns), columns, err);
     mem_free(values);
     mem_free(header);
+    mem_free(plain);
     return ok;
 }
 

@@ -3,6 +3,7 @@
 #include "cli/job.h"
 #include "cli/outputs.h"
 #include "cli/recall.h"
+#include "cli/say.h"
 #include "cli/show.h"
 #include "cli/verb.h"
 #include "io/result.h"
@@ -184,22 +185,29 @@ static bool draw(Run *run, Error *err)
     return ok || error_prefix(err, "no picture");
 }
 
+/* With --log=json also as an object. */
+static int fail(const RunOptions *options, int code, const char *sentence)
+{
+    progress_tell(options->mode, "error", sentence);
+    return verb_fail(code, sentence);
+}
+
 static int do_job(Run *run, const RunOptions *options)
 {
     Error err;
     if (!begin(run, options, &err))
-        return verb_fail(options->resume ? RUN_REFUSED : RUN_CANNOT_WRITE, err.text);
+        return fail(options, options->resume ? RUN_REFUSED : RUN_CANNOT_WRITE, err.text);
     RunStatus status = job_run(run, &err);
-    if (status == RUN_CANNOT_WRITE) return verb_fail(status, err.text);
+    if (status == RUN_CANNOT_WRITE) return fail(options, status, err.text);
     if (!write_result(run, run->result, status != RUN_INTERRUPTED, &err))
-        return verb_fail(RUN_CANNOT_WRITE, err.text);
+        return fail(options, RUN_CANNOT_WRITE, err.text);
     progress_say(run->progress, "result: %s", run->result);
-    if (!outputs_write(run, &err)) return verb_fail(RUN_CANNOT_WRITE, err.text);
+    if (!outputs_write(run, &err)) return fail(options, RUN_CANNOT_WRITE, err.text);
     bool drawn = options->no_picture || draw(run, &err);
     if (status == RUN_INTERRUPTED)
         progress_say(run->progress, "interrupted; all is saved: run again with --resume");
     if (drawn) return status;
-    return verb_fail(status == RUN_INTERRUPTED ? RUN_INTERRUPTED : RUN_CANNOT_WRITE, err.text);
+    return fail(options, status == RUN_INTERRUPTED ? RUN_INTERRUPTED : RUN_CANNOT_WRITE, err.text);
 }
 
 static bool is_folder(const char *path)
@@ -227,6 +235,16 @@ static int threads_of(const RunOptions *options, const Model *model)
     return room < at_once ? room : options->threads;
 }
 
+static void warn_sidecar(const RunOptions *options, const char *result)
+{
+    static const char words[] = "no .xdmf (for ParaView 5.11) is written beside it, since XDMF cannot name this file: a name "
+                                "without : and |, control characters, and blanks at its ends can be";
+    char *sentence = mem_format("'%s': %s", result, words);
+    progress_tell(options->mode, "warning", sentence);
+    say(stderr, "warning: %s", sentence);
+    mem_free(sentence);
+}
+
 static int run_model(const RunOptions *options, const Scene *scene, Model *model)
 {
     Error err;
@@ -240,13 +258,30 @@ static int run_model(const RunOptions *options, const Scene *scene, Model *model
     if (check_output(options->output, result, &err) &&
         outputs_check(scene, options->scene, result, !options->no_picture, &err))
         run.journal = journal_open(journal, mode, &err);
-    int code = run.journal ? do_job(&run, options) : verb_fail(RUN_CANNOT_WRITE, err.text);
+    if (run.journal && !result_has_sidecar(result)) warn_sidecar(options, result);
+    int code = run.journal ? do_job(&run, options) : fail(options, RUN_CANNOT_WRITE, err.text);
     if (run.journal && !journal_close(run.journal, &err) && code != RUN_CANNOT_WRITE)
-        code = verb_fail(RUN_CANNOT_WRITE, err.text);
+        code = fail(options, RUN_CANNOT_WRITE, err.text);
     mem_free(name);
     mem_free(result);
     mem_free(journal);
     return code;
+}
+
+/* What the verb has printed about the scene, as objects. */
+static void tell_scene(const RunOptions *options, const YamlFile *file, const Model *model)
+{
+    int count;
+    const YamlError *errors = yaml_errors(file, &count);
+    for (int k = 0; k < count; k++) {
+        char *sentence = errors[k].line ? mem_format("%s:%d:%d: %s", options->scene, errors[k].line, errors[k].column,
+                                                     errors[k].sentence)
+                                        : mem_format("%s: %s", options->scene, errors[k].sentence);
+        progress_tell(options->mode, "error", sentence);
+        mem_free(sentence);
+    }
+    for (int k = 0; model && k < model->report.warning_count; k++)
+        progress_tell(options->mode, "warning", model->report.warnings[k]);
 }
 
 int verb_run(int argc, char **argv)
@@ -255,12 +290,11 @@ int verb_run(int argc, char **argv)
     if (!parse(argc, argv, &options)) return verb_usage(usage);
     YamlFile *file;
     Scene scene;
-    int code = RUN_REFUSED;
-    if (verb_load_scene(options.scene, options.set, options.set_count, &file, &scene)) {
-        Model *model = verb_build_model(&scene, file);
-        if (model) code = run_model(&options, &scene, model);
-        model_destroy(model);
-    }
+    bool loaded = verb_load_scene(options.scene, options.set, options.set_count, &file, &scene);
+    Model *model = loaded ? verb_build_model(&scene, file) : NULL;
+    tell_scene(&options, file, model);
+    int code = model ? run_model(&options, &scene, model) : RUN_REFUSED;
+    model_destroy(model);
     yaml_clear(&scene_table, &scene);
     yaml_destroy(file);
     for (int k = 0; k < options.set_count; k++) mem_free(options.set[k]);

@@ -1,6 +1,7 @@
 /* What this program runs with: part of every result, so that a number can be traced. */
 #include "base/memory.h"
 #include "cli/run.h"
+#include "cli/say.h"
 #include "io/journal.h"
 #include "io/result.h"
 #include "optim/optimiser.h"
@@ -19,9 +20,9 @@ char *run_kernels(Journal *journal)
     last = last ? last + 1 : before.data;
     bool same = !strcmp(last, now);
     if (!same)
-        fprintf(stderr,
+        say(stderr,
                 "warning: this run was begun with OpenBLAS's kernels %s and goes on with %s: its numbers are not, bit for "
-                "bit, those of an unbroken run; OPENBLAS_CORETYPE=%s keeps to the old ones\n",
+                "bit, those of an unbroken run; OPENBLAS_CORETYPE=%s keeps to the old ones",
                 last, now, last);
     char *all = same ? mem_text(before.data) : mem_format("%s, %s", (const char *)before.data, now);
     array_clear(&before);

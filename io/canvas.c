@@ -1,5 +1,6 @@
 #include "io/canvas.h"
 #include "base/memory.h"
+#include "base/plain.h"
 #include "io/safe_file.h"
 #include <cairo-pdf.h>
 #include <cairo-svg.h>
@@ -247,25 +248,36 @@ static void select_font(Canvas *canvas, TextStyle style)
     cairo_set_font_size(canvas->cairo, style.size);
 }
 
-double canvas_text_width(Canvas *canvas, const char *text, TextStyle style)
+/* Cairo draws nothing more after a text that is no UTF-8. */
+static double text_width(Canvas *canvas, const char *plain, TextStyle style)
 {
     cairo_text_extents_t extents;
     select_font(canvas, style);
-    cairo_text_extents(canvas->cairo, text, &extents);
+    cairo_text_extents(canvas->cairo, plain, &extents);
     return extents.x_advance;
+}
+
+double canvas_text_width(Canvas *canvas, const char *text, TextStyle style)
+{
+    char *plain = plain_text(text, "");
+    double width = text_width(canvas, plain, style);
+    mem_free(plain);
+    return width;
 }
 
 void canvas_text(Canvas *canvas, Vec2 at, const char *text, TextStyle style)
 {
-    double width = canvas_text_width(canvas, text, style);
+    char *plain = plain_text(text, "");
+    double width = text_width(canvas, plain, style);
     cairo_save(canvas->cairo);
     cairo_translate(canvas->cairo, at.x, at.y);
     if (style.upwards) cairo_rotate(canvas->cairo, -acos(-1) / 2);
     cairo_move_to(canvas->cairo, -0.5 * style.align * width, 0);
     set_color(canvas, style.color);
-    cairo_show_text(canvas->cairo, text);
+    cairo_show_text(canvas->cairo, plain);
     cairo_restore(canvas->cairo);
     cairo_new_path(canvas->cairo);
+    mem_free(plain);
 }
 
 void canvas_begin_ink(Canvas *canvas)

@@ -130,6 +130,11 @@ static bool fill(VtkFrames *w, Error *err)
     return w->single || vtk_frames_put(w, "x", "slender/frames/x", NULL, true, err);
 }
 
+bool result_has_sidecar(const char *path)
+{
+    return xdmf_can_name(path);
+}
+
 char *result_sidecar(const char *path)
 {
     size_t length = strlen(path), cut = length > 7 && !strcmp(path + length - 7, ".vtkhdf") ? 7 : 0;
@@ -138,7 +143,7 @@ char *result_sidecar(const char *path)
 
 static bool write_sidecar(const VtkFrames *w, const char *path, Error *err)
 {
-    if (w->vertex_count == 0) return true;
+    if (w->vertex_count == 0 || !xdmf_can_name(path)) return true;
     char *sidecar = result_sidecar(path), *text = xdmf_text(path, w);
     bool ok = safe_file_write(sidecar, text, strlen(text), false, err);
     mem_free(text);

@@ -37,8 +37,10 @@ typedef struct ResultDef {
  * moment path is the old file or the new one, whole. On false the old one is still there. */
 bool result_write(Journal *journal, const char *path, ResultDef def, Error *err);
 
-/* The name of the result's sidecar, which the caller frees. */
+/* The name of the result's sidecar, which the caller frees. False where there is none, since XDMF cannot name the
+ * result: a name with : or |, control characters or bytes that are no UTF-8, or blanks at its ends. */
 char *result_sidecar(const char *path);
+bool result_has_sidecar(const char *path);
 
 typedef struct Result Result;
 

@@ -4,3 +4,6 @@
 
 /* The file's text, the caller's, for the result file at a path that holds these frames. */
 char *xdmf_text(const char *result, const VtkFrames *frames);
+
+/* Can its readers find a file of that name? */
+bool xdmf_can_name(const char *result);
