@@ -77,6 +77,7 @@ Hdf5 *hdf5_open(const void *bytes, size_t size, Error *err)
     hid_t access = memory_access();
     void *copy = size ? mem_copy(bytes, size, 1) : NULL;
     bool ok = size && H5Pset_file_image(access, copy, size) >= 0;
+    if (size && !ok) mem_exhausted("HDF5"); /* it copies, and nothing else */
     mem_free(copy);
     Hdf5 *file = ok ? wrap(H5Fopen(image_name(name), H5F_ACC_RDONLY, access)) : NULL;
     H5Pclose(access);

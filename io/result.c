@@ -4,6 +4,7 @@
 #include "io/result_vtk.h"
 #include "io/safe_file.h"
 #include "io/xdmf.h"
+#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -156,10 +157,12 @@ bool result_write(Journal *journal, const char *path, ResultDef def, Error *err)
     VtkFrames w = {.journal = journal, .single = !def.double_frames, .file = hdf5_create()};
     void *bytes = NULL;
     size_t size;
+    errno = 0;
     bool ok = w.file != NULL || error_set(err, "HDF5 cannot make a file");
     ok = ok && journal_indices(journal, "frame", &w.frames, &w.count, err) && fill(&w, err) &&
          hdf5_image(w.file, &bytes, &size, err);
     hdf5_close(w.file);
+    if (!ok && errno == ENOMEM) mem_exhausted("HDF5, which makes the result in memory");
     ok = ok && safe_file_write(path, bytes, size, true, err) && write_sidecar(&w, path, err);
     mem_free(bytes);
     mem_free(w.frames);
