@@ -5,15 +5,29 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 enum { ALIGNMENT = 64 };
 
 static atomic_long live;
 
+/* No destructors: they would wait for threads that are still at work. */
+static _Noreturn void end(void)
+{
+    fflush(stdout);
+    _exit(MEM_EXIT_CODE);
+}
+
+_Noreturn void mem_exhausted(const char *where)
+{
+    fprintf(stderr, "slender: out of memory in %s\n", where);
+    end();
+}
+
 static _Noreturn void out_of_memory(size_t count, size_t size)
 {
     fprintf(stderr, "slender: out of memory: %zu blocks of %zu bytes were asked for\n", count, size);
-    exit(1);
+    end();
 }
 
 void *mem_alloc(size_t count, size_t size)
@@ -46,15 +60,22 @@ char *mem_text(const char *text)
     return text ? mem_copy(text, strlen(text) + 1, 1) : NULL;
 }
 
+char *mem_vformat(const char *format, va_list args)
+{
+    va_list again;
+    va_copy(again, args);
+    int length = vsnprintf(NULL, 0, format, again);
+    va_end(again);
+    char *text = mem_alloc((size_t)length + 1, 1);
+    vsnprintf(text, (size_t)length + 1, format, args);
+    return text;
+}
+
 char *mem_format(const char *format, ...)
 {
     va_list args;
     va_start(args, format);
-    int length = vsnprintf(NULL, 0, format, args);
-    va_end(args);
-    char *text = mem_alloc((size_t)length + 1, 1);
-    va_start(args, format);
-    vsnprintf(text, (size_t)length + 1, format, args);
+    char *text = mem_vformat(format, args);
     va_end(args);
     return text;
 }

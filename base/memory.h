@@ -1,9 +1,15 @@
 /* memory.h - zeroed allocation that never returns NULL.
  *
- * Running out of memory prints one message and ends the program. The number of live blocks is
+ * Running out of memory prints one message and ends the program, with an exit code of its own. The number of live blocks is
  * counted, so that a test can show that everything was freed. */
 #pragma once
+#include <stdarg.h>
 #include <stddef.h>
+
+enum { MEM_EXIT_CODE = 5 };
+
+/* Ends the program as an allocation here would; for libraries that say so: "the sparse factorisation". */
+_Noreturn void mem_exhausted(const char *where);
 
 /* count*size zeroed bytes, aligned to 64 (a cache line, and any vector). count may be 0. Thread-safe. */
 void *mem_alloc(size_t count, size_t size);
@@ -19,6 +25,7 @@ char *mem_text(const char *text);
 
 /* Formats into a new text. */
 char *mem_format(const char *format, ...) __attribute__((format(printf, 1, 2)));
+char *mem_vformat(const char *format, va_list args) __attribute__((format(printf, 1, 0)));
 
 /* One text of three; takes the first one over. */
 char *mem_join(char *text, const char *second, const char *third);

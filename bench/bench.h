@@ -3,6 +3,9 @@
 
 void bench_print(const char *name, double value, const char *unit);
 
+/* Says why there is no figure, and ends with 1. */
+_Noreturn void bench_fail(const char *format, ...) __attribute__((format(printf, 1, 2)));
+
 void bench_shell_hessian(void);
 void bench_newton(void);
 void bench_factor(void);

@@ -6,7 +6,6 @@
 #include "solve/march.h"
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 
 /* Steps from rest until a tenth of a second; the largest force left of any step's end, N. */
 static void march(BendingModel bending, double dt, const char *name)
@@ -18,7 +17,7 @@ static void march(BendingModel bending, double dt, const char *name)
     double force = 0, start = clock_seconds();
     for (int n = 0; n < steps; n++) {
         MarchInfo info;
-        if (!march_step(s.sys, &def, dt, s.p, &now, &info)) abort();
+        if (!march_step(s.sys, &def, dt, s.p, &now, &info)) bench_fail("%s: the motion stops in step %d", name, n);
         newton += info.newton.iterations, factorizations += info.newton.factorizations;
         cg += info.newton.cg_iterations;
         force = fmax(force, info.newton.gradient_max);

@@ -7,7 +7,6 @@
 #include "solve/march.h"
 #include "solve/ramp.h"
 #include <math.h>
-#include <stdlib.h>
 
 static const double young = 5e6, radius = 1.5e-3;
 
@@ -22,7 +21,8 @@ static RodCurve helix_curve(int elements)
 {
     RodCurve curve;
     Error err;
-    if (!rod_curve_create(helix, NULL, 0, 19.565163762857, elements, &curve, &err)) abort();
+    if (!rod_curve_create(helix, NULL, 0, 19.565163762857, elements, &curve, &err))
+        bench_fail("%s", err.text);
     return curve;
 }
 
@@ -95,7 +95,7 @@ static void statics(int elements, int times, const char *name, const char *facto
         rod_natural_state(o.rod, &layout, o.p, o.x);
         NewtonInfo info = newton_minimize(sys, &def, &(Point){.p = o.p}, o.x, NULL);
         double seconds = clock_seconds() - start;
-        if (info.status != NEWTON_CONVERGED) abort();
+        if (info.status != NEWTON_CONVERGED) bench_fail("%s: %s", name, newton_status_name(info.status));
         if (seconds < best) best = seconds, part = system_info(sys).factor_seconds / seconds;
         system_destroy(sys);
     }
@@ -118,7 +118,8 @@ static void motion(void)
     double start = clock_seconds();
     for (int k = 0; k < steps; k++) {
         MarchInfo info;
-        if (!march_step(sys, &def, 0.01, o.p, &now, &info)) abort();
+        if (!march_step(sys, &def, 0.01, o.p, &now, &info))
+            bench_fail("a rod's motion stops in step %d", k);
         newton += info.newton.iterations;
     }
     bench_print("rod_march_200_ms_per_step", 1e3 * (clock_seconds() - start) / steps, "ms");

@@ -62,7 +62,7 @@ static void adjoint(const char *name, const char *assignment)
     yaml_override(file, assignment);
     yaml_override(file, "design.unknowns.flux_density.noise=5 mT");
     Model *model = yaml_load(file, &scene_table, &scene) ? model_create(&scene, file) : NULL;
-    if (!model) abort();
+    if (!model) bench_fail("%s is refused: %s check says why", path, PROGRAM);
     sweeps(model, &scene, name);
     model_destroy(model);
     yaml_clear(&scene_table, &scene);
@@ -75,18 +75,19 @@ static void job(const char *name, double r)
     char command[1024], text[80];
     Error err;
     Array objective, seconds;
-    snprintf(command, sizeof command, "%s run %s/scenes/%s.yaml --force --quiet --no-picture -o bench_%s", PROGRAM,
+    snprintf(command, sizeof command, "'%s' run '%s/scenes/%s.yaml' --force --quiet --no-picture -o bench_%s", PROGRAM,
              SOURCE_DIR, name, name);
-    if (system(command)) abort();
+    if (system(command)) bench_fail("the job of %s fails", name);
     snprintf(command, sizeof command, "bench_%s.vtkhdf", name);
     Result *result = result_open(command, &err);
     if (!result || !result_read(result, "slender/history/objective", &objective, &err) ||
         !result_read(result, "slender/history/seconds", &seconds, &err))
-        abort();
+        bench_fail("%s", err.text);
     const double *F = objective.data, *s = seconds.data;
     int count = (int)array_count(&objective), k = 0;
     while (k < count - 1 && !(F[k] <= r * F[0])) k++;
-    if (!(F[k] <= r * F[0])) abort();
+    if (!(F[k] <= r * F[0]))
+        bench_fail("%s ends at F/F0 = %.3g; %.3g was published", name, F[count - 1] / F[0], r);
     snprintf(text, sizeof text, "%s_seconds_until_published", name);
     bench_print(text, s[k], "s");
     snprintf(text, sizeof text, "%s_evaluations_until_published", name);

@@ -1,7 +1,10 @@
 /* Speed of what slender exists for: one line per figure, "name value unit". Without arguments all cases run,
  * else those that are named. bench/README.md says how they are measured and against what. */
 #include "bench/bench.h"
+#include "solve/kernels.h"
+#include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 static const struct {
@@ -28,8 +31,20 @@ void bench_print(const char *name, double value, const char *unit)
     fflush(stdout);
 }
 
+_Noreturn void bench_fail(const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    fprintf(stderr, "bench: ");
+    vfprintf(stderr, format, args);
+    fprintf(stderr, "\n");
+    va_end(args);
+    exit(1);
+}
+
 int main(int argc, char **argv)
 {
+    kernels_start(argv);
     for (int a = 1; a < argc; a++) {
         int known = 0;
         for (int k = 0; k < CASE_COUNT; k++) known |= !strcmp(argv[a], cases[k].name);
@@ -39,6 +54,7 @@ int main(int argc, char **argv)
         fprintf(stderr, "\n");
         return 2;
     }
+    printf("kernels %s\n", kernels_name());
     for (int k = 0; k < CASE_COUNT; k++) {
         int wanted = argc == 1;
         for (int a = 1; a < argc; a++) wanted |= !strcmp(argv[a], cases[k].name);

@@ -1,8 +1,8 @@
 #include "bench/sheet.h"
 #include "base/memory.h"
+#include "bench/bench.h"
 #include "shell/shapes.h"
 #include <math.h>
-#include <stdlib.h>
 
 enum { CELLS = 64 };
 
@@ -11,7 +11,8 @@ Sheet sheet_create(BendingModel bending, bool dynamic)
     Sheet s;
     MeshFile file;
     Error err;
-    if (!shape_sheet((double[]){0.1, 0.1}, (int[]){CELLS, CELLS}, PATTERN_RIGHT, &file, &err)) abort();
+    if (!shape_sheet((double[]){0.1, 0.1}, (int[]){CELLS, CELLS}, PATTERN_RIGHT, &file, &err))
+        bench_fail("%s", err.text);
     Mesh *mesh = mesh_create(&file, 0, NULL, &err);
     mesh_file_clear(&file);
     s.shell = shell_create(mesh);

@@ -1,5 +1,6 @@
 #include "cli/drawing_pens.h"
 #include "base/memory.h"
+#include "base/plain.h"
 #include "cli/build.h"
 #include <math.h>
 #include <string.h>
@@ -75,31 +76,10 @@ static bool check_from(const SplineScene *scene, YamlFile *file)
     return true;
 }
 
-/* The bytes of a character in UTF-8, and its code; 0: of none. */
-static int read_character(const char *text, unsigned *code)
-{
-    static const unsigned least[] = {0, 0, 0x80, 0x800, 0x10000};
-    unsigned char first = (unsigned char)text[0];
-    int length = first < 0x80 ? 1 : first >> 5 == 6 ? 2 : first >> 4 == 14 ? 3 : first >> 3 == 30 ? 4 : 0;
-    *code = length > 1 ? first & (0x7fu >> length) : first;
-    for (int k = 1; k < length; k++) {
-        if ((text[k] & 0xc0) != 0x80) return 0;
-        *code = *code << 6 | (text[k] & 0x3f);
-    }
-    return *code >= least[length] && *code < 0x110000 && *code >> 11 != 27 ? length : 0;
-}
-
-/* Names are a line each in the result and on the terminal, which obeys control characters (U+0080 to U+009F,
- * too), and words of the SVG file's XML, which cannot say U+FFFE and U+FFFF. */
+/* Names are a line each in the result and on the terminal, and words of the SVG file's XML. */
 bool pens_is_name(const char *name)
 {
-    unsigned code;
-    for (const char *c = name; *c;) {
-        int length = read_character(c, &code);
-        if (!length || code < 0x20 || (code >= 0x7f && code < 0xa0) || code >> 1 == 0x7fff) return false;
-        c += length;
-    }
-    return *name != 0;
+    return *name && plain_is(name);
 }
 
 static bool check_name(const SplineScene *scene, YamlFile *file, int pen)

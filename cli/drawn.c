@@ -1,8 +1,11 @@
 #include "cli/drawn.h"
 #include "base/memory.h"
 #include "cli/drawing_pens.h"
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
+
+static const double PAPER_MAX = 100; /* m */
 
 /* ---- Into the journal ---- */
 
@@ -104,6 +107,9 @@ static bool read_page(Result *result, Drawn *drawn, Error *err)
     double paper[2], margin;
     if (!read_numbers(result, "paper", 2, paper, err) || !read_numbers(result, "margin", 1, &margin, err))
         return false;
+    for (int k = 0; k < 2; k++)
+        if (!(paper[k] > 2 * fmax(margin, 0) && paper[k] < PAPER_MAX && margin >= 0))
+            return error_set(err, "spline/paper and spline/margin leave no page");
     drawn->page = spline_page(paper[0], paper[1], margin, 0);
     return true;
 }
@@ -166,6 +172,13 @@ static bool read_pens(Result *result, Drawn *drawn, Error *err)
     return ok || error_set(err, "spline/names is not as slender writes it");
 }
 
+static bool check_layers(const int *layer, int strokes, int pens, Error *err)
+{
+    for (int k = 0; k < strokes; k++)
+        if (layer[k] < 0 || layer[k] >= pens) return error_set(err, "spline/pen names pens that there are not");
+    return true;
+}
+
 /* Offsets that grow from 0 to the number of nodes, two nodes a stroke at least. */
 static bool check_offsets(const int *start, int strokes, int nodes, Error *err)
 {
@@ -174,11 +187,12 @@ static bool check_offsets(const int *start, int strokes, int nodes, Error *err)
     return ok || error_set(err, "the offsets spline/strokes do not fit its nodes");
 }
 
-static bool read_strokes(Result *result, const SplinePage *page, Strokes *strokes, Error *err)
+static bool read_strokes(Result *result, const Drawn *drawn, Strokes *strokes, Error *err)
 {
     Array start, nodes, pen;
     if (!read_array(result, "strokes", ARRAY_INT32, -1, &start, err)) return false;
     int count = (int)array_count(&start) - 1;
+    if (count < 0) return array_clear(&start), error_set(err, "the offsets spline/strokes do not fit its nodes");
     strokes->start = (int *)start.data, start.data = NULL;
     array_clear(&start);
     if (!read_array(result, "nodes", ARRAY_FLOAT64, -1, &nodes, err)) return false;
@@ -188,7 +202,10 @@ static bool read_strokes(Result *result, const SplinePage *page, Strokes *stroke
     if (!read_array(result, "pen", ARRAY_INT32, count, &pen, err)) return false;
     strokes->layer = (int *)pen.data, pen.data = NULL;
     array_clear(&pen);
-    if (count < 0 || !check_offsets(strokes->start, count, node_count, err)) return false;
+    if (!check_offsets(strokes->start, count, node_count, err) ||
+        !check_layers(strokes->layer, count, drawn->pen_count, err))
+        return false;
+    const SplinePage *page = &drawn->page;
     strokes->count = count;
     for (int i = 0; i < node_count; i++) {
         double *q = strokes->q + 4 * i;
@@ -203,7 +220,7 @@ static bool read_picture(Result *result, SplineField *picture, Error *err)
     Array level;
     if (!read_array(result, "picture", ARRAY_INT32, -1, &level, err)) return false;
     int width = level.rank == 3 ? level.dims[2] : 1;
-    bool ok = level.rank >= 2 && (width == 1 || width == 3);
+    bool ok = level.rank >= 2 && (width == 1 || width == 3) && level.dims[0] > 0 && level.dims[1] > 0;
     if (ok) {
         size_t count = array_count(&level);
         *picture = (SplineField){level.dims[1], level.dims[0], width, mem_alloc(count, sizeof(double))};
@@ -219,8 +236,8 @@ bool drawn_read(Result *result, Drawn *drawn, Error *err)
     Strokes strokes = {0};
     if (!drawn_has(result)) return error_set(err, "the result has no drawing");
     bool ok = read_page(result, drawn, err) && read_plotter(result, &drawn->plotter, err) &&
-              read_pens(result, drawn, err) &&
-              read_picture(result, &drawn->picture, err) && read_strokes(result, &drawn->page, &strokes, err);
+              read_pens(result, drawn, err) && read_picture(result, &drawn->picture, err) &&
+              read_strokes(result, drawn, &strokes, err);
     if (ok) drawn->plot = spline_plot(&strokes, &drawn->page, drawn->pens, drawn->pen_count);
     strokes_clear(&strokes);
     return ok;

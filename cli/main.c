@@ -1,8 +1,12 @@
 /* slender - simulates and designs slender things: the verbs, and what they return. */
 #include "base/memory.h"
+#include "cli/say.h"
 #include "cli/verb.h"
+#include "solve/kernels.h"
+#include <fcntl.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 static int verb_help(int argc, char **argv);
 static int verb_version(int argc, char **argv);
@@ -35,7 +39,7 @@ static int verb_help(int argc, char **argv)
     printf("\nEach verb explains its options: slender run --help\n"
            "Exit codes: 0 done; 1 computed but did not converge; 2 usage; 3 scene or mesh refused; 4 cannot "
            "write;\n"
-           "75 interrupted, state saved: run again with --resume\n");
+           "5 out of memory; 75 interrupted, state saved: run again with --resume\n");
     return RUN_DONE;
 }
 
@@ -48,12 +52,29 @@ static int verb_version(int argc, char **argv)
     return RUN_DONE;
 }
 
+/* A file that is opened never gets the number of a stream that was closed: what is printed would go into it. */
+static void hold_streams(void)
+{
+    for (int stream = STDIN_FILENO; stream <= STDERR_FILENO; stream++)
+        if (fcntl(stream, F_GETFD) < 0 && open("/dev/null", O_RDONLY) < 0) _exit(RUN_CANNOT_WRITE);
+}
+
+/* What could not be printed is lost, and known only now: a full disk, a closed stream. */
+static int finish(int code)
+{
+    bool lost = fflush(stdout) != 0 || ferror(stdout) || ferror(stderr);
+    lost = fclose(stdout) != 0 || lost;
+    return lost ? verb_fail(RUN_CANNOT_WRITE, "what it prints cannot be written: all of it or a part is lost") : code;
+}
+
 int main(int argc, char **argv)
 {
+    hold_streams();
+    kernels_start(argv);
     const char *name = argc > 1 ? argv[1] : "help";
     if (!strncmp(name, "--", 2)) name += 2;
     for (int k = 0; k < VERB_COUNT; k++)
-        if (!strcmp(name, verbs[k].name)) return verbs[k].run(argc - 1, argv + 1);
-    fprintf(stderr, "slender: there is no verb '%s'; slender help lists them\n", name);
+        if (!strcmp(name, verbs[k].name)) return finish(verbs[k].run(argc - 1, argv + 1));
+    say(stderr, "slender: there is no verb '%s'; slender help lists them", name);
     return RUN_USAGE;
 }

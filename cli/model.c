@@ -1,10 +1,10 @@
 #include "cli/model.h"
 #include "base/memory.h"
+#include "base/plain.h"
 #include "cli/build.h"
 #include "cli/drawing.h"
 #include "cli/job.h"
 #include "cli/rod_model.h"
-#include <ctype.h>
 #include <math.h>
 #include <string.h>
 
@@ -74,9 +74,7 @@ enum { CASE_NAME_MAX = 250 };
 /* It becomes a group of the result, and a line of case_names. */
 static bool is_name(const char *name)
 {
-    const char *c = name;
-    while (*c && *c != '/' && !iscntrl((unsigned char)*c)) c++;
-    return !*c && c > name && c - name <= CASE_NAME_MAX && strcmp(name, ".");
+    return *name && plain_is(name) && !strchr(name, '/') && strlen(name) <= CASE_NAME_MAX && strcmp(name, ".");
 }
 
 bool model_cases(Model *model, const Build *b, const Scene *scene, const double *p, size_t room)

@@ -3,12 +3,12 @@
 #include "cli/drawn.h"
 #include "cli/verb.h"
 #include "io/replace.h"
+#include "io/safe_file.h"
 #include <string.h>
 #include <strings.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
-enum { FILES = 5 };
+enum { FILES = 5, OWN = 6 };
 
 typedef struct OutputFile {
     const char *language; /* of drawn_write; NULL: the picture */
@@ -27,45 +27,10 @@ static char *path_of(const char *result, const char *name, const char *ending)
     return path;
 }
 
-static char *folder_of(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    return slash ? mem_format("%.*s/", (int)(slash - path), path) : mem_text(".");
-}
-
-static bool is_one_place(const char *a, const char *b)
-{
-    struct stat x, y;
-    return stat(a, &x) == 0 && stat(b, &y) == 0 && x.st_dev == y.st_dev && x.st_ino == y.st_ino;
-}
-
-/* One file, or one name in one folder. */
-static bool is_same(const char *a, const char *b)
-{
-    const char *slash_a = strrchr(a, '/'), *slash_b = strrchr(b, '/');
-    if (is_one_place(a, b)) return true;
-    if (strcmp(slash_a ? slash_a + 1 : a, slash_b ? slash_b + 1 : b)) return false;
-    char *folder_a = folder_of(a), *folder_b = folder_of(b);
-    bool same = is_one_place(folder_a, folder_b);
-    mem_free(folder_a);
-    mem_free(folder_b);
-    return same;
-}
-
-static bool is_map(const TargetScene *target, const char *output)
-{
-    return target && target->height_map && is_same(output, target->height_map);
-}
-
-/* A picture that the scene is made of. */
+/* A file that the scene is made of. */
 static bool is_source(const Scene *scene, const char *output)
 {
-    const SplineScene *spline = scene->spline;
-    const char *const read[] = {spline ? spline->image : NULL, spline ? spline->direction.file : NULL};
-    bool source = is_map(scene->target, output);
-    for (int k = 0; k < scene->cases_count; k++) source = source || is_map(scene->cases[k].target, output);
-    for (int k = 0; k < 2; k++) source = source || (read[k] && is_same(output, read[k]));
-    return source;
+    return yaml_find_file(&scene_table, scene, replace_is_same, output) != NULL;
 }
 
 /* face.yaml may be made of face.png: the picture of the result then goes beside it. */
@@ -94,42 +59,34 @@ static void clear_files(OutputFile files[FILES])
 
 static bool check_file(const char *path, Error *err)
 {
-    char *folder = folder_of(path);
+    char *folder = replace_folder(path);
     bool ok = access(folder, W_OK) == 0 ||
               error_set(err, "'%s' cannot be written: its folder is not there, or is read-only", path);
     mem_free(folder);
     return ok;
 }
 
-static bool check_source(const Scene *scene, const char *path, const char *output, Error *err)
+bool outputs_check_source(const Scene *scene, const char *input, const char *output, Error *err)
 {
-    if (!is_same(output, path) && !is_source(scene, output)) return true;
-    return error_set(err,
-                     "'%s' is to be written, but the scene is made of it; give another name by -o or in "
-                     "`output`",
-                     output);
+    if (replace_is_same(output, input))
+        return error_set(err, "'%s' is to be written, but it is read here; give another name", output);
+    return !scene || !is_source(scene, output) ||
+           error_set(err, "'%s' is to be written, but the scene is made of it; give another name by -o or in `output`", output);
 }
 
-/* What a run writes itself. */
-static bool is_own(const char *result, const char *output)
+/* Is the file one of those that a run writes itself? */
+static bool is_own(const char *const *own, const char *output)
 {
-    static const char *const endings[] = {".vtkhdf", ".xdmf", ".run", ".run-lock"};
-    char *base = verb_without_ending(result, ".vtkhdf");
-    bool own = false;
-    for (int k = 0; k < 4; k++) {
-        char *file = mem_format("%s%s", base, endings[k]);
-        own = own || is_same(output, file);
-        mem_free(file);
-    }
-    mem_free(base);
-    return own;
+    for (int k = 0; k < OWN; k++)
+        if (replace_is_same(own[k], output)) return true;
+    return false;
 }
 
-static bool check_once(const OutputFile *files, int file, const char *result, Error *err)
+static bool check_once(const OutputFile *files, int file, const char *const *own, Error *err)
 {
-    bool twice = is_own(result, files[file].path);
+    bool twice = is_own(own, files[file].path);
     for (int k = 0; k < file; k++)
-        twice = twice || (files[k].path && is_same(files[k].path, files[file].path));
+        twice = twice || (files[k].path && replace_is_same(files[k].path, files[file].path));
     return !twice ||
            error_set(err, "'%s' would be written twice; give another name in `output`", files[file].path);
 }
@@ -144,17 +101,39 @@ static bool check_picture(const char *path, Error *err)
     return error_set(err, "the picture '%s' must be a .png, .svg or .pdf", path);
 }
 
-bool outputs_check(const Scene *scene, const char *path, const char *result, bool picture, Error *err)
+static bool check_files(const OutputFile *files, const char *const *own, const Scene *scene, const char *path, Error *err)
 {
-    OutputFile files[FILES];
-    files_of(scene, result, files);
-    if (!picture) mem_free(files[0].path), files[0].path = NULL;
-    bool ok = !picture || check_picture(files[0].path, err);
+    bool ok = true;
     for (int k = 0; ok && k < FILES; k++)
         ok = !files[k].path ||
              (check_file(files[k].path, err) && replace_check(files[k].path, err) &&
-              check_source(scene, path, files[k].path, err) && check_once(files, k, result, err));
+              outputs_check_source(scene, path, files[k].path, err) && check_once(files, k, own, err));
+    return ok;
+}
+
+bool outputs_check(const Scene *scene, const char *path, const char *result, bool picture, Error *err)
+{
+    static const char *const endings[OWN] = {".vtkhdf", ".xdmf", ".run", ".run-wal", ".run-shm", ".run-lock"};
+    OutputFile files[FILES];
+    char *own[OWN], *base = verb_without_ending(result, ".vtkhdf");
+    bool ok = true;
+    for (int k = 0; k < OWN; k++) {
+        own[k] = mem_format("%s%s", base, endings[k]);
+        ok = ok && outputs_check_source(scene, path, own[k], err);
+    }
+    for (int k = 0; ok && k < 2; k++) { /* the result and its sidecar */
+        ok = replace_check(own[k], err);
+        if (ok) safe_file_sweep(own[k]);
+    }
+    files_of(scene, result, files);
+    if (!picture) mem_free(files[0].path), files[0].path = NULL;
+    ok = ok && (!picture || check_picture(files[0].path, err)) &&
+         check_files(files, (const char *const *)own, scene, path, err);
+    for (int k = 0; ok && k < FILES; k++)
+        if (files[k].path) safe_file_sweep(files[k].path);
     clear_files(files);
+    for (int k = 0; k < OWN; k++) mem_free(own[k]);
+    mem_free(base);
     return ok;
 }
 

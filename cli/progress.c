@@ -1,5 +1,7 @@
 #include "cli/progress.h"
 #include "base/clock.h"
+#include "base/memory.h"
+#include "base/plain.h"
 #include <signal.h>
 #include <stdarg.h>
 #include <stdio.h>
@@ -43,6 +45,15 @@ static void show_bar(double seconds, int step, int total)
     if (step > 0 && step < total) printf("%.0f s left ", seconds / step * (total - step));
 }
 
+/* As JSON or as plain text; the caller frees. */
+static char *shown_text(const Progress *progress, const char *format, va_list args)
+{
+    char *text = mem_vformat(format, args),
+         *shown = progress->mode == PROGRESS_JSON ? plain_json(text) : plain_text(text, "");
+    mem_free(text);
+    return shown;
+}
+
 void progress_step(Progress *progress, int step, int total, const char *format, ...)
 {
     double now = clock_seconds(), seconds = now - progress->started, pause = progress->terminal ? 0.1 : 2;
@@ -50,10 +61,9 @@ void progress_step(Progress *progress, int step, int total, const char *format, 
     if (progress->mode == PROGRESS_QUIET || (!last && progress->shown >= 0 && now - progress->shown < pause))
         return;
     progress->shown = now;
-    char detail[256];
     va_list args;
     va_start(args, format);
-    vsnprintf(detail, sizeof detail, format, args);
+    char *detail = shown_text(progress, format, args);
     va_end(args);
     if (progress->mode == PROGRESS_JSON)
         printf("{\"step\": %d, \"of\": %d, \"seconds\": %.3f, \"detail\": \"%s\"}\n", step, total, seconds,
@@ -63,25 +73,30 @@ void progress_step(Progress *progress, int step, int total, const char *format, 
         printf("%s%s", detail, last ? "\n" : "");
     } else
         printf("%d/%d  %.1f s  %s\n", step, total, seconds, detail);
+    mem_free(detail);
     fflush(stdout);
 }
 
 void progress_say(Progress *progress, const char *format, ...)
 {
     if (progress->mode == PROGRESS_QUIET) return;
-    char line[1200];
     va_list args;
     va_start(args, format);
-    vsnprintf(line, sizeof line, format, args);
+    char *line = shown_text(progress, format, args);
     va_end(args);
-    if (progress->mode == PROGRESS_JSON) {
-        printf("{\"seconds\": %.3f, \"say\": \"", clock_seconds() - progress->started);
-        for (const char *c = line; *c; c++) {
-            if (*c == '"' || *c == '\\') putchar('\\');
-            putchar(*c == '\n' ? ' ' : *c);
-        }
-        printf("\"}\n");
-    } else
+    if (progress->mode == PROGRESS_JSON)
+        printf("{\"seconds\": %.3f, \"say\": \"%s\"}\n", clock_seconds() - progress->started, line);
+    else
         printf("%s%s\n", progress->terminal ? "\r\033[K" : "", line);
+    mem_free(line);
+    fflush(stdout);
+}
+
+void progress_tell(ProgressMode mode, const char *kind, const char *sentence)
+{
+    if (mode != PROGRESS_JSON) return;
+    char *json = plain_json(sentence);
+    printf("{\"%s\": \"%s\"}\n", kind, json);
+    mem_free(json);
     fflush(stdout);
 }

@@ -24,5 +24,8 @@ bool progress_interrupted(void);
 void progress_step(Progress *progress, int step, int total, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 
+/* With JSON an object {"error": ".."} or {"warning": ".."} beside the sentence that goes to the error stream. */
+void progress_tell(ProgressMode mode, const char *kind, const char *sentence);
+
 /* A line that stays. */
 void progress_say(Progress *progress, const char *format, ...) __attribute__((format(printf, 2, 3)));

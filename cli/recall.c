@@ -16,7 +16,7 @@ static bool has_own(Result *result, const char *field, int step, bool *own, Erro
     mem_free(path);
     if (!ok) return false;
     const int *at = offsets.data;
-    *own = at[0] != at[1];
+    *own = !array_is(&offsets, ARRAY_INT32, 1, 2) || at[0] != at[1];
     array_clear(&offsets);
     return true;
 }

@@ -1,5 +1,6 @@
 /* run.h - a job on its way: model, journal, progress and interruption. */
 #pragma once
+#include "base/memory.h"
 #include "cli/model.h"
 #include "cli/progress.h"
 #include "io/journal.h"
@@ -12,6 +13,7 @@ typedef enum RunStatus {
     RUN_USAGE = 2,
     RUN_REFUSED = 3, /* scene or mesh */
     RUN_CANNOT_WRITE = 4,
+    RUN_NO_MEMORY = MEM_EXIT_CODE,
     RUN_INTERRUPTED = 75, /* state saved: go on with --resume */
 } RunStatus;
 
@@ -26,6 +28,10 @@ typedef struct Run {
 
 /* The program and the libraries that it runs with, a line each. The caller frees. */
 char *run_versions(void);
+
+/* OpenBLAS's kernels that this run's numbers come from: of a run that goes on with others, a warning, and those before
+ * too: "Haswell, SkylakeX". The caller frees. */
+char *run_kernels(Journal *journal, Error *err);
 
 /* Stops a solve after an interruption (progress.h). */
 NewtonObserver run_observer(Run *run);

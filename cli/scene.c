@@ -7,7 +7,11 @@
 const YamlTable where_table = {
     .name = "where",
     .size = sizeof(WhereScene),
-    .doc = "Helper names of a formula, each an expression of the formula's variables and of the names before "
+    .doc = "A formula is one expression: numbers with a decimal point, + - * / ^ (-x^2 is -(x^2)), < <= > >= == !=, "
+           "&&, ||, c ? a : b, pi, e, and sin, cos, tan, asin, acos, atan, atan2, sinh, cosh, tanh, asinh, acosh, atanh, "
+           "exp, ln or log (natural), log2, log10, sqrt, abs, sign, rint, min, max, sum, avg, mod(a, b), clamp(x, low, high) "
+           "and step(x), 0 below 0 and else 1. Assignments, lists and texts are refused.\n\n"
+           "Helper names of a formula, each an expression of the formula's variables and of the names before "
            "it.",
     .fields = (const YamlField[]){
         {YAML_TEXT(WhereScene, formula), .required = true, .short_form = true, .doc = "the expression"},

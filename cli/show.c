@@ -31,12 +31,16 @@ ShowDef show_default(void)
 static bool read_mesh(Show *show, Error *err)
 {
     Array faces, rest;
-    if (!result_read(show->data->result, "slender/faces", &faces, err)) return false;
+    if (!result_read_as(show->data->result, "slender/faces", ARRAY_INT32, 2, 3, &faces, err)) return false;
     show_keep(show->data, faces);
-    if (!result_read(show->data->result, "slender/rest", &rest, err)) return false;
+    if (!result_read_as(show->data->result, "slender/rest", ARRAY_FLOAT64, 2, 3, &rest, err)) return false;
     show_keep(show->data, rest);
-    if (faces.type != ARRAY_INT32 || rest.type != ARRAY_FLOAT64 || faces.rank != 2 || rest.rank != 2)
-        return error_set(err, "the result's mesh is not as slender writes it");
+    for (size_t i = 0; i < array_count(&faces); i++) {
+        int vertex = ((const int *)faces.data)[i];
+        if (vertex < 0 || vertex >= rest.dims[0])
+            return error_set(err, "the result's faces name vertices that it does not have");
+    }
+    if (faces.dims[0] == 0) return error_set(err, "the result's mesh has no faces");
     show->face_count = faces.dims[0];
     show->vertex_count = rest.dims[0];
     show->faces = (void *)faces.data;
@@ -115,7 +119,7 @@ static bool face_field(Show *show, int step, const double **values, const char *
     if (!ok) return false;
     *values = show_keep(show->data, array);
     *unit = array.unit && array.unit[0] ? array.unit : "";
-    if (array_count(&array) != (size_t)show->face_count)
+    if (array.type != ARRAY_FLOAT64 || array_count(&array) != (size_t)show->face_count)
         return error_set(err, "'%s' is not one number per face", asked);
     return true;
 }
@@ -141,12 +145,17 @@ static bool add_frame(Show *show, int frame, Error *err)
     Result *result = show->data->result;
     if (!show_check_frame(show->data, frame, err)) return false;
     if (!result_read_step(result, "Points", frame, &array, err)) return false;
-    PicturePanel *panel = add_panel(show, show_frame_name(show->data, frame), show_keep(show->data, array));
+    const double(*points)[3] = show_keep(show->data, array);
+    if (array.dims[0] != show->vertex_count)
+        return error_set(err, "the result's frame %d has other points than its mesh", frame);
+    PicturePanel *panel = add_panel(show, show_frame_name(show->data, frame), points);
     show->steps[show->panel_count - 1] = frame;
     if (result_has(result, "slender/frames/flux_density") &&
         result_read_rows(result, "slender/frames/flux_density", frame, 1, &flux, NULL)) {
         char number[64];
-        panel->flux_density = show_keep(show->data, flux);
+        const double *B = show_keep(show->data, flux);
+        if (!array_is(&flux, ARRAY_FLOAT64, 2, 3)) return error_set(err, "slender/frames/flux_density is not as slender writes it");
+        panel->flux_density = B;
         unit_format(vec3_length(vec3_load(panel->flux_density)), "T", number, sizeof number);
         panel->note = show_text(show->data, "B = %s", number);
     }
@@ -173,7 +182,7 @@ static void add_case(Show *show, const char *name)
     if (flux && vec3_length(vec3_load(flux)) > 0) panel->flux_density = flux;
     Array status;
     char *path = mem_format("slender/cases/%s/status", name);
-    if (result_read(show->data->result, path, &status, NULL)) {
+    if (result_read_as(show->data->result, path, ARRAY_TEXT, 1, 0, &status, NULL)) {
         panel->note = show_text(show->data, "%s", (const char *)status.data);
         array_clear(&status);
     }
@@ -186,7 +195,7 @@ static bool add_cases(Show *show, Error *err)
     Array names;
     if (!result_has(show->data->result, "slender/case_names"))
         return error_set(err, "the result has no state yet");
-    if (!result_read(show->data->result, "slender/case_names", &names, err)) return false;
+    if (!result_read_as(show->data->result, "slender/case_names", ARRAY_TEXT, 1, 0, &names, err)) return false;
     char *rest = NULL;
     for (char *name = strtok_r((char *)names.data, "\n", &rest); name; name = strtok_r(NULL, "\n", &rest))
         if (!show->def->only || !strcmp(show->def->only, name)) add_case(show, name);

@@ -92,9 +92,9 @@ bool show_check_frame(const ShowData *data, int frame, Error *err)
 char *show_frame_name(ShowData *data, int frame)
 {
     Array times;
-    if (!data->motion || !result_read_rows(data->result, "VTKHDF/Steps/Values", frame, 1, &times, NULL))
-        return show_text(data, "frame %d", frame);
-    char *name = show_text(data, "t = %.4g s", *(const double *)times.data);
+    bool known = data->motion && result_read_rows(data->result, "VTKHDF/Steps/Values", frame, 1, &times, NULL);
+    if (!known) return show_text(data, "frame %d", frame);
+    char *name = show_text(data, "t = %.4g s", array_is(&times, ARRAY_FLOAT64, 1, 1) ? *(const double *)times.data : NAN);
     array_clear(&times);
     return name;
 }
@@ -103,7 +103,7 @@ bool show_history(ShowData *data, Chart *chart)
 {
     Array history;
     if (!data->def->history || !result_has(data->result, "slender/history/objective") ||
-        !result_read(data->result, "slender/history/objective", &history, NULL))
+        !result_read_as(data->result, "slender/history/objective", ARRAY_FLOAT64, 1, 0, &history, NULL))
         return false;
     ChartSeries *series = show_block(data, 1, sizeof *series);
     *series = (ChartSeries){

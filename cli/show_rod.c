@@ -39,7 +39,7 @@ bool show_has_rod(const ShowData *data)
 static bool offsets_fit(const Array *array)
 {
     const int *offsets = array->data;
-    bool fits = array->type == ARRAY_INT32 && array->rank == 1 && array->dims[0] >= 2 && offsets[0] == 0;
+    bool fits = array->dims[0] >= 2 && offsets[0] == 0;
     for (int k = 1; fits && k < array->dims[0]; k++) fits = offsets[k] > offsets[k - 1];
     return fits;
 }
@@ -50,7 +50,7 @@ static bool read_one_strand(RodPage *page, Error *err)
     Result *result = page->data->result;
     Array array;
     const char *path = result_has(result, "slender/rod/x") ? "slender/rod/x" : "slender/rod/input";
-    if (!result_read(result, path, &array, err)) return false;
+    if (!result_read_as(result, path, ARRAY_FLOAT64, 2, 3, &array, err)) return false;
     int *offsets = show_block(page->data, 2, sizeof *offsets);
     offsets[1] = array.dims[0];
     page->strands = offsets, page->strand_count = 1;
@@ -63,7 +63,7 @@ static void read_target(RodPage *page)
 {
     Array names;
     if (!result_has(page->data->result, "slender/case_names") ||
-        !result_read(page->data->result, "slender/case_names", &names, NULL))
+        !result_read_as(page->data->result, "slender/case_names", ARRAY_TEXT, 1, 0, &names, NULL))
         return;
     const char *first = names.data;
     char *path = mem_format("slender/cases/%.*s/target", (int)strcspn(first, "\n"), first);
@@ -80,7 +80,7 @@ static bool read_curves(RodPage *page, Error *err)
     if (!result_has(page->data->result, STRANDS)) {
         if (!read_one_strand(page, err)) return false;
     } else {
-        if (!result_read(page->data->result, STRANDS, &array, err)) return false;
+        if (!result_read_as(page->data->result, STRANDS, ARRAY_INT32, 1, 0, &array, err)) return false;
         page->strands = show_keep(page->data, array);
         page->strand_count = array.dims[0] - 1;
         if (!offsets_fit(&array)) return error_set(err, "%s is not as slender writes it", STRANDS);
@@ -123,7 +123,7 @@ static bool read_frame(RodPage *page, int frame, const double (**points)[3], Err
     if (!show_check_frame(page->data, frame, err) ||
         !result_read_step(page->data->result, "Points", frame, &array, err))
         return false;
-    bool fits = array.rank == 2 && array.dims[1] == 3 && array.dims[0] >= page->point_count;
+    bool fits = array.dims[0] >= page->point_count;
     if (fits) {
         double(*x)[3] = show_block(page->data, (size_t)page->point_count, sizeof *x);
         *points = (const double(*)[3])memcpy(x, array.data, (size_t)page->point_count * sizeof *x);

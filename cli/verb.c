@@ -1,5 +1,7 @@
 #include "cli/verb.h"
 #include "base/memory.h"
+#include "cli/say.h"
+#include "solve/kernels.h"
 #include <stdio.h>
 #include <string.h>
 
@@ -11,14 +13,14 @@ int verb_usage(const char *usage)
 
 int verb_fail(int code, const char *sentence)
 {
-    fprintf(stderr, "slender: %s\n", sentence);
+    say(stderr, "slender: %s", sentence);
     return code;
 }
 
 static void print_report(YamlFile *file)
 {
     char *report = yaml_report(file);
-    fputs(report, stderr);
+    say_lines(stderr, report);
     mem_free(report);
 }
 
@@ -32,19 +34,21 @@ bool verb_load_scene(const char *path, char *const *set, int set_count, YamlFile
     return false;
 }
 
-bool verb_stored_scene(const char *text, YamlFile **file, Scene *scene)
+bool verb_stored_scene(const Array *text, YamlFile **file, Scene *scene)
 {
+    const char *stored = text->type == ARRAY_TEXT ? text->data : "";
     *scene = (Scene){0};
-    *file = yaml_parse("scene", text, strlen(text));
+    *file = yaml_parse("scene", stored, strlen(stored));
     return yaml_load(*file, &scene_table, scene);
 }
 
 Model *verb_build_model(const Scene *scene, YamlFile *file)
 {
+    if (kernels_reserve(1) < 1) mem_exhausted("OpenBLAS, which works in 128 MB");
     Model *model = model_create(scene, file);
     if (!model) print_report(file);
     for (int k = 0; model && k < model->report.warning_count; k++)
-        fprintf(stderr, "warning: %s\n", model->report.warnings[k]);
+        say(stderr, "warning: %s", model->report.warnings[k]);
     return model;
 }
 

@@ -27,7 +27,7 @@ bool verb_load_scene(const char *path, char *const *set, int set_count, YamlFile
 
 /* The effective scene that a journal or result keeps as a text. False where it cannot be read; clear and destroy
  * in any case. */
-bool verb_stored_scene(const char *text, YamlFile **file, Scene *scene);
+bool verb_stored_scene(const Array *text, YamlFile **file, Scene *scene);
 
 /* The model of a scene; NULL after printing what is wrong. Warnings about the mesh are printed. */
 Model *verb_build_model(const Scene *scene, YamlFile *file);

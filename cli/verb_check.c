@@ -6,9 +6,11 @@
 #include "cli/drawing.h"
 #include "cli/job.h"
 #include "cli/rod_model.h"
+#include "cli/say.h"
 #include "cli/verb.h"
 #include "optim/trajectory_adjoint.h"
 #include "solve/check.h"
+#include "solve/kernels.h"
 #include <getopt.h>
 #include <math.h>
 #include <stdio.h>
@@ -124,6 +126,8 @@ static void measure(const Model *model, const Scene *scene)
     bool stable = system_factor(c->sys, 0) || system_factor(c->sys, 1e-6);
     double seconds = clock_seconds() - start;
     SparseInfo info = system_info(c->sys);
+    const char *note = kernels_note();
+    printf("OpenBLAS's kernels: %s%s%s\n", kernels_name(), *note ? ", " : "", note);
     printf("one Newton iteration: %.3g s, factor %.3g million numbers (%.3g MB)%s\n", seconds,
            1e-6 * (double)info.factor_nonzeros, 8e-6 * (double)info.factor_nonzeros,
            stable ? "" : ", not stable at the start");
@@ -212,7 +216,7 @@ static void report_drawing(const Drawing *d)
         const DrawingPart *part = &d->parts[k];
         SplineGrid tone = spline_grid(&part->tone);
         double mean = spline_grid_mean(&tone, 0);
-        printf("%s, %.3g mm: covers %.3g of the page, %.3g m of ink, about %.0f segments\n",
+        say(stdout, "%s, %.3g mm: covers %.3g of the page, %.3g m of ink, about %.0f segments",
                d->pens[part->pen].name, 1e3 * page->unit * part->page.pen, mean,
                page->unit * mean / part->page.pen, drawing_segments(part));
     }

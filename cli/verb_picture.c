@@ -33,26 +33,38 @@ static bool parse_target(const char *word, PictureTarget *target)
     return false;
 }
 
-/* NAME.png, but never a picture that the scene was made of; of an animation .webp. The caller frees. */
-static char *default_name(const char *path, bool animation)
+/* The scene that the result was made of; clear and destroy if true. */
+static bool read_scene(const char *path, YamlFile **file, Scene *scene)
 {
-    char *base = verb_without_ending(path, ".vtkhdf"),
-         *name = mem_format(animation ? "%s.webp" : "%s.png", base);
-    Result *result = animation ? NULL : result_open(path, NULL);
     Array text;
-    if (result && result_read(result, "slender/scene", &text, NULL)) {
-        Scene scene;
-        YamlFile *file;
-        if (verb_stored_scene(text.data, &file, &scene)) {
-            mem_free(name);
-            name = outputs_picture(&scene, path);
-        }
-        yaml_clear(&scene_table, &scene);
-        yaml_destroy(file);
-        array_clear(&text);
-    }
+    Result *result = result_open(path, NULL);
+    bool known = result && result_read(result, "slender/scene", &text, NULL);
     result_close(result);
+    if (!known) return false;
+    known = verb_stored_scene(&text, file, scene);
+    array_clear(&text);
+    if (known) return true;
+    yaml_clear(&scene_table, scene);
+    yaml_destroy(*file);
+    return false;
+}
+
+/* FILE, or NAME.png, of an animation .webp. NULL and a sentence where that is the result or a file that its scene was
+ * made of. The caller frees. */
+static char *picture_name(const char *path, const char *output, bool animation, Error *err)
+{
+    Scene scene;
+    YamlFile *file;
+    bool known = read_scene(path, &file, &scene);
+    char *base = verb_without_ending(path, ".vtkhdf"),
+         *name = output               ? mem_text(output)
+                 : known && !animation ? outputs_picture(&scene, path)
+                                       : mem_format("%s%s", base, animation ? ".webp" : ".png");
+    if (!outputs_check_source(known ? &scene : NULL, path, name, err)) mem_free(name), name = NULL;
     mem_free(base);
+    if (!known) return name;
+    yaml_clear(&scene_table, &scene);
+    yaml_destroy(file);
     return name;
 }
 
@@ -116,7 +128,8 @@ int verb_picture(int argc, char **argv)
     }
     if (!ok || optind != argc - 1) return verb_usage(usage);
     Error err;
-    char *picture = output ? mem_text(output) : default_name(argv[optind], animation);
+    char *picture = picture_name(argv[optind], output, animation, &err);
+    if (!picture) return verb_fail(RUN_CANNOT_WRITE, err.text);
     const char *ending = strrchr(picture, '.');
     if (animation || (ending && !strcmp(ending, ".webp"))) {
         def.seconds = seconds;

@@ -1,8 +1,12 @@
 /* slender info and slender export: what is in a result, or in the journal of a running job. */
 #include "base/memory.h"
+#include "base/plain.h"
 #include "cli/drawn.h"
+#include "cli/outputs.h"
+#include "cli/say.h"
 #include "cli/verb.h"
 #include "io/mesh_file.h"
+#include "io/replace.h"
 #include "io/result.h"
 #include "io/table.h"
 #include <getopt.h>
@@ -19,22 +23,32 @@ static bool has_ending(const char *path, const char *ending)
 
 /* ---- info ---- */
 
+/* "4 x 3 m" */
+static char *shape_text(const Array *array, const char *unit)
+{
+    char *shape = mem_text("");
+    for (int r = 0; r < array->rank; r++) {
+        char *longer = mem_format("%s%s%d", shape, r ? " x " : "", array->dims[r]);
+        mem_free(shape);
+        shape = longer;
+    }
+    return mem_join(shape, " ", unit);
+}
+
 static void print_array(const char *path, const Array *array)
 {
     static const char *const types[] = {"float64", "int32", "text"};
-    printf("  %-44s %-8s", path, types[array->type]);
-    if (array->type == ARRAY_TEXT) {
-        const char *text = array->data, *line = strchr(text, '\n');
-        if (line)
-            printf(" %d bytes\n", array->dims[0]);
-        else
-            printf(" %s\n", text);
-        return;
-    }
-    for (int r = 0; r < array->rank; r++) printf("%s%d", r ? " x " : " ", array->dims[r]);
-    if (array->rank == 0 && array->type == ARRAY_FLOAT64) printf(" %.9g", *(const double *)array->data);
-    if (array->rank == 0 && array->type == ARRAY_INT32) printf(" %d", *(const int *)array->data);
-    printf(" %s\n", array->unit ? array->unit : "");
+    const char *unit = array->unit ? array->unit : "";
+    char *what;
+    if (array->type == ARRAY_TEXT)
+        what = strchr(array->data, '\n') ? mem_format("%d bytes", array->dims[0]) : mem_text(array->data);
+    else if (array->rank == 0)
+        what = array->type == ARRAY_FLOAT64 ? mem_format("%.9g %s", *(const double *)array->data, unit)
+                                            : mem_format("%d %s", *(const int *)array->data, unit);
+    else
+        what = shape_text(array, unit);
+    say(stdout, "  %-44s %-8s %s", path, types[array->type], what);
+    mem_free(what);
 }
 
 /* "a.vtkhdf: settled, 1 frames" */
@@ -42,9 +56,13 @@ static void print_title(Result *result, const char *path)
 {
     Array status = {0};
     bool known = result_read(result, "slender/status", &status, NULL);
-    printf("%s: %s%s%d frames\n", path, known ? (const char *)status.data : "", known ? ", " : "",
+    say(stdout, "%s: %s%s%d frames", path, known ? (const char *)status.data : "", known ? ", " : "",
            result_step_count(result));
     array_clear(&status);
+    Array kernels = {0};
+    if (result_read(result, "slender/kernels", &kernels, NULL))
+        say(stdout, "  OpenBLAS's kernels: %s", (const char *)kernels.data);
+    array_clear(&kernels);
 }
 
 static int info_result(const char *path)
@@ -54,6 +72,7 @@ static int info_result(const char *path)
     int count;
     Result *result = result_open(path, &err);
     if (!result || !result_list(result, &paths, &count, &err)) {
+        if (result) error_prefix(&err, "%s", path);
         result_close(result);
         return verb_fail(RUN_REFUSED, err.text);
     }
@@ -61,7 +80,7 @@ static int info_result(const char *path)
     for (int k = 0; k < count; k++) {
         Array array;
         if (!result_read(result, paths[k], &array, &err)) {
-            printf("  %-44s %s\n", paths[k], err.text);
+            say(stdout, "  %-44s %s", paths[k], err.text);
             continue;
         }
         print_array(paths[k], &array);
@@ -113,13 +132,13 @@ static int info_journal(const char *path)
               journal_count(journal, "frame", &frames, &err) &&
               journal_count(journal, "state", &states, &err);
     if (ok)
-        printf("%s: %s, %d evaluations, %d frames, %d states\n", path,
-               journal_is_finished(journal) ? "finished" : "not finished", evaluations, frames, states);
+        say(stdout, "%s: %s, %d evaluations, %d frames, %d states", path,
+            journal_is_finished(journal) ? "finished" : "not finished", evaluations, frames, states);
     ok = ok && journal_indices(journal, "evaluation", &indices, &count, &err);
     for (int k = 0; ok && k < count; k++) print_evaluation(journal, indices[k]);
     mem_free(indices);
     ok = ok && journal_check(journal, &err);
-    if (!ok) fprintf(stderr, "slender: %s\n", err.text);
+    if (!ok) say(stderr, "slender: %s", err.text);
     journal_close(journal, NULL);
     return ok ? RUN_DONE : RUN_REFUSED;
 }
@@ -140,6 +159,7 @@ static bool write_csv(const Array *array, const char *path, Error *err)
     if (array->type == ARRAY_TEXT)
         return error_set(err, "'%s' is a text, not numbers; slender info shows it", array->name);
     size_t count = array_count(array);
+    if (count == 0) return error_set(err, "%s is empty: there are no numbers in it", array->name);
     int columns = array->rank > 1 ? array->dims[array->rank - 1] : 1;
     double *values = mem_alloc(count, sizeof *values);
     for (size_t i = 0; i < count; i++)
@@ -147,9 +167,11 @@ static bool write_csv(const Array *array, const char *path, Error *err)
             array->type == ARRAY_INT32 ? ((const int *)array->data)[i] : ((const double *)array->data)[i];
     char *header = array->unit && array->unit[0] ? mem_format("# %s, %s", array->name, array->unit)
                                                  : mem_format("# %s", array->name);
-    bool ok = table_write(path, header, values, (int)(count / (size_t)columns), columns, err);
+    char *plain = plain_text(header, "");
+    bool ok = table_write(path, plain, values, (int)(count / (size_t)columns), columns, err);
     mem_free(values);
     mem_free(header);
+    mem_free(plain);
     return ok;
 }
 
@@ -170,8 +192,8 @@ static bool export_frame(Result *result, int frame, const char *path, Error *err
     Array faces, points;
     if (frame >= result_step_count(result))
         return error_set(err, "the result has %d frames, from 0", result_step_count(result));
-    if (!result_read(result, "slender/faces", &faces, err)) return false;
-    bool ok = frame < 0 ? result_read(result, "slender/state/x", &points, err)
+    if (!result_read_as(result, "slender/faces", ARRAY_INT32, 2, 3, &faces, err)) return false;
+    bool ok = frame < 0 ? result_read_as(result, "slender/state/x", ARRAY_FLOAT64, 2, 3, &points, err)
                         : result_read_step(result, "Points", frame, &points, err);
     if (ok) {
         MeshFile file = {.vertex_count = points.dims[0],
@@ -216,7 +238,7 @@ static bool export_result(const char *input, const Export *what, Error *err)
               : drawn_has(result) ? export_drawing(result, what->language, what->output, err)
                                   : export_frame(result, what->frame, what->output, err);
     result_close(result);
-    return ok;
+    return ok || error_prefix(err, "%s", input);
 }
 
 /* As the run itself would write it. */
@@ -228,7 +250,7 @@ static bool result_def(Journal *journal, ResultDef *def, Error *err)
     *def = (ResultDef){0};
     if (!journal_find(journal, "meta", 0, "scene", &text, err)) return false;
     if (!text.data) return true;
-    if (verb_stored_scene(text.data, &file, &scene))
+    if (verb_stored_scene(&text, &file, &scene))
         def->double_frames = scene.output.precision == OUTPUT_DOUBLE;
     yaml_clear(&scene_table, &scene);
     yaml_destroy(file);
@@ -240,7 +262,10 @@ static bool export_journal(const char *input, const char *path, Error *err)
 {
     if (!has_ending(path, ".vtkhdf"))
         return error_set(err, "%s: a run is exported as .vtkhdf, and that as other files", path);
-    Journal *journal = journal_open(input, JOURNAL_READ, err);
+    char *sidecar = result_sidecar(path);
+    bool free = outputs_check_source(NULL, input, sidecar, err) && replace_check(sidecar, err);
+    mem_free(sidecar);
+    Journal *journal = free ? journal_open(input, JOURNAL_READ, err) : NULL;
     if (!journal) return false;
     int frames;
     ResultDef def;
@@ -276,10 +301,10 @@ int verb_export(int argc, char **argv)
             what.language = optarg;
         else if (c != 'f' || sscanf(optarg, "%d%c", &what.frame, &end) != 1 || what.frame < 0)
             return verb_usage(usage);
-    if (!what.output || optind != argc - 1 || !strcmp(argv[optind], what.output)) return verb_usage(usage);
+    if (!what.output || optind != argc - 1) return verb_usage(usage);
     Error err;
     const char *input = argv[optind];
-    bool ok = has_ending(input, ".run") ? export_journal(input, what.output, &err)
-                                        : export_result(input, &what, &err);
+    bool ok = outputs_check_source(NULL, input, what.output, &err) &&
+              (has_ending(input, ".run") ? export_journal(input, what.output, &err) : export_result(input, &what, &err));
     return ok ? RUN_DONE : verb_fail(RUN_CANNOT_WRITE, err.text);
 }

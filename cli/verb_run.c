@@ -4,9 +4,11 @@
 #include "cli/job.h"
 #include "cli/outputs.h"
 #include "cli/recall.h"
+#include "cli/say.h"
 #include "cli/show.h"
 #include "cli/verb.h"
 #include "io/result.h"
+#include "solve/kernels.h"
 #include <getopt.h>
 #include <stdio.h>
 #include <string.h>
@@ -36,7 +38,7 @@ static const char usage[] =
     "  --margin LENGTH  of a drawing: 10mm\n"
     "  --resume         goes on with a run that was interrupted, or extends one that has finished\n"
     "  --force          discards an unfinished run of that name\n"
-    "  --threads N      load cases at once, parts of a drawing's tone; default: as many as there are "
+    "  --threads N      load cases at once, parts of a drawing's tone, 1 to 64; default: as many as there are "
     "processors\n"
     "  --quiet          says nothing but errors; --log=json: one JSON object per line";
 
@@ -46,6 +48,13 @@ static bool add_setting(RunOptions *options, const char *key, const char *value)
     if (options->set_count == SET_MAX) return false;
     options->set[options->set_count++] = mem_format("%s%s", key, value);
     return true;
+}
+
+/* A machine may have more processors than are of use, or not know how many. */
+static int default_threads(void)
+{
+    long processors = sysconf(_SC_NPROCESSORS_ONLN);
+    return processors < 1 ? 1 : processors > THREADS_MAX ? THREADS_MAX : (int)processors;
 }
 
 static bool parse(int argc, char **argv, RunOptions *options)
@@ -64,7 +73,7 @@ static bool parse(int argc, char **argv, RunOptions *options)
                                           {"help", no_argument, NULL, HELP},
                                           {0}};
     char end;
-    options->threads = (int)sysconf(_SC_NPROCESSORS_ONLN);
+    options->threads = default_threads();
     for (int c; (c = getopt_long(argc, argv, "o:", table, NULL)) >= 0;) {
         if (c == 'o')
             options->output = optarg;
@@ -176,14 +185,16 @@ static bool check_resumed(Run *run, const char *scene, const char *inputs, Error
 static bool put_start(Run *run, const char *scene, const char *inputs, Error *err)
 {
     Arrays statics = {0};
-    char *versions = run_versions();
-    Array meta[] = {array_text("scene", scene), array_text("versions", versions),
+    char *kernels = run_kernels(run->journal, err), *versions = kernels ? run_versions() : NULL;
+    if (!kernels) return false;
+    Array meta[] = {array_text("scene", scene), array_text("versions", versions), array_text("kernels", kernels),
                     array_text("inputs", inputs)};
     run->model->body->add_static(run->model, &statics);
-    bool ok = journal_replace(run->journal, "meta", 0, meta, *inputs ? 3 : 2, err) &&
+    bool ok = journal_replace(run->journal, "meta", 0, meta, *inputs ? 4 : 3, err) &&
               journal_replace(run->journal, "final", 0, NULL, 0, err);
     ok = arrays_replace(&statics, run->journal, "static", ok ? err : NULL) && ok;
     mem_free(versions);
+    mem_free(kernels);
     return ok && journal_set_finished(run->journal, false, err);
 }
 
@@ -221,16 +232,21 @@ static bool write_result(Run *run, const char *path, bool finished, Error *err)
     return true;
 }
 
-static void draw(Run *run)
+static bool draw(Run *run, Error *err)
 {
-    Error err;
     char *picture = outputs_picture(run->scene, run->result);
     ShowDef def = show_default();
-    if (show_result(run->result, picture, &def, &err))
-        progress_say(run->progress, "picture: %s", picture);
-    else
-        progress_say(run->progress, "no picture: %s", err.text);
+    bool ok = show_result(run->result, picture, &def, err);
+    if (ok) progress_say(run->progress, "picture: %s", picture);
     mem_free(picture);
+    return ok || error_prefix(err, "no picture");
+}
+
+/* With --log=json also as an object. */
+static int fail(const RunOptions *options, int code, const char *sentence)
+{
+    progress_tell(options->mode, "error", sentence);
+    return verb_fail(code, sentence);
 }
 
 static int do_job(Run *run, const RunOptions *options)
@@ -238,15 +254,16 @@ static int do_job(Run *run, const RunOptions *options)
     Error err;
     RunStatus status = begin(run, options, &err);
     if (status == RUN_DONE) status = job_run(run, &err);
-    if (status == RUN_CANNOT_WRITE || status == RUN_REFUSED) return verb_fail(status, err.text);
+    if (status == RUN_CANNOT_WRITE || status == RUN_REFUSED) return fail(options, status, err.text);
     if (!write_result(run, run->result, status != RUN_INTERRUPTED, &err))
-        return verb_fail(RUN_CANNOT_WRITE, err.text);
+        return fail(options, RUN_CANNOT_WRITE, err.text);
     progress_say(run->progress, "result: %s", run->result);
-    if (!outputs_write(run, &err)) return verb_fail(RUN_CANNOT_WRITE, err.text);
-    if (!options->no_picture) draw(run);
+    if (!outputs_write(run, &err)) return fail(options, RUN_CANNOT_WRITE, err.text);
+    bool drawn = options->no_picture || draw(run, &err);
     if (status == RUN_INTERRUPTED)
         progress_say(run->progress, "interrupted; all is saved: run again with --resume");
-    return status;
+    if (drawn) return status;
+    return fail(options, status == RUN_INTERRUPTED ? RUN_INTERRUPTED : RUN_CANNOT_WRITE, err.text);
 }
 
 static bool is_folder(const char *path)
@@ -266,6 +283,24 @@ static bool check_output(const char *output, const char *result, Error *err)
     return true;
 }
 
+/* Load cases at once, as far as there is memory for their BLAS; the same numbers come out. */
+static int threads_of(const RunOptions *options, const Model *model)
+{
+    int at_once = model->case_count < options->threads ? model->case_count : options->threads;
+    int room = kernels_reserve(at_once);
+    return room < at_once ? room : options->threads;
+}
+
+static void warn_sidecar(const RunOptions *options, const char *result)
+{
+    static const char words[] = "no .xdmf (for ParaView 5.11) is written beside it, since XDMF cannot name this file: a name "
+                                "without : and |, control characters, and blanks at its ends can be";
+    char *sentence = mem_format("'%s': %s", result, words);
+    progress_tell(options->mode, "warning", sentence);
+    say(stderr, "warning: %s", sentence);
+    mem_free(sentence);
+}
+
 static int run_model(const RunOptions *options, const Scene *scene, Model *model)
 {
     Error err;
@@ -274,18 +309,35 @@ static int run_model(const RunOptions *options, const Scene *scene, Model *model
         options->output ? verb_without_ending(options->output, ".vtkhdf") : verb_base_name(options->scene);
     char *result = mem_format("%s.vtkhdf", name), *journal = mem_format("%s.run", name);
     Run run = {
-        .scene = scene, .model = model, .progress = &progress, .result = result, .threads = options->threads};
+        .scene = scene, .model = model, .progress = &progress, .result = result, .threads = threads_of(options, model)};
     JournalMode mode = options->resume ? JOURNAL_RESUME : options->force ? JOURNAL_FORCE : JOURNAL_NEW;
     if (check_output(options->output, result, &err) &&
         outputs_check(scene, options->scene, result, !options->no_picture, &err))
         run.journal = journal_open(journal, mode, &err);
-    int code = run.journal ? do_job(&run, options) : verb_fail(RUN_CANNOT_WRITE, err.text);
+    if (run.journal && !result_has_sidecar(result)) warn_sidecar(options, result);
+    int code = run.journal ? do_job(&run, options) : fail(options, RUN_CANNOT_WRITE, err.text);
     if (run.journal && !journal_close(run.journal, &err) && code != RUN_CANNOT_WRITE)
-        code = verb_fail(RUN_CANNOT_WRITE, err.text);
+        code = fail(options, RUN_CANNOT_WRITE, err.text);
     mem_free(name);
     mem_free(result);
     mem_free(journal);
     return code;
+}
+
+/* What the verb has printed about the scene, as objects. */
+static void tell_scene(const RunOptions *options, const YamlFile *file, const Model *model)
+{
+    int count;
+    const YamlError *errors = yaml_errors(file, &count);
+    for (int k = 0; k < count; k++) {
+        char *sentence = errors[k].line ? mem_format("%s:%d:%d: %s", options->scene, errors[k].line, errors[k].column,
+                                                     errors[k].sentence)
+                                        : mem_format("%s: %s", options->scene, errors[k].sentence);
+        progress_tell(options->mode, "error", sentence);
+        mem_free(sentence);
+    }
+    for (int k = 0; model && k < model->report.warning_count; k++)
+        progress_tell(options->mode, "warning", model->report.warnings[k]);
 }
 
 int verb_run(int argc, char **argv)
@@ -294,12 +346,11 @@ int verb_run(int argc, char **argv)
     if (!parse(argc, argv, &options)) return verb_usage(usage);
     YamlFile *file;
     Scene scene;
-    int code = RUN_REFUSED;
-    if (verb_load_scene(options.scene, options.set, options.set_count, &file, &scene)) {
-        Model *model = verb_build_model(&scene, file);
-        if (model) code = run_model(&options, &scene, model);
-        model_destroy(model);
-    }
+    bool loaded = verb_load_scene(options.scene, options.set, options.set_count, &file, &scene);
+    Model *model = loaded ? verb_build_model(&scene, file) : NULL;
+    tell_scene(&options, file, model);
+    int code = model ? run_model(&options, &scene, model) : RUN_REFUSED;
+    model_destroy(model);
     yaml_clear(&scene_table, &scene);
     yaml_destroy(file);
     for (int k = 0; k < options.set_count; k++) mem_free(options.set[k]);

@@ -1,5 +1,6 @@
 /* slender schema and slender mesh: what can be had from scenes without running them. */
 #include "base/memory.h"
+#include "cli/outputs.h"
 #include "cli/verb.h"
 #include <getopt.h>
 #include <stdio.h>
@@ -52,8 +53,10 @@ int verb_mesh(int argc, char **argv)
         verb_load_scene(argv[optind], NULL, 0, &file, &scene) ? verb_build_model(&scene, file) : NULL;
     if (model && !model->shell)
         code = verb_fail(RUN_REFUSED, "the scene has no mesh");
-    else if (model)
-        code = write_mesh(model->shell->mesh, path, &err) ? RUN_DONE : verb_fail(RUN_CANNOT_WRITE, err.text);
+    else if (model) {
+        bool ok = outputs_check_source(&scene, argv[optind], path, &err) && write_mesh(model->shell->mesh, path, &err);
+        code = ok ? RUN_DONE : verb_fail(RUN_CANNOT_WRITE, err.text);
+    }
     model_destroy(model);
     yaml_clear(&scene_table, &scene);
     yaml_destroy(file);

@@ -1,12 +1,9 @@
 #include "io/animation.h"
 #include "base/memory.h"
-#include "io/replace.h"
-#include <errno.h>
+#include "io/safe_file.h"
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 #include <strings.h>
-#include <unistd.h>
 #include <webp/encode.h>
 #include <webp/mux.h>
 
@@ -54,44 +51,30 @@ bool animation_add(Animation *animation, Canvas *page, double seconds, Error *er
         options.anim_params.bgcolor = 0xffffffff;
         options.kmin = 9, options.kmax = 17;
         animation->encoder = WebPAnimEncoderNew(width, height, &options);
+        if (!animation->encoder) mem_exhausted("libwebp");
     }
     WebPPicture picture;
     WebPPictureInit(&picture);
     picture.width = width, picture.height = height, picture.use_argb = 1;
-    bool ok = animation->encoder && WebPPictureImportBGRX(&picture, pixels, stride) &&
+    bool ok = WebPPictureImportBGRX(&picture, pixels, stride) &&
               WebPAnimEncoderAdd(animation->encoder, &picture, milliseconds(animation), &animation->config);
+    if (picture.error_code == VP8_ENC_ERROR_OUT_OF_MEMORY) mem_exhausted("libwebp");
     WebPPictureFree(&picture);
     if (!ok)
-        return error_set(err, "%s: a page of %d x %d pixels cannot be encoded: %s", animation->path, width,
-                         height,
-                         animation->encoder ? WebPAnimEncoderGetError(animation->encoder) : "out of memory");
+        return error_set(err, "%s: a page of %d x %d pixels cannot be encoded: %s", animation->path, width, height,
+                         WebPAnimEncoderGetError(animation->encoder));
     animation->seconds += seconds;
     return true;
-}
-
-static bool write_file(const char *path, const WebPData *data)
-{
-    FILE *file = fopen(path, "wb");
-    if (!file) return false;
-    bool ok = fwrite(data->bytes, 1, data->size, file) == data->size;
-    return fclose(file) == 0 && ok;
 }
 
 bool animation_save(Animation *animation, Error *err)
 {
     WebPData data = {0};
-    if (!replace_check(animation->path, err)) return false;
     bool ok = animation->encoder &&
               WebPAnimEncoderAdd(animation->encoder, NULL, milliseconds(animation), NULL) &&
               WebPAnimEncoderAssemble(animation->encoder, &data);
     if (!ok) return error_set(err, "%s: the animation cannot be put together", animation->path);
-    char *temporary = mem_format("%s.tmp", animation->path);
-    ok = write_file(temporary, &data) && rename(temporary, animation->path) == 0;
-    if (!ok) {
-        error_set(err, "%s: cannot be written: %s", animation->path, strerror(errno));
-        unlink(temporary);
-    }
-    mem_free(temporary);
+    ok = safe_file_write(animation->path, data.bytes, data.size, false, err);
     WebPDataClear(&data);
     return ok;
 }

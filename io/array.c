@@ -21,6 +21,11 @@ Array array_text(const char *name, const char *text)
         .name = name, .unit = "", .type = ARRAY_TEXT, .rank = 1, .dims = {(int)strlen(text)}, .data = text};
 }
 
+bool array_is(const Array *array, ArrayType type, int rank, int width)
+{
+    return array->type == type && array->rank == rank && (width == 0 || array->dims[rank - 1] == width);
+}
+
 size_t array_count(const Array *array)
 {
     size_t count = 1;

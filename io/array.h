@@ -22,6 +22,9 @@ Array array_float(const char *name, const char *unit, const double *data, int ra
 Array array_int(const char *name, const int *data, int rank, int d0, int d1);
 Array array_text(const char *name, const char *text);
 
+/* Of that type and rank, its last dimension being `width` (0: any). */
+bool array_is(const Array *array, ArrayType type, int rank, int width);
+
 size_t array_bytes(const Array *array);
 size_t array_count(const Array *array);
 

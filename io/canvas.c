@@ -1,6 +1,7 @@
 #include "io/canvas.h"
 #include "base/memory.h"
-#include "io/replace.h"
+#include "base/plain.h"
+#include "io/safe_file.h"
 #include <cairo-pdf.h>
 #include <cairo-svg.h>
 #include <cairo.h>
@@ -10,7 +11,6 @@
 #include <stdio.h>
 #include <string.h>
 #include <strings.h>
-#include <unistd.h>
 
 enum { MAX_POINTS = 10000, PNG_BAND = 64 };
 
@@ -63,14 +63,26 @@ static Format format_from_path(const char *path)
     return (Format)format;
 }
 
+static void check_memory(cairo_status_t status)
+{
+    if (status == CAIRO_STATUS_NO_MEMORY) mem_exhausted("Cairo");
+}
+
+static cairo_surface_t *image_create(cairo_format_t format, int width, int height)
+{
+    cairo_surface_t *image = cairo_image_surface_create(format, width, height);
+    check_memory(cairo_surface_status(image));
+    return image;
+}
+
 static cairo_surface_t *surface_create(Canvas *canvas, double width, double height)
 {
     if (canvas->format == FORMAT_SVG)
         return cairo_svg_surface_create_for_stream(bytes_append, &canvas->file, width, height);
     if (canvas->format == FORMAT_PDF)
         return cairo_pdf_surface_create_for_stream(bytes_append, &canvas->file, width, height);
-    return cairo_image_surface_create(CAIRO_FORMAT_RGB24, (int)lround(width * canvas->resolution),
-                                      (int)lround(height * canvas->resolution));
+    return image_create(CAIRO_FORMAT_RGB24, (int)lround(width * canvas->resolution),
+                        (int)lround(height * canvas->resolution));
 }
 
 /* Glyphs are placed the same at every resolution and in every format. */
@@ -130,18 +142,6 @@ double canvas_resolution(const Canvas *canvas)
     return canvas->resolution;
 }
 
-static bool file_write(const char *path, const Bytes *bytes)
-{
-    FILE *file = fopen(path, "wb");
-    if (!file) return false;
-    bool ok = fwrite(bytes->data, 1, bytes->length, file) == bytes->length && fflush(file) == 0 &&
-              fsync(fileno(file)) == 0;
-    int reason = errno;
-    if (fclose(file) != 0 && ok) return false;
-    errno = reason;
-    return ok;
-}
-
 bool canvas_save(Canvas *canvas, Error *err)
 {
     cairo_status_t status = cairo_status(canvas->cairo);
@@ -149,18 +149,10 @@ bool canvas_save(Canvas *canvas, Error *err)
         status = cairo_surface_write_to_png_stream(canvas->surface, bytes_append, &canvas->file);
     cairo_surface_finish(canvas->surface);
     if (status == CAIRO_STATUS_SUCCESS) status = cairo_surface_status(canvas->surface);
+    check_memory(status);
     if (status != CAIRO_STATUS_SUCCESS)
         return error_set(err, "%s: cannot be drawn: %s", canvas->path, cairo_status_to_string(status));
-    if (!replace_check(canvas->path, err)) return false;
-
-    char *temporary = mem_format("%s.tmp", canvas->path);
-    bool ok = file_write(temporary, &canvas->file) && rename(temporary, canvas->path) == 0;
-    if (!ok) {
-        error_set(err, "%s: cannot be written: %s", canvas->path, strerror(errno));
-        unlink(temporary);
-    }
-    mem_free(temporary);
-    return ok;
+    return safe_file_write(canvas->path, canvas->file.data, canvas->file.length, false, err);
 }
 
 const unsigned char *canvas_pixels(Canvas *canvas, int *width, int *height, int *stride)
@@ -256,25 +248,36 @@ static void select_font(Canvas *canvas, TextStyle style)
     cairo_set_font_size(canvas->cairo, style.size);
 }
 
-double canvas_text_width(Canvas *canvas, const char *text, TextStyle style)
+/* Cairo draws nothing more after a text that is no UTF-8. */
+static double text_width(Canvas *canvas, const char *plain, TextStyle style)
 {
     cairo_text_extents_t extents;
     select_font(canvas, style);
-    cairo_text_extents(canvas->cairo, text, &extents);
+    cairo_text_extents(canvas->cairo, plain, &extents);
     return extents.x_advance;
+}
+
+double canvas_text_width(Canvas *canvas, const char *text, TextStyle style)
+{
+    char *plain = plain_text(text, "");
+    double width = text_width(canvas, plain, style);
+    mem_free(plain);
+    return width;
 }
 
 void canvas_text(Canvas *canvas, Vec2 at, const char *text, TextStyle style)
 {
-    double width = canvas_text_width(canvas, text, style);
+    char *plain = plain_text(text, "");
+    double width = text_width(canvas, plain, style);
     cairo_save(canvas->cairo);
     cairo_translate(canvas->cairo, at.x, at.y);
     if (style.upwards) cairo_rotate(canvas->cairo, -acos(-1) / 2);
     cairo_move_to(canvas->cairo, -0.5 * style.align * width, 0);
     set_color(canvas, style.color);
-    cairo_show_text(canvas->cairo, text);
+    cairo_show_text(canvas->cairo, plain);
     cairo_restore(canvas->cairo);
     cairo_new_path(canvas->cairo);
+    mem_free(plain);
 }
 
 void canvas_begin_ink(Canvas *canvas)
@@ -312,7 +315,7 @@ static uint32_t pixel_premultiplied(const unsigned char rgba[4])
 
 void canvas_image(Canvas *canvas, const unsigned char *rgba, int width, int height, Box box)
 {
-    cairo_surface_t *image = cairo_image_surface_create(CAIRO_FORMAT_ARGB32, width, height);
+    cairo_surface_t *image = image_create(CAIRO_FORMAT_ARGB32, width, height);
     unsigned char *data = cairo_image_surface_get_data(image);
     int stride = cairo_image_surface_get_stride(image);
     for (int i = 0; data && i < height; i++)

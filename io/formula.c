@@ -55,6 +55,18 @@ static void list_names(const Formula *formula, int slots, char *text, size_t siz
         used += (size_t)snprintf(text + used, size - used, "%s%s", i ? ", " : "", formula->names[i]);
 }
 
+/* muParser has = as an operator that changes a variable. */
+static bool check_assignment(const char *text, Error *err)
+{
+    for (const char *c = text; *c; c++) {
+        bool compares = c[1] == '=' || (c > text && strchr("=<>!", c[-1]));
+        if (*c == '=' && !compares)
+            return error_set(err, "\"%s\": the = at position %d is no part of an expression; == compares", text,
+                             (int)(c - text));
+    }
+    return true;
+}
+
 /* muParser descends recursively. */
 static bool check_text(const char *text, Error *err)
 {
@@ -69,7 +81,7 @@ static bool check_text(const char *text, Error *err)
         if (depth > MAX_DEPTH)
             return error_set(err, "an expression nests deeper than %d parentheses", MAX_DEPTH);
     }
-    return true;
+    return check_assignment(text, err);
 }
 
 static bool refuse(const Formula *formula, const Expression *item, int slots, Error *err)
@@ -98,6 +110,11 @@ static bool parse(Formula *formula, Expression *item, const char *text, int slot
     mupSetExpr(item->parser, text);
     mupEval(item->parser);
     if (mupError(item->parser)) return refuse(formula, item, slots, err);
+    int results = 1;
+    mupEvalMulti(item->parser, &results);
+    if (results != 1)
+        return error_set(err, "\"%s\": a list of %d; a formula is one expression, and numbers have a decimal point", text,
+                         results);
     int used = mupGetExprVarNum(item->parser);
     for (int k = 0; k < used; k++) {
         const char *name;
@@ -107,6 +124,17 @@ static bool parse(Formula *formula, Expression *item, const char *text, int slot
         if (slot >= 0) item->uses[slot] = true;
     }
     return true;
+}
+
+/* Of a helper: a name of its own, as muParser takes them. */
+static bool check_name(const Formula *formula, int slot, Error *err)
+{
+    const char *name = formula->names[slot];
+    size_t good = strspn(name, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789");
+    if (!*name || name[good] || (*name >= '0' && *name <= '9'))
+        return error_set(err, "'%s' is no name for a part of a formula: letters, digits and _, a letter first", name);
+    bool taken = slot_of(formula, name, slot) >= 0 || !strcmp(name, "pi") || !strcmp(name, "e");
+    return !taken || error_set(err, "the name '%s' has a meaning in this formula already; take another one", name);
 }
 
 Formula *formula_create(const char *const *expressions, int expression_count, const FormulaHelper *helpers,
@@ -126,7 +154,8 @@ Formula *formula_create(const char *const *expressions, int expression_count, co
 
     bool ok = true;
     for (int i = 0; ok && i < helper_count; i++)
-        ok = parse(formula, &formula->items[i], helpers[i].expression, formula->variable_count + i, err);
+        ok = check_name(formula, formula->variable_count + i, err) &&
+             parse(formula, &formula->items[i], helpers[i].expression, formula->variable_count + i, err);
     for (int i = 0; ok && i < expression_count; i++)
         ok = parse(formula, &formula->items[helper_count + i], expressions[i], (int)slots, err);
     if (ok) return formula;

@@ -2,7 +2,7 @@
  *
  * A Formula holds one or more expressions over the same variables, with named helpers (`where`) that are
  * evaluated first, in order. Beside muParser's own functions there are pi, e, atan2, mod(a, b), clamp(x, lo,
- * hi), step(x). */
+ * hi), step(x). Each is one expression: assignments and lists, which muParser takes, are refused. */
 #pragma once
 #include "base/error.h"
 

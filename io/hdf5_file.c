@@ -4,12 +4,14 @@
 #include "base/memory.h"
 #include <hdf5.h>
 #include <limits.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 struct Hdf5 {
-    hid_t file, links; /* links: makes the groups on the way */
+    hid_t file, links; /* links: makes the groups on the way        */
+    size_t size;       /* bytes of one that is read: nothing in it is larger */
 };
 
 struct Hdf5Rows {
@@ -18,7 +20,10 @@ struct Hdf5Rows {
     hsize_t dims[3], chunk[3]; /* so far, and of a chunk */
 };
 
-enum { IMAGE_STEP = 1 << 20, CHUNK_MAX_BYTES = 1 << 30 };
+enum { IMAGE_STEP = 1 << 20, PATH_MAX_BYTES = 512, DEPTH_MAX = 8, NAMES_MAX = 100000 };
+
+/* Bytes that deflate makes of one, at most. */
+static const double DEFLATE_MOST = 1040;
 
 static bool failed(const char *what, const char *path, Error *err)
 {
@@ -32,6 +37,7 @@ static Hdf5 *wrap(hid_t file)
     if (file < 0) return NULL;
     Hdf5 *r = mem_alloc(1, sizeof *r);
     r->file = file;
+    r->size = SIZE_MAX;
     r->links = H5Pcreate(H5P_LINK_CREATE);
     H5Pset_create_intermediate_group(r->links, 1);
     return r;
@@ -40,28 +46,43 @@ static Hdf5 *wrap(hid_t file)
 static hid_t memory_access(void)
 {
     H5Eset_auto2(H5E_DEFAULT, NULL, NULL); /* sentences are ours */
+    H5PLset_loading_state(0);
     hid_t access = H5Pcreate(H5P_FILE_ACCESS);
     H5Pset_fapl_core(access, IMAGE_STEP, 0);
     return access;
 }
 
+/* The core driver opens no image under the name of a file that exists, reads a file of that name before it makes
+ * an image, and takes two open images of one name for the same. So each has a number of its own, in a place below a
+ * file, where nothing can be. */
+static const char *image_name(char name[48])
+{
+    static atomic_long images;
+    snprintf(name, 48, "/dev/null/slender-%ld", atomic_fetch_add(&images, 1));
+    return name;
+}
+
 Hdf5 *hdf5_create(void)
 {
+    char name[48];
     hid_t access = memory_access();
-    Hdf5 *file = wrap(H5Fcreate("slender", H5F_ACC_TRUNC, H5P_DEFAULT, access));
+    Hdf5 *file = wrap(H5Fcreate(image_name(name), H5F_ACC_TRUNC, H5P_DEFAULT, access));
     H5Pclose(access);
     return file;
 }
 
 Hdf5 *hdf5_open(const void *bytes, size_t size, Error *err)
 {
+    char name[48];
     hid_t access = memory_access();
     void *copy = size ? mem_copy(bytes, size, 1) : NULL;
     bool ok = size && H5Pset_file_image(access, copy, size) >= 0;
+    if (size && !ok) mem_exhausted("HDF5"); /* it copies, and nothing else */
     mem_free(copy);
-    Hdf5 *file = ok ? wrap(H5Fopen("slender", H5F_ACC_RDONLY, access)) : NULL;
+    Hdf5 *file = ok ? wrap(H5Fopen(image_name(name), H5F_ACC_RDONLY, access)) : NULL;
     H5Pclose(access);
-    if (!file) error_set(err, "it is no HDF5 file");
+    if (!file) return error_set(err, "it is no HDF5 file"), NULL;
+    file->size = size;
     return file;
 }
 
@@ -245,12 +266,22 @@ bool hdf5_attribute_ints(Hdf5 *file, const char *group, const char *name, const 
     return ok || failed("write", name, err);
 }
 
-/* ---- Reading ---- */
+/* ---- Reading ----
+ *
+ * Anyone can make a file whose check sum fits. So nothing is read before its class, shape and size are known to be as
+ * slender writes them; links that lead elsewhere, other files' data and code of plugins are not followed. */
 
 /* H5Lexists wants every group on the way to exist. */
+static bool has_link(hid_t file, const char *path)
+{
+    H5L_info_t info;
+    return H5Lexists(file, path, H5P_DEFAULT) > 0 && H5Lget_info(file, path, &info, H5P_DEFAULT) >= 0 &&
+           info.type == H5L_TYPE_HARD;
+}
+
 bool hdf5_has(Hdf5 *file, const char *path)
 {
-    char part[512];
+    char part[PATH_MAX_BYTES];
     for (const char *c = path; *c;) {
         while (*c == '/') c++;
         while (*c && *c != '/') c++;
@@ -258,28 +289,50 @@ bool hdf5_has(Hdf5 *file, const char *path)
         if (!length || length >= sizeof part) return false;
         memcpy(part, path, length);
         part[length] = 0;
-        if (H5Lexists(file->file, part, H5P_DEFAULT) <= 0) return false;
+        if (!has_link(file->file, part)) return false;
     }
     return *path != 0;
 }
 
-static char *unit_of(hid_t dataset)
+/* One text of fixed length; HDF5 itself would fill a buffer with as many as there are. The type says how long. */
+static bool is_one_text(const Hdf5 *file, hid_t type, hid_t space)
 {
-    if (H5Aexists(dataset, "unit") <= 0) return mem_text("");
-    hid_t attribute = H5Aopen(dataset, "unit", H5P_DEFAULT), type = H5Aget_type(attribute);
-    size_t size = H5Tget_size(type);
-    char *text = mem_alloc(size + 1, 1);
-    if (H5Tis_variable_str(type) > 0 || H5Aread(attribute, type, text) < 0) text[0] = 0;
+    return H5Tget_class(type) == H5T_STRING && H5Tis_variable_str(type) == 0 &&
+           H5Sget_simple_extent_npoints(space) == 1 && H5Tget_size(type) <= file->size;
+}
+
+/* NULL where there is none, or it is not one text. */
+static char *attribute_text(const Hdf5 *file, hid_t object, const char *name)
+{
+    char *text = NULL;
+    hid_t attribute = H5Aexists(object, name) > 0 ? H5Aopen(object, name, H5P_DEFAULT) : -1;
+    if (attribute < 0) return NULL;
+    hid_t type = H5Aget_type(attribute), space = H5Aget_space(attribute);
+    if (is_one_text(file, type, space)) {
+        text = mem_alloc(H5Tget_size(type) + 1, 1);
+        if (H5Aread(attribute, type, text) < 0) mem_free(text), text = NULL;
+    }
+    H5Sclose(space);
     H5Tclose(type);
     H5Aclose(attribute);
     return text;
 }
 
-static bool read_text(hid_t dataset, hid_t type, Array *array)
+/* Data that are in this file, and of a size that its bytes can have. */
+static bool is_stored(const Hdf5 *file, hid_t dataset, hid_t type, hid_t space)
 {
-    size_t size = H5Tget_size(type);
-    if (H5Tis_variable_str(type) > 0) return false;
-    char *text = mem_alloc(size + 1, 1);
+    hid_t properties = H5Dget_create_plist(dataset);
+    bool here = H5Pget_external_count(properties) == 0 && H5Pget_layout(properties) != H5D_VIRTUAL;
+    H5Pclose(properties);
+    hsize_t stored = H5Dget_storage_size(dataset);
+    double bytes = (double)H5Sget_simple_extent_npoints(space) * (double)H5Tget_size(type);
+    return here && stored <= file->size && bytes <= DEFLATE_MOST * (double)stored;
+}
+
+static bool read_text(const Hdf5 *file, hid_t dataset, hid_t type, hid_t space, Array *array)
+{
+    if (!is_one_text(file, type, space)) return false;
+    char *text = mem_alloc(H5Tget_size(type) + 1, 1);
     array->type = ARRAY_TEXT;
     array->data = text;
     if (H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text) < 0) return false;
@@ -318,27 +371,41 @@ static bool narrow(const int64_t *wide, size_t count, int32_t *values)
     return true;
 }
 
-static bool read_numbers(hid_t dataset, hid_t type, int first, int count, Array *array)
+static bool read_numbers(hid_t dataset, hid_t type, hid_t space, Array *array)
 {
-    hid_t space = H5Dget_space(dataset);
-    bool integer = H5Tget_class(type) == H5T_INTEGER, ok = select_rows(space, first, count, array);
+    bool integer = H5Tget_class(type) == H5T_INTEGER, ok = true;
     array->type = integer ? ARRAY_INT32 : ARRAY_FLOAT64;
-    if (ok) {
-        size_t total = array_count(array);
-        hsize_t size[1] = {total};
-        hid_t memory = array->rank ? H5Screate_simple(1, size, NULL) : H5Screate(H5S_SCALAR);
-        void *data = mem_alloc(total, 8);
-        array->data = data;
-        ok = total == 0 || H5Dread(dataset, integer ? H5T_NATIVE_INT64 : H5T_NATIVE_DOUBLE, memory, space,
-                                   H5P_DEFAULT, data) >= 0;
-        if (ok && integer) {
-            array->data = mem_alloc(total, sizeof(int32_t));
-            ok = narrow(data, total, (int32_t *)array->data);
-            mem_free(data);
-        }
-        H5Sclose(memory);
+    size_t total = array_count(array);
+    hsize_t size[1] = {total};
+    hid_t memory = array->rank ? H5Screate_simple(1, size, NULL) : H5Screate(H5S_SCALAR);
+    void *data = mem_alloc(total, 8);
+    array->data = data;
+    if (total > 0)
+        ok = H5Dread(dataset, integer ? H5T_NATIVE_INT64 : H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, data) >= 0;
+    if (ok && integer) {
+        array->data = mem_alloc(total, sizeof(int32_t));
+        ok = narrow(data, total, (int32_t *)array->data);
+        mem_free(data);
     }
+    H5Sclose(memory);
+    return ok;
+}
+
+/* Texts as they are; numbers of up to 8 bytes, those rows of them. */
+static bool read_dataset(const Hdf5 *file, hid_t dataset, int first, int count, Array *array)
+{
+    hid_t type = H5Dget_type(dataset), space = H5Dget_space(dataset);
+    H5T_class_t class = H5Tget_class(type);
+    bool number = (class == H5T_INTEGER || class == H5T_FLOAT) && H5Tget_size(type) <= 8;
+    char *unit = attribute_text(file, dataset, "unit");
+    array->unit = unit ? unit : mem_text("");
+    bool ok = is_stored(file, dataset, type, space);
+    if (ok && class == H5T_STRING)
+        ok = read_text(file, dataset, type, space, array);
+    else
+        ok = ok && number && select_rows(space, first, count, array) && read_numbers(dataset, type, space, array);
     H5Sclose(space);
+    H5Tclose(type);
     return ok;
 }
 
@@ -348,14 +415,8 @@ bool hdf5_read(Hdf5 *file, const char *path, int first, int count, Array *array,
     if (!hdf5_has(file, path)) return error_set(err, "there is no dataset %s", path);
     hid_t dataset = H5Dopen2(file->file, path, H5P_DEFAULT);
     if (dataset < 0) return error_set(err, "%s is no dataset", path);
-    hid_t type = H5Dget_type(dataset);
-    H5T_class_t class = H5Tget_class(type);
     array->name = mem_text(path);
-    array->unit = unit_of(dataset);
-    bool ok = class == H5T_STRING ? read_text(dataset, type, array)
-                                  : (class == H5T_INTEGER || class == H5T_FLOAT) &&
-                                        read_numbers(dataset, type, first, count, array);
-    H5Tclose(type);
+    bool ok = read_dataset(file, dataset, first, count, array);
     H5Dclose(dataset);
     if (ok) return true;
     array_clear(array);
@@ -367,32 +428,34 @@ bool hdf5_read_attribute_text(Hdf5 *file, const char *group, const char *name, c
     *text = NULL;
     hid_t object = hdf5_has(file, group) ? H5Gopen2(file->file, group, H5P_DEFAULT) : -1;
     if (object < 0) return failed("read", group, err);
-    bool ok = H5Aexists(object, name) > 0;
-    if (ok) {
-        hid_t attribute = H5Aopen(object, name, H5P_DEFAULT), type = H5Aget_type(attribute);
-        *text = mem_alloc(H5Tget_size(type) + 1, 1);
-        ok = H5Tis_variable_str(type) <= 0 && H5Aread(attribute, type, *text) >= 0;
-        H5Tclose(type);
-        H5Aclose(attribute);
-    }
+    *text = attribute_text(file, object, name);
     H5Gclose(object);
-    return ok || failed("read", name, err);
+    return *text || failed("read", name, err);
 }
 
 /* ---- Listing ---- */
 
 typedef struct Names {
-    int count;
+    int count, objects;
     char *text; /* all names, one after the other */
     size_t used, room;
 } Names;
+
+/* Groups may lie in each other, and go round. */
+static bool is_too_deep(const char *name)
+{
+    int depth = 1;
+    for (const char *c = name; *c; c++) depth += *c == '/';
+    return depth > DEPTH_MAX;
+}
 
 static herr_t visit(hid_t group, const char *name, const H5O_info_t *info, void *data)
 {
     (void)group;
     Names *names = data;
-    if (info->type != H5O_TYPE_DATASET) return 0;
     size_t length = strlen(name) + 1;
+    if (length > PATH_MAX_BYTES || ++names->objects > NAMES_MAX || is_too_deep(name)) return -1;
+    if (info->type != H5O_TYPE_DATASET) return 0;
     if (names->used + length > names->room) {
         size_t larger = 2 * names->room + length;
         names->text = mem_resize(names->text, names->room, larger, 1);
@@ -418,7 +481,10 @@ bool hdf5_list(Hdf5 *file, char ***paths, int *count, Error *err)
     if (ok) return true;
     mem_free(table);
     *paths = NULL;
-    return failed("list", "the datasets", err);
+    return error_set(err,
+                     "what is in it is not as slender writes it: groups more than %d deep, names of more than %d bytes, or "
+                     "more than %d of them",
+                     DEPTH_MAX, PATH_MAX_BYTES, NAMES_MAX);
 }
 
 const char *hdf5_version(void)

@@ -28,6 +28,7 @@ static _Noreturn void stop(j_common_ptr jpeg)
 {
     Decoder *decoder = (Decoder *)jpeg->err;
     char reason[JMSG_LENGTH_MAX];
+    if (jpeg->err->msg_code == JERR_OUT_OF_MEMORY) mem_exhausted("libjpeg");
     jpeg->err->format_message(jpeg, reason);
     error_set(decoder->err, "%s: the JPEG data are broken: %s", decoder->file->path, reason);
     longjmp(decoder->failed, 1);

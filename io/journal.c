@@ -29,6 +29,7 @@ struct Journal {
 static bool sql_error(const Journal *journal, const char *what, Error *err)
 {
     int code = sqlite3_extended_errcode(journal->db) & 0xff;
+    if (code == SQLITE_NOMEM) mem_exhausted("SQLite");
     if (code == SQLITE_NOTADB)
         return error_set(err, "%s is not a journal of slender; it has not been touched", journal->path);
     if (code == SQLITE_CORRUPT)

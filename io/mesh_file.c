@@ -1,8 +1,8 @@
 #include "io/mesh_file.h"
 #include "base/memory.h"
 #include "io/mesh_reader.h"
-#include <errno.h>
-#include <stdio.h>
+#include "io/safe_file.h"
+#include "io/text.h"
 #include <string.h>
 #include <strings.h>
 
@@ -126,7 +126,7 @@ bool mesh_file_read(const char *path, MeshFile *mesh, Error *err)
 /* ---- Writing ---- */
 
 /* OBJ has groups of faces and, by `l`, of edges. A face is in one g line with all its groups. */
-static void write_faces(FILE *file, const MeshFile *mesh)
+static void write_faces(Text *text, const MeshFile *mesh)
 {
     char *member = mem_alloc((size_t)mesh->face_count * (size_t)mesh->group_count + 1, 1);
     size_t stride = (size_t)mesh->group_count;
@@ -136,42 +136,40 @@ static void write_faces(FILE *file, const MeshFile *mesh)
     for (int f = 0; f < mesh->face_count; f++) {
         const char *now = member + (size_t)f * stride, *before = f > 0 ? now - stride : NULL;
         if (stride && (!before || memcmp(now, before, stride))) {
-            fprintf(file, "g");
+            text_add(text, "g");
             for (size_t g = 0; g < stride; g++)
-                if (now[g]) fprintf(file, " %s", mesh->groups[g].name);
-            fprintf(file, "\n");
+                if (now[g]) text_add(text, " %s", mesh->groups[g].name);
+            text_add(text, "\n");
         }
-        fprintf(file, "f %d %d %d\n", mesh->faces[f][0] + 1, mesh->faces[f][1] + 1, mesh->faces[f][2] + 1);
+        text_add(text, "f %d %d %d\n", mesh->faces[f][0] + 1, mesh->faces[f][1] + 1, mesh->faces[f][2] + 1);
     }
     mem_free(member);
 }
 
-static void write_groups(FILE *file, const MeshFile *mesh)
+static void write_groups(Text *text, const MeshFile *mesh)
 {
     for (int g = 0; g < mesh->group_count; g++) {
         const MeshGroup *group = &mesh->groups[g];
         if (group->dim == 2) continue;
-        fprintf(file, "g %s\n", group->name);
+        text_add(text, "g %s\n", group->name);
         for (int k = 0; k < group->count; k++)
             if (group->dim == 1)
-                fprintf(file, "l %d %d\n", group->members[2 * k] + 1, group->members[2 * k + 1] + 1);
+                text_add(text, "l %d %d\n", group->members[2 * k] + 1, group->members[2 * k + 1] + 1);
             else
-                fprintf(file, "p %d\n", group->members[k] + 1);
+                text_add(text, "p %d\n", group->members[k] + 1);
     }
 }
 
 bool mesh_file_write_obj(const char *path, const MeshFile *mesh, Error *err)
 {
-    FILE *file = fopen(path, "w");
-    if (!file) return error_set(err, "%s: cannot be written: %s", path, strerror(errno));
+    Text text = {0};
     for (int v = 0; v < mesh->vertex_count; v++)
-        fprintf(file, "v %.17g %.17g %.17g\n", mesh->vertices[v][0], mesh->vertices[v][1],
-                mesh->vertices[v][2]);
-    write_faces(file, mesh);
-    write_groups(file, mesh);
-    bool failed = ferror(file) != 0;
-    failed |= fclose(file) != 0;
-    return !failed || error_set(err, "%s: cannot be written: %s", path, strerror(errno));
+        text_add(&text, "v %.17g %.17g %.17g\n", mesh->vertices[v][0], mesh->vertices[v][1], mesh->vertices[v][2]);
+    write_faces(&text, mesh);
+    write_groups(&text, mesh);
+    bool ok = safe_file_write(path, text.text ? text.text : "", text.length, false, err);
+    mem_free(text.text);
+    return ok;
 }
 
 /* ---- The struct ---- */

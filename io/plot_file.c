@@ -36,17 +36,6 @@ bool plot_check(const char *path, const Plot *plot, Error *err)
     return true;
 }
 
-/* What XML allows in a quoted attribute. */
-static void add_attribute(Text *text, const char *value)
-{
-    for (const char *c = value; *c; c++) {
-        if (*c == '"' || *c == '&' || *c == '<')
-            text_add(text, "&#%d;", *c);
-        else if ((unsigned char)*c >= 0x20)
-            text_add(text, "%c", *c);
-    }
-}
-
 static void add_point(Text *text, char before, Vec2 p)
 {
     text_add(text, "%c", before);
@@ -60,7 +49,7 @@ static void add_layer(Text *text, const PlotLayer *layer, int number)
     unsigned rgb[3] = {(unsigned)lround(255 * layer->color.r), (unsigned)lround(255 * layer->color.g),
                        (unsigned)lround(255 * layer->color.b)};
     text_add(text, "<g id=\"layer%d\" inkscape:groupmode=\"layer\" inkscape:label=\"%d-", number, number);
-    add_attribute(text, layer->name);
+    text_add_xml(text, layer->name);
     text_add(text, "\" fill=\"none\" stroke=\"#%02x%02x%02x\" stroke-width=\"", rgb[0], rgb[1], rgb[2]);
     plot_add_number(text, layer->pen, 3);
     text_add(text, "\" stroke-linecap=\"round\" stroke-linejoin=\"round\" "

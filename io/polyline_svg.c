@@ -277,7 +277,7 @@ bool polyline_read_svg(PolylineReader *reader, const char *text, size_t length)
 {
     Svg svg = {.parser = XML_ParserCreate(NULL), .reader = reader, .ok = true};
     enum XML_Status status = XML_STATUS_OK;
-    if (!svg.parser) return error_set(reader->err, "%s: no memory is left to read it", reader->path);
+    if (!svg.parser) mem_exhausted("Expat");
     XML_SetUserData(svg.parser, &svg);
     XML_SetElementHandler(svg.parser, begin_element, end_element);
     for (size_t at = 0; status == XML_STATUS_OK && at <= length; at += CHUNK) {
@@ -285,6 +285,7 @@ bool polyline_read_svg(PolylineReader *reader, const char *text, size_t length)
         status = XML_Parse(svg.parser, text + at, (int)part, left <= CHUNK);
         if (left <= CHUNK) break;
     }
+    if (XML_GetErrorCode(svg.parser) == XML_ERROR_NO_MEMORY) mem_exhausted("Expat");
     if (svg.ok && status != XML_STATUS_OK) {
         error_set(reader->err, "%s", XML_ErrorString(XML_GetErrorCode(svg.parser)));
         stop(&svg);

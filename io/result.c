@@ -4,13 +4,28 @@
 #include "io/result_vtk.h"
 #include "io/safe_file.h"
 #include "io/xdmf.h"
+#include <errno.h>
 #include <math.h>
 #include <string.h>
 #include <zlib.h>
 
 /* ---- /slender ---- */
 
-/* Every array of a kind at its own name; final/status is an attribute instead. */
+/* Texts that are attributes of the group, not datasets in it. */
+static const struct {
+    const char *path, *kind, *name, *absent;
+} attributes[] = {{"slender/status", "final", "status", "unfinished"}, {"slender/kernels", "meta", "kernels", NULL}};
+
+enum { ATTRIBUTES = sizeof attributes / sizeof *attributes };
+
+static bool is_attribute(const char *kind, const char *name)
+{
+    for (int k = 0; k < ATTRIBUTES; k++)
+        if (!strcmp(name, attributes[k].name) && !strcmp(kind, attributes[k].kind)) return true;
+    return false;
+}
+
+/* Every other array of a kind at its own name. */
 static bool put_kind(VtkFrames *w, const char *kind, Error *err)
 {
     char **names;
@@ -18,7 +33,7 @@ static bool put_kind(VtkFrames *w, const char *kind, Error *err)
     bool ok = journal_names(w->journal, kind, 0, &names, &count, err);
     for (int k = 0; ok && k < count; k++) {
         Array array;
-        if (!strcmp(names[k], "status") && !strcmp(kind, "final")) continue;
+        if (is_attribute(kind, names[k])) continue;
         ok = journal_get(w->journal, kind, 0, names[k], &array, err);
         if (!ok) break;
         char *path = mem_format("slender/%s", names[k]);
@@ -30,13 +45,21 @@ static bool put_kind(VtkFrames *w, const char *kind, Error *err)
     return ok;
 }
 
-static bool put_status(VtkFrames *w, Error *err)
+static bool put_attribute(VtkFrames *w, int k, Error *err)
 {
-    Array status;
-    bool ok =
-        journal_find(w->journal, "final", 0, "status", &status, err) &&
-        hdf5_attribute_text(w->file, "slender", "status", status.data ? status.data : "unfinished", err);
-    array_clear(&status);
+    const char *kind = attributes[k].kind, *name = attributes[k].name;
+    Array text;
+    if (!journal_find(w->journal, kind, 0, name, &text, err)) return false;
+    const char *value = text.data ? text.data : attributes[k].absent;
+    bool ok = !value || hdf5_attribute_text(w->file, "slender", name, value, err);
+    array_clear(&text);
+    return ok;
+}
+
+static bool put_attributes(VtkFrames *w, Error *err)
+{
+    bool ok = true;
+    for (int k = 0; ok && k < ATTRIBUTES; k++) ok = put_attribute(w, k, err);
     return ok;
 }
 
@@ -98,7 +121,7 @@ static bool put_last_x(VtkFrames *w, Error *err)
 static bool fill(VtkFrames *w, Error *err)
 {
     if (!put_kind(w, "meta", err) || !put_kind(w, "static", err) || !put_kind(w, "final", err) ||
-        !put_status(w, err) || !put_histories(w, err))
+        !put_attributes(w, err) || !put_histories(w, err))
         return false;
     bool shown;
     if (!vtk_frames_exist(w->journal, &shown, err)) return false;
@@ -111,13 +134,23 @@ static bool fill(VtkFrames *w, Error *err)
     return w->single || vtk_frames_put(w, "x", "slender/frames/x", NULL, true, err);
 }
 
+bool result_has_sidecar(const char *path)
+{
+    return xdmf_can_name(path);
+}
+
+char *result_sidecar(const char *path)
+{
+    size_t length = strlen(path), cut = length > 7 && !strcmp(path + length - 7, ".vtkhdf") ? 7 : 0;
+    return mem_format("%.*s.xdmf", (int)(length - cut), path);
+}
+
 static bool write_sidecar(const VtkFrames *w, const char *path, Error *err)
 {
-    if (w->vertex_count == 0) return true;
-    size_t length = strlen(path), cut = length > 7 && !strcmp(path + length - 7, ".vtkhdf") ? 7 : 0;
+    if (w->vertex_count == 0 || !xdmf_can_name(path)) return true;
     char *text = xdmf_text(path, w, err);
     if (!text) return false;
-    char *sidecar = mem_format("%.*s.xdmf", (int)(length - cut), path);
+    char *sidecar = result_sidecar(path);
     bool ok = safe_file_write(sidecar, text, strlen(text), false, err);
     mem_free(text);
     mem_free(sidecar);
@@ -129,10 +162,12 @@ bool result_write(Journal *journal, const char *path, ResultDef def, uint32_t *s
     VtkFrames w = {.journal = journal, .single = !def.double_frames, .file = hdf5_create()};
     void *bytes = NULL;
     size_t size;
+    errno = 0;
     bool ok = w.file != NULL || error_set(err, "HDF5 cannot make a file");
     ok = ok && journal_indices(journal, "frame", &w.frames, &w.count, err) && fill(&w, err) &&
          hdf5_image(w.file, &bytes, &size, err);
     hdf5_close(w.file);
+    if (!ok && errno == ENOMEM) mem_exhausted("HDF5, which makes the result in memory");
     if (ok && sum) *sum = (uint32_t)crc32_z(0, bytes, size);
     ok = ok && safe_file_write(path, bytes, size, true, err) && write_sidecar(&w, path, err);
     mem_free(bytes);
@@ -161,7 +196,7 @@ Result *result_open(const char *path, Error *err)
     mem_free(bytes);
     Array times;
     if (result->file && hdf5_read(result->file, "VTKHDF/Steps/Values", 0, -1, &times, NULL)) {
-        result->step_count = times.dims[0];
+        if (array_is(&times, ARRAY_FLOAT64, 1, 0)) result->step_count = times.dims[0];
         array_clear(&times);
     }
     if (result->file) return result;
@@ -187,28 +222,45 @@ bool result_list(Result *result, char ***paths, int *count, Error *err)
     return hdf5_list(result->file, paths, count, err);
 }
 
-static bool is_status(const char *path)
+/* Its number, or -1: the path is that of a dataset. */
+static int find_attribute(const char *path)
 {
-    return !strcmp(path, "slender/status");
+    for (int k = 0; k < ATTRIBUTES; k++)
+        if (!strcmp(path, attributes[k].path)) return k;
+    return -1;
 }
 
 bool result_has(Result *result, const char *path)
 {
-    return is_status(path) || hdf5_has(result->file, path);
+    return find_attribute(path) >= 0 || hdf5_has(result->file, path);
 }
 
 bool result_read(Result *result, const char *path, Array *array, Error *err)
 {
     char *text;
-    if (!is_status(path)) return hdf5_read(result->file, path, 0, -1, array, err);
-    if (!hdf5_read_attribute_text(result->file, "slender", "status", &text, err)) return false;
-    *array = (Array){.name = mem_text("status"),
+    int k = find_attribute(path);
+    if (k < 0) return hdf5_read(result->file, path, 0, -1, array, err);
+    if (!hdf5_read_attribute_text(result->file, "slender", attributes[k].name, &text, err)) return false;
+    *array = (Array){.name = mem_text(attributes[k].name),
                      .unit = mem_text(""),
                      .type = ARRAY_TEXT,
                      .rank = 1,
                      .dims = {(int)strlen(text)},
                      .data = text};
     return true;
+}
+
+/* Keeps the array where it is as slender writes it. */
+static bool keep(bool fits, const char *path, Array *array, Error *err)
+{
+    if (fits) return true;
+    array_clear(array);
+    return error_set(err, "%s is not as slender writes it", path);
+}
+
+bool result_read_as(Result *result, const char *path, ArrayType type, int rank, int width, Array *array, Error *err)
+{
+    return result_read(result, path, array, err) && keep(array_is(array, type, rank, width), path, array, err);
 }
 
 bool result_read_rows(Result *result, const char *path, int first, int count, Array *array, Error *err)
@@ -243,7 +295,7 @@ static char *offsets_of(const char *name, bool cell)
 
 bool result_read_step(Result *result, const char *name, int step, Array *array, Error *err)
 {
-    bool cell = !strncmp(name, "CellData/", 9);
+    bool cell = !strncmp(name, "CellData/", 9), points = !strcmp(name, "Points");
     int first = 0, count = 0;
     char *path = mem_format("VTKHDF/%s", name), *offsets = offsets_of(name, cell);
     bool ok = hdf5_has(result->file, path) || error_set(err, "the result has no %s", name);
@@ -251,7 +303,9 @@ bool result_read_step(Result *result, const char *name, int step, Array *array, 
         ok = error_set(err, "the result has %d steps, from 0", result->step_count);
     ok = ok && offset_at(result, offsets, step, &first, err) &&
          offset_at(result, cell ? "VTKHDF/NumberOfCells" : "VTKHDF/NumberOfPoints", 0, &count, err) &&
-         hdf5_read(result->file, path, first, count, array, err);
+         hdf5_read(result->file, path, first, count, array, err) &&
+         keep(array->type == ARRAY_FLOAT64 && array->rank >= 1 && (!points || array_is(array, ARRAY_FLOAT64, 2, 3)),
+              path, array, err);
     mem_free(path);
     mem_free(offsets);
     return ok;

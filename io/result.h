@@ -13,8 +13,8 @@
  * /slender: every array of meta, static and final at its own name (scene, versions, rest, faces, edges,
  * state/x, design/<block>, cases/<name>/.., ..) with its type and shape; history/<name> [evaluations], one
  * for each scalar that the evaluations hold; frames/flux_density [T,3] where the frames have it; frames/x
- * [T,n_v,3] float64 if those are. The text
- * final/status becomes the attribute `status`: "unfinished" if there is none yet; state/x is the last frame's
+ * [T,n_v,3] float64 if those are. The text final/status becomes the attribute `status`: "unfinished" if there is none yet;
+ * meta/kernels becomes `kernels`; state/x is the last frame's
  * x until final has it.
  *
  * The file ends with a trailer of 20 bytes that HDF5 does not look at: "SLENDRCK", the length before it
@@ -37,6 +37,11 @@ typedef struct ResultDef {
  * moment path is the old file or the new one, whole. On false the old one is still there. */
 bool result_write(Journal *journal, const char *path, ResultDef def, uint32_t *sum, Error *err);
 
+/* The name of the result's sidecar, which the caller frees. False where there is none, since XDMF cannot name the
+ * result: a name with : or |, control characters or bytes that are no UTF-8, or blanks at its ends. */
+char *result_sidecar(const char *path);
+bool result_has_sidecar(const char *path);
+
 typedef struct Result Result;
 
 /* Opens a result for reading, after checking every byte against the trailer. NULL and a sentence on refusal.
@@ -53,8 +58,11 @@ bool result_list(Result *result, char ***paths, int *count, Error *err);
 bool result_has(Result *result, const char *path);
 
 /* Reads a dataset: floating point as float64, integers as int32 (a number that does not fit is refused),
- * texts as text. "slender/status" reads the attribute. To be freed by array_clear. */
+ * texts as text. "slender/status" and "slender/kernels" read the attributes. To be freed by array_clear. */
 bool result_read(Result *result, const char *path, Array *array, Error *err);
+
+/* The same, refused where it has another type or rank, or rows of another width (0: any). */
+bool result_read_as(Result *result, const char *path, ArrayType type, int rank, int width, Array *array, Error *err);
 
 /* Reads only rows first .. first + count - 1 of the first dimension. */
 bool result_read_rows(Result *result, const char *path, int first, int count, Array *array, Error *err);
@@ -62,8 +70,8 @@ bool result_read_rows(Result *result, const char *path, int first, int count, Ar
 /* Stored steps, 0 if there is no /VTKHDF. */
 int result_step_count(Result *result);
 
-/* One step of /VTKHDF: name is "Points", "CellData/<name>" or "PointData/<name>"; the array has one row per
- * vertex or cell. */
+/* One step of /VTKHDF: name is "Points", "CellData/<name>" or "PointData/<name>"; the array of doubles has one row per
+ * vertex or cell, those of Points three numbers. */
 bool result_read_step(Result *result, const char *name, int step, Array *array, Error *err);
 
 /* The linked library's version, e.g. "1.10.8". */

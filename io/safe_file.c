@@ -1,11 +1,14 @@
 #include "io/safe_file.h"
 #include "base/memory.h"
 #include "io/replace.h"
+#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/file.h>
+#include <sys/random.h>
 #include <sys/stat.h>
 #include <unistd.h>
 #include <zlib.h>
@@ -73,37 +76,91 @@ static bool sync_folder(const char *path)
     return ok;
 }
 
-static bool write_beside(const char *path, const void *bytes, size_t size)
+/* ---- The temporary file ----
+ *
+ * PATH.slender-XXXXXX with a random end, made anew: a link of that name is not followed. Its writer holds a lock on it
+ * until it is renamed, so that one that can be locked belongs to a run that was killed. */
+
+enum { RANDOM = 6 };
+
+static const char MIDDLE[] = ".slender-";
+
+/* An open file, locked; its name, which the caller frees. -1: errno says why. */
+static int make_beside(const char *path, char **name)
 {
-    int file = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-    if (file < 0) return false;
-    bool ok = write_all(file, bytes, size) && fsync(file) == 0;
-    int code = errno;
-    if (close(file) != 0 && ok) return false;
-    errno = code;
-    return ok;
+    static const char letters[] = "abcdefghijklmnopqrstuvwxyz012345";
+    struct stat info;
+    for (int attempt = 0; attempt < 100; attempt++) {
+        unsigned char random[RANDOM];
+        char end[RANDOM + 1] = "";
+        if (getrandom(random, sizeof random, 0) != sizeof random) return -1;
+        for (int k = 0; k < RANDOM; k++) end[k] = letters[random[k] % 32];
+        *name = mem_format("%s%s%s", path, MIDDLE, end);
+        int file = open(*name, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
+        if (file >= 0) flock(file, LOCK_EX); /* some file systems cannot */
+        if (file >= 0 && fstat(file, &info) == 0 && info.st_nlink > 0) return file;
+        int code = errno;
+        if (file >= 0) close(file); /* taken for a leftover before it was locked */
+        mem_free(*name);
+        *name = NULL;
+        if (file < 0 && code != EEXIST) return errno = code, -1;
+    }
+    return -1;
+}
+
+/* A file of ours that nobody holds any more goes; it is held meanwhile. */
+static void remove_left_over(int folder, const char *name)
+{
+    struct stat info;
+    int file = openat(folder, name, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    if (file < 0) return;
+    bool ours = fstat(file, &info) == 0 && S_ISREG(info.st_mode) && info.st_uid == geteuid();
+    if (ours && flock(file, LOCK_EX | LOCK_NB) == 0) unlinkat(folder, name, 0);
+    close(file);
+}
+
+void safe_file_sweep(const char *path)
+{
+    const char *slash = strrchr(path, '/'), *base = slash ? slash + 1 : path;
+    char *folder = slash ? mem_format("%.*s", (int)(slash - path + 1), path) : mem_text(".");
+    char *begin = mem_format("%s%s", base, MIDDLE);
+    size_t length = strlen(begin);
+    DIR *entries = opendir(folder);
+    for (struct dirent *entry; entries && (entry = readdir(entries));)
+        if (!strncmp(entry->d_name, begin, length) && strlen(entry->d_name) == length + RANDOM)
+            remove_left_over(dirfd(entries), entry->d_name);
+    if (entries) closedir(entries);
+    mem_free(begin);
+    mem_free(folder);
+}
+
+/* Writes, reads back and renames; on false errno says why, 0: what was written is not what is there. */
+static bool write_and_rename(int file, const char *beside, const char *path, const void *bytes, size_t size)
+{
+    if (!write_all(file, bytes, size) || fsync(file) != 0) return false;
+    if (!same_bytes(beside, bytes, size)) return errno = 0, false;
+    return rename(beside, path) == 0 && sync_folder(path);
 }
 
 bool safe_file_write(const char *path, const void *bytes, size_t size, bool checked, Error *err)
 {
+    char *beside = NULL, *whole;
     if (!replace_check(path, err)) return false;
-    char *beside = mem_format("%s.%d.tmp", path, (int)getpid());
-    char *whole = mem_alloc(size + TRAILER, 1);
-    size_t total = size + (checked ? TRAILER : 0);
+    safe_file_sweep(path);
+    int file = make_beside(path, &beside);
+    if (file < 0) return error_set(err, "%s: cannot be written: %s", path, strerror(errno));
+    whole = mem_alloc(size + TRAILER, 1);
     memcpy(whole, bytes, size);
     if (checked) make_trailer(bytes, size, (unsigned char *)whole + size);
-    bool ok = write_beside(beside, whole, total);
-    if (!ok) {
-        error_set(err, "%s: cannot be written: %s", path, strerror(errno));
-    } else if (!same_bytes(beside, whole, total)) {
-        ok = error_set(err, "%s: what was written does not read back as it was", path);
-    } else if (rename(beside, path) != 0 || !sync_folder(path)) {
-        ok = error_set(err, "%s: cannot be written: %s", path, strerror(errno));
-    }
+    bool ok = write_and_rename(file, beside, path, whole, size + (checked ? TRAILER : 0));
+    int code = errno;
     if (!ok) unlink(beside);
+    if (close(file) != 0 && ok) ok = false, code = errno;
     mem_free(whole);
     mem_free(beside);
-    return ok;
+    if (ok) return true;
+    if (code == 0) return error_set(err, "%s: what was written does not read back as it was", path);
+    return error_set(err, "%s: cannot be written: %s", path, strerror(code));
 }
 
 bool safe_file_read(const char *path, void **bytes, size_t *size, Error *err)

@@ -1,8 +1,8 @@
 #include "io/table.h"
 #include "base/memory.h"
+#include "io/safe_file.h"
 #include "io/scan.h"
-#include <errno.h>
-#include <stdio.h>
+#include "io/text.h"
 #include <string.h>
 
 /* Numbers and line numbers that fit before the arrays grow. */
@@ -73,14 +73,13 @@ bool table_read(const char *path, int columns, Table *table, Error *err)
 bool table_write(const char *path, const char *header, const double *values, int rows, int columns,
                  Error *err)
 {
-    FILE *file = fopen(path, "w");
-    if (!file) return error_set(err, "%s: cannot be written: %s", path, strerror(errno));
-    if (header) fprintf(file, "%s\n", header);
+    Text text = {0};
+    if (header) text_add(&text, "%s\n", header);
     for (long i = 0; i < (long)rows * columns; i++)
-        fprintf(file, "%.17g%s", values[i], (i + 1) % columns ? ", " : "\n");
-    bool failed = ferror(file) != 0;
-    failed |= fclose(file) != 0;
-    return !failed || error_set(err, "%s: cannot be written: %s", path, strerror(errno));
+        text_add(&text, "%.17g%s", values[i], (i + 1) % columns ? ", " : "\n");
+    bool ok = safe_file_write(path, text.text ? text.text : "", text.length, false, err);
+    mem_free(text.text);
+    return ok;
 }
 
 void table_clear(Table *table)

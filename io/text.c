@@ -1,7 +1,9 @@
 #include "io/text.h"
 #include "base/memory.h"
+#include "base/plain.h"
 #include <stdarg.h>
 #include <stdio.h>
+#include <string.h>
 
 static void reserve(Text *text, size_t more)
 {
@@ -27,6 +29,17 @@ void text_add(Text *text, const char *format, ...)
 void text_indent(Text *text, int depth)
 {
     text_add(text, "%*s", 2 * depth, "");
+}
+
+void text_add_xml(Text *text, const char *string)
+{
+    char *plain = plain_text(string, "");
+    for (const char *c = plain; *c; c++)
+        if (strchr("<&\"", *c))
+            text_add(text, "&#%d;", *c);
+        else
+            text_add(text, "%c", *c);
+    mem_free(plain);
 }
 
 void text_add_quoted(Text *text, const char *string)

@@ -131,6 +131,10 @@ UnitScale unit_scale(const char *unit, double greatest)
 
 void unit_format(double number, const char *unit, char *text, size_t size)
 {
+    if (!isfinite(number)) {
+        snprintf(text, size, "%g", number);
+        return;
+    }
     UnitScale scale = unit_scale(unit, number);
     double shown = number * scale.factor;
     char digits[TICKS_TEXT];

@@ -2,6 +2,7 @@
  * understand. */
 #include "io/xdmf.h"
 #include "base/memory.h"
+#include "base/plain.h"
 #include "io/text.h"
 #include <string.h>
 
@@ -21,7 +22,11 @@ static void add_item(Sidecar *sidecar, const char *path, int first, int count, i
     bool wide = width > 1;
     text_add(text, "<DataItem Dimensions=\"%d", count);
     if (wide) text_add(text, " %d", width);
-    text_add(text, "\" %s Format=\"HDF\">%s:/%s|", type, sidecar->result, path);
+    text_add(text, "\" %s Format=\"HDF\">", type);
+    text_add_xml(text, sidecar->result);
+    text_add(text, ":/");
+    text_add_xml(text, path);
+    text_add(text, "|");
     if (wide)
         text_add(text, "%d 0:1 1:%d %d:%d %d", first, count, width, total, width);
     else
@@ -58,8 +63,9 @@ static bool make_field(const VtkFrames *frames, const char *name, Field *field, 
 static void add_field(Sidecar *sidecar, const Field *field, int step)
 {
     char *path = mem_format("VTKHDF/%s/%s", field->cell ? "CellData" : "PointData", field->name);
-    text_add(&sidecar->text, "        <Attribute Name=\"%s\" AttributeType=\"%s\" Center=\"%s\">",
-             field->name, field->width == 3 ? "Vector" : "Scalar", field->cell ? "Cell" : "Node");
+    text_add(&sidecar->text, "        <Attribute Name=\"");
+    text_add_xml(&sidecar->text, field->name);
+    text_add(&sidecar->text, "\" AttributeType=\"%s\" Center=\"%s\">", field->width == 3 ? "Vector" : "Scalar", field->cell ? "Cell" : "Node");
     add_item(sidecar, path, field->first[step], field->count, field->width, field->stored * field->count,
              sidecar->real);
     text_add(&sidecar->text, "        </Attribute>\n");
@@ -94,6 +100,14 @@ static void add_step(Sidecar *sidecar, const Field *fields, int field_count, int
     text_add(&sidecar->text, "        </Geometry>\n");
     for (int k = 0; k < field_count; k++) add_field(sidecar, &fields[k], step);
     text_add(&sidecar->text, "      </Grid>\n");
+}
+
+/* Readers cut "file:/path|part" at the first : and the first |, and take blanks from its ends. */
+bool xdmf_can_name(const char *result)
+{
+    const char *slash = strrchr(result, '/'), *name = slash ? slash + 1 : result;
+    size_t length = strlen(name);
+    return length && plain_is(name) && !strpbrk(name, ":|") && name[0] != ' ' && name[length - 1] != ' ';
 }
 
 char *xdmf_text(const char *result, const VtkFrames *frames, Error *err)

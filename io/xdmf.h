@@ -5,3 +5,6 @@
 /* The file's text, the caller's, for the result file at a path that holds these frames; NULL and a sentence
  * where the journal cannot be read. */
 char *xdmf_text(const char *result, const VtkFrames *frames, Error *err);
+
+/* Can its readers find a file of that name? */
+bool xdmf_can_name(const char *result);

@@ -154,6 +154,10 @@ bool yaml_load(YamlFile *file, const YamlTable *table, void *scene);
 /* Frees what the struct owns, by the same table, and zeroes it. (libyaml already has a yaml_free.) */
 void yaml_clear(const YamlTable *table, void *scene);
 
+/* The first file that the scene names for which the answer is yes; NULL: there is none. Borrowed. */
+const char *yaml_find_file(const YamlTable *table, const void *scene, bool (*is)(const char *file, const char *other),
+                           const char *other);
+
 /* ---- Errors ---- */
 
 /* Adds an error of the caller's at a key ("shell.mesh.file", "fix[2]", "" for the root), or at the nearest

@@ -180,7 +180,7 @@ Node *tree_parse(YamlFile *file, const char *text, size_t length)
     yaml_parser_t parser;
     yaml_event_t event;
     Builder b = {.file = file};
-    if (!yaml_parser_initialize(&parser)) abort(); /* out of memory */
+    if (!yaml_parser_initialize(&parser)) mem_exhausted("libyaml");
     yaml_parser_set_input_string(&parser, (const unsigned char *)text, length);
     yaml_parser_set_encoding(&parser, YAML_UTF8_ENCODING);
     bool ok = true;

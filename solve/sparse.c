@@ -1,12 +1,10 @@
 #include "solve/sparse.h"
 #include "base/clock.h"
 #include "base/memory.h"
+#include "solve/kernels.h"
 #include <assert.h>
-#include <cblas.h>
 #include <cholmod.h>
-#include <dlfcn.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -119,8 +117,7 @@ static cholmod_sparse view(int n, const Pattern *pattern, double *values)
 static void check_memory(const cholmod_common *common)
 {
     if (common->status != CHOLMOD_OUT_OF_MEMORY && common->status != CHOLMOD_TOO_LARGE) return;
-    fprintf(stderr, "slender: out of memory in the sparse factorisation\n");
-    exit(1);
+    mem_exhausted("the sparse factorisation");
 }
 
 /* rank[i] = where unknown i comes in an order. */
@@ -145,7 +142,7 @@ static int *find_rank(int n, const Pattern *pattern, cholmod_common *common)
 
 static void start_cholmod(cholmod_common *common, bool definite)
 {
-    openblas_set_num_threads(1); /* the same bits every time; threads are ours to use elsewhere */
+    kernels_one_thread();
     omp_set_max_active_levels(0);
     cholmod_start(common);
     common->print = 0;
@@ -411,16 +408,4 @@ SparseInfo sparse_info(const Sparse *matrix)
 const char *sparse_version(void)
 {
     return VERSION_TEXT(CHOLMOD_MAIN_VERSION, CHOLMOD_SUB_VERSION, CHOLMOD_SUBSUB_VERSION);
-}
-
-const char *sparse_blas_version(void)
-{
-    return openblas_get_config();
-}
-
-bool sparse_blas_is_fast(void)
-{
-    Dl_info where;
-    void *dgemm = dlsym(RTLD_DEFAULT, "dgemm_");
-    return dgemm && dladdr(dgemm, &where) && where.dli_fname && strstr(where.dli_fname, "openblas");
 }

@@ -63,8 +63,5 @@ typedef struct SparseInfo {
 } SparseInfo;
 SparseInfo sparse_info(const Sparse *matrix);
 
-/* "3.0.14" of CHOLMOD, and what BLAS is loaded ("OpenBLAS 0.3.21 ..."); static texts. sparse_blas_is_fast is false when
- * the loaded BLAS is not OpenBLAS: the reference BLAS is ten times slower, and silent. */
+/* "3.0.14" of CHOLMOD, a static text. */
 const char *sparse_version(void);
-const char *sparse_blas_version(void);
-bool sparse_blas_is_fast(void);

@@ -36,6 +36,49 @@ expect 0 "$program" schema --manual;            says "| .thickness. |"
 
 "$program" schema | cmp -s - "$here/../docs/scene.schema.json" || { echo "docs/scene.schema.json is not what slender schema says"; bad=1; }
 
+# Nothing that a verb reads, and no journal, is lost by what it writes, under whatever name.
+cp "$scene" own.yaml; cp "$scene" own.xdmf; ln -s beam.vtkhdf beam.csv; ln beam.vtkhdf hard.csv; ln -s beam.run beam.png2.png
+cp beam.vtkhdf keep.vtkhdf; cp beam.run keep.run
+for output in ./beam.vtkhdf beam.csv hard.csv "$PWD/beam.vtkhdf" out/../beam.vtkhdf; do
+    expect 4 "$program" export beam.vtkhdf -o "$output" --dataset state/x; says "but it is read here"
+    expect 4 "$program" export beam.vtkhdf -o "$output"; says "but it is read here"
+done
+for output in beam.run ./beam.run beam.run-wal beam.run-shm beam.run-lock beam.png2.png; do
+    expect 4 "$program" export beam.vtkhdf -o $output --dataset state/x; says "a run's journal"
+    expect 4 "$program" mesh own.yaml -o $output; says "a run's journal"
+done
+expect 4 "$program" picture beam.vtkhdf -o beam.png2.png; says "a run's journal"
+expect 4 "$program" export beam.run -o again.vtkhdf.run; says "exported as .vtkhdf"
+expect 4 "$program" mesh own.yaml -o ./own.yaml; says "but it is read here"
+expect 4 "$program" run own.xdmf --quiet --no-picture; says "but it is read here"
+same own.yaml "$scene"; same own.xdmf "$scene"; same beam.vtkhdf keep.vtkhdf; same beam.run keep.run
+"$program" mesh own.yaml -o star.obj; cp star.obj keep.obj
+sed "s/{shape: strip.*}/star.obj/; s/{group: root, clamp: true}/{box: [[-1, -1, -1], [1e-9, 1, 1]], clamp: true}/" own.yaml > star.yaml
+expect 4 "$program" mesh star.yaml; says "the scene is made of it"
+expect 0 "$program" run star.yaml --quiet --no-picture
+ln -s star.obj star.svg
+expect 4 "$program" picture star.vtkhdf -o star.svg; says "the scene is made of it"
+same star.obj keep.obj
+
+# What cannot be printed is said, and is no success.
+for words in schema help version "info beam.vtkhdf" "info beam.run" "check $scene" "run $scene --no-picture -o full --log=json"; do
+    # shellcheck disable=SC2086
+    "$program" $words > /dev/full 2> err.txt; code=$?
+    [ $code = 4 ] && grep -q "what it prints cannot be written" err.txt || { echo "$words to a full disk ends with $code"; bad=1; }
+    # shellcheck disable=SC2086
+    "$program" $words --force >&- 2> err.txt; code=$?
+    [ $code = 4 ] || [ $code = 2 ] || { echo "$words to a closed stream ends with $code"; bad=1; }
+done
+"$program" run "$scene" --quiet --no-picture -o closed >&- 2>&-; code=$?
+[ $code = 0 ] || { echo "a quiet run without streams ends with $code"; bad=1; }
+expect 0 "$program" info closed.vtkhdf
+
+# A picture that cannot be drawn is said by a quiet run, too: files may have 220 blocks, and it alone has more.
+(trap '' XFSZ; ulimit -f 220; "$program" run "$here/scene_small.yaml" --set shell.mesh.n=2 --set design.iterations=0 --quiet -o undrawn) > out.txt 2> err.txt; code=$?
+[ $code = 4 ] || { echo "a quiet run without its picture ends with $code"; bad=1; }
+says "no picture: undrawn.png: cannot be written: File too large"
+[ "$(echo undrawn.*)" = "undrawn.run undrawn.run-lock undrawn.vtkhdf undrawn.xdmf" ] || { echo "left: $(echo undrawn.*)"; bad=1; }
+
 # The mesh as a file, the pose evaluated: the energies are those of the equilibrium.
 expect 0 "$program" mesh "$scene" -o rest.obj;  exists rest.obj
 sed "s/^job: .*/job: evaluate/; s/{shape: strip.*}/rest.obj/; s/^  thickness/  pose: beam.obj\n  thickness/; s/{group: root, clamp: true}/{box: [[-1, -1, -1], [1e-9, 1, 1]], clamp: true}/" "$scene" > evaluate.yaml

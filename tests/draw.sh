@@ -82,7 +82,7 @@ expect 4 "$program" run picture.yaml --set spline.image="$work/picture.png" --se
 expect 4 "$program" run picture.yaml --set output.png=picture.gif; says "must be a .png, .svg or .pdf"
 expect 0 "$program" run picture.yaml --set spline.image="$work/picture.png"; says "picture: picture-picture.png"
 expect 0 "$program" picture picture.vtkhdf; same picture.png before.png; exists picture-picture.png
-expect 4 "$program" run picture.yaml --no-picture -o y --set output.gcode=./picture.yaml; says "the scene is made of it"
+expect 4 "$program" run picture.yaml --no-picture -o y --set output.gcode=./picture.yaml; says "it is read here"
 expect 2 "$program" run picture.yaml --threads 2x
 
 # Where ink is asked for there are strokes: a narrow strip, no direction anywhere, too few or too long strokes at the start.

@@ -5,6 +5,7 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 #include <cmocka.h>
 
 static const char *const variables[] = {"x", "y", "t", NULL};
@@ -40,6 +41,42 @@ static void test_refused(void **state)
     (void)state;
     check_refused("x + q", "unknown name 'q' in \"x + q\"; known are x, y, t, pi, e");
     check_refused("", "an expression is empty");
+    check_refused("x=5", "\"x=5\": the = at position 1 is no part of an expression; == compares");
+    check_refused("x + (y = 3)", "\"x + (y = 3)\": the = at position 7 is no part of an expression; == compares");
+    check_refused("x ? y=1 : 2", "\"x ? y=1 : 2\": the = at position 5 is no part of an expression; == compares");
+    check_refused("x, y", "\"x, y\": a list of 2; a formula is one expression, and numbers have a decimal point");
+    check_refused("1,5", "\"1,5\": a list of 2; a formula is one expression, and numbers have a decimal point");
+    check_refused("sin(x), 2, 3", "\"sin(x), 2, 3\": a list of 3; a formula is one expression, and numbers have a decimal point");
+    check_refused("\"abc\"", "\"\"abc\"\": Strings must only be used as function arguments!");
+}
+
+/* Names of helpers are names, and their own. */
+static void test_helper_names(void **state)
+{
+    (void)state;
+    static const char *const bad[] = {"", "a b", "1a", "a=1", "+", "x", "pi", "e"};
+    const char *expression = "x + y";
+    for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {
+        Error err = {""};
+        assert_null(formula_create(&expression, 1, &(FormulaHelper){bad[k], "7"}, 1, variables, &err));
+        if (k == 1) assert_string_equal(err.text, "'a b' is no name for a part of a formula: letters, digits and _, a letter first");
+        if (k >= 5 && !strstr(err.text, "has a meaning in this formula already")) fail_msg("%s: %s", bad[k], err.text);
+    }
+}
+
+/* Comparisons are no assignments. */
+static void test_comparisons(void **state)
+{
+    (void)state;
+    static const char *const expressions[] = {"x==2", "x!=3", "x<=2", "x>=2", "x == 2 ? 1 : 0", "-x^2 == -4", "min(x, y) == 2"};
+    for (size_t k = 0; k < sizeof expressions / sizeof *expressions; k++) {
+        Error err = {""};
+        double r = 0;
+        Formula *formula = formula_create(&expressions[k], 1, NULL, 0, variables, &err);
+        if (!formula) fail_msg("%s: %s", expressions[k], err.text);
+        assert_true(formula_eval(formula, (double[]){2, 3, 5}, &r, &err) && r == 1);
+        formula_destroy(formula);
+    }
 }
 
 static void test_not_finite(void **state)
@@ -60,6 +97,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_values),
         cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_helper_names),
+        cmocka_unit_test(test_comparisons),
         cmocka_unit_test(test_not_finite),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -71,7 +71,7 @@ static void svg_words(void **state)
         "<path d=\"M40 30C50 10 60 50 70 30 75 20 90 0 100 47.5\"/>\n"
         "</g>\n"
         "<g id=\"layer3\" inkscape:groupmode=\"layer\" inkscape:label=\"3-a &#34;red&#34; "
-        "&#60;&#38;\xc3\xa9>\" "
+        "&#60;&#38;\xc3\xa9>\\x0a\" "
         "fill=\"none\" stroke=\"#ff8000\" stroke-width=\"0.25\" stroke-linecap=\"round\" "
         "stroke-linejoin=\"round\" style=\"mix-blend-mode:multiply\">\n"
         "<path d=\"M5 5C5 15 5 25 5 35\"/>\n"

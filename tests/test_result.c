@@ -167,9 +167,9 @@ static void test_deterministic(void **state)
     free(second);
 }
 
-static void write_all(const char *bytes, size_t size)
+static void write_all(const char *path, const char *bytes, size_t size)
 {
-    FILE *file = fopen(PATH, "wb");
+    FILE *file = fopen(path, "wb");
     fwrite(bytes, 1, size, file);
     fclose(file);
 }
@@ -183,10 +183,10 @@ static void test_damage(void **state)
     char *bytes = read_all(PATH, &size);
     for (size_t at = 0; at < size; at += size / 200) {
         bytes[at] = (char)(bytes[at] ^ 4);
-        write_all(bytes, size);
+        write_all(PATH, bytes, size);
         bytes[at] = (char)(bytes[at] ^ 4);
         assert_null(result_open(PATH, &err));
-        write_all(bytes, at);
+        write_all(PATH, bytes, at);
         assert_null(result_open(PATH, &err));
     }
     free(bytes);
@@ -346,6 +346,28 @@ static void test_bad_lines(void **state)
     }
 }
 
+/* The names of images in memory are no names of files: another file of any name may lie here, and two results that are
+ * open at once are two. */
+static void test_images(void **state)
+{
+    (void)state;
+    Error err;
+    Array array;
+    write_result(false);
+    Journal *journal = make_lines((const int[LINES][2]){{0, 4}, {4, 3}, {7, 5}});
+    write_all("slender", "a file of the program's name", 28);
+    assert_true(result_write(journal, "test_lines.vtkhdf", (ResultDef){0}, &err));
+    journal_close(journal, &err);
+    Result *faces = result_open(PATH, &err), *lines = result_open("test_lines.vtkhdf", &err);
+    unlink("slender");
+    if (!faces || !lines) fail_msg("%s", err.text);
+    assert_true(result_has(faces, "slender/faces") && !result_has(faces, "slender/lines"));
+    assert_true(result_read(lines, "slender/lines", &array, &err));
+    array_clear(&array);
+    result_close(faces);
+    result_close(lines);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -353,6 +375,6 @@ int main(void)
         cmocka_unit_test(test_far_away),   cmocka_unit_test(test_damage),
         cmocka_unit_test(test_unwritable), cmocka_unit_test(test_h5py),
         cmocka_unit_test(test_lines),      cmocka_unit_test(test_equal_lines),
-        cmocka_unit_test(test_bad_lines)};
+        cmocka_unit_test(test_bad_lines),  cmocka_unit_test(test_images)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

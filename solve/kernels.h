@@ -1,0 +1,47 @@
+/* kernels.h - the BLAS: which of OpenBLAS's kernels do the work, and for how many threads there is room.
+ *
+ * OpenBLAS chooses its kernels when it is loaded, by the processor's model. One that is newer than the library gets
+ * the oldest ones, without a word: OpenBLAS 0.3.21 of Debian 12 multiplies on a Xeon with AVX-512 by its "Prescott", at
+ * a quarter of the speed. It also starts its threads then, each with 128 MB of address space, which it asks for again
+ * and again where there is none. Both can be told to it in its environment only, before it is loaded: so a program
+ * whose environment was wrong starts itself again, once.
+ *
+ * Numbers are the same bits as long as the kernels are the same. */
+#pragma once
+#include <stdbool.h>
+
+typedef struct KernelFeatures {
+    bool avx2;   /* with FMA                                                   */
+    bool avx512; /* F, CD, BW, DQ and VL: what the kernels of SkylakeX consist of */
+} KernelFeatures;
+
+/* What this processor has and the operating system lets it use. */
+KernelFeatures kernels_features(void);
+
+/* The value of OPENBLAS_CORETYPE where `core` (openblas_get_corename) uses less than the processor has; NULL where it
+ * is right. */
+const char *kernels_wanted(const char *core, KernelFeatures features);
+
+/* First thing in main: one BLAS thread, for the same bits every time (threads are ours to use elsewhere). Starts the
+ * program again by /proc/self/exe, with the same arguments, where the kernels are older than the processor and
+ * OPENBLAS_CORETYPE is not set; and where address space is limited and OpenBLAS has threads of its own. Returns where
+ * nothing is to be done, or where it cannot. */
+void kernels_start(char **argv);
+
+/* BLAS calls from one thread. Of a program that does not begin with kernels_start. */
+void kernels_one_thread(void);
+
+/* Takes OpenBLAS's memory for that many threads that call it at the same time; returns for how many there was room, 0:
+ * for none, when a call would never return. */
+int kernels_reserve(int threads);
+
+/* "SkylakeX". */
+const char *kernels_name(void);
+
+/* Of kernels that use less than this processor has, what it could use and why it does not; else "". */
+const char *kernels_note(void);
+
+/* What BLAS is loaded ("OpenBLAS 0.3.21 ..."), a static text; is it the one that is called? False when another BLAS
+ * stands before it, the reference one being ten times slower. */
+const char *kernels_blas_version(void);
+bool kernels_blas_is_fast(void);
