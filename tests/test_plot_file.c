@@ -297,7 +297,7 @@ static void names_for_machines(void **state)
         mem_free(text);
     }
     char *text = written_svg(&one);
-    assert_non_null(strstr(text, "1-Pen 0.5!?~ \xc4\x8c\xc4\x84 (x);%$*nnn"));
+    assert_non_null(strstr(text, "1-Pen 0.5!?~ \xc4\x8c\xc4\x84 (x);%$*\\x0d\\x0annn"));
     mem_free(text);
 }
 

@@ -356,7 +356,7 @@ static void test_images(void **state)
     write_result(false);
     Journal *journal = make_lines((const int[LINES][2]){{0, 4}, {4, 3}, {7, 5}});
     write_all("slender", "a file of the program's name", 28);
-    assert_true(result_write(journal, "test_lines.vtkhdf", (ResultDef){0}, &err));
+    assert_true(result_write(journal, "test_lines.vtkhdf", (ResultDef){0}, NULL, &err));
     journal_close(journal, &err);
     Result *faces = result_open(PATH, &err), *lines = result_open("test_lines.vtkhdf", &err);
     unlink("slender");
