@@ -111,7 +111,7 @@ void search_move(Search *s, const double *direction, double a)
     if (s->follows) {
         memcpy(s->from, s->x, (size_t)s->n * sizeof *s->x);
         for (int i = 0; i < s->n; i++) s->moved[i] = a * direction[i];
-        s->extrapolate = true;
+        s->extrapolate = system_step_size(s->sys, s->moved) >= LONG_STEP;
     }
     advance(s, direction, a, s->trial);
     memcpy(s->x, s->trial, (size_t)s->n * sizeof *s->x);
