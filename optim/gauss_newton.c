@@ -16,7 +16,8 @@
 enum { CG_MAX = 60, REFUSED_MAX = 6, WINDOW = 4 };
 
 static const double CG_TOL = 1e-2, LEFT_MAX = 1e-2; /* parts of the gradient, and of F */
-static const double MU_FIRST = 1e-2, DOWN = 5, UP = 5, MU_UP = 1.5, BOLD = 2, MU_LEAST = 0.1, GAIN_MIN = 0.05;
+static const double MU_FIRST = 0.3, MU_UP = 1.5, MU_LEAST = 0.1, NU_FIRST = 10, DOWN = 5, UP = 5;
+static const double BOLD = 1.2, GAIN_MIN = 0.05;
 
 typedef struct Damping {
     double mu, nu;
@@ -117,7 +118,7 @@ static double curvature_met(const Best *best, const Cg *cg, double mu)
 static Damping more_damping(const Best *best, const Cg *cg, double refused, Damping from)
 {
     if (best->problem->knows_soft && refused < BOLD * fabs(best->objective))
-        return (Damping){MU_UP * from.mu, fmax(1, UP * from.nu)};
+        return (Damping){MU_UP * from.mu, fmax(NU_FIRST, UP * from.nu)};
     return (Damping){fmax(UP * from.mu, MU_LEAST * curvature_met(best, cg, from.mu)), from.nu};
 }
 
