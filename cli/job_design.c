@@ -166,7 +166,14 @@ static LoadCase *make_cases(Model *model)
 
 RunStatus job_design(Run *run, Error *err)
 {
-    static const DesignOps ops = {evaluate, accept, product, true, put_best, get_best, put_frame, put_results};
+    static const DesignOps ops = {.evaluate = evaluate,
+                                  .accept = accept,
+                                  .product = product,
+                                  .knows_soft = true,
+                                  .put_best = put_best,
+                                  .get_best = get_best,
+                                  .put_frame = put_frame,
+                                  .put_results = put_results};
     Model *model = run->model;
     size_t cases = (size_t)model->case_count;
     DesignJob job = {.run = run,

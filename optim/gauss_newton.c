@@ -13,7 +13,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { CG_MAX = 60, REFUSED_MAX = 6, WINDOW = 4 };
+enum { CG_MAX = 150, REFUSED_MAX = 6, WINDOW = 4 };
 
 static const double CG_TOL = 1e-2, LEFT_MAX = 1e-2; /* parts of the gradient, and of F */
 static const double MU_FIRST = 0.3, MU_UP = 1.5, MU_LEAST = 0.1, NU_FIRST = 10, DOWN = 5, UP = 5;
