@@ -181,10 +181,10 @@ static bool go_on(void *self)
     return !progress_interrupted();
 }
 
-static void product(void *self, const double *v, double *out)
+static void product(void *self, const double *v, double soft, double *out)
 {
     DesignRun *d = self;
-    d->ops->product(d->self, v, out);
+    d->ops->product(d->self, v, soft, out);
 }
 
 static bool recall(void *self, double *u)
@@ -310,6 +310,7 @@ RunStatus design_run(Run *run, const DesignOps *ops, void *self, const double *u
                        .evaluate = evaluate,
                        .accept = accept,
                        .product = product,
+                       .knows_soft = ops->knows_soft,
                        .recall = recall,
                        .go_on = go_on};
     double *start = work + 4 * n;

@@ -19,7 +19,8 @@ typedef struct Evaluated {
 typedef struct DesignOps {
     double (*evaluate)(void *self, const double *u, double *gradient, Evaluated *evaluated);
     void (*accept)(void *self);
-    void (*product)(void *self, const double *v, double *out);
+    void (*product)(void *self, const double *v, double soft, double *out);
+    bool knows_soft; /* Problem.knows_soft */
 
     /* The best design's state in a slot; get_best makes u, with that state, the best design, if the slot *has
      * it. */

@@ -36,9 +36,9 @@ static void accept(void *self)
     static_design_accept(((DesignJob *)self)->sd);
 }
 
-static void product(void *self, const double *v, double *out)
+static void product(void *self, const double *v, double soft, double *out)
 {
-    static_design_product(((DesignJob *)self)->sd, v, out);
+    static_design_product(((DesignJob *)self)->sd, v, soft, out);
 }
 
 /* ---- The best design's state: x, where its factor stands, what the terms remember, of each case ---- */
@@ -174,7 +174,14 @@ static LoadCase *make_cases(Model *model)
 
 RunStatus job_design(Run *run, Error *err)
 {
-    static const DesignOps ops = {evaluate, accept, product, put_best, get_best, put_frame, put_results};
+    static const DesignOps ops = {.evaluate = evaluate,
+                                  .accept = accept,
+                                  .product = product,
+                                  .knows_soft = true,
+                                  .put_best = put_best,
+                                  .get_best = get_best,
+                                  .put_frame = put_frame,
+                                  .put_results = put_results};
     Model *model = run->model;
     size_t cases = (size_t)model->case_count;
     DesignJob job = {.run = run,

@@ -48,8 +48,9 @@ static void accept(void *self)
     trajectory_accept(((TrajectoryJob *)self)->t);
 }
 
-static void product(void *self, const double *v, double *out)
+static void product(void *self, const double *v, double soft, double *out)
 {
+    (void)soft;
     trajectory_product(((TrajectoryJob *)self)->t, v, out);
 }
 
@@ -183,7 +184,12 @@ static bool put_results(void *self, int first, const char *status, Error *err)
 
 RunStatus job_trajectory(Run *run, Error *err)
 {
-    static const DesignOps ops = {evaluate, accept, product, put_best, get_best, NULL, put_results};
+    static const DesignOps ops = {.evaluate = evaluate,
+                                  .accept = accept,
+                                  .product = product,
+                                  .put_best = put_best,
+                                  .get_best = get_best,
+                                  .put_results = put_results};
     Model *model = run->model;
     const TimeScene *time = &run->scene->time;
     ModelCase *c = &model->cases[0];

@@ -1,16 +1,27 @@
-/* Levenberg-Marquardt, matrix-free: min |r + J d|^2 + mu |d|^2 by conjugate gradients with products J^T J v,
- * mu down after a success and up after a failure, bounds by projection. It stalls where an equilibrium is
- * about to snap (J grows without limit in the soft mode): after three refused steps in a row L-BFGS goes on
- * from the best point. Constants measured in docs/optimisers.md. */
+/* Levenberg-Marquardt, matrix-free: min |r + J d|^2 + mu |d|^2 + nu |d|_S^2 by conjugate gradients with
+ * products J^T J v, bounds by projection. Near a snap-through J grows without limit in the soft mode:
+ * - the gradient is hardly anything else. Conjugate gradients that stop at a part of the gradient would move
+ *   that mode alone, into the snap; so they go on until little of F is left to gain.
+ * - a step is soon too long for that mode, and mu, which would shorten it, stops all others first. S measures
+ *   steps in the state, soft modes most (Problem.product): after a refused step nu holds these and lets the
+ *   others go.
+ * mu and nu go down after a success and up after a failure. After some refused steps in a row, or successes
+ * that bring little, L-BFGS goes on from the best point. Constants measured in docs/optimisers.md. */
 #include "base/memory.h"
 #include "optim/best.h"
 #include <float.h>
 #include <math.h>
 #include <string.h>
 
-enum { CG_MAX = 60, REFUSED_MAX = 3, WINDOW = 4 };
+enum { CG_MAX = 150, REFUSED_MAX = 6, WINDOW = 4 };
 
-static const double CG_TOL = 1e-2, DAMPING_FIRST = 1e-2, DAMPING_DOWN = 5, DAMPING_UP = 5, GAIN_MIN = 0.05;
+static const double CG_TOL = 1e-2, LEFT_MAX = 1e-2; /* parts of the gradient, and of F */
+static const double MU_FIRST = 0.3, MU_UP = 1.5, MU_LEAST = 0.1, NU_FIRST = 10, DOWN = 5, UP = 5;
+static const double BOLD = 1.2, GAIN_MIN = 0.05;
+
+typedef struct Damping {
+    double mu, nu;
+} Damping;
 
 typedef struct Cg {
     double *step, *residual, *direction, *product, *trial, *trial_gradient; /* [n] */
@@ -24,11 +35,11 @@ static double dot(int n, const double *a, const double *b)
     return sum;
 }
 
-/* out = (J^T J) v over the free unknowns. F is the sum of squares, its gradient g = 2 J^T r, and products
- * come as 2 J^T J v. */
-static void product(Best *best, const Cg *cg, const double *v, double *out)
+/* out = (J^T J + nu S) v over the free unknowns. F is the sum of squares, its gradient g = 2 J^T r, and
+ * products come as 2 J^T J v. */
+static void product(Best *best, const Cg *cg, const double *v, double nu, double *out)
 {
-    best->problem->product(best->problem->self, v, out);
+    best->problem->product(best->problem->self, v, nu, out);
     best->info.products++;
     for (int i = 0; i < best->problem->n; i++)
         if (cg->held[i]) out[i] = 0;
@@ -52,18 +63,20 @@ static double curvature_scale(const Best *best, const Cg *cg)
     return sum / (2 * fabs(best->objective) + DBL_MIN);
 }
 
-/* (J^T J + damping) step = -gradient by conjugate gradients. */
-static void solve_step(Best *best, Cg *cg, double damping)
+/* (J^T J + nu S + mu) step = -gradient by conjugate gradients. No eigenvalue is below mu, so with the
+ * residual q the model is at most q'q/(2 mu) above its minimum. */
+static void solve_step(Best *best, Cg *cg, Damping damping)
 {
     int n = best->problem->n;
     for (int i = 0; i < n; i++) {
         cg->step[i] = 0;
         cg->residual[i] = cg->direction[i] = cg->held[i] ? 0 : -best->gradient[i];
     }
-    double size = dot(n, cg->residual, cg->residual), stop = CG_TOL * CG_TOL * size;
+    double size = dot(n, cg->residual, cg->residual);
+    double stop = fmin(CG_TOL * CG_TOL * size, 2 * damping.mu * LEFT_MAX * fabs(best->objective));
     for (int k = 0; k < CG_MAX && size > stop; k++) {
-        product(best, cg, cg->direction, cg->product);
-        for (int i = 0; i < n; i++) cg->product[i] += damping * cg->direction[i];
+        product(best, cg, cg->direction, damping.nu, cg->product);
+        for (int i = 0; i < n; i++) cg->product[i] += damping.mu * cg->direction[i];
         double curvature = dot(n, cg->direction, cg->product);
         if (!(curvature > 0)) return;
         double a = size / curvature;
@@ -77,7 +90,7 @@ static void solve_step(Best *best, Cg *cg, double damping)
     }
 }
 
-static void find_trial(Best *best, Cg *cg, double damping)
+static void find_trial(Best *best, Cg *cg, Damping damping)
 {
     const Problem *problem = best->problem;
     find_held(best, cg);
@@ -86,25 +99,52 @@ static void find_trial(Best *best, Cg *cg, double damping)
         cg->trial[i] = fmin(fmax(best->u[i] + cg->step[i], problem->lower[i]), problem->upper[i]);
 }
 
+/* d'J^T J d/d'd of the refused step d: conjugate gradients that are cut short damp by themselves, and a mu
+ * far below would give the same step again. With them d'(J^T J + mu) d = -gradient'd, also where d is
+ * recalled. */
+static double curvature_met(const Best *best, const Cg *cg, double mu)
+{
+    double slope = 0, length2 = 0;
+    for (int i = 0; i < best->problem->n; i++) {
+        double d = cg->trial[i] - best->u[i];
+        slope += best->gradient[i] * d;
+        length2 += d * d;
+    }
+    return length2 > 0 ? -slope / length2 - mu : 0;
+}
+
+/* After a refused step. Where a part snaps F grows a little; a step that makes it grow much was too bold
+ * altogether. */
+static Damping more_damping(const Best *best, const Cg *cg, double refused, Damping from)
+{
+    if (best->problem->knows_soft && refused < BOLD * fabs(best->objective))
+        return (Damping){MU_UP * from.mu, fmax(NU_FIRST, UP * from.nu)};
+    return (Damping){fmax(UP * from.mu, MU_LEAST * curvature_met(best, cg, from.mu)), from.nu};
+}
+
 static void run(Best *best, Cg *cg, const double *u)
 {
     const Problem *problem = best->problem;
     best_evaluate(best, u, cg->trial_gradient);
     if (!isfinite(best->objective)) return;
     find_held(best, cg);
-    double damping = DAMPING_FIRST * curvature_scale(best, cg), history[WINDOW];
+    Damping damping = {MU_FIRST * curvature_scale(best, cg), 0};
+    double history[WINDOW];
     for (int k = 0; k < WINDOW; k++) history[k] = INFINITY;
-    for (int step = 0, refused = 0; refused < REFUSED_MAX && !best_is_done(best); step++) {
+    for (int step = 0, refused = 0; refused < REFUSED_MAX && !best_is_done(best);) {
         double before = best->objective;
-        if (!(before < (1 - GAIN_MIN) * history[step % WINDOW])) return;
-        history[step % WINDOW] = before;
         if (!problem->recall(problem->self, cg->trial)) find_trial(best, cg, damping);
-        bool better = best_evaluate(best, cg->trial, cg->trial_gradient) < before;
-        if (!better)
-            damping *= DAMPING_UP;
-        else if (refused == 0)
-            damping /= DAMPING_DOWN; /* after a refusal it stays: the model has just been found too bold */
-        refused = better ? 0 : refused + 1;
+        double value = best_evaluate(best, cg->trial, cg->trial_gradient);
+        if (!(value < before)) {
+            damping = more_damping(best, cg, value, damping);
+            refused++;
+            continue;
+        }
+        if (!(best->objective < (1 - GAIN_MIN) * history[step % WINDOW])) return;
+        history[step++ % WINDOW] = before;
+        if (refused == 0) /* after a refusal it stays: the model has just been found too bold */
+            damping = (Damping){damping.mu / DOWN, damping.nu / DOWN};
+        refused = 0;
     }
 }
 

@@ -18,8 +18,10 @@ typedef struct Problem {
     /* The last evaluation is the best so far: start the next ones from it. */
     void (*accept)(void *self);
 
-    /* out = J^T J v at the best point; for Gauss-Newton. */
-    void (*product)(void *self, const double *v, double *out);
+    /* out = J^T J v at the best point; for Gauss-Newton. With knows_soft, soft > 0 adds a product that damps
+     * the modes in which the state gives way most; at 1 as strongly as F pulls at them. */
+    void (*product)(void *self, const double *v, double soft, double *out);
+    bool knows_soft;
 
     /* The next trial of a run that is being replayed: Gauss-Newton then need not find it. False: there is
      * none. */

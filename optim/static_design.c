@@ -12,6 +12,7 @@ typedef struct Work {
     double *dp, *dx, *w;          /* directions and gradients                               */
     double *hp;                   /* [params] second parameter vector                       */
     double *memory, *best_memory; /* what the terms remember                          */
+    double soft_pull;             /* find_soft_pull of the best design; < 0: not known yet  */
     bool factored_best;           /* the system's factor is that of the best design         */
     bool has_best;
 } Work;
@@ -167,18 +168,19 @@ typedef struct Share {
     StaticDesign *sd;
     int first, stride;
     const double *u, *v;
+    double soft;
     bool with_gradient;
     CaseInfo *info;
 } Share;
 
-static void product_case(StaticDesign *sd, int c, const double *v);
+static void product_case(StaticDesign *sd, int c, const double *v, double soft);
 
 static void *do_share(void *data)
 {
     const Share *share = data;
     for (int c = share->first; c < share->sd->design->case_count; c += share->stride)
         if (share->v)
-            product_case(share->sd, c, share->v);
+            product_case(share->sd, c, share->v, share->soft);
         else
             share->info[c] = evaluate_case(share->sd, c, share->u, share->with_gradient);
     return NULL;
@@ -231,6 +233,7 @@ void static_design_accept(StaticDesign *sd)
                (size_t)system_dof_count(sys) * sizeof *work->x);
         memcpy(work->best_memory, work->memory, (size_t)system_memory_count(sys) * sizeof *work->memory);
         work->has_best = work->factored_best = true;
+        work->soft_pull = -1;
     }
 }
 
@@ -247,34 +250,83 @@ void static_design_restore(StaticDesign *sd, const double *u)
         design_apply(sd->design, c, u, sd->work[c].best_p);
         sd->work[c].has_best = true;
         sd->work[c].factored_best = false;
+        sd->work[c].soft_pull = -1;
     }
 }
 
-/* The case's part of J^T J v over the parameters, in work->dp. */
-static void product_case(StaticDesign *sd, int c, const double *v)
+/* hx, hp += the objectives' own products with (work->dx, work->hp). */
+static void add_products(StaticDesign *sd, int c, double *hx, double *hp)
 {
     Work *work = &sd->work[c];
     const LoadCase *load = &sd->cases[c];
-    memset(work->hp, 0, (size_t)sd->params->size * sizeof *work->hp);
-    memset(work->dp, 0, (size_t)sd->params->size * sizeof *work->dp);
-    if (!factor_best(sd, c)) return;
-    design_forward(sd->design, c, sd->best_u, v, work->hp);
-    tangent(sd, c, work->hp, work->dx);
-    memset(work->w, 0, (size_t)system_dof_count(load->sys) * sizeof *work->w);
     for (int k = 0; k < load->objective_count; k++) {
         const Objective *objective = &load->objectives[k];
         if (objective->ops->product)
             objective->ops->product(objective->self, load->weight * objective->weight, load->x, work->best_p,
-                                    work->dx, work->hp, work->w, work->dp);
+                                    work->dx, work->hp, hx, hp);
     }
+}
+
+/* y = H^-1 x of the positions alone. */
+static void soften(System *sys, const double *x, double *y)
+{
+    int positions = system_position_count(sys);
+    memset(y, 0, (size_t)system_dof_count(sys) * sizeof *y);
+    memcpy(y, x, (size_t)positions * sizeof *y);
+    system_solve(sys, y, y);
+    for (int i = positions; i < system_dof_count(sys); i++) y[i] = 0;
+}
+
+static double dot(int n, const double *a, const double *b)
+{
+    double sum = 0;
+    for (int i = 0; i < n; i++) sum += a[i] * b[i];
+    return sum;
+}
+
+/* a'(d2F/dx2) a / a'H^-1 a with a = H^-1 dF/dx, in which the mode that is about to snap prevails: x'H^-1 x
+ * times this is as much as the objectives pull at that mode. */
+static double find_soft_pull(StaticDesign *sd, int c)
+{
+    Work *work = &sd->work[c];
+    System *sys = sd->cases[c].sys;
+    Point at = point(&sd->cases[c], sd->cases[c].x, work->best_p);
+    int dofs = system_dof_count(sys);
+    evaluate_objective(sd, c, &at, work->dp); /* leaves -a in dx */
+    memset(work->hp, 0, (size_t)sd->params->size * sizeof *work->hp);
+    memset(work->w, 0, (size_t)dofs * sizeof *work->w);
+    add_products(sd, c, work->w, work->dp);
+    double pull = dot(dofs, work->dx, work->w);
+    soften(sys, work->dx, work->w);
+    double softness = dot(dofs, work->dx, work->w);
+    return softness > 0 ? pull / softness : 0;
+}
+
+/* The case's part of J^T J v over the parameters, in work->dp. */
+static void product_case(StaticDesign *sd, int c, const double *v, double soft)
+{
+    Work *work = &sd->work[c];
+    const LoadCase *load = &sd->cases[c];
+    int dofs = system_dof_count(load->sys);
+    bool factored = factor_best(sd, c);
+    if (factored && soft > 0 && work->soft_pull < 0) work->soft_pull = find_soft_pull(sd, c);
+    memset(work->hp, 0, (size_t)sd->params->size * sizeof *work->hp);
+    memset(work->dp, 0, (size_t)sd->params->size * sizeof *work->dp);
+    if (!factored) return;
+    design_forward(sd->design, c, sd->best_u, v, work->hp);
+    tangent(sd, c, work->hp, work->dx);
+    memset(work->w, 0, (size_t)dofs * sizeof *work->w);
+    if (soft > 0) soften(load->sys, work->dx, work->w);
+    for (int i = 0; soft > 0 && i < dofs; i++) work->w[i] *= soft * work->soft_pull;
+    add_products(sd, c, work->w, work->dp);
     Point at = point(load, load->x, work->best_p);
     adjoint(load->sys, &at, work->w, work->dp);
 }
 
-void static_design_product(StaticDesign *sd, const double *v, double *out)
+void static_design_product(StaticDesign *sd, const double *v, double soft, double *out)
 {
     memset(out, 0, (size_t)sd->design->size * sizeof *out);
-    do_cases((Share){.sd = sd, .v = v});
+    do_cases((Share){.sd = sd, .v = v, .soft = soft});
     for (int c = 0; c < sd->design->case_count; c++)
         design_transpose(sd->design, c, sd->best_u, sd->work[c].dp, out);
 }

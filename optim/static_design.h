@@ -63,8 +63,10 @@ CaseState static_design_state(StaticDesign *sd, int load_case);
 void static_design_restore(StaticDesign *sd, const double *u);
 
 /* out = J^T J v at the best design (of the sum of squares), 2 J^T J as the gradient is 2 J^T r; the first
- * call after an evaluation that was not accepted factors again. */
-void static_design_product(StaticDesign *sd, const double *v, double *out);
+ * call after an evaluation that was not accepted factors again. soft > 0 adds as much of the tangent's dx^T
+ * H^-1 dx, which counts soft modes more: at 1 the mode that is about to snap as much as the objectives pull
+ * at it. */
+void static_design_product(StaticDesign *sd, const double *v, double soft, double *out);
 
 /* dF/dp[params] of one case at the best design, weighted, in the blocks' own units; p of it may be had too.
  */

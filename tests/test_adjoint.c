@@ -118,6 +118,59 @@ static double tangent_slope(const Fixture *f, const double *v)
     return slope;
 }
 
+/* dx = -H^-1 (d2E/dx dp) dp of a case along v, and a = H^-1 dF/dx, at the equilibrium that was accepted; of
+ * positions only. */
+static void find_directions(const Fixture *f, int c, const double *v, double *dx, double *a)
+{
+    const LoadCase *load = &f->cases[c];
+    int dofs = shell_dof_count(f->shell);
+    double *p = mem_copy(load->p, (size_t)f->shell->params.size, sizeof *p);
+    double *dp = mem_alloc((size_t)f->shell->params.size, sizeof *dp);
+    design_apply(&f->design, c, f->u, p);
+    design_forward(&f->design, c, f->u, v, dp);
+    Point at = {.x = load->x, .p = p};
+    system_param_forward(load->sys, &at, dp, dx);
+    system_solve(load->sys, dx, dx);
+    memset(a, 0, (size_t)dofs * sizeof *a);
+    f->objective.ops->value(f->objective.self, load->weight, load->x, p, a, dp);
+    system_solve(load->sys, a, a);
+    for (int i = system_position_count(load->sys); i < dofs; i++) dx[i] = a[i] = 0;
+    mem_free(p);
+    mem_free(dp);
+}
+
+static double dot(int n, const double *a, const double *b)
+{
+    double sum = 0;
+    for (int i = 0; i < n; i++) sum += a[i] * b[i];
+    return sum;
+}
+
+/* The product's two parts, with the target of all positions: 2 |dx|^2, and dx'H^-1 dx 2 a'a/a'H^-1 a. */
+static void check_product(Fixture *f, const double *v, double *out)
+{
+    int n = f->design.size, dofs = shell_dof_count(f->shell);
+    double plain = 0, soft = 0;
+    double *dx = mem_alloc(3 * (size_t)dofs, sizeof *dx), *a = dx + dofs, *y = a + dofs;
+    for (int c = 0; c < 2; c++) {
+        System *sys = f->cases[c].sys;
+        double weight = f->cases[c].weight;
+        find_directions(f, c, v, dx, a);
+        plain += 2 * weight * dot(dofs, dx, dx);
+        system_solve(sys, a, y);
+        double pull = 2 * weight * dot(dofs, a, a) / dot(dofs, a, y);
+        system_solve(sys, dx, y);
+        soft += pull * dot(dofs, dx, y);
+    }
+    static_design_product(f->sd, v, 0, out);
+    double off = dot(n, v, out) / plain - 1;
+    static_design_product(f->sd, v, 0.5, out);
+    double soft_off = (dot(n, v, out) - plain) / (0.5 * soft) - 1;
+    print_message("product %.1e, of soft modes %.1e (%.2f of it)\n", fabs(off), fabs(soft_off), soft / plain);
+    assert_true(fabs(off) < 1e-10 && fabs(soft_off) < 1e-8);
+    mem_free(dx);
+}
+
 static void check(BendingModel bending, const char *block, Unknown unknown)
 {
     long blocks = mem_live_count();
@@ -137,6 +190,7 @@ static void check(BendingModel bending, const char *block, Unknown unknown)
     assert_true(isfinite(F));
     static_design_accept(f.sd);
     for (int i = 0; i < n; i++) v[i] = random_signed(&random), slope += g[i] * v[i];
+    check_product(&f, v, moved);
     double tangent = tangent_slope(&f, v), h = 1e-3;
     for (int k = 0; k < 4; k++) {
         static const double steps[4] = {-2, -1, 1, 2};
