@@ -50,9 +50,10 @@ static bool read_row(Scan *scan, Table *table, Room *room)
 bool table_parse(const char *path, const char *text, long length, int columns, Table *table, Error *err)
 {
     Room room = {0};
+    size_t left = (size_t)length;
     *table = (Table){.columns = columns};
-    Scan scan = scan_start(path, text, (size_t)length, '#', ",;", err);
-    bool ok = true;
+    bool ok = scan_skip_mark(path, &text, &left, err);
+    Scan scan = scan_start(path, text, left, '#', ",;", err);
     while (ok && scan_line(&scan)) ok = read_row(&scan, table, &room);
     if (ok && table->rows == 0) ok = error_set(err, "%s: there are no numbers in it", path);
     if (!ok) table_clear(table);
