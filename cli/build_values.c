@@ -80,11 +80,14 @@ static bool from_table(const Build *b, Key at, const char *path, int width, doub
     return ok;
 }
 
+/* The group of faces or edges; a name may stand for both. */
 static const MeshGroup *find_group(const Build *b, Key at, const char *name, int dim, const char *needed)
 {
-    const MeshGroup *group = mesh_group(b->mesh, name);
-    if (group && group->dim == dim) return group;
-    if (group)
+    const MeshGroup *group = mesh_group(b->mesh, name, dim);
+    if (group) return group;
+    bool other = false;
+    for (int d = 0; d <= 2; d++) other |= mesh_group(b->mesh, name, d) != NULL;
+    if (other)
         yaml_refuse(b->file, at.text, "the group '%s' has no %s", name, needed);
     else
         yaml_refuse(b->file, at.text, "the mesh has no group '%s'", name);
@@ -161,6 +164,20 @@ static bool fold_table(const Build *b, Key at, const char *path, double *values)
     return ok;
 }
 
+static bool put_on_edges(const Build *b, Key at, const MeshGroup *group, double value, double *values)
+{
+    const Mesh *mesh = b->mesh;
+    for (int k = 0; k < group->count; k++) {
+        int v = group->members[2 * k], w = group->members[2 * k + 1], edge = mesh_edge(mesh, v, w);
+        if (edge < 0)
+            return yaml_refuse(b->file, at.text,
+                               "the line from vertex %d to %d of the group is no edge of the mesh",
+                               mesh->file_vertex[v], mesh->file_vertex[w]);
+        values[edge] = value;
+    }
+    return true;
+}
+
 bool build_edge_numbers(const Build *b, Key at, const NumberScene *scene, double *values)
 {
     int count = b->mesh->edge_count;
@@ -176,11 +193,7 @@ bool build_edge_numbers(const Build *b, Key at, const NumberScene *scene, double
     for (int g = 0; ok && g < scene->groups_count; g++) {
         Key at_group = key("%s.groups.%s", at.text, scene->groups[g].group);
         const MeshGroup *group = find_group(b, at_group, scene->groups[g].group, 1, "edges");
-        ok = group != NULL;
-        for (int k = 0; ok && k < group->count; k++) {
-            int edge = mesh_edge(b->mesh, group->members[2 * k], group->members[2 * k + 1]);
-            if (edge >= 0) values[edge] = scene->groups[g].value;
-        }
+        ok = group && put_on_edges(b, at_group, group, scene->groups[g].value, values);
     }
     return ok && check_covered(b, at, values, count, 1, "edges are") &&
            check_range(b, at, values, count, true);

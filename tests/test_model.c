@@ -190,7 +190,7 @@ static void test_unknowns(void **state)
     if (!b.model) fail_msg("%s", yaml_report(b.file));
     const Shell *shell = b.model->shell;
     const double *p = params_of(&b, 0, 0);
-    const MeshGroup *hub = mesh_group(shell->mesh, "hub");
+    const MeshGroup *hub = mesh_group(shell->mesh, "hub", 2);
     assert_true(p[shell->young + hub->members[0]] == 2e5 && p[shell->fold] == 2);
     assert_true(fabs(p[shell->magnetization + 2] - 5e3) <= 10 && p[shell->magnetization + 2] != 5e3);
     assert_int_equal(b.model->design.size, 3 * shell->mesh->face_count + 7 + shell->mesh->edge_count);
