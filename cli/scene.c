@@ -119,7 +119,8 @@ static const YamlTable mesh_table = {
     .doc = "The triangle mesh of the shell at rest, from a file or generated.",
     .fields = (const YamlField[]){
         {YAML_FILE(MeshScene, file), .one_of = 1, .required = true, .short_form = true,
-         .doc = "an OBJ, PLY (ASCII) or Gmsh .msh (2.2 or 4.1, ASCII) file"},
+         .doc = "an OBJ, PLY, STL or Gmsh .msh (2.2 or 4.1, ASCII) file; docs/meshes.md says what is read of "
+                "it"},
         {YAML_CHOICE(MeshScene, shape), .one_of = 1, .required = true,
          .choices = YAML_NAMES("sheet", "strip", "hexagram", "disc", "kirigami"),
          .doc = "a generated mesh in the plane z = 0"},

@@ -6,89 +6,16 @@
 #include <string.h>
 #include <strings.h>
 
-/* ---- Growing ---- */
-
-static size_t larger(size_t count)
-{
-    return 2 * count + 64;
-}
-
-void reader_add_vertex(MeshReader *reader, const double *x, int line)
-{
-    MeshFile *mesh = reader->mesh;
-    size_t count = (size_t)mesh->vertex_count;
-    if (count == reader->vertex_room) {
-        mesh->vertices = mem_resize(mesh->vertices, count, larger(count), sizeof *mesh->vertices);
-        mesh->vertex_line = mem_resize(mesh->vertex_line, count, larger(count), sizeof *mesh->vertex_line);
-        reader->vertex_room = larger(count);
-    }
-    memcpy(mesh->vertices[count], x, sizeof *mesh->vertices);
-    mesh->vertex_line[count] = line;
-    mesh->vertex_count++;
-}
-
-void reader_add_face(MeshReader *reader, const int *vertices, int line)
-{
-    MeshFile *mesh = reader->mesh;
-    size_t count = (size_t)mesh->face_count;
-    if (count == reader->face_room) {
-        mesh->faces = mem_resize(mesh->faces, count, larger(count), sizeof *mesh->faces);
-        mesh->face_line = mem_resize(mesh->face_line, count, larger(count), sizeof *mesh->face_line);
-        reader->face_room = larger(count);
-    }
-    memcpy(mesh->faces[count], vertices, sizeof *mesh->faces);
-    mesh->face_line[count] = line;
-    mesh->face_count++;
-}
-
-int reader_group(MeshReader *reader, const char *name, int length, int dim)
-{
-    MeshFile *mesh = reader->mesh;
-    for (int g = 0; g < mesh->group_count; g++) {
-        const MeshGroup *group = &mesh->groups[g];
-        if (group->dim == dim && strlen(group->name) == (size_t)length &&
-            !strncmp(group->name, name, (size_t)length))
-            return g;
-    }
-    size_t count = (size_t)mesh->group_count;
-    mesh->groups = mem_resize(mesh->groups, count, count + 1, sizeof *mesh->groups);
-    reader->group_room = mem_resize(reader->group_room, count, count + 1, sizeof *reader->group_room);
-    mesh->groups[count] = (MeshGroup){.name = mem_format("%.*s", length, name), .dim = dim};
-    return mesh->group_count++;
-}
-
-void reader_group_add(MeshReader *reader, int index, const int *members)
-{
-    MeshGroup *group = &reader->mesh->groups[index];
-    size_t width = group->dim == 1 ? 2 : 1, used = (size_t)group->count * width;
-    if (used + width > reader->group_room[index]) {
-        group->members = mem_resize(group->members, reader->group_room[index], larger(used), sizeof(int));
-        reader->group_room[index] = larger(used);
-    }
-    memcpy(group->members + used, members, width * sizeof *members);
-    group->count++;
-}
-
 /* ---- Reading ---- */
 
 static const struct {
     const char *format;
-    char comment;
+    bool is_text; /* else the reader finds out */
     bool (*read)(Scan *scan, MeshReader *reader);
-} formats[] = {{"obj", '#', mesh_read_obj}, {"ply", 0, mesh_read_ply}, {"msh", 0, mesh_read_msh}};
-
-/* Groups without members say nothing. */
-static void drop_empty_groups(MeshFile *mesh)
-{
-    int kept = 0;
-    for (int g = 0; g < mesh->group_count; g++) {
-        if (mesh->groups[g].count > 0)
-            mesh->groups[kept++] = mesh->groups[g];
-        else
-            mem_free(mesh->groups[g].name);
-    }
-    mesh->group_count = kept;
-}
+} formats[] = {{"obj", true, mesh_read_obj},
+               {"ply", true, mesh_read_ply},
+               {"msh", true, mesh_read_msh},
+               {"stl", false, mesh_read_stl}};
 
 bool mesh_file_parse(const char *path, const char *format, const char *text, long length, MeshFile *mesh,
                      Error *err)
@@ -99,18 +26,19 @@ bool mesh_file_parse(const char *path, const char *format, const char *text, lon
         MeshReader reader = {.mesh = mesh};
         size_t left = (size_t)length;
         mesh->path = mem_text(path);
-        bool ok = scan_skip_mark(path, &text, &left, err);
-        Scan scan = scan_start(path, text, left, formats[k].comment, "", err);
+        bool ok = !formats[k].is_text || scan_skip_mark(path, &text, &left, err);
+        Scan scan = scan_start(path, text, left, 0, "", err);
         ok = ok && formats[k].read(&scan, &reader);
-        if (ok && mesh->face_count == 0) ok = error_set(err, "%s: there are no triangles in it", path);
-        mem_free(reader.group_room);
-        if (ok)
-            drop_empty_groups(mesh);
-        else
-            mesh_file_clear(mesh);
+        if (ok && mesh->face_count == 0) ok = error_set(err, "%s: there are no faces in it", path);
+        reader_clear(&reader);
+        if (!ok) mesh_file_clear(mesh);
         return ok;
     }
-    return error_set(err, "%s: a mesh is read from .obj, .ply or .msh", path);
+    return error_set(
+        err,
+        "%s: a mesh is read from .obj, .ply, .stl or .msh; convert others (3MF, OFF, VTK, ..) with MeshLab, "
+        "or with `meshio convert`",
+        path);
 }
 
 bool mesh_file_read(const char *path, MeshFile *mesh, Error *err)
@@ -193,9 +121,9 @@ void mesh_file_clear(MeshFile *mesh)
     *mesh = (MeshFile){0};
 }
 
-const MeshGroup *mesh_file_group(const MeshFile *mesh, const char *name)
+const MeshGroup *mesh_file_group(const MeshFile *mesh, const char *name, int dim)
 {
     for (int g = 0; g < mesh->group_count; g++)
-        if (!strcmp(mesh->groups[g].name, name)) return &mesh->groups[g];
+        if (mesh->groups[g].dim == dim && !strcmp(mesh->groups[g].name, name)) return &mesh->groups[g];
     return NULL;
 }

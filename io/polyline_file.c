@@ -118,12 +118,14 @@ static bool read_obj(PolylineReader *reader, const char *text, size_t length)
     MeshReader vertices = {.mesh = &mesh};
     bool lines = false, faces = false;
     bool ok = scan_skip_mark(reader->path, &text, &length, reader->err);
-    Scan scan = scan_start(reader->path, text, length, '#', "", reader->err);
+    Scan scan = scan_start(reader->path, text, length, 0, "", reader->err);
+    obj_begin(&scan);
     ok = ok && read_vertices(&scan, &vertices, &lines, &faces);
     if (ok && faces && !lines)
         ok = error_set(reader->err, "%s: there are faces in it and no lines", reader->path);
     if (ok && lines) {
-        scan = scan_start(reader->path, text, length, '#', "", reader->err);
+        scan = scan_start(reader->path, text, length, 0, "", reader->err);
+        obj_begin(&scan);
         ok = read_lines(&scan, reader, &mesh);
     } else {
         polyline_begin(reader);

@@ -89,9 +89,9 @@ static void test_obj(void **state)
     check_refused("obj", "v 0 0 0\nl 1 2\n", "a:2: vertex 2 does not exist: there are 1");
     check_refused("obj", "v 0 0 0\nl 1\n", "a:2: a line needs two vertices at least");
     check_refused("obj", "v 0 0\nl 1 2\n", "a:1: a coordinate is missing");
-    check_refused("obj", "v 0 0 0\nl 1 -2\n", "a:2: vertex -2 is before the first one: there are 1 so far");
+    check_refused("obj", "v 0 0 0\nl 1 -2\n", "a:2:5: vertex -2 is before the first one: there are 1 so far");
     check_refused("obj", "v 0 0 0\nl 1 x\n",
-                  "a:2: 'x' is no vertex: they count from 1, or from -1 backwards");
+                  "a:2:5: 'x' is no vertex: they count from 1, or from -1 backwards");
 }
 
 /* A page of a square decimetre whose unit is a millimetre. */
