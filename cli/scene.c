@@ -129,7 +129,7 @@ static const YamlTable mesh_table = {
                 "of a kirigami: its side"},
         {YAML_INTEGERS(MeshScene, cells), .range = "[1, inf)", .min_count = 2, .max_count = 2,
          .doc = "of a sheet: cells along x and y"},
-        {YAML_INTEGER(MeshScene, n), .range = "[1, inf)",
+        {YAML_INTEGER(MeshScene, n), .also = YAML_NAMES("divisions", "false"), .range = "[1, inf)",
          .doc = "of a strip: cells along x; of a hexagram: 12 n^2 faces; of a disc: 6 n^2 faces; "
                 "of a kirigami: cells of its checkerboard along a side, odd"},
         {YAML_CHOICE(MeshScene, pattern), .choices = YAML_NAMES("right", "alternate", "crossed"),
@@ -200,6 +200,9 @@ static const YamlTable ball_table = {
          .doc = "its radius"},
         {0}}};
 
+/* Of `on`, which is `true` to readers of YAML 1.1. */
+#define ON_NAMES YAML_NAMES("region", "true")
+
 #define SELECTION_ROWS(S)                                                                                    \
     {YAML_INTEGERS(S, vertices), .range = "[0, inf)", .doc = "these vertices of the mesh file, from 0"},     \
         {YAML_ROWS(S, box), .unit = "m", .min_count = 2, .max_count = 2,                                     \
@@ -232,15 +235,15 @@ static const YamlTable load_table = {
     .name = "loads",
     .size = sizeof(LoadScene),
     .doc = "A dead load: a force that keeps its direction.",
-    .fields = (const YamlField[]){
-        {YAML_VECTOR(LoadScene, force), .unit = "N", .one_of = 1, .required = true,
-         .doc = "in all, shared equally by the vertices"},
-        {YAML_VECTOR(LoadScene, line), .unit = "N/m", .one_of = 1, .required = true,
-         .doc = "per rest length of boundary edges"},
-        {YAML_VECTOR(LoadScene, area), .unit = "N/m^2", .one_of = 1, .required = true,
-         .doc = "per rest area"},
-        {YAML_OPTIONAL(LoadScene, on, &selection_table), .doc = "where; everywhere if absent"},
-        {0}}};
+    .fields = (const YamlField[]){{YAML_VECTOR(LoadScene, force), .unit = "N", .one_of = 1, .required = true,
+                                   .doc = "in all, shared equally by the vertices"},
+                                  {YAML_VECTOR(LoadScene, line), .unit = "N/m", .one_of = 1, .required = true,
+                                   .doc = "per rest length of boundary edges"},
+                                  {YAML_VECTOR(LoadScene, area), .unit = "N/m^2", .one_of = 1,
+                                   .required = true, .doc = "per rest area"},
+                                  {YAML_OPTIONAL(LoadScene, on, &selection_table), .also = ON_NAMES,
+                                   .doc = "where; everywhere if absent"},
+                                  {0}}};
 
 /* ---- Load cases ---- */
 
@@ -263,7 +266,8 @@ static const YamlTable target_table = {
         {YAML_NUMBER(TargetScene, width), .unit = "m", .range = "(0, inf)",
          .doc = "of strokes, at half their height"},
         WHERE_ROW(TargetScene),
-        {YAML_OPTIONAL(TargetScene, on, &selection_table), .doc = "for these vertices only"},
+        {YAML_OPTIONAL(TargetScene, on, &selection_table), .also = ON_NAMES,
+         .doc = "for these vertices only"},
         {0}}};
 
 static const YamlTable case_table = {
@@ -355,9 +359,17 @@ static const YamlTable output_table = {
 const YamlTable scene_table = {
     .name = "scene",
     .size = sizeof(Scene),
-    .doc = "A scene file is YAML (or JSON); its first key is `slender: 1`, the format's version. Numbers are "
-           "SI, or carry a "
-           "unit: `1 mm`, `20 mT`, `0.3 MPa`.",
+    .doc =
+        "A scene file is YAML (or JSON) with the key `slender: 1`, the format's version. Numbers are SI, or "
+        "carry a "
+        "unit: `1 mm`, `20 mT`, `0.3 MPa`; in quotes they are numbers too. The order of keys means nothing. "
+        "Aliases (`*name`) are copies of what was anchored (`&name`) before; there are no merge keys (`<<`) "
+        "and no "
+        "tags. A key may have other names, which stand beside it: `on` and `n` are `true` and `false` to "
+        "programs "
+        "that read YAML 1.1 (PyYAML, R), and are read as such again; `region` and `divisions` pass through "
+        "all of "
+        "them.",
     .fields = (const YamlField[]){
         {YAML_CHOICE(Scene, job), .choices = job_names, .required = true, .doc = "what to do"},
         {YAML_OPTIONAL(Scene, shell, &shell_table), .one_of = 1, .required = true,

@@ -55,25 +55,59 @@ bool mesh_file_read(const char *path, MeshFile *mesh, Error *err)
 
 /* ---- Writing ---- */
 
+/* The groups of each face: those of face f are groups[first[f]] to groups[first[f + 1] - 1], ascending. */
+typedef struct FaceGroups {
+    int *first, *groups;
+} FaceGroups;
+
+static FaceGroups face_groups(const MeshFile *mesh)
+{
+    FaceGroups of = {.first = mem_alloc((size_t)mesh->face_count + 2, sizeof(int))};
+    int *end =
+        of.first + 1; /* [face + 1]: the counts, their sums, and at last where each face's groups end */
+    for (int g = 0; g < mesh->group_count; g++)
+        for (int k = 0; mesh->groups[g].dim == 2 && k < mesh->groups[g].count; k++)
+            end[mesh->groups[g].members[k] + 1]++;
+    for (int f = 0; f < mesh->face_count; f++) end[f + 1] += end[f];
+    of.groups = mem_alloc((size_t)end[mesh->face_count], sizeof(int));
+    for (int g = 0; g < mesh->group_count; g++)
+        for (int k = 0; mesh->groups[g].dim == 2 && k < mesh->groups[g].count; k++)
+            of.groups[end[mesh->groups[g].members[k]]++] = g;
+    return of;
+}
+
+static bool same_groups(const FaceGroups *of, int f, int other)
+{
+    int count = of->first[f + 1] - of->first[f];
+    return count == of->first[other + 1] - of->first[other] &&
+           !memcmp(of->groups + of->first[f], of->groups + of->first[other], (size_t)count * sizeof(int));
+}
+
+/* A group's name as one word: another reader takes a blank for its end, and # for a comment. */
+static void write_name(FILE *file, const char *name)
+{
+    fputc(' ', file);
+    for (const char *c = name; *c; c++) {
+        bool unfit = (unsigned char)*c <= ' ' || (*c == '#' && c == name) || (*c == '\\' && !c[1]);
+        fputc(unfit ? '_' : *c, file);
+    }
+}
+
 /* OBJ has groups of faces and, by `l`, of edges. A face is in one g line with all its groups. */
 static void write_faces(FILE *file, const MeshFile *mesh)
 {
-    char *member = mem_alloc((size_t)mesh->face_count * (size_t)mesh->group_count + 1, 1);
-    size_t stride = (size_t)mesh->group_count;
-    for (int g = 0; g < mesh->group_count; g++)
-        for (int k = 0; mesh->groups[g].dim == 2 && k < mesh->groups[g].count; k++)
-            member[(size_t)mesh->groups[g].members[k] * stride + (size_t)g] = 1;
+    FaceGroups of = face_groups(mesh);
     for (int f = 0; f < mesh->face_count; f++) {
-        const char *now = member + (size_t)f * stride, *before = f > 0 ? now - stride : NULL;
-        if (stride && (!before || memcmp(now, before, stride))) {
+        if (f == 0 ? of.first[1] > 0 : !same_groups(&of, f, f - 1)) {
             fprintf(file, "g");
-            for (size_t g = 0; g < stride; g++)
-                if (now[g]) fprintf(file, " %s", mesh->groups[g].name);
+            for (int k = of.first[f]; k < of.first[f + 1]; k++)
+                write_name(file, mesh->groups[of.groups[k]].name);
             fprintf(file, "\n");
         }
         fprintf(file, "f %d %d %d\n", mesh->faces[f][0] + 1, mesh->faces[f][1] + 1, mesh->faces[f][2] + 1);
     }
-    mem_free(member);
+    mem_free(of.first);
+    mem_free(of.groups);
 }
 
 static void write_groups(FILE *file, const MeshFile *mesh)
@@ -81,7 +115,9 @@ static void write_groups(FILE *file, const MeshFile *mesh)
     for (int g = 0; g < mesh->group_count; g++) {
         const MeshGroup *group = &mesh->groups[g];
         if (group->dim == 2) continue;
-        fprintf(file, "g %s\n", group->name);
+        fprintf(file, "g");
+        write_name(file, group->name);
+        fprintf(file, "\n");
         for (int k = 0; k < group->count; k++)
             if (group->dim == 1)
                 fprintf(file, "l %d %d\n", group->members[2 * k] + 1, group->members[2 * k + 1] + 1);

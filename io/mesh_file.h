@@ -33,7 +33,7 @@ bool mesh_file_read(const char *path, MeshFile *mesh, Error *err);
 bool mesh_file_parse(const char *path, const char *format, const char *text, long length, MeshFile *mesh,
                      Error *err);
 
-/* Writes OBJ with groups; numbers keep every bit (%.17g). */
+/* Writes OBJ with groups; numbers keep every bit (%.17g), blanks in names become _. */
 bool mesh_file_write_obj(const char *path, const MeshFile *mesh, Error *err);
 
 /* Frees what the struct owns and empties it. */

@@ -146,10 +146,10 @@ static void schema_value(Text *text, const YamlField *row)
 
 /* The property, its description beside it: draft-07 ignores what stands beside a $ref, so both go into allOf.
  */
-static void schema_property(Text *text, const YamlField *row)
+static void schema_property(Text *text, const YamlField *row, const char *key)
 {
     text_add(text, "        ");
-    text_add_quoted(text, row->key);
+    text_add_quoted(text, key);
     text_add(text, ": {\"description\": ");
     char *doc = mem_format("%s%s%s%s", row->doc, row->unit ? " [" : "", row->unit ? row->unit : "",
                            row->unit ? "]" : "");
@@ -169,7 +169,11 @@ static void schema_object(Text *text, const YamlTable *table, bool root)
         text_add(text, "        \"slender\": {\"description\": \"the format's version\", \"const\": 1}");
     for (const YamlField *row = table->fields; row->key; row++) {
         if (root || row != table->fields) text_add(text, ",\n");
-        schema_property(text, row);
+        schema_property(text, row, row->key);
+        for (int k = 0; row->also && row->also[k]; k++) {
+            text_add(text, ",\n");
+            schema_property(text, row, row->also[k]);
+        }
     }
     text_add(text, "\n      }");
     int required = 0;
@@ -262,7 +266,9 @@ static void manual_kind(Text *text, const YamlField *row)
 
 static void manual_row(Text *text, const YamlField *row)
 {
-    text_add(text, "| `%s` | ", row->key);
+    text_add(text, "| `%s`", row->key);
+    for (int k = 0; row->also && row->also[k]; k++) text_add(text, ", `%s`", row->also[k]);
+    text_add(text, " | ");
     manual_kind(text, row);
     text_add(text, " | ");
     if (row->fallback)

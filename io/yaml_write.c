@@ -101,7 +101,7 @@ static void write_row(Text *text, const YamlField *row, const void *scene, int d
 {
     const void *member = row_member(row, scene);
     text_indent(text, depth);
-    text_add(text, "%s: ", row->key);
+    text_add(text, row->also ? "\"%s\": " : "%s: ", row->key); /* what some take for a boolean, in quotes */
     switch (row->kind) {
     case FIELD_NUMBER:
         write_number(text, *(const double *)member);

@@ -67,7 +67,8 @@ static bool mark_group(const Mesh *mesh, const char *name, bool *mark, Error *er
     }
     if (found) return true;
     Text known = {0};
-    for (int g = 0; g < mesh->group_count; g++) append(&known, "%s%s", g ? ", " : "", mesh->groups[g].name);
+    for (int g = 0; g < mesh->group_count && known.length + 1 < sizeof known.text; g++)
+        append(&known, "%s%s", g ? ", " : "", mesh->groups[g].name);
     return error_set(err, "group: there is no group '%s'; the mesh has %s", name,
                      known.length ? known.text : "none");
 }

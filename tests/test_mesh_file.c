@@ -106,6 +106,26 @@ static void test_msh41(void **state)
     mesh_file_clear(&mesh);
 }
 
+/* Names that would be other names, comments or joined lines to a reader of OBJ. */
+static void test_write_names(void **state)
+{
+    (void)state;
+    Error err;
+    MeshFile mesh = parse("obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"), again;
+    MeshGroup groups[] = {
+        {"left half", 2, 1, (int[]){0}}, {"#1", 2, 1, (int[]){0}}, {"a\\", 1, 1, (int[]){0, 1}}};
+    mesh.groups = groups, mesh.group_count = 3;
+    assert_true(mesh_file_write_obj("test_write_names.obj", &mesh, &err));
+    mesh.groups = NULL, mesh.group_count = 0;
+    if (!mesh_file_read("test_write_names.obj", &again, &err)) fail_msg("%s", err.text);
+    check_group(&again, "left_half", 2, 1, (int[]){0});
+    check_group(&again, "_1", 2, 1, (int[]){0});
+    check_group(&again, "a_", 1, 1, (int[]){0, 1});
+    mesh_file_clear(&again);
+    mesh_file_clear(&mesh);
+    unlink("test_write_names.obj");
+}
+
 /* A byte order mark is no part of the first word. */
 static void test_mark(void **state)
 {
@@ -223,7 +243,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_obj),   cmocka_unit_test(test_ply),
                                        cmocka_unit_test(test_msh22), cmocka_unit_test(test_msh41),
-                                       cmocka_unit_test(test_mark),  cmocka_unit_test(test_write),
-                                       cmocka_unit_test(test_table)};
+                                       cmocka_unit_test(test_mark),  cmocka_unit_test(test_write_names),
+                                       cmocka_unit_test(test_write), cmocka_unit_test(test_table)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

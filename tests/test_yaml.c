@@ -51,7 +51,7 @@ static const YamlTable outer_table = {
          .doc = "a choice"},
         {YAML_INTEGER_VECTOR(Outer, pair), .doc = "two whole numbers"},
         {YAML_CHOICES(Outer, kinds), .choices = YAML_NAMES("one", "two", "three"), .doc = "choices"},
-        {YAML_BOOL(Outer, flag), .doc = "a switch"},
+        {YAML_BOOL(Outer, flag), .also = YAML_NAMES("false"), .doc = "a switch"},
         {YAML_TEXT(Outer, text), .doc = "a text"},
         {YAML_FILE(Outer, file), .doc = "a file"},
         {YAML_TEXTS(Outer, texts), .doc = "texts"},
@@ -251,7 +251,8 @@ static void test_manual(void **state)
     assert_int_equal(yaml_error_count(file), 0);
     for (const YamlField *row = outer_table.fields; row->key; row++) {
         char key[64];
-        snprintf(key, sizeof key, "| `%s` |", row->key);
+        snprintf(key, sizeof key, row->also ? "| `%s`, `%s` |" : "| `%s` |", row->key,
+                 row->also ? row->also[0] : "");
         assert_non_null(strstr(manual, key));
         snprintf(key, sizeof key, "\"%s\": {", row->key);
         assert_non_null(strstr(schema, key));
@@ -260,6 +261,40 @@ static void test_manual(void **state)
     yaml_destroy(file);
     mem_free(schema);
     mem_free(manual);
+}
+
+static Outer load(const char *text)
+{
+    Outer o;
+    YamlFile *file = parse(text);
+    if (!yaml_load(file, &outer_table, &o)) fail_msg("%s", yaml_report(file));
+    yaml_destroy(file);
+    return o;
+}
+
+/* What other programs make of a scene: keys in alphabetical order, numbers in quotes, aliases, another name
+ * for a key that is a boolean to them, pairs of surrogates. */
+static void test_foreign(void **state)
+{
+    (void)state;
+    long blocks = mem_live_count();
+    Outer o =
+        load("count: '7'\nfalse: \"true\"\nlength: '1.5e-3'\nlist: &id001 ['1', 2 mT]\nslender: 1\n"
+             "vector: &v ['0', 0, -9.81]\ninner: '2 MPa'\noptional: &v 5\nentries: [*v, {value: *v}]\n");
+    assert_true(o.count == 7 && o.flag && o.length == 1.5e-3 && o.list[0] == 1 && o.vector[2] == -9.81);
+    assert_true(o.inner.value == 2e6 && o.entries_count == 2 && o.entries[0].value == 5 &&
+                o.entries[1].value == 5);
+    char *text = yaml_write(&outer_table, &o);
+    assert_non_null(strstr(text, "\n\"flag\": true\n"));
+    yaml_clear(&outer_table, &o);
+    o = load(text);
+    assert_true(o.flag);
+    mem_free(text);
+    yaml_clear(&outer_table, &o);
+    o = load("{\"text\": \"\\ud83e\\uddf2\\/\\\\ud83e\", \"length\": 1, \"slender\": 1}");
+    assert_string_equal(o.text, "\xf0\x9f\xa7\xb2/\\ud83e");
+    yaml_clear(&outer_table, &o);
+    assert_int_equal(mem_live_count(), blocks);
 }
 
 /* Windows begins its files with a byte order mark. */
@@ -284,9 +319,10 @@ static void test_mark(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_kinds),  cmocka_unit_test(test_defaults),  cmocka_unit_test(test_round_trip),
-        cmocka_unit_test(test_units),  cmocka_unit_test(test_overrides), cmocka_unit_test(test_difference),
-        cmocka_unit_test(test_report), cmocka_unit_test(test_mark),      cmocka_unit_test(test_manual)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_kinds),      cmocka_unit_test(test_defaults),
+                                       cmocka_unit_test(test_round_trip), cmocka_unit_test(test_units),
+                                       cmocka_unit_test(test_overrides),  cmocka_unit_test(test_difference),
+                                       cmocka_unit_test(test_report),     cmocka_unit_test(test_mark),
+                                       cmocka_unit_test(test_foreign),    cmocka_unit_test(test_manual)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
