@@ -12,9 +12,13 @@
 typedef struct Build {
     YamlFile *file;
     const Mesh *mesh;
-    double time;      /* s, of formulas */
-    TimedFlux *timed; /* where a uniform field that depends on time is left; NULL: in statics */
+    double time;       /* s, of formulas */
+    TimedFlux *timed;  /* where a uniform field that depends on time is left; NULL: in statics */
+    double mesh_scale; /* of the mesh's file; 1 where it is generated */
 } Build;
+
+/* What the models of a scene share; statics. */
+Build build_start(const Scene *scene, const Mesh *mesh, YamlFile *file);
 
 /* The path of a key: key("cases[%d].target", c). */
 typedef struct Key {
@@ -31,6 +35,16 @@ Formula *build_formula(const Build *b, Key at, char *const *formula, int count, 
 extern const char *const build_variables[], *const build_variables_time[];
 enum { BUILD_VARIABLES = 5 };
 void build_position(double *variables, const double *x, double time);
+
+/* The mesh that a scene describes; NULL after a refusal: a key that its shape does not take, too. */
+Mesh *build_mesh(const MeshScene *scene, YamlFile *yaml, MeshReport *report);
+
+/* A mesh file with its coordinates times scale. */
+bool build_read_mesh(const char *path, double scale, MeshFile *file, Error *err);
+
+/* A file with all vertices of the mesh, in another state; scale NAN: that of the mesh's file. Refused where
+ * it is 100 times as large as the mesh, or as small. */
+bool build_state(const Build *b, Key at, const char *path, double scale, MeshFile *file);
 
 /* values[face_count], values[edge_count], values[face_count][3]. */
 bool build_face_numbers(const Build *b, Key at, const NumberScene *scene, double *values);

@@ -155,18 +155,14 @@ bool build_flux(const Build *b, Key at, const FluxScene *scene, Shell *shell, do
 
 /* ---- Targets ---- */
 
-static bool target_from_file(const Build *b, Key at, const char *path, double (*target)[3])
+static bool target_from_file(const Build *b, Key at, const TargetScene *scene, double (*target)[3])
 {
     MeshFile file = {0};
-    Error err;
-    if (!mesh_file_read(path, &file, &err)) return yaml_refuse(b->file, at.text, "%s", err.text);
-    bool ok = file.vertex_count == b->mesh->file_vertex_count ||
-              yaml_refuse(b->file, at.text, "%s has %d vertices, and the mesh %d: they must be the same ones",
-                          path, file.vertex_count, b->mesh->file_vertex_count);
-    for (int v = 0; ok && v < b->mesh->vertex_count; v++)
+    if (!build_state(b, at, scene->file, scene->scale, &file)) return false;
+    for (int v = 0; v < b->mesh->vertex_count; v++)
         memcpy(target[v], file.vertices[b->mesh->file_vertex[v]], sizeof *target);
     mesh_file_clear(&file);
-    return ok;
+    return true;
 }
 
 static bool target_from_image(const Build *b, Key at, const TargetScene *scene, double (*target)[3])
@@ -245,7 +241,7 @@ bool build_target(const Build *b, Key at, const TargetScene *scene, double (*tar
         return yaml_refuse(b->file, at.text, "strokes need `width`, e.g. width: 6 mm");
     bool ok = true;
     if (scene->file)
-        ok = target_from_file(b, key("%s.file", at.text), scene->file, target);
+        ok = target_from_file(b, key("%s.file", at.text), scene, target);
     else if (scene->height_map)
         ok = target_from_image(b, key("%s.height_map", at.text), scene, target);
     else if (scene->strokes_count)

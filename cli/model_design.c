@@ -308,7 +308,7 @@ static bool add_dmp(Model *model, const Scene *scene, const Build *b)
 
 bool model_design(Model *model, const Scene *scene, YamlFile *file)
 {
-    Build b = {.file = file, .mesh = model->shell ? model->shell->mesh : NULL, .time = scene->time.at};
+    Build b = build_start(scene, model->shell ? model->shell->mesh : NULL, file);
     bool trajectory = scene->job == JOB_TRAJECTORY;
     if (!scene->design)
         return yaml_refuse(file, "job", "a %s job needs the key `design`",

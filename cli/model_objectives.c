@@ -240,7 +240,7 @@ static bool add_objective(Model *model, const Build *b, Key at, const Scene *sce
 
 bool model_objectives(Model *model, const Scene *scene, YamlFile *file)
 {
-    Build b = {.file = file, .mesh = model->shell ? model->shell->mesh : NULL, .time = scene->time.at};
+    Build b = build_start(scene, model->shell ? model->shell->mesh : NULL, file);
     bool ok = true;
     for (int c = 0; c < model->case_count; c++)
         for (int k = 0; k < scene->design->objectives_count; k++)

@@ -246,7 +246,8 @@ static bool check_keys(const Scene *scene, YamlFile *file)
 
 bool model_rod(Model *model, const Scene *scene, YamlFile *file)
 {
-    Build b = {file, NULL, scene->time.at, model_is_motion(scene->job) ? &model->flux_of_time : NULL};
+    Build b = build_start(scene, NULL, file);
+    b.timed = model_is_motion(scene->job) ? &model->flux_of_time : NULL;
     model->body = &rod_ops;
     model->point_count = scene->rod->elements + 1;
     model->load_steps = LOAD_STEPS;

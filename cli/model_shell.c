@@ -4,75 +4,8 @@
 #include "cli/build.h"
 #include "cli/job.h"
 #include "shell/rigid.h"
-#include "shell/shapes.h"
 #include <math.h>
 #include <string.h>
-
-/* ---- The mesh ---- */
-
-static bool generate(const MeshScene *scene, YamlFile *yaml, MeshFile *file)
-{
-    Error err;
-    double size[2] = {scene->size[0], scene->size_count > 1 ? scene->size[1] : scene->size[0]};
-    bool ok = false;
-    switch ((MeshShape)scene->shape) {
-    case MESH_SHEET:
-        ok = shape_sheet(size, scene->cells, (ShapePattern)scene->pattern, file, &err);
-        break;
-    case MESH_STRIP:
-        ok = shape_strip(size[0], size[1], scene->n, (ShapePattern)scene->pattern, file, &err);
-        break;
-    case MESH_HEXAGRAM:
-        ok = shape_hexagram(size[0], scene->n, file, &err);
-        break;
-    case MESH_DISC:
-        ok = shape_disc(size[0], scene->n, file, &err);
-        break;
-    case MESH_KIRIGAMI:
-        ok = shape_kirigami(size[0], scene->n, file, &err);
-        break;
-    }
-    return ok || yaml_refuse(yaml, "shell.mesh", "%s", err.text);
-}
-
-/* What each shape needs, in one sentence. */
-static bool check_shape(const MeshScene *scene, YamlFile *yaml)
-{
-    bool rectangle = scene->shape == MESH_SHEET || scene->shape == MESH_STRIP;
-    if (scene->size_count != (rectangle ? 2 : 1))
-        return yaml_refuse(yaml, "shell.mesh", "a %s needs `size`: %s",
-                           rectangle ? "sheet or strip" : "hexagram, disc or kirigami",
-                           rectangle ? "its length and width, e.g. [65 mm, 65 mm]"
-                                     : "its diameter or side, e.g. 40 mm");
-    if (scene->shape == MESH_SHEET && scene->cells_count != 2)
-        return yaml_refuse(yaml, "shell.mesh", "a sheet needs `cells` along x and y, e.g. [64, 64]");
-    if (scene->shape != MESH_SHEET && scene->n == YAML_ABSENT)
-        return yaml_refuse(yaml, "shell.mesh",
-                           "a strip, hexagram, disc or kirigami needs `n`, the number of its divisions");
-    return true;
-}
-
-static bool read_mesh_file(const MeshScene *scene, YamlFile *yaml, MeshFile *file)
-{
-    if (!scene->file) return check_shape(scene, yaml) && generate(scene, yaml, file);
-    Error err;
-    if (!mesh_file_read(scene->file, file, &err)) return yaml_refuse(yaml, "shell.mesh.file", "%s", err.text);
-    for (int i = 0; i < 3 * file->vertex_count; i++) file->vertices[i / 3][i % 3] *= scene->scale;
-    return true;
-}
-
-static Mesh *build_mesh(const MeshScene *scene, YamlFile *yaml, MeshReport *report)
-{
-    MeshFile file = {0};
-    Error err;
-    Mesh *mesh = NULL;
-    if (read_mesh_file(scene, yaml, &file)) {
-        mesh = mesh_create(&file, scene->weld, report, &err);
-        if (!mesh) yaml_refuse(yaml, "shell.mesh", "%s", err.text);
-    }
-    mesh_file_clear(&file);
-    return mesh;
-}
 
 /* ---- What is held ---- */
 
@@ -183,14 +116,11 @@ static bool read_pose(const Build *b, const PoseScene *pose, double *x)
     if (!pose) return true;
     const Mesh *mesh = b->mesh;
     MeshFile file = {0};
-    Error err;
-    if (!mesh_file_read(pose->file, &file, &err))
-        return yaml_refuse(b->file, "shell.pose.file", "%s", err.text);
-    bool ok = file.vertex_count == mesh->file_vertex_count && file.face_count == mesh->face_count;
+    if (!build_state(b, key("shell.pose.file"), pose->file, pose->scale, &file)) return false;
+    bool ok = file.face_count == mesh->face_count;
     for (int f = 0; ok && f < mesh->face_count; f++)
         for (int i = 0; i < 3; i++) ok = ok && mesh->vertex_of_file[file.faces[f][i]] == mesh->faces[f][i];
-    if (!ok)
-        yaml_refuse(b->file, "shell.pose.file", "%s has other vertices or faces than the mesh", pose->file);
+    if (!ok) yaml_refuse(b->file, "shell.pose.file", "%s has other faces than the mesh", pose->file);
     for (int v = 0; ok && v < mesh->vertex_count; v++)
         memcpy(x + 3 * v, file.vertices[mesh->file_vertex[v]], 3 * sizeof *x);
     mesh_file_clear(&file);
@@ -260,6 +190,7 @@ bool model_shell(Model *model, const Scene *scene, YamlFile *file)
     model->point_count = mesh->vertex_count;
     model->load_steps = 1;
     model->step_cap = newton_default().step_cap;
-    Build b = {file, mesh, scene->time.at, model_is_motion(scene->job) ? &model->flux_of_time : NULL};
+    Build b = build_start(scene, mesh, file);
+    b.timed = model_is_motion(scene->job) ? &model->flux_of_time : NULL;
     return fill(model, scene, &b);
 }

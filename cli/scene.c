@@ -34,7 +34,7 @@ const YamlTable where_table = {
              .doc = "an expression of the rest position x, y, z, r"},                                        \
             {YAML_MAP(NumberScene, groups, &id##_group_table), .one_of = 1, .required = true,                \
              .doc = "a value for each named group"},                                                         \
-            {YAML_NUMBER(NumberScene, other), .unit = u, .range = r,                                         \
+            {YAML_NUMBER(NumberScene, other), .unit = u, .range = r, .with = YAML_NAMES("groups"),           \
              .doc = "with groups: the value elsewhere"},                                                     \
             WHERE_ROW(NumberScene),                                                                          \
             {0}}}
@@ -67,7 +67,8 @@ const YamlTable magnetization_table = {
          .doc = "three expressions of the rest position x, y, z, r of a face's barycentre, in A/m"},
         {YAML_MAP(VectorScene, groups, &magnetization_group_table), .one_of = 1, .required = true,
          .doc = "a value for each named group"},
-        {YAML_VECTOR(VectorScene, other), .unit = "A/m", .doc = "with groups: the value elsewhere"},
+        {YAML_VECTOR(VectorScene, other), .unit = "A/m", .with = YAML_NAMES("groups"),
+         .doc = "with groups: the value elsewhere"},
         WHERE_ROW(VectorScene),
         {0}}};
 
@@ -137,7 +138,7 @@ static const YamlTable mesh_table = {
         {YAML_NUMBER(MeshScene, scale), .range = "(0, inf)", .fallback = "1",
          .doc = "of a file: factor on its coordinates, 1.0e-3 for a file in millimetres"},
         {YAML_NUMBER(MeshScene, weld), .unit = "m", .range = "[0, inf)", .fallback = "0",
-         .doc = "joins vertices that are closer than this; 0: none"},
+         .doc = "of a file: joins vertices that are closer than this; 0: none"},
         {0}}};
 
 static const YamlTable pose_table = {
@@ -146,6 +147,8 @@ static const YamlTable pose_table = {
     .doc = "A state to start from.",
     .fields = (const YamlField[]){{YAML_FILE(PoseScene, file), .required = true, .short_form = true,
                                    .doc = "a mesh file with the faces of the mesh"},
+                                  {YAML_NUMBER(PoseScene, scale), .range = "(0, inf)",
+                                   .doc = "factor on its coordinates; that of the mesh if absent"},
                                   {0}}};
 
 const YamlTable velocity_table = {
@@ -262,9 +265,12 @@ static const YamlTable target_table = {
          .doc = "segments x0, y0, x1, y1: ridges of height, round across"},
         {YAML_TEXTS(TargetScene, formula), .one_of = 1, .required = true, .short_form = true, .min_count = 3,
          .max_count = 3, .doc = "three expressions, in m, of the rest position x, y, z, r"},
-        {YAML_NUMBER(TargetScene, height), .unit = "m", .doc = "of a height map or strokes"},
-        {YAML_NUMBER(TargetScene, width), .unit = "m", .range = "(0, inf)",
+        {YAML_NUMBER(TargetScene, height), .unit = "m", .with = YAML_NAMES("height_map", "strokes"),
+         .doc = "of a height map or strokes"},
+        {YAML_NUMBER(TargetScene, width), .unit = "m", .range = "(0, inf)", .with = YAML_NAMES("strokes"),
          .doc = "of strokes, at half their height"},
+        {YAML_NUMBER(TargetScene, scale), .range = "(0, inf)", .with = YAML_NAMES("file"),
+         .doc = "of a file: factor on its coordinates; that of the mesh if absent"},
         WHERE_ROW(TargetScene),
         {YAML_OPTIONAL(TargetScene, on, &selection_table), .also = ON_NAMES,
          .doc = "for these vertices only"},

@@ -80,6 +80,8 @@ typedef struct YamlField {
     const char *range;    /* of each number, SI: "(0, inf)", "[0, 0.5]", "(-inf, 0]"; NULL: any     */
     const char *const *choices; /* NULL-terminated: YAML_NAMES("hinge", "midedge")                        */
     int min_count, max_count;   /* of a list's entries; 0: no limit                                       */
+    const char *const *with;    /* keys of the table, NULL-terminated: this one has a meaning beside one of
+                                 * them only, and must have no default. NULL: always                      */
     const char *const *also;    /* other names of a key that YAML 1.1 takes for a boolean: what it becomes
                                  * there, and a word that passes through. NULL: none                      */
 } YamlField;
@@ -150,8 +152,8 @@ void yaml_destroy(YamlFile *file);
 bool yaml_override(YamlFile *file, const char *assignment);
 
 /* Fills the table's struct, defaults included. The file must have the key `slender: 1`, which no table
- * lists. The order of keys means nothing, and a number or boolean in quotes is one. Paths are taken relative to the scene file. False if the file has any error; the struct is then
- * empty (zeroed). */
+ * lists. The order of keys means nothing, and a number or boolean in quotes is one. Paths are taken relative
+ * to the scene file. False if the file has any error; the struct is then empty (zeroed). */
 bool yaml_load(YamlFile *file, const YamlTable *table, void *scene);
 
 /* Frees what the struct owns, by the same table, and zeroes it. (libyaml already has a yaml_free.) */

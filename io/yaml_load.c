@@ -335,6 +335,23 @@ static bool group_is_given(const YamlTable *table, const Node *node, int group)
     return false;
 }
 
+/* Is one of the keys there that give this one its meaning? */
+static bool has_meaning(const YamlTable *table, const YamlField *row, const Node *node)
+{
+    for (int k = 0; row->with && row->with[k]; k++)
+        if (is_given(table_row(table, row->with[k]), node)) return true;
+    return !row->with;
+}
+
+static bool refuse_meaningless(Load *load, const YamlField *row, const Node *item)
+{
+    char what[200] = "has a meaning beside ";
+    for (int k = 0; row->with[k]; k++)
+        snprintf(what + strlen(what), sizeof what - strlen(what), "%s%s", k ? " or " : "", row->with[k]);
+    snprintf(what + strlen(what), sizeof what - strlen(what), " only");
+    return load_wrong(load, item, what);
+}
+
 static bool load_row(Load *load, const YamlTable *table, const YamlField *row, const Node *node, void *scene)
 {
     int count, index = row_index(row, node, &count);
@@ -343,6 +360,8 @@ static bool load_row(Load *load, const YamlTable *table, const YamlField *row, c
     set_absent(row, scene);
     if (count > 1) {
         ok = load_wrong(load, node, "is there twice, under two of its names");
+    } else if (index >= 0 && !has_meaning(table, row, node)) {
+        ok = refuse_meaningless(load, row, node->items[index]);
     } else if (index >= 0) {
         ok = load_value(load, row, node->items[index], scene);
     } else if (row->required && !row->one_of) {

@@ -322,6 +322,8 @@ void yaml_check_table(const YamlTable *table)
         for (const YamlField *row = tables.tables[k]->fields; row->key; row++) {
             check_row(row);
             assert(row->table != tables.tables[k]);
+            for (int i = 0; row->with && row->with[i]; i++)
+                assert(table_row(tables.tables[k], row->with[i]) && !row->fallback);
             if (!row->fallback) continue;
             /* The default must load: a table of this one row, filled from nothing. */
             YamlTable alone = {.name = "default",
