@@ -4,14 +4,15 @@
 
 /* ---- Values ---- */
 
-const YamlTable where_table = {
-    .name = "where",
-    .size = sizeof(WhereScene),
-    .doc = "Helper names of a formula, each an expression of the formula's variables and of the names before "
-           "it.",
-    .fields = (const YamlField[]){
-        {YAML_TEXT(WhereScene, formula), .required = true, .short_form = true, .doc = "the expression"},
-        {0}}};
+const YamlTable where_table = {.name = "where",
+                               .size = sizeof(WhereScene),
+                               .doc = "Helper names of a formula, each an expression of the formula's "
+                                      "variables and of the other names; their order "
+                                      "means nothing.",
+                               .fields =
+                                   (const YamlField[]){{YAML_TEXT(WhereScene, formula), .required = true,
+                                                        .short_form = true, .doc = "the expression"},
+                                                       {0}}};
 
 /* A number per face or edge, with the unit and range of its parameter. */
 #define NUMBER_TABLE(id, of, u, r)                                                                           \

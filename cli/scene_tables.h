@@ -11,5 +11,5 @@ extern const YamlTable spline_table;                                 /* scene_sp
 #define WHERE_ROW(S)                                                                                         \
     {                                                                                                        \
         YAML_MAP(S, where, &where_table), .with = YAML_NAMES("formula"),                                     \
-                                          .doc = "names for parts of the formula, evaluated in order"        \
+                                          .doc = "names for parts of the formula"                            \
     }

@@ -1,11 +1,12 @@
 #include "io/formula.h"
 #include "base/memory.h"
+#include <ctype.h>
 #include <muParserDLL.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-enum { MAX_LENGTH = 4096, MAX_DEPTH = 200 };
+enum { MAX_LENGTH = 4096, MAX_DEPTH = 200, MAX_HELPERS = 200 };
 
 /* One expression as muParser holds it. */
 typedef struct Expression {
@@ -109,9 +110,48 @@ static bool parse(Formula *formula, Expression *item, const char *text, int slot
     return true;
 }
 
+/* Is the name a word of the expression? */
+static bool mentions(const char *expression, const char *name)
+{
+    size_t length = strlen(name);
+    for (const char *c = expression; length && (c = strstr(c, name)) != NULL; c++) {
+        bool begins = c == expression || (!isalnum((unsigned char)c[-1]) && c[-1] != '_');
+        if (begins && !isalnum((unsigned char)c[length]) && c[length] != '_') return true;
+    }
+    return false;
+}
+
+/* Does a helper name another one that is not placed yet? (Its own name may be a variable's.) */
+static bool waits(const FormulaHelper *helpers, int count, int helper, const bool *placed)
+{
+    for (int k = 0; k < count; k++)
+        if (k != helper && !placed[k] && mentions(helpers[helper].expression, helpers[k].name)) return true;
+    return false;
+}
+
+/* An order in which each helper comes after those that it names, as near to the given one as can be. */
+static bool order_helpers(const FormulaHelper *helpers, int count, int order[MAX_HELPERS], Error *err)
+{
+    bool placed[MAX_HELPERS] = {false};
+    if (count > MAX_HELPERS) return error_set(err, "more than %d names beside a formula", MAX_HELPERS);
+    for (int n = 0, next = 0; n < count; n++) {
+        for (next = 0; next < count && (placed[next] || waits(helpers, count, next, placed));) next++;
+        if (next == count) {
+            for (next = 0; placed[next];) next++;
+            return error_set(err, "the name '%.60s' beside the formula depends on itself, through others",
+                             helpers[next].name);
+        }
+        placed[next] = true;
+        order[n] = next;
+    }
+    return true;
+}
+
 Formula *formula_create(const char *const *expressions, int expression_count, const FormulaHelper *helpers,
                         int helper_count, const char *const *variables, Error *err)
 {
+    int order[MAX_HELPERS];
+    if (!order_helpers(helpers, helper_count, order, err)) return NULL;
     Formula *formula = mem_alloc(1, sizeof *formula);
     while (variables[formula->variable_count]) formula->variable_count++;
     formula->helper_count = helper_count;
@@ -122,11 +162,12 @@ Formula *formula_create(const char *const *expressions, int expression_count, co
     formula->items = mem_alloc((size_t)(helper_count + expression_count), sizeof *formula->items);
     for (int i = 0; i < formula->variable_count; i++) formula->names[i] = mem_text(variables[i]);
     for (int i = 0; i < helper_count; i++)
-        formula->names[formula->variable_count + i] = mem_text(helpers[i].name);
+        formula->names[formula->variable_count + i] = mem_text(helpers[order[i]].name);
 
     bool ok = true;
     for (int i = 0; ok && i < helper_count; i++)
-        ok = parse(formula, &formula->items[i], helpers[i].expression, formula->variable_count + i, err);
+        ok = parse(formula, &formula->items[i], helpers[order[i]].expression, formula->variable_count + i,
+                   err);
     for (int i = 0; ok && i < expression_count; i++)
         ok = parse(formula, &formula->items[helper_count + i], expressions[i], (int)slots, err);
     if (ok) return formula;

@@ -1,8 +1,8 @@
 /* formula.h - expressions of named variables, evaluated by muParser through its C interface.
  *
  * A Formula holds one or more expressions over the same variables, with named helpers (`where`) that are
- * evaluated first, in order. Beside muParser's own functions there are pi, e, atan2, mod(a, b), clamp(x, lo,
- * hi), step(x). */
+ * evaluated first, each after those that it names, in whatever order they are given. Beside muParser's own
+ * functions there are pi, e, atan2, mod(a, b), clamp(x, lo, hi), step(x). */
 #pragma once
 #include "base/error.h"
 

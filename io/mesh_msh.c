@@ -20,16 +20,21 @@ typedef struct Node {
     int vertex;
 } Node;
 
-typedef struct Physical {
+/* What names a physical group or an entity; first in each, for compare_tags. */
+typedef struct Tag {
     int dim;
     long tag;
+} Tag;
+
+typedef struct Physical {
+    Tag at;
     Word name;
 } Physical;
 
 /* Of 4.1: an entity and one of the physical groups it is in. */
 typedef struct Entity {
-    int dim;
-    long tag, physical;
+    Tag at;
+    long physical;
 } Entity;
 
 /* An element of 2.2: one that is in several physical groups is written once for each. */
@@ -68,9 +73,9 @@ static bool line(Msh *msh, const char *section)
 
 /* ---- Groups ---- */
 
-static int compare_physical(const void *a, const void *b)
+static int compare_tags(const void *a, const void *b)
 {
-    const Physical *s = a, *t = b;
+    const Tag *s = a, *t = b;
     return s->dim != t->dim ? (s->dim > t->dim) - (s->dim < t->dim) : (s->tag > t->tag) - (s->tag < t->tag);
 }
 
@@ -79,12 +84,12 @@ static bool read_name(Msh *msh, Physical *name)
 {
     long dim;
     if (!line(msh, "$PhysicalNames") || !integer(msh, "a dimension", 0, 3, &dim) ||
-        !integer(msh, "a tag", -LARGEST, LARGEST, &name->tag))
+        !integer(msh, "a tag", -LARGEST, LARGEST, &name->at.tag))
         return false;
     size_t left = (size_t)(msh->scan->word_end - msh->scan->at);
     const char *open = memchr(msh->scan->at, '"', left), *close = memrchr(msh->scan->at, '"', left);
     if (!open || open == close) return scan_refuse(msh->scan, "a name in quotes is missing");
-    name->dim = (int)dim;
+    name->at.dim = (int)dim;
     name->name = (Word){open + 1, (int)(close - open - 1)};
     return true;
 }
@@ -96,17 +101,17 @@ static bool read_names(Msh *msh)
     msh->names = mem_resize(msh->names, 0, (size_t)count, sizeof *msh->names);
     for (; msh->name_count < count; msh->name_count++)
         if (!read_name(msh, &msh->names[msh->name_count])) return false;
-    qsort(msh->names, (size_t)count, sizeof *msh->names, compare_physical);
+    qsort(msh->names, (size_t)count, sizeof *msh->names, compare_tags);
     return true;
 }
 
 static int group_of(Msh *msh, int dim, long physical)
 {
     char unnamed[40];
-    Physical wanted = {.dim = dim, .tag = physical};
+    Physical wanted = {.at = {dim, physical}};
     const Physical *named = NULL;
     if (msh->name_count)
-        named = bsearch(&wanted, msh->names, (size_t)msh->name_count, sizeof wanted, compare_physical);
+        named = bsearch(&wanted, msh->names, (size_t)msh->name_count, sizeof wanted, compare_tags);
     Word name = {unnamed, snprintf(unnamed, sizeof unnamed, "physical_%ld", physical)};
     if (named) name = named->name;
     return reader_group(msh->reader, name.text, name.length, dim);
@@ -124,15 +129,9 @@ static bool read_entity(Msh *msh, int dim)
         if (!integer(msh, "a physical tag", -LARGEST, LARGEST, &physical)) return false;
         msh->entities = reader_grow(msh->entities, &msh->entity_room, (size_t)msh->entity_count + 1,
                                     sizeof *msh->entities);
-        msh->entities[msh->entity_count++] = (Entity){dim, tag, labs(physical)};
+        msh->entities[msh->entity_count++] = (Entity){{dim, tag}, labs(physical)};
     }
     return true;
-}
-
-static int compare_entities(const void *a, const void *b)
-{
-    const Entity *s = a, *t = b;
-    return s->dim != t->dim ? (s->dim > t->dim) - (s->dim < t->dim) : (s->tag > t->tag) - (s->tag < t->tag);
 }
 
 static bool read_entities(Msh *msh)
@@ -145,25 +144,24 @@ static bool read_entities(Msh *msh)
         for (long k = 0; k < counts[d]; k++)
             if (!read_entity(msh, d)) return false;
     if (msh->entity_count)
-        qsort(msh->entities, (size_t)msh->entity_count, sizeof *msh->entities, compare_entities);
+        qsort(msh->entities, (size_t)msh->entity_count, sizeof *msh->entities, compare_tags);
     return true;
 }
 
 /* The physical groups of an entity: the number of them, from *first on. */
 static int groups_of_entity(const Msh *msh, int dim, long tag, int *first)
 {
-    Entity wanted = {.dim = dim, .tag = tag};
+    Entity wanted = {.at = {dim, tag}};
     int low = 0, high = msh->entity_count, count = 0;
     while (low < high) {
         int middle = low + (high - low) / 2;
-        if (compare_entities(&msh->entities[middle], &wanted) < 0)
+        if (compare_tags(&msh->entities[middle], &wanted) < 0)
             low = middle + 1;
         else
             high = middle;
     }
     *first = low;
-    while (low + count < msh->entity_count && !compare_entities(&msh->entities[low + count], &wanted))
-        count++;
+    while (low + count < msh->entity_count && !compare_tags(&msh->entities[low + count], &wanted)) count++;
     return count;
 }
 
