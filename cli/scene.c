@@ -34,7 +34,7 @@ const YamlTable where_table = {.name = "where",
             {YAML_TEXT(NumberScene, formula), .one_of = 1, .required = true, .short_form = true,             \
              .doc = "an expression of the rest position x, y, z, r"},                                        \
             {YAML_MAP(NumberScene, groups, &id##_group_table), .one_of = 1, .required = true,                \
-             .doc = "a value for each named group"},                                                         \
+             .doc = "a value for each named group; what lies in several has that of the smallest"},          \
             {YAML_NUMBER(NumberScene, other), .unit = u, .range = r, .with = YAML_NAMES("groups"),           \
              .doc = "with groups: the value elsewhere"},                                                     \
             WHERE_ROW(NumberScene),                                                                          \
@@ -67,7 +67,7 @@ const YamlTable magnetization_table = {
          .max_count = 3,
          .doc = "three expressions of the rest position x, y, z, r of a face's barycentre, in A/m"},
         {YAML_MAP(VectorScene, groups, &magnetization_group_table), .one_of = 1, .required = true,
-         .doc = "a value for each named group"},
+         .doc = "a value for each named group; what lies in several has that of the smallest"},
         {YAML_VECTOR(VectorScene, other), .unit = "A/m", .with = YAML_NAMES("groups"),
          .doc = "with groups: the value elsewhere"},
         WHERE_ROW(VectorScene),

@@ -211,6 +211,24 @@ static void test_unknowns(void **state)
     clear(&b);
 }
 
+/* What lies in several groups has the value of the smallest one, in whatever order the scene lists them. */
+static void test_nested_groups(void **state)
+{
+    (void)state;
+    long blocks = mem_live_count();
+    static const char *const orders[] = {"all: 1 MPa, half: 2 MPa", "half: 2 MPa, all: 1 MPa"};
+    for (int k = 0; k < 2; k++) {
+        Built b = build_text(mem_format(
+            "slender: 1\njob: evaluate\nshell:\n  mesh: {file: %s/tests/broken/meshes/crease.obj}\n"
+            "  thickness: 1 mm\n  poisson: 0.3\n  young: {groups: {%s}}\n",
+            SOURCE_DIR, orders[k]));
+        const double *young = params_of(&b, 0, 0) + b.model->shell->young;
+        for (int f = 0; f < 4; f++) assert_true(young[f] == (f < 2 ? 2e6 : 1e6));
+        clear(&b);
+    }
+    assert_int_equal(mem_live_count(), blocks);
+}
+
 /* Poses and targets are files of the same kind as the mesh's, and take its scale or one of their own. */
 static void test_scale(void **state)
 {
@@ -238,9 +256,9 @@ static void test_scale(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_scale),   cmocka_unit_test(test_values),
-                                       cmocka_unit_test(test_loads),   cmocka_unit_test(test_motion),
-                                       cmocka_unit_test(test_fields),  cmocka_unit_test(test_timed),
-                                       cmocka_unit_test(test_unknowns)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_scale),  cmocka_unit_test(test_nested_groups),
+                                       cmocka_unit_test(test_values), cmocka_unit_test(test_loads),
+                                       cmocka_unit_test(test_motion), cmocka_unit_test(test_fields),
+                                       cmocka_unit_test(test_timed),  cmocka_unit_test(test_unknowns)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
