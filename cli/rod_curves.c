@@ -133,9 +133,7 @@ static bool frames_from_file(const Build *b, const RodScene *scene, const RodCur
 {
     const char *at = "rod.frame.file";
     Table table;
-    Error err;
-    if (!table_read(scene->frame.file, 4, &table, &err)) return yaml_refuse(b->file, at, "%s", err.text);
-    bool ok = table.rows >= 2 || yaml_refuse(b->file, at, "%s has fewer than two rows", scene->frame.file);
+    bool ok = rod_table_read(b, at, scene->frame.file, "s, x, y, z", curve->length, &table);
     for (int j = 0; ok && j <= 2 * curve->elements; j++) {
         double normal[3];
         rod_table_at(&table, curve->length * j / (2 * curve->elements), normal);
@@ -182,6 +180,20 @@ void rod_strands_clear(RodStrands *strands)
     mem_free(strands->curves);
     mem_free(strands->frames);
     *strands = (RodStrands){0};
+}
+
+bool rod_table_read(const Build *b, const char *at, const char *path, const char *names, double length,
+                    Table *table)
+{
+    const double little = 1e-3;
+    Error err;
+    if (!table_read(path, names, table, &err) || !table_check_increasing(table, path, "s", &err))
+        return yaml_refuse(b->file, at, "%s", err.text);
+    if (table->rows < 2) return yaml_refuse(b->file, at, "%s has fewer than two rows", path);
+    double first = table->values[0], last = table->values[(size_t)(table->rows - 1) * (size_t)table->columns];
+    return (first >= -little * length && last <= (1 + little) * length) ||
+           yaml_refuse(b->file, at, "%s:%d: s goes from %g to %g m, and the rod is %g m long", path,
+                       table->line[table->rows - 1], first, last, length);
 }
 
 void rod_table_at(const Table *table, double s, double *values)

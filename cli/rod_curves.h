@@ -19,6 +19,11 @@ void rod_strands_clear(RodStrands *strands);
 bool rod_curve_read(const Build *b, const char *at, const char *path, double scale, NoiseScene noise,
                     int elements, RodCurve *curve);
 
+/* Rows by arclength, s first, on a rod of that length: two at least, s increasing and on the rod. To be
+ * cleared in any case. */
+bool rod_table_read(const Build *b, const char *at, const char *path, const char *names, double length,
+                    Table *table);
+
 /* Columns 1, 2, .. of a table at s, its first one, which ascends: linear between the rows, constant beyond.
  */
 void rod_table_at(const Table *table, double s, double *values);

@@ -153,6 +153,17 @@ static bool from_formula(const Build *b, const char *at, char *const *formula, c
     return ok;
 }
 
+/* Has the table a row for the middle of each element? */
+static bool is_at_middles(const Table *table, const Rod *rod)
+{
+    const double little = 1e-2;
+    double h = rod_element_length(rod);
+    bool own = table->rows == rod->elements;
+    for (int e = 0; own && e < table->rows; e++)
+        own = fabs(table->values[4 * e] - (e + 0.5) * h) <= little * h;
+    return own;
+}
+
 static bool read_strains(const Build *b, const StrainScene *scene, const Rod *rod, double *strain)
 {
     const char *at = "rod.natural_strain";
@@ -161,11 +172,9 @@ static bool read_strains(const Build *b, const StrainScene *scene, const Rod *ro
     for (int i = 0; !scene->file && i < 3 * rod->elements; i++) strain[i] = scene->value[i % 3];
     if (!scene->file) return true;
     Table table;
-    Error err;
-    at = "rod.natural_strain.file";
-    if (!table_read(scene->file, 4, &table, &err)) return yaml_refuse(b->file, at, "%s", err.text);
-    bool own = table.rows == rod->elements, ok = table.rows >= 2;
-    if (!ok) yaml_refuse(b->file, at, "%s has fewer than two rows", scene->file);
+    bool ok = rod_table_read(b, "rod.natural_strain.file", scene->file, "s, twist, k1, k2", rod->length,
+                             &table),
+         own = ok && is_at_middles(&table, rod);
     for (int e = 0; ok && e < rod->elements; e++)
         if (own)
             memcpy(strain + 3 * e, table.values + 4 * e + 1, 3 * sizeof *strain);
@@ -186,7 +195,8 @@ bool rod_model_vectors(const Build *b, const char *at, const VectorScene *scene,
     if (!scene->file) return true;
     Table table;
     Error err;
-    if (!table_read(scene->file, 3, &table, &err)) return yaml_refuse(b->file, at, "%s", err.text);
+    if (!table_read(scene->file, "tangent, n1, n2", &table, &err))
+        return yaml_refuse(b->file, at, "%s", err.text);
     bool ok = table.rows == rod->elements ||
               yaml_refuse(b->file, at, "%s has %d rows, and the rod %d elements: one row for each is needed",
                           scene->file, table.rows, rod->elements);

@@ -51,14 +51,43 @@ bool polyline_add(PolylineReader *reader, Vec3 x)
 
 /* ---- CSV ---- */
 
+/* Is s the points' arclength? A smooth curve is longer than its chords, by no more than an arc that turns as
+ * they do; and no shorter than the few chords between far points, in which noise does not count. */
+static bool check_arclength(const Table *table, const PolylineReader *reader)
+{
+    const double *row = table->values;
+    double far = 0, arcs = 0, s = row[4 * (size_t)(table->rows - 1)] - row[0], slack = 1.02;
+    int stride = table->rows / 16 > 1 ? table->rows / 16 : 1;
+    Vec3 before = vec3(0, 0, 0);
+    for (int i = 1; i < table->rows; i++) {
+        Vec3 x = vec3_load(row + 4 * (size_t)i + 1), chord = vec3_sub(x, vec3_load(row + 4 * (size_t)i - 3));
+        double length = vec3_length(chord),
+               turn = fmin(atan2(vec3_length(vec3_cross(before, chord)), vec3_dot(before, chord)), 2);
+        arcs += length * (turn > 0 ? turn / 2 / sin(turn / 2) : 1);
+        before = chord;
+        if (i % stride == 0) far += vec3_length(vec3_sub(x, vec3_load(row + 4 * (size_t)(i - stride) + 1)));
+    }
+    return (far <= slack * s && s <= slack * arcs) ||
+           error_set(
+               reader->err,
+               "%s:%d: s grows by %g to here, and the points are %g apart along the curve: s must be their "
+               "arclength, in the unit of x, y, z",
+               reader->path, table->line[table->rows - 1], s, arcs);
+}
+
 static bool read_csv(PolylineReader *reader, const char *text, size_t length)
 {
     Table table;
-    if (!table_parse(reader->path, text, (long)length, 0, &table, reader->err)) return false;
+    if (!table_parse(reader->path, text, (long)length, NULL, &table, reader->err)) return false;
     bool ok = table.columns == 3 || table.columns == 4;
     if (!ok)
         error_set(reader->err, "%s:%d: %d number%s in this row; it must be x, y, z or s, x, y, z",
                   reader->path, table.line[0], table.columns, table.columns == 1 ? "" : "s");
+    ok = ok &&
+         table_check_header(&table, reader->path, "s, x, y, z" + (table.columns == 3 ? 3 : 0), reader->err);
+    if (ok && table.columns == 4)
+        ok =
+            table_check_increasing(&table, reader->path, "s", reader->err) && check_arclength(&table, reader);
     polyline_begin(reader);
     for (int i = 0; ok && i < table.rows; i++)
         ok = polyline_add(reader, vec3_load(table.values + (size_t)(i + 1) * (size_t)table.columns - 3)) ||

@@ -38,19 +38,25 @@ bool scan_file(const char *path, char **text, size_t *length, Error *err)
 Scan scan_start(const char *path, const char *text, size_t length, char comment, const char *separators,
                 Error *err)
 {
+    size_t mark = length >= 3 && !memcmp(text, "\xef\xbb\xbf", 3) ? 3 : 0;
     return (Scan){.path = path,
-                  .next = text,
+                  .next = text + mark,
                   .end = text + length,
-                  .word_end = text,
-                  .at = text,
+                  .word_end = text + mark,
+                  .at = text + mark,
                   .comment = comment,
                   .separators = separators,
                   .err = err};
 }
 
+bool scan_is_blank(char c)
+{
+    return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v';
+}
+
 static bool splits(const Scan *scan, char c)
 {
-    return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v' || (c && strchr(scan->separators, c));
+    return scan_is_blank(c) || (c && strchr(scan->separators, c));
 }
 
 static void skip_blanks(Scan *scan)

@@ -23,6 +23,7 @@ typedef struct Word {
 /* A whole file in memory; *text is the caller's (mem_free). Refused: what cannot be read, more than 2 GiB. */
 bool scan_file(const char *path, char **text, size_t *length, Error *err);
 
+/* A byte order mark is skipped. */
 Scan scan_start(const char *path, const char *text, size_t length, char comment, const char *separators,
                 Error *err);
 
@@ -36,6 +37,8 @@ static inline bool scan_more(const Scan *scan)
 {
     return scan->at < scan->word_end;
 }
+
+bool scan_is_blank(char c);
 
 bool word_is(Word word, const char *text);
 bool word_begins(Word word, const char *text); /* any case */

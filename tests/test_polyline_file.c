@@ -40,11 +40,11 @@ static void test_csv(void **state)
 {
     (void)state;
     const double x[3][3] = {{0, 0, 0}, {1, 2.5, -3}, {2, 0, 1e-3}};
-    PolylineFile file = parse("csv", "# a rod\nx, y, z\n0, 0, 0\n1, 2.5, -3 # a comment\n\n2; 0; 1e-3\n");
+    PolylineFile file = parse("csv", "# a rod\nx, y, z\n0, 0, 0\n1, 2.5, -3 # a comment\n\n2, 0, 1e-3\n");
     assert_int_equal(file.strand_count, 1);
     check_strand(&file, 0, 1, 3, x);
     polyline_file_clear(&file);
-    file = parse("CSV", "0 0 0 0\n7 1 2.5 -3\n9 2 0 1e-3");
+    file = parse("CSV", "3 0 0 0\n7.1 1 2.5 -3\n11.9 2 0 1e-3");
     check_strand(&file, 0, 1, 3, x);
     polyline_file_clear(&file);
     check_refused("csv", "", "a: there are no numbers in it");
@@ -53,6 +53,19 @@ static void test_csv(void **state)
                   "a:2: 2 numbers in this row; it must be x, y, z or s, x, y, z");
     check_refused("csv", "1,2,3\n1,2,nan\n", "a:2: 'nan' is no finite number");
     check_refused("csv", "1,2,3\n1,2\n", "a:2: 2 numbers in this row, and 3 are needed");
+    check_refused("csv", "x,y,z,r\n1,2,3,4\n", "a:1: column 1 is headed 'x'; the columns must be s, x, y, z");
+    check_refused("csv", "5,0;-3,0\n7,5;-3,0\n",
+                  "a:1: 2 numbers in this row; it must be x, y, z or s, x, y, z");
+    check_refused("csv", "0,0,0,0\n1,1,0,0\n1,2,0,0\n",
+                  "a:3: s is 1 here and 1 in the row before: it must increase");
+    check_refused("csv", "0,0,0,0\n1000,1,0,0\n2000,2,0,0\n",
+                  "a:3: s grows by 2000 to here, and the points are 2 apart along the curve: s must be their "
+                  "arclength, in "
+                  "the unit of x, y, z");
+    check_refused("csv", "0,0,0,0\n1,1,0,0\n1.9,2,0,0\n",
+                  "a:3: s grows by 1.9 to here, and the points are 2 apart along the curve: s must be their "
+                  "arclength, in "
+                  "the unit of x, y, z");
 }
 
 static void test_obj(void **state)
