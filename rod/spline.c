@@ -202,6 +202,19 @@ void rod_spline_jet(void *self, double at, Vec3 jet[3])
     jet[0] = vec3_add(jet[0], spline->x[0]);
 }
 
+double rod_spline_worst(const RodSpline *spline)
+{
+    double worst = 0;
+    for (int i = 0, interval = 0; i < spline->points; i++) {
+        RodSplineRow value;
+        interval = advance(spline, interval, spline->u[i]);
+        basis(spline->knots, interval, spline->u[i], 0, value);
+        Vec3 off = vec3_sub(vec3_sub(spline->x[i], spline->x[0]), combine(spline, interval, value));
+        worst = fmax(worst, vec3_length(off));
+    }
+    return worst;
+}
+
 double rod_spline_squares_across(const RodSpline *spline)
 {
     double sum = 0;
