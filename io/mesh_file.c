@@ -97,9 +97,11 @@ bool mesh_file_parse(const char *path, const char *format, const char *text, lon
     for (size_t k = 0; k < sizeof formats / sizeof *formats; k++) {
         if (strcasecmp(format, formats[k].format)) continue;
         MeshReader reader = {.mesh = mesh};
-        Scan scan = scan_start(path, text, (size_t)length, formats[k].comment, "", err);
+        size_t left = (size_t)length;
         mesh->path = mem_text(path);
-        bool ok = formats[k].read(&scan, &reader);
+        bool ok = scan_skip_mark(path, &text, &left, err);
+        Scan scan = scan_start(path, text, left, formats[k].comment, "", err);
+        ok = ok && formats[k].read(&scan, &reader);
         if (ok && mesh->face_count == 0) ok = error_set(err, "%s: there are no triangles in it", path);
         mem_free(reader.group_room);
         if (ok)

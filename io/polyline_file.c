@@ -146,8 +146,9 @@ static bool read_obj(PolylineReader *reader, const char *text, size_t length)
     MeshFile mesh = {0};
     MeshReader vertices = {.mesh = &mesh};
     bool lines = false, faces = false;
+    bool ok = scan_skip_mark(reader->path, &text, &length, reader->err);
     Scan scan = scan_start(reader->path, text, length, '#', "", reader->err);
-    bool ok = read_vertices(&scan, &vertices, &lines, &faces);
+    ok = ok && read_vertices(&scan, &vertices, &lines, &faces);
     if (ok && faces && !lines)
         ok = error_set(reader->err, "%s: there are faces in it and no lines", reader->path);
     if (ok && lines) {

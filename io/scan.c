@@ -35,15 +35,36 @@ bool scan_file(const char *path, char **text, size_t *length, Error *err)
     return false;
 }
 
+static bool begins_with(const char *text, size_t length, const char *bytes, size_t count)
+{
+    return length >= count && !memcmp(text, bytes, count);
+}
+
+/* The marks of Unicode's section 23.8; without one, every other byte of UTF-16 is 0 where a text has Latin
+ * letters. */
+const char *text_skip_mark(const char **text, size_t *length)
+{
+    if (begins_with(*text, *length, "\xef\xbb\xbf", 3)) *text += 3, *length -= 3;
+    if (begins_with(*text, *length, "\xff\xfe\0\0", 4) || begins_with(*text, *length, "\0\0", 2))
+        return "UTF-32";
+    bool marked = begins_with(*text, *length, "\xff\xfe", 2) || begins_with(*text, *length, "\xfe\xff", 2);
+    return marked || (*length >= 2 && !(*text)[0] != !(*text)[1]) ? "UTF-16" : NULL;
+}
+
+bool scan_skip_mark(const char *path, const char **text, size_t *length, Error *err)
+{
+    const char *encoding = text_skip_mark(text, length);
+    return !encoding || error_set(err, "%s: the file is %s text; save it as UTF-8", path, encoding);
+}
+
 Scan scan_start(const char *path, const char *text, size_t length, char comment, const char *separators,
                 Error *err)
 {
-    size_t mark = length >= 3 && !memcmp(text, "\xef\xbb\xbf", 3) ? 3 : 0;
     return (Scan){.path = path,
-                  .next = text + mark,
+                  .next = text,
                   .end = text + length,
-                  .word_end = text + mark,
-                  .at = text + mark,
+                  .word_end = text,
+                  .at = text,
                   .comment = comment,
                   .separators = separators,
                   .err = err};
@@ -64,16 +85,26 @@ static void skip_blanks(Scan *scan)
     while (scan->at < scan->word_end && splits(scan, *scan->at)) scan->at++;
 }
 
+/* Where the line's comment begins, or stop. Within a word its sign is a part of the word: 1.#QNAN. */
+static const char *find_comment(const Scan *scan, const char *start, const char *stop)
+{
+    const char *c = start;
+    while (scan->comment && (c = memchr(c, scan->comment, (size_t)(stop - c))) != NULL) {
+        if (c == start || splits(scan, c[-1])) return c;
+        c++;
+    }
+    return stop;
+}
+
 bool scan_line(Scan *scan)
 {
     while (scan->next < scan->end) {
         const char *start = scan->next, *newline = memchr(start, '\n', (size_t)(scan->end - start));
-        const char *stop = newline ? newline : scan->end, *comment = NULL;
+        const char *stop = newline ? newline : scan->end;
         scan->next = newline ? newline + 1 : scan->end;
         scan->line++;
-        if (scan->comment) comment = memchr(start, scan->comment, (size_t)(stop - start));
         scan->at = start;
-        scan->word_end = comment ? comment : stop;
+        scan->word_end = find_comment(scan, start, stop);
         skip_blanks(scan);
         if (scan_more(scan)) return true;
     }

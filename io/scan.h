@@ -10,7 +10,7 @@ typedef struct Scan {
     const char *word_end;   /* end of the current line's content                       */
     const char *at;         /* where the next word of the line begins                  */
     int line;               /* number of the current line, from 1; 0 before the first  */
-    char comment;           /* what follows it on a line is skipped; 0: none           */
+    char comment;           /* a word that begins with it, and what follows; 0: none   */
     const char *separators; /* beside blanks, what splits words; "" for none           */
     Error *err;
 } Scan;
@@ -23,7 +23,13 @@ typedef struct Word {
 /* A whole file in memory; *text is the caller's (mem_free). Refused: what cannot be read, more than 2 GiB. */
 bool scan_file(const char *path, char **text, size_t *length, Error *err);
 
-/* A byte order mark is skipped. */
+/* Past the byte order mark that a text may begin with: text and length are then what follows it. Returns NULL, or
+ * the name of an encoding that is not read ("UTF-16"). */
+const char *text_skip_mark(const char **text, size_t *length);
+
+/* The same for a reader; false with a sentence where the text is not UTF-8. Every reader of text begins with it. */
+bool scan_skip_mark(const char *path, const char **text, size_t *length, Error *err);
+
 Scan scan_start(const char *path, const char *text, size_t length, char comment, const char *separators,
                 Error *err);
 

@@ -150,7 +150,8 @@ static void keep_header(Reader *r)
 static bool refuse_cell(const Reader *r, Word cell)
 {
     if (cell.length == 0) return scan_refuse(&r->scan, "there is nothing between two separators");
-    bool differs = r->commas && r->decimal && strspn(cell.text, "0123456789+-.,eE") >= (size_t)cell.length;
+    bool differs = r->commas && r->decimal;
+    for (int i = 0; i < cell.length; i++) differs &= cell.text[i] && strchr("0123456789+-.,eE", cell.text[i]);
     return scan_refuse(&r->scan, "'%.*s' is no finite number%s", cell.length > 40 ? 40 : cell.length,
                        cell.text,
                        !differs            ? ""
@@ -207,10 +208,10 @@ static int count_names(const char *names)
 
 bool table_parse(const char *path, const char *text, long length, const char *names, Table *table, Error *err)
 {
+    size_t left = (size_t)length;
     *table = (Table){.columns = count_names(names)};
-    Reader r = {.scan = scan_start(path, text, (size_t)length, '#', "", err), .table = table, .names = names};
-    bool ok = length == 0 || !memchr(text, 0, (size_t)length) ||
-              error_set(err, "%s: it is no text in UTF-8: there are zero bytes in it", path);
+    bool ok = scan_skip_mark(path, &text, &left, err);
+    Reader r = {.scan = scan_start(path, text, left, '#', "", err), .table = table, .names = names};
     while (ok && scan_line(&r.scan)) ok = read_row(&r);
     if (ok && names) ok = table_check_header(table, path, names, err);
     if (ok && table->rows == 0) ok = error_set(err, "%s: there are no numbers in it", path);

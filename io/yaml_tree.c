@@ -1,5 +1,6 @@
 /* libyaml's events to our own tree. The only file that includes yaml.h of libyaml. */
 #include "base/memory.h"
+#include "io/scan.h"
 #include "io/yaml_private.h"
 #include <errno.h>
 #include <stdio.h>
@@ -220,10 +221,13 @@ YamlFile *yaml_parse(const char *path, const char *text, size_t length)
     file->folder = folder_of(path);
     file->errors = mem_alloc(YAML_MAX_ERRORS, sizeof *file->errors);
     file->error_is_set = mem_alloc(YAML_MAX_ERRORS, sizeof *file->error_is_set);
+    const char *encoding = length ? text_skip_mark(&text, &length) : NULL;
     file->text = mem_alloc(length + 1, 1);
     if (length) memcpy(file->text, text, length);
     file->length = length;
-    if (length > YAML_MAX_BYTES)
+    if (encoding)
+        yaml_error_at(file, 0, 0, "the file is %s text; save it as UTF-8", encoding);
+    else if (length > YAML_MAX_BYTES)
         yaml_error_at(file, 0, 0, "more than 64 MiB; large tables belong into CSV files");
     else
         file->root = tree_parse(file, file->text, length);

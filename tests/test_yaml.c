@@ -262,11 +262,31 @@ static void test_manual(void **state)
     mem_free(manual);
 }
 
+/* Windows begins its files with a byte order mark. */
+static void test_mark(void **state)
+{
+    (void)state;
+    long blocks = mem_live_count();
+    YamlFile *file = yaml_parse("mark.yaml", "\xef\xbb\xbfslender: 2\n", 14);
+    Outer outer;
+    assert_false(yaml_load(file, &outer_table, &outer));
+    char *report = yaml_report(file);
+    assert_non_null(strstr(report, "mark.yaml:1:10: "));
+    mem_free(report);
+    yaml_destroy(file);
+    file = yaml_parse("mark.yaml", "\xff\xfes\0:\0", 6);
+    report = yaml_report(file);
+    assert_string_equal(report, "mark.yaml: the file is UTF-16 text; save it as UTF-8\n");
+    mem_free(report);
+    yaml_destroy(file);
+    assert_int_equal(mem_live_count(), blocks);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_kinds),      cmocka_unit_test(test_defaults),
-                                       cmocka_unit_test(test_round_trip), cmocka_unit_test(test_units),
-                                       cmocka_unit_test(test_overrides),  cmocka_unit_test(test_difference),
-                                       cmocka_unit_test(test_report),     cmocka_unit_test(test_manual)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_kinds),  cmocka_unit_test(test_defaults),  cmocka_unit_test(test_round_trip),
+        cmocka_unit_test(test_units),  cmocka_unit_test(test_overrides), cmocka_unit_test(test_difference),
+        cmocka_unit_test(test_report), cmocka_unit_test(test_mark),      cmocka_unit_test(test_manual)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
