@@ -50,47 +50,47 @@ static bool curves_from_formula(const Build *b, const RodCurveScene *scene, int 
     return ok;
 }
 
-static bool curve_from_samples(const Build *b, const char *at, const Vec3 *x, int count, NoiseScene noise,
-                               int elements, RodCurve *curve)
+/* Through the points of a strand; refused with the file's name and line. */
+static bool curve_from_strand(const Build *b, Sampled from, const PolylineFile *file, int k, RodCurve *curve)
 {
     RodSamplesDef def = rod_samples_default();
     Error err;
-    if (noise.mode < 0) def.noise = noise.value;
-    return rod_samples_curve(x, count, &def, elements, curve, NULL, &err) ||
-           yaml_refuse(b->file, at, "%s", err.text);
+    if (from.noise.mode < 0) def.noise = from.noise.value;
+    return rod_samples_curve(file->points + file->first[k], file->first[k + 1] - file->first[k], &def,
+                             from.elements, curve, NULL, &err) ||
+           yaml_refuse(b->file, from.at, "%s:%d: %s", from.path, file->line[k], err.text);
 }
 
 /* All polylines of a file, to be cleared in any case. */
-static bool read_polylines(const Build *b, const char *at, const char *path, double scale, PolylineFile *file)
+static bool read_polylines(const Build *b, Sampled from, PolylineFile *file)
 {
     Error err;
     *file = (PolylineFile){0};
-    if (!polyline_file_read(path, file, &err)) return yaml_refuse(b->file, at, "%s", err.text);
-    for (int i = 0; i < file->point_count; i++) file->points[i] = vec3_scale(scale, file->points[i]);
+    if (!polyline_file_read(from.path, file, &err)) return yaml_refuse(b->file, from.at, "%s", err.text);
+    for (int i = 0; i < file->point_count; i++) file->points[i] = vec3_scale(from.scale, file->points[i]);
     return true;
 }
 
-bool rod_curve_read(const Build *b, const char *at, const char *path, double scale, NoiseScene noise,
-                    int elements, RodCurve *curve)
+bool rod_curve_read(const Build *b, Sampled from, RodCurve *curve)
 {
     PolylineFile file;
-    bool ok = read_polylines(b, at, path, scale, &file);
+    bool ok = read_polylines(b, from, &file);
     if (ok && file.strand_count > 1)
-        ok = yaml_refuse(b->file, at, "%s has %d polylines; one is needed here", path, file.strand_count);
-    ok = ok && curve_from_samples(b, at, file.points, file.point_count, noise, elements, curve);
+        ok = yaml_refuse(b->file, from.at, "%s has %d polylines; one is needed here", from.path,
+                         file.strand_count);
+    ok = ok && curve_from_strand(b, from, &file, 0, curve);
     polyline_file_clear(&file);
     return ok;
 }
 
 static bool curves_from_file(const Build *b, const RodCurveScene *scene, int elements, RodStrands *strands)
 {
-    const char *at = "rod.curve.file";
+    Sampled from = {"rod.curve.file", scene->file, scene->scale, scene->noise, elements};
     PolylineFile file;
-    bool ok = read_polylines(b, at, scene->file, scene->scale, &file);
+    bool ok = read_polylines(b, from, &file);
     strands->curves = mem_alloc((size_t)file.strand_count, sizeof *strands->curves);
     for (int k = 0; ok && k < file.strand_count; k++) {
-        ok = curve_from_samples(b, at, file.points + file.first[k], file.first[k + 1] - file.first[k],
-                                scene->noise, elements, &strands->curves[k]);
+        ok = curve_from_strand(b, from, &file, k, &strands->curves[k]);
         strands->count += ok;
     }
     polyline_file_clear(&file);

@@ -79,7 +79,8 @@ static bool read_poses(RodModel *model, const RodScene *scene, const Build *b)
     model->strand_count = scene->poses_count;
     for (int k = 0; k < scene->poses_count; k++) {
         const RodPoseScene *pose = &scene->poses[k];
-        ok = rod_curve_read(b, key("rod.poses[%d].file", k).text, pose->file, 1, pose->noise, scene->elements,
+        Key at = key("rod.poses[%d].file", k);
+        ok = rod_curve_read(b, (Sampled){at.text, pose->file, 1, pose->noise, scene->elements},
                             &model->curves[k]) &&
              ok;
         ok = rod_model_frame(b, key("rod.poses[%d].frame", k).text, (const double(*)[3])pose->frame,

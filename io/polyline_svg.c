@@ -168,7 +168,7 @@ static bool add_strand(Svg *svg, Affine map, const SvgCubic *cubics, int count)
         straight &= cubics[k].straight;
         length += cubic_length(&cubics[k]);
     }
-    polyline_begin(svg->reader);
+    polyline_begin(svg->reader, 0);
     bool ok = add_place(svg, map, cubics[0].at[0]);
     for (int k = 0; ok && k < count; k++) {
         double part = length > 0 && isfinite(length) ? cubic_length(&cubics[k]) / length : 0;
@@ -202,7 +202,7 @@ static bool add_line(Svg *svg, Affine map, const char **attributes)
         if (text && svg_numbers(&text, &v[i], 1) == 0)
             return error_set(svg->reader->err, "%s of the line is no number", names[i]);
     }
-    polyline_begin(svg->reader);
+    polyline_begin(svg->reader, 0);
     return add_place(svg, map, (Vec2){v[0], v[1]}) && add_place(svg, map, (Vec2){v[2], v[3]});
 }
 

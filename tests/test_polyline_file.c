@@ -75,20 +75,39 @@ static void test_obj(void **state)
     const char *vertices = "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 3 0 0\n";
     char *text = mem_format("%s# lines\nl 1 2 3\nl -1 -2\nv 4 5 6\n", vertices);
     PolylineFile file = parse("obj", text);
-    assert_int_equal(file.strand_count, 2);
-    check_strand(&file, 0, 1, 3, x);
-    check_strand(&file, 1, 1, 2, (const double[2][3]){{3, 0, 0}, {2, 0, 0}});
+    assert_int_equal(file.strand_count, 1);
+    check_strand(&file, 0, 1, 4, x);
     polyline_file_clear(&file);
     mem_free(text);
 
-    /* Edge by edge, vertices last; a strand that begins elsewhere. */
-    text = mem_format("l 1 2\nl 2 3/7\nl 3 4\nl 1 4\n%s", vertices);
-    file = parse("obj", text);
-    assert_int_equal(file.strand_count, 2);
-    check_strand(&file, 0, 1, 4, x);
-    check_strand(&file, 1, 1, 2, (const double[2][3]){{0, 0, 0}, {3, 0, 0}});
-    polyline_file_clear(&file);
-    mem_free(text);
+    /* Edges in any order and direction, vertices last; a ring; lines of many vertices from one place. */
+    static const struct {
+        const char *lines;
+        int strands, count[2], vertex[2][5], line[2];
+    } joins[] = {
+        {"l 1 2\nl 2 3/7\nl 3 4\n", 1, {4}, {{0, 1, 2, 3}}, {1}},
+        {"l 3 4\n\nl 1 2\nl 2 \\\n3\n", 1, {4}, {{0, 1, 2, 3}}, {1}},
+        {"l 2 1\nl 3 4\nl 2 3\nl 4 5", 1, {5}, {{0, 1, 2, 3, 4}}, {1}},
+        {"l 2 1\nl 4 3\nl 3 2\nl 4 5", 1, {5}, {{4, 3, 2, 1, 0}}, {1}},
+        {"l 2 3\nl 1 2\nl 4 1\nl 3 4", 1, {5}, {{1, 2, 3, 0, 1}}, {1}},
+        {"l 5 4 3\nl 3 2 1\n", 1, {5}, {{4, 3, 2, 1, 0}}, {1}},
+        {"\nl 1 2 3\nl 1 4 5\n", 2, {3, 3}, {{0, 1, 2}, {0, 3, 4}}, {2, 3}},
+        {"l 4 5\nl 1 2\nl 2 3\n", 2, {2, 3}, {{3, 4}, {0, 1, 2}}, {1, 2}},
+        {"l 1 2 3 1\nl 5 4", 2, {4, 2}, {{0, 1, 2, 0}, {4, 3}}, {1, 2}},
+    };
+    for (size_t k = 0; k < sizeof joins / sizeof *joins; k++) {
+        text = mem_format("%s\n%sv 4 5 6\n", joins[k].lines, vertices);
+        file = parse("obj", text);
+        assert_int_equal(file.strand_count, joins[k].strands);
+        for (int i = 0; i < joins[k].strands; i++) {
+            double places[5][3];
+            for (int j = 0; j < 5; j++) memcpy(places[j], x[joins[k].vertex[i][j]], sizeof places[j]);
+            check_strand(&file, i, 1, joins[k].count[i], (const double(*)[3])places);
+            assert_int_equal(file.line[i], joins[k].line[i]);
+        }
+        polyline_file_clear(&file);
+        mem_free(text);
+    }
 
     text = mem_format("o strand\n%sv 4 5 6 1.0\n", vertices);
     file = parse("obj", text);
@@ -101,6 +120,16 @@ static void test_obj(void **state)
     check_refused("obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "a: there are faces in it and no lines");
     check_refused("obj", "v 0 0 0\nl 1 2\n", "a:2: vertex 2 does not exist: there are 1");
     check_refused("obj", "v 0 0 0\nl 1\n", "a:2: a line needs two vertices at least");
+    static const char *const branches[][2] = {
+        {"l 1 2\nl 2 3\nl 4 2\n", "a:1: more than two lines meet at vertex 2: a rod has no branches"},
+        {"l 1 2 3\nl 4 2\n", "a:2: more than two lines meet at vertex 2: a rod has no branches"},
+        {"l 1 2\nl 2 1\n", "a:1: the edge from vertex 1 is there twice"},
+        {"l 1 1\n", "a:1: the line goes from vertex 1 to the same"}};
+    for (size_t k = 0; k < sizeof branches / sizeof *branches; k++) {
+        text = mem_format("%s%s", branches[k][0], vertices);
+        check_refused("obj", text, branches[k][1]);
+        mem_free(text);
+    }
     check_refused("obj", "v 0 0\nl 1 2\n", "a:1: a coordinate is missing");
     check_refused("obj", "v 0 0 0\nl 1 -2\n", "a:2: vertex -2 is before the first one: there are 1 so far");
     check_refused("obj", "v 0 0 0\nl 1 x\n",
