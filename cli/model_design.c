@@ -313,7 +313,6 @@ bool model_design(Model *model, const Scene *scene, YamlFile *file)
     if (!scene->design)
         return yaml_refuse(file, "job", "a %s job needs the key `design`",
                            trajectory ? "trajectory" : "design");
-    if (scene->sequence_count) return yaml_refuse(file, "sequence", "a design has cases, not a sequence");
     bool ok = add_unknowns(model, scene, &b) && add_dmp(model, scene, &b);
     return model_objectives(model, scene, file) && ok;
 }

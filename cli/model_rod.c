@@ -224,26 +224,6 @@ static const BodyOps rod_ops = {
     .add_final = body_rod_final,
 };
 
-/* What is said of shells only. */
-static bool check_keys(const Scene *scene, YamlFile *file)
-{
-    bool ok = true;
-    if (scene->fix) ok = yaml_refuse(file, "fix", "a rod is held by rod.clamp, rod.hold and rod.end");
-    if (scene->loads) ok = yaml_refuse(file, "loads", "loads of a rod are under rod.loads");
-    if (scene->modes) ok = yaml_refuse(file, "modes", "modes are for shells");
-    bool preview = scene->rod->solver == ROD_SOLVER_PBD;
-    if (preview && scene->job != JOB_SIMULATE)
-        ok = yaml_refuse(file, "rod.solver", "the solver pbd is for simulations");
-    if (preview && (scene->rod->end || scene->rod->hold == HOLD_PINNED || scene->rod->velocity ||
-                    scene->rod->magnetization.formula || scene->rod->magnetization.file ||
-                    scene->rod->magnetization.value[0] != 0 || scene->rod->magnetization.value[1] != 0 ||
-                    scene->rod->magnetization.value[2] != 0))
-        ok = yaml_refuse(
-            file, "rod.solver",
-            "the solver pbd shows rods that are clamped and free, start at rest and are not magnetised");
-    return ok;
-}
-
 bool model_rod(Model *model, const Scene *scene, YamlFile *file)
 {
     Build b = {file, NULL, scene->time.at, model_is_motion(scene->job) ? &model->flux_of_time : NULL};
@@ -251,14 +231,10 @@ bool model_rod(Model *model, const Scene *scene, YamlFile *file)
     model->point_count = scene->rod->elements + 1;
     model->load_steps = LOAD_STEPS;
     model->step_cap = STEP_CAP;
-    if (!check_keys(scene, file)) return false;
     model->rod = rod_model_create(scene, &b);
     if (!model->rod) return false;
     if (scene->job == JOB_INVERT)
         return scene->rod->curve ||
                yaml_refuse(file, "rod", "an inversion needs `curve`, the shape that is given");
-    if (scene->job == JOB_IDENTIFY)
-        return scene->rod->poses_count >= 2 ||
-               yaml_refuse(file, "rod", "an identification needs two or more `poses` of the rod");
-    return fill(model, scene, &b);
+    return scene->job == JOB_IDENTIFY || fill(model, scene, &b);
 }

@@ -151,6 +151,10 @@ static bool make_frames(const Build *b, const RodScene *scene, const RodCurve *c
 {
     Vec3 normal;
     int kind = scene->frame.formula ? scene->frame.from : scene->frame.kind;
+    bool turns_least = !scene->frame.file && kind == FRAME_BISHOP;
+    if (!isnan(scene->bishop_normal[0]) && !turns_least)
+        return yaml_refuse(b->file, "rod.bishop_normal",
+                           "it is of Bishop's frames, and `frame` gives others");
     if (scene->frame.file) return frames_from_file(b, scene, curve, frames);
     if (!first_normal(b, scene, curve, frames, &normal)) return false;
     if (kind == FRAME_BISHOP) rod_bishop(curve, normal, frames);

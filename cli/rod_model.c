@@ -52,10 +52,9 @@ static bool read_magnetic(RodModel *model, const Scene *scene, const Build *b)
     if (!build_flux(b, key("flux_density"), &scene->flux_density, NULL, flux, &field)) return false;
     bool none = flux[0] == 0 && flux[1] == 0 && flux[2] == 0,
          along = !isnan(M->value[0]) && M->value[1] == 0 && M->value[2] == 0;
-    if (!none && !along)
-        return yaml_refuse(
-            b->file, "rod.magnetization",
-            "an inversion knows magnetisation along the tangent, the same all along: [m, 0, 0]");
+    if (!along)
+        return yaml_refuse(b->file, "rod.magnetization",
+                           "of a curve it must be along the tangent and the same all along: [m, 0, 0]");
     if (!none) model->loads.end = vec3_scale(model->area * M->value[0], vec3_load(flux));
     return true;
 }
@@ -72,8 +71,6 @@ bool rod_model_check_points(const RodModel *model, const Build *b, double length
 static bool read_poses(RodModel *model, const RodScene *scene, const Build *b)
 {
     bool ok = true;
-    if (scene->ellipse)
-        ok = yaml_refuse(b->file, "rod.ellipse", "an identification is of a round rod: give its radius");
     model->curves = mem_alloc((size_t)scene->poses_count, sizeof *model->curves);
     model->clamps = mem_alloc((size_t)scene->poses_count, sizeof *model->clamps);
     model->strand_count = scene->poses_count;
@@ -90,6 +87,25 @@ static bool read_poses(RodModel *model, const RodScene *scene, const Build *b)
     return ok;
 }
 
+RodIdentifyDef rod_model_poses(const RodModel *model, const RodScene *scene, RodPose *poses)
+{
+    for (int k = 0; k < model->strand_count; k++) poses[k] = (RodPose){&model->curves[k], model->clamps[k]};
+    return (RodIdentifyDef){poses, model->strand_count, scene->radius, model->loads};
+}
+
+/* What can be said of poses before they are compared: their lengths may differ by 2 %. */
+static bool check_poses(const RodModel *model, const RodScene *scene, const Build *b)
+{
+    if (scene->poses_count < 2)
+        return yaml_refuse(b->file, "rod", "an identification needs two or more `poses` of the rod");
+    RodPose *poses = mem_alloc((size_t)scene->poses_count, sizeof *poses);
+    RodIdentifyDef def = rod_model_poses(model, scene, poses);
+    Error err;
+    bool ok = rod_identify_check(&def, &err) || yaml_refuse(b->file, "rod.poses", "%s", err.text);
+    mem_free(poses);
+    return ok && rod_model_check_points(model, b, 1.02 * model->curves[0].length);
+}
+
 RodModel *rod_model_create(const Scene *scene, const Build *b)
 {
     RodModel *model = mem_alloc(1, sizeof *model);
@@ -104,7 +120,8 @@ RodModel *rod_model_create(const Scene *scene, const Build *b)
             ok = rod_model_check_points(model, b, strands.curves[k].length);
     }
     if (job == JOB_IDENTIFY) ok = read_poses(model, scene->rod, b) && ok;
-    if (ok && job == JOB_INVERT) ok = read_magnetic(model, scene, b);
+    if (ok && (job == JOB_INVERT || job == JOB_IDENTIFY)) ok = read_magnetic(model, scene, b);
+    if (ok && job == JOB_IDENTIFY) ok = check_poses(model, scene->rod, b);
     if (ok) return model;
     rod_model_destroy(model);
     return NULL;

@@ -219,7 +219,7 @@ static bool accepts(const YamlField *row, const Node *node)
 
 /* The row that a value which is no mapping goes to: the first that accepts it, else the first of all, whose
  * refusal tells what is wanted. */
-static const YamlField *short_row(const YamlTable *table, const Node *node)
+const YamlField *load_short_row(const YamlTable *table, const Node *node)
 {
     const YamlField *first = NULL;
     for (const YamlField *row = table->fields; row->key; row++) {
@@ -302,6 +302,12 @@ static bool group_is_given(const YamlTable *table, const Node *node, int group)
     return false;
 }
 
+bool load_row_alone(Load *load, const YamlField *row, const Node *item, void *scene)
+{
+    set_absent(row, scene);
+    return item ? load_value(load, row, item, scene) : load_default(load, row, scene);
+}
+
 static bool load_row(Load *load, const YamlTable *table, const YamlField *row, const Node *node, void *scene)
 {
     const Node *item = node_find(node, row->key);
@@ -339,7 +345,7 @@ static bool load_map_node(Load *load, const YamlTable *table, const Node *node, 
 static bool load_table(Load *load, const YamlTable *table, const Node *node, void *scene)
 {
     if (node->kind == NODE_MAP) return load_map_node(load, table, node, scene);
-    const YamlField *row = short_row(table, node);
+    const YamlField *row = load_short_row(table, node);
     if (!row) {
         char what[800] = "must be a mapping with the keys ";
         list_keys(table, what + strlen(what), sizeof what - strlen(what));
