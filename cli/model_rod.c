@@ -109,12 +109,19 @@ static bool make_rod(RodModel *rm, const Scene *scene, const Build *b)
     if (given && rm->strand_count > 1)
         return yaml_refuse(b->file, "rod.curve", "there are %d curves; jobs other than invert take one rod",
                            rm->strand_count);
+    if (!given && !from->natural_strain)
+        return yaml_refuse(b->file, "rod", "`curve` or `natural_strain` is missing");
     if (!given && isnan(from->length))
-        return yaml_refuse(b->file, "rod", "with natural strains, `length` is needed");
-    if (from->start == ROD_START_CURVE && !given)
-        return yaml_refuse(b->file, "rod.start", "there is no curve to start from");
+        return yaml_refuse(b->file, "rod", "without a curve, `length` is needed");
     rm->rod = rod_create(from->elements, given ? rm->curves[0].length : from->length, rm->unit, rm->area);
     return read_supports(rm, from, b) && rod_model_check_points(rm, b, rm->rod->length);
+}
+
+/* The curve's state in x, and none of its shape in the rod: that has natural strains of its own. */
+static void pose(RodModel *rm, double *x)
+{
+    rod_follow_curve(rm->rod, &rm->curves[0], rm->frames[0], x);
+    for (int e = 0; e < rm->rod->elements; e++) rm->rod->bow[e] = vec3(0, 0, 0);
 }
 
 /* The natural strains that make the rod rest on its curve, hanging under its loads in p; leaves the curve's
@@ -162,7 +169,10 @@ static void make_states(Model *model, const RodScene *scene, bool hanging, doubl
     Rod *rod = rm->rod;
     RodLayout turns = rod_layout(rod, false);
     double *x = mem_alloc((size_t)turns.dofs, sizeof *x);
-    if (rm->curves) balance(rm, p, x);
+    if (rm->curves && scene->natural_strain)
+        pose(rm, x);
+    else if (rm->curves)
+        balance(rm, p, x);
     rm->layout = rod_layout(rod, !hanging);
     model->x = mem_alloc((size_t)rm->layout.dofs, sizeof *model->x);
     if (scene->start == ROD_START_CURVE)
