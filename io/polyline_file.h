@@ -7,11 +7,12 @@
  * where most of it goes forward. Edges with branches are refused. A file of vertices only is one strand, in
  * their order.
  *
- * .svg: each subpath of a path, polyline, polygon or line is a strand: its corners where all of it is
- * straight, else points evenly on its curves, about 512 or eight per piece of curve. In metres by the
- * drawing's size (a unit is 1/96 inch where it says none), x to the right, y up, z = 0, from the upper left
- * corner of the page. What is not displayed or only defined, and other shapes, texts and `use`, are passed
- * over.
+ * .svg: each subpath of a path, polyline, polygon, line, rect, circle or ellipse is a strand: its corners
+ * where all of it is straight, else points evenly on its curves, about 512 or eight per piece of curve. In
+ * metres by the drawing's size (a unit is 1/96 inch where it says none), x to the right, y up, z = 0, from
+ * the upper left corner of the page. What is not displayed, invisible or only defined is passed over, as
+ * attributes and styles (svg_tree.h) say; clones (use, symbol) and an svg within the svg are drawn where they
+ * are. Texts, images and foreign objects are refused.
  *
  * CSV and OBJ are in metres unless the caller scales them. A closed path ends with its first point. */
 #pragma once

@@ -158,7 +158,7 @@ static void test_svg_lines(void **state)
                  (const double[5][3]){{11, -11, 0}, {8.5, -11, 0}, {9, -11, 0}, {9, -5, 0}, {9, 6, 0}});
     polyline_file_clear(&file);
     file = draw("<polyline points='10 10 20,10 20 30'/><polygon points='10,10,20,10,20,30'/>\n"
-                "<line x1='10' y1='10' x2='20' y2='10'/><path d='M 1 1'/><path/><rect width='5' height='5'/>"
+                "<line x1='10' y1='10' x2='20' y2='10'/><path d='M 1 1'/><path/><rect width='5'/><circle/>"
                 "<path d='m10 10 10 0 0 20Zl10 0'/><svg:path xmlns:svg='s' d='M10 10h10'/>");
     assert_int_equal(file.strand_count, 6);
     check_strand(&file, 0, 1e-3, 3, x);
@@ -252,6 +252,87 @@ static void test_svg_places(void **state)
     }
 }
 
+static void test_svg_shapes(void **state)
+{
+    (void)state;
+    check_same("<rect x='5' y='6' width='20' height='10'/>", "<path d='M5 6H25V16H5Z'/>");
+    check_same("<rect x='5' y='6' width='20' height='10' rx='3'/>",
+               "<rect x='5' y='6' width='20' height='10' ry='3'/>");
+    check_same(
+        "<rect x='5' y='6' width='20' height='10' rx='30' ry='2'/>",
+        "<path d='M15 6H15A10 2 0 0 1 25 8V14A10 2 0 0 1 15 16H15A10 2 0 0 1 5 14V8A10 2 0 0 1 15 6Z'/>");
+    check_same("<ellipse cx='50' cy='40' rx='20' ry='10'/>",
+               "<path d='M70 40A20 10 0 0 1 30 40A20 10 0 0 1 70 40'/>");
+    check_same("<circle cx='50' cy='40' r='20'/>", "<ellipse cx='50%' cy='40%' rx='20'/>");
+    check_same("<line x1='10%' y1='20%' x2='30' y2='2in'/>", "<path d='M10 20L30 192'/>");
+    check_same("<line x2='10px' y2='25.4mm'/>", "<path d='M0 0L10 96'/>");
+    PolylineFile file = draw("<circle cx='50' cy='40' r='20'/>");
+    for (int k = 0; k < file.point_count; k++)
+        assert_true(fabs(hypot(file.points[k].x - 0.05, file.points[k].y + 0.04) - 0.02) < 2e-9);
+    assert_true(vec3_length(vec3_sub(file.points[0], file.points[file.point_count - 1])) < 1e-15);
+    assert_int_equal(file.line[0], 3);
+    polyline_file_clear(&file);
+}
+
+static void test_svg_clones(void **state)
+{
+    (void)state;
+    check_same("<path id='p' d='M1 2h3'/><use href='#p' y='20' transform='scale(2)'/>",
+               "<path d='M1 2h3'/><path d='M2 44h6'/>");
+    check_same(
+        "<use xlink:href='#g' x='5' xmlns:xlink='x'/><defs><g id='g'><path d='M1 2h3'/><use href='#c'/></g>"
+        "<line id='c' x2='4'/></defs>",
+        "<path d='M6 2h3'/><path d='M5 0h4'/>");
+    check_same("<symbol id='s' viewBox='0 0 10 5'><path d='M0 0L10 5'/></symbol><use href='#s' x='1' y='2' "
+               "width='20' "
+               "height='20'/>",
+               "<path d='M1 7L21 17'/>");
+    check_same("<svg x='10' y='20' width='40' height='20' viewBox='1 1 10 10'><path d='M1 1L11 11'/></svg>",
+               "<path d='M20 20L40 40'/>");
+    check_same("<svg x='10' width='40' height='20' viewBox='0 0 10 10' preserveAspectRatio='xMaxYMid slice'>"
+               "<path d='M0 0L10 10'/></svg>",
+               "<path d='M10 -10L50 30'/>");
+    check_same("<svg width='50%' height='20' viewBox='0 0 10 10' preserveAspectRatio='none'>"
+               "<line x2='100%' y2='100%'/></svg>",
+               "<path d='M0 0L50 20'/>");
+    check_same("<svg x='3'><line x2='50%'/></svg>", "<path d='M3 0h50'/>");
+    check_same(
+        "<switch><path requiredExtensions='x' d='M9 9h9'/><path d='M1 2h3'/><path d='M5 5h5'/></switch>",
+        "<path d='M1 2h3'/>");
+}
+
+static void test_svg_styles(void **state)
+{
+    (void)state;
+    const char *shown = "<path d='M1 2h3'/>";
+    static const char *const hidden[] = {
+        "<style>.h{display:none}</style><path class='x h' d='M5 5h5'/>",
+        "<style><![CDATA[ /* .h {} */ g, #a.b , path.c{fill:red;display : none !important} ]]></style>"
+        "<g><path d='M5 5h5'/></g><path id='a' class='b' d='M5 5h5'/><path class='c' d='M5 5h5'/>",
+        "<path display='none' visibility='visible' d='M5 5h5'/>",
+        "<path display='inline' style='display:none' d='M5 5h5'/>",
+        "<g visibility='hidden'><path d='M5 5h5'/></g>",
+        "<style>*{visibility:hidden} .v{visibility:visible}</style><path id='i' d='M5 5h5'/><path class='v' "
+        "d='M5 5' />",
+        "<style>#a{display:none} .a{display:inline}</style><path id='a' class='a' d='M5 5h5'/>",
+        "<style>@font-face{src:x}</style><text visibility='collapse'>a</text><text style='display:none'/>",
+        "<defs><text>a</text></defs><title>a</title><metadata><x:y xmlns:x='x'>b</x:y></metadata>",
+    };
+    for (size_t k = 0; k < sizeof hidden / sizeof *hidden; k++) {
+        char *text = mem_format("%s<path style='visibility:visible;display:inline' d='M1 2h3'/>", hidden[k]);
+        check_same(text, shown);
+        mem_free(text);
+    }
+    check_same("<g visibility='hidden'><path d='M5 5h5'/><path visibility='visible' d='M1 2h3'/></g>", shown);
+    check_same("<style>path{display:none} .a{display:inline}</style><path class='a' d='M1 2h3'/>", shown);
+    check_same("<path style='transform: translate(-4px, 2px) scaleX(0.5) rotate(0deg)' transform='scale(9)' "
+               "d='M10 0h6'/>",
+               shown);
+    check_same("<style>.m{transform:translateX(1px) translateY(2px)}</style><path class='m' d='M0 0h3'/>",
+               shown);
+    check_same("<path style='transform:none' d='M1 2h3'/>", shown);
+}
+
 static void test_svg_refused(void **state)
 {
     (void)state;
@@ -281,6 +362,28 @@ static void test_svg_refused(void **state)
                   "a:1: the transform 'mat(1 0 0 1 0 0)' is not understood");
     check_refused("svg", "<svg><g transform='rotate(1'/></svg>",
                   "a:1: the transform 'rotate(1' is not understood");
+}
+
+static void test_svg_unread(void **state)
+{
+    (void)state;
+    check_refused("svg", "<svg>\n<g>\n<text>a</text></g></svg>",
+                  "a:3: a <text> is not read: make paths of it, or hide it");
+    check_refused("svg", "<svg>\n<image/></svg>", "a:2: a <image> is not read: make paths of it, or hide it");
+    check_refused("svg", "<svg>\n<use href='#b'/></svg>", "a:2: a <use> of '#b', which is not in this file");
+    check_refused("svg", "<svg>\n<use href='b.svg#b'/></svg>",
+                  "a:2: a <use> of 'b.svg#b', which is not in this file");
+    check_refused("svg", "<svg>\n<g id='g'>\n<use href='#g'/></g></svg>",
+                  "a:3: a <use> of itself, or 32 deep");
+    check_refused("svg", "<svg><circle r='b'/></svg>", "a:1: r of the circle is no number");
+    check_refused("svg", "<svg><circle r='2em'/></svg>",
+                  "a:1: r of the circle is '2em': its unit is not read");
+    check_refused("svg", "<svg>\n<style>g > .h{display:none}</style></svg>",
+                  "a:2: the style's selector 'g > .h' is not read: only tags, .classes and #ids are");
+    check_refused("svg", "<svg><style>@media print{.h{display:none}}</style></svg>",
+                  "a:1: the style's rule '@media print' is not read: it moves or hides something");
+    check_refused("svg", "<svg><g transform='scale(2)' style='transform-origin: 1px 1px'/></svg>",
+                  "a:1: a transform-origin is not read");
 }
 
 static void write_file(const char *path, const char *text)
@@ -321,6 +424,8 @@ int main(void)
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_csv),        cmocka_unit_test(test_obj),
                                        cmocka_unit_test(test_svg_lines),  cmocka_unit_test(test_svg_curves),
                                        cmocka_unit_test(test_svg_places), cmocka_unit_test(test_svg_refused),
+                                       cmocka_unit_test(test_svg_shapes), cmocka_unit_test(test_svg_clones),
+                                       cmocka_unit_test(test_svg_styles), cmocka_unit_test(test_svg_unread),
                                        cmocka_unit_test(test_files)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
