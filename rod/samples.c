@@ -106,15 +106,13 @@ static int all_intervals(int count)
 /* Fits on so many intervals with the parameter that suits the samples best: the smoother one where the two
  * are equal but for chance, unless it leaves more along the curve than noise would (half of what it leaves
  * across, or as much in a plane): then it is the parameter that is wrong. What roughness of the chords adds
- * to the curve's makes the first weight smaller than the next ones. *least: the best one's judgement, by what
- * is across the curve. */
-static RodSpline fit_on(const Vec3 *x, int count, int intervals, double noise, double *least)
+ * to the curve's makes the first weight smaller than the next ones. */
+static RodSpline fit_on(const Vec3 *x, int count, int intervals, double noise)
 {
     const int reaches[] = {0, count / 20, count};
     const double tie = 1.003, along = 3;
-    double *u = mem_alloc((size_t)count, sizeof *u);
+    double *u = mem_alloc((size_t)count, sizeof *u), least = INFINITY;
     RodSpline best = {0};
-    *least = INFINITY;
     for (int k = 0; k < (noise == 0 ? 1 : 3); k++) {
         parameters(x, count, reaches[k], u);
         RodSpline next = rod_spline_create(u, x, count, intervals);
@@ -126,31 +124,23 @@ static RodSpline fit_on(const Vec3 *x, int count, int intervals, double noise, d
         else
             choose_weight(&next, fmax(before - 4, weight_least), fmin(before + 8, parabola), noise);
         double across = rod_spline_squares_across(&next), value = across / pow(count - next.freedom, 2);
-        bool better = k == 0 || (value <= tie * *least && next.squares <= along * across);
+        bool better = k == 0 || (value <= tie * least && next.squares <= along * across);
         RodSpline worse = better ? best : next;
-        if (better) *least = value, best = next;
+        if (better) least = value, best = next;
         rod_spline_clear(&worse);
     }
     mem_free(u);
     return best;
 }
 
-/* Few samples of many turns are more than half as many knots can follow, and that is no noise: then there are
- * more knots. Exact samples are passed through. */
+/* Exact samples that half as many knots miss are passed through. */
 static RodSpline fit(const Vec3 *x, int count, double noise)
 {
-    const double passes = 3e-7, much = 30; /* of the length; by chance it is not better by that */
-    double half, all;
-    RodSpline best = fit_on(x, count, half_intervals(count), noise, &half);
-    bool enough =
-        rod_spline_worst(&best) <= passes * chords(x, count) || (noise != 0 && count > INTERVALS_MOST);
-    if (enough || all_intervals(count) == best.intervals) return best;
-    RodSpline next = fit_on(x, count, all_intervals(count), noise, &all);
-    bool better = noise == 0 || much * all < half;
-    RodSpline worse = better ? best : next;
-    if (better) best = next;
-    rod_spline_clear(&worse);
-    return best;
+    const double passes = 3e-7; /* of the length */
+    RodSpline half = fit_on(x, count, half_intervals(count), noise);
+    if (noise != 0 || rod_spline_worst(&half) <= passes * chords(x, count)) return half;
+    rod_spline_clear(&half);
+    return fit_on(x, count, all_intervals(count), noise);
 }
 
 static RodSamplesInfo report(const RodSpline *spline)
@@ -167,6 +157,7 @@ static RodSamplesInfo report(const RodSpline *spline)
 bool rod_samples_curve(const Vec3 *x, int count, const RodSamplesDef *def, int elements, RodCurve *curve,
                        RodSamplesInfo *info, Error *err)
 {
+    const double longest = 3; /* times the chords: half a turn between samples is 1.6 */
     *curve = (RodCurve){0};
     if (def->noise < 0 || isinf(def->noise))
         return error_set(err, "the noise of a rod's samples is %g m; it must be finite and not negative",
@@ -177,6 +168,15 @@ bool rod_samples_curve(const Vec3 *x, int count, const RodSamplesDef *def, int e
     if (ok) {
         RodSpline spline = fit(kept, n, isnan(def->noise) && n < FEW ? 0 : def->noise);
         ok = rod_curve_create_pieces(rod_spline_jet, &spline, spline.intervals, elements, curve, err);
+        double longer = ok ? curve->length / chords(kept, n) : 0;
+        if (longer > longest) {
+            ok = error_set(
+                err,
+                "the smooth curve through these samples is %.3g times as long as their chords: it needs more "
+                "samples where long chords meet short ones",
+                longer);
+            rod_curve_clear(curve);
+        }
         if (info) *info = report(&spline);
         rod_spline_clear(&spline);
     }

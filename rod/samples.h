@@ -1,11 +1,11 @@
 /* samples.h - a rod's curve from sampled points, clean or noisy: what a camera, a scanner or a drawing gives.
  *
  * A quintic spline with half as many knots as samples, 2000 at most, is fitted with a penalty on its third
- * derivative (spline.h); or with as many unknowns as samples, where half as many knots miss exact samples (by
- * 3e-7 of the length) or cannot follow those of unknown noise (they leave 30 times as much). Its places,
- * tangents and curvatures at equal arclengths are the curve. How much it smooths is found by generalised
- * cross-validation, or from the noise where that is known, by the unbiased estimate of the risk [Craven &
- * Wahba 1979]. A polyline through noisy samples would not do: it is too long, and turns at every sample.
+ * derivative (spline.h); or with as many unknowns as samples, where half as many knots miss exact samples by
+ * 3e-7 of the length. Its places, tangents and curvatures at equal arclengths are the curve. How much it
+ * smooths is found by generalised cross-validation, or from the noise where that is known, by the unbiased
+ * estimate of the risk [Craven & Wahba 1979]. A polyline through noisy samples would not do: it is too long,
+ * and turns at every sample.
  *
  * The parameter is the length of the chords between the samples. Noise makes these uneven, so smoothed ones
  * are tried too: means over a tenth of the samples, and over all of them, that is, equal steps. Of the three

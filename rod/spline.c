@@ -150,14 +150,16 @@ void rod_spline_fit(RodSpline *spline, double weight)
 /* ---- The spline ---- */
 
 /* Knots at every points / intervals'th point, in between if need be; none closer than a thousandth of the
- * mean to the one before. */
+ * mean to the one before. As many unknowns as points have theirs at all points but the second and third from
+ * either end ("not a knot"). */
 static void place_knots(RodSpline *spline, int intervals)
 {
     const double close = 1e-3;
     double end = spline->u[spline->points - 1], last = 0;
     int kept = 1;
+    bool through = intervals == spline->points - DEGREE;
     for (int k = 1; k < intervals; k++) {
-        double place = (double)k * (spline->points - 1) / intervals;
+        double place = through ? k + ORDER / 2 - 1 : (double)k * (spline->points - 1) / intervals;
         int i = (int)place;
         double knot = spline->u[i] + (place - i) * (spline->u[i + 1] - spline->u[i]);
         if (knot < last + close || knot > end - close) continue;

@@ -9,6 +9,7 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 #include <cmocka.h>
 
 static const double helix_end = 19.565163762857, conical_end = 7.88691715750555;
@@ -256,6 +257,34 @@ static void test_exact_samples(void **state)
     }
 }
 
+/* A drawn outline: straight edges between round corners of many points. Where the edges are too long for
+ * those the curve would swing out far: it is refused. */
+static void test_uneven_samples(void **state)
+{
+    (void)state;
+    enum { CORNER = 8, N = 2000 };
+    for (int far = 0; far < 2; far++) {
+        double r = far ? 1e-4 : 0.03;
+        Vec3 x[4 * CORNER];
+        for (int i = 0; i < 4 * CORNER; i++) {
+            double corner = i / CORNER * M_PI / 2, angle = corner + M_PI / 2 * (i % CORNER) / (CORNER - 1);
+            Vec3 middle =
+                vec3(0.1 * sqrt(2) * cos(corner + M_PI / 4), 0.1 * sqrt(2) * sin(corner + M_PI / 4), 0);
+            x[i] = vec3_axpy(r, vec3(cos(angle), sin(angle), 0), middle);
+        }
+        RodSamplesDef def = {.noise = 0};
+        RodCurve curve;
+        Error err = {""};
+        bool ok = rod_samples_curve(x, 4 * CORNER, &def, N, &curve, NULL, &err);
+        print_message("an outline with corners of %g m: %.4f of its length, %s\n", r,
+                      ok ? curve.length / (0.6 + 2 * M_PI * r) : 0, err.text);
+        assert_true(ok == !far);
+        if (ok) assert_true(fabs(curve.length / (0.6 + 2 * M_PI * r) - 1) < 0.1);
+        if (!ok) assert_non_null(strstr(err.text, "it needs more samples where long chords meet short ones"));
+        rod_curve_clear(&curve);
+    }
+}
+
 static void check_refused(const Vec3 *x, int count, double noise, const char *why)
 {
     RodSamplesDef def = {.noise = noise};
@@ -358,9 +387,10 @@ static void test_many_samples(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_clean_samples), cmocka_unit_test(test_noise_table),
-        cmocka_unit_test(test_few_samples),   cmocka_unit_test(test_heavy_smoothing),
-        cmocka_unit_test(test_many_samples),  cmocka_unit_test(test_refused_samples),
-        cmocka_unit_test(test_exact_samples), cmocka_unit_test(test_lines_and_planes)};
+        cmocka_unit_test(test_clean_samples),   cmocka_unit_test(test_noise_table),
+        cmocka_unit_test(test_few_samples),     cmocka_unit_test(test_heavy_smoothing),
+        cmocka_unit_test(test_many_samples),    cmocka_unit_test(test_refused_samples),
+        cmocka_unit_test(test_exact_samples),   cmocka_unit_test(test_uneven_samples),
+        cmocka_unit_test(test_lines_and_planes)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
