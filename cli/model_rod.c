@@ -234,6 +234,17 @@ static const BodyOps rod_ops = {
     .add_final = body_rod_final,
 };
 
+static bool check_inversion(const Scene *scene, YamlFile *file)
+{
+    bool round_trip = false;
+    for (int k = 0; k < scene->checks_count; k++) round_trip |= scene->checks[k] == CHECK_ROUND_TRIP;
+    if (!scene->rod->curve)
+        return yaml_refuse(file, "rod", "an inversion needs `curve`, the shape that is given");
+    return round_trip || scene->load_steps.mode == 0 ||
+           yaml_refuse(file, "load_steps",
+                       "an inversion uses them for its round trip only: checks: [round_trip]");
+}
+
 bool model_rod(Model *model, const Scene *scene, YamlFile *file)
 {
     Build b = {file, NULL, scene->time.at, model_is_motion(scene->job) ? &model->flux_of_time : NULL};
@@ -243,8 +254,6 @@ bool model_rod(Model *model, const Scene *scene, YamlFile *file)
     model->step_cap = STEP_CAP;
     model->rod = rod_model_create(scene, &b);
     if (!model->rod) return false;
-    if (scene->job == JOB_INVERT)
-        return scene->rod->curve ||
-               yaml_refuse(file, "rod", "an inversion needs `curve`, the shape that is given");
+    if (scene->job == JOB_INVERT) return check_inversion(scene, file);
     return scene->job == JOB_IDENTIFY || fill(model, scene, &b);
 }

@@ -224,7 +224,8 @@ static const YamlTable fix_table = {
         SELECTION_ROWS(FixScene),
         {YAML_TEXT(FixScene, axes), .fallback = "xyz", .doc = "the coordinates that are held: some of xyz"},
         {YAML_BOOL(FixScene, clamp), .doc = "holds the slope of the edges between these vertices too"},
-        {YAML_TEXTS(FixScene, move), .min_count = 3, .max_count = 3,
+        {YAML_TEXTS(FixScene, move), .when = "/job: equilibrium, simulate, trajectory", .min_count = 3,
+         .max_count = 3,
          .doc = "prescribed motion: three expressions, in m, of the rest position x, y, z, r and the time t"},
         {0}}};
 

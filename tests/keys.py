@@ -10,7 +10,7 @@ import h5py, numpy as np
 FREE = {
     "solver.max_iterations", "solver.step_tolerance", "solver.force_tolerance",  # where the first guess is good enough
     "output.every", "output.precision",  # of frames, where there is one
-    "cases[0].name", "output.png",  # no pictures are made here
+    "design.tolerance", "rod.curve.where", "output.png",  # no pictures are made here
 }
 
 SHELL = """
@@ -21,7 +21,7 @@ shell:
   poisson: 0.3
   magnetization: [20000, 0, 5000]
   gravity: [0, 0, -1]
-flux_density: [0, 0, 20 mT]
+flux_density: ["0", "0", "0.02*(1 + t)"]
 fix: [{group: root, clamp: true}]
 """
 ROD = """
@@ -39,6 +39,7 @@ CURVE = """
   poisson: 0.4
   density: 1100
 """
+FLUX = 'flux_density: ["0.01", "0", "0.02*(1 + t)"]\n'
 SCENES = {
     "shell equilibrium": "job: equilibrium" + SHELL,
     "shell sequence": "job: equilibrium" + SHELL + "sequence: [{}, {gravity: [0, 0, -2]}]\n",
@@ -52,19 +53,17 @@ design: {unknowns: {magnetization: {noise: 100}}, objectives: [{target: 1}], ite
 time: {step: 5 ms, steps: 5}
 design: {unknowns: {flux_density: {noise: 0.01}}, objectives: [{waypoint: {mass_center: true, at: [0.02, 0, 0.01]}}], iterations: 3}
 """,
-    "rod equilibrium": "job: equilibrium\nrod:\n  natural_strain: [1, 2, 3]" + ROD + "  elements: 20\nflux_density: [0, 0, 20 mT]\n",
-    "rod curve": "job: equilibrium\nrod:" + CURVE + "  elements: 20\n",
-    "rod held": "job: equilibrium\nrod:\n  natural_strain: [1, 2, 3]" + ROD + "  elements: 20\n  end: {position: [0.15, 0, 0]}\n",
-    "rod design": "job: design\nrod:\n  natural_strain: [0, 0, 0]" + ROD + """  elements: 20
-flux_density: [0, 0, 20 mT]
-target: ["s", "0", "s*s"]
+    "rod equilibrium": "job: equilibrium\nrod:\n  natural_strain: [1, 2, 3]" + ROD + "  elements: 20\n" + FLUX + "",
+    "rod curve": "job: equilibrium\nrod:" + CURVE + "  elements: 20\n" + FLUX,
+    "rod held": "job: equilibrium\nrod:\n  natural_strain: [1, 2, 3]" + ROD + "  elements: 20\n  end: {position: [0.15, 0, 0]}\n" + FLUX,
+    "rod design": "job: design\nrod:\n  natural_strain: [0, 0, 0]" + ROD + "  elements: 20\n" + FLUX + """target: ["s", "0", "s*s"]
 design: {unknowns: {magnetization: {noise: 100}}, objectives: [{target: 1}], iterations: 3}
 """,
-    "rod simulate": "job: simulate\nrod:\n  natural_strain: [1, 2, 3]" + ROD + "  elements: 20\nflux_density: [0, 0, 20 mT]\ntime: {step: 5 ms, steps: 5}\n",
-    "rod curve simulate": "job: simulate\nrod:" + CURVE + "  elements: 20\n  start: curve\n  gravity: [0, 0, -5]\ntime: {step: 5 ms, steps: 5}\n",
+    "rod simulate": "job: simulate\nrod:\n  natural_strain: [1, 2, 3]" + ROD + "  elements: 20\n" + FLUX + "time: {step: 5 ms, steps: 5}\n",
+    "rod curve simulate": "job: simulate\nrod:" + CURVE + "  elements: 20\n  start: curve\n  gravity: [0, 0, -5]\n" + FLUX + "time: {step: 5 ms, steps: 5}\n",
     "rod preview": "job: simulate\nrod:" + CURVE + "  elements: 20\n  solver: pbd\ntime: {step: 5 ms, steps: 5}\n",
-    "rod invert": "job: invert\nrod:" + CURVE + "  elements: 20\n  magnetization: [1000, 0, 0]\nflux_density: [0.01, 0, 0]\n",
-    "rod invert file": "job: invert\nrod:\n  curve: {file: points.csv}" + CURVE.split("\n", 2)[2].join(["\n", ""]) + "  elements: 20\n",
+    "rod invert": "job: invert\nrod:" + CURVE + "  elements: 20\n  magnetization: [1000, 0, 0]\n" + FLUX,
+    "rod invert file": "job: invert\nrod:\n  curve: {file: points.csv}" + CURVE.split("\n", 2)[2].join(["\n", ""]) + "  elements: 20\n" + FLUX,
     "rod identify": "job: identify\nrod:\n  poses:\n" + "".join(
         "    - {file: pose%d.csv, frame: %s, noise: 0.1 mm}\n" % (k, f) for k, f in enumerate([
             "[[1, 0, 0], [0, 1, 0], [0, 0, 1]]",
