@@ -204,16 +204,20 @@ void rod_spline_jet(void *self, double at, Vec3 jet[3])
     jet[0] = vec3_add(jet[0], spline->x[0]);
 }
 
+/* From where the spline has the i-th point; *interval: that of the point before, then its own. */
+static Vec3 miss_of(const RodSpline *spline, int i, int *interval)
+{
+    RodSplineRow value;
+    *interval = advance(spline, *interval, spline->u[i]);
+    basis(spline->knots, *interval, spline->u[i], 0, value);
+    return vec3_sub(vec3_sub(spline->x[i], spline->x[0]), combine(spline, *interval, value));
+}
+
 double rod_spline_worst(const RodSpline *spline)
 {
     double worst = 0;
-    for (int i = 0, interval = 0; i < spline->points; i++) {
-        RodSplineRow value;
-        interval = advance(spline, interval, spline->u[i]);
-        basis(spline->knots, interval, spline->u[i], 0, value);
-        Vec3 off = vec3_sub(vec3_sub(spline->x[i], spline->x[0]), combine(spline, interval, value));
-        worst = fmax(worst, vec3_length(off));
-    }
+    for (int i = 0, interval = 0; i < spline->points; i++)
+        worst = fmax(worst, vec3_length(miss_of(spline, i, &interval)));
     return worst;
 }
 
@@ -222,9 +226,7 @@ double rod_spline_squares_across(const RodSpline *spline)
     double sum = 0;
     for (int i = 0, interval = 0; i < spline->points; i++) {
         RodSplineRow value;
-        interval = advance(spline, interval, spline->u[i]);
-        basis(spline->knots, interval, spline->u[i], 0, value);
-        Vec3 off = vec3_sub(vec3_sub(spline->x[i], spline->x[0]), combine(spline, interval, value));
+        Vec3 off = miss_of(spline, i, &interval);
         basis(spline->knots, interval, spline->u[i], 1, value);
         Vec3 along = combine(spline, interval, value);
         double along2 = vec3_dot(along, along), part = vec3_dot(off, along);
