@@ -20,9 +20,9 @@ static const YamlTable rod_curve_table = {
         {YAML_TEXTS(RodCurveScene, formula), .one_of = 1, .required = true, .min_count = 3, .max_count = 3,
          .doc = "three expressions, in m, of the parameter (and of n, the number of the strand, from 0)"},
         {YAML_FILE(RodCurveScene, file), .one_of = 1, .required = true,
-         .doc = "points: a CSV file with rows x, y, z or s, x, y, z, or the polylines of an OBJ or SVG file "
-                "(mm); "
-                "a smooth curve is put through them"},
+         .doc =
+             "points: a CSV file with rows x, y, z or s, x, y, z (s the arclength), or the polylines of an "
+             "OBJ or SVG file (mm); a smooth curve is put through them"},
         {YAML_TEXT(RodCurveScene, parameter), .when = "formula", .fallback = "u",
          .doc = "of a formula: its name"},
         {YAML_NUMBERS(RodCurveScene, range), .when = "formula", .min_count = 2, .max_count = 2,
@@ -47,7 +47,7 @@ static const YamlTable strain_table = {
          .max_count = 3, .doc = "three expressions, in 1/m, of the arclength s and the length L"},
         {YAML_FILE(StrainScene, file), .one_of = 1, .required = true,
          .doc = "a CSV file with rows s, twist, k1, k2: at the elements' middles as they are (a round trip), "
-                "else linear between the rows"},
+                "else linear between the rows, constant beyond them"},
         WHERE_ROW(StrainScene),
         {0}}};
 
@@ -63,7 +63,8 @@ static const YamlTable rod_frame_table = {
         {YAML_CHOICE(RodFrameScene, from), .when = "formula", .choices = YAML_NAMES("frenet", "bishop"),
          .fallback = "frenet", .doc = "of a formula: what is turned"},
         {YAML_FILE(RodFrameScene, file), .one_of = 1, .required = true,
-         .doc = "a CSV file with rows s, x, y, z: the direction of n1, linear between the rows"},
+         .doc = "a CSV file with rows s, x, y, z: the direction of n1, linear between the rows, constant "
+                "beyond them"},
         {0}}};
 
 static const YamlTable clamp_table = {

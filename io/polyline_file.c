@@ -53,28 +53,38 @@ bool polyline_add(PolylineReader *reader, Vec3 x)
 
 /* ---- CSV ---- */
 
-/* Is s the points' arclength? A smooth curve is longer than its chords, by no more than an arc that turns as
+static Vec3 place_of(const Table *table, int row)
+{
+    return vec3_load(table->values + 4 * (size_t)row + 1);
+}
+
+/* By how much the chords on either side of a row turn; at the ends none. */
+static double turn_at(const Table *table, int row)
+{
+    if (row < 1 || row > table->rows - 2) return 0;
+    Vec3 x = place_of(table, row), before = vec3_sub(x, place_of(table, row - 1)),
+         after = vec3_sub(place_of(table, row + 1), x);
+    return atan2(vec3_length(vec3_cross(before, after)), vec3_dot(before, after));
+}
+
+/* Is s the points' arclength? A smooth curve is longer than its chords, by no more than arcs that turn as
  * they do; and no shorter than the few chords between far points, in which noise does not count. */
 static bool check_arclength(const Table *table, const PolylineReader *reader)
 {
-    const double *row = table->values;
-    double far = 0, arcs = 0, s = row[4 * (size_t)(table->rows - 1)] - row[0], slack = 1.02;
+    const double slack = 1.02, most = 2; /* rad */
+    double far = 0, arcs = 0, s = table->values[4 * (size_t)(table->rows - 1)] - table->values[0];
     int stride = table->rows / 16 > 1 ? table->rows / 16 : 1;
-    Vec3 before = vec3(0, 0, 0);
     for (int i = 1; i < table->rows; i++) {
-        Vec3 x = vec3_load(row + 4 * (size_t)i + 1), chord = vec3_sub(x, vec3_load(row + 4 * (size_t)i - 3));
-        double length = vec3_length(chord),
-               turn = fmin(atan2(vec3_length(vec3_cross(before, chord)), vec3_dot(before, chord)), 2);
-        arcs += length * (turn > 0 ? turn / 2 / sin(turn / 2) : 1);
-        before = chord;
-        if (i % stride == 0) far += vec3_length(vec3_sub(x, vec3_load(row + 4 * (size_t)(i - stride) + 1)));
+        double chord = vec3_length(vec3_sub(place_of(table, i), place_of(table, i - 1))),
+               turn = fmin(fmax(turn_at(table, i - 1), turn_at(table, i)), most);
+        arcs += chord * (turn > 0 ? turn / 2 / sin(turn / 2) : 1);
+        if (i % stride == 0) far += vec3_length(vec3_sub(place_of(table, i), place_of(table, i - stride)));
     }
     return (far <= slack * s && s <= slack * arcs) ||
-           error_set(
-               reader->err,
-               "%s:%d: s grows by %g to here, and the points are %g apart along the curve: s must be their "
-               "arclength, in the unit of x, y, z",
-               reader->path, table->line[table->rows - 1], s, arcs);
+           error_set(reader->err,
+                     "%s:%d: s grows by %g to here, and the points are %g apart along the curve: s must be "
+                     "their arclength, in the unit of x, y, z",
+                     reader->path, table->line[table->rows - 1], s, arcs);
 }
 
 static bool read_csv(PolylineReader *reader, const char *text, size_t length)

@@ -47,6 +47,9 @@ static void test_csv(void **state)
     file = parse("CSV", "3 0 0 0\n7.1 1 2.5 -3\n11.9 2 0 1e-3");
     check_strand(&file, 0, 1, 3, x);
     polyline_file_clear(&file);
+    file = parse("csv", "0, 1, 0, 0\n1.5707963, 0, 1, 0\n3.1415927, -1, 0, 0\n"); /* half a circle */
+    assert_int_equal(file.point_count, 3);
+    polyline_file_clear(&file);
     check_refused("csv", "", "a: there are no numbers in it");
     check_refused("csv", "1,2,3\n", "a: there are no lines in it");
     check_refused("csv", "# x, y\n1, 2\n2, 3\n",
