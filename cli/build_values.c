@@ -70,7 +70,8 @@ static bool from_table(const Build *b, Key at, const char *path, int width, doub
 {
     Table table = {0};
     Error err;
-    bool ok = table_read(path, width, &table, &err) || yaml_refuse(b->file, at.text, "%s", err.text);
+    bool ok = table_read(path, width == 1 ? "value" : "x, y, z", &table, &err) ||
+              yaml_refuse(b->file, at.text, "%s", err.text);
     if (ok && table.rows != b->mesh->face_count)
         ok =
             yaml_refuse(b->file, at.text, "%s has %d rows, and the mesh %d faces: one row per face is needed",
@@ -229,7 +230,8 @@ static bool fold_table(const Build *b, Key at, const char *path, double *values)
 {
     Table table = {0};
     Error err;
-    bool ok = table_read(path, 3, &table, &err) || yaml_refuse(b->file, at.text, "%s", err.text);
+    bool ok =
+        table_read(path, "v0, v1, value", &table, &err) || yaml_refuse(b->file, at.text, "%s", err.text);
     for (int e = 0; e < b->mesh->edge_count; e++) values[e] = 1;
     for (int row = 0; ok && row < table.rows; row++) {
         const double *line = table.values + 3 * row;

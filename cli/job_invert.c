@@ -11,6 +11,7 @@
 
 enum { LOAD_STEPS = 10 };
 static const double ELSEWHERE = 1e-4; /* of the length: another equilibrium */
+static const double COARSE = 1e-2;    /* two ways to the same strains differ by that */
 
 /* Everything about all strands, one after the other: nodes N + 1 and elements N each. */
 typedef struct Inversion {
@@ -249,13 +250,19 @@ static void say(const Inversion *o)
 {
     Progress *progress = o->run->progress;
     int unstable = 0, touching = 0, elsewhere = 0;
-    double worst = 0;
+    double worst = 0, route = 0;
     for (int k = 0; k < o->strands; k++) {
         unstable += is_asked(o->run->scene, CHECK_STABILITY) && !o->stable[k];
         touching += o->touching[k];
         elsewhere += o->round_trip[k] > ELSEWHERE * o->rm->curves[k].length;
         worst = fmax(worst, o->round_trip[k]);
+        route = fmax(route, o->route[k]);
     }
+    if (route > COARSE)
+        progress_say(
+            progress,
+            "natural strains are good to %.2g of the largest only: the curve bends too much for %d elements",
+            route, o->elements);
     if (unstable)
         progress_say(progress,
                      "%d of %d curves unstable: the rod would not stay there (rod/critical_young says from "

@@ -38,7 +38,7 @@ static bool put_target(Model *model, const Build *b, const char *at, const Targe
                            "the target of a rod is a file with a polyline, or three formulas of s and L");
     if (scene->file) {
         RodCurve curve;
-        if (!rod_curve_read(b, at, scene->file, 1, (NoiseScene){-1, 0}, rod->elements, &curve)) return false;
+        if (!rod_curve_read(b, (Sampled){at, scene->file, 1, {-1, 0}, rod->elements}, &curve)) return false;
         for (int i = 0; i <= rod->elements; i++) vec3_store(target[i], curve.x[2 * i]);
         rod_curve_clear(&curve);
         return true;
@@ -109,12 +109,19 @@ static bool make_rod(RodModel *rm, const Scene *scene, const Build *b)
     if (given && rm->strand_count > 1)
         return yaml_refuse(b->file, "rod.curve", "there are %d curves; jobs other than invert take one rod",
                            rm->strand_count);
+    if (!given && !from->natural_strain)
+        return yaml_refuse(b->file, "rod", "`curve` or `natural_strain` is missing");
     if (!given && isnan(from->length))
-        return yaml_refuse(b->file, "rod", "with natural strains, `length` is needed");
-    if (from->start == ROD_START_CURVE && !given)
-        return yaml_refuse(b->file, "rod.start", "there is no curve to start from");
+        return yaml_refuse(b->file, "rod", "without a curve, `length` is needed");
     rm->rod = rod_create(from->elements, given ? rm->curves[0].length : from->length, rm->unit, rm->area);
     return read_supports(rm, from, b) && rod_model_check_points(rm, b, rm->rod->length);
+}
+
+/* The curve's state in x, and none of its shape in the rod: that has natural strains of its own. */
+static void pose(RodModel *rm, double *x)
+{
+    rod_follow_curve(rm->rod, &rm->curves[0], rm->frames[0], x);
+    for (int e = 0; e < rm->rod->elements; e++) rm->rod->bow[e] = vec3(0, 0, 0);
 }
 
 /* The natural strains that make the rod rest on its curve, hanging under its loads in p; leaves the curve's
@@ -162,7 +169,10 @@ static void make_states(Model *model, const RodScene *scene, bool hanging, doubl
     Rod *rod = rm->rod;
     RodLayout turns = rod_layout(rod, false);
     double *x = mem_alloc((size_t)turns.dofs, sizeof *x);
-    if (rm->curves) balance(rm, p, x);
+    if (rm->curves && scene->natural_strain)
+        pose(rm, x);
+    else if (rm->curves)
+        balance(rm, p, x);
     rm->layout = rod_layout(rod, !hanging);
     model->x = mem_alloc((size_t)rm->layout.dofs, sizeof *model->x);
     if (scene->start == ROD_START_CURVE)
@@ -224,24 +234,15 @@ static const BodyOps rod_ops = {
     .add_final = body_rod_final,
 };
 
-/* What is said of shells only. */
-static bool check_keys(const Scene *scene, YamlFile *file)
+static bool check_inversion(const Scene *scene, YamlFile *file)
 {
-    bool ok = true;
-    if (scene->fix) ok = yaml_refuse(file, "fix", "a rod is held by rod.clamp, rod.hold and rod.end");
-    if (scene->loads) ok = yaml_refuse(file, "loads", "loads of a rod are under rod.loads");
-    if (scene->modes) ok = yaml_refuse(file, "modes", "modes are for shells");
-    bool preview = scene->rod->solver == ROD_SOLVER_PBD;
-    if (preview && scene->job != JOB_SIMULATE)
-        ok = yaml_refuse(file, "rod.solver", "the solver pbd is for simulations");
-    if (preview && (scene->rod->end || scene->rod->hold == HOLD_PINNED || scene->rod->velocity ||
-                    scene->rod->magnetization.formula || scene->rod->magnetization.file ||
-                    scene->rod->magnetization.value[0] != 0 || scene->rod->magnetization.value[1] != 0 ||
-                    scene->rod->magnetization.value[2] != 0))
-        ok = yaml_refuse(
-            file, "rod.solver",
-            "the solver pbd shows rods that are clamped and free, start at rest and are not magnetised");
-    return ok;
+    bool round_trip = false;
+    for (int k = 0; k < scene->checks_count; k++) round_trip |= scene->checks[k] == CHECK_ROUND_TRIP;
+    if (!scene->rod->curve)
+        return yaml_refuse(file, "rod", "an inversion needs `curve`, the shape that is given");
+    return round_trip || scene->load_steps.mode == 0 ||
+           yaml_refuse(file, "load_steps",
+                       "an inversion uses them for its round trip only: checks: [round_trip]");
 }
 
 bool model_rod(Model *model, const Scene *scene, YamlFile *file)
@@ -252,14 +253,8 @@ bool model_rod(Model *model, const Scene *scene, YamlFile *file)
     model->point_count = scene->rod->elements + 1;
     model->load_steps = LOAD_STEPS;
     model->step_cap = STEP_CAP;
-    if (!check_keys(scene, file)) return false;
     model->rod = rod_model_create(scene, &b);
     if (!model->rod) return false;
-    if (scene->job == JOB_INVERT)
-        return scene->rod->curve ||
-               yaml_refuse(file, "rod", "an inversion needs `curve`, the shape that is given");
-    if (scene->job == JOB_IDENTIFY)
-        return scene->rod->poses_count >= 2 ||
-               yaml_refuse(file, "rod", "an identification needs two or more `poses` of the rod");
-    return fill(model, scene, &b);
+    if (scene->job == JOB_INVERT) return check_inversion(scene, file);
+    return scene->job == JOB_IDENTIFY || fill(model, scene, &b);
 }

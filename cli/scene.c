@@ -35,7 +35,7 @@ const YamlTable where_table = {.name = "where",
              .doc = "an expression of the rest position x, y, z, r"},                                        \
             {YAML_MAP(NumberScene, groups, &id##_group_table), .one_of = 1, .required = true,                \
              .doc = "a value for each named group; what lies in several has that of the smallest"},          \
-            {YAML_NUMBER(NumberScene, other), .unit = u, .range = r, .with = YAML_NAMES("groups"),           \
+            {YAML_NUMBER(NumberScene, other), .when = "groups", .unit = u, .range = r,                       \
              .doc = "with groups: the value elsewhere"},                                                     \
             WHERE_ROW(NumberScene),                                                                          \
             {0}}}
@@ -68,7 +68,7 @@ const YamlTable magnetization_table = {
          .doc = "three expressions of the rest position x, y, z, r of a face's barycentre, in A/m"},
         {YAML_MAP(VectorScene, groups, &magnetization_group_table), .one_of = 1, .required = true,
          .doc = "a value for each named group; what lies in several has that of the smallest"},
-        {YAML_VECTOR(VectorScene, other), .unit = "A/m", .with = YAML_NAMES("groups"),
+        {YAML_VECTOR(VectorScene, other), .when = "groups", .unit = "A/m",
          .doc = "with groups: the value elsewhere"},
         WHERE_ROW(VectorScene),
         {0}}};
@@ -172,7 +172,7 @@ static const YamlTable shell_table = {
     .fields = (const YamlField[]){
         {YAML_TABLE(ShellScene, mesh, &mesh_table), .required = true, .doc = "its mesh at rest"},
         {YAML_OPTIONAL(ShellScene, pose, &pose_table), .doc = "where a job starts; at rest if absent"},
-        {YAML_OPTIONAL(ShellScene, velocity, &velocity_table),
+        {YAML_OPTIONAL(ShellScene, velocity, &velocity_table), .when = "/job: simulate, trajectory",
          .doc = "of the free coordinates at the start of a motion; at rest if absent"},
         {YAML_NUMBER(ShellScene, thickness), .unit = "m", .range = "(0, inf)", .required = true,
          .doc = "thickness h"},
@@ -188,8 +188,8 @@ static const YamlTable shell_table = {
          .doc = "factor on the curvature of each edge"},
         {YAML_TABLE(ShellScene, magnetization, &magnetization_table), .fallback = "[0, 0, 0]",
          .doc = "remanent magnetisation"},
-        {YAML_NUMBER(ShellScene, damping), .unit = "N s/m", .range = "[0, inf)", .fallback = "0",
-         .doc = "of a simulation: viscous damping at every vertex"},
+        {YAML_NUMBER(ShellScene, damping), .when = "/job: simulate, trajectory", .unit = "N s/m",
+         .range = "[0, inf)", .fallback = "0", .doc = "of a simulation: viscous damping at every vertex"},
         {YAML_VECTOR(ShellScene, gravity), .unit = "m/s^2", .fallback = "[0, 0, 0]",
          .doc = "acceleration of gravity"},
         {0}}};
@@ -231,7 +231,8 @@ static const YamlTable fix_table = {
         SELECTION_ROWS(FixScene),
         {YAML_TEXT(FixScene, axes), .fallback = "xyz", .doc = "the coordinates that are held: some of xyz"},
         {YAML_BOOL(FixScene, clamp), .doc = "holds the slope of the edges between these vertices too"},
-        {YAML_TEXTS(FixScene, move), .min_count = 3, .max_count = 3,
+        {YAML_TEXTS(FixScene, move), .when = "/job: equilibrium, simulate, trajectory", .min_count = 3,
+         .max_count = 3,
          .doc = "prescribed motion: three expressions, in m, of the rest position x, y, z, r and the time t"},
         {0}}};
 
@@ -266,11 +267,11 @@ static const YamlTable target_table = {
          .doc = "segments x0, y0, x1, y1: ridges of height, round across"},
         {YAML_TEXTS(TargetScene, formula), .one_of = 1, .required = true, .short_form = true, .min_count = 3,
          .max_count = 3, .doc = "three expressions, in m, of the rest position x, y, z, r"},
-        {YAML_NUMBER(TargetScene, height), .unit = "m", .with = YAML_NAMES("height_map", "strokes"),
+        {YAML_NUMBER(TargetScene, height), .when = "height_map | strokes", .unit = "m",
          .doc = "of a height map or strokes"},
-        {YAML_NUMBER(TargetScene, width), .unit = "m", .range = "(0, inf)", .with = YAML_NAMES("strokes"),
+        {YAML_NUMBER(TargetScene, width), .when = "strokes", .unit = "m", .range = "(0, inf)",
          .doc = "of strokes, at half their height"},
-        {YAML_NUMBER(TargetScene, scale), .range = "(0, inf)", .with = YAML_NAMES("file"),
+        {YAML_NUMBER(TargetScene, scale), .when = "file", .range = "(0, inf)",
          .doc = "of a file: factor on its coordinates; that of the mesh if absent"},
         WHERE_ROW(TargetScene),
         {YAML_OPTIONAL(TargetScene, on, &selection_table), .also = ON_NAMES,
@@ -283,7 +284,8 @@ static const YamlTable case_table = {
     .doc = "A load case: a field or loads, and what the body should then do.",
     .fields = (const YamlField[]){
         {YAML_TEXT(CaseScene, name), .doc = "its name in the result; case1, case2, .. if absent"},
-        {YAML_NUMBER(CaseScene, weight), .range = "[0, inf)", .fallback = "1", .doc = "of its objectives"},
+        {YAML_NUMBER(CaseScene, weight), .when = "/job: design", .range = "[0, inf)", .fallback = "1",
+         .doc = "of its objectives"},
         {YAML_OPTIONAL(CaseScene, flux_density, &flux_density_table), .doc = "in place of the scene's"},
         {YAML_LIST(CaseScene, loads, &load_table), .doc = "in place of the scene's"},
         {YAML_VECTOR(CaseScene, gravity), .unit = "m/s^2", .doc = "in place of the shell's"},
@@ -333,17 +335,20 @@ static const YamlTable time_table = {
     .name = "time",
     .size = sizeof(TimeScene),
     .doc = "The time t of formulas in statics, or the steps of a simulation or trajectory.",
-    .fields = (const YamlField[]){{YAML_NUMBER(TimeScene, at), .unit = "s", .fallback = "0 s",
-                                   .short_form = true, .doc = "t in statics; where a simulation begins"},
-                                  {YAML_NUMBER(TimeScene, step), .unit = "s", .range = "(0, inf)",
-                                   .doc = "of a simulation or trajectory: the step of implicit Euler"},
-                                  {YAML_INTEGER(TimeScene, steps), .range = "[1, inf)",
-                                   .doc = "of a simulation or trajectory: how many"},
-                                  {0}}};
+    .fields = (const YamlField[]){
+        {YAML_NUMBER(TimeScene, at),
+         .when = "/job: equilibrium, evaluate, design, simulate, trajectory, invert, identify", .unit = "s",
+         .fallback = "0 s", .short_form = true, .doc = "t in statics; where a simulation begins"},
+        {YAML_NUMBER(TimeScene, step), .when = "/job: simulate, trajectory", .unit = "s", .range = "(0, inf)",
+         .doc = "of a simulation or trajectory: the step of implicit Euler"},
+        {YAML_INTEGER(TimeScene, steps), .when = "/job: simulate, trajectory", .range = "[1, inf)",
+         .doc = "of a simulation or trajectory: how many"},
+        {0}}};
 
 #define DRAWING_FILE(m, d)                                                                                   \
     {                                                                                                        \
-        YAML_TEXT(OutputScene, m), .doc = "of a drawing: " d                                                 \
+        YAML_TEXT(OutputScene, m), .when = "/spline", .otherwise = "slender picture shows results",          \
+                                   .doc = "of a drawing: " d                                                 \
     }
 static const YamlTable output_table = {
     .name = "output",
@@ -351,11 +356,13 @@ static const YamlTable output_table = {
     .doc =
         "What goes into the result file, and further files. Their names are relative to the result's folder.",
     .fields = (const YamlField[]){
-        {YAML_INTEGER(OutputScene, every), .range = "[0, inf)", .fallback = "0",
+        {YAML_INTEGER(OutputScene, every), .when = "/job: design, simulate, trajectory, draw",
+         .range = "[0, inf)", .fallback = "0",
          .doc = "a frame for every so many steps of a motion (0: every step) or improvements of a design (0: "
                 "the final one only); of a drawing: NAME-N.svg after every so many iterations N (0: none)"},
-        {YAML_CHOICE(OutputScene, precision), .choices = YAML_NAMES("single", "double"), .fallback = "single",
-         .doc = "of frames"},
+        {YAML_CHOICE(OutputScene, precision),
+         .when = "/job: equilibrium, evaluate, design, simulate, trajectory, invert",
+         .choices = YAML_NAMES("single", "double"), .fallback = "single", .doc = "of frames"},
         DRAWING_FILE(svg, "curves in mm, a layer for each pen; NAME.svg if absent"),
         DRAWING_FILE(png, "target and drawing side by side; NAME.png if absent"),
         DRAWING_FILE(gcode, "for a pen on a z axis; none if absent"),
@@ -384,23 +391,34 @@ const YamlTable scene_table = {
         {YAML_OPTIONAL(Scene, rod, &rod_table), .one_of = 1, .required = true, .doc = "the body: a rod"},
         {YAML_OPTIONAL(Scene, spline, &spline_table), .one_of = 1, .required = true,
          .doc = "no body, but a drawing"},
-        {YAML_TABLE(Scene, flux_density, &flux_density_table), .fallback = "[0, 0, 0]",
-         .doc = "applied field"},
-        {YAML_LIST(Scene, fix, &fix_table), .doc = "what is held"},
-        {YAML_LIST(Scene, loads, &load_table), .doc = "dead loads"},
+        {YAML_TABLE(Scene, flux_density, &flux_density_table), .when = "!spline & /rod.solver: newton",
+         .fallback = "[0, 0, 0]", .doc = "applied field"},
+        {YAML_LIST(Scene, fix, &fix_table), .when = "shell",
+         .otherwise = "a rod is held by rod.clamp, rod.hold and rod.end", .doc = "what is held"},
+        {YAML_LIST(Scene, loads, &load_table), .when = "shell",
+         .otherwise = "loads of a rod are under rod.loads", .doc = "dead loads"},
         {YAML_OPTIONAL(Scene, target, &target_table),
+         .when =
+             "/job: equilibrium, evaluate, design, simulate, trajectory & /rod.solver: newton & !sequence",
          .doc = "where vertices should be, in all cases without one of their own"},
-        {YAML_LIST(Scene, cases, &case_table),
+        {YAML_LIST(Scene, cases, &case_table), .when = "/job: equilibrium, evaluate, design",
+         .otherwise = "in a motion a field may be a formula of t",
          .doc = "load cases of a design; one with the scene's loads if absent"},
-        {YAML_LIST(Scene, sequence, &stage_table), .doc = "stages of an equilibrium"},
-        {YAML_OPTIONAL(Scene, design, &design_table), .doc = "what a design or trajectory job looks for"},
-        {YAML_TABLE(Scene, solver, &solver_table), .fallback = "{}", .doc = "tolerances"},
-        {YAML_TABLE(Scene, load_steps, &load_steps_table), .fallback = "auto", .doc = "how loads come on"},
+        {YAML_LIST(Scene, sequence, &stage_table), .when = "/job: equilibrium",
+         .otherwise = "in a motion a field may be a formula of t", .doc = "stages of an equilibrium"},
+        {YAML_OPTIONAL(Scene, design, &design_table), .when = "/job: design, trajectory",
+         .doc = "what a design or trajectory job looks for"},
+        {YAML_TABLE(Scene, solver, &solver_table),
+         .when = "/job: equilibrium, evaluate, design, simulate, trajectory, invert & /rod.solver: newton",
+         .fallback = "{}", .doc = "tolerances"},
+        {YAML_TABLE(Scene, load_steps, &load_steps_table), .when = "/job: equilibrium, invert",
+         .fallback = "auto", .doc = "how loads come on"},
         {YAML_TABLE(Scene, time, &time_table), .fallback = "0 s",
          .doc = "the time t of formulas, or the steps of a simulation"},
-        {YAML_INTEGER(Scene, modes), .range = "[0, 100]", .fallback = "0",
+        {YAML_INTEGER(Scene, modes), .when = "shell", .range = "[0, 100]", .fallback = "0",
          .doc = "lowest eigenmodes to put into the result"},
-        {YAML_CHOICES(Scene, checks), .choices = YAML_NAMES("stability", "self_contact", "round_trip"),
+        {YAML_CHOICES(Scene, checks), .when = "/job: invert",
+         .choices = YAML_NAMES("stability", "self_contact", "round_trip"),
          .doc = "of a rod: what else to find out"},
         {YAML_TABLE(Scene, output, &output_table), .fallback = "{}", .doc = "what to keep"},
         {0}}};

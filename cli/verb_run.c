@@ -182,7 +182,7 @@ static int do_job(Run *run, const RunOptions *options)
     if (!begin(run, options, &err))
         return verb_fail(options->resume ? RUN_REFUSED : RUN_CANNOT_WRITE, err.text);
     RunStatus status = job_run(run, &err);
-    if (status == RUN_CANNOT_WRITE) return verb_fail(status, err.text);
+    if (status == RUN_CANNOT_WRITE || status == RUN_REFUSED) return verb_fail(status, err.text);
     if (!write_result(run, run->result, status != RUN_INTERRUPTED, &err))
         return verb_fail(RUN_CANNOT_WRITE, err.text);
     progress_say(run->progress, "result: %s", run->result);

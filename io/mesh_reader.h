@@ -1,5 +1,5 @@
 /* mesh_reader.h - a MeshFile that grows while it is read. Private to the mesh readers and, for OBJ,
- * polyline_file.c. */
+ * polyline_obj.c. */
 #pragma once
 #include "io/lookup.h"
 #include "io/mesh_file.h"

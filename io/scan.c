@@ -86,10 +86,15 @@ static bool is_join(const Scan *scan, const char *c)
     return c < scan->end && *c == '\n';
 }
 
+bool scan_is_blank(char c)
+{
+    return c == ' ' || c == '\t' || c == '\r' || c == '\f' || c == '\v';
+}
+
+/* A newline is within a line that is joined with the next. */
 static bool splits(const Scan *scan, const char *c)
 {
-    static const char blanks[] = " \t\r\f\v\n";
-    return *c && (strchr(blanks, *c) || strchr(scan->separators, *c) || is_join(scan, c));
+    return scan_is_blank(*c) || *c == '\n' || (*c && strchr(scan->separators, *c)) || is_join(scan, c);
 }
 
 static void skip_blanks(Scan *scan)

@@ -47,6 +47,8 @@ static inline bool scan_more(const Scan *scan)
     return scan->at < scan->word_end;
 }
 
+bool scan_is_blank(char c);
+
 bool word_is(Word word, const char *text);
 bool word_begins(Word word, const char *text); /* any case */
 

@@ -78,10 +78,12 @@ typedef struct YamlField {
     const char *fallback; /* default, as scene text: "1 mm", "[0, 0, 0]", "{every: 1}"; NULL: none  */
     const char *unit;     /* SI unit, any product: "m", "A/m", "N s/m"; NULL: a plain number        */
     const char *range;    /* of each number, SI: "(0, inf)", "[0, 0.5]", "(-inf, 0]"; NULL: any     */
+    const char *when;     /* where the key is used, NULL: always. Conditions joined by `&`: keys of the same table
+                           * of which one is written, "points | arc", or none, "!curve"; or a key that has one of
+                           * some values, "solver: pbd". A slash begins a key of the root: "/job: simulate" */
+    const char *otherwise; /* what there is in its place elsewhere: ends the sentence of its refusal        */
     const char *const *choices; /* NULL-terminated: YAML_NAMES("hinge", "midedge")                        */
     int min_count, max_count;   /* of a list's entries; 0: no limit                                       */
-    const char *const *with;    /* keys of the table, NULL-terminated: this one has a meaning beside one of
-                                 * them only, and must have no default. NULL: always                      */
     const char *const *also;    /* other names of a key that YAML 1.1 takes for a boolean: what it becomes
                                  * there, and a word that passes through. NULL: none                      */
 } YamlField;
@@ -155,6 +157,10 @@ bool yaml_override(YamlFile *file, const char *assignment);
  * lists. The order of keys means nothing, and a number or boolean in quotes is one. Paths are taken relative
  * to the scene file. False if the file has any error; the struct is then empty (zeroed). */
 bool yaml_load(YamlFile *file, const YamlTable *table, void *scene);
+
+/* Of a file that was loaded: refuses every key that is written where nothing uses it (YamlField.when), unless
+ * it says no more than its default. */
+bool yaml_check_use(YamlFile *file, const YamlTable *table);
 
 /* Frees what the struct owns, by the same table, and zeroes it. (libyaml already has a yaml_free.) */
 void yaml_clear(const YamlTable *table, void *scene);

@@ -219,7 +219,7 @@ static bool accepts(const YamlField *row, const Node *node)
 
 /* The row that a value which is no mapping goes to: the first that accepts it, else the first of all, whose
  * refusal tells what is wanted. */
-static const YamlField *short_row(const YamlTable *table, const Node *node)
+const YamlField *load_short_row(const YamlTable *table, const Node *node)
 {
     const YamlField *first = NULL;
     for (const YamlField *row = table->fields; row->key; row++) {
@@ -251,7 +251,7 @@ static int row_index(const YamlField *row, const Node *node, int *count)
     return index;
 }
 
-static const Node *row_item(const YamlField *row, const Node *node)
+const Node *load_row_item(const YamlField *row, const Node *node)
 {
     int count, index = row_index(row, node, &count);
     return index < 0 ? NULL : node->items[index];
@@ -300,7 +300,7 @@ static bool is_version(const Load *load, const char *key)
 
 static bool is_given(const YamlField *row, const Node *node)
 {
-    const Node *item = row_item(row, node);
+    const Node *item = load_row_item(row, node);
     return item && !(row->kind == FIELD_BOOL && item->kind == NODE_SCALAR && strcmp(item->text, "true"));
 }
 
@@ -335,21 +335,10 @@ static bool group_is_given(const YamlTable *table, const Node *node, int group)
     return false;
 }
 
-/* Is one of the keys there that give this one its meaning? */
-static bool has_meaning(const YamlTable *table, const YamlField *row, const Node *node)
+bool load_row_alone(Load *load, const YamlField *row, const Node *item, void *scene)
 {
-    for (int k = 0; row->with && row->with[k]; k++)
-        if (is_given(table_row(table, row->with[k]), node)) return true;
-    return !row->with;
-}
-
-static bool refuse_meaningless(Load *load, const YamlField *row, const Node *item)
-{
-    char what[200] = "has a meaning beside ";
-    for (int k = 0; row->with[k]; k++)
-        snprintf(what + strlen(what), sizeof what - strlen(what), "%s%s", k ? " or " : "", row->with[k]);
-    snprintf(what + strlen(what), sizeof what - strlen(what), " only");
-    return load_wrong(load, item, what);
+    set_absent(row, scene);
+    return item ? load_value(load, row, item, scene) : load_default(load, row, scene);
 }
 
 static bool load_row(Load *load, const YamlTable *table, const YamlField *row, const Node *node, void *scene)
@@ -360,8 +349,6 @@ static bool load_row(Load *load, const YamlTable *table, const YamlField *row, c
     set_absent(row, scene);
     if (count > 1) {
         ok = load_wrong(load, node, "is there twice, under two of its names");
-    } else if (index >= 0 && !has_meaning(table, row, node)) {
-        ok = refuse_meaningless(load, row, node->items[index]);
     } else if (index >= 0) {
         ok = load_value(load, row, node->items[index], scene);
     } else if (row->required && !row->one_of) {
@@ -394,7 +381,7 @@ static bool load_map_node(Load *load, const YamlTable *table, const Node *node, 
 static bool load_table(Load *load, const YamlTable *table, const Node *node, void *scene)
 {
     if (node->kind == NODE_MAP) return load_map_node(load, table, node, scene);
-    const YamlField *row = short_row(table, node);
+    const YamlField *row = load_short_row(table, node);
     if (!row) {
         char what[800] = "must be a mapping with the keys ";
         list_keys(table, what + strlen(what), sizeof what - strlen(what));

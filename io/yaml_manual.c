@@ -264,6 +264,22 @@ static void manual_kind(Text *text, const YamlField *row)
     if (row->range) text_add(text, ", in %s", row->range);
 }
 
+/* "/job: simulate & !curve" as " (with `job: simulate`, without `curve`)". */
+static void manual_when(Text *text, const char *when)
+{
+    for (int k = 0; when && *when; k++) {
+        bool absent = *when == '!';
+        when += strspn(when, "/!");
+        size_t length = strcspn(when, "&"), end = length;
+        while (end && when[end - 1] == ' ') end--;
+        text_add(text, "%s%s `", k ? ", " : " (", absent ? "without" : "with");
+        for (size_t i = 0; i < end; i++) text_add(text, when[i] == '|' ? "\\|" : "%c", when[i]);
+        text_add(text, "`");
+        when += length + strspn(when + length, "& ");
+        if (!*when) text_add(text, ")");
+    }
+}
+
 static void manual_row(Text *text, const YamlField *row)
 {
     text_add(text, "| `%s`", row->key);
@@ -277,7 +293,9 @@ static void manual_row(Text *text, const YamlField *row)
         text_add(text, row->one_of ? "one of these (%d)" : "needed", row->one_of);
     else if (row->one_of)
         text_add(text, "one of these (%d)", row->one_of);
-    text_add(text, " | %s%s |\n", row->doc, row->short_form ? "; may stand alone" : "");
+    text_add(text, " | %s%s", row->doc, row->short_form ? "; may stand alone" : "");
+    manual_when(text, row->when);
+    text_add(text, " |\n");
 }
 
 char *yaml_manual(const YamlTable *table, const char *title)
@@ -321,9 +339,8 @@ void yaml_check_table(const YamlTable *table)
         for (int i = 0; i < k; i++) assert(strcmp(tables.tables[i]->name, tables.tables[k]->name));
         for (const YamlField *row = tables.tables[k]->fields; row->key; row++) {
             check_row(row);
+            assert(row_use_is_sound(table, tables.tables[k], row));
             assert(row->table != tables.tables[k]);
-            for (int i = 0; row->with && row->with[i]; i++)
-                assert(table_row(tables.tables[k], row->with[i]) && !row->fallback);
             if (!row->fallback) continue;
             /* The default must load: a table of this one row, filled from nothing. */
             YamlTable alone = {.name = "default",

@@ -102,6 +102,12 @@ static inline int *row_count(const YamlField *row, const void *scene)
 /* Is the value there, or as it is when absent? */
 bool row_is_given(const YamlField *row, const void *scene);
 
+/* "key: value" as in the effective scene; "" where it is not given. To be freed. */
+char *row_text(const YamlField *row, const void *scene);
+
+/* Are the keys and values in the row's condition there? */
+bool row_use_is_sound(const YamlTable *root, const YamlTable *table, const YamlField *row);
+
 /* The known word nearest to a misspelt one; NULL if none is near, or if the file has more errors than are
  * shown. words(self, i) gives them, NULL at the end. */
 const char *nearest_word(const YamlFile *file, const char *word,

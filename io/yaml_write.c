@@ -149,6 +149,14 @@ static void write_table(Text *text, const YamlTable *table, const void *scene, i
     text_add(text, "{}\n");
 }
 
+char *row_text(const YamlField *row, const void *scene)
+{
+    Text text = {0};
+    text_add(&text, "%s", "");
+    if (row_is_given(row, scene)) write_row(&text, row, scene, 0);
+    return text.text;
+}
+
 char *yaml_write(const YamlTable *table, const void *scene)
 {
     Text text = {0};

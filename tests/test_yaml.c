@@ -317,12 +317,92 @@ static void test_mark(void **state)
     assert_int_equal(mem_live_count(), blocks);
 }
 
+/* Keys that are used here and not there. */
+typedef struct Part {
+    char *formula, *names;
+    double step, value;
+    int solver;
+} Part;
+
+typedef struct Job {
+    int job;
+    Part part, *parts;
+    double end;
+    int parts_count;
+} Job;
+
+static const YamlTable part_table = {
+    .name = "part",
+    .doc = "A part.",
+    .size = sizeof(Part),
+    .fields = (const YamlField[]){
+        {YAML_NUMBER(Part, value), .one_of = 1, .short_form = true, .doc = "a number"},
+        {YAML_TEXT(Part, formula), .one_of = 1, .short_form = true, .doc = "an expression"},
+        {YAML_TEXT(Part, names), .when = "formula", .doc = "of a formula"},
+        {YAML_NUMBER(Part, step), .unit = "s", .fallback = "1 s",
+         .when = "/job: move, stop & !value & solver: one", .otherwise = "nothing moves", .doc = "of time"},
+        {YAML_CHOICE(Part, solver), .choices = YAML_NAMES("one", "two"), .fallback = "one",
+         .doc = "a choice"},
+        {0}}};
+
+static const YamlTable job_table = {
+    .name = "scene",
+    .doc = "A job.",
+    .size = sizeof(Job),
+    .fields = (const YamlField[]){{YAML_CHOICE(Job, job), .choices = YAML_NAMES("rest", "move", "stop"),
+                                   .required = true, .doc = "what"},
+                                  {YAML_TABLE(Job, part, &part_table), .doc = "a part"},
+                                  {YAML_LIST(Job, parts, &part_table), .doc = "parts"},
+                                  {YAML_NUMBER(Job, end), .when = "part.formula | parts", .doc = "a number"},
+                                  {0}}};
+
+static void test_use(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text, *sentence; /* NULL: all is used */
+    } cases[] = {
+        {"job: move\npart: {formula: a, names: b, step: 2 s}\nend: 1", NULL},
+        {"job: rest\npart: {step: 1}", NULL}, /* the default says nothing */
+        {"job: rest\npart: {step: 1000 ms}", NULL},
+        {"job: rest\npart: x\nend: 1", NULL},
+        {"job: rest\nparts: [1]\nend: 1", NULL},
+        {"job: rest\npart: {step: 2 s}",
+         ":3:8: part.step is not used with `job: rest`, only with move, stop: nothing moves"},
+        {"job: move\npart: {value: 1, step: 2 s}",
+         ":3:18: part.step is not used beside `value`: nothing moves"},
+        {"job: stop\npart: {step: 2 s, solver: two}",
+         ":3:8: part.step is not used with `solver: two`, only with one: nothing moves"},
+        {"job: move\nparts: [1, {value: 2, names: b}]",
+         ":3:23: parts[1].names is not used without `formula`"},
+        {"job: move\npart: 1\nend: 1", ":4:1: end is not used without `part.formula | parts`"},
+    };
+    yaml_check_table(&job_table);
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        long blocks = mem_live_count();
+        char *text = mem_format("slender: 1\n%s\n", cases[k].text);
+        YamlFile *file = parse(text);
+        Job job;
+        if (!yaml_load(file, &job_table, &job)) fail_msg("%s", yaml_report(file));
+        bool used = yaml_check_use(file, &job_table);
+        char *report = yaml_report(file);
+        if (used != !cases[k].sentence || (!used && !strstr(report, cases[k].sentence)))
+            fail_msg("%s\nsays\n%s", text, report);
+        mem_free(report);
+        mem_free(text);
+        yaml_clear(&job_table, &job);
+        yaml_destroy(file);
+        assert_int_equal(mem_live_count(), blocks);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_kinds),      cmocka_unit_test(test_defaults),
                                        cmocka_unit_test(test_round_trip), cmocka_unit_test(test_units),
                                        cmocka_unit_test(test_overrides),  cmocka_unit_test(test_difference),
                                        cmocka_unit_test(test_report),     cmocka_unit_test(test_mark),
-                                       cmocka_unit_test(test_foreign),    cmocka_unit_test(test_manual)};
+                                       cmocka_unit_test(test_foreign),    cmocka_unit_test(test_manual),
+                                       cmocka_unit_test(test_use)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
