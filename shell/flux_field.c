@@ -1,6 +1,7 @@
 #include "shell/flux_field.h"
 #include "base/memory.h"
 #include "base/vec3.h"
+#include <string.h>
 
 struct FluxField {
     Formula *formula; /* NULL: a dipole */
@@ -31,55 +32,72 @@ void flux_field_destroy(FluxField *field)
     mem_free(field);
 }
 
-static Vec3 formula_at(const FluxField *field, Vec3 x, double time)
+/* Where a formula is sampled: the point itself, then REACH steps either way along each line. */
+enum { LINES = 6, REACH = 4, PLACES = 1 + 2 * REACH * LINES };
+
+static const Vec3 line_direction[LINES] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}, {0, 1, 1}, {1, 0, 1}};
+
+static int place_along(int line, int k, bool minus)
 {
-    double variables[5] = {x.x, x.y, x.z, hypot(x.x, x.y), time}, B[3];
-    if (!formula_eval(field->formula, variables, B, NULL)) return vec3(NAN, NAN, NAN);
-    return vec3_load(B);
+    return 1 + 2 * (REACH * line + k - 1) + minus;
+}
+
+static void put_place(double *variables, Vec3 x, double time)
+{
+    double values[] = {x.x, x.y, x.z, hypot(x.x, x.y), time};
+    memcpy(variables, values, sizeof values);
+}
+
+/* B[PLACES]; false where one of them is not finite. */
+static bool sample_places(const FluxField *field, Vec3 x, double time, Vec3 *B)
+{
+    double variables[PLACES][5], results[PLACES][3];
+    put_place(variables[0], x, time);
+    for (int line = 0; line < LINES; line++)
+        for (int k = 1; k <= REACH; k++)
+            for (int minus = 0; minus < 2; minus++) {
+                double step = minus ? -k * field->step : k * field->step;
+                put_place(variables[place_along(line, k, minus)], vec3_axpy(step, line_direction[line], x),
+                          time);
+            }
+    if (!formula_eval_all(field->formula, PLACES, variables[0], results[0], NULL)) return false;
+    for (int k = 0; k < PLACES; k++) B[k] = vec3_load(results[k]);
+    return true;
 }
 
 /* First and second derivative along a line, central differences of eighth order: for a field that varies on the
  * body's scale L, a step of L/64 leaves truncation and round-off both near 1e-12 (docs/theory.md). */
-static void differences(const FluxField *field, Vec3 x, Vec3 direction, double time, Vec3 *first, Vec3 *second)
+static void differences(const Vec3 *B, int line, double h, double first[3], double second[3])
 {
     static const double c1[] = {4.0 / 5, -1.0 / 5, 4.0 / 105, -1.0 / 280};
     static const double c2[] = {8.0 / 5, -1.0 / 5, 8.0 / 315, -1.0 / 560};
-    double h = field->step;
-    *first = vec3(0, 0, 0);
-    *second = vec3_scale(-205.0 / 72, formula_at(field, x, time));
-    for (int k = 1; k <= 4; k++) {
-        Vec3 plus = formula_at(field, vec3_axpy(k * h, direction, x), time);
-        Vec3 minus = formula_at(field, vec3_axpy(-k * h, direction, x), time);
-        *first = vec3_axpy(c1[k - 1], vec3_sub(plus, minus), *first);
-        *second = vec3_axpy(c2[k - 1], vec3_add(plus, minus), *second);
+    Vec3 d1 = vec3(0, 0, 0), d2 = vec3_scale(-205.0 / 72, B[0]);
+    for (int k = 1; k <= REACH; k++) {
+        Vec3 plus = B[place_along(line, k, false)], minus = B[place_along(line, k, true)];
+        d1 = vec3_axpy(c1[k - 1], vec3_sub(plus, minus), d1);
+        d2 = vec3_axpy(c2[k - 1], vec3_add(plus, minus), d2);
     }
-    *first = vec3_scale(1 / h, *first);
-    *second = vec3_scale(1 / (h * h), *second);
+    vec3_store(first, vec3_scale(1 / h, d1));
+    vec3_store(second, vec3_scale(1 / (h * h), d2));
 }
 
 static void sample_formula(const FluxField *field, Vec3 x, double time, FluxSample *sample)
 {
-    static const Vec3 axis[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    vec3_store(sample->flux, formula_at(field, x, time));
-    for (int l = 0; l < 3; l++) {
-        double first[3], second[3];
-        Vec3 d1, d2;
-        differences(field, x, axis[l], time, &d1, &d2);
-        vec3_store(first, d1);
-        vec3_store(second, d2);
-        for (int k = 0; k < 3; k++) sample->gradient[k][l] = first[k], sample->curvature[k][l][l] = second[k];
+    Vec3 B[PLACES];
+    if (!sample_places(field, x, time, B)) {
+        *sample = (FluxSample){.flux = {NAN, NAN, NAN}};
+        return;
     }
-    for (int l = 0; l < 3; l++) { /* d2/dl dm = (d2/d(l+m)^2 - d2/dl^2 - d2/dm^2)/2 */
-        int m = (l + 1) % 3;
-        double second[3];
-        Vec3 d1, d2;
-        differences(field, x, vec3_add(axis[l], axis[m]), time, &d1, &d2);
-        vec3_store(second, d2);
-        for (int k = 0; k < 3; k++) {
-            double mixed = 0.5 * (second[k] - sample->curvature[k][l][l] - sample->curvature[k][m][m]);
+    double first[LINES][3], second[LINES][3];
+    for (int line = 0; line < LINES; line++) differences(B, line, field->step, first[line], second[line]);
+    vec3_store(sample->flux, B[0]);
+    for (int l = 0; l < 3; l++) /* d2/dl dm = (d2/d(l+m)^2 - d2/dl^2 - d2/dm^2)/2 */
+        for (int k = 0, m = (l + 1) % 3; k < 3; k++) {
+            sample->gradient[k][l] = first[l][k];
+            sample->curvature[k][l][l] = second[l][k];
+            double mixed = 0.5 * (second[3 + l][k] - second[l][k] - second[m][k]);
             sample->curvature[k][l][m] = sample->curvature[k][m][l] = mixed;
         }
-    }
 }
 
 /* B = mu_0/4 pi (3 r (m.r)/r^5 - m/r^3), differentiated twice. */

@@ -22,5 +22,5 @@ FluxField *flux_field_dipole(const double at[3], const double moment[3]);
 
 void flux_field_destroy(FluxField *field);
 
-/* Not re-entrant: one FluxField per thread. A value that is not finite leaves NaN, which the solver notices. */
+/* Re-entrant. A value that is not finite leaves NaN, which the solver notices. */
 void flux_field_eval(const FluxField *field, const double x[3], double time, FluxSample *sample);
