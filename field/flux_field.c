@@ -1,4 +1,4 @@
-#include "shell/flux_field.h"
+#include "field/flux_field.h"
 #include "base/memory.h"
 #include "base/vec3.h"
 #include <string.h>
