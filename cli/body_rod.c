@@ -58,12 +58,14 @@ void body_rod_state(const Model *model, const State *state, const char *prefix, 
     arrays_add(list, array_float(name, "N m", moment, 2, model->point_count, 3));
 }
 
-/* Is it known how stable the state is? A free end, one stiffness, and no magnetisation across the tangent. */
+/* Is it known how stable the state is? A free end, one stiffness, no magnetisation across the tangent, and no
+ * field that varies in space. */
 static bool is_judged(const Rod *rod, const double *p)
 {
     const double *B = p + rod->flux_density;
     bool across = false, field = B[0] != 0 || B[1] != 0 || B[2] != 0;
     bool uniform = true;
+    for (int k = 0; k < rod->fields.count; k++) uniform &= p[rod->field_scale + k] == 0;
     for (int e = 0; e < rod->elements; e++) {
         across |= field && (p[rod->magnetization + 3 * e + 1] != 0 || p[rod->magnetization + 3 * e + 2] != 0);
         uniform &= p[rod->young + e] == p[rod->young];

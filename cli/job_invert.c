@@ -128,7 +128,7 @@ static void invert_elements(Inversion *o, int k)
     double *x = mem_alloc(2 * (size_t)layout.dofs, sizeof *x);
     System *sys = rod_hanging_system(rod);
     rod_follow_curve(rod, &rm->curves[k], rm->frames[k], x);
-    rod_balance(rod, sys, x, p);
+    rod_balance(rod, sys, &layout, x, p);
     Evaluation left = system_gradient(sys, &(Point){.x = x, .p = p}, x + layout.dofs);
     o->residual[k] = left.force_scale > 0 ? left.gradient_max / left.force_scale : 0;
     memcpy(o->strain_elements + 3 * (size_t)k * (size_t)o->elements, p + rod->natural_strain,

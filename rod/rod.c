@@ -27,6 +27,7 @@ Rod *rod_create(int elements, double length, RodSection unit, double area)
     rod->load = params_add(params, "load", "N", elements + 1, 3, true);
     rod->pull = params_add(params, "pull", "N", elements, 3, true);
     rod->damping = params_add(params, "damping", "N s/m", 1, 1, false);
+    rod->field_scale = params_add(params, "field_scale", "", 0, 1, true);
     return rod;
 }
 
@@ -34,6 +35,7 @@ void rod_destroy(Rod *rod)
 {
     if (!rod) return;
     mem_free(rod->bow);
+    flux_fields_clear(&rod->fields);
     mem_free(rod);
 }
 

@@ -87,6 +87,18 @@ static const char shell_scene[] =
     "design:\n  unknowns: {magnetization: {noise: 100, scale: 1.0e+4}}\n  objectives: [{target: 1}]\n"
     "  optimizer: mma\n";
 
+static const char rod_scene[] =
+    "slender: 1\njob: design\n"
+    "rod:\n  natural_strain: [0, 2, 0]\n  length: 60 mm\n  elements: 300\n  radius: 0.5 mm\n  young: 1 MPa\n"
+    "  poisson: 0.5\n  density: 1800\n  magnetization: [5.0e+4, 0, 0]\n"
+    "flux_density: [\"0\", \"1e-3*cos(20*y+x)\", \"3e-3*(1+8*x)*cos(15*z)\"]\n"
+    "cases:\n  - {name: a, target: [\"s\", \"0\", \"2*s*s\"]}\n"
+    "  - {name: b, gravity: [0, 0, 1], target: [\"s\", \"0\", \"3*s*s\"]}\n"
+    "  - {name: c, flux_density: {dipole: {at: [0.1, 0, 0.1], moment: [0, 0, 1]}},\n"
+    "     target: [\"s\", \"0\", \"s*s\"]}\n"
+    "design:\n  unknowns: {magnetization: {noise: 100, scale: 1.0e+4}}\n  objectives: [{target: 1}]\n"
+    "  optimizer: mma\n";
+
 /* Energy, gradient, Hessian times a vector, of a state that is somewhere. */
 static void check_system(const char *scene)
 {
@@ -113,7 +125,7 @@ static void check_system(const char *scene)
     clear(&b);
 }
 
-/* Objective and gradient of the scene's start, with so many threads for its cases; gradient[b->model->design.size]. */
+/* Objective and gradient[size] of the scene's start, with so many threads for its cases. */
 static double evaluate_cases(const char *scene, int thread_count, double **gradient, size_t *size)
 {
     Built b = build(scene);
@@ -163,8 +175,18 @@ static void test_shell(void **state)
     assert_int_equal(mem_live_count(), blocks);
 }
 
+static void test_rod(void **state)
+{
+    (void)state;
+    long blocks = mem_live_count();
+    check_system(rod_scene);
+    check_cases(rod_scene);
+    assert_int_equal(mem_live_count(), blocks);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_formula), cmocka_unit_test(test_shell)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_formula), cmocka_unit_test(test_shell),
+                                       cmocka_unit_test(test_rod)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
