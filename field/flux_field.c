@@ -35,7 +35,7 @@ void flux_field_destroy(FluxField *field)
 /* Where a formula is sampled: the point itself, then REACH steps either way along each line. */
 enum { LINES = 6, REACH = 4, PLACES = 1 + 2 * REACH * LINES };
 
-static const Vec3 line_direction[LINES] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}, {0, 1, 1}, {1, 0, 1}};
+static const Vec3 line_direction[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}, {0, 1, 1}, {1, 0, 1}};
 
 static int place_along(int line, int k, bool minus)
 {

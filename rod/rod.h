@@ -116,6 +116,7 @@ System *rod_system(const Rod *rod, double young, bool dynamic);
 /* Strains (twist, k1, k2) of the elements, strain[elements], 1/m. */
 void rod_element_strains(const Rod *rod, const RodLayout *layout, const double *x, Vec3 *strain);
 
-/* Puts the natural strains into p with which the state x of a system is in equilibrium if its last end is free,
- * to rounding: moments from node to node, from the free end on. Sets the multipliers of x, if it has any. */
+/* Puts the natural strains into p with which the state x of a system is in equilibrium if its last end is
+ * free, to rounding: moments from node to node, from the free end on. Sets the multipliers of x, if it has any.
+ */
 void rod_balance(const Rod *rod, System *sys, const RodLayout *layout, double *x, double *p);
