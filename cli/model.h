@@ -76,6 +76,9 @@ typedef struct BodyOps {
 
     /* Of the final state, once: its stability, so many modes, and what else it shows. */
     void (*add_final)(const Model *model, const State *state, int modes, Arrays *list);
+
+    /* What the state cannot be trusted in, a sentence of the caller's; NULL: nothing. May be NULL itself. */
+    char *(*doubt)(const Model *model, const State *state);
 } BodyOps;
 
 struct RodModel;

@@ -154,7 +154,8 @@ static bool settle(Model *model, const Build *b, const double *p)
                        newton_status_text(info.newton.status));
 }
 
-/* Where the job starts, in model->x, and the natural shape to be shown; x is the curve's state, if there is one. */
+/* Where the job starts, in model->x, and the natural shape to be shown; x is the curve's state, if there is
+ * one. */
 static void make_states(Model *model, const RodScene *scene, bool hanging, const double *p, double *x)
 {
     RodModel *rm = model->rod;
@@ -240,6 +241,7 @@ static const BodyOps rod_ops = {
     .add_frame = body_rod_frame,
     .add_state = body_rod_state,
     .add_final = body_rod_final,
+    .doubt = body_rod_doubt,
 };
 
 /* What is said of shells only. */
