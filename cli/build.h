@@ -11,13 +11,14 @@
 
 typedef struct Build {
     YamlFile *file;
-    const Mesh *mesh;
+    const Mesh *mesh;  /* NULL: of a rod */
+    double size;       /* m, the body's: the scale on which fields vary */
     double time;       /* s, of formulas */
     TimedFlux *timed;  /* where a uniform field that depends on time is left; NULL: in statics */
     double mesh_scale; /* of the mesh's file; 1 where it is generated */
 } Build;
 
-/* What the models of a scene share; statics. */
+/* What the models of a scene share; statics. The size of a rod is still to be told. */
 Build build_start(const Scene *scene, const Mesh *mesh, YamlFile *file);
 
 /* The path of a key: key("cases[%d].target", c). */
@@ -64,9 +65,8 @@ bool build_selection(const Build *b, Key at, const SelectionScene *scene, Indice
 /* load[3*vertex_count] N: the sum of all entries; the key is the list's. */
 bool build_loads(const Build *b, Key at, const LoadScene *loads, int count, double *load);
 
-/* uniform[3] in T, or 0 and the number of a field that is added to the shell (else -1). shell NULL: only
- * uniform ones. */
-bool build_flux(const Build *b, Key at, const FluxScene *scene, Shell *shell, double *uniform, int *field);
+/* uniform[3] in T, and the caller's *field NULL; or 0 and a field that varies in space. */
+bool build_flux(const Build *b, Key at, const FluxScene *scene, double *uniform, FluxField **field);
 
 /* target[vertex_count][3] m; a row of NAN where a vertex has none. */
 bool build_target(const Build *b, Key at, const TargetScene *scene, double (*target)[3]);

@@ -103,6 +103,7 @@ Build build_start(const Scene *scene, const Mesh *mesh, YamlFile *file)
 {
     return (Build){.file = file,
                    .mesh = mesh,
+                   .size = mesh ? mesh_diagonal(mesh) : 0,
                    .time = scene->time.at,
                    .mesh_scale = scene->shell ? scene->shell->mesh.scale : 1};
 }

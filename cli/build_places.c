@@ -113,7 +113,7 @@ static bool flux_formula(const Build *b, Key at, const FluxScene *scene, FluxFie
     for (int k = 0; k < 4; k++) varies |= formula_uses(formula, build_variables_time[k]);
     if (!varies)
         return put_uniform(b, at, (TimedFlux){.formula = formula}, formula_uses(formula, "t"), uniform);
-    *field = flux_field_formula(formula, mesh_diagonal(b->mesh));
+    *field = flux_field_formula(formula, b->size);
     return true;
 }
 
@@ -126,31 +126,21 @@ static bool flux_table(const Build *b, Key at, const char *path, double *uniform
     return put_uniform(b, at, timed, true, uniform);
 }
 
-bool build_flux(const Build *b, Key at, const FluxScene *scene, Shell *shell, double *uniform, int *field)
+bool build_flux(const Build *b, Key at, const FluxScene *scene, double *uniform, FluxField **field)
 {
-    FluxField *made = NULL;
-    bool ok = true;
+    *field = NULL;
     memset(uniform, 0, 3 * sizeof *uniform);
-    if (scene->formula_count)
-        ok = flux_formula(b, at, scene, &made, uniform);
-    else if (scene->file)
-        ok = flux_table(b, at, scene->file, uniform);
-    else if (scene->dipole)
-        made = flux_field_dipole(scene->dipole->at, scene->dipole->moment);
+    if (scene->formula_count) return flux_formula(b, at, scene, field, uniform);
+    if (scene->file) return flux_table(b, at, scene->file, uniform);
+    if (scene->dipole)
+        *field = flux_field_dipole(scene->dipole->at, scene->dipole->moment);
     else if (scene->magnet) {
         double moment[3];
         for (int i = 0; i < 3; i++) moment[i] = scene->magnet->remanence[i] * scene->magnet->volume / MU_0;
-        made = flux_field_dipole(scene->magnet->at, moment);
+        *field = flux_field_dipole(scene->magnet->at, moment);
     } else
         memcpy(uniform, scene->value, sizeof scene->value);
-    if (made && !shell) {
-        flux_field_destroy(made);
-        return yaml_refuse(
-            b->file, at.text,
-            "the flux density around a rod is uniform: three numbers, formulas of t, or a file");
-    }
-    *field = made ? shell_add_field(shell, made) : -1;
-    return ok;
+    return true;
 }
 
 /* ---- Targets ---- */

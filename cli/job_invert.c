@@ -24,6 +24,7 @@ typedef struct Inversion {
     int *stable, *index, *touching;                                                   /* [strands]     */
     int pair_count;
     int *pairs; /* [pair_count][3] strand, elements */
+    double lengths; /* of the longest element, in bending lengths (stability.h) */
     NewtonStatus worst;
 } Inversion;
 
@@ -71,8 +72,9 @@ static void judge_stability(Inversion *o, int k, const Vec3 *moment)
     for (size_t j = 0; j < stations; j++) m[j] = rod_to_frame(frames[j], moment[j]);
     rod_pulls(curve, rm->loads, F);
     for (int i = 0; i < 3 * o->elements; i++) F[i] = rod_to_frame(frames[2 * (i / 3) + i % 3], F[i]);
-    RodStability found =
-        rod_stability(&(RodEquilibrium){o->elements, curve->length, rm->section, strain, m, F});
+    RodEquilibrium at = {o->elements, curve->length, rm->section, strain, m, F};
+    RodStability found = rod_stability(&at);
+    o->lengths = fmax(o->lengths, rod_bending_lengths(&at));
     o->stable[k] = found.stable;
     o->index[k] = found.morse_index;
     o->lowest[k] = found.lowest_eigenvalue;
@@ -129,7 +131,7 @@ static void invert_elements(Inversion *o, int k)
     double *x = mem_alloc(2 * (size_t)layout.dofs, sizeof *x);
     System *sys = rod_hanging_system(rod);
     rod_follow_curve(rod, &rm->curves[k], rm->frames[k], x);
-    rod_balance(rod, sys, x, p);
+    rod_balance(rod, sys, &layout, x, p);
     Evaluation left = system_gradient(sys, &(Point){.x = x, .p = p}, x + layout.dofs);
     o->residual[k] = left.force_scale > 0 ? left.gradient_max / left.force_scale : 0;
     memcpy(o->strain_elements + 3 * (size_t)k * (size_t)o->elements, p + rod->natural_strain,
@@ -268,6 +270,11 @@ static void say(const Inversion *o)
                      "%d of %d curves unstable: the rod would not stay there (rod/critical_young says from "
                      "which Young's modulus on it would)",
                      unstable, o->strands);
+    if (o->lengths > 1)
+        progress_say(progress,
+                     "the elements are too long to tell how stable a curve is: one of them has %.2g times the "
+                     "length sqrt(EI/F) within which the rod bends; rod.elements: %.0f or more would",
+                     o->lengths, ceil(o->elements * o->lengths));
     if (touching) progress_say(progress, "%d of %d natural shapes touch themselves", touching, o->strands);
     if (elsewhere)
         progress_say(progress,

@@ -20,13 +20,27 @@ bool model_load(const Model *model, double time, double *p, Error *err)
 
 /* ---- Loads of a case ---- */
 
+bool model_put_flux(Model *model, const Build *b, const char *at, const FluxScene *flux, double *p)
+{
+    FluxField *field;
+    if (!build_flux(b, key("%s", at), flux, p + model->flux_density, &field)) return false;
+    int number = field ? flux_fields_add(model->fields, model->params, field) : -1;
+    for (int k = 0; k < model->fields->count; k++) p[model->field_scale + k] = k == number;
+    return true;
+}
+
+size_t model_params_room(const Model *model, const Scene *scene)
+{
+    return (size_t)(model->params->size + 1 + scene->cases_count + scene->sequence_count);
+}
+
 /* Field, loads and gravity of a case or stage, where it says them. */
 static bool put_loads(Model *model, const Build *b, Key at, const FluxScene *flux, const LoadScene *loads,
                       int count, const double *gravity, double *p)
 {
     if (!isnan(gravity[0])) memcpy(p + model->gravity, gravity, 3 * sizeof *gravity);
     bool ok = !loads || model->body->put_loads(model, b, key("%s.loads", at.text).text, loads, count, p);
-    return (!flux || model->body->put_flux(model, b, key("%s.flux_density", at.text).text, flux, p)) && ok;
+    return (!flux || model_put_flux(model, b, key("%s.flux_density", at.text).text, flux, p)) && ok;
 }
 
 static ModelCase *add_case(Model *model, const char *name, const double *p, size_t room, double time)

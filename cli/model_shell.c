@@ -64,15 +64,6 @@ static bool move(const Model *model, double time, double part, double *x, Error 
 
 /* ---- Loads ---- */
 
-static bool put_flux(Model *model, const Build *b, const char *at, const FluxScene *flux, double *p)
-{
-    int field;
-    Shell *shell = model->shell;
-    if (!build_flux(b, key("%s", at), flux, shell, p + shell->flux_density, &field)) return false;
-    for (int k = 0; k < shell->field_count; k++) p[shell->field_scale + k] = k == field;
-    return true;
-}
-
 static bool put_loads(Model *model, const Build *b, const char *at, const LoadScene *loads, int count,
                       double *p)
 {
@@ -84,12 +75,6 @@ static bool put_target(Model *model, const Build *b, const char *at, const Targe
 {
     (void)model;
     return build_target(b, key("%s", at), scene, target);
-}
-
-/* Fields grow the parameter vector, so every p is made as large as it may become. */
-static size_t params_room(const Model *model, const Scene *scene)
-{
-    return (size_t)(model->shell->params.size + 1 + scene->cases_count + scene->sequence_count);
 }
 
 static double *base_params(Model *model, const Scene *scene, const Build *b, size_t room)
@@ -104,7 +89,7 @@ static double *base_params(Model *model, const Scene *scene, const Build *b, siz
     memcpy(p + shell->gravity, s->gravity, sizeof s->gravity);
     p[shell->damping] = s->damping;
     ok = build_loads(b, key("loads"), scene->loads, scene->loads_count, p + shell->load) && ok;
-    if (ok && put_flux(model, b, "flux_density", &scene->flux_density, p)) return p;
+    if (ok && model_put_flux(model, b, "flux_density", &scene->flux_density, p)) return p;
     mem_free(p);
     return NULL;
 }
@@ -157,7 +142,7 @@ static bool fill(Model *model, const Scene *scene, const Build *b)
     model->x = mem_alloc((size_t)shell_dof_count(shell), sizeof *model->x);
     shell_rest_state(shell, model->x);
     ok = read_pose(b, scene->shell->pose, model->x) && ok;
-    size_t room = params_room(model, scene);
+    size_t room = model_params_room(model, scene);
     double *p = base_params(model, scene, b, room);
     ok = p && model_cases(model, b, scene, p, room) && ok;
     mem_free(p);
@@ -167,7 +152,6 @@ static bool fill(Model *model, const Scene *scene, const Build *b)
 }
 
 static const BodyOps shell_ops = {
-    .put_flux = put_flux,
     .put_loads = put_loads,
     .put_target = put_target,
     .move = move,
@@ -187,6 +171,8 @@ bool model_shell(Model *model, const Scene *scene, YamlFile *file)
     model->params = &shell->params;
     model->gravity = shell->gravity;
     model->flux_density = shell->flux_density;
+    model->field_scale = shell->field_scale;
+    model->fields = &shell->fields;
     model->point_count = mesh->vertex_count;
     model->load_steps = 1;
     model->step_cap = newton_default().step_cap;

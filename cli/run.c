@@ -112,6 +112,14 @@ static char *case_names(const State *states, int count)
     return names;
 }
 
+static void say_doubt(Run *run, const State *state)
+{
+    const BodyOps *body = run->model->body;
+    char *doubt = body->doubt ? body->doubt(run->model, state) : NULL;
+    if (doubt) progress_say(run->progress, "%s: %s", state->load_case->name, doubt);
+    mem_free(doubt);
+}
+
 bool run_put_final(Run *run, const State *states, int count, const char *status, Error *err)
 {
     Arrays list = {0};
@@ -121,8 +129,10 @@ bool run_put_final(Run *run, const State *states, int count, const char *status,
     arrays_add(&list, array_text("status", status));
     arrays_add(&list, array_text("case_names", arrays_keep(&list, case_names(states, count))));
     if (!arrays_put(&list, run->journal, "final", 0, err)) return false;
-    for (int k = 0; k < count; k++)
+    for (int k = 0; k < count; k++) {
         if (!put_case(run, &states[k], err)) return false;
+        say_doubt(run, &states[k]);
+    }
     return true;
 }
 

@@ -20,8 +20,12 @@ Formula *formula_create(const char *const *expressions, int expression_count, co
 void formula_destroy(Formula *formula);
 
 /* result[expression_count] at the variables' values (in their order). Returns false and a sentence with the
- * values of the variables where a result is not finite. Not re-entrant: one Formula per thread. */
+ * values of the variables where a result is not finite. Re-entrant: any number of threads may call it at once. */
 bool formula_eval(Formula *formula, const double *variables, double *result, Error *err);
+
+/* The same at `count` points, variables[count][variables], results[count][expression_count], for less; it ends
+ * at the first result that is not finite. */
+bool formula_eval_all(Formula *formula, int count, const double *variables, double *results, Error *err);
 
 /* Does any expression (through its helpers too) depend on that variable? */
 bool formula_uses(const Formula *formula, const char *variable);

@@ -11,6 +11,9 @@ static const double SHIFT_LAST = 1e8;        /* D: beyond this a step is no long
 static const double STALL_SHIFT = 1e6;       /* D: no decrease even with such a shift                  */
 static const double CURVATURE_STEP = 0.05;   /* body's measure: first step along negative curvature    */
 static const double CURVATURE_LAST = 0.5;    /* ... and the last                                       */
+static const double PUSHED = 0.1;            /* part of a gap's force: more is much (system_gap)       */
+static const double SETTLED = 1e-4;          /* ... and less is none: a force that goes on growing      */
+static const double LIKELY = 1e4;            /* of the step in a mode's start, against chance           */
 static const double ZERO_CURVATURE = 1e-12;  /* v'Hv with v'Dv = 1 that counts as zero                 */
 
 typedef struct Search {
@@ -21,7 +24,9 @@ typedef struct Search {
     double *x, *gradient, *step;    /* [n]                                                     */
     double *trial, *trial_gradient; /* [n]                                                     */
     double *mode, *product;         /* [n] direction of lowest curvature, kept between uses    */
+    double *gap, *change;           /* [n] of multipliers: what is to vanish; Newton's step    */
     bool mode_known;
+    bool open;                /* a held end is so far off that forces change by much (take_multipliers) */
     double shift, shift_kept; /* in use; remembered                                      */
     int shifted;              /* iterations in a row that needed one                     */
     Evaluation now;
@@ -81,28 +86,57 @@ static bool factor_shifted(Search *s)
     return true;
 }
 
+/* While what the multipliers hold is far from where it is to be, they are as they would be if it stood still and
+ * gave way by the compliance c (take_multipliers), and with the gap g the energy gains sum (g - g_0)^2/(2 c): that
+ * is an augmented Lagrangian, whose Newton direction the regularised matrix gives, so that it falls along it. */
+static double gap_energy(const Search *s)
+{
+    double energy = 0;
+    for (int i = 0; i < s->n; i++) {
+        double compliance = system_compliance(s->sys, i), change = s->trial_gradient[i] - s->gap[i];
+        if (compliance > 0) energy += change * change / (2 * compliance);
+    }
+    return energy;
+}
+
 static double energy_at(Search *s, const double *direction, double a, Evaluation *evaluation)
 {
     for (int i = 0; i < s->n; i++) s->trial[i] = s->x[i] + a * direction[i];
     system_project(s->sys, s->trial);
     Point at = s->at;
     at.x = s->trial;
-    *evaluation = system_energy(s->sys, &at);
     s->info.evaluations++;
-    return evaluation->finite ? evaluation->energy : INFINITY;
+    *evaluation = s->open ? system_gradient(s->sys, &at, s->trial_gradient) : system_energy(s->sys, &at);
+    return evaluation->finite ? evaluation->energy + (s->open ? gap_energy(s) : 0) : INFINITY;
+}
+
+/* Does the last gap close? The energy does not tell any more, and along no other way would it be lower. */
+static bool gap_falls(const Search *s)
+{
+    double before = 0, after = 0;
+    for (int i = 0; system_gap(s->sys) > 0 && i < s->n; i++) {
+        if (system_compliance(s->sys, i) == 0) continue;
+        before = fmax(before, fabs(s->gap[i]));
+        after = fmax(after, fabs(s->trial_gradient[i]));
+    }
+    return after < before / 2;
 }
 
 /* Near a minimum energies differ by less than their rounding: there the slope at the new point decides. */
 static bool slope_is_fine(Search *s, const Evaluation *trial, double slope)
 {
-    if (!(trial->energy <= s->now.energy + 1e-12 * s->now.energy_scale)) return false;
+    double rounding = system_gap(s->sys) > 0 ? 1e-9 : 1e-12; /* forces times positions round, too */
+    if (!(trial->energy <= s->now.energy + rounding * s->now.energy_scale)) return false;
     Point at = s->at;
     at.x = s->trial;
+    for (int i = 0; i < s->n && s->open; i++) /* what gap_energy adds pulls, too */
+        if (system_compliance(s->sys, i) > 0)
+            s->trial[i] += (s->trial_gradient[i] - s->gap[i]) / system_compliance(s->sys, i);
     system_gradient(s->sys, &at, s->trial_gradient);
     s->info.evaluations++;
     for (int i = 0; i < s->n; i++)
         if (system_is_fixed(s->sys, i)) s->trial_gradient[i] = 0;
-    return dot(s->n, s->trial_gradient, s->step) <= (2 * s->def->armijo - 1) * slope;
+    return gap_falls(s) || dot(s->n, s->trial_gradient, s->step) <= (2 * s->def->armijo - 1) * slope;
 }
 
 /* Largest of 1, 1/2, 1/4 ... along the step that satisfies Armijo's rule; leaves the point in trial; 0: none. */
@@ -118,6 +152,23 @@ static double line_search(Search *s)
     return 0;
 }
 
+/* What gap_energy adds along the mode. */
+static double gap_curvature(const Search *s)
+{
+    double sum = 0;
+    for (int i = 0; s->open && i < s->n; i++)
+        if (system_compliance(s->sys, i) > 0) sum += s->product[i] * s->product[i] / system_compliance(s->sys, i);
+    return sum;
+}
+
+/* Where several modes are all but equal, as the ways in which a round rod buckles, the forces say which one is
+ * downhill: of two or three, an iteration keeps what it was given. */
+static void add_step(Search *s)
+{
+    double size = system_step_size(s->sys, s->step), own = system_step_size(s->sys, s->mode);
+    for (int i = 0; size > 0 && i < s->n; i++) s->mode[i] += LIKELY * own / size * s->step[i];
+}
+
 /* Inverse iteration with the factor at hand: the mode of lowest curvature v'Hv/v'Dv, scaled to v'Dv = 1 and pointing
  * downhill. Returns its curvature. */
 static double lowest_mode(Search *s)
@@ -126,6 +177,7 @@ static double lowest_mode(Search *s)
     Random random = random_seed(1);
     for (int i = 0; !s->mode_known && i < s->n; i++)
         s->mode[i] = scale[i] > 0 ? random_signed(&random) / sqrt(scale[i]) : 0;
+    if (!s->mode_known && s->open) add_step(s);
     s->mode_known = true;
     for (int k = 0; k < INVERSE_ITERATIONS; k++) {
         for (int i = 0; i < s->n; i++) s->product[i] = scale[i] * s->mode[i];
@@ -135,8 +187,10 @@ static double lowest_mode(Search *s)
         norm = 1 / sqrt(norm);
         for (int i = 0; i < s->n; i++) s->mode[i] *= norm;
     }
+    for (int i = 0; s->open && i < s->n; i++)
+        if (system_is_multiplier(s->sys, i)) s->mode[i] = 0;
     system_multiply(s->sys, s->mode, s->product);
-    double curvature = dot(s->n, s->mode, s->product);
+    double curvature = dot(s->n, s->mode, s->product) + gap_curvature(s);
     if (dot(s->n, s->mode, s->gradient) > 0)
         for (int i = 0; i < s->n; i++) s->mode[i] = -s->mode[i];
     return curvature;
@@ -228,25 +282,48 @@ static bool newton_step(Search *s, bool small)
 
 static bool is_converged(const Search *s, bool small)
 {
-    if (s->shift > 0) return false;
+    if (s->shift > 0 || system_gap(s->sys) > 0 || system_force_change(s->sys, s->step) > SETTLED) return false;
     double gain = -dot(s->n, s->gradient, s->step);
     for (int i = 0; system_multiplier_count(s->sys) && i < s->n; i++) /* what must vanish and does not counts in full */
         if (system_is_multiplier(s->sys, i)) gain += s->gradient[i] * s->step[i] + fabs(s->gradient[i] * s->step[i]);
     return (small && s->info.step <= s->def->step_tol) || gain <= s->def->energy_tol * s->now.energy_scale;
 }
 
+/* Notes what must vanish and does not, and whether the step changes forces by much on its account. */
+static void note_gap(Search *s)
+{
+    s->open = system_gap(s->sys) > 0 && system_force_change(s->sys, s->step) > PUSHED;
+    for (int i = 0; system_gap(s->sys) > 0 && i < s->n; i++) s->gap[i] = s->gradient[i];
+}
+
 /* Lagrange multipliers take their whole step at once; the line search is for the other dofs, with the energy and the
- * forces that belong to the new multipliers. (What must vanish does not, while a held end is being reached.) */
+ * forces that belong to the new multipliers. While there is a gap, these are what the gap over the compliance makes
+ * of them, and the step is theirs afterwards, as far as the others go along it (keep_multipliers). */
 static void take_multipliers(Search *s)
 {
     if (system_multiplier_count(s->sys) == 0) return;
     for (int i = 0; i < s->n; i++)
         if (system_is_multiplier(s->sys, i)) {
-            s->x[i] += s->step[i];
+            double compliance = system_compliance(s->sys, i);
+            s->change[i] = s->step[i];
+            if (s->open && compliance > 0)
+                s->x[i] += s->gap[i] / compliance;
+            else if (!s->open)
+                s->x[i] += s->step[i];
             s->step[i] = 0;
         }
     s->now = system_gradient(s->sys, &s->at, s->gradient);
     s->info.evaluations++;
+}
+
+/* After a step of this part of Newton's, while there is a gap. */
+static void keep_multipliers(Search *s, double part)
+{
+    for (int i = 0; s->open && i < s->n; i++) {
+        if (!system_is_multiplier(s->sys, i)) continue;
+        double compliance = system_compliance(s->sys, i);
+        s->x[i] += part * s->change[i] - (compliance > 0 ? s->gap[i] / compliance : 0);
+    }
 }
 
 /* A largest force below this is rounding of the coordinates times the stiffness. */
@@ -268,18 +345,21 @@ static NewtonStatus iterate(Search *s)
     double floor = round_off(s);
     bool small = s->now.gradient_max <= fmax(s->def->force_tol * s->now.force_scale, floor);
     if (!newton_step(s, small)) return NEWTON_STALLED;
+    note_gap(s);
     s->shifted = s->shift > 0 ? s->shifted + 1 : 0;
     if (is_converged(s, small)) {
         finish(s);
         return NEWTON_CONVERGED;
     }
-    if (((small && s->shift > 0) || s->shifted >= s->def->shifted_max) && leave_saddle(s, small, floor, &status))
+    int patience = s->open ? 2 : 1; /* with a gap every other step is one of the multipliers */
+    if (((small && s->shifted >= patience) || s->shifted >= s->def->shifted_max) && leave_saddle(s, small, floor, &status))
         return status;
 
     take_multipliers(s);
     double shrink = fmin(1, s->def->step_cap / s->info.step);
     for (int i = 0; i < s->n; i++) s->step[i] *= shrink;
     double a = line_search(s);
+    keep_multipliers(s, a * shrink);
     if (a > 0) {
         move(s, s->step, a);
         return status;
@@ -291,10 +371,10 @@ static NewtonStatus iterate(Search *s)
 NewtonInfo newton_minimize(System *sys, const NewtonDef *def, const Point *at, double *x, const NewtonObserver *observer)
 {
     int n = system_dof_count(sys);
-    double *work = mem_alloc(6 * (size_t)n, sizeof *work);
+    double *work = mem_alloc(8 * (size_t)n, sizeof *work);
     Search s = {.sys = sys, .def = def, .n = n, .at = *at, .x = x, .gradient = work,
                 .step = work + n, .trial = work + 2 * n, .trial_gradient = work + 3 * n, .mode = work + 4 * n,
-                .product = work + 5 * n};
+                .product = work + 5 * n, .gap = work + 6 * n, .change = work + 7 * n};
     s.at.x = x;
     s.info.status = NEWTON_MAX_ITERATIONS;
     system_accept(sys, x);

@@ -138,7 +138,7 @@ static void test_fields(void **state)
         "  - {flux_density: {magnet: {at: [0, 0, 1], remanence: [0, 0, 1.2], volume: 1e-6}}}\n"
         "design: {unknowns: {flux_density: {noise: 1 mT}}, objectives: [{target: 1}]}\n");
     const Shell *shell = b.model->shell;
-    assert_int_equal(shell->field_count, 2);
+    assert_int_equal(shell->fields.count, 2);
     assert_true(fabs(params_of(&b, 0, 0)[shell->flux_density + 2] - 0.02) < 1.01e-3);
     for (int c = 0; c < 3; c++)
         for (int k = 0; k < 2; k++) assert_true(params_of(&b, c, 0)[shell->field_scale + k] == (c == k + 1));
