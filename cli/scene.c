@@ -331,6 +331,9 @@ static const YamlTable load_steps_table = {
          .required = true, .doc = "this many, halved where one fails"},
         {0}}};
 
+/* Of the time of a motion, which may stay where its scene is put to rest: `--set job=equilibrium`. */
+#define MOTIONS_AND_STATICS "/job: equilibrium, evaluate, simulate, trajectory"
+
 static const YamlTable time_table = {
     .name = "time",
     .size = sizeof(TimeScene),
@@ -339,9 +342,9 @@ static const YamlTable time_table = {
         {YAML_NUMBER(TimeScene, at),
          .when = "/job: equilibrium, evaluate, design, simulate, trajectory, invert, identify", .unit = "s",
          .fallback = "0 s", .short_form = true, .doc = "t in statics; where a simulation begins"},
-        {YAML_NUMBER(TimeScene, step), .when = "/job: simulate, trajectory", .unit = "s", .range = "(0, inf)",
-         .doc = "of a simulation or trajectory: the step of implicit Euler"},
-        {YAML_INTEGER(TimeScene, steps), .when = "/job: simulate, trajectory", .range = "[1, inf)",
+        {YAML_NUMBER(TimeScene, step), .when = MOTIONS_AND_STATICS, .unit = "s", .range = "(0, inf)",
+         .doc = "of a simulation or trajectory: the step of implicit Euler; the statics of its scene leave it"},
+        {YAML_INTEGER(TimeScene, steps), .when = MOTIONS_AND_STATICS, .range = "[1, inf)",
          .doc = "of a simulation or trajectory: how many"},
         {0}}};
 
