@@ -67,7 +67,8 @@ static Hanging hanging_create(int elements)
     o.x = mem_alloc((size_t)rod_layout(o.rod, true).dofs, sizeof *o.x);
     o.sys = rod_hanging_system(o.rod);
     rod_follow_curve(o.rod, &o.curve, frames, o.x);
-    rod_balance(o.rod, o.sys, o.x, o.p);
+    RodLayout layout = rod_layout(o.rod, false);
+    rod_balance(o.rod, o.sys, &layout, o.x, o.p);
     mem_free(frames);
     return o;
 }

@@ -13,6 +13,7 @@ void body_rod_places(const Model *model, const double *x, double *place);
 void body_rod_frame(const Model *model, const State *state, bool whole, Arrays *list);
 void body_rod_state(const Model *model, const State *state, const char *prefix, Arrays *list);
 void body_rod_final(const Model *model, const State *state, int modes, Arrays *list);
+char *body_rod_doubt(const Model *model, const State *state);
 
 /* A block of p as an array of that name. */
 Array body_block(const char *name, const ParamBlock *block, const double *p);

@@ -4,6 +4,7 @@
 #include "cli/rod_model.h"
 #include "rod/stability.h"
 #include "rod/stations.h"
+#include <math.h>
 #include <string.h>
 
 /* Simulated, natural and (if one was given) input curve: only the first one moves. */
@@ -58,12 +59,14 @@ void body_rod_state(const Model *model, const State *state, const char *prefix, 
     arrays_add(list, array_float(name, "N m", moment, 2, model->point_count, 3));
 }
 
-/* Is it known how stable the state is? A free end, one stiffness, and no magnetisation across the tangent. */
+/* Is it known how stable the state is? A free end, one stiffness, no magnetisation across the tangent, and no
+ * field that varies in space. */
 static bool is_judged(const Rod *rod, const double *p)
 {
     const double *B = p + rod->flux_density;
     bool across = false, field = B[0] != 0 || B[1] != 0 || B[2] != 0;
     bool uniform = true;
+    for (int k = 0; k < rod->fields.count; k++) uniform &= p[rod->field_scale + k] == 0;
     for (int e = 0; e < rod->elements; e++) {
         across |= field && (p[rod->magnetization + 3 * e + 1] != 0 || p[rod->magnetization + 3 * e + 2] != 0);
         uniform &= p[rod->young + e] == p[rod->young];
@@ -71,24 +74,50 @@ static bool is_judged(const Rod *rod, const double *p)
     return uniform && rod->start == ROD_CLAMPED && rod->end == ROD_FREE && !across;
 }
 
-static void add_stability(const RodModel *rm, const State *state, Arrays *list)
+/* The rod as stability.h takes it; *work is the caller's. */
+static RodEquilibrium equilibrium_of(const RodModel *rm, const State *state, Vec3 **work)
 {
     const Rod *rod = rm->rod;
     size_t stations = 2 * (size_t)rod->elements + 1;
-    Vec3 *k = mem_alloc(2 * stations + 3 * (size_t)rod->elements, sizeof *k), *m = k + stations,
+    Vec3 *k = *work = mem_alloc(2 * stations + 3 * (size_t)rod->elements, sizeof *k), *m = k + stations,
          *F = m + stations;
     rod_stations(rod, &rm->layout, state->x, state->p, k, m, F);
-    RodEquilibrium at = {
+    return (RodEquilibrium){
         rod->elements, rod->length, rod_section_of(rod->unit, state->p[rod->young]), k, m, F};
+}
+
+/* Where elements are too long for what they are to show, how stable the rod is stays unknown. */
+static void add_stability(const RodModel *rm, const State *state, Arrays *list)
+{
+    Vec3 *work;
+    RodEquilibrium at = equilibrium_of(rm, state, &work);
+    bool known = rod_bending_lengths(&at) <= 1;
     double *lowest = arrays_numbers(list, 1);
-    int *flags = arrays_keep(list, mem_alloc(2, sizeof *flags));
-    *lowest = rod_lowest_eigenvalue(&at);
-    flags[1] = rod_morse_index(&at);
-    flags[0] = flags[1] == 0;
+    *lowest = known ? rod_lowest_eigenvalue(&at) : NAN;
     arrays_add(list, array_float("final/lowest_eigenvalue", "1/m^2", lowest, 0, 0, 0));
-    arrays_add(list, array_int("rod/stable", &flags[0], 0, 0, 0));
-    arrays_add(list, array_int("rod/morse_index", &flags[1], 0, 0, 0));
-    mem_free(k);
+    if (known) {
+        int *flags = arrays_keep(list, mem_alloc(2, sizeof *flags));
+        flags[1] = rod_morse_index(&at);
+        flags[0] = flags[1] == 0;
+        arrays_add(list, array_int("rod/stable", &flags[0], 0, 0, 0));
+        arrays_add(list, array_int("rod/morse_index", &flags[1], 0, 0, 0));
+    }
+    mem_free(work);
+}
+
+char *body_rod_doubt(const Model *model, const State *state)
+{
+    const Rod *rod = model->rod->rod;
+    if (!is_judged(rod, state->p)) return NULL;
+    Vec3 *work;
+    RodEquilibrium at = equilibrium_of(model->rod, state, &work);
+    double lengths = rod_bending_lengths(&at);
+    mem_free(work);
+    if (lengths <= 1) return NULL;
+    return mem_format(
+        "the elements are too long: the rod bends within sqrt(EI/F) = %.2g m, and one of them has %.2g times "
+        "that; rod.elements: %.0f or more would show where it rests and how stable it is",
+        rod_element_length(rod) / lengths, lengths, ceil(rod->elements * lengths));
 }
 
 void body_rod_final(const Model *model, const State *state, int modes, Arrays *list)

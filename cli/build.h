@@ -11,10 +11,15 @@
 
 typedef struct Build {
     YamlFile *file;
-    const Mesh *mesh;
-    double time;      /* s, of formulas */
-    TimedFlux *timed; /* where a uniform field that depends on time is left; NULL: in statics */
+    const Mesh *mesh;  /* NULL: of a rod */
+    double size;       /* m, the body's: the scale on which fields vary */
+    double time;       /* s, of formulas */
+    TimedFlux *timed;  /* where a uniform field that depends on time is left; NULL: in statics */
+    double mesh_scale; /* of the mesh's file; 1 where it is generated */
 } Build;
+
+/* What the models of a scene share; statics. The size of a rod is still to be told. */
+Build build_start(const Scene *scene, const Mesh *mesh, YamlFile *file);
 
 /* The path of a key: key("cases[%d].target", c). */
 typedef struct Key {
@@ -31,6 +36,16 @@ Formula *build_formula(const Build *b, Key at, char *const *formula, int count, 
 extern const char *const build_variables[], *const build_variables_time[];
 enum { BUILD_VARIABLES = 5 };
 void build_position(double *variables, const double *x, double time);
+
+/* The mesh that a scene describes; NULL after a refusal: a key that its shape does not take, too. */
+Mesh *build_mesh(const MeshScene *scene, YamlFile *yaml, MeshReport *report);
+
+/* A mesh file with its coordinates times scale. */
+bool build_read_mesh(const char *path, double scale, MeshFile *file, Error *err);
+
+/* A file with all vertices of the mesh, in another state; scale NAN: that of the mesh's file. Refused where
+ * it is 100 times as large as the mesh, or as small. */
+bool build_state(const Build *b, Key at, const char *path, double scale, MeshFile *file);
 
 /* values[face_count], values[edge_count], values[face_count][3]. */
 bool build_face_numbers(const Build *b, Key at, const NumberScene *scene, double *values);
@@ -50,9 +65,8 @@ bool build_selection(const Build *b, Key at, const SelectionScene *scene, Indice
 /* load[3*vertex_count] N: the sum of all entries; the key is the list's. */
 bool build_loads(const Build *b, Key at, const LoadScene *loads, int count, double *load);
 
-/* uniform[3] in T, or 0 and the number of a field that is added to the shell (else -1). shell NULL: only
- * uniform ones. */
-bool build_flux(const Build *b, Key at, const FluxScene *scene, Shell *shell, double *uniform, int *field);
+/* uniform[3] in T, and the caller's *field NULL; or 0 and a field that varies in space. */
+bool build_flux(const Build *b, Key at, const FluxScene *scene, double *uniform, FluxField **field);
 
 /* target[vertex_count][3] m; a row of NAN where a vertex has none. */
 bool build_target(const Build *b, Key at, const TargetScene *scene, double (*target)[3]);

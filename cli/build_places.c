@@ -113,7 +113,7 @@ static bool flux_formula(const Build *b, Key at, const FluxScene *scene, FluxFie
     for (int k = 0; k < 4; k++) varies |= formula_uses(formula, build_variables_time[k]);
     if (!varies)
         return put_uniform(b, at, (TimedFlux){.formula = formula}, formula_uses(formula, "t"), uniform);
-    *field = flux_field_formula(formula, mesh_diagonal(b->mesh));
+    *field = flux_field_formula(formula, b->size);
     return true;
 }
 
@@ -126,47 +126,33 @@ static bool flux_table(const Build *b, Key at, const char *path, double *uniform
     return put_uniform(b, at, timed, true, uniform);
 }
 
-bool build_flux(const Build *b, Key at, const FluxScene *scene, Shell *shell, double *uniform, int *field)
+bool build_flux(const Build *b, Key at, const FluxScene *scene, double *uniform, FluxField **field)
 {
-    FluxField *made = NULL;
-    bool ok = true;
+    *field = NULL;
     memset(uniform, 0, 3 * sizeof *uniform);
-    if (scene->formula_count)
-        ok = flux_formula(b, at, scene, &made, uniform);
-    else if (scene->file)
-        ok = flux_table(b, at, scene->file, uniform);
-    else if (scene->dipole)
-        made = flux_field_dipole(scene->dipole->at, scene->dipole->moment);
+    if (scene->formula_count) return flux_formula(b, at, scene, field, uniform);
+    if (scene->file) return flux_table(b, at, scene->file, uniform);
+    if (scene->dipole)
+        *field = flux_field_dipole(scene->dipole->at, scene->dipole->moment);
     else if (scene->magnet) {
         double moment[3];
         for (int i = 0; i < 3; i++) moment[i] = scene->magnet->remanence[i] * scene->magnet->volume / MU_0;
-        made = flux_field_dipole(scene->magnet->at, moment);
+        *field = flux_field_dipole(scene->magnet->at, moment);
     } else
         memcpy(uniform, scene->value, sizeof scene->value);
-    if (made && !shell) {
-        flux_field_destroy(made);
-        return yaml_refuse(
-            b->file, at.text,
-            "the flux density around a rod is uniform: three numbers, formulas of t, or a file");
-    }
-    *field = made ? shell_add_field(shell, made) : -1;
-    return ok;
+    return true;
 }
 
 /* ---- Targets ---- */
 
-static bool target_from_file(const Build *b, Key at, const char *path, double (*target)[3])
+static bool target_from_file(const Build *b, Key at, const TargetScene *scene, double (*target)[3])
 {
     MeshFile file = {0};
-    Error err;
-    if (!mesh_file_read(path, &file, &err)) return yaml_refuse(b->file, at.text, "%s", err.text);
-    bool ok = mesh_fits(b->mesh, file.vertex_count) ||
-              yaml_refuse(b->file, at.text, "%s has %d vertices, and the mesh %d: they must be the same ones",
-                          path, file.vertex_count, b->mesh->file_vertex_count);
-    for (int v = 0; ok && v < b->mesh->vertex_count; v++)
+    if (!build_state(b, at, scene->file, scene->scale, &file)) return false;
+    for (int v = 0; v < b->mesh->vertex_count; v++)
         memcpy(target[v], file.vertices[mesh_row(b->mesh, file.vertex_count, v)], sizeof *target);
     mesh_file_clear(&file);
-    return ok;
+    return true;
 }
 
 static bool target_from_image(const Build *b, Key at, const TargetScene *scene, double (*target)[3])
@@ -245,7 +231,7 @@ bool build_target(const Build *b, Key at, const TargetScene *scene, double (*tar
         return yaml_refuse(b->file, at.text, "strokes need `width`, e.g. width: 6 mm");
     bool ok = true;
     if (scene->file)
-        ok = target_from_file(b, key("%s.file", at.text), scene->file, target);
+        ok = target_from_file(b, key("%s.file", at.text), scene, target);
     else if (scene->height_map)
         ok = target_from_image(b, key("%s.height_map", at.text), scene, target);
     else if (scene->strokes_count)

@@ -70,7 +70,8 @@ static bool from_table(const Build *b, Key at, const char *path, int width, doub
 {
     Table table = {0};
     Error err;
-    bool ok = table_read(path, width, &table, &err) || yaml_refuse(b->file, at.text, "%s", err.text);
+    bool ok = table_read(path, width == 1 ? "value" : "x, y, z", &table, &err) ||
+              yaml_refuse(b->file, at.text, "%s", err.text);
     if (ok && table.rows != b->mesh->face_count)
         ok =
             yaml_refuse(b->file, at.text, "%s has %d rows, and the mesh %d faces: one row per face is needed",
@@ -80,15 +81,110 @@ static bool from_table(const Build *b, Key at, const char *path, int width, doub
     return ok;
 }
 
+/* The group of faces or edges; a name may stand for both. */
 static const MeshGroup *find_group(const Build *b, Key at, const char *name, int dim, const char *needed)
 {
-    const MeshGroup *group = mesh_group(b->mesh, name);
-    if (group && group->dim == dim) return group;
-    if (group)
+    const MeshGroup *group = mesh_group(b->mesh, name, dim);
+    if (group) return group;
+    bool other = false;
+    for (int d = 0; d <= 2; d++) other |= mesh_group(b->mesh, name, d) != NULL;
+    if (other)
         yaml_refuse(b->file, at.text, "the group '%s' has no %s", name, needed);
     else
         yaml_refuse(b->file, at.text, "the mesh has no group '%s'", name);
     return NULL;
+}
+
+/* ---- Groups ---- */
+
+/* What stands in a scene under `groups`: entries of this size that begin with a group's name, and the values
+ * behind it. */
+typedef struct GroupList {
+    const void *entries;
+    size_t size;
+    int count, dim;
+} GroupList;
+
+static const char *group_name(const GroupList *list, int k)
+{
+    return *(char *const *)((const char *)list->entries + (size_t)k * list->size);
+}
+
+static bool same_value(const GroupList *list, int k, int other)
+{
+    const char *entries = list->entries, *a = entries + (size_t)k * list->size,
+               *b = entries + (size_t)other * list->size;
+    return !memcmp(a + sizeof(char *), b + sizeof(char *), list->size - sizeof(char *));
+}
+
+/* The face or edge that is a group's member; -1 after a refusal. */
+static int element_of(const Build *b, Key at, const MeshGroup *group, int member)
+{
+    if (group->dim == 2) return group->members[member];
+    const Mesh *mesh = b->mesh;
+    int v = group->members[2 * member], w = group->members[2 * member + 1], edge = mesh_edge(mesh, v, w);
+    if (edge < 0)
+        yaml_refuse(b->file, at.text, "the line from vertex %d to %d of the group is no edge of the mesh",
+                    mesh->file_vertex[v], mesh->file_vertex[w]);
+    return edge;
+}
+
+/* Gives a group what belongs to it and to no smaller one; sizes[k] is the size of group k. */
+static bool take_elements(const Build *b, Key at, const GroupList *list, int k, const MeshGroup *group,
+                          int *sizes, int *owner)
+{
+    sizes[k] = group->count;
+    for (int m = 0; m < group->count; m++) {
+        int e = element_of(b, at, group, m), other = e < 0 ? -1 : owner[e];
+        if (e < 0) return false;
+        if (other >= 0 && sizes[other] == group->count && !same_value(list, k, other))
+            return yaml_refuse(
+                b->file, at.text,
+                "the groups '%s' and '%s' share %s %d and are as large as one another: which value it "
+                "has cannot be told",
+                group->name, group_name(list, other), group->dim == 2 ? "face" : "edge", e);
+        if (other < 0 || group->count < sizes[other]) owner[e] = k;
+    }
+    return true;
+}
+
+/* owner[element]: the entry whose value it has, -1: none. What lies in several groups belongs to the smallest
+ * one, so that the order of the entries means nothing. */
+static bool assign_groups(const Build *b, Key at, const GroupList *list, int element_count, int *owner)
+{
+    int *sizes = mem_alloc((size_t)list->count, sizeof *sizes);
+    bool ok = true;
+    for (int e = 0; e < element_count; e++) owner[e] = -1;
+    for (int k = 0; ok && k < list->count; k++) {
+        Key here = key("%s.groups.%s", at.text, group_name(list, k));
+        const MeshGroup *group =
+            find_group(b, here, group_name(list, k), list->dim, list->dim == 2 ? "faces" : "edges");
+        ok = group && take_elements(b, here, list, k, group, sizes, owner);
+    }
+    mem_free(sizes);
+    return ok;
+}
+
+static bool put_numbers(const Build *b, Key at, const NumberScene *scene, int dim, int count, double *values)
+{
+    GroupList list = {scene->groups, sizeof *scene->groups, scene->groups_count, dim};
+    int *owner = mem_alloc((size_t)count, sizeof *owner);
+    bool ok = assign_groups(b, at, &list, count, owner);
+    for (int e = 0; e < count; e++)
+        if (owner[e] >= 0) values[e] = scene->groups[owner[e]].value;
+    mem_free(owner);
+    return ok;
+}
+
+static bool put_vectors(const Build *b, Key at, const VectorScene *scene, int count, double *values)
+{
+    GroupList list = {scene->groups, sizeof *scene->groups, scene->groups_count, 2};
+    int *owner = mem_alloc((size_t)count, sizeof *owner);
+    bool ok = assign_groups(b, at, &list, count, owner);
+    for (int f = 0; f < count; f++)
+        if (owner[f] >= 0) memcpy(values + 3 * f, scene->groups[owner[f]].value, 3 * sizeof *values);
+    mem_free(owner);
+    return ok;
 }
 
 /* After the groups: NAN is left where an element is in none and there is no `other`. */
@@ -124,12 +220,7 @@ bool build_face_numbers(const Build *b, Key at, const NumberScene *scene, double
             build_formula(b, at, &scene->formula, 1, scene->where, scene->where_count, build_variables);
         ok = from_formula(b, at, formula, b->mesh->faces[0], 3, count, 1, values);
     }
-    for (int g = 0; ok && g < scene->groups_count; g++) {
-        const MeshGroup *group = find_group(b, key("%s.groups.%s", at.text, scene->groups[g].group),
-                                            scene->groups[g].group, 2, "faces");
-        ok = group != NULL;
-        for (int k = 0; ok && k < group->count; k++) values[group->members[k]] = scene->groups[g].value;
-    }
+    ok = ok && put_numbers(b, at, scene, 2, count, values);
     return ok && check_covered(b, at, values, count, 1, "faces are") &&
            check_range(b, at, values, count, false);
 }
@@ -139,7 +230,8 @@ static bool fold_table(const Build *b, Key at, const char *path, double *values)
 {
     Table table = {0};
     Error err;
-    bool ok = table_read(path, 3, &table, &err) || yaml_refuse(b->file, at.text, "%s", err.text);
+    bool ok =
+        table_read(path, "v0, v1, value", &table, &err) || yaml_refuse(b->file, at.text, "%s", err.text);
     for (int e = 0; e < b->mesh->edge_count; e++) values[e] = 1;
     for (int row = 0; ok && row < table.rows; row++) {
         const double *line = table.values + 3 * row;
@@ -173,15 +265,7 @@ bool build_edge_numbers(const Build *b, Key at, const NumberScene *scene, double
             build_formula(b, at, &scene->formula, 1, scene->where, scene->where_count, build_variables);
         ok = from_formula(b, at, formula, b->mesh->edges[0], 2, count, 1, values);
     }
-    for (int g = 0; ok && g < scene->groups_count; g++) {
-        Key at_group = key("%s.groups.%s", at.text, scene->groups[g].group);
-        const MeshGroup *group = find_group(b, at_group, scene->groups[g].group, 1, "edges");
-        ok = group != NULL;
-        for (int k = 0; ok && k < group->count; k++) {
-            int edge = mesh_edge(b->mesh, group->members[2 * k], group->members[2 * k + 1]);
-            if (edge >= 0) values[edge] = scene->groups[g].value;
-        }
-    }
+    ok = ok && put_numbers(b, at, scene, 1, count, values);
     return ok && check_covered(b, at, values, count, 1, "edges are") &&
            check_range(b, at, values, count, true);
 }
@@ -201,12 +285,6 @@ bool build_face_vectors(const Build *b, Key at, const VectorScene *scene, double
             build_formula(b, at, scene->formula, 3, scene->where, scene->where_count, build_variables);
         ok = from_formula(b, at, formula, b->mesh->faces[0], 3, count, 3, values);
     }
-    for (int g = 0; ok && g < scene->groups_count; g++) {
-        const MeshGroup *group = find_group(b, key("%s.groups.%s", at.text, scene->groups[g].group),
-                                            scene->groups[g].group, 2, "faces");
-        ok = group != NULL;
-        for (int k = 0; ok && k < group->count; k++)
-            memcpy(values + 3 * group->members[k], scene->groups[g].value, sizeof scene->groups[g].value);
-    }
+    ok = ok && put_vectors(b, at, scene, count, values);
     return ok && check_covered(b, at, values, count, 3, "faces are");
 }

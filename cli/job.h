@@ -16,7 +16,7 @@ typedef enum JobKind {
 extern const char *const job_names[]; /* by JobKind, NULL-terminated: the choices of the scene's key `job` */
 
 /* Runs the scene's job: everything it acknowledges goes into the journal, its final arrays too. On
- * RUN_CANNOT_WRITE err says why. */
+ * RUN_CANNOT_WRITE and RUN_REFUSED err says why, and nothing is written over an earlier result. */
 RunStatus job_run(Run *run, Error *err);
 
 /* The rows, each in its own file. */

@@ -3,7 +3,6 @@
 #include "cli/job.h"
 #include "cli/rod_curves.h"
 #include "cli/rod_model.h"
-#include "rod/identify.h"
 #include "rod/inverse.h"
 #include <math.h>
 
@@ -22,11 +21,10 @@ static void natural_shapes(const Identification *o, double *natural)
     double young = o->found.young_known ? o->found.young : INFINITY,
            poisson = o->found.poisson_known ? o->found.poisson : 0.5;
     RodSection section = rod_circle(scene->radius, young, poisson, scene->density);
-    RodLoads loads = {.line = vec3_scale(section.mass, vec3_load(scene->gravity))};
     int nodes = o->run->model->point_count;
     Vec3 *moment = mem_alloc(2 * (size_t)nodes - 1, sizeof *moment);
     for (int k = 0; k < o->count; k++) {
-        rod_moments(&o->curves[k], loads, moment);
+        rod_moments(&o->curves[k], o->run->model->rod->loads, moment);
         rod_invert(&o->curves[k], section, moment, NULL, (Vec3 *)(natural + 3 * (size_t)k * (size_t)nodes));
     }
     mem_free(moment);
@@ -90,12 +88,10 @@ RunStatus job_identify(Run *run, Error *err)
                         .count = scene->poses_count,
                         .curves = run->model->rod->curves,
                         .poses = mem_alloc(count, sizeof *o.poses)};
-    for (int k = 0; k < o.count; k++) o.poses[k] = (RodPose){&o.curves[k], run->model->rod->clamps[k]};
-    RodIdentifyDef def = {o.poses, o.count, scene->radius, scene->density, vec3_load(scene->gravity)};
-    bool possible = rod_identify(&def, &o.found, err);
-    bool ok = possible && put_results(&o, err);
+    RodIdentifyDef def = rod_model_poses(run->model->rod, scene, o.poses);
+    o.found = rod_identify(&def);
+    bool ok = put_results(&o, err);
     if (ok) say(&o);
     mem_free(o.poses);
-    if (!possible) return RUN_REFUSED;
     return !ok ? RUN_CANNOT_WRITE : o.found.young_known && o.found.converged ? RUN_DONE : RUN_NOT_CONVERGED;
 }

@@ -11,6 +11,7 @@
 
 enum { LOAD_STEPS = 10 };
 static const double ELSEWHERE = 1e-4; /* of the length: another equilibrium */
+static const double COARSE = 1e-2;    /* two ways to the same strains differ by that */
 
 /* Everything about all strands, one after the other: nodes N + 1 and elements N each. */
 typedef struct Inversion {
@@ -23,6 +24,7 @@ typedef struct Inversion {
     int *stable, *index, *touching;                                                   /* [strands]     */
     int pair_count;
     int *pairs; /* [pair_count][3] strand, elements */
+    double lengths; /* of the longest element, in bending lengths (stability.h) */
     NewtonStatus worst;
 } Inversion;
 
@@ -70,8 +72,9 @@ static void judge_stability(Inversion *o, int k, const Vec3 *moment)
     for (size_t j = 0; j < stations; j++) m[j] = rod_to_frame(frames[j], moment[j]);
     rod_pulls(curve, rm->loads, F);
     for (int i = 0; i < 3 * o->elements; i++) F[i] = rod_to_frame(frames[2 * (i / 3) + i % 3], F[i]);
-    RodStability found =
-        rod_stability(&(RodEquilibrium){o->elements, curve->length, rm->section, strain, m, F});
+    RodEquilibrium at = {o->elements, curve->length, rm->section, strain, m, F};
+    RodStability found = rod_stability(&at);
+    o->lengths = fmax(o->lengths, rod_bending_lengths(&at));
     o->stable[k] = found.stable;
     o->index[k] = found.morse_index;
     o->lowest[k] = found.lowest_eigenvalue;
@@ -128,7 +131,7 @@ static void invert_elements(Inversion *o, int k)
     double *x = mem_alloc(2 * (size_t)layout.dofs, sizeof *x);
     System *sys = rod_hanging_system(rod);
     rod_follow_curve(rod, &rm->curves[k], rm->frames[k], x);
-    rod_balance(rod, sys, x, p);
+    rod_balance(rod, sys, &layout, x, p);
     Evaluation left = system_gradient(sys, &(Point){.x = x, .p = p}, x + layout.dofs);
     o->residual[k] = left.force_scale > 0 ? left.gradient_max / left.force_scale : 0;
     memcpy(o->strain_elements + 3 * (size_t)k * (size_t)o->elements, p + rod->natural_strain,
@@ -249,18 +252,29 @@ static void say(const Inversion *o)
 {
     Progress *progress = o->run->progress;
     int unstable = 0, touching = 0, elsewhere = 0;
-    double worst = 0;
+    double worst = 0, route = 0;
     for (int k = 0; k < o->strands; k++) {
         unstable += is_asked(o->run->scene, CHECK_STABILITY) && !o->stable[k];
         touching += o->touching[k];
         elsewhere += o->round_trip[k] > ELSEWHERE * o->rm->curves[k].length;
         worst = fmax(worst, o->round_trip[k]);
+        route = fmax(route, o->route[k]);
     }
+    if (route > COARSE)
+        progress_say(
+            progress,
+            "natural strains are good to %.2g of the largest only: the curve bends too much for %d elements",
+            route, o->elements);
     if (unstable)
         progress_say(progress,
                      "%d of %d curves unstable: the rod would not stay there (rod/critical_young says from "
                      "which Young's modulus on it would)",
                      unstable, o->strands);
+    if (o->lengths > 1)
+        progress_say(progress,
+                     "the elements are too long to tell how stable a curve is: one of them has %.2g times the "
+                     "length sqrt(EI/F) within which the rod bends; rod.elements: %.0f or more would",
+                     o->lengths, ceil(o->elements * o->lengths));
     if (touching) progress_say(progress, "%d of %d natural shapes touch themselves", touching, o->strands);
     if (elsewhere)
         progress_say(progress,

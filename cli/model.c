@@ -21,13 +21,27 @@ bool model_load(const Model *model, double time, double *p, Error *err)
 
 /* ---- Loads of a case ---- */
 
+bool model_put_flux(Model *model, const Build *b, const char *at, const FluxScene *flux, double *p)
+{
+    FluxField *field;
+    if (!build_flux(b, key("%s", at), flux, p + model->flux_density, &field)) return false;
+    int number = field ? flux_fields_add(model->fields, model->params, field) : -1;
+    for (int k = 0; k < model->fields->count; k++) p[model->field_scale + k] = k == number;
+    return true;
+}
+
+size_t model_params_room(const Model *model, const Scene *scene)
+{
+    return (size_t)(model->params->size + 1 + scene->cases_count + scene->sequence_count);
+}
+
 /* Field, loads and gravity of a case or stage, where it says them. */
 static bool put_loads(Model *model, const Build *b, Key at, const FluxScene *flux, const LoadScene *loads,
                       int count, const double *gravity, double *p)
 {
     if (!isnan(gravity[0])) memcpy(p + model->gravity, gravity, 3 * sizeof *gravity);
     bool ok = !loads || model->body->put_loads(model, b, key("%s.loads", at.text).text, loads, count, p);
-    return (!flux || model->body->put_flux(model, b, key("%s.flux_density", at.text).text, flux, p)) && ok;
+    return (!flux || model_put_flux(model, b, key("%s.flux_density", at.text).text, flux, p)) && ok;
 }
 
 static ModelCase *add_case(Model *model, const char *name, const double *p, size_t room, double time)
@@ -145,15 +159,9 @@ bool model_velocity(Model *model, const Build *b, const char *at, const Velocity
 static bool check_motion(const Scene *scene, YamlFile *file)
 {
     const char *what = scene->job == JOB_SIMULATE ? "simulation" : "trajectory";
-    const VelocityScene *velocity = scene->shell ? scene->shell->velocity : scene->rod->velocity;
-    if (!model_is_motion(scene->job))
-        return !velocity || yaml_refuse(file, scene->shell ? "shell.velocity" : "rod.velocity",
-                                        "velocities are for jobs in time: simulate and trajectory");
-    if (isnan(scene->time.step) || scene->time.steps == YAML_ABSENT)
-        return yaml_refuse(file, "time", "a %s needs `time`, e.g. time: {step: 1 ms, steps: 100}", what);
-    return (!scene->cases_count && !scene->sequence_count) ||
-           yaml_refuse(file, "job", "a %s has neither cases nor a sequence; a field may be a formula of t",
-                       what);
+    bool known = !isnan(scene->time.step) && scene->time.steps != YAML_ABSENT;
+    return !model_is_motion(scene->job) || known ||
+           yaml_refuse(file, "time", "a %s needs `time`, e.g. time: {step: 1 ms, steps: 100}", what);
 }
 
 /* Which jobs there are for what. */
@@ -174,26 +182,9 @@ static bool check_job(const Scene *scene, YamlFile *file)
                                has);
 }
 
-/* Files that only a drawing has. */
-static bool check_output(const OutputScene *output, YamlFile *file)
-{
-    const struct {
-        const char *key, *name;
-    } files[] = {{"output.svg", output->svg},
-                 {"output.png", output->png},
-                 {"output.gcode", output->gcode},
-                 {"output.gcode_servo", output->gcode_servo},
-                 {"output.hpgl", output->hpgl}};
-    for (int k = 0; k < 5; k++)
-        if (files[k].name)
-            return yaml_refuse(file, files[k].key,
-                               "only a drawing is written so; slender picture shows results");
-    return true;
-}
-
 static bool build_body(Model *model, const Scene *scene, YamlFile *file)
 {
-    if (!check_output(&scene->output, file) || !check_motion(scene, file)) return false;
+    if (!check_motion(scene, file)) return false;
     return scene->rod ? model_rod(model, scene, file) : model_shell(model, scene, file);
 }
 
@@ -201,7 +192,7 @@ Model *model_create(const Scene *scene, YamlFile *file)
 {
     Model *model = mem_alloc(1, sizeof *model);
     bool designed = scene->job == JOB_DESIGN || scene->job == JOB_TRAJECTORY;
-    bool ok = check_job(scene, file) &&
+    bool ok = check_job(scene, file) && yaml_check_use(file, &scene_table) &&
               (scene->spline ? model_drawing(model, scene, file) : build_body(model, scene, file)) &&
               (!designed || model_design(model, scene, file));
     if (ok) return model;

@@ -52,9 +52,8 @@ struct Build;
 /* What is not alike for shells, rods and drawings: how scenes become numbers, and how states are written into
  * the journal. */
 typedef struct BodyOps {
-    /* Of a case or stage into its p: the field, dead loads; places of its target, NAN where there is none.
-     * False after a refusal at that key. */
-    bool (*put_flux)(Model *model, const struct Build *b, const char *at, const FluxScene *flux, double *p);
+    /* Of a case or stage into its p: dead loads; places of its target, NAN where there is none. False after a
+     * refusal at that key. */
     bool (*put_loads)(Model *model, const struct Build *b, const char *at, const LoadScene *loads, int count,
                       double *p);
     bool (*put_target)(Model *model, const struct Build *b, const char *at, const TargetScene *scene,
@@ -77,6 +76,9 @@ typedef struct BodyOps {
 
     /* Of the final state, once: its stability, so many modes, and what else it shows. */
     void (*add_final)(const Model *model, const State *state, int modes, Arrays *list);
+
+    /* What the state cannot be trusted in, a sentence of the caller's; NULL: nothing. May be NULL itself. */
+    char *(*doubt)(const Model *model, const State *state);
 } BodyOps;
 
 struct RodModel;
@@ -88,7 +90,8 @@ struct Model {
     const BodyOps *body;
     Params *params; /* the body's                                          */
     int gravity;    /* first entries in p                                  */
-    int flux_density;
+    int flux_density, field_scale;
+    FluxFields *fields; /* the body's */
     int point_count;   /* vertices or nodes                                   */
     int load_steps;    /* of an equilibrium, unless the scene says            */
     double step_cap;   /* of Newton                                           */
@@ -118,6 +121,13 @@ bool model_load(const Model *model, double time, double *p, Error *err);
 bool model_shell(Model *model, const Scene *scene, YamlFile *file);
 bool model_rod(Model *model, const Scene *scene, YamlFile *file);
 bool model_drawing(Model *model, const Scene *scene, YamlFile *file);
+
+/* A field into p: its uniform part, or one more of the body's fields, for which p has room. False after a
+ * refusal at that key. */
+bool model_put_flux(Model *model, const struct Build *b, const char *at, const FluxScene *flux, double *p);
+
+/* How long vectors p must be while fields are still added to the body's parameters. */
+size_t model_params_room(const Model *model, const Scene *scene);
 
 /* The load cases or stages of a scene, each with p[room] as a copy; false after a refusal. */
 bool model_cases(Model *model, const struct Build *b, const Scene *scene, const double *p, size_t room);

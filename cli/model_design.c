@@ -208,7 +208,7 @@ static bool start_control(Model *model, const Build *b, const FluxStart *start, 
     }
     Table table;
     Error err;
-    if (!table_read(start->file, 3, &table, &err)) return yaml_refuse(b->file, at, "%s", err.text);
+    if (!table_read(start->file, "Bx, By, Bz", &table, &err)) return yaml_refuse(b->file, at, "%s", err.text);
     bool ok = table.rows == control->rows ||
               yaml_refuse(b->file, at, "%s has %d rows; the unknown flux density has %d", start->file,
                           table.rows, control->rows);
@@ -308,12 +308,11 @@ static bool add_dmp(Model *model, const Scene *scene, const Build *b)
 
 bool model_design(Model *model, const Scene *scene, YamlFile *file)
 {
-    Build b = {.file = file, .mesh = model->shell ? model->shell->mesh : NULL, .time = scene->time.at};
+    Build b = build_start(scene, model->shell ? model->shell->mesh : NULL, file);
     bool trajectory = scene->job == JOB_TRAJECTORY;
     if (!scene->design)
         return yaml_refuse(file, "job", "a %s job needs the key `design`",
                            trajectory ? "trajectory" : "design");
-    if (scene->sequence_count) return yaml_refuse(file, "sequence", "a design has cases, not a sequence");
     bool ok = add_unknowns(model, scene, &b) && add_dmp(model, scene, &b);
     return model_objectives(model, scene, file) && ok;
 }

@@ -9,26 +9,6 @@ static void add_static(const Model *model, Arrays *list)
 
 static const BodyOps drawing_ops = {.add_static = add_static};
 
-/* What is said of bodies. */
-static bool check_keys(const Scene *scene, YamlFile *file)
-{
-    const struct {
-        const char *key;
-        bool given;
-    } keys[] = {{"fix", scene->fix_count > 0},
-                {"loads", scene->loads_count > 0},
-                {"target", scene->target != NULL},
-                {"cases", scene->cases_count > 0},
-                {"sequence", scene->sequence_count > 0},
-                {"design", scene->design != NULL},
-                {"modes", scene->modes > 0},
-                {"checks", scene->checks_count > 0}};
-    for (size_t k = 0; k < sizeof keys / sizeof *keys; k++)
-        if (keys[k].given)
-            return yaml_refuse(file, keys[k].key, "this is for shells and rods, not for a drawing");
-    return true;
-}
-
 /* What says how a pen is lifted needs the file that says so. */
 static bool check_plotter(const Scene *scene, YamlFile *file)
 {
@@ -42,7 +22,7 @@ static bool check_plotter(const Scene *scene, YamlFile *file)
 
 bool model_drawing(Model *model, const Scene *scene, YamlFile *file)
 {
-    if (!check_keys(scene, file) || !check_plotter(scene, file)) return false;
+    if (!check_plotter(scene, file)) return false;
     model->body = &drawing_ops;
     model->drawing = drawing_create(scene->spline, file);
     return model->drawing != NULL;

@@ -5,6 +5,7 @@
 #include "cli/model.h"
 #include "optim/objectives.h"
 #include "shell/smoothness.h"
+#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -71,12 +72,12 @@ static Probe find_probe(const Model *model, const Build *b, Key at, const char *
     double one = 1;
     char *end;
     long number = strtol(vertex, &end, 10);
-    const MeshGroup *group = mesh_group(mesh, vertex);
-    if (group && group->dim == 0 && group->count == 1)
+    const MeshGroup *group = mesh_group(mesh, vertex, 0);
+    Error err;
+    if (group && group->count == 1)
         *chosen = group->members[0];
-    else if (*vertex && !*end && number >= 0 && number < mesh->file_vertex_count)
-        *chosen = mesh->vertex_of_file[number];
-    else {
+    else if (!*vertex || *end || number < 0 || number > INT_MAX ||
+             !mesh_vertex(mesh, (int)number, chosen, &err)) {
         mem_free(chosen);
         yaml_refuse(b->file, at.text,
                     "vertex is '%s'; it must be a number from 0 to %d or the name of a group of one vertex",
@@ -239,7 +240,7 @@ static bool add_objective(Model *model, const Build *b, Key at, const Scene *sce
 
 bool model_objectives(Model *model, const Scene *scene, YamlFile *file)
 {
-    Build b = {.file = file, .mesh = model->shell ? model->shell->mesh : NULL, .time = scene->time.at};
+    Build b = build_start(scene, model->shell ? model->shell->mesh : NULL, file);
     bool ok = true;
     for (int c = 0; c < model->case_count; c++)
         for (int k = 0; k < scene->design->objectives_count; k++)

@@ -11,13 +11,7 @@
 enum { LOAD_STEPS = 10 }; /* a natural shape is far from the loaded one; the way matters (docs/rods.md) */
 static const double STEP_CAP = 1.5; /* rad */
 
-/* ---- Fields, loads and targets ---- */
-
-static bool put_flux(Model *model, const Build *b, const char *at, const FluxScene *flux, double *p)
-{
-    int field;
-    return build_flux(b, key("%s", at), flux, NULL, p + model->flux_density, &field);
-}
+/* ---- Loads and targets ---- */
 
 static bool put_loads(Model *model, const Build *b, const char *at, const LoadScene *loads, int count,
                       double *p)
@@ -38,7 +32,7 @@ static bool put_target(Model *model, const Build *b, const char *at, const Targe
                            "the target of a rod is a file with a polyline, or three formulas of s and L");
     if (scene->file) {
         RodCurve curve;
-        if (!rod_curve_read(b, at, scene->file, 1, (NoiseScene){-1, 0}, rod->elements, &curve)) return false;
+        if (!rod_curve_read(b, (Sampled){at, scene->file, 1, {-1, 0}, rod->elements}, &curve)) return false;
         for (int i = 0; i <= rod->elements; i++) vec3_store(target[i], curve.x[2 * i]);
         rod_curve_clear(&curve);
         return true;
@@ -109,22 +103,43 @@ static bool make_rod(RodModel *rm, const Scene *scene, const Build *b)
     if (given && rm->strand_count > 1)
         return yaml_refuse(b->file, "rod.curve", "there are %d curves; jobs other than invert take one rod",
                            rm->strand_count);
+    if (!given && !from->natural_strain)
+        return yaml_refuse(b->file, "rod", "`curve` or `natural_strain` is missing");
     if (!given && isnan(from->length))
-        return yaml_refuse(b->file, "rod", "with natural strains, `length` is needed");
-    if (from->start == ROD_START_CURVE && !given)
-        return yaml_refuse(b->file, "rod.start", "there is no curve to start from");
+        return yaml_refuse(b->file, "rod", "without a curve, `length` is needed");
     rm->rod = rod_create(from->elements, given ? rm->curves[0].length : from->length, rm->unit, rm->area);
     return read_supports(rm, from, b) && rod_model_check_points(rm, b, rm->rod->length);
 }
 
-/* The natural strains that make the rod rest on its curve, hanging under its loads in p; leaves the curve's
- * state in x. */
-static void balance(RodModel *rm, double *p, double *x)
+/* The curve's state in x, and none of its shape in the rod: that has natural strains of its own. */
+static void pose(RodModel *rm, double *x)
 {
     rod_follow_curve(rm->rod, &rm->curves[0], rm->frames[0], x);
-    System *hanging = rod_hanging_system(rm->rod);
-    rod_balance(rm->rod, hanging, x, p);
-    system_destroy(hanging);
+    for (int e = 0; e < rm->rod->elements; e++) rm->rod->bow[e] = vec3(0, 0, 0);
+}
+
+/* The natural strains that make the rod rest on its curve, hanging under its loads in p; leaves the curve's
+ * state in x, of turns only. */
+static void balance(RodModel *rm, double *p, double *x)
+{
+    Rod *rod = rm->rod;
+    RodLayout turns = rod_layout(rod, false), layout = rod_layout(rod, rod->fields.count > 0);
+    rod_follow_curve(rod, &rm->curves[0], rm->frames[0], x);
+    double *y = mem_alloc((size_t)layout.dofs, sizeof *y);
+    rod_copy_state(rod, &turns, x, &layout, y);
+    System *sys = rod->fields.count ? rod_system(rod, rm->young, false) : rod_hanging_system(rod);
+    rod_balance(rod, sys, &layout, y, p);
+    system_destroy(sys);
+    mem_free(y);
+}
+
+/* What the curve means: beside natural strains it is where the rod is let go. */
+static void take_curve(RodModel *rm, const RodScene *scene, double *p, double *x)
+{
+    if (scene->natural_strain)
+        pose(rm, x);
+    else
+        balance(rm, p, x);
 }
 
 static bool settle_move(void *self, double part, double *x)
@@ -155,14 +170,13 @@ static bool settle(Model *model, const Build *b, const double *p)
                        newton_status_text(info.newton.status));
 }
 
-/* Where the job starts, in model->x, and the natural shape to be shown. */
-static void make_states(Model *model, const RodScene *scene, bool hanging, double *p)
+/* Where the job starts, in model->x, and the natural shape to be shown; x is the curve's state, if there is
+ * one. */
+static void make_states(Model *model, const RodScene *scene, bool hanging, const double *p, double *x)
 {
     RodModel *rm = model->rod;
     Rod *rod = rm->rod;
     RodLayout turns = rod_layout(rod, false);
-    double *x = mem_alloc((size_t)turns.dofs, sizeof *x);
-    if (rm->curves) balance(rm, p, x);
     rm->layout = rod_layout(rod, !hanging);
     model->x = mem_alloc((size_t)rm->layout.dofs, sizeof *model->x);
     if (scene->start == ROD_START_CURVE)
@@ -172,7 +186,6 @@ static void make_states(Model *model, const RodScene *scene, bool hanging, doubl
     rm->natural = mem_alloc(3 * (size_t)turns.nodes, sizeof *rm->natural);
     rod_natural_state(rod, &turns, p, x);
     rod_places(rod, &turns, x, turns.nodes, rm->natural);
-    mem_free(x);
 }
 
 static void make_systems(Model *model, bool hanging, bool motion)
@@ -185,35 +198,57 @@ static void make_systems(Model *model, bool hanging, bool motion)
     }
 }
 
+/* What the scene says of the model. */
+static void set_model(Model *model, const Scene *scene)
+{
+    RodModel *rm = model->rod;
+    Rod *rod = rm->rod;
+    model->params = &rod->params;
+    model->gravity = rod->gravity;
+    model->flux_density = rod->flux_density;
+    model->field_scale = rod->field_scale;
+    model->fields = &rod->fields;
+    model->moves = rm->held && scene->job == JOB_EQUILIBRIUM;
+}
+
+/* Cases and states. All fields are known once the cases are: with one that varies in space, no rod is only
+ * turns. */
+static bool fill_cases(Model *model, const Scene *scene, const Build *b)
+{
+    RodModel *rm = model->rod;
+    Rod *rod = rm->rod;
+    bool motion = model_is_motion(scene->job);
+    size_t room = model_params_room(model, scene);
+    double *p = mem_alloc(room, sizeof *p),
+           *curve = mem_alloc((size_t)rod_layout(rod, false).dofs, sizeof *curve);
+    bool ok = rod_model_params(rm, scene, b, p);
+    ok = model_put_flux(model, b, "flux_density", &scene->flux_density, p) && ok;
+    if (ok && rm->curves) take_curve(rm, scene->rod, p, curve);
+    ok = ok && model_cases(model, b, scene, p, room);
+    bool hanging = scene->job == JOB_EQUILIBRIUM && rod->start == ROD_CLAMPED && rod->end == ROD_FREE &&
+                   rod->fields.count == 0;
+    if (ok) make_states(model, scene->rod, hanging, p, curve);
+    if (ok && rm->held && !model->moves) ok = settle(model, b, p);
+    if (ok) make_systems(model, hanging, motion);
+    mem_free(p);
+    mem_free(curve);
+    return ok;
+}
+
 /* Jobs that move one rod. */
 static bool fill(Model *model, const Scene *scene, const Build *b)
 {
     RodModel *rm = model->rod;
     if (!make_rod(rm, scene, b)) return false;
-    Rod *rod = rm->rod;
-    bool motion = model_is_motion(scene->job);
-    bool hanging = scene->job == JOB_EQUILIBRIUM && rod->start == ROD_CLAMPED && rod->end == ROD_FREE;
-    model->params = &rod->params;
-    model->gravity = rod->gravity;
-    model->flux_density = rod->flux_density;
-    double *p = mem_alloc((size_t)rod->params.size, sizeof *p);
-    bool ok = rod_model_params(rm, scene, b, p);
-    ok = put_flux(model, b, "flux_density", &scene->flux_density, p) && ok;
-    if (ok) {
-        make_states(model, scene->rod, hanging, p);
-        ok = model_cases(model, b, scene, p, (size_t)rod->params.size);
-    }
-    model->moves = rm->held && scene->job == JOB_EQUILIBRIUM;
-    if (ok && rm->held && !model->moves) ok = settle(model, b, p);
-    mem_free(p);
-    if (!ok) return false;
-    make_systems(model, hanging, motion);
-    return !motion ||
-           model_velocity(model, b, "rod.velocity", scene->rod->velocity, model->x + rm->layout.position);
+    Build sized = *b;
+    sized.size = rm->rod->length;
+    set_model(model, scene);
+    return fill_cases(model, scene, &sized) &&
+           (!model_is_motion(scene->job) || model_velocity(model, b, "rod.velocity", scene->rod->velocity,
+                                                           model->x + rm->layout.position));
 }
 
 static const BodyOps rod_ops = {
-    .put_flux = put_flux,
     .put_loads = put_loads,
     .put_target = put_target,
     .move = move,
@@ -222,43 +257,30 @@ static const BodyOps rod_ops = {
     .add_frame = body_rod_frame,
     .add_state = body_rod_state,
     .add_final = body_rod_final,
+    .doubt = body_rod_doubt,
 };
 
-/* What is said of shells only. */
-static bool check_keys(const Scene *scene, YamlFile *file)
+static bool check_inversion(const Scene *scene, YamlFile *file)
 {
-    bool ok = true;
-    if (scene->fix) ok = yaml_refuse(file, "fix", "a rod is held by rod.clamp, rod.hold and rod.end");
-    if (scene->loads) ok = yaml_refuse(file, "loads", "loads of a rod are under rod.loads");
-    if (scene->modes) ok = yaml_refuse(file, "modes", "modes are for shells");
-    bool preview = scene->rod->solver == ROD_SOLVER_PBD;
-    if (preview && scene->job != JOB_SIMULATE)
-        ok = yaml_refuse(file, "rod.solver", "the solver pbd is for simulations");
-    if (preview && (scene->rod->end || scene->rod->hold == HOLD_PINNED || scene->rod->velocity ||
-                    scene->rod->magnetization.formula || scene->rod->magnetization.file ||
-                    scene->rod->magnetization.value[0] != 0 || scene->rod->magnetization.value[1] != 0 ||
-                    scene->rod->magnetization.value[2] != 0))
-        ok = yaml_refuse(
-            file, "rod.solver",
-            "the solver pbd shows rods that are clamped and free, start at rest and are not magnetised");
-    return ok;
+    bool round_trip = false;
+    for (int k = 0; k < scene->checks_count; k++) round_trip |= scene->checks[k] == CHECK_ROUND_TRIP;
+    if (!scene->rod->curve)
+        return yaml_refuse(file, "rod", "an inversion needs `curve`, the shape that is given");
+    return round_trip || scene->load_steps.mode == 0 ||
+           yaml_refuse(file, "load_steps",
+                       "an inversion uses them for its round trip only: checks: [round_trip]");
 }
 
 bool model_rod(Model *model, const Scene *scene, YamlFile *file)
 {
-    Build b = {file, NULL, scene->time.at, model_is_motion(scene->job) ? &model->flux_of_time : NULL};
+    Build b = build_start(scene, NULL, file);
+    b.timed = model_is_motion(scene->job) ? &model->flux_of_time : NULL;
     model->body = &rod_ops;
     model->point_count = scene->rod->elements + 1;
     model->load_steps = LOAD_STEPS;
     model->step_cap = STEP_CAP;
-    if (!check_keys(scene, file)) return false;
     model->rod = rod_model_create(scene, &b);
     if (!model->rod) return false;
-    if (scene->job == JOB_INVERT)
-        return scene->rod->curve ||
-               yaml_refuse(file, "rod", "an inversion needs `curve`, the shape that is given");
-    if (scene->job == JOB_IDENTIFY)
-        return scene->rod->poses_count >= 2 ||
-               yaml_refuse(file, "rod", "an identification needs two or more `poses` of the rod");
-    return fill(model, scene, &b);
+    if (scene->job == JOB_INVERT) return check_inversion(scene, file);
+    return scene->job == JOB_IDENTIFY || fill(model, scene, &b);
 }

@@ -4,75 +4,8 @@
 #include "cli/build.h"
 #include "cli/job.h"
 #include "shell/rigid.h"
-#include "shell/shapes.h"
 #include <math.h>
 #include <string.h>
-
-/* ---- The mesh ---- */
-
-static bool generate(const MeshScene *scene, YamlFile *yaml, MeshFile *file)
-{
-    Error err;
-    double size[2] = {scene->size[0], scene->size_count > 1 ? scene->size[1] : scene->size[0]};
-    bool ok = false;
-    switch ((MeshShape)scene->shape) {
-    case MESH_SHEET:
-        ok = shape_sheet(size, scene->cells, (ShapePattern)scene->pattern, file, &err);
-        break;
-    case MESH_STRIP:
-        ok = shape_strip(size[0], size[1], scene->n, (ShapePattern)scene->pattern, file, &err);
-        break;
-    case MESH_HEXAGRAM:
-        ok = shape_hexagram(size[0], scene->n, file, &err);
-        break;
-    case MESH_DISC:
-        ok = shape_disc(size[0], scene->n, file, &err);
-        break;
-    case MESH_KIRIGAMI:
-        ok = shape_kirigami(size[0], scene->n, file, &err);
-        break;
-    }
-    return ok || yaml_refuse(yaml, "shell.mesh", "%s", err.text);
-}
-
-/* What each shape needs, in one sentence. */
-static bool check_shape(const MeshScene *scene, YamlFile *yaml)
-{
-    bool rectangle = scene->shape == MESH_SHEET || scene->shape == MESH_STRIP;
-    if (scene->size_count != (rectangle ? 2 : 1))
-        return yaml_refuse(yaml, "shell.mesh", "a %s needs `size`: %s",
-                           rectangle ? "sheet or strip" : "hexagram, disc or kirigami",
-                           rectangle ? "its length and width, e.g. [65 mm, 65 mm]"
-                                     : "its diameter or side, e.g. 40 mm");
-    if (scene->shape == MESH_SHEET && scene->cells_count != 2)
-        return yaml_refuse(yaml, "shell.mesh", "a sheet needs `cells` along x and y, e.g. [64, 64]");
-    if (scene->shape != MESH_SHEET && scene->n == YAML_ABSENT)
-        return yaml_refuse(yaml, "shell.mesh",
-                           "a strip, hexagram, disc or kirigami needs `n`, the number of its divisions");
-    return true;
-}
-
-static bool read_mesh_file(const MeshScene *scene, YamlFile *yaml, MeshFile *file)
-{
-    if (!scene->file) return check_shape(scene, yaml) && generate(scene, yaml, file);
-    Error err;
-    if (!mesh_file_read(scene->file, file, &err)) return yaml_refuse(yaml, "shell.mesh.file", "%s", err.text);
-    for (int i = 0; i < 3 * file->vertex_count; i++) file->vertices[i / 3][i % 3] *= scene->scale;
-    return true;
-}
-
-static Mesh *build_mesh(const MeshScene *scene, YamlFile *yaml, MeshReport *report)
-{
-    MeshFile file = {0};
-    Error err;
-    Mesh *mesh = NULL;
-    if (read_mesh_file(scene, yaml, &file)) {
-        mesh = mesh_create(&file, scene->weld, report, &err);
-        if (!mesh) yaml_refuse(yaml, "shell.mesh", "%s", err.text);
-    }
-    mesh_file_clear(&file);
-    return mesh;
-}
 
 /* ---- What is held ---- */
 
@@ -131,15 +64,6 @@ static bool move(const Model *model, double time, double part, double *x, Error 
 
 /* ---- Loads ---- */
 
-static bool put_flux(Model *model, const Build *b, const char *at, const FluxScene *flux, double *p)
-{
-    int field;
-    Shell *shell = model->shell;
-    if (!build_flux(b, key("%s", at), flux, shell, p + shell->flux_density, &field)) return false;
-    for (int k = 0; k < shell->field_count; k++) p[shell->field_scale + k] = k == field;
-    return true;
-}
-
 static bool put_loads(Model *model, const Build *b, const char *at, const LoadScene *loads, int count,
                       double *p)
 {
@@ -151,12 +75,6 @@ static bool put_target(Model *model, const Build *b, const char *at, const Targe
 {
     (void)model;
     return build_target(b, key("%s", at), scene, target);
-}
-
-/* Fields grow the parameter vector, so every p is made as large as it may become. */
-static size_t params_room(const Model *model, const Scene *scene)
-{
-    return (size_t)(model->shell->params.size + 1 + scene->cases_count + scene->sequence_count);
 }
 
 static double *base_params(Model *model, const Scene *scene, const Build *b, size_t room)
@@ -171,7 +89,7 @@ static double *base_params(Model *model, const Scene *scene, const Build *b, siz
     memcpy(p + shell->gravity, s->gravity, sizeof s->gravity);
     p[shell->damping] = s->damping;
     ok = build_loads(b, key("loads"), scene->loads, scene->loads_count, p + shell->load) && ok;
-    if (ok && put_flux(model, b, "flux_density", &scene->flux_density, p)) return p;
+    if (ok && model_put_flux(model, b, "flux_density", &scene->flux_density, p)) return p;
     mem_free(p);
     return NULL;
 }
@@ -199,12 +117,9 @@ static bool read_pose(const Build *b, const PoseScene *pose, double *x)
     if (!pose) return true;
     const Mesh *mesh = b->mesh;
     MeshFile file = {0};
-    Error err;
-    if (!mesh_file_read(pose->file, &file, &err))
-        return yaml_refuse(b->file, "shell.pose.file", "%s", err.text);
+    if (!build_state(b, key("shell.pose.file"), pose->file, pose->scale, &file)) return false;
     bool ok = has_same_faces(mesh, &file);
-    if (!ok)
-        yaml_refuse(b->file, "shell.pose.file", "%s has other vertices or faces than the mesh", pose->file);
+    if (!ok) yaml_refuse(b->file, "shell.pose.file", "%s has other faces than the mesh", pose->file);
     for (int v = 0; ok && v < mesh->vertex_count; v++)
         memcpy(x + 3 * v, file.vertices[mesh_row(mesh, file.vertex_count, v)], 3 * sizeof *x);
     mesh_file_clear(&file);
@@ -241,7 +156,7 @@ static bool fill(Model *model, const Scene *scene, const Build *b)
     model->x = mem_alloc((size_t)shell_dof_count(shell), sizeof *model->x);
     shell_rest_state(shell, model->x);
     ok = read_pose(b, scene->shell->pose, model->x) && ok;
-    size_t room = params_room(model, scene);
+    size_t room = model_params_room(model, scene);
     double *p = base_params(model, scene, b, room);
     ok = p && model_cases(model, b, scene, p, room) && ok;
     mem_free(p);
@@ -251,7 +166,6 @@ static bool fill(Model *model, const Scene *scene, const Build *b)
 }
 
 static const BodyOps shell_ops = {
-    .put_flux = put_flux,
     .put_loads = put_loads,
     .put_target = put_target,
     .move = move,
@@ -271,9 +185,12 @@ bool model_shell(Model *model, const Scene *scene, YamlFile *file)
     model->params = &shell->params;
     model->gravity = shell->gravity;
     model->flux_density = shell->flux_density;
+    model->field_scale = shell->field_scale;
+    model->fields = &shell->fields;
     model->point_count = mesh->vertex_count;
     model->load_steps = 1;
     model->step_cap = newton_default().step_cap;
-    Build b = {file, mesh, scene->time.at, model_is_motion(scene->job) ? &model->flux_of_time : NULL};
+    Build b = build_start(scene, mesh, file);
+    b.timed = model_is_motion(scene->job) ? &model->flux_of_time : NULL;
     return fill(model, scene, &b);
 }

@@ -50,47 +50,47 @@ static bool curves_from_formula(const Build *b, const RodCurveScene *scene, int 
     return ok;
 }
 
-static bool curve_from_samples(const Build *b, const char *at, const Vec3 *x, int count, NoiseScene noise,
-                               int elements, RodCurve *curve)
+/* Through the points of a strand; refused with the file's name and line. */
+static bool curve_from_strand(const Build *b, Sampled from, const PolylineFile *file, int k, RodCurve *curve)
 {
     RodSamplesDef def = rod_samples_default();
     Error err;
-    if (noise.mode < 0) def.noise = noise.value;
-    return rod_samples_curve(x, count, &def, elements, curve, NULL, &err) ||
-           yaml_refuse(b->file, at, "%s", err.text);
+    if (from.noise.mode < 0) def.noise = from.noise.value;
+    return rod_samples_curve(file->points + file->first[k], file->first[k + 1] - file->first[k], &def,
+                             from.elements, curve, NULL, &err) ||
+           yaml_refuse(b->file, from.at, "%s:%d: %s", from.path, file->line[k], err.text);
 }
 
 /* All polylines of a file, to be cleared in any case. */
-static bool read_polylines(const Build *b, const char *at, const char *path, double scale, PolylineFile *file)
+static bool read_polylines(const Build *b, Sampled from, PolylineFile *file)
 {
     Error err;
     *file = (PolylineFile){0};
-    if (!polyline_file_read(path, file, &err)) return yaml_refuse(b->file, at, "%s", err.text);
-    for (int i = 0; i < file->point_count; i++) file->points[i] = vec3_scale(scale, file->points[i]);
+    if (!polyline_file_read(from.path, file, &err)) return yaml_refuse(b->file, from.at, "%s", err.text);
+    for (int i = 0; i < file->point_count; i++) file->points[i] = vec3_scale(from.scale, file->points[i]);
     return true;
 }
 
-bool rod_curve_read(const Build *b, const char *at, const char *path, double scale, NoiseScene noise,
-                    int elements, RodCurve *curve)
+bool rod_curve_read(const Build *b, Sampled from, RodCurve *curve)
 {
     PolylineFile file;
-    bool ok = read_polylines(b, at, path, scale, &file);
+    bool ok = read_polylines(b, from, &file);
     if (ok && file.strand_count > 1)
-        ok = yaml_refuse(b->file, at, "%s has %d polylines; one is needed here", path, file.strand_count);
-    ok = ok && curve_from_samples(b, at, file.points, file.point_count, noise, elements, curve);
+        ok = yaml_refuse(b->file, from.at, "%s has %d polylines; one is needed here", from.path,
+                         file.strand_count);
+    ok = ok && curve_from_strand(b, from, &file, 0, curve);
     polyline_file_clear(&file);
     return ok;
 }
 
 static bool curves_from_file(const Build *b, const RodCurveScene *scene, int elements, RodStrands *strands)
 {
-    const char *at = "rod.curve.file";
+    Sampled from = {"rod.curve.file", scene->file, scene->scale, scene->noise, elements};
     PolylineFile file;
-    bool ok = read_polylines(b, at, scene->file, scene->scale, &file);
+    bool ok = read_polylines(b, from, &file);
     strands->curves = mem_alloc((size_t)file.strand_count, sizeof *strands->curves);
     for (int k = 0; ok && k < file.strand_count; k++) {
-        ok = curve_from_samples(b, at, file.points + file.first[k], file.first[k + 1] - file.first[k],
-                                scene->noise, elements, &strands->curves[k]);
+        ok = curve_from_strand(b, from, &file, k, &strands->curves[k]);
         strands->count += ok;
     }
     polyline_file_clear(&file);
@@ -133,9 +133,7 @@ static bool frames_from_file(const Build *b, const RodScene *scene, const RodCur
 {
     const char *at = "rod.frame.file";
     Table table;
-    Error err;
-    if (!table_read(scene->frame.file, 4, &table, &err)) return yaml_refuse(b->file, at, "%s", err.text);
-    bool ok = table.rows >= 2 || yaml_refuse(b->file, at, "%s has fewer than two rows", scene->frame.file);
+    bool ok = rod_table_read(b, at, scene->frame.file, "s, x, y, z", curve->length, &table);
     for (int j = 0; ok && j <= 2 * curve->elements; j++) {
         double normal[3];
         rod_table_at(&table, curve->length * j / (2 * curve->elements), normal);
@@ -153,6 +151,10 @@ static bool make_frames(const Build *b, const RodScene *scene, const RodCurve *c
 {
     Vec3 normal;
     int kind = scene->frame.formula ? scene->frame.from : scene->frame.kind;
+    bool turns_least = !scene->frame.file && kind == FRAME_BISHOP;
+    if (!isnan(scene->bishop_normal[0]) && !turns_least)
+        return yaml_refuse(b->file, "rod.bishop_normal",
+                           "it is of Bishop's frames, and `frame` gives others");
     if (scene->frame.file) return frames_from_file(b, scene, curve, frames);
     if (!first_normal(b, scene, curve, frames, &normal)) return false;
     if (kind == FRAME_BISHOP) rod_bishop(curve, normal, frames);
@@ -182,6 +184,20 @@ void rod_strands_clear(RodStrands *strands)
     mem_free(strands->curves);
     mem_free(strands->frames);
     *strands = (RodStrands){0};
+}
+
+bool rod_table_read(const Build *b, const char *at, const char *path, const char *names, double length,
+                    Table *table)
+{
+    const double little = 1e-3;
+    Error err;
+    if (!table_read(path, names, table, &err) || !table_check_increasing(table, path, "s", &err))
+        return yaml_refuse(b->file, at, "%s", err.text);
+    if (table->rows < 2) return yaml_refuse(b->file, at, "%s has fewer than two rows", path);
+    double first = table->values[0], last = table->values[(size_t)(table->rows - 1) * (size_t)table->columns];
+    return (first >= -little * length && last <= (1 + little) * length) ||
+           yaml_refuse(b->file, at, "%s:%d: s goes from %g to %g m, and the rod is %g m long", path,
+                       table->line[table->rows - 1], first, last, length);
 }
 
 void rod_table_at(const Table *table, double s, double *values)

@@ -47,15 +47,19 @@ static bool read_loads(RodModel *model, const RodScene *scene, const Build *b)
 static bool read_magnetic(RodModel *model, const Scene *scene, const Build *b)
 {
     const VectorScene *M = &scene->rod->magnetization;
-    int field;
+    FluxField *field;
     double *flux = model->flux;
-    if (!build_flux(b, key("flux_density"), &scene->flux_density, NULL, flux, &field)) return false;
+    if (!build_flux(b, key("flux_density"), &scene->flux_density, flux, &field)) return false;
+    if (field) {
+        flux_field_destroy(field);
+        return yaml_refuse(b->file, "flux_density",
+                           "an inversion knows a field that is uniform: three numbers, formulas of t, or a file");
+    }
     bool none = flux[0] == 0 && flux[1] == 0 && flux[2] == 0,
          along = !isnan(M->value[0]) && M->value[1] == 0 && M->value[2] == 0;
-    if (!none && !along)
-        return yaml_refuse(
-            b->file, "rod.magnetization",
-            "an inversion knows magnetisation along the tangent, the same all along: [m, 0, 0]");
+    if (!along)
+        return yaml_refuse(b->file, "rod.magnetization",
+                           "of a curve it must be along the tangent and the same all along: [m, 0, 0]");
     if (!none) model->loads.end = vec3_scale(model->area * M->value[0], vec3_load(flux));
     return true;
 }
@@ -72,14 +76,13 @@ bool rod_model_check_points(const RodModel *model, const Build *b, double length
 static bool read_poses(RodModel *model, const RodScene *scene, const Build *b)
 {
     bool ok = true;
-    if (scene->ellipse)
-        ok = yaml_refuse(b->file, "rod.ellipse", "an identification is of a round rod: give its radius");
     model->curves = mem_alloc((size_t)scene->poses_count, sizeof *model->curves);
     model->clamps = mem_alloc((size_t)scene->poses_count, sizeof *model->clamps);
     model->strand_count = scene->poses_count;
     for (int k = 0; k < scene->poses_count; k++) {
         const RodPoseScene *pose = &scene->poses[k];
-        ok = rod_curve_read(b, key("rod.poses[%d].file", k).text, pose->file, 1, pose->noise, scene->elements,
+        Key at = key("rod.poses[%d].file", k);
+        ok = rod_curve_read(b, (Sampled){at.text, pose->file, 1, pose->noise, scene->elements},
                             &model->curves[k]) &&
              ok;
         ok = rod_model_frame(b, key("rod.poses[%d].frame", k).text, (const double(*)[3])pose->frame,
@@ -87,6 +90,25 @@ static bool read_poses(RodModel *model, const RodScene *scene, const Build *b)
              ok;
     }
     return ok;
+}
+
+RodIdentifyDef rod_model_poses(const RodModel *model, const RodScene *scene, RodPose *poses)
+{
+    for (int k = 0; k < model->strand_count; k++) poses[k] = (RodPose){&model->curves[k], model->clamps[k]};
+    return (RodIdentifyDef){poses, model->strand_count, scene->radius, model->loads};
+}
+
+/* What can be said of poses before they are compared: their lengths may differ by 2 %. */
+static bool check_poses(const RodModel *model, const RodScene *scene, const Build *b)
+{
+    if (scene->poses_count < 2)
+        return yaml_refuse(b->file, "rod", "an identification needs two or more `poses` of the rod");
+    RodPose *poses = mem_alloc((size_t)scene->poses_count, sizeof *poses);
+    RodIdentifyDef def = rod_model_poses(model, scene, poses);
+    Error err;
+    bool ok = rod_identify_check(&def, &err) || yaml_refuse(b->file, "rod.poses", "%s", err.text);
+    mem_free(poses);
+    return ok && rod_model_check_points(model, b, 1.02 * model->curves[0].length);
 }
 
 RodModel *rod_model_create(const Scene *scene, const Build *b)
@@ -103,7 +125,8 @@ RodModel *rod_model_create(const Scene *scene, const Build *b)
             ok = rod_model_check_points(model, b, strands.curves[k].length);
     }
     if (job == JOB_IDENTIFY) ok = read_poses(model, scene->rod, b) && ok;
-    if (ok && job == JOB_INVERT) ok = read_magnetic(model, scene, b);
+    if (ok && (job == JOB_INVERT || job == JOB_IDENTIFY)) ok = read_magnetic(model, scene, b);
+    if (ok && job == JOB_IDENTIFY) ok = check_poses(model, scene->rod, b);
     if (ok) return model;
     rod_model_destroy(model);
     return NULL;
@@ -153,6 +176,17 @@ static bool from_formula(const Build *b, const char *at, char *const *formula, c
     return ok;
 }
 
+/* Has the table a row for the middle of each element? */
+static bool is_at_middles(const Table *table, const Rod *rod)
+{
+    const double little = 1e-2;
+    double h = rod_element_length(rod);
+    bool own = table->rows == rod->elements;
+    for (int e = 0; own && e < table->rows; e++)
+        own = fabs(table->values[4 * e] - (e + 0.5) * h) <= little * h;
+    return own;
+}
+
 static bool read_strains(const Build *b, const StrainScene *scene, const Rod *rod, double *strain)
 {
     const char *at = "rod.natural_strain";
@@ -161,11 +195,9 @@ static bool read_strains(const Build *b, const StrainScene *scene, const Rod *ro
     for (int i = 0; !scene->file && i < 3 * rod->elements; i++) strain[i] = scene->value[i % 3];
     if (!scene->file) return true;
     Table table;
-    Error err;
-    at = "rod.natural_strain.file";
-    if (!table_read(scene->file, 4, &table, &err)) return yaml_refuse(b->file, at, "%s", err.text);
-    bool own = table.rows == rod->elements, ok = table.rows >= 2;
-    if (!ok) yaml_refuse(b->file, at, "%s has fewer than two rows", scene->file);
+    bool ok = rod_table_read(b, "rod.natural_strain.file", scene->file, "s, twist, k1, k2", rod->length,
+                             &table),
+         own = ok && is_at_middles(&table, rod);
     for (int e = 0; ok && e < rod->elements; e++)
         if (own)
             memcpy(strain + 3 * e, table.values + 4 * e + 1, 3 * sizeof *strain);
@@ -186,7 +218,8 @@ bool rod_model_vectors(const Build *b, const char *at, const VectorScene *scene,
     if (!scene->file) return true;
     Table table;
     Error err;
-    if (!table_read(scene->file, 3, &table, &err)) return yaml_refuse(b->file, at, "%s", err.text);
+    if (!table_read(scene->file, "tangent, n1, n2", &table, &err))
+        return yaml_refuse(b->file, at, "%s", err.text);
     bool ok = table.rows == rod->elements ||
               yaml_refuse(b->file, at, "%s has %d rows, and the rod %d elements: one row for each is needed",
                           scene->file, table.rows, rod->elements);

@@ -3,7 +3,7 @@
 #pragma once
 #include "cli/build.h"
 #include "cli/model.h"
-#include "rod/inverse.h"
+#include "rod/identify.h"
 #include "rod/rod.h"
 
 typedef struct RodModel {
@@ -34,6 +34,9 @@ void rod_model_destroy(RodModel *model);
 
 /* Do all point loads act on a rod of that length? */
 bool rod_model_check_points(const RodModel *model, const Build *b, double length);
+
+/* Of an identification: its poses, poses[strand_count], and loads. */
+RodIdentifyDef rod_model_poses(const RodModel *model, const RodScene *scene, RodPose *poses);
 
 /* Rows of a frame, tangent, n1, n2, made orthonormal; refused where they are further off than 1e-3. */
 bool rod_model_frame(const Build *b, const char *at, const double (*rows)[3], RodFrame *frame);

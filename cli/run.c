@@ -107,6 +107,14 @@ static char *case_names(const State *states, int count)
     return names;
 }
 
+static void say_doubt(Run *run, const State *state)
+{
+    const BodyOps *body = run->model->body;
+    char *doubt = body->doubt ? body->doubt(run->model, state) : NULL;
+    if (doubt) progress_say(run->progress, "%s: %s", state->load_case->name, doubt);
+    mem_free(doubt);
+}
+
 void run_add_final(Run *run, const State *states, int count, const char *status, Arrays *list)
 {
     const Model *model = run->model;
@@ -115,7 +123,10 @@ void run_add_final(Run *run, const State *states, int count, const char *status,
     model->body->add_final(model, &states[count - 1], run->scene->modes, list);
     arrays_add(list, array_text("status", status));
     arrays_add(list, array_text("case_names", arrays_keep(list, case_names(states, count))));
-    for (int k = 0; k < count; k++) add_case(list, model, &states[k]);
+    for (int k = 0; k < count; k++) {
+        add_case(list, model, &states[k]);
+        say_doubt(run, &states[k]);
+    }
 }
 
 /* ---- State ---- */

@@ -11,8 +11,8 @@ const YamlTable where_table = {
            "&&, ||, c ? a : b, pi, e, and sin, cos, tan, asin, acos, atan, atan2, sinh, cosh, tanh, asinh, acosh, atanh, "
            "exp, ln or log (natural), log2, log10, sqrt, abs, sign, rint, min, max, sum, avg, mod(a, b), clamp(x, low, high) "
            "and step(x), 0 below 0 and else 1. Assignments, lists and texts are refused.\n\n"
-           "Helper names of a formula, each an expression of the formula's variables and of the names before "
-           "it.",
+           "Helper names of a formula, each an expression of the formula's variables and of the other names; their "
+           "order means nothing.",
     .fields = (const YamlField[]){
         {YAML_TEXT(WhereScene, formula), .required = true, .short_form = true, .doc = "the expression"},
         {0}}};
@@ -37,8 +37,8 @@ const YamlTable where_table = {
             {YAML_TEXT(NumberScene, formula), .one_of = 1, .required = true, .short_form = true,             \
              .doc = "an expression of the rest position x, y, z, r"},                                        \
             {YAML_MAP(NumberScene, groups, &id##_group_table), .one_of = 1, .required = true,                \
-             .doc = "a value for each named group"},                                                         \
-            {YAML_NUMBER(NumberScene, other), .unit = u, .range = r,                                         \
+             .doc = "a value for each named group; what lies in several has that of the smallest"},          \
+            {YAML_NUMBER(NumberScene, other), .when = "groups", .unit = u, .range = r,                       \
              .doc = "with groups: the value elsewhere"},                                                     \
             WHERE_ROW(NumberScene),                                                                          \
             {0}}}
@@ -70,8 +70,9 @@ const YamlTable magnetization_table = {
          .max_count = 3,
          .doc = "three expressions of the rest position x, y, z, r of a face's barycentre, in A/m"},
         {YAML_MAP(VectorScene, groups, &magnetization_group_table), .one_of = 1, .required = true,
-         .doc = "a value for each named group"},
-        {YAML_VECTOR(VectorScene, other), .unit = "A/m", .doc = "with groups: the value elsewhere"},
+         .doc = "a value for each named group; what lies in several has that of the smallest"},
+        {YAML_VECTOR(VectorScene, other), .when = "groups", .unit = "A/m",
+         .doc = "with groups: the value elsewhere"},
         WHERE_ROW(VectorScene),
         {0}}};
 
@@ -123,7 +124,8 @@ static const YamlTable mesh_table = {
     .doc = "The triangle mesh of the shell at rest, from a file or generated.",
     .fields = (const YamlField[]){
         {YAML_FILE(MeshScene, file), .one_of = 1, .required = true, .short_form = true,
-         .doc = "an OBJ, PLY (ASCII) or Gmsh .msh (2.2 or 4.1, ASCII) file"},
+         .doc = "an OBJ, PLY, STL or Gmsh .msh (2.2 or 4.1, ASCII) file; docs/meshes.md says what is read of "
+                "it"},
         {YAML_CHOICE(MeshScene, shape), .one_of = 1, .required = true,
          .choices = YAML_NAMES("sheet", "strip", "hexagram", "disc", "kirigami"),
          .doc = "a generated mesh in the plane z = 0"},
@@ -132,7 +134,7 @@ static const YamlTable mesh_table = {
                 "of a kirigami: its side"},
         {YAML_INTEGERS(MeshScene, cells), .range = "[1, inf)", .min_count = 2, .max_count = 2,
          .doc = "of a sheet: cells along x and y"},
-        {YAML_INTEGER(MeshScene, n), .range = "[1, inf)",
+        {YAML_INTEGER(MeshScene, n), .also = YAML_NAMES("divisions", "false"), .range = "[1, inf)",
          .doc = "of a strip: cells along x; of a hexagram: 12 n^2 faces; of a disc: 6 n^2 faces; "
                 "of a kirigami: cells of its checkerboard along a side, odd"},
         {YAML_CHOICE(MeshScene, pattern), .choices = YAML_NAMES("right", "alternate", "crossed"),
@@ -140,7 +142,7 @@ static const YamlTable mesh_table = {
         {YAML_NUMBER(MeshScene, scale), .range = "(0, inf)", .fallback = "1",
          .doc = "of a file: factor on its coordinates, 1.0e-3 for a file in millimetres"},
         {YAML_NUMBER(MeshScene, weld), .unit = "m", .range = "[0, inf)", .fallback = "0",
-         .doc = "joins vertices that are closer than this; 0: none"},
+         .doc = "of a file: joins vertices that are closer than this; 0: none"},
         {0}}};
 
 static const YamlTable pose_table = {
@@ -149,6 +151,8 @@ static const YamlTable pose_table = {
     .doc = "A state to start from.",
     .fields = (const YamlField[]){{YAML_FILE(PoseScene, file), .required = true, .short_form = true,
                                    .doc = "a mesh file with the faces of the mesh"},
+                                  {YAML_NUMBER(PoseScene, scale), .range = "(0, inf)",
+                                   .doc = "factor on its coordinates; that of the mesh if absent"},
                                   {0}}};
 
 const YamlTable velocity_table = {
@@ -171,7 +175,7 @@ static const YamlTable shell_table = {
     .fields = (const YamlField[]){
         {YAML_TABLE(ShellScene, mesh, &mesh_table), .required = true, .doc = "its mesh at rest"},
         {YAML_OPTIONAL(ShellScene, pose, &pose_table), .doc = "where a job starts; at rest if absent"},
-        {YAML_OPTIONAL(ShellScene, velocity, &velocity_table),
+        {YAML_OPTIONAL(ShellScene, velocity, &velocity_table), .when = "/job: simulate, trajectory",
          .doc = "of the free coordinates at the start of a motion; at rest if absent"},
         {YAML_NUMBER(ShellScene, thickness), .unit = "m", .range = "(0, inf)", .required = true,
          .doc = "thickness h"},
@@ -187,8 +191,8 @@ static const YamlTable shell_table = {
          .doc = "factor on the curvature of each edge"},
         {YAML_TABLE(ShellScene, magnetization, &magnetization_table), .fallback = "[0, 0, 0]",
          .doc = "remanent magnetisation"},
-        {YAML_NUMBER(ShellScene, damping), .unit = "N s/m", .range = "[0, inf)", .fallback = "0",
-         .doc = "of a simulation: viscous damping at every vertex"},
+        {YAML_NUMBER(ShellScene, damping), .when = "/job: simulate, trajectory", .unit = "N s/m",
+         .range = "[0, inf)", .fallback = "0", .doc = "of a simulation: viscous damping at every vertex"},
         {YAML_VECTOR(ShellScene, gravity), .unit = "m/s^2", .fallback = "[0, 0, 0]",
          .doc = "acceleration of gravity"},
         {0}}};
@@ -202,6 +206,9 @@ static const YamlTable ball_table = {
         {YAML_NUMBER(BallScene, radius), .unit = "m", .range = "(0, inf)", .required = true,
          .doc = "its radius"},
         {0}}};
+
+/* Of `on`, which is `true` to readers of YAML 1.1. */
+#define ON_NAMES YAML_NAMES("region", "true")
 
 #define SELECTION_ROWS(S)                                                                                    \
     {YAML_INTEGERS(S, vertices), .range = "[0, inf)", .doc = "these vertices of the mesh file, from 0"},     \
@@ -227,7 +234,8 @@ static const YamlTable fix_table = {
         SELECTION_ROWS(FixScene),
         {YAML_TEXT(FixScene, axes), .fallback = "xyz", .doc = "the coordinates that are held: some of xyz"},
         {YAML_BOOL(FixScene, clamp), .doc = "holds the slope of the edges between these vertices too"},
-        {YAML_TEXTS(FixScene, move), .min_count = 3, .max_count = 3,
+        {YAML_TEXTS(FixScene, move), .when = "/job: equilibrium, simulate, trajectory", .min_count = 3,
+         .max_count = 3,
          .doc = "prescribed motion: three expressions, in m, of the rest position x, y, z, r and the time t"},
         {0}}};
 
@@ -235,15 +243,15 @@ static const YamlTable load_table = {
     .name = "loads",
     .size = sizeof(LoadScene),
     .doc = "A dead load: a force that keeps its direction.",
-    .fields = (const YamlField[]){
-        {YAML_VECTOR(LoadScene, force), .unit = "N", .one_of = 1, .required = true,
-         .doc = "in all, shared equally by the vertices"},
-        {YAML_VECTOR(LoadScene, line), .unit = "N/m", .one_of = 1, .required = true,
-         .doc = "per rest length of boundary edges"},
-        {YAML_VECTOR(LoadScene, area), .unit = "N/m^2", .one_of = 1, .required = true,
-         .doc = "per rest area"},
-        {YAML_OPTIONAL(LoadScene, on, &selection_table), .doc = "where; everywhere if absent"},
-        {0}}};
+    .fields = (const YamlField[]){{YAML_VECTOR(LoadScene, force), .unit = "N", .one_of = 1, .required = true,
+                                   .doc = "in all, shared equally by the vertices"},
+                                  {YAML_VECTOR(LoadScene, line), .unit = "N/m", .one_of = 1, .required = true,
+                                   .doc = "per rest length of boundary edges"},
+                                  {YAML_VECTOR(LoadScene, area), .unit = "N/m^2", .one_of = 1,
+                                   .required = true, .doc = "per rest area"},
+                                  {YAML_OPTIONAL(LoadScene, on, &selection_table), .also = ON_NAMES,
+                                   .doc = "where; everywhere if absent"},
+                                  {0}}};
 
 /* ---- Load cases ---- */
 
@@ -262,11 +270,15 @@ static const YamlTable target_table = {
          .doc = "segments x0, y0, x1, y1: ridges of height, round across"},
         {YAML_TEXTS(TargetScene, formula), .one_of = 1, .required = true, .short_form = true, .min_count = 3,
          .max_count = 3, .doc = "three expressions, in m, of the rest position x, y, z, r"},
-        {YAML_NUMBER(TargetScene, height), .unit = "m", .doc = "of a height map or strokes"},
-        {YAML_NUMBER(TargetScene, width), .unit = "m", .range = "(0, inf)",
+        {YAML_NUMBER(TargetScene, height), .when = "height_map | strokes", .unit = "m",
+         .doc = "of a height map or strokes"},
+        {YAML_NUMBER(TargetScene, width), .when = "strokes", .unit = "m", .range = "(0, inf)",
          .doc = "of strokes, at half their height"},
+        {YAML_NUMBER(TargetScene, scale), .when = "file", .range = "(0, inf)",
+         .doc = "of a file: factor on its coordinates; that of the mesh if absent"},
         WHERE_ROW(TargetScene),
-        {YAML_OPTIONAL(TargetScene, on, &selection_table), .doc = "for these vertices only"},
+        {YAML_OPTIONAL(TargetScene, on, &selection_table), .also = ON_NAMES,
+         .doc = "for these vertices only"},
         {0}}};
 
 static const YamlTable case_table = {
@@ -275,7 +287,8 @@ static const YamlTable case_table = {
     .doc = "A load case: a field or loads, and what the body should then do.",
     .fields = (const YamlField[]){
         {YAML_TEXT(CaseScene, name), .doc = "its name in the result; case1, case2, .. if absent"},
-        {YAML_NUMBER(CaseScene, weight), .range = "[0, inf)", .fallback = "1", .doc = "of its objectives"},
+        {YAML_NUMBER(CaseScene, weight), .when = "/job: design", .range = "[0, inf)", .fallback = "1",
+         .doc = "of its objectives"},
         {YAML_OPTIONAL(CaseScene, flux_density, &flux_density_table), .doc = "in place of the scene's"},
         {YAML_LIST(CaseScene, loads, &load_table), .doc = "in place of the scene's"},
         {YAML_VECTOR(CaseScene, gravity), .unit = "m/s^2", .doc = "in place of the shell's"},
@@ -321,21 +334,27 @@ static const YamlTable load_steps_table = {
          .required = true, .doc = "this many, halved where one fails"},
         {0}}};
 
+/* Of the time of a motion, which may stay where its scene is put to rest: `--set job=equilibrium`. */
+#define MOTIONS_AND_STATICS "/job: equilibrium, evaluate, simulate, trajectory"
+
 static const YamlTable time_table = {
     .name = "time",
     .size = sizeof(TimeScene),
     .doc = "The time t of formulas in statics, or the steps of a simulation or trajectory.",
-    .fields = (const YamlField[]){{YAML_NUMBER(TimeScene, at), .unit = "s", .fallback = "0 s",
-                                   .short_form = true, .doc = "t in statics; where a simulation begins"},
-                                  {YAML_NUMBER(TimeScene, step), .unit = "s", .range = "(0, inf)",
-                                   .doc = "of a simulation or trajectory: the step of implicit Euler"},
-                                  {YAML_INTEGER(TimeScene, steps), .range = "[1, inf)",
-                                   .doc = "of a simulation or trajectory: how many"},
-                                  {0}}};
+    .fields = (const YamlField[]){
+        {YAML_NUMBER(TimeScene, at),
+         .when = "/job: equilibrium, evaluate, design, simulate, trajectory, invert, identify", .unit = "s",
+         .fallback = "0 s", .short_form = true, .doc = "t in statics; where a simulation begins"},
+        {YAML_NUMBER(TimeScene, step), .when = MOTIONS_AND_STATICS, .unit = "s", .range = "(0, inf)",
+         .doc = "of a simulation or trajectory: the step of implicit Euler; the statics of its scene leave it"},
+        {YAML_INTEGER(TimeScene, steps), .when = MOTIONS_AND_STATICS, .range = "[1, inf)",
+         .doc = "of a simulation or trajectory: how many"},
+        {0}}};
 
 #define DRAWING_FILE(m, d)                                                                                   \
     {                                                                                                        \
-        YAML_TEXT(OutputScene, m), .doc = "of a drawing: " d                                                 \
+        YAML_TEXT(OutputScene, m), .when = "/spline", .otherwise = "slender picture shows results",          \
+                                   .doc = "of a drawing: " d                                                 \
     }
 static const YamlTable output_table = {
     .name = "output",
@@ -343,10 +362,13 @@ static const YamlTable output_table = {
     .doc =
         "What goes into the result file, and further files. Their names are relative to the result's folder.",
     .fields = (const YamlField[]){
-        {YAML_INTEGER(OutputScene, every), .range = "[0, inf)", .fallback = "0",
+        {YAML_INTEGER(OutputScene, every), .when = "/job: design, simulate, trajectory, draw",
+         .range = "[0, inf)", .fallback = "0",
          .doc = "a frame for every so many steps of a motion (0: every step) or improvements of a design (0: "
                 "the final one only); of a drawing: NAME-N.svg after every so many iterations N (0: none)"},
-        {YAML_CHOICE(OutputScene, precision), .choices = YAML_NAMES("single", "double"), .fallback = "single",
+        {YAML_CHOICE(OutputScene, precision),
+         .when = "/job: equilibrium, evaluate, design, simulate, trajectory, invert",
+         .choices = YAML_NAMES("single", "double"), .fallback = "single",
          .doc = "of frames; single only as long as its numbers, where the body is, are closer than 1e-5 of "
                 "its size"},
         DRAWING_FILE(svg, "curves in mm, a layer for each pen; NAME.svg if absent"),
@@ -359,9 +381,17 @@ static const YamlTable output_table = {
 const YamlTable scene_table = {
     .name = "scene",
     .size = sizeof(Scene),
-    .doc = "A scene file is YAML (or JSON); its first key is `slender: 1`, the format's version. Numbers are "
-           "SI, or carry a "
-           "unit: `1 mm`, `20 mT`, `0.3 MPa`.",
+    .doc =
+        "A scene file is YAML (or JSON) with the key `slender: 1`, the format's version. Numbers are SI, or "
+        "carry a "
+        "unit: `1 mm`, `20 mT`, `0.3 MPa`; in quotes they are numbers too. The order of keys means nothing. "
+        "Aliases (`*name`) are copies of what was anchored (`&name`) before; there are no merge keys (`<<`) "
+        "and no "
+        "tags. A key may have other names, which stand beside it: `on` and `n` are `true` and `false` to "
+        "programs "
+        "that read YAML 1.1 (PyYAML, R), and are read as such again; `region` and `divisions` pass through "
+        "all of "
+        "them.",
     .fields = (const YamlField[]){
         {YAML_CHOICE(Scene, job), .choices = job_names, .required = true, .doc = "what to do"},
         {YAML_OPTIONAL(Scene, shell, &shell_table), .one_of = 1, .required = true,
@@ -369,23 +399,34 @@ const YamlTable scene_table = {
         {YAML_OPTIONAL(Scene, rod, &rod_table), .one_of = 1, .required = true, .doc = "the body: a rod"},
         {YAML_OPTIONAL(Scene, spline, &spline_table), .one_of = 1, .required = true,
          .doc = "no body, but a drawing"},
-        {YAML_TABLE(Scene, flux_density, &flux_density_table), .fallback = "[0, 0, 0]",
-         .doc = "applied field"},
-        {YAML_LIST(Scene, fix, &fix_table), .doc = "what is held"},
-        {YAML_LIST(Scene, loads, &load_table), .doc = "dead loads"},
+        {YAML_TABLE(Scene, flux_density, &flux_density_table), .when = "!spline & /rod.solver: newton",
+         .fallback = "[0, 0, 0]", .doc = "applied field"},
+        {YAML_LIST(Scene, fix, &fix_table), .when = "shell",
+         .otherwise = "a rod is held by rod.clamp, rod.hold and rod.end", .doc = "what is held"},
+        {YAML_LIST(Scene, loads, &load_table), .when = "shell",
+         .otherwise = "loads of a rod are under rod.loads", .doc = "dead loads"},
         {YAML_OPTIONAL(Scene, target, &target_table),
+         .when =
+             "/job: equilibrium, evaluate, design, simulate, trajectory & /rod.solver: newton & !sequence",
          .doc = "where vertices should be, in all cases without one of their own"},
-        {YAML_LIST(Scene, cases, &case_table),
+        {YAML_LIST(Scene, cases, &case_table), .when = "/job: equilibrium, evaluate, design",
+         .otherwise = "in a motion a field may be a formula of t",
          .doc = "load cases of a design; one with the scene's loads if absent"},
-        {YAML_LIST(Scene, sequence, &stage_table), .doc = "stages of an equilibrium"},
-        {YAML_OPTIONAL(Scene, design, &design_table), .doc = "what a design or trajectory job looks for"},
-        {YAML_TABLE(Scene, solver, &solver_table), .fallback = "{}", .doc = "tolerances"},
-        {YAML_TABLE(Scene, load_steps, &load_steps_table), .fallback = "auto", .doc = "how loads come on"},
+        {YAML_LIST(Scene, sequence, &stage_table), .when = "/job: equilibrium",
+         .otherwise = "in a motion a field may be a formula of t", .doc = "stages of an equilibrium"},
+        {YAML_OPTIONAL(Scene, design, &design_table), .when = "/job: design, trajectory",
+         .doc = "what a design or trajectory job looks for"},
+        {YAML_TABLE(Scene, solver, &solver_table),
+         .when = "/job: equilibrium, evaluate, design, simulate, trajectory, invert & /rod.solver: newton",
+         .fallback = "{}", .doc = "tolerances"},
+        {YAML_TABLE(Scene, load_steps, &load_steps_table), .when = "/job: equilibrium, invert",
+         .fallback = "auto", .doc = "how loads come on"},
         {YAML_TABLE(Scene, time, &time_table), .fallback = "0 s",
          .doc = "the time t of formulas, or the steps of a simulation"},
-        {YAML_INTEGER(Scene, modes), .range = "[0, 100]", .fallback = "0",
+        {YAML_INTEGER(Scene, modes), .when = "shell", .range = "[0, 100]", .fallback = "0",
          .doc = "lowest eigenmodes to put into the result"},
-        {YAML_CHOICES(Scene, checks), .choices = YAML_NAMES("stability", "self_contact", "round_trip"),
+        {YAML_CHOICES(Scene, checks), .when = "/job: invert",
+         .choices = YAML_NAMES("stability", "self_contact", "round_trip"),
          .doc = "of a rod: what else to find out"},
         {YAML_TABLE(Scene, output, &output_table), .fallback = "{}", .doc = "what to keep"},
         {0}}};

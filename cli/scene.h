@@ -70,6 +70,7 @@ typedef struct MeshScene {
 
 typedef struct PoseScene {
     char *file;
+    double scale; /* NAN: the mesh's */
 } PoseScene;
 
 /* Velocities of the vertices at the start. */
@@ -204,7 +205,7 @@ typedef enum RodCheck { CHECK_STABILITY, CHECK_SELF_CONTACT, CHECK_ROUND_TRIP } 
 
 typedef struct TargetScene {
     char *file, *height_map, **formula;
-    double (*strokes)[4], width, height;
+    double (*strokes)[4], width, height, scale; /* of a file, NAN: the mesh's */
     WhereScene *where;
     SelectionScene *on;
     int formula_count, strokes_count, where_count;

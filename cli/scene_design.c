@@ -77,14 +77,14 @@ static const YamlTable flux_unknown_table = {
            "trajectory one that "
            "changes in time.",
     .fields = (const YamlField[]){
-        {YAML_CHOICE(FluxUnknown, per), .choices = YAML_NAMES("frame", "knot", "harmonic"),
-         .fallback = "frame",
+        {YAML_CHOICE(FluxUnknown, per), .when = "/job: trajectory",
+         .choices = YAML_NAMES("frame", "knot", "harmonic"), .fallback = "frame",
          .doc = "of a trajectory: a value for each step of time, for each knot of a C1 cubic spline "
                 "(Catmull-Rom, equal "
                 "distances), or a mean and (cos, sin) of 1, 2, .. periods in the whole time"},
-        {YAML_INTEGER(FluxUnknown, knots), .range = "[2, 1000000]", .fallback = "20",
+        {YAML_INTEGER(FluxUnknown, knots), .when = "per: knot", .range = "[2, 1000000]", .fallback = "20",
          .doc = "per knot: how many"},
-        {YAML_INTEGER(FluxUnknown, harmonics), .range = "[1, 32]", .fallback = "5",
+        {YAML_INTEGER(FluxUnknown, harmonics), .when = "per: harmonic", .range = "[1, 32]", .fallback = "5",
          .doc = "per harmonic: how many"},
         {YAML_NUMBER(FluxUnknown, noise), .unit = "T", .range = "[0, inf)", .fallback = "0",
          .doc = "size of seeded noise that is added to the start"},
@@ -92,7 +92,7 @@ static const YamlTable flux_unknown_table = {
          .doc = "a natural size: optimisers see the value over it"},
         {YAML_VECTOR(FluxUnknown, bounds), .unit = "T",
          .doc = "lower and upper bound, of knots and harmonic coefficients as of frames"},
-        {YAML_OPTIONAL(FluxUnknown, start, &flux_start_table),
+        {YAML_OPTIONAL(FluxUnknown, start, &flux_start_table), .when = "/job: trajectory",
          .doc = "of a trajectory, in place of the scene's flux_density over time"},
         {0}}};
 
@@ -117,11 +117,12 @@ static const YamlTable unknowns_table = {
     {                                                                                                        \
         YAML_BOOL(S, mass_center), .one_of = 1, .required = true, .doc = "the body's centre of mass"         \
     }
-#define FRAME_ROWS(S, otherwise)                                                                             \
-    {YAML_INTEGER(S, frame), .one_of = 2, .range = "[0, inf)",                                               \
+#define FRAME_ROWS(S, use, otherwise)                                                                        \
+    {YAML_INTEGER(S, frame), .when = use, .one_of = 2, .range = "[0, inf)",                                  \
      .doc = "the frame (the state after so many steps) at which it counts" otherwise},                       \
     {                                                                                                        \
-        YAML_INTEGERS(S, frames), .one_of = 2, .range = "[0, inf)", .min_count = 2, .max_count = 2,          \
+        YAML_INTEGERS(S, frames), .when = use, .one_of = 2, .range = "[0, inf)", .min_count = 2,             \
+                                  .max_count = 2,                                                            \
                                   .doc = "the first and the last of such frames; their values are added"     \
     }
 
@@ -131,7 +132,7 @@ static const YamlTable waypoint_table = {
     .doc = "The squared distance of a point of the body to a place, m^2.",
     .fields = (const YamlField[]){
         POINT_ROWS(WaypointScene),
-        FRAME_ROWS(WaypointScene, "; the last one if absent"),
+        FRAME_ROWS(WaypointScene, NULL, "; the last one if absent"),
         {YAML_VECTOR(WaypointScene, at), .unit = "m", .required = true, .doc = "the place"},
         {0}}};
 
@@ -141,12 +142,13 @@ static const YamlTable curve_table = {
     .doc = "The squared distance of a point of the body to a curve, m^2.",
     .fields = (const YamlField[]){
         POINT_ROWS(CurveScene),
-        FRAME_ROWS(CurveScene, "; the last one if absent"),
+        FRAME_ROWS(CurveScene, NULL, "; the last one if absent"),
         {YAML_ROWS(CurveScene, points), .unit = "m", .one_of = 3, .required = true, .min_count = 2,
          .doc = "a polyline"},
         {YAML_ROWS(CurveScene, arc), .unit = "m", .one_of = 3, .required = true, .min_count = 3,
          .max_count = 3, .doc = "an arc from the first point through the second to the third"},
-        {YAML_NUMBER(CurveScene, blend), .unit = "m", .range = "(0, inf)", .fallback = "0.1 mm",
+        {YAML_NUMBER(CurveScene, blend), .when = "points", .unit = "m", .range = "(0, inf)",
+         .fallback = "0.1 mm",
          .doc = "of a polyline: segments whose squared distances differ by less than its square are blended, "
                 "so that the "
                 "gradient has no jump at a corner"},
@@ -196,9 +198,11 @@ static const YamlTable objective_table = {
                 "too, T^2"},
         {YAML_NUMBER(ObjectiveScene, weight), .fallback = "1",
          .doc = "another factor, of a point's rows the only one"},
-        {YAML_TEXT(ObjectiveScene, of), .fallback = "all", .doc = "of height: a named group, or all"},
-        FRAME_ROWS(ObjectiveScene, ", of a target or height in a trajectory; the last one if absent"),
-        {YAML_INTEGER(ObjectiveScene, pairs), .range = "[1, 100]", .fallback = "5",
+        {YAML_TEXT(ObjectiveScene, of), .when = "height", .fallback = "all",
+         .doc = "of height: a named group, or all"},
+        FRAME_ROWS(ObjectiveScene, "/job: trajectory & target | height",
+                   ", of a target or height in a trajectory; the last one if absent"),
+        {YAML_INTEGER(ObjectiveScene, pairs), .when = "dmp", .range = "[1, 100]", .fallback = "5",
          .doc = "of dmp: how many frequencies"},
         {0}}};
 

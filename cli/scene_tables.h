@@ -10,5 +10,6 @@ extern const YamlTable spline_table;                                 /* scene_sp
 
 #define WHERE_ROW(S)                                                                                         \
     {                                                                                                        \
-        YAML_MAP(S, where, &where_table), .doc = "names for parts of the formula, evaluated in order"        \
+        YAML_MAP(S, where, &where_table), .when = "formula",                                                 \
+                                          .doc = "names for parts of the formula"                            \
     }

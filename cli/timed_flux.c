@@ -12,17 +12,10 @@ void timed_flux_clear(TimedFlux *timed)
 
 bool timed_flux_read(const char *path, TimedFlux *timed, Error *err)
 {
-    if (!table_read(path, COLUMNS, &timed->table, err)) return false;
-    const Table *table = &timed->table;
-    for (int row = 1; row < table->rows; row++) {
-        double before = table->values[COLUMNS * (row - 1)], now = table->values[COLUMNS * row];
-        if (now > before) continue;
-        error_set(err, "%s:%d: the time %g s is not after %g s; rows are t, Bx, By, Bz with t ascending",
-                  path, table->line[row], now, before);
-        table_clear(&timed->table);
-        return false;
-    }
-    return true;
+    if (!table_read(path, "t, Bx, By, Bz", &timed->table, err)) return false;
+    if (table_check_increasing(&timed->table, path, "t", err)) return true;
+    table_clear(&timed->table);
+    return false;
 }
 
 static void interpolate(const Table *table, double time, double *flux)

@@ -1,24 +1,34 @@
 #include "io/formula.h"
 #include "base/memory.h"
+#include <ctype.h>
 #include <muParserDLL.h>
 #include <math.h>
+#include <pthread.h>
 #include <stdio.h>
 #include <string.h>
 
-enum { MAX_LENGTH = 4096, MAX_DEPTH = 200 };
+enum { MAX_LENGTH = 4096, MAX_DEPTH = 200, MAX_HELPERS = 200 };
 
-/* One expression as muParser holds it. */
 typedef struct Expression {
-    muParserHandle_t parser;
     char *text;
     bool *uses; /* [slot] does it name that variable or helper? */
 } Expression;
 
+/* The expressions as muParser holds them, for one thread at a time: a parser reads its variables where it was
+ * told that they lie, and calculates in itself. */
+typedef struct Evaluator Evaluator;
+struct Evaluator {
+    Evaluator *next;
+    double *values;            /* [variable_count + helper_count] */
+    muParserHandle_t *parsers; /* [helper_count + expression_count] */
+};
+
 struct Formula {
     int variable_count, helper_count, expression_count;
     char **names;      /* [variable_count + helper_count]                               */
-    double *values;    /* the same; muParser points into it                             */
     Expression *items; /* [helper_count + expression_count], in the order of evaluation */
+    Evaluator *idle;   /* those that no thread uses: as many as were ever needed at once */
+    pthread_mutex_t lock;
 };
 
 static double fun_mod(double a, double b)
@@ -84,42 +94,101 @@ static bool check_text(const char *text, Error *err)
     return check_assignment(text, err);
 }
 
-static bool refuse(const Formula *formula, const Expression *item, int slots, Error *err)
+static bool refuse(const Formula *formula, muParserHandle_t parser, const char *text, int slots, Error *err)
 {
     char known[512];
     list_names(formula, slots, known, sizeof known);
-    const char *token = mupGetErrorToken(item->parser);
-    if (mupGetErrorCode(item->parser) == 1 || mupGetErrorCode(item->parser) == 4)
-        return error_set(err, "unknown name '%s' in \"%s\"; known are %s, pi, e", token, item->text, known);
-    return error_set(err, "\"%s\": %s", item->text, mupGetErrorMsg(item->parser));
+    const char *token = mupGetErrorToken(parser);
+    if (mupGetErrorCode(parser) == 1 || mupGetErrorCode(parser) == 4)
+        return error_set(err, "unknown name '%s' in \"%s\"; known are %s, pi, e", token, text, known);
+    return error_set(err, "\"%s\": %s", text, mupGetErrorMsg(parser));
 }
 
-static bool parse(Formula *formula, Expression *item, const char *text, int slots, Error *err)
+/* Of an expression that may use the first `slots` values. */
+static muParserHandle_t create_parser(const Formula *formula, double *values, const char *text, int slots)
 {
-    item->uses = mem_alloc((size_t)(formula->variable_count + formula->helper_count), sizeof(bool));
-    item->text = mem_text(text);
-    if (!check_text(text, err)) return false;
-    item->parser = mupCreate(0);
-    mupSetErrorHandler(item->parser, ignore_error);
-    mupDefineConst(item->parser, "pi", M_PI);
-    mupDefineConst(item->parser, "e", M_E);
-    mupDefineFun2(item->parser, "mod", fun_mod, 1);
-    mupDefineFun3(item->parser, "clamp", fun_clamp, 1);
-    mupDefineFun1(item->parser, "step", fun_step, 1);
-    for (int i = 0; i < slots; i++) mupDefineVar(item->parser, formula->names[i], &formula->values[i]);
-    mupSetExpr(item->parser, text);
-    mupEval(item->parser);
-    if (mupError(item->parser)) return refuse(formula, item, slots, err);
+    muParserHandle_t parser = mupCreate(0);
+    mupSetErrorHandler(parser, ignore_error);
+    mupDefineConst(parser, "pi", M_PI);
+    mupDefineConst(parser, "e", M_E);
+    mupDefineFun2(parser, "mod", fun_mod, 1);
+    mupDefineFun3(parser, "clamp", fun_clamp, 1);
+    mupDefineFun1(parser, "step", fun_step, 1);
+    for (int i = 0; i < slots; i++) mupDefineVar(parser, formula->names[i], &values[i]);
+    mupSetExpr(parser, text);
+    return parser;
+}
+
+static int item_count(const Formula *formula)
+{
+    return formula->helper_count + formula->expression_count;
+}
+
+/* How many values item i may use: a helper knows those before it. */
+static int slots_of_item(const Formula *formula, int i)
+{
+    return formula->variable_count + (i < formula->helper_count ? i : formula->helper_count);
+}
+
+static Evaluator *evaluator_create(const Formula *formula)
+{
+    Evaluator *own = mem_alloc(1, sizeof *own);
+    own->values = mem_alloc((size_t)(formula->variable_count + formula->helper_count), sizeof *own->values);
+    own->parsers = mem_alloc((size_t)item_count(formula), sizeof *own->parsers);
+    for (int i = 0; i < item_count(formula); i++)
+        own->parsers[i] =
+            create_parser(formula, own->values, formula->items[i].text, slots_of_item(formula, i));
+    return own;
+}
+
+static void evaluator_destroy(const Formula *formula, Evaluator *own)
+{
+    for (int i = 0; i < item_count(formula); i++) mupRelease(own->parsers[i]);
+    mem_free(own->values);
+    mem_free(own->parsers);
+    mem_free(own);
+}
+
+/* An evaluator for this thread alone, until it is given back. The lock is also for muParser, which makes
+ * parsers with buffers that are shared. */
+static Evaluator *take(Formula *formula)
+{
+    pthread_mutex_lock(&formula->lock);
+    Evaluator *own = formula->idle;
+    if (own)
+        formula->idle = own->next;
+    else
+        own = evaluator_create(formula);
+    pthread_mutex_unlock(&formula->lock);
+    return own;
+}
+
+static void give(Formula *formula, Evaluator *own)
+{
+    pthread_mutex_lock(&formula->lock);
+    own->next = formula->idle;
+    formula->idle = own;
+    pthread_mutex_unlock(&formula->lock);
+}
+
+/* Does muParser take the item, and which names does it use? */
+static bool check_item(Formula *formula, const Evaluator *own, int i, Error *err)
+{
+    Expression *item = &formula->items[i];
+    muParserHandle_t parser = own->parsers[i];
+    int slots = slots_of_item(formula, i);
+    mupEval(parser);
+    if (mupError(parser)) return refuse(formula, parser, item->text, slots, err);
     int results = 1;
-    mupEvalMulti(item->parser, &results);
+    mupEvalMulti(parser, &results);
     if (results != 1)
-        return error_set(err, "\"%s\": a list of %d; a formula is one expression, and numbers have a decimal point", text,
-                         results);
-    int used = mupGetExprVarNum(item->parser);
+        return error_set(err, "\"%s\": a list of %d; a formula is one expression, and numbers have a decimal point",
+                         item->text, results);
+    int used = mupGetExprVarNum(parser);
     for (int k = 0; k < used; k++) {
         const char *name;
         double *place;
-        mupGetExprVar(item->parser, (unsigned)k, &name, &place);
+        mupGetExprVar(parser, (unsigned)k, &name, &place);
         int slot = slot_of(formula, name, slots);
         if (slot >= 0) item->uses[slot] = true;
     }
@@ -137,28 +206,77 @@ static bool check_name(const Formula *formula, int slot, Error *err)
     return !taken || error_set(err, "the name '%s' has a meaning in this formula already; take another one", name);
 }
 
+/* Is the name a word of the expression? */
+static bool mentions(const char *expression, const char *name)
+{
+    size_t length = strlen(name);
+    for (const char *c = expression; length && (c = strstr(c, name)) != NULL; c++) {
+        bool begins = c == expression || (!isalnum((unsigned char)c[-1]) && c[-1] != '_');
+        if (begins && !isalnum((unsigned char)c[length]) && c[length] != '_') return true;
+    }
+    return false;
+}
+
+/* Does a helper name another one that is not placed yet? (Its own name may be a variable's.) */
+static bool waits(const FormulaHelper *helpers, int count, int helper, const bool *placed)
+{
+    for (int k = 0; k < count; k++)
+        if (k != helper && !placed[k] && mentions(helpers[helper].expression, helpers[k].name)) return true;
+    return false;
+}
+
+/* An order in which each helper comes after those that it names, as near to the given one as can be. */
+static bool order_helpers(const FormulaHelper *helpers, int count, int order[MAX_HELPERS], Error *err)
+{
+    bool placed[MAX_HELPERS] = {false};
+    if (count > MAX_HELPERS) return error_set(err, "more than %d names beside a formula", MAX_HELPERS);
+    for (int n = 0, next = 0; n < count; n++) {
+        for (next = 0; next < count && (placed[next] || waits(helpers, count, next, placed));) next++;
+        if (next == count) {
+            for (next = 0; placed[next];) next++;
+            return error_set(err, "the name '%.60s' beside the formula depends on itself, through others",
+                             helpers[next].name);
+        }
+        placed[next] = true;
+        order[n] = next;
+    }
+    return true;
+}
+
+static bool check_items(Formula *formula, Error *err)
+{
+    bool ok = true;
+    for (int i = 0; ok && i < formula->helper_count; i++) ok = check_name(formula, formula->variable_count + i, err);
+    for (int i = 0; ok && i < item_count(formula); i++) ok = check_text(formula->items[i].text, err);
+    if (!ok) return false;
+    Evaluator *own = take(formula);
+    for (int i = 0; ok && i < item_count(formula); i++) ok = check_item(formula, own, i, err);
+    give(formula, own);
+    return ok;
+}
+
 Formula *formula_create(const char *const *expressions, int expression_count, const FormulaHelper *helpers,
                         int helper_count, const char *const *variables, Error *err)
 {
+    int order[MAX_HELPERS];
+    if (!order_helpers(helpers, helper_count, order, err)) return NULL;
     Formula *formula = mem_alloc(1, sizeof *formula);
+    pthread_mutex_init(&formula->lock, NULL);
     while (variables[formula->variable_count]) formula->variable_count++;
     formula->helper_count = helper_count;
     formula->expression_count = expression_count;
     size_t slots = (size_t)(formula->variable_count + helper_count);
     formula->names = mem_alloc(slots, sizeof *formula->names);
-    formula->values = mem_alloc(slots, sizeof *formula->values);
-    formula->items = mem_alloc((size_t)(helper_count + expression_count), sizeof *formula->items);
+    formula->items = mem_alloc((size_t)item_count(formula), sizeof *formula->items);
     for (int i = 0; i < formula->variable_count; i++) formula->names[i] = mem_text(variables[i]);
     for (int i = 0; i < helper_count; i++)
-        formula->names[formula->variable_count + i] = mem_text(helpers[i].name);
-
-    bool ok = true;
-    for (int i = 0; ok && i < helper_count; i++)
-        ok = check_name(formula, formula->variable_count + i, err) &&
-             parse(formula, &formula->items[i], helpers[i].expression, formula->variable_count + i, err);
-    for (int i = 0; ok && i < expression_count; i++)
-        ok = parse(formula, &formula->items[helper_count + i], expressions[i], (int)slots, err);
-    if (ok) return formula;
+        formula->names[formula->variable_count + i] = mem_text(helpers[order[i]].name);
+    for (int i = 0; i < item_count(formula); i++) {
+        formula->items[i].text =
+            mem_text(i < helper_count ? helpers[order[i]].expression : expressions[i - helper_count]);
+        formula->items[i].uses = mem_alloc(slots, sizeof(bool));
+    }
+    if (check_items(formula, err)) return formula;
     formula_destroy(formula);
     return NULL;
 }
@@ -166,35 +284,59 @@ Formula *formula_create(const char *const *expressions, int expression_count, co
 void formula_destroy(Formula *formula)
 {
     if (!formula) return;
-    for (int i = 0; i < formula->helper_count + formula->expression_count; i++) {
-        if (formula->items[i].parser) mupRelease(formula->items[i].parser);
+    for (Evaluator *next; formula->idle; formula->idle = next) {
+        next = formula->idle->next;
+        evaluator_destroy(formula, formula->idle);
+    }
+    pthread_mutex_destroy(&formula->lock);
+    for (int i = 0; i < item_count(formula); i++) {
         mem_free(formula->items[i].text);
         mem_free(formula->items[i].uses);
     }
     for (int i = 0; i < formula->variable_count + formula->helper_count; i++) mem_free(formula->names[i]);
     mem_free(formula->names);
-    mem_free(formula->values);
     mem_free(formula->items);
     mem_free(formula);
 }
 
-bool formula_eval(Formula *formula, const double *variables, double *result, Error *err)
+static bool refuse_value(const Formula *formula, const char *text, const double *variables, Error *err)
 {
-    memcpy(formula->values, variables, (size_t)formula->variable_count * sizeof *variables);
-    for (int i = 0; i < formula->helper_count; i++)
-        formula->values[formula->variable_count + i] = mupEval(formula->items[i].parser);
+    char at[256] = "";
+    size_t used = 0;
+    for (int k = 0; k < formula->variable_count && used < sizeof at; k++)
+        used += (size_t)snprintf(at + used, sizeof at - used, "%s%s = %g", k ? ", " : "", formula->names[k],
+                                 variables[k]);
+    return error_set(err, "\"%s\" is not a finite number at %s", text, at);
+}
+
+static bool evaluate(const Formula *formula, const Evaluator *own, const double *variables, double *result,
+                     Error *err)
+{
+    int helpers = formula->helper_count;
+    memcpy(own->values, variables, (size_t)formula->variable_count * sizeof *variables);
+    for (int i = 0; i < helpers; i++) own->values[formula->variable_count + i] = mupEval(own->parsers[i]);
     for (int i = 0; i < formula->expression_count; i++) {
-        const Expression *item = &formula->items[formula->helper_count + i];
-        result[i] = mupEval(item->parser);
-        if (isfinite(result[i])) continue;
-        char at[256] = "";
-        size_t used = 0;
-        for (int k = 0; k < formula->variable_count && used < sizeof at; k++)
-            used += (size_t)snprintf(at + used, sizeof at - used, "%s%s = %g", k ? ", " : "",
-                                     formula->names[k], variables[k]);
-        return error_set(err, "\"%s\" is not a finite number at %s", item->text, at);
+        result[i] = mupEval(own->parsers[helpers + i]);
+        if (!isfinite(result[i]))
+            return refuse_value(formula, formula->items[helpers + i].text, variables, err);
     }
     return true;
+}
+
+bool formula_eval_all(Formula *formula, int count, const double *variables, double *results, Error *err)
+{
+    Evaluator *own = take(formula);
+    bool ok = true;
+    for (int k = 0; ok && k < count; k++)
+        ok = evaluate(formula, own, variables + k * formula->variable_count,
+                      results + k * formula->expression_count, err);
+    give(formula, own);
+    return ok;
+}
+
+bool formula_eval(Formula *formula, const double *variables, double *result, Error *err)
+{
+    return formula_eval_all(formula, 1, variables, result, err);
 }
 
 /* Whether item i names the slot, itself or through a helper before it. */

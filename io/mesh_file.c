@@ -6,89 +6,16 @@
 #include <string.h>
 #include <strings.h>
 
-/* ---- Growing ---- */
-
-static size_t larger(size_t count)
-{
-    return 2 * count + 64;
-}
-
-void reader_add_vertex(MeshReader *reader, const double *x, int line)
-{
-    MeshFile *mesh = reader->mesh;
-    size_t count = (size_t)mesh->vertex_count;
-    if (count == reader->vertex_room) {
-        mesh->vertices = mem_resize(mesh->vertices, count, larger(count), sizeof *mesh->vertices);
-        mesh->vertex_line = mem_resize(mesh->vertex_line, count, larger(count), sizeof *mesh->vertex_line);
-        reader->vertex_room = larger(count);
-    }
-    memcpy(mesh->vertices[count], x, sizeof *mesh->vertices);
-    mesh->vertex_line[count] = line;
-    mesh->vertex_count++;
-}
-
-void reader_add_face(MeshReader *reader, const int *vertices, int line)
-{
-    MeshFile *mesh = reader->mesh;
-    size_t count = (size_t)mesh->face_count;
-    if (count == reader->face_room) {
-        mesh->faces = mem_resize(mesh->faces, count, larger(count), sizeof *mesh->faces);
-        mesh->face_line = mem_resize(mesh->face_line, count, larger(count), sizeof *mesh->face_line);
-        reader->face_room = larger(count);
-    }
-    memcpy(mesh->faces[count], vertices, sizeof *mesh->faces);
-    mesh->face_line[count] = line;
-    mesh->face_count++;
-}
-
-int reader_group(MeshReader *reader, const char *name, int length, int dim)
-{
-    MeshFile *mesh = reader->mesh;
-    for (int g = 0; g < mesh->group_count; g++) {
-        const MeshGroup *group = &mesh->groups[g];
-        if (group->dim == dim && strlen(group->name) == (size_t)length &&
-            !strncmp(group->name, name, (size_t)length))
-            return g;
-    }
-    size_t count = (size_t)mesh->group_count;
-    mesh->groups = mem_resize(mesh->groups, count, count + 1, sizeof *mesh->groups);
-    reader->group_room = mem_resize(reader->group_room, count, count + 1, sizeof *reader->group_room);
-    mesh->groups[count] = (MeshGroup){.name = mem_format("%.*s", length, name), .dim = dim};
-    return mesh->group_count++;
-}
-
-void reader_group_add(MeshReader *reader, int index, const int *members)
-{
-    MeshGroup *group = &reader->mesh->groups[index];
-    size_t width = group->dim == 1 ? 2 : 1, used = (size_t)group->count * width;
-    if (used + width > reader->group_room[index]) {
-        group->members = mem_resize(group->members, reader->group_room[index], larger(used), sizeof(int));
-        reader->group_room[index] = larger(used);
-    }
-    memcpy(group->members + used, members, width * sizeof *members);
-    group->count++;
-}
-
 /* ---- Reading ---- */
 
 static const struct {
     const char *format;
-    char comment;
+    bool is_text; /* else the reader finds out */
     bool (*read)(Scan *scan, MeshReader *reader);
-} formats[] = {{"obj", '#', mesh_read_obj}, {"ply", 0, mesh_read_ply}, {"msh", 0, mesh_read_msh}};
-
-/* Groups without members say nothing. */
-static void drop_empty_groups(MeshFile *mesh)
-{
-    int kept = 0;
-    for (int g = 0; g < mesh->group_count; g++) {
-        if (mesh->groups[g].count > 0)
-            mesh->groups[kept++] = mesh->groups[g];
-        else
-            mem_free(mesh->groups[g].name);
-    }
-    mesh->group_count = kept;
-}
+} formats[] = {{"obj", true, mesh_read_obj},
+               {"ply", true, mesh_read_ply},
+               {"msh", true, mesh_read_msh},
+               {"stl", false, mesh_read_stl}};
 
 bool mesh_file_parse(const char *path, const char *format, const char *text, long length, MeshFile *mesh,
                      Error *err)
@@ -97,18 +24,21 @@ bool mesh_file_parse(const char *path, const char *format, const char *text, lon
     for (size_t k = 0; k < sizeof formats / sizeof *formats; k++) {
         if (strcasecmp(format, formats[k].format)) continue;
         MeshReader reader = {.mesh = mesh};
-        Scan scan = scan_start(path, text, (size_t)length, formats[k].comment, "", err);
+        size_t left = (size_t)length;
         mesh->path = mem_text(path);
-        bool ok = formats[k].read(&scan, &reader);
-        if (ok && mesh->face_count == 0) ok = error_set(err, "%s: there are no triangles in it", path);
-        mem_free(reader.group_room);
-        if (ok)
-            drop_empty_groups(mesh);
-        else
-            mesh_file_clear(mesh);
+        bool ok = !formats[k].is_text || scan_skip_mark(path, &text, &left, err);
+        Scan scan = scan_start(path, text, left, 0, "", err);
+        ok = ok && formats[k].read(&scan, &reader);
+        if (ok && mesh->face_count == 0) ok = error_set(err, "%s: there are no faces in it", path);
+        reader_clear(&reader);
+        if (!ok) mesh_file_clear(mesh);
         return ok;
     }
-    return error_set(err, "%s: a mesh is read from .obj, .ply or .msh", path);
+    return error_set(
+        err,
+        "%s: a mesh is read from .obj, .ply, .stl or .msh; convert others (3MF, OFF, VTK, ..) with MeshLab, "
+        "or with `meshio convert`",
+        path);
 }
 
 bool mesh_file_read(const char *path, MeshFile *mesh, Error *err)
@@ -125,25 +55,58 @@ bool mesh_file_read(const char *path, MeshFile *mesh, Error *err)
 
 /* ---- Writing ---- */
 
+/* The groups of each face: those of face f are groups[first[f]] to groups[first[f + 1] - 1], ascending. */
+typedef struct FaceGroups {
+    int *first, *groups;
+} FaceGroups;
+
+static FaceGroups face_groups(const MeshFile *mesh)
+{
+    FaceGroups of = {.first = mem_alloc((size_t)mesh->face_count + 2, sizeof(int))};
+    int *end =
+        of.first + 1; /* [face + 1]: the counts, their sums, and at last where each face's groups end */
+    for (int g = 0; g < mesh->group_count; g++)
+        for (int k = 0; mesh->groups[g].dim == 2 && k < mesh->groups[g].count; k++)
+            end[mesh->groups[g].members[k] + 1]++;
+    for (int f = 0; f < mesh->face_count; f++) end[f + 1] += end[f];
+    of.groups = mem_alloc((size_t)end[mesh->face_count], sizeof(int));
+    for (int g = 0; g < mesh->group_count; g++)
+        for (int k = 0; mesh->groups[g].dim == 2 && k < mesh->groups[g].count; k++)
+            of.groups[end[mesh->groups[g].members[k]]++] = g;
+    return of;
+}
+
+static bool same_groups(const FaceGroups *of, int f, int other)
+{
+    int count = of->first[f + 1] - of->first[f];
+    return count == of->first[other + 1] - of->first[other] &&
+           !memcmp(of->groups + of->first[f], of->groups + of->first[other], (size_t)count * sizeof(int));
+}
+
+/* A group's name as one word: another reader takes a blank for its end, and # for a comment. */
+static void write_name(Text *text, const char *name)
+{
+    text_add(text, " ");
+    for (const char *c = name; *c; c++) {
+        bool unfit = (unsigned char)*c <= ' ' || (*c == '#' && c == name) || (*c == '\\' && !c[1]);
+        text_add(text, "%c", unfit ? '_' : *c);
+    }
+}
+
 /* OBJ has groups of faces and, by `l`, of edges. A face is in one g line with all its groups. */
 static void write_faces(Text *text, const MeshFile *mesh)
 {
-    char *member = mem_alloc((size_t)mesh->face_count * (size_t)mesh->group_count + 1, 1);
-    size_t stride = (size_t)mesh->group_count;
-    for (int g = 0; g < mesh->group_count; g++)
-        for (int k = 0; mesh->groups[g].dim == 2 && k < mesh->groups[g].count; k++)
-            member[(size_t)mesh->groups[g].members[k] * stride + (size_t)g] = 1;
+    FaceGroups of = face_groups(mesh);
     for (int f = 0; f < mesh->face_count; f++) {
-        const char *now = member + (size_t)f * stride, *before = f > 0 ? now - stride : NULL;
-        if (stride && (!before || memcmp(now, before, stride))) {
+        if (f == 0 ? of.first[1] > 0 : !same_groups(&of, f, f - 1)) {
             text_add(text, "g");
-            for (size_t g = 0; g < stride; g++)
-                if (now[g]) text_add(text, " %s", mesh->groups[g].name);
+            for (int k = of.first[f]; k < of.first[f + 1]; k++) write_name(text, mesh->groups[of.groups[k]].name);
             text_add(text, "\n");
         }
         text_add(text, "f %d %d %d\n", mesh->faces[f][0] + 1, mesh->faces[f][1] + 1, mesh->faces[f][2] + 1);
     }
-    mem_free(member);
+    mem_free(of.first);
+    mem_free(of.groups);
 }
 
 static void write_groups(Text *text, const MeshFile *mesh)
@@ -151,7 +114,9 @@ static void write_groups(Text *text, const MeshFile *mesh)
     for (int g = 0; g < mesh->group_count; g++) {
         const MeshGroup *group = &mesh->groups[g];
         if (group->dim == 2) continue;
-        text_add(text, "g %s\n", group->name);
+        text_add(text, "g");
+        write_name(text, group->name);
+        text_add(text, "\n");
         for (int k = 0; k < group->count; k++)
             if (group->dim == 1)
                 text_add(text, "l %d %d\n", group->members[2 * k] + 1, group->members[2 * k + 1] + 1);
@@ -189,9 +154,9 @@ void mesh_file_clear(MeshFile *mesh)
     *mesh = (MeshFile){0};
 }
 
-const MeshGroup *mesh_file_group(const MeshFile *mesh, const char *name)
+const MeshGroup *mesh_file_group(const MeshFile *mesh, const char *name, int dim)
 {
     for (int g = 0; g < mesh->group_count; g++)
-        if (!strcmp(mesh->groups[g].name, name)) return &mesh->groups[g];
+        if (mesh->groups[g].dim == dim && !strcmp(mesh->groups[g].name, name)) return &mesh->groups[g];
     return NULL;
 }

@@ -1,29 +1,48 @@
-/* Gmsh .msh 2.2 and 4.1, ASCII: triangles, and named groups of them, of lines and of points. */
+/* Gmsh .msh 2.2 and 4.1, ASCII: triangles and quadrilaterals, and named groups of them, of lines and of
+ * points. */
 #include "base/memory.h"
 #include "io/mesh_reader.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* Gmsh's numbers of element types. */
-enum { TYPE_LINE = 1, TYPE_TRIANGLE = 2, TYPE_POINT = 15 };
+/* Gmsh's numbers of the element types that are read. */
+typedef struct ElementType {
+    int type, dim, corners;
+} ElementType;
+
+static const ElementType element_types[] = {{1, 1, 2}, {2, 2, 3}, {3, 2, 4}, {15, 0, 1}};
+
+enum { CORNERS_MAX = 4 };
 
 typedef struct Node {
     long tag;
     int vertex;
 } Node;
 
-typedef struct Physical {
+/* What names a physical group or an entity; first in each, for compare_tags. */
+typedef struct Tag {
     int dim;
     long tag;
+} Tag;
+
+typedef struct Physical {
+    Tag at;
     Word name;
 } Physical;
 
 /* Of 4.1: an entity and one of the physical groups it is in. */
 typedef struct Entity {
-    int dim;
-    long tag, physical;
+    Tag at;
+    long physical;
 } Entity;
+
+/* An element of 2.2: one that is in several physical groups is written once for each. */
+typedef struct Element {
+    int dim, corners[CORNERS_MAX], count;
+    long entity, physical; /* the last one of those it was written for */
+    int first_face, end_face;
+} Element;
 
 typedef struct Msh {
     Scan *scan;
@@ -34,6 +53,10 @@ typedef struct Msh {
     Entity *entities;
     int name_count, entity_count;
     size_t entity_room;
+    Element *elements; /* the faces of 2.2 */
+    Lookup element_lookup;
+    int element_count;
+    size_t element_room;
 } Msh;
 
 static const long LARGEST = 9007199254740991; /* of a tag */
@@ -50,33 +73,48 @@ static bool line(Msh *msh, const char *section)
 
 /* ---- Groups ---- */
 
-static bool read_names(Msh *msh)
+static int compare_tags(const void *a, const void *b)
 {
-    long count, dim;
-    if (!line(msh, "$PhysicalNames") || !integer(msh, "the number of names", 0, 100000, &count)) return false;
-    msh->names = mem_resize(msh->names, 0, (size_t)count, sizeof *msh->names);
-    for (long k = 0; k < count; k++) {
-        Physical *name = &msh->names[k];
-        if (!line(msh, "$PhysicalNames") || !integer(msh, "a dimension", 0, 3, &dim) ||
-            !integer(msh, "a tag", -LARGEST, LARGEST, &name->tag))
-            return false;
-        const char *open = memchr(msh->scan->at, '"', (size_t)(msh->scan->word_end - msh->scan->at));
-        const char *close = open ? memchr(open + 1, '"', (size_t)(msh->scan->word_end - open - 1)) : NULL;
-        if (!close) return scan_refuse(msh->scan, "a name in quotes is missing");
-        name->dim = (int)dim;
-        name->name = (Word){open + 1, (int)(close - open - 1)};
-        msh->name_count++;
-    }
+    const Tag *s = a, *t = b;
+    return s->dim != t->dim ? (s->dim > t->dim) - (s->dim < t->dim) : (s->tag > t->tag) - (s->tag < t->tag);
+}
+
+/* Between the first and the last quote of the line: Gmsh writes a quote within a name as it is. */
+static bool read_name(Msh *msh, Physical *name)
+{
+    long dim;
+    if (!line(msh, "$PhysicalNames") || !integer(msh, "a dimension", 0, 3, &dim) ||
+        !integer(msh, "a tag", -LARGEST, LARGEST, &name->at.tag))
+        return false;
+    size_t left = (size_t)(msh->scan->word_end - msh->scan->at);
+    const char *open = memchr(msh->scan->at, '"', left), *close = memrchr(msh->scan->at, '"', left);
+    if (!open || open == close) return scan_refuse(msh->scan, "a name in quotes is missing");
+    name->at.dim = (int)dim;
+    name->name = (Word){open + 1, (int)(close - open - 1)};
     return true;
 }
 
-static void add_to_group(Msh *msh, int dim, long physical, const int *members)
+static bool read_names(Msh *msh)
+{
+    long count;
+    if (!line(msh, "$PhysicalNames") || !integer(msh, "the number of names", 0, 100000, &count)) return false;
+    msh->names = mem_resize(msh->names, 0, (size_t)count, sizeof *msh->names);
+    for (; msh->name_count < count; msh->name_count++)
+        if (!read_name(msh, &msh->names[msh->name_count])) return false;
+    qsort(msh->names, (size_t)count, sizeof *msh->names, compare_tags);
+    return true;
+}
+
+static int group_of(Msh *msh, int dim, long physical)
 {
     char unnamed[40];
+    Physical wanted = {.at = {dim, physical}};
+    const Physical *named = NULL;
+    if (msh->name_count)
+        named = bsearch(&wanted, msh->names, (size_t)msh->name_count, sizeof wanted, compare_tags);
     Word name = {unnamed, snprintf(unnamed, sizeof unnamed, "physical_%ld", physical)};
-    for (int k = 0; k < msh->name_count; k++)
-        if (msh->names[k].dim == dim && msh->names[k].tag == physical) name = msh->names[k].name;
-    reader_group_add(msh->reader, reader_group(msh->reader, name.text, name.length, dim), members);
+    if (named) name = named->name;
+    return reader_group(msh->reader, name.text, name.length, dim);
 }
 
 static bool read_entity(Msh *msh, int dim)
@@ -89,12 +127,9 @@ static bool read_entity(Msh *msh, int dim)
     if (!integer(msh, "the number of physical tags", 0, 100000, &count)) return false;
     for (long k = 0; k < count; k++) {
         if (!integer(msh, "a physical tag", -LARGEST, LARGEST, &physical)) return false;
-        if ((size_t)msh->entity_count == msh->entity_room) {
-            size_t room = 2 * msh->entity_room + 16;
-            msh->entities = mem_resize(msh->entities, msh->entity_room, room, sizeof *msh->entities);
-            msh->entity_room = room;
-        }
-        msh->entities[msh->entity_count++] = (Entity){dim, tag, labs(physical)};
+        msh->entities = reader_grow(msh->entities, &msh->entity_room, (size_t)msh->entity_count + 1,
+                                    sizeof *msh->entities);
+        msh->entities[msh->entity_count++] = (Entity){{dim, tag}, labs(physical)};
     }
     return true;
 }
@@ -108,7 +143,26 @@ static bool read_entities(Msh *msh)
     for (int d = 0; d < 4; d++)
         for (long k = 0; k < counts[d]; k++)
             if (!read_entity(msh, d)) return false;
+    if (msh->entity_count)
+        qsort(msh->entities, (size_t)msh->entity_count, sizeof *msh->entities, compare_tags);
     return true;
+}
+
+/* The physical groups of an entity: the number of them, from *first on. */
+static int groups_of_entity(const Msh *msh, int dim, long tag, int *first)
+{
+    Entity wanted = {.at = {dim, tag}};
+    int low = 0, high = msh->entity_count, count = 0;
+    while (low < high) {
+        int middle = low + (high - low) / 2;
+        if (compare_tags(&msh->entities[middle], &wanted) < 0)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    *first = low;
+    while (low + count < msh->entity_count && !compare_tags(&msh->entities[low + count], &wanted)) count++;
+    return count;
 }
 
 /* ---- Nodes ---- */
@@ -119,22 +173,21 @@ static int compare_nodes(const void *a, const void *b)
     return (s > t) - (s < t);
 }
 
-static bool read_point(Msh *msh)
+/* parameters: how many numbers follow the coordinates. */
+static bool read_point(Msh *msh, int parameters)
 {
-    double x[3];
+    double x[3], parameter;
     for (int i = 0; i < 3; i++)
         if (!scan_number(msh->scan, "a coordinate", &x[i])) return false;
+    for (int i = 0; i < parameters; i++)
+        if (!scan_number(msh->scan, "a parameter", &parameter)) return false;
     reader_add_vertex(msh->reader, x, msh->scan->line);
-    return true;
+    return scan_line_ends(msh->scan);
 }
 
 static void push_node(Msh *msh, size_t *room, int index, long tag)
 {
-    if ((size_t)index >= *room) {
-        size_t larger = 2 * *room + 64;
-        msh->nodes = mem_resize(msh->nodes, *room, larger, sizeof *msh->nodes);
-        *room = larger;
-    }
+    msh->nodes = reader_grow(msh->nodes, room, (size_t)index + 1, sizeof *msh->nodes);
     msh->nodes[index] = (Node){tag, index};
 }
 
@@ -153,7 +206,7 @@ static bool read_node_block(Msh *msh, size_t *room)
         push_node(msh, room, first + (int)k, tag);
     }
     for (long k = 0; k < count; k++)
-        if (!line(msh, "$Nodes") || !read_point(msh)) return false;
+        if (!line(msh, "$Nodes") || !read_point(msh, parametric ? (int)dim : 0)) return false;
     return true;
 }
 
@@ -171,7 +224,7 @@ static bool read_nodes(Msh *msh)
         }
         if (!line(msh, "$Nodes") || !integer(msh, "a node's number", 0, LARGEST, &tag)) return false;
         push_node(msh, &room, (int)k, tag);
-        if (!read_point(msh)) return false;
+        if (!read_point(msh, 0)) return false;
     }
     int vertices = msh->reader->mesh->vertex_count;
     if (vertices) qsort(msh->nodes, (size_t)vertices, sizeof *msh->nodes, compare_nodes);
@@ -198,65 +251,119 @@ static bool corners(Msh *msh, int count, int *vertices)
 
 /* ---- Elements ---- */
 
-static int type_dim(long type)
+/* The row of a type, or NULL with what can be done. */
+static const ElementType *find_type(Msh *msh, long type)
 {
-    return type == TYPE_POINT ? 0 : type == TYPE_LINE ? 1 : type == TYPE_TRIANGLE ? 2 : -1;
+    for (size_t k = 0; k < sizeof element_types / sizeof *element_types; k++)
+        if (element_types[k].type == type) return &element_types[k];
+    bool second = type == 8 || type == 9 || type == 10 || type == 16;
+    scan_refuse(
+        msh->scan,
+        "elements of Gmsh's type %ld: a shell is made of triangles and quadrilaterals with straight edges "
+        "(types 2 and 3), and lines and points in groups; %s",
+        type,
+        second ? "mesh it with Mesh.ElementOrder = 1"
+               : "mesh surfaces only (gmsh -2), or save only their physical groups");
+    return NULL;
 }
 
-static bool check_type(Msh *msh, long type)
+/* Puts an element into a group: its faces, or the ends of a line, or a point. */
+static void put_into(Msh *msh, int group, int dim, const int *corners, int first_face, int end_face)
 {
-    return type_dim(type) >= 0 || scan_refuse(msh->scan,
-                                              "elements of Gmsh's type %ld: a shell is made of 3-node "
-                                              "triangles (type 2), and lines and points in groups",
-                                              type);
+    if (dim < 2) reader_group_add(msh->reader, group, corners);
+    for (int f = first_face; dim == 2 && f < end_face; f++) reader_group_add(msh->reader, group, &f);
 }
 
-/* Reads the element's nodes; members are what a group of it holds. */
-static bool read_element(Msh *msh, int dim, int *members)
+typedef struct ElementKey {
+    const Msh *msh;
+    const Element *element;
+} ElementKey;
+
+static bool same_element(const void *self, int index)
 {
-    int vertices[3] = {0};
-    if (!corners(msh, dim + 1, vertices)) return false;
-    memcpy(members, vertices, 2 * sizeof *members);
-    if (dim < 2) return true;
-    members[0] = msh->reader->mesh->face_count;
-    reader_add_face(msh->reader, vertices, msh->scan->line);
+    const ElementKey *key = self;
+    const Element *a = &key->msh->elements[index], *b = key->element;
+    return a->entity == b->entity && a->count == b->count &&
+           !memcmp(a->corners, b->corners, sizeof a->corners);
+}
+
+/* The faces of an element of 2.2: those that it has already, where it was written for another group before.
+ */
+static bool add_old_faces(Msh *msh, Element *element)
+{
+    ElementKey key = {msh, element};
+    uint64_t hash = lookup_hash(0, element->corners, sizeof element->corners);
+    int known = lookup_find(&msh->element_lookup, hash, same_element, &key);
+    if (known >= 0 && msh->elements[known].physical != element->physical) {
+        element->first_face = msh->elements[known].first_face,
+        element->end_face = msh->elements[known].end_face;
+        msh->elements[known].physical = element->physical;
+        return true;
+    }
+    element->first_face = msh->reader->mesh->face_count;
+    if (!reader_add_face(msh->reader, msh->scan, element->corners, element->count)) return false;
+    element->end_face = msh->reader->mesh->face_count;
+    lookup_add(&msh->element_lookup, hash, msh->element_count);
+    msh->elements =
+        reader_grow(msh->elements, &msh->element_room, (size_t)msh->element_count + 1, sizeof *msh->elements);
+    msh->elements[msh->element_count++] = *element;
     return true;
 }
 
+/* number type tag-count physical entity .. nodes */
 static bool read_old_element(Msh *msh)
 {
-    long number, type, tags, physical = 0, tag;
-    int members[2] = {0};
-    if (!integer(msh, "an element's number", 0, LARGEST, &number) ||
-        !integer(msh, "a type", 1, 1000, &type) || !check_type(msh, type) ||
-        !integer(msh, "the number of tags", 0, 100, &tags))
+    long number, type, tags, tag;
+    Element element = {0};
+    if (!integer(msh, "an element's number", 0, LARGEST, &number) || !integer(msh, "a type", 1, 1000, &type))
         return false;
+    const ElementType *row = find_type(msh, type);
+    if (!row || !integer(msh, "the number of tags", 0, 100, &tags)) return false;
     for (long k = 0; k < tags; k++) {
         if (!integer(msh, "a tag", -LARGEST, LARGEST, &tag)) return false;
-        if (k == 0) physical = labs(tag);
+        if (k == 0) element.physical = labs(tag);
+        if (k == 1) element.entity = tag;
     }
-    if (!read_element(msh, type_dim(type), members)) return false;
-    if (physical) add_to_group(msh, type_dim(type), physical, members);
+    element.count = row->corners;
+    if (!corners(msh, row->corners, element.corners) || !scan_line_ends(msh->scan)) return false;
+    if (row->dim == 2 && !add_old_faces(msh, &element)) return false;
+    if (element.physical)
+        put_into(msh, group_of(msh, row->dim, element.physical), row->dim, element.corners,
+                 element.first_face, element.end_face);
+    return true;
+}
+
+static bool read_block_element(Msh *msh, int dim, int corner_count, const int *groups, int group_count)
+{
+    long number;
+    int nodes[CORNERS_MAX] = {0}, first = msh->reader->mesh->face_count;
+    if (!line(msh, "$Elements") || !integer(msh, "an element's tag", 0, LARGEST, &number) ||
+        !corners(msh, corner_count, nodes) || !scan_line_ends(msh->scan))
+        return false;
+    if (dim == 2 && !reader_add_face(msh->reader, msh->scan, nodes, corner_count)) return false;
+    for (int k = 0; k < group_count; k++)
+        put_into(msh, groups[k], dim, nodes, first, msh->reader->mesh->face_count);
     return true;
 }
 
 static bool read_element_block(Msh *msh)
 {
-    long dim, entity, type, count, number;
+    long dim, entity, type, count;
+    int first;
     if (!integer(msh, "a dimension", 0, 3, &dim) || !integer(msh, "an entity", -LARGEST, LARGEST, &entity) ||
-        !integer(msh, "a type", 1, 1000, &type) || !check_type(msh, type) ||
-        !integer(msh, "the number of elements", 0, READER_MAX_INDEX, &count))
+        !integer(msh, "a type", 1, 1000, &type))
         return false;
-    for (long k = 0; k < count; k++) {
-        int members[2] = {0};
-        if (!line(msh, "$Elements") || !integer(msh, "an element's tag", 0, LARGEST, &number) ||
-            !read_element(msh, type_dim(type), members))
-            return false;
-        for (int e = 0; e < msh->entity_count; e++)
-            if (msh->entities[e].dim == dim && msh->entities[e].tag == entity)
-                add_to_group(msh, (int)dim, msh->entities[e].physical, members);
-    }
-    return true;
+    const ElementType *row = find_type(msh, type);
+    if (!row || !integer(msh, "the number of elements", 0, READER_MAX_INDEX, &count)) return false;
+    int group_count = groups_of_entity(msh, (int)dim, entity, &first);
+    int *groups = mem_alloc((size_t)group_count, sizeof *groups);
+    for (int k = 0; k < group_count; k++)
+        groups[k] = group_of(msh, row->dim, msh->entities[first + k].physical);
+    bool ok = true;
+    for (long k = 0; ok && k < count; k++)
+        ok = read_block_element(msh, row->dim, row->corners, groups, group_count);
+    mem_free(groups);
+    return ok;
 }
 
 static bool read_elements(Msh *msh)
@@ -282,7 +389,9 @@ static bool read_format(Msh *msh)
         return scan_refuse(msh->scan, "version %.*s: save it as 2.2 or 4.1 (gmsh -format msh41)",
                            version.length > 10 ? 10 : version.length, version.text);
     if (!integer(msh, "the file type", 0, 1, &binary)) return false;
-    return !binary || scan_refuse(msh->scan, "a binary file: save it as ASCII (gmsh -bin 0)");
+    return !binary ||
+           scan_refuse(msh->scan, "a binary file: save it as ASCII (in Gmsh: Mesh.Binary = 0; or with "
+                                  "`meshio ascii FILE`)");
 }
 
 static bool skip_section(Msh *msh, Word name)
@@ -301,6 +410,10 @@ static bool read_section(Msh *msh, Word name)
                           : word_is(name, "$Elements")                    ? read_elements
                           : word_is(name, "$Entities") && msh->new_format ? read_entities
                                                                           : NULL;
+    if (word_is(name, "$PartitionedEntities"))
+        return scan_refuse(msh->scan, "a partitioned mesh; save it in one part");
+    if ((read == read_names || read == read_entities) && msh->reader->mesh->face_count)
+        return scan_refuse(msh->scan, "$PhysicalNames and $Entities must come before $Elements");
     if (read == read_names && msh->names) return scan_refuse(msh->scan, "a second $PhysicalNames section");
     return (!read || read(msh)) && skip_section(msh, name);
 }
@@ -330,5 +443,7 @@ bool mesh_read_msh(Scan *scan, MeshReader *reader)
     mem_free(msh.nodes);
     mem_free(msh.names);
     mem_free(msh.entities);
-    return ok;
+    mem_free(msh.elements);
+    lookup_clear(&msh.element_lookup);
+    return ok && reader_finish(reader, scan, 1);
 }

@@ -1,15 +1,22 @@
-/* Wavefront OBJ: v, f, g, o, l and p; all else (normals, textures, materials) is passed over. */
-#include "base/memory.h"
+/* Wavefront OBJ: v, f, g, o, l and p; all else (normals, textures, materials) is passed over. A backslash at
+ * a line's end joins it with the next. */
 #include "io/mesh_reader.h"
+#include "io/polygon.h"
 #include <string.h>
 
-enum { NAMES_MAX = 32 };
+enum { NAMES_MAX = 32, OTHERS_MAX = 5 };
 
 /* The names that hold at the moment: of the last g line, and of the last o line. */
 typedef struct Names {
     Word group[NAMES_MAX], object;
     int count;
 } Names;
+
+void obj_begin(Scan *scan)
+{
+    scan->comment = '#';
+    scan->joins = true;
+}
 
 /* Indices of f, l and p lines: from 1, or from the end when negative; what follows a slash is passed over.
  * Vertices may come later in the file, so the upper end is checked at the end. */
@@ -19,45 +26,63 @@ bool obj_index(const Scan *scan, Word word, int vertex_count, int *index)
     Word number = {word.text, slash ? (int)(slash - word.text) : word.length};
     long value;
     if (!word_integer(number, &value) || value == 0 || value > READER_MAX_INDEX || value < -READER_MAX_INDEX)
-        return scan_refuse(scan, "'%.*s' is no vertex: they count from 1, or from -1 backwards",
-                           word.length > 40 ? 40 : word.length, word.text);
+        return scan_refuse_at(scan, word.text, "'%.*s' is no vertex: they count from 1, or from -1 backwards",
+                              word.length > 40 ? 40 : word.length, word.text);
     if (value < 0 && vertex_count + value < 0)
-        return scan_refuse(scan, "vertex %ld is before the first one: there are %d so far", value,
-                           vertex_count);
+        return scan_refuse_at(scan, word.text, "vertex %ld is before the first one: there are %d so far",
+                              value, vertex_count);
     *index = (int)(value > 0 ? value - 1 : vertex_count + value);
     return true;
 }
 
+/* A weight or a colour may follow the coordinates. */
 bool obj_vertex(Scan *scan, MeshReader *reader)
 {
-    double x[3];
+    double x[3], other;
     for (int i = 0; i < 3; i++)
         if (!scan_number(scan, "a coordinate", &x[i])) return false;
+    for (int i = 0; i < OTHERS_MAX && scan_more(scan); i++)
+        if (!scan_number(scan, "what follows a vertex", &other)) return false;
     reader_add_vertex(reader, x, scan->line);
-    return true;
+    return scan_line_ends(scan);
 }
 
-/* Adds to all names that hold. */
-static void add_to_groups(MeshReader *reader, const Names *names, int dim, const int *members)
+static bool is_listed(const Names *names, Word word)
 {
     for (int k = 0; k < names->count; k++)
-        reader_group_add(reader, reader_group(reader, names->group[k].text, names->group[k].length, dim),
-                         members);
-    if (names->object.text)
-        reader_group_add(reader, reader_group(reader, names->object.text, names->object.length, dim),
-                         members);
+        if (names->group[k].length == word.length &&
+            !strncmp(names->group[k].text, word.text, (size_t)word.length))
+            return true;
+    return false;
+}
+
+/* The groups of all names that hold: at most NAMES_MAX + 1. */
+static int groups_now(MeshReader *reader, const Names *names, int dim, int *groups)
+{
+    int count = 0;
+    for (int k = 0; k < names->count; k++)
+        groups[count++] = reader_group(reader, names->group[k].text, names->group[k].length, dim);
+    if (names->object.length && !is_listed(names, names->object))
+        groups[count++] = reader_group(reader, names->object.text, names->object.length, dim);
+    return count;
+}
+
+static void add_to_groups(MeshReader *reader, const Names *names, int dim, const int *members)
+{
+    int groups[NAMES_MAX + 1], count = groups_now(reader, names, dim, groups);
+    for (int k = 0; k < count; k++) reader_group_add(reader, groups[k], members);
 }
 
 static bool read_face(Scan *scan, MeshReader *reader, const Names *names)
 {
-    int v[3], count = 0, face = reader->mesh->face_count;
+    int corners[POLYGON_MAX_CORNERS], count = 0, first = reader->mesh->face_count;
     for (Word word; scan_word(scan, &word); count++)
-        if (count < 3 && !obj_index(scan, word, reader->mesh->vertex_count, &v[count])) return false;
-    if (count != 3)
-        return scan_refuse(scan, "a face with %d corner%s: slender takes triangles only", count,
-                           count == 1 ? "" : "s");
-    reader_add_face(reader, v, scan->line);
-    add_to_groups(reader, names, 2, &face);
+        if (count < POLYGON_MAX_CORNERS &&
+            !obj_index(scan, word, reader->mesh->vertex_count, &corners[count]))
+            return false;
+    if (!reader_add_face(reader, scan, corners, count)) return false;
+    int groups[NAMES_MAX + 1], group_count = groups_now(reader, names, 2, groups);
+    for (int k = 0; k < group_count; k++) reader_group_add_faces(reader, groups[k], first);
     return true;
 }
 
@@ -75,40 +100,14 @@ static bool read_members(Scan *scan, MeshReader *reader, const Names *names, int
 }
 
 /* No word twice, so that a face is in a group once. */
-static void read_names(Scan *scan, Names *names)
+static bool read_names(Scan *scan, Names *names)
 {
     names->count = 0;
-    for (Word word; scan_word(scan, &word) && names->count < NAMES_MAX;) {
-        bool known = false;
-        for (int k = 0; k < names->count; k++)
-            known |= names->group[k].length == word.length &&
-                     !strncmp(names->group[k].text, word.text, (size_t)word.length);
-        if (!known) names->group[names->count++] = word;
-    }
-}
-
-static void read_object(Scan *scan, Names *names)
-{
-    Word word;
-    names->object = scan_word(scan, &word) ? word : (Word){0};
-}
-
-static bool check_indices(Scan *scan, const MeshFile *mesh)
-{
-    for (int f = 0; f < mesh->face_count; f++)
-        for (int i = 0; i < 3; i++) {
-            if (mesh->faces[f][i] < mesh->vertex_count) continue;
-            scan->line = mesh->face_line[f];
-            return scan_refuse(scan, "vertex %d does not exist: there are %d", mesh->faces[f][i] + 1,
-                               mesh->vertex_count);
-        }
-    for (int g = 0; g < mesh->group_count; g++) {
-        const MeshGroup *group = &mesh->groups[g];
-        int count = group->dim == 2 ? 0 : group->count * (group->dim + 1);
-        for (int k = 0; k < count; k++)
-            if (group->members[k] >= mesh->vertex_count)
-                return error_set(scan->err, "%s: vertex %d of the group '%.60s' does not exist: there are %d",
-                                 scan->path, group->members[k] + 1, group->name, mesh->vertex_count);
+    for (Word word; scan_word(scan, &word);) {
+        if (is_listed(names, word)) continue;
+        if (names->count == NAMES_MAX)
+            return scan_refuse_at(scan, word.text, "more than %d groups in one line", NAMES_MAX);
+        names->group[names->count++] = word;
     }
     return true;
 }
@@ -117,6 +116,7 @@ bool mesh_read_obj(Scan *scan, MeshReader *reader)
 {
     Names names = {0};
     bool ok = true;
+    obj_begin(scan);
     while (ok && scan_line(scan)) {
         Word word;
         scan_word(scan, &word);
@@ -129,9 +129,9 @@ bool mesh_read_obj(Scan *scan, MeshReader *reader)
         else if (word_is(word, "p"))
             ok = read_members(scan, reader, &names, 0);
         else if (word_is(word, "g"))
-            read_names(scan, &names);
+            ok = read_names(scan, &names);
         else if (word_is(word, "o"))
-            read_object(scan, &names);
+            names.object = scan_rest(scan);
     }
-    return ok && check_indices(scan, reader->mesh);
+    return ok && reader_finish(reader, scan, 1);
 }

@@ -1,7 +1,7 @@
 #include "io/polyline_file.h"
 #include "base/memory.h"
-#include "io/mesh_reader.h"
 #include "io/polyline_reader.h"
+#include "io/scan.h"
 #include "io/table.h"
 #include <string.h>
 #include <strings.h>
@@ -23,7 +23,7 @@ static void end_strand(PolylineReader *reader)
     lines->first[lines->strand_count] = lines->point_count;
 }
 
-void polyline_begin(PolylineReader *reader)
+void polyline_begin(PolylineReader *reader, int line)
 {
     PolylineFile *lines = reader->lines;
     end_strand(reader);
@@ -31,7 +31,9 @@ void polyline_begin(PolylineReader *reader)
     if (count + 2 > room) {
         reader->strand_room = 2 * count + 64;
         lines->first = mem_resize(lines->first, room, reader->strand_room, sizeof *lines->first);
+        lines->line = mem_resize(lines->line, room, reader->strand_room, sizeof *lines->line);
     }
+    lines->line[lines->strand_count] = line;
     lines->first[lines->strand_count++] = lines->point_count;
 }
 
@@ -51,86 +53,58 @@ bool polyline_add(PolylineReader *reader, Vec3 x)
 
 /* ---- CSV ---- */
 
+static Vec3 place_of(const Table *table, int row)
+{
+    return vec3_load(table->values + 4 * (size_t)row + 1);
+}
+
+/* By how much the chords on either side of a row turn; at the ends none. */
+static double turn_at(const Table *table, int row)
+{
+    if (row < 1 || row > table->rows - 2) return 0;
+    Vec3 x = place_of(table, row), before = vec3_sub(x, place_of(table, row - 1)),
+         after = vec3_sub(place_of(table, row + 1), x);
+    return atan2(vec3_length(vec3_cross(before, after)), vec3_dot(before, after));
+}
+
+/* Is s the points' arclength? A smooth curve is longer than its chords, by no more than arcs that turn as
+ * they do; and no shorter than the few chords between far points, in which noise does not count. */
+static bool check_arclength(const Table *table, const PolylineReader *reader)
+{
+    const double slack = 1.02, most = 2; /* rad */
+    double far = 0, arcs = 0, s = table->values[4 * (size_t)(table->rows - 1)] - table->values[0];
+    int stride = table->rows / 16 > 1 ? table->rows / 16 : 1;
+    for (int i = 1; i < table->rows; i++) {
+        double chord = vec3_length(vec3_sub(place_of(table, i), place_of(table, i - 1))),
+               turn = fmin(fmax(turn_at(table, i - 1), turn_at(table, i)), most);
+        arcs += chord * (turn > 0 ? turn / 2 / sin(turn / 2) : 1);
+        if (i % stride == 0) far += vec3_length(vec3_sub(place_of(table, i), place_of(table, i - stride)));
+    }
+    return (far <= slack * s && s <= slack * arcs) ||
+           error_set(reader->err,
+                     "%s:%d: s grows by %g to here, and the points are %g apart along the curve: s must be "
+                     "their arclength, in the unit of x, y, z",
+                     reader->path, table->line[table->rows - 1], s, arcs);
+}
+
 static bool read_csv(PolylineReader *reader, const char *text, size_t length)
 {
     Table table;
-    if (!table_parse(reader->path, text, (long)length, 0, &table, reader->err)) return false;
+    if (!table_parse(reader->path, text, (long)length, NULL, &table, reader->err)) return false;
     bool ok = table.columns == 3 || table.columns == 4;
     if (!ok)
         error_set(reader->err, "%s:%d: %d number%s in this row; it must be x, y, z or s, x, y, z",
                   reader->path, table.line[0], table.columns, table.columns == 1 ? "" : "s");
-    polyline_begin(reader);
+    ok = ok &&
+         table_check_header(&table, reader->path, "s, x, y, z" + (table.columns == 3 ? 3 : 0), reader->err);
+    if (ok && table.columns == 4)
+        ok =
+            table_check_increasing(&table, reader->path, "s", reader->err) && check_arclength(&table, reader);
+    polyline_begin(reader, ok ? table.line[0] : 0);
     for (int i = 0; ok && i < table.rows; i++)
         ok = polyline_add(reader, vec3_load(table.values + (size_t)(i + 1) * (size_t)table.columns - 3)) ||
              error_prefix(reader->err, "%s", reader->path);
     table_clear(&table);
-    return ok;
-}
-
-/* ---- OBJ ---- */
-
-/* All vertices, because lines may come before them; tells whether there are lines or faces. */
-static bool read_vertices(Scan *scan, MeshReader *vertices, bool *lines, bool *faces)
-{
-    while (scan_line(scan)) {
-        Word word;
-        scan_word(scan, &word);
-        if (word_is(word, "v") && !obj_vertex(scan, vertices)) return false;
-        *lines |= word_is(word, "l");
-        *faces |= word_is(word, "f");
-    }
-    return true;
-}
-
-/* An l line; before: the vertex at which the last one ended. */
-static bool read_line(Scan *scan, PolylineReader *reader, const MeshFile *mesh, int so_far, int *before)
-{
-    int count = 0;
-    for (Word word; scan_word(scan, &word); count++) {
-        int index;
-        if (!obj_index(scan, word, so_far, &index)) return false;
-        if (index >= mesh->vertex_count)
-            return scan_refuse(scan, "vertex %d does not exist: there are %d", index + 1, mesh->vertex_count);
-        bool goes_on = count == 0 && index == *before;
-        if (count == 0 && !goes_on) polyline_begin(reader);
-        if (!goes_on && !polyline_add(reader, vec3_load(mesh->vertices[index])))
-            return error_prefix(reader->err, "%s", reader->path);
-        *before = index;
-    }
-    return count > 1 || scan_refuse(scan, "a line needs two vertices at least");
-}
-
-static bool read_lines(Scan *scan, PolylineReader *reader, const MeshFile *mesh)
-{
-    int so_far = 0, before = -1;
-    while (scan_line(scan)) {
-        Word word;
-        scan_word(scan, &word);
-        so_far += word_is(word, "v");
-        if (word_is(word, "l") && !read_line(scan, reader, mesh, so_far, &before)) return false;
-    }
-    return true;
-}
-
-static bool read_obj(PolylineReader *reader, const char *text, size_t length)
-{
-    MeshFile mesh = {0};
-    MeshReader vertices = {.mesh = &mesh};
-    bool lines = false, faces = false;
-    Scan scan = scan_start(reader->path, text, length, '#', "", reader->err);
-    bool ok = read_vertices(&scan, &vertices, &lines, &faces);
-    if (ok && faces && !lines)
-        ok = error_set(reader->err, "%s: there are faces in it and no lines", reader->path);
-    if (ok && lines) {
-        scan = scan_start(reader->path, text, length, '#', "", reader->err);
-        ok = read_lines(&scan, reader, &mesh);
-    } else {
-        polyline_begin(reader);
-        for (int v = 0; ok && v < mesh.vertex_count; v++)
-            ok = polyline_add(reader, vec3_load(mesh.vertices[v])) ||
-                 error_prefix(reader->err, "%s", reader->path);
-    }
-    mesh_file_clear(&mesh);
     return ok;
 }
 
@@ -139,7 +113,7 @@ static bool read_obj(PolylineReader *reader, const char *text, size_t length)
 static const struct {
     const char *format;
     bool (*read)(PolylineReader *reader, const char *text, size_t length);
-} formats[] = {{"csv", read_csv}, {"obj", read_obj}, {"svg", polyline_read_svg}};
+} formats[] = {{"csv", read_csv}, {"obj", polyline_read_obj}, {"svg", polyline_read_svg}};
 
 bool polyline_file_parse(const char *path, const char *format, const char *text, long length,
                          PolylineFile *lines, Error *err)
@@ -173,5 +147,6 @@ void polyline_file_clear(PolylineFile *lines)
 {
     mem_free(lines->points);
     mem_free(lines->first);
+    mem_free(lines->line);
     *lines = (PolylineFile){0};
 }

@@ -10,11 +10,13 @@ typedef struct PolylineReader {
     Error *err;
 } PolylineReader;
 
-/* Begins a strand; one that has got a single point or none by the next is dropped. */
-void polyline_begin(PolylineReader *reader);
+/* Begins a strand, at that line of the file; one that has got a single point or none by the next is dropped.
+ */
+void polyline_begin(PolylineReader *reader, int line);
 
 /* Refused beyond twenty million points, with a sentence that does not name the file. */
 bool polyline_add(PolylineReader *reader, Vec3 x);
 
-/* The format that needs a library. */
+/* The formats of their own files. */
+bool polyline_read_obj(PolylineReader *reader, const char *text, size_t length);
 bool polyline_read_svg(PolylineReader *reader, const char *text, size_t length);

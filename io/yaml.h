@@ -78,8 +78,14 @@ typedef struct YamlField {
     const char *fallback; /* default, as scene text: "1 mm", "[0, 0, 0]", "{every: 1}"; NULL: none  */
     const char *unit;     /* SI unit, any product: "m", "A/m", "N s/m"; NULL: a plain number        */
     const char *range;    /* of each number, SI: "(0, inf)", "[0, 0.5]", "(-inf, 0]"; NULL: any     */
+    const char *when;     /* where the key is used, NULL: always. Conditions joined by `&`: keys of the same table
+                           * of which one is written, "points | arc", or none, "!curve"; or a key that has one of
+                           * some values, "solver: pbd". A slash begins a key of the root: "/job: simulate" */
+    const char *otherwise; /* what there is in its place elsewhere: ends the sentence of its refusal        */
     const char *const *choices; /* NULL-terminated: YAML_NAMES("hinge", "midedge")                        */
     int min_count, max_count;   /* of a list's entries; 0: no limit                                       */
+    const char *const *also;    /* other names of a key that YAML 1.1 takes for a boolean: what it becomes
+                                 * there, and a word that passes through. NULL: none                      */
 } YamlField;
 
 struct YamlTable {
@@ -135,8 +141,9 @@ typedef struct YamlError {
 } YamlError;
 
 /* Reads a file, or a text already in memory (path: for messages and for the paths in the scene). Always gives
- * a YamlFile; what is wrong is in its errors. Refused: more than 64 MiB, 32 levels or 4 million values,
- * anchors, tags, several documents, NULs, invalid UTF-8, duplicate keys. */
+ * a YamlFile; what is wrong is in its errors. Aliases are copies of what their anchors stand for, of up to
+ * 100 000 values in all. Refused: more than 64 MiB, 32 levels or 4 million values, tags, merge keys, several
+ * documents, NULs, invalid UTF-8, duplicate keys. */
 YamlFile *yaml_read(const char *path);
 YamlFile *yaml_parse(const char *path, const char *text, size_t length);
 void yaml_destroy(YamlFile *file);
@@ -146,10 +153,14 @@ void yaml_destroy(YamlFile *file);
  * shell.mesh.n=7: ". */
 bool yaml_override(YamlFile *file, const char *assignment);
 
-/* Fills the table's struct, defaults included. The file's first key must be `slender: 1`, which no table
- * lists. Paths are taken relative to the scene file. False if the file has any error; the struct is then
- * empty (zeroed). */
+/* Fills the table's struct, defaults included. The file must have the key `slender: 1`, which no table
+ * lists. The order of keys means nothing, and a number or boolean in quotes is one. Paths are taken relative
+ * to the scene file. False if the file has any error; the struct is then empty (zeroed). */
 bool yaml_load(YamlFile *file, const YamlTable *table, void *scene);
+
+/* Of a file that was loaded: refuses every key that is written where nothing uses it (YamlField.when), unless
+ * it says no more than its default. */
+bool yaml_check_use(YamlFile *file, const YamlTable *table);
 
 /* Frees what the struct owns, by the same table, and zeroes it. (libyaml already has a yaml_free.) */
 void yaml_clear(const YamlTable *table, void *scene);

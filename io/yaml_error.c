@@ -91,9 +91,8 @@ Node *tree_follow(const YamlFile *file, const char *key, const char **rest)
     for (const char *next = key; node && path_step(&next, &name, &length, &index); *rest = next) {
         Node *item = NULL;
         if (index >= 0 && node->kind == NODE_LIST && index < node->count) item = node->items[index];
-        for (int i = 0; index < 0 && node->kind == NODE_MAP && i < node->count; i++)
-            if (!strncmp(node->keys[i], name, (size_t)length) && !node->keys[i][length])
-                item = node->items[i];
+        int known = index < 0 && node->kind == NODE_MAP ? node_index(node, name, (size_t)length) : -1;
+        if (known >= 0) item = node->items[known];
         if (!item) return node;
         node = item;
     }
@@ -216,8 +215,10 @@ static int distance(const char *a, const char *b)
     return d[n][m];
 }
 
-const char *nearest_word(const char *word, const char *(*words)(const void *self, int i), const void *self)
+const char *nearest_word(const YamlFile *file, const char *word,
+                         const char *(*words)(const void *self, int i), const void *self)
 {
+    if (file->stored_count == YAML_MAX_ERRORS) return NULL;
     const char *best = NULL;
     int least = 1 + (int)strlen(word) / 3, near = least + 1;
     for (int i = 0; words(self, i); i++) {

@@ -5,6 +5,8 @@
 #include <stdio.h>
 #include <string.h>
 
+static const char VERSION_KEY[] = "slender";
+
 static bool load_table(Load *load, const YamlTable *table, const Node *node, void *scene);
 static bool load_value(Load *load, const YamlField *row, const Node *node, void *scene);
 
@@ -194,7 +196,7 @@ static bool load_default(Load *load, const YamlField *row, void *scene)
  */
 static bool accepts(const YamlField *row, const Node *node)
 {
-    bool number = node->kind == NODE_SCALAR && !node->quoted && unit_is_number(node->text);
+    bool number = node->kind == NODE_SCALAR && unit_is_number(node->text);
     switch (row->kind) {
     case FIELD_NUMBER:
     case FIELD_INTEGER:
@@ -208,9 +210,7 @@ static bool accepts(const YamlField *row, const Node *node)
         return false;
     case FIELD_NUMBERS:
         for (int i = 0; node->kind == NODE_LIST && i < node->count; i++)
-            if (node->items[i]->kind != NODE_SCALAR || node->items[i]->quoted ||
-                !unit_is_number(node->items[i]->text))
-                return false;
+            if (node->items[i]->kind != NODE_SCALAR || !unit_is_number(node->items[i]->text)) return false;
         return node->kind == NODE_LIST;
     default:
         return node->kind == NODE_LIST;
@@ -219,7 +219,7 @@ static bool accepts(const YamlField *row, const Node *node)
 
 /* The row that a value which is no mapping goes to: the first that accepts it, else the first of all, whose
  * refusal tells what is wanted. */
-static const YamlField *short_row(const YamlTable *table, const Node *node)
+const YamlField *load_short_row(const YamlTable *table, const Node *node)
 {
     const YamlField *first = NULL;
     for (const YamlField *row = table->fields; row->key; row++) {
@@ -230,10 +230,37 @@ static const YamlField *short_row(const YamlTable *table, const Node *node)
     return first;
 }
 
+/* Is it a name of the row's key? */
+static bool row_is(const YamlField *row, const char *key)
+{
+    if (!strcmp(row->key, key)) return true;
+    for (int k = 0; row->also && row->also[k]; k++)
+        if (!strcmp(row->also[k], key)) return true;
+    return false;
+}
+
+/* The index of the row's value in a mapping, under any of its names; -1: none. *count: under how many. */
+static int row_index(const YamlField *row, const Node *node, int *count)
+{
+    int index = node_index(node, row->key, strlen(row->key));
+    *count = index >= 0;
+    for (int k = 0; row->also && row->also[k]; k++) {
+        int other = node_index(node, row->also[k], strlen(row->also[k]));
+        if (other >= 0) index = other, ++*count;
+    }
+    return index;
+}
+
+const Node *load_row_item(const YamlField *row, const Node *node)
+{
+    int count, index = row_index(row, node, &count);
+    return index < 0 ? NULL : node->items[index];
+}
+
 const YamlField *table_row(const YamlTable *table, const char *key)
 {
     for (const YamlField *row = table->fields; row->key; row++)
-        if (!strcmp(row->key, key)) return row;
+        if (row_is(row, key)) return row;
     return NULL;
 }
 
@@ -253,7 +280,7 @@ static void list_keys(const YamlTable *table, char *text, size_t size)
 static bool unknown_key(Load *load, const YamlTable *table, const Node *node, int i)
 {
     char known[700];
-    const char *near = nearest_word(node->keys[i], field_word, table->fields);
+    const char *near = nearest_word(load->file, node->keys[i], field_word, table->fields);
     Node at = {
         .line = node->key_place[i][0], .column = node->key_place[i][1], .origin = node->items[i]->origin};
     list_keys(table, known, sizeof known);
@@ -265,9 +292,15 @@ static bool unknown_key(Load *load, const YamlTable *table, const Node *node, in
     return false;
 }
 
+/* The version's key, at the root, is no row of a table. */
+static bool is_version(const Load *load, const char *key)
+{
+    return !load->path[0] && !strcmp(key, VERSION_KEY);
+}
+
 static bool is_given(const YamlField *row, const Node *node)
 {
-    const Node *item = node_find(node, row->key);
+    const Node *item = load_row_item(row, node);
     return item && !(row->kind == FIELD_BOOL && item->kind == NODE_SCALAR && strcmp(item->text, "true"));
 }
 
@@ -302,14 +335,22 @@ static bool group_is_given(const YamlTable *table, const Node *node, int group)
     return false;
 }
 
+bool load_row_alone(Load *load, const YamlField *row, const Node *item, void *scene)
+{
+    set_absent(row, scene);
+    return item ? load_value(load, row, item, scene) : load_default(load, row, scene);
+}
+
 static bool load_row(Load *load, const YamlTable *table, const YamlField *row, const Node *node, void *scene)
 {
-    const Node *item = node_find(node, row->key);
+    int count, index = row_index(row, node, &count);
     size_t length = load_enter(load, row->key, 0);
     bool ok = true;
     set_absent(row, scene);
-    if (item) {
-        ok = load_value(load, row, item, scene);
+    if (count > 1) {
+        ok = load_wrong(load, node, "is there twice, under two of its names");
+    } else if (index >= 0) {
+        ok = load_value(load, row, node->items[index], scene);
     } else if (row->required && !row->one_of) {
         yaml_error(load->file, node, "%s is missing%s%s", load->path, row->doc ? ": " : "",
                    row->doc ? row->doc : "");
@@ -325,7 +366,8 @@ static bool load_map_node(Load *load, const YamlTable *table, const Node *node, 
 {
     bool ok = true;
     for (int i = 0; i < node->count; i++)
-        if (!table_row(table, node->keys[i])) ok = unknown_key(load, table, node, i);
+        if (!table_row(table, node->keys[i]) && !is_version(load, node->keys[i]))
+            ok = unknown_key(load, table, node, i);
     for (const YamlField *row = table->fields; row->key; row++)
         ok = load_row(load, table, row, node, scene) && ok;
     for (int group = 1, more = 1; more; group++) {
@@ -339,7 +381,7 @@ static bool load_map_node(Load *load, const YamlTable *table, const Node *node, 
 static bool load_table(Load *load, const YamlTable *table, const Node *node, void *scene)
 {
     if (node->kind == NODE_MAP) return load_map_node(load, table, node, scene);
-    const YamlField *row = short_row(table, node);
+    const YamlField *row = load_short_row(table, node);
     if (!row) {
         char what[800] = "must be a mapping with the keys ";
         list_keys(table, what + strlen(what), sizeof what - strlen(what));
@@ -357,30 +399,28 @@ static bool load_table(Load *load, const YamlTable *table, const Node *node, voi
                 .items = &item,
                 .keys = &key,
                 .key_place = place};
-    return load_map_node(load, table, &map, scene);
+    lookup_add(&map.lookup, lookup_hash(0, key, strlen(key)), 0);
+    bool ok = load_map_node(load, table, &map, scene);
+    lookup_clear(&map.lookup);
+    return ok;
 }
 
 bool yaml_load(YamlFile *file, const YamlTable *table, void *scene)
 {
     memset(scene, 0, table->size);
     if (!file->root && !file->error_count)
-        yaml_error_at(file, 1, 1, "the file is empty; a scene begins with `slender: 1`");
+        yaml_error_at(file, 1, 1, "the file is empty; a scene has the key `slender: 1`");
     if (!file->root) return false;
     if (file->root->kind != NODE_MAP) {
-        yaml_error(file, file->root, "a scene is a mapping that begins with `slender: 1`");
+        yaml_error(file, file->root, "a scene is a mapping with the key `slender: 1`");
         return false;
     }
-    const Node *version =
-        file->root->count && !strcmp(file->root->keys[0], "slender") ? file->root->items[0] : NULL;
+    const Node *version = node_find(file->root, VERSION_KEY);
     if (!version || version->kind != NODE_SCALAR || strcmp(version->text, "1"))
         yaml_error(file, version ? version : file->root,
-                   "the first key of a scene must be `slender: 1`, the format's version");
-    /* The version's key is no row of the table. */
-    Node rest = *file->root;
-    int skip = version ? 1 : 0;
-    rest.items += skip, rest.keys += skip, rest.key_place += skip, rest.count -= skip;
+                   "a scene must have the key `slender: 1`, the format's version");
     Load load = {.file = file};
-    load_table(&load, table, &rest, scene);
+    load_table(&load, table, file->root, scene);
     if (!file->error_count) return true;
     yaml_clear(table, scene);
     return false;

@@ -18,6 +18,15 @@ bool load_wrong(Load *load, const Node *at, const char *what);
 /* "a list", "a mapping", "a text" */
 const char *node_kind_name(const Node *node);
 
+/* A row of a table by itself: the node's value, or the default (NULL). scene is the whole struct, zeroed. */
+bool load_row_alone(Load *load, const YamlField *row, const Node *item, void *scene);
+
+/* The row's value in a mapping, under any of its names; NULL: there is none. */
+const Node *load_row_item(const YamlField *row, const Node *map);
+
+/* The row that a value which is no mapping goes to; NULL: there is none. */
+const YamlField *load_short_row(const YamlTable *table, const Node *node);
+
 /* One value; false after adding an error. */
 bool load_number(Load *load, const YamlField *row, const Node *node, double *value);
 bool load_integer(Load *load, const YamlField *row, const Node *node, int *value);

@@ -146,10 +146,10 @@ static void schema_value(Text *text, const YamlField *row)
 
 /* The property, its description beside it: draft-07 ignores what stands beside a $ref, so both go into allOf.
  */
-static void schema_property(Text *text, const YamlField *row)
+static void schema_property(Text *text, const YamlField *row, const char *key)
 {
     text_add(text, "        ");
-    text_add_quoted(text, row->key);
+    text_add_quoted(text, key);
     text_add(text, ": {\"description\": ");
     char *doc = mem_format("%s%s%s%s", row->doc, row->unit ? " [" : "", row->unit ? row->unit : "",
                            row->unit ? "]" : "");
@@ -169,7 +169,11 @@ static void schema_object(Text *text, const YamlTable *table, bool root)
         text_add(text, "        \"slender\": {\"description\": \"the format's version\", \"const\": 1}");
     for (const YamlField *row = table->fields; row->key; row++) {
         if (root || row != table->fields) text_add(text, ",\n");
-        schema_property(text, row);
+        schema_property(text, row, row->key);
+        for (int k = 0; row->also && row->also[k]; k++) {
+            text_add(text, ",\n");
+            schema_property(text, row, row->also[k]);
+        }
     }
     text_add(text, "\n      }");
     int required = 0;
@@ -260,9 +264,27 @@ static void manual_kind(Text *text, const YamlField *row)
     if (row->range) text_add(text, ", in %s", row->range);
 }
 
+/* "/job: simulate & !curve" as " (with `job: simulate`, without `curve`)". */
+static void manual_when(Text *text, const char *when)
+{
+    for (int k = 0; when && *when; k++) {
+        bool absent = *when == '!';
+        when += strspn(when, "/!");
+        size_t length = strcspn(when, "&"), end = length;
+        while (end && when[end - 1] == ' ') end--;
+        text_add(text, "%s%s `", k ? ", " : " (", absent ? "without" : "with");
+        for (size_t i = 0; i < end; i++) text_add(text, when[i] == '|' ? "\\|" : "%c", when[i]);
+        text_add(text, "`");
+        when += length + strspn(when + length, "& ");
+        if (!*when) text_add(text, ")");
+    }
+}
+
 static void manual_row(Text *text, const YamlField *row)
 {
-    text_add(text, "| `%s` | ", row->key);
+    text_add(text, "| `%s`", row->key);
+    for (int k = 0; row->also && row->also[k]; k++) text_add(text, ", `%s`", row->also[k]);
+    text_add(text, " | ");
     manual_kind(text, row);
     text_add(text, " | ");
     if (row->fallback)
@@ -271,7 +293,9 @@ static void manual_row(Text *text, const YamlField *row)
         text_add(text, row->one_of ? "one of these (%d)" : "needed", row->one_of);
     else if (row->one_of)
         text_add(text, "one of these (%d)", row->one_of);
-    text_add(text, " | %s%s |\n", row->doc, row->short_form ? "; may stand alone" : "");
+    text_add(text, " | %s%s", row->doc, row->short_form ? "; may stand alone" : "");
+    manual_when(text, row->when);
+    text_add(text, " |\n");
 }
 
 char *yaml_manual(const YamlTable *table, const char *title)
@@ -315,6 +339,7 @@ void yaml_check_table(const YamlTable *table)
         for (int i = 0; i < k; i++) assert(strcmp(tables.tables[i]->name, tables.tables[k]->name));
         for (const YamlField *row = tables.tables[k]->fields; row->key; row++) {
             check_row(row);
+            assert(row_use_is_sound(table, tables.tables[k], row));
             assert(row->table != tables.tables[k]);
             if (!row->fallback) continue;
             /* The default must load: a table of this one row, filled from nothing. */

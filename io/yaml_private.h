@@ -1,5 +1,6 @@
 /* yaml_private.h - the tree that scene files are read into, and what the parts of yaml.h share. */
 #pragma once
+#include "io/lookup.h"
 #include "io/yaml.h"
 
 typedef enum NodeKind { NODE_SCALAR, NODE_LIST, NODE_MAP } NodeKind;
@@ -9,7 +10,6 @@ typedef struct Node Node;
 /* A value; of a mapping, keys[i] stands at key_line[i] and has items[i]. Owned all the way down. */
 struct Node {
     NodeKind kind;
-    bool quoted;      /* a scalar in quotes is a text, never a number */
     int line, column; /* from 1; 0: from --set or a default           */
     const char
         *origin; /* the --set assignment that it comes from, borrowed from the file; NULL: the file itself */
@@ -18,6 +18,7 @@ struct Node {
     Node **items;
     char **keys;
     int (*key_place)[2];
+    Lookup lookup; /* of keys */
 };
 
 struct YamlFile {
@@ -31,7 +32,13 @@ struct YamlFile {
     bool *error_is_set; /* [stored] the sentence begins with --set, not with a place */
 };
 
-enum { YAML_MAX_ERRORS = 100, YAML_MAX_DEPTH = 32, YAML_MAX_VALUES = 4000000, YAML_MAX_BYTES = 64 << 20 };
+enum {
+    YAML_MAX_ERRORS = 100,
+    YAML_MAX_DEPTH = 32,
+    YAML_MAX_VALUES = 4000000,
+    YAML_MAX_BYTES = 64 << 20,
+    YAML_MAX_COPIES = 100000 /* values that aliases make */
+};
 
 Node *node_create(NodeKind kind, int line, int column);
 void node_destroy(Node *node);
@@ -39,8 +46,12 @@ void node_destroy(Node *node);
 /* Takes key (NULL in lists) and item. */
 void node_append(Node *node, char *key, int line, int column, Node *item);
 
-/* The item under a key, or NULL. */
+/* The item under a key, or NULL; the index of a key of that length in a map, or -1. */
 Node *node_find(const Node *map, const char *key);
+int node_index(const Node *map, const char *key, size_t length);
+
+/* A copy of so many levels and, taken from *left, so many values at most; else NULL. */
+Node *node_copy(const Node *node, int depth, int *left);
 
 /* The tree of a text; errors go to the file (NULL: a default, which must be right). NULL where there is none.
  */
@@ -91,6 +102,13 @@ static inline int *row_count(const YamlField *row, const void *scene)
 /* Is the value there, or as it is when absent? */
 bool row_is_given(const YamlField *row, const void *scene);
 
-/* The known word nearest to a misspelt one; NULL if none is near. words(self, i) gives them, NULL at the end.
- */
-const char *nearest_word(const char *word, const char *(*words)(const void *self, int i), const void *self);
+/* "key: value" as in the effective scene; "" where it is not given. To be freed. */
+char *row_text(const YamlField *row, const void *scene);
+
+/* Are the keys and values in the row's condition there? */
+bool row_use_is_sound(const YamlTable *root, const YamlTable *table, const YamlField *row);
+
+/* The known word nearest to a misspelt one; NULL if none is near, or if the file has more errors than are
+ * shown. words(self, i) gives them, NULL at the end. */
+const char *nearest_word(const YamlFile *file, const char *word,
+                         const char *(*words)(const void *self, int i), const void *self);

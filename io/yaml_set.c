@@ -29,8 +29,8 @@ static Node **slot(Node *node, const char *name, int length, int index, const ch
         return &node->items[index];
     }
     if (node->kind != NODE_MAP) return *what = "there is no mapping with that key", NULL;
-    for (int i = 0; i < node->count; i++)
-        if (!strncmp(node->keys[i], name, (size_t)length) && !node->keys[i][length]) return &node->items[i];
+    int known = node_index(node, name, (size_t)length);
+    if (known >= 0) return &node->items[known];
     node_append(node, mem_format("%.*s", length, name), 0, 0, NULL);
     return &node->items[node->count - 1];
 }

@@ -53,7 +53,7 @@ const char *node_kind_name(const Node *node)
 bool load_number(Load *load, const YamlField *row, const Node *node, double *value)
 {
     char what[256];
-    if (node->kind != NODE_SCALAR || node->quoted) {
+    if (node->kind != NODE_SCALAR) {
         snprintf(what, sizeof what, "must be a number%s%s, not %s", row->unit ? " in " : "",
                  row->unit ? row->unit : "", node_kind_name(node));
         return load_wrong(load, node, what);
@@ -118,7 +118,7 @@ bool load_choice(Load *load, const YamlField *row, const Node *node, int *value)
                                                  : " or ",
                            row->choices[k]);
     if (node->kind == NODE_SCALAR) {
-        const char *near = nearest_word(node->text, choice_word, row->choices);
+        const char *near = nearest_word(load->file, node->text, choice_word, row->choices);
         length += snprintf(what + length, sizeof what - (size_t)length, ", not '%.40s'", node->text);
         if (near && length < 480)
             snprintf(what + length, sizeof what - (size_t)length, "; did you mean '%s'?", near);

@@ -101,7 +101,7 @@ static void write_row(Text *text, const YamlField *row, const void *scene, int d
 {
     const void *member = row_member(row, scene);
     text_indent(text, depth);
-    text_add(text, "%s: ", row->key);
+    text_add(text, row->also ? "\"%s\": " : "%s: ", row->key); /* what some take for a boolean, in quotes */
     switch (row->kind) {
     case FIELD_NUMBER:
         write_number(text, *(const double *)member);
@@ -147,6 +147,14 @@ static void write_table(Text *text, const YamlTable *table, const void *scene, i
     if (written) return;
     text_indent(text, depth);
     text_add(text, "{}\n");
+}
+
+char *row_text(const YamlField *row, const void *scene)
+{
+    Text text = {0};
+    text_add(&text, "%s", "");
+    if (row_is_given(row, scene)) write_row(&text, row, scene, 0);
+    return text.text;
 }
 
 char *yaml_write(const YamlTable *table, const void *scene)

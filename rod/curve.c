@@ -1,8 +1,10 @@
 #include "rod/curve.h"
 #include "base/memory.h"
 #include <math.h>
+#include <string.h>
 
-enum { GAUSS = 5, REACH = 4, POINTS = 2 * REACH + 1, PANELS_LEAST = 128, GRID = 1024 };
+enum { GAUSS = 5, REACH = 4, POINTS = 2 * REACH + 1, PANELS_LEAST = 128 };
+enum { GRID_LEAST = 1024, GRID_MOST = 1 << 17, GRID_PER_PANEL = 8 };
 
 /* Gauss-Legendre on [0, 1]. */
 static const double gauss_at[GAUSS] = {0.04691007703066800, 0.23076534494715845, 0.5, 0.76923465505284155,
@@ -13,7 +15,8 @@ static const double gauss_weight[GAUSS] = {0.11846344252809454, 0.23931433524968
 typedef struct Path {
     RodCurvePoint *point;
     RodCurveJet *jet; /* NULL: derivatives by differences of point's places */
-    Vec3 *grid;       /* [GRID + 1] places at equal parameters, for these   */
+    Vec3 *grid;       /* [intervals + 1] places at equal parameters, for these */
+    int intervals;
     void *self;
     double u0, u1;
     int panels;
@@ -34,10 +37,12 @@ static Vec3 place(Path *path, double u)
     return vec3(0, 0, 0);
 }
 
-/* Weights of the first and second derivative at z of a function known at -REACH .. REACH. [Fornberg 1988] */
-static void difference_weights(double z, double *first, double *second)
+/* Weights w[point][derivative] at z of a function known at -REACH .. REACH. [Fornberg 1988] */
+static void difference_weights(double z, double w[POINTS][3])
 {
-    double w[POINTS][3] = {{1, 0, 0}}, product = 1, offset = -REACH - z;
+    double product = 1, offset = -REACH - z;
+    memset(w, 0, POINTS * sizeof *w);
+    w[0][0] = 1;
     for (int i = 1; i < POINTS; i++) {
         double next = 1, before = offset, x = i - REACH;
         int most = i < 2 ? i : 2;
@@ -52,32 +57,32 @@ static void difference_weights(double z, double *first, double *second)
         }
         product = next;
     }
-    for (int i = 0; i < POINTS; i++) first[i] = w[i][1], second[i] = w[i][2];
 }
 
-/* By differences of eighth order on points within the range. */
-static Vec3 difference_slope(Path *path, double u, Vec3 *bend)
+/* Place and derivatives by differences of eighth order on points within the range. */
+static void difference_jet(const Path *path, double u, Vec3 jet[3])
 {
-    double h = (path->u1 - path->u0) / GRID, first[POINTS], second[POINTS];
+    double h = (path->u1 - path->u0) / path->intervals, w[POINTS][3];
     double place_of_u = (u - path->u0) / h;
-    int middle = (int)fmin(fmax(rint(place_of_u), REACH), GRID - REACH);
-    difference_weights(place_of_u - middle, first, second);
-    Vec3 sum = vec3(0, 0, 0), sum2 = sum;
+    int middle = (int)fmin(fmax(rint(place_of_u), REACH), path->intervals - REACH);
+    difference_weights(place_of_u - middle, w);
+    jet[0] = jet[1] = jet[2] = vec3(0, 0, 0);
     for (int k = 0; k < POINTS; k++) {
         Vec3 x = path->grid[middle + k - REACH];
-        sum = vec3_axpy(first[k] / h, x, sum);
-        sum2 = vec3_axpy(second[k] / (h * h), x, sum2);
+        jet[0] = vec3_axpy(w[k][0], x, jet[0]);
+        jet[1] = vec3_axpy(w[k][1] / h, x, jet[1]);
+        jet[2] = vec3_axpy(w[k][2] / (h * h), x, jet[2]);
     }
-    if (bend) *bend = sum2;
-    return sum;
 }
 
 /* dx/du and, where it is asked for, d2x/du2. */
 static Vec3 slope(Path *path, double u, Vec3 *bend)
 {
-    if (!path->jet) return difference_slope(path, u, bend);
     Vec3 jet[3];
-    path->jet(path->self, u, jet);
+    if (path->jet)
+        path->jet(path->self, u, jet);
+    else
+        difference_jet(path, u, jet);
     if (bend) *bend = jet[2];
     return jet[1];
 }
@@ -129,21 +134,68 @@ static bool fill_stations(Path *path, RodCurve *curve)
     return moves;
 }
 
-static void fill_grid(Path *path)
+/* How far the curve is from what the grid says of it. */
+typedef struct Miss {
+    double off, at;           /* the farthest, and its parameter */
+    double slope, bend, size; /* the largest dx/du, d2x/du2 and distance from the start */
+} Miss;
+
+/* At a place in each interval, the golden section's so that no wave hides between them. */
+static Miss find_miss(Path *path)
 {
-    path->grid = mem_alloc(GRID + 1, sizeof *path->grid);
-    for (int k = 0; k <= GRID && isnan(path->bad); k++)
-        path->grid[k] = place(path, path->u0 + k * ((path->u1 - path->u0) / GRID));
+    const double golden = 0.6180339887498949;
+    double h = (path->u1 - path->u0) / path->intervals;
+    Miss miss = {.at = path->u0};
+    for (int k = 0; k < path->intervals && isnan(path->bad); k++) {
+        Vec3 jet[3];
+        double u = path->u0 + h * (k + fmod((k + 1) * golden, 1));
+        Vec3 x = place(path, u);
+        difference_jet(path, u, jet);
+        double off = vec3_length(vec3_sub(x, jet[0]));
+        if (off > miss.off) miss.off = off, miss.at = u;
+        miss.slope = fmax(miss.slope, vec3_length(jet[1]));
+        miss.bend = fmax(miss.bend, vec3_length(jet[2]));
+        miss.size = fmax(miss.size, vec3_length(vec3_sub(x, path->grid[0])));
+    }
+    return miss;
+}
+
+/* Halves the grid's intervals until they follow the curve: curvatures are then right to 1e-6 of the largest.
+ * Where curvature jumps that is never so, and the finest grid will do; where the tangent jumps it will not.
+ */
+static bool fill_grid(Path *path, Error *err)
+{
+    const double follows = 2e-8, rounding = 1e-13, smooth = 1e-4;
+    for (path->intervals = GRID_LEAST;; path->intervals *= 2) {
+        double h = (path->u1 - path->u0) / path->intervals;
+        mem_free(path->grid);
+        path->grid = mem_alloc((size_t)path->intervals + 1, sizeof *path->grid);
+        for (int k = 0; k <= path->intervals && isnan(path->bad); k++)
+            path->grid[k] = place(path, path->u0 + k * h);
+        Miss miss = find_miss(path);
+        if (!isnan(path->bad) || miss.off <= follows * h * h * miss.bend + rounding * miss.size) return true;
+        if (path->intervals < GRID_MOST) continue;
+        return miss.off <= smooth * fabs(h) * miss.slope ||
+               error_set(
+                   err,
+                   "the curve has a kink near %g, or waves there that are shorter than 1/%d of its range",
+                   miss.at, GRID_MOST / 40);
+    }
 }
 
 /* The number of panels is a multiple of `pieces`, so that the curve is smooth within each panel. */
 static bool create(Path path, int pieces, int elements, RodCurve *curve, Error *err)
 {
-    int least = elements > PANELS_LEAST ? elements : PANELS_LEAST, stations = 2 * elements + 1;
-    path.panels = (least + pieces - 1) / pieces * pieces;
+    *curve = (RodCurve){0};
     path.bad = NAN;
+    if (!path.jet && !fill_grid(&path, err)) {
+        mem_free(path.grid);
+        return false;
+    }
+    int least = elements > PANELS_LEAST ? elements : PANELS_LEAST, stations = 2 * elements + 1;
+    if (path.intervals / GRID_PER_PANEL > least) least = path.intervals / GRID_PER_PANEL;
+    path.panels = (least + pieces - 1) / pieces * pieces;
     path.s = mem_alloc((size_t)path.panels + 1, sizeof *path.s);
-    if (!path.jet) fill_grid(&path);
     for (int k = 0; k < path.panels; k++)
         path.s[k + 1] = path.s[k] + length_between(&path, panel_start(&path, k), panel_start(&path, k + 1));
     *curve = (RodCurve){.elements = elements,

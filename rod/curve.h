@@ -18,8 +18,9 @@ typedef bool RodCurvePoint(void *self, double u, Vec3 *x);
 
 /* Reparametrises the curve from u0 to u1 by its arclength: to 1e-12 of its length where it is smooth
  * (composite Gauss quadrature of the speed, which comes from differences of eighth order; only places between
- * u0 and u1 are asked for). False and a sentence where a point is missing or not finite, or where the curve
- * stands still. */
+ * u0 and u1 are asked for, at 1024 equal steps or as many more as its waves need). False and a sentence where
+ * a point is missing or not finite, where the curve stands still, and where it has a kink or waves that
+ * 131072 steps cannot follow. */
 bool rod_curve_create(RodCurvePoint *point, void *self, double u0, double u1, int elements, RodCurve *curve,
                       Error *err);
 

@@ -1,6 +1,5 @@
 #include "rod/identify.h"
 #include "base/memory.h"
-#include "rod/inverse.h"
 
 static const double poisson_least = -0.9, poisson_most = 0.5;
 
@@ -27,11 +26,19 @@ static bool frame_is_sound(RodFrame f)
     return fabs(vec3_length(f.n0) - 1) < 0.02 && vec3_length(n2) < 0.02 && vec3_length(n0) < 0.02;
 }
 
-static bool check(const RodIdentifyDef *def, Error *err)
+/* N, whatever the directions. */
+static double total_load(const RodIdentifyDef *def)
+{
+    double sum = vec3_length(def->loads.line) * def->poses[0].curve->length + vec3_length(def->loads.end);
+    for (int k = 0; k < def->loads.point_count; k++) sum += vec3_length(def->loads.points[k].force);
+    return sum;
+}
+
+bool rod_identify_check(const RodIdentifyDef *def, Error *err)
 {
     if (def->pose_count < 2) return error_set(err, "a material needs two poses of the rod or more");
-    if (!(vec3_length(def->gravity) * def->density * def->radius > 0))
-        return error_set(err, "a material needs a rod that has weight: gravity, density and radius");
+    if (!(total_load(def) * def->radius > 0))
+        return error_set(err, "a material needs a rod that has weight or loads, and a radius");
     const RodCurve *first = def->poses[0].curve;
     for (int p = 0; p < def->pose_count; p++) {
         const RodPose *pose = &def->poses[p];
@@ -58,9 +65,15 @@ static RodFrame orthonormal(RodFrame f)
     return (RodFrame){n0, n1, vec3_cross(n0, n1)};
 }
 
-static double line_mass(const RodIdentifyDef *def)
+/* The loads on a pose, whose length is measured: what acts at the end acts at its end. */
+static void find_moments(const RodPose *pose, RodLoads loads, Vec3 *moment)
 {
-    return rod_circle(def->radius, 1, 0, def->density).mass;
+    RodPointLoad *points = mem_alloc((size_t)loads.point_count, sizeof *points);
+    for (int k = 0; k < loads.point_count; k++)
+        points[k] = (RodPointLoad){fmin(loads.points[k].s, pose->curve->length), loads.points[k].force};
+    loads.points = points;
+    rod_moments(pose->curve, loads, moment);
+    mem_free(points);
 }
 
 static Match match_create(const RodIdentifyDef *def)
@@ -77,8 +90,7 @@ static Match match_create(const RodIdentifyDef *def)
         m.clamps[p] = orthonormal(def->poses[p].clamp);
         m.moments[p] = mem_alloc(2 * nodes - 1, sizeof *m.moments[p]);
         m.shapes[p] = mem_alloc(nodes, sizeof *m.shapes[p]);
-        RodLoads loads = {.line = vec3_scale(line_mass(def), def->gravity)};
-        rod_moments(def->poses[p].curve, loads, m.moments[p]);
+        find_moments(&def->poses[p], def->loads, m.moments[p]);
     }
     return m;
 }
@@ -107,7 +119,7 @@ static double node_weight(const Match *m, int i)
 static double match_residuals(Match *m, Guess guess, Vec3 *residuals)
 {
     int poses = m->def->pose_count;
-    RodSection section = rod_circle(m->def->radius, exp(guess.log_young), guess.poisson, m->def->density);
+    RodSection section = rod_circle(m->def->radius, exp(guess.log_young), guess.poisson, 0);
     for (int p = 0; p < poses; p++) {
         Vec3 *shape = m->shapes[p], start = m->def->poses[p].curve->x[0];
         rod_invert(m->def->poses[p].curve, section, m->moments[p], NULL, shape);
@@ -225,7 +237,7 @@ static int scan(Match *m, Start *starts)
 {
     Start row[SCAN];
     double inertia = M_PI * pow(m->def->radius, 4) / 4;
-    double middle = log(line_mass(m->def) * vec3_length(m->def->gravity) * pow(m->length, 3) / inertia);
+    double middle = log(total_load(m->def) * pow(m->length, 2) / inertia);
     int count = 0;
     for (int k = 0; k < SCAN; k++) row[k] = scan_at(m, middle + (k - SCAN / 2) * log(10) / 8);
     for (int k = 0; k < SCAN; k++) {
@@ -263,25 +275,24 @@ static void judge(const Match *m, Guess guess, double sum, RodMaterial *material
     material->poisson_at_limit = material->poisson_known && at_limit;
 }
 
-bool rod_identify(const RodIdentifyDef *def, RodMaterial *material, Error *err)
+RodMaterial rod_identify(const RodIdentifyDef *def)
 {
-    *material = (RodMaterial){0};
-    if (!check(def, err)) return false;
+    RodMaterial material = {0};
     Match m = match_create(def);
     Start starts[STARTS], best = {.relative = INFINITY};
     int count = scan(&m, starts);
     for (int k = 0; k < count; k++) {
         Guess guess = starts[k].guess;
-        bool converged = descend(&m, &guess, &material->iterations);
+        bool converged = descend(&m, &guess, &material.iterations);
         double relative = match_residuals(&m, guess, m.residuals) / m.size;
         if (!(relative < best.relative)) continue;
         best = (Start){guess, relative};
-        material->converged = converged;
+        material.converged = converged;
     }
     double sum = match_residuals(&m, best.guess, m.residuals);
     match_slopes(&m, best.guess);
-    material->distance = sqrt(sum / def->pose_count);
-    judge(&m, best.guess, sum, material);
+    material.distance = sqrt(sum / def->pose_count);
+    judge(&m, best.guess, sum, &material);
     match_clear(&m);
-    return true;
+    return material;
 }

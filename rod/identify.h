@@ -1,17 +1,17 @@
 /* identify.h - Young's modulus and Poisson's ratio of a rod from two or more poses of it.
  *
- * A pose is a measured equilibrium of the same rod under its own weight, held at its first end in another
- * orientation. Whatever EI and GJ are taken to be, each pose has one natural shape (inverse.h); seen from
- * the clamp the shapes of all poses are one and the same only for the right pair. Sought is the least mean
- * square distance of the shapes from their mean, over log E and Poisson's ratio in [-0.9, 0.5]: a scan over
- * six decades of E around weight L^3 = EI, judged by that distance over the size of the shapes (a rod taken
- * for far too soft curls up, and its shapes are close because they are small), then damped Gauss-Newton from
- * the best places.
+ * A pose is a measured equilibrium of the same rod under the same known loads, held at its first end in
+ * another orientation. Whatever EI and GJ are taken to be, each pose has one natural shape (inverse.h); seen
+ * from the clamp the shapes of all poses are one and the same only for the right pair. Sought is the least
+ * mean square distance of the shapes from their mean, over log E and Poisson's ratio in [-0.9, 0.5]: a scan
+ * over six decades of E around load L^2 = EI, judged by that distance over the size of the shapes (a rod
+ * taken for far too soft curls up, and its shapes are close because they are small), then damped Gauss-Newton
+ * from the best places.
  *
- * What the poses tell is EI over the weight per metre, and GJ/EI = 1/(1 + nu): radius and density must be
+ * What the poses tell is EI over the loads, and GJ/EI = 1/(1 + nu): radius and weight must be
  * known. Twisting moments are what tells nu. */
 #pragma once
-#include "rod/frame.h"
+#include "rod/inverse.h"
 
 typedef struct RodPose {
     const RodCurve *curve; /* borrowed; all of about the same length, with the same number of elements */
@@ -22,8 +22,8 @@ typedef struct RodPose {
 typedef struct RodIdentifyDef {
     const RodPose *poses;
     int pose_count;
-    double radius, density; /* m, kg/m^3 */
-    Vec3 gravity;           /* m/s^2     */
+    double radius;  /* m */
+    RodLoads loads; /* in all poses: weight, and what else pulls; points beyond a pose's end act there */
 } RodIdentifyDef;
 
 typedef struct RodMaterial {
@@ -39,7 +39,10 @@ typedef struct RodMaterial {
     bool converged; /* else all iterations were done before the best match was found */
 } RodMaterial;
 
-/* False and a sentence where the poses cannot be of one rod: fewer than two, other element counts, lengths
- * that differ by more than 2 %, frames that are not orthonormal and right-handed to 0.02 or whose tangent is
- * 30 degrees or more off the curve's; or without weight. */
-bool rod_identify(const RodIdentifyDef *def, RodMaterial *material, Error *err);
+/* Can the poses be of one rod? False and a sentence where they cannot: fewer than two, other element counts, lengths
+ * that differ by more than 2 %, frames that are not orthonormal and right-handed to 0.02 or whose tangent is 30 degrees
+ * or more off the curve's; or without loads. */
+bool rod_identify_check(const RodIdentifyDef *def, Error *err);
+
+/* Of poses that pass the check. */
+RodMaterial rod_identify(const RodIdentifyDef *def);

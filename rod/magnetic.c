@@ -1,19 +1,81 @@
 /* Hard-magnetic energy E = -V/2 sum over both nodes of M.R^T B: M the remanent magnetisation of an element in
- * the material frame, V its volume, B uniform. Magnetised along the tangent it acts like an additional pull M
- * V/h B. */
+ * the material frame, V its volume, B at the node. Magnetised along the tangent, in a uniform field, it acts
+ * like an additional pull M V/h B; where B varies in space it also pulls at the nodes, with V/2 G^T R M,
+ * G = dB/dx, so that their positions must be dofs.
+ *
+ * With u = R^T B and Q = R M a turn of the node feels u x M, its position -G^T Q. */
+#include "field/flux.h"
 #include "rod/term.h"
+#include <assert.h>
 
-static Pack3 node_field(const RodTerm *term, int pack, int offset, const double *x, Pack3 turn,
-                        const double *B)
+enum { TURN = 0, PLACE = 6 }; /* an element's dofs: turns of both nodes; where fields vary, their positions */
+
+/* A node of each element: its rotations, and the flux density there. */
+typedef struct Node {
+    Quat q[PACK_LANES];
+    Flux flux;
+    Pack3 u; /* B in the node's frame */
+} Node;
+
+static bool varies(const RodTerm *term)
 {
-    Pack3 u;
+    return term->rod->fields.count > 0;
+}
+
+static int magnetic_size(const void *self)
+{
+    return varies(self) ? 12 : 6;
+}
+
+static void magnetic_dofs(const void *self, int e, int *dof)
+{
+    rod_term_turn_dofs(self, e, dof);
+    for (int i = 0; varies(self) && i < 6; i++)
+        dof[PLACE + i] = ((const RodTerm *)self)->layout.position + 3 * e + i;
+}
+
+static Pack3 rotated(const Quat *q, bool back, Pack3 v)
+{
+    Pack3 r;
     for (int l = 0; l < PACK_LANES; l++) {
-        Quat q = rod_reference(&term->layout, x, segment_lane(&term->layout, pack, l) + offset);
-        Quat half = {1, {turn.x[l] / 2, turn.y[l] / 2, turn.z[l] / 2}};
-        Vec3 v = quat_rotate(quat_conj(quat_unit(quat_mul(q, half))), vec3_load(B));
-        u.x[l] = v.x, u.y[l] = v.y, u.z[l] = v.z;
+        Vec3 w = quat_rotate(back ? quat_conj(q[l]) : q[l], vec3(v.x[l], v.y[l], v.z[l]));
+        r.x[l] = w.x, r.y[l] = w.y, r.z[l] = w.z;
     }
-    return u;
+    return r;
+}
+
+static Pack3 to_world(const Node *node, Pack3 v)
+{
+    return rotated(node->q, false, v);
+}
+
+static Pack3 to_body(const Node *node, Pack3 v)
+{
+    return rotated(node->q, true, v);
+}
+
+/* The field of the numbers in values, which are laid out as p: p's own, or derivatives. */
+static void set_field(const RodTerm *term, const Point *at, const Pack *place, const double *values, Node *node)
+{
+    const Rod *rod = term->rod;
+    FluxNumbers numbers = {values + rod->flux_density, values + rod->field_scale};
+    node->flux = varies(term) ? flux_at(&rod->fields, numbers, pack3_load(place), at->time)
+                              : flux_uniform(numbers.uniform);
+    node->u = to_body(node, node->flux.B);
+}
+
+/* Node k, 0 or 1, of the elements, with their dofs x. */
+static Node node_at(const RodTerm *term, int pack, int k, const Point *at, const Pack *x)
+{
+    Node node;
+    Pack3 turn = pack3_load(x + TURN + 3 * k);
+    for (int l = 0; l < PACK_LANES; l++) {
+        Quat q = rod_reference(&term->layout, at->x, segment_lane(&term->layout, pack, l) + k);
+        Quat half = {1, {turn.x[l] / 2, turn.y[l] / 2, turn.z[l] / 2}};
+        node.q[l] = quat_unit(quat_mul(q, half));
+    }
+    set_field(term, at, x + PLACE + 3 * k, at->p, &node);
+    return node;
 }
 
 /* V/2, m^3 */
@@ -22,45 +84,94 @@ static Pack half_volume(const RodTerm *term)
     return pack_set(term->rod->area * rod_element_length(term->rod) / 2);
 }
 
+/* G^T R M */
+static Pack3 pull(const Node *node, Pack3 M)
+{
+    return pack_mat_left(to_world(node, M), node->flux.gradient);
+}
+
+static PackMat turn_hessian(const Node *node, Pack3 M)
+{
+    return pack_mat_add(pack_mat_diagonal(pack3_dot(M, node->u)),
+                        pack_mat_scale(pack_set(-0.5), pack_mat_symmetric(M, node->u)));
+}
+
+/* Rows of a place, columns of its turn: (R^T dB/dx_l) x M. */
+static PackMat mixed_hessian(const Node *node, Pack3 M)
+{
+    PackMat columns = pack_mat_transpose(node->flux.gradient);
+    return (PackMat){pack3_cross(to_body(node, columns.r0), M), pack3_cross(to_body(node, columns.r1), M),
+                     pack3_cross(to_body(node, columns.r2), M)};
+}
+
+static PackMat place_hessian(const Node *node, Pack3 M)
+{
+    Pack3 Q = to_world(node, M);
+    const PackMat *curvature = node->flux.curvature;
+    PackMat sum = pack_mat_add(pack_mat_scale(Q.x, curvature[0]), pack_mat_scale(Q.y, curvature[1]));
+    return pack_mat_neg(pack_mat_add(sum, pack_mat_scale(Q.z, curvature[2])));
+}
+
 static Pack magnetic_eval(const void *self, int pack, const Point *at, const Pack *x, Pack *g, Pack *H)
 {
     const RodTerm *term = self;
+    int size = magnetic_size(self);
     Pack3 M = pack3_scale(half_volume(term), rod_term_vector(term, pack, at->p + term->rod->magnetization));
     const double *B = at->p + term->rod->flux_density;
     Pack energy = {0};
-    if (g) rod_term_clear(g, 6);
-    if (H) element_clear(H, 6);
-    if (B[0] == 0 && B[1] == 0 && B[2] == 0) return energy;
+    if (g) rod_term_clear(g, size);
+    if (H) element_clear(H, size);
+    if (!varies(term) && B[0] == 0 && B[1] == 0 && B[2] == 0) return energy;
     for (int k = 0; k < 2; k++) {
-        Pack3 turn = pack3_load(x + 3 * k), u = node_field(term, pack, k, at->x, turn, B);
-        energy -= pack3_dot(M, u);
-        if (g) pack3_store(g + 3 * k, segment_turned(turn, pack3_cross(u, M)));
-        if (H)
-            element_add_diagonal(H, k,
-                                 pack_mat_add(pack_mat_diagonal(pack3_dot(M, u)),
-                                              pack_mat_scale(pack_set(-0.5), pack_mat_symmetric(M, u))));
+        Node node = node_at(term, pack, k, at, x);
+        energy -= pack3_dot(M, node.u);
+        if (g) pack3_store(g + TURN + 3 * k, segment_turned(pack3_load(x + 3 * k), pack3_cross(node.u, M)));
+        if (H) element_add_diagonal(H, TURN / 3 + k, turn_hessian(&node, M));
+        if (!varies(term)) continue;
+        if (g) pack3_store(g + PLACE + 3 * k, pack3_neg(pull(&node, M)));
+        if (!H) continue;
+        element_add_block(H, PLACE / 3 + k, TURN / 3 + k, mixed_hessian(&node, M));
+        element_add_diagonal(H, PLACE / 3 + k, place_hessian(&node, M));
     }
     return energy;
 }
 
-/* The force on a turn is u x M, u = R^T B. */
+/* What the motions w of a node do with a field there: w.dE/dx is a.B - Q.G b, but for the sign. */
+typedef struct Work {
+    Pack3 place, a, Q, b;
+} Work;
+
+static void add_factors(const RodTerm *term, int lanes, const Point *at, const Work *work, double *dp)
+{
+    const Rod *rod = term->rod;
+    for (int k = 0; k < rod->fields.count; k++) {
+        Flux flux = flux_of_field(rod->fields.items[k], work->place, at->time);
+        Pack r = pack3_dot(work->a, flux.B) - pack3_dot(work->Q, pack_mat_times(flux.gradient, work->b));
+        for (int l = 0; l < lanes; l++) dp[rod->field_scale + k] += r[l];
+    }
+}
+
+/* The force on a turn is u x M, that on a place -G^T R M. */
 static void magnetic_param(const void *self, int pack, int lanes, const Point *at, const Pack *x,
                            const Pack *w, double *dp)
 {
     const RodTerm *term = self;
     const Rod *rod = term->rod;
-    Pack volume = half_volume(term);
+    Pack3 M = rod_term_vector(term, pack, at->p + rod->magnetization);
     for (int k = 0; k < 2; k++) {
-        Pack3 turn = pack3_load(x + 3 * k), v = pack3_scale(volume, pack3_load(w + 3 * k));
-        Pack3 u = node_field(term, pack, k, at->x, turn, at->p + rod->flux_density), M = pack3_cross(v, u),
-              b = pack3_cross(rod_term_vector(term, pack, at->p + rod->magnetization), v);
+        Node node = node_at(term, pack, k, at, x);
+        Pack3 turn = pack3_scale(half_volume(term), pack3_load(w + TURN + 3 * k));
+        Pack3 dM = pack3_cross(turn, node.u), dB = to_world(&node, pack3_cross(M, turn));
+        if (varies(term)) {
+            Work work = {pack3_load(x + PLACE + 3 * k), dB, to_world(&node, M),
+                         pack3_scale(half_volume(term), pack3_load(w + PLACE + 3 * k))};
+            dM = pack3_sub(dM, to_body(&node, pack_mat_times(node.flux.gradient, work.b)));
+            add_factors(term, lanes, at, &work, dp);
+        }
         for (int l = 0; l < lanes; l++) {
-            int e = pack * PACK_LANES + l;
-            double *to = dp + rod->magnetization + 3 * e;
-            to[0] += M.x[l], to[1] += M.y[l], to[2] += M.z[l];
-            Quat q = rod_reference(&term->layout, at->x, e + k);
-            Vec3 world = quat_rotate(q, vec3(b.x[l], b.y[l], b.z[l]));
-            vec3_store(dp + rod->flux_density, vec3_add(world, vec3_load(dp + rod->flux_density)));
+            double *m = dp + rod->magnetization + 3 * (pack * PACK_LANES + l), *b = dp + rod->flux_density;
+            m[0] += dM.x[l], m[1] += dM.y[l], m[2] += dM.z[l];
+            b[0] += dB.x[l], b[1] += dB.y[l], b[2] += dB.z[l];
         }
     }
 }
@@ -70,22 +181,22 @@ static void magnetic_param_forward(const void *self, int pack, const Point *at, 
 {
     const RodTerm *term = self;
     const Rod *rod = term->rod;
-    Pack3 M = rod_term_vector(term, pack, at->p + rod->magnetization),
-          dM = rod_term_vector(term, pack, dp + rod->magnetization);
+    Pack3 M = pack3_scale(half_volume(term), rod_term_vector(term, pack, at->p + rod->magnetization)),
+          dM = pack3_scale(half_volume(term), rod_term_vector(term, pack, dp + rod->magnetization));
     for (int k = 0; k < 2; k++) {
-        Pack3 turn = pack3_load(x + 3 * k),
-              u = node_field(term, pack, k, at->x, turn, at->p + rod->flux_density),
-              du = node_field(term, pack, k, at->x, turn, dp + rod->flux_density);
-        pack3_store(r + 3 * k,
-                    pack3_scale(half_volume(term), pack3_add(pack3_cross(u, dM), pack3_cross(du, M))));
+        Node node = node_at(term, pack, k, at, x), change = node;
+        set_field(term, at, x + PLACE + 3 * k, dp, &change);
+        pack3_store(r + TURN + 3 * k, pack3_add(pack3_cross(node.u, dM), pack3_cross(change.u, M)));
+        if (varies(term))
+            pack3_store(r + PLACE + 3 * k, pack3_neg(pack3_add(pull(&node, dM), pull(&change, M))));
     }
 }
 
 static const TermOps magnetic_ops = {
     .name = "magnetic",
     .count = rod_term_count,
-    .size = rod_term_turns,
-    .dofs = rod_term_turn_dofs,
+    .size = magnetic_size,
+    .dofs = magnetic_dofs,
     .eval = magnetic_eval,
     .param = magnetic_param,
     .param_forward = magnetic_param_forward,
@@ -94,5 +205,6 @@ static const TermOps magnetic_ops = {
 
 Term rod_magnetic_term(const Rod *rod, RodLayout layout, double hold)
 {
+    assert(rod->fields.count == 0 || layout.position >= 0);
     return rod_term_make(&magnetic_ops, rod, layout, hold);
 }

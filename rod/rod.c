@@ -6,7 +6,8 @@
 #include <math.h>
 
 static const double HOLD = 10;          /* of the link, in parts of the whole rod's stiffness */
-static const double BASE_SHIFT = 1e-10; /* for a rod that may spin freely (system.h) */
+static const double BASE_SHIFT = 1e-10; /* for a rod that may spin, or bend to any side (system.h) */
+static const double PUSH = 60;          /* of a held end, in EI/L^2: clamps buckle at 4 pi^2 (system.h) */
 
 Rod *rod_create(int elements, double length, RodSection unit, double area)
 {
@@ -27,6 +28,7 @@ Rod *rod_create(int elements, double length, RodSection unit, double area)
     rod->load = params_add(params, "load", "N", elements + 1, 3, true);
     rod->pull = params_add(params, "pull", "N", elements, 3, true);
     rod->damping = params_add(params, "damping", "N s/m", 1, 1, false);
+    rod->field_scale = params_add(params, "field_scale", "", 0, 1, true);
     return rod;
 }
 
@@ -34,6 +36,7 @@ void rod_destroy(Rod *rod)
 {
     if (!rod) return;
     mem_free(rod->bow);
+    flux_fields_clear(&rod->fields);
     mem_free(rod);
 }
 
@@ -119,18 +122,22 @@ System *rod_system(const Rod *rod, double young, bool dynamic)
 {
     RodLayout layout = rod_layout(rod, true);
     int end = 3 * (layout.nodes - 1);
+    double bend = young * fmax(rod->unit.bend1, rod->unit.bend2);
     DofClass classes[] = {
         {.first = layout.position, .count = 3 * layout.nodes, .size = rod->length},
         {.first = layout.turn, .count = 3 * layout.nodes, .size = 1},
-        {.first = layout.multiplier, .count = 3 * rod->elements, .size = INFINITY, .multipliers = true}};
-    System *sys = system_create(layout.dofs, classes, 3);
-    add_terms(sys, rod, &layout, HOLD * young * fmax(rod->unit.bend1, rod->unit.bend2) / pow(rod->length, 3));
+        {.first = layout.multiplier, .count = end - 3, .size = INFINITY, .multipliers = true},
+        {.first = layout.multiplier + end - 3, .count = 3, .size = INFINITY, .multipliers = true,
+         .force = rod->end == ROD_FREE ? 0 : PUSH * bend / pow(rod->length, 2)}};
+    System *sys = system_create(layout.dofs, classes, 4);
+    add_terms(sys, rod, &layout, HOLD * bend / pow(rod->length, 3));
     add_lumped_terms(sys, rod, dynamic);
     fix(sys, layout.position, 3, true);
     fix(sys, layout.turn, 3, rod->start == ROD_CLAMPED);
     fix(sys, layout.position + end, 3, rod->end != ROD_FREE);
     fix(sys, layout.turn + end, 3, rod->end == ROD_CLAMPED);
-    if (rod->start == ROD_PINNED && rod->end != ROD_CLAMPED) system_set_base_shift(sys, BASE_SHIFT);
+    bool spins = rod->start == ROD_PINNED && rod->end != ROD_CLAMPED;
+    if (spins || (rod->end != ROD_FREE && !dynamic)) system_set_base_shift(sys, BASE_SHIFT);
     fix(sys, layout.reference, 4 * layout.nodes, true);
     set_order(sys, &layout);
     system_prepare(sys);

@@ -13,9 +13,11 @@
  *     references   [nodes][4], unit quaternions (w, v), which are no unknowns;
  * so that x is the whole state. Two forms serve: `hanging`, of rotations only, for statics of a rod that is
  * clamped at its first end and free at the other (3 unknowns per node, a positive definite matrix); and with
- * positions and multipliers for motion, designs and held ends. Both have the same equilibria. */
+ * positions and multipliers for motion, designs, held ends and fields of position. Both have the same
+ * equilibria. */
 #pragma once
 #include "base/quat.h"
+#include "field/flux_field.h"
 #include "rod/frame.h"
 #include "rod/section.h"
 #include "solve/params.h"
@@ -33,16 +35,18 @@ typedef struct Rod {
     RodSupport start, end; /* start: clamped or pinned                     */
     Vec3 *bow; /* [elements] m, in the first node's frame: how far an element's chord is off that of a
                 * helix, because strain varies within it; usually 0; owned */
+    FluxFields fields; /* parts of the flux density that vary in space; owned. Not for the hanging form */
 
     Params params;      /* blocks and their first entries in p:                           */
     int young;          /* [element] Pa                                                   */
     int natural_strain; /* [element][3] twist, k1, k2, 1/m                                */
     int magnetization;  /* [element][3] A/m, in the material frame                        */
-    int flux_density;   /* [3] T, uniform                                                 */
+    int flux_density;   /* [3] T, the uniform part                                        */
     int gravity;        /* [3] m/s^2                                                      */
     int load;           /* [node][3] N, dead                                              */
     int pull;           /* [element][3] N, the loads beyond the element (rod_sum_loads)   */
     int damping;        /* [1] N s/m at every node, in steps of time                      */
+    int field_scale;    /* [field] factors on the fields                                  */
 } Rod;
 
 /* Clamped at the origin along x, free at the other end; material, strains and loads are up to p. */
@@ -112,6 +116,7 @@ System *rod_system(const Rod *rod, double young, bool dynamic);
 /* Strains (twist, k1, k2) of the elements, strain[elements], 1/m. */
 void rod_element_strains(const Rod *rod, const RodLayout *layout, const double *x, Vec3 *strain);
 
-/* Puts the natural strains into p with which the state x of a hanging system is in equilibrium, to rounding:
- * moments from node to node, from the free end on. */
-void rod_balance(const Rod *rod, System *hanging, const double *x, double *p);
+/* Puts the natural strains into p with which the state x of a system is in equilibrium if its last end is
+ * free, to rounding: moments from node to node, from the free end on. Sets the multipliers of x, if it has any.
+ */
+void rod_balance(const Rod *rod, System *sys, const RodLayout *layout, double *x, double *p);

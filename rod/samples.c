@@ -3,7 +3,7 @@
 #include "rod/spline.h"
 #include <math.h>
 
-enum { LEAST = 4, FEW = 8, INTERVALS_MOST = 2000 };
+enum { LEAST = 2, FEW = 8, INTERVALS_MOST = 2000 };
 
 static const double weight_least = -15; /* decimal logarithm: nothing is smoothed */
 
@@ -12,7 +12,8 @@ RodSamplesDef rod_samples_default(void)
     return (RodSamplesDef){.noise = NAN};
 }
 
-/* Copies the samples that differ from the one before, from the first one on; 0 where they are refused. */
+/* Copies the samples that differ from the one before, from the first one on, and the middle of two; 0 where
+ * they are refused. */
 static int differing(const Vec3 *x, int count, Vec3 *kept, Error *err)
 {
     const double same = 1e-12;
@@ -27,7 +28,18 @@ static int differing(const Vec3 *x, int count, Vec3 *kept, Error *err)
         if (n == 0 || vec3_length(vec3_sub(x[i], kept[n - 1])) > same * size) kept[n++] = x[i];
     if (n < LEAST)
         return error_set(err, "a rod's curve needs %d different samples at least, not %d", LEAST, n);
+    if (n == LEAST) { /* a straight line; the spline needs three */
+        kept[2] = kept[1];
+        kept[n++ - 1] = vec3_scale(0.5, vec3_add(kept[0], kept[1]));
+    }
     return n;
+}
+
+static double chords(const Vec3 *x, int count)
+{
+    double sum = 0;
+    for (int i = 1; i < count; i++) sum += vec3_length(vec3_sub(x[i], x[i - 1]));
+    return sum;
 }
 
 /* Steps are the means of the chords up to `reach` samples away on either side. */
@@ -78,17 +90,24 @@ static void choose_weight(RodSpline *spline, double low, double high, double noi
     judge(spline, at_p < at_q ? p : q, noise);
 }
 
-static int intervals_for(int count)
+/* Half as many knots as samples leave enough of them to tell a curve from noise. */
+static int half_intervals(int count)
 {
     int half = count / 2 - 3;
     return half < 1 ? 1 : half > INTERVALS_MOST ? INTERVALS_MOST : half;
 }
 
-/* Fits with the parameter that suits the samples best: the smoother one where the two are equal but for
- * chance, unless it leaves more along the curve than noise would (half of what it leaves across, or as much
- * in a plane): then it is the parameter that is wrong. What roughness of the chords adds to the curve's makes
- * the first weight smaller than the next ones. */
-static RodSpline fit(const Vec3 *x, int count, double noise)
+/* As many unknowns as samples: the spline may pass through each. */
+static int all_intervals(int count)
+{
+    return count > ROD_SPLINE_ORDER ? count - ROD_SPLINE_ORDER + 1 : 1;
+}
+
+/* Fits on so many intervals with the parameter that suits the samples best: the smoother one where the two
+ * are equal but for chance, unless it leaves more along the curve than noise would (half of what it leaves
+ * across, or as much in a plane): then it is the parameter that is wrong. What roughness of the chords adds
+ * to the curve's makes the first weight smaller than the next ones. */
+static RodSpline fit_on(const Vec3 *x, int count, int intervals, double noise)
 {
     const int reaches[] = {0, count / 20, count};
     const double tie = 1.003, along = 3;
@@ -96,7 +115,7 @@ static RodSpline fit(const Vec3 *x, int count, double noise)
     RodSpline best = {0};
     for (int k = 0; k < (noise == 0 ? 1 : 3); k++) {
         parameters(x, count, reaches[k], u);
-        RodSpline next = rod_spline_create(u, x, count, intervals_for(count));
+        RodSpline next = rod_spline_create(u, x, count, intervals);
         double parabola = 6 * log10(next.intervals) + 2, before = k == 0 ? 0 : log10(best.weight);
         if (noise == 0)
             rod_spline_fit(&next, pow(10, weight_least));
@@ -114,6 +133,16 @@ static RodSpline fit(const Vec3 *x, int count, double noise)
     return best;
 }
 
+/* Exact samples that half as many knots miss are passed through. */
+static RodSpline fit(const Vec3 *x, int count, double noise)
+{
+    const double passes = 3e-7; /* of the length */
+    RodSpline half = fit_on(x, count, half_intervals(count), noise);
+    if (noise != 0 || rod_spline_worst(&half) <= passes * chords(x, count)) return half;
+    rod_spline_clear(&half);
+    return fit_on(x, count, all_intervals(count), noise);
+}
+
 static RodSamplesInfo report(const RodSpline *spline)
 {
     double free = spline->points - spline->freedom;
@@ -128,16 +157,26 @@ static RodSamplesInfo report(const RodSpline *spline)
 bool rod_samples_curve(const Vec3 *x, int count, const RodSamplesDef *def, int elements, RodCurve *curve,
                        RodSamplesInfo *info, Error *err)
 {
+    const double longest = 3; /* times the chords: half a turn between samples is 1.6 */
     *curve = (RodCurve){0};
     if (def->noise < 0 || isinf(def->noise))
         return error_set(err, "the noise of a rod's samples is %g m; it must be finite and not negative",
                          def->noise);
-    Vec3 *kept = mem_alloc((size_t)count, sizeof *kept);
+    Vec3 *kept = mem_alloc((size_t)count + 1, sizeof *kept);
     int n = differing(x, count, kept, err);
     bool ok = n > 0;
     if (ok) {
         RodSpline spline = fit(kept, n, isnan(def->noise) && n < FEW ? 0 : def->noise);
         ok = rod_curve_create_pieces(rod_spline_jet, &spline, spline.intervals, elements, curve, err);
+        double longer = ok ? curve->length / chords(kept, n) : 0;
+        if (longer > longest) {
+            ok = error_set(
+                err,
+                "the smooth curve through these samples is %.3g times as long as their chords: it needs more "
+                "samples where long chords meet short ones",
+                longer);
+            rod_curve_clear(curve);
+        }
         if (info) *info = report(&spline);
         rod_spline_clear(&spline);
     }

@@ -1,7 +1,8 @@
 /* samples.h - a rod's curve from sampled points, clean or noisy: what a camera, a scanner or a drawing gives.
  *
  * A quintic spline with half as many knots as samples, 2000 at most, is fitted with a penalty on its third
- * derivative (spline.h); its places, tangents and curvatures at equal arclengths are the curve. How much it
+ * derivative (spline.h); or with as many unknowns as samples, where half as many knots miss exact samples by
+ * 3e-7 of the length. Its places, tangents and curvatures at equal arclengths are the curve. How much it
  * smooths is found by generalised cross-validation, or from the noise where that is known, by the unbiased
  * estimate of the risk [Craven & Wahba 1979]. A polyline through noisy samples would not do: it is too long,
  * and turns at every sample.
@@ -17,8 +18,8 @@
 #include "rod/curve.h"
 
 typedef struct RodSamplesDef {
-    double noise; /* standard deviation of each coordinate, m; 0: none, the curve goes through the samples as
-                     far as the knots allow; NAN: unknown, found by cross-validation (default) */
+    double noise; /* standard deviation of each coordinate, m; 0: none, the curve goes through the samples;
+                     NAN: unknown, found by cross-validation (default) */
 } RodSamplesDef;
 
 RodSamplesDef rod_samples_default(void);
@@ -32,8 +33,8 @@ typedef struct RodSamplesInfo {
 } RodSamplesInfo;
 
 /* x[count] in the order along the rod, from the clamp. Samples that equal the one before to twelve digits are
- * dropped; four must remain. Fewer than eight are taken as clean unless their noise is given. Samples in a
- * plane give a curve in it. info may be NULL. False and a sentence where a sample is not finite, or where
- * there are too few. */
+ * dropped; two must remain, which are a straight rod. Fewer than eight are taken as clean unless their noise
+ * is given. Samples in a plane give a curve in it. info may be NULL. False and a sentence where a sample is
+ * not finite, or where there are too few. */
 bool rod_samples_curve(const Vec3 *x, int count, const RodSamplesDef *def, int elements, RodCurve *curve,
                        RodSamplesInfo *info, Error *err);

@@ -150,14 +150,16 @@ void rod_spline_fit(RodSpline *spline, double weight)
 /* ---- The spline ---- */
 
 /* Knots at every points / intervals'th point, in between if need be; none closer than a thousandth of the
- * mean to the one before. */
+ * mean to the one before. As many unknowns as points have theirs at all points but the second and third from
+ * either end ("not a knot"). */
 static void place_knots(RodSpline *spline, int intervals)
 {
     const double close = 1e-3;
     double end = spline->u[spline->points - 1], last = 0;
     int kept = 1;
+    bool through = intervals == spline->points - DEGREE;
     for (int k = 1; k < intervals; k++) {
-        double place = (double)k * (spline->points - 1) / intervals;
+        double place = through ? k + ORDER / 2 - 1 : (double)k * (spline->points - 1) / intervals;
         int i = (int)place;
         double knot = spline->u[i] + (place - i) * (spline->u[i + 1] - spline->u[i]);
         if (knot < last + close || knot > end - close) continue;
@@ -202,14 +204,29 @@ void rod_spline_jet(void *self, double at, Vec3 jet[3])
     jet[0] = vec3_add(jet[0], spline->x[0]);
 }
 
+/* From where the spline has the i-th point; *interval: that of the point before, then its own. */
+static Vec3 miss_of(const RodSpline *spline, int i, int *interval)
+{
+    RodSplineRow value;
+    *interval = advance(spline, *interval, spline->u[i]);
+    basis(spline->knots, *interval, spline->u[i], 0, value);
+    return vec3_sub(vec3_sub(spline->x[i], spline->x[0]), combine(spline, *interval, value));
+}
+
+double rod_spline_worst(const RodSpline *spline)
+{
+    double worst = 0;
+    for (int i = 0, interval = 0; i < spline->points; i++)
+        worst = fmax(worst, vec3_length(miss_of(spline, i, &interval)));
+    return worst;
+}
+
 double rod_spline_squares_across(const RodSpline *spline)
 {
     double sum = 0;
     for (int i = 0, interval = 0; i < spline->points; i++) {
         RodSplineRow value;
-        interval = advance(spline, interval, spline->u[i]);
-        basis(spline->knots, interval, spline->u[i], 0, value);
-        Vec3 off = vec3_sub(vec3_sub(spline->x[i], spline->x[0]), combine(spline, interval, value));
+        Vec3 off = miss_of(spline, i, &interval);
         basis(spline->knots, interval, spline->u[i], 1, value);
         Vec3 along = combine(spline, interval, value);
         double along2 = vec3_dot(along, along), part = vec3_dot(off, along);

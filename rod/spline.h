@@ -41,4 +41,7 @@ void rod_spline_jet(void *spline, double at, Vec3 jet[3]);
  * point belongs. */
 double rod_spline_squares_across(const RodSpline *spline);
 
+/* The farthest that a point is from where the spline should have it. */
+double rod_spline_worst(const RodSpline *spline);
+
 void rod_spline_clear(RodSpline *spline);

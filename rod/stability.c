@@ -3,6 +3,8 @@
 #include "base/pack.h"
 #include "rod/frame.h"
 
+static const double BENT = 0.05; /* rad in an element: less follows from its ends */
+
 enum { PLACES = 3, SIZE = 3 * PLACES, ELIMINATED = 6 };
 
 /* d2E of one element is y.(stiff + load) y; of stiff the lower triangle only. y: the turns at the element's
@@ -247,4 +249,14 @@ double rod_stable_tail(const RodEquilibrium *rod)
     double tail = stable_tail(&form);
     mem_free(form.elements);
     return tail;
+}
+
+double rod_bending_lengths(const RodEquilibrium *rod)
+{
+    double h = rod->length / rod->elements, bend = fmin(rod->section.bend1, rod->section.bend2), most = 0;
+    for (int e = 0; e < rod->elements; e++) {
+        if (h * vec3_length(rod->m[2 * e + 1]) < BENT * bend) continue;
+        for (int i = 0; i < 3; i++) most = fmax(most, vec3_length(rod->F[3 * e + i]));
+    }
+    return h * sqrt(most / bend);
 }

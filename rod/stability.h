@@ -33,6 +33,11 @@ typedef struct RodStability {
     double stable_tail;       /* m, see below */
 } RodStability;
 
+/* How many bending lengths sqrt(EI/|F|), within which a force F turns a rod into its own direction, an element
+ * has: the most of those that bend by more than a twentieth of a radian. Above 1 they do not tell how the rod
+ * bends there, and nothing below can be trusted. */
+double rod_bending_lengths(const RodEquilibrium *rod);
+
 /* Everything below at once. */
 RodStability rod_stability(const RodEquilibrium *rod);
 

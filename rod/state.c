@@ -1,6 +1,7 @@
 /* States of a rod (rod.h). */
 #include "base/memory.h"
 #include "rod/chord.h"
+#include <string.h>
 
 RodLayout rod_layout(const Rod *rod, bool positions)
 {
@@ -138,19 +139,32 @@ static void turn_rows(const RodLayout *layout, const double *x, Vec3 (*rows)[6])
     }
 }
 
-void rod_balance(const Rod *rod, System *hanging, const double *x, double *p)
+/* The multipliers that leave no force on the positions: what each element carries, from the free end on. */
+static void set_multipliers(const RodLayout *layout, System *sys, const double *p, double *x, double *force)
 {
-    RodLayout layout = rod_layout(rod, false);
+    double *multiplier = x + layout->multiplier;
+    memset(multiplier, 0, 3 * (size_t)(layout->nodes - 1) * sizeof *multiplier);
+    system_gradient(sys, &(Point){.x = x, .p = p}, force);
+    Vec3 carried = vec3(0, 0, 0);
+    for (int e = layout->nodes - 2; e >= 0; e--) {
+        carried = vec3_sub(carried, vec3_load(force + layout->position + 3 * (e + 1)));
+        vec3_store(multiplier + 3 * e, carried);
+    }
+}
+
+void rod_balance(const Rod *rod, System *sys, const RodLayout *layout, double *x, double *p)
+{
     size_t elements = (size_t)rod->elements;
     Vec3 *strain = mem_alloc(elements, sizeof *strain), (*rows)[6] = mem_alloc(elements, sizeof *rows);
-    double *force = mem_alloc((size_t)layout.dofs, sizeof *force);
-    rod_element_strains(rod, &layout, x, strain);
+    double *force = mem_alloc((size_t)layout->dofs, sizeof *force);
+    rod_element_strains(rod, layout, x, strain);
     for (int e = 0; e < rod->elements; e++) vec3_store(p + rod->natural_strain + 3 * e, strain[e]);
-    system_gradient(hanging, &(Point){.x = x, .p = p}, force);
-    turn_rows(&layout, x, rows);
+    if (layout->multiplier >= 0) set_multipliers(layout, sys, p, x, force);
+    system_gradient(sys, &(Point){.x = x, .p = p}, force);
+    turn_rows(layout, x, rows);
     Vec3 carried = vec3(0, 0, 0); /* what the element beyond does to the node */
     for (int e = rod->elements - 1; e >= 0; e--) {
-        Vec3 load = vec3_add(vec3_load(force + layout.turn + 3 * (e + 1)), carried);
+        Vec3 load = vec3_add(vec3_load(force + layout->turn + 3 * (e + 1)), carried);
         Vec3 m = solve(rows[e] + 3, vec3_scale(-1, load));
         for (int i = 0; i < 3; i++) (&carried.x)[i] = vec3_dot(rows[e][i], m);
         double young = p[rod->young + e], K[3] = {rod->unit.twist, rod->unit.bend1, rod->unit.bend2};

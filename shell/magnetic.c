@@ -5,6 +5,7 @@
  * normal). B is uniform (block flux_density) plus fields taken at the face's current barycentre, so its gradient
  * enters the forces. The derivatives of n (eqs. 62, 63) are the corrected ones of docs/theory.md. */
 #include "base/memory.h"
+#include "field/flux.h"
 #include "shell/face.h"
 #include "shell/terms.h"
 #include "solve/element.h"
@@ -18,13 +19,6 @@ typedef struct Magnetic {
     const Shell *shell;
     MagneticPack *packs;
 } Magnetic;
-
-/* The flux density at the barycentres, and its derivatives where it varies. */
-typedef struct Flux {
-    Pack3 B;
-    PackMat gradient;     /* rows k: dB_k/dx              */
-    PackMat curvature[3]; /* [k]: d2B_k/dx dx             */
-} Flux;
 
 /* The current normal and its change with the vertices. */
 typedef struct Normal {
@@ -48,53 +42,16 @@ static void magnetic_dofs(const void *self, int face, int *dof)
     face_dofs(((const Magnetic *)self)->shell, face, dof);
 }
 
-/* Uniform, with the numbers of flux_density in values. */
-static Flux uniform_flux(const Shell *shell, const double *values)
+static Pack3 barycentre(const Pack *x)
 {
-    const double *B = values + shell->flux_density;
-    return (Flux){.B = pack3(pack_set(B[0]), pack_set(B[1]), pack_set(B[2]))};
+    return pack3((x[0] + x[3] + x[6]) / 3, (x[1] + x[4] + x[7]) / 3, (x[2] + x[5] + x[8]) / 3);
 }
 
-/* One field's part, before its factor. */
-static Flux field_flux(const FluxField *field, const Point *at, const Pack *x)
-{
-    double numbers[39][PACK_LANES];
-    for (int l = 0; l < PACK_LANES; l++) {
-        double center[3];
-        for (int i = 0; i < 3; i++) center[i] = (x[i][l] + x[3 + i][l] + x[6 + i][l]) / 3;
-        FluxSample sample;
-        flux_field_eval(field, center, at->time, &sample);
-        for (int k = 0; k < 3; k++) numbers[k][l] = sample.flux[k];
-        for (int k = 0; k < 9; k++) numbers[3 + k][l] = sample.gradient[k / 3][k % 3];
-        for (int k = 0; k < 27; k++) numbers[12 + k][l] = sample.curvature[k / 9][k / 3 % 3][k % 3];
-    }
-    Pack3 rows[13];
-    memcpy(rows, numbers, sizeof rows);
-    Flux flux = {.B = rows[0], .gradient = {rows[1], rows[2], rows[3]}};
-    for (int k = 0; k < 3; k++) flux.curvature[k] = (PackMat){rows[4 + 3 * k], rows[5 + 3 * k], rows[6 + 3 * k]};
-    return flux;
-}
-
-/* a + scale b */
-static Flux flux_add(Flux a, double scale, const Flux *b)
-{
-    Pack s = pack_set(scale);
-    a.B = pack3_axpy(s, b->B, a.B);
-    a.gradient = pack_mat_add(a.gradient, pack_mat_scale(s, b->gradient));
-    for (int k = 0; k < 3; k++) a.curvature[k] = pack_mat_add(a.curvature[k], pack_mat_scale(s, b->curvature[k]));
-    return a;
-}
-
-/* Uniform part and fields, with the numbers in values. Fields whose factor at the point is 0 are off. */
+/* At the barycentres, with the numbers in values, which are laid out as p. */
 static Flux flux_with(const Shell *shell, const Point *at, const Pack *x, const double *values)
 {
-    Flux flux = uniform_flux(shell, values);
-    for (int k = 0; k < shell->field_count; k++) {
-        if (at->p[shell->field_scale + k] == 0) continue;
-        Flux field = field_flux(shell->fields[k], at, x);
-        flux = flux_add(flux, values[shell->field_scale + k], &field);
-    }
-    return flux;
+    FluxNumbers numbers = {values + shell->flux_density, values + shell->field_scale};
+    return flux_at(&shell->fields, numbers, barycentre(x), at->time);
 }
 
 static Normal normal_of(const Pack *x)
@@ -182,7 +139,7 @@ static void hessian(const Magnetic *magnetic, int pack, const Normal *normal, Pa
     const MagneticPack *face = &magnetic->packs[pack];
     Pack mu = pack3_dot(face->normal, M);
     PackMat dQ[3];
-    bool varies = magnetic->shell->field_count > 0;
+    bool varies = magnetic->shell->fields.count > 0;
     for (int i = 0; varies && i < 3; i++)
         dQ[i] = carried_gradient(normal, pack3_dot(face->hat[i], M), mu, i);
     element_clear(H, 9);
@@ -241,9 +198,8 @@ static void magnetic_param(const void *self, int pack, int lanes, const Point *a
         m[0] -= volume * dM.x[l], m[1] -= volume * dM.y[l], m[2] -= volume * dM.z[l];
         b[0] -= volume * W.x[l], b[1] -= volume * W.y[l], b[2] -= volume * W.z[l];
     }
-    for (int k = 0; k < shell->field_count; k++) {
-        if (at->p[shell->field_scale + k] == 0) continue;
-        Flux field = field_flux(shell->fields[k], at, x);
+    for (int k = 0; k < shell->fields.count; k++) {
+        Flux field = flux_of_field(shell->fields.items[k], barycentre(x), at->time);
         Pack scale = face->volume * (pack3_dot(W, field.B) + pack3_dot(Q, pack_mat_times(field.gradient, mean)));
         for (int l = 0; l < lanes; l++) dp[shell->field_scale + k] -= scale[l];
     }

@@ -1,7 +1,7 @@
-#include "shell/mesh.h"
+#include "shell/mesh_private.h"
 #include "base/memory.h"
 #include "base/vec3.h"
-#include "shell/weld.h"
+#include "base/weld.h"
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
@@ -39,7 +39,7 @@ static Place face_place(const Build *build, int face)
     return place(build->file, build->file->face_line, face);
 }
 
-__attribute__((format(printf, 2, 3))) static void warn(MeshReport *report, const char *format, ...)
+void mesh_warn(MeshReport *report, const char *format, ...)
 {
     if (!report) return;
     char text[1024];
@@ -114,9 +114,9 @@ static void warn_removed(const Build *build)
     for (int v = file->vertex_count - 1; v >= 0; v--)
         if (build->mesh->vertex_of_file[v] < 0) first = v, count++;
     if (count)
-        warn(build->report, "%s: %d %s removed, being in no face; the first is vertex %d",
-             place(file, file->vertex_line, first).text, count, count == 1 ? "vertex was" : "vertices were",
-             first);
+        mesh_warn(build->report, "%s: %d %s removed, being in no face; the first is vertex %d",
+                  place(file, file->vertex_line, first).text, count,
+                  count == 1 ? "vertex was" : "vertices were", first);
 }
 
 static void warn_coincident(const Build *build)
@@ -129,10 +129,11 @@ static void warn_coincident(const Build *build)
         if (first[v] != v) example = v, count++;
     if (count) {
         int a = mesh->file_vertex[example], b = mesh->file_vertex[first[example]];
-        warn(build->report,
-             "%s: %d %s on another one and %s apart, as on a slit (vertex %d on vertex %d); weld joins such",
-             place(build->file, build->file->vertex_line, a).text, count,
-             count == 1 ? "vertex lies" : "vertices lie", count == 1 ? "stays" : "stay", a, b);
+        mesh_warn(
+            build->report,
+            "%s: %d %s on another one and %s apart, as on a slit (vertex %d on vertex %d); weld joins such",
+            place(build->file, build->file->vertex_line, a).text, count,
+            count == 1 ? "vertex lies" : "vertices lie", count == 1 ? "stays" : "stay", a, b);
     }
     mem_free(first);
 }
@@ -281,6 +282,23 @@ static bool refuse_direction(const Build *build, const int edge[2], int f, int g
         face_place(build, g).text, f, g, name[edge[!forward]], name[edge[forward]]);
 }
 
+static bool same_face(const Mesh *mesh, const Side *a, const Side *b)
+{
+    return mesh->faces[a->face][a->corner] == mesh->faces[b->face][b->corner];
+}
+
+/* No two of the faces at an edge may be the same one. */
+static bool check_doubled(const Build *build, const Side *sides, int count)
+{
+    for (int s = 1; s < count && s < 3; s++)
+        for (int r = 0; r < s; r++)
+            if (same_face(build->mesh, &sides[r], &sides[s]))
+                return error_set(build->err,
+                                 "%s: face %d has the same three vertices as face %d; a face is given once",
+                                 face_place(build, sides[s].face).text, sides[s].face, sides[r].face);
+    return true;
+}
+
 /* Enters the sides of edge e, count of them, into the neighbour tables. */
 static bool join_sides(const Build *build, int e, const Side *sides, int count)
 {
@@ -288,6 +306,7 @@ static bool join_sides(const Build *build, int e, const Side *sides, int count)
     int *edge = mesh->edges[e], *neighbours = mesh->edge_faces[e];
     edge[0] = sides->ends[0], edge[1] = sides->ends[1];
     neighbours[0] = neighbours[1] = -1;
+    if (!check_doubled(build, sides, count)) return false;
     if (count > 2)
         return error_set(build->err,
                          "%s: the faces %d, %d and %d share the edge between vertices %d and %d; an edge has "
@@ -302,11 +321,6 @@ static bool join_sides(const Build *build, int e, const Side *sides, int count)
         mesh->face_edges[f][i] = e;
         mesh->face_edge_sign[f][i] = forward ? 1 : -1;
     }
-    if (count == 2 &&
-        mesh->faces[sides[0].face][sides[0].corner] == mesh->faces[sides[1].face][sides[1].corner])
-        return error_set(build->err,
-                         "%s: face %d has the same three vertices as face %d; a face is given once",
-                         face_place(build, sides[1].face).text, sides[1].face, sides[0].face);
     return true;
 }
 
@@ -329,7 +343,7 @@ static bool build_edges(const Build *build)
     return good;
 }
 
-/* ---- parts and groups ---- */
+/* ---- parts ---- */
 
 static int root_of(int *parent, int v)
 {
@@ -355,33 +369,6 @@ static void build_components(Mesh *mesh)
     mem_free(parent);
 }
 
-/* The group in the mesh's numbering, without members that removing or welding took away. */
-static MeshGroup renumber_group(const MeshGroup *old, const int *vertex_of_file)
-{
-    int size = old->dim == 1 ? 2 : 1;
-    MeshGroup group = {.name = mem_text(old->name), .dim = old->dim};
-    group.members = mem_alloc((size_t)old->count * (size_t)size, sizeof *group.members);
-    for (int i = 0; i < old->count; i++) {
-        int member[2] = {0, 1}; /* as different as two ends must be */
-        for (int k = 0; k < size; k++) {
-            int m = old->members[i * size + k];
-            member[k] = old->dim == 2 ? m : vertex_of_file[m];
-        }
-        bool gone = member[0] < 0 || (size == 2 && (member[1] < 0 || member[0] == member[1]));
-        if (!gone) memcpy(group.members + size * group.count++, member, (size_t)size * sizeof(int));
-    }
-    return group;
-}
-
-static void build_groups(const Build *build)
-{
-    Mesh *mesh = build->mesh;
-    mesh->group_count = build->file->group_count;
-    mesh->groups = mem_alloc((size_t)mesh->group_count, sizeof *mesh->groups);
-    for (int g = 0; g < mesh->group_count; g++)
-        mesh->groups[g] = renumber_group(&build->file->groups[g], mesh->vertex_of_file);
-}
-
 /* ---- the public face ---- */
 
 Mesh *mesh_create(const MeshFile *file, double weld, MeshReport *report, Error *err)
@@ -400,7 +387,7 @@ Mesh *mesh_create(const MeshFile *file, double weld, MeshReport *report, Error *
         return NULL;
     }
     build_components(mesh);
-    build_groups(&build);
+    mesh_build_groups(mesh, file, report);
     return mesh;
 }
 
@@ -411,9 +398,19 @@ void mesh_destroy(Mesh *mesh)
         mem_free(mesh->groups[g].name);
         mem_free(mesh->groups[g].members);
     }
-    void *owned[] = {mesh->rest,           mesh->faces,     mesh->edges,          mesh->edge_faces,
-                     mesh->face_edges,     mesh->rest_area, mesh->face_edge_sign, mesh->vertex_component,
-                     mesh->vertex_of_file, mesh->groups,    mesh->file_vertex,    mesh};
+    void *owned[] = {mesh->rest,
+                     mesh->faces,
+                     mesh->edges,
+                     mesh->edge_faces,
+                     mesh->face_edges,
+                     mesh->rest_area,
+                     mesh->face_edge_sign,
+                     mesh->vertex_component,
+                     mesh->vertex_of_file,
+                     mesh->groups,
+                     mesh->file_vertex,
+                     mesh->group_order,
+                     mesh};
     for (size_t i = 0; i < sizeof owned / sizeof *owned; i++) mem_free(owned[i]);
 }
 
@@ -482,11 +479,4 @@ double mesh_diagonal(const Mesh *mesh)
     double low[3], high[3];
     mesh_bounding_box(mesh, low, high);
     return vec3_length(vec3_sub(vec3_load(high), vec3_load(low)));
-}
-
-const MeshGroup *mesh_group(const Mesh *mesh, const char *name)
-{
-    for (int g = 0; g < mesh->group_count; g++)
-        if (strcmp(mesh->groups[g].name, name) == 0) return &mesh->groups[g];
-    return NULL;
 }

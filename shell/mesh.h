@@ -27,6 +27,7 @@ typedef struct Mesh {
     double *rest_area;     /* [face] m^2 */
     int *vertex_component; /* [vertex] connected part, by first vertex; a common vertex connects */
     MeshGroup *groups;     /* [group_count] the file's, in this mesh's numbering; faces as they were */
+    int *group_order;      /* [group_count] by name and dimension */
     int *file_vertex;      /* [vertex] its number in the file (the lowest of those joined) */
     int *vertex_of_file;   /* [file_vertex_count] the mesh's vertex, -1 where removed */
 } Mesh;
@@ -87,5 +88,6 @@ void mesh_bounding_box(const Mesh *mesh, double low[3], double high[3]);
 /* Length of the bounding box's diagonal, m. */
 double mesh_diagonal(const Mesh *mesh);
 
-/* The group of that name, or NULL. */
-const MeshGroup *mesh_group(const Mesh *mesh, const char *name);
+/* The group of that name and dimension (0 vertices, 1 edges, 2 faces), or NULL: one name may stand for a
+ * surface, a curve and points at once. */
+const MeshGroup *mesh_group(const Mesh *mesh, const char *name, int dim);

@@ -45,38 +45,55 @@ static bool mark_listed(const Mesh *mesh, const Indices *listed, bool *mark, Err
     return true;
 }
 
-static bool mark_group(const Mesh *mesh, const char *name, bool *mark, Error *err)
+static void mark_members(const Mesh *mesh, const MeshGroup *group, bool *mark)
 {
-    const MeshGroup *group = mesh_group(mesh, name);
-    if (!group) {
-        Text known = {0};
-        for (int g = 0; g < mesh->group_count; g++)
-            append(&known, "%s%s", g ? ", " : "", mesh->groups[g].name);
-        return error_set(err, "group: there is no group '%s'; the mesh has %s", name,
-                         known.length ? known.text : "none");
-    }
     int member_count = group->dim == 1 ? 2 * group->count : group->count;
     for (int i = 0; i < member_count; i++) {
         int member = group->members[i];
         for (int k = 0; k < 3 && group->dim == 2; k++) mark[mesh->faces[member][k]] = true;
         if (group->dim < 2) mark[member] = true;
     }
-    return true;
+}
+
+/* All that the name stands for: its faces, its edges and its vertices. */
+static bool mark_group(const Mesh *mesh, const char *name, bool *mark, Error *err)
+{
+    bool found = false;
+    for (int dim = 0; dim <= 2; dim++) {
+        const MeshGroup *group = mesh_group(mesh, name, dim);
+        if (!group) continue;
+        mark_members(mesh, group, mark);
+        found = true;
+    }
+    if (found) return true;
+    Text known = {0};
+    for (int g = 0; g < mesh->group_count && known.length + 1 < sizeof known.text; g++)
+        append(&known, "%s%s", g ? ", " : "", mesh->groups[g].name);
+    return error_set(err, "group: there is no group '%s'; the mesh has %s", name,
+                     known.length ? known.text : "none");
+}
+
+/* Rounding of coordinates takes no vertex off the surface of a box or ball. */
+static double tolerance(const Mesh *mesh)
+{
+    return 1e-9 * mesh_diagonal(mesh);
 }
 
 static void mark_box(const Mesh *mesh, const double box[2][3], bool *mark)
 {
+    double beyond = tolerance(mesh);
     for (int v = 0; v < mesh->vertex_count; v++) {
         const double *x = mesh->rest[v];
         mark[v] = true;
-        for (int k = 0; k < 3; k++) mark[v] &= box[0][k] <= x[k] && x[k] <= box[1][k];
+        for (int k = 0; k < 3; k++) mark[v] &= box[0][k] - beyond <= x[k] && x[k] <= box[1][k] + beyond;
     }
 }
 
 static void mark_ball(const Mesh *mesh, const double center[3], double radius, bool *mark)
 {
+    double reach = radius + tolerance(mesh);
     for (int v = 0; v < mesh->vertex_count; v++)
-        mark[v] = vec3_length(vec3_sub(vec3_load(mesh->rest[v]), vec3_load(center))) <= radius;
+        mark[v] = vec3_length(vec3_sub(vec3_load(mesh->rest[v]), vec3_load(center))) <= reach;
 }
 
 static void mark_boundary(const Mesh *mesh, bool *mark)

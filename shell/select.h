@@ -15,11 +15,12 @@ typedef struct Indices {
 typedef struct Selection {
     Indices vertices; /* the file's numbering; count 0: not given */
     bool has_box;
-    double box[2][3]; /* lower and upper corner, m; the faces of the box belong to it */
+    double box[2][3]; /* lower and upper corner, m; the faces of the box belong to it, rounding aside: all
+                       * that is nearer than 1e-9 of the mesh's diagonal, of the sphere too */
     bool has_ball;
     double center[3], radius; /* m; the sphere belongs to the ball */
-    char *group;              /* vertices of the group, or of its edges or faces; NULL: not given */
-    bool boundary;            /* vertices on the boundary */
+    char *group;   /* vertices of all groups of that name, and of their edges and faces; NULL: not given */
+    bool boundary; /* vertices on the boundary */
 } Selection;
 
 /* The selected vertices of the mesh, ascending and unique; the caller frees found->items. Refused with a

@@ -52,23 +52,11 @@ void shell_destroy(Shell *shell)
 {
     if (!shell) return;
     mesh_destroy(shell->mesh);
-    for (int k = 0; k < shell->field_count; k++) flux_field_destroy(shell->fields[k]);
-    mem_free(shell->fields);
+    flux_fields_clear(&shell->fields);
     mem_free(shell->rest_angle);
     mem_free(shell->fixed);
     mem_free(shell->clamped);
     mem_free(shell);
-}
-
-/* The block field_scale is the last one, so that it can grow. */
-int shell_add_field(Shell *shell, FluxField *field)
-{
-    size_t count = (size_t)shell->field_count;
-    shell->fields = mem_resize(shell->fields, count, count + 1, sizeof *shell->fields);
-    shell->fields[count] = field;
-    shell->params.blocks[shell->params.block_count - 1].count++;
-    shell->params.size++;
-    return shell->field_count++;
 }
 
 void shell_fix(Shell *shell, int vertex, int axis)
@@ -134,7 +122,7 @@ void shell_default_params(const Shell *shell, double *p)
     for (int i = 0; i < shell->params.size; i++) p[i] = 0;
     for (int f = 0; f < shell->mesh->face_count; f++) p[shell->young + f] = 1e6;
     for (int e = 0; e < shell->mesh->edge_count; e++) p[shell->fold + e] = 1;
-    for (int k = 0; k < shell->field_count; k++) p[shell->field_scale + k] = 1;
+    for (int k = 0; k < shell->fields.count; k++) p[shell->field_scale + k] = 1;
 }
 
 void shell_rest_state(const Shell *shell, double *x)

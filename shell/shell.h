@@ -4,7 +4,7 @@
  * away from the mean of its two faces' normals (the director of the mid-edge model; zero in the hinge model).
  * Energies follow [Chen, Ni, Zhu, Wang, Chen 2022, eqs. 18-25] with the corrections in docs/theory.md. */
 #pragma once
-#include "shell/flux_field.h"
+#include "field/flux_field.h"
 #include "shell/mesh.h"
 #include "solve/params.h"
 #include "solve/system.h"
@@ -18,8 +18,7 @@ typedef struct Shell {
     Mesh *mesh;                         /* owned                                                          */
     double thickness, poisson, density; /* m, 1, kg/m^3                                                   */
     BendingModel bending;
-    int field_count;
-    FluxField **fields; /* position-dependent parts of the flux density; owned                          */
+    FluxFields fields;  /* parts of the flux density that vary in space; owned                          */
     double *rest_angle; /* [edge] dihedral angle of the rest shape, rad; 0 on the boundary; owned         */
     bool *fixed;        /* [3*vertex_count] coordinates that are held; owned                              */
     bool *clamped;      /* [edge] the slope is held as at rest; owned                                     */
@@ -32,7 +31,7 @@ typedef struct Shell {
     int gravity;       /* [3] m/s^2                                                            */
     int load;          /* [vertex][3] N, dead                                                  */
     int damping;       /* [1] N s/m at every vertex, in steps of time                          */
-    int field_scale;   /* [field] factors on the fields; 0 switches a field off, derivatives too */
+    int field_scale;   /* [field] factors on the fields                                            */
 } Shell;
 
 /* Takes the mesh. Sets up the parameter layout, rest angles and nothing held. */
@@ -41,9 +40,6 @@ void shell_destroy(Shell *shell);
 
 static inline int shell_dof_count(const Shell *shell) { return 3 * shell->mesh->vertex_count + shell->mesh->edge_count; }
 static inline int shell_angle_dof(const Shell *shell, int edge) { return 3 * shell->mesh->vertex_count + edge; }
-
-/* Adds a field of its own factor in p, and returns its number. Before the first vector p and the first system. */
-int shell_add_field(Shell *shell, FluxField *field);
 
 /* Holds one coordinate (axis 0, 1, 2) of a vertex; holds the slope of an edge. */
 void shell_fix(Shell *shell, int vertex, int axis);

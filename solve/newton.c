@@ -8,6 +8,7 @@ enum { HALVINGS = 30, BASE_CG_MAX = 12 };
 
 static const double SHIFT_LAST = 1e8;        /* D: beyond this a step is no longer a Newton step       */
 static const double STALL_SHIFT = 1e6;       /* D: no decrease even with such a shift                  */
+static const double SETTLED = 1e-4;          /* of a gap's force: more is a force that goes on growing */
 static const double LONG_STEP = 1e-4;        /* body's measure: shorter ones need no extrapolated stress */
 static const double BASE_CG_TOL = 1e-4;      /* what is left of the base shift's part in a step        */
 
@@ -75,22 +76,24 @@ double search_energy(Search *s, const double *direction, double a, Evaluation *e
     system_project(s->sys, s->trial);
     Point at = s->at;
     at.x = s->trial;
-    *evaluation = system_energy(s->sys, &at);
     s->info.evaluations++;
-    return evaluation->finite ? evaluation->energy : INFINITY;
+    *evaluation = s->open ? system_gradient(s->sys, &at, s->trial_gradient) : system_energy(s->sys, &at);
+    return evaluation->finite ? evaluation->energy + gap_energy(s) : INFINITY;
 }
 
 /* Near a minimum energies differ by less than their rounding: there the slope at the new point decides. */
 static bool slope_is_fine(Search *s, const Evaluation *trial, double slope)
 {
-    if (!(trial->energy <= s->now.energy + 1e-12 * s->now.energy_scale)) return false;
+    double rounding = system_gap(s->sys) > 0 ? 1e-9 : 1e-12; /* forces times positions round, too */
+    if (!(trial->energy <= s->now.energy + rounding * s->now.energy_scale)) return false;
     Point at = s->at;
     at.x = s->trial;
+    gap_pull(s);
     system_gradient(s->sys, &at, s->trial_gradient);
     s->info.evaluations++;
     for (int i = 0; i < s->n; i++)
         if (system_is_fixed(s->sys, i)) s->trial_gradient[i] = 0;
-    return search_dot(s->n, s->trial_gradient, s->step) <= (2 * s->def->armijo - 1) * slope;
+    return gap_falls(s) || search_dot(s->n, s->trial_gradient, s->step) <= (2 * s->def->armijo - 1) * slope;
 }
 
 /* Largest of 1, 1/2, 1/4 ... along the step that satisfies Armijo's rule; leaves the point in trial; 0: none. */
@@ -171,25 +174,11 @@ static bool newton_step(Search *s, bool small)
 
 static bool is_converged(const Search *s, bool small)
 {
-    if (s->shift > 0) return false;
+    if (s->shift > 0 || system_gap(s->sys) > 0 || system_force_change(s->sys, s->step) > SETTLED) return false;
     double gain = -search_dot(s->n, s->gradient, s->step);
     for (int i = 0; system_multiplier_count(s->sys) && i < s->n; i++) /* what must vanish and does not counts in full */
         if (system_is_multiplier(s->sys, i)) gain += s->gradient[i] * s->step[i] + fabs(s->gradient[i] * s->step[i]);
     return (small && s->info.step <= s->def->step_tol) || gain <= s->def->energy_tol * s->now.energy_scale;
-}
-
-/* Lagrange multipliers take their whole step at once; the line search is for the other dofs, with the energy and the
- * forces that belong to the new multipliers. (What must vanish does not, while a held end is being reached.) */
-static void take_multipliers(Search *s)
-{
-    if (system_multiplier_count(s->sys) == 0) return;
-    for (int i = 0; i < s->n; i++)
-        if (system_is_multiplier(s->sys, i)) {
-            s->x[i] += s->step[i];
-            s->step[i] = 0;
-        }
-    s->now = system_gradient(s->sys, &s->at, s->gradient);
-    s->info.evaluations++;
 }
 
 /* A largest force below this is rounding of the coordinates times the stiffness. */
@@ -232,18 +221,21 @@ static NewtonStatus iterate(Search *s)
     NewtonStatus status = find_step(s, &floor, &small);
     if (status != NEWTON_MAX_ITERATIONS) return status;
     s->extrapolate = false;
+    gap_note(s);
     s->shifted = s->shift > 0 ? s->shifted + 1 : 0;
     if (is_converged(s, small)) {
         finish(s);
         return NEWTON_CONVERGED;
     }
-    if (((small && s->shift > 0) || s->shifted >= s->def->shifted_max) && search_leave_saddle(s, small, floor, &status))
-        return status;
+    int patience = s->open ? 2 : 1; /* with a gap every other step is one of the multipliers */
+    bool saddle = (small && s->shifted >= patience) || s->shifted >= s->def->shifted_max;
+    if (saddle && search_leave_saddle(s, small, floor, &status)) return status;
 
-    take_multipliers(s);
+    gap_take_multipliers(s);
     double shrink = fmin(1, s->def->step_cap / s->info.step);
     for (int i = 0; i < s->n; i++) s->step[i] *= shrink;
     double a = line_search(s);
+    gap_keep_multipliers(s, a * shrink);
     if (a > 0) {
         search_move(s, s->step, a);
         return status;
@@ -255,10 +247,10 @@ static NewtonStatus iterate(Search *s)
 NewtonInfo newton_minimize(System *sys, const NewtonDef *def, const Point *at, double *x, const NewtonObserver *observer)
 {
     int n = system_dof_count(sys);
-    double *work = mem_alloc(8 * (size_t)n, sizeof *work);
+    double *work = mem_alloc(10 * (size_t)n, sizeof *work);
     Search s = {.sys = sys, .def = def, .n = n, .at = *at, .x = x, .gradient = work,
                 .step = work + n, .trial = work + 2 * n, .trial_gradient = work + 3 * n, .mode = work + 4 * n,
-                .product = work + 5 * n, .from = work + 6 * n, .moved = work + 7 * n,
+                .product = work + 5 * n, .from = work + 6 * n, .moved = work + 7 * n, .gap = work + 8 * n, .change = work + 9 * n,
                 .follows = !at->x_prev && system_has_follow(sys)};
     s.at.x = x;
     s.info.status = NEWTON_MAX_ITERATIONS;

@@ -9,6 +9,7 @@ enum { INVERSE_ITERATIONS = 8, CURVATURE_TRIES = 25 };
 static const double CURVATURE_STEP = 0.05;             /* body's measure: first step along negative curvature */
 static const double CURVATURE_LAST = 0.5;              /* ... and the last                                    */
 static const double ZERO_CURVATURE = 16 * DBL_EPSILON; /* v'Hv with v'Dv = 1: no more than its rounding       */
+static const double LIKELY = 1e4;                      /* of the step in a mode's start, against chance       */
 static const double LEAST_SHIFT = 1e-15;               /* D: below that a factorisation decides by rounding   */
 
 /* A factor with as little shift as there may be: the modes of a thin sheet lie closer together than any shift fit for a step
@@ -19,6 +20,14 @@ static void near_singular(Search *s)
     search_factor(s, s->shift);
 }
 
+/* Where several modes are all but equal, as the ways in which a round rod buckles, the forces say which one is
+ * downhill: of two or three, an iteration keeps what it was given. */
+static void add_step(Search *s)
+{
+    double size = system_step_size(s->sys, s->step), own = system_step_size(s->sys, s->mode);
+    for (int i = 0; size > 0 && i < s->n; i++) s->mode[i] += LIKELY * own / size * s->step[i];
+}
+
 /* Inverse iteration with the factor at hand: the mode of lowest curvature v'Hv/v'Dv, scaled to v'Dv = 1 and pointing
  * downhill. Returns its curvature. */
 static double lowest_mode(Search *s)
@@ -27,6 +36,7 @@ static double lowest_mode(Search *s)
     Random random = random_seed(1);
     for (int i = 0; !s->mode_known && i < s->n; i++)
         s->mode[i] = scale[i] > 0 ? random_signed(&random) / sqrt(scale[i]) : 0;
+    if (!s->mode_known && s->open) add_step(s);
     s->mode_known = true;
     for (int k = 0; k < INVERSE_ITERATIONS; k++) {
         for (int i = 0; i < s->n; i++) s->product[i] = scale[i] * s->mode[i];
@@ -36,8 +46,10 @@ static double lowest_mode(Search *s)
         norm = 1 / sqrt(norm);
         for (int i = 0; i < s->n; i++) s->mode[i] *= norm;
     }
+    for (int i = 0; s->open && i < s->n; i++)
+        if (system_is_multiplier(s->sys, i)) s->mode[i] = 0;
     system_multiply(s->sys, s->mode, s->product);
-    double curvature = search_dot(s->n, s->mode, s->product);
+    double curvature = search_dot(s->n, s->mode, s->product) + gap_curvature(s);
     if (search_dot(s->n, s->mode, s->gradient) > 0)
         for (int i = 0; i < s->n; i++) s->mode[i] = -s->mode[i];
     return curvature;

@@ -6,6 +6,8 @@
 
 enum { MAX_LOWER = TERM_LOWER(TERM_MAX_DOF, 0) };
 
+static const double GAP_LEAST = 1e-10; /* of the body's size: what counts as closed */
+
 System *system_create(int dof_count, const DofClass *classes, int class_count)
 {
     assert(class_count <= SYSTEM_MAX_CLASSES);
@@ -17,6 +19,7 @@ System *system_create(int dof_count, const DofClass *classes, int class_count)
     sys->fixed = mem_alloc(n, sizeof(bool));
     sys->unknown = mem_alloc(n, sizeof(int));
     sys->scale = mem_alloc(n, sizeof(double));
+    sys->compliance = mem_alloc(n, sizeof(double));
     sys->force_sum = mem_alloc(n, sizeof(double));
     return sys;
 }
@@ -38,6 +41,7 @@ void system_destroy(System *sys)
     mem_free(sys->fixed);
     mem_free(sys->unknown);
     mem_free(sys->scale);
+    mem_free(sys->compliance);
     mem_free(sys->force_sum);
     mem_free(sys->linearised);
     mem_free(sys->anchor);
@@ -133,6 +137,8 @@ const Bulk *system_bulk(const System *sys, int b) { return &sys->bulks[b]; }
 const double *system_energies(const System *sys) { return sys->energies; }
 const double *system_scale(const System *sys) { return sys->scale; }
 const double *system_linearised(const System *sys) { return sys->linearised + ANCHOR_X; }
+double system_gap(const System *sys) { return sys->gap; }
+double system_compliance(const System *sys, int dof) { return sys->compliance[dof]; }
 double system_stiffness_max(const System *sys) { return sys->stiffness_max; }
 int system_position_count(const System *sys) { return sys->classes[0].count; }
 SparseInfo system_info(const System *sys) { return sparse_info(sys->matrix); }
@@ -297,6 +303,13 @@ Evaluation system_gradient(System *sys, const Point *at, double *gradient)
     return evaluate(sys, at, gradient, NULL);
 }
 
+double system_force_change(const System *sys, const double *step)
+{
+    double change = 0, gap = fmax(sys->gap, GAP_LEAST * sys->classes[0].size);
+    for (int i = 0; i < sys->dof_count; i++) change = fmax(change, fabs(step[i]) * sys->compliance[i] / gap);
+    return change;
+}
+
 /* D: the mean |H_ii| of each class over its free dofs, so that a shift has no unit. */
 static void measure_scale(System *sys)
 {
@@ -318,11 +331,34 @@ static void measure_scale(System *sys)
     }
 }
 
+static double norm(const DofClass *class, const double *v)
+{
+    double sum = 0;
+    for (int i = class->first; i < class->first + class->count; i++) sum += v[i] * v[i];
+    return sqrt(sum);
+}
+
+/* What the multipliers give way, from the gradient: what must vanish stands where theirs is. */
+static void measure_compliance(System *sys, const double *x, const double *gradient)
+{
+    double least = GAP_LEAST * sys->classes[0].size;
+    sys->gap = 0;
+    for (int c = 0; c < sys->class_count; c++) {
+        const DofClass *class = &sys->classes[c];
+        if (!(class->force > 0)) continue;
+        double gap = norm(class, gradient), force = class->force + norm(class, x);
+        if (gap > least) sys->gap = fmax(sys->gap, gap);
+        for (int i = class->first; i < class->first + class->count; i++)
+            sys->compliance[i] = fmax(gap, least) / force;
+    }
+}
+
 Evaluation system_hessian(System *sys, const Point *at, double *gradient)
 {
     system_couple(sys, at->x);
     Evaluation result = evaluate(sys, at, gradient, sparse_values(sys->matrix));
     measure_scale(sys);
+    measure_compliance(sys, at->x, gradient);
     system_note_point(sys, at);
     return result;
 }

@@ -13,9 +13,11 @@ typedef struct DofClass {
     int first, count;
     double size; /* a large change of such a dof: the body's diagonal, or 1 rad; INFINITY: of no interest */
     bool multipliers; /* Lagrange multipliers: the energy is that of the others plus theirs times what must vanish */
+    double force;     /* of multipliers: what must vanish is far from it at times, and then they change by so much in
+                       * an iteration, N (system_gap); 0: it always vanishes */
 } DofClass;
 
-enum { SYSTEM_MAX_CLASSES = 3, SYSTEM_MAX_TERMS = 16, SYSTEM_MAX_BULKS = 4 };
+enum { SYSTEM_MAX_CLASSES = 4, SYSTEM_MAX_TERMS = 16, SYSTEM_MAX_BULKS = 4 };
 
 typedef struct System System;
 
@@ -80,6 +82,17 @@ Evaluation system_hessian(System *sys, const Point *at, double *gradient);
 
 /* Of the last evaluation: the energy of each term, and after these of each Bulk. */
 const double *system_energies(const System *sys);
+
+/* How far what must vanish is from it at the last Hessian, m; 0: less than 1e-10 of the body, or no class has a
+ * `force`. Such a class's multipliers are regularised: as if what they hold gave way by a compliance c, m/N, which the
+ * matrix has as -c on their diagonal. It is the gap over the force (the class's and their own), and at least 1e-10 of
+ * the body's size over it: then solutions are those without it, for Newton's right-hand sides know nothing of it, but
+ * there is one for multipliers that nothing depends on, as the axial force in a straight inextensible rod. */
+double system_gap(const System *sys);
+double system_compliance(const System *sys, int dof);
+
+/* The largest change of such a multiplier in a step, in parts of that force. */
+double system_force_change(const System *sys, const double *step);
 
 /* x[dof_count] of the last Hessian. */
 const double *system_linearised(const System *sys);

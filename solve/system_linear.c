@@ -31,9 +31,14 @@ void system_note_point(System *sys, const Point *at)
 
 bool system_factor(System *sys, double shift)
 {
-    double *diagonal = pick(sys, sys->scale);
-    for (int i = 0; i < sys->free_count; i++) diagonal[i] *= sys->base + shift;
-    bool ok = sparse_factor(sys->matrix, sys->base + shift > 0 ? diagonal : NULL);
+    double sum = 0, *diagonal = sys->work;
+    for (int i = 0; i < sys->dof_count; i++)
+        if (sys->unknown[i] >= 0) {
+            double *to = &diagonal[sys->unknown[i]];
+            *to = (sys->base + shift) * sys->scale[i] - sys->compliance[i];
+            sum += fabs(*to);
+        }
+    bool ok = sparse_factor(sys->matrix, sum > 0 ? diagonal : NULL);
     memcpy(sys->anchor, sys->linearised, (size_t)system_anchor_count(sys) * sizeof *sys->anchor);
     sys->anchor[ANCHOR_USABLE] = sys->factored = ok;
     sys->anchor[ANCHOR_SHIFT] = shift;

@@ -27,6 +27,8 @@ struct System {
     Sparse *matrix;
     double base, stiffness_max;
     double *scale;       /* [dof] D                                     */
+    double *compliance;  /* [dof] of multipliers, m/N; 0 elsewhere: see system_gap */
+    double gap;          /* m                                           */
     double *force_sum;   /* [dof] sum of absolute element forces        */
     double *linearised;  /* [anchor_count] where the last Hessian stands: see system_anchor */
     double *anchor;      /* [anchor_count] where the last factor stands                     */

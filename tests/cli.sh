@@ -111,6 +111,9 @@ expect 4 "$program" run "$scene" -o folder;     says "'folder.vtkhdf' is a folde
 [ ! -e folder.run ] || { echo "a run that cannot be written has begun"; bad=1; }
 expect 3 "$program" run out;                    says "Is a directory"
 
+# The time of a motion may stay where its scene is put to rest.
+expect 0 "$program" check "$here/../scenes/strip_vibration.yaml" --set job=equilibrium --set output.every=0
+
 # A simulation that is killed or extended ends as one that is not.
 vibration="$here/../scenes/strip_vibration.yaml --set shell.mesh.n=12 --set output.every=7 --quiet --no-picture"
 # shellcheck disable=SC2086

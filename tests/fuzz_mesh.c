@@ -8,14 +8,14 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size);
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size)
 {
-    static const char *const formats[] = {"obj", "ply", "msh"};
+    static const char *const formats[] = {"obj", "ply", "msh", "stl"};
     MeshFile file;
     Error err;
     if (size == 0) return 0;
-    if (mesh_file_parse("fuzz", formats[bytes[0] % 3], (const char *)bytes + 1, (long)size - 1, &file,
+    if (mesh_file_parse("fuzz", formats[bytes[0] % 4], (const char *)bytes + 1, (long)size - 1, &file,
                         &err)) {
         MeshReport report;
-        Mesh *mesh = mesh_create(&file, bytes[0] & 4 ? 1e-3 : 0, &report, &err);
+        Mesh *mesh = mesh_create(&file, bytes[0] & 8 ? 1e-3 : 0, &report, &err);
         mesh_destroy(mesh);
         mesh_report_clear(&report);
         mesh_file_clear(&file);

@@ -9,8 +9,9 @@ check() { # folder, folders it may include
 check base 'base'
 check solve 'base|solve'
 check io 'base|io'
-check shell 'base|solve|io|shell'
-check rod 'base|solve|io|rod'
+check field 'base|solve|io|field'
+check shell 'base|solve|io|field|shell'
+check rod 'base|solve|io|field|rod'
 check spline 'base|solve|io|spline'
 check optim 'base|solve|optim'
 exit $bad

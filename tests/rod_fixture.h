@@ -31,7 +31,7 @@ static inline Resting resting_create(const ReferenceRod *r, double young, int el
     o.x = mem_alloc((size_t)o.layout.dofs, sizeof *o.x);
     o.hanging = rod_hanging_system(o.rod);
     rod_follow_curve(o.rod, &o.curve, o.frames, o.x);
-    rod_balance(o.rod, o.hanging, o.x, o.p);
+    rod_balance(o.rod, o.hanging, &o.layout, o.x, o.p);
     return o;
 }
 

@@ -83,7 +83,7 @@ static void test_sentences(void **state)
 static void test_complete(void **state)
 {
     (void)state;
-    static const char *const patterns[] = {"*.yaml", "*.obj", "*.ply", "*.msh", "*.stl"};
+    static const char *const patterns[] = {"*.yaml", "*.obj", "*.ply", "*.msh", "*.stl", "*.off"};
     static char all[65536];
     FILE *expected = fopen("expected.txt", "r");
     assert_non_null(expected);

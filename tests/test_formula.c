@@ -16,14 +16,18 @@ static void test_values(void **state)
     long blocks = mem_live_count();
     Error err;
     const char *const expressions[] = {"rint(atan2(y, x)/(pi/3))", "a + b^2", "0"};
-    const FormulaHelper helpers[] = {{"a", "2*x"}, {"b", "a + y"}};
-    Formula *formula = formula_create(expressions, 3, helpers, 2, variables, &err);
-    assert_non_null(formula);
-    double r[3];
-    assert_true(formula_eval(formula, (double[]){1, 2, 0}, r, &err));
-    assert_true(r[0] == rint(atan2(2, 1) / (M_PI / 3)) && r[1] == 2 + 16 && r[2] == 0);
-    assert_true(formula_uses(formula, "x") && formula_uses(formula, "y") && !formula_uses(formula, "t"));
-    formula_destroy(formula);
+    /* a mapping has no order: one that sorts its keys gives the second */
+    const FormulaHelper helpers[2][3] = {{{"a", "2*x"}, {"b", "a + y"}, {"a2", "1"}},
+                                         {{"a2", "1"}, {"b", "a + y"}, {"a", "2*x"}}};
+    for (int k = 0; k < 2; k++) {
+        Formula *formula = formula_create(expressions, 3, helpers[k], 3, variables, &err);
+        assert_non_null(formula);
+        double r[3];
+        assert_true(formula_eval(formula, (double[]){1, 2, 0}, r, &err));
+        assert_true(r[0] == rint(atan2(2, 1) / (M_PI / 3)) && r[1] == 2 + 16 && r[2] == 0);
+        assert_true(formula_uses(formula, "x") && formula_uses(formula, "y") && !formula_uses(formula, "t"));
+        formula_destroy(formula);
+    }
     assert_int_equal(mem_live_count(), blocks);
 }
 
@@ -79,6 +83,17 @@ static void test_comparisons(void **state)
     }
 }
 
+/* Helpers may be given in any order, and not in a circle. */
+static void test_circle(void **state)
+{
+    (void)state;
+    Error err;
+    const char *expression = "a";
+    const FormulaHelper circle[] = {{"c", "1"}, {"a", "b + c"}, {"b", "2*a"}};
+    assert_null(formula_create(&expression, 1, circle, 3, variables, &err));
+    assert_string_equal(err.text, "the name 'a' beside the formula depends on itself, through others");
+}
+
 static void test_not_finite(void **state)
 {
     (void)state;
@@ -99,6 +114,7 @@ int main(void)
         cmocka_unit_test(test_refused),
         cmocka_unit_test(test_helper_names),
         cmocka_unit_test(test_comparisons),
+        cmocka_unit_test(test_circle),
         cmocka_unit_test(test_not_finite),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

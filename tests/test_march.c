@@ -251,7 +251,7 @@ static void test_strip_frequency(void **state)
         double b = 1.8751041 / L, x = mesh->rest[v][0];
         s.now.v[3 * v + 2] = 1e-3 * (cosh(b * x) - cos(b * x) - 0.7340955 * (sinh(b * x) - sin(b * x)));
     }
-    const MeshGroup *tip = mesh_group(mesh, "tip");
+    const MeshGroup *tip = mesh_group(mesh, "tip", 0);
     double dt = 2 * M_PI / w / 200, before = 0, crossing[2] = {0}, seen = atan(w * dt) / dt;
     int found = 0;
     MarchDef def = march_default();

@@ -4,6 +4,7 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <string.h>
 #include <cmocka.h>
 #include "base/memory.h"
@@ -11,7 +12,7 @@
 #include "base/vec3.h"
 #include "shell/mesh.h"
 #include "shell/shapes.h"
-#include "shell/weld.h"
+#include "base/weld.h"
 
 /* A file on the stack: vertices on lines 1, 2, ..., faces on lines 21, 22, ... */
 typedef struct Surface {
@@ -51,14 +52,19 @@ static void assert_refused(const MeshFile *file, double weld, const char *senten
     assert_int_equal(mem_live_count(), live);
 }
 
-static Mesh *assert_accepted(const MeshFile *file, double weld, const char *warning)
+/* warnings: a line for each; NULL for none. */
+static Mesh *assert_accepted(const MeshFile *file, double weld, const char *warnings)
 {
     Error err = {0};
     MeshReport report;
+    char said[2000] = "";
     Mesh *mesh = mesh_create(file, weld, &report, &err);
     if (!mesh) fail_msg("%s", err.text);
-    assert_int_equal(report.warning_count, warning ? 1 : 0);
-    if (warning) assert_string_equal(report.warnings[0], warning);
+    for (int k = 0; k < report.warning_count; k++) {
+        size_t length = strlen(said);
+        snprintf(said + length, sizeof said - length, "%s%s", k ? "\n" : "", report.warnings[k]);
+    }
+    assert_string_equal(said, warnings ? warnings : "");
     mesh_report_clear(&report);
     return mesh;
 }
@@ -282,19 +288,21 @@ static void removes_vertices_without_faces(void **state)
                           {"lines", 1, 3, (int[]){0, 2, 1, 4, 5, 0}},
                           {"top", 2, 1, (int[]){1}}};
     file->groups = groups, file->group_count = 3;
-    Mesh *m =
-        assert_accepted(file, 0, "m.obj:2: 2 vertices were removed, being in no face; the first is vertex 1");
+    Mesh *m = assert_accepted(file, 0,
+                              "m.obj:2: 2 vertices were removed, being in no face; the first is vertex 1\n"
+                              "m.obj: the group 'points' has lost 1 of its 3 vertices, being in no face\n"
+                              "m.obj: the group 'lines' has lost 1 of its 3 lines, being in no face");
     assert_int_equal(m->vertex_count, 4);
     assert_memory_equal(m->file_vertex, ((int[]){0, 2, 3, 5}), 4 * sizeof(int));
     assert_memory_equal(m->vertex_of_file, ((int[]){0, -1, 1, 2, -1, 3}), 6 * sizeof(int));
     assert_memory_equal(m->faces, ((int[]){0, 1, 2, 0, 2, 3}), 6 * sizeof(int));
-    assert_int_equal(mesh_group(m, "points")->count, 2);
-    assert_memory_equal(mesh_group(m, "points")->members, ((int[]){3, 1}), 2 * sizeof(int));
-    assert_int_equal(mesh_group(m, "lines")->count, 2);
-    assert_memory_equal(mesh_group(m, "lines")->members, ((int[]){0, 1, 3, 0}), 4 * sizeof(int));
-    assert_int_equal(mesh_group(m, "top")->count, 1);
-    assert_int_equal(mesh_group(m, "top")->members[0], 1);
-    assert_null(mesh_group(m, "bottom"));
+    assert_int_equal(mesh_group(m, "points", 0)->count, 2);
+    assert_memory_equal(mesh_group(m, "points", 0)->members, ((int[]){3, 1}), 2 * sizeof(int));
+    assert_int_equal(mesh_group(m, "lines", 1)->count, 2);
+    assert_memory_equal(mesh_group(m, "lines", 1)->members, ((int[]){0, 1, 3, 0}), 4 * sizeof(int));
+    assert_int_equal(mesh_group(m, "top", 2)->count, 1);
+    assert_int_equal(mesh_group(m, "top", 2)->members[0], 1);
+    assert_null(mesh_group(m, "bottom", 2));
 
     int v;
     Error err;
@@ -309,8 +317,9 @@ static void removes_vertices_without_faces(void **state)
 
     file->vertex_line = NULL, file->vertex_count = 6;
     s.faces[1][1] = 1;
-    mesh_destroy(
-        assert_accepted(file, 0, "m.obj: 1 vertex was removed, being in no face; the first is vertex 4"));
+    mesh_destroy(assert_accepted(file, 0,
+                                 "m.obj: 1 vertex was removed, being in no face; the first is vertex 4\n"
+                                 "m.obj: the group 'lines' has lost 1 of its 3 lines, being in no face"));
 }
 
 /* Two triangles that meet along x = 0 in vertices of their own, one of them off by 1e-7. */

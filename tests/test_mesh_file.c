@@ -32,9 +32,8 @@ static void check_square(const MeshFile *mesh)
 
 static void check_group(const MeshFile *mesh, const char *name, int dim, int count, const int *members)
 {
-    const MeshGroup *group = mesh_file_group(mesh, name);
+    const MeshGroup *group = mesh_file_group(mesh, name, dim);
     if (!group) fail_msg("no group %s", name);
-    assert_int_equal(group->dim, dim);
     assert_int_equal(group->count, count);
     assert_memory_equal(group->members, members, (size_t)(count * (dim == 1 ? 2 : 1)) * sizeof(int));
 }
@@ -107,6 +106,68 @@ static void test_msh41(void **state)
     mesh_file_clear(&mesh);
 }
 
+/* Names that would be other names, comments or joined lines to a reader of OBJ. */
+static void test_write_names(void **state)
+{
+    (void)state;
+    Error err;
+    MeshFile mesh = parse("obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"), again;
+    MeshGroup groups[] = {
+        {"left half", 2, 1, (int[]){0}}, {"#1", 2, 1, (int[]){0}}, {"a\\", 1, 1, (int[]){0, 1}}};
+    mesh.groups = groups, mesh.group_count = 3;
+    assert_true(mesh_file_write_obj("test_write_names.obj", &mesh, &err));
+    mesh.groups = NULL, mesh.group_count = 0;
+    if (!mesh_file_read("test_write_names.obj", &again, &err)) fail_msg("%s", err.text);
+    check_group(&again, "left_half", 2, 1, (int[]){0});
+    check_group(&again, "_1", 2, 1, (int[]){0});
+    check_group(&again, "a_", 1, 1, (int[]){0, 1});
+    mesh_file_clear(&again);
+    mesh_file_clear(&mesh);
+    unlink("test_write_names.obj");
+}
+
+/* A byte order mark is no part of the first word. */
+static void test_mark(void **state)
+{
+    (void)state;
+    static const char *const texts[][2] = {
+        {"obj", "\xef\xbb\xbfv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 .5\nf 1 2 3\nf 1 3 4\n"},
+        {"ply", "\xef\xbb\xbfply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+                "property float z\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n"
+                "0 0 0\n1 0 0\n1 1 0\n0 1 .5\n3 0 1 2\n3 0 2 3\n"},
+        {"msh",
+         "\xef\xbb\xbf$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 .5\n"
+         "$EndNodes\n$Elements\n2\n1 2 0 1 2 3\n2 2 0 1 3 4\n$EndElements\n"}};
+    for (size_t k = 0; k < sizeof texts / sizeof *texts; k++) {
+        MeshFile mesh = parse(texts[k][0], texts[k][1]);
+        check_square(&mesh);
+        mesh_file_clear(&mesh);
+    }
+    Error err;
+    Table table;
+    assert_true(table_parse("t.csv",
+                            "\xef\xbb\xbf"
+                            "1, 2\n3, 4\n",
+                            13, "x, y", &table, &err));
+    assert_true(table.rows == 2 && table.values[0] == 1);
+    table_clear(&table);
+    assert_false(table_parse("t.csv",
+                             "\xff\xfe"
+                             "1\0",
+                             4, NULL, &table, &err));
+    assert_string_equal(err.text, "t.csv: the file is UTF-16 text; save it as UTF-8");
+    assert_false(table_parse("t.csv",
+                             "1\0"
+                             "2\0",
+                             4, NULL, &table, &err));
+    assert_string_equal(err.text, "t.csv: the file is UTF-16 text; save it as UTF-8");
+    assert_false(table_parse("t.csv",
+                             "\xff\xfe\0\0"
+                             "1\0\0\0",
+                             8, NULL, &table, &err));
+    assert_string_equal(err.text, "t.csv: the file is UTF-32 text; save it as UTF-8");
+}
+
 /* Every bit, and the groups. */
 static void test_write(void **state)
 {
@@ -130,12 +191,12 @@ static void test_write(void **state)
     unlink("test_write.obj");
 }
 
-static bool read_table(const char *text, int columns, Table *table, Error *err)
+static bool read_table(const char *text, const char *names, Table *table, Error *err)
 {
     FILE *file = fopen("test_table.csv", "w");
     fputs(text, file);
     fclose(file);
-    bool ok = table_read("test_table.csv", columns, table, err);
+    bool ok = table_read("test_table.csv", names, table, err);
     unlink("test_table.csv");
     return ok;
 }
@@ -146,32 +207,56 @@ static void test_table(void **state)
     long blocks = mem_live_count();
     Error err;
     Table table;
-    assert_true(read_table("x, y; z\n# comment\n1,2,3\r\n\n 4 ; 5e-1 ;-6 # end\n7\t8\t9", 0, &table, &err));
-    assert_true(table.rows == 3 && table.columns == 3 && table.line[1] == 5);
-    assert_memory_equal(table.values, ((double[]){1, 2, 3, 4, 0.5, -6, 7, 8, 9}), 9 * sizeof(double));
-    table_clear(&table);
+    /* The same rows, split and written in every way. */
+    static const char *const same[] = {"x, y, z\n# comment\n1,2,3\r\n\n 4 , 5e-1 ,-6 # end\n7,8,9,\n",
+                                       "\xef\xbb\xbf"
+                                       "1;2;3\n# one\n# two\n#\n4;0.5;-6\n7;8;9",
+                                       "A title; of words\n\n1;2;3\n\n4;0,5;-6\n7;8,0;9",
+                                       "\"x\"\t\"y\"\t\"z\"\n\n1\t2\t3,0\n\n4\t0,5\t-6\n7\t8\t9",
+                                       "x y z\n\n1 2\t 3\n\n 4  .5 -6\n7\t8 9\n"};
+    for (size_t k = 0; k < sizeof same / sizeof *same; k++) {
+        if (!read_table(same[k], k ? "x, y, z" : NULL, &table, &err)) fail_msg("%s", err.text);
+        assert_true(table.rows == 3 && table.columns == 3 && table.line[1] == 5);
+        assert_memory_equal(table.values, ((double[]){1, 2, 3, 4, 0.5, -6, 7, 8, 9}), 9 * sizeof(double));
+        table_clear(&table);
+    }
     static const struct {
         const char *text;
-        int columns;
+        const char *names;
         const char *sentence;
     } broken[] = {
-        {"1, 2\n3\n", 0, "test_table.csv:2: 1 number in this row, and 2 are needed"},
-        {"1, 2\n", 3, "test_table.csv:1: 2 numbers in this row, and 3 are needed"},
-        {"1\ntwo\n", 1, "test_table.csv:2: 'two' is no finite number"},
-        {"nan\n", 1, "test_table.csv:1: 'nan' is no finite number"},
-        {"1\n-inf\n", 1, "test_table.csv:2: '-inf' is no finite number"},
-        {"1\n1e999\n", 1, "test_table.csv:2: '1e999' is no finite number"},
-        {"1\n0x10\n", 1, "test_table.csv:2: '0x10' is no finite number"},
-        {"# nothing\n", 1, "test_table.csv: there are no numbers in it"},
-        {"header only\n", 1, "test_table.csv: there are no numbers in it"},
+        {"1, 2\n3\n", NULL, "test_table.csv:2: 1 number in this row, and 2 are needed"},
+        {"1, 2\n", "x, y, z", "test_table.csv:1: 2 numbers in this row, and 3 are needed: x, y, z"},
+        {"1\ntwo\n", NULL, "test_table.csv:2: 'two' is no finite number"},
+        {"nan\n", NULL, "test_table.csv:1: 'nan' is no finite number"},
+        {"1\n-inf\n", NULL, "test_table.csv:2: '-inf' is no finite number"},
+        {"1\n1e999\n", NULL, "test_table.csv:2: '1e999' is no finite number"},
+        {"1\n0x10\n", NULL, "test_table.csv:2: '0x10' is no finite number"},
+        {"# nothing\n", NULL, "test_table.csv: there are no numbers in it"},
+        {"header only\n", NULL, "test_table.csv: there are no numbers in it"},
+        {"O.0, 0, 1\n1, 0, 0\n", NULL, "test_table.csv:1: 'O.0' is no finite number"},
+        {"x, y\nm, m\n1, 2\n", NULL, "test_table.csv:2: 'm' is no finite number"},
+        {"x, z, y\n1, 2, 3\n", "x, y, z",
+         "test_table.csv:1: column 2 is headed 'z'; the columns must be x, y, z"},
+        {"x [mm]; y; z; r\n1; 2; 3; 4\n", "s, x, y, z",
+         "test_table.csv:1: column 1 is headed 'x [mm]'; the columns must be s, x, y, z"},
+        {"1; 2\n1, 2\n", NULL, "test_table.csv:2: '1, 2' is no finite number"},
+        {"1; 2\n1,2\n", NULL, "test_table.csv:2: 1 number in this row, and 2 are needed"},
+        {"1,5; 2\n1.5; 2\n", NULL,
+         "test_table.csv:2: '1.5' is no finite number with a decimal comma, as those before it"},
+        {"1.5; 2\n1,5; 2\n", NULL,
+         "test_table.csv:2: '1,5' is no finite number with a decimal point, as those before it"},
+        {"1.234,5; 2\n", NULL, "test_table.csv:1: '1.234,5' is no finite number"},
+        {"1,5 2,5 3,5\n", NULL, "test_table.csv:1: '5 2' is no finite number"},
+        {"1,,3\n", NULL, "test_table.csv:1: there is nothing between two separators"},
     };
     for (size_t k = 0; k < sizeof broken / sizeof *broken; k++) {
-        assert_false(read_table(broken[k].text, broken[k].columns, &table, &err));
+        assert_false(read_table(broken[k].text, broken[k].names, &table, &err));
         assert_string_equal(err.text, broken[k].sentence);
     }
     double values[4] = {1.0 / 3, -5e-324, 1e308, 0.1};
     assert_true(table_write("test_table.csv", "# bits", values, 2, 2, &err) &&
-                table_read("test_table.csv", 2, &table, &err));
+                table_read("test_table.csv", NULL, &table, &err));
     assert_memory_equal(table.values, values, sizeof values);
     table_clear(&table);
     unlink("test_table.csv");
@@ -182,6 +267,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_obj),   cmocka_unit_test(test_ply),
                                        cmocka_unit_test(test_msh22), cmocka_unit_test(test_msh41),
+                                       cmocka_unit_test(test_mark),  cmocka_unit_test(test_write_names),
                                        cmocka_unit_test(test_write), cmocka_unit_test(test_table)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -17,19 +17,23 @@ typedef struct Built {
     Model *model;
 } Built;
 
-/* A scene of a 4 x 2 sheet, 40 x 20 mm, with these lines below. */
-static Built build(const char *job, const char *shell, const char *lines)
+static Built build_text(char *text)
 {
     Built b;
-    char *text = mem_format(
-        "slender: 1\njob: %s\nshell:\n  mesh: {shape: sheet, size: [40 mm, 20 mm], cells: [4, 2]}\n"
-        "  thickness: 1 mm\n  poisson: 0.3\n%s%s",
-        job, shell, lines);
     b.file = yaml_parse("test.yaml", text, strlen(text));
     b.model = yaml_load(b.file, &scene_table, &b.scene) ? model_create(&b.scene, b.file) : NULL;
     if (!b.model) fail_msg("%s", yaml_report(b.file));
     mem_free(text);
     return b;
+}
+
+/* A scene of a 4 x 2 sheet, 40 x 20 mm, with these lines below. */
+static Built build(const char *job, const char *shell, const char *lines)
+{
+    return build_text(mem_format(
+        "slender: 1\njob: %s\nshell:\n  mesh: {shape: sheet, size: [40 mm, 20 mm], cells: [4, 2]}\n"
+        "  thickness: 1 mm\n  poisson: 0.3\n%s%s",
+        job, shell, lines));
 }
 
 static void clear(Built *b)
@@ -134,7 +138,7 @@ static void test_fields(void **state)
         "  - {flux_density: {magnet: {at: [0, 0, 1], remanence: [0, 0, 1.2], volume: 1e-6}}}\n"
         "design: {unknowns: {flux_density: {noise: 1 mT}}, objectives: [{target: 1}]}\n");
     const Shell *shell = b.model->shell;
-    assert_int_equal(shell->field_count, 2);
+    assert_int_equal(shell->fields.count, 2);
     assert_true(fabs(params_of(&b, 0, 0)[shell->flux_density + 2] - 0.02) < 1.01e-3);
     for (int c = 0; c < 3; c++)
         for (int k = 0; k < 2; k++) assert_true(params_of(&b, c, 0)[shell->field_scale + k] == (c == k + 1));
@@ -190,7 +194,7 @@ static void test_unknowns(void **state)
     if (!b.model) fail_msg("%s", yaml_report(b.file));
     const Shell *shell = b.model->shell;
     const double *p = params_of(&b, 0, 0);
-    const MeshGroup *hub = mesh_group(shell->mesh, "hub");
+    const MeshGroup *hub = mesh_group(shell->mesh, "hub", 2);
     assert_true(p[shell->young + hub->members[0]] == 2e5 && p[shell->fold] == 2);
     assert_true(fabs(p[shell->magnetization + 2] - 5e3) <= 10 && p[shell->magnetization + 2] != 5e3);
     assert_int_equal(b.model->design.size, 3 * shell->mesh->face_count + 7 + shell->mesh->edge_count);
@@ -207,9 +211,53 @@ static void test_unknowns(void **state)
     clear(&b);
 }
 
+/* What lies in several groups has the value of the smallest one, in whatever order the scene lists them. */
+static void test_nested_groups(void **state)
+{
+    (void)state;
+    long blocks = mem_live_count();
+    static const char *const orders[] = {"all: 1 MPa, half: 2 MPa", "half: 2 MPa, all: 1 MPa"};
+    for (int k = 0; k < 2; k++) {
+        Built b = build_text(mem_format(
+            "slender: 1\njob: evaluate\nshell:\n  mesh: {file: %s/tests/broken/meshes/crease.obj}\n"
+            "  thickness: 1 mm\n  poisson: 0.3\n  young: {groups: {%s}}\n",
+            SOURCE_DIR, orders[k]));
+        const double *young = params_of(&b, 0, 0) + b.model->shell->young;
+        for (int f = 0; f < 4; f++) assert_true(young[f] == (f < 2 ? 2e6 : 1e6));
+        clear(&b);
+    }
+    assert_int_equal(mem_live_count(), blocks);
+}
+
+/* Poses and targets are files of the same kind as the mesh's, and take its scale or one of their own. */
+static void test_scale(void **state)
+{
+    (void)state;
+    long blocks = mem_live_count();
+    const char *path = SOURCE_DIR "/tests/broken/meshes/crease.obj";
+    for (int own = 0; own < 2; own++) {
+        Built b = build_text(mem_format(
+            "slender: 1\njob: design\nshell:\n  mesh: {file: %s, scale: 0.5}\n  pose: {file: %s%s}\n  "
+            "thickness: 1 mm\n"
+            "  young: 1 MPa\n  poisson: 0.3\nfix: [{vertices: [0, 3], clamp: true}]\ntarget: {file: %s%s}\n"
+            "design: {unknowns: {magnetization: {}}, objectives: [{target: 1}]}\n",
+            path, path, own ? ", scale: 1" : "", path, own ? ", scale: 1.5" : ""));
+        const Mesh *mesh = b.model->shell->mesh;
+        for (int i = 0; i < 3 * mesh->vertex_count; i++) {
+            double rest = mesh->rest[i / 3][i % 3];
+            assert_true(b.model->x[i] == (own ? 2 : 1) * rest);
+            assert_true(fabs(b.model->cases[0].target[i / 3][i % 3] - (own ? 3 : 1) * rest) < 1e-17);
+        }
+        assert_true(mesh->rest[1][0] == 0.01);
+        clear(&b);
+    }
+    assert_int_equal(mem_live_count(), blocks);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_values), cmocka_unit_test(test_loads),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_scale),  cmocka_unit_test(test_nested_groups),
+                                       cmocka_unit_test(test_values), cmocka_unit_test(test_loads),
                                        cmocka_unit_test(test_motion), cmocka_unit_test(test_fields),
                                        cmocka_unit_test(test_timed),  cmocka_unit_test(test_unknowns)};
     return cmocka_run_group_tests(tests, NULL, NULL);

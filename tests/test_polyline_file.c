@@ -40,12 +40,15 @@ static void test_csv(void **state)
 {
     (void)state;
     const double x[3][3] = {{0, 0, 0}, {1, 2.5, -3}, {2, 0, 1e-3}};
-    PolylineFile file = parse("csv", "# a rod\nx, y, z\n0, 0, 0\n1, 2.5, -3 # a comment\n\n2; 0; 1e-3\n");
+    PolylineFile file = parse("csv", "# a rod\nx, y, z\n0, 0, 0\n1, 2.5, -3 # a comment\n\n2, 0, 1e-3\n");
     assert_int_equal(file.strand_count, 1);
     check_strand(&file, 0, 1, 3, x);
     polyline_file_clear(&file);
-    file = parse("CSV", "0 0 0 0\n7 1 2.5 -3\n9 2 0 1e-3");
+    file = parse("CSV", "3 0 0 0\n7.1 1 2.5 -3\n11.9 2 0 1e-3");
     check_strand(&file, 0, 1, 3, x);
+    polyline_file_clear(&file);
+    file = parse("csv", "0, 1, 0, 0\n1.5707963, 0, 1, 0\n3.1415927, -1, 0, 0\n"); /* half a circle */
+    assert_int_equal(file.point_count, 3);
     polyline_file_clear(&file);
     check_refused("csv", "", "a: there are no numbers in it");
     check_refused("csv", "1,2,3\n", "a: there are no lines in it");
@@ -53,6 +56,19 @@ static void test_csv(void **state)
                   "a:2: 2 numbers in this row; it must be x, y, z or s, x, y, z");
     check_refused("csv", "1,2,3\n1,2,nan\n", "a:2: 'nan' is no finite number");
     check_refused("csv", "1,2,3\n1,2\n", "a:2: 2 numbers in this row, and 3 are needed");
+    check_refused("csv", "x,y,z,r\n1,2,3,4\n", "a:1: column 1 is headed 'x'; the columns must be s, x, y, z");
+    check_refused("csv", "5,0;-3,0\n7,5;-3,0\n",
+                  "a:1: 2 numbers in this row; it must be x, y, z or s, x, y, z");
+    check_refused("csv", "0,0,0,0\n1,1,0,0\n1,2,0,0\n",
+                  "a:3: s is 1 here and 1 in the row before: it must increase");
+    check_refused("csv", "0,0,0,0\n1000,1,0,0\n2000,2,0,0\n",
+                  "a:3: s grows by 2000 to here, and the points are 2 apart along the curve: s must be their "
+                  "arclength, in "
+                  "the unit of x, y, z");
+    check_refused("csv", "0,0,0,0\n1,1,0,0\n1.9,2,0,0\n",
+                  "a:3: s grows by 1.9 to here, and the points are 2 apart along the curve: s must be their "
+                  "arclength, in "
+                  "the unit of x, y, z");
 }
 
 static void test_obj(void **state)
@@ -62,20 +78,39 @@ static void test_obj(void **state)
     const char *vertices = "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 3 0 0\n";
     char *text = mem_format("%s# lines\nl 1 2 3\nl -1 -2\nv 4 5 6\n", vertices);
     PolylineFile file = parse("obj", text);
-    assert_int_equal(file.strand_count, 2);
-    check_strand(&file, 0, 1, 3, x);
-    check_strand(&file, 1, 1, 2, (const double[2][3]){{3, 0, 0}, {2, 0, 0}});
+    assert_int_equal(file.strand_count, 1);
+    check_strand(&file, 0, 1, 4, x);
     polyline_file_clear(&file);
     mem_free(text);
 
-    /* Edge by edge, vertices last; a strand that begins elsewhere. */
-    text = mem_format("l 1 2\nl 2 3/7\nl 3 4\nl 1 4\n%s", vertices);
-    file = parse("obj", text);
-    assert_int_equal(file.strand_count, 2);
-    check_strand(&file, 0, 1, 4, x);
-    check_strand(&file, 1, 1, 2, (const double[2][3]){{0, 0, 0}, {3, 0, 0}});
-    polyline_file_clear(&file);
-    mem_free(text);
+    /* Edges in any order and direction, vertices last; a ring; lines of many vertices from one place. */
+    static const struct {
+        const char *lines;
+        int strands, count[2], vertex[2][5], line[2];
+    } joins[] = {
+        {"l 1 2\nl 2 3/7\nl 3 4\n", 1, {4}, {{0, 1, 2, 3}}, {1}},
+        {"l 3 4\n\nl 1 2\nl 2 \\\n3\n", 1, {4}, {{0, 1, 2, 3}}, {1}},
+        {"l 2 1\nl 3 4\nl 2 3\nl 4 5", 1, {5}, {{0, 1, 2, 3, 4}}, {1}},
+        {"l 2 1\nl 4 3\nl 3 2\nl 4 5", 1, {5}, {{4, 3, 2, 1, 0}}, {1}},
+        {"l 2 3\nl 1 2\nl 4 1\nl 3 4", 1, {5}, {{1, 2, 3, 0, 1}}, {1}},
+        {"l 5 4 3\nl 3 2 1\n", 1, {5}, {{4, 3, 2, 1, 0}}, {1}},
+        {"\nl 1 2 3\nl 1 4 5\n", 2, {3, 3}, {{0, 1, 2}, {0, 3, 4}}, {2, 3}},
+        {"l 4 5\nl 1 2\nl 2 3\n", 2, {2, 3}, {{3, 4}, {0, 1, 2}}, {1, 2}},
+        {"l 1 2 3 1\nl 5 4", 2, {4, 2}, {{0, 1, 2, 0}, {4, 3}}, {1, 2}},
+    };
+    for (size_t k = 0; k < sizeof joins / sizeof *joins; k++) {
+        text = mem_format("%s\n%sv 4 5 6\n", joins[k].lines, vertices);
+        file = parse("obj", text);
+        assert_int_equal(file.strand_count, joins[k].strands);
+        for (int i = 0; i < joins[k].strands; i++) {
+            double places[5][3];
+            for (int j = 0; j < 5; j++) memcpy(places[j], x[joins[k].vertex[i][j]], sizeof places[j]);
+            check_strand(&file, i, 1, joins[k].count[i], (const double(*)[3])places);
+            assert_int_equal(file.line[i], joins[k].line[i]);
+        }
+        polyline_file_clear(&file);
+        mem_free(text);
+    }
 
     text = mem_format("o strand\n%sv 4 5 6 1.0\n", vertices);
     file = parse("obj", text);
@@ -88,10 +123,20 @@ static void test_obj(void **state)
     check_refused("obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "a: there are faces in it and no lines");
     check_refused("obj", "v 0 0 0\nl 1 2\n", "a:2: vertex 2 does not exist: there are 1");
     check_refused("obj", "v 0 0 0\nl 1\n", "a:2: a line needs two vertices at least");
+    static const char *const branches[][2] = {
+        {"l 1 2\nl 2 3\nl 4 2\n", "a:1: more than two lines meet at vertex 2: a rod has no branches"},
+        {"l 1 2 3\nl 4 2\n", "a:2: more than two lines meet at vertex 2: a rod has no branches"},
+        {"l 1 2\nl 2 1\n", "a:1: the edge from vertex 1 is there twice"},
+        {"l 1 1\n", "a:1: the line goes from vertex 1 to the same"}};
+    for (size_t k = 0; k < sizeof branches / sizeof *branches; k++) {
+        text = mem_format("%s%s", branches[k][0], vertices);
+        check_refused("obj", text, branches[k][1]);
+        mem_free(text);
+    }
     check_refused("obj", "v 0 0\nl 1 2\n", "a:1: a coordinate is missing");
-    check_refused("obj", "v 0 0 0\nl 1 -2\n", "a:2: vertex -2 is before the first one: there are 1 so far");
+    check_refused("obj", "v 0 0 0\nl 1 -2\n", "a:2:5: vertex -2 is before the first one: there are 1 so far");
     check_refused("obj", "v 0 0 0\nl 1 x\n",
-                  "a:2: 'x' is no vertex: they count from 1, or from -1 backwards");
+                  "a:2:5: 'x' is no vertex: they count from 1, or from -1 backwards");
 }
 
 /* A page of a square decimetre whose unit is a millimetre. */
@@ -116,7 +161,7 @@ static void test_svg_lines(void **state)
                  (const double[5][3]){{11, -11, 0}, {8.5, -11, 0}, {9, -11, 0}, {9, -5, 0}, {9, 6, 0}});
     polyline_file_clear(&file);
     file = draw("<polyline points='10 10 20,10 20 30'/><polygon points='10,10,20,10,20,30'/>\n"
-                "<line x1='10' y1='10' x2='20' y2='10'/><path d='M 1 1'/><path/><rect width='5' height='5'/>"
+                "<line x1='10' y1='10' x2='20' y2='10'/><path d='M 1 1'/><path/><rect width='5'/><circle/>"
                 "<path d='m10 10 10 0 0 20Zl10 0'/><svg:path xmlns:svg='s' d='M10 10h10'/>");
     assert_int_equal(file.strand_count, 6);
     check_strand(&file, 0, 1e-3, 3, x);
@@ -210,6 +255,87 @@ static void test_svg_places(void **state)
     }
 }
 
+static void test_svg_shapes(void **state)
+{
+    (void)state;
+    check_same("<rect x='5' y='6' width='20' height='10'/>", "<path d='M5 6H25V16H5Z'/>");
+    check_same("<rect x='5' y='6' width='20' height='10' rx='3'/>",
+               "<rect x='5' y='6' width='20' height='10' ry='3'/>");
+    check_same(
+        "<rect x='5' y='6' width='20' height='10' rx='30' ry='2'/>",
+        "<path d='M15 6H15A10 2 0 0 1 25 8V14A10 2 0 0 1 15 16H15A10 2 0 0 1 5 14V8A10 2 0 0 1 15 6Z'/>");
+    check_same("<ellipse cx='50' cy='40' rx='20' ry='10'/>",
+               "<path d='M70 40A20 10 0 0 1 30 40A20 10 0 0 1 70 40'/>");
+    check_same("<circle cx='50' cy='40' r='20'/>", "<ellipse cx='50%' cy='40%' rx='20'/>");
+    check_same("<line x1='10%' y1='20%' x2='30' y2='2in'/>", "<path d='M10 20L30 192'/>");
+    check_same("<line x2='10px' y2='25.4mm'/>", "<path d='M0 0L10 96'/>");
+    PolylineFile file = draw("<circle cx='50' cy='40' r='20'/>");
+    for (int k = 0; k < file.point_count; k++)
+        assert_true(fabs(hypot(file.points[k].x - 0.05, file.points[k].y + 0.04) - 0.02) < 2e-9);
+    assert_true(vec3_length(vec3_sub(file.points[0], file.points[file.point_count - 1])) < 1e-15);
+    assert_int_equal(file.line[0], 3);
+    polyline_file_clear(&file);
+}
+
+static void test_svg_clones(void **state)
+{
+    (void)state;
+    check_same("<path id='p' d='M1 2h3'/><use href='#p' y='20' transform='scale(2)'/>",
+               "<path d='M1 2h3'/><path d='M2 44h6'/>");
+    check_same(
+        "<use xlink:href='#g' x='5' xmlns:xlink='x'/><defs><g id='g'><path d='M1 2h3'/><use href='#c'/></g>"
+        "<line id='c' x2='4'/></defs>",
+        "<path d='M6 2h3'/><path d='M5 0h4'/>");
+    check_same("<symbol id='s' viewBox='0 0 10 5'><path d='M0 0L10 5'/></symbol><use href='#s' x='1' y='2' "
+               "width='20' "
+               "height='20'/>",
+               "<path d='M1 7L21 17'/>");
+    check_same("<svg x='10' y='20' width='40' height='20' viewBox='1 1 10 10'><path d='M1 1L11 11'/></svg>",
+               "<path d='M20 20L40 40'/>");
+    check_same("<svg x='10' width='40' height='20' viewBox='0 0 10 10' preserveAspectRatio='xMaxYMid slice'>"
+               "<path d='M0 0L10 10'/></svg>",
+               "<path d='M10 -10L50 30'/>");
+    check_same("<svg width='50%' height='20' viewBox='0 0 10 10' preserveAspectRatio='none'>"
+               "<line x2='100%' y2='100%'/></svg>",
+               "<path d='M0 0L50 20'/>");
+    check_same("<svg x='3'><line x2='50%'/></svg>", "<path d='M3 0h50'/>");
+    check_same(
+        "<switch><path requiredExtensions='x' d='M9 9h9'/><path d='M1 2h3'/><path d='M5 5h5'/></switch>",
+        "<path d='M1 2h3'/>");
+}
+
+static void test_svg_styles(void **state)
+{
+    (void)state;
+    const char *shown = "<path d='M1 2h3'/>";
+    static const char *const hidden[] = {
+        "<style>.h{display:none}</style><path class='x h' d='M5 5h5'/>",
+        "<style><![CDATA[ /* .h {} */ g, #a.b , path.c{fill:red;display : none !important} ]]></style>"
+        "<g><path d='M5 5h5'/></g><path id='a' class='b' d='M5 5h5'/><path class='c' d='M5 5h5'/>",
+        "<path display='none' visibility='visible' d='M5 5h5'/>",
+        "<path display='inline' style='display:none' d='M5 5h5'/>",
+        "<g visibility='hidden'><path d='M5 5h5'/></g>",
+        "<style>*{visibility:hidden} .v{visibility:visible}</style><path id='i' d='M5 5h5'/><path class='v' "
+        "d='M5 5' />",
+        "<style>#a{display:none} .a{display:inline}</style><path id='a' class='a' d='M5 5h5'/>",
+        "<style>@font-face{src:x}</style><text visibility='collapse'>a</text><text style='display:none'/>",
+        "<defs><text>a</text></defs><title>a</title><metadata><x:y xmlns:x='x'>b</x:y></metadata>",
+    };
+    for (size_t k = 0; k < sizeof hidden / sizeof *hidden; k++) {
+        char *text = mem_format("%s<path style='visibility:visible;display:inline' d='M1 2h3'/>", hidden[k]);
+        check_same(text, shown);
+        mem_free(text);
+    }
+    check_same("<g visibility='hidden'><path d='M5 5h5'/><path visibility='visible' d='M1 2h3'/></g>", shown);
+    check_same("<style>path{display:none} .a{display:inline}</style><path class='a' d='M1 2h3'/>", shown);
+    check_same("<path style='transform: translate(-4px, 2px) scaleX(0.5) rotate(0deg)' transform='scale(9)' "
+               "d='M10 0h6'/>",
+               shown);
+    check_same("<style>.m{transform:translateX(1px) translateY(2px)}</style><path class='m' d='M0 0h3'/>",
+               shown);
+    check_same("<path style='transform:none' d='M1 2h3'/>", shown);
+}
+
 static void test_svg_refused(void **state)
 {
     (void)state;
@@ -239,6 +365,28 @@ static void test_svg_refused(void **state)
                   "a:1: the transform 'mat(1 0 0 1 0 0)' is not understood");
     check_refused("svg", "<svg><g transform='rotate(1'/></svg>",
                   "a:1: the transform 'rotate(1' is not understood");
+}
+
+static void test_svg_unread(void **state)
+{
+    (void)state;
+    check_refused("svg", "<svg>\n<g>\n<text>a</text></g></svg>",
+                  "a:3: a <text> is not read: make paths of it, or hide it");
+    check_refused("svg", "<svg>\n<image/></svg>", "a:2: a <image> is not read: make paths of it, or hide it");
+    check_refused("svg", "<svg>\n<use href='#b'/></svg>", "a:2: a <use> of '#b', which is not in this file");
+    check_refused("svg", "<svg>\n<use href='b.svg#b'/></svg>",
+                  "a:2: a <use> of 'b.svg#b', which is not in this file");
+    check_refused("svg", "<svg>\n<g id='g'>\n<use href='#g'/></g></svg>",
+                  "a:3: a <use> of itself, or 32 deep");
+    check_refused("svg", "<svg><circle r='b'/></svg>", "a:1: r of the circle is no number");
+    check_refused("svg", "<svg><circle r='2em'/></svg>",
+                  "a:1: r of the circle is '2em': its unit is not read");
+    check_refused("svg", "<svg>\n<style>g > .h{display:none}</style></svg>",
+                  "a:2: the style's selector 'g > .h' is not read: only tags, .classes and #ids are");
+    check_refused("svg", "<svg><style>@media print{.h{display:none}}</style></svg>",
+                  "a:1: the style's rule '@media print' is not read: it moves or hides something");
+    check_refused("svg", "<svg><g transform='scale(2)' style='transform-origin: 1px 1px'/></svg>",
+                  "a:1: a transform-origin is not read");
 }
 
 static void write_file(const char *path, const char *text)
@@ -279,6 +427,8 @@ int main(void)
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_csv),        cmocka_unit_test(test_obj),
                                        cmocka_unit_test(test_svg_lines),  cmocka_unit_test(test_svg_curves),
                                        cmocka_unit_test(test_svg_places), cmocka_unit_test(test_svg_refused),
+                                       cmocka_unit_test(test_svg_shapes), cmocka_unit_test(test_svg_clones),
+                                       cmocka_unit_test(test_svg_styles), cmocka_unit_test(test_svg_unread),
                                        cmocka_unit_test(test_files)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,6 +1,6 @@
 /* Equilibria of discrete rods: the exact discrete inverse, convergence to the curve, the cantilevers of the
- * paper's section 5.3, both forms against each other, point loads, magnetised rods, and rods held at both
- * ends. */
+ * paper's section 5.3, both forms against each other, point loads, magnetised rods in uniform fields and
+ * beside a magnet, and rods held at both ends. */
 #include "base/random.h"
 #include "rod/stations.h"
 #include "tests/rod_fixture.h"
@@ -189,6 +189,98 @@ static void test_moments(void **state)
     mem_free(place);
 }
 
+/* The natural state, with positions. */
+static double *with_positions(const Rod *rod, const double *p)
+{
+    RodLayout layout = rod_layout(rod, true);
+    double *x = mem_alloc((size_t)layout.dofs, sizeof *x);
+    rod_natural_state(rod, &layout, p, x);
+    return x;
+}
+
+/* A rod magnetised along its tangent has a magnetic pole at either end: beside a magnet, whose field has a
+ * potential, it rests as if a force A M B of the place where its end is acted there. Returns how far off the
+ * end is. */
+static double pole_error(int elements)
+{
+    double *p, M = 5e4, at[3] = {0.1, 0.05, 0.2}, moment[3] = {2, -4, 12};
+    Rod *rod = plain_rod(elements, 0.1, 1e6, &p);
+    mem_free(p);
+    Rod *loaded = plain_rod(elements, 0.1, 1e6, &p);
+    mem_free(p);
+    FluxField *magnet = flux_field_dipole(at, moment);
+    int k = flux_fields_add(&rod->fields, &rod->params, magnet);
+    p = mem_alloc((size_t)rod->params.size, sizeof *p);
+    rod_default_params(rod, 1e6, p);
+    p[rod->field_scale + k] = 1;
+    for (int e = 0; e < elements; e++) p[rod->magnetization + 3 * e] = M;
+    double *x = with_positions(rod, p);
+    System *sys = rod_system(rod, 1e6, false);
+    assert_int_equal(rod_relax(rod, sys, 1, p, x).newton.status, NEWTON_CONVERGED);
+
+    FluxSample sample;
+    const double *end = x + 3 * elements;
+    flux_field_eval(magnet, end, 0, &sample);
+    p[rod->field_scale + k] = 0;
+    vec3_store(p + rod->load + 3 * elements, vec3_scale(rod->area * M, vec3_load(sample.flux)));
+    rod_sum_loads(rod, p);
+    double *y = with_positions(loaded, p);
+    System *other = rod_system(loaded, 1e6, false);
+    assert_int_equal(rod_relax(loaded, other, 1, p, y).newton.status, NEWTON_CONVERGED);
+    double off = vec3_length(vec3_sub(vec3_load(y + 3 * elements), vec3_load(end)));
+    assert_true(vec3_length(vec3_sub(vec3_load(end), vec3(0.1, 0, 0))) > 0.01);
+    system_destroy(sys);
+    system_destroy(other);
+    rod_destroy(rod);
+    rod_destroy(loaded);
+    mem_free(p);
+    mem_free(x);
+    mem_free(y);
+    return off;
+}
+
+static void test_pole(void **state)
+{
+    (void)state;
+    long blocks = mem_live_count();
+    double off[3];
+    for (int k = 0; k < 3; k++) off[k] = pole_error(50 << k);
+    print_message("beside a magnet: end %.1e m off at 200 elements; orders %.3f, %.3f\n", off[2],
+                  log2(off[0] / off[1]), log2(off[1] / off[2]));
+    assert_true(off[2] < 1e-6 && fabs(log2(off[1] / off[2]) - 2) < 0.1);
+    assert_int_equal(mem_live_count(), blocks);
+}
+
+/* A rod that is to rest on a curve beside a magnet: no force is left, and it comes back there. */
+static void test_balance_in_field(void **state)
+{
+    (void)state;
+    long blocks = mem_live_count();
+    Resting o = resting_create(&reference_rods[REFERENCE_HELIX], 5e6, 60);
+    double at[3] = {0, 0, -0.12}, moment[3] = {0, 3, 8};
+    int k = flux_fields_add(&o.rod->fields, &o.rod->params, flux_field_dipole(at, moment));
+    double *p = mem_alloc((size_t)o.rod->params.size, sizeof *p);
+    memcpy(p, o.p, ((size_t)o.rod->params.size - 1) * sizeof *p);
+    p[o.rod->field_scale + k] = 1;
+    for (int e = 0; e < 60; e++) vec3_store(p + o.rod->magnetization + 3 * e, vec3(2e4, 5e3, -3e3));
+    RodLayout layout = rod_layout(o.rod, true);
+    double *x = mem_alloc(2 * (size_t)layout.dofs, sizeof *x), *g = x + layout.dofs;
+    rod_copy_state(o.rod, &o.layout, o.x, &layout, x);
+    System *sys = rod_system(o.rod, 5e6, false);
+    rod_balance(o.rod, sys, &layout, x, p);
+    Evaluation left = system_gradient(sys, &(Point){.x = x, .p = p}, g);
+    for (int i = 0; i < layout.reference; i++)
+        if (!system_is_fixed(sys, i)) assert_true(fabs(g[i]) <= 1e-12 * left.force_scale);
+    assert_int_equal(rod_relax(o.rod, sys, 1, p, x).newton.status, NEWTON_CONVERGED);
+    print_message("beside a magnet: %.1e m off the curve\n", resting_distance(&o, x));
+    assert_true(resting_distance(&o, x) < 1e-12);
+    system_destroy(sys);
+    mem_free(p);
+    mem_free(x);
+    resting_clear(&o);
+    assert_int_equal(mem_live_count(), blocks);
+}
+
 typedef struct Ends {
     RodLayout layout;
     double shortening;
@@ -211,24 +303,42 @@ static bool push_end(void *self, double part, double *x)
 
 static const double elastica_K = 1.6857503548125961, elastica_E = 1.4674622093394272; /* k = sin 30 degrees */
 
+static double elastica_shortening(void)
+{
+    return 2 * (1 - elastica_E / elastica_K);
+}
+
+/* How a rod is pushed: from an arc of a strain at the start, with another natural one, to an end that much
+ * nearer. */
+typedef struct Push {
+    RodSupport support;
+    int elements;
+    double start, natural, shortening; /* 1/m, 1/m, m */
+} Push;
+
+static void set_arc(const Rod *rod, double strain, double *p)
+{
+    for (int e = 0; e < rod->elements; e++) p[rod->natural_strain + 3 * e + 1] = strain;
+}
+
 /* Euler's elastica, pushed together by d = 2 (1 - E(k)/K(k)) of its length: between hinges P L^2/EI = 4
- * K(k)^2, between clamps four times that; both deflect by k/K(k). It starts as an arc: a straight rod cannot
- * be pushed along itself. */
-static double elastica_force(RodSupport support, int elements, double *deflection, NewtonStatus *status)
+ * K(k)^2, between clamps four times that; both deflect by k/K(k). Returns P L^2/EI. */
+static double elastica_force(Push push, double *deflection, NewtonInfo *info)
 {
     double *p, young = 1e6;
+    int elements = push.elements;
     Rod *rod = plain_rod(elements, 1, young, &p);
-    rod->start = rod->end = support;
-    Ends ends = {rod_layout(rod, true), 2 * (1 - elastica_E / elastica_K)};
+    rod->start = rod->end = push.support;
+    Ends ends = {rod_layout(rod, true), push.shortening};
     System *sys = rod_system(rod, young, false);
     double *x = mem_alloc((size_t)ends.layout.dofs, sizeof *x);
-    for (int e = 0; e < elements; e++) p[rod->natural_strain + 3 * e + 1] = 0.5;
+    set_arc(rod, push.start, p);
     rod_natural_state(rod, &ends.layout, p, x);
-    for (int e = 0; e < elements; e++) p[rod->natural_strain + 3 * e + 1] = 0;
+    set_arc(rod, push.natural, p);
     RampDef def = ramp_default();
     def.newton = rod_newton();
     def.steps = 10, def.move = push_end, def.self = &ends;
-    *status = ramp_solve(sys, &rod->params, &def, NULL, p, 0, x).newton.status;
+    *info = ramp_solve(sys, &rod->params, &def, NULL, p, 0, x).newton;
     *deflection = 0;
     for (int i = 0; i <= elements; i++) *deflection = fmax(*deflection, hypot(x[3 * i + 1], x[3 * i + 2]));
     double force = fabs(x[ends.layout.multiplier]) / (young * rod->unit.bend1);
@@ -246,13 +356,14 @@ static void test_held_ends(void **state)
     for (RodSupport support = ROD_PINNED; support <= ROD_CLAMPED; support++) {
         bool clamped = support == ROD_CLAMPED;
         for (int k = 0; k < 2; k++) {
-            NewtonStatus status;
-            double force = elastica_force(support, k ? 100 : 50, &deflection, &status);
+            NewtonInfo info;
+            Push push = {support, k ? 100 : 50, 0.5, 0, elastica_shortening()};
+            double force = elastica_force(push, &deflection, &info);
             off[k] = fabs(force / ((clamped ? 16 : 4) * K2) - 1);
             print_message("elastica between %s, %d elements: %s, force %.1e off, deflection %.1e L off\n",
-                          clamped ? "clamps" : "hinges", k ? 100 : 50, newton_status_name(status), off[k],
+                          clamped ? "clamps" : "hinges", k ? 100 : 50, newton_status_name(info.status), off[k],
                           fabs(deflection - 0.5 / elastica_K));
-            assert_int_equal(status, NEWTON_CONVERGED);
+            assert_int_equal(info.status, NEWTON_CONVERGED);
             assert_true(off[k] < (k ? 4e-4 : 1.6e-3) &&
                         fabs(deflection - 0.5 / elastica_K) < (k ? 2e-4 : 8e-4));
         }
@@ -260,12 +371,48 @@ static void test_held_ends(void **state)
     }
 }
 
+/* Rods that are straight, or all but, pushed along themselves by much and by little: the axial force depends
+ * on no turn of theirs until they buckle (system_gap). Euler's load grows by half of the shortening. */
+static void test_pushed(void **state)
+{
+    (void)state;
+    static const double natural[] = {0, 1e-6, 1e-3};
+    for (RodSupport support = ROD_PINNED; support <= ROD_CLAMPED; support++)
+        for (int k = 0; k < 6; k++) {
+            NewtonInfo info;
+            bool little = k / 3;
+            double d = little ? 1e-3 : elastica_shortening(), deflection, own = natural[k % 3],
+                   load = little ? M_PI * M_PI * (1 + d / 2) : 4 * elastica_K * elastica_K;
+            double force = elastica_force((Push){support, 100, own, own, d}, &deflection, &info),
+                   off = fabs(force / (support == ROD_PINNED ? load : 4 * load) - 1);
+            print_message("%s, natural strain %g 1/m, %g nearer: %d iterations, force %.1e off\n",
+                          support == ROD_PINNED ? "hinges" : "clamps", own, d, info.iterations, off);
+            assert_int_equal(info.status, NEWTON_CONVERGED);
+            assert_true(info.iterations < 500 && off < (own > 1e-4 ? 1e-2 : 1e-3));
+        }
+}
+
+/* A straight rod whose ends are as far apart as it is long needs no force; rounding of its length leaves
+ * little. */
+static void test_straight(void **state)
+{
+    (void)state;
+    NewtonInfo info;
+    double deflection, force = elastica_force((Push){ROD_CLAMPED, 100, 0, 0, 0}, &deflection, &info);
+    assert_int_equal(info.status, NEWTON_CONVERGED);
+    print_message("straight between clamps: force %.1e EI/L^2, deflection %.1e L\n", force, deflection);
+    assert_true(force < 1e-4 && deflection < 1e-12);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_discrete_inverse), cmocka_unit_test(test_forward),
         cmocka_unit_test(test_cantilevers),      cmocka_unit_test(test_both_forms),
-        cmocka_unit_test(test_moments),          cmocka_unit_test(test_held_ends),
+        cmocka_unit_test(test_moments),          cmocka_unit_test(test_pole),
+        cmocka_unit_test(test_balance_in_field), cmocka_unit_test(test_pushed),
+        cmocka_unit_test(test_straight),
+        cmocka_unit_test(test_held_ends),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

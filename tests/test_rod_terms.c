@@ -21,9 +21,24 @@ static Vec3 random_vec3(Random *random, double size)
     return vec3(size * random_signed(random), size * random_signed(random), size * random_signed(random));
 }
 
-static Rod *random_rod(Random *random, double **params)
+/* A formula and a dipole beside the rod, of which a term is to know value, gradient and curvature; and another
+ * one that is off, of which it is to know what it would do. */
+static void add_fields(Rod *rod)
+{
+    static const char *const expressions[] = {"0.05*sin(40*x)*cos(t)", "x*z*10", "0.02*exp(20*y)-3*x*y"};
+    static const char *const variables[] = {"x", "y", "z", "r", "t", NULL};
+    Formula *formula = formula_create(expressions, 3, NULL, 0, variables, NULL);
+    assert_non_null(formula);
+    flux_fields_add(&rod->fields, &rod->params, flux_field_formula(formula, 0.1));
+    for (int k = 0; k < 2; k++)
+        flux_fields_add(&rod->fields, &rod->params,
+                        flux_field_dipole((double[]){0.05, 0.05, 0.2 - 0.5 * k}, (double[]){1, -2, 5}));
+}
+
+static Rod *random_rod(Random *random, bool fields, double **params)
 {
     Rod *rod = rod_create(ELEMENTS, 0.1, rod_ellipse(1e-3, 0.7e-3, 1, 0.4, 1200), 3e-6);
+    if (fields) add_fields(rod);
     double *p = mem_alloc((size_t)rod->params.size, sizeof *p);
     rod_default_params(rod, 1e6, p);
     for (int e = 0; e < ELEMENTS; e++) {
@@ -35,6 +50,7 @@ static Rod *random_rod(Random *random, double **params)
     for (int i = 0; i <= ELEMENTS; i++) vec3_store(p + rod->load + 3 * i, random_vec3(random, 1e-3));
     vec3_store(p + rod->flux_density, random_vec3(random, 0.03));
     vec3_store(p + rod->gravity, random_vec3(random, 9));
+    for (int k = 0; k < rod->fields.count; k++) p[rod->field_scale + k] = 1 - 0.5 * k;
     rod_sum_loads(rod, p);
     rod->frame = quat_exp(random_vec3(random, 2));
     *params = p;
@@ -55,20 +71,21 @@ static double *random_state(const Rod *rod, const RodLayout *layout, double turn
 }
 
 /* Turns so small that the series is used, and so large that it is not. */
-static void test_derivatives(void **state)
+static void check_rows(bool fields)
 {
-    (void)state;
     Random random = random_seed(3);
     double *p, dof_size[TERM_MAX_DOF];
-    Rod *rod = random_rod(&random, &p);
+    Rod *rod = random_rod(&random, fields, &p);
     for (int r = 0; r < 2 * rod_term_row_count; r++) {
         const RodTermRow *row = &rod_term_rows[r / 2];
-        RodLayout layout = rod_layout(rod, row->form == ROD_WITH_POSITIONS);
+        RodLayout layout = rod_layout(rod, fields || row->form == ROD_WITH_POSITIONS);
         double *x = random_state(rod, &layout, r % 2 ? 1.2 : 0.2, &random);
         Term term = row->create(rod, layout, 50);
         bool link = row->form == ROD_WITH_POSITIONS;
-        for (int i = 0; i < TERM_MAX_DOF; i++) dof_size[i] = !link ? 1 : i < 6 ? 1e-2 : i < 12 ? 1 : 1e-3;
-        TermError worst = check_term(&term, &rod->params, &(Point){.x = x, .p = p}, dof_size, &random);
+        for (int i = 0; i < TERM_MAX_DOF; i++)
+            dof_size[i] = !link ? (i < 6 ? 1 : 1e-3) : i < 6 ? 1e-2 : i < 12 ? 1 : 1e-3;
+        Point at = {.x = x, .p = p, .time = 0.3};
+        TermError worst = check_term(&term, &rod->params, &at, dof_size, &random);
         print_message("%-10s gradient %.1e  hessian %.1e  param_forward %.1e  param %.1e\n", row->name,
                       worst.gradient, worst.hessian, worst.forward, worst.adjoint);
         assert_true(worst.gradient < 1e-9 && worst.hessian < 1e-9 && worst.forward < 1e-9 &&
@@ -78,6 +95,13 @@ static void test_derivatives(void **state)
     }
     mem_free(p);
     rod_destroy(rod);
+}
+
+static void test_derivatives(void **state)
+{
+    (void)state;
+    check_rows(false);
+    check_rows(true);
 }
 
 int main(void)

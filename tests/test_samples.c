@@ -9,6 +9,7 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 #include <cmocka.h>
 
 static const double helix_end = 19.565163762857, conical_end = 7.88691715750555;
@@ -222,6 +223,68 @@ static void test_heavy_smoothing(void **state)
     rod_curve_clear(&curve);
 }
 
+/* Exact samples of two turns of a helix, few and many: the curve passes through each of them. */
+static void test_exact_samples(void **state)
+{
+    (void)state;
+    enum { MOST = 40, N = 20000 };
+    static const int counts[] = {3, 5, 6, 7, 9, 12, 16, 24, MOST};
+    for (size_t k = 0; k < sizeof counts / sizeof *counts; k++) {
+        int count = counts[k];
+        RodSamplesDef def = {.noise = 0};
+        RodCurve curve;
+        Vec3 x[MOST];
+        double worst = 0;
+        for (int i = 0; i < count; i++) {
+            double u = 4 * M_PI * i / (count - 1);
+            x[i] = vec3(0.02 * cos(u), 0.02 * sin(u), -0.05 / (4 * M_PI) * u);
+        }
+        assert_true(rod_samples_curve(x, count, &def, N, &curve, NULL, NULL));
+        for (int i = 0; i < count; i++) {
+            double nearest = INFINITY;
+            for (int j = 0; j <= 2 * N; j++) {
+                Vec3 off = vec3_sub(x[i], curve.x[j]);
+                nearest = fmin(nearest, vec3_length(vec3_axpy(-vec3_dot(off, curve.t[j]), curve.t[j], off)) +
+                                            (vec3_length(off) > curve.length / N));
+            }
+            worst = fmax(worst, nearest);
+        }
+        double exact = hypot(4 * M_PI * 0.02, 0.05);
+        print_message("%d exact samples: missed by %.1e m, %.1e too long\n", count, worst,
+                      curve.length / exact - 1);
+        assert_true(worst < 1e-7 && (count < 16 || fabs(curve.length / exact - 1) < 2e-3));
+        rod_curve_clear(&curve);
+    }
+}
+
+/* A drawn outline: straight edges between round corners of many points. Where the edges are too long for
+ * those the curve would swing out far: it is refused. */
+static void test_uneven_samples(void **state)
+{
+    (void)state;
+    enum { CORNER = 8, N = 2000 };
+    for (int far = 0; far < 2; far++) {
+        double r = far ? 1e-4 : 0.03;
+        Vec3 x[4 * CORNER];
+        for (int i = 0; i < 4 * CORNER; i++) {
+            double corner = i / CORNER * M_PI / 2, angle = corner + M_PI / 2 * (i % CORNER) / (CORNER - 1);
+            Vec3 middle =
+                vec3(0.1 * sqrt(2) * cos(corner + M_PI / 4), 0.1 * sqrt(2) * sin(corner + M_PI / 4), 0);
+            x[i] = vec3_axpy(r, vec3(cos(angle), sin(angle), 0), middle);
+        }
+        RodSamplesDef def = {.noise = 0};
+        RodCurve curve;
+        Error err = {""};
+        bool ok = rod_samples_curve(x, 4 * CORNER, &def, N, &curve, NULL, &err);
+        print_message("an outline with corners of %g m: %.4f of its length, %s\n", r,
+                      ok ? curve.length / (0.6 + 2 * M_PI * r) : 0, err.text);
+        assert_true(ok == !far);
+        if (ok) assert_true(fabs(curve.length / (0.6 + 2 * M_PI * r) - 1) < 0.1);
+        if (!ok) assert_non_null(strstr(err.text, "it needs more samples where long chords meet short ones"));
+        rod_curve_clear(&curve);
+    }
+}
+
 static void check_refused(const Vec3 *x, int count, double noise, const char *why)
 {
     RodSamplesDef def = {.noise = noise};
@@ -246,9 +309,9 @@ static void test_refused_samples(void **state)
     rod_curve_clear(&once);
     rod_curve_clear(&twice);
 
-    check_refused(x, 3, NAN, "a rod's curve needs 4 different samples at least, not 3");
-    check_refused(doubled, 6, 0, "a rod's curve needs 4 different samples at least, not 3");
-    check_refused(x, 0, NAN, "a rod's curve needs 4 different samples at least, not 0");
+    check_refused(x, 1, NAN, "a rod's curve needs 2 different samples at least, not 1");
+    check_refused(doubled, 2, 0, "a rod's curve needs 2 different samples at least, not 1");
+    check_refused(x, 0, NAN, "a rod's curve needs 2 different samples at least, not 0");
     check_refused(x, 60, -1e-3,
                   "the noise of a rod's samples is -0.001 m; it must be finite and not negative");
     x[41].y = NAN;
@@ -273,6 +336,17 @@ static void test_lines_and_planes(void **state)
     for (int j = 0; j <= 2 * N; j++) {
         off = fmax(off, vec3_length(vec3_sub(curve.x[j], vec3_axpy(curve.length * j / (2 * N), way, x[0]))));
         bend = fmax(bend, vec3_length(curve.c[j]));
+    }
+    for (int count = 2; count <= 3; count++) {
+        RodCurve line;
+        Vec3 ends[] = {x[0], vec3_axpy(0.25, way, x[0]), vec3_axpy(1, way, x[0])};
+        if (count == 2) ends[1] = ends[2];
+        assert_true(rod_samples_curve(ends, count, &def, N, &line, NULL, NULL));
+        assert_true(fabs(line.length - 1) < 1e-14 &&
+                    vec3_length(vec3_sub(line.x[2 * N], ends[count - 1])) < 1e-14);
+        for (int j = 0; j <= 2 * N; j++)
+            assert_true(vec3_length(line.c[j]) < 1e-12 && vec3_length(vec3_sub(line.t[j], way)) < 1e-13);
+        rod_curve_clear(&line);
     }
     print_message("straight samples: off by %.1e m, curvature %.1e 1/m\n", off, bend);
     assert_true(off < 1e-13 && bend < 1e-9);
@@ -316,6 +390,7 @@ int main(void)
         cmocka_unit_test(test_clean_samples),   cmocka_unit_test(test_noise_table),
         cmocka_unit_test(test_few_samples),     cmocka_unit_test(test_heavy_smoothing),
         cmocka_unit_test(test_many_samples),    cmocka_unit_test(test_refused_samples),
+        cmocka_unit_test(test_exact_samples),   cmocka_unit_test(test_uneven_samples),
         cmocka_unit_test(test_lines_and_planes)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

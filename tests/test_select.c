@@ -67,6 +67,53 @@ static void each_condition(void **state)
     assert_selects(mesh, (Selection){.boundary = true}, (int[]){0, 1, 2, 3, 4, 5, 9, 10, 11, 12, 13, 14}, 12);
 }
 
+/* Vertices on the border belong to a box and a ball, rounding aside: 1e-9 of the diagonal of 45 mm. */
+static void rounding_takes_nothing_off(void **state)
+{
+    const Mesh *mesh = *state;
+    assert_selects(mesh,
+                   (Selection){.has_box = true, .box = {{0.03 + 4e-11, 0.01, 4e-11}, {1, 0.02 - 4e-11, 1}}},
+                   (int[]){8, 9, 13, 14}, 4);
+    assert_selects(mesh, (Selection){.has_box = true, .box = {{0.03 + 5e-11, 0.01, 0}, {1, 0.02, 0}}},
+                   (int[]){9, 14}, 2);
+    Selection ball = {.has_ball = true, .center = {0.01, 0.01, 0}, .radius = 0.01 - 4e-11};
+    assert_selects(mesh, ball, (int[]){1, 5, 6, 7, 11}, 5);
+    ball.radius = 0.01 - 5e-11;
+    assert_selects(mesh, ball, (int[]){6}, 1);
+}
+
+/* A name stands for a surface, a curve and points at once; a line across a face is none of the mesh's edges.
+ */
+static void groups_of_one_name(void **state)
+{
+    (void)state;
+    MeshGroup groups[] = {{"tip", 1, 2, (int[]){0, 1, 3, 1}},
+                          {"other", 0, 1, (int[]){2}},
+                          {"tip", 2, 1, (int[]){1}},
+                          {"tip", 0, 1, (int[]){4}}};
+    MeshFile file = {.path = "m.obj",
+                     .vertex_count = 5,
+                     .face_count = 3,
+                     .vertices = (double[][3]){{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {2, 1, 0}},
+                     .faces = (int[][3]){{0, 1, 2}, {0, 2, 3}, {1, 4, 2}},
+                     .groups = groups,
+                     .group_count = 4};
+    MeshReport report;
+    Error err;
+    Mesh *mesh = mesh_create(&file, 0, &report, &err);
+    assert_non_null(mesh);
+    assert_int_equal(report.warning_count, 1);
+    assert_string_equal(
+        report.warnings[0],
+        "m.obj: 1 line of the group 'tip' is no edge of the mesh; the first is from vertex 3 to 1");
+    for (int dim = 0; dim <= 2; dim++) assert_int_equal(mesh_group(mesh, "tip", dim)->dim, dim);
+    assert_null(mesh_group(mesh, "other", 1));
+    assert_selects(mesh, (Selection){.group = "other"}, (int[]){2}, 1);
+    assert_selects(mesh, (Selection){.group = "tip"}, (int[]){0, 1, 2, 3, 4}, 5);
+    mesh_report_clear(&report);
+    mesh_destroy(mesh);
+}
+
 static void all_conditions_must_hold(void **state)
 {
     const Mesh *mesh = *state;
@@ -152,6 +199,8 @@ static void edges_of_a_selection(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(each_condition),
+                                       cmocka_unit_test(rounding_takes_nothing_off),
+                                       cmocka_unit_test(groups_of_one_name),
                                        cmocka_unit_test(all_conditions_must_hold),
                                        cmocka_unit_test(refuses_what_catches_nothing),
                                        cmocka_unit_test(refuses_what_makes_no_sense),

@@ -206,7 +206,7 @@ static void kirigami(void **state)
     int inner = 0;
     for (int e = 0; e < m->edge_count; e++) inner += !mesh_edge_is_boundary(m, e);
     assert_int_equal(inner, 4 * 61); /* no square shares an edge with another */
-    const MeshGroup *centre = mesh_group(m, "centre"), *rim = mesh_group(m, "rim");
+    const MeshGroup *centre = mesh_group(m, "centre", 0), *rim = mesh_group(m, "rim", 0);
     assert_int_equal(rim->count, 44);
     assert_true(hypot(m->rest[centre->members[0]][0], m->rest[centre->members[0]][1]) < 1e-16);
     for (int k = 0; k < rim->count; k++) {

@@ -95,7 +95,7 @@ static void write_result(Rods rods)
 {
     Error err;
     Table table;
-    if (!table_read(SOURCE_DIR "/tests/rod/helix.csv", COLUMNS, &table, &err)) fail_msg("%s", err.text);
+    if (!table_read(SOURCE_DIR "/tests/rod/helix.csv", NULL, &table, &err)) fail_msg("%s", err.text);
     assert_int_equal(table.rows, NODES);
     unlink("test_show_rod.run");
     Journal *journal = journal_open("test_show_rod.run", JOURNAL_NEW, &err);

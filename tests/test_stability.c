@@ -309,9 +309,25 @@ static void test_far_beyond(void **state)
     assert_int_equal(index[0][1], 8); /* (n + 1/2) pi sqrt(EI) < 1/2: five and three */
 }
 
+/* Elements count in bending lengths sqrt(EI/F) where they bend. */
+static void test_bending_lengths(void **state)
+{
+    (void)state;
+    enum { N = 4 };
+    RodSection section = rod_circle(1e-3, 1e6, 0.4, 1000);
+    Vec3 k[2 * N + 1] = {{0}}, m[2 * N + 1] = {{0}}, F[3 * N];
+    for (int i = 0; i < 3 * N; i++) F[i] = vec3(0.2, 0, -0.1 * (i / 3));
+    RodEquilibrium at = {N, 1, section, k, m, F};
+    assert_true(rod_bending_lengths(&at) == 0);
+    m[3] = vec3(0, section.bend1, 0); /* a quarter of a radian in the second element */
+    double expected = 0.25 * sqrt(hypot(0.2, 0.1) / section.bend1);
+    assert_true(fabs(rod_bending_lengths(&at) - expected) < 1e-12 * expected);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_bending_lengths),
         cmocka_unit_test(test_table),        cmocka_unit_test(test_framings),
         cmocka_unit_test(test_second_root),  cmocka_unit_test(test_columns),
         cmocka_unit_test(test_tipping_beam), cmocka_unit_test(test_never_unstable),

@@ -32,7 +32,11 @@ static Shell *make_shell(BendingModel bending, FluxField *field)
     assert_non_null(mesh);
     Shell *shell = shell_create(mesh);
     shell->thickness = 1e-3, shell->poisson = 0.4, shell->density = 1200, shell->bending = bending;
-    if (field) shell_add_field(shell, field);
+    if (field) {
+        flux_fields_add(&shell->fields, &shell->params, field);
+        flux_fields_add(&shell->fields, &shell->params,
+                        flux_field_dipole((double[]){0, 0, -0.06}, (double[]){0.3, 0.1, 0.2}));
+    }
     for (int e = 0; e < mesh->edge_count; e++) {
         const int *v = mesh->edges[e];
         if (v[0] % (CELLS + 1) || v[1] % (CELLS + 1) || v[1] >= (CELLS + 1) * (CELLS - 1)) continue;
@@ -50,6 +54,7 @@ static double *make_params(const Shell *shell, Random *random)
         p[shell->young + f] = 1e5 * (1 + random_uniform(random));
         for (int i = 0; i < 3; i++) p[shell->magnetization + 3 * f + i] = 5e4 * random_signed(random);
     }
+    if (shell->fields.count) p[shell->field_scale + 1] = 0; /* off: what it would do is known too */
     for (int e = 0; e < shell->mesh->edge_count; e++) p[shell->fold + e] = 0.5 + random_uniform(random);
     for (int i = 0; i < 3; i++) {
         p[shell->flux_density + i] = 0.05 * random_signed(random);

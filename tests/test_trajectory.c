@@ -111,7 +111,7 @@ static void make(Fixture *f, BendingModel bending, ControlKind kind, bool moving
         if (!system_is_fixed(sys, i))
             f->x0[i] += 5e-5 * random_signed(&random), f->v0[i] = 0.05 * random_signed(&random);
     system_accept(sys, f->x0);
-    int tip = mesh_group(f->shell->mesh, "tip")->members[0], others[2] = {tip, 3};
+    int tip = mesh_group(f->shell->mesh, "tip", 0)->members[0], others[2] = {tip, 3};
     const double goal[1][3] = {{0.010, 0.002, 0.004}},
                  goals[2][3] = {{0.011, 0.001, 0.003}, {0.006, 0, 0.001}};
     f->objectives[0] = objective_target(1, &tip, goal, 1e4);
@@ -268,7 +268,7 @@ static void test_product(void **state)
     make(&f, BENDING_HINGE, CONTROL_FRAME, false);
     f.problem.objective_count = 2;
     Trajectory *t = trajectory_create(&f.problem, &f.def);
-    int dofs = shell_dof_count(f.shell), tip = mesh_group(f.shell->mesh, "tip")->members[0];
+    int dofs = shell_dof_count(f.shell), tip = mesh_group(f.shell->mesh, "tip", 0)->members[0];
     double *dx = mem_alloc((size_t)(STEPS + 1) * (size_t)dofs, sizeof *dx),
            *out = mem_alloc((size_t)f.design.size, sizeof *out);
     assert_true(isfinite(trajectory_evaluate(t, f.u, f.gradient, &info)));

@@ -51,7 +51,7 @@ static const YamlTable outer_table = {
          .doc = "a choice"},
         {YAML_INTEGER_VECTOR(Outer, pair), .doc = "two whole numbers"},
         {YAML_CHOICES(Outer, kinds), .choices = YAML_NAMES("one", "two", "three"), .doc = "choices"},
-        {YAML_BOOL(Outer, flag), .doc = "a switch"},
+        {YAML_BOOL(Outer, flag), .also = YAML_NAMES("false"), .doc = "a switch"},
         {YAML_TEXT(Outer, text), .doc = "a text"},
         {YAML_FILE(Outer, file), .doc = "a file"},
         {YAML_TEXTS(Outer, texts), .doc = "texts"},
@@ -251,7 +251,8 @@ static void test_manual(void **state)
     assert_int_equal(yaml_error_count(file), 0);
     for (const YamlField *row = outer_table.fields; row->key; row++) {
         char key[64];
-        snprintf(key, sizeof key, "| `%s` |", row->key);
+        snprintf(key, sizeof key, row->also ? "| `%s`, `%s` |" : "| `%s` |", row->key,
+                 row->also ? row->also[0] : "");
         assert_non_null(strstr(manual, key));
         snprintf(key, sizeof key, "\"%s\": {", row->key);
         assert_non_null(strstr(schema, key));
@@ -262,11 +263,146 @@ static void test_manual(void **state)
     mem_free(manual);
 }
 
+static Outer load(const char *text)
+{
+    Outer o;
+    YamlFile *file = parse(text);
+    if (!yaml_load(file, &outer_table, &o)) fail_msg("%s", yaml_report(file));
+    yaml_destroy(file);
+    return o;
+}
+
+/* What other programs make of a scene: keys in alphabetical order, numbers in quotes, aliases, another name
+ * for a key that is a boolean to them, pairs of surrogates. */
+static void test_foreign(void **state)
+{
+    (void)state;
+    long blocks = mem_live_count();
+    Outer o =
+        load("count: '7'\nfalse: \"true\"\nlength: '1.5e-3'\nlist: &id001 ['1', 2 mT]\nslender: 1\n"
+             "vector: &v ['0', 0, -9.81]\ninner: '2 MPa'\noptional: &v 5\nentries: [*v, {value: *v}]\n");
+    assert_true(o.count == 7 && o.flag && o.length == 1.5e-3 && o.list[0] == 1 && o.vector[2] == -9.81);
+    assert_true(o.inner.value == 2e6 && o.entries_count == 2 && o.entries[0].value == 5 &&
+                o.entries[1].value == 5);
+    char *text = yaml_write(&outer_table, &o);
+    assert_non_null(strstr(text, "\n\"flag\": true\n"));
+    yaml_clear(&outer_table, &o);
+    o = load(text);
+    assert_true(o.flag);
+    mem_free(text);
+    yaml_clear(&outer_table, &o);
+    o = load("{\"text\": \"\\ud83e\\uddf2\\/\\\\ud83e\", \"length\": 1, \"slender\": 1}");
+    assert_string_equal(o.text, "\xf0\x9f\xa7\xb2/\\ud83e");
+    yaml_clear(&outer_table, &o);
+    assert_int_equal(mem_live_count(), blocks);
+}
+
+/* Windows begins its files with a byte order mark. */
+static void test_mark(void **state)
+{
+    (void)state;
+    long blocks = mem_live_count();
+    YamlFile *file = yaml_parse("mark.yaml", "\xef\xbb\xbfslender: 2\n", 14);
+    Outer outer;
+    assert_false(yaml_load(file, &outer_table, &outer));
+    char *report = yaml_report(file);
+    assert_non_null(strstr(report, "mark.yaml:1:10: "));
+    mem_free(report);
+    yaml_destroy(file);
+    file = yaml_parse("mark.yaml", "\xff\xfes\0:\0", 6);
+    report = yaml_report(file);
+    assert_string_equal(report, "mark.yaml: the file is UTF-16 text; save it as UTF-8\n");
+    mem_free(report);
+    yaml_destroy(file);
+    assert_int_equal(mem_live_count(), blocks);
+}
+
+/* Keys that are used here and not there. */
+typedef struct Part {
+    char *formula, *names;
+    double step, value;
+    int solver;
+} Part;
+
+typedef struct Job {
+    int job;
+    Part part, *parts;
+    double end;
+    int parts_count;
+} Job;
+
+static const YamlTable part_table = {
+    .name = "part",
+    .doc = "A part.",
+    .size = sizeof(Part),
+    .fields = (const YamlField[]){
+        {YAML_NUMBER(Part, value), .one_of = 1, .short_form = true, .doc = "a number"},
+        {YAML_TEXT(Part, formula), .one_of = 1, .short_form = true, .doc = "an expression"},
+        {YAML_TEXT(Part, names), .when = "formula", .doc = "of a formula"},
+        {YAML_NUMBER(Part, step), .unit = "s", .fallback = "1 s",
+         .when = "/job: move, stop & !value & solver: one", .otherwise = "nothing moves", .doc = "of time"},
+        {YAML_CHOICE(Part, solver), .choices = YAML_NAMES("one", "two"), .fallback = "one",
+         .doc = "a choice"},
+        {0}}};
+
+static const YamlTable job_table = {
+    .name = "scene",
+    .doc = "A job.",
+    .size = sizeof(Job),
+    .fields = (const YamlField[]){{YAML_CHOICE(Job, job), .choices = YAML_NAMES("rest", "move", "stop"),
+                                   .required = true, .doc = "what"},
+                                  {YAML_TABLE(Job, part, &part_table), .doc = "a part"},
+                                  {YAML_LIST(Job, parts, &part_table), .doc = "parts"},
+                                  {YAML_NUMBER(Job, end), .when = "part.formula | parts", .doc = "a number"},
+                                  {0}}};
+
+static void test_use(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text, *sentence; /* NULL: all is used */
+    } cases[] = {
+        {"job: move\npart: {formula: a, names: b, step: 2 s}\nend: 1", NULL},
+        {"job: rest\npart: {step: 1}", NULL}, /* the default says nothing */
+        {"job: rest\npart: {step: 1000 ms}", NULL},
+        {"job: rest\npart: x\nend: 1", NULL},
+        {"job: rest\nparts: [1]\nend: 1", NULL},
+        {"job: rest\npart: {step: 2 s}",
+         ":3:8: part.step is not used with `job: rest`, only with move, stop: nothing moves"},
+        {"job: move\npart: {value: 1, step: 2 s}",
+         ":3:18: part.step is not used beside `value`: nothing moves"},
+        {"job: stop\npart: {step: 2 s, solver: two}",
+         ":3:8: part.step is not used with `solver: two`, only with one: nothing moves"},
+        {"job: move\nparts: [1, {value: 2, names: b}]",
+         ":3:23: parts[1].names is not used without `formula`"},
+        {"job: move\npart: 1\nend: 1", ":4:1: end is not used without `part.formula | parts`"},
+    };
+    yaml_check_table(&job_table);
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        long blocks = mem_live_count();
+        char *text = mem_format("slender: 1\n%s\n", cases[k].text);
+        YamlFile *file = parse(text);
+        Job job;
+        if (!yaml_load(file, &job_table, &job)) fail_msg("%s", yaml_report(file));
+        bool used = yaml_check_use(file, &job_table);
+        char *report = yaml_report(file);
+        if (used != !cases[k].sentence || (!used && !strstr(report, cases[k].sentence)))
+            fail_msg("%s\nsays\n%s", text, report);
+        mem_free(report);
+        mem_free(text);
+        yaml_clear(&job_table, &job);
+        yaml_destroy(file);
+        assert_int_equal(mem_live_count(), blocks);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_kinds),      cmocka_unit_test(test_defaults),
                                        cmocka_unit_test(test_round_trip), cmocka_unit_test(test_units),
                                        cmocka_unit_test(test_overrides),  cmocka_unit_test(test_difference),
-                                       cmocka_unit_test(test_report),     cmocka_unit_test(test_manual)};
+                                       cmocka_unit_test(test_report),     cmocka_unit_test(test_mark),
+                                       cmocka_unit_test(test_foreign),    cmocka_unit_test(test_manual),
+                                       cmocka_unit_test(test_use)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,4 @@
-#include "shell/weld.h"
+#include "base/weld.h"
 #include "base/memory.h"
 #include <limits.h>
 #include <stdint.h>

@@ -1,9 +1,10 @@
 /* flux_field.h - a magnetic flux density that varies in space: formulas, point dipoles, permanent magnets.
  *
- * Fields are evaluated where a face's barycentre is now, with first and second derivatives in space, so that the
+ * Fields are evaluated where a piece of the body is now, with first and second derivatives in space, so that the
  * forces (dB/dx) and their Hessian follow from the energy. */
 #pragma once
 #include "io/formula.h"
+#include "solve/params.h"
 
 typedef struct FluxField FluxField;
 
@@ -22,5 +23,16 @@ FluxField *flux_field_dipole(const double at[3], const double moment[3]);
 
 void flux_field_destroy(FluxField *field);
 
-/* Not re-entrant: one FluxField per thread. A value that is not finite leaves NaN, which the solver notices. */
+/* Re-entrant. A value that is not finite leaves NaN, which the solver notices. */
 void flux_field_eval(const FluxField *field, const double x[3], double time, FluxSample *sample);
+
+/* The fields around a body, each with a factor in the last block of its parameters. */
+typedef struct FluxFields {
+    int count;
+    FluxField **items; /* owned */
+} FluxFields;
+
+/* Adds a field and its factor, and returns its number. Before the first vector of parameters and the first system:
+ * the block grows. */
+int flux_fields_add(FluxFields *fields, Params *params, FluxField *field);
+void flux_fields_clear(FluxFields *fields);
