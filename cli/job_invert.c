@@ -21,6 +21,7 @@ typedef struct Inversion {
     double *s, *input, *natural, *strain, *moment, *strain_elements; /* [strands*nodes][3], ..        */
     double *x;                                                       /* simulated; NULL: not asked for */
     double *lowest, *critical_young, *tail, *contact, *round_trip, *residual, *route; /* [strands]     */
+    double *gain; /* [strands] energy at the curve less that where the simulated rod rests, J */
     int *stable, *index, *touching;                                                   /* [strands]     */
     int pair_count;
     int *pairs; /* [pair_count][3] strand, elements */
@@ -97,8 +98,9 @@ static void find_contacts(Inversion *o, int k)
     rod_contacts_clear(&contacts);
 }
 
-/* From the natural shape, loads in steps, back to the curve: how far it ends from it. */
-static void go_round(Inversion *o, int k, Rod *rod, System *sys, const RodLayout *layout, const double *p)
+/* From the natural shape, loads in steps, back to the curve, where the rod has the given energy: how far it ends from
+ * it, and how much lower. */
+static void go_round(Inversion *o, int k, Rod *rod, System *sys, const RodLayout *layout, const double *p, double energy)
 {
     double *x = mem_alloc((size_t)layout->dofs, sizeof *x), *place = &strand_of(o, o->x, k)->x;
     RampDef def = ramp_default();
@@ -108,6 +110,7 @@ static void go_round(Inversion *o, int k, Rod *rod, System *sys, const RodLayout
     rod_natural_state(rod, layout, p, x);
     RampInfo info = ramp_solve(sys, &rod->params, &def, NULL, p, 0, x);
     if (info.newton.status > o->worst) o->worst = info.newton.status;
+    o->gain[k] = energy - info.newton.energy;
     rod_places(rod, layout, x, layout->nodes, place);
     for (int i = 0; i < layout->nodes; i++) {
         Vec3 off = vec3_sub(vec3_load(place + 3 * i), o->rm->curves[k].x[2 * i]);
@@ -136,7 +139,7 @@ static void invert_elements(Inversion *o, int k)
     o->residual[k] = left.force_scale > 0 ? left.gradient_max / left.force_scale : 0;
     memcpy(o->strain_elements + 3 * (size_t)k * (size_t)o->elements, p + rod->natural_strain,
            3 * (size_t)o->elements * sizeof *p);
-    if (o->x) go_round(o, k, rod, sys, &layout, p);
+    if (o->x) go_round(o, k, rod, sys, &layout, p, left.energy);
     system_destroy(sys);
     mem_free(x);
     mem_free(p);
@@ -203,6 +206,7 @@ static void add_checks(const Inversion *o, Arrays *list)
     if (o->x) {
         arrays_add(list, per_node(o, "rod/x", "m", o->x));
         arrays_add(list, per_strand(o, "metrics/round_trip", "m", o->round_trip));
+        arrays_add(list, per_strand(o, "metrics/energy_above", "J", o->gain));
     }
 }
 
@@ -248,6 +252,19 @@ static bool put_results(const Inversion *o, const char *status, Error *err)
     return put_shapes(o, err) && arrays_replace(&list, o->run->journal, "final", err);
 }
 
+/* Which other equilibrium, and why: the way from the natural shape leads there. */
+static void say_elsewhere(const Inversion *o, int elsewhere, double worst)
+{
+    double most = 0;
+    for (int k = 0; k < o->strands; k++)
+        if (fabs(o->gain[k]) > fabs(most)) most = o->gain[k];
+    progress_say(o->run->progress,
+                 "%d of %d rods come to rest elsewhere when they are let down from their natural shape, up to %.2g m away: "
+                 "in another equilibrium, with up to %.3g J %s energy than on the curve, that lies nearer on this way (a rod "
+                 "held on its curve and let go stays there where rod/stable is 1)",
+                 elsewhere, o->strands, worst, fabs(most), most > 0 ? "less" : "more");
+}
+
 static void say(const Inversion *o)
 {
     Progress *progress = o->run->progress;
@@ -276,11 +293,7 @@ static void say(const Inversion *o)
                      "length sqrt(EI/F) within which the rod bends; rod.elements: %.0f or more would",
                      o->lengths, ceil(o->elements * o->lengths));
     if (touching) progress_say(progress, "%d of %d natural shapes touch themselves", touching, o->strands);
-    if (elsewhere)
-        progress_say(progress,
-                     "%d of %d rods come to rest elsewhere when they are let down from their natural shape, "
-                     "up to %.2g m away",
-                     elsewhere, o->strands, worst);
+    if (elsewhere) say_elsewhere(o, elsewhere, worst);
     else if (o->x)
         progress_say(progress, "the simulated rod rests %.2g m from its curve", worst);
 }
@@ -292,13 +305,13 @@ RunStatus job_invert(Run *run, Error *err)
     Inversion o = {
         .run = run, .rm = rm, .strands = rm->strand_count, .elements = (int)nodes - 1, .nodes = (int)nodes};
     bool round_trip = is_asked(run->scene, CHECK_ROUND_TRIP);
-    double *numbers = mem_alloc(19 * all + 7 * strands, sizeof *numbers), *at = numbers;
+    double *numbers = mem_alloc(19 * all + 8 * strands, sizeof *numbers), *at = numbers;
     double **vectors[] = {&o.input, &o.natural, &o.strain, &o.moment, &o.strain_elements, &o.x};
     for (int i = 0; i < 6; i++, at += 3 * all) *vectors[i] = at;
     o.s = at, at += all;
     double **scalars[] = {&o.lowest,     &o.critical_young, &o.tail, &o.contact,
-                          &o.round_trip, &o.residual,       &o.route};
-    for (int i = 0; i < 7; i++, at += strands) *scalars[i] = at;
+                          &o.round_trip, &o.residual,       &o.route, &o.gain};
+    for (int i = 0; i < 8; i++, at += strands) *scalars[i] = at;
     if (!round_trip) o.x = NULL;
     o.stable = mem_alloc(3 * strands, sizeof *o.stable), o.index = o.stable + strands,
     o.touching = o.index + strands;

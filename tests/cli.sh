@@ -139,6 +139,10 @@ expect 0 "$program" picture halves.vtkhdf --animation --seconds 0.4 --width 400
 expect 0 "$program" picture halves.vtkhdf --stills 3 -o stills.svg; [ -s stills.svg ] || { echo "no stills"; bad=1; }
 expect 2 "$program" picture halves.vtkhdf --stills none
 
+# A rod that rests elsewhere than on its curve: in which equilibrium, and with how much less energy.
+expect 0 "$program" run "$here/../scenes/rod_ellipse.yaml" --no-picture -o ellipse; says "in another equilibrium, with up to 0.000976 J less energy"
+expect 0 "$program" export ellipse.vtkhdf -o a.csv --dataset metrics/energy_above
+
 # A finished design goes on when it is given more iterations.
 expect 0 "$program" run "$here/scene_small.yaml" --quiet --no-picture -o more --set design.iterations=4
 expect 0 "$program" run "$here/scene_small.yaml" --quiet --no-picture -o more --resume --set design.iterations=8
