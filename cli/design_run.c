@@ -200,10 +200,14 @@ static bool recall(void *self, double *u)
 /* Without a solution for the start there is nothing to show but why. */
 static RunStatus finish_unsolved(DesignRun *d, bool interrupted)
 {
-    progress_say(d->run->progress, interrupted ? "interrupted before the first evaluation was done"
-                                               : "no solution was found for the start of the design");
+    if (interrupted)
+        progress_say(d->run->progress, "interrupted before the first evaluation was done");
+    else
+        progress_say(d->run->progress, "no solution was found for the start of the design: %s",
+                     newton_status_text(d->evaluated.status));
     if (interrupted) return RUN_INTERRUPTED;
-    Array status = array_text("status", newton_status_name(d->evaluated.status));
+    d->run->unsolved = true;
+    Array status = array_text("status", "unsolved");
     return journal_replace(d->run->journal, "final", 0, &status, 1, d->err) ? RUN_NOT_CONVERGED
                                                                             : RUN_CANNOT_WRITE;
 }

@@ -24,6 +24,7 @@ typedef struct Run {
     Progress *progress;
     const char *result; /* NAME.vtkhdf */
     int threads;
+    bool unsolved; /* nothing was found that could be drawn */
 } Run;
 
 /* The program and the libraries that it runs with, a line each. The caller frees. */

@@ -259,7 +259,7 @@ static int do_job(Run *run, const RunOptions *options)
         return fail(options, RUN_CANNOT_WRITE, err.text);
     progress_say(run->progress, "result: %s", run->result);
     if (!outputs_write(run, &err)) return fail(options, RUN_CANNOT_WRITE, err.text);
-    bool drawn = options->no_picture || draw(run, &err);
+    bool drawn = options->no_picture || run->unsolved || draw(run, &err);
     if (status == RUN_INTERRUPTED)
         progress_say(run->progress, "interrupted; all is saved: run again with --resume");
     if (drawn) return status;

@@ -143,6 +143,10 @@ expect 2 "$program" picture halves.vtkhdf --stills none
 expect 0 "$program" run "$here/../scenes/rod_ellipse.yaml" --no-picture -o ellipse; says "in another equilibrium, with up to 0.000976 J less energy"
 expect 0 "$program" export ellipse.vtkhdf -o a.csv --dataset metrics/energy_above
 
+# A design whose start has no equilibrium: said, and no word of pictures.
+expect 1 "$program" run "$here/scene_small.yaml" -o unsolved --set solver.max_iterations=1; says "no solution was found for the start"
+"$program" info unsolved.vtkhdf | head -1 | grep -q unsolved || { echo "an unsolved design has another status"; bad=1; }
+
 # A finished design goes on when it is given more iterations.
 expect 0 "$program" run "$here/scene_small.yaml" --quiet --no-picture -o more --set design.iterations=4
 expect 0 "$program" run "$here/scene_small.yaml" --quiet --no-picture -o more --resume --set design.iterations=8
