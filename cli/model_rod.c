@@ -260,15 +260,24 @@ static const BodyOps rod_ops = {
     .doubt = body_rod_doubt,
 };
 
+static bool is_default(const SolverScene *solver)
+{
+    NewtonDef def = newton_default();
+    return solver->max_iterations == def.max_iterations && solver->step_tolerance == def.step_tol &&
+           solver->force_tolerance == def.force_tol;
+}
+
 static bool check_inversion(const Scene *scene, YamlFile *file)
 {
     bool round_trip = false;
     for (int k = 0; k < scene->checks_count; k++) round_trip |= scene->checks[k] == CHECK_ROUND_TRIP;
     if (!scene->rod->curve)
         return yaml_refuse(file, "rod", "an inversion needs `curve`, the shape that is given");
-    return round_trip || scene->load_steps.mode == 0 ||
-           yaml_refuse(file, "load_steps",
-                       "an inversion uses them for its round trip only: checks: [round_trip]");
+    const char *unused = scene->load_steps.mode != 0   ? "load_steps"
+                         : !is_default(&scene->solver) ? "solver"
+                                                       : NULL;
+    return round_trip || !unused ||
+           yaml_refuse(file, unused, "an inversion uses this for its round trip only: checks: [round_trip]");
 }
 
 bool model_rod(Model *model, const Scene *scene, YamlFile *file)

@@ -163,21 +163,6 @@ static bool view_box(const SvgNode *node, double box[4])
     return text && svg_numbers(&text, box, 4) == 4 && box[2] > 0 && box[3] > 0;
 }
 
-/* The outermost svg's units to metres, y up, from the upper left corner of its view box. */
-static Level page(const SvgNode *node)
-{
-    double box[4] = {0}, scale = INFINITY;
-    const double size[2] = {read_length(svg_attribute(node, "width")),
-                            read_length(svg_attribute(node, "height"))};
-    if (!view_box(node, box)) box[0] = box[1] = box[2] = box[3] = 0;
-    for (int i = 0; i < 2; i++)
-        if (size[i] > 0 && box[2 + i] > 0) scale = fmin(scale, size[i] / box[2 + i]);
-    if (isinf(scale)) scale = pixel;
-    Level level = {.map = {scale, 0, 0, -scale, -scale * box[0], scale * box[1]}};
-    for (int i = 0; i < 2; i++) level.view[i] = box[2 + i] > 0 ? box[2 + i] : size[i] / pixel;
-    return level;
-}
-
 /* A view box into a viewport at x, y of these sides [7.8]. */
 static Affine fit(const SvgNode *node, const double place[4], const double box[4])
 {
@@ -195,6 +180,26 @@ static Affine fit(const SvgNode *node, const double place[4], const double box[4
         shift[i] = place[i] + part * (place[2 + i] - scale[i] * box[2 + i]) - scale[i] * box[i];
     }
     return (Affine){scale[0], 0, 0, scale[1], shift[0], shift[1]};
+}
+
+/* The outermost svg's units to metres, y up, from the upper left corner of its viewport. A side that is not
+ * given goes with the other one; without any, or without a view box, one unit is a pixel. */
+static Level page(const SvgNode *node)
+{
+    double box[4], place[4] = {0, 0, read_length(svg_attribute(node, "width")),
+                               read_length(svg_attribute(node, "height"))};
+    bool boxed = view_box(node, box);
+    Affine map = {pixel, 0, 0, pixel, 0, 0};
+    Level level = {.view = {place[2] / pixel, place[3] / pixel}};
+    if (boxed) {
+        double scale = place[2] > 0 ? place[2] / box[2] : place[3] > 0 ? place[3] / box[3] : pixel;
+        for (int i = 2; i < 4; i++)
+            if (place[i] <= 0) place[i] = scale * box[i];
+        map = fit(node, place, box);
+        memcpy(level.view, box + 2, sizeof level.view);
+    }
+    level.map = affine_times((Affine){1, 0, 0, -1, 0, 0}, map);
+    return level;
 }
 
 /* ---- Strands ---- */

@@ -144,12 +144,15 @@ static bool is_default(const Place *at, const YamlField *row, const Node *item)
     return same;
 }
 
-static void refuse(const Place *at, const char *key, int i, const Condition *c, const char *value)
+static void refuse(const Place *at, const YamlField *row, const char *key, int i, const Condition *c,
+                   const char *value)
 {
-    const char *more = table_row(at->table, at->node->keys[i])->otherwise;
-    Node place = {.line = at->node->key_place[i][0],
-                  .column = at->node->key_place[i][1],
-                  .origin = at->node->items[i]->origin};
+    const char *more = row->otherwise;
+    Node place = *at->node;
+    if (place.kind == NODE_MAP)
+        place = (Node){.line = at->node->key_place[i][0],
+                       .column = at->node->key_place[i][1],
+                       .origin = at->node->items[i]->origin};
     char why[400];
     if (*c->values && value)
         snprintf(why, sizeof why, "with `%s: %s`, only with %s", c->keys, value, c->values);
@@ -176,23 +179,29 @@ static void check_entries(const Place *at, const YamlField *row, const Node *ite
     }
 }
 
+/* A row's value in its table: at the index of a mapping, or the whole of a short form. */
+static void check_row(const Place *at, const YamlField *row, int i, const char *path)
+{
+    const Node *item = at->node->kind == NODE_MAP ? at->node->items[i] : at->node;
+    Condition c;
+    const char *when = row->when, *value = NULL;
+    bool used = true;
+    while (used && when && next_condition(&when, &c)) used = holds(at, &c, &value);
+    char *key = mem_format("%s%s%s", path, *path ? "." : "", row->key);
+    if (!used && !is_default(at, row, item))
+        refuse(at, row, key, i, &c, value);
+    else if (used && row->table)
+        check_entries(at, row, item, key);
+    mem_free(key);
+}
+
 static void check_table(const Place *at, const char *path)
 {
-    for (int i = 0; at->node->kind == NODE_MAP && i < at->node->count; i++) {
-        const YamlField *row = table_row(at->table, at->node->keys[i]);
-        const Node *item = at->node->items[i];
-        Condition c;
-        const char *value = NULL;
-        if (!row) continue; /* the version */
-        const char *when = row->when;
-        bool used = true;
-        while (used && when && next_condition(&when, &c)) used = holds(at, &c, &value);
-        char *key = mem_format("%s%s%s", path, *path ? "." : "", row->key);
-        if (!used && !is_default(at, row, item))
-            refuse(at, key, i, &c, value);
-        else if (used && row->table)
-            check_entries(at, row, item, key);
-        mem_free(key);
+    bool map = at->node->kind == NODE_MAP;
+    for (int i = 0; i < (map ? at->node->count : 1); i++) {
+        const YamlField *row =
+            map ? table_row(at->table, at->node->keys[i]) : load_short_row(at->table, at->node);
+        if (row) check_row(at, row, i, path); /* the version has none */
     }
 }
 

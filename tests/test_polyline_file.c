@@ -246,8 +246,15 @@ static void test_svg_places(void **state)
         "<svg><path d='M37.795275590551178 37.795275590551178h37.795275590551178'/></svg>", /* 1/96 inch */
         "<svg width='100%' height='50%'><path transform='scale(3.7795275590551178)' d='M10 10h10'/></svg>",
         "<svg width='50mm' viewBox='-5 -5 25 1'><path d='M0 0h5'/></svg>",
-        "<svg width='1in' height='1in' viewBox='0 0 25.4 12.7'><path d='M10 10h10'/></svg>",
-        "<svg width='72pt' height='6pc' viewBox='0 0 25.4 25.4'><path d='M10 10h10'/></svg>"};
+        "<svg width='1in' height='1in' viewBox='0 0 25.4 12.7'><path d='M10 3.65h10'/></svg>",
+        "<svg width='72pt' height='6pc' viewBox='0 0 25.4 25.4'><path d='M10 10h10'/></svg>",
+        "<svg width='100mm' height='50mm' viewBox='0 0 100 100'><path d='M-30 20h20'/></svg>",
+        "<svg width='100mm' height='50mm' viewBox='0 0 100 100' preserveAspectRatio='none'>"
+        "<path d='M10 20h10'/></svg>",
+        "<svg width='100mm' height='50mm' viewBox='0 0 100 100' preserveAspectRatio='xMidYMid slice'>"
+        "<path d='M10 35h10'/></svg>",
+        "<svg width='100mm' height='50mm' viewBox='0 0 100 100' preserveAspectRatio='xMaxYMid'>"
+        "<path d='M-80 20h20'/></svg>"};
     for (size_t k = 0; k < sizeof pages / sizeof *pages; k++) {
         file = parse("svg", pages[k]);
         check_strand(&file, 0, 1e-3, 2, x);
