@@ -95,8 +95,8 @@ static bool read_csv(PolylineReader *reader, const char *text, size_t length)
     if (!ok)
         error_set(reader->err, "%s:%d: %d number%s in this row; it must be x, y, z or s, x, y, z",
                   reader->path, table.line[0], table.columns, table.columns == 1 ? "" : "s");
-    ok = ok &&
-         table_check_header(&table, reader->path, "s, x, y, z" + (table.columns == 3 ? 3 : 0), reader->err);
+    const char *names = table.columns == 3 ? "x, y, z" : "s, x, y, z";
+    ok = ok && table_check_header(&table, reader->path, names, reader->err);
     if (ok && table.columns == 4)
         ok =
             table_check_increasing(&table, reader->path, "s", reader->err) && check_arclength(&table, reader);

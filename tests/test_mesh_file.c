@@ -209,8 +209,8 @@ static void test_table(void **state)
     Table table;
     /* The same rows, split and written in every way. */
     static const char *const same[] = {"x, y, z\n# comment\n1,2,3\r\n\n 4 , 5e-1 ,-6 # end\n7,8,9,\n",
-                                       "\xef\xbb\xbf"
-                                       "1;2;3\n# one\n# two\n#\n4;0.5;-6\n7;8;9",
+                                       ("\xef\xbb\xbf"
+                                        "1;2;3\n# one\n# two\n#\n4;0.5;-6\n7;8;9"),
                                        "A title; of words\n\n1;2;3\n\n4;0,5;-6\n7;8,0;9",
                                        "\"x\"\t\"y\"\t\"z\"\n\n1\t2\t3,0\n\n4\t0,5\t-6\n7\t8\t9",
                                        "x y z\n\n1 2\t 3\n\n 4  .5 -6\n7\t8 9\n"};
