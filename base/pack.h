@@ -32,7 +32,7 @@ static inline Pack pack_abs(Pack a)
 
 static inline Pack pack_sqrt(Pack a)
 {
-    Pack r;
+    Pack r = {0}; /* without {0}, gcc 12 warns of spline/pair.c */
     for (int l = 0; l < PACK_LANES; l++) r[l] = sqrt(a[l]);
     return r;
 }
