@@ -56,8 +56,16 @@ same own.yaml "$scene"; same own.xdmf "$scene"; same beam.vtkhdf keep.vtkhdf; sa
 sed "s/{shape: strip.*}/star.obj/; s/{group: root, clamp: true}/{box: [[-1, -1, -1], [1e-9, 1, 1]], clamp: true}/" own.yaml > star.yaml
 expect 4 "$program" mesh star.yaml; says "the scene is made of it"
 expect 0 "$program" run star.yaml --quiet --no-picture
+expect 4 "$program" export star.vtkhdf -o star.obj; says "the scene is made of it"
+expect 4 "$program" export star.vtkhdf -o ./star.obj --dataset state/x; says "the scene is made of it"
+mkdir aside; (cd aside; expect 4 "$program" export ../star.vtkhdf -o ../star.obj; says "the scene is made of it"; exit $bad) || bad=1
 ln -s star.obj star.svg
 expect 4 "$program" picture star.vtkhdf -o star.svg; says "the scene is made of it"
+echo junk > junk.vtkhdf; echo junk > junk.run
+for input in missing.vtkhdf junk.vtkhdf; do # what cannot be read is refused by every verb alike
+    expect 3 "$program" info $input; expect 3 "$program" picture $input -o p.png; expect 3 "$program" export $input -o o.obj
+done
+for input in missing.run junk.run; do expect 3 "$program" info $input; expect 3 "$program" export $input -o o.vtkhdf; done
 same star.obj keep.obj
 
 # What cannot be printed is said, and is no success.
