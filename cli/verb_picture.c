@@ -5,6 +5,7 @@
 #include "cli/verb.h"
 #include "io/result.h"
 #include <getopt.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -31,6 +32,13 @@ static bool parse_target(const char *word, PictureTarget *target)
     for (int k = 0; k < 3; k++)
         if (!strcmp(word, names[k])) return *target = (PictureTarget)k, true;
     return false;
+}
+
+/* A direction, however long: but its square must be a number, and not 0. */
+static bool is_direction(const double view[3])
+{
+    double length = sqrt(view[0] * view[0] + view[1] * view[1] + view[2] * view[2]);
+    return length >= 1e-6 && length <= 1e6;
 }
 
 /* FILE, or NAME.png, of an animation .webp. The caller frees. */
@@ -88,7 +96,7 @@ int verb_picture(int argc, char **argv)
     ShowDef def = show_default();
     const char *output = NULL;
     double seconds = 6;
-    bool ok = true, animation = false, wide = false;
+    bool ok = true, animation = false, wide = false, aimed = false;
     for (int c; ok && (c = getopt_long(argc, argv, "o:", table, NULL)) >= 0;) {
         char end;
         if (c == 'o')
@@ -108,7 +116,7 @@ int verb_picture(int argc, char **argv)
         else if (c == TARGET)
             ok = parse_target(optarg, &def.target);
         else if (c == VIEW)
-            ok = sscanf(optarg, "%lf,%lf,%lf%c", &def.view[0], &def.view[1], &def.view[2], &end) == 3;
+            aimed = ok = sscanf(optarg, "%lf,%lf,%lf%c", &def.view[0], &def.view[1], &def.view[2], &end) == 3;
         else if (c == WIDTH)
             wide = ok =
                 sscanf(optarg, "%d%c", &def.width, &end) == 1 && def.width >= 400 && def.width <= 4000;
@@ -120,6 +128,8 @@ int verb_picture(int argc, char **argv)
             ok = false;
     }
     if (!ok || optind != argc - 1) return verb_usage(usage);
+    if (aimed && !is_direction(def.view))
+        return verb_fail(RUN_USAGE, "--view X,Y,Z must be finite numbers up to 1e6, and not all 0");
     Error err;
     char *picture;
     RunStatus status = prepare(argv[optind], output, animation, &picture, &err);

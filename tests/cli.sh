@@ -26,6 +26,8 @@ expect 0 "$program" export beam.run -o again.vtkhdf
 cmp -s beam.vtkhdf again.vtkhdf || { echo "the journal gives another result"; bad=1; }
 for ending in svg pdf png; do expect 0 "$program" picture beam.vtkhdf -o p.$ending --field energy_bending --view 0,-1,0.3; exists p.$ending; done
 expect 4 "$program" picture beam.vtkhdf -o p.png --field nothing
+for view in 0,0,0 nan,0,1 0,-inf,1 1e300,0,0 0,1e-300,0; do expect 2 "$program" picture beam.vtkhdf -o view.png --view=$view; says "not all 0"; done
+[ ! -e view.png ] || { echo "a picture from nowhere"; bad=1; }
 expect 4 "$program" run "$scene" -o no/such/folder; says "cannot be"
 expect 1 "$program" run "$scene" -o short --set solver.max_iterations=2 --set "load_steps=1"; says "short.vtkhdf"
 expect 0 "$program" info short.vtkhdf;          says "state/x"
