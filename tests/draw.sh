@@ -87,6 +87,15 @@ expect 4 "$program" run picture.yaml --set output.png=picture.gif; says "must be
 expect 0 "$program" run picture.yaml --set spline.image="$work/picture.png"; says "picture: picture-picture.png"
 expect 0 "$program" picture picture.vtkhdf; same picture.png before.png; exists picture-picture.png
 expect 4 "$program" run picture.yaml --no-picture -o y --set output.gcode=./picture.yaml; says "it is read here"
+# Nor by the drawings of iterations.
+cp dot.pgm it-000005.svg
+expect 4 "$program" run picture.yaml --no-picture -o it --set output.every=1000 --set spline.image="$work/it-000005.svg"; says "by an iteration's drawing"
+expect 4 "$program" run picture.yaml --no-picture -o "$work/it" --set output.every=5 --set output.svg=it-000010.svg; says "it-000010.svg' would be written over"
+expect 4 "$program" run picture.yaml -o it --set output.every=5 --set output.png=it-000010.svg; says "would be written over"
+same it-000005.svg dot.pgm
+for other in "output.every=0" "output.svg=it-5.svg" "output.svg=at-000010.svg"; do
+    expect 0 "$program" run picture.yaml --quiet --no-picture -o it --force --set output.every=5 --set $other
+done
 expect 2 "$program" run picture.yaml --threads 2x
 
 # Where ink is asked for there are strokes: a narrow strip, no direction anywhere, too few or too long strokes at the start.
