@@ -215,12 +215,13 @@ static bool export_drawing(Result *result, const char *language, const char *pat
     } endings[] = {{".svg", "svg"},  {".gcode", "gcode"}, {".ngc", "gcode"},
                    {".nc", "gcode"}, {".hpgl", "hpgl"},   {".plt", "hpgl"}};
     Drawn drawn = {0};
-    for (size_t k = 0; !language && k < sizeof endings / sizeof *endings; k++)
-        if (has_ending(path, endings[k].ending)) language = endings[k].language;
-    if (!language)
+    const char *usual = NULL;
+    for (size_t k = 0; k < sizeof endings / sizeof *endings; k++)
+        if (has_ending(path, endings[k].ending)) usual = endings[k].language;
+    if (!usual)
         return error_set(err, "%s: a drawing is exported as .svg, .gcode or .hpgl, or numbers with --dataset",
                          path);
-    bool ok = drawn_read(result, &drawn, err) && drawn_write(&drawn, language, path, err);
+    bool ok = drawn_read(result, &drawn, err) && drawn_write(&drawn, language ? language : usual, path, err);
     drawn_clear(&drawn);
     return ok;
 }
@@ -242,18 +243,26 @@ static bool check_source(Result *result, const char *input, const char *output, 
     return ok;
 }
 
+/* A scene's path is not in its result: what is written is at least never named like one. */
+static bool check_ending(const char *path, const char *what, const char *ending, Error *err)
+{
+    return has_ending(path, ending) || error_set(err, "%s: %s exported as %s", path, what, ending);
+}
+
 static bool write_export(Result *result, const Export *what, Error *err)
 {
-    return what->dataset       ? export_dataset(result, what->dataset, what->output, err)
-           : drawn_has(result) ? export_drawing(result, what->language, what->output, err)
-                               : export_frame(result, what->frame, what->output, err);
+    const char *path = what->output;
+    if (what->dataset)
+        return check_ending(path, "numbers are", ".csv", err) && export_dataset(result, what->dataset, path, err);
+    if (drawn_has(result)) return export_drawing(result, what->language, path, err);
+    return check_ending(path, "a mesh is", ".obj", err) && export_frame(result, what->frame, path, err);
 }
 
 static RunStatus export_result(const char *input, const Export *what, Error *err)
 {
     Result *result = result_open(input, err);
     if (!result) return RUN_REFUSED;
-    bool ok = check_source(result, input, what->output, err) &&
+    bool ok = check_source(result, input, what->output, err) && replace_check(what->output, err) &&
               (write_export(result, what, err) || error_prefix(err, "%s", input));
     result_close(result);
     return ok ? RUN_DONE : RUN_CANNOT_WRITE;

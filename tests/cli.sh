@@ -61,6 +61,9 @@ expect 0 "$program" run star.yaml --quiet --no-picture
 expect 4 "$program" export star.vtkhdf -o star.obj; says "the scene is made of it"
 expect 4 "$program" export star.vtkhdf -o ./star.obj --dataset state/x; says "the scene is made of it"
 mkdir aside; (cd aside; expect 4 "$program" export ../star.vtkhdf -o ../star.obj; says "the scene is made of it"; exit $bad) || bad=1
+expect 4 "$program" export star.vtkhdf -o star.yaml --dataset state/x; says "numbers are exported as .csv"
+expect 4 "$program" export star.vtkhdf -o star.yaml; says "a mesh is exported as .obj"
+grep -q "star.obj" star.yaml || { echo "the scene is written over"; bad=1; }
 ln -s star.obj star.svg
 expect 4 "$program" picture star.vtkhdf -o star.svg; says "the scene is made of it"
 echo junk > junk.vtkhdf; echo junk > junk.run

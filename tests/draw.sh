@@ -29,6 +29,7 @@ grep -q "^G1 Z-1 F40$" lift9.gcode || { echo "no z that takes its time"; bad=1; 
 expect 0 "$program" export lift9.vtkhdf -o c.gcode; same lift9.gcode c.gcode
 expect 0 "$program" export lift9.vtkhdf -o c.gcode --plotter gcode_servo; same s.nc c.gcode
 expect 4 "$program" export out/a.vtkhdf -o c.dwg; says "exported as .svg"
+expect 4 "$program" export out/a.vtkhdf -o c.yaml --plotter gcode; says "exported as .svg"
 expect 0 "$program" picture out/a.vtkhdf -o c.pdf --width 800; exists c.pdf
 expect 4 "$program" picture out/a.vtkhdf -o c.png --frame 0; says "no frames"
 expect 0 "$program" run "$scene" --quiet --no-picture -o d --set spline.rounds=0
