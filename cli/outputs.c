@@ -82,6 +82,28 @@ static bool is_own(const char *const *own, const char *output)
     return false;
 }
 
+/* Is it of the name of a drawing's iteration, as job_draw.c writes them: NAME-000020.svg? */
+static bool is_iteration(const char *file, const char *base)
+{
+    const char *dash = strrchr(file, '-');
+    size_t digits = dash ? strspn(dash + 1, "0123456789") : 0;
+    if (digits < 6 || strcmp(dash + 1 + digits, ".svg") != 0) return false;
+    char *iteration = mem_format("%s%s", base, dash);
+    bool is = replace_is_same(iteration, file);
+    mem_free(iteration);
+    return is;
+}
+
+/* None of them replaces what the scene is made of, or another output. */
+static bool check_iterations(const Scene *scene, const char *path, const char *base, const OutputFile *files, Error *err)
+{
+    if (!scene->spline || scene->output.every == 0) return true;
+    const char *lost = is_iteration(path, base) ? path : yaml_find_file(&scene_table, scene, is_iteration, base);
+    for (int k = 0; !lost && k < FILES; k++)
+        if (files[k].path && is_iteration(files[k].path, base)) lost = files[k].path;
+    return !lost || error_set(err, "'%s' would be written over by an iteration's drawing (`output.every`); give another name", lost);
+}
+
 static bool check_once(const OutputFile *files, int file, const char *const *own, Error *err)
 {
     bool twice = is_own(own, files[file].path);
@@ -128,7 +150,8 @@ bool outputs_check(const Scene *scene, const char *path, const char *result, boo
     files_of(scene, result, files);
     if (!picture) mem_free(files[0].path), files[0].path = NULL;
     ok = ok && (!picture || check_picture(files[0].path, err)) &&
-         check_files(files, (const char *const *)own, scene, path, err);
+         check_files(files, (const char *const *)own, scene, path, err) &&
+         check_iterations(scene, path, base, files, err);
     for (int k = 0; ok && k < FILES; k++)
         if (files[k].path) safe_file_sweep(files[k].path);
     clear_files(files);

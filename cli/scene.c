@@ -365,7 +365,7 @@ static const YamlTable output_table = {
         {YAML_INTEGER(OutputScene, every), .when = "/job: design, simulate, trajectory, draw",
          .range = "[0, inf)", .fallback = "0",
          .doc = "a frame for every so many steps of a motion (0: every step) or improvements of a design (0: "
-                "the final one only); of a drawing: NAME-N.svg after every so many iterations N (0: none)"},
+                "the final one only); of a drawing: NAME-000020.svg and so on, after every so many iterations (0: none)"},
         {YAML_CHOICE(OutputScene, precision),
          .when = "/job: equilibrium, evaluate, design, simulate, trajectory, invert",
          .choices = YAML_NAMES("single", "double"), .fallback = "single",

@@ -42,6 +42,16 @@ bool verb_stored_scene(const Array *text, YamlFile **file, Scene *scene)
     return yaml_load(*file, &scene_table, scene);
 }
 
+void verb_result_scene(Result *result, YamlFile **file, Scene *scene)
+{
+    Array text;
+    *scene = (Scene){0};
+    *file = NULL;
+    if (!result_read(result, "slender/scene", &text, NULL)) return;
+    verb_stored_scene(&text, file, scene);
+    array_clear(&text);
+}
+
 Model *verb_build_model(const Scene *scene, YamlFile *file)
 {
     if (kernels_reserve(1) < 1) mem_exhausted("OpenBLAS, which works in 128 MB");

@@ -3,6 +3,7 @@
 #pragma once
 #include "base/error.h"
 #include "cli/run.h"
+#include "io/result.h"
 
 int verb_run(int argc, char **argv);
 int verb_check(int argc, char **argv);
@@ -28,6 +29,9 @@ bool verb_load_scene(const char *path, char *const *set, int set_count, YamlFile
 /* The effective scene that a journal or result keeps as a text. False where it cannot be read; clear and destroy
  * in any case. */
 bool verb_stored_scene(const Array *text, YamlFile **file, Scene *scene);
+
+/* The same of a result; an empty scene where it keeps none that can be read. */
+void verb_result_scene(Result *result, YamlFile **file, Scene *scene);
 
 /* The model of a scene; NULL after printing what is wrong. Warnings about the mesh are printed. */
 Model *verb_build_model(const Scene *scene, YamlFile *file);

@@ -5,6 +5,7 @@
 #include "cli/verb.h"
 #include "io/result.h"
 #include <getopt.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -33,39 +34,39 @@ static bool parse_target(const char *word, PictureTarget *target)
     return false;
 }
 
-/* The scene that the result was made of; clear and destroy if true. */
-static bool read_scene(const char *path, YamlFile **file, Scene *scene)
+/* A direction, however long: but its square must be a number, and not 0. */
+static bool is_direction(const double view[3])
 {
-    Array text;
-    Result *result = result_open(path, NULL);
-    bool known = result && result_read(result, "slender/scene", &text, NULL);
-    result_close(result);
-    if (!known) return false;
-    known = verb_stored_scene(&text, file, scene);
-    array_clear(&text);
-    if (known) return true;
-    yaml_clear(&scene_table, scene);
-    yaml_destroy(*file);
-    return false;
+    double length = sqrt(view[0] * view[0] + view[1] * view[1] + view[2] * view[2]);
+    return length >= 1e-6 && length <= 1e6;
 }
 
-/* FILE, or NAME.png, of an animation .webp. NULL and a sentence where that is the result or a file that its scene was
- * made of. The caller frees. */
-static char *picture_name(const char *path, const char *output, bool animation, Error *err)
+/* FILE, or NAME.png, of an animation .webp. The caller frees. */
+static char *picture_name(const Scene *scene, const char *path, const char *output, bool animation)
+{
+    if (output) return mem_text(output);
+    if (!animation) return outputs_picture(scene, path);
+    char *base = verb_without_ending(path, ".vtkhdf"), *name = mem_format("%s.webp", base);
+    mem_free(base);
+    return name;
+}
+
+/* *name: where the picture goes; the caller frees. A sentence where there is no result, and where the name is that of
+ * the result or of a file that its scene was made of. */
+static RunStatus prepare(const char *path, const char *output, bool animation, char **name, Error *err)
 {
     Scene scene;
     YamlFile *file;
-    bool known = read_scene(path, &file, &scene);
-    char *base = verb_without_ending(path, ".vtkhdf"),
-         *name = output               ? mem_text(output)
-                 : known && !animation ? outputs_picture(&scene, path)
-                                       : mem_format("%s%s", base, animation ? ".webp" : ".png");
-    if (!outputs_check_source(known ? &scene : NULL, path, name, err)) mem_free(name), name = NULL;
-    mem_free(base);
-    if (!known) return name;
+    Result *result = result_open(path, err);
+    if (!result) return RUN_REFUSED;
+    verb_result_scene(result, &file, &scene);
+    result_close(result);
+    *name = picture_name(&scene, path, output, animation);
+    bool ok = outputs_check_source(&scene, path, *name, err);
+    if (!ok) mem_free(*name);
     yaml_clear(&scene_table, &scene);
     yaml_destroy(file);
-    return name;
+    return ok ? RUN_DONE : RUN_CANNOT_WRITE;
 }
 
 int verb_picture(int argc, char **argv)
@@ -95,7 +96,7 @@ int verb_picture(int argc, char **argv)
     ShowDef def = show_default();
     const char *output = NULL;
     double seconds = 6;
-    bool ok = true, animation = false, wide = false;
+    bool ok = true, animation = false, wide = false, aimed = false;
     for (int c; ok && (c = getopt_long(argc, argv, "o:", table, NULL)) >= 0;) {
         char end;
         if (c == 'o')
@@ -115,7 +116,7 @@ int verb_picture(int argc, char **argv)
         else if (c == TARGET)
             ok = parse_target(optarg, &def.target);
         else if (c == VIEW)
-            ok = sscanf(optarg, "%lf,%lf,%lf%c", &def.view[0], &def.view[1], &def.view[2], &end) == 3;
+            aimed = ok = sscanf(optarg, "%lf,%lf,%lf%c", &def.view[0], &def.view[1], &def.view[2], &end) == 3;
         else if (c == WIDTH)
             wide = ok =
                 sscanf(optarg, "%d%c", &def.width, &end) == 1 && def.width >= 400 && def.width <= 4000;
@@ -127,9 +128,12 @@ int verb_picture(int argc, char **argv)
             ok = false;
     }
     if (!ok || optind != argc - 1) return verb_usage(usage);
+    if (aimed && !is_direction(def.view))
+        return verb_fail(RUN_USAGE, "--view X,Y,Z must be finite numbers up to 1e6, and not all 0");
     Error err;
-    char *picture = picture_name(argv[optind], output, animation, &err);
-    if (!picture) return verb_fail(RUN_CANNOT_WRITE, err.text);
+    char *picture;
+    RunStatus status = prepare(argv[optind], output, animation, &picture, &err);
+    if (status != RUN_DONE) return verb_fail(status, err.text);
     const char *ending = strrchr(picture, '.');
     if (animation || (ending && !strcmp(ending, ".webp"))) {
         def.seconds = seconds;

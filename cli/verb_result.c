@@ -215,12 +215,13 @@ static bool export_drawing(Result *result, const char *language, const char *pat
     } endings[] = {{".svg", "svg"},  {".gcode", "gcode"}, {".ngc", "gcode"},
                    {".nc", "gcode"}, {".hpgl", "hpgl"},   {".plt", "hpgl"}};
     Drawn drawn = {0};
-    for (size_t k = 0; !language && k < sizeof endings / sizeof *endings; k++)
-        if (has_ending(path, endings[k].ending)) language = endings[k].language;
-    if (!language)
+    const char *usual = NULL;
+    for (size_t k = 0; k < sizeof endings / sizeof *endings; k++)
+        if (has_ending(path, endings[k].ending)) usual = endings[k].language;
+    if (!usual)
         return error_set(err, "%s: a drawing is exported as .svg, .gcode or .hpgl, or numbers with --dataset",
                          path);
-    bool ok = drawn_read(result, &drawn, err) && drawn_write(&drawn, language, path, err);
+    bool ok = drawn_read(result, &drawn, err) && drawn_write(&drawn, language ? language : usual, path, err);
     drawn_clear(&drawn);
     return ok;
 }
@@ -230,19 +231,45 @@ typedef struct Export {
     int frame;
 } Export;
 
-static bool export_result(const char *input, const Export *what, Error *err)
+/* The scene may be made of meshes, numbers and drawings, too. */
+static bool check_source(Result *result, const char *input, const char *output, Error *err)
 {
-    Result *result = result_open(input, err);
-    if (!result) return false;
-    bool ok = what->dataset       ? export_dataset(result, what->dataset, what->output, err)
-              : drawn_has(result) ? export_drawing(result, what->language, what->output, err)
-                                  : export_frame(result, what->frame, what->output, err);
-    result_close(result);
-    return ok || error_prefix(err, "%s", input);
+    Scene scene;
+    YamlFile *file;
+    verb_result_scene(result, &file, &scene);
+    bool ok = outputs_check_source(&scene, input, output, err);
+    yaml_clear(&scene_table, &scene);
+    yaml_destroy(file);
+    return ok;
 }
 
-/* As the run itself would write it. */
-static bool result_def(Journal *journal, ResultDef *def, Error *err)
+/* A scene's path is not in its result: what is written is at least never named like one. */
+static bool check_ending(const char *path, const char *what, const char *ending, Error *err)
+{
+    return has_ending(path, ending) || error_set(err, "%s: %s exported as %s", path, what, ending);
+}
+
+static bool write_export(Result *result, const Export *what, Error *err)
+{
+    const char *path = what->output;
+    if (what->dataset)
+        return check_ending(path, "numbers are", ".csv", err) && export_dataset(result, what->dataset, path, err);
+    if (drawn_has(result)) return export_drawing(result, what->language, path, err);
+    return check_ending(path, "a mesh is", ".obj", err) && export_frame(result, what->frame, path, err);
+}
+
+static RunStatus export_result(const char *input, const Export *what, Error *err)
+{
+    Result *result = result_open(input, err);
+    if (!result) return RUN_REFUSED;
+    bool ok = check_source(result, input, what->output, err) && replace_check(what->output, err) &&
+              (write_export(result, what, err) || error_prefix(err, "%s", input));
+    result_close(result);
+    return ok ? RUN_DONE : RUN_CANNOT_WRITE;
+}
+
+/* As the run itself would write it; false where that would be over a file that its scene is made of. */
+static bool result_def(Journal *journal, const char *input, const char *output, ResultDef *def, Error *err)
 {
     Array text;
     Scene scene;
@@ -252,28 +279,32 @@ static bool result_def(Journal *journal, ResultDef *def, Error *err)
     if (!text.data) return true;
     if (verb_stored_scene(&text, &file, &scene))
         def->double_frames = scene.output.precision == OUTPUT_DOUBLE;
+    bool ok = outputs_check_source(&scene, input, output, err);
     yaml_clear(&scene_table, &scene);
     yaml_destroy(file);
     array_clear(&text);
-    return true;
+    return ok;
 }
 
-static bool export_journal(const char *input, const char *path, Error *err)
+static RunStatus export_journal(const char *input, const char *path, Error *err)
 {
-    if (!has_ending(path, ".vtkhdf"))
-        return error_set(err, "%s: a run is exported as .vtkhdf, and that as other files", path);
+    if (!has_ending(path, ".vtkhdf")) {
+        error_set(err, "%s: a run is exported as .vtkhdf, and that as other files", path);
+        return RUN_CANNOT_WRITE;
+    }
     char *sidecar = result_sidecar(path);
     bool free = outputs_check_source(NULL, input, sidecar, err) && replace_check(sidecar, err);
     mem_free(sidecar);
-    Journal *journal = free ? journal_open(input, JOURNAL_READ, err) : NULL;
-    if (!journal) return false;
+    if (!free) return RUN_CANNOT_WRITE;
+    Journal *journal = journal_open(input, JOURNAL_READ, err);
+    if (!journal) return RUN_REFUSED;
     int frames;
     ResultDef def;
     bool ok = journal_count(journal, "frame", &frames, err) &&
               (!journal_is_finished(journal) || frames > 0 ||
                error_set(err, "%s: the run has finished; its frames are in its result", input));
-    ok = ok && result_def(journal, &def, err) && result_write(journal, path, def, NULL, err);
-    return journal_close(journal, ok ? err : NULL) && ok;
+    ok = ok && result_def(journal, input, path, &def, err) && result_write(journal, path, def, NULL, err);
+    return journal_close(journal, ok ? err : NULL) && ok ? RUN_DONE : RUN_CANNOT_WRITE;
 }
 
 int verb_export(int argc, char **argv)
@@ -304,7 +335,8 @@ int verb_export(int argc, char **argv)
     if (!what.output || optind != argc - 1) return verb_usage(usage);
     Error err;
     const char *input = argv[optind];
-    bool ok = outputs_check_source(NULL, input, what.output, &err) &&
-              (has_ending(input, ".run") ? export_journal(input, what.output, &err) : export_result(input, &what, &err));
-    return ok ? RUN_DONE : verb_fail(RUN_CANNOT_WRITE, err.text);
+    if (!outputs_check_source(NULL, input, what.output, &err)) return verb_fail(RUN_CANNOT_WRITE, err.text);
+    RunStatus status = has_ending(input, ".run") ? export_journal(input, what.output, &err)
+                                                 : export_result(input, &what, &err);
+    return status == RUN_DONE ? RUN_DONE : verb_fail(status, err.text);
 }

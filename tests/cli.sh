@@ -26,6 +26,8 @@ expect 0 "$program" export beam.run -o again.vtkhdf
 cmp -s beam.vtkhdf again.vtkhdf || { echo "the journal gives another result"; bad=1; }
 for ending in svg pdf png; do expect 0 "$program" picture beam.vtkhdf -o p.$ending --field energy_bending --view 0,-1,0.3; exists p.$ending; done
 expect 4 "$program" picture beam.vtkhdf -o p.png --field nothing
+for view in 0,0,0 nan,0,1 0,-inf,1 1e300,0,0 0,1e-300,0; do expect 2 "$program" picture beam.vtkhdf -o view.png --view=$view; says "not all 0"; done
+[ ! -e view.png ] || { echo "a picture from nowhere"; bad=1; }
 expect 4 "$program" run "$scene" -o no/such/folder; says "cannot be"
 expect 1 "$program" run "$scene" -o short --set solver.max_iterations=2 --set "load_steps=1"; says "short.vtkhdf"
 expect 0 "$program" info short.vtkhdf;          says "state/x"
@@ -56,8 +58,19 @@ same own.yaml "$scene"; same own.xdmf "$scene"; same beam.vtkhdf keep.vtkhdf; sa
 sed "s/{shape: strip.*}/star.obj/; s/{group: root, clamp: true}/{box: [[-1, -1, -1], [1e-9, 1, 1]], clamp: true}/" own.yaml > star.yaml
 expect 4 "$program" mesh star.yaml; says "the scene is made of it"
 expect 0 "$program" run star.yaml --quiet --no-picture
+expect 4 "$program" export star.vtkhdf -o star.obj; says "the scene is made of it"
+expect 4 "$program" export star.vtkhdf -o ./star.obj --dataset state/x; says "the scene is made of it"
+mkdir aside; (cd aside; expect 4 "$program" export ../star.vtkhdf -o ../star.obj; says "the scene is made of it"; exit $bad) || bad=1
+expect 4 "$program" export star.vtkhdf -o star.yaml --dataset state/x; says "numbers are exported as .csv"
+expect 4 "$program" export star.vtkhdf -o star.yaml; says "a mesh is exported as .obj"
+grep -q "star.obj" star.yaml || { echo "the scene is written over"; bad=1; }
 ln -s star.obj star.svg
 expect 4 "$program" picture star.vtkhdf -o star.svg; says "the scene is made of it"
+echo junk > junk.vtkhdf; echo junk > junk.run
+for input in missing.vtkhdf junk.vtkhdf; do # what cannot be read is refused by every verb alike
+    expect 3 "$program" info $input; expect 3 "$program" picture $input -o p.png; expect 3 "$program" export $input -o o.obj
+done
+for input in missing.run junk.run; do expect 3 "$program" info $input; expect 3 "$program" export $input -o o.vtkhdf; done
 same star.obj keep.obj
 
 # What cannot be printed is said, and is no success.

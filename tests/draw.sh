@@ -29,6 +29,7 @@ grep -q "^G1 Z-1 F40$" lift9.gcode || { echo "no z that takes its time"; bad=1; 
 expect 0 "$program" export lift9.vtkhdf -o c.gcode; same lift9.gcode c.gcode
 expect 0 "$program" export lift9.vtkhdf -o c.gcode --plotter gcode_servo; same s.nc c.gcode
 expect 4 "$program" export out/a.vtkhdf -o c.dwg; says "exported as .svg"
+expect 4 "$program" export out/a.vtkhdf -o c.yaml --plotter gcode; says "exported as .svg"
 expect 0 "$program" picture out/a.vtkhdf -o c.pdf --width 800; exists c.pdf
 expect 4 "$program" picture out/a.vtkhdf -o c.png --frame 0; says "no frames"
 expect 0 "$program" run "$scene" --quiet --no-picture -o d --set spline.rounds=0
@@ -87,6 +88,15 @@ expect 4 "$program" run picture.yaml --set output.png=picture.gif; says "must be
 expect 0 "$program" run picture.yaml --set spline.image="$work/picture.png"; says "picture: picture-picture.png"
 expect 0 "$program" picture picture.vtkhdf; same picture.png before.png; exists picture-picture.png
 expect 4 "$program" run picture.yaml --no-picture -o y --set output.gcode=./picture.yaml; says "it is read here"
+# Nor by the drawings of iterations.
+cp dot.pgm it-000005.svg
+expect 4 "$program" run picture.yaml --no-picture -o it --set output.every=1000 --set spline.image="$work/it-000005.svg"; says "by an iteration's drawing"
+expect 4 "$program" run picture.yaml --no-picture -o "$work/it" --set output.every=5 --set output.svg=it-000010.svg; says "it-000010.svg' would be written over"
+expect 4 "$program" run picture.yaml -o it --set output.every=5 --set output.png=it-000010.svg; says "would be written over"
+same it-000005.svg dot.pgm
+for other in "output.every=0" "output.svg=it-5.svg" "output.svg=at-000010.svg"; do
+    expect 0 "$program" run picture.yaml --quiet --no-picture -o it --force --set output.every=5 --set $other
+done
 expect 2 "$program" run picture.yaml --threads 2x
 
 # Where ink is asked for there are strokes: a narrow strip, no direction anywhere, too few or too long strokes at the start.
