@@ -461,7 +461,7 @@ static bool read_msh(Msh *msh)
 bool mesh_read_msh(Scan *scan, MeshReader *reader)
 {
     Msh msh = {.scan = scan, .reader = reader};
-    bool ok = read_msh(&msh);
+    bool ok = scan_check_text(scan) && read_msh(&msh);
     mem_free(msh.nodes);
     mem_free(msh.names);
     mem_free(msh.entities);

@@ -277,7 +277,7 @@ static bool check_end(Ply *ply)
 bool mesh_read_ply(Scan *scan, MeshReader *reader)
 {
     Ply ply = {.scan = scan, .reader = reader};
-    bool ok = read_header(scan, &ply);
+    bool ok = read_header(scan, &ply) && (ply.format > FORMAT_ASCII || scan_check_text(scan));
     for (int e = 0; ok && e < ply.element_count; e++) ok = read_entries(&ply, &ply.elements[e]);
     ok = ok && check_end(&ply) && reader_finish(reader, scan, 0);
     if (ply.format > FORMAT_ASCII) reader_drop_lines(reader);

@@ -116,7 +116,7 @@ static bool read_words(Scan *scan, MeshReader *reader, Word *solid, bool *open)
 static bool read_ascii(Scan *scan, MeshReader *reader)
 {
     Word solid = {0};
-    bool ok = true, open = false;
+    bool ok = scan_check_text(scan), open = false;
     while (ok && scan_line(scan)) ok = read_words(scan, reader, &solid, &open);
     return ok && (!open || error_set(scan->err, "%s: the file ends before endsolid", scan->path));
 }
