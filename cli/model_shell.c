@@ -12,6 +12,14 @@
 static bool add_motion(Model *model, const Build *b, Key at, const FixScene *fix, const bool *axis,
                        Indices vertices)
 {
+    for (int i = 0; i < 3; i++) {
+        const char *own = (const char *[]){"x", "y", "z"}[i];
+        if (!axis[i] && strcmp(fix->move[i], "0") && strcmp(fix->move[i], own))
+            return yaml_refuse(b->file, key("%s[%d]", at.text, i).text,
+                               "axes is '%s', so nothing is moved along %s: its expression must be 0 or %s, "
+                               "not \"%s\"",
+                               fix->axes, own, own, fix->move[i]);
+    }
     Motion motion = {.vertices = vertices, .axis = {axis[0], axis[1], axis[2]}};
     motion.formula = build_formula(b, at, fix->move, 3, NULL, 0, build_variables_time);
     if (!motion.formula) return false;

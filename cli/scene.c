@@ -236,7 +236,8 @@ static const YamlTable fix_table = {
         {YAML_BOOL(FixScene, clamp), .doc = "holds the slope of the edges between these vertices too"},
         {YAML_TEXTS(FixScene, move), .when = "/job: equilibrium, simulate, trajectory", .min_count = 3,
          .max_count = 3,
-         .doc = "prescribed motion: three expressions, in m, of the rest position x, y, z, r and the time t"},
+         .doc = "prescribed motion: three expressions, in m, of the rest position x, y, z, r and the time t; "
+                "0 along what is not among the axes"},
         {0}}};
 
 static const YamlTable load_table = {
