@@ -225,30 +225,47 @@ bool build_face_numbers(const Build *b, Key at, const NumberScene *scene, double
            check_range(b, at, values, count, false);
 }
 
-/* Rows v0, v1, value; vertices in the file's numbers. */
+/* The edge that a row names by its vertices, in the file's numbers; -1 after a refusal. */
+static int fold_edge(const Build *b, Key at, const char *path, const Table *table, int row)
+{
+    const double *line = table->values + 3 * row;
+    int v[2] = {-1, -1}, edge = -1;
+    Error err;
+    bool ok = true;
+    for (int i = 0; ok && i < 2; i++) {
+        ok = line[i] == floor(line[i]) && fabs(line[i]) < 1e9;
+        if (!ok)
+            yaml_refuse(b->file, at.text, "%s:%d: %g is no vertex", path, table->line[row], line[i]);
+        else if (!(ok = mesh_vertex(b->mesh, (int)line[i], &v[i], &err)))
+            yaml_refuse(b->file, at.text, "%s:%d: %s", path, table->line[row], err.text);
+    }
+    if (ok && (edge = mesh_edge(b->mesh, v[0], v[1])) < 0)
+        yaml_refuse(b->file, at.text, "%s:%d: vertices %g and %g share no edge", path, table->line[row],
+                    line[0], line[1]);
+    return edge;
+}
+
+/* Rows v0, v1, value. */
 static bool fold_table(const Build *b, Key at, const char *path, double *values)
 {
     Table table = {0};
     Error err;
+    int *owner = mem_alloc((size_t)b->mesh->edge_count, sizeof *owner); /* the edge's line; 0: none */
     bool ok =
         table_read(path, "v0, v1, value", &table, &err) || yaml_refuse(b->file, at.text, "%s", err.text);
     for (int e = 0; e < b->mesh->edge_count; e++) values[e] = 1;
     for (int row = 0; ok && row < table.rows; row++) {
-        const double *line = table.values + 3 * row;
-        int v[2] = {-1, -1};
-        for (int i = 0; ok && i < 2; i++) {
-            ok = line[i] == floor(line[i]) && fabs(line[i]) < 1e9;
-            if (!ok)
-                yaml_refuse(b->file, at.text, "%s:%d: %g is no vertex", path, table.line[row], line[i]);
-            else if (!(ok = mesh_vertex(b->mesh, (int)line[i], &v[i], &err)))
-                yaml_refuse(b->file, at.text, "%s:%d: %s", path, table.line[row], err.text);
-        }
-        int edge = ok ? mesh_edge(b->mesh, v[0], v[1]) : -1;
-        if (ok && edge < 0)
-            ok = yaml_refuse(b->file, at.text, "%s:%d: vertices %g and %g share no edge", path,
-                             table.line[row], line[0], line[1]);
-        if (ok) values[edge] = line[2];
+        int edge = fold_edge(b, at, path, &table, row);
+        double value = table.values[3 * row + 2];
+        ok = edge >= 0;
+        if (ok && owner[edge] && values[edge] != value)
+            ok = yaml_refuse(b->file, at.text,
+                             "%s:%d: the edge of vertices %g and %g is %g here and %g in line %d", path,
+                             table.line[row], table.values[3 * row], table.values[3 * row + 1], value,
+                             values[edge], owner[edge]);
+        if (ok) values[edge] = value, owner[edge] = table.line[row];
     }
+    mem_free(owner);
     table_clear(&table);
     return ok;
 }

@@ -12,6 +12,14 @@
 static bool add_motion(Model *model, const Build *b, Key at, const FixScene *fix, const bool *axis,
                        Indices vertices)
 {
+    for (int i = 0; i < 3; i++) {
+        const char *own = (const char *[]){"x", "y", "z"}[i];
+        if (!axis[i] && strcmp(fix->move[i], "0") && strcmp(fix->move[i], own))
+            return yaml_refuse(b->file, key("%s[%d]", at.text, i).text,
+                               "axes is '%s', so nothing is moved along %s: its expression must be 0 or %s, "
+                               "not \"%s\"",
+                               fix->axes, own, own, fix->move[i]);
+    }
     Motion motion = {.vertices = vertices, .axis = {axis[0], axis[1], axis[2]}};
     motion.formula = build_formula(b, at, fix->move, 3, NULL, 0, build_variables_time);
     if (!motion.formula) return false;
@@ -25,15 +33,17 @@ static bool add_motion(Model *model, const Build *b, Key at, const FixScene *fix
 
 static bool fix_entry(Model *model, const Build *b, Key at, const FixScene *fix)
 {
-    bool axis[3] = {false};
-    for (const char *c = fix->axes; *c; c++) {
-        if (!strchr("xyz", *c))
-            return yaml_refuse(b->file, at.text, "axes is '%s'; it must be some of xyz", fix->axes);
-        axis[*c - 'x'] = true;
+    bool axis[3] = {false}, ok = *fix->axes != 0;
+    for (const char *c = fix->axes; ok && *c; c++) {
+        ok = strchr("xyz", *c) && !axis[*c - 'x'];
+        if (ok) axis[*c - 'x'] = true;
     }
+    if (!ok)
+        return yaml_refuse(b->file, at.text, "axes is '%s'; it must be some of xyz, each once at most",
+                           fix->axes);
     Indices found = {0};
     SelectionScene selection = SELECTION_OF(fix);
-    bool ok = build_selection(b, at, &selection, &found);
+    ok = build_selection(b, at, &selection, &found);
     for (int i = 0; i < 3 * found.count; i++)
         if (axis[i % 3]) shell_fix(model->shell, found.items[i / 3], i % 3);
     if (ok && fix->clamp) {

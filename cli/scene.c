@@ -232,11 +232,13 @@ static const YamlTable fix_table = {
     .doc = "Vertices that are held. A vertex must satisfy all conditions that are given.",
     .fields = (const YamlField[]){
         SELECTION_ROWS(FixScene),
-        {YAML_TEXT(FixScene, axes), .fallback = "xyz", .doc = "the coordinates that are held: some of xyz"},
+        {YAML_TEXT(FixScene, axes), .fallback = "xyz",
+         .doc = "the coordinates that are held: some of xyz, each once at most"},
         {YAML_BOOL(FixScene, clamp), .doc = "holds the slope of the edges between these vertices too"},
         {YAML_TEXTS(FixScene, move), .when = "/job: equilibrium, simulate, trajectory", .min_count = 3,
          .max_count = 3,
-         .doc = "prescribed motion: three expressions, in m, of the rest position x, y, z, r and the time t"},
+         .doc = "prescribed motion: three expressions, in m, of the rest position x, y, z, r and the time t; "
+                "0 along what is not among the axes"},
         {0}}};
 
 static const YamlTable load_table = {

@@ -394,13 +394,35 @@ static bool read_format(Msh *msh)
                                   "`meshio ascii FILE`)");
 }
 
+/* $EndNodes is the end of $Nodes. */
+static bool ends_section(Word word, Word name)
+{
+    return word.length == name.length + 3 && word_begins(word, "$End") &&
+           !memcmp(word.text + 4, name.text + 1, (size_t)name.length - 1);
+}
+
 static bool skip_section(Msh *msh, Word name)
 {
     char section[64];
     snprintf(section, sizeof section, "%.*s", name.length > 60 ? 60 : name.length, name.text);
     for (Word word; line(msh, section);)
-        if (scan_word(msh->scan, &word) && word_begins(word, "$End")) return true;
+        if (scan_word(msh->scan, &word) && ends_section(word, name)) return true;
     return false;
+}
+
+/* Where all that a section counts has been read. */
+static bool end_section(Msh *msh, Word name)
+{
+    Word word;
+    char section[64];
+    snprintf(section, sizeof section, "%.*s", name.length > 60 ? 60 : name.length, name.text);
+    if (!line(msh, section)) return false;
+    scan_word(msh->scan, &word);
+    return ends_section(word, name) ||
+           scan_refuse_at(msh->scan, word.text,
+                          "'%.*s' where $End%.*s should be: there is more than the section counts",
+                          word.length > 40 ? 40 : word.length, word.text,
+                          name.length > 40 ? 40 : name.length - 1, name.text + 1);
 }
 
 static bool read_section(Msh *msh, Word name)
@@ -415,7 +437,7 @@ static bool read_section(Msh *msh, Word name)
     if ((read == read_names || read == read_entities) && msh->reader->mesh->face_count)
         return scan_refuse(msh->scan, "$PhysicalNames and $Entities must come before $Elements");
     if (read == read_names && msh->names) return scan_refuse(msh->scan, "a second $PhysicalNames section");
-    return (!read || read(msh)) && skip_section(msh, name);
+    return read ? read(msh) && end_section(msh, name) : skip_section(msh, name);
 }
 
 static bool read_msh(Msh *msh)
@@ -425,7 +447,7 @@ static bool read_msh(Msh *msh)
         if (msh->scan->line == 0) msh->scan->line = 1;
         return scan_refuse(msh->scan, "a .msh file begins with $MeshFormat");
     }
-    if (!read_format(msh) || !skip_section(msh, word)) return false;
+    if (!read_format(msh) || !end_section(msh, word)) return false;
     while (scan_line(msh->scan)) {
         scan_word(msh->scan, &word);
         if (word.text[0] != '$')
@@ -439,7 +461,7 @@ static bool read_msh(Msh *msh)
 bool mesh_read_msh(Scan *scan, MeshReader *reader)
 {
     Msh msh = {.scan = scan, .reader = reader};
-    bool ok = read_msh(&msh);
+    bool ok = scan_check_text(scan) && read_msh(&msh);
     mem_free(msh.nodes);
     mem_free(msh.names);
     mem_free(msh.entities);

@@ -115,7 +115,7 @@ static bool read_names(Scan *scan, Names *names)
 bool mesh_read_obj(Scan *scan, MeshReader *reader)
 {
     Names names = {0};
-    bool ok = true;
+    bool ok = scan_check_text(scan);
     obj_begin(scan);
     while (ok && scan_line(scan)) {
         Word word;

@@ -265,12 +265,21 @@ static bool read_entries(Ply *ply, const Element *element)
     return true;
 }
 
+/* After the last element: a header that counts too few would lose the rest. */
+static bool check_end(Ply *ply)
+{
+    Scan *scan = ply->scan;
+    bool more = ply->format == FORMAT_ASCII ? scan_line(scan) : scan->next < scan->end;
+    return !more || scan_refuse(scan, "there is more than the header's elements count%s",
+                                ply->format == FORMAT_ASCII ? "" : ": the file goes on behind them");
+}
+
 bool mesh_read_ply(Scan *scan, MeshReader *reader)
 {
     Ply ply = {.scan = scan, .reader = reader};
-    bool ok = read_header(scan, &ply);
+    bool ok = read_header(scan, &ply) && (ply.format > FORMAT_ASCII || scan_check_text(scan));
     for (int e = 0; ok && e < ply.element_count; e++) ok = read_entries(&ply, &ply.elements[e]);
-    ok = ok && reader_finish(reader, scan, 0);
+    ok = ok && check_end(&ply) && reader_finish(reader, scan, 0);
     if (ply.format > FORMAT_ASCII) reader_drop_lines(reader);
     return ok;
 }

@@ -55,6 +55,12 @@ static bool read_binary(Scan *scan, MeshReader *reader)
             "%s: neither an ASCII STL file, which begins with solid, nor a whole binary one: there are "
             "%zu of its %u facets",
             scan->path, there, count);
+    size_t behind = length - HEADER - FACET * (size_t)count;
+    if (behind > 0)
+        return error_set(scan->err,
+                         "%s: neither an ASCII STL file, which begins with solid, nor a whole binary one: "
+                         "%zu bytes follow the %u facets that it counts",
+                         scan->path, behind, count);
     bool ok = count < READER_MAX_INDEX / 3 || error_set(scan->err, "%s: more facets than fit", scan->path);
     for (uint32_t f = 0; ok && f < count; f++)
         ok = read_facet(scan, reader, scan->next + HEADER + FACET * (size_t)f);
@@ -110,7 +116,7 @@ static bool read_words(Scan *scan, MeshReader *reader, Word *solid, bool *open)
 static bool read_ascii(Scan *scan, MeshReader *reader)
 {
     Word solid = {0};
-    bool ok = true, open = false;
+    bool ok = scan_check_text(scan), open = false;
     while (ok && scan_line(scan)) ok = read_words(scan, reader, &solid, &open);
     return ok && (!open || error_set(scan->err, "%s: the file ends before endsolid", scan->path));
 }

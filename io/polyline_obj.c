@@ -198,7 +198,7 @@ bool polyline_read_obj(PolylineReader *reader, const char *text, size_t length)
     Scan scan = scan_start(reader->path, text, length, 0, "", reader->err);
     obj_begin(&scan);
     Scan again = scan;
-    ok = ok && read_vertices(&scan, &vertices, &lines, &faces);
+    ok = ok && scan_check_text(&scan) && read_vertices(&scan, &vertices, &lines, &faces);
     if (ok && faces && !lines)
         ok = error_set(reader->err, "%s: there are faces in it and no lines", reader->path);
     ok = ok && read_lines(&again, &obj) && find_ends(&obj, reader);

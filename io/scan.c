@@ -71,6 +71,17 @@ Scan scan_start(const char *path, const char *text, size_t length, char comment,
                   .err = err};
 }
 
+bool scan_check_text(const Scan *scan)
+{
+    Scan at = *scan;
+    const char *zero = at.next < at.end ? memchr(at.next, 0, (size_t)(at.end - at.next)) : NULL;
+    if (!zero) return true;
+    at.line += 1 + at.joined;
+    for (at.start = at.next; (at.next = memchr(at.start, '\n', (size_t)(zero - at.start))); at.line++)
+        at.start = at.next + 1;
+    return scan_refuse_at(&at, zero, "a byte that is zero (NUL): no text has one; the file is damaged");
+}
+
 /* The end of the line that begins there: its newline, or the end of the text. */
 static const char *line_end(const Scan *scan, const char *start)
 {
@@ -185,7 +196,7 @@ bool word_integer(Word word, long *value)
     if (!copy_word(word, text)) return false;
     errno = 0;
     *value = strtol(text, &end, 10);
-    return *end == 0 && errno == 0;
+    return end == text + word.length && errno == 0;
 }
 
 bool word_number(Word word, double *value)
@@ -193,7 +204,7 @@ bool word_number(Word word, double *value)
     char text[NUMBER_LENGTH + 1], *end;
     if (!copy_word(word, text) || strpbrk(text, "xXnN")) return false;
     *value = strtod(text, &end);
-    return *end == 0 && isfinite(*value);
+    return end == text + word.length && isfinite(*value);
 }
 
 bool scan_refuse(const Scan *scan, const char *format, ...)

@@ -36,6 +36,9 @@ bool scan_skip_mark(const char *path, const char **text, size_t *length, Error *
 Scan scan_start(const char *path, const char *text, size_t length, char comment, const char *separators,
                 Error *err);
 
+/* Refuses a NUL byte in what is still to be read: as the end of a C text it would cut a word in silence. */
+bool scan_check_text(const Scan *scan);
+
 /* The next line that has words on it; false at the end. */
 bool scan_line(Scan *scan);
 

@@ -212,6 +212,7 @@ bool table_parse(const char *path, const char *text, long length, const char *na
     *table = (Table){.columns = count_names(names)};
     bool ok = scan_skip_mark(path, &text, &left, err);
     Reader r = {.scan = scan_start(path, text, left, '#', "", err), .table = table, .names = names};
+    ok = ok && scan_check_text(&r.scan);
     while (ok && scan_line(&r.scan)) ok = read_row(&r);
     if (ok && names) ok = table_check_header(table, path, names, err);
     if (ok && table->rows == 0) ok = error_set(err, "%s: there are no numbers in it", path);
