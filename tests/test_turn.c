@@ -231,7 +231,7 @@ static void test_strips_buckle(void **state)
             double lowest, flat = height(&b);
             print_message("L/h %4.0f, load %5.2f: %s after %3d iterations, %.4f m out of plane\n", length / thicknesses[i],
                           loads[k], newton_status_name(info.newton.status), info.newton.iterations, flat);
-            assert_true(info.newton.status == NEWTON_CONVERGED && info.steps == 1 && info.newton.iterations <= 150);
+            assert_true(info.newton.status == NEWTON_CONVERGED && info.steps == 1 && info.newton.iterations <= 200); /* 3 to 148; other roundings, other ways */
             assert_true(loads[k] < 1 ? flat < 1e-9 : flat > 0.005);
             assert_true(eigen_lowest(b.sys, &(Point){.x = b.x, .p = b.p}, 1, &lowest, NULL) && lowest > 0);
             free_body(&b);
