@@ -12,6 +12,7 @@ root=$(pwd)
 
 packages="gcc cmake make pkg-config libsuitesparse-dev libopenblas-dev libnlopt-dev libmuparser-dev libcairo2-dev
           libyaml-dev libsqlite3-dev libhdf5-dev libwebp-dev libjpeg-dev zlib1g-dev libexpat1-dev fonts-dejavu-core libcmocka-dev"
+tools="python3-h5py" # of tests that are skipped without
 
 # Runs a command without a word, unless it fails.
 quietly() {
@@ -19,9 +20,9 @@ quietly() {
     rm -f build.log
 }
 
-setup() {
+setup() { # packages
     missing=""
-    for package in $packages; do
+    for package in "$@"; do
         dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q 'ok installed' || missing="$missing $package"
     done
     [ -n "$missing" ] || return 0
@@ -34,7 +35,8 @@ setup() {
 }
 
 build() {
-    setup
+    # shellcheck disable=SC2086
+    setup $packages
     quietly cmake --preset release
     if [ "${1:-}" = quiet ]; then
         [ -x build/slender ] || echo "building slender: a minute, this once"
@@ -47,7 +49,7 @@ build() {
 command=${1:-help}
 [ $# -eq 0 ] || shift
 case $command in
-setup) setup ;;
+setup) setup $packages ;;
 build) build ;;
 run)
     build quiet
@@ -60,6 +62,7 @@ bench)
     ;;
 test)
     build
+    (setup $tools) || echo "tests that need them are skipped"
     ctest --test-dir build --output-on-failure ${1:+-R "$1"}
     ;;
 *) sed -n '2,7s/^# \{0,1\}//p' do ;;
