@@ -17,9 +17,17 @@ static void compare(Worst *worst, Pack exact, Pack approximate, int lanes)
     }
 }
 
+/* 0 where both are 0: nothing is said, and nothing depends on it. */
 static double ratio(Worst worst)
 {
     return worst.error == 0 ? 0 : worst.error / worst.size;
+}
+
+/* A term must have something to check. */
+static TermError errors_of(double energy, Worst gradient, Worst hessian)
+{
+    bool idle = energy == 0 && gradient.size == 0 && hessian.size == 0;
+    return (TermError){.gradient = idle ? INFINITY : ratio(gradient), .hessian = ratio(hessian)};
 }
 
 /* Central difference of fourth order from values at -2h, -h, h, 2h. */
@@ -28,101 +36,208 @@ static Pack difference(const Pack value[4], double h)
     return (8 * (value[2] - value[1]) - (value[3] - value[0])) / (12 * h);
 }
 
-static const double stencil[4] = {-2, -1, 1, 2};
+static const double stencil[4] = {-2, -1, 1, 2}, STEP = 1e-3;
 
-typedef struct Pair {
+/* A vector on which a term may depend beside its x, and a direction in it. */
+typedef struct Line {
+    int size;
+    double *from, *along, *to; /* to = from + a along */
+} Line;
+
+static Line line_create(const double *from, int size)
+{
+    size_t n = (size_t)size;
+    return (Line){size, mem_copy(from, n, sizeof *from), mem_alloc(n, sizeof *from),
+                  mem_copy(from, n, sizeof *from)};
+}
+
+static void line_move(const Line *line, double a)
+{
+    for (int i = 0; i < line->size; i++) line->to[i] = line->from[i] + a * line->along[i];
+}
+
+static void line_clear(Line *line)
+{
+    mem_free(line->from);
+    mem_free(line->along);
+    mem_free(line->to);
+}
+
+enum { PARAMETERS, START_X, START_V, LINES };
+
+typedef struct Check {
     const Term *term;
-    const Point *at;
+    Random *random;
+    Line lines[LINES];
+    Point at; /* of the lines where they are now */
     int pack, lanes, size;
     Pack x[TERM_MAX_DOF], g[TERM_MAX_DOF], H[MAX_LOWER];
-} Pair;
+    double energy; /* largest */
+    Worst gradient, hessian, forward, adjoint, prev_forward, prev;
+} Check;
 
-static void gather(Pair *p, int count)
+/* The pack's own entries of a whole vector. */
+static void gather(const Check *c, const double *vector, Pack *to)
 {
+    int count = c->term->ops->count(c->term->self);
     for (int l = 0; l < PACK_LANES; l++) {
-        int e = p->pack * PACK_LANES + l, dof[TERM_MAX_DOF];
-        p->term->ops->dofs(p->term->self, e < count ? e : count - 1, dof);
-        for (int i = 0; i < p->size; i++) p->x[i][l] = p->at->x[dof[i]];
+        int e = c->pack * PACK_LANES + l, dof[TERM_MAX_DOF];
+        c->term->ops->dofs(c->term->self, e < count ? e : count - 1, dof);
+        for (int i = 0; i < c->size; i++) to[i][l] = vector[dof[i]];
     }
-    p->lanes = count - p->pack * PACK_LANES < PACK_LANES ? count - p->pack * PACK_LANES : PACK_LANES;
 }
 
-static void check_dof(Pair *p, int i, double h, Worst *gradient, Worst *hessian)
+static void check_dof(Check *c, int i, double h)
 {
-    const Term *term = p->term;
-    Pack keep = p->x[i], E[4], g[4][TERM_MAX_DOF];
+    const Term *term = c->term;
+    Pack keep = c->x[i], E[4], g[4][TERM_MAX_DOF];
     for (int k = 0; k < 4; k++) {
-        p->x[i] = keep + stencil[k] * h;
-        E[k] = term->ops->eval(term->self, p->pack, p->at, p->x, g[k], NULL);
+        c->x[i] = keep + stencil[k] * h;
+        E[k] = term->ops->eval(term->self, c->pack, &c->at, c->x, g[k], NULL);
     }
-    p->x[i] = keep;
-    compare(gradient, p->g[i], difference(E, h), p->lanes);
-    for (int j = 0; j < p->size; j++) {
+    c->x[i] = keep;
+    compare(&c->gradient, c->g[i], difference(E, h), c->lanes);
+    for (int j = 0; j < c->size; j++) {
         Pack column[4];
         for (int k = 0; k < 4; k++) column[k] = g[k][j];
-        Pack exact = p->H[i > j ? TERM_LOWER(i, j) : TERM_LOWER(j, i)];
-        compare(hessian, exact, difference(column, h), p->lanes);
+        Pack exact = c->H[i > j ? TERM_LOWER(i, j) : TERM_LOWER(j, i)];
+        compare(&c->hessian, exact, difference(column, h), c->lanes);
     }
 }
 
-static void check_params(Pair *p, const Params *params, const double *dp, Random *random, Worst *forward, Worst *adjoint)
+/* The gradient's change along some of the lines against r; of w, chosen at random, returns w.r. */
+static double check_forward(Check *c, int first, int last, const Pack *r, Pack *w, Worst *forward)
 {
-    const TermOps *ops = p->term->ops;
-    if (!ops->param_forward) return;
-    double *moved = mem_copy(p->at->p, (size_t)params->size, sizeof *moved);
-    double *product = mem_alloc((size_t)params->size, sizeof *product);
-    Pack r[TERM_MAX_DOF], w[TERM_MAX_DOF], g[4][TERM_MAX_DOF];
-    double h = 1e-3;
-    Point at = *p->at;
-    at.p = moved;
+    Pack g[4][TERM_MAX_DOF];
+    double product = 0;
     for (int k = 0; k < 4; k++) {
-        for (int i = 0; i < params->size; i++) moved[i] = p->at->p[i] + stencil[k] * h * dp[i];
-        ops->eval(p->term->self, p->pack, &at, p->x, g[k], NULL);
+        for (int n = first; n <= last; n++) line_move(&c->lines[n], stencil[k] * STEP);
+        c->term->ops->eval(c->term->self, c->pack, &c->at, c->x, g[k], NULL);
     }
-    ops->param_forward(p->term->self, p->pack, p->at, p->x, dp, r);
-    double left = 0, right = 0;
-    for (int i = 0; i < p->size; i++) {
-        Pack column[4];
-        for (int k = 0; k < 4; k++) column[k] = g[k][i];
-        compare(forward, r[i], difference(column, h), p->lanes);
-        for (int l = 0; l < PACK_LANES; l++) w[i][l] = random_signed(random);
-        left += pack_sum(w[i] * r[i], p->lanes);
+    for (int n = first; n <= last; n++) line_move(&c->lines[n], 0);
+    for (int i = 0; i < c->size; i++) {
+        compare(forward, r[i], difference((Pack[]){g[0][i], g[1][i], g[2][i], g[3][i]}, STEP), c->lanes);
+        for (int l = 0; l < PACK_LANES; l++) w[i][l] = random_signed(c->random);
+        product += pack_sum(w[i] * r[i], c->lanes);
     }
-    ops->param(p->term->self, p->pack, p->lanes, p->at, p->x, w, product);
-    for (int i = 0; i < params->size; i++) right += product[i] * dp[i];
-    compare(adjoint, pack_set(left), pack_set(right), 1);
-    mem_free(moved);
+    return product;
+}
+
+/* Functions that are not there say that nothing depends on it: their products are 0. */
+static void check_params(Check *c)
+{
+    const TermOps *ops = c->term->ops;
+    const Line *p = &c->lines[PARAMETERS];
+    if (!p->size) return;
+    Pack r[TERM_MAX_DOF] = {{0}}, w[TERM_MAX_DOF];
+    double *product = mem_alloc((size_t)p->size, sizeof *product), sum = 0;
+    if (ops->param_forward) ops->param_forward(c->term->self, c->pack, &c->at, c->x, p->along, r);
+    double forward = check_forward(c, PARAMETERS, PARAMETERS, r, w, &c->forward);
+    if (ops->param) ops->param(c->term->self, c->pack, c->lanes, &c->at, c->x, w, product);
+    for (int i = 0; i < p->size; i++) sum += product[i] * p->along[i];
+    compare(&c->adjoint, pack_set(forward), pack_set(sum), 1);
     mem_free(product);
 }
 
-/* A random direction, each block scaled by its largest value. */
-static double *direction(const Params *params, const double *p, Random *random)
+static void check_prev(Check *c)
 {
-    double *dp = mem_alloc((size_t)params->size, sizeof *dp);
+    const TermOps *ops = c->term->ops;
+    Pack dx[TERM_MAX_DOF], dv[TERM_MAX_DOF], r[TERM_MAX_DOF] = {{0}}, w[TERM_MAX_DOF];
+    Pack back_x[TERM_MAX_DOF] = {{0}}, back_v[TERM_MAX_DOF] = {{0}};
+    double sum = 0;
+    gather(c, c->lines[START_X].along, dx);
+    gather(c, c->lines[START_V].along, dv);
+    if (ops->prev_forward) ops->prev_forward(c->term->self, c->pack, &c->at, c->x, dx, dv, r);
+    double forward = check_forward(c, START_X, START_V, r, w, &c->prev_forward);
+    if (ops->prev) ops->prev(c->term->self, c->pack, &c->at, c->x, w, back_x, back_v);
+    for (int i = 0; i < c->size; i++) sum += pack_sum(back_x[i] * dx[i] + back_v[i] * dv[i], c->lanes);
+    compare(&c->prev, pack_set(forward), pack_set(sum), 1);
+}
+
+/* A random direction, each block scaled by its largest value. */
+static void choose_direction(const Params *params, const Line *p, Random *random)
+{
     for (int b = 0; b < params->block_count; b++) {
         const ParamBlock *block = &params->blocks[b];
         int end = block->offset + block->count * block->width;
         double size = 0;
-        for (int i = block->offset; i < end; i++) size = fmax(size, fabs(p[i]));
-        for (int i = block->offset; i < end; i++) dp[i] = (size > 0 ? size : 1) * random_signed(random);
+        for (int i = block->offset; i < end; i++) size = fmax(size, fabs(p->from[i]));
+        for (int i = block->offset; i < end; i++) p->along[i] = (size > 0 ? size : 1) * random_signed(random);
     }
-    return dp;
 }
 
-TermError check_term(const Term *term, const Params *params, const Point *at, const double *dof_size, Random *random)
+/* A start of the step that is not x, and directions, at the natural sizes of the dofs. */
+static void choose_start(Check *c, const double *dof_size)
 {
-    Worst gradient = {0}, hessian = {0}, forward = {0}, adjoint = {0};
-    int count = term->ops->count(term->self);
-    double *dp = direction(params, at->p, random);
-    Pair p = {.term = term, .at = at, .size = term->ops->size(term->self)};
-    for (p.pack = 0; p.pack * PACK_LANES < count; p.pack++) {
-        gather(&p, count);
-        term->ops->eval(term->self, p.pack, at, p.x, p.g, p.H);
-        for (int i = 0; i < p.size; i++) check_dof(&p, i, 1e-3 * dof_size[i], &gradient, &hessian);
-        check_params(&p, params, dp, random, &forward, &adjoint);
+    Line *x = &c->lines[START_X], *v = &c->lines[START_V];
+    for (int e = 0; e < c->term->ops->count(c->term->self); e++) {
+        int dof[TERM_MAX_DOF];
+        c->term->ops->dofs(c->term->self, e, dof);
+        for (int i = 0; i < c->size; i++) {
+            double size = dof_size[i];
+            x->from[dof[i]] = c->at.x[dof[i]] + size * random_signed(c->random);
+            v->from[dof[i]] = size / c->at.dt * random_signed(c->random);
+            x->along[dof[i]] = size * random_signed(c->random);
+            v->along[dof[i]] = size / c->at.dt * random_signed(c->random);
+        }
     }
-    mem_free(dp);
-    return (TermError){ratio(gradient), ratio(hessian), ratio(forward), ratio(adjoint)};
+    line_move(x, 0);
+    line_move(v, 0);
+}
+
+/* How many entries of x the term may look at. */
+static int dof_count_of(const Term *term)
+{
+    int count = 0, dof[TERM_MAX_DOF];
+    for (int e = 0; e < term->ops->count(term->self); e++) {
+        term->ops->dofs(term->self, e, dof);
+        for (int i = 0; i < term->ops->size(term->self); i++) count = dof[i] < count ? count : dof[i] + 1;
+    }
+    return count;
+}
+
+static void check_pack(Check *c, const double *dof_size)
+{
+    const Term *term = c->term;
+    int left = term->ops->count(term->self) - c->pack * PACK_LANES;
+    c->lanes = left < PACK_LANES ? left : PACK_LANES;
+    gather(c, c->at.x, c->x);
+    Pack energy = term->ops->eval(term->self, c->pack, &c->at, c->x, c->g, c->H);
+    for (int l = 0; l < c->lanes; l++) c->energy = fmax(c->energy, fabs(energy[l]));
+    for (int i = 0; i < c->size; i++) check_dof(c, i, STEP * dof_size[i]);
+    check_params(c);
+    check_prev(c);
+}
+
+TermError check_term(const Term *term, const Params *params, const Point *at, const double *dof_size,
+                     Random *random)
+{
+    Check c = {.term = term, .random = random, .at = *at, .size = term->ops->size(term->self)};
+    int dofs = dof_count_of(term);
+    c.lines[PARAMETERS] = line_create(at->p, params->size);
+    c.lines[START_X] = line_create(at->x, dofs);
+    c.lines[START_V] = line_create(at->x, dofs);
+    if (params->size) c.at.p = c.lines[PARAMETERS].to;
+    c.at.x_prev = c.lines[START_X].to, c.at.v_prev = c.lines[START_V].to;
+    if (!(at->dt > 0)) c.at.dt = 1;
+    choose_direction(params, &c.lines[PARAMETERS], random);
+    choose_start(&c, dof_size);
+    for (; c.pack * PACK_LANES < term->ops->count(term->self); c.pack++) check_pack(&c, dof_size);
+    for (int n = 0; n < LINES; n++) line_clear(&c.lines[n]);
+    TermError error = errors_of(c.energy, c.gradient, c.hessian);
+    error.forward = ratio(c.forward), error.adjoint = ratio(c.adjoint);
+    error.prev_forward = ratio(c.prev_forward), error.prev = ratio(c.prev);
+    return error;
+}
+
+double check_differences(TermError error)
+{
+    return fmax(fmax(error.gradient, error.hessian), fmax(error.forward, error.prev_forward));
+}
+
+double check_products(TermError error)
+{
+    return fmax(error.adjoint, error.prev);
 }
 
 typedef struct Dense {
@@ -156,10 +271,10 @@ static double moved_bulk(const Bulk *bulk, const Point *at, double *x, int i, do
 TermError check_bulk(const Bulk *bulk, const Point *at, int dof_count, double dof_size)
 {
     size_t n = (size_t)dof_count;
-    double *x = mem_copy(at->x, n, sizeof *x), *g = mem_alloc(5 * n, sizeof *g), h = 1e-3 * dof_size;
+    double *x = mem_copy(at->x, n, sizeof *x), *g = mem_alloc(5 * n, sizeof *g), h = STEP * dof_size;
     Dense H = {dof_count, mem_alloc(n * n, sizeof(double))};
     Worst gradient = {0}, hessian = {0};
-    bulk->ops->eval(bulk->self, at, g, &(BulkMatrix){add_dense, &H});
+    double energy = bulk->ops->eval(bulk->self, at, g, &(BulkMatrix){add_dense, &H});
     for (int i = 0; i < dof_count; i++) {
         Pack E[4] = {{0}}, column[4] = {{0}};
         for (int k = 0; k < 4; k++)
@@ -173,5 +288,5 @@ TermError check_bulk(const Bulk *bulk, const Point *at, int dof_count, double do
     mem_free(x);
     mem_free(g);
     mem_free(H.entries);
-    return (TermError){.gradient = ratio(gradient), .hessian = ratio(hessian)};
+    return errors_of(energy, gradient, hessian);
 }

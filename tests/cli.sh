@@ -13,6 +13,10 @@ expect 3 "$program" run "$here/broken/wrong_unit.yaml"; says "must be a number i
 # An equilibrium and everything that can be made of it.
 scene=$here/../scenes/cantilever.yaml
 expect 0 "$program" check "$scene" --derivatives; says "derivatives of bending"
+for motion in simulate rod_simulate; do # in a step of time: what acts only then, and on its start, is not 0
+    expect 0 "$program" check "$here/scene_$motion.yaml" --derivatives
+    says "derivatives of inertia .* Hessian [1-9].* start of step [1-9]"; says "derivatives of damping .* parameters [1-9]"
+done
 mkdir out
 expect 0 "$program" run "$scene" -o out/beam.vtkhdf; says "result: out/beam.vtkhdf"
 expect 0 "$program" run "$scene" --quiet -o beam; [ ! -s out.txt ] || { echo "--quiet is not quiet"; bad=1; }

@@ -1,5 +1,4 @@
-/* Implicit Euler: a linear oscillator's amplitude and phase, the momenta of a free sheet, cut steps, and the
- * derivatives of the kinetic terms. */
+/* Implicit Euler: a linear oscillator's amplitude and phase, the momenta of a free sheet, cut steps. */
 #include "base/memory.h"
 #include "base/random.h"
 #include "base/vec3.h"
@@ -307,57 +306,10 @@ static void test_older_factor(void **state)
     for (int k = 0; k < 3; k++) free_sheet(&s[k]);
 }
 
-/* prev_forward against differences of the force in (x_prev, v_prev), prev against prev_forward, and the
- * parameters. */
-static void check_kinetic(Term term, const Point *at, Random *random)
-{
-    Pack x[3], w[3], dx[3], dv[3], r[3], back_x[3], back_v[3], g[2][3];
-    double x_prev[3 * PACK_LANES], v_prev[3 * PACK_LANES], h = 1e-3, left = 0, right = 0;
-    for (int i = 0; i < 3; i++)
-        for (int l = 0; l < PACK_LANES; l++) {
-            x[i][l] = at->x[3 * l + i], w[i][l] = random_signed(random);
-            dx[i][l] = random_signed(random), dv[i][l] = random_signed(random);
-        }
-    for (int side = 0; side < 2; side++) {
-        Point moved = *at;
-        for (int i = 0; i < 3 * PACK_LANES; i++) {
-            double s = side ? h : -h;
-            x_prev[i] = at->x_prev[i] + s * dx[i % 3][i / 3],
-            v_prev[i] = at->v_prev[i] + s * dv[i % 3][i / 3];
-        }
-        moved.x_prev = x_prev, moved.v_prev = v_prev;
-        term.ops->eval(term.self, 0, &moved, x, g[side], NULL);
-    }
-    term.ops->prev_forward(term.self, 0, at, x, dx, dv, r);
-    term.ops->prev(term.self, 0, at, x, w, back_x, back_v);
-    for (int i = 0; i < 3; i++) {
-        Pack slope = (g[1][i] - g[0][i]) / (2 * h);
-        for (int l = 0; l < PACK_LANES; l++)
-            assert_true(fabs(slope[l] - r[i][l]) < 1e-9 * (1 + fabs(r[i][l])));
-        left += pack_sum(w[i] * r[i], PACK_LANES);
-        right += pack_sum(back_x[i] * dx[i] + back_v[i] * dv[i], PACK_LANES);
-    }
-    assert_true(fabs(left - right) < 1e-12 * fabs(left));
-    term.ops->destroy(term.self);
-}
-
-static void test_prev(void **state)
-{
-    (void)state;
-    Random random = random_seed(5);
-    double x[3 * PACK_LANES], x_prev[3 * PACK_LANES], v_prev[3 * PACK_LANES], mass[PACK_LANES], p[1] = {0.7};
-    for (int i = 0; i < 3 * PACK_LANES; i++)
-        x[i] = random_signed(&random), x_prev[i] = random_signed(&random), v_prev[i] = random_signed(&random);
-    for (int l = 0; l < PACK_LANES; l++) mass[l] = 1 + random_uniform(&random);
-    Point at = {.x = x, .p = p, .x_prev = x_prev, .v_prev = v_prev, .dt = 0.3};
-    check_kinetic(kinetic_inertia_term(PACK_LANES, mass), &at, &random);
-    check_kinetic(kinetic_damping_term(PACK_LANES, 0), &at, &random);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_oscillator), cmocka_unit_test(test_momenta),
                                        cmocka_unit_test(test_strip_frequency), cmocka_unit_test(test_cuts),
-                                       cmocka_unit_test(test_older_factor), cmocka_unit_test(test_prev)};
+                                       cmocka_unit_test(test_older_factor)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

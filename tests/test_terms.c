@@ -1,4 +1,5 @@
-/* Every row of every term list: value, gradient, Hessian and parameter products against each other. */
+/* Every term of a shell in motion: value, gradient, Hessian and products with what else it depends on, against each
+ * other. */
 #include "base/memory.h"
 #include "shell/shapes.h"
 #include "shell/terms.h"
@@ -9,6 +10,7 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
+#include <string.h>
 #include <cmocka.h>
 
 enum { CELLS = 5 };
@@ -56,6 +58,7 @@ static double *make_params(const Shell *shell, Random *random)
     }
     if (shell->fields.count) p[shell->field_scale + 1] = 0; /* off: what it would do is known too */
     for (int e = 0; e < shell->mesh->edge_count; e++) p[shell->fold + e] = 0.5 + random_uniform(random);
+    p[shell->damping] = 0.02;
     for (int i = 0; i < 3; i++) {
         p[shell->flux_density + i] = 0.05 * random_signed(random);
         p[shell->gravity + i] = 10 * random_signed(random);
@@ -74,19 +77,18 @@ static void check_rows(BendingModel bending, FluxField *field)
     for (int i = 0; i < shell_dof_count(shell); i++)
         x[i] += (i < 3 * shell->mesh->vertex_count ? 2e-3 : 0.3) * random_signed(&random);
     for (int i = 0; i < TERM_MAX_DOF; i++) dof_size[i] = i < 18 ? 1e-3 : 1;
-    Point at = {.x = x, .p = p, .time = 0.3};
-    for (int r = 0; r < shell_term_row_count; r++) {
-        Term term = shell_term_rows[r].create(shell);
-        if (term.ops->accept) term.ops->accept(term.self, x);
-        TermError worst = check_term(&term, &shell->params, &at, dof_size, &random);
-        print_message("%-10s gradient %.1e  hessian %.1e  param_forward %.1e  param %.1e\n",
-                      shell_term_rows[r].name, worst.gradient, worst.hessian, worst.forward, worst.adjoint);
-        assert_true(worst.gradient < 1e-7);
-        assert_true(worst.hessian < 1e-7);
-        assert_true(worst.forward < 1e-7);
-        assert_true(worst.adjoint < 1e-11);
-        term.ops->destroy(term.self);
+    Point at = {.x = x, .p = p, .time = 0.3, .dt = 0.01};
+    System *sys = shell_dynamic_system(shell);
+    system_accept(sys, x);
+    for (int t = 0; t < system_term_count(sys); t++) {
+        TermError error = check_term(system_term(sys, t), &shell->params, &at, dof_size, &random);
+        print_message("%-10s gradient %.1e  hessian %.1e  param_forward %.1e  param %.1e  prev_forward %.1e  "
+                      "prev %.1e\n",
+                      system_term(sys, t)->ops->name, error.gradient, error.hessian, error.forward,
+                      error.adjoint, error.prev_forward, error.prev);
+        assert_true(check_differences(error) < 1e-7 && check_products(error) < 1e-11);
     }
+    system_destroy(sys);
     mem_free(x);
     mem_free(p);
     shell_destroy(shell);
@@ -120,13 +122,106 @@ static void test_formula(void **state)
     check_rows(BENDING_MIDEDGE, flux_field_formula(formula, 0.06));
 }
 
+/* ---- Terms that leave something out, or get it wrong: the check must see it ---- */
+
+static const TermOps *right; /* of the term that is spoilt */
+
+static Pack no_eval(const void *self, int pack, const Point *at, const Pack *x, Pack *g, Pack *H)
+{
+    (void)pack, (void)at, (void)x;
+    int size = right->size(self);
+    for (int i = 0; g && i < size; i++) g[i] = pack_set(0);
+    for (int i = 0; H && i < TERM_LOWER(size, 0); i++) H[i] = pack_set(0);
+    return pack_set(0);
+}
+
+/* Forgets that the start's velocity counts. */
+static void half_prev(const void *self, int pack, const Point *at, const Pack *x, const Pack *w, Pack *dx,
+                      Pack *dv)
+{
+    right->prev(self, pack, at, x, w, dx, dv);
+    for (int i = 0; i < 3; i++) dv[i] = pack_set(0);
+}
+
+static void half_prev_forward(const void *self, int pack, const Point *at, const Pack *x, const Pack *dx,
+                              const Pack *dv, Pack *r)
+{
+    Pack none[3] = {{0}};
+    (void)dv;
+    right->prev_forward(self, pack, at, x, dx, none, r);
+}
+
+typedef enum Spoil {
+    NO_PARAM,
+    NO_PARAM_FORWARD,
+    NO_PARAMS,
+    NO_PREVS,
+    HALF_PREV,
+    HALF_PREVS,
+    NO_EVAL,
+    SPOILS
+} Spoil;
+
+static TermOps spoil(const TermOps *ops, Spoil how)
+{
+    TermOps wrong = *ops;
+    if (how == NO_PARAM || how == NO_PARAMS) wrong.param = NULL;
+    if (how == NO_PARAM_FORWARD || how == NO_PARAMS) wrong.param_forward = NULL;
+    if (how == NO_PREVS) wrong.prev = NULL, wrong.prev_forward = NULL;
+    if (how == HALF_PREV || how == HALF_PREVS) wrong.prev = half_prev;
+    if (how == HALF_PREVS) wrong.prev_forward = half_prev_forward;
+    if (how == NO_EVAL) wrong.eval = no_eval;
+    return wrong;
+}
+
+static bool can_be(const TermOps *ops, Spoil how)
+{
+    bool velocity = !strcmp(ops->name, "inertia");
+    return how == NO_EVAL    ? true
+           : how < NO_PREVS  ? ops->param != NULL
+           : how == NO_PREVS ? ops->prev != NULL
+                             : velocity;
+}
+
+/* In statics too, and wherever the caller says that a step begins. */
+static void test_blind(void **state)
+{
+    (void)state;
+    Random random = random_seed(23);
+    Shell *shell = make_shell(BENDING_MIDEDGE, NULL);
+    double *p = make_params(shell, &random), dof_size[TERM_MAX_DOF];
+    double *x = mem_alloc((size_t)shell_dof_count(shell), sizeof *x);
+    shell_rest_state(shell, x);
+    for (int i = 0; i < shell_dof_count(shell); i++) x[i] += 1e-3 * random_signed(&random);
+    for (int i = 0; i < TERM_MAX_DOF; i++) dof_size[i] = i < 18 ? 1e-3 : 1;
+    System *sys = shell_dynamic_system(shell);
+    int seen[SPOILS] = {0};
+    system_accept(sys, x);
+    for (int t = 0; t < system_term_count(sys); t++)
+        for (int how = 0; how < SPOILS; how++) {
+            Term term = *system_term(sys, t);
+            right = term.ops;
+            if (!can_be(right, (Spoil)how)) continue;
+            TermOps wrong = spoil(right, (Spoil)how);
+            term.ops = &wrong;
+            TermError error =
+                check_term(&term, &shell->params, &(Point){.x = x, .p = p, .x_prev = x}, dof_size, &random);
+            if (check_differences(error) < 1e-3 && check_products(error) < 1e-3)
+                fail_msg("%s passes, spoilt in the way %d", right->name, how);
+            seen[how]++;
+        }
+    for (int how = 0; how < SPOILS; how++) assert_true(seen[how] > 0);
+    system_destroy(sys);
+    mem_free(x);
+    mem_free(p);
+    shell_destroy(shell);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_midedge),
-        cmocka_unit_test(test_hinge),
-        cmocka_unit_test(test_dipole),
-        cmocka_unit_test(test_formula),
+        cmocka_unit_test(test_midedge), cmocka_unit_test(test_hinge), cmocka_unit_test(test_dipole),
+        cmocka_unit_test(test_formula), cmocka_unit_test(test_blind),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
