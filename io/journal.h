@@ -1,5 +1,4 @@
-/* journal.h - NAME.run: everything that a running job has acknowledged, safe from a kill, a full disk or a
- * power cut.
+/* journal.h - NAME.run: everything that a running job has acknowledged, safe from a kill, a full disk or a power cut.
  *
  * A journal is a store of arrays, each under a kind, an index and a name. A unit (what one journal_put
  * brings) is acknowledged as soon as it is committed: after a kill at any moment the journal holds every
@@ -32,8 +31,7 @@ typedef enum JournalMode {
     JOURNAL_NEW,    /* start a run; an unfinished run in the file is refused, a finished one is discarded  */
     JOURNAL_FORCE,  /* start a run; an unfinished one is discarded too (never one that is being written)  */
     JOURNAL_RESUME, /* go on with the run in the file, checked as a whole; refused if anything is damaged  */
-    JOURNAL_READ,   /* see the run as it is at this moment, even while its writer lives; no file is changed or
-                       made */
+    JOURNAL_READ,   /* see the run as it is now, even while its writer lives; no file is changed or made   */
 } JournalMode;
 
 /* Opens the journal; NULL and a sentence on refusal. A second writer is refused while the first one lives,
@@ -50,8 +48,7 @@ bool journal_close(Journal *journal, Error *err);
  * memory and goes with the next commit that succeeds; what was committed before stays. */
 bool journal_put(Journal *journal, const char *kind, int index, const Array *arrays, int count, Error *err);
 
-/* Puts them in the place of all that is under this kind, in one transaction: of an older state nothing stays.
- */
+/* Puts them in the place of all that is under this kind, in one transaction: of an older state nothing stays. */
 bool journal_replace(Journal *journal, const char *kind, int index, const Array *arrays, int count,
                      Error *err);
 

@@ -43,8 +43,7 @@ typedef struct Plotter {
     char servo_up[PLOTTER_COMMAND_MAX + 1], servo_down[PLOTTER_COMMAND_MAX + 1]; /* commands */
 } Plotter;
 
-/* A common pen plotter: 40 and 100 mm/s, 0.3 s; z = 5 and 0 at 10 mm/s; M5 and M3 S30, pauses in seconds.
- */
+/* A common pen plotter: 40 and 100 mm/s, 0.3 s; z = 5 and 0 at 10 mm/s; M5 and M3 S30, pauses in seconds. */
 Plotter plotter_default(void);
 
 /* May it be a command in a file? Up to 60 letters, digits, spaces and . - + _ =, a letter first. */

@@ -2,20 +2,26 @@
  *
  * An HDF5 file in two groups; every dataset of numbers has a text attribute `unit`.
  *
- * /VTKHDF, if the journal has frames and static/faces or static/lines: an UnstructuredGrid over time (VTKHDF
- * 2.0) for ParaView 5.12 and later, of triangles or, as rows of static/lines say (first point and number of
- * points), of polylines. The cells are stored once; Points float32 [T*n_v,3], CellData/<name> [T*n_f]
- * or [T*n_f,3] from the frames' arrays cell/<name>, PointData/<name> from point/<name>, one chunk per step,
- * gzip 1 and shuffle, float32 unless double_frames or where that does not resolve the body. An array that a frame does not have is the one of the
- * frame before it (Steps/CellDataOffsets says which), so that what never changes need only be in the first
- * frame.
+ * /VTKHDF, if the journal has frames and static/faces or static/lines: an UnstructuredGrid over time
+ * (VTKHDF 2.0) for ParaView 5.12 and later, of triangles or, as rows of static/lines say (first point and
+ * number of points), of polylines. Cells are stored once; one chunk per step, gzip 1 and shuffle:
+ *
+ *     Points           [T*n_v,3]            float32, unless double_frames or where that does not resolve the body
+ *     CellData/NAME    [T*n_f], [T*n_f,3]   from the frames' arrays cell/NAME
+ *     PointData/NAME   likewise             from point/NAME
+ *
+ * An array that a frame does not have is the one of the frame before it (Steps/CellDataOffsets says which),
+ * so that what never changes need only be in the first frame.
  *
  * /slender: every array of meta, static and final at its own name (scene, versions, rest, faces, edges,
- * state/x, design/<block>, cases/<name>/.., ..) with its type and shape; history/<name> [evaluations], one
- * for each scalar that the evaluations hold; frames/flux_density [T,3] where the frames have it; frames/x
- * [T,n_v,3] float64 if those are. The text final/status becomes the attribute `status`: "unfinished" if there is none yet;
- * meta/kernels becomes `kernels`; state/x is the last frame's
- * x until final has it.
+ * state/x, design/BLOCK, cases/NAME/.., ..) with its type and shape, and
+ *
+ *     history/NAME           [evaluations]   one for each scalar that the evaluations hold
+ *     frames/flux_density    [T,3]           where the frames have it
+ *     frames/x               [T,n_v,3]       float64, if those are
+ *     state/x                [n_v,3]         the last frame's x, until final has it
+ *     attribute status       text            final/status; "unfinished" if there is none yet
+ *     attribute kernels      text            meta/kernels
  *
  * The file ends with a trailer of 20 bytes that HDF5 does not look at: "SLENDRCK", the length before it
  * (uint64) and the CRC32 of these bytes (uint32), little-endian. A file whose trailer does not fit is never
@@ -33,8 +39,9 @@ typedef struct ResultDef {
 } ResultDef;
 
 /* Writes the result and its sidecar; *sum, where it is not NULL, becomes the CRC32 of the trailer. The file is
- * built in memory (so it needs its own size in memory, twice for a moment), written to a temporary file beside path, read back, synced to the disk and renamed: at every
- * moment path is the old file or the new one, whole. On false the old one is still there. */
+ * built in memory (so it needs its own size in memory, twice for a moment), written to a temporary file beside
+ * path, read back, synced to the disk and renamed: at every moment path is the old file or the new one, whole.
+ * On false the old one is still there. */
 bool result_write(Journal *journal, const char *path, ResultDef def, uint32_t *sum, Error *err);
 
 /* The name of the result's sidecar, which the caller frees. False where there is none, since XDMF cannot name the
@@ -62,7 +69,8 @@ bool result_has(Result *result, const char *path);
 bool result_read(Result *result, const char *path, Array *array, Error *err);
 
 /* The same, refused where it has another type or rank, or rows of another width (0: any). */
-bool result_read_as(Result *result, const char *path, ArrayType type, int rank, int width, Array *array, Error *err);
+bool result_read_as(Result *result, const char *path, ArrayType type, int rank, int width, Array *array,
+                    Error *err);
 
 /* Reads only rows first .. first + count - 1 of the first dimension. */
 bool result_read_rows(Result *result, const char *path, int first, int count, Array *array, Error *err);

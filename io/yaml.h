@@ -10,8 +10,9 @@
  *         .name = "ball", .doc = "All vertices in a ball.", .size = sizeof(BallScene),
  *         .fields = (const YamlField[]){
  *             {YAML_VECTOR(BallScene, center), .unit = "m", .fallback = "[0, 0, 0]", .doc = "its centre"},
- *             {YAML_NUMBER(BallScene, radius), .unit = "m", .range = "(0, inf)", .required = true, .doc =
- * "its radius"}, {0}}};
+ *             {YAML_NUMBER(BallScene, radius), .unit = "m", .range = "(0, inf)", .required = true,
+ *              .doc = "its radius"},
+ *             {0}}};
  *
  *     YamlFile *file = yaml_read("scene.yaml");
  *     yaml_override(file, "shell.thickness=1 mm");                      // --set
@@ -78,7 +79,7 @@ typedef struct YamlField {
     const char *fallback; /* default, as scene text: "1 mm", "[0, 0, 0]", "{every: 1}"; NULL: none  */
     const char *unit;     /* SI unit, any product: "m", "A/m", "N s/m"; NULL: a plain number        */
     const char *range;    /* of each number, SI: "(0, inf)", "[0, 0.5]", "(-inf, 0]"; NULL: any     */
-    const char *when;     /* where the key is used, NULL: always. Conditions joined by `&`: keys of the same table
+    const char *when; /* where the key is used, NULL: always. Conditions joined by `&`: keys of the same table
                            * of which one is written, "points | arc", or none, "!curve"; or a key that has one of
                            * some values, "solver: pbd". A slash begins a key of the root: "/job: simulate" */
     const char *otherwise; /* what there is in its place elsewhere: ends the sentence of its refusal        */
@@ -166,8 +167,8 @@ bool yaml_check_use(YamlFile *file, const YamlTable *table);
 void yaml_clear(const YamlTable *table, void *scene);
 
 /* The first file that the scene names for which the answer is yes; NULL: there is none. Borrowed. */
-const char *yaml_find_file(const YamlTable *table, const void *scene, bool (*is)(const char *file, const char *other),
-                           const char *other);
+const char *yaml_find_file(const YamlTable *table, const void *scene,
+                           bool (*is)(const char *file, const char *other), const char *other);
 
 /* ---- Errors ---- */
 

@@ -10,9 +10,8 @@ typedef struct Node Node;
 /* A value; of a mapping, keys[i] stands at key_line[i] and has items[i]. Owned all the way down. */
 struct Node {
     NodeKind kind;
-    int line, column; /* from 1; 0: from --set or a default           */
-    const char
-        *origin; /* the --set assignment that it comes from, borrowed from the file; NULL: the file itself */
+    int line, column;   /* from 1; 0: from --set or a default           */
+    const char *origin; /* the --set assignment that it comes from, the file's; NULL: the file itself */
     char *text;
     int count, room;
     Node **items;

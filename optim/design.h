@@ -1,10 +1,12 @@
-/* design.h - which parameters are unknown: the map between the optimiser's scaled vector u and the blocks of
- * p.
+/* design.h - which parameters are unknown: the map between the optimiser's scaled vector u and the blocks of p.
  *
  * An unknown is a block of p, one row per face (or edge, ...) or one row per group of them, the same in all
- * load cases or one for each. Its values are scaled before an optimiser sees them: linear   p = scale u log
- * p = exp(u) fixed    p = limit u/|u|         capped   p = scale u/sqrt(1 + |scale u|^2/limit^2)     (|.|
- * over a row) */
+ * load cases or one for each. Its values are scaled before an optimiser sees them:
+ *
+ *     linear   p = scale u
+ *     log      p = exp(u)
+ *     fixed    p = limit u/|u|                               (|.| over a row)
+ *     capped   p = scale u/sqrt(1 + |scale u|^2/limit^2) */
 #pragma once
 #include "solve/params.h"
 
@@ -16,14 +18,14 @@ typedef enum UnknownMap {
 } UnknownMap;
 
 typedef struct Unknown {
-    const ParamBlock *block; /* borrowed                                                                  */
-    int group_count;         /* rows of u                                                                 */
-    int *group;              /* [block->count] which row of u, -1: stays as it is; owned                  */
+    const ParamBlock *block; /* borrowed                                                 */
+    int group_count;         /* rows of u                                                */
+    int *group;              /* [block->count] which row of u, -1: stays as it is; owned */
     UnknownMap map;
     double scale, limit;
-    double lower, upper; /* bounds of p, -/+INFINITY: none; not for the two lengths                       */
+    double lower, upper; /* bounds of p, -/+INFINITY: none; not for the two lengths */
     bool per_case;
-    int first; /* first entry in u (of case 0); set by design_add                                         */
+    int first; /* first entry in u (of case 0); set by design_add */
 } Unknown;
 
 enum { DESIGN_MAX_UNKNOWNS = 8 };

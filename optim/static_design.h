@@ -1,10 +1,13 @@
 /* static_design.h - F(u) of a quasi-static design, its gradient by the adjoint and its Gauss-Newton product.
  *
  * Each load case finds its equilibrium x(p) from the best design's (never from a rejected trial's), moved by
- * the tangent -H^-1 (d2E/dx dp) dp where that lowers the energy. With H at the equilibrium factored, adjoint
- * H w = dF/dx,   dF/dp - (d2E/dx dp)^T w                      [Chen 2022, eqs. 29-33] tangent   dx = -H^-1
- * (d2E/dx dp) dp. Cases are independent of each other and may run in parallel threads; their sums are taken
- * in order, so the result does not depend on the number of threads. */
+ * the tangent where that lowers the energy. With H at the equilibrium factored [Chen 2022, eqs. 29-33],
+ *
+ *     adjoint   H w = dF/dx,   dF/dp - (d2E/dx dp)^T w
+ *     tangent   dx = -H^-1 (d2E/dx dp) dp
+ *
+ * Cases are independent of each other and may run in parallel threads; their sums are taken in order, so the
+ * result does not depend on the number of threads. */
 #pragma once
 #include "optim/design.h"
 #include "solve/objective.h"
@@ -24,9 +27,8 @@ typedef struct StaticDesign StaticDesign;
 
 typedef struct StaticDesignDef {
     NewtonDef newton;
-    NewtonObserver
-        observer; /* may stop a solve, which then counts as not found; called from all threads; may be zero */
-    int threads;  /* at most this many cases at once; default 1 */
+    NewtonObserver observer; /* may stop a solve, which then is not found; from all threads; may be zero */
+    int threads;             /* at most this many cases at once; default 1                               */
 } StaticDesignDef;
 
 StaticDesignDef static_design_default(void);
@@ -63,13 +65,12 @@ CaseState static_design_state(StaticDesign *sd, int load_case);
 void static_design_restore(StaticDesign *sd, const double *u);
 
 /* out = J^T J v at the best design (of the sum of squares), 2 J^T J as the gradient is 2 J^T r; the first
- * call after an evaluation that was not accepted factors again. soft > 0 adds as much of the tangent's dx^T
- * H^-1 dx, which counts soft modes more: at 1 the mode that is about to snap as much as the objectives pull
- * at it. */
+ * call after an evaluation that was not accepted factors again. soft > 0 adds as much of the tangent's
+ * dx^T H^-1 dx, which counts soft modes more: at 1 the mode that is about to snap as much as the objectives
+ * pull at it. */
 void static_design_product(StaticDesign *sd, const double *v, double soft, double *out);
 
-/* dF/dp[params] of one case at the best design, weighted, in the blocks' own units; p of it may be had too.
- */
+/* dF/dp[params] of one case at the best design, weighted, in the blocks' own units; p of it may be had too. */
 void static_design_param_gradient(StaticDesign *sd, int load_case, double *dp);
 const double *static_design_params(const StaticDesign *sd, int load_case);
 

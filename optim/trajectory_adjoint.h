@@ -1,11 +1,17 @@
 /* trajectory_adjoint.h - F(u) of a motion in time, its exact discrete gradient and its Gauss-Newton product.
  *
- * The motion is that of solve/march: step k finds x_k with r(x_k; x_{k-1}, v_{k-1}, p_k) = 0, v_k = (x_k -
- * x_{k-1})/dt_k. Its states are stored, sub-steps of steps that were cut included, and A_k = dr/dx_k,
- * positive definite and neither shifted nor projected, is factored once at the end of each. Backwards [design
- * after Chen 2022, eq. 40, with the terms that it leaves out] x*_k += dF/dx_k + v*_k/dt_k,   A_k w = x*_k,
- * dF/dp -= (dr/dp)^T w, x*_{k-1} = -v*_k/dt_k - (dr/dx_{k-1})^T w,     v*_{k-1} = -(dr/dv_{k-1})^T w, and
- * forwards the tangent of the same equations. Factors are kept as far as memory allows and made again
+ * The motion is that of solve/march: step k finds x_k with
+ *
+ *     r(x_k; x_{k-1}, v_{k-1}, p_k) = 0,   v_k = (x_k - x_{k-1})/dt_k.
+ *
+ * Its states are stored, sub-steps of steps that were cut included, and A_k = dr/dx_k, positive definite and
+ * neither shifted nor projected, is factored once at the end of each. Backwards [design after Chen 2022,
+ * eq. 40, with the terms that it leaves out]
+ *
+ *     x*_k += dF/dx_k + v*_k/dt_k,   A_k w = x*_k,   dF/dp -= (dr/dp)^T w,
+ *     x*_{k-1} = -v*_k/dt_k - (dr/dx_{k-1})^T w,     v*_{k-1} = -(dr/dv_{k-1})^T w,
+ *
+ * and forwards the tangent of the same equations. Factors are kept as far as memory allows and made again
  * otherwise. Each evaluation starts its steps from the best motion, moved along the tangent, where that has
  * less energy. */
 #pragma once
@@ -29,8 +35,7 @@ typedef struct TrajectoryProblem {
 } TrajectoryProblem;
 
 typedef struct TrajectoryDef {
-    MarchDef
-        march; /* load and move with their self are used, as in march.h; load comes before the controls */
+    MarchDef march;     /* load and move with their self are used, as in march.h; load before the controls */
     long factor_memory; /* bytes; default 2 GiB, for the best motion and the one at work together */
 } TrajectoryDef;
 

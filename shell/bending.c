@@ -21,9 +21,9 @@ enum { FLAP = 9, ALPHA = 18 };
 typedef struct BendingPack {
     int face[PACK_LANES], edge[3][PACK_LANES];
     Pack form[6];                           /* C as a packed lower triangle, m^3; 0 where the face is rigid */
-    Pack weight[3], rest[3], sign[3];       /* of theta; its rest value; s                                    */
-    Pack3 mirror[3];                        /* t of clamped edges, else 0                                     */
-    bool mirrored;                          /* any lane                                                       */
+    Pack weight[3], rest[3], sign[3];       /* of theta; its rest value; s */
+    Pack3 mirror[3];                        /* t of clamped edges, else 0 */
+    bool mirrored;                          /* any lane */
 } BendingPack;
 
 typedef struct Bending {

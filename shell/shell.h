@@ -10,7 +10,7 @@
 #include "solve/system.h"
 
 typedef enum BendingModel {
-    BENDING_MIDEDGE, /* one angle per edge: converges on any mesh  [Grinspun et al. 2006]                   */
+    BENDING_MIDEDGE, /* one angle per edge: converges on any mesh  [Grinspun et al. 2006] */
     BENDING_HINGE,   /* vertices only  [Gingold et al. 2004]: off by 5-57 % on crossed and unstructured meshes */
 } BendingModel;
 

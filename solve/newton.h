@@ -8,31 +8,31 @@
 #include "solve/system.h"
 
 typedef struct NewtonDef {
-    int max_iterations;  /* default 300                                                                          */
-    double step_tol;     /* converged when the Newton step is smaller, in the body's measure; default 1e-8        */
-    double force_tol;    /* ... and no force exceeds this part of the element forces; default 1e-6               */
-    double energy_tol;   /* ... or when what the step will gain is less than this part of the energies; 0: not   */
-    int cg_iterations;   /* at most so many conjugate gradients with the last factor before a new one; default 0  */
-    double cg_tol;       /* ... until the residual fell to this part; default 1e-3                               */
-    double step_cap;     /* largest step, body's measure; default 0.25                                           */
-    double shift_first;  /* shift tried first, in parts of D; default 1e-8                                       */
-    double shift_least;  /* smallest one that is remembered; default 1e-10                                       */
-    double shift_growth; /* factor between tries; default 4                                                      */
-    double shift_decay;  /* ... and back after a success; default 16                                             */
-    double armijo;       /* sufficient decrease; default 1e-4                                                    */
-    int shifted_max;     /* shifted iterations in a row before negative curvature is looked for; default 3       */
+    int max_iterations;  /* default 300 */
+    double step_tol;     /* converged when the Newton step is smaller, in the body's measure; default 1e-8 */
+    double force_tol;    /* ... and no force exceeds this part of the element forces; default 1e-6 */
+    double energy_tol;   /* ... or when the step will gain less than this part of the energies; 0: not */
+    int cg_iterations;   /* at most so many conjugate gradients with the last factor; default 0 */
+    double cg_tol;       /* ... until the residual fell to this part; default 1e-3 */
+    double step_cap;     /* largest step, body's measure; default 0.25 */
+    double shift_first;  /* shift tried first, in parts of D; default 1e-8 */
+    double shift_least;  /* smallest one that is remembered; default 1e-10 */
+    double shift_growth; /* factor between tries; default 4 */
+    double shift_decay;  /* ... and back after a success; default 16 */
+    double armijo;       /* sufficient decrease; default 1e-4 */
+    int shifted_max;     /* shifted iterations in a row before negative curvature is looked for; default 3 */
 } NewtonDef;
 
 NewtonDef newton_default(void);
 
 typedef enum NewtonStatus {
     NEWTON_CONVERGED,      /* stationary and the (base-shifted) Hessian positive definite: a stable equilibrium */
-    NEWTON_SADDLE,         /* stationary, not positive definite, and no way down was found                     */
-    NEWTON_NEUTRAL,        /* stationary with a zero mode: a buckling point, or a rigid motion                 */
-    NEWTON_STALLED,        /* no step lowers the energy                                                        */
-    NEWTON_MAX_ITERATIONS, /* still falling                                                                    */
-    NEWTON_NOT_FINITE,     /* energy or forces at the start are not finite                                     */
-    NEWTON_STOPPED,        /* the observer asked for it                                                        */
+    NEWTON_SADDLE,         /* stationary, not positive definite, and no way down was found */
+    NEWTON_NEUTRAL,        /* stationary with a zero mode: a buckling point, or a rigid motion */
+    NEWTON_STALLED,        /* no step lowers the energy */
+    NEWTON_MAX_ITERATIONS, /* still falling */
+    NEWTON_NOT_FINITE,     /* energy or forces at the start are not finite */
+    NEWTON_STOPPED,        /* the observer asked for it */
 } NewtonStatus;
 
 typedef struct NewtonInfo {

@@ -7,10 +7,10 @@
 enum { INVERSE_ITERATIONS = 8, CURVATURE_TRIES = 25 };
 
 static const double CURVATURE_STEP = 0.05;             /* body's measure: first step along negative curvature */
-static const double CURVATURE_LAST = 0.5;              /* ... and the last                                    */
-static const double ZERO_CURVATURE = 16 * DBL_EPSILON; /* v'Hv with v'Dv = 1: no more than its rounding       */
-static const double LIKELY = 1e4;                      /* of the step in a mode's start, against chance       */
-static const double LEAST_SHIFT = 1e-15;               /* D: below that a factorisation decides by rounding   */
+static const double CURVATURE_LAST = 0.5;              /* ... and the last */
+static const double ZERO_CURVATURE = 16 * DBL_EPSILON; /* v'Hv with v'Dv = 1: no more than its rounding */
+static const double LIKELY = 1e4;                      /* of the step in a mode's start, against chance */
+static const double LEAST_SHIFT = 1e-15;               /* D: below that a factorisation decides by rounding */
 
 /* A factor with as little shift as there may be: the modes of a thin sheet lie closer together than any shift fit for a step
  * (1e-12 of D for a strip of 1/5000), and inverse iteration tells them apart only with one that is smaller still. */

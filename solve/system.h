@@ -12,9 +12,9 @@
 typedef struct DofClass {
     int first, count;
     double size; /* a large change of such a dof: the body's diagonal, or 1 rad; INFINITY: of no interest */
-    bool multipliers; /* Lagrange multipliers: the energy is that of the others plus theirs times what must vanish */
-    double force;     /* of multipliers: what must vanish is far from it at times, and then they change by so much in
-                       * an iteration, N (system_gap); 0: it always vanishes */
+    bool multipliers; /* Lagrange multipliers: the energy is the others' plus theirs times what must vanish */
+    double force;     /* of multipliers, N: they change by so much in an iteration while what must vanish is
+                       * far from it (system_gap); 0: it always vanishes */
 } DofClass;
 
 enum { SYSTEM_MAX_CLASSES = 4, SYSTEM_MAX_TERMS = 16, SYSTEM_MAX_BULKS = 4 };

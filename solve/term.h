@@ -22,8 +22,9 @@ typedef struct Point {
     double time;     /* s; fields may depend on it                   */
     const double *x_prev, *v_prev; /* start of the step of time, whole vectors; NULL in statics */
     double dt;                     /* s; 0 in statics                                           */
-    const double *x_from, *step; /* where the last Newton step began, and that step: the Hessian then takes the stresses that
-                                  * the step was to bring (TermOps.follow); NULL: its own                               */
+    /* Where the last Newton step began, and that step: the Hessian then takes the stresses that the step was to bring
+     * (TermOps.follow); NULL: its own. */
+    const double *x_from, *step;
 } Point;
 
 typedef struct TermOps {

@@ -1,8 +1,7 @@
 /* grid.h - values on a regular grid over the page: tones, directions.
  *
  * Pixel (row i, column j) has its centre at x = (j + 0.5)/columns * page.width, y = (i + 0.5)/rows *
- * page.height.
- */
+ * page.height. */
 #pragma once
 #include "base/vec3.h"
 #include "spline/page.h"

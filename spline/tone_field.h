@@ -8,18 +8,15 @@
 #include "spline/grid.h"
 
 typedef struct SplineToneDef {
-    double
-        crop[4]; /* left, top, right, bottom of what is drawn, fractions of the picture; default 0, 0, 1, 1 */
-    bool cover;  /* fills the page and loses what is beyond; default: all is shown, centred                 */
-    bool extend; /* beside the picture its edges go on; default: the paper is blank there                   */
-    bool invert; /* default false */
-    double black, white; /* grey levels that become brightness 0 and 1; default 0, 1 */
-    double
-        gamma; /* brightness^(1/gamma): above 1 lightens the middle tones, as in image editors; default 1 */
-    const double (
-        *curve)[2];   /* instead of black, white and gamma: brightness at grey levels, linear between */
-    int curve_points; /* [curve_points], levels growing; 0: none; borrowed                             */
-    double density;   /* of black; default 0.85, above which neighbouring lines run together           */
+    double crop[4]; /* left, top, right, bottom of what is drawn, parts of the picture; default 0, 0, 1, 1 */
+    bool cover;     /* fills the page and loses what is beyond; default: all is shown, centred */
+    bool extend;    /* beside the picture its edges go on; default: the paper is blank there */
+    bool invert;    /* default false */
+    double black, white;      /* grey levels that become brightness 0 and 1; default 0, 1 */
+    double gamma;             /* brightness^(1/gamma): above 1 lightens the middle tones; default 1 */
+    const double (*curve)[2]; /* instead of these three: brightness at grey levels, linear between   */
+    int curve_points;         /* [curve_points], levels growing; 0: none; borrowed                   */
+    double density;           /* of black; default 0.85, above which neighbouring lines run together */
 } SplineToneDef;
 
 SplineToneDef spline_tone_default(void);

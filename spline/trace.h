@@ -29,6 +29,5 @@ double trace_spacing(const Tracer *tracer, Vec2 at);
 /* The curve through a seed, which is in the drawn part: at most `behind` steps back from it and `total` in
  * all. It ends where nothing is drawn, where no direction is sure or it turns within less than a step or two,
  * and where it comes nearer than three quarters of the spacing to another curve or to another part of itself,
- * and after a whole turn: what winds on is drawn as rings.
- */
+ * and after a whole turn: what winds on is drawn as rings. */
 void trace_curve(Tracer *tracer, Vec2 seed, int behind, int total, Points *curve);

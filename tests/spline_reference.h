@@ -5,6 +5,7 @@
  *
  * The strokes, fields and weights are those of tests/test_spline_terms.c. */
 #pragma once
+/* clang-format off */
 
 typedef struct SplineReference {
     const char *name;

@@ -167,6 +167,7 @@ out='''/* spline_reference.h - energies of two strokes by an independent program
  *
  * The strokes, fields and weights are those of tests/test_spline_terms.c. */
 #pragma once
+/* clang-format off */
 
 typedef struct SplineReference {
     const char *name;
