@@ -21,7 +21,10 @@ static inline PackMat pack_mat_scale(Pack s, PackMat a)
     return (PackMat){pack3_scale(s, a.r0), pack3_scale(s, a.r1), pack3_scale(s, a.r2)};
 }
 
-static inline PackMat pack_mat_neg(PackMat a) { return (PackMat){pack3_neg(a.r0), pack3_neg(a.r1), pack3_neg(a.r2)}; }
+static inline PackMat pack_mat_neg(PackMat a)
+{
+    return (PackMat){pack3_neg(a.r0), pack3_neg(a.r1), pack3_neg(a.r2)};
+}
 
 static inline PackMat pack_mat_transpose(PackMat a)
 {

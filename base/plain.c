@@ -28,7 +28,8 @@ static bool acts(unsigned code)
 }
 
 /* One character at a time; `show` writes at most LONGEST bytes of it and says how many. length 0: a byte that is none. */
-static char *convert(const char *text, int (*show)(char *out, const char *c, int length, unsigned code, const char *kept),
+static char *convert(const char *text,
+                     int (*show)(char *out, const char *c, int length, unsigned code, const char *kept),
                      const char *kept)
 {
     char *shown = mem_alloc(LONGEST * strlen(text) + 1, 1), *out = shown;
@@ -43,7 +44,8 @@ static char *convert(const char *text, int (*show)(char *out, const char *c, int
 
 static int show_plain(char *out, const char *c, int length, unsigned code, const char *kept)
 {
-    if (!length || (code < 0x80 && acts(code) && !strchr(kept, *c))) return sprintf(out, "\\x%02x", (unsigned char)*c);
+    if (!length || (code < 0x80 && acts(code) && !strchr(kept, *c)))
+        return sprintf(out, "\\x%02x", (unsigned char)*c);
     if (code >= 0x80 && acts(code)) return sprintf(out, "\\u%04x", code);
     memcpy(out, c, (size_t)length);
     return length;

@@ -7,8 +7,9 @@
 static void job(const char *name, const char *scene, const char *options)
 {
     char command[1024];
-    snprintf(command, sizeof command, "'%s' run '%s/scenes/%s.yaml' --force --quiet --no-picture -o bench_%s %s",
-             PROGRAM, SOURCE_DIR, scene, scene, options);
+    snprintf(command, sizeof command,
+             "'%s' run '%s/scenes/%s.yaml' --force --quiet --no-picture -o bench_%s %s", PROGRAM, SOURCE_DIR,
+             scene, scene, options);
     double start = clock_seconds();
     if (system(command)) bench_fail("the job of %s fails", name);
     bench_print(name, clock_seconds() - start, "s");

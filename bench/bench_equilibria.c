@@ -29,12 +29,13 @@ static Body body_create(MeshFile *file, BendingModel bending, double thickness, 
     mesh_file_clear(file);
     if (!mesh) abort();
     Body b = {.shell = shell_create(mesh), .young = young};
-    b.shell->thickness = thickness, b.shell->poisson = poisson, b.shell->bending = bending, b.shell->density = 1000;
+    b.shell->thickness = thickness, b.shell->poisson = poisson, b.shell->bending = bending,
+    b.shell->density = 1000;
     return b;
 }
 
-static Body sheet_body(double length, double width, int cells, int across, BendingModel bending, double thickness,
-                       double poisson, double young)
+static Body sheet_body(double length, double width, int cells, int across, BendingModel bending,
+                       double thickness, double poisson, double young)
 {
     MeshFile file = {0};
     Error err;
@@ -107,8 +108,9 @@ static void solve(Body *b, int steps, const double *from, Count *count)
 
 static void print_count(const char *name, BendingModel bending, const Count *count, double height)
 {
-    printf("equilibrium_%s_%s %d iterations (%d factorisations, %s, out of plane %.3g)\n", name, model_names[bending],
-           count->iterations, count->factorizations, newton_status_name(count->status), height);
+    printf("equilibrium_%s_%s %d iterations (%d factorisations, %s, out of plane %.3g)\n", name,
+           model_names[bending], count->iterations, count->factorizations, newton_status_name(count->status),
+           height);
     fflush(stdout);
 }
 
@@ -136,7 +138,8 @@ static Body star(BendingModel bending, double thickness)
     Body b = body_create(&file, bending, thickness, 0.5, 1e5);
     const Mesh *mesh = b.shell->mesh;
     for (int v = 0; v < mesh->vertex_count; v++)
-        for (int i = 0; hypot(mesh->rest[v][0], mesh->rest[v][1]) < 4e-3 && i < 3; i++) shell_fix(b.shell, v, i);
+        for (int i = 0; hypot(mesh->rest[v][0], mesh->rest[v][1]) < 4e-3 && i < 3; i++)
+            shell_fix(b.shell, v, i);
     prepare(&b);
     return b;
 }
@@ -149,7 +152,8 @@ static void star_problem(const char *name, BendingModel bending, double thicknes
     const Mesh *mesh = b.shell->mesh;
     for (int f = 0; f < mesh->face_count; f++) {
         double x = 0, y = 0;
-        for (int i = 0; i < 3; i++) x += mesh->rest[mesh->faces[f][i]][0], y += mesh->rest[mesh->faces[f][i]][1];
+        for (int i = 0; i < 3; i++)
+            x += mesh->rest[mesh->faces[f][i]][0], y += mesh->rest[mesh->faces[f][i]][1];
         double r = hypot(x, y);
         if (kind == ANTIPARALLEL)
             magnetise(&b, f, 0, 0, -m);
@@ -216,7 +220,8 @@ static void bars(BendingModel bending)
 static void load_rows(Body *b, int first, int stride, int count, double force)
 {
     for (int k = 0; k < count; k++)
-        b->p[b->shell->load + 3 * (first + k * stride) + 2] = force / (count - 1) * (k == 0 || k == count - 1 ? 0.5 : 1);
+        b->p[b->shell->load + 3 * (first + k * stride) + 2] =
+            force / (count - 1) * (k == 0 || k == count - 1 ? 0.5 : 1);
 }
 
 static void cantilever(const char *name, BendingModel bending, double thickness)
@@ -300,12 +305,14 @@ static void strips(BendingModel bending)
 {
     const double thickness[] = {1e-3, 4e-4, 2e-4, 1e-4, 4e-5}, parts[] = {0.5, 0.95, 1.05, 1.5, 3, 11};
     for (size_t i = 0; i < sizeof thickness / sizeof *thickness; i++)
-        for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) strip_on_edge(bending, thickness[i], parts[k], 0);
+        for (size_t k = 0; k < sizeof parts / sizeof *parts; k++)
+            strip_on_edge(bending, thickness[i], parts[k], 0);
 }
 
 /* ---- Sheets of real stiffness, 100 x 25 mm, hung from an edge or a corner ---- */
 
-static void hanging(const char *name, BendingModel bending, double thickness, double young, double density, bool corner)
+static void hanging(const char *name, BendingModel bending, double thickness, double young, double density,
+                    bool corner)
 {
     Body b = sheet_body(0.1, 0.025, 16, 4, bending, thickness, 0.3, young);
     const Mesh *mesh = b.shell->mesh;

@@ -17,7 +17,8 @@ static void march(BendingModel bending, double dt, const char *name)
     double force = 0, start = clock_seconds();
     for (int n = 0; n < steps; n++) {
         MarchInfo info;
-        if (!march_step(s.sys, &def, dt, s.p, &now, &info)) bench_fail("%s: the motion stops in step %d", name, n);
+        if (!march_step(s.sys, &def, dt, s.p, &now, &info))
+            bench_fail("%s: the motion stops in step %d", name, n);
         newton += info.newton.iterations, factorizations += info.newton.factorizations;
         cg += info.newton.cg_iterations;
         force = fmax(force, info.newton.gradient_max);

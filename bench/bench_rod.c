@@ -119,8 +119,7 @@ static void motion(void)
     double start = clock_seconds();
     for (int k = 0; k < steps; k++) {
         MarchInfo info;
-        if (!march_step(sys, &def, 0.01, o.p, &now, &info))
-            bench_fail("a rod's motion stops in step %d", k);
+        if (!march_step(sys, &def, 0.01, o.p, &now, &info)) bench_fail("a rod's motion stops in step %d", k);
         newton += info.newton.iterations;
     }
     bench_print("rod_march_200_ms_per_step", 1e3 * (clock_seconds() - start) / steps, "ms");

@@ -75,8 +75,8 @@ static void job(const char *name, double r)
     char command[1024], text[80];
     Error err;
     Array objective, seconds;
-    snprintf(command, sizeof command, "'%s' run '%s/scenes/%s.yaml' --force --quiet --no-picture -o bench_%s", PROGRAM,
-             SOURCE_DIR, name, name);
+    snprintf(command, sizeof command, "'%s' run '%s/scenes/%s.yaml' --force --quiet --no-picture -o bench_%s",
+             PROGRAM, SOURCE_DIR, name, name);
     if (system(command)) bench_fail("the job of %s fails", name);
     snprintf(command, sizeof command, "bench_%s.vtkhdf", name);
     Result *result = result_open(command, &err);

@@ -175,7 +175,8 @@ static bool read_pens(Result *result, Drawn *drawn, Error *err)
 static bool check_layers(const int *layer, int strokes, int pens, Error *err)
 {
     for (int k = 0; k < strokes; k++)
-        if (layer[k] < 0 || layer[k] >= pens) return error_set(err, "spline/pen names pens that there are not");
+        if (layer[k] < 0 || layer[k] >= pens)
+            return error_set(err, "spline/pen names pens that there are not");
     return true;
 }
 
@@ -192,7 +193,8 @@ static bool read_strokes(Result *result, const Drawn *drawn, Strokes *strokes, E
     Array start, nodes, pen;
     if (!read_array(result, "strokes", ARRAY_INT32, -1, &start, err)) return false;
     int count = (int)array_count(&start) - 1;
-    if (count < 0) return array_clear(&start), error_set(err, "the offsets spline/strokes do not fit its nodes");
+    if (count < 0)
+        return array_clear(&start), error_set(err, "the offsets spline/strokes do not fit its nodes");
     strokes->start = (int *)start.data, start.data = NULL;
     array_clear(&start);
     if (!read_array(result, "nodes", ARRAY_FLOAT64, -1, &nodes, err)) return false;

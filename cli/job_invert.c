@@ -22,9 +22,9 @@ typedef struct Inversion {
     double *x;                                                       /* simulated; NULL: not asked for */
     double *lowest, *critical_young, *tail, *contact, *round_trip, *residual, *route; /* [strands]     */
     double *gain; /* [strands] energy at the curve less that where the simulated rod rests, J */
-    int *stable, *index, *touching;                                                   /* [strands]     */
+    int *stable, *index, *touching; /* [strands]     */
     int pair_count;
-    int *pairs; /* [pair_count][3] strand, elements */
+    int *pairs;     /* [pair_count][3] strand, elements */
     double lengths; /* of the longest element, in bending lengths (stability.h) */
     NewtonStatus worst;
 } Inversion;
@@ -100,7 +100,8 @@ static void find_contacts(Inversion *o, int k)
 
 /* From the natural shape, loads in steps, back to the curve, where the rod has the given energy: how far it ends from
  * it, and how much lower. */
-static void go_round(Inversion *o, int k, Rod *rod, System *sys, const RodLayout *layout, const double *p, double energy)
+static void go_round(Inversion *o, int k, Rod *rod, System *sys, const RodLayout *layout, const double *p,
+                     double energy)
 {
     double *x = mem_alloc((size_t)layout->dofs, sizeof *x), *place = &strand_of(o, o->x, k)->x;
     RampDef def = ramp_default();
@@ -259,8 +260,10 @@ static void say_elsewhere(const Inversion *o, int elsewhere, double worst)
     for (int k = 0; k < o->strands; k++)
         if (fabs(o->gain[k]) > fabs(most)) most = o->gain[k];
     progress_say(o->run->progress,
-                 "%d of %d rods come to rest elsewhere when they are let down from their natural shape, up to %.2g m away: "
-                 "in another equilibrium, with up to %.3g J %s energy than on the curve, that lies nearer on this way (a rod "
+                 "%d of %d rods come to rest elsewhere when they are let down from their natural shape, up "
+                 "to %.2g m away: "
+                 "in another equilibrium, with up to %.3g J %s energy than on the curve, that lies nearer on "
+                 "this way (a rod "
                  "held on its curve and let go stays there where rod/stable is 1)",
                  elsewhere, o->strands, worst, fabs(most), most > 0 ? "less" : "more");
 }
@@ -288,12 +291,14 @@ static void say(const Inversion *o)
                      "which Young's modulus on it would)",
                      unstable, o->strands);
     if (o->lengths > 1)
-        progress_say(progress,
-                     "the elements are too long to tell how stable a curve is: one of them has %.2g times the "
-                     "length sqrt(EI/F) within which the rod bends; rod.elements: %.0f or more would",
-                     o->lengths, ceil(o->elements * o->lengths));
+        progress_say(
+            progress,
+            "the elements are too long to tell how stable a curve is: one of them has %.2g times the "
+            "length sqrt(EI/F) within which the rod bends; rod.elements: %.0f or more would",
+            o->lengths, ceil(o->elements * o->lengths));
     if (touching) progress_say(progress, "%d of %d natural shapes touch themselves", touching, o->strands);
-    if (elsewhere) say_elsewhere(o, elsewhere, worst);
+    if (elsewhere)
+        say_elsewhere(o, elsewhere, worst);
     else if (o->x)
         progress_say(progress, "the simulated rod rests %.2g m from its curve", worst);
 }
@@ -309,7 +314,7 @@ RunStatus job_invert(Run *run, Error *err)
     double **vectors[] = {&o.input, &o.natural, &o.strain, &o.moment, &o.strain_elements, &o.x};
     for (int i = 0; i < 6; i++, at += 3 * all) *vectors[i] = at;
     o.s = at, at += all;
-    double **scalars[] = {&o.lowest,     &o.critical_young, &o.tail, &o.contact,
+    double **scalars[] = {&o.lowest,     &o.critical_young, &o.tail,  &o.contact,
                           &o.round_trip, &o.residual,       &o.route, &o.gain};
     for (int i = 0; i < 8; i++, at += strands) *scalars[i] = at;
     if (!round_trip) o.x = NULL;

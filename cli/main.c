@@ -64,7 +64,8 @@ static int finish(int code)
 {
     bool lost = fflush(stdout) != 0 || ferror(stdout) || ferror(stderr);
     lost = fclose(stdout) != 0 || lost;
-    return lost ? verb_fail(RUN_CANNOT_WRITE, "what it prints cannot be written: all of it or a part is lost") : code;
+    return lost ? verb_fail(RUN_CANNOT_WRITE, "what it prints cannot be written: all of it or a part is lost")
+                : code;
 }
 
 int main(int argc, char **argv)

@@ -88,7 +88,8 @@ enum { CASE_NAME_MAX = 250 };
 /* It becomes a group of the result, and a line of case_names. */
 static bool is_name(const char *name)
 {
-    return *name && plain_is(name) && !strchr(name, '/') && strlen(name) <= CASE_NAME_MAX && strcmp(name, ".");
+    return *name && plain_is(name) && !strchr(name, '/') && strlen(name) <= CASE_NAME_MAX &&
+           strcmp(name, ".");
 }
 
 bool model_cases(Model *model, const Build *b, const Scene *scene, const double *p, size_t room)

@@ -92,11 +92,11 @@ struct Model {
     int gravity;    /* first entries in p                                  */
     int flux_density, field_scale;
     FluxFields *fields; /* the body's */
-    int point_count;   /* vertices or nodes                                   */
-    int load_steps;    /* of an equilibrium, unless the scene says            */
-    double step_cap;   /* of Newton                                           */
-    bool moves;        /* held coordinates do: BodyOps.move                   */
-    MeshReport report; /* warnings about the mesh */
+    int point_count;    /* vertices or nodes                                   */
+    int load_steps;     /* of an equilibrium, unless the scene says            */
+    double step_cap;    /* of Newton                                           */
+    bool moves;         /* held coordinates do: BodyOps.move                   */
+    MeshReport report;  /* warnings about the mesh */
     int case_count, motion_count;
     ModelCase *cases;
     Motion *motions;

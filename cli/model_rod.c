@@ -244,8 +244,8 @@ static bool fill(Model *model, const Scene *scene, const Build *b)
     sized.size = rm->rod->length;
     set_model(model, scene);
     return fill_cases(model, scene, &sized) &&
-           (!model_is_motion(scene->job) || model_velocity(model, b, "rod.velocity", scene->rod->velocity,
-                                                           model->x + rm->layout.position));
+           (!model_is_motion(scene->job) ||
+            model_velocity(model, b, "rod.velocity", scene->rod->velocity, model->x + rm->layout.position));
 }
 
 static const BodyOps rod_ops = {

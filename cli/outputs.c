@@ -71,7 +71,10 @@ bool outputs_check_source(const Scene *scene, const char *input, const char *out
     if (replace_is_same(output, input))
         return error_set(err, "'%s' is to be written, but it is read here; give another name", output);
     return !scene || !is_source(scene, output) ||
-           error_set(err, "'%s' is to be written, but the scene is made of it; give another name by -o or in `output`", output);
+           error_set(
+               err,
+               "'%s' is to be written, but the scene is made of it; give another name by -o or in `output`",
+               output);
 }
 
 /* Is the file one of those that a run writes itself? */
@@ -95,13 +98,19 @@ static bool is_iteration(const char *file, const char *base)
 }
 
 /* None of them replaces what the scene is made of, or another output. */
-static bool check_iterations(const Scene *scene, const char *path, const char *base, const OutputFile *files, Error *err)
+static bool check_iterations(const Scene *scene, const char *path, const char *base, const OutputFile *files,
+                             Error *err)
 {
     if (!scene->spline || scene->output.every == 0) return true;
-    const char *lost = is_iteration(path, base) ? path : yaml_find_file(&scene_table, scene, is_iteration, base);
+    const char *lost =
+        is_iteration(path, base) ? path : yaml_find_file(&scene_table, scene, is_iteration, base);
     for (int k = 0; !lost && k < FILES; k++)
         if (files[k].path && is_iteration(files[k].path, base)) lost = files[k].path;
-    return !lost || error_set(err, "'%s' would be written over by an iteration's drawing (`output.every`); give another name", lost);
+    return !lost ||
+           error_set(
+               err,
+               "'%s' would be written over by an iteration's drawing (`output.every`); give another name",
+               lost);
 }
 
 static bool check_once(const OutputFile *files, int file, const char *const *own, Error *err)
@@ -123,7 +132,8 @@ static bool check_picture(const char *path, Error *err)
     return error_set(err, "the picture '%s' must be a .png, .svg or .pdf", path);
 }
 
-static bool check_files(const OutputFile *files, const char *const *own, const Scene *scene, const char *path, Error *err)
+static bool check_files(const OutputFile *files, const char *const *own, const Scene *scene, const char *path,
+                        Error *err)
 {
     bool ok = true;
     for (int k = 0; ok && k < FILES; k++)

@@ -52,8 +52,9 @@ static bool read_magnetic(RodModel *model, const Scene *scene, const Build *b)
     if (!build_flux(b, key("flux_density"), &scene->flux_density, flux, &field)) return false;
     if (field) {
         flux_field_destroy(field);
-        return yaml_refuse(b->file, "flux_density",
-                           "an inversion knows a field that is uniform: three numbers, formulas of t, or a file");
+        return yaml_refuse(
+            b->file, "flux_density",
+            "an inversion knows a field that is uniform: three numbers, formulas of t, or a file");
     }
     bool none = flux[0] == 0 && flux[1] == 0 && flux[2] == 0,
          along = !isnan(M->value[0]) && M->value[1] == 0 && M->value[2] == 0;

@@ -7,11 +7,15 @@
 const YamlTable where_table = {
     .name = "where",
     .size = sizeof(WhereScene),
-    .doc = "A formula is one expression: numbers with a decimal point, + - * / ^ (-x^2 is -(x^2)), < <= > >= == !=, "
-           "&&, ||, c ? a : b, pi, e, and sin, cos, tan, asin, acos, atan, atan2, sinh, cosh, tanh, asinh, acosh, atanh, "
-           "exp, ln or log (natural), log2, log10, sqrt, abs, sign, rint, min, max, sum, avg, mod(a, b), clamp(x, low, high) "
+    .doc = "A formula is one expression: numbers with a decimal point, + - * / ^ (-x^2 is -(x^2)), < <= > >= "
+           "== !=, "
+           "&&, ||, c ? a : b, pi, e, and sin, cos, tan, asin, acos, atan, atan2, sinh, cosh, tanh, asinh, "
+           "acosh, atanh, "
+           "exp, ln or log (natural), log2, log10, sqrt, abs, sign, rint, min, max, sum, avg, mod(a, b), "
+           "clamp(x, low, high) "
            "and step(x), 0 below 0 and else 1. Assignments, lists and texts are refused.\n\n"
-           "Helper names of a formula, each an expression of the formula's variables and of the other names; their "
+           "Helper names of a formula, each an expression of the formula's variables and of the other names; "
+           "their "
            "order means nothing.",
     .fields = (const YamlField[]){
         {YAML_TEXT(WhereScene, formula), .required = true, .short_form = true, .doc = "the expression"},
@@ -348,7 +352,8 @@ static const YamlTable time_table = {
          .when = "/job: equilibrium, evaluate, design, simulate, trajectory, invert, identify", .unit = "s",
          .fallback = "0 s", .short_form = true, .doc = "t in statics; where a simulation begins"},
         {YAML_NUMBER(TimeScene, step), .when = MOTIONS_AND_STATICS, .unit = "s", .range = "(0, inf)",
-         .doc = "of a simulation or trajectory: the step of implicit Euler; the statics of its scene leave it"},
+         .doc =
+             "of a simulation or trajectory: the step of implicit Euler; the statics of its scene leave it"},
         {YAML_INTEGER(TimeScene, steps), .when = MOTIONS_AND_STATICS, .range = "[1, inf)",
          .doc = "of a simulation or trajectory: how many"},
         {0}}};
@@ -367,7 +372,8 @@ static const YamlTable output_table = {
         {YAML_INTEGER(OutputScene, every), .when = "/job: design, simulate, trajectory, draw",
          .range = "[0, inf)", .fallback = "0",
          .doc = "a frame for every so many steps of a motion (0: every step) or improvements of a design (0: "
-                "the final one only); of a drawing: NAME-000020.svg and so on, after every so many iterations (0: none)"},
+                "the final one only); of a drawing: NAME-000020.svg and so on, after every so many "
+                "iterations (0: none)"},
         {YAML_CHOICE(OutputScene, precision),
          .when = "/job: equilibrium, evaluate, design, simulate, trajectory, invert",
          .choices = YAML_NAMES("single", "double"), .fallback = "single",

@@ -223,49 +223,48 @@ static const YamlTable z_axis_table = {
     .name = "z_axis",
     .size = sizeof(ZAxisScene),
     .doc = "Of a plotter whose pen is on a z axis, for `output.gcode`.",
-    .fields = (const YamlField[]){{YAML_NUMBER(ZAxisScene, up), .unit = "m", .range = "[-0.1, 0.1]",
-                                   .fallback = "5 mm", .doc = "z of the lifted pen"},
-                                  {YAML_NUMBER(ZAxisScene, down), .unit = "m", .range = "[-0.1, 0.1]",
-                                   .fallback = "0 mm", .doc = "z of the pen on the paper"},
-                                  {YAML_NUMBER(ZAxisScene, speed), .unit = "m/s", .range = "[1.0e-5, 10]",
-                                   .fallback = "10 mm/s",
-                                   .doc = "at most; where `lift` is longer, it goes slower"},
-                                  {0}}};
+    .fields =
+        (const YamlField[]){{YAML_NUMBER(ZAxisScene, up), .unit = "m", .range = "[-0.1, 0.1]",
+                             .fallback = "5 mm", .doc = "z of the lifted pen"},
+                            {YAML_NUMBER(ZAxisScene, down), .unit = "m", .range = "[-0.1, 0.1]",
+                             .fallback = "0 mm", .doc = "z of the pen on the paper"},
+                            {YAML_NUMBER(ZAxisScene, speed), .unit = "m/s", .range = "[1.0e-5, 10]",
+                             .fallback = "10 mm/s", .doc = "at most; where `lift` is longer, it goes slower"},
+                            {0}}};
 
 static const YamlTable servo_table = {
     .name = "servo",
     .size = sizeof(ServoScene),
     .doc = "Of a plotter whose pen is on a servo, for `output.gcode_servo`. After each command it waits for "
            "half of `lift` (G4).",
-    .fields = (const YamlField[]){{YAML_TEXT(ServoScene, up), .fallback = "M5",
-                                   .doc = "the command that lifts the pen, as M3 S90 or M280 P0 S90: up to 60 "
-                                          "letters, digits, spaces and . - + _ ="},
-                                  {YAML_TEXT(ServoScene, down), .fallback = "M3 S30",
-                                   .doc = "the command that lowers it"},
-                                  {YAML_CHOICE(ServoScene, pause),
-                                   .choices = YAML_NAMES("seconds", "milliseconds"), .fallback = "seconds",
-                                   .doc = "what G4 P counts: seconds (GRBL, LinuxCNC) or milliseconds "
-                                          "(Marlin)"},
-                                  {0}}};
+    .fields = (const YamlField[]){
+        {YAML_TEXT(ServoScene, up), .fallback = "M5",
+         .doc = "the command that lifts the pen, as M3 S90 or M280 P0 S90: up to 60 "
+                "letters, digits, spaces and . - + _ ="},
+        {YAML_TEXT(ServoScene, down), .fallback = "M3 S30", .doc = "the command that lowers it"},
+        {YAML_CHOICE(ServoScene, pause), .choices = YAML_NAMES("seconds", "milliseconds"),
+         .fallback = "seconds",
+         .doc = "what G4 P counts: seconds (GRBL, LinuxCNC) or milliseconds "
+                "(Marlin)"},
+        {0}}};
 
 static const YamlTable plotter_table = {
     .name = "plotter",
     .size = sizeof(PlotterScene),
-    .doc = "How fast the plotter is and how it lifts its pen, for its files and the time that plotting takes. "
-           "HPGL files have the speed `down` in whole cm/s (VS); such a plotter lifts the pen as it can.",
-    .fields = (const YamlField[]){{YAML_NUMBER(PlotterScene, down), .unit = "m/s", .range = "[1.0e-5, 10]",
-                                   .fallback = "40 mm/s", .doc = "with the pen on the paper"},
-                                  {YAML_NUMBER(PlotterScene, up), .unit = "m/s", .range = "[1.0e-5, 10]",
-                                   .fallback = "100 mm/s", .doc = "with the pen lifted"},
-                                  {YAML_NUMBER(PlotterScene, lift), .unit = "s", .range = "[0, 60]",
-                                   .fallback = "0.3 s",
-                                   .doc = "to lift and to lower it, together; a z axis takes longer where its "
-                                          "speed asks for that"},
-                                  {YAML_OPTIONAL(PlotterScene, z, &z_axis_table),
-                                   .doc = "of a pen on a z axis"},
-                                  {YAML_OPTIONAL(PlotterScene, servo, &servo_table),
-                                   .doc = "of a pen on a servo"},
-                                  {0}}};
+    .doc =
+        "How fast the plotter is and how it lifts its pen, for its files and the time that plotting takes. "
+        "HPGL files have the speed `down` in whole cm/s (VS); such a plotter lifts the pen as it can.",
+    .fields = (const YamlField[]){
+        {YAML_NUMBER(PlotterScene, down), .unit = "m/s", .range = "[1.0e-5, 10]", .fallback = "40 mm/s",
+         .doc = "with the pen on the paper"},
+        {YAML_NUMBER(PlotterScene, up), .unit = "m/s", .range = "[1.0e-5, 10]", .fallback = "100 mm/s",
+         .doc = "with the pen lifted"},
+        {YAML_NUMBER(PlotterScene, lift), .unit = "s", .range = "[0, 60]", .fallback = "0.3 s",
+         .doc = "to lift and to lower it, together; a z axis takes longer where its "
+                "speed asks for that"},
+        {YAML_OPTIONAL(PlotterScene, z, &z_axis_table), .doc = "of a pen on a z axis"},
+        {YAML_OPTIONAL(PlotterScene, servo, &servo_table), .doc = "of a pen on a servo"},
+        {0}}};
 
 const YamlTable spline_table = {
     .name = "spline",
@@ -273,7 +272,8 @@ const YamlTable spline_table = {
     .doc = "A drawing: strokes, cubic splines, that relax until their ink has the tones of a picture.",
     .fields = (const YamlField[]){
         {YAML_FILE(SplineScene, image), .one_of = 1, .required = true,
-         .doc = "the picture: PNG, JPEG, PGM or PPM of at most 400 million pixels, turned upright as its Exif tag "
+         .doc = "the picture: PNG, JPEG, PGM or PPM of at most 400 million pixels, turned upright as its "
+                "Exif tag "
                 "says"},
         {YAML_OPTIONAL(SplineScene, density, &field_density_table), .one_of = 1, .required = true,
          .doc = "no picture, but the part of the paper that ink covers"},

@@ -10,6 +10,5 @@ extern const YamlTable spline_table;                                 /* scene_sp
 
 #define WHERE_ROW(S)                                                                                         \
     {                                                                                                        \
-        YAML_MAP(S, where, &where_table), .when = "formula",                                                 \
-                                          .doc = "names for parts of the formula"                            \
+        YAML_MAP(S, where, &where_table), .when = "formula", .doc = "names for parts of the formula"         \
     }

@@ -154,7 +154,8 @@ static bool add_frame(Show *show, int frame, Error *err)
         result_read_rows(result, "slender/frames/flux_density", frame, 1, &flux, NULL)) {
         char number[64];
         const double *B = show_keep(show->data, flux);
-        if (!array_is(&flux, ARRAY_FLOAT64, 2, 3)) return error_set(err, "slender/frames/flux_density is not as slender writes it");
+        if (!array_is(&flux, ARRAY_FLOAT64, 2, 3))
+            return error_set(err, "slender/frames/flux_density is not as slender writes it");
         panel->flux_density = B;
         unit_format(vec3_length(vec3_load(panel->flux_density)), "T", number, sizeof number);
         panel->note = show_text(show->data, "B = %s", number);
@@ -195,7 +196,8 @@ static bool add_cases(Show *show, Error *err)
     Array names;
     if (!result_has(show->data->result, "slender/case_names"))
         return error_set(err, "the result has no state yet");
-    if (!result_read_as(show->data->result, "slender/case_names", ARRAY_TEXT, 1, 0, &names, err)) return false;
+    if (!result_read_as(show->data->result, "slender/case_names", ARRAY_TEXT, 1, 0, &names, err))
+        return false;
     char *rest = NULL;
     for (char *name = strtok_r((char *)names.data, "\n", &rest); name; name = strtok_r(NULL, "\n", &rest))
         if (!show->def->only || !strcmp(show->def->only, name)) add_case(show, name);

@@ -92,9 +92,11 @@ bool show_check_frame(const ShowData *data, int frame, Error *err)
 char *show_frame_name(ShowData *data, int frame)
 {
     Array times;
-    bool known = data->motion && result_read_rows(data->result, "VTKHDF/Steps/Values", frame, 1, &times, NULL);
+    bool known =
+        data->motion && result_read_rows(data->result, "VTKHDF/Steps/Values", frame, 1, &times, NULL);
     if (!known) return show_text(data, "frame %d", frame);
-    char *name = show_text(data, "t = %.4g s", array_is(&times, ARRAY_FLOAT64, 1, 1) ? *(const double *)times.data : NAN);
+    char *name = show_text(data, "t = %.4g s",
+                           array_is(&times, ARRAY_FLOAT64, 1, 1) ? *(const double *)times.data : NAN);
     array_clear(&times);
     return name;
 }

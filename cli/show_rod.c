@@ -18,7 +18,7 @@ typedef struct RodPage {
     const int *strands; /* [strand_count + 1] first point of each */
     const double (*input)[3], (*natural)[3], (*x)[3];
     const char *input_name; /* "input", or the "target" of a design */
-    CurvesSet *sets; /* owned */
+    CurvesSet *sets;        /* owned */
     int set_count;
     const char *lines[LINES_MAX];
     int line_count;

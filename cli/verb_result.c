@@ -57,7 +57,7 @@ static void print_title(Result *result, const char *path)
     Array status = {0};
     bool known = result_read(result, "slender/status", &status, NULL);
     say(stdout, "%s: %s%s%d frames", path, known ? (const char *)status.data : "", known ? ", " : "",
-           result_step_count(result));
+        result_step_count(result));
     array_clear(&status);
     Array kernels = {0};
     if (result_read(result, "slender/kernels", &kernels, NULL))
@@ -253,7 +253,8 @@ static bool write_export(Result *result, const Export *what, Error *err)
 {
     const char *path = what->output;
     if (what->dataset)
-        return check_ending(path, "numbers are", ".csv", err) && export_dataset(result, what->dataset, path, err);
+        return check_ending(path, "numbers are", ".csv", err) &&
+               export_dataset(result, what->dataset, path, err);
     if (drawn_has(result)) return export_drawing(result, what->language, path, err);
     return check_ending(path, "a mesh is", ".obj", err) && export_frame(result, what->frame, path, err);
 }
@@ -277,8 +278,7 @@ static bool result_def(Journal *journal, const char *input, const char *output, 
     *def = (ResultDef){0};
     if (!journal_find(journal, "meta", 0, "scene", &text, err)) return false;
     if (!text.data) return true;
-    if (verb_stored_scene(&text, &file, &scene))
-        def->double_frames = scene.output.precision == OUTPUT_DOUBLE;
+    if (verb_stored_scene(&text, &file, &scene)) def->double_frames = scene.output.precision == OUTPUT_DOUBLE;
     bool ok = outputs_check_source(&scene, input, output, err);
     yaml_clear(&scene_table, &scene);
     yaml_destroy(file);

@@ -38,7 +38,8 @@ static const char usage[] =
     "  --margin LENGTH  of a drawing: 10mm\n"
     "  --resume         goes on with a run that was interrupted, or extends one that has finished\n"
     "  --force          discards an unfinished run of that name\n"
-    "  --threads N      load cases at once, parts of a drawing's tone, 1 to 64; default: as many as there are "
+    "  --threads N      load cases at once, parts of a drawing's tone, 1 to 64; default: as many as there "
+    "are "
     "processors\n"
     "  --quiet          says nothing but errors; --log=json: one JSON object per line";
 
@@ -187,8 +188,8 @@ static bool put_start(Run *run, const char *scene, const char *inputs, Error *er
     Arrays statics = {0};
     char *kernels = run_kernels(run->journal, err), *versions = kernels ? run_versions() : NULL;
     if (!kernels) return false;
-    Array meta[] = {array_text("scene", scene), array_text("versions", versions), array_text("kernels", kernels),
-                    array_text("inputs", inputs)};
+    Array meta[] = {array_text("scene", scene), array_text("versions", versions),
+                    array_text("kernels", kernels), array_text("inputs", inputs)};
     run->model->body->add_static(run->model, &statics);
     bool ok = journal_replace(run->journal, "meta", 0, meta, *inputs ? 4 : 3, err) &&
               journal_replace(run->journal, "final", 0, NULL, 0, err);
@@ -293,8 +294,9 @@ static int threads_of(const RunOptions *options, const Model *model)
 
 static void warn_sidecar(const RunOptions *options, const char *result)
 {
-    static const char words[] = "no .xdmf (for ParaView 5.11) is written beside it, since XDMF cannot name this file: a name "
-                                "without : and |, control characters, and blanks at its ends can be";
+    static const char words[] =
+        "no .xdmf (for ParaView 5.11) is written beside it, since XDMF cannot name this file: a name "
+        "without : and |, control characters, and blanks at its ends can be";
     char *sentence = mem_format("'%s': %s", result, words);
     progress_tell(options->mode, "warning", sentence);
     say(stderr, "warning: %s", sentence);
@@ -308,8 +310,11 @@ static int run_model(const RunOptions *options, const Scene *scene, Model *model
     char *name =
         options->output ? verb_without_ending(options->output, ".vtkhdf") : verb_base_name(options->scene);
     char *result = mem_format("%s.vtkhdf", name), *journal = mem_format("%s.run", name);
-    Run run = {
-        .scene = scene, .model = model, .progress = &progress, .result = result, .threads = threads_of(options, model)};
+    Run run = {.scene = scene,
+               .model = model,
+               .progress = &progress,
+               .result = result,
+               .threads = threads_of(options, model)};
     JournalMode mode = options->resume ? JOURNAL_RESUME : options->force ? JOURNAL_FORCE : JOURNAL_NEW;
     if (check_output(options->output, result, &err) &&
         outputs_check(scene, options->scene, result, !options->no_picture, &err))
@@ -330,8 +335,8 @@ static void tell_scene(const RunOptions *options, const YamlFile *file, const Mo
     int count;
     const YamlError *errors = yaml_errors(file, &count);
     for (int k = 0; k < count; k++) {
-        char *sentence = errors[k].line ? mem_format("%s:%d:%d: %s", options->scene, errors[k].line, errors[k].column,
-                                                     errors[k].sentence)
+        char *sentence = errors[k].line ? mem_format("%s:%d:%d: %s", options->scene, errors[k].line,
+                                                     errors[k].column, errors[k].sentence)
                                         : mem_format("%s: %s", options->scene, errors[k].sentence);
         progress_tell(options->mode, "error", sentence);
         mem_free(sentence);

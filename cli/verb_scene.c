@@ -54,7 +54,8 @@ int verb_mesh(int argc, char **argv)
     if (model && !model->shell)
         code = verb_fail(RUN_REFUSED, "the scene has no mesh");
     else if (model) {
-        bool ok = outputs_check_source(&scene, argv[optind], path, &err) && write_mesh(model->shell->mesh, path, &err);
+        bool ok = outputs_check_source(&scene, argv[optind], path, &err) &&
+                  write_mesh(model->shell->mesh, path, &err);
         code = ok ? RUN_DONE : verb_fail(RUN_CANNOT_WRITE, err.text);
     }
     model_destroy(model);

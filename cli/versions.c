@@ -21,9 +21,10 @@ char *run_kernels(Journal *journal, Error *err)
     bool same = !strcmp(last, now);
     if (!same)
         say(stderr,
-                "warning: this run was begun with OpenBLAS's kernels %s and goes on with %s: its numbers are not, bit for "
-                "bit, those of an unbroken run; OPENBLAS_CORETYPE=%s keeps to the old ones",
-                last, now, last);
+            "warning: this run was begun with OpenBLAS's kernels %s and goes on with %s: its numbers are "
+            "not, bit for "
+            "bit, those of an unbroken run; OPENBLAS_CORETYPE=%s keeps to the old ones",
+            last, now, last);
     char *all = same ? mem_text(before.data) : mem_format("%s, %s", (const char *)before.data, now);
     array_clear(&before);
     return all;
@@ -32,9 +33,9 @@ char *run_kernels(Journal *journal, Error *err)
 char *run_versions(void)
 {
     const char *note = kernels_note();
-    return mem_format("slender %s\nCHOLMOD %s\n%s%s\nkernels %s%s%s\nNLopt %s\nHDF5 %s\nSQLite %s\n", SLENDER_VERSION,
-                      sparse_version(), kernels_blas_version(),
-                      kernels_blas_is_fast() ? "" : " (slow: OpenBLAS is ten times faster)",
-                      kernels_name(), *note ? ", " : "", note,
-                      optimiser_nlopt_version(), result_hdf5_version(), journal_sqlite_version());
+    return mem_format("slender %s\nCHOLMOD %s\n%s%s\nkernels %s%s%s\nNLopt %s\nHDF5 %s\nSQLite %s\n",
+                      SLENDER_VERSION, sparse_version(), kernels_blas_version(),
+                      kernels_blas_is_fast() ? "" : " (slow: OpenBLAS is ten times faster)", kernels_name(),
+                      *note ? ", " : "", note, optimiser_nlopt_version(), result_hdf5_version(),
+                      journal_sqlite_version());
 }

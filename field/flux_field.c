@@ -113,13 +113,15 @@ static void sample_dipole(const FluxField *field, Vec3 x, FluxSample *sample)
         sample->flux[k] = 3 * r[k] * mr * s5 - m[k] * s3;
         for (int l = 0; l < 3; l++) {
             double kl = k == l;
-            sample->gradient[k][l] = 3 * s5 * (kl * mr + r[k] * m[l] + m[k] * r[l]) - 15 * s7 * mr * r[k] * r[l];
+            sample->gradient[k][l] =
+                3 * s5 * (kl * mr + r[k] * m[l] + m[k] * r[l]) - 15 * s7 * mr * r[k] * r[l];
             for (int n = 0; n < 3; n++) {
                 double kn = k == n, ln = l == n;
-                sample->curvature[k][l][n] = 3 * s5 * (kl * m[n] + kn * m[l] + ln * m[k]) -
-                                             15 * s7 * (kl * mr * r[n] + r[k] * m[l] * r[n] + m[k] * r[l] * r[n]) -
-                                             15 * s7 * (m[n] * r[k] * r[l] + mr * (kn * r[l] + ln * r[k])) +
-                                             105 * s9 * mr * r[k] * r[l] * r[n];
+                sample->curvature[k][l][n] =
+                    3 * s5 * (kl * m[n] + kn * m[l] + ln * m[k]) -
+                    15 * s7 * (kl * mr * r[n] + r[k] * m[l] * r[n] + m[k] * r[l] * r[n]) -
+                    15 * s7 * (m[n] * r[k] * r[l] + mr * (kn * r[l] + ln * r[k])) +
+                    105 * s9 * mr * r[k] * r[l] * r[n];
             }
         }
     }

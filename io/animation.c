@@ -61,8 +61,8 @@ bool animation_add(Animation *animation, Canvas *page, double seconds, Error *er
     if (picture.error_code == VP8_ENC_ERROR_OUT_OF_MEMORY) mem_exhausted("libwebp");
     WebPPictureFree(&picture);
     if (!ok)
-        return error_set(err, "%s: a page of %d x %d pixels cannot be encoded: %s", animation->path, width, height,
-                         WebPAnimEncoderGetError(animation->encoder));
+        return error_set(err, "%s: a page of %d x %d pixels cannot be encoded: %s", animation->path, width,
+                         height, WebPAnimEncoderGetError(animation->encoder));
     animation->seconds += seconds;
     return true;
 }

@@ -71,8 +71,8 @@ static bool check_assignment(const char *text, Error *err)
     for (const char *c = text; *c; c++) {
         bool compares = c[1] == '=' || (c > text && strchr("=<>!", c[-1]));
         if (*c == '=' && !compares)
-            return error_set(err, "\"%s\": the = at position %d is no part of an expression; == compares", text,
-                             (int)(c - text));
+            return error_set(err, "\"%s\": the = at position %d is no part of an expression; == compares",
+                             text, (int)(c - text));
     }
     return true;
 }
@@ -182,8 +182,9 @@ static bool check_item(Formula *formula, const Evaluator *own, int i, Error *err
     int results = 1;
     mupEvalMulti(parser, &results);
     if (results != 1)
-        return error_set(err, "\"%s\": a list of %d; a formula is one expression, and numbers have a decimal point",
-                         item->text, results);
+        return error_set(
+            err, "\"%s\": a list of %d; a formula is one expression, and numbers have a decimal point",
+            item->text, results);
     int used = mupGetExprVarNum(parser);
     for (int k = 0; k < used; k++) {
         const char *name;
@@ -201,9 +202,11 @@ static bool check_name(const Formula *formula, int slot, Error *err)
     const char *name = formula->names[slot];
     size_t good = strspn(name, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789");
     if (!*name || name[good] || (*name >= '0' && *name <= '9'))
-        return error_set(err, "'%s' is no name for a part of a formula: letters, digits and _, a letter first", name);
+        return error_set(
+            err, "'%s' is no name for a part of a formula: letters, digits and _, a letter first", name);
     bool taken = slot_of(formula, name, slot) >= 0 || !strcmp(name, "pi") || !strcmp(name, "e");
-    return !taken || error_set(err, "the name '%s' has a meaning in this formula already; take another one", name);
+    return !taken ||
+           error_set(err, "the name '%s' has a meaning in this formula already; take another one", name);
 }
 
 /* Is the name a word of the expression? */
@@ -246,7 +249,8 @@ static bool order_helpers(const FormulaHelper *helpers, int count, int order[MAX
 static bool check_items(Formula *formula, Error *err)
 {
     bool ok = true;
-    for (int i = 0; ok && i < formula->helper_count; i++) ok = check_name(formula, formula->variable_count + i, err);
+    for (int i = 0; ok && i < formula->helper_count; i++)
+        ok = check_name(formula, formula->variable_count + i, err);
     for (int i = 0; ok && i < item_count(formula); i++) ok = check_text(formula->items[i].text, err);
     if (!ok) return false;
     Evaluator *own = take(formula);

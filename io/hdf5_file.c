@@ -381,7 +381,8 @@ static bool read_numbers(hid_t dataset, hid_t type, hid_t space, Array *array)
     void *data = mem_alloc(total, 8);
     array->data = data;
     if (total > 0)
-        ok = H5Dread(dataset, integer ? H5T_NATIVE_INT64 : H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, data) >= 0;
+        ok = H5Dread(dataset, integer ? H5T_NATIVE_INT64 : H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT,
+                     data) >= 0;
     if (ok && integer) {
         array->data = mem_alloc(total, sizeof(int32_t));
         ok = narrow(data, total, (int32_t *)array->data);
@@ -403,7 +404,8 @@ static bool read_dataset(const Hdf5 *file, hid_t dataset, int first, int count, 
     if (ok && class == H5T_STRING)
         ok = read_text(file, dataset, type, space, array);
     else
-        ok = ok && number && select_rows(space, first, count, array) && read_numbers(dataset, type, space, array);
+        ok = ok && number && select_rows(space, first, count, array) &&
+             read_numbers(dataset, type, space, array);
     H5Sclose(space);
     H5Tclose(type);
     return ok;
@@ -482,7 +484,8 @@ bool hdf5_list(Hdf5 *file, char ***paths, int *count, Error *err)
     mem_free(table);
     *paths = NULL;
     return error_set(err,
-                     "what is in it is not as slender writes it: groups more than %d deep, names of more than %d bytes, or "
+                     "what is in it is not as slender writes it: groups more than %d deep, names of more "
+                     "than %d bytes, or "
                      "more than %d of them",
                      DEPTH_MAX, PATH_MAX_BYTES, NAMES_MAX);
 }

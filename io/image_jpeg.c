@@ -68,8 +68,7 @@ static bool has_all_scans(const struct jpeg_decompress_struct *jpeg)
     bool all = true;
     for (int c = 0; c < jpeg->num_components; c++) {
         all = all && jpeg->comp_info[c].quant_table;
-        for (int k = 0; jpeg->progressive_mode && k < DCTSIZE2; k++)
-            all = all && jpeg->coef_bits[c][k] == 0;
+        for (int k = 0; jpeg->progressive_mode && k < DCTSIZE2; k++) all = all && jpeg->coef_bits[c][k] == 0;
     }
     return all;
 }

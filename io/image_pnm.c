@@ -83,10 +83,9 @@ static bool read_binary_levels(Reader *reader, Levels *levels, Error *err)
         for (size_t k = 0; k < count; k++) {
             int level = size == 2 ? b[2 * k] << 8 | b[2 * k + 1] : b[k];
             if (level > levels->maximum)
-                return error_set(err, "%s: level %d of pixel %zu exceeds the file's maximum %d",
-                                 reader->file->path, level,
-                                 (size_t)i * (size_t)levels->width + k / (size_t)levels->channels,
-                                 levels->maximum);
+                return error_set(
+                    err, "%s: level %d of pixel %zu exceeds the file's maximum %d", reader->file->path, level,
+                    (size_t)i * (size_t)levels->width + k / (size_t)levels->channels, levels->maximum);
         }
         levels_add_row(levels, i, b, size);
     }

@@ -100,7 +100,8 @@ static void write_faces(Text *text, const MeshFile *mesh)
     for (int f = 0; f < mesh->face_count; f++) {
         if (f == 0 ? of.first[1] > 0 : !same_groups(&of, f, f - 1)) {
             text_add(text, "g");
-            for (int k = of.first[f]; k < of.first[f + 1]; k++) write_name(text, mesh->groups[of.groups[k]].name);
+            for (int k = of.first[f]; k < of.first[f + 1]; k++)
+                write_name(text, mesh->groups[of.groups[k]].name);
             text_add(text, "\n");
         }
         text_add(text, "f %d %d %d\n", mesh->faces[f][0] + 1, mesh->faces[f][1] + 1, mesh->faces[f][2] + 1);
@@ -129,7 +130,8 @@ bool mesh_file_write_obj(const char *path, const MeshFile *mesh, Error *err)
 {
     Text text = {0};
     for (int v = 0; v < mesh->vertex_count; v++)
-        text_add(&text, "v %.17g %.17g %.17g\n", mesh->vertices[v][0], mesh->vertices[v][1], mesh->vertices[v][2]);
+        text_add(&text, "v %.17g %.17g %.17g\n", mesh->vertices[v][0], mesh->vertices[v][1],
+                 mesh->vertices[v][2]);
     write_faces(&text, mesh);
     write_groups(&text, mesh);
     bool ok = safe_file_write(path, text.text ? text.text : "", text.length, false, err);

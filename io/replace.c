@@ -64,5 +64,6 @@ bool replace_check(const char *path, Error *err)
     if (there && !S_ISREG(info.st_mode))
         return error_set(err, "'%s' cannot be written: it is %s", path,
                          S_ISDIR(info.st_mode) ? "a folder" : "no file, but a device or pipe");
-    return !is_journal(path) || error_set(err, "'%s' is not overwritten: it is a run's journal, or another database", path);
+    return !is_journal(path) ||
+           error_set(err, "'%s' is not overwritten: it is a run's journal, or another database", path);
 }

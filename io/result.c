@@ -14,7 +14,8 @@
 /* Texts that are attributes of the group, not datasets in it. */
 static const struct {
     const char *path, *kind, *name, *absent;
-} attributes[] = {{"slender/status", "final", "status", "unfinished"}, {"slender/kernels", "meta", "kernels", NULL}};
+} attributes[] = {{"slender/status", "final", "status", "unfinished"},
+                  {"slender/kernels", "meta", "kernels", NULL}};
 
 enum { ATTRIBUTES = sizeof attributes / sizeof *attributes };
 
@@ -258,9 +259,11 @@ static bool keep(bool fits, const char *path, Array *array, Error *err)
     return error_set(err, "%s is not as slender writes it", path);
 }
 
-bool result_read_as(Result *result, const char *path, ArrayType type, int rank, int width, Array *array, Error *err)
+bool result_read_as(Result *result, const char *path, ArrayType type, int rank, int width, Array *array,
+                    Error *err)
 {
-    return result_read(result, path, array, err) && keep(array_is(array, type, rank, width), path, array, err);
+    return result_read(result, path, array, err) &&
+           keep(array_is(array, type, rank, width), path, array, err);
 }
 
 bool result_read_rows(Result *result, const char *path, int first, int count, Array *array, Error *err)
@@ -304,7 +307,8 @@ bool result_read_step(Result *result, const char *name, int step, Array *array, 
     ok = ok && offset_at(result, offsets, step, &first, err) &&
          offset_at(result, cell ? "VTKHDF/NumberOfCells" : "VTKHDF/NumberOfPoints", 0, &count, err) &&
          hdf5_read(result->file, path, first, count, array, err) &&
-         keep(array->type == ARRAY_FLOAT64 && array->rank >= 1 && (!points || array_is(array, ARRAY_FLOAT64, 2, 3)),
+         keep(array->type == ARRAY_FLOAT64 && array->rank >= 1 &&
+                  (!points || array_is(array, ARRAY_FLOAT64, 2, 3)),
               path, array, err);
     mem_free(path);
     mem_free(offsets);

@@ -26,9 +26,9 @@ typedef struct VtkFrames {
     int vertex_count, count; /* vertices with those that stand still */
     int still_count;
     double (*still)[3]; /* [still_count] points of static/still, the last ones of every frame */
-    int *frames;   /* [count] indices of the journal */
-    double *times; /* [count] s */
-    char **fields; /* names of the first frame: those that the file has */
+    int *frames;        /* [count] indices of the journal */
+    double *times;      /* [count] s */
+    char **fields;      /* names of the first frame: those that the file has */
     int field_count;
 } VtkFrames;
 

@@ -65,7 +65,8 @@ static void add_field(Sidecar *sidecar, const Field *field, int step)
     char *path = mem_format("VTKHDF/%s/%s", field->cell ? "CellData" : "PointData", field->name);
     text_add(&sidecar->text, "        <Attribute Name=\"");
     text_add_xml(&sidecar->text, field->name);
-    text_add(&sidecar->text, "\" AttributeType=\"%s\" Center=\"%s\">", field->width == 3 ? "Vector" : "Scalar", field->cell ? "Cell" : "Node");
+    text_add(&sidecar->text, "\" AttributeType=\"%s\" Center=\"%s\">",
+             field->width == 3 ? "Vector" : "Scalar", field->cell ? "Cell" : "Node");
     add_item(sidecar, path, field->first[step], field->count, field->width, field->stored * field->count,
              sidecar->real);
     text_add(&sidecar->text, "        </Attribute>\n");

@@ -428,12 +428,13 @@ bool yaml_load(YamlFile *file, const YamlTable *table, void *scene)
 
 /* ---- Files ---- */
 
-static const char *find_in_row(const YamlField *row, void *scene, bool (*is)(const char *file, const char *other),
-                               const char *other)
+static const char *find_in_row(const YamlField *row, void *scene,
+                               bool (*is)(const char *file, const char *other), const char *other)
 {
     void *member = row_member(row, scene);
     if (row->kind == FIELD_TABLE) return yaml_find_file(row->table, member, is, other);
-    bool file = row->kind == FIELD_FILE, tables = row->kind == FIELD_OPTIONAL || row->kind == FIELD_LIST || row->kind == FIELD_MAP;
+    bool file = row->kind == FIELD_FILE,
+         tables = row->kind == FIELD_OPTIONAL || row->kind == FIELD_LIST || row->kind == FIELD_MAP;
     char *block = file || tables ? *(char **)member : NULL;
     if (file) return block && is(block, other) ? block : NULL;
     int count = row->count_offset ? *row_count(row, scene) : 1;
@@ -443,8 +444,8 @@ static const char *find_in_row(const YamlField *row, void *scene, bool (*is)(con
     return found;
 }
 
-const char *yaml_find_file(const YamlTable *table, const void *scene, bool (*is)(const char *file, const char *other),
-                           const char *other)
+const char *yaml_find_file(const YamlTable *table, const void *scene,
+                           bool (*is)(const char *file, const char *other), const char *other)
 {
     const char *found = NULL;
     for (const YamlField *row = table->fields; row->key && !found; row++)

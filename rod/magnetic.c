@@ -55,7 +55,8 @@ static Pack3 to_body(const Node *node, Pack3 v)
 }
 
 /* The field of the numbers in values, which are laid out as p: p's own, or derivatives. */
-static void set_field(const RodTerm *term, const Point *at, const Pack *place, const double *values, Node *node)
+static void set_field(const RodTerm *term, const Point *at, const Pack *place, const double *values,
+                      Node *node)
 {
     const Rod *rod = term->rod;
     FluxNumbers numbers = {values + rod->flux_density, values + rod->field_scale};

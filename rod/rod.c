@@ -127,7 +127,10 @@ System *rod_system(const Rod *rod, double young, bool dynamic)
         {.first = layout.position, .count = 3 * layout.nodes, .size = rod->length},
         {.first = layout.turn, .count = 3 * layout.nodes, .size = 1},
         {.first = layout.multiplier, .count = end - 3, .size = INFINITY, .multipliers = true},
-        {.first = layout.multiplier + end - 3, .count = 3, .size = INFINITY, .multipliers = true,
+        {.first = layout.multiplier + end - 3,
+         .count = 3,
+         .size = INFINITY,
+         .multipliers = true,
          .force = rod->end == ROD_FREE ? 0 : PUSH * bend / pow(rod->length, 2)}};
     System *sys = system_create(layout.dofs, classes, 4);
     add_terms(sys, rod, &layout, HOLD * bend / pow(rod->length, 3));

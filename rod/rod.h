@@ -33,7 +33,7 @@ typedef struct Rod {
     Vec3 position;         /* of the first node, m                         */
     Quat frame;            /* of the first node                            */
     RodSupport start, end; /* start: clamped or pinned                     */
-    Vec3 *bow; /* [elements] m, in the first node's frame: how far an element's chord is off that of a
+    Vec3 *bow;         /* [elements] m, in the first node's frame: how far an element's chord is off that of a
                 * helix, because strain varies within it; usually 0; owned */
     FluxFields fields; /* parts of the flux density that vary in space; owned. Not for the hanging form */
 

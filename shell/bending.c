@@ -20,10 +20,10 @@ enum { FLAP = 9, ALPHA = 18 };
 
 typedef struct BendingPack {
     int face[PACK_LANES], edge[3][PACK_LANES];
-    Pack form[6];                           /* C as a packed lower triangle, m^3; 0 where the face is rigid */
-    Pack weight[3], rest[3], sign[3];       /* of theta; its rest value; s */
-    Pack3 mirror[3];                        /* t of clamped edges, else 0 */
-    bool mirrored;                          /* any lane */
+    Pack form[6];                     /* C as a packed lower triangle, m^3; 0 where the face is rigid */
+    Pack weight[3], rest[3], sign[3]; /* of theta; its rest value; s */
+    Pack3 mirror[3];                  /* t of clamped edges, else 0 */
+    bool mirrored;                    /* any lane */
 } BendingPack;
 
 typedef struct Bending {
@@ -60,7 +60,8 @@ static void bending_dofs(const void *self, int face, int *dof)
         dof[FLAP + i] = 3 * bending->flap[face][i / 3] + i % 3;
     }
     if (bending->shell->bending == BENDING_MIDEDGE)
-        for (int i = 0; i < 3; i++) dof[ALPHA + i] = shell_angle_dof(bending->shell, mesh->face_edges[face][i]);
+        for (int i = 0; i < 3; i++)
+            dof[ALPHA + i] = shell_angle_dof(bending->shell, mesh->face_edges[face][i]);
 }
 
 static Pack3 flap_position(const BendingPack *face, const Pack *x, int i)
@@ -73,8 +74,8 @@ static Pack3 flap_position(const BendingPack *face, const Pack *x, int i)
 
 static Dihedral angle_of(const BendingPack *face, const Pack *x, int i)
 {
-    return dihedral_angle(pack3_load(x + 3 * ((i + 1) % 3)), pack3_load(x + 3 * ((i + 2) % 3)), pack3_load(x + 3 * i),
-                          flap_position(face, x, i));
+    return dihedral_angle(pack3_load(x + 3 * ((i + 1) % 3)), pack3_load(x + 3 * ((i + 2) % 3)),
+                          pack3_load(x + 3 * i), flap_position(face, x, i));
 }
 
 /* atan2 jumps by 2 pi at a full fold; the angle wanted is the one nearest to the last accepted. */
@@ -188,7 +189,8 @@ static Pack bending_eval(const void *self, int pack, const Point *at, const Pack
     Bent bent;
     bend(bending, pack, at, x, &bent);
     Pack energy = {0}, row[3][21];
-    for (int i = 0; i < 3; i++) energy += 0.5 * bent.young * bent.fold[i] * bent.difference[i] * bent.moment[i];
+    for (int i = 0; i < 3; i++)
+        energy += 0.5 * bent.young * bent.fold[i] * bent.difference[i] * bent.moment[i];
     if (!g) return energy;
 
     for (int i = 0; i < 3; i++) difference_row(face, &bent.d[i], i, row[i]);
@@ -216,8 +218,8 @@ static void row_products(const Bending *bending, int pack, const Bent *bent, con
 /* With dE/dx = sum_i Y fold_i (C q)_i row_i:
  *     w.d/dY      = sum_i fold_i (C q)_i beta_i
  *     w.d/dfold_i = Y ((C q)_i beta_i + difference_i sum_j C_ij fold_j beta_j). */
-static void bending_param(const void *self, int pack, int lanes, const Point *at, const Pack *x, const Pack *w,
-                          double *dp)
+static void bending_param(const void *self, int pack, int lanes, const Point *at, const Pack *x,
+                          const Pack *w, double *dp)
 {
     const Bending *bending = self;
     const Shell *shell = bending->shell;
@@ -236,7 +238,8 @@ static void bending_param(const void *self, int pack, int lanes, const Point *at
     for (int l = 0; l < lanes; l++) dp[shell->young + face->face[l]] += young[l];
 }
 
-static void bending_param_forward(const void *self, int pack, const Point *at, const Pack *x, const double *dp, Pack *r)
+static void bending_param_forward(const void *self, int pack, const Point *at, const Pack *x,
+                                  const double *dp, Pack *r)
 {
     const Bending *bending = self;
     const Shell *shell = bending->shell;
@@ -252,7 +255,8 @@ static void bending_param_forward(const void *self, int pack, const Point *at, c
     for (int i = 0; i < 3; i++) {
         Pack sum = {0}, row[21];
         for (int j = 0; j < 3; j++) sum += form(face, i, j) * bent.difference[j] * fold[j];
-        Pack tau = bent.moment[i] * (young * bent.fold[i] + bent.young * fold[i]) + bent.young * bent.fold[i] * sum;
+        Pack tau =
+            bent.moment[i] * (young * bent.fold[i] + bent.young * fold[i]) + bent.young * bent.fold[i] * sum;
         difference_row(face, &bent.d[i], i, row);
         for (int k = 0; k < size; k++) r[k] += tau * row[k];
     }
@@ -292,9 +296,16 @@ static void bending_destroy(void *self)
 }
 
 static const TermOps bending_ops = {
-    .name = "bending", .count = bending_count, .size = bending_size, .dofs = bending_dofs, .eval = bending_eval,
-    .param = bending_param, .param_forward = bending_param_forward, .accept = bending_accept,
-    .memory = bending_memory, .destroy = bending_destroy,
+    .name = "bending",
+    .count = bending_count,
+    .size = bending_size,
+    .dofs = bending_dofs,
+    .eval = bending_eval,
+    .param = bending_param,
+    .param_forward = bending_param_forward,
+    .accept = bending_accept,
+    .memory = bending_memory,
+    .destroy = bending_destroy,
 };
 
 static void set_form(const Shell *shell, int f, BendingPack *pack, int lane)
@@ -305,7 +316,8 @@ static void set_form(const Shell *shell, int f, BendingPack *pack, int lane)
         a[i] = vec3_sub(vec3_load(mesh->rest[mesh->faces[f][(i + 2) % 3]]),
                         vec3_load(mesh->rest[mesh->faces[f][(i + 1) % 3]]));
     double h = shell->thickness, nu = shell->poisson;
-    double scale = shell_face_is_rigid(shell, f) ? 0 : h * h * h / (12 * (1 - nu * nu)) / (4 * mesh->rest_area[f]);
+    double scale =
+        shell_face_is_rigid(shell, f) ? 0 : h * h * h / (12 * (1 - nu * nu)) / (4 * mesh->rest_area[f]);
     for (int i = 0; i < 3; i++)
         for (int j = 0; j <= i; j++) {
             double product = vec3_dot(a[i], a[j]), lengths = vec3_length(a[i]) * vec3_length(a[j]);

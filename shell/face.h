@@ -3,7 +3,10 @@
 #include "base/pack.h"
 #include "shell/shell.h"
 
-static inline int face_pack_count(const Shell *shell) { return (shell->mesh->face_count + PACK_LANES - 1) / PACK_LANES; }
+static inline int face_pack_count(const Shell *shell)
+{
+    return (shell->mesh->face_count + PACK_LANES - 1) / PACK_LANES;
+}
 
 /* The face in a lane of a pack; the last one fills up. */
 static inline int face_of_lane(const Shell *shell, int pack, int lane)

@@ -33,7 +33,8 @@ DihedralGradient dihedral_gradient(const Dihedral *d)
 }
 
 /* One wing's blocks: corner and corner, corner and b, and its part of b and b. */
-static void wing_hessian(const Wing *w, Pack3 along, Pack length, PackMat *corner, PackMat *mixed, PackMat *end)
+static void wing_hessian(const Wing *w, Pack3 along, Pack length, PackMat *corner, PackMat *mixed,
+                         PackMat *end)
 {
     Pack inverse = 1 / w->height, over = inverse / length;
     PackMat M = pack_mat_symmetric(pack3_scale(inverse * inverse, w->normal), w->inward);

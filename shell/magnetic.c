@@ -57,7 +57,8 @@ static Flux flux_with(const Shell *shell, const Point *at, const Pack *x, const 
 static Normal normal_of(const Pack *x)
 {
     Normal r;
-    for (int i = 0; i < 3; i++) r.edge[i] = pack3_sub(pack3_load(x + 3 * ((i + 2) % 3)), pack3_load(x + 3 * ((i + 1) % 3)));
+    for (int i = 0; i < 3; i++)
+        r.edge[i] = pack3_sub(pack3_load(x + 3 * ((i + 2) % 3)), pack3_load(x + 3 * ((i + 1) % 3)));
     Pack3 N = pack3_cross(r.edge[2], pack3_neg(r.edge[1]));
     r.inverse = 1 / pack_sqrt(pack3_dot(N, N));
     r.n = pack3_scale(r.inverse, N);
@@ -74,7 +75,8 @@ static Pack3 normal_gradient(const Normal *r, Pack3 b, int i)
 static Pack3 magnetization_of(const Shell *shell, int pack, const double *values)
 {
     const double *M = values + shell->magnetization;
-    return pack3(face_param(shell, pack, M, 3, 0), face_param(shell, pack, M, 3, 1), face_param(shell, pack, M, 3, 2));
+    return pack3(face_param(shell, pack, M, 3, 0), face_param(shell, pack, M, 3, 1),
+                 face_param(shell, pack, M, 3, 2));
 }
 
 /* Q = F0 M: the magnetisation carried along by the face. */
@@ -86,7 +88,8 @@ static Pack3 carried(const MagneticPack *face, const Normal *normal, Pack3 M, co
 }
 
 /* dE/dx over -A h, for magnetisation M, flux density B with gradient G: c_i B + mu d(n.B)/dx_i + G^T Q/3. */
-static void forces(const MagneticPack *face, const Normal *normal, Pack3 M, const Flux *flux, Pack3 Q, Pack *g)
+static void forces(const MagneticPack *face, const Normal *normal, Pack3 M, const Flux *flux, Pack3 Q,
+                   Pack *g)
 {
     Pack mu = pack3_dot(face->normal, M);
     Pack3 pull = pack3_scale(pack_set(1.0 / 3), pack_mat_left(Q, flux->gradient));
@@ -134,14 +137,14 @@ static PackMat field_hessian(const Flux *flux, Pack3 Q, PackMat dQi, PackMat dQj
     return pack_mat_add(sum, pack_mat_scale(ninth * Q.z, flux->curvature[2]));
 }
 
-static void hessian(const Magnetic *magnetic, int pack, const Normal *normal, Pack3 M, const Flux *flux, Pack3 Q, Pack *H)
+static void hessian(const Magnetic *magnetic, int pack, const Normal *normal, Pack3 M, const Flux *flux,
+                    Pack3 Q, Pack *H)
 {
     const MagneticPack *face = &magnetic->packs[pack];
     Pack mu = pack3_dot(face->normal, M);
     PackMat dQ[3];
     bool varies = magnetic->shell->fields.count > 0;
-    for (int i = 0; varies && i < 3; i++)
-        dQ[i] = carried_gradient(normal, pack3_dot(face->hat[i], M), mu, i);
+    for (int i = 0; varies && i < 3; i++) dQ[i] = carried_gradient(normal, pack3_dot(face->hat[i], M), mu, i);
     element_clear(H, 9);
     for (int i = 0; i < 3; i++)
         for (int j = 0; j <= i; j++) {
@@ -173,7 +176,8 @@ static Pack magnetic_eval(const void *self, int pack, const Point *at, const Pac
 /* All blocks enter the force linearly. With W = sum_i dQ/dx_i w_i, w' the mean of w and G = dB/dx:
  *     w.d/dB     = -A h W,    w.d/dscale = -A h (W.B_field + Q.(G_field w'))
  *     w.d/dM     = -A h (F0^T (G w') + sum_i (w_i.B) b_i + N sum_i w_i.d(n.B)/dx_i). */
-static void magnetic_param(const void *self, int pack, int lanes, const Point *at, const Pack *x, const Pack *w, double *dp)
+static void magnetic_param(const void *self, int pack, int lanes, const Point *at, const Pack *x,
+                           const Pack *w, double *dp)
 {
     const Magnetic *magnetic = self;
     const Shell *shell = magnetic->shell;
@@ -193,19 +197,22 @@ static void magnetic_param(const void *self, int pack, int lanes, const Point *a
     dM = pack3_axpy(along + pack3_dot(normal.n, pull), face->normal, dM);
     Pack3 Q = carried(face, &normal, M, x);
     for (int l = 0; l < lanes; l++) {
-        double *m = dp + shell->magnetization + 3 * face_of_lane(shell, pack, l), *b = dp + shell->flux_density;
+        double *m = dp + shell->magnetization + 3 * face_of_lane(shell, pack, l),
+               *b = dp + shell->flux_density;
         double volume = face->volume[l];
         m[0] -= volume * dM.x[l], m[1] -= volume * dM.y[l], m[2] -= volume * dM.z[l];
         b[0] -= volume * W.x[l], b[1] -= volume * W.y[l], b[2] -= volume * W.z[l];
     }
     for (int k = 0; k < shell->fields.count; k++) {
         Flux field = flux_of_field(shell->fields.items[k], barycentre(x), at->time);
-        Pack scale = face->volume * (pack3_dot(W, field.B) + pack3_dot(Q, pack_mat_times(field.gradient, mean)));
+        Pack scale =
+            face->volume * (pack3_dot(W, field.B) + pack3_dot(Q, pack_mat_times(field.gradient, mean)));
         for (int l = 0; l < lanes; l++) dp[shell->field_scale + k] -= scale[l];
     }
 }
 
-static void magnetic_param_forward(const void *self, int pack, const Point *at, const Pack *x, const double *dp, Pack *r)
+static void magnetic_param_forward(const void *self, int pack, const Point *at, const Pack *x,
+                                   const double *dp, Pack *r)
 {
     const Magnetic *magnetic = self;
     const Shell *shell = magnetic->shell;
@@ -226,8 +233,13 @@ static void magnetic_destroy(void *self)
 }
 
 static const TermOps magnetic_ops = {
-    .name = "magnetic", .count = magnetic_count, .size = magnetic_size, .dofs = magnetic_dofs,
-    .eval = magnetic_eval, .param = magnetic_param, .param_forward = magnetic_param_forward,
+    .name = "magnetic",
+    .count = magnetic_count,
+    .size = magnetic_size,
+    .dofs = magnetic_dofs,
+    .eval = magnetic_eval,
+    .param = magnetic_param,
+    .param_forward = magnetic_param_forward,
     .destroy = magnetic_destroy,
 };
 
@@ -241,8 +253,10 @@ Term shell_magnetic_term(const Shell *shell)
         MagneticPack *pack = &magnetic->packs[k / PACK_LANES];
         FaceFrame frame = face_frame(shell, face);
         for (int i = 0; i < 3; i++)
-            pack->hat[i].x[l] = frame.hat[i][0], pack->hat[i].y[l] = frame.hat[i][1], pack->hat[i].z[l] = frame.hat[i][2];
-        pack->normal.x[l] = frame.normal[0], pack->normal.y[l] = frame.normal[1], pack->normal.z[l] = frame.normal[2];
+            pack->hat[i].x[l] = frame.hat[i][0], pack->hat[i].y[l] = frame.hat[i][1],
+            pack->hat[i].z[l] = frame.hat[i][2];
+        pack->normal.x[l] = frame.normal[0], pack->normal.y[l] = frame.normal[1],
+        pack->normal.z[l] = frame.normal[2];
         pack->volume[l] = shell->mesh->rest_area[face] * shell->thickness;
     }
     return (Term){&magnetic_ops, magnetic};

@@ -36,7 +36,7 @@ static void membrane_dofs(const void *self, int face, int *dof)
 }
 
 typedef struct Strain {
-    Pack3 f0, f1;      /* columns of F                                  */
+    Pack3 f0, f1;       /* columns of F                                  */
     Pack g00, g01, g11; /* Green strain                                  */
     Pack s00, s01, s11; /* second Piola-Kirchhoff stress over Young's modulus */
 } Strain;
@@ -106,7 +106,8 @@ static void forces(const MembranePack *at, const Strain *s, Pack factor, Pack *g
     for (int i = 0; i < 3; i++) {
         Pack t[2];
         stress_times(s, at->b[i], t);
-        pack3_store(g + 3 * i, pack3_add(pack3_scale(factor * t[0], s->f0), pack3_scale(factor * t[1], s->f1)));
+        pack3_store(g + 3 * i,
+                    pack3_add(pack3_scale(factor * t[0], s->f0), pack3_scale(factor * t[1], s->f1)));
     }
 }
 
@@ -151,8 +152,8 @@ static Pack membrane_eval(const void *self, int pack, const Point *at, const Pac
 }
 
 /* The force is linear in Young's modulus. */
-static void membrane_param(const void *self, int pack, int lanes, const Point *at, const Pack *x, const Pack *w,
-                           double *dp)
+static void membrane_param(const void *self, int pack, int lanes, const Point *at, const Pack *x,
+                           const Pack *w, double *dp)
 {
     (void)at;
     const Membrane *membrane = self;
@@ -161,10 +162,12 @@ static void membrane_param(const void *self, int pack, int lanes, const Point *a
     Pack g[9], sum = {0};
     forces(face, &s, face->volume, g);
     for (int i = 0; i < 9; i++) sum += w[i] * g[i];
-    for (int l = 0; l < lanes; l++) dp[membrane->shell->young + face_of_lane(membrane->shell, pack, l)] += sum[l];
+    for (int l = 0; l < lanes; l++)
+        dp[membrane->shell->young + face_of_lane(membrane->shell, pack, l)] += sum[l];
 }
 
-static void membrane_param_forward(const void *self, int pack, const Point *at, const Pack *x, const double *dp, Pack *r)
+static void membrane_param_forward(const void *self, int pack, const Point *at, const Pack *x,
+                                   const double *dp, Pack *r)
 {
     (void)at;
     const Membrane *membrane = self;
@@ -187,9 +190,15 @@ static void membrane_destroy(void *self)
 }
 
 static const TermOps membrane_ops = {
-    .name = "membrane", .count = membrane_count, .size = membrane_size, .dofs = membrane_dofs,
-    .eval = membrane_eval, .param = membrane_param, .param_forward = membrane_param_forward,
-    .follow = membrane_follow, .destroy = membrane_destroy,
+    .name = "membrane",
+    .count = membrane_count,
+    .size = membrane_size,
+    .dofs = membrane_dofs,
+    .eval = membrane_eval,
+    .param = membrane_param,
+    .param_forward = membrane_param_forward,
+    .follow = membrane_follow,
+    .destroy = membrane_destroy,
 };
 
 Term shell_membrane_term(const Shell *shell)

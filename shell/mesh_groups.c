@@ -58,8 +58,8 @@ void mesh_build_groups(Mesh *mesh, const MeshFile *file, MeshReport *report)
         mesh->groups[g] = renumber_group(old, mesh->vertex_of_file, &lost);
         mesh->group_order[g] = g;
         if (lost)
-            mesh_warn(report, "%s: the group '%.60s' has lost %d of its %d %s, being in no face",
-                      file->path, old->name, lost, old->count, old->dim == 1 ? "lines" : "vertices");
+            mesh_warn(report, "%s: the group '%.60s' has lost %d of its %d %s, being in no face", file->path,
+                      old->name, lost, old->count, old->dim == 1 ? "lines" : "vertices");
         warn_lines(mesh, &mesh->groups[g], file->path, report);
     }
     qsort_r(mesh->group_order, (size_t)count, sizeof *mesh->group_order, compare_names, mesh->groups);

@@ -228,11 +228,13 @@ bool shape_kirigami(double size, int n, MeshFile *mesh, Error *err)
     if (!check_length("kirigami", "size", size, err) || !check_count("kirigami", "n", n, err) ||
         !check_faces("kirigami", 2.0 * n * n + 2, err))
         return false;
-    if (n % 2 == 0) return error_set(err, "kirigami: n must be odd, so that all corners are squares, not %d", n);
+    if (n % 2 == 0)
+        return error_set(err, "kirigami: n must be odd, so that all corners are squares, not %d", n);
     int row = n + 1, corners = row * row, squares = (n * n + 1) / 2;
     double cell = size / n;
     *mesh = start("kirigami", corners + squares, 4 * squares, 2);
-    for (int v = 0; v < corners; v++) set_vertex(mesh, v, (v % row - n / 2.0) * cell, (v / row - n / 2.0) * cell);
+    for (int v = 0; v < corners; v++)
+        set_vertex(mesh, v, (v % row - n / 2.0) * cell, (v / row - n / 2.0) * cell);
     for (int k = 0; k < squares; k++) { /* every other cell */
         int i = 2 * k % n, j = 2 * k / n, a = j * row + i;
         set_vertex(mesh, corners + k, (i + 0.5 - n / 2.0) * cell, (j + 0.5 - n / 2.0) * cell);

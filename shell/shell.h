@@ -11,7 +11,7 @@
 
 typedef enum BendingModel {
     BENDING_MIDEDGE, /* one angle per edge: converges on any mesh  [Grinspun et al. 2006] */
-    BENDING_HINGE,   /* vertices only  [Gingold et al. 2004]: off by 5-57 % on crossed and unstructured meshes */
+    BENDING_HINGE, /* vertices only  [Gingold et al. 2004]: off by 5-57 % on crossed and unstructured meshes */
 } BendingModel;
 
 typedef struct Shell {
@@ -23,7 +23,7 @@ typedef struct Shell {
     bool *fixed;        /* [3*vertex_count] coordinates that are held; owned                              */
     bool *clamped;      /* [edge] the slope is held as at rest; owned                                     */
 
-    Params params; /* blocks and their first entries in p: */
+    Params params;     /* blocks and their first entries in p: */
     int young;         /* [face] Pa                                                            */
     int fold;          /* [edge] factor on the edge's curvature                                */
     int magnetization; /* [face][3] A/m, in material space                                     */
@@ -38,8 +38,14 @@ typedef struct Shell {
 Shell *shell_create(Mesh *mesh);
 void shell_destroy(Shell *shell);
 
-static inline int shell_dof_count(const Shell *shell) { return 3 * shell->mesh->vertex_count + shell->mesh->edge_count; }
-static inline int shell_angle_dof(const Shell *shell, int edge) { return 3 * shell->mesh->vertex_count + edge; }
+static inline int shell_dof_count(const Shell *shell)
+{
+    return 3 * shell->mesh->vertex_count + shell->mesh->edge_count;
+}
+static inline int shell_angle_dof(const Shell *shell, int edge)
+{
+    return 3 * shell->mesh->vertex_count + edge;
+}
 
 /* Holds one coordinate (axis 0, 1, 2) of a vertex; holds the slope of an edge. */
 void shell_fix(Shell *shell, int vertex, int axis);

@@ -29,8 +29,8 @@ static double smoothness_value(const void *self, double weight, const double *x,
     return sum;
 }
 
-static void smoothness_product(const void *self, double weight, const double *x, const double *p, const double *vx,
-                               const double *vp, double *hx, double *hp)
+static void smoothness_product(const void *self, double weight, const double *x, const double *p,
+                               const double *vx, const double *vp, double *hx, double *hp)
 {
     (void)x, (void)p, (void)vx, (void)hx;
     const Shell *shell = self;

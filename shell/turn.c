@@ -8,9 +8,9 @@
 
 struct Turn {
     const Shell *shell;
-    int *unknown, free;    /* [3*vertex] number among the unknown positions, -1: as the straight step has it */
-    Sparse *matrix;        /* sum of A b_i.b_j over the faces, for each axis; NULL until used */
-    double (*hat)[3][2];   /* [face] gradients of the hat functions, 1/m */
+    int *unknown, free;  /* [3*vertex] number among the unknown positions, -1: as the straight step has it */
+    Sparse *matrix;      /* sum of A b_i.b_j over the faces, for each axis; NULL until used */
+    double (*hat)[3][2]; /* [face] gradients of the hat functions, 1/m */
     double *right, *shift; /* [free] */
 };
 
@@ -20,7 +20,8 @@ static void columns(const Turn *turn, int face, const double *v, Vec3 column[2])
     const int *corner = turn->shell->mesh->faces[face];
     for (int k = 0; k < 2; k++) {
         column[k] = vec3(0, 0, 0);
-        for (int i = 0; i < 3; i++) column[k] = vec3_axpy(turn->hat[face][i][k], vec3_load(v + 3 * corner[i]), column[k]);
+        for (int i = 0; i < 3; i++)
+            column[k] = vec3_axpy(turn->hat[face][i][k], vec3_load(v + 3 * corner[i]), column[k]);
     }
 }
 
@@ -40,7 +41,8 @@ static Vec3 angular_velocity(const Vec3 f[2], const Vec3 e[2])
     Vec3 area = vec3_cross(f[0], f[1]);
     double square = vec3_dot(area, area);
     if (!(square > 0)) return vec3(0, 0, 0); /* a face without area: it has no normal to turn */
-    Vec3 g0 = vec3_scale(1 / square, vec3_cross(f[1], area)), g1 = vec3_scale(1 / square, vec3_cross(area, f[0]));
+    Vec3 g0 = vec3_scale(1 / square, vec3_cross(f[1], area)),
+         g1 = vec3_scale(1 / square, vec3_cross(area, f[0]));
     Vec3 n = vec3_scale(1 / sqrt(square), area);
     Vec3 dn = vec3_scale(-1, vec3_axpy(vec3_dot(e[0], n), g0, vec3_scale(vec3_dot(e[1], n), g1)));
     Vec3 twice = vec3_add(vec3_add(vec3_cross(g0, e[0]), vec3_cross(g1, e[1])), vec3_cross(n, dn));
@@ -57,7 +59,8 @@ static void add_face(Turn *turn, int face, const double *x, const double *d, dou
     Vec3 w = angular_velocity(f, e);
     for (int k = 0; k < 2; k++) {
         Vec3 stretched = vec3_axpy(a, vec3_sub(e[k], vec3_cross(w, f[k])), f[k]);
-        Vec3 missing = vec3_scale(mesh->rest_area[face], vec3_sub(turned(vec3_scale(a, w), stretched), now[k]));
+        Vec3 missing =
+            vec3_scale(mesh->rest_area[face], vec3_sub(turned(vec3_scale(a, w), stretched), now[k]));
         double q[3] = {missing.x, missing.y, missing.z};
         for (int i = 0; i < 9; i++) {
             int unknown = turn->unknown[3 * mesh->faces[face][i / 3] + i % 3];
@@ -85,7 +88,8 @@ static void assemble(const Turn *turn, const int *dofs)
             const double *a = turn->hat[e / 3][k / 3], *b = turn->hat[e / 3][k % 3];
             int row = dofs[3 * e + k / 3], column = dofs[3 * e + k % 3];
             if (k / 3 < k % 3 || row < 0 || column < 0) continue;
-            values[sparse_slot(turn->matrix, row, column)] += mesh->rest_area[e / 3] * (a[0] * b[0] + a[1] * b[1]);
+            values[sparse_slot(turn->matrix, row, column)] +=
+                mesh->rest_area[e / 3] * (a[0] * b[0] + a[1] * b[1]);
         }
 }
 

@@ -11,17 +11,17 @@ enum { STEPS_MAX = 300, STEPS_FIRST = 20 };
 static const double RESIDUAL = 1e-10; /* of an eigenvalue, relative */
 
 /* LAPACK: eigenvalues (ascending, into d) and vectors of a symmetric tridiagonal matrix. */
-void dstev_(const char *jobz, const int *n, double *d, double *e, double *z, const int *ldz, double *work, int *info,
-            size_t jobz_length);
+void dstev_(const char *jobz, const int *n, double *d, double *e, double *z, const int *ldz, double *work,
+            int *info, size_t jobz_length);
 
 typedef struct Lanczos {
     System *sys;
     int n, positions; /* dofs; the first ones that M counts */
     int count, steps;
     double sigma;
-    double *basis;         /* [STEPS_MAX + 1][n] M-orthonormal     */
-    double *alpha, *beta;  /* [STEPS_MAX + 1] the tridiagonal T    */
-    double *theta, *ritz;  /* [steps] [steps*steps]                */
+    double *basis;        /* [STEPS_MAX + 1][n] M-orthonormal     */
+    double *alpha, *beta; /* [STEPS_MAX + 1] the tridiagonal T    */
+    double *theta, *ritz; /* [steps] [steps*steps]                */
 } Lanczos;
 
 static double m_dot(const Lanczos *l, const double *a, const double *b)
@@ -90,9 +90,11 @@ static bool converged(Lanczos *l)
     bool done = n >= l->count;
     for (int k = 0; done && k < l->count; k++) {
         int j = n - 1 - k;
-        double theta = l->theta[j], residual = l->beta[n - 1] * fabs(l->ritz[(size_t)j * (size_t)n + (size_t)n - 1]);
+        double theta = l->theta[j],
+               residual = l->beta[n - 1] * fabs(l->ritz[(size_t)j * (size_t)n + (size_t)n - 1]);
         double lambda = 1 / theta - l->sigma; /* d(lambda) = residual/theta^2 */
-        done = residual / (theta * theta) <= RESIDUAL * fmax(fabs(lambda), 1e-6 * (l->sigma + fabs(1 / theta)));
+        done =
+            residual / (theta * theta) <= RESIDUAL * fmax(fabs(lambda), 1e-6 * (l->sigma + fabs(1 / theta)));
     }
     return done;
 }
@@ -107,7 +109,8 @@ static void report(const Lanczos *l, double *values, double *modes)
         memset(mode, 0, (size_t)l->n * sizeof *mode);
         for (int s = 0; j >= 0 && s < l->steps; s++)
             for (int i = 0; i < l->n; i++)
-                mode[i] += l->ritz[(size_t)j * (size_t)l->steps + (size_t)s] * l->basis[(size_t)s * (size_t)l->n + (size_t)i];
+                mode[i] += l->ritz[(size_t)j * (size_t)l->steps + (size_t)s] *
+                           l->basis[(size_t)s * (size_t)l->n + (size_t)i];
     }
 }
 
@@ -134,7 +137,8 @@ static void run(Lanczos *l, double *values, double *modes)
 
 bool eigen_lowest(System *sys, const Point *at, int count, double *values, double *modes)
 {
-    Lanczos l = {.sys = sys, .n = system_dof_count(sys), .positions = system_position_count(sys), .count = count};
+    Lanczos l = {
+        .sys = sys, .n = system_dof_count(sys), .positions = system_position_count(sys), .count = count};
     double *gradient = mem_alloc((size_t)l.n, sizeof *gradient);
     bool ok = system_hessian(sys, at, gradient).finite;
     mem_free(gradient);

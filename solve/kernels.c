@@ -25,9 +25,9 @@ KernelFeatures kernels_features(void)
     KernelFeatures features = {0};
 #if defined(__x86_64__) || defined(__i386__)
     features.avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-    features.avx512 = features.avx2 && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512cd") &&
-                      __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512dq") &&
-                      __builtin_cpu_supports("avx512vl");
+    features.avx512 = features.avx2 && __builtin_cpu_supports("avx512f") &&
+                      __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512bw") &&
+                      __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
 #endif
     return features;
 }
@@ -38,11 +38,12 @@ static int level_of(const char *core)
     static const struct {
         const char *core;
         int level;
-    } cores[] = {{"Unknown", 0},      {"Katmai", 0},     {"Coppermine", 0},  {"Northwood", 0}, {"Prescott", 0},
-                 {"Banias", 0},       {"Atom", 0},       {"Core2", 0},       {"Penryn", 0},    {"Dunnington", 0},
-                 {"Nehalem", 0},      {"Athlon", 0},     {"Opteron", 0},     {"Nano", 0},      {"Opteron_SSE3", 0},
-                 {"Barcelona", 0},    {"Bobcat", 0},     {"Sandybridge", 0}, {"Bulldozer", 0}, {"Piledriver", 0},
-                 {"Steamroller", 0},  {"Haswell", 1},    {"Excavator", 1},   {"Zen", 1}};
+    } cores[] = {{"Unknown", 0},     {"Katmai", 0},      {"Coppermine", 0},   {"Northwood", 0},
+                 {"Prescott", 0},    {"Banias", 0},      {"Atom", 0},         {"Core2", 0},
+                 {"Penryn", 0},      {"Dunnington", 0},  {"Nehalem", 0},      {"Athlon", 0},
+                 {"Opteron", 0},     {"Nano", 0},        {"Opteron_SSE3", 0}, {"Barcelona", 0},
+                 {"Bobcat", 0},      {"Sandybridge", 0}, {"Bulldozer", 0},    {"Piledriver", 0},
+                 {"Steamroller", 0}, {"Haswell", 1},     {"Excavator", 1},    {"Zen", 1}};
     for (size_t k = 0; k < sizeof cores / sizeof *cores; k++)
         if (!strcmp(core, cores[k].core)) return cores[k].level;
     return 2;
@@ -107,7 +108,8 @@ int kernels_reserve(int threads)
     int count = 0;
     if (!blas_memory_alloc || !blas_memory_free) return threads;
     for (; count < threads && count < MOST; count++) {
-        void *room = mmap(NULL, BUFFER, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+        void *room =
+            mmap(NULL, BUFFER, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
         if (room == MAP_FAILED) break;
         munmap(room, BUFFER);
         buffers[count] = blas_memory_alloc(0);
@@ -127,7 +129,8 @@ const char *kernels_note(void)
     const char *wanted = wanted_here();
     note[0] = 0;
     if (wanted && exec_error)
-        snprintf(note, sizeof note, "slow: this processor has those of %s, but the program cannot start itself again: %s",
+        snprintf(note, sizeof note,
+                 "slow: this processor has those of %s, but the program cannot start itself again: %s",
                  wanted, strerror(exec_error));
     else if (wanted)
         snprintf(note, sizeof note, "slow: " CORE_KEY " says so; this processor has those of %s", wanted);

@@ -6,17 +6,25 @@
 
 enum { HALVINGS = 30, BASE_CG_MAX = 12 };
 
-static const double SHIFT_LAST = 1e8;        /* D: beyond this a step is no longer a Newton step       */
-static const double STALL_SHIFT = 1e6;       /* D: no decrease even with such a shift                  */
-static const double SETTLED = 1e-4;          /* of a gap's force: more is a force that goes on growing */
-static const double LONG_STEP = 1e-4;        /* body's measure: shorter ones need no extrapolated stress */
-static const double BASE_CG_TOL = 1e-4;      /* what is left of the base shift's part in a step        */
+static const double SHIFT_LAST = 1e8;   /* D: beyond this a step is no longer a Newton step       */
+static const double STALL_SHIFT = 1e6;  /* D: no decrease even with such a shift                  */
+static const double SETTLED = 1e-4;     /* of a gap's force: more is a force that goes on growing */
+static const double LONG_STEP = 1e-4;   /* body's measure: shorter ones need no extrapolated stress */
+static const double BASE_CG_TOL = 1e-4; /* what is left of the base shift's part in a step        */
 
 NewtonDef newton_default(void)
 {
-    return (NewtonDef){.max_iterations = 300, .step_tol = 1e-8, .force_tol = 1e-6, .step_cap = 0.25,
-                       .cg_tol = 1e-3, .shift_first = 1e-8, .shift_least = 1e-10, .shift_growth = 4,
-                       .shift_decay = 16, .armijo = 1e-4, .shifted_max = 3};
+    return (NewtonDef){.max_iterations = 300,
+                       .step_tol = 1e-8,
+                       .force_tol = 1e-6,
+                       .step_cap = 0.25,
+                       .cg_tol = 1e-3,
+                       .shift_first = 1e-8,
+                       .shift_least = 1e-10,
+                       .shift_growth = 4,
+                       .shift_decay = 16,
+                       .armijo = 1e-4,
+                       .shifted_max = 3};
 }
 
 static const struct {
@@ -24,10 +32,11 @@ static const struct {
 } status_rows[] = {
     [NEWTON_CONVERGED] = {"converged", "a stable equilibrium"},
     [NEWTON_SADDLE] = {"saddle", "in equilibrium but unstable, and no way down was found"},
-    [NEWTON_NEUTRAL] = {"neutral", "in equilibrium with a mode of zero stiffness (a buckling point or a free motion)"},
+    [NEWTON_NEUTRAL] = {"neutral",
+                        "in equilibrium with a mode of zero stiffness (a buckling point or a free motion)"},
     [NEWTON_STALLED] = {"stalled", "no step lowers the energy any more, but the forces are not in balance"},
-    [NEWTON_MAX_ITERATIONS] = {"max_iterations",
-                               "the energy was still falling at the last iteration: raise solver.max_iterations"},
+    [NEWTON_MAX_ITERATIONS] =
+        {"max_iterations", "the energy was still falling at the last iteration: raise solver.max_iterations"},
     [NEWTON_NOT_FINITE] = {"not_finite", "energy or forces at the start are not finite numbers"},
     [NEWTON_STOPPED] = {"stopped", "interrupted"},
 };
@@ -55,7 +64,9 @@ static bool factor_shifted(Search *s)
     double kept = s->shift_kept;
     s->shift = kept < def->shift_decay * def->shift_least ? 0 : kept / def->shift_decay;
     while (!search_factor(s, s->shift)) {
-        s->shift = s->shift > 0 ? def->shift_growth * s->shift : kept > 0 ? def->shift_least : def->shift_first;
+        s->shift = s->shift > 0 ? def->shift_growth * s->shift
+                   : kept > 0   ? def->shift_least
+                                : def->shift_first;
         if (s->shift > SHIFT_LAST) return false;
     }
     return true;
@@ -174,10 +185,13 @@ static bool newton_step(Search *s, bool small)
 
 static bool is_converged(const Search *s, bool small)
 {
-    if (s->shift > 0 || system_gap(s->sys) > 0 || system_force_change(s->sys, s->step) > SETTLED) return false;
+    if (s->shift > 0 || system_gap(s->sys) > 0 || system_force_change(s->sys, s->step) > SETTLED)
+        return false;
     double gain = -search_dot(s->n, s->gradient, s->step);
-    for (int i = 0; system_multiplier_count(s->sys) && i < s->n; i++) /* what must vanish and does not counts in full */
-        if (system_is_multiplier(s->sys, i)) gain += s->gradient[i] * s->step[i] + fabs(s->gradient[i] * s->step[i]);
+    /* What must vanish and does not counts in full. */
+    for (int i = 0; system_multiplier_count(s->sys) && i < s->n; i++)
+        if (system_is_multiplier(s->sys, i))
+            gain += s->gradient[i] * s->step[i] + fabs(s->gradient[i] * s->step[i]);
     return (small && s->info.step <= s->def->step_tol) || gain <= s->def->energy_tol * s->now.energy_scale;
 }
 
@@ -244,13 +258,26 @@ static NewtonStatus iterate(Search *s)
     return s->shift_kept > STALL_SHIFT ? NEWTON_STALLED : status;
 }
 
-NewtonInfo newton_minimize(System *sys, const NewtonDef *def, const Point *at, double *x, const NewtonObserver *observer)
+NewtonInfo newton_minimize(System *sys, const NewtonDef *def, const Point *at, double *x,
+                           const NewtonObserver *observer)
 {
     int n = system_dof_count(sys);
     double *work = mem_alloc(10 * (size_t)n, sizeof *work);
-    Search s = {.sys = sys, .def = def, .n = n, .at = *at, .x = x, .gradient = work,
-                .step = work + n, .trial = work + 2 * n, .trial_gradient = work + 3 * n, .mode = work + 4 * n,
-                .product = work + 5 * n, .from = work + 6 * n, .moved = work + 7 * n, .gap = work + 8 * n, .change = work + 9 * n,
+    Search s = {.sys = sys,
+                .def = def,
+                .n = n,
+                .at = *at,
+                .x = x,
+                .gradient = work,
+                .step = work + n,
+                .trial = work + 2 * n,
+                .trial_gradient = work + 3 * n,
+                .mode = work + 4 * n,
+                .product = work + 5 * n,
+                .from = work + 6 * n,
+                .moved = work + 7 * n,
+                .gap = work + 8 * n,
+                .change = work + 9 * n,
                 .follows = !at->x_prev && system_has_follow(sys)};
     s.at.x = x;
     s.info.status = NEWTON_MAX_ITERATIONS;
@@ -261,7 +288,8 @@ NewtonInfo newton_minimize(System *sys, const NewtonDef *def, const Point *at, d
         s.info.energy = s.now.energy;
         s.info.gradient_max = s.now.gradient_max;
         s.info.force_scale = s.now.force_scale;
-        if (observer && s.info.status == NEWTON_MAX_ITERATIONS && !observer->iteration(observer->self, &s.info))
+        if (observer && s.info.status == NEWTON_MAX_ITERATIONS &&
+            !observer->iteration(observer->self, &s.info))
             s.info.status = NEWTON_STOPPED;
     }
     mem_free(work);

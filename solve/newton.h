@@ -26,10 +26,10 @@ typedef struct NewtonDef {
 NewtonDef newton_default(void);
 
 typedef enum NewtonStatus {
-    NEWTON_CONVERGED,      /* stationary and the (base-shifted) Hessian positive definite: a stable equilibrium */
-    NEWTON_SADDLE,         /* stationary, not positive definite, and no way down was found */
-    NEWTON_NEUTRAL,        /* stationary with a zero mode: a buckling point, or a rigid motion */
-    NEWTON_STALLED,        /* no step lowers the energy */
+    NEWTON_CONVERGED, /* stationary and the (base-shifted) Hessian positive definite: a stable equilibrium */
+    NEWTON_SADDLE,    /* stationary, not positive definite, and no way down was found */
+    NEWTON_NEUTRAL,   /* stationary with a zero mode: a buckling point, or a rigid motion */
+    NEWTON_STALLED,   /* no step lowers the energy */
     NEWTON_MAX_ITERATIONS, /* still falling */
     NEWTON_NOT_FINITE,     /* energy or forces at the start are not finite */
     NEWTON_STOPPED,        /* the observer asked for it */
@@ -54,7 +54,8 @@ typedef struct NewtonObserver {
  * factor of the (base-shifted) Hessian at the point from which the last, negligible step was taken (system_linearised),
  * ready for an adjoint. With them, the factor is an older one, and that the point is a minimum is known only of the
  * directions that they have seen. */
-NewtonInfo newton_minimize(System *sys, const NewtonDef *def, const Point *at, double *x, const NewtonObserver *observer);
+NewtonInfo newton_minimize(System *sys, const NewtonDef *def, const Point *at, double *x,
+                           const NewtonObserver *observer);
 
 /* One word: "converged", "saddle", ... and a sentence for the user. */
 const char *newton_status_name(NewtonStatus status);

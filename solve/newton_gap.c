@@ -25,7 +25,8 @@ double gap_curvature(const Search *s)
 {
     double sum = 0;
     for (int i = 0; s->open && i < s->n; i++)
-        if (system_compliance(s->sys, i) > 0) sum += s->product[i] * s->product[i] / system_compliance(s->sys, i);
+        if (system_compliance(s->sys, i) > 0)
+            sum += s->product[i] * s->product[i] / system_compliance(s->sys, i);
     return sum;
 }
 

@@ -6,8 +6,8 @@
 
 enum { INVERSE_ITERATIONS = 8, CURVATURE_TRIES = 25 };
 
-static const double CURVATURE_STEP = 0.05;             /* body's measure: first step along negative curvature */
-static const double CURVATURE_LAST = 0.5;              /* ... and the last */
+static const double CURVATURE_STEP = 0.05; /* body's measure: first step along negative curvature */
+static const double CURVATURE_LAST = 0.5;  /* ... and the last */
 static const double ZERO_CURVATURE = 16 * DBL_EPSILON; /* v'Hv with v'Dv = 1: no more than its rounding */
 static const double LIKELY = 1e4;                      /* of the step in a mode's start, against chance */
 static const double LEAST_SHIFT = 1e-15;               /* D: below that a factorisation decides by rounding */
@@ -87,7 +87,9 @@ bool search_leave_saddle(Search *s, bool small, double floor, NewtonStatus *stat
         return true;
     }
     if (!small || s->shift == 0) return false;
-    if (fabs(curvature) <= ZERO_CURVATURE) *status = NEWTON_NEUTRAL;
-    else if (s->now.gradient_max <= floor) *status = curvature < 0 ? NEWTON_SADDLE : NEWTON_NEUTRAL;
+    if (fabs(curvature) <= ZERO_CURVATURE)
+        *status = NEWTON_NEUTRAL;
+    else if (s->now.gradient_max <= floor)
+        *status = curvature < 0 ? NEWTON_SADDLE : NEWTON_NEUTRAL;
     return *status != NEWTON_MAX_ITERATIONS;
 }

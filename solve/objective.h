@@ -8,12 +8,13 @@ typedef struct ObjectiveOps {
     const char *name; /* its key in the scene */
 
     /* Value; adds weight*gradient to dx[dofs] and dp[params]; both may be NULL together. */
-    double (*value)(const void *self, double weight, const double *x, const double *p, double *dx, double *dp);
+    double (*value)(const void *self, double weight, const double *x, const double *p, double *dx,
+                    double *dp);
 
     /* hx, hp += weight 2 J^T J (vx, vp), J the derivative at (x, p) of the residuals whose squares are summed. NULL for
      * what is no sum of squares. */
-    void (*product)(const void *self, double weight, const double *x, const double *p, const double *vx, const double *vp,
-                    double *hx, double *hp);
+    void (*product)(const void *self, double weight, const double *x, const double *p, const double *vx,
+                    const double *vp, double *hx, double *hp);
 
     void (*destroy)(void *self);
 } ObjectiveOps;

@@ -7,11 +7,11 @@
 #include <stdbool.h>
 
 typedef struct ParamBlock {
-    const char *name;  /* "young", "magnetization", ...; static text                            */
-    const char *unit;  /* "Pa", "A/m", ...                                                      */
-    int offset;        /* first entry in p                                                      */
-    int count, width;  /* rows and numbers per row: [count][width]                              */
-    bool load;         /* a load: scaled from 0 to 1 by load steps                              */
+    const char *name; /* "young", "magnetization", ...; static text                            */
+    const char *unit; /* "Pa", "A/m", ...                                                      */
+    int offset;       /* first entry in p                                                      */
+    int count, width; /* rows and numbers per row: [count][width]                              */
+    bool load;        /* a load: scaled from 0 to 1 by load steps                              */
 } ParamBlock;
 
 enum { PARAMS_MAX_BLOCKS = 16 };

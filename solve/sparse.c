@@ -158,7 +158,8 @@ static long factor_bytes(const cholmod_factor *factor)
     return numbers * (long)sizeof(double) + (factor->is_super ? 0 : numbers * (long)sizeof(int));
 }
 
-Sparse *sparse_create(int n, int element_count, const long *element_start, const int *element_dofs, SparseDef def)
+Sparse *sparse_create(int n, int element_count, const long *element_start, const int *element_dofs,
+                      SparseDef def)
 {
     Sparse *matrix = mem_alloc(1, sizeof *matrix);
     matrix->n = n;
@@ -284,7 +285,8 @@ bool sparse_factor(Sparse *matrix, const double *shift)
     matrix->info.factorizations++;
     matrix->info.factor_seconds += clock_seconds() - begin;
     /* cholmod_factorize returns true for an indefinite matrix, too. */
-    bool complete = finite && matrix->common.status == CHOLMOD_OK && matrix->factor->minor == (size_t)matrix->n;
+    bool complete =
+        finite && matrix->common.status == CHOLMOD_OK && matrix->factor->minor == (size_t)matrix->n;
     return complete && (matrix->negative == 0 || count_negative(matrix->factor) == matrix->negative);
 }
 

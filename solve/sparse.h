@@ -9,15 +9,17 @@
 typedef struct Sparse Sparse;
 
 typedef struct SparseDef {
-    const int *order; /* [n] the unknowns in the order of elimination; NULL: one for low fill is found (AMD, METIS) */
-    int negative;     /* so many unknowns are Lagrange multipliers: the matrix counts as definite where exactly so many
+    const int *
+        order; /* [n] the unknowns in the order of elimination; NULL: one for low fill is found (AMD, METIS) */
+    int negative; /* so many unknowns are Lagrange multipliers: the matrix counts as definite where exactly so many
                        * pivots of its LDL^T are negative, that is, where it is definite on what the multipliers allow.
                        * Each must come after unknowns that it is coupled with, for there is no pivoting. */
 } SparseDef;
 
 /* The pattern of n unknowns coupled by elements: element e couples element_dofs[element_start[e] ..
  * element_start[e+1]), entries < 0 are skipped. */
-Sparse *sparse_create(int n, int element_count, const long *element_start, const int *element_dofs, SparseDef def);
+Sparse *sparse_create(int n, int element_count, const long *element_start, const int *element_dofs,
+                      SparseDef def);
 void sparse_destroy(Sparse *matrix);
 
 /* Where entry (i, j) is stored in sparse_values(); either triangle. The pattern must hold it. */

@@ -115,11 +115,26 @@ void system_prepare(System *sys)
     sys->anchor = mem_alloc((size_t)system_anchor_count(sys), sizeof(double));
 }
 
-int system_dof_count(const System *sys) { return sys->dof_count; }
-int system_free_count(const System *sys) { return sys->free_count; }
-int system_multiplier_count(const System *sys) { return sys->multiplier_count; }
-bool system_is_fixed(const System *sys, int dof) { return sys->fixed[dof]; }
-double system_base_shift(const System *sys) { return sys->base; }
+int system_dof_count(const System *sys)
+{
+    return sys->dof_count;
+}
+int system_free_count(const System *sys)
+{
+    return sys->free_count;
+}
+int system_multiplier_count(const System *sys)
+{
+    return sys->multiplier_count;
+}
+bool system_is_fixed(const System *sys, int dof)
+{
+    return sys->fixed[dof];
+}
+double system_base_shift(const System *sys)
+{
+    return sys->base;
+}
 
 bool system_is_multiplier(const System *sys, int dof)
 {
@@ -130,25 +145,62 @@ bool system_is_multiplier(const System *sys, int dof)
     return false;
 }
 
-int system_term_count(const System *sys) { return sys->term_count; }
-const Term *system_term(const System *sys, int t) { return &sys->entries[t].term; }
-int system_bulk_count(const System *sys) { return sys->bulk_count; }
-const Bulk *system_bulk(const System *sys, int b) { return &sys->bulks[b]; }
-const double *system_energies(const System *sys) { return sys->energies; }
-const double *system_scale(const System *sys) { return sys->scale; }
-const double *system_linearised(const System *sys) { return sys->linearised + ANCHOR_X; }
-double system_gap(const System *sys) { return sys->gap; }
-double system_compliance(const System *sys, int dof) { return sys->compliance[dof]; }
-double system_stiffness_max(const System *sys) { return sys->stiffness_max; }
-int system_position_count(const System *sys) { return sys->classes[0].count; }
-SparseInfo system_info(const System *sys) { return sparse_info(sys->matrix); }
+int system_term_count(const System *sys)
+{
+    return sys->term_count;
+}
+const Term *system_term(const System *sys, int t)
+{
+    return &sys->entries[t].term;
+}
+int system_bulk_count(const System *sys)
+{
+    return sys->bulk_count;
+}
+const Bulk *system_bulk(const System *sys, int b)
+{
+    return &sys->bulks[b];
+}
+const double *system_energies(const System *sys)
+{
+    return sys->energies;
+}
+const double *system_scale(const System *sys)
+{
+    return sys->scale;
+}
+const double *system_linearised(const System *sys)
+{
+    return sys->linearised + ANCHOR_X;
+}
+double system_gap(const System *sys)
+{
+    return sys->gap;
+}
+double system_compliance(const System *sys, int dof)
+{
+    return sys->compliance[dof];
+}
+double system_stiffness_max(const System *sys)
+{
+    return sys->stiffness_max;
+}
+int system_position_count(const System *sys)
+{
+    return sys->classes[0].count;
+}
+SparseInfo system_info(const System *sys)
+{
+    return sparse_info(sys->matrix);
+}
 
 double system_step_size(const System *sys, const double *d)
 {
     double size = 0;
     for (int c = 0; c < sys->class_count; c++) {
         const DofClass *class = &sys->classes[c];
-        for (int i = class->first; i < class->first + class->count; i++) size = fmax(size, fabs(d[i]) / class->size);
+        for (int i = class->first; i < class->first + class->count; i++)
+            size = fmax(size, fabs(d[i]) / class->size);
     }
     return size;
 }
@@ -222,7 +274,8 @@ static void evaluate_task(void *self, int task)
 }
 
 /* Energy of a batch; adds to the gradient and to the matrix where they are asked for. */
-static double take_batch(System *sys, const Batch *b, double *gradient, double *values, int *next_twice, double energy)
+static double take_batch(System *sys, const Batch *b, double *gradient, double *values, int *next_twice,
+                         double energy)
 {
     for (int k = 0; k < b->count; k++) {
         int pack = b->first + k;
@@ -236,11 +289,14 @@ static double take_batch(System *sys, const Batch *b, double *gradient, double *
     return energy;
 }
 
-static double evaluate_term(System *sys, const Entry *entry, const Point *at, double *gradient, double *values)
+static double evaluate_term(System *sys, const Entry *entry, const Point *at, double *gradient,
+                            double *values)
 {
     Pack own[1 + TERM_MAX_DOF + MAX_LOWER], *work = NULL;
     int next_twice = 0, most = workers_count(sys->workers) > 1 ? BATCH_PACKS : 1;
-    if (most > 1) work = mem_alloc((size_t)most * (size_t)(1 + entry->size + (values ? entry->lower : 0)), sizeof *work);
+    if (most > 1)
+        work =
+            mem_alloc((size_t)most * (size_t)(1 + entry->size + (values ? entry->lower : 0)), sizeof *work);
     Batch b = {.entry = entry, .at = at, .energy = work ? work : own};
     if (gradient) b.g = b.energy + most;
     if (values) b.H = b.energy + most * (1 + entry->size);

@@ -215,7 +215,8 @@ bool system_has_follow(const System *sys)
 void system_project(const System *sys, double *x)
 {
     for (int t = 0; t < sys->term_count; t++)
-        if (sys->entries[t].term.ops->project) sys->entries[t].term.ops->project(sys->entries[t].term.self, x);
+        if (sys->entries[t].term.ops->project)
+            sys->entries[t].term.ops->project(sys->entries[t].term.self, x);
 }
 
 void system_accept(System *sys, double *x)

@@ -17,13 +17,13 @@ struct System {
     int *order; /* [dof_count] NULL: none given */
     Entry entries[SYSTEM_MAX_TERMS];
     Bulk bulks[SYSTEM_MAX_BULKS];
-    BulkCoupling couplings[SYSTEM_MAX_BULKS];                /* as given last              */
-    double *bulk_gradient;                                   /* [dof] of one of them; NULL without Bulks */
-    double energies[SYSTEM_MAX_TERMS + SYSTEM_MAX_BULKS];    /* of the last evaluation     */
-    Workers *workers;                                        /* borrowed                   */
+    BulkCoupling couplings[SYSTEM_MAX_BULKS];             /* as given last              */
+    double *bulk_gradient;                                /* [dof] of one of them; NULL without Bulks */
+    double energies[SYSTEM_MAX_TERMS + SYSTEM_MAX_BULKS]; /* of the last evaluation     */
+    Workers *workers;                                     /* borrowed                   */
     DofClass classes[SYSTEM_MAX_CLASSES];
     bool *fixed, factored; /* factored: the last factor may be used */
-    int *unknown; /* [dof] number among the free ones, -1 if fixed */
+    int *unknown;          /* [dof] number among the free ones, -1 if fixed */
     Sparse *matrix;
     double base, stiffness_max;
     double *scale;       /* [dof] D                                     */
@@ -50,7 +50,8 @@ void system_build_matrix(System *sys);
 void system_couple(System *sys, const double *x);
 
 /* Energies of the Bulks, with gradients and Hessians as in an evaluation of terms. */
-void system_evaluate_bulks(System *sys, const Point *at, double *gradient, double *values, Evaluation *result);
+void system_evaluate_bulks(System *sys, const Point *at, double *gradient, double *values,
+                           Evaluation *result);
 
 /* Notes where the Hessian that was just assembled stands. */
 void system_note_point(System *sys, const Point *at);

@@ -17,9 +17,9 @@ enum { TERM_MAX_DOF = 24 }; /* largest element, in degrees of freedom */
 
 /* Where a term is evaluated: whole vectors. */
 typedef struct Point {
-    const double *x; /* positions and other dofs                     */
-    const double *p; /* all model parameters (params.h)              */
-    double time;     /* s; fields may depend on it                   */
+    const double *x;               /* positions and other dofs                     */
+    const double *p;               /* all model parameters (params.h)              */
+    double time;                   /* s; fields may depend on it                   */
     const double *x_prev, *v_prev; /* start of the step of time, whole vectors; NULL in statics */
     double dt;                     /* s; 0 in statics                                           */
     /* Where the last Newton step began, and that step: the Hessian then takes the stresses that the step was to bring
@@ -42,17 +42,21 @@ typedef struct TermOps {
 
     /* dp += w^T d2E/dx dp for the first `lanes` elements of the pack, dp laid out as Point.p; w[size].
      * NULL when no parameter enters the forces. */
-    void (*param)(const void *self, int pack, int lanes, const Point *at, const Pack *x, const Pack *w, double *dp);
+    void (*param)(const void *self, int pack, int lanes, const Point *at, const Pack *x, const Pack *w,
+                  double *dp);
 
     /* r = d2E/dx dp . dp, r[size]: the tangent of param. */
-    void (*param_forward)(const void *self, int pack, const Point *at, const Pack *x, const double *dp, Pack *r);
+    void (*param_forward)(const void *self, int pack, const Point *at, const Pack *x, const double *dp,
+                          Pack *r);
 
     /* dx, dv = w^T d2E/dx d(x_prev, v_prev), on the elements' own dofs, [size] each. NULL where the energy does not
      * depend on the start of the step. */
-    void (*prev)(const void *self, int pack, const Point *at, const Pack *x, const Pack *w, Pack *dx, Pack *dv);
+    void (*prev)(const void *self, int pack, const Point *at, const Pack *x, const Pack *w, Pack *dx,
+                 Pack *dv);
 
     /* r = d2E/dx d(x_prev, v_prev) . (dx, dv): the tangent of prev. */
-    void (*prev_forward)(const void *self, int pack, const Point *at, const Pack *x, const Pack *dx, const Pack *dv, Pack *r);
+    void (*prev_forward)(const void *self, int pack, const Point *at, const Pack *x, const Pack *dx,
+                         const Pack *dv, Pack *r);
 
     /* Moves `to`, which is x + a d, to where the motion that begins at x with velocity d is better said to be after the time
      * a: the same to first order in a; whole vectors. Such a term's Hessian heeds Point.x_from. NULL where the straight way

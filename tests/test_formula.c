@@ -46,11 +46,17 @@ static void test_refused(void **state)
     check_refused("x + q", "unknown name 'q' in \"x + q\"; known are x, y, t, pi, e");
     check_refused("", "an expression is empty");
     check_refused("x=5", "\"x=5\": the = at position 1 is no part of an expression; == compares");
-    check_refused("x + (y = 3)", "\"x + (y = 3)\": the = at position 7 is no part of an expression; == compares");
-    check_refused("x ? y=1 : 2", "\"x ? y=1 : 2\": the = at position 5 is no part of an expression; == compares");
-    check_refused("x, y", "\"x, y\": a list of 2; a formula is one expression, and numbers have a decimal point");
-    check_refused("1,5", "\"1,5\": a list of 2; a formula is one expression, and numbers have a decimal point");
-    check_refused("sin(x), 2, 3", "\"sin(x), 2, 3\": a list of 3; a formula is one expression, and numbers have a decimal point");
+    check_refused("x + (y = 3)",
+                  "\"x + (y = 3)\": the = at position 7 is no part of an expression; == compares");
+    check_refused("x ? y=1 : 2",
+                  "\"x ? y=1 : 2\": the = at position 5 is no part of an expression; == compares");
+    check_refused("x, y",
+                  "\"x, y\": a list of 2; a formula is one expression, and numbers have a decimal point");
+    check_refused("1,5",
+                  "\"1,5\": a list of 2; a formula is one expression, and numbers have a decimal point");
+    check_refused(
+        "sin(x), 2, 3",
+        "\"sin(x), 2, 3\": a list of 3; a formula is one expression, and numbers have a decimal point");
     check_refused("\"abc\"", "\"\"abc\"\": Strings must only be used as function arguments!");
 }
 
@@ -63,8 +69,11 @@ static void test_helper_names(void **state)
     for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {
         Error err = {""};
         assert_null(formula_create(&expression, 1, &(FormulaHelper){bad[k], "7"}, 1, variables, &err));
-        if (k == 1) assert_string_equal(err.text, "'a b' is no name for a part of a formula: letters, digits and _, a letter first");
-        if (k >= 5 && !strstr(err.text, "has a meaning in this formula already")) fail_msg("%s: %s", bad[k], err.text);
+        if (k == 1)
+            assert_string_equal(
+                err.text, "'a b' is no name for a part of a formula: letters, digits and _, a letter first");
+        if (k >= 5 && !strstr(err.text, "has a meaning in this formula already"))
+            fail_msg("%s: %s", bad[k], err.text);
     }
 }
 
@@ -72,7 +81,8 @@ static void test_helper_names(void **state)
 static void test_comparisons(void **state)
 {
     (void)state;
-    static const char *const expressions[] = {"x==2", "x!=3", "x<=2", "x>=2", "x == 2 ? 1 : 0", "-x^2 == -4", "min(x, y) == 2"};
+    static const char *const expressions[] = {"x==2",           "x!=3",       "x<=2",          "x>=2",
+                                              "x == 2 ? 1 : 0", "-x^2 == -4", "min(x, y) == 2"};
     for (size_t k = 0; k < sizeof expressions / sizeof *expressions; k++) {
         Error err = {""};
         double r = 0;
@@ -110,12 +120,9 @@ static void test_not_finite(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_values),
-        cmocka_unit_test(test_refused),
-        cmocka_unit_test(test_helper_names),
-        cmocka_unit_test(test_comparisons),
-        cmocka_unit_test(test_circle),
-        cmocka_unit_test(test_not_finite),
+        cmocka_unit_test(test_values),       cmocka_unit_test(test_refused),
+        cmocka_unit_test(test_helper_names), cmocka_unit_test(test_comparisons),
+        cmocka_unit_test(test_circle),       cmocka_unit_test(test_not_finite),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -37,7 +37,8 @@ static void put_texts(hid_t object, const char *name, hsize_t count)
     mem_free(texts);
 }
 
-static hid_t put_dataset(hid_t file, const char *name, hid_t type, int rank, const hsize_t *dims, hid_t properties)
+static hid_t put_dataset(hid_t file, const char *name, hid_t type, int rank, const hsize_t *dims,
+                         hid_t properties)
 {
     hid_t space = H5Screate_simple(rank, dims, NULL), links = H5Pcreate(H5P_LINK_CREATE);
     H5Pset_create_intermediate_group(links, 1);
@@ -65,7 +66,8 @@ static void fill(hid_t file)
     H5Dclose(unit);
     H5Gclose(group);
 
-    hid_t type = text_type(64), here = H5P_DEFAULT, chunks = H5Pcreate(H5P_DATASET_CREATE), elsewhere = H5Pcreate(H5P_DATASET_CREATE);
+    hid_t type = text_type(64), here = H5P_DEFAULT, chunks = H5Pcreate(H5P_DATASET_CREATE),
+          elsewhere = H5Pcreate(H5P_DATASET_CREATE);
     H5Pset_chunk(chunks, 2, (hsize_t[]){100000, 3});
     H5Pset_external(elsewhere, "/etc/passwd", 0, 24);
     H5Dclose(put_dataset(file, "slender/texts", type, 1, (hsize_t[]){8192}, here));
@@ -100,8 +102,9 @@ static Result *make(void (*filler)(hid_t file))
 static void test_texts_and_sizes(void **state)
 {
     (void)state;
-    static const char *const refused[] = {"slender/texts", "slender/huge", "slender/elsewhere", "slender/four",
-                                          "slender/wide",  "slender/link", "slender/soft",      "slender/status"};
+    static const char *const refused[] = {"slender/texts", "slender/huge",  "slender/elsewhere",
+                                          "slender/four",  "slender/wide",  "slender/link",
+                                          "slender/soft",  "slender/status"};
     long blocks = mem_live_count();
     Error err;
     Array array;
@@ -154,8 +157,9 @@ static void test_listing(void **state)
     for (int k = 0; k < 2; k++) {
         Result *result = make(fillers[k]);
         assert_false(result_list(result, &paths, &count, &err));
-        assert_string_equal(err.text, "what is in it is not as slender writes it: groups more than 8 deep, names of more "
-                                      "than 512 bytes, or more than 100000 of them");
+        assert_string_equal(
+            err.text, "what is in it is not as slender writes it: groups more than 8 deep, names of more "
+                      "than 512 bytes, or more than 100000 of them");
         result_close(result);
     }
     Result *result = make(fill_many);
@@ -166,6 +170,7 @@ static void test_listing(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_texts_and_sizes), cmocka_unit_test(test_listing)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_texts_and_sizes),
+                                       cmocka_unit_test(test_listing)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -206,8 +206,9 @@ static void jpeg_refused(void **state)
     assert_non_null(size);
     memcpy(size + 5, "\xff\xdc\xff\xdc", 4);
     write_file("bad.jpg", bytes, length);
-    expect_refused("bad.jpg",
-                   "bad.jpg: an image of 65500 x 65500 pixels; at most 400 million are read: make it smaller");
+    expect_refused(
+        "bad.jpg",
+        "bad.jpg: an image of 65500 x 65500 pixels; at most 400 million are read: make it smaller");
     memcpy(size + 5, "\x10\x00\x10\x00", 4);
     write_file("bad.jpg", bytes, length);
     expect_refused("bad.jpg", "bad.jpg: the file ends before the last of 4096 x 4096 pixels");
@@ -234,8 +235,9 @@ static void png_refused(void **state)
 
     memcpy(bytes + 16, "\0\0\x4e\x21\0\0\x4e\x20", 8);
     write_file("bad.png", bytes, sizeof bytes);
-    expect_refused("bad.png",
-                   "bad.png: an image of 20001 x 20000 pixels; at most 400 million are read: make it smaller");
+    expect_refused(
+        "bad.png",
+        "bad.png: an image of 20001 x 20000 pixels; at most 400 million are read: make it smaller");
     memcpy(bytes + 16, "\0\0\x4e\x20\0\0\x4e\x20", 8);
     write_file("bad.png", bytes, sizeof bytes);
     expect_refused("bad.png", "bad.png: the file ends before the last of 20000 x 20000 pixels");
@@ -310,8 +312,8 @@ static unsigned crc_of(const unsigned char *bytes, size_t length)
 /* png_rgba with a chunk eXIf of one tag after its header; returns its length. */
 static size_t add_orientation(unsigned char *bytes, int tag)
 {
-    unsigned char chunk[38] = {0,   0, 0,  26, 'e', 'X', 'I', 'f', 'M', 'M',  0, 42, 0, 0,
-                               0,   8, 0,  1,  1,   0x12, 0, 3, 0, 0, 0, 1, 0, (unsigned char)tag};
+    unsigned char chunk[38] = {0, 0, 0, 26, 'e', 'X',  'I', 'f', 'M', 'M', 0, 42, 0, 0,
+                               0, 8, 0, 1,  1,   0x12, 0,   3,   0,   0,   0, 1,  0, (unsigned char)tag};
     unsigned crc = crc_of(chunk + 4, 30);
     for (int k = 0; k < 4; k++) chunk[34 + k] = (unsigned char)(crc >> (24 - 8 * k));
     memcpy(bytes, png_rgba, 33);

@@ -54,12 +54,14 @@ static void test_contents(void **state)
     char *before = inputs_text(&scene, &err), **keys = inputs_keys(&scene);
     assert_non_null(strstr(before, "cbf43926 9 cases[1].flux_density.file\n"));
     static const char *const wanted[] = {"shell.mesh.file", "shell.young.file", "cases[0].target.file",
-                                         "cases[1].flux_density.file", "design.unknowns.magnetization.start.file"};
+                                         "cases[1].flux_density.file",
+                                         "design.unknowns.magnetization.start.file"};
     for (int k = 0; k < 5; k++) assert_string_equal(keys[k], wanted[k]);
     assert_null(keys[5]);
     assert_true(inputs_check(&scene, before, before, &err));
-    static const char *const sentences[] = {"shell.mesh.file: ", "shell.young.file: ", "cases[1].flux_density.file: ",
-                                            "design.unknowns.magnetization.start.file: "};
+    static const char *const sentences[] = {
+        "shell.mesh.file: ", "shell.young.file: ", "cases[1].flux_density.file: ",
+        "design.unknowns.magnetization.start.file: "};
     for (int k = 0; k < 4; k++) {
         write_file(names[k], "inputs_x");
         char *now = inputs_text(&scene, &err);

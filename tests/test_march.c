@@ -298,8 +298,8 @@ static void test_older_factor(void **state)
     }
     double worst = 0;
     for (int i = 0; i < 3 * vertices; i++) worst = fmax(worst, fabs(s[0].now.x[i] - s[1].now.x[i]));
-    print_message("30 steps: %d factorisations and %d conjugate gradients, or %d; off by %.1e m\n", factorizations[0], cg[0],
-                  factorizations[1], worst);
+    print_message("30 steps: %d factorisations and %d conjugate gradients, or %d; off by %.1e m\n",
+                  factorizations[0], cg[0], factorizations[1], worst);
     assert_true(worst < 1e-9 && factorizations[0] < factorizations[1] / 4 && cg[1] == 0);
     assert_memory_equal(s[0].now.x, s[2].now.x, dofs * sizeof(double));
     assert_int_equal(cg[0], cg[2]);

@@ -157,8 +157,10 @@ static void test_curve_distances(void **state)
     double x[3] = {0.5, 0.25, 0}, one = 1, r = sqrt(0.5);
     int vertex = 0;
     Probe probe = {1, &vertex, &one};
-    const double corner[3][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}}, quarter[3][3] = {{1, 0, 0}, {r, r, 0}, {0, 1, 0}};
-    Objective polyline = objective_polyline(probe, 3, corner, 1e-3, 1), arc = objective_arc(probe, quarter, 1);
+    const double corner[3][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}},
+                 quarter[3][3] = {{1, 0, 0}, {r, r, 0}, {0, 1, 0}};
+    Objective polyline = objective_polyline(probe, 3, corner, 1e-3, 1),
+              arc = objective_arc(probe, quarter, 1);
     assert_true(fabs(objective_distance(&polyline, x) - 0.25) < 1e-15);
     assert_true(fabs(polyline.ops->value(polyline.self, 1, x, NULL, NULL, NULL) - 0.0625) < 1e-15);
     assert_true(fabs(objective_distance(&arc, x) - (1 - sqrt(0.3125))) < 1e-14);
@@ -182,21 +184,32 @@ static void test_field_rows(void **state)
 {
     (void)state;
     Fixture f = make_fixture();
-    int at = f.shell->magnetization, omega = at + 3 * CONTROL_STEPS, alpha = omega + PAIRS, beta = alpha + 3 * PAIRS;
+    int at = f.shell->magnetization, omega = at + 3 * CONTROL_STEPS, alpha = omega + PAIRS,
+        beta = alpha + 3 * PAIRS;
     for (ControlKind kind = CONTROL_FRAME; kind <= CONTROL_HARMONIC; kind++) {
-        Control control = {.kind = kind, .from = at, .rows = control_rows(kind, CONTROL_STEPS, kind == CONTROL_KNOT ? 4 : 3),
-                           .width = 3, .steps = CONTROL_STEPS, .duration = 2};
+        Control control = {.kind = kind,
+                           .from = at,
+                           .rows = control_rows(kind, CONTROL_STEPS, kind == CONTROL_KNOT ? 4 : 3),
+                           .width = 3,
+                           .steps = CONTROL_STEPS,
+                           .duration = 2};
         check(&f, objective_field_magnitude(&control, 0.3), true);
         check(&f, objective_field_smoothness(&control, 0.3), true);
         check_curved(&f, objective_dmp(&control, PAIRS, omega, alpha, beta, 0.8), false);
     }
-    Control control = {.kind = CONTROL_FRAME, .from = at, .rows = CONTROL_STEPS, .width = 3, .steps = CONTROL_STEPS, .duration = 2};
+    Control control = {.kind = CONTROL_FRAME,
+                       .from = at,
+                       .rows = CONTROL_STEPS,
+                       .width = 3,
+                       .steps = CONTROL_STEPS,
+                       .duration = 2};
     for (int n = 1; n <= CONTROL_STEPS; n++)
         for (int i = 0; i < 3; i++) {
             double t = control_time(&control, n), *b = &f.p[at + 3 * (n - 1) + i];
             *b = 0;
             for (int j = 0; j < PAIRS; j++)
-                *b += f.p[alpha + 3 * j + i] * cos(f.p[omega + j] * t) + f.p[beta + 3 * j + i] * sin(f.p[omega + j] * t);
+                *b += f.p[alpha + 3 * j + i] * cos(f.p[omega + j] * t) +
+                      f.p[beta + 3 * j + i] * sin(f.p[omega + j] * t);
         }
     check_curved(&f, objective_dmp(&control, PAIRS, omega, alpha, beta, 0.8), true);
     free_fixture(&f);
@@ -221,7 +234,8 @@ static void test_controls(void **state)
     for (int k = 0; k < 15; k++) p[k] = 2 + k / 3;
     control_value(&knots, 1, 3.3, p, value);
     assert_true(fabs(value[1] - 4.3) < 1e-14);
-    Control harmonics = {.kind = CONTROL_HARMONIC, .rows = 3, .width = 1, .steps = 8, .start = 1, .duration = 4};
+    Control harmonics = {
+        .kind = CONTROL_HARMONIC, .rows = 3, .width = 1, .steps = 8, .start = 1, .duration = 4};
     p[0] = 5, p[1] = 2, p[2] = 3;
     control_value(&harmonics, 1, 2, p, value); /* a quarter of the period */
     assert_true(fabs(value[0] - 8) < 1e-14);
@@ -257,7 +271,9 @@ static void test_values(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_rows), cmocka_unit_test(test_point_rows), cmocka_unit_test(test_field_rows),
-                                       cmocka_unit_test(test_curve_distances), cmocka_unit_test(test_controls), cmocka_unit_test(test_values)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_rows),       cmocka_unit_test(test_point_rows),
+        cmocka_unit_test(test_field_rows), cmocka_unit_test(test_curve_distances),
+        cmocka_unit_test(test_controls),   cmocka_unit_test(test_values)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

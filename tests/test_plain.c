@@ -17,11 +17,13 @@ static const struct {
     {"one\ntwo\tthree\r", "one\\x0atwo\\x09three\\x0d", "one\\u000atwo\\u0009three\\u000d"},
     {"\x7f\xc2\x9b"
      "31m",
-     "\\x7f\\u009b31m", "\\u007f\\u009b31m"},                                   /* a control sequence of 8 bits */
+     "\\x7f\\u009b31m", "\\u007f\\u009b31m"}, /* a control sequence of 8 bits */
     {"\u202etxt\u2066\ufeff", "\\u202etxt\\u2066\\ufeff", "\\u202etxt\\u2066\\ufeff"}, /* reversed writing */
-    {"\xff\xc3", "\\xff\\xc3", "\\ufffd\\ufffd"},                               /* no UTF-8, cut off */
-    {"\xc0\xaf\xed\xa0\x80", "\\xc0\\xaf\\xed\\xa0\\x80", "\\ufffd\\ufffd\\ufffd\\ufffd\\ufffd"}, /* overlong, a surrogate */
-    {"\xf4\x90\x80\x80", "\\xf4\\x90\\x80\\x80", "\\ufffd\\ufffd\\ufffd\\ufffd"}, /* beyond the last character */
+    {"\xff\xc3", "\\xff\\xc3", "\\ufffd\\ufffd"},                                      /* no UTF-8, cut off */
+    {"\xc0\xaf\xed\xa0\x80", "\\xc0\\xaf\\xed\\xa0\\x80",
+     "\\ufffd\\ufffd\\ufffd\\ufffd\\ufffd"}, /* overlong, a surrogate */
+    {"\xf4\x90\x80\x80", "\\xf4\\x90\\x80\\x80",
+     "\\ufffd\\ufffd\\ufffd\\ufffd"}, /* beyond the last character */
 };
 
 static void test_rows(void **state)

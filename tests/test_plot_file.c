@@ -254,8 +254,7 @@ static void machines(void **state)
         Error err = {""};
         PlotProfile profile;
         assert_true(plot_profile(names[m], &profile, &err));
-        if (!plot_write_machine("plot.out", &plot, &profile, &usual, &err))
-            fail_msg("%s", err.text);
+        if (!plot_write_machine("plot.out", &plot, &profile, &usual, &err)) fail_msg("%s", err.text);
         char *text = file_text("plot.out");
         Drawn drawn = m == 0   ? read_hpgl(text)
                       : m == 1 ? read_gcode(text, "G1 Z0", "G0 Z5")
@@ -284,8 +283,7 @@ static void names_for_machines(void **state)
         Error err = {""};
         PlotProfile profile;
         assert_true(plot_profile(languages[m], &profile, &err));
-        if (!plot_write_machine("plot.out", &one, &profile, &usual, &err))
-            fail_msg("%s", err.text);
+        if (!plot_write_machine("plot.out", &one, &profile, &usual, &err)) fail_msg("%s", err.text);
         char *text = file_text("plot.out");
         if (m < 2) assert_non_null(strstr(text, "; layer 1-Pen 0.5___ __ _x_______nnn"));
         int column = 0;
@@ -319,9 +317,13 @@ static void lifts(void **state)
         {"gcode", "G0 Z3 F210\n", "G1 Z-0.5 F210\n", {.lift = 2, .z_up = 3, .z_down = -0.5, .z_speed = 10}},
         {"gcode", "G0 Z3 F60\n", "G1 Z-0.5 F60\n", {.lift = 2, .z_up = 3, .z_down = -0.5, .z_speed = 1}},
         {"gcode", "G0 Z5 F600\n", "G1 Z0 F600\n", {.lift = 0, .z_up = 5, .z_speed = 10}},
-        {"gcode_servo", "M3 S90\nG4 P0.5\n", "M3 S10\nG4 P0.5\n",
+        {"gcode_servo",
+         "M3 S90\nG4 P0.5\n",
+         "M3 S10\nG4 P0.5\n",
          {.lift = 1, .pause = 1, .z_speed = 1, .servo_up = "M3 S90", .servo_down = "M3 S10"}},
-        {"gcode_servo", "M280 P0 S90\nG4 P125\n", "M280 P0 S9\nG4 P125\n",
+        {"gcode_servo",
+         "M280 P0 S90\nG4 P125\n",
+         "M280 P0 S9\nG4 P125\n",
          {.lift = 0.25, .pause = 1e-3, .z_speed = 1, .servo_up = "M280 P0 S90", .servo_down = "M280 P0 S9"}},
         {"hpgl", "IN;VS4;\n", "PD;\n", {.z_speed = 1}},
     };
@@ -355,8 +357,7 @@ static void own_profile(void **state)
                            .tolerance = 1000};
     Error err = {""};
     Plotter slow = {.down = 0.5, .up = 1};
-    if (!plot_write_machine("plot.out", &plot, &profile, &slow, &err))
-        fail_msg("%s", err.text);
+    if (!plot_write_machine("plot.out", &plot, &profile, &slow, &err)) fail_msg("%s", err.text);
     char *text = file_text("plot.out");
     assert_string_equal(text, "{ {y\n[black]\n"
                               "(1;2){nothing}>1.5,2.5@30^60\n"
@@ -425,10 +426,14 @@ static int live(void **state)
 int main(void)
 {
     usual = plotter_default();
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(svg_words),   cmocka_unit_test(svg_is_xml), cmocka_unit_test(refused_plots),
-        cmocka_unit_test(machines),    cmocka_unit_test(names_for_machines),
-        cmocka_unit_test(own_profile), cmocka_unit_test(times),      cmocka_unit_test(papers),
-        cmocka_unit_test(lifts)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(svg_words),
+                                       cmocka_unit_test(svg_is_xml),
+                                       cmocka_unit_test(refused_plots),
+                                       cmocka_unit_test(machines),
+                                       cmocka_unit_test(names_for_machines),
+                                       cmocka_unit_test(own_profile),
+                                       cmocka_unit_test(times),
+                                       cmocka_unit_test(papers),
+                                       cmocka_unit_test(lifts)};
     return cmocka_run_group_tests(tests, NULL, live);
 }

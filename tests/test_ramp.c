@@ -97,7 +97,8 @@ static void test_not_reached(void **state)
     def.newton.max_iterations = 1;
     RampInfo info = ramp_solve(s.sys, &s.shell->params, &def, NULL, s.p, 0, s.x);
     assert_true(info.newton.status == NEWTON_MAX_ITERATIONS && info.reached < 1);
-    assert_true(info.refused == 0 && info.newton.iterations == 1); /* falling: half a load would not be more */
+    assert_true(info.refused == 0 &&
+                info.newton.iterations == 1); /* falling: half a load would not be more */
     free_strip(&s);
 }
 

@@ -123,7 +123,8 @@ static void check(RodSupport end, bool field, const char *block, Unknown unknown
     }
     double difference = (8 * (F4[2] - F4[1]) - (F4[3] - F4[0])) / (12 * h);
     print_message("%-15s %s%s: tangent %.1e, differences %.1e\n", block, end == ROD_FREE ? "free" : "held",
-                  field ? ", in a dipole's field" : "", fabs(slope / tangent - 1), fabs(slope / difference - 1));
+                  field ? ", in a dipole's field" : "", fabs(slope / tangent - 1),
+                  fabs(slope / difference - 1));
     assert_true(fabs(slope / tangent - 1) < 1e-10 && fabs(slope / difference - 1) < 1e-6);
     mem_free(u);
     fixture_clear(&f);
@@ -139,7 +140,8 @@ static void test_gradients(void **state)
         check(end, field, "magnetization", (Unknown){.lower = -INFINITY, .upper = INFINITY, .scale = 1e4});
         check(end, field, "young", (Unknown){.map = UNKNOWN_LOG, .lower = 1e4, .upper = 1e8});
         check(end, field, "natural_strain", (Unknown){.lower = -INFINITY, .upper = INFINITY, .scale = 10});
-        check(end, field, "flux_density", (Unknown){.lower = -1, .upper = 1, .scale = 0.01, .per_case = true});
+        check(end, field, "flux_density",
+              (Unknown){.lower = -1, .upper = 1, .scale = 0.01, .per_case = true});
         if (field) check(end, field, "field_scale", (Unknown){.lower = -9, .upper = 9, .scale = 1});
     }
 }

@@ -361,8 +361,8 @@ static void test_held_ends(void **state)
             double force = elastica_force(push, &deflection, &info);
             off[k] = fabs(force / ((clamped ? 16 : 4) * K2) - 1);
             print_message("elastica between %s, %d elements: %s, force %.1e off, deflection %.1e L off\n",
-                          clamped ? "clamps" : "hinges", k ? 100 : 50, newton_status_name(info.status), off[k],
-                          fabs(deflection - 0.5 / elastica_K));
+                          clamped ? "clamps" : "hinges", k ? 100 : 50, newton_status_name(info.status),
+                          off[k], fabs(deflection - 0.5 / elastica_K));
             assert_int_equal(info.status, NEWTON_CONVERGED);
             assert_true(off[k] < (k ? 4e-4 : 1.6e-3) &&
                         fabs(deflection - 0.5 / elastica_K) < (k ? 2e-4 : 8e-4));
@@ -411,8 +411,7 @@ int main(void)
         cmocka_unit_test(test_cantilevers),      cmocka_unit_test(test_both_forms),
         cmocka_unit_test(test_moments),          cmocka_unit_test(test_pole),
         cmocka_unit_test(test_balance_in_field), cmocka_unit_test(test_pushed),
-        cmocka_unit_test(test_straight),
-        cmocka_unit_test(test_held_ends),
+        cmocka_unit_test(test_straight),         cmocka_unit_test(test_held_ends),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

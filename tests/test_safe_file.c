@@ -58,9 +58,11 @@ static void test_mode(void **state)
 static void test_left_over(void **state)
 {
     (void)state;
-    static const char left[] = "test_safe_file.txt.slender-killed", held[] = "test_safe_file.txt.slender-alive2",
-                      link[] = "test_safe_file.txt.slender-linked", *other = "test_safe_file.txt.slender-another",
-                      *user = "test_safe_file.txt.backup.tmp", *victim = "test_safe_file.victim";
+    static const char left[] = "test_safe_file.txt.slender-killed",
+                      held[] = "test_safe_file.txt.slender-alive2",
+                      link[] = "test_safe_file.txt.slender-linked",
+                      *other = "test_safe_file.txt.slender-another", *user = "test_safe_file.txt.backup.tmp",
+                      *victim = "test_safe_file.victim";
     close(put(left, "half"));
     close(put(other, "a name of its own"));
     close(put(user, "the user's"));
@@ -116,7 +118,8 @@ static void test_same(void **state)
     close(put(PATH, "one"));
     unlink("test_safe_file.hard");
     assert_int_equal(link(PATH, "test_safe_file.hard"), 0);
-    assert_true(replace_is_same(PATH, "./test_safe_file.txt") && replace_is_same(PATH, "test_safe_file.hard"));
+    assert_true(replace_is_same(PATH, "./test_safe_file.txt") &&
+                replace_is_same(PATH, "test_safe_file.hard"));
     assert_false(replace_is_same(PATH, "test_safe_file.none"));
     assert_true(replace_is_same("./test_safe_file.none", "test_safe_file.none"));
     unlink("test_safe_file.hard");

@@ -327,10 +327,9 @@ static void test_bending_lengths(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_bending_lengths),
-        cmocka_unit_test(test_table),        cmocka_unit_test(test_framings),
-        cmocka_unit_test(test_second_root),  cmocka_unit_test(test_columns),
-        cmocka_unit_test(test_tipping_beam), cmocka_unit_test(test_never_unstable),
-        cmocka_unit_test(test_far_beyond)};
+        cmocka_unit_test(test_bending_lengths), cmocka_unit_test(test_table),
+        cmocka_unit_test(test_framings),        cmocka_unit_test(test_second_root),
+        cmocka_unit_test(test_columns),         cmocka_unit_test(test_tipping_beam),
+        cmocka_unit_test(test_never_unstable),  cmocka_unit_test(test_far_beyond)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -34,8 +34,8 @@ static void evaluate_task(void *self, int task)
 static void test_formula(void **state)
 {
     (void)state;
-    static const char *const expressions[] = {"sin(a)*b", "exp(-a) + x^2*step(y - 2)"},
-                            *const variables[] = {"x", "y", NULL};
+    static const char *const expressions[] = {"sin(a)*b", "exp(-a) + x^2*step(y - 2)"}, *const variables[] = {
+                                                                                            "x", "y", NULL};
     static const FormulaHelper helpers[] = {{"a", "x*y"}, {"b", "a + cos(y)"}};
     Error err;
     Evaluated *one = mem_alloc(2, sizeof *one), *more = one + 1;
@@ -140,8 +140,9 @@ static double evaluate_cases(const char *scene, int thread_count, double **gradi
     *gradient = mem_alloc(*size, sizeof *u);
     for (int c = 0; c < model->case_count; c++) {
         ModelCase *from = &model->cases[c];
-        cases[c] = (LoadCase){from->name, from->sys, from->stages[0].p, from->x, from->objectives,
-                              from->objective_count, from->weight, 0};
+        cases[c] = (LoadCase){
+            from->name,   from->sys, from->stages[0].p, from->x, from->objectives, from->objective_count,
+            from->weight, 0};
         design_read(&model->design, c, from->stages[0].p, u);
     }
     StaticDesign *sd = static_design_create(&model->design, model->params, cases, &def);

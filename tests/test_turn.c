@@ -96,7 +96,8 @@ static void test_roll(void **state)
     double rolled = system_term_energy(sys, 0, &at, NULL);
     for (int i = 0; i < shell_dof_count(shell); i++) to[i] = x[i] + 0.3 * d[i];
     double straight = system_term_energy(sys, 0, &at, NULL);
-    print_message("rolled up by %.1f: stretching energy %.1e J, straight %.1e J\n", 0.3 * (CELLS - 1), rolled, straight);
+    print_message("rolled up by %.1f: stretching energy %.1e J, straight %.1e J\n", 0.3 * (CELLS - 1), rolled,
+                  straight);
     assert_true(rolled < 1e-20 * straight);
     system_destroy(sys);
     shell_destroy(shell);
@@ -138,7 +139,8 @@ static void test_first_order(void **state)
 }
 
 /* v'Hv of a flat sheet stretched by l, v across the plane: only the stress acts. */
-static double across(const Shell *shell, System *sys, const double *p, double l, const double *from, const double *step)
+static double across(const Shell *shell, System *sys, const double *p, double l, const double *from,
+                     const double *step)
 {
     double *x = make_vector(shell), *gradient = make_vector(shell), *v = make_vector(shell), sum = 0;
     shell_rest_state(shell, x);
@@ -229,9 +231,11 @@ static void test_strips_buckle(void **state)
             b.p[shell->gravity + 1] = -loads[k] * 18.17 * rigidity / (1000 * thicknesses[i] * pow(length, 3));
             RampInfo info = solve(&b);
             double lowest, flat = height(&b);
-            print_message("L/h %4.0f, load %5.2f: %s after %3d iterations, %.4f m out of plane\n", length / thicknesses[i],
-                          loads[k], newton_status_name(info.newton.status), info.newton.iterations, flat);
-            assert_true(info.newton.status == NEWTON_CONVERGED && info.steps == 1 && info.newton.iterations <= 200); /* 3 to 148; other roundings, other ways */
+            print_message("L/h %4.0f, load %5.2f: %s after %3d iterations, %.4f m out of plane\n",
+                          length / thicknesses[i], loads[k], newton_status_name(info.newton.status),
+                          info.newton.iterations, flat);
+            assert_true(info.newton.status == NEWTON_CONVERGED && info.steps == 1 &&
+                        info.newton.iterations <= 200); /* 3 to 148; other roundings, other ways */
             assert_true(loads[k] < 1 ? flat < 1e-9 : flat > 0.005);
             assert_true(eigen_lowest(b.sys, &(Point){.x = b.x, .p = b.p}, 1, &lowest, NULL) && lowest > 0);
             free_body(&b);
@@ -245,7 +249,9 @@ static void test_sheets_hang(void **state)
     static const struct {
         const char *name;
         double thickness, young, density;
-    } rows[] = {{"rubber", 1e-3, 1e6, 1100}, {"PET", 5e-5, 3e9, 1400}, {"aluminium foil", 1.6e-5, 7e10, 2700},
+    } rows[] = {{"rubber", 1e-3, 1e6, 1100},
+                {"PET", 5e-5, 3e9, 1400},
+                {"aluminium foil", 1.6e-5, 7e10, 2700},
                 {"steel", 1e-3, 2e11, 7800}};
     for (int i = 0; i < 4; i++) {
         Shell *shell = make_sheet(0.1, 0.025, 16, 4, rows[i].thickness);
@@ -254,9 +260,10 @@ static void test_sheets_hang(void **state)
         b.p[shell->gravity + 2] = -9.81 * rows[i].density / shell->density;
         RampInfo info = solve(&b);
         int tip = 2 * 17 + 16;
-        print_message("%s: %s after %d iterations, tip at %.6f m\n", rows[i].name, newton_status_name(info.newton.status),
-                      info.newton.iterations, b.x[3 * tip + 2]);
-        assert_true(info.newton.status == NEWTON_CONVERGED && info.steps == 1 && info.newton.iterations <= 60);
+        print_message("%s: %s after %d iterations, tip at %.6f m\n", rows[i].name,
+                      newton_status_name(info.newton.status), info.newton.iterations, b.x[3 * tip + 2]);
+        assert_true(info.newton.status == NEWTON_CONVERGED && info.steps == 1 &&
+                    info.newton.iterations <= 60);
         assert_true(fabs(b.x[3 * tip + 2] + 0.1) < 2e-4 && fabs(b.x[3 * tip]) < 1e-6);
         free_body(&b);
     }
@@ -265,8 +272,8 @@ static void test_sheets_hang(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_hinge),       cmocka_unit_test(test_roll),
-        cmocka_unit_test(test_first_order), cmocka_unit_test(test_extrapolated_stress),
+        cmocka_unit_test(test_hinge),         cmocka_unit_test(test_roll),
+        cmocka_unit_test(test_first_order),   cmocka_unit_test(test_extrapolated_stress),
         cmocka_unit_test(test_strips_buckle), cmocka_unit_test(test_sheets_hang)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -398,11 +398,10 @@ static void test_use(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_kinds),      cmocka_unit_test(test_defaults),
-                                       cmocka_unit_test(test_round_trip), cmocka_unit_test(test_units),
-                                       cmocka_unit_test(test_overrides),  cmocka_unit_test(test_difference),
-                                       cmocka_unit_test(test_report),     cmocka_unit_test(test_mark),
-                                       cmocka_unit_test(test_foreign),    cmocka_unit_test(test_manual),
-                                       cmocka_unit_test(test_use)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_kinds),  cmocka_unit_test(test_defaults),  cmocka_unit_test(test_round_trip),
+        cmocka_unit_test(test_units),  cmocka_unit_test(test_overrides), cmocka_unit_test(test_difference),
+        cmocka_unit_test(test_report), cmocka_unit_test(test_mark),      cmocka_unit_test(test_foreign),
+        cmocka_unit_test(test_manual), cmocka_unit_test(test_use)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
