@@ -4,6 +4,7 @@
 #include "cli/verb.h"
 #include "solve/kernels.h"
 #include <fcntl.h>
+#include <signal.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -70,6 +71,7 @@ static int finish(int code)
 int main(int argc, char **argv)
 {
     hold_streams();
+    signal(SIGXFSZ, SIG_IGN); /* a file beyond the limit of sizes is what a full disk is: write says EFBIG */
     kernels_start(argv);
     const char *name = argc > 1 ? argv[1] : "help";
     if (!strncmp(name, "--", 2)) name += 2;
