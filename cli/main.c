@@ -33,7 +33,9 @@ enum { VERB_COUNT = sizeof verbs / sizeof *verbs };
 
 static int verb_help(int argc, char **argv)
 {
-    (void)argc, (void)argv;
+    static const char usage[] = "help\n  Lists the verbs.";
+    int code;
+    if (!options_parse(argc, argv, usage, NULL, 0, NULL, &code)) return code;
     printf(
         "slender simulates and designs magnetised thin shells and elastic rods, and draws with splines.\n\n");
     for (int k = 0; k < VERB_COUNT; k++) printf("  slender %-8s  %s\n", verbs[k].name, verbs[k].doc);
@@ -46,7 +48,9 @@ static int verb_help(int argc, char **argv)
 
 static int verb_version(int argc, char **argv)
 {
-    (void)argc, (void)argv;
+    static const char usage[] = "version\n  Names the program and the libraries that it found.";
+    int code;
+    if (!options_parse(argc, argv, usage, NULL, 0, NULL, &code)) return code;
     char *text = run_versions();
     fputs(text, stdout);
     mem_free(text);

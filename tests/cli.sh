@@ -5,8 +5,26 @@
 expect 0 "$program" help;                       says "slender run"
 expect 0 "$program" --version;                  says "CHOLMOD"; says "OpenBLAS"; says "NLopt"; says "HDF5"
 expect 2 "$program" fly;                        says "no verb 'fly'"
-expect 2 "$program" run;                        says "usage: slender run SCENE"
-expect 2 "$program" run --no-such-option x.yaml
+for verb in run check info export picture schema mesh help version; do
+    expect 0 "$program" $verb --help; [ ! -s err.txt ] && grep -q "^usage: slender $verb" out.txt || { echo "$verb does not say how it is used"; bad=1; }
+done
+refuses() { # a sentence, what the program is given ..
+    sentence=$1; shift
+    expect 2 "$program" "$@"; says "$sentence"; [ "$(cat out.txt err.txt | wc -l)" = 1 ] || { echo "more than a sentence:"; cat out.txt err.txt; bad=1; }
+}
+refuses "a SCENE must be given" run
+refuses "one SCENE can be given, and 2 are, from 'a.yaml'" check a.yaml b.yaml
+refuses "'a.yaml': no argument can be given" schema a.yaml
+refuses "no option --no-such-option" run --no-such-option x.yaml
+refuses "no option -x" run -x x.yaml
+refuses "'--quiet=1': this option takes no value" run --quiet=1 x.yaml
+for threads in 0 65 2x 1.5 99999999999999999999; do refuses "--threads must be a whole number from 1 to 64, and is '$threads'" run --threads $threads x.yaml; done
+refuses "--threads needs a value: a whole number from 1 to 64" run x.yaml --threads
+refuses "--log must be json, and is 'xml'" run --log=xml x.yaml
+refuses "one of them" run --resume --force x.yaml
+refuses "--seconds must be a number from 0.04 to 600, and is 'nan'" picture --seconds nan x.vtkhdf
+refuses "--frame must be a whole number from 0, and is '-1'" export --frame -1 x.vtkhdf -o x.obj
+refuses "-o FILE must be given" export x.vtkhdf
 expect 3 "$program" run missing.yaml;           says "missing.yaml: cannot be read"
 expect 3 "$program" run "$here/broken/wrong_unit.yaml"; says "must be a number in Pa"
 
