@@ -201,6 +201,7 @@ bool model_shell(Model *model, const Scene *scene, YamlFile *file)
     model->load_steps = 1;
     model->step_cap = newton_default().step_cap;
     Build b = build_start(scene, mesh, file);
+    b.report = &model->report;
     b.timed = model_is_motion(scene->job) ? &model->flux_of_time : NULL;
     return fill(model, scene, &b);
 }

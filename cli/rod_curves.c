@@ -195,9 +195,13 @@ bool rod_table_read(const Build *b, const char *at, const char *path, const char
         return yaml_refuse(b->file, at, "%s", err.text);
     if (table->rows < 2) return yaml_refuse(b->file, at, "%s has fewer than two rows", path);
     double first = table->values[0], last = table->values[(size_t)(table->rows - 1) * (size_t)table->columns];
-    return (first >= -little * length && last <= (1 + little) * length) ||
-           yaml_refuse(b->file, at, "%s:%d: s goes from %g to %g m, and the rod is %g m long", path,
-                       table->line[table->rows - 1], first, last, length);
+    if (first < -little * length || last > (1 + little) * length)
+        return yaml_refuse(b->file, at, "%s:%d: s goes from %g to %g m, and the rod is %g m long", path,
+                           table->line[table->rows - 1], first, last, length);
+    return last - first >= (1 - little) * TABLE_SHARE * length ||
+           yaml_refuse(b->file, at,
+                       "%s:%d: s goes from %g to %g m only, and the rod is %g m long: rows along half of it at least are needed",
+                       path, table->line[table->rows - 1], first, last, length);
 }
 
 void rod_table_at(const Table *table, double s, double *values)

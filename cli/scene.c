@@ -108,7 +108,8 @@ static const YamlTable flux_density_table = {
         {YAML_TEXTS(FluxScene, formula), .one_of = 1, .required = true, .short_form = true, .min_count = 3,
          .max_count = 3, .doc = "three expressions, in T, of the current position x, y, z, r and the time t"},
         {YAML_FILE(FluxScene, file), .one_of = 1, .required = true,
-         .doc = "a CSV file with rows t, Bx, By, Bz (s, T), t ascending: uniform, linear between the rows"},
+         .doc = "a CSV file with rows t, Bx, By, Bz (s, T), t ascending, along half of a motion at least: uniform, linear "
+                "between the rows, constant beyond them"},
         {YAML_OPTIONAL(FluxScene, dipole, &dipole_table), .one_of = 1, .required = true,
          .doc = "a point dipole"},
         {YAML_OPTIONAL(FluxScene, magnet, &magnet_table), .one_of = 1, .required = true,
