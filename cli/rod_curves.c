@@ -67,6 +67,8 @@ static bool read_polylines(const Build *b, Sampled from, PolylineFile *file)
     Error err;
     *file = (PolylineFile){0};
     if (!polyline_file_read(from.path, file, &err)) return yaml_refuse(b->file, from.at, "%s", err.text);
+    if (file->scaled && from.scale != 1)
+        return yaml_refuse(b->file, from.at, "%s: its header says units, which are honoured: leave `scale` out", from.path);
     for (int i = 0; i < file->point_count; i++) file->points[i] = vec3_scale(from.scale, file->points[i]);
     return true;
 }
@@ -133,7 +135,7 @@ static bool frames_from_file(const Build *b, const RodScene *scene, const RodCur
 {
     const char *at = "rod.frame.file";
     Table table;
-    bool ok = rod_table_read(b, at, scene->frame.file, "s, x, y, z", curve->length, &table);
+    bool ok = rod_table_read(b, at, scene->frame.file, "s [m], x, y, z", curve->length, &table);
     for (int j = 0; ok && j <= 2 * curve->elements; j++) {
         double normal[3];
         rod_table_at(&table, curve->length * j / (2 * curve->elements), normal);
