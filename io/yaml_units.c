@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 /* Exponents of m, kg, s, A, rad. */
 enum { DIMENSIONS = 5 };
@@ -123,10 +124,22 @@ static bool decimal(const char *text, double *value, const char **rest)
     return true;
 }
 
+/* ".nan", "-.inf", "inf": YAML's numbers that are not finite, and what programs print for them. */
+static bool is_not_finite(const char *text)
+{
+    static const char *const words[] = {"nan", "inf", "infinity"};
+    text += *text == '-' || *text == '+';
+    text += *text == '.';
+    for (size_t k = 0; k < sizeof words / sizeof *words; k++)
+        if (!strcasecmp(text, words[k])) return true;
+    return false;
+}
+
 bool unit_is_number(const char *text)
 {
     double value;
     const char *rest;
+    if (is_not_finite(text)) return true;
     if (!decimal(text, &value, &rest)) return false;
     if (*rest && *rest != ' ' && !is_symbol(*rest)) return false;
     while (*rest == ' ') rest++;
@@ -139,7 +152,7 @@ bool unit_parse(const char *text, const char *unit, double *value, char *wrong, 
 {
     const char *in = unit ? " in " : "", *name = unit ? unit : "", *rest;
     if (!decimal(text, value, &rest) || (*rest && *rest != ' ' && !is_symbol(*rest))) {
-        snprintf(wrong, size, "must be a number%s%s, not '%.60s'", in, name, text);
+        snprintf(wrong, size, "must be a %snumber%s%s, not '%.60s'", is_not_finite(text) ? "finite " : "", in, name, text);
         return false;
     }
     while (*rest == ' ') rest++;
