@@ -5,7 +5,6 @@
 #include <stdio.h>
 #include <string.h>
 
-
 static bool load_table(Load *load, const YamlTable *table, const Node *node, void *scene);
 static bool load_value(Load *load, const YamlField *row, const Node *node, void *scene);
 
