@@ -43,6 +43,22 @@ static const struct {
 } prefixes[] = {{"G", 1e9},  {"M", 1e6},         {"k", 1e3},         {"d", 1e-1}, {"c", 1e-2}, {"m", 1e-3},
                 {"u", 1e-6}, {"\xc2\xb5", 1e-6}, {"\xce\xbc", 1e-6}, {"n", 1e-9}, {"p", 1e-12}};
 
+void unit_list(bool prefixed, Text *text)
+{
+    const char *before = "";
+    for (size_t k = 0; k < sizeof units / sizeof *units; k++) {
+        if (units[k].prefixed != prefixed) continue;
+        text_add(text, "%s`%s`", before, units[k].symbol);
+        before = ", ";
+    }
+}
+
+void unit_list_prefixes(Text *text)
+{
+    for (size_t k = 0; k < sizeof prefixes / sizeof *prefixes; k++)
+        if (!(prefixes[k].symbol[0] & 0x80)) text_add(text, "%s`%s`", k ? ", " : "", prefixes[k].symbol);
+}
+
 static const Unit *find_unit(const char *symbol, size_t length, bool prefixed)
 {
     for (size_t k = 0; k < sizeof units / sizeof *units; k++)
