@@ -134,6 +134,15 @@ for term in membrane bending gravity load; do
     awk -v a="$(cat a.txt)" -v b="$(cat b.txt)" 'BEGIN { exit !(a != "" && (a - b)^2 <= 1e-12 * a * a) }' || { echo "energy of $term: $(cat a.txt b.txt)"; bad=1; }
 done
 
+# What is not magnetised is not coloured; an arrow shows where gravity points, not how strong it is.
+"$program" picture beam.vtkhdf -o coloured.png; "$program" picture beam.vtkhdf -o plain.png --field none; same coloured.png plain.png
+for gravity in 0,0,-9.8 0,0,-1 9.8,0,0; do
+    mkdir "towards $gravity"
+    expect 0 "$program" run evaluate.yaml --quiet -o "towards $gravity/pose" --set "shell.gravity=[$gravity]"
+done
+same "towards 0,0,-9.8/pose.png" "towards 0,0,-1/pose.png"
+cmp -s "towards 0,0,-9.8/pose.png" "towards 9.8,0,0/pose.png" && { echo "no picture shows gravity"; bad=1; }
+
 # A run that lives keeps others away; one that was stopped is not overwritten, and goes on with --resume.
 long="$here/scene_small.yaml --set design.iterations=100000 --set design.tolerance=0 --set design.optimizer=mma"
 # shellcheck disable=SC2086
