@@ -11,14 +11,20 @@
 
 typedef struct Build {
     YamlFile *file;
-    const Mesh *mesh;  /* NULL: of a rod */
-    double size;       /* m, the body's: the scale on which fields vary */
-    double time;       /* s, of formulas */
-    TimedFlux *timed;  /* where a uniform field that depends on time is left; NULL: in statics */
-    double mesh_scale; /* of the mesh's file; 1 where it is generated */
+    const Mesh *mesh;   /* NULL: of a rod */
+    double size;        /* m, the body's: the scale on which fields vary */
+    double time;        /* s, of formulas; where a motion begins */
+    double duration;    /* s, of a motion; 0: statics */
+    TimedFlux *timed;   /* where a uniform field that depends on time is left; NULL: in statics */
+    double mesh_scale;  /* of the mesh's file; 1 where it is generated */
+    MeshReport *report; /* of warnings; NULL: none are wanted */
 } Build;
 
-/* What the models of a scene share; statics. The size of a rod is still to be told. */
+/* The part of a rod or of a motion over which a table must have rows, at least: one over less is most likely in another
+ * unit. Beyond its ends a table stays as it is there. */
+#define TABLE_SHARE 0.5
+
+/* What the models of a scene share; `timed` is NULL. The size of a rod is still to be told. */
 Build build_start(const Scene *scene, const Mesh *mesh, YamlFile *file);
 
 /* The path of a key: key("cases[%d].target", c). */

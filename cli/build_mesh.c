@@ -2,6 +2,7 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "cli/build.h"
+#include "cli/model.h"
 #include "shell/shapes.h"
 #include <math.h>
 
@@ -105,6 +106,7 @@ Build build_start(const Scene *scene, const Mesh *mesh, YamlFile *file)
                    .mesh = mesh,
                    .size = mesh ? mesh_diagonal(mesh) : 0,
                    .time = scene->time.at,
+                   .duration = model_is_motion(scene->job) ? scene->time.step * scene->time.steps : 0,
                    .mesh_scale = scene->shell ? scene->shell->mesh.scale : 1};
 }
 

@@ -117,12 +117,40 @@ static bool flux_formula(const Build *b, Key at, const FluxScene *scene, FluxFie
     return true;
 }
 
+/* In statics a table must have rows around that time, in a motion over a good part of it. */
+static bool check_times(const Build *b, Key at, const char *path, const Table *table)
+{
+    int last = table->rows - 1;
+    double from = table->values[0], to = table->values[(size_t)table->columns * (size_t)last],
+           end = b->time + b->duration, covered = fmin(to, end) - fmax(from, b->time);
+    const double little = 0.01;
+    if (covered >= (1 - 1e-9) * TABLE_SHARE * b->duration) {
+        if (b->duration > 0 && b->duration < little * (to - from))
+            mesh_warn(b->report,
+                      "%s: t goes from %g to %g s, and the motion from %g to %g s only: is t in seconds?",
+                      path, from, to, b->time, end);
+        return true;
+    }
+    if (b->duration == 0)
+        return yaml_refuse(b->file, at.text,
+                           "%s:%d: t goes from %g to %g s, and the field is needed at %g s (time.at)", path,
+                           table->line[last], from, to, b->time);
+    return yaml_refuse(b->file, at.text,
+                       "%s:%d: t goes from %g to %g s, and the motion from %g to %g s: rows along half of it "
+                       "at least are needed",
+                       path, table->line[last], from, to, b->time, end);
+}
+
 static bool flux_table(const Build *b, Key at, const char *path, double *uniform)
 {
     TimedFlux timed = {0};
     Error err;
     at = key("%s.file", at.text);
     if (!timed_flux_read(path, &timed, &err)) return yaml_refuse(b->file, at.text, "%s", err.text);
+    if (!check_times(b, at, path, &timed.table)) {
+        timed_flux_clear(&timed);
+        return false;
+    }
     return put_uniform(b, at, timed, true, uniform);
 }
 

@@ -70,7 +70,7 @@ static bool from_table(const Build *b, Key at, const char *path, int width, doub
 {
     Table table = {0};
     Error err;
-    bool ok = table_read(path, width == 1 ? "value" : "x, y, z", &table, &err) ||
+    bool ok = table_read(path, width == 1 ? "value [Pa]" : "x [A/m], y [A/m], z [A/m]", &table, &err) ||
               yaml_refuse(b->file, at.text, "%s", err.text);
     if (ok && table.rows != b->mesh->face_count)
         ok =

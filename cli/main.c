@@ -4,6 +4,7 @@
 #include "cli/verb.h"
 #include "solve/kernels.h"
 #include <fcntl.h>
+#include <signal.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
@@ -32,7 +33,9 @@ enum { VERB_COUNT = sizeof verbs / sizeof *verbs };
 
 static int verb_help(int argc, char **argv)
 {
-    (void)argc, (void)argv;
+    static const char usage[] = "help\n  Lists the verbs.";
+    int code;
+    if (!options_parse(argc, argv, usage, NULL, 0, NULL, &code)) return code;
     printf(
         "slender simulates and designs magnetised thin shells and elastic rods, and draws with splines.\n\n");
     for (int k = 0; k < VERB_COUNT; k++) printf("  slender %-8s  %s\n", verbs[k].name, verbs[k].doc);
@@ -45,7 +48,9 @@ static int verb_help(int argc, char **argv)
 
 static int verb_version(int argc, char **argv)
 {
-    (void)argc, (void)argv;
+    static const char usage[] = "version\n  Names the program and the libraries that it found.";
+    int code;
+    if (!options_parse(argc, argv, usage, NULL, 0, NULL, &code)) return code;
     char *text = run_versions();
     fputs(text, stdout);
     mem_free(text);
@@ -71,6 +76,7 @@ static int finish(int code)
 int main(int argc, char **argv)
 {
     hold_streams();
+    signal(SIGXFSZ, SIG_IGN); /* a file beyond the limit of sizes is what a full disk is: write says EFBIG */
     kernels_start(argv);
     const char *name = argc > 1 ? argv[1] : "help";
     if (!strncmp(name, "--", 2)) name += 2;

@@ -35,6 +35,7 @@ typedef struct Motion {
     Formula *formula;
     Indices vertices;
     bool axis[3];
+    int entry; /* of the scene's `fix` */
 } Motion;
 
 /* One state to be shown or stored: x[dofs] in equilibrium with p[params] of a case. */

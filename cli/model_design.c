@@ -208,7 +208,8 @@ static bool start_control(Model *model, const Build *b, const FluxStart *start, 
     }
     Table table;
     Error err;
-    if (!table_read(start->file, "Bx, By, Bz", &table, &err)) return yaml_refuse(b->file, at, "%s", err.text);
+    if (!table_read(start->file, "Bx [T], By [T], Bz [T]", &table, &err))
+        return yaml_refuse(b->file, at, "%s", err.text);
     bool ok = table.rows == control->rows ||
               yaml_refuse(b->file, at, "%s has %d rows; the unknown flux density has %d", start->file,
                           table.rows, control->rows);

@@ -283,6 +283,7 @@ static bool check_inversion(const Scene *scene, YamlFile *file)
 bool model_rod(Model *model, const Scene *scene, YamlFile *file)
 {
     Build b = build_start(scene, NULL, file);
+    b.report = &model->report;
     b.timed = model_is_motion(scene->job) ? &model->flux_of_time : NULL;
     model->body = &rod_ops;
     model->point_count = scene->rod->elements + 1;

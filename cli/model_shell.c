@@ -9,9 +9,47 @@
 
 /* ---- What is held ---- */
 
-static bool add_motion(Model *model, const Build *b, Key at, const FixScene *fix, const bool *axis,
+/* Do two motions lead a vertex to one place, as far as both move it? At up to 64 times, or in statics at one. */
+static bool agree(const Build *b, const Motion *motion, const Motion *other, int v)
+{
+    const double little = 1e-9;
+    int times = b->duration > 0 ? 64 : 0;
+    bool same = true;
+    for (int k = 0; same && k <= times; k++) {
+        double variables[BUILD_VARIABLES], place[3], there[3];
+        build_position(variables, b->mesh->rest[v], b->time + (times ? b->duration * k / times : 0));
+        if (!formula_eval(motion->formula, variables, place, NULL) ||
+            !formula_eval(other->formula, variables, there, NULL))
+            return true; /* what has no value is told where it is needed */
+        for (int i = 0; i < 3; i++)
+            same &= !motion->axis[i] || !other->axis[i] || fabs(place[i] - there[i]) <= little * b->size;
+    }
+    return same;
+}
+
+/* A vertex that two entries move goes to one place. */
+static bool check_motion(const Model *model, const Build *b, const Motion *motion)
+{
+    int disagree = -1, entry = 0;
+    bool *moved = mem_alloc((size_t)b->mesh->vertex_count, sizeof *moved);
+    for (int k = 0; k < motion->vertices.count; k++) moved[motion->vertices.items[k]] = true;
+    for (int m = 0; disagree < 0 && m < model->motion_count; m++) {
+        const Motion *other = &model->motions[m];
+        for (int k = 0; disagree < 0 && k < other->vertices.count; k++) {
+            int v = other->vertices.items[k];
+            if (moved[v] && !agree(b, motion, other, v)) disagree = v, entry = other->entry;
+        }
+    }
+    mem_free(moved);
+    return disagree < 0 || yaml_refuse(b->file, key("fix[%d].move", motion->entry).text,
+                                       "vertex %d is moved here to another place than by fix[%d]",
+                                       b->mesh->file_vertex[disagree], entry);
+}
+
+static bool add_motion(Model *model, const Build *b, int entry, const FixScene *fix, const bool *axis,
                        Indices vertices)
 {
+    Key at = key("fix[%d].move", entry);
     for (int i = 0; i < 3; i++) {
         const char *own = (const char *[]){"x", "y", "z"}[i];
         if (!axis[i] && strcmp(fix->move[i], "0") && strcmp(fix->move[i], own))
@@ -20,9 +58,13 @@ static bool add_motion(Model *model, const Build *b, Key at, const FixScene *fix
                                "not \"%s\"",
                                fix->axes, own, own, fix->move[i]);
     }
-    Motion motion = {.vertices = vertices, .axis = {axis[0], axis[1], axis[2]}};
+    Motion motion = {.vertices = vertices, .axis = {axis[0], axis[1], axis[2]}, .entry = entry};
     motion.formula = build_formula(b, at, fix->move, 3, NULL, 0, build_variables_time);
     if (!motion.formula) return false;
+    if (!check_motion(model, b, &motion)) {
+        formula_destroy(motion.formula);
+        return false;
+    }
     size_t count = (size_t)model->motion_count++;
     model->moves = true;
     model->motions = mem_resize(model->motions, count, count + 1, sizeof *model->motions);
@@ -31,8 +73,9 @@ static bool add_motion(Model *model, const Build *b, Key at, const FixScene *fix
     return true;
 }
 
-static bool fix_entry(Model *model, const Build *b, Key at, const FixScene *fix)
+static bool fix_entry(Model *model, const Build *b, int entry, const FixScene *fix)
 {
+    Key at = key("fix[%d]", entry);
     bool axis[3] = {false}, ok = *fix->axes != 0;
     for (const char *c = fix->axes; ok && *c; c++) {
         ok = strchr("xyz", *c) && !axis[*c - 'x'];
@@ -51,7 +94,7 @@ static bool fix_entry(Model *model, const Build *b, Key at, const FixScene *fix)
         for (int k = 0; k < edges.count; k++) shell_clamp(model->shell, edges.items[k]);
         mem_free(edges.items);
     }
-    if (ok && fix->move_count) ok = add_motion(model, b, key("%s.move", at.text), fix, axis, found);
+    if (ok && fix->move_count) ok = add_motion(model, b, entry, fix, axis, found);
     mem_free(found.items);
     return ok;
 }
@@ -161,8 +204,7 @@ static bool fill(Model *model, const Scene *scene, const Build *b)
     shell->density = scene->shell->density;
     shell->bending = (BendingModel)scene->shell->bending;
     bool ok = true;
-    for (int k = 0; k < scene->fix_count; k++)
-        ok = fix_entry(model, b, key("fix[%d]", k), &scene->fix[k]) && ok;
+    for (int k = 0; k < scene->fix_count; k++) ok = fix_entry(model, b, k, &scene->fix[k]) && ok;
     model->x = mem_alloc((size_t)shell_dof_count(shell), sizeof *model->x);
     shell_rest_state(shell, model->x);
     ok = read_pose(b, scene->shell->pose, model->x) && ok;
@@ -201,6 +243,7 @@ bool model_shell(Model *model, const Scene *scene, YamlFile *file)
     model->load_steps = 1;
     model->step_cap = newton_default().step_cap;
     Build b = build_start(scene, mesh, file);
+    b.report = &model->report;
     b.timed = model_is_motion(scene->job) ? &model->flux_of_time : NULL;
     return fill(model, scene, &b);
 }

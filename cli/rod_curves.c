@@ -67,6 +67,9 @@ static bool read_polylines(const Build *b, Sampled from, PolylineFile *file)
     Error err;
     *file = (PolylineFile){0};
     if (!polyline_file_read(from.path, file, &err)) return yaml_refuse(b->file, from.at, "%s", err.text);
+    if (file->scaled && from.scale != 1)
+        return yaml_refuse(b->file, from.at,
+                           "%s: its header says units, which are honoured: leave `scale` out", from.path);
     for (int i = 0; i < file->point_count; i++) file->points[i] = vec3_scale(from.scale, file->points[i]);
     return true;
 }
@@ -133,7 +136,7 @@ static bool frames_from_file(const Build *b, const RodScene *scene, const RodCur
 {
     const char *at = "rod.frame.file";
     Table table;
-    bool ok = rod_table_read(b, at, scene->frame.file, "s, x, y, z", curve->length, &table);
+    bool ok = rod_table_read(b, at, scene->frame.file, "s [m], x, y, z", curve->length, &table);
     for (int j = 0; ok && j <= 2 * curve->elements; j++) {
         double normal[3];
         rod_table_at(&table, curve->length * j / (2 * curve->elements), normal);
@@ -195,9 +198,14 @@ bool rod_table_read(const Build *b, const char *at, const char *path, const char
         return yaml_refuse(b->file, at, "%s", err.text);
     if (table->rows < 2) return yaml_refuse(b->file, at, "%s has fewer than two rows", path);
     double first = table->values[0], last = table->values[(size_t)(table->rows - 1) * (size_t)table->columns];
-    return (first >= -little * length && last <= (1 + little) * length) ||
-           yaml_refuse(b->file, at, "%s:%d: s goes from %g to %g m, and the rod is %g m long", path,
-                       table->line[table->rows - 1], first, last, length);
+    if (first < -little * length || last > (1 + little) * length)
+        return yaml_refuse(b->file, at, "%s:%d: s goes from %g to %g m, and the rod is %g m long", path,
+                           table->line[table->rows - 1], first, last, length);
+    return last - first >= (1 - little) * TABLE_SHARE * length ||
+           yaml_refuse(b->file, at,
+                       "%s:%d: s goes from %g to %g m only, and the rod is %g m long: rows along half of it "
+                       "at least are needed",
+                       path, table->line[table->rows - 1], first, last, length);
 }
 
 void rod_table_at(const Table *table, double s, double *values)

@@ -196,8 +196,8 @@ static bool read_strains(const Build *b, const StrainScene *scene, const Rod *ro
     for (int i = 0; !scene->file && i < 3 * rod->elements; i++) strain[i] = scene->value[i % 3];
     if (!scene->file) return true;
     Table table;
-    bool ok = rod_table_read(b, "rod.natural_strain.file", scene->file, "s, twist, k1, k2", rod->length,
-                             &table),
+    bool ok = rod_table_read(b, "rod.natural_strain.file", scene->file,
+                             "s [m], twist [1/m], k1 [1/m], k2 [1/m]", rod->length, &table),
          own = ok && is_at_middles(&table, rod);
     for (int e = 0; ok && e < rod->elements; e++)
         if (own)
@@ -219,7 +219,7 @@ bool rod_model_vectors(const Build *b, const char *at, const VectorScene *scene,
     if (!scene->file) return true;
     Table table;
     Error err;
-    if (!table_read(scene->file, "tangent, n1, n2", &table, &err))
+    if (!table_read(scene->file, "tangent [A/m], n1 [A/m], n2 [A/m]", &table, &err))
         return yaml_refuse(b->file, at, "%s", err.text);
     bool ok = table.rows == rod->elements ||
               yaml_refuse(b->file, at, "%s has %d rows, and the rod %d elements: one row for each is needed",

@@ -94,6 +94,8 @@ static void add_case(Arrays *list, const Model *model, const State *state)
                                 newton_status_name(state->status)));
     arrays_add(list, array_float(arrays_keep(list, mem_format("%s/flux_density", prefix)), "T",
                                  state->p + model->flux_density, 1, 3, 0));
+    arrays_add(list, array_float(arrays_keep(list, mem_format("%s/gravity", prefix)), "m/s^2",
+                                 state->p + model->gravity, 1, 3, 0));
     if (state->load_case->target)
         arrays_add(list, array_float(arrays_keep(list, mem_format("%s/target", prefix)), "m",
                                      state->load_case->target[0], 2, model->point_count, 3));

@@ -112,7 +112,9 @@ static const YamlTable flux_density_table = {
         {YAML_TEXTS(FluxScene, formula), .one_of = 1, .required = true, .short_form = true, .min_count = 3,
          .max_count = 3, .doc = "three expressions, in T, of the current position x, y, z, r and the time t"},
         {YAML_FILE(FluxScene, file), .one_of = 1, .required = true,
-         .doc = "a CSV file with rows t, Bx, By, Bz (s, T), t ascending: uniform, linear between the rows"},
+         .doc = "a CSV file with rows t, Bx, By, Bz (s, T), t ascending, along half of a motion at least: "
+                "uniform, linear "
+                "between the rows, constant beyond them"},
         {YAML_OPTIONAL(FluxScene, dipole, &dipole_table), .one_of = 1, .required = true,
          .doc = "a point dipole"},
         {YAML_OPTIONAL(FluxScene, magnet, &magnet_table), .one_of = 1, .required = true,
@@ -125,7 +127,16 @@ static const YamlTable flux_density_table = {
 static const YamlTable mesh_table = {
     .name = "mesh",
     .size = sizeof(MeshScene),
-    .doc = "The triangle mesh of the shell at rest, from a file or generated.",
+    .doc = "The triangle mesh of the shell at rest, from a file or generated. A generated one lies in the "
+           "plane z = 0, its "
+           "upper side towards +z: a sheet or strip from the origin along +x and +y, a hexagram, disc or "
+           "kirigami around "
+           "the origin. They have groups of vertices: of a sheet or strip `root` (the edge x = 0) and `tip` "
+           "(the vertex in "
+           "the middle of the opposite edge), of a disc or kirigami `centre` and `rim`; a hexagram has "
+           "groups of faces, `hub` "
+           "and `flap1` (on +x, a tip on the axis) to `flap6`, counter-clockwise. A rod has none; its ends "
+           "are the clamp, s = 0, and the tip.",
     .fields = (const YamlField[]){
         {YAML_FILE(MeshScene, file), .one_of = 1, .required = true, .short_form = true,
          .doc = "an OBJ, PLY, STL or Gmsh .msh (2.2 or 4.1, ASCII) file; docs/meshes.md says what is read of "
@@ -242,7 +253,7 @@ static const YamlTable fix_table = {
         {YAML_TEXTS(FixScene, move), .when = "/job: equilibrium, simulate, trajectory", .min_count = 3,
          .max_count = 3,
          .doc = "prescribed motion: three expressions, in m, of the rest position x, y, z, r and the time t; "
-                "0 along what is not among the axes"},
+                "0 along what is not among the axes; a vertex that two entries move must go to one place"},
         {0}}};
 
 static const YamlTable load_table = {
@@ -392,7 +403,8 @@ const YamlTable scene_table = {
     .doc =
         "A scene file is YAML (or JSON) with the key `slender: 1`, the format's version. Numbers are SI, or "
         "carry a "
-        "unit: `1 mm`, `20 mT`, `0.3 MPa`; in quotes they are numbers too. The order of keys means nothing. "
+        "unit: `1 mm`, `20 mT`, `0.3 MPa` (the last section lists them); in quotes they are numbers too. The "
+        "order of keys means nothing. "
         "Aliases (`*name`) are copies of what was anchored (`&name`) before; there are no merge keys (`<<`) "
         "and no "
         "tags. A key may have other names, which stand beside it: `on` and `n` are `true` and `false` to "

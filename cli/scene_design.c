@@ -199,7 +199,7 @@ static const YamlTable objective_table = {
         {YAML_NUMBER(ObjectiveScene, weight), .fallback = "1",
          .doc = "another factor, of a point's rows the only one"},
         {YAML_TEXT(ObjectiveScene, of), .when = "height", .fallback = "all",
-         .doc = "of height: a named group, or all"},
+         .doc = "of height: a named group of the mesh, or all; of a rod its end, `tip`, or all"},
         FRAME_ROWS(ObjectiveScene, "/job: trajectory & target | height",
                    ", of a target or height in a trajectory; the last one if absent"),
         {YAML_INTEGER(ObjectiveScene, pairs), .when = "dmp", .range = "[1, 100]", .fallback = "5",

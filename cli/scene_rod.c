@@ -47,7 +47,7 @@ static const YamlTable strain_table = {
          .max_count = 3, .doc = "three expressions, in 1/m, of the arclength s and the length L"},
         {YAML_FILE(StrainScene, file), .one_of = 1, .required = true,
          .doc = "a CSV file with rows s, twist, k1, k2: at the elements' middles as they are (a round trip), "
-                "else linear between the rows, constant beyond them"},
+                "else along half of the rod at least: linear between the rows, constant beyond them"},
         WHERE_ROW(StrainScene),
         {0}}};
 
@@ -63,8 +63,9 @@ static const YamlTable rod_frame_table = {
         {YAML_CHOICE(RodFrameScene, from), .when = "formula", .choices = YAML_NAMES("frenet", "bishop"),
          .fallback = "frenet", .doc = "of a formula: what is turned"},
         {YAML_FILE(RodFrameScene, file), .one_of = 1, .required = true,
-         .doc = "a CSV file with rows s, x, y, z: the direction of n1, linear between the rows, constant "
-                "beyond them"},
+         .doc =
+             "a CSV file with rows s, x, y, z: the direction of n1, along half of the rod at least: linear "
+             "between the rows, constant beyond them"},
         {0}}};
 
 static const YamlTable clamp_table = {

@@ -17,6 +17,7 @@ typedef struct Show {
     int vertex_count, face_count;
     const int (*faces)[3];
     const double (*rest)[3], (*magnetization)[3];
+    bool magnetic; /* somewhere */
     char *field;
     PicturePanel *panels;
     int *steps; /* [panel] the frame that it shows; -1: the last */
@@ -47,6 +48,8 @@ static bool read_mesh(Show *show, Error *err)
     show->rest = (void *)rest.data;
     show->magnetization =
         show_dataset(show->data, "slender/design/magnetization", ARRAY_FLOAT64, 3 * (size_t)show->face_count);
+    for (int i = 0; show->magnetization && i < 3 * show->face_count; i++)
+        show->magnetic |= show->magnetization[i / 3][i % 3] != 0;
     return true;
 }
 
@@ -104,8 +107,7 @@ static bool face_field(Show *show, int step, const double **values, const char *
         show_dataset(show->data, "slender/design/young", ARRAY_FLOAT64, (size_t)show->face_count);
     const char *asked = show->def->field;
     *values = NULL;
-    if (!asked)
-        asked = varies(young, show->face_count) ? "young" : show->magnetization ? "magnetization" : "none";
+    if (!asked) asked = varies(young, show->face_count) ? "young" : show->magnetic ? "magnetization" : "none";
     *name = asked, *unit = "";
     if (!strcmp(asked, "none")) return true;
     if (!strcmp(asked, "young") && young) return *values = young, *unit = "Pa", true;
@@ -134,7 +136,7 @@ static PicturePanel *add_panel(Show *show, const char *name, const double (*x)[3
     show->steps[count] = -1;
     PicturePanel *panel = &show->panels[count];
     *panel = (PicturePanel){.name = name, .x = x};
-    if (show->def->arrows && show->magnetization) panel->vectors = carried(show, x, show->magnetization);
+    if (show->def->arrows && show->magnetic) panel->vectors = carried(show, x, show->magnetization);
     return panel;
 }
 
@@ -150,6 +152,8 @@ static bool add_frame(Show *show, int frame, Error *err)
         return error_set(err, "the result's frame %d has other points than its mesh", frame);
     PicturePanel *panel = add_panel(show, show_frame_name(show->data, frame), points);
     show->steps[show->panel_count - 1] = frame;
+    if (show->data->motion)
+        panel->gravity = show_dataset(show->data, "slender/design/gravity", ARRAY_FLOAT64, 3);
     if (result_has(result, "slender/frames/flux_density") &&
         result_read_rows(result, "slender/frames/flux_density", frame, 1, &flux, NULL)) {
         char number[64];
@@ -179,6 +183,7 @@ static void add_case(Show *show, const char *name)
     if (!x) return;
     PicturePanel *panel = add_panel(show, show_text(show->data, "%s", name), x);
     panel->target = case_dataset(show, name, "target", count);
+    panel->gravity = case_dataset(show, name, "gravity", 3);
     const double *flux = case_dataset(show, name, "flux_density", 3);
     if (flux && vec3_length(vec3_load(flux)) > 0) panel->flux_density = flux;
     Array status;

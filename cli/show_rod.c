@@ -1,6 +1,7 @@
 #include "cli/show_rod.h"
 #include "base/memory.h"
 #include "base/vec3.h"
+#include "cli/verb.h"
 #include "io/curves_picture.h"
 #include "io/ticks.h"
 #include <math.h>
@@ -194,13 +195,22 @@ static bool add_curves(RodPage *page, Error *err)
     return true;
 }
 
-/* Where the strands begin. */
-static const double (*clamps(RodPage *page))[3]
+/* Where the strands are held: where they begin, and where the scene holds the other end. */
+static void add_clamps(RodPage *page, CurvesScene *scene)
 {
+    Scene from;
+    YamlFile *file;
     const double(*points)[3] = page->sets[0].points;
-    double(*first)[3] = show_block(page->data, (size_t)page->strand_count, sizeof *first);
-    for (int k = 0; k < page->strand_count; k++) memcpy(first[k], points[page->strands[k]], sizeof *first);
-    return (const double(*)[3])first;
+    double(*held)[3] = show_block(page->data, (size_t)page->strand_count + 1, sizeof *held);
+    int count = page->strand_count;
+    for (int k = 0; k < count; k++) memcpy(held[k], points[page->strands[k]], sizeof *held);
+    verb_result_scene(page->data->result, &file, &from);
+    const EndScene *end = from.rod ? from.rod->end : NULL;
+    if (end) memcpy(held[count++], end->position, sizeof *held);
+    if (end && (end->hold == HOLD_PINNED || from.rod->hold == HOLD_PINNED)) scene->clamps_name = "held";
+    scene->clamps = (const double(*)[3])held, scene->clamp_count = count;
+    yaml_clear(&scene_table, &from);
+    yaml_destroy(file);
 }
 
 /* ---- Small print ---- */
@@ -390,7 +400,7 @@ static bool write_page(RodPage *page, const char *result, const char *picture, E
     scene.title = slash ? slash + 1 : result;
     scene.lines = page->lines, scene.line_count = page->line_count;
     scene.sets = page->sets, scene.set_count = page->set_count;
-    scene.clamps = clamps(page), scene.clamp_count = page->strand_count;
+    add_clamps(page, &scene);
     const double *gravity = show_dataset(page->data, "slender/rod/gravity", ARRAY_FLOAT64, 3);
     if (gravity) memcpy(scene.gravity, gravity, sizeof scene.gravity);
     memcpy(scene.view, def->view, sizeof scene.view);

@@ -12,7 +12,7 @@ void timed_flux_clear(TimedFlux *timed)
 
 bool timed_flux_read(const char *path, TimedFlux *timed, Error *err)
 {
-    if (!table_read(path, "t, Bx, By, Bz", &timed->table, err)) return false;
+    if (!table_read(path, "t [s], Bx [T], By [T], Bz [T]", &timed->table, err)) return false;
     if (table_check_increasing(&timed->table, path, "t", err)) return true;
     table_clear(&timed->table);
     return false;

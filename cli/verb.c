@@ -5,12 +5,6 @@
 #include <stdio.h>
 #include <string.h>
 
-int verb_usage(const char *usage)
-{
-    fprintf(stderr, "usage: slender %s\n", usage);
-    return RUN_USAGE;
-}
-
 int verb_fail(int code, const char *sentence)
 {
     say(stderr, "slender: %s", sentence);
@@ -24,11 +18,11 @@ static void print_report(YamlFile *file)
     mem_free(report);
 }
 
-bool verb_load_scene(const char *path, char *const *set, int set_count, YamlFile **file, Scene *scene)
+bool verb_load_scene(const char *path, const Settings *settings, YamlFile **file, Scene *scene)
 {
     *scene = (Scene){0};
     *file = yaml_read(path);
-    for (int k = 0; k < set_count; k++) yaml_override(*file, set[k]);
+    for (int k = 0; settings && k < settings->count; k++) yaml_override(*file, settings->text[k]);
     if (yaml_load(*file, &scene_table, scene)) return true;
     print_report(*file);
     return false;

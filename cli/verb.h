@@ -2,6 +2,7 @@
  * the table. */
 #pragma once
 #include "base/error.h"
+#include "cli/options.h"
 #include "cli/run.h"
 #include "io/result.h"
 
@@ -15,16 +16,12 @@ int verb_mesh(int argc, char **argv);
 
 /* ---- What verbs share ---- */
 
-/* An option that is not known, or an argument too many or too few: says how the verb is used. Returns
- * RUN_USAGE. */
-int verb_usage(const char *usage);
-
 /* "slender: sentence" on the error stream; returns the code. */
 int verb_fail(int code, const char *sentence);
 
-/* A scene file, its --set assignments made and its table filled in: false after printing what is wrong. Clear
+/* A scene file, the assignments (NULL: none) made and its table filled in: false after printing what is wrong. Clear
  * the scene and destroy the file in any case. */
-bool verb_load_scene(const char *path, char *const *set, int set_count, YamlFile **file, Scene *scene);
+bool verb_load_scene(const char *path, const Settings *settings, YamlFile **file, Scene *scene);
 
 /* The effective scene that a journal or result keeps as a text. False where it cannot be read; clear and destroy
  * in any case. */

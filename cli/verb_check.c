@@ -11,7 +11,6 @@
 #include "optim/trajectory_adjoint.h"
 #include "solve/check.h"
 #include "solve/kernels.h"
-#include <getopt.h>
 #include <math.h>
 #include <stdio.h>
 
@@ -19,8 +18,6 @@ static const char usage[] =
     "check SCENE [--set key=value].. [--derivatives]\n"
     "  Reads the scene and its files, says what they make and what one solve costs.\n"
     "  --derivatives  checks every term's gradient and Hessian on this scene by differences";
-
-enum { SET_MAX = 64 };
 
 static const double LARGE_BODY = 2;       /* m: most likely a mesh in millimetres          */
 static const double CELLS_PER_LENGTH = 3; /* of the magnetic bending length, at least      */
@@ -262,29 +259,25 @@ static bool report(const Model *model, const Scene *scene, bool derivatives)
 
 int verb_check(int argc, char **argv)
 {
-    enum { SET = 256, DERIVATIVES, HELP };
-    static const struct option table[] = {{"set", required_argument, NULL, SET},
-                                          {"derivatives", no_argument, NULL, DERIVATIVES},
-                                          {"help", no_argument, NULL, HELP},
-                                          {0}};
-    char *set[SET_MAX];
-    int set_count = 0, code = RUN_REFUSED;
+    Settings settings = {0};
+    const char *path;
+    int code;
     bool derivatives = false;
-    for (int c; (c = getopt_long(argc, argv, "", table, NULL)) >= 0;)
-        if (c == SET && set_count < SET_MAX)
-            set[set_count++] = optarg;
-        else if (c == DERIVATIVES)
-            derivatives = true;
-        else
-            return verb_usage(usage);
-    if (optind != argc - 1) return verb_usage(usage);
+    const Option options[] = {
+        {"set", .kind = OPTION_OTHER, .value = &settings, .take = settings_take, .allowed = SETTINGS_ALLOWED},
+        {"derivatives", .value = &derivatives},
+    };
+    if (!options_parse(argc, argv, usage, options, 2, &path, &code)) {
+        settings_clear(&settings);
+        return code;
+    }
     YamlFile *file;
     Scene scene;
-    Model *model =
-        verb_load_scene(argv[optind], set, set_count, &file, &scene) ? verb_build_model(&scene, file) : NULL;
-    if (model) code = report(model, &scene, derivatives) ? RUN_DONE : RUN_NOT_CONVERGED;
+    Model *model = verb_load_scene(path, &settings, &file, &scene) ? verb_build_model(&scene, file) : NULL;
+    code = !model ? RUN_REFUSED : report(model, &scene, derivatives) ? RUN_DONE : RUN_NOT_CONVERGED;
     model_destroy(model);
     yaml_clear(&scene_table, &scene);
     yaml_destroy(file);
+    settings_clear(&settings);
     return code;
 }

@@ -4,7 +4,7 @@
 #include "cli/show.h"
 #include "cli/verb.h"
 #include "io/result.h"
-#include <getopt.h>
+#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -26,18 +26,21 @@ static const char usage[] =
     "  --target WHERE the target beside the body, over it as wires, or both\n"
     "  --view X,Y,Z   direction to the eye; default: three quarters from above; of rods: front, side and top";
 
-static bool parse_target(const char *word, PictureTarget *target)
+static bool take_target(void *target, const char *word)
 {
     static const char *const names[] = {"beside", "over", "both"};
     for (int k = 0; k < 3; k++)
-        if (!strcmp(word, names[k])) return *target = (PictureTarget)k, true;
+        if (!strcmp(word, names[k])) return *(PictureTarget *)target = (PictureTarget)k, true;
     return false;
 }
 
 /* A direction, however long: but its square must be a number, and not 0. */
-static bool is_direction(const double view[3])
+static bool take_view(void *view, const char *text)
 {
-    double length = sqrt(view[0] * view[0] + view[1] * view[1] + view[2] * view[2]);
+    double *v = view, length;
+    char end;
+    if (sscanf(text, "%lf,%lf,%lf%c", &v[0], &v[1], &v[2], &end) != 3) return false;
+    length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
     return length >= 1e-6 && length <= 1e6;
 }
 
@@ -71,76 +74,42 @@ static RunStatus prepare(const char *path, const char *output, bool animation, c
 
 int verb_picture(int argc, char **argv)
 {
-    enum {
-        FRAME = 256,
-        ANIMATION,
-        SECONDS,
-        STILLS,
-        CASE,
-        FIELD,
-        TARGET,
-        VIEW,
-        WIDTH,
-        NO_ARROWS,
-        NO_HISTORY,
-        HELP
-    };
-    static const struct option table[] = {
-        {"output", required_argument, NULL, 'o'},    {"frame", required_argument, NULL, FRAME},
-        {"animation", no_argument, NULL, ANIMATION}, {"seconds", required_argument, NULL, SECONDS},
-        {"stills", required_argument, NULL, STILLS}, {"case", required_argument, NULL, CASE},
-        {"field", required_argument, NULL, FIELD},   {"target", required_argument, NULL, TARGET},
-        {"view", required_argument, NULL, VIEW},     {"width", required_argument, NULL, WIDTH},
-        {"no-arrows", no_argument, NULL, NO_ARROWS}, {"no-history", no_argument, NULL, NO_HISTORY},
-        {"help", no_argument, NULL, HELP},           {0}};
     ShowDef def = show_default();
-    const char *output = NULL;
+    const char *output = NULL, *path;
     double seconds = 6;
-    bool ok = true, animation = false, wide = false, aimed = false;
-    for (int c; ok && (c = getopt_long(argc, argv, "o:", table, NULL)) >= 0;) {
-        char end;
-        if (c == 'o')
-            output = optarg;
-        else if (c == FRAME)
-            ok = sscanf(optarg, "%d%c", &def.frame, &end) == 1 && def.frame >= 0;
-        else if (c == ANIMATION)
-            animation = true;
-        else if (c == SECONDS)
-            ok = sscanf(optarg, "%lf%c", &seconds, &end) == 1 && seconds > 0 && seconds <= 600;
-        else if (c == STILLS)
-            ok = sscanf(optarg, "%d%c", &def.stills, &end) == 1 && def.stills >= 1 && def.stills <= 100;
-        else if (c == CASE)
-            def.only = optarg;
-        else if (c == FIELD)
-            def.field = optarg;
-        else if (c == TARGET)
-            ok = parse_target(optarg, &def.target);
-        else if (c == VIEW)
-            aimed = ok = sscanf(optarg, "%lf,%lf,%lf%c", &def.view[0], &def.view[1], &def.view[2], &end) == 3;
-        else if (c == WIDTH)
-            wide = ok =
-                sscanf(optarg, "%d%c", &def.width, &end) == 1 && def.width >= 400 && def.width <= 4000;
-        else if (c == NO_ARROWS)
-            def.arrows = false;
-        else if (c == NO_HISTORY)
-            def.history = false;
-        else
-            ok = false;
-    }
-    if (!ok || optind != argc - 1) return verb_usage(usage);
-    if (aimed && !is_direction(def.view))
-        return verb_fail(RUN_USAGE, "--view X,Y,Z must be finite numbers up to 1e6, and not all 0");
+    bool animation = false, no_arrows = false, no_history = false;
+    int width = 0, code; /* 0: as usual */
+    const Option options[] = {
+        {"output", .letter = 'o', .kind = OPTION_TEXT, .value = &output},
+        {"frame", .kind = OPTION_INT, .value = &def.frame, .least = 0, .most = INT_MAX},
+        {"animation", .value = &animation},
+        {"seconds", .kind = OPTION_DOUBLE, .value = &seconds, .least = 0.04, .most = 600},
+        {"stills", .kind = OPTION_INT, .value = &def.stills, .least = 1, .most = 100},
+        {"case", .kind = OPTION_TEXT, .value = &def.only},
+        {"field", .kind = OPTION_TEXT, .value = &def.field},
+        {"target", .kind = OPTION_OTHER, .value = &def.target, .take = take_target,
+         .allowed = "beside, over or both"},
+        {"view", .kind = OPTION_OTHER, .value = def.view, .take = take_view,
+         .allowed = "X,Y,Z, finite numbers up to 1e6, and not all 0"},
+        {"width", .kind = OPTION_INT, .value = &width, .least = 400, .most = 4000},
+        {"no-arrows", .value = &no_arrows},
+        {"no-history", .value = &no_history},
+    };
+    if (!options_parse(argc, argv, usage, options, sizeof options / sizeof *options, &path, &code))
+        return code;
+    if (no_arrows) def.arrows = false;
+    if (no_history) def.history = false;
+    if (width) def.width = width;
     Error err;
     char *picture;
-    RunStatus status = prepare(argv[optind], output, animation, &picture, &err);
+    RunStatus status = prepare(path, output, animation, &picture, &err);
     if (status != RUN_DONE) return verb_fail(status, err.text);
     const char *ending = strrchr(picture, '.');
     if (animation || (ending && !strcmp(ending, ".webp"))) {
         def.seconds = seconds;
-        if (!wide) def.width = 800; /* pixels; a page of paper's worth is too much for a moving one */
+        if (!width) def.width = 800; /* pixels; a page of paper's worth is too much for a moving one */
     }
-    int code =
-        show_result(argv[optind], picture, &def, &err) ? RUN_DONE : verb_fail(RUN_CANNOT_WRITE, err.text);
+    code = show_result(path, picture, &def, &err) ? RUN_DONE : verb_fail(RUN_CANNOT_WRITE, err.text);
     mem_free(picture);
     return code;
 }

@@ -9,7 +9,7 @@
 #include "io/replace.h"
 #include "io/result.h"
 #include "io/table.h"
-#include <getopt.h>
+#include <limits.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -145,10 +145,12 @@ static int info_journal(const char *path)
 
 int verb_info(int argc, char **argv)
 {
-    if (argc != 2 || argv[1][0] == '-')
-        return verb_usage(
-            "info NAME.vtkhdf | NAME.run\n  Lists what is in a result, or how far a run has come.");
-    return has_ending(argv[1], ".run") ? info_journal(argv[1]) : info_result(argv[1]);
+    static const char usage[] =
+        "info NAME.vtkhdf | NAME.run\n  Lists what is in a result, or how far a run has come.";
+    const char *path;
+    int code;
+    if (!options_parse(argc, argv, usage, NULL, 0, &path, &code)) return code;
+    return has_ending(path, ".run") ? info_journal(path) : info_result(path);
 }
 
 /* ---- export ---- */
@@ -317,24 +319,17 @@ int verb_export(int argc, char **argv)
         "drawing\n"
         "       slender export NAME.run -o NAME.vtkhdf              the result of a running or interrupted "
         "job";
-    static const struct option table[] = {
-        {"output", required_argument, NULL, 'o'}, {"dataset", required_argument, NULL, 'd'},
-        {"frame", required_argument, NULL, 'f'},  {"plotter", required_argument, NULL, 'p'},
-        {"help", no_argument, NULL, 'h'},         {0}};
     Export what = {.frame = -1};
-    char end;
-    for (int c; (c = getopt_long(argc, argv, "o:", table, NULL)) >= 0;)
-        if (c == 'o')
-            what.output = optarg;
-        else if (c == 'd')
-            what.dataset = optarg;
-        else if (c == 'p')
-            what.language = optarg;
-        else if (c != 'f' || sscanf(optarg, "%d%c", &what.frame, &end) != 1 || what.frame < 0)
-            return verb_usage(usage);
-    if (!what.output || optind != argc - 1) return verb_usage(usage);
+    const char *input;
+    int code;
+    const Option options[] = {
+        {"output", .letter = 'o', .kind = OPTION_TEXT, .value = &what.output},
+        {"dataset", .kind = OPTION_TEXT, .value = &what.dataset},
+        {"frame", .kind = OPTION_INT, .value = &what.frame, .least = 0, .most = INT_MAX},
+        {"plotter", .kind = OPTION_TEXT, .value = &what.language}};
+    if (!options_parse(argc, argv, usage, options, 4, &input, &code)) return code;
+    if (!what.output) return verb_fail(RUN_USAGE, "-o FILE must be given; slender export --help says more");
     Error err;
-    const char *input = argv[optind];
     if (!outputs_check_source(NULL, input, what.output, &err)) return verb_fail(RUN_CANNOT_WRITE, err.text);
     RunStatus status = has_ending(input, ".run") ? export_journal(input, what.output, &err)
                                                  : export_result(input, &what, &err);

@@ -2,6 +2,7 @@
 #include "base/memory.h"
 #include "cli/inputs.h"
 #include "cli/job.h"
+#include "cli/options.h"
 #include "cli/outputs.h"
 #include "cli/recall.h"
 #include "cli/say.h"
@@ -9,18 +10,17 @@
 #include "cli/verb.h"
 #include "io/result.h"
 #include "solve/kernels.h"
-#include <getopt.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { SET_MAX = 64, THREADS_MAX = 64 };
+enum { THREADS_MAX = 64 };
 
 typedef struct RunOptions {
     const char *scene, *output;
-    char *set[SET_MAX]; /* owned */
-    int set_count, threads;
+    Settings settings;
+    int threads;
     bool resume, force, no_picture;
     ProgressMode mode;
 } RunOptions;
@@ -41,14 +41,23 @@ static const char usage[] =
     "  --threads N      load cases at once, parts of a drawing's tone, 1 to 64; default: as many as there "
     "are "
     "processors\n"
-    "  --quiet          says nothing but errors; --log=json: one JSON object per line";
+    "  --quiet          says nothing but errors; --log=json: one JSON object per line\n"
+    "  --no-picture     draws none";
 
-/* key=value, over what the scene says. */
-static bool add_setting(RunOptions *options, const char *key, const char *value)
+static bool take_page(void *settings, const char *text)
 {
-    if (options->set_count == SET_MAX) return false;
-    options->set[options->set_count++] = mem_format("%s%s", key, value);
-    return true;
+    return settings_put(settings, "spline.page.size=", text);
+}
+
+static bool take_margin(void *settings, const char *text)
+{
+    return settings_put(settings, "spline.page.margin=", text);
+}
+
+static bool take_log(void *mode, const char *text)
+{
+    *(ProgressMode *)mode = PROGRESS_JSON;
+    return !strcmp(text, "json");
 }
 
 /* A machine may have more processors than are of use, or not know how many. */
@@ -58,50 +67,31 @@ static int default_threads(void)
     return processors < 1 ? 1 : processors > THREADS_MAX ? THREADS_MAX : (int)processors;
 }
 
-static bool parse(int argc, char **argv, RunOptions *options)
+static bool parse(int argc, char **argv, RunOptions *o, int *code)
 {
-    enum { SET = 256, PAGE, MARGIN, RESUME, FORCE, THREADS, QUIET, LOG, NO_PICTURE, HELP };
-    static const struct option table[] = {{"output", required_argument, NULL, 'o'},
-                                          {"set", required_argument, NULL, SET},
-                                          {"page", required_argument, NULL, PAGE},
-                                          {"margin", required_argument, NULL, MARGIN},
-                                          {"resume", no_argument, NULL, RESUME},
-                                          {"force", no_argument, NULL, FORCE},
-                                          {"threads", required_argument, NULL, THREADS},
-                                          {"quiet", no_argument, NULL, QUIET},
-                                          {"log", required_argument, NULL, LOG},
-                                          {"no-picture", no_argument, NULL, NO_PICTURE},
-                                          {"help", no_argument, NULL, HELP},
-                                          {0}};
-    char end;
-    options->threads = default_threads();
-    for (int c; (c = getopt_long(argc, argv, "o:", table, NULL)) >= 0;) {
-        if (c == 'o')
-            options->output = optarg;
-        else if (c == SET && add_setting(options, "", optarg))
-            continue;
-        else if (c == PAGE && add_setting(options, "spline.page.size=", optarg))
-            continue;
-        else if (c == MARGIN && add_setting(options, "spline.page.margin=", optarg))
-            continue;
-        else if (c == RESUME)
-            options->resume = true;
-        else if (c == FORCE)
-            options->force = true;
-        else if (c == THREADS && sscanf(optarg, "%d%c", &options->threads, &end) == 1)
-            continue;
-        else if (c == QUIET)
-            options->mode = PROGRESS_QUIET;
-        else if (c == LOG && !strcmp(optarg, "json"))
-            options->mode = PROGRESS_JSON;
-        else if (c == NO_PICTURE)
-            options->no_picture = true;
-        else
-            return false;
-    }
-    options->scene = argv[optind];
-    return optind == argc - 1 && options->threads >= 1 && options->threads <= THREADS_MAX &&
-           !(options->resume && options->force);
+    bool quiet = false;
+    const Option options[] = {
+        {"output", .letter = 'o', .kind = OPTION_TEXT, .value = &o->output},
+        {"set", .kind = OPTION_OTHER, .value = &o->settings, .take = settings_take,
+         .allowed = SETTINGS_ALLOWED},
+        {"page", .kind = OPTION_OTHER, .value = &o->settings, .take = take_page,
+         .allowed = "a size of paper"},
+        {"margin", .kind = OPTION_OTHER, .value = &o->settings, .take = take_margin, .allowed = "a length"},
+        {"resume", .value = &o->resume},
+        {"force", .value = &o->force},
+        {"threads", .kind = OPTION_INT, .value = &o->threads, .least = 1, .most = THREADS_MAX},
+        {"quiet", .value = &quiet},
+        {"log", .kind = OPTION_OTHER, .value = &o->mode, .take = take_log, .allowed = "json"},
+        {"no-picture", .value = &o->no_picture},
+    };
+    o->threads = default_threads();
+    if (!options_parse(argc, argv, usage, options, sizeof options / sizeof *options, &o->scene, code))
+        return false;
+    if (quiet && o->mode == PROGRESS_NORMAL) o->mode = PROGRESS_QUIET;
+    if (!o->resume || !o->force) return true;
+    *code =
+        verb_fail(RUN_USAGE, "--resume goes on with a run and --force discards it: one of them can be given");
+    return false;
 }
 
 /* ---- The journal's beginning ---- */
@@ -348,16 +338,20 @@ static void tell_scene(const RunOptions *options, const YamlFile *file, const Mo
 int verb_run(int argc, char **argv)
 {
     RunOptions options = {0};
-    if (!parse(argc, argv, &options)) return verb_usage(usage);
+    int code;
+    if (!parse(argc, argv, &options, &code)) {
+        settings_clear(&options.settings);
+        return code;
+    }
     YamlFile *file;
     Scene scene;
-    bool loaded = verb_load_scene(options.scene, options.set, options.set_count, &file, &scene);
+    bool loaded = verb_load_scene(options.scene, &options.settings, &file, &scene);
     Model *model = loaded ? verb_build_model(&scene, file) : NULL;
     tell_scene(&options, file, model);
-    int code = model ? run_model(&options, &scene, model) : RUN_REFUSED;
+    code = model ? run_model(&options, &scene, model) : RUN_REFUSED;
     model_destroy(model);
     yaml_clear(&scene_table, &scene);
     yaml_destroy(file);
-    for (int k = 0; k < options.set_count; k++) mem_free(options.set[k]);
+    settings_clear(&options.settings);
     return code;
 }

@@ -2,16 +2,17 @@
 #include "base/memory.h"
 #include "cli/outputs.h"
 #include "cli/verb.h"
-#include <getopt.h>
 #include <stdio.h>
-#include <string.h>
 
 int verb_schema(int argc, char **argv)
 {
-    bool manual = argc == 2 && !strcmp(argv[1], "--manual");
-    if (argc > 2 || (argc == 2 && !manual))
-        return verb_usage("schema [--manual]\n  JSON Schema of scene files for editors; with --manual the "
-                          "manual of all keys (docs/scene.md)");
+    static const char usage[] =
+        "schema [--manual]\n  JSON Schema of scene files for editors; with --manual the "
+        "manual of all keys (docs/scene.md)";
+    bool manual = false;
+    int code;
+    const Option options[] = {{"manual", .value = &manual}};
+    if (!options_parse(argc, argv, usage, options, 1, NULL, &code)) return code;
     char *text =
         manual ? yaml_manual(&scene_table, "Scene files") : yaml_schema(&scene_table, "slender scene");
     fputs(text, stdout);
@@ -35,26 +36,20 @@ int verb_mesh(int argc, char **argv)
 {
     static const char usage[] =
         "mesh SCENE [-o FILE.obj]\n  Writes the scene's mesh, generated or read, as OBJ with its groups.";
-    static const struct option table[] = {
-        {"output", required_argument, NULL, 'o'}, {"help", no_argument, NULL, 'h'}, {0}};
-    const char *output = NULL;
-    for (int c; (c = getopt_long(argc, argv, "o:", table, NULL)) >= 0;)
-        if (c == 'o')
-            output = optarg;
-        else
-            return verb_usage(usage);
-    if (optind != argc - 1) return verb_usage(usage);
+    const char *output = NULL, *scene_path;
+    int code;
+    const Option options[] = {{"output", .letter = 'o', .kind = OPTION_TEXT, .value = &output}};
+    if (!options_parse(argc, argv, usage, options, 1, &scene_path, &code)) return code;
     YamlFile *file;
     Scene scene;
     Error err;
-    int code = RUN_REFUSED;
-    char *name = verb_base_name(argv[optind]), *path = output ? mem_text(output) : mem_format("%s.obj", name);
-    Model *model =
-        verb_load_scene(argv[optind], NULL, 0, &file, &scene) ? verb_build_model(&scene, file) : NULL;
+    char *name = verb_base_name(scene_path), *path = output ? mem_text(output) : mem_format("%s.obj", name);
+    Model *model = verb_load_scene(scene_path, NULL, &file, &scene) ? verb_build_model(&scene, file) : NULL;
+    code = RUN_REFUSED;
     if (model && !model->shell)
         code = verb_fail(RUN_REFUSED, "the scene has no mesh");
     else if (model) {
-        bool ok = outputs_check_source(&scene, argv[optind], path, &err) &&
+        bool ok = outputs_check_source(&scene, scene_path, path, &err) &&
                   write_mesh(model->shell->mesh, path, &err);
         code = ok ? RUN_DONE : verb_fail(RUN_CANNOT_WRITE, err.text);
     }

@@ -70,7 +70,7 @@ static double draw_legend(Canvas *canvas, Canvas *ruler, const CurvesScene *scen
     Legend legend = {canvas, ruler, PAGE_MARGIN, top + 0.5 * LEGEND_ROW};
     legend_add_sets(&legend, scene, false, only);
     if (scene->clamp_count) {
-        Vec2 at = legend_place(&legend, SQUARE, "clamp");
+        Vec2 at = legend_place(&legend, SQUARE, scene->clamps_name ? scene->clamps_name : "clamp");
         if (canvas) curves_draw_clamp(canvas, (Vec2){at.x + 0.5 * SQUARE, at.y}, SQUARE);
     }
     legend_add_sets(&legend, scene, true, only);

@@ -35,6 +35,7 @@ typedef struct CurvesScene {
     const CurvesSet *sets; /* later ones lie over earlier ones                               */
     int clamp_count;
     const double (*clamps)[3]; /* m; small squares                                           */
+    const char *clamps_name;   /* in the legend; NULL: "clamp"                               */
     double gravity[3];         /* its direction, an arrow at each view; zeros: none          */
     double view[3];            /* one view, with this direction to the eye and z upwards;
                                   zeros: front, side and top                                 */

@@ -183,7 +183,8 @@ void curves_draw_clamp(Canvas *canvas, Vec2 at, double side)
 
 static void draw_clamps(Canvas *canvas, const CurvesScene *scene, const CurvesView *view)
 {
-    double side = fmax(5 * pow(fmax(scene->clamp_count, 1), -0.35), 0.35);
+    int count = scene->clamp_count > 2 ? scene->clamp_count : 1; /* a rod has two ends */
+    double side = fmax(5 * pow(count, -0.35), 0.35);
     for (int k = 0; k < scene->clamp_count; k++) {
         Vec2 at = place(view, scene->clamps[k]);
         if (isfinite(at.x + at.y)) curves_draw_clamp(canvas, at, side);
@@ -233,35 +234,13 @@ static void draw_scales(Canvas *canvas, const CurvesView *view)
     canvas_frame(canvas, box, (Pen){edge, 0.6, 0});
 }
 
-/* An arrow of 13 pt with a letter, or where it points at the eye or away a circle with a dot or a cross. */
-static void draw_gravity(Canvas *canvas, const Camera *camera, const double *gravity, Vec2 middle)
-{
-    Vec3 g = vec3_unit(vec3_load(gravity));
-    double x = 6.5 * vec3_dot(g, camera->right), y = -6.5 * vec3_dot(g, camera->up);
-    const Pen pen = {page_ink, 0.9, 0};
-    canvas_text(canvas, (Vec2){middle.x - 10, middle.y + 2.5}, "g",
-                (TextStyle){.color = page_ink, .size = PAGE_LABEL, .align = TEXT_CENTER});
-    if (hypot(x, y) > 2) {
-        canvas_arrow(canvas, (Vec2){middle.x - x, middle.y - y}, (Vec2){middle.x + x, middle.y + y}, pen);
-        return;
-    }
-    canvas_circle(canvas, middle, 4, page_ink);
-    canvas_circle(canvas, middle, 3.2, (Color){1, 1, 1, 1});
-    if (vec3_dot(g, camera->toward) > 0)
-        canvas_circle(canvas, middle, 1.2, page_ink);
-    else
-        for (int k = -1; k <= 1; k += 2)
-            canvas_line(canvas, (Vec2){middle.x - 2.3, middle.y - 2.3 * k},
-                        (Vec2){middle.x + 2.3, middle.y + 2.3 * k}, (Pen){page_ink, 0.7, 0});
-}
-
 /* Below a view from anywhere. */
 static void draw_measures(Canvas *canvas, const CurvesScene *scene, const CurvesView *view)
 {
     double y = view->box.y + view->box.height + MEASURES - 16;
     page_draw_axes(canvas, &view->camera, (Vec2){view->box.x + 20, y});
     if (vec3_length(vec3_load(scene->gravity)) > 0)
-        draw_gravity(canvas, &view->camera, scene->gravity, (Vec2){view->box.x + 64, y});
+        page_draw_gravity(canvas, &view->camera, scene->gravity, (Vec2){view->box.x + 64, y});
     page_draw_length(canvas, view->scale, (Vec2){view->box.x + view->box.width, y});
 }
 
@@ -273,7 +252,8 @@ void curves_view_draw(Canvas *canvas, const CurvesScene *scene, const CurvesView
         canvas_text(canvas, (Vec2){box.x, box.y - 5}, view->name,
                     (TextStyle){.color = page_ink, .size = 9, .bold = true});
         if (vec3_length(vec3_load(scene->gravity)) > 0)
-            draw_gravity(canvas, &view->camera, scene->gravity, (Vec2){box.x + box.width - 5, box.y - 8});
+            page_draw_gravity(canvas, &view->camera, scene->gravity,
+                              (Vec2){box.x + box.width - 5, box.y - 8});
     } else
         draw_measures(canvas, scene, view);
     canvas_clip(canvas, box);

@@ -34,6 +34,10 @@ static bool sql_error(const Journal *journal, const char *what, Error *err)
         return error_set(err, "%s is not a journal of slender; it has not been touched", journal->path);
     if (code == SQLITE_CORRUPT)
         return error_set(err, "%s is damaged: %s", journal->path, sqlite3_errmsg(journal->db));
+    long long limit = code == SQLITE_IOERR ? journal_files_limit() : -1;
+    if (limit >= 0)
+        return error_set(err, "%s: cannot be %s: files may have at most %lld bytes here (ulimit -f)",
+                         journal->path, what, limit);
     return error_set(err, "%s: cannot be %s: %s", journal->path, what, sqlite3_errmsg(journal->db));
 }
 

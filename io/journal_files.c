@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 #include <sys/file.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -78,4 +79,11 @@ char *journal_files_still_uri(const char *path)
         at += sprintf(at, strchr("?#%", *c) ? "%%%02X" : "%c", (unsigned char)*c);
     sprintf(at, "%s", after);
     return uri;
+}
+
+long long journal_files_limit(void)
+{
+    struct rlimit size;
+    if (getrlimit(RLIMIT_FSIZE, &size) != 0 || size.rlim_cur == RLIM_INFINITY) return -1;
+    return (long long)size.rlim_cur;
 }

@@ -25,3 +25,7 @@ JournalAccess journal_files_access(const char *path);
 
 /* The path as a URI that says that nobody writes; the caller frees. */
 char *journal_files_still_uri(const char *path);
+
+/* The limit that a process has for the sizes of its files, bytes; -1: none. SQLite keeps to itself what the system
+ * said of a write that failed. */
+long long journal_files_limit(void);

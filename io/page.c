@@ -1,4 +1,5 @@
 #include "io/page.h"
+#include "base/vec3.h"
 #include "io/ticks.h"
 #include <math.h>
 
@@ -63,6 +64,27 @@ void page_draw_length(Canvas *canvas, double points, Vec2 end)
     canvas_line(canvas, (Vec2){end.x, end.y - 2.5}, (Vec2){end.x, end.y + 2.5}, pen);
     canvas_text(canvas, (Vec2){0.5 * (left + end.x), end.y - 5}, text,
                 (TextStyle){.color = page_ink, .size = PAGE_LABEL, .align = TEXT_CENTER});
+}
+
+void page_draw_gravity(Canvas *canvas, const Camera *camera, const double *gravity, Vec2 middle)
+{
+    Vec3 g = vec3_unit(vec3_load(gravity));
+    double x = 6.5 * vec3_dot(g, camera->right), y = -6.5 * vec3_dot(g, camera->up);
+    const Pen pen = {page_ink, 0.9, 0};
+    canvas_text(canvas, (Vec2){middle.x - 10, middle.y + 2.5}, "g",
+                (TextStyle){.color = page_ink, .size = PAGE_LABEL, .align = TEXT_CENTER});
+    if (hypot(x, y) > 2) {
+        canvas_arrow(canvas, (Vec2){middle.x - x, middle.y - y}, (Vec2){middle.x + x, middle.y + y}, pen);
+        return;
+    }
+    canvas_circle(canvas, middle, 4, page_ink);
+    canvas_circle(canvas, middle, 3.2, (Color){1, 1, 1, 1});
+    if (vec3_dot(g, camera->toward) > 0)
+        canvas_circle(canvas, middle, 1.2, page_ink);
+    else
+        for (int k = -1; k <= 1; k += 2)
+            canvas_line(canvas, (Vec2){middle.x - 2.3, middle.y - 2.3 * k},
+                        (Vec2){middle.x + 2.3, middle.y + 2.3 * k}, (Pen){page_ink, 0.7, 0});
 }
 
 bool page_check_width(const char *path, int width, Error *err)

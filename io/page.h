@@ -35,5 +35,9 @@ void page_draw_axes(Canvas *canvas, const Camera *camera, Vec2 origin);
  */
 void page_draw_length(Canvas *canvas, double points, Vec2 end);
 
+/* The direction of gravity, which is not zero: an arrow of 13 pt with a letter, or where it points at the eye or away a
+ * circle with a dot or a cross. */
+void page_draw_gravity(Canvas *canvas, const Camera *camera, const double *gravity, Vec2 middle);
+
 /* A pixel width that pictures are made in: false and a sentence outside 400..4000. */
 bool page_check_width(const char *path, int width, Error *err);

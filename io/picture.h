@@ -22,6 +22,7 @@ typedef struct PicturePanel {
     const double *field;        /* [face] drawn as colour; NaN: none. NULL: a plain surface                */
     const double (*vectors)[3]; /* [face] drawn as arrows, in the world's frame; NULL: none                */
     const double *flux_density; /* [3] T, drawn as an arrow beside the axes; NULL: none                    */
+    const double *gravity;      /* [3] its direction, drawn as an arrow beside the axes; NULL, zeros: none */
 } PicturePanel;
 
 typedef enum PictureTarget {

@@ -332,12 +332,16 @@ static void draw_flux_density(Canvas *canvas, const Camera *camera, const double
 
 void panel_draw_measures(Canvas *canvas, const PanelStyle *style, int index, Box box)
 {
-    const double *flux_density = style->scene->panels[index].flux_density;
+    const double *flux_density = style->scene->panels[index].flux_density,
+                 *gravity = style->scene->panels[index].gravity;
+    bool falls = gravity && vec3_length(vec3_load(gravity)) > 0;
     Vec2 origin = {box.x + 18, box.y + box.height - 16};
     page_draw_axes(canvas, &style->cameras[index], origin);
+    if (falls)
+        page_draw_gravity(canvas, &style->cameras[index], gravity, (Vec2){origin.x + 42, origin.y - 6});
     if (flux_density)
         draw_flux_density(canvas, &style->cameras[index], flux_density, style->flux_greatest,
-                          (Vec2){origin.x + 42, origin.y - 6});
+                          (Vec2){origin.x + (falls ? 72 : 42), origin.y - 6});
     if (!(style->scene->perspective > 0)) /* in a perspective view no length holds everywhere */
         page_draw_length(canvas, style->scale / style->resolution,
                          (Vec2){box.x + box.width - 6, box.y + box.height - 10});

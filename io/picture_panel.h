@@ -32,7 +32,7 @@ bool panel_any_vectors(const PictureScene *scene);
 void panel_draw_result(Canvas *canvas, const PanelStyle *style, int index, Box box);
 void panel_draw_target(Canvas *canvas, const PanelStyle *style, int index, Box box);
 
-/* Axes, the panel's flux density and a length, along the box's lower edge. */
+/* Axes, the panel's gravity, its flux density and a length, along the box's lower edge. */
 void panel_draw_measures(Canvas *canvas, const PanelStyle *style, int index, Box box);
 
 /* The colour of a target drawn as wires. */

@@ -95,11 +95,12 @@ static bool read_csv(PolylineReader *reader, const char *text, size_t length)
     if (!ok)
         error_set(reader->err, "%s:%d: %d number%s in this row; it must be x, y, z or s, x, y, z",
                   reader->path, table.line[0], table.columns, table.columns == 1 ? "" : "s");
-    const char *names = table.columns == 3 ? "x, y, z" : "s, x, y, z";
-    ok = ok && table_check_header(&table, reader->path, names, reader->err);
+    const char *names = table.columns == 3 ? "x [m], y [m], z [m]" : "s [m], x [m], y [m], z [m]";
+    ok = ok && table_take_header(&table, reader->path, names, reader->err);
     if (ok && table.columns == 4)
         ok =
             table_check_increasing(&table, reader->path, "s", reader->err) && check_arclength(&table, reader);
+    reader->lines->scaled = table.scaled;
     polyline_begin(reader, ok ? table.line[0] : 0);
     for (int i = 0; ok && i < table.rows; i++)
         ok = polyline_add(reader, vec3_load(table.values + (size_t)(i + 1) * (size_t)table.columns - 3)) ||

@@ -14,7 +14,7 @@
  * attributes and styles (svg_tree.h) say; clones (use, symbol) and an svg within the svg are drawn where they
  * are. Texts, images and foreign objects are refused.
  *
- * CSV and OBJ are in metres unless the caller scales them. A closed path ends with its first point. */
+ * CSV and OBJ are in metres unless a CSV's header says another unit, or the caller scales them. A closed path ends with its first point. */
 #pragma once
 #include "base/error.h"
 #include "base/vec3.h"
@@ -24,6 +24,7 @@ typedef struct PolylineFile {
     Vec3 *points; /* [point_count] m; owned                                                           */
     int *first;   /* [strand_count + 1] strand k has the points first[k] to first[k + 1] - 1; owned   */
     int *line;    /* [strand_count] where in the file it begins; owned                                */
+    bool scaled;  /* its header says another unit than m, which is honoured                           */
 } PolylineFile;
 
 /* Format by the ending (.csv, .obj, .svg), any case. Each strand has two points at least, and there is one at

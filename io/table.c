@@ -106,43 +106,29 @@ static bool is_header(Reader *r)
     return words;
 }
 
-/* Place among the names of the word that a header's cell begins with; -1: it is none of them. */
-static int column_of(const char *names, Word cell)
-{
-    int length = 0;
-    while (cell.length && (*cell.text == '"' || *cell.text == '\'')) cell.text++, cell.length--;
-    while (length < cell.length && (is_digit(cell.text[length]) || is_letter(cell.text[length]))) length++;
-    for (int k = 0; *names; k++) {
-        size_t size = strcspn(names, ",");
-        if (size == (size_t)length && !strncasecmp(names, cell.text, size)) return k;
-        names += size + strspn(names + size, ", ");
-    }
-    return -1;
-}
-
-bool table_check_header(const Table *table, const char *path, const char *names, Error *err)
-{
-    if (!table->header) return true;
-    Reader r = {.scan = scan_start(path, table->header, strlen(table->header), 0, "", err)};
-    Word cell;
-    scan_line(&r.scan);
-    choose_separator(&r);
-    r.scan.line = table->header_line;
-    for (int k = 0; next_cell(&r, &cell); k++) {
-        int column = column_of(names, cell);
-        if (column >= 0 && column != k)
-            return scan_refuse(&r.scan, "column %d is headed '%.*s'; the columns must be %s", k + 1,
-                               cell.length > 40 ? 40 : cell.length, cell.text, names);
-    }
-    return true;
-}
-
 /* The row that is being scanned. The next one decides how numbers are split: a title may have commas. */
 static void keep_header(Reader *r)
 {
     r->table->header = mem_format("%.*s", (int)(r->scan.word_end - r->scan.at), r->scan.at);
     r->table->header_line = r->scan.line;
     r->separator = 0;
+}
+
+/* The last comment before the first row, which is being scanned: a header that others write as one. */
+static void keep_note(Reader *r, const char *text)
+{
+    const char *end = r->scan.start, *start;
+    int line = r->scan.line;
+    for (; end > text; end = start) {
+        for (start = end - 1; start > text && start[-1] != '\n';) start--;
+        const char *c = start + strspn(start, " \t");
+        line--;
+        if (*c != '#') continue;
+        c += strspn(c, "# \t");
+        r->table->note = mem_format("%.*s", (int)strcspn(c, "\r\n"), c);
+        r->table->header_line = line;
+        return;
+    }
 }
 
 /* ---- Rows ---- */
@@ -213,9 +199,12 @@ bool table_parse(const char *path, const char *text, long length, const char *na
     bool ok = scan_skip_mark(path, &text, &left, err);
     Reader r = {.scan = scan_start(path, text, left, '#', "", err), .table = table, .names = names};
     ok = ok && scan_check_text(&r.scan);
-    while (ok && scan_line(&r.scan)) ok = read_row(&r);
-    if (ok && names) ok = table_check_header(table, path, names, err);
+    for (bool first = true; ok && scan_line(&r.scan); first = false) {
+        if (first) keep_note(&r, text);
+        ok = read_row(&r);
+    }
     if (ok && table->rows == 0) ok = error_set(err, "%s: there are no numbers in it", path);
+    if (ok && names) ok = table_take_header(table, path, names, err);
     if (!ok) table_clear(table);
     return ok;
 }
@@ -260,5 +249,6 @@ void table_clear(Table *table)
     mem_free(table->values);
     mem_free(table->line);
     mem_free(table->header);
+    mem_free(table->note);
     *table = (Table){0};
 }

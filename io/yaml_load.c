@@ -5,8 +5,6 @@
 #include <stdio.h>
 #include <string.h>
 
-static const char VERSION_KEY[] = "slender";
-
 static bool load_table(Load *load, const YamlTable *table, const Node *node, void *scene);
 static bool load_value(Load *load, const YamlField *row, const Node *node, void *scene);
 
@@ -264,40 +262,6 @@ const YamlField *table_row(const YamlTable *table, const char *key)
     return NULL;
 }
 
-static const char *field_word(const void *self, int i)
-{
-    return ((const YamlField *)self)[i].key;
-}
-
-static void list_keys(const YamlTable *table, char *text, size_t size)
-{
-    size_t length = 0;
-    for (const YamlField *row = table->fields; row->key && length < size; row++)
-        length += (size_t)snprintf(text + length, size - length, "%s%s", row == table->fields ? "" : ", ",
-                                   row->key);
-}
-
-static bool unknown_key(Load *load, const YamlTable *table, const Node *node, int i)
-{
-    char known[700];
-    const char *near = nearest_word(load->file, node->keys[i], field_word, table->fields);
-    Node at = {
-        .line = node->key_place[i][0], .column = node->key_place[i][1], .origin = node->items[i]->origin};
-    list_keys(table, known, sizeof known);
-    const char *where = load->path[0] ? load->path : "the scene";
-    if (near)
-        yaml_error(load->file, &at, "%s has no key '%.60s'; did you mean '%s'?", where, node->keys[i], near);
-    else
-        yaml_error(load->file, &at, "%s has no key '%.60s'; its keys are %s", where, node->keys[i], known);
-    return false;
-}
-
-/* The version's key, at the root, is no row of a table. */
-static bool is_version(const Load *load, const char *key)
-{
-    return !load->path[0] && !strcmp(key, VERSION_KEY);
-}
-
 static bool is_given(const YamlField *row, const Node *node)
 {
     const Node *item = load_row_item(row, node);
@@ -309,10 +273,11 @@ static bool check_one_of(Load *load, const YamlTable *table, const Node *node, i
 {
     char given[200] = "", all[300] = "";
     int count = 0;
-    bool required = false;
+    bool required = false, misspelt = false;
     for (const YamlField *row = table->fields; row->key; row++) {
         if (row->one_of != group) continue;
         required |= row->required;
+        misspelt |= row->required && load_is_misspelt(load, table, node, row);
         snprintf(all + strlen(all), sizeof all - strlen(all), "%s%s", all[0] ? ", " : "", row->key);
         if (!is_given(row, node)) continue;
         snprintf(given + strlen(given), sizeof given - strlen(given), "%s%s", count++ ? " and " : "",
@@ -321,7 +286,7 @@ static bool check_one_of(Load *load, const YamlTable *table, const Node *node, i
     char what[600];
     if (count > 1)
         snprintf(what, sizeof what, "has %s; give only one of %s", given, all);
-    else if (count == 0 && required)
+    else if (count == 0 && required && !misspelt)
         snprintf(what, sizeof what, "needs one of %s", all);
     else
         return true;
@@ -352,8 +317,9 @@ static bool load_row(Load *load, const YamlTable *table, const YamlField *row, c
     } else if (index >= 0) {
         ok = load_value(load, row, node->items[index], scene);
     } else if (row->required && !row->one_of) {
-        yaml_error(load->file, node, "%s is missing%s%s", load->path, row->doc ? ": " : "",
-                   row->doc ? row->doc : "");
+        if (!load_is_misspelt(load, table, node, row))
+            yaml_error(load->file, node, "%s is missing%s%s", load->path, row->doc ? ": " : "",
+                       row->doc ? row->doc : "");
         ok = false;
     } else if (!row->one_of || !group_is_given(table, node, row->one_of)) {
         ok = load_default(load, row, scene);
@@ -364,10 +330,7 @@ static bool load_row(Load *load, const YamlTable *table, const YamlField *row, c
 
 static bool load_map_node(Load *load, const YamlTable *table, const Node *node, void *scene)
 {
-    bool ok = true;
-    for (int i = 0; i < node->count; i++)
-        if (!table_row(table, node->keys[i]) && !is_version(load, node->keys[i]))
-            ok = unknown_key(load, table, node, i);
+    bool ok = load_keys(load, table, node);
     for (const YamlField *row = table->fields; row->key; row++)
         ok = load_row(load, table, row, node, scene) && ok;
     for (int group = 1, more = 1; more; group++) {
@@ -384,7 +347,7 @@ static bool load_table(Load *load, const YamlTable *table, const Node *node, voi
     const YamlField *row = load_short_row(table, node);
     if (!row) {
         char what[800] = "must be a mapping with the keys ";
-        list_keys(table, what + strlen(what), sizeof what - strlen(what));
+        load_list_keys(table, what + strlen(what), sizeof what - strlen(what));
         return load_wrong(load, node, what);
     }
     /* As if the key had been written. */

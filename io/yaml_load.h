@@ -1,6 +1,10 @@
-/* yaml_load.h - where loading stands, and the scalars. Private to yaml_load.c and yaml_value.c. */
+/* yaml_load.h - where loading stands, its keys and scalars. Private to yaml_load.c, yaml_keys.c
+ * and yaml_value.c. */
 #pragma once
 #include "io/yaml_private.h"
+
+/* At the root, of the format's version; no row of a table. */
+#define VERSION_KEY "slender"
 
 /* Where loading stands: the key path, for sentences. */
 typedef struct Load {
@@ -26,6 +30,15 @@ const Node *load_row_item(const YamlField *row, const Node *map);
 
 /* The row that a value which is no mapping goes to; NULL: there is none. */
 const YamlField *load_short_row(const YamlTable *table, const Node *node);
+
+/* Refuses the mapping's keys that the table does not have. */
+bool load_keys(Load *load, const YamlTable *table, const Node *node);
+
+/* Is one of these keys, which is told as such, the row's, misspelt? That it is missing is then no second fault. */
+bool load_is_misspelt(const Load *load, const YamlTable *table, const Node *node, const YamlField *row);
+
+/* "mesh, thickness, young" */
+void load_list_keys(const YamlTable *table, char *text, size_t size);
 
 /* One value; false after adding an error. */
 bool load_number(Load *load, const YamlField *row, const Node *node, double *value);

@@ -298,6 +298,19 @@ static void manual_row(Text *text, const YamlField *row)
     text_add(text, " |\n");
 }
 
+static void manual_units(Text *text)
+{
+    text_add(text, "## <a name=\"units\"></a>units\n\nA number may carry a unit of the kind that its key "
+                   "has, `1.5 mm` or `1.5mm`; "
+                   "without one it is in that of its key. Units are ");
+    unit_list(true, text);
+    text_add(text, ", which take the prefixes ");
+    unit_list_prefixes(text);
+    text_add(text, " (`\xc2\xb5` is `u`), and ");
+    unit_list(false, text);
+    text_add(text, "; and products of them with powers and one slash: `kN/m^2`, `N s/m`, `1/mm`.\n");
+}
+
 char *yaml_manual(const YamlTable *table, const char *title)
 {
     Tables tables = {0};
@@ -315,6 +328,7 @@ char *yaml_manual(const YamlTable *table, const char *title)
         for (const YamlField *row = tables.tables[k]->fields; row->key; row++) manual_row(&text, row);
         text_add(&text, "\n");
     }
+    manual_units(&text);
     return text.text;
 }
 

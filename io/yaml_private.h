@@ -1,6 +1,7 @@
 /* yaml_private.h - the tree that scene files are read into, and what the parts of yaml.h share. */
 #pragma once
 #include "io/lookup.h"
+#include "io/text.h"
 #include "io/yaml.h"
 
 typedef enum NodeKind { NODE_SCALAR, NODE_LIST, NODE_MAP } NodeKind;
@@ -77,6 +78,10 @@ bool unit_is_number(const char *text);
 /* The number in SI. False with a phrase that says what is wrong: "must be a number in m, not 'x'". unit as in
  * YamlField. */
 bool unit_parse(const char *text, const char *unit, double *value, char *wrong, size_t size);
+
+/* For the manual: the units that take prefixes, or those that take none; the prefixes. */
+void unit_list(bool prefixed, Text *text);
+void unit_list_prefixes(Text *text);
 
 /* Is it a unit that the table of units can read? */
 bool unit_is_known(const char *unit);

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 /* Exponents of m, kg, s, A, rad. */
 enum { DIMENSIONS = 5 };
@@ -41,6 +42,22 @@ static const struct {
     double factor;
 } prefixes[] = {{"G", 1e9},  {"M", 1e6},         {"k", 1e3},         {"d", 1e-1}, {"c", 1e-2}, {"m", 1e-3},
                 {"u", 1e-6}, {"\xc2\xb5", 1e-6}, {"\xce\xbc", 1e-6}, {"n", 1e-9}, {"p", 1e-12}};
+
+void unit_list(bool prefixed, Text *text)
+{
+    const char *before = "";
+    for (size_t k = 0; k < sizeof units / sizeof *units; k++) {
+        if (units[k].prefixed != prefixed) continue;
+        text_add(text, "%s`%s`", before, units[k].symbol);
+        before = ", ";
+    }
+}
+
+void unit_list_prefixes(Text *text)
+{
+    for (size_t k = 0; k < sizeof prefixes / sizeof *prefixes; k++)
+        if (!(prefixes[k].symbol[0] & 0x80)) text_add(text, "%s`%s`", k ? ", " : "", prefixes[k].symbol);
+}
 
 static const Unit *find_unit(const char *symbol, size_t length, bool prefixed)
 {
@@ -123,10 +140,22 @@ static bool decimal(const char *text, double *value, const char **rest)
     return true;
 }
 
+/* ".nan", "-.inf", "inf": YAML's numbers that are not finite, and what programs print for them. */
+static bool is_not_finite(const char *text)
+{
+    static const char *const words[] = {"nan", "inf", "infinity"};
+    text += *text == '-' || *text == '+';
+    text += *text == '.';
+    for (size_t k = 0; k < sizeof words / sizeof *words; k++)
+        if (!strcasecmp(text, words[k])) return true;
+    return false;
+}
+
 bool unit_is_number(const char *text)
 {
     double value;
     const char *rest;
+    if (is_not_finite(text)) return true;
     if (!decimal(text, &value, &rest)) return false;
     if (*rest && *rest != ' ' && !is_symbol(*rest)) return false;
     while (*rest == ' ') rest++;
@@ -139,7 +168,8 @@ bool unit_parse(const char *text, const char *unit, double *value, char *wrong, 
 {
     const char *in = unit ? " in " : "", *name = unit ? unit : "", *rest;
     if (!decimal(text, value, &rest) || (*rest && *rest != ' ' && !is_symbol(*rest))) {
-        snprintf(wrong, size, "must be a number%s%s, not '%.60s'", in, name, text);
+        snprintf(wrong, size, "must be a %snumber%s%s, not '%.60s'", is_not_finite(text) ? "finite " : "", in,
+                 name, text);
         return false;
     }
     while (*rest == ' ') rest++;

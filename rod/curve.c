@@ -183,6 +183,35 @@ static bool fill_grid(Path *path, Error *err)
     }
 }
 
+static double rounded(double x, double length)
+{
+    return fabs(x) < 1e-9 * length ? 0 : x;
+}
+
+bool rod_curve_refuse_turn(Vec3 x, double length, Error *err)
+{
+    return error_set(err, "the curve turns back on itself at (%.4g, %.4g, %.4g) m: no rod does",
+                     rounded(x.x, length), rounded(x.y, length), rounded(x.z, length));
+}
+
+/* Does the tangent turn by half a circle, or nearly, between two of the places that lengths are measured at? They are so
+ * near that no curve of a rod does. */
+static bool turns_back(Path *path, double *at)
+{
+    const double nearly = -0.99;
+    Vec3 before = vec3(0, 0, 0);
+    double u_before = path->u0;
+    for (int k = 0; k < GAUSS * path->panels; k++) {
+        double start = panel_start(path, k / GAUSS), end = panel_start(path, k / GAUSS + 1),
+               u = start + (end - start) * gauss_at[k % GAUSS];
+        Vec3 along = slope(path, u, NULL);
+        *at = (u_before + u) / 2;
+        if (vec3_dot(before, along) < nearly * vec3_length(before) * vec3_length(along)) return true;
+        if (vec3_length(along) > 0) before = along, u_before = u;
+    }
+    return false;
+}
+
 /* The number of panels is a multiple of `pieces`, so that the curve is smooth within each panel. */
 static bool create(Path path, int pieces, int elements, RodCurve *curve, Error *err)
 {
@@ -203,11 +232,14 @@ static bool create(Path path, int pieces, int elements, RodCurve *curve, Error *
                         .x = mem_alloc((size_t)stations, sizeof *curve->x),
                         .t = mem_alloc((size_t)stations, sizeof *curve->t),
                         .c = mem_alloc((size_t)stations, sizeof *curve->c)};
-    bool moves = fill_stations(&path, curve), ok = moves && isnan(path.bad);
+    bool moves = fill_stations(&path, curve), ok = false;
+    double at;
     if (!isnan(path.bad))
         error_set(err, "the curve has no finite place near %g", path.bad);
-    else if (!moves)
-        error_set(err, "the curve stands still somewhere: it has no tangent there");
+    else if (turns_back(&path, &at))
+        rod_curve_refuse_turn(place(&path, at), path.s[path.panels], err);
+    else
+        ok = moves || error_set(err, "the curve stands still somewhere: it has no tangent there");
     mem_free(path.s);
     mem_free(path.grid);
     if (!ok) rod_curve_clear(curve);

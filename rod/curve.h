@@ -19,8 +19,8 @@ typedef bool RodCurvePoint(void *self, double u, Vec3 *x);
 /* Reparametrises the curve from u0 to u1 by its arclength: to 1e-12 of its length where it is smooth
  * (composite Gauss quadrature of the speed, which comes from differences of eighth order; only places between
  * u0 and u1 are asked for, at 1024 equal steps or as many more as its waves need). False and a sentence where
- * a point is missing or not finite, where the curve stands still, and where it has a kink or waves that
- * 131072 steps cannot follow. */
+ * a point is missing or not finite, where the curve stands still or turns back on itself, and where it has a kink or
+ * waves that 131072 steps cannot follow. */
 bool rod_curve_create(RodCurvePoint *point, void *self, double u0, double u1, int elements, RodCurve *curve,
                       Error *err);
 
@@ -32,5 +32,8 @@ typedef void RodCurveJet(void *self, double u, Vec3 jet[3]);
  * jump; place, tangent and curvature should not. */
 bool rod_curve_create_pieces(RodCurveJet *jet, void *self, int pieces, int elements, RodCurve *curve,
                              Error *err);
+
+/* What is said where a curve does; returns false. */
+bool rod_curve_refuse_turn(Vec3 x, double length, Error *err);
 
 void rod_curve_clear(RodCurve *curve);

@@ -154,6 +154,19 @@ static RodSamplesInfo report(const RodSpline *spline)
     };
 }
 
+/* Where the curve through these samples is refused: a sample from which they go back the way they came says more of
+ * it. */
+static void name_turn(const Vec3 *x, int count, Error *err)
+{
+    const double exactly = 1e-12;
+    for (int i = 1; i + 1 < count; i++) {
+        Vec3 before = vec3_unit(vec3_sub(x[i], x[i - 1])), after = vec3_unit(vec3_sub(x[i + 1], x[i]));
+        if (1 + vec3_dot(before, after) > exactly) continue;
+        rod_curve_refuse_turn(x[i], chords(x, count), err);
+        return;
+    }
+}
+
 bool rod_samples_curve(const Vec3 *x, int count, const RodSamplesDef *def, int elements, RodCurve *curve,
                        RodSamplesInfo *info, Error *err)
 {
@@ -168,6 +181,7 @@ bool rod_samples_curve(const Vec3 *x, int count, const RodSamplesDef *def, int e
     if (ok) {
         RodSpline spline = fit(kept, n, isnan(def->noise) && n < FEW ? 0 : def->noise);
         ok = rod_curve_create_pieces(rod_spline_jet, &spline, spline.intervals, elements, curve, err);
+        if (!ok) name_turn(kept, n, err);
         double longer = ok ? curve->length / chords(kept, n) : 0;
         if (longer > longest) {
             ok = error_set(

@@ -32,11 +32,14 @@ typedef struct Mesh {
     int *vertex_of_file;   /* [file_vertex_count] the mesh's vertex, -1 where removed */
 } Mesh;
 
-/* What the user should know about a mesh that was accepted. */
+/* What the user should know about a mesh that was accepted, and about what comes with it. */
 typedef struct MeshReport {
     int warning_count;
     char **warnings; /* sentences "file:line: ..."; owned */
 } MeshReport;
+
+/* Adds a sentence; report may be NULL. */
+void mesh_warn(MeshReport *report, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 /* Checks the file's surface and builds the mesh; copies what it needs. Vertices closer than weld (m; 0 =
  * off) to one of lower number are joined first. report may be NULL; else clear it, also after a

@@ -2,8 +2,5 @@
 #pragma once
 #include "shell/mesh.h"
 
-/* Adds a warning; report may be NULL. */
-void mesh_warn(MeshReport *report, const char *format, ...) __attribute__((format(printf, 2, 3)));
-
 /* The file's groups in the mesh's numbering; vertices and edges must be known. */
 void mesh_build_groups(Mesh *mesh, const MeshFile *file, MeshReport *report);

@@ -5,8 +5,26 @@
 expect 0 "$program" help;                       says "slender run"
 expect 0 "$program" --version;                  says "CHOLMOD"; says "OpenBLAS"; says "NLopt"; says "HDF5"
 expect 2 "$program" fly;                        says "no verb 'fly'"
-expect 2 "$program" run;                        says "usage: slender run SCENE"
-expect 2 "$program" run --no-such-option x.yaml
+for verb in run check info export picture schema mesh help version; do
+    expect 0 "$program" $verb --help; [ ! -s err.txt ] && grep -q "^usage: slender $verb" out.txt || { echo "$verb does not say how it is used"; bad=1; }
+done
+refuses() { # a sentence, what the program is given ..
+    sentence=$1; shift
+    expect 2 "$program" "$@"; says "$sentence"; [ "$(cat out.txt err.txt | wc -l)" = 1 ] || { echo "more than a sentence:"; cat out.txt err.txt; bad=1; }
+}
+refuses "a SCENE must be given" run
+refuses "one SCENE can be given, and 2 are, from 'a.yaml'" check a.yaml b.yaml
+refuses "'a.yaml': no argument can be given" schema a.yaml
+refuses "no option --no-such-option" run --no-such-option x.yaml
+refuses "no option -x" run -x x.yaml
+refuses "'--quiet=1': this option takes no value" run --quiet=1 x.yaml
+for threads in 0 65 2x 1.5 99999999999999999999; do refuses "--threads must be a whole number from 1 to 64, and is '$threads'" run --threads $threads x.yaml; done
+refuses "--threads needs a value: a whole number from 1 to 64" run x.yaml --threads
+refuses "--log must be json, and is 'xml'" run --log=xml x.yaml
+refuses "one of them" run --resume --force x.yaml
+refuses "--seconds must be a number from 0.04 to 600, and is 'nan'" picture --seconds nan x.vtkhdf
+refuses "--frame must be a whole number from 0, and is '-1'" export --frame -1 x.vtkhdf -o x.obj
+refuses "-o FILE must be given" export x.vtkhdf
 expect 3 "$program" run missing.yaml;           says "missing.yaml: cannot be read"
 expect 3 "$program" run "$here/broken/wrong_unit.yaml"; says "must be a number in Pa"
 
@@ -91,10 +109,24 @@ done
 expect 0 "$program" info closed.vtkhdf
 
 # A picture that cannot be drawn is said by a quiet run, too: files may have 220 blocks, and it alone has more.
-(trap '' XFSZ; ulimit -f 220; "$program" run "$here/scene_small.yaml" --set shell.mesh.n=2 --set design.iterations=0 --quiet -o undrawn) > out.txt 2> err.txt; code=$?
+(ulimit -f 220; "$program" run "$here/scene_small.yaml" --set shell.mesh.n=2 --set design.iterations=0 --quiet -o undrawn) > out.txt 2> err.txt; code=$?
 [ $code = 4 ] || { echo "a quiet run without its picture ends with $code"; bad=1; }
 says "no picture: undrawn.png: cannot be written: File too large"
 [ "$(echo undrawn.*)" = "undrawn.run undrawn.run-lock undrawn.vtkhdf undrawn.xdmf" ] || { echo "left: $(echo undrawn.*)"; bad=1; }
+
+# A limit of file sizes is what a full disk is, wherever it strikes: at the journal's beginning, within it, at what is
+# written of a result; the run then goes on to the same end.
+within() { blocks=$1; shift; (ulimit -f "$blocks"; "$@"); }
+for blocks in 16 60 300; do
+    expect 4 within $blocks "$program" run "$scene" --quiet --no-picture -o large; says "slender: large.*: cannot be written: .*\(files may have at most [0-9]* bytes\|File too large\)"
+    "$program" run "$scene" --quiet --no-picture -o large --resume 2> err.txt || expect 0 "$program" run "$scene" --quiet --no-picture -o large
+    same large.vtkhdf beam.vtkhdf; rm large.*
+done
+expect 4 within 16 "$program" export beam.vtkhdf -o large.csv --dataset VTKHDF/Points; says "large.csv: cannot be written: File too large"
+expect 4 within 16 "$program" export beam.vtkhdf -o large.obj; says "large.obj: cannot be written: File too large"
+within 16 "$program" schema > large.json 2> err.txt; code=$?
+[ $code = 4 ] || { echo "a schema beyond the limit of file sizes ends with $code"; bad=1; }
+says "what it prints cannot be written"
 
 # The mesh as a file, the pose evaluated: the energies are those of the equilibrium.
 expect 0 "$program" mesh "$scene" -o rest.obj;  exists rest.obj
@@ -105,6 +137,15 @@ for term in membrane bending gravity load; do
     "$program" info evaluate.vtkhdf | awk "/final.energy.$term/ {print \$3}" > b.txt
     awk -v a="$(cat a.txt)" -v b="$(cat b.txt)" 'BEGIN { exit !(a != "" && (a - b)^2 <= 1e-12 * a * a) }' || { echo "energy of $term: $(cat a.txt b.txt)"; bad=1; }
 done
+
+# What is not magnetised is not coloured; an arrow shows where gravity points, not how strong it is.
+"$program" picture beam.vtkhdf -o coloured.png; "$program" picture beam.vtkhdf -o plain.png --field none; same coloured.png plain.png
+for gravity in 0,0,-9.8 0,0,-1 9.8,0,0; do
+    mkdir "towards $gravity"
+    expect 0 "$program" run evaluate.yaml --quiet -o "towards $gravity/pose" --set "shell.gravity=[$gravity]"
+done
+same "towards 0,0,-9.8/pose.png" "towards 0,0,-1/pose.png"
+cmp -s "towards 0,0,-9.8/pose.png" "towards 9.8,0,0/pose.png" && { echo "no picture shows gravity"; bad=1; }
 
 # A run that lives keeps others away; one that was stopped is not overwritten, and goes on with --resume.
 long="$here/scene_small.yaml --set design.iterations=100000 --set design.tolerance=0 --set design.optimizer=mma"

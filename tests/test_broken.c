@@ -79,6 +79,20 @@ static void test_sentences(void **state)
     assert_true(count >= 70);
 }
 
+/* A key that is misspelt is not missing, too. */
+static void test_misspelt(void **state)
+{
+    (void)state;
+    static const char *const scenes[] = {"misspelt_key.yaml", "misspelt_body.yaml", "misspelt_version.yaml"};
+    for (size_t k = 0; k < sizeof scenes / sizeof *scenes; k++) {
+        Scene scene;
+        YamlFile *file = yaml_read(scenes[k]);
+        assert_false(yaml_load(file, &scene_table, &scene));
+        assert_int_equal(yaml_error_count(file), 1);
+        yaml_destroy(file);
+    }
+}
+
 /* No broken file without its sentence. */
 static void test_complete(void **state)
 {
@@ -103,7 +117,8 @@ static void test_complete(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_sentences), cmocka_unit_test(test_complete)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_sentences), cmocka_unit_test(test_misspelt),
+                                       cmocka_unit_test(test_complete)};
     if (chdir(SOURCE_DIR "/tests/broken")) return 1;
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,6 +2,7 @@
 #include "base/memory.h"
 #include "io/mesh_file.h"
 #include "io/table.h"
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -240,6 +241,16 @@ static void test_table(void **state)
          "test_table.csv:1: column 2 is headed 'z'; the columns must be x, y, z"},
         {"x [mm]; y; z; r\n1; 2; 3; 4\n", "s, x, y, z",
          "test_table.csv:1: column 1 is headed 'x [mm]'; the columns must be s, x, y, z"},
+        {"# t, By, Bx\n1,2,4\n", "t, Bx, By",
+         "test_table.csv:1: column 2 is headed 'By'; the columns must be t, Bx, By"},
+        {"t [mm], v\n1,2\n", "t [s], v", "test_table.csv:1: column 1 is headed 't [mm]'; it must be in s"},
+        {"t (fortnights), v\n1,2\n", "t [s], v",
+         "test_table.csv:1: column 1 is headed 't (fortnights)'; it must be in s"},
+        {"\"(m)1mm\n1,2\n", "t [s], v", "test_table.csv:1: column 1 is headed '(m)1mm'; it must be in s"},
+        {"t, v [%]\n1,2\n", "t [s], v",
+         "test_table.csv:1: column 2 is headed 'v [%]'; it must be without a unit"},
+        {"x, y [mm]\n1,2\n", "x [m], y [m]",
+         "test_table.csv:1: column 1, x, is headed without a unit, and others with one"},
         {"1; 2\n1, 2\n", NULL, "test_table.csv:2: '1, 2' is no finite number"},
         {"1; 2\n1,2\n", NULL, "test_table.csv:2: 1 number in this row, and 2 are needed"},
         {"1,5; 2\n1.5; 2\n", NULL,
@@ -253,6 +264,28 @@ static void test_table(void **state)
     for (size_t k = 0; k < sizeof broken / sizeof *broken; k++) {
         assert_false(read_table(broken[k].text, broken[k].names, &table, &err));
         assert_string_equal(err.text, broken[k].sentence);
+    }
+    static const char *const field = "t [s], Bx [T], By [T]";
+    static const struct {
+        const char *text, *names;
+        double row[3];
+    } scaled[] = {
+        {"t [s], Bx (T), By/T\n1,2,4\n", field, {1, 2, 4}},
+        {"t [ms], Bx (mT), By/T\n1,2,4\n", field, {1e-3, 2e-3, 4}},
+        {"t_ms; Bx mT; \"By_T\"\n1;2;4\n", field, {1e-3, 2e-3, 4}},
+        {"t [ms] Bx [T] By [T]\n1 2 4\n", field, {1e-3, 2, 4}},
+        {"time (min), field, 2nd\n1,2,4\n", "t [s], v, w", {60, 2, 4}},
+        {"s [mm], k1 (1/mm), v [-]\n1,2,4\n", "s [m], k1 [1/m], v", {1e-3, 2e3, 4}},
+        {"# made by hand\n# t [ms], Bx [T], By [T]\n\n1,2,4\n", field, {1e-3, 2, 4}},
+        {"# t Bx By\n1 2 4\n", field, {1, 2, 4}},
+        {"# t, Bx, By in T: of a magnet\n1,2,4\n", field, {1, 2, 4}},
+        {"# in [ms]\n1,2,4\n", field, {1, 2, 4}},
+    };
+    for (size_t k = 0; k < sizeof scaled / sizeof *scaled; k++) {
+        if (!read_table(scaled[k].text, scaled[k].names, &table, &err)) fail_msg("%s", err.text);
+        for (int i = 0; i < 3; i++) assert_true(fabs(table.values[i] / scaled[k].row[i] - 1) < 1e-15);
+        assert_true(table.scaled == (scaled[k].row[0] != 1));
+        table_clear(&table);
     }
     double values[4] = {1.0 / 3, -5e-324, 1e308, 0.1};
     assert_true(table_write("test_table.csv", "# bits", values, 2, 2, &err) &&

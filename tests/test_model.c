@@ -166,6 +166,10 @@ static void test_timed(void **state)
     const double times[4] = {-1, 1, 2, 9}, exact[4] = {0.01, 0.03, 0.015, 0};
     for (int k = 0; k < 4; k++)
         assert_true(model_load(b.model, times[k], p, &err) && fabs(B[2] - exact[k]) < 1e-16);
+    assert_int_equal(b.model->report.warning_count, 1);
+    assert_string_equal(strrchr(b.model->report.warnings[0], '/') + 1,
+                        "test_model_field.csv: t goes from 0 to 3 s, and the motion from 0.5 to 0.502 s "
+                        "only: is t in seconds?");
     clear(&b);
     mem_free(lines);
     unlink("test_model_field.csv");

@@ -50,13 +50,18 @@ static void test_csv(void **state)
     file = parse("csv", "0, 1, 0, 0\n1.5707963, 0, 1, 0\n3.1415927, -1, 0, 0\n"); /* half a circle */
     assert_int_equal(file.point_count, 3);
     polyline_file_clear(&file);
+    file = parse("csv", "x [mm], y/mm, z mm\n0, 0, 0\n1, 2.5, -3\n2, 0, 1e-3\n");
+    check_strand(&file, 0, 1e-3, 3, x);
+    assert_true(file.scaled);
+    polyline_file_clear(&file);
     check_refused("csv", "", "a: there are no numbers in it");
     check_refused("csv", "1,2,3\n", "a: there are no lines in it");
     check_refused("csv", "# x, y\n1, 2\n2, 3\n",
                   "a:2: 2 numbers in this row; it must be x, y, z or s, x, y, z");
     check_refused("csv", "1,2,3\n1,2,nan\n", "a:2: 'nan' is no finite number");
     check_refused("csv", "1,2,3\n1,2\n", "a:2: 2 numbers in this row, and 3 are needed");
-    check_refused("csv", "x,y,z,r\n1,2,3,4\n", "a:1: column 1 is headed 'x'; the columns must be s, x, y, z");
+    check_refused("csv", "x,y,z,r\n1,2,3,4\n",
+                  "a:1: column 1 is headed 'x'; the columns must be s [m], x [m], y [m], z [m]");
     check_refused("csv", "5,0;-3,0\n7,5;-3,0\n",
                   "a:1: 2 numbers in this row; it must be x, y, z or s, x, y, z");
     check_refused("csv", "0,0,0,0\n1,1,0,0\n1,2,0,0\n",

@@ -2,6 +2,7 @@
 #include "base/memory.h"
 #include "cli/show.h"
 #include "io/curves_picture.h"
+#include "io/page.h"
 #include "io/result.h"
 #include "io/table.h"
 #include "leaks.h"
@@ -24,6 +25,7 @@ static const char RESULT[] = "test_show_rod.vtkhdf";
 typedef struct Rods {
     int strands; /* each the helix, moved aside */
     bool simulated, motion;
+    const char *end; /* how the scene holds it; NULL: no scene */
 } Rods;
 
 /* Columns of tests/rod/helix.csv for every strand; strands lie 4 cm apart. */
@@ -61,6 +63,18 @@ static void put_frames(Journal *journal, const double *input, const double *natu
     mem_free(x);
 }
 
+/* A rod that is held at this other end, too. */
+static void put_scene(Journal *journal, const char *end)
+{
+    char *scene = mem_format(
+        "slender: 1\njob: equilibrium\nrod:\n  natural_strain: [0, 1, 0]\n  length: 1 m\n  radius: 1 mm\n"
+        "  young: 1 MPa\n  poisson: 0.4\n  density: 1000\n  end: {position: [0.01132041885583, "
+        "0.009841144086364, -0.06221722076589], %s}\n",
+        end);
+    put(journal, "meta", 0, array_text("scene", scene));
+    mem_free(scene);
+}
+
 static void put_rods(Journal *journal, Rods rods, const Table *table)
 {
     int count = NODES * rods.strands, offsets[64], lines[3 * 64][2], stable = 1;
@@ -84,6 +98,7 @@ static void put_rods(Journal *journal, Rods rods, const Table *table)
     put(journal, "final", 0, array_float("rod/critical_young", "Pa", &critical, 0, 0, 0));
     put(journal, "final", 0, array_float("metrics/round_trip", "m", &round_trip, 0, 0, 0));
     put(journal, "final", 0, array_text("status", "converged"));
+    if (rods.end) put_scene(journal, rods.end);
     if (rods.motion) put_frames(journal, input, natural, count);
     mem_free(input);
     mem_free(natural);
@@ -158,6 +173,24 @@ static void curves(void **state)
     assert_int_equal(count_pixels(&page, colormap_series(1)), 0);
     assert_true(count_pixels(&page, grey) > 3000);
     mem_free(page.rgb);
+}
+
+/* Both ends of a rod that is held there are marked, in three views. */
+static void held(void **state)
+{
+    (void)state;
+    ShowDef def = show_default();
+    int ink[2];
+    for (int k = 0; k < 2; k++) {
+        write_result((Rods){.strands = 1,
+                            .simulated = true,
+                            .end = k ? "hold: clamped, frame: [[1, 0, 0], [0, 1, 0], [0, 0, 1]]" : NULL});
+        Page page = draw(&def);
+        ink[k] = count_pixels(&page, page_ink);
+        mem_free(page.rgb);
+    }
+    print_message("pixels of ink: %d, with another clamp %d\n", ink[0], ink[1]);
+    assert_true(ink[1] > ink[0] + 200);
 }
 
 /* Frames, moments over each other, and an animation. */
@@ -236,9 +269,8 @@ static void refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_teardown(curves, nothing_leaks),
-        cmocka_unit_test_teardown(motion, nothing_leaks),
-        cmocka_unit_test_teardown(bundles, nothing_leaks),
+        cmocka_unit_test_teardown(curves, nothing_leaks),  cmocka_unit_test_teardown(held, nothing_leaks),
+        cmocka_unit_test_teardown(motion, nothing_leaks),  cmocka_unit_test_teardown(bundles, nothing_leaks),
         cmocka_unit_test_teardown(refused, nothing_leaks),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
