@@ -14,7 +14,8 @@
 typedef struct Body {
     Shell *shell;
     System *sys;
-    double *p, *x;
+    double *p;
+    State state;
     double young;
 } Body;
 
@@ -48,7 +49,7 @@ static void body_destroy(Body *b)
     system_destroy(b->sys);
     shell_destroy(b->shell);
     mem_free(b->p);
-    mem_free(b->x);
+    state_destroy(&b->state);
 }
 
 /* Held where x = 0, the slope too. */
@@ -67,9 +68,9 @@ static void prepare(Body *b)
 {
     b->sys = shell_system(b->shell);
     b->p = mem_alloc((size_t)b->shell->params.size, sizeof *b->p);
-    b->x = mem_alloc((size_t)shell_dof_count(b->shell), sizeof *b->x);
+    b->state = system_state(b->sys);
     shell_default_params(b->shell, b->p);
-    shell_rest_state(b->shell, b->x);
+    shell_rest_state(b->shell, b->state.x);
     for (int f = 0; f < b->shell->mesh->face_count; f++) b->p[b->shell->young + f] = b->young;
 }
 
@@ -100,7 +101,7 @@ static void solve(Body *b, int steps, const double *from, Count *count)
 {
     RampDef def = ramp_default();
     def.steps = steps;
-    RampInfo info = ramp_solve(b->sys, &b->shell->params, &def, from, b->p, 0, b->x);
+    RampInfo info = ramp_solve(b->sys, &b->shell->params, &def, from, b->p, &b->state);
     count->iterations += info.newton.iterations;
     count->factorizations += info.newton.factorizations;
     if (info.newton.status > count->status) count->status = info.newton.status;
@@ -118,7 +119,7 @@ static void print_count(const char *name, BendingModel bending, const Count *cou
 static double out_of_plane(const Body *b)
 {
     double most = 0;
-    for (int v = 0; v < b->shell->mesh->vertex_count; v++) most = fmax(most, fabs(b->x[3 * v + 2]));
+    for (int v = 0; v < b->shell->mesh->vertex_count; v++) most = fmax(most, fabs(b->state.x[3 * v + 2]));
     return most / mesh_diagonal(b->shell->mesh);
 }
 

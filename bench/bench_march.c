@@ -1,6 +1,5 @@
 /* Implicit Euler on a sheet of 8192 triangles that falls under its weight, one edge clamped. */
 #include "base/clock.h"
-#include "base/memory.h"
 #include "bench/bench.h"
 #include "bench/sheet.h"
 #include "solve/march.h"
@@ -12,12 +11,11 @@ static void march(BendingModel bending, double dt, const char *name)
 {
     Sheet s = sheet_create(bending, true);
     MarchDef def = march_default();
-    MarchState now = {.x = s.x, .v = mem_alloc((size_t)shell_dof_count(s.shell), sizeof(double))};
     int steps = (int)lround(0.1 / dt), newton = 0, factorizations = 0, cg = 0;
     double force = 0, start = clock_seconds();
     for (int n = 0; n < steps; n++) {
         MarchInfo info;
-        if (!march_step(s.sys, &def, dt, s.p, &now, &info))
+        if (!march_step(s.sys, &def, dt, s.p, &s.state, &info))
             bench_fail("%s: the motion stops in step %d", name, n);
         newton += info.newton.iterations, factorizations += info.newton.factorizations;
         cg += info.newton.cg_iterations;
@@ -34,7 +32,6 @@ static void march(BendingModel bending, double dt, const char *name)
     bench_print(text, (double)cg / steps, "");
     snprintf(text, sizeof text, "march_%s_force_left", name);
     bench_print(text, force, "N");
-    mem_free(now.v);
     sheet_destroy(&s);
 }
 

@@ -49,8 +49,9 @@ static double invert(const RodCurve *curve, int times)
 typedef struct Hanging {
     RodCurve curve;
     Rod *rod;
-    double *p, *x;
+    double *p;
     System *sys;
+    State state;
 } Hanging;
 
 static Hanging hanging_create(int elements)
@@ -64,11 +65,11 @@ static Hanging hanging_create(int elements)
     o.p = mem_alloc((size_t)o.rod->params.size, sizeof *o.p);
     rod_default_params(o.rod, young, o.p);
     o.p[o.rod->gravity + 2] = -9.8;
-    o.x = mem_alloc((size_t)rod_layout(o.rod, true).dofs, sizeof *o.x);
     o.sys = rod_hanging_system(o.rod);
-    rod_follow_curve(o.rod, &o.curve, frames, o.x);
+    o.state = system_state(o.sys);
+    rod_follow_curve(o.rod, &o.curve, frames, o.state.x);
     RodLayout layout = rod_layout(o.rod, false);
-    rod_balance(o.rod, o.sys, &layout, o.x, o.p);
+    rod_balance(o.rod, o.sys, &layout, o.state.x, o.p);
     mem_free(frames);
     return o;
 }
@@ -79,7 +80,7 @@ static void hanging_clear(Hanging *o)
     system_destroy(o->sys);
     rod_destroy(o->rod);
     mem_free(o->p);
-    mem_free(o->x);
+    state_destroy(&o->state);
 }
 
 /* From the natural shape to the helix; the system made anew each time, as a job does. Best of `times`. */
@@ -93,8 +94,8 @@ static void statics(int elements, int times, const char *name, const char *facto
     for (int k = 0; k < times; k++) {
         double start = clock_seconds();
         System *sys = rod_hanging_system(o.rod);
-        rod_natural_state(o.rod, &layout, o.p, o.x);
-        NewtonInfo info = newton_minimize(sys, &def, &(Point){.p = o.p}, o.x, NULL);
+        rod_natural_state(o.rod, &layout, o.p, o.state.x);
+        NewtonInfo info = newton_minimize(sys, &def, &(Point){.p = o.p}, &o.state, NULL);
         double seconds = clock_seconds() - start;
         if (info.status != NEWTON_CONVERGED) bench_fail("%s: %s", name, newton_status_name(info.status));
         if (seconds < best) best = seconds, part = system_info(sys).factor_seconds / seconds;
@@ -113,8 +114,8 @@ static void motion(void)
     System *sys = rod_system(o.rod, young, true);
     MarchDef def = march_default();
     def.newton.step_cap = 1.5;
-    rod_natural_state(o.rod, &layout, o.p, o.x);
-    MarchState now = {.x = o.x, .v = mem_alloc((size_t)layout.dofs, sizeof(double))};
+    State now = system_state(sys);
+    rod_natural_state(o.rod, &layout, o.p, now.x);
     int steps = 200, newton = 0;
     double start = clock_seconds();
     for (int k = 0; k < steps; k++) {
@@ -124,7 +125,7 @@ static void motion(void)
     }
     bench_print("rod_march_200_ms_per_step", 1e3 * (clock_seconds() - start) / steps, "ms");
     bench_print("rod_march_200_newton_per_step", (double)newton / steps, "");
-    mem_free(now.v);
+    state_destroy(&now);
     system_destroy(sys);
     hanging_clear(&o);
 }

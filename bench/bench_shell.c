@@ -12,7 +12,7 @@ enum { REPEATS = 30 };
 /* Best of many: the machine's other work only ever adds. */
 static double hessian_seconds(Sheet *s)
 {
-    Point at = {.x = s->x, .p = s->p};
+    Point at = {.x = s->state.x, .p = s->p, .memory = s->state.memory};
     double best = INFINITY;
     for (int k = 0; k < REPEATS; k++) {
         double start = clock_seconds();
@@ -55,7 +55,7 @@ void bench_newton(void)
         NewtonDef def = newton_default();
         char name[80];
         double start = clock_seconds();
-        NewtonInfo info = newton_minimize(s.sys, &def, &(Point){.p = s.p}, s.x, NULL);
+        NewtonInfo info = newton_minimize(s.sys, &def, &(Point){.p = s.p}, &s.state, NULL);
         double seconds = clock_seconds() - start;
         SparseInfo sparse = system_info(s.sys);
         if (info.status != NEWTON_CONVERGED)

@@ -20,11 +20,9 @@ static TrajectoryProblem problem_of(const Model *model, const Scene *scene)
                                .objectives = c->objectives,
                                .control_count = 1,
                                .objective_count = c->objective_count,
-                               .start = scene->time.at,
+                               .start = &c->state,
                                .step = scene->time.step,
                                .steps = scene->time.steps,
-                               .x = c->x,
-                               .v = model->v,
                                .p = c->stages[0].p};
 }
 

@@ -24,14 +24,14 @@ Sheet sheet_create(BendingModel bending, bool dynamic)
             shell_clamp(s.shell, e);
     s.sys = dynamic ? shell_dynamic_system(s.shell) : shell_system(s.shell);
     s.p = mem_alloc((size_t)s.shell->params.size, sizeof(double));
-    s.x = mem_alloc((size_t)shell_dof_count(s.shell), sizeof(double));
+    s.state = system_state(s.sys);
     s.gradient = mem_alloc((size_t)shell_dof_count(s.shell), sizeof(double));
     shell_default_params(s.shell, s.p);
     for (int f = 0; f < mesh->face_count; f++)
         s.p[s.shell->young + f] = 1e5, s.p[s.shell->magnetization + 3 * f] = 1e4;
     s.p[s.shell->flux_density + 2] = dynamic ? 0 : 2e-3;
     s.p[s.shell->gravity + 2] = dynamic ? -9.81 : 0;
-    shell_rest_state(s.shell, s.x);
+    shell_rest_state(s.shell, s.state.x);
     return s;
 }
 
@@ -40,8 +40,8 @@ void sheet_bend(Sheet *s)
     const double k = 5;
     for (int v = 0; v < s->shell->mesh->vertex_count; v++) {
         double x = s->shell->mesh->rest[v][0];
-        s->x[3 * v] = sin(k * x) / k;
-        s->x[3 * v + 2] = (1 - cos(k * x)) / k;
+        s->state.x[3 * v] = sin(k * x) / k;
+        s->state.x[3 * v + 2] = (1 - cos(k * x)) / k;
     }
 }
 
@@ -50,6 +50,6 @@ void sheet_destroy(Sheet *s)
     system_destroy(s->sys);
     shell_destroy(s->shell);
     mem_free(s->p);
-    mem_free(s->x);
+    state_destroy(&s->state);
     mem_free(s->gradient);
 }

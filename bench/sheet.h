@@ -5,7 +5,8 @@
 typedef struct Sheet {
     Shell *shell;
     System *sys;
-    double *p, *x, *gradient;
+    double *p, *gradient;
+    State state;
 } Sheet;
 
 /* In statics it is magnetised along x in a field across; in motion (dynamic) its weight is all there is. */

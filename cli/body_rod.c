@@ -40,19 +40,19 @@ void body_rod_places(const Model *model, const double *x, double *place)
         rod_places(model->rod->rod, layout, x, layout->nodes, place);
 }
 
-void body_rod_frame(const Model *model, const State *state, bool whole, Arrays *list)
+void body_rod_frame(const Model *model, const Snapshot *shot, bool whole, Arrays *list)
 {
-    (void)model, (void)state, (void)whole, (void)list;
+    (void)model, (void)shot, (void)whole, (void)list;
 }
 
-void body_rod_state(const Model *model, const State *state, const char *prefix, Arrays *list)
+void body_rod_state(const Model *model, const Snapshot *shot, const char *prefix, Arrays *list)
 {
     const RodModel *rm = model->rod;
     int elements = rm->rod->elements;
     double *strain = arrays_numbers(list, 3 * (size_t)elements),
            *moment = arrays_numbers(list, 3 * (size_t)model->point_count);
-    rod_element_strains(rm->rod, &rm->layout, state->x, (Vec3 *)strain);
-    rod_node_moments(rm->rod, &rm->layout, state->x, state->p, (Vec3 *)moment);
+    rod_element_strains(rm->rod, &rm->layout, shot->at.x, (Vec3 *)strain);
+    rod_node_moments(rm->rod, &rm->layout, shot->at.x, shot->p, (Vec3 *)moment);
     char *name = arrays_keep(list, mem_format("%s/strain", prefix));
     arrays_add(list, array_float(name, "1/m", strain, 2, elements, 3));
     name = arrays_keep(list, mem_format("%s/moment", prefix));
@@ -75,22 +75,22 @@ static bool is_judged(const Rod *rod, const double *p)
 }
 
 /* The rod as stability.h takes it; *work is the caller's. */
-static RodEquilibrium equilibrium_of(const RodModel *rm, const State *state, Vec3 **work)
+static RodEquilibrium equilibrium_of(const RodModel *rm, const Snapshot *shot, Vec3 **work)
 {
     const Rod *rod = rm->rod;
     size_t stations = 2 * (size_t)rod->elements + 1;
     Vec3 *k = *work = mem_alloc(2 * stations + 3 * (size_t)rod->elements, sizeof *k), *m = k + stations,
          *F = m + stations;
-    rod_stations(rod, &rm->layout, state->x, state->p, k, m, F);
+    rod_stations(rod, &rm->layout, shot->at.x, shot->p, k, m, F);
     return (RodEquilibrium){
-        rod->elements, rod->length, rod_section_of(rod->unit, state->p[rod->young]), k, m, F};
+        rod->elements, rod->length, rod_section_of(rod->unit, shot->p[rod->young]), k, m, F};
 }
 
 /* Where elements are too long for what they are to show, how stable the rod is stays unknown. */
-static void add_stability(const RodModel *rm, const State *state, Arrays *list)
+static void add_stability(const RodModel *rm, const Snapshot *shot, Arrays *list)
 {
     Vec3 *work;
-    RodEquilibrium at = equilibrium_of(rm, state, &work);
+    RodEquilibrium at = equilibrium_of(rm, shot, &work);
     bool known = rod_bending_lengths(&at) <= 1;
     double *lowest = arrays_numbers(list, 1);
     *lowest = known ? rod_lowest_eigenvalue(&at) : NAN;
@@ -105,12 +105,12 @@ static void add_stability(const RodModel *rm, const State *state, Arrays *list)
     mem_free(work);
 }
 
-char *body_rod_doubt(const Model *model, const State *state)
+char *body_rod_doubt(const Model *model, const Snapshot *shot)
 {
     const Rod *rod = model->rod->rod;
-    if (!is_judged(rod, state->p)) return NULL;
+    if (!is_judged(rod, shot->p)) return NULL;
     Vec3 *work;
-    RodEquilibrium at = equilibrium_of(model->rod, state, &work);
+    RodEquilibrium at = equilibrium_of(model->rod, shot, &work);
     double lengths = rod_bending_lengths(&at);
     mem_free(work);
     if (lengths <= 1) return NULL;
@@ -120,7 +120,7 @@ char *body_rod_doubt(const Model *model, const State *state)
         rod_element_length(rod) / lengths, lengths, ceil(rod->elements * lengths));
 }
 
-void body_rod_final(const Model *model, const State *state, int modes, Arrays *list)
+void body_rod_final(const Model *model, const Snapshot *shot, int modes, Arrays *list)
 {
     (void)modes;
     const RodModel *rm = model->rod;
@@ -128,11 +128,11 @@ void body_rod_final(const Model *model, const State *state, int modes, Arrays *l
     int nodes = model->point_count;
     double *place = arrays_numbers(list, 3 * (size_t)nodes),
            *moment = arrays_numbers(list, 3 * (size_t)nodes);
-    body_rod_places(model, state->x, place);
-    rod_node_moments(rod, &rm->layout, state->x, state->p, (Vec3 *)moment);
+    body_rod_places(model, shot->at.x, place);
+    rod_node_moments(rod, &rm->layout, shot->at.x, shot->p, (Vec3 *)moment);
     arrays_add(list, array_float("rod/x", "m", place, 2, nodes, 3));
     arrays_add(list, array_float("rod/moment", "N m", moment, 2, nodes, 3));
-    arrays_add(list, array_float("rod/natural_strain_elements", "1/m", state->p + rod->natural_strain, 2,
+    arrays_add(list, array_float("rod/natural_strain_elements", "1/m", shot->p + rod->natural_strain, 2,
                                  rod->elements, 3));
-    if (is_judged(rod, state->p)) add_stability(rm, state, list);
+    if (is_judged(rod, shot->p)) add_stability(rm, shot, list);
 }

@@ -28,11 +28,11 @@ void body_shell_places(const Model *model, const double *x, double *place)
     memcpy(place, x, 3 * (size_t)model->point_count * sizeof *place);
 }
 
-void body_shell_frame(const Model *model, const State *state, bool whole, Arrays *list)
+void body_shell_frame(const Model *model, const Snapshot *shot, bool whole, Arrays *list)
 {
     const Shell *shell = model->shell;
-    System *sys = state->load_case->sys;
-    Point at = body_point(state);
+    System *sys = shot->load_case->sys;
+    Point at = state_point(&shot->at, shot->p);
     for (int t = 0; t < system_term_count(sys); t++) {
         const Term *term = system_term(sys, t);
         int count = term->ops->count(term->self);
@@ -43,25 +43,24 @@ void body_shell_frame(const Model *model, const State *state, bool whole, Arrays
         arrays_add(list, array_float(name, "J", energy, 1, count, 0));
     }
     if (!whole) return;
-    arrays_add(list,
-               body_block("cell/magnetization", params_find(&shell->params, "magnetization"), state->p));
-    arrays_add(list, body_block("cell/young", params_find(&shell->params, "young"), state->p));
+    arrays_add(list, body_block("cell/magnetization", params_find(&shell->params, "magnetization"), shot->p));
+    arrays_add(list, body_block("cell/young", params_find(&shell->params, "young"), shot->p));
 }
 
-void body_shell_state(const Model *model, const State *state, const char *prefix, Arrays *list)
+void body_shell_state(const Model *model, const Snapshot *shot, const char *prefix, Arrays *list)
 {
-    System *sys = state->load_case->sys;
-    Point at = body_point(state);
+    System *sys = shot->load_case->sys;
+    Point at = state_point(&shot->at, shot->p);
     double *gradient = arrays_numbers(list, (size_t)system_dof_count(sys));
     system_gradient(sys, &at, gradient);
     char *name = arrays_keep(list, mem_format("%s/gradient", prefix));
     arrays_add(list, array_float(name, "N", gradient, 2, model->point_count, 3));
 }
 
-void body_shell_final(const Model *model, const State *state, int modes, Arrays *list)
+void body_shell_final(const Model *model, const Snapshot *shot, int modes, Arrays *list)
 {
-    System *sys = state->load_case->sys;
-    Point at = body_point(state);
+    System *sys = shot->load_case->sys;
+    Point at = state_point(&shot->at, shot->p);
     int positions = 3 * model->point_count, dofs = system_dof_count(sys), count = modes > 1 ? modes : 1;
     if (system_free_count(sys) == 0) return;
     double *values = arrays_numbers(list, (size_t)count),

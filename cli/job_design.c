@@ -61,11 +61,10 @@ static BestRows best_rows(const DesignJob *job)
     for (int k = 0; k < best.count; k++) {
         int c = k / VECTORS, which = k % VECTORS;
         CaseState state = static_design_state(job->sd, c);
-        double *vectors[] = {state.x, state.linearised, state.memory};
-        const System *sys = job->cases[c].sys;
+        double *vectors[] = {state.state->x, state.linearised, state.state->memory};
         snprintf(best.names[k], NAME, "%s/%d", names[which], c);
         best.rows[k] = (Kept){best.names[k], vectors[which],
-                              (size_t)(which < 2 ? system_dof_count(sys) : system_memory_count(sys))};
+                              (size_t)(which < 2 ? state.state->dofs : state.state->memory_count)};
     }
     return best;
 }
@@ -91,17 +90,17 @@ static bool get_best(void *self, int slot, const double *u, bool *has, Error *er
 
 /* ---- What is shown ---- */
 
-static State best_state(const DesignJob *job, int c)
+static Snapshot best_state(const DesignJob *job, int c)
 {
-    return (State){&job->run->model->cases[c], static_design_params(job->sd, c), job->cases[c].x,
-                   job->run->model->cases[c].stages[0].time, NEWTON_CONVERGED};
+    return (Snapshot){&job->run->model->cases[c], static_design_params(job->sd, c), *job->cases[c].state,
+                      NEWTON_CONVERGED};
 }
 
 static bool put_frame(void *self, int index, Error *err)
 {
     DesignJob *job = self;
-    State state = best_state(job, job->run->model->case_count - 1);
-    return run_put_frame(job->run, index, index, &state, true, err);
+    Snapshot shot = best_state(job, job->run->model->case_count - 1);
+    return run_put_frame(job->run, index, index, &shot, true, err);
 }
 
 static void add_gradients(const DesignJob *job, Arrays *list)
@@ -130,17 +129,17 @@ static bool put_results(void *self, int first, const char *status, Error *err)
 {
     DesignJob *job = self;
     int cases = job->run->model->case_count;
-    State *states = mem_alloc((size_t)cases, sizeof *states);
+    Snapshot *shots = mem_alloc((size_t)cases, sizeof *shots);
     bool ok = true;
     for (int c = 0; ok && c < cases; c++) {
-        states[c] = best_state(job, c);
-        ok = run_put_frame(job->run, first + c, first + c, &states[c], true, err);
+        shots[c] = best_state(job, c);
+        ok = run_put_frame(job->run, first + c, first + c, &shots[c], true, err);
     }
     Arrays list = {0};
     if (ok) add_gradients(job, &list); /* first: by the factors of the best design */
-    if (ok) run_add_final(job->run, states, cases, status, &list);
+    if (ok) run_add_final(job->run, shots, cases, status, &list);
     ok = ok && arrays_replace(&list, job->run->journal, "final", err);
-    mem_free(states);
+    mem_free(shots);
     return ok;
 }
 
@@ -156,7 +155,7 @@ static void find_start(DesignJob *job, const double *u)
         LoadCase *load = &job->cases[c];
         design_apply(&job->run->model->design, c, u, load->p);
         if (load->objective_count)
-            ramp_solve(load->sys, job->run->model->params, &def, NULL, load->p, load->time, load->x);
+            ramp_solve(load->sys, job->run->model->params, &def, NULL, load->p, load->state);
     }
 }
 
@@ -165,9 +164,9 @@ static LoadCase *make_cases(Model *model)
     LoadCase *cases = mem_alloc((size_t)model->case_count, sizeof *cases);
     for (int c = 0; c < model->case_count; c++) {
         ModelCase *from = &model->cases[c];
-        cases[c] = (LoadCase){from->name,   from->sys,           from->stages[0].p,
-                              from->x,      from->objectives,    from->objective_count,
-                              from->weight, from->stages[0].time};
+        cases[c] = (LoadCase){from->name,   from->sys,        from->stages[0].p,
+                              &from->state, from->objectives, from->objective_count,
+                              from->weight};
     }
     return cases;
 }

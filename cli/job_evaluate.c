@@ -17,19 +17,16 @@ static NewtonStatus relax_angles(Run *run, ModelCase *c)
     NewtonStatus status = NEWTON_CONVERGED;
     NewtonDef def = newton_default();
     run_newton(run, &def);
-    Point at = {.x = c->x, .p = c->stages[0].p, .time = c->stages[0].time};
-    system_accept(held, c->x);
-    if (system_free_count(held))
-        status = newton_minimize(held, &def, &(Point){.p = at.p, .time = at.time}, c->x, NULL).status;
+    Point at = state_point(&c->state, c->stages[0].p);
+    if (system_free_count(held)) status = newton_minimize(held, &def, &at, &c->state, NULL).status;
     system_destroy(held);
-    system_accept(c->sys, c->x);
     return status;
 }
 
 /* The body may move: is the pose stable, whether or not it is an equilibrium? */
 static NewtonStatus stability(const ModelCase *c)
 {
-    Point at = {.x = c->x, .p = c->stages[0].p, .time = c->stages[0].time};
+    Point at = state_point(&c->state, c->stages[0].p);
     double lowest;
     if (!system_free_count(c->sys)) return NEWTON_CONVERGED;
     if (!eigen_lowest(c->sys, &at, 1, &lowest, NULL)) return NEWTON_NOT_FINITE;
@@ -39,23 +36,23 @@ static NewtonStatus stability(const ModelCase *c)
 RunStatus job_evaluate(Run *run, Error *err)
 {
     Model *model = run->model;
-    State *states = mem_alloc((size_t)model->case_count, sizeof *states);
+    Snapshot *shots = mem_alloc((size_t)model->case_count, sizeof *shots);
     NewtonStatus worst = NEWTON_CONVERGED;
     bool ok = true;
     for (int k = 0; ok && k < model->case_count; k++) {
         ModelCase *c = &model->cases[k];
         NewtonStatus relaxed = relax_angles(run, c);
         if (relaxed > worst) worst = relaxed;
-        states[k] = (State){c, c->stages[0].p, c->x, c->stages[0].time, stability(c)};
-        ok = run_put_frame(run, k, k, &states[k], k == 0, err);
+        shots[k] = (Snapshot){c, c->stages[0].p, c->state, stability(c)};
+        ok = run_put_frame(run, k, k, &shots[k], k == 0, err);
         progress_step(run->progress, k + 1, model->case_count, "%s: %s", c->name,
-                      states[k].status == NEWTON_CONVERGED ? "stable" : "unstable");
+                      shots[k].status == NEWTON_CONVERGED ? "stable" : "unstable");
     }
     Arrays list = {0};
     const char *status = worst == NEWTON_CONVERGED ? "evaluated" : newton_status_name(worst);
-    if (ok) run_add_final(run, states, model->case_count, status, &list);
+    if (ok) run_add_final(run, shots, model->case_count, status, &list);
     ok = ok && arrays_replace(&list, run->journal, "final", err);
-    mem_free(states);
+    mem_free(shots);
     if (!ok) return RUN_CANNOT_WRITE;
     return worst == NEWTON_CONVERGED ? RUN_DONE : RUN_NOT_CONVERGED;
 }

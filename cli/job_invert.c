@@ -103,13 +103,14 @@ static void find_contacts(Inversion *o, int k)
 static void go_round(Inversion *o, int k, Rod *rod, System *sys, const RodLayout *layout, const double *p,
                      double energy)
 {
-    double *x = mem_alloc((size_t)layout->dofs, sizeof *x), *place = &strand_of(o, o->x, k)->x;
+    State state = system_state(sys);
+    double *x = state.x, *place = &strand_of(o, o->x, k)->x;
     RampDef def = ramp_default();
     run_newton(o->run, &def.newton);
     def.observer = run_observer(o->run);
     def.steps = o->run->scene->load_steps.mode < 0 ? o->run->scene->load_steps.count : LOAD_STEPS;
     rod_natural_state(rod, layout, p, x);
-    RampInfo info = ramp_solve(sys, &rod->params, &def, NULL, p, 0, x);
+    RampInfo info = ramp_solve(sys, &rod->params, &def, NULL, p, &state);
     if (info.newton.status > o->worst) o->worst = info.newton.status;
     o->gain[k] = energy - info.newton.energy;
     rod_places(rod, layout, x, layout->nodes, place);
@@ -117,7 +118,7 @@ static void go_round(Inversion *o, int k, Rod *rod, System *sys, const RodLayout
         Vec3 off = vec3_sub(vec3_load(place + 3 * i), o->rm->curves[k].x[2 * i]);
         o->round_trip[k] = fmax(o->round_trip[k], vec3_length(off));
     }
-    mem_free(x);
+    state_destroy(&state);
 }
 
 /* The discrete rod that rests on the curve. */

@@ -11,8 +11,8 @@ typedef struct Simulation {
     Run *run;
     Error *err;
     ModelCase *c;
-    double *p, *memory;
-    MarchState now;
+    double *p;
+    State *now;
     int step;            /* the last one that was reached */
     NewtonStatus status; /* of the last step                                       */
     bool refused;        /* a formula of time is not finite; err says so           */
@@ -31,9 +31,9 @@ static bool move(void *self, double time, double *x)
     return !s->refused;
 }
 
-static State shown_state(const Simulation *s)
+static Snapshot shown_state(const Simulation *s)
 {
-    return (State){s->c, s->p, s->now.x, s->now.time, s->status};
+    return (Snapshot){s->c, s->p, *s->now, s->status};
 }
 
 enum { KEPT = 6 };
@@ -41,23 +41,22 @@ enum { KEPT = 6 };
 /* What a run goes on from: the last step that was stored. */
 static void kept_rows(Simulation *s, double *step, double *anchor, Kept rows[KEPT])
 {
-    size_t dofs = (size_t)system_dof_count(s->c->sys);
+    State *now = s->now;
     rows[0] = (Kept){"step", step, 1};
-    rows[1] = (Kept){"time", &s->now.time, 1};
-    rows[2] = (Kept){"x", s->now.x, dofs};
-    rows[3] = (Kept){"v", s->now.v, dofs};
-    rows[4] = (Kept){"memory", s->memory, (size_t)system_memory_count(s->c->sys)};
+    rows[1] = (Kept){"time", &now->time, 1};
+    rows[2] = (Kept){"x", now->x, (size_t)now->dofs};
+    rows[3] = (Kept){"v", now->v, (size_t)now->dofs};
+    rows[4] = (Kept){"memory", now->memory, (size_t)now->memory_count};
     rows[5] = (Kept){"anchor", anchor, (size_t)system_anchor_count(s->c->sys)};
 }
 
 static bool put_step(Simulation *s, int frame, int step)
 {
     double number = step;
-    State state = shown_state(s);
+    Snapshot shot = shown_state(s);
     Kept rows[KEPT];
-    system_memory_read(s->c->sys, s->memory);
     kept_rows(s, &number, (double *)system_anchor(s->c->sys), rows);
-    return run_put_frame(s->run, frame, s->now.time, &state, frame == 0, s->err) &&
+    return run_put_frame(s->run, frame, s->now->time, &shot, frame == 0, s->err) &&
            run_put_state(s->run, frame % 2, rows, KEPT, s->err);
 }
 
@@ -73,8 +72,7 @@ static bool get_slot(Simulation *s, int slot)
     if (ok) {
         load(s, system_anchor_time(anchor), s->p);
         system_restore_factor(s->c->sys, anchor, s->p);
-        system_memory_write(s->c->sys, s->memory);
-        load(s, s->now.time, s->p);
+        load(s, s->now->time, s->p);
     }
     mem_free(anchor);
     return ok;
@@ -92,8 +90,8 @@ static int find_start(Simulation *s)
     }
     int newest = number[1] > number[0];
     if (number[newest] >= 0) return get_slot(s, newest) ? (int)number[newest] : -1;
-    s->now.time = s->run->scene->time.at;
-    load(s, s->now.time, s->p);
+    s->now->time = s->run->scene->time.at;
+    load(s, s->now->time, s->p);
     return put_step(s, 0, 0) ? 0 : -1;
 }
 
@@ -105,7 +103,7 @@ static bool put_history(Simulation *s, int step, const MarchInfo *info)
     Array arrays[] = {array_float("newton_iterations", "", &iterations, 0, 0, 0),
                       array_float("factorizations", "", &factorizations, 0, 0, 0),
                       array_float("cg_iterations", "", &cg_iterations, 0, 0, 0),
-                      array_float("time", "s", &s->now.time, 0, 0, 0)};
+                      array_float("time", "s", &s->now->time, 0, 0, 0)};
     return journal_put(s->run->journal, "evaluation", step, arrays, sizeof arrays / sizeof *arrays, s->err);
 }
 
@@ -121,19 +119,19 @@ static RunStatus make_step(Simulation *s, const MarchDef *def)
     const Scene *scene = s->run->scene;
     int every = frame_interval(s), step = s->step + 1;
     MarchInfo info;
-    bool reached = march_step(s->c->sys, def, scene->time.step, s->p, &s->now, &info);
+    bool reached = march_step(s->c->sys, def, scene->time.step, s->p, s->now, &info);
     if (s->refused) return RUN_REFUSED;
     if (progress_interrupted()) return RUN_INTERRUPTED;
     s->status = reached ? NEWTON_CONVERGED : info.newton.status;
     if (!reached) {
-        progress_say(s->run->progress, "step %d failed at t = %g s: %s", step, s->now.time,
+        progress_say(s->run->progress, "step %d failed at t = %g s: %s", step, s->now->time,
                      newton_status_text(info.newton.status));
         return RUN_NOT_CONVERGED;
     }
     s->step = step;
     if (!put_history(s, step, &info) || (step % every == 0 && !put_step(s, step / every, step)))
         return RUN_CANNOT_WRITE;
-    progress_step(s->run->progress, step, scene->time.steps, "t %.4g s, %d Newton iterations", s->now.time,
+    progress_step(s->run->progress, step, scene->time.steps, "t %.4g s, %d Newton iterations", s->now->time,
                   info.newton.iterations);
     return RUN_DONE;
 }
@@ -157,13 +155,13 @@ static RunStatus march(Simulation *s)
  * due. */
 static bool put_end(Simulation *s, const char *status)
 {
-    State state = shown_state(s);
+    Snapshot shot = shown_state(s);
     int every = frame_interval(s);
     Arrays list = {0};
-    if (s->step % every && !run_put_frame(s->run, s->step / every + 1, s->now.time, &state, false, s->err))
+    if (s->step % every && !run_put_frame(s->run, s->step / every + 1, s->now->time, &shot, false, s->err))
         return false;
-    run_add_final(s->run, &state, 1, status, &list);
-    arrays_add(&list, array_float("state/v", "m/s", s->now.v, 2, s->run->model->point_count, 3));
+    run_add_final(s->run, &shot, 1, status, &list);
+    arrays_add(&list, array_float("state/v", "m/s", s->now->v, 2, s->run->model->point_count, 3));
     return arrays_replace(&list, s->run->journal, "final", s->err);
 }
 
@@ -171,18 +169,10 @@ RunStatus job_simulate(Run *run, Error *err)
 {
     if (run->scene->rod && run->scene->rod->solver == ROD_SOLVER_PBD) return job_preview(run, err);
     ModelCase *c = &run->model->cases[0];
-    size_t dofs = (size_t)system_dof_count(c->sys);
-    Simulation s = {.run = run,
-                    .err = err,
-                    .c = c,
-                    .p = c->stages[0].p,
-                    .now = {.x = c->x, .v = mem_copy(run->model->v, dofs, sizeof(double))}};
-    s.memory = mem_alloc((size_t)system_memory_count(c->sys), sizeof *s.memory);
+    Simulation s = {.run = run, .err = err, .c = c, .p = c->stages[0].p, .now = &c->state};
     RunStatus status = march(&s);
     const char *said = status == RUN_INTERRUPTED ? "interrupted" : newton_status_name(s.status);
     bool ended = status != RUN_CANNOT_WRITE && status != RUN_REFUSED;
     if (ended && !put_end(&s, said)) status = RUN_CANNOT_WRITE;
-    mem_free(s.now.v);
-    mem_free(s.memory);
     return status;
 }

@@ -96,11 +96,13 @@ static bool get_best(void *self, int slot, const double *u, bool *has, Error *er
 
 /* ---- The result ---- */
 
-static State frame_state(TrajectoryJob *job, int frame)
+static Snapshot frame_state(TrajectoryJob *job, int frame)
 {
     const TimeScene *time = &job->run->scene->time;
-    return (State){job->c, trajectory_params(job->t, frame), trajectory_frame(job->t, frame),
-                   time->at + time->step * frame, NEWTON_CONVERGED};
+    Snapshot shot = {job->c, trajectory_params(job->t, frame), trajectory_frame(job->t, frame),
+                     NEWTON_CONVERGED};
+    shot.at.time = time->at + time->step * frame;
+    return shot;
 }
 
 /* Frames of the best motion: every so many, and the last. */
@@ -110,8 +112,8 @@ static bool put_frames(TrajectoryJob *job, int first, Error *err)
     if (every == 0) every = 1;
     for (int n = 0; n <= steps; n++) {
         if (n % every && n != steps) continue;
-        State state = frame_state(job, n);
-        if (!run_put_frame(job->run, index, state.time, &state, index == first, err)) return false;
+        Snapshot shot = frame_state(job, n);
+        if (!run_put_frame(job->run, index, shot.at.time, &shot, index == first, err)) return false;
         index++;
     }
     return true;
@@ -157,7 +159,7 @@ static void add_distances(const TrajectoryJob *job, Arrays *list)
     for (int k = 0; k < rows; k++) {
         const Objective *row = &job->c->objectives[k];
         for (int n = row->first; n <= row->last; n++) {
-            double distance = objective_distance(row, trajectory_frame(job->t, n));
+            double distance = objective_distance(row, trajectory_frame(job->t, n).x);
             largest[k] = n == row->first ? distance : fmax(largest[k], distance);
         }
         if (isnan(largest[k])) continue;
@@ -173,7 +175,7 @@ static bool put_results(void *self, int first, const char *status, Error *err)
     TrajectoryJob *job = self;
     if (!put_frames(job, first, err)) return false;
     Arrays list = {0};
-    State end = frame_state(job, job->run->scene->time.steps);
+    Snapshot end = frame_state(job, job->run->scene->time.steps);
     end.p = arrays_keep(&list, mem_copy(end.p, (size_t)job->run->model->params->size, sizeof *end.p));
     run_add_final(job->run, &end, 1, status, &list);
     add_field(job, &list);
@@ -201,11 +203,9 @@ RunStatus job_trajectory(Run *run, Error *err)
                                  .objectives = c->objectives,
                                  .control_count = model->control.rows > 0,
                                  .objective_count = c->objective_count,
-                                 .start = time->at,
+                                 .start = &c->state,
                                  .step = time->step,
                                  .steps = time->steps,
-                                 .x = c->x,
-                                 .v = model->v,
                                  .p = c->stages[0].p};
     TrajectoryDef def = trajectory_default();
     run_newton(run, &def.march.newton);

@@ -137,21 +137,21 @@ bool model_velocity(Model *model, const Build *b, const char *at, const Velocity
                     const double *place)
 {
     const System *sys = model->cases[0].sys;
+    double *v = model->cases[0].state.v;
     Error err;
-    model->v = mem_alloc((size_t)system_dof_count(sys), sizeof *model->v);
     if (!scene) return true;
     Formula *formula = NULL;
     if (scene->formula)
         formula = build_formula(b, key("%s", at), scene->formula, 3, scene->where, scene->where_count,
                                 build_variables);
     bool ok = formula || !scene->formula;
-    for (int v = 0; ok && v < model->point_count; v++) {
+    for (int k = 0; ok && k < model->point_count; k++) {
         double variables[BUILD_VARIABLES], speed[3];
         memcpy(speed, scene->value, sizeof speed);
-        build_position(variables, place + 3 * v, 0);
+        build_position(variables, place + 3 * k, 0);
         if (formula && !formula_eval(formula, variables, speed, &err))
             ok = yaml_refuse(b->file, at, "%s", err.text);
-        for (int i = 0; i < 3; i++) model->v[3 * v + i] = system_is_fixed(sys, 3 * v + i) ? 0 : speed[i];
+        for (int i = 0; i < 3; i++) v[3 * k + i] = system_is_fixed(sys, 3 * k + i) ? 0 : speed[i];
     }
     formula_destroy(formula);
     return ok;
@@ -201,13 +201,20 @@ Model *model_create(const Scene *scene, YamlFile *file)
     return NULL;
 }
 
+void model_start_case(ModelCase *c, const double *x)
+{
+    c->state = system_state(c->sys);
+    memcpy(c->state.x, x, (size_t)c->state.dofs * sizeof *x);
+    c->state.time = c->stages[0].time;
+}
+
 static void clear_case(ModelCase *c)
 {
     for (int s = 0; s < c->stage_count; s++) mem_free(c->stages[s].p);
     for (int k = 0; k < c->objective_count; k++) objective_destroy(c->objectives[k]);
     system_destroy(c->sys);
     mem_free(c->name);
-    mem_free(c->x);
+    state_destroy(&c->state);
     mem_free(c->stages);
     mem_free(c->objectives);
     mem_free(c->target);
@@ -230,6 +237,5 @@ void model_destroy(Model *model)
     mem_free(model->cases);
     mem_free(model->motions);
     mem_free(model->x);
-    mem_free(model->v);
     mem_free(model);
 }

@@ -22,7 +22,7 @@ typedef struct ModelCase {
     char *name;
     double weight;
     System *sys;
-    double *x; /* [dofs] where to start */
+    State state; /* where to start */
     int stage_count;
     Stage *stages;
     int objective_count;
@@ -38,13 +38,13 @@ typedef struct Motion {
     int entry; /* of the scene's `fix` */
 } Motion;
 
-/* One state to be shown or stored: x[dofs] in equilibrium with p[params] of a case. */
-typedef struct State {
+/* One state to be shown or stored, with p[params] of a case; borrowed. */
+typedef struct Snapshot {
     const ModelCase *load_case;
-    const double *p, *x;
-    double time; /* s, of fields that vary */
+    const double *p;
+    State at;
     NewtonStatus status;
-} State;
+} Snapshot;
 
 typedef struct Model Model;
 
@@ -70,16 +70,16 @@ typedef struct BodyOps {
     void (*places)(const Model *model, const double *x, double *place);
 
     /* Of a frame beside places and field: numbers per cell. `whole`: those too that seldom change. */
-    void (*add_frame)(const Model *model, const State *state, bool whole, Arrays *list);
+    void (*add_frame)(const Model *model, const Snapshot *shot, bool whole, Arrays *list);
 
     /* Of a state beside places and energies, under prefix/.. */
-    void (*add_state)(const Model *model, const State *state, const char *prefix, Arrays *list);
+    void (*add_state)(const Model *model, const Snapshot *shot, const char *prefix, Arrays *list);
 
     /* Of the final state, once: its stability, so many modes, and what else it shows. */
-    void (*add_final)(const Model *model, const State *state, int modes, Arrays *list);
+    void (*add_final)(const Model *model, const Snapshot *shot, int modes, Arrays *list);
 
     /* What the state cannot be trusted in, a sentence of the caller's; NULL: nothing. May be NULL itself. */
-    char *(*doubt)(const Model *model, const State *state);
+    char *(*doubt)(const Model *model, const Snapshot *shot);
 } BodyOps;
 
 struct RodModel;
@@ -101,7 +101,7 @@ struct Model {
     int case_count, motion_count;
     ModelCase *cases;
     Motion *motions;
-    double *x, *v;          /* [dofs] rest or pose; velocities at the start of a motion */
+    double *x;              /* [dofs] rest or pose */
     Design design;          /* of a design or trajectory */
     Control control;        /* of a trajectory: the unknown flux density; no rows: none */
     TimedFlux flux_of_time; /* of a motion: the uniform flux density, if it changes */
@@ -130,10 +130,13 @@ bool model_put_flux(Model *model, const struct Build *b, const char *at, const F
 /* How long vectors p must be while fields are still added to the body's parameters. */
 size_t model_params_room(const Model *model, const Scene *scene);
 
+/* Where a case starts, once its system is there: x, at its first stage's time. */
+void model_start_case(ModelCase *c, const double *x);
+
 /* The load cases or stages of a scene, each with p[room] as a copy; false after a refusal. */
 bool model_cases(Model *model, const struct Build *b, const Scene *scene, const double *p, size_t room);
 
-/* Velocities at the start of a motion, of the free coordinates; place[point_count][3] is what formulas know.
+/* Velocities at the start of a motion, of the free coordinates, into its case; place[point_count][3] is what formulas know.
  */
 bool model_velocity(Model *model, const struct Build *b, const char *at, const VelocityScene *scene,
                     const double *place);

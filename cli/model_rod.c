@@ -162,7 +162,12 @@ static bool settle(Model *model, const Build *b, const double *p)
     def.newton.step_cap = STEP_CAP;
     def.steps = LOAD_STEPS;
     def.move = settle_move, def.self = model;
-    RampInfo info = ramp_solve(sys, model->params, &def, NULL, unloaded, 0, model->x);
+    State state = system_state(sys);
+    size_t bytes = (size_t)state.dofs * sizeof *state.x;
+    memcpy(state.x, model->x, bytes);
+    RampInfo info = ramp_solve(sys, model->params, &def, NULL, unloaded, &state);
+    memcpy(model->x, state.x, bytes);
+    state_destroy(&state);
     system_destroy(sys);
     mem_free(unloaded);
     return info.reached >= 1 ||
@@ -194,7 +199,7 @@ static void make_systems(Model *model, bool hanging, bool motion)
     for (int k = 0; k < model->case_count; k++) {
         ModelCase *c = &model->cases[k];
         c->sys = hanging ? rod_hanging_system(rm->rod) : rod_system(rm->rod, rm->young, motion);
-        c->x = mem_copy(model->x, (size_t)rm->layout.dofs, sizeof *c->x);
+        model_start_case(c, model->x);
     }
 }
 

@@ -187,8 +187,8 @@ static bool finish_cases(Model *model, const Build *b, JobKind job)
         ModelCase *c = &model->cases[k];
         Error err;
         c->sys = model_is_motion(job) ? shell_dynamic_system(model->shell) : shell_system(model->shell);
-        c->x = mem_copy(model->x, (size_t)shell_dof_count(model->shell), sizeof *c->x);
-        system_accept(c->sys, c->x);
+        model_start_case(c, model->x);
+        system_accept(c->sys, c->state.x, c->state.memory);
         for (int s = 0; ok && balanced && s < c->stage_count; s++)
             ok = rigid_check_force(model->shell, c->stages[s].p, &err) ||
                  yaml_refuse(b->file, "", "%s", err.text);

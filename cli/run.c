@@ -30,21 +30,21 @@ Array body_block(const char *name, const ParamBlock *block, const double *p)
 
 /* ---- Frames ---- */
 
-static double *places(const Model *model, const State *state, Arrays *list)
+static double *places(const Model *model, const Snapshot *shot, Arrays *list)
 {
     double *place = arrays_numbers(list, 3 * (size_t)model->point_count);
-    model->body->places(model, state->x, place);
+    model->body->places(model, shot->at.x, place);
     return place;
 }
 
-bool run_put_frame(Run *run, int index, double shown, const State *state, bool whole, Error *err)
+bool run_put_frame(Run *run, int index, double shown, const Snapshot *shot, bool whole, Error *err)
 {
     const Model *model = run->model;
     Arrays list = {0};
-    arrays_add(&list, array_float("x", "m", places(model, state, &list), 2, model->point_count, 3));
+    arrays_add(&list, array_float("x", "m", places(model, shot, &list), 2, model->point_count, 3));
     arrays_add(&list, array_float("time", "s", &shown, 0, 0, 0));
-    arrays_add(&list, array_float("flux_density", "T", state->p + model->flux_density, 2, 1, 3));
-    model->body->add_frame(model, state, whole, &list);
+    arrays_add(&list, array_float("flux_density", "T", shot->p + model->flux_density, 2, 1, 3));
+    model->body->add_frame(model, shot, whole, &list);
     return arrays_put(&list, run->journal, "frame", index, err);
 }
 
@@ -52,25 +52,25 @@ bool run_put_frame(Run *run, int index, double shown, const State *state, bool w
 
 /* What both the plain paths and cases/<name> have. */
 static void add_state(Arrays *list, const Model *model, const char *x_name, const char *prefix,
-                      const State *state)
+                      const Snapshot *shot)
 {
-    System *sys = state->load_case->sys;
-    Point at = body_point(state);
+    System *sys = shot->load_case->sys;
+    Point at = state_point(&shot->at, shot->p);
     char *name = arrays_keep(list, mem_text(x_name));
-    arrays_add(list, array_float(name, "m", places(model, state, list), 2, model->point_count, 3));
+    arrays_add(list, array_float(name, "m", places(model, shot, list), 2, model->point_count, 3));
     double *energy = arrays_numbers(list, (size_t)system_term_count(sys));
     for (int t = 0; t < system_term_count(sys); t++) {
         energy[t] = system_term_energy(sys, t, &at, NULL);
         name = arrays_keep(list, mem_format("%s/energy/%s", prefix, system_term(sys, t)->ops->name));
         arrays_add(list, array_float(name, "J", &energy[t], 0, 0, 0));
     }
-    model->body->add_state(model, state, prefix, list);
+    model->body->add_state(model, shot, prefix, list);
 }
 
 /* Parameters of the last state; flux_density has a row for each. */
-static void add_params(Arrays *list, const Params *params, const State *states, int count)
+static void add_params(Arrays *list, const Params *params, const Snapshot *shots, int count)
 {
-    const State *last = &states[count - 1];
+    const Snapshot *last = &shots[count - 1];
     for (int b = 0; b < params->block_count; b++) {
         const ParamBlock *block = &params->blocks[b];
         const char *name = arrays_keep(list, mem_format("design/%s", block->name));
@@ -80,54 +80,54 @@ static void add_params(Arrays *list, const Params *params, const State *states, 
             continue;
         }
         double *flux = arrays_numbers(list, 3 * (size_t)count);
-        for (int k = 0; k < count; k++) memcpy(flux + 3 * k, states[k].p + block->offset, 3 * sizeof *flux);
+        for (int k = 0; k < count; k++) memcpy(flux + 3 * k, shots[k].p + block->offset, 3 * sizeof *flux);
         arrays_add(list, array_float(name, block->unit, flux, 2, count, 3));
     }
 }
 
-static void add_case(Arrays *list, const Model *model, const State *state)
+static void add_case(Arrays *list, const Model *model, const Snapshot *shot)
 {
-    const char *prefix = arrays_keep(list, mem_format("cases/%s", state->load_case->name));
+    const char *prefix = arrays_keep(list, mem_format("cases/%s", shot->load_case->name));
     const char *x_name = arrays_keep(list, mem_format("%s/x", prefix));
-    add_state(list, model, x_name, prefix, state);
+    add_state(list, model, x_name, prefix, shot);
     arrays_add(list, array_text(arrays_keep(list, mem_format("%s/status", prefix)),
-                                newton_status_name(state->status)));
+                                newton_status_name(shot->status)));
     arrays_add(list, array_float(arrays_keep(list, mem_format("%s/flux_density", prefix)), "T",
-                                 state->p + model->flux_density, 1, 3, 0));
+                                 shot->p + model->flux_density, 1, 3, 0));
     arrays_add(list, array_float(arrays_keep(list, mem_format("%s/gravity", prefix)), "m/s^2",
-                                 state->p + model->gravity, 1, 3, 0));
-    if (state->load_case->target)
+                                 shot->p + model->gravity, 1, 3, 0));
+    if (shot->load_case->target)
         arrays_add(list, array_float(arrays_keep(list, mem_format("%s/target", prefix)), "m",
-                                     state->load_case->target[0], 2, model->point_count, 3));
+                                     shot->load_case->target[0], 2, model->point_count, 3));
 }
 
 /* In the scene's order, a line each. */
-static char *case_names(const State *states, int count)
+static char *case_names(const Snapshot *shots, int count)
 {
     char *names = mem_text("");
-    for (int k = 0; k < count; k++) names = mem_join(names, states[k].load_case->name, "\n");
+    for (int k = 0; k < count; k++) names = mem_join(names, shots[k].load_case->name, "\n");
     return names;
 }
 
-static void say_doubt(Run *run, const State *state)
+static void say_doubt(Run *run, const Snapshot *shot)
 {
     const BodyOps *body = run->model->body;
-    char *doubt = body->doubt ? body->doubt(run->model, state) : NULL;
-    if (doubt) progress_say(run->progress, "%s: %s", state->load_case->name, doubt);
+    char *doubt = body->doubt ? body->doubt(run->model, shot) : NULL;
+    if (doubt) progress_say(run->progress, "%s: %s", shot->load_case->name, doubt);
     mem_free(doubt);
 }
 
-void run_add_final(Run *run, const State *states, int count, const char *status, Arrays *list)
+void run_add_final(Run *run, const Snapshot *shots, int count, const char *status, Arrays *list)
 {
     const Model *model = run->model;
-    add_state(list, model, "state/x", "final", &states[count - 1]);
-    add_params(list, model->params, states, count);
-    model->body->add_final(model, &states[count - 1], run->scene->modes, list);
+    add_state(list, model, "state/x", "final", &shots[count - 1]);
+    add_params(list, model->params, shots, count);
+    model->body->add_final(model, &shots[count - 1], run->scene->modes, list);
     arrays_add(list, array_text("status", status));
-    arrays_add(list, array_text("case_names", arrays_keep(list, case_names(states, count))));
+    arrays_add(list, array_text("case_names", arrays_keep(list, case_names(shots, count))));
     for (int k = 0; k < count; k++) {
-        add_case(list, model, &states[k]);
-        say_doubt(run, &states[k]);
+        add_case(list, model, &shots[k]);
+        say_doubt(run, &shots[k]);
     }
 }
 

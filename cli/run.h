@@ -42,11 +42,11 @@ void run_newton(const Run *run, NewtonDef *def);
 
 /* A frame of the result, shown at a time of its own: viewers want each frame's time to be later than that of
  * the one before. Parameters per face, which seldom change, are left out unless `whole`. */
-bool run_put_frame(Run *run, int index, double shown, const State *state, bool whole, Error *err);
+bool run_put_frame(Run *run, int index, double shown, const Snapshot *shot, bool whole, Error *err);
 
 /* To the arrays of the kind "final": final/.. and cases/<name>/..; the plain paths are those of the last
  * state. What a job puts there replaces all that an earlier end has left (arrays_replace). */
-void run_add_final(Run *run, const State *states, int count, const char *status, Arrays *list);
+void run_add_final(Run *run, const Snapshot *shots, int count, const char *status, Arrays *list);
 
 /* What a job goes on from, under the kind "state": vectors of numbers by name. */
 typedef struct Kept {

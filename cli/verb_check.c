@@ -117,7 +117,7 @@ static void measure(const Model *model, const Scene *scene)
 {
     const ModelCase *c = &model->cases[0];
     double *gradient = mem_alloc((size_t)system_dof_count(c->sys), sizeof *gradient);
-    Point at = {.x = c->x, .p = c->stages[0].p, .time = c->stages[0].time};
+    Point at = state_point(&c->state, c->stages[0].p);
     double start = clock_seconds();
     system_hessian(c->sys, &at, gradient);
     bool stable = system_factor(c->sys, 0) || system_factor(c->sys, 1e-6);
@@ -173,23 +173,26 @@ static bool check_derivatives(const Model *model, const Scene *scene)
     const ModelCase *c = &model->cases[0];
     bool moves = scene->job == JOB_SIMULATE || scene->job == JOB_TRAJECTORY;
     int dofs = system_dof_count(c->sys), positions = system_position_count(c->sys);
-    double *x = mem_copy(c->x, (size_t)dofs, sizeof *x), size[TERM_MAX_DOF];
+    State state = state_clone(&c->state);
+    double *x = state.x, size[TERM_MAX_DOF];
     Random random = random_seed(1);
     for (int i = 0; i < (model->shell ? dofs : model->rod->layout.reference); i++)
         x[i] += (i < positions ? 0.1 : 0.3) * dof_size(model, i) * random_signed(&random);
     double *p = params_at_work(model->params, c->stages[0].p, &random);
-    Point at = {.x = x, .p = p, .time = c->stages[0].time, .dt = moves ? scene->time.step : 0};
+    Point at = state_point(&state, p);
+    if (moves) at.dt = scene->time.step;
     bool ok = true;
-    system_accept(c->sys, x);
+    system_accept(c->sys, x, state.memory);
     for (int t = 0; t < system_term_count(c->sys); t++) {
         const Term *term = system_term(c->sys, t);
         int dof[TERM_MAX_DOF];
         term->ops->dofs(term->self, 0, dof);
         for (int i = 0; i < term->ops->size(term->self); i++) size[i] = dof_size(model, dof[i]);
-        ok = print_errors(term->ops->name, check_term(term, model->params, &at, size, &random)) && ok;
+        Point own = system_term_point(c->sys, t, &at);
+        ok = print_errors(term->ops->name, check_term(term, model->params, &own, size, &random)) && ok;
     }
     mem_free(p);
-    mem_free(x);
+    state_destroy(&state);
     return ok;
 }
 

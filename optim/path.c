@@ -2,12 +2,12 @@
 #include "base/memory.h"
 #include <string.h>
 
-static double *state(const Path *path, int k)
+double *path_x(const Path *path, int k)
 {
     return path->x + (size_t)k * (size_t)path->dofs;
 }
 
-static double *memory_of(const Path *path, int k)
+double *path_memory(const Path *path, int k)
 {
     return path->memory + (size_t)k * (size_t)path->memory_count;
 }
@@ -25,6 +25,13 @@ static void make_room(Path *path, int room)
     path->room = room;
 }
 
+static void put_state(Path *path, int k, const State *state)
+{
+    memcpy(path_x(path, k), state->x, (size_t)path->dofs * sizeof(double));
+    memcpy(path_memory(path, k), state->memory, (size_t)path->memory_count * sizeof(double));
+    path->time[k] = state->time;
+}
+
 Path path_create(const TrajectoryProblem *problem, const MarchDef *march, int factor_max)
 {
     Path path = {.problem = problem,
@@ -37,9 +44,7 @@ Path path_create(const TrajectoryProblem *problem, const MarchDef *march, int fa
     path.p = mem_copy(problem->p, (size_t)problem->params->size, sizeof(double));
     path.v = mem_alloc((size_t)path.dofs, sizeof(double));
     path.gradient = mem_alloc((size_t)path.dofs, sizeof(double));
-    memcpy(path.x, problem->x, (size_t)path.dofs * sizeof(double));
-    system_memory_read(problem->sys, path.memory);
-    path.time[0] = problem->start;
+    put_state(&path, 0, problem->start);
     return path;
 }
 
@@ -78,8 +83,8 @@ void path_load(Path *path, int frame, double time)
 /* v at the end of step k - 1, from the states. */
 static const double *start_velocity(Path *path, int k)
 {
-    if (k == 1) return path->problem->v;
-    const double *now = state(path, k - 1), *before = state(path, k - 2);
+    if (k == 1) return path->problem->start->v;
+    const double *now = path_x(path, k - 1), *before = path_x(path, k - 2);
     for (int i = 0; i < system_position_count(path->problem->sys); i++)
         path->v[i] = (now[i] - before[i]) / path->dt[k - 1];
     return path->v;
@@ -89,10 +94,11 @@ static const double *start_velocity(Path *path, int k)
 static Point point(Path *path, int k)
 {
     path_load(path, path->frame[k], path->time[k]);
-    return (Point){.x = state(path, k),
+    return (Point){.x = path_x(path, k),
                    .p = path->p,
+                   .memory = path_memory(path, k),
                    .time = path->time[k],
-                   .x_prev = state(path, k - 1),
+                   .x_prev = path_x(path, k - 1),
                    .v_prev = start_velocity(path, k),
                    .dt = path->dt[k]};
 }
@@ -103,15 +109,13 @@ static bool factor_at(Path *path, const Point *at)
     return system_factor(path->problem->sys, 0);
 }
 
-bool path_add(Path *path, int frame, const double *x, double time, double dt)
+bool path_add(Path *path, int frame, const State *state, double dt)
 {
     int k = ++path->count;
     if (k == path->room) make_room(path, 2 * path->room);
-    memcpy(state(path, k), x, (size_t)path->dofs * sizeof *x);
-    system_memory_read(path->problem->sys, memory_of(path, k));
+    put_state(path, k, state);
     path->end[frame] = k;
     path->frame[k] = frame;
-    path->time[k] = time;
     path->dt[k] = dt;
     path->factor[k] = NULL;
     Point at = point(path, k);
@@ -123,11 +127,10 @@ bool path_add(Path *path, int frame, const double *x, double time, double dt)
     return true;
 }
 
-/* The end of step k, with what the terms remember there and its factor at hand. */
+/* The end of step k, with its factor at hand. */
 static Point stand_at(Path *path, int k)
 {
     Point at = point(path, k);
-    system_memory_write(path->problem->sys, memory_of(path, k));
     if (path->factor[k])
         system_use_factor(path->problem->sys, path->factor[k]);
     else

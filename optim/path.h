@@ -24,8 +24,12 @@ void path_destroy(Path *path);
 /* No steps: only the problem's start. */
 void path_clear(Path *path);
 
-/* Adds a state that the system has just reached and accepted, and factors there; false where that fails. */
-bool path_add(Path *path, int frame, const double *x, double time, double dt);
+/* Adds a state that a step of dt has reached, and factors there; false where that fails. */
+bool path_add(Path *path, int frame, const State *state, double dt);
+
+/* Of state k: x and what the terms remember. */
+double *path_x(const Path *path, int k);
+double *path_memory(const Path *path, int k);
 
 /* The parameters of a step, in path->p. */
 void path_load(Path *path, int frame, double time);

@@ -6,14 +6,14 @@
 
 /* One case at work. */
 typedef struct Work {
-    double *p, *x;                /* of the last evaluation                                 */
-    double *best_p;               /* p of the best design; x of it is LoadCase.x            */
-    double *best_linearised;      /* [dofs] where its factor stands                        */
-    double *dp, *dx, *w;          /* directions and gradients                               */
-    double *hp;                   /* [params] second parameter vector                       */
-    double *memory, *best_memory; /* what the terms remember                          */
-    double soft_pull;             /* find_soft_pull of the best design; < 0: not known yet  */
-    bool factored_best;           /* the system's factor is that of the best design         */
+    double *p;               /* of the last evaluation                                 */
+    State state;             /* of it                                                  */
+    double *best_p;          /* p of the best design; its state is LoadCase.state      */
+    double *best_linearised; /* [dofs] where its factor stands                        */
+    double *dp, *dx, *w;     /* directions and gradients                               */
+    double *hp;              /* [params] second parameter vector                       */
+    double soft_pull;        /* find_soft_pull of the best design; < 0: not known yet  */
+    bool factored_best;      /* the system's factor is that of the best design         */
     bool has_best;
 } Work;
 
@@ -42,18 +42,14 @@ StaticDesign *static_design_create(const Design *design, const Params *params, L
     for (int c = 0; c < design->case_count; c++) {
         Work *work = &sd->work[c];
         size_t dofs = (size_t)system_dof_count(cases[c].sys), size = (size_t)params->size;
-        size_t memory = (size_t)system_memory_count(cases[c].sys);
         work->p = mem_copy(cases[c].p, size, sizeof(double));
         work->best_p = mem_copy(cases[c].p, size, sizeof(double));
-        work->x = mem_copy(cases[c].x, dofs, sizeof(double));
+        work->state = state_clone(cases[c].state);
         work->best_linearised = mem_alloc(dofs, sizeof(double));
         work->dx = mem_alloc(dofs, sizeof(double));
         work->w = mem_alloc(dofs, sizeof(double));
         work->dp = mem_alloc(size, sizeof(double));
         work->hp = mem_alloc(size, sizeof(double));
-        work->memory = mem_alloc(memory, sizeof(double));
-        work->best_memory = mem_alloc(memory, sizeof(double));
-        system_memory_read(cases[c].sys, work->best_memory);
     }
     return sd;
 }
@@ -63,9 +59,10 @@ void static_design_destroy(StaticDesign *sd)
     if (!sd) return;
     for (int c = 0; c < sd->design->case_count; c++) {
         Work *work = &sd->work[c];
-        double *owned[] = {work->p,  work->best_p, work->best_linearised, work->x,          work->dx, work->w,
-                           work->dp, work->hp,     work->memory,          work->best_memory};
+        double *owned[] = {work->p,  work->best_p, work->best_linearised, work->dx, work->w,
+                           work->dp, work->hp};
         for (size_t k = 0; k < sizeof owned / sizeof *owned; k++) mem_free(owned[k]);
+        state_destroy(&work->state);
     }
     mem_free(sd->work);
     mem_free(sd->u);
@@ -73,9 +70,10 @@ void static_design_destroy(StaticDesign *sd)
     mem_free(sd);
 }
 
+/* x with what is remembered at the best design. */
 static Point point(const LoadCase *load, const double *x, const double *p)
 {
-    return (Point){.x = x, .p = p, .time = load->time};
+    return (Point){.x = x, .p = p, .memory = load->state->memory, .time = load->state->time};
 }
 
 /* Leaves the factor of the best design in the system, shifted by nothing but the base. */
@@ -84,7 +82,6 @@ static bool factor_best(StaticDesign *sd, int c)
     Work *work = &sd->work[c];
     const LoadCase *load = &sd->cases[c];
     if (work->factored_best) return true;
-    system_memory_write(load->sys, work->best_memory);
     Point at = point(load, work->best_linearised, work->best_p);
     system_hessian(load->sys, &at, work->w);
     work->factored_best = system_factor(load->sys, 0);
@@ -94,7 +91,7 @@ static bool factor_best(StaticDesign *sd, int c)
 /* dx = -H^-1 (d2E/dx dp) dp at the best design. */
 static void tangent(StaticDesign *sd, int c, const double *dp, double *dx)
 {
-    Point at = point(&sd->cases[c], sd->cases[c].x, sd->work[c].best_p);
+    Point at = point(&sd->cases[c], sd->cases[c].state->x, sd->work[c].best_p);
     system_param_forward(sd->cases[c].sys, &at, dp, dx);
     system_solve(sd->cases[c].sys, dx, dx);
     for (int i = 0; i < system_dof_count(sd->cases[c].sys); i++) dx[i] = -dx[i];
@@ -114,16 +111,16 @@ static void predict(StaticDesign *sd, int c)
     Work *work = &sd->work[c];
     const LoadCase *load = &sd->cases[c];
     int dofs = system_dof_count(load->sys);
-    memcpy(work->x, load->x, (size_t)dofs * sizeof *work->x);
+    state_copy(&work->state, load->state);
     if (!work->has_best || !factor_best(sd, c)) return;
     for (int i = 0; i < sd->params->size; i++) work->dp[i] = work->p[i] - work->best_p[i];
     tangent(sd, c, work->dp, work->dx);
-    Point from = point(load, load->x, work->p), to = point(load, work->w, work->p);
-    for (int i = 0; i < dofs; i++) work->w[i] = load->x[i] + work->dx[i];
-    system_project(load->sys, work->w);
+    Point from = point(load, load->state->x, work->p), to = point(load, work->w, work->p);
+    for (int i = 0; i < dofs; i++) work->w[i] = load->state->x[i] + work->dx[i];
+    system_project(load->sys, load->state->x, work->w);
     Evaluation moved = system_energy(load->sys, &to);
     if (moved.finite && moved.energy < system_energy(load->sys, &from).energy)
-        memcpy(work->x, work->w, (size_t)dofs * sizeof *work->x);
+        memcpy(work->state.x, work->w, (size_t)dofs * sizeof *work->w);
 }
 
 /* Objectives at the point and, where dp is not NULL, dF/dp by the adjoint with the factor at hand. */
@@ -152,12 +149,9 @@ static CaseInfo evaluate_case(StaticDesign *sd, int c, const double *u, bool wit
     CaseInfo info = {.objective = INFINITY};
     design_apply(sd->design, c, u, work->p);
     predict(sd, c);
-    system_memory_write(load->sys, work->best_memory);
     work->factored_best = false;
-    info.newton = newton_minimize(load->sys, &sd->def.newton, &(Point){.p = work->p, .time = load->time},
-                                  work->x, observer);
-    system_memory_read(load->sys, work->memory);
-    Point at = point(load, work->x, work->p);
+    Point at = state_point(&work->state, work->p);
+    info.newton = newton_minimize(load->sys, &sd->def.newton, &at, &work->state, observer);
     if (info.newton.status == NEWTON_CONVERGED)
         info.objective = evaluate_objective(sd, c, &at, with_gradient ? work->dp : NULL);
     return info;
@@ -228,10 +222,9 @@ void static_design_accept(StaticDesign *sd)
         Work *work = &sd->work[c];
         System *sys = sd->cases[c].sys;
         memcpy(work->best_p, work->p, (size_t)sd->params->size * sizeof *work->p);
-        memcpy(sd->cases[c].x, work->x, (size_t)system_dof_count(sys) * sizeof *work->x);
+        state_copy(sd->cases[c].state, &work->state);
         memcpy(work->best_linearised, system_linearised(sys),
-               (size_t)system_dof_count(sys) * sizeof *work->x);
-        memcpy(work->best_memory, work->memory, (size_t)system_memory_count(sys) * sizeof *work->memory);
+               (size_t)system_dof_count(sys) * sizeof *work->best_linearised);
         work->has_best = work->factored_best = true;
         work->soft_pull = -1;
     }
@@ -239,8 +232,7 @@ void static_design_accept(StaticDesign *sd)
 
 CaseState static_design_state(StaticDesign *sd, int load_case)
 {
-    const Work *work = &sd->work[load_case];
-    return (CaseState){sd->cases[load_case].x, work->best_linearised, work->best_memory};
+    return (CaseState){sd->cases[load_case].state, sd->work[load_case].best_linearised};
 }
 
 void static_design_restore(StaticDesign *sd, const double *u)
@@ -262,8 +254,8 @@ static void add_products(StaticDesign *sd, int c, double *hx, double *hp)
     for (int k = 0; k < load->objective_count; k++) {
         const Objective *objective = &load->objectives[k];
         if (objective->ops->product)
-            objective->ops->product(objective->self, load->weight * objective->weight, load->x, work->best_p,
-                                    work->dx, work->hp, hx, hp);
+            objective->ops->product(objective->self, load->weight * objective->weight, load->state->x,
+                                    work->best_p, work->dx, work->hp, hx, hp);
     }
 }
 
@@ -290,7 +282,7 @@ static double find_soft_pull(StaticDesign *sd, int c)
 {
     Work *work = &sd->work[c];
     System *sys = sd->cases[c].sys;
-    Point at = point(&sd->cases[c], sd->cases[c].x, work->best_p);
+    Point at = point(&sd->cases[c], sd->cases[c].state->x, work->best_p);
     int dofs = system_dof_count(sys);
     evaluate_objective(sd, c, &at, work->dp); /* leaves -a in dx */
     memset(work->hp, 0, (size_t)sd->params->size * sizeof *work->hp);
@@ -319,7 +311,7 @@ static void product_case(StaticDesign *sd, int c, const double *v, double soft)
     if (soft > 0) soften(load->sys, work->dx, work->w);
     for (int i = 0; soft > 0 && i < dofs; i++) work->w[i] *= soft * work->soft_pull;
     add_products(sd, c, work->w, work->dp);
-    Point at = point(load, load->x, work->best_p);
+    Point at = point(load, load->state->x, work->best_p);
     adjoint(load->sys, &at, work->w, work->dp);
 }
 
@@ -333,7 +325,7 @@ void static_design_product(StaticDesign *sd, const double *v, double soft, doubl
 
 void static_design_param_gradient(StaticDesign *sd, int load_case, double *dp)
 {
-    Point at = point(&sd->cases[load_case], sd->cases[load_case].x, sd->work[load_case].best_p);
+    Point at = point(&sd->cases[load_case], sd->cases[load_case].state->x, sd->work[load_case].best_p);
     memset(dp, 0, (size_t)sd->params->size * sizeof *dp);
     if (factor_best(sd, load_case)) evaluate_objective(sd, load_case, &at, dp);
 }

@@ -16,11 +16,11 @@
 typedef struct LoadCase {
     const char *name; /* borrowed, all of them */
     System *sys;
-    double *p; /* [params] the case's loads; design_apply overwrites the unknown blocks   */
-    double *x; /* [dofs] equilibrium of the best design; at first, where to start from    */
+    double *p;    /* [params] the case's loads; design_apply overwrites the unknown blocks   */
+    State *state; /* equilibrium of the best design; at first, where to start from; at the loads' time */
     const Objective *objectives;
     int objective_count;
-    double weight, time; /* s, of fields that vary */
+    double weight;
 } LoadCase;
 
 typedef struct StaticDesign StaticDesign;
@@ -53,9 +53,8 @@ void static_design_accept(StaticDesign *sd);
 /* What the best design's case is, beyond u: with it, static_design_restore goes on bit by bit as the run that
  * saved it. */
 typedef struct CaseState {
-    double *x;          /* [dofs] the equilibrium                                              */
+    State *state;       /* the equilibrium                                                       */
     double *linearised; /* [dofs] where its factor stands: before Newton's last, negligible step */
-    double *memory;     /* [system_memory_count] what the terms remember                       */
 } CaseState;
 
 /* Borrowed; to be read, or filled before static_design_restore. */

@@ -29,7 +29,7 @@ TrajectoryDef trajectory_default(void)
 /* ---- Life ---- */
 
 static bool find_guess(void *self, double time, double dt, double *x);
-static void store(void *self, const MarchState *state, double dt);
+static void store(void *self, const State *state, double dt);
 
 static void load(void *self, double time, double *p)
 {
@@ -118,10 +118,10 @@ static bool find_guess(void *self, double time, double dt, double *x)
     return true;
 }
 
-static void store(void *self, const MarchState *state, double dt)
+static void store(void *self, const State *state, double dt)
 {
     Trajectory *t = self;
-    t->failed |= !path_add(&t->paths[1 - t->best], t->frame, state->x, state->time, dt);
+    t->failed |= !path_add(&t->paths[1 - t->best], t->frame, state, dt);
 }
 
 static void add_info(MarchInfo *sum, const MarchInfo *step)
@@ -139,15 +139,12 @@ static bool march(Trajectory *t, TrajectoryInfo *info)
 {
     const TrajectoryProblem *problem = &t->problem;
     Path *path = &t->paths[1 - t->best];
-    size_t dofs = (size_t)path->dofs;
     MarchDef def = t->def.march;
     def.self = t, def.load = load, def.stored = store, def.guess = find_guess;
     def.move = t->def.march.move ? move : NULL;
-    MarchState now = {mem_copy(problem->x, dofs, sizeof(double)), mem_copy(problem->v, dofs, sizeof(double)),
-                      problem->start};
+    State now = state_clone(problem->start);
     double *p = mem_copy(path->p, (size_t)problem->params->size, sizeof *p);
     path_clear(path);
-    system_memory_write(problem->sys, path->memory);
     system_use_factor(problem->sys, NULL);
     t->failed = false;
     for (t->frame = 1; t->frame <= problem->steps && !t->failed; t->frame++) {
@@ -155,11 +152,10 @@ static bool march(Trajectory *t, TrajectoryInfo *info)
         bool ok = march_step(problem->sys, &def, problem->step, p, &now, &step);
         add_info(&info->march, &step);
         if (!ok) break;
-        now.time = problem->start + problem->step * t->frame; /* not the sum of rounded steps */
+        now.time = problem->start->time + problem->step * t->frame; /* not the sum of rounded steps */
         info->reached = t->frame;
     }
-    mem_free(now.x);
-    mem_free(now.v);
+    state_destroy(&now);
     mem_free(p);
     return info->reached == problem->steps && !t->failed;
 }
@@ -267,10 +263,15 @@ const double *trajectory_params(Trajectory *t, int frame)
     return best->p;
 }
 
-const double *trajectory_frame(const Trajectory *t, int frame)
+State trajectory_frame(const Trajectory *t, int frame)
 {
     const Path *best = &t->paths[t->best];
-    return best->x + (size_t)best->end[frame] * (size_t)best->dofs;
+    int k = best->end[frame];
+    return (State){.dofs = best->dofs,
+                   .memory_count = best->memory_count,
+                   .x = path_x(best, k),
+                   .memory = path_memory(best, k),
+                   .time = best->time[k]};
 }
 
 TrajectoryState trajectory_state(const Trajectory *t)
@@ -282,19 +283,21 @@ TrajectoryState trajectory_state(const Trajectory *t)
 void trajectory_restore(Trajectory *t, const double *u, const TrajectoryState *state)
 {
     Path *best = &t->paths[t->best];
-    System *sys = t->problem.sys;
     size_t dofs = (size_t)best->dofs, memory = (size_t)best->memory_count;
     memcpy(t->best_u, u, (size_t)t->problem.design->size * sizeof *u);
     memcpy(best->p, t->problem.p, (size_t)t->problem.params->size * sizeof *best->p);
     design_apply(t->problem.design, 0, u, best->p);
     path_clear(best);
-    double time = t->problem.start, step = t->problem.step;
+    double start = t->problem.start->time, step = t->problem.step;
+    State now = state_clone(t->problem.start);
     for (int k = 1, frame = 1; k <= state->count; k++) {
-        time += state->dt[k - 1];
-        system_memory_write(sys, state->memory + (size_t)k * memory);
-        path_add(best, frame, state->x + (size_t)k * dofs, time, state->dt[k - 1]);
-        if (time < t->problem.start + step * (frame - 1e-6)) continue;
-        time = t->problem.start + step * frame++;
+        memcpy(now.x, state->x + (size_t)k * dofs, dofs * sizeof *now.x);
+        memcpy(now.memory, state->memory + (size_t)k * memory, memory * sizeof *now.memory);
+        now.time += state->dt[k - 1];
+        path_add(best, frame, &now, state->dt[k - 1]);
+        if (now.time < start + step * (frame - 1e-6)) continue;
+        now.time = start + step * frame++;
     }
+    state_destroy(&now);
     t->has_best = true;
 }

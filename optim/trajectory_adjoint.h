@@ -28,10 +28,10 @@ typedef struct TrajectoryProblem {
     const Control *controls;
     const Objective *objectives; /* each counts at its frames */
     int control_count, objective_count;
-    double start, step; /* s */
+    const State *start; /* where it begins */
+    double step;        /* s */
     int steps;
-    const double *x, *v; /* [dofs] the start */
-    double *p;           /* [params] where the unknown blocks start; design_apply overwrites them */
+    double *p; /* [params] where the unknown blocks start; design_apply overwrites them */
 } TrajectoryProblem;
 
 typedef struct TrajectoryDef {
@@ -68,9 +68,10 @@ void trajectory_tangent(Trajectory *t, const double *v, double *dx);
  * motion; any may be NULL. */
 void trajectory_gradients(Trajectory *t, double *dp, double *dx, double *dv);
 
-/* The best motion's parameters, with controls as at frame n (0: as at the start); and its states. */
+/* The best motion's parameters, with controls as at frame n (0: as at the start); and its states, without
+ * velocities, borrowed. */
 const double *trajectory_params(Trajectory *t, int frame);
-const double *trajectory_frame(const Trajectory *t, int frame);
+State trajectory_frame(const Trajectory *t, int frame);
 
 /* The best motion beyond u: with it, trajectory_restore goes on bit by bit as the run that saved it. */
 typedef struct TrajectoryState {

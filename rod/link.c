@@ -78,8 +78,9 @@ static Pack link_eval(const void *self, int pack, const Point *at, const Pack *x
 }
 
 /* Positions where the rotations have them; a held end stays. */
-static void link_project(void *self, double *x)
+static void link_project(const void *self, const double *from, double *x)
 {
+    (void)from;
     const RodTerm *term = self;
     int nodes = term->layout.nodes;
     rod_places(term->rod, &term->layout, x, term->rod->end == ROD_FREE ? nodes : nodes - 1,

@@ -98,8 +98,9 @@ static void strain_param_forward(const void *self, int pack, const Point *at, co
     gradient(&o.s, times(o.unit, pack3_sub(pack3_scale(young, o.off), pack3_scale(o.young, natural))), r);
 }
 
-static void strain_accept(void *self, double *x)
+static void strain_accept(const void *self, double *x, double *memory)
 {
+    (void)memory;
     const RodLayout *layout = &((const RodTerm *)self)->layout;
     for (int i = 0; i < layout->nodes; i++) {
         double *turn = x + layout->turn + 3 * i, *to = x + layout->reference + 4 * i;

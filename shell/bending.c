@@ -29,8 +29,7 @@ typedef struct BendingPack {
 typedef struct Bending {
     const Shell *shell;
     BendingPack *packs;
-    int (*flap)[3];   /* [face] vertex of each flap                                             */
-    double *accepted; /* [pack][3][lane] the last accepted angle, which the next one is nearest to */
+    int (*flap)[3]; /* [face] vertex of each flap */
 } Bending;
 
 /* One evaluation of a pack. */
@@ -89,10 +88,11 @@ static Pack form(const BendingPack *face, int i, int j)
     return face->form[i > j ? TERM_LOWER(i, j) : TERM_LOWER(j, i)];
 }
 
-static Pack accepted_angle(const Bending *bending, int pack, int i)
+/* memory[pack][3][lane]: the last accepted angle, which the next one is nearest to. */
+static Pack accepted_angle(const double *memory, int pack, int i)
 {
     Pack accepted;
-    memcpy(&accepted, bending->accepted + (pack * 3 + i) * PACK_LANES, sizeof accepted);
+    memcpy(&accepted, memory + (pack * 3 + i) * PACK_LANES, sizeof accepted);
     return accepted;
 }
 
@@ -104,7 +104,7 @@ static void bend(const Bending *bending, int pack, const Point *at, const Pack *
     for (int i = 0; i < 3; i++) {
         for (int l = 0; l < PACK_LANES; l++) bent->fold[i][l] = at->p[shell->fold + face->edge[i][l]];
         bent->d[i] = angle_of(face, x, i);
-        Pack angle = unwrap(bent->d[i].angle, accepted_angle(bending, pack, i));
+        Pack angle = unwrap(bent->d[i].angle, accepted_angle(at->memory, pack, i));
         bent->difference[i] = face->weight[i] * (angle - face->rest[i]);
         if (shell->bending == BENDING_MIDEDGE) bent->difference[i] += 2 * face->sign[i] * x[ALPHA + i];
     }
@@ -262,9 +262,9 @@ static void bending_param_forward(const void *self, int pack, const Point *at, c
     }
 }
 
-static void bending_accept(void *self, double *positions)
+static void bending_accept(const void *self, double *positions, double *memory)
 {
-    Bending *bending = self;
+    const Bending *bending = self;
     int packs = (bending_count(self) + PACK_LANES - 1) / PACK_LANES;
     for (int k = 0; k < packs; k++) {
         Pack x[18];
@@ -274,16 +274,20 @@ static void bending_accept(void *self, double *positions)
             for (int i = 0; i < 18; i++) x[i][l] = positions[dof[i]];
         }
         for (int i = 0; i < 3; i++) {
-            Pack angle = unwrap(angle_of(&bending->packs[k], x, i).angle, accepted_angle(bending, k, i));
-            memcpy(bending->accepted + (k * 3 + i) * PACK_LANES, &angle, sizeof angle);
+            Pack angle = unwrap(angle_of(&bending->packs[k], x, i).angle, accepted_angle(memory, k, i));
+            memcpy(memory + (k * 3 + i) * PACK_LANES, &angle, sizeof angle);
         }
     }
 }
 
-static double *bending_memory(void *self, int *count)
+static int bending_memory(const void *self, double *rest)
 {
-    *count = (bending_count(self) + PACK_LANES - 1) / PACK_LANES * 3 * PACK_LANES;
-    return ((Bending *)self)->accepted;
+    const Bending *bending = self;
+    int packs = (bending_count(self) + PACK_LANES - 1) / PACK_LANES;
+    for (int k = 0; rest && k < packs; k++)
+        for (int i = 0; i < 3; i++)
+            memcpy(rest + (k * 3 + i) * PACK_LANES, &bending->packs[k].rest[i], sizeof(Pack));
+    return packs * 3 * PACK_LANES;
 }
 
 static void bending_destroy(void *self)
@@ -291,7 +295,6 @@ static void bending_destroy(void *self)
     Bending *bending = self;
     mem_free(bending->packs);
     mem_free(bending->flap);
-    mem_free(bending->accepted);
     mem_free(bending);
 }
 
@@ -358,16 +361,12 @@ Term shell_bending_term(const Shell *shell)
     bending->shell = shell;
     bending->packs = mem_alloc((size_t)packs, sizeof *bending->packs);
     bending->flap = mem_alloc((size_t)faces, sizeof *bending->flap);
-    bending->accepted = mem_alloc((size_t)packs * 3 * PACK_LANES, sizeof(double));
     for (int k = 0; k < packs * PACK_LANES; k++) {
         int f = k < faces ? k : faces - 1, lane = k % PACK_LANES;
         BendingPack *pack = &bending->packs[k / PACK_LANES];
         pack->face[lane] = f;
         set_form(shell, f, pack, lane);
-        for (int i = 0; i < 3; i++) {
-            set_edge(bending, f, i, pack, lane);
-            bending->accepted[(k / PACK_LANES * 3 + i) * PACK_LANES + lane] = pack->rest[i][lane];
-        }
+        for (int i = 0; i < 3; i++) set_edge(bending, f, i, pack, lane);
     }
     return (Term){&bending_ops, bending};
 }

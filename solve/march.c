@@ -8,9 +8,9 @@ typedef struct March {
     System *sys;
     const MarchDef *def;
     double *p;
-    MarchState *state;
+    State *state, trial;
     MarchInfo *info;
-    double *x, *other, *memory; /* the trial, another start, what the terms remember */
+    double *other; /* [dofs] another start */
 } March;
 
 MarchDef march_default(void)
@@ -24,24 +24,24 @@ MarchDef march_default(void)
 /* Takes the other start if its energy is less. */
 static void compare_start(March *m, Point *at, double *energy)
 {
-    system_project(m->sys, m->other);
+    system_project(m->sys, m->state->x, m->other);
     at->x = m->other;
     Evaluation other = system_energy(m->sys, at);
     if (!other.finite || other.energy >= *energy) return;
     *energy = other.energy;
-    memcpy(m->x, m->other, (size_t)system_dof_count(m->sys) * sizeof *m->x);
+    memcpy(m->trial.x, m->other, (size_t)m->trial.dofs * sizeof *m->other);
 }
 
 /* The previous state, the inertial guess x + dt v or the caller's, whichever has least energy. */
 static void choose_start(March *m, Point *at)
 {
     int positions = system_position_count(m->sys);
-    size_t bytes = (size_t)system_dof_count(m->sys) * sizeof *m->x;
-    memcpy(m->x, m->state->x, bytes);
-    if (m->def->move) m->def->move(m->def->self, at->time, m->x);
-    system_project(m->sys, m->x);
-    memcpy(m->other, m->x, bytes);
-    at->x = m->x;
+    double *x = m->trial.x;
+    state_copy(&m->trial, m->state);
+    if (m->def->move) m->def->move(m->def->self, at->time, x);
+    system_project(m->sys, m->state->x, x);
+    memcpy(m->other, x, (size_t)m->trial.dofs * sizeof *x);
+    at->x = x;
     Evaluation rest = system_energy(m->sys, at);
     double energy = rest.finite ? rest.energy : INFINITY;
     for (int i = 0; i < positions; i++)
@@ -63,21 +63,22 @@ static void add_counts(MarchInfo *info, const NewtonInfo *newton)
 
 static bool try_step(March *m, double dt)
 {
-    MarchState *state = m->state;
+    State *state = m->state, *trial = &m->trial;
     const NewtonObserver *observer = m->def->observer.iteration ? &m->def->observer : NULL;
-    Point at = {.p = m->p, .time = state->time + dt, .x_prev = state->x, .v_prev = state->v, .dt = dt};
+    Point at = {.p = m->p,
+                .memory = trial->memory,
+                .time = state->time + dt,
+                .x_prev = state->x,
+                .v_prev = state->v,
+                .dt = dt};
     if (m->def->load) m->def->load(m->def->self, at.time, m->p);
-    system_memory_read(m->sys, m->memory);
     choose_start(m, &at);
-    NewtonInfo newton = newton_minimize(m->sys, &m->def->newton, &at, m->x, observer);
+    NewtonInfo newton = newton_minimize(m->sys, &m->def->newton, &at, trial, observer);
     add_counts(m->info, &newton);
-    if (newton.status != NEWTON_CONVERGED) {
-        system_memory_write(m->sys, m->memory);
-        return false;
-    }
-    for (int i = 0; i < system_position_count(m->sys); i++) state->v[i] = (m->x[i] - state->x[i]) / dt;
-    memcpy(state->x, m->x, (size_t)system_dof_count(m->sys) * sizeof *m->x);
-    state->time += dt;
+    if (newton.status != NEWTON_CONVERGED) return false;
+    for (int i = 0; i < system_position_count(m->sys); i++) trial->v[i] = (trial->x[i] - state->x[i]) / dt;
+    trial->time += dt;
+    state_copy(state, trial);
     m->info->steps++;
     if (m->def->stored) m->def->stored(m->def->self, state, dt);
     return true;
@@ -92,13 +93,13 @@ static bool advance(March *m, double dt, int cuts)
     return advance(m, dt / 2, cuts - 1) && advance(m, dt / 2, cuts - 1);
 }
 
-bool march_step(System *sys, const MarchDef *def, double dt, double *p, MarchState *state, MarchInfo *info)
+bool march_step(System *sys, const MarchDef *def, double dt, double *p, State *state, MarchInfo *info)
 {
-    size_t dofs = (size_t)system_dof_count(sys);
-    double *work = mem_alloc(2 * dofs + (size_t)system_memory_count(sys), sizeof *work);
     *info = (MarchInfo){0};
-    March m = {sys, def, p, state, info, work, work + dofs, work + 2 * dofs};
+    March m = {.sys = sys, .def = def, .p = p, .state = state, .trial = state_clone(state), .info = info};
+    m.other = mem_alloc((size_t)state->dofs, sizeof *m.other);
     bool ok = advance(&m, dt, def->cuts);
-    mem_free(work);
+    mem_free(m.other);
+    state_destroy(&m.trial);
     return ok;
 }

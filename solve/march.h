@@ -8,11 +8,6 @@
 #pragma once
 #include "solve/newton.h"
 
-typedef struct MarchState {
-    double *x, *v; /* [dofs] m, m/s; v is 0 where there is no inertia; owned by the caller */
-    double time;   /* s */
-} MarchState;
-
 typedef struct MarchDef {
     NewtonDef newton;
     NewtonObserver observer;                          /* may be zero */
@@ -21,7 +16,7 @@ typedef struct MarchDef {
     bool (*move)(void *self, double time, double *x); /* held coordinates at that time; may be NULL */
     /* Another start of the step that ends at that time, free dofs only; false: none. May be NULL. */
     bool (*guess)(void *self, double time, double dt, double *x);
-    void (*stored)(void *self, const MarchState *state, double dt); /* after each (sub-)step; may be NULL */
+    void (*stored)(void *self, const State *state, double dt); /* after each (sub-)step; may be NULL */
     void *self;
 } MarchDef;
 
@@ -33,6 +28,6 @@ typedef struct MarchInfo {
     int steps, refused;
 } MarchInfo;
 
-/* From state to state at time + dt; p[params] holds the parameters, of which load fills in those of each
+/* From the state to that at time + dt; p[params] holds the parameters, of which load fills in those of each
  * step's end. False where even the smallest step failed: state is then the last one that was reached. */
-bool march_step(System *sys, const MarchDef *def, double dt, double *p, MarchState *state, MarchInfo *info);
+bool march_step(System *sys, const MarchDef *def, double dt, double *p, State *state, MarchInfo *info);

@@ -84,7 +84,7 @@ static void advance(Search *s, const double *direction, double a, double *to)
 double search_energy(Search *s, const double *direction, double a, Evaluation *evaluation)
 {
     advance(s, direction, a, s->trial);
-    system_project(s->sys, s->trial);
+    system_project(s->sys, s->x, s->trial);
     Point at = s->at;
     at.x = s->trial;
     s->info.evaluations++;
@@ -128,9 +128,9 @@ void search_move(Search *s, const double *direction, double a)
         s->extrapolate = system_step_size(s->sys, s->moved) >= LONG_STEP;
     }
     advance(s, direction, a, s->trial);
+    system_project(s->sys, s->x, s->trial);
     memcpy(s->x, s->trial, (size_t)s->n * sizeof *s->x);
-    system_project(s->sys, s->x);
-    system_accept(s->sys, s->x);
+    system_accept(s->sys, s->x, s->state->memory);
 }
 
 /* The last step, squared small: taken if it does not raise the forces. */
@@ -138,13 +138,13 @@ static void finish(Search *s)
 {
     Point at = s->at;
     for (int i = 0; i < s->n; i++) s->trial[i] = s->x[i] + s->step[i];
-    system_project(s->sys, s->trial);
+    system_project(s->sys, s->x, s->trial);
     at.x = s->trial;
     Evaluation last = system_gradient(s->sys, &at, s->trial_gradient);
     s->info.evaluations++;
     if (!last.finite || last.gradient_max > s->now.gradient_max) return;
     memcpy(s->x, s->trial, (size_t)s->n * sizeof *s->x);
-    system_accept(s->sys, s->x);
+    system_accept(s->sys, s->x, s->state->memory);
     s->now = last;
 }
 
@@ -188,8 +188,8 @@ static bool is_converged(const Search *s, bool small)
     if (s->shift > 0 || system_gap(s->sys) > 0 || system_force_change(s->sys, s->step) > SETTLED)
         return false;
     double gain = -search_dot(s->n, s->gradient, s->step);
-    /* What must vanish and does not counts in full. */
-    for (int i = 0; system_multiplier_count(s->sys) && i < s->n; i++)
+    for (int i = 0; system_multiplier_count(s->sys) && i < s->n;
+         i++) /* what must vanish and does not counts in full */
         if (system_is_multiplier(s->sys, i))
             gain += s->gradient[i] * s->step[i] + fabs(s->gradient[i] * s->step[i]);
     return (small && s->info.step <= s->def->step_tol) || gain <= s->def->energy_tol * s->now.energy_scale;
@@ -258,7 +258,7 @@ static NewtonStatus iterate(Search *s)
     return s->shift_kept > STALL_SHIFT ? NEWTON_STALLED : status;
 }
 
-NewtonInfo newton_minimize(System *sys, const NewtonDef *def, const Point *at, double *x,
+NewtonInfo newton_minimize(System *sys, const NewtonDef *def, const Point *at, State *state,
                            const NewtonObserver *observer)
 {
     int n = system_dof_count(sys);
@@ -266,8 +266,9 @@ NewtonInfo newton_minimize(System *sys, const NewtonDef *def, const Point *at, d
     Search s = {.sys = sys,
                 .def = def,
                 .n = n,
+                .state = state,
                 .at = *at,
-                .x = x,
+                .x = state->x,
                 .gradient = work,
                 .step = work + n,
                 .trial = work + 2 * n,
@@ -279,9 +280,9 @@ NewtonInfo newton_minimize(System *sys, const NewtonDef *def, const Point *at, d
                 .gap = work + 8 * n,
                 .change = work + 9 * n,
                 .follows = !at->x_prev && system_has_follow(sys)};
-    s.at.x = x;
+    s.at.x = state->x, s.at.memory = state->memory;
     s.info.status = NEWTON_MAX_ITERATIONS;
-    system_accept(sys, x);
+    system_accept(sys, s.x, state->memory);
     while (s.info.iterations < def->max_iterations && s.info.status == NEWTON_MAX_ITERATIONS) {
         s.info.iterations++;
         s.info.status = iterate(&s);

@@ -49,12 +49,12 @@ typedef struct NewtonObserver {
     void *self;
 } NewtonObserver;
 
-/* Starts from x and leaves the final iterate there; observer may be NULL. `at` gives p and time and, in a step of time,
- * x_prev, v_prev and dt; its x is not looked at. Without conjugate gradients the system holds, after NEWTON_CONVERGED, the
+/* Starts from the state's x and leaves the final iterate there, with what the terms remember of it; observer may be NULL.
+ * `at` gives p and time and, in a step of time, x_prev, v_prev and dt; its x and memory are not looked at. Without conjugate gradients the system holds, after NEWTON_CONVERGED, the
  * factor of the (base-shifted) Hessian at the point from which the last, negligible step was taken (system_linearised),
  * ready for an adjoint. With them, the factor is an older one, and that the point is a minimum is known only of the
  * directions that they have seen. */
-NewtonInfo newton_minimize(System *sys, const NewtonDef *def, const Point *at, double *x,
+NewtonInfo newton_minimize(System *sys, const NewtonDef *def, const Point *at, State *state,
                            const NewtonObserver *observer);
 
 /* One word: "converged", "saddle", ... and a sentence for the user. */

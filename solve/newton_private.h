@@ -7,8 +7,9 @@ typedef struct Search {
     System *sys;
     const NewtonDef *def;
     int n;
-    Point at;                       /* at.x is x                                               */
-    double *x, *gradient, *step;    /* [n]                                                     */
+    State *state;
+    Point at;                       /* of the state                                            */
+    double *x, *gradient, *step;    /* [n]; x is the state's                                   */
     double *trial, *trial_gradient; /* [n]                                                     */
     double *mode, *product;         /* [n] direction of lowest curvature, kept between uses    */
     bool mode_known;

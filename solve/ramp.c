@@ -36,22 +36,21 @@ static void add_counts(NewtonInfo *total, const NewtonInfo *step)
 }
 
 RampInfo ramp_solve(System *sys, const Params *params, const RampDef *def, const double *from,
-                    const double *to, double time, double *x)
+                    const double *to, State *state)
 {
-    size_t n = (size_t)system_dof_count(sys), memory_count = (size_t)system_memory_count(sys);
-    double *p = mem_alloc((size_t)params->size, sizeof *p), *kept = mem_alloc(n, sizeof *kept);
-    double *memory = mem_alloc(memory_count, sizeof *memory);
+    double *p = mem_alloc((size_t)params->size, sizeof *p);
+    State kept = state_clone(state);
     const NewtonObserver *observer = def->observer.iteration ? &def->observer : NULL;
     RampInfo info = {0};
     double step = 1.0 / def->steps;
     while (info.reached < 1) {
         double part = info.reached + step > 1 - 1e-9 ? 1 : info.reached + step;
-        memcpy(kept, x, n * sizeof *x);
-        system_memory_read(sys, memory);
+        state_copy(&kept, state);
         interpolate(params, from, to, part, p);
         NewtonInfo newton = {.status = NEWTON_NOT_FINITE};
-        if (!def->move || def->move(def->self, (part - info.reached) / (1 - info.reached), x))
-            newton = newton_minimize(sys, &def->newton, &(Point){.p = p, .time = time}, x, observer);
+        if (!def->move || def->move(def->self, (part - info.reached) / (1 - info.reached), state->x))
+            newton =
+                newton_minimize(sys, &def->newton, &(Point){.p = p, .time = state->time}, state, observer);
         add_counts(&info.newton, &newton);
         if (reached(newton.status)) {
             info.reached = part;
@@ -62,14 +61,12 @@ RampInfo ramp_solve(System *sys, const Params *params, const RampDef *def, const
         bool hopeless = falling || newton.status == NEWTON_STOPPED || step / 2 < def->step_min;
         if (hopeless && (falling || info.steps == 0) && newton.status != NEWTON_STOPPED)
             break; /* the iterate says more than the start */
-        memcpy(x, kept, n * sizeof *x);
-        system_memory_write(sys, memory);
+        state_copy(state, &kept);
         if (hopeless) break;
         info.refused++;
         step /= 2;
     }
     mem_free(p);
-    mem_free(kept);
-    mem_free(memory);
+    state_destroy(&kept);
     return info;
 }

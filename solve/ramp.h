@@ -26,7 +26,8 @@ typedef struct RampInfo {
     double reached; /* part of the loads that x is in equilibrium with; 1: all */
 } RampInfo;
 
-/* From x, in equilibrium with from (NULL: no loads), to x in equilibrium with to. Stationary points that are
- * no minima count as reached: the status says so. On failure x is the last state that was found. */
+/* The state, in equilibrium with from (NULL: no loads), comes to be in equilibrium with to, all at its time.
+ * Stationary points that are no minima count as reached: the status says so. On failure it is the last state
+ * that was found. */
 RampInfo ramp_solve(System *sys, const Params *params, const RampDef *def, const double *from,
-                    const double *to, double time, double *x);
+                    const double *to, State *state);

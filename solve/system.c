@@ -71,6 +71,8 @@ void system_add(System *sys, Term term)
     entry->lower = TERM_LOWER(entry->size, 0);
     entry->dofs = mem_alloc((size_t)entry->packs * (size_t)entry->size, sizeof *entry->dofs);
     gather_dofs(entry);
+    entry->memory = sys->memory_count;
+    if (term.ops->memory) sys->memory_count += term.ops->memory(term.self, NULL);
 }
 
 void system_add_bulk(System *sys, Bulk bulk)
@@ -205,6 +207,14 @@ double system_step_size(const System *sys, const double *d)
     return size;
 }
 
+Point system_term_point(const System *sys, int t, const Point *at)
+{
+    Point own = *at;
+    assert(at->memory || sys->memory_count == 0);
+    if (at->memory) own.memory += sys->entries[t].memory;
+    return own;
+}
+
 void system_gather(const Entry *entry, int pack, const double *from, Pack *to)
 {
     int(*dofs)[PACK_LANES] = &entry->dofs[pack * entry->size];
@@ -289,15 +299,16 @@ static double take_batch(System *sys, const Batch *b, double *gradient, double *
     return energy;
 }
 
-static double evaluate_term(System *sys, const Entry *entry, const Point *at, double *gradient,
-                            double *values)
+static double evaluate_term(System *sys, int t, const Point *at, double *gradient, double *values)
 {
+    const Entry *entry = &sys->entries[t];
     Pack own[1 + TERM_MAX_DOF + MAX_LOWER], *work = NULL;
     int next_twice = 0, most = workers_count(sys->workers) > 1 ? BATCH_PACKS : 1;
     if (most > 1)
         work =
             mem_alloc((size_t)most * (size_t)(1 + entry->size + (values ? entry->lower : 0)), sizeof *work);
-    Batch b = {.entry = entry, .at = at, .energy = work ? work : own};
+    Point seen = system_term_point(sys, t, at);
+    Batch b = {.entry = entry, .at = &seen, .energy = work ? work : own};
     if (gradient) b.g = b.energy + most;
     if (values) b.H = b.energy + most * (1 + entry->size);
     double energy = 0;
@@ -313,11 +324,12 @@ static double evaluate_term(System *sys, const Entry *entry, const Point *at, do
 double system_term_energy(const System *sys, int t, const Point *at, double *energy)
 {
     const Entry *entry = &sys->entries[t];
+    Point own = system_term_point(sys, t, at);
     Pack x[TERM_MAX_DOF];
     double sum = 0;
     for (int k = 0; k < entry->packs; k++) {
         system_gather(entry, k, at->x, x);
-        Pack e = entry->term.ops->eval(entry->term.self, k, at, x, NULL, NULL);
+        Pack e = entry->term.ops->eval(entry->term.self, k, &own, x, NULL, NULL);
         sum += pack_sum(e, system_lanes(entry, k));
         for (int l = 0; energy && l < system_lanes(entry, k); l++) energy[k * PACK_LANES + l] = e[l];
     }
@@ -333,7 +345,7 @@ static Evaluation evaluate(System *sys, const Point *at, double *gradient, doubl
     }
     if (values) memset(values, 0, ((size_t)sparse_nonzeros(sys->matrix) + 1) * sizeof *values);
     for (int t = 0; t < sys->term_count; t++) {
-        double energy = evaluate_term(sys, &sys->entries[t], at, gradient, values);
+        double energy = evaluate_term(sys, t, at, gradient, values);
         sys->energies[t] = energy;
         result.energy += energy;
         result.energy_scale += fabs(energy);

@@ -7,6 +7,7 @@
 #include "base/workers.h"
 #include "solve/bulk.h"
 #include "solve/sparse.h"
+#include "solve/state.h"
 
 /* Dofs of one kind, which lie together: positions in metres, edge angles in radians. */
 typedef struct DofClass {
@@ -55,6 +56,10 @@ bool system_is_fixed(const System *sys, int dof);
 double system_base_shift(const System *sys);
 int system_term_count(const System *sys);
 const Term *system_term(const System *sys, int t);
+
+/* The point as that term sees it: of memory its own part. */
+Point system_term_point(const System *sys, int t, const Point *at);
+
 int system_bulk_count(const System *sys);
 const Bulk *system_bulk(const System *sys, int b);
 
@@ -149,13 +154,13 @@ void system_prev_forward(System *sys, const Point *at, const double *dx, const d
 void system_follow(System *sys, const double *x, const double *d, double a, double *to);
 bool system_has_follow(const System *sys);
 
-/* Makes a trial x admissible, and tells the terms that x is an accepted state; both may write to x (TermOps). */
-void system_project(const System *sys, double *x);
-void system_accept(System *sys, double *x);
+/* Makes x, a trial reached from `from`, admissible; and x an accepted one, of which memory[system_memory_count()] notes
+ * what must be remembered. Both may write to x (TermOps). */
+void system_project(const System *sys, const double *from, double *x);
+void system_accept(const System *sys, double *x, double *memory);
 
-/* What the terms remember beside x, system_memory_count() numbers; read into or set from memory. */
+/* A State of the system's size: x and v are 0, memory as at rest. Caller: state_destroy. */
+State system_state(const System *sys);
 int system_memory_count(const System *sys);
-void system_memory_read(const System *sys, double *memory);
-void system_memory_write(System *sys, const double *memory);
 
 SparseInfo system_info(const System *sys);

@@ -26,7 +26,7 @@ void system_note_point(System *sys, const Point *at)
     memcpy(to, at->x, n * sizeof *to);
     if (at->x_prev) memcpy(to + n, at->x_prev, n * sizeof *to);
     if (at->v_prev) memcpy(to + 2 * n, at->v_prev, n * sizeof *to);
-    system_memory_read(sys, to + 3 * n);
+    if (at->memory) memcpy(to + 3 * n, at->memory, (size_t)sys->memory_count * sizeof *to);
 }
 
 bool system_factor(System *sys, double shift)
@@ -66,19 +66,16 @@ void system_restore_factor(System *sys, const double *anchor, const double *p)
     const double *x = anchor + ANCHOR_X;
     sys->anchor[ANCHOR_USABLE] = sys->factored = false;
     if (anchor[ANCHOR_USABLE] == 0) return;
-    int memory_count = system_memory_count(sys);
-    double *gradient = mem_alloc(n + (size_t)memory_count, sizeof *gradient), *memory = gradient + n;
-    system_memory_read(sys, memory);
-    system_memory_write(sys, x + 3 * n);
+    double *gradient = mem_alloc(n, sizeof *gradient);
     Point at = {.x = x,
                 .p = p,
+                .memory = x + 3 * n,
                 .time = anchor[ANCHOR_TIME],
                 .x_prev = x + n,
                 .v_prev = x + 2 * n,
                 .dt = anchor[ANCHOR_DT]};
     system_hessian(sys, &at, gradient);
     system_factor(sys, anchor[ANCHOR_SHIFT]);
-    system_memory_write(sys, memory);
     mem_free(gradient);
 }
 
@@ -143,10 +140,11 @@ void system_param(System *sys, const Point *at, const double *w, double *dp)
     Pack x[TERM_MAX_DOF], v[TERM_MAX_DOF];
     for (int t = 0; t < sys->term_count; t++) {
         const Entry *entry = &sys->entries[t];
+        Point own = system_term_point(sys, t, at);
         for (int k = 0; entry->term.ops->param && k < entry->packs; k++) {
             system_gather(entry, k, at->x, x);
             system_gather(entry, k, w, v);
-            entry->term.ops->param(entry->term.self, k, system_lanes(entry, k), at, x, v, dp);
+            entry->term.ops->param(entry->term.self, k, system_lanes(entry, k), &own, x, v, dp);
         }
     }
 }
@@ -157,9 +155,10 @@ void system_param_forward(System *sys, const Point *at, const double *dp, double
     memset(r, 0, (size_t)sys->dof_count * sizeof *r);
     for (int t = 0; t < sys->term_count; t++) {
         const Entry *entry = &sys->entries[t];
+        Point own = system_term_point(sys, t, at);
         for (int k = 0; entry->term.ops->param_forward && k < entry->packs; k++) {
             system_gather(entry, k, at->x, x);
-            entry->term.ops->param_forward(entry->term.self, k, at, x, dp, v);
+            entry->term.ops->param_forward(entry->term.self, k, &own, x, dp, v);
             system_scatter(entry, k, v, r);
         }
     }
@@ -170,10 +169,11 @@ void system_prev(System *sys, const Point *at, const double *w, double *dx, doub
     Pack x[TERM_MAX_DOF], v[TERM_MAX_DOF], from_x[TERM_MAX_DOF], from_v[TERM_MAX_DOF];
     for (int t = 0; t < sys->term_count; t++) {
         const Entry *entry = &sys->entries[t];
+        Point own = system_term_point(sys, t, at);
         for (int k = 0; entry->term.ops->prev && k < entry->packs; k++) {
             system_gather(entry, k, at->x, x);
             system_gather(entry, k, w, v);
-            entry->term.ops->prev(entry->term.self, k, at, x, v, from_x, from_v);
+            entry->term.ops->prev(entry->term.self, k, &own, x, v, from_x, from_v);
             for (int i = 0; i < entry->size; i++) from_x[i] = -from_x[i], from_v[i] = -from_v[i];
             system_scatter(entry, k, from_x, dx);
             system_scatter(entry, k, from_v, dv);
@@ -186,11 +186,12 @@ void system_prev_forward(System *sys, const Point *at, const double *dx, const d
     Pack x[TERM_MAX_DOF], to_x[TERM_MAX_DOF], to_v[TERM_MAX_DOF], out[TERM_MAX_DOF];
     for (int t = 0; t < sys->term_count; t++) {
         const Entry *entry = &sys->entries[t];
+        Point own = system_term_point(sys, t, at);
         for (int k = 0; entry->term.ops->prev_forward && k < entry->packs; k++) {
             system_gather(entry, k, at->x, x);
             system_gather(entry, k, dx, to_x);
             system_gather(entry, k, dv, to_v);
-            entry->term.ops->prev_forward(entry->term.self, k, at, x, to_x, to_v, out);
+            entry->term.ops->prev_forward(entry->term.self, k, &own, x, to_x, to_v, out);
             system_scatter(entry, k, out, r);
         }
     }
@@ -212,47 +213,34 @@ bool system_has_follow(const System *sys)
     return found;
 }
 
-void system_project(const System *sys, double *x)
+void system_project(const System *sys, const double *from, double *x)
 {
-    for (int t = 0; t < sys->term_count; t++)
-        if (sys->entries[t].term.ops->project)
-            sys->entries[t].term.ops->project(sys->entries[t].term.self, x);
+    for (int t = 0; t < sys->term_count; t++) {
+        const Term *term = &sys->entries[t].term;
+        if (term->ops->project) term->ops->project(term->self, from, x);
+    }
 }
 
-void system_accept(System *sys, double *x)
+void system_accept(const System *sys, double *x, double *memory)
 {
-    for (int t = 0; t < sys->term_count; t++)
-        if (sys->entries[t].term.ops->accept) sys->entries[t].term.ops->accept(sys->entries[t].term.self, x);
-}
-
-static double *term_memory(const Entry *entry, int *count)
-{
-    *count = 0;
-    return entry->term.ops->memory ? entry->term.ops->memory(entry->term.self, count) : NULL;
+    for (int t = 0; t < sys->term_count; t++) {
+        const Entry *entry = &sys->entries[t];
+        if (!entry->term.ops->accept) continue;
+        entry->term.ops->accept(entry->term.self, x, memory ? memory + entry->memory : NULL);
+    }
 }
 
 int system_memory_count(const System *sys)
 {
-    int total = 0, count;
+    return sys->memory_count;
+}
+
+State system_state(const System *sys)
+{
+    State state = state_create(sys->dof_count, sys->memory_count);
     for (int t = 0; t < sys->term_count; t++) {
-        term_memory(&sys->entries[t], &count);
-        total += count;
+        const Entry *entry = &sys->entries[t];
+        if (entry->term.ops->memory) entry->term.ops->memory(entry->term.self, state.memory + entry->memory);
     }
-    return total;
-}
-
-void system_memory_read(const System *sys, double *memory)
-{
-    for (int t = 0, count; t < sys->term_count; t++, memory += count) {
-        const double *from = term_memory(&sys->entries[t], &count);
-        if (count) memcpy(memory, from, (size_t)count * sizeof *memory);
-    }
-}
-
-void system_memory_write(System *sys, const double *memory)
-{
-    for (int t = 0, count; t < sys->term_count; t++, memory += count) {
-        double *to = term_memory(&sys->entries[t], &count);
-        if (count) memcpy(to, memory, (size_t)count * sizeof *memory);
-    }
+    return state;
 }

@@ -6,6 +6,7 @@
 typedef struct Entry {
     Term term;
     int count, size, packs, lower; /* elements, dofs each, packs, Hessian entries each                  */
+    int memory;                    /* first of what it remembers                                         */
     int (*dofs)[PACK_LANES];       /* [pack*size + i] global dof                                         */
     int (*slots)[PACK_LANES];      /* [pack*lower + k] place in the matrix; the bin for fixed dofs        */
     int *twice;                    /* [3*twice_count] pack, entry, lane: two different dofs of an element */
@@ -13,7 +14,7 @@ typedef struct Entry {
 } Entry;
 
 struct System {
-    int dof_count, free_count, term_count, bulk_count, class_count, multiplier_count;
+    int dof_count, free_count, term_count, bulk_count, class_count, multiplier_count, memory_count;
     int *order; /* [dof_count] NULL: none given */
     Entry entries[SYSTEM_MAX_TERMS];
     Bulk bulks[SYSTEM_MAX_BULKS];

@@ -9,6 +9,7 @@
  * the last pack is filled up by repeating the last element. A term may hold its own constants as packs. */
 #pragma once
 #include "base/pack.h"
+#include "solve/state.h"
 
 enum { TERM_MAX_DOF = 24 }; /* largest element, in degrees of freedom */
 
@@ -19,6 +20,7 @@ enum { TERM_MAX_DOF = 24 }; /* largest element, in degrees of freedom */
 typedef struct Point {
     const double *x;               /* positions and other dofs                     */
     const double *p;               /* all model parameters (params.h)              */
+    const double *memory;          /* what terms remember (State.memory); to a term: its own part of it */
     double time;                   /* s; fields may depend on it                   */
     const double *x_prev, *v_prev; /* start of the step of time, whole vectors; NULL in statics */
     double dt;                     /* s; 0 in statics                                           */
@@ -26,6 +28,12 @@ typedef struct Point {
      * (TermOps.follow); NULL: its own. */
     const double *x_from, *step;
 } Point;
+
+/* Where a state stands, with p. */
+static inline Point state_point(const State *state, const double *p)
+{
+    return (Point){.x = state->x, .p = p, .memory = state->memory, .time = state->time};
+}
 
 typedef struct TermOps {
     const char *name; /* also the name of its energy in the result, e.g. "bending" */
@@ -63,16 +71,18 @@ typedef struct TermOps {
      * is as good. */
     void (*follow)(void *self, const double *x, const double *d, double a, double *to);
 
-    /* Makes a trial admissible: what follows from other dofs (the positions of an inextensible rod from its rotations)
-     * is put into the whole vector x. NULL if nothing. */
-    void (*project)(void *self, double *x);
+    /* Makes a trial x, to which a step leads from the admissible one at `from`, admissible: what follows from other dofs
+     * (the positions of an inextensible rod from its rotations) is put into it, what would go too far stopped (at a
+     * wall). Whole vectors; NULL if nothing. */
+    void (*project)(const void *self, const double *from, double *x);
 
-    /* After an accepted step: remembers what must be (the turns of a fold angle), and may write the same state otherwise
-     * (rotations that are increments from a reference in x become 0, the reference turns). NULL if nothing. */
-    void (*accept)(void *self, double *x);
+    /* After an accepted step: notes in memory what must be (the turns of a fold angle), and may write the same state
+     * otherwise (rotations that are increments from a reference in x become 0, the reference turns). NULL if nothing. */
+    void (*accept)(const void *self, double *x, double *memory);
 
-    /* What accept remembers, count numbers: part of the model's state beside x. NULL if nothing. */
-    double *(*memory)(void *self, int *count);
+    /* How many numbers the term remembers beside x: they are of the State, not of the term. At rest they are what is
+     * written to rest, where that is not NULL. NULL: none. */
+    int (*memory)(const void *self, double *rest);
 
     void (*destroy)(void *self);
 } TermOps;

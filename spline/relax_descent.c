@@ -142,7 +142,7 @@ static bool search(Descent *d, double *energy)
     int n = d->r->n;
     for (int k = 0; k < TRIES; k++, length /= 2) {
         for (int i = 0; i < n; i++) d->trial[i] = d->x[i] + length * d->direction[i];
-        system_project(d->r->sys, d->trial);
+        system_project(d->r->sys, d->x, d->trial);
         *energy = evaluate(d, d->trial, d->trial_gradient);
         double slope = 0;
         for (int i = 0; i < n; i++) slope += d->gradient[i] * (d->trial[i] - d->x[i]);
@@ -174,7 +174,6 @@ static void take(Descent *d, double energy)
     d->trial_gradient = old;
     d->energy = energy;
     d->age++;
-    system_accept(d->r->sys, d->x);
 }
 
 /* Along the direction; where that fails, once more with nothing remembered. */
@@ -244,7 +243,6 @@ static RelaxStatus iterate(Descent *d)
 RelaxStatus relax_minimize(Relaxation *r, const DescentDef *def, const Point *at, double *x)
 {
     Descent d = descent_create(r, def, at, x);
-    system_accept(r->sys, x);
     d.energy = evaluate(&d, x, d.gradient);
     RelaxStatus status = isfinite(d.energy) ? iterate(&d) : RELAX_NOT_FINITE;
     descent_clear(&d);

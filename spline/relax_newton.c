@@ -54,7 +54,8 @@ static RelaxStatus minimize(Watch *w)
     def.step_cap = INFINITY; /* the leash is for each stroke */
     def.max_iterations = r->def->max_iterations - w->before.iterations;
     Point at = relax_point(r, r->strokes->q);
-    NewtonInfo newton = newton_minimize(r->sys, &def, &at, r->strokes->q, &(NewtonObserver){watch, w});
+    State state = {.dofs = r->n, .x = r->strokes->q};
+    NewtonInfo newton = newton_minimize(r->sys, &def, &at, &state, &(NewtonObserver){watch, w});
     w->before = newton;
     return status_of(newton.status, w);
 }

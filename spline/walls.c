@@ -63,42 +63,28 @@ static double allowed_part(const SegmentTerm *term, int node, const double *from
     return part;
 }
 
-void wall_project(void *self, double *x)
+void wall_project(const void *self, const double *from, double *x)
 {
-    const WallTerm *wall = self;
-    const SplineModel *model = wall->segment.model;
+    const SegmentTerm *term = self;
+    const SplineModel *model = term->model;
     for (int k = 0; k < model->stroke_count; k++) {
         double part = 1;
         for (int node = model->start[k]; node < model->start[k + 1] - 1; node++)
-            part = fmin(part, allowed_part(&wall->segment, node, wall->accepted, x));
+            part = fmin(part, allowed_part(term, node, from, x));
         if (!(part < 1)) continue;
         for (int i = 4 * model->start[k]; i < 4 * model->start[k + 1]; i++)
-            x[i] = wall->accepted[i] + part * (x[i] - wall->accepted[i]);
+            x[i] = from[i] + part * (x[i] - from[i]);
     }
-}
-
-void wall_accept(void *self, double *x)
-{
-    const WallTerm *wall = self;
-    memcpy(wall->accepted, x, 4 * (size_t)wall->segment.model->node_count * sizeof *x);
-}
-
-void wall_destroy(void *self)
-{
-    mem_free(((WallTerm *)self)->accepted);
-    mem_free(self);
 }
 
 Term wall_term_create(const TermOps *ops, const SplineModel *model, const SplineRule *rule,
                       SplineHessian hessian, SegmentPsi *psi)
 {
     bool positive = hessian != SPLINE_EXACT;
-    WallTerm *wall = mem_alloc(1, sizeof *wall);
-    wall->segment = (SegmentTerm){.model = model,
-                                  .rule = rule,
-                                  .positive = positive,
-                                  .psi = psi,
-                                  .parts = PSI_R | PSI_T | PSI_RR | PSI_TT | (positive ? 0 : PSI_RT)};
-    wall->accepted = mem_alloc(4 * (size_t)model->node_count, sizeof *wall->accepted);
-    return (Term){ops, wall};
+    return segment_term_create(
+        ops, (SegmentTerm){.model = model,
+                           .rule = rule,
+                           .positive = positive,
+                           .psi = psi,
+                           .parts = PSI_R | PSI_T | PSI_RR | PSI_TT | (positive ? 0 : PSI_RT)});
 }

@@ -21,14 +21,7 @@ static inline void wall_distances(const SplinePage *page, Pack2 r, Pack distance
 Pack wall_psi_of(const SegmentTerm *term, double weight, const Barrier *barrier, const SegmentPoint *s,
                  int order, Psi *psi);
 
-/* TermOps.accept and project for a term that is infinite outside of the page: of the way from the last
- * accepted x to a trial, no stroke goes further than nine tenths of the way to the wall, be it at a point of
- * the rule. Each stroke is stopped for itself, so that one at the edge does not hold up all others. */
-typedef struct WallTerm {
-    SegmentTerm segment;
-    double *accepted; /* [4 node_count] */
-} WallTerm;
-
+/* A term that is infinite outside of the page. */
 Term wall_term_create(const TermOps *ops, const SplineModel *model, const SplineRule *rule,
                       SplineHessian hessian, SegmentPsi *psi);
 
@@ -36,8 +29,9 @@ Term wall_term_create(const TermOps *ops, const SplineModel *model, const Spline
 #define WALL_OPS(row_name)                                                                                   \
     {                                                                                                        \
         .name = row_name, .count = segment_term_count, .size = segment_term_size, .dofs = segment_term_dofs, \
-        .eval = segment_term_eval, .project = wall_project, .accept = wall_accept, .destroy = wall_destroy,  \
+        .eval = segment_term_eval, .project = wall_project, .destroy = mem_free,                             \
     }
-void wall_accept(void *self, double *x);
-void wall_project(void *self, double *x);
-void wall_destroy(void *self);
+
+/* Of the way to a trial, no stroke goes further than nine tenths of the way to the wall, be it at a point of
+ * the rule. Each stroke is stopped for itself, so that one at the edge does not hold up all others. */
+void wall_project(const void *self, const double *from, double *x);

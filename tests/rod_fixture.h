@@ -11,7 +11,8 @@ typedef struct Resting {
     Rod *rod;
     RodLayout layout; /* of the hanging form */
     System *hanging;
-    double *p, *x; /* natural strains that make it rest in x */
+    double *p; /* natural strains that make it rest in state */
+    State state;
 } Resting;
 
 static inline Resting resting_create(const ReferenceRod *r, double young, int elements)
@@ -28,10 +29,10 @@ static inline Resting resting_create(const ReferenceRod *r, double young, int el
     rod_default_params(o.rod, young, o.p);
     o.p[o.rod->gravity + 2] = -reference_gravity;
     o.layout = rod_layout(o.rod, false);
-    o.x = mem_alloc((size_t)o.layout.dofs, sizeof *o.x);
     o.hanging = rod_hanging_system(o.rod);
-    rod_follow_curve(o.rod, &o.curve, o.frames, o.x);
-    rod_balance(o.rod, o.hanging, &o.layout, o.x, o.p);
+    o.state = system_state(o.hanging);
+    rod_follow_curve(o.rod, &o.curve, o.frames, o.state.x);
+    rod_balance(o.rod, o.hanging, &o.layout, o.state.x, o.p);
     return o;
 }
 
@@ -42,7 +43,7 @@ static inline void resting_clear(Resting *o)
     rod_curve_clear(&o->curve);
     mem_free(o->frames);
     mem_free(o->p);
-    mem_free(o->x);
+    state_destroy(&o->state);
 }
 
 /* Largest distance of places[nodes][3] to the curve. */
@@ -70,10 +71,10 @@ static inline NewtonDef rod_newton(void)
     return def;
 }
 
-static inline RampInfo rod_relax(const Rod *rod, System *sys, int steps, const double *p, double *x)
+static inline RampInfo rod_relax(const Rod *rod, System *sys, int steps, const double *p, State *state)
 {
     RampDef def = ramp_default();
     def.newton = rod_newton();
     def.steps = steps;
-    return ramp_solve(sys, &rod->params, &def, NULL, p, 0, x);
+    return ramp_solve(sys, &rod->params, &def, NULL, p, state);
 }

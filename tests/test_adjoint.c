@@ -1,24 +1,17 @@
 /* dF/du of a quasi-static design against central differences and against the forward tangent, for every kind
  * of unknown and both bending models. */
-#include "base/memory.h"
 #include "base/random.h"
 #include "optim/objectives.h"
 #include "optim/static_design.h"
-#include "shell/shapes.h"
-#include "shell/shell.h"
+#include "tests/shell_fixture.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
 #include <string.h>
-#include <cmocka.h>
 
 typedef struct Fixture {
     Shell *shell;
     Design design;
     LoadCase cases[2];
+    State states[2]; /* theirs */
     Objective objective;
     StaticDesign *sd;
     double *u;
@@ -29,9 +22,8 @@ static Shell *make_shell(BendingModel bending)
     MeshFile file = {0};
     Error err;
     assert_true(shape_hexagram(0.04, 3, &file, &err));
-    Mesh *mesh = mesh_create(&file, 0, NULL, &err);
-    mesh_file_clear(&file);
-    Shell *shell = shell_create(mesh);
+    Shell *shell = shell_of_mesh(&file);
+    const Mesh *mesh = shell->mesh;
     shell->thickness = 1e-3, shell->poisson = 0.4, shell->density = 1000, shell->bending = bending;
     for (int i = 0; i < 3 * mesh->vertex_count; i++)
         if (hypot(mesh->rest[i / 3][0], mesh->rest[i / 3][1]) < 5e-3) shell_fix(shell, i / 3, i % 3);
@@ -56,14 +48,14 @@ static void make_cases(Fixture *f, Random *random)
     for (int i = 0; i < 3 * shell->mesh->face_count; i++) M[i] = 2e4 * random_signed(random);
     for (int c = 0; c < 2; c++) {
         double *p = mem_alloc((size_t)shell->params.size, sizeof *p);
-        double *x = mem_alloc((size_t)shell_dof_count(shell), sizeof *x);
         shell_default_params(shell, p);
         for (int i = 0; i < shell->mesh->face_count; i++) p[shell->young + i] = 1e5;
         memcpy(p + shell->magnetization, M, 3 * (size_t)shell->mesh->face_count * sizeof *M);
         p[shell->flux_density] = 0.01, p[shell->flux_density + 2] = c ? -0.03 : 0.05;
-        shell_rest_state(shell, x);
-        f->cases[c] =
-            (LoadCase){c ? "down" : "up", shell_system(shell), p, x, &f->objective, 1, c ? 0.5 : 1, 0};
+        System *sys = shell_system(shell);
+        f->states[c] = system_state(sys);
+        shell_rest_state(shell, f->states[c].x);
+        f->cases[c] = (LoadCase){c ? "down" : "up", sys, p, &f->states[c], &f->objective, 1, c ? 0.5 : 1};
     }
     mem_free(M);
 }
@@ -83,7 +75,7 @@ static void free_fixture(Fixture *f)
     for (int c = 0; c < 2; c++) {
         system_destroy(f->cases[c].sys);
         mem_free(f->cases[c].p);
-        mem_free(f->cases[c].x);
+        state_destroy(&f->states[c]);
     }
     f->objective.ops->destroy(f->objective.self);
     mem_free(f->u);
@@ -104,11 +96,11 @@ static double tangent_slope(const Fixture *f, const double *v)
         double *p = mem_copy(load->p, (size_t)f->shell->params.size, sizeof *p);
         design_apply(&f->design, c, f->u, p);
         design_forward(&f->design, c, f->u, v, dp);
-        Point at = {.x = load->x, .p = p};
+        Point at = state_point(load->state, p);
         system_param_forward(load->sys, &at, dp, dx);
         system_solve(load->sys, dx, dx);
         memset(gx, 0, (size_t)dofs * sizeof *gx);
-        f->objective.ops->value(f->objective.self, load->weight, load->x, p, gx, dp);
+        f->objective.ops->value(f->objective.self, load->weight, load->state->x, p, gx, dp);
         for (int i = 0; i < dofs; i++) slope -= gx[i] * dx[i];
         mem_free(p);
     }
@@ -128,11 +120,11 @@ static void find_directions(const Fixture *f, int c, const double *v, double *dx
     double *dp = mem_alloc((size_t)f->shell->params.size, sizeof *dp);
     design_apply(&f->design, c, f->u, p);
     design_forward(&f->design, c, f->u, v, dp);
-    Point at = {.x = load->x, .p = p};
+    Point at = state_point(load->state, p);
     system_param_forward(load->sys, &at, dp, dx);
     system_solve(load->sys, dx, dx);
     memset(a, 0, (size_t)dofs * sizeof *a);
-    f->objective.ops->value(f->objective.self, load->weight, load->x, p, a, dp);
+    f->objective.ops->value(f->objective.self, load->weight, load->state->x, p, a, dp);
     system_solve(load->sys, a, a);
     for (int i = system_position_count(load->sys); i < dofs; i++) dx[i] = a[i] = 0;
     mem_free(p);

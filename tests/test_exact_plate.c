@@ -1,68 +1,29 @@
 /* Closed forms and published numbers: stretching, plate bending, magnetic identities, Sze's cantilever and
  * annulus. */
-#include "base/memory.h"
 #include "base/random.h"
 #include "base/vec3.h"
-#include "shell/shapes.h"
-#include "shell/shell.h"
 #include "solve/newton.h"
+#include "tests/shell_fixture.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-#include <cmocka.h>
-
-typedef struct Body {
-    Shell *shell;
-    System *sys;
-    double *p, *x;
-} Body;
-
-static Shell *make_shell(MeshFile *file, double thickness, double poisson, BendingModel bending)
-{
-    Error err;
-    Mesh *mesh = mesh_create(file, 0, NULL, &err);
-    if (!mesh) fail_msg("%s", err.text);
-    mesh_file_clear(file);
-    Shell *shell = shell_create(mesh);
-    shell->thickness = thickness, shell->poisson = poisson, shell->density = 1000, shell->bending = bending;
-    return shell;
-}
 
 static Body make_body(Shell *shell, double young)
 {
-    Body b = {.shell = shell, .sys = shell_system(shell)};
-    b.p = mem_alloc((size_t)shell->params.size, sizeof *b.p);
-    b.x = mem_alloc((size_t)shell_dof_count(shell), sizeof *b.x);
-    shell_default_params(shell, b.p);
-    shell_rest_state(shell, b.x);
-    for (int f = 0; f < shell->mesh->face_count; f++) b.p[shell->young + f] = young;
-    return b;
-}
-
-static void free_body(Body *b)
-{
-    system_destroy(b->sys);
-    shell_destroy(b->shell);
-    mem_free(b->p);
-    mem_free(b->x);
+    return body_create(shell, shell_system(shell), young);
 }
 
 static Shell *make_sheet(double size, int n, ShapePattern pattern, double thickness, double poisson,
                          BendingModel bending)
 {
-    MeshFile file;
-    Error err;
-    assert_true(shape_sheet((double[]){size, size}, (int[]){n, n}, pattern, &file, &err));
-    return make_shell(&file, thickness, poisson, bending);
+    Shell *shell = shell_of_sheet((double[]){size, size}, (int[]){n, n}, pattern);
+    shell->thickness = thickness, shell->poisson = poisson, shell->density = 1000, shell->bending = bending;
+    return shell;
 }
 
 /* 0 membrane, 1 bending, 2 magnetic: rows of shell_term_rows. */
 static double term_energy(const Body *b, int term)
 {
-    Point at = {.x = b->x, .p = b->p};
+    Point at = state_point(&b->state, b->p);
     return system_term_energy(b->sys, term, &at, NULL);
 }
 
@@ -71,11 +32,11 @@ static void test_stretch(void **state)
 {
     (void)state;
     Body b = make_body(make_sheet(0.1, 6, PATTERN_CROSSED, 1e-3, 0.3, BENDING_MIDEDGE), 1e5);
-    for (int i = 0; i < 3 * b.shell->mesh->vertex_count; i++) b.x[i] *= 1.2;
+    for (int i = 0; i < 3 * b.shell->mesh->vertex_count; i++) b.state.x[i] *= 1.2;
     double g = (1.2 * 1.2 - 1) / 2, exact = 1e5 * 1e-3 * 0.01 * g * g / 0.7;
     assert_true(fabs(term_energy(&b, 0) / exact - 1) < 1e-13);
     assert_true(fabs(term_energy(&b, 1)) < 1e-20);
-    free_body(&b);
+    body_clear(&b);
 }
 
 /* Hinges, n x n cells, a turn of pi/n at each cell line: E = (D pi^2/2)(1 - 1/n). */
@@ -90,10 +51,10 @@ static void test_rolled(void **state)
         line[k][0] = line[k - 1][0] + length * cos(angle), line[k][1] = line[k - 1][1] + length * sin(angle);
     }
     for (int v = 0; v < b.shell->mesh->vertex_count; v++)
-        b.x[3 * v] = line[v % (N + 1)][0], b.x[3 * v + 2] = line[v % (N + 1)][1];
-    system_accept(b.sys, b.x);
+        b.state.x[3 * v] = line[v % (N + 1)][0], b.state.x[3 * v + 2] = line[v % (N + 1)][1];
+    system_accept(b.sys, b.state.x, b.state.memory);
     assert_true(fabs(term_energy(&b, 1) / 4.511966484301568e-05 - 1) < 1e-12);
-    free_body(&b);
+    body_clear(&b);
 }
 
 /* Shallow height k1 x^2/2 + k2 y^2/2 with all positions held and the edge angles relaxed: the energy of the
@@ -105,13 +66,14 @@ static double bent_energy(ShapePattern pattern, int n, double k1, double k2)
     for (int i = 0; i < 3 * shell->mesh->vertex_count; i++) shell_fix(shell, i / 3, i % 3);
     Body b = make_body(shell, 1e6);
     for (int v = 0; v < shell->mesh->vertex_count; v++) {
-        double x = b.x[3 * v] - 0.05, y = b.x[3 * v + 1] - 0.05;
-        b.x[3 * v + 2] = (k1 * x * x + k2 * y * y) / 2;
+        double x = b.state.x[3 * v] - 0.05, y = b.state.x[3 * v + 1] - 0.05;
+        b.state.x[3 * v + 2] = (k1 * x * x + k2 * y * y) / 2;
     }
     NewtonDef def = newton_default();
-    assert_int_equal(newton_minimize(b.sys, &def, &(Point){.p = b.p}, b.x, NULL).status, NEWTON_CONVERGED);
+    NewtonInfo info = newton_minimize(b.sys, &def, &(Point){.p = b.p}, &b.state, NULL);
+    assert_int_equal(info.status, NEWTON_CONVERGED);
     double sum = 0, *energy = mem_alloc((size_t)shell->mesh->face_count, sizeof *energy);
-    Point at = {.x = b.x, .p = b.p};
+    Point at = state_point(&b.state, b.p);
     assert_int_equal(system_term(b.sys, 1)->ops->count(system_term(b.sys, 1)->self), shell->mesh->face_count);
     system_term_energy(b.sys, 1, &at, energy);
     for (int f = 0; f < shell->mesh->face_count; f++) {
@@ -122,7 +84,7 @@ static double bent_energy(ShapePattern pattern, int n, double k1, double k2)
         if (fabs(center.x / 3 - 0.05) < 0.025 && fabs(center.y / 3 - 0.05) < 0.025) sum += energy[f];
     }
     mem_free(energy);
-    free_body(&b);
+    body_clear(&b);
     return sum;
 }
 
@@ -148,7 +110,7 @@ static void test_plate_energies(void **state)
 static void randomise(Body *b, Random *random)
 {
     for (int i = 0; i < shell_dof_count(b->shell); i++)
-        b->x[i] += (i < 3 * b->shell->mesh->vertex_count ? 2e-3 : 0.1) * random_signed(random);
+        b->state.x[i] += (i < 3 * b->shell->mesh->vertex_count ? 2e-3 : 0.1) * random_signed(random);
 }
 
 /* Uniform in-plane M and uniform B: the energy is linear in x. Gradient 0 inside, h (M.nu) B length/2 at
@@ -175,7 +137,7 @@ static void test_linear_magnetic(void **state)
         for (int i = 0; i < 6; i++) load[3 * v[i / 3] + i % 3] -= 1e-3 * flux * B[i % 3] / 2;
     }
     randomise(&b, &random);
-    Point at = {.x = b.x, .p = b.p};
+    Point at = state_point(&b.state, b.p);
     system_hessian(b.sys, &at, gradient);
     double largest = 0, worst = 0, stiffness = 0;
     const double *scale = system_scale(b.sys);
@@ -189,7 +151,7 @@ static void test_linear_magnetic(void **state)
     assert_true(worst < 1e-12 * largest && stiffness < 1e-12);
     mem_free(load);
     mem_free(gradient);
-    free_body(&b);
+    body_clear(&b);
 }
 
 /* A free body: forces add up to 0, and their torque is that of the field on the moments: sum x x f + sum m x
@@ -214,14 +176,14 @@ static void test_balance(void **state)
     for (int i = 0; i < 3; i++) b.p[shell->flux_density + i] = B[i];
     /* Edge angles must be relaxed for a balance of positions alone: a rigid turn does not change them, so it
      * holds for any. */
-    Point at = {.x = b.x, .p = b.p};
+    Point at = state_point(&b.state, b.p);
     system_gradient(b.sys, &at, gradient);
     Vec3 force = vec3(0, 0, 0), torque = vec3_cross(vec3_load(moment), vec3_load(B));
     double size = 0;
     for (int v = 0; v < shell->mesh->vertex_count; v++) {
         Vec3 f = vec3_scale(-1, vec3_load(gradient + 3 * v));
         force = vec3_add(force, f);
-        torque = vec3_sub(torque, vec3_cross(vec3_load(b.x + 3 * v), f));
+        torque = vec3_sub(torque, vec3_cross(vec3_load(b.state.x + 3 * v), f));
         size += vec3_length(f);
     }
     print_message("free body: net force %.1e, torque %.1e of the forces\n", vec3_length(force) / size,
@@ -229,21 +191,7 @@ static void test_balance(void **state)
     assert_true(vec3_length(force) < 1e-12 * size && vec3_length(torque) < 1e-12 * size * 0.05);
     mem_free(gradient);
     mem_free(with_B);
-    free_body(&b);
-}
-
-static void clamp_where(Shell *shell, bool (*held)(const double *x))
-{
-    const Mesh *mesh = shell->mesh;
-    for (int v = 0; v < mesh->vertex_count; v++)
-        for (int i = 0; held(mesh->rest[v]) && i < 3; i++) shell_fix(shell, v, i);
-    for (int e = 0; e < mesh->edge_count; e++)
-        if (held(mesh->rest[mesh->edges[e][0]]) && held(mesh->rest[mesh->edges[e][1]])) shell_clamp(shell, e);
-}
-
-static bool at_root(const double *x)
-{
-    return x[0] < 1e-9;
+    body_clear(&b);
 }
 
 /* Loads per length along the edge between the vertices in order. */
@@ -269,11 +217,9 @@ static void test_sze_cantilever(void **state)
     static const double exact[4][2] = {
         {.5643323628, 3.0172077}, {1.6064172, 4.9345748}, {2.5442018, 6.0325344}, {3.2894124, 6.6996418}};
     enum { N = 40, ACROSS = 4 };
-    MeshFile file;
-    Error err;
-    assert_true(shape_sheet((double[]){10, 1}, (int[]){N, ACROSS}, PATTERN_ALTERNATE, &file, &err));
-    Shell *shell = make_shell(&file, 0.1, 0, BENDING_MIDEDGE);
-    clamp_where(shell, at_root);
+    Shell *shell = shell_of_sheet((double[]){10, 1}, (int[]){N, ACROSS}, PATTERN_ALTERNATE);
+    shell->thickness = 0.1, shell->poisson = 0, shell->density = 1000, shell->bending = BENDING_MIDEDGE;
+    hold_root(shell, true);
     Body b = make_body(shell, 1.2e6);
     int end[ACROSS + 1];
     for (int j = 0; j <= ACROSS; j++) end[j] = j * (N + 1) + N;
@@ -281,15 +227,15 @@ static void test_sze_cantilever(void **state)
     for (int step = 0; step < 4; step++) {
         for (int i = 0; i < 3 * shell->mesh->vertex_count; i++) b.p[shell->load + i] = 0;
         load_edge(&b, end, ACROSS + 1, step + 1);
-        assert_int_equal(newton_minimize(b.sys, &def, &(Point){.p = b.p}, b.x, NULL).status,
-                         NEWTON_CONVERGED);
+        NewtonInfo info = newton_minimize(b.sys, &def, &(Point){.p = b.p}, &b.state, NULL);
+        assert_int_equal(info.status, NEWTON_CONVERGED);
         int tip = end[ACROSS / 2];
-        double U = 10 - b.x[3 * tip], W = b.x[3 * tip + 2];
+        double U = 10 - b.state.x[3 * tip], W = b.state.x[3 * tip + 2];
         print_message("cantilever at %.2f: U %.4f (%+.2f %%), W %.4f (%+.2f %%)\n", 0.25 * (step + 1), U,
                       100 * (U / exact[step][0] - 1), W, 100 * (W / exact[step][1] - 1));
         assert_true(fabs(U / exact[step][0] - 1) < 0.005 && fabs(W / exact[step][1] - 1) < 0.005);
     }
-    free_body(&b);
+    body_clear(&b);
 }
 
 enum { RADIAL = 16, AROUND = 144 };
@@ -310,7 +256,9 @@ static Shell *make_annulus(void)
         int faces[2][3] = {{v, v + 1, turned ? w : w + 1}, {turned ? v + 1 : v, w + 1, w}};
         memcpy(file.faces[2 * c], faces, sizeof faces);
     }
-    return make_shell(&file, 0.03, 0, BENDING_MIDEDGE);
+    Shell *shell = shell_of_mesh(&file);
+    shell->thickness = 0.03, shell->poisson = 0, shell->density = 1000, shell->bending = BENDING_MIDEDGE;
+    return shell;
 }
 
 /* Sze, Liu, Lo 2004, problem 3.3: the slit annulus, lifted at one side of the slit, held at the other. */
@@ -333,15 +281,15 @@ static void test_sze_annulus(void **state)
         for (int i = 0; i < 3 * shell->mesh->vertex_count; i++) b.p[shell->load + i] = 0;
         load_edge(&b, end, RADIAL + 1, 0.8);
         scale_loads(&b, part[step]);
-        NewtonInfo info = newton_minimize(b.sys, &def, &(Point){.p = b.p}, b.x, NULL);
+        NewtonInfo info = newton_minimize(b.sys, &def, &(Point){.p = b.p}, &b.state, NULL);
         assert_int_equal(info.status, NEWTON_CONVERGED);
-        double A = b.x[3 * end[0] + 2], B = b.x[3 * end[RADIAL] + 2];
+        double A = b.state.x[3 * end[0] + 2], B = b.state.x[3 * end[RADIAL] + 2];
         print_message("annulus at %.2f: A %.3f (%+.2f %%), B %.3f (%+.2f %%), %d iterations\n", part[step], A,
                       100 * (A / published[step][0] - 1), B, 100 * (B / published[step][1] - 1),
                       info.iterations);
         assert_true(fabs(A / published[step][0] - 1) < 0.01 && fabs(B / published[step][1] - 1) < 0.01);
     }
-    free_body(&b);
+    body_clear(&b);
 }
 
 int main(void)

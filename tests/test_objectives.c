@@ -1,26 +1,18 @@
 /* Every objective: gradient against differences of the value, Gauss-Newton product against differences of the
  * gradient. */
-#include "base/memory.h"
 #include "base/random.h"
 #include "optim/objectives.h"
-#include "shell/shapes.h"
 #include "shell/smoothness.h"
+#include "tests/shell_fixture.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-#include <cmocka.h>
 
 static Shell *make_shell(void)
 {
     MeshFile file;
     Error err;
     assert_true(shape_hexagram(0.04, 2, &file, &err));
-    Mesh *mesh = mesh_create(&file, 0, NULL, &err);
-    mesh_file_clear(&file);
-    return shell_create(mesh);
+    return shell_of_mesh(&file);
 }
 
 typedef struct Fixture {

@@ -1,24 +1,12 @@
 /* Rigid motions that nothing holds: counted, refused under a net force, and solved with a base shift. */
-#include "base/memory.h"
 #include "shell/rigid.h"
-#include "shell/shapes.h"
 #include "solve/newton.h"
+#include "tests/shell_fixture.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <string.h>
-#include <cmocka.h>
 
 static Shell *make_sheet(void)
 {
-    MeshFile file = {0};
-    Error err;
-    assert_true(shape_sheet((double[]){0.02, 0.01}, (int[]){6, 3}, PATTERN_RIGHT, &file, &err));
-    Mesh *mesh = mesh_create(&file, 0, NULL, &err);
-    mesh_file_clear(&file);
-    Shell *shell = shell_create(mesh);
+    Shell *shell = shell_of_sheet((double[]){0.02, 0.01}, (int[]){6, 3}, PATTERN_RIGHT);
     shell->thickness = 1e-3, shell->poisson = 0.3, shell->density = 1000;
     return shell;
 }
@@ -63,23 +51,17 @@ static void test_compass(void **state)
 {
     (void)state;
     Shell *shell = make_sheet();
-    System *sys = shell_system(shell);
-    assert_true(system_base_shift(sys) > 0);
-    double *p = mem_alloc((size_t)shell->params.size, sizeof *p);
-    double *x = mem_alloc((size_t)shell_dof_count(shell), sizeof *x);
-    shell_default_params(shell, p);
-    shell_rest_state(shell, x);
-    for (int f = 0; f < shell->mesh->face_count; f++) p[shell->magnetization + 3 * f] = 1e5;
-    p[shell->flux_density] = 1e-3, p[shell->flux_density + 2] = 2e-3;
+    Body b = body_create(shell, shell_system(shell), 1e6);
+    assert_true(system_base_shift(b.sys) > 0);
+    for (int f = 0; f < shell->mesh->face_count; f++) b.p[shell->magnetization + 3 * f] = 1e5;
+    b.p[shell->flux_density] = 1e-3, b.p[shell->flux_density + 2] = 2e-3;
     NewtonDef def = newton_default();
-    NewtonInfo info = newton_minimize(sys, &def, &(Point){.p = p}, x, NULL);
+    NewtonInfo info = newton_minimize(b.sys, &def, &(Point){.p = b.p}, &b.state, NULL);
     assert_int_equal(info.status, NEWTON_CONVERGED);
+    const double *x = b.state.x;
     double along = x[3 * 6] - x[0], up = x[3 * 6 + 2] - x[2];
     assert_true(fabs(atan2(up, along) - atan2(2, 1)) < 1e-6);
-    mem_free(p);
-    mem_free(x);
-    system_destroy(sys);
-    shell_destroy(shell);
+    body_clear(&b);
 }
 
 int main(void)

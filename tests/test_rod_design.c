@@ -21,6 +21,7 @@ typedef struct Fixture {
     RodLayout layout;
     Design design;
     LoadCase load;
+    State state; /* its */
     Objective objective;
     StaticDesign *sd;
 } Fixture;
@@ -37,8 +38,7 @@ static Fixture fixture_create(RodSupport end, bool field, Random *random)
                         flux_field_dipole((double[]){0.03, 0.03, 0.03}, (double[]){0.2, 0.5, -0.4}));
     rod->end = end;
     f.layout = rod_layout(rod, true);
-    double *p = mem_alloc((size_t)rod->params.size, sizeof *p), target[N + 1][3],
-           *x = mem_alloc((size_t)f.layout.dofs, sizeof *x);
+    double *p = mem_alloc((size_t)rod->params.size, sizeof *p), target[N + 1][3];
     int nodes[N + 1];
     rod_default_params(rod, young, p);
     for (int e = 0; e < N; e++) {
@@ -55,9 +55,11 @@ static Fixture fixture_create(RodSupport end, bool field, Random *random)
         nodes[i] = i;
         vec3_store(target[i], vec3(s - 2 * s * s, 0.2 * s * s / length, 5 * s * s));
     }
-    rod_natural_state(rod, &f.layout, p, x);
+    System *sys = rod_system(rod, young, false);
+    f.state = system_state(sys);
+    rod_natural_state(rod, &f.layout, p, f.state.x);
     f.objective = objective_target(N + 1, nodes, (const double(*)[3])target, 1);
-    f.load = (LoadCase){"only", rod_system(rod, young, false), p, x, NULL, 1, 1, 0};
+    f.load = (LoadCase){.name = "only", .sys = sys, .p = p, .objective_count = 1, .weight = 1};
     f.design.case_count = 1;
     return f;
 }
@@ -66,7 +68,7 @@ static void fixture_start(Fixture *f, const char *block, Unknown unknown)
 {
     StaticDesignDef def = static_design_default();
     def.newton.step_cap = 1.5;
-    f->load.objectives = &f->objective;
+    f->load.objectives = &f->objective, f->load.state = &f->state;
     unknown.block = params_find(&f->rod->params, block);
     unknown.group_count = unknown.block->count;
     design_add(&f->design, unknown);
@@ -80,7 +82,7 @@ static void fixture_clear(Fixture *f)
     objective_destroy(f->objective);
     system_destroy(f->load.sys);
     mem_free(f->load.p);
-    mem_free(f->load.x);
+    state_destroy(&f->state);
     rod_destroy(f->rod);
 }
 
@@ -93,9 +95,10 @@ static double tangent_slope(const Fixture *f, const double *u, const double *v)
     memcpy(p, f->load.p, size * sizeof *p);
     design_apply(&f->design, 0, u, p);
     design_forward(&f->design, 0, u, v, dp);
-    system_param_forward(f->load.sys, &(Point){.x = f->load.x, .p = p}, dp, dx);
+    Point at = state_point(&f->state, p);
+    system_param_forward(f->load.sys, &at, dp, dx);
     system_solve(f->load.sys, dx, dx);
-    f->objective.ops->value(f->objective.self, 1, f->load.x, p, gx, dp);
+    f->objective.ops->value(f->objective.self, 1, f->state.x, p, gx, dp);
     for (size_t i = 0; i < dofs; i++) slope -= gx[i] * dx[i];
     mem_free(dp);
     mem_free(dx);

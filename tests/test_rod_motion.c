@@ -14,7 +14,7 @@ typedef struct Moving {
     RodLayout layout;
     System *sys;
     MarchDef def;
-    MarchState now;
+    State now;
     double *p;
 } Moving;
 
@@ -24,16 +24,14 @@ static Moving moving_create(const Rod *rod, double young, double *p)
         .layout = rod_layout(rod, true), .sys = rod_system(rod, young, true), .def = march_default(), .p = p};
     m.def.newton.cg_iterations = 0;
     m.def.newton.step_cap = 1.5;
-    m.now.x = mem_alloc((size_t)m.layout.dofs, sizeof(double));
-    m.now.v = mem_alloc((size_t)m.layout.dofs, sizeof(double));
+    m.now = system_state(m.sys);
     return m;
 }
 
 static void moving_clear(Moving *m)
 {
     system_destroy(m->sys);
-    mem_free(m->now.x);
-    mem_free(m->now.v);
+    state_destroy(&m->now);
 }
 
 static int step(Moving *m, double dt)
@@ -86,17 +84,18 @@ static double lowest_frequency(const Resting *o, const Moving *m, double young, 
 {
     System *sys = rod_system(o->rod, young, false);
     double lambda, inertia = 0, *mass = mem_alloc((size_t)m->layout.nodes, sizeof *mass);
-    double *x = mem_copy(m->now.x, (size_t)m->layout.dofs, sizeof *x);
+    State rest = state_clone(&m->now);
     for (int e = o->rod->elements - 1, i = 2; e >= 0;
          e--, i = 2) /* the multipliers of rest: what hangs below */
-        x[m->layout.multiplier + 3 * e + i] = o->p[o->rod->gravity + 2] * o->rod->unit.mass *
-                                              rod_element_length(o->rod) * (o->rod->elements - e - 0.5);
-    assert_true(eigen_lowest(sys, &(Point){.x = x, .p = o->p}, 1, &lambda, mode));
+        rest.x[m->layout.multiplier + 3 * e + i] = o->p[o->rod->gravity + 2] * o->rod->unit.mass *
+                                                   rod_element_length(o->rod) * (o->rod->elements - e - 0.5);
+    Point at = state_point(&rest, o->p);
+    assert_true(eigen_lowest(sys, &at, 1, &lambda, mode));
     rod_node_mass(o->rod, mass);
     for (int i = 0; i < 3 * m->layout.nodes; i++) inertia += mass[i / 3] * mode[i] * mode[i];
     system_destroy(sys);
     mem_free(mass);
-    mem_free(x);
+    state_destroy(&rest);
     return sqrt(lambda / inertia) / (2 * M_PI);
 }
 
@@ -110,7 +109,7 @@ static void test_frequencies(void **state)
         enum { N = 100 };
         Resting o = resting_create(&reference_rods[c], reference_rods[c].young, N);
         Moving m = moving_create(o.rod, reference_rods[c].young, o.p);
-        rod_copy_state(o.rod, &o.layout, o.x, &m.layout, m.now.x);
+        rod_copy_state(o.rod, &o.layout, o.state.x, &m.layout, m.now.x);
         double *mode = mem_alloc((size_t)m.layout.dofs, sizeof *mode),
                f = lowest_frequency(&o, &m, reference_rods[c].young, mode);
         int axis = 3 * N + (fabs(mode[3 * N]) > fabs(mode[3 * N + 1]) ? 0 : 1);
@@ -155,7 +154,7 @@ static double pushed(double young)
     o.p[o.rod->damping] = 2 * o.rod->unit.mass * rod_element_length(o.rod);
     Moving m = moving_create(o.rod, young, o.p);
     Random random = random_seed(5);
-    rod_copy_state(o.rod, &o.layout, o.x, &m.layout, m.now.x);
+    rod_copy_state(o.rod, &o.layout, o.state.x, &m.layout, m.now.x);
     for (int i = 3; i < 3 * (N + 1); i++) m.now.v[i] = 1e-4 * random_signed(&random);
     for (int k = 0; k < 600; k++) step(&m, 1 / 60.0);
     double off = resting_distance(&o, m.now.x);

@@ -21,19 +21,18 @@ static void test_discrete_inverse(void **state)
     for (int c = 0; c < REFERENCE_COUNT; c++) {
         double young = c == REFERENCE_WAVE ? 27e6 : reference_rods[c].young;
         Resting o = resting_create(&reference_rods[c], young, 200);
-        double *g = mem_alloc((size_t)o.layout.dofs, sizeof *g),
-               *x = mem_alloc((size_t)o.layout.dofs, sizeof *x);
-        Evaluation left = system_gradient(o.hanging, &(Point){.x = o.x, .p = o.p}, g);
-        rod_natural_state(o.rod, &o.layout, o.p, x);
-        RampInfo info = rod_relax(o.rod, o.hanging, ramp_steps[c], o.p, x);
-        double off = resting_distance_of(&o, x);
+        double *g = mem_alloc((size_t)o.layout.dofs, sizeof *g);
+        Point at = state_point(&o.state, o.p);
+        Evaluation left = system_gradient(o.hanging, &at, g);
+        rod_natural_state(o.rod, &o.layout, o.p, o.state.x);
+        RampInfo info = rod_relax(o.rod, o.hanging, ramp_steps[c], o.p, &o.state);
+        double off = resting_distance_of(&o, o.state.x);
         print_message("%-8s residual %.1e of the forces, round trip %.1e m in %d iterations\n",
                       reference_rods[c].name, left.gradient_max / left.force_scale, off,
                       info.newton.iterations);
         assert_int_equal(info.newton.status, NEWTON_CONVERGED);
         assert_true(left.gradient_max <= 1e-13 * left.force_scale && off <= 1e-12);
         mem_free(g);
-        mem_free(x);
         resting_clear(&o);
     }
     assert_int_equal(mem_live_count(), blocks);
@@ -53,9 +52,10 @@ static double forward_error(int c, int elements)
         vec3_store(o.p + o.rod->natural_strain + 3 * e, strain[2 * e + 1]);
         o.rod->bow[e] = vec3(0, 0, 0);
     }
-    rod_natural_state(o.rod, &o.layout, o.p, o.x);
-    assert_int_equal(rod_relax(o.rod, o.hanging, ramp_steps[c], o.p, o.x).newton.status, NEWTON_CONVERGED);
-    double off = resting_distance_of(&o, o.x);
+    rod_natural_state(o.rod, &o.layout, o.p, o.state.x);
+    RampInfo info = rod_relax(o.rod, o.hanging, ramp_steps[c], o.p, &o.state);
+    assert_int_equal(info.newton.status, NEWTON_CONVERGED);
+    double off = resting_distance_of(&o, o.state.x);
     mem_free(moment);
     resting_clear(&o);
     return off;
@@ -94,12 +94,12 @@ static void test_cantilevers(void **state)
         p[rod->gravity + 2] = -reference_gravity;
         RodLayout layout = rod_layout(rod, false);
         System *sys = rod_hanging_system(rod);
-        double *x = mem_alloc((size_t)layout.dofs, sizeof *x);
-        rod_natural_state(rod, &layout, p, x);
-        RampInfo info = rod_relax(rod, sys, 1, p, x);
+        State hanging = system_state(sys);
+        rod_natural_state(rod, &layout, p, hanging.x);
+        RampInfo info = rod_relax(rod, sys, 1, p, &hanging);
         RodCurve curve;
         Vec3 moment[2 * N + 1], natural[N + 1];
-        rod_curve_of(rod, &layout, x, &curve);
+        rod_curve_of(rod, &layout, hanging.x, &curve);
         rod_moments(&curve, reference_weight(section), moment);
         rod_invert(&curve, section, moment, NULL, natural);
         for (int i = 0; i <= N; i++) off = fmax(off, fabs(natural[i].z));
@@ -112,7 +112,7 @@ static void test_cantilevers(void **state)
         rod_destroy(rod);
         rod_curve_clear(&curve);
         mem_free(p);
-        mem_free(x);
+        state_destroy(&hanging);
     }
 }
 
@@ -126,20 +126,21 @@ static void test_both_forms(void **state)
         Rod *rod = o.rod;
         RodLayout layout = rod_layout(rod, true);
         System *sys = rod_system(rod, reference_rods[c].young, false);
-        double *x = mem_alloc((size_t)layout.dofs, sizeof *x), off = 0;
-        rod_natural_state(rod, &layout, o.p, x);
-        RampInfo info = rod_relax(rod, sys, ramp_steps[c], o.p, x);
+        double off = 0;
+        State other = system_state(sys);
+        rod_natural_state(rod, &layout, o.p, other.x);
+        RampInfo info = rod_relax(rod, sys, ramp_steps[c], o.p, &other);
         for (int e = 0; e < rod->elements; e++) {
             double weight =
                 rod->unit.mass * rod_element_length(rod) * (rod->elements - e - 0.5) * reference_gravity;
-            off = fmax(off, fabs(x[layout.multiplier + 3 * e + 2] + weight));
+            off = fmax(off, fabs(other.x[layout.multiplier + 3 * e + 2] + weight));
         }
         print_message("%-8s with positions %.1e m off, multipliers %.1e N\n", reference_rods[c].name,
-                      resting_distance(&o, x), off);
+                      resting_distance(&o, other.x), off);
         assert_int_equal(info.newton.status, NEWTON_CONVERGED);
-        assert_true(resting_distance(&o, x) < 1e-12 && off < 1e-12);
+        assert_true(resting_distance(&o, other.x) < 1e-12 && off < 1e-12);
         system_destroy(sys);
-        mem_free(x);
+        state_destroy(&other);
         resting_clear(&o);
     }
 }
@@ -168,34 +169,35 @@ static void test_moments(void **state)
     rod_sum_loads(rod, p);
     RodLayout layout = rod_layout(rod, false);
     System *sys = rod_hanging_system(rod);
-    double *x = mem_alloc((size_t)layout.dofs, sizeof *x), *place = mem_alloc(3 * (N + 1), sizeof *place);
-    rod_natural_state(rod, &layout, p, x);
-    assert_int_equal(rod_relax(rod, sys, 1, p, x).newton.status, NEWTON_CONVERGED);
-    rod_places(rod, &layout, x, N + 1, place);
+    double *place = mem_alloc(3 * (N + 1), sizeof *place);
+    State bent = system_state(sys);
+    rod_natural_state(rod, &layout, p, bent.x);
+    assert_int_equal(rod_relax(rod, sys, 1, p, &bent).newton.status, NEWTON_CONVERGED);
+    rod_places(rod, &layout, bent.x, N + 1, place);
     Vec3 couple = vec3(0, 0, 0), moment[N + 1];
     for (int e = 0; e < N; e++)
         for (int k = 0; k < 2; k++)
             couple = vec3_axpy(rod->area * rod_element_length(rod) / 2,
-                               vec3_cross(quat_rotate(rod_reference(&layout, x, e + k), M), B), couple);
+                               vec3_cross(quat_rotate(rod_reference(&layout, bent.x, e + k), M), B), couple);
     Vec3 expected = vec3_add(couple, vec3_cross(vec3_load(place + 3 * N), force));
-    rod_node_moments(rod, &layout, x, p, moment);
+    rod_node_moments(rod, &layout, bent.x, p, moment);
     double off = vec3_length(vec3_sub(moment[0], expected));
     print_message("moment at the clamp: %.1e of it off\n", off / vec3_length(expected));
     assert_true(off < 3e-4 * vec3_length(expected));
     system_destroy(sys);
     rod_destroy(rod);
     mem_free(p);
-    mem_free(x);
     mem_free(place);
+    state_destroy(&bent);
 }
 
 /* The natural state, with positions. */
-static double *with_positions(const Rod *rod, const double *p)
+static State with_positions(const Rod *rod, const System *sys, const double *p)
 {
     RodLayout layout = rod_layout(rod, true);
-    double *x = mem_alloc((size_t)layout.dofs, sizeof *x);
-    rod_natural_state(rod, &layout, p, x);
-    return x;
+    State state = system_state(sys);
+    rod_natural_state(rod, &layout, p, state.x);
+    return state;
 }
 
 /* A rod magnetised along its tangent has a magnetic pole at either end: beside a magnet, whose field has a
@@ -214,28 +216,28 @@ static double pole_error(int elements)
     rod_default_params(rod, 1e6, p);
     p[rod->field_scale + k] = 1;
     for (int e = 0; e < elements; e++) p[rod->magnetization + 3 * e] = M;
-    double *x = with_positions(rod, p);
     System *sys = rod_system(rod, 1e6, false);
-    assert_int_equal(rod_relax(rod, sys, 1, p, x).newton.status, NEWTON_CONVERGED);
+    State beside = with_positions(rod, sys, p);
+    assert_int_equal(rod_relax(rod, sys, 1, p, &beside).newton.status, NEWTON_CONVERGED);
 
     FluxSample sample;
-    const double *end = x + 3 * elements;
+    const double *end = beside.x + 3 * elements;
     flux_field_eval(magnet, end, 0, &sample);
     p[rod->field_scale + k] = 0;
     vec3_store(p + rod->load + 3 * elements, vec3_scale(rod->area * M, vec3_load(sample.flux)));
     rod_sum_loads(rod, p);
-    double *y = with_positions(loaded, p);
     System *other = rod_system(loaded, 1e6, false);
-    assert_int_equal(rod_relax(loaded, other, 1, p, y).newton.status, NEWTON_CONVERGED);
-    double off = vec3_length(vec3_sub(vec3_load(y + 3 * elements), vec3_load(end)));
+    State pulled = with_positions(loaded, other, p);
+    assert_int_equal(rod_relax(loaded, other, 1, p, &pulled).newton.status, NEWTON_CONVERGED);
+    double off = vec3_length(vec3_sub(vec3_load(pulled.x + 3 * elements), vec3_load(end)));
     assert_true(vec3_length(vec3_sub(vec3_load(end), vec3(0.1, 0, 0))) > 0.01);
     system_destroy(sys);
     system_destroy(other);
     rod_destroy(rod);
     rod_destroy(loaded);
     mem_free(p);
-    mem_free(x);
-    mem_free(y);
+    state_destroy(&beside);
+    state_destroy(&pulled);
     return off;
 }
 
@@ -264,19 +266,22 @@ static void test_balance_in_field(void **state)
     p[o.rod->field_scale + k] = 1;
     for (int e = 0; e < 60; e++) vec3_store(p + o.rod->magnetization + 3 * e, vec3(2e4, 5e3, -3e3));
     RodLayout layout = rod_layout(o.rod, true);
-    double *x = mem_alloc(2 * (size_t)layout.dofs, sizeof *x), *g = x + layout.dofs;
-    rod_copy_state(o.rod, &o.layout, o.x, &layout, x);
+    double *g = mem_alloc((size_t)layout.dofs, sizeof *g);
     System *sys = rod_system(o.rod, 5e6, false);
-    rod_balance(o.rod, sys, &layout, x, p);
-    Evaluation left = system_gradient(sys, &(Point){.x = x, .p = p}, g);
+    State rest = system_state(sys);
+    rod_copy_state(o.rod, &o.layout, o.state.x, &layout, rest.x);
+    rod_balance(o.rod, sys, &layout, rest.x, p);
+    Point point = state_point(&rest, p);
+    Evaluation left = system_gradient(sys, &point, g);
     for (int i = 0; i < layout.reference; i++)
         if (!system_is_fixed(sys, i)) assert_true(fabs(g[i]) <= 1e-12 * left.force_scale);
-    assert_int_equal(rod_relax(o.rod, sys, 1, p, x).newton.status, NEWTON_CONVERGED);
-    print_message("beside a magnet: %.1e m off the curve\n", resting_distance(&o, x));
-    assert_true(resting_distance(&o, x) < 1e-12);
+    assert_int_equal(rod_relax(o.rod, sys, 1, p, &rest).newton.status, NEWTON_CONVERGED);
+    print_message("beside a magnet: %.1e m off the curve\n", resting_distance(&o, rest.x));
+    assert_true(resting_distance(&o, rest.x) < 1e-12);
     system_destroy(sys);
     mem_free(p);
-    mem_free(x);
+    mem_free(g);
+    state_destroy(&rest);
     resting_clear(&o);
     assert_int_equal(mem_live_count(), blocks);
 }
@@ -331,21 +336,22 @@ static double elastica_force(Push push, double *deflection, NewtonInfo *info)
     rod->start = rod->end = push.support;
     Ends ends = {rod_layout(rod, true), push.shortening};
     System *sys = rod_system(rod, young, false);
-    double *x = mem_alloc((size_t)ends.layout.dofs, sizeof *x);
+    State state = system_state(sys);
     set_arc(rod, push.start, p);
-    rod_natural_state(rod, &ends.layout, p, x);
+    rod_natural_state(rod, &ends.layout, p, state.x);
     set_arc(rod, push.natural, p);
     RampDef def = ramp_default();
     def.newton = rod_newton();
     def.steps = 10, def.move = push_end, def.self = &ends;
-    *info = ramp_solve(sys, &rod->params, &def, NULL, p, 0, x).newton;
+    *info = ramp_solve(sys, &rod->params, &def, NULL, p, &state).newton;
     *deflection = 0;
+    const double *x = state.x;
     for (int i = 0; i <= elements; i++) *deflection = fmax(*deflection, hypot(x[3 * i + 1], x[3 * i + 2]));
     double force = fabs(x[ends.layout.multiplier]) / (young * rod->unit.bend1);
     system_destroy(sys);
     rod_destroy(rod);
     mem_free(p);
-    mem_free(x);
+    state_destroy(&state);
     return force;
 }
 

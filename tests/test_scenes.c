@@ -22,8 +22,8 @@ static void take_steps(Model *model)
     def.max_iterations = 2;
     for (int c = 0; c < model->case_count; c++) {
         ModelCase *load = &model->cases[c];
-        NewtonInfo info = newton_minimize(
-            load->sys, &def, &(Point){.p = load->stages[0].p, .time = load->stages[0].time}, load->x, NULL);
+        Point at = {.p = load->stages[0].p, .time = load->stages[0].time};
+        NewtonInfo info = newton_minimize(load->sys, &def, &at, &load->state, NULL);
         assert_true(info.status == NEWTON_MAX_ITERATIONS || info.status == NEWTON_CONVERGED);
     }
 }

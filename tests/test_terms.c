@@ -1,17 +1,11 @@
 /* Every term of a shell in motion: value, gradient, Hessian and products with what else it depends on, against each
  * other. */
-#include "base/memory.h"
-#include "shell/shapes.h"
 #include "shell/terms.h"
 #include "solve/check.h"
+#include "tests/shell_fixture.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
-#include <cmocka.h>
 
 enum { CELLS = 5 };
 
@@ -29,10 +23,8 @@ static Shell *make_shell(BendingModel bending, FluxField *field)
         x[0] += 1e-3 * random_signed(&random), x[1] += 1e-3 * random_signed(&random);
         x[2] = 4e-3 * sin(80 * x[0]) + 20 * x[1] * x[1] + 5e-4 * random_signed(&random);
     }
-    Mesh *mesh = mesh_create(&file, 0, NULL, &err);
-    mesh_file_clear(&file);
-    assert_non_null(mesh);
-    Shell *shell = shell_create(mesh);
+    Shell *shell = shell_of_mesh(&file);
+    const Mesh *mesh = shell->mesh;
     shell->thickness = 1e-3, shell->poisson = 0.4, shell->density = 1200, shell->bending = bending;
     if (field) {
         flux_fields_add(&shell->fields, &shell->params, field);
@@ -72,16 +64,19 @@ static void check_rows(BendingModel bending, FluxField *field)
     Random random = random_seed(17);
     Shell *shell = make_shell(bending, field);
     double *p = make_params(shell, &random);
-    double *x = mem_alloc((size_t)shell_dof_count(shell), sizeof *x), dof_size[TERM_MAX_DOF];
+    System *sys = shell_dynamic_system(shell);
+    State now = system_state(sys);
+    double *x = now.x, dof_size[TERM_MAX_DOF];
     shell_rest_state(shell, x);
     for (int i = 0; i < shell_dof_count(shell); i++)
         x[i] += (i < 3 * shell->mesh->vertex_count ? 2e-3 : 0.3) * random_signed(&random);
     for (int i = 0; i < TERM_MAX_DOF; i++) dof_size[i] = i < 18 ? 1e-3 : 1;
-    Point at = {.x = x, .p = p, .time = 0.3, .dt = 0.01};
-    System *sys = shell_dynamic_system(shell);
-    system_accept(sys, x);
+    system_accept(sys, x, now.memory);
+    Point at = state_point(&now, p);
+    at.time = 0.3, at.dt = 0.01;
     for (int t = 0; t < system_term_count(sys); t++) {
-        TermError error = check_term(system_term(sys, t), &shell->params, &at, dof_size, &random);
+        Point own = system_term_point(sys, t, &at);
+        TermError error = check_term(system_term(sys, t), &shell->params, &own, dof_size, &random);
         print_message("%-10s gradient %.1e  hessian %.1e  param_forward %.1e  param %.1e  prev_forward %.1e  "
                       "prev %.1e\n",
                       system_term(sys, t)->ops->name, error.gradient, error.hessian, error.forward,
@@ -89,7 +84,7 @@ static void check_rows(BendingModel bending, FluxField *field)
         assert_true(check_differences(error) < 1e-7 && check_products(error) < 1e-11);
     }
     system_destroy(sys);
-    mem_free(x);
+    state_destroy(&now);
     mem_free(p);
     shell_destroy(shell);
 }
@@ -190,13 +185,16 @@ static void test_blind(void **state)
     Random random = random_seed(23);
     Shell *shell = make_shell(BENDING_MIDEDGE, NULL);
     double *p = make_params(shell, &random), dof_size[TERM_MAX_DOF];
-    double *x = mem_alloc((size_t)shell_dof_count(shell), sizeof *x);
+    System *sys = shell_dynamic_system(shell);
+    State now = system_state(sys);
+    double *x = now.x;
     shell_rest_state(shell, x);
     for (int i = 0; i < shell_dof_count(shell); i++) x[i] += 1e-3 * random_signed(&random);
     for (int i = 0; i < TERM_MAX_DOF; i++) dof_size[i] = i < 18 ? 1e-3 : 1;
-    System *sys = shell_dynamic_system(shell);
+    Point at = state_point(&now, p);
+    at.x_prev = x;
     int seen[SPOILS] = {0};
-    system_accept(sys, x);
+    system_accept(sys, x, now.memory);
     for (int t = 0; t < system_term_count(sys); t++)
         for (int how = 0; how < SPOILS; how++) {
             Term term = *system_term(sys, t);
@@ -204,15 +202,15 @@ static void test_blind(void **state)
             if (!can_be(right, (Spoil)how)) continue;
             TermOps wrong = spoil(right, (Spoil)how);
             term.ops = &wrong;
-            TermError error =
-                check_term(&term, &shell->params, &(Point){.x = x, .p = p, .x_prev = x}, dof_size, &random);
+            Point own = system_term_point(sys, t, &at);
+            TermError error = check_term(&term, &shell->params, &own, dof_size, &random);
             if (check_differences(error) < 1e-3 && check_products(error) < 1e-3)
                 fail_msg("%s passes, spoilt in the way %d", right->name, how);
             seen[how]++;
         }
     for (int how = 0; how < SPOILS; how++) assert_true(seen[how] > 0);
     system_destroy(sys);
-    mem_free(x);
+    state_destroy(&now);
     mem_free(p);
     shell_destroy(shell);
 }

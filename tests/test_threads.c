@@ -103,21 +103,23 @@ static const char rod_scene[] =
 static void check_system(const char *scene)
 {
     Built b = build(scene);
-    System *sys = b.model->cases[0].sys;
+    ModelCase *c = &b.model->cases[0];
+    System *sys = c->sys;
     size_t n = (size_t)system_dof_count(sys);
-    double *work = mem_alloc(7 * n, sizeof *work), *x = work, *v = work + n, first = 0;
+    double *work = mem_alloc(5 * n, sizeof *work), *v = work, first = 0;
     Random random = random_seed(5);
-    memcpy(x, b.model->cases[0].x, n * sizeof *x);
-    for (size_t i = 0; i < n; i++) x[i] += 1e-4 * random_signed(&random), v[i] = random_signed(&random);
+    Point point = state_point(&c->state, c->stages[0].p);
+    for (size_t i = 0; i < n; i++)
+        c->state.x[i] += 1e-4 * random_signed(&random), v[i] = random_signed(&random);
     for (int run = 0; run < RUNS; run++) {
         Workers *workers = workers_create(threads[run]);
-        double *g = work + (run ? 4 : 2) * n, *Hv = g + n;
+        double *g = work + (run ? 3 : 1) * n, *Hv = g + n;
         system_set_workers(sys, workers);
-        Evaluation at = system_hessian(sys, &(Point){.x = x, .p = b.model->cases[0].stages[0].p}, g);
+        Evaluation at = system_hessian(sys, &point, g);
         system_multiply(sys, v, Hv);
         assert_true(at.finite && (run == 0 || at.energy == first));
         first = at.energy;
-        if (run) assert_memory_equal(work + 2 * n, g, 2 * n * sizeof *g);
+        if (run) assert_memory_equal(work + n, g, 2 * n * sizeof *g);
         system_set_workers(sys, NULL);
         workers_destroy(workers);
     }
@@ -140,9 +142,9 @@ static double evaluate_cases(const char *scene, int thread_count, double **gradi
     *gradient = mem_alloc(*size, sizeof *u);
     for (int c = 0; c < model->case_count; c++) {
         ModelCase *from = &model->cases[c];
-        cases[c] = (LoadCase){
-            from->name,   from->sys, from->stages[0].p, from->x, from->objectives, from->objective_count,
-            from->weight, 0};
+        cases[c] = (LoadCase){from->name,   from->sys,        from->stages[0].p,
+                              &from->state, from->objectives, from->objective_count,
+                              from->weight};
         design_read(&model->design, c, from->stages[0].p, u);
     }
     StaticDesign *sd = static_design_create(&model->design, model->params, cases, &def);

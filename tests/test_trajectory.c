@@ -1,19 +1,12 @@
 /* The adjoint of a motion in time: against the tangent, against differences, with and without kept factors,
  * for fields over time, magnetisation, stiffness, folds and the start; cut steps and moved vertices included.
  */
-#include "base/memory.h"
 #include "base/random.h"
 #include "optim/objectives.h"
 #include "optim/trajectory_adjoint.h"
-#include "shell/shapes.h"
-#include "shell/shell.h"
+#include "tests/shell_fixture.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-#include <cmocka.h>
 
 enum { STEPS = 12, ROWS = STEPS };
 
@@ -24,7 +17,8 @@ typedef struct Fixture {
     Objective objectives[3];
     TrajectoryProblem problem;
     TrajectoryDef def;
-    double *u, *v, *gradient, *x0, *v0;
+    State start;
+    double *u, *v, *gradient;
 } Fixture;
 
 /* The held edge shakes. */
@@ -38,18 +32,9 @@ static bool shake(void *self, double time, double *x)
 
 static Shell *make_shell(BendingModel bending)
 {
-    MeshFile file;
-    Error err;
-    assert_true(shape_sheet((double[]){0.012, 0.004}, (int[]){6, 2}, PATTERN_ALTERNATE, &file, &err));
-    Mesh *mesh = mesh_create(&file, 0, NULL, &err);
-    mesh_file_clear(&file);
-    Shell *shell = shell_create(mesh);
+    Shell *shell = shell_of_sheet((double[]){0.012, 0.004}, (int[]){6, 2}, PATTERN_ALTERNATE);
     shell->thickness = 4e-4, shell->poisson = 0.4, shell->density = 1000, shell->bending = bending;
-    for (int v = 0; v < mesh->vertex_count; v++)
-        for (int i = 0; mesh->rest[v][0] < 1e-9 && i < 3; i++) shell_fix(shell, v, i);
-    for (int e = 0; e < mesh->edge_count; e++)
-        if (mesh->rest[mesh->edges[e][0]][0] < 1e-9 && mesh->rest[mesh->edges[e][1]][0] < 1e-9)
-            shell_clamp(shell, e);
+    hold_root(shell, true);
     return shell;
 }
 
@@ -95,22 +80,21 @@ static void make(Fixture *f, BendingModel bending, ControlKind kind, bool moving
     Random random = random_seed(7);
     *f = (Fixture){.shell = make_shell(bending), .def = trajectory_default()};
     add_unknowns(f, kind);
-    size_t dofs = (size_t)shell_dof_count(f->shell), size = (size_t)f->design.size;
+    size_t size = (size_t)f->design.size;
     double *p = mem_alloc((size_t)f->shell->params.size, sizeof *p);
-    f->x0 = mem_alloc(dofs, sizeof(double));
-    f->v0 = mem_alloc(dofs, sizeof(double));
     f->u = mem_alloc(size, sizeof(double));
     f->v = mem_alloc(size, sizeof(double));
     f->gradient = mem_alloc(size, sizeof(double));
     start_params(f, p, &random);
     design_read(&f->design, 0, p, f->u);
     for (size_t i = 0; i < size; i++) f->v[i] = random_signed(&random);
-    shell_rest_state(f->shell, f->x0);
     System *sys = shell_dynamic_system(f->shell);
+    State start = f->start = system_state(sys);
+    shell_rest_state(f->shell, start.x);
     for (int i = 0; i < system_position_count(sys); i++)
         if (!system_is_fixed(sys, i))
-            f->x0[i] += 5e-5 * random_signed(&random), f->v0[i] = 0.05 * random_signed(&random);
-    system_accept(sys, f->x0);
+            start.x[i] += 5e-5 * random_signed(&random), start.v[i] = 0.05 * random_signed(&random);
+    system_accept(sys, start.x, start.memory);
     int tip = mesh_group(f->shell->mesh, "tip", 0)->members[0], others[2] = {tip, 3};
     const double goal[1][3] = {{0.010, 0.002, 0.004}},
                  goals[2][3] = {{0.011, 0.001, 0.003}, {0.006, 0, 0.001}};
@@ -128,10 +112,9 @@ static void make(Fixture *f, BendingModel bending, ControlKind kind, bool moving
                                      .objectives = f->objectives,
                                      .control_count = 1,
                                      .objective_count = 3,
+                                     .start = &f->start,
                                      .step = 1e-3,
                                      .steps = STEPS,
-                                     .x = f->x0,
-                                     .v = f->v0,
                                      .p = p};
 }
 
@@ -142,8 +125,9 @@ static void clear(Fixture *f)
     mem_free(f->problem.p);
     design_clear(&f->design);
     shell_destroy(f->shell);
-    double *owned[] = {f->u, f->v, f->gradient, f->x0, f->v0};
-    for (int k = 0; k < 5; k++) mem_free(owned[k]);
+    state_destroy(&f->start);
+    double *owned[] = {f->u, f->v, f->gradient};
+    for (int k = 0; k < 3; k++) mem_free(owned[k]);
 }
 
 static double dot(int n, const double *a, const double *b)
@@ -164,7 +148,7 @@ static double by_tangent(Fixture *f, Trajectory *t)
         for (int n = f->objectives[k].first; n <= f->objectives[k].last; n++) {
             memset(seed, 0, (size_t)dofs * sizeof *seed);
             f->objectives[k].ops->value(f->objectives[k].self, f->objectives[k].weight,
-                                        trajectory_frame(t, n), trajectory_params(t, n), seed, NULL);
+                                        trajectory_frame(t, n).x, trajectory_params(t, n), seed, NULL);
             sum += dot(dofs, seed, dx + (size_t)n * (size_t)dofs);
         }
     mem_free(dx);
@@ -176,22 +160,24 @@ static double by_tangent(Fixture *f, Trajectory *t)
 static double by_differences(Fixture *f, double h, const double *dx, const double *dv)
 {
     int dofs = shell_dof_count(f->shell), size = f->design.size;
-    double F[2], *u = mem_alloc((size_t)size, sizeof *u), *x = mem_alloc(2 * (size_t)dofs, sizeof *x),
-                 *v = x + dofs;
+    double F[2], *u = mem_alloc((size_t)size, sizeof *u);
+    State start = state_clone(&f->start);
     for (int side = 0; side < 2; side++) {
         double s = side ? h : -h;
         Fixture g = *f;
         TrajectoryInfo info;
         for (int i = 0; i < size; i++) u[i] = f->u[i] + (dx ? 0 : s * f->v[i]);
-        for (int i = 0; i < dofs; i++)
-            x[i] = f->x0[i] + (dx ? s * dx[i] : 0), v[i] = f->v0[i] + (dv ? s * dv[i] : 0);
-        g.problem.x = x, g.problem.v = v;
+        for (int i = 0; i < dofs; i++) {
+            start.x[i] = f->start.x[i] + (dx ? s * dx[i] : 0);
+            start.v[i] = f->start.v[i] + (dv ? s * dv[i] : 0);
+        }
+        g.problem.start = &start;
         Trajectory *t = trajectory_create(&g.problem, &g.def);
         F[side] = trajectory_evaluate(t, u, NULL, &info);
         trajectory_destroy(t);
     }
     mem_free(u);
-    mem_free(x);
+    state_destroy(&start);
     return (F[1] - F[0]) / (2 * h);
 }
 

@@ -1,43 +1,17 @@
 /* Finite motion of a sheet from a velocity (shell/turn.h), the stress that a step was to bring, and what they are for: thin
  * sheets that turn far, and strips that leave their plane. */
-#include "base/memory.h"
 #include "base/random.h"
-#include "shell/shapes.h"
 #include "shell/turn.h"
 #include "solve/eigen.h"
 #include "solve/ramp.h"
+#include "tests/shell_fixture.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <string.h>
-#include <cmocka.h>
 
 static Shell *make_sheet(double length, double width, int cells, int across, double thickness)
 {
-    MeshFile file = {0};
-    Error err;
-    assert_true(shape_sheet((double[]){length, width}, (int[]){cells, across}, PATTERN_RIGHT, &file, &err));
-    Mesh *mesh = mesh_create(&file, 0, NULL, &err);
-    mesh_file_clear(&file);
-    Shell *shell = shell_create(mesh);
+    Shell *shell = shell_of_sheet((double[]){length, width}, (int[]){cells, across}, PATTERN_RIGHT);
     shell->thickness = thickness, shell->poisson = 0, shell->density = 1000;
     return shell;
-}
-
-static bool at_root(const Shell *shell, int vertex)
-{
-    return shell->mesh->rest[vertex][0] < 1e-9;
-}
-
-static void hold_root(Shell *shell, bool clamp)
-{
-    const Mesh *mesh = shell->mesh;
-    for (int i = 0; i < 3 * mesh->vertex_count; i++)
-        if (at_root(shell, i / 3)) shell_fix(shell, i / 3, i % 3);
-    for (int e = 0; clamp && e < mesh->edge_count; e++)
-        if (at_root(shell, mesh->edges[e][0]) && at_root(shell, mesh->edges[e][1])) shell_clamp(shell, e);
 }
 
 static double *make_vector(const Shell *shell)
@@ -83,7 +57,8 @@ static void test_roll(void **state)
     Shell *shell = make_sheet(0.1, 0.0125, CELLS, ACROSS, 1e-3);
     hold_root(shell, false);
     System *sys = shell_system(shell);
-    double *x = make_vector(shell), *d = make_vector(shell), *to = make_vector(shell);
+    State end = system_state(sys);
+    double *x = make_vector(shell), *d = make_vector(shell), *to = end.x;
     double *p = mem_alloc((size_t)shell->params.size, sizeof *p);
     shell_default_params(shell, p);
     shell_rest_state(shell, x);
@@ -92,7 +67,7 @@ static void test_roll(void **state)
         for (int k = 0; k < column; k++) d[3 * v + 2] += 0.1 / CELLS * k;
     }
     follow(shell, x, d, 0.3, to);
-    Point at = {.x = to, .p = p};
+    Point at = state_point(&end, p);
     double rolled = system_term_energy(sys, 0, &at, NULL);
     for (int i = 0; i < shell_dof_count(shell); i++) to[i] = x[i] + 0.3 * d[i];
     double straight = system_term_energy(sys, 0, &at, NULL);
@@ -103,7 +78,7 @@ static void test_roll(void **state)
     shell_destroy(shell);
     mem_free(x);
     mem_free(d);
-    mem_free(to);
+    state_destroy(&end);
     mem_free(p);
 }
 
@@ -142,14 +117,17 @@ static void test_first_order(void **state)
 static double across(const Shell *shell, System *sys, const double *p, double l, const double *from,
                      const double *step)
 {
-    double *x = make_vector(shell), *gradient = make_vector(shell), *v = make_vector(shell), sum = 0;
-    shell_rest_state(shell, x);
-    for (int i = 0; i < 3 * shell->mesh->vertex_count; i++) x[i] *= l;
+    double *gradient = make_vector(shell), *v = make_vector(shell), sum = 0;
+    State state = system_state(sys);
+    shell_rest_state(shell, state.x);
+    for (int i = 0; i < 3 * shell->mesh->vertex_count; i++) state.x[i] *= l;
     for (int i = 0; i < shell->mesh->vertex_count; i++) v[3 * i + 2] = sin(1 + i);
-    system_hessian(sys, &(Point){.x = x, .p = p, .x_from = from, .step = step}, gradient);
+    Point at = state_point(&state, p);
+    at.x_from = from, at.step = step;
+    system_hessian(sys, &at, gradient);
     system_multiply(sys, v, gradient);
     for (int i = 0; i < shell_dof_count(shell); i++) sum += v[i] * gradient[i];
-    mem_free(x);
+    state_destroy(&state);
     mem_free(gradient);
     mem_free(v);
     return sum;
@@ -179,40 +157,16 @@ static void test_extrapolated_stress(void **state)
     mem_free(p);
 }
 
-typedef struct Body {
-    Shell *shell;
-    System *sys;
-    double *p, *x;
-} Body;
-
-static Body make_body(Shell *shell, double young)
-{
-    Body b = {.shell = shell, .sys = shell_system(shell), .x = make_vector(shell)};
-    b.p = mem_alloc((size_t)shell->params.size, sizeof *b.p);
-    shell_default_params(shell, b.p);
-    shell_rest_state(shell, b.x);
-    for (int f = 0; f < shell->mesh->face_count; f++) b.p[shell->young + f] = young;
-    return b;
-}
-
-static void free_body(Body *b)
-{
-    system_destroy(b->sys);
-    shell_destroy(b->shell);
-    mem_free(b->p);
-    mem_free(b->x);
-}
-
 static RampInfo solve(Body *b)
 {
     RampDef def = ramp_default();
-    return ramp_solve(b->sys, &b->shell->params, &def, NULL, b->p, 0, b->x);
+    return ramp_solve(b->sys, &b->shell->params, &def, NULL, b->p, &b->state);
 }
 
 static double height(const Body *b)
 {
     double most = 0;
-    for (int v = 0; v < b->shell->mesh->vertex_count; v++) most = fmax(most, fabs(b->x[3 * v + 2]));
+    for (int v = 0; v < b->shell->mesh->vertex_count; v++) most = fmax(most, fabs(b->state.x[3 * v + 2]));
     return most;
 }
 
@@ -226,7 +180,7 @@ static void test_strips_buckle(void **state)
         for (int k = 0; k < 4; k++) {
             Shell *shell = make_sheet(length, 0.01, 60, 3, thicknesses[i]);
             hold_root(shell, true);
-            Body b = make_body(shell, young);
+            Body b = body_create(shell, shell_system(shell), young);
             double rigidity = young * pow(thicknesses[i], 3) / 12;
             b.p[shell->gravity + 1] = -loads[k] * 18.17 * rigidity / (1000 * thicknesses[i] * pow(length, 3));
             RampInfo info = solve(&b);
@@ -237,8 +191,9 @@ static void test_strips_buckle(void **state)
             assert_true(info.newton.status == NEWTON_CONVERGED && info.steps == 1 &&
                         info.newton.iterations <= 200); /* 3 to 148; other roundings, other ways */
             assert_true(loads[k] < 1 ? flat < 1e-9 : flat > 0.005);
-            assert_true(eigen_lowest(b.sys, &(Point){.x = b.x, .p = b.p}, 1, &lowest, NULL) && lowest > 0);
-            free_body(&b);
+            Point at = state_point(&b.state, b.p);
+            assert_true(eigen_lowest(b.sys, &at, 1, &lowest, NULL) && lowest > 0);
+            body_clear(&b);
         }
 }
 
@@ -256,16 +211,16 @@ static void test_sheets_hang(void **state)
     for (int i = 0; i < 4; i++) {
         Shell *shell = make_sheet(0.1, 0.025, 16, 4, rows[i].thickness);
         hold_root(shell, false);
-        Body b = make_body(shell, rows[i].young);
+        Body b = body_create(shell, shell_system(shell), rows[i].young);
         b.p[shell->gravity + 2] = -9.81 * rows[i].density / shell->density;
         RampInfo info = solve(&b);
         int tip = 2 * 17 + 16;
         print_message("%s: %s after %d iterations, tip at %.6f m\n", rows[i].name,
-                      newton_status_name(info.newton.status), info.newton.iterations, b.x[3 * tip + 2]);
+                      newton_status_name(info.newton.status), info.newton.iterations, b.state.x[3 * tip + 2]);
         assert_true(info.newton.status == NEWTON_CONVERGED && info.steps == 1 &&
                     info.newton.iterations <= 60);
-        assert_true(fabs(b.x[3 * tip + 2] + 0.1) < 2e-4 && fabs(b.x[3 * tip]) < 1e-6);
-        free_body(&b);
+        assert_true(fabs(b.state.x[3 * tip + 2] + 0.1) < 2e-4 && fabs(b.state.x[3 * tip]) < 1e-6);
+        body_clear(&b);
     }
 }
 
