@@ -1,5 +1,5 @@
 /* Levenberg-Marquardt, matrix-free: min |r + J d|^2 + mu |d|^2 + nu |d|_S^2 by conjugate gradients with
- * products J^T J v, bounds by projection. Near a snap-through J grows without limit in the soft mode:
+ * products J^T J v. Near a snap-through J grows without limit in the soft mode:
  * - the gradient is hardly anything else. Conjugate gradients that stop at a part of the gradient would move
  *   that mode alone, into the snap; so they go on until little of F is left to gain.
  * - a step is soon too long for that mode, and mu, which would shorten it, stops all others first. S measures
@@ -13,7 +13,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { CG_MAX = 150, REFUSED_MAX = 6, WINDOW = 4 };
+enum { CG_MAX = 200, CG_RUNS = 3, REFUSED_MAX = 6, WINDOW = 4 };
 
 static const double CG_TOL = 1e-2, LEFT_MAX = 1e-2; /* parts of the gradient, and of F */
 static const double MU_FIRST = 0.3, MU_UP = 1.5, MU_LEAST = 0.1, NU_FIRST = 10, DOWN = 5, UP = 5;
@@ -25,7 +25,7 @@ typedef struct Damping {
 
 typedef struct Cg {
     double *step, *residual, *direction, *product, *trial, *trial_gradient; /* [n] */
-    bool *held; /* [n] at a bound, gradient outwards */
+    bool *held;                                                             /* [n] */
 } Cg;
 
 static double dot(int n, const double *a, const double *b)
@@ -35,68 +35,99 @@ static double dot(int n, const double *a, const double *b)
     return sum;
 }
 
-/* out = (J^T J + nu S) v over the free unknowns. F is the sum of squares, its gradient g = 2 J^T r, and
- * products come as 2 J^T J v. */
-static void product(Best *best, const Cg *cg, const double *v, double nu, double *out)
+/* At a bound and drawn beyond it. */
+static bool is_held(const Problem *problem, int i, double at, double pull)
+{
+    return (at <= problem->lower[i] && pull < 0) || (at >= problem->upper[i] && pull > 0);
+}
+
+/* out = (J^T J + nu S) v. F is the sum of squares, its gradient g = 2 J^T r, and products come as 2 J^T J v.
+ */
+static void product(Best *best, const double *v, double nu, double *out)
 {
     best->problem->product(best->problem->self, v, nu, out);
     best->info.products++;
-    for (int i = 0; i < best->problem->n; i++)
-        if (cg->held[i]) out[i] = 0;
-}
-
-static void find_held(const Best *best, Cg *cg)
-{
-    const Problem *problem = best->problem;
-    for (int i = 0; i < problem->n; i++)
-        cg->held[i] = (best->u[i] <= problem->lower[i] && best->gradient[i] > 0) ||
-                      (best->u[i] >= problem->upper[i] && best->gradient[i] < 0);
 }
 
 /* A lower bound of |2 J^T J|, which damping is measured in: g = 2 J^T r and F = |r|^2 give |g|^2 <= 4 |J|^2
  * F. */
-static double curvature_scale(const Best *best, const Cg *cg)
+static double curvature_scale(const Best *best)
 {
     double sum = 0;
     for (int i = 0; i < best->problem->n; i++)
-        if (!cg->held[i]) sum += best->gradient[i] * best->gradient[i];
+        if (!is_held(best->problem, i, best->u[i], -best->gradient[i]))
+            sum += best->gradient[i] * best->gradient[i];
     return sum / (2 * fabs(best->objective) + DBL_MIN);
 }
 
-/* (J^T J + nu S + mu) step = -gradient by conjugate gradients. No eigenvalue is below mu, so with the
- * residual q the model is at most q'q/(2 mu) above its minimum. */
-static void solve_step(Best *best, Cg *cg, Damping damping)
+/* residual = -gradient - (J^T J + nu S + mu) step, and who is held. */
+static void find_residual(Best *best, Cg *cg, Damping damping, bool at_start)
 {
-    int n = best->problem->n;
-    for (int i = 0; i < n; i++) {
-        cg->step[i] = 0;
-        cg->residual[i] = cg->direction[i] = cg->held[i] ? 0 : -best->gradient[i];
+    const Problem *problem = best->problem;
+    if (!at_start) product(best, cg->step, damping.nu, cg->product);
+    for (int i = 0; i < problem->n; i++) {
+        double pull = -best->gradient[i], at = best->u[i] + cg->step[i];
+        if (!at_start) pull -= cg->product[i] + damping.mu * cg->step[i];
+        cg->held[i] = is_held(problem, i, at, pull);
+        cg->residual[i] = cg->held[i] ? 0 : pull;
     }
+}
+
+/* Improves the step by conjugate gradients over the unknowns that are not held, until |residual|^2 is at most
+ * stop; the products it took. */
+static int improve_step(Best *best, Cg *cg, Damping damping, double stop, int most)
+{
+    int n = best->problem->n, count = 0;
     double size = dot(n, cg->residual, cg->residual);
-    double stop = fmin(CG_TOL * CG_TOL * size, 2 * damping.mu * LEFT_MAX * fabs(best->objective));
-    for (int k = 0; k < CG_MAX && size > stop; k++) {
-        product(best, cg, cg->direction, damping.nu, cg->product);
+    memcpy(cg->direction, cg->residual, (size_t)n * sizeof *cg->direction);
+    while (count < most && size > stop) {
+        product(best, cg->direction, damping.nu, cg->product);
+        count++;
         for (int i = 0; i < n; i++) cg->product[i] += damping.mu * cg->direction[i];
         double curvature = dot(n, cg->direction, cg->product);
-        if (!(curvature > 0)) return;
+        if (!(curvature > 0)) break;
         double a = size / curvature;
         for (int i = 0; i < n; i++) {
             cg->step[i] += a * cg->direction[i];
-            cg->residual[i] -= a * cg->product[i];
+            cg->residual[i] -= cg->held[i] ? 0 : a * cg->product[i];
         }
         double next = dot(n, cg->residual, cg->residual);
         for (int i = 0; i < n; i++) cg->direction[i] = cg->residual[i] + next / size * cg->direction[i];
         size = next;
     }
+    return count;
 }
 
+/* The trial that the step leads to, within the bounds; shortens the step to it. False: it was within. */
+static bool put_within(const Best *best, Cg *cg)
+{
+    bool beyond = false;
+    for (int i = 0; i < best->problem->n; i++) {
+        double to = best->u[i] + cg->step[i];
+        cg->trial[i] = fmin(fmax(to, best->problem->lower[i]), best->problem->upper[i]);
+        if (cg->trial[i] == to) continue;
+        cg->step[i] = cg->trial[i] - best->u[i];
+        beyond = true;
+    }
+    return beyond;
+}
+
+/* (J^T J + nu S + mu) step = -gradient within the bounds: what conjugate gradients carry beyond its bound is
+ * put on it, and they go on with the rest, which has to make up for it (as in More and Toraldo's GPCG, SIAM J.
+ * Optim. 1 (1991) 93). Each run but the last has half of the products that are left. No eigenvalue is below
+ * mu, so with the residual q the model is at most q'q/(2 mu) above its minimum. */
 static void find_trial(Best *best, Cg *cg, Damping damping)
 {
-    const Problem *problem = best->problem;
-    find_held(best, cg);
-    solve_step(best, cg, damping);
-    for (int i = 0; i < problem->n; i++)
-        cg->trial[i] = fmin(fmax(best->u[i] + cg->step[i], problem->lower[i]), problem->upper[i]);
+    double stop = 0;
+    memset(cg->step, 0, (size_t)best->problem->n * sizeof *cg->step);
+    for (int run = 1, left = CG_MAX; run <= CG_RUNS && left > 0; run++) {
+        find_residual(best, cg, damping, run == 1);
+        if (run == 1)
+            stop = fmin(CG_TOL * CG_TOL * dot(best->problem->n, cg->residual, cg->residual),
+                        2 * damping.mu * LEFT_MAX * fabs(best->objective));
+        left -= improve_step(best, cg, damping, stop, run < CG_RUNS ? left / 2 : left);
+        if (!put_within(best, cg)) return;
+    }
 }
 
 /* d'J^T J d/d'd of the refused step d: conjugate gradients that are cut short damp by themselves, and a mu
@@ -127,8 +158,7 @@ static void run(Best *best, Cg *cg, const double *u)
     const Problem *problem = best->problem;
     best_evaluate(best, u, cg->trial_gradient);
     if (!isfinite(best->objective)) return;
-    find_held(best, cg);
-    Damping damping = {MU_FIRST * curvature_scale(best, cg), 0};
+    Damping damping = {MU_FIRST * curvature_scale(best), 0};
     double history[WINDOW];
     for (int k = 0; k < WINDOW; k++) history[k] = INFINITY;
     for (int step = 0, refused = 0; refused < REFUSED_MAX && !best_is_done(best);) {
