@@ -34,7 +34,7 @@ char *run_versions(void)
 {
     const char *note = kernels_note();
     return mem_format("slender %s\nCHOLMOD %s\n%s%s\nkernels %s%s%s\nNLopt %s\nHDF5 %s\nSQLite %s\n",
-                      SLENDER_VERSION, sparse_version(), kernels_blas_version(),
+                      SLENDER_VERSION, direct_version(), kernels_blas_version(),
                       kernels_blas_is_fast() ? "" : " (slow: OpenBLAS is ten times faster)", kernels_name(),
                       *note ? ", " : "", note, optimiser_nlopt_version(), result_hdf5_version(),
                       journal_sqlite_version());

@@ -21,7 +21,7 @@ static void make_room(Path *path, int room)
     path->time = mem_resize(path->time, from, to, sizeof *path->time);
     path->x = mem_resize(path->x, n * from, n * to, sizeof *path->x);
     path->memory = mem_resize(path->memory, m * from, m * to, sizeof *path->memory);
-    path->factor = mem_resize(path->factor, from, to, sizeof(SparseFactor *));
+    path->factor = mem_resize(path->factor, from, to, sizeof(Factor *));
     path->room = room;
 }
 
@@ -51,7 +51,7 @@ Path path_create(const TrajectoryProblem *problem, const MarchDef *march, int fa
 void path_clear(Path *path)
 {
     for (int k = 0; k <= path->count; k++) {
-        system_free_factor(path->problem->sys, path->factor[k]);
+        factor_release(path->factor[k]);
         path->factor[k] = NULL;
     }
     path->count = path->factor_count = 0;
@@ -121,7 +121,7 @@ bool path_add(Path *path, int frame, const State *state, double dt)
     Point at = point(path, k);
     if (!factor_at(path, &at)) return false;
     if (path->factor_count < path->factor_max) {
-        path->factor[k] = system_keep_factor(path->problem->sys);
+        path->factor[k] = system_share_factor(path->problem->sys);
         path->factor_count++;
     }
     return true;

@@ -1,19 +1,22 @@
-/* sparse.h - symmetric sparse matrices that are assembled in place, factored and solved: the one door to CHOLMOD.
+/* sparse.h - symmetric sparse matrices that are assembled in place, factored and solved (direct.h).
  *
  * The pattern comes from the elements' dof lists, is ordered once for low fill (AMD; METIS for large ones) and stored
  * in the permuted order, so that factoring needs neither a transpose nor a new analysis. Positive definiteness is
  * news, not an error: sparse_factor returns false. Another direct solver would stand behind these same functions. */
 #pragma once
+#include "solve/direct.h"
 #include <stdbool.h>
 
 typedef struct Sparse Sparse;
 
 typedef struct SparseDef {
-    const int *
-        order; /* [n] the unknowns in the order of elimination; NULL: one for low fill is found (AMD, METIS) */
-    int negative; /* so many unknowns are Lagrange multipliers: the matrix counts as definite where exactly so many
-                       * pivots of its LDL^T are negative, that is, where it is definite on what the multipliers allow.
-                       * Each must come after unknowns that it is coupled with, for there is no pivoting. */
+    /* [n] the unknowns in the order of elimination; NULL: one for low fill is found (direct_order). */
+    const int *order;
+
+    /* So many unknowns are Lagrange multipliers: the matrix counts as definite where exactly so many pivots of its LDL^T
+     * are negative, that is, where it is definite on what the multipliers allow. Each must come after unknowns that it
+     * is coupled with, for there is no pivoting. */
+    int negative;
 } SparseDef;
 
 /* The pattern of n unknowns coupled by elements: element e couples element_dofs[element_start[e] ..
@@ -48,12 +51,11 @@ void sparse_multiply(const Sparse *matrix, const double *x, double *y);
  * positive definite. b and x may be the same. */
 int sparse_solve_cg(Sparse *matrix, const double *b, double tolerance, int max_iterations, double *x);
 
-/* A factor kept aside, by a copy of the one at hand; and made the one at hand again, until the next sparse_factor. The
- * caller destroys it before the matrix, and not while it is at hand. */
-typedef struct SparseFactor SparseFactor;
-SparseFactor *sparse_keep(Sparse *matrix);
-void sparse_use(Sparse *matrix, const SparseFactor *factor);
-void sparse_factor_destroy(Sparse *matrix, SparseFactor *factor);
+/* The factor at hand, shared: the caller releases it (direct.h), when he likes. And a factor made the one at hand,
+ * which takes a share: it may be of another pattern, and of another matrix altogether. False where it is of another
+ * size: nothing is changed. */
+Factor *sparse_share_factor(Sparse *matrix);
+bool sparse_use_factor(Sparse *matrix, Factor *factor);
 
 /* What it cost. */
 typedef struct SparseInfo {
@@ -64,6 +66,3 @@ typedef struct SparseInfo {
     double factor_seconds, solve_seconds;
 } SparseInfo;
 SparseInfo sparse_info(const Sparse *matrix);
-
-/* "3.0.14" of CHOLMOD, a static text. */
-const char *sparse_version(void);

@@ -116,10 +116,10 @@ void system_solve(System *sys, const double *b, double *y);
  * preconditioner; -1: not reached in max_iterations, no usable factor, or H not positive definite (sparse_solve_cg). */
 int system_solve_cg(System *sys, const double *b, double tolerance, int max_iterations, double *y);
 
-/* Factors kept aside and made the last one again (sparse_keep); NULL: there is none from now on. */
-SparseFactor *system_keep_factor(System *sys);
-void system_use_factor(System *sys, const SparseFactor *factor);
-void system_free_factor(System *sys, SparseFactor *factor);
+/* The last factor, shared (direct.h: factor_release); and one made the last one again, of whatever pattern. NULL, or one of
+ * another size: there is none from now on. */
+Factor *system_share_factor(System *sys);
+void system_use_factor(System *sys, Factor *factor);
 
 /* What the last factor depends on beside p, in system_anchor_count() numbers: with it, and with p of its time,
  * system_restore_factor makes the same factor again, bit by bit; or none, where there was no usable one. */

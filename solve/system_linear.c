@@ -110,22 +110,16 @@ int system_solve_cg(System *sys, const double *b, double tolerance, int max_iter
     return iterations;
 }
 
-SparseFactor *system_keep_factor(System *sys)
+Factor *system_share_factor(System *sys)
 {
-    return sparse_keep(sys->matrix);
+    return sparse_share_factor(sys->matrix);
 }
 
 /* It may serve solves, but where it stands is not known here any more. */
-void system_use_factor(System *sys, const SparseFactor *factor)
+void system_use_factor(System *sys, Factor *factor)
 {
-    if (factor) sparse_use(sys->matrix, factor);
     sys->anchor[ANCHOR_USABLE] = 0;
-    sys->factored = factor != NULL;
-}
-
-void system_free_factor(System *sys, SparseFactor *factor)
-{
-    sparse_factor_destroy(sys->matrix, factor);
+    sys->factored = factor && sparse_use_factor(sys->matrix, factor);
 }
 
 void system_multiply(const System *sys, const double *v, double *y)

@@ -1,0 +1,51 @@
+/* direct.h - the direct solver behind sparse.h: an order of elimination, factors, solutions. CHOLMOD
+ * (direct_cholmod.c); another stands behind these same functions.
+ *
+ * A Direct is what follows from a pattern alone. A Factor is its numbers and a share of the Direct that they were made
+ * in, so that it outlives the matrix and its pattern; whoever keeps one shares it. */
+#pragma once
+#include <stdbool.h>
+
+/* The lower triangle in compressed columns: the diagonal first, rows ascending. */
+typedef struct Pattern {
+    int n, *start, *rows; /* start[n + 1] */
+} Pattern;
+
+typedef struct Direct Direct;
+typedef struct Factor Factor;
+
+/* rank[i]: where an order of low fill (AMD; METIS for large ones) puts unknown i. The caller frees it. */
+int *direct_order(const Pattern *pattern);
+
+/* Of a pattern that is in the order of elimination already; rank[n] (copied) says where unknown i went. Of the pivots
+ * exactly `negative` are to be negative: more than 0 needs LDL^T, without pivoting. */
+Direct *direct_analyse(const Pattern *pattern, const int *rank, int negative);
+void direct_release(Direct *direct);
+const int *direct_rank(const Direct *direct);
+
+typedef struct DirectCost {
+    long nonzeros, bytes; /* of a factor       */
+    double flops;         /* to make one       */
+} DirectCost;
+DirectCost direct_cost(const Direct *direct);
+
+/* Factors the matrix of the analysed pattern and these values into *factor: in its place where nobody else shares it
+ * and it is of this Direct, else into a new one, and the old one is let go. False where the pivots are not as
+ * direct_analyse was told, or a value is not finite: the factor is then unusable. */
+bool direct_factor(Direct *direct, const Pattern *pattern, double *values, Factor **factor);
+
+/* One more who has it; each lets go once. NULL is allowed. */
+Factor *factor_share(Factor *factor);
+void factor_release(Factor *factor);
+
+int factor_size(const Factor *factor);
+
+/* That of the Direct which the factor was made in. */
+const int *factor_rank(const Factor *factor);
+
+/* Solves for b[n] in the factor's order; the solution, [n], is borrowed until the next call with a factor of the same
+ * Direct. */
+const double *factor_solve(const Factor *factor, const double *b);
+
+/* "3.0.14" of CHOLMOD, a static text. */
+const char *direct_version(void);
