@@ -279,6 +279,18 @@ static RunStatus finish(DesignRun *d, const OptimiserInfo *info)
     return limit || info->status == OPTIMISER_CONVERGED ? RUN_DONE : RUN_NOT_CONVERGED;
 }
 
+/* The optimisers begin within the bounds. */
+static void say_outside(const DesignRun *d, const double *u)
+{
+    int outside = 0;
+    for (int i = 0; i < d->n; i++)
+        outside +=
+            u[i] < d->lower[i] - 1e-9 * fabs(d->lower[i]) || u[i] > d->upper[i] + 1e-9 * fabs(d->upper[i]);
+    if (outside)
+        progress_say(d->run->progress, "%d of %d unknowns start beyond their bounds, and are put on them",
+                     outside, d->n);
+}
+
 RunStatus design_run(Run *run, const DesignOps *ops, void *self, const double *u, Error *err)
 {
     static const OptimiserMethod methods[] = {OPTIMISER_MMA, OPTIMISER_LBFGS, OPTIMISER_GAUSS_NEWTON};
@@ -302,6 +314,7 @@ RunStatus design_run(Run *run, const DesignOps *ops, void *self, const double *u
         return RUN_CANNOT_WRITE;
     }
     design_bounds(&run->model->design, d.lower, d.upper);
+    say_outside(&d, u);
     OptimiserDef def = optimiser_default();
     def.method = methods[scene->optimizer];
     def.evaluations = scene->iterations + 1;

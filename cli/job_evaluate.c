@@ -2,6 +2,7 @@
 #include "base/memory.h"
 #include "cli/job.h"
 #include "solve/eigen.h"
+#include <math.h>
 #include <string.h>
 
 /* Edge angles of the pose, with all positions held. */
@@ -23,13 +24,24 @@ static NewtonStatus relax_angles(Run *run, ModelCase *c)
     return status;
 }
 
-/* The body may move: is the pose stable, whether or not it is an equilibrium? */
-static NewtonStatus stability(const ModelCase *c)
+/* Is the pose an equilibrium, as Newton's method would call it, and would the body stay? Says so. */
+static NewtonStatus judge(Run *run, const ModelCase *c, int k)
 {
     Point at = state_point(&c->state, c->stages[0].p);
-    double lowest;
-    if (!system_free_count(c->sys)) return NEWTON_CONVERGED;
-    if (!eigen_lowest(c->sys, &at, 1, &lowest, NULL)) return NEWTON_NOT_FINITE;
+    double *gradient = mem_alloc((size_t)c->state.dofs, sizeof *gradient), lowest = INFINITY;
+    Evaluation now = system_gradient(c->sys, &at, gradient);
+    mem_free(gradient);
+    if (!now.finite || (system_free_count(c->sys) && !eigen_lowest(c->sys, &at, 1, &lowest, NULL)))
+        return NEWTON_NOT_FINITE;
+    const char *said = lowest < 0 ? "unstable" : "stable";
+    int count = run->model->case_count;
+    if (now.gradient_max > newton_default().force_tol * now.force_scale) {
+        progress_step(run->progress, k + 1, count,
+                      "%s: %s, but no equilibrium: forces of up to %.3g N are not in balance", c->name, said,
+                      now.gradient_max);
+        return NEWTON_UNBALANCED;
+    }
+    progress_step(run->progress, k + 1, count, "%s: an equilibrium, %s", c->name, said);
     return lowest < 0 ? NEWTON_SADDLE : NEWTON_CONVERGED;
 }
 
@@ -43,10 +55,8 @@ RunStatus job_evaluate(Run *run, Error *err)
         ModelCase *c = &model->cases[k];
         NewtonStatus relaxed = relax_angles(run, c);
         if (relaxed > worst) worst = relaxed;
-        shots[k] = (Snapshot){c, c->stages[0].p, c->state, stability(c)};
+        shots[k] = (Snapshot){c, c->stages[0].p, c->state, judge(run, c, k)};
         ok = run_put_frame(run, k, k, &shots[k], k == 0, err);
-        progress_step(run->progress, k + 1, model->case_count, "%s: %s", c->name,
-                      shots[k].status == NEWTON_CONVERGED ? "stable" : "unstable");
     }
     Arrays list = {0};
     const char *status = worst == NEWTON_CONVERGED ? "evaluated" : newton_status_name(worst);

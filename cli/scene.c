@@ -252,8 +252,10 @@ static const YamlTable fix_table = {
         {YAML_BOOL(FixScene, clamp), .doc = "holds the slope of the edges between these vertices too"},
         {YAML_TEXTS(FixScene, move), .when = "/job: equilibrium, simulate, trajectory", .min_count = 3,
          .max_count = 3,
-         .doc = "prescribed motion: three expressions, in m, of the rest position x, y, z, r and the time t; "
-                "0 along what is not among the axes; a vertex that two entries move must go to one place"},
+         .doc =
+             "where they are held: a place, as three expressions, in m, of the rest position x, y, z, r and "
+             "the time t ([x + 0.01*t, y, z] moves along x); 0 along what is not among the axes; a vertex "
+             "that two entries move must go to one place"},
         {0}}};
 
 static const YamlTable load_table = {

@@ -5,7 +5,8 @@
 
 #define BOUNDS_ROW(S, u)                                                                                     \
     {                                                                                                        \
-        YAML_VECTOR(S, bounds), .unit = u, .doc = "lower and upper bound"                                    \
+        YAML_VECTOR(S, bounds), .unit = u,                                                                   \
+                                .doc = "lower and upper bound; a start beyond them is put on them"           \
     }
 #define PER_ROW(S)                                                                                           \
     {                                                                                                        \
@@ -91,7 +92,8 @@ static const YamlTable flux_unknown_table = {
         {YAML_NUMBER(FluxUnknown, scale), .unit = "T", .range = "(0, inf)", .fallback = "0.01 T",
          .doc = "a natural size: optimisers see the value over it"},
         {YAML_VECTOR(FluxUnknown, bounds), .unit = "T",
-         .doc = "lower and upper bound, of knots and harmonic coefficients as of frames"},
+         .doc = "lower and upper bound (a start beyond them is put on them), of knots and harmonic "
+                "coefficients as of frames"},
         {YAML_OPTIONAL(FluxUnknown, start, &flux_start_table), .when = "/job: trajectory",
          .doc = "of a trajectory, in place of the scene's flux_density over time"},
         {0}}};

@@ -17,7 +17,7 @@ enum { CG_MAX = 200, CG_RUNS = 3, REFUSED_MAX = 6, WINDOW = 4 };
 
 static const double CG_TOL = 1e-2, LEFT_MAX = 1e-2; /* parts of the gradient, and of F */
 static const double MU_FIRST = 0.3, MU_UP = 1.5, MU_LEAST = 0.1, NU_FIRST = 10, DOWN = 5, UP = 5;
-static const double BOLD = 1.2, GAIN_MIN = 0.05;
+static const double BOLD = 1.2, GAIN_MIN = 0.01;
 
 typedef struct Damping {
     double mu, nu;
@@ -144,11 +144,11 @@ static double curvature_met(const Best *best, const Cg *cg, double mu)
     return length2 > 0 ? -slope / length2 - mu : 0;
 }
 
-/* After a refused step. Where a part snaps F grows a little; a step that makes it grow much was too bold
- * altogether. */
-static Damping more_damping(const Best *best, const Cg *cg, double refused, Damping from)
+/* After a refused step. Where a part snaps F grows a little; a step that makes it grow much, or one that does
+ * with the soft modes held, was too bold altogether. */
+static Damping more_damping(const Best *best, const Cg *cg, double refused, Damping from, bool again)
 {
-    if (best->problem->knows_soft && refused < BOLD * fabs(best->objective))
+    if (best->problem->knows_soft && !again && refused < BOLD * fabs(best->objective))
         return (Damping){MU_UP * from.mu, fmax(NU_FIRST, UP * from.nu)};
     return (Damping){fmax(UP * from.mu, MU_LEAST * curvature_met(best, cg, from.mu)), from.nu};
 }
@@ -166,7 +166,7 @@ static void run(Best *best, Cg *cg, const double *u)
         if (!problem->recall(problem->self, cg->trial)) find_trial(best, cg, damping);
         double value = best_evaluate(best, cg->trial, cg->trial_gradient);
         if (!(value < before)) {
-            damping = more_damping(best, cg, value, damping);
+            damping = more_damping(best, cg, value, damping, refused > 0);
             refused++;
             continue;
         }

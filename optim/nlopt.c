@@ -12,6 +12,7 @@ typedef struct Run {
     Best *best;
     nlopt_opt opt;
     double *gradient;
+    bool begun;
 } Run;
 
 static double objective(unsigned n, const double *u, double *gradient, void *data)
@@ -19,8 +20,10 @@ static double objective(unsigned n, const double *u, double *gradient, void *dat
     Run *run = data;
     Best *best = run->best;
     if (best_is_done(best)) return best->objective; /* asked once more after the stop */
-    bool known =
-        isfinite(best->objective) && !memcmp(u, best->u, n * sizeof *u); /* L-BFGS after Gauss-Newton */
+    /* The start of L-BFGS after Gauss-Newton. Later on the same point counts: within very narrow bounds MMA asks for
+     * one without end. */
+    bool known = !run->begun && isfinite(best->objective) && !memcmp(u, best->u, n * sizeof *u);
+    run->begun = true;
     double value = best->objective;
     if (known)
         memcpy(run->gradient, best->gradient, n * sizeof *gradient);

@@ -39,6 +39,7 @@ static const struct {
         {"max_iterations", "the energy was still falling at the last iteration: raise solver.max_iterations"},
     [NEWTON_NOT_FINITE] = {"not_finite", "energy or forces at the start are not finite numbers"},
     [NEWTON_STOPPED] = {"stopped", "interrupted"},
+    [NEWTON_UNBALANCED] = {"evaluated", "a pose whose forces are not in balance"},
 };
 
 const char *newton_status_name(NewtonStatus status)

@@ -33,6 +33,7 @@ typedef enum NewtonStatus {
     NEWTON_MAX_ITERATIONS, /* still falling */
     NEWTON_NOT_FINITE,     /* energy or forces at the start are not finite */
     NEWTON_STOPPED,        /* the observer asked for it */
+    NEWTON_UNBALANCED,     /* of a pose that was only looked at: its forces are not in balance */
 } NewtonStatus;
 
 typedef struct NewtonInfo {

@@ -113,8 +113,92 @@ static void test_edge(void **unused)
     assert_float_equal(u[1], 10, 0.1);
 }
 
+/* ---- Bounds ---- */
+
+enum { COUNT = 60 };
+
+/* |J u - b|^2 with a J that couples all: a smoothing one, and b out of reach. */
+typedef struct Smooth {
+    double J[COUNT][COUNT], b[COUNT];
+} Smooth;
+
+static double smooth_evaluate(void *self, const double *u, double *gradient)
+{
+    const Smooth *smooth = self;
+    double sum = 0;
+    for (int i = 0; i < COUNT; i++) gradient[i] = 0;
+    for (int k = 0; k < COUNT; k++) {
+        double r = -smooth->b[k];
+        for (int i = 0; i < COUNT; i++) r += smooth->J[k][i] * u[i];
+        for (int i = 0; i < COUNT; i++) gradient[i] += 2 * r * smooth->J[k][i];
+        sum += r * r;
+    }
+    return sum;
+}
+
+static void smooth_product(void *self, const double *v, double soft, double *out)
+{
+    const Smooth *smooth = self;
+    (void)soft;
+    for (int i = 0; i < COUNT; i++) out[i] = 0;
+    for (int k = 0; k < COUNT; k++) {
+        double r = 0;
+        for (int i = 0; i < COUNT; i++) r += smooth->J[k][i] * v[i];
+        for (int i = 0; i < COUNT; i++) out[i] += 2 * r * smooth->J[k][i];
+    }
+}
+
+static void nothing(void *self)
+{
+    (void)self;
+}
+
+static OptimiserInfo minimise_smooth(OptimiserDef def, double from, double to)
+{
+    Smooth smooth;
+    double lower[COUNT], upper[COUNT], u[COUNT];
+    for (int k = 0; k < COUNT; k++) {
+        for (int i = 0; i < COUNT; i++) smooth.J[k][i] = exp(-(k - i) * (k - i) / 20.0);
+        smooth.b[k] = 6 + 20 * sin(0.4 * k);
+        lower[k] = from, upper[k] = to, u[k] = (from + to) / 2;
+    }
+    Problem problem = {.n = COUNT,
+                       .lower = lower,
+                       .upper = upper,
+                       .self = &smooth,
+                       .evaluate = smooth_evaluate,
+                       .accept = nothing,
+                       .product = smooth_product,
+                       .recall = recall,
+                       .go_on = go_on};
+    OptimiserInfo info = optimise(&problem, &def, u);
+    int held = 0;
+    for (int i = 0; i < COUNT; i++) held += u[i] == from || u[i] == to;
+    print_message("F %.6f after %d evaluations, %d of %d at a bound: %s\n", info.objective, info.evaluations,
+                  held, COUNT, optimiser_status_name(info.status));
+    return info;
+}
+
+/* What is held at a bound is made up for within the step: clipped at its end, it takes 21 evaluations. */
+static void test_bounds(void **unused)
+{
+    (void)unused;
+    OptimiserDef def = {.method = OPTIMISER_GAUSS_NEWTON, .evaluations = 12, .gradient_tol = 1e-9};
+    assert_int_equal(minimise_smooth(def, -1, 4).status, OPTIMISER_CONVERGED);
+}
+
+/* MMA, within bounds next to each other, asks for the same point again and again: it ends all the same. */
+static void test_narrow(void **unused)
+{
+    (void)unused;
+    OptimiserDef def = {.method = OPTIMISER_MMA, .evaluations = 30, .gradient_tol = 1e-9};
+    assert_true(minimise_smooth(def, 1, 1 + 4e-16).evaluations <= 30);
+    assert_true(minimise_smooth(def, 1, 1 + 1e-9).evaluations <= 30);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_thorough), cmocka_unit_test(test_edge)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_thorough), cmocka_unit_test(test_edge),
+                                       cmocka_unit_test(test_bounds), cmocka_unit_test(test_narrow)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
