@@ -53,7 +53,7 @@ static const YamlTable fold_unknown_table = {
     .fields = (const YamlField[]){
         BOUNDS_ROW(NumberUnknown, NULL),
         {YAML_CHOICE(NumberUnknown, scale), .choices = YAML_NAMES("log", "linear"), .fallback = "log",
-         .doc = "optimisers see its logarithm, or its ratio to the start's mean"},
+         .doc = "optimisers see its logarithm over 0.2, or its ratio to the start's mean"},
         {YAML_NUMBER(NumberUnknown, noise), .range = "[0, inf)", .fallback = "0",
          .doc = "size of seeded noise that is added to the start"},
         {YAML_OPTIONAL(NumberUnknown, start, &fold_table), .doc = "in place of the shell's"},

@@ -46,7 +46,7 @@ static void map_row(const Unknown *unknown, const double *u, double *p)
     double size = length(width, u), factor = unknown->scale;
     if (unknown->map == UNKNOWN_FIXED_LENGTH) factor = unknown->limit / size;
     if (unknown->map == UNKNOWN_CAPPED_LENGTH) factor /= sqrt(1 + pow(factor * size / unknown->limit, 2));
-    for (int i = 0; i < width; i++) p[i] = unknown->map == UNKNOWN_LOG ? exp(u[i]) : factor * u[i];
+    for (int i = 0; i < width; i++) p[i] = unknown->map == UNKNOWN_LOG ? exp(factor * u[i]) : factor * u[i];
 }
 
 static void unmap_row(const Unknown *unknown, const double *p, double *u)
@@ -55,7 +55,7 @@ static void unmap_row(const Unknown *unknown, const double *p, double *u)
     double size = length(width, p), factor = 1 / unknown->scale;
     if (unknown->map == UNKNOWN_FIXED_LENGTH) factor = 1 / unknown->limit;
     if (unknown->map == UNKNOWN_CAPPED_LENGTH) factor /= sqrt(fmax(1 - pow(size / unknown->limit, 2), 1e-6));
-    for (int i = 0; i < width; i++) u[i] = unknown->map == UNKNOWN_LOG ? log(p[i]) : factor * p[i];
+    for (int i = 0; i < width; i++) u[i] = unknown->map == UNKNOWN_LOG ? factor * log(p[i]) : factor * p[i];
 }
 
 /* out = (dp/du) in at a row; the matrix is symmetric for every map. */
@@ -73,7 +73,8 @@ static void row_derivative(const Unknown *unknown, const double *u, const double
         factor /= root;
     }
     for (int i = 0; i < width; i++)
-        out[i] = unknown->map == UNKNOWN_LOG ? exp(u[i]) * in[i] : factor * in[i] - pull * along * u[i];
+        out[i] = unknown->map == UNKNOWN_LOG ? factor * exp(factor * u[i]) * in[i]
+                                             : factor * in[i] - pull * along * u[i];
 }
 
 void design_apply(const Design *design, int load_case, const double *u, double *p)
@@ -139,7 +140,7 @@ void design_transpose(const Design *design, int load_case, const double *u, cons
 static double bound(const Unknown *unknown, double p)
 {
     if (unknown->map == UNKNOWN_LINEAR) return p / unknown->scale;
-    if (unknown->map == UNKNOWN_LOG) return p > 0 ? log(p) : -INFINITY;
+    if (unknown->map == UNKNOWN_LOG) return p > 0 ? log(p) / unknown->scale : -INFINITY;
     return p < 0 ? -INFINITY : INFINITY;
 }
 

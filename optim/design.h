@@ -4,7 +4,7 @@
  * load cases or one for each. Its values are scaled before an optimiser sees them:
  *
  *     linear   p = scale u
- *     log      p = exp(u)
+ *     log      p = exp(scale u)
  *     fixed    p = limit u/|u|                               (|.| over a row)
  *     capped   p = scale u/sqrt(1 + |scale u|^2/limit^2) */
 #pragma once

@@ -212,8 +212,8 @@ static void test_gradients(void **state)
         check(bending, "magnetization", open);
         open.limit = 2e4, open.map = UNKNOWN_FIXED_LENGTH;
         check(bending, "magnetization", open);
-        check(bending, "young", (Unknown){.map = UNKNOWN_LOG, .lower = 1e4, .upper = 1e8});
-        check(bending, "fold", (Unknown){.map = UNKNOWN_LOG, .lower = 0.01, .upper = 100});
+        check(bending, "young", (Unknown){.map = UNKNOWN_LOG, .scale = 0.7, .lower = 1e4, .upper = 1e8});
+        check(bending, "fold", (Unknown){.map = UNKNOWN_LOG, .scale = 0.7, .lower = 0.01, .upper = 100});
         check(bending, "flux_density", (Unknown){.scale = 0.05, .lower = -1, .upper = 1, .per_case = true});
     }
 }

@@ -51,7 +51,7 @@ static void add_unknowns(Fixture *f, ControlKind kind)
                            .duration = 1e-3 * STEPS};
     f->design.case_count = 1;
     const char *const names[] = {"control", "magnetization", "young", "fold"};
-    const double scales[] = {0.01, 1e4, 0, 0};
+    const double scales[] = {0.01, 1e4, 1, 0.2};
     for (int k = 0; k < 4; k++) {
         const ParamBlock *block = params_find(params, names[k]);
         design_add(&f->design, (Unknown){.block = block,
