@@ -22,6 +22,9 @@ double best_evaluate(Best *best, const double *u, double *gradient);
 /* No more evaluations: too many, stopped, or converged; sets info.status. */
 bool best_is_done(Best *best);
 
+/* Is an unknown at a bound, and drawn (by -gradient) beyond it? */
+bool best_is_held(const Problem *problem, int i, double at, double pull);
+
 /* Norm of the gradient without what pushes against the bounds. */
 double best_projected_norm(const Problem *problem, const double *u, const double *gradient);
 

@@ -35,14 +35,7 @@ static double dot(int n, const double *a, const double *b)
     return sum;
 }
 
-/* At a bound and drawn beyond it. */
-static bool is_held(const Problem *problem, int i, double at, double pull)
-{
-    return (at <= problem->lower[i] && pull < 0) || (at >= problem->upper[i] && pull > 0);
-}
-
-/* out = (J^T J + nu S) v. F is the sum of squares, its gradient g = 2 J^T r, and products come as 2 J^T J v.
- */
+/* out = (J^T J + nu S) v. F is the sum of squares, its gradient g = 2 J^T r, and products come as 2 J^T J v. */
 static void product(Best *best, const double *v, double nu, double *out)
 {
     best->problem->product(best->problem->self, v, nu, out);
@@ -55,7 +48,7 @@ static double curvature_scale(const Best *best)
 {
     double sum = 0;
     for (int i = 0; i < best->problem->n; i++)
-        if (!is_held(best->problem, i, best->u[i], -best->gradient[i]))
+        if (!best_is_held(best->problem, i, best->u[i], -best->gradient[i]))
             sum += best->gradient[i] * best->gradient[i];
     return sum / (2 * fabs(best->objective) + DBL_MIN);
 }
@@ -68,7 +61,7 @@ static void find_residual(Best *best, Cg *cg, Damping damping, bool at_start)
     for (int i = 0; i < problem->n; i++) {
         double pull = -best->gradient[i], at = best->u[i] + cg->step[i];
         if (!at_start) pull -= cg->product[i] + damping.mu * cg->step[i];
-        cg->held[i] = is_held(problem, i, at, pull);
+        cg->held[i] = best_is_held(problem, i, at, pull);
         cg->residual[i] = cg->held[i] ? 0 : pull;
     }
 }

@@ -33,14 +33,16 @@ void best_destroy(Best *best)
     mem_free(best->gradient);
 }
 
+bool best_is_held(const Problem *problem, int i, double at, double pull)
+{
+    return (at <= problem->lower[i] && pull < 0) || (at >= problem->upper[i] && pull > 0);
+}
+
 double best_projected_norm(const Problem *problem, const double *u, const double *gradient)
 {
     double sum = 0;
-    for (int i = 0; i < problem->n; i++) {
-        bool held =
-            (u[i] <= problem->lower[i] && gradient[i] > 0) || (u[i] >= problem->upper[i] && gradient[i] < 0);
-        if (!held) sum += gradient[i] * gradient[i];
-    }
+    for (int i = 0; i < problem->n; i++)
+        if (!best_is_held(problem, i, u[i], -gradient[i])) sum += gradient[i] * gradient[i];
     return sqrt(sum);
 }
 

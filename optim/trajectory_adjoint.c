@@ -127,10 +127,7 @@ static void store(void *self, const State *state, double dt)
 static void add_info(MarchInfo *sum, const MarchInfo *step)
 {
     NewtonInfo newton = step->newton;
-    newton.iterations += sum->newton.iterations;
-    newton.factorizations += sum->newton.factorizations;
-    newton.cg_iterations += sum->newton.cg_iterations;
-    newton.evaluations += sum->newton.evaluations;
+    newton_add_counts(&newton, &sum->newton);
     *sum = (MarchInfo){newton, sum->steps + step->steps, sum->refused + step->refused};
 }
 

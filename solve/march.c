@@ -51,16 +51,6 @@ static void choose_start(March *m, Point *at)
         compare_start(m, at, &energy);
 }
 
-static void add_counts(MarchInfo *info, const NewtonInfo *newton)
-{
-    NewtonInfo sum = *newton;
-    sum.iterations += info->newton.iterations;
-    sum.factorizations += info->newton.factorizations;
-    sum.cg_iterations += info->newton.cg_iterations;
-    sum.evaluations += info->newton.evaluations;
-    info->newton = sum;
-}
-
 static bool try_step(March *m, double dt)
 {
     State *state = m->state, *trial = &m->trial;
@@ -74,7 +64,8 @@ static bool try_step(March *m, double dt)
     if (m->def->load) m->def->load(m->def->self, at.time, m->p);
     choose_start(m, &at);
     NewtonInfo newton = newton_minimize(m->sys, &m->def->newton, &at, trial, observer);
-    add_counts(m->info, &newton);
+    newton_add_counts(&newton, &m->info->newton);
+    m->info->newton = newton;
     if (newton.status != NEWTON_CONVERGED) return false;
     for (int i = 0; i < system_position_count(m->sys); i++) trial->v[i] = (trial->x[i] - state->x[i]) / dt;
     trial->time += dt;

@@ -52,6 +52,14 @@ const char *newton_status_text(NewtonStatus status)
     return status_rows[status].text;
 }
 
+void newton_add_counts(NewtonInfo *info, const NewtonInfo *before)
+{
+    info->iterations += before->iterations;
+    info->factorizations += before->factorizations;
+    info->cg_iterations += before->cg_iterations;
+    info->evaluations += before->evaluations;
+}
+
 bool search_factor(Search *s, double shift)
 {
     s->info.factorizations++;

@@ -44,6 +44,9 @@ typedef struct NewtonInfo {
     double curvature;                         /* lowest v'Hv/v'Dv seen at a saddle or neutral point  */
 } NewtonInfo;
 
+/* Puts the counts of what was done before to those of info. */
+void newton_add_counts(NewtonInfo *info, const NewtonInfo *before);
+
 /* Called after each iteration; returns false to stop. */
 typedef struct NewtonObserver {
     bool (*iteration)(void *self, const NewtonInfo *info);

@@ -26,15 +26,6 @@ static bool reached(NewtonStatus status)
     return status == NEWTON_CONVERGED || status == NEWTON_SADDLE || status == NEWTON_NEUTRAL;
 }
 
-static void add_counts(NewtonInfo *total, const NewtonInfo *step)
-{
-    NewtonInfo sum = *step;
-    sum.iterations += total->iterations;
-    sum.factorizations += total->factorizations;
-    sum.evaluations += total->evaluations;
-    *total = sum;
-}
-
 RampInfo ramp_solve(System *sys, const Params *params, const RampDef *def, const double *from,
                     const double *to, State *state)
 {
@@ -51,7 +42,8 @@ RampInfo ramp_solve(System *sys, const Params *params, const RampDef *def, const
         if (!def->move || def->move(def->self, (part - info.reached) / (1 - info.reached), state->x))
             newton =
                 newton_minimize(sys, &def->newton, &(Point){.p = p, .time = state->time}, state, observer);
-        add_counts(&info.newton, &newton);
+        newton_add_counts(&newton, &info.newton);
+        info.newton = newton;
         if (reached(newton.status)) {
             info.reached = part;
             info.steps++;

@@ -221,6 +221,21 @@ static void test_table(void **state)
         assert_memory_equal(table.values, ((double[]){1, 2, 3, 4, 0.5, -6, 7, 8, 9}), 9 * sizeof(double));
         table_clear(&table);
     }
+    double values[4] = {1.0 / 3, -5e-324, 1e308, 0.1};
+    assert_true(table_write("test_table.csv", "# bits", values, 2, 2, &err) &&
+                table_read("test_table.csv", NULL, &table, &err));
+    assert_memory_equal(table.values, values, sizeof values);
+    table_clear(&table);
+    unlink("test_table.csv");
+    assert_int_equal(mem_live_count(), blocks);
+}
+
+static void test_broken_table(void **state)
+{
+    (void)state;
+    long blocks = mem_live_count();
+    Error err;
+    Table table;
     static const struct {
         const char *text;
         const char *names;
@@ -265,6 +280,15 @@ static void test_table(void **state)
         assert_false(read_table(broken[k].text, broken[k].names, &table, &err));
         assert_string_equal(err.text, broken[k].sentence);
     }
+    assert_int_equal(mem_live_count(), blocks);
+}
+
+static void test_table_units(void **state)
+{
+    (void)state;
+    long blocks = mem_live_count();
+    Error err;
+    Table table;
     static const char *const field = "t [s], Bx [T], By [T]";
     static const struct {
         const char *text, *names;
@@ -287,20 +311,15 @@ static void test_table(void **state)
         assert_true(table.scaled == (scaled[k].row[0] != 1));
         table_clear(&table);
     }
-    double values[4] = {1.0 / 3, -5e-324, 1e308, 0.1};
-    assert_true(table_write("test_table.csv", "# bits", values, 2, 2, &err) &&
-                table_read("test_table.csv", NULL, &table, &err));
-    assert_memory_equal(table.values, values, sizeof values);
-    table_clear(&table);
-    unlink("test_table.csv");
     assert_int_equal(mem_live_count(), blocks);
 }
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_obj),   cmocka_unit_test(test_ply),
-                                       cmocka_unit_test(test_msh22), cmocka_unit_test(test_msh41),
-                                       cmocka_unit_test(test_mark),  cmocka_unit_test(test_write_names),
-                                       cmocka_unit_test(test_write), cmocka_unit_test(test_table)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_obj),        cmocka_unit_test(test_ply),   cmocka_unit_test(test_msh22),
+        cmocka_unit_test(test_msh41),      cmocka_unit_test(test_mark),  cmocka_unit_test(test_write_names),
+        cmocka_unit_test(test_write),      cmocka_unit_test(test_table), cmocka_unit_test(test_broken_table),
+        cmocka_unit_test(test_table_units)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
