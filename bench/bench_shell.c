@@ -33,17 +33,25 @@ static double factor_seconds(Sheet *s)
     return best;
 }
 
+static void time_hessian(BendingModel bending, const char *name, int threads)
+{
+    Sheet s = sheet_create(bending, false);
+    Workers *workers = workers_create(threads);
+    char text[80];
+    system_set_workers(s.sys, workers);
+    sheet_bend(&s);
+    double seconds = hessian_seconds(&s);
+    snprintf(text, sizeof text, "system_hessian_%s_us_per_triangle_%d_threads", name, threads);
+    bench_print(text, 1e6 * seconds / s.shell->mesh->face_count, "us");
+    sheet_destroy(&s);
+    workers_destroy(workers);
+}
+
 void bench_shell_hessian(void)
 {
-    static const char *const names[] = {[BENDING_MIDEDGE] = "midedge", [BENDING_HINGE] = "hinge"};
-    for (BendingModel bending = BENDING_MIDEDGE; bending <= BENDING_HINGE; bending++) {
-        Sheet s = sheet_create(bending, false);
-        char name[80];
-        sheet_bend(&s);
-        double seconds = hessian_seconds(&s);
-        snprintf(name, sizeof name, "shell_hessian_%s_us_per_triangle", names[bending]);
-        bench_print(name, 1e6 * seconds / s.shell->mesh->face_count, "us");
-        sheet_destroy(&s);
+    for (int threads = 1; threads <= 2; threads++) {
+        time_hessian(BENDING_MIDEDGE, "midedge", threads);
+        time_hessian(BENDING_HINGE, "hinge", threads);
     }
 }
 

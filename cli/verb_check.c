@@ -189,7 +189,7 @@ static bool check_derivatives(const Model *model, const Scene *scene)
         term->ops->dofs(term->self, 0, dof);
         for (int i = 0; i < term->ops->size(term->self); i++) size[i] = dof_size(model, dof[i]);
         Point own = system_term_point(c->sys, t, &at);
-        ok = print_errors(term->ops->name, check_term(term, model->params, &own, size, &random)) && ok;
+        ok = print_errors(term->ops->name, check_term(term, model->params, &own, dofs, size, &random)) && ok;
     }
     mem_free(p);
     state_destroy(&state);

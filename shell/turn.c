@@ -102,7 +102,7 @@ static void build(Turn *turn)
     turn->hat = mem_alloc((size_t)mesh->face_count, sizeof *turn->hat);
     for (int f = 0; f < mesh->face_count; f++) face_gradients(turn->shell, f, turn->hat[f]);
     list_dofs(turn, start, dofs);
-    turn->matrix = sparse_create(turn->free, (int)elements, start, dofs, (SparseDef){0});
+    turn->matrix = sparse_create(turn->free, (Groups){(int)elements, start, dofs}, (SparseDef){0});
     assemble(turn, dofs);
     turn->right = mem_alloc(free, sizeof *turn->right);
     turn->shift = mem_alloc(free, sizeof *turn->shift);

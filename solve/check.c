@@ -185,15 +185,10 @@ static void choose_start(Check *c, const double *dof_size)
     line_move(v, 0);
 }
 
-/* How many entries of x the term may look at. */
-static int dof_count_of(const Term *term)
+/* The elements at the point where the check stands. */
+static void update(Check *c)
 {
-    int count = 0, dof[TERM_MAX_DOF];
-    for (int e = 0; e < term->ops->count(term->self); e++) {
-        term->ops->dofs(term->self, e, dof);
-        for (int i = 0; i < term->ops->size(term->self); i++) count = dof[i] < count ? count : dof[i] + 1;
-    }
-    return count;
+    if (c->term->ops->update) c->term->ops->update(c->term->self, &c->at);
 }
 
 static void check_pack(Check *c, const double *dof_size)
@@ -209,19 +204,20 @@ static void check_pack(Check *c, const double *dof_size)
     check_prev(c);
 }
 
-TermError check_term(const Term *term, const Params *params, const Point *at, const double *dof_size,
-                     Random *random)
+TermError check_term(const Term *term, const Params *params, const Point *at, int dof_count,
+                     const double *dof_size, Random *random)
 {
     Check c = {.term = term, .random = random, .at = *at, .size = term->ops->size(term->self)};
-    int dofs = dof_count_of(term);
     c.lines[PARAMETERS] = line_create(at->p, params->size);
-    c.lines[START_X] = line_create(at->x, dofs);
-    c.lines[START_V] = line_create(at->x, dofs);
+    c.lines[START_X] = line_create(at->x, dof_count);
+    c.lines[START_V] = line_create(at->x, dof_count);
     if (params->size) c.at.p = c.lines[PARAMETERS].to;
     c.at.x_prev = c.lines[START_X].to, c.at.v_prev = c.lines[START_V].to;
     if (!(at->dt > 0)) c.at.dt = 1;
     choose_direction(params, &c.lines[PARAMETERS], random);
+    update(&c);
     choose_start(&c, dof_size);
+    update(&c);
     for (; c.pack * PACK_LANES < term->ops->count(term->self); c.pack++) check_pack(&c, dof_size);
     for (int n = 0; n < LINES; n++) line_clear(&c.lines[n]);
     TermError error = errors_of(c.energy, c.gradient, c.hessian);

@@ -22,9 +22,10 @@ typedef struct TermError {
 
 /* dof_size[i]: natural size of local dof i (an edge length, 1 rad); directions in each block of p are scaled by the
  * block's largest value, or 1. The step of time is at->dt, or 1 s where that is 0; its start is chosen at random within
- * a dof's size of x, whatever at->x_prev and v_prev say. */
-TermError check_term(const Term *term, const Params *params, const Point *at, const double *dof_size,
-                     Random *random);
+ * a dof's size of x, whatever at->x_prev and v_prev say. dof_count: of x. A term whose elements change has those of that
+ * start; what begins or ends with its elements must do so smoothly. */
+TermError check_term(const Term *term, const Params *params, const Point *at, int dof_count,
+                     const double *dof_size, Random *random);
 
 /* The largest of the errors that differences show, and of the exact ones. */
 double check_differences(TermError error);

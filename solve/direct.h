@@ -4,12 +4,8 @@
  * A Direct is what follows from a pattern alone. A Factor is its numbers and a share of the Direct that they were made
  * in, so that it outlives the matrix and its pattern; whoever keeps one shares it. */
 #pragma once
+#include "solve/pattern.h"
 #include <stdbool.h>
-
-/* The lower triangle in compressed columns: the diagonal first, rows ascending. */
-typedef struct Pattern {
-    int n, *start, *rows; /* start[n + 1] */
-} Pattern;
 
 typedef struct Direct Direct;
 typedef struct Factor Factor;
@@ -20,6 +16,7 @@ int *direct_order(const Pattern *pattern);
 /* Of a pattern that is in the order of elimination already; rank[n] (copied) says where unknown i went. Of the pivots
  * exactly `negative` are to be negative: more than 0 needs LDL^T, without pivoting. */
 Direct *direct_analyse(const Pattern *pattern, const int *rank, int negative);
+Direct *direct_share(Direct *direct);
 void direct_release(Direct *direct);
 const int *direct_rank(const Direct *direct);
 

@@ -99,6 +99,12 @@ Direct *direct_analyse(const Pattern *pattern, const int *rank, int negative)
     return direct;
 }
 
+Direct *direct_share(Direct *direct)
+{
+    direct->shares++;
+    return direct;
+}
+
 void direct_release(Direct *direct)
 {
     if (!direct || --direct->shares > 0) return;

@@ -146,6 +146,7 @@ void search_move(Search *s, const double *direction, double a)
 static void finish(Search *s)
 {
     Point at = s->at;
+    if (system_reach(s->sys, &at, s->step) < 1) return;
     for (int i = 0; i < s->n; i++) s->trial[i] = s->x[i] + s->step[i];
     system_project(s->sys, s->x, s->trial);
     at.x = s->trial;
@@ -257,8 +258,10 @@ static NewtonStatus iterate(Search *s)
     gap_take_multipliers(s);
     double shrink = fmin(1, s->def->step_cap / s->info.step);
     for (int i = 0; i < s->n; i++) s->step[i] *= shrink;
+    double reach = system_reach(s->sys, &s->at, s->step);
+    for (int i = 0; reach < 1 && i < s->n; i++) s->step[i] *= reach;
     double a = line_search(s);
-    gap_keep_multipliers(s, a * shrink);
+    gap_keep_multipliers(s, a * shrink * reach);
     if (a > 0) {
         search_move(s, s->step, a);
         return status;

@@ -55,16 +55,24 @@ static double lowest_mode(Search *s)
     return curvature;
 }
 
+/* How far along the mode it may go at most. */
+static double longest_step(Search *s, double size)
+{
+    double longest = CURVATURE_LAST / size;
+    for (int i = 0; i < s->n; i++) s->product[i] = longest * s->mode[i];
+    return longest * system_reach(s->sys, &s->at, s->product);
+}
+
 /* A step along the mode that lowers the energy by a quarter of what its curvature promises; 0: none. */
 static double curvature_step(Search *s, double curvature)
 {
     double size = system_step_size(s->sys, s->mode), slope = search_dot(s->n, s->gradient, s->mode);
-    double a = CURVATURE_STEP / size;
+    double longest = longest_step(s, size), a = fmin(CURVATURE_STEP / size, longest);
     for (int k = 0; k < CURVATURE_TRIES; k++, a /= 4) {
         Evaluation trial;
         double energy = search_energy(s, s->mode, a, &trial);
         if (!(energy < s->now.energy + (a * slope + a * a * curvature / 2) / 4)) continue;
-        while (2 * a * size <= CURVATURE_LAST) {
+        while (2 * a <= longest) {
             double further = search_energy(s, s->mode, 2 * a, &trial);
             if (!(further < energy)) break;
             energy = further;

@@ -6,9 +6,16 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* Nonzeros of L, in those of the matrix as it was made, from which on another order is looked for. */
+static const double FILL_MOST = 1.3;
+
 struct Sparse {
-    int n;
-    Pattern pattern; /* in the order of elimination */
+    int n, negative;
+    bool ordered; /* in an order that was given                                                     */
+    Pattern made; /* of the groups that it was made of, in their order                              */
+    Direct *direct_made;
+    Pattern pattern; /* the same, or with others coupled beside them; in the order of elimination     */
+    int *where;      /* [entries of made] where each stands in it; NULL: at its own place             */
     Direct *direct;
     Factor *factor;  /* at hand; NULL: none was made */
     const int *rank; /* [n] where unknown i went; the Direct's */
@@ -18,73 +25,6 @@ struct Sparse {
     SparseInfo info;
 };
 
-static int compare_int(const void *a, const void *b)
-{
-    int i = *(const int *)a, j = *(const int *)b;
-    return (i > j) - (i < j);
-}
-
-/* For each unknown, the elements that hold it. */
-static void list_elements(int n, int element_count, const long *start, const int *dofs, long **first,
-                          int **elements)
-{
-    long *at = mem_alloc((size_t)n + 2, sizeof *at);
-    for (long k = 0; k < start[element_count]; k++)
-        if (dofs[k] >= 0) at[dofs[k] + 2]++;
-    for (int i = 0; i < n; i++) at[i + 2] += at[i + 1];
-    int *list = mem_alloc((size_t)at[n + 1], sizeof *list);
-    for (int e = 0; e < element_count; e++)
-        for (long k = start[e]; k < start[e + 1]; k++)
-            if (dofs[k] >= 0) list[at[dofs[k] + 1]++] = e;
-    *first = at;
-    *elements = list;
-}
-
-/* The lower triangle's pattern in the order given by rank (NULL: as numbered). */
-static Pattern build_pattern(int n, int element_count, const long *start, const int *dofs, const int *rank)
-{
-    long *first;
-    int *elements;
-    list_elements(n, element_count, start, dofs, &first, &elements);
-    int *unknown = mem_alloc((size_t)n, sizeof *unknown); /* the unknown of each column */
-    for (int i = 0; i < n; i++) unknown[rank ? rank[i] : i] = i;
-
-    int *mark = mem_alloc((size_t)n, sizeof *mark);
-    for (int i = 0; i < n; i++) mark[i] = -1;
-    Pattern pattern = {n, mem_alloc((size_t)n + 1, sizeof(int)), NULL};
-    long room = 16L * n + 16, count = 0;
-    pattern.rows = mem_alloc((size_t)room, sizeof(int));
-    for (int column = 0; column < n; column++) {
-        int i = unknown[column];
-        mark[column] = column;
-        if (count + n >= room) {
-            pattern.rows = mem_resize(pattern.rows, (size_t)count, (size_t)(2 * room + n), sizeof(int));
-            room = 2 * room + n;
-        }
-        pattern.rows[count++] = column;
-        for (long k = first[i]; k < first[i + 1]; k++)
-            for (long m = start[elements[k]]; m < start[elements[k] + 1]; m++) {
-                if (dofs[m] < 0) continue;
-                int row = rank ? rank[dofs[m]] : dofs[m];
-                if (row > column && mark[row] != column) mark[row] = column, pattern.rows[count++] = row;
-            }
-        qsort(pattern.rows + pattern.start[column], (size_t)(count - pattern.start[column]), sizeof(int),
-              compare_int);
-        pattern.start[column + 1] = (int)count;
-    }
-    mem_free(first);
-    mem_free(elements);
-    mem_free(unknown);
-    mem_free(mark);
-    return pattern;
-}
-
-static void clear_pattern(Pattern *pattern)
-{
-    mem_free(pattern->start);
-    mem_free(pattern->rows);
-}
-
 /* rank[i] = where unknown i comes in an order. */
 static int *rank_of(int n, const int *order)
 {
@@ -93,8 +33,25 @@ static int *rank_of(int n, const int *order)
     return rank;
 }
 
-Sparse *sparse_create(int n, int element_count, const long *element_start, const int *element_dofs,
-                      SparseDef def)
+/* Takes over what the matrix is from now on; where may be NULL. */
+static void set_pattern(Sparse *matrix, Pattern pattern, int *where, Direct *direct)
+{
+    if (matrix->where) pattern_destroy(&matrix->pattern);
+    mem_free(matrix->where);
+    direct_release(matrix->direct);
+    mem_free(matrix->values);
+    matrix->pattern = pattern;
+    matrix->where = where;
+    matrix->direct = direct;
+    matrix->rank = direct_rank(direct);
+    matrix->values = mem_alloc((size_t)sparse_nonzeros(matrix), sizeof(double));
+    DirectCost cost = direct_cost(direct);
+    matrix->info.factor_nonzeros = cost.nonzeros;
+    matrix->info.factor_bytes = cost.bytes;
+    matrix->info.factor_flops = cost.flops;
+}
+
+Sparse *sparse_create(int n, Groups groups, SparseDef def)
 {
     Sparse *matrix = mem_alloc(1, sizeof *matrix);
     matrix->n = n;
@@ -103,21 +60,64 @@ Sparse *sparse_create(int n, int element_count, const long *element_start, const
     if (def.order) {
         rank = rank_of(n, def.order);
     } else {
-        Pattern plain = build_pattern(n, element_count, element_start, element_dofs, NULL);
+        Pattern plain = pattern_create(n, groups, NULL);
         rank = direct_order(&plain);
-        clear_pattern(&plain);
+        pattern_destroy(&plain);
     }
-    matrix->pattern = build_pattern(n, element_count, element_start, element_dofs, rank);
-    matrix->direct = direct_analyse(&matrix->pattern, rank, def.negative);
-    matrix->rank = direct_rank(matrix->direct);
+    matrix->negative = def.negative;
+    matrix->ordered = def.order != NULL;
+    matrix->made = pattern_create(n, groups, rank);
+    matrix->direct_made = direct_analyse(&matrix->made, rank, def.negative);
     mem_free(rank);
-    matrix->values = mem_alloc((size_t)matrix->pattern.start[n] + 1, sizeof(double));
+    set_pattern(matrix, matrix->made, NULL, direct_share(matrix->direct_made));
     matrix->diagonal = mem_alloc((size_t)n, sizeof(double));
     matrix->cg = mem_alloc(6 * (size_t)n, sizeof *matrix->cg);
-    DirectCost cost = direct_cost(matrix->direct);
-    matrix->info = (SparseInfo){
-        .factor_nonzeros = cost.nonzeros, .factor_bytes = cost.bytes, .factor_flops = cost.flops};
     return matrix;
+}
+
+/* The pattern in an order of its own. */
+static Direct *reorder(const Sparse *matrix, Pattern *pattern, int *where)
+{
+    int n = matrix->n, entries = sparse_made_nonzeros(matrix), *to = direct_order(pattern);
+    int *moved = mem_alloc((size_t)pattern->start[n], sizeof *moved),
+        *rank = mem_alloc((size_t)n, sizeof *rank);
+    Pattern other = pattern_permute(pattern, to, moved);
+    for (int i = 0; i < n; i++) rank[i] = to[direct_rank(matrix->direct_made)[i]];
+    for (int k = 0; k < entries; k++) where[k] = moved[where[k]];
+    pattern_destroy(pattern);
+    *pattern = other;
+    Direct *direct = direct_analyse(pattern, rank, matrix->negative);
+    mem_free(to);
+    mem_free(moved);
+    mem_free(rank);
+    return direct;
+}
+
+void sparse_couple(Sparse *matrix, Groups groups)
+{
+    if (matrix->n == 0) return;
+    const int *rank = direct_rank(matrix->direct_made);
+    Pattern others = pattern_create(matrix->n, groups, rank);
+    int *where = mem_alloc((size_t)sparse_made_nonzeros(matrix), sizeof *where);
+    Pattern all = pattern_union(&matrix->made, &others, where);
+    Direct *direct = direct_analyse(&all, rank, matrix->negative);
+    double fill = (double)direct_cost(direct).nonzeros / (double)direct_cost(matrix->direct_made).nonzeros;
+    if (!matrix->ordered && fill > FILL_MOST) {
+        direct_release(direct);
+        direct = reorder(matrix, &all, where);
+    }
+    pattern_destroy(&others);
+    set_pattern(matrix, all, where, direct);
+}
+
+int sparse_made_nonzeros(const Sparse *matrix)
+{
+    return matrix->n ? matrix->made.start[matrix->n] : 0;
+}
+
+int sparse_where(const Sparse *matrix, int k)
+{
+    return matrix->where ? matrix->where[k] : k;
 }
 
 void sparse_destroy(Sparse *matrix)
@@ -125,7 +125,10 @@ void sparse_destroy(Sparse *matrix)
     if (!matrix) return;
     factor_release(matrix->factor);
     direct_release(matrix->direct);
-    clear_pattern(&matrix->pattern);
+    direct_release(matrix->direct_made);
+    if (matrix->where) pattern_destroy(&matrix->pattern);
+    pattern_destroy(&matrix->made);
+    mem_free(matrix->where);
     mem_free(matrix->values);
     mem_free(matrix->diagonal);
     mem_free(matrix->cg);
@@ -141,18 +144,7 @@ static double *diagonal_entry(const Sparse *matrix, int i)
 int sparse_slot(const Sparse *matrix, int i, int j)
 {
     int a = matrix->rank[i], b = matrix->rank[j];
-    int column = a < b ? a : b, row = a < b ? b : a;
-    const int *start = matrix->pattern.start, *rows = matrix->pattern.rows;
-    int low = start[column], high = start[column + 1] - 1;
-    while (low < high) {
-        int middle = (low + high) / 2;
-        if (rows[middle] < row)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    assert(rows[low] == row);
-    return low;
+    return pattern_slot(&matrix->pattern, a > b ? a : b, a > b ? b : a);
 }
 
 double *sparse_values(Sparse *matrix)

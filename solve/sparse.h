@@ -19,17 +19,23 @@ typedef struct SparseDef {
     int negative;
 } SparseDef;
 
-/* The pattern of n unknowns coupled by elements: element e couples element_dofs[element_start[e] ..
- * element_start[e+1]), entries < 0 are skipped. */
-Sparse *sparse_create(int n, int element_count, const long *element_start, const int *element_dofs,
-                      SparseDef def);
+/* The pattern of n unknowns that are coupled in groups (pattern.h). */
+Sparse *sparse_create(int n, Groups groups, SparseDef def);
 void sparse_destroy(Sparse *matrix);
+
+/* Couples these groups beside those it was made of, in place of such given before; all its values are 0 then. The order
+ * stays, unless L would have 1.3 times the nonzeros (and no order was given): it follows from the groups at hand alone, not
+ * from earlier ones. The factor at hand stays good, and a new one costs no more for it. */
+void sparse_couple(Sparse *matrix, Groups groups);
+
+/* Entries of the matrix as it was made; and where its entry k (sparse_slot before any sparse_couple) is stored now. */
+int sparse_made_nonzeros(const Sparse *matrix);
+int sparse_where(const Sparse *matrix, int k);
 
 /* Where entry (i, j) is stored in sparse_values(); either triangle. The pattern must hold it. */
 int sparse_slot(const Sparse *matrix, int i, int j);
 
-/* The stored lower triangle of the permuted matrix, [sparse_nonzeros() + 1]; the last place is a bin that may be
- * written to and is never read. */
+/* The stored lower triangle of the permuted matrix, [sparse_nonzeros()]. */
 double *sparse_values(Sparse *matrix);
 int sparse_nonzeros(const Sparse *matrix);
 

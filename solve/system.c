@@ -4,8 +4,6 @@
 #include <math.h>
 #include <string.h>
 
-enum { MAX_LOWER = TERM_LOWER(TERM_MAX_DOF, 0) };
-
 static const double GAP_LEAST = 1e-10; /* of the body's size: what counts as closed */
 
 System *system_create(int dof_count, const DofClass *classes, int class_count)
@@ -31,10 +29,10 @@ void system_destroy(System *sys)
         Entry *entry = &sys->entries[t];
         entry->term.ops->destroy(entry->term.self);
         mem_free(entry->dofs);
-        mem_free(entry->slots);
-        mem_free(entry->twice);
+        entry_clear(entry);
     }
     for (int b = 0; b < sys->bulk_count; b++) sys->bulks[b].ops->destroy(sys->bulks[b].self);
+    patches_destroy(&sys->patches);
     sparse_destroy(sys->matrix);
     mem_free(sys->bulk_gradient);
     mem_free(sys->order);
@@ -50,9 +48,13 @@ void system_destroy(System *sys)
     mem_free(sys);
 }
 
-static void gather_dofs(Entry *entry)
+void system_list_elements(Entry *entry)
 {
     const TermOps *ops = entry->term.ops;
+    entry->count = ops->count(entry->term.self);
+    entry->packs = (entry->count + PACK_LANES - 1) / PACK_LANES;
+    mem_free(entry->dofs);
+    entry->dofs = mem_alloc((size_t)entry->packs * (size_t)entry->size, sizeof *entry->dofs);
     for (int k = 0; k < entry->packs; k++)
         for (int l = 0; l < PACK_LANES; l++) {
             int e = k * PACK_LANES + l, dof[TERM_MAX_DOF];
@@ -65,12 +67,10 @@ void system_add(System *sys, Term term)
 {
     assert(sys->term_count < SYSTEM_MAX_TERMS && !sys->matrix);
     Entry *entry = &sys->entries[sys->term_count++];
-    *entry = (Entry){.term = term, .count = term.ops->count(term.self), .size = term.ops->size(term.self)};
+    *entry = (Entry){.term = term, .changes = term.ops->update != NULL, .size = term.ops->size(term.self)};
     assert(entry->size <= TERM_MAX_DOF);
-    entry->packs = (entry->count + PACK_LANES - 1) / PACK_LANES;
     entry->lower = TERM_LOWER(entry->size, 0);
-    entry->dofs = mem_alloc((size_t)entry->packs * (size_t)entry->size, sizeof *entry->dofs);
-    gather_dofs(entry);
+    system_list_elements(entry);
     entry->memory = sys->memory_count;
     if (term.ops->memory) sys->memory_count += term.ops->memory(term.self, NULL);
 }
@@ -110,7 +110,8 @@ void system_prepare(System *sys)
     for (int c = 0; c < sys->class_count; c++)
         for (int i = 0; sys->classes[c].multipliers && i < sys->classes[c].count; i++)
             sys->multiplier_count += !sys->fixed[sys->classes[c].first + i];
-    system_build_matrix(sys);
+    system_make_matrix(sys);
+    patches_create(&sys->patches, sys->entries, sys->term_count, sys->matrix, sys->dof_count, sys->unknown);
     sys->work = mem_alloc((size_t)sys->free_count, sizeof(double));
     sys->diag = mem_alloc((size_t)sys->free_count, sizeof(double));
     sys->linearised = mem_alloc((size_t)system_anchor_count(sys), sizeof(double));
@@ -235,94 +236,9 @@ void system_scatter(const Entry *entry, int pack, const Pack *from, double *to)
         for (int l = 0; l < lanes; l++) to[dofs[i][l]] += from[i][l];
 }
 
-static void scatter_gradient(System *sys, const Entry *entry, int pack, const Pack *g, double *gradient)
+double system_term_energy(System *sys, int t, const Point *at, double *energy)
 {
-    int(*dofs)[PACK_LANES] = &entry->dofs[pack * entry->size], lanes = system_lanes(entry, pack);
-    for (int i = 0; i < entry->size; i++)
-        for (int l = 0; l < lanes; l++) {
-            gradient[dofs[i][l]] += g[i][l];
-            sys->force_sum[dofs[i][l]] += fabs(g[i][l]);
-        }
-}
-
-static void scatter_hessian(const Entry *entry, int pack, const Pack *H, double *values)
-{
-    int(*slots)[PACK_LANES] = &entry->slots[(long)pack * entry->lower];
-    for (int k = 0; k < entry->lower; k++)
-        for (int l = 0; l < PACK_LANES; l++) values[slots[k][l]] += H[k][l];
-}
-
-static void scatter_twice(const Entry *entry, int pack, const Pack *H, double *values, int *next)
-{
-    for (; *next < entry->twice_count && entry->twice[3 * *next] == pack; (*next)++) {
-        int k = entry->twice[3 * *next + 1], l = entry->twice[3 * *next + 2];
-        values[entry->slots[pack * entry->lower + k][l]] += H[k][l];
-    }
-}
-
-/* Packs of a term in a row: each is evaluated into a place of its own, by whichever thread, before all are summed in
- * their order. */
-typedef struct Batch {
-    const Entry *entry;
-    const Point *at;
-    int first, count;
-    Pack *energy, *g, *H; /* [count], [count][size], [count][lower]; the latter NULL where not asked for */
-} Batch;
-
-enum { BATCH_PACKS = 512, TASK_PACKS = 16 };
-
-static void evaluate_task(void *self, int task)
-{
-    const Batch *b = self;
-    const Entry *entry = b->entry;
-    Pack x[TERM_MAX_DOF];
-    for (int k = task * TASK_PACKS; k < (task + 1) * TASK_PACKS && k < b->count; k++) {
-        Pack *g = b->g ? b->g + k * entry->size : NULL, *H = b->H ? b->H + k * entry->lower : NULL;
-        system_gather(entry, b->first + k, b->at->x, x);
-        b->energy[k] = entry->term.ops->eval(entry->term.self, b->first + k, b->at, x, g, H);
-    }
-}
-
-/* Energy of a batch; adds to the gradient and to the matrix where they are asked for. */
-static double take_batch(System *sys, const Batch *b, double *gradient, double *values, int *next_twice,
-                         double energy)
-{
-    for (int k = 0; k < b->count; k++) {
-        int pack = b->first + k;
-        energy += pack_sum(b->energy[k], system_lanes(b->entry, pack));
-        if (gradient) scatter_gradient(sys, b->entry, pack, b->g + k * b->entry->size, gradient);
-        if (!values) continue;
-        const Pack *H = b->H + k * b->entry->lower;
-        scatter_hessian(b->entry, pack, H, values);
-        scatter_twice(b->entry, pack, H, values, next_twice);
-    }
-    return energy;
-}
-
-static double evaluate_term(System *sys, int t, const Point *at, double *gradient, double *values)
-{
-    const Entry *entry = &sys->entries[t];
-    Pack own[1 + TERM_MAX_DOF + MAX_LOWER], *work = NULL;
-    int next_twice = 0, most = workers_count(sys->workers) > 1 ? BATCH_PACKS : 1;
-    if (most > 1)
-        work =
-            mem_alloc((size_t)most * (size_t)(1 + entry->size + (values ? entry->lower : 0)), sizeof *work);
-    Point seen = system_term_point(sys, t, at);
-    Batch b = {.entry = entry, .at = &seen, .energy = work ? work : own};
-    if (gradient) b.g = b.energy + most;
-    if (values) b.H = b.energy + most * (1 + entry->size);
-    double energy = 0;
-    for (b.first = 0; b.first < entry->packs; b.first += b.count) {
-        b.count = most < entry->packs - b.first ? most : entry->packs - b.first;
-        workers_run(sys->workers, (b.count + TASK_PACKS - 1) / TASK_PACKS, evaluate_task, &b);
-        energy = take_batch(sys, &b, gradient, values, &next_twice, energy);
-    }
-    mem_free(work);
-    return energy;
-}
-
-double system_term_energy(const System *sys, int t, const Point *at, double *energy)
-{
+    system_update(sys, at);
     const Entry *entry = &sys->entries[t];
     Point own = system_term_point(sys, t, at);
     Pack x[TERM_MAX_DOF];
@@ -336,19 +252,19 @@ double system_term_energy(const System *sys, int t, const Point *at, double *ene
     return sum;
 }
 
-static Evaluation evaluate(System *sys, const Point *at, double *gradient, double *values)
+static Evaluation evaluate(System *sys, const Point *at, double *gradient, bool hessian)
 {
     Evaluation result = {0};
-    if (gradient) {
-        memset(gradient, 0, (size_t)sys->dof_count * sizeof *gradient);
-        memset(sys->force_sum, 0, (size_t)sys->dof_count * sizeof *sys->force_sum);
-    }
-    if (values) memset(values, 0, ((size_t)sparse_nonzeros(sys->matrix) + 1) * sizeof *values);
+    Point points[SYSTEM_MAX_TERMS];
+    system_update(sys, at);
+    if (hessian) system_couple(sys, at->x);
+    double *values = hessian ? sparse_values(sys->matrix) : NULL;
+    for (int t = 0; t < sys->term_count; t++) points[t] = system_term_point(sys, t, at);
+    patches_sum(&sys->patches, sys->entries, sys->term_count, points, sys->workers,
+                (Sums){sys->energies, gradient, sys->force_sum, values});
     for (int t = 0; t < sys->term_count; t++) {
-        double energy = evaluate_term(sys, t, at, gradient, values);
-        sys->energies[t] = energy;
-        result.energy += energy;
-        result.energy_scale += fabs(energy);
+        result.energy += sys->energies[t];
+        result.energy_scale += fabs(sys->energies[t]);
     }
     system_evaluate_bulks(sys, at, gradient, values, &result);
     double total = 0;
@@ -363,12 +279,12 @@ static Evaluation evaluate(System *sys, const Point *at, double *gradient, doubl
 
 Evaluation system_energy(System *sys, const Point *at)
 {
-    return evaluate(sys, at, NULL, NULL);
+    return evaluate(sys, at, NULL, false);
 }
 
 Evaluation system_gradient(System *sys, const Point *at, double *gradient)
 {
-    return evaluate(sys, at, gradient, NULL);
+    return evaluate(sys, at, gradient, false);
 }
 
 double system_force_change(const System *sys, const double *step)
@@ -423,8 +339,7 @@ static void measure_compliance(System *sys, const double *x, const double *gradi
 
 Evaluation system_hessian(System *sys, const Point *at, double *gradient)
 {
-    system_couple(sys, at->x);
-    Evaluation result = evaluate(sys, at, gradient, sparse_values(sys->matrix));
+    Evaluation result = evaluate(sys, at, gradient, true);
     measure_scale(sys);
     measure_compliance(sys, at->x, gradient);
     system_note_point(sys, at);

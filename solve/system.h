@@ -18,7 +18,7 @@ typedef struct DofClass {
                        * far from it (system_gap); 0: it always vanishes */
 } DofClass;
 
-enum { SYSTEM_MAX_CLASSES = 4, SYSTEM_MAX_TERMS = 16, SYSTEM_MAX_BULKS = 4 };
+enum { SYSTEM_MAX_CLASSES = 4, SYSTEM_MAX_BULKS = 4 };
 
 typedef struct System System;
 
@@ -67,7 +67,7 @@ const Bulk *system_bulk(const System *sys, int b);
 double system_step_size(const System *sys, const double *d);
 
 /* Energies of the elements of term t, energy[count of the term]; NULL for the sum only. */
-double system_term_energy(const System *sys, int t, const Point *at, double *energy);
+double system_term_energy(System *sys, int t, const Point *at, double *energy);
 
 typedef struct Evaluation {
     double energy;       /* J                                                                           */
@@ -153,6 +153,9 @@ void system_prev_forward(System *sys, const Point *at, const double *dx, const d
  * False from system_has_follow: no term makes anything of it. */
 void system_follow(System *sys, const double *x, const double *d, double a, double *to);
 bool system_has_follow(const System *sys);
+
+/* The largest part of a step d from at->x that the terms admit, in (0, 1] (TermOps.reach). */
+double system_reach(System *sys, const Point *at, const double *d);
 
 /* Makes x, a trial reached from `from`, admissible; and x an accepted one, of which memory[system_memory_count()] notes
  * what must be remembered. Both may write to x (TermOps). */

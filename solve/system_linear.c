@@ -131,6 +131,7 @@ void system_multiply(const System *sys, const double *v, double *y)
 
 void system_param(System *sys, const Point *at, const double *w, double *dp)
 {
+    system_update(sys, at);
     Pack x[TERM_MAX_DOF], v[TERM_MAX_DOF];
     for (int t = 0; t < sys->term_count; t++) {
         const Entry *entry = &sys->entries[t];
@@ -145,6 +146,7 @@ void system_param(System *sys, const Point *at, const double *w, double *dp)
 
 void system_param_forward(System *sys, const Point *at, const double *dp, double *r)
 {
+    system_update(sys, at);
     Pack x[TERM_MAX_DOF], v[TERM_MAX_DOF];
     memset(r, 0, (size_t)sys->dof_count * sizeof *r);
     for (int t = 0; t < sys->term_count; t++) {
@@ -160,6 +162,7 @@ void system_param_forward(System *sys, const Point *at, const double *dp, double
 
 void system_prev(System *sys, const Point *at, const double *w, double *dx, double *dv)
 {
+    system_update(sys, at);
     Pack x[TERM_MAX_DOF], v[TERM_MAX_DOF], from_x[TERM_MAX_DOF], from_v[TERM_MAX_DOF];
     for (int t = 0; t < sys->term_count; t++) {
         const Entry *entry = &sys->entries[t];
@@ -177,6 +180,7 @@ void system_prev(System *sys, const Point *at, const double *w, double *dx, doub
 
 void system_prev_forward(System *sys, const Point *at, const double *dx, const double *dv, double *r)
 {
+    system_update(sys, at);
     Pack x[TERM_MAX_DOF], to_x[TERM_MAX_DOF], to_v[TERM_MAX_DOF], out[TERM_MAX_DOF];
     for (int t = 0; t < sys->term_count; t++) {
         const Entry *entry = &sys->entries[t];
@@ -205,6 +209,18 @@ bool system_has_follow(const System *sys)
     bool found = false;
     for (int t = 0; t < sys->term_count; t++) found = found || sys->entries[t].term.ops->follow;
     return found;
+}
+
+double system_reach(System *sys, const Point *at, const double *d)
+{
+    double reach = 1;
+    system_update(sys, at);
+    for (int t = 0; t < sys->term_count; t++) {
+        const Term *term = &sys->entries[t].term;
+        Point own = system_term_point(sys, t, at);
+        if (term->ops->reach) reach = fmin(reach, term->ops->reach(term->self, &own, d));
+    }
+    return reach;
 }
 
 void system_project(const System *sys, const double *from, double *x)

@@ -14,116 +14,108 @@ static int *unknown_order(const System *sys)
     return order;
 }
 
-/* Groups of coupled unknowns, of which terms and Bulks append theirs; room is counted before. */
-typedef struct Groups {
+/* Groups of coupled unknowns in the making. */
+typedef struct GroupList {
     const System *sys;
-    long *start, count, places; /* start[count + 1] */
-    int *dofs;                  /* [places]         */
-} Groups;
+    int count, room;
+    long *start; /* [room + 1] */
+    long places, place_room;
+    int *unknowns;
+} GroupList;
 
-static Groups groups_create(const System *sys)
+static void add_dof(GroupList *list, int dof)
 {
-    long groups = 0, places = 0;
-    for (int t = 0; t < sys->term_count; t++) {
-        groups += sys->entries[t].count;
-        places += (long)sys->entries[t].count * sys->entries[t].size;
+    if (list->places == list->place_room) {
+        long room = 2 * list->place_room + 1024;
+        list->unknowns =
+            mem_resize(list->unknowns, (size_t)list->place_room, (size_t)room, sizeof *list->unknowns);
+        list->place_room = room;
     }
-    for (int b = 0; b < sys->bulk_count; b++) {
-        const BulkCoupling *coupling = &sys->couplings[b];
-        groups += coupling->group_count;
-        if (coupling->group_count) places += coupling->start[coupling->group_count];
+    list->unknowns[list->places++] = list->sys->unknown[dof];
+}
+
+static void end_group(GroupList *list)
+{
+    if (list->count == list->room) {
+        int room = 2 * list->room + 256;
+        list->start = mem_resize(list->start, (size_t)list->room + 1, (size_t)room + 1, sizeof *list->start);
+        list->room = room;
     }
-    return (Groups){.sys = sys,
-                    .start = mem_alloc((size_t)groups + 1, sizeof(long)),
-                    .dofs = mem_alloc((size_t)places, sizeof(int))};
+    list->start[++list->count] = list->places;
 }
 
-static void add_dof(Groups *groups, int dof)
-{
-    groups->dofs[groups->places++] = groups->sys->unknown[dof];
-}
-
-static void end_group(Groups *groups)
-{
-    groups->start[++groups->count] = groups->places;
-}
-
-static void add_term_groups(Groups *groups, const Entry *entry)
+static void add_term_groups(GroupList *list, const Entry *entry)
 {
     for (int e = 0; e < entry->count; e++) {
         for (int d = 0; d < entry->size; d++)
-            add_dof(groups, entry->dofs[e / PACK_LANES * entry->size + d][e % PACK_LANES]);
-        end_group(groups);
+            add_dof(list, entry->dofs[e / PACK_LANES * entry->size + d][e % PACK_LANES]);
+        end_group(list);
     }
 }
 
-static void add_bulk_groups(Groups *groups, const BulkCoupling *coupling)
+static void add_bulk_groups(GroupList *list, const BulkCoupling *coupling)
 {
     for (int e = 0; e < coupling->group_count; e++) {
-        for (long k = coupling->start[e]; k < coupling->start[e + 1]; k++) add_dof(groups, coupling->dofs[k]);
-        end_group(groups);
+        for (long k = coupling->start[e]; k < coupling->start[e + 1]; k++) add_dof(list, coupling->dofs[k]);
+        end_group(list);
     }
 }
 
-static Sparse *create_matrix(const System *sys)
+/* Of the terms whose elements last, or change. */
+static GroupList list_groups(const System *sys, bool changes)
 {
-    Groups groups = groups_create(sys);
-    for (int t = 0; t < sys->term_count; t++) add_term_groups(&groups, &sys->entries[t]);
-    for (int b = 0; b < sys->bulk_count; b++) add_bulk_groups(&groups, &sys->couplings[b]);
+    GroupList list = {.sys = sys, .start = mem_alloc(1, sizeof *list.start)};
+    for (int t = 0; t < sys->term_count; t++)
+        if (sys->entries[t].changes == changes) add_term_groups(&list, &sys->entries[t]);
+    return list;
+}
+
+static Groups groups_of(const GroupList *list)
+{
+    return (Groups){list->count, list->start, list->unknowns};
+}
+
+static void group_list_clear(GroupList *list)
+{
+    mem_free(list->start);
+    mem_free(list->unknowns);
+}
+
+void system_make_matrix(System *sys)
+{
+    GroupList list = list_groups(sys, false);
     int *order = unknown_order(sys);
-    Sparse *matrix = sparse_create(sys->free_count, (int)groups.count, groups.start, groups.dofs,
-                                   (SparseDef){order, sys->multiplier_count});
+    sys->matrix = sparse_create(sys->free_count, groups_of(&list), (SparseDef){order, sys->multiplier_count});
     mem_free(order);
-    mem_free(groups.start);
-    mem_free(groups.dofs);
-    return matrix;
+    group_list_clear(&list);
 }
 
-static void find_slots(System *sys, Entry *entry)
+void system_update(System *sys, const Point *at)
 {
-    int bin = sparse_nonzeros(sys->matrix), room = 0;
-    entry->slots = mem_alloc((size_t)entry->packs * (size_t)entry->lower, sizeof *entry->slots);
-    for (int k = 0; k < entry->packs; k++)
-        for (int i = 0; i < entry->size; i++)
-            for (int j = 0; j <= i; j++)
-                for (int l = 0; l < PACK_LANES; l++) {
-                    int *slot = &entry->slots[k * entry->lower + TERM_LOWER(i, j)][l];
-                    int a = entry->dofs[k * entry->size + i][l], b = entry->dofs[k * entry->size + j][l];
-                    bool used =
-                        k * PACK_LANES + l < entry->count && sys->unknown[a] >= 0 && sys->unknown[b] >= 0;
-                    *slot = used ? sparse_slot(sys->matrix, sys->unknown[a], sys->unknown[b]) : bin;
-                    if (!used || i == j || a != b) continue;
-                    if (entry->twice_count == room) {
-                        entry->twice =
-                            mem_resize(entry->twice, 3 * (size_t)room, 6 * (size_t)room + 24, sizeof(int));
-                        room = 2 * room + 8;
-                    }
-                    int *place = &entry->twice[3 * entry->twice_count++];
-                    place[0] = k, place[1] = TERM_LOWER(i, j), place[2] = l;
-                }
-}
-
-void system_build_matrix(System *sys)
-{
-    sparse_destroy(sys->matrix);
-    sys->matrix = create_matrix(sys);
-    sys->factored = false;
+    bool changed = false;
     for (int t = 0; t < sys->term_count; t++) {
         Entry *entry = &sys->entries[t];
-        mem_free(entry->slots);
-        mem_free(entry->twice);
-        entry->twice = NULL;
-        entry->twice_count = 0;
-        find_slots(sys, entry);
+        if (!entry->changes || !entry->term.ops->update(entry->term.self, at)) continue;
+        system_list_elements(entry);
+        changed = true;
     }
+    if (!changed) return;
+    patches_change(&sys->patches, sys->entries, sys->term_count, sys->dof_count);
+    sys->uncoupled = true;
 }
 
 void system_couple(System *sys, const double *x)
 {
-    bool changed = false;
+    bool changed = sys->uncoupled;
     for (int b = 0; b < sys->bulk_count; b++)
         changed |= sys->bulks[b].ops->couple(sys->bulks[b].self, x, &sys->couplings[b]);
-    if (changed) system_build_matrix(sys);
+    if (!changed) return;
+    GroupList list = list_groups(sys, true);
+    for (int b = 0; b < sys->bulk_count; b++) add_bulk_groups(&list, &sys->couplings[b]);
+    sparse_couple(sys->matrix, groups_of(&list));
+    group_list_clear(&list);
+    patches_place(&sys->patches, sys->entries, sys->term_count, sys->matrix, sys->unknown);
+    sys->uncoupled = false;
 }
 
 static void add_block(void *self, int row, int column, int n, const double *block)

@@ -1,22 +1,13 @@
-/* system_private.h - what system.c (evaluation, assembly) and system_linear.c (factor, solve, products) share. */
+/* system_private.h - what system.c (evaluation), system_matrix.c (the matrix) and system_linear.c (factor, solve, products) share. */
 #pragma once
+#include "solve/patches.h"
 #include "solve/system.h"
-
-/* A term and where its packs come from and go to. */
-typedef struct Entry {
-    Term term;
-    int count, size, packs, lower; /* elements, dofs each, packs, Hessian entries each                  */
-    int memory;                    /* first of what it remembers                                         */
-    int (*dofs)[PACK_LANES];       /* [pack*size + i] global dof                                         */
-    int (*slots)[PACK_LANES];      /* [pack*lower + k] place in the matrix; the bin for fixed dofs        */
-    int *twice;                    /* [3*twice_count] pack, entry, lane: two different dofs of an element */
-    int twice_count;               /*   that are the same global dof: (i, j) and (j, i) both count        */
-} Entry;
 
 struct System {
     int dof_count, free_count, term_count, bulk_count, class_count, multiplier_count, memory_count;
     int *order; /* [dof_count] NULL: none given */
     Entry entries[SYSTEM_MAX_TERMS];
+    Patches patches;
     Bulk bulks[SYSTEM_MAX_BULKS];
     BulkCoupling couplings[SYSTEM_MAX_BULKS];             /* as given last              */
     double *bulk_gradient;                                /* [dof] of one of them; NULL without Bulks */
@@ -24,6 +15,7 @@ struct System {
     Workers *workers;                                     /* borrowed                   */
     DofClass classes[SYSTEM_MAX_CLASSES];
     bool *fixed, factored; /* factored: the last factor may be used */
+    bool uncoupled;        /* elements have changed since the matrix was coupled */
     int *unknown;          /* [dof] number among the free ones, -1 if fixed */
     Sparse *matrix;
     double base, stiffness_max;
@@ -44,10 +36,16 @@ void system_gather(const Entry *entry, int pack, const double *from, Pack *to);
 void system_scatter(const Entry *entry, int pack, const Pack *from, double *to);
 int system_lanes(const Entry *entry, int pack);
 
-/* Pattern and slots for the terms and for what the Bulks couple. */
-void system_build_matrix(System *sys);
+/* Asks a term for its elements. */
+void system_list_elements(Entry *entry);
 
-/* Asks the Bulks what they couple at x, and makes the matrix anew where that is more than before. */
+/* The matrix of the terms whose elements last. */
+void system_make_matrix(System *sys);
+
+/* Has the terms' elements follow the point (TermOps.update). */
+void system_update(System *sys, const Point *at);
+
+/* Has the matrix hold what elements that change, and Bulks at x, couple. */
 void system_couple(System *sys, const double *x);
 
 /* Energies of the Bulks, with gradients and Hessians as in an evaluation of terms. */

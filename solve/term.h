@@ -10,8 +10,12 @@
 #pragma once
 #include "base/pack.h"
 #include "solve/state.h"
+#include <stdbool.h>
 
-enum { TERM_MAX_DOF = 24 }; /* largest element, in degrees of freedom */
+enum {
+    TERM_MAX_DOF = 24,    /* largest element, in degrees of freedom */
+    SYSTEM_MAX_TERMS = 16 /* of a System                            */
+};
 
 /* Entry (i, j), j <= i, of an element Hessian's packed lower triangle. */
 #define TERM_LOWER(i, j) ((i) * ((i) + 1) / 2 + (j))
@@ -44,6 +48,11 @@ typedef struct TermOps {
     /* The global dofs of element e, dof[size]; a dof may appear twice. */
     void (*dofs)(const void *self, int e, int *dof);
 
+    /* Has the elements follow from the point, and from nothing that was before: count and dofs tell the new ones. True
+     * when they changed. Called before anything else with that point: so it should soon know an x_prev (or x) that it
+     * knows already. Ordered so that equal points give equal lists. NULL: the elements last. */
+    bool (*update)(void *self, const Point *at);
+
     /* Energies of a pack, J; writes dE/dx to g[size] and the lower triangle of d2E/dx2 to H[TERM_LOWER(size, 0)].
      * H NULL: value and gradient; g NULL too: value only. x[size] are the elements' own dofs. Pure and re-entrant. */
     Pack (*eval)(const void *self, int pack, const Point *at, const Pack *x, Pack *g, Pack *H);
@@ -65,6 +74,10 @@ typedef struct TermOps {
     /* r = d2E/dx d(x_prev, v_prev) . (dx, dv): the tangent of prev. */
     void (*prev_forward)(const void *self, int pack, const Point *at, const Pack *x, const Pack *dx,
                          const Pack *dv, Pack *r);
+
+    /* The largest a in (0, 1] such that the straight way from at->x to at->x + a d is admissible (d: whole vector);
+     * NULL: 1. */
+    double (*reach)(const void *self, const Point *at, const double *d);
 
     /* Moves `to`, which is x + a d, to where the motion that begins at x with velocity d is better said to be after the time
      * a: the same to first order in a; whole vectors. Such a term's Hessian heeds Point.x_from. NULL where the straight way

@@ -378,7 +378,7 @@ static void test_inertia(void **state)
     for (int i = 0; i < TERM_MAX_DOF; i++) dof_size[i] = 0.1;
     Term term = spline_inertia_term(model, 2);
     Point at = {.x = x, .x_prev = s.strokes.q, .v_prev = v, .dt = 0.1};
-    TermError error = check_term(&term, &(Params){0}, &at, dof_size, &random);
+    TermError error = check_term(&term, &(Params){0}, &at, n, dof_size, &random);
     print_message("inertia: differences %.1e  prev %.1e\n", check_differences(error), error.prev);
     assert_true(check_differences(error) < 1e-10 && check_products(error) < 1e-11);
     System *sys = system_create(n, &(DofClass){.count = n, .size = 1}, 1);

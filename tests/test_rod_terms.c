@@ -89,7 +89,7 @@ static void check_form(const Rod *rod, const double *p, bool positions, double t
         int dof[TERM_MAX_DOF];
         term->ops->dofs(term->self, 0, dof);
         for (int i = 0; i < term->ops->size(term->self); i++) size[i] = dof_size(&layout, dof[i]);
-        TermError error = check_term(term, &rod->params, &at, size, random);
+        TermError error = check_term(term, &rod->params, &at, system_dof_count(sys), size, random);
         print_message("%-10s gradient %.1e  hessian %.1e  param_forward %.1e  param %.1e  prev_forward %.1e  "
                       "prev %.1e\n",
                       term->ops->name, error.gradient, error.hessian, error.forward, error.adjoint,

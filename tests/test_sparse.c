@@ -29,7 +29,7 @@ static Sparse *make_grid(int far, double stiffness, int n)
             start[count] = 2 * count;
         }
     }
-    Sparse *a = sparse_create(n, count, start, dofs, (SparseDef){0});
+    Sparse *a = sparse_create(n, (Groups){count, start, dofs}, (SparseDef){0});
     double *values = sparse_values(a);
     for (int i = 0; i < n; i++) values[sparse_slot(a, i, i)] += 1;
     for (int e = 0; e < count; e++) {

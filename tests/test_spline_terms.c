@@ -294,9 +294,9 @@ static void test_derivatives(void **state)
         Point at = {.x = f.strokes.q, .p = (const double *)&f.weights};
         for (int row = 0; row < SPLINE_WEIGHT_COUNT; row++) {
             System *sys = system_of(f.model, row, SPLINE_EXACT);
-            TermError error = system_term_count(sys)
-                                  ? check_term(system_term(sys, 0), &(Params){0}, &at, dof_size, &random)
-                                  : check_bulk(system_bulk(sys, 0), &at, DOFS, 0.1);
+            TermError error = system_term_count(sys) ? check_term(system_term(sys, 0), &(Params){0}, &at,
+                                                                  DOFS, dof_size, &random)
+                                                     : check_bulk(system_bulk(sys, 0), &at, DOFS, 0.1);
             print_message("%-10s gradient %.1e  Hessian %.1e\n", spline_term_rows[row].name, error.gradient,
                           error.hessian);
             /* Kernels end with a jump of the third derivative. */

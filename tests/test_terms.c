@@ -2,6 +2,7 @@
  * other. */
 #include "shell/terms.h"
 #include "solve/check.h"
+#include "tests/cloud_fixture.h"
 #include "tests/shell_fixture.h"
 #include <math.h>
 #include <stdio.h>
@@ -76,7 +77,8 @@ static void check_rows(BendingModel bending, FluxField *field)
     at.time = 0.3, at.dt = 0.01;
     for (int t = 0; t < system_term_count(sys); t++) {
         Point own = system_term_point(sys, t, &at);
-        TermError error = check_term(system_term(sys, t), &shell->params, &own, dof_size, &random);
+        TermError error =
+            check_term(system_term(sys, t), &shell->params, &own, system_dof_count(sys), dof_size, &random);
         print_message("%-10s gradient %.1e  hessian %.1e  param_forward %.1e  param %.1e  prev_forward %.1e  "
                       "prev %.1e\n",
                       system_term(sys, t)->ops->name, error.gradient, error.hessian, error.forward,
@@ -115,6 +117,24 @@ static void test_formula(void **state)
     Formula *formula = formula_create(expressions, 3, NULL, 0, variables, NULL);
     assert_non_null(formula);
     check_rows(BENDING_MIDEDGE, flux_field_formula(formula, 0.06));
+}
+
+/* A term whose elements change. */
+static void test_changing(void **state)
+{
+    (void)state;
+    Random random = random_seed(4);
+    Cloud cloud = cloud_create();
+    System *sys = cloud_system(&cloud);
+    State now = cloud_state(sys);
+    double dof_size[6] = {0.1, 0.1, 0.1, 0.1, 0.1, 0.1};
+    Point at = state_point(&now, cloud.p);
+    at.x_prev = now.x, at.v_prev = now.v, at.dt = 0.1;
+    TermError error = check_term(system_term(sys, 1), &cloud.params, &at, CLOUD_DOFS, dof_size, &random);
+    assert_true(cloud_springs(sys)->count > 2 * PACK_LANES);
+    assert_true(check_differences(error) < 1e-7 && check_products(error) < 1e-11);
+    state_destroy(&now);
+    system_destroy(sys);
 }
 
 /* ---- Terms that leave something out, or get it wrong: the check must see it ---- */
@@ -203,7 +223,8 @@ static void test_blind(void **state)
             TermOps wrong = spoil(right, (Spoil)how);
             term.ops = &wrong;
             Point own = system_term_point(sys, t, &at);
-            TermError error = check_term(&term, &shell->params, &own, dof_size, &random);
+            TermError error =
+                check_term(&term, &shell->params, &own, system_dof_count(sys), dof_size, &random);
             if (check_differences(error) < 1e-3 && check_products(error) < 1e-3)
                 fail_msg("%s passes, spoilt in the way %d", right->name, how);
             seen[how]++;
@@ -218,8 +239,8 @@ static void test_blind(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_midedge), cmocka_unit_test(test_hinge), cmocka_unit_test(test_dipole),
-        cmocka_unit_test(test_formula), cmocka_unit_test(test_blind),
+        cmocka_unit_test(test_midedge), cmocka_unit_test(test_hinge),    cmocka_unit_test(test_dipole),
+        cmocka_unit_test(test_formula), cmocka_unit_test(test_changing), cmocka_unit_test(test_blind),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
