@@ -32,13 +32,13 @@ static void put_state(Path *path, int k, const State *state)
     path->time[k] = state->time;
 }
 
-Path path_create(const TrajectoryProblem *problem, const MarchDef *march, int factor_max)
+Path path_create(const TrajectoryProblem *problem, const MarchDef *march, long factor_memory)
 {
     Path path = {.problem = problem,
                  .march = march,
                  .dofs = system_dof_count(problem->sys),
                  .memory_count = system_memory_count(problem->sys),
-                 .factor_max = factor_max};
+                 .factor_memory = factor_memory};
     make_room(&path, problem->steps + 1);
     path.end = mem_alloc((size_t)problem->steps + 1, sizeof(int));
     path.p = mem_copy(problem->p, (size_t)problem->params->size, sizeof(double));
@@ -54,7 +54,8 @@ void path_clear(Path *path)
         factor_release(path->factor[k]);
         path->factor[k] = NULL;
     }
-    path->count = path->factor_count = 0;
+    path->count = 0;
+    path->factor_bytes = 0;
 }
 
 void path_destroy(Path *path)
@@ -120,9 +121,10 @@ bool path_add(Path *path, int frame, const State *state, double dt)
     path->factor[k] = NULL;
     Point at = point(path, k);
     if (!factor_at(path, &at)) return false;
-    if (path->factor_count < path->factor_max) {
+    long bytes = system_info(path->problem->sys).factor_bytes; /* its elements may change from step to step */
+    if (path->factor_bytes + bytes <= path->factor_memory) {
         path->factor[k] = system_share_factor(path->problem->sys);
-        path->factor_count++;
+        path->factor_bytes += bytes;
     }
     return true;
 }

@@ -13,12 +13,12 @@ typedef struct Path {
     double *dt, *time;  /* [room] s: of a step, and at the end of each state          */
     double *x, *memory; /* [room][dofs], [room][memory_count] states                  */
     Factor **factor;    /* [room] of the step that ends at a state; NULL: not kept    */
-    int factor_count, factor_max;
+    long factor_bytes, factor_memory; /* that the kept ones take; that they may take       */
     double *p;            /* [params] controls as of the last use                        */
     double *v, *gradient; /* [dofs] */
 } Path;
 
-Path path_create(const TrajectoryProblem *problem, const MarchDef *march, int factor_max);
+Path path_create(const TrajectoryProblem *problem, const MarchDef *march, long factor_memory);
 void path_destroy(Path *path);
 
 /* No steps: only the problem's start. */

@@ -49,15 +49,13 @@ Trajectory *trajectory_create(const TrajectoryProblem *problem, const Trajectory
 {
     Trajectory *t = mem_alloc(1, sizeof *t);
     *t = (Trajectory){.problem = *problem, .def = *def};
-    long bytes = system_info(problem->sys).factor_bytes + 1, most = def->factor_memory / (2 * bytes);
-    int factor_max = most < 1000000000 ? (int)most : 1000000000;
     size_t params = (size_t)problem->params->size, size = (size_t)problem->design->size;
     t->u = mem_alloc(size, sizeof(double));
     t->best_u = mem_alloc(size, sizeof(double));
     t->dp = mem_alloc(params, sizeof(double));
     t->hp = mem_alloc(params, sizeof(double));
     t->dv = mem_alloc((size_t)system_dof_count(problem->sys), sizeof(double));
-    for (int k = 0; k < 2; k++) t->paths[k] = path_create(&t->problem, &t->def.march, factor_max);
+    for (int k = 0; k < 2; k++) t->paths[k] = path_create(&t->problem, &t->def.march, def->factor_memory / 2);
     return t;
 }
 

@@ -96,6 +96,10 @@ static Direct *reorder(const Sparse *matrix, Pattern *pattern, int *where)
 void sparse_couple(Sparse *matrix, Groups groups)
 {
     if (matrix->n == 0) return;
+    if (groups.count == 0) {
+        set_pattern(matrix, matrix->made, NULL, direct_share(matrix->direct_made));
+        return;
+    }
     const int *rank = direct_rank(matrix->direct_made);
     Pattern others = pattern_create(matrix->n, groups, rank);
     int *where = mem_alloc((size_t)sparse_made_nonzeros(matrix), sizeof *where);

@@ -13,31 +13,65 @@
 
 enum { SIDE = 12, N = SIDE * SIDE };
 
-/* A grid of springs to the right and up and, `far`, some more across it: other patterns, other orders. Values are
- * graph Laplacians plus 1. */
-static Sparse *make_grid(int far, double stiffness, int n)
+/* Springs between two unknowns each. */
+typedef struct Springs {
+    long start[4 * N + 1];
+    int unknowns[8 * N], count;
+} Springs;
+
+static void add_spring(Springs *springs, int i, int j, int n)
 {
-    int dofs[8 * N], count = 0;
-    long start[4 * N + 1] = {0};
+    if (j < 0 || j >= n || j == i) return;
+    springs->unknowns[2 * springs->count] = i, springs->unknowns[2 * springs->count + 1] = j;
+    springs->count++;
+    springs->start[springs->count] = 2L * springs->count;
+}
+
+/* From every `every`-th unknown across the grid; `far` says whereto. */
+static void add_far_springs(Springs *springs, int far, int every, int n)
+{
+    for (int i = 0; i < n; i += every) add_spring(springs, i, (i * 5 + far) % n, n);
+}
+
+static void add_grid_springs(Springs *springs, int n)
+{
     for (int i = 0; i < n; i++) {
-        const int ends[] = {i % SIDE < SIDE - 1 ? i + 1 : -1, i + SIDE < n ? i + SIDE : -1,
-                            far && i % 7 == 0 ? (i * 5 + far) % n : -1};
-        for (int k = 0; k < 3; k++) {
-            if (ends[k] < 0 || ends[k] >= n || ends[k] == i) continue;
-            dofs[2 * count] = i, dofs[2 * count + 1] = ends[k];
-            count++;
-            start[count] = 2 * count;
-        }
+        add_spring(springs, i, i % SIDE < SIDE - 1 ? i + 1 : -1, n);
+        add_spring(springs, i, i + SIDE, n);
     }
-    Sparse *a = sparse_create(n, (Groups){count, start, dofs}, (SparseDef){0});
+}
+
+static Groups groups_of(const Springs *springs)
+{
+    return (Groups){springs->count, springs->start, springs->unknowns};
+}
+
+static void add_values(Sparse *a, const Springs *springs, double stiffness)
+{
     double *values = sparse_values(a);
-    for (int i = 0; i < n; i++) values[sparse_slot(a, i, i)] += 1;
-    for (int e = 0; e < count; e++) {
-        int i = dofs[2 * e], j = dofs[2 * e + 1];
+    for (int e = 0; e < springs->count; e++) {
+        int i = springs->unknowns[2 * e], j = springs->unknowns[2 * e + 1];
         values[sparse_slot(a, i, i)] += stiffness;
         values[sparse_slot(a, j, j)] += stiffness;
         values[sparse_slot(a, i, j)] -= stiffness;
     }
+}
+
+static void add_diagonal(Sparse *a, int n)
+{
+    for (int i = 0; i < n; i++) sparse_values(a)[sparse_slot(a, i, i)] += 1;
+}
+
+/* A grid of springs to the right and up and, `far`, some more across it: other patterns, other orders. Values are
+ * graph Laplacians plus 1. */
+static Sparse *make_grid(int far, double stiffness, int n)
+{
+    Springs springs = {.count = 0};
+    add_grid_springs(&springs, n);
+    if (far) add_far_springs(&springs, far, 7, n);
+    Sparse *a = sparse_create(n, groups_of(&springs), (SparseDef){0});
+    add_diagonal(a, n);
+    add_values(a, &springs, stiffness);
     return a;
 }
 
@@ -144,9 +178,66 @@ static void test_indefinite(void **state)
     sparse_destroy(a);
 }
 
+/* A factor of the grid with others coupled; its rank is left in rank[N], the solution in x[N]. */
+static void solve_coupled(Sparse *a, int far, int every, int *rank, double *x)
+{
+    Springs grid = {.count = 0}, others = {.count = 0};
+    double b[N];
+    fill(b);
+    add_grid_springs(&grid, N);
+    if (every) add_far_springs(&others, far, every, N);
+    sparse_couple(a, groups_of(&others));
+    add_diagonal(a, N);
+    add_values(a, &grid, 3);
+    add_values(a, &others, 2);
+    assert_true(sparse_factor(a, NULL));
+    Factor *factor = sparse_share_factor(a);
+    memcpy(rank, factor_rank(factor), N * sizeof *rank);
+    factor_release(factor);
+    sparse_solve(a, b, x);
+    assert_true(misfit(a, x, b) < 1e-13);
+}
+
+/* With a few others coupled the order stays; with many there is another. Both follow from what is coupled alone, and not
+ * from what was before; entries are found again where sparse_where says; and the factor at hand stays what it was. */
+static void test_coupled(void **state)
+{
+    (void)state;
+    Sparse *a = make_grid(0, 3, N), *fresh = make_grid(0, 3, N);
+    int plain[N], few[N], many[N], again[N], kept[N];
+    int slots[N];
+    double x[N], y[N], b[N];
+    fill(b);
+    for (int i = 0; i < N; i++) slots[i] = sparse_slot(a, i, i);
+    assert_true(sparse_factor(a, NULL));
+    sparse_solve(a, b, x);
+    Factor *factor = sparse_share_factor(a);
+    memcpy(plain, factor_rank(factor), sizeof plain);
+    factor_release(factor);
+    sparse_couple(a, (Groups){1, (long[]){0, 2}, (int[]){0, N - 1}});
+    for (int i = 0; i < N; i++) assert_int_equal(sparse_where(a, slots[i]), sparse_slot(a, i, i));
+    sparse_solve(a, b, y);
+    assert_memory_equal(x, y, sizeof x);
+
+    solve_coupled(a, 11, 70, few, x);
+    assert_memory_equal(plain, few, sizeof plain);
+    solve_coupled(a, 11, 2, many, x);
+    assert_int_not_equal(memcmp(plain, many, sizeof plain), 0);
+    for (int i = 0; i < N; i++) assert_int_equal(sparse_where(a, slots[i]), sparse_slot(a, i, i));
+    solve_coupled(a, 40, 3, again, x);
+    solve_coupled(fresh, 40, 3, kept, y);
+    assert_memory_equal(again, kept, sizeof kept);
+    assert_memory_equal(x, y, sizeof x);
+    solve_coupled(a, 0, 0, again, x);
+    assert_memory_equal(plain, again, sizeof plain);
+    sparse_destroy(a);
+    sparse_destroy(fresh);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_share), cmocka_unit_test(test_other_pattern),
-                                       cmocka_unit_test(test_other_size), cmocka_unit_test(test_indefinite)};
+                                       cmocka_unit_test(test_other_size), cmocka_unit_test(test_indefinite),
+                                       cmocka_unit_test(test_coupled)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
