@@ -196,7 +196,7 @@ RunStatus job_design(Run *run, Error *err)
     StaticDesignDef def = static_design_default();
     run_newton(run, &def.newton);
     def.observer = run_observer(run);
-    def.threads = run->threads;
+    def.workers = run_share_threads(run, model->case_count);
     job.sd = static_design_create(&model->design, model->params, job.cases, &def);
     RunStatus status = ok ? design_run(run, &ops, &job, u, err) : RUN_CANNOT_WRITE;
     static_design_destroy(job.sd);

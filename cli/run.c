@@ -22,6 +22,31 @@ void run_newton(const Run *run, NewtonDef *def)
     def->step_cap = run->model->step_cap;
 }
 
+void run_release_threads(Run *run)
+{
+    for (int c = 0; run->inside && c < run->model->case_count; c++) {
+        system_set_workers(run->model->cases[c].sys, NULL);
+        workers_destroy(run->inside[c]);
+    }
+    mem_free(run->inside);
+    workers_destroy(run->side_by_side);
+    run->inside = NULL, run->side_by_side = NULL;
+}
+
+Workers *run_share_threads(Run *run, int at_once)
+{
+    int cases = run->model->case_count, outside = at_once < run->threads ? at_once : run->threads;
+    run_release_threads(run);
+    if (outside > 1) run->side_by_side = workers_create(outside);
+    if (cases == 0 || run->threads / outside < 2) return run->side_by_side;
+    run->inside = mem_alloc((size_t)cases, sizeof *run->inside);
+    for (int c = 0; c < cases; c++) {
+        if (c < outside) run->inside[c] = workers_create(run->threads / outside);
+        system_set_workers(run->model->cases[c].sys, run->inside[c % outside]);
+    }
+    return run->side_by_side;
+}
+
 Array body_block(const char *name, const ParamBlock *block, const double *p)
 {
     int rank = block->width > 1 ? 2 : 1;

@@ -1,6 +1,7 @@
 /* run.h - a job on its way: model, journal, progress and interruption. */
 #pragma once
 #include "base/memory.h"
+#include "base/workers.h"
 #include "cli/model.h"
 #include "cli/progress.h"
 #include "io/journal.h"
@@ -24,7 +25,8 @@ typedef struct Run {
     Progress *progress;
     const char *result; /* NAME.vtkhdf */
     int threads;
-    bool unsolved; /* nothing was found that could be drawn */
+    Workers *side_by_side, **inside; /* run_share_threads */
+    bool unsolved;                   /* nothing was found that could be drawn */
 } Run;
 
 /* The program and the libraries that it runs with, a line each. The caller frees. */
@@ -33,6 +35,11 @@ char *run_versions(void);
 /* OpenBLAS's kernels that this run's numbers come from: of a run that goes on with others, a warning, and those before
  * too: "Haswell, SkylakeX". The caller frees. */
 char *run_kernels(Journal *journal, Error *err);
+
+/* Shares the run's threads out again: so many load cases are to be solved side by side, by the threads that are
+ * returned (NULL: one after the other); those left over work inside their systems. */
+Workers *run_share_threads(Run *run, int at_once);
+void run_release_threads(Run *run);
 
 /* Stops a solve after an interruption (progress.h). */
 NewtonObserver run_observer(Run *run);

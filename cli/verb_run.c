@@ -38,7 +38,7 @@ static const char usage[] =
     "  --margin LENGTH  of a drawing: 10mm\n"
     "  --resume         goes on with a run that was interrupted, or extends one that has finished\n"
     "  --force          discards an unfinished run of that name\n"
-    "  --threads N      load cases at once, parts of a drawing's tone, 1 to 64; default: as many as there "
+    "  --threads N      that share the work, 1 to 64; the same numbers come out; default: as many as there "
     "are "
     "processors\n"
     "  --quiet          says nothing but errors; --log=json: one JSON object per line\n"
@@ -274,14 +274,6 @@ static bool check_output(const char *output, const char *result, Error *err)
     return true;
 }
 
-/* Load cases at once, as far as there is memory for their BLAS; the same numbers come out. */
-static int threads_of(const RunOptions *options, const Model *model)
-{
-    int at_once = model->case_count < options->threads ? model->case_count : options->threads;
-    int room = kernels_reserve(at_once);
-    return room < at_once ? room : options->threads;
-}
-
 static void warn_sidecar(const RunOptions *options, const char *result)
 {
     static const char words[] =
@@ -304,15 +296,17 @@ static int run_model(const RunOptions *options, const Scene *scene, Model *model
                .model = model,
                .progress = &progress,
                .result = result,
-               .threads = threads_of(options, model)};
+               .threads = kernels_reserve(options->threads)}; /* the same numbers come out */
     JournalMode mode = options->resume ? JOURNAL_RESUME : options->force ? JOURNAL_FORCE : JOURNAL_NEW;
     if (check_output(options->output, result, &err) &&
         outputs_check(scene, options->scene, result, !options->no_picture, &err))
         run.journal = journal_open(journal, mode, &err);
     if (run.journal && !result_has_sidecar(result)) warn_sidecar(options, result);
+    run_share_threads(&run, 1);
     int code = run.journal ? do_job(&run, options) : fail(options, RUN_CANNOT_WRITE, err.text);
     if (run.journal && !journal_close(run.journal, &err) && code != RUN_CANNOT_WRITE)
         code = fail(options, RUN_CANNOT_WRITE, err.text);
+    run_release_threads(&run);
     mem_free(name);
     mem_free(result);
     mem_free(journal);

@@ -7,15 +7,15 @@ typedef struct Path {
     const TrajectoryProblem *problem;
     const MarchDef *march;
     int dofs, memory_count;
-    int count, room;    /* steps, sub-steps of cut ones included                     */
-    int *end;           /* [problem->steps + 1] the state at the end of each frame    */
-    int *frame;         /* [room] the frame that step 1.. belongs to, from 1          */
-    double *dt, *time;  /* [room] s: of a step, and at the end of each state          */
-    double *x, *memory; /* [room][dofs], [room][memory_count] states                  */
-    Factor **factor;    /* [room] of the step that ends at a state; NULL: not kept    */
+    int count, room;                  /* steps, sub-steps of cut ones included                     */
+    int *end;                         /* [problem->steps + 1] the state at the end of each frame    */
+    int *frame;                       /* [room] the frame that step 1.. belongs to, from 1          */
+    double *dt, *time;                /* [room] s: of a step, and at the end of each state          */
+    double *x, *memory;               /* [room][dofs], [room][memory_count] states                  */
+    Factor **factor;                  /* [room] of the step that ends at a state; NULL: not kept    */
     long factor_bytes, factor_memory; /* that the kept ones take; that they may take       */
-    double *p;            /* [params] controls as of the last use                        */
-    double *v, *gradient; /* [dofs] */
+    double *p;                        /* [params] controls as of the last use                        */
+    double *v, *gradient;             /* [dofs] */
 } Path;
 
 Path path_create(const TrajectoryProblem *problem, const MarchDef *march, long factor_memory);

@@ -1,7 +1,6 @@
 #include "optim/static_design.h"
 #include "base/memory.h"
 #include <math.h>
-#include <pthread.h>
 #include <string.h>
 
 /* One case at work. */
@@ -28,7 +27,7 @@ struct StaticDesign {
 
 StaticDesignDef static_design_default(void)
 {
-    return (StaticDesignDef){.newton = newton_default(), .threads = 1};
+    return (StaticDesignDef){.newton = newton_default()};
 }
 
 StaticDesign *static_design_create(const Design *design, const Params *params, LoadCase *cases,
@@ -157,56 +156,36 @@ static CaseInfo evaluate_case(StaticDesign *sd, int c, const double *u, bool wit
     return info;
 }
 
-/* What one thread does: cases first, first + stride, ... of an evaluation or, with v, of a product. */
-typedef struct Share {
+/* An evaluation of all cases or, with v, a product. */
+typedef struct Sweep {
     StaticDesign *sd;
-    int first, stride;
     const double *u, *v;
     double soft;
     bool with_gradient;
     CaseInfo *info;
-} Share;
+} Sweep;
 
 static void product_case(StaticDesign *sd, int c, const double *v, double soft);
 
-static void *do_share(void *data)
+static void case_task(void *self, int c)
 {
-    const Share *share = data;
-    for (int c = share->first; c < share->sd->design->case_count; c += share->stride)
-        if (share->v)
-            product_case(share->sd, c, share->v, share->soft);
-        else
-            share->info[c] = evaluate_case(share->sd, c, share->u, share->with_gradient);
-    return NULL;
+    const Sweep *sweep = self;
+    if (sweep->v)
+        product_case(sweep->sd, c, sweep->v, sweep->soft);
+    else
+        sweep->info[c] = evaluate_case(sweep->sd, c, sweep->u, sweep->with_gradient);
 }
 
-/* All cases, the first share in the calling thread. A thread that cannot be had is done without. */
-static void do_cases(Share share)
+static void do_cases(Sweep sweep)
 {
-    enum { THREADS_MAX = 64 };
-    Share shares[THREADS_MAX];
-    pthread_t threads[THREADS_MAX];
-    bool started[THREADS_MAX] = {false};
-    int count = share.sd->def.threads, cases = share.sd->design->case_count;
-    if (count > cases) count = cases;
-    if (count > THREADS_MAX) count = THREADS_MAX;
-    for (int t = 0; t < count; t++) {
-        shares[t] = share;
-        shares[t].first = t;
-        shares[t].stride = count;
-        if (t > 0) started[t] = pthread_create(&threads[t], NULL, do_share, &shares[t]) == 0;
-    }
-    for (int t = 0; t < count; t++)
-        if (!started[t]) do_share(&shares[t]);
-    for (int t = 1; t < count; t++)
-        if (started[t]) pthread_join(threads[t], NULL);
+    workers_run(sweep.sd->def.workers, sweep.sd->design->case_count, case_task, &sweep);
 }
 
 double static_design_evaluate(StaticDesign *sd, const double *u, double *gradient, CaseInfo *case_info)
 {
     double F = 0;
     memcpy(sd->u, u, (size_t)sd->design->size * sizeof *u);
-    do_cases((Share){.sd = sd, .u = u, .with_gradient = gradient != NULL, .info = case_info});
+    do_cases((Sweep){.sd = sd, .u = u, .with_gradient = gradient != NULL, .info = case_info});
     for (int c = 0; c < sd->design->case_count; c++) F += case_info[c].objective;
     if (!gradient) return F;
     memset(gradient, 0, (size_t)sd->design->size * sizeof *gradient);
@@ -318,7 +297,7 @@ static void product_case(StaticDesign *sd, int c, const double *v, double soft)
 void static_design_product(StaticDesign *sd, const double *v, double soft, double *out)
 {
     memset(out, 0, (size_t)sd->design->size * sizeof *out);
-    do_cases((Share){.sd = sd, .v = v, .soft = soft});
+    do_cases((Sweep){.sd = sd, .v = v, .soft = soft});
     for (int c = 0; c < sd->design->case_count; c++)
         design_transpose(sd->design, c, sd->best_u, sd->work[c].dp, out);
 }

@@ -28,7 +28,7 @@ typedef struct StaticDesign StaticDesign;
 typedef struct StaticDesignDef {
     NewtonDef newton;
     NewtonObserver observer; /* may stop a solve, which then is not found; from all threads; may be zero */
-    int threads;             /* at most this many cases at once; default 1                               */
+    Workers *workers;        /* solve cases side by side (borrowed); default NULL: one after the other    */
 } StaticDesignDef;
 
 StaticDesignDef static_design_default(void);

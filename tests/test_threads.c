@@ -127,7 +127,8 @@ static void check_system(const char *scene)
     clear(&b);
 }
 
-/* Objective and gradient[size] of the scene's start, with so many threads for its cases. */
+/* Objective and gradient[size] of the scene's start, with so many threads for its cases, and two inside of each where there
+ * are many. */
 static double evaluate_cases(const char *scene, int thread_count, double **gradient, size_t *size)
 {
     Built b = build(scene);
@@ -135,7 +136,8 @@ static double evaluate_cases(const char *scene, int thread_count, double **gradi
     LoadCase cases[3];
     CaseInfo info[3];
     StaticDesignDef def = static_design_default();
-    def.threads = thread_count;
+    Workers *inside[3] = {NULL};
+    def.workers = workers_create(thread_count);
     def.newton.step_cap = model->step_cap;
     *size = (size_t)model->design.size;
     double *u = mem_alloc(*size, sizeof *u);
@@ -146,12 +148,15 @@ static double evaluate_cases(const char *scene, int thread_count, double **gradi
                               &from->state, from->objectives, from->objective_count,
                               from->weight};
         design_read(&model->design, c, from->stages[0].p, u);
+        if (thread_count > 2) system_set_workers(from->sys, inside[c] = workers_create(2));
     }
     StaticDesign *sd = static_design_create(&model->design, model->params, cases, &def);
     double F = static_design_evaluate(sd, u, *gradient, info);
     static_design_destroy(sd);
     mem_free(u);
     clear(&b);
+    workers_destroy(def.workers);
+    for (int c = 0; c < 3; c++) workers_destroy(inside[c]);
     return F;
 }
 
