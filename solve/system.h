@@ -29,8 +29,7 @@ void system_destroy(System *sys);
 
 void system_add(System *sys, Term term);
 
-/* What a Bulk couples may change with x: system_hessian then makes pattern and order anew: factors that were kept are
- * lost, and the counts of system_info begin again. Products with d2E/dx dp leave Bulks out. */
+/* What a Bulk couples may change with x. Products with d2E/dx dp leave Bulks out. */
 void system_add_bulk(System *sys, Bulk bulk);
 void system_fix(System *sys, int dof);
 
@@ -45,7 +44,7 @@ void system_set_base_shift(System *sys, double base);
 /* Elements are evaluated by these threads, from now on (borrowed; NULL: by the calling one). No bit depends on them. */
 void system_set_workers(System *sys, Workers *workers);
 
-/* After the last add and fix: builds the pattern and the slots, once. */
+/* After the last add and fix, once. */
 void system_prepare(System *sys);
 
 int system_dof_count(const System *sys);
