@@ -8,6 +8,7 @@
  * mu and nu go down after a success and up after a failure. After some refused steps in a row, or successes
  * that bring little, L-BFGS goes on from the best point. Constants measured in docs/optimisers.md. */
 #include "base/memory.h"
+#include "base/vector.h"
 #include "optim/best.h"
 #include <float.h>
 #include <math.h>
@@ -27,13 +28,6 @@ typedef struct Cg {
     double *step, *residual, *direction, *product, *trial, *trial_gradient; /* [n] */
     bool *held;                                                             /* [n] */
 } Cg;
-
-static double dot(int n, const double *a, const double *b)
-{
-    double sum = 0;
-    for (int i = 0; i < n; i++) sum += a[i] * b[i];
-    return sum;
-}
 
 /* out = (J^T J + nu S) v. F is the sum of squares, its gradient g = 2 J^T r, and products come as 2 J^T J v. */
 static void product(Best *best, const double *v, double nu, double *out)
@@ -71,20 +65,20 @@ static void find_residual(Best *best, Cg *cg, Damping damping, bool at_start)
 static int improve_step(Best *best, Cg *cg, Damping damping, double stop, int most)
 {
     int n = best->problem->n, count = 0;
-    double size = dot(n, cg->residual, cg->residual);
+    double size = vector_dot(n, cg->residual, cg->residual);
     memcpy(cg->direction, cg->residual, (size_t)n * sizeof *cg->direction);
     while (count < most && size > stop) {
         product(best, cg->direction, damping.nu, cg->product);
         count++;
         for (int i = 0; i < n; i++) cg->product[i] += damping.mu * cg->direction[i];
-        double curvature = dot(n, cg->direction, cg->product);
+        double curvature = vector_dot(n, cg->direction, cg->product);
         if (!(curvature > 0)) break;
         double a = size / curvature;
         for (int i = 0; i < n; i++) {
             cg->step[i] += a * cg->direction[i];
             cg->residual[i] -= cg->held[i] ? 0 : a * cg->product[i];
         }
-        double next = dot(n, cg->residual, cg->residual);
+        double next = vector_dot(n, cg->residual, cg->residual);
         for (int i = 0; i < n; i++) cg->direction[i] = cg->residual[i] + next / size * cg->direction[i];
         size = next;
     }
@@ -116,7 +110,7 @@ static void find_trial(Best *best, Cg *cg, Damping damping)
     for (int run = 1, left = CG_MAX; run <= CG_RUNS && left > 0; run++) {
         find_residual(best, cg, damping, run == 1);
         if (run == 1)
-            stop = fmin(CG_TOL * CG_TOL * dot(best->problem->n, cg->residual, cg->residual),
+            stop = fmin(CG_TOL * CG_TOL * vector_dot(best->problem->n, cg->residual, cg->residual),
                         2 * damping.mu * LEFT_MAX * fabs(best->objective));
         left -= improve_step(best, cg, damping, stop, run < CG_RUNS ? left / 2 : left);
         if (!put_within(best, cg)) return;

@@ -1,5 +1,6 @@
 #include "optim/static_design.h"
 #include "base/memory.h"
+#include "base/vector.h"
 #include <math.h>
 #include <string.h>
 
@@ -248,13 +249,6 @@ static void soften(System *sys, const double *x, double *y)
     for (int i = positions; i < system_dof_count(sys); i++) y[i] = 0;
 }
 
-static double dot(int n, const double *a, const double *b)
-{
-    double sum = 0;
-    for (int i = 0; i < n; i++) sum += a[i] * b[i];
-    return sum;
-}
-
 /* a'(d2F/dx2) a / a'H^-1 a with a = H^-1 dF/dx, in which the mode that is about to snap prevails: x'H^-1 x
  * times this is as much as the objectives pull at that mode. */
 static double find_soft_pull(StaticDesign *sd, int c)
@@ -267,9 +261,9 @@ static double find_soft_pull(StaticDesign *sd, int c)
     memset(work->hp, 0, (size_t)sd->params->size * sizeof *work->hp);
     memset(work->w, 0, (size_t)dofs * sizeof *work->w);
     add_products(sd, c, work->w, work->dp);
-    double pull = dot(dofs, work->dx, work->w);
+    double pull = vector_dot(dofs, work->dx, work->w);
     soften(sys, work->dx, work->w);
-    double softness = dot(dofs, work->dx, work->w);
+    double softness = vector_dot(dofs, work->dx, work->w);
     return softness > 0 ? pull / softness : 0;
 }
 

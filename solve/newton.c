@@ -113,13 +113,13 @@ static bool slope_is_fine(Search *s, const Evaluation *trial, double slope)
     s->info.evaluations++;
     for (int i = 0; i < s->n; i++)
         if (system_is_fixed(s->sys, i)) s->trial_gradient[i] = 0;
-    return gap_falls(s) || search_dot(s->n, s->trial_gradient, s->step) <= (2 * s->def->armijo - 1) * slope;
+    return gap_falls(s) || vector_dot(s->n, s->trial_gradient, s->step) <= (2 * s->def->armijo - 1) * slope;
 }
 
 /* Largest of 1, 1/2, 1/4 ... along the step that satisfies Armijo's rule; leaves the point in trial; 0: none. */
 static double line_search(Search *s)
 {
-    double slope = search_dot(s->n, s->gradient, s->step), a = 1;
+    double slope = vector_dot(s->n, s->gradient, s->step), a = 1;
     for (int k = 0; k < HALVINGS; k++, a /= 2) {
         Evaluation trial;
         double energy = search_energy(s, s->step, a, &trial);
@@ -197,7 +197,7 @@ static bool is_converged(const Search *s, bool small)
 {
     if (s->shift > 0 || system_gap(s->sys) > 0 || system_force_change(s->sys, s->step) > SETTLED)
         return false;
-    double gain = -search_dot(s->n, s->gradient, s->step);
+    double gain = -vector_dot(s->n, s->gradient, s->step);
     for (int i = 0; system_multiplier_count(s->sys) && i < s->n;
          i++) /* what must vanish and does not counts in full */
         if (system_is_multiplier(s->sys, i))

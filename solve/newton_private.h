@@ -1,6 +1,7 @@
 /* newton_private.h - what newton.c (steps), newton_saddle.c (ways out of a saddle) and newton_gap.c (what Lagrange
  * multipliers hold) share. */
 #pragma once
+#include "base/vector.h"
 #include "solve/newton.h"
 
 typedef struct Search {
@@ -23,13 +24,6 @@ typedef struct Search {
     Evaluation now;
     NewtonInfo info;
 } Search;
-
-static inline double search_dot(int n, const double *a, const double *b)
-{
-    double sum = 0;
-    for (int i = 0; i < n; i++) sum += a[i] * b[i];
-    return sum;
-}
 
 /* Factor of the last Hessian with a shift; counted. */
 bool search_factor(Search *s, double shift);

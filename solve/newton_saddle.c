@@ -49,8 +49,8 @@ static double lowest_mode(Search *s)
     for (int i = 0; s->open && i < s->n; i++)
         if (system_is_multiplier(s->sys, i)) s->mode[i] = 0;
     system_multiply(s->sys, s->mode, s->product);
-    double curvature = search_dot(s->n, s->mode, s->product) + gap_curvature(s);
-    if (search_dot(s->n, s->mode, s->gradient) > 0)
+    double curvature = vector_dot(s->n, s->mode, s->product) + gap_curvature(s);
+    if (vector_dot(s->n, s->mode, s->gradient) > 0)
         for (int i = 0; i < s->n; i++) s->mode[i] = -s->mode[i];
     return curvature;
 }
@@ -66,7 +66,7 @@ static double longest_step(Search *s, double size)
 /* A step along the mode that lowers the energy by a quarter of what its curvature promises; 0: none. */
 static double curvature_step(Search *s, double curvature)
 {
-    double size = system_step_size(s->sys, s->mode), slope = search_dot(s->n, s->gradient, s->mode);
+    double size = system_step_size(s->sys, s->mode), slope = vector_dot(s->n, s->gradient, s->mode);
     double longest = longest_step(s, size), a = fmin(CURVATURE_STEP / size, longest);
     for (int k = 0; k < CURVATURE_TRIES; k++, a /= 4) {
         Evaluation trial;
