@@ -11,6 +11,10 @@ enum { PACK_LANES = 8 };
 typedef double Pack __attribute__((vector_size(8 * 8)));
 typedef long long PackMask __attribute__((vector_size(8 * 8)));
 
+typedef struct Pack2 {
+    Pack x, y;
+} Pack2;
+
 typedef struct Pack3 {
     Pack x, y, z;
 } Pack3;
