@@ -24,6 +24,18 @@ static inline Pack pack_set(double a)
     return (Pack){0} + a;
 }
 
+static inline Pack pack_load(const double *from)
+{
+    Pack r;
+    memcpy(&r, from, sizeof r);
+    return r;
+}
+
+static inline void pack_store(double *to, Pack a)
+{
+    memcpy(to, &a, sizeof a);
+}
+
 static inline Pack pack_select(PackMask mask, Pack yes, Pack no)
 {
     return (Pack)((mask & (PackMask)yes) | (~mask & (PackMask)no));

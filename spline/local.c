@@ -130,9 +130,9 @@ static void sum_row(Local *local, long first, int columns, double *sum)
     const Probes *probes = local->tone.probes;
     Pack energy = {0};
     for (long k = first; k < first + columns; k += PACK_LANES) {
-        Pack delta = probe_load(local->delta + k),
-             off = probe_load(local->tone.ink + k) - probe_load(probes->target + k);
-        energy += probe_load(probes->gain + k) * delta * (off + delta / 2);
+        Pack delta = pack_load(local->delta + k),
+             off = pack_load(local->tone.ink + k) - pack_load(probes->target + k);
+        energy += pack_load(probes->gain + k) * delta * (off + delta / 2);
     }
     *sum += pack_sum(energy, PACK_LANES);
 }

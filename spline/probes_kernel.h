@@ -52,18 +52,6 @@ static inline unsigned probe_levels(const Probes *probes, double x, double y)
     return probes->tiles[(int)j * probes->tile_columns + (int)i];
 }
 
-static inline Pack probe_load(const double *from)
-{
-    Pack r;
-    memcpy(&r, from, sizeof r);
-    return r;
-}
-
-static inline void probe_store(double *to, Pack a)
-{
-    memcpy(to, &a, sizeof a);
-}
-
 /* Distances x - x_c of a point to eight cells from column i on. */
 static inline Pack probe_dx(const ProbeLevel *level, double x, int i)
 {
@@ -93,9 +81,9 @@ static inline void probes_spread(const Probes *probes, const ProbeRows *rows, do
             long row = level->first + (long)j * level->stride;
             double dy = y - (j + 0.5) * level->dy;
             for (int i = w.left; i <= w.right; i += PACK_LANES) {
-                Pack inverse = probe_load(probes->inverse + row + i);
+                Pack inverse = pack_load(probes->inverse + row + i);
                 Pack z = probe_closeness(probe_dx(level, x, i), dy, inverse);
-                probe_store(to + row + i, probe_load(to + row + i) + amount * inverse * z * z * z);
+                pack_store(to + row + i, pack_load(to + row + i) + amount * inverse * z * z * z);
             }
         }
     }
@@ -115,9 +103,9 @@ static inline void probes_gather_level(const Probes *probes, const ProbeLevel *l
         long row = level->first + (long)j * level->stride;
         double dy = y - (j + 0.5) * level->dy;
         for (int i = w.left; i <= w.right; i += PACK_LANES) {
-            Pack inverse = probe_load(probes->inverse + row + i), dx = probe_dx(level, x, i);
+            Pack inverse = pack_load(probes->inverse + row + i), dx = probe_dx(level, x, i);
             Pack z = probe_closeness(dx, dy, inverse);
-            Pack f = probe_load(force + row + i) * inverse, slope = f * inverse * z * z;
+            Pack f = pack_load(force + row + i) * inverse, slope = f * inverse * z * z;
             sum[0] += f * z * z * z;
             sum[1] += slope * dx;
             sum[2] += slope * dy;

@@ -76,10 +76,10 @@ static double take_row(Tone *tone, long first, int columns)
     const Probes *probes = tone->probes;
     Pack energy = {0};
     for (long k = first; k < first + columns; k += PACK_LANES) {
-        Pack off = probe_load(tone->ink + k) - probe_load(probes->target + k),
-             force = probe_load(probes->gain + k) * off;
+        Pack off = pack_load(tone->ink + k) - pack_load(probes->target + k),
+             force = pack_load(probes->gain + k) * off;
         energy += force * off;
-        probe_store(tone->force + k, force);
+        pack_store(tone->force + k, force);
     }
     return pack_sum(energy, PACK_LANES) / 2;
 }
