@@ -85,7 +85,8 @@ static void spread_ink(const Local *local, const Ink *ink, double sign)
     ProbeRows rows = probe_rows(probes, -INFINITY, INFINITY);
     double c = sign * 4 * local->tone.pen / M_PI;
     for (int p = 0; p < points->count; p++)
-        probes_spread(probes, &rows, points->x[p], points->y[p], c * points->ink[p], local->delta);
+        probes_spread(probes, &rows, probe_levels(probes, points->x[p], points->y[p]), points->x[p],
+                      points->y[p], c * points->ink[p], local->delta);
 }
 
 /* Cells whose ink may change. */

@@ -122,7 +122,7 @@ void tone_add_curvature(const Tone *tone, const SplineModel *model, const Spline
         double block[64] = {0};
         for (int q = 0; q < rule->count; q++) {
             int p = m * rule->count + q;
-            ProbeSums s = tone_sums(tone, points->x[p], points->y[p], 2);
+            ProbeSums s = tone_sums(tone, points, p, 2);
             double w = K * rule->weight[q], n = points->n[p], u[2] = {points->tx[p] / n, points->ty[p] / n};
             double ink = K * points->ink[p], slope[2] = {s.x, s.y};
             double rr[2][2] = {{ink * s.xx, ink * s.xy}, {ink * s.xy, ink * s.yy}};
