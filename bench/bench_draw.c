@@ -57,10 +57,9 @@ static void run(double pen, const char *start, const char *method, int threads, 
     Race race = {.started = clock_seconds(), .limit = limit, .every = 1};
     for (int k = 0; k < GOALS; k++) race.reached[k] = INFINITY;
     Drawing *d = drawing_of(pen, start, method);
-    Strokes strokes = drawing_start(d, 0);
-    Workers *workers = threads > 1 ? workers_create(threads) : NULL;
-    SplineTarget *target = drawing_target(d, 0, workers);
-    workers_destroy(workers);
+    Strokes strokes = {0};
+    SplineTarget *target;
+    drawing_begin(d, 0, threads, &strokes, &target);
     double before = clock_seconds(), start_seconds = before - race.started;
     SplineGrid tone = spline_grid(&d->parts[0].tone);
     race.judge = spline_judge_create(&d->page, &tone);
