@@ -123,11 +123,11 @@ static bool get_part(DrawJob *job, bool *has)
 
 /* ---- Progress ---- */
 
-/* The tone's error now and then: no more than a tenth of the time goes into it. */
+/* The tone's error now and then: no more than a twentieth of the time goes into it, by one thread. */
 static void judge(DrawJob *job, const Strokes *strokes)
 {
     double now = clock_seconds();
-    if (!job->judge || now - job->judged < fmax(0.5, 10 * job->cost)) return;
+    if (!job->judge || now - job->judged < fmax(0.5, 20 * job->cost)) return;
     job->tone = spline_judge_tone(job->judge, strokes);
     job->judged = clock_seconds();
     job->cost = job->judged - now;
