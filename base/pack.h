@@ -11,6 +11,10 @@ enum { PACK_LANES = 8 };
 typedef double Pack __attribute__((vector_size(8 * 8)));
 typedef long long PackMask __attribute__((vector_size(8 * 8)));
 
+typedef struct Pack2 {
+    Pack x, y;
+} Pack2;
+
 typedef struct Pack3 {
     Pack x, y, z;
 } Pack3;
@@ -18,6 +22,18 @@ typedef struct Pack3 {
 static inline Pack pack_set(double a)
 {
     return (Pack){0} + a;
+}
+
+static inline Pack pack_load(const double *from)
+{
+    Pack r;
+    memcpy(&r, from, sizeof r);
+    return r;
+}
+
+static inline void pack_store(double *to, Pack a)
+{
+    memcpy(to, &a, sizeof a);
 }
 
 static inline Pack pack_select(PackMask mask, Pack yes, Pack no)

@@ -1,49 +1,105 @@
 #include "base/workers.h"
 #include "base/memory.h"
 #include <pthread.h>
+#include <sched.h>
 #include <stdatomic.h>
 #include <stdbool.h>
 
+/* A run is open while tasks may be left in it. Who comes to an open run is counted in and out; the calling thread closes
+ * it when no task is left, and waits for those that are in, not for those that never came: on a busy machine a thread
+ * may get its turn milliseconds later. */
 struct Workers {
     int count; /* with the calling thread */
     pthread_t *threads;
-    pthread_mutex_t lock;
+    pthread_mutex_t lock; /* of going to sleep */
     pthread_cond_t begin, end;
-    atomic_long run; /* number of the run at hand */
-    atomic_int busy; /* threads that are at it    */
-    bool finished;   /* for good                  */
+    atomic_llong state;  /* number of the run, whether it is open, and how many are in */
+    atomic_int sleeping; /* threads that wait for `begin`, and the calling one for `end` */
+    bool finished;       /* for good; behind the lock */
     void (*task)(void *self, int k);
     void *self;
     int tasks;
     atomic_int next;
 };
 
-/* Runs follow each other within microseconds, in which a sleeping thread would hardly wake: so each looks out
- * for a while. */
-enum { PATIENCE = 5000 };
+enum { INSIDE = 0xffff, OPEN = 0x10000, RUN = 0x20000 }; /* of the state */
+
+/* Runs follow each other within microseconds, in which a sleeping thread would hardly wake: so each looks out so many
+ * times before it sleeps, but leaves its processor to whom has use for it in between. */
+enum { PATIENCE = 200 };
 
 static void do_tasks(Workers *workers)
 {
-    for (int k; (k = atomic_fetch_add(&workers->next, 1)) < workers->tasks;) workers->task(workers->self, k);
+    for (int k; (k = atomic_fetch_add_explicit(&workers->next, 1, memory_order_relaxed)) < workers->tasks;)
+        workers->task(workers->self, k);
+}
+
+/* Counted into the run that is open, if it is not that one. */
+static bool enter(Workers *workers, long long *done)
+{
+    long long state = atomic_load(&workers->state);
+    while (state & OPEN && state / RUN != *done)
+        if (atomic_compare_exchange_weak(&workers->state, &state, state + 1)) {
+            *done = state / RUN;
+            return true;
+        }
+    return false;
+}
+
+/* Counted out; the last one wakes the calling thread where that sleeps. */
+static void leave(Workers *workers)
+{
+    long long state = atomic_fetch_sub(&workers->state, 1) - 1;
+    if (state & (OPEN | INSIDE) || atomic_load(&workers->sleeping) == 0) return;
+    pthread_mutex_lock(&workers->lock);
+    pthread_cond_signal(&workers->end);
+    pthread_mutex_unlock(&workers->lock);
+}
+
+/* False where there will be no more run. */
+static bool wait_for_run(Workers *workers, long long *done)
+{
+    for (int k = 0; k < PATIENCE; k++, sched_yield())
+        if (enter(workers, done)) return true;
+    bool entered = false;
+    pthread_mutex_lock(&workers->lock);
+    atomic_fetch_add(&workers->sleeping, 1);
+    while (!workers->finished && !(entered = enter(workers, done)))
+        pthread_cond_wait(&workers->begin, &workers->lock);
+    atomic_fetch_sub(&workers->sleeping, 1);
+    pthread_mutex_unlock(&workers->lock);
+    return entered;
 }
 
 static void *work(void *data)
 {
     Workers *workers = data;
-    for (long done = 0;; done++) {
-        for (int k = 0; k < PATIENCE && atomic_load_explicit(&workers->run, memory_order_relaxed) == done;
-             k++) {
-        }
-        pthread_mutex_lock(&workers->lock);
-        while (workers->run == done && !workers->finished) pthread_cond_wait(&workers->begin, &workers->lock);
-        bool finished = workers->finished;
-        pthread_mutex_unlock(&workers->lock);
-        if (finished) return NULL;
-        do_tasks(workers);
-        pthread_mutex_lock(&workers->lock);
-        if (--workers->busy == 0) pthread_cond_signal(&workers->end);
-        pthread_mutex_unlock(&workers->lock);
-    }
+    for (long long done = 0; wait_for_run(workers, &done); leave(workers)) do_tasks(workers);
+    return NULL;
+}
+
+static void wake(Workers *workers)
+{
+    if (atomic_load(&workers->sleeping) == 0) return;
+    pthread_mutex_lock(&workers->lock);
+    pthread_cond_broadcast(&workers->begin);
+    pthread_mutex_unlock(&workers->lock);
+}
+
+static bool is_empty(Workers *workers)
+{
+    return (atomic_load(&workers->state) & INSIDE) == 0;
+}
+
+static void wait_for_last(Workers *workers)
+{
+    for (int k = 0; k < PATIENCE; k++, sched_yield())
+        if (is_empty(workers)) return;
+    pthread_mutex_lock(&workers->lock);
+    atomic_fetch_add(&workers->sleeping, 1);
+    while (!is_empty(workers)) pthread_cond_wait(&workers->end, &workers->lock);
+    atomic_fetch_sub(&workers->sleeping, 1);
+    pthread_mutex_unlock(&workers->lock);
 }
 
 Workers *workers_create(int threads)
@@ -86,19 +142,12 @@ void workers_run(Workers *workers, int tasks, void (*task)(void *self, int k), v
         for (int k = 0; k < tasks; k++) task(self, k);
         return;
     }
-    pthread_mutex_lock(&workers->lock);
     workers->task = task;
     workers->self = self;
     workers->tasks = tasks;
-    workers->busy = workers->count - 1;
-    workers->run++;
-    atomic_store(&workers->next, 0);
-    pthread_cond_broadcast(&workers->begin);
-    pthread_mutex_unlock(&workers->lock);
+    atomic_store_explicit(&workers->next, 0, memory_order_relaxed);
+    atomic_fetch_add(&workers->state, RUN + OPEN);
+    wake(workers);
     do_tasks(workers);
-    for (int k = 0; k < PATIENCE && atomic_load_explicit(&workers->busy, memory_order_relaxed) > 0; k++) {
-    }
-    pthread_mutex_lock(&workers->lock);
-    while (workers->busy > 0) pthread_cond_wait(&workers->end, &workers->lock);
-    pthread_mutex_unlock(&workers->lock);
+    if ((atomic_fetch_sub(&workers->state, OPEN) & INSIDE) > 0) wait_for_last(workers);
 }

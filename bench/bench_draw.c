@@ -57,20 +57,23 @@ static void run(double pen, const char *start, const char *method, int threads, 
     Race race = {.started = clock_seconds(), .limit = limit, .every = 1};
     for (int k = 0; k < GOALS; k++) race.reached[k] = INFINITY;
     Drawing *d = drawing_of(pen, start, method);
-    Strokes strokes = drawing_start(d, 0);
-    Workers *workers = threads > 1 ? workers_create(threads) : NULL;
-    SplineTarget *target = drawing_target(d, 0, workers);
-    workers_destroy(workers);
+    Strokes strokes = {0};
+    SplineTarget *target;
+    drawing_begin(d, 0, threads, &strokes, &target);
     double before = clock_seconds(), start_seconds = before - race.started;
     SplineGrid tone = spline_grid(&d->parts[0].tone);
     race.judge = spline_judge_create(&d->page, &tone);
     race.judging = clock_seconds() - before;
     int segments = strokes_segment_count(&strokes);
-    if (judge(&race, &strokes)) {
-        d->relax.threads = threads;
-        spline_relax(target, &d->relax, &strokes, &(RelaxObserver){watch, &race});
-    }
     char name[120];
+    if (judge(&race, &strokes)) {
+        double judging = race.judging;
+        d->relax.threads = threads;
+        RelaxInfo info = spline_relax(target, &d->relax, &strokes, &(RelaxObserver){watch, &race});
+        snprintf(name, sizeof name, "draw_%d_segments_%s_%s_%d_threads_iteration", segments, start, method,
+                 threads);
+        bench_print(name, 1e3 * (info.seconds - (race.judging - judging)) / info.iterations, "ms");
+    }
     snprintf(name, sizeof name, "draw_%d_segments_%s_%s_%d_threads_start", segments, start, method, threads);
     bench_print(name, start_seconds, "s");
     for (int k = 0; k < GOALS; k++) {

@@ -202,7 +202,7 @@ static SplineField direction_of(const Drawing *d, int part)
     return direction;
 }
 
-Strokes drawing_start(const Drawing *d, int part)
+static Strokes start_of(const Drawing *d, int part)
 {
     const DrawingPart *from = &d->parts[part];
     SplineField direction = direction_of(d, part);
@@ -224,7 +224,7 @@ static SplineField brightness(const SplineField *tone)
     return light;
 }
 
-SplineTarget *drawing_target(const Drawing *d, int part, Workers *workers)
+static SplineTarget *target_of(const Drawing *d, int part, Workers *workers)
 {
     const DrawingPart *from = &d->parts[part];
     SplineField direction = direction_of(d, part), light = brightness(&from->tone);
@@ -238,4 +238,33 @@ SplineTarget *drawing_target(const Drawing *d, int part, Workers *workers)
     spline_field_clear(&direction);
     spline_field_clear(&light);
     return target;
+}
+
+typedef struct Begin {
+    const Drawing *d;
+    int part;
+    Workers *workers; /* the target's */
+    Strokes *strokes;
+    SplineTarget **target;
+} Begin;
+
+static void begin_task(void *self, int k)
+{
+    const Begin *b = self;
+    if (k == 0)
+        *b->target = target_of(b->d, b->part, b->workers);
+    else
+        *b->strokes = start_of(b->d, b->part);
+}
+
+/* Strokes take one thread as long as the target takes it, more or less: with threads of its own beside that, the target
+ * has what is left of them. */
+void drawing_begin(const Drawing *d, int part, int threads, Strokes *strokes, SplineTarget **target)
+{
+    Workers *two = threads > 1 && strokes ? workers_create(2) : NULL;
+    Workers *own = threads > 1 ? workers_create(threads) : NULL;
+    Begin begin = {d, part, own, strokes, target};
+    workers_run(two, strokes ? 2 : 1, begin_task, &begin);
+    workers_destroy(two);
+    workers_destroy(own);
 }

@@ -39,6 +39,6 @@ double drawing_segments(const DrawingPart *part);
 Drawing *drawing_create(const SplineScene *scene, YamlFile *file);
 void drawing_destroy(Drawing *drawing);
 
-/* The strokes that a part starts from, and what they relax to. workers: borrowed; NULL: one thread. */
-Strokes drawing_start(const Drawing *drawing, int part);
-SplineTarget *drawing_target(const Drawing *drawing, int part, Workers *workers);
+/* The strokes that a part starts from (NULL: not wanted), and what they relax to: the caller's, to clear and destroy.
+ * Both at the same time where there are threads; no bit depends on how many. */
+void drawing_begin(const Drawing *drawing, int part, int threads, Strokes *strokes, SplineTarget **target);

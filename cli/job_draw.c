@@ -123,11 +123,11 @@ static bool get_part(DrawJob *job, bool *has)
 
 /* ---- Progress ---- */
 
-/* The tone's error now and then: no more than a tenth of the time goes into it. */
+/* The tone's error now and then: no more than a twentieth of the time goes into it, by one thread. */
 static void judge(DrawJob *job, const Strokes *strokes)
 {
     double now = clock_seconds();
-    if (!job->judge || now - job->judged < fmax(0.5, 10 * job->cost)) return;
+    if (!job->judge || now - job->judged < fmax(0.5, 20 * job->cost)) return;
     job->tone = spline_judge_tone(job->judge, strokes);
     job->judged = clock_seconds();
     job->cost = job->judged - now;
@@ -166,7 +166,7 @@ static bool watch(void *self, const RelaxInfo *info, const Strokes *strokes)
     job->failed = !put_evaluation(job, info, strokes) ||
                   (every > 0 && job->iteration % every == 0 && !write_svg(job, strokes));
     judge(job, strokes);
-    double ink = strokes_length(strokes) / fmax(spline_ink_budget(job->target), 1e-30);
+    double ink = job->judge ? strokes_length(strokes) / fmax(spline_ink_budget(job->target), 1e-30) : 0;
     progress_step(job->run->progress, job->part * (d->rounds + 1) + done, d->part_count * (d->rounds + 1),
                   "iteration %d, energy %.5g, tone error %.4f, ink %.3f", job->iteration, info->energy,
                   job->tone, ink);
@@ -201,8 +201,8 @@ static bool relax_part(DrawJob *job)
     bool going;
     job->failed = !get_part(job, &going);
     if (job->failed) return false;
+    drawing_begin(d, job->part, job->run->threads, going ? NULL : strokes, &job->target);
     if (!going) {
-        *strokes = drawing_start(d, job->part);
         RelaxInfo info = spline_relax(job->target, &job->relax, strokes, &observer);
         going = keep(job, &info, true);
     }
@@ -220,9 +220,7 @@ static bool run_part(DrawJob *job, int part)
     const DrawingPart *from = &job->d->parts[part];
     SplineGrid tone = spline_grid(&from->tone);
     job->part = part;
-    Workers *workers = job->run->threads > 1 ? workers_create(job->run->threads) : NULL;
-    job->target = drawing_target(job->d, part, workers);
-    workers_destroy(workers);
+    job->target = NULL;
     if (job->run->progress->mode != PROGRESS_QUIET) job->judge = spline_judge_create(&from->page, &tone);
     job->judged = 0;
     bool going = relax_part(job);

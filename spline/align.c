@@ -34,7 +34,7 @@ static Pack align_psi(const SegmentTerm *term, const SplineWeights *weights, con
     GridSample M;
     bool exact = order > 1 && !term->positive;
     Pack P = pack_set(weights->align);
-    grid_spline_sample(term->model->target->align, s->r.x, s->r.y, order > 0 ? exact ? 2 : 1 : 0, &M);
+    grid_spline_sample(term->model->target->align, s->r, order > 0 ? exact ? 2 : 1 : 0, &M);
     if (order > 0) {
         psi->r = pack2_scale(P * s->n, pack2(form(M.x, s->u), form(M.y, s->u)));
         psi->t = pack2_scale(P, slope(M.value, s->u));

@@ -7,7 +7,7 @@ static Pack flow_psi(const SegmentTerm *term, const SplineWeights *weights, cons
 {
     GridSample v;
     if (order > 1 && term->positive) order = 1;
-    grid_spline_sample(term->model->target->flow, s->r.x, s->r.y, order, &v);
+    grid_spline_sample(term->model->target->flow, s->r, order, &v);
     Pack P = pack_set(weights->flow);
     if (order > 0) {
         psi->r = pack2_scale(P, pack2(v.x[0] * s->t.x + v.x[1] * s->t.y, v.y[0] * s->t.x + v.y[1] * s->t.y));

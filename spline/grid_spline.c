@@ -135,8 +135,9 @@ static void sample_lane(const GridSpline *spline, const Taps *h, const Taps *v, 
     store(sample->yy, l, spline->width, yy);
 }
 
-void grid_spline_sample(const GridSpline *spline, Pack x, Pack y, int order, GridSample *sample)
+void grid_spline_sample(const GridSpline *spline, Pack2 at, int order, GridSample *sample)
 {
-    Taps h = find_taps(x, spline->scale_x, spline->columns), v = find_taps(y, spline->scale_y, spline->rows);
+    Taps h = find_taps(at.x, spline->scale_x, spline->columns),
+         v = find_taps(at.y, spline->scale_y, spline->rows);
     for (int l = 0; l < PACK_LANES; l++) sample_lane(spline, &h, &v, l, order, sample);
 }

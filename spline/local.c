@@ -85,7 +85,8 @@ static void spread_ink(const Local *local, const Ink *ink, double sign)
     ProbeRows rows = probe_rows(probes, -INFINITY, INFINITY);
     double c = sign * 4 * local->tone.pen / M_PI;
     for (int p = 0; p < points->count; p++)
-        probes_spread(probes, &rows, points->x[p], points->y[p], c * points->ink[p], local->delta);
+        probes_spread(probes, &rows, probe_levels(probes, points->x[p], points->y[p]), points->x[p],
+                      points->y[p], c * points->ink[p], local->delta);
 }
 
 /* Cells whose ink may change. */
@@ -130,9 +131,9 @@ static void sum_row(Local *local, long first, int columns, double *sum)
     const Probes *probes = local->tone.probes;
     Pack energy = {0};
     for (long k = first; k < first + columns; k += PACK_LANES) {
-        Pack delta = probe_load(local->delta + k),
-             off = probe_load(local->tone.ink + k) - probe_load(probes->target + k);
-        energy += probe_load(probes->gain + k) * delta * (off + delta / 2);
+        Pack delta = pack_load(local->delta + k),
+             off = pack_load(local->tone.ink + k) - pack_load(probes->target + k);
+        energy += pack_load(probes->gain + k) * delta * (off + delta / 2);
     }
     *sum += pack_sum(energy, PACK_LANES);
 }

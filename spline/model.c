@@ -14,6 +14,19 @@ static void number_segments(SplineModel *model)
             model->segment_node[segment++] = node;
 }
 
+enum { GROUP_SEGMENTS = 64 };
+
+static void group_strokes(SplineModel *model)
+{
+    model->group = mem_alloc((size_t)model->stroke_count + 1, sizeof *model->group);
+    for (int k = 1, first = 0; k <= model->stroke_count; k++) {
+        int segment = spline_first_segment(model, k);
+        if (segment - first < GROUP_SEGMENTS && k < model->stroke_count) continue;
+        model->group[++model->group_count] = k;
+        first = segment;
+    }
+}
+
 static Pack *packs_of(const double *values, int count)
 {
     int packs = (count + PACK_LANES - 1) / PACK_LANES;
@@ -42,6 +55,7 @@ SplineModel *spline_model_create(const SplineTarget *target, const Strokes *stro
         memcpy(model->start, strokes->start, ((size_t)strokes->count + 1) * sizeof *model->start);
     model->segment_node = mem_alloc(segments, sizeof *model->segment_node);
     number_segments(model);
+    group_strokes(model);
     model->rest = mem_copy(rest, segments, sizeof *rest);
     model->rest_pack = packs_of(rest, model->segment_count);
     return model;
@@ -52,6 +66,7 @@ void spline_model_destroy(SplineModel *model)
     if (!model) return;
     mem_free(model->start);
     mem_free(model->segment_node);
+    mem_free(model->group);
     mem_free(model->rest);
     mem_free(model->rest_pack);
     mem_free(model);

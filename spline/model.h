@@ -27,6 +27,8 @@ typedef struct SplineModel {
     int stroke_count, node_count, segment_count;
     int *start;           /* [stroke_count + 1] first node of each stroke                    */
     int *segment_node;    /* [segment_count] first node of each segment                      */
+    int group_count;      /* of whole strokes with about as many segments each, for threads  */
+    int *group;           /* [group_count + 1] first stroke of each                          */
     double *rest;         /* [segment_count] L0                                              */
     Pack *rest_pack;      /* the same in packs, as TermOps count them                        */
     SplineRule rule;      /* quadrature of the energies                                      */

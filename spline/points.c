@@ -2,8 +2,6 @@
 #include "base/memory.h"
 #include <math.h>
 
-enum { TASK_STROKES = 16 };
-
 SplinePoints spline_points_create(const SplineRule *rule, int segments, double cap)
 {
     int count = segments * rule->count;
@@ -60,10 +58,10 @@ typedef struct Update {
     const double *x;
 } Update;
 
-static void update_task(void *self, int task)
+static void update_task(void *self, int group)
 {
     const Update *u = self;
-    for (int k = task * TASK_STROKES; k < (task + 1) * TASK_STROKES && k < u->model->stroke_count; k++) {
+    for (int k = u->model->group[group]; k < u->model->group[group + 1]; k++) {
         int first = spline_first_segment(u->model, k), end = spline_first_segment(u->model, k + 1);
         for (int m = first; m < end; m++)
             spline_points_set(u->points, m, m == first, m == end - 1, u->x + 4 * u->model->segment_node[m]);
@@ -73,7 +71,34 @@ static void update_task(void *self, int task)
 void spline_points_update(const SplinePoints *points, const SplineModel *model, const double *x)
 {
     Update u = {points, model, x};
-    workers_run(model->workers, (model->stroke_count + TASK_STROKES - 1) / TASK_STROKES, update_task, &u);
+    workers_run(model->workers, model->group_count, update_task, &u);
+}
+
+SplineRange spline_group_points(const SplinePoints *points, const SplineModel *model, int group)
+{
+    int Q = points->rule->count;
+    return (SplineRange){Q * spline_first_segment(model, model->group[group]),
+                         Q * spline_first_segment(model, model->group[group + 1])};
+}
+
+static void add_point(const SplinePoints *points, const PointForces *forces, int p, double *to)
+{
+    const SplineRule *rule = points->rule;
+    int q = p % rule->count;
+    double along = rule->weight[q] * forces->S[p] / points->n[p], ink = points->ink[p];
+    double x = ink * forces->x[p], y = ink * forces->y[p];
+    for (int k = 0; k < 4; k++) {
+        to[2 * k] += rule->value[q][k] * x + rule->first[q][k] * along * points->tx[p];
+        to[2 * k + 1] += rule->value[q][k] * y + rule->first[q][k] * along * points->ty[p];
+    }
+}
+
+void spline_points_add_group(const SplinePoints *points, const SplineModel *model, const PointForces *forces,
+                             int group, double *g)
+{
+    SplineRange range = spline_group_points(points, model, group);
+    for (int p = range.first; p < range.end; p++)
+        add_point(points, forces, p, g + 4 * model->segment_node[p / points->rule->count]);
 }
 
 typedef struct Scatter {
@@ -83,36 +108,17 @@ typedef struct Scatter {
     double *g;
 } Scatter;
 
-static void scatter_segment(const Scatter *s, int m)
-{
-    const SplineRule *rule = s->points->rule;
-    double *to = s->g + 4 * s->model->segment_node[m];
-    for (int q = 0; q < rule->count; q++) {
-        int p = m * rule->count + q;
-        double along = rule->weight[q] * s->forces->S[p] / s->points->n[p], ink = s->points->ink[p];
-        double x = ink * s->forces->x[p], y = ink * s->forces->y[p];
-        for (int k = 0; k < 4; k++) {
-            to[2 * k] += rule->value[q][k] * x + rule->first[q][k] * along * s->points->tx[p];
-            to[2 * k + 1] += rule->value[q][k] * y + rule->first[q][k] * along * s->points->ty[p];
-        }
-    }
-}
-
-/* Strokes share no nodes, so that tasks do not meet. */
-static void scatter_task(void *self, int task)
+static void scatter_task(void *self, int group)
 {
     const Scatter *s = self;
-    int first = task * TASK_STROKES, end = first + TASK_STROKES;
-    if (end > s->model->stroke_count) end = s->model->stroke_count;
-    for (int m = spline_first_segment(s->model, first); m < spline_first_segment(s->model, end); m++)
-        scatter_segment(s, m);
+    spline_points_add_group(s->points, s->model, s->forces, group, s->g);
 }
 
 void spline_points_add_gradient(const SplinePoints *points, const SplineModel *model,
                                 const PointForces *forces, double *g)
 {
     Scatter s = {points, model, forces, g};
-    workers_run(model->workers, (model->stroke_count + TASK_STROKES - 1) / TASK_STROKES, scatter_task, &s);
+    workers_run(model->workers, model->group_count, scatter_task, &s);
 }
 
 /* block rows 4 i .., columns 4 j .. of 8x8, transposed or not, to a 4x4. */

@@ -35,9 +35,19 @@ typedef struct PointForces {
 PointForces point_forces_create(int count);
 void point_forces_clear(PointForces *forces);
 
-/* g += dE/dx, per segment N_k ink_q (x, y) + N'_k w_q S u. */
+/* g += dE/dx, per segment N_k ink_q (x, y) + N'_k w_q S u; of all, and of one group of the model's: groups share no
+ * dofs. */
 void spline_points_add_gradient(const SplinePoints *points, const SplineModel *model,
                                 const PointForces *forces, double *g);
+void spline_points_add_group(const SplinePoints *points, const SplineModel *model, const PointForces *forces,
+                             int group, double *g);
+
+/* Points of a group. */
+typedef struct SplineRange {
+    int first, end;
+} SplineRange;
+
+SplineRange spline_group_points(const SplinePoints *points, const SplineModel *model, int group);
 
 /* The 8x8 block that segments a and b have in common to a Hessian: at (dofs of a, dofs of b) and, transposed,
  * at (dofs of b, dofs of a); a == b: once, symmetric. They may share a node. */

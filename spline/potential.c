@@ -6,7 +6,7 @@ static Pack potential_psi(const SegmentTerm *term, const SplineWeights *weights,
                           int order, Psi *psi)
 {
     GridSample Phi;
-    grid_spline_sample(term->model->target->potential, s->r.x, s->r.y, order, &Phi);
+    grid_spline_sample(term->model->target->potential, s->r, order, &Phi);
     Pack Q = pack_set(weights->potential), Qn = Q * s->n, value = Phi.value[0];
     if (order > 0) {
         psi->r = pack2_scale(Qn, pack2(Phi.x[0], Phi.y[0]));

@@ -82,7 +82,7 @@ static void sample_row(void *self, int row)
         for (long k = 0; k < count; k += PACK_LANES) {
             GridSample sample;
             for (int l = 0; l < PACK_LANES; l++) x[l] = ((double)(k + l) + 0.5) * level->dx / s->nx;
-            grid_spline_sample(s->spline, x, y, 0, &sample);
+            grid_spline_sample(s->spline, (Pack2){x, y}, 0, &sample);
             for (int l = 0; l < PACK_LANES && k + l < count; l++) {
                 long cell = cell_index(level, (int)((k + l) / s->nx), row);
                 double density = bound(sample.value[0][l]);

@@ -32,6 +32,12 @@ typedef struct ProbeWindow {
     int left, right, top, bottom; /* inclusive */
 } ProbeWindow;
 
+/* a within [low, high], cut to a whole number; low for NaN. The C library's fmin and fmax are calls. */
+static inline int probe_index(double a, int low, int high)
+{
+    return a > low ? a < high ? (int)a : high : low;
+}
+
 /* Empty for a point that is nowhere. */
 static inline ProbeWindow probe_window(const ProbeLevel *level, double x, double y)
 {
@@ -39,29 +45,16 @@ static inline ProbeWindow probe_window(const ProbeLevel *level, double x, double
            right = floor((x + level->reach) / level->dx - 0.5);
     double top = ceil((y - level->reach) / level->dy - 0.5),
            bottom = floor((y + level->reach) / level->dy - 0.5);
-    return (ProbeWindow){(int)fmin(fmax(left, 0), level->columns),
-                         (int)fmin(fmax(right, -1), level->columns - 1), (int)fmin(fmax(top, 0), level->rows),
-                         (int)fmin(fmax(bottom, -1), level->rows - 1)};
+    return (ProbeWindow){probe_index(left, 0, level->columns), probe_index(right, -1, level->columns - 1),
+                         probe_index(top, 0, level->rows), probe_index(bottom, -1, level->rows - 1)};
 }
 
 /* Levels with a probe that sees the point, as bits; none for a point that is nowhere. */
 static inline unsigned probe_levels(const Probes *probes, double x, double y)
 {
-    double i = fmin(fmax(x / probes->tile_dx, 0), probes->tile_columns - 1);
-    double j = fmin(fmax(y / probes->tile_dy, 0), probes->tile_rows - 1);
-    return probes->tiles[(int)j * probes->tile_columns + (int)i];
-}
-
-static inline Pack probe_load(const double *from)
-{
-    Pack r;
-    memcpy(&r, from, sizeof r);
-    return r;
-}
-
-static inline void probe_store(double *to, Pack a)
-{
-    memcpy(to, &a, sizeof a);
+    int i = probe_index(x / probes->tile_dx, 0, probes->tile_columns - 1);
+    int j = probe_index(y / probes->tile_dy, 0, probes->tile_rows - 1);
+    return probes->tiles[j * probes->tile_columns + i];
 }
 
 /* Distances x - x_c of a point to eight cells from column i on. */
@@ -78,11 +71,10 @@ static inline Pack probe_closeness(Pack dx, double dy, Pack inverse)
     return pack_select(z > zero, z, zero);
 }
 
-/* to += amount pi/4 W at each probe in the rows. */
-static inline void probes_spread(const Probes *probes, const ProbeRows *rows, double x, double y,
-                                 double amount, double *to)
+/* to += amount pi/4 W at each probe in the rows; seen: the point's probe_levels. */
+static inline void probes_spread(const Probes *probes, const ProbeRows *rows, unsigned seen, double x,
+                                 double y, double amount, double *to)
 {
-    unsigned seen = probe_levels(probes, x, y);
     for (int l = 0; seen >> l; l++) {
         if (!(seen >> l & 1) || y < rows->low[l] || y > rows->high[l]) continue;
         const ProbeLevel *level = &probes->levels[l];
@@ -93,9 +85,9 @@ static inline void probes_spread(const Probes *probes, const ProbeRows *rows, do
             long row = level->first + (long)j * level->stride;
             double dy = y - (j + 0.5) * level->dy;
             for (int i = w.left; i <= w.right; i += PACK_LANES) {
-                Pack inverse = probe_load(probes->inverse + row + i);
+                Pack inverse = pack_load(probes->inverse + row + i);
                 Pack z = probe_closeness(probe_dx(level, x, i), dy, inverse);
-                probe_store(to + row + i, probe_load(to + row + i) + amount * inverse * z * z * z);
+                pack_store(to + row + i, pack_load(to + row + i) + amount * inverse * z * z * z);
             }
         }
     }
@@ -115,9 +107,9 @@ static inline void probes_gather_level(const Probes *probes, const ProbeLevel *l
         long row = level->first + (long)j * level->stride;
         double dy = y - (j + 0.5) * level->dy;
         for (int i = w.left; i <= w.right; i += PACK_LANES) {
-            Pack inverse = probe_load(probes->inverse + row + i), dx = probe_dx(level, x, i);
+            Pack inverse = pack_load(probes->inverse + row + i), dx = probe_dx(level, x, i);
             Pack z = probe_closeness(dx, dy, inverse);
-            Pack f = probe_load(force + row + i) * inverse, slope = f * inverse * z * z;
+            Pack f = pack_load(force + row + i) * inverse, slope = f * inverse * z * z;
             sum[0] += f * z * z * z;
             sum[1] += slope * dx;
             sum[2] += slope * dy;
@@ -130,10 +122,9 @@ static inline void probes_gather_level(const Probes *probes, const ProbeLevel *l
     }
 }
 
-static inline ProbeSums probes_gather(const Probes *probes, double x, double y, const double *force,
-                                      int order)
+static inline ProbeSums probes_gather(const Probes *probes, unsigned seen, double x, double y,
+                                      const double *force, int order)
 {
-    unsigned seen = probe_levels(probes, x, y);
     Pack sum[6] = {{0}};
     for (int l = 0; seen >> l; l++)
         if (seen >> l & 1) probes_gather_level(probes, &probes->levels[l], x, y, force, order, sum);

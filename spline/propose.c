@@ -77,7 +77,7 @@ static Vec2 direction_at(const SplineTarget *target, Vec2 at, Vec2 like)
     Vec2 v = {1, 0};
     if (target->align) {
         GridSample M;
-        grid_spline_sample(target->align, pack_set(at.x), pack_set(at.y), 0, &M);
+        grid_spline_sample(target->align, (Pack2){pack_set(at.x), pack_set(at.y)}, 0, &M);
         double angle = atan2(-2 * M.value[1][0], M.value[2][0] - M.value[0][0]) / 2;
         v = (Vec2){cos(angle), sin(angle)};
     }

@@ -7,10 +7,6 @@
 #include "base/memory.h"
 #include "spline/terms.h"
 
-typedef struct Pack2 {
-    Pack x, y;
-} Pack2;
-
 /* Rows x and y. */
 typedef struct PackMat2 {
     Pack xx, xy, yx, yy;

@@ -1,6 +1,7 @@
 #include "spline/smooth.h"
 #include "base/memory.h"
 #include <math.h>
+#include <string.h>
 
 enum { SAMPLES = 4 }; /* at least so many per new pixel, and per old one */
 
@@ -9,30 +10,71 @@ static int clamp(int k, int count)
     return k < 0 ? 0 : k >= count ? count - 1 : k;
 }
 
-/* Resamples one line; the numbers of a line are `stride` apart. */
-static void resample_line(const double *from, int count, int stride, double *to, int new_count,
-                          int new_stride)
+/* A sample along a line, low + part (high - low). */
+typedef struct Tap {
+    int low, high;
+    double part;
+} Tap;
+
+/* `samples` for each new pixel. */
+static Tap *find_taps(int count, int new_count, int samples)
 {
-    int samples = SAMPLES * (1 + count / new_count);
-    for (int i = 0; i < new_count; i++) {
-        double sum = 0;
+    Tap *taps = mem_alloc((size_t)new_count * (size_t)samples, sizeof *taps);
+    for (int i = 0; i < new_count; i++)
         for (int s = 0; s < samples; s++) {
             double at = (i + (s + 0.5) / samples) / new_count * count - 0.5, below = floor(at);
             int k = (int)below;
-            double low = from[clamp(k, count) * stride], high = from[clamp(k + 1, count) * stride];
-            sum += low + (at - below) * (high - low);
+            taps[i * samples + s] = (Tap){clamp(k, count), clamp(k + 1, count), at - below};
         }
-        to[i * new_stride] = sum / samples;
+    return taps;
+}
+
+static int sample_count(int count, int new_count)
+{
+    return SAMPLES * (1 + count / new_count);
+}
+
+/* to[grid->rows][columns] */
+static void resample_across(const SplineGrid *grid, int columns, double *to)
+{
+    int samples = sample_count(grid->columns, columns), width = grid->width;
+    Tap *taps = find_taps(grid->columns, columns, samples);
+    for (int j = 0; j < grid->rows; j++) {
+        const double *from = grid->values + (size_t)j * (size_t)grid->columns * (size_t)width;
+        for (int i = 0; i < columns; i++) {
+            double sum = 0;
+            for (const Tap *t = taps + i * samples; t < taps + (i + 1) * samples; t++) {
+                double low = from[t->low * width], high = from[t->high * width];
+                sum += low + t->part * (high - low);
+            }
+            to[(size_t)j * (size_t)columns + (size_t)i] = sum / samples;
+        }
     }
+    mem_free(taps);
+}
+
+/* from[count][columns] to to[rows][columns] */
+static void resample_down(const double *from, int columns, int count, int rows, double *to)
+{
+    int samples = sample_count(count, rows);
+    Tap *taps = find_taps(count, rows, samples);
+    memset(to, 0, (size_t)rows * (size_t)columns * sizeof *to);
+    for (int i = 0; i < rows; i++, to += columns) {
+        for (const Tap *t = taps + i * samples; t < taps + (i + 1) * samples; t++) {
+            const double *low = from + (size_t)t->low * (size_t)columns,
+                         *high = from + (size_t)t->high * (size_t)columns;
+            for (int j = 0; j < columns; j++) to[j] += low[j] + t->part * (high[j] - low[j]);
+        }
+        for (int j = 0; j < columns; j++) to[j] /= samples;
+    }
+    mem_free(taps);
 }
 
 void smooth_resample(const SplineGrid *grid, int columns, int rows, double *to)
 {
     double *half = mem_alloc((size_t)columns * (size_t)grid->rows, sizeof *half); /* columns are new */
-    for (int j = 0; j < grid->rows; j++)
-        resample_line(grid->values + (size_t)j * (size_t)grid->columns * (size_t)grid->width, grid->columns,
-                      grid->width, half + (size_t)j * (size_t)columns, columns, 1);
-    for (int i = 0; i < columns; i++) resample_line(half + i, grid->rows, columns, to + i, rows, columns);
+    resample_across(grid, columns, half);
+    resample_down(half, columns, grid->rows, rows, to);
     mem_free(half);
 }
 

@@ -12,25 +12,27 @@ typedef struct ToneTerm {
     Tone tone;
     SplinePoints points;
     PointForces forces;
+    double *gradient; /* of the evaluation at hand */
     double K;
     ToneCoupling coupling;
     bool coupled; /* the present list was handed out */
 } ToneTerm;
 
-enum { TASK_POINTS = 256 };
-
 static const double MARGIN =
     0.02; /* of the mean line distance: how far points may go before lists are made anew */
 
-static void gather_task(void *self, int task)
+/* What acts on the points of a group of strokes, and from them on its dofs. */
+static void gradient_task(void *self, int group)
 {
     const ToneTerm *t = self;
-    for (int p = task * TASK_POINTS; p < (task + 1) * TASK_POINTS && p < t->points.count; p++) {
-        ProbeSums sums = tone_sums(&t->tone, t->points.x[p], t->points.y[p], 1);
+    SplineRange points = spline_group_points(&t->points, t->model, group);
+    for (int p = points.first; p < points.end; p++) {
+        ProbeSums sums = tone_sums(&t->tone, &t->points, p, 1);
         t->forces.S[p] = t->K * sums.value;
         t->forces.x[p] = t->K * sums.x;
         t->forces.y[p] = t->K * sums.y;
     }
+    spline_points_add_group(&t->points, t->model, &t->forces, group, t->gradient);
 }
 
 static void couple_now(ToneTerm *t)
@@ -57,8 +59,8 @@ static double tone_eval(void *self, const Point *at, double *g, const BulkMatrix
     spline_points_update(&t->points, t->model, at->x);
     double energy = t->K * tone_update(&t->tone, &t->points);
     if (g) {
-        workers_run(t->model->workers, (t->points.count + TASK_POINTS - 1) / TASK_POINTS, gather_task, t);
-        spline_points_add_gradient(&t->points, t->model, &t->forces, g);
+        t->gradient = g;
+        workers_run(t->model->workers, t->model->group_count, gradient_task, t);
     }
     if (H) add_hessian(t, H);
     return energy;

@@ -8,6 +8,11 @@
 #include "spline/points.h"
 #include "spline/probes_kernel.h"
 
+/* Which levels see a point (probe_levels), and in which band across the page it is. */
+typedef struct ToneSight {
+    uint16_t levels, band;
+} ToneSight;
+
 typedef struct Tone {
     const Probes *probes;
     double pen;
@@ -16,6 +21,8 @@ typedef struct Tone {
     double *force;    /* [probes->size] dE/drho_c at K = 1 */
     double *rows;     /* [row_count] energy of each row of cells, over K */
     int row_count;
+    ToneSight *sights; /* [sight_room] of the points of the last update */
+    int sight_room;
 } Tone;
 
 Tone tone_create(const SplineTarget *target, Workers *workers);
@@ -24,10 +31,11 @@ void tone_clear(Tone *tone);
 /* Ink of all points, and then energy and forces of it. Returns E/K. */
 double tone_update(Tone *tone, const SplinePoints *points);
 
-/* What the probes do to a point: E/K per length of ink there, and its derivatives in the place. */
-static inline ProbeSums tone_sums(const Tone *tone, double x, double y, int order)
+/* What the probes do to point p of the last update: E/K per length of ink there, and its derivatives in the place. */
+static inline ProbeSums tone_sums(const Tone *tone, const SplinePoints *points, int p, int order)
 {
-    ProbeSums sums = probes_gather(tone->probes, x, y, tone->force, order);
+    ProbeSums sums =
+        probes_gather(tone->probes, tone->sights[p].levels, points->x[p], points->y[p], tone->force, order);
     double c = 4 * tone->pen / M_PI;
     return (ProbeSums){c * sums.value, c * sums.x, c * sums.y, c * sums.xx, c * sums.xy, c * sums.yy};
 }

@@ -8,7 +8,7 @@ static bool ink_gradient(const Probes *probes, const ProbeLevel *level, int i, i
                          const SplinePoints *points, int m, Pack gradient[8])
 {
     const SplineRule *rule = points->rule;
-    Pack inverse = probe_load(probes->inverse + level->first + (long)j * level->stride + i), near = {0};
+    Pack inverse = pack_load(probes->inverse + level->first + (long)j * level->stride + i), near = {0};
     Pack dx[RULE_MAX_POINTS], z[RULE_MAX_POINTS];
     for (int q = 0; q < rule->count; q++) {
         int p = m * rule->count + q;
@@ -70,7 +70,7 @@ static void add_own_level(const Own *own, const ProbeLevel *level, int m, Pack s
     ProbeWindow w = segment_window(level, own->points, m, 0);
     for (int j = w.top; j <= w.bottom; j++)
         for (int i = w.left; i <= w.right; i += PACK_LANES) {
-            Pack gradient[8], gain = probe_load(probes->gain + level->first + (long)j * level->stride + i);
+            Pack gradient[8], gain = pack_load(probes->gain + level->first + (long)j * level->stride + i);
             if (!ink_gradient(probes, level, i, j, own->points, m, gradient)) continue;
             for (int a = 0, k = 0; a < 8; a++)
                 for (int b = 0; b <= a; b++, k++) sum[k] += gain * gradient[a] * gradient[b];
@@ -122,7 +122,7 @@ void tone_add_curvature(const Tone *tone, const SplineModel *model, const Spline
         double block[64] = {0};
         for (int q = 0; q < rule->count; q++) {
             int p = m * rule->count + q;
-            ProbeSums s = tone_sums(tone, points->x[p], points->y[p], 2);
+            ProbeSums s = tone_sums(tone, points, p, 2);
             double w = K * rule->weight[q], n = points->n[p], u[2] = {points->tx[p] / n, points->ty[p] / n};
             double ink = K * points->ink[p], slope[2] = {s.x, s.y};
             double rr[2][2] = {{ink * s.xx, ink * s.xy}, {ink * s.xy, ink * s.yy}};

@@ -1,7 +1,9 @@
 #include "spline/tone.h"
 #include "base/memory.h"
 
-enum { BINS = 256, MAX_STRIPS = 64 };
+/* Strips are more than threads, so that these end at about the same time; where they are cut shall not cost a look at
+ * all points. */
+enum { BANDS = 256, MAX_STRIPS = 64, STRIPS_PER_THREAD = 4, TASK_POINTS = 2048, CUT_EVERY = 8 };
 
 Tone tone_create(const SplineTarget *target, Workers *workers)
 {
@@ -19,9 +21,48 @@ void tone_clear(Tone *tone)
     mem_free(tone->ink);
     mem_free(tone->force);
     mem_free(tone->rows);
+    mem_free(tone->sights);
 }
 
-/* The page in strips of rows, one for each thread, with about as many points in each. */
+static double page_height(const Tone *tone)
+{
+    const ProbeLevel *level = &tone->probes->levels[0];
+    return level->rows * level->dy;
+}
+
+static int band_of(double y, double height)
+{
+    return probe_index(y / height * BANDS, 0, BANDS - 1);
+}
+
+typedef struct Look {
+    Tone *tone;
+    const SplinePoints *points;
+} Look;
+
+static void look_task(void *self, int task)
+{
+    const Look *look = self;
+    const SplinePoints *points = look->points;
+    double height = page_height(look->tone);
+    for (int p = task * TASK_POINTS; p < (task + 1) * TASK_POINTS && p < points->count; p++)
+        look->tone->sights[p] =
+            (ToneSight){(uint16_t)probe_levels(look->tone->probes, points->x[p], points->y[p]),
+                        (uint16_t)band_of(points->y[p], height)};
+}
+
+static void look_at_points(Tone *tone, const SplinePoints *points)
+{
+    if (points->count > tone->sight_room) {
+        mem_free(tone->sights);
+        tone->sights = mem_alloc((size_t)points->count, sizeof *tone->sights);
+        tone->sight_room = points->count;
+    }
+    workers_run(tone->workers, (points->count + TASK_POINTS - 1) / TASK_POINTS, look_task,
+                &(Look){tone, points});
+}
+
+/* The page in strips of rows, with about as many points in each. */
 typedef struct Strips {
     Tone *tone;
     const SplinePoints *points;
@@ -29,27 +70,40 @@ typedef struct Strips {
     double edge[MAX_STRIPS + 1];
 } Strips;
 
-static int bin_of(double y, double height)
+static int strip_count(const Tone *tone)
 {
-    double bin = fmin(fmax(y / height * BINS, 0), BINS - 1);
-    return (int)bin;
+    int threads = workers_count(tone->workers), most = threads > 1 ? STRIPS_PER_THREAD * threads : 1;
+    return most < MAX_STRIPS ? most : MAX_STRIPS;
 }
 
 static void cut_strips(Strips *s)
 {
-    const ProbeLevel *level = &s->tone->probes->levels[0];
-    double height = level->rows * level->dy;
-    int points[BINS] = {0}, strip = 0;
-    for (int p = 0; p < s->points->count; p++) points[bin_of(s->points->y[p], height)]++;
+    double height = page_height(s->tone);
+    int points[BANDS] = {0}, strip = 0;
+    long sum = 0, all = 0;
+    for (int p = 0; p < s->points->count; p += CUT_EVERY, all++) points[s->tone->sights[p].band]++;
     s->edge[0] = -INFINITY;
-    long sum = 0;
-    for (int b = 0; b < BINS; b++) {
+    for (int b = 0; b < BANDS; b++) {
         sum += points[b];
-        while (strip < s->count && sum * s->count > (long)(strip + 1) * s->points->count)
-            s->edge[++strip] = height * (b + 1) / BINS;
+        while (strip < s->count && sum * s->count > (strip + 1) * all)
+            s->edge[++strip] = height * (b + 1) / BANDS;
     }
     while (strip < s->count) s->edge[++strip] = INFINITY;
     s->edge[s->count] = INFINITY;
+}
+
+/* Bands with points that the probes of some rows may see. */
+static SplineRange bands_of(const Tone *tone, const ProbeRows *rows)
+{
+    SplineRange bands = {BANDS, 0};
+    for (int l = 0; l < tone->probes->level_count; l++) {
+        if (rows->from[l] >= rows->to[l]) continue;
+        int first = band_of(rows->low[l], page_height(tone)),
+            end = band_of(rows->high[l], page_height(tone)) + 1;
+        if (first < bands.first) bands.first = first;
+        if (end > bands.end) bands.end = end;
+    }
+    return bands;
 }
 
 /* Each probe sums its points in their order, whatever the strips are. */
@@ -66,8 +120,12 @@ static void spread_task(void *self, int strip)
             memset(ink + level->first + (long)rows.from[l] * level->stride, 0,
                    (size_t)(rows.to[l] - rows.from[l]) * (size_t)level->stride * sizeof *ink);
     }
-    for (int p = 0; p < points->count; p++)
-        probes_spread(probes, &rows, points->x[p], points->y[p], c * points->ink[p], ink);
+    SplineRange bands = bands_of(s->tone, &rows);
+    for (int p = 0; p < points->count; p++) {
+        ToneSight sight = s->tone->sights[p];
+        if (sight.band >= bands.first && sight.band < bands.end)
+            probes_spread(probes, &rows, sight.levels, points->x[p], points->y[p], c * points->ink[p], ink);
+    }
 }
 
 /* Energies and forces of the rows of one level, from one on. */
@@ -76,10 +134,10 @@ static double take_row(Tone *tone, long first, int columns)
     const Probes *probes = tone->probes;
     Pack energy = {0};
     for (long k = first; k < first + columns; k += PACK_LANES) {
-        Pack off = probe_load(tone->ink + k) - probe_load(probes->target + k),
-             force = probe_load(probes->gain + k) * off;
+        Pack off = pack_load(tone->ink + k) - pack_load(probes->target + k),
+             force = pack_load(probes->gain + k) * off;
         energy += force * off;
-        probe_store(tone->force + k, force);
+        pack_store(tone->force + k, force);
     }
     return pack_sum(energy, PACK_LANES) / 2;
 }
@@ -100,8 +158,8 @@ static void force_task(void *self, int task)
 
 double tone_update(Tone *tone, const SplinePoints *points)
 {
-    int threads = workers_count(tone->workers);
-    Strips strips = {.tone = tone, .points = points, .count = threads < MAX_STRIPS ? threads : MAX_STRIPS};
+    Strips strips = {.tone = tone, .points = points, .count = strip_count(tone)};
+    look_at_points(tone, points);
     cut_strips(&strips);
     workers_run(tone->workers, strips.count, spread_task, &strips);
     workers_run(tone->workers, tone->row_count, force_task, tone);

@@ -63,18 +63,35 @@ static double allowed_part(const SegmentTerm *term, int node, const double *from
     return part;
 }
 
+typedef struct Project {
+    const SegmentTerm *term;
+    const double *from;
+    double *x;
+} Project;
+
+static void project_stroke(const Project *p, int stroke)
+{
+    const SplineModel *model = p->term->model;
+    double part = 1;
+    for (int node = model->start[stroke]; node < model->start[stroke + 1] - 1; node++)
+        part = fmin(part, allowed_part(p->term, node, p->from, p->x));
+    if (!(part < 1)) return;
+    for (int i = 4 * model->start[stroke]; i < 4 * model->start[stroke + 1]; i++)
+        p->x[i] = p->from[i] + part * (p->x[i] - p->from[i]);
+}
+
+static void project_task(void *self, int group)
+{
+    const Project *p = self;
+    const SplineModel *model = p->term->model;
+    for (int k = model->group[group]; k < model->group[group + 1]; k++) project_stroke(p, k);
+}
+
 void wall_project(const void *self, const double *from, double *x)
 {
     const SegmentTerm *term = self;
     const SplineModel *model = term->model;
-    for (int k = 0; k < model->stroke_count; k++) {
-        double part = 1;
-        for (int node = model->start[k]; node < model->start[k + 1] - 1; node++)
-            part = fmin(part, allowed_part(term, node, from, x));
-        if (!(part < 1)) continue;
-        for (int i = 4 * model->start[k]; i < 4 * model->start[k + 1]; i++)
-            x[i] = from[i] + part * (x[i] - from[i]);
-    }
+    workers_run(model->workers, model->group_count, project_task, &(Project){term, from, x});
 }
 
 Term wall_term_create(const TermOps *ops, const SplineModel *model, const SplineRule *rule,

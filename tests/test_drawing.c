@@ -167,6 +167,24 @@ static void crossed(void **state)
     drawing_destroy(d);
 }
 
+/* The same bits with any number of threads. */
+static void expect_same(const Drawing *d, int part, const Strokes *strokes, const SplineTarget *target)
+{
+    for (int threads = 2; threads <= 5; threads += 3) {
+        Strokes again = {0};
+        SplineTarget *other;
+        drawing_begin(d, part, threads, &again, &other);
+        size_t probes = (size_t)target->probes->size * sizeof(double);
+        assert_int_equal(again.count, strokes->count);
+        assert_memory_equal(again.q, strokes->q, 4 * (size_t)strokes_node_count(strokes) * sizeof(double));
+        assert_int_equal(other->probes->size, target->probes->size);
+        assert_memory_equal(other->probes->target, target->probes->target, probes);
+        assert_memory_equal(other->probes->inverse, target->probes->inverse, probes);
+        strokes_clear(&again);
+        spline_target_destroy(other);
+    }
+}
+
 /* Strokes start and have a target: all on the page, along their part's direction. */
 static void starts(void **state)
 {
@@ -180,8 +198,9 @@ static void starts(void **state)
                  kinds[kind]);
         Drawing *d = drawing_of(entry);
         for (int part = 0; part < 2; part++) {
-            Strokes strokes = drawing_start(d, part);
-            SplineTarget *target = drawing_target(d, part, NULL);
+            Strokes strokes = {0};
+            SplineTarget *target;
+            drawing_begin(d, part, 1, &strokes, &target);
             assert_true(strokes.count > 3);
             expect_close(strokes_length(&strokes) / spline_ink_budget(target), 1, 0.25);
             for (int i = 0; i < strokes_node_count(&strokes); i++) {
@@ -189,6 +208,7 @@ static void starts(void **state)
                 assert_true(q[0] >= 0 && q[0] <= d->page.width && q[1] >= 0 && q[1] <= d->page.height);
                 expect_close(fabs(q[2] * cos(angle) + q[3] * sin(angle)) / hypot(q[2], q[3]), 1, 1e-6);
             }
+            expect_same(d, part, &strokes, target);
             spline_target_destroy(target);
             strokes_clear(&strokes);
         }

@@ -197,15 +197,15 @@ static void test_grid_spline(void **state)
     double worst = 0, derivative = 0, h = 1e-4;
     for (int k = 0; k < 900; k++) {
         double x = (k % 30 + 0.5) / 30 * page.width, y = (k / 30 + 0.5) / 30 * page.height;
-        grid_spline_sample(spline, pack_set(x), pack_set(y), 0, &s);
+        grid_spline_sample(spline, (Pack2){pack_set(x), pack_set(y)}, 0, &s);
         worst = fmax(worst, fabs(s.value[0][k % PACK_LANES] - grid.values[k]));
     }
     Random random = random_seed(1);
     for (int k = 0; k < 500; k++) {
         double x = page.width * random_uniform(&random), y = page.height * random_uniform(&random);
         Pack px = {x - h, x + h, x, x, x, x, x, x}, py = {y, y, y - h, y + h, y, y, y, y};
-        grid_spline_sample(spline, px, py, 2, &s);
-        grid_spline_sample(spline, px, py, 1, &moved[0]);
+        grid_spline_sample(spline, (Pack2){px, py}, 2, &s);
+        grid_spline_sample(spline, (Pack2){px, py}, 1, &moved[0]);
         derivative = fmax(derivative, fabs((s.value[0][1] - s.value[0][0]) / (2 * h) - s.x[0][4]) / 9);
         derivative = fmax(derivative, fabs((s.value[0][3] - s.value[0][2]) / (2 * h) - s.y[0][4]) / 9);
         derivative = fmax(derivative, fabs((s.x[0][1] - s.x[0][0]) / (2 * h) - s.xx[0][4]) / 81);
@@ -215,7 +215,7 @@ static void test_grid_spline(void **state)
     }
     print_message("grid spline: pixels %.1e, derivatives %.1e\n", worst, derivative);
     assert_true(worst < 1e-13 && derivative < 1e-3);
-    grid_spline_sample(spline, pack_set(-0.3), pack_set(2), 1, &s);
+    grid_spline_sample(spline, (Pack2){pack_set(-0.3), pack_set(2)}, 1, &s);
     assert_true(isfinite(s.value[0][0]) && s.x[0][0] == 0 && s.y[0][0] == 0);
     grid_spline_destroy(spline);
     mem_free((void *)grid.values);
