@@ -9,6 +9,7 @@ _Noreturn void bench_fail(const char *format, ...) __attribute__((format(printf,
 void bench_shell_hessian(void);
 void bench_newton(void);
 void bench_factor(void);
+void bench_solver(void);
 void bench_design(void);
 void bench_march(void);
 void bench_trajectory(void);

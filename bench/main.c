@@ -14,6 +14,7 @@ static const struct {
     {"shell_hessian", bench_shell_hessian},
     {"newton", bench_newton},
     {"factor", bench_factor},
+    {"solver", bench_solver},
     {"march", bench_march},
     {"trajectory", bench_trajectory},
     {"equilibria", bench_equilibria},

@@ -10,8 +10,9 @@ struct Sparse {
     int n;
     Pattern pattern; /* in the order of elimination */
     Direct *direct;
-    Factor *factor;  /* at hand; NULL: none was made */
-    const int *rank; /* [n] where unknown i went; the Direct's */
+    Factor *factor;   /* at hand; NULL: none was made */
+    const int *rank;  /* [n] where unknown i went; the Direct's */
+    Workers *workers; /* borrowed                              */
     double *values;
     double *diagonal; /* [n] kept aside while a shift stands on the diagonal                          */
     double *cg;       /* [6][n] x, residual, direction, product, M^-1 residual of it; a solve's b; permuted */
@@ -120,6 +121,11 @@ Sparse *sparse_create(int n, int element_count, const long *element_start, const
     return matrix;
 }
 
+void sparse_set_workers(Sparse *matrix, Workers *workers)
+{
+    matrix->workers = workers;
+}
+
 void sparse_destroy(Sparse *matrix)
 {
     if (!matrix) return;
@@ -179,7 +185,8 @@ bool sparse_factor(Sparse *matrix, const double *shift)
         matrix->diagonal[i] = *entry;
         if (shift) *entry += shift[i];
     }
-    bool definite = direct_factor(matrix->direct, &matrix->pattern, matrix->values, &matrix->factor);
+    bool definite =
+        direct_factor(matrix->direct, &matrix->pattern, matrix->values, &matrix->factor, matrix->workers);
     for (int i = 0; i < matrix->n; i++) *diagonal_entry(matrix, i) = matrix->diagonal[i];
     matrix->info.factorizations++;
     matrix->info.factor_seconds += clock_seconds() - begin;
@@ -193,7 +200,7 @@ static void solve_permuted(Sparse *matrix, const double *b, double *x)
     const int *own = matrix->rank, *other = factor_rank(factor);
     double begin = clock_seconds(), *from = matrix->cg + 5 * (size_t)matrix->n;
     for (int i = 0; own != other && i < matrix->n; i++) from[other[i]] = b[own[i]];
-    const double *to = factor_solve(factor, own == other ? b : from);
+    const double *to = factor_solve(factor, own == other ? b : from, matrix->workers);
     for (int i = 0; i < matrix->n; i++) x[own[i]] = to[other[i]];
     matrix->info.solves++;
     matrix->info.solve_seconds += clock_seconds() - begin;

@@ -25,6 +25,10 @@ Sparse *sparse_create(int n, int element_count, const long *element_start, const
                       SparseDef def);
 void sparse_destroy(Sparse *matrix);
 
+/* Factors, solves and products are shared out to these threads, from now on (borrowed; NULL: to none). No bit depends on
+ * them. */
+void sparse_set_workers(Sparse *matrix, Workers *workers);
+
 /* Where entry (i, j) is stored in sparse_values(); either triangle. The pattern must hold it. */
 int sparse_slot(const Sparse *matrix, int i, int j);
 

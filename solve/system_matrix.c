@@ -73,6 +73,7 @@ static Sparse *create_matrix(const System *sys)
     int *order = unknown_order(sys);
     Sparse *matrix = sparse_create(sys->free_count, (int)groups.count, groups.start, groups.dofs,
                                    (SparseDef){order, sys->multiplier_count});
+    sparse_set_workers(matrix, sys->workers);
     mem_free(order);
     mem_free(groups.start);
     mem_free(groups.dofs);
