@@ -14,6 +14,9 @@ enum { WIDE = 4 };
 /* From this depth on OpenBLAS is the faster one: it packs its operands first. */
 enum { DEEP = 64 };
 
+/* Columns of a triangle that a solve takes at a time. */
+enum { FEW = 4 };
+
 typedef double Loose __attribute__((vector_size(8 * PACK_LANES), aligned(8), may_alias)); /* at any double */
 
 static inline Pack load(const double *from)
@@ -192,15 +195,6 @@ void dense_clear(int rows, int cols, double *a, long ld)
         for (int c = 0; c < cols; c++) memset(a + c * ld, 0, (size_t)rows * sizeof *a);
 }
 
-void dense_forward(int n, const double *l, long ld, double *x)
-{
-    for (int c = 0; c < n; c++) {
-        const double *column = l + c * ld;
-        double y = x[c] /= column[c];
-        for (int i = c + 1; i < n; i++) x[i] -= column[i] * y;
-    }
-}
-
 static inline double sum_product(int n, const double *a, const double *b)
 {
     Pack sum = {0};
@@ -209,12 +203,6 @@ static inline double sum_product(int n, const double *a, const double *b)
     for (; i + PACK_LANES <= n; i += PACK_LANES) sum += load(a + i) * load(b + i);
     for (; i < n; i++) rest += a[i] * b[i];
     return rest + pack_sum(sum, PACK_LANES);
-}
-
-void dense_backward(int n, const double *l, long ld, double *x)
-{
-    for (int c = n - 1; c >= 0; c--)
-        x[c] = (x[c] - sum_product(n - c - 1, l + c + 1 + c * ld, x + c + 1)) / l[c + c * ld];
 }
 
 void dense_multiply(int rows, int n, const double *a, long ld, const double *x, double *y)
@@ -246,4 +234,50 @@ void dense_multiply_transposed(int rows, int n, const double *a, long ld, const 
     int c = 0;
     for (; c + 4 <= n; c += 4) multiply_four(rows, a + c * ld, ld, y, x + c);
     for (; c < n; c++) x[c] -= sum_product(rows, a + c * ld, y);
+}
+
+/* Of few columns. */
+static void forward_columns(int n, const double *l, long ld, double *x)
+{
+    for (int c = 0; c < n; c++) {
+        x[c] /= l[c + c * ld];
+        for (int i = c + 1; i < n; i++) x[i] -= l[i + c * ld] * x[c];
+    }
+}
+
+static void backward_columns(int n, const double *l, long ld, double *x)
+{
+    for (int c = n - 1; c >= 0; c--) {
+        for (int i = c + 1; i < n; i++) x[c] -= l[i + c * ld] * x[i];
+        x[c] /= l[c + c * ld];
+    }
+}
+
+void dense_forward(int n, const double *l, long ld, double *x)
+{
+    for (int c = 0; c < n; c += FEW, l += FEW * (ld + 1)) {
+        int few = n - c < FEW ? n - c : FEW;
+        forward_columns(few, l, ld, x + c);
+        dense_multiply(n - c - few, few, l + few, ld, x + c, x + c + few);
+    }
+}
+
+void dense_backward(int n, const double *l, long ld, double *x)
+{
+    l += (n - 1) / FEW * FEW * (ld + 1);
+    for (int c = (n - 1) / FEW * FEW; c >= 0; c -= FEW, l -= FEW * (ld + 1)) {
+        int few = n - c < FEW ? n - c : FEW;
+        dense_multiply_transposed(n - c - few, few, l + few, ld, x + c + few, x + c);
+        backward_columns(few, l, ld, x + c);
+    }
+}
+
+bool dense_is_finite(long count, const double *values)
+{
+    Pack sum = {0};
+    double rest = 0;
+    long i = 0;
+    for (; i + PACK_LANES <= count; i += PACK_LANES) sum += load(values + i) * 0;
+    for (; i < count; i++) rest += values[i] * 0;
+    return rest + pack_sum(sum, PACK_LANES) == 0;
 }

@@ -32,3 +32,6 @@ void dense_backward(int n, const double *l, long ld, double *x);
 /* y[rows] -= A[rows][n] x, and x[n] -= A^T y. */
 void dense_multiply(int rows, int n, const double *a, long ld, const double *x, double *y);
 void dense_multiply_transposed(int rows, int n, const double *a, long ld, const double *y, double *x);
+
+/* Neither NaN nor infinity among them. */
+bool dense_is_finite(long count, const double *values);

@@ -1,4 +1,5 @@
 #include "base/memory.h"
+#include "solve/dense.h"
 #include "solve/direct.h"
 #include "solve/kernels.h"
 #include "solve/supernodal.h"
@@ -199,14 +200,6 @@ static Factor *new_factor(Direct *direct)
     return factor;
 }
 
-/* CHOLMOD says "ok" to NaN and to infinity. */
-static bool all_finite(const double *values, int count)
-{
-    double sum = 0;
-    for (int i = 0; i < count; i++) sum += values[i] * 0;
-    return sum == 0;
-}
-
 /* Negative pivots of a simplicial LDL^T; they head the columns of L. */
 static int count_negative(const cholmod_factor *factor)
 {
@@ -235,7 +228,7 @@ bool direct_factor(Direct *direct, const Pattern *pattern, double *values, Facto
         factor_release(*factor);
         *factor = new_factor(direct);
     }
-    if (!all_finite(values, pattern->start[pattern->n])) return false;
+    if (!dense_is_finite(pattern->start[pattern->n], values)) return false;
     if (direct->plan) return supernodal_factor(direct->plan, pattern, values, (*factor)->numbers, workers);
     return factor_quasi_definite(direct, pattern, values, (*factor)->columns);
 }

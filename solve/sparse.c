@@ -1,6 +1,7 @@
 #include "solve/sparse.h"
 #include "base/clock.h"
 #include "base/memory.h"
+#include "solve/product.h"
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
@@ -10,6 +11,7 @@ struct Sparse {
     int n;
     Pattern pattern; /* in the order of elimination */
     Direct *direct;
+    Product *product;
     Factor *factor;   /* at hand; NULL: none was made */
     const int *rank;  /* [n] where unknown i went; the Direct's */
     Workers *workers; /* borrowed                              */
@@ -111,6 +113,7 @@ Sparse *sparse_create(int n, int element_count, const long *element_start, const
     matrix->pattern = build_pattern(n, element_count, element_start, element_dofs, rank);
     matrix->direct = direct_analyse(&matrix->pattern, rank, def.negative);
     matrix->rank = direct_rank(matrix->direct);
+    matrix->product = product_create(&matrix->pattern);
     mem_free(rank);
     matrix->values = mem_alloc((size_t)matrix->pattern.start[n] + 1, sizeof(double));
     matrix->diagonal = mem_alloc((size_t)n, sizeof(double));
@@ -131,6 +134,7 @@ void sparse_destroy(Sparse *matrix)
     if (!matrix) return;
     factor_release(matrix->factor);
     direct_release(matrix->direct);
+    product_destroy(matrix->product);
     clear_pattern(&matrix->pattern);
     mem_free(matrix->values);
     mem_free(matrix->diagonal);
@@ -217,16 +221,7 @@ void sparse_solve(Sparse *matrix, const double *b, double *x)
 
 static void multiply_permuted(const Sparse *matrix, const double *from, double *to)
 {
-    const int *start = matrix->pattern.start, *rows = matrix->pattern.rows;
-    memset(to, 0, (size_t)matrix->n * sizeof *to);
-    for (int column = 0; column < matrix->n; column++) {
-        double x = from[column], sum = matrix->values[start[column]] * x;
-        for (int k = start[column] + 1; k < start[column + 1]; k++) {
-            to[rows[k]] += matrix->values[k] * x;
-            sum += matrix->values[k] * from[rows[k]];
-        }
-        to[column] += sum;
-    }
+    product_apply(matrix->product, &matrix->pattern, matrix->values, from, to, matrix->workers);
 }
 
 void sparse_multiply(const Sparse *matrix, const double *x, double *y)

@@ -3,7 +3,7 @@
 #include <string.h>
 
 /* What one task takes of a supernode of the crown, fixed as in a factorisation. */
-enum { ROWS = 256, COLUMNS = 16, PANEL = 128 };
+enum { ROWS = 64, COLUMNS = 8, PANEL = 128 };
 
 typedef struct Solving {
     const Supernodal *plan;
