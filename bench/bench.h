@@ -10,6 +10,7 @@ void bench_shell_hessian(void);
 void bench_newton(void);
 void bench_factor(void);
 void bench_couple(void);
+void bench_solver(void);
 void bench_design(void);
 void bench_march(void);
 void bench_trajectory(void);

@@ -7,9 +7,11 @@
 #include <stdio.h>
 
 /* Steps from rest until a tenth of a second; the largest force left of any step's end, N. */
-static void march(BendingModel bending, double dt, const char *name)
+static void march(BendingModel bending, double dt, int threads, const char *name)
 {
     Sheet s = sheet_create(bending, true);
+    Workers *workers = workers_create(threads);
+    system_set_workers(s.sys, workers);
     MarchDef def = march_default();
     int steps = (int)lround(0.1 / dt), newton = 0, factorizations = 0, cg = 0;
     double force = 0, start = clock_seconds();
@@ -33,12 +35,17 @@ static void march(BendingModel bending, double dt, const char *name)
     snprintf(text, sizeof text, "march_%s_force_left", name);
     bench_print(text, force, "N");
     sheet_destroy(&s);
+    workers_destroy(workers);
 }
 
 void bench_march(void)
 {
-    march(BENDING_HINGE, 1e-3, "hinge_1ms");
-    march(BENDING_HINGE, 1e-2, "hinge_10ms");
-    march(BENDING_MIDEDGE, 1e-3, "midedge_1ms");
-    march(BENDING_MIDEDGE, 1e-2, "midedge_10ms");
+    march(BENDING_HINGE, 1e-3, 1, "hinge_1ms");
+    march(BENDING_HINGE, 1e-2, 1, "hinge_10ms");
+    march(BENDING_MIDEDGE, 1e-3, 1, "midedge_1ms");
+    march(BENDING_MIDEDGE, 1e-2, 1, "midedge_10ms");
+    march(BENDING_HINGE, 1e-3, 2, "hinge_1ms_2_threads");
+    march(BENDING_HINGE, 1e-2, 2, "hinge_10ms_2_threads");
+    march(BENDING_MIDEDGE, 1e-3, 2, "midedge_1ms_2_threads");
+    march(BENDING_MIDEDGE, 1e-2, 2, "midedge_10ms_2_threads");
 }

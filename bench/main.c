@@ -15,6 +15,7 @@ static const struct {
     {"newton", bench_newton},
     {"factor", bench_factor},
     {"couple", bench_couple},
+    {"solver", bench_solver},
     {"march", bench_march},
     {"trajectory", bench_trajectory},
     {"equilibria", bench_equilibria},

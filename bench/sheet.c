@@ -4,14 +4,12 @@
 #include "shell/shapes.h"
 #include <math.h>
 
-enum { CELLS = 64 };
-
-Sheet sheet_create(BendingModel bending, bool dynamic)
+Sheet sheet_create_fine(int cells, BendingModel bending, bool dynamic)
 {
     Sheet s;
     MeshFile file;
     Error err;
-    if (!shape_sheet((double[]){0.1, 0.1}, (int[]){CELLS, CELLS}, PATTERN_RIGHT, &file, &err))
+    if (!shape_sheet((double[]){0.1, 0.1}, (int[]){cells, cells}, PATTERN_RIGHT, &file, &err))
         bench_fail("%s", err.text);
     Mesh *mesh = mesh_create(&file, 0, NULL, &err);
     mesh_file_clear(&file);
@@ -33,6 +31,11 @@ Sheet sheet_create(BendingModel bending, bool dynamic)
     s.p[s.shell->gravity + 2] = dynamic ? -9.81 : 0;
     shell_rest_state(s.shell, s.state.x);
     return s;
+}
+
+Sheet sheet_create(BendingModel bending, bool dynamic)
+{
+    return sheet_create_fine(64, bending, dynamic);
 }
 
 void sheet_bend(Sheet *s)

@@ -11,6 +11,7 @@ typedef struct Sheet {
 
 /* In statics it is magnetised along x in a field across; in motion (dynamic) its weight is all there is. */
 Sheet sheet_create(BendingModel bending, bool dynamic);
+Sheet sheet_create_fine(int cells, BendingModel bending, bool dynamic); /* of 2 cells^2 triangles */
 void sheet_destroy(Sheet *s);
 
 /* Rolled by half a radian in all. */

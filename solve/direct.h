@@ -1,10 +1,11 @@
 /* direct.h - the direct solver behind sparse.h: an order of elimination, factors, solutions. CHOLMOD
- * (direct_cholmod.c); another stands behind these same functions.
+ * (direct_cholmod.c), with the numbers of positive definite ones by supernodal.h; another stands behind these same functions.
  *
  * A Direct is what follows from a pattern alone. A Factor is its numbers and a share of the Direct that they were made
  * in, so that it outlives the matrix and its pattern; whoever keeps one shares it. */
 #pragma once
 #include "solve/pattern.h"
+#include "base/workers.h"
 #include <stdbool.h>
 
 typedef struct Direct Direct;
@@ -26,10 +27,12 @@ typedef struct DirectCost {
 } DirectCost;
 DirectCost direct_cost(const Direct *direct);
 
-/* Factors the matrix of the analysed pattern and these values into *factor: in its place where nobody else shares it
+/* Threads share in factors and in solves where workers are given, NULL: none; no bit depends on them.
+ *
+ * Factors the matrix of the analysed pattern and these values into *factor: in its place where nobody else shares it
  * and it is of this Direct, else into a new one, and the old one is let go. False where the pivots are not as
  * direct_analyse was told, or a value is not finite: the factor is then unusable. */
-bool direct_factor(Direct *direct, const Pattern *pattern, double *values, Factor **factor);
+bool direct_factor(Direct *direct, const Pattern *pattern, double *values, Factor **factor, Workers *workers);
 
 /* One more who has it; each lets go once. NULL is allowed. */
 Factor *factor_share(Factor *factor);
@@ -42,7 +45,7 @@ const int *factor_rank(const Factor *factor);
 
 /* Solves for b[n] in the factor's order; the solution, [n], is borrowed until the next call with a factor of the same
  * Direct. */
-const double *factor_solve(const Factor *factor, const double *b);
+const double *factor_solve(const Factor *factor, const double *b, Workers *workers);
 
 /* "3.0.14" of CHOLMOD, a static text. */
 const char *direct_version(void);

@@ -1,16 +1,25 @@
 #include "base/memory.h"
+#include "solve/dense.h"
 #include "solve/direct.h"
 #include "solve/kernels.h"
+#include "solve/supernodal.h"
 #include <cholmod.h>
+#include <pthread.h>
 #include <string.h>
 
-/* From this many unknowns on, nested dissection saves a quarter of the factor's work (docs/speed: about 32k
- * triangles with one angle per edge); its own analysis takes a few times longer, once. */
-enum { METIS_FROM = 90000 };
+/* From this many unknowns on, nested dissection: it saves a tenth of the factor's work on sheets with angles of hinges and
+ * half with one angle per edge, and gives a tree that threads can share (docs/solver.md). Its own analysis takes some five
+ * times longer than AMD's, once. */
+enum { METIS_FROM = 5000 };
 
+/* Positive definite matrices are factored by supernodal.h in a structure of CHOLMOD's, quasi-definite ones, of rods, by its
+ * simplicial LDL^T. */
 struct Direct {
     int shares, n, negative;
     int *rank;
+    DirectCost cost;
+    Supernodal *plan; /* NULL: LDL^T, with what follows it here */
+    double *solution; /* [n] of a plan's solves                 */
     cholmod_common common;
     cholmod_factor *symbolic;
     cholmod_dense *b, *x, *work_y, *work_e;
@@ -19,13 +28,9 @@ struct Direct {
 struct Factor {
     int shares;
     Direct *direct;
-    cholmod_factor *numbers;
+    double *numbers;         /* of a plan            */
+    cholmod_factor *columns; /* of LDL^T, else NULL */
 };
-
-/* libgomp, which CHOLMOD loads: its supernodal kernel has four threads compiled in and ignores
- * OMP_NUM_THREADS, which doubles the time on two cores. A setting of the calling thread. Declared here because clang
- * ships no omp.h. */
-void omp_set_max_active_levels(int levels);
 
 /* A CHOLMOD view of a pattern; values may be NULL. */
 static cholmod_sparse view(const Pattern *pattern, double *values)
@@ -46,56 +51,106 @@ static cholmod_sparse view(const Pattern *pattern, double *values)
     };
 }
 
+static long *widen(const int *from, size_t count)
+{
+    long *to = mem_alloc(count, sizeof *to);
+    for (size_t k = 0; k < count; k++) to[k] = from[k];
+    return to;
+}
+
 static void check_memory(const cholmod_common *common)
 {
     if (common->status != CHOLMOD_OUT_OF_MEMORY && common->status != CHOLMOD_TOO_LARGE) return;
     mem_exhausted("the sparse factorisation");
 }
 
-static void start_cholmod(cholmod_common *common, bool definite)
+static void set_options(cholmod_common *common, int ordering)
 {
-    kernels_one_thread();
-    omp_set_max_active_levels(0);
-    cholmod_start(common);
     common->print = 0;
-    common->final_ll = definite; /* simplicial LDL' would accept an indefinite matrix */
-    if (!definite) common->supernodal = CHOLMOD_SIMPLICIAL;
-    common->quick_return_if_not_posdef = 1;
     common->nmethods = 1;
+    common->method[0].ordering = ordering;
+    common->postorder = ordering != CHOLMOD_NATURAL; /* one that is given has been postordered */
 }
+
+/* The supernodes of L, with indices of 64 bits: a factor may have more numbers than an int can count, though the matrix has
+ * not. The caller frees it. */
+static cholmod_factor *find_supernodes(const Pattern *pattern, cholmod_common *common)
+{
+    cholmod_sparse a = view(pattern, NULL);
+    a.p = widen(pattern->start, (size_t)pattern->n + 1);
+    a.i = widen(pattern->rows, a.nzmax);
+    a.itype = CHOLMOD_LONG;
+    common->supernodal = CHOLMOD_SUPERNODAL;
+    cholmod_factor *factor = cholmod_l_analyze(&a, common);
+    check_memory(common);
+    mem_free(a.p);
+    mem_free(a.i);
+    return factor;
+}
+
+/* METIS draws from the C library's random numbers, seeded anew in each call: two at once would draw from one row. */
+static pthread_mutex_t one_dissection = PTHREAD_MUTEX_INITIALIZER;
 
 int *direct_order(const Pattern *pattern)
 {
     cholmod_common common;
-    cholmod_sparse a = view(pattern, NULL);
-    start_cholmod(&common, true);
-    common.method[0].ordering = pattern->n >= METIS_FROM ? CHOLMOD_METIS : CHOLMOD_AMD;
-    cholmod_factor *factor = cholmod_analyze(&a, &common);
-    check_memory(&common);
-    const int *order = factor->Perm;
+    cholmod_l_start(&common);
+    set_options(&common, pattern->n >= METIS_FROM ? CHOLMOD_METIS : CHOLMOD_AMD);
+    pthread_mutex_lock(&one_dissection);
+    cholmod_factor *factor = find_supernodes(pattern, &common);
+    pthread_mutex_unlock(&one_dissection);
+    const long *order = factor->Perm;
     int *rank = mem_alloc((size_t)pattern->n, sizeof *rank);
     for (int k = 0; k < pattern->n; k++) rank[order[k]] = k;
-    cholmod_free_factor(&factor, &common);
-    cholmod_finish(&common);
+    cholmod_l_free_factor(&factor, &common);
+    cholmod_l_finish(&common);
     return rank;
+}
+
+static void analyse_definite(Direct *direct, const Pattern *pattern)
+{
+    cholmod_common common;
+    kernels_one_thread();
+    cholmod_l_start(&common);
+    set_options(&common, CHOLMOD_NATURAL);
+    cholmod_factor *factor = find_supernodes(pattern, &common);
+    direct->plan = supernodal_create(
+        pattern, &(SupernodalDef){(int)factor->nsuper, factor->super, factor->pi, factor->s});
+    direct->solution = mem_alloc((size_t)direct->n, sizeof *direct->solution);
+    long bytes = supernodal_size(direct->plan) * (long)sizeof(double);
+    direct->cost = (DirectCost){(long)common.lnz, bytes, common.fl};
+    cholmod_l_free_factor(&factor, &common);
+    cholmod_l_finish(&common);
+}
+
+static void analyse_quasi_definite(Direct *direct, const Pattern *pattern)
+{
+    cholmod_common *common = &direct->common;
+    cholmod_sparse a = view(pattern, NULL);
+    cholmod_start(common);
+    set_options(common, CHOLMOD_NATURAL);
+    common->supernodal = CHOLMOD_SIMPLICIAL;
+    common->quick_return_if_not_posdef = 1;
+    direct->symbolic = cholmod_analyze(&a, common);
+    check_memory(common);
+    direct->b = cholmod_zeros((size_t)pattern->n, 1, CHOLMOD_REAL, common);
+    check_memory(common);
+    long numbers = (long)direct->symbolic->nzmax;
+    direct->cost =
+        (DirectCost){(long)common->lnz, numbers * (long)(sizeof(double) + sizeof(int)), common->fl};
 }
 
 Direct *direct_analyse(const Pattern *pattern, const int *rank, int negative)
 {
     Direct *direct = mem_alloc(1, sizeof *direct);
-    cholmod_common *common = &direct->common;
-    cholmod_sparse a = view(pattern, NULL);
     direct->shares = 1;
     direct->n = pattern->n;
     direct->negative = negative;
     direct->rank = mem_copy(rank, (size_t)pattern->n, sizeof *rank);
-    start_cholmod(common, negative == 0);
-    common->method[0].ordering = CHOLMOD_NATURAL;
-    common->postorder = 0; /* the ordering is already postordered */
-    direct->symbolic = cholmod_analyze(&a, common);
-    check_memory(common);
-    direct->b = cholmod_zeros((size_t)pattern->n, 1, CHOLMOD_REAL, common);
-    check_memory(common);
+    if (negative == 0)
+        analyse_definite(direct, pattern);
+    else
+        analyse_quasi_definite(direct, pattern);
     return direct;
 }
 
@@ -105,9 +160,8 @@ Direct *direct_share(Direct *direct)
     return direct;
 }
 
-void direct_release(Direct *direct)
+static void clear_quasi_definite(Direct *direct)
 {
-    if (!direct || --direct->shares > 0) return;
     cholmod_common *common = &direct->common;
     cholmod_free_factor(&direct->symbolic, common);
     cholmod_free_dense(&direct->b, common);
@@ -115,6 +169,14 @@ void direct_release(Direct *direct)
     cholmod_free_dense(&direct->work_y, common);
     cholmod_free_dense(&direct->work_e, common);
     cholmod_finish(common);
+}
+
+void direct_release(Direct *direct)
+{
+    if (!direct || --direct->shares > 0) return;
+    if (!direct->plan) clear_quasi_definite(direct);
+    supernodal_destroy(direct->plan);
+    mem_free(direct->solution);
     mem_free(direct->rank);
     mem_free(direct);
 }
@@ -126,28 +188,22 @@ const int *direct_rank(const Direct *direct)
 
 DirectCost direct_cost(const Direct *direct)
 {
-    const cholmod_factor *factor = direct->symbolic;
-    long numbers = (long)(factor->is_super ? factor->xsize : factor->nzmax);
-    long bytes = numbers * (long)sizeof(double) + (factor->is_super ? 0 : numbers * (long)sizeof(int));
-    return (DirectCost){(long)direct->common.lnz, bytes, direct->common.fl};
+    return direct->cost;
 }
 
 /* Its numbers are still to come. */
 static Factor *new_factor(Direct *direct)
 {
     Factor *factor = mem_alloc(1, sizeof *factor);
-    *factor = (Factor){1, direct, cholmod_copy_factor(direct->symbolic, &direct->common)};
-    check_memory(&direct->common);
+    *factor = (Factor){.shares = 1, .direct = direct};
+    if (direct->plan) {
+        factor->numbers = mem_alloc((size_t)supernodal_size(direct->plan), sizeof(double));
+    } else {
+        factor->columns = cholmod_copy_factor(direct->symbolic, &direct->common);
+        check_memory(&direct->common);
+    }
     direct->shares++;
     return factor;
-}
-
-/* CHOLMOD says "ok" to NaN and to infinity. */
-static bool all_finite(const double *values, int count)
-{
-    double sum = 0;
-    for (int i = 0; i < count; i++) sum += values[i] * 0;
-    return sum == 0;
 }
 
 /* Negative pivots of a simplicial LDL^T; they head the columns of L. */
@@ -160,22 +216,27 @@ static int count_negative(const cholmod_factor *factor)
     return count;
 }
 
-bool direct_factor(Direct *direct, const Pattern *pattern, double *values, Factor **factor)
+/* cholmod_factorize returns true for an indefinite matrix, too. */
+static bool factor_quasi_definite(Direct *direct, const Pattern *pattern, double *values,
+                                  cholmod_factor *columns)
+{
+    cholmod_common *common = &direct->common;
+    cholmod_sparse a = view(pattern, values);
+    cholmod_factorize(&a, columns, common);
+    check_memory(common);
+    bool complete = common->status == CHOLMOD_OK && columns->minor == (size_t)direct->n;
+    return complete && count_negative(columns) == direct->negative;
+}
+
+bool direct_factor(Direct *direct, const Pattern *pattern, double *values, Factor **factor, Workers *workers)
 {
     if (!*factor || (*factor)->shares > 1 || (*factor)->direct != direct) {
         factor_release(*factor);
         *factor = new_factor(direct);
     }
-    if (!all_finite(values, pattern->start[pattern->n])) return false;
-    cholmod_common *common = &direct->common;
-    cholmod_factor *numbers = (*factor)->numbers;
-    cholmod_sparse a = view(pattern, values);
-    omp_set_max_active_levels(0);
-    cholmod_factorize(&a, numbers, common);
-    check_memory(common);
-    /* cholmod_factorize returns true for an indefinite matrix, too. */
-    bool complete = common->status == CHOLMOD_OK && numbers->minor == (size_t)direct->n;
-    return complete && (direct->negative == 0 || count_negative(numbers) == direct->negative);
+    if (!dense_is_finite(pattern->start[pattern->n], values)) return false;
+    if (direct->plan) return supernodal_factor(direct->plan, pattern, values, (*factor)->numbers, workers);
+    return factor_quasi_definite(direct, pattern, values, (*factor)->columns);
 }
 
 Factor *factor_share(Factor *factor)
@@ -187,7 +248,8 @@ Factor *factor_share(Factor *factor)
 void factor_release(Factor *factor)
 {
     if (!factor || --factor->shares > 0) return;
-    cholmod_free_factor(&factor->numbers, &factor->direct->common);
+    if (factor->columns) cholmod_free_factor(&factor->columns, &factor->direct->common);
+    mem_free(factor->numbers);
     direct_release(factor->direct);
     mem_free(factor);
 }
@@ -202,11 +264,17 @@ const int *factor_rank(const Factor *factor)
     return factor->direct->rank;
 }
 
-const double *factor_solve(const Factor *factor, const double *b)
+const double *factor_solve(const Factor *factor, const double *b, Workers *workers)
 {
     Direct *direct = factor->direct;
-    memcpy(direct->b->x, b, (size_t)direct->n * sizeof *b);
-    cholmod_solve2(CHOLMOD_A, factor->numbers, direct->b, NULL, &direct->x, NULL, &direct->work_y,
+    size_t bytes = (size_t)direct->n * sizeof *b;
+    if (direct->plan) {
+        memcpy(direct->solution, b, bytes);
+        supernodal_solve(direct->plan, factor->numbers, direct->solution, workers);
+        return direct->solution;
+    }
+    memcpy(direct->b->x, b, bytes);
+    cholmod_solve2(CHOLMOD_A, factor->columns, direct->b, NULL, &direct->x, NULL, &direct->work_y,
                    &direct->work_e, &direct->common);
     check_memory(&direct->common);
     return direct->x->x;

@@ -1,6 +1,7 @@
 #include "solve/sparse.h"
 #include "base/clock.h"
 #include "base/memory.h"
+#include "solve/product.h"
 #include <assert.h>
 #include <math.h>
 #include <stdlib.h>
@@ -17,8 +18,10 @@ struct Sparse {
     Pattern pattern; /* the same, or with others coupled beside them; in the order of elimination     */
     int *where;      /* [entries of made] where each stands in it; NULL: at its own place             */
     Direct *direct;
-    Factor *factor;  /* at hand; NULL: none was made */
-    const int *rank; /* [n] where unknown i went; the Direct's */
+    Product *product;
+    Factor *factor;   /* at hand; NULL: none was made */
+    const int *rank;  /* [n] where unknown i went; the Direct's */
+    Workers *workers; /* borrowed                              */
     double *values;
     double *diagonal; /* [n] kept aside while a shift stands on the diagonal                          */
     double *cg;       /* [6][n] x, residual, direction, product, M^-1 residual of it; a solve's b; permuted */
@@ -39,11 +42,13 @@ static void set_pattern(Sparse *matrix, Pattern pattern, int *where, Direct *dir
     if (matrix->where) pattern_destroy(&matrix->pattern);
     mem_free(matrix->where);
     direct_release(matrix->direct);
+    product_destroy(matrix->product);
     mem_free(matrix->values);
     matrix->pattern = pattern;
     matrix->where = where;
     matrix->direct = direct;
     matrix->rank = direct_rank(direct);
+    matrix->product = product_create(&matrix->pattern);
     matrix->values = mem_alloc((size_t)sparse_nonzeros(matrix), sizeof(double));
     DirectCost cost = direct_cost(direct);
     matrix->info.factor_nonzeros = cost.nonzeros;
@@ -124,6 +129,11 @@ int sparse_where(const Sparse *matrix, int k)
     return matrix->where ? matrix->where[k] : k;
 }
 
+void sparse_set_workers(Sparse *matrix, Workers *workers)
+{
+    matrix->workers = workers;
+}
+
 void sparse_destroy(Sparse *matrix)
 {
     if (!matrix) return;
@@ -133,6 +143,7 @@ void sparse_destroy(Sparse *matrix)
     if (matrix->where) pattern_destroy(&matrix->pattern);
     pattern_destroy(&matrix->made);
     mem_free(matrix->where);
+    product_destroy(matrix->product);
     mem_free(matrix->values);
     mem_free(matrix->diagonal);
     mem_free(matrix->cg);
@@ -175,7 +186,8 @@ bool sparse_factor(Sparse *matrix, const double *shift)
         matrix->diagonal[i] = *entry;
         if (shift) *entry += shift[i];
     }
-    bool definite = direct_factor(matrix->direct, &matrix->pattern, matrix->values, &matrix->factor);
+    bool definite =
+        direct_factor(matrix->direct, &matrix->pattern, matrix->values, &matrix->factor, matrix->workers);
     for (int i = 0; i < matrix->n; i++) *diagonal_entry(matrix, i) = matrix->diagonal[i];
     matrix->info.factorizations++;
     matrix->info.factor_seconds += clock_seconds() - begin;
@@ -189,7 +201,7 @@ static void solve_permuted(Sparse *matrix, const double *b, double *x)
     const int *own = matrix->rank, *other = factor_rank(factor);
     double begin = clock_seconds(), *from = matrix->cg + 5 * (size_t)matrix->n;
     for (int i = 0; own != other && i < matrix->n; i++) from[other[i]] = b[own[i]];
-    const double *to = factor_solve(factor, own == other ? b : from);
+    const double *to = factor_solve(factor, own == other ? b : from, matrix->workers);
     for (int i = 0; i < matrix->n; i++) x[own[i]] = to[other[i]];
     matrix->info.solves++;
     matrix->info.solve_seconds += clock_seconds() - begin;
@@ -206,16 +218,7 @@ void sparse_solve(Sparse *matrix, const double *b, double *x)
 
 static void multiply_permuted(const Sparse *matrix, const double *from, double *to)
 {
-    const int *start = matrix->pattern.start, *rows = matrix->pattern.rows;
-    memset(to, 0, (size_t)matrix->n * sizeof *to);
-    for (int column = 0; column < matrix->n; column++) {
-        double x = from[column], sum = matrix->values[start[column]] * x;
-        for (int k = start[column] + 1; k < start[column + 1]; k++) {
-            to[rows[k]] += matrix->values[k] * x;
-            sum += matrix->values[k] * from[rows[k]];
-        }
-        to[column] += sum;
-    }
+    product_apply(matrix->product, &matrix->pattern, matrix->values, from, to, matrix->workers);
 }
 
 void sparse_multiply(const Sparse *matrix, const double *x, double *y)

@@ -32,6 +32,10 @@ void sparse_couple(Sparse *matrix, Groups groups);
 int sparse_made_nonzeros(const Sparse *matrix);
 int sparse_where(const Sparse *matrix, int k);
 
+/* Factors, solves and products are shared out to these threads, from now on (borrowed; NULL: to none). No bit depends on
+ * them. */
+void sparse_set_workers(Sparse *matrix, Workers *workers);
+
 /* Where entry (i, j) is stored in sparse_values(); either triangle. The pattern must hold it. */
 int sparse_slot(const Sparse *matrix, int i, int j);
 

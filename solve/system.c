@@ -85,6 +85,7 @@ void system_add_bulk(System *sys, Bulk bulk)
 void system_set_workers(System *sys, Workers *workers)
 {
     sys->workers = workers;
+    if (sys->matrix) sparse_set_workers(sys->matrix, workers);
 }
 
 void system_fix(System *sys, int dof)

@@ -86,6 +86,7 @@ void system_make_matrix(System *sys)
     GroupList list = list_groups(sys, false);
     int *order = unknown_order(sys);
     sys->matrix = sparse_create(sys->free_count, groups_of(&list), (SparseDef){order, sys->multiplier_count});
+    sparse_set_workers(sys->matrix, sys->workers);
     mem_free(order);
     group_list_clear(&list);
 }
