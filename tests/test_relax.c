@@ -179,13 +179,12 @@ static void test_repeatable(void **state)
     for (RelaxMethod method = RELAX_AUTO; method < RELAX_METHOD_COUNT; method++) {
         double *first = NULL;
         for (int run = 0; run < 4; run++) {
-            static const int threads[] = {1, 2, 5, 1};
             Scene s = scene_create(method == RELAX_AUTO ? 0.002 : 0.03, 1, 4, 1);
             RelaxDef def = relax_default();
             def.method = method;
             def.weights.pair = 0.1;
             def.max_iterations = 12, def.temperatures = 2, def.sweeps = 5, def.time_steps = 3;
-            def.threads = threads[run];
+            def.threads = run < 3 ? 1 + run * run : 1; /* 1, 2, 5 */
             def.seed = run < 3 ? 1 : 2;
             spline_relax(s.target, &def, &s.strokes, NULL);
             size_t bytes = 4 * (size_t)strokes_node_count(&s.strokes) * sizeof(double);
