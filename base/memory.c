@@ -30,14 +30,17 @@ static _Noreturn void out_of_memory(size_t count, size_t size)
     end();
 }
 
+/* The system's pages are zero already, and calloc knows: a large block costs nothing until it is used. Where the block
+ * of calloc begins stands before ours, for which there is room: its blocks are aligned to 16 at least. */
 void *mem_alloc(size_t count, size_t size)
 {
     if (size && count > SIZE_MAX / 2 / size) out_of_memory(count, size);
-    size_t bytes = (count * size + ALIGNMENT) / ALIGNMENT * ALIGNMENT; /* never 0 */
-    void *block = aligned_alloc(ALIGNMENT, bytes);
-    if (!block) out_of_memory(count, size);
+    char *raw = calloc(1, count * size + ALIGNMENT);
+    if (!raw) out_of_memory(count, size);
     atomic_fetch_add(&live, 1);
-    return memset(block, 0, bytes);
+    char *block = raw + ALIGNMENT - (uintptr_t)raw % ALIGNMENT;
+    ((void **)block)[-1] = raw;
+    return block;
 }
 
 void *mem_resize(void *block, size_t old_count, size_t new_count, size_t size)
@@ -91,7 +94,7 @@ void mem_free(void *block)
 {
     if (!block) return;
     atomic_fetch_sub(&live, 1);
-    free(block);
+    free(((void **)block)[-1]);
 }
 
 long mem_live_count(void)

@@ -41,6 +41,7 @@ StaticDesign *static_design_create(const Design *design, const Params *params, L
     sd->work = mem_alloc((size_t)design->case_count, sizeof *sd->work);
     for (int c = 0; c < design->case_count; c++) {
         Work *work = &sd->work[c];
+        system_build(cases[c].sys); /* threads come later */
         size_t dofs = (size_t)system_dof_count(cases[c].sys), size = (size_t)params->size;
         work->p = mem_copy(cases[c].p, size, sizeof(double));
         work->best_p = mem_copy(cases[c].p, size, sizeof(double));

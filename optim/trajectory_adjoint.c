@@ -49,6 +49,7 @@ Trajectory *trajectory_create(const TrajectoryProblem *problem, const Trajectory
 {
     Trajectory *t = mem_alloc(1, sizeof *t);
     *t = (Trajectory){.problem = *problem, .def = *def};
+    system_build(problem->sys);
     long bytes = system_info(problem->sys).factor_bytes + 1, most = def->factor_memory / (2 * bytes);
     int factor_max = most < 1000000000 ? (int)most : 1000000000;
     size_t params = (size_t)problem->params->size, size = (size_t)problem->design->size;

@@ -45,8 +45,12 @@ void system_set_base_shift(System *sys, double base);
 /* Elements are evaluated by these threads, from now on (borrowed; NULL: by the calling one). No bit depends on them. */
 void system_set_workers(System *sys, Workers *workers);
 
-/* After the last add and fix: builds the pattern and the slots, once. */
+/* After the last add and fix: numbers the unknowns. */
 void system_prepare(System *sys);
+
+/* Builds the pattern, its order and the slots, once; the first Hessian does so too. Before threads have a System each:
+ * METIS draws from the C library's random numbers, which are one sequence for all. */
+void system_build(System *sys);
 
 int system_dof_count(const System *sys);
 int system_free_count(const System *sys);
@@ -163,4 +167,8 @@ void system_accept(const System *sys, double *x, double *memory);
 State system_state(const System *sys);
 int system_memory_count(const System *sys);
 
+/* Of the matrix at hand: all 0 before it is built. */
 SparseInfo system_info(const System *sys);
+
+/* What a factor will cost, from the pattern alone, which is ordered, analysed and let go. */
+SparseInfo system_cost(const System *sys);

@@ -118,12 +118,25 @@ void system_build_matrix(System *sys)
     }
 }
 
+void system_build(System *sys)
+{
+    if (!sys->matrix) system_build_matrix(sys);
+}
+
+SparseInfo system_cost(const System *sys)
+{
+    Sparse *matrix = create_matrix(sys);
+    SparseInfo info = sparse_info(matrix);
+    sparse_destroy(matrix);
+    return info;
+}
+
 void system_couple(System *sys, const double *x)
 {
     bool changed = false;
     for (int b = 0; b < sys->bulk_count; b++)
         changed |= sys->bulks[b].ops->couple(sys->bulks[b].self, x, &sys->couplings[b]);
-    if (changed) system_build_matrix(sys);
+    if (changed || !sys->matrix) system_build_matrix(sys);
 }
 
 static void add_block(void *self, int row, int column, int n, const double *block)

@@ -24,8 +24,9 @@ struct System {
     Workers *workers;                                     /* borrowed                   */
     DofClass classes[SYSTEM_MAX_CLASSES];
     bool *fixed, factored; /* factored: the last factor may be used */
-    int *unknown;          /* [dof] number among the free ones, -1 if fixed */
-    Sparse *matrix;
+    bool prepared;
+    int *unknown;   /* [dof] number among the free ones, -1 if fixed */
+    Sparse *matrix; /* NULL until it is built */
     double base, stiffness_max;
     double *scale;       /* [dof] D                                     */
     double *compliance;  /* [dof] of multipliers, m/N; 0 elsewhere: see system_gap */
@@ -47,7 +48,7 @@ int system_lanes(const Entry *entry, int pack);
 /* Pattern and slots for the terms and for what the Bulks couple. */
 void system_build_matrix(System *sys);
 
-/* Asks the Bulks what they couple at x, and makes the matrix anew where that is more than before. */
+/* Asks the Bulks what they couple at x, and makes the matrix, anew where that is more than before. */
 void system_couple(System *sys, const double *x);
 
 /* Energies of the Bulks, with gradients and Hessians as in an evaluation of terms. */
