@@ -1,14 +1,13 @@
 /* slender check: everything that can be said about a scene without running it. */
-#include "base/clock.h"
 #include "base/memory.h"
 #include "base/random.h"
 #include "base/vec3.h"
 #include "cli/drawing.h"
 #include "cli/job.h"
+#include "cli/predict.h"
 #include "cli/rod_model.h"
 #include "cli/say.h"
 #include "cli/verb.h"
-#include "optim/trajectory_adjoint.h"
 #include "solve/check.h"
 #include "solve/kernels.h"
 #include <math.h>
@@ -85,52 +84,18 @@ static void check_bending_length(const Model *model, const Scene *scene)
                CELLS_PER_LENGTH);
 }
 
-/* Newton iterations of the whole job, as measured on the scenes; in time those that pay for a factor. */
-static double estimated_iterations(const Model *model, const Scene *scene)
+/* What one solve costs, and the job. */
+static void report_cost(const Model *model, const Scene *scene)
 {
-    static const double each[] = {[JOB_EQUILIBRIUM] = 20,
-                                  [JOB_EVALUATE] = 1,
-                                  [JOB_DESIGN] = 6,
-                                  [JOB_SIMULATE] = 1.5,
-                                  [JOB_TRAJECTORY] = 6};
-    double solves = 0;
-    for (int k = 0; k < model->case_count; k++) solves += model->cases[k].stage_count;
-    if (scene->job == JOB_SIMULATE || scene->job == JOB_TRAJECTORY) solves *= scene->time.steps;
-    if (scene->design) solves *= scene->design->iterations + 1;
-    return solves * each[scene->job];
-}
-
-/* Factors and what CHOLMOD works in; of a trajectory the states of two motions and their factors, as far as
- * they are kept. */
-static double estimated_megabytes(const Model *model, const Scene *scene, SparseInfo info)
-{
-    double dofs = system_dof_count(model->cases[0].sys),
-           steps = scene->job == JOB_TRAJECTORY ? scene->time.steps : 0;
-    double kept =
-        fmin(2e-6 * steps * (double)info.factor_bytes, 1e-6 * (double)trajectory_default().factor_memory);
-    return model->case_count * 24e-6 * (double)info.factor_nonzeros + 2e-3 * dofs + 32e-6 * steps * dofs +
-           kept;
-}
-
-/* One assembly and one factorisation, as they will be. */
-static void measure(const Model *model, const Scene *scene)
-{
-    const ModelCase *c = &model->cases[0];
-    double *gradient = mem_alloc((size_t)system_dof_count(c->sys), sizeof *gradient);
-    Point at = state_point(&c->state, c->stages[0].p);
-    double start = clock_seconds();
-    system_hessian(c->sys, &at, gradient);
-    bool stable = system_factor(c->sys, 0) || system_factor(c->sys, 1e-6);
-    double seconds = clock_seconds() - start;
-    SparseInfo info = system_info(c->sys);
+    Prediction r = predict(model, scene);
     const char *note = kernels_note();
     printf("OpenBLAS's kernels: %s%s%s\n", kernels_name(), *note ? ", " : "", note);
-    printf("one Newton iteration: %.3g s, factor %.3g million numbers (%.3g MB)%s\n", seconds,
-           1e-6 * (double)info.factor_nonzeros, 8e-6 * (double)info.factor_nonzeros,
-           stable ? "" : ", not stable at the start");
-    printf("estimated: %.2g s, %.3g MB\n", estimated_iterations(model, scene) * seconds,
-           estimated_megabytes(model, scene, info));
-    mem_free(gradient);
+    printf(
+        "one Newton iteration: %.3g s (%g factorisations are assumed); a factor has %s%.3g million numbers "
+        "(%.3g MB)\n",
+        r.iteration, r.factorizations, r.exact ? "" : "about ", 1e-6 * r.numbers, 1e-6 * r.factor_bytes);
+    printf("estimated: %.2g s, %.3g MB (%.2g s to prepare, %g iterations are assumed, %.2g s for the end)\n",
+           predict_seconds(&r), 1e-6 * r.bytes, r.start, r.iterations, r.end);
 }
 
 /* An edge's or element's length, a radian, or of a rod's multipliers a force. */
@@ -256,7 +221,7 @@ static bool report(const Model *model, const Scene *scene, bool derivatives)
     if (!model->case_count && derivatives)
         printf("derivatives: there is no load case whose terms could be checked\n");
     if (!model->case_count) return true;
-    measure(model, scene);
+    report_cost(model, scene);
     return !derivatives || check_derivatives(model, scene);
 }
 
