@@ -54,7 +54,7 @@ static void piece_destroy(Piece *piece)
 
 static double lap(double *last)
 {
-    double now = clock_seconds(), seconds = now - *last;
+    double now = clock_thread_seconds(), seconds = now - *last;
     *last = now;
     return seconds;
 }
@@ -63,7 +63,7 @@ static double lap(double *last)
 static Units measure(System *sys, const Point *at, double *gradient, int repeats)
 {
     Units least = {INFINITY, INFINITY, INFINITY, INFINITY};
-    double time = clock_seconds();
+    double time = clock_thread_seconds();
     system_build(sys);
     least.build = lap(&time);
     for (int k = 0; k < repeats; k++) {
@@ -133,6 +133,13 @@ static void count_by_law(const Shell *shell, Prediction *r)
     r->factor_bytes = BYTES * r->numbers;
 }
 
+static void take_cost(SparseInfo cost, Prediction *r)
+{
+    r->numbers = (double)cost.factor_nonzeros;
+    r->flops = cost.factor_flops;
+    r->factor_bytes = fmax((double)cost.factor_bytes, 8 * r->numbers);
+}
+
 /* Numbers of the piece's factor that are not multiplied take their time, too: the same for each. */
 static Units units_of_shell(const Model *model, Prediction *r)
 {
@@ -146,9 +153,7 @@ static Units units_of_shell(const Model *model, Prediction *r)
            each = fmax(0, (unit.factor - info.factor_flops / rate) / numbers);
     r->exact = r->unknowns <= PREDICT_EXACT;
     if (r->exact) {
-        SparseInfo cost = system_cost(model->cases[0].sys);
-        r->numbers = (double)cost.factor_nonzeros, r->flops = cost.factor_flops,
-        r->factor_bytes = (double)cost.factor_bytes;
+        take_cost(system_cost(model->cases[0].sys), r);
     } else {
         count_by_law(shell, r);
     }
@@ -167,49 +172,67 @@ static Units units_of_rod(const Model *model, Prediction *r)
     double *gradient = mem_alloc((size_t)system_dof_count(c->sys), sizeof *gradient);
     Point at = state_point(&c->state, c->stages[0].p);
     Units unit = measure(c->sys, &at, gradient, 1);
-    SparseInfo info = system_info(c->sys);
     r->exact = true;
-    r->numbers = (double)info.factor_nonzeros, r->flops = info.factor_flops,
-    r->factor_bytes = (double)info.factor_bytes;
+    take_cost(system_info(c->sys), r);
     mem_free(gradient);
     return unit;
 }
 
 /* ---- What a job does ---- */
 
-/* Newton iterations of a solve and of one that goes on from another, factorisations and solves of each; as measured on
- * scenes/ and by ./do bench equilibria. In time some iterations make do with an older factor; a design's
- * solves are those of its optimiser, too. */
-static const struct {
-    double first, more, factorizations, solves;
-} efforts[] = {[JOB_EQUILIBRIUM] = {20, 5, 2.4, 2.4},
-               [JOB_EVALUATE] = {1, 1, 2, 25},
-               [JOB_DESIGN] = {6, 6, 1.1, 8},
-               [JOB_SIMULATE] = {2, 2, 1, 4},
-               [JOB_TRAJECTORY] = {6, 6, 1, 8}};
+/* As measured on scenes/ and by ./do bench equilibria: Newton iterations of a solve and of one that goes on from another,
+ * factorisations and solves of each (in time some iterations make do with an older factor; a design's solves are those
+ * of its optimiser, too), and bytes of the picture while it is drawn. */
+typedef struct Effort {
+    double first, more, factorizations, solves, picture;
+} Effort;
 
-static const double LANCZOS_SOLVES = 30;
+static const Effort efforts[] = {[JOB_EQUILIBRIUM] = {20, 5, 2.4, 2.4, 100e6},
+                                 [JOB_EVALUATE] = {1, 1, 2, 25, 100e6},
+                                 [JOB_DESIGN] = {5, 5, 1.1, 8, 60e6},
+                                 [JOB_SIMULATE] = {2, 2, 0.9, 4, 25e6},
+                                 [JOB_TRAJECTORY] = {2, 2, 1, 8, 25e6}},
+                    rod_equilibrium = {5, 5, 1.2, 1.2, 5e6};
 
-/* Of a triangle or rod's element: arrays of the result, compressed, for each frame; the picture. */
-static const double FRAME_SECONDS = 2e-6, PICTURE_SECONDS = 2e-6, PROGRAM_SECONDS = 0.15;
-
-static double frame_count(const Scene *scene, double solves)
+static Effort effort_of(const Model *model, const Scene *scene)
 {
-    bool moves = model_is_motion(scene->job);
-    if (!moves) return scene->design ? 2 : solves;
+    return model->rod && scene->job == JOB_EQUILIBRIUM ? rod_equilibrium : efforts[scene->job];
+}
+
+static double stage_count(const Model *model)
+{
+    double stages = 0;
+    for (int k = 0; k < model->case_count; k++) stages += model->cases[k].stage_count;
+    return stages;
+}
+
+static double iteration_count(const Model *model, const Scene *scene, const Effort *effort)
+{
+    double solves = stage_count(model), firsts = model->case_count;
+    if (scene->job == JOB_EQUILIBRIUM)
+        solves *= scene->load_steps.mode < 0 ? scene->load_steps.count : model->load_steps;
+    if (model_is_motion(scene->job)) solves *= scene->time.steps;
+    if (scene->design) solves *= scene->design->iterations + 1, firsts *= scene->design->iterations + 1;
+    return firsts * effort->first + (solves - firsts) * effort->more;
+}
+
+static double frame_count(const Model *model, const Scene *scene)
+{
+    if (!model_is_motion(scene->job)) return stage_count(model);
     return 1 + (scene->output.every > 0 ? scene->time.steps / scene->output.every : 0);
 }
 
-static void count_iterations(const Model *model, const Scene *scene, Prediction *r)
+/* ---- After the job: stability, result, picture ---- */
+
+static const double LANCZOS_SOLVES = 30;
+static const double PROGRAM_SECONDS = 0.1, SHELL_PICTURE_SECONDS = 0.4,
+                    ELEMENT_SECONDS = 2e-6; /* of a frame, or picture */
+
+static double end_seconds(const Model *model, double elements, double frames, Units unit)
 {
-    double stages = 0, firsts = model->case_count,
-           steps = scene->load_steps.mode < 0 ? scene->load_steps.count : model->load_steps;
-    for (int k = 0; k < model->case_count; k++) stages += model->cases[k].stage_count;
-    if (scene->job == JOB_EQUILIBRIUM) stages *= steps;
-    if (model_is_motion(scene->job)) stages *= scene->time.steps;
-    if (scene->design) stages *= scene->design->iterations + 1, firsts *= scene->design->iterations + 1;
-    r->iterations = firsts * efforts[scene->job].first + (stages - firsts) * efforts[scene->job].more;
-    r->factorizations = efforts[scene->job].factorizations;
+    double seconds = PROGRAM_SECONDS + elements * ELEMENT_SECONDS * (1 + frames);
+    if (!model->shell) return seconds;
+    return seconds + SHELL_PICTURE_SECONDS + unit.hessian + unit.factor + LANCZOS_SOLVES * unit.solve;
 }
 
 /* ---- Memory ---- */
@@ -218,15 +241,15 @@ static void count_iterations(const Model *model, const Scene *scene, Prediction 
  * of a factor's byte while it is made. */
 static const double PROGRAM_BYTES = 30e6, ELEMENT_BYTES = 1300, SYSTEM_BYTES[] = {3200, 2700}, WORK = 1.1;
 
-static double bytes_of(const Model *model, const Scene *scene, double elements, const Prediction *r)
+static double peak_bytes(const Model *model, const Scene *scene, double elements, double factor)
 {
-    double dofs = system_dof_count(model->cases[0].sys), stages = 0,
-           steps = scene->job == JOB_TRAJECTORY ? scene->time.steps : 0;
-    for (int k = 0; k < model->case_count; k++) stages += model->cases[k].stage_count;
-    double kept = fmin(2 * steps * r->factor_bytes, (double)trajectory_default().factor_memory),
+    double dofs = system_dof_count(model->cases[0].sys),
+           steps = scene->job == JOB_TRAJECTORY ? scene->time.steps : 0,
+           kept = fmin(2 * steps * factor, (double)trajectory_default().factor_memory),
            system = SYSTEM_BYTES[model->shell ? model->shell->bending : BENDING_MIDEDGE];
-    return PROGRAM_BYTES + elements * ELEMENT_BYTES + 8 * stages * model->params->size +
-           model->case_count * (elements * system + WORK * r->factor_bytes) + 32 * steps * dofs + kept;
+    return PROGRAM_BYTES + effort_of(model, scene).picture + elements * ELEMENT_BYTES +
+           8 * stage_count(model) * model->params->size +
+           model->case_count * (elements * system + WORK * factor) + 32 * steps * dofs + kept;
 }
 
 /* ---- The whole ---- */
@@ -234,16 +257,16 @@ static double bytes_of(const Model *model, const Scene *scene, double elements, 
 Prediction predict(const Model *model, const Scene *scene)
 {
     Prediction r = {.unknowns = system_free_count(model->cases[0].sys)};
+    Effort effort = effort_of(model, scene);
     double elements = model->shell ? model->shell->mesh->face_count : model->point_count - 1;
     Units unit = model->shell ? units_of_shell(model, &r) : units_of_rod(model, &r);
-    count_iterations(model, scene, &r);
+    r.iterations = iteration_count(model, scene, &effort);
+    r.factorizations = effort.factorizations;
+    r.factorization = unit.factor;
+    r.iteration = unit.hessian + effort.factorizations * unit.factor + effort.solves * unit.solve;
     r.start = model->case_count * unit.build;
-    r.iteration = unit.hessian + r.factorizations * unit.factor + efforts[scene->job].solves * unit.solve;
-    r.end = PROGRAM_SECONDS +
-            elements * (PICTURE_SECONDS +
-                        FRAME_SECONDS * frame_count(scene, r.iterations / efforts[scene->job].first));
-    if (model->shell) r.end += unit.hessian + unit.factor + LANCZOS_SOLVES * unit.solve;
-    r.bytes = bytes_of(model, scene, elements, &r);
+    r.end = end_seconds(model, elements, frame_count(model, scene), unit);
+    r.bytes = peak_bytes(model, scene, elements, r.factor_bytes);
     return r;
 }
 

@@ -13,9 +13,9 @@ typedef struct Prediction {
     double unknowns, numbers, flops, factor_bytes; /* of a factor */
     bool exact;                                    /* they are counted, not a law's */
     double iterations, factorizations;             /* assumed: of the whole job, and of one iteration */
-    double start, iteration, end; /* s: pattern and order; of one iteration; stability, result,
-                                                    * picture */
-    double bytes;                 /* at the peak, of the process */
+    double start, end;               /* s: pattern and order; stability, result, picture            */
+    double iteration, factorization; /* s: of one iteration, all in; of one factorisation          */
+    double bytes;                    /* at the peak, of the process */
 } Prediction;
 
 /* The model has a case at least. */

@@ -90,12 +90,15 @@ static void report_cost(const Model *model, const Scene *scene)
     Prediction r = predict(model, scene);
     const char *note = kernels_note();
     printf("OpenBLAS's kernels: %s%s%s\n", kernels_name(), *note ? ", " : "", note);
+    printf("one Newton iteration: %.3g s, with %.3g s for each factorisation; %g of these are assumed, of "
+           "%s%.3g "
+           "million numbers (%.3g MB)\n",
+           r.iteration, r.factorization, r.factorizations, r.exact ? "" : "about ", 1e-6 * r.numbers,
+           1e-6 * r.factor_bytes);
     printf(
-        "one Newton iteration: %.3g s (%g factorisations are assumed); a factor has %s%.3g million numbers "
-        "(%.3g MB)\n",
-        r.iteration, r.factorizations, r.exact ? "" : "about ", 1e-6 * r.numbers, 1e-6 * r.factor_bytes);
-    printf("estimated: %.2g s, %.3g MB (%.2g s to prepare, %g iterations are assumed, %.2g s for the end)\n",
-           predict_seconds(&r), 1e-6 * r.bytes, r.start, r.iterations, r.end);
+        "estimated: %.3g s in all (%.2g s to prepare, %g Newton iterations are assumed, %.2g s for stability "
+        "and result); %.3g MB at most\n",
+        predict_seconds(&r), r.start, r.iterations, r.end, 1e-6 * r.bytes);
 }
 
 /* An edge's or element's length, a radian, or of a rod's multipliers a force. */
