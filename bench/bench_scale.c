@@ -5,6 +5,7 @@
 #include "base/memory.h"
 #include "bench/bench.h"
 #include <math.h>
+#include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -103,24 +104,38 @@ static void write_scene(const int *size, const char *bending)
     fclose(file);
 }
 
+/* MB that can still be had; a size that would need more is left out. */
+static double available_megabytes(void)
+{
+    char line[160];
+    double kB = INFINITY;
+    FILE *file = fopen("/proc/meminfo", "r");
+    while (file && fgets(line, sizeof line, file)) sscanf(line, "MemAvailable: %lf", &kB);
+    if (file) fclose(file);
+    return 1e-3 * kB;
+}
+
 typedef struct Row {
     double triangles, check, seconds, cpu, megabytes, iterations, factorizations;
 } Row;
 
-static Row sheet(const int *size, const char *bending)
+/* False where there is too little memory. */
+static bool sheet(const int *size, const char *bending, Row *to)
 {
     const char *check[] = {"slender", "check", scene_name, NULL},
                *job[] = {"slender", "run", scene_name, "--force", "-o", "bench_scale", NULL};
     write_scene(size, bending);
-    Ran checked = run(check), ran = run(job);
+    Ran checked = run(check);
     Foretold f = foretold(&checked);
-    Row row = {.triangles = 2.0 * size[0] * size[1],
-               .check = checked.seconds,
-               .seconds = ran.seconds,
-               .cpu = ran.cpu,
-               .megabytes = ran.megabytes,
-               .iterations = number_before(&ran, " Newton iterations"),
-               .factorizations = number_before(&ran, " factorisations")};
+    if (f.megabytes > 0.75 * available_megabytes()) return false;
+    Ran ran = run(job);
+    Row row = *to = (Row){.triangles = 2.0 * size[0] * size[1],
+                          .check = checked.seconds,
+                          .seconds = ran.seconds,
+                          .cpu = ran.cpu,
+                          .megabytes = ran.megabytes,
+                          .iterations = number_before(&ran, " Newton iterations"),
+                          .factorizations = number_before(&ran, " factorisations")};
     char name[80];
     snprintf(name, sizeof name, "scale_%s_%.0f", bending, row.triangles);
     double predicted = f.start + row.iterations * f.other + row.factorizations * f.factor + f.end;
@@ -134,7 +149,7 @@ static Row sheet(const int *size, const char *bending)
     print(name, "factorisations", row.factorizations, "");
     print(name, "predicted_over_cpu_seconds", predicted / row.cpu, "ratio");
     print(name, "predicted_over_megabytes", f.megabytes / row.megabytes, "ratio");
-    return row;
+    return true;
 }
 
 /* The slope of log(value) over log(triangles). */
@@ -165,8 +180,9 @@ static void sheets(const char *bending, double most)
 {
     Row rows[SIZES];
     int count = 0;
-    for (; count < SIZES && 2.0 * cells[count][0] * cells[count][1] <= most; count++)
-        rows[count] = sheet(cells[count], bending);
+    while (count < SIZES && 2.0 * cells[count][0] * cells[count][1] <= most &&
+           sheet(cells[count], bending, &rows[count]))
+        count++;
     if (count < 2) return;
     char name[80];
     snprintf(name, sizeof name, "scale_%s_exponent", bending);
