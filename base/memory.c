@@ -10,7 +10,7 @@
 
 /* Large blocks are made of huge pages where the system has them: what is read at random, or once from end to end, is
  * read half as fast again (a factor of 250 MB: 16.6 GB/s, not 10.2). */
-enum { ALIGNMENT = 64, HUGE_PAGE = 2 << 20, LARGE = 2 * HUGE_PAGE };
+enum { ALIGNMENT = 64, LARGE = 4 << 20 };
 
 static atomic_long live;
 
@@ -33,16 +33,26 @@ static _Noreturn void out_of_memory(size_t count, size_t size)
     end();
 }
 
+/* The whole pages of a block. */
+static void use_huge_pages(char *block, size_t bytes)
+{
+    uintptr_t page = (uintptr_t)sysconf(_SC_PAGESIZE), first = ((uintptr_t)block + page - 1) / page * page;
+    madvise((void *)first, ((uintptr_t)block + bytes - first) / page * page, MADV_HUGEPAGE);
+}
+
+/* The system's pages are zero already, and calloc knows: a large block costs nothing until it is used. Where the block
+ * of calloc begins stands before ours, for which there is room: its blocks are aligned to 16 at least. */
 void *mem_alloc(size_t count, size_t size)
 {
     if (size && count > SIZE_MAX / 2 / size) out_of_memory(count, size);
-    size_t alignment = count * size < LARGE ? ALIGNMENT : HUGE_PAGE;
-    size_t bytes = (count * size + alignment) / alignment * alignment; /* never 0 */
-    void *block = aligned_alloc(alignment, bytes);
-    if (!block) out_of_memory(count, size);
-    if (alignment == HUGE_PAGE) madvise(block, bytes, MADV_HUGEPAGE);
+    size_t bytes = count * size + ALIGNMENT;
+    char *raw = calloc(1, bytes);
+    if (!raw) out_of_memory(count, size);
+    if (bytes >= LARGE) use_huge_pages(raw, bytes);
     atomic_fetch_add(&live, 1);
-    return memset(block, 0, bytes);
+    char *block = raw + ALIGNMENT - (uintptr_t)raw % ALIGNMENT;
+    ((void **)block)[-1] = raw;
+    return block;
 }
 
 void *mem_resize(void *block, size_t old_count, size_t new_count, size_t size)
@@ -96,7 +106,7 @@ void mem_free(void *block)
 {
     if (!block) return;
     atomic_fetch_sub(&live, 1);
-    free(block);
+    free(((void **)block)[-1]);
 }
 
 long mem_live_count(void)

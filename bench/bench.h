@@ -18,3 +18,4 @@ void bench_rod(void);
 void bench_spline(void);
 void bench_draw(void);
 void bench_equilibria(void);
+void bench_scale(void);

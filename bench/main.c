@@ -23,6 +23,7 @@ static const struct {
     {"rod", bench_rod},
     {"spline", bench_spline},
     {"draw", bench_draw},
+    {"scale", bench_scale},
 };
 
 enum { CASE_COUNT = sizeof cases / sizeof *cases };

@@ -71,7 +71,8 @@ void body_shell_final(const Model *model, const Snapshot *shot, int modes, Array
     if (!modes && values[0] >= 0) return;
     double *mode = arrays_numbers(list, (size_t)count * (size_t)positions);
     for (int k = 0; k < count; k++)
-        memcpy(mode + k * positions, vectors + k * dofs, (size_t)positions * sizeof *mode);
+        memcpy(mode + (size_t)k * (size_t)positions, vectors + (size_t)k * (size_t)dofs,
+               (size_t)positions * sizeof *mode);
     arrays_add(list, array_float("final/eigenvalues", "N/m", values, 1, count, 0));
     Array shape = array_float("final/modes", "", mode, 3, count, positions / 3);
     shape.dims[2] = 3;

@@ -91,9 +91,10 @@ static bool solve_case(Run *run, ModelCase *c, Snapshot *shot, int *frame, bool 
             shot->status = info.newton.status;
             *interrupted = info.newton.status == NEWTON_STOPPED;
             if (*interrupted) break;
-            progress_step(run->progress, *frame + 1, total, "%s: %s, %d Newton iterations in %d load steps",
-                          c->name, newton_status_name(shot->status), info.newton.iterations,
-                          info.steps + info.refused);
+            progress_step(run->progress, *frame + 1, total,
+                          "%s: %s, %d Newton iterations with %d factorisations in %d load steps", c->name,
+                          newton_status_name(shot->status), info.newton.iterations,
+                          info.newton.factorizations, info.steps + info.refused);
             ok = put_progress(run, *frame, shot, err);
         }
         if (shot->status > worst) worst = shot->status;

@@ -263,3 +263,10 @@ bool rod_model_params(const RodModel *model, const Scene *scene, const Build *b,
     return (!from->natural_strain || read_strains(b, from->natural_strain, rod, p + rod->natural_strain)) &&
            ok;
 }
+
+double rod_model_longest(const RodModel *model)
+{
+    double longest = model->rod ? model->rod->length : 0;
+    for (int k = 0; k < model->strand_count; k++) longest = fmax(longest, model->curves[k].length);
+    return longest;
+}

@@ -32,6 +32,9 @@ typedef struct RodModel {
 RodModel *rod_model_create(const Scene *scene, const Build *b);
 void rod_model_destroy(RodModel *model);
 
+/* m: of the rod, or the longest strand. */
+double rod_model_longest(const RodModel *model);
+
 /* Do all point loads act on a rod of that length? */
 bool rod_model_check_points(const RodModel *model, const Build *b, double length);
 

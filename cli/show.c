@@ -249,15 +249,16 @@ static bool write_page(Show *show, const char *result, const char *picture, Erro
     page.target = def->target, page.width = def->width;
     memcpy(page.view, def->view, sizeof page.view);
     page.same_view = show->steps[0] >= 0;
+    show->data->drawn = true;
     if (def->seconds > 0) return picture_animate(picture, &page, def->seconds / show->panel_count, err);
     Chart history;
     if (show_history(show->data, &history)) page.history = &history;
     return picture_write(picture, &page, err);
 }
 
-bool show_result(const char *result, const char *picture, const ShowDef *def, Error *err)
+RunStatus show_result(const char *result, const char *picture, const ShowDef *def, Error *err)
 {
-    ShowData data;
+    ShowData data = {0};
     Show show = {.data = &data, .def = def};
     bool ok = show_data_open(&data, result, def, err);
     if (ok && drawn_has(data.result))
@@ -269,5 +270,5 @@ bool show_result(const char *result, const char *picture, const ShowDef *def, Er
     mem_free(show.panels);
     mem_free(show.steps);
     show_data_clear(&data);
-    return ok;
+    return ok ? RUN_DONE : data.drawn ? RUN_CANNOT_WRITE : RUN_REFUSED;
 }

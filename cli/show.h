@@ -2,6 +2,7 @@
  * of rods their curves (show_rod.h), of drawings their lines (show_drawing.h). */
 #pragma once
 #include "base/error.h"
+#include "cli/run.h"
 #include "io/picture.h"
 
 typedef struct ShowDef {
@@ -19,6 +20,6 @@ typedef struct ShowDef {
 
 ShowDef show_default(void);
 
-/* Writes picture (.png, .svg or .pdf; an animation .webp) from the result file. False and a sentence where
- * either cannot be used. */
-bool show_result(const char *result, const char *picture, const ShowDef *def, Error *err);
+/* Writes picture (.png, .svg or .pdf; an animation .webp) from the result file. RUN_REFUSED where that has not what is
+ * asked for, RUN_CANNOT_WRITE where the picture cannot be written; with a sentence. */
+RunStatus show_result(const char *result, const char *picture, const ShowDef *def, Error *err);

@@ -8,6 +8,7 @@ typedef struct ShowData {
     Result *result;
     const ShowDef *def;
     bool motion; /* frames are moments in time */
+    bool drawn;  /* all was read: what fails now is the writing */
     int array_count, block_count;
     Array *arrays;
     void **blocks;

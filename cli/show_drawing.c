@@ -17,6 +17,7 @@ bool show_drawing(ShowData *data, const char *picture, Error *err)
     Drawn drawn = {0};
     if (!check_options(data->def, err)) return false;
     bool ok = drawn_read(data->result, &drawn, err);
+    data->drawn = ok;
     if (ok) {
         SplineGrid target = spline_grid(&drawn.picture);
         ok = spline_preview(picture, &drawn.plot, &drawn.page, &target, data->def->width, err);

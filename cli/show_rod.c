@@ -405,6 +405,7 @@ static bool write_page(RodPage *page, const char *result, const char *picture, E
     if (gravity) memcpy(scene.gravity, gravity, sizeof scene.gravity);
     memcpy(scene.view, def->view, sizeof scene.view);
     scene.width = def->width;
+    page->data->drawn = true;
     if (def->seconds > 0)
         return curves_animate(picture, &scene, def->seconds / show_frame_count(page->data), err);
     add_charts(page);

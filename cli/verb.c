@@ -1,5 +1,6 @@
 #include "cli/verb.h"
 #include "base/memory.h"
+#include "cli/advice.h"
 #include "cli/say.h"
 #include "solve/kernels.h"
 #include <stdio.h>
@@ -50,7 +51,10 @@ Model *verb_build_model(const Scene *scene, YamlFile *file)
 {
     if (kernels_reserve(1) < 1) mem_exhausted("OpenBLAS, which works in 128 MB");
     Model *model = model_create(scene, file);
-    if (!model) print_report(file);
+    if (!model)
+        print_report(file);
+    else
+        advise(model, scene);
     for (int k = 0; model && k < model->report.warning_count; k++)
         say(stderr, "warning: %s", model->report.warnings[k]);
     return model;

@@ -1,14 +1,14 @@
 /* slender check: everything that can be said about a scene without running it. */
-#include "base/clock.h"
 #include "base/memory.h"
 #include "base/random.h"
 #include "base/vec3.h"
+#include "cli/advice.h"
 #include "cli/drawing.h"
 #include "cli/job.h"
+#include "cli/predict.h"
 #include "cli/rod_model.h"
 #include "cli/say.h"
 #include "cli/verb.h"
-#include "optim/trajectory_adjoint.h"
 #include "solve/check.h"
 #include "solve/kernels.h"
 #include <math.h>
@@ -19,124 +19,29 @@ static const char usage[] =
     "  Reads the scene and its files, says what they make and what one solve costs.\n"
     "  --derivatives  checks every term's gradient and Hessian on this scene by differences";
 
-static const double LARGE_BODY = 2;       /* m: most likely a mesh in millimetres          */
-static const double CELLS_PER_LENGTH = 3; /* of the magnetic bending length, at least      */
 static const double DERIVATIVE_TOL = 1e-6;
 
-static double mean_edge(const Mesh *mesh)
+/* What one solve costs, and the job. */
+static void report_cost(const Model *model, const Scene *scene)
 {
-    double sum = 0;
-    for (int e = 0; e < mesh->edge_count; e++)
-        sum += vec3_length(
-            vec3_sub(vec3_load(mesh->rest[mesh->edges[e][0]]), vec3_load(mesh->rest[mesh->edges[e][1]])));
-    return sum / mesh->edge_count;
-}
-
-static void check_size(const Model *model)
-{
-    double size = mesh_diagonal(model->shell->mesh);
-    if (size > LARGE_BODY)
-        printf("warning: the body is %.3g m long; if its file is in millimetres, give the mesh `scale: "
-               "1.0e-3`\n",
-               size);
-    if (model->shell->thickness > size / 5)
-        printf("warning: the thickness, %.3g m, is more than a fifth of the body's size, %.3g m: no thin "
-               "shell\n",
-               model->shell->thickness, size);
-}
-
-/* Of a case, over the whole time of a motion; of an unknown field its bounds. */
-static double largest_field(const Model *model, const Scene *scene, const double *p)
-{
-    const FluxUnknown *unknown = scene->design ? scene->design->unknowns.flux_density : NULL;
-    double largest = vec3_length(vec3_load(p + model->shell->flux_density));
-    if (unknown && !isnan(unknown->bounds[0]))
-        largest = fmax(largest, fmax(fabs(unknown->bounds[0]), fabs(unknown->bounds[1])));
-    double now[3] = {0};
-    for (int n = 0; timed_flux_is_given(&model->flux_of_time) && n <= scene->time.steps; n++)
-        if (timed_flux_eval(&model->flux_of_time, scene->time.at + n * scene->time.step, now, NULL))
-            largest = fmax(largest, vec3_length(vec3_load(now)));
-    return largest;
-}
-
-/* Over a length h sqrt(Y/(12 M B)) a field bends the sheet by about a radian: cells must be smaller. */
-static void check_bending_length(const Model *model, const Scene *scene)
-{
-    const Shell *shell = model->shell;
-    double largest = 0, young = INFINITY, M_max = 0;
-    for (int c = 0; c < model->case_count; c++)
-        for (int s = 0; s < model->cases[c].stage_count; s++) {
-            const double *p = model->cases[c].stages[s].p;
-            double B = largest_field(model, scene, p);
-            for (int f = 0; f < shell->mesh->face_count; f++) {
-                M_max = fmax(M_max, vec3_length(vec3_load(p + shell->magnetization + 3 * f)));
-                young = fmin(young, p[shell->young + f]);
-            }
-            if (scene->design && scene->design->unknowns.magnetization)
-                M_max = fmax(M_max, scene->design->unknowns.magnetization->scale);
-            largest = fmax(largest, M_max * B);
-        }
-    if (!(largest > 0)) return;
-    double length = shell->thickness * sqrt(young / (12 * largest)), cell = mean_edge(shell->mesh);
-    printf("magnetic bending length: %.3g m, %.3g cells\n", length, length / cell);
-    if (length < CELLS_PER_LENGTH * cell)
-        printf("warning: fewer than %g cells over the magnetic bending length: the mesh is too coarse for "
-               "this field\n",
-               CELLS_PER_LENGTH);
-}
-
-/* Newton iterations of the whole job, as measured on the scenes; in time those that pay for a factor. */
-static double estimated_iterations(const Model *model, const Scene *scene)
-{
-    static const double each[] = {[JOB_EQUILIBRIUM] = 20,
-                                  [JOB_EVALUATE] = 1,
-                                  [JOB_DESIGN] = 6,
-                                  [JOB_SIMULATE] = 1.5,
-                                  [JOB_TRAJECTORY] = 6};
-    double solves = 0;
-    for (int k = 0; k < model->case_count; k++) solves += model->cases[k].stage_count;
-    if (scene->job == JOB_SIMULATE || scene->job == JOB_TRAJECTORY) solves *= scene->time.steps;
-    if (scene->design) solves *= scene->design->iterations + 1;
-    return solves * each[scene->job];
-}
-
-/* Factors and what CHOLMOD works in; of a trajectory the states of two motions and their factors, as far as
- * they are kept. */
-static double estimated_megabytes(const Model *model, const Scene *scene, SparseInfo info)
-{
-    double dofs = system_dof_count(model->cases[0].sys),
-           steps = scene->job == JOB_TRAJECTORY ? scene->time.steps : 0;
-    double kept =
-        fmin(2e-6 * steps * (double)info.factor_bytes, 1e-6 * (double)trajectory_default().factor_memory);
-    return model->case_count * 24e-6 * (double)info.factor_nonzeros + 2e-3 * dofs + 32e-6 * steps * dofs +
-           kept;
-}
-
-/* One assembly and one factorisation, as they will be. */
-static void measure(const Model *model, const Scene *scene)
-{
-    const ModelCase *c = &model->cases[0];
-    double *gradient = mem_alloc((size_t)system_dof_count(c->sys), sizeof *gradient);
-    Point at = state_point(&c->state, c->stages[0].p);
-    double start = clock_seconds();
-    system_hessian(c->sys, &at, gradient);
-    bool stable = system_factor(c->sys, 0) || system_factor(c->sys, 1e-6);
-    double seconds = clock_seconds() - start;
-    SparseInfo info = system_info(c->sys);
+    Prediction r = predict(model, scene);
     const char *note = kernels_note();
     printf("OpenBLAS's kernels: %s%s%s\n", kernels_name(), *note ? ", " : "", note);
-    printf("one Newton iteration: %.3g s, factor %.3g million numbers (%.3g MB)%s\n", seconds,
-           1e-6 * (double)info.factor_nonzeros, 8e-6 * (double)info.factor_nonzeros,
-           stable ? "" : ", not stable at the start");
-    printf("estimated: %.2g s, %.3g MB\n", estimated_iterations(model, scene) * seconds,
-           estimated_megabytes(model, scene, info));
-    mem_free(gradient);
+    printf("one Newton iteration: %.3g s, with %.3g s for each factorisation; %g of these are assumed, of "
+           "%s%.3g "
+           "million numbers (%.3g MB)\n",
+           r.iteration, r.factorization, r.factorizations, r.exact ? "" : "about ", 1e-6 * r.numbers,
+           1e-6 * r.factor_bytes);
+    printf(
+        "estimated: %.3g s in all (%.2g s to prepare, %g Newton iterations are assumed, %.2g s for stability "
+        "and result); %.3g MB at most\n",
+        predict_seconds(&r), r.start, r.iterations, r.end, 1e-6 * r.bytes);
 }
 
 /* An edge's or element's length, a radian, or of a rod's multipliers a force. */
 static double dof_size(const Model *model, int dof)
 {
-    if (model->shell) return dof < 3 * model->point_count ? mean_edge(model->shell->mesh) : 1;
+    if (model->shell) return dof < 3 * model->point_count ? advice_mean_edge(model->shell->mesh) : 1;
     const RodLayout *layout = &model->rod->layout;
     const Rod *rod = model->rod->rod;
     if (layout->position >= 0 && dof < layout->turn) return rod_element_length(rod);
@@ -206,24 +111,16 @@ static void report_shell(const Model *model, const Scene *scene)
            mesh->vertex_count, mesh->face_count, mesh->edge_count, mesh->component_count, model->case_count,
            system_free_count(model->cases[0].sys), held);
     if (system_base_shift(model->cases[0].sys) > 0) printf("the body has free rigid motions\n");
-    check_size(model);
-    check_bending_length(model, scene);
+    double length = advice_bending_length(model, scene);
+    if (isfinite(length))
+        printf("magnetic bending length: %.3g m, %.3g cells\n", length, length / advice_mean_edge(mesh));
 }
 
 static void report_rod(const Model *model)
 {
     const RodModel *rm = model->rod;
-    double longest = rm->rod ? rm->rod->length : 0;
-    for (int k = 0; k < rm->strand_count; k++) longest = fmax(longest, rm->curves[k].length);
     printf("%d rods of %d elements, up to %.4g m long\n", rm->strand_count > 1 ? rm->strand_count : 1,
-           model->point_count - 1, longest);
-    if (longest > LARGE_BODY)
-        printf(
-            "warning: a rod is %.3g m long; if its file is in millimetres, give the curve `scale: 1.0e-3`\n",
-            longest);
-    if (rm->section.reach > longest / 5 && longest > 0)
-        printf("warning: the section, %.3g m, is more than a fifth of the length: no thin rod\n",
-               rm->section.reach);
+           model->point_count - 1, rod_model_longest(rm));
     if (model->case_count)
         printf("%d load cases; %d unknowns of motion\n", model->case_count,
                system_free_count(model->cases[0].sys));
@@ -256,7 +153,7 @@ static bool report(const Model *model, const Scene *scene, bool derivatives)
     if (!model->case_count && derivatives)
         printf("derivatives: there is no load case whose terms could be checked\n");
     if (!model->case_count) return true;
-    measure(model, scene);
+    report_cost(model, scene);
     return !derivatives || check_derivatives(model, scene);
 }
 

@@ -109,7 +109,7 @@ int verb_picture(int argc, char **argv)
         def.seconds = seconds;
         if (!width) def.width = 800; /* pixels; a page of paper's worth is too much for a moving one */
     }
-    code = show_result(path, picture, &def, &err) ? RUN_DONE : verb_fail(RUN_CANNOT_WRITE, err.text);
+    status = show_result(path, picture, &def, &err);
     mem_free(picture);
-    return code;
+    return status == RUN_DONE ? RUN_DONE : verb_fail(status, err.text);
 }

@@ -155,13 +155,17 @@ int verb_info(int argc, char **argv)
 
 /* ---- export ---- */
 
-/* Integers as numbers, so that one writer serves both. */
-static bool write_csv(const Array *array, const char *path, Error *err)
+static bool are_numbers(const Array *array, Error *err)
 {
     if (array->type == ARRAY_TEXT)
         return error_set(err, "'%s' is a text, not numbers; slender info shows it", array->name);
+    return array_count(array) > 0 || error_set(err, "%s is empty: there are no numbers in it", array->name);
+}
+
+/* Integers as numbers, so that one writer serves both. */
+static bool write_csv(const Array *array, const char *path, Error *err)
+{
     size_t count = array_count(array);
-    if (count == 0) return error_set(err, "%s is empty: there are no numbers in it", array->name);
     int columns = array->rank > 1 ? array->dims[array->rank - 1] : 1;
     double *values = mem_alloc(count, sizeof *values);
     for (size_t i = 0; i < count; i++)
@@ -177,40 +181,45 @@ static bool write_csv(const Array *array, const char *path, Error *err)
     return ok;
 }
 
-static bool export_dataset(Result *result, const char *dataset, const char *path, Error *err)
+static RunStatus export_dataset(Result *result, const char *dataset, const char *path, Error *err)
 {
     Array array;
     char *full = result_has(result, dataset) ? mem_text(dataset) : mem_format("slender/%s", dataset);
     bool ok = result_read(result, full, &array, err);
     mem_free(full);
-    if (!ok) return false;
-    ok = write_csv(&array, path, err);
+    if (!ok) return RUN_REFUSED;
+    RunStatus status = !are_numbers(&array, err)       ? RUN_REFUSED
+                       : !write_csv(&array, path, err) ? RUN_CANNOT_WRITE
+                                                       : RUN_DONE;
     array_clear(&array);
-    return ok;
+    return status;
 }
 
-static bool export_frame(Result *result, int frame, const char *path, Error *err)
+static RunStatus export_frame(Result *result, int frame, const char *path, Error *err)
 {
     Array faces, points;
-    if (frame >= result_step_count(result))
-        return error_set(err, "the result has %d frames, from 0", result_step_count(result));
-    if (!result_read_as(result, "slender/faces", ARRAY_INT32, 2, 3, &faces, err)) return false;
+    if (frame >= result_step_count(result)) {
+        error_set(err, "there is no frame %d: the result has %d, from 0", frame, result_step_count(result));
+        return RUN_REFUSED;
+    }
+    if (!result_read_as(result, "slender/faces", ARRAY_INT32, 2, 3, &faces, err)) return RUN_REFUSED;
     bool ok = frame < 0 ? result_read_as(result, "slender/state/x", ARRAY_FLOAT64, 2, 3, &points, err)
                         : result_read_step(result, "Points", frame, &points, err);
+    RunStatus status = ok ? RUN_DONE : RUN_REFUSED;
     if (ok) {
         MeshFile file = {.vertex_count = points.dims[0],
                          .face_count = faces.dims[0],
                          .vertices = (double(*)[3])points.data,
                          .faces = (int(*)[3])faces.data};
-        ok = mesh_file_write_obj(path, &file, err);
+        if (!mesh_file_write_obj(path, &file, err)) status = RUN_CANNOT_WRITE;
         array_clear(&points);
     }
     array_clear(&faces);
-    return ok;
+    return status;
 }
 
 /* In that plotter's language, or as the name's ending says. */
-static bool export_drawing(Result *result, const char *language, const char *path, Error *err)
+static RunStatus export_drawing(Result *result, const char *language, const char *path, Error *err)
 {
     static const struct {
         const char *ending, *language;
@@ -220,12 +229,15 @@ static bool export_drawing(Result *result, const char *language, const char *pat
     const char *usual = NULL;
     for (size_t k = 0; k < sizeof endings / sizeof *endings; k++)
         if (has_ending(path, endings[k].ending)) usual = endings[k].language;
-    if (!usual)
-        return error_set(err, "%s: a drawing is exported as .svg, .gcode or .hpgl, or numbers with --dataset",
-                         path);
-    bool ok = drawn_read(result, &drawn, err) && drawn_write(&drawn, language ? language : usual, path, err);
+    if (!usual) {
+        error_set(err, "%s: a drawing is exported as .svg, .gcode or .hpgl, or numbers with --dataset", path);
+        return RUN_CANNOT_WRITE;
+    }
+    RunStatus status = !drawn_read(result, &drawn, err)                               ? RUN_REFUSED
+                       : !drawn_write(&drawn, language ? language : usual, path, err) ? RUN_CANNOT_WRITE
+                                                                                      : RUN_DONE;
     drawn_clear(&drawn);
-    return ok;
+    return status;
 }
 
 typedef struct Export {
@@ -251,24 +263,33 @@ static bool check_ending(const char *path, const char *what, const char *ending,
     return has_ending(path, ending) || error_set(err, "%s: %s exported as %s", path, what, ending);
 }
 
-static bool write_export(Result *result, const Export *what, Error *err)
+static RunStatus write_export(Result *result, const Export *what, Error *err)
 {
     const char *path = what->output;
     if (what->dataset)
-        return check_ending(path, "numbers are", ".csv", err) &&
-               export_dataset(result, what->dataset, path, err);
+        return check_ending(path, "numbers are", ".csv", err)
+                   ? export_dataset(result, what->dataset, path, err)
+                   : RUN_CANNOT_WRITE;
+    if (has_ending(path, ".csv")) {
+        error_set(err, "%s: which numbers? --dataset names them; slender info lists what there is", path);
+        return RUN_USAGE;
+    }
     if (drawn_has(result)) return export_drawing(result, what->language, path, err);
-    return check_ending(path, "a mesh is", ".obj", err) && export_frame(result, what->frame, path, err);
+    return check_ending(path, "a mesh is", ".obj", err) ? export_frame(result, what->frame, path, err)
+                                                        : RUN_CANNOT_WRITE;
 }
 
 static RunStatus export_result(const char *input, const Export *what, Error *err)
 {
     Result *result = result_open(input, err);
     if (!result) return RUN_REFUSED;
-    bool ok = check_source(result, input, what->output, err) && replace_check(what->output, err) &&
-              (write_export(result, what, err) || error_prefix(err, "%s", input));
+    RunStatus status = RUN_CANNOT_WRITE;
+    if (check_source(result, input, what->output, err) && replace_check(what->output, err)) {
+        status = write_export(result, what, err);
+        if (status != RUN_DONE) error_prefix(err, "%s", input);
+    }
     result_close(result);
-    return ok ? RUN_DONE : RUN_CANNOT_WRITE;
+    return status;
 }
 
 /* As the run itself would write it; false where that would be over a file that its scene is made of. */

@@ -227,7 +227,7 @@ static bool draw(Run *run, Error *err)
 {
     char *picture = outputs_picture(run->scene, run->result);
     ShowDef def = show_default();
-    bool ok = show_result(run->result, picture, &def, err);
+    bool ok = show_result(run->result, picture, &def, err) == RUN_DONE;
     if (ok) progress_say(run->progress, "picture: %s", picture);
     mem_free(picture);
     return ok || error_prefix(err, "no picture");

@@ -97,11 +97,10 @@ static bool open_to_read(Journal *journal, Error *err)
 {
     JournalAccess access = journal_files_access(journal->path);
     if (access == ACCESS_LOG) return open_log(journal, err);
-    if (access == ACCESS_SHARED)
-        return open_database(journal, journal->path, SQLITE_OPEN_READONLY, NULL, err);
-    char *uri = journal_files_still_uri(journal->path);
-    bool ok = open_database(journal, uri, SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, NULL, err);
-    mem_free(uri);
+    bool still = access != ACCESS_SHARED;
+    char *name = still ? journal_files_still_uri(journal->path) : mem_text(journal->path);
+    bool ok = open_database(journal, name, SQLITE_OPEN_READONLY | (still ? SQLITE_OPEN_URI : 0), NULL, err);
+    mem_free(name);
     return ok;
 }
 
@@ -111,11 +110,16 @@ static void close_database(Journal *journal)
     journal->db = NULL;
 }
 
-/* Is it ours, and of this version? */
+/* Is it ours, and of this version? One that nothing was ever committed to, on a full disk, is an empty database. */
 static bool check_identity(Journal *journal, Error *err)
 {
-    long id, version;
-    if (!query_number(journal, "PRAGMA application_id", NULL, 0, &id, err)) return false;
+    long id, version, objects;
+    if (!query_number(journal, "PRAGMA application_id", NULL, 0, &id, err) ||
+        !query_number(journal, "SELECT count(*) FROM sqlite_master", NULL, 0, &objects, err))
+        return false;
+    if (id == 0 && objects == 0)
+        return error_set(err, "%s is incomplete: its run ended before anything was saved; begin it anew",
+                         journal->path);
     if (id != APPLICATION_ID)
         return error_set(err, "%s is not a journal of slender; it has not been touched", journal->path);
     if (!query_number(journal, "PRAGMA user_version", NULL, 0, &version, err)) return false;
@@ -135,25 +139,22 @@ static bool read_finished(Journal *journal, Error *err)
 /* The tables, in one transaction: until its commit the file is empty. */
 static bool create_tables(Journal *journal, Error *err)
 {
+    const char *all =
+        "BEGIN; PRAGMA application_id=%d; PRAGMA user_version=%d; CREATE TABLE run(finished INTEGER "
+        "NOT NULL); INSERT INTO run VALUES(0); CREATE TABLE arrays(kind TEXT NOT NULL, idx INTEGER NOT NULL, "
+        "name TEXT NOT NULL, unit TEXT NOT NULL, type INTEGER NOT NULL, rank INTEGER NOT NULL, d0 INTEGER, "
+        "d1 INTEGER, d2 INTEGER, crc INTEGER NOT NULL, bytes BLOB NOT NULL, PRIMARY KEY(kind, idx, name)); "
+        "COMMIT;";
     char sql[1024];
-    sqlite3_snprintf(sizeof sql, sql,
-                     "BEGIN; PRAGMA application_id=%d; PRAGMA user_version=%d;"
-                     "CREATE TABLE run(finished INTEGER NOT NULL); INSERT INTO run VALUES(0);"
-                     "CREATE TABLE arrays(kind TEXT NOT NULL, idx INTEGER NOT NULL, name TEXT NOT NULL, unit "
-                     "TEXT NOT NULL,"
-                     " type INTEGER NOT NULL, rank INTEGER NOT NULL, d0 INTEGER, d1 INTEGER, d2 INTEGER, crc "
-                     "INTEGER NOT NULL,"
-                     " bytes BLOB NOT NULL, PRIMARY KEY(kind, idx, name)); COMMIT;",
-                     APPLICATION_ID, FORMAT_VERSION);
+    sqlite3_snprintf(sizeof sql, sql, all, APPLICATION_ID, FORMAT_VERSION);
     return execute(journal, sql, "written", err);
 }
 
 /* What is in the file may go: it is ours, and finished or empty or no longer wanted. */
 static bool may_discard(Journal *journal, JournalMode mode, Error *err)
 {
-    long arrays = 0;
+    long arrays = 0, objects = 0;
     bool ok = open_to_write(journal, 0, err);
-    long objects = 0;
     ok = ok && query_number(journal, "SELECT count(*) FROM sqlite_master", NULL, 0, &objects, err);
     if (ok && objects > 0) {
         ok = check_identity(journal, err) && read_finished(journal, err) &&
@@ -178,14 +179,13 @@ static bool open_new(Journal *journal, JournalMode mode, Error *err)
            create_tables(journal, err);
 }
 
-static bool open_old(Journal *journal, JournalMode mode, Error *err)
+static bool open_old(Journal *journal, Error *err)
 {
-    bool reader = mode == JOURNAL_READ;
     if (!journal_files_exist(journal->path)) return error_set(err, "%s: there is no such run", journal->path);
-    if (!(reader ? open_to_read(journal, err) : open_to_write(journal, 0, err)) ||
+    if (!(journal->reader ? open_to_read(journal, err) : open_to_write(journal, 0, err)) ||
         !check_identity(journal, err) || !read_finished(journal, err))
         return false;
-    if (reader) return true;
+    if (journal->reader) return true;
     return execute(journal, "PRAGMA journal_mode=WAL; PRAGMA synchronous=FULL;", "written", err) &&
            journal_check(journal, err);
 }
@@ -208,7 +208,7 @@ Journal *journal_open(const char *path, JournalMode mode, Error *err)
     journal->committed = clock_seconds();
     bool old = mode == JOURNAL_READ || mode == JOURNAL_RESUME;
     bool ok = (journal->reader || journal_files_lock(path, &journal->lock, err)) &&
-              (old ? open_old(journal, mode, err) : open_new(journal, mode, err));
+              (old ? open_old(journal, err) : open_new(journal, mode, err));
     if (ok) return journal;
     destroy(journal);
     return NULL;

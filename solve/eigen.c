@@ -19,9 +19,9 @@ typedef struct Lanczos {
     int n, positions; /* dofs; the first ones that M counts */
     int count, steps;
     double sigma;
-    double *basis;        /* [STEPS_MAX + 1][n] M-orthonormal     */
-    double *alpha, *beta; /* [STEPS_MAX + 1] the tridiagonal T    */
-    double *theta, *ritz; /* [steps] [steps*steps]                */
+    double *basis[STEPS_MAX + 1]; /* [steps + 1][n] M-orthonormal */
+    double *alpha, *beta;         /* [STEPS_MAX + 1] the tridiagonal T    */
+    double *theta, *ritz;         /* [steps] [steps*steps]                */
 } Lanczos;
 
 static double m_dot(const Lanczos *l, const double *a, const double *b)
@@ -43,7 +43,7 @@ static void orthogonalise(const Lanczos *l, int count, double *v)
 {
     for (int pass = 0; pass < 2; pass++)
         for (int k = 0; k < count; k++) {
-            const double *q = l->basis + (size_t)k * (size_t)l->n;
+            const double *q = l->basis[k];
             double c = m_dot(l, q, v);
             for (int i = 0; i < l->n; i++) v[i] -= c * q[i];
         }
@@ -60,7 +60,7 @@ static bool normalise(const Lanczos *l, double *v, double *length)
 static void start(Lanczos *l)
 {
     Random random = random_seed(7);
-    double *v = l->basis, length;
+    double *v = l->basis[0], length;
     for (int i = 0; i < l->n; i++)
         v[i] = i < l->positions && !system_is_fixed(l->sys, i) ? random_signed(&random) : 0;
     normalise(l, v, &length);
@@ -70,8 +70,8 @@ static void start(Lanczos *l)
 static bool extend(Lanczos *l)
 {
     int k = l->steps++;
-    const double *v = l->basis + (size_t)k * (size_t)l->n;
-    double *next = l->basis + (size_t)(k + 1) * (size_t)l->n;
+    const double *v = l->basis[k];
+    double *next = l->basis[k + 1] = mem_alloc((size_t)l->n, sizeof *next);
     apply(l, v, next);
     l->alpha[k] = m_dot(l, v, next);
     orthogonalise(l, k + 1, next);
@@ -109,15 +109,13 @@ static void report(const Lanczos *l, double *values, double *modes)
         memset(mode, 0, (size_t)l->n * sizeof *mode);
         for (int s = 0; j >= 0 && s < l->steps; s++)
             for (int i = 0; i < l->n; i++)
-                mode[i] += l->ritz[(size_t)j * (size_t)l->steps + (size_t)s] *
-                           l->basis[(size_t)s * (size_t)l->n + (size_t)i];
+                mode[i] += l->ritz[(size_t)j * (size_t)l->steps + (size_t)s] * l->basis[s][i];
     }
 }
 
 static void run(Lanczos *l, double *values, double *modes)
 {
-    size_t n = (size_t)l->n;
-    l->basis = mem_alloc((STEPS_MAX + 1) * n, sizeof(double));
+    l->basis[0] = mem_alloc((size_t)l->n, sizeof(double));
     l->alpha = mem_alloc(2 * (STEPS_MAX + 1), sizeof(double));
     l->beta = l->alpha + STEPS_MAX + 1;
     l->theta = mem_alloc(STEPS_MAX, sizeof(double));
@@ -129,7 +127,7 @@ static void run(Lanczos *l, double *values, double *modes)
         if (!more || l->steps % STEPS_FIRST == 0 || l->steps == STEPS_MAX) more = !converged(l) && more;
     }
     report(l, values, modes);
-    mem_free(l->basis);
+    for (int k = 0; k <= l->steps; k++) mem_free(l->basis[k]);
     mem_free(l->alpha);
     mem_free(l->theta);
     mem_free(l->ritz);

@@ -1,7 +1,10 @@
 #include "solve/kernels.h"
+#include "base/clock.h"
+#include "base/memory.h"
 #include <cblas.h>
 #include <dlfcn.h>
 #include <errno.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -116,6 +119,20 @@ int kernels_reserve(int threads)
     }
     for (int k = 0; k < count; k++) blas_memory_free(buffers[k]);
     return count;
+}
+
+double kernels_flops(void)
+{
+    enum { N = 384, REPEATS = 5 };
+    double *a = mem_alloc(3 * (size_t)N * N, sizeof *a), *b = a + N * N, *c = b + N * N, best = INFINITY;
+    for (int i = 0; i < 2 * N * N; i++) a[i] = 1e-3 * (i % 97);
+    for (int k = 0; k < REPEATS; k++) {
+        double start = clock_thread_seconds();
+        cblas_dgemm(CblasColMajor, CblasNoTrans, CblasTrans, N, N, N, 1, a, N, b, N, 0, c, N);
+        best = fmin(best, clock_thread_seconds() - start);
+    }
+    mem_free(a);
+    return 2.0 * N * N * N / best;
 }
 
 const char *kernels_name(void)

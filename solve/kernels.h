@@ -41,6 +41,9 @@ const char *kernels_name(void);
 /* Of kernels that use less than this processor has, what it could use and why it does not; else "". */
 const char *kernels_note(void);
 
+/* Flops per second of dgemm on this thread, now: takes some milliseconds. */
+double kernels_flops(void);
+
 /* What BLAS is loaded ("OpenBLAS 0.3.21 ..."), a static text; is it the one that is called? False when another BLAS
  * stands before it, the reference one being ten times slower. */
 const char *kernels_blas_version(void);

@@ -65,7 +65,7 @@ void system_list_elements(Entry *entry)
 
 void system_add(System *sys, Term term)
 {
-    assert(sys->term_count < SYSTEM_MAX_TERMS && !sys->matrix);
+    assert(sys->term_count < SYSTEM_MAX_TERMS && !sys->prepared);
     Entry *entry = &sys->entries[sys->term_count++];
     *entry = (Entry){.term = term, .changes = term.ops->update != NULL, .size = term.ops->size(term.self)};
     assert(entry->size <= TERM_MAX_DOF);
@@ -77,7 +77,7 @@ void system_add(System *sys, Term term)
 
 void system_add_bulk(System *sys, Bulk bulk)
 {
-    assert(sys->bulk_count < SYSTEM_MAX_BULKS && !sys->matrix);
+    assert(sys->bulk_count < SYSTEM_MAX_BULKS && !sys->prepared);
     sys->bulks[sys->bulk_count++] = bulk;
     if (!sys->bulk_gradient) sys->bulk_gradient = mem_alloc((size_t)sys->dof_count, sizeof(double));
 }
@@ -106,13 +106,12 @@ void system_set_order(System *sys, const int *order)
 
 void system_prepare(System *sys)
 {
-    assert(!sys->matrix);
+    assert(!sys->prepared);
     for (int i = 0; i < sys->dof_count; i++) sys->unknown[i] = sys->fixed[i] ? -1 : sys->free_count++;
     for (int c = 0; c < sys->class_count; c++)
         for (int i = 0; sys->classes[c].multipliers && i < sys->classes[c].count; i++)
             sys->multiplier_count += !sys->fixed[sys->classes[c].first + i];
-    system_make_matrix(sys);
-    patches_create(&sys->patches, sys->entries, sys->term_count, sys->matrix, sys->dof_count, sys->unknown);
+    sys->prepared = true;
     sys->work = mem_alloc((size_t)sys->free_count, sizeof(double));
     sys->diag = mem_alloc((size_t)sys->free_count, sizeof(double));
     sys->linearised = mem_alloc((size_t)system_anchor_count(sys), sizeof(double));
@@ -195,7 +194,7 @@ int system_position_count(const System *sys)
 }
 SparseInfo system_info(const System *sys)
 {
-    return sparse_info(sys->matrix);
+    return sys->matrix ? sparse_info(sys->matrix) : (SparseInfo){0};
 }
 
 double system_step_size(const System *sys, const double *d)
@@ -257,6 +256,7 @@ static Evaluation evaluate(System *sys, const Point *at, double *gradient, bool 
 {
     Evaluation result = {0};
     Point points[SYSTEM_MAX_TERMS];
+    system_build(sys);
     system_update(sys, at);
     if (hessian) system_couple(sys, at->x);
     double *values = hessian ? sparse_values(sys->matrix) : NULL;

@@ -44,8 +44,11 @@ void system_set_base_shift(System *sys, double base);
 /* Elements are evaluated by these threads, from now on (borrowed; NULL: by the calling one). No bit depends on them. */
 void system_set_workers(System *sys, Workers *workers);
 
-/* After the last add and fix, once. */
+/* After the last add and fix: numbers the unknowns. Matrix and patches are built when they are needed. */
 void system_prepare(System *sys);
+
+/* Builds them now; once. */
+void system_build(System *sys);
 
 int system_dof_count(const System *sys);
 int system_free_count(const System *sys);
@@ -165,4 +168,8 @@ void system_accept(const System *sys, double *x, double *memory);
 State system_state(const System *sys);
 int system_memory_count(const System *sys);
 
+/* Of the matrix at hand: all 0 before it is built. */
 SparseInfo system_info(const System *sys);
+
+/* What a factor will cost, from the pattern alone, which is ordered, analysed and let go. */
+SparseInfo system_cost(const System *sys);

@@ -112,12 +112,14 @@ int system_solve_cg(System *sys, const double *b, double tolerance, int max_iter
 
 Factor *system_share_factor(System *sys)
 {
+    system_build(sys);
     return sparse_share_factor(sys->matrix);
 }
 
 /* It may serve solves, but where it stands is not known here any more. */
 void system_use_factor(System *sys, Factor *factor)
 {
+    system_build(sys);
     sys->anchor[ANCHOR_USABLE] = 0;
     sys->factored = factor && sparse_use_factor(sys->matrix, factor);
 }

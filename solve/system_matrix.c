@@ -81,14 +81,23 @@ static void group_list_clear(GroupList *list)
     mem_free(list->unknowns);
 }
 
-void system_make_matrix(System *sys)
+static Sparse *create_matrix(const System *sys)
 {
     GroupList list = list_groups(sys, false);
     int *order = unknown_order(sys);
-    sys->matrix = sparse_create(sys->free_count, groups_of(&list), (SparseDef){order, sys->multiplier_count});
-    sparse_set_workers(sys->matrix, sys->workers);
+    Sparse *matrix =
+        sparse_create(sys->free_count, groups_of(&list), (SparseDef){order, sys->multiplier_count});
+    sparse_set_workers(matrix, sys->workers);
     mem_free(order);
     group_list_clear(&list);
+    return matrix;
+}
+
+void system_build(System *sys)
+{
+    if (sys->matrix) return;
+    sys->matrix = create_matrix(sys);
+    patches_create(&sys->patches, sys->entries, sys->term_count, sys->matrix, sys->dof_count, sys->unknown);
 }
 
 void system_update(System *sys, const Point *at)
@@ -101,8 +110,17 @@ void system_update(System *sys, const Point *at)
         changed = true;
     }
     if (!changed) return;
+    system_build(sys);
     patches_change(&sys->patches, sys->entries, sys->term_count, sys->dof_count);
     sys->uncoupled = true;
+}
+
+SparseInfo system_cost(const System *sys)
+{
+    Sparse *matrix = create_matrix(sys);
+    SparseInfo info = sparse_info(matrix);
+    sparse_destroy(matrix);
+    return info;
 }
 
 void system_couple(System *sys, const double *x)

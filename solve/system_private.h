@@ -15,9 +15,10 @@ struct System {
     Workers *workers;                                     /* borrowed                   */
     DofClass classes[SYSTEM_MAX_CLASSES];
     bool *fixed, factored; /* factored: the last factor may be used */
-    bool uncoupled;        /* elements have changed since the matrix was coupled */
-    int *unknown;          /* [dof] number among the free ones, -1 if fixed */
-    Sparse *matrix;
+    bool prepared;
+    bool uncoupled; /* elements have changed since the matrix was coupled */
+    int *unknown;   /* [dof] number among the free ones, -1 if fixed      */
+    Sparse *matrix; /* NULL until it is built, with the patches           */
     double base, stiffness_max;
     double *scale;       /* [dof] D                                     */
     double *compliance;  /* [dof] of multipliers, m/N; 0 elsewhere: see system_gap */
@@ -38,9 +39,6 @@ int system_lanes(const Entry *entry, int pack);
 
 /* Asks a term for its elements. */
 void system_list_elements(Entry *entry);
-
-/* The matrix of the terms whose elements last. */
-void system_make_matrix(System *sys);
 
 /* Has the terms' elements follow the point (TermOps.update). */
 void system_update(System *sys, const Point *at);

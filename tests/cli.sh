@@ -28,6 +28,16 @@ refuses "-o FILE must be given" export x.vtkhdf
 expect 3 "$program" run missing.yaml;           says "missing.yaml: cannot be read"
 expect 3 "$program" run "$here/broken/wrong_unit.yaml"; says "must be a number in Pa"
 
+# A million triangles: read, and what they cost foretold, in seconds; a warning of check is one of run, too.
+sed 's/mesh: .*/mesh: {shape: sheet, size: [0.2, 0.1], cells: [1024, 512]}/; s/n: 32//' "$here/../scenes/cantilever.yaml" > million.yaml
+expect 0 sh -c 'ulimit -t 20; exec "$0" check million.yaml --set shell.bending=hinge --set loads=[]' "$program"
+says "1048576 faces"; says "factor.* about [0-9]* million numbers"; says "estimated: .* Newton iterations are assumed"; says "MB at most"
+for verb in check "run --no-picture -o coarse"; do
+    # shellcheck disable=SC2086
+    expect 0 "$program" $verb "$here/scene_small.yaml" --set shell.thickness=0.2mm --set shell.mesh.n=2 --set design.iterations=0
+    says "warning: fewer than 3 cells over the magnetic bending length"
+done
+
 # An equilibrium and everything that can be made of it.
 scene=$here/../scenes/cantilever.yaml
 expect 0 "$program" check "$scene" --derivatives; says "derivatives of bending"
@@ -43,11 +53,15 @@ expect 0 "$program" info beam.vtkhdf;           says "slender/final/lowest_eigen
 expect 0 "$program" info beam.run;              says "finished"
 expect 0 "$program" export beam.vtkhdf -o beam.obj; exists beam.obj
 expect 0 "$program" export beam.vtkhdf -o x.csv --dataset state/x; exists x.csv
-expect 4 "$program" export beam.vtkhdf -o x.csv --dataset state/y; says "no dataset"
+expect 3 "$program" export beam.vtkhdf -o x.csv --dataset state/y; says "no dataset"
+expect 3 "$program" export beam.vtkhdf -o x.csv --dataset scene; says "a text, not numbers"
+expect 3 "$program" export beam.vtkhdf -o x.obj --frame 7; says "there is no frame 7"
+expect 3 "$program" picture beam.vtkhdf -o x.png --frame 7; says "frames, from 0"
+expect 2 "$program" export beam.vtkhdf -o x.csv; says "which numbers? --dataset names them"
 expect 0 "$program" export beam.run -o again.vtkhdf
 cmp -s beam.vtkhdf again.vtkhdf || { echo "the journal gives another result"; bad=1; }
 for ending in svg pdf png; do expect 0 "$program" picture beam.vtkhdf -o p.$ending --field energy_bending --view 0,-1,0.3; exists p.$ending; done
-expect 4 "$program" picture beam.vtkhdf -o p.png --field nothing
+expect 3 "$program" picture beam.vtkhdf -o p.png --field nothing
 for view in 0,0,0 nan,0,1 0,-inf,1 1e300,0,0 0,1e-300,0; do expect 2 "$program" picture beam.vtkhdf -o view.png --view=$view; says "not all 0"; done
 [ ! -e view.png ] || { echo "a picture from nowhere"; bad=1; }
 expect 4 "$program" run "$scene" -o no/such/folder; says "cannot be"
@@ -122,6 +136,8 @@ for blocks in 16 60 300; do
     "$program" run "$scene" --quiet --no-picture -o large --resume 2> err.txt || expect 0 "$program" run "$scene" --quiet --no-picture -o large
     same large.vtkhdf beam.vtkhdf; rm large.*
 done
+expect 4 within 16 "$program" run "$scene" --quiet -o stump; expect 3 "$program" info stump.run; says "stump.run is incomplete"
+expect 4 "$program" run "$scene" --quiet -o stump --resume; says "ended before anything was saved"
 expect 4 within 16 "$program" export beam.vtkhdf -o large.csv --dataset VTKHDF/Points; says "large.csv: cannot be written: File too large"
 expect 4 within 16 "$program" export beam.vtkhdf -o large.obj; says "large.obj: cannot be written: File too large"
 within 16 "$program" schema > large.json 2> err.txt; code=$?

@@ -33,7 +33,7 @@ expect 0 "$program" export lift9.vtkhdf -o c.gcode --plotter gcode_servo; same s
 expect 4 "$program" export out/a.vtkhdf -o c.dwg; says "exported as .svg"
 expect 4 "$program" export out/a.vtkhdf -o c.yaml --plotter gcode; says "exported as .svg"
 expect 0 "$program" picture out/a.vtkhdf -o c.pdf --width 800; exists c.pdf
-expect 4 "$program" picture out/a.vtkhdf -o c.png --frame 0; says "no frames"
+expect 3 "$program" picture out/a.vtkhdf -o c.png --frame 0; says "no frames"
 expect 0 "$program" run "$scene" --quiet --no-picture -o d --set spline.rounds=0
 expect 0 "$program" run "$scene" --quiet --no-picture -o d --resume; same out/a.svg d.svg
 expect 3 "$program" run "$scene" --quiet -o d --resume --set spline.pen=1mm; says "spline.pen is not the same"; says "spline.rounds"

@@ -134,7 +134,7 @@ static Page draw(const ShowDef *def)
 {
     Page page = {0};
     Error err = {""};
-    if (!show_result(RESULT, "test_show_rod.png", def, &err) ||
+    if (show_result(RESULT, "test_show_rod.png", def, &err) != RUN_DONE ||
         !png_read("test_show_rod.png", &page.rgb, &page.width, &page.height, &err))
         fail_msg("%s", err.text);
     return page;
@@ -214,11 +214,11 @@ static void motion(void **state)
     assert_true(count_pixels(&page, colormap_series(1)) > 1000);
     mem_free(page.rgb);
     def.frame = FRAMES;
-    assert_false(show_result(RESULT, "test_show_rod.png", &def, &err));
+    assert_int_equal(show_result(RESULT, "test_show_rod.png", &def, &err), RUN_REFUSED);
     assert_string_equal(err.text, "the result has 5 frames, from 0");
     def = show_default();
     def.seconds = 0.12, def.width = 400;
-    assert_true(show_result(RESULT, "test_show_rod.webp", &def, &err));
+    assert_int_equal(show_result(RESULT, "test_show_rod.webp", &def, &err), RUN_DONE);
     assert_int_equal(access("test_show_rod.webp", R_OK), 0);
 }
 
@@ -245,7 +245,7 @@ static void bundles(void **state)
 static void expect_refusal(ShowDef def, const char *sentence)
 {
     Error err = {""};
-    assert_false(show_result(RESULT, "test_show_rod.png", &def, &err));
+    assert_int_equal(show_result(RESULT, "test_show_rod.png", &def, &err), RUN_REFUSED);
     assert_string_equal(err.text, sentence);
 }
 
