@@ -12,14 +12,15 @@
  * times longer than AMD's, once. */
 enum { METIS_FROM = 5000 };
 
-/* Positive definite matrices are factored by supernodal.h in a structure of CHOLMOD's, quasi-definite ones, of rods, by its
- * simplicial LDL^T. */
+/* Where columns of L are alike over many rows (CHOLMOD's rule: 40 operations for each of its numbers), supernodal.h factors
+ * in a structure of CHOLMOD's; chains, and with them all that has multipliers, are factored by its simplicial LL^T or
+ * LDL^T, whose solves take half the time there. */
 struct Direct {
     int shares, n, negative;
     int *rank;
     DirectCost cost;
-    Supernodal *plan; /* NULL: LDL^T, with what follows it here */
-    double *solution; /* [n] of a plan's solves                 */
+    Supernodal *plan; /* NULL: simplicial, with what follows the solution here */
+    double *solution; /* [n] of a plan's solves                                */
     cholmod_common common;
     cholmod_factor *symbolic;
     cholmod_dense *b, *x, *work_y, *work_e;
@@ -28,8 +29,8 @@ struct Direct {
 struct Factor {
     int shares;
     Direct *direct;
-    double *numbers;         /* of a plan            */
-    cholmod_factor *columns; /* of LDL^T, else NULL */
+    double *numbers;         /* of a plan                */
+    cholmod_factor *columns; /* if simplicial, else NULL */
 };
 
 /* A CHOLMOD view of a pattern; values may be NULL. */
@@ -72,15 +73,14 @@ static void set_options(cholmod_common *common, int ordering)
     common->postorder = ordering != CHOLMOD_NATURAL; /* one that is given has been postordered */
 }
 
-/* The supernodes of L, with indices of 64 bits: a factor may have more numbers than an int can count, though the matrix has
- * not. The caller frees it. */
-static cholmod_factor *find_supernodes(const Pattern *pattern, cholmod_common *common)
+/* What L will be, its supernodes if it is to have any; with indices of 64 bits: it may have more numbers than an int can
+ * count, though the matrix has not. The caller frees it. */
+static cholmod_factor *analyse_pattern(const Pattern *pattern, cholmod_common *common)
 {
     cholmod_sparse a = view(pattern, NULL);
     a.p = widen(pattern->start, (size_t)pattern->n + 1);
     a.i = widen(pattern->rows, a.nzmax);
     a.itype = CHOLMOD_LONG;
-    common->supernodal = CHOLMOD_SUPERNODAL;
     cholmod_factor *factor = cholmod_l_analyze(&a, common);
     check_memory(common);
     mem_free(a.p);
@@ -97,7 +97,7 @@ int *direct_order(const Pattern *pattern)
     cholmod_l_start(&common);
     set_options(&common, pattern->n >= METIS_FROM ? CHOLMOD_METIS : CHOLMOD_AMD);
     pthread_mutex_lock(&one_dissection);
-    cholmod_factor *factor = find_supernodes(pattern, &common);
+    cholmod_factor *factor = analyse_pattern(pattern, &common);
     pthread_mutex_unlock(&one_dissection);
     const long *order = factor->Perm;
     int *rank = mem_alloc((size_t)pattern->n, sizeof *rank);
@@ -107,29 +107,34 @@ int *direct_order(const Pattern *pattern)
     return rank;
 }
 
-static void analyse_definite(Direct *direct, const Pattern *pattern)
+/* False where supernodes do not pay. */
+static bool analyse_supernodal(Direct *direct, const Pattern *pattern)
 {
     cholmod_common common;
-    kernels_one_thread();
     cholmod_l_start(&common);
     set_options(&common, CHOLMOD_NATURAL);
-    cholmod_factor *factor = find_supernodes(pattern, &common);
-    direct->plan = supernodal_create(
-        pattern, &(SupernodalDef){(int)factor->nsuper, factor->super, factor->pi, factor->s});
-    direct->solution = mem_alloc((size_t)direct->n, sizeof *direct->solution);
-    long bytes = supernodal_size(direct->plan) * (long)sizeof(double);
-    direct->cost = (DirectCost){(long)common.lnz, bytes, common.fl};
+    cholmod_factor *factor = analyse_pattern(pattern, &common);
+    if (factor->is_super) {
+        SupernodalDef def = {(int)factor->nsuper, factor->super, factor->pi, factor->s};
+        kernels_one_thread();
+        direct->plan = supernodal_create(pattern, &def);
+        direct->solution = mem_alloc((size_t)direct->n, sizeof *direct->solution);
+        long bytes = supernodal_size(direct->plan) * (long)sizeof(double);
+        direct->cost = (DirectCost){(long)common.lnz, bytes, common.fl};
+    }
     cholmod_l_free_factor(&factor, &common);
     cholmod_l_finish(&common);
+    return direct->plan != NULL;
 }
 
-static void analyse_quasi_definite(Direct *direct, const Pattern *pattern)
+static void analyse_simplicial(Direct *direct, const Pattern *pattern)
 {
     cholmod_common *common = &direct->common;
     cholmod_sparse a = view(pattern, NULL);
     cholmod_start(common);
     set_options(common, CHOLMOD_NATURAL);
     common->supernodal = CHOLMOD_SIMPLICIAL;
+    common->final_ll = direct->negative == 0; /* LDL' would accept an indefinite matrix */
     common->quick_return_if_not_posdef = 1;
     direct->symbolic = cholmod_analyze(&a, common);
     check_memory(common);
@@ -147,10 +152,7 @@ Direct *direct_analyse(const Pattern *pattern, const int *rank, int negative)
     direct->n = pattern->n;
     direct->negative = negative;
     direct->rank = mem_copy(rank, (size_t)pattern->n, sizeof *rank);
-    if (negative == 0)
-        analyse_definite(direct, pattern);
-    else
-        analyse_quasi_definite(direct, pattern);
+    if (negative > 0 || !analyse_supernodal(direct, pattern)) analyse_simplicial(direct, pattern);
     return direct;
 }
 
@@ -160,7 +162,7 @@ Direct *direct_share(Direct *direct)
     return direct;
 }
 
-static void clear_quasi_definite(Direct *direct)
+static void clear_simplicial(Direct *direct)
 {
     cholmod_common *common = &direct->common;
     cholmod_free_factor(&direct->symbolic, common);
@@ -174,7 +176,7 @@ static void clear_quasi_definite(Direct *direct)
 void direct_release(Direct *direct)
 {
     if (!direct || --direct->shares > 0) return;
-    if (!direct->plan) clear_quasi_definite(direct);
+    if (!direct->plan) clear_simplicial(direct);
     supernodal_destroy(direct->plan);
     mem_free(direct->solution);
     mem_free(direct->rank);
@@ -217,15 +219,14 @@ static int count_negative(const cholmod_factor *factor)
 }
 
 /* cholmod_factorize returns true for an indefinite matrix, too. */
-static bool factor_quasi_definite(Direct *direct, const Pattern *pattern, double *values,
-                                  cholmod_factor *columns)
+static bool factor_simplicial(Direct *direct, const Pattern *pattern, double *values, cholmod_factor *columns)
 {
     cholmod_common *common = &direct->common;
     cholmod_sparse a = view(pattern, values);
     cholmod_factorize(&a, columns, common);
     check_memory(common);
     bool complete = common->status == CHOLMOD_OK && columns->minor == (size_t)direct->n;
-    return complete && count_negative(columns) == direct->negative;
+    return complete && (direct->negative == 0 || count_negative(columns) == direct->negative);
 }
 
 bool direct_factor(Direct *direct, const Pattern *pattern, double *values, Factor **factor, Workers *workers)
@@ -236,7 +237,7 @@ bool direct_factor(Direct *direct, const Pattern *pattern, double *values, Facto
     }
     if (!dense_is_finite(pattern->start[pattern->n], values)) return false;
     if (direct->plan) return supernodal_factor(direct->plan, pattern, values, (*factor)->numbers, workers);
-    return factor_quasi_definite(direct, pattern, values, (*factor)->columns);
+    return factor_simplicial(direct, pattern, values, (*factor)->columns);
 }
 
 Factor *factor_share(Factor *factor)

@@ -230,18 +230,24 @@ static void set_targets(Supernodal *plan)
     }
 }
 
+/* Rows of the highest of the supernodes first .. last. */
+static int highest(const Supernodal *plan, int first, int last)
+{
+    int most = 0;
+    for (int s = first; s <= last; s++)
+        if (plan->nodes[s].height > most) most = plan->nodes[s].height;
+    return most;
+}
+
 static void set_vectors(Supernodal *plan)
 {
-    long most = 0;
-    for (int s = 0; s < plan->count; s++)
-        if (plan->nodes[s].height > most) most = plan->nodes[s].height;
     for (int b = 0; b < plan->branch_count; b++) {
         Branch *branch = &plan->branches[b];
         branch->vector_at = plan->vector_size;
-        plan->vector_size += branch->columns + branch->border + most;
+        plan->vector_size += branch->columns + branch->border + highest(plan, branch->first, branch->last);
     }
     plan->crown_at = plan->vector_size;
-    plan->vector_size += most;
+    plan->vector_size += highest(plan, 0, plan->count - 1);
 }
 
 Supernodal *supernodal_create(const Pattern *pattern, const SupernodalDef *def)

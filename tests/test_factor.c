@@ -3,6 +3,7 @@
 #include "base/random.h"
 #include "shell_fixture.h"
 #include "solve/sparse.h"
+#include "solve/supernodal.h"
 #include "solve/system.h"
 #include <math.h>
 #include <string.h>
@@ -179,6 +180,70 @@ static void test_indefinite(void **state)
     mem_free(shift);
 }
 
+/* The lower triangle of L in a dense square: A's and what elimination fills in. */
+static void fill_in(int n, char *lower)
+{
+    for (int c = 0; c < n; c++) {
+        int parent = c + 1;
+        while (parent < n && !lower[c * n + parent]) parent++;
+        for (int i = parent; i < n && parent < n; i++) lower[parent * n + i] |= lower[c * n + i];
+    }
+}
+
+/* Every column a supernode: of A = 3 on the diagonal, -1/4 where lower[column][row] is set. */
+static void check_columns(int n, char *lower)
+{
+    long *first = mem_alloc(2 * (size_t)n + 2, sizeof *first), *start = first + n + 1,
+         *rows = mem_alloc((size_t)n * (size_t)n, sizeof *rows);
+    Pattern a = {n, mem_alloc((size_t)n + 1, sizeof(int)), mem_alloc((size_t)n * (size_t)n, sizeof(int))};
+    double values[400], b[20] = {0}, x[20];
+    int count = 0;
+    for (int c = 0; c < n; c++) {
+        for (int i = c; i < n; i++)
+            if (i == c || lower[c * n + i]) a.rows[count] = i, values[count++] = i == c ? 3 : -0.25;
+        a.start[c + 1] = count, x[c] = 1 + c;
+    }
+    for (int c = 0; c < n; c++)
+        for (int k = a.start[c]; k < a.start[c + 1]; k++) {
+            b[a.rows[k]] += values[k] * x[c];
+            if (a.rows[k] != c) b[c] += values[k] * x[a.rows[k]];
+        }
+    for (int c = 0; c < n; c++) lower[c * n + c] = 1;
+    fill_in(n, lower);
+    for (int c = 0; c < n; c++) {
+        first[c + 1] = c + 1, start[c + 1] = start[c];
+        for (int i = c; i < n; i++)
+            if (lower[c * n + i]) rows[start[c + 1]++] = i;
+    }
+    Supernodal *plan = supernodal_create(&a, &(SupernodalDef){n, first, start, rows});
+    double *numbers = mem_alloc((size_t)supernodal_size(plan), sizeof *numbers);
+    assert_true(supernodal_factor(plan, &a, values, numbers, NULL));
+    supernodal_solve(plan, numbers, b, NULL);
+    for (int c = 0; c < n; c++) assert_true(fabs(b[c] - x[c]) < 1e-13 * n);
+    values[a.start[n - 1]] = -1;
+    assert_false(supernodal_factor(plan, &a, values, numbers, NULL));
+    supernodal_destroy(plan);
+    mem_free(numbers);
+    mem_free(first);
+    mem_free(rows);
+    mem_free(a.start);
+    mem_free(a.rows);
+}
+
+/* Small ones, which CHOLMOD would not call supernodal, at random: trees of all kinds, most of them in no postorder. */
+static void test_columns(void **state)
+{
+    (void)state;
+    Random random = random_seed(7);
+    for (int k = 0; k < 300; k++) {
+        char lower[400] = {0};
+        int n = 1 + k % 20;
+        for (int c = 0; c < n; c++)
+            for (int i = c + 1; i < n; i++) lower[c * n + i] = random_signed(&random) > 0.4 + 0.5 * (k % 3);
+        check_columns(n, lower);
+    }
+}
+
 /* A sheet's Hessian with an angle per edge, through its System. */
 static void test_sheet(void **state)
 {
@@ -212,6 +277,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_random),      cmocka_unit_test(test_grid),
                                        cmocka_unit_test(test_given_order), cmocka_unit_test(test_shapes),
-                                       cmocka_unit_test(test_indefinite),  cmocka_unit_test(test_sheet)};
+                                       cmocka_unit_test(test_indefinite),  cmocka_unit_test(test_columns),
+                                       cmocka_unit_test(test_sheet)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
