@@ -9,7 +9,7 @@
 #include <math.h>
 #include <stdio.h>
 
-enum { CELLS = 64, MOST_ROWS = 8, REPEATS = 20 };
+enum { CELLS = 64, MOST_ROWS = 24, REPEATS = 20 };
 
 /* Linear springs of vertices; which depends on the time alone. */
 typedef struct Fold {
@@ -84,6 +84,7 @@ static System *folded_system(const Shell *shell, int rows)
     for (int i = 0; i < positions; i++)
         if (shell->fixed[i]) system_fix(sys, i);
     system_prepare(sys);
+    system_build(sys);
     return sys;
 }
 

@@ -21,6 +21,7 @@ Sheet sheet_create_fine(int cells, BendingModel bending, bool dynamic)
         if (mesh->rest[mesh->edges[e][0]][0] < 1e-9 && mesh->rest[mesh->edges[e][1]][0] < 1e-9)
             shell_clamp(s.shell, e);
     s.sys = dynamic ? shell_dynamic_system(s.shell) : shell_system(s.shell);
+    system_build(s.sys);
     s.p = mem_alloc((size_t)s.shell->params.size, sizeof(double));
     s.state = system_state(s.sys);
     s.gradient = mem_alloc((size_t)shell_dof_count(s.shell), sizeof(double));

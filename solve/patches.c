@@ -1,5 +1,6 @@
 #include "solve/patches.h"
 #include "base/memory.h"
+#include <stdlib.h>
 #include <string.h>
 
 /* A patch is full with so many different entries: they take 200 kB, and one more slice of all terms has numbers left. */
@@ -43,13 +44,21 @@ static Number number_of(Register *r, int target)
     return (Number)(r->last[target] - r->begin);
 }
 
-/* The places can be summed from now on; target[count]: whose each is now. */
-static void set_pull(Places *places, int targets, const int *target)
+/* Has room for the values of all places, which mean nothing between evaluations; true where it is new. */
+static bool make_room_for_values(Places *places)
 {
-    pull_destroy(&places->pull);
-    places->pull = pull_create(targets, places->count, target);
+    if (places->value_room >= places->count) return false;
     mem_free(places->values);
-    places->values = mem_alloc((size_t)places->count, sizeof(double));
+    places->value_room = places->room;
+    places->values = mem_alloc((size_t)places->value_room, sizeof(double));
+    return true;
+}
+
+/* All places so far last. */
+static void set_lasting(Places *places, int targets)
+{
+    places->lasting = places->count;
+    places->pull = pull_create(targets, places->count, places->target);
 }
 
 static void places_destroy(Places *places)
@@ -204,17 +213,42 @@ static bool is_full(const Maker *m, const Patch *patch, int slices)
     return m->matrix ? patch->entry_count > PATCH_ENTRIES : (slices + 1) * m->slice_numbers > UINT16_MAX;
 }
 
+static int compare_targets(const void *a, const void *b)
+{
+    const int *i = a, *j = b;
+    return (i[0] > j[0]) - (i[0] < j[0]);
+}
+
+/* Numbers a patch's entries anew as they are stored in the matrix, so that what pulls them reads them in a row. */
+static void sort_entries(Maker *m, const Patch *patch)
+{
+    int count = patch->entry_count, *target = m->slots.places->target + patch->entries;
+    int(*pairs)[2] = mem_alloc((size_t)count, sizeof *pairs);
+    Number *number = mem_alloc((size_t)count, sizeof *number);
+    for (int k = 0; k < count; k++) pairs[k][0] = target[k], pairs[k][1] = k;
+    qsort(pairs, (size_t)count, sizeof *pairs, compare_targets); /* the bin has -1 and stays the first */
+    for (int k = 0; k < count; k++) target[k] = pairs[k][0], number[pairs[k][1]] = (Number)k;
+    for (int t = 0; t < m->term_count; t++)
+        for (int k = patch->first[t] * m->entries[t].lower; k < patch->end[t] * m->entries[t].lower; k++)
+            for (int l = 0; l < PACK_LANES; l++)
+                m->entries[t].entry_numbers[k][l] = number[m->entries[t].entry_numbers[k][l]];
+    mem_free(pairs);
+    mem_free(number);
+}
+
 static void divide(Maker *m)
 {
     Patch *patch = NULL;
     measure_slices(m);
     for (int slice = 0, own = 0; slice < m->slices; slice++, own++) {
         if (!patch || is_full(m, patch, own)) {
+            if (patch && m->matrix) sort_entries(m, patch);
             patch = add_patch(m, slice);
             own = 0;
         }
         extend(m, patch, slice);
     }
+    if (patch && m->matrix) sort_entries(m, patch);
 }
 
 static void clear_entry_numbers(Entry *entry)
@@ -256,12 +290,13 @@ static void make_room_for_entries(Maker *m)
 }
 
 /* All patches are there. */
-static void finish_patches(Patches *patches, int dof_count)
+static void finish_patches(Patches *patches)
 {
-    set_pull(&patches->dofs, dof_count, patches->dofs.target);
-    mem_free(patches->forces);
+    if (make_room_for_values(&patches->dofs)) {
+        mem_free(patches->forces);
+        patches->forces = mem_alloc((size_t)patches->dofs.value_room, sizeof(double));
+    }
     mem_free(patches->energies);
-    patches->forces = mem_alloc((size_t)patches->dofs.count, sizeof(double));
     patches->energies = mem_alloc((size_t)patches->count * SYSTEM_MAX_TERMS, sizeof(double));
 }
 
@@ -283,10 +318,10 @@ void patches_create(Patches *patches, Entry *entries, int term_count, const Spar
     mem_free(m.dofs.last);
     mem_free(m.slots.last);
     patches->lasting = patches->count;
-    patches->dofs.lasting = patches->dofs.count;
-    patches->entries.lasting = patches->entries.count;
-    finish_patches(patches, dof_count);
-    patches_place(patches, entries, term_count, matrix, unknown);
+    set_lasting(&patches->dofs, dof_count);
+    set_lasting(&patches->entries, sparse_made_nonzeros(matrix));
+    make_room_for_values(&patches->entries);
+    finish_patches(patches);
 }
 
 void patches_change(Patches *patches, Entry *entries, int term_count, int dof_count)
@@ -298,17 +333,7 @@ void patches_change(Patches *patches, Entry *entries, int term_count, int dof_co
     make_room_for_dofs(&m);
     divide(&m);
     mem_free(m.dofs.last);
-    finish_patches(patches, dof_count);
-}
-
-/* Entries of the matrix as it is: those of lasting patches from where they were made. */
-static void pull_entries(Places *entries, const Sparse *matrix)
-{
-    int *target = mem_copy(entries->target, (size_t)entries->count, sizeof *target);
-    for (int k = 0; k < entries->lasting; k++)
-        if (target[k] >= 0) target[k] = sparse_where(matrix, target[k]);
-    set_pull(entries, sparse_nonzeros(matrix), target);
-    mem_free(target);
+    finish_patches(patches);
 }
 
 void patches_place(Patches *patches, Entry *entries, int term_count, const Sparse *matrix, const int *unknown)
@@ -324,5 +349,5 @@ void patches_place(Patches *patches, Entry *entries, int term_count, const Spars
     make_room_for_entries(&m);
     for (int p = patches->lasting; p < patches->count; p++) number_patch(&m, &patches->list[p]);
     mem_free(m.slots.last);
-    pull_entries(&patches->entries, matrix);
+    make_room_for_values(&patches->entries);
 }

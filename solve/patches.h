@@ -44,8 +44,9 @@ typedef struct Patch {
 typedef struct Places {
     int count, room, lasting; /* lasting: the first ones, of patches that last   */
     int *target;              /* [count] -1: nobody's                            */
-    Pull pull;                /* of the targets                                  */
-    double *values;           /* [count]                                         */
+    Pull pull;                /* of the lasting ones; the others are added one by one */
+    int value_room;
+    double *values; /* [value_room >= count]                           */
 } Places;
 
 typedef struct Patches {
@@ -53,7 +54,7 @@ typedef struct Patches {
     Patch *list;
     Places dofs,
         entries; /* targets: all dofs; entries of the matrix as it was made, or, of those that change, as it is */
-    double *forces;   /* [dofs.count] sums of absolute element forces            */
+    double *forces;   /* [dofs.value_room] sums of absolute element forces       */
     double *energies; /* [count][SYSTEM_MAX_TERMS]                               */
 } Patches;
 
@@ -77,7 +78,9 @@ typedef struct Sums {
     double *energies; /* [terms]                                                            */
     double *gradient; /* [dofs]; NULL: not asked for                                        */
     double *forces;   /* [dofs] sums of absolute element forces, with a gradient            */
-    double *values;   /* of the matrix; NULL: not asked for                                 */
+    double *values;   /* [nonzeros] of the matrix; NULL: not asked for                      */
+    const int *where; /* sparse_where of it                                                 */
+    int nonzeros;
 } Sums;
 
 /* points[term]: as each term sees it (system_term_point). */

@@ -106,11 +106,30 @@ static void pull_task(void *self, int k)
     const Work *w = self;
     const Places *dofs = &w->patches->dofs, *entries = &w->patches->entries;
     if (k < dofs->pull.ranges) {
-        pull_sum(&dofs->pull, k, dofs->values, w->sums.gradient);
-        pull_sum(&dofs->pull, k, w->patches->forces, w->sums.forces);
+        pull_sum(&dofs->pull, k, dofs->values, NULL, w->sums.gradient);
+        pull_sum(&dofs->pull, k, w->patches->forces, NULL, w->sums.forces);
     } else {
-        pull_sum(&entries->pull, k - dofs->pull.ranges, entries->values, w->sums.values);
+        pull_sum(&entries->pull, k - dofs->pull.ranges, entries->values, w->sums.where, w->sums.values);
     }
+}
+
+/* Adds what stands in the places that do not last. */
+static void add_changing(const Places *places, const double *values, double *sums)
+{
+    for (int k = places->lasting; k < places->count; k++)
+        if (places->target[k] >= 0) sums[places->target[k]] += values[k];
+}
+
+static void pull_all(const Work *w, Workers *workers)
+{
+    const Patches *patches = w->patches;
+    const Sums *sums = &w->sums;
+    int ranges = patches->dofs.pull.ranges + (sums->values ? patches->entries.pull.ranges : 0);
+    if (sums->values && sums->where) memset(sums->values, 0, (size_t)sums->nonzeros * sizeof *sums->values);
+    workers_run(workers, ranges, pull_task, (void *)w);
+    add_changing(&patches->dofs, patches->dofs.values, sums->gradient);
+    add_changing(&patches->dofs, patches->forces, sums->forces);
+    if (sums->values) add_changing(&patches->entries, patches->entries.values, sums->values);
 }
 
 void patches_sum(Patches *patches, const Entry *entries, int term_count, const Point *points,
@@ -123,7 +142,5 @@ void patches_sum(Patches *patches, const Entry *entries, int term_count, const P
         for (int p = 0; p < patches->count; p++)
             sums.energies[t] += patches->energies[p * SYSTEM_MAX_TERMS + t];
     }
-    if (!sums.gradient) return;
-    int ranges = patches->dofs.pull.ranges + (sums.values ? patches->entries.pull.ranges : 0);
-    workers_run(workers, ranges, pull_task, &work);
+    if (sums.gradient) pull_all(&work, workers);
 }

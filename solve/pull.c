@@ -48,9 +48,14 @@ void pull_destroy(Pull *pull)
     *pull = (Pull){0};
 }
 
-void pull_sum(const Pull *pull, int range, const double *values, double *sums)
+void pull_sum(const Pull *pull, int range, const double *values, const int *where, double *sums)
 {
-    for (int i = range * RANGE; i < range_end(pull, range); i++) sums[i] = values[pull->first[i]];
-    for (int k = pull->start[range]; k < pull->start[range + 1]; k++)
-        sums[pull->to[k]] += values[pull->from[k]];
+    int begin = range * RANGE, end = range_end(pull, range), last = pull->start[range + 1];
+    if (!where) {
+        for (int i = begin; i < end; i++) sums[i] = values[pull->first[i]];
+        for (int k = pull->start[range]; k < last; k++) sums[pull->to[k]] += values[pull->from[k]];
+        return;
+    }
+    for (int i = begin; i < end; i++) sums[where[i]] = values[pull->first[i]];
+    for (int k = pull->start[range]; k < last; k++) sums[where[pull->to[k]]] += values[pull->from[k]];
 }

@@ -16,5 +16,6 @@ typedef struct Pull {
 Pull pull_create(int targets, int places, const int *target);
 void pull_destroy(Pull *pull);
 
-/* Sums the range's targets of values[places] into sums[targets], over what stood there. */
-void pull_sum(const Pull *pull, int range, const double *values, double *sums);
+/* Sums of values[places] for the range's targets, over what stood there: that of target i goes to sums[where[i]], to
+ * sums[i] where that is NULL. */
+void pull_sum(const Pull *pull, int range, const double *values, const int *where, double *sums);

@@ -8,7 +8,7 @@
 #include <string.h>
 
 /* Nonzeros of L, in those of the matrix as it was made, from which on another order is looked for. */
-static const double FILL_MOST = 1.3;
+static const double FILL_MOST = 1.6;
 
 struct Sparse {
     int n, negative;
@@ -124,9 +124,9 @@ int sparse_made_nonzeros(const Sparse *matrix)
     return matrix->n ? matrix->made.start[matrix->n] : 0;
 }
 
-int sparse_where(const Sparse *matrix, int k)
+const int *sparse_where(const Sparse *matrix)
 {
-    return matrix->where ? matrix->where[k] : k;
+    return matrix->where;
 }
 
 void sparse_set_workers(Sparse *matrix, Workers *workers)

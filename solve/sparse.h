@@ -24,13 +24,14 @@ Sparse *sparse_create(int n, Groups groups, SparseDef def);
 void sparse_destroy(Sparse *matrix);
 
 /* Couples these groups beside those it was made of, in place of such given before; all its values are 0 then. The order
- * stays, unless L would have 1.3 times the nonzeros (and no order was given): it follows from the groups at hand alone, not
+ * stays, unless L would have 1.6 times the nonzeros (and no order was given): it follows from the groups at hand alone, not
  * from earlier ones. The factor at hand stays good, and a new one costs no more for it. */
 void sparse_couple(Sparse *matrix, Groups groups);
 
-/* Entries of the matrix as it was made; and where its entry k (sparse_slot before any sparse_couple) is stored now. */
+/* Entries of the matrix as it was made; and where each (sparse_slot before any sparse_couple) is stored now, NULL: at its own
+ * place. */
 int sparse_made_nonzeros(const Sparse *matrix);
-int sparse_where(const Sparse *matrix, int k);
+const int *sparse_where(const Sparse *matrix);
 
 /* Factors, solves and products are shared out to these threads, from now on (borrowed; NULL: to none). No bit depends on
  * them. */

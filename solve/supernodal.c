@@ -52,7 +52,7 @@ static void set_nodes(Supernodal *plan, const SupernodalDef *def)
     mem_free(owner);
 }
 
-/* to[i] = where rows[i] comes among all[..], both ascending, all of the former in the latter. */
+/* to[i] = where rows[i] comes among all[..]; both ascending, all of the former in the latter. */
 static void find_places(int count, const int *rows, const long *all, int *to)
 {
     for (int i = 0, k = 0; i < count; i++) {
@@ -74,12 +74,15 @@ static void set_places(Supernodal *plan, const SupernodalDef *def)
 
 static void set_slots(Supernodal *plan, const Pattern *pattern, const SupernodalDef *def)
 {
+    int *place = mem_alloc((size_t)plan->n, sizeof *place); /* of a row in the supernode at hand */
     plan->slots = mem_alloc((size_t)pattern->start[plan->n], sizeof(int));
-    for (int s = 0; s < plan->count; s++)
-        for (long c = def->first[s]; c < def->first[s + 1]; c++) {
-            int from = pattern->start[c], to = pattern->start[c + 1];
-            find_places(to - from, pattern->rows + from, def->rows + def->start[s], plan->slots + from);
-        }
+    for (int s = 0; s < plan->count; s++) {
+        for (long k = def->start[s]; k < def->start[s + 1]; k++)
+            place[def->rows[k]] = (int)(k - def->start[s]);
+        for (int k = pattern->start[def->first[s]]; k < pattern->start[def->first[s + 1]]; k++)
+            plan->slots[k] = place[pattern->rows[k]];
+    }
+    mem_free(place);
 }
 
 /* The operations of a supernode. */

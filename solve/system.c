@@ -261,8 +261,13 @@ static Evaluation evaluate(System *sys, const Point *at, double *gradient, bool 
     if (hessian) system_couple(sys, at->x);
     double *values = hessian ? sparse_values(sys->matrix) : NULL;
     for (int t = 0; t < sys->term_count; t++) points[t] = system_term_point(sys, t, at);
-    patches_sum(&sys->patches, sys->entries, sys->term_count, points, sys->workers,
-                (Sums){sys->energies, gradient, sys->force_sum, values});
+    Sums sums = {sys->energies,
+                 gradient,
+                 sys->force_sum,
+                 values,
+                 sparse_where(sys->matrix),
+                 sparse_nonzeros(sys->matrix)};
+    patches_sum(&sys->patches, sys->entries, sys->term_count, points, sys->workers, sums);
     for (int t = 0; t < sys->term_count; t++) {
         result.energy += sys->energies[t];
         result.energy_scale += fabs(sys->energies[t]);
