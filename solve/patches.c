@@ -4,7 +4,7 @@
 #include <string.h>
 
 /* A patch is full with so many different entries: they take 200 kB, and one more slice of all terms has numbers left. */
-enum { PATCH_ENTRIES = 24000 };
+enum { PATCH_ENTRIES = 40000 };
 
 /* Gives out places while patches are made. */
 typedef struct Register {
@@ -210,7 +210,8 @@ static void extend(Maker *m, Patch *patch, int slice)
 /* Without a matrix as if all entries of all elements differed. */
 static bool is_full(const Maker *m, const Patch *patch, int slices)
 {
-    return m->matrix ? patch->entry_count > PATCH_ENTRIES : (slices + 1) * m->slice_numbers > UINT16_MAX;
+    int numbers = m->matrix ? patch->entry_count : slices * m->slice_numbers;
+    return numbers > PATCH_ENTRIES || numbers + m->slice_numbers > UINT16_MAX;
 }
 
 static int compare_targets(const void *a, const void *b)
