@@ -12,7 +12,7 @@
  * read half as fast again (a factor of 250 MB: 16.6 GB/s, not 10.2). */
 enum { ALIGNMENT = 64, LARGE = 4 << 20 };
 
-static atomic_long live;
+static atomic_long live, total;
 
 /* No destructors: they would wait for threads that are still at work. */
 static _Noreturn void end(void)
@@ -50,6 +50,7 @@ void *mem_alloc(size_t count, size_t size)
     if (!raw) out_of_memory(count, size);
     if (bytes >= LARGE) use_huge_pages(raw, bytes);
     atomic_fetch_add(&live, 1);
+    atomic_fetch_add(&total, 1);
     char *block = raw + ALIGNMENT - (uintptr_t)raw % ALIGNMENT;
     ((void **)block)[-1] = raw;
     return block;
@@ -112,4 +113,9 @@ void mem_free(void *block)
 long mem_live_count(void)
 {
     return atomic_load(&live);
+}
+
+long mem_total_count(void)
+{
+    return atomic_load(&total);
 }

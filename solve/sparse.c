@@ -225,11 +225,10 @@ void sparse_multiply(const Sparse *matrix, const double *x, double *y)
 {
     int n = matrix->n;
     if (n == 0) return;
-    double *from = mem_alloc(2 * (size_t)n, sizeof *from), *to = from + n;
+    double *from = matrix->cg, *to = from + n;
     for (int i = 0; i < n; i++) from[matrix->rank[i]] = x[i];
     multiply_permuted(matrix, from, to);
     for (int i = 0; i < n; i++) y[i] = to[matrix->rank[i]];
-    mem_free(from);
 }
 
 static double dot(int n, const double *a, const double *b)

@@ -2,6 +2,7 @@
  * System has seen, and states that share a System. */
 #include "base/random.h"
 #include "solve/march.h"
+#include "solve/newton.h"
 #include "tests/shell_fixture.h"
 #include <math.h>
 #include <string.h>
@@ -164,9 +165,44 @@ static void test_turns(void **state)
     assert_int_equal(mem_live_count(), blocks);
 }
 
+/* ---- What a Newton iteration allocates ---- */
+
+enum { ITERATIONS = 20 };
+
+static long counts[ITERATIONS + 1];
+
+static bool note_count(void *self, const NewtonInfo *info)
+{
+    (void)self;
+    if (info->iterations <= ITERATIONS) counts[info->iterations] = mem_total_count();
+    return true;
+}
+
+/* Nothing, once all that is needed is there. */
+static void test_no_allocation(void **state)
+{
+    (void)state;
+    for (int threads = 1; threads <= 2; threads++) {
+        Shell *shell = make_sheet(BENDING_MIDEDGE);
+        hold_root(shell, true);
+        Body b = body_create(shell, shell_system(shell), 1e5);
+        Workers *workers = workers_create(threads);
+        system_set_workers(b.sys, workers);
+        b.p[shell->gravity + 2] = -300;
+        NewtonDef def = newton_default();
+        NewtonObserver observer = {note_count, NULL};
+        NewtonInfo info = newton_minimize(b.sys, &def, &(Point){.p = b.p}, &b.state, &observer);
+        assert_int_equal(info.status, NEWTON_CONVERGED);
+        assert_true(info.iterations > 5 && info.iterations <= ITERATIONS);
+        for (int k = 3; k < info.iterations; k++) assert_int_equal(counts[k], counts[2]);
+        body_clear(&b);
+        workers_destroy(workers);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_copies), cmocka_unit_test(test_fold),
-                                       cmocka_unit_test(test_turns)};
+                                       cmocka_unit_test(test_turns), cmocka_unit_test(test_no_allocation)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
