@@ -28,6 +28,9 @@ enum { INSIDE = 0xffff, OPEN = 0x10000, RUN = 0x20000 }; /* of the state */
  * times before it sleeps, but leaves its processor to whom has use for it in between. */
 enum { PATIENCE = 200 };
 
+/* Bytes of a thread's stack, whatever the limit of the caller's: packs of elements lie there. */
+enum { STACK = 2 << 20 };
+
 static void do_tasks(Workers *workers)
 {
     for (int k; (k = atomic_fetch_add_explicit(&workers->next, 1, memory_order_relaxed)) < workers->tasks;)
@@ -110,9 +113,13 @@ Workers *workers_create(int threads)
     pthread_cond_init(&workers->begin, NULL);
     pthread_cond_init(&workers->end, NULL);
     workers->threads = mem_alloc(threads > 1 ? (size_t)threads - 1 : 0, sizeof *workers->threads);
+    pthread_attr_t attributes;
+    pthread_attr_init(&attributes);
+    pthread_attr_setstacksize(&attributes, STACK);
     while (workers->count < threads &&
-           pthread_create(&workers->threads[workers->count - 1], NULL, work, workers) == 0)
+           pthread_create(&workers->threads[workers->count - 1], &attributes, work, workers) == 0)
         workers->count++;
+    pthread_attr_destroy(&attributes);
     return workers;
 }
 

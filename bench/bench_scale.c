@@ -75,7 +75,7 @@ static Foretold foretold(const Ran *check)
                       .start = number_before(check, " s to prepare"),
                       .end = number_before(check, " s for stability"),
                       .total = number_before(check, " s in all"),
-                      .megabytes = number_before(check, " MB at most")};
+                      .megabytes = number_before(check, " MB of memory")};
 }
 
 static void print(const char *name, const char *what, double value, const char *unit)

@@ -187,7 +187,7 @@ typedef struct Effort {
     double first, more, factorizations, solves, picture;
 } Effort;
 
-static const Effort efforts[] = {[JOB_EQUILIBRIUM] = {20, 5, 2.4, 2.4, 100e6},
+static const Effort efforts[] = {[JOB_EQUILIBRIUM] = {12, 5, 2, 2, 100e6},
                                  [JOB_EVALUATE] = {1, 1, 2, 25, 100e6},
                                  [JOB_DESIGN] = {5, 5, 1.1, 8, 60e6},
                                  [JOB_SIMULATE] = {2, 2, 0.9, 4, 25e6},
@@ -239,7 +239,7 @@ static double end_seconds(const Model *model, double elements, double frames, Un
 
 /* Bytes of the program; of a triangle or element in the mesh, the arrays and the result, and in the System of each case;
  * of a factor's byte while it is made. */
-static const double PROGRAM_BYTES = 30e6, ELEMENT_BYTES = 1300, SYSTEM_BYTES[] = {3200, 2700}, WORK = 1.1;
+static const double PROGRAM_BYTES = 30e6, ELEMENT_BYTES = 1300, SYSTEM_BYTES[] = {4200, 3300}, WORK = 1.65;
 
 static double peak_bytes(const Model *model, const Scene *scene, double elements, double factor)
 {

@@ -32,10 +32,10 @@ static void report_cost(const Model *model, const Scene *scene)
            "million numbers (%.3g MB)\n",
            r.iteration, r.factorization, r.factorizations, r.exact ? "" : "about ", 1e-6 * r.numbers,
            1e-6 * r.factor_bytes);
-    printf(
-        "estimated: %.3g s in all (%.2g s to prepare, %g Newton iterations are assumed, %.2g s for stability "
-        "and result); %.3g MB at most\n",
-        predict_seconds(&r), r.start, r.iterations, r.end, 1e-6 * r.bytes);
+    printf("estimated: %.3g s in all by one thread (%.2g s to prepare, %g Newton iterations are assumed, "
+           "%.2g s for stability "
+           "and result); about %.3g MB of memory\n",
+           predict_seconds(&r), r.start, r.iterations, r.end, 1e-6 * r.bytes);
 }
 
 /* An edge's or element's length, a radian, or of a rod's multipliers a force. */
@@ -152,7 +152,10 @@ static bool report(const Model *model, const Scene *scene, bool derivatives)
     if (scene->design) printf("%d design unknowns\n", model->design.size);
     if (!model->case_count && derivatives)
         printf("derivatives: there is no load case whose terms could be checked\n");
-    if (!model->case_count) return true;
+    if (!model->case_count) {
+        printf("time and memory of such a job are not foretold\n");
+        return true;
+    }
     report_cost(model, scene);
     return !derivatives || check_derivatives(model, scene);
 }

@@ -102,22 +102,28 @@ void kernels_one_thread(void)
     openblas_set_num_threads(1);
 }
 
+enum { BLAS_BUFFER = 128 << 20, MOST_BUFFERS = 64 };
+
+static bool has_room_for_buffer(void)
+{
+    void *room =
+        mmap(NULL, BLAS_BUFFER, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (room != MAP_FAILED) munmap(room, BLAS_BUFFER);
+    return room != MAP_FAILED;
+}
+
 /* OpenBLAS keeps its buffers for good, and asks for one in a loop that ends when it has it: so first the same size is
  * asked for here. */
 int kernels_reserve(int threads)
 {
-    enum { BUFFER = 128 << 20, MOST = 64 };
-    void *buffers[MOST];
+    static int held; /* buffers that OpenBLAS has by now */
+    void *buffers[MOST_BUFFERS];
     int count = 0;
     if (!blas_memory_alloc || !blas_memory_free) return threads;
-    for (; count < threads && count < MOST; count++) {
-        void *room =
-            mmap(NULL, BUFFER, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-        if (room == MAP_FAILED) break;
-        munmap(room, BUFFER);
-        buffers[count] = blas_memory_alloc(0);
-    }
+    while (count < threads && count < MOST_BUFFERS && (count < held || has_room_for_buffer()))
+        buffers[count++] = blas_memory_alloc(0);
     for (int k = 0; k < count; k++) blas_memory_free(buffers[k]);
+    if (count > held) held = count;
     return count;
 }
 

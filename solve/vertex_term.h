@@ -1,5 +1,5 @@
 /* vertex_term.h - what terms share whose elements are single vertices with three position dofs each (3v ..
- * 3v+2): their struct begins with `int vertex_count`. Private to lumped.c and kinetic.c. */
+ * 3v+2): their struct begins with `int vertex_count`. */
 #pragma once
 #include "base/pack.h"
 

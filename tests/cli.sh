@@ -31,7 +31,7 @@ expect 3 "$program" run "$here/broken/wrong_unit.yaml"; says "must be a number i
 # A million triangles: read, and what they cost foretold, in seconds; a warning of check is one of run, too.
 sed 's/mesh: .*/mesh: {shape: sheet, size: [0.2, 0.1], cells: [1024, 512]}/; s/n: 32//' "$here/../scenes/cantilever.yaml" > million.yaml
 expect 0 sh -c 'ulimit -t 20; exec "$0" check million.yaml --set shell.bending=hinge --set loads=[]' "$program"
-says "1048576 faces"; says "factor.* about [0-9]* million numbers"; says "estimated: .* Newton iterations are assumed"; says "MB at most"
+says "1048576 faces"; says "factor.* about [0-9]* million numbers"; says "estimated: .* Newton iterations are assumed"; says "MB of memory"
 for verb in check "run --no-picture -o coarse"; do
     # shellcheck disable=SC2086
     expect 0 "$program" $verb "$here/scene_small.yaml" --set shell.thickness=0.2mm --set shell.mesh.n=2 --set design.iterations=0

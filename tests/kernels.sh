@@ -52,4 +52,10 @@ for limit in 130000 200000 260000; do
     says "slender: out of memory"
     cmp -s little.vtkhdf before.vtkhdf || { echo "with $limit kB the old result is lost"; bad=1; }
 done
+
+# Room for fewer threads than are asked for, and little of it for each: fewer work, and it goes on.
+(ulimit -v 330000 && exec "$program" run "$here/scene_small.yaml" --threads 5 --quiet --no-picture -o fewer --set design.iterations=1) ||
+    { echo "with room for one thread it ends with $?"; bad=1; }
+(ulimit -s 128 && exec "$program" run "$here/scene_small.yaml" --threads 5 --set shell.mesh.n=24 --quiet --no-picture -o low --set design.iterations=1) ||
+    { echo "with a small stack it ends with $?"; bad=1; }
 exit $bad
