@@ -7,10 +7,10 @@
 #include <pthread.h>
 #include <string.h>
 
-/* From this many unknowns on, nested dissection: it saves a tenth of the factor's work on sheets with angles of hinges and
+/* From this many entries of the matrix on, nested dissection: it saves a tenth of the factor's work on sheets with angles of hinges and
  * half with one angle per edge, and gives a tree that threads can share (docs/solver.md). Its own analysis takes some five
- * times longer than AMD's, once. */
-enum { METIS_FROM = 5000 };
+ * times longer than AMD's, once, and never pays for what is coupled to few others. */
+enum { METIS_FROM = 60000 };
 
 /* Where columns of L are alike over many rows (CHOLMOD's rule: 40 operations for each of its numbers), supernodal.h factors
  * in a structure of CHOLMOD's; chains, and with them all that has multipliers, are factored by its simplicial LL^T or
@@ -95,7 +95,7 @@ int *direct_order(const Pattern *pattern)
 {
     cholmod_common common;
     cholmod_l_start(&common);
-    set_options(&common, pattern->n >= METIS_FROM ? CHOLMOD_METIS : CHOLMOD_AMD);
+    set_options(&common, pattern->start[pattern->n] >= METIS_FROM ? CHOLMOD_METIS : CHOLMOD_AMD);
     pthread_mutex_lock(&one_dissection);
     cholmod_factor *factor = analyse_pattern(pattern, &common);
     pthread_mutex_unlock(&one_dissection);
