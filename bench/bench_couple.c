@@ -1,6 +1,5 @@
 /* What it costs when elements change: a sheet of 8192 triangles whose free quarter is folded over, with springs between
  * what lies on each other; the fold moves to and fro by a row, and with it all pairs. */
-#include "base/clock.h"
 #include "base/memory.h"
 #include "bench/bench.h"
 #include "bench/sheet.h"
@@ -9,7 +8,7 @@
 #include <math.h>
 #include <stdio.h>
 
-enum { CELLS = 64, MOST_ROWS = 24, REPEATS = 20 };
+enum { CELLS = 64, MOST_ROWS = 24 };
 
 /* Linear springs of vertices; which depends on the time alone. */
 typedef struct Fold {
@@ -88,38 +87,15 @@ static System *folded_system(const Shell *shell, int rows)
     return sys;
 }
 
-/* Least time of a Hessian at the times given in turn, s. */
-static double hessian_seconds(System *sys, Sheet *s, const double times[2])
-{
-    double best = INFINITY;
-    for (int k = 0; k < REPEATS; k++) {
-        Point at = {.x = s->state.x, .p = s->p, .memory = s->state.memory, .time = times[k % 2]};
-        double start = clock_seconds();
-        system_hessian(sys, &at, s->gradient);
-        best = fmin(best, clock_seconds() - start);
-    }
-    return best;
-}
-
-static double factor_seconds(System *sys)
-{
-    double best = INFINITY;
-    for (int k = 0; k < REPEATS; k++) {
-        double start = clock_seconds();
-        if (!system_factor(sys, 1e-6)) bench_fail("the folded sheet's Hessian has no factor");
-        best = fmin(best, clock_seconds() - start);
-    }
-    return best;
-}
-
 static void time_couple(Sheet *s, int rows, const char *name)
 {
     System *sys = folded_system(s->shell, rows);
     char text[80];
     double nonzeros = (double)system_info(sys).factor_nonzeros;
-    double seconds = hessian_seconds(sys, s, (double[]){0, 1}) - hessian_seconds(sys, s, (double[]){1, 1});
+    double seconds =
+        sheet_hessian_seconds(sys, s, (double[]){0, 1}) - sheet_hessian_seconds(sys, s, (double[]){1, 1});
     snprintf(text, sizeof text, "couple_%s_over_factor", name);
-    bench_print(text, seconds / factor_seconds(sys), "ratio");
+    bench_print(text, seconds / sheet_factor_seconds(sys), "ratio");
     snprintf(text, sizeof text, "couple_%s_fill", name);
     bench_print(text, (double)system_info(sys).factor_nonzeros / nonzeros, "ratio");
     system_destroy(sys);

@@ -7,32 +7,6 @@
 #include <math.h>
 #include <stdio.h>
 
-enum { REPEATS = 30 };
-
-/* Best of many: the machine's other work only ever adds. */
-static double hessian_seconds(Sheet *s)
-{
-    Point at = {.x = s->state.x, .p = s->p, .memory = s->state.memory};
-    double best = INFINITY;
-    for (int k = 0; k < REPEATS; k++) {
-        double start = clock_seconds();
-        system_hessian(s->sys, &at, s->gradient);
-        best = fmin(best, clock_seconds() - start);
-    }
-    return best;
-}
-
-static double factor_seconds(Sheet *s)
-{
-    double best = INFINITY;
-    for (int k = 0; k < REPEATS; k++) {
-        double start = clock_seconds();
-        if (!system_factor(s->sys, 1e-6)) bench_fail("the sheet's Hessian has no factor");
-        best = fmin(best, clock_seconds() - start);
-    }
-    return best;
-}
-
 static void time_hessian(BendingModel bending, const char *name, int threads)
 {
     Sheet s = sheet_create(bending, false);
@@ -40,7 +14,7 @@ static void time_hessian(BendingModel bending, const char *name, int threads)
     char text[80];
     system_set_workers(s.sys, workers);
     sheet_bend(&s);
-    double seconds = hessian_seconds(&s);
+    double seconds = sheet_hessian_seconds(s.sys, &s, (double[2]){0, 0});
     snprintf(text, sizeof text, "system_hessian_%s_us_per_triangle_%d_threads", name, threads);
     bench_print(text, 1e6 * seconds / s.shell->mesh->face_count, "us");
     sheet_destroy(&s);
@@ -100,8 +74,9 @@ void bench_factor(void)
 {
     Sheet s = sheet_create(BENDING_MIDEDGE, false);
     sheet_bend(&s);
-    double assembly = hessian_seconds(&s), factor = factor_seconds(&s),
-           speed = system_info(s.sys).factor_flops / factor, dgemm = dgemm_flops();
+    double assembly = sheet_hessian_seconds(s.sys, &s, (double[2]){0, 0}),
+           factor = sheet_factor_seconds(s.sys), speed = system_info(s.sys).factor_flops / factor,
+           dgemm = dgemm_flops();
     bench_print("factor_ms", 1e3 * factor, "ms");
     bench_print("assembly_over_factor", assembly / factor, "ratio");
     bench_print("factor_over_dgemm", speed / dgemm, "ratio");

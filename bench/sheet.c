@@ -1,8 +1,11 @@
 #include "bench/sheet.h"
+#include "base/clock.h"
 #include "base/memory.h"
 #include "bench/bench.h"
 #include "shell/shapes.h"
 #include <math.h>
+
+enum { REPEATS = 30 };
 
 Sheet sheet_create_fine(int cells, BendingModel bending, bool dynamic)
 {
@@ -47,6 +50,29 @@ void sheet_bend(Sheet *s)
         s->state.x[3 * v] = sin(k * x) / k;
         s->state.x[3 * v + 2] = (1 - cos(k * x)) / k;
     }
+}
+
+double sheet_hessian_seconds(System *sys, Sheet *s, const double times[2])
+{
+    double best = INFINITY;
+    for (int k = 0; k < REPEATS; k++) {
+        Point at = {.x = s->state.x, .p = s->p, .memory = s->state.memory, .time = times[k % 2]};
+        double start = clock_seconds();
+        system_hessian(sys, &at, s->gradient);
+        best = fmin(best, clock_seconds() - start);
+    }
+    return best;
+}
+
+double sheet_factor_seconds(System *sys)
+{
+    double best = INFINITY;
+    for (int k = 0; k < REPEATS; k++) {
+        double start = clock_seconds();
+        if (!system_factor(sys, 1e-6)) bench_fail("the sheet's Hessian has no factor");
+        best = fmin(best, clock_seconds() - start);
+    }
+    return best;
 }
 
 void sheet_destroy(Sheet *s)

@@ -16,3 +16,8 @@ void sheet_destroy(Sheet *s);
 
 /* Rolled by half a radian in all. */
 void sheet_bend(Sheet *s);
+
+/* Seconds of a Hessian of the sheet's state by a System (its own, or another), at the two times in turn; and of a factor of
+ * the last one. The least of many: the machine's other work only ever adds. */
+double sheet_hessian_seconds(System *sys, Sheet *s, const double times[2]);
+double sheet_factor_seconds(System *sys);

@@ -52,8 +52,8 @@ typedef struct Places {
 typedef struct Patches {
     int count, room, lasting;
     Patch *list;
-    Places dofs,
-        entries; /* targets: all dofs; entries of the matrix as it was made, or, of those that change, as it is */
+    Places dofs;      /* targets: all dofs */
+    Places entries;   /* targets: those of the matrix as it was made, or, of patches that change, as it is */
     double *forces;   /* [dofs.value_room] sums of absolute element forces       */
     double *energies; /* [count][SYSTEM_MAX_TERMS]                               */
 } Patches;

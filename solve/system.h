@@ -2,7 +2,7 @@
  * the two products with d2E/dx dp.
  *
  * Vectors over dofs (x, g, w) always have all dof_count entries; fixed dofs keep their x, and solves leave zero
- * there. The terms are owned. Assembly adds elements in their fixed order: the same input gives the same bits. */
+ * there. The terms are owned. Sums are taken in a fixed order: the same input gives the same bits. */
 #pragma once
 #include "base/workers.h"
 #include "solve/bulk.h"
@@ -41,7 +41,8 @@ void system_set_order(System *sys, const int *order);
  * in statics, else 0 (physics: a zero eigenvalue decides nothing). */
 void system_set_base_shift(System *sys, double base);
 
-/* Elements are evaluated by these threads, from now on (borrowed; NULL: by the calling one). No bit depends on them. */
+/* Evaluations, factors and solves are shared out to these threads, from now on (borrowed; NULL: the calling one does
+ * all). No bit depends on them. */
 void system_set_workers(System *sys, Workers *workers);
 
 /* After the last add and fix: numbers the unknowns. Matrix and patches are built when they are needed. */

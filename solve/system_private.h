@@ -1,4 +1,5 @@
-/* system_private.h - what system.c (evaluation), system_matrix.c (the matrix) and system_linear.c (factor, solve, products) share. */
+/* system_private.h - what system.c (evaluation), system_matrix.c (the matrix) and system_linear.c (factor, solve,
+ * products) share. */
 #pragma once
 #include "solve/patches.h"
 #include "solve/system.h"
