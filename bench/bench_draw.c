@@ -2,7 +2,7 @@
 #include "base/clock.h"
 #include "base/memory.h"
 #include "bench/bench.h"
-#include "cli/drawing.h"
+#include "spline/front/drawing.h"
 #include "spline/metrics.h"
 #include <math.h>
 #include <stdio.h>

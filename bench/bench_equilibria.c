@@ -3,7 +3,7 @@
  * buckle sideways under their weight; stiff sheets hang from an edge or a corner. */
 #include "base/memory.h"
 #include "bench/bench.h"
-#include "shell/shapes.h"
+#include "surface/shapes.h"
 #include "shell/shell.h"
 #include "solve/ramp.h"
 #include <math.h>

@@ -2,7 +2,7 @@
 #include "base/clock.h"
 #include "base/memory.h"
 #include "bench/bench.h"
-#include "cli/model.h"
+#include "model/model.h"
 #include "io/result.h"
 #include "optim/trajectory_adjoint.h"
 #include <stdio.h>

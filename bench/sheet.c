@@ -2,7 +2,7 @@
 #include "base/clock.h"
 #include "base/memory.h"
 #include "bench/bench.h"
-#include "shell/shapes.h"
+#include "surface/shapes.h"
 #include <math.h>
 
 enum { REPEATS = 30 };

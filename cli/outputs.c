@@ -1,6 +1,6 @@
 #include "cli/outputs.h"
 #include "base/memory.h"
-#include "cli/drawn.h"
+#include "spline/front/drawn.h"
 #include "cli/verb.h"
 #include "io/replace.h"
 #include "io/safe_file.h"

@@ -1,7 +1,7 @@
 /* outputs.h - the files of a drawing beside its result, as the scene's key `output` names them: relative to
  * the result's folder. */
 #pragma once
-#include "cli/run.h"
+#include "job/run.h"
 
 /* Can they be written, the picture if it is wanted, and is nothing lost by it: each a file of its own, none
  * of them the scene of that path or a file that it names? Refused before the work, not after it. */

@@ -1,6 +1,6 @@
 #include "cli/verb.h"
 #include "base/memory.h"
-#include "cli/advice.h"
+#include "model/advice.h"
 #include "cli/say.h"
 #include "solve/kernels.h"
 #include <stdio.h>
@@ -27,24 +27,6 @@ bool verb_load_scene(const char *path, const Settings *settings, YamlFile **file
     if (yaml_load(*file, &scene_table, scene)) return true;
     print_report(*file);
     return false;
-}
-
-bool verb_stored_scene(const Array *text, YamlFile **file, Scene *scene)
-{
-    const char *stored = text->type == ARRAY_TEXT ? text->data : "";
-    *scene = (Scene){0};
-    *file = yaml_parse("scene", stored, strlen(stored));
-    return yaml_load(*file, &scene_table, scene);
-}
-
-void verb_result_scene(Result *result, YamlFile **file, Scene *scene)
-{
-    Array text;
-    *scene = (Scene){0};
-    *file = NULL;
-    if (!result_read(result, "slender/scene", &text, NULL)) return;
-    verb_stored_scene(&text, file, scene);
-    array_clear(&text);
 }
 
 Model *verb_build_model(const Scene *scene, YamlFile *file)

@@ -3,7 +3,7 @@
 #pragma once
 #include "base/error.h"
 #include "cli/options.h"
-#include "cli/run.h"
+#include "job/run.h"
 #include "io/result.h"
 
 int verb_run(int argc, char **argv);
@@ -22,13 +22,6 @@ int verb_fail(int code, const char *sentence);
 /* A scene file, the assignments (NULL: none) made and its table filled in: false after printing what is wrong. Clear
  * the scene and destroy the file in any case. */
 bool verb_load_scene(const char *path, const Settings *settings, YamlFile **file, Scene *scene);
-
-/* The effective scene that a journal or result keeps as a text. False where it cannot be read; clear and destroy
- * in any case. */
-bool verb_stored_scene(const Array *text, YamlFile **file, Scene *scene);
-
-/* The same of a result; an empty scene where it keeps none that can be read. */
-void verb_result_scene(Result *result, YamlFile **file, Scene *scene);
 
 /* The model of a scene; NULL after printing what is wrong. Warnings about the mesh are printed. */
 Model *verb_build_model(const Scene *scene, YamlFile *file);

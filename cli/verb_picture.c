@@ -1,9 +1,10 @@
 /* slender picture: a result as PNG, SVG or PDF, or in motion as animated WebP. */
 #include "base/memory.h"
 #include "cli/outputs.h"
-#include "cli/show.h"
 #include "cli/verb.h"
 #include "io/result.h"
+#include "model/stored.h"
+#include "view/show.h"
 #include <limits.h>
 #include <math.h>
 #include <stdio.h>
@@ -62,7 +63,7 @@ static RunStatus prepare(const char *path, const char *output, bool animation, c
     YamlFile *file;
     Result *result = result_open(path, err);
     if (!result) return RUN_REFUSED;
-    verb_result_scene(result, &file, &scene);
+    stored_result_scene(result, &file, &scene);
     result_close(result);
     *name = picture_name(&scene, path, output, animation);
     bool ok = outputs_check_source(&scene, path, *name, err);

@@ -1,7 +1,6 @@
 /* slender info and slender export: what is in a result, or in the journal of a running job. */
 #include "base/memory.h"
 #include "base/plain.h"
-#include "cli/drawn.h"
 #include "cli/outputs.h"
 #include "cli/say.h"
 #include "cli/verb.h"
@@ -9,6 +8,8 @@
 #include "io/replace.h"
 #include "io/result.h"
 #include "io/table.h"
+#include "model/stored.h"
+#include "spline/front/drawn.h"
 #include <limits.h>
 #include <math.h>
 #include <stdio.h>
@@ -250,7 +251,7 @@ static bool check_source(Result *result, const char *input, const char *output, 
 {
     Scene scene;
     YamlFile *file;
-    verb_result_scene(result, &file, &scene);
+    stored_result_scene(result, &file, &scene);
     bool ok = outputs_check_source(&scene, input, output, err);
     yaml_clear(&scene_table, &scene);
     yaml_destroy(file);
@@ -301,7 +302,7 @@ static bool result_def(Journal *journal, const char *input, const char *output, 
     *def = (ResultDef){0};
     if (!journal_find(journal, "meta", 0, "scene", &text, err)) return false;
     if (!text.data) return true;
-    if (verb_stored_scene(&text, &file, &scene)) def->double_frames = scene.output.precision == OUTPUT_DOUBLE;
+    if (stored_scene(&text, &file, &scene)) def->double_frames = scene.output.precision == OUTPUT_DOUBLE;
     bool ok = outputs_check_source(&scene, input, output, err);
     yaml_clear(&scene_table, &scene);
     yaml_destroy(file);

@@ -4,7 +4,7 @@
  * G = dB/dx, so that their positions must be dofs.
  *
  * With u = R^T B and Q = R M a turn of the node feels u x M, its position -G^T Q. */
-#include "field/flux.h"
+#include "surface/flux.h"
 #include "rod/term.h"
 #include <assert.h>
 

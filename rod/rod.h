@@ -17,7 +17,7 @@
  * equilibria. */
 #pragma once
 #include "base/quat.h"
-#include "field/flux_field.h"
+#include "surface/flux_field.h"
 #include "rod/frame.h"
 #include "rod/section.h"
 #include "solve/params.h"

@@ -1,6 +1,6 @@
 /* libFuzzer: mesh files, the format by the first byte; what is read goes through the mesh's own checks. */
 #include "base/memory.h"
-#include "shell/mesh.h"
+#include "surface/mesh.h"
 #include <stdint.h>
 #include <stdlib.h>
 

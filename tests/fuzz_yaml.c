@@ -1,6 +1,6 @@
 /* libFuzzer: scene files. What loads must come back from its effective scene unchanged. */
 #include "base/memory.h"
-#include "cli/scene.h"
+#include "model/scene.h"
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>

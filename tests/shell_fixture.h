@@ -1,7 +1,7 @@
 /* shell_fixture.h - shells of generated meshes, and what is solved with them, for tests. */
 #pragma once
 #include "base/memory.h"
-#include "shell/shapes.h"
+#include "surface/shapes.h"
 #include "shell/shell.h"
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,8 +1,8 @@
 /* Every file in tests/broken is refused with the sentence that expected.txt has for it. */
 #include "base/memory.h"
-#include "cli/model.h"
+#include "model/model.h"
 #include "io/mesh_file.h"
-#include "shell/mesh.h"
+#include "surface/mesh.h"
 #include <glob.h>
 #include <setjmp.h>
 #include <stdarg.h>

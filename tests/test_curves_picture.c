@@ -1,7 +1,7 @@
 /* Pages of curves: which views, where they go, and that what is drawn lies where its scales say. */
 #include "base/memory.h"
-#include "io/curves_layout.h"
-#include "io/page.h"
+#include "view/curves_layout.h"
+#include "view/page.h"
 #include "leaks.h"
 #include "png_fixture.h"
 #include <math.h>

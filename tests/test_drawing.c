@@ -1,6 +1,6 @@
 /* Drawings from scenes: pages, pens, what each part shall cover, directions. */
 #include "base/memory.h"
-#include "cli/drawing.h"
+#include "spline/front/drawing.h"
 #include "spline/direction.h"
 #include "tests/leaks.h"
 #include <math.h>

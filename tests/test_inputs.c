@@ -1,6 +1,6 @@
 /* The files of a scene, told by their contents: each key of the table that names one, wherever it stands. */
 #include "base/memory.h"
-#include "cli/inputs.h"
+#include "job/inputs.h"
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -1,6 +1,6 @@
 /* What the entries of a scene become: values, loads, motion, fields, unknowns. */
 #include "base/memory.h"
-#include "cli/model.h"
+#include "model/model.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

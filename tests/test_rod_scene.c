@@ -1,7 +1,7 @@
 /* What the entries of a scene become in a rod: natural strains from tables, a start that is not its natural
  * shape. */
 #include "base/memory.h"
-#include "cli/rod_model.h"
+#include "rod/front/rod_model.h"
 #include "rod/rod.h"
 #include <math.h>
 #include <setjmp.h>

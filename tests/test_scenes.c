@@ -1,6 +1,6 @@
 /* Every scene in scenes/ loads, builds and takes its first steps; the field tables are sound. */
 #include "base/memory.h"
-#include "cli/job.h"
+#include "job/job.h"
 #include "solve/newton.h"
 #include <glob.h>
 #include <setjmp.h>

@@ -5,8 +5,8 @@
 #include <stdint.h>
 #include <cmocka.h>
 #include "base/memory.h"
-#include "shell/select.h"
-#include "shell/shapes.h"
+#include "surface/select.h"
+#include "surface/shapes.h"
 
 /* 4 x 2 cells of 10 mm; vertices 5 j + i. To the groups of a sheet come `top` (faces of the cell at the
  * origin) and `side` (edges of y = 0 from x = 10 to 30 mm). */

@@ -7,8 +7,8 @@
 #include <cmocka.h>
 #include "base/memory.h"
 #include "base/vec3.h"
-#include "shell/mesh.h"
-#include "shell/shapes.h"
+#include "surface/mesh.h"
+#include "surface/shapes.h"
 
 static const double pi = 3.14159265358979323846;
 

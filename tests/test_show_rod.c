@@ -1,8 +1,8 @@
 /* Pictures of results of rods, from results as a job leaves them: curves, small print, motion, bundles. */
 #include "base/memory.h"
-#include "cli/show.h"
-#include "io/curves_picture.h"
-#include "io/page.h"
+#include "view/show.h"
+#include "view/curves_picture.h"
+#include "view/page.h"
 #include "io/result.h"
 #include "io/table.h"
 #include "leaks.h"

@@ -1,7 +1,7 @@
 /* One answer for any number of threads: formulas, the terms of a system, and load cases that share a field. */
 #include "base/memory.h"
 #include "base/random.h"
-#include "cli/model.h"
+#include "model/model.h"
 #include "optim/static_design.h"
 #include <math.h>
 #include <setjmp.h>

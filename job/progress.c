@@ -1,0 +1,102 @@
+#include "job/progress.h"
+#include "base/clock.h"
+#include "base/memory.h"
+#include "base/plain.h"
+#include <signal.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <unistd.h>
+
+static volatile sig_atomic_t interrupted;
+
+static void interrupt(int signal_number)
+{
+    if (interrupted) {
+        signal(signal_number, SIG_DFL);
+        raise(signal_number);
+    }
+    interrupted = 1;
+}
+
+Progress progress_start(ProgressMode mode)
+{
+    struct sigaction action = {.sa_handler = interrupt, .sa_flags = SA_RESTART};
+    sigemptyset(&action.sa_mask);
+    sigaction(SIGINT, &action, NULL);
+    sigaction(SIGTERM, &action, NULL);
+    return (Progress){
+        .mode = mode, .terminal = isatty(STDOUT_FILENO) != 0, .started = clock_seconds(), .shown = -1};
+}
+
+bool progress_interrupted(void)
+{
+    return interrupted != 0;
+}
+
+/* Time left if steps go on as they did. */
+static void show_bar(double seconds, int step, int total)
+{
+    enum { WIDTH = 24 };
+    int filled = total > 0 ? step * WIDTH / total : 0;
+    char bar[WIDTH + 1];
+    for (int i = 0; i < WIDTH; i++) bar[i] = i < filled ? '#' : '.';
+    bar[WIDTH] = 0;
+    printf("\r\033[K[%s] %d/%d ", bar, step, total);
+    if (step > 0 && step < total) printf("%.0f s left ", seconds / step * (total - step));
+}
+
+/* As JSON or as plain text; the caller frees. */
+static char *shown_text(const Progress *progress, const char *format, va_list args)
+{
+    char *text = mem_vformat(format, args),
+         *shown = progress->mode == PROGRESS_JSON ? plain_json(text) : plain_text(text, "");
+    mem_free(text);
+    return shown;
+}
+
+void progress_step(Progress *progress, int step, int total, const char *format, ...)
+{
+    double now = clock_seconds(), seconds = now - progress->started, pause = progress->terminal ? 0.1 : 2;
+    bool last = step >= total;
+    if (progress->mode == PROGRESS_QUIET || (!last && progress->shown >= 0 && now - progress->shown < pause))
+        return;
+    progress->shown = now;
+    va_list args;
+    va_start(args, format);
+    char *detail = shown_text(progress, format, args);
+    va_end(args);
+    if (progress->mode == PROGRESS_JSON)
+        printf("{\"step\": %d, \"of\": %d, \"seconds\": %.3f, \"detail\": \"%s\"}\n", step, total, seconds,
+               detail);
+    else if (progress->terminal) {
+        show_bar(seconds, step, total);
+        printf("%s%s", detail, last ? "\n" : "");
+    } else
+        printf("%d/%d  %.1f s  %s\n", step, total, seconds, detail);
+    mem_free(detail);
+    fflush(stdout);
+}
+
+void progress_say(Progress *progress, const char *format, ...)
+{
+    if (progress->mode == PROGRESS_QUIET) return;
+    va_list args;
+    va_start(args, format);
+    char *line = shown_text(progress, format, args);
+    va_end(args);
+    if (progress->mode == PROGRESS_JSON)
+        printf("{\"seconds\": %.3f, \"say\": \"%s\"}\n", clock_seconds() - progress->started, line);
+    else
+        printf("%s%s\n", progress->terminal ? "\r\033[K" : "", line);
+    mem_free(line);
+    fflush(stdout);
+}
+
+void progress_tell(ProgressMode mode, const char *kind, const char *sentence)
+{
+    if (mode != PROGRESS_JSON) return;
+    char *json = plain_json(sentence);
+    printf("{\"%s\": \"%s\"}\n", kind, json);
+    mem_free(json);
+    fflush(stdout);
+}

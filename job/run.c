@@ -1,0 +1,180 @@
+#include "job/run.h"
+#include "base/memory.h"
+#include "model/body.h"
+#include <string.h>
+
+static bool go_on(void *self, const NewtonInfo *info)
+{
+    (void)self, (void)info;
+    return !progress_interrupted();
+}
+
+NewtonObserver run_observer(Run *run)
+{
+    return (NewtonObserver){go_on, run};
+}
+
+void run_newton(const Run *run, NewtonDef *def)
+{
+    def->max_iterations = run->scene->solver.max_iterations;
+    def->step_tol = run->scene->solver.step_tolerance;
+    def->force_tol = run->scene->solver.force_tolerance;
+    def->step_cap = run->model->step_cap;
+}
+
+void run_release_threads(Run *run)
+{
+    for (int c = 0; run->inside && c < run->model->case_count; c++) {
+        system_set_workers(run->model->cases[c].sys, NULL);
+        workers_destroy(run->inside[c]);
+    }
+    mem_free(run->inside);
+    workers_destroy(run->side_by_side);
+    run->inside = NULL, run->side_by_side = NULL;
+}
+
+Workers *run_share_threads(Run *run, int at_once)
+{
+    int cases = run->model->case_count, outside = at_once < run->threads ? at_once : run->threads;
+    run_release_threads(run);
+    if (outside > 1) run->side_by_side = workers_create(outside);
+    if (cases == 0 || run->threads / outside < 2) return run->side_by_side;
+    run->inside = mem_alloc((size_t)cases, sizeof *run->inside);
+    for (int c = 0; c < cases; c++) {
+        if (c < outside) run->inside[c] = workers_create(run->threads / outside);
+        system_set_workers(run->model->cases[c].sys, run->inside[c % outside]);
+    }
+    return run->side_by_side;
+}
+
+Array body_block(const char *name, const ParamBlock *block, const double *p)
+{
+    int rank = block->width > 1 ? 2 : 1;
+    return array_float(name, block->unit, p + block->offset, rank, block->count, block->width);
+}
+
+/* ---- Frames ---- */
+
+static double *places(const Model *model, const Snapshot *shot, Arrays *list)
+{
+    double *place = arrays_numbers(list, 3 * (size_t)model->point_count);
+    model->body->places(model, shot->at.x, place);
+    return place;
+}
+
+bool run_put_frame(Run *run, int index, double shown, const Snapshot *shot, bool whole, Error *err)
+{
+    const Model *model = run->model;
+    Arrays list = {0};
+    arrays_add(&list, array_float("x", "m", places(model, shot, &list), 2, model->point_count, 3));
+    arrays_add(&list, array_float("time", "s", &shown, 0, 0, 0));
+    arrays_add(&list, array_float("flux_density", "T", shot->p + model->flux_density, 2, 1, 3));
+    model->body->add_frame(model, shot, whole, &list);
+    return arrays_put(&list, run->journal, "frame", index, err);
+}
+
+/* ---- Final arrays ---- */
+
+/* What both the plain paths and cases/<name> have. */
+static void add_state(Arrays *list, const Model *model, const char *x_name, const char *prefix,
+                      const Snapshot *shot)
+{
+    System *sys = shot->load_case->sys;
+    Point at = state_point(&shot->at, shot->p);
+    char *name = arrays_keep(list, mem_text(x_name));
+    arrays_add(list, array_float(name, "m", places(model, shot, list), 2, model->point_count, 3));
+    double *energy = arrays_numbers(list, (size_t)system_term_count(sys));
+    for (int t = 0; t < system_term_count(sys); t++) {
+        energy[t] = system_term_energy(sys, t, &at, NULL);
+        name = arrays_keep(list, mem_format("%s/energy/%s", prefix, system_term(sys, t)->ops->name));
+        arrays_add(list, array_float(name, "J", &energy[t], 0, 0, 0));
+    }
+    model->body->add_state(model, shot, prefix, list);
+}
+
+/* Parameters of the last state; flux_density has a row for each. */
+static void add_params(Arrays *list, const Params *params, const Snapshot *shots, int count)
+{
+    const Snapshot *last = &shots[count - 1];
+    for (int b = 0; b < params->block_count; b++) {
+        const ParamBlock *block = &params->blocks[b];
+        const char *name = arrays_keep(list, mem_format("design/%s", block->name));
+        if (block->count == 0) continue;
+        if (strcmp(block->name, "flux_density")) {
+            arrays_add(list, body_block(name, block, last->p));
+            continue;
+        }
+        double *flux = arrays_numbers(list, 3 * (size_t)count);
+        for (int k = 0; k < count; k++) memcpy(flux + 3 * k, shots[k].p + block->offset, 3 * sizeof *flux);
+        arrays_add(list, array_float(name, block->unit, flux, 2, count, 3));
+    }
+}
+
+static void add_case(Arrays *list, const Model *model, const Snapshot *shot)
+{
+    const char *prefix = arrays_keep(list, mem_format("cases/%s", shot->load_case->name));
+    const char *x_name = arrays_keep(list, mem_format("%s/x", prefix));
+    add_state(list, model, x_name, prefix, shot);
+    arrays_add(list, array_text(arrays_keep(list, mem_format("%s/status", prefix)),
+                                newton_status_name(shot->status)));
+    arrays_add(list, array_float(arrays_keep(list, mem_format("%s/flux_density", prefix)), "T",
+                                 shot->p + model->flux_density, 1, 3, 0));
+    arrays_add(list, array_float(arrays_keep(list, mem_format("%s/gravity", prefix)), "m/s^2",
+                                 shot->p + model->gravity, 1, 3, 0));
+    if (shot->load_case->target)
+        arrays_add(list, array_float(arrays_keep(list, mem_format("%s/target", prefix)), "m",
+                                     shot->load_case->target[0], 2, model->point_count, 3));
+}
+
+/* In the scene's order, a line each. */
+static char *case_names(const Snapshot *shots, int count)
+{
+    char *names = mem_text("");
+    for (int k = 0; k < count; k++) names = mem_join(names, shots[k].load_case->name, "\n");
+    return names;
+}
+
+static void say_doubt(Run *run, const Snapshot *shot)
+{
+    const BodyOps *body = run->model->body;
+    char *doubt = body->doubt ? body->doubt(run->model, shot) : NULL;
+    if (doubt) progress_say(run->progress, "%s: %s", shot->load_case->name, doubt);
+    mem_free(doubt);
+}
+
+void run_add_final(Run *run, const Snapshot *shots, int count, const char *status, Arrays *list)
+{
+    const Model *model = run->model;
+    add_state(list, model, "state/x", "final", &shots[count - 1]);
+    add_params(list, model->params, shots, count);
+    model->body->add_final(model, &shots[count - 1], run->scene->modes, list);
+    arrays_add(list, array_text("status", status));
+    arrays_add(list, array_text("case_names", arrays_keep(list, case_names(shots, count))));
+    for (int k = 0; k < count; k++) {
+        add_case(list, model, &shots[k]);
+        say_doubt(run, &shots[k]);
+    }
+}
+
+/* ---- State ---- */
+
+bool run_put_state(Run *run, int index, const Kept *rows, int count, Error *err)
+{
+    Arrays list = {0};
+    for (int k = 0; k < count; k++)
+        arrays_add(&list, array_float(rows[k].name, "", rows[k].values, 1, (int)rows[k].count, 0));
+    return arrays_put(&list, run->journal, "state", index, err);
+}
+
+bool run_get_state(Run *run, int index, const Kept *rows, int count, bool *has, Error *err)
+{
+    *has = true;
+    for (int k = 0; *has && k < count; k++) {
+        Array array;
+        if (!journal_find(run->journal, "state", index, rows[k].name, &array, err)) return false;
+        *has = array.data && array.type == ARRAY_FLOAT64 && array_count(&array) == rows[k].count;
+        if (*has && rows[k].count) memcpy(rows[k].values, array.data, rows[k].count * sizeof(double));
+        array_clear(&array);
+    }
+    return true;
+}

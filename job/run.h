@@ -1,0 +1,69 @@
+/* run.h - a job on its way: model, journal, progress and interruption. */
+#pragma once
+#include "base/memory.h"
+#include "base/workers.h"
+#include "model/model.h"
+#include "job/progress.h"
+#include "io/journal.h"
+#include "solve/newton.h"
+
+/* Exit codes of `slender run`. */
+typedef enum RunStatus {
+    RUN_DONE = 0,
+    RUN_NOT_CONVERGED = 1, /* computed, and said so in the result */
+    RUN_USAGE = 2,
+    RUN_REFUSED = 3, /* scene or mesh */
+    RUN_CANNOT_WRITE = 4,
+    RUN_NO_MEMORY = MEM_EXIT_CODE,
+    RUN_INTERRUPTED = 75, /* state saved: go on with --resume */
+} RunStatus;
+
+typedef struct Run {
+    const Scene *scene;
+    Model *model;
+    Journal *journal;
+    Progress *progress;
+    const char *result; /* NAME.vtkhdf */
+    int threads;
+    Workers *side_by_side, **inside; /* run_share_threads */
+    bool unsolved;                   /* nothing was found that could be drawn */
+} Run;
+
+/* The program and the libraries that it runs with, a line each. The caller frees. */
+char *run_versions(void);
+
+/* OpenBLAS's kernels that this run's numbers come from: of a run that goes on with others, a warning, and those before
+ * too: "Haswell, SkylakeX". The caller frees. */
+char *run_kernels(Journal *journal, Error *err);
+
+/* Shares the run's threads out again: so many load cases are to be solved side by side, by the threads that are
+ * returned (NULL: one after the other); those left over work inside their systems. */
+Workers *run_share_threads(Run *run, int at_once);
+void run_release_threads(Run *run);
+
+/* Stops a solve after an interruption (progress.h). */
+NewtonObserver run_observer(Run *run);
+
+/* Puts the scene's tolerances over the defaults. */
+void run_newton(const Run *run, NewtonDef *def);
+
+/* A frame of the result, shown at a time of its own: viewers want each frame's time to be later than that of
+ * the one before. Parameters per face, which seldom change, are left out unless `whole`. */
+bool run_put_frame(Run *run, int index, double shown, const Snapshot *shot, bool whole, Error *err);
+
+/* To the arrays of the kind "final": final/.. and cases/<name>/..; the plain paths are those of the last
+ * state. What a job puts there replaces all that an earlier end has left (arrays_replace). */
+void run_add_final(Run *run, const Snapshot *shots, int count, const char *status, Arrays *list);
+
+/* What a job goes on from, under the kind "state": vectors of numbers by name. */
+typedef struct Kept {
+    const char *name;
+    double *values; /* [count] to be read, or filled */
+    size_t count;
+} Kept;
+
+/* Puts all as one unit. */
+bool run_put_state(Run *run, int index, const Kept *rows, int count, Error *err);
+
+/* *has: all are there, each of its length. False and a sentence where the journal cannot be read. */
+bool run_get_state(Run *run, int index, const Kept *rows, int count, bool *has, Error *err);

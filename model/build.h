@@ -1,0 +1,78 @@
+/* build.h - what the parts of a scene become once a mesh is there: values, selections, loads, fields,
+ * targets.
+ *
+ * Each function takes the entry and the key under which it stands in the scene file, so that refusals point
+ * at the line: they return false after adding an error to the file (yaml_refuse). */
+#pragma once
+#include "model/scene.h"
+#include "model/timed_flux.h"
+#include "surface/select.h"
+#include "shell/shell.h"
+
+typedef struct Build {
+    YamlFile *file;
+    const Mesh *mesh;   /* NULL: of a rod */
+    double size;        /* m, the body's: the scale on which fields vary */
+    double time;        /* s, of formulas; where a motion begins */
+    double duration;    /* s, of a motion; 0: statics */
+    TimedFlux *timed;   /* where a uniform field that depends on time is left; NULL: in statics */
+    double mesh_scale;  /* of the mesh's file; 1 where it is generated */
+    MeshReport *report; /* of warnings; NULL: none are wanted */
+} Build;
+
+/* The part of a rod or of a motion over which a table must have rows, at least: one over less is most likely in another
+ * unit. Beyond its ends a table stays as it is there. */
+#define TABLE_SHARE 0.5
+
+/* What the models of a scene share; `timed` is NULL. The size of a rod is still to be told. */
+Build build_start(const Scene *scene, const Mesh *mesh, YamlFile *file);
+
+/* The path of a key: key("cases[%d].target", c). */
+typedef struct Key {
+    char text[160];
+} Key;
+
+Key key(const char *format, ...) __attribute__((format(printf, 1, 2)));
+
+/* A formula of these variables (NULL-terminated) with its helpers; NULL after a refusal at that key. */
+Formula *build_formula(const Build *b, Key at, char *const *formula, int count, const WhereScene *where,
+                       int where_count, const char *const *variables);
+
+/* x, y, z, r of a position, and with time t: the variables of formulas, in order. */
+extern const char *const build_variables[], *const build_variables_time[];
+enum { BUILD_VARIABLES = 5 };
+void build_position(double *variables, const double *x, double time);
+
+/* The mesh that a scene describes; NULL after a refusal: a key that its shape does not take, too. */
+Mesh *build_mesh(const MeshScene *scene, YamlFile *yaml, MeshReport *report);
+
+/* A mesh file with its coordinates times scale. */
+bool build_read_mesh(const char *path, double scale, MeshFile *file, Error *err);
+
+/* A file with all vertices of the mesh, in another state; scale NAN: that of the mesh's file. Refused where
+ * it is 100 times as large as the mesh, or as small. */
+bool build_state(const Build *b, Key at, const char *path, double scale, MeshFile *file);
+
+/* values[face_count], values[edge_count], values[face_count][3]. */
+bool build_face_numbers(const Build *b, Key at, const NumberScene *scene, double *values);
+bool build_edge_numbers(const Build *b, Key at, const NumberScene *scene, double *values);
+bool build_face_vectors(const Build *b, Key at, const VectorScene *scene, double *values);
+
+/* The vertices of any entry with SELECTION_MEMBERS; NULL: all. found->items is the caller's. */
+#define SELECTION_OF(entry)                                                                                  \
+    (SelectionScene)                                                                                         \
+    {                                                                                                        \
+        .vertices = (entry)->vertices, .box = (entry)->box, .ball = (entry)->ball, .group = (entry)->group,  \
+        .boundary = (entry)->boundary, .vertices_count = (entry)->vertices_count,                            \
+        .box_count = (entry)->box_count                                                                      \
+    }
+bool build_selection(const Build *b, Key at, const SelectionScene *scene, Indices *found);
+
+/* load[3*vertex_count] N: the sum of all entries; the key is the list's. */
+bool build_loads(const Build *b, Key at, const LoadScene *loads, int count, double *load);
+
+/* uniform[3] in T, and the caller's *field NULL; or 0 and a field that varies in space. */
+bool build_flux(const Build *b, Key at, const FluxScene *scene, double *uniform, FluxField **field);
+
+/* target[vertex_count][3] m; a row of NAN where a vertex has none. */
+bool build_target(const Build *b, Key at, const TargetScene *scene, double (*target)[3]);

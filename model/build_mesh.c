@@ -1,0 +1,169 @@
+/* The mesh of a shell, generated or from a file, and files that hold states of it. */
+#include "base/memory.h"
+#include "base/vec3.h"
+#include "model/build.h"
+#include "model/model.h"
+#include "surface/shapes.h"
+#include <math.h>
+
+/* ---- Which keys go with what ---- */
+
+enum { SIZE = 1, CELLS = 2, N = 4, PATTERN = 8, SCALE = 16, WELD = 32 };
+
+static const struct {
+    const char *key, *needed; /* NULL: there is a default */
+} mesh_keys[] = {{"size", "its lengths, e.g. [65 mm, 65 mm]"},
+                 {"cells", "along x and y, e.g. [64, 64]"},
+                 {"n", "the number of its divisions, e.g. 16"},
+                 {"pattern", NULL},
+                 {"scale", NULL},
+                 {"weld", NULL}};
+
+enum { KEY_COUNT = sizeof mesh_keys / sizeof *mesh_keys };
+
+/* A default counts as not given: it does no harm where it has no meaning. */
+static unsigned given_keys(const MeshScene *scene)
+{
+    return (scene->size_count ? SIZE : 0) | (scene->cells_count ? CELLS : 0) |
+           (scene->n != YAML_ABSENT ? N : 0) | (scene->pattern != PATTERN_RIGHT ? PATTERN : 0) |
+           (scene->scale != 1 ? SCALE : 0) | (scene->weld != 0 ? WELD : 0);
+}
+
+static bool make_sheet(const MeshScene *scene, MeshFile *file, Error *err)
+{
+    return shape_sheet(scene->size, scene->cells, (ShapePattern)scene->pattern, file, err);
+}
+static bool make_strip(const MeshScene *scene, MeshFile *file, Error *err)
+{
+    return shape_strip(scene->size[0], scene->size[1], scene->n, (ShapePattern)scene->pattern, file, err);
+}
+static bool make_hexagram(const MeshScene *scene, MeshFile *file, Error *err)
+{
+    return shape_hexagram(scene->size[0], scene->n, file, err);
+}
+static bool make_disc(const MeshScene *scene, MeshFile *file, Error *err)
+{
+    return shape_disc(scene->size[0], scene->n, file, err);
+}
+static bool make_kirigami(const MeshScene *scene, MeshFile *file, Error *err)
+{
+    return shape_kirigami(scene->size[0], scene->n, file, err);
+}
+static bool read_file(const MeshScene *scene, MeshFile *file, Error *err)
+{
+    return build_read_mesh(scene->file, scene->scale, file, err);
+}
+
+/* A source of meshes: the keys that it takes, the number of lengths in `size`. */
+typedef struct Source {
+    const char *name;
+    unsigned takes;
+    int lengths;
+    bool (*make)(const MeshScene *scene, MeshFile *file, Error *err);
+} Source;
+
+static const Source shapes[] = {[MESH_SHEET] = {"a sheet", SIZE | CELLS | PATTERN, 2, make_sheet},
+                                [MESH_STRIP] = {"a strip", SIZE | N | PATTERN, 2, make_strip},
+                                [MESH_HEXAGRAM] = {"a hexagram", SIZE | N, 1, make_hexagram},
+                                [MESH_DISC] = {"a disc", SIZE | N, 1, make_disc},
+                                [MESH_KIRIGAMI] = {"a kirigami", SIZE | N, 1, make_kirigami}};
+static const Source from_file = {"a mesh from a file", SCALE | WELD, 0, read_file};
+
+static Key list_keys(const Source *source)
+{
+    Key list = {""};
+    for (int k = 0; k < KEY_COUNT; k++)
+        if (source->takes >> k & 1)
+            list = key("%s%s%s", list.text, list.text[0] ? ", " : "", mesh_keys[k].key);
+    return list;
+}
+
+static bool check_keys(const MeshScene *scene, const Source *source, YamlFile *yaml)
+{
+    unsigned given = given_keys(scene);
+    bool ok = true;
+    for (int k = 0; k < KEY_COUNT; k++) {
+        bool takes = source->takes >> k & 1, has = given >> k & 1;
+        Key at = key("shell.mesh.%s", mesh_keys[k].key);
+        if (has && !takes)
+            ok = yaml_refuse(yaml, at.text, "%s does not take this key; it takes %s", source->name,
+                             list_keys(source).text);
+        if (takes && !has && mesh_keys[k].needed)
+            ok = yaml_refuse(yaml, "shell.mesh", "%s needs `%s`: %s", source->name, mesh_keys[k].key,
+                             mesh_keys[k].needed);
+    }
+    if (ok && scene->size_count != source->lengths)
+        return yaml_refuse(yaml, "shell.mesh.size", "%s has %s", source->name,
+                           source->lengths == 2 ? "a length and a width: [65 mm, 65 mm]" : "one size: 40 mm");
+    return ok;
+}
+
+/* ---- The mesh ---- */
+
+Build build_start(const Scene *scene, const Mesh *mesh, YamlFile *file)
+{
+    return (Build){.file = file,
+                   .mesh = mesh,
+                   .size = mesh ? mesh_diagonal(mesh) : 0,
+                   .time = scene->time.at,
+                   .duration = model_is_motion(scene->job) ? scene->time.step * scene->time.steps : 0,
+                   .mesh_scale = scene->shell ? scene->shell->mesh.scale : 1};
+}
+
+Mesh *build_mesh(const MeshScene *scene, YamlFile *yaml, MeshReport *report)
+{
+    const Source *source = scene->file ? &from_file : &shapes[scene->shape];
+    MeshFile file = {0};
+    Error err;
+    Mesh *mesh = NULL;
+    if (!check_keys(scene, source, yaml)) return NULL;
+    if (!source->make(scene, &file, &err))
+        yaml_refuse(yaml, scene->file ? "shell.mesh.file" : "shell.mesh", "%s", err.text);
+    else if (!(mesh = mesh_create(&file, scene->weld, report, &err)))
+        yaml_refuse(yaml, "shell.mesh", "%s", err.text);
+    mesh_file_clear(&file);
+    return mesh;
+}
+
+bool build_read_mesh(const char *path, double scale, MeshFile *file, Error *err)
+{
+    if (!mesh_file_read(path, file, err)) return false;
+    for (int i = 0; i < 3 * file->vertex_count; i++) file->vertices[i / 3][i % 3] *= scale;
+    return true;
+}
+
+/* ---- States of the mesh ---- */
+
+/* Of the box around the vertices, m. */
+static double diagonal(const MeshFile *file)
+{
+    double low[3], high[3];
+    for (int i = 0; i < 3 * file->vertex_count; i++) {
+        double x = file->vertices[i / 3][i % 3];
+        low[i % 3] = i < 3 ? x : fmin(low[i % 3], x);
+        high[i % 3] = i < 3 ? x : fmax(high[i % 3], x);
+    }
+    return vec3_length(vec3_sub(vec3_load(high), vec3_load(low)));
+}
+
+/* As far from the size at rest, the file is in another unit. */
+static const double FARTHEST = 100;
+
+bool build_state(const Build *b, Key at, const char *path, double scale, MeshFile *file)
+{
+    Error err;
+    double factor = isnan(scale) ? b->mesh_scale : scale, rest = mesh_diagonal(b->mesh);
+    if (!build_read_mesh(path, factor, file, &err)) return yaml_refuse(b->file, at.text, "%s", err.text);
+    double ratio = diagonal(file) / rest;
+    bool ok = mesh_fits(b->mesh, file->vertex_count) ||
+              yaml_refuse(b->file, at.text, "%s has %d vertices, and the mesh %d: they must be the same ones",
+                          path, file->vertex_count, b->mesh->file_vertex_count);
+    if (ok && !(ratio < FARTHEST && ratio > 1 / FARTHEST))
+        ok = yaml_refuse(
+            b->file, at.text,
+            "%s is %.3g m across and the mesh %.3g m: give its `scale` (it was %g), e.g. 1 for a file in "
+            "metres, 1.0e-3 for one in millimetres",
+            path, ratio * rest, rest, factor);
+    if (!ok) mesh_file_clear(file);
+    return ok;
+}

@@ -1,0 +1,270 @@
+/* Selections, loads, fields and targets. */
+#include "base/memory.h"
+#include "base/vec3.h"
+#include "model/build.h"
+#include "io/image.h"
+#include <math.h>
+#include <string.h>
+
+static const double MU_0 = 4e-7 * M_PI;
+
+bool build_selection(const Build *b, Key at, const SelectionScene *scene, Indices *found)
+{
+    if (!scene) {
+        *found = (Indices){b->mesh->vertex_count, mem_alloc((size_t)b->mesh->vertex_count, sizeof(int))};
+        for (int v = 0; v < found->count; v++) found->items[v] = v;
+        return true;
+    }
+    Selection selection = {.vertices = {scene->vertices_count, scene->vertices},
+                           .group = scene->group,
+                           .boundary = scene->boundary};
+    if ((selection.has_box = scene->box_count > 0)) memcpy(selection.box, scene->box, sizeof selection.box);
+    if ((selection.has_ball = scene->ball != NULL)) {
+        memcpy(selection.center, scene->ball->center, sizeof selection.center);
+        selection.radius = scene->ball->radius;
+    }
+    Error err;
+    return select_vertices(b->mesh, &selection, found, &err) || yaml_refuse(b->file, at.text, "%s", err.text);
+}
+
+/* ---- Dead loads ---- */
+
+static void add_force(double *load, int vertex, double amount, const double *force)
+{
+    for (int i = 0; i < 3; i++) load[3 * vertex + i] += amount * force[i];
+}
+
+/* Along boundary edges with both ends among the vertices: half of each edge's length to either end. */
+static bool add_line(const Build *b, Key at, const LoadScene *entry, const Indices *on, double *load)
+{
+    Indices edges = select_boundary_edges(b->mesh, on);
+    for (int k = 0; k < edges.count; k++) {
+        const int *v = b->mesh->edges[edges.items[k]];
+        double length = vec3_length(vec3_sub(vec3_load(b->mesh->rest[v[0]]), vec3_load(b->mesh->rest[v[1]])));
+        add_force(load, v[0], length / 2, entry->line);
+        add_force(load, v[1], length / 2, entry->line);
+    }
+    int count = edges.count;
+    mem_free(edges.items);
+    return count > 0 || yaml_refuse(b->file, at.text, "no boundary edge has both ends among these vertices");
+}
+
+/* Over faces with all corners among the vertices: a third of each face's area to each corner. */
+static bool add_area(const Build *b, Key at, const LoadScene *entry, const Indices *on, double *load)
+{
+    bool *chosen = mem_alloc((size_t)b->mesh->vertex_count, sizeof *chosen);
+    for (int k = 0; k < on->count; k++) chosen[on->items[k]] = true;
+    int count = 0;
+    for (int f = 0; f < b->mesh->face_count; f++) {
+        const int *v = b->mesh->faces[f];
+        if (!chosen[v[0]] || !chosen[v[1]] || !chosen[v[2]]) continue;
+        for (int i = 0; i < 3; i++) add_force(load, v[i], b->mesh->rest_area[f] / 3, entry->area);
+        count++;
+    }
+    mem_free(chosen);
+    return count > 0 || yaml_refuse(b->file, at.text, "no face has all corners among these vertices");
+}
+
+static bool add_load(const Build *b, Key at, const LoadScene *entry, double *load)
+{
+    Indices on = {0};
+    bool ok = build_selection(b, key("%s.on", at.text), entry->on, &on);
+    if (ok && !isnan(entry->line[0]))
+        ok = add_line(b, at, entry, &on, load);
+    else if (ok && !isnan(entry->area[0]))
+        ok = add_area(b, at, entry, &on, load);
+    else
+        for (int k = 0; ok && k < on.count; k++) add_force(load, on.items[k], 1.0 / on.count, entry->force);
+    mem_free(on.items);
+    return ok;
+}
+
+bool build_loads(const Build *b, Key at, const LoadScene *loads, int count, double *load)
+{
+    bool ok = true;
+    memset(load, 0, 3 * (size_t)b->mesh->vertex_count * sizeof *load);
+    for (int k = 0; k < count; k++) ok = add_load(b, key("%s[%d]", at.text, k), &loads[k], load) && ok;
+    return ok;
+}
+
+/* ---- Fields ---- */
+
+/* A uniform field: its value now, and where time matters later, what it follows from. Takes timed. */
+static bool put_uniform(const Build *b, Key at, TimedFlux timed, bool changes, double *uniform)
+{
+    Error err;
+    bool ok =
+        timed_flux_eval(&timed, b->time, uniform, &err) || yaml_refuse(b->file, at.text, "%s", err.text);
+    if (ok && b->timed && changes)
+        *b->timed = timed;
+    else
+        timed_flux_clear(&timed);
+    return ok;
+}
+
+/* A formula that depends on time only is a uniform field. */
+static bool flux_formula(const Build *b, Key at, const FluxScene *scene, FluxField **field, double *uniform)
+{
+    at = key("%s.formula", at.text);
+    Formula *formula =
+        build_formula(b, at, scene->formula, 3, scene->where, scene->where_count, build_variables_time);
+    if (!formula) return false;
+    bool varies = false;
+    for (int k = 0; k < 4; k++) varies |= formula_uses(formula, build_variables_time[k]);
+    if (!varies)
+        return put_uniform(b, at, (TimedFlux){.formula = formula}, formula_uses(formula, "t"), uniform);
+    *field = flux_field_formula(formula, b->size);
+    return true;
+}
+
+/* In statics a table must have rows around that time, in a motion over a good part of it. */
+static bool check_times(const Build *b, Key at, const char *path, const Table *table)
+{
+    int last = table->rows - 1;
+    double from = table->values[0], to = table->values[(size_t)table->columns * (size_t)last],
+           end = b->time + b->duration, covered = fmin(to, end) - fmax(from, b->time);
+    const double little = 0.01;
+    if (covered >= (1 - 1e-9) * TABLE_SHARE * b->duration) {
+        if (b->duration > 0 && b->duration < little * (to - from))
+            mesh_warn(b->report,
+                      "%s: t goes from %g to %g s, and the motion from %g to %g s only: is t in seconds?",
+                      path, from, to, b->time, end);
+        return true;
+    }
+    if (b->duration == 0)
+        return yaml_refuse(b->file, at.text,
+                           "%s:%d: t goes from %g to %g s, and the field is needed at %g s (time.at)", path,
+                           table->line[last], from, to, b->time);
+    return yaml_refuse(b->file, at.text,
+                       "%s:%d: t goes from %g to %g s, and the motion from %g to %g s: rows along half of it "
+                       "at least are needed",
+                       path, table->line[last], from, to, b->time, end);
+}
+
+static bool flux_table(const Build *b, Key at, const char *path, double *uniform)
+{
+    TimedFlux timed = {0};
+    Error err;
+    at = key("%s.file", at.text);
+    if (!timed_flux_read(path, &timed, &err)) return yaml_refuse(b->file, at.text, "%s", err.text);
+    if (!check_times(b, at, path, &timed.table)) {
+        timed_flux_clear(&timed);
+        return false;
+    }
+    return put_uniform(b, at, timed, true, uniform);
+}
+
+bool build_flux(const Build *b, Key at, const FluxScene *scene, double *uniform, FluxField **field)
+{
+    *field = NULL;
+    memset(uniform, 0, 3 * sizeof *uniform);
+    if (scene->formula_count) return flux_formula(b, at, scene, field, uniform);
+    if (scene->file) return flux_table(b, at, scene->file, uniform);
+    if (scene->dipole)
+        *field = flux_field_dipole(scene->dipole->at, scene->dipole->moment);
+    else if (scene->magnet) {
+        double moment[3];
+        for (int i = 0; i < 3; i++) moment[i] = scene->magnet->remanence[i] * scene->magnet->volume / MU_0;
+        *field = flux_field_dipole(scene->magnet->at, moment);
+    } else
+        memcpy(uniform, scene->value, sizeof scene->value);
+    return true;
+}
+
+/* ---- Targets ---- */
+
+static bool target_from_file(const Build *b, Key at, const TargetScene *scene, double (*target)[3])
+{
+    MeshFile file = {0};
+    if (!build_state(b, at, scene->file, scene->scale, &file)) return false;
+    for (int v = 0; v < b->mesh->vertex_count; v++)
+        memcpy(target[v], file.vertices[mesh_row(b->mesh, file.vertex_count, v)], sizeof *target);
+    mesh_file_clear(&file);
+    return true;
+}
+
+static bool target_from_image(const Build *b, Key at, const TargetScene *scene, double (*target)[3])
+{
+    Image image = {0};
+    Error err;
+    if (!image_read(scene->height_map, &image, &err)) return yaml_refuse(b->file, at.text, "%s", err.text);
+    double low[3], high[3];
+    mesh_bounding_box(b->mesh, low, high);
+    for (int v = 0; v < b->mesh->vertex_count; v++) {
+        const double *x = b->mesh->rest[v];
+        double u = (x[0] - low[0]) / (high[0] - low[0]), w = (high[1] - x[1]) / (high[1] - low[1]);
+        target[v][2] = scene->height * image_sample(&image, u, w);
+    }
+    image_clear(&image);
+    return true;
+}
+
+static double segment_distance(const double *segment, const double *x)
+{
+    double ax = segment[2] - segment[0], ay = segment[3] - segment[1], bx = x[0] - segment[0],
+           by = x[1] - segment[1];
+    double length2 = ax * ax + ay * ay, s = length2 > 0 ? (ax * bx + ay * by) / length2 : 0;
+    s = fmin(fmax(s, 0), 1);
+    return hypot(bx - s * ax, by - s * ay);
+}
+
+/* A ridge (1 + cos(pi d/width))/2 of the distance to the nearest segment: `width` wide at half its height. */
+static void target_from_strokes(const Build *b, const TargetScene *scene, double (*target)[3])
+{
+    for (int v = 0; v < b->mesh->vertex_count; v++) {
+        double d = INFINITY;
+        for (int k = 0; k < scene->strokes_count; k++)
+            d = fmin(d, segment_distance(scene->strokes[k], b->mesh->rest[v]));
+        target[v][2] = d < scene->width ? scene->height * (1 + cos(M_PI * d / scene->width)) / 2 : 0;
+    }
+}
+
+static bool target_from_formula(const Build *b, Key at, const TargetScene *scene, double (*target)[3])
+{
+    Formula *formula =
+        build_formula(b, at, scene->formula, 3, scene->where, scene->where_count, build_variables);
+    bool ok = formula != NULL;
+    Error err;
+    for (int v = 0; ok && v < b->mesh->vertex_count; v++) {
+        double variables[BUILD_VARIABLES];
+        build_position(variables, b->mesh->rest[v], 0);
+        ok = formula_eval(formula, variables, target[v], &err) ||
+             yaml_refuse(b->file, at.text, "%s", err.text);
+    }
+    formula_destroy(formula);
+    return ok;
+}
+
+/* Drops the targets of vertices that are not among those chosen. */
+static bool keep_chosen(const Build *b, Key at, const TargetScene *scene, double (*target)[3])
+{
+    if (!scene->on) return true;
+    Indices chosen = {0};
+    bool ok = build_selection(b, at, scene->on, &chosen);
+    for (int v = 0, k = 0; ok && v < b->mesh->vertex_count; v++)
+        if (k < chosen.count && chosen.items[k] == v)
+            k++;
+        else
+            target[v][0] = target[v][1] = target[v][2] = NAN;
+    mem_free(chosen.items);
+    return ok;
+}
+
+bool build_target(const Build *b, Key at, const TargetScene *scene, double (*target)[3])
+{
+    memcpy(target, b->mesh->rest, (size_t)b->mesh->vertex_count * sizeof *target);
+    if ((scene->height_map || scene->strokes_count) && isnan(scene->height))
+        return yaml_refuse(b->file, at.text, "a height map and strokes need `height`, e.g. height: 5 mm");
+    if (scene->strokes_count && isnan(scene->width))
+        return yaml_refuse(b->file, at.text, "strokes need `width`, e.g. width: 6 mm");
+    bool ok = true;
+    if (scene->file)
+        ok = target_from_file(b, key("%s.file", at.text), scene, target);
+    else if (scene->height_map)
+        ok = target_from_image(b, key("%s.height_map", at.text), scene, target);
+    else if (scene->strokes_count)
+        target_from_strokes(b, scene, target);
+    else
+        ok = target_from_formula(b, key("%s.formula", at.text), scene, target);
+    return ok && keep_chosen(b, key("%s.on", at.text), scene, target);
+}

@@ -1,0 +1,307 @@
+/* Values over faces and edges: the same everywhere, from a file, by formula or by group. */
+#include "base/memory.h"
+#include "model/build.h"
+#include "io/table.h"
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+const char *const build_variables[] = {"x", "y", "z", "r", NULL};
+const char *const build_variables_time[] = {"x", "y", "z", "r", "t", NULL};
+
+Key key(const char *format, ...)
+{
+    Key k;
+    va_list args;
+    va_start(args, format);
+    vsnprintf(k.text, sizeof k.text, format, args);
+    va_end(args);
+    return k;
+}
+
+void build_position(double *variables, const double *x, double time)
+{
+    memcpy(variables, x, 3 * sizeof *x);
+    variables[3] = hypot(x[0], x[1]);
+    variables[4] = time;
+}
+
+Formula *build_formula(const Build *b, Key at, char *const *formula, int count, const WhereScene *where,
+                       int where_count, const char *const *variables)
+{
+    FormulaHelper *helpers = mem_alloc((size_t)where_count, sizeof *helpers);
+    for (int k = 0; k < where_count; k++) helpers[k] = (FormulaHelper){where[k].name, where[k].formula};
+    Error err;
+    Formula *result =
+        formula_create((const char *const *)formula, count, helpers, where_count, variables, &err);
+    if (!result) yaml_refuse(b->file, at.text, "%s", err.text);
+    mem_free(helpers);
+    return result;
+}
+
+/* Where a formula of a face or an edge is evaluated at rest. */
+static void middle(const Mesh *mesh, const int *vertices, int count, double *x)
+{
+    for (int i = 0; i < 3; i++) {
+        x[i] = 0;
+        for (int k = 0; k < count; k++) x[i] += mesh->rest[vertices[k]][i] / count;
+    }
+}
+
+/* Evaluates the formula over elements of `corners` vertices each, `width` numbers per element. */
+static bool from_formula(const Build *b, Key at, Formula *formula, const int *vertices, int corners,
+                         int count, int width, double *values)
+{
+    Error err;
+    bool ok = formula != NULL;
+    for (int e = 0; ok && e < count; e++) {
+        double x[3], variables[BUILD_VARIABLES];
+        middle(b->mesh, vertices + e * corners, corners, x);
+        build_position(variables, x, 0);
+        ok = formula_eval(formula, variables, values + e * width, &err) ||
+             yaml_refuse(b->file, at.text, "%s", err.text);
+    }
+    formula_destroy(formula);
+    return ok;
+}
+
+static bool from_table(const Build *b, Key at, const char *path, int width, double *values)
+{
+    Table table = {0};
+    Error err;
+    bool ok = table_read(path, width == 1 ? "value [Pa]" : "x [A/m], y [A/m], z [A/m]", &table, &err) ||
+              yaml_refuse(b->file, at.text, "%s", err.text);
+    if (ok && table.rows != b->mesh->face_count)
+        ok =
+            yaml_refuse(b->file, at.text, "%s has %d rows, and the mesh %d faces: one row per face is needed",
+                        path, table.rows, b->mesh->face_count);
+    if (ok) memcpy(values, table.values, (size_t)table.rows * (size_t)width * sizeof *values);
+    table_clear(&table);
+    return ok;
+}
+
+/* The group of faces or edges; a name may stand for both. */
+static const MeshGroup *find_group(const Build *b, Key at, const char *name, int dim, const char *needed)
+{
+    const MeshGroup *group = mesh_group(b->mesh, name, dim);
+    if (group) return group;
+    bool other = false;
+    for (int d = 0; d <= 2; d++) other |= mesh_group(b->mesh, name, d) != NULL;
+    if (other)
+        yaml_refuse(b->file, at.text, "the group '%s' has no %s", name, needed);
+    else
+        yaml_refuse(b->file, at.text, "the mesh has no group '%s'", name);
+    return NULL;
+}
+
+/* ---- Groups ---- */
+
+/* What stands in a scene under `groups`: entries of this size that begin with a group's name, and the values
+ * behind it. */
+typedef struct GroupList {
+    const void *entries;
+    size_t size;
+    int count, dim;
+} GroupList;
+
+static const char *group_name(const GroupList *list, int k)
+{
+    return *(char *const *)((const char *)list->entries + (size_t)k * list->size);
+}
+
+static bool same_value(const GroupList *list, int k, int other)
+{
+    const char *entries = list->entries, *a = entries + (size_t)k * list->size,
+               *b = entries + (size_t)other * list->size;
+    return !memcmp(a + sizeof(char *), b + sizeof(char *), list->size - sizeof(char *));
+}
+
+/* The face or edge that is a group's member; -1 after a refusal. */
+static int element_of(const Build *b, Key at, const MeshGroup *group, int member)
+{
+    if (group->dim == 2) return group->members[member];
+    const Mesh *mesh = b->mesh;
+    int v = group->members[2 * member], w = group->members[2 * member + 1], edge = mesh_edge(mesh, v, w);
+    if (edge < 0)
+        yaml_refuse(b->file, at.text, "the line from vertex %d to %d of the group is no edge of the mesh",
+                    mesh->file_vertex[v], mesh->file_vertex[w]);
+    return edge;
+}
+
+/* Gives a group what belongs to it and to no smaller one; sizes[k] is the size of group k. */
+static bool take_elements(const Build *b, Key at, const GroupList *list, int k, const MeshGroup *group,
+                          int *sizes, int *owner)
+{
+    sizes[k] = group->count;
+    for (int m = 0; m < group->count; m++) {
+        int e = element_of(b, at, group, m), other = e < 0 ? -1 : owner[e];
+        if (e < 0) return false;
+        if (other >= 0 && sizes[other] == group->count && !same_value(list, k, other))
+            return yaml_refuse(
+                b->file, at.text,
+                "the groups '%s' and '%s' share %s %d and are as large as one another: which value it "
+                "has cannot be told",
+                group->name, group_name(list, other), group->dim == 2 ? "face" : "edge", e);
+        if (other < 0 || group->count < sizes[other]) owner[e] = k;
+    }
+    return true;
+}
+
+/* owner[element]: the entry whose value it has, -1: none. What lies in several groups belongs to the smallest
+ * one, so that the order of the entries means nothing. */
+static bool assign_groups(const Build *b, Key at, const GroupList *list, int element_count, int *owner)
+{
+    int *sizes = mem_alloc((size_t)list->count, sizeof *sizes);
+    bool ok = true;
+    for (int e = 0; e < element_count; e++) owner[e] = -1;
+    for (int k = 0; ok && k < list->count; k++) {
+        Key here = key("%s.groups.%s", at.text, group_name(list, k));
+        const MeshGroup *group =
+            find_group(b, here, group_name(list, k), list->dim, list->dim == 2 ? "faces" : "edges");
+        ok = group && take_elements(b, here, list, k, group, sizes, owner);
+    }
+    mem_free(sizes);
+    return ok;
+}
+
+static bool put_numbers(const Build *b, Key at, const NumberScene *scene, int dim, int count, double *values)
+{
+    GroupList list = {scene->groups, sizeof *scene->groups, scene->groups_count, dim};
+    int *owner = mem_alloc((size_t)count, sizeof *owner);
+    bool ok = assign_groups(b, at, &list, count, owner);
+    for (int e = 0; e < count; e++)
+        if (owner[e] >= 0) values[e] = scene->groups[owner[e]].value;
+    mem_free(owner);
+    return ok;
+}
+
+static bool put_vectors(const Build *b, Key at, const VectorScene *scene, int count, double *values)
+{
+    GroupList list = {scene->groups, sizeof *scene->groups, scene->groups_count, 2};
+    int *owner = mem_alloc((size_t)count, sizeof *owner);
+    bool ok = assign_groups(b, at, &list, count, owner);
+    for (int f = 0; f < count; f++)
+        if (owner[f] >= 0) memcpy(values + 3 * f, scene->groups[owner[f]].value, 3 * sizeof *values);
+    mem_free(owner);
+    return ok;
+}
+
+/* After the groups: NAN is left where an element is in none and there is no `other`. */
+static bool check_covered(const Build *b, Key at, const double *values, int count, int width,
+                          const char *element)
+{
+    int missing = 0;
+    for (int e = 0; e < count; e++) missing += isnan(values[e * width]) ? 1 : 0;
+    if (!missing) return true;
+    return yaml_refuse(b->file, at.text, "%d %s in no group listed here: give `other`, the value elsewhere",
+                       missing, element);
+}
+
+/* A range check for numbers that come from files and formulas; the table checks those in the scene. */
+static bool check_range(const Build *b, Key at, const double *values, int count, bool zero_allowed)
+{
+    for (int e = 0; e < count; e++)
+        if (!(values[e] > 0 || (zero_allowed && values[e] == 0)))
+            return yaml_refuse(b->file, at.text, "the value of number %d is %g; it must be %s 0", e,
+                               values[e], zero_allowed ? "at least" : "more than");
+    return true;
+}
+
+bool build_face_numbers(const Build *b, Key at, const NumberScene *scene, double *values)
+{
+    int count = b->mesh->face_count;
+    for (int f = 0; f < count; f++) values[f] = scene->groups_count ? scene->other : scene->value;
+    bool ok = true;
+    if (scene->file) ok = from_table(b, key("%s.file", at.text), scene->file, 1, values);
+    if (scene->formula) {
+        at = key("%s.formula", at.text);
+        Formula *formula =
+            build_formula(b, at, &scene->formula, 1, scene->where, scene->where_count, build_variables);
+        ok = from_formula(b, at, formula, b->mesh->faces[0], 3, count, 1, values);
+    }
+    ok = ok && put_numbers(b, at, scene, 2, count, values);
+    return ok && check_covered(b, at, values, count, 1, "faces are") &&
+           check_range(b, at, values, count, false);
+}
+
+/* The edge that a row names by its vertices, in the file's numbers; -1 after a refusal. */
+static int fold_edge(const Build *b, Key at, const char *path, const Table *table, int row)
+{
+    const double *line = table->values + 3 * row;
+    int v[2] = {-1, -1}, edge = -1;
+    Error err;
+    bool ok = true;
+    for (int i = 0; ok && i < 2; i++) {
+        ok = line[i] == floor(line[i]) && fabs(line[i]) < 1e9;
+        if (!ok)
+            yaml_refuse(b->file, at.text, "%s:%d: %g is no vertex", path, table->line[row], line[i]);
+        else if (!(ok = mesh_vertex(b->mesh, (int)line[i], &v[i], &err)))
+            yaml_refuse(b->file, at.text, "%s:%d: %s", path, table->line[row], err.text);
+    }
+    if (ok && (edge = mesh_edge(b->mesh, v[0], v[1])) < 0)
+        yaml_refuse(b->file, at.text, "%s:%d: vertices %g and %g share no edge", path, table->line[row],
+                    line[0], line[1]);
+    return edge;
+}
+
+/* Rows v0, v1, value. */
+static bool fold_table(const Build *b, Key at, const char *path, double *values)
+{
+    Table table = {0};
+    Error err;
+    int *owner = mem_alloc((size_t)b->mesh->edge_count, sizeof *owner); /* the edge's line; 0: none */
+    bool ok =
+        table_read(path, "v0, v1, value", &table, &err) || yaml_refuse(b->file, at.text, "%s", err.text);
+    for (int e = 0; e < b->mesh->edge_count; e++) values[e] = 1;
+    for (int row = 0; ok && row < table.rows; row++) {
+        int edge = fold_edge(b, at, path, &table, row);
+        double value = table.values[3 * row + 2];
+        ok = edge >= 0;
+        if (ok && owner[edge] && values[edge] != value)
+            ok = yaml_refuse(b->file, at.text,
+                             "%s:%d: the edge of vertices %g and %g is %g here and %g in line %d", path,
+                             table.line[row], table.values[3 * row], table.values[3 * row + 1], value,
+                             values[edge], owner[edge]);
+        if (ok) values[edge] = value, owner[edge] = table.line[row];
+    }
+    mem_free(owner);
+    table_clear(&table);
+    return ok;
+}
+
+bool build_edge_numbers(const Build *b, Key at, const NumberScene *scene, double *values)
+{
+    int count = b->mesh->edge_count;
+    for (int e = 0; e < count; e++) values[e] = scene->groups_count ? scene->other : scene->value;
+    bool ok = true;
+    if (scene->file) ok = fold_table(b, key("%s.file", at.text), scene->file, values);
+    if (scene->formula) {
+        at = key("%s.formula", at.text);
+        Formula *formula =
+            build_formula(b, at, &scene->formula, 1, scene->where, scene->where_count, build_variables);
+        ok = from_formula(b, at, formula, b->mesh->edges[0], 2, count, 1, values);
+    }
+    ok = ok && put_numbers(b, at, scene, 1, count, values);
+    return ok && check_covered(b, at, values, count, 1, "edges are") &&
+           check_range(b, at, values, count, true);
+}
+
+bool build_face_vectors(const Build *b, Key at, const VectorScene *scene, double *values)
+{
+    int count = b->mesh->face_count;
+    for (int i = 0; i < 3 * count; i++)
+        values[i] = scene->groups_count ? scene->other[i % 3] : scene->value[i % 3];
+    for (int i = 0; scene->groups_count && i < 3 * count; i++)
+        if (isnan(scene->other[0])) values[i] = NAN;
+    bool ok = true;
+    if (scene->file) ok = from_table(b, key("%s.file", at.text), scene->file, 3, values);
+    if (scene->formula) {
+        at = key("%s.formula", at.text);
+        Formula *formula =
+            build_formula(b, at, scene->formula, 3, scene->where, scene->where_count, build_variables);
+        ok = from_formula(b, at, formula, b->mesh->faces[0], 3, count, 3, values);
+    }
+    ok = ok && put_vectors(b, at, scene, count, values);
+    return ok && check_covered(b, at, values, count, 3, "faces are");
+}

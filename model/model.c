@@ -1,0 +1,241 @@
+#include "model/model.h"
+#include "base/memory.h"
+#include "base/plain.h"
+#include "model/build.h"
+#include "spline/front/drawing.h"
+#include "job/job.h"
+#include "rod/front/rod_model.h"
+#include <math.h>
+#include <string.h>
+
+bool model_move(const Model *model, double time, double part, double *x, Error *err)
+{
+    return !model->moves || model->body->move(model, time, part, x, err);
+}
+
+bool model_load(const Model *model, double time, double *p, Error *err)
+{
+    const TimedFlux *timed = &model->flux_of_time;
+    return !timed_flux_is_given(timed) || timed_flux_eval(timed, time, p + model->flux_density, err);
+}
+
+/* ---- Loads of a case ---- */
+
+bool model_put_flux(Model *model, const Build *b, const char *at, const FluxScene *flux, double *p)
+{
+    FluxField *field;
+    if (!build_flux(b, key("%s", at), flux, p + model->flux_density, &field)) return false;
+    int number = field ? flux_fields_add(model->fields, model->params, field) : -1;
+    for (int k = 0; k < model->fields->count; k++) p[model->field_scale + k] = k == number;
+    return true;
+}
+
+size_t model_params_room(const Model *model, const Scene *scene)
+{
+    return (size_t)(model->params->size + 1 + scene->cases_count + scene->sequence_count);
+}
+
+/* Field, loads and gravity of a case or stage, where it says them. */
+static bool put_loads(Model *model, const Build *b, Key at, const FluxScene *flux, const LoadScene *loads,
+                      int count, const double *gravity, double *p)
+{
+    if (!isnan(gravity[0])) memcpy(p + model->gravity, gravity, 3 * sizeof *gravity);
+    bool ok = !loads || model->body->put_loads(model, b, key("%s.loads", at.text).text, loads, count, p);
+    return (!flux || model_put_flux(model, b, key("%s.flux_density", at.text).text, flux, p)) && ok;
+}
+
+static ModelCase *add_case(Model *model, const char *name, const double *p, size_t room, double time)
+{
+    size_t count = (size_t)model->case_count++;
+    model->cases = mem_resize(model->cases, count, count + 1, sizeof *model->cases);
+    ModelCase *c = &model->cases[count];
+    *c = (ModelCase){
+        .name = name ? mem_text(name) : mem_format("case%zu", count + 1), .weight = 1, .stage_count = 1};
+    c->stages = mem_alloc(1, sizeof *c->stages);
+    c->stages[0] = (Stage){mem_copy(p, room, sizeof *p), time};
+    return c;
+}
+
+static bool add_target(Model *model, const Build *b, Key at, const TargetScene *target, ModelCase *c)
+{
+    if (!target) return true;
+    c->target = mem_alloc((size_t)model->point_count, sizeof *c->target);
+    return model->body->put_target(model, b, at.text, target, c->target);
+}
+
+static bool add_stages(Model *model, const Build *b, const Scene *scene, const double *p, size_t room)
+{
+    ModelCase *c = add_case(model, "sequence", p, room, scene->time.at);
+    c->stages = mem_resize(c->stages, 1, (size_t)scene->sequence_count, sizeof *c->stages);
+    c->stage_count = scene->sequence_count;
+    bool ok = true;
+    for (int k = 0; k < scene->sequence_count; k++) {
+        const StageScene *stage = &scene->sequence[k];
+        Build now = *b;
+        if (k > 0)
+            c->stages[k] = (Stage){mem_copy(c->stages[k - 1].p, room, sizeof *p), c->stages[k - 1].time};
+        if (!isnan(stage->time)) c->stages[k].time = stage->time;
+        now.time = c->stages[k].time;
+        ok = put_loads(model, &now, key("sequence[%d]", k), stage->flux_density, stage->loads,
+                       stage->loads_count, stage->gravity, c->stages[k].p) &&
+             ok;
+    }
+    return ok;
+}
+
+enum { CASE_NAME_MAX = 250 };
+
+/* It becomes a group of the result, and a line of case_names. */
+static bool is_name(const char *name)
+{
+    return *name && plain_is(name) && !strchr(name, '/') && strlen(name) <= CASE_NAME_MAX &&
+           strcmp(name, ".");
+}
+
+bool model_cases(Model *model, const Build *b, const Scene *scene, const double *p, size_t room)
+{
+    if (scene->sequence_count && scene->cases_count)
+        return yaml_refuse(b->file, "sequence", "a scene has either cases or a sequence");
+    if (scene->sequence_count) return add_stages(model, b, scene, p, room);
+    bool ok = true;
+    for (int k = 0; k < scene->cases_count; k++) {
+        const CaseScene *from = &scene->cases[k];
+        ModelCase *c = add_case(model, from->name, p, room, scene->time.at);
+        c->weight = from->weight;
+        Key at = key("cases[%d]", k);
+        for (int i = 0; i < k; i++)
+            if (!strcmp(model->cases[i].name, c->name))
+                ok = yaml_refuse(b->file, at.text, "there are two cases named '%s'", c->name);
+        if (!is_name(c->name))
+            ok = yaml_refuse(
+                b->file, at.text,
+                "a case's name is a word without '/' or control characters, of at most %d bytes, and "
+                "not '.'",
+                CASE_NAME_MAX);
+        ok = put_loads(model, b, at, from->flux_density, from->loads, from->loads_count, from->gravity,
+                       c->stages[0].p) &&
+             ok;
+        bool own = from->target != NULL;
+        ok = add_target(model, b, own ? key("%s.target", at.text) : key("target"),
+                        own ? from->target : scene->target, c) &&
+             ok;
+    }
+    if (!scene->cases_count)
+        ok = add_target(model, b, key("target"), scene->target,
+                        add_case(model, NULL, p, room, scene->time.at));
+    return ok;
+}
+
+/* ---- The whole ---- */
+
+bool model_is_motion(int job)
+{
+    return job == JOB_SIMULATE || job == JOB_TRAJECTORY;
+}
+
+bool model_velocity(Model *model, const Build *b, const char *at, const VelocityScene *scene,
+                    const double *place)
+{
+    const System *sys = model->cases[0].sys;
+    double *v = model->cases[0].state.v;
+    Error err;
+    if (!scene) return true;
+    Formula *formula = NULL;
+    if (scene->formula)
+        formula = build_formula(b, key("%s", at), scene->formula, 3, scene->where, scene->where_count,
+                                build_variables);
+    bool ok = formula || !scene->formula;
+    for (int k = 0; ok && k < model->point_count; k++) {
+        double variables[BUILD_VARIABLES], speed[3];
+        memcpy(speed, scene->value, sizeof speed);
+        build_position(variables, place + 3 * k, 0);
+        if (formula && !formula_eval(formula, variables, speed, &err))
+            ok = yaml_refuse(b->file, at, "%s", err.text);
+        for (int i = 0; i < 3; i++) v[3 * k + i] = system_is_fixed(sys, 3 * k + i) ? 0 : speed[i];
+    }
+    formula_destroy(formula);
+    return ok;
+}
+
+static bool check_motion(const Scene *scene, YamlFile *file)
+{
+    const char *what = scene->job == JOB_SIMULATE ? "simulation" : "trajectory";
+    bool known = !isnan(scene->time.step) && scene->time.steps != YAML_ABSENT;
+    return !model_is_motion(scene->job) || known ||
+           yaml_refuse(file, "time", "a %s needs `time`, e.g. time: {step: 1 ms, steps: 100}", what);
+}
+
+/* Which jobs there are for what. */
+static bool check_job(const Scene *scene, YamlFile *file)
+{
+    int job = scene->job;
+    bool rods_only = job == JOB_INVERT || job == JOB_IDENTIFY;
+    bool shells_only = job == JOB_EVALUATE || job == JOB_TRAJECTORY;
+    bool fits = scene->spline ? job == JOB_DRAW
+                : scene->rod  ? job != JOB_DRAW && !shells_only
+                              : job != JOB_DRAW && !rods_only;
+    const char *has = scene->spline ? "a drawing" : scene->rod ? "a rod" : "a shell";
+    return fits || yaml_refuse(file, "job", "%s is a job for %s, and the scene has %s", job_names[job],
+                               rods_only         ? "rods"
+                               : shells_only     ? "shells"
+                               : job == JOB_DRAW ? "drawings"
+                                                 : "shells and rods",
+                               has);
+}
+
+static bool build_body(Model *model, const Scene *scene, YamlFile *file)
+{
+    if (!check_motion(scene, file)) return false;
+    return scene->rod ? model_rod(model, scene, file) : model_shell(model, scene, file);
+}
+
+Model *model_create(const Scene *scene, YamlFile *file)
+{
+    Model *model = mem_alloc(1, sizeof *model);
+    bool designed = scene->job == JOB_DESIGN || scene->job == JOB_TRAJECTORY;
+    bool ok = check_job(scene, file) && yaml_check_use(file, &scene_table) &&
+              (scene->spline ? model_drawing(model, scene, file) : build_body(model, scene, file)) &&
+              (!designed || model_design(model, scene, file));
+    if (ok) return model;
+    model_destroy(model);
+    return NULL;
+}
+
+void model_start_case(ModelCase *c, const double *x)
+{
+    c->state = system_state(c->sys);
+    memcpy(c->state.x, x, (size_t)c->state.dofs * sizeof *x);
+    c->state.time = c->stages[0].time;
+}
+
+static void clear_case(ModelCase *c)
+{
+    for (int s = 0; s < c->stage_count; s++) mem_free(c->stages[s].p);
+    for (int k = 0; k < c->objective_count; k++) objective_destroy(c->objectives[k]);
+    system_destroy(c->sys);
+    mem_free(c->name);
+    state_destroy(&c->state);
+    mem_free(c->stages);
+    mem_free(c->objectives);
+    mem_free(c->target);
+}
+
+void model_destroy(Model *model)
+{
+    if (!model) return;
+    for (int k = 0; k < model->case_count; k++) clear_case(&model->cases[k]);
+    for (int m = 0; m < model->motion_count; m++) {
+        formula_destroy(model->motions[m].formula);
+        mem_free(model->motions[m].vertices.items);
+    }
+    design_clear(&model->design);
+    timed_flux_clear(&model->flux_of_time);
+    mesh_report_clear(&model->report);
+    shell_destroy(model->shell);
+    rod_model_destroy(model->rod);
+    drawing_destroy(model->drawing);
+    mem_free(model->cases);
+    mem_free(model->motions);
+    mem_free(model->x);
+    mem_free(model);
+}

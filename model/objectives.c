@@ -1,0 +1,251 @@
+/* The scene's objectives. */
+#include "base/memory.h"
+#include "model/build.h"
+#include "job/job.h"
+#include "model/model.h"
+#include "optim/objectives.h"
+#include "shell/smoothness.h"
+#include <limits.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- Shapes ---- */
+
+static bool target_objective(const ModelCase *c, int vertex_count, YamlFile *file, Key at, double weight,
+                             Objective *objective)
+{
+    if (!c->target) return yaml_refuse(file, at.text, "the case '%s' has no target", c->name);
+    int *vertices = mem_alloc((size_t)vertex_count, sizeof *vertices), count = 0;
+    double(*target)[3] = mem_alloc((size_t)vertex_count, sizeof *target);
+    for (int v = 0; v < vertex_count; v++) {
+        if (isnan(c->target[v][0])) continue;
+        vertices[count] = v;
+        memcpy(target[count++], c->target[v], sizeof *target);
+    }
+    *objective = objective_target(count, vertices, (const double(*)[3])target, weight);
+    mem_free(vertices);
+    mem_free(target);
+    return true;
+}
+
+/* Of a rod: all nodes, or its end. */
+static bool rod_height(const Model *model, const Build *b, Key at, const char *of, double weight,
+                       Objective *objective)
+{
+    bool tip = !strcmp(of, "tip");
+    if (!tip && strcmp(of, "all")) return yaml_refuse(b->file, at.text, "of a rod it is `all` or `tip`");
+    int count = tip ? 1 : model->point_count, *nodes = mem_alloc((size_t)count, sizeof *nodes);
+    for (int i = 0; i < count; i++) nodes[i] = tip ? model->point_count - 1 : i;
+    *objective = objective_height(count, nodes, weight);
+    mem_free(nodes);
+    return true;
+}
+
+static bool height_objective(const Model *model, const Build *b, Key at, const ObjectiveScene *from,
+                             double weight, Objective *objective)
+{
+    if (model->rod) return rod_height(model, b, at, from->of, weight, objective);
+    SelectionScene group = {.group = from->of};
+    Indices chosen = {0};
+    if (!build_selection(b, at, strcmp(from->of, "all") ? &group : NULL, &chosen)) return false;
+    *objective = objective_height(chosen.count, chosen.items, weight);
+    mem_free(chosen.items);
+    return true;
+}
+
+/* ---- Points ---- */
+
+/* The vertices and weights of a probe, which the caller frees; count 0 after a refusal. */
+static Probe find_probe(const Model *model, const Build *b, Key at, const char *vertex)
+{
+    const Mesh *mesh = b->mesh;
+    if (!vertex) { /* the centre of mass */
+        int *all = mem_alloc((size_t)mesh->vertex_count, sizeof *all);
+        double *mass = mem_alloc((size_t)mesh->vertex_count, sizeof *mass), total = 0;
+        shell_vertex_mass(model->shell, mass);
+        for (int v = 0; v < mesh->vertex_count; v++) all[v] = v, total += mass[v];
+        for (int v = 0; v < mesh->vertex_count; v++) mass[v] /= total;
+        return (Probe){mesh->vertex_count, all, mass};
+    }
+    int *chosen = mem_alloc(1, sizeof *chosen);
+    double one = 1;
+    char *end;
+    long number = strtol(vertex, &end, 10);
+    const MeshGroup *group = mesh_group(mesh, vertex, 0);
+    Error err;
+    if (group && group->count == 1)
+        *chosen = group->members[0];
+    else if (!*vertex || *end || number < 0 || number > INT_MAX ||
+             !mesh_vertex(mesh, (int)number, chosen, &err)) {
+        mem_free(chosen);
+        yaml_refuse(b->file, at.text,
+                    "vertex is '%s'; it must be a number from 0 to %d or the name of a group of one vertex",
+                    vertex, mesh->file_vertex_count - 1);
+        return (Probe){0};
+    }
+    return (Probe){1, chosen, mem_copy(&one, 1, sizeof one)};
+}
+
+static void free_probe(Probe probe)
+{
+    mem_free((void *)probe.vertices);
+    mem_free((void *)probe.weights);
+}
+
+static bool is_straight(double (*points)[3])
+{
+    double a[3], c[3], cross = 0, size = 0;
+    for (int i = 0; i < 3; i++) a[i] = points[1][i] - points[0][i], c[i] = points[2][i] - points[0][i];
+    for (int i = 0; i < 3; i++) {
+        int j = (i + 1) % 3, k = (i + 2) % 3;
+        cross += pow(a[j] * c[k] - a[k] * c[j], 2);
+        size += c[i] * c[i];
+    }
+    return sqrt(cross) <= 1e-9 * size;
+}
+
+static bool curve_objective(const Build *b, Key at, const CurveScene *curve, Probe probe, double weight,
+                            Objective *objective)
+{
+    if (curve->arc && is_straight(curve->arc))
+        return yaml_refuse(b->file, key("%s.curve.arc", at.text).text,
+                           "the three points of an arc are on one line");
+    if (curve->arc)
+        *objective = objective_arc(probe, (const double(*)[3])curve->arc, weight);
+    else
+        *objective = objective_polyline(probe, curve->points_count, (const double(*)[3])curve->points,
+                                        curve->blend, weight);
+    return true;
+}
+
+/* Frames that a row counts at: one, a range, or the last. */
+static bool put_frames(const Build *b, Key at, int frame, const int *frames, int steps, Objective *objective)
+{
+    objective->first = frames ? frames[0] : frame == YAML_ABSENT ? steps : frame;
+    objective->last = frames ? frames[1] : objective->first;
+    if (objective->first <= objective->last && objective->last <= steps) return true;
+    return yaml_refuse(b->file, at.text,
+                       "frames %d to %d; they must ascend, and the last one is %d (time.steps)",
+                       objective->first, objective->last, steps);
+}
+
+static Objective *next_objective(ModelCase *c)
+{
+    size_t count = (size_t)c->objective_count++;
+    c->objectives = mem_resize(c->objectives, count, count + 1, sizeof *c->objectives);
+    return &c->objectives[count];
+}
+
+/* A waypoint for each target, over the frames from the delay after its switch until the next one. */
+static bool reach_objectives(Model *model, const Build *b, Key at, const Scene *scene,
+                             const ReachScene *reach, Probe probe, double weight)
+{
+    double step = scene->time.step;
+    for (int k = 0; k < reach->targets_count; k++) {
+        int first = (int)ceil((k * reach->every + reach->delay) / step - 1e-6),
+            last = (int)floor((k + 1) * reach->every / step + 1e-6);
+        if (last > scene->time.steps) last = scene->time.steps;
+        if (first > last)
+            return yaml_refuse(
+                b->file, at.text,
+                "no frame counts for target %d: it is due from %g s to %g s, the motion takes %g s", k + 1,
+                k * reach->every + reach->delay, (k + 1) * reach->every, step * scene->time.steps);
+        Objective *objective = next_objective(&model->cases[0]);
+        *objective = objective_waypoint(probe, reach->targets[k], weight);
+        objective->first = first, objective->last = last;
+    }
+    return true;
+}
+
+/* waypoint, curve and reach. */
+static bool point_objectives(Model *model, const Build *b, Key at, const Scene *scene,
+                             const ObjectiveScene *from)
+{
+    const WaypointScene *waypoint = from->waypoint;
+    const CurveScene *curve = from->curve;
+    const char *vertex = waypoint ? waypoint->vertex : curve ? curve->vertex : from->reach->vertex;
+    Probe probe = find_probe(model, b, at, vertex);
+    if (probe.count == 0) return false;
+    bool ok;
+    if (from->reach) {
+        ok = reach_objectives(model, b, at, scene, from->reach, probe, from->weight);
+    } else {
+        Objective objective;
+        if ((ok = !curve || curve_objective(b, at, curve, probe, from->weight, &objective))) {
+            if (waypoint) objective = objective_waypoint(probe, waypoint->at, from->weight);
+            ok = put_frames(b, at, waypoint ? waypoint->frame : curve->frame,
+                            waypoint ? waypoint->frames : curve->frames, scene->time.steps, &objective);
+            *next_objective(&model->cases[0]) = objective;
+        }
+    }
+    free_probe(probe);
+    return ok;
+}
+
+/* ---- Fields over time ---- */
+
+static bool field_objective(Model *model, const Build *b, Key at, const ObjectiveScene *from)
+{
+    const Params *params = model->params;
+    const Control *control = &model->control;
+    if (!control->rows)
+        return yaml_refuse(b->file, at.text, "this objective needs the unknown flux_density of a trajectory");
+    const ParamBlock *omega = params_find(params, "dmp_omega");
+    if (!isnan(from->dmp) && !omega) return false; /* refused before */
+    Objective *objective = next_objective(&model->cases[0]);
+    if (!isnan(from->field_magnitude))
+        *objective = objective_field_magnitude(control, from->weight * from->field_magnitude);
+    else if (!isnan(from->field_smoothness))
+        *objective = objective_field_smoothness(control, from->weight * from->field_smoothness);
+    else
+        *objective =
+            objective_dmp(control, from->pairs, omega->offset, params_find(params, "dmp_alpha")->offset,
+                          params_find(params, "dmp_beta")->offset, from->weight * from->dmp);
+    return true;
+}
+
+/* ---- Rows ---- */
+
+/* What depends on parameters only counts once, in the first case. */
+static bool add_objective(Model *model, const Build *b, Key at, const Scene *scene,
+                          const ObjectiveScene *from, int case_index)
+{
+    ModelCase *c = &model->cases[case_index];
+    bool trajectory = scene->job == JOB_TRAJECTORY, point = from->waypoint || from->curve || from->reach;
+    bool field = !isnan(from->field_magnitude) || !isnan(from->field_smoothness) || !isnan(from->dmp);
+    if (point && !trajectory)
+        return yaml_refuse(b->file, at.text,
+                           "objectives of a point are for trajectories; a design has `target` and `height`");
+    if (point) return point_objectives(model, b, at, scene, from);
+    if (field) return field_objective(model, b, at, from);
+    Objective objective;
+    if (!isnan(from->magnetization_smoothness)) {
+        if (model->rod) return yaml_refuse(b->file, at.text, "magnetization_smoothness is for shells");
+        if (case_index > 0) return true;
+        objective = shell_magnetization_smoothness(model->shell,
+                                                   from->weight * from->magnetization_smoothness / c->weight);
+    } else if (!isnan(from->target)
+                   ? !target_objective(c, model->point_count, b->file, at, from->weight * from->target,
+                                       &objective)
+                   : !height_objective(model, b, at, from, from->weight * from->height, &objective)) {
+        return false;
+    } else if (trajectory && !put_frames(b, at, from->frame, from->frames, scene->time.steps, &objective)) {
+        objective_destroy(objective);
+        return false;
+    }
+    *next_objective(c) = objective;
+    return true;
+}
+
+bool model_objectives(Model *model, const Scene *scene, YamlFile *file)
+{
+    Build b = build_start(scene, model->shell ? model->shell->mesh : NULL, file);
+    bool ok = true;
+    for (int c = 0; c < model->case_count; c++)
+        for (int k = 0; k < scene->design->objectives_count; k++)
+            ok = add_objective(model, &b, key("design.objectives[%d]", k), scene,
+                               &scene->design->objectives[k], c) &&
+                 ok;
+    return ok;
+}

@@ -1,0 +1,454 @@
+/* The field tables of scene files. Every key of the program is a row here. */
+#include "job/job.h"
+#include "model/scene_tables.h"
+
+/* ---- Values ---- */
+
+const YamlTable where_table = {
+    .name = "where",
+    .size = sizeof(WhereScene),
+    .doc = "A formula is one expression: numbers with a decimal point, + - * / ^ (-x^2 is -(x^2)), < <= > >= "
+           "== !=, "
+           "&&, ||, c ? a : b, pi, e, and sin, cos, tan, asin, acos, atan, atan2, sinh, cosh, tanh, asinh, "
+           "acosh, atanh, "
+           "exp, ln or log (natural), log2, log10, sqrt, abs, sign, rint, min, max, sum, avg, mod(a, b), "
+           "clamp(x, low, high) "
+           "and step(x), 0 below 0 and else 1. Assignments, lists and texts are refused.\n\n"
+           "Helper names of a formula, each an expression of the formula's variables and of the other names; "
+           "their "
+           "order means nothing.",
+    .fields = (const YamlField[]){
+        {YAML_TEXT(WhereScene, formula), .required = true, .short_form = true, .doc = "the expression"},
+        {0}}};
+
+/* A number per face or edge, with the unit and range of its parameter. */
+#define NUMBER_TABLE(id, of, u, r)                                                                           \
+    static const YamlTable id##_group_table = {                                                              \
+        .name = #id " of a group",                                                                           \
+        .size = sizeof(NumberGroup),                                                                         \
+        .doc = "The value on one named group.",                                                              \
+        .fields = (const YamlField[]){{YAML_NUMBER(NumberGroup, value), .unit = u, .range = r,               \
+                                       .required = true, .short_form = true, .doc = "the value"},            \
+                                      {0}}};                                                                 \
+    const YamlTable id##_table = {                                                                           \
+        .name = #id,                                                                                         \
+        .size = sizeof(NumberScene),                                                                         \
+        .doc = of,                                                                                           \
+        .fields = (const YamlField[]){                                                                       \
+            {YAML_NUMBER(NumberScene, value), .unit = u, .range = r, .one_of = 1, .required = true,          \
+             .short_form = true, .doc = "the same everywhere"},                                              \
+            {YAML_FILE(NumberScene, file), .one_of = 1, .required = true, .doc = "a CSV file"},              \
+            {YAML_TEXT(NumberScene, formula), .one_of = 1, .required = true, .short_form = true,             \
+             .doc = "an expression of the rest position x, y, z, r"},                                        \
+            {YAML_MAP(NumberScene, groups, &id##_group_table), .one_of = 1, .required = true,                \
+             .doc = "a value for each named group; what lies in several has that of the smallest"},          \
+            {YAML_NUMBER(NumberScene, other), .when = "groups", .unit = u, .range = r,                       \
+             .doc = "with groups: the value elsewhere"},                                                     \
+            WHERE_ROW(NumberScene),                                                                          \
+            {0}}}
+
+NUMBER_TABLE(young, "Young's modulus, per face. A file has one number per face.", "Pa", "(0, inf)");
+NUMBER_TABLE(
+    fold,
+    "Factor on the curvature of each edge's fold; the energy goes with its square. A file has rows v0, v1, "
+    "value (vertices of an edge, from 0) and 1 elsewhere.",
+    NULL, "[0, inf)");
+
+static const YamlTable magnetization_group_table = {
+    .name = "magnetization of a group",
+    .size = sizeof(VectorGroup),
+    .doc = "The value on one named group.",
+    .fields = (const YamlField[]){{YAML_VECTOR(VectorGroup, value), .unit = "A/m", .required = true,
+                                   .short_form = true, .doc = "the value"},
+                                  {0}}};
+
+const YamlTable magnetization_table = {
+    .name = "magnetization",
+    .size = sizeof(VectorScene),
+    .doc = "Remanent magnetisation in material space, per face. A file has one row x, y, z per face.",
+    .fields = (const YamlField[]){
+        {YAML_VECTOR(VectorScene, value), .unit = "A/m", .one_of = 1, .required = true, .short_form = true,
+         .doc = "the same everywhere"},
+        {YAML_FILE(VectorScene, file), .one_of = 1, .required = true, .doc = "a CSV file"},
+        {YAML_TEXTS(VectorScene, formula), .one_of = 1, .required = true, .short_form = true, .min_count = 3,
+         .max_count = 3,
+         .doc = "three expressions of the rest position x, y, z, r of a face's barycentre, in A/m"},
+        {YAML_MAP(VectorScene, groups, &magnetization_group_table), .one_of = 1, .required = true,
+         .doc = "a value for each named group; what lies in several has that of the smallest"},
+        {YAML_VECTOR(VectorScene, other), .when = "groups", .unit = "A/m",
+         .doc = "with groups: the value elsewhere"},
+        WHERE_ROW(VectorScene),
+        {0}}};
+
+static const YamlTable dipole_table = {
+    .name = "dipole",
+    .size = sizeof(DipoleScene),
+    .doc = "The field of a point dipole.",
+    .fields = (const YamlField[]){
+        {YAML_VECTOR(DipoleScene, at), .unit = "m", .required = true, .doc = "where it is"},
+        {YAML_VECTOR(DipoleScene, moment), .unit = "A m^2", .required = true, .doc = "its moment"},
+        {0}}};
+
+static const YamlTable magnet_table = {
+    .name = "magnet",
+    .size = sizeof(MagnetScene),
+    .doc =
+        "The field of a permanent magnet, taken as a dipole of moment remanence*volume/mu_0 at its centre.",
+    .fields = (const YamlField[]){
+        {YAML_VECTOR(MagnetScene, at), .unit = "m", .required = true, .doc = "its centre"},
+        {YAML_VECTOR(MagnetScene, remanence), .unit = "T", .required = true,
+         .doc = "its remanence, along its axis"},
+        {YAML_NUMBER(MagnetScene, volume), .unit = "m^3", .range = "(0, inf)", .required = true,
+         .doc = "its volume"},
+        {0}}};
+
+static const YamlTable flux_density_table = {
+    .name = "flux_density",
+    .size = sizeof(FluxScene),
+    .doc = "The applied magnetic flux density B. Where it varies in space, forces follow from its gradient.",
+    .fields = (const YamlField[]){
+        {YAML_VECTOR(FluxScene, value), .unit = "T", .one_of = 1, .required = true, .short_form = true,
+         .doc = "uniform"},
+        {YAML_TEXTS(FluxScene, formula), .one_of = 1, .required = true, .short_form = true, .min_count = 3,
+         .max_count = 3, .doc = "three expressions, in T, of the current position x, y, z, r and the time t"},
+        {YAML_FILE(FluxScene, file), .one_of = 1, .required = true,
+         .doc = "a CSV file with rows t, Bx, By, Bz (s, T), t ascending, along half of a motion at least: "
+                "uniform, linear "
+                "between the rows, constant beyond them"},
+        {YAML_OPTIONAL(FluxScene, dipole, &dipole_table), .one_of = 1, .required = true,
+         .doc = "a point dipole"},
+        {YAML_OPTIONAL(FluxScene, magnet, &magnet_table), .one_of = 1, .required = true,
+         .doc = "a permanent magnet"},
+        WHERE_ROW(FluxScene),
+        {0}}};
+
+/* ---- The shell ---- */
+
+static const YamlTable mesh_table = {
+    .name = "mesh",
+    .size = sizeof(MeshScene),
+    .doc = "The triangle mesh of the shell at rest, from a file or generated. A generated one lies in the "
+           "plane z = 0, its "
+           "upper side towards +z: a sheet or strip from the origin along +x and +y, a hexagram, disc or "
+           "kirigami around "
+           "the origin. They have groups of vertices: of a sheet or strip `root` (the edge x = 0) and `tip` "
+           "(the vertex in "
+           "the middle of the opposite edge), of a disc or kirigami `centre` and `rim`; a hexagram has "
+           "groups of faces, `hub` "
+           "and `flap1` (on +x, a tip on the axis) to `flap6`, counter-clockwise. A rod has none; its ends "
+           "are the clamp, s = 0, and the tip.",
+    .fields = (const YamlField[]){
+        {YAML_FILE(MeshScene, file), .one_of = 1, .required = true, .short_form = true,
+         .doc = "an OBJ, PLY, STL or Gmsh .msh (2.2 or 4.1, ASCII) file; docs/meshes.md says what is read of "
+                "it"},
+        {YAML_CHOICE(MeshScene, shape), .one_of = 1, .required = true,
+         .choices = YAML_NAMES("sheet", "strip", "hexagram", "disc", "kirigami"),
+         .doc = "a generated mesh in the plane z = 0"},
+        {YAML_NUMBERS(MeshScene, size), .unit = "m", .range = "(0, inf)", .min_count = 1, .max_count = 2,
+         .doc = "of a sheet or strip: length along x and width along y; of a hexagram or disc: the diameter; "
+                "of a kirigami: its side"},
+        {YAML_INTEGERS(MeshScene, cells), .range = "[1, inf)", .min_count = 2, .max_count = 2,
+         .doc = "of a sheet: cells along x and y"},
+        {YAML_INTEGER(MeshScene, n), .also = YAML_NAMES("divisions", "false"), .range = "[1, inf)",
+         .doc = "of a strip: cells along x; of a hexagram: 12 n^2 faces; of a disc: 6 n^2 faces; "
+                "of a kirigami: cells of its checkerboard along a side, odd"},
+        {YAML_CHOICE(MeshScene, pattern), .choices = YAML_NAMES("right", "alternate", "crossed"),
+         .fallback = "right", .doc = "of a sheet or strip: how cells are split"},
+        {YAML_NUMBER(MeshScene, scale), .range = "(0, inf)", .fallback = "1",
+         .doc = "of a file: factor on its coordinates, 1.0e-3 for a file in millimetres"},
+        {YAML_NUMBER(MeshScene, weld), .unit = "m", .range = "[0, inf)", .fallback = "0",
+         .doc = "of a file: joins vertices that are closer than this; 0: none"},
+        {0}}};
+
+static const YamlTable pose_table = {
+    .name = "pose",
+    .size = sizeof(PoseScene),
+    .doc = "A state to start from.",
+    .fields = (const YamlField[]){{YAML_FILE(PoseScene, file), .required = true, .short_form = true,
+                                   .doc = "a mesh file with the faces of the mesh"},
+                                  {YAML_NUMBER(PoseScene, scale), .range = "(0, inf)",
+                                   .doc = "factor on its coordinates; that of the mesh if absent"},
+                                  {0}}};
+
+const YamlTable velocity_table = {
+    .name = "velocity",
+    .size = sizeof(VelocityScene),
+    .doc = "Velocities at the start of a motion.",
+    .fields =
+        (const YamlField[]){{YAML_VECTOR(VelocityScene, value), .unit = "m/s", .one_of = 1, .required = true,
+                             .short_form = true, .doc = "the same everywhere"},
+                            {YAML_TEXTS(VelocityScene, formula), .one_of = 1, .required = true,
+                             .short_form = true, .min_count = 3, .max_count = 3,
+                             .doc = "three expressions of the rest position x, y, z, r of a vertex, in m/s"},
+                            WHERE_ROW(VelocityScene),
+                            {0}}};
+
+static const YamlTable shell_table = {
+    .name = "shell",
+    .size = sizeof(ShellScene),
+    .doc = "A magnetised thin shell.",
+    .fields = (const YamlField[]){
+        {YAML_TABLE(ShellScene, mesh, &mesh_table), .required = true, .doc = "its mesh at rest"},
+        {YAML_OPTIONAL(ShellScene, pose, &pose_table), .doc = "where a job starts; at rest if absent"},
+        {YAML_OPTIONAL(ShellScene, velocity, &velocity_table), .when = "/job: simulate, trajectory",
+         .doc = "of the free coordinates at the start of a motion; at rest if absent"},
+        {YAML_NUMBER(ShellScene, thickness), .unit = "m", .range = "(0, inf)", .required = true,
+         .doc = "thickness h"},
+        {YAML_TABLE(ShellScene, young, &young_table), .required = true, .doc = "Young's modulus"},
+        {YAML_NUMBER(ShellScene, poisson), .range = "[0, 0.5]", .required = true,
+         .doc = "Poisson's ratio (plane stress)"},
+        {YAML_NUMBER(ShellScene, density), .unit = "kg/m^3", .range = "(0, inf)", .fallback = "1000",
+         .doc = "mass density"},
+        {YAML_CHOICE(ShellScene, bending), .choices = YAML_NAMES("midedge", "hinge"), .fallback = "midedge",
+         .doc = "midedge converges on any mesh; hinge is faster, and 5 to 57 % off on crossed and "
+                "unstructured meshes"},
+        {YAML_TABLE(ShellScene, fold, &fold_table), .fallback = "1",
+         .doc = "factor on the curvature of each edge"},
+        {YAML_TABLE(ShellScene, magnetization, &magnetization_table), .fallback = "[0, 0, 0]",
+         .doc = "remanent magnetisation"},
+        {YAML_NUMBER(ShellScene, damping), .when = "/job: simulate, trajectory", .unit = "N s/m",
+         .range = "[0, inf)", .fallback = "0", .doc = "of a simulation: viscous damping at every vertex"},
+        {YAML_VECTOR(ShellScene, gravity), .unit = "m/s^2", .fallback = "[0, 0, 0]",
+         .doc = "acceleration of gravity"},
+        {0}}};
+
+static const YamlTable ball_table = {
+    .name = "ball",
+    .size = sizeof(BallScene),
+    .doc = "All vertices in a ball.",
+    .fields = (const YamlField[]){
+        {YAML_VECTOR(BallScene, center), .unit = "m", .required = true, .doc = "its centre"},
+        {YAML_NUMBER(BallScene, radius), .unit = "m", .range = "(0, inf)", .required = true,
+         .doc = "its radius"},
+        {0}}};
+
+/* Of `on`, which is `true` to readers of YAML 1.1. */
+#define ON_NAMES YAML_NAMES("region", "true")
+
+#define SELECTION_ROWS(S)                                                                                    \
+    {YAML_INTEGERS(S, vertices), .range = "[0, inf)", .doc = "these vertices of the mesh file, from 0"},     \
+        {YAML_ROWS(S, box), .unit = "m", .min_count = 2, .max_count = 2,                                     \
+         .doc = "lower and upper corner of a box"},                                                          \
+        {YAML_OPTIONAL(S, ball, &ball_table), .doc = "a ball"},                                              \
+        {YAML_TEXT(S, group), .short_form = true, .doc = "a named group of the mesh"},                       \
+    {                                                                                                        \
+        YAML_BOOL(S, boundary), .doc = "vertices on the boundary"                                            \
+    }
+
+static const YamlTable selection_table = {
+    .name = "selection",
+    .size = sizeof(SelectionScene),
+    .doc = "Some vertices, by their rest positions. A vertex must satisfy all conditions that are given.",
+    .fields = (const YamlField[]){SELECTION_ROWS(SelectionScene), {0}}};
+
+static const YamlTable fix_table = {
+    .name = "fix",
+    .size = sizeof(FixScene),
+    .doc = "Vertices that are held. A vertex must satisfy all conditions that are given.",
+    .fields = (const YamlField[]){
+        SELECTION_ROWS(FixScene),
+        {YAML_TEXT(FixScene, axes), .fallback = "xyz",
+         .doc = "the coordinates that are held: some of xyz, each once at most"},
+        {YAML_BOOL(FixScene, clamp), .doc = "holds the slope of the edges between these vertices too"},
+        {YAML_TEXTS(FixScene, move), .when = "/job: equilibrium, simulate, trajectory", .min_count = 3,
+         .max_count = 3,
+         .doc =
+             "where they are held: a place, as three expressions, in m, of the rest position x, y, z, r and "
+             "the time t ([x + 0.01*t, y, z] moves along x); 0 along what is not among the axes; a vertex "
+             "that two entries move must go to one place"},
+        {0}}};
+
+static const YamlTable load_table = {
+    .name = "loads",
+    .size = sizeof(LoadScene),
+    .doc = "A dead load: a force that keeps its direction.",
+    .fields = (const YamlField[]){{YAML_VECTOR(LoadScene, force), .unit = "N", .one_of = 1, .required = true,
+                                   .doc = "in all, shared equally by the vertices"},
+                                  {YAML_VECTOR(LoadScene, line), .unit = "N/m", .one_of = 1, .required = true,
+                                   .doc = "per rest length of boundary edges"},
+                                  {YAML_VECTOR(LoadScene, area), .unit = "N/m^2", .one_of = 1,
+                                   .required = true, .doc = "per rest area"},
+                                  {YAML_OPTIONAL(LoadScene, on, &selection_table), .also = ON_NAMES,
+                                   .doc = "where; everywhere if absent"},
+                                  {0}}};
+
+/* ---- Load cases ---- */
+
+static const YamlTable target_table = {
+    .name = "target",
+    .size = sizeof(TargetScene),
+    .doc = "Where vertices should be.",
+    .fields = (const YamlField[]){
+        {YAML_FILE(TargetScene, file), .one_of = 1, .required = true,
+         .doc = "a mesh file with the vertices of the mesh"},
+        {YAML_FILE(TargetScene, height_map), .one_of = 1, .required = true,
+         .doc = "a PNG, JPEG, PGM or PPM image over the body's rectangle in x and y: black is 0, white is "
+                "height, row 0 "
+                "at +y"},
+        {YAML_ROWS(TargetScene, strokes), .unit = "m", .one_of = 1, .required = true,
+         .doc = "segments x0, y0, x1, y1: ridges of height, round across"},
+        {YAML_TEXTS(TargetScene, formula), .one_of = 1, .required = true, .short_form = true, .min_count = 3,
+         .max_count = 3, .doc = "three expressions, in m, of the rest position x, y, z, r"},
+        {YAML_NUMBER(TargetScene, height), .when = "height_map | strokes", .unit = "m",
+         .doc = "of a height map or strokes"},
+        {YAML_NUMBER(TargetScene, width), .when = "strokes", .unit = "m", .range = "(0, inf)",
+         .doc = "of strokes, at half their height"},
+        {YAML_NUMBER(TargetScene, scale), .when = "file", .range = "(0, inf)",
+         .doc = "of a file: factor on its coordinates; that of the mesh if absent"},
+        WHERE_ROW(TargetScene),
+        {YAML_OPTIONAL(TargetScene, on, &selection_table), .also = ON_NAMES,
+         .doc = "for these vertices only"},
+        {0}}};
+
+static const YamlTable case_table = {
+    .name = "cases",
+    .size = sizeof(CaseScene),
+    .doc = "A load case: a field or loads, and what the body should then do.",
+    .fields = (const YamlField[]){
+        {YAML_TEXT(CaseScene, name), .doc = "its name in the result; case1, case2, .. if absent"},
+        {YAML_NUMBER(CaseScene, weight), .when = "/job: design", .range = "[0, inf)", .fallback = "1",
+         .doc = "of its objectives"},
+        {YAML_OPTIONAL(CaseScene, flux_density, &flux_density_table), .doc = "in place of the scene's"},
+        {YAML_LIST(CaseScene, loads, &load_table), .doc = "in place of the scene's"},
+        {YAML_VECTOR(CaseScene, gravity), .unit = "m/s^2", .doc = "in place of the shell's"},
+        {YAML_OPTIONAL(CaseScene, target, &target_table), .doc = "in place of the scene's"},
+        {0}}};
+
+static const YamlTable stage_table = {
+    .name = "sequence",
+    .size = sizeof(StageScene),
+    .doc = "A stage of an equilibrium job: each starts from the one before, and is a frame of the result. "
+           "What a stage does "
+           "not say stays as it was.",
+    .fields = (const YamlField[]){
+        {YAML_OPTIONAL(StageScene, flux_density, &flux_density_table), .doc = "the field"},
+        {YAML_LIST(StageScene, loads, &load_table), .doc = "the dead loads"},
+        {YAML_VECTOR(StageScene, gravity), .unit = "m/s^2", .doc = "acceleration of gravity"},
+        {YAML_NUMBER(StageScene, time), .unit = "s", .doc = "the time t of formulas"},
+        {0}}};
+
+/* ---- The whole ---- */
+
+static const YamlTable solver_table = {
+    .name = "solver",
+    .size = sizeof(SolverScene),
+    .doc = "When the equilibrium solver is content.",
+    .fields = (const YamlField[]){
+        {YAML_INTEGER(SolverScene, max_iterations), .range = "[1, inf)", .fallback = "300",
+         .doc = "Newton iterations of a solve"},
+        {YAML_NUMBER(SolverScene, step_tolerance), .range = "(0, 1)", .fallback = "1.0e-8",
+         .doc = "largest last step, in parts of the body's size (radians of edge angles)"},
+        {YAML_NUMBER(SolverScene, force_tolerance), .range = "(0, 1)", .fallback = "1.0e-6",
+         .doc = "largest force left, in parts of the element forces"},
+        {0}}};
+
+static const YamlTable load_steps_table = {
+    .name = "load_steps",
+    .size = sizeof(LoadStepsScene),
+    .doc = "Over how many steps loads, fields and prescribed motion come on.",
+    .fields = (const YamlField[]){
+        {YAML_CHOICE(LoadStepsScene, mode), .choices = YAML_NAMES("auto"), .one_of = 1, .short_form = true,
+         .required = true, .doc = "one step, halved where it fails"},
+        {YAML_INTEGER(LoadStepsScene, count), .range = "[1, 10000]", .one_of = 1, .short_form = true,
+         .required = true, .doc = "this many, halved where one fails"},
+        {0}}};
+
+/* Of the time of a motion, which may stay where its scene is put to rest: `--set job=equilibrium`. */
+#define MOTIONS_AND_STATICS "/job: equilibrium, evaluate, simulate, trajectory"
+
+static const YamlTable time_table = {
+    .name = "time",
+    .size = sizeof(TimeScene),
+    .doc = "The time t of formulas in statics, or the steps of a simulation or trajectory.",
+    .fields = (const YamlField[]){
+        {YAML_NUMBER(TimeScene, at),
+         .when = "/job: equilibrium, evaluate, design, simulate, trajectory, invert, identify", .unit = "s",
+         .fallback = "0 s", .short_form = true, .doc = "t in statics; where a simulation begins"},
+        {YAML_NUMBER(TimeScene, step), .when = MOTIONS_AND_STATICS, .unit = "s", .range = "(0, inf)",
+         .doc =
+             "of a simulation or trajectory: the step of implicit Euler; the statics of its scene leave it"},
+        {YAML_INTEGER(TimeScene, steps), .when = MOTIONS_AND_STATICS, .range = "[1, inf)",
+         .doc = "of a simulation or trajectory: how many"},
+        {0}}};
+
+#define DRAWING_FILE(m, d)                                                                                   \
+    {                                                                                                        \
+        YAML_TEXT(OutputScene, m), .when = "/spline", .otherwise = "slender picture shows results",          \
+                                   .doc = "of a drawing: " d                                                 \
+    }
+static const YamlTable output_table = {
+    .name = "output",
+    .size = sizeof(OutputScene),
+    .doc =
+        "What goes into the result file, and further files. Their names are relative to the result's folder.",
+    .fields = (const YamlField[]){
+        {YAML_INTEGER(OutputScene, every), .when = "/job: design, simulate, trajectory, draw",
+         .range = "[0, inf)", .fallback = "0",
+         .doc = "a frame for every so many steps of a motion (0: every step) or improvements of a design (0: "
+                "the final one only); of a drawing: NAME-000020.svg and so on, after every so many "
+                "iterations (0: none)"},
+        {YAML_CHOICE(OutputScene, precision),
+         .when = "/job: equilibrium, evaluate, design, simulate, trajectory, invert",
+         .choices = YAML_NAMES("single", "double"), .fallback = "single",
+         .doc = "of frames; single only as long as its numbers, where the body is, are closer than 1e-5 of "
+                "its size"},
+        DRAWING_FILE(svg, "curves in mm, a layer for each pen; NAME.svg if absent"),
+        DRAWING_FILE(png, "target and drawing side by side; NAME.png if absent"),
+        DRAWING_FILE(gcode, "for a pen on a z axis; none if absent"),
+        DRAWING_FILE(gcode_servo, "for a pen on a servo; none if absent"),
+        DRAWING_FILE(hpgl, "none if absent"),
+        {0}}};
+
+const YamlTable scene_table = {
+    .name = "scene",
+    .size = sizeof(Scene),
+    .doc =
+        "A scene file is YAML (or JSON) with the key `slender: 1`, the format's version. Numbers are SI, or "
+        "carry a "
+        "unit: `1 mm`, `20 mT`, `0.3 MPa` (the last section lists them); in quotes they are numbers too. The "
+        "order of keys means nothing. "
+        "Aliases (`*name`) are copies of what was anchored (`&name`) before; there are no merge keys (`<<`) "
+        "and no "
+        "tags. A key may have other names, which stand beside it: `on` and `n` are `true` and `false` to "
+        "programs "
+        "that read YAML 1.1 (PyYAML, R), and are read as such again; `region` and `divisions` pass through "
+        "all of "
+        "them.",
+    .fields = (const YamlField[]){
+        {YAML_CHOICE(Scene, job), .choices = job_names, .required = true, .doc = "what to do"},
+        {YAML_OPTIONAL(Scene, shell, &shell_table), .one_of = 1, .required = true,
+         .doc = "the body: a shell"},
+        {YAML_OPTIONAL(Scene, rod, &rod_table), .one_of = 1, .required = true, .doc = "the body: a rod"},
+        {YAML_OPTIONAL(Scene, spline, &spline_table), .one_of = 1, .required = true,
+         .doc = "no body, but a drawing"},
+        {YAML_TABLE(Scene, flux_density, &flux_density_table), .when = "!spline & /rod.solver: newton",
+         .fallback = "[0, 0, 0]", .doc = "applied field"},
+        {YAML_LIST(Scene, fix, &fix_table), .when = "shell",
+         .otherwise = "a rod is held by rod.clamp, rod.hold and rod.end", .doc = "what is held"},
+        {YAML_LIST(Scene, loads, &load_table), .when = "shell",
+         .otherwise = "loads of a rod are under rod.loads", .doc = "dead loads"},
+        {YAML_OPTIONAL(Scene, target, &target_table),
+         .when =
+             "/job: equilibrium, evaluate, design, simulate, trajectory & /rod.solver: newton & !sequence",
+         .doc = "where vertices should be, in all cases without one of their own"},
+        {YAML_LIST(Scene, cases, &case_table), .when = "/job: equilibrium, evaluate, design",
+         .otherwise = "in a motion a field may be a formula of t",
+         .doc = "load cases of a design; one with the scene's loads if absent"},
+        {YAML_LIST(Scene, sequence, &stage_table), .when = "/job: equilibrium",
+         .otherwise = "in a motion a field may be a formula of t", .doc = "stages of an equilibrium"},
+        {YAML_OPTIONAL(Scene, design, &design_table), .when = "/job: design, trajectory",
+         .doc = "what a design or trajectory job looks for"},
+        {YAML_TABLE(Scene, solver, &solver_table),
+         .when = "/job: equilibrium, evaluate, design, simulate, trajectory, invert & /rod.solver: newton",
+         .fallback = "{}", .doc = "tolerances"},
+        {YAML_TABLE(Scene, load_steps, &load_steps_table), .when = "/job: equilibrium, invert",
+         .fallback = "auto", .doc = "how loads come on"},
+        {YAML_TABLE(Scene, time, &time_table), .fallback = "0 s",
+         .doc = "the time t of formulas, or the steps of a simulation"},
+        {YAML_INTEGER(Scene, modes), .when = "shell", .range = "[0, 100]", .fallback = "0",
+         .doc = "lowest eigenmodes to put into the result"},
+        {YAML_CHOICES(Scene, checks), .when = "/job: invert",
+         .choices = YAML_NAMES("stability", "self_contact", "round_trip"),
+         .doc = "of a rod: what else to find out"},
+        {YAML_TABLE(Scene, output, &output_table), .fallback = "{}", .doc = "what to keep"},
+        {0}}};

@@ -1,0 +1,358 @@
+/* scene.h - what a scene file says, as plain structs; scene_table is their field table (io/yaml.h) and so the
+ * list of all keys. Nothing here is resolved yet: files are not read, groups not looked up (build.h does
+ * that).
+ *
+ * Numbers are SI; an absent number is NAN, an absent choice -1, an absent list or table NULL (YamlKind). */
+#pragma once
+#include "spline/front/scene.h"
+#include "io/yaml.h"
+
+/* ---- Values over faces, edges or space ---- */
+
+typedef struct NumberGroup {
+    char *group;
+    double value;
+} NumberGroup;
+
+/* One number per face or edge. */
+typedef struct NumberScene {
+    double value;
+    char *file, *formula;
+    WhereScene *where;
+    NumberGroup *groups;
+    double other; /* outside all groups */
+    int where_count, groups_count;
+} NumberScene;
+
+typedef struct VectorGroup {
+    char *group;
+    double value[3];
+} VectorGroup;
+
+/* One vector per face. */
+typedef struct VectorScene {
+    double value[3];
+    char *file, **formula;
+    WhereScene *where;
+    VectorGroup *groups;
+    double other[3];
+    int formula_count, where_count, groups_count;
+} VectorScene;
+
+typedef struct DipoleScene {
+    double at[3], moment[3];
+} DipoleScene;
+
+typedef struct MagnetScene {
+    double at[3], remanence[3], volume;
+} MagnetScene;
+
+typedef struct FluxScene {
+    double value[3];
+    char **formula, *file;
+    WhereScene *where;
+    DipoleScene *dipole;
+    MagnetScene *magnet;
+    int formula_count, where_count;
+} FluxScene;
+
+/* ---- The shell ---- */
+
+typedef enum MeshShape { MESH_SHEET, MESH_STRIP, MESH_HEXAGRAM, MESH_DISC, MESH_KIRIGAMI } MeshShape;
+
+typedef struct MeshScene {
+    char *file;
+    int shape;    /* MeshShape */
+    double *size; /* one or two lengths */
+    int *cells, n, pattern, size_count, cells_count;
+    double scale, weld;
+} MeshScene;
+
+typedef struct PoseScene {
+    char *file;
+    double scale; /* NAN: the mesh's */
+} PoseScene;
+
+/* Velocities of the vertices at the start. */
+typedef struct VelocityScene {
+    double value[3];
+    char **formula;
+    WhereScene *where;
+    int formula_count, where_count;
+} VelocityScene;
+
+typedef struct ShellScene {
+    MeshScene mesh;
+    PoseScene *pose;
+    VelocityScene *velocity;
+    double thickness, poisson, density, damping, gravity[3];
+    NumberScene young, fold;
+    VectorScene magnetization;
+    int bending; /* BendingModel */
+} ShellScene;
+
+typedef struct BallScene {
+    double center[3], radius;
+} BallScene;
+
+/* Members of every entry that means some vertices. */
+#define SELECTION_MEMBERS                                                                                    \
+    int *vertices;                                                                                           \
+    double(*box)[3];                                                                                         \
+    BallScene *ball;                                                                                         \
+    char *group;                                                                                             \
+    bool boundary;                                                                                           \
+    int vertices_count, box_count
+
+typedef struct SelectionScene {
+    SELECTION_MEMBERS;
+} SelectionScene;
+
+typedef struct FixScene {
+    SELECTION_MEMBERS;
+    char *axes, **move;
+    bool clamp;
+    int move_count;
+} FixScene;
+
+typedef struct LoadScene {
+    double force[3], line[3], area[3]; /* one of them */
+    SelectionScene *on;
+} LoadScene;
+
+/* ---- The rod ---- */
+
+/* auto, or a standard deviation. */
+typedef struct NoiseScene {
+    int mode; /* 0: auto */
+    double value;
+} NoiseScene;
+
+typedef struct RodCurveScene {
+    char **formula, *file, *parameter;
+    double *range, scale;
+    WhereScene *where;
+    NoiseScene noise;
+    int formula_count, range_count, where_count, strands;
+} RodCurveScene;
+
+/* Strains along a rod. */
+typedef struct StrainScene {
+    double value[3];
+    char **formula, *file;
+    WhereScene *where;
+    int formula_count, where_count;
+} StrainScene;
+
+typedef enum FrameKind { FRAME_FRENET, FRAME_BISHOP } FrameKind;
+
+typedef struct RodFrameScene {
+    int kind, from; /* FrameKind */
+    char *formula, *file;
+} RodFrameScene;
+
+/* Rows of a frame: tangent, n1, n2. */
+typedef struct ClampScene {
+    double position[3], (*frame)[3];
+    int frame_count;
+} ClampScene;
+
+typedef enum HoldKind { HOLD_CLAMPED, HOLD_PINNED } HoldKind;
+
+typedef struct EndScene {
+    double position[3], (*frame)[3];
+    int hold, frame_count; /* HoldKind */
+} EndScene;
+
+typedef struct RodLoadScene {
+    double point, force[3], line[3];
+} RodLoadScene;
+
+typedef struct RodPoseScene {
+    char *file;
+    double (*frame)[3];
+    NoiseScene noise;
+    int frame_count;
+} RodPoseScene;
+
+typedef enum RodSolver { ROD_SOLVER_NEWTON, ROD_SOLVER_PBD } RodSolver;
+
+typedef struct PbdScene {
+    int substeps, sweeps;
+} PbdScene;
+
+typedef enum RodStart { ROD_START_NATURAL, ROD_START_CURVE } RodStart;
+
+typedef struct RodScene {
+    RodCurveScene *curve;
+    StrainScene *natural_strain;
+    RodPoseScene *poses;
+    double length, radius, *ellipse, young, poisson, density, gravity[3], bishop_normal[3], damping;
+    ClampScene clamp;
+    EndScene *end;
+    int elements, ellipse_count, poses_count, loads_count;
+    RodFrameScene frame;
+    RodLoadScene *loads;
+    VectorScene magnetization;
+    VelocityScene *velocity;
+    int start, hold, solver; /* RodStart; HoldKind of the clamp; RodSolver */
+    PbdScene pbd;
+} RodScene;
+
+typedef enum RodCheck { CHECK_STABILITY, CHECK_SELF_CONTACT, CHECK_ROUND_TRIP } RodCheck;
+
+/* ---- Load cases ---- */
+
+typedef struct TargetScene {
+    char *file, *height_map, **formula;
+    double (*strokes)[4], width, height, scale; /* of a file, NAN: the mesh's */
+    WhereScene *where;
+    SelectionScene *on;
+    int formula_count, strokes_count, where_count;
+} TargetScene;
+
+typedef struct CaseScene {
+    char *name;
+    double weight, gravity[3];
+    FluxScene *flux_density;
+    LoadScene *loads;
+    TargetScene *target;
+    int loads_count;
+} CaseScene;
+
+/* One stage of a sequence; what it does not say stays as in the stage before. */
+typedef struct StageScene {
+    double gravity[3], time;
+    FluxScene *flux_density;
+    LoadScene *loads;
+    int loads_count;
+} StageScene;
+
+/* ---- Design ---- */
+
+typedef enum UnknownPer { PER_FACE, PER_GROUP } UnknownPer; /* young, magnetization */
+
+typedef enum UnknownScale { SCALE_LOG, SCALE_LINEAR } UnknownScale;
+
+typedef struct NumberUnknown {
+    double bounds[2], noise;
+    int scale; /* UnknownScale */
+    int per;
+    NumberScene *start;
+} NumberUnknown;
+
+typedef struct VectorUnknown {
+    double bounds[2], noise, scale, magnitude, max_magnitude;
+    int per;
+    VectorScene *start;
+} VectorUnknown;
+
+/* A row for each of a control's values, or one for all. */
+typedef struct FluxStart {
+    double value[3];
+    char *file;
+} FluxStart;
+
+typedef struct FluxUnknown {
+    double bounds[2], noise, scale;
+    int per; /* ControlKind, of a trajectory */
+    int knots, harmonics;
+    FluxStart *start;
+} FluxUnknown;
+
+typedef struct UnknownsScene {
+    VectorUnknown *magnetization;
+    NumberUnknown *young, *fold;
+    FluxUnknown *flux_density;
+} UnknownsScene;
+
+/* Members of every objective of one point of the body; and frames at which it counts. */
+#define TRACKED_MEMBERS                                                                                      \
+    char *vertex;                                                                                            \
+    bool mass_center;                                                                                        \
+    int frame, *frames, frames_count
+
+typedef struct WaypointScene {
+    TRACKED_MEMBERS;
+    double at[3];
+} WaypointScene;
+
+typedef struct CurveScene {
+    TRACKED_MEMBERS;
+    double (*points)[3], (*arc)[3], blend;
+    int points_count, arc_count;
+} CurveScene;
+
+typedef struct ReachScene {
+    char *vertex;
+    bool mass_center;
+    double (*targets)[3], every, delay;
+    int targets_count;
+} ReachScene;
+
+typedef struct ObjectiveScene {
+    /* One of these: a weight, or a table, to which `weight` belongs. */
+    double target, height, magnetization_smoothness, field_magnitude, field_smoothness, dmp;
+    WaypointScene *waypoint;
+    CurveScene *curve;
+    ReachScene *reach;
+    double weight;
+    char *of;                         /* height: a group, or all */
+    int frame, *frames, frames_count; /* target, height          */
+    int pairs;                        /* dmp                     */
+} ObjectiveScene;
+
+typedef struct DesignScene {
+    UnknownsScene unknowns;
+    ObjectiveScene *objectives;
+    int objectives_count, optimizer, iterations, seed;
+    double tolerance;
+} DesignScene;
+
+/* ---- The whole ---- */
+
+typedef struct SolverScene {
+    int max_iterations;
+    double step_tolerance, force_tolerance;
+} SolverScene;
+
+/* auto, or a number */
+typedef struct LoadStepsScene {
+    int mode, count; /* mode 0: auto */
+} LoadStepsScene;
+
+/* The time t of formulas in statics, or the steps of a simulation. */
+typedef struct TimeScene {
+    double at, step;
+    int steps;
+} TimeScene;
+
+typedef struct OutputScene {
+    int every, precision;
+    char *svg, *png, *gcode, *gcode_servo, *hpgl; /* of a drawing: names of files */
+} OutputScene;
+
+enum { OUTPUT_SINGLE, OUTPUT_DOUBLE };
+
+typedef struct Scene {
+    int job;           /* row of job_rows (job.h) */
+    ShellScene *shell; /* one of these three */
+    RodScene *rod;
+    SplineScene *spline;
+    FluxScene flux_density;
+    FixScene *fix;
+    LoadScene *loads;
+    TargetScene *target;
+    CaseScene *cases;
+    StageScene *sequence;
+    DesignScene *design;
+    SolverScene solver;
+    LoadStepsScene load_steps;
+    TimeScene time;
+    int modes;
+    OutputScene output;
+    int *checks; /* RodCheck */
+    int fix_count, loads_count, cases_count, sequence_count, checks_count;
+} Scene;
+
+extern const YamlTable scene_table;

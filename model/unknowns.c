@@ -1,0 +1,323 @@
+/* The scene's unknowns. */
+#include "base/memory.h"
+#include "base/random.h"
+#include "model/build.h"
+#include "model/model.h"
+#include "job/job.h"
+#include "rod/front/rod_model.h"
+#include <math.h>
+#include <string.h>
+
+/* ---- Unknowns ---- */
+
+/* One unknown being made: its block, where it stands in the scene, and its start. */
+typedef struct Start {
+    const char *name;
+    const ParamBlock *block;
+    double *values; /* [count*width] */
+    double noise;
+    Random random;
+} Start;
+
+static Start start_of(Model *model, const char *name, const double *p, double noise, int seed)
+{
+    Start start = {.name = name, .block = params_find(model->params, name), .noise = noise};
+    size_t size = (size_t)(start.block->count * start.block->width);
+    start.values = mem_copy(p + start.block->offset, size, sizeof(double));
+    /* Each block has a sequence of its own, so that another unknown beside it changes nothing. */
+    start.random =
+        random_seed((uint64_t)seed * PARAMS_MAX_BLOCKS + (uint64_t)(start.block - model->params->blocks));
+    return start;
+}
+
+/* Face groups of the mesh: group[face] from 0, -1 in none; a face in several belongs to the last. */
+static int *face_groups(const Mesh *mesh, int *count)
+{
+    int *group = mem_alloc((size_t)mesh->face_count, sizeof *group);
+    *count = 0;
+    for (int f = 0; f < mesh->face_count; f++) group[f] = -1;
+    for (int g = 0; g < mesh->group_count; g++) {
+        if (mesh->groups[g].dim != 2) continue;
+        for (int k = 0; k < mesh->groups[g].count; k++) group[mesh->groups[g].members[k]] = *count;
+        (*count)++;
+    }
+    return group;
+}
+
+/* Noise, then the start goes into all cases and the unknown into the design. Rows of one group get the same
+ * noise. */
+static bool add_unknown(Model *model, YamlFile *file, Design *design, Start *start, Unknown unknown, int per)
+{
+    bool ok = true;
+    const ParamBlock *block = unknown.block = start->block;
+    unknown.group_count = block->count;
+    if (per == PER_GROUP && model->rod)
+        ok = yaml_refuse(file, key("design.unknowns.%s.per", start->name).text, "a rod has no groups");
+    else if (per == PER_GROUP)
+        unknown.group = face_groups(model->shell->mesh, &unknown.group_count);
+    if (ok && unknown.group_count == 0)
+        ok = yaml_refuse(file, key("design.unknowns.%s.per", start->name).text,
+                         "the mesh has no groups of faces");
+    double *noise = mem_alloc((size_t)(unknown.group_count * block->width), sizeof *noise);
+    for (int i = 0; i < unknown.group_count * block->width; i++)
+        noise[i] = start->noise * random_signed(&start->random);
+    for (int i = 0; i < block->count * block->width; i++) {
+        int row = unknown.group ? unknown.group[i / block->width] : i / block->width;
+        if (row >= 0) start->values[i] += noise[row * block->width + i % block->width];
+    }
+    mem_free(noise);
+    for (int c = 0; c < model->case_count; c++)
+        memcpy(model->cases[c].stages[0].p + block->offset, start->values,
+               (size_t)(block->count * block->width) * sizeof(double));
+    design_add(design, unknown);
+    return ok;
+}
+
+static bool check_bounds(YamlFile *file, const char *name, const double *bounds)
+{
+    if (isnan(bounds[0]) || bounds[0] < bounds[1]) return true;
+    return yaml_refuse(file, key("design.unknowns.%s.bounds", name).text,
+                       "the lower bound %g is not below the upper one, %g", bounds[0], bounds[1]);
+}
+
+static void put_bounds(Unknown *unknown, const double *bounds)
+{
+    unknown->lower = isnan(bounds[0]) ? -INFINITY : bounds[0];
+    unknown->upper = isnan(bounds[0]) ? INFINITY : bounds[1];
+}
+
+/* Of the logarithm of a fold's factor f: bending goes with f^2, and three folds bound a face. With 1 the folds go ahead
+ * of the moduli, a part of the sheet snaps, and letters end later than without folds (docs/optimisers.md). */
+static const double FOLD_UNIT = 0.2;
+
+static bool number_unknown(Model *model, const Build *b, Design *design, const char *name,
+                           const NumberUnknown *from, int seed)
+{
+    Start start = start_of(model, name, model->cases[0].stages[0].p, from->noise, seed);
+    Key at = key("design.unknowns.%s", name), at_start = key("%s.start", at.text);
+    bool edges = model->shell && start.block->offset == model->shell->fold,
+         ok = check_bounds(b->file, name, from->bounds);
+    if (from->start && model->rod)
+        ok = yaml_refuse(b->file, at_start.text, "the unknown %s of a rod starts at rod.%s", name, name);
+    else if (from->start)
+        ok = (edges ? build_edge_numbers(b, at_start, from->start, start.values)
+                    : build_face_numbers(b, at_start, from->start, start.values)) &&
+             ok;
+    double mean = 0;
+    for (int i = 0; i < start.block->count; i++) mean += start.values[i] / start.block->count;
+    Unknown unknown = {.map = UNKNOWN_LINEAR, .scale = mean > 0 ? mean : 1};
+    if (from->scale == SCALE_LOG) unknown.map = UNKNOWN_LOG, unknown.scale = edges ? FOLD_UNIT : 1;
+    put_bounds(&unknown, from->bounds);
+    ok = ok && add_unknown(model, b->file, design, &start, unknown, from->per);
+    for (int i = 0; ok && i < start.block->count; i++)
+        if (!(start.values[i] > 0))
+            ok = yaml_refuse(b->file, at.text,
+                             "its start, noise included, is %g somewhere; it must be positive",
+                             start.values[i]);
+    if (ok && from->scale == SCALE_LOG && unknown.lower == 0)
+        ok = yaml_refuse(b->file, at.text, "scale: log needs a lower bound above 0");
+    mem_free(start.values);
+    return ok;
+}
+
+static bool magnetization_unknown(Model *model, const Build *b, Design *design, const VectorUnknown *from,
+                                  int seed)
+{
+    const char *name = "magnetization";
+    Start start = start_of(model, name, model->cases[0].stages[0].p, from->noise, seed);
+    Key at = key("design.unknowns.%s", name);
+    bool ok = check_bounds(b->file, name, from->bounds), capped = !isnan(from->max_magnitude),
+         fixed = !isnan(from->magnitude);
+    if ((capped || fixed) && !isnan(from->bounds[0]))
+        ok =
+            yaml_refuse(b->file, key("%s.bounds", at.text).text, "bounds and a magnitude exclude each other");
+    if (from->start) {
+        Key at_start = key("%s.start", at.text);
+        ok = (model->rod ? rod_model_vectors(b, at_start.text, from->start, model->rod->rod, start.values)
+                         : build_face_vectors(b, at_start, from->start, start.values)) &&
+             ok;
+    }
+    Unknown unknown = {.map = fixed    ? UNKNOWN_FIXED_LENGTH
+                              : capped ? UNKNOWN_CAPPED_LENGTH
+                                       : UNKNOWN_LINEAR,
+                       .scale = from->scale,
+                       .limit = fixed ? from->magnitude : from->max_magnitude};
+    put_bounds(&unknown, from->bounds);
+    ok = ok && add_unknown(model, b->file, design, &start, unknown, from->per);
+    for (int i = 0; ok && i < start.block->count; i++) {
+        const double *M = start.values + 3 * i;
+        double length = sqrt(M[0] * M[0] + M[1] * M[1] + M[2] * M[2]);
+        if (fixed && !(length > 0))
+            ok = yaml_refuse(b->file, at.text,
+                             "a fixed magnitude needs a start that is not zero: give start or noise");
+        if (capped && !(length < from->max_magnitude))
+            ok =
+                yaml_refuse(b->file, at.text, "the start's |M| of %g A/m is not below max_magnitude", length);
+    }
+    mem_free(start.values);
+    return ok;
+}
+
+/* One value per case, each from its own start. */
+static void flux_per_case(Model *model, const FluxUnknown *from, const ParamBlock *block, Random *random,
+                          Unknown unknown)
+{
+    for (int c = 0; c < model->case_count; c++)
+        for (int i = 0; i < 3; i++)
+            model->cases[c].stages[0].p[block->offset + i] += from->noise * random_signed(random);
+    unknown.block = block, unknown.group_count = block->count, unknown.per_case = true;
+    design_add(&model->design, unknown);
+}
+
+/* Appends a block to the parameters of a trajectory's only case. */
+static double *add_block(Model *model, const char *name, const char *unit, int count, int width)
+{
+    Params *params = model->params;
+    double **p = &model->cases[0].stages[0].p;
+    int before = params->size, offset = params_add(params, name, unit, count, width, false);
+    *p = mem_resize(*p, (size_t)before, (size_t)params->size, sizeof **p);
+    return *p + offset;
+}
+
+/* The scene's field at the times of a control's rows: of harmonics its Fourier sums over the steps. */
+static bool sample_flux(Model *model, const Build *b, const Control *control, double *rows)
+{
+    double *p = model->cases[0].stages[0].p;
+    int count = control->kind == CONTROL_KNOT ? control->rows : control->steps;
+    Error err;
+    for (int k = 0; k < count; k++) {
+        double part = control->kind == CONTROL_KNOT ? (double)k / (count - 1) : (double)(k + 1) / count;
+        if (!model_load(model, control->start + part * control->duration, p, &err))
+            return yaml_refuse(b->file, "flux_density", "%s", err.text);
+        const double *B = p + control->to;
+        if (control->kind != CONTROL_HARMONIC) memcpy(rows + 3 * k, B, 3 * sizeof *B);
+        for (int r = 0; control->kind == CONTROL_HARMONIC && r < control->rows; r++) {
+            double angle = 2 * M_PI * ((r + 1) / 2) * part;
+            double w = r == 0 ? 1.0 / count : 2.0 / count * (r % 2 ? cos(angle) : sin(angle));
+            for (int i = 0; i < 3; i++) rows[3 * r + i] += w * B[i];
+        }
+    }
+    return true;
+}
+
+static bool start_control(Model *model, const Build *b, const FluxStart *start, double *rows)
+{
+    const Control *control = &model->control;
+    const char *at = "design.unknowns.flux_density.start.file";
+    if (!start) return sample_flux(model, b, control, rows);
+    if (!start->file) {
+        int copies = control->kind == CONTROL_HARMONIC ? 1 : control->rows;
+        for (int k = 0; k < copies; k++) memcpy(rows + 3 * k, start->value, sizeof start->value);
+        return true;
+    }
+    Table table;
+    Error err;
+    if (!table_read(start->file, "Bx [T], By [T], Bz [T]", &table, &err))
+        return yaml_refuse(b->file, at, "%s", err.text);
+    bool ok = table.rows == control->rows ||
+              yaml_refuse(b->file, at, "%s has %d rows; the unknown flux density has %d", start->file,
+                          table.rows, control->rows);
+    if (ok) memcpy(rows, table.values, 3 * (size_t)table.rows * sizeof *rows);
+    table_clear(&table);
+    return ok;
+}
+
+/* A row for each step, knot or coefficient. */
+static bool flux_over_time(Model *model, const Build *b, const Scene *scene, Random *random, Unknown unknown)
+{
+    const FluxUnknown *from = scene->design->unknowns.flux_density;
+    Control *control = &model->control;
+    *control = (Control){.kind = (ControlKind)from->per,
+                         .to = unknown.block->offset,
+                         .width = 3,
+                         .steps = scene->time.steps,
+                         .start = scene->time.at,
+                         .duration = scene->time.step * scene->time.steps};
+    control->rows = control_rows(control->kind, control->steps,
+                                 control->kind == CONTROL_KNOT ? from->knots : from->harmonics);
+    double *rows = add_block(model, "control", "T", control->rows, 3);
+    control->from = (int)(rows - model->cases[0].stages[0].p);
+    if (!start_control(model, b, from->start, rows)) return false;
+    for (int i = 0; i < 3 * control->rows; i++) rows[i] += from->noise * random_signed(random);
+    unknown.block = params_find(model->params, "control");
+    unknown.group_count = control->rows;
+    design_add(&model->design, unknown);
+    return true;
+}
+
+static bool flux_unknown(Model *model, const Build *b, const Scene *scene)
+{
+    const FluxUnknown *from = scene->design->unknowns.flux_density;
+    bool ok = check_bounds(b->file, "flux_density", from->bounds);
+    const ParamBlock *block = params_find(model->params, "flux_density");
+    Random random = random_seed((uint64_t)scene->design->seed * PARAMS_MAX_BLOCKS +
+                                (uint64_t)(block - model->params->blocks));
+    Unknown unknown = {.block = block, .scale = from->scale};
+    put_bounds(&unknown, from->bounds);
+    if (scene->job == JOB_TRAJECTORY) return flux_over_time(model, b, scene, &random, unknown) && ok;
+    flux_per_case(model, from, block, &random, unknown);
+    return ok;
+}
+
+static bool add_unknowns(Model *model, const Scene *scene, const Build *b)
+{
+    Design *design = &model->design;
+    const UnknownsScene *unknowns = &scene->design->unknowns;
+    int seed = scene->design->seed;
+    design->case_count = model->case_count;
+    bool ok = true;
+    if (unknowns->magnetization)
+        ok = magnetization_unknown(model, b, design, unknowns->magnetization, seed) && ok;
+    if (unknowns->young) ok = number_unknown(model, b, design, "young", unknowns->young, seed) && ok;
+    if (unknowns->fold && model->rod)
+        ok = yaml_refuse(b->file, "design.unknowns.fold", "a rod has no folds");
+    else if (unknowns->fold)
+        ok = number_unknown(model, b, design, "fold", unknowns->fold, seed) && ok;
+    if (unknowns->flux_density) ok = flux_unknown(model, b, scene) && ok;
+    if (ok && !design->unknown_count)
+        ok = yaml_refuse(b->file, "design.unknowns",
+                         "a design needs an unknown: magnetization, young, fold or flux_density");
+    return ok;
+}
+
+/* Frequencies and amplitudes of a DMP row: the first harmonics of the whole time, with no amplitude. */
+static bool add_dmp(Model *model, const Scene *scene, const Build *b)
+{
+    const ObjectiveScene *row = NULL;
+    for (int k = 0; k < scene->design->objectives_count; k++) {
+        if (isnan(scene->design->objectives[k].dmp)) continue;
+        Key at = key("design.objectives[%d]", k);
+        if (row) return yaml_refuse(b->file, at.text, "there is a dmp already; one is enough");
+        if (!model->control.rows)
+            return yaml_refuse(b->file, at.text, "dmp needs the unknown flux_density of a trajectory");
+        row = &scene->design->objectives[k];
+    }
+    if (!row) return true;
+    static const struct {
+        const char *name, *unit;
+        int width;
+    } blocks[] = {{"dmp_omega", "rad/s", 1}, {"dmp_alpha", "T", 3}, {"dmp_beta", "T", 3}};
+    double base = 2 * M_PI / model->control.duration;
+    for (int k = 0; k < 3; k++) {
+        double *values = add_block(model, blocks[k].name, blocks[k].unit, row->pairs, blocks[k].width);
+        for (int j = 0; k == 0 && j < row->pairs; j++) values[j] = base * (j + 1);
+        Unknown unknown = {.block = params_find(model->params, blocks[k].name),
+                           .group_count = row->pairs,
+                           .scale = k == 0 ? base : scene->design->unknowns.flux_density->scale,
+                           .lower = k == 0 ? 0 : -INFINITY,
+                           .upper = INFINITY};
+        design_add(&model->design, unknown);
+    }
+    return true;
+}
+
+bool model_design(Model *model, const Scene *scene, YamlFile *file)
+{
+    Build b = build_start(scene, model->shell ? model->shell->mesh : NULL, file);
+    bool trajectory = scene->job == JOB_TRAJECTORY;
+    if (!scene->design)
+        return yaml_refuse(file, "job", "a %s job needs the key `design`",
+                           trajectory ? "trajectory" : "design");
+    bool ok = add_unknowns(model, scene, &b) && add_dmp(model, scene, &b);
+    return model_objectives(model, scene, file) && ok;
+}

@@ -1,0 +1,301 @@
+/* Models of rods. */
+#include "base/memory.h"
+#include "model/body.h"
+#include "job/job.h"
+#include "rod/front/curves.h"
+#include "rod/front/rod_model.h"
+#include "solve/ramp.h"
+#include <math.h>
+#include <string.h>
+
+enum { LOAD_STEPS = 10 }; /* a natural shape is far from the loaded one; the way matters (docs/rods.md) */
+static const double STEP_CAP = 1.5; /* rad */
+
+/* ---- Loads and targets ---- */
+
+static bool put_loads(Model *model, const Build *b, const char *at, const LoadScene *loads, int count,
+                      double *p)
+{
+    (void)model, (void)loads, (void)count, (void)p;
+    return yaml_refuse(b->file, at, "loads of a rod are under rod.loads");
+}
+
+/* Places for the nodes, at equal arclengths of a curve or by formula. */
+static bool put_target(Model *model, const Build *b, const char *at, const TargetScene *scene,
+                       double (*target)[3])
+{
+    static const char *const variables[] = {"s", "L", NULL};
+    const Rod *rod = model->rod->rod;
+    Error err;
+    if (scene->height_map || scene->strokes || scene->on)
+        return yaml_refuse(b->file, at,
+                           "the target of a rod is a file with a polyline, or three formulas of s and L");
+    if (scene->file) {
+        RodCurve curve;
+        if (!rod_curve_read(b, (Sampled){at, scene->file, 1, {-1, 0}, rod->elements}, &curve)) return false;
+        for (int i = 0; i <= rod->elements; i++) vec3_store(target[i], curve.x[2 * i]);
+        rod_curve_clear(&curve);
+        return true;
+    }
+    Formula *formula = build_formula(b, key("%s.formula", at), scene->formula, 3, scene->where,
+                                     scene->where_count, variables);
+    bool ok = formula != NULL;
+    for (int i = 0; ok && i <= rod->elements; i++) {
+        double place[] = {i * rod_element_length(rod), rod->length};
+        ok = formula_eval(formula, place, target[i], &err) || yaml_refuse(b->file, at, "%s", err.text);
+    }
+    formula_destroy(formula);
+    return ok;
+}
+
+/* The held end, a part of the way from where x has it. */
+static bool move(const Model *model, double time, double part, double *x, Error *err)
+{
+    (void)time, (void)err;
+    const RodModel *rm = model->rod;
+    int last = rm->layout.nodes - 1;
+    double *place = x + rm->layout.position + 3 * last, *to = x + rm->layout.reference + 4 * last;
+    vec3_store(place, vec3_axpy(part, vec3_sub(rm->end_position, vec3_load(place)), vec3_load(place)));
+    if (rm->rod->end != ROD_CLAMPED) return true;
+    Quat now = rod_reference(&rm->layout, x, last), turn = quat_mul(quat_conj(now), rm->end_frame);
+    Quat next = quat_unit(quat_mul(now, quat_exp(vec3_scale(part, quat_log(turn)))));
+    to[0] = next.w;
+    vec3_store(to + 1, next.v);
+    return true;
+}
+
+/* ---- The rod ---- */
+
+/* How its ends are held. */
+static bool read_supports(RodModel *rm, const RodScene *scene, const Build *b)
+{
+    Rod *rod = rm->rod;
+    RodFrame frame;
+    bool ok = true;
+    if (scene->clamp.frame) {
+        ok = rod_model_frame(b, "rod.clamp.frame", (const double(*)[3])scene->clamp.frame, &frame);
+        if (ok) rod->frame = quat_from_axes(frame.n0, frame.n1, frame.n2);
+    }
+    rod->position = vec3_load(scene->clamp.position);
+    rod->start = scene->hold == HOLD_PINNED ? ROD_PINNED : ROD_CLAMPED;
+    if (!scene->end) return ok;
+    rm->held = true;
+    rod->end = scene->end->hold == HOLD_CLAMPED ? ROD_CLAMPED : ROD_PINNED;
+    rm->end_position = vec3_load(scene->end->position);
+    if (rod->end == ROD_CLAMPED && !scene->end->frame)
+        return yaml_refuse(b->file, "rod.end", "a clamped end needs its `frame`: tangent, n1, n2");
+    if (rod->end == ROD_CLAMPED &&
+        !rod_model_frame(b, "rod.end.frame", (const double(*)[3])scene->end->frame, &frame))
+        return false;
+    if (rod->end == ROD_CLAMPED) rm->end_frame = quat_from_axes(frame.n0, frame.n1, frame.n2);
+    double apart = vec3_length(vec3_sub(rm->end_position, rm->curves ? rm->curves[0].x[0] : rod->position));
+    if (apart > rod->length)
+        return yaml_refuse(b->file, "rod.end.position",
+                           "it is %g m from the other end, and the rod %g m long", apart, rod->length);
+    return ok;
+}
+
+static bool make_rod(RodModel *rm, const Scene *scene, const Build *b)
+{
+    const RodScene *from = scene->rod;
+    bool given = rm->curves != NULL;
+    if (from->poses) return yaml_refuse(b->file, "rod.poses", "poses are for the job identify");
+    if (given && rm->strand_count > 1)
+        return yaml_refuse(b->file, "rod.curve", "there are %d curves; jobs other than invert take one rod",
+                           rm->strand_count);
+    if (!given && !from->natural_strain)
+        return yaml_refuse(b->file, "rod", "`curve` or `natural_strain` is missing");
+    if (!given && isnan(from->length))
+        return yaml_refuse(b->file, "rod", "without a curve, `length` is needed");
+    rm->rod = rod_create(from->elements, given ? rm->curves[0].length : from->length, rm->unit, rm->area);
+    return read_supports(rm, from, b) && rod_model_check_points(rm, b, rm->rod->length);
+}
+
+/* The curve's state in x, and none of its shape in the rod: that has natural strains of its own. */
+static void pose(RodModel *rm, double *x)
+{
+    rod_follow_curve(rm->rod, &rm->curves[0], rm->frames[0], x);
+    for (int e = 0; e < rm->rod->elements; e++) rm->rod->bow[e] = vec3(0, 0, 0);
+}
+
+/* The natural strains that make the rod rest on its curve, hanging under its loads in p; leaves the curve's
+ * state in x, of turns only. */
+static void balance(RodModel *rm, double *p, double *x)
+{
+    Rod *rod = rm->rod;
+    RodLayout turns = rod_layout(rod, false), layout = rod_layout(rod, rod->fields.count > 0);
+    rod_follow_curve(rod, &rm->curves[0], rm->frames[0], x);
+    double *y = mem_alloc((size_t)layout.dofs, sizeof *y);
+    rod_copy_state(rod, &turns, x, &layout, y);
+    System *sys = rod->fields.count ? rod_system(rod, rm->young, false) : rod_hanging_system(rod);
+    rod_balance(rod, sys, &layout, y, p);
+    system_destroy(sys);
+    mem_free(y);
+}
+
+/* What the curve means: beside natural strains it is where the rod is let go. */
+static void take_curve(RodModel *rm, const RodScene *scene, double *p, double *x)
+{
+    if (scene->natural_strain)
+        pose(rm, x);
+    else
+        balance(rm, p, x);
+}
+
+static bool settle_move(void *self, double part, double *x)
+{
+    return move(self, 0, part, x, NULL);
+}
+
+/* Before a motion or a design, the rod is brought to its supports without loads. */
+static bool settle(Model *model, const Build *b, const double *p)
+{
+    RodModel *rm = model->rod;
+    double *unloaded = mem_copy(p, (size_t)model->params->size, sizeof *p);
+    for (int k = 0; k < model->params->block_count; k++) {
+        const ParamBlock *block = &model->params->blocks[k];
+        if (block->load)
+            memset(unloaded + block->offset, 0, (size_t)(block->count * block->width) * sizeof *p);
+    }
+    System *sys = rod_system(rm->rod, rm->young, false);
+    RampDef def = ramp_default();
+    def.newton.step_cap = STEP_CAP;
+    def.steps = LOAD_STEPS;
+    def.move = settle_move, def.self = model;
+    State state = system_state(sys);
+    size_t bytes = (size_t)state.dofs * sizeof *state.x;
+    memcpy(state.x, model->x, bytes);
+    RampInfo info = ramp_solve(sys, model->params, &def, NULL, unloaded, &state);
+    memcpy(model->x, state.x, bytes);
+    state_destroy(&state);
+    system_destroy(sys);
+    mem_free(unloaded);
+    return info.reached >= 1 ||
+           yaml_refuse(b->file, "rod.end", "the rod could not be brought to where its end is held (%s)",
+                       newton_status_text(info.newton.status));
+}
+
+/* Where the job starts, in model->x, and the natural shape to be shown; x is the curve's state, if there is
+ * one. */
+static void make_states(Model *model, const RodScene *scene, bool hanging, const double *p, double *x)
+{
+    RodModel *rm = model->rod;
+    Rod *rod = rm->rod;
+    RodLayout turns = rod_layout(rod, false);
+    rm->layout = rod_layout(rod, !hanging);
+    model->x = mem_alloc((size_t)rm->layout.dofs, sizeof *model->x);
+    if (scene->start == ROD_START_CURVE)
+        rod_copy_state(rod, &turns, x, &rm->layout, model->x);
+    else
+        rod_natural_state(rod, &rm->layout, p, model->x);
+    rm->natural = mem_alloc(3 * (size_t)turns.nodes, sizeof *rm->natural);
+    rod_natural_state(rod, &turns, p, x);
+    rod_places(rod, &turns, x, turns.nodes, rm->natural);
+}
+
+static void make_systems(Model *model, bool hanging, bool motion)
+{
+    RodModel *rm = model->rod;
+    for (int k = 0; k < model->case_count; k++) {
+        ModelCase *c = &model->cases[k];
+        c->sys = hanging ? rod_hanging_system(rm->rod) : rod_system(rm->rod, rm->young, motion);
+        model_start_case(c, model->x);
+    }
+}
+
+/* What the scene says of the model. */
+static void set_model(Model *model, const Scene *scene)
+{
+    RodModel *rm = model->rod;
+    Rod *rod = rm->rod;
+    model->params = &rod->params;
+    model->gravity = rod->gravity;
+    model->flux_density = rod->flux_density;
+    model->field_scale = rod->field_scale;
+    model->fields = &rod->fields;
+    model->moves = rm->held && scene->job == JOB_EQUILIBRIUM;
+}
+
+/* Cases and states. All fields are known once the cases are: with one that varies in space, no rod is only
+ * turns. */
+static bool fill_cases(Model *model, const Scene *scene, const Build *b)
+{
+    RodModel *rm = model->rod;
+    Rod *rod = rm->rod;
+    bool motion = model_is_motion(scene->job);
+    size_t room = model_params_room(model, scene);
+    double *p = mem_alloc(room, sizeof *p),
+           *curve = mem_alloc((size_t)rod_layout(rod, false).dofs, sizeof *curve);
+    bool ok = rod_model_params(rm, scene, b, p);
+    ok = model_put_flux(model, b, "flux_density", &scene->flux_density, p) && ok;
+    if (ok && rm->curves) take_curve(rm, scene->rod, p, curve);
+    ok = ok && model_cases(model, b, scene, p, room);
+    bool hanging = scene->job == JOB_EQUILIBRIUM && rod->start == ROD_CLAMPED && rod->end == ROD_FREE &&
+                   rod->fields.count == 0;
+    if (ok) make_states(model, scene->rod, hanging, p, curve);
+    if (ok && rm->held && !model->moves) ok = settle(model, b, p);
+    if (ok) make_systems(model, hanging, motion);
+    mem_free(p);
+    mem_free(curve);
+    return ok;
+}
+
+/* Jobs that move one rod. */
+static bool fill(Model *model, const Scene *scene, const Build *b)
+{
+    RodModel *rm = model->rod;
+    if (!make_rod(rm, scene, b)) return false;
+    Build sized = *b;
+    sized.size = rm->rod->length;
+    set_model(model, scene);
+    return fill_cases(model, scene, &sized) &&
+           (!model_is_motion(scene->job) ||
+            model_velocity(model, b, "rod.velocity", scene->rod->velocity, model->x + rm->layout.position));
+}
+
+static const BodyOps rod_ops = {
+    .put_loads = put_loads,
+    .put_target = put_target,
+    .move = move,
+    .add_static = body_rod_static,
+    .places = body_rod_places,
+    .add_frame = body_rod_frame,
+    .add_state = body_rod_state,
+    .add_final = body_rod_final,
+    .doubt = body_rod_doubt,
+};
+
+static bool is_default(const SolverScene *solver)
+{
+    NewtonDef def = newton_default();
+    return solver->max_iterations == def.max_iterations && solver->step_tolerance == def.step_tol &&
+           solver->force_tolerance == def.force_tol;
+}
+
+static bool check_inversion(const Scene *scene, YamlFile *file)
+{
+    bool round_trip = false;
+    for (int k = 0; k < scene->checks_count; k++) round_trip |= scene->checks[k] == CHECK_ROUND_TRIP;
+    if (!scene->rod->curve)
+        return yaml_refuse(file, "rod", "an inversion needs `curve`, the shape that is given");
+    const char *unused = scene->load_steps.mode != 0   ? "load_steps"
+                         : !is_default(&scene->solver) ? "solver"
+                                                       : NULL;
+    return round_trip || !unused ||
+           yaml_refuse(file, unused, "an inversion uses this for its round trip only: checks: [round_trip]");
+}
+
+bool model_rod(Model *model, const Scene *scene, YamlFile *file)
+{
+    Build b = build_start(scene, NULL, file);
+    b.report = &model->report;
+    b.timed = model_is_motion(scene->job) ? &model->flux_of_time : NULL;
+    model->body = &rod_ops;
+    model->point_count = scene->rod->elements + 1;
+    model->load_steps = LOAD_STEPS;
+    model->step_cap = STEP_CAP;
+    model->rod = rod_model_create(scene, &b);
+    if (!model->rod) return false;
+    if (scene->job == JOB_INVERT) return check_inversion(scene, file);
+    return scene->job == JOB_IDENTIFY || fill(model, scene, &b);
+}

@@ -1,0 +1,218 @@
+/* Curves and frames of rods from formulas and files (rod_model.h). */
+#include "base/memory.h"
+#include "rod/front/curves.h"
+#include "io/polyline_file.h"
+#include "io/table.h"
+#include "rod/samples.h"
+#include <math.h>
+#include <string.h>
+
+/* ---- Curves ---- */
+
+typedef struct FormulaCurve {
+    Formula *formula;
+    double strand;
+    Error *err;
+    bool failed;
+} FormulaCurve;
+
+static bool formula_point(void *self, double u, Vec3 *x)
+{
+    FormulaCurve *curve = self;
+    double variables[] = {u, curve->strand}, place[3] = {0};
+    if (curve->failed || !formula_eval(curve->formula, variables, place, curve->err)) {
+        curve->failed = true;
+        return false;
+    }
+    *x = vec3_load(place);
+    return true;
+}
+
+static bool curves_from_formula(const Build *b, const RodCurveScene *scene, int elements, RodStrands *strands)
+{
+    const char *variables[] = {scene->parameter, "n", NULL};
+    Error err, trouble;
+    if (!scene->range)
+        return yaml_refuse(b->file, "rod.curve", "a formula needs `range`, e.g. range: [0, 1]");
+    Formula *formula = build_formula(b, key("rod.curve.formula"), scene->formula, 3, scene->where,
+                                     scene->where_count, variables);
+    if (!formula) return false;
+    strands->curves = mem_alloc((size_t)scene->strands, sizeof *strands->curves);
+    bool ok = true;
+    for (int k = 0; ok && k < scene->strands; k++) {
+        FormulaCurve curve = {formula, k, &trouble, false};
+        ok = rod_curve_create(formula_point, &curve, scene->range[0], scene->range[1], elements,
+                              &strands->curves[k], &err);
+        strands->count += ok;
+        if (!ok) yaml_refuse(b->file, "rod.curve.formula", "%s", curve.failed ? trouble.text : err.text);
+    }
+    formula_destroy(formula);
+    return ok;
+}
+
+/* Through the points of a strand; refused with the file's name and line. */
+static bool curve_from_strand(const Build *b, Sampled from, const PolylineFile *file, int k, RodCurve *curve)
+{
+    RodSamplesDef def = rod_samples_default();
+    Error err;
+    if (from.noise.mode < 0) def.noise = from.noise.value;
+    return rod_samples_curve(file->points + file->first[k], file->first[k + 1] - file->first[k], &def,
+                             from.elements, curve, NULL, &err) ||
+           yaml_refuse(b->file, from.at, "%s:%d: %s", from.path, file->line[k], err.text);
+}
+
+/* All polylines of a file, to be cleared in any case. */
+static bool read_polylines(const Build *b, Sampled from, PolylineFile *file)
+{
+    Error err;
+    *file = (PolylineFile){0};
+    if (!polyline_file_read(from.path, file, &err)) return yaml_refuse(b->file, from.at, "%s", err.text);
+    if (file->scaled && from.scale != 1)
+        return yaml_refuse(b->file, from.at,
+                           "%s: its header says units, which are honoured: leave `scale` out", from.path);
+    for (int i = 0; i < file->point_count; i++) file->points[i] = vec3_scale(from.scale, file->points[i]);
+    return true;
+}
+
+bool rod_curve_read(const Build *b, Sampled from, RodCurve *curve)
+{
+    PolylineFile file;
+    bool ok = read_polylines(b, from, &file);
+    if (ok && file.strand_count > 1)
+        ok = yaml_refuse(b->file, from.at, "%s has %d polylines; one is needed here", from.path,
+                         file.strand_count);
+    ok = ok && curve_from_strand(b, from, &file, 0, curve);
+    polyline_file_clear(&file);
+    return ok;
+}
+
+static bool curves_from_file(const Build *b, const RodCurveScene *scene, int elements, RodStrands *strands)
+{
+    Sampled from = {"rod.curve.file", scene->file, scene->scale, scene->noise, elements};
+    PolylineFile file;
+    bool ok = read_polylines(b, from, &file);
+    strands->curves = mem_alloc((size_t)file.strand_count, sizeof *strands->curves);
+    for (int k = 0; ok && k < file.strand_count; k++) {
+        ok = curve_from_strand(b, from, &file, k, &strands->curves[k]);
+        strands->count += ok;
+    }
+    polyline_file_clear(&file);
+    return ok;
+}
+
+/* ---- Frames ---- */
+
+/* n1 at the clamp: what was asked for, or Frenet's. */
+static bool first_normal(const Build *b, const RodScene *scene, const RodCurve *curve, RodFrame *frames,
+                         Vec3 *normal)
+{
+    rod_frenet(curve, frames);
+    *normal = frames[0].n1;
+    if (isnan(scene->bishop_normal[0])) return true;
+    *normal = vec3_load(scene->bishop_normal);
+    Vec3 across = vec3_cross(*normal, curve->t[0]);
+    return vec3_length(across) > 1e-6 * vec3_length(*normal) ||
+           yaml_refuse(b->file, "rod.bishop_normal", "it is along the curve's tangent at the clamp, or zero");
+}
+
+static bool turn_frames(const Build *b, const RodScene *scene, const RodCurve *curve, RodFrame *frames)
+{
+    static const char *const variables[] = {"s", "L", NULL};
+    const char *at = "rod.frame.formula";
+    Error err;
+    Formula *formula =
+        build_formula(b, key("%s", at), (char *const *)&scene->frame.formula, 1, NULL, 0, variables);
+    bool ok = formula != NULL;
+    for (int j = 0; ok && j <= 2 * curve->elements; j++) {
+        double angle, values[] = {curve->length * j / (2 * curve->elements), curve->length};
+        ok = formula_eval(formula, values, &angle, &err) || yaml_refuse(b->file, at, "%s", err.text);
+        if (ok) frames[j] = rod_turned(frames[j], angle);
+    }
+    formula_destroy(formula);
+    return ok;
+}
+
+static bool frames_from_file(const Build *b, const RodScene *scene, const RodCurve *curve, RodFrame *frames)
+{
+    const char *at = "rod.frame.file";
+    Table table;
+    bool ok = rod_table_read(b, at, scene->frame.file, "s [m], x, y, z", curve->length, &table);
+    for (int j = 0; ok && j <= 2 * curve->elements; j++) {
+        double normal[3];
+        rod_table_at(&table, curve->length * j / (2 * curve->elements), normal);
+        Vec3 n1 = vec3_load(normal), t = curve->t[j], across = vec3_axpy(-vec3_dot(n1, t), t, n1);
+        ok = vec3_length(across) > 1e-3 * vec3_length(n1) ||
+             yaml_refuse(b->file, at, "n1 is along the tangent near s = %g m",
+                         curve->length * j / (2 * curve->elements));
+        if (ok) frames[j] = (RodFrame){t, vec3_unit(across), vec3_cross(t, vec3_unit(across))};
+    }
+    table_clear(&table);
+    return ok;
+}
+
+static bool make_frames(const Build *b, const RodScene *scene, const RodCurve *curve, RodFrame *frames)
+{
+    Vec3 normal;
+    int kind = scene->frame.formula ? scene->frame.from : scene->frame.kind;
+    bool turns_least = !scene->frame.file && kind == FRAME_BISHOP;
+    if (!isnan(scene->bishop_normal[0]) && !turns_least)
+        return yaml_refuse(b->file, "rod.bishop_normal",
+                           "it is of Bishop's frames, and `frame` gives others");
+    if (scene->frame.file) return frames_from_file(b, scene, curve, frames);
+    if (!first_normal(b, scene, curve, frames, &normal)) return false;
+    if (kind == FRAME_BISHOP) rod_bishop(curve, normal, frames);
+    return !scene->frame.formula || turn_frames(b, scene, curve, frames);
+}
+
+bool rod_strands_read(const Build *b, const RodScene *scene, RodStrands *strands)
+{
+    const RodCurveScene *curve = scene->curve;
+    *strands = (RodStrands){0};
+    if (!(curve->formula ? curves_from_formula : curves_from_file)(b, curve, scene->elements, strands))
+        return false;
+    strands->frames = mem_alloc((size_t)strands->count, sizeof *strands->frames);
+    for (int k = 0; k < strands->count; k++) {
+        strands->frames[k] = mem_alloc(2 * (size_t)scene->elements + 1, sizeof **strands->frames);
+        if (!make_frames(b, scene, &strands->curves[k], strands->frames[k])) return false;
+    }
+    return true;
+}
+
+void rod_strands_clear(RodStrands *strands)
+{
+    for (int k = 0; k < strands->count; k++) {
+        rod_curve_clear(&strands->curves[k]);
+        if (strands->frames) mem_free(strands->frames[k]);
+    }
+    mem_free(strands->curves);
+    mem_free(strands->frames);
+    *strands = (RodStrands){0};
+}
+
+bool rod_table_read(const Build *b, const char *at, const char *path, const char *names, double length,
+                    Table *table)
+{
+    const double little = 1e-3;
+    Error err;
+    if (!table_read(path, names, table, &err) || !table_check_increasing(table, path, "s", &err))
+        return yaml_refuse(b->file, at, "%s", err.text);
+    if (table->rows < 2) return yaml_refuse(b->file, at, "%s has fewer than two rows", path);
+    double first = table->values[0], last = table->values[(size_t)(table->rows - 1) * (size_t)table->columns];
+    if (first < -little * length || last > (1 + little) * length)
+        return yaml_refuse(b->file, at, "%s:%d: s goes from %g to %g m, and the rod is %g m long", path,
+                           table->line[table->rows - 1], first, last, length);
+    return last - first >= (1 - little) * TABLE_SHARE * length ||
+           yaml_refuse(b->file, at,
+                       "%s:%d: s goes from %g to %g m only, and the rod is %g m long: rows along half of it "
+                       "at least are needed",
+                       path, table->line[table->rows - 1], first, last, length);
+}
+
+void rod_table_at(const Table *table, double s, double *values)
+{
+    int width = table->columns, row = 0;
+    while (row + 2 < table->rows && table->values[(row + 1) * width] < s) row++;
+    const double *a = table->values + row * width, *b = a + width;
+    double part = b[0] > a[0] ? fmin(fmax((s - a[0]) / (b[0] - a[0]), 0), 1) : 0;
+    for (int k = 1; k < width; k++) values[k - 1] = a[k] + part * (b[k] - a[k]);
+}

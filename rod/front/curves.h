@@ -1,0 +1,35 @@
+/* rod_curves.h - the curves of a scene's rod, from formulas or files, and the frames along them. */
+#pragma once
+#include "model/build.h"
+#include "io/table.h"
+#include "rod/frame.h"
+
+typedef struct RodStrands {
+    int count;
+    RodCurve *curves;  /* [count]           */
+    RodFrame **frames; /* [count][stations] */
+} RodStrands;
+
+/* Of scene->curve; false after a refusal. To be cleared in any case. */
+bool rod_strands_read(const Build *b, const RodScene *scene, RodStrands *strands);
+void rod_strands_clear(RodStrands *strands);
+
+/* A file of points, at a key of the scene. */
+typedef struct Sampled {
+    const char *at, *path;
+    double scale;
+    NoiseScene noise;
+    int elements;
+} Sampled;
+
+/* The curve through the points of a file with one polyline. Else to be cleared. */
+bool rod_curve_read(const Build *b, Sampled from, RodCurve *curve);
+
+/* Rows by arclength, s first, on a rod of that length: two at least, s increasing and on the rod. To be
+ * cleared in any case. */
+bool rod_table_read(const Build *b, const char *at, const char *path, const char *names, double length,
+                    Table *table);
+
+/* Columns 1, 2, .. of a table at s, its first one, which ascends: linear between the rows, constant beyond.
+ */
+void rod_table_at(const Table *table, double s, double *values);

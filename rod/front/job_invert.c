@@ -1,0 +1,337 @@
+/* The natural shape of rods that hang in given curves: by the frame-free integral, as strains, and as the
+ * strains of a discrete rod that rests on its curve to rounding. */
+#include "base/memory.h"
+#include "job/job.h"
+#include "rod/front/rod_model.h"
+#include "rod/self_contact.h"
+#include "rod/stability.h"
+#include "solve/ramp.h"
+#include <math.h>
+#include <string.h>
+
+enum { LOAD_STEPS = 10 };
+static const double ELSEWHERE = 1e-4; /* of the length: another equilibrium */
+static const double COARSE = 1e-2;    /* two ways to the same strains differ by that */
+
+/* Everything about all strands, one after the other: nodes N + 1 and elements N each. */
+typedef struct Inversion {
+    Run *run;
+    const RodModel *rm;
+    int strands, elements, nodes;
+    double *s, *input, *natural, *strain, *moment, *strain_elements; /* [strands*nodes][3], ..        */
+    double *x;                                                       /* simulated; NULL: not asked for */
+    double *lowest, *critical_young, *tail, *contact, *round_trip, *residual, *route; /* [strands]     */
+    double *gain; /* [strands] energy at the curve less that where the simulated rod rests, J */
+    int *stable, *index, *touching; /* [strands]     */
+    int pair_count;
+    int *pairs;     /* [pair_count][3] strand, elements */
+    double lengths; /* of the longest element, in bending lengths (stability.h) */
+    NewtonStatus worst;
+} Inversion;
+
+static bool is_asked(const Scene *scene, RodCheck check)
+{
+    for (int k = 0; k < scene->checks_count; k++)
+        if (scene->checks[k] == (int)check) return true;
+    return false;
+}
+
+/* ---- One strand ---- */
+
+static Vec3 *strand_of(const Inversion *o, double *all, int k)
+{
+    return (Vec3 *)(all + 3 * (size_t)k * (size_t)o->nodes);
+}
+
+/* How far the two ways to the strains are apart, in parts of the largest: an independent check of both. */
+static double compare_routes(const RodModel *rm, const RodCurve *curve, const RodFrame *frames,
+                             const Vec3 *moment)
+{
+    int stations = 2 * curve->elements + 1;
+    Vec3 *route = mem_alloc((size_t)stations, sizeof *route);
+    double off = 0, largest = 0;
+    rod_strain_route(curve, rm->section, rm->loads, frames, route);
+    for (int j = 0; j < stations; j++) {
+        Vec3 m = rod_to_frame(frames[j], moment[j]);
+        Vec3 direct = vec3(-m.x / rm->section.twist, -m.y / rm->section.bend1, -m.z / rm->section.bend2);
+        off = fmax(off, vec3_length(vec3_sub(route[j], direct)));
+        largest = fmax(largest, vec3_length(direct));
+    }
+    mem_free(route);
+    return largest > 0 ? off / largest : 0;
+}
+
+static void judge_stability(Inversion *o, int k, const Vec3 *moment)
+{
+    const RodModel *rm = o->rm;
+    const RodCurve *curve = &rm->curves[k];
+    const RodFrame *frames = rm->frames[k];
+    size_t stations = 2 * (size_t)o->elements + 1;
+    Vec3 *strain = mem_alloc(2 * stations + 3 * (size_t)o->elements, sizeof *strain), *m = strain + stations,
+         *F = m + stations;
+    rod_strains(curve, frames, strain);
+    for (size_t j = 0; j < stations; j++) m[j] = rod_to_frame(frames[j], moment[j]);
+    rod_pulls(curve, rm->loads, F);
+    for (int i = 0; i < 3 * o->elements; i++) F[i] = rod_to_frame(frames[2 * (i / 3) + i % 3], F[i]);
+    RodEquilibrium at = {o->elements, curve->length, rm->section, strain, m, F};
+    RodStability found = rod_stability(&at);
+    o->lengths = fmax(o->lengths, rod_bending_lengths(&at));
+    o->stable[k] = found.stable;
+    o->index[k] = found.morse_index;
+    o->lowest[k] = found.lowest_eigenvalue;
+    o->critical_young[k] = found.critical_factor * rm->young;
+    o->tail[k] = found.stable_tail;
+    mem_free(strain);
+}
+
+static void find_contacts(Inversion *o, int k)
+{
+    RodContacts contacts = rod_self_contacts(strand_of(o, o->natural, k), o->nodes, 2 * o->rm->section.reach);
+    size_t before = (size_t)o->pair_count;
+    o->pairs = mem_resize(o->pairs, 3 * before, 3 * (before + (size_t)contacts.count), sizeof *o->pairs);
+    for (int i = 0; i < contacts.count; i++) {
+        int *pair = &o->pairs[3 * o->pair_count++];
+        pair[0] = k, pair[1] = contacts.list[i].e1, pair[2] = contacts.list[i].e2;
+    }
+    o->touching[k] = contacts.count > 0;
+    o->contact[k] = contacts.nearest.distance;
+    rod_contacts_clear(&contacts);
+}
+
+/* From the natural shape, loads in steps, back to the curve, where the rod has the given energy: how far it ends from
+ * it, and how much lower. */
+static void go_round(Inversion *o, int k, Rod *rod, System *sys, const RodLayout *layout, const double *p,
+                     double energy)
+{
+    State state = system_state(sys);
+    double *x = state.x, *place = &strand_of(o, o->x, k)->x;
+    RampDef def = ramp_default();
+    run_newton(o->run, &def.newton);
+    def.observer = run_observer(o->run);
+    def.steps = o->run->scene->load_steps.mode < 0 ? o->run->scene->load_steps.count : LOAD_STEPS;
+    rod_natural_state(rod, layout, p, x);
+    RampInfo info = ramp_solve(sys, &rod->params, &def, NULL, p, &state);
+    if (info.newton.status > o->worst) o->worst = info.newton.status;
+    o->gain[k] = energy - info.newton.energy;
+    rod_places(rod, layout, x, layout->nodes, place);
+    for (int i = 0; i < layout->nodes; i++) {
+        Vec3 off = vec3_sub(vec3_load(place + 3 * i), o->rm->curves[k].x[2 * i]);
+        o->round_trip[k] = fmax(o->round_trip[k], vec3_length(off));
+    }
+    state_destroy(&state);
+}
+
+/* The discrete rod that rests on the curve. */
+static void invert_elements(Inversion *o, int k)
+{
+    const RodModel *rm = o->rm;
+    const RodScene *scene = o->run->scene->rod;
+    Rod *rod = rod_create(o->elements, rm->curves[k].length, rm->unit, rm->area);
+    double *p = mem_alloc((size_t)rod->params.size, sizeof *p);
+    rod_model_loads(rm, rod, scene, p);
+    for (int e = 0; e < o->elements && !isnan(scene->magnetization.value[0]); e++)
+        p[rod->magnetization + 3 * e] = scene->magnetization.value[0];
+    memcpy(p + rod->flux_density, rm->flux, sizeof rm->flux);
+    RodLayout layout = rod_layout(rod, false);
+    double *x = mem_alloc(2 * (size_t)layout.dofs, sizeof *x);
+    System *sys = rod_hanging_system(rod);
+    rod_follow_curve(rod, &rm->curves[k], rm->frames[k], x);
+    rod_balance(rod, sys, &layout, x, p);
+    Evaluation left = system_gradient(sys, &(Point){.x = x, .p = p}, x + layout.dofs);
+    o->residual[k] = left.force_scale > 0 ? left.gradient_max / left.force_scale : 0;
+    memcpy(o->strain_elements + 3 * (size_t)k * (size_t)o->elements, p + rod->natural_strain,
+           3 * (size_t)o->elements * sizeof *p);
+    if (o->x) go_round(o, k, rod, sys, &layout, p, left.energy);
+    system_destroy(sys);
+    mem_free(x);
+    mem_free(p);
+    rod_destroy(rod);
+}
+
+static void invert_strand(Inversion *o, int k)
+{
+    const RodModel *rm = o->rm;
+    const RodCurve *curve = &rm->curves[k];
+    const Scene *scene = o->run->scene;
+    size_t stations = 2 * (size_t)o->elements + 1;
+    Vec3 *moment = mem_alloc(2 * stations, sizeof *moment), *strain = moment + stations;
+    bool round = rm->section.bend1 == rm->section.bend2;
+    rod_moments(curve, rm->loads, moment);
+    rod_invert(curve, rm->section, moment, round ? NULL : rm->frames[k], strand_of(o, o->natural, k));
+    rod_natural_strains(curve, rm->section, moment, rm->frames[k], strain);
+    for (int i = 0; i < o->nodes; i++) {
+        o->s[k * o->nodes + i] = curve->length * i / o->elements;
+        strand_of(o, o->input, k)[i] = curve->x[2 * i];
+        strand_of(o, o->strain, k)[i] = strain[2 * i];
+        strand_of(o, o->moment, k)[i] = moment[2 * i];
+    }
+    o->route[k] = compare_routes(rm, curve, rm->frames[k], moment);
+    if (is_asked(scene, CHECK_STABILITY)) judge_stability(o, k, moment);
+    if (is_asked(scene, CHECK_SELF_CONTACT)) find_contacts(o, k);
+    invert_elements(o, k);
+    mem_free(moment);
+}
+
+/* ---- What is left ---- */
+
+/* A number for each strand; of a single one the number itself. */
+static Array per_strand(const Inversion *o, const char *name, const char *unit, const double *values)
+{
+    return array_float(name, unit, values, o->strands > 1, o->strands, 0);
+}
+
+static Array flag_per_strand(const Inversion *o, const char *name, const int *values)
+{
+    return array_int(name, values, o->strands > 1, o->strands, 0);
+}
+
+static Array per_node(const Inversion *o, const char *name, const char *unit, const double *values)
+{
+    return array_float(name, unit, values, 2, o->strands * o->nodes, 3);
+}
+
+static void add_checks(const Inversion *o, Arrays *list)
+{
+    const Scene *scene = o->run->scene;
+    if (is_asked(scene, CHECK_STABILITY)) {
+        arrays_add(list, flag_per_strand(o, "rod/stable", o->stable));
+        arrays_add(list, flag_per_strand(o, "rod/morse_index", o->index));
+        arrays_add(list, per_strand(o, "rod/lowest_eigenvalue", "1/m^2", o->lowest));
+        arrays_add(list, per_strand(o, "rod/critical_young", "Pa", o->critical_young));
+        arrays_add(list, per_strand(o, "rod/stable_tail", "m", o->tail));
+    }
+    if (is_asked(scene, CHECK_SELF_CONTACT)) {
+        arrays_add(list, flag_per_strand(o, "rod/self_contact", o->touching));
+        arrays_add(list, per_strand(o, "rod/contact_distance", "m", o->contact));
+        if (o->pair_count) arrays_add(list, array_int("rod/contact_pairs", o->pairs, 2, o->pair_count, 3));
+    }
+    if (o->x) {
+        arrays_add(list, per_node(o, "rod/x", "m", o->x));
+        arrays_add(list, per_strand(o, "metrics/round_trip", "m", o->round_trip));
+        arrays_add(list, per_strand(o, "metrics/energy_above", "J", o->gain));
+    }
+}
+
+/* Lines of simulated (or else natural), input and natural curves; only the first ones count as the body. */
+static bool put_shapes(const Inversion *o, Error *err)
+{
+    int points = o->strands * o->nodes, kinds = o->x ? 3 : 2;
+    size_t size = 3 * (size_t)points;
+    int *range = mem_alloc(2 * (size_t)(kinds * o->strands), sizeof *range);
+    double *still = mem_alloc(size * (size_t)(kinds - 1), sizeof *still), time = 0;
+    for (int k = 0; k < kinds * o->strands; k++) range[2 * k] = k * o->nodes, range[2 * k + 1] = o->nodes;
+    memcpy(still, o->input, size * sizeof *still);
+    if (o->x) memcpy(still + size, o->natural, size * sizeof *still);
+    Array statics[] = {array_int("lines", range, 2, kinds * o->strands, 2),
+                       array_float("still", "m", still, 2, (kinds - 1) * points, 3)};
+    Array frame[] = {array_float("x", "m", o->x ? o->x : o->natural, 2, points, 3),
+                     array_float("time", "s", &time, 0, 0, 0)};
+    bool ok = journal_put(o->run->journal, "static", 0, statics, 2, err) &&
+              journal_put(o->run->journal, "frame", 0, frame, 2, err);
+    mem_free(range);
+    mem_free(still);
+    return ok;
+}
+
+static bool put_results(const Inversion *o, const char *status, Error *err)
+{
+    Arrays list = {0};
+    int *starts = arrays_keep(&list, mem_alloc((size_t)o->strands + 1, sizeof *starts));
+    for (int k = 0; k <= o->strands; k++) starts[k] = k * o->nodes;
+    arrays_add(&list, array_text("status", status));
+    arrays_add(&list, array_float("rod/s", "m", o->s, 1, o->strands * o->nodes, 0));
+    arrays_add(&list, per_node(o, "rod/input", "m", o->input));
+    arrays_add(&list, per_node(o, "rod/natural", "m", o->natural));
+    arrays_add(&list, per_node(o, "rod/natural_strain", "1/m", o->strain));
+    arrays_add(&list, per_node(o, "rod/moment", "N m", o->moment));
+    arrays_add(&list, array_float("rod/natural_strain_elements", "1/m", o->strain_elements, 2,
+                                  o->strands * o->elements, 3));
+    arrays_add(&list, per_strand(o, "metrics/residual", "", o->residual));
+    arrays_add(&list, per_strand(o, "metrics/strain_route", "", o->route));
+    arrays_add(&list, array_float("rod/gravity", "m/s^2", o->run->scene->rod->gravity, 1, 3, 0));
+    if (o->strands > 1) arrays_add(&list, array_int("rod/strands", starts, 1, o->strands + 1, 0));
+    add_checks(o, &list);
+    return put_shapes(o, err) && arrays_replace(&list, o->run->journal, "final", err);
+}
+
+/* Which other equilibrium, and why: the way from the natural shape leads there. */
+static void say_elsewhere(const Inversion *o, int elsewhere, double worst)
+{
+    double most = 0;
+    for (int k = 0; k < o->strands; k++)
+        if (fabs(o->gain[k]) > fabs(most)) most = o->gain[k];
+    progress_say(o->run->progress,
+                 "%d of %d rods come to rest elsewhere when they are let down from their natural shape, up "
+                 "to %.2g m away: "
+                 "in another equilibrium, with up to %.3g J %s energy than on the curve, that lies nearer on "
+                 "this way (a rod "
+                 "held on its curve and let go stays there where rod/stable is 1)",
+                 elsewhere, o->strands, worst, fabs(most), most > 0 ? "less" : "more");
+}
+
+static void say(const Inversion *o)
+{
+    Progress *progress = o->run->progress;
+    int unstable = 0, touching = 0, elsewhere = 0;
+    double worst = 0, route = 0;
+    for (int k = 0; k < o->strands; k++) {
+        unstable += is_asked(o->run->scene, CHECK_STABILITY) && !o->stable[k];
+        touching += o->touching[k];
+        elsewhere += o->round_trip[k] > ELSEWHERE * o->rm->curves[k].length;
+        worst = fmax(worst, o->round_trip[k]);
+        route = fmax(route, o->route[k]);
+    }
+    if (route > COARSE)
+        progress_say(
+            progress,
+            "natural strains are good to %.2g of the largest only: the curve bends too much for %d elements",
+            route, o->elements);
+    if (unstable)
+        progress_say(progress,
+                     "%d of %d curves unstable: the rod would not stay there (rod/critical_young says from "
+                     "which Young's modulus on it would)",
+                     unstable, o->strands);
+    if (o->lengths > 1)
+        progress_say(
+            progress,
+            "the elements are too long to tell how stable a curve is: one of them has %.2g times the "
+            "length sqrt(EI/F) within which the rod bends; rod.elements: %.0f or more would",
+            o->lengths, ceil(o->elements * o->lengths));
+    if (touching) progress_say(progress, "%d of %d natural shapes touch themselves", touching, o->strands);
+    if (elsewhere)
+        say_elsewhere(o, elsewhere, worst);
+    else if (o->x)
+        progress_say(progress, "the simulated rod rests %.2g m from its curve", worst);
+}
+
+RunStatus job_invert(Run *run, Error *err)
+{
+    const RodModel *rm = run->model->rod;
+    size_t strands = (size_t)rm->strand_count, nodes = (size_t)run->model->point_count, all = strands * nodes;
+    Inversion o = {
+        .run = run, .rm = rm, .strands = rm->strand_count, .elements = (int)nodes - 1, .nodes = (int)nodes};
+    bool round_trip = is_asked(run->scene, CHECK_ROUND_TRIP);
+    double *numbers = mem_alloc(19 * all + 8 * strands, sizeof *numbers), *at = numbers;
+    double **vectors[] = {&o.input, &o.natural, &o.strain, &o.moment, &o.strain_elements, &o.x};
+    for (int i = 0; i < 6; i++, at += 3 * all) *vectors[i] = at;
+    o.s = at, at += all;
+    double **scalars[] = {&o.lowest,     &o.critical_young, &o.tail,  &o.contact,
+                          &o.round_trip, &o.residual,       &o.route, &o.gain};
+    for (int i = 0; i < 8; i++, at += strands) *scalars[i] = at;
+    if (!round_trip) o.x = NULL;
+    o.stable = mem_alloc(3 * strands, sizeof *o.stable), o.index = o.stable + strands,
+    o.touching = o.index + strands;
+    int done = 0;
+    for (; done < o.strands && !progress_interrupted(); done++) {
+        invert_strand(&o, done);
+        progress_step(run->progress, done + 1, o.strands, "natural shapes");
+    }
+    bool interrupted = done < o.strands, converged = o.worst == NEWTON_CONVERGED;
+    bool ok = put_results(&o, interrupted ? "interrupted" : newton_status_name(o.worst), err);
+    if (ok && !interrupted) say(&o);
+    mem_free(numbers);
+    mem_free(o.stable);
+    mem_free(o.pairs);
+    if (!ok) return RUN_CANNOT_WRITE;
+    return interrupted ? RUN_INTERRUPTED : converged ? RUN_DONE : RUN_NOT_CONVERGED;
+}

@@ -1,0 +1,91 @@
+/* A rod's motion by the position-based solver: quick, for the eye. A run that is resumed begins anew: it
+ * repeats itself bit by bit. */
+#include "base/memory.h"
+#include "job/job.h"
+#include "rod/front/rod_model.h"
+#include "rod/pbd.h"
+
+typedef struct Preview {
+    Run *run;
+    PbdRod *rod;
+    int nodes;
+    Error *err;
+} Preview;
+
+static PbdRod *create(const Run *run)
+{
+    const RodModel *rm = run->model->rod;
+    const Rod *rod = rm->rod;
+    const RodScene *scene = run->scene->rod;
+    const double *p = run->model->cases[0].stages[0].p;
+    Vec3 *start = mem_alloc((size_t)rod->elements, sizeof *start);
+    rod_element_strains(rod, &rm->layout, run->model->x, start);
+    RodFrame clamp = {quat_rotate(rod->frame, vec3(1, 0, 0)), quat_rotate(rod->frame, vec3(0, 1, 0)),
+                      quat_rotate(rod->frame, vec3(0, 0, 1))};
+    PbdRodDef def = {.elements = rod->elements,
+                     .length = rod->length,
+                     .section = rm->section,
+                     .stretch = rm->young * rm->area,
+                     .natural_strain = (const Vec3 *)(p + rod->natural_strain),
+                     .start_strain = start,
+                     .position = rod->position,
+                     .clamp = clamp,
+                     .gravity = vec3_load(p + rod->gravity),
+                     .force = (const Vec3 *)(p + rod->load),
+                     .drag = scene->damping / rod->unit.mass,
+                     .substeps = scene->pbd.substeps,
+                     .sweeps = scene->pbd.sweeps};
+    PbdRod *made = pbd_rod_create(&def);
+    mem_free(start);
+    return made;
+}
+
+static Array positions(const Preview *o, const char *name)
+{
+    return array_float(name, "m", &pbd_rod_positions(o->rod)->x, 2, o->nodes, 3);
+}
+
+static bool put_frame(const Preview *o, int frame, double time)
+{
+    Array arrays[] = {positions(o, "x"), array_float("time", "s", &time, 0, 0, 0)};
+    return journal_put(o->run->journal, "frame", frame, arrays, 2, o->err);
+}
+
+static bool put_step(const Preview *o, int step, double time)
+{
+    Array array = array_float("time", "s", &time, 0, 0, 0);
+    return journal_put(o->run->journal, "evaluation", step, &array, 1, o->err);
+}
+
+static bool put_final(const Preview *o, const char *status)
+{
+    PbdRodSums sums = pbd_rod_sums(o->rod);
+    Array arrays[] = {array_text("status", status),
+                      positions(o, "state/x"),
+                      positions(o, "rod/x"),
+                      array_float("state/v", "m/s", &pbd_rod_velocities(o->rod)->x, 2, o->nodes, 3),
+                      array_float("final/energy/kinetic", "J", &sums.kinetic, 0, 0, 0),
+                      array_float("final/energy/elastic", "J", &sums.elastic, 0, 0, 0),
+                      array_float("final/energy/gravity", "J", &sums.potential, 0, 0, 0)};
+    return journal_replace(o->run->journal, "final", 0, arrays, sizeof arrays / sizeof *arrays, o->err);
+}
+
+RunStatus job_preview(Run *run, Error *err)
+{
+    const TimeScene *time = &run->scene->time;
+    Preview o = {.run = run, .rod = create(run), .nodes = run->model->point_count, .err = err};
+    int every = run->scene->output.every ? run->scene->output.every : 1, step = 0;
+    bool ok = journal_forget(run->journal, "frame", err) && journal_forget(run->journal, "evaluation", err) &&
+              put_frame(&o, 0, time->at);
+    for (; ok && step < time->steps && !progress_interrupted();) {
+        pbd_rod_step(o.rod, time->step);
+        double now = time->at + ++step * time->step;
+        ok = put_step(&o, step, now) && (step % every || put_frame(&o, step / every, now));
+        progress_step(run->progress, step, time->steps, "t %.4g s", now);
+    }
+    bool interrupted = step < time->steps;
+    if (ok && step % every) ok = put_frame(&o, step / every + 1, time->at + step * time->step);
+    ok = ok && put_final(&o, interrupted ? "interrupted" : "converged");
+    pbd_rod_destroy(o.rod);
+    return !ok ? RUN_CANNOT_WRITE : interrupted ? RUN_INTERRUPTED : RUN_DONE;
+}

@@ -1,0 +1,138 @@
+/* Rods in the journal. */
+#include "base/memory.h"
+#include "model/body.h"
+#include "rod/front/rod_model.h"
+#include "rod/stability.h"
+#include "rod/stations.h"
+#include <math.h>
+#include <string.h>
+
+/* Simulated, natural and (if one was given) input curve: only the first one moves. */
+void body_rod_static(const Model *model, Arrays *list)
+{
+    const RodModel *rm = model->rod;
+    if (!rm->rod) return; /* invert and identify have their own */
+    int nodes = model->point_count, lines = rm->curves ? 3 : 2;
+    int *range = arrays_keep(list, mem_alloc(2 * (size_t)lines, sizeof *range));
+    double *still = arrays_numbers(list, 3 * (size_t)nodes * (size_t)(lines - 1)),
+           *s = arrays_numbers(list, (size_t)nodes);
+    for (int k = 0; k < lines; k++) range[2 * k] = k * nodes, range[2 * k + 1] = nodes;
+    memcpy(still, rm->natural, 3 * (size_t)nodes * sizeof *still);
+    for (int i = 0; i < nodes; i++) {
+        s[i] = i * rod_element_length(rm->rod);
+        if (rm->curves) vec3_store(still + 3 * (nodes + i), rm->curves[0].x[2 * i]);
+    }
+    arrays_add(list, array_int("lines", range, 2, lines, 2));
+    arrays_add(list, array_float("still", "m", still, 2, (lines - 1) * nodes, 3));
+    arrays_add(list, array_float("rod/s", "m", s, 1, nodes, 0));
+    arrays_add(list,
+               array_float("rod/gravity", "m/s^2", model->cases[0].stages[0].p + model->gravity, 1, 3, 0));
+    arrays_add(list, array_float("rod/natural", "m", still, 2, nodes, 3));
+    if (rm->curves) arrays_add(list, array_float("rod/input", "m", still + 3 * nodes, 2, nodes, 3));
+}
+
+void body_rod_places(const Model *model, const double *x, double *place)
+{
+    const RodLayout *layout = &model->rod->layout;
+    if (layout->position >= 0)
+        memcpy(place, x + layout->position, 3 * (size_t)layout->nodes * sizeof *place);
+    else
+        rod_places(model->rod->rod, layout, x, layout->nodes, place);
+}
+
+void body_rod_frame(const Model *model, const Snapshot *shot, bool whole, Arrays *list)
+{
+    (void)model, (void)shot, (void)whole, (void)list;
+}
+
+void body_rod_state(const Model *model, const Snapshot *shot, const char *prefix, Arrays *list)
+{
+    const RodModel *rm = model->rod;
+    int elements = rm->rod->elements;
+    double *strain = arrays_numbers(list, 3 * (size_t)elements),
+           *moment = arrays_numbers(list, 3 * (size_t)model->point_count);
+    rod_element_strains(rm->rod, &rm->layout, shot->at.x, (Vec3 *)strain);
+    rod_node_moments(rm->rod, &rm->layout, shot->at.x, shot->p, (Vec3 *)moment);
+    char *name = arrays_keep(list, mem_format("%s/strain", prefix));
+    arrays_add(list, array_float(name, "1/m", strain, 2, elements, 3));
+    name = arrays_keep(list, mem_format("%s/moment", prefix));
+    arrays_add(list, array_float(name, "N m", moment, 2, model->point_count, 3));
+}
+
+/* Is it known how stable the state is? A free end, one stiffness, no magnetisation across the tangent, and no
+ * field that varies in space. */
+static bool is_judged(const Rod *rod, const double *p)
+{
+    const double *B = p + rod->flux_density;
+    bool across = false, field = B[0] != 0 || B[1] != 0 || B[2] != 0;
+    bool uniform = true;
+    for (int k = 0; k < rod->fields.count; k++) uniform &= p[rod->field_scale + k] == 0;
+    for (int e = 0; e < rod->elements; e++) {
+        across |= field && (p[rod->magnetization + 3 * e + 1] != 0 || p[rod->magnetization + 3 * e + 2] != 0);
+        uniform &= p[rod->young + e] == p[rod->young];
+    }
+    return uniform && rod->start == ROD_CLAMPED && rod->end == ROD_FREE && !across;
+}
+
+/* The rod as stability.h takes it; *work is the caller's. */
+static RodEquilibrium equilibrium_of(const RodModel *rm, const Snapshot *shot, Vec3 **work)
+{
+    const Rod *rod = rm->rod;
+    size_t stations = 2 * (size_t)rod->elements + 1;
+    Vec3 *k = *work = mem_alloc(2 * stations + 3 * (size_t)rod->elements, sizeof *k), *m = k + stations,
+         *F = m + stations;
+    rod_stations(rod, &rm->layout, shot->at.x, shot->p, k, m, F);
+    return (RodEquilibrium){
+        rod->elements, rod->length, rod_section_of(rod->unit, shot->p[rod->young]), k, m, F};
+}
+
+/* Where elements are too long for what they are to show, how stable the rod is stays unknown. */
+static void add_stability(const RodModel *rm, const Snapshot *shot, Arrays *list)
+{
+    Vec3 *work;
+    RodEquilibrium at = equilibrium_of(rm, shot, &work);
+    bool known = rod_bending_lengths(&at) <= 1;
+    double *lowest = arrays_numbers(list, 1);
+    *lowest = known ? rod_lowest_eigenvalue(&at) : NAN;
+    arrays_add(list, array_float("final/lowest_eigenvalue", "1/m^2", lowest, 0, 0, 0));
+    if (known) {
+        int *flags = arrays_keep(list, mem_alloc(2, sizeof *flags));
+        flags[1] = rod_morse_index(&at);
+        flags[0] = flags[1] == 0;
+        arrays_add(list, array_int("rod/stable", &flags[0], 0, 0, 0));
+        arrays_add(list, array_int("rod/morse_index", &flags[1], 0, 0, 0));
+    }
+    mem_free(work);
+}
+
+char *body_rod_doubt(const Model *model, const Snapshot *shot)
+{
+    const Rod *rod = model->rod->rod;
+    if (!is_judged(rod, shot->p)) return NULL;
+    Vec3 *work;
+    RodEquilibrium at = equilibrium_of(model->rod, shot, &work);
+    double lengths = rod_bending_lengths(&at);
+    mem_free(work);
+    if (lengths <= 1) return NULL;
+    return mem_format(
+        "the elements are too long: the rod bends within sqrt(EI/F) = %.2g m, and one of them has %.2g times "
+        "that; rod.elements: %.0f or more would show where it rests and how stable it is",
+        rod_element_length(rod) / lengths, lengths, ceil(rod->elements * lengths));
+}
+
+void body_rod_final(const Model *model, const Snapshot *shot, int modes, Arrays *list)
+{
+    (void)modes;
+    const RodModel *rm = model->rod;
+    const Rod *rod = rm->rod;
+    int nodes = model->point_count;
+    double *place = arrays_numbers(list, 3 * (size_t)nodes),
+           *moment = arrays_numbers(list, 3 * (size_t)nodes);
+    body_rod_places(model, shot->at.x, place);
+    rod_node_moments(rod, &rm->layout, shot->at.x, shot->p, (Vec3 *)moment);
+    arrays_add(list, array_float("rod/x", "m", place, 2, nodes, 3));
+    arrays_add(list, array_float("rod/moment", "N m", moment, 2, nodes, 3));
+    arrays_add(list, array_float("rod/natural_strain_elements", "1/m", shot->p + rod->natural_strain, 2,
+                                 rod->elements, 3));
+    if (is_judged(rod, shot->p)) add_stability(rm, shot, list);
+}

@@ -1,0 +1,272 @@
+#include "rod/front/rod_model.h"
+#include "base/memory.h"
+#include "job/job.h"
+#include "rod/front/curves.h"
+#include <math.h>
+#include <string.h>
+
+/* ---- What a rod is made of ---- */
+
+static bool read_section(RodModel *model, const RodScene *scene, const Build *b, JobKind job)
+{
+    bool ok = true;
+    if (job != JOB_IDENTIFY && isnan(scene->young))
+        ok = yaml_refuse(b->file, "rod", "`young`, Young's modulus, is missing");
+    if (job != JOB_IDENTIFY && isnan(scene->poisson))
+        ok = yaml_refuse(b->file, "rod", "`poisson`, Poisson's ratio, is missing");
+    const double *a = scene->ellipse;
+    double poisson = isnan(scene->poisson) ? 0.5 : scene->poisson;
+    model->young = scene->young;
+    model->area = M_PI * (a ? a[0] * a[1] : scene->radius * scene->radius);
+    model->unit = a ? rod_ellipse(a[0], a[1], 1, poisson, scene->density)
+                    : rod_circle(scene->radius, 1, poisson, scene->density);
+    model->section = rod_section_of(model->unit, scene->young);
+    return ok;
+}
+
+static bool read_loads(RodModel *model, const RodScene *scene, const Build *b)
+{
+    bool ok = true;
+    model->points = mem_alloc((size_t)scene->loads_count, sizeof *model->points);
+    for (int k = 0; k < scene->loads_count; k++) {
+        const RodLoadScene *load = &scene->loads[k];
+        if (!isnan(load->line[0]))
+            model->line = vec3_add(model->line, vec3_load(load->line));
+        else if (isnan(load->force[0]))
+            ok = yaml_refuse(b->file, key("rod.loads[%d]", k).text,
+                             "`force`, what acts at the point, is missing");
+        else
+            model->points[model->loads.point_count++] = (RodPointLoad){load->point, vec3_load(load->force)};
+    }
+    model->loads.points = model->points;
+    model->loads.line = vec3_axpy(model->unit.mass, vec3_load(scene->gravity), model->line);
+    return ok;
+}
+
+/* Of a curve: what the magnetisation does is known along the tangent, the same all along. */
+static bool read_magnetic(RodModel *model, const Scene *scene, const Build *b)
+{
+    const VectorScene *M = &scene->rod->magnetization;
+    FluxField *field;
+    double *flux = model->flux;
+    if (!build_flux(b, key("flux_density"), &scene->flux_density, flux, &field)) return false;
+    if (field) {
+        flux_field_destroy(field);
+        return yaml_refuse(
+            b->file, "flux_density",
+            "an inversion knows a field that is uniform: three numbers, formulas of t, or a file");
+    }
+    bool none = flux[0] == 0 && flux[1] == 0 && flux[2] == 0,
+         along = !isnan(M->value[0]) && M->value[1] == 0 && M->value[2] == 0;
+    if (!along)
+        return yaml_refuse(b->file, "rod.magnetization",
+                           "of a curve it must be along the tangent and the same all along: [m, 0, 0]");
+    if (!none) model->loads.end = vec3_scale(model->area * M->value[0], vec3_load(flux));
+    return true;
+}
+
+bool rod_model_check_points(const RodModel *model, const Build *b, double length)
+{
+    for (int k = 0; k < model->loads.point_count; k++)
+        if (model->points[k].s > length * (1 + 1e-9))
+            return yaml_refuse(b->file, "rod.loads", "a load is at s = %g m, beyond the rod's length of %g m",
+                               model->points[k].s, length);
+    return true;
+}
+
+static bool read_poses(RodModel *model, const RodScene *scene, const Build *b)
+{
+    bool ok = true;
+    model->curves = mem_alloc((size_t)scene->poses_count, sizeof *model->curves);
+    model->clamps = mem_alloc((size_t)scene->poses_count, sizeof *model->clamps);
+    model->strand_count = scene->poses_count;
+    for (int k = 0; k < scene->poses_count; k++) {
+        const RodPoseScene *pose = &scene->poses[k];
+        Key at = key("rod.poses[%d].file", k);
+        ok = rod_curve_read(b, (Sampled){at.text, pose->file, 1, pose->noise, scene->elements},
+                            &model->curves[k]) &&
+             ok;
+        ok = rod_model_frame(b, key("rod.poses[%d].frame", k).text, (const double(*)[3])pose->frame,
+                             &model->clamps[k]) &&
+             ok;
+    }
+    return ok;
+}
+
+RodIdentifyDef rod_model_poses(const RodModel *model, const RodScene *scene, RodPose *poses)
+{
+    for (int k = 0; k < model->strand_count; k++) poses[k] = (RodPose){&model->curves[k], model->clamps[k]};
+    return (RodIdentifyDef){poses, model->strand_count, scene->radius, model->loads};
+}
+
+/* What can be said of poses before they are compared: their lengths may differ by 2 %. */
+static bool check_poses(const RodModel *model, const RodScene *scene, const Build *b)
+{
+    if (scene->poses_count < 2)
+        return yaml_refuse(b->file, "rod", "an identification needs two or more `poses` of the rod");
+    RodPose *poses = mem_alloc((size_t)scene->poses_count, sizeof *poses);
+    RodIdentifyDef def = rod_model_poses(model, scene, poses);
+    Error err;
+    bool ok = rod_identify_check(&def, &err) || yaml_refuse(b->file, "rod.poses", "%s", err.text);
+    mem_free(poses);
+    return ok && rod_model_check_points(model, b, 1.02 * model->curves[0].length);
+}
+
+RodModel *rod_model_create(const Scene *scene, const Build *b)
+{
+    RodModel *model = mem_alloc(1, sizeof *model);
+    JobKind job = (JobKind)scene->job;
+    bool ok = read_section(model, scene->rod, b, job);
+    ok = read_loads(model, scene->rod, b) && ok;
+    if (scene->rod->curve) {
+        RodStrands strands;
+        ok = rod_strands_read(b, scene->rod, &strands) && ok;
+        model->strand_count = strands.count, model->curves = strands.curves, model->frames = strands.frames;
+        for (int k = 0; ok && k < strands.count; k++)
+            ok = rod_model_check_points(model, b, strands.curves[k].length);
+    }
+    if (job == JOB_IDENTIFY) ok = read_poses(model, scene->rod, b) && ok;
+    if (ok && (job == JOB_INVERT || job == JOB_IDENTIFY)) ok = read_magnetic(model, scene, b);
+    if (ok && job == JOB_IDENTIFY) ok = check_poses(model, scene->rod, b);
+    if (ok) return model;
+    rod_model_destroy(model);
+    return NULL;
+}
+
+void rod_model_destroy(RodModel *model)
+{
+    if (!model) return;
+    RodStrands strands = {model->strand_count, model->curves, model->frames};
+    rod_strands_clear(&strands);
+    rod_destroy(model->rod);
+    mem_free(model->clamps);
+    mem_free(model->points);
+    mem_free(model->natural);
+    mem_free(model);
+}
+
+bool rod_model_frame(const Build *b, const char *at, const double (*rows)[3], RodFrame *frame)
+{
+    Vec3 t = vec3_load(rows[0]), n1 = vec3_load(rows[1]), n2 = vec3_load(rows[2]);
+    double off = fmax(fabs(vec3_length(t) - 1), fmax(fabs(vec3_length(n1) - 1), fabs(vec3_length(n2) - 1)));
+    off = fmax(off, fmax(fabs(vec3_dot(t, n1)), fmax(fabs(vec3_dot(n1, n2)), fabs(vec3_dot(t, n2)))));
+    if (!(off <= 1e-3) || vec3_dot(vec3_cross(t, n1), n2) < 0)
+        return yaml_refuse(b->file, at,
+                           "its rows, tangent, n1, n2, are not orthonormal and right-handed to 1e-3");
+    t = vec3_unit(t);
+    n1 = vec3_unit(vec3_axpy(-vec3_dot(n1, t), t, n1));
+    *frame = (RodFrame){t, n1, vec3_cross(t, n1)};
+    return true;
+}
+
+/* ---- Numbers along a discrete rod ---- */
+
+/* Three formulas of s and L at the elements' middles. */
+static bool from_formula(const Build *b, const char *at, char *const *formula, const WhereScene *where,
+                         int where_count, const Rod *rod, double *values)
+{
+    static const char *const variables[] = {"s", "L", NULL};
+    Error err;
+    Formula *made = build_formula(b, key("%s.formula", at), formula, 3, where, where_count, variables);
+    bool ok = made != NULL;
+    for (int e = 0; ok && e < rod->elements; e++) {
+        double place[] = {(e + 0.5) * rod_element_length(rod), rod->length};
+        ok = formula_eval(made, place, values + 3 * e, &err) || yaml_refuse(b->file, at, "%s", err.text);
+    }
+    formula_destroy(made);
+    return ok;
+}
+
+/* Has the table a row for the middle of each element? */
+static bool is_at_middles(const Table *table, const Rod *rod)
+{
+    const double little = 1e-2;
+    double h = rod_element_length(rod);
+    bool own = table->rows == rod->elements;
+    for (int e = 0; own && e < table->rows; e++)
+        own = fabs(table->values[4 * e] - (e + 0.5) * h) <= little * h;
+    return own;
+}
+
+static bool read_strains(const Build *b, const StrainScene *scene, const Rod *rod, double *strain)
+{
+    const char *at = "rod.natural_strain";
+    if (scene->formula)
+        return from_formula(b, at, scene->formula, scene->where, scene->where_count, rod, strain);
+    for (int i = 0; !scene->file && i < 3 * rod->elements; i++) strain[i] = scene->value[i % 3];
+    if (!scene->file) return true;
+    Table table;
+    bool ok = rod_table_read(b, "rod.natural_strain.file", scene->file,
+                             "s [m], twist [1/m], k1 [1/m], k2 [1/m]", rod->length, &table),
+         own = ok && is_at_middles(&table, rod);
+    for (int e = 0; ok && e < rod->elements; e++)
+        if (own)
+            memcpy(strain + 3 * e, table.values + 4 * e + 1, 3 * sizeof *strain);
+        else
+            rod_table_at(&table, (e + 0.5) * rod_element_length(rod), strain + 3 * e);
+    table_clear(&table);
+    return ok;
+}
+
+bool rod_model_vectors(const Build *b, const char *at, const VectorScene *scene, const Rod *rod,
+                       double *values)
+{
+    if (scene->groups)
+        return yaml_refuse(b->file, at, "a rod has no groups: give three numbers, formulas of s, or a file");
+    if (scene->formula)
+        return from_formula(b, at, scene->formula, scene->where, scene->where_count, rod, values);
+    for (int i = 0; !scene->file && i < 3 * rod->elements; i++) values[i] = scene->value[i % 3];
+    if (!scene->file) return true;
+    Table table;
+    Error err;
+    if (!table_read(scene->file, "tangent [A/m], n1 [A/m], n2 [A/m]", &table, &err))
+        return yaml_refuse(b->file, at, "%s", err.text);
+    bool ok = table.rows == rod->elements ||
+              yaml_refuse(b->file, at, "%s has %d rows, and the rod %d elements: one row for each is needed",
+                          scene->file, table.rows, rod->elements);
+    if (ok) memcpy(values, table.values, 3 * (size_t)table.rows * sizeof *values);
+    table_clear(&table);
+    return ok;
+}
+
+/* Line loads by the nodes' lengths; a point load is shared by the nodes beside it. */
+static void node_loads(const RodModel *model, const Rod *rod, double *load)
+{
+    double h = rod_element_length(rod);
+    for (int i = 0; i <= rod->elements; i++)
+        vec3_store(load + 3 * i, vec3_scale(i == 0 || i == rod->elements ? h / 2 : h, model->line));
+    for (int k = 0; k < model->loads.point_count; k++) {
+        double part = fmin(model->points[k].s / h, rod->elements);
+        int e = part < rod->elements ? (int)part : rod->elements - 1;
+        for (int side = 0; side < 2; side++) {
+            double *to = load + 3 * (e + side), share = side ? part - e : 1 - (part - e);
+            vec3_store(to, vec3_axpy(share, model->points[k].force, vec3_load(to)));
+        }
+    }
+}
+
+void rod_model_loads(const RodModel *model, const Rod *rod, const RodScene *scene, double *p)
+{
+    rod_default_params(rod, model->young, p);
+    memcpy(p + rod->gravity, scene->gravity, sizeof scene->gravity);
+    p[rod->damping] = scene->damping * rod_element_length(rod);
+    node_loads(model, rod, p + rod->load);
+    rod_sum_loads(rod, p);
+}
+
+bool rod_model_params(const RodModel *model, const Scene *scene, const Build *b, double *p)
+{
+    const Rod *rod = model->rod;
+    const RodScene *from = scene->rod;
+    rod_model_loads(model, rod, from, p);
+    bool ok = rod_model_vectors(b, "rod.magnetization", &from->magnetization, rod, p + rod->magnetization);
+    return (!from->natural_strain || read_strains(b, from->natural_strain, rod, p + rod->natural_strain)) &&
+           ok;
+}
+
+double rod_model_longest(const RodModel *model)
+{
+    double longest = model->rod ? model->rod->length : 0;
+    for (int k = 0; k < model->strand_count; k++) longest = fmax(longest, model->curves[k].length);
+    return longest;
+}

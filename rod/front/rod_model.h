@@ -1,0 +1,56 @@
+/* rod_model.h - what a scene says of a rod, read and resolved: its curve (or many: strands), section, loads
+ * and frames, and the discrete rod of jobs that move it. */
+#pragma once
+#include "model/build.h"
+#include "model/model.h"
+#include "rod/identify.h"
+#include "rod/rod.h"
+
+typedef struct RodModel {
+    int strand_count;
+    RodCurve *curves;  /* [strand] what was given; NULL: natural strains were                     */
+    RodFrame **frames; /* [strand][stations]; NULL: of poses                                      */
+    RodFrame *clamps;  /* [strand] of poses: the clamps' material frames                          */
+    double young;
+    RodSection section, unit; /* with that modulus, and with 1 Pa                                 */
+    double area;
+    RodPointLoad *points;
+    RodLoads loads; /* on a curve, weight included                                                */
+    Vec3 line;      /* line loads without weight, N/m                                             */
+    double flux[3]; /* T, of an inversion                                                        */
+
+    /* Of jobs that move it (one strand). */
+    Rod *rod;
+    RodLayout layout;
+    double *natural; /* [nodes][3] places of the natural shape, m                                 */
+    bool held;       /* `end` says where the last node is                                         */
+    Vec3 end_position;
+    Quat end_frame;
+} RodModel;
+
+/* Curves, section and loads of scene->rod; NULL after a refusal. */
+RodModel *rod_model_create(const Scene *scene, const Build *b);
+void rod_model_destroy(RodModel *model);
+
+/* m: of the rod, or the longest strand. */
+double rod_model_longest(const RodModel *model);
+
+/* Do all point loads act on a rod of that length? */
+bool rod_model_check_points(const RodModel *model, const Build *b, double length);
+
+/* Of an identification: its poses, poses[strand_count], and loads. */
+RodIdentifyDef rod_model_poses(const RodModel *model, const RodScene *scene, RodPose *poses);
+
+/* Rows of a frame, tangent, n1, n2, made orthonormal; refused where they are further off than 1e-3. */
+bool rod_model_frame(const Build *b, const char *at, const double (*rows)[3], RodFrame *frame);
+
+/* Three numbers for each element, values[elements][3]. */
+bool rod_model_vectors(const Build *b, const char *at, const VectorScene *scene, const Rod *rod,
+                       double *values);
+
+/* p[params] of a discrete rod: Young's modulus, weight, loads and damping; all else 0. */
+void rod_model_loads(const RodModel *model, const Rod *rod, const RodScene *scene, double *p);
+
+/* p[params] of the discrete rod: material, magnetisation and loads; natural strains too unless a curve was
+ * given. */
+bool rod_model_params(const RodModel *model, const Scene *scene, const Build *b, double *p);

@@ -1,0 +1,188 @@
+/* The field tables of rods. */
+#include "model/scene_tables.h"
+
+static const YamlTable noise_table = {
+    .name = "noise",
+    .size = sizeof(NoiseScene),
+    .doc = "How far sampled points are off the curve.",
+    .fields = (const YamlField[]){
+        {YAML_CHOICE(NoiseScene, mode), .choices = YAML_NAMES("auto"), .one_of = 1, .short_form = true,
+         .required = true, .doc = "found by generalised cross-validation"},
+        {YAML_NUMBER(NoiseScene, value), .unit = "m", .range = "[0, inf)", .one_of = 1, .short_form = true,
+         .required = true, .doc = "standard deviation of each coordinate; 0: the points are exact"},
+        {0}}};
+
+static const YamlTable rod_curve_table = {
+    .name = "curve of a rod",
+    .size = sizeof(RodCurveScene),
+    .doc = "The shape that a hanging rod has, from its clamp on; taken by its arclength.",
+    .fields = (const YamlField[]){
+        {YAML_TEXTS(RodCurveScene, formula), .one_of = 1, .required = true, .min_count = 3, .max_count = 3,
+         .doc = "three expressions, in m, of the parameter (and of n, the number of the strand, from 0)"},
+        {YAML_FILE(RodCurveScene, file), .one_of = 1, .required = true,
+         .doc =
+             "points: a CSV file with rows x, y, z or s, x, y, z (s the arclength), or the polylines of an "
+             "OBJ or SVG file (mm); a smooth curve is put through them"},
+        {YAML_TEXT(RodCurveScene, parameter), .when = "formula", .fallback = "u",
+         .doc = "of a formula: its name"},
+        {YAML_NUMBERS(RodCurveScene, range), .when = "formula", .min_count = 2, .max_count = 2,
+         .doc = "of a formula: the parameter at the clamp and at the free end"},
+        {YAML_INTEGER(RodCurveScene, strands), .when = "formula", .range = "[1, 1000000]", .fallback = "1",
+         .doc = "of a formula: how many rods, n = 0, 1, .."},
+        WHERE_ROW(RodCurveScene),
+        {YAML_NUMBER(RodCurveScene, scale), .when = "file", .range = "(0, inf)", .fallback = "1",
+         .doc = "of a file: factor on its coordinates"},
+        {YAML_TABLE(RodCurveScene, noise, &noise_table), .when = "file", .fallback = "auto",
+         .doc = "of a file"},
+        {0}}};
+
+static const YamlTable strain_table = {
+    .name = "natural_strain",
+    .size = sizeof(StrainScene),
+    .doc = "Twist, k1 and k2 of the unloaded rod, 1/m, in its frames.",
+    .fields = (const YamlField[]){
+        {YAML_VECTOR(StrainScene, value), .unit = "1/m", .one_of = 1, .required = true, .short_form = true,
+         .doc = "the same everywhere"},
+        {YAML_TEXTS(StrainScene, formula), .one_of = 1, .required = true, .short_form = true, .min_count = 3,
+         .max_count = 3, .doc = "three expressions, in 1/m, of the arclength s and the length L"},
+        {YAML_FILE(StrainScene, file), .one_of = 1, .required = true,
+         .doc = "a CSV file with rows s, twist, k1, k2: at the elements' middles as they are (a round trip), "
+                "else along half of the rod at least: linear between the rows, constant beyond them"},
+        WHERE_ROW(StrainScene),
+        {0}}};
+
+static const YamlTable rod_frame_table = {
+    .name = "frame",
+    .size = sizeof(RodFrameScene),
+    .doc = "Where the section's axes n1 and n2 are along a curve.",
+    .fields = (const YamlField[]){
+        {YAML_CHOICE(RodFrameScene, kind), .choices = YAML_NAMES("frenet", "bishop"), .one_of = 1,
+         .short_form = true, .required = true, .doc = "n1 along the curvature, or turning least"},
+        {YAML_TEXT(RodFrameScene, formula), .one_of = 1, .required = true,
+         .doc = "turned about the tangent by this angle, of the arclength s and the length L"},
+        {YAML_CHOICE(RodFrameScene, from), .when = "formula", .choices = YAML_NAMES("frenet", "bishop"),
+         .fallback = "frenet", .doc = "of a formula: what is turned"},
+        {YAML_FILE(RodFrameScene, file), .one_of = 1, .required = true,
+         .doc =
+             "a CSV file with rows s, x, y, z: the direction of n1, along half of the rod at least: linear "
+             "between the rows, constant beyond them"},
+        {0}}};
+
+static const YamlTable clamp_table = {
+    .name = "clamp",
+    .size = sizeof(ClampScene),
+    .doc = "Where a rod of given natural strains is held.",
+    .fields = (const YamlField[]){
+        {YAML_VECTOR(ClampScene, position), .unit = "m", .fallback = "[0, 0, 0]", .doc = "of its first end"},
+        {YAML_ROWS(ClampScene, frame), .min_count = 3, .max_count = 3,
+         .doc = "tangent, n1 and n2 there; the axes x, y, z if absent"},
+        {0}}};
+
+static const YamlTable end_table = {
+    .name = "end",
+    .size = sizeof(EndScene),
+    .doc = "Where the rod's other end is held.",
+    .fields = (const YamlField[]){
+        {YAML_VECTOR(EndScene, position), .unit = "m", .required = true, .doc = "of the end"},
+        {YAML_CHOICE(EndScene, hold), .choices = YAML_NAMES("clamped", "pinned"), .fallback = "pinned",
+         .doc = "with its frame, or free to turn"},
+        {YAML_ROWS(EndScene, frame), .when = "hold: clamped", .min_count = 3, .max_count = 3,
+         .doc = "of a clamped end: tangent, n1 and n2 there"},
+        {0}}};
+
+static const YamlTable rod_load_table = {
+    .name = "loads of a rod",
+    .size = sizeof(RodLoadScene),
+    .doc = "A dead load: a force that keeps its direction.",
+    .fields = (const YamlField[]){
+        {YAML_NUMBER(RodLoadScene, point), .unit = "m", .range = "[0, inf)", .one_of = 1, .required = true,
+         .doc = "the arclength at which `force` acts"},
+        {YAML_VECTOR(RodLoadScene, line), .unit = "N/m", .one_of = 1, .required = true,
+         .doc = "on each metre, the same all along"},
+        {YAML_VECTOR(RodLoadScene, force), .when = "point", .unit = "N", .doc = "at a point"},
+        {0}}};
+
+static const YamlTable pose_curve_table = {
+    .name = "poses",
+    .size = sizeof(RodPoseScene),
+    .doc = "A shape that a rod was seen in.",
+    .fields = (const YamlField[]){
+        {YAML_FILE(RodPoseScene, file), .required = true,
+         .doc = "points from the clamp on: a CSV file with rows x, y, z or s, x, y, z"},
+        {YAML_ROWS(RodPoseScene, frame), .min_count = 3, .max_count = 3, .required = true,
+         .doc = "of the clamp: the tangent, n1 and n2 of one and the same rod"},
+        {YAML_TABLE(RodPoseScene, noise, &noise_table), .fallback = "auto", .doc = "of its points"},
+        {0}}};
+
+static const YamlTable pbd_table = {
+    .name = "pbd",
+    .size = sizeof(PbdScene),
+    .doc = "Of the position-based solver.",
+    .fields = (const YamlField[]){
+        {YAML_INTEGER(PbdScene, substeps), .range = "[1, 100000]", .fallback = "50",
+         .doc = "per step of time"},
+        {YAML_INTEGER(PbdScene, sweeps), .range = "[1, 100000]", .fallback = "2", .doc = "per substep"},
+        {0}}};
+
+const YamlTable rod_table = {
+    .name = "rod",
+    .size = sizeof(RodScene),
+    .doc = "An inextensible elastic rod. It is held at its first end and hangs, unless `end` holds the other "
+           "one, too.",
+    .fields = (const YamlField[]){
+        {YAML_OPTIONAL(RodScene, curve, &rod_curve_table), .one_of = 1,
+         .doc = "the shape that it has under its loads: its natural shape follows; with natural strains the "
+                "shape that it is held in until it is let go (`start: curve`)"},
+        {YAML_OPTIONAL(RodScene, natural_strain, &strain_table),
+         .when = "/job: equilibrium, design, simulate",
+         .doc = "its natural shape, by strains; needed where there is no curve"},
+        {YAML_LIST(RodScene, poses, &pose_curve_table), .one_of = 1, .when = "/job: identify",
+         .doc = "of an identification: shapes that it was seen in"},
+        {YAML_NUMBER(RodScene, length), .when = "!curve & !poses", .unit = "m", .range = "(0, inf)",
+         .doc = "without a curve: its length"},
+        {YAML_TABLE(RodScene, clamp, &clamp_table), .when = "!curve & !poses", .fallback = "{}",
+         .doc = "without a curve: its first end"},
+        {YAML_CHOICE(RodScene, hold), .when = "/job: equilibrium, design, simulate & solver: newton",
+         .choices = YAML_NAMES("clamped", "pinned"), .fallback = "clamped",
+         .doc = "how the first end is held"},
+        {YAML_OPTIONAL(RodScene, end, &end_table),
+         .when = "/job: equilibrium, design, simulate & solver: newton",
+         .doc = "how the other end is held; free if absent"},
+        {YAML_INTEGER(RodScene, elements), .range = "[2, 1000000]", .fallback = "200",
+         .doc = "pieces of constant strain"},
+        {YAML_NUMBER(RodScene, radius), .unit = "m", .range = "(0, inf)", .one_of = 2, .required = true,
+         .doc = "of a round section"},
+        {YAML_NUMBERS(RodScene, ellipse), .when = "!poses", .unit = "m", .range = "(0, inf)", .one_of = 2,
+         .required = true, .min_count = 2, .max_count = 2,
+         .doc = "half-axes along n1 and n2 of an elliptic section"},
+        {YAML_NUMBER(RodScene, young), .when = "!poses", .unit = "Pa", .range = "(0, inf)",
+         .doc = "Young's modulus"},
+        {YAML_NUMBER(RodScene, poisson), .when = "!poses", .range = "[-0.99, 0.5]", .doc = "Poisson's ratio"},
+        {YAML_NUMBER(RodScene, density), .unit = "kg/m^3", .range = "(0, inf)", .required = true,
+         .doc = "mass density"},
+        {YAML_VECTOR(RodScene, gravity), .unit = "m/s^2", .fallback = "[0, 0, -9.81]",
+         .doc = "acceleration of gravity"},
+        {YAML_TABLE(RodScene, frame, &rod_frame_table), .when = "curve", .fallback = "bishop",
+         .doc = "with a curve: the frames of section and strains"},
+        {YAML_VECTOR(RodScene, bishop_normal), .when = "curve",
+         .doc = "the direction of n1 at the clamp; Frenet's if absent"},
+        {YAML_LIST(RodScene, loads, &rod_load_table), .doc = "beside its weight"},
+        {YAML_TABLE(RodScene, magnetization, &magnetization_table), .when = "solver: newton",
+         .fallback = "[0, 0, 0]",
+         .doc = "remanent magnetisation in the frame (tangent, n1, n2); formulas are of s and L, a file has "
+                "a row for "
+                "each element"},
+        {YAML_NUMBER(RodScene, damping), .when = "/job: simulate", .unit = "N s/m^2", .range = "[0, inf)",
+         .fallback = "0", .doc = "of a simulation: viscous drag per length"},
+        {YAML_CHOICE(RodScene, start), .when = "curve & /job: equilibrium, design, simulate",
+         .choices = YAML_NAMES("natural", "curve"), .fallback = "natural",
+         .doc = "where a simulation begins: in the natural shape, or in the curve that was given"},
+        {YAML_OPTIONAL(RodScene, velocity, &velocity_table), .when = "/job: simulate & solver: newton",
+         .doc = "at the start of a simulation; formulas are of the place x, y, z, r at the start"},
+        {YAML_CHOICE(RodScene, solver), .when = "/job: simulate", .choices = YAML_NAMES("newton", "pbd"),
+         .fallback = "newton",
+         .doc = "of a simulation: implicit Euler, or position-based previews (docs/rods.md says what these "
+                "are not)"},
+        {YAML_TABLE(RodScene, pbd, &pbd_table), .when = "solver: pbd", .fallback = "{}",
+         .doc = "of solver: pbd"},
+        {0}}};

@@ -1,0 +1,249 @@
+/* Models of shells. */
+#include "base/memory.h"
+#include "model/body.h"
+#include "model/build.h"
+#include "job/job.h"
+#include "shell/rigid.h"
+#include <math.h>
+#include <string.h>
+
+/* ---- What is held ---- */
+
+/* Do two motions lead a vertex to one place, as far as both move it? At up to 64 times, or in statics at one. */
+static bool agree(const Build *b, const Motion *motion, const Motion *other, int v)
+{
+    const double little = 1e-9;
+    int times = b->duration > 0 ? 64 : 0;
+    bool same = true;
+    for (int k = 0; same && k <= times; k++) {
+        double variables[BUILD_VARIABLES], place[3], there[3];
+        build_position(variables, b->mesh->rest[v], b->time + (times ? b->duration * k / times : 0));
+        if (!formula_eval(motion->formula, variables, place, NULL) ||
+            !formula_eval(other->formula, variables, there, NULL))
+            return true; /* what has no value is told where it is needed */
+        for (int i = 0; i < 3; i++)
+            same &= !motion->axis[i] || !other->axis[i] || fabs(place[i] - there[i]) <= little * b->size;
+    }
+    return same;
+}
+
+/* A vertex that two entries move goes to one place. */
+static bool check_motion(const Model *model, const Build *b, const Motion *motion)
+{
+    int disagree = -1, entry = 0;
+    bool *moved = mem_alloc((size_t)b->mesh->vertex_count, sizeof *moved);
+    for (int k = 0; k < motion->vertices.count; k++) moved[motion->vertices.items[k]] = true;
+    for (int m = 0; disagree < 0 && m < model->motion_count; m++) {
+        const Motion *other = &model->motions[m];
+        for (int k = 0; disagree < 0 && k < other->vertices.count; k++) {
+            int v = other->vertices.items[k];
+            if (moved[v] && !agree(b, motion, other, v)) disagree = v, entry = other->entry;
+        }
+    }
+    mem_free(moved);
+    return disagree < 0 || yaml_refuse(b->file, key("fix[%d].move", motion->entry).text,
+                                       "vertex %d is moved here to another place than by fix[%d]",
+                                       b->mesh->file_vertex[disagree], entry);
+}
+
+static bool add_motion(Model *model, const Build *b, int entry, const FixScene *fix, const bool *axis,
+                       Indices vertices)
+{
+    Key at = key("fix[%d].move", entry);
+    for (int i = 0; i < 3; i++) {
+        const char *own = (const char *[]){"x", "y", "z"}[i];
+        if (!axis[i] && strcmp(fix->move[i], "0") && strcmp(fix->move[i], own))
+            return yaml_refuse(b->file, key("%s[%d]", at.text, i).text,
+                               "axes is '%s', so nothing is moved along %s: its expression must be 0 or %s, "
+                               "not \"%s\"",
+                               fix->axes, own, own, fix->move[i]);
+    }
+    Motion motion = {.vertices = vertices, .axis = {axis[0], axis[1], axis[2]}, .entry = entry};
+    motion.formula = build_formula(b, at, fix->move, 3, NULL, 0, build_variables_time);
+    if (!motion.formula) return false;
+    if (!check_motion(model, b, &motion)) {
+        formula_destroy(motion.formula);
+        return false;
+    }
+    size_t count = (size_t)model->motion_count++;
+    model->moves = true;
+    model->motions = mem_resize(model->motions, count, count + 1, sizeof *model->motions);
+    motion.vertices.items = mem_copy(vertices.items, (size_t)vertices.count, sizeof(int));
+    model->motions[count] = motion;
+    return true;
+}
+
+static bool fix_entry(Model *model, const Build *b, int entry, const FixScene *fix)
+{
+    Key at = key("fix[%d]", entry);
+    bool axis[3] = {false}, ok = *fix->axes != 0;
+    for (const char *c = fix->axes; ok && *c; c++) {
+        ok = strchr("xyz", *c) && !axis[*c - 'x'];
+        if (ok) axis[*c - 'x'] = true;
+    }
+    if (!ok)
+        return yaml_refuse(b->file, at.text, "axes is '%s'; it must be some of xyz, each once at most",
+                           fix->axes);
+    Indices found = {0};
+    SelectionScene selection = SELECTION_OF(fix);
+    ok = build_selection(b, at, &selection, &found);
+    for (int i = 0; i < 3 * found.count; i++)
+        if (axis[i % 3]) shell_fix(model->shell, found.items[i / 3], i % 3);
+    if (ok && fix->clamp) {
+        Indices edges = select_edges(b->mesh, &found);
+        for (int k = 0; k < edges.count; k++) shell_clamp(model->shell, edges.items[k]);
+        mem_free(edges.items);
+    }
+    if (ok && fix->move_count) ok = add_motion(model, b, entry, fix, axis, found);
+    mem_free(found.items);
+    return ok;
+}
+
+static bool move(const Model *model, double time, double part, double *x, Error *err)
+{
+    for (int m = 0; m < model->motion_count; m++) {
+        const Motion *motion = &model->motions[m];
+        for (int k = 0; k < motion->vertices.count; k++) {
+            int v = motion->vertices.items[k];
+            double variables[BUILD_VARIABLES], place[3];
+            build_position(variables, model->shell->mesh->rest[v], time);
+            if (!formula_eval(motion->formula, variables, place, err)) return false;
+            for (int i = 0; i < 3; i++)
+                if (motion->axis[i]) x[3 * v + i] += part * (place[i] - x[3 * v + i]);
+        }
+    }
+    return true;
+}
+
+/* ---- Loads ---- */
+
+static bool put_loads(Model *model, const Build *b, const char *at, const LoadScene *loads, int count,
+                      double *p)
+{
+    return build_loads(b, key("%s", at), loads, count, p + model->shell->load);
+}
+
+static bool put_target(Model *model, const Build *b, const char *at, const TargetScene *scene,
+                       double (*target)[3])
+{
+    (void)model;
+    return build_target(b, key("%s", at), scene, target);
+}
+
+static double *base_params(Model *model, const Scene *scene, const Build *b, size_t room)
+{
+    Shell *shell = model->shell;
+    double *p = mem_alloc(room, sizeof *p);
+    shell_default_params(shell, p);
+    const ShellScene *s = scene->shell;
+    bool ok = build_face_numbers(b, key("shell.young"), &s->young, p + shell->young);
+    ok = build_edge_numbers(b, key("shell.fold"), &s->fold, p + shell->fold) && ok;
+    ok = build_face_vectors(b, key("shell.magnetization"), &s->magnetization, p + shell->magnetization) && ok;
+    memcpy(p + shell->gravity, s->gravity, sizeof s->gravity);
+    p[shell->damping] = s->damping;
+    ok = build_loads(b, key("loads"), scene->loads, scene->loads_count, p + shell->load) && ok;
+    if (ok && model_put_flux(model, b, "flux_density", &scene->flux_density, p)) return p;
+    mem_free(p);
+    return NULL;
+}
+
+/* ---- The whole ---- */
+
+/* A corner may be any of the vertices that were joined into the mesh's. */
+static bool is_vertex(const Mesh *mesh, const MeshFile *file, int corner, int vertex)
+{
+    if (corner < 0 || corner >= file->vertex_count) return false;
+    return (file->vertex_count == mesh->vertex_count ? corner : mesh->vertex_of_file[corner]) == vertex;
+}
+
+static bool has_same_faces(const Mesh *mesh, const MeshFile *file)
+{
+    bool same = mesh_fits(mesh, file->vertex_count) && file->face_count == mesh->face_count;
+    for (int f = 0; same && f < mesh->face_count; f++)
+        for (int i = 0; i < 3; i++)
+            same = same && is_vertex(mesh, file, file->faces[f][i], mesh->faces[f][i]);
+    return same;
+}
+
+static bool read_pose(const Build *b, const PoseScene *pose, double *x)
+{
+    if (!pose) return true;
+    const Mesh *mesh = b->mesh;
+    MeshFile file = {0};
+    if (!build_state(b, key("shell.pose.file"), pose->file, pose->scale, &file)) return false;
+    bool ok = has_same_faces(mesh, &file);
+    if (!ok) yaml_refuse(b->file, "shell.pose.file", "%s has other faces than the mesh", pose->file);
+    for (int v = 0; ok && v < mesh->vertex_count; v++)
+        memcpy(x + 3 * v, file.vertices[mesh_row(mesh, file.vertex_count, v)], 3 * sizeof *x);
+    mesh_file_clear(&file);
+    return ok;
+}
+
+/* Systems last: fields and what is held are known by then. An equilibrium needs forces in balance. */
+static bool finish_cases(Model *model, const Build *b, JobKind job)
+{
+    bool ok = true, balanced = job == JOB_EQUILIBRIUM || job == JOB_DESIGN;
+    for (int k = 0; ok && k < model->case_count; k++) {
+        ModelCase *c = &model->cases[k];
+        Error err;
+        c->sys = model_is_motion(job) ? shell_dynamic_system(model->shell) : shell_system(model->shell);
+        model_start_case(c, model->x);
+        system_accept(c->sys, c->state.x, c->state.memory);
+        for (int s = 0; ok && balanced && s < c->stage_count; s++)
+            ok = rigid_check_force(model->shell, c->stages[s].p, &err) ||
+                 yaml_refuse(b->file, "", "%s", err.text);
+    }
+    return ok;
+}
+
+static bool fill(Model *model, const Scene *scene, const Build *b)
+{
+    Shell *shell = model->shell;
+    shell->thickness = scene->shell->thickness;
+    shell->poisson = scene->shell->poisson;
+    shell->density = scene->shell->density;
+    shell->bending = (BendingModel)scene->shell->bending;
+    bool ok = true;
+    for (int k = 0; k < scene->fix_count; k++) ok = fix_entry(model, b, k, &scene->fix[k]) && ok;
+    model->x = mem_alloc((size_t)shell_dof_count(shell), sizeof *model->x);
+    shell_rest_state(shell, model->x);
+    ok = read_pose(b, scene->shell->pose, model->x) && ok;
+    size_t room = model_params_room(model, scene);
+    double *p = base_params(model, scene, b, room);
+    ok = p && model_cases(model, b, scene, p, room) && ok;
+    mem_free(p);
+    return ok && finish_cases(model, b, (JobKind)scene->job) &&
+           (!model_is_motion(scene->job) ||
+            model_velocity(model, b, "shell.velocity", scene->shell->velocity, b->mesh->rest[0]));
+}
+
+static const BodyOps shell_ops = {
+    .put_loads = put_loads,
+    .put_target = put_target,
+    .move = move,
+    .add_static = body_shell_static,
+    .places = body_shell_places,
+    .add_frame = body_shell_frame,
+    .add_state = body_shell_state,
+    .add_final = body_shell_final,
+};
+
+bool model_shell(Model *model, const Scene *scene, YamlFile *file)
+{
+    Mesh *mesh = build_mesh(&scene->shell->mesh, file, &model->report);
+    if (!mesh) return false;
+    Shell *shell = model->shell = shell_create(mesh);
+    model->body = &shell_ops;
+    model->params = &shell->params;
+    model->gravity = shell->gravity;
+    model->flux_density = shell->flux_density;
+    model->field_scale = shell->field_scale;
+    model->fields = &shell->fields;
+    model->point_count = mesh->vertex_count;
+    model->load_steps = 1;
+    model->step_cap = newton_default().step_cap;
+    Build b = build_start(scene, mesh, file);
+    b.report = &model->report;
+    b.timed = model_is_motion(scene->job) ? &model->flux_of_time : NULL;
+    return fill(model, scene, &b);
+}

@@ -1,0 +1,80 @@
+/* Shells in the journal. */
+#include "base/memory.h"
+#include "model/body.h"
+#include "solve/eigen.h"
+#include <string.h>
+
+/* Edges are named as scenes and their tables name them: by the vertices of the file. Where some of these were
+ * removed or joined, file_vertex says which one each vertex of the result is. */
+static void add_edges(const Mesh *mesh, Arrays *list)
+{
+    int *edges = arrays_keep(list, mem_alloc(2 * (size_t)mesh->edge_count, sizeof *edges));
+    for (int i = 0; i < 2 * mesh->edge_count; i++) edges[i] = mesh->file_vertex[mesh->edges[i / 2][i % 2]];
+    arrays_add(list, array_int("edges", edges, 2, mesh->edge_count, 2));
+    if (mesh->vertex_count != mesh->file_vertex_count)
+        arrays_add(list, array_int("file_vertex", mesh->file_vertex, 1, mesh->vertex_count, 0));
+}
+
+void body_shell_static(const Model *model, Arrays *list)
+{
+    const Mesh *mesh = model->shell->mesh;
+    arrays_add(list, array_float("rest", "m", mesh->rest[0], 2, mesh->vertex_count, 3));
+    arrays_add(list, array_int("faces", mesh->faces[0], 2, mesh->face_count, 3));
+    add_edges(mesh, list);
+}
+
+void body_shell_places(const Model *model, const double *x, double *place)
+{
+    memcpy(place, x, 3 * (size_t)model->point_count * sizeof *place);
+}
+
+void body_shell_frame(const Model *model, const Snapshot *shot, bool whole, Arrays *list)
+{
+    const Shell *shell = model->shell;
+    System *sys = shot->load_case->sys;
+    Point at = state_point(&shot->at, shot->p);
+    for (int t = 0; t < system_term_count(sys); t++) {
+        const Term *term = system_term(sys, t);
+        int count = term->ops->count(term->self);
+        if (count != shell->mesh->face_count) continue;
+        double *energy = arrays_numbers(list, (size_t)count);
+        system_term_energy(sys, t, &at, energy);
+        char *name = arrays_keep(list, mem_format("cell/energy_%s", term->ops->name));
+        arrays_add(list, array_float(name, "J", energy, 1, count, 0));
+    }
+    if (!whole) return;
+    arrays_add(list, body_block("cell/magnetization", params_find(&shell->params, "magnetization"), shot->p));
+    arrays_add(list, body_block("cell/young", params_find(&shell->params, "young"), shot->p));
+}
+
+void body_shell_state(const Model *model, const Snapshot *shot, const char *prefix, Arrays *list)
+{
+    System *sys = shot->load_case->sys;
+    Point at = state_point(&shot->at, shot->p);
+    double *gradient = arrays_numbers(list, (size_t)system_dof_count(sys));
+    system_gradient(sys, &at, gradient);
+    char *name = arrays_keep(list, mem_format("%s/gradient", prefix));
+    arrays_add(list, array_float(name, "N", gradient, 2, model->point_count, 3));
+}
+
+void body_shell_final(const Model *model, const Snapshot *shot, int modes, Arrays *list)
+{
+    System *sys = shot->load_case->sys;
+    Point at = state_point(&shot->at, shot->p);
+    int positions = 3 * model->point_count, dofs = system_dof_count(sys), count = modes > 1 ? modes : 1;
+    if (system_free_count(sys) == 0) return;
+    double *values = arrays_numbers(list, (size_t)count),
+           *vectors = arrays_numbers(list, (size_t)count * (size_t)dofs);
+    if (!eigen_lowest(sys, &at, count, values, vectors)) return;
+    arrays_add(list, array_float("final/lowest_eigenvalue", "N/m", values, 0, 0, 0));
+    /* The mode of an instability is kept in any case: it says which way the body would go. */
+    if (!modes && values[0] >= 0) return;
+    double *mode = arrays_numbers(list, (size_t)count * (size_t)positions);
+    for (int k = 0; k < count; k++)
+        memcpy(mode + (size_t)k * (size_t)positions, vectors + (size_t)k * (size_t)dofs,
+               (size_t)positions * sizeof *mode);
+    arrays_add(list, array_float("final/eigenvalues", "N/m", values, 1, count, 0));
+    Array shape = array_float("final/modes", "", mode, 3, count, positions / 3);
+    shape.dims[2] = 3;
+    arrays_add(list, shape);
+}

@@ -1,0 +1,222 @@
+#include "spline/front/drawing_fields.h"
+#include "base/memory.h"
+#include "model/build.h"
+#include "spline/front/drawing_pens.h"
+#include "spline/direction.h"
+#include "spline/formula_field.h"
+#include "spline/tone_field.h"
+#include <math.h>
+#include <string.h>
+
+enum { SHOWN = 600 }; /* pixels of the longer side of what is shown */
+
+typedef struct Reader {
+    const SplineScene *scene;
+    Build build;
+    SplineToneDef tone;
+    double pixel; /* of tones: what the finest pen can draw */
+    Image grey;   /* the picture, or nothing                */
+    Image rgb[3]; /* its colours, where they are separated  */
+} Reader;
+
+static double shown_pixel(const SplinePage *page)
+{
+    return fmax(page->width, page->height) / SHOWN;
+}
+
+static bool refuse(const Reader *r, const char *at, const Error *err)
+{
+    return yaml_refuse(r->build.file, at, "%s", err->text);
+}
+
+/* ---- From formulas ---- */
+
+static Formula *formula_of(const Reader *r, const char *at, char *const *formula, int count,
+                           const WhereScene *where, int where_count)
+{
+    return build_formula(&r->build, key("%s.formula", at), formula, count, where, where_count,
+                         spline_formula_variables);
+}
+
+/* A field of `width` expressions. */
+static bool read_formula(const Reader *r, const char *at, char *const *formula, int width,
+                         const WhereScene *where, int where_count, const SplinePage *page, SplineField *field)
+{
+    Error err;
+    Formula *f = formula_of(r, at, formula, width, where, where_count);
+    bool ok = f && (spline_field_from_formula(f, page, r->pixel, width, field, &err) || refuse(r, at, &err));
+    formula_destroy(f);
+    return ok;
+}
+
+/* ---- Tones ---- */
+
+static bool read_tone_def(Reader *r)
+{
+    const ToneScene *from = &r->scene->tone;
+    Error err;
+    r->tone = spline_tone_default();
+    memcpy(r->tone.crop, from->crop, sizeof r->tone.crop);
+    r->tone.cover = from->fit == TONE_COVER;
+    r->tone.invert = from->invert;
+    r->tone.black = from->black, r->tone.white = from->white, r->tone.gamma = from->gamma;
+    r->tone.curve = (const double(*)[2])from->curve, r->tone.curve_points = from->curve_count;
+    r->tone.density = from->density;
+    return spline_tone_check(&r->tone, &err) || refuse(r, "spline.tone", &err);
+}
+
+/* As large as its tones and what is shown of it can use. */
+static bool read_image(Reader *r, const SplinePage *page)
+{
+    Error err;
+    const char *path = r->scene->image;
+    bool coloured = r->scene->separation && r->scene->separation->kind == SEPARATE_CMYK;
+    double useful[2];
+    if (!path) return true;
+    spline_tone_useful(page, &r->tone, fmin(r->pixel, shown_pixel(page)), useful);
+    return image_read_useful(path, useful, &r->grey, coloured ? r->rgb : NULL, &err) ||
+           refuse(r, "spline.image", &err);
+}
+
+/* Of the picture, or of the formula. */
+static bool read_tone(const Reader *r, const SplinePage *page, SplineField *tone)
+{
+    const FieldScene *density = r->scene->density;
+    if (!density) return *tone = spline_tone(&r->grey, page, &r->tone, r->pixel), true;
+    if (!read_formula(r, "spline.density", (char *const[]){density->formula}, 1, density->where,
+                      density->where_count, page, tone))
+        return false;
+    for (int i = 0; i < tone->columns * tone->rows; i++) tone->values[i] = fmin(fmax(tone->values[i], 0), 1);
+    return true;
+}
+
+static void separate(const Reader *r, Drawing *d)
+{
+    Image ink[4];
+    spline_separate(r->rgb, r->scene->separation->black, ink);
+    for (int k = 0; k < d->pen_count; k++)
+        d->tones[k] = spline_tone(&ink[pens_ink(d->pens[k].name)], &d->page, &r->tone, r->pixel);
+    for (int c = 0; c < 4; c++) image_clear(&ink[c]);
+}
+
+/* What each pen shall cover; `tone` is what all do. */
+static void share_tone(const Reader *r, const SplineField *tone, Drawing *d)
+{
+    d->tones = mem_alloc((size_t)d->pen_count, sizeof *d->tones);
+    if (r->rgb[0].grey) {
+        separate(r, d);
+        return;
+    }
+    double *limits = pens_limits(r->scene);
+    spline_tone_layers(tone, d->pen_count, limits, d->tones);
+    mem_free(limits);
+}
+
+/* ---- Directions ---- */
+
+static bool direction_from_file(const Reader *r, Drawing *d)
+{
+    Image rgb[3];
+    Error err;
+    if (!image_read_rgb(r->scene->direction.file, rgb, &err)) return refuse(r, "spline.direction.file", &err);
+    size_t bytes = (size_t)rgb[0].width * (size_t)rgb[0].height * sizeof(double);
+    bool grey = !memcmp(rgb[0].grey, rgb[1].grey, bytes) && !memcmp(rgb[0].grey, rgb[2].grey, bytes);
+    d->direction =
+        grey ? spline_direction_from_grey(&rgb[0], &d->page) : spline_direction_from_rgb(rgb, &d->page);
+    for (int c = 0; c < 3; c++) image_clear(&rgb[c]);
+    return true;
+}
+
+static bool direction_from_formula(const Reader *r, Drawing *d)
+{
+    const DirectionScene *from = &r->scene->direction;
+    Error err;
+    Formula *f = formula_of(r, "spline.direction", from->formula, 2, from->where, from->where_count);
+    bool ok = f && (spline_direction_from_formula(f, &d->page, &d->direction, &err) ||
+                    refuse(r, "spline.direction.formula", &err));
+    formula_destroy(f);
+    return ok;
+}
+
+/* The tone that directions follow goes on beside the picture, so that its frame is no edge. */
+static bool direction_from_tone(const Reader *r, Drawing *d)
+{
+    const DirectionScene *from = &r->scene->direction;
+    SplineDirectionDef def = spline_direction_default(&d->page);
+    Reader open = *r;
+    SplineField tone;
+    open.tone.extend = true;
+    if (!isnan(from->detail)) def.detail = from->detail / d->page.unit;
+    if (!isnan(from->smooth)) def.smooth = from->smooth / d->page.unit;
+    if (!isnan(from->spread)) def.spread = from->spread / d->page.unit;
+    open.pixel = fmax(r->pixel, def.detail / 2); /* no more is looked at */
+    if (!read_tone(&open, &d->page, &tone)) return false;
+    d->direction = spline_direction_from_tone(&tone, &d->page, &def);
+    spline_field_clear(&tone);
+    return true;
+}
+
+static bool read_direction(const Reader *r, Drawing *d)
+{
+    const DirectionScene *from = &r->scene->direction;
+    bool ok = true;
+    if (from->formula)
+        ok = direction_from_formula(r, d);
+    else if (from->file)
+        ok = direction_from_file(r, d);
+    else if (!isnan(from->angle))
+        d->direction = spline_direction_constant(&d->page, from->angle);
+    else
+        ok = direction_from_tone(r, d);
+    if (ok && from->turn != 0) spline_direction_turn(&d->direction, from->turn);
+    return ok;
+}
+
+/* Of the energies of Linewise. */
+static bool read_energy_fields(const Reader *r, Drawing *d)
+{
+    const FieldScene *potential = r->scene->potential;
+    const FlowScene *flow = r->scene->flow;
+    if (r->scene->energies.flow > 0 && !flow)
+        return yaml_refuse(r->build.file, "spline.energies.flow",
+                           "the energy flow needs `spline.flow`, two formulas");
+    return (!potential || read_formula(r, "spline.potential", (char *const[]){potential->formula}, 1,
+                                       potential->where, potential->where_count, &d->page, &d->potential)) &&
+           (!flow || read_formula(r, "spline.flow", flow->formula, 2, flow->where, flow->where_count,
+                                  &d->page, &d->flow));
+}
+
+/* ---- What is shown beside the drawing ---- */
+
+static void make_picture(const Reader *r, const SplineField *tone, Drawing *d)
+{
+    double pixel = shown_pixel(&d->page);
+    SplineToneDef def = r->tone;
+    if (!r->rgb[0].grey) {
+        d->picture = spline_field_resize(tone, &d->page, pixel);
+        return;
+    }
+    def.density = 1;
+    for (int c = 0; c < 3; c++) {
+        SplineField one = spline_tone(&r->rgb[c], &d->page, &def, pixel);
+        if (c == 0) d->picture = spline_field_like(&one, 3);
+        for (int i = 0; i < one.columns * one.rows; i++) d->picture.values[3 * i + c] = one.values[i];
+        spline_field_clear(&one);
+    }
+}
+
+bool drawing_read_fields(Drawing *d, const SplineScene *scene, YamlFile *file)
+{
+    Reader r = {.scene = scene, .build = {.file = file}, .pixel = spline_tone_pixel(&d->page)};
+    SplineField tone = {0};
+    bool ok = read_tone_def(&r) && read_image(&r, &d->page) && read_tone(&r, &d->page, &tone);
+    if (ok) {
+        share_tone(&r, &tone, d);
+        make_picture(&r, &tone, d);
+    }
+    ok = ok && read_direction(&r, d) && read_energy_fields(&r, d);
+    spline_field_clear(&tone);
+    image_clear(&r.grey);
+    for (int c = 0; c < 3; c++) image_clear(&r.rgb[c]);
+    return ok;
+}

@@ -1,0 +1,129 @@
+#include "spline/front/drawing_pens.h"
+#include "base/memory.h"
+#include "base/plain.h"
+#include "model/build.h"
+#include <math.h>
+#include <string.h>
+
+static const double PEN_MAX = 0.2;    /* of the page                                                      */
+static const double PEN_ACROSS = 0.4; /* of its shorter side: lines keep a pen's width away from the edges */
+
+/* Inks of spline_separate in their order, and their screens: lines 30 degrees apart do not beat visibly, and
+ * yellow, which shows least, is the one across. */
+static const struct {
+    const char *name;
+    double turn; /* degrees */
+} inks[] = {{"cyan", -30}, {"magenta", 30}, {"yellow", 90}, {"black", 0}};
+
+enum { INKS = 4 };
+
+static bool is_cmyk(const SplineScene *scene)
+{
+    return scene->separation && scene->separation->kind == SEPARATE_CMYK;
+}
+
+double pens_finest(const SplineScene *scene)
+{
+    double finest = scene->pens_count ? INFINITY : scene->pen;
+    for (int k = 0; k < scene->pens_count; k++)
+        finest = fmin(finest, isnan(scene->pens[k].width) ? scene->pen : scene->pens[k].width);
+    return finest;
+}
+
+int pens_ink(const char *name)
+{
+    for (int k = 0; k < INKS; k++)
+        if (!strcmp(name, inks[k].name)) return k;
+    return -1;
+}
+
+double *pens_limits(const SplineScene *scene)
+{
+    double *limits = mem_alloc((size_t)scene->pens_count, sizeof *limits);
+    for (int k = 1; k < scene->pens_count; k++) limits[k - 1] = scene->pens[k].from;
+    return limits;
+}
+
+double pens_turn(const SplineScene *scene, const SplinePen *pens, int pen)
+{
+    if (scene->pens_count && !isnan(scene->pens[pen].turn)) return scene->pens[pen].turn;
+    return is_cmyk(scene) ? inks[pens_ink(pens[pen].name)].turn * M_PI / 180 : 0;
+}
+
+static bool check_separation(const SplineScene *scene, YamlFile *file)
+{
+    if (!scene->separation)
+        return scene->pens_count < 2 ||
+               yaml_refuse(file, "spline.pens",
+                           "several pens need `separation`: cmyk, or tones with `from` of each pen");
+    if (is_cmyk(scene))
+        return scene->image ||
+               yaml_refuse(file, "spline.separation", "only a picture has colours that cmyk can separate");
+    return scene->pens_count > 0 ||
+           yaml_refuse(file, "spline.separation",
+                       "tones needs `pens`, each with the density `from` which it draws");
+}
+
+static bool check_from(const SplineScene *scene, YamlFile *file)
+{
+    double before = 0;
+    for (int k = 1; scene->separation && !is_cmyk(scene) && k < scene->pens_count; k++) {
+        if (!(scene->pens[k].from > before))
+            return yaml_refuse(file, key("spline.pens[%d]", k).text,
+                               "this pen needs `from`, a density above the pen's before it, %g", before);
+        before = scene->pens[k].from;
+    }
+    return true;
+}
+
+/* Names are a line each in the result and on the terminal, and words of the SVG file's XML. */
+bool pens_is_name(const char *name)
+{
+    return *name && plain_is(name);
+}
+
+static bool check_name(const SplineScene *scene, YamlFile *file, int pen)
+{
+    const char *name = scene->pens[pen].name;
+    Key at = key("spline.pens[%d]", pen);
+    if (!pens_is_name(name)) return yaml_refuse(file, at.text, "the name of a pen is a line of text");
+    if (is_cmyk(scene) && pens_ink(name) < 0)
+        return yaml_refuse(file, at.text, "the pens of cmyk are cyan, magenta, yellow and black");
+    for (int k = 0; is_cmyk(scene) && k < pen; k++)
+        if (!strcmp(name, scene->pens[k].name))
+            return yaml_refuse(file, at.text, "%s is there twice, and would draw all of its ink twice", name);
+    return true;
+}
+
+static bool read_pen(const SplineScene *scene, YamlFile *file, const SplinePage *page, const PenScene *from,
+                     Key at, SplinePen *pen)
+{
+    Error err;
+    double width = isnan(from->width) ? scene->pen : from->width;
+    pen->width = width / page->unit;
+    if (pen->width > PEN_MAX || pen->width > PEN_ACROSS * fmin(page->width, page->height))
+        return yaml_refuse(file, at.text, "a pen of %g m is too wide for a page of %g x %g m", width,
+                           page->paper[0], page->paper[1]);
+    if (color_parse(from->color ? from->color : from->name, &pen->color, &err)) return true;
+    if (from->color) return yaml_refuse(file, at.text, "%s", err.text);
+    pen->color = (Color){0, 0, 0, 1}; /* of a pen whose name is no colour */
+    return true;
+}
+
+bool pens_read(const SplineScene *scene, YamlFile *file, const SplinePage *page, SplinePen **pens, int *count)
+{
+    if (!check_separation(scene, file) || !check_from(scene, file)) return false;
+    bool own = scene->pens_count > 0, ok = true;
+    *count = own ? scene->pens_count : is_cmyk(scene) ? INKS : 1;
+    *pens = mem_alloc((size_t)*count, sizeof **pens);
+    for (int k = 0; k < *count; k++) {
+        char *name = (char *)(is_cmyk(scene) ? inks[k].name : "black");
+        PenScene given = {.name = name, .width = NAN};
+        Key at = own ? key("spline.pens[%d]", k) : key("spline.pen");
+        if (own) given = scene->pens[k];
+        (*pens)[k].name = mem_text(given.name);
+        ok = ok && (!own || check_name(scene, file, k)) &&
+             read_pen(scene, file, page, &given, at, &(*pens)[k]);
+    }
+    return ok;
+}

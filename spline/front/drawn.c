@@ -1,0 +1,263 @@
+#include "spline/front/drawn.h"
+#include "base/memory.h"
+#include "spline/front/drawing_pens.h"
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static const double PAPER_MAX = 100; /* m */
+
+/* ---- Into the journal ---- */
+
+static void add_pens(const Drawing *d, Arrays *list)
+{
+    double *width = arrays_numbers(list, (size_t)d->pen_count),
+           *color = arrays_numbers(list, 3 * (size_t)d->pen_count);
+    char *names = mem_text("");
+    for (int k = 0; k < d->pen_count; k++) {
+        const SplinePen *pen = &d->pens[k];
+        names = mem_join(names, pen->name, "\n");
+        width[k] = pen->width * d->page.unit;
+        memcpy(color + 3 * k, (double[]){pen->color.r, pen->color.g, pen->color.b}, 3 * sizeof *color);
+    }
+    arrays_add(list, array_text("spline/names", arrays_keep(list, names)));
+    arrays_add(list, array_float("spline/width", "m", width, 1, d->pen_count, 0));
+    arrays_add(list, array_float("spline/color", "", color, 2, d->pen_count, 3));
+}
+
+static void add_picture(const SplineField *picture, Arrays *list)
+{
+    size_t count = (size_t)picture->columns * (size_t)picture->rows * (size_t)picture->width;
+    int *level = arrays_keep(list, mem_alloc(count, sizeof *level));
+    for (size_t i = 0; i < count; i++) level[i] = (int)lround(255 * picture->values[i]);
+    Array array = array_int("spline/picture", level, 2, picture->rows, picture->columns);
+    if (picture->width > 1) array.rank = 3, array.dims[2] = picture->width;
+    arrays_add(list, array);
+}
+
+static void add_plotter(const Plotter *plotter, Arrays *list)
+{
+    double *speed = arrays_numbers(list, 2), *z = arrays_numbers(list, 3);
+    char *servo = arrays_keep(list, mem_format("%s\n%s\n", plotter->servo_up, plotter->servo_down));
+    speed[0] = 1e-3 * plotter->down, speed[1] = 1e-3 * plotter->up;
+    z[0] = 1e-3 * plotter->z_up, z[1] = 1e-3 * plotter->z_down, z[2] = 1e-3 * plotter->z_speed;
+    arrays_add(list, array_float("spline/speed", "m/s", speed, 1, 2, 0));
+    arrays_add(list, array_float("spline/lift", "s", &plotter->lift, 0, 0, 0));
+    arrays_add(list, array_float("spline/z", "m, m, m/s", z, 1, 3, 0));
+    arrays_add(list, array_text("spline/servo", servo));
+    arrays_add(list, array_float("spline/pause", "s", &plotter->pause, 0, 0, 0));
+}
+
+void drawn_add_static(const Drawing *d, Arrays *list)
+{
+    add_pens(d, list);
+    add_picture(&d->picture, list);
+    arrays_add(list, array_float("spline/paper", "m", d->page.paper, 1, 2, 0));
+    arrays_add(list, array_float("spline/margin", "m", &d->page.left, 0, 0, 0));
+    add_plotter(&d->plotter, list);
+}
+
+void drawn_add_strokes(const Drawing *d, const Strokes *strokes, Arrays *list)
+{
+    static const int none[] = {0};
+    const SplinePage *page = &d->page;
+    int nodes = strokes_node_count(strokes);
+    double *q = arrays_numbers(list, 4 * (size_t)nodes);
+    for (int i = 0; i < nodes; i++) {
+        const double *from = strokes->q + 4 * i;
+        double to[] = {page->left + page->unit * from[0], page->top + page->unit * from[1],
+                       page->unit * from[2], page->unit * from[3]};
+        memcpy(q + 4 * i, to, sizeof to);
+    }
+    arrays_add(list, array_float("spline/nodes", "m", q, 2, nodes, 4));
+    arrays_add(list,
+               array_int("spline/strokes", strokes->count ? strokes->start : none, 1, strokes->count + 1, 0));
+    arrays_add(list, array_int("spline/pen", strokes->layer, 1, strokes->count, 0));
+}
+
+/* ---- Out of the result ---- */
+
+bool drawn_has(Result *result)
+{
+    return result_has(result, "slender/spline/strokes");
+}
+
+/* A dataset of that type, and of so many numbers if count >= 0. */
+static bool read_array(Result *result, const char *name, ArrayType type, int count, Array *array, Error *err)
+{
+    char path[64];
+    snprintf(path, sizeof path, "slender/spline/%s", name);
+    if (!result_read(result, path, array, err)) return false;
+    if (array->type == type && (count < 0 || array_count(array) == (size_t)count)) return true;
+    array_clear(array);
+    return error_set(err, "%s is not as slender writes it", path);
+}
+
+static bool read_numbers(Result *result, const char *name, int count, double *values, Error *err)
+{
+    Array array;
+    if (!read_array(result, name, ARRAY_FLOAT64, count, &array, err)) return false;
+    memcpy(values, array.data, (size_t)count * sizeof *values);
+    array_clear(&array);
+    return true;
+}
+
+static bool read_page(Result *result, Drawn *drawn, Error *err)
+{
+    double paper[2], margin;
+    if (!read_numbers(result, "paper", 2, paper, err) || !read_numbers(result, "margin", 1, &margin, err))
+        return false;
+    for (int k = 0; k < 2; k++)
+        if (!(paper[k] > 2 * fmax(margin, 0) && paper[k] < PAPER_MAX && margin >= 0))
+            return error_set(err, "spline/paper and spline/margin leave no page");
+    drawn->page = spline_page(paper[0], paper[1], margin, 0);
+    return true;
+}
+
+/* Two commands, a line each. */
+static bool read_servo(Result *result, Plotter *plotter, Error *err)
+{
+    Array text;
+    if (!read_array(result, "servo", ARRAY_TEXT, -1, &text, err)) return false;
+    char *to[] = {plotter->servo_up, plotter->servo_down}, *rest = NULL;
+    bool ok = true;
+    for (int k = 0; ok && k < 2; k++) {
+        const char *line = strtok_r(k ? NULL : (char *)text.data, "\n", &rest);
+        ok = line && plotter_is_command(line);
+        if (ok) strcpy(to[k], line);
+    }
+    array_clear(&text);
+    return ok || error_set(err, "spline/servo is not as slender writes it");
+}
+
+/* Results of versions that knew no more of plotters than their speeds have the default's other numbers. */
+static bool read_plotter(Result *result, Plotter *plotter, Error *err)
+{
+    double speed[2], z[3];
+    *plotter = plotter_default();
+    if (!read_numbers(result, "speed", 2, speed, err) ||
+        !read_numbers(result, "lift", 1, &plotter->lift, err))
+        return false;
+    plotter->down = 1e3 * speed[0], plotter->up = 1e3 * speed[1];
+    if (!result_has(result, "slender/spline/servo")) return plotter_check(plotter, err);
+    if (!read_numbers(result, "z", 3, z, err) || !read_numbers(result, "pause", 1, &plotter->pause, err) ||
+        !read_servo(result, plotter, err))
+        return false;
+    plotter->z_up = 1e3 * z[0], plotter->z_down = 1e3 * z[1], plotter->z_speed = 1e3 * z[2];
+    return plotter_check(plotter, err);
+}
+
+static bool read_pens(Result *result, Drawn *drawn, Error *err)
+{
+    Array names, width, color;
+    if (!read_array(result, "width", ARRAY_FLOAT64, -1, &width, err)) return false;
+    int count = (int)array_count(&width);
+    drawn->pens = mem_alloc((size_t)count, sizeof *drawn->pens);
+    drawn->pen_count = count;
+    bool ok = read_array(result, "color", ARRAY_FLOAT64, 3 * count, &color, err);
+    for (int k = 0; ok && k < count; k++) {
+        const double *rgb = (const double *)color.data + 3 * k;
+        drawn->pens[k].width = ((const double *)width.data)[k] / drawn->page.unit;
+        drawn->pens[k].color = (Color){rgb[0], rgb[1], rgb[2], 1};
+    }
+    if (ok) array_clear(&color);
+    array_clear(&width);
+    if (!ok || !read_array(result, "names", ARRAY_TEXT, -1, &names, err)) return false;
+    char *rest = NULL, *name = strtok_r((char *)names.data, "\n", &rest);
+    for (int k = 0; k < count; k++, name = strtok_r(NULL, "\n", &rest)) {
+        drawn->pens[k].name = mem_text(name ? name : "");
+        ok = ok && pens_is_name(drawn->pens[k].name);
+    }
+    array_clear(&names);
+    return ok || error_set(err, "spline/names is not as slender writes it");
+}
+
+static bool check_layers(const int *layer, int strokes, int pens, Error *err)
+{
+    for (int k = 0; k < strokes; k++)
+        if (layer[k] < 0 || layer[k] >= pens)
+            return error_set(err, "spline/pen names pens that there are not");
+    return true;
+}
+
+/* Offsets that grow from 0 to the number of nodes, two nodes a stroke at least. */
+static bool check_offsets(const int *start, int strokes, int nodes, Error *err)
+{
+    bool ok = start[0] == 0 && start[strokes] == nodes;
+    for (int k = 0; ok && k < strokes; k++) ok = start[k + 1] >= start[k] + 2 && start[k + 1] <= nodes;
+    return ok || error_set(err, "the offsets spline/strokes do not fit its nodes");
+}
+
+static bool read_strokes(Result *result, const Drawn *drawn, Strokes *strokes, Error *err)
+{
+    Array start, nodes, pen;
+    if (!read_array(result, "strokes", ARRAY_INT32, -1, &start, err)) return false;
+    int count = (int)array_count(&start) - 1;
+    if (count < 0)
+        return array_clear(&start), error_set(err, "the offsets spline/strokes do not fit its nodes");
+    strokes->start = (int *)start.data, start.data = NULL;
+    array_clear(&start);
+    if (!read_array(result, "nodes", ARRAY_FLOAT64, -1, &nodes, err)) return false;
+    int node_count = (int)(array_count(&nodes) / 4);
+    strokes->q = (double *)nodes.data, nodes.data = NULL;
+    array_clear(&nodes);
+    if (!read_array(result, "pen", ARRAY_INT32, count, &pen, err)) return false;
+    strokes->layer = (int *)pen.data, pen.data = NULL;
+    array_clear(&pen);
+    if (!check_offsets(strokes->start, count, node_count, err) ||
+        !check_layers(strokes->layer, count, drawn->pen_count, err))
+        return false;
+    const SplinePage *page = &drawn->page;
+    strokes->count = count;
+    for (int i = 0; i < node_count; i++) {
+        double *q = strokes->q + 4 * i;
+        q[0] = (q[0] - page->left) / page->unit, q[1] = (q[1] - page->top) / page->unit;
+        q[2] /= page->unit, q[3] /= page->unit;
+    }
+    return true;
+}
+
+static bool read_picture(Result *result, SplineField *picture, Error *err)
+{
+    Array level;
+    if (!read_array(result, "picture", ARRAY_INT32, -1, &level, err)) return false;
+    int width = level.rank == 3 ? level.dims[2] : 1;
+    bool ok = level.rank >= 2 && (width == 1 || width == 3) && level.dims[0] > 0 && level.dims[1] > 0;
+    if (ok) {
+        size_t count = array_count(&level);
+        *picture = (SplineField){level.dims[1], level.dims[0], width, mem_alloc(count, sizeof(double))};
+        for (size_t i = 0; i < count; i++) picture->values[i] = ((const int *)level.data)[i] / 255.0;
+    }
+    array_clear(&level);
+    return ok || error_set(err, "spline/picture is not as slender writes it");
+}
+
+bool drawn_read(Result *result, Drawn *drawn, Error *err)
+{
+    *drawn = (Drawn){0};
+    Strokes strokes = {0};
+    if (!drawn_has(result)) return error_set(err, "the result has no drawing");
+    bool ok = read_page(result, drawn, err) && read_plotter(result, &drawn->plotter, err) &&
+              read_pens(result, drawn, err) && read_picture(result, &drawn->picture, err) &&
+              read_strokes(result, drawn, &strokes, err);
+    if (ok) drawn->plot = spline_plot(&strokes, &drawn->page, drawn->pens, drawn->pen_count);
+    strokes_clear(&strokes);
+    return ok;
+}
+
+void drawn_clear(Drawn *drawn)
+{
+    for (int k = 0; k < drawn->pen_count; k++) mem_free((char *)drawn->pens[k].name);
+    mem_free(drawn->pens);
+    spline_plot_clear(&drawn->plot);
+    spline_field_clear(&drawn->picture);
+    *drawn = (Drawn){0};
+}
+
+bool drawn_write(const Drawn *drawn, const char *language, const char *path, Error *err)
+{
+    PlotProfile profile;
+    if (!strcmp(language, "svg")) return plot_write_svg(path, &drawn->plot, err);
+    return plot_profile(language, &profile, err) &&
+           plot_write_machine(path, &drawn->plot, &profile, &drawn->plotter, err);
+}

@@ -1,0 +1,36 @@
+/* drawn.h - the drawing of a result, and the files that are made of it: the run itself, `slender export` and
+ * `slender picture` all go this way.
+ *
+ * In a result, under /slender/spline: nodes [K,4] m (p and v on the paper, from its top left corner, y down),
+ * strokes [S+1] first node of each stroke in the order in which they are plotted, pen [S]; and names (of the
+ * pens, a line each), width [pens] m, color [pens,3], paper [2] m, margin m, speed [2] m/s (pen down, up),
+ * lift s, z [3] (up, down m; m/s), servo (two commands, a line each: up, down), pause s (what G4 P1 waits),
+ * picture [rows,columns] or [rows,columns,3]: what was to be drawn, 0 white .. 255 black or, of a
+ * coloured one, what takes away red, green and blue. */
+#pragma once
+#include "io/arrays.h"
+#include "spline/front/drawing.h"
+#include "io/result.h"
+
+typedef struct Drawn {
+    SplinePage page;
+    int pen_count;
+    SplinePen *pens; /* names owned */
+    Plot plot;
+    SplineField picture; /* as in Drawing */
+    Plotter plotter;
+} Drawn;
+
+/* Into a list for the journal: what stays as it is, and strokes. */
+void drawn_add_static(const Drawing *drawing, Arrays *list);
+void drawn_add_strokes(const Drawing *drawing, const Strokes *strokes, Arrays *list);
+
+bool drawn_has(Result *result);
+
+/* False and a sentence where the result has no drawing, or it is not as slender writes it. Clear it in any
+ * case. */
+bool drawn_read(Result *result, Drawn *drawn, Error *err);
+void drawn_clear(Drawn *drawn);
+
+/* Writes it as "svg", or in the words of a profile (plot_file.h). */
+bool drawn_write(const Drawn *drawn, const char *language, const char *path, Error *err);

@@ -1,0 +1,284 @@
+/* Line art: each part's strokes start, relax and are refined; together they are put in the order in which a
+ * plotter draws them, and judged.
+ *
+ * The journal keeps every part's strokes as they are after each round (kind "state"): a run that goes on does
+ * so from there, and ends with the same bits. What readers of results see (kind "final") is put at the same
+ * times. */
+#include "base/clock.h"
+#include "base/memory.h"
+#include "spline/front/final.h"
+#include "spline/front/drawn.h"
+#include "job/job.h"
+#include "spline/metrics.h"
+#include "spline/revise.h"
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* How far a part has come; kept as the numbers it is. */
+typedef struct Part {
+    double rounds;           /* done after the first relaxation; -1: not even that */
+    double better;           /* did the last one lower the energy?                 */
+    double iteration, clock; /* of the whole job, when it was done; s              */
+    double status, iterations, evaluations, factorizations, seconds, energy, gradient_max, kinetic,
+        temperature, acceptance, energies[SPLINE_WEIGHT_COUNT]; /* RelaxInfo */
+} Part;
+
+enum { PART_NUMBERS = sizeof(Part) / sizeof(double) };
+
+typedef struct DrawJob {
+    Run *run;
+    const Drawing *d;
+    RelaxDef relax;
+    Strokes *strokes; /* [parts] */
+    Part *parts;      /* [parts] */
+    int part, iteration;
+    SplineTarget *target;
+    SplineJudge *judge; /* of the part, where progress is shown */
+    double started, judged, cost, tone;
+    bool failed;
+    Error *err;
+} DrawJob;
+
+/* ---- State ---- */
+
+static RelaxInfo info_of(const Part *part)
+{
+    RelaxInfo info = {(RelaxStatus)part->status,
+                      (int)part->iterations,
+                      (int)part->evaluations,
+                      (int)part->factorizations,
+                      part->seconds,
+                      part->energy,
+                      .gradient_max = part->gradient_max,
+                      .kinetic = part->kinetic,
+                      .temperature = part->temperature,
+                      .acceptance = part->acceptance};
+    memcpy(info.energies, part->energies, sizeof info.energies);
+    return info;
+}
+
+static void take_info(Part *part, const RelaxInfo *info)
+{
+    part->status = info->status, part->iterations = info->iterations, part->evaluations = info->evaluations;
+    part->factorizations = info->factorizations, part->seconds = info->seconds, part->energy = info->energy;
+    part->gradient_max = info->gradient_max, part->kinetic = info->kinetic;
+    part->temperature = info->temperature, part->acceptance = info->acceptance;
+    memcpy(part->energies, info->energies, sizeof part->energies);
+}
+
+static bool put_part(DrawJob *job)
+{
+    static const int none[] = {0};
+    const Strokes *strokes = &job->strokes[job->part];
+    int nodes = strokes_node_count(strokes);
+    Arrays list = {0};
+    char *names[3];
+    for (int k = 0; k < 3; k++) {
+        static const char *const what[] = {"part", "nodes", "strokes"};
+        names[k] = arrays_keep(&list, mem_format("%s/%d", what[k], job->part));
+    }
+    arrays_add(&list, array_float(names[0], "", &job->parts[job->part].rounds, 1, PART_NUMBERS, 0));
+    arrays_add(&list, array_float(names[1], "", strokes->q, 2, nodes, 4));
+    arrays_add(&list, array_int(names[2], strokes->count ? strokes->start : none, 1, strokes->count + 1, 0));
+    return arrays_put(&list, job->run->journal, "state", 0, job->err);
+}
+
+/* One array of the part's state; its data is NULL where there is none. */
+static bool get_array(const DrawJob *job, const char *what, ArrayType type, Array *array)
+{
+    char name[32];
+    snprintf(name, sizeof name, "%s/%d", what, job->part);
+    if (!journal_find(job->run->journal, "state", 0, name, array, job->err)) return false;
+    if (array->data && array->type != type) array_clear(array);
+    return true;
+}
+
+static void take_part(DrawJob *job, const Array *part, const Array *nodes, const Array *start)
+{
+    const int *first = start->data;
+    const double(*q)[4] = (const double(*)[4])nodes->data;
+    memcpy(&job->parts[job->part], part->data, sizeof(Part));
+    for (int k = 0; k + 1 < start->dims[0]; k++)
+        strokes_add(&job->strokes[job->part], first[k + 1] - first[k], q + first[k],
+                    job->d->parts[job->part].pen);
+    job->iteration = (int)job->parts[job->part].iteration;
+    job->started = clock_seconds() - job->parts[job->part].clock;
+}
+
+/* *has: the part is known from an earlier run. False where the journal cannot be read. */
+static bool get_part(DrawJob *job, bool *has)
+{
+    Array part = {0}, nodes = {0}, start = {0};
+    bool ok = get_array(job, "part", ARRAY_FLOAT64, &part) &&
+              get_array(job, "nodes", ARRAY_FLOAT64, &nodes) &&
+              get_array(job, "strokes", ARRAY_INT32, &start);
+    *has = ok && part.data && array_count(&part) == PART_NUMBERS && nodes.data && start.data;
+    if (*has) take_part(job, &part, &nodes, &start);
+    array_clear(&part);
+    array_clear(&nodes);
+    array_clear(&start);
+    return ok;
+}
+
+/* ---- Progress ---- */
+
+/* The tone's error now and then: no more than a twentieth of the time goes into it, by one thread. */
+static void judge(DrawJob *job, const Strokes *strokes)
+{
+    double now = clock_seconds();
+    if (!job->judge || now - job->judged < fmax(0.5, 20 * job->cost)) return;
+    job->tone = spline_judge_tone(job->judge, strokes);
+    job->judged = clock_seconds();
+    job->cost = job->judged - now;
+}
+
+static bool write_svg(DrawJob *job, const Strokes *strokes)
+{
+    char *name = mem_format("%.*s-%06d.svg", (int)(strlen(job->run->result) - strlen(".vtkhdf")),
+                            job->run->result, job->iteration);
+    Strokes all = {0};
+    for (int k = 0; k <= job->part; k++)
+        strokes_append(&all, k < job->part ? &job->strokes[k] : strokes, job->d->parts[k].pen);
+    Plot plot = spline_plot(&all, &job->d->page, job->d->pens, job->d->pen_count);
+    bool ok = plot_write_svg(name, &plot, job->err);
+    spline_plot_clear(&plot);
+    strokes_clear(&all);
+    mem_free(name);
+    return ok;
+}
+
+static bool put_evaluation(DrawJob *job, const RelaxInfo *info, const Strokes *strokes)
+{
+    double now = clock_seconds() - job->started, count = strokes->count;
+    Array row[] = {array_float("energy", "", &info->energy, 0, 0, 0),
+                   array_float("strokes", "", &count, 0, 0, 0), array_float("seconds", "s", &now, 0, 0, 0)};
+    return journal_put(job->run->journal, "evaluation", job->iteration, row, 3, job->err);
+}
+
+/* Of each iteration of a relaxation. */
+static bool watch(void *self, const RelaxInfo *info, const Strokes *strokes)
+{
+    DrawJob *job = self;
+    const Drawing *d = job->d;
+    int every = job->run->scene->output.every, done = (int)fmax(job->parts[job->part].rounds + 1, 0);
+    job->iteration++;
+    job->failed = !put_evaluation(job, info, strokes) ||
+                  (every > 0 && job->iteration % every == 0 && !write_svg(job, strokes));
+    judge(job, strokes);
+    double ink = job->judge ? strokes_length(strokes) / fmax(spline_ink_budget(job->target), 1e-30) : 0;
+    progress_step(job->run->progress, job->part * (d->rounds + 1) + done, d->part_count * (d->rounds + 1),
+                  "iteration %d, energy %.5g, tone error %.4f, ink %.3f", job->iteration, info->energy,
+                  job->tone, ink);
+    return !job->failed && !progress_interrupted();
+}
+
+/* ---- A part ---- */
+
+/* After a round: false where it was stopped. */
+static bool keep(DrawJob *job, const RelaxInfo *info, bool better)
+{
+    Part *part = &job->parts[job->part];
+    take_info(part, info);
+    if (info->status == RELAX_STOPPED) return false;
+    part->rounds++;
+    part->better = better;
+    part->iteration = job->iteration;
+    part->clock = clock_seconds() - job->started;
+    job->failed =
+        !put_part(job) || !draw_put_strokes(job->run, job->d, job->strokes, job->part + 1, job->err);
+    return !job->failed;
+}
+
+/* False where it was stopped. */
+static bool relax_part(DrawJob *job)
+{
+    const Drawing *d = job->d;
+    Strokes *strokes = &job->strokes[job->part];
+    Part *part = &job->parts[job->part];
+    RelaxObserver observer = {watch, job};
+    *part = (Part){.rounds = -1};
+    bool going;
+    job->failed = !get_part(job, &going);
+    if (job->failed) return false;
+    drawing_begin(d, job->part, job->run->threads, going ? NULL : strokes, &job->target);
+    if (!going) {
+        RelaxInfo info = spline_relax(job->target, &job->relax, strokes, &observer);
+        going = keep(job, &info, true);
+    }
+    while (going && part->better != 0 && part->rounds < d->rounds) {
+        RelaxInfo info = info_of(part);
+        bool better =
+            spline_refine_once(job->target, &job->relax, d->start.segments, strokes, &info, &observer);
+        going = keep(job, &info, better);
+    }
+    return going;
+}
+
+static bool run_part(DrawJob *job, int part)
+{
+    const DrawingPart *from = &job->d->parts[part];
+    SplineGrid tone = spline_grid(&from->tone);
+    job->part = part;
+    job->target = NULL;
+    if (job->run->progress->mode != PROGRESS_QUIET) job->judge = spline_judge_create(&from->page, &tone);
+    job->judged = 0;
+    bool going = relax_part(job);
+    spline_judge_destroy(job->judge);
+    job->judge = NULL;
+    spline_target_destroy(job->target);
+    return going;
+}
+
+/* ---- The job ---- */
+
+/* All energies, and the worst status: the first in the order of this list that any part ended with. */
+static RelaxInfo sum_up(const DrawJob *job)
+{
+    static const RelaxStatus order[] = {RELAX_STOPPED,        RELAX_NOT_FINITE, RELAX_STALLED,
+                                        RELAX_MAX_ITERATIONS, RELAX_SETTLED,    RELAX_CONVERGED};
+    RelaxInfo sum = {.status = RELAX_CONVERGED};
+    int worst = 5;
+    for (int k = 0; k < job->d->part_count; k++) {
+        RelaxInfo info = info_of(&job->parts[k]);
+        sum.energy += info.energy;
+        sum.iterations += info.iterations;
+        for (int t = 0; t < SPLINE_WEIGHT_COUNT; t++) sum.energies[t] += info.energies[t];
+        for (int i = 0; i < worst; i++)
+            if (info.status == order[i]) worst = i;
+    }
+    sum.status = order[worst];
+    return sum;
+}
+
+/* Monte Carlo and dynamics end when they have done what they were told. */
+static bool has_ended_well(const RelaxInfo *info, RelaxMethod method)
+{
+    bool counted = method == RELAX_MONTE_CARLO || method == RELAX_DYNAMICS;
+    return info->status == RELAX_CONVERGED || info->status == RELAX_SETTLED ||
+           (counted && info->status == RELAX_MAX_ITERATIONS);
+}
+
+RunStatus job_draw(Run *run, Error *err)
+{
+    const Drawing *d = run->model->drawing;
+    DrawJob job = {.run = run, .d = d, .relax = d->relax, .started = clock_seconds(), .err = err};
+    job.relax.threads = run->threads;
+    job.strokes = mem_alloc((size_t)d->part_count, sizeof *job.strokes);
+    job.parts = mem_alloc((size_t)d->part_count, sizeof *job.parts);
+    bool going = true;
+    for (int k = 0; going && k < d->part_count; k++) going = run_part(&job, k);
+    RelaxInfo info = sum_up(&job);
+    bool interrupted = !going && !job.failed;
+    bool ok = !job.failed && draw_finish(run, d, job.strokes, &info,
+                                         interrupted ? "interrupted" : relax_status_name(info.status), err);
+    if (ok && !interrupted && !has_ended_well(&info, d->relax.method))
+        progress_say(run->progress, "%s", relax_status_text(info.status));
+    for (int k = 0; k < d->part_count; k++) strokes_clear(&job.strokes[k]);
+    mem_free(job.strokes);
+    mem_free(job.parts);
+    if (!ok) return RUN_CANNOT_WRITE;
+    return interrupted                              ? RUN_INTERRUPTED
+           : has_ended_well(&info, d->relax.method) ? RUN_DONE
+                                                    : RUN_NOT_CONVERGED;
+}

@@ -1,0 +1,25 @@
+/* show.h - a picture of a result: its load cases or one frame, targets, arrows and the history of a design;
+ * of rods their curves (show_rod.h), of drawings their lines (show_drawing.h). */
+#pragma once
+#include "base/error.h"
+#include "job/run.h"
+#include "view/picture.h"
+
+typedef struct ShowDef {
+    int frame;         /* of /VTKHDF; -1: the final state of every load case */
+    int stills;        /* moments side by side, of rods over each other; 0: 6 of a motion, else none */
+    double seconds;    /* how long an animation takes, at 25 moments a second; 0: no animation */
+    const char *only;  /* one load case; NULL: all */
+    const char *field; /* magnetization, young, energy_.., none; NULL: young if it varies, else |M| */
+    bool arrows;       /* of the magnetisation, as the faces carry it */
+    bool history;      /* a chart of the objective, if there is one */
+    PictureTarget target;
+    double view[3]; /* direction to the eye; zeros: three quarters        */
+    int width;      /* pixels; of a drawing those of its paper            */
+} ShowDef;
+
+ShowDef show_default(void);
+
+/* Writes picture (.png, .svg or .pdf; an animation .webp) from the result file. RUN_REFUSED where that has not what is
+ * asked for, RUN_CANNOT_WRITE where the picture cannot be written; with a sentence. */
+RunStatus show_result(const char *result, const char *picture, const ShowDef *def, Error *err);

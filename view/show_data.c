@@ -1,0 +1,120 @@
+#include "view/show_data.h"
+#include "base/memory.h"
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { STILLS = 6, FRAMES_PER_SECOND = 25 };
+
+bool show_data_open(ShowData *data, const char *result, const ShowDef *def, Error *err)
+{
+    *data = (ShowData){.def = def, .result = result_open(result, err)};
+    if (!data->result) return false;
+    data->motion = result_has(data->result, "slender/history/time") ||
+                   result_has(data->result, "slender/trajectory/flux_density");
+    return true;
+}
+
+void show_data_clear(ShowData *data)
+{
+    for (int k = 0; k < data->array_count; k++) array_clear(&data->arrays[k]);
+    for (int k = 0; k < data->block_count; k++) mem_free(data->blocks[k]);
+    mem_free(data->arrays);
+    mem_free(data->blocks);
+    result_close(data->result);
+}
+
+/* Takes a block over. */
+static void *own(ShowData *data, void *block)
+{
+    size_t count = (size_t)data->block_count++;
+    data->blocks = mem_resize(data->blocks, count, count + 1, sizeof *data->blocks);
+    return data->blocks[count] = block;
+}
+
+void *show_block(ShowData *data, size_t count, size_t size)
+{
+    return own(data, mem_alloc(count, size));
+}
+
+void *show_keep(ShowData *data, Array array)
+{
+    size_t count = (size_t)data->array_count++;
+    data->arrays = mem_resize(data->arrays, count, count + 1, sizeof *data->arrays);
+    data->arrays[count] = array;
+    return (void *)array.data;
+}
+
+void *show_dataset(ShowData *data, const char *path, ArrayType type, size_t count)
+{
+    Array array;
+    if (!result_has(data->result, path) || !result_read(data->result, path, &array, NULL)) return NULL;
+    if (array.type == type && array_count(&array) == count) return show_keep(data, array);
+    array_clear(&array);
+    return NULL;
+}
+
+char *show_text(ShowData *data, const char *format, ...)
+{
+    char text[512];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    return own(data, mem_text(text));
+}
+
+int show_frame_count(const ShowData *data)
+{
+    const ShowDef *def = data->def;
+    int frames = result_step_count(data->result);
+    int most = def->seconds > 0             ? (int)ceil(def->seconds * FRAMES_PER_SECOND)
+               : def->stills                ? def->stills
+               : data->motion && !def->only ? STILLS
+                                            : 0;
+    return frames < most ? frames : most;
+}
+
+int show_frame(const ShowData *data, int k)
+{
+    int frames = result_step_count(data->result), count = show_frame_count(data);
+    return count > 1 ? (int)lround((double)k * (frames - 1) / (count - 1)) : 0;
+}
+
+bool show_check_frame(const ShowData *data, int frame, Error *err)
+{
+    int frames = result_step_count(data->result);
+    if (frames == 0) return error_set(err, "the result has no frames");
+    return frame < frames || error_set(err, "the result has %d frames, from 0", frames);
+}
+
+char *show_frame_name(ShowData *data, int frame)
+{
+    Array times;
+    bool known =
+        data->motion && result_read_rows(data->result, "VTKHDF/Steps/Values", frame, 1, &times, NULL);
+    if (!known) return show_text(data, "frame %d", frame);
+    char *name = show_text(data, "t = %.4g s",
+                           array_is(&times, ARRAY_FLOAT64, 1, 1) ? *(const double *)times.data : NAN);
+    array_clear(&times);
+    return name;
+}
+
+bool show_history(ShowData *data, Chart *chart)
+{
+    Array history;
+    if (!data->def->history || !result_has(data->result, "slender/history/objective") ||
+        !result_read_as(data->result, "slender/history/objective", ARRAY_FLOAT64, 1, 0, &history, NULL))
+        return false;
+    ChartSeries *series = show_block(data, 1, sizeof *series);
+    *series = (ChartSeries){
+        .name = "objective", .count = (int)array_count(&history), .y = show_keep(data, history)};
+    *chart = (Chart){.x_label = "evaluation",
+                     .x_unit = "",
+                     .y_label = "objective",
+                     .y_unit = "",
+                     .series_count = 1,
+                     .series = series};
+    return true;
+}
