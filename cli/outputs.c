@@ -181,7 +181,7 @@ bool outputs_write(Run *run, Error *err)
     for (int k = 1; ok && k < FILES && drawn.pens; k++) {
         if (!files[k].path) continue;
         ok = drawn_write(&drawn, files[k].language, files[k].path, err);
-        if (ok) progress_say(run->progress, "%s: %s", files[k].language, files[k].path);
+        if (ok) host_say(run->host, "%s: %s", files[k].language, files[k].path);
     }
     clear_files(files);
     drawn_clear(&drawn);

@@ -4,6 +4,7 @@
 #include "job/job.h"
 #include "cli/options.h"
 #include "cli/outputs.h"
+#include "cli/progress.h"
 #include "job/recall.h"
 #include "cli/say.h"
 #include "view/show.h"
@@ -159,8 +160,7 @@ static bool check_resumed(Run *run, const char *scene, const char *inputs, Error
     if (!journal_find(run->journal, "meta", 0, "inputs", &old, err)) return false;
     if (!old.data) { /* an older journal: files are told by their names */
         if (*inputs)
-            progress_say(run->progress,
-                         "whether the files of the scene have changed since that run is not known");
+            host_say(run->host, "whether the files of the scene have changed since that run is not known");
         return check_scene(run->journal, run->scene->job, scene, none, err);
     }
     char **keys = inputs_keys(run->scene);
@@ -176,7 +176,7 @@ static bool check_resumed(Run *run, const char *scene, const char *inputs, Error
 static bool put_start(Run *run, const char *scene, const char *inputs, Error *err)
 {
     Arrays statics = {0};
-    char *kernels = run_kernels(run->journal, err), *versions = kernels ? run_versions() : NULL;
+    char *kernels = run_kernels(run, err), *versions = kernels ? run_versions() : NULL;
     if (!kernels) return false;
     Array meta[] = {array_text("scene", scene), array_text("versions", versions),
                     array_text("kernels", kernels), array_text("inputs", inputs)};
@@ -228,7 +228,7 @@ static bool draw(Run *run, Error *err)
     char *picture = outputs_picture(run->scene, run->result);
     ShowDef def = show_default();
     bool ok = show_result(run->result, picture, &def, err) == RUN_DONE;
-    if (ok) progress_say(run->progress, "picture: %s", picture);
+    if (ok) host_say(run->host, "picture: %s", picture);
     mem_free(picture);
     return ok || error_prefix(err, "no picture");
 }
@@ -248,11 +248,10 @@ static int do_job(Run *run, const RunOptions *options)
     if (status == RUN_CANNOT_WRITE || status == RUN_REFUSED) return fail(options, status, err.text);
     if (!write_result(run, run->result, status != RUN_INTERRUPTED, &err))
         return fail(options, RUN_CANNOT_WRITE, err.text);
-    progress_say(run->progress, "result: %s", run->result);
+    host_say(run->host, "result: %s", run->result);
     if (!outputs_write(run, &err)) return fail(options, RUN_CANNOT_WRITE, err.text);
     bool drawn = options->no_picture || run->unsolved || draw(run, &err);
-    if (status == RUN_INTERRUPTED)
-        progress_say(run->progress, "interrupted; all is saved: run again with --resume");
+    if (status == RUN_INTERRUPTED) host_say(run->host, "interrupted; all is saved: run again with --resume");
     if (drawn) return status;
     return fail(options, status == RUN_INTERRUPTED ? RUN_INTERRUPTED : RUN_CANNOT_WRITE, err.text);
 }
@@ -274,34 +273,34 @@ static bool check_output(const char *output, const char *result, Error *err)
     return true;
 }
 
-static void warn_sidecar(const RunOptions *options, const char *result)
+static void warn_sidecar(const Run *run)
 {
-    static const char words[] =
-        "no .xdmf (for ParaView 5.11) is written beside it, since XDMF cannot name this file: a name "
-        "without : and |, control characters, and blanks at its ends can be";
-    char *sentence = mem_format("'%s': %s", result, words);
-    progress_tell(options->mode, "warning", sentence);
-    say(stderr, "warning: %s", sentence);
-    mem_free(sentence);
+    if (result_has_sidecar(run->result)) return;
+    host_warn(
+        run->host,
+        "'%s': no .xdmf (for ParaView 5.11) is written beside it, since XDMF cannot name this file: a name "
+        "without : and |, control characters, and blanks at its ends can be",
+        run->result);
 }
 
 static int run_model(const RunOptions *options, const Scene *scene, Model *model)
 {
     Error err;
     Progress progress = progress_start(options->mode);
+    Host host = progress_host(&progress);
     char *name =
         options->output ? verb_without_ending(options->output, ".vtkhdf") : verb_base_name(options->scene);
     char *result = mem_format("%s.vtkhdf", name), *journal = mem_format("%s.run", name);
     Run run = {.scene = scene,
                .model = model,
-               .progress = &progress,
+               .host = &host,
                .result = result,
                .threads = kernels_reserve(options->threads)}; /* the same numbers come out */
     JournalMode mode = options->resume ? JOURNAL_RESUME : options->force ? JOURNAL_FORCE : JOURNAL_NEW;
     if (check_output(options->output, result, &err) &&
         outputs_check(scene, options->scene, result, !options->no_picture, &err))
         run.journal = journal_open(journal, mode, &err);
-    if (run.journal && !result_has_sidecar(result)) warn_sidecar(options, result);
+    if (run.journal) warn_sidecar(&run);
     run_share_threads(&run, 1);
     int code = run.journal ? do_job(&run, options) : fail(options, RUN_CANNOT_WRITE, err.text);
     if (run.journal && !journal_close(run.journal, &err) && code != RUN_CANNOT_WRITE)

@@ -91,10 +91,10 @@ static bool solve_case(Run *run, ModelCase *c, Snapshot *shot, int *frame, bool 
             shot->status = info.newton.status;
             *interrupted = info.newton.status == NEWTON_STOPPED;
             if (*interrupted) break;
-            progress_step(run->progress, *frame + 1, total,
-                          "%s: %s, %d Newton iterations with %d factorisations in %d load steps", c->name,
-                          newton_status_name(shot->status), info.newton.iterations,
-                          info.newton.factorizations, info.steps + info.refused);
+            host_step(run->host, *frame + 1, total,
+                      "%s: %s, %d Newton iterations with %d factorisations in %d load steps", c->name,
+                      newton_status_name(shot->status), info.newton.iterations, info.newton.factorizations,
+                      info.steps + info.refused);
             ok = put_progress(run, *frame, shot, err);
         }
         if (shot->status > worst) worst = shot->status;
@@ -117,8 +117,7 @@ RunStatus job_equilibrium(Run *run, Error *err)
     Arrays list = {0};
     if (ok) run_add_final(run, shots, done, interrupted ? "interrupted" : newton_status_name(worst), &list);
     ok = ok && arrays_replace(&list, run->journal, "final", err);
-    if (ok && !interrupted && worst != NEWTON_CONVERGED)
-        progress_say(run->progress, "%s", newton_status_text(worst));
+    if (ok && !interrupted && worst != NEWTON_CONVERGED) host_say(run->host, "%s", newton_status_text(worst));
     mem_free(shots);
     if (!ok) return RUN_CANNOT_WRITE;
     return interrupted ? RUN_INTERRUPTED : worst == NEWTON_CONVERGED ? RUN_DONE : RUN_NOT_CONVERGED;

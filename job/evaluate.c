@@ -36,12 +36,12 @@ static NewtonStatus judge(Run *run, const ModelCase *c, int k)
     const char *said = lowest < 0 ? "unstable" : "stable";
     int count = run->model->case_count;
     if (now.gradient_max > newton_default().force_tol * now.force_scale) {
-        progress_step(run->progress, k + 1, count,
-                      "%s: %s, but no equilibrium: forces of up to %.3g N are not in balance", c->name, said,
-                      now.gradient_max);
+        host_step(run->host, k + 1, count,
+                  "%s: %s, but no equilibrium: forces of up to %.3g N are not in balance", c->name, said,
+                  now.gradient_max);
         return NEWTON_UNBALANCED;
     }
-    progress_step(run->progress, k + 1, count, "%s: an equilibrium, %s", c->name, said);
+    host_step(run->host, k + 1, count, "%s: an equilibrium, %s", c->name, said);
     return lowest < 0 ? NEWTON_SADDLE : NEWTON_CONVERGED;
 }
 

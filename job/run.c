@@ -5,8 +5,8 @@
 
 static bool go_on(void *self, const NewtonInfo *info)
 {
-    (void)self, (void)info;
-    return !progress_interrupted();
+    (void)info;
+    return !host_stops(((Run *)self)->host);
 }
 
 NewtonObserver run_observer(Run *run)
@@ -138,7 +138,7 @@ static void say_doubt(Run *run, const Snapshot *shot)
 {
     const BodyOps *body = run->model->body;
     char *doubt = body->doubt ? body->doubt(run->model, shot) : NULL;
-    if (doubt) progress_say(run->progress, "%s: %s", shot->load_case->name, doubt);
+    if (doubt) host_say(run->host, "%s: %s", shot->load_case->name, doubt);
     mem_free(doubt);
 }
 

@@ -1,9 +1,9 @@
-/* run.h - a job on its way: model, journal, progress and interruption. */
+/* run.h - a job on its way: model, journal and host. */
 #pragma once
 #include "base/memory.h"
 #include "base/workers.h"
 #include "model/model.h"
-#include "job/progress.h"
+#include "job/host.h"
 #include "io/journal.h"
 #include "solve/newton.h"
 
@@ -22,7 +22,7 @@ typedef struct Run {
     const Scene *scene;
     Model *model;
     Journal *journal;
-    Progress *progress;
+    const Host *host;
     const char *result; /* NAME.vtkhdf */
     int threads;
     Workers *side_by_side, **inside; /* run_share_threads */
@@ -34,14 +34,14 @@ char *run_versions(void);
 
 /* OpenBLAS's kernels that this run's numbers come from: of a run that goes on with others, a warning, and those before
  * too: "Haswell, SkylakeX". The caller frees. */
-char *run_kernels(Journal *journal, Error *err);
+char *run_kernels(Run *run, Error *err);
 
 /* Shares the run's threads out again: so many load cases are to be solved side by side, by the threads that are
  * returned (NULL: one after the other); those left over work inside their systems. */
 Workers *run_share_threads(Run *run, int at_once);
 void run_release_threads(Run *run);
 
-/* Stops a solve after an interruption (progress.h). */
+/* Stops a solve after an interruption (Host.stop). */
 NewtonObserver run_observer(Run *run);
 
 /* Puts the scene's tolerances over the defaults. */

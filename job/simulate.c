@@ -121,18 +121,18 @@ static RunStatus make_step(Simulation *s, const MarchDef *def)
     MarchInfo info;
     bool reached = march_step(s->c->sys, def, scene->time.step, s->p, s->now, &info);
     if (s->refused) return RUN_REFUSED;
-    if (progress_interrupted()) return RUN_INTERRUPTED;
+    if (host_stops(s->run->host)) return RUN_INTERRUPTED;
     s->status = reached ? NEWTON_CONVERGED : info.newton.status;
     if (!reached) {
-        progress_say(s->run->progress, "step %d failed at t = %g s: %s", step, s->now->time,
-                     newton_status_text(info.newton.status));
+        host_say(s->run->host, "step %d failed at t = %g s: %s", step, s->now->time,
+                 newton_status_text(info.newton.status));
         return RUN_NOT_CONVERGED;
     }
     s->step = step;
     if (!put_history(s, step, &info) || (step % every == 0 && !put_step(s, step / every, step)))
         return RUN_CANNOT_WRITE;
-    progress_step(s->run->progress, step, scene->time.steps, "t %.4g s, %d Newton iterations", s->now->time,
-                  info.newton.iterations);
+    host_step(s->run->host, step, scene->time.steps, "t %.4g s, %d Newton iterations", s->now->time,
+              info.newton.iterations);
     return RUN_DONE;
 }
 

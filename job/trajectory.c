@@ -164,8 +164,8 @@ static void add_distances(const TrajectoryJob *job, Arrays *list)
         }
         if (isnan(largest[k])) continue;
         any = true;
-        progress_say(job->run->progress, "%s, frames %d to %d: largest distance %.3g mm", row->ops->name,
-                     row->first, row->last, 1e3 * largest[k]);
+        host_say(job->run->host, "%s, frames %d to %d: largest distance %.3g mm", row->ops->name, row->first,
+                 row->last, 1e3 * largest[k]);
     }
     if (any) arrays_add(list, array_float("metrics/largest_distance", "m", largest, 1, rows, 0));
 }

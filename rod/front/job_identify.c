@@ -66,18 +66,17 @@ static void say(const Identification *o)
 {
     const RodMaterial *found = &o->found;
     if (!found->converged)
-        progress_say(o->run->progress,
-                     "not converged: all iterations were done before the best match was found");
+        host_say(o->run->host, "not converged: all iterations were done before the best match was found");
     if (found->young_known)
-        progress_say(o->run->progress, "Young's modulus %.4g Pa (+- %.2g)", found->young, found->young_error);
+        host_say(o->run->host, "Young's modulus %.4g Pa (+- %.2g)", found->young, found->young_error);
     else
-        progress_say(o->run->progress,
-                     "the poses do not tell Young's modulus: they differ too little for their noise");
+        host_say(o->run->host,
+                 "the poses do not tell Young's modulus: they differ too little for their noise");
     if (found->poisson_known)
-        progress_say(o->run->progress, "Poisson's ratio %.4g (+- %.2g)%s", found->poisson,
-                     found->poisson_error, found->poisson_at_limit ? ", at the limit of what is sought" : "");
+        host_say(o->run->host, "Poisson's ratio %.4g (+- %.2g)%s", found->poisson, found->poisson_error,
+                 found->poisson_at_limit ? ", at the limit of what is sought" : "");
     else
-        progress_say(o->run->progress, "the poses do not tell Poisson's ratio: too little twist in them");
+        host_say(o->run->host, "the poses do not tell Poisson's ratio: too little twist in them");
 }
 
 RunStatus job_identify(Run *run, Error *err)

@@ -260,18 +260,18 @@ static void say_elsewhere(const Inversion *o, int elsewhere, double worst)
     double most = 0;
     for (int k = 0; k < o->strands; k++)
         if (fabs(o->gain[k]) > fabs(most)) most = o->gain[k];
-    progress_say(o->run->progress,
-                 "%d of %d rods come to rest elsewhere when they are let down from their natural shape, up "
-                 "to %.2g m away: "
-                 "in another equilibrium, with up to %.3g J %s energy than on the curve, that lies nearer on "
-                 "this way (a rod "
-                 "held on its curve and let go stays there where rod/stable is 1)",
-                 elsewhere, o->strands, worst, fabs(most), most > 0 ? "less" : "more");
+    host_say(o->run->host,
+             "%d of %d rods come to rest elsewhere when they are let down from their natural shape, up "
+             "to %.2g m away: "
+             "in another equilibrium, with up to %.3g J %s energy than on the curve, that lies nearer on "
+             "this way (a rod "
+             "held on its curve and let go stays there where rod/stable is 1)",
+             elsewhere, o->strands, worst, fabs(most), most > 0 ? "less" : "more");
 }
 
 static void say(const Inversion *o)
 {
-    Progress *progress = o->run->progress;
+    const Host *host = o->run->host;
     int unstable = 0, touching = 0, elsewhere = 0;
     double worst = 0, route = 0;
     for (int k = 0; k < o->strands; k++) {
@@ -282,26 +282,25 @@ static void say(const Inversion *o)
         route = fmax(route, o->route[k]);
     }
     if (route > COARSE)
-        progress_say(
-            progress,
+        host_say(
+            host,
             "natural strains are good to %.2g of the largest only: the curve bends too much for %d elements",
             route, o->elements);
     if (unstable)
-        progress_say(progress,
-                     "%d of %d curves unstable: the rod would not stay there (rod/critical_young says from "
-                     "which Young's modulus on it would)",
-                     unstable, o->strands);
+        host_say(host,
+                 "%d of %d curves unstable: the rod would not stay there (rod/critical_young says from "
+                 "which Young's modulus on it would)",
+                 unstable, o->strands);
     if (o->lengths > 1)
-        progress_say(
-            progress,
-            "the elements are too long to tell how stable a curve is: one of them has %.2g times the "
-            "length sqrt(EI/F) within which the rod bends; rod.elements: %.0f or more would",
-            o->lengths, ceil(o->elements * o->lengths));
-    if (touching) progress_say(progress, "%d of %d natural shapes touch themselves", touching, o->strands);
+        host_say(host,
+                 "the elements are too long to tell how stable a curve is: one of them has %.2g times the "
+                 "length sqrt(EI/F) within which the rod bends; rod.elements: %.0f or more would",
+                 o->lengths, ceil(o->elements * o->lengths));
+    if (touching) host_say(host, "%d of %d natural shapes touch themselves", touching, o->strands);
     if (elsewhere)
         say_elsewhere(o, elsewhere, worst);
     else if (o->x)
-        progress_say(progress, "the simulated rod rests %.2g m from its curve", worst);
+        host_say(host, "the simulated rod rests %.2g m from its curve", worst);
 }
 
 RunStatus job_invert(Run *run, Error *err)
@@ -322,9 +321,9 @@ RunStatus job_invert(Run *run, Error *err)
     o.stable = mem_alloc(3 * strands, sizeof *o.stable), o.index = o.stable + strands,
     o.touching = o.index + strands;
     int done = 0;
-    for (; done < o.strands && !progress_interrupted(); done++) {
+    for (; done < o.strands && !host_stops(run->host); done++) {
         invert_strand(&o, done);
-        progress_step(run->progress, done + 1, o.strands, "natural shapes");
+        host_step(run->host, done + 1, o.strands, "natural shapes");
     }
     bool interrupted = done < o.strands, converged = o.worst == NEWTON_CONVERGED;
     bool ok = put_results(&o, interrupted ? "interrupted" : newton_status_name(o.worst), err);

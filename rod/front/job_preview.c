@@ -77,11 +77,11 @@ RunStatus job_preview(Run *run, Error *err)
     int every = run->scene->output.every ? run->scene->output.every : 1, step = 0;
     bool ok = journal_forget(run->journal, "frame", err) && journal_forget(run->journal, "evaluation", err) &&
               put_frame(&o, 0, time->at);
-    for (; ok && step < time->steps && !progress_interrupted();) {
+    for (; ok && step < time->steps && !host_stops(run->host);) {
         pbd_rod_step(o.rod, time->step);
         double now = time->at + ++step * time->step;
         ok = put_step(&o, step, now) && (step % every || put_frame(&o, step / every, now));
-        progress_step(run->progress, step, time->steps, "t %.4g s", now);
+        host_step(run->host, step, time->steps, "t %.4g s", now);
     }
     bool interrupted = step < time->steps;
     if (ok && step % every) ok = put_frame(&o, step / every + 1, time->at + step * time->step);
