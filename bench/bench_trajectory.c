@@ -12,7 +12,7 @@ enum { PRODUCTS = 20 };
 
 static TrajectoryProblem problem_of(const Model *model, const Scene *scene)
 {
-    const ModelCase *c = &model->cases[0];
+    const Case *c = &model->cases[0];
     return (TrajectoryProblem){.sys = c->sys,
                                .design = &model->design,
                                .params = &model->shell->params,

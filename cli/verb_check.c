@@ -75,7 +75,7 @@ static bool print_errors(const char *name, TermError error)
  * of its turns. */
 static bool check_derivatives(const Model *model, const Scene *scene)
 {
-    const ModelCase *c = &model->cases[0];
+    const Case *c = &model->cases[0];
     bool moves = scene->job == JOB_SIMULATE || scene->job == JOB_TRAJECTORY;
     int dofs = system_dof_count(c->sys), positions = system_position_count(c->sys);
     State state = state_clone(&c->state);

@@ -18,7 +18,7 @@ static bool move(void *self, double part, double *x)
     return !mover->failed;
 }
 
-static RampInfo solve_stage(Run *run, ModelCase *c, int stage)
+static RampInfo solve_stage(Run *run, Case *c, int stage)
 {
     Mover mover = {.model = run->model, .time = c->stages[stage].time};
     RampDef def = ramp_default();
@@ -31,7 +31,7 @@ static RampInfo solve_stage(Run *run, ModelCase *c, int stage)
 }
 
 /* Frames are shown at the times of their stages, if those go on; else they are numbered. */
-static double shown_time(const ModelCase *c, const Snapshot *shot, int frame)
+static double shown_time(const Case *c, const Snapshot *shot, int frame)
 {
     bool goes_on = c->stage_count > 1;
     for (int s = 1; s < c->stage_count; s++) goes_on = goes_on && c->stages[s].time > c->stages[s - 1].time;
@@ -76,7 +76,7 @@ static int total_stages(const Model *model)
 }
 
 /* One case, its stages from frame number *frame on. False where err has to be said. */
-static bool solve_case(Run *run, ModelCase *c, Snapshot *shot, int *frame, bool *interrupted, Error *err)
+static bool solve_case(Run *run, Case *c, Snapshot *shot, int *frame, bool *interrupted, Error *err)
 {
     bool ok = true;
     int total = total_stages(run->model);

@@ -6,7 +6,7 @@
 #include <string.h>
 
 /* Edge angles of the pose, with all positions held. */
-static NewtonStatus relax_angles(Run *run, ModelCase *c)
+static NewtonStatus relax_angles(Run *run, Case *c)
 {
     Shell *shell = run->model->shell;
     size_t positions = 3 * (size_t)shell->mesh->vertex_count;
@@ -25,7 +25,7 @@ static NewtonStatus relax_angles(Run *run, ModelCase *c)
 }
 
 /* Is the pose an equilibrium, as Newton's method would call it, and would the body stay? Says so. */
-static NewtonStatus judge(Run *run, const ModelCase *c, int k)
+static NewtonStatus judge(Run *run, const Case *c, int k)
 {
     Point at = state_point(&c->state, c->stages[0].p);
     double *gradient = mem_alloc((size_t)c->state.dofs, sizeof *gradient), lowest = INFINITY;
@@ -52,7 +52,7 @@ RunStatus job_evaluate(Run *run, Error *err)
     NewtonStatus worst = NEWTON_CONVERGED;
     bool ok = true;
     for (int k = 0; ok && k < model->case_count; k++) {
-        ModelCase *c = &model->cases[k];
+        Case *c = &model->cases[k];
         NewtonStatus relaxed = relax_angles(run, c);
         if (relaxed > worst) worst = relaxed;
         shots[k] = (Snapshot){c, c->stages[0].p, c->state, judge(run, c, k)};

@@ -168,7 +168,7 @@ static Units units_of_shell(const Model *model, Prediction *r)
 /* A rod's matrix is a band: all of it takes as long as its elements are many. */
 static Units units_of_rod(const Model *model, Prediction *r)
 {
-    const ModelCase *c = &model->cases[0];
+    const Case *c = &model->cases[0];
     double *gradient = mem_alloc((size_t)system_dof_count(c->sys), sizeof *gradient);
     Point at = state_point(&c->state, c->stages[0].p);
     Units unit = measure(c->sys, &at, gradient, 1);

@@ -10,7 +10,7 @@
 typedef struct Simulation {
     Run *run;
     Error *err;
-    ModelCase *c;
+    Case *c;
     double *p;
     State *now;
     int step;            /* the last one that was reached */
@@ -168,7 +168,7 @@ static bool put_end(Simulation *s, const char *status)
 RunStatus job_simulate(Run *run, Error *err)
 {
     if (run->scene->rod && run->scene->rod->solver == ROD_SOLVER_PBD) return job_preview(run, err);
-    ModelCase *c = &run->model->cases[0];
+    Case *c = &run->model->cases[0];
     Simulation s = {.run = run, .err = err, .c = c, .p = c->stages[0].p, .now = &c->state};
     RunStatus status = march(&s);
     const char *said = status == RUN_INTERRUPTED ? "interrupted" : newton_status_name(s.status);

@@ -10,7 +10,7 @@
 
 typedef struct TrajectoryJob {
     Run *run;
-    ModelCase *c;
+    Case *c;
     Trajectory *t;
     double objective;
     bool refused; /* a formula of time is not finite; err says so */
@@ -194,7 +194,7 @@ RunStatus job_trajectory(Run *run, Error *err)
                                   .put_results = put_results};
     Model *model = run->model;
     const TimeScene *time = &run->scene->time;
-    ModelCase *c = &model->cases[0];
+    Case *c = &model->cases[0];
     TrajectoryJob job = {.run = run, .c = c};
     TrajectoryProblem problem = {.sys = c->sys,
                                  .design = &model->design,

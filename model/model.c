@@ -44,19 +44,18 @@ static bool put_loads(Model *model, const Build *b, Key at, const FluxScene *flu
     return (!flux || model_put_flux(model, b, key("%s.flux_density", at.text).text, flux, p)) && ok;
 }
 
-static ModelCase *add_case(Model *model, const char *name, const double *p, size_t room, double time)
+static Case *add_case(Model *model, const char *name, const double *p, size_t room, double time)
 {
     size_t count = (size_t)model->case_count++;
     model->cases = mem_resize(model->cases, count, count + 1, sizeof *model->cases);
-    ModelCase *c = &model->cases[count];
-    *c = (ModelCase){
-        .name = name ? mem_text(name) : mem_format("case%zu", count + 1), .weight = 1, .stage_count = 1};
-    c->stages = mem_alloc(1, sizeof *c->stages);
-    c->stages[0] = (Stage){mem_copy(p, room, sizeof *p), time};
+    Case *c = &model->cases[count];
+    char *number = name ? NULL : mem_format("case%zu", count + 1);
+    *c = case_create(name ? name : number, p, room, time);
+    mem_free(number);
     return c;
 }
 
-static bool add_target(Model *model, const Build *b, Key at, const TargetScene *target, ModelCase *c)
+static bool add_target(Model *model, const Build *b, Key at, const TargetScene *target, Case *c)
 {
     if (!target) return true;
     c->target = mem_alloc((size_t)model->point_count, sizeof *c->target);
@@ -65,7 +64,7 @@ static bool add_target(Model *model, const Build *b, Key at, const TargetScene *
 
 static bool add_stages(Model *model, const Build *b, const Scene *scene, const double *p, size_t room)
 {
-    ModelCase *c = add_case(model, "sequence", p, room, scene->time.at);
+    Case *c = add_case(model, "sequence", p, room, scene->time.at);
     c->stages = mem_resize(c->stages, 1, (size_t)scene->sequence_count, sizeof *c->stages);
     c->stage_count = scene->sequence_count;
     bool ok = true;
@@ -100,7 +99,7 @@ bool model_cases(Model *model, const Build *b, const Scene *scene, const double 
     bool ok = true;
     for (int k = 0; k < scene->cases_count; k++) {
         const CaseScene *from = &scene->cases[k];
-        ModelCase *c = add_case(model, from->name, p, room, scene->time.at);
+        Case *c = add_case(model, from->name, p, room, scene->time.at);
         c->weight = from->weight;
         Key at = key("cases[%d]", k);
         for (int i = 0; i < k; i++)
@@ -201,29 +200,10 @@ Model *model_create(const Scene *scene, YamlFile *file)
     return NULL;
 }
 
-void model_start_case(ModelCase *c, const double *x)
-{
-    c->state = system_state(c->sys);
-    memcpy(c->state.x, x, (size_t)c->state.dofs * sizeof *x);
-    c->state.time = c->stages[0].time;
-}
-
-static void clear_case(ModelCase *c)
-{
-    for (int s = 0; s < c->stage_count; s++) mem_free(c->stages[s].p);
-    for (int k = 0; k < c->objective_count; k++) objective_destroy(c->objectives[k]);
-    system_destroy(c->sys);
-    mem_free(c->name);
-    state_destroy(&c->state);
-    mem_free(c->stages);
-    mem_free(c->objectives);
-    mem_free(c->target);
-}
-
 void model_destroy(Model *model)
 {
     if (!model) return;
-    for (int k = 0; k < model->case_count; k++) clear_case(&model->cases[k]);
+    for (int k = 0; k < model->case_count; k++) case_clear(&model->cases[k]);
     for (int m = 0; m < model->motion_count; m++) {
         formula_destroy(model->motions[m].formula);
         mem_free(model->motions[m].vertices.items);

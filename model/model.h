@@ -5,30 +5,12 @@
 #include "model/scene.h"
 #include "model/timed_flux.h"
 #include "io/formula.h"
+#include "optim/case.h"
 #include "optim/control.h"
 #include "optim/design.h"
 #include "surface/select.h"
 #include "shell/shell.h"
 #include "solve/newton.h"
-#include "solve/objective.h"
-
-/* Loads at a moment: one, or the stages of a sequence. */
-typedef struct Stage {
-    double *p; /* [params] owned */
-    double time;
-} Stage;
-
-typedef struct ModelCase {
-    char *name;
-    double weight;
-    System *sys;
-    State state; /* where to start */
-    int stage_count;
-    Stage *stages;
-    int objective_count;
-    Objective *objectives;
-    double (*target)[3]; /* [vertex] m, NAN where there is none; NULL: no target */
-} ModelCase;
 
 /* Coordinates that follow formulas of rest position and time. */
 typedef struct Motion {
@@ -40,7 +22,7 @@ typedef struct Motion {
 
 /* One state to be shown or stored, with p[params] of a case; borrowed. */
 typedef struct Snapshot {
-    const ModelCase *load_case;
+    const Case *load_case;
     const double *p;
     State at;
     NewtonStatus status;
@@ -99,7 +81,7 @@ struct Model {
     bool moves;         /* held coordinates do: BodyOps.move                   */
     MeshReport report;  /* warnings about the mesh */
     int case_count, motion_count;
-    ModelCase *cases;
+    Case *cases;
     Motion *motions;
     double *x;              /* [dofs] rest or pose */
     Design design;          /* of a design or trajectory */
@@ -129,9 +111,6 @@ bool model_put_flux(Model *model, const struct Build *b, const char *at, const F
 
 /* How long vectors p must be while fields are still added to the body's parameters. */
 size_t model_params_room(const Model *model, const Scene *scene);
-
-/* Where a case starts, once its system is there: x, at its first stage's time. */
-void model_start_case(ModelCase *c, const double *x);
 
 /* The load cases or stages of a scene, each with p[room] as a copy; false after a refusal. */
 bool model_cases(Model *model, const struct Build *b, const Scene *scene, const double *p, size_t room);

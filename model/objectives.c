@@ -12,7 +12,7 @@
 
 /* ---- Shapes ---- */
 
-static bool target_objective(const ModelCase *c, int vertex_count, YamlFile *file, Key at, double weight,
+static bool target_objective(const Case *c, int vertex_count, YamlFile *file, Key at, double weight,
                              Objective *objective)
 {
     if (!c->target) return yaml_refuse(file, at.text, "the case '%s' has no target", c->name);
@@ -130,13 +130,6 @@ static bool put_frames(const Build *b, Key at, int frame, const int *frames, int
                        objective->first, objective->last, steps);
 }
 
-static Objective *next_objective(ModelCase *c)
-{
-    size_t count = (size_t)c->objective_count++;
-    c->objectives = mem_resize(c->objectives, count, count + 1, sizeof *c->objectives);
-    return &c->objectives[count];
-}
-
 /* A waypoint for each target, over the frames from the delay after its switch until the next one. */
 static bool reach_objectives(Model *model, const Build *b, Key at, const Scene *scene,
                              const ReachScene *reach, Probe probe, double weight)
@@ -151,7 +144,7 @@ static bool reach_objectives(Model *model, const Build *b, Key at, const Scene *
                 b->file, at.text,
                 "no frame counts for target %d: it is due from %g s to %g s, the motion takes %g s", k + 1,
                 k * reach->every + reach->delay, (k + 1) * reach->every, step * scene->time.steps);
-        Objective *objective = next_objective(&model->cases[0]);
+        Objective *objective = case_add_objective(&model->cases[0]);
         *objective = objective_waypoint(probe, reach->targets[k], weight);
         objective->first = first, objective->last = last;
     }
@@ -176,7 +169,7 @@ static bool point_objectives(Model *model, const Build *b, Key at, const Scene *
             if (waypoint) objective = objective_waypoint(probe, waypoint->at, from->weight);
             ok = put_frames(b, at, waypoint ? waypoint->frame : curve->frame,
                             waypoint ? waypoint->frames : curve->frames, scene->time.steps, &objective);
-            *next_objective(&model->cases[0]) = objective;
+            *case_add_objective(&model->cases[0]) = objective;
         }
     }
     free_probe(probe);
@@ -193,7 +186,7 @@ static bool field_objective(Model *model, const Build *b, Key at, const Objectiv
         return yaml_refuse(b->file, at.text, "this objective needs the unknown flux_density of a trajectory");
     const ParamBlock *omega = params_find(params, "dmp_omega");
     if (!isnan(from->dmp) && !omega) return false; /* refused before */
-    Objective *objective = next_objective(&model->cases[0]);
+    Objective *objective = case_add_objective(&model->cases[0]);
     if (!isnan(from->field_magnitude))
         *objective = objective_field_magnitude(control, from->weight * from->field_magnitude);
     else if (!isnan(from->field_smoothness))
@@ -211,7 +204,7 @@ static bool field_objective(Model *model, const Build *b, Key at, const Objectiv
 static bool add_objective(Model *model, const Build *b, Key at, const Scene *scene,
                           const ObjectiveScene *from, int case_index)
 {
-    ModelCase *c = &model->cases[case_index];
+    Case *c = &model->cases[case_index];
     bool trajectory = scene->job == JOB_TRAJECTORY, point = from->waypoint || from->curve || from->reach;
     bool field = !isnan(from->field_magnitude) || !isnan(from->field_smoothness) || !isnan(from->dmp);
     if (point && !trajectory)
@@ -234,7 +227,7 @@ static bool add_objective(Model *model, const Build *b, Key at, const Scene *sce
         objective_destroy(objective);
         return false;
     }
-    *next_objective(c) = objective;
+    *case_add_objective(c) = objective;
     return true;
 }
 

@@ -21,7 +21,7 @@ static void take_steps(Model *model)
     NewtonDef def = newton_default();
     def.max_iterations = 2;
     for (int c = 0; c < model->case_count; c++) {
-        ModelCase *load = &model->cases[c];
+        Case *load = &model->cases[c];
         Point at = {.p = load->stages[0].p, .time = load->stages[0].time};
         NewtonInfo info = newton_minimize(load->sys, &def, &at, &load->state, NULL);
         assert_true(info.status == NEWTON_MAX_ITERATIONS || info.status == NEWTON_CONVERGED);

@@ -197,9 +197,9 @@ static void make_systems(Model *model, bool hanging, bool motion)
 {
     RodModel *rm = model->rod;
     for (int k = 0; k < model->case_count; k++) {
-        ModelCase *c = &model->cases[k];
-        c->sys = hanging ? rod_hanging_system(rm->rod) : rod_system(rm->rod, rm->young, motion);
-        model_start_case(c, model->x);
+        Case *c = &model->cases[k];
+        case_start(c, hanging ? rod_hanging_system(rm->rod) : rod_system(rm->rod, rm->young, motion),
+                   model->x);
     }
 }
 

@@ -184,10 +184,10 @@ static bool finish_cases(Model *model, const Build *b, JobKind job)
 {
     bool ok = true, balanced = job == JOB_EQUILIBRIUM || job == JOB_DESIGN;
     for (int k = 0; ok && k < model->case_count; k++) {
-        ModelCase *c = &model->cases[k];
+        Case *c = &model->cases[k];
         Error err;
-        c->sys = model_is_motion(job) ? shell_dynamic_system(model->shell) : shell_system(model->shell);
-        model_start_case(c, model->x);
+        case_start(c, model_is_motion(job) ? shell_dynamic_system(model->shell) : shell_system(model->shell),
+                   model->x);
         system_accept(c->sys, c->state.x, c->state.memory);
         for (int s = 0; ok && balanced && s < c->stage_count; s++)
             ok = rigid_check_force(model->shell, c->stages[s].p, &err) ||
