@@ -68,7 +68,7 @@ static RunStatus prepare(const char *path, const char *output, bool animation, c
     *name = picture_name(&scene, path, output, animation);
     bool ok = outputs_check_source(&scene, path, *name, err);
     if (!ok) mem_free(*name);
-    yaml_clear(&scene_table, &scene);
+    yaml_clear(scene_table(), &scene);
     yaml_destroy(file);
     return ok ? RUN_DONE : RUN_CANNOT_WRITE;
 }
@@ -110,7 +110,8 @@ int verb_picture(int argc, char **argv)
         def.seconds = seconds;
         if (!width) def.width = 800; /* pixels; a page of paper's worth is too much for a moving one */
     }
-    status = show_result(path, picture, &def, &err);
+    ShowStatus shown = show_result(path, picture, &def, &err);
     mem_free(picture);
-    return status == RUN_DONE ? RUN_DONE : verb_fail(status, err.text);
+    return shown == SHOW_DONE ? RUN_DONE
+                              : verb_fail(shown == SHOW_HAS_NOT ? RUN_REFUSED : RUN_CANNOT_WRITE, err.text);
 }

@@ -1,7 +1,6 @@
 /* slender run: scene -> journal -> result and picture. */
 #include "base/memory.h"
 #include "job/inputs.h"
-#include "job/job.h"
 #include "cli/options.h"
 #include "cli/outputs.h"
 #include "cli/progress.h"
@@ -97,27 +96,12 @@ static bool parse(int argc, char **argv, RunOptions *o, int *code)
 
 /* ---- The journal's beginning ---- */
 
-/* Keys that a resumed run may change: how far it goes (a trajectory's steps are part of its problem), and
- * what it writes. */
-static const char *const free_keys[] = {
-    "design.iterations", "design.tolerance", "output.precision", "modes", "time.steps", NULL};
-static const char *const free_keys_trajectory[] = {"design.iterations", "design.tolerance",
-                                                   "output.precision", "modes", NULL};
-
-static const char *const free_keys_draw[] = {"output", "spline.rounds", "spline.order", "spline.plotter",
-                                             NULL};
-
-/* "a, b and c" */
+/* "a, b and c", or "nothing". */
 static char *list_of(const char *const *keys)
 {
-    char *list = mem_text(keys[0]);
-    for (int k = 1; keys[k]; k++) list = mem_join(list, keys[k + 1] ? ", " : " and ", keys[k]);
+    char *list = mem_text(keys[0] ? keys[0] : "nothing");
+    for (int k = 1; keys[0] && keys[k]; k++) list = mem_join(list, keys[k + 1] ? ", " : " and ", keys[k]);
     return list;
-}
-
-static const char *const *free_keys_of(int job)
-{
-    return job == JOB_TRAJECTORY ? free_keys_trajectory : job == JOB_DRAW ? free_keys_draw : free_keys;
 }
 
 /* The free keys, and those of files, which are told by their contents; one block. */
@@ -133,11 +117,11 @@ static const char **ignored_keys(const char *const *free, char *const *files)
 }
 
 /* `files`: keys whose paths need not be the same. */
-static bool check_scene(Journal *journal, int job, const char *scene, char *const *files, Error *err)
+static bool check_scene(Run *run, const char *scene, char *const *files, Error *err)
 {
-    const char *const *free = free_keys_of(job);
+    const char *const *free = run->model->job->free_keys;
     Array old;
-    if (!journal_get(journal, "meta", 0, "scene", &old, err)) return false;
+    if (!journal_get(run->journal, "meta", 0, "scene", &old, err)) return false;
     const char **keys = ignored_keys(free, files);
     char *difference = yaml_difference(old.data, scene, keys);
     array_clear(&old);
@@ -161,11 +145,10 @@ static bool check_resumed(Run *run, const char *scene, const char *inputs, Error
     if (!old.data) { /* an older journal: files are told by their names */
         if (*inputs)
             host_say(run->host, "whether the files of the scene have changed since that run is not known");
-        return check_scene(run->journal, run->scene->job, scene, none, err);
+        return check_scene(run, scene, none, err);
     }
     char **keys = inputs_keys(run->scene);
-    bool ok = check_scene(run->journal, run->scene->job, scene, keys, err) &&
-              inputs_check(run->scene, old.data, inputs, err);
+    bool ok = check_scene(run, scene, keys, err) && inputs_check(run->scene, old.data, inputs, err);
     mem_free(keys);
     array_clear(&old);
     return ok;
@@ -180,7 +163,7 @@ static bool put_start(Run *run, const char *scene, const char *inputs, Error *er
     if (!kernels) return false;
     Array meta[] = {array_text("scene", scene), array_text("versions", versions),
                     array_text("kernels", kernels), array_text("inputs", inputs)};
-    run->model->body->add_static(run->model, &statics);
+    run->model->body->ops->add_static(run->model, &statics);
     bool ok = journal_replace(run->journal, "meta", 0, meta, *inputs ? 4 : 3, err) &&
               journal_replace(run->journal, "final", 0, NULL, 0, err);
     ok = arrays_replace(&statics, run->journal, "static", ok ? err : NULL) && ok;
@@ -195,9 +178,10 @@ static RunStatus begin(Run *run, const RunOptions *options, Error *err)
 {
     char *inputs = inputs_text(run->scene, err);
     if (!inputs) return RUN_REFUSED;
-    char *scene = yaml_write(&scene_table, run->scene);
+    char *scene = yaml_write(scene_table(), run->scene);
     bool exact = run->scene->output.precision == OUTPUT_DOUBLE,
-         extended = options->resume && journal_is_finished(run->journal) && run->scene->job == JOB_SIMULATE;
+         extended =
+             options->resume && journal_is_finished(run->journal) && run->model->job->frames == FRAMES_MOVE;
     RunStatus status = RUN_DONE;
     if ((options->resume && !check_resumed(run, scene, inputs, err)) ||
         (extended && !recall_frames(run->journal, run->result, exact, err)))
@@ -218,8 +202,7 @@ static bool write_result(Run *run, const char *path, bool finished, Error *err)
     if (!journal_flush(run->journal, err) || !result_write(run->journal, path, def, &sum, err)) return false;
     if (!finished) return true;
     if (!recall_keep(run->journal, sum, err) || !journal_set_finished(run->journal, true, err)) return false;
-    bool made_again = run->scene->job == JOB_TRAJECTORY; /* from the best motion's states */
-    if (made_again || run->scene->job == JOB_SIMULATE) journal_forget(run->journal, "frame", NULL);
+    if (run->model->job->frames != FRAMES_STAY) journal_forget(run->journal, "frame", NULL);
     return true;
 }
 
@@ -227,7 +210,7 @@ static bool draw(Run *run, Error *err)
 {
     char *picture = outputs_picture(run->scene, run->result);
     ShowDef def = show_default();
-    bool ok = show_result(run->result, picture, &def, err) == RUN_DONE;
+    bool ok = show_result(run->result, picture, &def, err) == SHOW_DONE;
     if (ok) host_say(run->host, "picture: %s", picture);
     mem_free(picture);
     return ok || error_prefix(err, "no picture");
@@ -343,7 +326,7 @@ int verb_run(int argc, char **argv)
     tell_scene(&options, file, model);
     code = model ? run_model(&options, &scene, model) : RUN_REFUSED;
     model_destroy(model);
-    yaml_clear(&scene_table, &scene);
+    yaml_clear(scene_table(), &scene);
     yaml_destroy(file);
     settings_clear(&options.settings);
     return code;

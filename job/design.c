@@ -1,7 +1,7 @@
 /* Quasi-static design: unknowns that bring all cases' equilibria near their targets. */
 #include "base/memory.h"
 #include "job/design_run.h"
-#include "job/job.h"
+#include "job/jobs.h"
 #include "optim/static_design.h"
 #include "solve/ramp.h"
 #include <math.h>
@@ -159,7 +159,7 @@ static void find_start(DesignJob *job, const double *u)
     }
 }
 
-RunStatus job_design(Run *run, Error *err)
+static RunStatus run_design(Run *run, Error *err)
 {
     static const DesignOps ops = {.evaluate = evaluate,
                                   .accept = accept,
@@ -192,3 +192,17 @@ RunStatus job_design(Run *run, Error *err)
     mem_free(u);
     return status;
 }
+
+static const char *const free_keys[] = {"design.iterations", "design.tolerance", "output.precision", "modes",
+                                        NULL};
+
+const JobRow job_design = {
+    .name = "design",
+    .noun = "a design",
+    .run = run_design,
+    .rest = true,
+    .design = true,
+    .frames = FRAMES_STAY,
+    .free_keys = free_keys,
+    .effort = {5, 5, 1.1, 8, 60e6},
+};

@@ -1,6 +1,6 @@
 /* Equilibria of all cases, and of the stages of a sequence, each from the one before. */
 #include "base/memory.h"
-#include "job/job.h"
+#include "job/jobs.h"
 #include "solve/ramp.h"
 #include <string.h>
 
@@ -103,7 +103,7 @@ static bool solve_case(Run *run, Case *c, Snapshot *shot, int *frame, bool *inte
     return ok;
 }
 
-RunStatus job_equilibrium(Run *run, Error *err)
+static RunStatus run_equilibrium(Run *run, Error *err)
 {
     Model *model = run->model;
     Snapshot *shots = mem_alloc((size_t)model->case_count, sizeof *shots);
@@ -122,3 +122,15 @@ RunStatus job_equilibrium(Run *run, Error *err)
     if (!ok) return RUN_CANNOT_WRITE;
     return interrupted ? RUN_INTERRUPTED : worst == NEWTON_CONVERGED ? RUN_DONE : RUN_NOT_CONVERGED;
 }
+
+static const char *const free_keys[] = {"output.precision", "modes", "time.steps", NULL};
+
+const JobRow job_equilibrium = {
+    .name = "equilibrium",
+    .noun = "an equilibrium",
+    .run = run_equilibrium,
+    .rest = true,
+    .frames = FRAMES_STAY,
+    .free_keys = free_keys,
+    .effort = {12, 5, 2, 2, 100e6},
+};

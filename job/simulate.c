@@ -3,7 +3,7 @@
  * With every stored frame goes the state to go on from, in two slots by turns, each closed by its step's
  * number: a run that is killed goes on from the last frame and repeats the steps since bit by bit. */
 #include "base/memory.h"
-#include "job/job.h"
+#include "job/jobs.h"
 #include "solve/march.h"
 #include <string.h>
 
@@ -165,9 +165,8 @@ static bool put_end(Simulation *s, const char *status)
     return arrays_replace(&list, s->run->journal, "final", s->err);
 }
 
-RunStatus job_simulate(Run *run, Error *err)
+static RunStatus run_simulate(Run *run, Error *err)
 {
-    if (run->scene->rod && run->scene->rod->solver == ROD_SOLVER_PBD) return job_preview(run, err);
     Case *c = &run->model->cases[0];
     Simulation s = {.run = run, .err = err, .c = c, .p = c->stages[0].p, .now = &c->state};
     RunStatus status = march(&s);
@@ -176,3 +175,15 @@ RunStatus job_simulate(Run *run, Error *err)
     if (ended && !put_end(&s, said)) status = RUN_CANNOT_WRITE;
     return status;
 }
+
+const char *const job_simulate_free_keys[] = {"output.precision", "modes", "time.steps", NULL};
+
+const JobRow job_simulate = {
+    .name = "simulate",
+    .noun = "a simulation",
+    .run = run_simulate,
+    .motion = true,
+    .frames = FRAMES_MOVE,
+    .free_keys = job_simulate_free_keys,
+    .effort = {2, 2, 0.9, 4, 25e6},
+};

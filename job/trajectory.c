@@ -1,7 +1,7 @@
 /* Design of a motion: unknowns, most of all a field over time, that make the body go where it should. */
 #include "base/memory.h"
 #include "job/design_run.h"
-#include "job/job.h"
+#include "job/jobs.h"
 #include "optim/objectives.h"
 #include "optim/trajectory_adjoint.h"
 #include <math.h>
@@ -184,7 +184,7 @@ static bool put_results(void *self, int first, const char *status, Error *err)
     return arrays_replace(&list, job->run->journal, "final", err);
 }
 
-RunStatus job_trajectory(Run *run, Error *err)
+static RunStatus run_trajectory(Run *run, Error *err)
 {
     static const DesignOps ops = {.evaluate = evaluate,
                                   .accept = accept,
@@ -224,3 +224,19 @@ RunStatus job_trajectory(Run *run, Error *err)
     mem_free(u);
     return status;
 }
+
+/* Its steps are part of its problem. */
+static const char *const free_keys[] = {"design.iterations", "design.tolerance", "output.precision", "modes",
+                                        NULL};
+
+const JobRow job_trajectory = {
+    .name = "trajectory",
+    .noun = "a trajectory",
+    .run = run_trajectory,
+    .motion = true,
+    .path = true,
+    .design = true,
+    .frames = FRAMES_AGAIN,
+    .free_keys = free_keys,
+    .effort = {2, 2, 1, 8, 25e6},
+};

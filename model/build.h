@@ -7,7 +7,7 @@
 #include "model/scene.h"
 #include "model/timed_flux.h"
 #include "surface/select.h"
-#include "shell/shell.h"
+#include "surface/flux_field.h"
 
 typedef struct Build {
     YamlFile *file;

@@ -1,16 +1,13 @@
 #include "model/model.h"
 #include "base/memory.h"
 #include "base/plain.h"
-#include "model/build.h"
-#include "spline/front/drawing.h"
-#include "job/job.h"
-#include "rod/front/rod_model.h"
+#include "model/scene_tables.h"
 #include <math.h>
 #include <string.h>
 
 bool model_move(const Model *model, double time, double part, double *x, Error *err)
 {
-    return !model->moves || model->body->move(model, time, part, x, err);
+    return !model->moves || model->body->ops->move(model, time, part, x, err);
 }
 
 bool model_load(const Model *model, double time, double *p, Error *err)
@@ -40,7 +37,7 @@ static bool put_loads(Model *model, const Build *b, Key at, const FluxScene *flu
                       int count, const double *gravity, double *p)
 {
     if (!isnan(gravity[0])) memcpy(p + model->gravity, gravity, 3 * sizeof *gravity);
-    bool ok = !loads || model->body->put_loads(model, b, key("%s.loads", at.text).text, loads, count, p);
+    bool ok = !loads || model->body->ops->put_loads(model, b, key("%s.loads", at.text).text, loads, count, p);
     return (!flux || model_put_flux(model, b, key("%s.flux_density", at.text).text, flux, p)) && ok;
 }
 
@@ -59,7 +56,7 @@ static bool add_target(Model *model, const Build *b, Key at, const TargetScene *
 {
     if (!target) return true;
     c->target = mem_alloc((size_t)model->point_count, sizeof *c->target);
-    return model->body->put_target(model, b, at.text, target, c->target);
+    return model->body->ops->put_target(model, b, at.text, target, c->target);
 }
 
 static bool add_stages(Model *model, const Build *b, const Scene *scene, const double *p, size_t room)
@@ -127,11 +124,6 @@ bool model_cases(Model *model, const Build *b, const Scene *scene, const double 
 
 /* ---- The whole ---- */
 
-bool model_is_motion(int job)
-{
-    return job == JOB_SIMULATE || job == JOB_TRAJECTORY;
-}
-
 bool model_velocity(Model *model, const Build *b, const char *at, const VelocityScene *scene,
                     const double *place)
 {
@@ -156,45 +148,43 @@ bool model_velocity(Model *model, const Build *b, const char *at, const Velocity
     return ok;
 }
 
-static bool check_motion(const Scene *scene, YamlFile *file)
+static bool check_motion(const Scene *scene, const JobRow *job, YamlFile *file)
 {
-    const char *what = scene->job == JOB_SIMULATE ? "simulation" : "trajectory";
     bool known = !isnan(scene->time.step) && scene->time.steps != YAML_ABSENT;
-    return !model_is_motion(scene->job) || known ||
-           yaml_refuse(file, "time", "a %s needs `time`, e.g. time: {step: 1 ms, steps: 100}", what);
+    return !job->motion || known ||
+           yaml_refuse(file, "time", "%s needs `time`, e.g. time: {step: 1 ms, steps: 100}", job->noun);
 }
 
-/* Which jobs there are for what. */
+/* "rods and shells": those that have the job. */
+static char *bodies_of(const char *job)
+{
+    char *list = mem_text("");
+    for (int k = 0, more = 0; bodies[k]; k++) {
+        if (!body_job(bodies[k], job)) continue;
+        list = mem_join(list, more++ ? " and " : "", bodies[k]->nouns);
+    }
+    return list;
+}
+
 static bool check_job(const Scene *scene, YamlFile *file)
 {
-    int job = scene->job;
-    bool rods_only = job == JOB_INVERT || job == JOB_IDENTIFY;
-    bool shells_only = job == JOB_EVALUATE || job == JOB_TRAJECTORY;
-    bool fits = scene->spline ? job == JOB_DRAW
-                : scene->rod  ? job != JOB_DRAW && !shells_only
-                              : job != JOB_DRAW && !rods_only;
-    const char *has = scene->spline ? "a drawing" : scene->rod ? "a rod" : "a shell";
-    return fits || yaml_refuse(file, "job", "%s is a job for %s, and the scene has %s", job_names[job],
-                               rods_only         ? "rods"
-                               : shells_only     ? "shells"
-                               : job == JOB_DRAW ? "drawings"
-                                                 : "shells and rods",
-                               has);
-}
-
-static bool build_body(Model *model, const Scene *scene, YamlFile *file)
-{
-    if (!check_motion(scene, file)) return false;
-    return scene->rod ? model_rod(model, scene, file) : model_shell(model, scene, file);
+    if (scene_job(scene)) return true;
+    const char *name = scene_job_names[scene->job];
+    char *list = bodies_of(name);
+    yaml_refuse(file, "job", "%s is a job for %s, and the scene has %s", name, list, scene_body(scene)->noun);
+    mem_free(list);
+    return false;
 }
 
 Model *model_create(const Scene *scene, YamlFile *file)
 {
     Model *model = mem_alloc(1, sizeof *model);
-    bool designed = scene->job == JOB_DESIGN || scene->job == JOB_TRAJECTORY;
-    bool ok = check_job(scene, file) && yaml_check_use(file, &scene_table) &&
-              (scene->spline ? model_drawing(model, scene, file) : build_body(model, scene, file)) &&
-              (!designed || model_design(model, scene, file));
+    const JobRow *job = scene_job(scene);
+    model->body = scene_body(scene);
+    model->job = job;
+    bool ok = check_job(scene, file) && yaml_check_use(file, scene_table()) &&
+              check_motion(scene, job, file) && model->body->ops->create(model, scene, file) &&
+              (!job->design || model_design(model, scene, file));
     if (ok) return model;
     model_destroy(model);
     return NULL;
@@ -211,9 +201,7 @@ void model_destroy(Model *model)
     design_clear(&model->design);
     timed_flux_clear(&model->flux_of_time);
     mesh_report_clear(&model->report);
-    shell_destroy(model->shell);
-    rod_model_destroy(model->rod);
-    drawing_destroy(model->drawing);
+    if (model->self) model->body->ops->destroy(model->self);
     mem_free(model->cases);
     mem_free(model->motions);
     mem_free(model->x);

@@ -1,10 +1,7 @@
 /* The scene's objectives. */
 #include "base/memory.h"
-#include "model/build.h"
-#include "job/job.h"
 #include "model/model.h"
 #include "optim/objectives.h"
-#include "shell/smoothness.h"
 #include <limits.h>
 #include <math.h>
 #include <stdlib.h>
@@ -29,26 +26,11 @@ static bool target_objective(const Case *c, int vertex_count, YamlFile *file, Ke
     return true;
 }
 
-/* Of a rod: all nodes, or its end. */
-static bool rod_height(const Model *model, const Build *b, Key at, const char *of, double weight,
-                       Objective *objective)
-{
-    bool tip = !strcmp(of, "tip");
-    if (!tip && strcmp(of, "all")) return yaml_refuse(b->file, at.text, "of a rod it is `all` or `tip`");
-    int count = tip ? 1 : model->point_count, *nodes = mem_alloc((size_t)count, sizeof *nodes);
-    for (int i = 0; i < count; i++) nodes[i] = tip ? model->point_count - 1 : i;
-    *objective = objective_height(count, nodes, weight);
-    mem_free(nodes);
-    return true;
-}
-
 static bool height_objective(const Model *model, const Build *b, Key at, const ObjectiveScene *from,
                              double weight, Objective *objective)
 {
-    if (model->rod) return rod_height(model, b, at, from->of, weight, objective);
-    SelectionScene group = {.group = from->of};
     Indices chosen = {0};
-    if (!build_selection(b, at, strcmp(from->of, "all") ? &group : NULL, &chosen)) return false;
+    if (!model->body->ops->select(model, b, at.text, from->of, &chosen)) return false;
     *objective = objective_height(chosen.count, chosen.items, weight);
     mem_free(chosen.items);
     return true;
@@ -63,7 +45,7 @@ static Probe find_probe(const Model *model, const Build *b, Key at, const char *
     if (!vertex) { /* the centre of mass */
         int *all = mem_alloc((size_t)mesh->vertex_count, sizeof *all);
         double *mass = mem_alloc((size_t)mesh->vertex_count, sizeof *mass), total = 0;
-        shell_vertex_mass(model->shell, mass);
+        model->body->ops->masses(model, mass);
         for (int v = 0; v < mesh->vertex_count; v++) all[v] = v, total += mass[v];
         for (int v = 0; v < mesh->vertex_count; v++) mass[v] /= total;
         return (Probe){mesh->vertex_count, all, mass};
@@ -205,7 +187,7 @@ static bool add_objective(Model *model, const Build *b, Key at, const Scene *sce
                           const ObjectiveScene *from, int case_index)
 {
     Case *c = &model->cases[case_index];
-    bool trajectory = scene->job == JOB_TRAJECTORY, point = from->waypoint || from->curve || from->reach;
+    bool trajectory = model->job->motion, point = from->waypoint || from->curve || from->reach;
     bool field = !isnan(from->field_magnitude) || !isnan(from->field_smoothness) || !isnan(from->dmp);
     if (point && !trajectory)
         return yaml_refuse(b->file, at.text,
@@ -214,10 +196,12 @@ static bool add_objective(Model *model, const Build *b, Key at, const Scene *sce
     if (field) return field_objective(model, b, at, from);
     Objective objective;
     if (!isnan(from->magnetization_smoothness)) {
-        if (model->rod) return yaml_refuse(b->file, at.text, "magnetization_smoothness is for shells");
+        const BodyOps *ops = model->body->ops;
+        if (!ops->smoothness)
+            return yaml_refuse(b->file, at.text, "magnetization_smoothness is not for %s",
+                               model->body->nouns);
         if (case_index > 0) return true;
-        objective = shell_magnetization_smoothness(model->shell,
-                                                   from->weight * from->magnetization_smoothness / c->weight);
+        objective = ops->smoothness(model, from->weight * from->magnetization_smoothness / c->weight);
     } else if (!isnan(from->target)
                    ? !target_objective(c, model->point_count, b->file, at, from->weight * from->target,
                                        &objective)
@@ -233,7 +217,7 @@ static bool add_objective(Model *model, const Build *b, Key at, const Scene *sce
 
 bool model_objectives(Model *model, const Scene *scene, YamlFile *file)
 {
-    Build b = build_start(scene, model->shell ? model->shell->mesh : NULL, file);
+    Build b = build_start(scene, model->mesh, file);
     bool ok = true;
     for (int c = 0; c < model->case_count; c++)
         for (int k = 0; k < scene->design->objectives_count; k++)

@@ -1,6 +1,6 @@
 /* Every scene in scenes/ loads, builds and takes its first steps; the field tables are sound. */
 #include "base/memory.h"
-#include "job/job.h"
+#include "job/run.h"
 #include "solve/newton.h"
 #include <glob.h>
 #include <setjmp.h>
@@ -13,7 +13,7 @@
 static void test_table(void **state)
 {
     (void)state;
-    yaml_check_table(&scene_table);
+    yaml_check_table(scene_table());
 }
 
 static void take_steps(Model *model)
@@ -33,21 +33,21 @@ static void check_scene(const char *path)
     Scene scene, again;
     long blocks = mem_live_count();
     YamlFile *file = yaml_read(path);
-    Model *model = yaml_load(file, &scene_table, &scene) ? model_create(&scene, file) : NULL;
+    Model *model = yaml_load(file, scene_table(), &scene) ? model_create(&scene, file) : NULL;
     char *report = yaml_report(file);
     if (!model) fail_msg("%s", report);
     take_steps(model);
     /* The effective scene is the same scene. */
-    char *text = yaml_write(&scene_table, &scene);
+    char *text = yaml_write(scene_table(), &scene);
     YamlFile *effective = yaml_parse(path, text, strlen(text));
-    if (!yaml_load(effective, &scene_table, &again)) fail_msg("%s", yaml_report(effective));
-    char *text_again = yaml_write(&scene_table, &again);
+    if (!yaml_load(effective, scene_table(), &again)) fail_msg("%s", yaml_report(effective));
+    char *text_again = yaml_write(scene_table(), &again);
     assert_string_equal(text, text_again);
     mem_free(text);
     mem_free(text_again);
     mem_free(report);
-    yaml_clear(&scene_table, &again);
-    yaml_clear(&scene_table, &scene);
+    yaml_clear(scene_table(), &again);
+    yaml_clear(scene_table(), &scene);
     yaml_destroy(effective);
     yaml_destroy(file);
     model_destroy(model);

@@ -63,7 +63,7 @@ static Built build(const char *text)
 {
     Built b;
     b.file = yaml_parse("test.yaml", text, strlen(text));
-    b.model = yaml_load(b.file, &scene_table, &b.scene) ? model_create(&b.scene, b.file) : NULL;
+    b.model = yaml_load(b.file, scene_table(), &b.scene) ? model_create(&b.scene, b.file) : NULL;
     if (!b.model) fail_msg("%s", yaml_report(b.file));
     return b;
 }
@@ -71,7 +71,7 @@ static Built build(const char *text)
 static void clear(Built *b)
 {
     model_destroy(b->model);
-    yaml_clear(&scene_table, &b->scene);
+    yaml_clear(scene_table(), &b->scene);
     yaml_destroy(b->file);
 }
 

@@ -1,8 +1,8 @@
 /* The natural shape of rods that hang in given curves: by the frame-free integral, as strains, and as the
  * strains of a discrete rod that rests on its curve to rounding. */
 #include "base/memory.h"
-#include "job/job.h"
-#include "rod/front/rod_model.h"
+#include "job/run.h"
+#include "rod/front/front.h"
 #include "rod/self_contact.h"
 #include "rod/stability.h"
 #include "solve/ramp.h"
@@ -29,7 +29,7 @@ typedef struct Inversion {
     NewtonStatus worst;
 } Inversion;
 
-static bool is_asked(const Scene *scene, RodCheck check)
+static bool is_asked(const Scene *scene, SceneCheck check)
 {
     for (int k = 0; k < scene->checks_count; k++)
         if (scene->checks[k] == (int)check) return true;
@@ -125,7 +125,7 @@ static void go_round(Inversion *o, int k, Rod *rod, System *sys, const RodLayout
 static void invert_elements(Inversion *o, int k)
 {
     const RodModel *rm = o->rm;
-    const RodScene *scene = o->run->scene->rod;
+    const RodScene *scene = rod_scene(o->run->scene);
     Rod *rod = rod_create(o->elements, rm->curves[k].length, rm->unit, rm->area);
     double *p = mem_alloc((size_t)rod->params.size, sizeof *p);
     rod_model_loads(rm, rod, scene, p);
@@ -248,7 +248,7 @@ static bool put_results(const Inversion *o, const char *status, Error *err)
                                   o->strands * o->elements, 3));
     arrays_add(&list, per_strand(o, "metrics/residual", "", o->residual));
     arrays_add(&list, per_strand(o, "metrics/strain_route", "", o->route));
-    arrays_add(&list, array_float("rod/gravity", "m/s^2", o->run->scene->rod->gravity, 1, 3, 0));
+    arrays_add(&list, array_float("rod/gravity", "m/s^2", rod_scene(o->run->scene)->gravity, 1, 3, 0));
     if (o->strands > 1) arrays_add(&list, array_int("rod/strands", starts, 1, o->strands + 1, 0));
     add_checks(o, &list);
     return put_shapes(o, err) && arrays_replace(&list, o->run->journal, "final", err);
@@ -303,9 +303,9 @@ static void say(const Inversion *o)
         host_say(host, "the simulated rod rests %.2g m from its curve", worst);
 }
 
-RunStatus job_invert(Run *run, Error *err)
+static RunStatus run_invert(Run *run, Error *err)
 {
-    const RodModel *rm = run->model->rod;
+    const RodModel *rm = ((const RodModel *)run->model->self);
     size_t strands = (size_t)rm->strand_count, nodes = (size_t)run->model->point_count, all = strands * nodes;
     Inversion o = {
         .run = run, .rm = rm, .strands = rm->strand_count, .elements = (int)nodes - 1, .nodes = (int)nodes};
@@ -334,3 +334,13 @@ RunStatus job_invert(Run *run, Error *err)
     if (!ok) return RUN_CANNOT_WRITE;
     return interrupted ? RUN_INTERRUPTED : converged ? RUN_DONE : RUN_NOT_CONVERGED;
 }
+
+static const char *const free_keys[] = {"output.precision", NULL};
+
+const JobRow rod_job_invert = {
+    .name = "invert",
+    .noun = "an inversion",
+    .run = run_invert,
+    .frames = FRAMES_STAY,
+    .free_keys = free_keys,
+};

@@ -1,8 +1,8 @@
 /* A rod's motion by the position-based solver: quick, for the eye. A run that is resumed begins anew: it
  * repeats itself bit by bit. */
 #include "base/memory.h"
-#include "job/job.h"
-#include "rod/front/rod_model.h"
+#include "job/jobs.h"
+#include "rod/front/front.h"
 #include "rod/pbd.h"
 
 typedef struct Preview {
@@ -14,9 +14,9 @@ typedef struct Preview {
 
 static PbdRod *create(const Run *run)
 {
-    const RodModel *rm = run->model->rod;
+    const RodModel *rm = run->model->self;
     const Rod *rod = rm->rod;
-    const RodScene *scene = run->scene->rod;
+    const RodScene *scene = rod_scene(run->scene);
     const double *p = run->model->cases[0].stages[0].p;
     Vec3 *start = mem_alloc((size_t)rod->elements, sizeof *start);
     rod_element_strains(rod, &rm->layout, run->model->x, start);
@@ -70,7 +70,7 @@ static bool put_final(const Preview *o, const char *status)
     return journal_replace(o->run->journal, "final", 0, arrays, sizeof arrays / sizeof *arrays, o->err);
 }
 
-RunStatus job_preview(Run *run, Error *err)
+static RunStatus preview(Run *run, Error *err)
 {
     const TimeScene *time = &run->scene->time;
     Preview o = {.run = run, .rod = create(run), .nodes = run->model->point_count, .err = err};
@@ -89,3 +89,19 @@ RunStatus job_preview(Run *run, Error *err)
     pbd_rod_destroy(o.rod);
     return !ok ? RUN_CANNOT_WRITE : interrupted ? RUN_INTERRUPTED : RUN_DONE;
 }
+
+/* By implicit Euler, or so. */
+static RunStatus run_simulate(Run *run, Error *err)
+{
+    return rod_scene(run->scene)->solver == ROD_SOLVER_PBD ? preview(run, err) : job_simulate.run(run, err);
+}
+
+const JobRow rod_job_simulate = {
+    .name = "simulate",
+    .noun = "a simulation",
+    .run = run_simulate,
+    .motion = true,
+    .frames = FRAMES_MOVE,
+    .free_keys = job_simulate_free_keys,
+    .effort = {2, 2, 0.9, 4, 25e6},
+};

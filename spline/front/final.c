@@ -1,7 +1,7 @@
 #include "spline/front/final.h"
 #include "base/cubic.h"
 #include "base/memory.h"
-#include "spline/front/drawn.h"
+#include "spline/front/front.h"
 #include "spline/metrics.h"
 #include "spline/order.h"
 #include "spline/terms.h"
@@ -16,7 +16,7 @@ bool draw_put_strokes(Run *run, const Drawing *d, const Strokes *parts, int coun
     Arrays list = {0};
     Strokes all = {0};
     for (int k = 0; k < count; k++) strokes_append(&all, &parts[k], d->parts[k].pen);
-    drawn_add_strokes(d, &all, &list);
+    drawing_add_strokes(d, &all, &list);
     bool ok = arrays_replace(&list, run->journal, "final", err);
     strokes_clear(&all);
     return ok;
@@ -180,7 +180,7 @@ bool draw_finish(Run *run, const Drawing *d, const Strokes *parts, const RelaxIn
         order = order_strokes(&all, &d->page, order_default());
     else
         order.before = order.after = order_travel(&all, &d->page);
-    drawn_add_strokes(d, &all, &list);
+    drawing_add_strokes(d, &all, &list);
     for (int t = 0; t < SPLINE_WEIGHT_COUNT; t++) {
         char *name = arrays_keep(&list, mem_format("final/energy/%s", spline_term_rows[t].name));
         if (((const double *)&d->relax.weights)[t] != 0)

@@ -7,8 +7,8 @@
 #include "base/clock.h"
 #include "base/memory.h"
 #include "spline/front/final.h"
-#include "spline/front/drawn.h"
-#include "job/job.h"
+#include "spline/front/front.h"
+#include "job/run.h"
 #include "spline/metrics.h"
 #include "spline/revise.h"
 #include <math.h>
@@ -259,9 +259,9 @@ static bool has_ended_well(const RelaxInfo *info, RelaxMethod method)
            (counted && info->status == RELAX_MAX_ITERATIONS);
 }
 
-RunStatus job_draw(Run *run, Error *err)
+static RunStatus run_draw(Run *run, Error *err)
 {
-    const Drawing *d = run->model->drawing;
+    const Drawing *d = run->model->self;
     DrawJob job = {.run = run, .d = d, .relax = d->relax, .started = clock_seconds(), .err = err};
     job.relax.threads = run->threads;
     job.strokes = mem_alloc((size_t)d->part_count, sizeof *job.strokes);
@@ -282,3 +282,13 @@ RunStatus job_draw(Run *run, Error *err)
            : has_ended_well(&info, d->relax.method) ? RUN_DONE
                                                     : RUN_NOT_CONVERGED;
 }
+
+static const char *const free_keys[] = {"output", "spline.rounds", "spline.order", "spline.plotter", NULL};
+
+const JobRow spline_job_draw = {
+    .name = "draw",
+    .noun = "a drawing",
+    .run = run_draw,
+    .frames = FRAMES_STAY,
+    .free_keys = free_keys,
+};
