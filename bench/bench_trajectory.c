@@ -2,8 +2,8 @@
 #include "base/clock.h"
 #include "base/memory.h"
 #include "bench/bench.h"
-#include "model/model.h"
 #include "io/result.h"
+#include "model/model.h"
 #include "optim/trajectory_adjoint.h"
 #include <stdio.h>
 #include <stdlib.h>

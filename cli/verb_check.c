@@ -1,9 +1,9 @@
 /* slender check: everything that can be said about a scene without running it. */
 #include "base/memory.h"
 #include "base/random.h"
-#include "job/predict.h"
 #include "cli/say.h"
 #include "cli/verb.h"
+#include "job/predict.h"
 #include "solve/check.h"
 #include "solve/kernels.h"
 #include <math.h>

@@ -1,8 +1,9 @@
 /* slender picture: a result as PNG, SVG or PDF, or in motion as animated WebP. */
 #include "base/memory.h"
-#include "cli/outputs.h"
 #include "cli/verb.h"
+#include "io/path.h"
 #include "io/result.h"
+#include "job/outputs.h"
 #include "model/stored.h"
 #include "view/show.h"
 #include <limits.h>
@@ -50,7 +51,7 @@ static char *picture_name(const Scene *scene, const char *path, const char *outp
 {
     if (output) return mem_text(output);
     if (!animation) return outputs_picture(scene, path);
-    char *base = verb_without_ending(path, ".vtkhdf"), *name = mem_format("%s.webp", base);
+    char *base = path_without_ending(path, ".vtkhdf"), *name = mem_format("%s.webp", base);
     mem_free(base);
     return name;
 }

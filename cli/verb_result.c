@@ -1,13 +1,13 @@
 /* slender info and slender export: what is in a result, or in the journal of a running job. */
 #include "base/memory.h"
 #include "base/plain.h"
-#include "cli/outputs.h"
 #include "cli/say.h"
 #include "cli/verb.h"
 #include "io/mesh_file.h"
 #include "io/replace.h"
 #include "io/result.h"
 #include "io/table.h"
+#include "job/outputs.h"
 #include "model/stored.h"
 #include "spline/drawn.h"
 #include <limits.h>

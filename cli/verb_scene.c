@@ -1,7 +1,8 @@
 /* slender schema and slender mesh: what can be had from scenes without running them. */
 #include "base/memory.h"
-#include "cli/outputs.h"
 #include "cli/verb.h"
+#include "io/path.h"
+#include "job/outputs.h"
 #include <stdio.h>
 
 int verb_schema(int argc, char **argv)
@@ -43,7 +44,7 @@ int verb_mesh(int argc, char **argv)
     YamlFile *file;
     Scene scene;
     Error err;
-    char *name = verb_base_name(scene_path), *path = output ? mem_text(output) : mem_format("%s.obj", name);
+    char *name = path_base_name(scene_path), *path = output ? mem_text(output) : mem_format("%s.obj", name);
     Model *model = verb_load_scene(scene_path, NULL, &file, &scene) ? verb_build_model(&scene, file) : NULL;
     code = RUN_REFUSED;
     if (model && !model->mesh)

@@ -2,9 +2,9 @@
 #pragma once
 #include "base/memory.h"
 #include "base/workers.h"
-#include "model/model.h"
-#include "job/host.h"
 #include "io/journal.h"
+#include "job/host.h"
+#include "model/model.h"
 #include "solve/newton.h"
 
 typedef struct Run {

@@ -1,8 +1,8 @@
 /* What this program runs with: part of every result, so that a number can be traced. */
 #include "base/memory.h"
-#include "job/run.h"
 #include "io/journal.h"
 #include "io/result.h"
+#include "job/run.h"
 #include "optim/optimiser.h"
 #include "solve/kernels.h"
 #include "solve/sparse.h"

@@ -5,10 +5,10 @@
  * normal). B is uniform (block flux_density) plus fields taken at the face's current barycentre, so its gradient
  * enters the forces. The derivatives of n (eqs. 62, 63) are the corrected ones of docs/theory.md. */
 #include "base/memory.h"
-#include "surface/flux.h"
 #include "shell/face.h"
 #include "shell/terms.h"
 #include "solve/element.h"
+#include "surface/flux.h"
 
 typedef struct MagneticPack {
     Pack3 hat[3], normal; /* at rest; 1/m, 1 */

@@ -1,7 +1,7 @@
 /* Every file in tests/broken is refused with the sentence that expected.txt has for it. */
 #include "base/memory.h"
-#include "model/model.h"
 #include "io/mesh_file.h"
+#include "model/model.h"
 #include "surface/mesh.h"
 #include <glob.h>
 #include <setjmp.h>

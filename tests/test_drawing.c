@@ -1,7 +1,7 @@
 /* Drawings from scenes: pages, pens, what each part shall cover, directions. */
 #include "base/memory.h"
-#include "spline/front/drawing.h"
 #include "spline/direction.h"
+#include "spline/front/drawing.h"
 #include "tests/leaks.h"
 #include <math.h>
 #include <stdio.h>

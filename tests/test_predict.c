@@ -1,6 +1,6 @@
 /* What slender check foretells: the factor from its pattern, without the matrix, and beyond that size by a law. */
-#include "tests/leaks.h"
 #include "job/predict.h"
+#include "tests/leaks.h"
 #include <math.h>
 #include <string.h>
 

@@ -1,12 +1,12 @@
 /* Pictures of results of rods, from results as a job leaves them: curves, small print, motion, bundles. */
 #include "base/memory.h"
-#include "view/show.h"
-#include "view/curves_picture.h"
-#include "view/page.h"
 #include "io/result.h"
 #include "io/table.h"
 #include "leaks.h"
 #include "png_fixture.h"
+#include "view/curves_picture.h"
+#include "view/page.h"
+#include "view/show.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

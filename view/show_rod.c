@@ -1,7 +1,7 @@
+#include "view/show_rod.h"
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "view/curves_picture.h"
-#include "view/show_rod.h"
 #include "view/ticks.h"
 #include <math.h>
 #include <stdio.h>

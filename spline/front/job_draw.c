@@ -6,9 +6,9 @@
  * times. */
 #include "base/clock.h"
 #include "base/memory.h"
+#include "job/run.h"
 #include "spline/front/final.h"
 #include "spline/front/front.h"
-#include "job/run.h"
 #include "spline/metrics.h"
 #include "spline/revise.h"
 #include <math.h>

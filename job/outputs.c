@@ -1,6 +1,6 @@
-#include "cli/outputs.h"
+#include "job/outputs.h"
 #include "base/memory.h"
-#include "cli/verb.h"
+#include "io/path.h"
 #include "io/replace.h"
 #include "io/safe_file.h"
 #include <string.h>
@@ -21,7 +21,7 @@ static char *path_of(const char *result, const char *name, const char *ending)
     if (name && (name[0] == '/' || !slash)) return mem_text(name);
     if (name) return mem_format("%.*s%s", (int)(slash + 1 - result), result, name);
     if (!ending) return NULL;
-    char *base = verb_without_ending(result, ".vtkhdf"), *path = mem_format("%s%s", base, ending);
+    char *base = path_without_ending(result, ".vtkhdf"), *path = mem_format("%s%s", base, ending);
     mem_free(base);
     return path;
 }
@@ -147,7 +147,7 @@ bool outputs_check(const Scene *scene, const char *path, const char *result, boo
 {
     static const char *const endings[OWN] = {".vtkhdf", ".xdmf", ".run", ".run-wal", ".run-shm", ".run-lock"};
     OutputFile files[FILES];
-    char *own[OWN], *base = verb_without_ending(result, ".vtkhdf");
+    char *own[OWN], *base = path_without_ending(result, ".vtkhdf");
     bool ok = true;
     for (int k = 0; k < OWN; k++) {
         own[k] = mem_format("%s%s", base, endings[k]);
