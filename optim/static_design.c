@@ -1,6 +1,7 @@
 #include "optim/static_design.h"
 #include "base/memory.h"
 #include "base/vector.h"
+#include "optim/implicit.h"
 #include <math.h>
 #include <string.h>
 
@@ -88,39 +89,16 @@ static bool factor_best(StaticDesign *sd, int c)
     return work->factored_best;
 }
 
-/* dx = -H^-1 (d2E/dx dp) dp at the best design. */
-static void tangent(StaticDesign *sd, int c, const double *dp, double *dx)
-{
-    Point at = point(&sd->cases[c], sd->cases[c].state.x, sd->work[c].best_p);
-    system_param_forward(sd->cases[c].sys, &at, dp, dx);
-    system_solve(sd->cases[c].sys, dx, dx);
-    for (int i = 0; i < system_dof_count(sd->cases[c].sys); i++) dx[i] = -dx[i];
-}
-
-/* dp -= (d2E/dx dp)^T H^-1 gx with the factor at hand; gx is overwritten. */
-static void adjoint(System *sys, const Point *at, double *gx, double *dp)
-{
-    system_solve(sys, gx, gx);
-    for (int i = 0; i < system_dof_count(sys); i++) gx[i] = -gx[i];
-    system_param(sys, at, gx, dp);
-}
-
 /* The best equilibrium, moved along the tangent if that lowers the energy of the new design. */
 static void predict(StaticDesign *sd, int c)
 {
     Work *work = &sd->work[c];
     const Case *load = &sd->cases[c];
-    int dofs = system_dof_count(load->sys);
     state_copy(&work->state, &load->state);
     if (!work->has_best || !factor_best(sd, c)) return;
     for (int i = 0; i < sd->params->size; i++) work->dp[i] = work->p[i] - work->best_p[i];
-    tangent(sd, c, work->dp, work->dx);
-    Point from = point(load, load->state.x, work->p), to = point(load, work->w, work->p);
-    for (int i = 0; i < dofs; i++) work->w[i] = load->state.x[i] + work->dx[i];
-    system_project(load->sys, load->state.x, work->w);
-    Evaluation moved = system_energy(load->sys, &to);
-    if (moved.finite && moved.energy < system_energy(load->sys, &from).energy)
-        memcpy(work->state.x, work->w, (size_t)dofs * sizeof *work->w);
+    Point best = point(load, load->state.x, work->best_p);
+    implicit_predict(load->sys, &best, work->dp, work->p, &work->state);
 }
 
 /* Objectives at the point and, where dp is not NULL, dF/dp by the adjoint with the factor at hand. */
@@ -137,7 +115,7 @@ static double evaluate_objective(StaticDesign *sd, int c, const Point *at, doubl
         value +=
             weight * objective->ops->value(objective->self, weight, at->x, at->p, dp ? work->dx : NULL, dp);
     }
-    if (dp) adjoint(load->sys, at, work->dx, dp);
+    if (dp) implicit_adjoint(load->sys, at, work->dx, dp);
     return value;
 }
 
@@ -279,13 +257,13 @@ static void product_case(StaticDesign *sd, int c, const double *v, double soft)
     memset(work->dp, 0, (size_t)sd->params->size * sizeof *work->dp);
     if (!factored) return;
     design_forward(sd->design, c, sd->best_u, v, work->hp);
-    tangent(sd, c, work->hp, work->dx);
+    Point at = point(load, load->state.x, work->best_p);
+    implicit_tangent(load->sys, &at, work->hp, work->dx);
     memset(work->w, 0, (size_t)dofs * sizeof *work->w);
     if (soft > 0) soften(load->sys, work->dx, work->w);
     for (int i = 0; soft > 0 && i < dofs; i++) work->w[i] *= soft * work->soft_pull;
     add_products(sd, c, work->w, work->dp);
-    Point at = point(load, load->state.x, work->best_p);
-    adjoint(load->sys, &at, work->w, work->dp);
+    implicit_adjoint(load->sys, &at, work->w, work->dp);
 }
 
 void static_design_product(StaticDesign *sd, const double *v, double soft, double *out)
