@@ -176,9 +176,10 @@ static bool check_job(const Scene *scene, YamlFile *file)
     return false;
 }
 
-Model *model_create(const Scene *scene, YamlFile *file)
+static Model *create(const Scene *scene, YamlFile *file, bool general)
 {
     Model *model = mem_alloc(1, sizeof *model);
+    model->general = general;
     const JobRow *job = scene_job(scene);
     model->body = scene_body(scene);
     model->job = job;
@@ -188,6 +189,16 @@ Model *model_create(const Scene *scene, YamlFile *file)
     if (ok) return model;
     model_destroy(model);
     return NULL;
+}
+
+Model *model_create(const Scene *scene, YamlFile *file)
+{
+    return create(scene, file, false);
+}
+
+Model *model_create_general(const Scene *scene, YamlFile *file)
+{
+    return create(scene, file, true);
 }
 
 void model_destroy(Model *model)

@@ -22,6 +22,7 @@ struct Model {
     const JobRow *job;
     void *self;       /* the body as its front knows it: a Shell, ..; owned     */
     const Mesh *mesh; /* of a body that has one; the body's                     */
+    bool general;     /* of any use, not only that of its job: all points are dofs */
     /* Nothing below is of a body without cases. */
     Params *params; /* the body's                                          */
     int gravity;    /* first entries in p                                  */
@@ -44,6 +45,9 @@ struct Model {
 /* Reads the files that the scene names and builds everything. On bad input NULL, and the errors are in the
  * file's list. */
 Model *model_create(const Scene *scene, YamlFile *file);
+
+/* The same for any use, whatever the scene's job: its systems and states have all points as dofs, first of all. */
+Model *model_create_general(const Scene *scene, YamlFile *file);
 void model_destroy(Model *model);
 
 /* Puts the moved coordinates where they are at that time, a part of the way (0..1) from where x has them. */

@@ -111,6 +111,9 @@ typedef struct BodyOps {
     /* Held coordinates where they are at that time, a part of the way (0..1) from where x has them. */
     bool (*move)(const struct Model *model, double time, double part, double *x, Error *err);
 
+    /* Its energies over its dofs, prepared: of statics, or with inertia. The caller's; the model outlives it. */
+    System *(*system)(const struct Model *model, bool motion);
+
     /* All points held: what is left relaxes in a given pose. The caller's; may be NULL. */
     System *(*pose_system)(const struct Model *model);
 

@@ -193,13 +193,18 @@ static void make_states(Model *model, const RodScene *scene, bool hanging, const
     rod_places(rod, &turns, x, turns.nodes, rm->natural);
 }
 
+static System *make_system(const Model *model, bool motion)
+{
+    const RodModel *rm = model->self;
+    return rod_system(rm->rod, rm->young, motion);
+}
+
 static void make_systems(Model *model, bool hanging, bool motion)
 {
     RodModel *rm = model->self;
     for (int k = 0; k < model->case_count; k++) {
         Case *c = &model->cases[k];
-        case_start(c, hanging ? rod_hanging_system(rm->rod) : rod_system(rm->rod, rm->young, motion),
-                   model->x);
+        case_start(c, hanging ? rod_hanging_system(rm->rod) : make_system(model, motion), model->x);
     }
 }
 
@@ -213,7 +218,7 @@ static void set_model(Model *model)
     model->flux_density = rod->flux_density;
     model->field_scale = rod->field_scale;
     model->fields = &rod->fields;
-    model->moves = rm->held && model->job == &job_equilibrium;
+    model->moves = rm->held && model->job == &job_equilibrium && !model->general;
 }
 
 /* Cases and states. All fields are known once the cases are: with one that varies in space, no rod is only
@@ -230,8 +235,8 @@ static bool fill_cases(Model *model, const Scene *scene, const Build *b)
     ok = model_put_flux(model, b, "flux_density", &scene->flux_density, p) && ok;
     if (ok && rm->curves) take_curve(rm, rod_scene(scene), p, curve);
     ok = ok && model_cases(model, b, scene, p, room);
-    bool hanging = model->job == &job_equilibrium && rod->start == ROD_CLAMPED && rod->end == ROD_FREE &&
-                   rod->fields.count == 0;
+    bool hanging = !model->general && model->job == &job_equilibrium && rod->start == ROD_CLAMPED &&
+                   rod->end == ROD_FREE && rod->fields.count == 0;
     if (ok) make_states(model, rod_scene(scene), hanging, p, curve);
     if (ok && rm->held && !model->moves) ok = settle(model, b, p);
     if (ok) make_systems(model, hanging, motion);
@@ -330,6 +335,7 @@ static const BodyOps ops = {
     .put_vectors = put_vectors,
     .select = select_part,
     .move = move,
+    .system = make_system,
     .add_static = rod_add_static,
     .add_state = rod_add_state,
     .add_final = rod_add_final,

@@ -179,6 +179,11 @@ static bool read_pose(const Build *b, const PoseScene *pose, double *x)
     return ok;
 }
 
+static System *make_system(const Model *model, bool motion)
+{
+    return motion ? shell_dynamic_system(model->self) : shell_system(model->self);
+}
+
 /* Systems last: fields and what is held are known by then. An equilibrium needs forces in balance. */
 static bool finish_cases(Model *model, const Build *b)
 {
@@ -186,8 +191,7 @@ static bool finish_cases(Model *model, const Build *b)
     for (int k = 0; ok && k < model->case_count; k++) {
         Case *c = &model->cases[k];
         Error err;
-        case_start(c, model->job->motion ? shell_dynamic_system(model->self) : shell_system(model->self),
-                   model->x);
+        case_start(c, make_system(model, model->job->motion), model->x);
         system_accept(c->sys, c->state.x, c->state.memory);
         for (int s = 0; ok && model->job->rest && s < c->stage_count; s++)
             ok = rigid_check_force(model->self, c->stages[s].p, &err) ||
@@ -304,6 +308,7 @@ static const BodyOps ops = {
     .masses = masses,
     .smoothness = smoothness,
     .move = move,
+    .system = make_system,
     .pose_system = pose_system,
     .add_static = shell_add_static,
     .add_frame = shell_add_frame,
