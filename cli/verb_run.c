@@ -5,14 +5,11 @@
 #include "cli/say.h"
 #include "cli/verb.h"
 #include "io/path.h"
-#include "io/result.h"
 #include "job/outputs.h"
 #include "job/record.h"
-#include "solve/kernels.h"
 #include "view/show.h"
 #include <stdio.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 enum { THREADS_MAX = 64 };
@@ -96,12 +93,12 @@ static bool parse(int argc, char **argv, RunOptions *o, int *code)
 
 /* ---- The run ---- */
 
-static bool draw(Run *run, Error *err)
+static bool draw(const Scene *scene, const Host *host, const char *result, Error *err)
 {
-    char *picture = outputs_picture(run->scene, run->result);
+    char *picture = outputs_picture(scene, result);
     ShowDef def = show_default();
-    bool ok = show_result(run->result, picture, &def, err) == SHOW_DONE;
-    if (ok) host_say(run->host, "picture: %s", picture);
+    bool ok = show_result(result, picture, &def, err) == SHOW_DONE;
+    if (ok) host_say(host, "picture: %s", picture);
     mem_free(picture);
     return ok || error_prefix(err, "no picture");
 }
@@ -113,44 +110,6 @@ static int fail(const RunOptions *options, int code, const char *sentence)
     return verb_fail(code, sentence);
 }
 
-static int do_job(Run *run, const RunOptions *options)
-{
-    Error err;
-    RunStatus status = record_run(run, options->resume, &err);
-    if (status == RUN_CANNOT_WRITE || status == RUN_REFUSED) return fail(options, status, err.text);
-    bool drawn = options->no_picture || run->unsolved || draw(run, &err);
-    if (status == RUN_INTERRUPTED) host_say(run->host, "interrupted; all is saved: run again with --resume");
-    if (drawn) return status;
-    return fail(options, status == RUN_INTERRUPTED ? RUN_INTERRUPTED : RUN_CANNOT_WRITE, err.text);
-}
-
-static bool is_folder(const char *path)
-{
-    struct stat info;
-    size_t length = strlen(path);
-    return length == 0 || path[length - 1] == '/' || (stat(path, &info) == 0 && S_ISDIR(info.st_mode));
-}
-
-/* A folder where a file is to be written is refused before hours of work, not after. */
-static bool check_output(const char *output, const char *result, Error *err)
-{
-    if (output && is_folder(output))
-        return error_set(err, "the output '%s' is a folder; give the name of a result in it", output);
-    if (is_folder(result))
-        return error_set(err, "the result '%s' is a folder; give another name by -o", result);
-    return true;
-}
-
-static void warn_sidecar(const Run *run)
-{
-    if (result_has_sidecar(run->result)) return;
-    host_warn(
-        run->host,
-        "'%s': no .xdmf (for ParaView 5.11) is written beside it, since XDMF cannot name this file: a name "
-        "without : and |, control characters, and blanks at its ends can be",
-        run->result);
-}
-
 static int run_model(const RunOptions *options, const Scene *scene, Model *model)
 {
     Error err;
@@ -158,25 +117,26 @@ static int run_model(const RunOptions *options, const Scene *scene, Model *model
     Host host = progress_host(&progress);
     char *name =
         options->output ? path_without_ending(options->output, ".vtkhdf") : path_base_name(options->scene);
-    char *result = mem_format("%s.vtkhdf", name), *journal = mem_format("%s.run", name);
-    Run run = {.scene = scene,
-               .model = model,
-               .host = &host,
-               .result = result,
-               .threads = kernels_reserve(options->threads)}; /* the same numbers come out */
-    JournalMode mode = options->resume ? JOURNAL_RESUME : options->force ? JOURNAL_FORCE : JOURNAL_NEW;
-    if (check_output(options->output, result, &err) &&
-        outputs_check(scene, options->scene, result, !options->no_picture, &err))
-        run.journal = journal_open(journal, mode, &err);
-    if (run.journal) warn_sidecar(&run);
-    run_share_threads(&run, 1);
-    int code = run.journal ? do_job(&run, options) : fail(options, RUN_CANNOT_WRITE, err.text);
-    if (run.journal && !journal_close(run.journal, &err) && code != RUN_CANNOT_WRITE)
-        code = fail(options, RUN_CANNOT_WRITE, err.text);
-    run_release_threads(&run);
+    char *result = mem_format("%s.vtkhdf", name);
+    RecordDef def = {.scene = scene,
+                     .model = model,
+                     .host = &host,
+                     .path = options->scene,
+                     .name = name,
+                     .journal = options->resume  ? JOURNAL_RESUME
+                                : options->force ? JOURNAL_FORCE
+                                                 : JOURNAL_NEW,
+                     .threads = options->threads,
+                     .picture = !options->no_picture};
+    bool drawable;
+    int code = record_run(&def, &drawable, &err);
+    bool failed = code == RUN_CANNOT_WRITE || code == RUN_REFUSED,
+         drawn = failed || !drawable || options->no_picture || draw(scene, &host, result, &err);
+    if (code == RUN_INTERRUPTED) host_say(&host, "interrupted; all is saved: run again with --resume");
+    if (failed || !drawn)
+        code = fail(options, drawn || code == RUN_INTERRUPTED ? code : RUN_CANNOT_WRITE, err.text);
     mem_free(name);
     mem_free(result);
-    mem_free(journal);
     return code;
 }
 

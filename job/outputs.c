@@ -68,12 +68,12 @@ static bool check_file(const char *path, Error *err)
 
 bool outputs_check_source(const Scene *scene, const char *input, const char *output, Error *err)
 {
-    if (replace_is_same(output, input))
+    if (input && replace_is_same(output, input))
         return error_set(err, "'%s' is to be written, but it is read here; give another name", output);
     return !scene || !is_source(scene, output) ||
            error_set(
                err,
-               "'%s' is to be written, but the scene is made of it; give another name by -o or in `output`",
+               "'%s' is to be written, but the scene is made of it; give another name, by -o or in `output`",
                output);
 }
 
@@ -103,7 +103,7 @@ static bool check_iterations(const Scene *scene, const char *path, const char *b
 {
     if (!scene_body(scene)->ops->write || scene->output.every == 0) return true;
     const char *lost =
-        is_iteration(path, base) ? path : yaml_find_file(scene_table(), scene, is_iteration, base);
+        path && is_iteration(path, base) ? path : yaml_find_file(scene_table(), scene, is_iteration, base);
     for (int k = 0; !lost && k < FILES; k++)
         if (files[k].path && is_iteration(files[k].path, base)) lost = files[k].path;
     return !lost ||

@@ -4,10 +4,10 @@
 #include "job/run.h"
 
 /* Can they be written, the picture if it is wanted, and is nothing lost by it: each a file of its own, none
- * of them the scene of that path or a file that it names? Refused before the work, not after it. */
+ * of them the scene of that path (NULL: of none) or a file that it names? Refused before the work, not after it. */
 bool outputs_check(const Scene *scene, const char *path, const char *result, bool picture, Error *err);
 
-/* False and a sentence where what is to be written is the verb's input, or one of the files that the scene names
+/* False and a sentence where what is to be written is the input (NULL: there is none), or one of the files that the scene names
  * (NULL: none). */
 bool outputs_check_source(const Scene *scene, const char *input, const char *output, Error *err);
 

@@ -4,7 +4,9 @@
 #include "job/inputs.h"
 #include "job/outputs.h"
 #include "job/recall.h"
+#include "solve/kernels.h"
 #include <string.h>
+#include <sys/stat.h>
 
 /* ---- The journal's beginning ---- */
 
@@ -120,7 +122,33 @@ static bool write_result(Run *run, bool finished, Error *err)
 
 /* ---- The whole ---- */
 
-RunStatus record_run(Run *run, bool resume, Error *err)
+static bool is_folder(const char *path)
+{
+    struct stat info;
+    size_t length = strlen(path);
+    return length == 0 || path[length - 1] == '/' || (stat(path, &info) == 0 && S_ISDIR(info.st_mode));
+}
+
+/* A folder where a file is to be written is refused before hours of work, not after. */
+static bool check_output(const char *name, const char *result, Error *err)
+{
+    if (is_folder(name))
+        return error_set(err, "the output '%s' is a folder; give the name of a result in it", name);
+    if (is_folder(result)) return error_set(err, "the result '%s' is a folder; give another name", result);
+    return true;
+}
+
+static void warn_sidecar(const Run *run)
+{
+    if (result_has_sidecar(run->result)) return;
+    host_warn(
+        run->host,
+        "'%s': no .xdmf (for ParaView 5.11) is written beside it, since XDMF cannot name this file: a name "
+        "without : and |, control characters, and blanks at its ends can be",
+        run->result);
+}
+
+static RunStatus run_job(Run *run, bool resume, Error *err)
 {
     RunStatus status = begin(run, resume, err);
     if (status == RUN_DONE) status = job_run(run, err);
@@ -128,4 +156,37 @@ RunStatus record_run(Run *run, bool resume, Error *err)
     if (!write_result(run, status != RUN_INTERRUPTED, err)) return RUN_CANNOT_WRITE;
     host_say(run->host, "result: %s", run->result);
     return outputs_write(run, err) ? status : RUN_CANNOT_WRITE;
+}
+
+static RunStatus open_and_run(const RecordDef *def, Run *run, Error *err)
+{
+    char *journal = mem_format("%s.run", def->name);
+    RunStatus status = RUN_CANNOT_WRITE;
+    if (check_output(def->name, run->result, err) &&
+        outputs_check(def->scene, def->path, run->result, def->picture, err))
+        run->journal = journal_open(def->in_memory ? NULL : journal, def->journal, err);
+    if (run->journal) {
+        warn_sidecar(run);
+        run_share_threads(run, 1);
+        status = run_job(run, def->journal == JOURNAL_RESUME, err);
+        run_release_threads(run);
+        Error last;
+        if (!journal_close(run->journal, status == RUN_CANNOT_WRITE ? &last : err)) status = RUN_CANNOT_WRITE;
+    }
+    mem_free(journal);
+    return status;
+}
+
+RunStatus record_run(const RecordDef *def, bool *drawable, Error *err)
+{
+    char *result = mem_format("%s.vtkhdf", def->name);
+    Run run = {.scene = def->scene,
+               .model = def->model,
+               .host = def->host,
+               .result = result,
+               .threads = kernels_reserve(def->threads)}; /* the same numbers come out */
+    RunStatus status = open_and_run(def, &run, err);
+    *drawable = !run.unsolved;
+    mem_free(result);
+    return status;
 }

@@ -2,7 +2,19 @@
 #pragma once
 #include "job/run.h"
 
-/* Begins the run's journal, or goes on with the run that it holds (resume): only the keys that its job leaves free may
- * have changed, and no file. Runs the job, writes the result and the further files that the scene names. On
- * RUN_REFUSED and RUN_CANNOT_WRITE err says why. */
-RunStatus record_run(Run *run, bool resume, Error *err);
+typedef struct RecordDef {
+    const Scene *scene;
+    Model *model;
+    const Host *host;
+    const char *path; /* of the scene's file, which no output may replace; NULL: it has none */
+    const char *name; /* of NAME.vtkhdf, NAME.run and the further files that the scene names */
+    JournalMode
+        journal;    /* JOURNAL_RESUME: only the keys that the job leaves free may have changed, and no file */
+    bool in_memory; /* the journal, which then is lost with an interruption                */
+    bool picture;   /* one is to be drawn of the result: can it be written?                */
+    int threads;    /* 1 to 64 */
+} RecordDef;
+
+/* Begins the journal, or goes on with the run that it holds; runs the job, writes the result and the further files. On
+ * RUN_REFUSED and RUN_CANNOT_WRITE err says why. *drawable: the result has something that a picture could show. */
+RunStatus record_run(const RecordDef *def, bool *drawable, Error *err);
