@@ -6,6 +6,7 @@
 #include "shell/terms.h"
 #include "solve/kinetic.h"
 #include "solve/lumped.h"
+#include "surface/magnetic.h"
 
 /* Of D, for bodies with free rigid motions: decides nothing physical, drifts less than 1e-7 of the size
  * (docs/newton.md). */
@@ -139,6 +140,23 @@ void shell_vertex_mass(const Shell *shell, double *mass)
     for (int f = 0; f < mesh->face_count; f++)
         for (int i = 0; i < 3; i++)
             mass[mesh->faces[f][i]] += shell->density * shell->thickness * mesh->rest_area[f] / 3;
+}
+
+Term shell_magnetic_term(const Shell *shell)
+{
+    const Mesh *mesh = shell->mesh;
+    double *volume = mem_alloc((size_t)mesh->face_count, sizeof *volume);
+    for (int f = 0; f < mesh->face_count; f++) volume[f] = mesh->rest_area[f] * shell->thickness;
+    Term term = magnetic_surface_term(&(MagneticSurfaceDef){.face_count = mesh->face_count,
+                                                            .faces = mesh->faces,
+                                                            .rest = mesh->rest,
+                                                            .volume = volume,
+                                                            .magnetization = shell->magnetization,
+                                                            .flux_density = shell->flux_density,
+                                                            .field_scale = shell->field_scale,
+                                                            .fields = &shell->fields});
+    mem_free(volume);
+    return term;
 }
 
 Term shell_gravity_term(const Shell *shell)
