@@ -29,10 +29,11 @@ static double rest_angle(const Mesh *mesh, int edge)
         .angle[0];
 }
 
-Shell *shell_create(Mesh *mesh)
+Shell *shell_create(Mesh *mesh, const FluxFields *fields)
 {
     Shell *shell = mem_alloc(1, sizeof *shell);
     shell->mesh = mesh;
+    if (fields) shell->fields = *fields;
     shell->rest_angle = mem_alloc((size_t)mesh->edge_count, sizeof(double));
     for (int e = 0; e < mesh->edge_count; e++) shell->rest_angle[e] = rest_angle(mesh, e);
     shell->fixed = mem_alloc(3 * (size_t)mesh->vertex_count, sizeof(bool));
@@ -45,7 +46,7 @@ Shell *shell_create(Mesh *mesh)
     shell->gravity = params_add(params, "gravity", "m/s^2", 1, 3, true);
     shell->load = params_add(params, "load", "N", mesh->vertex_count, 3, true);
     shell->damping = params_add(params, "damping", "N s/m", 1, 1, false);
-    shell->field_scale = params_add(params, "field_scale", "", 0, 1, true);
+    shell->field_scale = params_add(params, "field_scale", "", shell->fields.count, 1, true);
     return shell;
 }
 
@@ -54,6 +55,7 @@ void shell_destroy(Shell *shell)
     if (!shell) return;
     mesh_destroy(shell->mesh);
     flux_fields_clear(&shell->fields);
+    params_clear(&shell->params);
     mem_free(shell->rest_angle);
     mem_free(shell->fixed);
     mem_free(shell->clamped);
