@@ -46,8 +46,9 @@ static Drawing *drawing_of(double pen, const char *start, const char *method)
         "margin: 0}, pen: %.4g mm, start: %s, method: %s, rounds: 0}\n",
         SOURCE_DIR, 100 * pen, start, method);
     YamlFile *file = yaml_parse("bench_draw.yaml", text, strlen(text));
-    Drawing *drawing = yaml_load(file, &scene_table, &scene) ? drawing_create(scene.spline, file) : NULL;
-    yaml_clear(&scene_table, &scene);
+    Drawing *drawing =
+        yaml_load(file, scene_table(), &scene) ? drawing_create(spline_scene(&scene), file) : NULL;
+    yaml_clear(scene_table(), &scene);
     yaml_destroy(file);
     return drawing;
 }

@@ -3,9 +3,9 @@
  * buckle sideways under their weight; stiff sheets hang from an edge or a corner. */
 #include "base/memory.h"
 #include "bench/bench.h"
-#include "surface/shapes.h"
 #include "shell/shell.h"
 #include "solve/ramp.h"
+#include "surface/shapes.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

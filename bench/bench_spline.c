@@ -3,9 +3,9 @@
 #include "base/memory.h"
 #include "base/random.h"
 #include "bench/bench.h"
+#include "solve/system.h"
 #include "spline/relax.h"
 #include "spline/terms.h"
-#include "solve/system.h"
 #include <math.h>
 #include <stdio.h>
 

@@ -2,8 +2,8 @@
 #include "base/clock.h"
 #include "base/memory.h"
 #include "bench/bench.h"
-#include "model/model.h"
 #include "io/result.h"
+#include "model/model.h"
 #include "optim/trajectory_adjoint.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,10 +12,10 @@ enum { PRODUCTS = 20 };
 
 static TrajectoryProblem problem_of(const Model *model, const Scene *scene)
 {
-    const ModelCase *c = &model->cases[0];
+    const Case *c = &model->cases[0];
     return (TrajectoryProblem){.sys = c->sys,
                                .design = &model->design,
-                               .params = &model->shell->params,
+                               .params = model->params,
                                .controls = &model->control,
                                .objectives = c->objectives,
                                .control_count = 1,
@@ -59,11 +59,11 @@ static void adjoint(const char *name, const char *assignment)
     YamlFile *file = yaml_read(path);
     yaml_override(file, assignment);
     yaml_override(file, "design.unknowns.flux_density.noise=5 mT");
-    Model *model = yaml_load(file, &scene_table, &scene) ? model_create(&scene, file) : NULL;
+    Model *model = yaml_load(file, scene_table(), &scene) ? model_create(&scene, file) : NULL;
     if (!model) bench_fail("%s is refused: %s check says why", path, PROGRAM);
     sweeps(model, &scene, name);
     model_destroy(model);
-    yaml_clear(&scene_table, &scene);
+    yaml_clear(scene_table(), &scene);
     yaml_destroy(file);
 }
 

@@ -1,6 +1,5 @@
 #include "cli/verb.h"
 #include "base/memory.h"
-#include "model/advice.h"
 #include "cli/say.h"
 #include "solve/kernels.h"
 #include <stdio.h>
@@ -24,7 +23,7 @@ bool verb_load_scene(const char *path, const Settings *settings, YamlFile **file
     *scene = (Scene){0};
     *file = yaml_read(path);
     for (int k = 0; settings && k < settings->count; k++) yaml_override(*file, settings->text[k]);
-    if (yaml_load(*file, &scene_table, scene)) return true;
+    if (yaml_load(*file, scene_table(), scene)) return true;
     print_report(*file);
     return false;
 }
@@ -35,22 +34,9 @@ Model *verb_build_model(const Scene *scene, YamlFile *file)
     Model *model = model_create(scene, file);
     if (!model)
         print_report(file);
-    else
-        advise(model, scene);
+    else if (model->body->ops->advise)
+        model->body->ops->advise(model, scene);
     for (int k = 0; model && k < model->report.warning_count; k++)
         say(stderr, "warning: %s", model->report.warnings[k]);
     return model;
-}
-
-char *verb_base_name(const char *path)
-{
-    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path, *dot = strrchr(name, '.');
-    return mem_format("%.*s", (int)(dot && dot > name ? dot - name : (long)strlen(name)), name);
-}
-
-char *verb_without_ending(const char *path, const char *ending)
-{
-    size_t length = strlen(path), cut = strlen(ending);
-    bool has = length > cut && !strcmp(path + length - cut, ending);
-    return mem_format("%.*s", (int)(has ? length - cut : length), path);
 }

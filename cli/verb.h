@@ -3,8 +3,8 @@
 #pragma once
 #include "base/error.h"
 #include "cli/options.h"
-#include "job/run.h"
 #include "io/result.h"
+#include "job/run.h"
 
 int verb_run(int argc, char **argv);
 int verb_check(int argc, char **argv);
@@ -25,8 +25,3 @@ bool verb_load_scene(const char *path, const Settings *settings, YamlFile **file
 
 /* The model of a scene; NULL after printing what is wrong. Warnings about the mesh are printed. */
 Model *verb_build_model(const Scene *scene, YamlFile *file);
-
-/* "dir/name.ext" without its folder and ending; "dir/name.ext" without that ending, if it has it. The caller
- * frees. */
-char *verb_base_name(const char *path);
-char *verb_without_ending(const char *path, const char *ending);

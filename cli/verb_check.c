@@ -1,14 +1,9 @@
 /* slender check: everything that can be said about a scene without running it. */
 #include "base/memory.h"
 #include "base/random.h"
-#include "base/vec3.h"
-#include "model/advice.h"
-#include "spline/front/drawing.h"
-#include "job/job.h"
-#include "job/predict.h"
-#include "rod/front/rod_model.h"
 #include "cli/say.h"
 #include "cli/verb.h"
+#include "job/predict.h"
 #include "solve/check.h"
 #include "solve/kernels.h"
 #include <math.h>
@@ -38,16 +33,6 @@ static void report_cost(const Model *model, const Scene *scene)
            predict_seconds(&r), r.start, r.iterations, r.end, 1e-6 * r.bytes);
 }
 
-/* An edge's or element's length, a radian, or of a rod's multipliers a force. */
-static double dof_size(const Model *model, int dof)
-{
-    if (model->shell) return dof < 3 * model->point_count ? advice_mean_edge(model->shell->mesh) : 1;
-    const RodLayout *layout = &model->rod->layout;
-    const Rod *rod = model->rod->rod;
-    if (layout->position >= 0 && dof < layout->turn) return rod_element_length(rod);
-    return layout->multiplier >= 0 && dof >= layout->multiplier ? rod->unit.mass * rod->length : 1;
-}
-
 /* The parameters of a case, at random where a whole block is 0: no term is idle. The caller frees them. */
 static double *params_at_work(const Params *params, const double *p, Random *random)
 {
@@ -71,84 +56,41 @@ static bool print_errors(const char *name, TermError error)
     return right;
 }
 
-/* Of the first case, near its start: moved by a tenth of a cell's length, angles by 0.3 rad; of a rod not the references
- * of its turns. */
+/* Of the first case, near its start: points moved by a tenth of a cell's length, angles by 0.3 rad. */
 static bool check_derivatives(const Model *model, const Scene *scene)
 {
-    const ModelCase *c = &model->cases[0];
-    bool moves = scene->job == JOB_SIMULATE || scene->job == JOB_TRAJECTORY;
+    const Case *c = &model->cases[0];
     int dofs = system_dof_count(c->sys), positions = system_position_count(c->sys);
     State state = state_clone(&c->state);
-    double *x = state.x, size[TERM_MAX_DOF];
+    double *x = state.x, *sizes = mem_alloc((size_t)dofs, sizeof *sizes), size[TERM_MAX_DOF];
     Random random = random_seed(1);
-    for (int i = 0; i < (model->shell ? dofs : model->rod->layout.reference); i++)
-        x[i] += (i < positions ? 0.1 : 0.3) * dof_size(model, i) * random_signed(&random);
+    model->body->ops->dof_sizes(model, sizes);
+    for (int i = 0; i < dofs; i++)
+        if (sizes[i] > 0) x[i] += (i < positions ? 0.1 : 0.3) * sizes[i] * random_signed(&random);
     double *p = params_at_work(model->params, c->stages[0].p, &random);
     Point at = state_point(&state, p);
-    if (moves) at.dt = scene->time.step;
+    if (model->job->motion) at.dt = scene->time.step;
     bool ok = true;
     system_accept(c->sys, x, state.memory);
     for (int t = 0; t < system_term_count(c->sys); t++) {
         const Term *term = system_term(c->sys, t);
         int dof[TERM_MAX_DOF];
         term->ops->dofs(term->self, 0, dof);
-        for (int i = 0; i < term->ops->size(term->self); i++) size[i] = dof_size(model, dof[i]);
+        for (int i = 0; i < term->ops->size(term->self); i++) size[i] = sizes[dof[i]];
         Point own = system_term_point(c->sys, t, &at);
         ok = print_errors(term->ops->name, check_term(term, model->params, &own, dofs, size, &random)) && ok;
     }
+    mem_free(sizes);
     mem_free(p);
     state_destroy(&state);
     return ok;
 }
 
-static void report_shell(const Model *model, const Scene *scene)
-{
-    const Mesh *mesh = model->shell->mesh;
-    int held = 0;
-    for (int i = 0; i < 3 * mesh->vertex_count; i++) held += model->shell->fixed[i];
-    printf("%d vertices, %d faces, %d edges, %d parts; %d load cases; %d unknowns of motion, %d coordinates "
-           "held\n",
-           mesh->vertex_count, mesh->face_count, mesh->edge_count, mesh->component_count, model->case_count,
-           system_free_count(model->cases[0].sys), held);
-    if (system_base_shift(model->cases[0].sys) > 0) printf("the body has free rigid motions\n");
-    double length = advice_bending_length(model, scene);
-    if (isfinite(length))
-        printf("magnetic bending length: %.3g m, %.3g cells\n", length, length / advice_mean_edge(mesh));
-}
-
-static void report_rod(const Model *model)
-{
-    const RodModel *rm = model->rod;
-    printf("%d rods of %d elements, up to %.4g m long\n", rm->strand_count > 1 ? rm->strand_count : 1,
-           model->point_count - 1, rod_model_longest(rm));
-    if (model->case_count)
-        printf("%d load cases; %d unknowns of motion\n", model->case_count,
-               system_free_count(model->cases[0].sys));
-}
-
-static void report_drawing(const Drawing *d)
-{
-    const SplinePage *page = &d->page;
-    printf("%d pen%s; %.4g x %.4g mm within margins of %.4g mm\n", d->pen_count, d->pen_count == 1 ? "" : "s",
-           1e3 * page->unit * page->width, 1e3 * page->unit * page->height, 1e3 * page->left);
-    for (int k = 0; k < d->part_count; k++) {
-        const DrawingPart *part = &d->parts[k];
-        SplineGrid tone = spline_grid(&part->tone);
-        double mean = spline_grid_mean(&tone, 0);
-        say(stdout, "%s, %.3g mm: covers %.3g of the page, %.3g m of ink, about %.0f segments",
-            d->pens[part->pen].name, 1e3 * page->unit * part->page.pen, mean,
-            page->unit * mean / part->page.pen, drawing_segments(part));
-    }
-}
-
 static bool report(const Model *model, const Scene *scene, bool derivatives)
 {
-    if (model->drawing)
-        report_drawing(model->drawing);
-    else if (model->rod)
-        report_rod(model);
-    else
-        report_shell(model, scene);
+    char *lines = model->body->ops->describe(model, scene);
+    say_lines(stdout, lines);
+    mem_free(lines);
     if (scene->design) printf("%d design unknowns\n", model->design.size);
     if (!model->case_count && derivatives)
         printf("derivatives: there is no load case whose terms could be checked\n");
@@ -179,7 +121,7 @@ int verb_check(int argc, char **argv)
     Model *model = verb_load_scene(path, &settings, &file, &scene) ? verb_build_model(&scene, file) : NULL;
     code = !model ? RUN_REFUSED : report(model, &scene, derivatives) ? RUN_DONE : RUN_NOT_CONVERGED;
     model_destroy(model);
-    yaml_clear(&scene_table, &scene);
+    yaml_clear(scene_table(), &scene);
     yaml_destroy(file);
     settings_clear(&settings);
     return code;

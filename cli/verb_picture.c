@@ -1,8 +1,9 @@
 /* slender picture: a result as PNG, SVG or PDF, or in motion as animated WebP. */
 #include "base/memory.h"
-#include "cli/outputs.h"
 #include "cli/verb.h"
+#include "io/path.h"
 #include "io/result.h"
+#include "job/outputs.h"
 #include "model/stored.h"
 #include "view/show.h"
 #include <limits.h>
@@ -50,7 +51,7 @@ static char *picture_name(const Scene *scene, const char *path, const char *outp
 {
     if (output) return mem_text(output);
     if (!animation) return outputs_picture(scene, path);
-    char *base = verb_without_ending(path, ".vtkhdf"), *name = mem_format("%s.webp", base);
+    char *base = path_without_ending(path, ".vtkhdf"), *name = mem_format("%s.webp", base);
     mem_free(base);
     return name;
 }
@@ -68,7 +69,7 @@ static RunStatus prepare(const char *path, const char *output, bool animation, c
     *name = picture_name(&scene, path, output, animation);
     bool ok = outputs_check_source(&scene, path, *name, err);
     if (!ok) mem_free(*name);
-    yaml_clear(&scene_table, &scene);
+    yaml_clear(scene_table(), &scene);
     yaml_destroy(file);
     return ok ? RUN_DONE : RUN_CANNOT_WRITE;
 }
@@ -110,7 +111,8 @@ int verb_picture(int argc, char **argv)
         def.seconds = seconds;
         if (!width) def.width = 800; /* pixels; a page of paper's worth is too much for a moving one */
     }
-    status = show_result(path, picture, &def, &err);
+    ShowStatus shown = show_result(path, picture, &def, &err);
     mem_free(picture);
-    return status == RUN_DONE ? RUN_DONE : verb_fail(status, err.text);
+    return shown == SHOW_DONE ? RUN_DONE
+                              : verb_fail(shown == SHOW_HAS_NOT ? RUN_REFUSED : RUN_CANNOT_WRITE, err.text);
 }

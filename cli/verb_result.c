@@ -1,15 +1,15 @@
 /* slender info and slender export: what is in a result, or in the journal of a running job. */
 #include "base/memory.h"
 #include "base/plain.h"
-#include "cli/outputs.h"
 #include "cli/say.h"
 #include "cli/verb.h"
 #include "io/mesh_file.h"
 #include "io/replace.h"
 #include "io/result.h"
 #include "io/table.h"
+#include "job/outputs.h"
 #include "model/stored.h"
-#include "spline/front/drawn.h"
+#include "spline/drawn.h"
 #include <limits.h>
 #include <math.h>
 #include <stdio.h>
@@ -253,7 +253,7 @@ static bool check_source(Result *result, const char *input, const char *output, 
     YamlFile *file;
     stored_result_scene(result, &file, &scene);
     bool ok = outputs_check_source(&scene, input, output, err);
-    yaml_clear(&scene_table, &scene);
+    yaml_clear(scene_table(), &scene);
     yaml_destroy(file);
     return ok;
 }
@@ -304,7 +304,7 @@ static bool result_def(Journal *journal, const char *input, const char *output, 
     if (!text.data) return true;
     if (stored_scene(&text, &file, &scene)) def->double_frames = scene.output.precision == OUTPUT_DOUBLE;
     bool ok = outputs_check_source(&scene, input, output, err);
-    yaml_clear(&scene_table, &scene);
+    yaml_clear(scene_table(), &scene);
     yaml_destroy(file);
     array_clear(&text);
     return ok;

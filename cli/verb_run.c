@@ -1,15 +1,15 @@
 /* slender run: scene -> journal -> result and picture. */
 #include "base/memory.h"
-#include "job/inputs.h"
-#include "job/job.h"
 #include "cli/options.h"
-#include "cli/outputs.h"
-#include "job/recall.h"
+#include "cli/progress.h"
 #include "cli/say.h"
-#include "view/show.h"
 #include "cli/verb.h"
+#include "io/path.h"
 #include "io/result.h"
+#include "job/outputs.h"
+#include "job/record.h"
 #include "solve/kernels.h"
+#include "view/show.h"
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -94,141 +94,14 @@ static bool parse(int argc, char **argv, RunOptions *o, int *code)
     return false;
 }
 
-/* ---- The journal's beginning ---- */
-
-/* Keys that a resumed run may change: how far it goes (a trajectory's steps are part of its problem), and
- * what it writes. */
-static const char *const free_keys[] = {
-    "design.iterations", "design.tolerance", "output.precision", "modes", "time.steps", NULL};
-static const char *const free_keys_trajectory[] = {"design.iterations", "design.tolerance",
-                                                   "output.precision", "modes", NULL};
-
-static const char *const free_keys_draw[] = {"output", "spline.rounds", "spline.order", "spline.plotter",
-                                             NULL};
-
-/* "a, b and c" */
-static char *list_of(const char *const *keys)
-{
-    char *list = mem_text(keys[0]);
-    for (int k = 1; keys[k]; k++) list = mem_join(list, keys[k + 1] ? ", " : " and ", keys[k]);
-    return list;
-}
-
-static const char *const *free_keys_of(int job)
-{
-    return job == JOB_TRAJECTORY ? free_keys_trajectory : job == JOB_DRAW ? free_keys_draw : free_keys;
-}
-
-/* The free keys, and those of files, which are told by their contents; one block. */
-static const char **ignored_keys(const char *const *free, char *const *files)
-{
-    size_t free_count = 0, count = 0;
-    while (free[free_count]) free_count++;
-    while (files[count]) count++;
-    const char **keys = mem_alloc(free_count + count + 1, sizeof *keys);
-    memcpy(keys, free, free_count * sizeof *keys);
-    memcpy(keys + free_count, files, count * sizeof *keys);
-    return keys;
-}
-
-/* `files`: keys whose paths need not be the same. */
-static bool check_scene(Journal *journal, int job, const char *scene, char *const *files, Error *err)
-{
-    const char *const *free = free_keys_of(job);
-    Array old;
-    if (!journal_get(journal, "meta", 0, "scene", &old, err)) return false;
-    const char **keys = ignored_keys(free, files);
-    char *difference = yaml_difference(old.data, scene, keys);
-    array_clear(&old);
-    mem_free(keys);
-    if (!difference) return true;
-    char *list = list_of(free);
-    error_set(err,
-              "the scene has changed since that run: %s is not the same; with --resume only %s may change",
-              difference, list);
-    mem_free(list);
-    mem_free(difference);
-    return false;
-}
-
-/* Is this the run that the journal holds: the same scene, made of the same files? */
-static bool check_resumed(Run *run, const char *scene, const char *inputs, Error *err)
-{
-    static char *const none[] = {NULL};
-    Array old;
-    if (!journal_find(run->journal, "meta", 0, "inputs", &old, err)) return false;
-    if (!old.data) { /* an older journal: files are told by their names */
-        if (*inputs)
-            progress_say(run->progress,
-                         "whether the files of the scene have changed since that run is not known");
-        return check_scene(run->journal, run->scene->job, scene, none, err);
-    }
-    char **keys = inputs_keys(run->scene);
-    bool ok = check_scene(run->journal, run->scene->job, scene, keys, err) &&
-              inputs_check(run->scene, old.data, inputs, err);
-    mem_free(keys);
-    array_clear(&old);
-    return ok;
-}
-
-/* What is known from the start, in the place of what an earlier part of the run has put there; its end is
- * none now. */
-static bool put_start(Run *run, const char *scene, const char *inputs, Error *err)
-{
-    Arrays statics = {0};
-    char *kernels = run_kernels(run->journal, err), *versions = kernels ? run_versions() : NULL;
-    if (!kernels) return false;
-    Array meta[] = {array_text("scene", scene), array_text("versions", versions),
-                    array_text("kernels", kernels), array_text("inputs", inputs)};
-    run->model->body->add_static(run->model, &statics);
-    bool ok = journal_replace(run->journal, "meta", 0, meta, *inputs ? 4 : 3, err) &&
-              journal_replace(run->journal, "final", 0, NULL, 0, err);
-    ok = arrays_replace(&statics, run->journal, "static", ok ? err : NULL) && ok;
-    mem_free(versions);
-    mem_free(kernels);
-    return ok && journal_set_finished(run->journal, false, err);
-}
-
-/* A run that goes on must be the one that the journal holds, with its frames; a new one only has to be put.
- */
-static RunStatus begin(Run *run, const RunOptions *options, Error *err)
-{
-    char *inputs = inputs_text(run->scene, err);
-    if (!inputs) return RUN_REFUSED;
-    char *scene = yaml_write(&scene_table, run->scene);
-    bool exact = run->scene->output.precision == OUTPUT_DOUBLE,
-         extended = options->resume && journal_is_finished(run->journal) && run->scene->job == JOB_SIMULATE;
-    RunStatus status = RUN_DONE;
-    if ((options->resume && !check_resumed(run, scene, inputs, err)) ||
-        (extended && !recall_frames(run->journal, run->result, exact, err)))
-        status = RUN_REFUSED;
-    else if (!put_start(run, scene, inputs, err))
-        status = RUN_CANNOT_WRITE;
-    mem_free(scene);
-    mem_free(inputs);
-    return status;
-}
-
-/* ---- The result ---- */
-
-static bool write_result(Run *run, const char *path, bool finished, Error *err)
-{
-    ResultDef def = {.double_frames = run->scene->output.precision == OUTPUT_DOUBLE};
-    uint32_t sum;
-    if (!journal_flush(run->journal, err) || !result_write(run->journal, path, def, &sum, err)) return false;
-    if (!finished) return true;
-    if (!recall_keep(run->journal, sum, err) || !journal_set_finished(run->journal, true, err)) return false;
-    bool made_again = run->scene->job == JOB_TRAJECTORY; /* from the best motion's states */
-    if (made_again || run->scene->job == JOB_SIMULATE) journal_forget(run->journal, "frame", NULL);
-    return true;
-}
+/* ---- The run ---- */
 
 static bool draw(Run *run, Error *err)
 {
     char *picture = outputs_picture(run->scene, run->result);
     ShowDef def = show_default();
-    bool ok = show_result(run->result, picture, &def, err) == RUN_DONE;
-    if (ok) progress_say(run->progress, "picture: %s", picture);
+    bool ok = show_result(run->result, picture, &def, err) == SHOW_DONE;
+    if (ok) host_say(run->host, "picture: %s", picture);
     mem_free(picture);
     return ok || error_prefix(err, "no picture");
 }
@@ -243,16 +116,10 @@ static int fail(const RunOptions *options, int code, const char *sentence)
 static int do_job(Run *run, const RunOptions *options)
 {
     Error err;
-    RunStatus status = begin(run, options, &err);
-    if (status == RUN_DONE) status = job_run(run, &err);
+    RunStatus status = record_run(run, options->resume, &err);
     if (status == RUN_CANNOT_WRITE || status == RUN_REFUSED) return fail(options, status, err.text);
-    if (!write_result(run, run->result, status != RUN_INTERRUPTED, &err))
-        return fail(options, RUN_CANNOT_WRITE, err.text);
-    progress_say(run->progress, "result: %s", run->result);
-    if (!outputs_write(run, &err)) return fail(options, RUN_CANNOT_WRITE, err.text);
     bool drawn = options->no_picture || run->unsolved || draw(run, &err);
-    if (status == RUN_INTERRUPTED)
-        progress_say(run->progress, "interrupted; all is saved: run again with --resume");
+    if (status == RUN_INTERRUPTED) host_say(run->host, "interrupted; all is saved: run again with --resume");
     if (drawn) return status;
     return fail(options, status == RUN_INTERRUPTED ? RUN_INTERRUPTED : RUN_CANNOT_WRITE, err.text);
 }
@@ -274,34 +141,34 @@ static bool check_output(const char *output, const char *result, Error *err)
     return true;
 }
 
-static void warn_sidecar(const RunOptions *options, const char *result)
+static void warn_sidecar(const Run *run)
 {
-    static const char words[] =
-        "no .xdmf (for ParaView 5.11) is written beside it, since XDMF cannot name this file: a name "
-        "without : and |, control characters, and blanks at its ends can be";
-    char *sentence = mem_format("'%s': %s", result, words);
-    progress_tell(options->mode, "warning", sentence);
-    say(stderr, "warning: %s", sentence);
-    mem_free(sentence);
+    if (result_has_sidecar(run->result)) return;
+    host_warn(
+        run->host,
+        "'%s': no .xdmf (for ParaView 5.11) is written beside it, since XDMF cannot name this file: a name "
+        "without : and |, control characters, and blanks at its ends can be",
+        run->result);
 }
 
 static int run_model(const RunOptions *options, const Scene *scene, Model *model)
 {
     Error err;
     Progress progress = progress_start(options->mode);
+    Host host = progress_host(&progress);
     char *name =
-        options->output ? verb_without_ending(options->output, ".vtkhdf") : verb_base_name(options->scene);
+        options->output ? path_without_ending(options->output, ".vtkhdf") : path_base_name(options->scene);
     char *result = mem_format("%s.vtkhdf", name), *journal = mem_format("%s.run", name);
     Run run = {.scene = scene,
                .model = model,
-               .progress = &progress,
+               .host = &host,
                .result = result,
                .threads = kernels_reserve(options->threads)}; /* the same numbers come out */
     JournalMode mode = options->resume ? JOURNAL_RESUME : options->force ? JOURNAL_FORCE : JOURNAL_NEW;
     if (check_output(options->output, result, &err) &&
         outputs_check(scene, options->scene, result, !options->no_picture, &err))
         run.journal = journal_open(journal, mode, &err);
-    if (run.journal && !result_has_sidecar(result)) warn_sidecar(options, result);
+    if (run.journal) warn_sidecar(&run);
     run_share_threads(&run, 1);
     int code = run.journal ? do_job(&run, options) : fail(options, RUN_CANNOT_WRITE, err.text);
     if (run.journal && !journal_close(run.journal, &err) && code != RUN_CANNOT_WRITE)
@@ -344,7 +211,7 @@ int verb_run(int argc, char **argv)
     tell_scene(&options, file, model);
     code = model ? run_model(&options, &scene, model) : RUN_REFUSED;
     model_destroy(model);
-    yaml_clear(&scene_table, &scene);
+    yaml_clear(scene_table(), &scene);
     yaml_destroy(file);
     settings_clear(&options.settings);
     return code;

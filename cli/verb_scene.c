@@ -1,7 +1,8 @@
 /* slender schema and slender mesh: what can be had from scenes without running them. */
 #include "base/memory.h"
-#include "cli/outputs.h"
 #include "cli/verb.h"
+#include "io/path.h"
+#include "job/outputs.h"
 #include <stdio.h>
 
 int verb_schema(int argc, char **argv)
@@ -14,7 +15,7 @@ int verb_schema(int argc, char **argv)
     const Option options[] = {{"manual", .value = &manual}};
     if (!options_parse(argc, argv, usage, options, 1, NULL, &code)) return code;
     char *text =
-        manual ? yaml_manual(&scene_table, "Scene files") : yaml_schema(&scene_table, "slender scene");
+        manual ? yaml_manual(scene_table(), "Scene files") : yaml_schema(scene_table(), "slender scene");
     fputs(text, stdout);
     mem_free(text);
     return RUN_DONE;
@@ -43,18 +44,17 @@ int verb_mesh(int argc, char **argv)
     YamlFile *file;
     Scene scene;
     Error err;
-    char *name = verb_base_name(scene_path), *path = output ? mem_text(output) : mem_format("%s.obj", name);
+    char *name = path_base_name(scene_path), *path = output ? mem_text(output) : mem_format("%s.obj", name);
     Model *model = verb_load_scene(scene_path, NULL, &file, &scene) ? verb_build_model(&scene, file) : NULL;
     code = RUN_REFUSED;
-    if (model && !model->shell)
+    if (model && !model->mesh)
         code = verb_fail(RUN_REFUSED, "the scene has no mesh");
     else if (model) {
-        bool ok = outputs_check_source(&scene, scene_path, path, &err) &&
-                  write_mesh(model->shell->mesh, path, &err);
+        bool ok = outputs_check_source(&scene, scene_path, path, &err) && write_mesh(model->mesh, path, &err);
         code = ok ? RUN_DONE : verb_fail(RUN_CANNOT_WRITE, err.text);
     }
     model_destroy(model);
-    yaml_clear(&scene_table, &scene);
+    yaml_clear(scene_table(), &scene);
     yaml_destroy(file);
     mem_free(name);
     mem_free(path);

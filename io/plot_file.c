@@ -1,8 +1,8 @@
 #include "io/plot_file.h"
 #include "base/cubic.h"
+#include "base/memory.h"
 #include "io/plot_text.h"
 #include "io/safe_file.h"
-#include "base/memory.h"
 #include <math.h>
 
 void plot_add_number(Text *text, double number, int decimals)

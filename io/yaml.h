@@ -16,10 +16,10 @@
  *
  *     YamlFile *file = yaml_read("scene.yaml");
  *     yaml_override(file, "shell.thickness=1 mm");                      // --set
- *     if (yaml_load(file, &scene_table, &scene) && scene.steps < 1)
+ *     if (yaml_load(file, scene_table(), &scene) && scene.steps < 1)
  *         yaml_refuse(file, "time.steps", "a trajectory takes at least one step");
  *     if (yaml_error_count(file)) ... yaml_report(file) ...
- *     yaml_clear(&scene_table, &scene);
+ *     yaml_clear(scene_table(), &scene);
  *     yaml_destroy(file);
  *
  * Refused input fills the file's list of errors, ALL of them in one go, each with its place and one sentence;

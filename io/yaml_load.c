@@ -1,6 +1,6 @@
 /* The tree to a struct, row by row. */
-#include "base/memory.h"
 #include "io/yaml_load.h"
+#include "base/memory.h"
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

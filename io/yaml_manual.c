@@ -1,8 +1,8 @@
 /* What a field table says of itself: JSON Schema for editors, the manual for readers, and a check for its
  * tests. */
 #include "base/memory.h"
-#include "io/yaml_private.h"
 #include "io/text.h"
+#include "io/yaml_private.h"
 #include <assert.h>
 #include <stdlib.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 /* The effective scene as text, and the comparison of two of them. */
 #include "base/memory.h"
-#include "io/yaml_private.h"
 #include "io/text.h"
+#include "io/yaml_private.h"
 #include <math.h>
 #include <string.h>
 

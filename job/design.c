@@ -1,7 +1,7 @@
 /* Quasi-static design: unknowns that bring all cases' equilibria near their targets. */
 #include "base/memory.h"
 #include "job/design_run.h"
-#include "job/job.h"
+#include "job/jobs.h"
 #include "optim/static_design.h"
 #include "solve/ramp.h"
 #include <math.h>
@@ -10,7 +10,6 @@
 
 typedef struct DesignJob {
     Run *run;
-    LoadCase *cases;
     StaticDesign *sd;
     CaseInfo *info;          /* [case] of the last evaluation */
     double *case_objectives; /* [case]                        */
@@ -92,8 +91,8 @@ static bool get_best(void *self, int slot, const double *u, bool *has, Error *er
 
 static Snapshot best_state(const DesignJob *job, int c)
 {
-    return (Snapshot){&job->run->model->cases[c], static_design_params(job->sd, c), *job->cases[c].state,
-                      NEWTON_CONVERGED};
+    const Case *best = &job->run->model->cases[c];
+    return (Snapshot){best, static_design_params(job->sd, c), best->state, NEWTON_CONVERGED};
 }
 
 static bool put_frame(void *self, int index, Error *err)
@@ -152,26 +151,15 @@ static void find_start(DesignJob *job, const double *u)
     run_newton(job->run, &def.newton);
     def.observer = run_observer(job->run);
     for (int c = 0; c < job->run->model->case_count; c++) {
-        LoadCase *load = &job->cases[c];
-        design_apply(&job->run->model->design, c, u, load->p);
+        Case *load = &job->run->model->cases[c];
+        double *p = load->stages[0].p;
+        design_apply(&job->run->model->design, c, u, p);
         if (load->objective_count)
-            ramp_solve(load->sys, job->run->model->params, &def, NULL, load->p, load->state);
+            ramp_solve(load->sys, job->run->model->params, &def, NULL, p, &load->state);
     }
 }
 
-static LoadCase *make_cases(Model *model)
-{
-    LoadCase *cases = mem_alloc((size_t)model->case_count, sizeof *cases);
-    for (int c = 0; c < model->case_count; c++) {
-        ModelCase *from = &model->cases[c];
-        cases[c] = (LoadCase){from->name,   from->sys,        from->stages[0].p,
-                              &from->state, from->objectives, from->objective_count,
-                              from->weight};
-    }
-    return cases;
-}
-
-RunStatus job_design(Run *run, Error *err)
+static RunStatus run_design(Run *run, Error *err)
 {
     static const DesignOps ops = {.evaluate = evaluate,
                                   .accept = accept,
@@ -184,7 +172,6 @@ RunStatus job_design(Run *run, Error *err)
     Model *model = run->model;
     size_t cases = (size_t)model->case_count;
     DesignJob job = {.run = run,
-                     .cases = make_cases(model),
                      .info = mem_alloc(cases, sizeof *job.info),
                      .case_objectives = mem_alloc(cases, sizeof *job.case_objectives)};
     double *u = mem_alloc((size_t)model->design.size, sizeof *u);
@@ -197,12 +184,25 @@ RunStatus job_design(Run *run, Error *err)
     run_newton(run, &def.newton);
     def.observer = run_observer(run);
     def.workers = run_share_threads(run, model->case_count);
-    job.sd = static_design_create(&model->design, model->params, job.cases, &def);
+    job.sd = static_design_create(&model->design, model->params, model->cases, &def);
     RunStatus status = ok ? design_run(run, &ops, &job, u, err) : RUN_CANNOT_WRITE;
     static_design_destroy(job.sd);
-    mem_free(job.cases);
     mem_free(job.info);
     mem_free(job.case_objectives);
     mem_free(u);
     return status;
 }
+
+static const char *const free_keys[] = {"design.iterations", "design.tolerance", "output.precision", "modes",
+                                        NULL};
+
+const JobRow job_design = {
+    .name = "design",
+    .noun = "a design",
+    .run = run_design,
+    .rest = true,
+    .design = true,
+    .frames = FRAMES_STAY,
+    .free_keys = free_keys,
+    .effort = {5, 5, 1.1, 8, 60e6},
+};

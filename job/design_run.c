@@ -128,8 +128,8 @@ static void say_idle(const DesignRun *d)
         const Unknown *unknown = &design->unknowns[k];
         int end = k + 1 < design->unknown_count ? unknown[1].first : design->size;
         if (optimiser_is_zero(d->gradient + unknown->first, end - unknown->first, d->objective))
-            progress_say(d->run->progress, "the unknown %s does not act on the objective at the start",
-                         design_unknown_name(d->run->model, unknown->block));
+            host_say(d->run->host, "the unknown %s does not act on the objective at the start",
+                     design_unknown_name(d->run->model, unknown->block));
     }
 }
 
@@ -159,12 +159,12 @@ static void show(const DesignRun *d)
 {
     int total = d->run->scene->design->iterations + 1;
     if (d->improvements == 0) {
-        progress_step(d->run->progress, d->evaluations, total, "no solution yet");
+        host_step(d->run->host, d->evaluations, total, "no solution yet");
         return;
     }
-    progress_step(d->run->progress, d->evaluations, total, "F %.3e, %.3g of the start%s", d->best,
-                  d->first != 0 ? d->best / d->first : 0,
-                  isfinite(d->objective) ? "" : "  (no solution, refused)");
+    host_step(d->run->host, d->evaluations, total, "F %.3e, %.3g of the start%s", d->best,
+              d->first != 0 ? d->best / d->first : 0,
+              isfinite(d->objective) ? "" : "  (no solution, refused)");
 }
 
 static bool go_on(void *self)
@@ -178,7 +178,7 @@ static bool go_on(void *self)
     if (d->failed) return false;
     d->evaluations++;
     show(d);
-    return !progress_interrupted();
+    return !host_stops(d->run->host);
 }
 
 static void product(void *self, const double *v, double soft, double *out)
@@ -201,10 +201,10 @@ static bool recall(void *self, double *u)
 static RunStatus finish_unsolved(DesignRun *d, bool interrupted)
 {
     if (interrupted)
-        progress_say(d->run->progress, "interrupted before the first evaluation was done");
+        host_say(d->run->host, "interrupted before the first evaluation was done");
     else
-        progress_say(d->run->progress, "no solution was found for the start of the design: %s",
-                     newton_status_text(d->evaluated.status));
+        host_say(d->run->host, "no solution was found for the start of the design: %s",
+                 newton_status_text(d->evaluated.status));
     if (interrupted) return RUN_INTERRUPTED;
     d->run->unsolved = true;
     Array status = array_text("status", "unsolved");
@@ -225,33 +225,30 @@ static char *reached(const DesignRun *d, const OptimiserInfo *info)
 /* What has happened, in a sentence. */
 static void say(const DesignRun *d, const OptimiserInfo *info)
 {
-    Progress *progress = d->run->progress;
+    const Host *host = d->run->host;
     int iterations = d->run->scene->design->iterations;
     char *F = reached(d, info);
     switch (info->status) {
     case OPTIMISER_CONVERGED:
-        progress_say(progress, "converged after %d evaluations: %s", d->evaluations, F);
+        host_say(host, "converged after %d evaluations: %s", d->evaluations, F);
         break;
     case OPTIMISER_MAX_ITERATIONS:
         if (iterations == 0)
-            progress_say(progress, "the start was evaluated: %s", F);
+            host_say(host, "the start was evaluated: %s", F);
         else
-            progress_say(
-                progress,
-                "stopped at design.iterations = %d, not yet converged: %s; --resume with more of them "
-                "goes on",
-                iterations, F);
+            host_say(host,
+                     "stopped at design.iterations = %d, not yet converged: %s; --resume with more of them "
+                     "goes on",
+                     iterations, F);
         break;
     case OPTIMISER_STALLED:
-        progress_say(progress, "stalled after %d evaluations, no better design was found: %s", d->evaluations,
-                     F);
+        host_say(host, "stalled after %d evaluations, no better design was found: %s", d->evaluations, F);
         break;
     case OPTIMISER_STATIONARY:
-        progress_say(
-            progress,
-            "the gradient is zero at the start: either no unknown acts on the objective (is something "
-            "magnetised, is there a field?), or the start is a symmetric point: give the unknowns "
-            "`noise` or another `start`");
+        host_say(host,
+                 "the gradient is zero at the start: either no unknown acts on the objective (is something "
+                 "magnetised, is there a field?), or the start is a symmetric point: give the unknowns "
+                 "`noise` or another `start`");
         break;
     default: /* stopped: the verb says it */
         break;
@@ -287,8 +284,8 @@ static void say_outside(const DesignRun *d, const double *u)
         outside +=
             u[i] < d->lower[i] - 1e-9 * fabs(d->lower[i]) || u[i] > d->upper[i] + 1e-9 * fabs(d->upper[i]);
     if (outside)
-        progress_say(d->run->progress, "%d of %d unknowns start beyond their bounds, and are put on them",
-                     outside, d->n);
+        host_say(d->run->host, "%d of %d unknowns start beyond their bounds, and are put on them", outside,
+                 d->n);
 }
 
 RunStatus design_run(Run *run, const DesignOps *ops, void *self, const double *u, Error *err)

@@ -1,6 +1,6 @@
 /* Equilibria of all cases, and of the stages of a sequence, each from the one before. */
 #include "base/memory.h"
-#include "job/job.h"
+#include "job/jobs.h"
 #include "solve/ramp.h"
 #include <string.h>
 
@@ -18,7 +18,7 @@ static bool move(void *self, double part, double *x)
     return !mover->failed;
 }
 
-static RampInfo solve_stage(Run *run, ModelCase *c, int stage)
+static RampInfo solve_stage(Run *run, Case *c, int stage)
 {
     Mover mover = {.model = run->model, .time = c->stages[stage].time};
     RampDef def = ramp_default();
@@ -31,7 +31,7 @@ static RampInfo solve_stage(Run *run, ModelCase *c, int stage)
 }
 
 /* Frames are shown at the times of their stages, if those go on; else they are numbered. */
-static double shown_time(const ModelCase *c, const Snapshot *shot, int frame)
+static double shown_time(const Case *c, const Snapshot *shot, int frame)
 {
     bool goes_on = c->stage_count > 1;
     for (int s = 1; s < c->stage_count; s++) goes_on = goes_on && c->stages[s].time > c->stages[s - 1].time;
@@ -76,7 +76,7 @@ static int total_stages(const Model *model)
 }
 
 /* One case, its stages from frame number *frame on. False where err has to be said. */
-static bool solve_case(Run *run, ModelCase *c, Snapshot *shot, int *frame, bool *interrupted, Error *err)
+static bool solve_case(Run *run, Case *c, Snapshot *shot, int *frame, bool *interrupted, Error *err)
 {
     bool ok = true;
     int total = total_stages(run->model);
@@ -91,10 +91,10 @@ static bool solve_case(Run *run, ModelCase *c, Snapshot *shot, int *frame, bool 
             shot->status = info.newton.status;
             *interrupted = info.newton.status == NEWTON_STOPPED;
             if (*interrupted) break;
-            progress_step(run->progress, *frame + 1, total,
-                          "%s: %s, %d Newton iterations with %d factorisations in %d load steps", c->name,
-                          newton_status_name(shot->status), info.newton.iterations,
-                          info.newton.factorizations, info.steps + info.refused);
+            host_step(run->host, *frame + 1, total,
+                      "%s: %s, %d Newton iterations with %d factorisations in %d load steps", c->name,
+                      newton_status_name(shot->status), info.newton.iterations, info.newton.factorizations,
+                      info.steps + info.refused);
             ok = put_progress(run, *frame, shot, err);
         }
         if (shot->status > worst) worst = shot->status;
@@ -103,7 +103,7 @@ static bool solve_case(Run *run, ModelCase *c, Snapshot *shot, int *frame, bool 
     return ok;
 }
 
-RunStatus job_equilibrium(Run *run, Error *err)
+static RunStatus run_equilibrium(Run *run, Error *err)
 {
     Model *model = run->model;
     Snapshot *shots = mem_alloc((size_t)model->case_count, sizeof *shots);
@@ -117,9 +117,20 @@ RunStatus job_equilibrium(Run *run, Error *err)
     Arrays list = {0};
     if (ok) run_add_final(run, shots, done, interrupted ? "interrupted" : newton_status_name(worst), &list);
     ok = ok && arrays_replace(&list, run->journal, "final", err);
-    if (ok && !interrupted && worst != NEWTON_CONVERGED)
-        progress_say(run->progress, "%s", newton_status_text(worst));
+    if (ok && !interrupted && worst != NEWTON_CONVERGED) host_say(run->host, "%s", newton_status_text(worst));
     mem_free(shots);
     if (!ok) return RUN_CANNOT_WRITE;
     return interrupted ? RUN_INTERRUPTED : worst == NEWTON_CONVERGED ? RUN_DONE : RUN_NOT_CONVERGED;
 }
+
+static const char *const free_keys[] = {"output.precision", "modes", "time.steps", NULL};
+
+const JobRow job_equilibrium = {
+    .name = "equilibrium",
+    .noun = "an equilibrium",
+    .run = run_equilibrium,
+    .rest = true,
+    .frames = FRAMES_STAY,
+    .free_keys = free_keys,
+    .effort = {12, 5, 2, 2, 100e6},
+};

@@ -1,31 +1,26 @@
-/* Energies, forces and stability of a given pose: positions stay, only edge angles are relaxed. */
+/* Energies, forces and stability of a given pose: points stay, the rest (edge angles) is relaxed. */
 #include "base/memory.h"
-#include "job/job.h"
+#include "job/jobs.h"
 #include "solve/eigen.h"
 #include <math.h>
 #include <string.h>
 
-/* Edge angles of the pose, with all positions held. */
-static NewtonStatus relax_angles(Run *run, ModelCase *c)
+/* What is left of the pose where all points are held: edge angles. */
+static NewtonStatus relax(Run *run, Case *c)
 {
-    Shell *shell = run->model->shell;
-    size_t positions = 3 * (size_t)shell->mesh->vertex_count;
-    bool *fixed = mem_copy(shell->fixed, positions, sizeof *fixed);
-    for (size_t i = 0; i < positions; i++) shell->fixed[i] = true;
-    System *held = shell_system(shell);
-    memcpy(shell->fixed, fixed, positions * sizeof *fixed);
-    mem_free(fixed);
+    const BodyOps *ops = run->model->body->ops;
+    System *held = ops->pose_system ? ops->pose_system(run->model) : NULL;
     NewtonStatus status = NEWTON_CONVERGED;
     NewtonDef def = newton_default();
     run_newton(run, &def);
     Point at = state_point(&c->state, c->stages[0].p);
-    if (system_free_count(held)) status = newton_minimize(held, &def, &at, &c->state, NULL).status;
+    if (held && system_free_count(held)) status = newton_minimize(held, &def, &at, &c->state, NULL).status;
     system_destroy(held);
     return status;
 }
 
 /* Is the pose an equilibrium, as Newton's method would call it, and would the body stay? Says so. */
-static NewtonStatus judge(Run *run, const ModelCase *c, int k)
+static NewtonStatus judge(Run *run, const Case *c, int k)
 {
     Point at = state_point(&c->state, c->stages[0].p);
     double *gradient = mem_alloc((size_t)c->state.dofs, sizeof *gradient), lowest = INFINITY;
@@ -36,24 +31,24 @@ static NewtonStatus judge(Run *run, const ModelCase *c, int k)
     const char *said = lowest < 0 ? "unstable" : "stable";
     int count = run->model->case_count;
     if (now.gradient_max > newton_default().force_tol * now.force_scale) {
-        progress_step(run->progress, k + 1, count,
-                      "%s: %s, but no equilibrium: forces of up to %.3g N are not in balance", c->name, said,
-                      now.gradient_max);
+        host_step(run->host, k + 1, count,
+                  "%s: %s, but no equilibrium: forces of up to %.3g N are not in balance", c->name, said,
+                  now.gradient_max);
         return NEWTON_UNBALANCED;
     }
-    progress_step(run->progress, k + 1, count, "%s: an equilibrium, %s", c->name, said);
+    host_step(run->host, k + 1, count, "%s: an equilibrium, %s", c->name, said);
     return lowest < 0 ? NEWTON_SADDLE : NEWTON_CONVERGED;
 }
 
-RunStatus job_evaluate(Run *run, Error *err)
+static RunStatus run_evaluate(Run *run, Error *err)
 {
     Model *model = run->model;
     Snapshot *shots = mem_alloc((size_t)model->case_count, sizeof *shots);
     NewtonStatus worst = NEWTON_CONVERGED;
     bool ok = true;
     for (int k = 0; ok && k < model->case_count; k++) {
-        ModelCase *c = &model->cases[k];
-        NewtonStatus relaxed = relax_angles(run, c);
+        Case *c = &model->cases[k];
+        NewtonStatus relaxed = relax(run, c);
         if (relaxed > worst) worst = relaxed;
         shots[k] = (Snapshot){c, c->stages[0].p, c->state, judge(run, c, k)};
         ok = run_put_frame(run, k, k, &shots[k], k == 0, err);
@@ -66,3 +61,14 @@ RunStatus job_evaluate(Run *run, Error *err)
     if (!ok) return RUN_CANNOT_WRITE;
     return worst == NEWTON_CONVERGED ? RUN_DONE : RUN_NOT_CONVERGED;
 }
+
+static const char *const free_keys[] = {"output.precision", "modes", "time.steps", NULL};
+
+const JobRow job_evaluate = {
+    .name = "evaluate",
+    .noun = "an evaluation",
+    .run = run_evaluate,
+    .frames = FRAMES_STAY,
+    .free_keys = free_keys,
+    .effort = {1, 1, 2, 25, 100e6},
+};

@@ -26,7 +26,7 @@ static void add_line(void *self, const char *key, const char *path)
 char *inputs_text(const Scene *scene, Error *err)
 {
     Lines lines = {.text = mem_text(""), .err = err};
-    yaml_files(&scene_table, scene, add_line, &lines);
+    yaml_files(scene_table(), scene, add_line, &lines);
     if (!lines.failed) return lines.text;
     mem_free(lines.text);
     return NULL;
@@ -73,7 +73,7 @@ static void check_line(void *self, const char *key, const char *path)
 bool inputs_check(const Scene *scene, const char *before, const char *now, Error *err)
 {
     Check check = {.before = before, .now = now, .err = err};
-    yaml_files(&scene_table, scene, check_line, &check);
+    yaml_files(scene_table(), scene, check_line, &check);
     return !check.failed;
 }
 
@@ -97,9 +97,9 @@ static void add_key(void *self, const char *key, const char *path)
 char **inputs_keys(const Scene *scene)
 {
     Keys keys = {0};
-    yaml_files(&scene_table, scene, add_key, &keys);
+    yaml_files(scene_table(), scene, add_key, &keys);
     char **list = mem_alloc((keys.count + 1) * sizeof *list + keys.length, 1);
     Keys all = {.list = list, .text = (char *)(list + keys.count + 1)};
-    yaml_files(&scene_table, scene, add_key, &all);
+    yaml_files(scene_table(), scene, add_key, &all);
     return list;
 }

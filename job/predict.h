@@ -23,3 +23,8 @@ Prediction predict(const Model *model, const Scene *scene);
 
 /* start + iterations * iteration + end, s. */
 double predict_seconds(const Prediction *prediction);
+
+/* For bodies (BodyOps.cost). The least of some times of one evaluation, one factorisation, one solve, and the time of
+ * building the matrix, once. */
+void predict_measure(System *sys, const Point *at, int repeats, Cost *cost);
+void predict_take_factor(SparseInfo info, Cost *cost);

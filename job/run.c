@@ -1,12 +1,16 @@
 #include "job/run.h"
 #include "base/memory.h"
-#include "model/body.h"
 #include <string.h>
+
+RunStatus job_run(Run *run, Error *err)
+{
+    return run->model->job->run(run, err);
+}
 
 static bool go_on(void *self, const NewtonInfo *info)
 {
-    (void)self, (void)info;
-    return !progress_interrupted();
+    (void)info;
+    return !host_stops(((Run *)self)->host);
 }
 
 NewtonObserver run_observer(Run *run)
@@ -47,7 +51,7 @@ Workers *run_share_threads(Run *run, int at_once)
     return run->side_by_side;
 }
 
-Array body_block(const char *name, const ParamBlock *block, const double *p)
+Array run_block(const char *name, const ParamBlock *block, const double *p)
 {
     int rank = block->width > 1 ? 2 : 1;
     return array_float(name, block->unit, p + block->offset, rank, block->count, block->width);
@@ -58,7 +62,7 @@ Array body_block(const char *name, const ParamBlock *block, const double *p)
 static double *places(const Model *model, const Snapshot *shot, Arrays *list)
 {
     double *place = arrays_numbers(list, 3 * (size_t)model->point_count);
-    model->body->places(model, shot->at.x, place);
+    model->body->ops->places(model, shot->at.x, place);
     return place;
 }
 
@@ -66,10 +70,12 @@ bool run_put_frame(Run *run, int index, double shown, const Snapshot *shot, bool
 {
     const Model *model = run->model;
     Arrays list = {0};
-    arrays_add(&list, array_float("x", "m", places(model, shot, &list), 2, model->point_count, 3));
+    double *place = places(model, shot, &list);
+    if (run->host->frame) run->host->frame(run->host->self, shown, model->point_count, place);
+    arrays_add(&list, array_float("x", "m", place, 2, model->point_count, 3));
     arrays_add(&list, array_float("time", "s", &shown, 0, 0, 0));
     arrays_add(&list, array_float("flux_density", "T", shot->p + model->flux_density, 2, 1, 3));
-    model->body->add_frame(model, shot, whole, &list);
+    if (model->body->ops->add_frame) model->body->ops->add_frame(model, shot, whole, &list);
     return arrays_put(&list, run->journal, "frame", index, err);
 }
 
@@ -89,7 +95,7 @@ static void add_state(Arrays *list, const Model *model, const char *x_name, cons
         name = arrays_keep(list, mem_format("%s/energy/%s", prefix, system_term(sys, t)->ops->name));
         arrays_add(list, array_float(name, "J", &energy[t], 0, 0, 0));
     }
-    model->body->add_state(model, shot, prefix, list);
+    model->body->ops->add_state(model, shot, prefix, list);
 }
 
 /* Parameters of the last state; flux_density has a row for each. */
@@ -101,7 +107,7 @@ static void add_params(Arrays *list, const Params *params, const Snapshot *shots
         const char *name = arrays_keep(list, mem_format("design/%s", block->name));
         if (block->count == 0) continue;
         if (strcmp(block->name, "flux_density")) {
-            arrays_add(list, body_block(name, block, last->p));
+            arrays_add(list, run_block(name, block, last->p));
             continue;
         }
         double *flux = arrays_numbers(list, 3 * (size_t)count);
@@ -136,9 +142,9 @@ static char *case_names(const Snapshot *shots, int count)
 
 static void say_doubt(Run *run, const Snapshot *shot)
 {
-    const BodyOps *body = run->model->body;
+    const BodyOps *body = run->model->body->ops;
     char *doubt = body->doubt ? body->doubt(run->model, shot) : NULL;
-    if (doubt) progress_say(run->progress, "%s: %s", shot->load_case->name, doubt);
+    if (doubt) host_say(run->host, "%s: %s", shot->load_case->name, doubt);
     mem_free(doubt);
 }
 
@@ -147,7 +153,7 @@ void run_add_final(Run *run, const Snapshot *shots, int count, const char *statu
     const Model *model = run->model;
     add_state(list, model, "state/x", "final", &shots[count - 1]);
     add_params(list, model->params, shots, count);
-    model->body->add_final(model, &shots[count - 1], run->scene->modes, list);
+    model->body->ops->add_final(model, &shots[count - 1], run->scene->modes, list);
     arrays_add(list, array_text("status", status));
     arrays_add(list, array_text("case_names", arrays_keep(list, case_names(shots, count))));
     for (int k = 0; k < count; k++) {

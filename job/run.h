@@ -1,47 +1,40 @@
-/* run.h - a job on its way: model, journal, progress and interruption. */
+/* run.h - a job on its way: model, journal and host. */
 #pragma once
 #include "base/memory.h"
 #include "base/workers.h"
-#include "model/model.h"
-#include "job/progress.h"
 #include "io/journal.h"
+#include "job/host.h"
+#include "model/model.h"
 #include "solve/newton.h"
-
-/* Exit codes of `slender run`. */
-typedef enum RunStatus {
-    RUN_DONE = 0,
-    RUN_NOT_CONVERGED = 1, /* computed, and said so in the result */
-    RUN_USAGE = 2,
-    RUN_REFUSED = 3, /* scene or mesh */
-    RUN_CANNOT_WRITE = 4,
-    RUN_NO_MEMORY = MEM_EXIT_CODE,
-    RUN_INTERRUPTED = 75, /* state saved: go on with --resume */
-} RunStatus;
 
 typedef struct Run {
     const Scene *scene;
     Model *model;
     Journal *journal;
-    Progress *progress;
+    const Host *host;
     const char *result; /* NAME.vtkhdf */
     int threads;
     Workers *side_by_side, **inside; /* run_share_threads */
     bool unsolved;                   /* nothing was found that could be drawn */
 } Run;
 
+/* Runs the scene's job: everything it acknowledges goes into the journal, its final arrays too. On RUN_CANNOT_WRITE and
+ * RUN_REFUSED err says why, and nothing is written over an earlier result. */
+RunStatus job_run(Run *run, Error *err);
+
 /* The program and the libraries that it runs with, a line each. The caller frees. */
 char *run_versions(void);
 
 /* OpenBLAS's kernels that this run's numbers come from: of a run that goes on with others, a warning, and those before
  * too: "Haswell, SkylakeX". The caller frees. */
-char *run_kernels(Journal *journal, Error *err);
+char *run_kernels(Run *run, Error *err);
 
 /* Shares the run's threads out again: so many load cases are to be solved side by side, by the threads that are
  * returned (NULL: one after the other); those left over work inside their systems. */
 Workers *run_share_threads(Run *run, int at_once);
 void run_release_threads(Run *run);
 
-/* Stops a solve after an interruption (progress.h). */
+/* Stops a solve after an interruption (Host.stop). */
 NewtonObserver run_observer(Run *run);
 
 /* Puts the scene's tolerances over the defaults. */
@@ -67,3 +60,6 @@ bool run_put_state(Run *run, int index, const Kept *rows, int count, Error *err)
 
 /* *has: all are there, each of its length. False and a sentence where the journal cannot be read. */
 bool run_get_state(Run *run, int index, const Kept *rows, int count, bool *has, Error *err);
+
+/* A block of p as an array of that name. */
+Array run_block(const char *name, const ParamBlock *block, const double *p);

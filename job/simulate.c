@@ -3,14 +3,14 @@
  * With every stored frame goes the state to go on from, in two slots by turns, each closed by its step's
  * number: a run that is killed goes on from the last frame and repeats the steps since bit by bit. */
 #include "base/memory.h"
-#include "job/job.h"
+#include "job/jobs.h"
 #include "solve/march.h"
 #include <string.h>
 
 typedef struct Simulation {
     Run *run;
     Error *err;
-    ModelCase *c;
+    Case *c;
     double *p;
     State *now;
     int step;            /* the last one that was reached */
@@ -121,18 +121,18 @@ static RunStatus make_step(Simulation *s, const MarchDef *def)
     MarchInfo info;
     bool reached = march_step(s->c->sys, def, scene->time.step, s->p, s->now, &info);
     if (s->refused) return RUN_REFUSED;
-    if (progress_interrupted()) return RUN_INTERRUPTED;
+    if (host_stops(s->run->host)) return RUN_INTERRUPTED;
     s->status = reached ? NEWTON_CONVERGED : info.newton.status;
     if (!reached) {
-        progress_say(s->run->progress, "step %d failed at t = %g s: %s", step, s->now->time,
-                     newton_status_text(info.newton.status));
+        host_say(s->run->host, "step %d failed at t = %g s: %s", step, s->now->time,
+                 newton_status_text(info.newton.status));
         return RUN_NOT_CONVERGED;
     }
     s->step = step;
     if (!put_history(s, step, &info) || (step % every == 0 && !put_step(s, step / every, step)))
         return RUN_CANNOT_WRITE;
-    progress_step(s->run->progress, step, scene->time.steps, "t %.4g s, %d Newton iterations", s->now->time,
-                  info.newton.iterations);
+    host_step(s->run->host, step, scene->time.steps, "t %.4g s, %d Newton iterations", s->now->time,
+              info.newton.iterations);
     return RUN_DONE;
 }
 
@@ -165,10 +165,9 @@ static bool put_end(Simulation *s, const char *status)
     return arrays_replace(&list, s->run->journal, "final", s->err);
 }
 
-RunStatus job_simulate(Run *run, Error *err)
+static RunStatus run_simulate(Run *run, Error *err)
 {
-    if (run->scene->rod && run->scene->rod->solver == ROD_SOLVER_PBD) return job_preview(run, err);
-    ModelCase *c = &run->model->cases[0];
+    Case *c = &run->model->cases[0];
     Simulation s = {.run = run, .err = err, .c = c, .p = c->stages[0].p, .now = &c->state};
     RunStatus status = march(&s);
     const char *said = status == RUN_INTERRUPTED ? "interrupted" : newton_status_name(s.status);
@@ -176,3 +175,15 @@ RunStatus job_simulate(Run *run, Error *err)
     if (ended && !put_end(&s, said)) status = RUN_CANNOT_WRITE;
     return status;
 }
+
+const char *const job_simulate_free_keys[] = {"output.precision", "modes", "time.steps", NULL};
+
+const JobRow job_simulate = {
+    .name = "simulate",
+    .noun = "a simulation",
+    .run = run_simulate,
+    .motion = true,
+    .frames = FRAMES_MOVE,
+    .free_keys = job_simulate_free_keys,
+    .effort = {2, 2, 0.9, 4, 25e6},
+};

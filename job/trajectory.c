@@ -1,7 +1,7 @@
 /* Design of a motion: unknowns, most of all a field over time, that make the body go where it should. */
 #include "base/memory.h"
 #include "job/design_run.h"
-#include "job/job.h"
+#include "job/jobs.h"
 #include "optim/objectives.h"
 #include "optim/trajectory_adjoint.h"
 #include <math.h>
@@ -10,7 +10,7 @@
 
 typedef struct TrajectoryJob {
     Run *run;
-    ModelCase *c;
+    Case *c;
     Trajectory *t;
     double objective;
     bool refused; /* a formula of time is not finite; err says so */
@@ -164,8 +164,8 @@ static void add_distances(const TrajectoryJob *job, Arrays *list)
         }
         if (isnan(largest[k])) continue;
         any = true;
-        progress_say(job->run->progress, "%s, frames %d to %d: largest distance %.3g mm", row->ops->name,
-                     row->first, row->last, 1e3 * largest[k]);
+        host_say(job->run->host, "%s, frames %d to %d: largest distance %.3g mm", row->ops->name, row->first,
+                 row->last, 1e3 * largest[k]);
     }
     if (any) arrays_add(list, array_float("metrics/largest_distance", "m", largest, 1, rows, 0));
 }
@@ -184,7 +184,7 @@ static bool put_results(void *self, int first, const char *status, Error *err)
     return arrays_replace(&list, job->run->journal, "final", err);
 }
 
-RunStatus job_trajectory(Run *run, Error *err)
+static RunStatus run_trajectory(Run *run, Error *err)
 {
     static const DesignOps ops = {.evaluate = evaluate,
                                   .accept = accept,
@@ -194,7 +194,7 @@ RunStatus job_trajectory(Run *run, Error *err)
                                   .put_results = put_results};
     Model *model = run->model;
     const TimeScene *time = &run->scene->time;
-    ModelCase *c = &model->cases[0];
+    Case *c = &model->cases[0];
     TrajectoryJob job = {.run = run, .c = c};
     TrajectoryProblem problem = {.sys = c->sys,
                                  .design = &model->design,
@@ -224,3 +224,19 @@ RunStatus job_trajectory(Run *run, Error *err)
     mem_free(u);
     return status;
 }
+
+/* Its steps are part of its problem. */
+static const char *const free_keys[] = {"design.iterations", "design.tolerance", "output.precision", "modes",
+                                        NULL};
+
+const JobRow job_trajectory = {
+    .name = "trajectory",
+    .noun = "a trajectory",
+    .run = run_trajectory,
+    .motion = true,
+    .path = true,
+    .design = true,
+    .frames = FRAMES_AGAIN,
+    .free_keys = free_keys,
+    .effort = {2, 2, 1, 8, 25e6},
+};

@@ -1,28 +1,26 @@
 /* What this program runs with: part of every result, so that a number can be traced. */
 #include "base/memory.h"
-#include "job/run.h"
-#include "cli/say.h"
 #include "io/journal.h"
 #include "io/result.h"
+#include "job/run.h"
 #include "optim/optimiser.h"
 #include "solve/kernels.h"
 #include "solve/sparse.h"
-#include <stdio.h>
 #include <string.h>
 
-char *run_kernels(Journal *journal, Error *err)
+char *run_kernels(Run *run, Error *err)
 {
     Array before;
     const char *now = kernels_name();
-    if (!journal_find(journal, "meta", 0, "kernels", &before, err)) return NULL;
+    if (!journal_find(run->journal, "meta", 0, "kernels", &before, err)) return NULL;
     if (!before.data) return mem_text(now);
     const char *last = strrchr(before.data, ' ');
     last = last ? last + 1 : before.data;
     bool same = !strcmp(last, now);
     if (!same)
-        say(stderr,
-            "warning: this run was begun with OpenBLAS's kernels %s and goes on with %s: its numbers are "
-            "not, bit for "
+        host_warn(
+            run->host,
+            "this run was begun with OpenBLAS's kernels %s and goes on with %s: its numbers are not, bit for "
             "bit, those of an unbroken run; OPENBLAS_CORETYPE=%s keeps to the old ones",
             last, now, last);
     char *all = same ? mem_text(before.data) : mem_format("%s, %s", (const char *)before.data, now);

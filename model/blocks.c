@@ -1,7 +1,5 @@
 /* What of a scene counts before its parameters are laid out: flux densities, and the blocks of a trajectory. */
 #include "base/memory.h"
-#include "job/job.h"
-#include "model/build.h"
 #include "model/model.h"
 #include <math.h>
 #include <string.h>
@@ -78,7 +76,8 @@ static void add_control(Model *model, const Scene *scene)
 void model_add_blocks(Model *model, const Scene *scene)
 {
     const DesignScene *design = scene->design;
-    if (scene->job != JOB_TRAJECTORY || !design || !design->unknowns.flux_density) return;
+    bool trajectory = model->job->design && model->job->motion;
+    if (!trajectory || !design || !design->unknowns.flux_density) return;
     add_control(model, scene);
     for (int k = 0; k < design->objectives_count; k++) {
         const ObjectiveScene *row = &design->objectives[k];

@@ -6,8 +6,8 @@
 #pragma once
 #include "model/scene.h"
 #include "model/timed_flux.h"
+#include "surface/flux_field.h"
 #include "surface/select.h"
-#include "shell/shell.h"
 
 typedef struct Build {
     YamlFile *file;

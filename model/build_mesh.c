@@ -2,7 +2,7 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "model/build.h"
-#include "model/model.h"
+#include "model/rows.h"
 #include "surface/shapes.h"
 #include <math.h>
 
@@ -106,8 +106,8 @@ Build build_start(const Scene *scene, const Mesh *mesh, YamlFile *file)
                    .mesh = mesh,
                    .size = mesh ? mesh_diagonal(mesh) : 0,
                    .time = scene->time.at,
-                   .duration = model_is_motion(scene->job) ? scene->time.step * scene->time.steps : 0,
-                   .mesh_scale = scene->shell ? scene->shell->mesh.scale : 1};
+                   .duration = scene_job(scene)->motion ? scene->time.step * scene->time.steps : 0,
+                   .mesh_scale = 1};
 }
 
 Mesh *build_mesh(const MeshScene *scene, YamlFile *yaml, MeshReport *report)

@@ -1,8 +1,8 @@
 /* Selections, loads, fields and targets. */
 #include "base/memory.h"
 #include "base/vec3.h"
-#include "model/build.h"
 #include "io/image.h"
+#include "model/build.h"
 #include <math.h>
 #include <string.h>
 

@@ -1,7 +1,7 @@
 /* Values over faces and edges: the same everywhere, from a file, by formula or by group. */
 #include "base/memory.h"
-#include "model/build.h"
 #include "io/table.h"
+#include "model/build.h"
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>

@@ -1,16 +1,13 @@
 #include "model/model.h"
 #include "base/memory.h"
 #include "base/plain.h"
-#include "model/build.h"
-#include "spline/front/drawing.h"
-#include "job/job.h"
-#include "rod/front/rod_model.h"
+#include "model/scene_tables.h"
 #include <math.h>
 #include <string.h>
 
 bool model_move(const Model *model, double time, double part, double *x, Error *err)
 {
-    return !model->moves || model->body->move(model, time, part, x, err);
+    return !model->moves || model->body->ops->move(model, time, part, x, err);
 }
 
 bool model_load(const Model *model, double time, double *p, Error *err)
@@ -26,31 +23,30 @@ static bool put_loads(Model *model, const Build *b, Key at, const LoadScene *loa
                       const double *gravity, double *p)
 {
     if (!isnan(gravity[0])) memcpy(p + model->gravity, gravity, 3 * sizeof *gravity);
-    return !loads || model->body->put_loads(model, b, key("%s.loads", at.text).text, loads, count, p);
+    return !loads || model->body->ops->put_loads(model, b, key("%s.loads", at.text).text, loads, count, p);
 }
 
-static ModelCase *add_case(Model *model, const char *name, const double *p, double time)
+static Case *add_case(Model *model, const char *name, const double *p, double time)
 {
     size_t count = (size_t)model->case_count++;
     model->cases = mem_resize(model->cases, count, count + 1, sizeof *model->cases);
-    ModelCase *c = &model->cases[count];
-    *c = (ModelCase){
-        .name = name ? mem_text(name) : mem_format("case%zu", count + 1), .weight = 1, .stage_count = 1};
-    c->stages = mem_alloc(1, sizeof *c->stages);
-    c->stages[0] = (Stage){mem_copy(p, (size_t)model->params->size, sizeof *p), time};
+    Case *c = &model->cases[count];
+    char *number = name ? NULL : mem_format("case%zu", count + 1);
+    *c = case_create(name ? name : number, p, (size_t)model->params->size, time);
+    mem_free(number);
     return c;
 }
 
-static bool add_target(Model *model, const Build *b, Key at, const TargetScene *target, ModelCase *c)
+static bool add_target(Model *model, const Build *b, Key at, const TargetScene *target, Case *c)
 {
     if (!target) return true;
     c->target = mem_alloc((size_t)model->point_count, sizeof *c->target);
-    return model->body->put_target(model, b, at.text, target, c->target);
+    return model->body->ops->put_target(model, b, at.text, target, c->target);
 }
 
 static bool add_stages(Model *model, const Build *b, const Scene *scene, const double *p)
 {
-    ModelCase *c = add_case(model, "sequence", p, scene->time.at);
+    Case *c = add_case(model, "sequence", p, scene->time.at);
     c->stages = mem_resize(c->stages, 1, (size_t)scene->sequence_count, sizeof *c->stages);
     c->stage_count = scene->sequence_count;
     bool ok = true;
@@ -87,7 +83,7 @@ bool model_cases(Model *model, const Build *b, const Scene *scene, const double 
     bool ok = true;
     for (int k = 0; k < scene->cases_count; k++) {
         const CaseScene *from = &scene->cases[k];
-        ModelCase *c = add_case(model, from->name, p, scene->time.at);
+        Case *c = add_case(model, from->name, p, scene->time.at);
         c->weight = from->weight;
         Key at = key("cases[%d]", k);
         for (int i = 0; i < k; i++)
@@ -113,11 +109,6 @@ bool model_cases(Model *model, const Build *b, const Scene *scene, const double 
 
 /* ---- The whole ---- */
 
-bool model_is_motion(int job)
-{
-    return job == JOB_SIMULATE || job == JOB_TRAJECTORY;
-}
-
 bool model_velocity(Model *model, const Build *b, const char *at, const VelocityScene *scene,
                     const double *place)
 {
@@ -142,73 +133,63 @@ bool model_velocity(Model *model, const Build *b, const char *at, const Velocity
     return ok;
 }
 
-static bool check_motion(const Scene *scene, YamlFile *file)
+static bool check_motion(const Scene *scene, const JobRow *job, YamlFile *file)
 {
-    const char *what = scene->job == JOB_SIMULATE ? "simulation" : "trajectory";
     bool known = !isnan(scene->time.step) && scene->time.steps != YAML_ABSENT;
-    return !model_is_motion(scene->job) || known ||
-           yaml_refuse(file, "time", "a %s needs `time`, e.g. time: {step: 1 ms, steps: 100}", what);
+    return !job->motion || known ||
+           yaml_refuse(file, "time", "%s needs `time`, e.g. time: {step: 1 ms, steps: 100}", job->noun);
 }
 
-/* Which jobs there are for what. */
+/* "rods and shells": those that have the job. */
+static char *bodies_of(const char *job)
+{
+    char *list = mem_text("");
+    for (int k = 0, more = 0; bodies[k]; k++) {
+        if (!body_job(bodies[k], job)) continue;
+        list = mem_join(list, more++ ? " and " : "", bodies[k]->nouns);
+    }
+    return list;
+}
+
 static bool check_job(const Scene *scene, YamlFile *file)
 {
-    int job = scene->job;
-    bool rods_only = job == JOB_INVERT || job == JOB_IDENTIFY;
-    bool shells_only = job == JOB_EVALUATE || job == JOB_TRAJECTORY;
-    bool fits = scene->spline ? job == JOB_DRAW
-                : scene->rod  ? job != JOB_DRAW && !shells_only
-                              : job != JOB_DRAW && !rods_only;
-    const char *has = scene->spline ? "a drawing" : scene->rod ? "a rod" : "a shell";
-    return fits || yaml_refuse(file, "job", "%s is a job for %s, and the scene has %s", job_names[job],
-                               rods_only         ? "rods"
-                               : shells_only     ? "shells"
-                               : job == JOB_DRAW ? "drawings"
-                                                 : "shells and rods",
-                               has);
+    if (scene_job(scene)) return true;
+    const char *name = scene_job_names[scene->job];
+    char *list = bodies_of(name);
+    yaml_refuse(file, "job", "%s is a job for %s, and the scene has %s", name, list, scene_body(scene)->noun);
+    mem_free(list);
+    return false;
 }
 
-static bool build_body(Model *model, const Scene *scene, YamlFile *file)
-{
-    if (!check_motion(scene, file)) return false;
-    return scene->rod ? model_rod(model, scene, file) : model_shell(model, scene, file);
-}
-
-Model *model_create(const Scene *scene, YamlFile *file)
+static Model *create(const Scene *scene, YamlFile *file, bool general)
 {
     Model *model = mem_alloc(1, sizeof *model);
-    bool designed = scene->job == JOB_DESIGN || scene->job == JOB_TRAJECTORY;
-    bool ok = check_job(scene, file) && yaml_check_use(file, &scene_table) &&
-              (scene->spline ? model_drawing(model, scene, file) : build_body(model, scene, file)) &&
-              (!designed || model_design(model, scene, file));
+    model->general = general;
+    const JobRow *job = scene_job(scene);
+    model->body = scene_body(scene);
+    model->job = job;
+    bool ok = check_job(scene, file) && yaml_check_use(file, scene_table()) &&
+              check_motion(scene, job, file) && model->body->ops->create(model, scene, file) &&
+              (!job->design || model_design(model, scene, file));
     if (ok) return model;
     model_destroy(model);
     return NULL;
 }
 
-void model_start_case(ModelCase *c, const double *x)
+Model *model_create(const Scene *scene, YamlFile *file)
 {
-    c->state = system_state(c->sys);
-    memcpy(c->state.x, x, (size_t)c->state.dofs * sizeof *x);
-    c->state.time = c->stages[0].time;
+    return create(scene, file, false);
 }
 
-static void clear_case(ModelCase *c)
+Model *model_create_general(const Scene *scene, YamlFile *file)
 {
-    for (int s = 0; s < c->stage_count; s++) mem_free(c->stages[s].p);
-    for (int k = 0; k < c->objective_count; k++) objective_destroy(c->objectives[k]);
-    system_destroy(c->sys);
-    mem_free(c->name);
-    state_destroy(&c->state);
-    mem_free(c->stages);
-    mem_free(c->objectives);
-    mem_free(c->target);
+    return create(scene, file, true);
 }
 
 void model_destroy(Model *model)
 {
     if (!model) return;
-    for (int k = 0; k < model->case_count; k++) clear_case(&model->cases[k]);
+    for (int k = 0; k < model->case_count; k++) case_clear(&model->cases[k]);
     for (int m = 0; m < model->motion_count; m++) {
         formula_destroy(model->motions[m].formula);
         mem_free(model->motions[m].vertices.items);
@@ -216,9 +197,7 @@ void model_destroy(Model *model)
     design_clear(&model->design);
     timed_flux_clear(&model->flux_of_time);
     mesh_report_clear(&model->report);
-    shell_destroy(model->shell);
-    rod_model_destroy(model->rod);
-    drawing_destroy(model->drawing);
+    if (model->self) model->body->ops->destroy(model->self);
     mem_free(model->cases);
     mem_free(model->flux);
     mem_free(model->motions);

@@ -1,10 +1,7 @@
 /* The scene's objectives. */
 #include "base/memory.h"
-#include "model/build.h"
-#include "job/job.h"
 #include "model/model.h"
 #include "optim/objectives.h"
-#include "shell/smoothness.h"
 #include <limits.h>
 #include <math.h>
 #include <stdlib.h>
@@ -12,7 +9,7 @@
 
 /* ---- Shapes ---- */
 
-static bool target_objective(const ModelCase *c, int vertex_count, YamlFile *file, Key at, double weight,
+static bool target_objective(const Case *c, int vertex_count, YamlFile *file, Key at, double weight,
                              Objective *objective)
 {
     if (!c->target) return yaml_refuse(file, at.text, "the case '%s' has no target", c->name);
@@ -29,26 +26,11 @@ static bool target_objective(const ModelCase *c, int vertex_count, YamlFile *fil
     return true;
 }
 
-/* Of a rod: all nodes, or its end. */
-static bool rod_height(const Model *model, const Build *b, Key at, const char *of, double weight,
-                       Objective *objective)
-{
-    bool tip = !strcmp(of, "tip");
-    if (!tip && strcmp(of, "all")) return yaml_refuse(b->file, at.text, "of a rod it is `all` or `tip`");
-    int count = tip ? 1 : model->point_count, *nodes = mem_alloc((size_t)count, sizeof *nodes);
-    for (int i = 0; i < count; i++) nodes[i] = tip ? model->point_count - 1 : i;
-    *objective = objective_height(count, nodes, weight);
-    mem_free(nodes);
-    return true;
-}
-
 static bool height_objective(const Model *model, const Build *b, Key at, const ObjectiveScene *from,
                              double weight, Objective *objective)
 {
-    if (model->rod) return rod_height(model, b, at, from->of, weight, objective);
-    SelectionScene group = {.group = from->of};
     Indices chosen = {0};
-    if (!build_selection(b, at, strcmp(from->of, "all") ? &group : NULL, &chosen)) return false;
+    if (!model->body->ops->select(model, b, at.text, from->of, &chosen)) return false;
     *objective = objective_height(chosen.count, chosen.items, weight);
     mem_free(chosen.items);
     return true;
@@ -63,7 +45,7 @@ static Probe find_probe(const Model *model, const Build *b, Key at, const char *
     if (!vertex) { /* the centre of mass */
         int *all = mem_alloc((size_t)mesh->vertex_count, sizeof *all);
         double *mass = mem_alloc((size_t)mesh->vertex_count, sizeof *mass), total = 0;
-        shell_vertex_mass(model->shell, mass);
+        model->body->ops->masses(model, mass);
         for (int v = 0; v < mesh->vertex_count; v++) all[v] = v, total += mass[v];
         for (int v = 0; v < mesh->vertex_count; v++) mass[v] /= total;
         return (Probe){mesh->vertex_count, all, mass};
@@ -130,13 +112,6 @@ static bool put_frames(const Build *b, Key at, int frame, const int *frames, int
                        objective->first, objective->last, steps);
 }
 
-static Objective *next_objective(ModelCase *c)
-{
-    size_t count = (size_t)c->objective_count++;
-    c->objectives = mem_resize(c->objectives, count, count + 1, sizeof *c->objectives);
-    return &c->objectives[count];
-}
-
 /* A waypoint for each target, over the frames from the delay after its switch until the next one. */
 static bool reach_objectives(Model *model, const Build *b, Key at, const Scene *scene,
                              const ReachScene *reach, Probe probe, double weight)
@@ -151,7 +126,7 @@ static bool reach_objectives(Model *model, const Build *b, Key at, const Scene *
                 b->file, at.text,
                 "no frame counts for target %d: it is due from %g s to %g s, the motion takes %g s", k + 1,
                 k * reach->every + reach->delay, (k + 1) * reach->every, step * scene->time.steps);
-        Objective *objective = next_objective(&model->cases[0]);
+        Objective *objective = case_add_objective(&model->cases[0]);
         *objective = objective_waypoint(probe, reach->targets[k], weight);
         objective->first = first, objective->last = last;
     }
@@ -176,7 +151,7 @@ static bool point_objectives(Model *model, const Build *b, Key at, const Scene *
             if (waypoint) objective = objective_waypoint(probe, waypoint->at, from->weight);
             ok = put_frames(b, at, waypoint ? waypoint->frame : curve->frame,
                             waypoint ? waypoint->frames : curve->frames, scene->time.steps, &objective);
-            *next_objective(&model->cases[0]) = objective;
+            *case_add_objective(&model->cases[0]) = objective;
         }
     }
     free_probe(probe);
@@ -193,7 +168,7 @@ static bool field_objective(Model *model, const Build *b, Key at, const Objectiv
         return yaml_refuse(b->file, at.text, "this objective needs the unknown flux_density of a trajectory");
     const ParamBlock *omega = params_find(params, "dmp_omega");
     if (!isnan(from->dmp) && !omega) return false; /* refused before */
-    Objective *objective = next_objective(&model->cases[0]);
+    Objective *objective = case_add_objective(&model->cases[0]);
     if (!isnan(from->field_magnitude))
         *objective = objective_field_magnitude(control, from->weight * from->field_magnitude);
     else if (!isnan(from->field_smoothness))
@@ -211,8 +186,8 @@ static bool field_objective(Model *model, const Build *b, Key at, const Objectiv
 static bool add_objective(Model *model, const Build *b, Key at, const Scene *scene,
                           const ObjectiveScene *from, int case_index)
 {
-    ModelCase *c = &model->cases[case_index];
-    bool trajectory = scene->job == JOB_TRAJECTORY, point = from->waypoint || from->curve || from->reach;
+    Case *c = &model->cases[case_index];
+    bool trajectory = model->job->motion, point = from->waypoint || from->curve || from->reach;
     bool field = !isnan(from->field_magnitude) || !isnan(from->field_smoothness) || !isnan(from->dmp);
     if (point && !trajectory)
         return yaml_refuse(b->file, at.text,
@@ -221,10 +196,12 @@ static bool add_objective(Model *model, const Build *b, Key at, const Scene *sce
     if (field) return field_objective(model, b, at, from);
     Objective objective;
     if (!isnan(from->magnetization_smoothness)) {
-        if (model->rod) return yaml_refuse(b->file, at.text, "magnetization_smoothness is for shells");
+        const BodyOps *ops = model->body->ops;
+        if (!ops->smoothness)
+            return yaml_refuse(b->file, at.text, "magnetization_smoothness is not for %s",
+                               model->body->nouns);
         if (case_index > 0) return true;
-        objective = shell_magnetization_smoothness(model->shell,
-                                                   from->weight * from->magnetization_smoothness / c->weight);
+        objective = ops->smoothness(model, from->weight * from->magnetization_smoothness / c->weight);
     } else if (!isnan(from->target)
                    ? !target_objective(c, model->point_count, b->file, at, from->weight * from->target,
                                        &objective)
@@ -234,13 +211,13 @@ static bool add_objective(Model *model, const Build *b, Key at, const Scene *sce
         objective_destroy(objective);
         return false;
     }
-    *next_objective(c) = objective;
+    *case_add_objective(c) = objective;
     return true;
 }
 
 bool model_objectives(Model *model, const Scene *scene, YamlFile *file)
 {
-    Build b = build_start(scene, model->shell ? model->shell->mesh : NULL, file);
+    Build b = build_start(scene, model->mesh, file);
     bool ok = true;
     for (int c = 0; c < model->case_count; c++)
         for (int k = 0; k < scene->design->objectives_count; k++)

@@ -1,5 +1,4 @@
 /* The field tables of scene files. Every key of the program is a row here. */
-#include "job/job.h"
 #include "model/scene_tables.h"
 
 /* ---- Values ---- */
@@ -122,9 +121,9 @@ static const YamlTable flux_density_table = {
         WHERE_ROW(FluxScene),
         {0}}};
 
-/* ---- The shell ---- */
+/* ---- A mesh and its parts ---- */
 
-static const YamlTable mesh_table = {
+const YamlTable mesh_table = {
     .name = "mesh",
     .size = sizeof(MeshScene),
     .doc = "The triangle mesh of the shell at rest, from a file or generated. A generated one lies in the "
@@ -160,7 +159,7 @@ static const YamlTable mesh_table = {
          .doc = "of a file: joins vertices that are closer than this; 0: none"},
         {0}}};
 
-static const YamlTable pose_table = {
+const YamlTable pose_table = {
     .name = "pose",
     .size = sizeof(PoseScene),
     .doc = "A state to start from.",
@@ -182,35 +181,6 @@ const YamlTable velocity_table = {
                              .doc = "three expressions of the rest position x, y, z, r of a vertex, in m/s"},
                             WHERE_ROW(VelocityScene),
                             {0}}};
-
-static const YamlTable shell_table = {
-    .name = "shell",
-    .size = sizeof(ShellScene),
-    .doc = "A magnetised thin shell.",
-    .fields = (const YamlField[]){
-        {YAML_TABLE(ShellScene, mesh, &mesh_table), .required = true, .doc = "its mesh at rest"},
-        {YAML_OPTIONAL(ShellScene, pose, &pose_table), .doc = "where a job starts; at rest if absent"},
-        {YAML_OPTIONAL(ShellScene, velocity, &velocity_table), .when = "/job: simulate, trajectory",
-         .doc = "of the free coordinates at the start of a motion; at rest if absent"},
-        {YAML_NUMBER(ShellScene, thickness), .unit = "m", .range = "(0, inf)", .required = true,
-         .doc = "thickness h"},
-        {YAML_TABLE(ShellScene, young, &young_table), .required = true, .doc = "Young's modulus"},
-        {YAML_NUMBER(ShellScene, poisson), .range = "[0, 0.5]", .required = true,
-         .doc = "Poisson's ratio (plane stress)"},
-        {YAML_NUMBER(ShellScene, density), .unit = "kg/m^3", .range = "(0, inf)", .fallback = "1000",
-         .doc = "mass density"},
-        {YAML_CHOICE(ShellScene, bending), .choices = YAML_NAMES("midedge", "hinge"), .fallback = "midedge",
-         .doc = "midedge converges on any mesh; hinge is faster, and 5 to 57 % off on crossed and "
-                "unstructured meshes"},
-        {YAML_TABLE(ShellScene, fold, &fold_table), .fallback = "1",
-         .doc = "factor on the curvature of each edge"},
-        {YAML_TABLE(ShellScene, magnetization, &magnetization_table), .fallback = "[0, 0, 0]",
-         .doc = "remanent magnetisation"},
-        {YAML_NUMBER(ShellScene, damping), .when = "/job: simulate, trajectory", .unit = "N s/m",
-         .range = "[0, inf)", .fallback = "0", .doc = "of a simulation: viscous damping at every vertex"},
-        {YAML_VECTOR(ShellScene, gravity), .unit = "m/s^2", .fallback = "[0, 0, 0]",
-         .doc = "acceleration of gravity"},
-        {0}}};
 
 static const YamlTable ball_table = {
     .name = "ball",
@@ -373,7 +343,7 @@ static const YamlTable time_table = {
 
 #define DRAWING_FILE(m, d)                                                                                   \
     {                                                                                                        \
-        YAML_TEXT(OutputScene, m), .when = "/spline", .otherwise = "slender picture shows results",          \
+        YAML_TEXT(OutputScene, m), .when = "/job: draw", .otherwise = "slender picture shows results",       \
                                    .doc = "of a drawing: " d                                                 \
     }
 static const YamlTable output_table = {
@@ -399,7 +369,7 @@ static const YamlTable output_table = {
         DRAWING_FILE(hpgl, "none if absent"),
         {0}}};
 
-const YamlTable scene_table = {
+const YamlTable scene_form = {
     .name = "scene",
     .size = sizeof(Scene),
     .doc =
@@ -415,21 +385,13 @@ const YamlTable scene_table = {
         "all of "
         "them.",
     .fields = (const YamlField[]){
-        {YAML_CHOICE(Scene, job), .choices = job_names, .required = true, .doc = "what to do"},
-        {YAML_OPTIONAL(Scene, shell, &shell_table), .one_of = 1, .required = true,
-         .doc = "the body: a shell"},
-        {YAML_OPTIONAL(Scene, rod, &rod_table), .one_of = 1, .required = true, .doc = "the body: a rod"},
-        {YAML_OPTIONAL(Scene, spline, &spline_table), .one_of = 1, .required = true,
-         .doc = "no body, but a drawing"},
-        {YAML_TABLE(Scene, flux_density, &flux_density_table), .when = "!spline & /rod.solver: newton",
-         .fallback = "[0, 0, 0]", .doc = "applied field"},
-        {YAML_LIST(Scene, fix, &fix_table), .when = "shell",
-         .otherwise = "a rod is held by rod.clamp, rod.hold and rod.end", .doc = "what is held"},
-        {YAML_LIST(Scene, loads, &load_table), .when = "shell",
-         .otherwise = "loads of a rod are under rod.loads", .doc = "dead loads"},
+        {YAML_CHOICE(Scene, job), .choices = scene_job_names, .required = true, .doc = "what to do"},
+        {YAML_TABLE(Scene, flux_density, &flux_density_table), .fallback = "[0, 0, 0]",
+         .doc = "applied field"},
+        {YAML_LIST(Scene, fix, &fix_table), .doc = "what is held"},
+        {YAML_LIST(Scene, loads, &load_table), .doc = "dead loads"},
         {YAML_OPTIONAL(Scene, target, &target_table),
-         .when =
-             "/job: equilibrium, evaluate, design, simulate, trajectory & /rod.solver: newton & !sequence",
+         .when = "/job: equilibrium, evaluate, design, simulate, trajectory & !sequence",
          .doc = "where vertices should be, in all cases without one of their own"},
         {YAML_LIST(Scene, cases, &case_table), .when = "/job: equilibrium, evaluate, design",
          .otherwise = "in a motion a field may be a formula of t",
@@ -439,13 +401,13 @@ const YamlTable scene_table = {
         {YAML_OPTIONAL(Scene, design, &design_table), .when = "/job: design, trajectory",
          .doc = "what a design or trajectory job looks for"},
         {YAML_TABLE(Scene, solver, &solver_table),
-         .when = "/job: equilibrium, evaluate, design, simulate, trajectory, invert & /rod.solver: newton",
-         .fallback = "{}", .doc = "tolerances"},
+         .when = "/job: equilibrium, evaluate, design, simulate, trajectory, invert", .fallback = "{}",
+         .doc = "tolerances"},
         {YAML_TABLE(Scene, load_steps, &load_steps_table), .when = "/job: equilibrium, invert",
          .fallback = "auto", .doc = "how loads come on"},
         {YAML_TABLE(Scene, time, &time_table), .fallback = "0 s",
          .doc = "the time t of formulas, or the steps of a simulation"},
-        {YAML_INTEGER(Scene, modes), .when = "shell", .range = "[0, 100]", .fallback = "0",
+        {YAML_INTEGER(Scene, modes), .range = "[0, 100]", .fallback = "0",
          .doc = "lowest eigenmodes to put into the result"},
         {YAML_CHOICES(Scene, checks), .when = "/job: invert",
          .choices = YAML_NAMES("stability", "self_contact", "round_trip"),

@@ -1,13 +1,17 @@
 /* scene.h - what a scene file says, as plain structs; scene_table is their field table (io/yaml.h) and so the
- * list of all keys. Nothing here is resolved yet: files are not read, groups not looked up (build.h does
+ * list of all keys. What it says of its body is in the body's own folder (shell/front/scene.h). Nothing here is resolved yet: files are not read, groups not looked up (build.h does
  * that).
  *
  * Numbers are SI; an absent number is NAN, an absent choice -1, an absent list or table NULL (YamlKind). */
 #pragma once
-#include "spline/front/scene.h"
 #include "io/yaml.h"
 
 /* ---- Values over faces, edges or space ---- */
+
+/* Helper of a formula: where: {a: "atan2(y, x)"} */
+typedef struct WhereScene {
+    char *name, *formula;
+} WhereScene;
 
 typedef struct NumberGroup {
     char *group;
@@ -56,7 +60,7 @@ typedef struct FluxScene {
     int formula_count, where_count;
 } FluxScene;
 
-/* ---- The shell ---- */
+/* ---- A mesh and its parts ---- */
 
 typedef enum MeshShape { MESH_SHEET, MESH_STRIP, MESH_HEXAGRAM, MESH_DISC, MESH_KIRIGAMI } MeshShape;
 
@@ -80,16 +84,6 @@ typedef struct VelocityScene {
     WhereScene *where;
     int formula_count, where_count;
 } VelocityScene;
-
-typedef struct ShellScene {
-    MeshScene mesh;
-    PoseScene *pose;
-    VelocityScene *velocity;
-    double thickness, poisson, density, damping, gravity[3];
-    NumberScene young, fold;
-    VectorScene magnetization;
-    int bending; /* BendingModel */
-} ShellScene;
 
 typedef struct BallScene {
     double center[3], radius;
@@ -119,87 +113,6 @@ typedef struct LoadScene {
     double force[3], line[3], area[3]; /* one of them */
     SelectionScene *on;
 } LoadScene;
-
-/* ---- The rod ---- */
-
-/* auto, or a standard deviation. */
-typedef struct NoiseScene {
-    int mode; /* 0: auto */
-    double value;
-} NoiseScene;
-
-typedef struct RodCurveScene {
-    char **formula, *file, *parameter;
-    double *range, scale;
-    WhereScene *where;
-    NoiseScene noise;
-    int formula_count, range_count, where_count, strands;
-} RodCurveScene;
-
-/* Strains along a rod. */
-typedef struct StrainScene {
-    double value[3];
-    char **formula, *file;
-    WhereScene *where;
-    int formula_count, where_count;
-} StrainScene;
-
-typedef enum FrameKind { FRAME_FRENET, FRAME_BISHOP } FrameKind;
-
-typedef struct RodFrameScene {
-    int kind, from; /* FrameKind */
-    char *formula, *file;
-} RodFrameScene;
-
-/* Rows of a frame: tangent, n1, n2. */
-typedef struct ClampScene {
-    double position[3], (*frame)[3];
-    int frame_count;
-} ClampScene;
-
-typedef enum HoldKind { HOLD_CLAMPED, HOLD_PINNED } HoldKind;
-
-typedef struct EndScene {
-    double position[3], (*frame)[3];
-    int hold, frame_count; /* HoldKind */
-} EndScene;
-
-typedef struct RodLoadScene {
-    double point, force[3], line[3];
-} RodLoadScene;
-
-typedef struct RodPoseScene {
-    char *file;
-    double (*frame)[3];
-    NoiseScene noise;
-    int frame_count;
-} RodPoseScene;
-
-typedef enum RodSolver { ROD_SOLVER_NEWTON, ROD_SOLVER_PBD } RodSolver;
-
-typedef struct PbdScene {
-    int substeps, sweeps;
-} PbdScene;
-
-typedef enum RodStart { ROD_START_NATURAL, ROD_START_CURVE } RodStart;
-
-typedef struct RodScene {
-    RodCurveScene *curve;
-    StrainScene *natural_strain;
-    RodPoseScene *poses;
-    double length, radius, *ellipse, young, poisson, density, gravity[3], bishop_normal[3], damping;
-    ClampScene clamp;
-    EndScene *end;
-    int elements, ellipse_count, poses_count, loads_count;
-    RodFrameScene frame;
-    RodLoadScene *loads;
-    VectorScene magnetization;
-    VelocityScene *velocity;
-    int start, hold, solver; /* RodStart; HoldKind of the clamp; RodSolver */
-    PbdScene pbd;
-} RodScene;
-
-typedef enum RodCheck { CHECK_STABILITY, CHECK_SELF_CONTACT, CHECK_ROUND_TRIP } RodCheck;
 
 /* ---- Load cases ---- */
 
@@ -311,6 +224,8 @@ typedef struct DesignScene {
 
 /* ---- The whole ---- */
 
+typedef enum SceneCheck { CHECK_STABILITY, CHECK_SELF_CONTACT, CHECK_ROUND_TRIP } SceneCheck;
+
 typedef struct SolverScene {
     int max_iterations;
     double step_tolerance, force_tolerance;
@@ -334,11 +249,11 @@ typedef struct OutputScene {
 
 enum { OUTPUT_SINGLE, OUTPUT_DOUBLE };
 
+enum { BODIES_MAX = 8 };
+
 typedef struct Scene {
-    int job;           /* row of job_rows (job.h) */
-    ShellScene *shell; /* one of these three */
-    RodScene *rod;
-    SplineScene *spline;
+    int job;                /* number of its name (rows.h)                        */
+    void *body[BODIES_MAX]; /* what it says of its body, in the place of its row; else NULL (scene_of) */
     FluxScene flux_density;
     FixScene *fix;
     LoadScene *loads;
@@ -351,8 +266,9 @@ typedef struct Scene {
     TimeScene time;
     int modes;
     OutputScene output;
-    int *checks; /* RodCheck */
+    int *checks; /* SceneCheck */
     int fix_count, loads_count, cases_count, sequence_count, checks_count;
 } Scene;
 
-extern const YamlTable scene_table;
+/* Its keys: the common ones, and one for each body (rows.h). */
+const YamlTable *scene_table(void);

@@ -1,12 +1,14 @@
-/* scene_tables.h - the field tables that scene.c and scene_design.c share. */
+/* scene_tables.h - the field tables that scenes of several bodies share, and the form of the whole. */
 #pragma once
 #include "model/scene.h"
 
-extern const YamlTable where_table, velocity_table;                  /* scene.c        */
-extern const YamlTable young_table, fold_table, magnetization_table; /* scene.c        */
-extern const YamlTable design_table;                                 /* scene_design.c */
-extern const YamlTable rod_table;                                    /* scene_rod.c    */
-extern const YamlTable spline_table;                                 /* scene_spline.c */
+extern const YamlTable where_table, mesh_table, pose_table, velocity_table;
+extern const YamlTable young_table, fold_table, magnetization_table;
+extern const YamlTable design_table; /* scene_design.c */
+
+/* The common keys; its first row is `job`. scene_table (rows.c) has the bodies' too. */
+extern const YamlTable scene_form;
+extern const char *scene_job_names[]; /* rows.c: of all bodies; ends with NULL */
 
 #define WHERE_ROW(S)                                                                                         \
     {                                                                                                        \

@@ -6,7 +6,7 @@ bool stored_scene(const Array *text, YamlFile **file, Scene *scene)
     const char *stored = text->type == ARRAY_TEXT ? text->data : "";
     *scene = (Scene){0};
     *file = yaml_parse("scene", stored, strlen(stored));
-    return yaml_load(*file, &scene_table, scene);
+    return yaml_load(*file, scene_table(), scene);
 }
 
 void stored_result_scene(Result *result, YamlFile **file, Scene *scene)

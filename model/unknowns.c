@@ -1,10 +1,7 @@
 /* The scene's unknowns. */
 #include "base/memory.h"
 #include "base/random.h"
-#include "model/build.h"
 #include "model/model.h"
-#include "job/job.h"
-#include "rod/front/rod_model.h"
 #include <math.h>
 #include <string.h>
 
@@ -58,10 +55,11 @@ static bool add_unknown(Model *model, YamlFile *file, Design *design, Start *sta
     bool ok = true;
     const ParamBlock *block = unknown.block = start->block;
     unknown.group_count = block->count;
-    if (per == PER_GROUP && model->rod)
-        ok = yaml_refuse(file, key("design.unknowns.%s.per", start->name).text, "a rod has no groups");
+    if (per == PER_GROUP && !model->mesh)
+        ok = yaml_refuse(file, key("design.unknowns.%s.per", start->name).text, "%s has no groups",
+                         model->body->noun);
     else if (per == PER_GROUP)
-        unknown.group = face_groups(model->shell->mesh, &unknown.group_count);
+        unknown.group = face_groups(model->mesh, &unknown.group_count);
     if (ok && unknown.group_count == 0)
         ok = yaml_refuse(file, key("design.unknowns.%s.per", start->name).text,
                          "the mesh has no groups of faces");
@@ -102,18 +100,15 @@ static bool number_unknown(Model *model, const Build *b, Design *design, const c
 {
     Start start = start_of(model, name, model->cases[0].stages[0].p, from->noise, seed);
     Key at = key("design.unknowns.%s", name), at_start = key("%s.start", at.text);
-    bool edges = model->shell && start.block->offset == model->shell->fold,
-         ok = check_bounds(b->file, name, from->bounds);
-    if (from->start && model->rod)
-        ok = yaml_refuse(b->file, at_start.text, "the unknown %s of a rod starts at rod.%s", name, name);
-    else if (from->start)
-        ok = (edges ? build_edge_numbers(b, at_start, from->start, start.values)
-                    : build_face_numbers(b, at_start, from->start, start.values)) &&
+    bool ok = check_bounds(b->file, name, from->bounds);
+    if (from->start)
+        ok = model->body->ops->put_numbers(model, b, at_start.text, from->start, start.block, start.values) &&
              ok;
     double mean = 0;
     for (int i = 0; i < start.block->count; i++) mean += start.values[i] / start.block->count;
     Unknown unknown = {.map = UNKNOWN_LINEAR, .scale = mean > 0 ? mean : 1};
-    if (from->scale == SCALE_LOG) unknown.map = UNKNOWN_LOG, unknown.scale = edges ? FOLD_UNIT : 1;
+    if (from->scale == SCALE_LOG)
+        unknown.map = UNKNOWN_LOG, unknown.scale = !strcmp(name, "fold") ? FOLD_UNIT : 1;
     put_bounds(&unknown, from->bounds);
     ok = ok && add_unknown(model, b->file, design, &start, unknown, from->per);
     for (int i = 0; ok && i < start.block->count; i++)
@@ -140,8 +135,7 @@ static bool magnetization_unknown(Model *model, const Build *b, Design *design, 
             yaml_refuse(b->file, key("%s.bounds", at.text).text, "bounds and a magnitude exclude each other");
     if (from->start) {
         Key at_start = key("%s.start", at.text);
-        ok = (model->rod ? rod_model_vectors(b, at_start.text, from->start, model->rod->rod, start.values)
-                         : build_face_vectors(b, at_start, from->start, start.values)) &&
+        ok = model->body->ops->put_vectors(model, b, at_start.text, from->start, start.block, start.values) &&
              ok;
     }
     Unknown unknown = {.map = fixed    ? UNKNOWN_FIXED_LENGTH
@@ -241,7 +235,7 @@ static bool flux_unknown(Model *model, const Build *b, const Scene *scene)
     Random random = random_of(model, block, scene->design->seed);
     Unknown unknown = {.block = block, .scale = from->scale};
     put_bounds(&unknown, from->bounds);
-    if (scene->job == JOB_TRAJECTORY) return flux_over_time(model, b, scene, &random, unknown) && ok;
+    if (model->job->motion) return flux_over_time(model, b, scene, &random, unknown) && ok;
     flux_per_case(model, from, block, &random, unknown);
     return ok;
 }
@@ -256,8 +250,8 @@ static bool add_unknowns(Model *model, const Scene *scene, const Build *b)
     if (unknowns->magnetization)
         ok = magnetization_unknown(model, b, design, unknowns->magnetization, seed) && ok;
     if (unknowns->young) ok = number_unknown(model, b, design, "young", unknowns->young, seed) && ok;
-    if (unknowns->fold && model->rod)
-        ok = yaml_refuse(b->file, "design.unknowns.fold", "a rod has no folds");
+    if (unknowns->fold && !params_find(model->params, "fold"))
+        ok = yaml_refuse(b->file, "design.unknowns.fold", "%s has no folds", model->body->noun);
     else if (unknowns->fold)
         ok = number_unknown(model, b, design, "fold", unknowns->fold, seed) && ok;
     if (unknowns->flux_density) ok = flux_unknown(model, b, scene) && ok;
@@ -298,11 +292,8 @@ static bool add_dmp(Model *model, const Scene *scene, const Build *b)
 
 bool model_design(Model *model, const Scene *scene, YamlFile *file)
 {
-    Build b = build_start(scene, model->shell ? model->shell->mesh : NULL, file);
-    bool trajectory = scene->job == JOB_TRAJECTORY;
-    if (!scene->design)
-        return yaml_refuse(file, "job", "a %s job needs the key `design`",
-                           trajectory ? "trajectory" : "design");
+    Build b = build_start(scene, model->mesh, file);
+    if (!scene->design) return yaml_refuse(file, "job", "a %s job needs the key `design`", model->job->name);
     bool ok = add_unknowns(model, scene, &b) && add_dmp(model, scene, &b);
     return model_objectives(model, scene, file) && ok;
 }

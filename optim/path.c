@@ -129,6 +129,77 @@ bool path_add(Path *path, int frame, const State *state, double dt)
     return true;
 }
 
+/* ---- The motion ---- */
+
+typedef struct PathMarch {
+    Path *path;
+    PathGuess guess;
+    void *self;
+    int frame; /* that is being made */
+    bool failed;
+} PathMarch;
+
+static void load(void *self, double time, double *p)
+{
+    PathMarch *m = self;
+    path_load(m->path, m->frame, time);
+    memcpy(p, m->path->p, (size_t)m->path->problem->params->size * sizeof *p);
+}
+
+static bool move(void *self, double time, double *x)
+{
+    const MarchDef *march = ((PathMarch *)self)->path->march;
+    return march->move(march->self, time, x);
+}
+
+static bool find_start(void *self, double time, double dt, double *x)
+{
+    PathMarch *m = self;
+    (void)time;
+    return m->guess(m->self, m->frame, dt, x);
+}
+
+static void store(void *self, const State *state, double dt)
+{
+    PathMarch *m = self;
+    m->failed |= !path_add(m->path, m->frame, state, dt);
+}
+
+static void add_info(MarchInfo *sum, const MarchInfo *step)
+{
+    NewtonInfo newton = step->newton;
+    newton_add_counts(&newton, &sum->newton);
+    *sum = (MarchInfo){newton, sum->steps + step->steps, sum->refused + step->refused};
+}
+
+bool path_march(Path *path, PathGuess guess, void *self, MarchInfo *info, int *reached)
+{
+    const TrajectoryProblem *problem = path->problem;
+    PathMarch m = {.path = path, .guess = guess, .self = self};
+    MarchDef def = *path->march;
+    def.self = &m, def.load = load, def.stored = store;
+    if (def.move) def.move = move;
+    if (guess) def.guess = find_start;
+    State now = state_clone(problem->start);
+    double *p = mem_copy(path->p, (size_t)problem->params->size, sizeof *p);
+    path_clear(path);
+    system_use_factor(problem->sys, NULL);
+    *reached = 0;
+    for (m.frame = 1; m.frame <= problem->steps && !m.failed; m.frame++) {
+        MarchInfo step;
+        bool ok = march_step(problem->sys, &def, problem->step, p, &now, &step);
+        add_info(info, &step);
+        if (!ok) break;
+        now.time = problem->start->time + problem->step * m.frame; /* not the sum of rounded steps */
+        *reached = m.frame;
+    }
+    state_destroy(&now);
+    mem_free(p);
+    return *reached == problem->steps && !m.failed;
+}
+
+/* ---- Sweeps ---- */
+
 /* The end of step k, with its factor at hand. */
 static Point stand_at(Path *path, int k)
 {

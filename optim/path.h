@@ -1,5 +1,5 @@
 /* path.h - a stored motion: its states, the factor of each step where memory allows, and the two linear
- * sweeps along it. Private to optim/. */
+ * sweeps along it. */
 #pragma once
 #include "optim/trajectory_adjoint.h"
 
@@ -30,6 +30,13 @@ bool path_add(Path *path, int frame, const State *state, double dt);
 /* Of state k: x and what the terms remember. */
 double *path_x(const Path *path, int k);
 double *path_memory(const Path *path, int k);
+
+/* Another start of a step than where the motion is: x of the frame's end, from which the free dofs are taken; false: none. */
+typedef bool (*PathGuess)(void *self, int frame, double dt, double *x);
+
+/* All steps from the problem's start on, with the parameters in path->p and controls, and path->march. False where one
+ * fails: *reached are there. guess may be NULL. The info's counts are sums, its status that of the last step. */
+bool path_march(Path *path, PathGuess guess, void *self, MarchInfo *info, int *reached);
 
 /* The parameters of a step, in path->p. */
 void path_load(Path *path, int frame, double time);

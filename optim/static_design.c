@@ -1,6 +1,7 @@
 #include "optim/static_design.h"
 #include "base/memory.h"
 #include "base/vector.h"
+#include "optim/implicit.h"
 #include <math.h>
 #include <string.h>
 
@@ -8,7 +9,7 @@
 typedef struct Work {
     double *p;               /* of the last evaluation                                 */
     State state;             /* of it                                                  */
-    double *best_p;          /* p of the best design; its state is LoadCase.state      */
+    double *best_p;          /* p of the best design; its state is Case.state      */
     double *best_linearised; /* [dofs] where its factor stands                        */
     double *dp, *dx, *w;     /* directions and gradients                               */
     double *hp;              /* [params] second parameter vector                       */
@@ -20,7 +21,7 @@ typedef struct Work {
 struct StaticDesign {
     const Design *design;
     const Params *params;
-    LoadCase *cases;
+    Case *cases;
     StaticDesignDef def;
     Work *work;
     double *u, *best_u;
@@ -31,7 +32,7 @@ StaticDesignDef static_design_default(void)
     return (StaticDesignDef){.newton = newton_default()};
 }
 
-StaticDesign *static_design_create(const Design *design, const Params *params, LoadCase *cases,
+StaticDesign *static_design_create(const Design *design, const Params *params, Case *cases,
                                    const StaticDesignDef *def)
 {
     StaticDesign *sd = mem_alloc(1, sizeof *sd);
@@ -42,9 +43,9 @@ StaticDesign *static_design_create(const Design *design, const Params *params, L
     for (int c = 0; c < design->case_count; c++) {
         Work *work = &sd->work[c];
         size_t dofs = (size_t)system_dof_count(cases[c].sys), size = (size_t)params->size;
-        work->p = mem_copy(cases[c].p, size, sizeof(double));
-        work->best_p = mem_copy(cases[c].p, size, sizeof(double));
-        work->state = state_clone(cases[c].state);
+        work->p = mem_copy(cases[c].stages[0].p, size, sizeof(double));
+        work->best_p = mem_copy(cases[c].stages[0].p, size, sizeof(double));
+        work->state = state_clone(&cases[c].state);
         work->best_linearised = mem_alloc(dofs, sizeof(double));
         work->dx = mem_alloc(dofs, sizeof(double));
         work->w = mem_alloc(dofs, sizeof(double));
@@ -71,16 +72,16 @@ void static_design_destroy(StaticDesign *sd)
 }
 
 /* x with what is remembered at the best design. */
-static Point point(const LoadCase *load, const double *x, const double *p)
+static Point point(const Case *load, const double *x, const double *p)
 {
-    return (Point){.x = x, .p = p, .memory = load->state->memory, .time = load->state->time};
+    return (Point){.x = x, .p = p, .memory = load->state.memory, .time = load->state.time};
 }
 
 /* Leaves the factor of the best design in the system, shifted by nothing but the base. */
 static bool factor_best(StaticDesign *sd, int c)
 {
     Work *work = &sd->work[c];
-    const LoadCase *load = &sd->cases[c];
+    const Case *load = &sd->cases[c];
     if (work->factored_best) return true;
     Point at = point(load, work->best_linearised, work->best_p);
     system_hessian(load->sys, &at, work->w);
@@ -88,46 +89,23 @@ static bool factor_best(StaticDesign *sd, int c)
     return work->factored_best;
 }
 
-/* dx = -H^-1 (d2E/dx dp) dp at the best design. */
-static void tangent(StaticDesign *sd, int c, const double *dp, double *dx)
-{
-    Point at = point(&sd->cases[c], sd->cases[c].state->x, sd->work[c].best_p);
-    system_param_forward(sd->cases[c].sys, &at, dp, dx);
-    system_solve(sd->cases[c].sys, dx, dx);
-    for (int i = 0; i < system_dof_count(sd->cases[c].sys); i++) dx[i] = -dx[i];
-}
-
-/* dp -= (d2E/dx dp)^T H^-1 gx with the factor at hand; gx is overwritten. */
-static void adjoint(System *sys, const Point *at, double *gx, double *dp)
-{
-    system_solve(sys, gx, gx);
-    for (int i = 0; i < system_dof_count(sys); i++) gx[i] = -gx[i];
-    system_param(sys, at, gx, dp);
-}
-
 /* The best equilibrium, moved along the tangent if that lowers the energy of the new design. */
 static void predict(StaticDesign *sd, int c)
 {
     Work *work = &sd->work[c];
-    const LoadCase *load = &sd->cases[c];
-    int dofs = system_dof_count(load->sys);
-    state_copy(&work->state, load->state);
+    const Case *load = &sd->cases[c];
+    state_copy(&work->state, &load->state);
     if (!work->has_best || !factor_best(sd, c)) return;
     for (int i = 0; i < sd->params->size; i++) work->dp[i] = work->p[i] - work->best_p[i];
-    tangent(sd, c, work->dp, work->dx);
-    Point from = point(load, load->state->x, work->p), to = point(load, work->w, work->p);
-    for (int i = 0; i < dofs; i++) work->w[i] = load->state->x[i] + work->dx[i];
-    system_project(load->sys, load->state->x, work->w);
-    Evaluation moved = system_energy(load->sys, &to);
-    if (moved.finite && moved.energy < system_energy(load->sys, &from).energy)
-        memcpy(work->state.x, work->w, (size_t)dofs * sizeof *work->w);
+    Point best = point(load, load->state.x, work->best_p);
+    implicit_predict(load->sys, &best, work->dp, work->p, &work->state);
 }
 
 /* Objectives at the point and, where dp is not NULL, dF/dp by the adjoint with the factor at hand. */
 static double evaluate_objective(StaticDesign *sd, int c, const Point *at, double *dp)
 {
     Work *work = &sd->work[c];
-    const LoadCase *load = &sd->cases[c];
+    const Case *load = &sd->cases[c];
     double value = 0;
     memset(work->dx, 0, (size_t)system_dof_count(load->sys) * sizeof *work->dx);
     if (dp) memset(dp, 0, (size_t)sd->params->size * sizeof *dp);
@@ -137,14 +115,14 @@ static double evaluate_objective(StaticDesign *sd, int c, const Point *at, doubl
         value +=
             weight * objective->ops->value(objective->self, weight, at->x, at->p, dp ? work->dx : NULL, dp);
     }
-    if (dp) adjoint(load->sys, at, work->dx, dp);
+    if (dp) implicit_adjoint(load->sys, at, work->dx, dp);
     return value;
 }
 
 static CaseInfo evaluate_case(StaticDesign *sd, int c, const double *u, bool with_gradient)
 {
     Work *work = &sd->work[c];
-    const LoadCase *load = &sd->cases[c];
+    const Case *load = &sd->cases[c];
     const NewtonObserver *observer = sd->def.observer.iteration ? &sd->def.observer : NULL;
     CaseInfo info = {.objective = INFINITY};
     design_apply(sd->design, c, u, work->p);
@@ -202,7 +180,7 @@ void static_design_accept(StaticDesign *sd)
         Work *work = &sd->work[c];
         System *sys = sd->cases[c].sys;
         memcpy(work->best_p, work->p, (size_t)sd->params->size * sizeof *work->p);
-        state_copy(sd->cases[c].state, &work->state);
+        state_copy(&sd->cases[c].state, &work->state);
         memcpy(work->best_linearised, system_linearised(sys),
                (size_t)system_dof_count(sys) * sizeof *work->best_linearised);
         work->has_best = work->factored_best = true;
@@ -212,7 +190,7 @@ void static_design_accept(StaticDesign *sd)
 
 CaseState static_design_state(StaticDesign *sd, int load_case)
 {
-    return (CaseState){sd->cases[load_case].state, sd->work[load_case].best_linearised};
+    return (CaseState){&sd->cases[load_case].state, sd->work[load_case].best_linearised};
 }
 
 void static_design_restore(StaticDesign *sd, const double *u)
@@ -230,11 +208,11 @@ void static_design_restore(StaticDesign *sd, const double *u)
 static void add_products(StaticDesign *sd, int c, double *hx, double *hp)
 {
     Work *work = &sd->work[c];
-    const LoadCase *load = &sd->cases[c];
+    const Case *load = &sd->cases[c];
     for (int k = 0; k < load->objective_count; k++) {
         const Objective *objective = &load->objectives[k];
         if (objective->ops->product)
-            objective->ops->product(objective->self, load->weight * objective->weight, load->state->x,
+            objective->ops->product(objective->self, load->weight * objective->weight, load->state.x,
                                     work->best_p, work->dx, work->hp, hx, hp);
     }
 }
@@ -255,7 +233,7 @@ static double find_soft_pull(StaticDesign *sd, int c)
 {
     Work *work = &sd->work[c];
     System *sys = sd->cases[c].sys;
-    Point at = point(&sd->cases[c], sd->cases[c].state->x, work->best_p);
+    Point at = point(&sd->cases[c], sd->cases[c].state.x, work->best_p);
     int dofs = system_dof_count(sys);
     evaluate_objective(sd, c, &at, work->dp); /* leaves -a in dx */
     memset(work->hp, 0, (size_t)sd->params->size * sizeof *work->hp);
@@ -271,7 +249,7 @@ static double find_soft_pull(StaticDesign *sd, int c)
 static void product_case(StaticDesign *sd, int c, const double *v, double soft)
 {
     Work *work = &sd->work[c];
-    const LoadCase *load = &sd->cases[c];
+    const Case *load = &sd->cases[c];
     int dofs = system_dof_count(load->sys);
     bool factored = factor_best(sd, c);
     if (factored && soft > 0 && work->soft_pull < 0) work->soft_pull = find_soft_pull(sd, c);
@@ -279,13 +257,13 @@ static void product_case(StaticDesign *sd, int c, const double *v, double soft)
     memset(work->dp, 0, (size_t)sd->params->size * sizeof *work->dp);
     if (!factored) return;
     design_forward(sd->design, c, sd->best_u, v, work->hp);
-    tangent(sd, c, work->hp, work->dx);
+    Point at = point(load, load->state.x, work->best_p);
+    implicit_tangent(load->sys, &at, work->hp, work->dx);
     memset(work->w, 0, (size_t)dofs * sizeof *work->w);
     if (soft > 0) soften(load->sys, work->dx, work->w);
     for (int i = 0; soft > 0 && i < dofs; i++) work->w[i] *= soft * work->soft_pull;
     add_products(sd, c, work->w, work->dp);
-    Point at = point(load, load->state->x, work->best_p);
-    adjoint(load->sys, &at, work->w, work->dp);
+    implicit_adjoint(load->sys, &at, work->w, work->dp);
 }
 
 void static_design_product(StaticDesign *sd, const double *v, double soft, double *out)
@@ -298,7 +276,7 @@ void static_design_product(StaticDesign *sd, const double *v, double soft, doubl
 
 void static_design_param_gradient(StaticDesign *sd, int load_case, double *dp)
 {
-    Point at = point(&sd->cases[load_case], sd->cases[load_case].state->x, sd->work[load_case].best_p);
+    Point at = point(&sd->cases[load_case], sd->cases[load_case].state.x, sd->work[load_case].best_p);
     memset(dp, 0, (size_t)sd->params->size * sizeof *dp);
     if (factor_best(sd, load_case)) evaluate_objective(sd, load_case, &at, dp);
 }

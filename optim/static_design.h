@@ -9,19 +9,9 @@
  * Cases are independent of each other and may run in parallel threads; their sums are taken in order, so the
  * result does not depend on the number of threads. */
 #pragma once
+#include "optim/case.h"
 #include "optim/design.h"
-#include "solve/objective.h"
 #include "solve/newton.h"
-
-typedef struct LoadCase {
-    const char *name; /* borrowed, all of them */
-    System *sys;
-    double *p;    /* [params] the case's loads; design_apply overwrites the unknown blocks   */
-    State *state; /* equilibrium of the best design; at first, where to start from; at the loads' time */
-    const Objective *objectives;
-    int objective_count;
-    double weight;
-} LoadCase;
 
 typedef struct StaticDesign StaticDesign;
 
@@ -33,8 +23,8 @@ typedef struct StaticDesignDef {
 
 StaticDesignDef static_design_default(void);
 
-/* Borrows design and cases. */
-StaticDesign *static_design_create(const Design *design, const Params *params, LoadCase *cases,
+/* Borrows design and cases; their unknowns in stages[0].p are overwritten, state is that of the best design. */
+StaticDesign *static_design_create(const Design *design, const Params *params, Case *cases,
                                    const StaticDesignDef *def);
 void static_design_destroy(StaticDesign *sd);
 

@@ -16,8 +16,7 @@ struct Trajectory {
     double *guess, *seed; /* [rows][dofs] a tangent along the best path; dF/dx of states */
     int guess_rows, seed_rows;
     double *dv; /* [dofs] */
-    int frame;  /* that is being made */
-    bool guessed, failed;
+    bool guessed;
 };
 
 TrajectoryDef trajectory_default(void)
@@ -27,23 +26,6 @@ TrajectoryDef trajectory_default(void)
 }
 
 /* ---- Life ---- */
-
-static bool find_guess(void *self, double time, double dt, double *x);
-static void store(void *self, const State *state, double dt);
-
-static void load(void *self, double time, double *p)
-{
-    Trajectory *t = self;
-    Path *path = &t->paths[1 - t->best];
-    path_load(path, t->frame, time);
-    memcpy(p, path->p, (size_t)t->problem.params->size * sizeof *p);
-}
-
-static bool move(void *self, double time, double *x)
-{
-    Trajectory *t = self;
-    return t->def.march.move(t->def.march.self, time, x);
-}
 
 Trajectory *trajectory_create(const TrajectoryProblem *problem, const TrajectoryDef *def)
 {
@@ -103,56 +85,16 @@ static void guess_motion(Trajectory *t)
 
 /* The best motion's state at the end of this frame, moved along the tangent; its factor is a better
  * preconditioner than that of the step before. */
-static bool find_guess(void *self, double time, double dt, double *x)
+static bool find_guess(void *self, int frame, double dt, double *x)
 {
     Trajectory *t = self;
     const Path *best = &t->paths[t->best];
-    (void)time;
     if (!t->guessed || dt != t->problem.step) return false;
-    int k = best->end[t->frame], dofs = best->dofs;
+    int k = best->end[frame], dofs = best->dofs;
     for (int i = 0; i < dofs; i++)
         if (!system_is_fixed(t->problem.sys, i)) x[i] = t->guess[(size_t)k * (size_t)dofs + (size_t)i];
     if (best->factor[k]) system_use_factor(t->problem.sys, best->factor[k]);
     return true;
-}
-
-static void store(void *self, const State *state, double dt)
-{
-    Trajectory *t = self;
-    t->failed |= !path_add(&t->paths[1 - t->best], t->frame, state, dt);
-}
-
-static void add_info(MarchInfo *sum, const MarchInfo *step)
-{
-    NewtonInfo newton = step->newton;
-    newton_add_counts(&newton, &sum->newton);
-    *sum = (MarchInfo){newton, sum->steps + step->steps, sum->refused + step->refused};
-}
-
-/* All steps with the parameters of the path at work; false where one fails. */
-static bool march(Trajectory *t, TrajectoryInfo *info)
-{
-    const TrajectoryProblem *problem = &t->problem;
-    Path *path = &t->paths[1 - t->best];
-    MarchDef def = t->def.march;
-    def.self = t, def.load = load, def.stored = store, def.guess = find_guess;
-    def.move = t->def.march.move ? move : NULL;
-    State now = state_clone(problem->start);
-    double *p = mem_copy(path->p, (size_t)problem->params->size, sizeof *p);
-    path_clear(path);
-    system_use_factor(problem->sys, NULL);
-    t->failed = false;
-    for (t->frame = 1; t->frame <= problem->steps && !t->failed; t->frame++) {
-        MarchInfo step;
-        bool ok = march_step(problem->sys, &def, problem->step, p, &now, &step);
-        add_info(&info->march, &step);
-        if (!ok) break;
-        now.time = problem->start->time + problem->step * t->frame; /* not the sum of rounded steps */
-        info->reached = t->frame;
-    }
-    state_destroy(&now);
-    mem_free(p);
-    return info->reached == problem->steps && !t->failed;
 }
 
 /* ---- The objective ---- */
@@ -183,7 +125,7 @@ double trajectory_evaluate(Trajectory *t, const double *u, double *gradient, Tra
     memcpy(path->p, t->problem.p, (size_t)t->problem.params->size * sizeof *path->p);
     design_apply(design, 0, u, path->p);
     guess_motion(t);
-    bool ok = march(t, info);
+    bool ok = path_march(path, find_guess, t, &info->march, &info->reached);
     info->forward = clock_seconds() - begin;
     if (!ok) return INFINITY;
     double F = objective(t, path, NULL, NULL);

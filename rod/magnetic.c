@@ -4,8 +4,8 @@
  * G = dB/dx, so that their positions must be dofs.
  *
  * With u = R^T B and Q = R M a turn of the node feels u x M, its position -G^T Q. */
-#include "surface/flux.h"
 #include "rod/term.h"
+#include "surface/flux.h"
 #include <assert.h>
 
 enum { TURN = 0, PLACE = 6 }; /* an element's dofs: turns of both nodes; where fields vary, their positions */

@@ -17,11 +17,11 @@
  * equilibria. */
 #pragma once
 #include "base/quat.h"
-#include "surface/flux_field.h"
 #include "rod/frame.h"
 #include "rod/section.h"
 #include "solve/params.h"
 #include "solve/system.h"
+#include "surface/flux_field.h"
 
 typedef enum RodSupport { ROD_FREE, ROD_PINNED, ROD_CLAMPED } RodSupport;
 

@@ -4,10 +4,10 @@
  * away from the mean of its two faces' normals (the director of the mid-edge model; zero in the hinge model).
  * Energies follow [Chen, Ni, Zhu, Wang, Chen 2022, eqs. 18-25] with the corrections in docs/theory.md. */
 #pragma once
-#include "surface/flux_field.h"
-#include "surface/mesh.h"
 #include "solve/params.h"
 #include "solve/system.h"
+#include "surface/flux_field.h"
+#include "surface/mesh.h"
 
 typedef enum BendingModel {
     BENDING_MIDEDGE, /* one angle per edge: converges on any mesh  [Grinspun et al. 2006] */

@@ -4,8 +4,8 @@
  * A Direct is what follows from a pattern alone. A Factor is its numbers and a share of the Direct that they were made
  * in, so that it outlives the matrix and its pattern; whoever keeps one shares it. */
 #pragma once
-#include "solve/pattern.h"
 #include "base/workers.h"
+#include "solve/pattern.h"
 #include <stdbool.h>
 
 typedef struct Direct Direct;

@@ -1,5 +1,5 @@
-#include "solve/newton_private.h"
 #include "base/memory.h"
+#include "solve/newton_private.h"
 #include <float.h>
 #include <math.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 /* Ways out of a saddle: the mode of lowest curvature, and how far to go along it. */
-#include "solve/newton_private.h"
 #include "base/random.h"
+#include "solve/newton_private.h"
 #include <float.h>
 #include <math.h>
 

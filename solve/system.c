@@ -1,5 +1,5 @@
-#include "solve/system_private.h"
 #include "base/memory.h"
+#include "solve/system_private.h"
 #include <assert.h>
 #include <math.h>
 #include <string.h>

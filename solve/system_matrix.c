@@ -1,6 +1,6 @@
 /* The System's matrix: its pattern, where each element's entries go, and what Bulks put into it. */
-#include "solve/system_private.h"
 #include "base/memory.h"
+#include "solve/system_private.h"
 #include <math.h>
 #include <string.h>
 

@@ -1,7 +1,7 @@
 /* A leash: no energy, but no stroke gets further in one step than some distance, be it by a node or by a
  * control point beside it. Each is held for itself, so that one that would leap does not hold up all others. */
-#include "spline/relax_private.h"
 #include "base/memory.h"
+#include "spline/relax_private.h"
 #include <math.h>
 
 typedef struct Leash {

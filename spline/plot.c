@@ -1,6 +1,7 @@
 #include "spline/plot.h"
 #include "base/cubic.h"
 #include "base/memory.h"
+#include "base/plain.h"
 #include <stdbool.h>
 #include <stdlib.h>
 
@@ -142,4 +143,9 @@ void spline_plot_clear(Plot *plot)
     }
     mem_free(plot->layers);
     *plot = (Plot){0};
+}
+
+bool spline_pen_is_name(const char *name)
+{
+    return *name && plain_is(name);
 }

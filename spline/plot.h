@@ -16,3 +16,6 @@ typedef struct SplinePen {
 Plot spline_plot(const Strokes *strokes, const SplinePage *page, const SplinePen *pens, int pen_count);
 
 void spline_plot_clear(Plot *plot);
+
+/* Is it a line of text that may name a pen? */
+bool spline_pen_is_name(const char *name);

@@ -1,6 +1,6 @@
-#include "spline/relax_private.h"
 #include "base/clock.h"
 #include "base/memory.h"
+#include "spline/relax_private.h"
 #include <math.h>
 
 static const struct {

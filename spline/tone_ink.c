@@ -1,5 +1,5 @@
-#include "spline/tone.h"
 #include "base/memory.h"
+#include "spline/tone.h"
 
 /* Strips are more than threads, so that these end at about the same time; where they are cut shall not cost a look at
  * all points. */

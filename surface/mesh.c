@@ -1,7 +1,7 @@
-#include "surface/mesh_private.h"
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "base/weld.h"
+#include "surface/mesh_private.h"
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>

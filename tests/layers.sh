@@ -1,21 +1,33 @@
 #!/bin/sh
-# Fails where an include breaks the picture in docs/README.md.
+# Fails where an include breaks the picture in docs/README.md, or a file asks what kind of body a model has.
 cd "$1" || exit 2
 bad=0
 check() { # folder, folders it may include (a front is no part of its body's folder)
     found=$(grep -Hn '#include "[a-z]*/' "$1"/*.c "$1"/*.h 2>/dev/null | grep -Ev "#include \"($2)/[a-z_0-9]*\.h\"")
     [ -z "$found" ] || { echo "$1/ may include only $2:"; echo "$found"; bad=1; }
 }
+bodies='shell|rod|spline'
+physics='base|solve|io|surface'
 check base 'base'
 check solve 'base|solve'
 check io 'base|io'
 check optim 'base|solve|optim'
-check surface 'base|solve|io|surface'
-check shell 'base|solve|io|surface|shell'
-check rod 'base|solve|io|surface|rod'
+check surface "$physics"
+check shell "$physics|shell"
+check rod "$physics|rod"
 check spline 'base|solve|io|spline'
-bodies='base|solve|io|surface|optim|model|job'
-check shell/front "$bodies|shell|shell/front"
-check rod/front "$bodies|rod|rod/front"
-check spline/front "$bodies|spline|spline/front"
+check model "$physics|optim|model"
+check job "$physics|optim|model|job"
+check shell/front "$physics|optim|model|job|shell|shell/front"
+check rod/front "$physics|optim|model|job|rod|rod/front"
+check spline/front "$physics|optim|model|job|spline|spline/front"
+check view 'base|io|spline|view'
+check lib "$physics|optim|model|job|lib|[a-z]*/front"
+check cli "$physics|optim|model|job|lib|view|cli|spline"
+
+# What is not alike for bodies and jobs is in their rows (model/rows.h).
+for folder in base solve io optim surface model job view lib cli; do
+    found=$(grep -HnE "(->|\.)($bodies|solid|drawing)\b[^/\"]|\b(JOB|BODY)_[A-Z]" $folder/*.[ch] | grep -v '#include')
+    [ -z "$found" ] || { echo "$folder/ asks for the kind of a body or job:"; echo "$found"; bad=1; }
+done
 exit $bad

@@ -1,8 +1,8 @@
 /* shell_fixture.h - shells of generated meshes, and what is solved with them, for tests. */
 #pragma once
 #include "base/memory.h"
-#include "surface/shapes.h"
 #include "shell/shell.h"
+#include "surface/shapes.h"
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -10,9 +10,7 @@
 typedef struct Fixture {
     Shell *shell;
     Design design;
-    LoadCase cases[2];
-    State states[2]; /* theirs */
-    Objective objective;
+    Case cases[2];
     StaticDesign *sd;
     double *u;
 } Fixture;
@@ -41,10 +39,8 @@ static void make_cases(Fixture *f, Random *random)
         memcpy(target[v], shell->mesh->rest[v], sizeof *target);
         target[v][2] = 20 * (target[v][0] * target[v][0] + target[v][1] * target[v][1]);
     }
-    f->objective = objective_target(count, all, (const double(*)[3])target, 1);
-    mem_free(all);
-    mem_free(target);
-    double *M = mem_alloc(3 * (size_t)shell->mesh->face_count, sizeof *M);
+    double *M = mem_alloc(3 * (size_t)shell->mesh->face_count, sizeof *M),
+           *x = mem_alloc((size_t)shell_dof_count(shell), sizeof *x);
     for (int i = 0; i < 3 * shell->mesh->face_count; i++) M[i] = 2e4 * random_signed(random);
     for (int c = 0; c < 2; c++) {
         double *p = mem_alloc((size_t)shell->params.size, sizeof *p);
@@ -52,11 +48,16 @@ static void make_cases(Fixture *f, Random *random)
         for (int i = 0; i < shell->mesh->face_count; i++) p[shell->young + i] = 1e5;
         memcpy(p + shell->magnetization, M, 3 * (size_t)shell->mesh->face_count * sizeof *M);
         p[shell->flux_density] = 0.01, p[shell->flux_density + 2] = c ? -0.03 : 0.05;
-        System *sys = shell_system(shell);
-        f->states[c] = system_state(sys);
-        shell_rest_state(shell, f->states[c].x);
-        f->cases[c] = (LoadCase){c ? "down" : "up", sys, p, &f->states[c], &f->objective, 1, c ? 0.5 : 1};
+        f->cases[c] = case_create(c ? "down" : "up", p, (size_t)shell->params.size, 0);
+        f->cases[c].weight = c ? 0.5 : 1;
+        *case_add_objective(&f->cases[c]) = objective_target(count, all, (const double(*)[3])target, 1);
+        shell_rest_state(shell, x);
+        case_start(&f->cases[c], shell_system(shell), x);
+        mem_free(p);
     }
+    mem_free(all);
+    mem_free(target);
+    mem_free(x);
     mem_free(M);
 }
 
@@ -72,12 +73,7 @@ static Fixture make_fixture(BendingModel bending, Unknown unknown, const char *b
 static void free_fixture(Fixture *f)
 {
     static_design_destroy(f->sd);
-    for (int c = 0; c < 2; c++) {
-        system_destroy(f->cases[c].sys);
-        mem_free(f->cases[c].p);
-        state_destroy(&f->states[c]);
-    }
-    f->objective.ops->destroy(f->objective.self);
+    for (int c = 0; c < 2; c++) case_clear(&f->cases[c]);
     mem_free(f->u);
     design_clear(&f->design);
     shell_destroy(f->shell);
@@ -92,15 +88,15 @@ static double tangent_slope(const Fixture *f, const double *v)
            *dx = mem_alloc((size_t)dofs, sizeof *dx);
     double *gx = mem_alloc((size_t)dofs, sizeof *gx);
     for (int c = 0; c < 2; c++) {
-        const LoadCase *load = &f->cases[c];
-        double *p = mem_copy(load->p, (size_t)f->shell->params.size, sizeof *p);
+        const Case *load = &f->cases[c];
+        double *p = mem_copy(load->stages[0].p, (size_t)f->shell->params.size, sizeof *p);
         design_apply(&f->design, c, f->u, p);
         design_forward(&f->design, c, f->u, v, dp);
-        Point at = state_point(load->state, p);
+        Point at = state_point(&load->state, p);
         system_param_forward(load->sys, &at, dp, dx);
         system_solve(load->sys, dx, dx);
         memset(gx, 0, (size_t)dofs * sizeof *gx);
-        f->objective.ops->value(f->objective.self, load->weight, load->state->x, p, gx, dp);
+        load->objectives[0].ops->value(load->objectives[0].self, load->weight, load->state.x, p, gx, dp);
         for (int i = 0; i < dofs; i++) slope -= gx[i] * dx[i];
         mem_free(p);
     }
@@ -114,17 +110,17 @@ static double tangent_slope(const Fixture *f, const double *v)
  * positions only. */
 static void find_directions(const Fixture *f, int c, const double *v, double *dx, double *a)
 {
-    const LoadCase *load = &f->cases[c];
+    const Case *load = &f->cases[c];
     int dofs = shell_dof_count(f->shell);
-    double *p = mem_copy(load->p, (size_t)f->shell->params.size, sizeof *p);
+    double *p = mem_copy(load->stages[0].p, (size_t)f->shell->params.size, sizeof *p);
     double *dp = mem_alloc((size_t)f->shell->params.size, sizeof *dp);
     design_apply(&f->design, c, f->u, p);
     design_forward(&f->design, c, f->u, v, dp);
-    Point at = state_point(load->state, p);
+    Point at = state_point(&load->state, p);
     system_param_forward(load->sys, &at, dp, dx);
     system_solve(load->sys, dx, dx);
     memset(a, 0, (size_t)dofs * sizeof *a);
-    f->objective.ops->value(f->objective.self, load->weight, load->state->x, p, a, dp);
+    load->objectives[0].ops->value(load->objectives[0].self, load->weight, load->state.x, p, a, dp);
     system_solve(load->sys, a, a);
     for (int i = system_position_count(load->sys); i < dofs; i++) dx[i] = a[i] = 0;
     mem_free(p);
@@ -171,7 +167,7 @@ static void check(BendingModel bending, const char *block, Unknown unknown)
     make_cases(&f, &random);
     int n = f.design.size;
     f.u = mem_alloc((size_t)n, sizeof *f.u);
-    for (int c = 0; c < 2; c++) design_read(&f.design, c, f.cases[c].p, f.u);
+    for (int c = 0; c < 2; c++) design_read(&f.design, c, f.cases[c].stages[0].p, f.u);
     StaticDesignDef def = static_design_default();
     f.sd = static_design_create(&f.design, &f.shell->params, f.cases, &def);
 

@@ -1,7 +1,7 @@
 /* Every file in tests/broken is refused with the sentence that expected.txt has for it. */
 #include "base/memory.h"
-#include "model/model.h"
 #include "io/mesh_file.h"
+#include "model/model.h"
 #include "surface/mesh.h"
 #include <glob.h>
 #include <setjmp.h>
@@ -33,11 +33,11 @@ static char *scene_sentence(const char *path)
 {
     Scene scene;
     YamlFile *file = yaml_read(path);
-    Model *model = yaml_load(file, &scene_table, &scene) ? model_create(&scene, file) : NULL;
+    Model *model = yaml_load(file, scene_table(), &scene) ? model_create(&scene, file) : NULL;
     char *report = yaml_report(file);
     assert_null(model);
     assert_true(yaml_error_count(file) > 0);
-    yaml_clear(&scene_table, &scene);
+    yaml_clear(scene_table(), &scene);
     yaml_destroy(file);
     return report;
 }
@@ -87,7 +87,7 @@ static void test_misspelt(void **state)
     for (size_t k = 0; k < sizeof scenes / sizeof *scenes; k++) {
         Scene scene;
         YamlFile *file = yaml_read(scenes[k]);
-        assert_false(yaml_load(file, &scene_table, &scene));
+        assert_false(yaml_load(file, scene_table(), &scene));
         assert_int_equal(yaml_error_count(file), 1);
         yaml_destroy(file);
     }

@@ -1,9 +1,9 @@
 /* Pages of curves: which views, where they go, and that what is drawn lies where its scales say. */
 #include "base/memory.h"
-#include "view/curves_layout.h"
-#include "view/page.h"
 #include "leaks.h"
 #include "png_fixture.h"
+#include "view/curves_layout.h"
+#include "view/page.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,7 +1,7 @@
 /* Drawings from scenes: pages, pens, what each part shall cover, directions. */
 #include "base/memory.h"
-#include "spline/front/drawing.h"
 #include "spline/direction.h"
+#include "spline/front/drawing.h"
 #include "tests/leaks.h"
 #include <math.h>
 #include <stdio.h>
@@ -19,9 +19,10 @@ static Drawing *drawing_of(const char *entry)
     Scene scene;
     snprintf(text, sizeof text, "slender: 1\njob: draw\nspline: {%s}\n", entry);
     YamlFile *file = yaml_parse("test_drawing.yaml", text, strlen(text));
-    Drawing *drawing = yaml_load(file, &scene_table, &scene) ? drawing_create(scene.spline, file) : NULL;
+    Drawing *drawing =
+        yaml_load(file, scene_table(), &scene) ? drawing_create(spline_scene(&scene), file) : NULL;
     if (!drawing) fail_msg("%s", yaml_report(file));
-    yaml_clear(&scene_table, &scene);
+    yaml_clear(scene_table(), &scene);
     yaml_destroy(file);
     return drawing;
 }

@@ -37,7 +37,7 @@ static const char SCENE[] = "slender: 1\n"
 static YamlFile *load(Scene *scene)
 {
     YamlFile *file = yaml_parse("scene.yaml", SCENE, strlen(SCENE));
-    if (!yaml_load(file, &scene_table, scene)) fail_msg("%s", yaml_report(file));
+    if (!yaml_load(file, scene_table(), scene)) fail_msg("%s", yaml_report(file));
     return file;
 }
 
@@ -82,7 +82,7 @@ static void test_contents(void **state)
     mem_free(now);
     mem_free(before);
     mem_free(keys);
-    yaml_clear(&scene_table, &scene);
+    yaml_clear(scene_table(), &scene);
     yaml_destroy(file);
     assert_int_equal(mem_live_count(), blocks);
 }

@@ -10,9 +10,9 @@
 #include "base/memory.h"
 #include "base/random.h"
 #include "base/vec3.h"
+#include "base/weld.h"
 #include "surface/mesh.h"
 #include "surface/shapes.h"
-#include "base/weld.h"
 
 /* A file on the stack: vertices on lines 1, 2, ..., faces on lines 21, 22, ... */
 typedef struct Surface {

@@ -1,9 +1,9 @@
 /* Metrics of drawings: exact coverage of simple strokes; the figures of the benchmark's script. */
-#include "spline_fixture.h"
 #include "base/clock.h"
 #include "spline/coverage.h"
 #include "spline/metrics.h"
 #include "spline/tone.h"
+#include "spline_fixture.h"
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdbool.h>

@@ -1,6 +1,7 @@
 /* What the entries of a scene become: values, loads, motion, fields, unknowns. */
 #include "base/memory.h"
 #include "model/model.h"
+#include "shell/shell.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -21,13 +22,18 @@ static Built build_text(char *text)
 {
     Built b;
     b.file = yaml_parse("test.yaml", text, strlen(text));
-    b.model = yaml_load(b.file, &scene_table, &b.scene) ? model_create(&b.scene, b.file) : NULL;
+    b.model = yaml_load(b.file, scene_table(), &b.scene) ? model_create(&b.scene, b.file) : NULL;
     if (!b.model) fail_msg("%s", yaml_report(b.file));
     mem_free(text);
     return b;
 }
 
 /* A scene of a 4 x 2 sheet, 40 x 20 mm, with these lines below. */
+static const Shell *shell_of(const Built *b)
+{
+    return b->model->self;
+}
+
 static Built build(const char *job, const char *shell, const char *lines)
 {
     return build_text(mem_format(
@@ -39,7 +45,7 @@ static Built build(const char *job, const char *shell, const char *lines)
 static void clear(Built *b)
 {
     model_destroy(b->model);
-    yaml_clear(&scene_table, &b->scene);
+    yaml_clear(scene_table(), &b->scene);
     yaml_destroy(b->file);
 }
 
@@ -51,8 +57,7 @@ static const double *params_of(const Built *b, int load_case, int stage)
 static void sum_loads(const Built *b, const double *p, double *sum)
 {
     memset(sum, 0, 3 * sizeof *sum);
-    for (int i = 0; i < 3 * b->model->shell->mesh->vertex_count; i++)
-        sum[i % 3] += p[b->model->shell->load + i];
+    for (int i = 0; i < 3 * b->model->mesh->vertex_count; i++) sum[i % 3] += p[shell_of(b)->load + i];
 }
 
 static void test_values(void **state)
@@ -63,7 +68,7 @@ static void test_values(void **state)
                     "  young: \"1e6*(1 + step(x - 0.02))\"\n  magnetization: {formula: [\"a\", \"0\", "
                     "\"x\"], where: {a: \"2*y\"}}\n",
                     "fix: [{group: root, clamp: true}, {vertices: [9], axes: z}]\n");
-    const Shell *shell = b.model->shell;
+    const Shell *shell = b.model->self;
     const Mesh *mesh = shell->mesh;
     const double *p = params_of(&b, 0, 0);
     for (int f = 0; f < mesh->face_count; f++) {
@@ -101,8 +106,8 @@ static void test_loads(void **state)
     assert_true(sum[0] == 0 && fabs(sum[2] - 5 * 0.02) < 1e-14);
     sum_loads(&b, params_of(&b, 0, 3), sum); /* what a stage does not say stays */
     assert_true(fabs(sum[0] - 1) < 1e-14 && fabs(sum[2] - 100 * 0.04 * 0.02) < 1e-14);
-    assert_true(params_of(&b, 0, 3)[b.model->shell->gravity + 1] == -10 &&
-                params_of(&b, 0, 1)[b.model->shell->gravity + 1] == 0);
+    assert_true(params_of(&b, 0, 3)[shell_of(&b)->gravity + 1] == -10 &&
+                params_of(&b, 0, 1)[shell_of(&b)->gravity + 1] == 0);
     assert_true(b.model->cases[0].stages[3].time == 2);
     clear(&b);
 }
@@ -115,7 +120,7 @@ static void test_motion(void **state)
                     "fix: [{group: root}, {group: tip, axes: xz, move: [\"x - 0.001*t\", \"y\", \"z + "
                     "0.004*t\"]}]\n");
     const Indices *tip = &b.model->motions[0].vertices;
-    double *x = mem_copy(b.model->x, (size_t)shell_dof_count(b.model->shell), sizeof *x);
+    double *x = mem_copy(b.model->x, (size_t)shell_dof_count(b.model->self), sizeof *x);
     int v = tip->items[0];
     double y = x[3 * v + 1];
     assert_true(model_move(b.model, 2, 0.5, x, &err));
@@ -137,7 +142,7 @@ static void test_fields(void **state)
         "cases:\n  - {name: uniform}\n  - {flux_density: {dipole: {at: [0, 0, 1], moment: [0, 0, 2]}}}\n"
         "  - {flux_density: {magnet: {at: [0, 0, 1], remanence: [0, 0, 1.2], volume: 1e-6}}}\n"
         "design: {unknowns: {flux_density: {noise: 1 mT}}, objectives: [{target: 1}]}\n");
-    const Shell *shell = b.model->shell;
+    const Shell *shell = b.model->self;
     assert_int_equal(shell->fields.count, 2);
     assert_true(fabs(params_of(&b, 0, 0)[shell->flux_density + 2] - 0.02) < 1.01e-3);
     for (int c = 0; c < 3; c++)
@@ -161,8 +166,8 @@ static void test_timed(void **state)
                        "%s/test_model_field.csv}\n",
                        folder);
     Built b = build("simulate", "  young: 1 MPa\n  damping: 1e-4\n", lines);
-    double *p = b.model->cases[0].stages[0].p, *B = p + b.model->shell->flux_density;
-    assert_true(fabs(B[0] - 0.01) < 1e-16 && fabs(B[2] - 0.02) < 1e-16 && p[b.model->shell->damping] == 1e-4);
+    double *p = b.model->cases[0].stages[0].p, *B = p + shell_of(&b)->flux_density;
+    assert_true(fabs(B[0] - 0.01) < 1e-16 && fabs(B[2] - 0.02) < 1e-16 && p[shell_of(&b)->damping] == 1e-4);
     const double times[4] = {-1, 1, 2, 9}, exact[4] = {0.01, 0.03, 0.015, 0};
     for (int k = 0; k < 4; k++)
         assert_true(model_load(b.model, times[k], p, &err) && fabs(B[2] - exact[k]) < 1e-16);
@@ -175,7 +180,7 @@ static void test_timed(void **state)
     unlink("test_model_field.csv");
     b = build("simulate", "  young: 1 MPa\n",
               "fix: [{group: root}]\ntime: {step: 1 ms, steps: 2}\nflux_density: [\"0\", \"t\", \"2*t\"]\n");
-    p = b.model->cases[0].stages[0].p, B = p + b.model->shell->flux_density;
+    p = b.model->cases[0].stages[0].p, B = p + shell_of(&b)->flux_density;
     assert_true(B[1] == 0 && model_load(b.model, 0.25, p, &err) && B[1] == 0.25 && B[2] == 0.5);
     clear(&b);
 }
@@ -194,9 +199,9 @@ static void test_unknowns(void **state)
                             lines);
     Built b;
     b.file = yaml_parse("test.yaml", text, strlen(text));
-    b.model = yaml_load(b.file, &scene_table, &b.scene) ? model_create(&b.scene, b.file) : NULL;
+    b.model = yaml_load(b.file, scene_table(), &b.scene) ? model_create(&b.scene, b.file) : NULL;
     if (!b.model) fail_msg("%s", yaml_report(b.file));
-    const Shell *shell = b.model->shell;
+    const Shell *shell = b.model->self;
     const double *p = params_of(&b, 0, 0);
     const MeshGroup *hub = mesh_group(shell->mesh, "hub", 2);
     assert_true(p[shell->young + hub->members[0]] == 2e5 && p[shell->fold] == 2);
@@ -226,7 +231,7 @@ static void test_nested_groups(void **state)
             "slender: 1\njob: evaluate\nshell:\n  mesh: {file: %s/tests/broken/meshes/crease.obj}\n"
             "  thickness: 1 mm\n  poisson: 0.3\n  young: {groups: {%s}}\n",
             SOURCE_DIR, orders[k]));
-        const double *young = params_of(&b, 0, 0) + b.model->shell->young;
+        const double *young = params_of(&b, 0, 0) + shell_of(&b)->young;
         for (int f = 0; f < 4; f++) assert_true(young[f] == (f < 2 ? 2e6 : 1e6));
         clear(&b);
     }
@@ -246,7 +251,7 @@ static void test_scale(void **state)
             "  young: 1 MPa\n  poisson: 0.3\nfix: [{vertices: [0, 3], clamp: true}]\ntarget: {file: %s%s}\n"
             "design: {unknowns: {magnetization: {}}, objectives: [{target: 1}]}\n",
             path, path, own ? ", scale: 1" : "", path, own ? ", scale: 1.5" : ""));
-        const Mesh *mesh = b.model->shell->mesh;
+        const Mesh *mesh = b.model->mesh;
         for (int i = 0; i < 3 * mesh->vertex_count; i++) {
             double rest = mesh->rest[i / 3][i % 3];
             assert_true(b.model->x[i] == (own ? 2 : 1) * rest);

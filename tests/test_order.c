@@ -1,10 +1,10 @@
 /* The order of strokes: against all orders of a few, never longer, strokes kept; joints; nearest points. */
-#include "spline_fixture.h"
 #include "base/clock.h"
 #include "spline/join.h"
 #include "spline/near.h"
 #include "spline/order.h"
 #include "spline/tour.h"
+#include "spline_fixture.h"
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -1,6 +1,6 @@
 /* What slender check foretells: the factor from its pattern, without the matrix, and beyond that size by a law. */
-#include "tests/leaks.h"
 #include "job/predict.h"
+#include "tests/leaks.h"
 #include <math.h>
 #include <string.h>
 
@@ -19,7 +19,7 @@ static Built build(const char *bending, int length, int width, const char *lines
                             "fix:\n  - {group: root, clamp: true}\n%s",
                             length, width, length, width, bending, lines);
     b.file = yaml_parse("test.yaml", text, strlen(text));
-    b.model = yaml_load(b.file, &scene_table, &b.scene) ? model_create(&b.scene, b.file) : NULL;
+    b.model = yaml_load(b.file, scene_table(), &b.scene) ? model_create(&b.scene, b.file) : NULL;
     if (!b.model) fail_msg("%s", yaml_report(b.file));
     mem_free(text);
     return b;
@@ -28,7 +28,7 @@ static Built build(const char *bending, int length, int width, const char *lines
 static void clear(Built *b)
 {
     model_destroy(b->model);
-    yaml_clear(&scene_table, &b->scene);
+    yaml_clear(scene_table(), &b->scene);
     yaml_destroy(b->file);
 }
 

@@ -1,8 +1,8 @@
 /* Probes beside hard edges: their radii are graded, and strokes that relax stay where there is tone. */
+#include "energy_fixture.h"
 #include "spline/direction.h"
 #include "spline/relax.h"
 #include "spline/streamlines.h"
-#include "energy_fixture.h"
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

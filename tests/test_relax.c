@@ -1,11 +1,11 @@
 /* Relaxation of strokes: that all methods lower the same energy, what threads and seeds do to the result,
  * walls, changes of single strokes, Metropolis' distribution, inertia, and the number of strokes. */
+#include "energy_fixture.h"
 #include "solve/check.h"
 #include "spline/local.h"
 #include "spline/relax_private.h"
 #include "spline/revise.h"
 #include "spline/tone.h"
-#include "energy_fixture.h"
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -20,9 +20,7 @@ typedef struct Fixture {
     Rod *rod;
     RodLayout layout;
     Design design;
-    LoadCase load;
-    State state; /* its */
-    Objective objective;
+    Case load;
     StaticDesign *sd;
 } Fixture;
 
@@ -56,10 +54,13 @@ static Fixture fixture_create(RodSupport end, bool field, Random *random)
         vec3_store(target[i], vec3(s - 2 * s * s, 0.2 * s * s / length, 5 * s * s));
     }
     System *sys = rod_system(rod, young, false);
-    f.state = system_state(sys);
-    rod_natural_state(rod, &f.layout, p, f.state.x);
-    f.objective = objective_target(N + 1, nodes, (const double(*)[3])target, 1);
-    f.load = (LoadCase){.name = "only", .sys = sys, .p = p, .objective_count = 1, .weight = 1};
+    double *x = mem_alloc((size_t)f.layout.dofs, sizeof *x);
+    rod_natural_state(rod, &f.layout, p, x);
+    f.load = case_create("only", p, (size_t)rod->params.size, 0);
+    *case_add_objective(&f.load) = objective_target(N + 1, nodes, (const double(*)[3])target, 1);
+    case_start(&f.load, sys, x);
+    mem_free(p);
+    mem_free(x);
     f.design.case_count = 1;
     return f;
 }
@@ -68,7 +69,6 @@ static void fixture_start(Fixture *f, const char *block, Unknown unknown)
 {
     StaticDesignDef def = static_design_default();
     def.newton.step_cap = 1.5;
-    f->load.objectives = &f->objective, f->load.state = &f->state;
     unknown.block = params_find(&f->rod->params, block);
     unknown.group_count = unknown.block->count;
     design_add(&f->design, unknown);
@@ -79,10 +79,7 @@ static void fixture_clear(Fixture *f)
 {
     static_design_destroy(f->sd);
     design_clear(&f->design);
-    objective_destroy(f->objective);
-    system_destroy(f->load.sys);
-    mem_free(f->load.p);
-    state_destroy(&f->state);
+    case_clear(&f->load);
     rod_destroy(f->rod);
 }
 
@@ -92,13 +89,13 @@ static double tangent_slope(const Fixture *f, const double *u, const double *v)
     size_t dofs = (size_t)f->layout.dofs, size = (size_t)f->rod->params.size;
     double *dp = mem_alloc(2 * size, sizeof *dp), *p = dp + size, *dx = mem_alloc(2 * dofs, sizeof *dx),
            *gx = dx + dofs, slope = 0;
-    memcpy(p, f->load.p, size * sizeof *p);
+    memcpy(p, f->load.stages[0].p, size * sizeof *p);
     design_apply(&f->design, 0, u, p);
     design_forward(&f->design, 0, u, v, dp);
-    Point at = state_point(&f->state, p);
+    Point at = state_point(&f->load.state, p);
     system_param_forward(f->load.sys, &at, dp, dx);
     system_solve(f->load.sys, dx, dx);
-    f->objective.ops->value(f->objective.self, 1, f->state.x, p, gx, dp);
+    f->load.objectives[0].ops->value(f->load.objectives[0].self, 1, f->load.state.x, p, gx, dp);
     for (size_t i = 0; i < dofs; i++) slope -= gx[i] * dx[i];
     mem_free(dp);
     mem_free(dx);
@@ -114,7 +111,7 @@ static void check(RodSupport end, bool field, const char *block, Unknown unknown
     size_t n = (size_t)f.design.size;
     double *u = mem_alloc(4 * n, sizeof *u), *g = u + n, *v = u + 2 * n, *moved = u + 3 * n, slope = 0, F4[4];
     CaseInfo info;
-    design_read(&f.design, 0, f.load.p, u);
+    design_read(&f.design, 0, f.load.stages[0].p, u);
     assert_true(isfinite(static_design_evaluate(f.sd, u, g, &info)));
     static_design_accept(f.sd);
     for (size_t i = 0; i < n; i++) v[i] = random_signed(&random), slope += g[i] * v[i];

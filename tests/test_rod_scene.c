@@ -26,7 +26,7 @@ static Built build(const char *job, const char *lines)
                             "  density: 1000\n  gravity: [0, 0, 0]\n%s",
                             job, lines);
     b.file = yaml_parse("test.yaml", text, strlen(text));
-    b.model = yaml_load(b.file, &scene_table, &b.scene) ? model_create(&b.scene, b.file) : NULL;
+    b.model = yaml_load(b.file, scene_table(), &b.scene) ? model_create(&b.scene, b.file) : NULL;
     mem_free(text);
     return b;
 }
@@ -34,14 +34,14 @@ static Built build(const char *job, const char *lines)
 static void clear(Built *b)
 {
     model_destroy(b->model);
-    yaml_clear(&scene_table, &b->scene);
+    yaml_clear(scene_table(), &b->scene);
     yaml_destroy(b->file);
 }
 
 static const double *strains(const Built *b)
 {
     if (!b->model) fail_msg("%s", yaml_report(b->file));
-    return b->model->cases[0].stages[0].p + b->model->rod->rod->natural_strain;
+    return b->model->cases[0].stages[0].p + ((const RodModel *)b->model->self)->rod->natural_strain;
 }
 
 /* k1 grows as 100 s/L to the end of the rows, at s = last; at elements' middles if `middles`. */
@@ -94,7 +94,7 @@ static void test_posed(void **state)
                                 "  natural_strain: [0, 0, 0]\n  start: curve\n  elements: 50\n"
                                 "time: {step: 1 ms, steps: 1}\n");
     for (int i = 0; i < 3 * N; i++) assert_true(strains(&b)[i] == 0);
-    const RodModel *rm = b.model->rod;
+    const RodModel *rm = b.model->self;
     double place[3 * (N + 1)], off = 0, crooked = 0;
     rod_places(rm->rod, &rm->layout, b.model->x, N + 1, place);
     for (int i = 0; i <= N; i++) {

@@ -1,6 +1,6 @@
 /* Every scene in scenes/ loads, builds and takes its first steps; the field tables are sound. */
 #include "base/memory.h"
-#include "job/job.h"
+#include "job/run.h"
 #include "solve/newton.h"
 #include <glob.h>
 #include <setjmp.h>
@@ -13,7 +13,7 @@
 static void test_table(void **state)
 {
     (void)state;
-    yaml_check_table(&scene_table);
+    yaml_check_table(scene_table());
 }
 
 static void take_steps(Model *model)
@@ -21,7 +21,7 @@ static void take_steps(Model *model)
     NewtonDef def = newton_default();
     def.max_iterations = 2;
     for (int c = 0; c < model->case_count; c++) {
-        ModelCase *load = &model->cases[c];
+        Case *load = &model->cases[c];
         Point at = {.p = load->stages[0].p, .time = load->stages[0].time};
         NewtonInfo info = newton_minimize(load->sys, &def, &at, &load->state, NULL);
         assert_true(info.status == NEWTON_MAX_ITERATIONS || info.status == NEWTON_CONVERGED);
@@ -33,21 +33,21 @@ static void check_scene(const char *path)
     Scene scene, again;
     long blocks = mem_live_count();
     YamlFile *file = yaml_read(path);
-    Model *model = yaml_load(file, &scene_table, &scene) ? model_create(&scene, file) : NULL;
+    Model *model = yaml_load(file, scene_table(), &scene) ? model_create(&scene, file) : NULL;
     char *report = yaml_report(file);
     if (!model) fail_msg("%s", report);
     take_steps(model);
     /* The effective scene is the same scene. */
-    char *text = yaml_write(&scene_table, &scene);
+    char *text = yaml_write(scene_table(), &scene);
     YamlFile *effective = yaml_parse(path, text, strlen(text));
-    if (!yaml_load(effective, &scene_table, &again)) fail_msg("%s", yaml_report(effective));
-    char *text_again = yaml_write(&scene_table, &again);
+    if (!yaml_load(effective, scene_table(), &again)) fail_msg("%s", yaml_report(effective));
+    char *text_again = yaml_write(scene_table(), &again);
     assert_string_equal(text, text_again);
     mem_free(text);
     mem_free(text_again);
     mem_free(report);
-    yaml_clear(&scene_table, &again);
-    yaml_clear(&scene_table, &scene);
+    yaml_clear(scene_table(), &again);
+    yaml_clear(scene_table(), &scene);
     yaml_destroy(effective);
     yaml_destroy(file);
     model_destroy(model);

@@ -1,12 +1,12 @@
 /* Pictures of results of rods, from results as a job leaves them: curves, small print, motion, bundles. */
 #include "base/memory.h"
-#include "view/show.h"
-#include "view/curves_picture.h"
-#include "view/page.h"
 #include "io/result.h"
 #include "io/table.h"
 #include "leaks.h"
 #include "png_fixture.h"
+#include "view/curves_picture.h"
+#include "view/page.h"
+#include "view/show.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -23,9 +23,8 @@ static const char RESULT[] = "test_show_rod.vtkhdf";
 
 /* What a test puts into its result. */
 typedef struct Rods {
-    int strands; /* each the helix, moved aside */
-    bool simulated, motion;
-    const char *end; /* how the scene holds it; NULL: no scene */
+    int strands;                  /* each the helix, moved aside */
+    bool simulated, motion, held; /* at the other end, too */
 } Rods;
 
 /* Columns of tests/rod/helix.csv for every strand; strands lie 4 cm apart. */
@@ -63,16 +62,12 @@ static void put_frames(Journal *journal, const double *input, const double *natu
     mem_free(x);
 }
 
-/* A rod that is held at this other end, too. */
-static void put_scene(Journal *journal, const char *end)
+/* A rod that is held at its other end, too. */
+static void put_supports(Journal *journal)
 {
-    char *scene = mem_format(
-        "slender: 1\njob: equilibrium\nrod:\n  natural_strain: [0, 1, 0]\n  length: 1 m\n  radius: 1 mm\n"
-        "  young: 1 MPa\n  poisson: 0.4\n  density: 1000\n  end: {position: [0.01132041885583, "
-        "0.009841144086364, -0.06221722076589], %s}\n",
-        end);
-    put(journal, "meta", 0, array_text("scene", scene));
-    mem_free(scene);
+    static const double end[] = {0.01132041885583, 0.009841144086364, -0.06221722076589};
+    put(journal, "static", 0, array_float("rod/held", "m", end, 1, 3, 0));
+    put(journal, "static", 0, array_text("rod/supports", "clamped"));
 }
 
 static void put_rods(Journal *journal, Rods rods, const Table *table)
@@ -98,7 +93,7 @@ static void put_rods(Journal *journal, Rods rods, const Table *table)
     put(journal, "final", 0, array_float("rod/critical_young", "Pa", &critical, 0, 0, 0));
     put(journal, "final", 0, array_float("metrics/round_trip", "m", &round_trip, 0, 0, 0));
     put(journal, "final", 0, array_text("status", "converged"));
-    if (rods.end) put_scene(journal, rods.end);
+    if (rods.held) put_supports(journal);
     if (rods.motion) put_frames(journal, input, natural, count);
     mem_free(input);
     mem_free(natural);
@@ -134,7 +129,7 @@ static Page draw(const ShowDef *def)
 {
     Page page = {0};
     Error err = {""};
-    if (show_result(RESULT, "test_show_rod.png", def, &err) != RUN_DONE ||
+    if (show_result(RESULT, "test_show_rod.png", def, &err) != SHOW_DONE ||
         !png_read("test_show_rod.png", &page.rgb, &page.width, &page.height, &err))
         fail_msg("%s", err.text);
     return page;
@@ -182,9 +177,7 @@ static void held(void **state)
     ShowDef def = show_default();
     int ink[2];
     for (int k = 0; k < 2; k++) {
-        write_result((Rods){.strands = 1,
-                            .simulated = true,
-                            .end = k ? "hold: clamped, frame: [[1, 0, 0], [0, 1, 0], [0, 0, 1]]" : NULL});
+        write_result((Rods){.strands = 1, .simulated = true, .held = k > 0});
         Page page = draw(&def);
         ink[k] = count_pixels(&page, page_ink);
         mem_free(page.rgb);
@@ -214,11 +207,11 @@ static void motion(void **state)
     assert_true(count_pixels(&page, colormap_series(1)) > 1000);
     mem_free(page.rgb);
     def.frame = FRAMES;
-    assert_int_equal(show_result(RESULT, "test_show_rod.png", &def, &err), RUN_REFUSED);
+    assert_int_equal(show_result(RESULT, "test_show_rod.png", &def, &err), SHOW_HAS_NOT);
     assert_string_equal(err.text, "the result has 5 frames, from 0");
     def = show_default();
     def.seconds = 0.12, def.width = 400;
-    assert_int_equal(show_result(RESULT, "test_show_rod.webp", &def, &err), RUN_DONE);
+    assert_int_equal(show_result(RESULT, "test_show_rod.webp", &def, &err), SHOW_DONE);
     assert_int_equal(access("test_show_rod.webp", R_OK), 0);
 }
 
@@ -245,7 +238,7 @@ static void bundles(void **state)
 static void expect_refusal(ShowDef def, const char *sentence)
 {
     Error err = {""};
-    assert_int_equal(show_result(RESULT, "test_show_rod.png", &def, &err), RUN_REFUSED);
+    assert_int_equal(show_result(RESULT, "test_show_rod.png", &def, &err), SHOW_HAS_NOT);
     assert_string_equal(err.text, sentence);
 }
 

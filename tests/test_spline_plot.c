@@ -1,10 +1,10 @@
 /* Strokes on paper: cubic curves and their parts, what is cut off at the edge of the page, the preview. */
-#include "spline_fixture.h"
 #include "base/cubic.h"
 #include "io/canvas.h"
+#include "png_fixture.h"
 #include "spline/plot.h"
 #include "spline/preview.h"
-#include "png_fixture.h"
+#include "spline_fixture.h"
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -1,10 +1,10 @@
 /* Quadrature, fields, and every energy of strokes: against an independent program, against differences,
  * semidefinite where it says so, and the same with any number of threads. */
+#include "energy_fixture.h"
 #include "solve/check.h"
 #include "solve/system.h"
 #include "spline/points.h"
 #include "spline/tone.h"
-#include "energy_fixture.h"
 #include "tests/spline_reference.h"
 #include <setjmp.h>
 #include <stdarg.h>

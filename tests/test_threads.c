@@ -63,7 +63,7 @@ static Built build(const char *text)
 {
     Built b;
     b.file = yaml_parse("test.yaml", text, strlen(text));
-    b.model = yaml_load(b.file, &scene_table, &b.scene) ? model_create(&b.scene, b.file) : NULL;
+    b.model = yaml_load(b.file, scene_table(), &b.scene) ? model_create(&b.scene, b.file) : NULL;
     if (!b.model) fail_msg("%s", yaml_report(b.file));
     return b;
 }
@@ -71,7 +71,7 @@ static Built build(const char *text)
 static void clear(Built *b)
 {
     model_destroy(b->model);
-    yaml_clear(&scene_table, &b->scene);
+    yaml_clear(scene_table(), &b->scene);
     yaml_destroy(b->file);
 }
 
@@ -103,7 +103,7 @@ static const char rod_scene[] =
 static void check_system(const char *scene)
 {
     Built b = build(scene);
-    ModelCase *c = &b.model->cases[0];
+    Case *c = &b.model->cases[0];
     System *sys = c->sys;
     size_t n = (size_t)system_dof_count(sys);
     double *work = mem_alloc(5 * n, sizeof *work), *v = work, first = 0;
@@ -133,7 +133,6 @@ static double evaluate_cases(const char *scene, int thread_count, double **gradi
 {
     Built b = build(scene);
     const Model *model = b.model;
-    LoadCase cases[3];
     CaseInfo info[3];
     StaticDesignDef def = static_design_default();
     Workers *inside[3] = {NULL};
@@ -143,14 +142,11 @@ static double evaluate_cases(const char *scene, int thread_count, double **gradi
     double *u = mem_alloc(*size, sizeof *u);
     *gradient = mem_alloc(*size, sizeof *u);
     for (int c = 0; c < model->case_count; c++) {
-        ModelCase *from = &model->cases[c];
-        cases[c] = (LoadCase){from->name,   from->sys,        from->stages[0].p,
-                              &from->state, from->objectives, from->objective_count,
-                              from->weight};
+        Case *from = &model->cases[c];
         design_read(&model->design, c, from->stages[0].p, u);
         if (thread_count > 2) system_set_workers(from->sys, inside[c] = workers_create(2));
     }
-    StaticDesign *sd = static_design_create(&model->design, model->params, cases, &def);
+    StaticDesign *sd = static_design_create(&model->design, model->params, model->cases, &def);
     double F = static_design_evaluate(sd, u, *gradient, info);
     static_design_destroy(sd);
     mem_free(u);

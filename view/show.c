@@ -1,7 +1,7 @@
 #include "view/show.h"
 #include "base/memory.h"
 #include "base/vec3.h"
-#include "spline/front/drawn.h"
+#include "spline/drawn.h"
 #include "view/show_data.h"
 #include "view/show_drawing.h"
 #include "view/show_rod.h"
@@ -256,7 +256,7 @@ static bool write_page(Show *show, const char *result, const char *picture, Erro
     return picture_write(picture, &page, err);
 }
 
-RunStatus show_result(const char *result, const char *picture, const ShowDef *def, Error *err)
+ShowStatus show_result(const char *result, const char *picture, const ShowDef *def, Error *err)
 {
     ShowData data = {0};
     Show show = {.data = &data, .def = def};
@@ -270,5 +270,5 @@ RunStatus show_result(const char *result, const char *picture, const ShowDef *de
     mem_free(show.panels);
     mem_free(show.steps);
     show_data_clear(&data);
-    return ok ? RUN_DONE : data.drawn ? RUN_CANNOT_WRITE : RUN_REFUSED;
+    return ok ? SHOW_DONE : data.drawn ? SHOW_CANNOT_WRITE : SHOW_HAS_NOT;
 }

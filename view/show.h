@@ -2,7 +2,6 @@
  * of rods their curves (show_rod.h), of drawings their lines (show_drawing.h). */
 #pragma once
 #include "base/error.h"
-#include "job/run.h"
 #include "view/picture.h"
 
 typedef struct ShowDef {
@@ -20,6 +19,12 @@ typedef struct ShowDef {
 
 ShowDef show_default(void);
 
-/* Writes picture (.png, .svg or .pdf; an animation .webp) from the result file. RUN_REFUSED where that has not what is
- * asked for, RUN_CANNOT_WRITE where the picture cannot be written; with a sentence. */
-RunStatus show_result(const char *result, const char *picture, const ShowDef *def, Error *err);
+/* What is not SHOW_DONE comes with a sentence. */
+typedef enum ShowStatus {
+    SHOW_DONE,
+    SHOW_HAS_NOT,      /* the result has not what is asked for */
+    SHOW_CANNOT_WRITE, /* the picture                          */
+} ShowStatus;
+
+/* Writes picture (.png, .svg or .pdf; an animation .webp) from the result file. */
+ShowStatus show_result(const char *result, const char *picture, const ShowDef *def, Error *err);

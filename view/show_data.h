@@ -1,8 +1,8 @@
 /* show_data.h - what the pages of a result have in common: arrays that a page borrows, kept until it is
  * drawn, which frames it shows, and the history of a design. */
 #pragma once
-#include "view/show.h"
 #include "io/result.h"
+#include "view/show.h"
 
 typedef struct ShowData {
     Result *result;

@@ -1,5 +1,5 @@
 #include "view/show_drawing.h"
-#include "spline/front/drawn.h"
+#include "spline/drawn.h"
 #include "spline/preview.h"
 
 static bool check_options(const ShowDef *def, Error *err)

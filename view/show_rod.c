@@ -1,8 +1,7 @@
+#include "view/show_rod.h"
 #include "base/memory.h"
 #include "base/vec3.h"
-#include "model/stored.h"
 #include "view/curves_picture.h"
-#include "view/show_rod.h"
 #include "view/ticks.h"
 #include <math.h>
 #include <stdio.h>
@@ -195,22 +194,25 @@ static bool add_curves(RodPage *page, Error *err)
     return true;
 }
 
-/* Where the strands are held: where they begin, and where the scene holds the other end. */
+/* Where the strands are held: where they begin, and where the other end is. */
 static void add_clamps(RodPage *page, CurvesScene *scene)
 {
-    Scene from;
-    YamlFile *file;
+    Result *result = page->data->result;
+    Array array;
     const double(*points)[3] = page->sets[0].points;
     double(*held)[3] = show_block(page->data, (size_t)page->strand_count + 1, sizeof *held);
     int count = page->strand_count;
     for (int k = 0; k < count; k++) memcpy(held[k], points[page->strands[k]], sizeof *held);
-    stored_result_scene(page->data->result, &file, &from);
-    const EndScene *end = from.rod ? from.rod->end : NULL;
-    if (end) memcpy(held[count++], end->position, sizeof *held);
-    if (end && (end->hold == HOLD_PINNED || from.rod->hold == HOLD_PINNED)) scene->clamps_name = "held";
+    if (result_has(result, "slender/rod/held") && result_read(result, "slender/rod/held", &array, NULL)) {
+        if (array_is(&array, ARRAY_FLOAT64, 1, 3)) memcpy(held[count++], array.data, sizeof *held);
+        array_clear(&array);
+    }
+    if (result_has(result, "slender/rod/supports") &&
+        result_read(result, "slender/rod/supports", &array, NULL)) {
+        if (array.type == ARRAY_TEXT && strstr(array.data, "pinned")) scene->clamps_name = "held";
+        array_clear(&array);
+    }
     scene->clamps = (const double(*)[3])held, scene->clamp_count = count;
-    yaml_clear(&scene_table, &from);
-    yaml_destroy(file);
 }
 
 /* ---- Small print ---- */

@@ -1,9 +1,8 @@
-/* Models of rods. */
+/* The row of rods: models of them. */
 #include "base/memory.h"
-#include "model/body.h"
-#include "job/job.h"
+#include "job/jobs.h"
 #include "rod/front/curves.h"
-#include "rod/front/rod_model.h"
+#include "rod/front/front.h"
 #include "solve/ramp.h"
 #include <math.h>
 #include <string.h>
@@ -25,7 +24,8 @@ static bool put_target(Model *model, const Build *b, const char *at, const Targe
                        double (*target)[3])
 {
     static const char *const variables[] = {"s", "L", NULL};
-    const Rod *rod = model->rod->rod;
+    const RodModel *rm = model->self;
+    const Rod *rod = rm->rod;
     Error err;
     if (scene->height_map || scene->strokes || scene->on)
         return yaml_refuse(b->file, at,
@@ -52,7 +52,7 @@ static bool put_target(Model *model, const Build *b, const char *at, const Targe
 static bool move(const Model *model, double time, double part, double *x, Error *err)
 {
     (void)time, (void)err;
-    const RodModel *rm = model->rod;
+    const RodModel *rm = model->self;
     int last = rm->layout.nodes - 1;
     double *place = x + rm->layout.position + 3 * last, *to = x + rm->layout.reference + 4 * last;
     vec3_store(place, vec3_axpy(part, vec3_sub(rm->end_position, vec3_load(place)), vec3_load(place)));
@@ -149,7 +149,7 @@ static bool settle_move(void *self, double part, double *x)
 /* Before a motion or a design, the rod is brought to its supports without loads. */
 static bool settle(Model *model, const Build *b, const double *p)
 {
-    RodModel *rm = model->rod;
+    RodModel *rm = model->self;
     double *unloaded = mem_copy(p, (size_t)model->params->size, sizeof *p);
     for (int k = 0; k < model->params->block_count; k++) {
         const ParamBlock *block = &model->params->blocks[k];
@@ -178,7 +178,7 @@ static bool settle(Model *model, const Build *b, const double *p)
  * one. */
 static void make_states(Model *model, const RodScene *scene, bool hanging, const double *p, double *x)
 {
-    RodModel *rm = model->rod;
+    RodModel *rm = model->self;
     Rod *rod = rm->rod;
     RodLayout turns = rod_layout(rod, false);
     rm->layout = rod_layout(rod, !hanging);
@@ -192,44 +192,49 @@ static void make_states(Model *model, const RodScene *scene, bool hanging, const
     rod_places(rod, &turns, x, turns.nodes, rm->natural);
 }
 
+static System *make_system(const Model *model, bool motion)
+{
+    const RodModel *rm = model->self;
+    return rod_system(rm->rod, rm->young, motion);
+}
+
 static void make_systems(Model *model, bool hanging, bool motion)
 {
-    RodModel *rm = model->rod;
+    RodModel *rm = model->self;
     for (int k = 0; k < model->case_count; k++) {
-        ModelCase *c = &model->cases[k];
-        c->sys = hanging ? rod_hanging_system(rm->rod) : rod_system(rm->rod, rm->young, motion);
-        model_start_case(c, model->x);
+        Case *c = &model->cases[k];
+        case_start(c, hanging ? rod_hanging_system(rm->rod) : make_system(model, motion), model->x);
     }
 }
 
 /* What the scene says of the model. */
-static void set_model(Model *model, const Scene *scene)
+static void set_model(Model *model)
 {
-    RodModel *rm = model->rod;
+    RodModel *rm = model->self;
     Rod *rod = rm->rod;
     model->params = &rod->params;
     model->gravity = rod->gravity;
     model->flux_density = rod->flux_density;
     model->field_scale = rod->field_scale;
     model->fields = &rod->fields;
-    model->moves = rm->held && scene->job == JOB_EQUILIBRIUM;
+    model->moves = rm->held && model->job == &job_equilibrium && !model->general;
 }
 
 /* Cases and states. With a field that varies in space no rod is only turns. */
 static bool fill_cases(Model *model, const Scene *scene, const Build *b, bool flux_is_read)
 {
-    RodModel *rm = model->rod;
+    RodModel *rm = model->self;
     Rod *rod = rm->rod;
-    bool motion = model_is_motion(scene->job);
+    bool motion = model->job->motion;
     double *p = params_vector(model->params),
            *curve = mem_alloc((size_t)rod_layout(rod, false).dofs, sizeof *curve);
     bool ok = rod_model_params(rm, scene, b, p) && flux_is_read;
     model_put_flux(model, &model->flux[0], p);
-    if (ok && rm->curves) take_curve(rm, scene->rod, p, curve);
+    if (ok && rm->curves) take_curve(rm, rod_scene(scene), p, curve);
     ok = ok && model_cases(model, b, scene, p);
-    bool hanging = scene->job == JOB_EQUILIBRIUM && rod->start == ROD_CLAMPED && rod->end == ROD_FREE &&
-                   rod->fields.count == 0;
-    if (ok) make_states(model, scene->rod, hanging, p, curve);
+    bool hanging = !model->general && model->job == &job_equilibrium && rod->start == ROD_CLAMPED &&
+                   rod->end == ROD_FREE && rod->fields.count == 0;
+    if (ok) make_states(model, rod_scene(scene), hanging, p, curve);
     if (ok && rm->held && !model->moves) ok = settle(model, b, p);
     if (ok) make_systems(model, hanging, motion);
     mem_free(p);
@@ -240,32 +245,21 @@ static bool fill_cases(Model *model, const Scene *scene, const Build *b, bool fl
 /* Jobs that move one rod. */
 static bool fill(Model *model, const Scene *scene, const Build *b)
 {
-    RodModel *rm = model->rod;
+    RodModel *rm = model->self;
+    const RodScene *from = rod_scene(scene);
     Build sized = *b;
     FluxFields fields;
-    if (!check_rod(rm, scene->rod, b)) return false;
-    sized.size = rm->curves ? rm->curves[0].length : scene->rod->length;
+    if (!check_rod(rm, from, b)) return false;
+    sized.size = rm->curves ? rm->curves[0].length : from->length;
     bool flux_is_read = model_read_flux(model, &sized, scene, &fields);
-    rm->rod = rod_create(scene->rod->elements, sized.size, rm->unit, rm->area, &fields);
-    if (!read_supports(rm, scene->rod, b) || !rod_model_check_points(rm, b, rm->rod->length)) return false;
-    set_model(model, scene);
+    rm->rod = rod_create(from->elements, sized.size, rm->unit, rm->area, &fields);
+    if (!read_supports(rm, from, b) || !rod_model_check_points(rm, b, rm->rod->length)) return false;
+    set_model(model);
     model_add_blocks(model, scene);
     return fill_cases(model, scene, &sized, flux_is_read) &&
-           (!model_is_motion(scene->job) ||
-            model_velocity(model, b, "rod.velocity", scene->rod->velocity, model->x + rm->layout.position));
+           (!model->job->motion ||
+            model_velocity(model, b, "rod.velocity", from->velocity, model->x + rm->layout.position));
 }
-
-static const BodyOps rod_ops = {
-    .put_loads = put_loads,
-    .put_target = put_target,
-    .move = move,
-    .add_static = body_rod_static,
-    .places = body_rod_places,
-    .add_frame = body_rod_frame,
-    .add_state = body_rod_state,
-    .add_final = body_rod_final,
-    .doubt = body_rod_doubt,
-};
 
 static bool is_default(const SolverScene *solver)
 {
@@ -278,7 +272,7 @@ static bool check_inversion(const Scene *scene, YamlFile *file)
 {
     bool round_trip = false;
     for (int k = 0; k < scene->checks_count; k++) round_trip |= scene->checks[k] == CHECK_ROUND_TRIP;
-    if (!scene->rod->curve)
+    if (!rod_scene(scene)->curve)
         return yaml_refuse(file, "rod", "an inversion needs `curve`, the shape that is given");
     const char *unused = scene->load_steps.mode != 0   ? "load_steps"
                          : !is_default(&scene->solver) ? "solver"
@@ -287,17 +281,95 @@ static bool check_inversion(const Scene *scene, YamlFile *file)
            yaml_refuse(file, unused, "an inversion uses this for its round trip only: checks: [round_trip]");
 }
 
-bool model_rod(Model *model, const Scene *scene, YamlFile *file)
+static bool create(Model *model, const Scene *scene, YamlFile *file)
 {
     Build b = build_start(scene, NULL, file);
     b.report = &model->report;
-    b.timed = model_is_motion(scene->job) ? &model->flux_of_time : NULL;
-    model->body = &rod_ops;
-    model->point_count = scene->rod->elements + 1;
+    b.timed = model->job->motion ? &model->flux_of_time : NULL;
+    model->point_count = rod_scene(scene)->elements + 1;
     model->load_steps = LOAD_STEPS;
     model->step_cap = STEP_CAP;
-    model->rod = rod_model_create(scene, &b);
-    if (!model->rod) return false;
-    if (scene->job == JOB_INVERT) return check_inversion(scene, file);
-    return scene->job == JOB_IDENTIFY || fill(model, scene, &b);
+    model->self = rod_model_create(scene, &b);
+    if (!model->self) return false;
+    if (model->job == &rod_job_invert) return check_inversion(scene, file);
+    return model->job == &rod_job_identify || fill(model, scene, &b);
 }
+
+static void destroy(void *self)
+{
+    rod_model_destroy(self);
+}
+
+/* ---- Designs ---- */
+
+static bool put_numbers(Model *model, const Build *b, const char *at, const NumberScene *scene,
+                        const ParamBlock *block, double *values)
+{
+    (void)model, (void)scene, (void)values;
+    return yaml_refuse(b->file, at, "the unknown %s of a rod starts at rod.%s", block->name, block->name);
+}
+
+static bool put_vectors(Model *model, const Build *b, const char *at, const VectorScene *scene,
+                        const ParamBlock *block, double *values)
+{
+    (void)block;
+    return rod_model_vectors(b, at, scene, ((const RodModel *)model->self)->rod, values);
+}
+
+/* All nodes, or its end. */
+static bool select_part(const Model *model, const Build *b, const char *at, const char *name, Indices *found)
+{
+    bool tip = !strcmp(name, "tip");
+    if (!tip && strcmp(name, "all")) return yaml_refuse(b->file, at, "of a rod it is `all` or `tip`");
+    int count = tip ? 1 : model->point_count;
+    *found = (Indices){count, mem_alloc((size_t)count, sizeof(int))};
+    for (int i = 0; i < count; i++) found->items[i] = tip ? model->point_count - 1 : i;
+    return true;
+}
+
+/* ---- The row ---- */
+
+static const BodyOps ops = {
+    .create = create,
+    .destroy = destroy,
+    .put_loads = put_loads,
+    .put_target = put_target,
+    .put_numbers = put_numbers,
+    .put_vectors = put_vectors,
+    .select = select_part,
+    .move = move,
+    .system = make_system,
+    .add_static = rod_add_static,
+    .add_state = rod_add_state,
+    .add_final = rod_add_final,
+    .places = rod_body_places,
+    .doubt = rod_doubt,
+    .describe = rod_describe,
+    .advise = rod_advise,
+    .dof_sizes = rod_dof_sizes,
+    .cost = rod_cost,
+};
+
+static const KeyUse uses[] = {
+    {"flux_density", "/rod.solver: newton", NULL},
+    {"fix", "!rod", "a rod is held by rod.clamp, rod.hold and rod.end"},
+    {"loads", "!rod", "loads of a rod are under rod.loads"},
+    {"target", "/rod.solver: newton", NULL},
+    {"solver", "/rod.solver: newton", NULL},
+    {"modes", "!rod", NULL},
+    {0},
+};
+
+static const JobRow *const jobs[] = {&job_equilibrium, &job_design,       &rod_job_simulate,
+                                     &rod_job_invert,  &rod_job_identify, NULL};
+
+const BodyRow rod_body = {
+    .key = "rod",
+    .noun = "a rod",
+    .nouns = "rods",
+    .doc = "the body: a rod",
+    .table = &rod_table,
+    .uses = uses,
+    .jobs = jobs,
+    .ops = &ops,
+};

@@ -1,6 +1,6 @@
 /* Curves and frames of rods from formulas and files (rod_model.h). */
-#include "base/memory.h"
 #include "rod/front/curves.h"
+#include "base/memory.h"
 #include "io/polyline_file.h"
 #include "io/table.h"
 #include "rod/samples.h"

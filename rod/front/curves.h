@@ -1,8 +1,9 @@
 /* rod_curves.h - the curves of a scene's rod, from formulas or files, and the frames along them. */
 #pragma once
-#include "model/build.h"
 #include "io/table.h"
+#include "model/build.h"
 #include "rod/frame.h"
+#include "rod/front/scene.h"
 
 typedef struct RodStrands {
     int count;

@@ -1,8 +1,8 @@
 /* Young's modulus and Poisson's ratio of a rod from poses that it was seen in. */
 #include "base/memory.h"
-#include "job/job.h"
+#include "job/run.h"
 #include "rod/front/curves.h"
-#include "rod/front/rod_model.h"
+#include "rod/front/front.h"
 #include "rod/inverse.h"
 #include <math.h>
 
@@ -17,14 +17,14 @@ typedef struct Identification {
 /* With what was found, nu = 1/2 where the poses do not tell. */
 static void natural_shapes(const Identification *o, double *natural)
 {
-    const RodScene *scene = o->run->scene->rod;
+    const RodScene *scene = rod_scene(o->run->scene);
     double young = o->found.young_known ? o->found.young : INFINITY,
            poisson = o->found.poisson_known ? o->found.poisson : 0.5;
     RodSection section = rod_circle(scene->radius, young, poisson, scene->density);
     int nodes = o->run->model->point_count;
     Vec3 *moment = mem_alloc(2 * (size_t)nodes - 1, sizeof *moment);
     for (int k = 0; k < o->count; k++) {
-        rod_moments(&o->curves[k], o->run->model->rod->loads, moment);
+        rod_moments(&o->curves[k], ((const RodModel *)o->run->model->self)->loads, moment);
         rod_invert(&o->curves[k], section, moment, NULL, (Vec3 *)(natural + 3 * (size_t)k * (size_t)nodes));
     }
     mem_free(moment);
@@ -57,7 +57,7 @@ static bool put_results(const Identification *o, Error *err)
     arrays_add(&list, array_float("rod/s", "m", s, 1, o->count * nodes, 0));
     arrays_add(&list, array_float("rod/input", "m", input, 2, o->count * nodes, 3));
     arrays_add(&list, array_float("rod/natural", "m", natural, 2, o->count * nodes, 3));
-    arrays_add(&list, array_float("rod/gravity", "m/s^2", o->run->scene->rod->gravity, 1, 3, 0));
+    arrays_add(&list, array_float("rod/gravity", "m/s^2", rod_scene(o->run->scene)->gravity, 1, 3, 0));
     arrays_add(&list, array_int("rod/strands", starts, 1, o->count + 1, 0));
     return arrays_replace(&list, o->run->journal, "final", err);
 }
@@ -66,32 +66,41 @@ static void say(const Identification *o)
 {
     const RodMaterial *found = &o->found;
     if (!found->converged)
-        progress_say(o->run->progress,
-                     "not converged: all iterations were done before the best match was found");
+        host_say(o->run->host, "not converged: all iterations were done before the best match was found");
     if (found->young_known)
-        progress_say(o->run->progress, "Young's modulus %.4g Pa (+- %.2g)", found->young, found->young_error);
+        host_say(o->run->host, "Young's modulus %.4g Pa (+- %.2g)", found->young, found->young_error);
     else
-        progress_say(o->run->progress,
-                     "the poses do not tell Young's modulus: they differ too little for their noise");
+        host_say(o->run->host,
+                 "the poses do not tell Young's modulus: they differ too little for their noise");
     if (found->poisson_known)
-        progress_say(o->run->progress, "Poisson's ratio %.4g (+- %.2g)%s", found->poisson,
-                     found->poisson_error, found->poisson_at_limit ? ", at the limit of what is sought" : "");
+        host_say(o->run->host, "Poisson's ratio %.4g (+- %.2g)%s", found->poisson, found->poisson_error,
+                 found->poisson_at_limit ? ", at the limit of what is sought" : "");
     else
-        progress_say(o->run->progress, "the poses do not tell Poisson's ratio: too little twist in them");
+        host_say(o->run->host, "the poses do not tell Poisson's ratio: too little twist in them");
 }
 
-RunStatus job_identify(Run *run, Error *err)
+static RunStatus run_identify(Run *run, Error *err)
 {
-    const RodScene *scene = run->scene->rod;
+    const RodScene *scene = rod_scene(run->scene);
     size_t count = (size_t)scene->poses_count;
     Identification o = {.run = run,
                         .count = scene->poses_count,
-                        .curves = run->model->rod->curves,
+                        .curves = ((const RodModel *)run->model->self)->curves,
                         .poses = mem_alloc(count, sizeof *o.poses)};
-    RodIdentifyDef def = rod_model_poses(run->model->rod, scene, o.poses);
+    RodIdentifyDef def = rod_model_poses(((const RodModel *)run->model->self), scene, o.poses);
     o.found = rod_identify(&def);
     bool ok = put_results(&o, err);
     if (ok) say(&o);
     mem_free(o.poses);
     return !ok ? RUN_CANNOT_WRITE : o.found.young_known && o.found.converged ? RUN_DONE : RUN_NOT_CONVERGED;
 }
+
+static const char *const free_keys[] = {NULL};
+
+const JobRow rod_job_identify = {
+    .name = "identify",
+    .noun = "an identification",
+    .run = run_identify,
+    .frames = FRAMES_STAY,
+    .free_keys = free_keys,
+};

@@ -1,8 +1,8 @@
 /* The natural shape of rods that hang in given curves: by the frame-free integral, as strains, and as the
  * strains of a discrete rod that rests on its curve to rounding. */
 #include "base/memory.h"
-#include "job/job.h"
-#include "rod/front/rod_model.h"
+#include "job/run.h"
+#include "rod/front/front.h"
 #include "rod/self_contact.h"
 #include "rod/stability.h"
 #include "solve/ramp.h"
@@ -29,7 +29,7 @@ typedef struct Inversion {
     NewtonStatus worst;
 } Inversion;
 
-static bool is_asked(const Scene *scene, RodCheck check)
+static bool is_asked(const Scene *scene, SceneCheck check)
 {
     for (int k = 0; k < scene->checks_count; k++)
         if (scene->checks[k] == (int)check) return true;
@@ -125,7 +125,7 @@ static void go_round(Inversion *o, int k, Rod *rod, System *sys, const RodLayout
 static void invert_elements(Inversion *o, int k)
 {
     const RodModel *rm = o->rm;
-    const RodScene *scene = o->run->scene->rod;
+    const RodScene *scene = rod_scene(o->run->scene);
     Rod *rod = rod_create(o->elements, rm->curves[k].length, rm->unit, rm->area, NULL);
     double *p = mem_alloc((size_t)rod->params.size, sizeof *p);
     rod_model_loads(rm, rod, scene, p);
@@ -248,7 +248,7 @@ static bool put_results(const Inversion *o, const char *status, Error *err)
                                   o->strands * o->elements, 3));
     arrays_add(&list, per_strand(o, "metrics/residual", "", o->residual));
     arrays_add(&list, per_strand(o, "metrics/strain_route", "", o->route));
-    arrays_add(&list, array_float("rod/gravity", "m/s^2", o->run->scene->rod->gravity, 1, 3, 0));
+    arrays_add(&list, array_float("rod/gravity", "m/s^2", rod_scene(o->run->scene)->gravity, 1, 3, 0));
     if (o->strands > 1) arrays_add(&list, array_int("rod/strands", starts, 1, o->strands + 1, 0));
     add_checks(o, &list);
     return put_shapes(o, err) && arrays_replace(&list, o->run->journal, "final", err);
@@ -260,18 +260,18 @@ static void say_elsewhere(const Inversion *o, int elsewhere, double worst)
     double most = 0;
     for (int k = 0; k < o->strands; k++)
         if (fabs(o->gain[k]) > fabs(most)) most = o->gain[k];
-    progress_say(o->run->progress,
-                 "%d of %d rods come to rest elsewhere when they are let down from their natural shape, up "
-                 "to %.2g m away: "
-                 "in another equilibrium, with up to %.3g J %s energy than on the curve, that lies nearer on "
-                 "this way (a rod "
-                 "held on its curve and let go stays there where rod/stable is 1)",
-                 elsewhere, o->strands, worst, fabs(most), most > 0 ? "less" : "more");
+    host_say(o->run->host,
+             "%d of %d rods come to rest elsewhere when they are let down from their natural shape, up "
+             "to %.2g m away: "
+             "in another equilibrium, with up to %.3g J %s energy than on the curve, that lies nearer on "
+             "this way (a rod "
+             "held on its curve and let go stays there where rod/stable is 1)",
+             elsewhere, o->strands, worst, fabs(most), most > 0 ? "less" : "more");
 }
 
 static void say(const Inversion *o)
 {
-    Progress *progress = o->run->progress;
+    const Host *host = o->run->host;
     int unstable = 0, touching = 0, elsewhere = 0;
     double worst = 0, route = 0;
     for (int k = 0; k < o->strands; k++) {
@@ -282,31 +282,30 @@ static void say(const Inversion *o)
         route = fmax(route, o->route[k]);
     }
     if (route > COARSE)
-        progress_say(
-            progress,
+        host_say(
+            host,
             "natural strains are good to %.2g of the largest only: the curve bends too much for %d elements",
             route, o->elements);
     if (unstable)
-        progress_say(progress,
-                     "%d of %d curves unstable: the rod would not stay there (rod/critical_young says from "
-                     "which Young's modulus on it would)",
-                     unstable, o->strands);
+        host_say(host,
+                 "%d of %d curves unstable: the rod would not stay there (rod/critical_young says from "
+                 "which Young's modulus on it would)",
+                 unstable, o->strands);
     if (o->lengths > 1)
-        progress_say(
-            progress,
-            "the elements are too long to tell how stable a curve is: one of them has %.2g times the "
-            "length sqrt(EI/F) within which the rod bends; rod.elements: %.0f or more would",
-            o->lengths, ceil(o->elements * o->lengths));
-    if (touching) progress_say(progress, "%d of %d natural shapes touch themselves", touching, o->strands);
+        host_say(host,
+                 "the elements are too long to tell how stable a curve is: one of them has %.2g times the "
+                 "length sqrt(EI/F) within which the rod bends; rod.elements: %.0f or more would",
+                 o->lengths, ceil(o->elements * o->lengths));
+    if (touching) host_say(host, "%d of %d natural shapes touch themselves", touching, o->strands);
     if (elsewhere)
         say_elsewhere(o, elsewhere, worst);
     else if (o->x)
-        progress_say(progress, "the simulated rod rests %.2g m from its curve", worst);
+        host_say(host, "the simulated rod rests %.2g m from its curve", worst);
 }
 
-RunStatus job_invert(Run *run, Error *err)
+static RunStatus run_invert(Run *run, Error *err)
 {
-    const RodModel *rm = run->model->rod;
+    const RodModel *rm = ((const RodModel *)run->model->self);
     size_t strands = (size_t)rm->strand_count, nodes = (size_t)run->model->point_count, all = strands * nodes;
     Inversion o = {
         .run = run, .rm = rm, .strands = rm->strand_count, .elements = (int)nodes - 1, .nodes = (int)nodes};
@@ -322,9 +321,9 @@ RunStatus job_invert(Run *run, Error *err)
     o.stable = mem_alloc(3 * strands, sizeof *o.stable), o.index = o.stable + strands,
     o.touching = o.index + strands;
     int done = 0;
-    for (; done < o.strands && !progress_interrupted(); done++) {
+    for (; done < o.strands && !host_stops(run->host); done++) {
         invert_strand(&o, done);
-        progress_step(run->progress, done + 1, o.strands, "natural shapes");
+        host_step(run->host, done + 1, o.strands, "natural shapes");
     }
     bool interrupted = done < o.strands, converged = o.worst == NEWTON_CONVERGED;
     bool ok = put_results(&o, interrupted ? "interrupted" : newton_status_name(o.worst), err);
@@ -335,3 +334,13 @@ RunStatus job_invert(Run *run, Error *err)
     if (!ok) return RUN_CANNOT_WRITE;
     return interrupted ? RUN_INTERRUPTED : converged ? RUN_DONE : RUN_NOT_CONVERGED;
 }
+
+static const char *const free_keys[] = {"output.precision", NULL};
+
+const JobRow rod_job_invert = {
+    .name = "invert",
+    .noun = "an inversion",
+    .run = run_invert,
+    .frames = FRAMES_STAY,
+    .free_keys = free_keys,
+};

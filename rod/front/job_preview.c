@@ -1,8 +1,8 @@
 /* A rod's motion by the position-based solver: quick, for the eye. A run that is resumed begins anew: it
  * repeats itself bit by bit. */
 #include "base/memory.h"
-#include "job/job.h"
-#include "rod/front/rod_model.h"
+#include "job/jobs.h"
+#include "rod/front/front.h"
 #include "rod/pbd.h"
 
 typedef struct Preview {
@@ -14,9 +14,9 @@ typedef struct Preview {
 
 static PbdRod *create(const Run *run)
 {
-    const RodModel *rm = run->model->rod;
+    const RodModel *rm = run->model->self;
     const Rod *rod = rm->rod;
-    const RodScene *scene = run->scene->rod;
+    const RodScene *scene = rod_scene(run->scene);
     const double *p = run->model->cases[0].stages[0].p;
     Vec3 *start = mem_alloc((size_t)rod->elements, sizeof *start);
     rod_element_strains(rod, &rm->layout, run->model->x, start);
@@ -70,18 +70,18 @@ static bool put_final(const Preview *o, const char *status)
     return journal_replace(o->run->journal, "final", 0, arrays, sizeof arrays / sizeof *arrays, o->err);
 }
 
-RunStatus job_preview(Run *run, Error *err)
+static RunStatus preview(Run *run, Error *err)
 {
     const TimeScene *time = &run->scene->time;
     Preview o = {.run = run, .rod = create(run), .nodes = run->model->point_count, .err = err};
     int every = run->scene->output.every ? run->scene->output.every : 1, step = 0;
     bool ok = journal_forget(run->journal, "frame", err) && journal_forget(run->journal, "evaluation", err) &&
               put_frame(&o, 0, time->at);
-    for (; ok && step < time->steps && !progress_interrupted();) {
+    for (; ok && step < time->steps && !host_stops(run->host);) {
         pbd_rod_step(o.rod, time->step);
         double now = time->at + ++step * time->step;
         ok = put_step(&o, step, now) && (step % every || put_frame(&o, step / every, now));
-        progress_step(run->progress, step, time->steps, "t %.4g s", now);
+        host_step(run->host, step, time->steps, "t %.4g s", now);
     }
     bool interrupted = step < time->steps;
     if (ok && step % every) ok = put_frame(&o, step / every + 1, time->at + step * time->step);
@@ -89,3 +89,19 @@ RunStatus job_preview(Run *run, Error *err)
     pbd_rod_destroy(o.rod);
     return !ok ? RUN_CANNOT_WRITE : interrupted ? RUN_INTERRUPTED : RUN_DONE;
 }
+
+/* By implicit Euler, or so. */
+static RunStatus run_simulate(Run *run, Error *err)
+{
+    return rod_scene(run->scene)->solver == ROD_SOLVER_PBD ? preview(run, err) : job_simulate.run(run, err);
+}
+
+const JobRow rod_job_simulate = {
+    .name = "simulate",
+    .noun = "a simulation",
+    .run = run_simulate,
+    .motion = true,
+    .frames = FRAMES_MOVE,
+    .free_keys = job_simulate_free_keys,
+    .effort = {2, 2, 0.9, 4, 25e6},
+};

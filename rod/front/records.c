@@ -1,16 +1,15 @@
 /* Rods in the journal. */
 #include "base/memory.h"
-#include "model/body.h"
-#include "rod/front/rod_model.h"
+#include "rod/front/front.h"
 #include "rod/stability.h"
 #include "rod/stations.h"
 #include <math.h>
 #include <string.h>
 
 /* Simulated, natural and (if one was given) input curve: only the first one moves. */
-void body_rod_static(const Model *model, Arrays *list)
+void rod_add_static(const Model *model, Arrays *list)
 {
-    const RodModel *rm = model->rod;
+    const RodModel *rm = model->self;
     if (!rm->rod) return; /* invert and identify have their own */
     int nodes = model->point_count, lines = rm->curves ? 3 : 2;
     int *range = arrays_keep(list, mem_alloc(2 * (size_t)lines, sizeof *range));
@@ -28,26 +27,25 @@ void body_rod_static(const Model *model, Arrays *list)
     arrays_add(list,
                array_float("rod/gravity", "m/s^2", model->cases[0].stages[0].p + model->gravity, 1, 3, 0));
     arrays_add(list, array_float("rod/natural", "m", still, 2, nodes, 3));
+    bool pinned = rm->rod->start == ROD_PINNED || rm->rod->end == ROD_PINNED;
+    arrays_add(list, array_text("rod/supports", pinned ? "pinned" : "clamped"));
+    if (rm->held) arrays_add(list, array_float("rod/held", "m", &rm->end_position.x, 1, 3, 0));
     if (rm->curves) arrays_add(list, array_float("rod/input", "m", still + 3 * nodes, 2, nodes, 3));
 }
 
-void body_rod_places(const Model *model, const double *x, double *place)
+void rod_body_places(const Model *model, const double *x, double *place)
 {
-    const RodLayout *layout = &model->rod->layout;
+    const RodModel *rm = model->self;
+    const RodLayout *layout = &rm->layout;
     if (layout->position >= 0)
         memcpy(place, x + layout->position, 3 * (size_t)layout->nodes * sizeof *place);
     else
-        rod_places(model->rod->rod, layout, x, layout->nodes, place);
+        rod_places(rm->rod, layout, x, layout->nodes, place);
 }
 
-void body_rod_frame(const Model *model, const Snapshot *shot, bool whole, Arrays *list)
+void rod_add_state(const Model *model, const Snapshot *shot, const char *prefix, Arrays *list)
 {
-    (void)model, (void)shot, (void)whole, (void)list;
-}
-
-void body_rod_state(const Model *model, const Snapshot *shot, const char *prefix, Arrays *list)
-{
-    const RodModel *rm = model->rod;
+    const RodModel *rm = model->self;
     int elements = rm->rod->elements;
     double *strain = arrays_numbers(list, 3 * (size_t)elements),
            *moment = arrays_numbers(list, 3 * (size_t)model->point_count);
@@ -104,12 +102,13 @@ static void add_stability(const RodModel *rm, const Snapshot *shot, Arrays *list
     mem_free(work);
 }
 
-char *body_rod_doubt(const Model *model, const Snapshot *shot)
+char *rod_doubt(const Model *model, const Snapshot *shot)
 {
-    const Rod *rod = model->rod->rod;
+    const RodModel *rm = model->self;
+    const Rod *rod = rm->rod;
     if (!is_judged(rod, shot->p)) return NULL;
     Vec3 *work;
-    RodEquilibrium at = equilibrium_of(model->rod, shot, &work);
+    RodEquilibrium at = equilibrium_of(rm, shot, &work);
     double lengths = rod_bending_lengths(&at);
     mem_free(work);
     if (lengths <= 1) return NULL;
@@ -119,15 +118,15 @@ char *body_rod_doubt(const Model *model, const Snapshot *shot)
         rod_element_length(rod) / lengths, lengths, ceil(rod->elements * lengths));
 }
 
-void body_rod_final(const Model *model, const Snapshot *shot, int modes, Arrays *list)
+void rod_add_final(const Model *model, const Snapshot *shot, int modes, Arrays *list)
 {
     (void)modes;
-    const RodModel *rm = model->rod;
+    const RodModel *rm = model->self;
     const Rod *rod = rm->rod;
     int nodes = model->point_count;
     double *place = arrays_numbers(list, 3 * (size_t)nodes),
            *moment = arrays_numbers(list, 3 * (size_t)nodes);
-    body_rod_places(model, shot->at.x, place);
+    rod_body_places(model, shot->at.x, place);
     rod_node_moments(rod, &rm->layout, shot->at.x, shot->p, (Vec3 *)moment);
     arrays_add(list, array_float("rod/x", "m", place, 2, nodes, 3));
     arrays_add(list, array_float("rod/moment", "N m", moment, 2, nodes, 3));

@@ -1,18 +1,19 @@
 #include "rod/front/rod_model.h"
 #include "base/memory.h"
-#include "job/job.h"
 #include "rod/front/curves.h"
+#include "rod/front/front.h"
 #include <math.h>
 #include <string.h>
 
 /* ---- What a rod is made of ---- */
 
-static bool read_section(RodModel *model, const RodScene *scene, const Build *b, JobKind job)
+/* `known`: of what it is made is not looked for. */
+static bool read_section(RodModel *model, const RodScene *scene, const Build *b, bool known)
 {
     bool ok = true;
-    if (job != JOB_IDENTIFY && isnan(scene->young))
+    if (known && isnan(scene->young))
         ok = yaml_refuse(b->file, "rod", "`young`, Young's modulus, is missing");
-    if (job != JOB_IDENTIFY && isnan(scene->poisson))
+    if (known && isnan(scene->poisson))
         ok = yaml_refuse(b->file, "rod", "`poisson`, Poisson's ratio, is missing");
     const double *a = scene->ellipse;
     double poisson = isnan(scene->poisson) ? 0.5 : scene->poisson;
@@ -46,7 +47,7 @@ static bool read_loads(RodModel *model, const RodScene *scene, const Build *b)
 /* Of a curve: what the magnetisation does is known along the tangent, the same all along. */
 static bool read_magnetic(RodModel *model, const Scene *scene, const Build *b)
 {
-    const VectorScene *M = &scene->rod->magnetization;
+    const VectorScene *M = &rod_scene(scene)->magnetization;
     FluxField *field;
     double *flux = model->flux;
     if (!build_flux(b, key("flux_density"), &scene->flux_density, flux, &field)) return false;
@@ -115,19 +116,21 @@ static bool check_poses(const RodModel *model, const RodScene *scene, const Buil
 RodModel *rod_model_create(const Scene *scene, const Build *b)
 {
     RodModel *model = mem_alloc(1, sizeof *model);
-    JobKind job = (JobKind)scene->job;
-    bool ok = read_section(model, scene->rod, b, job);
-    ok = read_loads(model, scene->rod, b) && ok;
-    if (scene->rod->curve) {
+    const RodScene *from = rod_scene(scene);
+    const JobRow *job = scene_job(scene);
+    bool identify = job == &rod_job_identify;
+    bool ok = read_section(model, from, b, !identify);
+    ok = read_loads(model, from, b) && ok;
+    if (from->curve) {
         RodStrands strands;
-        ok = rod_strands_read(b, scene->rod, &strands) && ok;
+        ok = rod_strands_read(b, from, &strands) && ok;
         model->strand_count = strands.count, model->curves = strands.curves, model->frames = strands.frames;
         for (int k = 0; ok && k < strands.count; k++)
             ok = rod_model_check_points(model, b, strands.curves[k].length);
     }
-    if (job == JOB_IDENTIFY) ok = read_poses(model, scene->rod, b) && ok;
-    if (ok && (job == JOB_INVERT || job == JOB_IDENTIFY)) ok = read_magnetic(model, scene, b);
-    if (ok && job == JOB_IDENTIFY) ok = check_poses(model, scene->rod, b);
+    if (identify) ok = read_poses(model, from, b) && ok;
+    if (ok && (identify || job == &rod_job_invert)) ok = read_magnetic(model, scene, b);
+    if (ok && identify) ok = check_poses(model, from, b);
     if (ok) return model;
     rod_model_destroy(model);
     return NULL;
@@ -257,7 +260,7 @@ void rod_model_loads(const RodModel *model, const Rod *rod, const RodScene *scen
 bool rod_model_params(const RodModel *model, const Scene *scene, const Build *b, double *p)
 {
     const Rod *rod = model->rod;
-    const RodScene *from = scene->rod;
+    const RodScene *from = rod_scene(scene);
     rod_model_loads(model, rod, from, p);
     bool ok = rod_model_vectors(b, "rod.magnetization", &from->magnetization, rod, p + rod->magnetization);
     return (!from->natural_strain || read_strains(b, from->natural_strain, rod, p + rod->natural_strain)) &&

@@ -1,8 +1,8 @@
 /* rod_model.h - what a scene says of a rod, read and resolved: its curve (or many: strands), section, loads
  * and frames, and the discrete rod of jobs that move it. */
 #pragma once
-#include "model/build.h"
 #include "model/model.h"
+#include "rod/front/scene.h"
 #include "rod/identify.h"
 #include "rod/rod.h"
 
@@ -28,7 +28,7 @@ typedef struct RodModel {
     Quat end_frame;
 } RodModel;
 
-/* Curves, section and loads of scene->rod; NULL after a refusal. */
+/* Curves, section and loads of rod_scene(scene); NULL after a refusal. */
 RodModel *rod_model_create(const Scene *scene, const Build *b);
 void rod_model_destroy(RodModel *model);
 

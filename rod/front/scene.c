@@ -1,4 +1,5 @@
 /* The field tables of rods. */
+#include "rod/front/scene.h"
 #include "model/scene_tables.h"
 
 static const YamlTable noise_table = {
@@ -186,3 +187,8 @@ const YamlTable rod_table = {
         {YAML_TABLE(RodScene, pbd, &pbd_table), .when = "solver: pbd", .fallback = "{}",
          .doc = "of solver: pbd"},
         {0}}};
+
+const RodScene *rod_scene(const Scene *scene)
+{
+    return scene_of(scene, &rod_body);
+}

@@ -1,9 +1,9 @@
-/* Models of shells. */
+/* The row of shells: models of them. */
 #include "base/memory.h"
-#include "model/body.h"
-#include "model/build.h"
-#include "job/job.h"
+#include "job/jobs.h"
+#include "shell/front/front.h"
 #include "shell/rigid.h"
+#include "shell/smoothness.h"
 #include <math.h>
 #include <string.h>
 
@@ -88,10 +88,10 @@ static bool fix_entry(Model *model, const Build *b, int entry, const FixScene *f
     SelectionScene selection = SELECTION_OF(fix);
     ok = build_selection(b, at, &selection, &found);
     for (int i = 0; i < 3 * found.count; i++)
-        if (axis[i % 3]) shell_fix(model->shell, found.items[i / 3], i % 3);
+        if (axis[i % 3]) shell_fix(model->self, found.items[i / 3], i % 3);
     if (ok && fix->clamp) {
         Indices edges = select_edges(b->mesh, &found);
-        for (int k = 0; k < edges.count; k++) shell_clamp(model->shell, edges.items[k]);
+        for (int k = 0; k < edges.count; k++) shell_clamp(model->self, edges.items[k]);
         mem_free(edges.items);
     }
     if (ok && fix->move_count) ok = add_motion(model, b, entry, fix, axis, found);
@@ -106,7 +106,7 @@ static bool move(const Model *model, double time, double part, double *x, Error 
         for (int k = 0; k < motion->vertices.count; k++) {
             int v = motion->vertices.items[k];
             double variables[BUILD_VARIABLES], place[3];
-            build_position(variables, model->shell->mesh->rest[v], time);
+            build_position(variables, model->mesh->rest[v], time);
             if (!formula_eval(motion->formula, variables, place, err)) return false;
             for (int i = 0; i < 3; i++)
                 if (motion->axis[i]) x[3 * v + i] += part * (place[i] - x[3 * v + i]);
@@ -120,7 +120,7 @@ static bool move(const Model *model, double time, double part, double *x, Error 
 static bool put_loads(Model *model, const Build *b, const char *at, const LoadScene *loads, int count,
                       double *p)
 {
-    return build_loads(b, key("%s", at), loads, count, p + model->shell->load);
+    return build_loads(b, key("%s", at), loads, count, p + ((const Shell *)model->self)->load);
 }
 
 static bool put_target(Model *model, const Build *b, const char *at, const TargetScene *scene,
@@ -132,10 +132,10 @@ static bool put_target(Model *model, const Build *b, const char *at, const Targe
 
 static double *base_params(Model *model, const Scene *scene, const Build *b)
 {
-    Shell *shell = model->shell;
+    Shell *shell = model->self;
     double *p = params_vector(model->params);
     shell_default_params(shell, p);
-    const ShellScene *s = scene->shell;
+    const ShellScene *s = shell_scene(scene);
     bool ok = build_face_numbers(b, key("shell.young"), &s->young, p + shell->young);
     ok = build_edge_numbers(b, key("shell.fold"), &s->fold, p + shell->fold) && ok;
     ok = build_face_vectors(b, key("shell.magnetization"), &s->magnetization, p + shell->magnetization) && ok;
@@ -180,18 +180,22 @@ static bool read_pose(const Build *b, const PoseScene *pose, double *x)
     return ok;
 }
 
-/* Systems last: fields and what is held are known by then. An equilibrium needs forces in balance. */
-static bool finish_cases(Model *model, const Build *b, JobKind job)
+static System *make_system(const Model *model, bool motion)
 {
-    bool ok = true, balanced = job == JOB_EQUILIBRIUM || job == JOB_DESIGN;
+    return motion ? shell_dynamic_system(model->self) : shell_system(model->self);
+}
+
+/* Systems last: fields and what is held are known by then. An equilibrium needs forces in balance. */
+static bool finish_cases(Model *model, const Build *b)
+{
+    bool ok = true;
     for (int k = 0; ok && k < model->case_count; k++) {
-        ModelCase *c = &model->cases[k];
+        Case *c = &model->cases[k];
         Error err;
-        c->sys = model_is_motion(job) ? shell_dynamic_system(model->shell) : shell_system(model->shell);
-        model_start_case(c, model->x);
+        case_start(c, make_system(model, model->job->motion), model->x);
         system_accept(c->sys, c->state.x, c->state.memory);
-        for (int s = 0; ok && balanced && s < c->stage_count; s++)
-            ok = rigid_check_force(model->shell, c->stages[s].p, &err) ||
+        for (int s = 0; ok && model->job->rest && s < c->stage_count; s++)
+            ok = rigid_check_force(model->self, c->stages[s].p, &err) ||
                  yaml_refuse(b->file, "", "%s", err.text);
     }
     return ok;
@@ -199,46 +203,37 @@ static bool finish_cases(Model *model, const Build *b, JobKind job)
 
 static bool fill(Model *model, const Scene *scene, const Build *b, bool flux_is_read)
 {
-    Shell *shell = model->shell;
-    shell->thickness = scene->shell->thickness;
-    shell->poisson = scene->shell->poisson;
-    shell->density = scene->shell->density;
-    shell->bending = (BendingModel)scene->shell->bending;
+    Shell *shell = model->self;
+    const ShellScene *from = shell_scene(scene);
+    shell->thickness = from->thickness;
+    shell->poisson = from->poisson;
+    shell->density = from->density;
+    shell->bending = (BendingModel)from->bending;
     bool ok = flux_is_read;
     for (int k = 0; k < scene->fix_count; k++) ok = fix_entry(model, b, k, &scene->fix[k]) && ok;
     model->x = mem_alloc((size_t)shell_dof_count(shell), sizeof *model->x);
     shell_rest_state(shell, model->x);
-    ok = read_pose(b, scene->shell->pose, model->x) && ok;
+    ok = read_pose(b, from->pose, model->x) && ok;
     double *p = base_params(model, scene, b);
     ok = p && model_cases(model, b, scene, p) && ok;
     mem_free(p);
-    return ok && finish_cases(model, b, (JobKind)scene->job) &&
-           (!model_is_motion(scene->job) ||
-            model_velocity(model, b, "shell.velocity", scene->shell->velocity, b->mesh->rest[0]));
+    return ok && finish_cases(model, b) &&
+           (!model->job->motion ||
+            model_velocity(model, b, "shell.velocity", from->velocity, b->mesh->rest[0]));
 }
 
-static const BodyOps shell_ops = {
-    .put_loads = put_loads,
-    .put_target = put_target,
-    .move = move,
-    .add_static = body_shell_static,
-    .places = body_shell_places,
-    .add_frame = body_shell_frame,
-    .add_state = body_shell_state,
-    .add_final = body_shell_final,
-};
-
-bool model_shell(Model *model, const Scene *scene, YamlFile *file)
+static bool create(Model *model, const Scene *scene, YamlFile *file)
 {
-    Mesh *mesh = build_mesh(&scene->shell->mesh, file, &model->report);
+    Mesh *mesh = build_mesh(&shell_scene(scene)->mesh, file, &model->report);
     if (!mesh) return false;
     Build b = build_start(scene, mesh, file);
+    b.mesh_scale = shell_scene(scene)->mesh.scale;
     b.report = &model->report;
-    b.timed = model_is_motion(scene->job) ? &model->flux_of_time : NULL;
+    b.timed = model->job->motion ? &model->flux_of_time : NULL;
     FluxFields fields;
     bool flux_is_read = model_read_flux(model, &b, scene, &fields);
-    Shell *shell = model->shell = shell_create(mesh, &fields);
-    model->body = &shell_ops;
+    Shell *shell = model->self = shell_create(mesh, &fields);
+    model->mesh = mesh;
     model->params = &shell->params;
     model->gravity = shell->gravity;
     model->flux_density = shell->flux_density;
@@ -250,3 +245,95 @@ bool model_shell(Model *model, const Scene *scene, YamlFile *file)
     model_add_blocks(model, scene);
     return fill(model, scene, &b, flux_is_read);
 }
+
+static void destroy(void *self)
+{
+    shell_destroy(self);
+}
+
+/* ---- Designs ---- */
+
+static bool put_numbers(Model *model, const Build *b, const char *at, const NumberScene *scene,
+                        const ParamBlock *block, double *values)
+{
+    const Shell *shell = model->self;
+    return block->offset == shell->fold ? build_edge_numbers(b, key("%s", at), scene, values)
+                                        : build_face_numbers(b, key("%s", at), scene, values);
+}
+
+static bool put_vectors(Model *model, const Build *b, const char *at, const VectorScene *scene,
+                        const ParamBlock *block, double *values)
+{
+    (void)model, (void)block;
+    return build_face_vectors(b, key("%s", at), scene, values);
+}
+
+static bool select_part(const Model *model, const Build *b, const char *at, const char *name, Indices *found)
+{
+    (void)model;
+    SelectionScene group = {.group = (char *)name};
+    return build_selection(b, key("%s", at), strcmp(name, "all") ? &group : NULL, found);
+}
+
+static void masses(const Model *model, double *mass)
+{
+    shell_vertex_mass(model->self, mass);
+}
+
+static Objective smoothness(const Model *model, double weight)
+{
+    return shell_magnetization_smoothness(model->self, weight);
+}
+
+/* Of edge angles, with all positions held. */
+static System *pose_system(const Model *model)
+{
+    Shell *shell = model->self;
+    size_t positions = 3 * (size_t)shell->mesh->vertex_count;
+    bool *fixed = mem_copy(shell->fixed, positions, sizeof *fixed);
+    for (size_t i = 0; i < positions; i++) shell->fixed[i] = true;
+    System *held = shell_system(shell);
+    memcpy(shell->fixed, fixed, positions * sizeof *fixed);
+    mem_free(fixed);
+    return held;
+}
+
+/* ---- The row ---- */
+
+static const BodyOps ops = {
+    .create = create,
+    .destroy = destroy,
+    .put_loads = put_loads,
+    .put_target = put_target,
+    .put_numbers = put_numbers,
+    .put_vectors = put_vectors,
+    .select = select_part,
+    .masses = masses,
+    .smoothness = smoothness,
+    .move = move,
+    .system = make_system,
+    .pose_system = pose_system,
+    .add_static = shell_add_static,
+    .add_frame = shell_add_frame,
+    .add_state = shell_add_state,
+    .add_final = shell_add_final,
+    .places = shell_places,
+    .describe = shell_describe,
+    .advise = shell_advise,
+    .dof_sizes = shell_dof_sizes,
+    .cost = shell_cost,
+};
+
+static const JobRow *const jobs[] = {&job_equilibrium, &job_evaluate,   &job_design,
+                                     &job_simulate,    &job_trajectory, NULL};
+
+const BodyRow shell_body = {
+    .key = "shell",
+    .noun = "a shell",
+    .nouns = "shells",
+    .doc = "the body: a shell",
+    .table = &shell_table,
+    .uses = (const KeyUse[]){{0}},
+    .jobs = jobs,
+    .ops = &ops,
+};

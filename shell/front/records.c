@@ -1,6 +1,7 @@
 /* Shells in the journal. */
 #include "base/memory.h"
-#include "model/body.h"
+#include "job/run.h"
+#include "shell/front/front.h"
 #include "solve/eigen.h"
 #include <string.h>
 
@@ -15,22 +16,22 @@ static void add_edges(const Mesh *mesh, Arrays *list)
         arrays_add(list, array_int("file_vertex", mesh->file_vertex, 1, mesh->vertex_count, 0));
 }
 
-void body_shell_static(const Model *model, Arrays *list)
+void shell_add_static(const Model *model, Arrays *list)
 {
-    const Mesh *mesh = model->shell->mesh;
+    const Mesh *mesh = model->mesh;
     arrays_add(list, array_float("rest", "m", mesh->rest[0], 2, mesh->vertex_count, 3));
     arrays_add(list, array_int("faces", mesh->faces[0], 2, mesh->face_count, 3));
     add_edges(mesh, list);
 }
 
-void body_shell_places(const Model *model, const double *x, double *place)
+void shell_places(const Model *model, const double *x, double *place)
 {
     memcpy(place, x, 3 * (size_t)model->point_count * sizeof *place);
 }
 
-void body_shell_frame(const Model *model, const Snapshot *shot, bool whole, Arrays *list)
+void shell_add_frame(const Model *model, const Snapshot *shot, bool whole, Arrays *list)
 {
-    const Shell *shell = model->shell;
+    const Shell *shell = model->self;
     System *sys = shot->load_case->sys;
     Point at = state_point(&shot->at, shot->p);
     for (int t = 0; t < system_term_count(sys); t++) {
@@ -43,11 +44,11 @@ void body_shell_frame(const Model *model, const Snapshot *shot, bool whole, Arra
         arrays_add(list, array_float(name, "J", energy, 1, count, 0));
     }
     if (!whole) return;
-    arrays_add(list, body_block("cell/magnetization", params_find(&shell->params, "magnetization"), shot->p));
-    arrays_add(list, body_block("cell/young", params_find(&shell->params, "young"), shot->p));
+    arrays_add(list, run_block("cell/magnetization", params_find(&shell->params, "magnetization"), shot->p));
+    arrays_add(list, run_block("cell/young", params_find(&shell->params, "young"), shot->p));
 }
 
-void body_shell_state(const Model *model, const Snapshot *shot, const char *prefix, Arrays *list)
+void shell_add_state(const Model *model, const Snapshot *shot, const char *prefix, Arrays *list)
 {
     System *sys = shot->load_case->sys;
     Point at = state_point(&shot->at, shot->p);
@@ -57,7 +58,7 @@ void body_shell_state(const Model *model, const Snapshot *shot, const char *pref
     arrays_add(list, array_float(name, "N", gradient, 2, model->point_count, 3));
 }
 
-void body_shell_final(const Model *model, const Snapshot *shot, int modes, Arrays *list)
+void shell_add_final(const Model *model, const Snapshot *shot, int modes, Arrays *list)
 {
     System *sys = shot->load_case->sys;
     Point at = state_point(&shot->at, shot->p);

@@ -1,29 +1,92 @@
-/* Models of drawings. */
-#include "spline/front/drawn.h"
-#include "model/model.h"
-
-static void add_static(const Model *model, Arrays *list)
-{
-    drawn_add_static(model->drawing, list);
-}
-
-static const BodyOps drawing_ops = {.add_static = add_static};
+/* The row of drawings: a body without cases, which has its own job. */
+#include "base/memory.h"
+#include "spline/drawn.h"
+#include "spline/front/front.h"
 
 /* What says how a pen is lifted needs the file that says so. */
 static bool check_plotter(const Scene *scene, YamlFile *file)
 {
-    if (scene->spline->plotter.z && !scene->output.gcode)
+    if (spline_scene(scene)->plotter.z && !scene->output.gcode)
         return yaml_refuse(file, "spline.plotter.z",
                            "this is for the file `output.gcode`, which has no name");
-    return !scene->spline->plotter.servo || scene->output.gcode_servo ||
+    return !spline_scene(scene)->plotter.servo || scene->output.gcode_servo ||
            yaml_refuse(file, "spline.plotter.servo",
                        "this is for the file `output.gcode_servo`, which has no name");
 }
 
-bool model_drawing(Model *model, const Scene *scene, YamlFile *file)
+static bool create(Model *model, const Scene *scene, YamlFile *file)
 {
     if (!check_plotter(scene, file)) return false;
-    model->body = &drawing_ops;
-    model->drawing = drawing_create(scene->spline, file);
-    return model->drawing != NULL;
+    model->self = drawing_create(spline_scene(scene), file);
+    return model->self != NULL;
 }
+
+static void destroy(void *self)
+{
+    drawing_destroy(self);
+}
+
+static void add_static(const Model *model, Arrays *list)
+{
+    drawing_add_static(model->self, list);
+}
+
+static char *describe(const Model *model, const Scene *scene)
+{
+    (void)scene;
+    const Drawing *d = model->self;
+    const SplinePage *page = &d->page;
+    char *text = mem_format("%d pen%s; %.4g x %.4g mm within margins of %.4g mm\n", d->pen_count,
+                            d->pen_count == 1 ? "" : "s", 1e3 * page->unit * page->width,
+                            1e3 * page->unit * page->height, 1e3 * page->left);
+    for (int k = 0; k < d->part_count; k++) {
+        const DrawingPart *part = &d->parts[k];
+        SplineGrid tone = spline_grid(&part->tone);
+        double mean = spline_grid_mean(&tone, 0);
+        char *line = mem_format("%s, %.3g mm: covers %.3g of the page, %.3g m of ink, about %.0f segments\n",
+                                d->pens[part->pen].name, 1e3 * page->unit * part->page.pen, mean,
+                                page->unit * mean / part->page.pen, drawing_segments(part));
+        text = mem_join(text, line, "");
+        mem_free(line);
+    }
+    return text;
+}
+
+static bool write_drawing(Result *result, const char *language, const char *path, bool *written, Error *err)
+{
+    Drawn drawn;
+    *written = drawn_has(result);
+    if (!*written) return true;
+    bool ok = drawn_read(result, &drawn, err) && drawn_write(&drawn, language, path, err);
+    drawn_clear(&drawn);
+    return ok;
+}
+
+static const BodyOps ops = {
+    .create = create,
+    .destroy = destroy,
+    .add_static = add_static,
+    .describe = describe,
+    .write = write_drawing,
+};
+
+static const KeyUse uses[] = {
+    {"flux_density", "!spline", NULL},
+    {"fix", "!spline", NULL},
+    {"loads", "!spline", NULL},
+    {"modes", "!spline", NULL},
+    {0},
+};
+
+static const JobRow *const jobs[] = {&spline_job_draw, NULL};
+
+const BodyRow spline_body = {
+    .key = "spline",
+    .noun = "a drawing",
+    .nouns = "drawings",
+    .doc = "no body, but a drawing",
+    .table = &spline_table,
+    .uses = uses,
+    .jobs = jobs,
+    .ops = &ops,
+};

@@ -1,9 +1,9 @@
 #include "spline/front/drawing.h"
 #include "base/memory.h"
-#include "spline/front/drawing_fields.h"
-#include "spline/front/drawing_pens.h"
 #include "io/paper.h"
 #include "spline/direction.h"
+#include "spline/front/drawing_fields.h"
+#include "spline/front/drawing_pens.h"
 #include "spline/tone_field.h"
 #include <math.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 /* drawing.h - the drawing of a scene made ready: the page, the pens, and parts, each a tone that one pen
  * covers with strokes of one direction. Parts do not act on each other. */
 #pragma once
-#include "model/scene.h"
+#include "spline/front/scene.h"
 #include "spline/plot.h"
 #include "spline/relax.h"
 #include "spline/streamlines.h"

@@ -1,9 +1,9 @@
 #include "spline/front/drawing_fields.h"
 #include "base/memory.h"
 #include "model/build.h"
-#include "spline/front/drawing_pens.h"
 #include "spline/direction.h"
 #include "spline/formula_field.h"
+#include "spline/front/drawing_pens.h"
 #include "spline/tone_field.h"
 #include <math.h>
 #include <string.h>

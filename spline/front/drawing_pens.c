@@ -1,6 +1,5 @@
 #include "spline/front/drawing_pens.h"
 #include "base/memory.h"
-#include "base/plain.h"
 #include "model/build.h"
 #include <math.h>
 #include <string.h>
@@ -77,16 +76,11 @@ static bool check_from(const SplineScene *scene, YamlFile *file)
 }
 
 /* Names are a line each in the result and on the terminal, and words of the SVG file's XML. */
-bool pens_is_name(const char *name)
-{
-    return *name && plain_is(name);
-}
-
 static bool check_name(const SplineScene *scene, YamlFile *file, int pen)
 {
     const char *name = scene->pens[pen].name;
     Key at = key("spline.pens[%d]", pen);
-    if (!pens_is_name(name)) return yaml_refuse(file, at.text, "the name of a pen is a line of text");
+    if (!spline_pen_is_name(name)) return yaml_refuse(file, at.text, "the name of a pen is a line of text");
     if (is_cmyk(scene) && pens_ink(name) < 0)
         return yaml_refuse(file, at.text, "the pens of cmyk are cyan, magenta, yellow and black");
     for (int k = 0; is_cmyk(scene) && k < pen; k++)

@@ -1,6 +1,6 @@
 /* drawing_pens.h - the pens of a drawing, and what the scene says of each. */
 #pragma once
-#include "model/scene.h"
+#include "spline/front/scene.h"
 #include "spline/plot.h"
 
 /* The width of the finest pen, m. */
@@ -9,9 +9,6 @@ double pens_finest(const SplineScene *scene);
 /* pens[count], with widths in units of the page; names are the caller's. False after a refusal. */
 bool pens_read(const SplineScene *scene, YamlFile *file, const SplinePage *page, SplinePen **pens,
                int *count);
-
-/* Is it a line of text that may name a pen? */
-bool pens_is_name(const char *name);
 
 /* Which of the inks of spline_separate the pen of that name draws; -1: none. */
 int pens_ink(const char *name);

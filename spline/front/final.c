@@ -1,7 +1,7 @@
 #include "spline/front/final.h"
 #include "base/cubic.h"
 #include "base/memory.h"
-#include "spline/front/drawn.h"
+#include "spline/front/front.h"
 #include "spline/metrics.h"
 #include "spline/order.h"
 #include "spline/terms.h"
@@ -16,7 +16,7 @@ bool draw_put_strokes(Run *run, const Drawing *d, const Strokes *parts, int coun
     Arrays list = {0};
     Strokes all = {0};
     for (int k = 0; k < count; k++) strokes_append(&all, &parts[k], d->parts[k].pen);
-    drawn_add_strokes(d, &all, &list);
+    drawing_add_strokes(d, &all, &list);
     bool ok = arrays_replace(&list, run->journal, "final", err);
     strokes_clear(&all);
     return ok;
@@ -74,11 +74,11 @@ static void add_metrics(const Drawing *d, const Strokes *strokes, Run *run, Arra
         for (int r = 0; r < ROWS; r++)
             values[r * d->pen_count + k] =
                 *(const double *)((const char *)&m + rows[r].offset) * (rows[r].length ? d->page.unit : 1);
-        progress_say(run->progress,
-                     "%s: tone error %.4f, similarity %.3f, ink %.3f of the budget, spacing varies by %.2f, "
-                     "%.1f %% crowded",
-                     d->pens[k].name, m.tone_rmse, m.ssim, m.ink_budget > 0 ? m.ink_length / m.ink_budget : 0,
-                     m.spacing_cv, 100 * m.crowded);
+        host_say(run->host,
+                 "%s: tone error %.4f, similarity %.3f, ink %.3f of the budget, spacing varies by %.2f, "
+                 "%.1f %% crowded",
+                 d->pens[k].name, m.tone_rmse, m.ssim, m.ink_budget > 0 ? m.ink_length / m.ink_budget : 0,
+                 m.spacing_cv, 100 * m.crowded);
     }
     for (int r = 0; r < ROWS; r++)
         arrays_add(list, per_pen(d, rows[r].name, rows[r].unit, values + r * d->pen_count));
@@ -99,10 +99,10 @@ static void add_plot(const Drawing *d, const Strokes *strokes, const OrderInfo *
         ink += estimate.ink;
     }
     travel[0] = order->before * d->page.unit, travel[1] = order->after * d->page.unit;
-    progress_say(run->progress,
-                 "%d strokes, %.2f m of ink; the lifted pen moves %.2f m, %.2f m before ordering; about %.0f "
-                 "min to plot",
-                 strokes->count, 1e-3 * ink, travel[1], travel[0], sum / 60);
+    host_say(run->host,
+             "%d strokes, %.2f m of ink; the lifted pen moves %.2f m, %.2f m before ordering; about %.0f "
+             "min to plot",
+             strokes->count, 1e-3 * ink, travel[1], travel[0], sum / 60);
     arrays_add(list, array_float("metrics/travel_before", "m", &travel[0], 0, 0, 0));
     arrays_add(list, array_float("metrics/travel", "m", &travel[1], 0, 0, 0));
     arrays_add(list, per_pen(d, "metrics/plot_time", "s", seconds));
@@ -118,10 +118,9 @@ static void explain_blank(const Drawing *d, Run *run)
         most = fmax(most, spline_grid_mean(&tone, 0));
     }
     if (most > 0)
-        progress_say(
-            run->progress,
-            "nothing was drawn: paper stays blank where lines would be farther apart than a third of "
-            "the page, or have no room; a finer pen helps");
+        host_say(run->host,
+                 "nothing was drawn: paper stays blank where lines would be farther apart than a third of "
+                 "the page, or have no room; a finer pen helps");
 }
 
 /* ---- For ParaView: strokes as chords ---- */
@@ -181,7 +180,7 @@ bool draw_finish(Run *run, const Drawing *d, const Strokes *parts, const RelaxIn
         order = order_strokes(&all, &d->page, order_default());
     else
         order.before = order.after = order_travel(&all, &d->page);
-    drawn_add_strokes(d, &all, &list);
+    drawing_add_strokes(d, &all, &list);
     for (int t = 0; t < SPLINE_WEIGHT_COUNT; t++) {
         char *name = arrays_keep(&list, mem_format("final/energy/%s", spline_term_rows[t].name));
         if (((const double *)&d->relax.weights)[t] != 0)

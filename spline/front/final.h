@@ -1,8 +1,8 @@
 /* draw_final.h - what a drawing leaves: its strokes as a plotter draws them, energies and metrics. Part of
  * job_draw. */
 #pragma once
-#include "spline/front/drawing.h"
 #include "job/run.h"
+#include "spline/front/drawing.h"
 
 /* The strokes of the first parts, as they are, for those who look at a run that goes on. */
 bool draw_put_strokes(Run *run, const Drawing *drawing, const Strokes *parts, int count, Error *err);

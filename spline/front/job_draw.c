@@ -6,9 +6,9 @@
  * times. */
 #include "base/clock.h"
 #include "base/memory.h"
+#include "job/run.h"
 #include "spline/front/final.h"
-#include "spline/front/drawn.h"
-#include "job/job.h"
+#include "spline/front/front.h"
 #include "spline/metrics.h"
 #include "spline/revise.h"
 #include <math.h>
@@ -167,10 +167,10 @@ static bool watch(void *self, const RelaxInfo *info, const Strokes *strokes)
                   (every > 0 && job->iteration % every == 0 && !write_svg(job, strokes));
     judge(job, strokes);
     double ink = job->judge ? strokes_length(strokes) / fmax(spline_ink_budget(job->target), 1e-30) : 0;
-    progress_step(job->run->progress, job->part * (d->rounds + 1) + done, d->part_count * (d->rounds + 1),
-                  "iteration %d, energy %.5g, tone error %.4f, ink %.3f", job->iteration, info->energy,
-                  job->tone, ink);
-    return !job->failed && !progress_interrupted();
+    host_step(job->run->host, job->part * (d->rounds + 1) + done, d->part_count * (d->rounds + 1),
+              "iteration %d, energy %.5g, tone error %.4f, ink %.3f", job->iteration, info->energy, job->tone,
+              ink);
+    return !job->failed && !host_stops(job->run->host);
 }
 
 /* ---- A part ---- */
@@ -221,7 +221,7 @@ static bool run_part(DrawJob *job, int part)
     SplineGrid tone = spline_grid(&from->tone);
     job->part = part;
     job->target = NULL;
-    if (job->run->progress->mode != PROGRESS_QUIET) job->judge = spline_judge_create(&from->page, &tone);
+    if (job->run->host->step) job->judge = spline_judge_create(&from->page, &tone);
     job->judged = 0;
     bool going = relax_part(job);
     spline_judge_destroy(job->judge);
@@ -259,9 +259,9 @@ static bool has_ended_well(const RelaxInfo *info, RelaxMethod method)
            (counted && info->status == RELAX_MAX_ITERATIONS);
 }
 
-RunStatus job_draw(Run *run, Error *err)
+static RunStatus run_draw(Run *run, Error *err)
 {
-    const Drawing *d = run->model->drawing;
+    const Drawing *d = run->model->self;
     DrawJob job = {.run = run, .d = d, .relax = d->relax, .started = clock_seconds(), .err = err};
     job.relax.threads = run->threads;
     job.strokes = mem_alloc((size_t)d->part_count, sizeof *job.strokes);
@@ -273,7 +273,7 @@ RunStatus job_draw(Run *run, Error *err)
     bool ok = !job.failed && draw_finish(run, d, job.strokes, &info,
                                          interrupted ? "interrupted" : relax_status_name(info.status), err);
     if (ok && !interrupted && !has_ended_well(&info, d->relax.method))
-        progress_say(run->progress, "%s", relax_status_text(info.status));
+        host_say(run->host, "%s", relax_status_text(info.status));
     for (int k = 0; k < d->part_count; k++) strokes_clear(&job.strokes[k]);
     mem_free(job.strokes);
     mem_free(job.parts);
@@ -282,3 +282,13 @@ RunStatus job_draw(Run *run, Error *err)
            : has_ended_well(&info, d->relax.method) ? RUN_DONE
                                                     : RUN_NOT_CONVERGED;
 }
+
+static const char *const free_keys[] = {"output", "spline.rounds", "spline.order", "spline.plotter", NULL};
+
+const JobRow spline_job_draw = {
+    .name = "draw",
+    .noun = "a drawing",
+    .run = run_draw,
+    .frames = FRAMES_STAY,
+    .free_keys = free_keys,
+};

@@ -1,4 +1,5 @@
 /* The field tables of drawings. */
+#include "spline/front/scene.h"
 #include "model/scene_tables.h"
 
 static const YamlTable tone_table = {
@@ -322,3 +323,8 @@ const YamlTable spline_table = {
         {YAML_TABLE(SplineScene, plotter, &plotter_table), .fallback = "{}",
          .doc = "its speeds, and how it lifts the pen"},
         {0}}};
+
+const SplineScene *spline_scene(const Scene *scene)
+{
+    return scene_of(scene, &spline_body);
+}

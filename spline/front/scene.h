@@ -1,12 +1,7 @@
-/* scene_spline.h - what a scene says of a drawing; part of scene.h, in whose terms it is written. */
+/* scene.h - what a scene says of a drawing. */
 #pragma once
+#include "model/rows.h"
 #include "spline/weights.h"
-#include <stdbool.h>
-
-/* Helper of a formula: where: {a: "atan2(y, x)"} */
-typedef struct WhereScene {
-    char *name, *formula;
-} WhereScene;
 
 typedef enum ToneFit { TONE_CONTAIN, TONE_COVER } ToneFit;
 
@@ -128,3 +123,8 @@ typedef struct SplineScene {
 } SplineScene;
 
 typedef enum DrawOrder { ORDER_SHORTEST, ORDER_AS_MADE } DrawOrder;
+
+extern const YamlTable spline_table;
+extern const BodyRow spline_body; /* body.c */
+
+const SplineScene *spline_scene(const Scene *scene);

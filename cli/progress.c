@@ -1,9 +1,9 @@
-#include "job/progress.h"
+#include "cli/progress.h"
 #include "base/clock.h"
 #include "base/memory.h"
 #include "base/plain.h"
+#include "cli/say.h"
 #include <signal.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <unistd.h>
 
@@ -28,8 +28,9 @@ Progress progress_start(ProgressMode mode)
         .mode = mode, .terminal = isatty(STDOUT_FILENO) != 0, .started = clock_seconds(), .shown = -1};
 }
 
-bool progress_interrupted(void)
+static bool is_interrupted(void *self)
 {
+    (void)self;
     return interrupted != 0;
 }
 
@@ -46,25 +47,19 @@ static void show_bar(double seconds, int step, int total)
 }
 
 /* As JSON or as plain text; the caller frees. */
-static char *shown_text(const Progress *progress, const char *format, va_list args)
+static char *shown_text(const Progress *progress, const char *text)
 {
-    char *text = mem_vformat(format, args),
-         *shown = progress->mode == PROGRESS_JSON ? plain_json(text) : plain_text(text, "");
-    mem_free(text);
-    return shown;
+    return progress->mode == PROGRESS_JSON ? plain_json(text) : plain_text(text, "");
 }
 
-void progress_step(Progress *progress, int step, int total, const char *format, ...)
+static void show_step(void *self, int step, int total, const char *text)
 {
+    Progress *progress = self;
     double now = clock_seconds(), seconds = now - progress->started, pause = progress->terminal ? 0.1 : 2;
     bool last = step >= total;
-    if (progress->mode == PROGRESS_QUIET || (!last && progress->shown >= 0 && now - progress->shown < pause))
-        return;
+    if (!last && progress->shown >= 0 && now - progress->shown < pause) return;
     progress->shown = now;
-    va_list args;
-    va_start(args, format);
-    char *detail = shown_text(progress, format, args);
-    va_end(args);
+    char *detail = shown_text(progress, text);
     if (progress->mode == PROGRESS_JSON)
         printf("{\"step\": %d, \"of\": %d, \"seconds\": %.3f, \"detail\": \"%s\"}\n", step, total, seconds,
                detail);
@@ -77,19 +72,29 @@ void progress_step(Progress *progress, int step, int total, const char *format, 
     fflush(stdout);
 }
 
-void progress_say(Progress *progress, const char *format, ...)
+static void show_line(void *self, const char *sentence)
 {
-    if (progress->mode == PROGRESS_QUIET) return;
-    va_list args;
-    va_start(args, format);
-    char *line = shown_text(progress, format, args);
-    va_end(args);
+    Progress *progress = self;
+    char *line = shown_text(progress, sentence);
     if (progress->mode == PROGRESS_JSON)
         printf("{\"seconds\": %.3f, \"say\": \"%s\"}\n", clock_seconds() - progress->started, line);
     else
         printf("%s%s\n", progress->terminal ? "\r\033[K" : "", line);
     mem_free(line);
     fflush(stdout);
+}
+
+static void show_warning(void *self, const char *sentence)
+{
+    progress_tell(((Progress *)self)->mode, "warning", sentence);
+    say(stderr, "warning: %s", sentence);
+}
+
+Host progress_host(Progress *progress)
+{
+    Host host = {.self = progress, .warn = show_warning, .stop = is_interrupted};
+    if (progress->mode != PROGRESS_QUIET) host.step = show_step, host.say = show_line;
+    return host;
 }
 
 void progress_tell(ProgressMode mode, const char *kind, const char *sentence)

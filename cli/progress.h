@@ -1,7 +1,9 @@
-/* progress.h - what a run says while it runs, and whether it has been interrupted.
+/* progress.h - the program as the host of a job (job/host.h): what a run says while it runs, and whether it has been
+ * interrupted.
  *
  * On a terminal one line that changes; otherwise a line now and then; with JSON one object per line. */
 #pragma once
+#include "job/host.h"
 #include <stdbool.h>
 
 typedef enum ProgressMode { PROGRESS_NORMAL, PROGRESS_QUIET, PROGRESS_JSON } ProgressMode;
@@ -16,16 +18,8 @@ typedef struct Progress {
  */
 Progress progress_start(ProgressMode mode);
 
-/* Has the user asked to stop? */
-bool progress_interrupted(void);
-
-/* A step of `total` is done; `detail` says what it brought ("F 0.02 F0"). Shown at most twice a second, the
- * last one always. */
-void progress_step(Progress *progress, int step, int total, const char *format, ...)
-    __attribute__((format(printf, 4, 5)));
+/* Steps are shown at most twice a second, the last one always. Borrows it. */
+Host progress_host(Progress *progress);
 
 /* With JSON an object {"error": ".."} or {"warning": ".."} beside the sentence that goes to the error stream. */
 void progress_tell(ProgressMode mode, const char *kind, const char *sentence);
-
-/* A line that stays. */
-void progress_say(Progress *progress, const char *format, ...) __attribute__((format(printf, 2, 3)));

@@ -1,7 +1,6 @@
-#include "cli/outputs.h"
+#include "job/outputs.h"
 #include "base/memory.h"
-#include "spline/front/drawn.h"
-#include "cli/verb.h"
+#include "io/path.h"
 #include "io/replace.h"
 #include "io/safe_file.h"
 #include <string.h>
@@ -22,7 +21,7 @@ static char *path_of(const char *result, const char *name, const char *ending)
     if (name && (name[0] == '/' || !slash)) return mem_text(name);
     if (name) return mem_format("%.*s%s", (int)(slash + 1 - result), result, name);
     if (!ending) return NULL;
-    char *base = verb_without_ending(result, ".vtkhdf"), *path = mem_format("%s%s", base, ending);
+    char *base = path_without_ending(result, ".vtkhdf"), *path = mem_format("%s%s", base, ending);
     mem_free(base);
     return path;
 }
@@ -30,7 +29,7 @@ static char *path_of(const char *result, const char *name, const char *ending)
 /* A file that the scene is made of. */
 static bool is_source(const Scene *scene, const char *output)
 {
-    return yaml_find_file(&scene_table, scene, replace_is_same, output) != NULL;
+    return yaml_find_file(scene_table(), scene, replace_is_same, output) != NULL;
 }
 
 /* face.yaml may be made of face.png: the picture of the result then goes beside it. */
@@ -46,7 +45,8 @@ static void files_of(const Scene *scene, const char *result, OutputFile files[FI
 {
     const OutputScene *output = &scene->output;
     files[0] = (OutputFile){NULL, outputs_picture(scene, result)};
-    files[1] = (OutputFile){"svg", path_of(result, output->svg, scene->spline ? ".svg" : NULL)};
+    files[1] =
+        (OutputFile){"svg", path_of(result, output->svg, scene_body(scene)->ops->write ? ".svg" : NULL)};
     files[2] = (OutputFile){"gcode", path_of(result, output->gcode, NULL)};
     files[3] = (OutputFile){"gcode_servo", path_of(result, output->gcode_servo, NULL)};
     files[4] = (OutputFile){"hpgl", path_of(result, output->hpgl, NULL)};
@@ -101,9 +101,9 @@ static bool is_iteration(const char *file, const char *base)
 static bool check_iterations(const Scene *scene, const char *path, const char *base, const OutputFile *files,
                              Error *err)
 {
-    if (!scene->spline || scene->output.every == 0) return true;
+    if (!scene_body(scene)->ops->write || scene->output.every == 0) return true;
     const char *lost =
-        is_iteration(path, base) ? path : yaml_find_file(&scene_table, scene, is_iteration, base);
+        is_iteration(path, base) ? path : yaml_find_file(scene_table(), scene, is_iteration, base);
     for (int k = 0; !lost && k < FILES; k++)
         if (files[k].path && is_iteration(files[k].path, base)) lost = files[k].path;
     return !lost ||
@@ -147,7 +147,7 @@ bool outputs_check(const Scene *scene, const char *path, const char *result, boo
 {
     static const char *const endings[OWN] = {".vtkhdf", ".xdmf", ".run", ".run-wal", ".run-shm", ".run-lock"};
     OutputFile files[FILES];
-    char *own[OWN], *base = verb_without_ending(result, ".vtkhdf");
+    char *own[OWN], *base = path_without_ending(result, ".vtkhdf");
     bool ok = true;
     for (int k = 0; k < OWN; k++) {
         own[k] = mem_format("%s%s", base, endings[k]);
@@ -172,19 +172,19 @@ bool outputs_check(const Scene *scene, const char *path, const char *result, boo
 
 bool outputs_write(Run *run, Error *err)
 {
-    if (!run->scene->spline) return true;
+    const BodyOps *ops = run->model->body->ops;
+    if (!ops->write) return true;
     OutputFile files[FILES];
-    Drawn drawn = {0};
+    bool written;
     Result *result = result_open(run->result, err);
-    bool ok = result && (!drawn_has(result) || drawn_read(result, &drawn, err));
+    bool ok = result != NULL;
     files_of(run->scene, run->result, files);
-    for (int k = 1; ok && k < FILES && drawn.pens; k++) {
+    for (int k = 1; ok && k < FILES; k++) {
         if (!files[k].path) continue;
-        ok = drawn_write(&drawn, files[k].language, files[k].path, err);
-        if (ok) progress_say(run->progress, "%s: %s", files[k].language, files[k].path);
+        ok = ops->write(result, files[k].language, files[k].path, &written, err);
+        if (ok && written) host_say(run->host, "%s: %s", files[k].language, files[k].path);
     }
     clear_files(files);
-    drawn_clear(&drawn);
     result_close(result);
     return ok;
 }

@@ -1,11 +1,13 @@
-#include "model/advice.h"
+/* What `slender check` says of a shell, and what is doubtful about it. */
+#include "base/memory.h"
 #include "base/vec3.h"
-#include "rod/front/rod_model.h"
+#include "shell/front/front.h"
 #include <math.h>
 
 static const double LARGE_BODY = 2;       /* m: most likely a mesh in millimetres          */
 static const double CELLS_PER_LENGTH = 3; /* of the magnetic bending length, at least      */
-double advice_mean_edge(const Mesh *mesh)
+
+static double mean_edge(const Mesh *mesh)
 {
     double sum = 0;
     for (int e = 0; e < mesh->edge_count; e++)
@@ -17,8 +19,9 @@ double advice_mean_edge(const Mesh *mesh)
 /* Of a case, over the whole time of a motion; of an unknown field its bounds. */
 static double largest_field(const Model *model, const Scene *scene, const double *p)
 {
+    const Shell *shell = model->self;
     const FluxUnknown *unknown = scene->design ? scene->design->unknowns.flux_density : NULL;
-    double largest = vec3_length(vec3_load(p + model->shell->flux_density));
+    double largest = vec3_length(vec3_load(p + shell->flux_density));
     if (unknown && !isnan(unknown->bounds[0]))
         largest = fmax(largest, fmax(fabs(unknown->bounds[0]), fabs(unknown->bounds[1])));
     double now[3] = {0};
@@ -29,9 +32,9 @@ static double largest_field(const Model *model, const Scene *scene, const double
 }
 
 /* Over a length h sqrt(Y/(12 M B)) a field bends the sheet by about a radian: cells must be smaller. */
-double advice_bending_length(const Model *model, const Scene *scene)
+static double bending_length(const Model *model, const Scene *scene)
 {
-    const Shell *shell = model->shell;
+    const Shell *shell = model->self;
     double largest = 0, young = INFINITY, M_max = 0;
     for (int c = 0; c < model->case_count; c++)
         for (int s = 0; s < model->cases[c].stage_count; s++) {
@@ -48,9 +51,9 @@ double advice_bending_length(const Model *model, const Scene *scene)
     return largest > 0 ? shell->thickness * sqrt(young / (12 * largest)) : INFINITY;
 }
 
-static void advise_shell(Model *model, const Scene *scene)
+void shell_advise(Model *model, const Scene *scene)
 {
-    const Shell *shell = model->shell;
+    const Shell *shell = model->self;
     double size = mesh_diagonal(shell->mesh);
     if (size > LARGE_BODY)
         mesh_warn(&model->report,
@@ -60,27 +63,38 @@ static void advise_shell(Model *model, const Scene *scene)
         mesh_warn(&model->report,
                   "the thickness, %.3g m, is more than a fifth of the body's size, %.3g m: no thin shell",
                   shell->thickness, size);
-    if (advice_bending_length(model, scene) < CELLS_PER_LENGTH * advice_mean_edge(shell->mesh))
+    if (bending_length(model, scene) < CELLS_PER_LENGTH * mean_edge(shell->mesh))
         mesh_warn(
             &model->report,
             "fewer than %g cells over the magnetic bending length: the mesh is too coarse for this field",
             CELLS_PER_LENGTH);
 }
 
-static void advise_rod(Model *model)
+char *shell_describe(const Model *model, const Scene *scene)
 {
-    double longest = rod_model_longest(model->rod);
-    if (longest > LARGE_BODY)
-        mesh_warn(&model->report,
-                  "a rod is %.3g m long; if its file is in millimetres, give the curve `scale: 1.0e-3`",
-                  longest);
-    if (model->rod->section.reach > longest / 5 && longest > 0)
-        mesh_warn(&model->report, "the section, %.3g m, is more than a fifth of the length: no thin rod",
-                  model->rod->section.reach);
+    const Shell *shell = model->self;
+    const Mesh *mesh = shell->mesh;
+    int held = 0;
+    for (int i = 0; i < 3 * mesh->vertex_count; i++) held += shell->fixed[i];
+    char *text = mem_format("%d vertices, %d faces, %d edges, %d parts; %d load cases; %d unknowns of "
+                            "motion, %d coordinates held\n",
+                            mesh->vertex_count, mesh->face_count, mesh->edge_count, mesh->component_count,
+                            model->case_count, system_free_count(model->cases[0].sys), held);
+    if (system_base_shift(model->cases[0].sys) > 0)
+        text = mem_join(text, "the body has free rigid motions\n", "");
+    double length = bending_length(model, scene);
+    if (!isfinite(length)) return text;
+    char *line =
+        mem_format("magnetic bending length: %.3g m, %.3g cells\n", length, length / mean_edge(mesh));
+    text = mem_join(text, line, "");
+    mem_free(line);
+    return text;
 }
 
-void advise(Model *model, const Scene *scene)
+/* An edge's length, or a radian. */
+void shell_dof_sizes(const Model *model, double *size)
 {
-    if (model->shell) advise_shell(model, scene);
-    if (model->rod) advise_rod(model);
+    const Shell *shell = model->self;
+    double edge = mean_edge(shell->mesh);
+    for (int i = 0; i < shell_dof_count(shell); i++) size[i] = i < 3 * model->point_count ? edge : 1;
 }

@@ -8,9 +8,9 @@
  * picture [rows,columns] or [rows,columns,3]: what was to be drawn, 0 white .. 255 black or, of a
  * coloured one, what takes away red, green and blue. */
 #pragma once
-#include "io/arrays.h"
-#include "spline/front/drawing.h"
 #include "io/result.h"
+#include "spline/grid.h"
+#include "spline/plot.h"
 
 typedef struct Drawn {
     SplinePage page;
@@ -20,10 +20,6 @@ typedef struct Drawn {
     SplineField picture; /* as in Drawing */
     Plotter plotter;
 } Drawn;
-
-/* Into a list for the journal: what stays as it is, and strokes. */
-void drawn_add_static(const Drawing *drawing, Arrays *list);
-void drawn_add_strokes(const Drawing *drawing, const Strokes *strokes, Arrays *list);
 
 bool drawn_has(Result *result);
 

@@ -1,0 +1,168 @@
+/* rows.h - the bodies that a scene may have and the jobs that it may ask for: a row each. Nothing else asks what kind a
+ * body or a job is.
+ *
+ * A body's row stands in its folder's front (shell/front/body.c), THE list of them in lib/bodies.c. Its jobs are those
+ * of job/ that fit it and its own; the scene's key `job` has the names of all. */
+#pragma once
+#include "base/memory.h"
+#include "io/arrays.h"
+#include "io/result.h"
+#include "model/build.h"
+#include "optim/case.h"
+#include "solve/newton.h"
+#include "solve/params.h"
+
+struct Model;
+struct Run;
+
+/* ---- Jobs ---- */
+
+/* What a job ends with, and the exit codes of `slender run`. */
+typedef enum RunStatus {
+    RUN_DONE = 0,
+    RUN_NOT_CONVERGED = 1, /* computed, and said so in the result */
+    RUN_USAGE = 2,
+    RUN_REFUSED = 3, /* scene or mesh */
+    RUN_CANNOT_WRITE = 4,
+    RUN_NO_MEMORY = MEM_EXIT_CODE,
+    RUN_INTERRUPTED = 75, /* state saved: go on with --resume */
+} RunStatus;
+
+/* Where a job's frames are once its result is safe. */
+typedef enum FramesThen {
+    FRAMES_STAY,  /* in the journal, too: they are few                                                  */
+    FRAMES_MOVE,  /* in the result only: a run that is extended takes them back (job/recall.h)          */
+    FRAMES_AGAIN, /* in the result only: a run that is extended makes them again, from what it has kept */
+} FramesThen;
+
+/* As measured on scenes/ and by ./do bench equilibria: Newton iterations of a solve and of one that goes on from another,
+ * factorisations and solves of each (in time some iterations make do with an older factor; a design's solves are those
+ * of its optimiser, too), and bytes of the picture while it is drawn. */
+typedef struct Effort {
+    double first, more, factorizations, solves, picture;
+} Effort;
+
+typedef struct JobRow {
+    const char *name;                              /* the value of the scene's key `job` */
+    RunStatus (*run)(struct Run *run, Error *err); /* as job_run (job/run.h) */
+    const char *noun;                              /* "a simulation" */
+    bool motion;                                   /* steps of time: `time` has them, systems have inertia */
+    bool path;                                     /* all of the motion is kept while it runs              */
+    bool design;                                   /* the scene's key `design` says what it looks for      */
+    bool rest;                                     /* it looks for rest: forces on a free body must balance */
+    FramesThen frames;
+    const char *const *free_keys; /* that a run which goes on may change; ends with NULL */
+    Effort effort;
+} JobRow;
+
+/* ---- Bodies ---- */
+
+/* A common key (of the scene's root) that the body does not always take: under which condition (YamlField.when), and
+ * what there is in its place. */
+typedef struct KeyUse {
+    const char *key, *when, *otherwise;
+} KeyUse;
+
+/* One state to be shown or stored, with p[params] of a case; borrowed. */
+typedef struct Snapshot {
+    const Case *load_case;
+    const double *p;
+    State at;
+    NewtonStatus status;
+} Snapshot;
+
+/* What one evaluation takes on this machine, and the factor; s, bytes (job/predict.h). */
+typedef struct Cost {
+    double build, hessian, factor, solve; /* pattern, order and places; each once                  */
+    double numbers, flops, factor_bytes;  /* of a factor                                           */
+    bool exact;                           /* they are counted, not a law's                         */
+    double elements, system_bytes;        /* triangles or pieces; of each of them in a System       */
+    double picture;                       /* s beside what each element takes                       */
+    bool stability;                       /* a few eigenvalues are found at the end                */
+    Effort effort;                        /* the job's, unless the body knows better               */
+} Cost;
+
+/* How a body becomes numbers, and how its states are written into the journal. A refusal at a key (yaml_refuse) gives
+ * false. What is marked so may be NULL: then the body has no such thing, and scenes that ask for it are refused. */
+typedef struct BodyOps {
+    /* Everything of the model: body, params, cases with their systems and starts. */
+    bool (*create)(struct Model *model, const Scene *scene, YamlFile *file);
+    void (*destroy)(void *body);
+
+    /* Of a case or stage into its p: dead loads; places of its target, NAN where there is none. */
+    bool (*put_loads)(struct Model *model, const Build *b, const char *at, const LoadScene *loads, int count,
+                      double *p);
+    bool (*put_target)(struct Model *model, const Build *b, const char *at, const TargetScene *scene,
+                       double (*target)[3]);
+
+    /* The values of a block of p, as an unknown's start says them. */
+    bool (*put_numbers)(struct Model *model, const Build *b, const char *at, const NumberScene *scene,
+                        const ParamBlock *block, double *values);
+    bool (*put_vectors)(struct Model *model, const Build *b, const char *at, const VectorScene *scene,
+                        const ParamBlock *block, double *values);
+
+    /* The points of a part that has a name, or `all`. */
+    bool (*select)(const struct Model *model, const Build *b, const char *at, const char *name,
+                   Indices *found);
+    void (*masses)(const struct Model *model, double *mass); /* [point_count] kg; may be NULL */
+
+    /* sum of |M - M'|^2 over neighbours, (A/m)^2; may be NULL. */
+    Objective (*smoothness)(const struct Model *model, double weight);
+
+    /* Held coordinates where they are at that time, a part of the way (0..1) from where x has them. */
+    bool (*move)(const struct Model *model, double time, double part, double *x, Error *err);
+
+    /* Its energies over its dofs, prepared: of statics, or with inertia. The caller's; the model outlives it. */
+    System *(*system)(const struct Model *model, bool motion);
+
+    /* All points held: what is left relaxes in a given pose. The caller's; may be NULL. */
+    System *(*pose_system)(const struct Model *model);
+
+    /* Into the journal: what does not change (rest shape, faces or lines); of a frame beside places and field, numbers
+     * per cell (`whole`: those too that seldom change; may be NULL); of a state beside places and energies, under prefix/..; of
+     * the final state, once: its stability, so many modes, and what else it shows. */
+    void (*add_static)(const struct Model *model, Arrays *list);
+    void (*add_frame)(const struct Model *model, const Snapshot *shot, bool whole, Arrays *list);
+    void (*add_state)(const struct Model *model, const Snapshot *shot, const char *prefix, Arrays *list);
+    void (*add_final)(const struct Model *model, const Snapshot *shot, int modes, Arrays *list);
+
+    /* Places of its points, place[point_count][3], in the state x[dofs]. */
+    void (*places)(const struct Model *model, const double *x, double *place);
+
+    /* What the state cannot be trusted in, a sentence of the caller's; NULL: nothing. May be NULL itself. */
+    char *(*doubt)(const struct Model *model, const Snapshot *shot);
+
+    /* Lines on what the scene made, for `slender check`; the caller's. Warnings go to the model's report; may be NULL. */
+    char *(*describe)(const struct Model *model, const Scene *scene);
+    void (*advise)(struct Model *model, const Scene *scene);
+
+    /* How far each dof moves in a small motion (m, rad, N): the length of a piece, ..; 0: it is no unknown. */
+    void (*dof_sizes)(const struct Model *model, double *size);
+    void (*cost)(const struct Model *model, Cost *cost);
+
+    /* Writes what a result shows as a file of that language (svg, gcode, ..), unless it has nothing yet; NULL: the body
+     * has no such files. */
+    bool (*write)(Result *result, const char *language, const char *path, bool *written, Error *err);
+} BodyOps;
+
+typedef struct BodyRow {
+    const char *key;           /* of the scene: "shell"                  */
+    const char *noun, *nouns;  /* "a shell", "shells"                    */
+    const char *doc;           /* of its key                             */
+    const YamlTable *table;    /* the keys of its scene                  */
+    const KeyUse *uses;        /* ends with {0}                          */
+    const JobRow *const *jobs; /* ends with NULL                        */
+    const BodyOps *ops;
+} BodyRow;
+
+extern const BodyRow *const bodies[]; /* lib/bodies.c; ends with NULL */
+
+/* The row of the scene's body; that of its job, NULL where the body has no such job. */
+const BodyRow *scene_body(const Scene *scene);
+const JobRow *scene_job(const Scene *scene);
+
+/* A body's job of that name; NULL: it has none. */
+const JobRow *body_job(const BodyRow *body, const char *name);
+
+/* What the scene says of that body; NULL: it has another one. */
+const void *scene_of(const Scene *scene, const BodyRow *row);

@@ -1,0 +1,32 @@
+/* case.h - a load case: a system of energies with its loads, where it is, and what it should do. */
+#pragma once
+#include "solve/objective.h"
+#include "solve/system.h"
+
+/* Loads at a moment: one, or the stages of a sequence. */
+typedef struct Stage {
+    double *p; /* [params] owned */
+    double time;
+} Stage;
+
+typedef struct Case {
+    char *name;    /* owned, as all below */
+    double weight; /* of its objectives   */
+    System *sys;
+    State state; /* where to start; of a design the equilibrium of the best one so far */
+    int stage_count;
+    Stage *stages; /* [stage_count]; a design has one, whose p gets the unknowns */
+    int objective_count;
+    Objective *objectives;
+    double (*target)[3]; /* [point] m, NAN where there is none; NULL: no target */
+} Case;
+
+/* One stage with p[size], a copy, at that time; and a name (a copy). */
+Case case_create(const char *name, const double *p, size_t size, double time);
+void case_clear(Case *c);
+
+/* Puts it where it starts, once its system is there: x[dofs], at its first stage's time. */
+void case_start(Case *c, System *sys, const double *x);
+
+/* Room for one more objective. */
+Objective *case_add_objective(Case *c);

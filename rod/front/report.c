@@ -1,0 +1,46 @@
+/* What `slender check` says of a rod, and what is doubtful about it. */
+#include "base/memory.h"
+#include "rod/front/front.h"
+
+static const double LARGE_BODY = 2; /* m: most likely a curve in millimetres */
+
+void rod_advise(Model *model, const Scene *scene)
+{
+    (void)scene;
+    const RodModel *rm = model->self;
+    double longest = rod_model_longest(rm);
+    if (longest > LARGE_BODY)
+        mesh_warn(&model->report,
+                  "a rod is %.3g m long; if its file is in millimetres, give the curve `scale: 1.0e-3`",
+                  longest);
+    if (rm->section.reach > longest / 5 && longest > 0)
+        mesh_warn(&model->report, "the section, %.3g m, is more than a fifth of the length: no thin rod",
+                  rm->section.reach);
+}
+
+char *rod_describe(const Model *model, const Scene *scene)
+{
+    (void)scene;
+    const RodModel *rm = model->self;
+    char *text =
+        mem_format("%d rods of %d elements, up to %.4g m long\n", rm->strand_count > 1 ? rm->strand_count : 1,
+                   model->point_count - 1, rod_model_longest(rm));
+    if (!model->case_count) return text;
+    char *line = mem_format("%d load cases; %d unknowns of motion\n", model->case_count,
+                            system_free_count(model->cases[0].sys));
+    text = mem_join(text, line, "");
+    mem_free(line);
+    return text;
+}
+
+/* An element's length, a radian, of multipliers a force; 0 for the references of turns. */
+void rod_dof_sizes(const Model *model, double *size)
+{
+    const RodModel *rm = model->self;
+    const RodLayout *layout = &rm->layout;
+    for (int i = 0; i < layout->dofs; i++)
+        size[i] = i >= layout->reference                               ? 0
+                  : layout->position >= 0 && i < layout->turn          ? rod_element_length(rm->rod)
+                  : layout->multiplier >= 0 && i >= layout->multiplier ? rm->rod->unit.mass * rm->rod->length
+                                                                       : 1;
+}

@@ -1,0 +1,85 @@
+/* scene.h - what a scene says of a rod. */
+#pragma once
+#include "model/rows.h"
+
+/* auto, or a standard deviation. */
+typedef struct NoiseScene {
+    int mode; /* 0: auto */
+    double value;
+} NoiseScene;
+
+typedef struct RodCurveScene {
+    char **formula, *file, *parameter;
+    double *range, scale;
+    WhereScene *where;
+    NoiseScene noise;
+    int formula_count, range_count, where_count, strands;
+} RodCurveScene;
+
+/* Strains along a rod. */
+typedef struct StrainScene {
+    double value[3];
+    char **formula, *file;
+    WhereScene *where;
+    int formula_count, where_count;
+} StrainScene;
+
+typedef enum FrameKind { FRAME_FRENET, FRAME_BISHOP } FrameKind;
+
+typedef struct RodFrameScene {
+    int kind, from; /* FrameKind */
+    char *formula, *file;
+} RodFrameScene;
+
+/* Rows of a frame: tangent, n1, n2. */
+typedef struct ClampScene {
+    double position[3], (*frame)[3];
+    int frame_count;
+} ClampScene;
+
+typedef enum HoldKind { HOLD_CLAMPED, HOLD_PINNED } HoldKind;
+
+typedef struct EndScene {
+    double position[3], (*frame)[3];
+    int hold, frame_count; /* HoldKind */
+} EndScene;
+
+typedef struct RodLoadScene {
+    double point, force[3], line[3];
+} RodLoadScene;
+
+typedef struct RodPoseScene {
+    char *file;
+    double (*frame)[3];
+    NoiseScene noise;
+    int frame_count;
+} RodPoseScene;
+
+typedef enum RodSolver { ROD_SOLVER_NEWTON, ROD_SOLVER_PBD } RodSolver;
+
+typedef struct PbdScene {
+    int substeps, sweeps;
+} PbdScene;
+
+typedef enum RodStart { ROD_START_NATURAL, ROD_START_CURVE } RodStart;
+
+typedef struct RodScene {
+    RodCurveScene *curve;
+    StrainScene *natural_strain;
+    RodPoseScene *poses;
+    double length, radius, *ellipse, young, poisson, density, gravity[3], bishop_normal[3], damping;
+    ClampScene clamp;
+    EndScene *end;
+    int elements, ellipse_count, poses_count, loads_count;
+    RodFrameScene frame;
+    RodLoadScene *loads;
+    VectorScene magnetization;
+    VelocityScene *velocity;
+    int start, hold, solver; /* RodStart; HoldKind of the clamp; RodSolver */
+    PbdScene pbd;
+} RodScene;
+
+extern const YamlTable rod_table;
+extern const BodyRow rod_body; /* body.c */
+
+const RodScene *rod_scene(const Scene *scene);

@@ -1,0 +1,18 @@
+/* scene.h - what a scene says of a shell. */
+#pragma once
+#include "model/rows.h"
+
+typedef struct ShellScene {
+    MeshScene mesh;
+    PoseScene *pose;
+    VelocityScene *velocity;
+    double thickness, poisson, density, damping, gravity[3];
+    NumberScene young, fold;
+    VectorScene magnetization;
+    int bending; /* BendingModel */
+} ShellScene;
+
+extern const YamlTable shell_table;
+extern const BodyRow shell_body; /* body.c */
+
+const ShellScene *shell_scene(const Scene *scene);
