@@ -29,7 +29,7 @@ static Body body_create(MeshFile *file, BendingModel bending, double thickness, 
     Mesh *mesh = mesh_create(file, 0, NULL, &err);
     mesh_file_clear(file);
     if (!mesh) abort();
-    Body b = {.shell = shell_create(mesh), .young = young};
+    Body b = {.shell = shell_create(mesh, NULL), .young = young};
     b.shell->thickness = thickness, b.shell->poisson = poisson, b.shell->bending = bending,
     b.shell->density = 1000;
     return b;

@@ -61,7 +61,8 @@ static Hanging hanging_create(int elements)
     RodFrame *frames = mem_alloc(stations, sizeof *frames);
     rod_frenet(&o.curve, frames);
     rod_bishop(&o.curve, frames[0].n1, frames);
-    o.rod = rod_create(elements, o.curve.length, rod_circle(radius, 1, 0.5, 1200), M_PI * radius * radius);
+    o.rod =
+        rod_create(elements, o.curve.length, rod_circle(radius, 1, 0.5, 1200), M_PI * radius * radius, NULL);
     o.p = mem_alloc((size_t)o.rod->params.size, sizeof *o.p);
     rod_default_params(o.rod, young, o.p);
     o.p[o.rod->gravity + 2] = -9.8;

@@ -16,7 +16,7 @@ Sheet sheet_create_fine(int cells, BendingModel bending, bool dynamic)
         bench_fail("%s", err.text);
     Mesh *mesh = mesh_create(&file, 0, NULL, &err);
     mesh_file_clear(&file);
-    s.shell = shell_create(mesh);
+    s.shell = shell_create(mesh, NULL);
     s.shell->thickness = 1e-3, s.shell->poisson = 0.45, s.shell->density = 1000, s.shell->bending = bending;
     for (int v = 0; v < mesh->vertex_count; v++)
         for (int i = 0; mesh->rest[v][0] < 1e-9 && i < 3; i++) shell_fix(s.shell, v, i);

@@ -18,36 +18,21 @@ bool model_load(const Model *model, double time, double *p, Error *err)
 
 /* ---- Loads of a case ---- */
 
-bool model_put_flux(Model *model, const Build *b, const char *at, const FluxScene *flux, double *p)
-{
-    FluxField *field;
-    if (!build_flux(b, key("%s", at), flux, p + model->flux_density, &field)) return false;
-    int number = field ? flux_fields_add(model->fields, model->params, field) : -1;
-    for (int k = 0; k < model->fields->count; k++) p[model->field_scale + k] = k == number;
-    return true;
-}
-
-size_t model_params_room(const Model *model, const Scene *scene)
-{
-    return (size_t)(model->params->size + 1 + scene->cases_count + scene->sequence_count);
-}
-
-/* Field, loads and gravity of a case or stage, where it says them. */
-static bool put_loads(Model *model, const Build *b, Key at, const FluxScene *flux, const LoadScene *loads,
-                      int count, const double *gravity, double *p)
+/* Loads and gravity of a case or stage, where it says them. */
+static bool put_loads(Model *model, const Build *b, Key at, const LoadScene *loads, int count,
+                      const double *gravity, double *p)
 {
     if (!isnan(gravity[0])) memcpy(p + model->gravity, gravity, 3 * sizeof *gravity);
-    bool ok = !loads || model->body->ops->put_loads(model, b, key("%s.loads", at.text).text, loads, count, p);
-    return (!flux || model_put_flux(model, b, key("%s.flux_density", at.text).text, flux, p)) && ok;
+    return !loads || model->body->ops->put_loads(model, b, key("%s.loads", at.text).text, loads, count, p);
 }
 
-static Case *add_case(Model *model, const char *name, const double *p, size_t room, double time)
+static Case *add_case(Model *model, const char *name, const double *p, double time)
 {
     size_t count = (size_t)model->case_count++;
     model->cases = mem_resize(model->cases, count, count + 1, sizeof *model->cases);
     Case *c = &model->cases[count];
     char *number = name ? NULL : mem_format("case%zu", count + 1);
-    *c = case_create(name ? name : number, p, room, time);
+    *c = case_create(name ? name : number, p, (size_t)model->params->size, time);
     mem_free(number);
     return c;
 }
@@ -59,9 +44,9 @@ static bool add_target(Model *model, const Build *b, Key at, const TargetScene *
     return model->body->ops->put_target(model, b, at.text, target, c->target);
 }
 
-static bool add_stages(Model *model, const Build *b, const Scene *scene, const double *p, size_t room)
+static bool add_stages(Model *model, const Build *b, const Scene *scene, const double *p)
 {
-    Case *c = add_case(model, "sequence", p, room, scene->time.at);
+    Case *c = add_case(model, "sequence", p, scene->time.at);
     c->stages = mem_resize(c->stages, 1, (size_t)scene->sequence_count, sizeof *c->stages);
     c->stage_count = scene->sequence_count;
     bool ok = true;
@@ -69,12 +54,14 @@ static bool add_stages(Model *model, const Build *b, const Scene *scene, const d
         const StageScene *stage = &scene->sequence[k];
         Build now = *b;
         if (k > 0)
-            c->stages[k] = (Stage){mem_copy(c->stages[k - 1].p, room, sizeof *p), c->stages[k - 1].time};
+            c->stages[k] = (Stage){mem_copy(c->stages[k - 1].p, (size_t)model->params->size, sizeof *p),
+                                   c->stages[k - 1].time};
         if (!isnan(stage->time)) c->stages[k].time = stage->time;
         now.time = c->stages[k].time;
-        ok = put_loads(model, &now, key("sequence[%d]", k), stage->flux_density, stage->loads,
-                       stage->loads_count, stage->gravity, c->stages[k].p) &&
+        ok = put_loads(model, &now, key("sequence[%d]", k), stage->loads, stage->loads_count, stage->gravity,
+                       c->stages[k].p) &&
              ok;
+        model_put_flux(model, &model->flux[1 + k], c->stages[k].p);
     }
     return ok;
 }
@@ -88,15 +75,15 @@ static bool is_name(const char *name)
            strcmp(name, ".");
 }
 
-bool model_cases(Model *model, const Build *b, const Scene *scene, const double *p, size_t room)
+bool model_cases(Model *model, const Build *b, const Scene *scene, const double *p)
 {
     if (scene->sequence_count && scene->cases_count)
         return yaml_refuse(b->file, "sequence", "a scene has either cases or a sequence");
-    if (scene->sequence_count) return add_stages(model, b, scene, p, room);
+    if (scene->sequence_count) return add_stages(model, b, scene, p);
     bool ok = true;
     for (int k = 0; k < scene->cases_count; k++) {
         const CaseScene *from = &scene->cases[k];
-        Case *c = add_case(model, from->name, p, room, scene->time.at);
+        Case *c = add_case(model, from->name, p, scene->time.at);
         c->weight = from->weight;
         Key at = key("cases[%d]", k);
         for (int i = 0; i < k; i++)
@@ -108,17 +95,15 @@ bool model_cases(Model *model, const Build *b, const Scene *scene, const double 
                 "a case's name is a word without '/' or control characters, of at most %d bytes, and "
                 "not '.'",
                 CASE_NAME_MAX);
-        ok = put_loads(model, b, at, from->flux_density, from->loads, from->loads_count, from->gravity,
-                       c->stages[0].p) &&
-             ok;
+        ok = put_loads(model, b, at, from->loads, from->loads_count, from->gravity, c->stages[0].p) && ok;
+        model_put_flux(model, &model->flux[1 + k], c->stages[0].p);
         bool own = from->target != NULL;
         ok = add_target(model, b, own ? key("%s.target", at.text) : key("target"),
                         own ? from->target : scene->target, c) &&
              ok;
     }
     if (!scene->cases_count)
-        ok = add_target(model, b, key("target"), scene->target,
-                        add_case(model, NULL, p, room, scene->time.at));
+        ok = add_target(model, b, key("target"), scene->target, add_case(model, NULL, p, scene->time.at));
     return ok;
 }
 
@@ -214,6 +199,7 @@ void model_destroy(Model *model)
     mesh_report_clear(&model->report);
     if (model->self) model->body->ops->destroy(model->self);
     mem_free(model->cases);
+    mem_free(model->flux);
     mem_free(model->motions);
     mem_free(model->x);
     mem_free(model);

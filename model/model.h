@@ -17,6 +17,12 @@ typedef struct Motion {
 
 typedef struct Model Model;
 
+/* What a scene says of the flux density, of all cases or of one. */
+typedef struct CaseFlux {
+    double uniform[3]; /* T */
+    int field;         /* one of the body's fields, which vary in space; -1: none */
+} CaseFlux;
+
 struct Model {
     const BodyRow *body;
     const JobRow *job;
@@ -39,6 +45,7 @@ struct Model {
     double *x;              /* [dofs] rest or pose */
     Design design;          /* of a design or trajectory */
     Control control;        /* of a trajectory: the unknown flux density; no rows: none */
+    CaseFlux *flux;         /* of the scene, then of each case or stage */
     TimedFlux flux_of_time; /* of a motion: the uniform flux density, if it changes */
 };
 
@@ -56,15 +63,17 @@ bool model_move(const Model *model, double time, double part, double *x, Error *
 /* Puts what depends on time into p. */
 bool model_load(const Model *model, double time, double *p, Error *err);
 
-/* A field into p: its uniform part, or one more of the body's fields, for which p has room. False after a
- * refusal at that key. */
-bool model_put_flux(Model *model, const Build *b, const char *at, const FluxScene *flux, double *p);
+/* What of a scene counts before there can be vectors p, in this order (blocks.c): the flux densities of all cases or
+ * stages, whose fields are then the body's; and, once the body and its blocks are there, the blocks that a trajectory
+ * has beside them (model->control is the first one). False after a refusal. */
+bool model_read_flux(Model *model, const Build *b, const Scene *scene, FluxFields *fields);
+void model_add_blocks(Model *model, const Scene *scene);
 
-/* How long vectors p must be while fields are still added to the body's parameters. */
-size_t model_params_room(const Model *model, const Scene *scene);
+/* A flux density of model->flux into p. */
+void model_put_flux(const Model *model, const CaseFlux *flux, double *p);
 
-/* The load cases or stages of a scene, each with p[room] as a copy; false after a refusal. */
-bool model_cases(Model *model, const Build *b, const Scene *scene, const double *p, size_t room);
+/* The load cases or stages of a scene, each with p as a copy; false after a refusal. */
+bool model_cases(Model *model, const Build *b, const Scene *scene, const double *p);
 
 /* Velocities at the start of a motion, of the free coordinates, into its case; place[point_count][3] is what formulas know.
  */

@@ -10,6 +10,7 @@
 #include "model/build.h"
 #include "optim/case.h"
 #include "solve/newton.h"
+#include "solve/params.h"
 
 struct Model;
 struct Run;

@@ -7,6 +7,15 @@
 
 /* ---- Unknowns ---- */
 
+/* Each block has a sequence of its own, so that another unknown beside it changes nothing: of any seed there is one for
+ * each of so many blocks, the first ones. */
+enum { SEQUENCES = 16 };
+
+static Random random_of(const Model *model, const ParamBlock *block, int seed)
+{
+    return random_seed((uint64_t)seed * SEQUENCES + (uint64_t)(block - model->params->blocks));
+}
+
 /* One unknown being made: its block, where it stands in the scene, and its start. */
 typedef struct Start {
     const char *name;
@@ -21,9 +30,7 @@ static Start start_of(Model *model, const char *name, const double *p, double no
     Start start = {.name = name, .block = params_find(model->params, name), .noise = noise};
     size_t size = (size_t)(start.block->count * start.block->width);
     start.values = mem_copy(p + start.block->offset, size, sizeof(double));
-    /* Each block has a sequence of its own, so that another unknown beside it changes nothing. */
-    start.random =
-        random_seed((uint64_t)seed * PARAMS_MAX_BLOCKS + (uint64_t)(start.block - model->params->blocks));
+    start.random = random_of(model, start.block, seed);
     return start;
 }
 
@@ -163,16 +170,6 @@ static void flux_per_case(Model *model, const FluxUnknown *from, const ParamBloc
     design_add(&model->design, unknown);
 }
 
-/* Appends a block to the parameters of a trajectory's only case. */
-static double *add_block(Model *model, const char *name, const char *unit, int count, int width)
-{
-    Params *params = model->params;
-    double **p = &model->cases[0].stages[0].p;
-    int before = params->size, offset = params_add(params, name, unit, count, width, false);
-    *p = mem_resize(*p, (size_t)before, (size_t)params->size, sizeof **p);
-    return *p + offset;
-}
-
 /* The scene's field at the times of a control's rows: of harmonics its Fourier sums over the steps. */
 static bool sample_flux(Model *model, const Build *b, const Control *control, double *rows)
 {
@@ -220,17 +217,8 @@ static bool start_control(Model *model, const Build *b, const FluxStart *start, 
 static bool flux_over_time(Model *model, const Build *b, const Scene *scene, Random *random, Unknown unknown)
 {
     const FluxUnknown *from = scene->design->unknowns.flux_density;
-    Control *control = &model->control;
-    *control = (Control){.kind = (ControlKind)from->per,
-                         .to = unknown.block->offset,
-                         .width = 3,
-                         .steps = scene->time.steps,
-                         .start = scene->time.at,
-                         .duration = scene->time.step * scene->time.steps};
-    control->rows = control_rows(control->kind, control->steps,
-                                 control->kind == CONTROL_KNOT ? from->knots : from->harmonics);
-    double *rows = add_block(model, "control", "T", control->rows, 3);
-    control->from = (int)(rows - model->cases[0].stages[0].p);
+    const Control *control = &model->control;
+    double *rows = model->cases[0].stages[0].p + control->from;
     if (!start_control(model, b, from->start, rows)) return false;
     for (int i = 0; i < 3 * control->rows; i++) rows[i] += from->noise * random_signed(random);
     unknown.block = params_find(model->params, "control");
@@ -244,8 +232,7 @@ static bool flux_unknown(Model *model, const Build *b, const Scene *scene)
     const FluxUnknown *from = scene->design->unknowns.flux_density;
     bool ok = check_bounds(b->file, "flux_density", from->bounds);
     const ParamBlock *block = params_find(model->params, "flux_density");
-    Random random = random_seed((uint64_t)scene->design->seed * PARAMS_MAX_BLOCKS +
-                                (uint64_t)(block - model->params->blocks));
+    Random random = random_of(model, block, scene->design->seed);
     Unknown unknown = {.block = block, .scale = from->scale};
     put_bounds(&unknown, from->bounds);
     if (model->job->motion) return flux_over_time(model, b, scene, &random, unknown) && ok;
@@ -287,15 +274,13 @@ static bool add_dmp(Model *model, const Scene *scene, const Build *b)
         row = &scene->design->objectives[k];
     }
     if (!row) return true;
-    static const struct {
-        const char *name, *unit;
-        int width;
-    } blocks[] = {{"dmp_omega", "rad/s", 1}, {"dmp_alpha", "T", 3}, {"dmp_beta", "T", 3}};
+    static const char *const names[] = {"dmp_omega", "dmp_alpha", "dmp_beta"};
     double base = 2 * M_PI / model->control.duration;
     for (int k = 0; k < 3; k++) {
-        double *values = add_block(model, blocks[k].name, blocks[k].unit, row->pairs, blocks[k].width);
+        const ParamBlock *block = params_find(model->params, names[k]);
+        double *values = model->cases[0].stages[0].p + block->offset;
         for (int j = 0; k == 0 && j < row->pairs; j++) values[j] = base * (j + 1);
-        Unknown unknown = {.block = params_find(model->params, blocks[k].name),
+        Unknown unknown = {.block = block,
                            .group_count = row->pairs,
                            .scale = k == 0 ? base : scene->design->unknowns.flux_density->scale,
                            .lower = k == 0 ? 0 : -INFINITY,

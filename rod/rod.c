@@ -9,7 +9,7 @@ static const double HOLD = 10;          /* of the link, in parts of the whole ro
 static const double BASE_SHIFT = 1e-10; /* for a rod that may spin, or bend to any side (system.h) */
 static const double PUSH = 60;          /* of a held end, in EI/L^2: clamps buckle at 4 pi^2 (system.h) */
 
-Rod *rod_create(int elements, double length, RodSection unit, double area)
+Rod *rod_create(int elements, double length, RodSection unit, double area, const FluxFields *fields)
 {
     Rod *rod = mem_alloc(1, sizeof *rod);
     *rod = (Rod){.elements = elements,
@@ -18,6 +18,7 @@ Rod *rod_create(int elements, double length, RodSection unit, double area)
                  .area = area,
                  .frame = quat_identity(),
                  .start = ROD_CLAMPED};
+    if (fields) rod->fields = *fields;
     rod->bow = mem_alloc((size_t)elements, sizeof *rod->bow);
     Params *params = &rod->params;
     rod->young = params_add(params, "young", "Pa", elements, 1, false);
@@ -28,7 +29,7 @@ Rod *rod_create(int elements, double length, RodSection unit, double area)
     rod->load = params_add(params, "load", "N", elements + 1, 3, true);
     rod->pull = params_add(params, "pull", "N", elements, 3, true);
     rod->damping = params_add(params, "damping", "N s/m", 1, 1, false);
-    rod->field_scale = params_add(params, "field_scale", "", 0, 1, true);
+    rod->field_scale = params_add(params, "field_scale", "", rod->fields.count, 1, true);
     return rod;
 }
 
@@ -37,6 +38,7 @@ void rod_destroy(Rod *rod)
     if (!rod) return;
     mem_free(rod->bow);
     flux_fields_clear(&rod->fields);
+    params_clear(&rod->params);
     mem_free(rod);
 }
 
@@ -50,6 +52,13 @@ void rod_default_params(const Rod *rod, double young, double *p)
 {
     for (int i = 0; i < rod->params.size; i++) p[i] = 0;
     for (int e = 0; e < rod->elements; e++) p[rod->young + e] = young;
+}
+
+bool rod_field_varies(const Rod *rod, const double *p)
+{
+    bool varies = false;
+    for (int k = 0; k < rod->fields.count; k++) varies |= p[rod->field_scale + k] != 0;
+    return varies;
 }
 
 void rod_sum_loads(const Rod *rod, double *p)

@@ -49,8 +49,9 @@ typedef struct Rod {
     int field_scale;    /* [field] factors on the fields                                  */
 } Rod;
 
-/* Clamped at the origin along x, free at the other end; material, strains and loads are up to p. */
-Rod *rod_create(int elements, double length, RodSection unit, double area);
+/* Clamped at the origin along x, free at the other end; material, strains and loads are up to p. Takes the fields
+ * (NULL: none). */
+Rod *rod_create(int elements, double length, RodSection unit, double area, const FluxFields *fields);
 void rod_destroy(Rod *rod);
 
 static inline int rod_node_count(const Rod *rod)
@@ -67,6 +68,9 @@ void rod_node_mass(const Rod *rod, double *mass);
 
 /* Young's modulus everywhere, all else 0. p[params.size] */
 void rod_default_params(const Rod *rod, double young, double *p);
+
+/* Is one of the fields that vary in space at work in p? */
+bool rod_field_varies(const Rod *rod, const double *p);
 
 /* Puts the sums of p's loads into its pull. */
 void rod_sum_loads(const Rod *rod, double *p);

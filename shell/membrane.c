@@ -3,10 +3,10 @@
  * F = sum_i x_i b_i^T with the hat functions' rest gradients b_i (2-vectors in the face's rest plane),
  * G = (F^T F - I)/2, S = Y/(1-nu^2) ((1-nu) G + nu tr(G) I), E = A h/2 G:S. */
 #include "base/memory.h"
-#include "shell/face.h"
 #include "shell/terms.h"
 #include "shell/turn.h"
 #include "solve/element.h"
+#include "surface/face.h"
 
 typedef struct MembranePack {
     Pack b[3][2]; /* 1/m */
@@ -32,7 +32,7 @@ static int membrane_size(const void *self)
 
 static void membrane_dofs(const void *self, int face, int *dof)
 {
-    face_dofs(((const Membrane *)self)->shell, face, dof);
+    face_dofs(((const Membrane *)self)->shell->mesh->faces[face], dof);
 }
 
 typedef struct Strain {
@@ -80,7 +80,7 @@ static void extrapolate(const Membrane *membrane, int pack, const Point *at, Str
     Pack x[9], d[9];
     for (int l = 0; l < PACK_LANES; l++) {
         int dof[9];
-        membrane_dofs(membrane, face_of_lane(membrane->shell, pack, l), dof);
+        membrane_dofs(membrane, face_of_lane(membrane_count(membrane), pack, l), dof);
         for (int i = 0; i < 9; i++) x[i][l] = at->x_from[dof[i]], d[i][l] = at->step[dof[i]];
     }
     Strain from = strain(face, membrane->shell->poisson, x);
@@ -143,7 +143,7 @@ static Pack membrane_eval(const void *self, int pack, const Point *at, const Pac
     const Shell *shell = membrane->shell;
     const MembranePack *face = &membrane->packs[pack];
     Strain s = strain(face, shell->poisson, x);
-    Pack factor = face->volume * face_param(shell, pack, at->p + shell->young, 1, 0);
+    Pack factor = face->volume * face_param(shell->mesh->face_count, pack, at->p + shell->young, 1, 0);
     Pack energy = 0.5 * factor * (s.g00 * s.s00 + 2 * s.g01 * s.s01 + s.g11 * s.s11);
     if (g) forces(face, &s, factor, g);
     if (H && at->x_from) extrapolate(membrane, pack, at, &s);
@@ -163,7 +163,7 @@ static void membrane_param(const void *self, int pack, int lanes, const Point *a
     forces(face, &s, face->volume, g);
     for (int i = 0; i < 9; i++) sum += w[i] * g[i];
     for (int l = 0; l < lanes; l++)
-        dp[membrane->shell->young + face_of_lane(membrane->shell, pack, l)] += sum[l];
+        dp[membrane->shell->young + face_of_lane(membrane_count(membrane), pack, l)] += sum[l];
 }
 
 static void membrane_param_forward(const void *self, int pack, const Point *at, const Pack *x,
@@ -174,7 +174,7 @@ static void membrane_param_forward(const void *self, int pack, const Point *at, 
     const Shell *shell = membrane->shell;
     const MembranePack *face = &membrane->packs[pack];
     Strain s = strain(face, shell->poisson, x);
-    forces(face, &s, face->volume * face_param(shell, pack, dp + shell->young, 1, 0), r);
+    forces(face, &s, face->volume * face_param(shell->mesh->face_count, pack, dp + shell->young, 1, 0), r);
 }
 
 static void membrane_follow(void *self, const double *x, const double *d, double a, double *to)
@@ -206,14 +206,16 @@ Term shell_membrane_term(const Shell *shell)
     Membrane *membrane = mem_alloc(1, sizeof *membrane);
     membrane->shell = shell;
     membrane->turn = turn_create(shell);
-    membrane->packs = mem_alloc((size_t)face_pack_count(shell), sizeof *membrane->packs);
-    for (int k = 0; k < face_pack_count(shell) * PACK_LANES; k++) {
-        int face = face_of_lane(shell, k / PACK_LANES, k % PACK_LANES), l = k % PACK_LANES;
+    const Mesh *mesh = shell->mesh;
+    int packs = face_pack_count(mesh->face_count);
+    membrane->packs = mem_alloc((size_t)packs, sizeof *membrane->packs);
+    for (int k = 0; k < packs * PACK_LANES; k++) {
+        int l = k % PACK_LANES, face = face_of_lane(mesh->face_count, k / PACK_LANES, l);
         MembranePack *pack = &membrane->packs[k / PACK_LANES];
         double b[3][2];
-        face_gradients(shell, face, b);
+        face_gradients(mesh->rest, mesh->faces[face], b);
         for (int i = 0; i < 6; i++) pack->b[i / 2][i % 2][l] = b[i / 2][i % 2];
-        pack->volume[l] = shell->mesh->rest_area[face] * shell->thickness;
+        pack->volume[l] = mesh->rest_area[face] * shell->thickness;
     }
     return (Term){&membrane_ops, membrane};
 }

@@ -6,6 +6,7 @@
 #include "shell/terms.h"
 #include "solve/kinetic.h"
 #include "solve/lumped.h"
+#include "surface/magnetic.h"
 
 /* Of D, for bodies with free rigid motions: decides nothing physical, drifts less than 1e-7 of the size
  * (docs/newton.md). */
@@ -28,10 +29,11 @@ static double rest_angle(const Mesh *mesh, int edge)
         .angle[0];
 }
 
-Shell *shell_create(Mesh *mesh)
+Shell *shell_create(Mesh *mesh, const FluxFields *fields)
 {
     Shell *shell = mem_alloc(1, sizeof *shell);
     shell->mesh = mesh;
+    if (fields) shell->fields = *fields;
     shell->rest_angle = mem_alloc((size_t)mesh->edge_count, sizeof(double));
     for (int e = 0; e < mesh->edge_count; e++) shell->rest_angle[e] = rest_angle(mesh, e);
     shell->fixed = mem_alloc(3 * (size_t)mesh->vertex_count, sizeof(bool));
@@ -44,7 +46,7 @@ Shell *shell_create(Mesh *mesh)
     shell->gravity = params_add(params, "gravity", "m/s^2", 1, 3, true);
     shell->load = params_add(params, "load", "N", mesh->vertex_count, 3, true);
     shell->damping = params_add(params, "damping", "N s/m", 1, 1, false);
-    shell->field_scale = params_add(params, "field_scale", "", 0, 1, true);
+    shell->field_scale = params_add(params, "field_scale", "", shell->fields.count, 1, true);
     return shell;
 }
 
@@ -53,6 +55,7 @@ void shell_destroy(Shell *shell)
     if (!shell) return;
     mesh_destroy(shell->mesh);
     flux_fields_clear(&shell->fields);
+    params_clear(&shell->params);
     mem_free(shell->rest_angle);
     mem_free(shell->fixed);
     mem_free(shell->clamped);
@@ -139,6 +142,23 @@ void shell_vertex_mass(const Shell *shell, double *mass)
     for (int f = 0; f < mesh->face_count; f++)
         for (int i = 0; i < 3; i++)
             mass[mesh->faces[f][i]] += shell->density * shell->thickness * mesh->rest_area[f] / 3;
+}
+
+Term shell_magnetic_term(const Shell *shell)
+{
+    const Mesh *mesh = shell->mesh;
+    double *volume = mem_alloc((size_t)mesh->face_count, sizeof *volume);
+    for (int f = 0; f < mesh->face_count; f++) volume[f] = mesh->rest_area[f] * shell->thickness;
+    Term term = magnetic_surface_term(&(MagneticSurfaceDef){.face_count = mesh->face_count,
+                                                            .faces = mesh->faces,
+                                                            .rest = mesh->rest,
+                                                            .volume = volume,
+                                                            .magnetization = shell->magnetization,
+                                                            .flux_density = shell->flux_density,
+                                                            .field_scale = shell->field_scale,
+                                                            .fields = &shell->fields});
+    mem_free(volume);
+    return term;
 }
 
 Term shell_gravity_term(const Shell *shell)

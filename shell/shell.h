@@ -34,8 +34,8 @@ typedef struct Shell {
     int field_scale;   /* [field] factors on the fields                                            */
 } Shell;
 
-/* Takes the mesh. Sets up the parameter layout, rest angles and nothing held. */
-Shell *shell_create(Mesh *mesh);
+/* Takes the mesh and the fields (NULL: none). Sets up the blocks of parameters, rest angles and nothing held. */
+Shell *shell_create(Mesh *mesh, const FluxFields *fields);
 void shell_destroy(Shell *shell);
 
 static inline int shell_dof_count(const Shell *shell)

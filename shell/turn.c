@@ -1,8 +1,8 @@
 #include "shell/turn.h"
 #include "base/memory.h"
 #include "base/vec3.h"
-#include "shell/face.h"
 #include "solve/sparse.h"
+#include "surface/face.h"
 #include <math.h>
 #include <string.h>
 
@@ -100,7 +100,7 @@ static void build(Turn *turn)
     long *start = mem_alloc(elements + 1, sizeof *start);
     int *dofs = mem_alloc(3 * elements, sizeof *dofs);
     turn->hat = mem_alloc((size_t)mesh->face_count, sizeof *turn->hat);
-    for (int f = 0; f < mesh->face_count; f++) face_gradients(turn->shell, f, turn->hat[f]);
+    for (int f = 0; f < mesh->face_count; f++) face_gradients(mesh->rest, mesh->faces[f], turn->hat[f]);
     list_dofs(turn, start, dofs);
     turn->matrix = sparse_create(turn->free, (Groups){(int)elements, start, dofs}, (SparseDef){0});
     assemble(turn, dofs);

@@ -1,8 +1,8 @@
 /* params.h - every physical parameter of a model in one contiguous vector p, divided into named blocks.
  *
- * Scene key = block name = design variable name = result dataset name. A derivative dp has the same layout. The
- * layout belongs to the model and does not change; the values are plain vectors p[layout.size], as many as there are
- * load cases. */
+ * Scene key = block name = design variable name = result dataset name. A derivative dp has the same layout. First all
+ * that blocks hold is counted, then they are added, one behind the other, and then vectors are made: p[size], as many
+ * as there are load cases. So an offset is final as soon as its block is there, and nothing grows later. */
 #pragma once
 #include <stdbool.h>
 
@@ -14,15 +14,19 @@ typedef struct ParamBlock {
     bool load;        /* a load: scaled from 0 to 1 by load steps                              */
 } ParamBlock;
 
-enum { PARAMS_MAX_BLOCKS = 16 };
-
 typedef struct Params {
     int block_count, size;
-    ParamBlock blocks[PARAMS_MAX_BLOCKS];
+    ParamBlock *blocks; /* owned; those of a layout that is final stay where they are */
+    bool final;         /* there are vectors                                          */
 } Params;
 
-/* Appends a block and returns its offset. */
+/* Appends a block and returns its offset; before the first vector. */
 int params_add(Params *params, const char *name, const char *unit, int count, int width, bool load);
+
+/* A vector of zeros, p[size], which is the caller's; from now on the layout is final. */
+double *params_vector(Params *params);
 
 /* The block of that name, or NULL. */
 const ParamBlock *params_find(const Params *params, const char *name);
+
+void params_clear(Params *params);

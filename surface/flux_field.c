@@ -135,13 +135,11 @@ void flux_field_eval(const FluxField *field, const double x[3], double time, Flu
         sample_dipole(field, vec3_load(x), sample);
 }
 
-int flux_fields_add(FluxFields *fields, Params *params, FluxField *field)
+int flux_fields_add(FluxFields *fields, FluxField *field)
 {
     size_t count = (size_t)fields->count;
     fields->items = mem_resize(fields->items, count, count + 1, sizeof *fields->items);
     fields->items[count] = field;
-    params->blocks[params->block_count - 1].count++;
-    params->size++;
     return fields->count++;
 }
 

@@ -4,7 +4,6 @@
  * forces (dB/dx) and their Hessian follow from the energy. */
 #pragma once
 #include "io/formula.h"
-#include "solve/params.h"
 
 typedef struct FluxField FluxField;
 
@@ -26,13 +25,12 @@ void flux_field_destroy(FluxField *field);
 /* Re-entrant. A value that is not finite leaves NaN, which the solver notices. */
 void flux_field_eval(const FluxField *field, const double x[3], double time, FluxSample *sample);
 
-/* The fields around a body, each with a factor in the last block of its parameters. */
+/* The fields around a body, each with a factor in its block field_scale. */
 typedef struct FluxFields {
     int count;
     FluxField **items; /* owned */
 } FluxFields;
 
-/* Adds a field and its factor, and returns its number. Before the first vector of parameters and the first system:
- * the block grows. */
-int flux_fields_add(FluxFields *fields, Params *params, FluxField *field);
+/* Takes a field and returns its number. All are there before the body is, whose block counts them. */
+int flux_fields_add(FluxFields *fields, FluxField *field);
 void flux_fields_clear(FluxFields *fields);

@@ -24,7 +24,7 @@ static inline Resting resting_create(const ReferenceRod *r, double young, int el
     rod_frenet(&o.curve, o.frames);
     rod_bishop(&o.curve, o.frames[0].n1, o.frames);
     o.rod = rod_create(elements, o.curve.length, reference_section(1),
-                       M_PI * reference_radius * reference_radius);
+                       M_PI * reference_radius * reference_radius, NULL);
     o.p = mem_alloc((size_t)o.rod->params.size, sizeof *o.p);
     rod_default_params(o.rod, young, o.p);
     o.p[o.rod->gravity + 2] = -reference_gravity;

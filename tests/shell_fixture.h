@@ -9,14 +9,19 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-/* Of a mesh, which is cleared. */
-static inline Shell *shell_of_mesh(MeshFile *file)
+/* Of a mesh, which is cleared; takes the fields (NULL: none). */
+static inline Shell *shell_in_fields(MeshFile *file, const FluxFields *fields)
 {
     Error err;
     Mesh *mesh = mesh_create(file, 0, NULL, &err);
     if (!mesh) fail_msg("%s", err.text);
     mesh_file_clear(file);
-    return shell_create(mesh);
+    return shell_create(mesh, fields);
+}
+
+static inline Shell *shell_of_mesh(MeshFile *file)
+{
+    return shell_in_fields(file, NULL);
 }
 
 static inline Shell *shell_of_sheet(const double size[2], const int cells[2], ShapePattern pattern)

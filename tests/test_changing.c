@@ -44,6 +44,7 @@ static void test_threads(void **unused)
         workers_destroy(workers);
     }
     for (int k = 0; k < 3; k++) state_destroy(&ends[k]);
+    params_clear(&cloud.params);
 }
 
 /* From its state and the point of its factor another system goes on bit by bit, though it has seen other lists. */
@@ -65,6 +66,7 @@ static void test_resumed(void **unused)
     state_destroy(&resumed);
     system_destroy(whole);
     system_destroy(other);
+    params_clear(&cloud.params);
 }
 
 /* ---- The adjoint ---- */
@@ -115,6 +117,7 @@ static void make(Fixture *f)
 static void clear(Fixture *f)
 {
     system_destroy(f->sys);
+    params_clear(&f->cloud.params);
     state_destroy(&f->start);
     design_clear(&f->design);
     objective_destroy(f->objective);

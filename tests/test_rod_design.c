@@ -29,11 +29,11 @@ static const double young = 1e6, length = 0.05;
 /* The shape is one that a magnetisation along the rod takes in a field across it. */
 static Fixture fixture_create(RodSupport end, bool field, Random *random)
 {
-    Fixture f = {.rod = rod_create(N, length, rod_circle(0.5e-3, 1, 0.4, 1800), M_PI * 0.25e-6)};
-    Rod *rod = f.rod;
+    FluxFields fields = {0};
     if (field)
-        flux_fields_add(&rod->fields, &rod->params,
-                        flux_field_dipole((double[]){0.03, 0.03, 0.03}, (double[]){0.2, 0.5, -0.4}));
+        flux_fields_add(&fields, flux_field_dipole((double[]){0.03, 0.03, 0.03}, (double[]){0.2, 0.5, -0.4}));
+    Fixture f = {.rod = rod_create(N, length, rod_circle(0.5e-3, 1, 0.4, 1800), M_PI * 0.25e-6, &fields)};
+    Rod *rod = f.rod;
     rod->end = end;
     f.layout = rod_layout(rod, true);
     double *p = mem_alloc((size_t)rod->params.size, sizeof *p), target[N + 1][3];

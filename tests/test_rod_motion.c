@@ -129,7 +129,7 @@ static void test_pendulum(void **state)
     (void)state;
     enum { N = 10 };
     double length = 0.3, young = 1e9, g = 9.8;
-    Rod *rod = rod_create(N, length, rod_circle(2e-3, 1, 0.4, 1000), M_PI * 4e-6);
+    Rod *rod = rod_create(N, length, rod_circle(2e-3, 1, 0.4, 1000), M_PI * 4e-6, NULL);
     double *p = mem_alloc((size_t)rod->params.size, sizeof *p);
     rod_default_params(rod, young, p);
     p[rod->gravity + 2] = -g;

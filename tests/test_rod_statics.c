@@ -88,7 +88,8 @@ static void test_cantilevers(void **state)
     for (int k = 0; k < 5; k++) {
         double radius = 2.225e-3, off = 0;
         RodSection section = rod_circle(radius, young[k], 0.5, reference_density);
-        Rod *rod = rod_create(N, 0.2, rod_circle(radius, 1, 0.5, reference_density), M_PI * radius * radius);
+        Rod *rod =
+            rod_create(N, 0.2, rod_circle(radius, 1, 0.5, reference_density), M_PI * radius * radius, NULL);
         double *p = mem_alloc((size_t)rod->params.size, sizeof *p);
         rod_default_params(rod, young[k], p);
         p[rod->gravity + 2] = -reference_gravity;
@@ -146,9 +147,9 @@ static void test_both_forms(void **state)
 }
 
 /* A straight rod along x without weight. */
-static Rod *plain_rod(int elements, double length, double young, double **params)
+static Rod *plain_rod(int elements, double length, double young, const FluxFields *fields, double **params)
 {
-    Rod *rod = rod_create(elements, length, rod_circle(1e-3, 1, 0.4, 1000), M_PI * 1e-6);
+    Rod *rod = rod_create(elements, length, rod_circle(1e-3, 1, 0.4, 1000), M_PI * 1e-6, fields);
     *params = mem_alloc((size_t)rod->params.size, sizeof **params);
     rod_default_params(rod, young, *params);
     return rod;
@@ -161,7 +162,7 @@ static void test_moments(void **state)
     (void)state;
     enum { N = 400 };
     double *p;
-    Rod *rod = plain_rod(N, 0.1, 1e6, &p);
+    Rod *rod = plain_rod(N, 0.1, 1e6, NULL, &p);
     Vec3 force = vec3(2e-4, 3e-4, -5e-4), M = vec3(3e4, -1e4, 2e4), B = vec3(0.01, -0.02, 0.03);
     for (int e = 0; e < N; e++) vec3_store(p + rod->magnetization + 3 * e, M);
     vec3_store(p + rod->flux_density, B);
@@ -206,14 +207,12 @@ static State with_positions(const Rod *rod, const System *sys, const double *p)
 static double pole_error(int elements)
 {
     double *p, M = 5e4, at[3] = {0.1, 0.05, 0.2}, moment[3] = {2, -4, 12};
-    Rod *rod = plain_rod(elements, 0.1, 1e6, &p);
-    mem_free(p);
-    Rod *loaded = plain_rod(elements, 0.1, 1e6, &p);
+    Rod *loaded = plain_rod(elements, 0.1, 1e6, NULL, &p);
     mem_free(p);
     FluxField *magnet = flux_field_dipole(at, moment);
-    int k = flux_fields_add(&rod->fields, &rod->params, magnet);
-    p = mem_alloc((size_t)rod->params.size, sizeof *p);
-    rod_default_params(rod, 1e6, p);
+    FluxFields fields = {0};
+    int k = flux_fields_add(&fields, magnet);
+    Rod *rod = plain_rod(elements, 0.1, 1e6, &fields, &p);
     p[rod->field_scale + k] = 1;
     for (int e = 0; e < elements; e++) p[rod->magnetization + 3 * e] = M;
     System *sys = rod_system(rod, 1e6, false);
@@ -260,25 +259,30 @@ static void test_balance_in_field(void **state)
     long blocks = mem_live_count();
     Resting o = resting_create(&reference_rods[REFERENCE_HELIX], 5e6, 60);
     double at[3] = {0, 0, -0.12}, moment[3] = {0, 3, 8};
-    int k = flux_fields_add(&o.rod->fields, &o.rod->params, flux_field_dipole(at, moment));
-    double *p = mem_alloc((size_t)o.rod->params.size, sizeof *p);
-    memcpy(p, o.p, ((size_t)o.rod->params.size - 1) * sizeof *p);
-    p[o.rod->field_scale + k] = 1;
-    for (int e = 0; e < 60; e++) vec3_store(p + o.rod->magnetization + 3 * e, vec3(2e4, 5e3, -3e3));
-    RodLayout layout = rod_layout(o.rod, true);
+    FluxFields fields = {0};
+    int k = flux_fields_add(&fields, flux_field_dipole(at, moment));
+    Rod *rod = rod_create(60, o.rod->length, o.rod->unit, o.rod->area, &fields);
+    double *p = params_vector(&rod->params);
+    memcpy(p, o.p, (size_t)o.rod->params.size * sizeof *p);
+    memcpy(rod->bow, o.rod->bow, 60 * sizeof *rod->bow);
+    rod->position = o.rod->position, rod->frame = o.rod->frame;
+    p[rod->field_scale + k] = 1;
+    for (int e = 0; e < 60; e++) vec3_store(p + rod->magnetization + 3 * e, vec3(2e4, 5e3, -3e3));
+    RodLayout layout = rod_layout(rod, true);
     double *g = mem_alloc((size_t)layout.dofs, sizeof *g);
-    System *sys = rod_system(o.rod, 5e6, false);
+    System *sys = rod_system(rod, 5e6, false);
     State rest = system_state(sys);
-    rod_copy_state(o.rod, &o.layout, o.state.x, &layout, rest.x);
-    rod_balance(o.rod, sys, &layout, rest.x, p);
+    rod_copy_state(rod, &o.layout, o.state.x, &layout, rest.x);
+    rod_balance(rod, sys, &layout, rest.x, p);
     Point point = state_point(&rest, p);
     Evaluation left = system_gradient(sys, &point, g);
     for (int i = 0; i < layout.reference; i++)
         if (!system_is_fixed(sys, i)) assert_true(fabs(g[i]) <= 1e-12 * left.force_scale);
-    assert_int_equal(rod_relax(o.rod, sys, 1, p, &rest).newton.status, NEWTON_CONVERGED);
+    assert_int_equal(rod_relax(rod, sys, 1, p, &rest).newton.status, NEWTON_CONVERGED);
     print_message("beside a magnet: %.1e m off the curve\n", resting_distance(&o, rest.x));
     assert_true(resting_distance(&o, rest.x) < 1e-12);
     system_destroy(sys);
+    rod_destroy(rod);
     mem_free(p);
     mem_free(g);
     state_destroy(&rest);
@@ -332,7 +336,7 @@ static double elastica_force(Push push, double *deflection, NewtonInfo *info)
 {
     double *p, young = 1e6;
     int elements = push.elements;
-    Rod *rod = plain_rod(elements, 1, young, &p);
+    Rod *rod = plain_rod(elements, 1, young, NULL, &p);
     rod->start = rod->end = push.support;
     Ends ends = {rod_layout(rod, true), push.shortening};
     System *sys = rod_system(rod, young, false);

@@ -23,22 +23,24 @@ static Vec3 random_vec3(Random *random, double size)
 
 /* A formula and a dipole beside the rod, of which a term is to know value, gradient and curvature; and another
  * one that is off, of which it is to know what it would do. */
-static void add_fields(Rod *rod)
+static FluxFields make_fields(void)
 {
+    FluxFields fields = {0};
     static const char *const expressions[] = {"0.05*sin(40*x)*cos(t)", "x*z*10", "0.02*exp(20*y)-3*x*y"};
     static const char *const variables[] = {"x", "y", "z", "r", "t", NULL};
     Formula *formula = formula_create(expressions, 3, NULL, 0, variables, NULL);
     assert_non_null(formula);
-    flux_fields_add(&rod->fields, &rod->params, flux_field_formula(formula, 0.1));
+    flux_fields_add(&fields, flux_field_formula(formula, 0.1));
     for (int k = 0; k < 2; k++)
-        flux_fields_add(&rod->fields, &rod->params,
+        flux_fields_add(&fields,
                         flux_field_dipole((double[]){0.05, 0.05, 0.2 - 0.5 * k}, (double[]){1, -2, 5}));
+    return fields;
 }
 
-static Rod *random_rod(Random *random, bool fields, double **params)
+static Rod *random_rod(Random *random, bool varies, double **params)
 {
-    Rod *rod = rod_create(ELEMENTS, 0.1, rod_ellipse(1e-3, 0.7e-3, 1, 0.4, 1200), 3e-6);
-    if (fields) add_fields(rod);
+    FluxFields fields = varies ? make_fields() : (FluxFields){0};
+    Rod *rod = rod_create(ELEMENTS, 0.1, rod_ellipse(1e-3, 0.7e-3, 1, 0.4, 1200), 3e-6, &fields);
     double *p = mem_alloc((size_t)rod->params.size, sizeof *p);
     rod_default_params(rod, 1e6, p);
     for (int e = 0; e < ELEMENTS; e++) {

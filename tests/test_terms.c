@@ -24,14 +24,14 @@ static Shell *make_shell(BendingModel bending, FluxField *field)
         x[0] += 1e-3 * random_signed(&random), x[1] += 1e-3 * random_signed(&random);
         x[2] = 4e-3 * sin(80 * x[0]) + 20 * x[1] * x[1] + 5e-4 * random_signed(&random);
     }
-    Shell *shell = shell_of_mesh(&file);
+    FluxFields fields = {0};
+    if (field) {
+        flux_fields_add(&fields, field);
+        flux_fields_add(&fields, flux_field_dipole((double[]){0, 0, -0.06}, (double[]){0.3, 0.1, 0.2}));
+    }
+    Shell *shell = shell_in_fields(&file, &fields);
     const Mesh *mesh = shell->mesh;
     shell->thickness = 1e-3, shell->poisson = 0.4, shell->density = 1200, shell->bending = bending;
-    if (field) {
-        flux_fields_add(&shell->fields, &shell->params, field);
-        flux_fields_add(&shell->fields, &shell->params,
-                        flux_field_dipole((double[]){0, 0, -0.06}, (double[]){0.3, 0.1, 0.2}));
-    }
     for (int e = 0; e < mesh->edge_count; e++) {
         const int *v = mesh->edges[e];
         if (v[0] % (CELLS + 1) || v[1] % (CELLS + 1) || v[1] >= (CELLS + 1) * (CELLS - 1)) continue;
@@ -135,6 +135,7 @@ static void test_changing(void **state)
     assert_true(check_differences(error) < 1e-7 && check_products(error) < 1e-11);
     state_destroy(&now);
     system_destroy(sys);
+    params_clear(&cloud.params);
 }
 
 /* ---- Terms that leave something out, or get it wrong: the check must see it ---- */

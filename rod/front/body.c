@@ -95,9 +95,8 @@ static bool read_supports(RodModel *rm, const RodScene *scene, const Build *b)
     return ok;
 }
 
-static bool make_rod(RodModel *rm, const Scene *scene, const Build *b)
+static bool check_rod(const RodModel *rm, const RodScene *from, const Build *b)
 {
-    const RodScene *from = rod_scene(scene);
     bool given = rm->curves != NULL;
     if (from->poses) return yaml_refuse(b->file, "rod.poses", "poses are for the job identify");
     if (given && rm->strand_count > 1)
@@ -107,8 +106,7 @@ static bool make_rod(RodModel *rm, const Scene *scene, const Build *b)
         return yaml_refuse(b->file, "rod", "`curve` or `natural_strain` is missing");
     if (!given && isnan(from->length))
         return yaml_refuse(b->file, "rod", "without a curve, `length` is needed");
-    rm->rod = rod_create(from->elements, given ? rm->curves[0].length : from->length, rm->unit, rm->area);
-    return read_supports(rm, from, b) && rod_model_check_points(rm, b, rm->rod->length);
+    return true;
 }
 
 /* The curve's state in x, and none of its shape in the rod: that has natural strains of its own. */
@@ -122,13 +120,14 @@ static void pose(RodModel *rm, double *x)
  * state in x, of turns only. */
 static void balance(RodModel *rm, double *p, double *x)
 {
-    Rod *rod = rm->rod;
-    RodLayout turns = rod_layout(rod, false), layout = rod_layout(rod, rod->fields.count > 0);
-    rod_follow_curve(rod, &rm->curves[0], rm->frames[0], x);
+    rod_follow_curve(rm->rod, &rm->curves[0], rm->frames[0], x);
+    Rod rod = *rm->rod;
+    if (!rod_field_varies(&rod, p)) rod.fields.count = 0; /* those of other cases: the hanging form will do */
+    RodLayout turns = rod_layout(&rod, false), layout = rod_layout(&rod, rod.fields.count > 0);
     double *y = mem_alloc((size_t)layout.dofs, sizeof *y);
-    rod_copy_state(rod, &turns, x, &layout, y);
-    System *sys = rod->fields.count ? rod_system(rod, rm->young, false) : rod_hanging_system(rod);
-    rod_balance(rod, sys, &layout, y, p);
+    rod_copy_state(&rod, &turns, x, &layout, y);
+    System *sys = rod.fields.count ? rod_system(&rod, rm->young, false) : rod_hanging_system(&rod);
+    rod_balance(&rod, sys, &layout, y, p);
     system_destroy(sys);
     mem_free(y);
 }
@@ -221,20 +220,18 @@ static void set_model(Model *model)
     model->moves = rm->held && model->job == &job_equilibrium && !model->general;
 }
 
-/* Cases and states. All fields are known once the cases are: with one that varies in space, no rod is only
- * turns. */
-static bool fill_cases(Model *model, const Scene *scene, const Build *b)
+/* Cases and states. With a field that varies in space no rod is only turns. */
+static bool fill_cases(Model *model, const Scene *scene, const Build *b, bool flux_is_read)
 {
     RodModel *rm = model->self;
     Rod *rod = rm->rod;
     bool motion = model->job->motion;
-    size_t room = model_params_room(model, scene);
-    double *p = mem_alloc(room, sizeof *p),
+    double *p = params_vector(model->params),
            *curve = mem_alloc((size_t)rod_layout(rod, false).dofs, sizeof *curve);
-    bool ok = rod_model_params(rm, scene, b, p);
-    ok = model_put_flux(model, b, "flux_density", &scene->flux_density, p) && ok;
+    bool ok = rod_model_params(rm, scene, b, p) && flux_is_read;
+    model_put_flux(model, &model->flux[0], p);
     if (ok && rm->curves) take_curve(rm, rod_scene(scene), p, curve);
-    ok = ok && model_cases(model, b, scene, p, room);
+    ok = ok && model_cases(model, b, scene, p);
     bool hanging = !model->general && model->job == &job_equilibrium && rod->start == ROD_CLAMPED &&
                    rod->end == ROD_FREE && rod->fields.count == 0;
     if (ok) make_states(model, rod_scene(scene), hanging, p, curve);
@@ -249,13 +246,19 @@ static bool fill_cases(Model *model, const Scene *scene, const Build *b)
 static bool fill(Model *model, const Scene *scene, const Build *b)
 {
     RodModel *rm = model->self;
-    if (!make_rod(rm, scene, b)) return false;
+    const RodScene *from = rod_scene(scene);
     Build sized = *b;
-    sized.size = rm->rod->length;
+    FluxFields fields;
+    if (!check_rod(rm, from, b)) return false;
+    sized.size = rm->curves ? rm->curves[0].length : from->length;
+    bool flux_is_read = model_read_flux(model, &sized, scene, &fields);
+    rm->rod = rod_create(from->elements, sized.size, rm->unit, rm->area, &fields);
+    if (!read_supports(rm, from, b) || !rod_model_check_points(rm, b, rm->rod->length)) return false;
     set_model(model);
-    return fill_cases(model, scene, &sized) &&
-           (!model->job->motion || model_velocity(model, b, "rod.velocity", rod_scene(scene)->velocity,
-                                                  model->x + rm->layout.position));
+    model_add_blocks(model, scene);
+    return fill_cases(model, scene, &sized, flux_is_read) &&
+           (!model->job->motion ||
+            model_velocity(model, b, "rod.velocity", from->velocity, model->x + rm->layout.position));
 }
 
 static bool is_default(const SolverScene *solver)

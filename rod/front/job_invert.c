@@ -126,7 +126,7 @@ static void invert_elements(Inversion *o, int k)
 {
     const RodModel *rm = o->rm;
     const RodScene *scene = rod_scene(o->run->scene);
-    Rod *rod = rod_create(o->elements, rm->curves[k].length, rm->unit, rm->area);
+    Rod *rod = rod_create(o->elements, rm->curves[k].length, rm->unit, rm->area, NULL);
     double *p = mem_alloc((size_t)rod->params.size, sizeof *p);
     rod_model_loads(rm, rod, scene, p);
     for (int e = 0; e < o->elements && !isnan(scene->magnetization.value[0]); e++)

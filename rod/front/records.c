@@ -63,8 +63,7 @@ static bool is_judged(const Rod *rod, const double *p)
 {
     const double *B = p + rod->flux_density;
     bool across = false, field = B[0] != 0 || B[1] != 0 || B[2] != 0;
-    bool uniform = true;
-    for (int k = 0; k < rod->fields.count; k++) uniform &= p[rod->field_scale + k] == 0;
+    bool uniform = !rod_field_varies(rod, p);
     for (int e = 0; e < rod->elements; e++) {
         across |= field && (p[rod->magnetization + 3 * e + 1] != 0 || p[rod->magnetization + 3 * e + 2] != 0);
         uniform &= p[rod->young + e] == p[rod->young];

@@ -130,10 +130,10 @@ static bool put_target(Model *model, const Build *b, const char *at, const Targe
     return build_target(b, key("%s", at), scene, target);
 }
 
-static double *base_params(Model *model, const Scene *scene, const Build *b, size_t room)
+static double *base_params(Model *model, const Scene *scene, const Build *b)
 {
     Shell *shell = model->self;
-    double *p = mem_alloc(room, sizeof *p);
+    double *p = params_vector(model->params);
     shell_default_params(shell, p);
     const ShellScene *s = shell_scene(scene);
     bool ok = build_face_numbers(b, key("shell.young"), &s->young, p + shell->young);
@@ -142,7 +142,8 @@ static double *base_params(Model *model, const Scene *scene, const Build *b, siz
     memcpy(p + shell->gravity, s->gravity, sizeof s->gravity);
     p[shell->damping] = s->damping;
     ok = build_loads(b, key("loads"), scene->loads, scene->loads_count, p + shell->load) && ok;
-    if (ok && model_put_flux(model, b, "flux_density", &scene->flux_density, p)) return p;
+    model_put_flux(model, &model->flux[0], p);
+    if (ok) return p;
     mem_free(p);
     return NULL;
 }
@@ -200,7 +201,7 @@ static bool finish_cases(Model *model, const Build *b)
     return ok;
 }
 
-static bool fill(Model *model, const Scene *scene, const Build *b)
+static bool fill(Model *model, const Scene *scene, const Build *b, bool flux_is_read)
 {
     Shell *shell = model->self;
     const ShellScene *from = shell_scene(scene);
@@ -208,14 +209,13 @@ static bool fill(Model *model, const Scene *scene, const Build *b)
     shell->poisson = from->poisson;
     shell->density = from->density;
     shell->bending = (BendingModel)from->bending;
-    bool ok = true;
+    bool ok = flux_is_read;
     for (int k = 0; k < scene->fix_count; k++) ok = fix_entry(model, b, k, &scene->fix[k]) && ok;
     model->x = mem_alloc((size_t)shell_dof_count(shell), sizeof *model->x);
     shell_rest_state(shell, model->x);
     ok = read_pose(b, from->pose, model->x) && ok;
-    size_t room = model_params_room(model, scene);
-    double *p = base_params(model, scene, b, room);
-    ok = p && model_cases(model, b, scene, p, room) && ok;
+    double *p = base_params(model, scene, b);
+    ok = p && model_cases(model, b, scene, p) && ok;
     mem_free(p);
     return ok && finish_cases(model, b) &&
            (!model->job->motion ||
@@ -226,7 +226,13 @@ static bool create(Model *model, const Scene *scene, YamlFile *file)
 {
     Mesh *mesh = build_mesh(&shell_scene(scene)->mesh, file, &model->report);
     if (!mesh) return false;
-    Shell *shell = model->self = shell_create(mesh);
+    Build b = build_start(scene, mesh, file);
+    b.mesh_scale = shell_scene(scene)->mesh.scale;
+    b.report = &model->report;
+    b.timed = model->job->motion ? &model->flux_of_time : NULL;
+    FluxFields fields;
+    bool flux_is_read = model_read_flux(model, &b, scene, &fields);
+    Shell *shell = model->self = shell_create(mesh, &fields);
     model->mesh = mesh;
     model->params = &shell->params;
     model->gravity = shell->gravity;
@@ -236,11 +242,8 @@ static bool create(Model *model, const Scene *scene, YamlFile *file)
     model->point_count = mesh->vertex_count;
     model->load_steps = 1;
     model->step_cap = newton_default().step_cap;
-    Build b = build_start(scene, mesh, file);
-    b.mesh_scale = shell_scene(scene)->mesh.scale;
-    b.report = &model->report;
-    b.timed = model->job->motion ? &model->flux_of_time : NULL;
-    return fill(model, scene, &b);
+    model_add_blocks(model, scene);
+    return fill(model, scene, &b, flux_is_read);
 }
 
 static void destroy(void *self)

@@ -23,7 +23,7 @@ static Piece piece_create(const Shell *like)
     MeshFile file;
     Error err;
     shape_sheet((double[]){2, 1}, (int[]){PIECE_LENGTH, PIECE_WIDTH}, PATTERN_RIGHT, &file, &err);
-    Shell *shell = shell_create(mesh_create(&file, 0, NULL, &err));
+    Shell *shell = shell_create(mesh_create(&file, 0, NULL, &err), NULL);
     mesh_file_clear(&file);
     shell->thickness = 0.01, shell->poisson = like->poisson, shell->density = 1000,
     shell->bending = like->bending;

@@ -1,11 +1,10 @@
-#include "shell/face.h"
+#include "surface/face.h"
 #include "base/vec3.h"
 
-FaceFrame face_frame(const Shell *shell, int face)
+FaceFrame face_frame(double (*rest)[3], const int *face)
 {
-    const Mesh *mesh = shell->mesh;
     Vec3 x[3];
-    for (int i = 0; i < 3; i++) x[i] = vec3_load(mesh->rest[mesh->faces[face][i]]);
+    for (int i = 0; i < 3; i++) x[i] = vec3_load(rest[face[i]]);
     Vec3 area = vec3_cross(vec3_sub(x[1], x[0]), vec3_sub(x[2], x[0])); /* 2 A n */
     double length = vec3_length(area);
     Vec3 normal = vec3_scale(1 / length, area);
@@ -18,9 +17,9 @@ FaceFrame face_frame(const Shell *shell, int face)
     return frame;
 }
 
-void face_gradients(const Shell *shell, int face, double b[3][2])
+void face_gradients(double (*rest)[3], const int *face, double b[3][2])
 {
-    FaceFrame frame = face_frame(shell, face);
+    FaceFrame frame = face_frame(rest, face);
     Vec3 along = vec3_unit(vec3_load(frame.hat[0])); /* any direction in the plane */
     Vec3 across = vec3_cross(vec3_load(frame.normal), along);
     for (int i = 0; i < 3; i++) {

@@ -4,10 +4,10 @@
  * Q = F0 M = sum_i c_i x_i + mu n, with c_i = b_i.M (b_i the hat functions' rest gradients) and mu = N.M (N the rest
  * normal). B is uniform (block flux_density) plus fields taken at the face's current barycentre, so its gradient
  * enters the forces. The derivatives of n (eqs. 62, 63) are the corrected ones of docs/theory.md. */
+#include "surface/magnetic.h"
 #include "base/memory.h"
-#include "shell/face.h"
-#include "shell/terms.h"
 #include "solve/element.h"
+#include "surface/face.h"
 #include "surface/flux.h"
 
 typedef struct MagneticPack {
@@ -16,7 +16,7 @@ typedef struct MagneticPack {
 } MagneticPack;
 
 typedef struct Magnetic {
-    const Shell *shell;
+    MagneticSurfaceDef def;
     MagneticPack *packs;
 } Magnetic;
 
@@ -28,7 +28,7 @@ typedef struct Normal {
 
 static int magnetic_count(const void *self)
 {
-    return ((const Magnetic *)self)->shell->mesh->face_count;
+    return ((const Magnetic *)self)->def.face_count;
 }
 
 static int magnetic_size(const void *self)
@@ -39,7 +39,7 @@ static int magnetic_size(const void *self)
 
 static void magnetic_dofs(const void *self, int face, int *dof)
 {
-    face_dofs(((const Magnetic *)self)->shell, face, dof);
+    face_dofs(((const Magnetic *)self)->def.faces[face], dof);
 }
 
 static Pack3 barycentre(const Pack *x)
@@ -48,10 +48,10 @@ static Pack3 barycentre(const Pack *x)
 }
 
 /* At the barycentres, with the numbers in values, which are laid out as p. */
-static Flux flux_with(const Shell *shell, const Point *at, const Pack *x, const double *values)
+static Flux flux_with(const MagneticSurfaceDef *def, const Point *at, const Pack *x, const double *values)
 {
-    FluxNumbers numbers = {values + shell->flux_density, values + shell->field_scale};
-    return flux_at(&shell->fields, numbers, barycentre(x), at->time);
+    FluxNumbers numbers = {values + def->flux_density, values + def->field_scale};
+    return flux_at(def->fields, numbers, barycentre(x), at->time);
 }
 
 static Normal normal_of(const Pack *x)
@@ -72,11 +72,11 @@ static Pack3 normal_gradient(const Normal *r, Pack3 b, int i)
     return pack3_scale(r->inverse, pack3_cross(across, r->edge[i]));
 }
 
-static Pack3 magnetization_of(const Shell *shell, int pack, const double *values)
+static Pack3 magnetization_of(const MagneticSurfaceDef *def, int pack, const double *values)
 {
-    const double *M = values + shell->magnetization;
-    return pack3(face_param(shell, pack, M, 3, 0), face_param(shell, pack, M, 3, 1),
-                 face_param(shell, pack, M, 3, 2));
+    const double *M = values + def->magnetization;
+    return pack3(face_param(def->face_count, pack, M, 3, 0), face_param(def->face_count, pack, M, 3, 1),
+                 face_param(def->face_count, pack, M, 3, 2));
 }
 
 /* Q = F0 M: the magnetisation carried along by the face. */
@@ -143,7 +143,7 @@ static void hessian(const Magnetic *magnetic, int pack, const Normal *normal, Pa
     const MagneticPack *face = &magnetic->packs[pack];
     Pack mu = pack3_dot(face->normal, M);
     PackMat dQ[3];
-    bool varies = magnetic->shell->fields.count > 0;
+    bool varies = magnetic->def.fields->count > 0;
     for (int i = 0; varies && i < 3; i++) dQ[i] = carried_gradient(normal, pack3_dot(face->hat[i], M), mu, i);
     element_clear(H, 9);
     for (int i = 0; i < 3; i++)
@@ -162,9 +162,9 @@ static Pack magnetic_eval(const void *self, int pack, const Point *at, const Pac
 {
     const Magnetic *magnetic = self;
     const MagneticPack *face = &magnetic->packs[pack];
-    Flux flux = flux_with(magnetic->shell, at, x, at->p);
+    Flux flux = flux_with(&magnetic->def, at, x, at->p);
     Normal normal = normal_of(x);
-    Pack3 M = magnetization_of(magnetic->shell, pack, at->p), Q = carried(face, &normal, M, x);
+    Pack3 M = magnetization_of(&magnetic->def, pack, at->p), Q = carried(face, &normal, M, x);
     if (g) {
         forces(face, &normal, M, &flux, Q, g);
         for (int i = 0; i < 9; i++) g[i] *= -face->volume;
@@ -180,11 +180,11 @@ static void magnetic_param(const void *self, int pack, int lanes, const Point *a
                            const Pack *w, double *dp)
 {
     const Magnetic *magnetic = self;
-    const Shell *shell = magnetic->shell;
+    const MagneticSurfaceDef *def = &magnetic->def;
     const MagneticPack *face = &magnetic->packs[pack];
-    Flux flux = flux_with(shell, at, x, at->p);
+    Flux flux = flux_with(def, at, x, at->p);
     Normal normal = normal_of(x);
-    Pack3 M = magnetization_of(shell, pack, at->p), W = {0}, dM = {0}, mean = {0};
+    Pack3 M = magnetization_of(def, pack, at->p), W = {0}, dM = {0}, mean = {0};
     Pack mu = pack3_dot(face->normal, M), along = {0};
     for (int i = 0; i < 3; i++) mean = pack3_axpy(pack_set(1.0 / 3), pack3_load(w + 3 * i), mean);
     Pack3 pull = pack_mat_times(flux.gradient, mean);
@@ -197,17 +197,17 @@ static void magnetic_param(const void *self, int pack, int lanes, const Point *a
     dM = pack3_axpy(along + pack3_dot(normal.n, pull), face->normal, dM);
     Pack3 Q = carried(face, &normal, M, x);
     for (int l = 0; l < lanes; l++) {
-        double *m = dp + shell->magnetization + 3 * face_of_lane(shell, pack, l),
-               *b = dp + shell->flux_density;
+        double *m = dp + def->magnetization + 3 * face_of_lane(def->face_count, pack, l),
+               *b = dp + def->flux_density;
         double volume = face->volume[l];
         m[0] -= volume * dM.x[l], m[1] -= volume * dM.y[l], m[2] -= volume * dM.z[l];
         b[0] -= volume * W.x[l], b[1] -= volume * W.y[l], b[2] -= volume * W.z[l];
     }
-    for (int k = 0; k < shell->fields.count; k++) {
-        Flux field = flux_of_field(shell->fields.items[k], barycentre(x), at->time);
+    for (int k = 0; k < def->fields->count; k++) {
+        Flux field = flux_of_field(def->fields->items[k], barycentre(x), at->time);
         Pack scale =
             face->volume * (pack3_dot(W, field.B) + pack3_dot(Q, pack_mat_times(field.gradient, mean)));
-        for (int l = 0; l < lanes; l++) dp[shell->field_scale + k] -= scale[l];
+        for (int l = 0; l < lanes; l++) dp[def->field_scale + k] -= scale[l];
     }
 }
 
@@ -215,11 +215,11 @@ static void magnetic_param_forward(const void *self, int pack, const Point *at, 
                                    const double *dp, Pack *r)
 {
     const Magnetic *magnetic = self;
-    const Shell *shell = magnetic->shell;
+    const MagneticSurfaceDef *def = &magnetic->def;
     const MagneticPack *face = &magnetic->packs[pack];
-    Flux flux = flux_with(shell, at, x, at->p), change = flux_with(shell, at, x, dp);
+    Flux flux = flux_with(def, at, x, at->p), change = flux_with(def, at, x, dp);
     Normal normal = normal_of(x);
-    Pack3 M = magnetization_of(shell, pack, at->p), dM = magnetization_of(shell, pack, dp);
+    Pack3 M = magnetization_of(def, pack, at->p), dM = magnetization_of(def, pack, dp);
     Pack with_M[9];
     forces(face, &normal, dM, &flux, carried(face, &normal, dM, x), with_M);
     forces(face, &normal, M, &change, carried(face, &normal, M, x), r);
@@ -243,21 +243,23 @@ static const TermOps magnetic_ops = {
     .destroy = magnetic_destroy,
 };
 
-Term shell_magnetic_term(const Shell *shell)
+Term magnetic_surface_term(const MagneticSurfaceDef *def)
 {
     Magnetic *magnetic = mem_alloc(1, sizeof *magnetic);
-    magnetic->shell = shell;
-    magnetic->packs = mem_alloc((size_t)face_pack_count(shell), sizeof *magnetic->packs);
-    for (int k = 0; k < face_pack_count(shell) * PACK_LANES; k++) {
-        int l = k % PACK_LANES, face = face_of_lane(shell, k / PACK_LANES, l);
+    int packs = face_pack_count(def->face_count);
+    magnetic->def = *def;
+    magnetic->packs = mem_alloc((size_t)packs, sizeof *magnetic->packs);
+    for (int k = 0; k < packs * PACK_LANES; k++) {
+        int l = k % PACK_LANES, face = face_of_lane(def->face_count, k / PACK_LANES, l);
         MagneticPack *pack = &magnetic->packs[k / PACK_LANES];
-        FaceFrame frame = face_frame(shell, face);
+        FaceFrame frame = face_frame(def->rest, def->faces[face]);
         for (int i = 0; i < 3; i++)
             pack->hat[i].x[l] = frame.hat[i][0], pack->hat[i].y[l] = frame.hat[i][1],
             pack->hat[i].z[l] = frame.hat[i][2];
         pack->normal.x[l] = frame.normal[0], pack->normal.y[l] = frame.normal[1],
         pack->normal.z[l] = frame.normal[2];
-        pack->volume[l] = shell->mesh->rest_area[face] * shell->thickness;
+        pack->volume[l] = def->volume[face];
     }
+    magnetic->def.rest = NULL, magnetic->def.volume = NULL; /* the caller's */
     return (Term){&magnetic_ops, magnetic};
 }

@@ -1,0 +1,90 @@
+/* What of a scene counts before its parameters are laid out: flux densities, and the blocks of a trajectory. */
+#include "base/memory.h"
+#include "model/model.h"
+#include <math.h>
+#include <string.h>
+
+/* ---- Flux densities ---- */
+
+/* What an entry says; what it does not say is as in `flux` already. */
+static bool read_flux(const Build *b, Key at, const FluxScene *scene, CaseFlux *flux, FluxFields *fields)
+{
+    FluxField *field;
+    if (!scene) return true;
+    if (!build_flux(b, at, scene, flux->uniform, &field)) return false;
+    flux->field = field ? flux_fields_add(fields, field) : -1;
+    return true;
+}
+
+/* Stages, each from the one before. */
+static bool read_stages(Model *model, const Build *b, const Scene *scene, FluxFields *fields)
+{
+    Build now = *b;
+    bool ok = true;
+    now.time = scene->time.at;
+    for (int k = 0; k < scene->sequence_count; k++) {
+        const StageScene *stage = &scene->sequence[k];
+        if (!isnan(stage->time)) now.time = stage->time;
+        model->flux[1 + k] = model->flux[k];
+        ok = read_flux(&now, key("sequence[%d].flux_density", k), stage->flux_density, &model->flux[1 + k],
+                       fields) &&
+             ok;
+    }
+    return ok;
+}
+
+bool model_read_flux(Model *model, const Build *b, const Scene *scene, FluxFields *fields)
+{
+    *fields = (FluxFields){0};
+    size_t count = 1 + (size_t)(scene->sequence_count ? scene->sequence_count : scene->cases_count);
+    model->flux = mem_alloc(count, sizeof *model->flux);
+    bool ok = read_flux(b, key("flux_density"), &scene->flux_density, &model->flux[0], fields);
+    if (scene->sequence_count) return read_stages(model, b, scene, fields) && ok;
+    for (int k = 0; k < scene->cases_count; k++) {
+        model->flux[1 + k] = model->flux[0];
+        ok = read_flux(b, key("cases[%d].flux_density", k), scene->cases[k].flux_density, &model->flux[1 + k],
+                       fields) &&
+             ok;
+    }
+    return ok;
+}
+
+void model_put_flux(const Model *model, const CaseFlux *flux, double *p)
+{
+    memcpy(p + model->flux_density, flux->uniform, sizeof flux->uniform);
+    for (int k = 0; k < model->fields->count; k++) p[model->field_scale + k] = k == flux->field;
+}
+
+/* ---- Trajectories ---- */
+
+/* Rows of the unknown flux density: one for each step, knot or coefficient. */
+static void add_control(Model *model, const Scene *scene)
+{
+    const FluxUnknown *from = scene->design->unknowns.flux_density;
+    Control *control = &model->control;
+    *control = (Control){.kind = (ControlKind)from->per,
+                         .to = model->flux_density,
+                         .width = 3,
+                         .steps = scene->time.steps,
+                         .start = scene->time.at,
+                         .duration = scene->time.step * scene->time.steps};
+    control->rows = control_rows(control->kind, control->steps,
+                                 control->kind == CONTROL_KNOT ? from->knots : from->harmonics);
+    control->from = params_add(model->params, "control", "T", control->rows, 3, false);
+}
+
+void model_add_blocks(Model *model, const Scene *scene)
+{
+    const DesignScene *design = scene->design;
+    bool trajectory = model->job->design && model->job->motion;
+    if (!trajectory || !design || !design->unknowns.flux_density) return;
+    add_control(model, scene);
+    for (int k = 0; k < design->objectives_count; k++) {
+        const ObjectiveScene *row = &design->objectives[k];
+        if (isnan(row->dmp)) continue;
+        params_add(model->params, "dmp_omega", "rad/s", row->pairs, 1, false);
+        params_add(model->params, "dmp_alpha", "T", row->pairs, 3, false);
+        params_add(model->params, "dmp_beta", "T", row->pairs, 3, false);
+        return; /* a second one is refused */
+    }
+}

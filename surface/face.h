@@ -1,0 +1,40 @@
+/* face.h - what terms over triangles share: faces in packs, and the gradients of their hat functions. A face is the
+ * numbers of its three vertices, which number places (rest[vertex]) and dofs (3*vertex + axis). */
+#pragma once
+#include "base/pack.h"
+
+static inline int face_pack_count(int face_count)
+{
+    return (face_count + PACK_LANES - 1) / PACK_LANES;
+}
+
+/* The face in a lane of a pack; the last one fills up. */
+static inline int face_of_lane(int face_count, int pack, int lane)
+{
+    int face = pack * PACK_LANES + lane, last = face_count - 1;
+    return face < last ? face : last;
+}
+
+/* Nine dofs: the three vertices' positions. */
+static inline void face_dofs(const int *face, int *dof)
+{
+    for (int i = 0; i < 9; i++) dof[i] = 3 * face[i / 3] + i % 3;
+}
+
+/* Rest frame of a face: unit normal, and the in-plane gradients of the three hat functions (1/m). */
+typedef struct FaceFrame {
+    double normal[3], hat[3][3];
+} FaceFrame;
+
+FaceFrame face_frame(double (*rest)[3], const int *face);
+
+/* The same gradients in two axes of the face's rest plane, 1/m. */
+void face_gradients(double (*rest)[3], const int *face, double b[3][2]);
+
+/* One parameter per face, a component of values[face_count][width]. */
+static inline Pack face_param(int face_count, int pack, const double *values, int width, int component)
+{
+    Pack r;
+    for (int l = 0; l < PACK_LANES; l++) r[l] = values[face_of_lane(face_count, pack, l) * width + component];
+    return r;
+}
