@@ -184,6 +184,12 @@ char *yaml_where(const YamlFile *file, const char *key);
 int yaml_error_count(const YamlFile *file);
 const YamlError *yaml_errors(const YamlFile *file, int *count);
 
+/* The key that stands at a place in the text, or whose value does: "fix[2].axes"; "" for none. */
+char *yaml_key_at(const YamlFile *file, int line, int column);
+
+/* There are no errors any more: what follows is told anew. */
+void yaml_forget_errors(YamlFile *file);
+
 /* All errors as text: for each "file:line:column: sentence", the source line and a caret. */
 char *yaml_report(const YamlFile *file);
 

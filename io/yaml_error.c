@@ -227,3 +227,32 @@ const char *nearest_word(const YamlFile *file, const char *word,
     }
     return near <= least ? best : NULL;
 }
+
+/* The path below `path` of what stands there; NULL: nothing does. */
+static char *find_key(const Node *node, int line, int column, const char *path)
+{
+    char *found = NULL;
+    if (node->line == line && node->column == column && node->kind == NODE_SCALAR) return mem_text(path);
+    for (int i = 0; !found && i < node->count; i++) {
+        bool map = node->kind == NODE_MAP;
+        char *below =
+            map ? mem_format("%s%s%s", path, *path ? "." : "", node->keys[i]) : mem_format("%s[%d]", path, i);
+        bool here = map && node->key_place[i][0] == line && node->key_place[i][1] == column;
+        found = here ? mem_text(below) : find_key(node->items[i], line, column, below);
+        mem_free(below);
+    }
+    if (!found && node->line == line && node->column == column) return mem_text(path);
+    return found;
+}
+
+char *yaml_key_at(const YamlFile *file, int line, int column)
+{
+    char *found = file->root ? find_key(file->root, line, column, "") : NULL;
+    return found ? found : mem_text("");
+}
+
+void yaml_forget_errors(YamlFile *file)
+{
+    for (int k = 0; k < file->stored_count; k++) mem_free(file->errors[k].sentence);
+    file->error_count = file->stored_count = 0;
+}

@@ -192,6 +192,7 @@ bool path_march(Path *path, PathGuess guess, void *self, MarchInfo *info, int *r
         if (!ok) break;
         now.time = problem->start->time + problem->step * m.frame; /* not the sum of rounded steps */
         *reached = m.frame;
+        if (path->march->stored) path->march->stored(path->march->self, &now, problem->step);
     }
     state_destroy(&now);
     mem_free(p);

@@ -35,7 +35,7 @@ double *path_memory(const Path *path, int k);
 typedef bool (*PathGuess)(void *self, int frame, double dt, double *x);
 
 /* All steps from the problem's start on, with the parameters in path->p and controls, and path->march. False where one
- * fails: *reached are there. guess may be NULL. The info's counts are sums, its status that of the last step. */
+ * fails: *reached are there; the march's `stored` is told of each. guess may be NULL. The info's counts are sums, its status that of the last step. */
 bool path_march(Path *path, PathGuess guess, void *self, MarchInfo *info, int *reached);
 
 /* The parameters of a step, in path->p. */
