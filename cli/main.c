@@ -1,8 +1,8 @@
 /* slender - simulates and designs slender things: the verbs, and what they return. */
 #include "base/memory.h"
+#include "cli/kernels_start.h"
 #include "cli/say.h"
 #include "cli/verb.h"
-#include "solve/kernels.h"
 #include <fcntl.h>
 #include <signal.h>
 #include <stdio.h>

@@ -1,7 +1,6 @@
 #include "base/memory.h"
 #include "solve/dense.h"
 #include "solve/direct.h"
-#include "solve/kernels.h"
 #include "solve/supernodal.h"
 #include <cholmod.h>
 #include <pthread.h>
@@ -116,7 +115,6 @@ static bool analyse_supernodal(Direct *direct, const Pattern *pattern)
     cholmod_factor *factor = analyse_pattern(pattern, &common);
     if (factor->is_super) {
         SupernodalDef def = {(int)factor->nsuper, factor->super, factor->pi, factor->s};
-        kernels_one_thread();
         direct->plan = supernodal_create(pattern, &def);
         direct->solution = mem_alloc((size_t)direct->n, sizeof *direct->solution);
         long bytes = supernodal_size(direct->plan) * (long)sizeof(double);
