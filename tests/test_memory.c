@@ -3,7 +3,9 @@
 #include "base/guard.h"
 #include "base/memory.h"
 #include "base/workers.h"
+#include "io/formula.h"
 #include "job/run.h"
+#include <limits.h>
 #include <pthread.h>
 #include <sched.h>
 #include <setjmp.h>
@@ -22,6 +24,7 @@ static atomic_long left = -1; /* allocations that will be had before all fail; n
 
 void *__wrap_calloc(size_t count, size_t size)
 {
+    if (size > PTRDIFF_MAX) return NULL; /* AddressSanitizer would have a word to say */
     if (atomic_load(&left) < 0) return __real_calloc(count, size);
     if (atomic_fetch_sub(&left, 1) > 0) return __real_calloc(count, size);
     atomic_store(&left, 0);
@@ -29,10 +32,10 @@ void *__wrap_calloc(size_t count, size_t size)
 }
 
 /* What a call leaves behind when it fails is lost, and may be. */
-const char *__asan_default_options(void);
+__attribute__((visibility("default"))) const char *__asan_default_options(void);
 const char *__asan_default_options(void)
 {
-    return "detect_leaks=0:allocator_may_return_null=1";
+    return "detect_leaks=0";
 }
 
 /* The same where only so many allocations are to be had. */
@@ -168,6 +171,37 @@ static void test_worker_fails(void **state)
     workers_destroy(workers);
 }
 
+/* ---- Formulas, which keep what threads evaluate them by ---- */
+
+/* Long enough for the others to need evaluators of their own. */
+static void evaluate(void *self, int k)
+{
+    enum { POINTS = 2000 };
+    double x[POINTS], value[POINTS];
+    for (int i = 0; i < POINTS; i++) x[i] = k;
+    formula_eval_all(((void **)self)[1], POINTS, x, value, NULL);
+}
+
+static void make_and_evaluate(void *self)
+{
+    Formula *formula = formula_create((const char *const[]){"2*half"}, 1, &(FormulaHelper){"half", "x/2"}, 1,
+                                      (const char *const[]){"x", NULL}, NULL);
+    workers_run(self, TASKS, evaluate, (void *[]){self, formula});
+    formula_destroy(formula);
+}
+
+/* No thread waits for one that has left. */
+static void test_formula(void **state)
+{
+    (void)state;
+    Workers *workers = workers_create(4);
+    Error err;
+    for (int round = 0; round < 10; round++)
+        for (long k = 0; k < 24; k++) call_with(k, make_and_evaluate, workers, &err);
+    assert_true(call_with(LONG_MAX, make_and_evaluate, workers, &err));
+    workers_destroy(workers);
+}
+
 /* ---- A job, from its scene to its last array ---- */
 
 static const char scene_text[] =
@@ -240,10 +274,39 @@ static void test_job(void **state)
     assert_memory_equal(&again, &all, sizeof all);
 }
 
+static void *guarded_design(void *self)
+{
+    Error err;
+    guard_call(design, self, &err);
+    return NULL;
+}
+
+/* Jobs of several threads know nothing of each other, nor of what one of them lacks. */
+static void test_jobs_at_once(void **state)
+{
+    (void)state;
+    enum { JOBS = 2 };
+    Designed alone = {0};
+    design(&alone);
+    for (long k = 10; k < 1000; k += 1 + k) {
+        pthread_t threads[JOBS];
+        Designed designed[JOBS] = {0};
+        for (int lacking = 1; lacking >= 0; lacking--) {
+            atomic_store(&left, lacking ? k : -1);
+            for (int j = 0; j < JOBS; j++)
+                assert_int_equal(pthread_create(&threads[j], NULL, guarded_design, &designed[j]), 0);
+            for (int j = 0; j < JOBS; j++) assert_int_equal(pthread_join(threads[j], NULL), 0);
+        }
+        for (int j = 0; j < JOBS; j++) assert_memory_equal(&designed[j], &alone, sizeof alone);
+    }
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_nested), cmocka_unit_test(test_calls_at_once),
-                                       cmocka_unit_test(test_workers), cmocka_unit_test(test_worker_fails),
-                                       cmocka_unit_test(test_job)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_nested),      cmocka_unit_test(test_calls_at_once),
+        cmocka_unit_test(test_workers),     cmocka_unit_test(test_worker_fails),
+        cmocka_unit_test(test_formula),     cmocka_unit_test(test_job),
+        cmocka_unit_test(test_jobs_at_once)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
