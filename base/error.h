@@ -2,7 +2,7 @@
  *
  * A function that can be refused its input takes an Error and returns false after filling it with ONE
  * sentence "file:line:column: what is wrong, what is allowed". Non-convergence is no error but a
- * result; a bug is an assert; running out of memory ends the program (memory.h). */
+ * result; a bug is an assert; memory that is not there is the thread's hook's to deal with (memory.h). */
 #pragma once
 #include <stdbool.h>
 

@@ -1,4 +1,5 @@
 #include "base/memory.h"
+#include <assert.h>
 #include <stdarg.h>
 #include <stdatomic.h>
 #include <stdint.h>
@@ -14,23 +15,34 @@ enum { ALIGNMENT = 64, LARGE = 4 << 20 };
 
 static atomic_long live, total;
 
-/* No destructors: they would wait for threads that are still at work. */
-static _Noreturn void end(void)
+static _Thread_local MemHook hook;
+
+MemHook mem_set_hook(MemHook next)
 {
-    fflush(stdout);
-    _exit(MEM_EXIT_CODE);
+    MemHook before = hook;
+    hook = next;
+    return before;
+}
+
+_Noreturn void mem_exhausted_again(const char *sentence)
+{
+    assert(hook.call && "out of memory in a thread without a hook");
+    hook.call(hook.self, sentence);
+    __builtin_trap(); /* a hook does not return */
 }
 
 _Noreturn void mem_exhausted(const char *where)
 {
-    fprintf(stderr, "slender: out of memory in %s\n", where);
-    end();
+    char sentence[200];
+    snprintf(sentence, sizeof sentence, "out of memory in %s", where);
+    mem_exhausted_again(sentence);
 }
 
 static _Noreturn void out_of_memory(size_t count, size_t size)
 {
-    fprintf(stderr, "slender: out of memory: %zu blocks of %zu bytes were asked for\n", count, size);
-    end();
+    char sentence[200];
+    snprintf(sentence, sizeof sentence, "out of memory: %zu blocks of %zu bytes were asked for", count, size);
+    mem_exhausted_again(sentence);
 }
 
 /* The whole pages of a block. */

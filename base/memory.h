@@ -1,15 +1,29 @@
 /* memory.h - zeroed allocation that never returns NULL.
  *
- * Running out of memory prints one message and ends the program, with an exit code of its own. The number of live blocks is
- * counted, so that a test can show that everything was freed. */
+ * Where memory is not there, the thread's hook is called with a sentence, and does not return: that of the program ends it
+ * with an exit code of its own (cli/main.c), that of the library leaves the call (base/guard.h), and a worker's leaves
+ * the task, for the thread that waits for it to call its own (base/workers.h). The number of live blocks is counted, so
+ * that a test can show that everything was freed. */
 #pragma once
 #include <stdarg.h>
 #include <stddef.h>
 
-enum { MEM_EXIT_CODE = 5 };
+/* What a thread does about memory that is not there: "out of memory in HDF5". Must not return. The sentence lies on the
+ * stack that it leaves. */
+typedef struct MemHook {
+    void (*call)(void *self, const char *sentence);
+    void *self;
+} MemHook;
 
-/* Ends the program as an allocation here would; for libraries that say so: "the sparse factorisation". */
+/* Sets the hook of the calling thread and returns the one before. A thread begins without: to run out of memory is a bug
+ * then, an assert. */
+MemHook mem_set_hook(MemHook hook);
+
+/* Calls the hook as an allocation here would; for libraries that say so: "the sparse factorisation". */
 _Noreturn void mem_exhausted(const char *where);
+
+/* The same with a sentence that another thread's hook was called with. */
+_Noreturn void mem_exhausted_again(const char *sentence);
 
 /* count*size zeroed bytes, aligned to 64 (a cache line, and any vector). count may be 0. Thread-safe. */
 void *mem_alloc(size_t count, size_t size);

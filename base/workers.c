@@ -1,4 +1,5 @@
 #include "base/workers.h"
+#include "base/guard.h"
 #include "base/memory.h"
 #include <pthread.h>
 #include <sched.h>
@@ -20,6 +21,8 @@ struct Workers {
     void *self;
     int tasks;
     atomic_int next;
+    atomic_bool failed; /* a task of this run has */
+    Error failure;      /* of the first one       */
 };
 
 enum { INSIDE = 0xffff, OPEN = 0x10000, RUN = 0x20000 }; /* of the state */
@@ -31,10 +34,19 @@ enum { PATIENCE = 200 };
 /* Bytes of a thread's stack, whatever the limit of the caller's: packs of elements lie there. */
 enum { STACK = 2 << 20 };
 
-static void do_tasks(Workers *workers)
+static void do_tasks(void *self)
 {
+    Workers *workers = self;
     for (int k; (k = atomic_fetch_add_explicit(&workers->next, 1, memory_order_relaxed)) < workers->tasks;)
         workers->task(workers->self, k);
+}
+
+/* Those that are left after one that failed are done no more. The error is the thread's own, for each of its runs. */
+static void share_tasks(Workers *workers, Error *err)
+{
+    if (guard_call(do_tasks, workers, err)) return;
+    if (!atomic_exchange(&workers->failed, true)) workers->failure = *err;
+    atomic_store_explicit(&workers->next, workers->tasks, memory_order_relaxed);
 }
 
 /* Counted into the run that is open, if it is not that one. */
@@ -77,7 +89,8 @@ static bool wait_for_run(Workers *workers, long long *done)
 static void *work(void *data)
 {
     Workers *workers = data;
-    for (long long done = 0; wait_for_run(workers, &done); leave(workers)) do_tasks(workers);
+    Error err;
+    for (long long done = 0; wait_for_run(workers, &done); leave(workers)) share_tasks(workers, &err);
     return NULL;
 }
 
@@ -143,6 +156,13 @@ int workers_count(const Workers *workers)
     return workers ? workers->count : 1;
 }
 
+/* Nobody is in the run any more. */
+static _Noreturn void fail(Workers *workers)
+{
+    atomic_store(&workers->failed, false);
+    mem_exhausted_again(workers->failure.text);
+}
+
 void workers_run(Workers *workers, int tasks, void (*task)(void *self, int k), void *self)
 {
     if (workers_count(workers) == 1 || tasks < 2) {
@@ -155,6 +175,8 @@ void workers_run(Workers *workers, int tasks, void (*task)(void *self, int k), v
     atomic_store_explicit(&workers->next, 0, memory_order_relaxed);
     atomic_fetch_add(&workers->state, RUN + OPEN);
     wake(workers);
-    do_tasks(workers);
+    Error err;
+    share_tasks(workers, &err);
     if ((atomic_fetch_sub(&workers->state, OPEN) & INSIDE) > 0) wait_for_last(workers);
+    if (atomic_load(&workers->failed)) fail(workers);
 }

@@ -2,7 +2,10 @@
  *
  * Which thread does which task is left to chance. So each task writes to places of its own, and what is
  * summed over tasks is summed afterwards in a fixed order: then results do not depend on the number of
- * threads. */
+ * threads.
+ *
+ * A task that runs out of memory is left, and no other is begun; when nobody works any more, the hook of the thread that
+ * called workers_run is called (base/memory.h). The Workers are as good as before. */
 #pragma once
 
 typedef struct Workers Workers;

@@ -1,6 +1,7 @@
 /* Speed of what slender exists for: one line per figure, "name value unit". Without arguments all cases run,
  * else those that are named. bench/README.md says how they are measured and against what. */
 #include "bench/bench.h"
+#include "cli/kernels_start.h"
 #include "solve/kernels.h"
 #include <stdarg.h>
 #include <stdio.h>

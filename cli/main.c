@@ -1,8 +1,8 @@
 /* slender - simulates and designs slender things: the verbs, and what they return. */
 #include "base/memory.h"
+#include "cli/kernels_start.h"
 #include "cli/say.h"
 #include "cli/verb.h"
-#include "solve/kernels.h"
 #include <fcntl.h>
 #include <signal.h>
 #include <stdio.h>
@@ -64,6 +64,15 @@ static void hold_streams(void)
         if (fcntl(stream, F_GETFD) < 0 && open("/dev/null", O_RDONLY) < 0) _exit(RUN_CANNOT_WRITE);
 }
 
+/* No destructors: they would wait for threads that are still at work. */
+static void end_without_memory(void *self, const char *sentence)
+{
+    (void)self;
+    fprintf(stderr, "slender: %s\n", sentence);
+    fflush(stdout);
+    _exit(RUN_NO_MEMORY);
+}
+
 /* What could not be printed is lost, and known only now: a full disk, a closed stream. */
 static int finish(int code)
 {
@@ -76,6 +85,7 @@ static int finish(int code)
 int main(int argc, char **argv)
 {
     hold_streams();
+    mem_set_hook((MemHook){end_without_memory, NULL});
     signal(SIGXFSZ, SIG_IGN); /* a file beyond the limit of sizes is what a full disk is: write says EFBIG */
     kernels_start(argv);
     const char *name = argc > 1 ? argv[1] : "help";

@@ -31,6 +31,10 @@ struct Formula {
     pthread_mutex_t lock;
 };
 
+/* muParser makes parsers, and says names and errors, by buffers that are shared by all parsers. Nothing is allocated by
+ * mem_alloc under it. */
+static pthread_mutex_t one_parser = PTHREAD_MUTEX_INITIALIZER;
+
 static double fun_mod(double a, double b)
 {
     return a - b * floor(a / b);
@@ -135,9 +139,11 @@ static Evaluator *evaluator_create(const Formula *formula)
     Evaluator *own = mem_alloc(1, sizeof *own);
     own->values = mem_alloc((size_t)(formula->variable_count + formula->helper_count), sizeof *own->values);
     own->parsers = mem_alloc((size_t)item_count(formula), sizeof *own->parsers);
+    pthread_mutex_lock(&one_parser);
     for (int i = 0; i < item_count(formula); i++)
         own->parsers[i] =
             create_parser(formula, own->values, formula->items[i].text, slots_of_item(formula, i));
+    pthread_mutex_unlock(&one_parser);
     return own;
 }
 
@@ -149,18 +155,14 @@ static void evaluator_destroy(const Formula *formula, Evaluator *own)
     mem_free(own);
 }
 
-/* An evaluator for this thread alone, until it is given back. The lock is also for muParser, which makes
- * parsers with buffers that are shared. */
+/* An evaluator for this thread alone, until it is given back. */
 static Evaluator *take(Formula *formula)
 {
     pthread_mutex_lock(&formula->lock);
     Evaluator *own = formula->idle;
-    if (own)
-        formula->idle = own->next;
-    else
-        own = evaluator_create(formula);
+    if (own) formula->idle = own->next;
     pthread_mutex_unlock(&formula->lock);
-    return own;
+    return own ? own : evaluator_create(formula);
 }
 
 static void give(Formula *formula, Evaluator *own)
@@ -254,7 +256,9 @@ static bool check_items(Formula *formula, Error *err)
     for (int i = 0; ok && i < item_count(formula); i++) ok = check_text(formula->items[i].text, err);
     if (!ok) return false;
     Evaluator *own = take(formula);
+    pthread_mutex_lock(&one_parser);
     for (int i = 0; ok && i < item_count(formula); i++) ok = check_item(formula, own, i, err);
+    pthread_mutex_unlock(&one_parser);
     give(formula, own);
     return ok;
 }

@@ -6,7 +6,6 @@
 #include <limits.h>
 #include <stdatomic.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 struct Hdf5 {
@@ -439,8 +438,8 @@ bool hdf5_read_attribute_text(Hdf5 *file, const char *group, const char *name, c
 
 typedef struct Names {
     int count, objects;
-    char *text; /* all names, one after the other */
-    size_t used, room;
+    char *text; /* all names, one after the other; NULL: they are only counted */
+    size_t used;
 } Names;
 
 /* Groups may lie in each other, and go round. */
@@ -458,26 +457,26 @@ static herr_t visit(hid_t group, const char *name, const H5O_info_t *info, void 
     size_t length = strlen(name) + 1;
     if (length > PATH_MAX_BYTES || ++names->objects > NAMES_MAX || is_too_deep(name)) return -1;
     if (info->type != H5O_TYPE_DATASET) return 0;
-    if (names->used + length > names->room) {
-        size_t larger = 2 * names->room + length;
-        names->text = mem_resize(names->text, names->room, larger, 1);
-        names->room = larger;
-    }
-    memcpy(names->text + names->used, name, length);
+    if (names->text) memcpy(names->text + names->used, name, length);
     names->used += length;
     names->count++;
     return 0;
 }
 
+static bool visit_all(const Hdf5 *file, Names *names)
+{
+    return H5Ovisit2(file->file, H5_INDEX_NAME, H5_ITER_INC, visit, names, H5O_INFO_BASIC) >= 0;
+}
+
+/* Counts first: while HDF5 calls back it holds its lock, and nothing may be allocated (base/guard.h). */
 bool hdf5_list(Hdf5 *file, char ***paths, int *count, Error *err)
 {
     Names names = {0};
-    bool ok = H5Ovisit2(file->file, H5_INDEX_NAME, H5_ITER_INC, visit, &names, H5O_INFO_BASIC) >= 0;
+    bool ok = visit_all(file, &names);
     char **table = mem_alloc((size_t)names.count * sizeof *table + names.used, 1),
          *text = (char *)(table + names.count);
-    if (names.used) memcpy(text, names.text, names.used);
-    for (int k = 0; k < names.count; k++, text += strlen(text) + 1) table[k] = text;
-    mem_free(names.text);
+    ok = ok && visit_all(file, &(Names){.text = text});
+    for (int k = 0; ok && k < names.count; k++, text += strlen(text) + 1) table[k] = text;
     *paths = table;
     *count = names.count;
     if (ok) return true;

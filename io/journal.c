@@ -14,10 +14,10 @@ enum { APPLICATION_ID = 0x534c4e44 /* "SLND" */, FORMAT_VERSION = 1, BUSY_MS = 5
 static const double COMMIT_INTERVAL = 0.5; /* s */
 
 struct Journal {
-    char *path;
+    char *path; /* in sentences, too */
     sqlite3 *db;
     int lock; /* file descriptor, -1 for readers */
-    bool reader;
+    bool in_memory, reader;
     double committed; /* when */
     Waiting waiting;
     bool finished; /* as it should be, and as it is in the file */
@@ -81,7 +81,8 @@ static bool open_database(Journal *journal, const char *name, int flags, const c
 
 static bool open_to_write(Journal *journal, int flags, Error *err)
 {
-    return open_database(journal, journal->path, SQLITE_OPEN_READWRITE | flags, NULL, err);
+    const char *name = journal->in_memory ? ":memory:" : journal->path;
+    return open_database(journal, name, SQLITE_OPEN_READWRITE | flags, NULL, err);
 }
 
 /* SQLite would make an index for a log that has none; with exclusive access and no locks it makes it in
@@ -171,7 +172,7 @@ static bool may_discard(Journal *journal, JournalMode mode, Error *err)
 
 static bool open_new(Journal *journal, JournalMode mode, Error *err)
 {
-    if (journal_files_exist(journal->path) &&
+    if (!journal->in_memory && journal_files_exist(journal->path) &&
         (!may_discard(journal, mode, err) || !journal_files_remove(journal->path, err)))
         return false;
     return open_to_write(journal, SQLITE_OPEN_CREATE, err) &&
@@ -181,13 +182,14 @@ static bool open_new(Journal *journal, JournalMode mode, Error *err)
 
 static bool open_old(Journal *journal, Error *err)
 {
-    if (!journal_files_exist(journal->path)) return error_set(err, "%s: there is no such run", journal->path);
+    if (journal->in_memory || !journal_files_exist(journal->path))
+        return error_set(err, "%s: there is no such run", journal->path);
     if (!(journal->reader ? open_to_read(journal, err) : open_to_write(journal, 0, err)) ||
         !check_identity(journal, err) || !read_finished(journal, err))
         return false;
-    if (journal->reader) return true;
-    return execute(journal, "PRAGMA journal_mode=WAL; PRAGMA synchronous=FULL;", "written", err) &&
-           journal_check(journal, err);
+    return journal->reader ||
+           (execute(journal, "PRAGMA journal_mode=WAL; PRAGMA synchronous=FULL;", "written", err) &&
+            journal_check(journal, err));
 }
 
 static void destroy(Journal *journal)
@@ -202,12 +204,13 @@ static void destroy(Journal *journal)
 Journal *journal_open(const char *path, JournalMode mode, Error *err)
 {
     Journal *journal = mem_alloc(1, sizeof *journal);
-    journal->path = mem_text(path);
-    journal->lock = -1;
-    journal->reader = mode == JOURNAL_READ;
-    journal->committed = clock_seconds();
+    *journal = (Journal){.path = mem_text(path ? path : "the journal in memory"),
+                         .in_memory = path == NULL,
+                         .lock = -1,
+                         .reader = mode == JOURNAL_READ,
+                         .committed = clock_seconds()};
     bool old = mode == JOURNAL_READ || mode == JOURNAL_RESUME;
-    bool ok = (journal->reader || journal_files_lock(path, &journal->lock, err)) &&
+    bool ok = (journal->reader || journal->in_memory || journal_files_lock(path, &journal->lock, err)) &&
               (old ? open_old(journal, err) : open_new(journal, mode, err));
     if (ok) return journal;
     destroy(journal);
@@ -405,10 +408,8 @@ bool journal_indices(Journal *journal, const char *kind, int **indices, int *cou
     }
     bool ok = code == SQLITE_DONE || sql_error(journal, "read", err);
     sqlite3_finalize(row);
-    if (ok) return true;
-    mem_free(*indices);
-    *indices = NULL;
-    return false;
+    if (!ok) mem_free(*indices), *indices = NULL;
+    return ok;
 }
 
 bool journal_names(Journal *journal, const char *kind, int index, char ***names, int *count, Error *err)
@@ -439,8 +440,8 @@ bool journal_names(Journal *journal, const char *kind, int index, char ***names,
     if (used) memcpy(text, all, used);
     for (int k = 0; k < *count; k++, text += strlen(text) + 1) table[k] = text;
     mem_free(all);
-    *names = table;
-    if (!ok) mem_free(table), *names = NULL;
+    if (!ok) mem_free(table);
+    *names = ok ? table : NULL;
     return ok;
 }
 

@@ -35,7 +35,8 @@ typedef enum JournalMode {
 } JournalMode;
 
 /* Opens the journal; NULL and a sentence on refusal. A second writer is refused while the first one lives,
- * and a file that is no journal of slender is never touched. */
+ * and a file that is no journal of slender is never touched. Without a path it is a new one in memory, for a run that
+ * nobody will go on with: it makes no file, and is gone when it is closed. */
 Journal *journal_open(const char *path, JournalMode mode, Error *err);
 
 /* Commits what is left, gives the lock back and frees the journal in every case. False with a sentence if the

@@ -24,7 +24,7 @@ typedef enum RunStatus {
     RUN_USAGE = 2,
     RUN_REFUSED = 3, /* scene or mesh */
     RUN_CANNOT_WRITE = 4,
-    RUN_NO_MEMORY = MEM_EXIT_CODE,
+    RUN_NO_MEMORY = 5,
     RUN_INTERRUPTED = 75, /* state saved: go on with --resume */
 } RunStatus;
 

@@ -1,7 +1,6 @@
 #include "base/memory.h"
 #include "solve/dense.h"
 #include "solve/direct.h"
-#include "solve/kernels.h"
 #include "solve/supernodal.h"
 #include <cholmod.h>
 #include <pthread.h>
@@ -73,6 +72,17 @@ static void set_options(cholmod_common *common, int ordering)
     common->postorder = ordering != CHOLMOD_NATURAL; /* one that is given has been postordered */
 }
 
+/* METIS draws from the C library's random numbers, seeded anew in each call: two at once would draw from one row. */
+static pthread_mutex_t one_dissection = PTHREAD_MUTEX_INITIALIZER;
+
+static cholmod_factor *analyse_alone(cholmod_sparse *a, cholmod_common *common)
+{
+    pthread_mutex_lock(&one_dissection);
+    cholmod_factor *factor = cholmod_l_analyze(a, common);
+    pthread_mutex_unlock(&one_dissection);
+    return factor;
+}
+
 /* What L will be, its supernodes if it is to have any; with indices of 64 bits: it may have more numbers than an int can
  * count, though the matrix has not. The caller frees it. */
 static cholmod_factor *analyse_pattern(const Pattern *pattern, cholmod_common *common)
@@ -81,24 +91,20 @@ static cholmod_factor *analyse_pattern(const Pattern *pattern, cholmod_common *c
     a.p = widen(pattern->start, (size_t)pattern->n + 1);
     a.i = widen(pattern->rows, a.nzmax);
     a.itype = CHOLMOD_LONG;
-    cholmod_factor *factor = cholmod_l_analyze(&a, common);
+    bool dissects = common->method[0].ordering == CHOLMOD_METIS;
+    cholmod_factor *factor = dissects ? analyse_alone(&a, common) : cholmod_l_analyze(&a, common);
     check_memory(common);
     mem_free(a.p);
     mem_free(a.i);
     return factor;
 }
 
-/* METIS draws from the C library's random numbers, seeded anew in each call: two at once would draw from one row. */
-static pthread_mutex_t one_dissection = PTHREAD_MUTEX_INITIALIZER;
-
 int *direct_order(const Pattern *pattern)
 {
     cholmod_common common;
     cholmod_l_start(&common);
     set_options(&common, pattern->start[pattern->n] >= METIS_FROM ? CHOLMOD_METIS : CHOLMOD_AMD);
-    pthread_mutex_lock(&one_dissection);
     cholmod_factor *factor = analyse_pattern(pattern, &common);
-    pthread_mutex_unlock(&one_dissection);
     const long *order = factor->Perm;
     int *rank = mem_alloc((size_t)pattern->n, sizeof *rank);
     for (int k = 0; k < pattern->n; k++) rank[order[k]] = k;
@@ -116,7 +122,6 @@ static bool analyse_supernodal(Direct *direct, const Pattern *pattern)
     cholmod_factor *factor = analyse_pattern(pattern, &common);
     if (factor->is_super) {
         SupernodalDef def = {(int)factor->nsuper, factor->super, factor->pi, factor->s};
-        kernels_one_thread();
         direct->plan = supernodal_create(pattern, &def);
         direct->solution = mem_alloc((size_t)direct->n, sizeof *direct->solution);
         long bytes = supernodal_size(direct->plan) * (long)sizeof(double);

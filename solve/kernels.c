@@ -3,25 +3,16 @@
 #include "base/memory.h"
 #include <cblas.h>
 #include <dlfcn.h>
-#include <errno.h>
 #include <math.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/auxv.h>
 #include <sys/mman.h>
-#include <sys/resource.h>
-#include <unistd.h>
-
-#define CORE_KEY    "OPENBLAS_CORETYPE"
-#define THREADS_KEY "OPENBLAS_NUM_THREADS"
 
 /* OpenBLAS's own; absent in some builds of it. */
 __attribute__((weak)) void *blas_memory_alloc(int position);
 __attribute__((weak)) void blas_memory_free(void *buffer);
-
-/* Why the program could not be started again; 0: it was not tried. */
-static int exec_error;
 
 KernelFeatures kernels_features(void)
 {
@@ -59,47 +50,10 @@ const char *kernels_wanted(const char *core, KernelFeatures features)
     return level_of(core) < has ? best[has] : NULL;
 }
 
-/* Those of the library that is loaded, which may have been built for one processor alone. */
-static const char *wanted_here(void)
+const char *kernels_better(void)
 {
     bool chooses = strstr(openblas_get_config(), "DYNAMIC_ARCH") != NULL;
     return chooses ? kernels_wanted(openblas_get_corename(), kernels_features()) : NULL;
-}
-
-static bool memory_is_limited(void)
-{
-    struct rlimit limit;
-    return getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY;
-}
-
-/* Not where the loader was called as a program: /proc/self/exe is the loader then. */
-static void start_again(char **argv)
-{
-    exec_error = ENOEXEC;
-    if (!getauxval(AT_BASE)) return;
-    execv("/proc/self/exe", argv);
-    exec_error = errno;
-}
-
-void kernels_start(char **argv)
-{
-    const char *core = getenv(CORE_KEY) ? NULL : wanted_here(), *threads = getenv(THREADS_KEY);
-    bool one = openblas_get_num_threads() == 1 || (threads && !strcmp(threads, "1"));
-    if (core || (!one && memory_is_limited())) {
-        char *before = threads ? strdup(threads) : NULL;
-        if (core) setenv(CORE_KEY, core, 0);
-        setenv(THREADS_KEY, "1", 1);
-        start_again(argv);
-        if (core) unsetenv(CORE_KEY);
-        if (before) setenv(THREADS_KEY, before, 1);
-        free(before);
-    }
-    kernels_one_thread();
-}
-
-void kernels_one_thread(void)
-{
-    openblas_set_num_threads(1);
 }
 
 enum { BLAS_BUFFER = 128 << 20, MOST_BUFFERS = 64 };
@@ -116,7 +70,7 @@ static bool has_room_for_buffer(void)
  * asked for here. */
 int kernels_reserve(int threads)
 {
-    static int held; /* buffers that OpenBLAS has by now */
+    static atomic_int held; /* buffers that OpenBLAS has by now */
     void *buffers[MOST_BUFFERS];
     int count = 0;
     if (!blas_memory_alloc || !blas_memory_free) return threads;
@@ -149,14 +103,16 @@ const char *kernels_name(void)
 const char *kernels_note(void)
 {
     static _Thread_local char note[256];
-    const char *wanted = wanted_here();
+    const char *better = kernels_better();
     note[0] = 0;
-    if (wanted && exec_error)
+    if (better && getenv(KERNELS_CORE_KEY))
+        snprintf(note, sizeof note, "slow: " KERNELS_CORE_KEY " says so; this processor has those of %s",
+                 better);
+    else if (better)
         snprintf(note, sizeof note,
-                 "slow: this processor has those of %s, but the program cannot start itself again: %s",
-                 wanted, strerror(exec_error));
-    else if (wanted)
-        snprintf(note, sizeof note, "slow: " CORE_KEY " says so; this processor has those of %s", wanted);
+                 "slow: this processor has those of %s, which " KERNELS_CORE_KEY
+                 "=%s in the environment brings",
+                 better, better);
     return note;
 }
 

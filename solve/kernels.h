@@ -3,12 +3,15 @@
  * OpenBLAS chooses its kernels when it is loaded, by the processor's model. One that is newer than the library gets
  * the oldest ones, without a word: OpenBLAS 0.3.21 of Debian 12 multiplies on a Xeon with AVX-512 by its "Prescott", at
  * a quarter of the speed. It also starts its threads then, each with 128 MB of address space, which it asks for again
- * and again where there is none. Both can be told to it in its environment only, before it is loaded: so a program
- * whose environment was wrong starts itself again, once.
+ * and again where there is none. Both can be told to it in its environment only, before it is loaded: the program sees to
+ * that (cli/kernels_start.h). Nothing here changes what the process has set.
  *
- * Numbers are the same bits as long as the kernels are the same. */
+ * Numbers are the same bits as long as the kernels are the same, and OpenBLAS works in one thread. */
 #pragma once
 #include <stdbool.h>
+
+/* What OpenBLAS reads when it is loaded: the name of its kernels. */
+#define KERNELS_CORE_KEY "OPENBLAS_CORETYPE"
 
 typedef struct KernelFeatures {
     bool avx2;   /* with FMA                                                   */
@@ -22,14 +25,8 @@ KernelFeatures kernels_features(void);
  * is right. */
 const char *kernels_wanted(const char *core, KernelFeatures features);
 
-/* First thing in main: one BLAS thread, for the same bits every time (threads are ours to use elsewhere). Starts the
- * program again by /proc/self/exe, with the same arguments, where the kernels are older than the processor and
- * OPENBLAS_CORETYPE is not set; and where address space is limited and OpenBLAS has threads of its own. Returns where
- * nothing is to be done, or where it cannot. */
-void kernels_start(char **argv);
-
-/* BLAS calls from one thread. Of a program that does not begin with kernels_start. */
-void kernels_one_thread(void);
+/* The same for the OpenBLAS that is loaded; NULL too where it was built for one processor alone. */
+const char *kernels_better(void);
 
 /* Takes OpenBLAS's memory for that many threads that call it at the same time; returns for how many there was room, 0:
  * for none, when a call would never return. */
@@ -38,7 +35,7 @@ int kernels_reserve(int threads);
 /* "SkylakeX". */
 const char *kernels_name(void);
 
-/* Of kernels that use less than this processor has, what it could use and why it does not; else "". */
+/* Of kernels that use less than this processor has, what it could use and how; else "". */
 const char *kernels_note(void);
 
 /* Flops per second of dgemm on this thread, now: takes some milliseconds. */

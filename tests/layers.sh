@@ -30,4 +30,5 @@ for folder in base solve io optim surface model job view lib cli; do
     found=$(grep -HnE "(->|\.)($bodies|solid|drawing)\b[^/\"]|\b(JOB|BODY)_[A-Z]" $folder/*.[ch] | grep -v '#include')
     [ -z "$found" ] || { echo "$folder/ asks for the kind of a body or job:"; echo "$found"; bad=1; }
 done
+! grep -n '#include "' include/slender.h || { echo "include/slender.h stands alone"; bad=1; }
 exit $bad

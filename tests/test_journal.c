@@ -59,11 +59,9 @@ static int count_of(Journal *journal, const char *kind)
     return count;
 }
 
-static void test_round_trip(void **state)
+/* All that may be asked of a journal; closes it. */
+static void round_trip(Journal *journal, const char *missing)
 {
-    (void)state;
-    long blocks = mem_live_count();
-    Journal *journal = open_fresh();
     Error err;
     double numbers[6] = {1.0 / 3, -0.0, 5e-324, 1e308, 2, 3};
     int whole[2] = {-7, 2147483647};
@@ -85,7 +83,7 @@ static void test_round_trip(void **state)
                 got.dims[1] == 3);
     array_clear(&got);
     assert_false(journal_get(journal, "static", 4, "x", &got, &err));
-    assert_string_equal(err.text, "test_journal.run has no static 4, x");
+    assert_string_equal(err.text, missing);
     char **names;
     int count, *indices;
     assert_true(journal_names(journal, "static", 3, &names, &count, &err) && count == 4);
@@ -101,8 +99,41 @@ static void test_round_trip(void **state)
     mem_free(indices);
     assert_int_equal(count_of(journal, "frame"), 2);
     assert_int_equal(count_of(journal, "none"), 0);
+    double value = 4;
+    bool has = false;
+    Array one = array_float("value", "m", &value, 0, 0, 0);
+    assert_true(journal_replace(journal, "state", 1, &one, 1, &err) && get_number(journal, "state", 1) == 4);
+    assert_true(journal_has(journal, "state", 1, "value", &has, &err) && has);
+    assert_true(journal_find(journal, "state", 2, "value", &got, &err) && !got.data);
+    assert_true(journal_flush(journal, &err) && journal_check(journal, &err));
     assert_true(journal_forget(journal, "frame", &err) && count_of(journal, "frame") == 0);
+    assert_true(!journal_is_finished(journal) && journal_set_finished(journal, true, &err));
+    assert_true(journal_is_finished(journal) && get_number(journal, "state", 1) == 4);
     assert_true(journal_close(journal, &err));
+}
+
+static void test_round_trip(void **state)
+{
+    (void)state;
+    long blocks = mem_live_count();
+    round_trip(open_fresh(), "test_journal.run has no static 4, x");
+    assert_int_equal(mem_live_count(), blocks);
+}
+
+/* In memory it answers as in a file, and each is one of its own; there is no old one to go on with. */
+static void test_in_memory(void **state)
+{
+    (void)state;
+    long blocks = mem_live_count();
+    Error err;
+    Journal *other = journal_open(NULL, JOURNAL_NEW, &err),
+            *journal = journal_open(NULL, JOURNAL_FORCE, &err);
+    assert_true(other && journal);
+    put_number(other, "frame", 7, 1);
+    round_trip(journal, "the journal in memory has no static 4, x");
+    assert_true(count_of(other, "frame") == 1 && journal_close(other, &err));
+    assert_true(!journal_open(NULL, JOURNAL_READ, &err) && !journal_open(NULL, JOURNAL_RESUME, &err));
+    assert_string_equal(err.text, "the journal in memory: there is no such run");
     assert_int_equal(mem_live_count(), blocks);
 }
 
@@ -373,10 +404,14 @@ static void test_kill(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_round_trip), cmocka_unit_test(test_readers_make_no_files),
-        cmocka_unit_test(test_replace),    cmocka_unit_test(test_unreadable),
-        cmocka_unit_test(test_modes),      cmocka_unit_test(test_foreign),
-        cmocka_unit_test(test_damage),     cmocka_unit_test(test_kill)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_round_trip),
+                                       cmocka_unit_test(test_in_memory),
+                                       cmocka_unit_test(test_readers_make_no_files),
+                                       cmocka_unit_test(test_replace),
+                                       cmocka_unit_test(test_unreadable),
+                                       cmocka_unit_test(test_modes),
+                                       cmocka_unit_test(test_foreign),
+                                       cmocka_unit_test(test_damage),
+                                       cmocka_unit_test(test_kill)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -35,11 +35,13 @@ static void put_frame(Journal *journal, int frame)
                             &err)); /* frame 1 has no magnetization */
 }
 
-static Journal *make_journal(void)
+static const char JOURNAL[] = "test_result.run";
+
+static Journal *make_journal(const char *path)
 {
     Error err;
-    unlink("test_result.run");
-    Journal *journal = journal_open("test_result.run", JOURNAL_NEW, &err);
+    unlink(JOURNAL);
+    Journal *journal = journal_open(path, JOURNAL_NEW, &err);
     if (!journal) fail_msg("%s", err.text);
     int faces[3 * FACES] = {0, 1, 2, 1, 3, 2};
     double gradient[3 * VERTICES] = {1.0 / 3};
@@ -61,7 +63,7 @@ static Journal *make_journal(void)
 static void write_result(bool double_frames)
 {
     Error err;
-    Journal *journal = make_journal();
+    Journal *journal = make_journal(JOURNAL);
     if (!result_write(journal, PATH, (ResultDef){double_frames}, NULL, &err)) fail_msg("%s", err.text);
     journal_close(journal, &err);
 }
@@ -112,6 +114,20 @@ static void test_read_back(void **state)
     mem_free(paths);
     result_close(result);
     assert_int_equal(mem_live_count(), blocks);
+}
+
+/* A result has the same bytes whether its journal was a file or not. */
+static void test_in_memory(void **state)
+{
+    (void)state;
+    Error err;
+    uint32_t sum[2];
+    Journal *journals[] = {make_journal(JOURNAL), make_journal(NULL)};
+    for (int k = 0; k < 2; k++) {
+        if (!result_write(journals[k], PATH, (ResultDef){false}, &sum[k], &err)) fail_msg("%s", err.text);
+        assert_true(journal_close(journals[k], &err));
+    }
+    assert_int_equal(sum[0], sum[1]);
 }
 
 /* Single numbers resolve a body of about 1 m at 30 m to 2e-6, and one at 100 km to 8 mm: there they are
@@ -199,7 +215,7 @@ static void test_unwritable(void **state)
 {
     (void)state;
     Error err;
-    Journal *journal = make_journal();
+    Journal *journal = make_journal(JOURNAL);
     assert_false(result_write(journal, "no/such/folder/x.vtkhdf", (ResultDef){0}, NULL, &err));
     assert_string_equal(err.text, "no/such/folder/x.vtkhdf: cannot be written: No such file or directory");
     journal_close(journal, &err);
@@ -371,10 +387,11 @@ static void test_images(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_read_back),  cmocka_unit_test(test_deterministic),
-        cmocka_unit_test(test_far_away),   cmocka_unit_test(test_damage),
-        cmocka_unit_test(test_unwritable), cmocka_unit_test(test_h5py),
-        cmocka_unit_test(test_lines),      cmocka_unit_test(test_equal_lines),
-        cmocka_unit_test(test_bad_lines),  cmocka_unit_test(test_images)};
+        cmocka_unit_test(test_read_back),     cmocka_unit_test(test_in_memory),
+        cmocka_unit_test(test_deterministic), cmocka_unit_test(test_far_away),
+        cmocka_unit_test(test_damage),        cmocka_unit_test(test_unwritable),
+        cmocka_unit_test(test_h5py),          cmocka_unit_test(test_lines),
+        cmocka_unit_test(test_equal_lines),   cmocka_unit_test(test_bad_lines),
+        cmocka_unit_test(test_images)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -51,6 +51,29 @@ static void test_formula(void **state)
     mem_free(one);
 }
 
+/* Each with other names than its neighbour's. */
+static void make_task(void *self, int task)
+{
+    static const char *const names[] = {"alpha", "b", "gamma_long", "d1"};
+    const char *name = names[task % 4];
+    Formula *formula = formula_create(&name, 1, NULL, 0, (const char *const[]){"other", name, NULL}, NULL);
+    ((bool *)self)[task] = formula && formula_uses(formula, name) && !formula_uses(formula, "other");
+    formula_destroy(formula);
+}
+
+/* muParser has buffers that all parsers share. */
+static void test_formulas_at_once(void **state)
+{
+    (void)state;
+    enum { MANY = 20000 };
+    bool *good = mem_alloc(MANY, sizeof *good);
+    Workers *workers = workers_create(4);
+    workers_run(workers, MANY, make_task, good);
+    for (int k = 0; k < MANY; k++) assert_true(good[k]);
+    workers_destroy(workers);
+    mem_free(good);
+}
+
 /* ---- Scenes: cases that share spatial fields, and one case that has two ---- */
 
 typedef struct Built {
@@ -190,7 +213,8 @@ static void test_rod(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_formula), cmocka_unit_test(test_shell),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_formula),
+                                       cmocka_unit_test(test_formulas_at_once), cmocka_unit_test(test_shell),
                                        cmocka_unit_test(test_rod)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

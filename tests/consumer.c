@@ -1,0 +1,13 @@
+/* Who uses the library: tests/library.sh links it in each way that there is, as C and as C++. */
+#include <slender.h>
+#include <stdio.h>
+#include <string.h>
+
+int main(void)
+{
+    char *versions = slender_versions();
+    int ok = versions && strstr(versions, slender_version()) && strstr(versions, "CHOLMOD");
+    if (!ok) fprintf(stderr, "slender %s says: %s\n", slender_version(), versions ? versions : "nothing");
+    slender_free(versions);
+    return ok ? 0 : 1;
+}
