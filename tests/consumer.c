@@ -1,4 +1,4 @@
-/* Who uses the library: tests/library.sh links it in each way that there is, as C and as C++. */
+/* Who uses the library from C++ (and from C, examples/tutorial.c): tests/library.sh links both in each way that there is. */
 #include <slender.h>
 #include <stdio.h>
 #include <string.h>
