@@ -90,7 +90,6 @@ static int find_start(Simulation *s)
     }
     int newest = number[1] > number[0];
     if (number[newest] >= 0) return get_slot(s, newest) ? (int)number[newest] : -1;
-    s->now->time = s->run->scene->time.at;
     load(s, s->now->time, s->p);
     return put_step(s, 0, 0) ? 0 : -1;
 }

@@ -98,10 +98,9 @@ static bool get_best(void *self, int slot, const double *u, bool *has, Error *er
 
 static Snapshot frame_state(TrajectoryJob *job, int frame)
 {
-    const TimeScene *time = &job->run->scene->time;
     Snapshot shot = {job->c, trajectory_params(job->t, frame), trajectory_frame(job->t, frame),
                      NEWTON_CONVERGED};
-    shot.at.time = time->at + time->step * frame;
+    shot.at.time = job->run->model->time + job->run->scene->time.step * frame;
     return shot;
 }
 

@@ -46,7 +46,7 @@ static bool add_target(Model *model, const Build *b, Key at, const TargetScene *
 
 static bool add_stages(Model *model, const Build *b, const Scene *scene, const double *p)
 {
-    Case *c = add_case(model, "sequence", p, scene->time.at);
+    Case *c = add_case(model, "sequence", p, model->time);
     c->stages = mem_resize(c->stages, 1, (size_t)scene->sequence_count, sizeof *c->stages);
     c->stage_count = scene->sequence_count;
     bool ok = true;
@@ -83,7 +83,7 @@ bool model_cases(Model *model, const Build *b, const Scene *scene, const double 
     bool ok = true;
     for (int k = 0; k < scene->cases_count; k++) {
         const CaseScene *from = &scene->cases[k];
-        Case *c = add_case(model, from->name, p, scene->time.at);
+        Case *c = add_case(model, from->name, p, model->time);
         c->weight = from->weight;
         Key at = key("cases[%d]", k);
         for (int i = 0; i < k; i++)
@@ -103,7 +103,7 @@ bool model_cases(Model *model, const Build *b, const Scene *scene, const double 
              ok;
     }
     if (!scene->cases_count)
-        ok = add_target(model, b, key("target"), scene->target, add_case(model, NULL, p, scene->time.at));
+        ok = add_target(model, b, key("target"), scene->target, add_case(model, NULL, p, model->time));
     return ok;
 }
 
@@ -165,6 +165,7 @@ static Model *create(const Scene *scene, YamlFile *file, bool general)
 {
     Model *model = mem_alloc(1, sizeof *model);
     model->general = general;
+    model->time = scene->time.at;
     const JobRow *job = scene_job(scene);
     model->body = scene_body(scene);
     model->job = job;

@@ -29,6 +29,7 @@ struct Model {
     void *self;       /* the body as its front knows it: a Shell, ..; owned     */
     const Mesh *mesh; /* of a body that has one; the body's                     */
     bool general;     /* of any use, not only that of its job: all points are dofs */
+    double time;      /* s, where it begins */
     /* Nothing below is of a body without cases. */
     Params *params; /* the body's                                          */
     int gravity;    /* first entries in p                                  */

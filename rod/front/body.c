@@ -283,7 +283,7 @@ static bool check_inversion(const Scene *scene, YamlFile *file)
 
 static bool create(Model *model, const Scene *scene, YamlFile *file)
 {
-    Build b = build_start(scene, NULL, file);
+    Build b = build_start(scene, NULL, model->time, file);
     b.report = &model->report;
     b.timed = model->job->motion ? &model->flux_of_time : NULL;
     model->point_count = rod_scene(scene)->elements + 1;

@@ -74,17 +74,18 @@ static RunStatus preview(Run *run, Error *err)
 {
     const TimeScene *time = &run->scene->time;
     Preview o = {.run = run, .rod = create(run), .nodes = run->model->point_count, .err = err};
+    double start = run->model->time;
     int every = run->scene->output.every ? run->scene->output.every : 1, step = 0;
     bool ok = journal_forget(run->journal, "frame", err) && journal_forget(run->journal, "evaluation", err) &&
-              put_frame(&o, 0, time->at);
+              put_frame(&o, 0, start);
     for (; ok && step < time->steps && !host_stops(run->host);) {
         pbd_rod_step(o.rod, time->step);
-        double now = time->at + ++step * time->step;
+        double now = start + ++step * time->step;
         ok = put_step(&o, step, now) && (step % every || put_frame(&o, step / every, now));
         host_step(run->host, step, time->steps, "t %.4g s", now);
     }
     bool interrupted = step < time->steps;
-    if (ok && step % every) ok = put_frame(&o, step / every + 1, time->at + step * time->step);
+    if (ok && step % every) ok = put_frame(&o, step / every + 1, start + step * time->step);
     ok = ok && put_final(&o, interrupted ? "interrupted" : "converged");
     pbd_rod_destroy(o.rod);
     return !ok ? RUN_CANNOT_WRITE : interrupted ? RUN_INTERRUPTED : RUN_DONE;

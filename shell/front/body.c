@@ -226,7 +226,7 @@ static bool create(Model *model, const Scene *scene, YamlFile *file)
 {
     Mesh *mesh = build_mesh(&shell_scene(scene)->mesh, file, "shell.mesh", &model->report);
     if (!mesh) return false;
-    Build b = build_start(scene, mesh, file);
+    Build b = build_start(scene, mesh, model->time, file);
     b.mesh_scale = shell_scene(scene)->mesh.scale;
     b.report = &model->report;
     b.timed = model->job->motion ? &model->flux_of_time : NULL;
