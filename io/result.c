@@ -119,6 +119,17 @@ static bool put_last_x(VtkFrames *w, Error *err)
     return ok;
 }
 
+/* What else the frames hold: frames/flux_density, and frames/NAME of state/NAME, what is kept of whole states. */
+static bool put_frames(VtkFrames *w, const char *field, Error *err)
+{
+    bool state = !strncmp(field, "state/", 6);
+    if (!state && strcmp(field, "flux_density") != 0) return true;
+    char *path = mem_format("slender/frames/%s", state ? field + 6 : field);
+    bool ok = vtk_frames_put(w, field, path, NULL, false, err);
+    mem_free(path);
+    return ok;
+}
+
 static bool fill(VtkFrames *w, Error *err)
 {
     if (!put_kind(w, "meta", err) || !put_kind(w, "static", err) || !put_kind(w, "final", err) ||
@@ -129,9 +140,7 @@ static bool fill(VtkFrames *w, Error *err)
     if (w->count == 0 || !shown) return true;
     if (!vtk_frames_read(w, err) || !put_last_x(w, err) || !vtk_frames_write(w, err)) return false;
     for (int k = 0; k < w->field_count; k++)
-        if (!strcmp(w->fields[k], "flux_density") &&
-            !vtk_frames_put(w, "flux_density", "slender/frames/flux_density", NULL, false, err))
-            return false;
+        if (!put_frames(w, w->fields[k], err)) return false;
     return w->single || vtk_frames_put(w, "x", "slender/frames/x", NULL, true, err);
 }
 

@@ -69,6 +69,7 @@ typedef struct Snapshot {
     const double *p;
     State at;
     NewtonStatus status;
+    const double *anchor; /* of a simulation: where the next step's factor stands (system_anchor) */
 } Snapshot;
 
 /* What one evaluation takes on this machine, and the factor; s, bytes (job/predict.h). */

@@ -341,6 +341,9 @@ static const YamlTable time_table = {
          .doc = "of a simulation or trajectory: how many"},
         {0}}};
 
+/* Of what has states. */
+#define WITH_STATES "/job: equilibrium, evaluate, design, simulate, trajectory"
+
 #define DRAWING_FILE(m, d)                                                                                   \
     {                                                                                                        \
         YAML_TEXT(OutputScene, m), .when = "/job: draw", .otherwise = "slender picture shows results",       \
@@ -362,6 +365,11 @@ static const YamlTable output_table = {
          .choices = YAML_NAMES("single", "double"), .fallback = "single",
          .doc = "of frames; single only as long as its numbers, where the body is, are closer than 1e-5 of "
                 "its size"},
+        {YAML_CHOICE(OutputScene, states), .when = WITH_STATES, .choices = YAML_NAMES("last", "all"),
+         .fallback = "last",
+         .doc =
+             "which states are kept whole, in double precision and with all that is remembered, for a job to "
+             "`start` from: the last one (of each load case), or those of all frames, too"},
         DRAWING_FILE(svg, "curves in mm, a layer for each pen; NAME.svg if absent"),
         DRAWING_FILE(png, "target and drawing side by side; NAME.png if absent"),
         DRAWING_FILE(gcode, "for a pen on a z axis; none if absent"),

@@ -243,11 +243,12 @@ typedef struct TimeScene {
 } TimeScene;
 
 typedef struct OutputScene {
-    int every, precision;
+    int every, precision, states;
     char *svg, *png, *gcode, *gcode_servo, *hpgl; /* of a drawing: names of files */
 } OutputScene;
 
 enum { OUTPUT_SINGLE, OUTPUT_DOUBLE };
+enum { STATES_LAST, STATES_ALL };
 
 enum { BODIES_MAX = 8 };
 
