@@ -155,7 +155,7 @@ static void find_start(DesignJob *job, const double *u)
         double *p = load->stages[0].p;
         design_apply(&job->run->model->design, c, u, p);
         if (load->objective_count)
-            ramp_solve(load->sys, job->run->model->params, &def, NULL, p, &load->state);
+            ramp_solve(load->sys, job->run->model->params, &def, load->loads, p, &load->state);
     }
 }
 

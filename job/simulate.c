@@ -93,6 +93,10 @@ static int find_start(Simulation *s)
     int newest = number[1] > number[0];
     if (number[newest] >= 0) return get_slot(s, newest) ? (int)number[newest] : -1;
     load(s, s->now->time, s->p);
+    if (s->c->anchor) {
+        memcpy(s->anchor, s->c->anchor, (size_t)system_anchor_count(s->c->sys) * sizeof *s->anchor);
+        restore(s);
+    }
     return put_step(s, 0, 0) ? 0 : -1;
 }
 

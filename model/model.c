@@ -2,6 +2,7 @@
 #include "base/memory.h"
 #include "base/plain.h"
 #include "model/scene_tables.h"
+#include "model/start.h"
 #include <math.h>
 #include <string.h>
 
@@ -170,8 +171,11 @@ static Model *create(const Scene *scene, YamlFile *file, bool general)
     model->body = scene_body(scene);
     model->job = job;
     bool ok = check_job(scene, file) && yaml_check_use(file, scene_table()) &&
-              check_motion(scene, job, file) && model->body->ops->create(model, scene, file) &&
+              check_motion(scene, job, file) && start_open(model, scene, file) &&
+              model->body->ops->create(model, scene, file) && start_take(model, scene, file) &&
               (!job->design || model_design(model, scene, file));
+    start_close(model->start);
+    model->start = NULL;
     if (ok) return model;
     model_destroy(model);
     return NULL;

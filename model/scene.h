@@ -242,6 +242,16 @@ typedef struct TimeScene {
     int steps;
 } TimeScene;
 
+/* last, or a number */
+typedef struct StartFrameScene {
+    int mode, number; /* mode 0: last */
+} StartFrameScene;
+
+typedef struct StartScene {
+    char *result, *load_case;
+    StartFrameScene frame;
+} StartScene;
+
 typedef struct OutputScene {
     int every, precision, states;
     char *svg, *png, *gcode, *gcode_servo, *hpgl; /* of a drawing: names of files */
@@ -265,6 +275,7 @@ typedef struct Scene {
     SolverScene solver;
     LoadStepsScene load_steps;
     TimeScene time;
+    StartScene *start;
     int modes;
     OutputScene output;
     int *checks; /* SceneCheck */
