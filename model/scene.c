@@ -173,14 +173,17 @@ const YamlTable velocity_table = {
     .name = "velocity",
     .size = sizeof(VelocityScene),
     .doc = "Velocities at the start of a motion.",
-    .fields =
-        (const YamlField[]){{YAML_VECTOR(VelocityScene, value), .unit = "m/s", .one_of = 1, .required = true,
-                             .short_form = true, .doc = "the same everywhere"},
-                            {YAML_TEXTS(VelocityScene, formula), .one_of = 1, .required = true,
-                             .short_form = true, .min_count = 3, .max_count = 3,
-                             .doc = "three expressions of the rest position x, y, z, r of a vertex, in m/s"},
-                            WHERE_ROW(VelocityScene),
-                            {0}}};
+    .fields = (const YamlField[]){
+        {YAML_VECTOR(VelocityScene, value), .unit = "m/s", .one_of = 1, .required = true, .short_form = true,
+         .doc = "the same everywhere"},
+        {YAML_TEXTS(VelocityScene, formula), .one_of = 1, .required = true, .short_form = true,
+         .min_count = 3, .max_count = 3,
+         .doc = "three expressions of the rest position x, y, z, r of a vertex, in m/s"},
+        {YAML_FILE(VelocityScene, file), .one_of = 1, .required = true,
+         .doc = "a CSV file with rows vx, vy, vz (m/s): one for each vertex of the mesh's file, or "
+                "node of the rod"},
+        WHERE_ROW(VelocityScene),
+        {0}}};
 
 static const YamlTable ball_table = {
     .name = "ball",

@@ -80,7 +80,7 @@ typedef struct PoseScene {
 /* Velocities of the vertices at the start. */
 typedef struct VelocityScene {
     double value[3];
-    char **formula;
+    char **formula, *file;
     WhereScene *where;
     int formula_count, where_count;
 } VelocityScene;
