@@ -26,6 +26,13 @@ static bool is_attribute(const char *kind, const char *name)
     return false;
 }
 
+/* What a run goes on from has many zeros (state/velocities, cases/NAME/state/loads/.., ..). */
+static Hdf5Layout layout_of(const Array *array, const char *name)
+{
+    bool state = array->rank == 1 && array->type == ARRAY_FLOAT64 && strstr(name, "state/");
+    return (Hdf5Layout){.chunk_rows = state ? array->dims[0] : 0};
+}
+
 /* Every other array of a kind at its own name. */
 static bool put_kind(VtkFrames *w, const char *kind, Error *err)
 {
@@ -38,7 +45,7 @@ static bool put_kind(VtkFrames *w, const char *kind, Error *err)
         ok = journal_get(w->journal, kind, 0, names[k], &array, err);
         if (!ok) break;
         char *path = mem_format("slender/%s", names[k]);
-        ok = hdf5_write(w->file, path, &array, (Hdf5Layout){0}, err);
+        ok = hdf5_write(w->file, path, &array, layout_of(&array, names[k]), err);
         mem_free(path);
         array_clear(&array);
     }
