@@ -27,10 +27,12 @@ static bool is_attribute(const char *kind, const char *name)
 }
 
 /* What a run goes on from has many zeros (state/velocities, cases/NAME/state/loads/.., ..). */
+enum { MANY = 4096 }; /* a chunk takes 2 kB beside its numbers */
+
 static Hdf5Layout layout_of(const Array *array, const char *name)
 {
     bool state = array->rank == 1 && array->type == ARRAY_FLOAT64 && strstr(name, "state/");
-    return (Hdf5Layout){.chunk_rows = state ? array->dims[0] : 0};
+    return (Hdf5Layout){.chunk_rows = state && array->dims[0] >= MANY ? array->dims[0] : 0};
 }
 
 /* Every other array of a kind at its own name. */

@@ -162,7 +162,7 @@ void run_add_final(Run *run, const Snapshot *shots, int count, const char *statu
     for (int k = 0; k < count; k++) {
         add_case(list, model, &shots[k]);
         char *prefix = arrays_keep(list, mem_format("cases/%s/state", shots[k].load_case->name));
-        if (count > 1) state_arrays_add(model, &shots[k], prefix, false, list);
+        if (k < count - 1) state_arrays_add(model, &shots[k], prefix, false, list);
         say_doubt(run, &shots[k]);
     }
 }

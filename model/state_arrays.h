@@ -9,8 +9,8 @@
  *     anchor      [k]    of a simulation: where the factor stands that the next step begins with (system_anchor)
  *     loads/BLOCK        the loads that act, each block of p
  *
- * In a result the prefix is slender/state of the last state, slender/cases/NAME/state of each of several load cases, and
- * slender/frames of frames that are kept whole, of each dataset a row. */
+ * In a result the prefix is slender/state of the last state, slender/cases/NAME/state of the load cases before the
+ * last one, and slender/frames of frames that are kept whole, of each dataset a row. */
 #pragma once
 #include "model/model.h"
 
