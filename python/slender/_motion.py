@@ -4,7 +4,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Literal, Mapping, NamedTuple, Optional, Sequence, Union, overload
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from . import _library as c
 from ._errors import DONE
@@ -15,8 +15,11 @@ if TYPE_CHECKING:
     from ._model import Model
 
 
+Seeds = Mapping[int, ArrayLike]
+
+
 class Start(NamedTuple):
-    """dF/dx and dF/dv of a motion's start, [points, 3]."""
+    """dF/dx and dF/dv of a motion's start."""
 
     x: Array
     v: Array
@@ -37,29 +40,37 @@ class Motion:
         return States(self)
 
     @overload
-    def vjp(self, dF: Mapping[int, ArrayLike], *, start: Literal[False] = False) -> tuple[
+    def vjp(self, dF: Seeds, dv: Optional[Seeds] = None, *, start: Literal[False] = False) -> tuple[
         dict[str, Array], Optional[Array]]: ...
 
     @overload
-    def vjp(self, dF: Mapping[int, ArrayLike], *, start: Literal[True]) -> tuple[
+    def vjp(self, dF: Seeds, dv: Optional[Seeds] = None, *, start: Literal[True], dofs: bool = False) -> tuple[
         dict[str, Array], Optional[Array], Start]: ...
 
-    def vjp(self, dF: Mapping[int, ArrayLike], *, start: bool = False) -> Union[
+    def vjp(self, dF: Seeds, dv: Optional[Seeds] = None, *, start: bool = False, dofs: bool = False) -> Union[
             tuple[dict[str, Array], Optional[Array]], tuple[dict[str, Array], Optional[Array], Start]]:
-        """dF/dp by blocks and dF/dfield [steps, 3], from {n: dF/dx of the state after n steps}, [points, 3] or [dofs]. Exact.
-        The field's is None where the motion had the scene's; where it had its own, flux_density in dF/dp is 0. With start=True
-        dF/dx and dF/dv of the start come too."""
+        """dF/dp by blocks and dF/dfield [steps, 3], from {n: dF/dx of the state after n steps}, [points, 3] or [dofs], and dF/dv
+        alike. Exact. The field's is None where the motion had the scene's; where it had its own, flux_density in dF/dp is 0.
+        With start=True dF/dx and dF/dv of the start come too, [points, 3] or of all dofs: motions can be chained."""
         m = self.model
-        frames = np.array(list(dF), dtype=np.int32)
-        seeds = np.array([m.dofs_of(seed, f"dF[{n}]") for n, seed in dF.items()]).reshape(len(dF), m.dofs)
+        frames = np.array(list(dict.fromkeys([*dF, *(dv or {})])), dtype=np.int32)
+        of_x = self._seeds(dF, frames, "dF")
+        of_v = self._seeds(dv, frames, "dv") if dv else None
         dp, dfield = np.empty(m.size), np.zeros((self._asked, 3)) if self._given else None
         x, v = (np.empty(m.dofs), np.empty(m.dofs)) if start else (None, None)
         with Shield():
-            self._handle.do(c.lib.slender_motion_vjp, len(frames), address(frames), address(seeds), address(dp),
-                            address(dfield), address(x), address(v))
+            self._handle.do(c.lib.slender_motion_vjp, len(frames), address(frames), address(of_x), address(of_v),
+                            address(dp), address(dfield), address(x), address(v))
         if x is None or v is None:
             return m.blocks_of(dp), dfield
-        return m.blocks_of(dp), dfield, Start(m.places(x), m.places(v))
+        return m.blocks_of(dp), dfield, Start(x, v) if dofs else Start(m.places(x), m.places(v))
+
+    def _seeds(self, seeds: Seeds, frames: NDArray[np.int32], what: str) -> Array:
+        rows = np.zeros((len(frames), self.model.dofs))
+        for row, n in zip(rows, frames.tolist()):
+            if n in seeds:
+                row[:] = self.model.dofs_of(seeds[n], f"{what}[{n}]")
+        return rows
 
     def jvp(self, dp: Optional[Mapping[str, ArrayLike]] = None, dfield: Optional[ArrayLike] = None,
             dx: Optional[ArrayLike] = None, dv: Optional[ArrayLike] = None, *, dofs: bool = False) -> Array:

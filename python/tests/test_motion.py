@@ -76,6 +76,43 @@ class Motions(support.TestCase):
             F.append(moved.states[5].x.sum() + np.sum((moved.states[STEPS].x - model.rest) ** 2))
         self.near((F[0] - F[1]) / 2, slope, 1e-5)
 
+    def test_velocities(self) -> None:
+        """Of F(v_n): by differences in the magnetisation; of the start's, itself."""
+        model = support.model_of()
+        motion = model.simulate(steps=4, dt=DT)
+        dv = np.random.default_rng(3).normal(size=(model.points, 3))
+        dv[np.abs(model.rest[:, 0]) < 1e-9] = 0  # held
+        slope, F = motion.vjp({}, {4: dv})[0]["magnetization"].sum(), []
+        for side in (1, -2):
+            model.params["magnetization"][:] += side * 10
+            F.append(np.sum(dv * model.simulate(steps=4, dt=DT).states[4].v))
+        self.near((F[0] - F[1]) / 20, slope, 1e-6)
+        start = motion.vjp({}, {0: dv}, start=True)[2]
+        self.same(start.v, dv)
+        self.same(start.x, np.zeros(dv.shape))
+
+    def test_a_chain_of_motions(self) -> None:
+        """Of motions of one step each, one after the other, as of one motion."""
+        model = support.model_of()
+        field = np.array([swing((n + 1) * DT) for n in range(STEPS)])
+        motion = model.simulate(steps=STEPS, dt=DT, field=field)
+        dF = {STEPS: np.ones((model.points, 3))}
+        dp, dfield, (x0, v0) = motion.vjp(dF, start=True)
+        state, chain = model.state(), []
+        for row in field:
+            chain.append(model.simulate(state, steps=1, dt=DT, field=row))
+            state = chain[-1].states[1]
+        x, v, rows, dM = model.dofs_of(dF[STEPS]), np.zeros(model.dofs), [], np.zeros((24, 3))
+        for one in reversed(chain):
+            dp1, row1, (x, v) = one.vjp({1: x}, {1: v}, start=True, dofs=True)
+            rows.append(row1)
+            dM += dp1["magnetization"]
+        assert dfield is not None
+        self.near(np.concatenate(rows[::-1]), dfield, 1e-7)
+        self.near(dM, dp["magnetization"], 1e-7)
+        self.near(model.places(x), x0, 1e-7)
+        self.near(model.places(v), v0, 1e-7)
+
     def test_derivatives_without_a_field(self) -> None:
         model = support.model_of()
         motion = model.simulate(steps=4, dt=DT)
