@@ -64,6 +64,9 @@ class Handle:
     def in_callback(self, inside: bool) -> None:
         self._one.calling = inside
 
+    def __reduce__(self) -> Any:
+        raise TypeError("objects of the library's cannot be pickled or copied; State.copy copies a state")
+
     def __del__(self) -> None:
         if not (self.lost or (self._needs and self._needs.lost)):
             self._one.finish(self._destroy, self._pointer)

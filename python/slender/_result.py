@@ -20,8 +20,8 @@ class _Read:
     def __init__(self) -> None:
         self.array = c.CArray()
 
-    def __del__(self, free: Any = c.lib.slender_array_free) -> None:
-        free(byref(self.array))
+    def __del__(self, free: Any = c.lib.slender_array_free, byref: Any = byref) -> None:
+        free(byref(self.array))  # when Python ends, globals are gone
 
 
 class Result(Mapping[str, Any]):

@@ -42,6 +42,9 @@ class State:
         """Another one of the same numbers; of an equilibrium it knows the same factor."""
         return State(self._copy(), self.model, self.case)
 
+    def __deepcopy__(self, _: object) -> State:
+        return self.copy()
+
     def _copy(self) -> Handle:
         with self._handle.lock:
             pointer = c.lib.slender_state_copy(self._handle.use())

@@ -1,5 +1,7 @@
 """Models: their parameters are views; equilibria and their derivatives."""
+import copy
 import gc
+import pickle
 import unittest
 from typing import Any
 
@@ -81,7 +83,7 @@ class Ownership(support.TestCase):
         model = support.model_of()
         state = model.equilibrium()
         x = state.x.copy()
-        other = state.copy()
+        other = copy.deepcopy(state)
         model.params["magnetization"][:] *= 0.5
         model.equilibrium(start=state)
         self.same(state.x, x)
@@ -89,6 +91,7 @@ class Ownership(support.TestCase):
         other.time = 3
         self.same(state.x, x)
         self.assertEqual((state.time, other.time), (0, 3))
+        self.refuses(TypeError, "cannot be pickled", pickle.dumps, state._handle)
 
     def test_a_state_of_another_model(self) -> None:
         a, b = support.model_of(), support.model_of()
