@@ -19,8 +19,8 @@ from ._scene import Scene, run
 from ._state import State
 
 __version__ = _library.VERSION
-__all__ = ["Block", "Case", "Energies", "Error", "Frame", "Model", "Motion", "NotConverged", "Params", "Result", "Scene",
-           "SceneError", "SlenderWarning", "State", "open", "run", "schema", "versions"]
+__all__ = ["Block", "Case", "Energies", "Error", "Frame", "Model", "Motion", "NotConverged", "Params", "Result",
+           "Scene", "SceneError", "SlenderWarning", "State", "open", "run", "schema", "versions"]
 
 
 def versions() -> str:

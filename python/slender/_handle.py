@@ -23,8 +23,8 @@ class Handle:
     """An object of the library's. It lives as long as anybody has it, or a view of its memory; what it needs lives
     longer.
 
-    One call at a time is at work on an object that stands alone and all that need it: calls from other threads wait, those
-    from a callback of a call, which would wait for ever, are refused, and what is let go meanwhile is destroyed
+    One call at a time is at work on an object that stands alone and all that need it: calls from other threads wait,
+    those from a callback of a call, which would wait for ever, are refused, and what is let go meanwhile is destroyed
     later."""
 
     def __init__(self, pointer: int, destroy: Callable[[int], object], needs: Optional[Handle] = None,
@@ -115,8 +115,8 @@ def address(array: Optional[NDArray[Any]]) -> Optional[int]:
 
 
 class Shield:
-    """`with` around a call that solves: OpenBLAS works in one thread, and Ctrl-C, which would leave things half done, is
-    raised after it."""
+    """`with` around a call that solves: OpenBLAS works in one thread, and Ctrl-C, which would leave things half done,
+    is raised after it."""
 
     def __init__(self) -> None:
         self.error: Optional[BaseException] = None
@@ -144,10 +144,11 @@ class Shield:
 
 
 class Host(Shield):
-    """The same of a long call on an object. Ctrl-C, and what a callback raises, makes it stop, and is raised when it has
-    returned: nothing of Python's can leave a callback of C's."""
+    """The same of a long call on an object. Ctrl-C, and what a callback raises, makes it stop, and is raised when it
+    has returned: nothing of Python's can leave a callback of C's."""
 
-    def __init__(self, called: Handle, progress: Optional[Progress] = None, on_frame: Optional[OnFrame] = None) -> None:
+    def __init__(self, called: Handle, progress: Optional[Progress] = None,
+                 on_frame: Optional[OnFrame] = None) -> None:
         super().__init__()
         self._called = called
         self.struct = c.CHost(stop=c.STOP(lambda _: self.error is not None), warn=c.SENTENCE(self._guard(_warn)))

@@ -176,8 +176,8 @@ def _text_of(library: ctypes.CDLL, pointer: int | None) -> str:
 
 
 class _OneThread:
-    """OpenBLAS works in one thread while any call is at work, so that numbers are the same bits every time, and with as many
-    as before after the last one."""
+    """OpenBLAS works in one thread while any call is at work, so that numbers are the same bits every time, and with as
+    many as before after the last one."""
 
     def __init__(self, blas: ctypes.CDLL) -> None:
         self._get, self._set = blas.openblas_get_num_threads, blas.openblas_set_num_threads

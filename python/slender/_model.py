@@ -149,8 +149,8 @@ class Model:
         if given.shape == (self.dofs,):
             return np.ascontiguousarray(given)
         if given.shape != (self.points, 3):
-            raise ValueError(f"{what} has the shape {given.shape}; it must be [points, 3], ({self.points}, 3), or [dofs], "
-                             f"({self.dofs},)")
+            raise ValueError(f"{what} has the shape {given.shape}; it must be [points, 3], ({self.points}, 3), or "
+                             f"[dofs], ({self.dofs},)")
         whole = np.zeros(self.dofs)
         whole[: given.size] = given.reshape(-1)
         return whole
@@ -188,9 +188,9 @@ class Model:
 
     def equilibrium(self, case: Optional[str] = None, start: Optional[State] = None, *,
                     progress: Optional[Progress] = None, check: bool = False) -> State:
-        """The equilibrium of the case with the parameters as they are: by load steps from where the case starts, or from
-        `start`. Where that is this model's equilibrium of the case with other parameters, it goes on from there along the tangent,
-        which is faster. `start` stays as it is.
+        """The equilibrium of the case with the parameters as they are: by load steps from where the case starts, or
+        from `start`. Where that is this model's equilibrium of the case with other parameters, it goes on from there
+        along the tangent, which is faster. `start` stays as it is.
 
         Where none is found, .status of what comes back says why ("saddle", "max_iterations", ..); with check=True
         NotConverged is raised then."""
@@ -206,7 +206,8 @@ class Model:
         number = self._case(case, state)
         with self._handle.lock:
             self._energies.fill(math.nan)
-            total = c.lib.slender_energy(self._handle.use(), number, state._handle.pointer, self._energies.ctypes.data, None)
+            total = c.lib.slender_energy(self._handle.use(), number, state._handle.pointer, address(self._energies),
+                                         None)
             energies = Energies(zip(self._terms, self._energies.tolist()))
         energies.total = total
         return energies
@@ -222,8 +223,8 @@ class Model:
     # ---- Derivatives of equilibria ----
 
     def vjp(self, state: State, dF: ArrayLike, case: Optional[str] = None) -> dict[str, Array]:
-        """dF/dp by blocks, from dF/dx [points, 3] or [dofs] at an equilibrium x(p). Exact. Raises Error where the state is no
-        equilibrium of the case with the parameters as they are."""
+        """dF/dp by blocks, from dF/dx [points, 3] or [dofs] at an equilibrium x(p). Exact. Raises Error where the state
+        is no equilibrium of the case with the parameters as they are."""
         dx, dp = self.dofs_of(dF), np.empty(self.size)
         number = self._case(case, state)
         with Shield():
