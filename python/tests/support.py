@@ -43,6 +43,14 @@ def model_of(scene: Any = None, **keys: Any) -> slender.Model:
         return slender.Scene(strip(**keys) if scene is None else scene).model()
 
 
+def count_destroyed(handle: Any) -> list[int]:
+    """Of a handle: grows when the library is told to destroy it."""
+    gone: list[int] = []
+    destroy = handle._destroy
+    handle._destroy = lambda pointer: (gone.append(pointer), destroy(pointer))
+    return gone
+
+
 def python(code: str, *before: str, **environment: str) -> "subprocess.CompletedProcess[str]":
     """Another Python with this package."""
     env = {name: value for name, value in os.environ.items() if not name.startswith("OPENBLAS_")}

@@ -114,14 +114,16 @@ class Callbacks(support.TestCase):
         """On the model at work: refused, not a deadlock; on another one they are fine; what is let go waits."""
         model, other, seen = support.model_of(), support.model_of(), []
         states = [model.state()]
+        gone = support.count_destroyed(states[0]._handle)
 
         def on_frame(time: float, x: Any) -> None:
-            seen.append(other.energy(other.state()).total)
             states.clear()
+            seen.append((other.energy(other.state()).total, len(gone)))
             model.energy(model.state())
         self.refuses(slender.Error, "callback", model.simulate, steps=4, dt=1e-3, on_frame=on_frame)
-        self.assertEqual(len(seen), 1)
+        self.assertEqual(seen, [(other.energy(other.state()).total, 0)])
         self.assertEqual(model.equilibrium().status, "converged")
+        self.assertEqual(len(gone), 1)
 
     def test_progress(self) -> None:
         lines: list[str] = []

@@ -3,18 +3,9 @@ import copy
 import gc
 import pickle
 import unittest
-from typing import Any
 
 import support
 from support import np, slender
-
-
-def count_destroyed(handle: Any) -> list[int]:
-    """Of a handle: grows when the library is told to destroy it."""
-    gone: list[int] = []
-    destroy = handle._destroy
-    handle._destroy = lambda pointer: (gone.append(pointer), destroy(pointer))
-    return gone
 
 
 class Parameters(support.TestCase):
@@ -58,7 +49,7 @@ class Ownership(support.TestCase):
     def test_views_outlive_their_objects(self) -> None:
         model = support.model_of()
         state = model.equilibrium()
-        gone_state, gone_model = count_destroyed(state._handle), count_destroyed(model._handle)
+        gone_state, gone_model = support.count_destroyed(state._handle), support.count_destroyed(model._handle)
         M, x, v, rest = model.params["magnetization"], state.x, state.v, model.rest
         want = x.copy()
         del model, state
