@@ -99,6 +99,10 @@ int verb_picture(int argc, char **argv)
     };
     if (!options_parse(argc, argv, usage, options, sizeof options / sizeof *options, &path, &code))
         return code;
+    if (animation + (def.stills > 0) + (def.frame >= 0) > 1)
+        return verb_fail(
+            RUN_USAGE,
+            "--animation, --stills and --frame are three ways to show it: one of them can be given");
     if (no_arrows) def.arrows = false;
     if (no_history) def.history = false;
     if (width) def.width = width;

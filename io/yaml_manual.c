@@ -270,7 +270,7 @@ static void manual_when(Text *text, const char *when)
     for (int k = 0; when && *when; k++) {
         bool absent = *when == '!';
         when += strspn(when, "/!");
-        size_t length = strcspn(when, "&"), end = length;
+        size_t length = strcspn(when, "&"), end = strcspn(when, "{&");
         while (end && when[end - 1] == ' ') end--;
         text_add(text, "%s%s `", k ? ", " : " (", absent ? "without" : "with");
         for (size_t i = 0; i < end; i++) text_add(text, when[i] == '|' ? "\\|" : "%c", when[i]);

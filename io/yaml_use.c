@@ -4,9 +4,9 @@
 #include <stdio.h>
 #include <string.h>
 
-/* One condition of a row: `a | b`, `!a` or `a: value, value`. */
+/* One condition of a row: `a | b`, `!a` or `a: value, value`, and what there is elsewhere. */
 typedef struct Condition {
-    char keys[64], values[128];
+    char keys[64], values[128], otherwise[128];
     bool root, absent;
 } Condition;
 
@@ -25,10 +25,14 @@ static bool next_condition(const char **text, Condition *c)
     if (!**text) return false;
     c->root = **text == '/', c->absent = **text == '!';
     *text += c->root || c->absent;
-    size_t length = strcspn(*text, "&"), keys = strcspn(*text, ":&");
+    size_t end = strcspn(*text, "{&"), keys = strcspn(*text, ":{&");
     copy_part(c->keys, sizeof c->keys, *text, keys);
-    copy_part(c->values, sizeof c->values, *text + keys, length - keys);
-    *text += length;
+    copy_part(c->values, sizeof c->values, *text + keys, end - keys);
+    *text += end;
+    bool said = **text == '{';
+    size_t words = said ? strcspn(*text, "}") : 0;
+    copy_part(c->otherwise, sizeof c->otherwise, *text + said, words ? words - 1 : 0);
+    *text += words + said;
     return true;
 }
 
@@ -147,7 +151,7 @@ static bool is_default(const Place *at, const YamlField *row, const Node *item)
 static void refuse(const Place *at, const YamlField *row, const char *key, int i, const Condition *c,
                    const char *value)
 {
-    const char *more = row->otherwise;
+    const char *more = *c->otherwise ? c->otherwise : row->otherwise;
     Node place = *at->node;
     if (place.kind == NODE_MAP)
         place = (Node){.line = at->node->key_place[i][0],

@@ -290,7 +290,6 @@ static void say_outside(const DesignRun *d, const double *u)
 
 RunStatus design_run(Run *run, const DesignOps *ops, void *self, const double *u, Error *err)
 {
-    static const OptimiserMethod methods[] = {OPTIMISER_MMA, OPTIMISER_LBFGS, OPTIMISER_GAUSS_NEWTON};
     const DesignScene *scene = run->scene->design;
     int n = run->model->design.size;
     double *work = mem_alloc(5 * (size_t)n, sizeof *work);
@@ -313,7 +312,7 @@ RunStatus design_run(Run *run, const DesignOps *ops, void *self, const double *u
     design_bounds(&run->model->design, d.lower, d.upper);
     say_outside(&d, u);
     OptimiserDef def = optimiser_default();
-    def.method = methods[scene->optimizer];
+    def.method = (OptimiserMethod)scene->optimizer;
     def.evaluations = scene->iterations + 1;
     if (def.evaluations < d.recorded) def.evaluations = d.recorded; /* what has been done stays done */
     def.gradient_tol = scene->tolerance;

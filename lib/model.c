@@ -2,7 +2,10 @@
 #include "base/memory.h"
 #include "lib/objects.h"
 #include "solve/kernels.h"
+#include <stdatomic.h>
 #include <string.h>
+
+static atomic_ulong last_id;
 
 typedef struct Making {
     SlenderScene *scene;
@@ -34,7 +37,10 @@ static SlenderStatus make(void *self, Error *err)
         return SLENDER_REFUSED;
     }
     SlenderModel *made = making->model = mem_alloc(1, sizeof *made);
-    *made = (SlenderModel){.scene = making->scene, .model = model, .warnings = warnings_of(model)};
+    *made = (SlenderModel){.scene = making->scene,
+                           .model = model,
+                           .warnings = warnings_of(model),
+                           .id = atomic_fetch_add(&last_id, 1) + 1};
     made->cases = mem_alloc((size_t)model->case_count, sizeof *made->cases);
     int threads = kernels_reserve(making->threads);
     if (threads > 1) made->workers = workers_create(threads);

@@ -24,6 +24,7 @@ struct SlenderModel {
     Model *model;
     Workers *workers; /* NULL: one thread */
     LibCase *cases;   /* [case_count] */
+    unsigned long id; /* no other model of the process has it: an address may come again */
     char *warnings;
 };
 
@@ -34,8 +35,8 @@ struct SlenderState {
     int newton_iterations;
 
     /* The last equilibrium found from it: where it is, for which parameters, and with the factor. NULL: none. */
-    const SlenderModel *model;
-    int load_case;
+    unsigned long model; /* its id */
+    int load_case, params;
     double *rest, *p; /* [dofs], [params] */
     Factor *factor;
 };

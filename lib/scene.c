@@ -12,15 +12,18 @@ typedef struct Reading {
     SlenderScene *scene; /* made */
 } Reading;
 
-/* The first error, and how many there are; of a file with its name, of a program's text with its key. */
+/* The first error, and how many there are; of a program's text with its key, which many sentences begin with. */
 static SlenderStatus refuse(const SlenderScene *scene, Error *err)
 {
     int count = yaml_error_count(scene->file), shown;
     const YamlError *first = yaml_errors(scene->file, &shown);
     char *key = scene->path ? NULL : yaml_key_at(scene->file, first->line, first->column);
-    char *where = !first->line  ? mem_format("%s%s", scene->path ? scene->path : "", scene->path ? ": " : "")
-                  : scene->path ? mem_format("%s:%d:%d: ", scene->path, first->line, first->column)
-                                : mem_format("%s%s", key, *key ? ": " : "");
+    bool said = key && !strncmp(first->sentence, key, strlen(key));
+    char *where = scene->path && first->line
+                      ? mem_format("%s:%d:%d: ", scene->path, first->line, first->column)
+                  : scene->path   ? mem_format("%s: ", scene->path)
+                  : said || !*key ? mem_text("")
+                                  : mem_format("%s: ", key);
     char *more = count > 1 ? mem_format(" (and %d more)", count - 1) : mem_text("");
     lib_refuse(err, "%s%s%s", where, first->sentence, more);
     mem_free(key);

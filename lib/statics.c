@@ -45,7 +45,7 @@ static void forget(SlenderState *state)
     factor_release(state->factor);
     mem_free(state->rest);
     mem_free(state->p);
-    state->factor = NULL, state->rest = state->p = NULL, state->model = NULL;
+    state->factor = NULL, state->rest = state->p = NULL, state->model = 0;
 }
 
 void slender_state_destroy(SlenderState *state)
@@ -57,13 +57,13 @@ void slender_state_destroy(SlenderState *state)
 }
 
 /* Of an equilibrium its factor is shared. */
-static void remember(SlenderState *state, const SlenderModel *model, int load_case, const double *p,
+static void remember(SlenderState *state, unsigned long model, int load_case, const double *p, int params,
                      Factor *factor)
 {
     forget(state);
-    state->model = model, state->load_case = load_case;
+    state->model = model, state->load_case = load_case, state->params = params;
     state->rest = mem_copy(state->now.x, (size_t)state->now.dofs, sizeof(double));
-    state->p = mem_copy(p, (size_t)model->model->params->size, sizeof *p);
+    state->p = mem_copy(p, (size_t)params, sizeof *p);
     state->factor = factor;
 }
 
@@ -77,7 +77,7 @@ static SlenderStatus copy_state(void *self, Error *err)
     state->status = from->status, state->energy = from->energy,
     state->newton_iterations = from->newton_iterations;
     if (from->factor) {
-        remember(state, from->model, from->load_case, from->p, factor_share(from->factor));
+        remember(state, from->model, from->load_case, from->p, from->params, factor_share(from->factor));
         memcpy(state->rest, from->rest, (size_t)from->now.dofs * sizeof(double));
     }
     return status;
@@ -122,7 +122,7 @@ static bool fits(const SlenderModel *model, int load_case, const SlenderState *s
 static bool is_known(const Rest *rest)
 {
     const SlenderState *state = rest->state;
-    return state->factor && state->model == rest->model && state->load_case == rest->load_case &&
+    return state->factor && state->model == rest->model->id && state->load_case == rest->load_case &&
            !memcmp(state->rest, state->now.x, (size_t)state->now.dofs * sizeof(double));
 }
 
@@ -182,7 +182,8 @@ static SlenderStatus find_rest(void *self, Error *err)
     state->energy = info.energy;
     state->newton_iterations = info.iterations;
     if (info.status == NEWTON_CONVERGED)
-        remember(state, rest->model, rest->load_case, p, system_share_factor(sys));
+        remember(state, rest->model->id, rest->load_case, p, run.model->params->size,
+                 system_share_factor(sys));
     else
         error_set(err, "%s", newton_status_text(info.status));
     return info.status == NEWTON_CONVERGED ? SLENDER_DONE

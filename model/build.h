@@ -43,8 +43,8 @@ extern const char *const build_variables[], *const build_variables_time[];
 enum { BUILD_VARIABLES = 5 };
 void build_position(double *variables, const double *x, double time);
 
-/* The mesh that a scene describes; NULL after a refusal: a key that its shape does not take, too. */
-Mesh *build_mesh(const MeshScene *scene, YamlFile *yaml, MeshReport *report);
+/* The mesh that a scene describes at that key; NULL after a refusal: a key that its shape does not take, too. */
+Mesh *build_mesh(const MeshScene *scene, YamlFile *yaml, const char *at, MeshReport *report);
 
 /* A mesh file with its coordinates times scale. */
 bool build_read_mesh(const char *path, double scale, MeshFile *file, Error *err);

@@ -1,4 +1,4 @@
-/* The mesh of a shell, generated or from a file, and files that hold states of it. */
+/* Meshes of triangles, generated or from a file, and files that hold states of it. */
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "model/build.h"
@@ -78,22 +78,22 @@ static Key list_keys(const Source *source)
     return list;
 }
 
-static bool check_keys(const MeshScene *scene, const Source *source, YamlFile *yaml)
+static bool check_keys(const MeshScene *scene, const Source *source, YamlFile *yaml, const char *mesh)
 {
     unsigned given = given_keys(scene);
     bool ok = true;
     for (int k = 0; k < KEY_COUNT; k++) {
         bool takes = source->takes >> k & 1, has = given >> k & 1;
-        Key at = key("shell.mesh.%s", mesh_keys[k].key);
+        Key at = key("%s.%s", mesh, mesh_keys[k].key);
         if (has && !takes)
             ok = yaml_refuse(yaml, at.text, "%s does not take this key; it takes %s", source->name,
                              list_keys(source).text);
         if (takes && !has && mesh_keys[k].needed)
-            ok = yaml_refuse(yaml, "shell.mesh", "%s needs `%s`: %s", source->name, mesh_keys[k].key,
+            ok = yaml_refuse(yaml, mesh, "%s needs `%s`: %s", source->name, mesh_keys[k].key,
                              mesh_keys[k].needed);
     }
     if (ok && scene->size_count != source->lengths)
-        return yaml_refuse(yaml, "shell.mesh.size", "%s has %s", source->name,
+        return yaml_refuse(yaml, key("%s.size", mesh).text, "%s has %s", source->name,
                            source->lengths == 2 ? "a length and a width: [65 mm, 65 mm]" : "one size: 40 mm");
     return ok;
 }
@@ -110,17 +110,17 @@ Build build_start(const Scene *scene, const Mesh *mesh, YamlFile *file)
                    .mesh_scale = 1};
 }
 
-Mesh *build_mesh(const MeshScene *scene, YamlFile *yaml, MeshReport *report)
+Mesh *build_mesh(const MeshScene *scene, YamlFile *yaml, const char *at, MeshReport *report)
 {
     const Source *source = scene->file ? &from_file : &shapes[scene->shape];
     MeshFile file = {0};
     Error err;
     Mesh *mesh = NULL;
-    if (!check_keys(scene, source, yaml)) return NULL;
+    if (!check_keys(scene, source, yaml, at)) return NULL;
     if (!source->make(scene, &file, &err))
-        yaml_refuse(yaml, scene->file ? "shell.mesh.file" : "shell.mesh", "%s", err.text);
+        yaml_refuse(yaml, key("%s%s", at, scene->file ? ".file" : "").text, "%s", err.text);
     else if (!(mesh = mesh_create(&file, scene->weld, report, &err)))
-        yaml_refuse(yaml, "shell.mesh", "%s", err.text);
+        yaml_refuse(yaml, at, "%s", err.text);
     mesh_file_clear(&file);
     return mesh;
 }

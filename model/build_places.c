@@ -3,6 +3,7 @@
 #include "base/vec3.h"
 #include "io/image.h"
 #include "model/build.h"
+#include "surface/loads.h"
 #include <math.h>
 #include <string.h>
 
@@ -29,52 +30,18 @@ bool build_selection(const Build *b, Key at, const SelectionScene *scene, Indice
 
 /* ---- Dead loads ---- */
 
-static void add_force(double *load, int vertex, double amount, const double *force)
-{
-    for (int i = 0; i < 3; i++) load[3 * vertex + i] += amount * force[i];
-}
-
-/* Along boundary edges with both ends among the vertices: half of each edge's length to either end. */
-static bool add_line(const Build *b, Key at, const LoadScene *entry, const Indices *on, double *load)
-{
-    Indices edges = select_boundary_edges(b->mesh, on);
-    for (int k = 0; k < edges.count; k++) {
-        const int *v = b->mesh->edges[edges.items[k]];
-        double length = vec3_length(vec3_sub(vec3_load(b->mesh->rest[v[0]]), vec3_load(b->mesh->rest[v[1]])));
-        add_force(load, v[0], length / 2, entry->line);
-        add_force(load, v[1], length / 2, entry->line);
-    }
-    int count = edges.count;
-    mem_free(edges.items);
-    return count > 0 || yaml_refuse(b->file, at.text, "no boundary edge has both ends among these vertices");
-}
-
-/* Over faces with all corners among the vertices: a third of each face's area to each corner. */
-static bool add_area(const Build *b, Key at, const LoadScene *entry, const Indices *on, double *load)
-{
-    bool *chosen = mem_alloc((size_t)b->mesh->vertex_count, sizeof *chosen);
-    for (int k = 0; k < on->count; k++) chosen[on->items[k]] = true;
-    int count = 0;
-    for (int f = 0; f < b->mesh->face_count; f++) {
-        const int *v = b->mesh->faces[f];
-        if (!chosen[v[0]] || !chosen[v[1]] || !chosen[v[2]]) continue;
-        for (int i = 0; i < 3; i++) add_force(load, v[i], b->mesh->rest_area[f] / 3, entry->area);
-        count++;
-    }
-    mem_free(chosen);
-    return count > 0 || yaml_refuse(b->file, at.text, "no face has all corners among these vertices");
-}
-
 static bool add_load(const Build *b, Key at, const LoadScene *entry, double *load)
 {
     Indices on = {0};
     bool ok = build_selection(b, key("%s.on", at.text), entry->on, &on);
     if (ok && !isnan(entry->line[0]))
-        ok = add_line(b, at, entry, &on, load);
+        ok = loads_on_edges(b->mesh, &on, entry->line, load) > 0 ||
+             yaml_refuse(b->file, at.text, "no boundary edge has both ends among these vertices");
     else if (ok && !isnan(entry->area[0]))
-        ok = add_area(b, at, entry, &on, load);
-    else
-        for (int k = 0; ok && k < on.count; k++) add_force(load, on.items[k], 1.0 / on.count, entry->force);
+        ok = loads_on_faces(b->mesh, &on, entry->area, load) > 0 ||
+             yaml_refuse(b->file, at.text, "no face has all corners among these vertices");
+    else if (ok)
+        loads_on_vertices(&on, entry->force, load);
     mem_free(on.items);
     return ok;
 }

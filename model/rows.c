@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { JOBS_MAX = 24, KEYS_MAX = 48, WHEN_MAX = 200 };
+enum { JOBS_MAX = 24, KEYS_MAX = 48, WHEN_MAX = 400 };
 
 const char *scene_job_names[JOBS_MAX + 1];
 
@@ -31,7 +31,6 @@ static void put_uses(YamlField *row, char *condition)
             size_t length = strlen(condition);
             if (strcmp(use->key, row->key)) continue;
             snprintf(condition + length, WHEN_MAX - length, "%s%s", length ? " & " : "", use->when);
-            if (!row->otherwise) row->otherwise = use->otherwise;
         }
     if (*condition) row->when = condition;
 }

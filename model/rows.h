@@ -57,10 +57,10 @@ typedef struct JobRow {
 
 /* ---- Bodies ---- */
 
-/* A common key (of the scene's root) that the body does not always take: under which condition (YamlField.when), and
- * what there is in its place. */
+/* A common key (of the scene's root) that the body does not always take: under which condition (YamlField.when; what
+ * there is in its place stands in braces). */
 typedef struct KeyUse {
-    const char *key, *when, *otherwise;
+    const char *key, *when;
 } KeyUse;
 
 /* One state to be shown or stored, with p[params] of a case; borrowed. */

@@ -1,5 +1,6 @@
 /* The field tables of designs: unknowns and objectives. */
 #include "model/scene_tables.h"
+#include "optim/optimiser.h"
 
 /* ---- Unknowns ---- */
 
@@ -216,8 +217,7 @@ const YamlTable design_table = {
         {YAML_TABLE(DesignScene, unknowns, &unknowns_table), .required = true, .doc = "what may change"},
         {YAML_LIST(DesignScene, objectives, &objective_table), .required = true, .min_count = 1,
          .doc = "what should be small"},
-        {YAML_CHOICE(DesignScene, optimizer), .choices = YAML_NAMES("mma", "lbfgs", "gauss_newton"),
-         .fallback = "mma",
+        {YAML_CHOICE(DesignScene, optimizer), .choices = optimiser_names, .fallback = "mma",
          .doc = "NLopt's method of moving asymptotes, NLopt's L-BFGS, or a matrix-free Gauss-Newton"},
         {YAML_INTEGER(DesignScene, iterations), .range = "[0, inf)", .fallback = "50",
          .doc = "evaluations of the objective after the first; 0 evaluates the start and its gradient"},

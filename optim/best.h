@@ -29,5 +29,6 @@ bool best_is_held(const Problem *problem, int i, double at, double pull);
 double best_projected_norm(const Problem *problem, const double *u, const double *gradient);
 
 /* The three methods, from u. */
+void mma_run(Best *best, double *u);
+void lbfgs_run(Best *best, double *u);
 void gauss_newton_run(Best *best, double *u);
-void nlopt_run(Best *best, double *u);

@@ -176,5 +176,5 @@ void gauss_newton_run(Best *best, double *u)
     mem_free(cg.held);
     if (!isfinite(best->objective) || best_is_done(best)) return;
     memcpy(u, best->u, n * sizeof *u);
-    nlopt_run(best, u);
+    lbfgs_run(best, u);
 }

@@ -34,12 +34,12 @@ static double objective(unsigned n, const double *u, double *gradient, void *dat
     return value;
 }
 
-void nlopt_run(Best *best, double *u)
+static void run_algorithm(Best *best, double *u, nlopt_algorithm algorithm)
 {
     const Problem *problem = best->problem;
     unsigned n = (unsigned)problem->n;
     Run run = {.best = best, .gradient = mem_alloc(n, sizeof(double))};
-    run.opt = nlopt_create(best->def->method == OPTIMISER_MMA ? NLOPT_LD_MMA : NLOPT_LD_LBFGS, n);
+    run.opt = nlopt_create(algorithm, n);
     nlopt_set_min_objective(run.opt, objective, &run);
     nlopt_set_lower_bounds(run.opt, problem->lower);
     nlopt_set_upper_bounds(run.opt, problem->upper);
@@ -48,6 +48,16 @@ void nlopt_run(Best *best, double *u)
     nlopt_destroy(run.opt);
     mem_free(run.gradient);
     if (!best_is_done(best)) best->info.status = OPTIMISER_STALLED;
+}
+
+void mma_run(Best *best, double *u)
+{
+    run_algorithm(best, u, NLOPT_LD_MMA);
+}
+
+void lbfgs_run(Best *best, double *u)
+{
+    run_algorithm(best, u, NLOPT_LD_LBFGS);
 }
 
 const char *optimiser_nlopt_version(void)

@@ -89,14 +89,17 @@ bool best_is_done(Best *best)
     return true;
 }
 
+const char *const optimiser_names[] = {
+    [OPTIMISER_MMA] = "mma", [OPTIMISER_LBFGS] = "lbfgs", [OPTIMISER_GAUSS_NEWTON] = "gauss_newton", NULL};
+
+static void (*const runs[])(Best *best, double *u) = {
+    [OPTIMISER_MMA] = mma_run, [OPTIMISER_LBFGS] = lbfgs_run, [OPTIMISER_GAUSS_NEWTON] = gauss_newton_run};
+
 OptimiserInfo optimise(const Problem *problem, const OptimiserDef *def, double *u)
 {
     Best best = best_create(problem, def);
     for (int i = 0; i < problem->n; i++) u[i] = fmin(fmax(u[i], problem->lower[i]), problem->upper[i]);
-    if (def->method == OPTIMISER_GAUSS_NEWTON)
-        gauss_newton_run(&best, u);
-    else
-        nlopt_run(&best, u);
+    runs[def->method](&best, u);
     OptimiserInfo info = best.info;
     if (!isfinite(best.objective))
         info.status = OPTIMISER_FAILED;

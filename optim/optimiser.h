@@ -31,7 +31,10 @@ typedef struct Problem {
     bool (*go_on)(void *self);
 } Problem;
 
+/* Rows of the table in optimiser.c, with the names that scenes know them by (NULL at the end). */
 typedef enum OptimiserMethod { OPTIMISER_MMA, OPTIMISER_LBFGS, OPTIMISER_GAUSS_NEWTON } OptimiserMethod;
+
+extern const char *const optimiser_names[];
 
 typedef struct OptimiserDef {
     OptimiserMethod method; /* default mma                                                               */

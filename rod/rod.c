@@ -70,6 +70,21 @@ void rod_sum_loads(const Rod *rod, double *p)
     }
 }
 
+void rod_share_loads(const Rod *rod, RodLoads loads, double *load)
+{
+    double h = rod_element_length(rod);
+    for (int i = 0; i <= rod->elements; i++)
+        vec3_store(load + 3 * i, vec3_scale(i == 0 || i == rod->elements ? h / 2 : h, loads.line));
+    for (int k = 0; k < loads.point_count; k++) {
+        double part = fmin(loads.points[k].s / h, rod->elements);
+        int e = part < rod->elements ? (int)part : rod->elements - 1;
+        for (int side = 0; side < 2; side++) {
+            double *to = load + 3 * (e + side), share = side ? part - e : 1 - (part - e);
+            vec3_store(to, vec3_axpy(share, loads.points[k].force, vec3_load(to)));
+        }
+    }
+}
+
 /* ---- Systems ---- */
 
 static void add_terms(System *sys, const Rod *rod, const RodLayout *layout, double hold)

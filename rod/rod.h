@@ -18,6 +18,7 @@
 #pragma once
 #include "base/quat.h"
 #include "rod/frame.h"
+#include "rod/inverse.h"
 #include "rod/section.h"
 #include "solve/params.h"
 #include "solve/system.h"
@@ -74,6 +75,10 @@ bool rod_field_varies(const Rod *rod, const double *p);
 
 /* Puts the sums of p's loads into its pull. */
 void rod_sum_loads(const Rod *rod, double *p);
+
+/* Loads as forces at the nodes, load[nodes][3] in N: of a line load (N/m) by the nodes' lengths; a point load is shared by
+ * the nodes beside it. */
+void rod_share_loads(const Rod *rod, RodLoads loads, double *load);
 
 /* ---- States ---- */
 

@@ -214,6 +214,7 @@ expect 4 "$program" export straight.run -o again.vtkhdf;      says "its frames a
 expect 0 "$program" picture halves.vtkhdf --animation --seconds 0.4 --width 400
 [ "$(head -c 12 halves.webp | tail -c 4)" = WEBP ] && grep -q ANMF halves.webp || { echo "halves.webp is no animation"; bad=1; }
 expect 0 "$program" picture halves.vtkhdf --stills 3 -o stills.svg; [ -s stills.svg ] || { echo "no stills"; bad=1; }
+expect 2 "$program" picture halves.vtkhdf --stills 3 --animation
 expect 2 "$program" picture halves.vtkhdf --stills none
 
 # A rod that rests elsewhere than on its curve: in which equilibrium, and with how much less energy.

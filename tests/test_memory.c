@@ -1,21 +1,16 @@
 /* Memory that is not there: a call ends with a sentence in the thread that made it, all threads live, and the next call
  * gives what it always gave. Allocations fail by a calloc of our own (the linker's --wrap). */
 #include "base/guard.h"
-#include "base/memory.h"
 #include "base/workers.h"
 #include "io/formula.h"
 #include "job/run.h"
+#include "tests/scene_fixture.h"
 #include <limits.h>
 #include <pthread.h>
 #include <sched.h>
-#include <setjmp.h>
-#include <stdarg.h>
 #include <stdatomic.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-#include <cmocka.h>
 
 void *__real_calloc(size_t count, size_t size);
 void *__wrap_calloc(size_t count, size_t size);
@@ -238,20 +233,15 @@ static void design(void *self)
 {
     Designed *designed = self;
     Error err;
-    Scene scene = {0};
-    YamlFile *file = yaml_parse("test.yaml", scene_text, strlen(scene_text));
-    Model *model = yaml_load(file, scene_table(), &scene) ? model_create(&scene, file) : NULL;
-    if (!model) fail_msg("%s", yaml_report(file));
-    Run run = {.scene = &scene, .model = model, .host = &(Host){0}, .threads = 3};
+    Built b = scene_build(mem_text(scene_text));
+    Run run = {.scene = &b.scene, .model = b.model, .host = &(Host){0}, .threads = 3};
     run.journal = journal_open(NULL, JOURNAL_NEW, &err);
     run_share_threads(&run, 1);
     designed->status = job_run(&run, &err);
     designed->objective = last_objective(run.journal);
     journal_close(run.journal, &err);
     run_release_threads(&run);
-    model_destroy(model);
-    yaml_clear(scene_table(), &scene);
-    yaml_destroy(file);
+    clear(&b);
 }
 
 /* Allocations fail one after the other at the beginning, then at distances that grow, up to the end. */

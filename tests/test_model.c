@@ -1,52 +1,23 @@
 /* What the entries of a scene become: values, loads, motion, fields, unknowns. */
-#include "base/memory.h"
-#include "model/model.h"
 #include "shell/shell.h"
+#include "tests/scene_fixture.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
-#include <cmocka.h>
 
-typedef struct Built {
-    YamlFile *file;
-    Scene scene;
-    Model *model;
-} Built;
-
-static Built build_text(char *text)
-{
-    Built b;
-    b.file = yaml_parse("test.yaml", text, strlen(text));
-    b.model = yaml_load(b.file, scene_table(), &b.scene) ? model_create(&b.scene, b.file) : NULL;
-    if (!b.model) fail_msg("%s", yaml_report(b.file));
-    mem_free(text);
-    return b;
-}
-
-/* A scene of a 4 x 2 sheet, 40 x 20 mm, with these lines below. */
 static const Shell *shell_of(const Built *b)
 {
     return b->model->self;
 }
 
+/* A scene of a 4 x 2 sheet, 40 x 20 mm, with these lines below. */
 static Built build(const char *job, const char *shell, const char *lines)
 {
-    return build_text(mem_format(
+    return scene_build(mem_format(
         "slender: 1\njob: %s\nshell:\n  mesh: {shape: sheet, size: [40 mm, 20 mm], cells: [4, 2]}\n"
         "  thickness: 1 mm\n  poisson: 0.3\n%s%s",
         job, shell, lines));
-}
-
-static void clear(Built *b)
-{
-    model_destroy(b->model);
-    yaml_clear(scene_table(), &b->scene);
-    yaml_destroy(b->file);
 }
 
 static const double *params_of(const Built *b, int load_case, int stage)
@@ -197,10 +168,7 @@ static void test_unknowns(void **state)
     char *text = mem_format("slender: 1\njob: design\nshell: {mesh: {shape: hexagram, size: 40 mm, n: 2}, "
                             "thickness: 1 mm, young: 1 MPa, poisson: 0.3}\n%s",
                             lines);
-    Built b;
-    b.file = yaml_parse("test.yaml", text, strlen(text));
-    b.model = yaml_load(b.file, scene_table(), &b.scene) ? model_create(&b.scene, b.file) : NULL;
-    if (!b.model) fail_msg("%s", yaml_report(b.file));
+    Built b = scene_build(text);
     const Shell *shell = b.model->self;
     const double *p = params_of(&b, 0, 0);
     const MeshGroup *hub = mesh_group(shell->mesh, "hub", 2);
@@ -216,7 +184,6 @@ static void test_unknowns(void **state)
     for (int i = 0; i < shell->params.size; i++) assert_true(fabs(back[i] - p[i]) <= 1e-12 * fabs(p[i]));
     mem_free(u);
     mem_free(back);
-    mem_free(text);
     clear(&b);
 }
 
@@ -227,7 +194,7 @@ static void test_nested_groups(void **state)
     long blocks = mem_live_count();
     static const char *const orders[] = {"all: 1 MPa, half: 2 MPa", "half: 2 MPa, all: 1 MPa"};
     for (int k = 0; k < 2; k++) {
-        Built b = build_text(mem_format(
+        Built b = scene_build(mem_format(
             "slender: 1\njob: evaluate\nshell:\n  mesh: {file: %s/tests/broken/meshes/crease.obj}\n"
             "  thickness: 1 mm\n  poisson: 0.3\n  young: {groups: {%s}}\n",
             SOURCE_DIR, orders[k]));
@@ -245,7 +212,7 @@ static void test_scale(void **state)
     long blocks = mem_live_count();
     const char *path = SOURCE_DIR "/tests/broken/meshes/crease.obj";
     for (int own = 0; own < 2; own++) {
-        Built b = build_text(mem_format(
+        Built b = scene_build(mem_format(
             "slender: 1\njob: design\nshell:\n  mesh: {file: %s, scale: 0.5}\n  pose: {file: %s%s}\n  "
             "thickness: 1 mm\n"
             "  young: 1 MPa\n  poisson: 0.3\nfix: [{vertices: [0, 3], clamp: true}]\ntarget: {file: %s%s}\n"

@@ -1,35 +1,17 @@
 /* What slender check foretells: the factor from its pattern, without the matrix, and beyond that size by a law. */
 #include "job/predict.h"
 #include "tests/leaks.h"
+#include "tests/scene_fixture.h"
 #include <math.h>
 #include <string.h>
 
-typedef struct Built {
-    YamlFile *file;
-    Scene scene;
-    Model *model;
-} Built;
-
 static Built build(const char *bending, int length, int width, const char *lines)
 {
-    Built b;
-    char *text = mem_format("slender: 1\njob: equilibrium\nshell:\n"
-                            "  mesh: {shape: sheet, size: [%d mm, %d mm], cells: [%d, %d]}\n"
-                            "  thickness: 1 mm\n  young: 1 MPa\n  poisson: 0.3\n  bending: %s\n"
-                            "fix:\n  - {group: root, clamp: true}\n%s",
-                            length, width, length, width, bending, lines);
-    b.file = yaml_parse("test.yaml", text, strlen(text));
-    b.model = yaml_load(b.file, scene_table(), &b.scene) ? model_create(&b.scene, b.file) : NULL;
-    if (!b.model) fail_msg("%s", yaml_report(b.file));
-    mem_free(text);
-    return b;
-}
-
-static void clear(Built *b)
-{
-    model_destroy(b->model);
-    yaml_clear(scene_table(), &b->scene);
-    yaml_destroy(b->file);
+    return scene_build(mem_format("slender: 1\njob: equilibrium\nshell:\n"
+                                  "  mesh: {shape: sheet, size: [%d mm, %d mm], cells: [%d, %d]}\n"
+                                  "  thickness: 1 mm\n  young: 1 MPa\n  poisson: 0.3\n  bending: %s\n"
+                                  "fix:\n  - {group: root, clamp: true}\n%s",
+                                  length, width, length, width, bending, lines));
 }
 
 static void test_small(void **state)

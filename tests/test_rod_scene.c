@@ -1,41 +1,21 @@
 /* What the entries of a scene become in a rod: natural strains from tables, a start that is not its natural
  * shape. */
-#include "base/memory.h"
 #include "rod/front/rod_model.h"
 #include "rod/rod.h"
+#include "tests/scene_fixture.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
-#include <cmocka.h>
-
-typedef struct Built {
-    YamlFile *file;
-    Scene scene;
-    Model *model;
-} Built;
 
 static Built build(const char *job, const char *lines)
 {
-    Built b;
     char *text = mem_format("slender: 1\njob: %s\nrod:\n  radius: 1 mm\n  young: 10 MPa\n  poisson: 0.5\n"
                             "  density: 1000\n  gravity: [0, 0, 0]\n%s",
                             job, lines);
-    b.file = yaml_parse("test.yaml", text, strlen(text));
-    b.model = yaml_load(b.file, scene_table(), &b.scene) ? model_create(&b.scene, b.file) : NULL;
+    Built b = scene_try(text);
     mem_free(text);
     return b;
-}
-
-static void clear(Built *b)
-{
-    model_destroy(b->model);
-    yaml_clear(scene_table(), &b->scene);
-    yaml_destroy(b->file);
 }
 
 static const double *strains(const Built *b)

@@ -1,15 +1,9 @@
 /* One answer for any number of threads: formulas, the terms of a system, and load cases that share a field. */
-#include "base/memory.h"
 #include "base/random.h"
-#include "model/model.h"
 #include "optim/static_design.h"
+#include "tests/scene_fixture.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 #include <string.h>
-#include <cmocka.h>
 
 enum { RUNS = 3 };
 static const int threads[RUNS] = {1, 2, 5};
@@ -76,28 +70,6 @@ static void test_formulas_at_once(void **state)
 
 /* ---- Scenes: cases that share spatial fields, and one case that has two ---- */
 
-typedef struct Built {
-    YamlFile *file;
-    Scene scene;
-    Model *model;
-} Built;
-
-static Built build(const char *text)
-{
-    Built b;
-    b.file = yaml_parse("test.yaml", text, strlen(text));
-    b.model = yaml_load(b.file, scene_table(), &b.scene) ? model_create(&b.scene, b.file) : NULL;
-    if (!b.model) fail_msg("%s", yaml_report(b.file));
-    return b;
-}
-
-static void clear(Built *b)
-{
-    model_destroy(b->model);
-    yaml_clear(scene_table(), &b->scene);
-    yaml_destroy(b->file);
-}
-
 static const char shell_scene[] =
     "slender: 1\njob: design\n"
     "shell:\n  mesh: {shape: sheet, size: [36 mm, 18 mm], cells: [20, 10]}\n  thickness: 1 mm\n"
@@ -125,7 +97,7 @@ static const char rod_scene[] =
 /* Energy, gradient, Hessian times a vector, of a state that is somewhere. */
 static void check_system(const char *scene)
 {
-    Built b = build(scene);
+    Built b = scene_build(mem_text(scene));
     Case *c = &b.model->cases[0];
     System *sys = c->sys;
     size_t n = (size_t)system_dof_count(sys);
@@ -154,7 +126,7 @@ static void check_system(const char *scene)
  * are many. */
 static double evaluate_cases(const char *scene, int thread_count, double **gradient, size_t *size)
 {
-    Built b = build(scene);
+    Built b = scene_build(mem_text(scene));
     const Model *model = b.model;
     CaseInfo info[3];
     StaticDesignDef def = static_design_default();

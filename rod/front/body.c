@@ -351,12 +351,12 @@ static const BodyOps ops = {
 };
 
 static const KeyUse uses[] = {
-    {"flux_density", "/rod.solver: newton", NULL},
-    {"fix", "!rod", "a rod is held by rod.clamp, rod.hold and rod.end"},
-    {"loads", "!rod", "loads of a rod are under rod.loads"},
-    {"target", "/rod.solver: newton", NULL},
-    {"solver", "/rod.solver: newton", NULL},
-    {"modes", "!rod", NULL},
+    {"flux_density", "/rod.solver: newton"},
+    {"fix", "!rod {a rod is held by rod.clamp, rod.hold and rod.end}"},
+    {"loads", "!rod {loads of a rod are under rod.loads}"},
+    {"target", "/rod.solver: newton"},
+    {"solver", "/rod.solver: newton"},
+    {"modes", "!rod"},
     {0},
 };
 

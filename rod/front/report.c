@@ -22,12 +22,12 @@ char *rod_describe(const Model *model, const Scene *scene)
 {
     (void)scene;
     const RodModel *rm = model->self;
-    char *text =
-        mem_format("%d rods of %d elements, up to %.4g m long\n", rm->strand_count > 1 ? rm->strand_count : 1,
-                   model->point_count - 1, rod_model_longest(rm));
+    int rods = rm->strand_count > 1 ? rm->strand_count : 1;
+    char *text = mem_format("%d rod%s of %d elements, up to %.4g m long\n", rods, rods == 1 ? "" : "s",
+                            model->point_count - 1, rod_model_longest(rm));
     if (!model->case_count) return text;
-    char *line = mem_format("%d load cases; %d unknowns of motion\n", model->case_count,
-                            system_free_count(model->cases[0].sys));
+    char *line = mem_format("%d load case%s; %d unknowns of motion\n", model->case_count,
+                            model->case_count == 1 ? "" : "s", system_free_count(model->cases[0].sys));
     text = mem_join(text, line, "");
     mem_free(line);
     return text;

@@ -232,28 +232,14 @@ bool rod_model_vectors(const Build *b, const char *at, const VectorScene *scene,
     return ok;
 }
 
-/* Line loads by the nodes' lengths; a point load is shared by the nodes beside it. */
-static void node_loads(const RodModel *model, const Rod *rod, double *load)
-{
-    double h = rod_element_length(rod);
-    for (int i = 0; i <= rod->elements; i++)
-        vec3_store(load + 3 * i, vec3_scale(i == 0 || i == rod->elements ? h / 2 : h, model->line));
-    for (int k = 0; k < model->loads.point_count; k++) {
-        double part = fmin(model->points[k].s / h, rod->elements);
-        int e = part < rod->elements ? (int)part : rod->elements - 1;
-        for (int side = 0; side < 2; side++) {
-            double *to = load + 3 * (e + side), share = side ? part - e : 1 - (part - e);
-            vec3_store(to, vec3_axpy(share, model->points[k].force, vec3_load(to)));
-        }
-    }
-}
-
 void rod_model_loads(const RodModel *model, const Rod *rod, const RodScene *scene, double *p)
 {
     rod_default_params(rod, model->young, p);
     memcpy(p + rod->gravity, scene->gravity, sizeof scene->gravity);
     p[rod->damping] = scene->damping * rod_element_length(rod);
-    node_loads(model, rod, p + rod->load);
+    RodLoads beside = model->loads; /* the weight */
+    beside.line = model->line;
+    rod_share_loads(rod, beside, p + rod->load);
     rod_sum_loads(rod, p);
 }
 

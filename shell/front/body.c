@@ -224,7 +224,7 @@ static bool fill(Model *model, const Scene *scene, const Build *b, bool flux_is_
 
 static bool create(Model *model, const Scene *scene, YamlFile *file)
 {
-    Mesh *mesh = build_mesh(&shell_scene(scene)->mesh, file, &model->report);
+    Mesh *mesh = build_mesh(&shell_scene(scene)->mesh, file, "shell.mesh", &model->report);
     if (!mesh) return false;
     Build b = build_start(scene, mesh, file);
     b.mesh_scale = shell_scene(scene)->mesh.scale;

@@ -4,6 +4,8 @@
 #include "shell/front/front.h"
 #include <math.h>
 
+enum { MOMENTS_MAX = 10000 }; /* at which a field over time is looked at */
+
 static const double LARGE_BODY = 2;       /* m: most likely a mesh in millimetres          */
 static const double CELLS_PER_LENGTH = 3; /* of the magnetic bending length, at least      */
 
@@ -25,9 +27,12 @@ static double largest_field(const Model *model, const Scene *scene, const double
     if (unknown && !isnan(unknown->bounds[0]))
         largest = fmax(largest, fmax(fabs(unknown->bounds[0]), fabs(unknown->bounds[1])));
     double now[3] = {0};
-    for (int n = 0; timed_flux_is_given(&model->flux_of_time) && n <= scene->time.steps; n++)
-        if (timed_flux_eval(&model->flux_of_time, scene->time.at + n * scene->time.step, now, NULL))
+    int moments = scene->time.steps < MOMENTS_MAX ? scene->time.steps : MOMENTS_MAX;
+    for (int n = 0; timed_flux_is_given(&model->flux_of_time) && n <= moments; n++) {
+        double time = scene->time.at + (double)n / moments * scene->time.steps * scene->time.step;
+        if (timed_flux_eval(&model->flux_of_time, time, now, NULL))
             largest = fmax(largest, vec3_length(vec3_load(now)));
+    }
     return largest;
 }
 
@@ -76,10 +81,11 @@ char *shell_describe(const Model *model, const Scene *scene)
     const Mesh *mesh = shell->mesh;
     int held = 0;
     for (int i = 0; i < 3 * mesh->vertex_count; i++) held += shell->fixed[i];
-    char *text = mem_format("%d vertices, %d faces, %d edges, %d parts; %d load cases; %d unknowns of "
+    char *text = mem_format("%d vertices, %d faces, %d edges, %d part%s; %d load case%s; %d unknowns of "
                             "motion, %d coordinates held\n",
                             mesh->vertex_count, mesh->face_count, mesh->edge_count, mesh->component_count,
-                            model->case_count, system_free_count(model->cases[0].sys), held);
+                            mesh->component_count == 1 ? "" : "s", model->case_count,
+                            model->case_count == 1 ? "" : "s", system_free_count(model->cases[0].sys), held);
     if (system_base_shift(model->cases[0].sys) > 0)
         text = mem_join(text, "the body has free rigid motions\n", "");
     double length = bending_length(model, scene);

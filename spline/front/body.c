@@ -71,11 +71,7 @@ static const BodyOps ops = {
 };
 
 static const KeyUse uses[] = {
-    {"flux_density", "!spline", NULL},
-    {"fix", "!spline", NULL},
-    {"loads", "!spline", NULL},
-    {"modes", "!spline", NULL},
-    {0},
+    {"flux_density", "!spline"}, {"fix", "!spline"}, {"loads", "!spline"}, {"modes", "!spline"}, {0},
 };
 
 static const JobRow *const jobs[] = {&spline_job_draw, NULL};
