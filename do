@@ -5,6 +5,7 @@
 #   ./do run SCENE ..     build, then run a scene (options: build/slender run --help)
 #   ./do test [NAME]      build, then run all tests (or those whose name matches)
 #   ./do bench [NAME ..]  build, then measure (bench/README.md)
+#   ./do wheel            the Python package in python/dist/: a wheel, and an sdist
 set -eu
 here=$(pwd) # scenes and results are where the user is
 cd "$(dirname "$0")"
@@ -13,6 +14,7 @@ root=$(pwd)
 packages="gcc cmake make pkg-config libsuitesparse-dev libopenblas-dev libnlopt-dev libmuparser-dev libcairo2-dev
           libyaml-dev libsqlite3-dev libhdf5-dev libwebp-dev libjpeg-dev zlib1g-dev libexpat1-dev fonts-dejavu-core libcmocka-dev"
 tools="clang-format-14 python3-h5py" # of tests that are skipped without
+wheel="python3-setuptools python3-wheel python3-numpy"
 
 # Runs a command without a word, unless it fails.
 quietly() {
@@ -65,5 +67,13 @@ test)
     (setup $tools) || echo "tests that need them are skipped"
     ctest --test-dir build --output-on-failure ${1:+-R "$1"}
     ;;
-*) sed -n '2,7s/^# \{0,1\}//p' do ;;
+wheel)
+    # shellcheck disable=SC2086
+    setup $packages $wheel
+    cd python
+    rm -rf build/lib build/bdist* dist
+    quietly /usr/bin/python3 setup.py bdist_wheel sdist
+    ls dist/*
+    ;;
+*) sed -n '2,8s/^# \{0,1\}//p' do ;;
 esac

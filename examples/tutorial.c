@@ -102,8 +102,8 @@ static void move(SlenderModel *model, int tip)
         if (status != SLENDER_DONE) stop(&err);
         SlenderState *end = slender_motion_state(motion, STEPS, &err);
         if (side >= 0) F[side] = height(end, tip);
-        if (side < 0 && slender_motion_vjp(motion, 1, (int[]){STEPS}, dx, NULL, dflux[0], NULL, NULL, &err) !=
-                            SLENDER_DONE)
+        if (side < 0 && slender_motion_vjp(motion, 1, (int[]){STEPS}, dx, NULL, NULL, dflux[0], NULL, NULL,
+                                           &err) != SLENDER_DONE)
             stop(&err);
         slender_state_destroy(end);
         slender_motion_destroy(motion);

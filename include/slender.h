@@ -218,11 +218,12 @@ SLENDER_API void slender_motion_destroy(SlenderMotion *motion);
 SLENDER_API int slender_motion_steps(const SlenderMotion *motion);
 SLENDER_API SlenderState *slender_motion_state(const SlenderMotion *motion, int n, SlenderError *err);
 
-/* Of F(x_n, ..): dF/dx[count][dofs] of the states after frame[count] steps, to dF/dp[params] (of which flux_density is 0 where flux was given),
- * dF/dflux[steps][3], and dF/dx, dF/dv of the start, [dofs]; NULL: not wanted. Exact. */
+/* Of F(x_n, v_n, ..): dF/dx[count][dofs], and dF/dv alike or NULL, of the states after frame[count] steps, to dF/dp[params]
+ * (of which flux_density is 0 where flux was given), dF/dflux[steps][3], and dF/dx, dF/dv of the start, [dofs]; NULL: not
+ * wanted. Exact. */
 SLENDER_API SlenderStatus slender_motion_vjp(SlenderMotion *motion, int count, const int *frame,
-                                             const double *dx, double *dp, double *dflux, double *start_x,
-                                             double *start_v, SlenderError *err);
+                                             const double *dx, const double *dv, double *dp, double *dflux,
+                                             double *start_x, double *start_v, SlenderError *err);
 
 /* The tangent: dx[steps + 1][dofs] of all states for changes dp[params], dflux[steps][3], and of the start's x and v; NULL: none. */
 SLENDER_API SlenderStatus slender_motion_jvp(SlenderMotion *motion, const double *dp, const double *dflux,

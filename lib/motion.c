@@ -198,13 +198,39 @@ typedef struct Pull {
     SlenderMotion *motion;
     int count;
     const int *frame;
-    const double *dx;
+    const double *dx, *dv; /* dv: NULL where F has no velocities */
     double *dp, *dflux, *start_x, *start_v;
 } Pull;
 
 static void copy_out(double *to, const double *from, int count)
 {
     if (to) memcpy(to, from, (size_t)count * sizeof *to);
+}
+
+/* dF/dx of all states: a velocity is a difference of two (state_at). */
+static void seed_states(const Pull *p, const Path *path, double *seed)
+{
+    size_t n = (size_t)path->dofs, positions = (size_t)system_position_count(path->problem->sys);
+    for (int k = 0; k < p->count; k++) {
+        int end = path->end[p->frame[k]];
+        const double *dx = p->dx + (size_t)k * n, *dv = p->dv ? p->dv + (size_t)k * n : NULL;
+        double *row = seed + (size_t)end * n;
+        for (size_t i = 0; i < n; i++) row[i] += dx[i];
+        for (size_t i = 0; i < positions && dv && end > 0; i++) {
+            row[i] += dv[i] / path->dt[end];
+            row[i - n] -= dv[i] / path->dt[end];
+        }
+    }
+}
+
+/* The start's velocities are its own. */
+static void add_start_velocity(const Pull *p, double *start_v)
+{
+    size_t n = (size_t)p->motion->path.dofs;
+    const System *sys = p->motion->problem.sys;
+    for (int k = 0; k < p->count && p->dv; k++)
+        for (size_t i = 0; i < n && p->frame[k] == 0; i++)
+            if (!system_is_fixed(sys, (int)i)) start_v[i] += p->dv[(size_t)k * n + i];
 }
 
 static SlenderStatus pull(void *self, Error *err)
@@ -218,11 +244,9 @@ static SlenderStatus pull(void *self, Error *err)
         if (p->frame[k] < 0 || p->frame[k] > motion->reached) return no_such_step(motion, p->frame[k], err);
     double *seed = mem_alloc(rows * n, sizeof *seed), *dv = mem_alloc(n, sizeof *dv),
            *dp = mem_alloc((size_t)motion->params.size, sizeof *dp);
-    for (int k = 0; k < p->count; k++) {
-        double *row = seed + (size_t)path->end[p->frame[k]] * n;
-        for (size_t i = 0; i < n; i++) row[i] += p->dx[(size_t)k * n + i];
-    }
+    seed_states(p, path, seed);
     path_adjoint(path, seed, dp, dv);
+    add_start_velocity(p, dv);
     copy_out(p->dp, dp, size);
     if (motion->given) copy_out(p->dflux, dp + size, 3 * motion->problem.steps);
     copy_out(p->start_x, seed, path->dofs);
@@ -234,10 +258,10 @@ static SlenderStatus pull(void *self, Error *err)
 }
 
 SlenderStatus slender_motion_vjp(SlenderMotion *motion, int count, const int *frame, const double *dx,
-                                 double *dp, double *dflux, double *start_x, double *start_v,
-                                 SlenderError *err)
+                                 const double *dv, double *dp, double *dflux, double *start_x,
+                                 double *start_v, SlenderError *err)
 {
-    Pull p = {motion, count, frame, dx, dp, dflux, start_x, start_v};
+    Pull p = {motion, count, frame, dx, dv, dp, dflux, start_x, start_v};
     return lib_call(pull, &p, err);
 }
 

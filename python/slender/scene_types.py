@@ -1,0 +1,350 @@
+"""What a scene may say, for type checkers: `scene: slender.scene_types.Scene = {..}`. docs/scene.md says what it means.
+
+Made by python/make_scene_types.py from `slender schema`; do not edit. Which keys are needed, and which go together, is
+for slender.Scene to say."""
+from __future__ import annotations
+
+from typing import Any, Literal, Mapping, Sequence as Rows, TypedDict, Union
+
+from numpy.typing import NDArray
+
+Number = Union[float, str]  # or text with a unit, "1 mm"
+Numbers = Union[Rows[Number], NDArray[Any]]
+Table = Union[Rows[Numbers], NDArray[Any]]
+
+
+Shell = TypedDict("Shell", {
+    "mesh": "Mesh", "pose": "Pose", "velocity": "Velocity", "thickness": "Number", "young": "Young",
+    "poisson": "float", "density": "Number", "bending": "Literal['midedge', 'hinge']", "fold": "Fold",
+    "magnetization": "Magnetization", "damping": "Number", "gravity": "Numbers",
+}, total=False)
+
+MeshKeys = TypedDict("MeshKeys", {
+    "file": "str", "shape": "Literal['sheet', 'strip', 'hexagram', 'disc', 'kirigami']",
+    "size": "Union[Number, Numbers]", "cells": "Union[int, Numbers]", "n": "int", "divisions": "int", "false": "int",
+    "pattern": "Literal['right', 'alternate', 'crossed']", "scale": "float", "weld": "Number",
+}, total=False)
+
+PoseKeys = TypedDict("PoseKeys", {
+    "file": "str", "scale": "float",
+}, total=False)
+
+VelocityKeys = TypedDict("VelocityKeys", {
+    "value": "Numbers", "formula": "Numbers", "where": "Mapping[str, Where]",
+}, total=False)
+
+WhereKeys = TypedDict("WhereKeys", {
+    "formula": "Number",
+}, total=False)
+
+YoungKeys = TypedDict("YoungKeys", {
+    "value": "Number", "file": "str", "formula": "Number", "groups": "Mapping[str, YoungOfAGroup]", "other": "Number",
+    "where": "Mapping[str, Where]",
+}, total=False)
+
+YoungOfAGroupKeys = TypedDict("YoungOfAGroupKeys", {
+    "value": "Number",
+}, total=False)
+
+FoldKeys = TypedDict("FoldKeys", {
+    "value": "float", "file": "str", "formula": "Number", "groups": "Mapping[str, FoldOfAGroup]", "other": "float",
+    "where": "Mapping[str, Where]",
+}, total=False)
+
+FoldOfAGroupKeys = TypedDict("FoldOfAGroupKeys", {
+    "value": "float",
+}, total=False)
+
+MagnetizationKeys = TypedDict("MagnetizationKeys", {
+    "value": "Numbers", "file": "str", "formula": "Numbers", "groups": "Mapping[str, MagnetizationOfAGroup]",
+    "other": "Numbers", "where": "Mapping[str, Where]",
+}, total=False)
+
+MagnetizationOfAGroupKeys = TypedDict("MagnetizationOfAGroupKeys", {
+    "value": "Numbers",
+}, total=False)
+
+Rod = TypedDict("Rod", {
+    "curve": "CurveOfARod", "natural_strain": "NaturalStrain", "poses": "Rows[Poses]", "length": "Number",
+    "clamp": "Clamp", "hold": "Literal['clamped', 'pinned']", "end": "End", "elements": "int", "radius": "Number",
+    "ellipse": "Union[Number, Numbers]", "young": "Number", "poisson": "float", "density": "Number",
+    "gravity": "Numbers", "frame": "Frame", "bishop_normal": "Numbers", "loads": "Rows[LoadsOfARod]",
+    "magnetization": "Magnetization", "damping": "Number", "start": "Literal['natural', 'curve']",
+    "velocity": "Velocity", "solver": "Literal['newton', 'pbd']", "pbd": "Pbd",
+}, total=False)
+
+CurveOfARod = TypedDict("CurveOfARod", {
+    "formula": "Numbers", "file": "str", "parameter": "Number", "range": "Union[float, Numbers]", "strands": "int",
+    "where": "Mapping[str, Where]", "scale": "float", "noise": "Noise",
+}, total=False)
+
+NoiseKeys = TypedDict("NoiseKeys", {
+    "mode": "Literal['auto']", "value": "Number",
+}, total=False)
+
+NaturalStrainKeys = TypedDict("NaturalStrainKeys", {
+    "value": "Numbers", "formula": "Numbers", "file": "str", "where": "Mapping[str, Where]",
+}, total=False)
+
+Poses = TypedDict("Poses", {
+    "file": "str", "frame": "Table", "noise": "Noise",
+}, total=False)
+
+Clamp = TypedDict("Clamp", {
+    "position": "Numbers", "frame": "Table",
+}, total=False)
+
+End = TypedDict("End", {
+    "position": "Numbers", "hold": "Literal['clamped', 'pinned']", "frame": "Table",
+}, total=False)
+
+FrameKeys = TypedDict("FrameKeys", {
+    "kind": "Literal['frenet', 'bishop']", "formula": "Number", "from": "Literal['frenet', 'bishop']", "file": "str",
+}, total=False)
+
+LoadsOfARod = TypedDict("LoadsOfARod", {
+    "point": "Number", "line": "Numbers", "force": "Numbers",
+}, total=False)
+
+Pbd = TypedDict("Pbd", {
+    "substeps": "int", "sweeps": "int",
+}, total=False)
+
+Spline = TypedDict("Spline", {
+    "image": "str", "density": "DensityOfADrawing", "tone": "Tone", "page": "Page", "pen": "Number",
+    "pens": "Rows[Pens]", "separation": "Separation", "cross": "Cross", "direction": "Direction",
+    "start": "StartOfADrawing", "energies": "Energies", "potential": "Potential", "flow": "Flow", "pair": "Pair",
+    "method": "Literal['auto', 'newton', 'gradient', 'monte_carlo', 'dynamics']", "iterations": "int",
+    "tolerance": "float", "rounds": "int", "rest": "float", "monte_carlo": "MonteCarlo", "dynamics": "Dynamics",
+    "seed": "int", "order": "Literal['shortest', 'as_made']", "plotter": "Plotter",
+}, total=False)
+
+DensityOfADrawingKeys = TypedDict("DensityOfADrawingKeys", {
+    "formula": "Number", "where": "Mapping[str, Where]",
+}, total=False)
+
+Tone = TypedDict("Tone", {
+    "crop": "Numbers", "fit": "Literal['contain', 'cover']", "invert": "bool", "black": "float", "white": "float",
+    "gamma": "float", "curve": "Table", "density": "float",
+}, total=False)
+
+Page = TypedDict("Page", {
+    "size": "SizeOfAPage", "margin": "Number",
+}, total=False)
+
+SizeOfAPageKeys = TypedDict("SizeOfAPageKeys", {
+    "sides": "Union[Number, Numbers]", "name": "Number",
+}, total=False)
+
+PensKeys = TypedDict("PensKeys", {
+    "name": "Number", "color": "Number", "width": "Number", "from": "float", "turn": "Number",
+}, total=False)
+
+SeparationKeys = TypedDict("SeparationKeys", {
+    "kind": "Literal['cmyk', 'tones']", "black": "float",
+}, total=False)
+
+Cross = TypedDict("Cross", {
+    "angle": "Number", "from": "Union[float, Numbers]",
+}, total=False)
+
+DirectionKeys = TypedDict("DirectionKeys", {
+    "image": "Literal['structure_tensor']", "angle": "Number", "formula": "Numbers", "file": "str", "turn": "Number",
+    "detail": "Number", "smooth": "Number", "spread": "Number", "where": "Mapping[str, Where]",
+}, total=False)
+
+StartOfADrawingKeys = TypedDict("StartOfADrawingKeys", {
+    "kind": "Literal['streamlines', 'random']", "separation": "float", "ink": "float", "longest": "Number",
+    "segments": "int",
+}, total=False)
+
+Energies = TypedDict("Energies", {
+    "tone": "float", "strain": "float", "bend": "float", "align": "float", "wall": "float", "stretch": "float",
+    "curvature": "float", "potential": "float", "flow": "float", "boundary": "float", "pair": "float",
+}, total=False)
+
+PotentialKeys = TypedDict("PotentialKeys", {
+    "formula": "Number", "where": "Mapping[str, Where]",
+}, total=False)
+
+FlowKeys = TypedDict("FlowKeys", {
+    "formula": "Numbers", "where": "Mapping[str, Where]",
+}, total=False)
+
+Pair = TypedDict("Pair", {
+    "kernel": "Literal['wendland', 'triweight']", "radius": "float",
+}, total=False)
+
+MonteCarlo = TypedDict("MonteCarlo", {
+    "temperatures": "int", "sweeps": "int", "first": "float", "last": "float",
+}, total=False)
+
+Dynamics = TypedDict("Dynamics", {
+    "step": "float", "steps": "int", "damping": "float",
+}, total=False)
+
+Plotter = TypedDict("Plotter", {
+    "down": "Number", "up": "Number", "lift": "Number", "z": "ZAxis", "servo": "Servo",
+}, total=False)
+
+ZAxis = TypedDict("ZAxis", {
+    "up": "Number", "down": "Number", "speed": "Number",
+}, total=False)
+
+Servo = TypedDict("Servo", {
+    "up": "Number", "down": "Number", "pause": "Literal['seconds', 'milliseconds']",
+}, total=False)
+
+FluxDensityKeys = TypedDict("FluxDensityKeys", {
+    "value": "Numbers", "formula": "Numbers", "file": "str", "dipole": "Dipole", "magnet": "Magnet",
+    "where": "Mapping[str, Where]",
+}, total=False)
+
+Dipole = TypedDict("Dipole", {
+    "at": "Numbers", "moment": "Numbers",
+}, total=False)
+
+Magnet = TypedDict("Magnet", {
+    "at": "Numbers", "remanence": "Numbers", "volume": "Number",
+}, total=False)
+
+FixKeys = TypedDict("FixKeys", {
+    "vertices": "Union[int, Numbers]", "box": "Table", "ball": "Ball", "group": "Number", "boundary": "bool",
+    "axes": "Number", "clamp": "bool", "move": "Numbers",
+}, total=False)
+
+Ball = TypedDict("Ball", {
+    "center": "Numbers", "radius": "Number",
+}, total=False)
+
+Loads = TypedDict("Loads", {
+    "force": "Numbers", "line": "Numbers", "area": "Numbers", "on": "Selection", "region": "Selection",
+    "true": "Selection",
+}, total=False)
+
+SelectionKeys = TypedDict("SelectionKeys", {
+    "vertices": "Union[int, Numbers]", "box": "Table", "ball": "Ball", "group": "Number", "boundary": "bool",
+}, total=False)
+
+TargetKeys = TypedDict("TargetKeys", {
+    "file": "str", "height_map": "str", "strokes": "Table", "formula": "Numbers", "height": "Number",
+    "width": "Number", "scale": "float", "where": "Mapping[str, Where]", "on": "Selection", "region": "Selection",
+    "true": "Selection",
+}, total=False)
+
+Cases = TypedDict("Cases", {
+    "name": "Number", "weight": "float", "flux_density": "FluxDensity", "loads": "Rows[Loads]", "gravity": "Numbers",
+    "target": "Target",
+}, total=False)
+
+Sequence = TypedDict("Sequence", {
+    "flux_density": "FluxDensity", "loads": "Rows[Loads]", "gravity": "Numbers", "time": "Number",
+}, total=False)
+
+Design = TypedDict("Design", {
+    "unknowns": "Unknowns", "objectives": "Rows[Objectives]", "optimizer": "Literal['mma', 'lbfgs', 'gauss_newton']",
+    "iterations": "int", "tolerance": "float", "seed": "int",
+}, total=False)
+
+Unknowns = TypedDict("Unknowns", {
+    "magnetization": "UnknownMagnetization", "young": "UnknownYoung", "fold": "UnknownFold",
+    "flux_density": "UnknownFluxDensity",
+}, total=False)
+
+UnknownMagnetization = TypedDict("UnknownMagnetization", {
+    "noise": "Number", "scale": "Number", "bounds": "Numbers", "magnitude": "Number", "max_magnitude": "Number",
+    "per": "Literal['face', 'group']", "start": "Magnetization",
+}, total=False)
+
+UnknownYoung = TypedDict("UnknownYoung", {
+    "bounds": "Numbers", "scale": "Literal['log', 'linear']", "noise": "Number", "per": "Literal['face', 'group']",
+    "start": "Young",
+}, total=False)
+
+UnknownFold = TypedDict("UnknownFold", {
+    "bounds": "Numbers", "scale": "Literal['log', 'linear']", "noise": "float", "start": "Fold",
+}, total=False)
+
+UnknownFluxDensity = TypedDict("UnknownFluxDensity", {
+    "per": "Literal['frame', 'knot', 'harmonic']", "knots": "int", "harmonics": "int", "noise": "Number",
+    "scale": "Number", "bounds": "Numbers", "start": "StartOfFluxDensity",
+}, total=False)
+
+StartOfFluxDensityKeys = TypedDict("StartOfFluxDensityKeys", {
+    "value": "Numbers", "file": "str",
+}, total=False)
+
+Objectives = TypedDict("Objectives", {
+    "target": "float", "height": "float", "magnetization_smoothness": "float", "waypoint": "Waypoint",
+    "curve": "Curve", "reach": "Reach", "field_magnitude": "float", "field_smoothness": "float", "dmp": "float",
+    "weight": "float", "of": "Number", "frame": "int", "frames": "Union[int, Numbers]", "pairs": "int",
+}, total=False)
+
+Waypoint = TypedDict("Waypoint", {
+    "vertex": "Number", "mass_center": "bool", "frame": "int", "frames": "Union[int, Numbers]", "at": "Numbers",
+}, total=False)
+
+Curve = TypedDict("Curve", {
+    "vertex": "Number", "mass_center": "bool", "frame": "int", "frames": "Union[int, Numbers]", "points": "Table",
+    "arc": "Table", "blend": "Number",
+}, total=False)
+
+Reach = TypedDict("Reach", {
+    "vertex": "Number", "mass_center": "bool", "targets": "Table", "every": "Number", "delay": "Number",
+}, total=False)
+
+Solver = TypedDict("Solver", {
+    "max_iterations": "int", "step_tolerance": "float", "force_tolerance": "float",
+}, total=False)
+
+LoadStepsKeys = TypedDict("LoadStepsKeys", {
+    "mode": "Literal['auto']", "count": "int",
+}, total=False)
+
+TimeKeys = TypedDict("TimeKeys", {
+    "at": "Number", "step": "Number", "steps": "int",
+}, total=False)
+
+Output = TypedDict("Output", {
+    "every": "int", "precision": "Literal['single', 'double']", "svg": "Number", "png": "Number", "gcode": "Number",
+    "gcode_servo": "Number", "hpgl": "Number",
+}, total=False)
+
+Scene = TypedDict("Scene", {
+    "slender": "Literal[1]",
+    "job": "Literal['equilibrium', 'evaluate', 'design', 'simulate', 'trajectory', 'invert', 'identify', 'draw']",
+    "shell": "Shell", "rod": "Rod", "spline": "Spline", "flux_density": "FluxDensity", "fix": "Rows[Fix]",
+    "loads": "Rows[Loads]", "target": "Target", "cases": "Rows[Cases]", "sequence": "Rows[Sequence]",
+    "design": "Design", "solver": "Solver", "load_steps": "LoadSteps", "time": "Time", "modes": "int",
+    "checks": "Union[Literal['stability', 'self_contact', 'round_trip'], Rows[Literal['stability', 'self_contact', 'round_trip']]]",
+    "output": "Output",
+}, total=False)
+
+Mesh = Union["MeshKeys", str]
+Pose = Union["PoseKeys", str]
+Velocity = Union["VelocityKeys", Numbers]
+Where = Union["WhereKeys", Number]
+Young = Union["YoungKeys", Number]
+YoungOfAGroup = Union["YoungOfAGroupKeys", Number]
+Fold = Union["FoldKeys", Number]
+FoldOfAGroup = Union["FoldOfAGroupKeys", float]
+Magnetization = Union["MagnetizationKeys", Numbers]
+MagnetizationOfAGroup = Union["MagnetizationOfAGroupKeys", Numbers]
+Noise = Union["NoiseKeys", Literal['auto'], Number]
+NaturalStrain = Union["NaturalStrainKeys", Numbers]
+Frame = Union["FrameKeys", Literal['frenet', 'bishop']]
+DensityOfADrawing = Union["DensityOfADrawingKeys", Number]
+SizeOfAPage = Union["SizeOfAPageKeys", Number, Numbers]
+Pens = Union["PensKeys", Number]
+Separation = Union["SeparationKeys", Literal['cmyk', 'tones']]
+Direction = Union["DirectionKeys", Literal['structure_tensor'], Number]
+StartOfADrawing = Union["StartOfADrawingKeys", Literal['streamlines', 'random']]
+Potential = Union["PotentialKeys", Number]
+Flow = Union["FlowKeys", Numbers]
+FluxDensity = Union["FluxDensityKeys", Numbers]
+Fix = Union["FixKeys", Number]
+Selection = Union["SelectionKeys", Number]
+Target = Union["TargetKeys", Numbers]
+StartOfFluxDensity = Union["StartOfFluxDensityKeys", Numbers]
+LoadSteps = Union["LoadStepsKeys", Literal['auto'], int]
+Time = Union["TimeKeys", Number]
