@@ -97,10 +97,11 @@ static bool draw(const Scene *scene, const Host *host, const char *result, Error
 {
     char *picture = outputs_picture(scene, result);
     ShowDef def = show_default();
-    bool ok = show_result(result, picture, &def, err) == SHOW_DONE;
-    if (ok) host_say(host, "picture: %s", picture);
+    ShowStatus shown = show_result(result, picture, &def, err);
+    if (shown == SHOW_DONE) host_say(host, "picture: %s", picture);
+    if (shown == SHOW_HAS_NOT) host_say(host, "no picture: %s", err->text);
     mem_free(picture);
-    return ok || error_prefix(err, "no picture");
+    return shown != SHOW_CANNOT_WRITE || error_prefix(err, "no picture");
 }
 
 /* With --log=json also as an object. */

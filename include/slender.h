@@ -117,8 +117,8 @@ SLENDER_API SlenderStatus slender_run(const SlenderScene *scene, const SlenderRu
 /* A scene's body made ready, with its load cases, for whatever its job is. */
 typedef struct SlenderModel SlenderModel;
 
-/* The scene must outlive it. threads: 1 to 64, that it works with in a call. Refused: a scene without load cases (a drawing, an inversion); what is doubtful is
- * in slender_model_warnings. */
+/* The scene must outlive it. threads: 1 to 64, that it works with in a call. Refused: a scene without load cases (a drawing, an inversion); what is doubtful
+ * is among its info, as warnings. */
 SLENDER_API SlenderModel *slender_model_create(const SlenderScene *scene, int threads, SlenderError *err);
 SLENDER_API void slender_model_destroy(SlenderModel *model);
 
@@ -135,7 +135,7 @@ typedef struct SlenderModelInfo {
 /* Borrowed from the model. */
 SLENDER_API SlenderModelInfo slender_model_info(const SlenderModel *model);
 
-/* Names: of a case, "up"; of a term of energy, "magnetic" (of motions one more, "kinetic"). NULL: there is none of that number. */
+/* Names: of a case, "up"; of a term of energy in statics, "magnetic". NULL: there is none of that number. */
 SLENDER_API const char *slender_model_case(const SlenderModel *model, int load_case);
 SLENDER_API const char *slender_model_term(const SlenderModel *model, int term);
 

@@ -75,7 +75,8 @@ bool run_put_frame(Run *run, int index, double shown, const Snapshot *shot, bool
     if (run->host->frame) run->host->frame(run->host->self, shown, model->point_count, place);
     arrays_add(&list, array_float("x", "m", place, 2, model->point_count, 3));
     arrays_add(&list, array_float("time", "s", &shown, 0, 0, 0));
-    arrays_add(&list, array_float("flux_density", "T", shot->p + model->flux_density, 2, 1, 3));
+    if (model->flux_density >= 0)
+        arrays_add(&list, array_float("flux_density", "T", shot->p + model->flux_density, 2, 1, 3));
     if (model->body->ops->add_frame) model->body->ops->add_frame(model, shot, whole, &list);
     if (run->scene->output.states == STATES_ALL) state_arrays_add(model, shot, "state", true, &list);
     return arrays_put(&list, run->journal, "frame", index, err);
@@ -118,6 +119,13 @@ static void add_params(Arrays *list, const Params *params, const Snapshot *shots
     }
 }
 
+/* Three numbers of p, if the body has them. Takes the name. */
+static void add_vector(Arrays *list, char *name, const char *unit, const double *p, int first)
+{
+    arrays_keep(list, name);
+    if (first >= 0) arrays_add(list, array_float(name, unit, p + first, 1, 3, 0));
+}
+
 static void add_case(Arrays *list, const Model *model, const Snapshot *shot)
 {
     const char *prefix = arrays_keep(list, mem_format("cases/%s", shot->load_case->name));
@@ -125,10 +133,8 @@ static void add_case(Arrays *list, const Model *model, const Snapshot *shot)
     add_state(list, model, x_name, prefix, shot);
     arrays_add(list, array_text(arrays_keep(list, mem_format("%s/status", prefix)),
                                 newton_status_name(shot->status)));
-    arrays_add(list, array_float(arrays_keep(list, mem_format("%s/flux_density", prefix)), "T",
-                                 shot->p + model->flux_density, 1, 3, 0));
-    arrays_add(list, array_float(arrays_keep(list, mem_format("%s/gravity", prefix)), "m/s^2",
-                                 shot->p + model->gravity, 1, 3, 0));
+    add_vector(list, mem_format("%s/flux_density", prefix), "T", shot->p, model->flux_density);
+    add_vector(list, mem_format("%s/gravity", prefix), "m/s^2", shot->p, model->gravity);
     if (shot->load_case->target)
         arrays_add(list, array_float(arrays_keep(list, mem_format("%s/target", prefix)), "m",
                                      shot->load_case->target[0], 2, model->point_count, 3));

@@ -125,6 +125,7 @@ static bool put_frames(TrajectoryJob *job, int first, Error *err)
 static void add_field(const TrajectoryJob *job, Arrays *list)
 {
     int steps = job->run->scene->time.steps, flux = job->run->model->flux_density;
+    if (flux < 0) return;
     double *rows = arrays_numbers(list, 3 * (size_t)steps);
     for (int n = 1; n <= steps; n++)
         memcpy(rows + 3 * (n - 1), trajectory_params(job->t, n) + flux, 3 * sizeof *rows);

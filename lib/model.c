@@ -51,6 +51,7 @@ static SlenderStatus make(void *self, Error *err)
             made->cases[c].statics = model->cases[c].sys;
         system_set_workers(model->cases[c].sys, made->workers);
     }
+    lib_system(made, 0, false); /* whose terms slender_model_info counts */
     return SLENDER_DONE;
 }
 
@@ -77,7 +78,7 @@ void slender_model_destroy(SlenderModel *model)
 SlenderModelInfo slender_model_info(const SlenderModel *model)
 {
     const Model *m = model->model;
-    const System *sys = m->cases[0].sys;
+    const System *sys = model->cases[0].statics;
     const State *start = &m->cases[0].state;
     return (SlenderModelInfo){
         .cases = m->case_count,
@@ -102,7 +103,7 @@ const char *slender_model_case(const SlenderModel *model, int load_case)
 
 const char *slender_model_term(const SlenderModel *model, int term)
 {
-    const System *sys = model->model->cases[0].sys;
+    const System *sys = model->cases[0].statics;
     return term >= 0 && term < system_term_count(sys) ? system_term(sys, term)->ops->name : NULL;
 }
 

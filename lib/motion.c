@@ -95,6 +95,8 @@ static SlenderStatus check(const Simulation *s, Error *err)
     if (s->start->now.dofs != dofs)
         return lib_refuse(err, "the state has %d dofs and the model %d: it is of another model",
                           s->start->now.dofs, dofs);
+    if (s->def->flux && s->model->model->flux_density < 0)
+        return lib_refuse(err, "%s feels no flux density", s->model->model->body->noun);
     if (s->def->steps < 0 || !(s->def->step > 0))
         return lib_refuse(err, "%d steps of %g s; they must be 0 or more, and longer than 0 s", s->def->steps,
                           s->def->step);

@@ -49,8 +49,10 @@ bool model_read_flux(Model *model, const Build *b, const Scene *scene, FluxField
     return ok;
 }
 
-void model_put_flux(const Model *model, const CaseFlux *flux, double *p)
+void model_put_flux(const Model *model, int number, double *p)
 {
+    if (model->flux_density < 0) return;
+    const CaseFlux *flux = &model->flux[number];
     memcpy(p + model->flux_density, flux->uniform, sizeof flux->uniform);
     for (int k = 0; k < model->fields->count; k++) p[model->field_scale + k] = k == flux->field;
 }

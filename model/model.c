@@ -20,11 +20,19 @@ bool model_load(const Model *model, double time, double *p, Error *err)
 
 /* ---- Loads of a case ---- */
 
-/* Loads and gravity of a case or stage, where it says them. */
-static bool put_loads(Model *model, const Build *b, Key at, const LoadScene *loads, int count,
-                      const double *gravity, double *p)
+static bool feels_none(const Model *model, const Build *b, Key at, const char *name)
 {
-    if (!isnan(gravity[0])) memcpy(p + model->gravity, gravity, 3 * sizeof *gravity);
+    return yaml_refuse(b->file, key("%s.%s", at.text, name).text, "%s feels none", model->body->noun);
+}
+
+/* Loads and gravity of a case or stage, where it says them; and is its field felt? */
+static bool put_loads(Model *model, const Build *b, Key at, const LoadScene *loads, int count,
+                      const double *gravity, const FluxScene *flux, double *p)
+{
+    bool pulls = !isnan(gravity[0]);
+    if (pulls && model->gravity < 0) return feels_none(model, b, at, "gravity");
+    if (flux && model->flux_density < 0) return feels_none(model, b, at, "flux_density");
+    if (pulls) memcpy(p + model->gravity, gravity, 3 * sizeof *gravity);
     return !loads || model->body->ops->put_loads(model, b, key("%s.loads", at.text).text, loads, count, p);
 }
 
@@ -61,9 +69,9 @@ static bool add_stages(Model *model, const Build *b, const Scene *scene, const d
         if (!isnan(stage->time)) c->stages[k].time = stage->time;
         now.time = c->stages[k].time;
         ok = put_loads(model, &now, key("sequence[%d]", k), stage->loads, stage->loads_count, stage->gravity,
-                       c->stages[k].p) &&
+                       stage->flux_density, c->stages[k].p) &&
              ok;
-        model_put_flux(model, &model->flux[1 + k], c->stages[k].p);
+        model_put_flux(model, 1 + k, c->stages[k].p);
     }
     return ok;
 }
@@ -97,8 +105,10 @@ bool model_cases(Model *model, const Build *b, const Scene *scene, const double 
                 "a case's name is a word without '/' or control characters, of at most %d bytes, and "
                 "not '.'",
                 CASE_NAME_MAX);
-        ok = put_loads(model, b, at, from->loads, from->loads_count, from->gravity, c->stages[0].p) && ok;
-        model_put_flux(model, &model->flux[1 + k], c->stages[0].p);
+        ok = put_loads(model, b, at, from->loads, from->loads_count, from->gravity, from->flux_density,
+                       c->stages[0].p) &&
+             ok;
+        model_put_flux(model, 1 + k, c->stages[0].p);
         bool own = from->target != NULL;
         ok = add_target(model, b, own ? key("%s.target", at.text) : key("target"),
                         own ? from->target : scene->target, c) &&
@@ -174,14 +184,16 @@ static bool check_motion(const Scene *scene, const JobRow *job, YamlFile *file)
            yaml_refuse(file, "time", "%s needs `time`, e.g. time: {step: 1 ms, steps: 100}", job->noun);
 }
 
-/* "rods and shells": those that have the job. */
+/* "shells, rods and cables": those that have the job. */
 static char *bodies_of(const char *job)
 {
     char *list = mem_text("");
-    for (int k = 0, more = 0; bodies[k]; k++) {
-        if (!body_job(bodies[k], job)) continue;
-        list = mem_join(list, more++ ? " and " : "", bodies[k]->nouns);
-    }
+    const BodyRow *last = NULL;
+    for (int k = 0; bodies[k]; k++)
+        if (body_job(bodies[k], job)) last = bodies[k];
+    for (int k = 0; bodies[k]; k++)
+        if (body_job(bodies[k], job))
+            list = mem_join(list, !*list ? "" : bodies[k] == last ? " and " : ", ", bodies[k]->nouns);
     return list;
 }
 
@@ -199,6 +211,7 @@ static Model *create(const Scene *scene, YamlFile *file, bool general)
 {
     Model *model = mem_alloc(1, sizeof *model);
     model->general = general;
+    model->gravity = model->flux_density = model->field_scale = -1;
     model->time = scene->time.at;
     const JobRow *job = scene_job(scene);
     model->body = scene_body(scene);

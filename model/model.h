@@ -34,7 +34,8 @@ struct Model {
     Start *start;     /* while it is made: what it starts from; NULL: nothing   */
     /* Nothing below is of a body without cases. */
     Params *params; /* the body's                                          */
-    int gravity;    /* first entries in p                                  */
+    /* First entries in p of gravity, of the uniform flux density and of the factors on `fields`; -1: it feels none. */
+    int gravity;
     int flux_density, field_scale;
     FluxFields *fields; /* the body's */
     int point_count;    /* vertices or nodes                                   */
@@ -72,8 +73,8 @@ bool model_load(const Model *model, double time, double *p, Error *err);
 bool model_read_flux(Model *model, const Build *b, const Scene *scene, FluxFields *fields);
 void model_add_blocks(Model *model, const Scene *scene);
 
-/* A flux density of model->flux into p. */
-void model_put_flux(const Model *model, const CaseFlux *flux, double *p);
+/* A flux density, model->flux[number], into p. */
+void model_put_flux(const Model *model, int number, double *p);
 
 /* The load cases or stages of a scene, each with p as a copy; false after a refusal. */
 bool model_cases(Model *model, const Build *b, const Scene *scene, const double *p);

@@ -38,35 +38,47 @@ static bool height_objective(const Model *model, const Build *b, Key at, const O
 
 /* ---- Points ---- */
 
-/* The vertices and weights of a probe, which the caller frees; count 0 after a refusal. */
-static Probe find_probe(const Model *model, const Build *b, Key at, const char *vertex)
+static bool center_of_mass(const Model *model, const Build *b, Key at, Probe *probe)
 {
-    const Mesh *mesh = b->mesh;
-    if (!vertex) { /* the centre of mass */
-        int *all = mem_alloc((size_t)mesh->vertex_count, sizeof *all);
-        double *mass = mem_alloc((size_t)mesh->vertex_count, sizeof *mass), total = 0;
-        model->body->ops->masses(model, mass);
-        for (int v = 0; v < mesh->vertex_count; v++) all[v] = v, total += mass[v];
-        for (int v = 0; v < mesh->vertex_count; v++) mass[v] /= total;
-        return (Probe){mesh->vertex_count, all, mass};
-    }
-    int *chosen = mem_alloc(1, sizeof *chosen);
-    double one = 1;
+    int count = model->point_count;
+    if (!model->body->ops->masses)
+        return yaml_refuse(b->file, at.text, "the centre of mass of %s is not known", model->body->noun);
+    int *all = mem_alloc((size_t)count, sizeof *all);
+    double *mass = mem_alloc((size_t)count, sizeof *mass), total = 0;
+    model->body->ops->masses(model, mass);
+    for (int v = 0; v < count; v++) all[v] = v, total += mass[v];
+    for (int v = 0; v < count; v++) mass[v] /= total;
+    *probe = (Probe){count, all, mass};
+    return true;
+}
+
+/* The vertex of that number in the mesh's file; without a mesh the point. */
+static bool numbered_point(const Model *model, const char *text, int *point)
+{
     char *end;
-    long number = strtol(vertex, &end, 10);
-    const MeshGroup *group = mesh_group(mesh, vertex, 0);
     Error err;
+    long number = strtol(text, &end, 10);
+    if (!*text || *end || number < 0 || number > INT_MAX) return false;
+    if (model->mesh) return mesh_vertex(model->mesh, (int)number, point, &err);
+    *point = (int)number;
+    return number < model->point_count;
+}
+
+/* The points and weights of a probe, which the caller frees. */
+static bool find_probe(const Model *model, const Build *b, Key at, const char *vertex, Probe *probe)
+{
+    if (!vertex) return center_of_mass(model, b, at, probe);
+    const MeshGroup *group = model->mesh ? mesh_group(model->mesh, vertex, 0) : NULL;
+    double one = 1;
+    int point;
     if (group && group->count == 1)
-        *chosen = group->members[0];
-    else if (!*vertex || *end || number < 0 || number > INT_MAX ||
-             !mesh_vertex(mesh, (int)number, chosen, &err)) {
-        mem_free(chosen);
-        yaml_refuse(b->file, at.text,
-                    "vertex is '%s'; it must be a number from 0 to %d or the name of a group of one vertex",
-                    vertex, mesh->file_vertex_count - 1);
-        return (Probe){0};
-    }
-    return (Probe){1, chosen, mem_copy(&one, 1, sizeof one)};
+        point = group->members[0];
+    else if (!numbered_point(model, vertex, &point))
+        return yaml_refuse(b->file, at.text, "vertex is '%s'; it must be a number from 0 to %d%s", vertex,
+                           (model->mesh ? model->mesh->file_vertex_count : model->point_count) - 1,
+                           model->mesh ? " or the name of a group of one vertex" : "");
+    *probe = (Probe){1, mem_copy(&point, 1, sizeof point), mem_copy(&one, 1, sizeof one)};
+    return true;
 }
 
 static void free_probe(Probe probe)
@@ -140,8 +152,8 @@ static bool point_objectives(Model *model, const Build *b, Key at, const Scene *
     const WaypointScene *waypoint = from->waypoint;
     const CurveScene *curve = from->curve;
     const char *vertex = waypoint ? waypoint->vertex : curve ? curve->vertex : from->reach->vertex;
-    Probe probe = find_probe(model, b, at, vertex);
-    if (probe.count == 0) return false;
+    Probe probe;
+    if (!find_probe(model, b, at, vertex, &probe)) return false;
     bool ok;
     if (from->reach) {
         ok = reach_objectives(model, b, at, scene, from->reach, probe, from->weight);

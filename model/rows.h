@@ -90,7 +90,8 @@ typedef struct Likeness {
 } Likeness;
 
 /* How a body becomes numbers, and how its states are written into the journal. A refusal at a key (yaml_refuse) gives
- * false. What is marked so may be NULL: then the body has no such thing, and scenes that ask for it are refused. */
+ * false. Every body has create, destroy, add_static and describe; one with load cases all else that is not said to be
+ * optional. Of what is optional and NULL the body has none, and scenes that ask for it are refused. */
 typedef struct BodyOps {
     /* Everything of the model: body, params, cases with their systems and starts. */
     bool (*create)(struct Model *model, const Scene *scene, YamlFile *file);
@@ -111,9 +112,9 @@ typedef struct BodyOps {
     /* The points of a part that has a name, or `all`. */
     bool (*select)(const struct Model *model, const Build *b, const char *at, const char *name,
                    Indices *found);
-    void (*masses)(const struct Model *model, double *mass); /* [point_count] kg; may be NULL */
+    void (*masses)(const struct Model *model, double *mass); /* [point_count] kg; optional */
 
-    /* sum of |M - M'|^2 over neighbours, (A/m)^2; may be NULL. */
+    /* sum of |M - M'|^2 over neighbours, (A/m)^2; optional. */
     Objective (*smoothness)(const struct Model *model, double weight);
 
     /* Held coordinates where they are at that time, a part of the way (0..1) from where x has them. */
@@ -122,11 +123,11 @@ typedef struct BodyOps {
     /* Its energies over its dofs, prepared: of statics, or with inertia. The caller's; the model outlives it. */
     System *(*system)(const struct Model *model, bool motion);
 
-    /* All points held: what is left relaxes in a given pose. The caller's; may be NULL. */
+    /* All points held: what is left relaxes in a given pose. The caller's; optional. */
     System *(*pose_system)(const struct Model *model);
 
     /* Into the journal: what does not change (rest shape, faces or lines); of a frame beside places and field, numbers
-     * per cell (`whole`: those too that seldom change; may be NULL); of a state beside places and energies, under prefix/..; of
+     * per cell and per point, cell/NAME and point/NAME (`whole`: those too that seldom change; optional); of a state beside places and energies, under prefix/..; of
      * the final state, once: its stability, so many modes, and what else it shows. */
     void (*add_static)(const struct Model *model, Arrays *list);
     void (*add_frame)(const struct Model *model, const Snapshot *shot, bool whole, Arrays *list);
@@ -141,19 +142,20 @@ typedef struct BodyOps {
     /* Places of its points, place[point_count][3], in the state x[dofs]. */
     void (*places)(const struct Model *model, const double *x, double *place);
 
-    /* What the state cannot be trusted in, a sentence of the caller's; NULL: nothing. May be NULL itself. */
+    /* What the state cannot be trusted in, a sentence of the caller's; NULL: nothing. Optional. */
     char *(*doubt)(const struct Model *model, const Snapshot *shot);
 
-    /* Lines on what the scene made, for `slender check`; the caller's. Warnings go to the model's report; may be NULL. */
+    /* Lines on what the scene made, for `slender check`; the caller's. */
     char *(*describe)(const struct Model *model, const Scene *scene);
+
+    /* Warnings into the model's report, before any work; optional. */
     void (*advise)(struct Model *model, const Scene *scene);
 
     /* How far each dof moves in a small motion (m, rad, N): the length of a piece, ..; 0: it is no unknown. */
     void (*dof_sizes)(const struct Model *model, double *size);
     void (*cost)(const struct Model *model, Cost *cost);
 
-    /* Writes what a result shows as a file of that language (svg, gcode, ..), unless it has nothing yet; NULL: the body
-     * has no such files. */
+    /* Writes what a result shows as a file of that language (svg, gcode, ..), unless it has nothing yet; optional. */
     bool (*write)(Result *result, const char *language, const char *path, bool *written, Error *err);
 } BodyOps;
 

@@ -246,14 +246,17 @@ static bool add_unknowns(Model *model, const Scene *scene, const Build *b)
     const UnknownsScene *unknowns = &scene->design->unknowns;
     int seed = scene->design->seed;
     design->case_count = model->case_count;
+    const bool asked[] = {unknowns->magnetization, unknowns->young, unknowns->fold, unknowns->flux_density};
+    static const char *const names[] = {"magnetization", "young", "fold", "flux_density"};
+    for (int k = 0; k < 4; k++)
+        if (asked[k] && !params_find(model->params, names[k]))
+            return yaml_refuse(b->file, key("design.unknowns.%s", names[k]).text, "%s has no %s",
+                               model->body->noun, names[k]);
     bool ok = true;
     if (unknowns->magnetization)
         ok = magnetization_unknown(model, b, design, unknowns->magnetization, seed) && ok;
     if (unknowns->young) ok = number_unknown(model, b, design, "young", unknowns->young, seed) && ok;
-    if (unknowns->fold && !params_find(model->params, "fold"))
-        ok = yaml_refuse(b->file, "design.unknowns.fold", "%s has no folds", model->body->noun);
-    else if (unknowns->fold)
-        ok = number_unknown(model, b, design, "fold", unknowns->fold, seed) && ok;
+    if (unknowns->fold) ok = number_unknown(model, b, design, "fold", unknowns->fold, seed) && ok;
     if (unknowns->flux_density) ok = flux_unknown(model, b, scene) && ok;
     if (ok && !design->unknown_count)
         ok = yaml_refuse(b->file, "design.unknowns",

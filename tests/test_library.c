@@ -183,6 +183,28 @@ static void test_rod(void **unused)
     slender_scene_destroy(scene);
 }
 
+/* Energies are those of statics, also where the scene's job is a motion. */
+static void test_terms(void **unused)
+{
+    (void)unused;
+    SlenderError err;
+    SlenderScene *scene = scene_of("simulate", ", \"time\": {\"step\": \"1 ms\", \"steps\": 3}");
+    SlenderModel *model = model_of(scene, 1);
+    SlenderState *state = slender_state_create(model, 0, &err);
+    double energies[16], sum = 0;
+    int terms = slender_model_info(model).terms;
+    for (int k = 0; k < 16; k++) energies[k] = 1e30;
+    double energy = slender_energy(model, 0, state, energies, NULL);
+    for (int k = 0; k < terms; k++) sum += energies[k];
+    assert_true(fabs(sum - energy) <= 1e-12 * fabs(energy));
+    assert_true(energies[terms] == 1e30);
+    assert_non_null(slender_model_term(model, terms - 1));
+    assert_null(slender_model_term(model, terms));
+    slender_state_destroy(state);
+    slender_model_destroy(model);
+    slender_scene_destroy(scene);
+}
+
 /* ---- Many, and at once ---- */
 
 static void test_growth(void **unused)
@@ -319,9 +341,9 @@ static void test_run(void **unused)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_sentences), cmocka_unit_test(test_stale),  cmocka_unit_test(test_cases),
-        cmocka_unit_test(test_rod),       cmocka_unit_test(test_growth), cmocka_unit_test(test_threads),
-        cmocka_unit_test(test_stopped),   cmocka_unit_test(test_run),
+        cmocka_unit_test(test_sentences), cmocka_unit_test(test_stale),   cmocka_unit_test(test_cases),
+        cmocka_unit_test(test_rod),       cmocka_unit_test(test_terms),   cmocka_unit_test(test_growth),
+        cmocka_unit_test(test_threads),   cmocka_unit_test(test_stopped), cmocka_unit_test(test_run),
     };
     return cmocka_run_group_tests(tests, NULL, nothing_leaks);
 }

@@ -230,7 +230,7 @@ static bool fill_cases(Model *model, const Scene *scene, const Build *b, bool fl
     double *p = params_vector(model->params),
            *curve = mem_alloc((size_t)rod_layout(rod, false).dofs, sizeof *curve);
     bool ok = rod_model_params(rm, scene, b, p) && flux_is_read;
-    model_put_flux(model, &model->flux[0], p);
+    model_put_flux(model, 0, p);
     if (ok && rm->curves) take_curve(rm, rod_scene(scene), p, curve);
     ok = ok && model_cases(model, b, scene, p);
     bool hanging = !model->general && model->job == &job_equilibrium && rod->start == ROD_CLAMPED &&

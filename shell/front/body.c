@@ -142,7 +142,7 @@ static double *base_params(Model *model, const Scene *scene, const Build *b)
     memcpy(p + shell->gravity, s->gravity, sizeof s->gravity);
     p[shell->damping] = s->damping;
     ok = build_loads(b, key("loads"), scene->loads, scene->loads_count, p + shell->load) && ok;
-    model_put_flux(model, &model->flux[0], p);
+    model_put_flux(model, 0, p);
     if (ok) return p;
     mem_free(p);
     return NULL;
