@@ -146,7 +146,8 @@ static NewtonInfo from_start(const Rest *rest, Run *run, System *sys, double *p)
     def.observer = run_observer(run);
     def.steps = run->scene->load_steps.mode < 0 ? run->scene->load_steps.count : model->load_steps;
     if (model->moves) def.move = move, def.self = &mover;
-    return ramp_solve(sys, model->params, &def, NULL, p, &rest->state->now).newton;
+    const double *loads = model->cases[rest->load_case].loads; /* of a scene that starts from a result */
+    return ramp_solve(sys, model->params, &def, loads, p, &rest->state->now).newton;
 }
 
 /* From the equilibrium with other parameters. */
