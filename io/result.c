@@ -26,6 +26,15 @@ static bool is_attribute(const char *kind, const char *name)
     return false;
 }
 
+/* What a run goes on from has many zeros (state/velocities, cases/NAME/state/loads/.., ..). */
+enum { MANY = 4096 }; /* a chunk takes 2 kB beside its numbers */
+
+static Hdf5Layout layout_of(const Array *array, const char *name)
+{
+    bool state = array->rank == 1 && array->type == ARRAY_FLOAT64 && strstr(name, "state/");
+    return (Hdf5Layout){.chunk_rows = state && array->dims[0] >= MANY ? array->dims[0] : 0};
+}
+
 /* Every other array of a kind at its own name. */
 static bool put_kind(VtkFrames *w, const char *kind, Error *err)
 {
@@ -38,7 +47,7 @@ static bool put_kind(VtkFrames *w, const char *kind, Error *err)
         ok = journal_get(w->journal, kind, 0, names[k], &array, err);
         if (!ok) break;
         char *path = mem_format("slender/%s", names[k]);
-        ok = hdf5_write(w->file, path, &array, (Hdf5Layout){0}, err);
+        ok = hdf5_write(w->file, path, &array, layout_of(&array, names[k]), err);
         mem_free(path);
         array_clear(&array);
     }
@@ -119,6 +128,17 @@ static bool put_last_x(VtkFrames *w, Error *err)
     return ok;
 }
 
+/* What else the frames hold: frames/flux_density, and frames/NAME of state/NAME, what is kept of whole states. */
+static bool put_frames(VtkFrames *w, const char *field, Error *err)
+{
+    bool state = !strncmp(field, "state/", 6);
+    if (!state && strcmp(field, "flux_density") != 0) return true;
+    char *path = mem_format("slender/frames/%s", state ? field + 6 : field);
+    bool ok = vtk_frames_put(w, field, path, NULL, false, err);
+    mem_free(path);
+    return ok;
+}
+
 static bool fill(VtkFrames *w, Error *err)
 {
     if (!put_kind(w, "meta", err) || !put_kind(w, "static", err) || !put_kind(w, "final", err) ||
@@ -129,9 +149,7 @@ static bool fill(VtkFrames *w, Error *err)
     if (w->count == 0 || !shown) return true;
     if (!vtk_frames_read(w, err) || !put_last_x(w, err) || !vtk_frames_write(w, err)) return false;
     for (int k = 0; k < w->field_count; k++)
-        if (!strcmp(w->fields[k], "flux_density") &&
-            !vtk_frames_put(w, "flux_density", "slender/frames/flux_density", NULL, false, err))
-            return false;
+        if (!put_frames(w, w->fields[k], err)) return false;
     return w->single || vtk_frames_put(w, "x", "slender/frames/x", NULL, true, err);
 }
 

@@ -19,6 +19,7 @@
  *     history/NAME           [evaluations]   one for each scalar that the evaluations hold
  *     frames/flux_density    [T,3]           where the frames have it
  *     frames/x               [T,n_v,3]       float64, if those are
+ *     frames/NAME            [T,n]           float64: the frames' arrays state/NAME
  *     state/x                [n_v,3]         the last frame's x, until final has it
  *     attribute status       text            final/status; "unfinished" if there is none yet
  *     attribute kernels      text            meta/kernels

@@ -216,15 +216,14 @@ bool vtk_frames_put(VtkFrames *frames, const char *name, const char *path, const
 {
     Hdf5Rows *rows = NULL;
     int *offsets = mem_alloc((size_t)frames->count, sizeof *offsets), stored = 0, chunk = 0, width = 0;
-    bool ok = true;
+    bool ok = true, single = frames->single && strncmp(name, "state/", 6) != 0; /* runs go on from these */
     for (int k = 0; ok && k < frames->count; k++) {
         Array array;
         ok = journal_find(frames->journal, "frame", frames->frames[k], name, &array, err);
         if (array.data) {
             if (!rows) {
                 chunk = array.dims[0], width = array.rank > 1 ? array.dims[1] : 0;
-                rows = hdf5_rows_create(frames->file, path, array.unit, chunk, width, stacked, frames->single,
-                                        err);
+                rows = hdf5_rows_create(frames->file, path, array.unit, chunk, width, stacked, single, err);
             }
             bool fits = array.type == ARRAY_FLOAT64 && array.dims[0] == chunk &&
                         (array.rank > 1 ? array.dims[1] : 0) == width;

@@ -81,8 +81,8 @@ typedef struct YamlField {
     const char *range;    /* of each number, SI: "(0, inf)", "[0, 0.5]", "(-inf, 0]"; NULL: any     */
     const char *when; /* where the key is used, NULL: always. Conditions joined by `&`: keys of the same table
                            * of which one is written, "points | arc", or none, "!curve"; or a key that has one of
-                           * some values, "solver: pbd". A slash begins a key of the root: "/job: simulate". In
-                           * braces what there is elsewhere: "!rod {a rod is held by its ends}" */
+                           * some values, "solver: pbd". A slash begins a key of the root: "/job: simulate", "!/start".
+                           * In braces what there is elsewhere: "!rod {a rod is held by its ends}" */
     const char *otherwise; /* what there is elsewhere, of conditions that do not say: ends the sentence of its
                             * refusal */
     const char *const *choices; /* NULL-terminated: YAML_NAMES("hinge", "midedge")                        */

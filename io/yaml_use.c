@@ -4,7 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/* One condition of a row: `a | b`, `!a` or `a: value, value`, and what there is elsewhere. */
+/* One condition of a row: `a | b`, `!a` or `a: value, value`, keys of the root after a slash, and what there is
+ * elsewhere. */
 typedef struct Condition {
     char keys[64], values[128], otherwise[128];
     bool root, absent;
@@ -23,8 +24,10 @@ static bool next_condition(const char **text, Condition *c)
 {
     *text += strspn(*text, " &");
     if (!**text) return false;
-    c->root = **text == '/', c->absent = **text == '!';
-    *text += c->root || c->absent;
+    c->absent = **text == '!';
+    *text += c->absent;
+    c->root = **text == '/';
+    *text += c->root;
     size_t end = strcspn(*text, "{&"), keys = strcspn(*text, ":{&");
     copy_part(c->keys, sizeof c->keys, *text, keys);
     copy_part(c->values, sizeof c->values, *text + keys, end - keys);

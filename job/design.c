@@ -92,7 +92,7 @@ static bool get_best(void *self, int slot, const double *u, bool *has, Error *er
 static Snapshot best_state(const DesignJob *job, int c)
 {
     const Case *best = &job->run->model->cases[c];
-    return (Snapshot){best, static_design_params(job->sd, c), best->state, NEWTON_CONVERGED};
+    return (Snapshot){best, static_design_params(job->sd, c), best->state, NEWTON_CONVERGED, NULL};
 }
 
 static bool put_frame(void *self, int index, Error *err)
@@ -155,7 +155,7 @@ static void find_start(DesignJob *job, const double *u)
         double *p = load->stages[0].p;
         design_apply(&job->run->model->design, c, u, p);
         if (load->objective_count)
-            ramp_solve(load->sys, job->run->model->params, &def, NULL, p, &load->state);
+            ramp_solve(load->sys, job->run->model->params, &def, load->loads, p, &load->state);
     }
 }
 

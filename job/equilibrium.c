@@ -26,7 +26,7 @@ static RampInfo solve_stage(Run *run, Case *c, int stage)
     def.observer = run_observer(run);
     def.steps = run->scene->load_steps.mode < 0 ? run->scene->load_steps.count : run->model->load_steps;
     if (run->model->moves) def.move = move, def.self = &mover;
-    const double *from = stage > 0 ? c->stages[stage - 1].p : NULL;
+    const double *from = stage > 0 ? c->stages[stage - 1].p : c->loads;
     return ramp_solve(c->sys, run->model->params, &def, from, c->stages[stage].p, &c->state);
 }
 
@@ -83,7 +83,7 @@ static bool solve_case(Run *run, Case *c, Snapshot *shot, int *frame, bool *inte
     NewtonStatus worst = NEWTON_CONVERGED;
     for (int s = 0; ok && !*interrupted && s < c->stage_count; s++, (*frame)++) {
         c->state.time = c->stages[s].time;
-        *shot = (Snapshot){c, c->stages[s].p, c->state, NEWTON_CONVERGED};
+        *shot = (Snapshot){c, c->stages[s].p, c->state, NEWTON_CONVERGED, NULL};
         bool has;
         ok = get_progress(run, *frame, shot, &has, err);
         if (ok && !has) {

@@ -3,7 +3,7 @@
 #include "io/result.h"
 #include <string.h>
 
-static const char CELLS[] = "VTKHDF/CellData/";
+static const char CELLS[] = "VTKHDF/CellData/", FRAMES[] = "slender/frames/";
 
 /* Is this step's array its own, or that of the step before? Fields that never change are stored once. */
 static bool has_own(Result *result, const char *field, int step, bool *own, Error *err)
@@ -83,6 +83,20 @@ static bool recall_step(Journal *journal, Result *result, int step, Error *err)
     return ok;
 }
 
+/* Of whole states: frames/NAME is state/NAME of the frame. */
+static bool recall_state(Journal *journal, Result *result, const char *path, int step, Error *err)
+{
+    Array array;
+    const char *name = path + sizeof FRAMES - 1;
+    if (!strcmp(name, "x") || !strcmp(name, "flux_density")) return true;
+    if (!result_read_rows(result, path, step, 1, &array, err)) return false;
+    char *to = mem_format("state/%s", name);
+    bool ok = put(journal, step, &array, to, array.rank, err);
+    array_clear(&array);
+    mem_free(to);
+    return ok;
+}
+
 bool recall_keep(Journal *journal, uint32_t sum, Error *err)
 {
     double number = sum;
@@ -140,6 +154,8 @@ bool recall_frames(Journal *journal, const char *path, bool exact, Error *err)
         for (int k = 0; ok && k < count; k++)
             if (!strncmp(paths[k], CELLS, (size_t)cells))
                 ok = recall_field(journal, result, paths[k] + cells, step, err);
+            else if (!strncmp(paths[k], FRAMES, sizeof FRAMES - 1))
+                ok = recall_state(journal, result, paths[k], step, err);
     }
     mem_free(paths);
     result_close(result);

@@ -4,6 +4,7 @@
 #include "job/inputs.h"
 #include "job/outputs.h"
 #include "job/recall.h"
+#include "model/stored.h"
 #include "solve/kernels.h"
 #include <string.h>
 #include <sys/stat.h>
@@ -30,6 +31,18 @@ static const char **ignored_keys(const char *const *free, char *const *files)
     return keys;
 }
 
+/* The scene that the journal has, with defaults for keys that have come since: a run of an older slender goes on. */
+static char *scene_of_journal(const Array *text)
+{
+    Scene scene;
+    YamlFile *file;
+    bool known = stored_scene(text, &file, &scene);
+    char *effective = known ? yaml_write(scene_table(), &scene) : mem_text(text->data);
+    yaml_clear(scene_table(), &scene);
+    yaml_destroy(file);
+    return effective;
+}
+
 /* `files`: keys whose paths need not be the same. */
 static bool check_scene(Run *run, const char *scene, char *const *files, Error *err)
 {
@@ -37,7 +50,8 @@ static bool check_scene(Run *run, const char *scene, char *const *files, Error *
     Array old;
     if (!journal_get(run->journal, "meta", 0, "scene", &old, err)) return false;
     const char **keys = ignored_keys(free, files);
-    char *difference = yaml_difference(old.data, scene, keys);
+    char *before = scene_of_journal(&old), *difference = yaml_difference(before, scene, keys);
+    mem_free(before);
     array_clear(&old);
     mem_free(keys);
     if (!difference) return true;

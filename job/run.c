@@ -1,5 +1,6 @@
 #include "job/run.h"
 #include "base/memory.h"
+#include "model/state_arrays.h"
 #include <string.h>
 
 RunStatus job_run(Run *run, Error *err)
@@ -76,6 +77,7 @@ bool run_put_frame(Run *run, int index, double shown, const Snapshot *shot, bool
     arrays_add(&list, array_float("time", "s", &shown, 0, 0, 0));
     arrays_add(&list, array_float("flux_density", "T", shot->p + model->flux_density, 2, 1, 3));
     if (model->body->ops->add_frame) model->body->ops->add_frame(model, shot, whole, &list);
+    if (run->scene->output.states == STATES_ALL) state_arrays_add(model, shot, "state", true, &list);
     return arrays_put(&list, run->journal, "frame", index, err);
 }
 
@@ -152,12 +154,15 @@ void run_add_final(Run *run, const Snapshot *shots, int count, const char *statu
 {
     const Model *model = run->model;
     add_state(list, model, "state/x", "final", &shots[count - 1]);
+    state_arrays_add(model, &shots[count - 1], "state", false, list);
     add_params(list, model->params, shots, count);
     model->body->ops->add_final(model, &shots[count - 1], run->scene->modes, list);
     arrays_add(list, array_text("status", status));
     arrays_add(list, array_text("case_names", arrays_keep(list, case_names(shots, count))));
     for (int k = 0; k < count; k++) {
         add_case(list, model, &shots[k]);
+        char *prefix = arrays_keep(list, mem_format("cases/%s/state", shots[k].load_case->name));
+        if (k < count - 1) state_arrays_add(model, &shots[k], prefix, false, list);
         say_doubt(run, &shots[k]);
     }
 }

@@ -13,7 +13,8 @@ typedef struct Simulation {
     Case *c;
     double *p;
     State *now;
-    int step;            /* the last one that was reached */
+    double *anchor;      /* of its system, as the last step that was reached left it */
+    int step;            /* that one                                               */
     NewtonStatus status; /* of the last step                                       */
     bool refused;        /* a formula of time is not finite; err says so           */
 } Simulation;
@@ -33,13 +34,13 @@ static bool move(void *self, double time, double *x)
 
 static Snapshot shown_state(const Simulation *s)
 {
-    return (Snapshot){s->c, s->p, *s->now, s->status};
+    return (Snapshot){s->c, s->p, *s->now, s->status, s->anchor};
 }
 
 enum { KEPT = 6 };
 
 /* What a run goes on from: the last step that was stored. */
-static void kept_rows(Simulation *s, double *step, double *anchor, Kept rows[KEPT])
+static void kept_rows(Simulation *s, double *step, Kept rows[KEPT])
 {
     State *now = s->now;
     rows[0] = (Kept){"step", step, 1};
@@ -47,7 +48,7 @@ static void kept_rows(Simulation *s, double *step, double *anchor, Kept rows[KEP
     rows[2] = (Kept){"x", now->x, (size_t)now->dofs};
     rows[3] = (Kept){"v", now->v, (size_t)now->dofs};
     rows[4] = (Kept){"memory", now->memory, (size_t)now->memory_count};
-    rows[5] = (Kept){"anchor", anchor, (size_t)system_anchor_count(s->c->sys)};
+    rows[5] = (Kept){"anchor", s->anchor, (size_t)system_anchor_count(s->c->sys)};
 }
 
 static bool put_step(Simulation *s, int frame, int step)
@@ -55,27 +56,28 @@ static bool put_step(Simulation *s, int frame, int step)
     double number = step;
     Snapshot shot = shown_state(s);
     Kept rows[KEPT];
-    kept_rows(s, &number, (double *)system_anchor(s->c->sys), rows);
+    kept_rows(s, &number, rows);
     return run_put_frame(s->run, frame, s->now->time, &shot, frame == 0, s->err) &&
            run_put_state(s->run, frame % 2, rows, KEPT, s->err);
 }
 
-/* With the factor that the next step's conjugate gradients begin with, as it was. */
+/* The factor that the next step's conjugate gradients begin with, as it was. */
+static void restore(Simulation *s)
+{
+    load(s, system_anchor_time(s->anchor), s->p);
+    system_restore_factor(s->c->sys, s->anchor, s->p);
+    load(s, s->now->time, s->p);
+}
+
 static bool get_slot(Simulation *s, int slot)
 {
-    double step, *anchor = mem_alloc((size_t)system_anchor_count(s->c->sys), sizeof *anchor);
+    double step;
     bool has;
     Kept rows[KEPT];
-    kept_rows(s, &step, anchor, rows);
-    bool ok = run_get_state(s->run, slot, rows, KEPT, &has, s->err) &&
-              (has || error_set(s->err, "the journal's state is of another scene"));
-    if (ok) {
-        load(s, system_anchor_time(anchor), s->p);
-        system_restore_factor(s->c->sys, anchor, s->p);
-        load(s, s->now->time, s->p);
-    }
-    mem_free(anchor);
-    return ok;
+    kept_rows(s, &step, rows);
+    if (!run_get_state(s->run, slot, rows, KEPT, &has, s->err)) return false;
+    if (has) restore(s);
+    return has || error_set(s->err, "the journal's state is of another scene");
 }
 
 /* The step to go on from; 0 after putting the start. -1: err says what is wrong. */
@@ -90,8 +92,11 @@ static int find_start(Simulation *s)
     }
     int newest = number[1] > number[0];
     if (number[newest] >= 0) return get_slot(s, newest) ? (int)number[newest] : -1;
-    s->now->time = s->run->scene->time.at;
     load(s, s->now->time, s->p);
+    if (s->c->anchor) {
+        memcpy(s->anchor, s->c->anchor, (size_t)system_anchor_count(s->c->sys) * sizeof *s->anchor);
+        restore(s);
+    }
     return put_step(s, 0, 0) ? 0 : -1;
 }
 
@@ -113,6 +118,12 @@ static int frame_interval(const Simulation *s)
     return every ? every : 1;
 }
 
+/* A step that fails, or is interrupted, may leave another one. */
+static void keep_anchor(Simulation *s)
+{
+    memcpy(s->anchor, system_anchor(s->c->sys), (size_t)system_anchor_count(s->c->sys) * sizeof *s->anchor);
+}
+
 /* One step, and what it leaves. */
 static RunStatus make_step(Simulation *s, const MarchDef *def)
 {
@@ -129,6 +140,7 @@ static RunStatus make_step(Simulation *s, const MarchDef *def)
         return RUN_NOT_CONVERGED;
     }
     s->step = step;
+    keep_anchor(s);
     if (!put_history(s, step, &info) || (step % every == 0 && !put_step(s, step / every, step)))
         return RUN_CANNOT_WRITE;
     host_step(s->run->host, step, scene->time.steps, "t %.4g s, %d Newton iterations", s->now->time,
@@ -169,10 +181,12 @@ static RunStatus run_simulate(Run *run, Error *err)
 {
     Case *c = &run->model->cases[0];
     Simulation s = {.run = run, .err = err, .c = c, .p = c->stages[0].p, .now = &c->state};
+    s.anchor = mem_alloc((size_t)system_anchor_count(c->sys), sizeof *s.anchor);
     RunStatus status = march(&s);
     const char *said = status == RUN_INTERRUPTED ? "interrupted" : newton_status_name(s.status);
     bool ended = status != RUN_CANNOT_WRITE && status != RUN_REFUSED;
     if (ended && !put_end(&s, said)) status = RUN_CANNOT_WRITE;
+    mem_free(s.anchor);
     return status;
 }
 

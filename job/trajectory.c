@@ -12,6 +12,7 @@ typedef struct TrajectoryJob {
     Run *run;
     Case *c;
     Trajectory *t;
+    double *v; /* [dofs] of the state that is shown */
     double objective;
     bool refused; /* a formula of time is not finite; err says so */
     Error err;
@@ -98,10 +99,11 @@ static bool get_best(void *self, int slot, const double *u, bool *has, Error *er
 
 static Snapshot frame_state(TrajectoryJob *job, int frame)
 {
-    const TimeScene *time = &job->run->scene->time;
     Snapshot shot = {job->c, trajectory_params(job->t, frame), trajectory_frame(job->t, frame),
-                     NEWTON_CONVERGED};
-    shot.at.time = time->at + time->step * frame;
+                     NEWTON_CONVERGED, NULL};
+    trajectory_velocities(job->t, frame, job->v);
+    shot.at.v = job->v;
+    shot.at.time = job->run->model->time + job->run->scene->time.step * frame;
     return shot;
 }
 
@@ -213,6 +215,7 @@ static RunStatus run_trajectory(Run *run, Error *err)
     def.march.load = load, def.march.self = &job;
     if (model->moves) def.march.move = move;
     job.t = trajectory_create(&problem, &def);
+    job.v = mem_alloc((size_t)c->state.dofs, sizeof *job.v);
     double *u = mem_alloc((size_t)model->design.size, sizeof *u);
     design_read(&model->design, 0, problem.p, u);
     RunStatus status = design_run(run, &ops, &job, u, err);
@@ -221,6 +224,7 @@ static RunStatus run_trajectory(Run *run, Error *err)
         status = RUN_REFUSED;
     }
     trajectory_destroy(job.t);
+    mem_free(job.v);
     mem_free(u);
     return status;
 }

@@ -21,7 +21,7 @@ static bool read_stages(Model *model, const Build *b, const Scene *scene, FluxFi
 {
     Build now = *b;
     bool ok = true;
-    now.time = scene->time.at;
+    now.time = model->time;
     for (int k = 0; k < scene->sequence_count; k++) {
         const StageScene *stage = &scene->sequence[k];
         if (!isnan(stage->time)) now.time = stage->time;
@@ -66,7 +66,7 @@ static void add_control(Model *model, const Scene *scene)
                          .to = model->flux_density,
                          .width = 3,
                          .steps = scene->time.steps,
-                         .start = scene->time.at,
+                         .start = model->time,
                          .duration = scene->time.step * scene->time.steps};
     control->rows = control_rows(control->kind, control->steps,
                                  control->kind == CONTROL_KNOT ? from->knots : from->harmonics);

@@ -24,8 +24,8 @@ typedef struct Build {
  * unit. Beyond its ends a table stays as it is there. */
 #define TABLE_SHARE 0.5
 
-/* What the models of a scene share; `timed` is NULL. The size of a rod is still to be told. */
-Build build_start(const Scene *scene, const Mesh *mesh, YamlFile *file);
+/* What the models of a scene share, which begin at that time; `timed` is NULL. The size of a rod is still to be told. */
+Build build_start(const Scene *scene, const Mesh *mesh, double time, YamlFile *file);
 
 /* The path of a key: key("cases[%d].target", c). */
 typedef struct Key {

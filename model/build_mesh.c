@@ -100,12 +100,12 @@ static bool check_keys(const MeshScene *scene, const Source *source, YamlFile *y
 
 /* ---- The mesh ---- */
 
-Build build_start(const Scene *scene, const Mesh *mesh, YamlFile *file)
+Build build_start(const Scene *scene, const Mesh *mesh, double time, YamlFile *file)
 {
     return (Build){.file = file,
                    .mesh = mesh,
                    .size = mesh ? mesh_diagonal(mesh) : 0,
-                   .time = scene->time.at,
+                   .time = time,
                    .duration = scene_job(scene)->motion ? scene->time.step * scene->time.steps : 0,
                    .mesh_scale = 1};
 }

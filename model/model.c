@@ -1,7 +1,9 @@
 #include "model/model.h"
 #include "base/memory.h"
 #include "base/plain.h"
+#include "io/table.h"
 #include "model/scene_tables.h"
+#include "model/start.h"
 #include <math.h>
 #include <string.h>
 
@@ -46,7 +48,7 @@ static bool add_target(Model *model, const Build *b, Key at, const TargetScene *
 
 static bool add_stages(Model *model, const Build *b, const Scene *scene, const double *p)
 {
-    Case *c = add_case(model, "sequence", p, scene->time.at);
+    Case *c = add_case(model, "sequence", p, model->time);
     c->stages = mem_resize(c->stages, 1, (size_t)scene->sequence_count, sizeof *c->stages);
     c->stage_count = scene->sequence_count;
     bool ok = true;
@@ -83,7 +85,7 @@ bool model_cases(Model *model, const Build *b, const Scene *scene, const double 
     bool ok = true;
     for (int k = 0; k < scene->cases_count; k++) {
         const CaseScene *from = &scene->cases[k];
-        Case *c = add_case(model, from->name, p, scene->time.at);
+        Case *c = add_case(model, from->name, p, model->time);
         c->weight = from->weight;
         Key at = key("cases[%d]", k);
         for (int i = 0; i < k; i++)
@@ -103,33 +105,65 @@ bool model_cases(Model *model, const Build *b, const Scene *scene, const double 
              ok;
     }
     if (!scene->cases_count)
-        ok = add_target(model, b, key("target"), scene->target, add_case(model, NULL, p, scene->time.at));
+        ok = add_target(model, b, key("target"), scene->target, add_case(model, NULL, p, model->time));
     return ok;
 }
 
 /* ---- The whole ---- */
+
+/* A row for each point; of a mesh, in the order of its file or of its own. */
+static bool velocities_from_file(const Model *model, Key at, const char *path, YamlFile *file, double *speed)
+{
+    const Mesh *mesh = model->mesh;
+    Table table;
+    Error err;
+    at = key("%s.file", at.text);
+    if (!table_read(path, "vx [m/s], vy [m/s], vz [m/s]", &table, &err))
+        return yaml_refuse(file, at.text, "%s", err.text);
+    bool ok = mesh ? mesh_fits(mesh, table.rows) : table.rows == model->point_count;
+    if (!ok)
+        yaml_refuse(file, at.text, "%s has %d rows, and there are %d %s: one row for each is needed", path,
+                    table.rows, model->point_count, mesh ? "vertices" : "nodes");
+    for (int k = 0; ok && k < model->point_count; k++)
+        memcpy(speed + 3 * k, table.values + 3 * (mesh ? mesh_row(mesh, table.rows, k) : k),
+               3 * sizeof *speed);
+    table_clear(&table);
+    return ok;
+}
+
+static bool velocities_from_formula(const Model *model, const Build *b, Key at, const VelocityScene *scene,
+                                    const double *place, double *speed)
+{
+    Error err;
+    Formula *formula =
+        build_formula(b, at, scene->formula, 3, scene->where, scene->where_count, build_variables);
+    bool ok = formula != NULL;
+    for (int k = 0; ok && k < model->point_count; k++) {
+        double variables[BUILD_VARIABLES];
+        build_position(variables, place + 3 * k, 0);
+        ok = formula_eval(formula, variables, speed + 3 * k, &err) ||
+             yaml_refuse(b->file, at.text, "%s", err.text);
+    }
+    formula_destroy(formula);
+    return ok;
+}
 
 bool model_velocity(Model *model, const Build *b, const char *at, const VelocityScene *scene,
                     const double *place)
 {
     const System *sys = model->cases[0].sys;
     double *v = model->cases[0].state.v;
-    Error err;
+    int count = 3 * model->point_count;
     if (!scene) return true;
-    Formula *formula = NULL;
+    bool ok = true;
     if (scene->formula)
-        formula = build_formula(b, key("%s", at), scene->formula, 3, scene->where, scene->where_count,
-                                build_variables);
-    bool ok = formula || !scene->formula;
-    for (int k = 0; ok && k < model->point_count; k++) {
-        double variables[BUILD_VARIABLES], speed[3];
-        memcpy(speed, scene->value, sizeof speed);
-        build_position(variables, place + 3 * k, 0);
-        if (formula && !formula_eval(formula, variables, speed, &err))
-            ok = yaml_refuse(b->file, at, "%s", err.text);
-        for (int i = 0; i < 3; i++) v[3 * k + i] = system_is_fixed(sys, 3 * k + i) ? 0 : speed[i];
-    }
-    formula_destroy(formula);
+        ok = velocities_from_formula(model, b, key("%s", at), scene, place, v);
+    else if (scene->file)
+        ok = velocities_from_file(model, key("%s", at), scene->file, b->file, v);
+    else
+        for (int i = 0; i < count; i++) v[i] = scene->value[i % 3];
+    for (int i = 0; i < count; i++)
+        if (system_is_fixed(sys, i)) v[i] = 0;
     return ok;
 }
 
@@ -165,12 +199,16 @@ static Model *create(const Scene *scene, YamlFile *file, bool general)
 {
     Model *model = mem_alloc(1, sizeof *model);
     model->general = general;
+    model->time = scene->time.at;
     const JobRow *job = scene_job(scene);
     model->body = scene_body(scene);
     model->job = job;
     bool ok = check_job(scene, file) && yaml_check_use(file, scene_table()) &&
-              check_motion(scene, job, file) && model->body->ops->create(model, scene, file) &&
+              check_motion(scene, job, file) && start_open(model, scene, file) &&
+              model->body->ops->create(model, scene, file) && start_take(model, scene, file) &&
               (!job->design || model_design(model, scene, file));
+    start_close(model->start);
+    model->start = NULL;
     if (ok) return model;
     model_destroy(model);
     return NULL;

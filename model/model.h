@@ -16,6 +16,7 @@ typedef struct Motion {
 } Motion;
 
 typedef struct Model Model;
+typedef struct Start Start; /* start.h */
 
 /* What a scene says of the flux density, of all cases or of one. */
 typedef struct CaseFlux {
@@ -29,6 +30,8 @@ struct Model {
     void *self;       /* the body as its front knows it: a Shell, ..; owned     */
     const Mesh *mesh; /* of a body that has one; the body's                     */
     bool general;     /* of any use, not only that of its job: all points are dofs */
+    double time;      /* s, where it begins                                     */
+    Start *start;     /* while it is made: what it starts from; NULL: nothing   */
     /* Nothing below is of a body without cases. */
     Params *params; /* the body's                                          */
     int gravity;    /* first entries in p                                  */

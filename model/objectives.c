@@ -217,7 +217,7 @@ static bool add_objective(Model *model, const Build *b, Key at, const Scene *sce
 
 bool model_objectives(Model *model, const Scene *scene, YamlFile *file)
 {
-    Build b = build_start(scene, model->mesh, file);
+    Build b = build_start(scene, model->mesh, model->time, file);
     bool ok = true;
     for (int c = 0; c < model->case_count; c++)
         for (int k = 0; k < scene->design->objectives_count; k++)

@@ -69,6 +69,7 @@ typedef struct Snapshot {
     const double *p;
     State at;
     NewtonStatus status;
+    const double *anchor; /* of a simulation: where the next step's factor stands (system_anchor) */
 } Snapshot;
 
 /* What one evaluation takes on this machine, and the factor; s, bytes (job/predict.h). */
@@ -81,6 +82,12 @@ typedef struct Cost {
     bool stability;                       /* a few eigenvalues are found at the end                */
     Effort effort;                        /* the job's, unless the body knows better               */
 } Cost;
+
+/* A static array that tells a body from others of its kind, and what a result with another one is of: "a mesh with
+ * other faces". */
+typedef struct Likeness {
+    const char *name, *other;
+} Likeness;
 
 /* How a body becomes numbers, and how its states are written into the journal. A refusal at a key (yaml_refuse) gives
  * false. What is marked so may be NULL: then the body has no such thing, and scenes that ask for it are refused. */
@@ -125,6 +132,11 @@ typedef struct BodyOps {
     void (*add_frame)(const struct Model *model, const Snapshot *shot, bool whole, Arrays *list);
     void (*add_state)(const struct Model *model, const Snapshot *shot, const char *prefix, Arrays *list);
     void (*add_final)(const struct Model *model, const Snapshot *shot, int modes, Arrays *list);
+
+    /* What a result that a model starts from has to have alike; ends with {0}. And a state from[dofs] of such a result
+     * in the form of the model's own, x; NULL: all have one form. */
+    const Likeness *likeness;
+    bool (*take_state)(const struct Model *model, const double *from, int dofs, double *x, Error *err);
 
     /* Places of its points, place[point_count][3], in the state x[dofs]. */
     void (*places)(const struct Model *model, const double *x, double *place);

@@ -173,14 +173,17 @@ const YamlTable velocity_table = {
     .name = "velocity",
     .size = sizeof(VelocityScene),
     .doc = "Velocities at the start of a motion.",
-    .fields =
-        (const YamlField[]){{YAML_VECTOR(VelocityScene, value), .unit = "m/s", .one_of = 1, .required = true,
-                             .short_form = true, .doc = "the same everywhere"},
-                            {YAML_TEXTS(VelocityScene, formula), .one_of = 1, .required = true,
-                             .short_form = true, .min_count = 3, .max_count = 3,
-                             .doc = "three expressions of the rest position x, y, z, r of a vertex, in m/s"},
-                            WHERE_ROW(VelocityScene),
-                            {0}}};
+    .fields = (const YamlField[]){
+        {YAML_VECTOR(VelocityScene, value), .unit = "m/s", .one_of = 1, .required = true, .short_form = true,
+         .doc = "the same everywhere"},
+        {YAML_TEXTS(VelocityScene, formula), .one_of = 1, .required = true, .short_form = true,
+         .min_count = 3, .max_count = 3,
+         .doc = "three expressions of the rest position x, y, z, r of a vertex, in m/s"},
+        {YAML_FILE(VelocityScene, file), .one_of = 1, .required = true,
+         .doc = "a CSV file with rows vx, vy, vz (m/s): one for each vertex of the mesh's file, or "
+                "node of the rod"},
+        WHERE_ROW(VelocityScene),
+        {0}}};
 
 static const YamlTable ball_table = {
     .name = "ball",
@@ -341,6 +344,45 @@ static const YamlTable time_table = {
          .doc = "of a simulation or trajectory: how many"},
         {0}}};
 
+/* Of what has states. */
+#define WITH_STATES "/job: equilibrium, evaluate, design, simulate, trajectory"
+
+static const YamlTable start_frame_table = {
+    .name = "frame of a start",
+    .size = sizeof(StartFrameScene),
+    .doc = "Which of a result's states.",
+    .fields = (const YamlField[]){
+        {YAML_CHOICE(StartFrameScene, mode), .choices = YAML_NAMES("last"), .one_of = 1, .short_form = true,
+         .required = true, .doc = "where the run ended, or was interrupted"},
+        {YAML_INTEGER(StartFrameScene, number), .range = "[0, inf)", .one_of = 1, .short_form = true,
+         .required = true, .doc = "this frame, from 0 on, of a result with `output: {states: all}`"},
+        {0}}};
+
+static const YamlTable start_table = {
+    .name = "start",
+    .size = sizeof(StartScene),
+    .doc =
+        "A job starts from what another run left: the places, velocities and angles of its state, and what "
+        "its energies remember. The body must be the same: the mesh, or a rod's length, elements and ends; "
+        "its "
+        "material, loads, fields and what is held may be others. A motion goes on from the time of the "
+        "state, "
+        "so that formulas of t go on, too, and `time.at` is left out; its steps and frames count from its "
+        "own "
+        "start. Cut in two it ends with the same bits. An equilibrium's loads come on from those that act "
+        "in the state, and t is its own `time.at`.",
+    .fields = (const YamlField[]){
+        {YAML_FILE(StartScene, result), .required = true, .short_form = true,
+         .doc = "a result, NAME.vtkhdf, of any job with states; of an interrupted run, too"},
+        {YAML_TABLE(StartScene, frame, &start_frame_table), .fallback = "last", .doc = "which state"},
+        {.key = "case",
+         .kind = FIELD_TEXT,
+         .offset = offsetof(StartScene, load_case),
+         .doc = "the state of this load case of the result; if absent each of the scene's `cases` starts "
+                "from that of "
+                "its name where there is one, all else from the last one"},
+        {0}}};
+
 #define DRAWING_FILE(m, d)                                                                                   \
     {                                                                                                        \
         YAML_TEXT(OutputScene, m), .when = "/job: draw", .otherwise = "slender picture shows results",       \
@@ -362,6 +404,11 @@ static const YamlTable output_table = {
          .choices = YAML_NAMES("single", "double"), .fallback = "single",
          .doc = "of frames; single only as long as its numbers, where the body is, are closer than 1e-5 of "
                 "its size"},
+        {YAML_CHOICE(OutputScene, states), .when = WITH_STATES, .choices = YAML_NAMES("last", "all"),
+         .fallback = "last",
+         .doc =
+             "which states are kept whole, in double precision and with all that is remembered, for a job to "
+             "`start` from: the last one (of each load case), or those of all frames, too"},
         DRAWING_FILE(svg, "curves in mm, a layer for each pen; NAME.svg if absent"),
         DRAWING_FILE(png, "target and drawing side by side; NAME.png if absent"),
         DRAWING_FILE(gcode, "for a pen on a z axis; none if absent"),
@@ -407,6 +454,8 @@ const YamlTable scene_form = {
          .fallback = "auto", .doc = "how loads come on"},
         {YAML_TABLE(Scene, time, &time_table), .fallback = "0 s",
          .doc = "the time t of formulas, or the steps of a simulation"},
+        {YAML_OPTIONAL(Scene, start, &start_table), .when = WITH_STATES,
+         .otherwise = "--resume goes on with a drawing", .doc = "what another run left, to go on from"},
         {YAML_INTEGER(Scene, modes), .range = "[0, 100]", .fallback = "0",
          .doc = "lowest eigenmodes to put into the result"},
         {YAML_CHOICES(Scene, checks), .when = "/job: invert",

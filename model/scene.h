@@ -80,7 +80,7 @@ typedef struct PoseScene {
 /* Velocities of the vertices at the start. */
 typedef struct VelocityScene {
     double value[3];
-    char **formula;
+    char **formula, *file;
     WhereScene *where;
     int formula_count, where_count;
 } VelocityScene;
@@ -242,12 +242,23 @@ typedef struct TimeScene {
     int steps;
 } TimeScene;
 
+/* last, or a number */
+typedef struct StartFrameScene {
+    int mode, number; /* mode 0: last */
+} StartFrameScene;
+
+typedef struct StartScene {
+    char *result, *load_case;
+    StartFrameScene frame;
+} StartScene;
+
 typedef struct OutputScene {
-    int every, precision;
+    int every, precision, states;
     char *svg, *png, *gcode, *gcode_servo, *hpgl; /* of a drawing: names of files */
 } OutputScene;
 
 enum { OUTPUT_SINGLE, OUTPUT_DOUBLE };
+enum { STATES_LAST, STATES_ALL };
 
 enum { BODIES_MAX = 8 };
 
@@ -264,6 +275,7 @@ typedef struct Scene {
     SolverScene solver;
     LoadStepsScene load_steps;
     TimeScene time;
+    StartScene *start;
     int modes;
     OutputScene output;
     int *checks; /* SceneCheck */

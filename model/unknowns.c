@@ -292,7 +292,7 @@ static bool add_dmp(Model *model, const Scene *scene, const Build *b)
 
 bool model_design(Model *model, const Scene *scene, YamlFile *file)
 {
-    Build b = build_start(scene, model->mesh, file);
+    Build b = build_start(scene, model->mesh, model->time, file);
     if (!scene->design) return yaml_refuse(file, "job", "a %s job needs the key `design`", model->job->name);
     bool ok = add_unknowns(model, scene, &b) && add_dmp(model, scene, &b);
     return model_objectives(model, scene, file) && ok;

@@ -20,6 +20,8 @@ void case_clear(Case *c)
     mem_free(c->stages);
     mem_free(c->objectives);
     mem_free(c->target);
+    mem_free(c->loads);
+    mem_free(c->anchor);
     *c = (Case){0};
 }
 

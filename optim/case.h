@@ -13,7 +13,9 @@ typedef struct Case {
     char *name;    /* owned, as all below */
     double weight; /* of its objectives   */
     System *sys;
-    State state; /* where to start; of a design the equilibrium of the best one so far */
+    State state;    /* where to start; of a design the equilibrium of the best one so far */
+    double *loads;  /* [params] the loads that act there; NULL: none do                      */
+    double *anchor; /* of a motion that goes on: where its factor stands (system_anchor)     */
     int stage_count;
     Stage *stages; /* [stage_count]; a design has one, whose p gets the unknowns */
     int objective_count;

@@ -81,13 +81,19 @@ void path_load(Path *path, int frame, double time)
         control_apply(&problem->controls[c], frame > 0 ? frame : 1, time, path->p);
 }
 
-/* v at the end of step k - 1, from the states. */
+void path_velocities(const Path *path, int k, double *v)
+{
+    int positions = system_position_count(path->problem->sys);
+    const double *now = path_x(path, k), *before = path_x(path, k ? k - 1 : 0),
+                 *start = path->problem->start->v;
+    for (int i = 0; i < path->dofs; i++)
+        v[i] = k == 0 ? start[i] : i < positions ? (now[i] - before[i]) / path->dt[k] : 0;
+}
+
+/* At the start of step k. */
 static const double *start_velocity(Path *path, int k)
 {
-    if (k == 1) return path->problem->start->v;
-    const double *now = path_x(path, k - 1), *before = path_x(path, k - 2);
-    for (int i = 0; i < system_position_count(path->problem->sys); i++)
-        path->v[i] = (now[i] - before[i]) / path->dt[k - 1];
+    path_velocities(path, k - 1, path->v);
     return path->v;
 }
 

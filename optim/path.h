@@ -31,6 +31,9 @@ bool path_add(Path *path, int frame, const State *state, double dt);
 double *path_x(const Path *path, int k);
 double *path_memory(const Path *path, int k);
 
+/* v[dofs] at state k: of the step that ends there; of the start, its own. */
+void path_velocities(const Path *path, int k, double *v);
+
 /* Another start of a step than where the motion is: x of the frame's end, from which the free dofs are taken; false: none. */
 typedef bool (*PathGuess)(void *self, int frame, double dt, double *x);
 

@@ -211,6 +211,12 @@ State trajectory_frame(const Trajectory *t, int frame)
                    .time = best->time[k]};
 }
 
+void trajectory_velocities(const Trajectory *t, int frame, double *v)
+{
+    const Path *best = &t->paths[t->best];
+    path_velocities(best, best->end[frame], v);
+}
+
 TrajectoryState trajectory_state(const Trajectory *t)
 {
     const Path *best = &t->paths[t->best];

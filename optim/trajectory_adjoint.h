@@ -68,10 +68,11 @@ void trajectory_tangent(Trajectory *t, const double *v, double *dx);
  * motion; any may be NULL. */
 void trajectory_gradients(Trajectory *t, double *dp, double *dx, double *dv);
 
-/* The best motion's parameters, with controls as at frame n (0: as at the start); and its states, without
- * velocities, borrowed. */
+/* The best motion's parameters, with controls as at frame n (0: as at the start); its states, without
+ * velocities, borrowed; and these, v[dofs]. */
 const double *trajectory_params(Trajectory *t, int frame);
 State trajectory_frame(const Trajectory *t, int frame);
+void trajectory_velocities(const Trajectory *t, int frame, double *v);
 
 /* The best motion beyond u: with it, trajectory_restore goes on bit by bit as the run that saved it. */
 typedef struct TrajectoryState {

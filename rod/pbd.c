@@ -231,6 +231,42 @@ const Vec3 *pbd_rod_velocities(const PbdRod *rod)
     return rod->v;
 }
 
+int pbd_rod_state_count(int elements)
+{
+    return 6 * (elements + 1) + 7 * elements + 1;
+}
+
+void pbd_rod_get_state(const PbdRod *rod, double *state)
+{
+    int nodes = rod->elements + 1;
+    double *v = state + 3 * nodes, *q = v + 3 * nodes, *spin = q + 4 * rod->elements;
+    for (int i = 0; i < nodes; i++) {
+        vec3_store(state + 3 * i, rod->x[i]);
+        vec3_store(v + 3 * i, rod->v[i]);
+    }
+    for (int e = 0; e < rod->elements; e++) {
+        q[4 * e] = rod->q[e].w;
+        vec3_store(q + 4 * e + 1, rod->q[e].v);
+        vec3_store(spin + 3 * e, rod->spin[e]);
+    }
+    spin[3 * rod->elements] = rod->backwards;
+}
+
+void pbd_rod_set_state(PbdRod *rod, const double *state)
+{
+    int nodes = rod->elements + 1;
+    const double *v = state + 3 * nodes, *q = v + 3 * nodes, *spin = q + 4 * rod->elements;
+    for (int i = 0; i < nodes; i++) {
+        rod->x[i] = vec3_load(state + 3 * i);
+        rod->v[i] = vec3_load(v + 3 * i);
+    }
+    for (int e = 0; e < rod->elements; e++) {
+        rod->q[e] = (Quat){q[4 * e], vec3_load(q + 4 * e + 1)};
+        rod->spin[e] = vec3_load(spin + 3 * e);
+    }
+    rod->backwards = spin[3 * rod->elements] != 0;
+}
+
 void pbd_rod_frames(const PbdRod *rod, RodFrame *frames)
 {
     for (int e = 0; e < rod->elements; e++)

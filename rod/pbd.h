@@ -52,6 +52,12 @@ void pbd_rod_move_end(PbdRod *rod, Vec3 place);
 const Vec3 *pbd_rod_positions(const PbdRod *rod);
 const Vec3 *pbd_rod_velocities(const PbdRod *rod);
 
+/* All that a step depends on, in pbd_rod_state_count numbers: positions, velocities, the elements' quaternions (w, v) and
+ * rates of turning, and which way the next sweep goes. A rod that it is put into goes on bit by bit. */
+int pbd_rod_state_count(int elements);
+void pbd_rod_get_state(const PbdRod *rod, double *state);
+void pbd_rod_set_state(PbdRod *rod, const double *state);
+
 /* The material frames in the middles of the elements, frames[elements]. */
 void pbd_rod_frames(const PbdRod *rod, RodFrame *frames);
 

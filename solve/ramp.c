@@ -21,6 +21,18 @@ static void interpolate(const Params *params, const double *from, const double *
     }
 }
 
+/* Are the loads the same at both ends? */
+static bool is_steady(const Params *params, const double *from, const double *to)
+{
+    bool same = true;
+    for (int b = 0; same && b < params->block_count; b++) {
+        const ParamBlock *block = &params->blocks[b];
+        size_t count = (size_t)(block->count * block->width);
+        same = !block->load || !memcmp(from + block->offset, to + block->offset, count * sizeof *to);
+    }
+    return same;
+}
+
 static bool reached(NewtonStatus status)
 {
     return status == NEWTON_CONVERGED || status == NEWTON_SADDLE || status == NEWTON_NEUTRAL;
@@ -33,7 +45,8 @@ RampInfo ramp_solve(System *sys, const Params *params, const RampDef *def, const
     State kept = state_clone(state);
     const NewtonObserver *observer = def->observer.iteration ? &def->observer : NULL;
     RampInfo info = {0};
-    double step = 1.0 / def->steps;
+    bool steady = from && !def->move && is_steady(params, from, to);
+    double step = steady ? 1 : 1.0 / def->steps;
     while (info.reached < 1) {
         double part = info.reached + step > 1 - 1e-9 ? 1 : info.reached + step;
         state_copy(&kept, state);

@@ -10,8 +10,8 @@
 
 typedef struct RampDef {
     NewtonDef newton;
-    int steps;               /* at first; default 1 */
-    double step_min;         /* of the whole, before it gives up; default 1/1024 */
+    int steps;       /* at first; default 1. One where nothing changes: loads are the same, nothing moves */
+    double step_min; /* of the whole, before it gives up; default 1/1024 */
     NewtonObserver observer; /* may be zero */
     bool (*move)(void *self, double part,
                  double *x); /* moves held coordinates a part of the way that is left; may be NULL */

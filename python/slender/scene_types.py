@@ -30,7 +30,7 @@ PoseKeys = TypedDict("PoseKeys", {
 }, total=False)
 
 VelocityKeys = TypedDict("VelocityKeys", {
-    "value": "Numbers", "formula": "Numbers", "where": "Mapping[str, Where]",
+    "value": "Numbers", "formula": "Numbers", "file": "str", "where": "Mapping[str, Where]",
 }, total=False)
 
 WhereKeys = TypedDict("WhereKeys", {
@@ -305,9 +305,17 @@ TimeKeys = TypedDict("TimeKeys", {
     "at": "Number", "step": "Number", "steps": "int",
 }, total=False)
 
+StartKeys = TypedDict("StartKeys", {
+    "result": "str", "frame": "FrameOfAStart", "case": "Number",
+}, total=False)
+
+FrameOfAStartKeys = TypedDict("FrameOfAStartKeys", {
+    "mode": "Literal['last']", "number": "int",
+}, total=False)
+
 Output = TypedDict("Output", {
-    "every": "int", "precision": "Literal['single', 'double']", "svg": "Number", "png": "Number", "gcode": "Number",
-    "gcode_servo": "Number", "hpgl": "Number",
+    "every": "int", "precision": "Literal['single', 'double']", "states": "Literal['last', 'all']", "svg": "Number",
+    "png": "Number", "gcode": "Number", "gcode_servo": "Number", "hpgl": "Number",
 }, total=False)
 
 Scene = TypedDict("Scene", {
@@ -315,7 +323,8 @@ Scene = TypedDict("Scene", {
     "job": "Literal['equilibrium', 'evaluate', 'design', 'simulate', 'trajectory', 'invert', 'identify', 'draw']",
     "shell": "Shell", "rod": "Rod", "spline": "Spline", "flux_density": "FluxDensity", "fix": "Rows[Fix]",
     "loads": "Rows[Loads]", "target": "Target", "cases": "Rows[Cases]", "sequence": "Rows[Sequence]",
-    "design": "Design", "solver": "Solver", "load_steps": "LoadSteps", "time": "Time", "modes": "int",
+    "design": "Design", "solver": "Solver", "load_steps": "LoadSteps", "time": "Time", "start": "Start",
+    "modes": "int",
     "checks": "Union[Literal['stability', 'self_contact', 'round_trip'], Rows[Literal['stability', 'self_contact', 'round_trip']]]",
     "output": "Output",
 }, total=False)
@@ -348,3 +357,5 @@ Target = Union["TargetKeys", Numbers]
 StartOfFluxDensity = Union["StartOfFluxDensityKeys", Numbers]
 LoadSteps = Union["LoadStepsKeys", Literal['auto'], int]
 Time = Union["TimeKeys", Number]
+Start = Union["StartKeys", str]
+FrameOfAStart = Union["FrameOfAStartKeys", Literal['last'], int]

@@ -46,7 +46,7 @@ class Scenes(support.TestCase):
         self.assertIsInstance(error, slender.Error)
         scene = support.strip()
         scene["shell"]["thickness"] = "-1 mm"
-        self.refuses(slender.SceneError, r"^shell\.thickness ", slender.Scene, scene)
+        self.refuses(slender.SceneError, r"^shell\.thickness", slender.Scene, scene)
         self.refuses(slender.SceneError, "thicknes", slender.Scene, support.STRIP, set={"shell.thicknes": 1})
         self.refuses(slender.SceneError, "nowhere.yaml", slender.Scene, Path("nowhere.yaml"))
         self.refuses(TypeError, "cannot hold", slender.Scene, support.strip(modes=object()))

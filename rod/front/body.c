@@ -3,6 +3,7 @@
 #include "job/jobs.h"
 #include "rod/front/curves.h"
 #include "rod/front/front.h"
+#include "rod/pbd.h"
 #include "solve/ramp.h"
 #include <math.h>
 #include <string.h>
@@ -235,7 +236,7 @@ static bool fill_cases(Model *model, const Scene *scene, const Build *b, bool fl
     bool hanging = !model->general && model->job == &job_equilibrium && rod->start == ROD_CLAMPED &&
                    rod->end == ROD_FREE && rod->fields.count == 0;
     if (ok) make_states(model, rod_scene(scene), hanging, p, curve);
-    if (ok && rm->held && !model->moves) ok = settle(model, b, p);
+    if (ok && rm->held && !model->moves && !scene->start) ok = settle(model, b, p);
     if (ok) make_systems(model, hanging, motion);
     mem_free(p);
     mem_free(curve);
@@ -283,7 +284,7 @@ static bool check_inversion(const Scene *scene, YamlFile *file)
 
 static bool create(Model *model, const Scene *scene, YamlFile *file)
 {
-    Build b = build_start(scene, NULL, file);
+    Build b = build_start(scene, NULL, model->time, file);
     b.report = &model->report;
     b.timed = model->job->motion ? &model->flux_of_time : NULL;
     model->point_count = rod_scene(scene)->elements + 1;
@@ -329,6 +330,57 @@ static bool select_part(const Model *model, const Build *b, const char *at, cons
 
 /* ---- The row ---- */
 
+static const Likeness likeness[] = {{"rod/s", "a rod of another length, or of other elements"}, {0}};
+
+/* How far off an end may be, in parts of the length, and in radians. */
+static const double START_LITTLE = 1e-6;
+#define START_ELSEWHERE "its first end is elsewhere, or clamped along another direction, than the scene's"
+
+/* Is a node where the scene holds it, and with that frame? */
+static bool is_at(const RodLayout *layout, const double *x, int node, Vec3 place, const Quat *frame,
+                  double size)
+{
+    bool same = layout->position < 0 || vec3_length(vec3_sub(vec3_load(x + layout->position + 3 * node),
+                                                             place)) <= START_LITTLE * size;
+    Quat turn = frame ? quat_mul(quat_conj(*frame), rod_reference(layout, x, node)) : (Quat){1, {0, 0, 0}};
+    return same && vec3_length(turn.v) <= START_LITTLE;
+}
+
+static bool take_preview(RodModel *rm, const double *from, int dofs, Error *err)
+{
+    const Rod *rod = rm->rod;
+    if (dofs != pbd_rod_state_count(rod->elements))
+        return error_set(err, "its state is not that of `solver: pbd`, which goes on from its own only");
+    if (vec3_length(vec3_sub(vec3_load(from), rod->position)) > START_LITTLE * rod->length)
+        return error_set(err, START_ELSEWHERE);
+    rm->moving = mem_copy(from, (size_t)dofs, sizeof *from);
+    return true;
+}
+
+/* Of turns only, or with places, too. */
+static bool take_state(const Model *model, const double *from, int dofs, double *x, Error *err)
+{
+    RodModel *rm = model->self;
+    const Rod *rod = rm->rod;
+    RodLayout turns = rod_layout(rod, false), places = rod_layout(rod, true);
+    if (rm->preview) return take_preview(rm, from, dofs, err);
+    if (dofs == pbd_rod_state_count(rod->elements))
+        return error_set(err, "its state is that of `solver: pbd`, from which only that goes on");
+    if (dofs != turns.dofs && dofs != places.dofs)
+        return error_set(err, "its state is no rod's of %d elements", rod->elements);
+    RodLayout own = dofs == turns.dofs ? turns : places;
+    if (dofs == rm->layout.dofs)
+        memcpy(x, from, (size_t)dofs * sizeof *x);
+    else
+        rod_copy_state(rod, &own, from, &rm->layout, x);
+    if (!is_at(&own, from, 0, rod->position, rod->start == ROD_CLAMPED ? &rod->frame : NULL, rod->length))
+        return error_set(err, START_ELSEWHERE);
+    return !rm->held || model->moves ||
+           is_at(&rm->layout, x, rod->elements, rm->end_position,
+                 rod->end == ROD_CLAMPED ? &rm->end_frame : NULL, rod->length) ||
+           error_set(err, "its other end is not where rod.end holds it: an equilibrium leads it there");
+}
+
 static const BodyOps ops = {
     .create = create,
     .destroy = destroy,
@@ -342,6 +394,8 @@ static const BodyOps ops = {
     .add_static = rod_add_static,
     .add_state = rod_add_state,
     .add_final = rod_add_final,
+    .likeness = likeness,
+    .take_state = take_state,
     .places = rod_body_places,
     .doubt = rod_doubt,
     .describe = rod_describe,

@@ -9,6 +9,8 @@ typedef struct Preview {
     Run *run;
     PbdRod *rod;
     int nodes;
+    double now;    /* s */
+    double *state; /* pbd_rod_get_state, as it was put last */
     Error *err;
 } Preview;
 
@@ -36,6 +38,7 @@ static PbdRod *create(const Run *run)
                      .substeps = scene->pbd.substeps,
                      .sweeps = scene->pbd.sweeps};
     PbdRod *made = pbd_rod_create(&def);
+    if (rm->moving) pbd_rod_set_state(made, rm->moving);
     mem_free(start);
     return made;
 }
@@ -45,15 +48,26 @@ static Array positions(const Preview *o, const char *name)
     return array_float(name, "m", &pbd_rod_positions(o->rod)->x, 2, o->nodes, 3);
 }
 
-static bool put_frame(const Preview *o, int frame, double time)
+/* All of its state: a row of the frames', or the last one. */
+static Array whole_state(const Preview *o, bool row)
 {
-    Array arrays[] = {positions(o, "x"), array_float("time", "s", &time, 0, 0, 0)};
-    return journal_put(o->run->journal, "frame", frame, arrays, 2, o->err);
+    int count = pbd_rod_state_count(o->nodes - 1);
+    pbd_rod_get_state(o->rod, o->state);
+    return row ? array_float("state/dofs", "", o->state, 2, 1, count)
+               : array_float("state/dofs", "", o->state, 1, count, 0);
 }
 
-static bool put_step(const Preview *o, int step, double time)
+static bool put_frame(const Preview *o, int frame)
 {
-    Array array = array_float("time", "s", &time, 0, 0, 0);
+    bool whole = o->run->scene->output.states == STATES_ALL;
+    Array arrays[] = {positions(o, "x"), array_float("time", "s", &o->now, 0, 0, 0), whole_state(o, true),
+                      array_float("state/time", "s", &o->now, 1, 1, 0)};
+    return journal_put(o->run->journal, "frame", frame, arrays, whole ? 4 : 2, o->err);
+}
+
+static bool put_step(const Preview *o, int step)
+{
+    Array array = array_float("time", "s", &o->now, 0, 0, 0);
     return journal_put(o->run->journal, "evaluation", step, &array, 1, o->err);
 }
 
@@ -63,6 +77,8 @@ static bool put_final(const Preview *o, const char *status)
     Array arrays[] = {array_text("status", status),
                       positions(o, "state/x"),
                       positions(o, "rod/x"),
+                      whole_state(o, false),
+                      array_float("state/time", "s", &o->now, 0, 0, 0),
                       array_float("state/v", "m/s", &pbd_rod_velocities(o->rod)->x, 2, o->nodes, 3),
                       array_float("final/energy/kinetic", "J", &sums.kinetic, 0, 0, 0),
                       array_float("final/energy/elastic", "J", &sums.elastic, 0, 0, 0),
@@ -73,20 +89,27 @@ static bool put_final(const Preview *o, const char *status)
 static RunStatus preview(Run *run, Error *err)
 {
     const TimeScene *time = &run->scene->time;
-    Preview o = {.run = run, .rod = create(run), .nodes = run->model->point_count, .err = err};
+    Preview o = {.run = run,
+                 .rod = create(run),
+                 .nodes = run->model->point_count,
+                 .now = run->model->time,
+                 .err = err};
+    o.state = mem_alloc((size_t)pbd_rod_state_count(o.nodes - 1), sizeof *o.state);
     int every = run->scene->output.every ? run->scene->output.every : 1, step = 0;
     bool ok = journal_forget(run->journal, "frame", err) && journal_forget(run->journal, "evaluation", err) &&
-              put_frame(&o, 0, time->at);
+              put_frame(&o, 0);
     for (; ok && step < time->steps && !host_stops(run->host);) {
         pbd_rod_step(o.rod, time->step);
-        double now = time->at + ++step * time->step;
-        ok = put_step(&o, step, now) && (step % every || put_frame(&o, step / every, now));
-        host_step(run->host, step, time->steps, "t %.4g s", now);
+        o.now += time->step;
+        step++;
+        ok = put_step(&o, step) && (step % every || put_frame(&o, step / every));
+        host_step(run->host, step, time->steps, "t %.4g s", o.now);
     }
     bool interrupted = step < time->steps;
-    if (ok && step % every) ok = put_frame(&o, step / every + 1, time->at + step * time->step);
+    if (ok && step % every) ok = put_frame(&o, step / every + 1);
     ok = ok && put_final(&o, interrupted ? "interrupted" : "converged");
     pbd_rod_destroy(o.rod);
+    mem_free(o.state);
     return !ok ? RUN_CANNOT_WRITE : interrupted ? RUN_INTERRUPTED : RUN_DONE;
 }
 

@@ -119,6 +119,7 @@ RodModel *rod_model_create(const Scene *scene, const Build *b)
     const RodScene *from = rod_scene(scene);
     const JobRow *job = scene_job(scene);
     bool identify = job == &rod_job_identify;
+    model->preview = from->solver == ROD_SOLVER_PBD;
     bool ok = read_section(model, from, b, !identify);
     ok = read_loads(model, from, b) && ok;
     if (from->curve) {
@@ -145,6 +146,7 @@ void rod_model_destroy(RodModel *model)
     mem_free(model->clamps);
     mem_free(model->points);
     mem_free(model->natural);
+    mem_free(model->moving);
     mem_free(model);
 }
 

@@ -26,6 +26,8 @@ typedef struct RodModel {
     bool held;       /* `end` says where the last node is                                         */
     Vec3 end_position;
     Quat end_frame;
+    bool preview;   /* by the position-based solver                                               */
+    double *moving; /* the state that it goes on from (pbd_rod_get_state); NULL: from rest, in model->x */
 } RodModel;
 
 /* Curves, section and loads of rod_scene(scene); NULL after a refusal. */

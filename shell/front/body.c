@@ -226,7 +226,7 @@ static bool create(Model *model, const Scene *scene, YamlFile *file)
 {
     Mesh *mesh = build_mesh(&shell_scene(scene)->mesh, file, "shell.mesh", &model->report);
     if (!mesh) return false;
-    Build b = build_start(scene, mesh, file);
+    Build b = build_start(scene, mesh, model->time, file);
     b.mesh_scale = shell_scene(scene)->mesh.scale;
     b.report = &model->report;
     b.timed = model->job->motion ? &model->flux_of_time : NULL;
@@ -300,6 +300,9 @@ static System *pose_system(const Model *model)
 
 /* ---- The row ---- */
 
+static const Likeness likeness[] = {
+    {"faces", "a mesh with other faces"}, {"rest", "a mesh of another shape at rest"}, {0}};
+
 static const BodyOps ops = {
     .create = create,
     .destroy = destroy,
@@ -317,6 +320,7 @@ static const BodyOps ops = {
     .add_frame = shell_add_frame,
     .add_state = shell_add_state,
     .add_final = shell_add_final,
+    .likeness = likeness,
     .places = shell_places,
     .describe = shell_describe,
     .advise = shell_advise,

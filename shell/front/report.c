@@ -29,7 +29,7 @@ static double largest_field(const Model *model, const Scene *scene, const double
     double now[3] = {0};
     int moments = scene->time.steps < MOMENTS_MAX ? scene->time.steps : MOMENTS_MAX;
     for (int n = 0; timed_flux_is_given(&model->flux_of_time) && n <= moments; n++) {
-        double time = scene->time.at + (double)n / moments * scene->time.steps * scene->time.step;
+        double time = model->time + (double)n / moments * scene->time.steps * scene->time.step;
         if (timed_flux_eval(&model->flux_of_time, time, now, NULL))
             largest = fmax(largest, vec3_length(vec3_load(now)));
     }

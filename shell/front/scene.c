@@ -8,8 +8,9 @@ const YamlTable shell_table = {
     .doc = "A magnetised thin shell.",
     .fields = (const YamlField[]){
         {YAML_TABLE(ShellScene, mesh, &mesh_table), .required = true, .doc = "its mesh at rest"},
-        {YAML_OPTIONAL(ShellScene, pose, &pose_table), .doc = "where a job starts; at rest if absent"},
-        {YAML_OPTIONAL(ShellScene, velocity, &velocity_table), .when = "/job: simulate, trajectory",
+        {YAML_OPTIONAL(ShellScene, pose, &pose_table), .when = "!/start",
+         .doc = "where a job starts; at rest if absent"},
+        {YAML_OPTIONAL(ShellScene, velocity, &velocity_table), .when = "/job: simulate, trajectory & !/start",
          .doc = "of the free coordinates at the start of a motion; at rest if absent"},
         {YAML_NUMBER(ShellScene, thickness), .unit = "m", .range = "(0, inf)", .required = true,
          .doc = "thickness h"},
