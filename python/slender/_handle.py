@@ -140,7 +140,7 @@ class Shield:
         if self._signals:
             signal.signal(signal.SIGINT, self._handler)
         if self.error is not None:
-            raise self.error
+            raise self.error from self.error.__cause__  # what the library says of the stop is no news
 
 
 class Host(Shield):
