@@ -201,8 +201,11 @@ typedef struct SlenderMotion SlenderMotion;
 typedef struct SlenderMotionDef {
     int steps;
     double step; /* s */
-    const double *
-        flux; /* [steps][3] T: the uniform flux density that acts in each step; NULL: the scene's over time */
+
+    /* [steps][3] T: the uniform flux density that acts in each step. NULL: the scene's, over time where its job is a
+     * motion. */
+    const double *flux;
+
     double memory; /* bytes that factors may take, which derivatives else make again; 0: 1 GiB */
     SlenderHost host;
 } SlenderMotionDef;
