@@ -43,6 +43,10 @@ extern const char *const build_variables[], *const build_variables_time[];
 enum { BUILD_VARIABLES = 5 };
 void build_position(double *variables, const double *x, double time);
 
+/* Three formulas of x, y, z, r at each of the places: place[count][3], values[count][3]. */
+bool build_vectors_at(const Build *b, Key at, char *const *formula, const WhereScene *where, int where_count,
+                      const double *place, int count, double *values);
+
 /* The mesh that a scene describes at that key; NULL after a refusal: a key that its shape does not take, too. */
 Mesh *build_mesh(const MeshScene *scene, YamlFile *yaml, const char *at, MeshReport *report);
 

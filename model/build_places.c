@@ -186,22 +186,6 @@ static void target_from_strokes(const Build *b, const TargetScene *scene, double
     }
 }
 
-static bool target_from_formula(const Build *b, Key at, const TargetScene *scene, double (*target)[3])
-{
-    Formula *formula =
-        build_formula(b, at, scene->formula, 3, scene->where, scene->where_count, build_variables);
-    bool ok = formula != NULL;
-    Error err;
-    for (int v = 0; ok && v < b->mesh->vertex_count; v++) {
-        double variables[BUILD_VARIABLES];
-        build_position(variables, b->mesh->rest[v], 0);
-        ok = formula_eval(formula, variables, target[v], &err) ||
-             yaml_refuse(b->file, at.text, "%s", err.text);
-    }
-    formula_destroy(formula);
-    return ok;
-}
-
 /* Drops the targets of vertices that are not among those chosen. */
 static bool keep_chosen(const Build *b, Key at, const TargetScene *scene, double (*target)[3])
 {
@@ -232,6 +216,7 @@ bool build_target(const Build *b, Key at, const TargetScene *scene, double (*tar
     else if (scene->strokes_count)
         target_from_strokes(b, scene, target);
     else
-        ok = target_from_formula(b, key("%s.formula", at.text), scene, target);
+        ok = build_vectors_at(b, key("%s.formula", at.text), scene->formula, scene->where, scene->where_count,
+                              b->mesh->rest[0], b->mesh->vertex_count, target[0]);
     return ok && keep_chosen(b, key("%s.on", at.text), scene, target);
 }

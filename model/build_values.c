@@ -66,6 +66,22 @@ static bool from_formula(const Build *b, Key at, Formula *formula, const int *ve
     return ok;
 }
 
+bool build_vectors_at(const Build *b, Key at, char *const *formula, const WhereScene *where, int where_count,
+                      const double *place, int count, double *values)
+{
+    Formula *made = build_formula(b, at, formula, 3, where, where_count, build_variables);
+    bool ok = made != NULL;
+    Error err;
+    for (int k = 0; ok && k < count; k++) {
+        double variables[BUILD_VARIABLES];
+        build_position(variables, place + 3 * k, 0);
+        ok = formula_eval(made, variables, values + 3 * k, &err) ||
+             yaml_refuse(b->file, at.text, "%s", err.text);
+    }
+    formula_destroy(made);
+    return ok;
+}
+
 static bool from_table(const Build *b, Key at, const char *path, int width, double *values)
 {
     Table table = {0};

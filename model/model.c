@@ -141,23 +141,6 @@ static bool velocities_from_file(const Model *model, Key at, const char *path, Y
     return ok;
 }
 
-static bool velocities_from_formula(const Model *model, const Build *b, Key at, const VelocityScene *scene,
-                                    const double *place, double *speed)
-{
-    Error err;
-    Formula *formula =
-        build_formula(b, at, scene->formula, 3, scene->where, scene->where_count, build_variables);
-    bool ok = formula != NULL;
-    for (int k = 0; ok && k < model->point_count; k++) {
-        double variables[BUILD_VARIABLES];
-        build_position(variables, place + 3 * k, 0);
-        ok = formula_eval(formula, variables, speed + 3 * k, &err) ||
-             yaml_refuse(b->file, at.text, "%s", err.text);
-    }
-    formula_destroy(formula);
-    return ok;
-}
-
 bool model_velocity(Model *model, const Build *b, const char *at, const VelocityScene *scene,
                     const double *place)
 {
@@ -167,7 +150,8 @@ bool model_velocity(Model *model, const Build *b, const char *at, const Velocity
     if (!scene) return true;
     bool ok = true;
     if (scene->formula)
-        ok = velocities_from_formula(model, b, key("%s", at), scene, place, v);
+        ok = build_vectors_at(b, key("%s", at), scene->formula, scene->where, scene->where_count, place,
+                              model->point_count, v);
     else if (scene->file)
         ok = velocities_from_file(model, key("%s", at), scene->file, b->file, v);
     else
