@@ -114,6 +114,8 @@ static Vec3 clamp_moment(const Rod *rod, Quat clamp, Vec3 line, int parts, Vec3 
     return M;
 }
 
+enum { LOAD_STEPS = 50 };
+
 /* The equilibrium, its weight put on in steps, and the pose it is, held in just that frame. */
 static RodPose equilibrium(const Rod *rod, RodFrame clamp, RodCurve *curve)
 {
@@ -122,13 +124,13 @@ static RodPose equilibrium(const Rod *rod, RodFrame clamp, RodCurve *curve)
     Vec3 weight = vec3_scale(rod->density * M_PI * rod->radius * rod->radius, gravity), M = vec3(0, 0, 0);
     Quat q = quat_from_axes(clamp.n0, clamp.n1, clamp.n2);
     Rod part = *rod;
-    for (int k = 1; k <= 20; k++) {
-        part.tip = vec3_scale(k / 20.0, rod->tip);
-        M = clamp_moment(&part, q, vec3_scale(k / 20.0, weight), 1, M);
+    for (int k = 1; k <= LOAD_STEPS; k++) {
+        part.tip = vec3_scale((double)k / LOAD_STEPS, rod->tip);
+        M = clamp_moment(&part, q, vec3_scale((double)k / LOAD_STEPS, weight), 1, M);
     }
     M = clamp_moment(rod, q, weight, 3, M);
     Vec3 left = hang(rod, (Section){vec3(0, 0, 0), M, q}, weight, 3, curve);
-    assert_true(vec3_length(left) < 1e-11 * vec3_length(M)); /* the shooting's rounding */
+    assert_true(vec3_length(left) < 1e-12 * vec3_length(M));
     RodFrame frame = {quat_rotate(q, vec3(1, 0, 0)), quat_rotate(q, vec3(0, 1, 0)),
                       quat_rotate(q, vec3(0, 0, 1))};
     return (RodPose){curve, frame};
