@@ -5,12 +5,14 @@
 #include <sched.h>
 #include <stdatomic.h>
 #include <stdbool.h>
+#include <unistd.h>
 
 /* A run is open while tasks may be left in it. Who comes to an open run is counted in and out; the calling thread closes
  * it when no task is left, and waits for those that are in, not for those that never came: on a busy machine a thread
  * may get its turn milliseconds later. */
 struct Workers {
-    int count; /* with the calling thread */
+    int count;     /* with the calling thread */
+    pid_t process; /* whose threads they are  */
     pthread_t *threads;
     pthread_mutex_t lock; /* of going to sleep */
     pthread_cond_t begin, end;
@@ -122,6 +124,7 @@ Workers *workers_create(int threads)
 {
     Workers *workers = mem_alloc(1, sizeof *workers);
     workers->count = 1;
+    workers->process = getpid();
     pthread_mutex_init(&workers->lock, NULL);
     pthread_cond_init(&workers->begin, NULL);
     pthread_cond_init(&workers->end, NULL);
@@ -136,9 +139,9 @@ Workers *workers_create(int threads)
     return workers;
 }
 
-void workers_destroy(Workers *workers)
+/* Not in a child of fork, where there are none, nor anybody who could leave the lock. */
+static void end_threads(Workers *workers)
 {
-    if (!workers) return;
     pthread_mutex_lock(&workers->lock);
     workers->finished = true;
     pthread_cond_broadcast(&workers->begin);
@@ -147,13 +150,19 @@ void workers_destroy(Workers *workers)
     pthread_cond_destroy(&workers->begin);
     pthread_cond_destroy(&workers->end);
     pthread_mutex_destroy(&workers->lock);
+}
+
+void workers_destroy(Workers *workers)
+{
+    if (!workers) return;
+    if (workers->process == getpid()) end_threads(workers);
     mem_free(workers->threads);
     mem_free(workers);
 }
 
 int workers_count(const Workers *workers)
 {
-    return workers ? workers->count : 1;
+    return workers && workers->process == getpid() ? workers->count : 1;
 }
 
 /* Nobody is in the run any more. */

@@ -5,7 +5,7 @@
  * threads.
  *
  * A task that runs out of memory is left, and no other is begun; when nobody works any more, the hook of the thread that
- * called workers_run is called (base/memory.h). The Workers are as good as before. */
+ * called workers_run is called (base/memory.h). The Workers are as good as before. In a child of fork the calling thread does all. */
 #pragma once
 
 typedef struct Workers Workers;

@@ -2,6 +2,9 @@
  *
  *     cc tutorial.c $(pkg-config --cflags --libs slender) -lm -o tutorial && ./tutorial
  *
+ * Installed elsewhere than in the system's places, PKG_CONFIG_PATH=DIR/lib/pkgconfig tells pkg-config of it, and
+ * LD_LIBRARY_PATH=DIR/lib the loader; in a clone: cc -Iinclude examples/tutorial.c build/libslender.so -Wl,-rpath,$PWD/build -lm.
+ *
  * Every number is checked: the program ends with 0 where all is right. */
 #include "slender.h"
 #include <math.h>
@@ -135,7 +138,7 @@ int main(void)
     if (!state) stop(&err);
     if (slender_equilibrium(model, 0, state, NULL, &err) != SLENDER_DONE) stop(&err);
     double first = height(state, tip), energies[8];
-    double energy = slender_energy(model, 0, state, energies, NULL);
+    double energy = slender_energy(model, 0, state, energies, NULL, &err);
     printf("%s after %d Newton iterations: the tip is %.3f mm high, the energy %.4g J\n",
            slender_state_info(state).status, slender_state_info(state).newton_iterations, 1e3 * first,
            energy);

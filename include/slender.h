@@ -12,6 +12,8 @@
  * angles, turns: rad; multipliers: N). Vectors over parameters are [params], in blocks that have names
  * (slender_model_block), each in its own unit.
  *
+ * Pointers must not be NULL unless it is said; what destroys or frees takes NULL.
+ *
  * Errors. A call that can fail returns a SlenderStatus, or NULL; err, which may be NULL, then has one sentence on what is wrong
  * and what is allowed, with file, line and column or the key of the scene. Where a solve does not converge the call
  * returns SLENDER_NOT_CONVERGED, and the state is where it came to. Where memory is not there it returns
@@ -77,7 +79,7 @@ typedef struct SlenderHost {
     void (*say)(void *self, const char *sentence);
     void (*warn)(void *self, const char *sentence);
 
-    /* Asked often, from any thread: not 0 when the call shall return. */
+    /* Asked often, from any thread: not 0 when the call shall return, and from then on. */
     int (*stop)(void *self);
 
     /* A frame is there: its time in s, and place[points][3] in m. From the calling thread. */
@@ -127,7 +129,7 @@ typedef struct SlenderModelInfo {
     int points, dofs, params; /* lengths of vectors                      */
     int faces;                /* of its mesh; 0: it has none             */
     int memory;               /* numbers that the terms remember         */
-    const double *rest;       /* [dofs] where a job would start: at rest, or in its pose        */
+    const double *rest;       /* [dofs] at rest, or in its pose; a scene's `start` is in its states only */
     const int *face;          /* [faces][3] points of each; NULL: it has none                 */
     const char *warnings;     /* what is doubtful, a line each; "" : nothing                    */
 } SlenderModelInfo;
@@ -175,15 +177,15 @@ SLENDER_API SlenderStateInfo slender_state_info(SlenderState *state);
 
 /* ---- Statics ---- */
 
-/* Takes the state to the equilibrium of the case: by load steps from a start, or, where it was the model's equilibrium of
+/* Takes the state to the equilibrium of the case, at the scene's time: by load steps from a start, or, where it was the model's equilibrium of
  * this case with other parameters, from there along the tangent. host may be NULL. */
 SLENDER_API SlenderStatus slender_equilibrium(SlenderModel *model, int load_case, SlenderState *state,
                                               const SlenderHost *host, SlenderError *err);
 
 /* The energy in J; of each term energies[terms], and gradient[dofs] dE/dx; where they are not NULL. At dofs that are held
- * the gradient is the support's force on the body. NAN: not finite. */
+ * the gradient is the support's force on the body. NAN: not finite, or refused: then err says why. */
 SLENDER_API double slender_energy(SlenderModel *model, int load_case, const SlenderState *state,
-                                  double *energies, double *gradient);
+                                  double *energies, double *gradient, SlenderError *err);
 
 /* Derivatives of an equilibrium x(p): dp[params] = (dx/dp)^T dx, and dx[dofs] = (dx/dp) dp. Exact at an equilibrium, with
  * the factor of its solve where that is at hand; SLENDER_REFUSED where the Hessian is not positive definite: there is no
@@ -221,7 +223,7 @@ SLENDER_API void slender_motion_destroy(SlenderMotion *motion);
 SLENDER_API int slender_motion_steps(const SlenderMotion *motion);
 SLENDER_API SlenderState *slender_motion_state(const SlenderMotion *motion, int n, SlenderError *err);
 
-/* Of F(x_n, v_n, ..): dF/dx[count][dofs], and dF/dv alike or NULL, of the states after frame[count] steps, to dF/dp[params]
+/* Of F(x_n, v_n, ..): dF/dx[count][dofs] and dF/dv alike, either may be NULL, of the states after frame[count] steps, to dF/dp[params]
  * (of which flux_density is 0 where flux was given), dF/dflux[steps][3], and dF/dx, dF/dv of the start, [dofs]; NULL: not
  * wanted. Exact. */
 SLENDER_API SlenderStatus slender_motion_vjp(SlenderMotion *motion, int count, const int *frame,

@@ -25,6 +25,8 @@ SlenderStatus lib_call(SlenderStatus (*work)(void *self, Error *err), void *self
     if (!err) return call.status;
     err->status = call.status;
     snprintf(err->text, sizeof err->text, "%s", call.status == SLENDER_DONE ? "" : call.err.text);
+    for (char *c = err->text; *c; c++) /* users' words may have lines */
+        if ((unsigned char)*c < ' ') *c = ' ';
     return call.status;
 }
 

@@ -1,9 +1,11 @@
 /* Motions, and their derivatives. */
 #include "base/memory.h"
 #include "lib/objects.h"
+#include <math.h>
 #include <string.h>
 
 static const double FACTOR_MEMORY = 1 << 30; /* bytes */
+enum { STEPS_MAX = 100000000 };
 
 /* ---- The march ---- */
 
@@ -97,9 +99,12 @@ static SlenderStatus check(const Simulation *s, Error *err)
                           s->start->now.dofs, dofs);
     if (s->def->flux && s->model->model->flux_density < 0)
         return lib_refuse(err, "%s feels no flux density", s->model->model->body->noun);
-    if (s->def->steps < 0 || !(s->def->step > 0))
-        return lib_refuse(err, "%d steps of %g s; they must be 0 or more, and longer than 0 s", s->def->steps,
-                          s->def->step);
+    if (s->def->steps < 0 || s->def->steps > STEPS_MAX || !(s->def->step > 0) || !isfinite(s->def->step))
+        return lib_refuse(err, "%d steps of %g s; they must be 0 to %d, and longer than 0 s", s->def->steps,
+                          s->def->step, STEPS_MAX);
+    if (!(s->def->memory >= 0))
+        return lib_refuse(err, "memory is %g bytes; it must be 0 or more", s->def->memory);
+    if (!isfinite(s->start->now.time)) return lib_refuse(err, "the start's time is no finite number");
     return SLENDER_DONE;
 }
 
@@ -215,9 +220,9 @@ static void seed_states(const Pull *p, const Path *path, double *seed)
     size_t n = (size_t)path->dofs, positions = (size_t)system_position_count(path->problem->sys);
     for (int k = 0; k < p->count; k++) {
         int end = path->end[p->frame[k]];
-        const double *dx = p->dx + (size_t)k * n, *dv = p->dv ? p->dv + (size_t)k * n : NULL;
+        const double *dx = p->dx ? p->dx + (size_t)k * n : NULL, *dv = p->dv ? p->dv + (size_t)k * n : NULL;
         double *row = seed + (size_t)end * n;
-        for (size_t i = 0; i < n; i++) row[i] += dx[i];
+        for (size_t i = 0; i < n && dx; i++) row[i] += dx[i];
         for (size_t i = 0; i < positions && dv && end > 0; i++) {
             row[i] += dv[i] / path->dt[end];
             row[i - n] -= dv[i] / path->dt[end];
@@ -242,6 +247,7 @@ static SlenderStatus pull(void *self, Error *err)
     Path *path = &motion->path;
     size_t n = (size_t)path->dofs, rows = (size_t)path->count + 1;
     int size = motion->model->model->params->size;
+    if (p->count < 0) return lib_refuse(err, "%d states; they must be 0 or more", p->count);
     for (int k = 0; k < p->count; k++)
         if (p->frame[k] < 0 || p->frame[k] > motion->reached) return no_such_step(motion, p->frame[k], err);
     double *seed = mem_alloc(rows * n, sizeof *seed), *dv = mem_alloc(n, sizeof *dv),

@@ -97,6 +97,7 @@ SlenderStatus slender_result_read(SlenderResult *result, const char *name, int f
 
 void slender_array_free(SlenderArray *array)
 {
+    if (!array) return;
     Array owned = {.name = array->name, .unit = array->unit, .data = array->data};
     array_clear(&owned);
     *array = (SlenderArray){0};

@@ -3,6 +3,7 @@
 #include "io/path.h"
 #include "job/record.h"
 #include "lib/objects.h"
+#include "solve/kernels.h"
 #include <string.h>
 
 typedef struct Reading {
@@ -35,6 +36,7 @@ static SlenderStatus refuse(const SlenderScene *scene, Error *err)
 static SlenderStatus read_scene(void *self, Error *err)
 {
     Reading *reading = self;
+    if (reading->count < 0) return lib_refuse(err, "%d settings; they must be 0 or more", reading->count);
     SlenderScene *scene = mem_alloc(1, sizeof *scene);
     scene->path = mem_text(reading->path);
     scene->file =
@@ -97,6 +99,7 @@ void slender_scene_destroy(SlenderScene *scene)
 /* Refusals are added to the file's list: the scene can be used again. */
 SlenderStatus lib_build(SlenderScene *scene, bool general, Model **model, Error *err)
 {
+    if (kernels_reserve(1) < 1) mem_exhausted("OpenBLAS, which works in 128 MB");
     *model =
         general ? model_create_general(&scene->scene, scene->file) : model_create(&scene->scene, scene->file);
     if (*model) {

@@ -137,13 +137,21 @@ static bool move(void *self, double part, double *x)
     return model_move(mover->model, mover->time, part, x, NULL);
 }
 
+/* Tells of each iteration, and asks whether to go on. */
+static bool tell(void *self, const NewtonInfo *info)
+{
+    const Run *run = self;
+    host_step(run->host, info->iterations, run->scene->solver.max_iterations, "energy %.6g J", info->energy);
+    return !host_stops(run->host);
+}
+
 static NewtonInfo from_start(const Rest *rest, Run *run, System *sys, double *p)
 {
     const Model *model = run->model;
     Mover mover = {model, rest->state->now.time};
     RampDef def = ramp_default();
     run_newton(run, &def.newton);
-    def.observer = run_observer(run);
+    def.observer = (NewtonObserver){tell, run};
     def.steps = run->scene->load_steps.mode < 0 ? run->scene->load_steps.count : model->load_steps;
     if (model->moves) def.move = move, def.self = &mover;
     const double *loads = model->cases[rest->load_case].loads; /* of a scene that starts from a result */
@@ -162,7 +170,7 @@ static NewtonInfo from_known(const Rest *rest, Run *run, System *sys, double *p)
     implicit_predict(sys, &from, dp, p, &state->now);
     mem_free(dp);
     NewtonDef def = newton_default();
-    NewtonObserver observer = run_observer(run);
+    NewtonObserver observer = {tell, run};
     run_newton(run, &def);
     return newton_minimize(sys, &def, &at, &state->now, &observer);
 }
@@ -177,6 +185,7 @@ static SlenderStatus find_rest(void *self, Error *err)
     System *sys = lib_system(rest->model, rest->load_case, false);
     double *p = lib_params(rest->model, rest->load_case);
     memset(state->now.v, 0, (size_t)state->now.dofs * sizeof(double));
+    state->now.time = rest->model->model->cases[rest->load_case].stages[0].time;
     NewtonInfo info = is_known(rest) ? from_known(rest, &run, sys, p) : from_start(rest, &run, sys, p);
     forget(state);
     state->status = newton_status_name(info.status);
@@ -221,11 +230,11 @@ static SlenderStatus take_energy(void *self, Error *err)
 }
 
 double slender_energy(SlenderModel *model, int load_case, const SlenderState *state, double *energies,
-                      double *gradient)
+                      double *gradient, SlenderError *err)
 {
     Energy energy = {
         {.model = model, .load_case = load_case, .state = (SlenderState *)state}, energies, gradient, NAN};
-    lib_call(take_energy, &energy, NULL);
+    lib_call(take_energy, &energy, err);
     return energy.sum;
 }
 

@@ -40,7 +40,7 @@ def calls(model: slender.Model) -> None:
     state = model.equilibrium("up")
     pointers = model._handle.pointer, 0, state._handle.pointer
     energies = model._energies.ctypes.data
-    bare = least(lambda: c.lib.slender_energy(*pointers, energies, None), 200)
+    bare = least(lambda: c.lib.slender_energy(*pointers, energies, None, None), 200)
     say("energy_c_us", 1e6 * bare, "us")
     say("energy_beyond_c_us", 1e6 * (least(lambda: model.energy(state), 200) - bare + nothing), "us", "<= 50")
     dF = 2 * (state.x - model.rest)

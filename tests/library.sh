@@ -42,6 +42,11 @@ for compiler in "cc -x c $source/examples/tutorial.c" "c++ -x c++ $source/tests/
     ! ldd "$scratch/consumer" | grep libslender || complain "the archive was not taken"
 done
 
+# Where OpenBLAS cannot have the memory that it works in, it asks for it without end: the call must not come to that.
+cc -I"$scratch/usr/include" "$source/examples/tutorial.c" -o "$scratch/tutorial" -L"$libs" -lslender -lm
+(ulimit -v 150000; OPENBLAS_NUM_THREADS=1 timeout 60 "$scratch/tutorial" > "$scratch/log" 2>&1)
+[ $? = 1 ] && grep -q 'out of memory' "$scratch/log" || { cat "$scratch/log"; complain "without memory: no error"; }
+
 cat > "$scratch/CMakeLists.txt" << END
 cmake_minimum_required(VERSION 3.22)
 project(consumer LANGUAGES C)

@@ -11,6 +11,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cmocka.h>
@@ -194,7 +195,7 @@ static void test_terms(void **unused)
     double energies[16], sum = 0;
     int terms = slender_model_info(model).terms;
     for (int k = 0; k < 16; k++) energies[k] = 1e30;
-    double energy = slender_energy(model, 0, state, energies, NULL);
+    double energy = slender_energy(model, 0, state, energies, NULL, &err);
     for (int k = 0; k < terms; k++) sum += energies[k];
     assert_true(fabs(sum - energy) <= 1e-12 * fabs(energy));
     assert_true(energies[terms] == 1e30);
@@ -236,7 +237,7 @@ static void *solve(void *self)
         SlenderModelInfo info = slender_model_info(model);
         SlenderState *state = rest_of(model, 0);
         memcpy(task->x, slender_state_info(state).x, (size_t)info.dofs * sizeof(double));
-        task->energy = slender_energy(model, 0, state, NULL, NULL);
+        task->energy = slender_energy(model, 0, state, NULL, NULL, NULL);
         slender_state_destroy(state);
     }
     slender_model_destroy(model);
@@ -254,6 +255,31 @@ static void test_threads(void **unused)
     for (int k = 1; k < 4; k++) pthread_join(threads[k], NULL);
     for (int k = 1; k < 4; k++) assert_memory_equal(tasks[k].x, tasks[0].x, sizeof tasks[0].x);
     for (int k = 0; k < 4; k++) slender_scene_destroy(tasks[k].scene);
+}
+
+/* A child of fork has none of its parent's threads: it goes on without, and lets go without waiting for them. */
+static void test_fork(void **unused)
+{
+    (void)unused;
+    SlenderScene *scene = scene_of("equilibrium", "");
+    SlenderModel *model = model_of(scene, 3);
+    SlenderState *state = rest_of(model, 0);
+    pid_t child = fork();
+    if (child == 0) {
+        alarm(20);
+        SlenderState *again = slender_state_create(model, 0, NULL);
+        bool good = slender_equilibrium(model, 0, again, NULL, NULL) == SLENDER_DONE &&
+                    slender_state_info(again).energy == slender_state_info(state).energy;
+        slender_state_destroy(again);
+        slender_model_destroy(model);
+        _exit(good ? 0 : 1);
+    }
+    int status;
+    waitpid(child, &status, 0);
+    assert_true(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+    slender_state_destroy(state);
+    slender_model_destroy(model);
+    slender_scene_destroy(scene);
 }
 
 /* ---- Hosts and jobs ---- */
@@ -341,9 +367,10 @@ static void test_run(void **unused)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_sentences), cmocka_unit_test(test_stale),   cmocka_unit_test(test_cases),
-        cmocka_unit_test(test_rod),       cmocka_unit_test(test_terms),   cmocka_unit_test(test_growth),
-        cmocka_unit_test(test_threads),   cmocka_unit_test(test_stopped), cmocka_unit_test(test_run),
+        cmocka_unit_test(test_sentences), cmocka_unit_test(test_stale), cmocka_unit_test(test_cases),
+        cmocka_unit_test(test_rod),       cmocka_unit_test(test_terms), cmocka_unit_test(test_growth),
+        cmocka_unit_test(test_threads),   cmocka_unit_test(test_fork),  cmocka_unit_test(test_stopped),
+        cmocka_unit_test(test_run),
     };
     return cmocka_run_group_tests(tests, NULL, nothing_leaks);
 }

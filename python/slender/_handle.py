@@ -46,12 +46,13 @@ class Handle:
         return self._pointer
 
     def do(self, function: Callable[..., int], *args: Any, accept: tuple[int, ...] = (DONE,),
-           scene: bool = False) -> tuple[int, str]:
-        """function(object, .., error): its status and sentence; raises where it is none of `accept`."""
+           scene: bool = False, keeps: bool = False) -> tuple[int, str]:
+        """function(object, .., error): its status and sentence; raises where it is none of `accept`. keeps: what it is
+        called on is not what it works on, and is not lost where memory is not there."""
         error = c.CError()
         with self.lock:
             status = function(self.use(), *args, byref(error))
-            self.lost = status == NO_MEMORY
+            self.lost = status == NO_MEMORY and not keeps
         if status not in accept:
             raise error_of(status, error.text, scene)
         return status, spoken(error.text)
@@ -115,30 +116,38 @@ def address(array: Optional[NDArray[Any]]) -> Optional[int]:
 
 
 class Shield:
-    """`with` around a call that solves: OpenBLAS works in one thread, and Ctrl-C, which would leave things half done,
-    is raised after it."""
+    """`with` around a call that solves: OpenBLAS works in one thread, and what a handler of a signal raises (Ctrl-C), which
+    would leave things half done, is raised after it. In a callback it is raised there."""
+
+    SIGNALS = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGALRM", "SIGHUP", "SIGUSR1", "SIGUSR2",
+                                                       "SIGVTALRM", "SIGPROF") if hasattr(signal, name))
 
     def __init__(self) -> None:
         self.error: Optional[BaseException] = None
+        self.inside = False  # a callback is at work
 
     def _on_signal(self, number: int, frame: Any) -> None:
+        if self.inside:
+            self._handlers[number](number, frame)
+            return
         try:
-            self._handler(number, frame)
+            self._handlers[number](number, frame)
         except BaseException as error:
             self.error = error
 
     def __enter__(self: ShieldKind) -> ShieldKind:
-        self._handler: Any = signal.getsignal(signal.SIGINT)
-        self._signals = callable(self._handler) and threading.current_thread() is threading.main_thread()
-        if self._signals:
-            signal.signal(signal.SIGINT, self._on_signal)
+        main = threading.current_thread() is threading.main_thread()
+        known = {number: signal.getsignal(number) for number in self.SIGNALS} if main else {}
+        self._handlers: dict[int, Any] = {number: handler for number, handler in known.items() if callable(handler)}
+        for number in self._handlers:
+            signal.signal(number, self._on_signal)
         c.one_thread.__enter__()
         return self
 
     def __exit__(self, *_: object) -> None:
         c.one_thread.__exit__()
-        if self._signals:
-            signal.signal(signal.SIGINT, self._handler)
+        for number, handler in self._handlers.items():
+            signal.signal(number, handler)
         if self.error is not None:
             raise self.error from self.error.__cause__  # what the library says of the stop is no news
 
@@ -167,8 +176,11 @@ class Host(Shield):
                 return
             self._called.in_callback(True)
             try:
+                self.inside = True
                 function(*args)
+                self.inside = False
             except BaseException as error:
+                self.inside = False
                 self.error = error
             self._called.in_callback(False)
         return guarded

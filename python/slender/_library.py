@@ -7,6 +7,7 @@ import re
 import threading
 import warnings
 from ctypes import CFUNCTYPE, POINTER, Structure, byref, c_char, c_char_p, c_double, c_int, c_void_p
+from operator import index
 from pathlib import Path
 from typing import Any
 
@@ -87,7 +88,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {  # what is returned, what is giv
     "state_destroy": (None, [_P]),
     "state_info": (CStateInfo, [_P]),
     "equilibrium": (_I, [_P, _I, _P, POINTER(CHost), _E]),
-    "energy": (_D, [_P, _I, _P, _P, _P]),
+    "energy": (_D, [_P, _I, _P, _P, _P, _E]),
     "vjp": (_I, [_P, _I, _P, _P, _P, _E]),
     "jvp": (_I, [_P, _I, _P, _P, _P, _E]),
     "simulate": (_P, [_P, _I, _P, POINTER(CMotionDef), POINTER(_I), _E]),
@@ -203,6 +204,21 @@ one_thread = _OneThread(lib)  # a symbol of the library's is looked for in what 
 
 
 # ---- Calls ----
+
+def whole(value: Any, what: str) -> int:
+    """A whole number that an int of C's holds: ctypes would cut it."""
+    number = index(value)
+    if not -2**31 <= number < 2**31:
+        raise ValueError(f"{what} is {number}, which is out of all bounds")
+    return number
+
+
+def words(value: str) -> bytes:
+    """A text for C, which ends at a NUL."""
+    if "\0" in value:
+        raise ValueError(f"there is a NUL in {value!r}")
+    return value.encode(errors="surrogateescape")
+
 
 def text(pointer: int | None) -> str:
     """A text that the library hands over."""

@@ -86,7 +86,7 @@ class Model:
 
     def __init__(self, scene: Handle, threads: int = 1) -> None:
         with Shield():
-            made = scene.make(c.lib.slender_model_create, threads, scene=True)
+            made = scene.make(c.lib.slender_model_create, c.whole(threads, "threads"), scene=True)
         self._handle = Handle(made, c.lib.slender_model_destroy, scene, alone=True)
         info = c.lib.slender_model_info(made)
         self.points, self.dofs, self.size = int(info.points), int(info.dofs), int(info.params)
@@ -203,22 +203,27 @@ class Model:
 
     def energy(self, state: State, case: Optional[str] = None) -> Energies:
         """Of each term, in J; .total is their sum."""
-        number = self._case(case, state)
         with self._handle.lock:
             self._energies.fill(math.nan)
-            total = c.lib.slender_energy(self._handle.use(), number, state._handle.pointer, address(self._energies),
-                                         None)
+            total = self._energy(state, case, self._energies, None)
             energies = Energies(zip(self._terms, self._energies.tolist()))
         energies.total = total
         return energies
 
     def gradient(self, state: State, case: Optional[str] = None, *, dofs: bool = False) -> Array:
         """dE/dx in N, [points, 3], or of all dofs. At dofs that are held it is the support's force on the body."""
-        gradient = np.empty(self.dofs)
-        number = self._case(case, state)
+        gradient = np.full(self.dofs, math.nan)
         with self._handle.lock:
-            c.lib.slender_energy(self._handle.use(), number, state._handle.pointer, None, address(gradient))
+            self._energy(state, case, None, gradient)
         return gradient if dofs else self.places(gradient)
+
+    def _energy(self, state: State, case: Optional[str], energies: Optional[Array], gradient: Optional[Array]) -> float:
+        error = c.CError()
+        total: float = c.lib.slender_energy(self._handle.use(), self._case(case, state), state._handle.pointer,
+                                            address(energies), address(gradient), byref(error))
+        if error.status != DONE:
+            raise error_of(error.status, error.text)
+        return total
 
     # ---- Derivatives of equilibria ----
 
@@ -253,7 +258,7 @@ class Model:
         Where a step fails the motion comes back as long as it came, and its status says so; with check=True NotConverged is
         raised then."""
         start = state if state is not None else self.state(case)
-        number = self._case(case, start)
+        number, steps = self._case(case, start), c.whole(steps, "steps")
         flux = _flux(field, start.time, steps, dt)
         status, error = c_int(), c.CError()
         with Host(self._handle, progress, on_frame) as host, self._handle.lock:

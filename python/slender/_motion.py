@@ -53,7 +53,7 @@ class Motion:
         alike. Exact. The field's is None where the motion had the scene's; where it had its own, flux_density in dF/dp is 0.
         With start=True dF/dx and dF/dv of the start come too, [points, 3] or of all dofs: motions can be chained."""
         m = self.model
-        frames = np.array(list(dict.fromkeys([*dF, *(dv or {})])), dtype=np.int32)
+        frames = np.array([c.whole(n, "a step") for n in dict.fromkeys([*dF, *(dv or {})])], dtype=np.int32)
         of_x = self._seeds(dF, frames, "dF")
         of_v = self._seeds(dv, frames, "dv") if dv else None
         dp, dfield = np.empty(m.size), np.zeros((self._asked, 3)) if self._given else None

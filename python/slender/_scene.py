@@ -38,9 +38,9 @@ def _json(value: Any) -> str:
 
 def _settings(settings: Optional[Mapping[str, Any]]) -> Any:
     """As `--set` has them: "shell.thickness=1 mm"."""
-    words = [f"{key}={value if isinstance(value, str) else _json(value)}".encode()
+    given = [c.words(f"{key}={value if isinstance(value, str) else _json(value)}")
              for key, value in (settings or {}).items()]
-    return (c_char_p * len(words))(*words), len(words)
+    return (c_char_p * len(given))(*given), len(given)
 
 
 class Scene:
@@ -54,10 +54,10 @@ class Scene:
         words, count = _settings(set)
         if isinstance(source, Mapping):
             self.path: Optional[Path] = None
-            pointer = c.made(c.lib.slender_scene_parse, _json(source).encode(), words, count, scene=True)
+            pointer = c.made(c.lib.slender_scene_parse, c.words(_json(source)), words, count, scene=True)
         else:
             self.path = Path(os.fspath(source))
-            pointer = c.made(c.lib.slender_scene_read, os.fsencode(self.path), words, count, scene=True)
+            pointer = c.made(c.lib.slender_scene_read, c.words(str(self.path)), words, count, scene=True)
         self._handle = Handle(pointer, c.lib.slender_scene_destroy)
 
     @classmethod
@@ -66,7 +66,7 @@ class Scene:
         self = cls.__new__(cls)
         words, count = _settings(set)
         self.path = None
-        self._handle = Handle(c.made(c.lib.slender_scene_parse, text.encode(), words, count, scene=True),
+        self._handle = Handle(c.made(c.lib.slender_scene_parse, c.words(text), words, count, scene=True),
                               c.lib.slender_scene_destroy)
         return self
 
@@ -99,8 +99,9 @@ def run(scene: Union[Scene, Source], output: Union[str, "os.PathLike[str]", None
         if not scene.path:
             raise Error("run needs an output: a scene that is no file has no name")
         output = scene.path.stem
-    name = os.fspath(output)
+    name = os.fsdecode(output)
     with Host(scene._handle, progress, on_frame) as host:
-        job = c.CRun(os.fsencode(name), threads, resume, force, not journal, host.struct)
-        scene._handle.do(c.lib.slender_run, byref(job), scene=True, accept=(DONE,) if check else (DONE, NOT_CONVERGED))
+        job = c.CRun(c.words(name), c.whole(threads, "threads"), resume, force, not journal, host.struct)
+        scene._handle.do(c.lib.slender_run, byref(job), scene=True, keeps=True,
+                         accept=(DONE,) if check else (DONE, NOT_CONVERGED))
     return open(name if name.endswith(".vtkhdf") else name + ".vtkhdf")

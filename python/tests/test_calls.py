@@ -80,6 +80,27 @@ class CtrlC(support.TestCase):
         self.assertNotIn("Exception ignored", said)
         self.assertTrue((self.folder / "script.run").exists())
 
+    def test_in_a_callback(self) -> None:
+        """Where a callback is at work the exception is raised in it: it need not come back first."""
+        model = support.model_of()
+        self.interrupted(model.simulate, steps=3, dt=1e-3, on_frame=lambda *_: time.sleep(5))
+        inner = support.model_of()
+        self.interrupted(model.simulate, steps=3, dt=1e-3,
+                         on_frame=lambda *_: inner.simulate(steps=10**6, dt=1e-6))
+
+    def test_other_signals(self) -> None:
+        """A time limit of the user's, say."""
+        def handler(*_: object) -> None:
+            raise TimeoutError("too long")
+        before = signal.signal(signal.SIGALRM, handler)
+        model = support.model_of()
+        try:
+            for keys in ({}, {"on_frame": lambda *_: None}):
+                signal.setitimer(signal.ITIMER_REAL, 0.2)
+                self.refuses(TimeoutError, "too long", model.simulate, steps=10**6, dt=1e-6, **keys)
+        finally:
+            signal.signal(signal.SIGALRM, before)
+
     def test_a_handler_of_the_users(self) -> None:
         def handler(*_: object) -> None:
             raise RuntimeError("my own")
@@ -110,6 +131,12 @@ class Callbacks(support.TestCase):
             self.assertTrue(error.__suppress_context__ or not error.__context__)
             self.assertEqual(len(calls), 1)
         self.assertEqual(model.equilibrium().status, "converged")
+
+    def test_progress_of_an_equilibrium(self) -> None:
+        lines: list[str] = []
+        support.model_of().equilibrium(progress=lines.append)
+        self.assertGreater(len(lines), 1)
+        self.assertIn("energy", lines[0])
 
     def test_calls_from_callbacks(self) -> None:
         """On the model at work: refused, not a deadlock; on another one they are fine; what is let go waits."""

@@ -94,7 +94,18 @@ class Ownership(support.TestCase):
         scene = support.strip()
         scene["shell"]["mesh"]["cells"] = [3, 1]
         self.refuses(slender.Error, "another model", support.model_of(scene).equilibrium, start=state)
-        self.assertTrue(np.isnan(support.model_of(scene).energy(state).total))
+        for function in (support.model_of(scene).energy, support.model_of(scene).gradient):
+            self.refuses(slender.Error, "another model", function, state)
+
+    def test_statics_have_the_scene_s_time(self) -> None:
+        """Of fields that vary in space, too."""
+        scene = support.strip(flux_density=["0", "0", "0.01*t + 0*x"], time="0.5 s")
+        model = support.model_of(scene)
+        start = model.state()
+        start.time = 3
+        later, state = model.equilibrium(start=start), model.equilibrium()
+        self.assertEqual((later.time, state.time), (0.5, 0.5))
+        self.same(later.x, state.x)
 
 
 class Equilibria(support.TestCase):

@@ -123,6 +123,21 @@ class Motions(support.TestCase):
         self.refuses(ValueError, r"dF\[2\] has the shape", motion.vjp, {2: np.ones(3)})
         self.same(motion.vjp({})[0]["young"], np.zeros(24))
 
+    def test_numbers_that_c_would_cut(self) -> None:
+        model = support.model_of()
+        motion = model.simulate(steps=3, dt=1e-3)
+        dF = np.ones((model.points, 3))
+        for key in (1.5, "2"):
+            self.refuses(TypeError, "", motion.vjp, {key: dF})
+        for key in (2**32 + 2, 2**40):
+            self.refuses(ValueError, "out of all bounds", motion.vjp, {key: dF})
+        self.refuses(slender.Error, "no state after 4 steps", motion.vjp, {4: dF})
+        self.refuses(ValueError, "out of all bounds", model.simulate, steps=2**32 + 3, dt=1e-3)
+        for steps in (-1, 2**31 - 1):
+            self.refuses(slender.Error, "they must be 0 to", model.simulate, steps=steps, dt=1e-3)
+        self.refuses(slender.Error, "memory is nan", model.simulate, steps=3, dt=1e-3, memory=float("nan"))
+        self.assertEqual(model.equilibrium().status, "converged")  # nothing is lost
+
     def test_what_does_not_converge(self) -> None:
         model = support.model_of(solver={"max_iterations": 1})
         model.params["magnetization"][:] *= 1e6
