@@ -54,6 +54,10 @@ case $command in
 setup) setup $packages ;;
 build) build ;;
 run)
+    case ${1:-} in # a minute of building is long for a misspelt name
+    -* | /* | "") ;;
+    *) [ -e "$here/$1" ] || { echo "slender: $1: there is no such file in $here" >&2; exit 3; } ;;
+    esac
     build quiet
     cd "$here"
     exec "$root/build/slender" run "$@"

@@ -47,7 +47,9 @@ static bool is_unfinished(const Start *start)
 static bool refuse_stateless(const Start *start, const char *path, YamlFile *file)
 {
     if (is_unfinished(start))
-        return yaml_refuse(file, KEY, "%s is of a run that has not ended: end it, or interrupt it (Ctrl-C)",
+        return yaml_refuse(file, KEY,
+                           "%s is of a run that has not ended: go on with it (--resume) to its end, or "
+                           "interrupt it (Ctrl-C)",
                            path);
     if (result_has(start->result, "slender/case_names"))
         return yaml_refuse(file, KEY,

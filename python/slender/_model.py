@@ -91,7 +91,7 @@ class Model:
         info = c.lib.slender_model_info(made)
         self.points, self.dofs, self.size = int(info.points), int(info.dofs), int(info.params)
         self._rest = lent(info.rest, (self.dofs,), self._handle, writable=False)
-        self.rest = self.places(self._rest)  # [points, 3] m: where a job would start
+        self.rest = self.places(self._rest)  # [points, 3] m: at rest, or in the pose; a scene's `start` is in state()
         self.faces = lent(info.face, (info.faces, 3), self._handle, writable=False, kind="<i4")
         self.warnings = tuple(info.warnings.decode().splitlines())
         self._terms = [c.lib.slender_model_term(made, k).decode() for k in range(info.terms)]
