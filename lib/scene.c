@@ -19,7 +19,7 @@ static SlenderStatus refuse(const SlenderScene *scene, Error *err)
     int count = yaml_error_count(scene->file), shown;
     const YamlError *first = yaml_errors(scene->file, &shown);
     char *key = scene->path ? NULL : yaml_key_at(scene->file, first->line, first->column);
-    bool said = key && !strncmp(first->sentence, key, strlen(key));
+    bool said = key && *key && !strncmp(first->sentence, key, strcspn(key, ".["));
     char *where = scene->path && first->line
                       ? mem_format("%s:%d:%d: ", scene->path, first->line, first->column)
                   : scene->path   ? mem_format("%s: ", scene->path)
