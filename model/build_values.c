@@ -49,20 +49,27 @@ static void middle(const Mesh *mesh, const int *vertices, int count, double *x)
     }
 }
 
-/* Evaluates the formula over elements of `corners` vertices each, `width` numbers per element. */
-static bool from_formula(const Build *b, Key at, Formula *formula, const int *vertices, int corners,
-                         int count, int width, double *values)
+/* Faces or edges: `corners` vertices each. */
+typedef struct Elements {
+    const int *vertices;
+    int corners, count;
+} Elements;
+
+/* `width` numbers per element; the key is the formula's. */
+static bool from_formula(const Build *b, Key at, char *const *formula, int width, const WhereScene *where,
+                         int where_count, Elements elements, double *values)
 {
+    Formula *made = build_formula(b, at, formula, width, where, where_count, build_variables);
     Error err;
-    bool ok = formula != NULL;
-    for (int e = 0; ok && e < count; e++) {
+    bool ok = made != NULL;
+    for (int e = 0; ok && e < elements.count; e++) {
         double x[3], variables[BUILD_VARIABLES];
-        middle(b->mesh, vertices + e * corners, corners, x);
+        middle(b->mesh, elements.vertices + e * elements.corners, elements.corners, x);
         build_position(variables, x, 0);
-        ok = formula_eval(formula, variables, values + e * width, &err) ||
+        ok = formula_eval(made, variables, values + e * width, &err) ||
              yaml_refuse(b->file, at.text, "%s", err.text);
     }
-    formula_destroy(formula);
+    formula_destroy(made);
     return ok;
 }
 
@@ -232,9 +239,8 @@ bool build_face_numbers(const Build *b, Key at, const NumberScene *scene, double
     if (scene->file) ok = from_table(b, key("%s.file", at.text), scene->file, 1, values);
     if (scene->formula) {
         at = key("%s.formula", at.text);
-        Formula *formula =
-            build_formula(b, at, &scene->formula, 1, scene->where, scene->where_count, build_variables);
-        ok = from_formula(b, at, formula, b->mesh->faces[0], 3, count, 1, values);
+        ok = from_formula(b, at, &scene->formula, 1, scene->where, scene->where_count,
+                          (Elements){b->mesh->faces[0], 3, count}, values);
     }
     ok = ok && put_numbers(b, at, scene, 2, count, values);
     return ok && check_covered(b, at, values, count, 1, "faces are") &&
@@ -294,9 +300,8 @@ bool build_edge_numbers(const Build *b, Key at, const NumberScene *scene, double
     if (scene->file) ok = fold_table(b, key("%s.file", at.text), scene->file, values);
     if (scene->formula) {
         at = key("%s.formula", at.text);
-        Formula *formula =
-            build_formula(b, at, &scene->formula, 1, scene->where, scene->where_count, build_variables);
-        ok = from_formula(b, at, formula, b->mesh->edges[0], 2, count, 1, values);
+        ok = from_formula(b, at, &scene->formula, 1, scene->where, scene->where_count,
+                          (Elements){b->mesh->edges[0], 2, count}, values);
     }
     ok = ok && put_numbers(b, at, scene, 1, count, values);
     return ok && check_covered(b, at, values, count, 1, "edges are") &&
@@ -314,9 +319,8 @@ bool build_face_vectors(const Build *b, Key at, const VectorScene *scene, double
     if (scene->file) ok = from_table(b, key("%s.file", at.text), scene->file, 3, values);
     if (scene->formula) {
         at = key("%s.formula", at.text);
-        Formula *formula =
-            build_formula(b, at, scene->formula, 3, scene->where, scene->where_count, build_variables);
-        ok = from_formula(b, at, formula, b->mesh->faces[0], 3, count, 3, values);
+        ok = from_formula(b, at, scene->formula, 3, scene->where, scene->where_count,
+                          (Elements){b->mesh->faces[0], 3, count}, values);
     }
     ok = ok && put_vectors(b, at, scene, count, values);
     return ok && check_covered(b, at, values, count, 3, "faces are");

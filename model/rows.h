@@ -134,8 +134,8 @@ typedef struct BodyOps {
     void (*add_state)(const struct Model *model, const Snapshot *shot, const char *prefix, Arrays *list);
     void (*add_final)(const struct Model *model, const Snapshot *shot, int modes, Arrays *list);
 
-    /* What a result that a model starts from has to have alike; ends with {0}. And a state from[dofs] of such a result
-     * in the form of the model's own, x; NULL: all have one form. */
+    /* What a result that a model starts from has to have alike; ends with {0}; optional. And a state from[dofs] of such a result
+     * in the form of the model's own, x; optional, where all have one form. */
     const Likeness *likeness;
     bool (*take_state)(const struct Model *model, const double *from, int dofs, double *x, Error *err);
 

@@ -87,7 +87,8 @@ static bool is_same(const Array *here, const Array *there)
 /* The row of what is not the same; NULL: all is. */
 static const Likeness *find_difference(const Start *start, const Model *model)
 {
-    const Likeness *row = model->body->ops->likeness;
+    static const Likeness none = {0};
+    const Likeness *row = model->body->ops->likeness ? model->body->ops->likeness : &none;
     Arrays list = {0};
     model->body->ops->add_static(model, &list);
     for (bool same = true; row->name; row++) {
