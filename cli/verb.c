@@ -32,10 +32,7 @@ Model *verb_build_model(const Scene *scene, YamlFile *file)
 {
     if (kernels_reserve(1) < 1) mem_exhausted("OpenBLAS, which works in 128 MB");
     Model *model = model_create(scene, file);
-    if (!model)
-        print_report(file);
-    else if (model->body->ops->advise)
-        model->body->ops->advise(model, scene);
+    if (!model) print_report(file);
     for (int k = 0; model && k < model->report.warning_count; k++)
         say(stderr, "warning: %s", model->report.warnings[k]);
     return model;

@@ -25,10 +25,8 @@ static char *warnings_of(const Model *model)
 static SlenderStatus make(void *self, Error *err)
 {
     Making *making = self;
-    Model *model;
-    if (making->threads < 1 || making->threads > LIB_THREADS_MAX)
-        return lib_refuse(err, "threads is %d; it must be from 1 to %d", making->threads, LIB_THREADS_MAX);
-    SlenderStatus status = lib_build(making->scene, true, &model, err);
+    Model *model = NULL;
+    SlenderStatus status = lib_build(making->scene, making->threads, true, &model, err);
     if (status != SLENDER_DONE) return status;
     if (!model->case_count) {
         lib_refuse(err, "a scene with %s and `job: %s` has no load cases; it can be run", model->body->noun,

@@ -6,8 +6,6 @@
 #include "job/run.h"
 #include "optim/path.h"
 
-enum { LIB_THREADS_MAX = 64 };
-
 struct SlenderScene {
     YamlFile *file;
     Scene scene;
@@ -60,8 +58,8 @@ struct SlenderMotion {
 /* Does work(self) and puts what it says of itself into the caller's error. */
 SlenderStatus lib_call(SlenderStatus (*work)(void *self, Error *err), void *self, SlenderError *err);
 
-/* The model of a scene, for its job or for any use; not SLENDER_DONE: err says what is wrong. */
-SlenderStatus lib_build(SlenderScene *scene, bool general, Model **model, Error *err);
+/* The model of a scene, for its job or for any use, with so many threads; not SLENDER_DONE: err says what is wrong. */
+SlenderStatus lib_build(SlenderScene *scene, int threads, bool general, Model **model, Error *err);
 
 /* A sentence at the caller's. */
 SlenderStatus lib_refuse(Error *err, const char *format, ...) __attribute__((format(printf, 2, 3)));

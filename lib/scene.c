@@ -96,16 +96,17 @@ void slender_scene_destroy(SlenderScene *scene)
 
 /* ---- Models ---- */
 
+enum { THREADS_MAX = 64 };
+
 /* Refusals are added to the file's list: the scene can be used again. */
-SlenderStatus lib_build(SlenderScene *scene, bool general, Model **model, Error *err)
+SlenderStatus lib_build(SlenderScene *scene, int threads, bool general, Model **model, Error *err)
 {
+    if (threads < 1 || threads > THREADS_MAX)
+        return lib_refuse(err, "threads is %d; it must be from 1 to %d", threads, THREADS_MAX);
     if (kernels_reserve(1) < 1) mem_exhausted("OpenBLAS, which works in 128 MB");
     *model =
         general ? model_create_general(&scene->scene, scene->file) : model_create(&scene->scene, scene->file);
-    if (*model) {
-        if ((*model)->body->ops->advise) (*model)->body->ops->advise(*model, &scene->scene);
-        return SLENDER_DONE;
-    }
+    if (*model) return SLENDER_DONE;
     refuse(scene, err);
     yaml_forget_errors(scene->file);
     return SLENDER_REFUSED;
@@ -123,12 +124,10 @@ static SlenderStatus do_run(void *self, Error *err)
     const Job *job = self;
     const SlenderRun *run = job->def;
     Host host = lib_host(&run->host);
-    Model *model;
+    Model *model = NULL;
     if (run->resume && run->force)
         return lib_refuse(err, "resume goes on with a run and force discards it: one of them can be given");
-    if (run->threads < 1 || run->threads > LIB_THREADS_MAX)
-        return lib_refuse(err, "threads is %d; it must be from 1 to %d", run->threads, LIB_THREADS_MAX);
-    SlenderStatus status = lib_build(job->scene, false, &model, err);
+    SlenderStatus status = lib_build(job->scene, run->threads, false, &model, err);
     if (status != SLENDER_DONE) return status;
     for (int k = 0; k < model->report.warning_count; k++) host_warn(&host, "%s", model->report.warnings[k]);
     char *name = path_without_ending(run->output, ".vtkhdf");

@@ -206,6 +206,7 @@ static Model *create(const Scene *scene, YamlFile *file, bool general)
               (!job->design || model_design(model, scene, file));
     start_close(model->start);
     model->start = NULL;
+    if (ok && model->body->ops->advise) model->body->ops->advise(model, scene);
     if (ok) return model;
     model_destroy(model);
     return NULL;
