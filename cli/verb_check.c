@@ -52,7 +52,9 @@ static bool print_errors(const char *name, TermError error)
     bool right = check_differences(error) <= DERIVATIVE_TOL && check_products(error) <= DERIVATIVE_TOL;
     printf("derivatives of %-10s gradient %.1e  Hessian %.1e  parameters %.1e, adjoint %.1e  ", name,
            error.gradient, error.hessian, error.forward, error.adjoint);
-    printf("start of step %.1e, adjoint %.1e%s\n", error.prev_forward, error.prev, right ? "" : "  WRONG");
+    printf("start of step %.1e, adjoint %.1e", error.prev_forward, error.prev);
+    if (error.lag_forward > 0) printf("  lagged %.1e, adjoint %.1e", error.lag_forward, error.lag);
+    printf("%s\n", right ? "" : "  WRONG");
     return right;
 }
 

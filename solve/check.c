@@ -63,7 +63,7 @@ static void line_clear(Line *line)
     mem_free(line->to);
 }
 
-enum { PARAMETERS, START_X, START_V, LINES };
+enum { PARAMETERS, START_X, START_V, LAG, LINES };
 
 typedef struct Check {
     const Term *term;
@@ -73,7 +73,7 @@ typedef struct Check {
     int pack, lanes, size;
     Pack x[TERM_MAX_DOF], g[TERM_MAX_DOF], H[MAX_LOWER];
     double energy; /* largest */
-    Worst gradient, hessian, forward, adjoint, prev_forward, prev;
+    Worst gradient, hessian, forward, adjoint, prev_forward, prev, lag_forward, lag;
 } Check;
 
 /* The pack's own entries of a whole vector. */
@@ -154,6 +154,19 @@ static void check_prev(Check *c)
     compare(&c->prev, pack_set(forward), pack_set(sum), 1);
 }
 
+static void check_lag(Check *c)
+{
+    const TermOps *ops = c->term->ops;
+    Pack dx[TERM_MAX_DOF], r[TERM_MAX_DOF] = {{0}}, w[TERM_MAX_DOF], back[TERM_MAX_DOF] = {{0}};
+    double sum = 0;
+    gather(c, c->lines[LAG].along, dx);
+    if (ops->lag_forward) ops->lag_forward(c->term->self, c->pack, &c->at, c->x, dx, r);
+    double forward = check_forward(c, LAG, LAG, r, w, &c->lag_forward);
+    if (ops->lag) ops->lag(c->term->self, c->pack, &c->at, c->x, w, back);
+    for (int i = 0; i < c->size; i++) sum += pack_sum(back[i] * dx[i], c->lanes);
+    compare(&c->lag, pack_set(forward), pack_set(sum), 1);
+}
+
 /* A random direction, each block scaled by its largest value. */
 static void choose_direction(const Params *params, const Line *p, Random *random)
 {
@@ -169,7 +182,7 @@ static void choose_direction(const Params *params, const Line *p, Random *random
 /* A start of the step that is not x, and directions, at the natural sizes of the dofs. */
 static void choose_start(Check *c, const double *dof_size)
 {
-    Line *x = &c->lines[START_X], *v = &c->lines[START_V];
+    Line *x = &c->lines[START_X], *v = &c->lines[START_V], *lag = &c->lines[LAG];
     for (int e = 0; e < c->term->ops->count(c->term->self); e++) {
         int dof[TERM_MAX_DOF];
         c->term->ops->dofs(c->term->self, e, dof);
@@ -181,8 +194,15 @@ static void choose_start(Check *c, const double *dof_size)
             v->along[dof[i]] = size / c->at.dt * random_signed(c->random);
         }
     }
+    /* Drawn after the start, which stays that of terms that lag nothing. */
+    for (int i = 0; i < lag->size; i++) {
+        double size = fabs(x->from[i] - lag->from[i]);
+        lag->from[i] += size * random_signed(c->random);
+        lag->along[i] = size * random_signed(c->random);
+    }
     line_move(x, 0);
     line_move(v, 0);
+    line_move(lag, 0);
 }
 
 /* The elements at the point where the check stands. */
@@ -202,6 +222,7 @@ static void check_pack(Check *c, const double *dof_size)
     for (int i = 0; i < c->size; i++) check_dof(c, i, STEP * dof_size[i]);
     check_params(c);
     check_prev(c);
+    check_lag(c);
 }
 
 TermError check_term(const Term *term, const Params *params, const Point *at, int dof_count,
@@ -211,8 +232,9 @@ TermError check_term(const Term *term, const Params *params, const Point *at, in
     c.lines[PARAMETERS] = line_create(at->p, params->size);
     c.lines[START_X] = line_create(at->x, dof_count);
     c.lines[START_V] = line_create(at->x, dof_count);
+    c.lines[LAG] = line_create(at->x, dof_count);
     if (params->size) c.at.p = c.lines[PARAMETERS].to;
-    c.at.x_prev = c.lines[START_X].to, c.at.v_prev = c.lines[START_V].to;
+    c.at.x_prev = c.lines[START_X].to, c.at.v_prev = c.lines[START_V].to, c.at.x_lag = c.lines[LAG].to;
     if (!(at->dt > 0)) c.at.dt = 1;
     choose_direction(params, &c.lines[PARAMETERS], random);
     update(&c);
@@ -223,17 +245,19 @@ TermError check_term(const Term *term, const Params *params, const Point *at, in
     TermError error = errors_of(c.energy, c.gradient, c.hessian);
     error.forward = ratio(c.forward), error.adjoint = ratio(c.adjoint);
     error.prev_forward = ratio(c.prev_forward), error.prev = ratio(c.prev);
+    error.lag_forward = ratio(c.lag_forward), error.lag = ratio(c.lag);
     return error;
 }
 
 double check_differences(TermError error)
 {
-    return fmax(fmax(error.gradient, error.hessian), fmax(error.forward, error.prev_forward));
+    return fmax(fmax(fmax(error.gradient, error.hessian), fmax(error.forward, error.prev_forward)),
+                error.lag_forward);
 }
 
 double check_products(TermError error)
 {
-    return fmax(error.adjoint, error.prev);
+    return fmax(fmax(error.adjoint, error.prev), error.lag);
 }
 
 typedef struct Dense {

@@ -148,9 +148,15 @@ void system_param(System *sys, const Point *at, const double *w, double *dp);
 /* r = d2E/dx dp . dp, r[dof_count]. */
 void system_param_forward(System *sys, const Point *at, const double *dp, double *r);
 
-/* dx, dv -= w^T d2E/dx d(x_prev, v_prev), and r += d2E/dx d(x_prev, v_prev) . (dx, dv); all [dof_count]. */
+/* dx, dv -= w^T d2E/dx d(x_prev, v_prev), and r += d2E/dx d(x_prev, v_prev) . (dx, dv); all [dof_count]. Where lagged
+ * quantities are taken at x_prev (at->x_lag is NULL), with what depends on it through them. */
 void system_prev(System *sys, const Point *at, const double *w, double *dx, double *dv);
 void system_prev_forward(System *sys, const Point *at, const double *dx, const double *dv, double *r);
+
+/* dx += w^T d2E/dx dx_lag, and r += d2E/dx dx_lag . dx; all [dof_count]. False from system_lags: no term lags anything. */
+void system_lag(System *sys, const Point *at, const double *w, double *dx);
+void system_lag_forward(System *sys, const Point *at, const double *dx, double *r);
+bool system_lags(const System *sys);
 
 /* to = where the motion from x with velocity d is after the time a: x + a d, or what the terms make of it (TermOps.follow).
  * False from system_has_follow: no term makes anything of it. */

@@ -26,7 +26,10 @@ void system_note_point(System *sys, const Point *at)
     memcpy(to, at->x, n * sizeof *to);
     if (at->x_prev) memcpy(to + n, at->x_prev, n * sizeof *to);
     if (at->v_prev) memcpy(to + 2 * n, at->v_prev, n * sizeof *to);
-    if (at->memory) memcpy(to + 3 * n, at->memory, (size_t)sys->memory_count * sizeof *to);
+    to += 3 * n;
+    if (system_lags(sys) && at->x_prev) memcpy(to, point_lag(at), n * sizeof *to);
+    if (system_lags(sys)) to += n;
+    if (at->memory) memcpy(to, at->memory, (size_t)sys->memory_count * sizeof *to);
 }
 
 bool system_factor(System *sys, double shift)
@@ -47,7 +50,7 @@ bool system_factor(System *sys, double shift)
 
 int system_anchor_count(const System *sys)
 {
-    return ANCHOR_X + 3 * sys->dof_count + system_memory_count(sys);
+    return ANCHOR_X + (system_lags(sys) ? 4 : 3) * sys->dof_count + system_memory_count(sys);
 }
 
 const double *system_anchor(const System *sys)
@@ -63,17 +66,19 @@ double system_anchor_time(const double *anchor)
 void system_restore_factor(System *sys, const double *anchor, const double *p)
 {
     size_t n = (size_t)sys->dof_count;
-    const double *x = anchor + ANCHOR_X;
+    const double *x = anchor + ANCHOR_X, *lag = x + 3 * n;
+    bool lags = system_lags(sys);
     sys->anchor[ANCHOR_USABLE] = sys->factored = false;
     if (anchor[ANCHOR_USABLE] == 0) return;
     double *gradient = mem_alloc(n, sizeof *gradient);
     Point at = {.x = x,
                 .p = p,
-                .memory = x + 3 * n,
+                .memory = lags ? lag + n : lag,
                 .time = anchor[ANCHOR_TIME],
                 .x_prev = x + n,
                 .v_prev = x + 2 * n,
-                .dt = anchor[ANCHOR_DT]};
+                .dt = anchor[ANCHOR_DT],
+                .x_lag = lags ? lag : NULL};
     system_hessian(sys, &at, gradient);
     system_factor(sys, anchor[ANCHOR_SHIFT]);
     mem_free(gradient);
@@ -162,39 +167,103 @@ void system_param_forward(System *sys, const Point *at, const double *dp, double
     }
 }
 
+static void prev_of_term(const Entry *entry, const Point *own, const double *w, double *dx, double *dv)
+{
+    Pack x[TERM_MAX_DOF], v[TERM_MAX_DOF], from_x[TERM_MAX_DOF], from_v[TERM_MAX_DOF];
+    for (int k = 0; k < entry->packs; k++) {
+        system_gather(entry, k, own->x, x);
+        system_gather(entry, k, w, v);
+        entry->term.ops->prev(entry->term.self, k, own, x, v, from_x, from_v);
+        for (int i = 0; i < entry->size; i++) from_x[i] = -from_x[i], from_v[i] = -from_v[i];
+        system_scatter(entry, k, from_x, dx);
+        system_scatter(entry, k, from_v, dv);
+    }
+}
+
+/* dx += sign w^T d2E/dx dx_lag */
+static void lag_of_term(const Entry *entry, const Point *own, const double *w, double sign, double *dx)
+{
+    Pack x[TERM_MAX_DOF], v[TERM_MAX_DOF], from[TERM_MAX_DOF];
+    for (int k = 0; k < entry->packs; k++) {
+        system_gather(entry, k, own->x, x);
+        system_gather(entry, k, w, v);
+        entry->term.ops->lag(entry->term.self, k, own, x, v, from);
+        for (int i = 0; i < entry->size; i++) from[i] = sign * from[i];
+        system_scatter(entry, k, from, dx);
+    }
+}
+
 void system_prev(System *sys, const Point *at, const double *w, double *dx, double *dv)
 {
     system_update(sys, at);
-    Pack x[TERM_MAX_DOF], v[TERM_MAX_DOF], from_x[TERM_MAX_DOF], from_v[TERM_MAX_DOF];
     for (int t = 0; t < sys->term_count; t++) {
         const Entry *entry = &sys->entries[t];
         Point own = system_term_point(sys, t, at);
-        for (int k = 0; entry->term.ops->prev && k < entry->packs; k++) {
-            system_gather(entry, k, at->x, x);
-            system_gather(entry, k, w, v);
-            entry->term.ops->prev(entry->term.self, k, &own, x, v, from_x, from_v);
-            for (int i = 0; i < entry->size; i++) from_x[i] = -from_x[i], from_v[i] = -from_v[i];
-            system_scatter(entry, k, from_x, dx);
-            system_scatter(entry, k, from_v, dv);
-        }
+        if (entry->term.ops->prev) prev_of_term(entry, &own, w, dx, dv);
+        if (entry->term.ops->lag && !at->x_lag) lag_of_term(entry, &own, w, -1, dx);
+    }
+}
+
+void system_lag(System *sys, const Point *at, const double *w, double *dx)
+{
+    system_update(sys, at);
+    for (int t = 0; t < sys->term_count; t++) {
+        const Entry *entry = &sys->entries[t];
+        Point own = system_term_point(sys, t, at);
+        if (entry->term.ops->lag) lag_of_term(entry, &own, w, 1, dx);
+    }
+}
+
+static void lag_forward_of_term(const Entry *entry, const Point *own, const double *dx, double *r)
+{
+    Pack x[TERM_MAX_DOF], to[TERM_MAX_DOF], out[TERM_MAX_DOF];
+    for (int k = 0; k < entry->packs; k++) {
+        system_gather(entry, k, own->x, x);
+        system_gather(entry, k, dx, to);
+        entry->term.ops->lag_forward(entry->term.self, k, own, x, to, out);
+        system_scatter(entry, k, out, r);
+    }
+}
+
+static void prev_forward_of_term(const Entry *entry, const Point *own, const double *dx, const double *dv,
+                                 double *r)
+{
+    Pack x[TERM_MAX_DOF], to_x[TERM_MAX_DOF], to_v[TERM_MAX_DOF], out[TERM_MAX_DOF];
+    for (int k = 0; k < entry->packs; k++) {
+        system_gather(entry, k, own->x, x);
+        system_gather(entry, k, dx, to_x);
+        system_gather(entry, k, dv, to_v);
+        entry->term.ops->prev_forward(entry->term.self, k, own, x, to_x, to_v, out);
+        system_scatter(entry, k, out, r);
     }
 }
 
 void system_prev_forward(System *sys, const Point *at, const double *dx, const double *dv, double *r)
 {
     system_update(sys, at);
-    Pack x[TERM_MAX_DOF], to_x[TERM_MAX_DOF], to_v[TERM_MAX_DOF], out[TERM_MAX_DOF];
     for (int t = 0; t < sys->term_count; t++) {
         const Entry *entry = &sys->entries[t];
         Point own = system_term_point(sys, t, at);
-        for (int k = 0; entry->term.ops->prev_forward && k < entry->packs; k++) {
-            system_gather(entry, k, at->x, x);
-            system_gather(entry, k, dx, to_x);
-            system_gather(entry, k, dv, to_v);
-            entry->term.ops->prev_forward(entry->term.self, k, &own, x, to_x, to_v, out);
-            system_scatter(entry, k, out, r);
-        }
+        if (entry->term.ops->prev_forward) prev_forward_of_term(entry, &own, dx, dv, r);
+        if (entry->term.ops->lag_forward && !at->x_lag) lag_forward_of_term(entry, &own, dx, r);
     }
+}
+
+void system_lag_forward(System *sys, const Point *at, const double *dx, double *r)
+{
+    system_update(sys, at);
+    for (int t = 0; t < sys->term_count; t++) {
+        const Entry *entry = &sys->entries[t];
+        Point own = system_term_point(sys, t, at);
+        if (entry->term.ops->lag_forward) lag_forward_of_term(entry, &own, dx, r);
+    }
+}
+
+bool system_lags(const System *sys)
+{
+    bool found = false;
+    for (int t = 0; t < sys->term_count; t++) found = found || sys->entries[t].term.ops->lag;
+    return found;
 }
 
 void system_follow(System *sys, const double *x, const double *d, double a, double *to)

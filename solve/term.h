@@ -14,7 +14,7 @@
 
 enum {
     TERM_MAX_DOF = 24,    /* largest element, in degrees of freedom */
-    SYSTEM_MAX_TERMS = 16 /* of a System                            */
+    SYSTEM_MAX_TERMS = 24 /* of a System                            */
 };
 
 /* Entry (i, j), j <= i, of an element Hessian's packed lower triangle. */
@@ -28,10 +28,19 @@ typedef struct Point {
     double time;                   /* s; fields may depend on it                   */
     const double *x_prev, *v_prev; /* start of the step of time, whole vectors; NULL in statics */
     double dt;                     /* s; 0 in statics                                           */
+    /* Where terms take what they lag, so that a step stays a minimisation (friction: its normal forces and planes);
+     * NULL: at x_prev. */
+    const double *x_lag;
     /* Where the last Newton step began, and that step: the Hessian then takes the stresses that the step was to bring
      * (TermOps.follow); NULL: its own. */
     const double *x_from, *step;
 } Point;
+
+/* Where lagged quantities are taken; NULL in statics. */
+static inline const double *point_lag(const Point *at)
+{
+    return at->x_lag ? at->x_lag : at->x_prev;
+}
 
 /* Where a state stands, with p. */
 static inline Point state_point(const State *state, const double *p)
@@ -66,14 +75,18 @@ typedef struct TermOps {
     void (*param_forward)(const void *self, int pack, const Point *at, const Pack *x, const double *dp,
                           Pack *r);
 
-    /* dx, dv = w^T d2E/dx d(x_prev, v_prev), on the elements' own dofs, [size] each. NULL where the energy does not
-     * depend on the start of the step. */
+    /* dx, dv = w^T d2E/dx d(x_prev, v_prev), on the elements' own dofs, [size] each; what is lagged stays. NULL where the
+     * energy does not depend on the start of the step. */
     void (*prev)(const void *self, int pack, const Point *at, const Pack *x, const Pack *w, Pack *dx,
                  Pack *dv);
 
     /* r = d2E/dx d(x_prev, v_prev) . (dx, dv): the tangent of prev. */
     void (*prev_forward)(const void *self, int pack, const Point *at, const Pack *x, const Pack *dx,
                          const Pack *dv, Pack *r);
+
+    /* dx = w^T d2E/dx dx_lag, and its tangent r = d2E/dx dx_lag . dx. NULL where nothing is lagged. */
+    void (*lag)(const void *self, int pack, const Point *at, const Pack *x, const Pack *w, Pack *dx);
+    void (*lag_forward)(const void *self, int pack, const Point *at, const Pack *x, const Pack *dx, Pack *r);
 
     /* The largest a in (0, 1] such that the straight way from at->x to at->x + a d is admissible (d: whole vector);
      * NULL: 1. */
