@@ -14,6 +14,8 @@ check solve 'base|solve'
 check io 'base|io'
 check optim 'base|solve|optim'
 check surface "$physics"
+check world "$physics|world"
+physics="$physics|world"
 check model "$physics|optim|model"
 check job "$physics|optim|model|job"
 for front in $fronts; do
@@ -26,7 +28,7 @@ check lib "$physics|optim|model|job|lib|[a-z]*/front"
 check cli "$physics|optim|model|job|lib|view|cli|spline"
 
 # What is not alike for bodies and jobs is in their rows (model/rows.h).
-for folder in base solve io optim surface model job view lib cli; do
+for folder in base solve io optim surface world model job view lib cli; do
     found=$(grep -HnE "(->|\.)($bodies|drawing)\b[^/\"]|\b(JOB|BODY)_[A-Z]" $folder/*.[ch] | grep -v '#include')
     [ -z "$found" ] || { echo "$folder/ asks for the kind of a body or job:"; echo "$found"; bad=1; }
 done

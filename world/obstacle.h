@@ -1,0 +1,46 @@
+/* obstacle.h - rigid things that a body meets: planes, balls, boxes, pipes, ground, meshes.
+ *
+ * Each is a signed distance phi(x) in its own frame, positive outside, with gradient and Hessian in closed form or of a
+ * C2 spline; several are summed as energies, never by min or max, which would have kinks. Where phi is no true distance
+ * (a height field, a tube along a line) |gradient| differs from 1: contact takes n = gradient/|gradient|. */
+#pragma once
+#include "io/formula.h"
+
+/* phi and its derivatives at a point: m, 1, 1/m. */
+typedef struct Gap {
+    double value, gradient[3], hessian[3][3];
+} Gap;
+
+typedef struct ObstacleOps {
+    const char *kind; /* as in a scene: "sphere" */
+
+    /* At a point in the obstacle's own frame. Re-entrant. */
+    void (*gap)(const void *self, const double x[3], Gap *gap);
+    void (*destroy)(void *self);
+} ObstacleOps;
+
+typedef struct Obstacle {
+    char *name; /* owned */
+    const ObstacleOps *ops;
+    void *self;
+    double
+        feature; /* m, the smallest radius or detail: a body's longer edges are sampled between their ends too;
+                      * INFINITY: flat */
+    double pivot[3]; /* m, about which it turns                        */
+    /* Three expressions of the time t each: how far it has moved, m, and turned, a rotation vector, rad; NULL: not. Owned. */
+    Formula *move, *turn;
+} Obstacle;
+
+/* Where an obstacle is: what was at X is at turn (X - pivot) + pivot + move. */
+typedef struct ObstaclePose {
+    double turn[3][3], shift[3]; /* x = turn X + shift */
+} ObstaclePose;
+
+/* False and a sentence where a formula is not finite. Re-entrant. */
+bool obstacle_pose(const Obstacle *obstacle, double time, ObstaclePose *pose, Error *err);
+
+/* Its gap in space, there. Re-entrant. */
+void obstacle_gap(const Obstacle *obstacle, const ObstaclePose *pose, const double x[3], Gap *gap);
+
+/* Frees what it holds. */
+void obstacle_clear(Obstacle *obstacle);
