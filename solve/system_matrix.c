@@ -105,7 +105,9 @@ void system_update(System *sys, const Point *at)
     bool changed = false;
     for (int t = 0; t < sys->term_count; t++) {
         Entry *entry = &sys->entries[t];
-        if (!entry->changes || !entry->term.ops->update(entry->term.self, at)) continue;
+        if (!entry->changes) continue;
+        Point own = system_term_point(sys, t, at);
+        if (!entry->term.ops->update(entry->term.self, &own)) continue;
         system_list_elements(entry);
         changed = true;
     }
