@@ -1,0 +1,104 @@
+#include "world/world.h"
+#include "base/memory.h"
+#include "base/vec3.h"
+
+static const double SMOOTHING =
+    0.01; /* of the thickness, the depth at which the penalty is linear: half of it is sunk */
+
+/* The vertices of each edge or face, [count][corners], of which one edge at least is longer than that; all where it is 0. */
+static Samples long_ones(const WorldBody *body, const int *corners_of, int count, int corners, double longer)
+{
+    Samples samples = {.corners = corners, .first = body->first};
+    samples.vertices = mem_alloc((size_t)count * (size_t)corners, sizeof *samples.vertices);
+    for (int e = 0; e < count; e++) {
+        const int *v = corners_of + e * corners;
+        double longest = 0;
+        for (int i = 0; i < corners; i++) {
+            Vec3 a = vec3_load(body->rest[v[i]]), b = vec3_load(body->rest[v[(i + 1) % corners]]);
+            longest = fmax(longest, vec3_length(vec3_sub(a, b)));
+        }
+        if (longest <= longer) continue;
+        for (int i = 0; i < corners; i++) samples.vertices[samples.count * corners + i] = v[i];
+        samples.count++;
+    }
+    return samples;
+}
+
+static Samples all_vertices(const WorldBody *body)
+{
+    Samples samples = {body->vertex_count, 1, mem_alloc((size_t)body->vertex_count, sizeof(int)),
+                       body->first};
+    for (int v = 0; v < body->vertex_count; v++) samples.vertices[v] = v;
+    return samples;
+}
+
+/* Takes the samples. */
+static void add_contact(World *world, Samples samples)
+{
+    if (samples.count == 0) {
+        mem_free(samples.vertices);
+        return;
+    }
+    world->contacts[world->contact_kinds++] = (ContactDef){.obstacles = world->obstacles,
+                                                           .obstacle_count = world->obstacle_count,
+                                                           .samples = samples,
+                                                           .smoothing = SMOOTHING * world->body.thickness};
+}
+
+World *world_create(const WorldBody *body, Obstacle *obstacles, int obstacle_count)
+{
+    World *world = mem_alloc(1, sizeof *world);
+    *world = (World){.body = *body, .obstacles = obstacles, .obstacle_count = obstacle_count};
+    double feature = INFINITY;
+    for (int k = 0; k < obstacle_count; k++) feature = fmin(feature, obstacles[k].feature);
+    if (obstacle_count == 0) return world;
+    add_contact(world, all_vertices(body));
+    add_contact(world, long_ones(body, (const int *)body->edges, body->edge_count, 2, feature));
+    if (body->face_count)
+        add_contact(world, long_ones(body, (const int *)body->faces, body->face_count, 3, feature));
+    return world;
+}
+
+void world_destroy(World *world)
+{
+    if (!world) return;
+    for (int k = 0; k < world->obstacle_count; k++) obstacle_clear(&world->obstacles[k]);
+    for (int k = 0; k < world->contact_kinds; k++) mem_free(world->contacts[k].samples.vertices);
+    mem_free(world->obstacles);
+    mem_free(world);
+}
+
+void world_add_params(World *world, Params *params)
+{
+    if (world->obstacle_count == 0) return;
+    world->stiffness = params_add(params, "contact_stiffness", "N/m", 1, 1, false);
+    world->friction = params_add(params, "friction", "", world->obstacle_count, 1, false);
+}
+
+/* As it is now: offset and slip speed are known. */
+static ContactDef contact_of(const World *world, int kind)
+{
+    ContactDef def = world->contacts[kind];
+    def.offset = world->offset;
+    def.slip_speed = world->slip_speed;
+    def.stiffness = world->stiffness;
+    def.friction = world->friction;
+    return def;
+}
+
+void world_add_terms(const World *world, System *sys, bool motion)
+{
+    for (int k = 0; k < world->contact_kinds; k++) {
+        ContactDef def = contact_of(world, k);
+        system_add(sys, contact_term(&def));
+        if (motion && world->rubs) system_add(sys, friction_term(&def));
+    }
+}
+
+void world_measure(const World *world, const Point *at, ContactSums *sums)
+{
+    for (int k = 0; k < world->contact_kinds; k++) {
+        ContactDef def = contact_of(world, k);
+        contact_measure(&def, at, sums);
+    }
+}
