@@ -134,15 +134,17 @@ static RunStatus make_step(Simulation *s, const MarchDef *def)
     if (s->refused) return RUN_REFUSED;
     if (host_stops(s->run->host)) return RUN_INTERRUPTED;
     s->status = reached ? NEWTON_CONVERGED : info.newton.status;
-    if (!reached) {
+    if (!reached)
         host_say(s->run->host, "step %d failed at t = %g s: %s", step, s->now->time,
                  newton_status_text(info.newton.status));
-        return RUN_NOT_CONVERGED;
-    }
+    Snapshot shot = shown_state(s);
+    if (run_is_crushed(s->run, &shot, !reached)) s->status = NEWTON_CRUSHED;
+    if (!reached) return RUN_NOT_CONVERGED;
     s->step = step;
     keep_anchor(s);
     if (!put_history(s, step, &info) || (step % every == 0 && !put_step(s, step / every, step)))
         return RUN_CANNOT_WRITE;
+    if (s->status == NEWTON_CRUSHED) return RUN_NOT_CONVERGED;
     host_step(s->run->host, step, scene->time.steps, "t %.4g s, %d Newton iterations", s->now->time,
               info.newton.iterations);
     return RUN_DONE;

@@ -145,6 +145,11 @@ typedef struct BodyOps {
     /* What the state cannot be trusted in, a sentence of the caller's; NULL: nothing. Optional. */
     char *(*doubt)(const struct Model *model, const Snapshot *shot);
 
+    /* What in the state is none of this body any more, so that its energies mean nothing (a face without area), and why; a
+     * sentence of the caller's; NULL: nothing. `failed`: no state was found from there on, and what is near it is the
+     * reason. Optional. */
+    char *(*crushed)(const struct Model *model, const Snapshot *shot, bool failed);
+
     /* Lines on what the scene made, for `slender check`; the caller's. */
     char *(*describe)(const struct Model *model, const Scene *scene);
 

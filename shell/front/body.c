@@ -322,6 +322,7 @@ static const BodyOps ops = {
     .add_final = shell_add_final,
     .likeness = likeness,
     .places = shell_places,
+    .crushed = shell_crushed,
     .describe = shell_describe,
     .advise = shell_advise,
     .dof_sizes = shell_dof_sizes,
