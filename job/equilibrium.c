@@ -83,7 +83,7 @@ static bool solve_case(Run *run, Case *c, Snapshot *shot, int *frame, bool *inte
     NewtonStatus worst = NEWTON_CONVERGED;
     for (int s = 0; ok && !*interrupted && s < c->stage_count; s++, (*frame)++) {
         c->state.time = c->stages[s].time;
-        *shot = (Snapshot){c, c->stages[s].p, c->state, NEWTON_CONVERGED, NULL};
+        *shot = (Snapshot){c, c->stages[s].p, c->state, NEWTON_CONVERGED, NULL, NULL};
         bool has;
         ok = get_progress(run, *frame, shot, &has, err);
         if (ok && !has) {

@@ -6,6 +6,7 @@
 #include "optim/control.h"
 #include "optim/design.h"
 #include "surface/select.h"
+#include "world/world.h"
 
 /* Coordinates that follow formulas of rest position and time. */
 typedef struct Motion {
@@ -38,6 +39,7 @@ struct Model {
     int gravity;
     int flux_density, field_scale;
     FluxFields *fields; /* the body's */
+    const World *world; /* what it meets, the body's; NULL: nothing */
     int point_count;    /* vertices or nodes                                   */
     int load_steps;     /* of an equilibrium, unless the scene says            */
     double step_cap;    /* of Newton                                           */

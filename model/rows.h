@@ -11,6 +11,7 @@
 #include "optim/case.h"
 #include "solve/newton.h"
 #include "solve/params.h"
+#include "world/world.h"
 
 struct Model;
 struct Run;
@@ -69,7 +70,8 @@ typedef struct Snapshot {
     const double *p;
     State at;
     NewtonStatus status;
-    const double *anchor; /* of a simulation: where the next step's factor stands (system_anchor) */
+    const double *anchor;  /* of a simulation: where the next step's factor stands (system_anchor) */
+    const WorldSums *felt; /* of a step of time, what it met at its end; NULL: as in statics */
 } Snapshot;
 
 /* What one evaluation takes on this machine, and the factor; s, bytes (job/predict.h). */

@@ -206,13 +206,13 @@ static void test_depth(void **state)
     plate_march(&plate, (double[]){0, 0, -G}, 200);
     const Shell *shell = plate.body.shell;
     double force[1][3] = {{0}}, weight = 0.01 * 0.01 * 1e-3 * 1000 * G;
-    ContactSums sums = {.force = force};
+    WorldSums sums = {.contact = {.force = force}};
     Point at = state_point(&plate.body.state, plate.body.p);
     world_measure(shell->world, &at, &sums);
-    print_message("%d touch, deepest %.3g m, force %.6g of %.6g N\n", sums.count, sums.depth, force[0][2],
-                  weight);
+    print_message("%g touch, deepest %.3g m, force %.6g of %.6g N\n", sums.contact.touching,
+                  sums.contact.depth, force[0][2], weight);
     assert_true(fabs(force[0][2] / weight - 1) < 1e-9 && fabs(force[0][0]) < 1e-9 * weight);
-    assert_int_equal(sums.count, shell->mesh->vertex_count);
+    assert_true(sums.contact.touching == shell->mesh->vertex_count);
     body_clear(&plate.body);
 }
 

@@ -28,9 +28,9 @@ typedef struct ContactDef {
 Term contact_term(const ContactDef *def);
 Term friction_term(const ContactDef *def);
 
-/* What a body feels of obstacles at a point, over the samples of a def. Sums over several defs: start from {0}. */
+/* What a body feels of obstacles at a point, over the samples of a def: added to what is there. */
 typedef struct ContactSums {
-    int count;          /* samples that touch                                            */
+    double touching;    /* samples that touch                                            */
     double depth;       /* m, the deepest one                                            */
     double friction;    /* J, what friction has taken in the step                        */
     double (*force)[3]; /* [obstacle] N on the body, normal and friction; may be NULL    */

@@ -343,7 +343,7 @@ static void measure_sample(const Contact *c, const Point *at, const double place
             if (sums->force) sums->force[k][i] += f[i];
         }
     }
-    sums->count += touches;
+    sums->touching += touches;
 }
 
 void contact_measure(const ContactDef *def, const Point *at, ContactSums *sums)

@@ -95,10 +95,10 @@ void world_add_terms(const World *world, System *sys, bool motion)
     }
 }
 
-void world_measure(const World *world, const Point *at, ContactSums *sums)
+void world_measure(const World *world, const Point *at, WorldSums *sums)
 {
     for (int k = 0; k < world->contact_kinds; k++) {
         ContactDef def = contact_of(world, k);
-        contact_measure(&def, at, sums);
+        contact_measure(&def, at, &sums->contact);
     }
 }

@@ -38,8 +38,13 @@ void world_destroy(World *world);
 /* Its blocks of parameters; before the body's vectors are made. */
 void world_add_params(World *world, Params *params);
 
-/* What the body feels of the obstacles at a point, of statics or at the end of a step of time (ContactSums). */
-void world_measure(const World *world, const Point *at, ContactSums *sums);
+/* What a body feels of all that it meets, at a point of statics or at the end of a step of time: added to what is there. */
+typedef struct WorldSums {
+    ContactSums contact;
+    double water; /* J, what the water has taken in the step */
+} WorldSums;
+
+void world_measure(const World *world, const Point *at, WorldSums *sums);
 
 /* Adds its terms to a system that is not prepared yet: of statics, or of steps of time. The world outlives it. */
 void world_add_terms(const World *world, System *sys, bool motion);
