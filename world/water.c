@@ -31,11 +31,11 @@ static int element_of_lane(const WaterTerm *term, int pack, int lane)
 /* The elements' own entries of a whole vector. */
 static void gather(const WaterTerm *term, int pack, const double *vector, Pack *to)
 {
-    for (int l = 0; l < PACK_LANES; l++) {
-        int dof[WATER_DOFS];
-        water_dofs(term, element_of_lane(term, pack, l), dof);
-        for (int i = 0; i < water_size(term); i++) to[i][l] = vector[dof[i]];
-    }
+    for (int l = 0; l < PACK_LANES; l++)
+        for (int corner = 0; corner < term->law->corners; corner++) {
+            int vertex = term->law->vertex(term, element_of_lane(term, pack, l), corner);
+            for (int i = 0; i < 3; i++) to[3 * corner + i][l] = vector[term->first + 3 * vertex + i];
+        }
 }
 
 static Pack3 mean(const WaterTerm *term, const Pack *a)
