@@ -6,13 +6,16 @@
 typedef struct Contacts {
     const World *world; /* NULL: it meets nothing, and all below does nothing */
     int dofs, points;
-    double *before; /* [dofs] where a step began                        */
+    double *before, *v; /* [dofs] where a step began, and how fast               */
     WorldSums
         sums; /* of the step: forces and counts of its end, works summed over its parts; owns its vectors */
 } Contacts;
 
 Contacts contacts_create(const Model *model);
 void contacts_destroy(Contacts *contacts);
+
+/* Where the first step begins, which has these velocities. */
+void contacts_start(Contacts *contacts, const double *v);
 
 /* A new step; its parts, one at least, each with the state that it has reached, v included. */
 void contacts_begin(Contacts *contacts);

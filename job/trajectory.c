@@ -142,6 +142,7 @@ static void add_contacts(TrajectoryJob *job, Arrays *list)
     double *rows[CONTACTS_ROWS];
     for (int n = 1; contacts.world && n <= steps; n++) {
         Array now[CONTACTS_ROWS];
+        if (n == 1) contacts_start(&contacts, frame_state(job, 0).at.v);
         Snapshot shot = frame_state(job, n);
         contacts_begin(&contacts);
         contacts_add(&contacts, &shot.at, job->run->scene->time.step, shot.p);

@@ -58,7 +58,8 @@ WorldBody rod_world_body(Rod *rod)
                        .edge_count = rod->elements,
                        .edges = (const int(*)[2])rod->edges,
                        .rest = (const double(*)[3])rod->straight,
-                       .thickness = 2 * rod->unit.reach};
+                       .thickness = 2 * rod->unit.reach,
+                       .length = rod->length};
 }
 
 void rod_node_mass(const Rod *rod, double *mass)

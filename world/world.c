@@ -65,14 +65,21 @@ void world_destroy(World *world)
     for (int k = 0; k < world->obstacle_count; k++) obstacle_clear(&world->obstacles[k]);
     for (int k = 0; k < world->contact_kinds; k++) mem_free(world->contacts[k].samples.vertices);
     mem_free(world->obstacles);
+    flux_field_destroy(world->flow);
     mem_free(world);
 }
 
 void world_add_params(World *world, Params *params)
 {
-    if (world->obstacle_count == 0) return;
-    world->stiffness = params_add(params, "contact_stiffness", "N/m", 1, 1, false);
-    world->friction = params_add(params, "friction", "", world->obstacle_count, 1, false);
+    if (world->obstacle_count) {
+        world->stiffness = params_add(params, "contact_stiffness", "N/m", 1, 1, false);
+        world->friction = params_add(params, "friction", "", world->obstacle_count, 1, false);
+    }
+    if (!world->wet) return;
+    world->water = (Water){.density = params_add(params, "water_density", "kg/m^3", 1, 1, false),
+                           .viscosity = params_add(params, "water_viscosity", "Pa s", 1, 1, false),
+                           .velocity = params_add(params, "water_velocity", "m/s", 1, 3, false),
+                           .flow = world->flow};
 }
 
 /* As it is now: offset and slip speed are known. */
@@ -86,6 +93,19 @@ static ContactDef contact_of(const World *world, int kind)
     return def;
 }
 
+static Term water_of(const World *world)
+{
+    const WorldBody *body = &world->body;
+    if (body->face_count)
+        return water_term(
+            &(WaterDef){body->face_count, body->first, (int(*)[3])body->faces, world->outer, world->water});
+    return rod_water_term(&(RodWaterDef){.element_count = body->edge_count,
+                                         .first = body->first,
+                                         .length = body->length,
+                                         .radius = body->thickness / 2,
+                                         .water = world->water});
+}
+
 void world_add_terms(const World *world, System *sys, bool motion)
 {
     for (int k = 0; k < world->contact_kinds; k++) {
@@ -93,6 +113,27 @@ void world_add_terms(const World *world, System *sys, bool motion)
         system_add(sys, contact_term(&def));
         if (motion && world->rubs) system_add(sys, friction_term(&def));
     }
+    if (motion && world->wet) system_add(sys, water_of(world));
+}
+
+/* What the body does against a term in a step of time, J: the forces of its end times how far it went. */
+static double work_against(const Term *term, const Point *at)
+{
+    int count = term->ops->count(term->self), size = term->ops->size(term->self);
+    double sum = 0;
+    for (int e = 0; e < count; e += PACK_LANES) {
+        Pack x[TERM_MAX_DOF], moved[TERM_MAX_DOF], g[TERM_MAX_DOF];
+        for (int l = 0; l < PACK_LANES; l++) {
+            int dof[TERM_MAX_DOF];
+            term->ops->dofs(term->self, e + l < count ? e + l : count - 1, dof);
+            for (int i = 0; i < size; i++)
+                x[i][l] = at->x[dof[i]], moved[i][l] = at->x[dof[i]] - at->x_prev[dof[i]];
+        }
+        term->ops->eval(term->self, e / PACK_LANES, at, x, g, NULL);
+        for (int i = 0; i < size; i++)
+            sum += pack_sum(g[i] * moved[i], e + PACK_LANES < count ? PACK_LANES : count - e);
+    }
+    return sum;
 }
 
 void world_measure(const World *world, const Point *at, WorldSums *sums)
@@ -100,5 +141,10 @@ void world_measure(const World *world, const Point *at, WorldSums *sums)
     for (int k = 0; k < world->contact_kinds; k++) {
         ContactDef def = contact_of(world, k);
         contact_measure(&def, at, &sums->contact);
+    }
+    if (world->wet && at->dt > 0) {
+        Term water = water_of(world);
+        sums->water += work_against(&water, at);
+        water.ops->destroy(water.self);
     }
 }

@@ -3,6 +3,7 @@
 #include "solve/params.h"
 #include "solve/system.h"
 #include "world/contact.h"
+#include "world/water.h"
 
 /* What a body shows to the world; borrowed. */
 typedef struct WorldBody {
@@ -12,6 +13,7 @@ typedef struct WorldBody {
     const double (*rest)[3];            /* m                                                 */
     const int *part;                    /* [vertex] the piece that it belongs to; NULL: one  */
     double thickness;                   /* m; a rod's diameter                               */
+    double length;                      /* m, of a rod                                       */
 } WorldBody;
 
 enum { SAMPLE_KINDS = 3 }; /* vertices, middles of edges, of faces */
@@ -26,12 +28,16 @@ typedef struct World {
     ContactDef contacts[SAMPLE_KINDS]; /* of those that the obstacles need                            */
     int contact_kinds;
 
+    bool wet, outer; /* there is water; it knows only the outer sides of faces      */
+    FluxField *flow; /* of the water, beside its uniform velocity; owned; NULL: none */
+    Water water;
+
     /* First entries in p, of the blocks that there are: */
     int stiffness; /* [1] N/m, of contact with obstacles at a sample */
     int friction;  /* [obstacle]                                     */
 } World;
 
-/* Takes the obstacles, each with its own `feature`; offset and slip_speed are still to be set. */
+/* Takes the obstacles, each with its own `feature`; all else is still to be set. */
 World *world_create(const WorldBody *body, Obstacle *obstacles, int obstacle_count);
 void world_destroy(World *world);
 
