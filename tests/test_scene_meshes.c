@@ -1,6 +1,7 @@
 /* The meshes of the scenes (scenes/make_meshes.py): accepted without a warning, of the size that they should have, manifold,
  * and facing the way that their scenes take for granted. */
 #include "base/vec3.h"
+#include "io/table.h"
 #include "surface/mesh.h"
 #include <math.h>
 #include <setjmp.h>
@@ -27,6 +28,16 @@ static const Expected all[] = {
     {"ball", 162, 320, 480, 0, 1, {"ball"}, {320}},
     {"gripper_ball", 703, 1220, 1920, 180, 2, {"palm", "arm3", "ball"}, {100, 200, 320}},
 };
+
+static Table table_of(const char *name, const char *columns)
+{
+    char path[512];
+    Table table;
+    Error err;
+    snprintf(path, sizeof path, SOURCE_DIR "/scenes/%s.csv", name);
+    if (!table_read(path, columns, &table, &err)) fail_msg("%s", err.text);
+    return table;
+}
 
 static Mesh *mesh_of(const char *name)
 {
@@ -138,9 +149,48 @@ static void test_flare(void **unused)
     mesh_destroy(open);
 }
 
+/* 2 kA/m in the plane of each face of a tentacle, away from the head; none in it. */
+static void test_magnetization(void **unused)
+{
+    (void)unused;
+    const char *const names[] = {"octopus_10", "octopus_30"}, *const tables[] = {"octopus_10_magnetization",
+                                                                                 "octopus_30_magnetization"};
+    for (int k = 0; k < 2; k++) {
+        Mesh *mesh = mesh_of(names[k]);
+        Table table = table_of(tables[k], "Mx [A/m], My, Mz");
+        assert_int_equal(table.rows, mesh->face_count);
+        for (int f = 0; f < table.rows; f++) {
+            Vec3 M = vec3_load(table.values + 3 * f), at, n = normal_of(mesh, f, &at);
+            bool head = f < mesh_group(mesh, "head", 2)->count;
+            assert_true(fabs(vec3_length(M) - (head ? 0 : 2e3)) < 0.01);
+            assert_true(fabs(vec3_dot(M, vec3_unit(n))) < 0.02 && M.x <= 0);
+        }
+        table_clear(&table);
+        mesh_destroy(mesh);
+    }
+}
+
+/* As many rows as their motions have steps, within 50 mT. */
+static void test_starts(void **unused)
+{
+    (void)unused;
+    const char *const names[] = {"octopus_start_open", "octopus_start_pipe1", "octopus_start_pipe2",
+                                 "octopus_start_tunnel"};
+    const int rows[] = {500, 300, 400, 500};
+    for (int k = 0; k < 4; k++) {
+        Table table = table_of(names[k], "Bx [T], By, Bz");
+        double largest = 0;
+        assert_int_equal(table.rows, rows[k]);
+        for (int i = 0; i < 3 * table.rows; i++) largest = fmax(largest, fabs(table.values[i]));
+        assert_true(largest >= 0.04 && largest <= 0.05);
+        table_clear(&table);
+    }
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_counts), cmocka_unit_test(test_sides),
-                                       cmocka_unit_test(test_places), cmocka_unit_test(test_flare)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_counts),        cmocka_unit_test(test_sides),
+                                       cmocka_unit_test(test_places),        cmocka_unit_test(test_flare),
+                                       cmocka_unit_test(test_magnetization), cmocka_unit_test(test_starts)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
