@@ -1,0 +1,144 @@
+/* Obstacles of splines through samples: height fields and tubes. */
+#include "base/memory.h"
+#include "world/cubic_grid.h"
+#include "world/obstacle_shapes.h"
+#include <math.h>
+#include <string.h>
+
+/* ---- Height field ---- */
+
+typedef struct HeightField {
+    CubicGrid height;
+} HeightField;
+
+static void height_field_gap(const void *self, const double x[3], Gap *gap)
+{
+    const HeightField *field = self;
+    cubic_grid_at(&field->height, x, gap);
+    gap->value = x[2] - gap->value;
+    for (int i = 0; i < 3; i++) {
+        gap->gradient[i] = (i == 2) - gap->gradient[i];
+        for (int j = 0; j < 3; j++) gap->hessian[i][j] = -gap->hessian[i][j];
+    }
+}
+
+static void height_field_destroy(void *self)
+{
+    HeightField *field = self;
+    cubic_grid_clear(&field->height);
+    mem_free(field);
+}
+
+static const ObstacleOps height_field_ops = {
+    .kind = "height_field", .gap = height_field_gap, .destroy = height_field_destroy};
+
+Obstacle obstacle_height_field(const double range[2][2], const int cells[2], const double *height)
+{
+    int nodes[3] = {cells[0] + 1, cells[1] + 1, 1};
+    double step[3] = {(range[1][0] - range[0][0]) / cells[0], (range[1][1] - range[0][1]) / cells[1], 1},
+           low[3] = {range[0][0], range[0][1], 0};
+    HeightField *field = mem_alloc(1, sizeof *field);
+    field->height = cubic_grid_create(nodes, low, step, height, false);
+    return (Obstacle){.ops = &height_field_ops,
+                      .self = field,
+                      .feature = fmin(step[0], step[1]),
+                      .pivot = {(range[0][0] + range[1][0]) / 2, (range[0][1] + range[1][1]) / 2, 0}};
+}
+
+/* ---- Tube ---- */
+
+typedef struct Tube {
+    int axis, across[2];
+    CubicGrid radius, center[2];
+    double range[2];
+} Tube;
+
+/* phi = R - d, d = |w - c|, u = (w - c)/d. With J = dw/dx, rows (-c', 1):
+ * grad phi = R' e_s - J^T u, H = (R'' + u . c'') e_s e_s^T - J^T (I - u u^T)/d J. */
+static void tube_gap(const void *self, const double x[3], Gap *gap)
+{
+    const Tube *tube = self;
+    const double nothing = 1e-12; /* m */
+    double s[3] = {x[tube->axis]}, w[2], J[2][3] = {0}, bend[2];
+    Gap radius, center;
+    cubic_grid_at(&tube->radius, s, &radius);
+    for (int k = 0; k < 2; k++) {
+        cubic_grid_at(&tube->center[k], s, &center);
+        w[k] = x[tube->across[k]] - center.value;
+        J[k][tube->axis] = -center.gradient[0];
+        J[k][tube->across[k]] = 1;
+        bend[k] = center.hessian[0][0];
+    }
+    double d = sqrt(w[0] * w[0] + w[1] * w[1]), turn = d < nothing ? 0 : 1 / d;
+    double u[2] = {d < nothing ? 1 : w[0] / d, d < nothing ? 0 : w[1] / d}, across[3];
+    gap->value = radius.value - d;
+    for (int i = 0; i < 3; i++) {
+        gap->gradient[i] = (i == tube->axis) * radius.gradient[0] - u[0] * J[0][i] - u[1] * J[1][i];
+        across[i] = u[0] * J[1][i] - u[1] * J[0][i]; /* I - u u^T = t t^T, t = (-u1, u0) */
+    }
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < 3; j++) gap->hessian[i][j] = -turn * across[i] * across[j];
+    gap->hessian[tube->axis][tube->axis] += radius.hessian[0][0] + u[0] * bend[0] + u[1] * bend[1];
+}
+
+static void tube_destroy(void *self)
+{
+    Tube *tube = self;
+    cubic_grid_clear(&tube->radius);
+    for (int k = 0; k < 2; k++) cubic_grid_clear(&tube->center[k]);
+    mem_free(tube);
+}
+
+static const ObstacleOps tube_ops = {.kind = "tube", .gap = tube_gap, .destroy = tube_destroy};
+
+static CubicGrid tube_spline(const Tube *tube, int cells, const double (*sample)[3], int column)
+{
+    double *values = mem_alloc((size_t)cells + 1, sizeof *values);
+    for (int k = 0; k <= cells; k++) values[k] = sample[k][column];
+    CubicGrid grid =
+        cubic_grid_create((int[3]){cells + 1, 1, 1}, (double[3]){tube->range[0]},
+                          (double[3]){(tube->range[1] - tube->range[0]) / cells, 1, 1}, values, column > 0);
+    mem_free(values);
+    return grid;
+}
+
+/* The smallest radius of it, or of a bend of its wall or line; false where the first is not positive. */
+static bool tube_feature(const Tube *tube, int cells, double *feature, Error *err)
+{
+    enum { PER_CELL = 4 };
+    *feature = INFINITY;
+    double step = (tube->range[1] - tube->range[0]) / (cells * PER_CELL);
+    for (int k = -2 * PER_CELL; k <= (cells + 2) * PER_CELL; k++) {
+        double s[3] = {tube->range[0] + k * step}, bend = 0;
+        Gap radius, center[2];
+        cubic_grid_at(&tube->radius, s, &radius);
+        for (int i = 0; i < 2; i++) cubic_grid_at(&tube->center[i], s, &center[i]);
+        if (!(radius.value > 0))
+            return error_set(err, "the tube's radius is %.3g m at s = %.6g m: it must be positive",
+                             radius.value, s[0]);
+        bend = fabs(radius.hessian[0][0]) + hypot(center[0].hessian[0][0], center[1].hessian[0][0]);
+        *feature = fmin(*feature, fmin(radius.value, 1 / bend));
+    }
+    return true;
+}
+
+bool obstacle_tube(int axis, const double range[2], int cells, const double (*sample)[3], Obstacle *obstacle,
+                   Error *err)
+{
+    static const int others[3][2] = {{1, 2}, {0, 2}, {0, 1}};
+    Tube *tube = mem_alloc(1, sizeof *tube);
+    *tube = (Tube){axis, {others[axis][0], others[axis][1]}, .range = {range[0], range[1]}};
+    tube->radius = tube_spline(tube, cells, sample, 0);
+    for (int k = 0; k < 2; k++) tube->center[k] = tube_spline(tube, cells, sample, 1 + k);
+    *obstacle = (Obstacle){.ops = &tube_ops, .self = tube};
+    double middle[3] = {(range[0] + range[1]) / 2};
+    obstacle->pivot[axis] = middle[0];
+    for (int k = 0; k < 2; k++) {
+        Gap center;
+        cubic_grid_at(&tube->center[k], middle, &center);
+        obstacle->pivot[tube->across[k]] = center.value;
+    }
+    if (tube_feature(tube, cells, &obstacle->feature, err)) return true;
+    obstacle_clear(obstacle);
+    return false;
+}
