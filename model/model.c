@@ -1,6 +1,5 @@
 #include "model/model.h"
 #include "base/memory.h"
-#include "base/plain.h"
 #include "io/table.h"
 #include "model/scene_tables.h"
 #include "model/start.h"
@@ -76,15 +75,6 @@ static bool add_stages(Model *model, const Build *b, const Scene *scene, const d
     return ok;
 }
 
-enum { CASE_NAME_MAX = 250 };
-
-/* It becomes a group of the result, and a line of case_names. */
-static bool is_name(const char *name)
-{
-    return *name && plain_is(name) && !strchr(name, '/') && strlen(name) <= CASE_NAME_MAX &&
-           strcmp(name, ".");
-}
-
 bool model_cases(Model *model, const Build *b, const Scene *scene, const double *p)
 {
     if (scene->sequence_count && scene->cases_count)
@@ -99,12 +89,7 @@ bool model_cases(Model *model, const Build *b, const Scene *scene, const double 
         for (int i = 0; i < k; i++)
             if (!strcmp(model->cases[i].name, c->name))
                 ok = yaml_refuse(b->file, at.text, "there are two cases named '%s'", c->name);
-        if (!is_name(c->name))
-            ok = yaml_refuse(
-                b->file, at.text,
-                "a case's name is a word without '/' or control characters, of at most %d bytes, and "
-                "not '.'",
-                CASE_NAME_MAX);
+        ok = build_check_name(b, at, "a case", c->name) && ok;
         ok = put_loads(model, b, at, from->loads, from->loads_count, from->gravity, from->flux_density,
                        c->stages[0].p) &&
              ok;
@@ -191,6 +176,13 @@ static bool check_job(const Scene *scene, YamlFile *file)
     return false;
 }
 
+static bool add_obstacles(Model *model, const Scene *scene, YamlFile *file)
+{
+    Build b = build_start(scene, NULL, model->time, file);
+    model->obstacle_count = scene->obstacles_count;
+    return build_obstacles(&b, scene->obstacles, scene->obstacles_count, &model->obstacles);
+}
+
 static Model *create(const Scene *scene, YamlFile *file, bool general)
 {
     Model *model = mem_alloc(1, sizeof *model);
@@ -202,8 +194,8 @@ static Model *create(const Scene *scene, YamlFile *file, bool general)
     model->job = job;
     bool ok = check_job(scene, file) && yaml_check_use(file, scene_table()) &&
               check_motion(scene, job, file) && start_open(model, scene, file) &&
-              model->body->ops->create(model, scene, file) && start_take(model, scene, file) &&
-              (!job->design || model_design(model, scene, file));
+              add_obstacles(model, scene, file) && model->body->ops->create(model, scene, file) &&
+              start_take(model, scene, file) && (!job->design || model_design(model, scene, file));
     start_close(model->start);
     model->start = NULL;
     if (ok && model->body->ops->advise) model->body->ops->advise(model, scene);
@@ -230,6 +222,7 @@ void model_destroy(Model *model)
         formula_destroy(model->motions[m].formula);
         mem_free(model->motions[m].vertices.items);
     }
+    for (int k = 0; k < model->obstacle_count; k++) obstacle_clear(&model->obstacles[k]);
     design_clear(&model->design);
     timed_flux_clear(&model->flux_of_time);
     mesh_report_clear(&model->report);
@@ -237,6 +230,7 @@ void model_destroy(Model *model)
     mem_free(model->cases);
     mem_free(model->flux);
     mem_free(model->motions);
+    mem_free(model->obstacles);
     mem_free(model->x);
     mem_free(model);
 }

@@ -33,6 +33,8 @@ struct Model {
     bool general;     /* of any use, not only that of its job: all points are dofs */
     double time;      /* s, where it begins                                     */
     Start *start;     /* while it is made: what it starts from; NULL: nothing   */
+    int obstacle_count;
+    Obstacle *obstacles; /* that the body meets                                    */
     /* Nothing below is of a body without cases. */
     Params *params; /* the body's                                          */
     /* First entries in p of gravity, of the uniform flux density and of the factors on `fields`; -1: it feels none. */

@@ -274,7 +274,11 @@ static void test_tube(void **state)
     obstacle_clear(&tube);
     sample[1][0] = -0.1;
     assert_false(obstacle_tube(0, (double[2]){0, 2}, 2, (const double(*)[3])sample, &tube, &err));
-    assert_string_equal(err.text, "the tube's radius is -0.0625 m at s = 0.75 m: it must be positive");
+    assert_string_equal(err.text, "the tube's radius is -0.1 m at s = 1 m: it must be positive");
+    sample[1][0] = 0.25;
+    sample[2][0] = 0.001;
+    assert_false(obstacle_tube(0, (double[2]){0, 2}, 2, (const double(*)[3])sample, &tube, &err));
+    assert_string_equal(err.text, "the tube closes within a cell beyond s = 2 m: end its range before");
 }
 
 /* ---- Everywhere ---- */

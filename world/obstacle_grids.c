@@ -102,22 +102,39 @@ static CubicGrid tube_spline(const Tube *tube, int cells, const double (*sample)
     return grid;
 }
 
-/* The smallest radius of it, or of a bend of its wall or line; false where the first is not positive. */
-static bool tube_feature(const Tube *tube, int cells, double *feature, Error *err)
+/* The smallest radius of it, or of a bend of its wall or line. */
+static double tube_feature(const Tube *tube, double step, int steps)
 {
-    enum { PER_CELL = 4 };
-    *feature = INFINITY;
-    double step = (tube->range[1] - tube->range[0]) / (cells * PER_CELL);
-    for (int k = -2 * PER_CELL; k <= (cells + 2) * PER_CELL; k++) {
-        double s[3] = {tube->range[0] + k * step}, bend = 0;
+    double feature = INFINITY;
+    for (int k = 0; k <= steps; k++) {
+        double s[3] = {tube->range[0] + k * step};
         Gap radius, center[2];
         cubic_grid_at(&tube->radius, s, &radius);
         for (int i = 0; i < 2; i++) cubic_grid_at(&tube->center[i], s, &center[i]);
+        double bend = fabs(radius.hessian[0][0]) + hypot(center[0].hessian[0][0], center[1].hessian[0][0]);
+        feature = fmin(feature, fmin(radius.value, 1 / bend));
+    }
+    return feature;
+}
+
+/* Is it open all along, and beyond its ends? */
+static bool check_open(const Tube *tube, double step, int steps, double beyond, Error *err)
+{
+    double least = INFINITY, at = 0;
+    Gap radius;
+    for (int k = 0; k <= steps; k++) {
+        double s[3] = {tube->range[0] + k * step};
+        cubic_grid_at(&tube->radius, s, &radius);
+        if (radius.value < least) least = radius.value, at = s[0];
+    }
+    if (!(least > 0))
+        return error_set(err, "the tube's radius is %.3g m at s = %.6g m: it must be positive", least, at);
+    for (int k = 0; k < 2; k++) {
+        double s[3] = {tube->range[k] + (k ? beyond : -beyond)};
+        cubic_grid_at(&tube->radius, s, &radius);
         if (!(radius.value > 0))
-            return error_set(err, "the tube's radius is %.3g m at s = %.6g m: it must be positive",
-                             radius.value, s[0]);
-        bend = fabs(radius.hessian[0][0]) + hypot(center[0].hessian[0][0], center[1].hessian[0][0]);
-        *feature = fmin(*feature, fmin(radius.value, 1 / bend));
+            return error_set(err, "the tube closes within a cell beyond s = %.6g m: end its range before",
+                             tube->range[k]);
     }
     return true;
 }
@@ -138,7 +155,10 @@ bool obstacle_tube(int axis, const double range[2], int cells, const double (*sa
         cubic_grid_at(&tube->center[k], middle, &center);
         obstacle->pivot[tube->across[k]] = center.value;
     }
-    if (tube_feature(tube, cells, &obstacle->feature, err)) return true;
+    enum { PER_CELL = 4 };
+    double cell = (range[1] - range[0]) / cells, step = cell / PER_CELL;
+    obstacle->feature = tube_feature(tube, step, cells * PER_CELL);
+    if (check_open(tube, step, cells * PER_CELL, 2 * cell, err)) return true;
     obstacle_clear(obstacle);
     return false;
 }

@@ -410,6 +410,9 @@ static const KeyUse uses[] = {
     {"loads", "!rod {loads of a rod are under rod.loads}"},
     {"target", "/rod.solver: newton"},
     {"solver", "/rod.solver: newton"},
+    {"obstacles", "/rod.solver: newton"},
+    {"contact", "/rod.solver: newton"},
+    {"water", "/rod.solver: newton"},
     {"modes", "!rod"},
     {0},
 };
