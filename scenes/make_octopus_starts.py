@@ -35,7 +35,7 @@ def tail(size, frequency, closing):
 
 
 STARTS = {
-    "open": (500, strokes(50e-3, 4)),
+    "open": (500, strokes(40e-3, 4)),
     "pipe1": (300, tail(40e-3, 5, 30e-3)),
     "pipe2": (400, pulses(50e-3, 2.5)),
     "tunnel": (500, strokes(50e-3, 2)),

@@ -28,21 +28,20 @@
 #include "solve/term.h"
 #include "surface/flux_field.h"
 
-/* A fluid: first entries in p, and how it flows. */
+/* A fluid: first entries in p, and how it flows beside the uniform part: a velocity in m/s of place and time, taken where
+ * an element was at the start of the step, at the time of its end. */
 typedef struct Water {
-    int density; /* [1] kg/m^3                                                                                 */
-    int viscosity; /* [1] Pa s; of rods only                                                                     */
-    int velocity; /* [3] m/s, the uniform part of its velocity                                                  */
-    const FluxField
-        *flow; /* the other, of place and time, m/s, taken where an element was at the step's start, at its
-                            * end's time; borrowed; NULL: none                                                      */
+    int density;           /* [1] kg/m^3                    */
+    int viscosity;         /* [1] Pa s; of rods only        */
+    int velocity;          /* [3] m/s, of all of it         */
+    const FluxField *flow; /* borrowed; NULL: that is all   */
 } Water;
 
 /* Triangles; the positions of vertex v are the dofs first + 3v .. */
 typedef struct WaterDef {
     int face_count, first;
-    int (*faces)[3]; /* [face] vertices; borrowed                                     */
-    bool outer;      /* faces go round the normals out of closed surfaces             */
+    int (*faces)[3]; /* [face] vertices; borrowed                         */
+    bool outer;      /* they go round the normals out of closed surfaces  */
     Water water;
 } WaterDef;
 
