@@ -85,11 +85,28 @@ static void test_refused_meshes(void **state)
     expect_refused(&file, NAN, "opposite");
     file = make_block(2, 1, 0);
     expect_refused(&file, 1e-3, "block.obj: a grid with cells of 0.001 m has 8.16e+09 nodes");
+    file = make_block(2, 1, 0);
+    for (int v = 0; v < file.vertex_count; v++) file.vertices[v][2] *= 1e-3;
+    expect_refused(&file, 0.05, "block.obj: the mesh is thinner than a cell of its grid, 0.05 m, all over");
+}
+
+/* Its vertices go to where the spline is 0. */
+static void test_mesh_surface(void **state)
+{
+    (void)state;
+    MeshFile file = make_block(5, 1, 0), turned = make_block(5, 1, 0);
+    turn_faces(&turned, turned.face_count);
+    Obstacle cube = mesh_obstacle(&file, 0.1), other = mesh_obstacle(&turned, 0.1);
+    check_surface(&cube, 24, 0.01);
+    check_surface(&other, 24, 0.01);
+    obstacle_clear(&cube);
+    obstacle_clear(&other);
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_ball), cmocka_unit_test(test_cube),
-                                       cmocka_unit_test(test_refused_meshes)};
+                                       cmocka_unit_test(test_refused_meshes),
+                                       cmocka_unit_test(test_mesh_surface)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -14,6 +14,7 @@ typedef struct Solid {
     Mesh *mesh;
     CubicGrid distance;
     double smooth; /* m */
+    bool turned;   /* the mesh is inside out */
 } Solid;
 
 /* The spline, and the distance D = sqrt(t^2 + e^2) - e from where it is evaluated, t the way to there: axis by axis a
@@ -45,7 +46,39 @@ static void solid_destroy(void *self)
     mem_free(solid);
 }
 
-static const ObstacleOps mesh_ops = {.kind = "mesh", .gap = solid_gap, .destroy = solid_destroy};
+/* From a vertex of the mesh along the gradient to where the spline is 0; where it has none near, it stays. */
+static void to_surface(const Solid *solid, double x[3])
+{
+    double at[3] = {x[0], x[1], x[2]}, away = 0;
+    Gap gap = {0};
+    for (int k = 0; k < 30; k++) {
+        double square = 1e-12;
+        solid_gap(solid, at, &gap);
+        for (int i = 0; i < 3; i++) square += gap.gradient[i] * gap.gradient[i];
+        for (int i = 0; i < 3; i++) at[i] -= gap.value * gap.gradient[i] / square;
+    }
+    for (int i = 0; i < 3; i++) away += (at[i] - x[i]) * (at[i] - x[i]);
+    if (fabs(gap.value) < 1e-9 * solid->smooth && sqrt(away) < 2 * solid->smooth) memcpy(x, at, sizeof at);
+}
+
+static void solid_surface(const void *self, const double box[2][3], MeshFile *surface)
+{
+    const Solid *solid = self;
+    const Mesh *mesh = solid->mesh;
+    (void)box;
+    surface->vertex_count = mesh->vertex_count;
+    surface->face_count = mesh->face_count;
+    surface->vertices = mem_copy(mesh->rest, (size_t)mesh->vertex_count, sizeof *mesh->rest);
+    surface->faces = mem_copy(mesh->faces, (size_t)mesh->face_count, sizeof *mesh->faces);
+    for (int v = 0; v < surface->vertex_count; v++) to_surface(solid, surface->vertices[v]);
+    for (int f = 0; solid->turned && f < surface->face_count; f++) {
+        int *face = surface->faces[f], first = face[0];
+        face[0] = face[1], face[1] = first;
+    }
+}
+
+static const ObstacleOps mesh_ops = {
+    .kind = "mesh", .gap = solid_gap, .surface = solid_surface, .destroy = solid_destroy};
 
 static bool check_closed(const Mesh *mesh, const char *path, Error *err)
 {
@@ -88,12 +121,11 @@ static bool find_grid(const Mesh *mesh, double cell, const char *path, int nodes
                path, cell, count, NODES_MAX);
 }
 
-/* Distances change by no more than a step from node to node. */
-static double *sample(const Mesh *mesh, const int nodes[3], const double low[3], double cell)
+/* Distances change by no more than a step from node to node. side: -1 of a mesh inside out. */
+static double *sample(const Mesh *mesh, const int nodes[3], const double low[3], double cell, double side)
 {
-    double side = volume(mesh) < 0 ? -1 : 1, *values,
-           *value = values =
-               mem_alloc((size_t)nodes[0] * (size_t)nodes[1] * (size_t)nodes[2], sizeof *values);
+    double *values,
+        *value = values = mem_alloc((size_t)nodes[0] * (size_t)nodes[1] * (size_t)nodes[2], sizeof *values);
     MeshDistance *distance = mesh_distance_create(mesh);
     for (int i = 0; i < nodes[0]; i++)
         for (int j = 0; j < nodes[1]; j++)
@@ -105,6 +137,20 @@ static double *sample(const Mesh *mesh, const int nodes[3], const double low[3],
     return values;
 }
 
+/* NULL where no node is inside. */
+static Solid *make_solid(Mesh *mesh, double cell, const int nodes[3], const double low[3])
+{
+    bool turned = volume(mesh) < 0, inside = false;
+    double *values = sample(mesh, nodes, low, cell, turned ? -1 : 1);
+    for (long k = 0; k < (long)nodes[0] * nodes[1] * nodes[2]; k++) inside |= values[k] < 0;
+    Solid *solid = inside ? mem_alloc(1, sizeof *solid) : NULL;
+    if (solid)
+        *solid = (Solid){mesh, cubic_grid_create(nodes, low, (double[3]){cell, cell, cell}, values, false),
+                         cell, turned};
+    mem_free(values);
+    return solid;
+}
+
 bool obstacle_mesh(const MeshFile *file, double cell, Obstacle *obstacle, Error *err)
 {
     const double equal = 1e-12; /* m */
@@ -112,15 +158,17 @@ bool obstacle_mesh(const MeshFile *file, double cell, Obstacle *obstacle, Error 
     int nodes[3];
     double low[3], high[3];
     if (mesh && isnan(cell)) cell = mesh_diagonal(mesh) / 48;
-    if (!mesh || !check_closed(mesh, file->path, err) ||
-        !find_grid(mesh, cell, file->path, nodes, low, err)) {
+    bool good =
+        mesh && check_closed(mesh, file->path, err) && find_grid(mesh, cell, file->path, nodes, low, err);
+    Solid *solid = good ? make_solid(mesh, cell, nodes, low) : NULL;
+    if (good && !solid)
+        error_set(err,
+                  "%s: the mesh is thinner than a cell of its grid, %.3g m, all over: give a smaller `cell`",
+                  file->path, cell);
+    if (!solid) {
         mesh_destroy(mesh);
         return false;
     }
-    Solid *solid = mem_alloc(1, sizeof *solid);
-    double *values = sample(mesh, nodes, low, cell);
-    *solid = (Solid){mesh, cubic_grid_create(nodes, low, (double[3]){cell, cell, cell}, values, false), cell};
-    mem_free(values);
     *obstacle = (Obstacle){.ops = &mesh_ops, .self = solid, .feature = cell};
     mesh_bounding_box(mesh, low, high);
     for (int i = 0; i < 3; i++) obstacle->pivot[i] = (low[i] + high[i]) / 2;
