@@ -50,10 +50,11 @@ static void test_cube(void **state)
         obstacle_gap(&other, &here, x, &b);
         assert_finite(&a, 0);
         assert_near(a.value, b.value, 1e-14);
-        assert_near(a.value, far < 1 ? far - 1 : sqrt(away), 0.3 * cube.feature);
+        double exact = far < 1 ? far - 1 : sqrt(away); /* deep down and far away it is not sampled itself */
+        assert_near(a.value, exact, (fabs(exact) < 6 * cube.feature ? 0.3 : 1) * cube.feature);
     }
-    assert_near(value_at(&cube, 0.1, 0.2, 1.05), 0.05, 1e-7);
-    assert_near(value_at(&cube, 0.1, 0.2, 0.97), -0.03, 1e-7);
+    assert_near(value_at(&cube, 0.1, 0.2, 1.05), 0.05, 1e-6);
+    assert_near(value_at(&cube, 0.1, 0.2, 0.97), -0.03, 1e-6);
     assert_near(value_at(&cube, 100, 0, 0), 99, 0.02 * 99);
     double before = 0;
     for (int k = 0; k < 4000; k++) { /* ever farther, until far beyond the grid */

@@ -103,16 +103,22 @@ static double volume(const Mesh *mesh)
     return sum;
 }
 
-/* The grid around the mesh; false with a sentence where it is too large. */
-static bool find_grid(const Mesh *mesh, double cell, const char *path, int nodes[3], double low[3],
-                      Error *err)
+/* Nodes around a mesh. */
+typedef struct Grid {
+    int nodes[3];
+    double low[3], cell;
+} Grid;
+
+/* False with a sentence where it is too large. */
+static bool find_grid(const Mesh *mesh, double cell, const char *path, Grid *grid, Error *err)
 {
-    double high[3], count = 1;
+    double *low = grid->low, high[3], count = 1;
+    grid->cell = cell;
     mesh_bounding_box(mesh, low, high);
     for (int i = 0; i < 3; i++) {
         double cells = ceil((high[i] - low[i]) / cell) + 2 * MARGIN;
         count *= cells + 1;
-        if (count <= NODES_MAX) nodes[i] = (int)cells + 1;
+        if (count <= NODES_MAX) grid->nodes[i] = (int)cells + 1;
         low[i] = (low[i] + high[i] - cells * cell) / 2;
     }
     return count <= NODES_MAX ||
@@ -121,32 +127,81 @@ static bool find_grid(const Mesh *mesh, double cell, const char *path, int nodes
                path, cell, count, NODES_MAX);
 }
 
-/* Distances change by no more than a step from node to node. side: -1 of a mesh inside out. */
-static double *sample(const Mesh *mesh, const int nodes[3], const double low[3], double cell, double side)
+static long node_count(const Grid *grid)
 {
-    double *values,
-        *value = values = mem_alloc((size_t)nodes[0] * (size_t)nodes[1] * (size_t)nodes[2], sizeof *values);
-    MeshDistance *distance = mesh_distance_create(mesh);
-    for (int i = 0; i < nodes[0]; i++)
-        for (int j = 0; j < nodes[1]; j++)
-            for (int k = 0; k < nodes[2]; k++, value++) {
-                double x[3] = {low[0] + i * cell, low[1] + j * cell, low[2] + k * cell};
-                *value = side * mesh_distance_at(distance, x, k ? fabs(value[-1]) + cell : INFINITY);
+    return (long)grid->nodes[0] * grid->nodes[1] * grid->nodes[2];
+}
+
+static CubicGrid make_spline(const Grid *grid, const double *values)
+{
+    return cubic_grid_create(grid->nodes, grid->low, (double[3]){grid->cell, grid->cell, grid->cell}, values,
+                             false);
+}
+
+/* A grid of every fourth node, with the values there and their spline. Near deep places and far ones, where all faces are
+ * equally far, a search for the nearest one takes long; and there nobody needs to know exactly. */
+typedef struct Coarse {
+    Grid grid;
+    double *values;
+    CubicGrid spline;
+} Coarse;
+
+enum { COARSER = 4 };
+
+/* The distance at a node (i, j, k), where it is more than 6 cells for sure: it changes by no more than the way to the
+ * next node of the coarse grid, which is 3.5 cells at most. */
+static bool is_far(const Coarse *coarse, const int node[3], const double x[3], double *value)
+{
+    const double far = 10.0 / COARSER; /* coarse cells */
+    long at = 0;
+    for (int i = 0; i < 3; i++) at = at * coarse->grid.nodes[i] + (node[i] + COARSER / 2) / COARSER;
+    if (fabs(coarse->values[at]) < far * coarse->grid.cell) return false;
+    Gap gap;
+    cubic_grid_at(&coarse->spline, x, &gap);
+    *value = gap.value;
+    return true;
+}
+
+/* coarse NULL: all nodes exactly. side: -1 of a mesh inside out. */
+static double *sample(const MeshDistance *distance, double side, const Grid *grid, const Coarse *coarse)
+{
+    double *values = mem_alloc((size_t)node_count(grid), sizeof *values), *value = values;
+    int face = -1, node[3];
+    for (node[0] = 0; node[0] < grid->nodes[0]; node[0]++)
+        for (node[1] = 0; node[1] < grid->nodes[1]; node[1]++)
+            for (node[2] = 0; node[2] < grid->nodes[2]; node[2]++, value++) {
+                double x[3];
+                for (int i = 0; i < 3; i++) x[i] = grid->low[i] + node[i] * grid->cell;
+                if (coarse && is_far(coarse, node, x, value)) continue;
+                *value = side * mesh_distance_at(distance, x, &face);
             }
+    return values;
+}
+
+/* The coarse grid reaches as far, at least. */
+static double *sample_coarse_first(const Mesh *mesh, double side, const Grid *grid)
+{
+    MeshDistance *distance = mesh_distance_create(mesh);
+    Coarse coarse = {.grid = *grid};
+    coarse.grid.cell *= COARSER;
+    for (int i = 0; i < 3; i++) coarse.grid.nodes[i] = (grid->nodes[i] + COARSER - 2) / COARSER + 1;
+    coarse.values = sample(distance, side, &coarse.grid, NULL);
+    coarse.spline = make_spline(&coarse.grid, coarse.values);
+    double *values = sample(distance, side, grid, &coarse);
+    cubic_grid_clear(&coarse.spline);
+    mem_free(coarse.values);
     mesh_distance_destroy(distance);
     return values;
 }
 
 /* NULL where no node is inside. */
-static Solid *make_solid(Mesh *mesh, double cell, const int nodes[3], const double low[3])
+static Solid *make_solid(Mesh *mesh, const Grid *grid)
 {
     bool turned = volume(mesh) < 0, inside = false;
-    double *values = sample(mesh, nodes, low, cell, turned ? -1 : 1);
-    for (long k = 0; k < (long)nodes[0] * nodes[1] * nodes[2]; k++) inside |= values[k] < 0;
+    double *values = sample_coarse_first(mesh, turned ? -1 : 1, grid);
+    for (long k = 0; k < node_count(grid); k++) inside |= values[k] < 0;
     Solid *solid = inside ? mem_alloc(1, sizeof *solid) : NULL;
-    if (solid)
-        *solid = (Solid){mesh, cubic_grid_create(nodes, low, (double[3]){cell, cell, cell}, values, false),
-                         cell, turned};
+    if (solid) *solid = (Solid){mesh, make_spline(grid, values), grid->cell, turned};
     mem_free(values);
     return solid;
 }
@@ -155,12 +210,11 @@ bool obstacle_mesh(const MeshFile *file, double cell, Obstacle *obstacle, Error 
 {
     const double equal = 1e-12; /* m */
     Mesh *mesh = mesh_create(file, equal, NULL, err);
-    int nodes[3];
+    Grid grid;
     double low[3], high[3];
     if (mesh && isnan(cell)) cell = mesh_diagonal(mesh) / 48;
-    bool good =
-        mesh && check_closed(mesh, file->path, err) && find_grid(mesh, cell, file->path, nodes, low, err);
-    Solid *solid = good ? make_solid(mesh, cell, nodes, low) : NULL;
+    bool good = mesh && check_closed(mesh, file->path, err) && find_grid(mesh, cell, file->path, &grid, err);
+    Solid *solid = good ? make_solid(mesh, &grid) : NULL;
     if (good && !solid)
         error_set(err,
                   "%s: the mesh is thinner than a cell of its grid, %.3g m, all over: give a smaller `cell`",
