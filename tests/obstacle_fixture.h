@@ -1,6 +1,7 @@
 /* obstacle_fixture.h - gaps, and closed meshes, for tests of obstacles. */
 #pragma once
 #include "base/memory.h"
+#include "base/vec3.h"
 #include "world/obstacle_shapes.h"
 #include <math.h>
 #include <setjmp.h>
@@ -80,4 +81,35 @@ static inline Obstacle mesh_obstacle(MeshFile *file, double cell)
     if (!obstacle_mesh(file, cell, &obstacle, &err)) fail_msg("%s", err.text);
     mesh_file_clear(file);
     return obstacle;
+}
+
+/* ---- Surfaces ---- */
+
+/* Of a surface in a box from -2 to 2: all vertices have phi = 0, normals are those of phi, and the area is that, to a part
+ * of it. */
+static inline void check_surface(const Obstacle *obstacle, double area, double part)
+{
+    MeshFile surface;
+    double sum = 0;
+    obstacle_surface(obstacle, (const double[2][3]){{-2, -2, -2}, {2, 2, 2}}, &surface);
+    assert_in_range(surface.face_count, 1, 2000);
+    for (int v = 0; v < surface.vertex_count; v++) {
+        const double *x = surface.vertices[v];
+        assert_near(value_at(obstacle, x[0], x[1], x[2]), 0, 1e-9);
+    }
+    for (int f = 0; f < surface.face_count; f++) {
+        Vec3 x[3];
+        double middle[3];
+        for (int k = 0; k < 3; k++) x[k] = vec3_load(surface.vertices[surface.faces[f][k]]);
+        vec3_store(middle, vec3_scale(1.0 / 3, vec3_add(x[0], vec3_add(x[1], x[2]))));
+        Vec3 normal = vec3_scale(0.5, vec3_cross(vec3_sub(x[1], x[0]), vec3_sub(x[2], x[0])));
+        Gap gap;
+        obstacle_gap(obstacle, &here, middle, &gap);
+        Vec3 gradient = vec3_unit(vec3_load(gap.gradient));
+        if (!(vec3_dot(normal, gradient) > 0.7 * vec3_length(normal)))
+            fail_msg("%s: face %d looks elsewhere", obstacle->ops->kind, f);
+        sum += vec3_length(normal);
+    }
+    assert_near(sum, area, part * area);
+    mesh_file_clear(&surface);
 }

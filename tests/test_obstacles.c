@@ -335,10 +335,39 @@ static void test_pose(void **state)
     obstacle_clear(&o);
 }
 
+static void test_surfaces(void **state)
+{
+    (void)state;
+    long blocks = mem_live_count();
+    double center[3] = {0.3, -0.2, 0.1}, askew[3] = {1, -2, 3};
+    struct {
+        Obstacle obstacle;
+        double area, part;
+    } all[] = {{obstacle_plane(center, askew), 48, 1e-12},
+               {obstacle_plane(center, (double[3]){0, -1, 0}), 48, 1e-12},
+               {obstacle_sphere(center, 0.5, false), M_PI, 0.02},
+               {obstacle_sphere(center, 0.5, true), M_PI, 0.02},
+               {obstacle_cylinder(center, (double[3]){0, 0, -1}, 0.5, false), 4 * M_PI, 0.01},
+               {obstacle_cylinder(center, askew, 0.5, true), M_PI * 24 / sqrt(14), 0.01},
+               {obstacle_box(center, (double[3]){1, 0.8, 0.6}, 0.1), /* faces, edges, corners */
+                8 * (0.9 * 0.7 + 0.9 * 0.5 + 0.7 * 0.5) + 0.2 * M_PI * 2 * (0.9 + 0.7 + 0.5) + 0.04 * M_PI,
+                0.01},
+               {hills(10), 16.6, 0.05},
+               {bent_tube(0, 0), 2 * M_PI, 0.02},
+               {bent_tube(1, 0), 2 * M_PI, 0.02},
+               {bent_tube(2, 1), 7.5, 0.1}};
+    for (size_t k = 0; k < sizeof all / sizeof *all; k++) {
+        check_surface(&all[k].obstacle, all[k].area, all[k].part);
+        obstacle_clear(&all[k].obstacle);
+    }
+    assert_int_equal(mem_live_count(), blocks);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_derivatives),  cmocka_unit_test(test_values),
                                        cmocka_unit_test(test_height_field), cmocka_unit_test(test_tube),
-                                       cmocka_unit_test(test_finite),       cmocka_unit_test(test_pose)};
+                                       cmocka_unit_test(test_finite),       cmocka_unit_test(test_pose),
+                                       cmocka_unit_test(test_surfaces)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -95,9 +95,9 @@ void cubic_grid_clear(CubicGrid *grid)
 
 /* ---- Values ---- */
 
-/* Along one axis: the first coefficient, and the weights of so many with their derivatives. */
+/* Along one axis: the first coefficient, and the weights of so many with so many derivatives (0 counted). */
 typedef struct Taps {
-    int first, count;
+    int first, count, orders;
     double weight[3][4]; /* [derivative] */
 } Taps;
 
@@ -135,10 +135,10 @@ void cubic_grid_beyond(const CubicGrid *grid, int axis, double x, double beyond[
 static Taps find_taps(const CubicGrid *grid, int axis, double x)
 {
     int last = grid->nodes[axis] - 1;
-    if (last == 0) return (Taps){.count = 1, .weight = {{1}}};
+    if (last == 0) return (Taps){.count = 1, .orders = 1, .weight = {{1}}};
     double u = (x - grid->low[axis]) / grid->step[axis], slope, bend, w[3][4], end[3][4] = {0};
     double v = place(u, last, &slope, &bend), scale = 1 / grid->step[axis], left = 0;
-    Taps taps = {.first = (int)fmax(0, fmin(floor(v), last - 1)), .count = 4};
+    Taps taps = {.first = (int)fmax(0, fmin(floor(v), last - 1)), .count = 4, .orders = 3};
     splines(v - taps.first, w);
     if (grid->linear && v != u) {
         splines(u < 0 ? -1 : 2, end);
@@ -153,23 +153,24 @@ static Taps find_taps(const CubicGrid *grid, int axis, double x)
 }
 
 /* sum[i][j][k] of the derivatives d^(i + j + k)/dx^i dy^j dz^k up to the second. */
-static void sum_taps(const CubicGrid *grid, const Taps *taps, double sum[3][3][3])
+static void sum_taps(const CubicGrid *grid, const Taps *x, const Taps *y, const Taps *z, double sum[3][3][3])
 {
     long columns = width(grid->nodes[1]), depth = width(grid->nodes[2]);
-    for (int a = 0; a < taps[0].count; a++) {
+    for (int a = 0; a < x->count; a++) {
         double plane[3][3] = {0};
-        for (int b = 0; b < taps[1].count; b++) {
-            const double *c = grid->coefficients +
-                              ((taps[0].first + a) * columns + taps[1].first + b) * depth + taps[2].first;
-            for (int k = 0; k < 3; k++) {
+        for (int b = 0; b < y->count; b++) {
+            const double *c =
+                grid->coefficients + ((x->first + a) * columns + y->first + b) * depth + z->first;
+            for (int k = 0; k < z->orders; k++) {
                 double line = 0;
-                for (int e = 0; e < taps[2].count; e++) line += taps[2].weight[k][e] * c[e];
-                for (int j = 0; j + k < 3; j++) plane[j][k] += taps[1].weight[j][b] * line;
+                for (int e = 0; e < z->count; e++) line += z->weight[k][e] * c[e];
+                for (int j = 0; j < y->orders && j + k < 3; j++) plane[j][k] += y->weight[j][b] * line;
             }
         }
-        for (int i = 0; i < 3; i++)
-            for (int j = 0; i + j < 3; j++)
-                for (int k = 0; i + j + k < 3; k++) sum[i][j][k] += taps[0].weight[i][a] * plane[j][k];
+        for (int i = 0; i < x->orders; i++)
+            for (int j = 0; j < y->orders && i + j < 3; j++)
+                for (int k = 0; k < z->orders && i + j + k < 3; k++)
+                    sum[i][j][k] += x->weight[i][a] * plane[j][k];
     }
 }
 
@@ -178,7 +179,7 @@ void cubic_grid_at(const CubicGrid *grid, const double x[3], Gap *sample)
     double sum[3][3][3] = {0};
     Taps taps[3];
     for (int axis = 0; axis < 3; axis++) taps[axis] = find_taps(grid, axis, x[axis]);
-    sum_taps(grid, taps, sum);
+    sum_taps(grid, &taps[0], &taps[1], &taps[2], sum);
     *sample = (Gap){.value = sum[0][0][0],
                     .gradient = {sum[1][0][0], sum[0][1][0], sum[0][0][1]},
                     .hessian = {{sum[2][0][0], sum[1][1][0], sum[1][0][1]},

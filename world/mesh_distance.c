@@ -1,7 +1,6 @@
 #include "world/mesh_distance.h"
 #include "base/memory.h"
 #include "base/vec3.h"
-#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -191,28 +190,38 @@ static double side_of(const MeshDistance *d, int face, Nearest nearest, Vec3 x)
     return vec3_dot(vec3_sub(x, nearest.point), normal) < 0 ? -1 : 1;
 }
 
-double mesh_distance_at(const MeshDistance *d, const double x[3], double within)
+/* The best so far of a search. */
+typedef struct Best {
+    double distance2;
+    int face;
+    Nearest nearest;
+} Best;
+
+static void try_face(const MeshDistance *d, int face, Vec3 x, Best *best)
+{
+    Nearest found = nearest_of(d->mesh, face, x);
+    Vec3 away = vec3_sub(x, found.point);
+    double distance2 = vec3_dot(away, away);
+    if (distance2 < best->distance2) *best = (Best){distance2, face, found};
+}
+
+double mesh_distance_at(const MeshDistance *d, const double x[3], int *face)
 {
     Vec3 at = vec3_load(x);
-    double best = within * within * (1 + 1e-6);
-    int stack[STACK] = {0}, depth = 1, face = -1;
-    Nearest nearest = {at, 6};
+    Best best = {.distance2 = INFINITY};
+    int stack[STACK] = {0}, depth = 1;
+    if (*face >= 0) try_face(d, *face, at, &best);
     while (depth) {
         const Node *node = &d->nodes[stack[--depth]];
-        if (box_distance2(node, x) > best) continue;
-        for (int k = 0; !node->child && k < node->count; k++) {
-            int f = d->order[node->first + k];
-            Nearest found = nearest_of(d->mesh, f, at);
-            Vec3 away = vec3_sub(at, found.point);
-            double distance2 = vec3_dot(away, away);
-            if (distance2 < best) best = distance2, face = f, nearest = found;
-        }
+        if (box_distance2(node, x) >= best.distance2) continue;
+        for (int k = 0; !node->child && k < node->count; k++)
+            try_face(d, d->order[node->first + k], at, &best);
         if (!node->child) continue;
         const Node *child = d->nodes + node->child;
         bool swap = box_distance2(child, x) < box_distance2(child + 1, x);
         stack[depth++] = node->child + swap; /* the nearer one comes first */
         stack[depth++] = node->child + !swap;
     }
-    assert(face >= 0);
-    return sqrt(best) * side_of(d, face, nearest, at);
+    *face = best.face;
+    return sqrt(best.distance2) * side_of(d, best.face, best.nearest, at);
 }

@@ -11,5 +11,5 @@ typedef struct MeshDistance MeshDistance;
 MeshDistance *mesh_distance_create(const Mesh *mesh);
 void mesh_distance_destroy(MeshDistance *distance);
 
-/* `within`: no farther than that it is for sure, which saves time; INFINITY: unknown. Re-entrant. */
-double mesh_distance_at(const MeshDistance *distance, const double x[3], double within);
+/* *face: one that is near, a guess which saves time (-1: none); then the nearest one. Re-entrant. */
+double mesh_distance_at(const MeshDistance *distance, const double x[3], int *face);

@@ -1,6 +1,8 @@
 /* Obstacles of a closed form: planes, spheres, cylinders and boxes. */
 #include "base/memory.h"
+#include "base/vec3.h"
 #include "world/obstacle_shapes.h"
+#include "world/obstacle_surface.h"
 #include <math.h>
 #include <string.h>
 
@@ -21,6 +23,36 @@ static Obstacle make(const ObstacleOps *ops, const void *self, size_t size, cons
     return obstacle;
 }
 
+/* ---- Closed surfaces: a point for each direction, from those through the cells of a cube's faces ---- */
+
+typedef void DirectionPlace(const void *self, const double direction[3], double x[3]);
+
+typedef struct CubeFace {
+    int axis, side;
+    DirectionPlace *place;
+    const void *self;
+} CubeFace;
+
+static void cube_place(const void *self, double u, double v, double x[3])
+{
+    const CubeFace *face = self;
+    double way[3], unit[3];
+    way[face->axis] = face->side;
+    way[(face->axis + 1) % 3] = tan(M_PI / 4 * (2 * u - 1)); /* cells of nearly equal angles */
+    way[(face->axis + 2) % 3] = tan(M_PI / 4 * (2 * v - 1));
+    direction(way, unit);
+    face->place(face->self, unit, x);
+}
+
+static void add_closed(MeshFile *surface, bool inside, DirectionPlace *place, const void *self)
+{
+    enum { CELLS = 11 }; /* odd: no direction is along an axis's plane */
+    for (int k = 0; k < 6; k++) {
+        CubeFace face = {k / 2, k % 2 ? 1 : -1, place, self};
+        surface_add_patch(surface, (int[2]){CELLS, CELLS}, inside != (face.side < 0), cube_place, &face);
+    }
+}
+
 /* ---- Plane ---- */
 
 typedef struct Plane {
@@ -37,7 +69,32 @@ static void plane_gap(const void *self, const double x[3], Gap *gap)
     }
 }
 
-static const ObstacleOps plane_ops = {.kind = "plane", .gap = plane_gap, .destroy = mem_free};
+/* A square around the middle of the box, as wide as its diagonal. */
+typedef struct Square {
+    Vec3 middle, first, second;
+} Square;
+
+static void square_place(const void *self, double u, double v, double x[3])
+{
+    const Square *square = self;
+    vec3_store(x, vec3_axpy(u - 0.5, square->first, vec3_axpy(v - 0.5, square->second, square->middle)));
+}
+
+static void plane_surface(const void *self, const double box[2][3], MeshFile *surface)
+{
+    const Plane *plane = self;
+    Vec3 low = vec3_load(box[0]), high = vec3_load(box[1]), middle = vec3_scale(0.5, vec3_add(low, high)),
+         normal = vec3_load(plane->normal);
+    double size = vec3_length(vec3_sub(high, low)), first[3], second[3],
+           height = vec3_dot(vec3_sub(middle, vec3_load(plane->point)), normal);
+    surface_frame(plane->normal, first, second);
+    Square square = {vec3_axpy(-height, normal, middle), vec3_scale(size, vec3_load(first)),
+                     vec3_scale(size, vec3_load(second))};
+    surface_add_patch(surface, (int[2]){8, 8}, false, square_place, &square);
+}
+
+static const ObstacleOps plane_ops = {
+    .kind = "plane", .gap = plane_gap, .surface = plane_surface, .destroy = mem_free};
 
 Obstacle obstacle_plane(const double point[3], const double normal[3])
 {
@@ -70,7 +127,21 @@ static void round_gap(const void *self, const double x[3], Gap *gap)
     }
 }
 
-static const ObstacleOps sphere_ops = {.kind = "sphere", .gap = round_gap, .destroy = mem_free};
+static void sphere_place(const void *self, const double direction[3], double x[3])
+{
+    const Round *sphere = self;
+    for (int i = 0; i < 3; i++) x[i] = sphere->point[i] + sphere->radius * direction[i];
+}
+
+static void sphere_surface(const void *self, const double box[2][3], MeshFile *surface)
+{
+    const Round *sphere = self;
+    (void)box;
+    add_closed(surface, sphere->side < 0, sphere_place, self);
+}
+
+static const ObstacleOps sphere_ops = {
+    .kind = "sphere", .gap = round_gap, .surface = sphere_surface, .destroy = mem_free};
 
 Obstacle obstacle_sphere(const double center[3], double radius, bool inside)
 {
@@ -79,7 +150,37 @@ Obstacle obstacle_sphere(const double center[3], double radius, bool inside)
     return make(&sphere_ops, &sphere, sizeof sphere, center, radius);
 }
 
-static const ObstacleOps cylinder_ops = {.kind = "cylinder", .gap = round_gap, .destroy = mem_free};
+/* From one end of the box to the other. */
+typedef struct Bar {
+    Vec3 from, along, first, second;
+} Bar;
+
+static void bar_place(const void *self, double u, double v, double x[3])
+{
+    const Bar *bar = self;
+    double angle = 2 * M_PI * v;
+    vec3_store(x,
+               vec3_axpy(u, bar->along,
+                         vec3_axpy(cos(angle), bar->first, vec3_axpy(sin(angle), bar->second, bar->from))));
+}
+
+static void cylinder_surface(const void *self, const double box[2][3], MeshFile *surface)
+{
+    const Round *round = self;
+    double middle = 0, length = 0, first[3], second[3];
+    for (int i = 0; i < 3; i++) {
+        middle += ((box[0][i] + box[1][i]) / 2 - round->point[i]) * round->axis[i];
+        length += fabs(round->axis[i]) * (box[1][i] - box[0][i]);
+    }
+    Vec3 axis = vec3_load(round->axis);
+    surface_frame(round->axis, first, second);
+    Bar bar = {vec3_axpy(middle - length / 2, axis, vec3_load(round->point)), vec3_scale(length, axis),
+               vec3_scale(round->radius, vec3_load(first)), vec3_scale(round->radius, vec3_load(second))};
+    surface_add_patch(surface, (int[2]){16, 48}, round->side > 0, bar_place, &bar);
+}
+
+static const ObstacleOps cylinder_ops = {
+    .kind = "cylinder", .gap = round_gap, .surface = cylinder_surface, .destroy = mem_free};
 
 Obstacle obstacle_cylinder(const double point[3], const double axis[3], double radius, bool inside)
 {
@@ -123,7 +224,22 @@ static void box_gap(const void *self, const double x[3], Gap *gap)
     }
 }
 
-static const ObstacleOps box_ops = {.kind = "box", .gap = box_gap, .destroy = mem_free};
+/* The rounding's normals; no grid line has one along a face, so that those triangles are the faces. */
+static void box_place(const void *self, const double direction[3], double x[3])
+{
+    const Box *box = self;
+    for (int i = 0; i < 3; i++)
+        x[i] = box->center[i] + copysign(box->core[i], direction[i]) + box->rounding * direction[i];
+}
+
+static void box_surface(const void *self, const double box[2][3], MeshFile *surface)
+{
+    (void)box;
+    add_closed(surface, false, box_place, self);
+}
+
+static const ObstacleOps box_ops = {
+    .kind = "box", .gap = box_gap, .surface = box_surface, .destroy = mem_free};
 
 Obstacle obstacle_box(const double center[3], const double half[3], double rounding)
 {

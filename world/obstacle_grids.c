@@ -2,6 +2,7 @@
 #include "base/memory.h"
 #include "world/cubic_grid.h"
 #include "world/obstacle_shapes.h"
+#include "world/obstacle_surface.h"
 #include <math.h>
 #include <string.h>
 
@@ -29,8 +30,33 @@ static void height_field_destroy(void *self)
     mem_free(field);
 }
 
-static const ObstacleOps height_field_ops = {
-    .kind = "height_field", .gap = height_field_gap, .destroy = height_field_destroy};
+typedef struct Ground {
+    const HeightField *field;
+    const double (*box)[3];
+} Ground;
+
+static void ground_place(const void *self, double u, double v, double x[3])
+{
+    const Ground *ground = self;
+    const double(*box)[3] = ground->box;
+    Gap height;
+    x[0] = box[0][0] + u * (box[1][0] - box[0][0]);
+    x[1] = box[0][1] + v * (box[1][1] - box[0][1]);
+    x[2] = 0;
+    cubic_grid_at(&ground->field->height, x, &height);
+    x[2] = height.value;
+}
+
+static void height_field_surface(const void *self, const double box[2][3], MeshFile *surface)
+{
+    Ground ground = {self, box};
+    surface_add_patch(surface, (int[2]){31, 31}, false, ground_place, &ground);
+}
+
+static const ObstacleOps height_field_ops = {.kind = "height_field",
+                                             .gap = height_field_gap,
+                                             .surface = height_field_surface,
+                                             .destroy = height_field_destroy};
 
 Obstacle obstacle_height_field(const double range[2][2], const int cells[2], const double *height)
 {
@@ -89,7 +115,28 @@ static void tube_destroy(void *self)
     mem_free(tube);
 }
 
-static const ObstacleOps tube_ops = {.kind = "tube", .gap = tube_gap, .destroy = tube_destroy};
+static void tube_place(const void *self, double u, double v, double x[3])
+{
+    const Tube *tube = self;
+    double s[3] = {tube->range[0] + u * (tube->range[1] - tube->range[0])}, angle = 2 * M_PI * v;
+    Gap radius, center;
+    cubic_grid_at(&tube->radius, s, &radius);
+    x[tube->axis] = s[0];
+    for (int k = 0; k < 2; k++) {
+        cubic_grid_at(&tube->center[k], s, &center);
+        x[tube->across[k]] = center.value + radius.value * (k ? sin(angle) : cos(angle));
+    }
+}
+
+static void tube_surface(const void *self, const double box[2][3], MeshFile *surface)
+{
+    const Tube *tube = self;
+    (void)box;
+    surface_add_patch(surface, (int[2]){40, 24}, tube->axis == 1, tube_place, self);
+}
+
+static const ObstacleOps tube_ops = {
+    .kind = "tube", .gap = tube_gap, .surface = tube_surface, .destroy = tube_destroy};
 
 static CubicGrid tube_spline(const Tube *tube, int cells, const double (*sample)[3], int column)
 {

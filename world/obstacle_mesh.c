@@ -14,6 +14,7 @@ typedef struct Solid {
     Mesh *mesh;
     CubicGrid distance;
     double smooth; /* m */
+    bool turned;   /* the mesh is inside out */
 } Solid;
 
 /* The spline, and the distance D = sqrt(t^2 + e^2) - e from where it is evaluated, t the way to there: axis by axis a
@@ -45,7 +46,39 @@ static void solid_destroy(void *self)
     mem_free(solid);
 }
 
-static const ObstacleOps mesh_ops = {.kind = "mesh", .gap = solid_gap, .destroy = solid_destroy};
+/* From a vertex of the mesh along the gradient to where the spline is 0; where it has none near, it stays. */
+static void to_surface(const Solid *solid, double x[3])
+{
+    double at[3] = {x[0], x[1], x[2]}, away = 0;
+    Gap gap = {0};
+    for (int k = 0; k < 30; k++) {
+        double square = 1e-12;
+        solid_gap(solid, at, &gap);
+        for (int i = 0; i < 3; i++) square += gap.gradient[i] * gap.gradient[i];
+        for (int i = 0; i < 3; i++) at[i] -= gap.value * gap.gradient[i] / square;
+    }
+    for (int i = 0; i < 3; i++) away += (at[i] - x[i]) * (at[i] - x[i]);
+    if (fabs(gap.value) < 1e-9 * solid->smooth && sqrt(away) < 2 * solid->smooth) memcpy(x, at, sizeof at);
+}
+
+static void solid_surface(const void *self, const double box[2][3], MeshFile *surface)
+{
+    const Solid *solid = self;
+    const Mesh *mesh = solid->mesh;
+    (void)box;
+    surface->vertex_count = mesh->vertex_count;
+    surface->face_count = mesh->face_count;
+    surface->vertices = mem_copy(mesh->rest, (size_t)mesh->vertex_count, sizeof *mesh->rest);
+    surface->faces = mem_copy(mesh->faces, (size_t)mesh->face_count, sizeof *mesh->faces);
+    for (int v = 0; v < surface->vertex_count; v++) to_surface(solid, surface->vertices[v]);
+    for (int f = 0; solid->turned && f < surface->face_count; f++) {
+        int *face = surface->faces[f], first = face[0];
+        face[0] = face[1], face[1] = first;
+    }
+}
+
+static const ObstacleOps mesh_ops = {
+    .kind = "mesh", .gap = solid_gap, .surface = solid_surface, .destroy = solid_destroy};
 
 static bool check_closed(const Mesh *mesh, const char *path, Error *err)
 {
@@ -70,16 +103,22 @@ static double volume(const Mesh *mesh)
     return sum;
 }
 
-/* The grid around the mesh; false with a sentence where it is too large. */
-static bool find_grid(const Mesh *mesh, double cell, const char *path, int nodes[3], double low[3],
-                      Error *err)
+/* Nodes around a mesh. */
+typedef struct Grid {
+    int nodes[3];
+    double low[3], cell;
+} Grid;
+
+/* False with a sentence where it is too large. */
+static bool find_grid(const Mesh *mesh, double cell, const char *path, Grid *grid, Error *err)
 {
-    double high[3], count = 1;
+    double *low = grid->low, high[3], count = 1;
+    grid->cell = cell;
     mesh_bounding_box(mesh, low, high);
     for (int i = 0; i < 3; i++) {
         double cells = ceil((high[i] - low[i]) / cell) + 2 * MARGIN;
         count *= cells + 1;
-        if (count <= NODES_MAX) nodes[i] = (int)cells + 1;
+        if (count <= NODES_MAX) grid->nodes[i] = (int)cells + 1;
         low[i] = (low[i] + high[i] - cells * cell) / 2;
     }
     return count <= NODES_MAX ||
@@ -88,39 +127,102 @@ static bool find_grid(const Mesh *mesh, double cell, const char *path, int nodes
                path, cell, count, NODES_MAX);
 }
 
-/* Distances change by no more than a step from node to node. */
-static double *sample(const Mesh *mesh, const int nodes[3], const double low[3], double cell)
+static long node_count(const Grid *grid)
 {
-    double side = volume(mesh) < 0 ? -1 : 1, *values,
-           *value = values =
-               mem_alloc((size_t)nodes[0] * (size_t)nodes[1] * (size_t)nodes[2], sizeof *values);
-    MeshDistance *distance = mesh_distance_create(mesh);
-    for (int i = 0; i < nodes[0]; i++)
-        for (int j = 0; j < nodes[1]; j++)
-            for (int k = 0; k < nodes[2]; k++, value++) {
-                double x[3] = {low[0] + i * cell, low[1] + j * cell, low[2] + k * cell};
-                *value = side * mesh_distance_at(distance, x, k ? fabs(value[-1]) + cell : INFINITY);
+    return (long)grid->nodes[0] * grid->nodes[1] * grid->nodes[2];
+}
+
+static CubicGrid make_spline(const Grid *grid, const double *values)
+{
+    return cubic_grid_create(grid->nodes, grid->low, (double[3]){grid->cell, grid->cell, grid->cell}, values,
+                             false);
+}
+
+/* A grid of every fourth node, with the values there and their spline. Near deep places and far ones, where all faces are
+ * equally far, a search for the nearest one takes long; and there nobody needs to know exactly. */
+typedef struct Coarse {
+    Grid grid;
+    double *values;
+    CubicGrid spline;
+} Coarse;
+
+enum { COARSER = 4 };
+
+/* The distance at a node (i, j, k), where it is more than 6 cells for sure: it changes by no more than the way to the
+ * next node of the coarse grid, which is 3.5 cells at most. */
+static bool is_far(const Coarse *coarse, const int node[3], const double x[3], double *value)
+{
+    const double far = 10.0 / COARSER; /* coarse cells */
+    long at = 0;
+    for (int i = 0; i < 3; i++) at = at * coarse->grid.nodes[i] + (node[i] + COARSER / 2) / COARSER;
+    if (fabs(coarse->values[at]) < far * coarse->grid.cell) return false;
+    Gap gap;
+    cubic_grid_at(&coarse->spline, x, &gap);
+    *value = gap.value;
+    return true;
+}
+
+/* coarse NULL: all nodes exactly. side: -1 of a mesh inside out. */
+static double *sample(const MeshDistance *distance, double side, const Grid *grid, const Coarse *coarse)
+{
+    double *values = mem_alloc((size_t)node_count(grid), sizeof *values), *value = values;
+    int face = -1, node[3];
+    for (node[0] = 0; node[0] < grid->nodes[0]; node[0]++)
+        for (node[1] = 0; node[1] < grid->nodes[1]; node[1]++)
+            for (node[2] = 0; node[2] < grid->nodes[2]; node[2]++, value++) {
+                double x[3];
+                for (int i = 0; i < 3; i++) x[i] = grid->low[i] + node[i] * grid->cell;
+                if (coarse && is_far(coarse, node, x, value)) continue;
+                *value = side * mesh_distance_at(distance, x, &face);
             }
+    return values;
+}
+
+/* The coarse grid reaches as far, at least. */
+static double *sample_coarse_first(const Mesh *mesh, double side, const Grid *grid)
+{
+    MeshDistance *distance = mesh_distance_create(mesh);
+    Coarse coarse = {.grid = *grid};
+    coarse.grid.cell *= COARSER;
+    for (int i = 0; i < 3; i++) coarse.grid.nodes[i] = (grid->nodes[i] + COARSER - 2) / COARSER + 1;
+    coarse.values = sample(distance, side, &coarse.grid, NULL);
+    coarse.spline = make_spline(&coarse.grid, coarse.values);
+    double *values = sample(distance, side, grid, &coarse);
+    cubic_grid_clear(&coarse.spline);
+    mem_free(coarse.values);
     mesh_distance_destroy(distance);
     return values;
+}
+
+/* NULL where no node is inside. */
+static Solid *make_solid(Mesh *mesh, const Grid *grid)
+{
+    bool turned = volume(mesh) < 0, inside = false;
+    double *values = sample_coarse_first(mesh, turned ? -1 : 1, grid);
+    for (long k = 0; k < node_count(grid); k++) inside |= values[k] < 0;
+    Solid *solid = inside ? mem_alloc(1, sizeof *solid) : NULL;
+    if (solid) *solid = (Solid){mesh, make_spline(grid, values), grid->cell, turned};
+    mem_free(values);
+    return solid;
 }
 
 bool obstacle_mesh(const MeshFile *file, double cell, Obstacle *obstacle, Error *err)
 {
     const double equal = 1e-12; /* m */
     Mesh *mesh = mesh_create(file, equal, NULL, err);
-    int nodes[3];
+    Grid grid;
     double low[3], high[3];
     if (mesh && isnan(cell)) cell = mesh_diagonal(mesh) / 48;
-    if (!mesh || !check_closed(mesh, file->path, err) ||
-        !find_grid(mesh, cell, file->path, nodes, low, err)) {
+    bool good = mesh && check_closed(mesh, file->path, err) && find_grid(mesh, cell, file->path, &grid, err);
+    Solid *solid = good ? make_solid(mesh, &grid) : NULL;
+    if (good && !solid)
+        error_set(err,
+                  "%s: the mesh is thinner than a cell of its grid, %.3g m, all over: give a smaller `cell`",
+                  file->path, cell);
+    if (!solid) {
         mesh_destroy(mesh);
         return false;
     }
-    Solid *solid = mem_alloc(1, sizeof *solid);
-    double *values = sample(mesh, nodes, low, cell);
-    *solid = (Solid){mesh, cubic_grid_create(nodes, low, (double[3]){cell, cell, cell}, values, false), cell};
-    mem_free(values);
     *obstacle = (Obstacle){.ops = &mesh_ops, .self = solid, .feature = cell};
     mesh_bounding_box(mesh, low, high);
     for (int i = 0; i < 3; i++) obstacle->pivot[i] = (low[i] + high[i]) / 2;
