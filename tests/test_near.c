@@ -361,7 +361,7 @@ static bool all_held(const Soup *soup, const int v[4])
 static bool belongs(const Soup *soup, const double *x, const int v[4], bool edges, double radius)
 {
     double own[12];
-    Distance (*distance)(const double *) = edges ? distance_edges : distance_point_triangle;
+    DistanceOf *distance = edges ? distance_edges : distance_point_triangle;
     for (int i = 0; i < (edges ? 2 : 1); i++)
         for (int j = edges ? 2 : 1; j < 4; j++)
             if (v[i] == v[j]) return false;
@@ -426,7 +426,7 @@ static void test_reach(void **unused)
     for (int k = 0; k < 3000; k++) {
         double from[12], to[12], x[12], keep = k % 3 ? 0.1 : 0.02, least = INFINITY;
         bool edges = k % 2;
-        Distance (*distance)(const double *) = edges ? distance_edges : distance_point_triangle;
+        DistanceOf *distance = edges ? distance_edges : distance_point_triangle;
         choose(&random, 12, 1, from);
         if (k % 5 == 1) make_parallel(&random, k % 10 == 1 ? 0 : 1e-6, from);
         for (int i = 0; i < 12; i++) to[i] = from[i] + (k % 7 == 0 ? 100 : 2) * random_signed(&random);

@@ -20,8 +20,8 @@ double ccd_approach(const double from[DISTANCE_DOFS], const double to[DISTANCE_D
     return sqrt(largest);
 }
 
-double ccd_reach(Distance (*distance)(const double *x), const double from[DISTANCE_DOFS],
-                 const double to[DISTANCE_DOFS], double keep, double most)
+double ccd_reach(DistanceOf *distance, const double from[DISTANCE_DOFS], const double to[DISTANCE_DOFS],
+                 double keep, double most)
 {
     double approach = ccd_approach(from, to, distance == distance_edges ? 2 : 1);
     double d = sqrt(distance(from).square), least = keep * d, part = 0, x[DISTANCE_DOFS];

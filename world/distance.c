@@ -44,6 +44,11 @@ static void set_normal(Distance *d, Vec3 n, double square, Vec3 r)
     d->slides = 2;
 }
 
+Distance distance_point_edge(const double x[DISTANCE_DOFS])
+{
+    return try_edge(x, 0, 1, 2, 1);
+}
+
 Distance distance_point_triangle(const double x[DISTANCE_DOFS])
 {
     Vec3 a = between(x, 1, 2), b = between(x, 1, 3), r = between(x, 1, 0), n = vec3_cross(a, b);

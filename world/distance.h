@@ -10,7 +10,7 @@
  * the same for all these classes. |c| is C1 where it is not 0, but for edges that are parallel: there the nearest points
  * jump, and parallel_weight takes such pairs out [Li et al. 2020, "Incremental Potential Contact", 5.3].
  *
- * Triangles may be edges (2 and 3 the same vertex), and edges points. Coordinates that are not finite give what is not. */
+ * Triangles may have no area, and edges no length. Coordinates that are not finite give what is not. */
 #pragma once
 
 enum {
@@ -25,6 +25,10 @@ typedef struct Distance {
     int slides;           /* so many: 0, 1 or 2              */
 } Distance;
 
+typedef Distance DistanceOf(const double x[DISTANCE_DOFS]);
+
+/* Of vertex 0 and the edge 1, 2: of a rod. */
+Distance distance_point_edge(const double x[DISTANCE_DOFS]);
 Distance distance_point_triangle(const double x[DISTANCE_DOFS]);
 Distance distance_edges(const double x[DISTANCE_DOFS]);
 

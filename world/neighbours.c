@@ -128,6 +128,11 @@ static bool is_held(const SelfContactDef *def, const int vertices[4])
     return held;
 }
 
+static DistanceOf *distance_between(const SelfContactDef *def, bool edges)
+{
+    return edges ? distance_edges : def->face_count ? distance_point_triangle : distance_point_edge;
+}
+
 /* Nearer at rest than 1.6 D: by two vertices, or else by any two points. */
 static bool is_near_at_rest(const SelfContactDef *def, const int vertices[4], bool edges)
 {
@@ -139,7 +144,7 @@ static bool is_near_at_rest(const SelfContactDef *def, const int vertices[4], bo
             Vec3 d = vec3_sub(vec3_load(x + 3 * i), vec3_load(x + 3 * j));
             if (vec3_dot(d, d) < least * least) return true;
         }
-    return (edges ? distance_edges(x) : distance_point_triangle(x)).square < least * least;
+    return distance_between(def, edges)(x).square < least * least;
 }
 
 static bool may_meet(const SelfContactDef *def, const int vertices[4], bool edges)
@@ -210,7 +215,7 @@ void neighbours_find(Neighbours *n, const double *x, double radius, PairList *li
         double own[DISTANCE_DOFS];
         neighbours_vertices(n, list, k, vertices);
         neighbours_gather(vertices, x, own);
-        if (!(neighbours_distance(list, k, own).square < radius * radius)) continue;
+        if (!(neighbours_distance(n, list, k)(own).square < radius * radius)) continue;
         points += k < list->points;
         memcpy(list->pairs[count++], list->pairs[k], sizeof *list->pairs);
     }
@@ -227,9 +232,9 @@ void neighbours_gather(const int vertices[4], const double *x, double to[DISTANC
     for (int i = 0; i < 4; i++) memcpy(to + 3 * i, x + 3 * (long)vertices[i], 3 * sizeof *to);
 }
 
-Distance neighbours_distance(const PairList *list, int k, const double x[DISTANCE_DOFS])
+DistanceOf *neighbours_distance(const Neighbours *n, const PairList *list, int k)
 {
-    return k < list->points ? distance_point_triangle(x) : distance_edges(x);
+    return distance_between(&n->def, k >= list->points);
 }
 
 double neighbours_moved(const Neighbours *n, const double *x, const double *y)

@@ -1,6 +1,6 @@
 /* neighbours.h - which vertices and faces, and which edges, of a body or of several may meet, and where they are near.
  *
- * A rod's edges are its faces, too: triangles whose last two corners are one vertex. */
+ * A rod's edges are its faces, too: their third corner is the second again, and counts for nothing. */
 #pragma once
 #include "world/distance.h"
 #include "world/near.h"
@@ -40,8 +40,8 @@ void neighbours_find(Neighbours *n, const double *x, double radius, PairList *li
 void neighbours_vertices(const Neighbours *n, const PairList *list, int k, int vertices[4]);
 void neighbours_gather(const int vertices[4], const double *x, double to[DISTANCE_DOFS]);
 
-/* Of pair k at x[12]. */
-Distance neighbours_distance(const PairList *list, int k, const double x[DISTANCE_DOFS]);
+/* How distant the features of pair k are. */
+DistanceOf *neighbours_distance(const Neighbours *n, const PairList *list, int k);
 
 /* How far x is from y beside a motion of the whole: the largest of all vertices; NAN where it is no number. */
 double neighbours_moved(const Neighbours *n, const double *x, const double *y);

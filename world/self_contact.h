@@ -54,5 +54,5 @@ typedef struct SelfContactFigures {
 
 SelfContactFigures self_contact_figures(const Term *self_contact, const double *x, double stiffness);
 
-/* What friction takes in that step of time, W. */
+/* What friction takes in that step of time, W; the point is the one that the term was evaluated at last. */
 double self_friction_power(const Term *self_friction, const Point *at);

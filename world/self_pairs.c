@@ -119,7 +119,7 @@ static double reach_of_list(const SelfPairs *pairs, const PairList *list, const 
         neighbours_gather(vertices, from, x);
         neighbours_gather(vertices, pairs->end, to);
         if (ways_meet(x, to, edges ? 2 : 1))
-            reach = ccd_reach(edges ? distance_edges : distance_point_triangle, x, to, keep, reach);
+            reach = ccd_reach(neighbours_distance(pairs->n, list, k), x, to, keep, reach);
     }
     return reach;
 }

@@ -25,7 +25,7 @@ Touch touch_at(const Neighbours *n, const PairList *list, int k, double stiffnes
 {
     const int *pair = list->pairs[k];
     Touch t = {.edges = k >= list->points, .range = n->def.distance, .m = 1};
-    t.at = neighbours_distance(list, k, x);
+    t.at = neighbours_distance(n, list, k)(x);
     t.d = sqrt(t.at.square);
     t.acts = !(t.d >= t.range);
     if (!t.acts) return t;
