@@ -1,0 +1,47 @@
+/* neighbours.h - which vertices and faces, and which edges, of a body or of several may meet, and where they are near.
+ *
+ * A rod's edges are its faces, too: their third corner is the second again, and counts for nothing. */
+#pragma once
+#include "world/distance.h"
+#include "world/near.h"
+#include "world/self_contact.h"
+
+/* Pairs {vertex, face}, sorted; then {edge, edge}, the lower first, sorted. */
+typedef struct PairList {
+    int count, points, room; /* points: of the first kind */
+    int (*pairs)[2];         /* owned                     */
+} PairList;
+
+void pair_list_clear(PairList *list);
+
+typedef struct Neighbours {
+    SelfContactDef def; /* margin: m */
+    int (*faces)[3];    /* owned */
+    int face_count;
+    double *vertex_weight; /* [vertex] area over the mean one; owned                            */
+    double *edge_weight;   /* [edge] the like                                                   */
+    double *edge_square;   /* [edge] length^2 at rest                                           */
+    NearTree *face_tree, *edge_tree;
+    Box *boxes; /* [largest of the counts] scratch */
+    NearList found;
+} Neighbours;
+
+Neighbours *neighbours_create(const SelfContactDef *def);
+void neighbours_destroy(Neighbours *n);
+
+/* In place of what the list held: all pairs that may meet and whose boxes, of what lies between from and to, [vertex][3]
+ * each, have a gap below `radius`, or meet. */
+void neighbours_sweep(Neighbours *n, const double *from, const double *to, double radius, PairList *list);
+
+/* The pairs that may meet with a distance below `radius`. */
+void neighbours_find(Neighbours *n, const double *x, double radius, PairList *list);
+
+/* The four vertices of pair k of a list, and their coordinates. */
+void neighbours_vertices(const Neighbours *n, const PairList *list, int k, int vertices[4]);
+void neighbours_gather(const int vertices[4], const double *x, double to[DISTANCE_DOFS]);
+
+/* How distant the features of pair k are. */
+DistanceOf *neighbours_distance(const Neighbours *n, const PairList *list, int k);
+
+/* How far x is from y beside a motion of the whole: the largest of all vertices; NAN where it is no number. */
+double neighbours_moved(const Neighbours *n, const double *x, const double *y);
