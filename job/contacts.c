@@ -67,6 +67,11 @@ int contacts_history(const Contacts *c, Array arrays[CONTACTS_ROWS])
             array_float("contact_force", "N", sums->contact.force[0], 2, c->world->obstacle_count, 3);
     }
     if (c->world->rubs) arrays[count++] = array_float("friction_work", "J", &sums->contact.friction, 0, 0, 0);
+    if (c->world->self) {
+        arrays[count++] = array_float("self_contacts", "", &sums->pairs, 0, 0, 0);
+        arrays[count++] = array_float("self_distance", "m", &sums->self.distance, 0, 0, 0);
+        arrays[count++] = array_float("crossings", "", &sums->crossings, 0, 0, 0);
+    }
     if (c->world->wet) arrays[count++] = array_float("water_work", "J", &sums->water, 0, 0, 0);
     return count;
 }

@@ -72,6 +72,8 @@ WorldBody shell_world_body(const Shell *shell)
                        .edges = (const int(*)[2])mesh->edges,
                        .faces = (const int(*)[3])mesh->faces,
                        .rest = (const double(*)[3])mesh->rest,
+                       .part = mesh->vertex_component,
+                       .fixed = shell->fixed,
                        .thickness = shell->thickness};
 }
 

@@ -40,8 +40,8 @@ static void test_obstacles(void **state)
               "  - {tube: {axis: y, radius: \"1 + 0.1*s\", center: [\"0.5\", \"s\"], range: [0, 4]}}\n"
               "  - {mesh: {file: world_corner.obj, scale: 2, cell: 0.05}}\n"
               "  - {plane: {}, move: [\"0\", \"0\", \"t\"], turn: [\"pi/2\", \"0\", \"0\"]}\n");
-    const Obstacle *o = b.model->obstacles;
-    assert_int_equal(b.model->obstacle_count, 10);
+    const Obstacle *o = b.model->world->obstacles;
+    assert_int_equal(b.model->world->obstacle_count, 10);
     assert_string_equal(o[0].name, "obstacle1");
     assert_string_equal(o[1].name, "ball");
     assert_true(isnan(b.scene.obstacles[0].friction) && b.scene.obstacles[1].friction == 0.3);
@@ -75,7 +75,7 @@ static void test_contact(void **state)
 {
     (void)state;
     Built b = build("");
-    assert_int_equal(b.model->obstacle_count, 0);
+    assert_null(b.model->world);
     assert_false(self_contact_is_asked(&b.scene.contact.self));
     assert_null(b.scene.water);
     clear(&b);

@@ -1,6 +1,7 @@
 #include "world/world.h"
 #include "base/memory.h"
 #include "base/vec3.h"
+#include "world/crossings.h"
 
 static const double SMOOTHING =
     0.01; /* of the thickness, the depth at which the penalty is linear: half of it is sunk */
@@ -75,6 +76,10 @@ void world_add_params(World *world, Params *params)
         world->stiffness = params_add(params, "contact_stiffness", "N/m", 1, 1, false);
         world->friction = params_add(params, "friction", "", world->obstacle_count, 1, false);
     }
+    if (world->self) {
+        world->self_stiffness = params_add(params, "self_stiffness", "J", 1, 1, false);
+        world->self_friction = params_add(params, "self_friction", "", 1, 1, false);
+    }
     if (!world->wet) return;
     world->water = (Water){.density = params_add(params, "water_density", "kg/m^3", 1, 1, false),
                            .viscosity = params_add(params, "water_viscosity", "Pa s", 1, 1, false),
@@ -91,6 +96,30 @@ static ContactDef contact_of(const World *world, int kind)
     def.stiffness = world->stiffness;
     def.friction = world->friction;
     return def;
+}
+
+static SelfContactDef self_of(const World *world)
+{
+    const WorldBody *body = &world->body;
+    return (SelfContactDef){.vertex_count = body->vertex_count,
+                            .first = body->first,
+                            .face_count = body->face_count,
+                            .edge_count = body->edge_count,
+                            .faces = body->faces,
+                            .edges = body->edges,
+                            .rest = body->rest,
+                            .part = body->part,
+                            .fixed = body->fixed,
+                            .distance = world->distance,
+                            .stiffness = world->self_stiffness,
+                            .friction = world->self_friction,
+                            .slip_speed = world->slip_speed};
+}
+
+int world_crossings(const World *world, const double *x, int (*pairs)[2], int max)
+{
+    SelfContactDef def = self_of(world);
+    return self_contact_crossings(&def, x, pairs, max);
 }
 
 static Term water_of(const World *world)
@@ -112,6 +141,11 @@ void world_add_terms(const World *world, System *sys, bool motion)
         ContactDef def = contact_of(world, k);
         system_add(sys, contact_term(&def));
         if (motion && world->rubs) system_add(sys, friction_term(&def));
+    }
+    if (world->self) {
+        SelfContactDef def = self_of(world);
+        system_add(sys, self_contact_term(&def));
+        if (motion && world->rubs) system_add(sys, self_friction_term(&def));
     }
     if (motion && world->wet) system_add(sys, water_of(world));
 }
@@ -136,12 +170,23 @@ static double work_against(const Term *term, const Point *at)
     return sum;
 }
 
+static void measure_self(const World *world, const Point *at, WorldSums *sums)
+{
+    SelfContactDef def = self_of(world);
+    Term contact = self_contact_term(&def);
+    sums->self = self_contact_figures(&contact, at->x, at->p[world->self_stiffness]);
+    contact.ops->destroy(contact.self);
+    sums->pairs = sums->self.pairs;
+    sums->crossings = self_contact_crossings(&def, at->x, NULL, 0);
+}
+
 void world_measure(const World *world, const Point *at, WorldSums *sums)
 {
     for (int k = 0; k < world->contact_kinds; k++) {
         ContactDef def = contact_of(world, k);
         contact_measure(&def, at, &sums->contact);
     }
+    if (world->self) measure_self(world, at, sums);
     if (world->wet && at->dt > 0) {
         Term water = water_of(world);
         sums->water += work_against(&water, at);
