@@ -460,7 +460,7 @@ static void test_hostile(void **unused)
     for (int k = 0; k < 6; k++) {
         for (int i = 0; i < 12 * SOUP; i++) x[i] = k % 2 && i % 3 ? rest[i] : values[k];
         neighbours_find(n, x, 0.1, &list);
-        neighbours_sweep(n, rest, x, 0, &list);
+        neighbours_sweep(n, rest, x, &list);
         memcpy(y, x, sizeof y);
         assert_true(isnan(neighbours_moved(n, y, rest)) == !(k >= 4));
         double reach = ccd_reach(distance_edges, rest, x, 0.1, 1);

@@ -2,6 +2,7 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "world/neighbours.h"
+#include <string.h>
 
 static const double ROD_CROSSES = 0.1; /* of D */
 
@@ -29,52 +30,49 @@ static bool share_vertex(const int edge[2], const int face[3])
     return shared;
 }
 
-static void note(int (*pairs)[2], int max, int *count, int a, int b)
-{
-    if (*count < max) pairs[*count][0] = a, pairs[*count][1] = b;
-    (*count)++;
-}
-
 static int rod_crossings(const SelfContactDef *def, const double *x, int (*pairs)[2], int max)
 {
     Neighbours *n = neighbours_create(def);
     PairList near = {0};
-    int count = 0;
     neighbours_find(n, x, ROD_CROSSES * def->distance, &near);
-    for (int k = near.points; k < near.count; k++)
-        note(pairs, max, &count, near.pairs[k][0], near.pairs[k][1]);
+    int count = near.count - near.points;
+    for (int k = 0; k < count && k < max; k++) memcpy(pairs[k], near.pairs[near.points + k], sizeof *pairs);
     pair_list_clear(&near);
     neighbours_destroy(n);
     return count;
 }
 
-static Box box_around(const double *x, const int *vertices, int count)
+/* count features of so many vertices each. */
+static NearTree *tree_of(const double *x, int count, const int *vertices, int each)
 {
-    Box box = box_empty();
-    for (int i = 0; i < count; i++) box_add(&box, x + 3 * vertices[i]);
-    return box;
+    Box *boxes = mem_alloc((size_t)count, sizeof *boxes);
+    for (int k = 0; k < count; k++) {
+        boxes[k] = box_empty();
+        for (int i = 0; i < each; i++) box_add(&boxes[k], x + 3 * (long)vertices[k * each + i]);
+    }
+    NearTree *tree = near_tree_create(count, boxes);
+    mem_free(boxes);
+    return tree;
 }
 
 int self_contact_crossings(const SelfContactDef *def, const double *x, int (*pairs)[2], int max)
 {
     x += def->first;
     if (def->face_count == 0) return rod_crossings(def, x, pairs, max);
-    Box *boxes = mem_alloc((size_t)def->face_count, sizeof *boxes);
-    for (int f = 0; f < def->face_count; f++) boxes[f] = box_around(x, def->faces[f], 3);
-    NearTree *tree = near_tree_create(def->face_count, boxes);
-    NearList found = {0};
+    NearTree *edges = tree_of(x, def->edge_count, def->edges[0], 2),
+             *faces = tree_of(x, def->face_count, def->faces[0], 3);
+    NearPairs found = {0};
     int count = 0;
-    for (int e = 0; e < def->edge_count; e++) {
-        Box own = box_around(x, def->edges[e], 2);
-        near_tree_find(tree, &own, &found);
-        for (int k = 0; k < found.count; k++) {
-            const int *face = def->faces[found.list[k]];
-            if (!share_vertex(def->edges[e], face) && passes_through(x, def->edges[e], face))
-                note(pairs, max, &count, e, found.list[k]);
-        }
+    near_tree_pairs(edges, faces, 0, &found);
+    for (int k = 0; k < found.count; k++) {
+        const int *pair = found.list[k], *edge = def->edges[pair[0]], *face = def->faces[pair[1]];
+        if (!share_vertex(edge, face) && passes_through(x, edge, face))
+            memcpy(found.list[count++], pair, sizeof *found.list);
     }
+    near_pairs_sort(found.list, count);
+    for (int k = 0; k < count && k < max; k++) memcpy(pairs[k], found.list[k], sizeof *pairs);
     mem_free(found.list);
-    near_tree_destroy(tree);
-    mem_free(boxes);
+    near_tree_destroy(edges);
+    near_tree_destroy(faces);
     return count;
 }

@@ -15,24 +15,35 @@ static Vec3 between(const double *x, int from, int to)
     return vec3_sub(vertex(x, to), vertex(x, from));
 }
 
-/* Vertex p and the edge from i to j, as a candidate; sign: of p's weight. */
-static Distance try_edge(const double *x, int p, int i, int j, double sign)
+/* Vertex p and the nearest point of the edge from i to j; sign: of p's weight. */
+typedef struct Candidate {
+    Vec3 c; /* from the edge to the vertex */
+    double square, t, sign;
+    int p, i, j;
+} Candidate;
+
+static Candidate try_edge(const double *x, int p, int i, int j, double sign)
 {
     Vec3 r = between(x, i, p), e = between(x, i, j);
     double length = vec3_dot(e, e), t = length > 0 ? vec3_dot(r, e) / length : 0;
-    Distance d = {.slides = t > 0 && t < 1};
     t = t > 0 ? t < 1 ? t : 1 : 0;
     Vec3 c = vec3_axpy(-t, e, r);
-    vec3_store(d.c, vec3_scale(sign, c));
-    d.square = vec3_dot(c, c);
-    d.w[p] = sign, d.w[i] = -sign * (1 - t), d.w[j] -= sign * t;
-    d.W[0][i] = sign, d.W[0][j] -= sign;
-    return d;
+    return (Candidate){c, vec3_dot(c, c), t, sign, p, i, j};
 }
 
-static void keep_nearer(Distance *best, Distance other)
+static const Candidate *nearer(const Candidate *a, const Candidate *b)
 {
-    if (other.square < best->square) *best = other;
+    return b->square < a->square ? b : a;
+}
+
+static Distance distance_of(const Candidate *best)
+{
+    Distance d = {.square = best->square, .slides = best->t > 0 && best->t < 1};
+    double sign = best->sign;
+    vec3_store(d.c, vec3_scale(sign, best->c));
+    d.w[best->p] = sign, d.w[best->i] = -sign * (1 - best->t), d.w[best->j] = -sign * best->t;
+    d.W[0][best->i] = sign, d.W[0][best->j] = -sign;
+    return d;
 }
 
 /* c along n where both nearest points are inside: r is from the other's first vertex to the first's. */
@@ -46,7 +57,8 @@ static void set_normal(Distance *d, Vec3 n, double square, Vec3 r)
 
 Distance distance_point_edge(const double x[DISTANCE_DOFS])
 {
-    return try_edge(x, 0, 1, 2, 1);
+    Candidate only = try_edge(x, 0, 1, 2, 1);
+    return distance_of(&only);
 }
 
 Distance distance_point_triangle(const double x[DISTANCE_DOFS])
@@ -61,10 +73,8 @@ Distance distance_point_triangle(const double x[DISTANCE_DOFS])
             return d;
         }
     }
-    Distance d = try_edge(x, 0, 1, 2, 1);
-    keep_nearer(&d, try_edge(x, 0, 2, 3, 1));
-    keep_nearer(&d, try_edge(x, 0, 3, 1, 1));
-    return d;
+    Candidate sides[3] = {try_edge(x, 0, 1, 2, 1), try_edge(x, 0, 2, 3, 1), try_edge(x, 0, 3, 1, 1)};
+    return distance_of(nearer(nearer(&sides[0], &sides[1]), &sides[2]));
 }
 
 Distance distance_edges(const double x[DISTANCE_DOFS])
@@ -79,11 +89,9 @@ Distance distance_edges(const double x[DISTANCE_DOFS])
             return d;
         }
     }
-    Distance d = try_edge(x, 0, 2, 3, 1);
-    keep_nearer(&d, try_edge(x, 1, 2, 3, 1));
-    keep_nearer(&d, try_edge(x, 2, 0, 1, -1));
-    keep_nearer(&d, try_edge(x, 3, 0, 1, -1));
-    return d;
+    Candidate ends[4] = {try_edge(x, 0, 2, 3, 1), try_edge(x, 1, 2, 3, 1), try_edge(x, 2, 0, 1, -1),
+                         try_edge(x, 3, 0, 1, -1)};
+    return distance_of(nearer(nearer(nearer(&ends[0], &ends[1]), &ends[2]), &ends[3]));
 }
 
 Slide distance_slide(const Distance *d, const double x[DISTANCE_DOFS])

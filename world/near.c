@@ -3,14 +3,18 @@
 #include "base/pack.h"
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
-/* A node and all below it are nodes[k] .. nodes[k].after - 1; a leaf is of the boxes in the lanes of one pack. */
+/* A node and all below it are nodes[k] .. nodes[k].after - 1, and leaves up to its last one; a leaf is of the boxes in the
+ * lanes of one pack. */
 typedef struct Node {
     Box box;
-    int after, leaf; /* leaf: -1: none */
+    int after, last_leaf;
+    bool is_leaf;
 } Node;
 
 typedef struct Leaf {
+    Box box;
     Pack low[3], high[3];
     int number[PACK_LANES], count;
 } Leaf;
@@ -20,44 +24,6 @@ struct NearTree {
     Node *nodes;
     Leaf *leaves;
 };
-
-Box box_empty(void)
-{
-    return (Box){{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
-}
-
-void box_add(Box *box, const double x[3])
-{
-    for (int i = 0; i < 3; i++) {
-        if (x[i] < box->low[i]) box->low[i] = x[i];
-        if (x[i] > box->high[i]) box->high[i] = x[i];
-    }
-}
-
-void box_join(Box *box, const Box *other)
-{
-    for (int i = 0; i < 3; i++) {
-        if (other->low[i] < box->low[i]) box->low[i] = other->low[i];
-        if (other->high[i] > box->high[i]) box->high[i] = other->high[i];
-    }
-}
-
-bool box_meets(const Box *a, const Box *b)
-{
-    bool meets = true;
-    for (int i = 0; i < 3; i++) meets &= a->low[i] <= b->high[i] && b->low[i] <= a->high[i];
-    return meets;
-}
-
-double box_gap_square(const Box *a, const Box *b)
-{
-    double sum = 0;
-    for (int i = 0; i < 3; i++) {
-        double gap = fmax(0, fmax(a->low[i] - b->high[i], b->low[i] - a->high[i]));
-        sum += gap * gap;
-    }
-    return sum;
-}
 
 /* ---- Making ---- */
 
@@ -95,18 +61,18 @@ static int half(int count)
 static void make_node(NearTree *tree, Centre *centres, int count)
 {
     Node *node = &tree->nodes[tree->node_count++];
-    node->leaf = -1;
     if (count > PACK_LANES) {
         sort(centres, count);
         make_node(tree, centres, half(count));
         make_node(tree, centres + half(count), count - half(count));
     } else {
-        node->leaf = tree->leaf_count;
+        node->is_leaf = true;
         Leaf *leaf = &tree->leaves[tree->leaf_count++];
         leaf->count = count;
         for (int l = 0; l < count; l++) leaf->number[l] = centres[l].number;
     }
     node->after = tree->node_count;
+    node->last_leaf = tree->leaf_count - 1;
 }
 
 NearTree *near_tree_create(int count, const Box *boxes)
@@ -138,23 +104,23 @@ void near_tree_destroy(NearTree *tree)
 
 /* ---- Fitting and finding ---- */
 
-static Box fit_leaf(Leaf *leaf, const Box *boxes)
+static void fit_leaf(Leaf *leaf, const Box *boxes)
 {
-    Box all = box_empty();
+    leaf->box = box_empty();
     for (int l = 0; l < PACK_LANES; l++) {
         Box box = l < leaf->count ? boxes[leaf->number[l]] : box_empty();
         for (int i = 0; i < 3; i++) leaf->low[i][l] = box.low[i], leaf->high[i][l] = box.high[i];
-        box_join(&all, &box);
+        box_join(&leaf->box, &box);
     }
-    return all;
 }
 
 void near_tree_fit(NearTree *tree, const Box *boxes)
 {
+    for (int k = 0; k < tree->leaf_count; k++) fit_leaf(&tree->leaves[k], boxes);
     for (int k = tree->node_count - 1; k >= 0; k--) {
         Node *node = &tree->nodes[k];
-        if (node->leaf >= 0) {
-            node->box = fit_leaf(&tree->leaves[node->leaf], boxes);
+        if (node->is_leaf) {
+            node->box = tree->leaves[node->last_leaf].box;
             continue;
         }
         const Node *left = node + 1, *right = &tree->nodes[left->after];
@@ -163,36 +129,65 @@ void near_tree_fit(NearTree *tree, const Box *boxes)
     }
 }
 
-static void find_in_leaf(const Leaf *leaf, const Box *box, NearList *found)
+static void make_room(NearPairs *found)
 {
-    PackMask meets = leaf->low[0] <= box->high[0];
-    for (int i = 0; i < 3; i++) meets &= (leaf->low[i] <= box->high[i]) & (leaf->high[i] >= box->low[i]);
-    if (found->count + PACK_LANES > found->room) {
-        int room = 2 * found->room + 64;
-        found->list = mem_resize(found->list, (size_t)found->room, (size_t)room, sizeof *found->list);
-        found->room = room;
+    if (found->count + PACK_LANES <= found->room) return;
+    int room = 2 * found->room + 1024;
+    found->list = mem_resize(found->list, (size_t)found->room, (size_t)room, sizeof *found->list);
+    found->room = room;
+}
+
+/* Of two leaves; from: the first lane of b for lane l of a is from * (l + 1). */
+static void pair_leaves(const Leaf *a, const Leaf *b, double radius, int from, NearPairs *found)
+{
+    for (int l = 0; l < a->count; l++) {
+        PackMask meets = a->low[0][l] - radius <= b->high[0];
+        for (int i = 0; i < 3; i++)
+            meets &= (b->low[i] <= a->high[i][l] + radius) & (b->high[i] >= a->low[i][l] - radius);
+        long long lanes[PACK_LANES];
+        memcpy(lanes, &meets, sizeof lanes);
+        make_room(found);
+        for (int m = from * (l + 1); m < b->count; m++) {
+            found->list[found->count][0] = a->number[l];
+            found->list[found->count][1] = b->number[m];
+            found->count -= (int)lanes[m]; /* -1: yes */
+        }
     }
-    for (int l = 0; l < leaf->count; l++)
-        if (meets[l]) found->list[found->count++] = leaf->number[l];
 }
 
-static int by_number(const void *a, const void *b)
-{
-    const int *i = a, *j = b;
-    return (*i > *j) - (*i < *j);
-}
-
-void near_tree_find(const NearTree *tree, const Box *box, NearList *found)
+void near_tree_pairs(const NearTree *a, const NearTree *b, double radius, NearPairs *found)
 {
     found->count = 0;
-    for (int k = 0; k < tree->node_count;) {
-        const Node *node = &tree->nodes[k];
-        if (!box_meets(&node->box, box)) {
-            k = node->after;
-            continue;
+    for (int leaf = 0; leaf < a->leaf_count; leaf++) {
+        const Leaf *own = &a->leaves[leaf];
+        Box wide = own->box;
+        for (int i = 0; i < 3; i++) wide.low[i] -= radius, wide.high[i] += radius;
+        for (int k = 0; k < b->node_count;) {
+            const Node *node = &b->nodes[k];
+            bool before = a == b && node->last_leaf < leaf;
+            if (before || !box_meets(&node->box, &wide)) {
+                k = node->after;
+                continue;
+            }
+            if (node->is_leaf)
+                pair_leaves(own, &b->leaves[node->last_leaf], radius, a == b && node->last_leaf == leaf,
+                            found);
+            k++;
         }
-        if (node->leaf >= 0) find_in_leaf(&tree->leaves[node->leaf], box, found);
-        k++;
     }
-    if (found->count > 1) qsort(found->list, (size_t)found->count, sizeof *found->list, by_number);
+    for (int k = 0; a == b && k < found->count; k++) {
+        int *pair = found->list[k], low = pair[0] < pair[1] ? pair[0] : pair[1];
+        pair[1] += pair[0] - low, pair[0] = low;
+    }
+}
+
+static int by_numbers(const void *a, const void *b)
+{
+    const int *i = a, *j = b;
+    return i[0] != j[0] ? (i[0] > j[0]) - (i[0] < j[0]) : (i[1] > j[1]) - (i[1] < j[1]);
+}
+
+void near_pairs_sort(int (*pairs)[2], int count)
+{
+    if (count > 1) qsort(pairs, (size_t)count, sizeof *pairs, by_numbers);
 }

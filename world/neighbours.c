@@ -75,16 +75,34 @@ static Box box_of(const int *vertices, int count, const double *from, const doub
     return box;
 }
 
-static const Box *face_boxes(Neighbours *n, const double *from, const double *to)
+static void fit_boxes(Neighbours *n, const double *from, const double *to)
 {
-    for (int f = 0; f < n->face_count; f++) n->boxes[f] = box_of(n->faces[f], 3, from, to);
-    return n->boxes;
+    for (int v = 0; v < n->def.vertex_count; v++) n->vertex_boxes[v] = box_of(&v, 1, from, to);
+    for (int f = 0; f < n->face_count; f++) n->face_boxes[f] = box_of(n->faces[f], 3, from, to);
+    for (int e = 0; e < n->def.edge_count; e++) n->edge_boxes[e] = box_of(n->def.edges[e], 2, from, to);
 }
 
-static const Box *edge_boxes(Neighbours *n, const double *from, const double *to)
+static void make_trees(Neighbours *n)
 {
-    for (int e = 0; e < n->def.edge_count; e++) n->boxes[e] = box_of(n->def.edges[e], 2, from, to);
-    return n->boxes;
+    const double *rest = n->def.rest[0];
+    n->vertex_boxes = mem_alloc((size_t)n->def.vertex_count, sizeof *n->vertex_boxes);
+    n->face_boxes = mem_alloc((size_t)n->face_count, sizeof *n->face_boxes);
+    n->edge_boxes = mem_alloc((size_t)n->def.edge_count, sizeof *n->edge_boxes);
+    fit_boxes(n, rest, rest);
+    n->vertex_tree = near_tree_create(n->def.vertex_count, n->vertex_boxes);
+    n->face_tree = near_tree_create(n->face_count, n->face_boxes);
+    n->edge_tree = near_tree_create(n->def.edge_count, n->edge_boxes);
+}
+
+static void set_centres(Neighbours *n)
+{
+    const SelfContactDef *def = &n->def;
+    n->face_centre = mem_alloc((size_t)n->face_count, sizeof *n->face_centre);
+    n->edge_centre = mem_alloc((size_t)def->edge_count, sizeof *n->edge_centre);
+    for (int f = 0; f < n->face_count; f++)
+        for (int i = 0; i < 9; i++) n->face_centre[f][i % 3] += def->rest[n->faces[f][i / 3]][i % 3] / 3;
+    for (int e = 0; e < def->edge_count; e++)
+        for (int i = 0; i < 6; i++) n->edge_centre[e][i % 3] += def->rest[def->edges[e][i / 3]][i % 3] / 2;
 }
 
 Neighbours *neighbours_create(const SelfContactDef *def)
@@ -93,28 +111,30 @@ Neighbours *neighbours_create(const SelfContactDef *def)
     n->def = *def;
     n->def.margin = def->distance * (def->margin > 0 ? def->margin : 0.5);
     copy_faces(n);
-    int most = n->face_count > def->edge_count ? n->face_count : def->edge_count;
     n->vertex_weight = mem_alloc((size_t)def->vertex_count, sizeof(double));
     n->edge_weight = mem_alloc((size_t)def->edge_count, sizeof(double));
     n->edge_square = mem_alloc((size_t)def->edge_count, sizeof(double));
-    n->boxes = mem_alloc((size_t)most, sizeof *n->boxes);
     weigh(n);
-    const double *rest = def->rest[0];
-    n->face_tree = near_tree_create(n->face_count, face_boxes(n, rest, rest));
-    n->edge_tree = near_tree_create(def->edge_count, edge_boxes(n, rest, rest));
+    set_centres(n);
+    make_trees(n);
     return n;
 }
 
 void neighbours_destroy(Neighbours *n)
 {
     if (!n) return;
+    near_tree_destroy(n->vertex_tree);
     near_tree_destroy(n->face_tree);
     near_tree_destroy(n->edge_tree);
     mem_free(n->faces);
     mem_free(n->vertex_weight);
     mem_free(n->edge_weight);
     mem_free(n->edge_square);
-    mem_free(n->boxes);
+    mem_free(n->face_centre);
+    mem_free(n->edge_centre);
+    mem_free(n->vertex_boxes);
+    mem_free(n->face_boxes);
+    mem_free(n->edge_boxes);
     mem_free(n->found.list);
     mem_free(n);
 }
@@ -133,38 +153,44 @@ static DistanceOf *distance_between(const SelfContactDef *def, bool edges)
     return edges ? distance_edges : def->face_count ? distance_point_triangle : distance_point_edge;
 }
 
-/* Nearer at rest than 1.6 D: by two vertices, or else by any two points. */
-static bool is_near_at_rest(const SelfContactDef *def, const int vertices[4], bool edges)
+/* Are two of their vertices nearer than that? */
+static bool vertices_are_near(const double x[DISTANCE_DOFS], int second, double distance)
 {
-    double x[DISTANCE_DOFS], least = REST_NEAR * def->distance;
-    int second = edges ? 2 : 1;
-    neighbours_gather(vertices, def->rest[0], x);
+    bool near = false;
     for (int i = 0; i < second; i++)
         for (int j = second; j < 4; j++) {
             Vec3 d = vec3_sub(vec3_load(x + 3 * i), vec3_load(x + 3 * j));
-            if (vec3_dot(d, d) < least * least) return true;
+            near |= vec3_dot(d, d) < distance * distance;
         }
-    return distance_between(def, edges)(x).square < least * least;
+    return near;
 }
 
-static bool may_meet(const SelfContactDef *def, const int vertices[4], bool edges)
+/* Nearer at rest than 1.6 D: most are by their centres or by two vertices, which is soon found. */
+static bool is_near_at_rest(const Neighbours *n, const int pair[2], const int vertices[4], bool edges)
 {
+    double x[DISTANCE_DOFS], least = REST_NEAR * n->def.distance;
+    const double *a = edges ? n->edge_centre[pair[0]] : n->def.rest[pair[0]];
+    const double *b = edges ? n->edge_centre[pair[1]] : n->face_centre[pair[1]];
+    Vec3 d = vec3_sub(vec3_load(a), vec3_load(b));
+    if (vec3_dot(d, d) < least * least) return true;
+    neighbours_gather(vertices, n->def.rest[0], x);
+    if (vertices_are_near(x, edges ? 2 : 1, least)) return true;
+    return distance_between(&n->def, edges)(x).square < least * least;
+}
+
+static bool may_meet(const Neighbours *n, const int pair[2], const int vertices[4], bool edges)
+{
+    const SelfContactDef *def = &n->def;
     int second = edges ? 2 : 1;
     for (int i = 0; i < second; i++)
         for (int j = second; j < 4; j++)
             if (vertices[i] == vertices[j]) return false;
     if (is_held(def, vertices)) return false;
     bool one = !def->part || def->part[vertices[0]] == def->part[vertices[2]];
-    return !one || !is_near_at_rest(def, vertices, edges);
+    return !one || !is_near_at_rest(n, pair, vertices, edges);
 }
 
 /* ---- Who is near ---- */
-
-static Box inflated(Box box, double by)
-{
-    for (int i = 0; i < 3; i++) box.low[i] -= by, box.high[i] += by;
-    return box;
-}
 
 static void pair_vertices(const Neighbours *n, const int pair[2], bool edges, int vertices[4])
 {
@@ -177,49 +203,58 @@ static void pair_vertices(const Neighbours *n, const int pair[2], bool edges, in
     }
 }
 
-/* Of what was found, those that may meet a's box. */
-static void take(Neighbours *n, int a, const Box *own, double radius, bool edges, PairList *list)
+/* What may be wanted of a pair beside that it may meet: nearer than the radius at x; NULL: that its boxes are. */
+typedef struct Wanted {
+    double radius;
+    const double *x;
+} Wanted;
+
+static bool is_near(const Neighbours *n, const int vertices[4], bool edges, Wanted wanted)
 {
-    for (int i = 0; i < n->found.count; i++) {
-        int vertices[4], b = n->found.list[i];
-        if ((edges && b <= a) || box_gap_square(own, &n->boxes[b]) > radius * radius) continue;
-        pair_vertices(n, (int[]){a, b}, edges, vertices);
-        if (may_meet(&n->def, vertices, edges)) add_pair(list, a, b);
-    }
+    double x[DISTANCE_DOFS];
+    if (!wanted.x) return true;
+    neighbours_gather(vertices, wanted.x, x);
+    return distance_between(&n->def, edges)(x).square < wanted.radius * wanted.radius;
 }
 
-void neighbours_sweep(Neighbours *n, const double *from, const double *to, double radius, PairList *list)
+/* Of what was found, those that may meet and are near, sorted. */
+static void take(const Neighbours *n, bool edges, Wanted wanted, PairList *list)
 {
-    list->count = list->points = 0;
-    near_tree_fit(n->face_tree, face_boxes(n, from, to));
-    for (int v = 0; v < n->def.vertex_count; v++) {
-        Box own = box_of(&v, 1, from, to), wide = inflated(own, radius);
-        near_tree_find(n->face_tree, &wide, &n->found);
-        take(n, v, &own, radius, false, list);
+    const Box *a = edges ? n->edge_boxes : n->vertex_boxes, *b = edges ? n->edge_boxes : n->face_boxes;
+    int first = list->count, vertices[4];
+    for (int k = 0; k < n->found.count; k++) {
+        const int *pair = n->found.list[k];
+        if (box_gap_square(&a[pair[0]], &b[pair[1]]) > wanted.radius * wanted.radius) continue;
+        pair_vertices(n, pair, edges, vertices);
+        if (may_meet(n, pair, vertices, edges) && is_near(n, vertices, edges, wanted))
+            add_pair(list, pair[0], pair[1]);
     }
+    if (list->count > first) near_pairs_sort(list->pairs + first, list->count - first);
+}
+
+static void find(Neighbours *n, Wanted wanted, PairList *list)
+{
+    near_tree_fit(n->vertex_tree, n->vertex_boxes);
+    near_tree_fit(n->face_tree, n->face_boxes);
+    near_tree_fit(n->edge_tree, n->edge_boxes);
+    list->count = 0;
+    near_tree_pairs(n->vertex_tree, n->face_tree, wanted.radius, &n->found);
+    take(n, false, wanted, list);
     list->points = list->count;
-    near_tree_fit(n->edge_tree, edge_boxes(n, from, to));
-    for (int e = 0; e < n->def.edge_count; e++) {
-        Box wide = inflated(n->boxes[e], radius);
-        near_tree_find(n->edge_tree, &wide, &n->found);
-        take(n, e, &n->boxes[e], radius, true, list);
-    }
+    near_tree_pairs(n->edge_tree, n->edge_tree, wanted.radius, &n->found);
+    take(n, true, wanted, list);
+}
+
+void neighbours_sweep(Neighbours *n, const double *from, const double *to, PairList *list)
+{
+    fit_boxes(n, from, to);
+    find(n, (Wanted){0, NULL}, list);
 }
 
 void neighbours_find(Neighbours *n, const double *x, double radius, PairList *list)
 {
-    int count = 0, points = 0;
-    neighbours_sweep(n, x, x, radius, list);
-    for (int k = 0; k < list->count; k++) {
-        int vertices[4];
-        double own[DISTANCE_DOFS];
-        neighbours_vertices(n, list, k, vertices);
-        neighbours_gather(vertices, x, own);
-        if (!(neighbours_distance(n, list, k)(own).square < radius * radius)) continue;
-        points += k < list->points;
-        memcpy(list->pairs[count++], list->pairs[k], sizeof *list->pairs);
-    }
-    list->count = count, list->points = points;
+    fit_boxes(n, x, x);
+    find(n, (Wanted){radius, x}, list);
 }
 
 void neighbours_vertices(const Neighbours *n, const PairList *list, int k, int vertices[4])

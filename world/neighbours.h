@@ -16,22 +16,21 @@ void pair_list_clear(PairList *list);
 
 typedef struct Neighbours {
     SelfContactDef def; /* margin: m */
-    int (*faces)[3];    /* owned */
-    int face_count;
-    double *vertex_weight; /* [vertex] area over the mean one; owned                            */
-    double *edge_weight;   /* [edge] the like                                                   */
-    double *edge_square;   /* [edge] length^2 at rest                                           */
-    NearTree *face_tree, *edge_tree;
-    Box *boxes; /* [largest of the counts] scratch */
-    NearList found;
+    int face_count, (*faces)[3];
+    double *vertex_weight, *edge_weight;         /* area over the mean one                     */
+    double *edge_square;                         /* length^2 at rest                           */
+    double (*face_centre)[3], (*edge_centre)[3]; /* at rest, m                                 */
+    NearTree *vertex_tree, *face_tree, *edge_tree;
+    Box *vertex_boxes, *face_boxes, *edge_boxes; /* scratch */
+    NearPairs found;
 } Neighbours;
 
 Neighbours *neighbours_create(const SelfContactDef *def);
 void neighbours_destroy(Neighbours *n);
 
-/* In place of what the list held: all pairs that may meet and whose boxes, of what lies between from and to, [vertex][3]
- * each, have a gap below `radius`, or meet. */
-void neighbours_sweep(Neighbours *n, const double *from, const double *to, double radius, PairList *list);
+/* In place of what the list held: all pairs that may meet, of which the boxes of what lies between from and to, [vertex][3]
+ * each, do. */
+void neighbours_sweep(Neighbours *n, const double *from, const double *to, PairList *list);
 
 /* The pairs that may meet with a distance below `radius`. */
 void neighbours_find(Neighbours *n, const double *x, double radius, PairList *list);

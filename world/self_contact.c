@@ -24,13 +24,48 @@ static Touch touch_of_lane(const SelfPairs *pairs, int pack, int lane, double st
     return touch_at(pairs->n, &pairs->list, self_pairs_of_lane(pairs, pack, lane), stiffness, own);
 }
 
+/* The gap of two boxes, per lane: that of vertices 0 .. second - 1 and that of the others; a NAN where a place is none. */
+static Pack gap_square(const Pack *x, int second)
+{
+    Pack sum = {0}, zero = {0};
+    for (int i = 0; i < 3; i++) {
+        Pack low[2] = {x[i], x[9 + i]}, high[2] = {x[i], x[9 + i]};
+        for (int v = 1; v < 3; v++) {
+            int side = v >= second;
+            Pack at = x[3 * v + i];
+            low[side] = pack_select(at < low[side], at, low[side]);
+            high[side] = pack_select(at > high[side], at, high[side]);
+        }
+        Pack up = low[0] - high[1], down = low[1] - high[0], gap = pack_select(up > down, up, down);
+        sum += pack_select(gap < 0, zero, gap) * pack_select(gap < 0, zero, gap);
+    }
+    for (int i = 0; i < DISTANCE_DOFS; i++) sum += 0 * x[i];
+    return sum;
+}
+
+/* Which lanes may act: their boxes are nearer than D. */
+static PackMask may_act(const SelfPairs *pairs, int pack, const Pack *x)
+{
+    double D = pairs->n->def.distance;
+    int points = pairs->list.points - pack * PACK_LANES;
+    PackMask far = {0};
+    if (points > 0) far = gap_square(x, 1) >= D * D;
+    if (points < PACK_LANES) {
+        PackMask edges = gap_square(x, 2) >= D * D;
+        for (int l = points > 0 ? points : 0; l < PACK_LANES; l++) far[l] = edges[l];
+    }
+    return ~far;
+}
+
 static Pack contact_eval(const void *self, int pack, const Point *at, const Pack *x, Pack *g, Pack *H)
 {
     const SelfPairs *pairs = self;
     Pack energy = {0};
     if (g) memset(g, 0, DISTANCE_DOFS * sizeof *g);
     if (H) element_clear(H, DISTANCE_DOFS);
+    PackMask near = may_act(pairs, pack, x);
     for (int l = 0; l < PACK_LANES; l++) {
+        if (!near[l]) continue;
         double own[DISTANCE_DOFS], slope[DISTANCE_DOFS], curve[DISTANCE_LOWER];
         Touch touch = touch_of_lane(pairs, pack, l, at->p[pairs->n->def.stiffness], x, own);
         if (!touch.acts) continue;

@@ -157,6 +157,6 @@ double self_pairs_reach(const SelfPairs *pairs, const double *from, const double
             return reach_of_list(pairs, &pairs->list, from, keep);
     }
     PairList *swept = (PairList *)&pairs->swept;
-    neighbours_sweep(pairs->n, from, pairs->end, 0, swept);
+    neighbours_sweep(pairs->n, from, pairs->end, swept);
     return reach_of_list(pairs, swept, from, keep);
 }

@@ -24,11 +24,10 @@ Touch touch_at(const Neighbours *n, const PairList *list, int k, double stiffnes
                const double x[DISTANCE_DOFS])
 {
     const int *pair = list->pairs[k];
-    Touch t = {.edges = k >= list->points, .range = n->def.distance, .m = 1};
-    t.at = neighbours_distance(n, list, k)(x);
-    t.d = sqrt(t.at.square);
-    t.acts = !(t.d >= t.range);
-    if (!t.acts) return t;
+    Distance at = neighbours_distance(n, list, k)(x);
+    double D = n->def.distance;
+    if (at.square >= D * D) return (Touch){0};
+    Touch t = {.acts = true, .edges = k >= list->points, .at = at, .range = D, .d = sqrt(at.square), .m = 1};
     set_potential(&t);
     if (!t.edges) {
         t.scale = stiffness * n->vertex_weight[pair[0]];
