@@ -138,12 +138,12 @@ static CubicGrid make_spline(const Grid *grid, const double *values)
                              false);
 }
 
-/* A grid of every fourth node, with the values there and their spline. Near deep places and far ones, where all faces are
+/* A grid of every fourth node, with the values there and the spline through them. Near deep places and far ones, where all faces are
  * equally far, a search for the nearest one takes long; and there nobody needs to know exactly. */
 typedef struct Coarse {
     Grid grid;
     double *values;
-    CubicGrid spline;
+    CubicGrid field;
 } Coarse;
 
 enum { COARSER = 4 };
@@ -157,7 +157,7 @@ static bool is_far(const Coarse *coarse, const int node[3], const double x[3], d
     for (int i = 0; i < 3; i++) at = at * coarse->grid.nodes[i] + (node[i] + COARSER / 2) / COARSER;
     if (fabs(coarse->values[at]) < far * coarse->grid.cell) return false;
     Gap gap;
-    cubic_grid_at(&coarse->spline, x, &gap);
+    cubic_grid_at(&coarse->field, x, &gap);
     *value = gap.value;
     return true;
 }
@@ -186,9 +186,9 @@ static double *sample_coarse_first(const Mesh *mesh, double side, const Grid *gr
     coarse.grid.cell *= COARSER;
     for (int i = 0; i < 3; i++) coarse.grid.nodes[i] = (grid->nodes[i] + COARSER - 2) / COARSER + 1;
     coarse.values = sample(distance, side, &coarse.grid, NULL);
-    coarse.spline = make_spline(&coarse.grid, coarse.values);
+    coarse.field = make_spline(&coarse.grid, coarse.values);
     double *values = sample(distance, side, grid, &coarse);
-    cubic_grid_clear(&coarse.spline);
+    cubic_grid_clear(&coarse.field);
     mem_free(coarse.values);
     mesh_distance_destroy(distance);
     return values;
