@@ -176,13 +176,6 @@ static bool check_job(const Scene *scene, YamlFile *file)
     return false;
 }
 
-static bool add_obstacles(Model *model, const Scene *scene, YamlFile *file)
-{
-    Build b = build_start(scene, NULL, model->time, file);
-    model->obstacle_count = scene->obstacles_count;
-    return build_obstacles(&b, scene->obstacles, scene->obstacles_count, &model->obstacles);
-}
-
 static Model *create(const Scene *scene, YamlFile *file, bool general)
 {
     Model *model = mem_alloc(1, sizeof *model);
@@ -194,10 +187,12 @@ static Model *create(const Scene *scene, YamlFile *file, bool general)
     model->job = job;
     bool ok = check_job(scene, file) && yaml_check_use(file, scene_table()) &&
               check_motion(scene, job, file) && start_open(model, scene, file) &&
-              add_obstacles(model, scene, file) && model->body->ops->create(model, scene, file) &&
-              start_take(model, scene, file) && (!job->design || model_design(model, scene, file));
+              model->body->ops->create(model, scene, file) && start_take(model, scene, file) &&
+              (!job->design || model_design(model, scene, file));
     start_close(model->start);
     model->start = NULL;
+    model_put_world(model, scene);
+    ok = ok && model_check_world(model, scene, file);
     if (ok && model->body->ops->advise) model->body->ops->advise(model, scene);
     if (ok) return model;
     model_destroy(model);
@@ -222,7 +217,6 @@ void model_destroy(Model *model)
         formula_destroy(model->motions[m].formula);
         mem_free(model->motions[m].vertices.items);
     }
-    for (int k = 0; k < model->obstacle_count; k++) obstacle_clear(&model->obstacles[k]);
     design_clear(&model->design);
     timed_flux_clear(&model->flux_of_time);
     mesh_report_clear(&model->report);
@@ -230,7 +224,6 @@ void model_destroy(Model *model)
     mem_free(model->cases);
     mem_free(model->flux);
     mem_free(model->motions);
-    mem_free(model->obstacles);
     mem_free(model->x);
     mem_free(model);
 }

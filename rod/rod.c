@@ -38,8 +38,28 @@ void rod_destroy(Rod *rod)
     if (!rod) return;
     mem_free(rod->bow);
     flux_fields_clear(&rod->fields);
+    world_destroy(rod->world);
+    mem_free(rod->edges);
+    mem_free(rod->straight);
     params_clear(&rod->params);
     mem_free(rod);
+}
+
+WorldBody rod_world_body(Rod *rod)
+{
+    mem_free(rod->edges);
+    mem_free(rod->straight);
+    rod->edges = mem_alloc((size_t)rod->elements, sizeof *rod->edges);
+    rod->straight = mem_alloc((size_t)rod->elements + 1, sizeof *rod->straight);
+    for (int e = 0; e < rod->elements; e++) rod->edges[e][0] = e, rod->edges[e][1] = e + 1;
+    for (int i = 0; i <= rod->elements; i++) rod->straight[i][0] = i * rod_element_length(rod);
+    return (WorldBody){.vertex_count = rod_node_count(rod),
+                       .first = rod_layout(rod, true).position,
+                       .edge_count = rod->elements,
+                       .edges = (const int(*)[2])rod->edges,
+                       .rest = (const double(*)[3])rod->straight,
+                       .thickness = 2 * rod->unit.reach,
+                       .length = rod->length};
 }
 
 void rod_node_mass(const Rod *rod, double *mass)
@@ -159,6 +179,7 @@ System *rod_system(const Rod *rod, double young, bool dynamic)
     System *sys = system_create(layout.dofs, classes, 4);
     add_terms(sys, rod, &layout, HOLD * bend / pow(rod->length, 3));
     add_lumped_terms(sys, rod, dynamic);
+    if (rod->world) world_add_terms(rod->world, sys, dynamic);
     fix(sys, layout.position, 3, true);
     fix(sys, layout.turn, 3, rod->start == ROD_CLAMPED);
     fix(sys, layout.position + end, 3, rod->end != ROD_FREE);

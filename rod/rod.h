@@ -23,6 +23,7 @@
 #include "solve/params.h"
 #include "solve/system.h"
 #include "surface/flux_field.h"
+#include "world/world.h"
 
 typedef enum RodSupport { ROD_FREE, ROD_PINNED, ROD_CLAMPED } RodSupport;
 
@@ -37,6 +38,9 @@ typedef struct Rod {
     Vec3 *bow;         /* [elements] m, in the first node's frame: how far an element's chord is off that of a
                 * helix, because strain varies within it; usually 0; owned */
     FluxFields fields; /* parts of the flux density that vary in space; owned. Not for the hanging form */
+    World *world;      /* what it meets; owned; NULL: nothing. Not for the hanging form                 */
+    int (*edges)[2];   /* [elements] the nodes of each, and                                             */
+    double (*straight)[3]; /* [nodes] m, places along x: what its world knows of it; owned              */
 
     Params params;      /* blocks and their first entries in p:                           */
     int young;          /* [element] Pa                                                   */
@@ -63,6 +67,10 @@ static inline double rod_element_length(const Rod *rod)
 {
     return rod->length / rod->elements;
 }
+
+/* What it shows to the world: elements as capsules around their chords, at rest straight, so that what is near along the
+ * rod is its own neighbour. Borrowed from the rod. */
+WorldBody rod_world_body(Rod *rod);
 
 /* Mass of each node, mass[nodes], kg: half an element at the ends. */
 void rod_node_mass(const Rod *rod, double *mass);

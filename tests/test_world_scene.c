@@ -29,7 +29,7 @@ static void check_written(const Built *b)
     if (!again.model) fail_msg("%s", yaml_report(again.file));
     char *other = yaml_write(scene_table(), &again.scene);
     assert_string_equal(text, other);
-    assert_int_equal(again.model->obstacle_count, b->model->obstacle_count);
+    assert_int_equal(again.model->world != NULL, b->model->world != NULL);
     assert_int_equal(self_contact_is_asked(&again.scene.contact.self),
                      self_contact_is_asked(&b->scene.contact.self));
     mem_free(text);
@@ -57,8 +57,8 @@ static void test_obstacles(void **state)
               "  - {mesh: {file: world_corner.obj, scale: 2, cell: 0.05}}\n"
               "  - {plane: {}, move: [\"0\", \"0\", \"t\"], turn: [\"pi/2\", \"0\", \"0\"]}\n");
     check_written(&b);
-    const Obstacle *o = b.model->obstacles;
-    assert_int_equal(b.model->obstacle_count, 10);
+    const Obstacle *o = b.model->world->obstacles;
+    assert_int_equal(b.model->world->obstacle_count, 10);
     assert_string_equal(o[0].name, "obstacle1");
     assert_string_equal(o[1].name, "ball");
     assert_true(isnan(b.scene.obstacles[0].friction) && b.scene.obstacles[1].friction == 0.3);
@@ -92,7 +92,7 @@ static void test_contact(void **state)
 {
     (void)state;
     Built b = build("");
-    assert_int_equal(b.model->obstacle_count, 0);
+    assert_null(b.model->world);
     assert_false(self_contact_is_asked(&b.scene.contact.self));
     assert_null(b.scene.water);
     clear(&b);

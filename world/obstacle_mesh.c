@@ -143,7 +143,7 @@ static CubicGrid make_spline(const Grid *grid, const double *values)
 typedef struct Coarse {
     Grid grid;
     double *values;
-    CubicGrid field;
+    CubicGrid cubic;
 } Coarse;
 
 enum { COARSER = 4 };
@@ -157,7 +157,7 @@ static bool is_far(const Coarse *coarse, const int node[3], const double x[3], d
     for (int i = 0; i < 3; i++) at = at * coarse->grid.nodes[i] + (node[i] + COARSER / 2) / COARSER;
     if (fabs(coarse->values[at]) < far * coarse->grid.cell) return false;
     Gap gap;
-    cubic_grid_at(&coarse->field, x, &gap);
+    cubic_grid_at(&coarse->cubic, x, &gap);
     *value = gap.value;
     return true;
 }
@@ -186,9 +186,9 @@ static double *sample_coarse_first(const Mesh *mesh, double side, const Grid *gr
     coarse.grid.cell *= COARSER;
     for (int i = 0; i < 3; i++) coarse.grid.nodes[i] = (grid->nodes[i] + COARSER - 2) / COARSER + 1;
     coarse.values = sample(distance, side, &coarse.grid, NULL);
-    coarse.field = make_spline(&coarse.grid, coarse.values);
+    coarse.cubic = make_spline(&coarse.grid, coarse.values);
     double *values = sample(distance, side, grid, &coarse);
-    cubic_grid_clear(&coarse.field);
+    cubic_grid_clear(&coarse.cubic);
     mem_free(coarse.values);
     mesh_distance_destroy(distance);
     return values;

@@ -222,14 +222,14 @@ static void set_model(Model *model)
 }
 
 /* Cases and states. With a field that varies in space no rod is only turns. */
-static bool fill_cases(Model *model, const Scene *scene, const Build *b, bool flux_is_read)
+static bool fill_cases(Model *model, const Scene *scene, const Build *b, bool readable)
 {
     RodModel *rm = model->self;
     Rod *rod = rm->rod;
     bool motion = model->job->motion;
     double *p = params_vector(model->params),
            *curve = mem_alloc((size_t)rod_layout(rod, false).dofs, sizeof *curve);
-    bool ok = rod_model_params(rm, scene, b, p) && flux_is_read;
+    bool ok = rod_model_params(rm, scene, b, p) && readable;
     model_put_flux(model, 0, p);
     if (ok && rm->curves) take_curve(rm, rod_scene(scene), p, curve);
     ok = ok && model_cases(model, b, scene, p);
@@ -252,12 +252,14 @@ static bool fill(Model *model, const Scene *scene, const Build *b)
     FluxFields fields;
     if (!check_rod(rm, from, b)) return false;
     sized.size = rm->curves ? rm->curves[0].length : from->length;
-    bool flux_is_read = model_read_flux(model, &sized, scene, &fields);
+    bool readable = model_read_flux(model, &sized, scene, &fields);
     rm->rod = rod_create(from->elements, sized.size, rm->unit, rm->area, &fields);
+    WorldBody shown = rod_world_body(rm->rod);
+    readable = model_read_world(model, &sized, scene, &shown, &rm->rod->world) && readable;
     if (!read_supports(rm, from, b) || !rod_model_check_points(rm, b, rm->rod->length)) return false;
     set_model(model);
     model_add_blocks(model, scene);
-    return fill_cases(model, scene, &sized, flux_is_read) &&
+    return fill_cases(model, scene, &sized, readable) &&
            (!model->job->motion ||
             model_velocity(model, b, "rod.velocity", from->velocity, model->x + rm->layout.position));
 }
@@ -381,6 +383,11 @@ static bool take_state(const Model *model, const double *from, int dofs, double 
            error_set(err, "its other end is not where rod.end holds it: an equilibrium leads it there");
 }
 
+static void masses(const Model *model, double *mass)
+{
+    rod_node_mass(((const RodModel *)model->self)->rod, mass);
+}
+
 static const BodyOps ops = {
     .create = create,
     .destroy = destroy,
@@ -389,6 +396,7 @@ static const BodyOps ops = {
     .put_numbers = put_numbers,
     .put_vectors = put_vectors,
     .select = select_part,
+    .masses = masses,
     .move = move,
     .system = make_system,
     .add_static = rod_add_static,

@@ -201,15 +201,11 @@ static bool finish_cases(Model *model, const Build *b)
     return ok;
 }
 
-static bool fill(Model *model, const Scene *scene, const Build *b, bool flux_is_read)
+static bool fill(Model *model, const Scene *scene, const Build *b, bool readable)
 {
     Shell *shell = model->self;
     const ShellScene *from = shell_scene(scene);
-    shell->thickness = from->thickness;
-    shell->poisson = from->poisson;
-    shell->density = from->density;
-    shell->bending = (BendingModel)from->bending;
-    bool ok = flux_is_read;
+    bool ok = readable;
     for (int k = 0; k < scene->fix_count; k++) ok = fix_entry(model, b, k, &scene->fix[k]) && ok;
     model->x = mem_alloc((size_t)shell_dof_count(shell), sizeof *model->x);
     shell_rest_state(shell, model->x);
@@ -222,6 +218,14 @@ static bool fill(Model *model, const Scene *scene, const Build *b, bool flux_is_
             model_velocity(model, b, "shell.velocity", from->velocity, b->mesh->rest[0]));
 }
 
+static void set_material(Shell *shell, const ShellScene *from)
+{
+    shell->thickness = from->thickness;
+    shell->poisson = from->poisson;
+    shell->density = from->density;
+    shell->bending = (BendingModel)from->bending;
+}
+
 static bool create(Model *model, const Scene *scene, YamlFile *file)
 {
     Mesh *mesh = build_mesh(&shell_scene(scene)->mesh, file, "shell.mesh", &model->report);
@@ -231,8 +235,9 @@ static bool create(Model *model, const Scene *scene, YamlFile *file)
     b.report = &model->report;
     b.timed = model->job->motion ? &model->flux_of_time : NULL;
     FluxFields fields;
-    bool flux_is_read = model_read_flux(model, &b, scene, &fields);
+    bool ok = model_read_flux(model, &b, scene, &fields);
     Shell *shell = model->self = shell_create(mesh, &fields);
+    set_material(shell, shell_scene(scene));
     model->mesh = mesh;
     model->params = &shell->params;
     model->gravity = shell->gravity;
@@ -242,8 +247,10 @@ static bool create(Model *model, const Scene *scene, YamlFile *file)
     model->point_count = mesh->vertex_count;
     model->load_steps = 1;
     model->step_cap = newton_default().step_cap;
+    WorldBody shown = shell_world_body(shell);
+    ok = model_read_world(model, &b, scene, &shown, &shell->world) && ok;
     model_add_blocks(model, scene);
-    return fill(model, scene, &b, flux_is_read);
+    return fill(model, scene, &b, ok);
 }
 
 static void destroy(void *self)
@@ -322,6 +329,7 @@ static const BodyOps ops = {
     .add_final = shell_add_final,
     .likeness = likeness,
     .places = shell_places,
+    .crushed = shell_crushed,
     .describe = shell_describe,
     .advise = shell_advise,
     .dof_sizes = shell_dof_sizes,

@@ -1,0 +1,290 @@
+#include "world/neighbours.h"
+#include "base/memory.h"
+#include "base/vec3.h"
+#include <math.h>
+#include <string.h>
+
+static const double REST_NEAR =
+    1.6; /* of D: more than a quarter of a circle around it (rod/self_contact.h) */
+
+void pair_list_clear(PairList *list)
+{
+    mem_free(list->pairs);
+    *list = (PairList){0};
+}
+
+static void add_pair(PairList *list, int a, int b)
+{
+    if (list->count == list->room) {
+        int room = 2 * list->room + 64;
+        list->pairs = mem_resize(list->pairs, (size_t)list->room, (size_t)room, sizeof *list->pairs);
+        list->room = room;
+    }
+    list->pairs[list->count][0] = a, list->pairs[list->count][1] = b;
+    list->count++;
+}
+
+/* ---- Making ---- */
+
+static void copy_faces(Neighbours *n)
+{
+    const SelfContactDef *def = &n->def;
+    n->face_count = def->face_count ? def->face_count : def->edge_count;
+    n->faces = mem_alloc((size_t)n->face_count, sizeof *n->faces);
+    for (int f = 0; f < n->face_count; f++)
+        for (int i = 0; i < 3; i++)
+            n->faces[f][i] = def->face_count ? def->faces[f][i] : def->edges[f][i > 0];
+}
+
+static void divide_by_mean(int count, double *values)
+{
+    double sum = 0;
+    for (int i = 0; i < count; i++) sum += values[i];
+    for (int i = 0; i < count; i++) values[i] *= count / sum;
+}
+
+/* An edge as its ends do in the mean. */
+static void weigh(Neighbours *n)
+{
+    const SelfContactDef *def = &n->def;
+    for (int v = 0; v < def->vertex_count; v++) n->vertex_weight[v] = def->face_count ? 0 : 1;
+    for (int f = 0; f < def->face_count; f++) {
+        Vec3 a = vec3_load(def->rest[def->faces[f][0]]), b = vec3_load(def->rest[def->faces[f][1]]),
+             c = vec3_load(def->rest[def->faces[f][2]]);
+        double area = vec3_length(vec3_cross(vec3_sub(b, a), vec3_sub(c, a)));
+        for (int i = 0; i < 3; i++) n->vertex_weight[def->faces[f][i]] += area;
+    }
+    divide_by_mean(def->vertex_count, n->vertex_weight);
+    for (int e = 0; e < def->edge_count; e++) {
+        const int *ends = def->edges[e];
+        Vec3 way = vec3_sub(vec3_load(def->rest[ends[1]]), vec3_load(def->rest[ends[0]]));
+        n->edge_square[e] = vec3_dot(way, way);
+        n->edge_weight[e] = (n->vertex_weight[ends[0]] + n->vertex_weight[ends[1]]) / 2;
+    }
+    divide_by_mean(def->edge_count, n->edge_weight);
+}
+
+/* Of what its vertices sweep. */
+static Box box_of(const int *vertices, int count, const double *from, const double *to)
+{
+    Box box = box_empty();
+    for (int i = 0; i < count; i++) {
+        box_add(&box, from + 3 * vertices[i]);
+        if (to != from) box_add(&box, to + 3 * vertices[i]);
+    }
+    return box;
+}
+
+static void fit_boxes(Neighbours *n, const double *from, const double *to)
+{
+    for (int v = 0; v < n->def.vertex_count; v++) n->vertex_boxes[v] = box_of(&v, 1, from, to);
+    for (int f = 0; f < n->face_count; f++) n->face_boxes[f] = box_of(n->faces[f], 3, from, to);
+    for (int e = 0; e < n->def.edge_count; e++) n->edge_boxes[e] = box_of(n->def.edges[e], 2, from, to);
+}
+
+static void make_trees(Neighbours *n)
+{
+    const double *rest = n->def.rest[0];
+    n->vertex_boxes = mem_alloc((size_t)n->def.vertex_count, sizeof *n->vertex_boxes);
+    n->face_boxes = mem_alloc((size_t)n->face_count, sizeof *n->face_boxes);
+    n->edge_boxes = mem_alloc((size_t)n->def.edge_count, sizeof *n->edge_boxes);
+    fit_boxes(n, rest, rest);
+    n->vertex_tree = near_tree_create(n->def.vertex_count, n->vertex_boxes);
+    n->face_tree = near_tree_create(n->face_count, n->face_boxes);
+    n->edge_tree = near_tree_create(n->def.edge_count, n->edge_boxes);
+}
+
+static void set_centres(Neighbours *n)
+{
+    const SelfContactDef *def = &n->def;
+    n->face_centre = mem_alloc((size_t)n->face_count, sizeof *n->face_centre);
+    n->edge_centre = mem_alloc((size_t)def->edge_count, sizeof *n->edge_centre);
+    for (int f = 0; f < n->face_count; f++)
+        for (int i = 0; i < 9; i++) n->face_centre[f][i % 3] += def->rest[n->faces[f][i / 3]][i % 3] / 3;
+    for (int e = 0; e < def->edge_count; e++)
+        for (int i = 0; i < 6; i++) n->edge_centre[e][i % 3] += def->rest[def->edges[e][i / 3]][i % 3] / 2;
+}
+
+Neighbours *neighbours_create(const SelfContactDef *def)
+{
+    Neighbours *n = mem_alloc(1, sizeof *n);
+    n->def = *def;
+    n->def.margin = def->distance * (def->margin > 0 ? def->margin : 0.5);
+    copy_faces(n);
+    n->vertex_weight = mem_alloc((size_t)def->vertex_count, sizeof(double));
+    n->edge_weight = mem_alloc((size_t)def->edge_count, sizeof(double));
+    n->edge_square = mem_alloc((size_t)def->edge_count, sizeof(double));
+    weigh(n);
+    set_centres(n);
+    make_trees(n);
+    return n;
+}
+
+void neighbours_destroy(Neighbours *n)
+{
+    if (!n) return;
+    near_tree_destroy(n->vertex_tree);
+    near_tree_destroy(n->face_tree);
+    near_tree_destroy(n->edge_tree);
+    mem_free(n->faces);
+    mem_free(n->vertex_weight);
+    mem_free(n->edge_weight);
+    mem_free(n->edge_square);
+    mem_free(n->face_centre);
+    mem_free(n->edge_centre);
+    mem_free(n->vertex_boxes);
+    mem_free(n->face_boxes);
+    mem_free(n->edge_boxes);
+    mem_free(n->found.list);
+    mem_free(n);
+}
+
+/* ---- Who may meet ---- */
+
+static bool is_held(const SelfContactDef *def, const int vertices[4])
+{
+    bool held = def->fixed != NULL;
+    for (int i = 0; held && i < 12; i++) held = def->fixed[3 * vertices[i / 3] + i % 3];
+    return held;
+}
+
+static DistanceOf *distance_between(const SelfContactDef *def, bool edges)
+{
+    return edges ? distance_edges : def->face_count ? distance_point_triangle : distance_point_edge;
+}
+
+/* Are two of their vertices nearer than that? */
+static bool vertices_are_near(const double x[DISTANCE_DOFS], int second, double distance)
+{
+    bool near = false;
+    for (int i = 0; i < second; i++)
+        for (int j = second; j < 4; j++) {
+            Vec3 d = vec3_sub(vec3_load(x + 3 * i), vec3_load(x + 3 * j));
+            near |= vec3_dot(d, d) < distance * distance;
+        }
+    return near;
+}
+
+/* Nearer at rest than 1.6 D: most are by their centres or by two vertices, which is soon found. */
+static bool is_near_at_rest(const Neighbours *n, const int pair[2], const int vertices[4], bool edges)
+{
+    double x[DISTANCE_DOFS], least = REST_NEAR * n->def.distance;
+    const double *a = edges ? n->edge_centre[pair[0]] : n->def.rest[pair[0]];
+    const double *b = edges ? n->edge_centre[pair[1]] : n->face_centre[pair[1]];
+    Vec3 d = vec3_sub(vec3_load(a), vec3_load(b));
+    if (vec3_dot(d, d) < least * least) return true;
+    neighbours_gather(vertices, n->def.rest[0], x);
+    if (vertices_are_near(x, edges ? 2 : 1, least)) return true;
+    return distance_between(&n->def, edges)(x).square < least * least;
+}
+
+static bool may_meet(const Neighbours *n, const int pair[2], const int vertices[4], bool edges)
+{
+    const SelfContactDef *def = &n->def;
+    int second = edges ? 2 : 1;
+    for (int i = 0; i < second; i++)
+        for (int j = second; j < 4; j++)
+            if (vertices[i] == vertices[j]) return false;
+    if (is_held(def, vertices)) return false;
+    bool one = !def->part || def->part[vertices[0]] == def->part[vertices[2]];
+    return !one || !is_near_at_rest(n, pair, vertices, edges);
+}
+
+/* ---- Who is near ---- */
+
+static void pair_vertices(const Neighbours *n, const int pair[2], bool edges, int vertices[4])
+{
+    if (edges) {
+        memcpy(vertices, n->def.edges[pair[0]], 2 * sizeof *vertices);
+        memcpy(vertices + 2, n->def.edges[pair[1]], 2 * sizeof *vertices);
+    } else {
+        vertices[0] = pair[0];
+        memcpy(vertices + 1, n->faces[pair[1]], 3 * sizeof *vertices);
+    }
+}
+
+/* What may be wanted of a pair beside that it may meet: nearer than the radius at x; NULL: that its boxes are. */
+typedef struct Wanted {
+    double radius;
+    const double *x;
+} Wanted;
+
+static bool is_near(const Neighbours *n, const int vertices[4], bool edges, Wanted wanted)
+{
+    double x[DISTANCE_DOFS];
+    if (!wanted.x) return true;
+    neighbours_gather(vertices, wanted.x, x);
+    return distance_between(&n->def, edges)(x).square < wanted.radius * wanted.radius;
+}
+
+/* Of what was found, those that may meet and are near, sorted. */
+static void take(const Neighbours *n, bool edges, Wanted wanted, PairList *list)
+{
+    const Box *a = edges ? n->edge_boxes : n->vertex_boxes, *b = edges ? n->edge_boxes : n->face_boxes;
+    int first = list->count, vertices[4];
+    for (int k = 0; k < n->found.count; k++) {
+        const int *pair = n->found.list[k];
+        if (box_gap_square(&a[pair[0]], &b[pair[1]]) > wanted.radius * wanted.radius) continue;
+        pair_vertices(n, pair, edges, vertices);
+        if (may_meet(n, pair, vertices, edges) && is_near(n, vertices, edges, wanted))
+            add_pair(list, pair[0], pair[1]);
+    }
+    if (list->count > first) near_pairs_sort(list->pairs + first, list->count - first);
+}
+
+static void find(Neighbours *n, Wanted wanted, PairList *list)
+{
+    near_tree_fit(n->vertex_tree, n->vertex_boxes);
+    near_tree_fit(n->face_tree, n->face_boxes);
+    near_tree_fit(n->edge_tree, n->edge_boxes);
+    list->count = 0;
+    near_tree_pairs(n->vertex_tree, n->face_tree, wanted.radius, &n->found);
+    take(n, false, wanted, list);
+    list->points = list->count;
+    near_tree_pairs(n->edge_tree, n->edge_tree, wanted.radius, &n->found);
+    take(n, true, wanted, list);
+}
+
+void neighbours_sweep(Neighbours *n, const double *from, const double *to, PairList *list)
+{
+    fit_boxes(n, from, to);
+    find(n, (Wanted){0, NULL}, list);
+}
+
+void neighbours_find(Neighbours *n, const double *x, double radius, PairList *list)
+{
+    fit_boxes(n, x, x);
+    find(n, (Wanted){radius, x}, list);
+}
+
+void neighbours_vertices(const Neighbours *n, const PairList *list, int k, int vertices[4])
+{
+    pair_vertices(n, list->pairs[k], k >= list->points, vertices);
+}
+
+void neighbours_gather(const int vertices[4], const double *x, double to[DISTANCE_DOFS])
+{
+    for (int i = 0; i < 4; i++) memcpy(to + 3 * i, x + 3 * (long)vertices[i], 3 * sizeof *to);
+}
+
+DistanceOf *neighbours_distance(const Neighbours *n, const PairList *list, int k)
+{
+    return distance_between(&n->def, k >= list->points);
+}
+
+double neighbours_moved(const Neighbours *n, const double *x, const double *y)
+{
+    double mean[3] = {0}, largest = 0;
+    int count = n->def.vertex_count;
+    for (int i = 0; i < 3 * count; i++) mean[i % 3] += (x[i] - y[i]) / count;
+    for (int v = 0; v < count; v++) {
+        double square = 0;
+        for (int i = 0; i < 3; i++) {
+            double d = x[3 * v + i] - y[3 * v + i] - mean[i];
+            square += d * d;
+        }
+        if (!(square <= largest)) largest = square;
+        if (!isfinite(square)) return NAN;
+    }
+    return sqrt(largest);
+}

@@ -1,0 +1,46 @@
+/* neighbours.h - which vertices and faces, and which edges, of a body or of several may meet, and where they are near.
+ *
+ * A rod's edges are its faces, too: their third corner is the second again, and counts for nothing. */
+#pragma once
+#include "world/distance.h"
+#include "world/near.h"
+#include "world/self_contact.h"
+
+/* Pairs {vertex, face}, sorted; then {edge, edge}, the lower first, sorted. */
+typedef struct PairList {
+    int count, points, room; /* points: of the first kind */
+    int (*pairs)[2];         /* owned                     */
+} PairList;
+
+void pair_list_clear(PairList *list);
+
+typedef struct Neighbours {
+    SelfContactDef def; /* margin: m */
+    int face_count, (*faces)[3];
+    double *vertex_weight, *edge_weight;         /* area over the mean one                     */
+    double *edge_square;                         /* length^2 at rest                           */
+    double (*face_centre)[3], (*edge_centre)[3]; /* at rest, m                                 */
+    NearTree *vertex_tree, *face_tree, *edge_tree;
+    Box *vertex_boxes, *face_boxes, *edge_boxes; /* scratch */
+    NearPairs found;
+} Neighbours;
+
+Neighbours *neighbours_create(const SelfContactDef *def);
+void neighbours_destroy(Neighbours *n);
+
+/* In place of what the list held: all pairs that may meet, of which the boxes of what lies between from and to, [vertex][3]
+ * each, do. */
+void neighbours_sweep(Neighbours *n, const double *from, const double *to, PairList *list);
+
+/* The pairs that may meet with a distance below `radius`. */
+void neighbours_find(Neighbours *n, const double *x, double radius, PairList *list);
+
+/* The four vertices of pair k of a list, and their coordinates. */
+void neighbours_vertices(const Neighbours *n, const PairList *list, int k, int vertices[4]);
+void neighbours_gather(const int vertices[4], const double *x, double to[DISTANCE_DOFS]);
+
+/* How distant the features of pair k are. */
+DistanceOf *neighbours_distance(const Neighbours *n, const PairList *list, int k);
+
+/* How far x is from y beside a motion of the whole: the largest of all vertices; NAN where it is no number. */
+double neighbours_moved(const Neighbours *n, const double *x, const double *y);
