@@ -52,9 +52,11 @@ RampInfo ramp_solve(System *sys, const Params *params, const RampDef *def, const
         state_copy(&kept, state);
         interpolate(params, from, to, part, p);
         NewtonInfo newton = {.status = NEWTON_NOT_FINITE};
-        if (!def->move || def->move(def->self, (part - info.reached) / (1 - info.reached), state->x))
+        if (!def->move || def->move(def->self, (part - info.reached) / (1 - info.reached), state->x)) {
+            if (def->move) system_project(sys, kept.x, state->x);
             newton =
                 newton_minimize(sys, &def->newton, &(Point){.p = p, .time = state->time}, state, observer);
+        }
         newton_add_counts(&newton, &info.newton);
         info.newton = newton;
         if (reached(newton.status)) {

@@ -14,12 +14,18 @@ typedef struct PairList {
 
 void pair_list_clear(PairList *list);
 
+/* Where a feature's middle is at rest, m, and whose it is. */
+typedef struct Seat {
+    double centre[3];
+    int part;
+} Seat;
+
 typedef struct Neighbours {
     SelfContactDef def; /* margin: m */
     int face_count, (*faces)[3];
-    double *vertex_weight, *edge_weight;         /* area over the mean one                     */
-    double *edge_square;                         /* length^2 at rest                           */
-    double (*face_centre)[3], (*edge_centre)[3]; /* at rest, m                                 */
+    double *vertex_weight, *edge_weight; /* area over the mean one                     */
+    double *edge_square;                 /* length^2 at rest                           */
+    Seat *vertex_seat, *face_seat, *edge_seat;
     NearTree *vertex_tree, *face_tree, *edge_tree;
     Box *vertex_boxes, *face_boxes, *edge_boxes; /* scratch */
     NearPairs found;
