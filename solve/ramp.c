@@ -33,6 +33,18 @@ static bool is_steady(const Params *params, const double *from, const double *to
     return same;
 }
 
+/* Moves what is held, a part of what is left of its way; false where it cannot, or would pass through something. */
+static bool move(const System *sys, const RampDef *def, double part, const State *from, State *state)
+{
+    if (!def->move) return true;
+    if (!def->move(def->self, part, state->x)) return false;
+    double *x = mem_copy(state->x, (size_t)state->dofs, sizeof *x), sum = 0;
+    system_project(sys, from->x, x);
+    for (int i = 0; i < state->dofs; i++) sum += 0 * x[i];
+    mem_free(x);
+    return sum == 0;
+}
+
 static bool reached(NewtonStatus status)
 {
     return status == NEWTON_CONVERGED || status == NEWTON_SADDLE || status == NEWTON_NEUTRAL;
@@ -52,7 +64,7 @@ RampInfo ramp_solve(System *sys, const Params *params, const RampDef *def, const
         state_copy(&kept, state);
         interpolate(params, from, to, part, p);
         NewtonInfo newton = {.status = NEWTON_NOT_FINITE};
-        if (!def->move || def->move(def->self, (part - info.reached) / (1 - info.reached), state->x))
+        if (move(sys, def, (part - info.reached) / (1 - info.reached), &kept, state))
             newton =
                 newton_minimize(sys, &def->newton, &(Point){.p = p, .time = state->time}, state, observer);
         newton_add_counts(&newton, &info.newton);
