@@ -64,22 +64,29 @@ static void weigh(Neighbours *n)
     divide_by_mean(def->edge_count, n->edge_weight);
 }
 
-/* Of what its vertices sweep. */
-static Box box_of(const int *vertices, int count, const double *from, const double *to)
+Box neighbours_box(const int *vertices, int count, const double *from, const double *to, double grow)
 {
     Box box = box_empty();
+    double longest = 0;
     for (int i = 0; i < count; i++) {
-        box_add(&box, from + 3 * vertices[i]);
-        if (to != from) box_add(&box, to + 3 * vertices[i]);
+        const double *x = from + 3 * (long)vertices[i], *y = to + 3 * (long)vertices[i];
+        box_add(&box, x);
+        if (to == from) continue;
+        box_add(&box, y);
+        Vec3 way = vec3_sub(vec3_load(y), vec3_load(x));
+        longest = vec3_dot(way, way) > longest ? vec3_dot(way, way) : longest;
     }
+    double by = grow * sqrt(longest);
+    for (int i = 0; i < 3; i++) box.low[i] -= by, box.high[i] += by;
     return box;
 }
 
-static void fit_boxes(Neighbours *n, const double *from, const double *to)
+static void fit_boxes(Neighbours *n, const double *from, const double *to, double grow)
 {
-    for (int v = 0; v < n->def.vertex_count; v++) n->vertex_boxes[v] = box_of(&v, 1, from, to);
-    for (int f = 0; f < n->face_count; f++) n->face_boxes[f] = box_of(n->faces[f], 3, from, to);
-    for (int e = 0; e < n->def.edge_count; e++) n->edge_boxes[e] = box_of(n->def.edges[e], 2, from, to);
+    for (int v = 0; v < n->def.vertex_count; v++) n->vertex_boxes[v] = neighbours_box(&v, 1, from, to, grow);
+    for (int f = 0; f < n->face_count; f++) n->face_boxes[f] = neighbours_box(n->faces[f], 3, from, to, grow);
+    for (int e = 0; e < n->def.edge_count; e++)
+        n->edge_boxes[e] = neighbours_box(n->def.edges[e], 2, from, to, grow);
 }
 
 static void make_trees(Neighbours *n)
@@ -88,7 +95,7 @@ static void make_trees(Neighbours *n)
     n->vertex_boxes = mem_alloc((size_t)n->def.vertex_count, sizeof *n->vertex_boxes);
     n->face_boxes = mem_alloc((size_t)n->face_count, sizeof *n->face_boxes);
     n->edge_boxes = mem_alloc((size_t)n->def.edge_count, sizeof *n->edge_boxes);
-    fit_boxes(n, rest, rest);
+    fit_boxes(n, rest, rest, 0);
     n->vertex_tree = near_tree_create(n->def.vertex_count, n->vertex_boxes);
     n->face_tree = near_tree_create(n->face_count, n->face_boxes);
     n->edge_tree = near_tree_create(n->def.edge_count, n->edge_boxes);
@@ -253,15 +260,15 @@ static void find(Neighbours *n, Wanted wanted, PairList *list)
     take(n, true, wanted, list);
 }
 
-void neighbours_sweep(Neighbours *n, const double *from, const double *to, PairList *list)
+void neighbours_sweep(Neighbours *n, const double *from, const double *to, double grow, PairList *list)
 {
-    fit_boxes(n, from, to);
+    fit_boxes(n, from, to, grow);
     find(n, (Wanted){0, NULL}, list);
 }
 
 void neighbours_find(Neighbours *n, const double *x, double radius, PairList *list)
 {
-    fit_boxes(n, x, x);
+    fit_boxes(n, x, x, 0);
     find(n, (Wanted){radius, x}, list);
 }
 

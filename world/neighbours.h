@@ -34,9 +34,11 @@ typedef struct Neighbours {
 Neighbours *neighbours_create(const SelfContactDef *def);
 void neighbours_destroy(Neighbours *n);
 
-/* In place of what the list held: all pairs that may meet, of which the boxes of what lies between from and to, [vertex][3]
- * each, do. */
-void neighbours_sweep(Neighbours *n, const double *from, const double *to, PairList *list);
+/* Around the straight ways of some vertices from `from` to `to`, and `grow` of the longest way more. */
+Box neighbours_box(const int *vertices, int count, const double *from, const double *to, double grow);
+
+/* In place of what the list held: all pairs that may meet of which these boxes do; [vertex][3] each. */
+void neighbours_sweep(Neighbours *n, const double *from, const double *to, double grow, PairList *list);
 
 /* The pairs that may meet with a distance below `radius`. */
 void neighbours_find(Neighbours *n, const double *x, double radius, PairList *list);
