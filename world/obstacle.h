@@ -48,7 +48,7 @@ bool obstacle_pose(const Obstacle *obstacle, double time, ObstaclePose *pose, Er
 void obstacle_gap(const Obstacle *obstacle, const ObstaclePose *pose, const double x[3], Gap *gap);
 
 /* Triangles of where phi = 0 in its own frame, for pictures: of what is endless (a plane, a cylinder, ground) a piece about
- * as large as the box there, its lowest and highest corner; of all else the whole. At most 2000, but of a mesh as many as it
+ * as large as the box there, its lowest and highest corner; of all else the whole. At most 16384, but of a mesh as many as it
  * has. Their normals point to where it is free; patches have vertices of their own. Clear it (mesh_file_clear). */
 void obstacle_surface(const Obstacle *obstacle, const double box[2][3], MeshFile *surface);
 

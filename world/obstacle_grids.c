@@ -47,10 +47,18 @@ static void ground_place(const void *self, double u, double v, double x[3])
     x[2] = height.value;
 }
 
+/* About a cell for each of the field's. */
 static void height_field_surface(const void *self, const double box[2][3], MeshFile *surface)
 {
+    enum { LEAST = 8, LONGEST = 256, MOST = 8192 }; /* cells along a side, and in all */
+    const CubicGrid *grid = &((const HeightField *)self)->height;
     Ground ground = {self, box};
-    surface_add_patch(surface, (int[2]){31, 31}, false, ground_place, &ground);
+    double count[2];
+    for (int i = 0; i < 2; i++)
+        count[i] = fmin(fmax(ceil((box[1][i] - box[0][i]) / grid->step[i]), LEAST), LONGEST);
+    double part = fmin(sqrt(MOST / (count[0] * count[1])), 1);
+    surface_add_patch(surface, (int[2]){(int)(part * count[0]), (int)(part * count[1])}, false, ground_place,
+                      &ground);
 }
 
 static const ObstacleOps height_field_ops = {.kind = "height_field",
@@ -149,7 +157,7 @@ static void tube_surface(const void *self, const double box[2][3], MeshFile *sur
 {
     const Tube *tube = self;
     (void)box;
-    surface_add_patch(surface, (int[2]){40, 24}, tube->axis == 1, tube_place, self);
+    surface_add_patch(surface, (int[2]){96, 48}, tube->axis == 1, tube_place, self);
 }
 
 static const ObstacleOps tube_ops = {
