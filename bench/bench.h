@@ -13,6 +13,7 @@ void bench_couple(void);
 void bench_solver(void);
 void bench_design(void);
 void bench_march(void);
+void bench_contact(void);
 void bench_trajectory(void);
 void bench_rod(void);
 void bench_spline(void);

@@ -18,6 +18,7 @@ static const struct {
     {"couple", bench_couple},
     {"solver", bench_solver},
     {"march", bench_march},
+    {"contact", bench_contact},
     {"trajectory", bench_trajectory},
     {"equilibria", bench_equilibria},
     {"design", bench_design},
