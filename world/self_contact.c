@@ -114,7 +114,8 @@ static double contact_reach(const void *self, const Point *at, const double *d)
     return reach;
 }
 
-/* Held vertices are where they are to be: a trial that they would have to be pulled back in is none. */
+/* Held vertices are where they are to be, and what follows from other dofs would be alone in going back: a trial in which
+ * these would have to be pulled back is none. */
 static void contact_project(const void *self, const double *from, double *x)
 {
     const SelfPairs *pairs = self;
@@ -123,7 +124,7 @@ static void contact_project(const void *self, const double *from, double *x)
     double reach = self_pairs_reach(pairs, from, x, KEEP_STEP);
     for (int i = 0; i < 3 * def->vertex_count; i++) {
         int k = def->first + i;
-        bool held = def->fixed && def->fixed[i] && x[k] != from[k];
+        bool held = def->derived || (def->fixed && def->fixed[i] && x[k] != from[k]);
         x[k] = held ? NAN : from[k] + reach * (x[k] - from[k]);
     }
 }

@@ -3,8 +3,13 @@
 #include "base/vec3.h"
 #include "world/crossings.h"
 
-static const double SMOOTHING =
-    0.01; /* of the thickness, the depth at which the penalty is linear: half of it is sunk */
+/* Parts of a shell's thickness or a rod's radius: the depth at which the penalty is linear, half of which is sunk. */
+static const double SMOOTHING = 0.01;
+
+double world_body_measure(const WorldBody *body)
+{
+    return body->face_count ? body->thickness : body->thickness / 2;
+}
 
 /* The vertices of each edge or face, [count][corners], of which one edge at least is longer than that; all where it is 0. */
 static Samples long_ones(const WorldBody *body, const int *corners_of, int count, int corners, double longer)
@@ -40,10 +45,11 @@ static void add_contact(World *world, Samples samples)
         mem_free(samples.vertices);
         return;
     }
-    world->contacts[world->contact_kinds++] = (ContactDef){.obstacles = world->obstacles,
-                                                           .obstacle_count = world->obstacle_count,
-                                                           .samples = samples,
-                                                           .smoothing = SMOOTHING * world->body.thickness};
+    world->contacts[world->contact_kinds++] =
+        (ContactDef){.obstacles = world->obstacles,
+                     .obstacle_count = world->obstacle_count,
+                     .samples = samples,
+                     .smoothing = SMOOTHING * world_body_measure(&world->body)};
 }
 
 World *world_create(const WorldBody *body, Obstacle *obstacles, int obstacle_count)
@@ -110,6 +116,7 @@ static SelfContactDef self_of(const World *world)
                             .rest = body->rest,
                             .part = body->part,
                             .fixed = body->fixed,
+                            .derived = body->face_count == 0,
                             .distance = world->distance,
                             .stiffness = world->self_stiffness,
                             .friction = world->self_friction,
