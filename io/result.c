@@ -136,21 +136,22 @@ static bool put_last_x(VtkFrames *w, Error *err)
     return ok;
 }
 
-/* What else the frames hold: frames/flux_density, and frames/NAME of state/NAME, what is kept of whole states. */
+/* What else the frames hold: frames/flux_density and obstacle_pose, and frames/NAME of state/NAME, what is kept of whole
+ * states. */
 static bool put_frames(VtkFrames *w, const char *field, Error *err)
 {
-    bool state = !strncmp(field, "state/", 6);
-    if (!state && strcmp(field, "flux_density") != 0) return true;
+    bool state = !strncmp(field, "state/", 6), pose = !strcmp(field, "obstacle_pose");
+    if (!state && !pose && strcmp(field, "flux_density") != 0) return true;
     char *path = mem_format("slender/frames/%s", state ? field + 6 : field);
-    bool ok = vtk_frames_put(w, field, path, NULL, false, err);
+    bool ok = vtk_frames_put(w, field, path, NULL, pose, err);
     mem_free(path);
     return ok;
 }
 
 static bool fill(VtkFrames *w, Error *err)
 {
-    if (!put_kind(w, "meta", err) || !put_kind(w, "static", err) || !put_kind(w, "final", err) ||
-        !put_attributes(w, err) || !put_histories(w, err))
+    if (!put_kind(w, "meta", err) || !put_kind(w, "static", err) || !put_kind(w, "obstacles", err) ||
+        !put_kind(w, "final", err) || !put_attributes(w, err) || !put_histories(w, err))
         return false;
     bool shown;
     if (!vtk_frames_exist(w->journal, &shown, err)) return false;

@@ -1,5 +1,6 @@
 #include "job/run.h"
 #include "base/memory.h"
+#include "job/obstacles.h"
 #include "model/state_arrays.h"
 #include <string.h>
 
@@ -118,12 +119,29 @@ bool run_put_frame(Run *run, int index, double shown, const Snapshot *shot, bool
     if (model->flux_density >= 0)
         arrays_add(&list, array_float("flux_density", "T", shot->p + model->flux_density, 2, 1, 3));
     add_felt(&list, model, shot, NULL);
+    obstacles_add_poses(model, shot->at.time, &list);
     if (model->body->ops->add_frame) model->body->ops->add_frame(model, shot, whole, &list);
     if (run->scene->output.states == STATES_ALL) state_arrays_add(model, shot, "state", true, &list);
     return arrays_put(&list, run->journal, "frame", index, err);
 }
 
 /* ---- Final arrays ---- */
+
+/* Of terms of one name (contact at vertices, at the middles of edges, ..) the sum. */
+static void add_energies(Arrays *list, const char *prefix, System *sys, const Point *at)
+{
+    int count = system_term_count(sys);
+    double *energy = arrays_numbers(list, (size_t)count);
+    for (int t = 0; t < count; t++) {
+        const char *name = system_term(sys, t)->ops->name;
+        int first = 0;
+        while (strcmp(system_term(sys, first)->ops->name, name) != 0) first++;
+        energy[first] += system_term_energy(sys, t, at, NULL);
+        if (first < t) continue;
+        char *path = arrays_keep(list, mem_format("%s/energy/%s", prefix, name));
+        arrays_add(list, array_float(path, "J", &energy[t], 0, 0, 0));
+    }
+}
 
 /* What both the plain paths and cases/<name> have. */
 static void add_state(Arrays *list, const Model *model, const char *x_name, const char *prefix,
@@ -133,12 +151,7 @@ static void add_state(Arrays *list, const Model *model, const char *x_name, cons
     Point at = state_point(&shot->at, shot->p);
     char *name = arrays_keep(list, mem_text(x_name));
     arrays_add(list, array_float(name, "m", places(model, shot, list), 2, model->point_count, 3));
-    double *energy = arrays_numbers(list, (size_t)system_term_count(sys));
-    for (int t = 0; t < system_term_count(sys); t++) {
-        energy[t] = system_term_energy(sys, t, &at, NULL);
-        name = arrays_keep(list, mem_format("%s/energy/%s", prefix, system_term(sys, t)->ops->name));
-        arrays_add(list, array_float(name, "J", &energy[t], 0, 0, 0));
-    }
+    add_energies(list, prefix, sys, &at);
     add_felt(list, model, shot, prefix);
     model->body->ops->add_state(model, shot, prefix, list);
 }

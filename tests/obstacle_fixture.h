@@ -92,7 +92,7 @@ static inline void check_surface(const Obstacle *obstacle, double area, double p
     MeshFile surface;
     double sum = 0;
     obstacle_surface(obstacle, (const double[2][3]){{-2, -2, -2}, {2, 2, 2}}, &surface);
-    assert_in_range(surface.face_count, 1, 2000);
+    assert_in_range(surface.face_count, 1, 16384);
     for (int v = 0; v < surface.vertex_count; v++) {
         const double *x = surface.vertices[v];
         assert_near(value_at(obstacle, x[0], x[1], x[2]), 0, 1e-9);

@@ -21,6 +21,22 @@ static void write_file(const char *path, const char *text)
     assert_int_equal(fclose(file), 0);
 }
 
+/* The effective scene makes the same model again, and says the same. */
+static void check_written(const Built *b)
+{
+    char *text = yaml_write(scene_table(), &b->scene);
+    Built again = scene_try(text);
+    if (!again.model) fail_msg("%s", yaml_report(again.file));
+    char *other = yaml_write(scene_table(), &again.scene);
+    assert_string_equal(text, other);
+    assert_int_equal(again.model->world != NULL, b->model->world != NULL);
+    assert_int_equal(self_contact_is_asked(&again.scene.contact.self),
+                     self_contact_is_asked(&b->scene.contact.self));
+    mem_free(text);
+    mem_free(other);
+    clear(&again);
+}
+
 static void test_obstacles(void **state)
 {
     (void)state;
@@ -40,6 +56,7 @@ static void test_obstacles(void **state)
               "  - {tube: {axis: y, radius: \"1 + 0.1*s\", center: [\"0.5\", \"s\"], range: [0, 4]}}\n"
               "  - {mesh: {file: world_corner.obj, scale: 2, cell: 0.05}}\n"
               "  - {plane: {}, move: [\"0\", \"0\", \"t\"], turn: [\"pi/2\", \"0\", \"0\"]}\n");
+    check_written(&b);
     const Obstacle *o = b.model->world->obstacles;
     assert_int_equal(b.model->world->obstacle_count, 10);
     assert_string_equal(o[0].name, "obstacle1");
@@ -97,6 +114,7 @@ static void test_contact(void **state)
         char *world = mem_format("contact: {self: %s}\n", selves[k].text);
         b = build(world);
         assert_int_equal(self_contact_is_asked(&b.scene.contact.self), selves[k].asked);
+        check_written(&b);
         mem_free(world);
         clear(&b);
     }

@@ -46,7 +46,7 @@ static void cube_place(const void *self, double u, double v, double x[3])
 
 static void add_closed(MeshFile *surface, bool inside, DirectionPlace *place, const void *self)
 {
-    enum { CELLS = 11 }; /* odd: no direction is along an axis's plane */
+    enum { CELLS = 21 }; /* odd: no direction is along an axis's plane */
     for (int k = 0; k < 6; k++) {
         CubeFace face = {k / 2, k % 2 ? 1 : -1, place, self};
         surface_add_patch(surface, (int[2]){CELLS, CELLS}, inside != (face.side < 0), cube_place, &face);
@@ -176,7 +176,7 @@ static void cylinder_surface(const void *self, const double box[2][3], MeshFile 
     surface_frame(round->axis, first, second);
     Bar bar = {vec3_axpy(middle - length / 2, axis, vec3_load(round->point)), vec3_scale(length, axis),
                vec3_scale(round->radius, vec3_load(first)), vec3_scale(round->radius, vec3_load(second))};
-    surface_add_patch(surface, (int[2]){16, 48}, round->side > 0, bar_place, &bar);
+    surface_add_patch(surface, (int[2]){8, 120}, round->side > 0, bar_place, &bar);
 }
 
 static const ObstacleOps cylinder_ops = {

@@ -138,8 +138,8 @@ static CubicGrid make_spline(const Grid *grid, const double *values)
                              false);
 }
 
-/* A grid of every fourth node, with the values there and their spline. Near deep places and far ones, where all faces are
- * equally far, a search for the nearest one takes long; and there nobody needs to know exactly. */
+/* A grid of every fourth node, with the values there and the spline through them. Far away and deep down, where all faces
+ * are as near as the nearest one, a search for it takes long; and there nobody needs to know exactly. */
 typedef struct Coarse {
     Grid grid;
     double *values;
@@ -223,7 +223,7 @@ bool obstacle_mesh(const MeshFile *file, double cell, Obstacle *obstacle, Error 
         mesh_destroy(mesh);
         return false;
     }
-    *obstacle = (Obstacle){.ops = &mesh_ops, .self = solid, .feature = cell};
+    *obstacle = (Obstacle){.ops = &mesh_ops, .self = solid, .feature = cell, .steepest = 1.2};
     mesh_bounding_box(mesh, low, high);
     for (int i = 0; i < 3; i++) obstacle->pivot[i] = (low[i] + high[i]) / 2;
     return true;

@@ -33,9 +33,9 @@ bool obstacle_tube(int axis, const double range[2], int cells, const double (*sa
 
 /* What a closed triangle mesh encloses: its signed distance at the nodes of a grid with that cell (NAN: 1/48 of the mesh's
  * diagonal) that reaches six cells beyond it, and a tricubic spline through them: corners are round on the scale of a cell,
- * what is thinner is lost, and deep inside, where several faces are as near, the gradient may vanish. Beyond the grid it is as near the grid's edge
- * plus the distance from there, smoothed over a cell. Vertices at equal places are one. A mesh that is inside out is
- * turned; one that crosses itself has the distance of its faces, inside too. False with a sentence: a mesh that is not
- * closed, whose faces do not agree on its outside or that is no surface otherwise (surface/mesh.h), or a grid of too many
- * nodes. Turns about its box's middle. */
+ * what is thinner is lost, and deep inside, where several faces are as near, the gradient may vanish. Beyond the grid it is
+ * as near the grid's edge plus the distance from there, smoothed over a cell. Vertices at equal places are one. A mesh that
+ * is inside out is turned; one that crosses itself has the distance of its faces, inside too. False with a sentence: a mesh
+ * that is not closed, whose faces do not agree on its outside or that is no surface otherwise (surface/mesh.h), a grid of
+ * too many nodes, or one with none inside. Turns about its box's middle. */
 bool obstacle_mesh(const MeshFile *file, double cell, Obstacle *obstacle, Error *err);

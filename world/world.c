@@ -11,6 +11,12 @@ double world_body_measure(const WorldBody *body)
     return body->face_count ? body->thickness : body->thickness / 2;
 }
 
+/* From other dofs: those of rods do. */
+static bool positions_follow(const WorldBody *body)
+{
+    return body->face_count == 0;
+}
+
 /* The vertices of each edge or face, [count][corners], of which one edge at least is longer than that; all where it is 0. */
 static Samples long_ones(const WorldBody *body, const int *corners_of, int count, int corners, double longer)
 {
@@ -49,6 +55,9 @@ static void add_contact(World *world, Samples samples)
         (ContactDef){.obstacles = world->obstacles,
                      .obstacle_count = world->obstacle_count,
                      .samples = samples,
+                     .vertex_count = world->body.vertex_count,
+                     .fixed = world->body.fixed,
+                     .derived = positions_follow(&world->body),
                      .smoothing = SMOOTHING * world_body_measure(&world->body)};
 }
 
@@ -116,7 +125,7 @@ static SelfContactDef self_of(const World *world)
                             .rest = body->rest,
                             .part = body->part,
                             .fixed = body->fixed,
-                            .derived = body->face_count == 0,
+                            .derived = positions_follow(body),
                             .distance = world->distance,
                             .stiffness = world->self_stiffness,
                             .friction = world->self_friction,
