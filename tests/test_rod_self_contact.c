@@ -122,9 +122,125 @@ static void test_coiled(void **state)
     }
 }
 
+/* ---- Derivatives ---- */
+
+/* Two strands beside each other, on a ball that moves and a floor, about which all terms of a system are active. */
+static Rig touching_rig(double smoothing)
+{
+    double r = 1e-3;
+    RigDef def = {.strands = 2,
+                  .elements = 10,
+                  .length = 0.03,
+                  .radius = r,
+                  .young = 1e6,
+                  .density = 1200,
+                  .friction = 0.4,
+                  .stiffness = 20,
+                  .obstacles = {obstacle_sphere((double[]){0.02, 0, -0.02}, 0.0195, false),
+                                obstacle_plane((double[]){0, 0, -5e-4}, (double[]){0.1, 0, 1})},
+                  .obstacle_count = 2,
+                  .self = true};
+    def.obstacles[0].move = of_time("0.02*t", "0.01*sin(3*t)", "0");
+    Rig rig = rig_create(&def);
+    Rod *rod = rig.rod;
+    World *world = rod->world;
+    for (int k = 0; k < world->contact_kinds; k++) world->contacts[k].smoothing = smoothing;
+    world->slip_speed = 0.02;
+    rod->strand[1].position = vec3(5e-3, -1e-3, 1.5e-3);
+    rod->strand[1].frame = quat_from_axes(vec3(0.8, 0.6, 0), vec3(-0.6, 0.8, 0), vec3(0, 0, 1));
+    rig.p[rod->gravity + 2] = -9.81;
+    for (int e = 0; e < 20; e++) rig.p[rod->natural_strain + 3 * e + 1] = 3;
+    rig_start(&rig, def.young);
+    return rig;
+}
+
+static void test_terms(void **state)
+{
+    (void)state;
+    Random random = random_seed(5);
+    Rig rig = touching_rig(2e-3);
+    double size[TERM_MAX_DOF];
+    for (int i = 0; i < TERM_MAX_DOF; i++) size[i] = 1e-4;
+    int first = system_term_count(rig.sys) - 4, kinds = 0;
+    static const char *const names[] = {"contact", "friction", "self_contact", "self_friction"};
+    for (int t = first; t < system_term_count(rig.sys); t++, kinds++) {
+        const Term *term = system_term(rig.sys, t);
+        Point at = {.x = rig.now.x, .p = rig.p, .memory = rig.now.memory, .time = 0.3, .dt = 0.01};
+        at = system_term_point(rig.sys, t, &at);
+        assert_string_equal(term->ops->name, names[kinds]);
+        TermError error = check_term(term, &rig.rod->params, &at, system_dof_count(rig.sys), size, &random);
+        print_message("%-14s differences %.1e, products %.1e\n", term->ops->name, check_differences(error),
+                      check_products(error));
+        assert_true(check_differences(error) < 1e-7 && check_products(error) < 1e-11);
+    }
+    rig_clear(&rig);
+}
+
+/* Along random parameters and a random start velocity: what places of the last states become, by the tangent and by the
+ * adjoint. */
+static void test_adjoint(void **state)
+{
+    (void)state;
+    enum { STEPS = 25 };
+    Random random = random_seed(6);
+    Rig rig = touching_rig(1e-4);
+    rig.march.newton.energy_tol = 1e-15;
+    size_t dofs = (size_t)rig.layout.dofs, size = (size_t)rig.rod->params.size;
+    TrajectoryProblem problem = {.sys = rig.sys,
+                                 .params = &rig.rod->params,
+                                 .start = &rig.now,
+                                 .step = 2e-3,
+                                 .steps = STEPS,
+                                 .p = rig.p};
+    Path path = path_create(&problem, &rig.march, 0);
+    memcpy(path.p, rig.p, size * sizeof *rig.p);
+    MarchInfo info = {0};
+    int reached;
+    assert_true(path_march(&path, NULL, NULL, &info, &reached));
+    double *dp = mem_alloc(2 * size, sizeof *dp), *gp = dp + size, *dv = mem_alloc(2 * dofs, sizeof *dv),
+           *gv = dv + dofs;
+    double *dx = mem_alloc(2 * dofs * (STEPS + 1), sizeof *dx), *seed = dx + dofs * (STEPS + 1);
+    for (int b = 0; b < rig.rod->params.block_count; b++) {
+        const ParamBlock *block = &rig.rod->params.blocks[b];
+        double largest = 0;
+        for (int i = 0; i < block->count * block->width; i++)
+            largest = fmax(largest, fabs(rig.p[block->offset + i]));
+        for (int i = 0; i < block->count * block->width; i++)
+            dp[block->offset + i] = (largest > 0 ? largest : 1e-3) * random_signed(&random);
+    }
+    for (size_t i = 0; i < (size_t)rig.layout.turn; i++)
+        if (!system_is_fixed(rig.sys, (int)i)) dv[i] = 0.01 * random_signed(&random);
+    for (int k = STEPS / 2; k <= STEPS; k++)
+        for (int i = 0; i < rig.layout.turn; i++) seed[(size_t)k * dofs + (size_t)i] = random_signed(&random);
+    double *weight = mem_copy(seed, dofs * (STEPS + 1), sizeof *seed), tangent = 0, adjoint = 0;
+    path_tangent(&path, dp, dv, dx);
+    for (size_t i = 0; i < dofs * (STEPS + 1); i++) tangent += weight[i] * dx[i];
+    path_adjoint(&path, seed, gp, gv);
+    for (size_t i = 0; i < size; i++) adjoint += gp[i] * dp[i];
+    for (size_t i = 0; i < dofs; i++) adjoint += gv[i] * dv[i];
+    rig_march(&rig, 2e-3, STEPS);
+    print_message("adjoint against tangent: %.1e; %g contacts, %g pairs at the end\n",
+                  fabs(adjoint / tangent - 1), rig.sums.contact.touching, rig.sums.pairs);
+    assert_true(fabs(adjoint / tangent - 1) < 1e-11);
+    assert_true(rig.sums.contact.touching > 5 && rig.sums.pairs > 2);
+    for (int b = 0; b < rig.rod->params.block_count; b++) { /* all that is at work has a derivative */
+        const ParamBlock *block = &rig.rod->params.blocks[b];
+        if (!strcmp(block->name, "friction") || !strcmp(block->name, "self_friction") ||
+            !strcmp(block->name, "contact_stiffness") || !strcmp(block->name, "self_stiffness"))
+            assert_true(gp[block->offset] != 0);
+    }
+    path_destroy(&path);
+    mem_free(dp);
+    mem_free(dv);
+    mem_free(dx);
+    mem_free(weight);
+    rig_clear(&rig);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_thrown), cmocka_unit_test(test_coiled),
-                                       cmocka_unit_test(test_refused)};
+                                       cmocka_unit_test(test_refused), cmocka_unit_test(test_terms),
+                                       cmocka_unit_test(test_adjoint)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
