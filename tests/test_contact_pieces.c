@@ -117,6 +117,11 @@ static void test_held(void **unused)
     assert_true(isnan(x[FIRST + 2]));
     memcpy(x, from, sizeof x);
     for (int v = 2; v < 4; v++) x[FIRST + 3 * v + 2] -= 0.03; /* a loose one, through the held one */
+    double way[FIRST + 3 * LOOSE];
+    for (int i = 0; i < FIRST + 3 * LOOSE; i++) way[i] = x[i] - from[i];
+    double reach =
+        term.ops->reach(term.self, &(Point){.x = from}, way); /* 10 mm of 30, a tenth of them left */
+    assert_true(reach > 0.29 && reach <= 0.3 + 1e-12);
     term.ops->project(term.self, from, x);
     assert_true(x[FIRST + 6 + 2] > 0 && x[FIRST + 6 + 2] < 2e-3);
     term.ops->destroy(term.self);

@@ -156,12 +156,13 @@ static void test_same_reach(void **unused)
     soup_make(&soup, &random, 0.2);
     SelfPairs *with = self_pairs_create(&soup.def), *without = self_pairs_create(&soup.def);
     for (int run = 0; run < 200; run++) {
-        double size = 0.02 * random_uniform(&random);
+        double size = 0.2 * random_uniform(&random), known[12 * SOUP];
         for (int i = 0; i < 12 * SOUP; i++) {
             from[i] = 0.7 * ((const double *)soup.rest)[i] + 0.05 * random_signed(&random);
             to[i] = from[i] + (i % 3 ? 1 : 7) * 0.01 + size * random_signed(&random);
         }
-        self_pairs_update(with, from, from);
+        for (int i = 0; i < 12 * SOUP; i++) known[i] = from[i] + 0.02 * random_signed(&random);
+        self_pairs_update(with, known, known);
         double reach = self_pairs_reach(with, from, to, 0.1);
         assert_true(reach == self_pairs_reach(without, from, to, 0.1));
         stopped += reach < 1;

@@ -7,8 +7,8 @@ typedef struct SelfPairs {
     PairList list;
     double *known; /* [3*vertex_count] where the list was made */
     bool any_known;
-    PairList
-        *swept; /* scratch, of the ways of a step; where they lead, and that beside a motion of the whole */
+    /* Scratch of a step: the pairs on its ways, where these lead, and where they do beside a motion of the whole. */
+    PairList *swept;
     double *to, *end;
 } SelfPairs;
 
