@@ -73,21 +73,30 @@ static bool put_attributes(VtkFrames *w, Error *err)
     return ok;
 }
 
-/* history/<name> from the scalar of that name in all evaluations. */
-static bool put_history(VtkFrames *w, const char *name, const int *indices, int count, const char *unit,
+/* What of an evaluation goes into history/: scalars, and tables of vectors. */
+static bool is_history(const Array *array)
+{
+    return (array->rank == 0 || array->rank == 2) && array->type == ARRAY_FLOAT64;
+}
+
+/* history/<name> from the arrays of that name in all evaluations, which are like the first one. */
+static bool put_history(VtkFrames *w, const char *name, const int *indices, int count, const Array *first,
                         Error *err)
 {
-    double *values = mem_alloc((size_t)count, sizeof *values);
+    size_t each = array_count(first);
+    double *values = mem_alloc((size_t)count * each, sizeof *values);
     bool ok = true;
     for (int k = 0; ok && k < count; k++) {
         Array array;
         ok = journal_find(w->journal, "evaluation", indices[k], name, &array, err);
-        bool scalar = array.data && array.rank == 0 && array.type == ARRAY_FLOAT64;
-        values[k] = scalar ? *(const double *)array.data : NAN;
+        bool alike = array.data && array.type == ARRAY_FLOAT64 && array_count(&array) == each;
+        for (size_t i = 0; i < each; i++)
+            values[(size_t)k * each + i] = alike ? ((const double *)array.data)[i] : NAN;
         array_clear(&array);
     }
     char *path = mem_format("slender/history/%s", name);
-    Array history = array_float(path, unit, values, 1, count, 0);
+    Array history = array_float(path, first->unit, values, 1 + first->rank, count, first->dims[0]);
+    history.dims[2] = first->dims[1];
     ok = ok && hdf5_write(w->file, path, &history, (Hdf5Layout){0}, err);
     mem_free(path);
     mem_free(values);
@@ -104,8 +113,7 @@ static bool put_histories(VtkFrames *w, Error *err)
         Array array;
         ok = journal_get(w->journal, "evaluation", indices[0], names[k], &array, err);
         if (!ok) break;
-        if (array.rank == 0 && array.type == ARRAY_FLOAT64)
-            ok = put_history(w, names[k], indices, count, array.unit, err);
+        if (is_history(&array)) ok = put_history(w, names[k], indices, count, &array, err);
         array_clear(&array);
     }
     mem_free(names);
@@ -128,21 +136,22 @@ static bool put_last_x(VtkFrames *w, Error *err)
     return ok;
 }
 
-/* What else the frames hold: frames/flux_density, and frames/NAME of state/NAME, what is kept of whole states. */
+/* What else the frames hold: frames/flux_density and obstacle_pose, and frames/NAME of state/NAME, what is kept of whole
+ * states. */
 static bool put_frames(VtkFrames *w, const char *field, Error *err)
 {
-    bool state = !strncmp(field, "state/", 6);
-    if (!state && strcmp(field, "flux_density") != 0) return true;
+    bool state = !strncmp(field, "state/", 6), pose = !strcmp(field, "obstacle_pose");
+    if (!state && !pose && strcmp(field, "flux_density") != 0) return true;
     char *path = mem_format("slender/frames/%s", state ? field + 6 : field);
-    bool ok = vtk_frames_put(w, field, path, NULL, false, err);
+    bool ok = vtk_frames_put(w, field, path, NULL, pose, err);
     mem_free(path);
     return ok;
 }
 
 static bool fill(VtkFrames *w, Error *err)
 {
-    if (!put_kind(w, "meta", err) || !put_kind(w, "static", err) || !put_kind(w, "final", err) ||
-        !put_attributes(w, err) || !put_histories(w, err))
+    if (!put_kind(w, "meta", err) || !put_kind(w, "static", err) || !put_kind(w, "obstacles", err) ||
+        !put_kind(w, "final", err) || !put_attributes(w, err) || !put_histories(w, err))
         return false;
     bool shown;
     if (!vtk_frames_exist(w->journal, &shown, err)) return false;

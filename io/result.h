@@ -8,16 +8,17 @@
  *
  *     Points           [T*n_v,3]            float32, unless double_frames or where that does not resolve the body
  *     CellData/NAME    [T*n_f], [T*n_f,3]   from the frames' arrays cell/NAME
- *     PointData/NAME   likewise             from point/NAME
+ *     PointData/NAME   likewise             from point/NAME, 0 at the points of static/still
  *
  * An array that a frame does not have is the one of the frame before it (Steps/CellDataOffsets says which),
  * so that what never changes need only be in the first frame.
  *
- * /slender: every array of meta, static and final at its own name (scene, versions, rest, faces, edges,
+ * /slender: every array of meta, static, obstacles and final at its own name (scene, versions, rest, faces, edges,
  * state/x, design/BLOCK, cases/NAME/.., ..) with its type and shape, and
  *
  *     history/NAME           [evaluations]   one for each scalar that the evaluations hold
  *     frames/flux_density    [T,3]           where the frames have it
+ *     frames/obstacle_pose   [T,n_o,12]      float64, where the frames have it
  *     frames/x               [T,n_v,3]       float64, if those are
  *     frames/NAME            [T,n]           float64: the frames' arrays state/NAME
  *     state/x                [n_v,3]         the last frame's x, until final has it

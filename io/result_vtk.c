@@ -216,7 +216,8 @@ bool vtk_frames_put(VtkFrames *frames, const char *name, const char *path, const
 {
     Hdf5Rows *rows = NULL;
     int *offsets = mem_alloc((size_t)frames->count, sizeof *offsets), stored = 0, chunk = 0, width = 0;
-    bool ok = true, single = frames->single && strncmp(name, "state/", 6) != 0; /* runs go on from these */
+    bool ok = true,
+         single = frames->single && !stacked && strncmp(name, "state/", 6) != 0; /* runs go on from these */
     for (int k = 0; ok && k < frames->count; k++) {
         Array array;
         ok = journal_find(frames->journal, "frame", frames->frames[k], name, &array, err);
@@ -241,28 +242,49 @@ bool vtk_frames_put(VtkFrames *frames, const char *name, const char *path, const
     return ok;
 }
 
+/* Three numbers for each point of every frame, followed by those of the points that stand still: `still`, or 0. */
+static bool put_with_still(VtkFrames *frames, const char *name, const char *path, const double (*still)[3],
+                           Error *err)
+{
+    int moving = frames->vertex_count - frames->still_count;
+    double(*points)[3] = mem_alloc((size_t)frames->vertex_count, sizeof *points);
+    if (still) memcpy(points + moving, still, (size_t)frames->still_count * sizeof *points);
+    Hdf5Rows *rows = NULL;
+    bool ok = true;
+    for (int k = 0; ok && k < frames->count; k++) {
+        Array x = {0};
+        ok = journal_get(frames->journal, "frame", frames->frames[k], name, &x, err);
+        if (ok && array_count(&x) != 3 * (size_t)moving)
+            ok = error_set(err, "the frames' %s change their shape", name);
+        if (ok && !rows)
+            rows = hdf5_rows_create(frames->file, path, x.unit, frames->vertex_count, 3, false,
+                                    frames->single, err);
+        if (ok) memcpy(points, x.data, (size_t)moving * sizeof *points);
+        ok = ok && rows && hdf5_rows_append(rows, points[0], err);
+        array_clear(&x);
+    }
+    ok = hdf5_rows_close(rows, ok ? err : NULL) && ok;
+    mem_free(points);
+    return ok;
+}
+
 /* Each frame's points, and those that stand still. */
 static bool put_points(VtkFrames *frames, Error *err)
 {
     static const char PATH[] = "VTKHDF/Points";
     if (!frames->still) return vtk_frames_put(frames, "x", PATH, NULL, false, err);
-    int moving = frames->vertex_count - frames->still_count;
-    double(*points)[3] = mem_alloc((size_t)frames->vertex_count, sizeof *points);
-    memcpy(points + moving, frames->still, (size_t)frames->still_count * sizeof *points);
-    Hdf5Rows *rows =
-        hdf5_rows_create(frames->file, PATH, "m", frames->vertex_count, 3, false, frames->single, err);
-    bool ok = rows != NULL;
-    for (int k = 0; ok && k < frames->count; k++) {
-        Array x = {0};
-        ok = journal_get(frames->journal, "frame", frames->frames[k], "x", &x, err);
-        if (ok && array_count(&x) != 3 * (size_t)moving)
-            ok = error_set(err, "the frames' x change their shape");
-        if (ok) memcpy(points, x.data, (size_t)moving * sizeof *points);
-        ok = ok && hdf5_rows_append(rows, points[0], err);
-        array_clear(&x);
-    }
-    ok = hdf5_rows_close(rows, ok ? err : NULL) && ok;
-    mem_free(points);
+    return put_with_still(frames, "x", PATH, (const double(*)[3])frames->still, err);
+}
+
+/* Where frames have points that stand still, too: a row for every point, so each step has its own rows. */
+static bool put_point_field(VtkFrames *frames, const char *field, const char *path, const char *offsets_path,
+                            Error *err)
+{
+    int *offsets = mem_alloc((size_t)frames->count, sizeof *offsets);
+    for (int k = 0; k < frames->count; k++) offsets[k] = k * frames->vertex_count;
+    bool ok = put_with_still(frames, field, path, NULL, err) &&
+              put_ints(frames, offsets_path, offsets, 1, frames->count, 0, (Hdf5Layout){.wide = true}, err);
+    mem_free(offsets);
     return ok;
 }
 
@@ -275,11 +297,12 @@ static bool put_fields(VtkFrames *frames, Error *err)
     for (int k = 0; ok && k < frames->field_count; k++)
         for (int d = 0; ok && d < 2; d++) {
             size_t length = strlen(kinds[d].prefix);
-            if (strncmp(frames->fields[k], kinds[d].prefix, length)) continue;
-            const char *name = frames->fields[k] + length;
-            char *path = mem_format("VTKHDF/%s/%s", kinds[d].data, name),
-                 *offsets = mem_format("VTKHDF/Steps/%s/%s", kinds[d].offsets, name);
-            ok = vtk_frames_put(frames, frames->fields[k], path, offsets, false, err);
+            const char *field = frames->fields[k];
+            if (strncmp(field, kinds[d].prefix, length)) continue;
+            char *path = mem_format("VTKHDF/%s/%s", kinds[d].data, field + length),
+                 *offsets = mem_format("VTKHDF/Steps/%s/%s", kinds[d].offsets, field + length);
+            ok = d == 1 && frames->still ? put_point_field(frames, field, path, offsets, err)
+                                         : vtk_frames_put(frames, field, path, offsets, false, err);
             mem_free(path);
             mem_free(offsets);
         }

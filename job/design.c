@@ -92,7 +92,7 @@ static bool get_best(void *self, int slot, const double *u, bool *has, Error *er
 static Snapshot best_state(const DesignJob *job, int c)
 {
     const Case *best = &job->run->model->cases[c];
-    return (Snapshot){best, static_design_params(job->sd, c), best->state, NEWTON_CONVERGED, NULL};
+    return (Snapshot){best, static_design_params(job->sd, c), best->state, NEWTON_CONVERGED, NULL, NULL};
 }
 
 static bool put_frame(void *self, int index, Error *err)

@@ -83,7 +83,7 @@ static bool solve_case(Run *run, Case *c, Snapshot *shot, int *frame, bool *inte
     NewtonStatus worst = NEWTON_CONVERGED;
     for (int s = 0; ok && !*interrupted && s < c->stage_count; s++, (*frame)++) {
         c->state.time = c->stages[s].time;
-        *shot = (Snapshot){c, c->stages[s].p, c->state, NEWTON_CONVERGED, NULL};
+        *shot = (Snapshot){c, c->stages[s].p, c->state, NEWTON_CONVERGED, NULL, NULL};
         bool has;
         ok = get_progress(run, *frame, shot, &has, err);
         if (ok && !has) {
@@ -91,6 +91,7 @@ static bool solve_case(Run *run, Case *c, Snapshot *shot, int *frame, bool *inte
             shot->status = info.newton.status;
             *interrupted = info.newton.status == NEWTON_STOPPED;
             if (*interrupted) break;
+            if (run_is_crushed(run, shot, shot->status != NEWTON_CONVERGED)) shot->status = NEWTON_CRUSHED;
             host_step(run->host, *frame + 1, total,
                       "%s: %s, %d Newton iterations with %d factorisations in %d load steps", c->name,
                       newton_status_name(shot->status), info.newton.iterations, info.newton.factorizations,

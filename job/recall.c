@@ -3,15 +3,20 @@
 #include "io/result.h"
 #include <string.h>
 
-static const char CELLS[] = "VTKHDF/CellData/", FRAMES[] = "slender/frames/";
+static const char FRAMES[] = "slender/frames/";
+
+/* Where a result has numbers per cell and per point, and as what the journal has them. */
+static const struct {
+    const char *data, *prefix;
+} kinds[] = {{"CellData", "cell"}, {"PointData", "point"}};
 
 /* Is this step's array its own, or that of the step before? Fields that never change are stored once. */
-static bool has_own(Result *result, const char *field, int step, bool *own, Error *err)
+static bool has_own(Result *result, int kind, const char *field, int step, bool *own, Error *err)
 {
     Array offsets;
     *own = true;
     if (step == 0) return true;
-    char *path = mem_format("VTKHDF/Steps/CellDataOffsets/%s", field);
+    char *path = mem_format("VTKHDF/Steps/%sOffsets/%s", kinds[kind].data, field);
     bool ok = result_read_rows(result, path, step - 1, 2, &offsets, err);
     mem_free(path);
     if (!ok) return false;
@@ -31,13 +36,14 @@ static bool put(Journal *journal, int step, Array *array, const char *name, int 
     return journal_put(journal, "frame", step, &named, 1, err);
 }
 
-static bool recall_field(Journal *journal, Result *result, const char *field, int step, Error *err)
+static bool recall_field(Journal *journal, Result *result, int kind, const char *field, int step, Error *err)
 {
     Array array;
     bool own;
-    if (!has_own(result, field, step, &own, err)) return false;
+    if (!has_own(result, kind, field, step, &own, err)) return false;
     if (!own) return true;
-    char *from = mem_format("CellData/%s", field), *to = mem_format("cell/%s", field);
+    char *from = mem_format("%s/%s", kinds[kind].data, field),
+         *to = mem_format("%s/%s", kinds[kind].prefix, field);
     bool ok = result_read_step(result, from, step, &array, err);
     if (ok) {
         ok = put(journal, step, &array, to, array.rank, err);
@@ -83,18 +89,36 @@ static bool recall_step(Journal *journal, Result *result, int step, Error *err)
     return ok;
 }
 
-/* Of whole states: frames/NAME is state/NAME of the frame. */
-static bool recall_state(Journal *journal, Result *result, const char *path, int step, Error *err)
+/* Of whole states: frames/NAME is state/NAME of the frame; and where obstacles are. */
+static bool recall_state(Journal *journal, Result *result, const char *name, int step, Error *err)
 {
     Array array;
-    const char *name = path + sizeof FRAMES - 1;
+    bool pose = !strcmp(name, "obstacle_pose");
     if (!strcmp(name, "x") || !strcmp(name, "flux_density")) return true;
-    if (!result_read_rows(result, path, step, 1, &array, err)) return false;
-    char *to = mem_format("state/%s", name);
-    bool ok = put(journal, step, &array, to, array.rank, err);
-    array_clear(&array);
+    char *from = mem_format("%s%s", FRAMES, name), *to = mem_format("%s%s", pose ? "" : "state/", name);
+    bool ok = result_read_rows(result, from, step, 1, &array, err);
+    if (ok) {
+        ok = put(journal, step, &array, to, pose ? 2 : array.rank, err);
+        array_clear(&array);
+    }
+    mem_free(from);
     mem_free(to);
     return ok;
+}
+
+/* What a step has at a path of the result, if that is of the frames. */
+static bool recall_path(Journal *journal, Result *result, const char *path, int step, Error *err)
+{
+    if (!strncmp(path, FRAMES, sizeof FRAMES - 1))
+        return recall_state(journal, result, path + sizeof FRAMES - 1, step, err);
+    for (int kind = 0; kind < 2; kind++) {
+        char *folder = mem_format("VTKHDF/%s/", kinds[kind].data);
+        size_t length = strlen(folder);
+        bool is = !strncmp(path, folder, length);
+        mem_free(folder);
+        if (is) return recall_field(journal, result, kind, path + length, step, err);
+    }
+    return true;
 }
 
 bool recall_keep(Journal *journal, uint32_t sum, Error *err)
@@ -145,17 +169,13 @@ bool recall_frames(Journal *journal, const char *path, bool exact, Error *err)
     Result *result = result_open(path, err);
     if (!result) return false;
     char **paths = NULL;
-    int count = 0, steps = result_step_count(result), cells = (int)strlen(CELLS), kept;
+    int count = 0, steps = result_step_count(result), kept;
     bool ok = check_result(journal, result, path, err) && journal_count(journal, "frame", &kept, err) &&
               (kept >= steps ||
                (check_precision(result, path, exact, err) && result_list(result, &paths, &count, err)));
     for (int step = 0; ok && paths && step < steps; step++) {
         ok = recall_step(journal, result, step, err);
-        for (int k = 0; ok && k < count; k++)
-            if (!strncmp(paths[k], CELLS, (size_t)cells))
-                ok = recall_field(journal, result, paths[k] + cells, step, err);
-            else if (!strncmp(paths[k], FRAMES, sizeof FRAMES - 1))
-                ok = recall_state(journal, result, paths[k], step, err);
+        for (int k = 0; ok && k < count; k++) ok = recall_path(journal, result, paths[k], step, err);
     }
     mem_free(paths);
     result_close(result);

@@ -2,6 +2,7 @@
 #include "base/memory.h"
 #include "io/result.h"
 #include "job/inputs.h"
+#include "job/obstacles.h"
 #include "job/outputs.h"
 #include "job/recall.h"
 #include "model/stored.h"
@@ -95,6 +96,7 @@ static bool put_start(Run *run, const char *scene, const char *inputs, Error *er
     bool ok = journal_replace(run->journal, "meta", 0, meta, *inputs ? 4 : 3, err) &&
               journal_replace(run->journal, "final", 0, NULL, 0, err);
     ok = arrays_replace(&statics, run->journal, "static", ok ? err : NULL) && ok;
+    ok = ok && obstacles_put(run, err);
     mem_free(versions);
     mem_free(kernels);
     return ok && journal_set_finished(run->journal, false, err);
@@ -126,7 +128,8 @@ static bool write_result(Run *run, bool finished, Error *err)
 {
     ResultDef def = {.double_frames = run->scene->output.precision == OUTPUT_DOUBLE};
     uint32_t sum;
-    if (!journal_flush(run->journal, err) || !result_write(run->journal, run->result, def, &sum, err))
+    if (!obstacles_put(run, err) || !journal_flush(run->journal, err) ||
+        !result_write(run->journal, run->result, def, &sum, err))
         return false;
     if (!finished) return true;
     if (!recall_keep(run->journal, sum, err) || !journal_set_finished(run->journal, true, err)) return false;

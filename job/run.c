@@ -1,5 +1,6 @@
 #include "job/run.h"
 #include "base/memory.h"
+#include "job/obstacles.h"
 #include "model/state_arrays.h"
 #include <string.h>
 
@@ -58,6 +59,16 @@ Array run_block(const char *name, const ParamBlock *block, const double *p)
     return array_float(name, block->unit, p + block->offset, rank, block->count, block->width);
 }
 
+bool run_is_crushed(Run *run, const Snapshot *shot, bool failed)
+{
+    const BodyOps *body = run->model->body->ops;
+    char *crushed = body->crushed ? body->crushed(run->model, shot, failed) : NULL;
+    if (!crushed) return false;
+    host_say(run->host, "%s: %s", shot->load_case->name, crushed);
+    mem_free(crushed);
+    return true;
+}
+
 /* ---- Frames ---- */
 
 static double *places(const Model *model, const Snapshot *shot, Arrays *list)
@@ -65,6 +76,36 @@ static double *places(const Model *model, const Snapshot *shot, Arrays *list)
     double *place = arrays_numbers(list, 3 * (size_t)model->point_count);
     model->body->ops->places(model, shot->at.x, place);
     return place;
+}
+
+/* What obstacles do to it: of a frame the forces on its points, of a state under a prefix their sums. */
+static void add_felt(Arrays *list, const Model *model, const Snapshot *shot, const char *prefix)
+{
+    const World *world = model->world;
+    if (!world || world->obstacle_count == 0) return;
+    int obstacles = world->obstacle_count, dofs = shot->at.dofs;
+    ContactSums sums = {.force = (double(*)[3])arrays_numbers(list, 3 * (size_t)obstacles),
+                        .point = arrays_numbers(list, (size_t)dofs)};
+    if (shot->felt) {
+        sums = shot->felt->contact;
+    } else {
+        WorldSums all = {.contact = sums};
+        Point at = state_point(&shot->at, shot->p);
+        world_measure(world, &at, &all);
+        sums = all.contact;
+    }
+    double *numbers = arrays_numbers(list, 2);
+    numbers[0] = sums.touching, numbers[1] = sums.depth;
+    if (!prefix) {
+        arrays_add(list, array_float("point/contact_force", "N", sums.point + world->body.first, 2,
+                                     model->point_count, 3));
+        return;
+    }
+    arrays_add(list, array_float(arrays_keep(list, mem_format("%s/contacts", prefix)), "", numbers, 0, 0, 0));
+    arrays_add(list, array_float(arrays_keep(list, mem_format("%s/contact_depth", prefix)), "m", numbers + 1,
+                                 0, 0, 0));
+    arrays_add(list, array_float(arrays_keep(list, mem_format("%s/contact_force", prefix)), "N",
+                                 sums.force[0], 2, obstacles, 3));
 }
 
 bool run_put_frame(Run *run, int index, double shown, const Snapshot *shot, bool whole, Error *err)
@@ -77,12 +118,30 @@ bool run_put_frame(Run *run, int index, double shown, const Snapshot *shot, bool
     arrays_add(&list, array_float("time", "s", &shown, 0, 0, 0));
     if (model->flux_density >= 0)
         arrays_add(&list, array_float("flux_density", "T", shot->p + model->flux_density, 2, 1, 3));
+    add_felt(&list, model, shot, NULL);
+    obstacles_add_poses(model, shot->at.time, &list);
     if (model->body->ops->add_frame) model->body->ops->add_frame(model, shot, whole, &list);
     if (run->scene->output.states == STATES_ALL) state_arrays_add(model, shot, "state", true, &list);
     return arrays_put(&list, run->journal, "frame", index, err);
 }
 
 /* ---- Final arrays ---- */
+
+/* Of terms of one name (contact at vertices, at the middles of edges, ..) the sum. */
+static void add_energies(Arrays *list, const char *prefix, System *sys, const Point *at)
+{
+    int count = system_term_count(sys);
+    double *energy = arrays_numbers(list, (size_t)count);
+    for (int t = 0; t < count; t++) {
+        const char *name = system_term(sys, t)->ops->name;
+        int first = 0;
+        while (strcmp(system_term(sys, first)->ops->name, name) != 0) first++;
+        energy[first] += system_term_energy(sys, t, at, NULL);
+        if (first < t) continue;
+        char *path = arrays_keep(list, mem_format("%s/energy/%s", prefix, name));
+        arrays_add(list, array_float(path, "J", &energy[t], 0, 0, 0));
+    }
+}
 
 /* What both the plain paths and cases/<name> have. */
 static void add_state(Arrays *list, const Model *model, const char *x_name, const char *prefix,
@@ -92,12 +151,8 @@ static void add_state(Arrays *list, const Model *model, const char *x_name, cons
     Point at = state_point(&shot->at, shot->p);
     char *name = arrays_keep(list, mem_text(x_name));
     arrays_add(list, array_float(name, "m", places(model, shot, list), 2, model->point_count, 3));
-    double *energy = arrays_numbers(list, (size_t)system_term_count(sys));
-    for (int t = 0; t < system_term_count(sys); t++) {
-        energy[t] = system_term_energy(sys, t, &at, NULL);
-        name = arrays_keep(list, mem_format("%s/energy/%s", prefix, system_term(sys, t)->ops->name));
-        arrays_add(list, array_float(name, "J", &energy[t], 0, 0, 0));
-    }
+    add_energies(list, prefix, sys, &at);
+    add_felt(list, model, shot, prefix);
     model->body->ops->add_state(model, shot, prefix, list);
 }
 

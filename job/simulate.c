@@ -3,6 +3,7 @@
  * With every stored frame goes the state to go on from, in two slots by turns, each closed by its step's
  * number: a run that is killed goes on from the last frame and repeats the steps since bit by bit. */
 #include "base/memory.h"
+#include "job/contacts.h"
 #include "job/jobs.h"
 #include "solve/march.h"
 #include <string.h>
@@ -14,6 +15,7 @@ typedef struct Simulation {
     double *p;
     State *now;
     double *anchor;      /* of its system, as the last step that was reached left it */
+    Contacts contacts;   /* of the last step */
     int step;            /* that one                                               */
     NewtonStatus status; /* of the last step                                       */
     bool refused;        /* a formula of time is not finite; err says so           */
@@ -32,9 +34,16 @@ static bool move(void *self, double time, double *x)
     return !s->refused;
 }
 
+/* A part of a step. */
+static void stored(void *self, const State *state, double dt)
+{
+    Simulation *s = self;
+    contacts_add(&s->contacts, state, dt, s->p);
+}
+
 static Snapshot shown_state(const Simulation *s)
 {
-    return (Snapshot){s->c, s->p, *s->now, s->status, s->anchor};
+    return (Snapshot){s->c, s->p, *s->now, s->status, s->anchor, s->step ? &s->contacts.sums : NULL};
 }
 
 enum { KEPT = 6 };
@@ -105,11 +114,12 @@ static bool put_history(Simulation *s, int step, const MarchInfo *info)
 {
     double iterations = info->newton.iterations, factorizations = info->newton.factorizations,
            cg_iterations = info->newton.cg_iterations;
-    Array arrays[] = {array_float("newton_iterations", "", &iterations, 0, 0, 0),
-                      array_float("factorizations", "", &factorizations, 0, 0, 0),
-                      array_float("cg_iterations", "", &cg_iterations, 0, 0, 0),
-                      array_float("time", "s", &s->now->time, 0, 0, 0)};
-    return journal_put(s->run->journal, "evaluation", step, arrays, sizeof arrays / sizeof *arrays, s->err);
+    Array arrays[4 + CONTACTS_ROWS] = {array_float("newton_iterations", "", &iterations, 0, 0, 0),
+                                       array_float("factorizations", "", &factorizations, 0, 0, 0),
+                                       array_float("cg_iterations", "", &cg_iterations, 0, 0, 0),
+                                       array_float("time", "s", &s->now->time, 0, 0, 0)};
+    int count = 4 + contacts_history(&s->contacts, arrays + 4);
+    return journal_put(s->run->journal, "evaluation", step, arrays, count, s->err);
 }
 
 static int frame_interval(const Simulation *s)
@@ -130,21 +140,25 @@ static RunStatus make_step(Simulation *s, const MarchDef *def)
     const Scene *scene = s->run->scene;
     int every = frame_interval(s), step = s->step + 1;
     MarchInfo info;
+    char touches[64];
+    contacts_begin(&s->contacts);
     bool reached = march_step(s->c->sys, def, scene->time.step, s->p, s->now, &info);
     if (s->refused) return RUN_REFUSED;
     if (host_stops(s->run->host)) return RUN_INTERRUPTED;
     s->status = reached ? NEWTON_CONVERGED : info.newton.status;
-    if (!reached) {
+    if (!reached)
         host_say(s->run->host, "step %d failed at t = %g s: %s", step, s->now->time,
                  newton_status_text(info.newton.status));
-        return RUN_NOT_CONVERGED;
-    }
+    Snapshot shot = shown_state(s);
+    if (run_is_crushed(s->run, &shot, !reached)) s->status = NEWTON_CRUSHED;
+    if (!reached) return RUN_NOT_CONVERGED;
     s->step = step;
     keep_anchor(s);
     if (!put_history(s, step, &info) || (step % every == 0 && !put_step(s, step / every, step)))
         return RUN_CANNOT_WRITE;
-    host_step(s->run->host, step, scene->time.steps, "t %.4g s, %d Newton iterations", s->now->time,
-              info.newton.iterations);
+    if (s->status == NEWTON_CRUSHED) return RUN_NOT_CONVERGED;
+    host_step(s->run->host, step, scene->time.steps, "t %.4g s, %d Newton iterations%s", s->now->time,
+              info.newton.iterations, contacts_text(&s->contacts, touches));
     return RUN_DONE;
 }
 
@@ -153,10 +167,13 @@ static RunStatus march(Simulation *s)
 {
     s->step = find_start(s);
     if (s->step < 0) return RUN_CANNOT_WRITE;
+    contacts_start(&s->contacts, s->now->v);
     MarchDef def = march_default();
     run_newton(s->run, &def.newton);
     def.observer = run_observer(s->run);
     def.load = load, def.self = s;
+    def.stored = stored;
+    def.implicit = s->run->model->world && s->run->model->world->implicit;
     if (s->run->model->moves) def.move = move;
     RunStatus status = RUN_DONE;
     while (status == RUN_DONE && s->step < s->run->scene->time.steps) status = make_step(s, &def);
@@ -182,11 +199,13 @@ static RunStatus run_simulate(Run *run, Error *err)
     Case *c = &run->model->cases[0];
     Simulation s = {.run = run, .err = err, .c = c, .p = c->stages[0].p, .now = &c->state};
     s.anchor = mem_alloc((size_t)system_anchor_count(c->sys), sizeof *s.anchor);
+    s.contacts = contacts_create(run->model);
     RunStatus status = march(&s);
     const char *said = status == RUN_INTERRUPTED ? "interrupted" : newton_status_name(s.status);
     bool ended = status != RUN_CANNOT_WRITE && status != RUN_REFUSED;
     if (ended && !put_end(&s, said)) status = RUN_CANNOT_WRITE;
     mem_free(s.anchor);
+    contacts_destroy(&s.contacts);
     return status;
 }
 

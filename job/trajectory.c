@@ -1,5 +1,6 @@
 /* Design of a motion: unknowns, most of all a field over time, that make the body go where it should. */
 #include "base/memory.h"
+#include "job/contacts.h"
 #include "job/design_run.h"
 #include "job/jobs.h"
 #include "optim/objectives.h"
@@ -99,8 +100,9 @@ static bool get_best(void *self, int slot, const double *u, bool *has, Error *er
 
 static Snapshot frame_state(TrajectoryJob *job, int frame)
 {
-    Snapshot shot = {job->c, trajectory_params(job->t, frame), trajectory_frame(job->t, frame),
-                     NEWTON_CONVERGED, NULL};
+    Snapshot shot = {
+        job->c, trajectory_params(job->t, frame), trajectory_frame(job->t, frame), NEWTON_CONVERGED, NULL,
+        NULL};
     trajectory_velocities(job->t, frame, job->v);
     shot.at.v = job->v;
     shot.at.time = job->run->model->time + job->run->scene->time.step * frame;
@@ -130,6 +132,33 @@ static void add_field(const TrajectoryJob *job, Arrays *list)
     for (int n = 1; n <= steps; n++)
         memcpy(rows + 3 * (n - 1), trajectory_params(job->t, n) + flux, 3 * sizeof *rows);
     arrays_add(list, array_float("trajectory/flux_density", "T", rows, 2, steps, 3));
+}
+
+/* trajectory/contacts, ..: a row for each step. */
+static void add_contacts(TrajectoryJob *job, Arrays *list)
+{
+    int steps = job->run->scene->time.steps;
+    Contacts contacts = contacts_create(job->run->model);
+    double *rows[CONTACTS_ROWS];
+    for (int n = 1; contacts.world && n <= steps; n++) {
+        Array now[CONTACTS_ROWS];
+        if (n == 1) contacts_start(&contacts, frame_state(job, 0).at.v);
+        Snapshot shot = frame_state(job, n);
+        contacts_begin(&contacts);
+        contacts_add(&contacts, &shot.at, job->run->scene->time.step, shot.p);
+        int count = contacts_history(&contacts, now);
+        for (int k = 0; k < count; k++) {
+            size_t each = array_count(&now[k]);
+            if (n == 1) rows[k] = arrays_numbers(list, (size_t)steps * each);
+            memcpy(rows[k] + (size_t)(n - 1) * each, now[k].data, each * sizeof(double));
+            if (n < steps) continue;
+            char *name = arrays_keep(list, mem_format("trajectory/%s", now[k].name));
+            Array all = array_float(name, now[k].unit, rows[k], 1 + now[k].rank, steps, now[k].dims[0]);
+            all.dims[2] = now[k].dims[1];
+            arrays_add(list, all);
+        }
+    }
+    contacts_destroy(&contacts);
 }
 
 /* dF/dp of the unknowns, and what the start's places and velocities do to F. */
@@ -182,6 +211,7 @@ static bool put_results(void *self, int first, const char *status, Error *err)
     end.p = arrays_keep(&list, mem_copy(end.p, (size_t)job->run->model->params->size, sizeof *end.p));
     run_add_final(job->run, &end, 1, status, &list);
     add_field(job, &list);
+    add_contacts(job, &list);
     add_distances(job, &list);
     add_gradients(job, &list);
     return arrays_replace(&list, job->run->journal, "final", err);
@@ -214,6 +244,7 @@ static RunStatus run_trajectory(Run *run, Error *err)
     run_newton(run, &def.march.newton);
     def.march.observer = run_observer(run);
     def.march.load = load, def.march.self = &job;
+    def.march.implicit = model->world && model->world->implicit;
     if (model->moves) def.march.move = move;
     job.t = trajectory_create(&problem, &def);
     job.v = mem_alloc((size_t)c->state.dofs, sizeof *job.v);

@@ -74,6 +74,7 @@ static void set_up(SlenderMotion *motion, const SlenderMotionDef *def)
     motion->problem.step = def->step;
     motion->problem.steps = def->steps;
     motion->march = march_default();
+    motion->march.implicit = motion->model->model->world && motion->model->model->world->implicit;
     run_newton(&motion->run, &motion->march.newton);
     motion->march.observer = run_observer(&motion->run);
     motion->march.load = load, motion->march.stored = tell, motion->march.self = motion;

@@ -77,6 +77,7 @@ static void add_control(Model *model, const Scene *scene)
 
 void model_add_blocks(Model *model, const Scene *scene)
 {
+    if (model->world) world_add_params(model->world, model->params);
     const DesignScene *design = scene->design;
     bool trajectory = model->job->design && model->job->motion;
     if (!trajectory || !design || !design->unknowns.flux_density) return;

@@ -8,6 +8,7 @@
 #include "model/timed_flux.h"
 #include "surface/flux_field.h"
 #include "surface/select.h"
+#include "world/obstacle.h"
 
 typedef struct Build {
     YamlFile *file;
@@ -33,6 +34,9 @@ typedef struct Key {
 } Key;
 
 Key key(const char *format, ...) __attribute__((format(printf, 1, 2)));
+
+/* Can that name of a case, obstacle, .. be a group of the result? */
+bool build_check_name(const Build *b, Key at, const char *whose, const char *name);
 
 /* A formula of these variables (NULL-terminated) with its helpers; NULL after a refusal at that key. */
 Formula *build_formula(const Build *b, Key at, char *const *formula, int count, const WhereScene *where,
@@ -74,6 +78,9 @@ bool build_selection(const Build *b, Key at, const SelectionScene *scene, Indice
 
 /* load[3*vertex_count] N: the sum of all entries; the key is the list's. */
 bool build_loads(const Build *b, Key at, const LoadScene *loads, int count, double *load);
+
+/* The obstacles of the scene's key `obstacles`, (*list)[count]: the caller's, to be cleared each. */
+bool build_obstacles(const Build *b, const ObstacleScene *scenes, int count, Obstacle **list);
 
 /* uniform[3] in T, and the caller's *field NULL; or 0 and a field that varies in space. */
 bool build_flux(const Build *b, Key at, const FluxScene *scene, double *uniform, FluxField **field);

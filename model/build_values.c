@@ -1,5 +1,6 @@
 /* Values over faces and edges: the same everywhere, from a file, by formula or by group. */
 #include "base/memory.h"
+#include "base/plain.h"
 #include "io/table.h"
 #include "model/build.h"
 #include <math.h>
@@ -25,6 +26,17 @@ void build_position(double *variables, const double *x, double time)
     memcpy(variables, x, 3 * sizeof *x);
     variables[3] = hypot(x[0], x[1]);
     variables[4] = time;
+}
+
+bool build_check_name(const Build *b, Key at, const char *whose, const char *name)
+{
+    enum { NAME_MAX_BYTES = 250 };
+    bool good =
+        *name && plain_is(name) && !strchr(name, '/') && strlen(name) <= NAME_MAX_BYTES && strcmp(name, ".");
+    return good || yaml_refuse(b->file, at.text,
+                               "%s's name is a word without '/' or control characters, of at most %d bytes, "
+                               "and not '.'",
+                               whose, NAME_MAX_BYTES);
 }
 
 Formula *build_formula(const Build *b, Key at, char *const *formula, int count, const WhereScene *where,

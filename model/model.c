@@ -1,6 +1,5 @@
 #include "model/model.h"
 #include "base/memory.h"
-#include "base/plain.h"
 #include "io/table.h"
 #include "model/scene_tables.h"
 #include "model/start.h"
@@ -76,15 +75,6 @@ static bool add_stages(Model *model, const Build *b, const Scene *scene, const d
     return ok;
 }
 
-enum { CASE_NAME_MAX = 250 };
-
-/* It becomes a group of the result, and a line of case_names. */
-static bool is_name(const char *name)
-{
-    return *name && plain_is(name) && !strchr(name, '/') && strlen(name) <= CASE_NAME_MAX &&
-           strcmp(name, ".");
-}
-
 bool model_cases(Model *model, const Build *b, const Scene *scene, const double *p)
 {
     if (scene->sequence_count && scene->cases_count)
@@ -99,12 +89,7 @@ bool model_cases(Model *model, const Build *b, const Scene *scene, const double 
         for (int i = 0; i < k; i++)
             if (!strcmp(model->cases[i].name, c->name))
                 ok = yaml_refuse(b->file, at.text, "there are two cases named '%s'", c->name);
-        if (!is_name(c->name))
-            ok = yaml_refuse(
-                b->file, at.text,
-                "a case's name is a word without '/' or control characters, of at most %d bytes, and "
-                "not '.'",
-                CASE_NAME_MAX);
+        ok = build_check_name(b, at, "a case", c->name) && ok;
         ok = put_loads(model, b, at, from->loads, from->loads_count, from->gravity, from->flux_density,
                        c->stages[0].p) &&
              ok;
@@ -206,6 +191,8 @@ static Model *create(const Scene *scene, YamlFile *file, bool general)
               (!job->design || model_design(model, scene, file));
     start_close(model->start);
     model->start = NULL;
+    model_put_world(model, scene);
+    ok = ok && model_check_world(model, file);
     if (ok && model->body->ops->advise) model->body->ops->advise(model, scene);
     if (ok) return model;
     model_destroy(model);

@@ -6,6 +6,7 @@
 #include "optim/control.h"
 #include "optim/design.h"
 #include "surface/select.h"
+#include "world/world.h"
 
 /* Coordinates that follow formulas of rest position and time. */
 typedef struct Motion {
@@ -38,6 +39,7 @@ struct Model {
     int gravity;
     int flux_density, field_scale;
     FluxFields *fields; /* the body's */
+    World *world;       /* what it meets, the body's; NULL: nothing */
     int point_count;    /* vertices or nodes                                   */
     int load_steps;     /* of an equilibrium, unless the scene says            */
     double step_cap;    /* of Newton                                           */
@@ -72,6 +74,13 @@ bool model_load(const Model *model, double time, double *p, Error *err);
  * has beside them (model->control is the first one). False after a refusal. */
 bool model_read_flux(Model *model, const Build *b, const Scene *scene, FluxFields *fields);
 void model_add_blocks(Model *model, const Scene *scene);
+
+/* The world of a scene, for a body to take before its vectors p are made : NULL where it meets nothing. False
+ * after a refusal, *world is then to be taken, too. model_put_world puts its numbers, which follow from the body, into the p of
+ * all cases; model_check_world refuses starts that pass through themselves. */
+bool model_read_world(Model *model, const Build *b, const Scene *scene, const WorldBody *body, World **world);
+void model_put_world(Model *model, const Scene *scene);
+bool model_check_world(Model *model, YamlFile *file);
 
 /* A flux density, model->flux[number], into p. */
 void model_put_flux(const Model *model, int number, double *p);

@@ -11,6 +11,7 @@
 #include "optim/case.h"
 #include "solve/newton.h"
 #include "solve/params.h"
+#include "world/world.h"
 
 struct Model;
 struct Run;
@@ -69,7 +70,8 @@ typedef struct Snapshot {
     const double *p;
     State at;
     NewtonStatus status;
-    const double *anchor; /* of a simulation: where the next step's factor stands (system_anchor) */
+    const double *anchor;  /* of a simulation: where the next step's factor stands (system_anchor) */
+    const WorldSums *felt; /* of a step of time, what it met at its end; NULL: as in statics */
 } Snapshot;
 
 /* What one evaluation takes on this machine, and the factor; s, bytes (job/predict.h). */
@@ -144,6 +146,11 @@ typedef struct BodyOps {
 
     /* What the state cannot be trusted in, a sentence of the caller's; NULL: nothing. Optional. */
     char *(*doubt)(const struct Model *model, const Snapshot *shot);
+
+    /* What in the state is none of this body any more, so that its energies mean nothing (a face without area), and why; a
+     * sentence of the caller's; NULL: nothing. `failed`: no state was found from there on, and what is near it is the
+     * reason. Optional. */
+    char *(*crushed)(const struct Model *model, const Snapshot *shot, bool failed);
 
     /* Lines on what the scene made, for `slender check`; the caller's. */
     char *(*describe)(const struct Model *model, const Scene *scene);

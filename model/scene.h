@@ -5,6 +5,7 @@
  * Numbers are SI; an absent number is NAN, an absent choice -1, an absent list or table NULL (YamlKind). */
 #pragma once
 #include "io/yaml.h"
+#include "model/scene_world.h"
 
 /* ---- Values over faces, edges or space ---- */
 
@@ -276,10 +277,13 @@ typedef struct Scene {
     LoadStepsScene load_steps;
     TimeScene time;
     StartScene *start;
+    ObstacleScene *obstacles;
+    ContactScene contact;
+    WaterScene *water;
     int modes;
     OutputScene output;
     int *checks; /* SceneCheck */
-    int fix_count, loads_count, cases_count, sequence_count, checks_count;
+    int fix_count, loads_count, cases_count, sequence_count, obstacles_count, checks_count;
 } Scene;
 
 /* Its keys: the common ones, and one for each body (rows.h). */

@@ -4,7 +4,8 @@
 
 extern const YamlTable where_table, mesh_table, pose_table, velocity_table;
 extern const YamlTable young_table, fold_table, magnetization_table;
-extern const YamlTable design_table; /* scene_design.c */
+extern const YamlTable design_table;                               /* scene_design.c */
+extern const YamlTable obstacle_table, contact_table, water_table; /* scene_world.c  */
 
 /* The common keys; its first row is `job`. scene_table (rows.c) has the bodies' too. */
 extern const YamlTable scene_form;

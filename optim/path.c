@@ -1,5 +1,6 @@
 #include "optim/path.h"
 #include "base/memory.h"
+#include "solve/gmres.h"
 #include <string.h>
 
 double *path_x(const Path *path, int k)
@@ -55,6 +56,7 @@ void path_clear(Path *path)
         path->factor[k] = NULL;
     }
     path->count = 0;
+    path->unsolved = false;
     path->factor_bytes = 0;
 }
 
@@ -107,7 +109,8 @@ static Point point(Path *path, int k)
                    .time = path->time[k],
                    .x_prev = path_x(path, k - 1),
                    .v_prev = start_velocity(path, k),
-                   .dt = path->dt[k]};
+                   .dt = path->dt[k],
+                   .x_lag = path->march->implicit ? path_x(path, k) : NULL};
 }
 
 static bool factor_at(Path *path, const Point *at)
@@ -218,6 +221,41 @@ static Point stand_at(Path *path, int k)
     return at;
 }
 
+/* A step whose lagged quantities are its own end's: its matrix is A + L, L = d2E/dx dx_lag, which is not symmetric. */
+typedef struct Lagging {
+    System *sys;
+    const Point *at;
+    bool transposed;
+    double *work; /* [dofs] */
+} Lagging;
+
+/* A^-1 L x, or A^-1 L^T x. */
+static void lag_product(void *self, const double *x, double *y)
+{
+    Lagging *lagging = self;
+    int n = system_dof_count(lagging->sys);
+    memset(lagging->work, 0, (size_t)n * sizeof *lagging->work);
+    if (lagging->transposed)
+        system_lag(lagging->sys, lagging->at, x, lagging->work);
+    else
+        system_lag_forward(lagging->sys, lagging->at, x, lagging->work);
+    system_solve(lagging->sys, lagging->work, y);
+}
+
+static const double LAG_TOL = 1e-14;
+enum { LAG_ITERATIONS = 100 };
+
+/* y = A^-1 b, or of A + L or its transposed, with the factor of A at hand. */
+static void solve_step(Path *path, const Point *at, bool transposed, const double *b, double *y)
+{
+    System *sys = path->problem->sys;
+    system_solve(sys, b, y);
+    if (!at->x_lag || !system_lags(sys)) return;
+    Lagging lagging = {sys, at, transposed, mem_alloc((size_t)path->dofs, sizeof(double))};
+    path->unsolved |= !gmres_solve(path->dofs, lag_product, &lagging, y, LAG_TOL, LAG_ITERATIONS, y);
+    mem_free(lagging.work);
+}
+
 void path_tangent(Path *path, double *dp, const double *dv, double *dx)
 {
     const TrajectoryProblem *problem = path->problem;
@@ -231,7 +269,7 @@ void path_tangent(Path *path, double *dp, const double *dv, double *dx)
             control_apply(&problem->controls[c], path->frame[k], path->time[k], dp);
         system_param_forward(sys, &at, dp, now);
         system_prev_forward(sys, &at, before, speed, now);
-        system_solve(sys, now, now);
+        solve_step(path, &at, false, now, now);
         for (int i = 0; i < path->dofs; i++) now[i] = -now[i];
         for (int i = 0; i < positions; i++) speed[i] = (now[i] - before[i]) / path->dt[k];
     }
@@ -258,7 +296,7 @@ void path_adjoint(Path *path, double *seed, double *dp, double *dv)
         Point at = stand_at(path, k);
         double *before = seed + (size_t)(k - 1) * n, *now = before + n;
         pull_velocity(system_position_count(sys), path->dt[k], dv, now, before);
-        system_solve(sys, now, w);
+        solve_step(path, &at, true, now, w);
         memset(dv, 0, n * sizeof *dv);
         system_prev(sys, &at, w, before, dv);
         for (int i = 0; i < path->dofs; i++) w[i] = -w[i];

@@ -16,6 +16,7 @@ typedef struct Path {
     long factor_bytes, factor_memory; /* that the kept ones take; that they may take       */
     double *p;                        /* [params] controls as of the last use                        */
     double *v, *gradient;             /* [dofs] */
+    bool unsolved; /* a sweep since this was cleared has not solved its equations (march.implicit) */
 } Path;
 
 Path path_create(const TrajectoryProblem *problem, const MarchDef *march, long factor_memory);

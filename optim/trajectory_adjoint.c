@@ -135,8 +135,12 @@ double trajectory_evaluate(Trajectory *t, const double *u, double *gradient, Tra
     memset(t->dp, 0, (size_t)t->problem.params->size * sizeof *t->dp);
     objective(t, path, seed, t->dp);
     path_adjoint(path, seed, t->dp, t->dv);
-    design_transpose(design, 0, u, t->dp, gradient);
     info->backward = clock_seconds() - begin;
+    if (path->unsolved) {
+        info->march.newton.status = NEWTON_UNSETTLED;
+        return INFINITY;
+    }
+    design_transpose(design, 0, u, t->dp, gradient);
     return F;
 }
 

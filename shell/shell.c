@@ -53,6 +53,7 @@ Shell *shell_create(Mesh *mesh, const FluxFields *fields)
 void shell_destroy(Shell *shell)
 {
     if (!shell) return;
+    world_destroy(shell->world);
     mesh_destroy(shell->mesh);
     flux_fields_clear(&shell->fields);
     params_clear(&shell->params);
@@ -60,6 +61,20 @@ void shell_destroy(Shell *shell)
     mem_free(shell->fixed);
     mem_free(shell->clamped);
     mem_free(shell);
+}
+
+WorldBody shell_world_body(const Shell *shell)
+{
+    const Mesh *mesh = shell->mesh;
+    return (WorldBody){.vertex_count = mesh->vertex_count,
+                       .edge_count = mesh->edge_count,
+                       .face_count = mesh->face_count,
+                       .edges = (const int(*)[2])mesh->edges,
+                       .faces = (const int(*)[3])mesh->faces,
+                       .rest = (const double(*)[3])mesh->rest,
+                       .part = mesh->vertex_component,
+                       .fixed = shell->fixed,
+                       .thickness = shell->thickness};
 }
 
 void shell_fix(Shell *shell, int vertex, int axis)
@@ -101,6 +116,7 @@ static System *make_system(const Shell *shell, bool dynamic)
     System *sys = system_create(shell_dof_count(shell), classes, 2);
     for (int t = 0; t < shell_term_row_count; t++) system_add(sys, shell_term_rows[t].create(shell));
     if (dynamic) add_kinetic_terms(shell, sys);
+    if (shell->world) world_add_terms(shell->world, sys, dynamic);
     for (int i = 0; i < positions; i++)
         if (shell->fixed[i]) system_fix(sys, i);
     for (int e = 0; e < mesh->edge_count; e++)

@@ -8,6 +8,7 @@
 #include "solve/system.h"
 #include "surface/flux_field.h"
 #include "surface/mesh.h"
+#include "world/world.h"
 
 typedef enum BendingModel {
     BENDING_MIDEDGE, /* one angle per edge: converges on any mesh  [Grinspun et al. 2006] */
@@ -22,6 +23,7 @@ typedef struct Shell {
     double *rest_angle; /* [edge] dihedral angle of the rest shape, rad; 0 on the boundary; owned         */
     bool *fixed;        /* [3*vertex_count] coordinates that are held; owned                              */
     bool *clamped;      /* [edge] the slope is held as at rest; owned                                     */
+    World *world;       /* what it meets; owned; NULL: nothing                                             */
 
     Params params;     /* blocks and their first entries in p: */
     int young;         /* [face] Pa                                                            */
@@ -46,6 +48,9 @@ static inline int shell_angle_dof(const Shell *shell, int edge)
 {
     return 3 * shell->mesh->vertex_count + edge;
 }
+
+/* What it shows to the world; borrowed from the shell. */
+WorldBody shell_world_body(const Shell *shell);
 
 /* Holds one coordinate (axis 0, 1, 2) of a vertex; holds the slope of an edge. */
 void shell_fix(Shell *shell, int vertex, int axis);

@@ -10,8 +10,12 @@ typedef struct March {
     double *p;
     State *state, trial;
     MarchInfo *info;
-    double *other; /* [dofs] another start */
+    double *other;  /* [dofs] another start */
+    double *wanted; /* [dofs] a start before it is made admissible */
+    double *lag;    /* [dofs] where the last solution was; NULL: what is lagged is the start's */
 } March;
+
+enum { LAG_PASSES = 40 };
 
 MarchDef march_default(void)
 {
@@ -21,10 +25,22 @@ MarchDef march_default(void)
     return def;
 }
 
+/* Makes a start x admissible; false where what is held cannot be where it is to be. */
+static bool admit(March *m, double *x)
+{
+    bool stays = true;
+    size_t n = (size_t)m->trial.dofs;
+    memcpy(m->wanted, x, n * sizeof *x);
+    system_project(m->sys, m->state->x, x);
+    for (size_t i = 0; m->def->move && i < n; i++)
+        stays = stays && (x[i] == m->wanted[i] || !system_is_fixed(m->sys, (int)i));
+    return stays;
+}
+
 /* Takes the other start if its energy is less. */
 static void compare_start(March *m, Point *at, double *energy)
 {
-    system_project(m->sys, m->state->x, m->other);
+    if (!admit(m, m->other)) return;
     at->x = m->other;
     Evaluation other = system_energy(m->sys, at);
     if (!other.finite || other.energy >= *energy) return;
@@ -39,14 +55,15 @@ static void put_state(const March *m, double time, double *x)
     if (m->def->move) m->def->move(m->def->self, time, x);
 }
 
-/* The previous state, the inertial guess x + dt v or the caller's, whichever has least energy. */
-static void choose_start(March *m, Point *at)
+/* The previous state, the inertial guess x + dt v or the caller's, whichever has least energy. False where what is held
+ * cannot go where it is to go. */
+static bool choose_start(March *m, Point *at)
 {
     int positions = system_position_count(m->sys);
     double *x = m->trial.x;
     state_copy(&m->trial, m->state);
     put_state(m, at->time, x);
-    system_project(m->sys, m->state->x, x);
+    if (!admit(m, x)) return false;
     at->x = x;
     Evaluation rest = system_energy(m->sys, at);
     double energy = rest.finite ? rest.energy : INFINITY;
@@ -57,6 +74,25 @@ static void choose_start(March *m, Point *at)
     if (m->def->guess) put_state(m, at->time, m->other);
     if (m->def->guess && m->def->guess(m->def->self, at->time, at->dt, m->other))
         compare_start(m, at, &energy);
+    return true;
+}
+
+/* Solves the step again until what is lagged is that of the solution: one more iteration then changes nothing. */
+static NewtonInfo settle_lag(March *m, Point at, NewtonInfo first, const NewtonObserver *observer)
+{
+    NewtonInfo newton = first;
+    int pass = 0;
+    at.x_lag = m->lag;
+    for (; newton.status == NEWTON_CONVERGED && pass < LAG_PASSES; pass++) {
+        memcpy(m->lag, m->trial.x, (size_t)m->trial.dofs * sizeof *m->lag);
+        NewtonInfo next = newton_minimize(m->sys, &m->def->newton, &at, &m->trial, observer);
+        bool stays = next.iterations == 1;
+        newton_add_counts(&next, &newton);
+        newton = next;
+        if (stays) break;
+    }
+    if (pass == LAG_PASSES) newton.status = NEWTON_UNSETTLED;
+    return newton;
 }
 
 static bool try_step(March *m, double dt)
@@ -70,8 +106,9 @@ static bool try_step(March *m, double dt)
                 .v_prev = state->v,
                 .dt = dt};
     if (m->def->load) m->def->load(m->def->self, at.time, m->p);
-    choose_start(m, &at);
-    NewtonInfo newton = newton_minimize(m->sys, &m->def->newton, &at, trial, observer);
+    NewtonInfo newton = {.status = NEWTON_BLOCKED};
+    if (choose_start(m, &at)) newton = newton_minimize(m->sys, &m->def->newton, &at, trial, observer);
+    if (m->lag) newton = settle_lag(m, at, newton, observer);
     newton_add_counts(&newton, &m->info->newton);
     m->info->newton = newton;
     if (newton.status != NEWTON_CONVERGED) return false;
@@ -97,8 +134,12 @@ bool march_step(System *sys, const MarchDef *def, double dt, double *p, State *s
     *info = (MarchInfo){0};
     March m = {.sys = sys, .def = def, .p = p, .state = state, .trial = state_clone(state), .info = info};
     m.other = mem_alloc((size_t)state->dofs, sizeof *m.other);
+    m.wanted = mem_alloc((size_t)state->dofs, sizeof *m.wanted);
+    if (def->implicit && system_lags(sys)) m.lag = mem_alloc((size_t)state->dofs, sizeof *m.lag);
     bool ok = advance(&m, dt, def->cuts);
     mem_free(m.other);
+    mem_free(m.wanted);
+    mem_free(m.lag);
     state_destroy(&m.trial);
     return ok;
 }

@@ -4,7 +4,10 @@
  * Each Newton step is solved by conjugate gradients with the factor of an earlier moment, which is made anew when they
  * take too many iterations: small steps need none of their own. A step that fails is cut in halves, down to a thousandth; the sub-steps are real steps of the discrete
  * motion. Dofs beyond the positions (edge angles) have no inertia: they are in equilibrium at the end of
- * every step. */
+ * every step.
+ *
+ * What terms lag (Point.x_lag) is taken at the start of the step; or, `implicit`, at its end: the step is then solved again
+ * and again with what the solution before gives, until it stays where it is. */
 #pragma once
 #include "solve/newton.h"
 
@@ -12,6 +15,7 @@ typedef struct MarchDef {
     NewtonDef newton;
     NewtonObserver observer;                          /* may be zero */
     int cuts;                                         /* how often a step may be halved; default 10 */
+    bool implicit;                                    /* what is lagged is the step's end's         */
     void (*load)(void *self, double time, double *p); /* what depends on time; may be NULL          */
     bool (*move)(void *self, double time, double *x); /* held coordinates at that time; may be NULL */
     /* Another start of the step that ends at that time, free dofs only; false: none. May be NULL. */

@@ -40,6 +40,9 @@ static const struct {
     [NEWTON_NOT_FINITE] = {"not_finite", "energy or forces at the start are not finite numbers"},
     [NEWTON_STOPPED] = {"stopped", "interrupted"},
     [NEWTON_UNBALANCED] = {"evaluated", "a pose whose forces are not in balance"},
+    [NEWTON_CRUSHED] = {"crushed", "a piece of the body is crushed to nothing"},
+    [NEWTON_BLOCKED] = {"blocked", "what is held was moved through another part of the body"},
+    [NEWTON_UNSETTLED] = {"unsettled", "friction and the forces that press do not agree with each other"},
 };
 
 const char *newton_status_name(NewtonStatus status)

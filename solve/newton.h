@@ -34,6 +34,9 @@ typedef enum NewtonStatus {
     NEWTON_NOT_FINITE,     /* energy or forces at the start are not finite */
     NEWTON_STOPPED,        /* the observer asked for it */
     NEWTON_UNBALANCED,     /* of a pose that was only looked at: its forces are not in balance */
+    NEWTON_UNSETTLED, /* of a step of time: friction and the forces that it follows do not agree (march.h) */
+    NEWTON_BLOCKED,   /* of a step of time: what is held was to go where the body does not let it */
+    NEWTON_CRUSHED, /* of a body, by whoever knows it: a piece has lost its size, and energies mean nothing */
 } NewtonStatus;
 
 typedef struct NewtonInfo {

@@ -1,6 +1,7 @@
 #include "solve/ramp.h"
 #include "base/memory.h"
 #include <math.h>
+#include <math.h>
 #include <string.h>
 
 RampDef ramp_default(void)
@@ -33,21 +34,20 @@ static bool is_steady(const Params *params, const double *from, const double *to
     return same;
 }
 
-/* Moves what is held, a part of what is left of its way; false where it cannot, or would pass through something. */
-static bool move(const System *sys, const RampDef *def, double part, const State *from, State *state)
-{
-    if (!def->move) return true;
-    if (!def->move(def->self, part, state->x)) return false;
-    double *x = mem_copy(state->x, (size_t)state->dofs, sizeof *x), sum = 0;
-    system_project(sys, from->x, x);
-    for (int i = 0; i < state->dofs; i++) sum += 0 * x[i];
-    mem_free(x);
-    return sum == 0;
-}
-
 static bool reached(NewtonStatus status)
 {
     return status == NEWTON_CONVERGED || status == NEWTON_SADDLE || status == NEWTON_NEUTRAL;
+}
+
+/* Can what is held go from where it is to where it has been moved in the state? */
+static bool way_is_free(const System *sys, const double *from, const State *state)
+{
+    bool free = true;
+    double *x = mem_copy(state->x, (size_t)state->dofs, sizeof *x);
+    system_project(sys, from, x);
+    for (int i = 0; i < state->dofs; i++) free = free && isfinite(x[i]);
+    mem_free(x);
+    return free;
 }
 
 RampInfo ramp_solve(System *sys, const Params *params, const RampDef *def, const double *from,
@@ -64,7 +64,10 @@ RampInfo ramp_solve(System *sys, const Params *params, const RampDef *def, const
         state_copy(&kept, state);
         interpolate(params, from, to, part, p);
         NewtonInfo newton = {.status = NEWTON_NOT_FINITE};
-        if (move(sys, def, (part - info.reached) / (1 - info.reached), &kept, state))
+        bool moved = !def->move || def->move(def->self, (part - info.reached) / (1 - info.reached), state->x);
+        if (moved && def->move && !way_is_free(sys, kept.x, state))
+            newton.status = NEWTON_BLOCKED;
+        else if (moved)
             newton =
                 newton_minimize(sys, &def->newton, &(Point){.p = p, .time = state->time}, state, observer);
         newton_add_counts(&newton, &info.newton);

@@ -135,6 +135,19 @@ void flux_field_eval(const FluxField *field, const double x[3], double time, Flu
         sample_dipole(field, vec3_load(x), sample);
 }
 
+void flux_field_value(const FluxField *field, const double x[3], double time, double flux[3])
+{
+    if (field->formula) {
+        double variables[5];
+        put_place(variables, vec3_load(x), time);
+        if (!formula_eval(field->formula, variables, flux, NULL)) vec3_store(flux, vec3(NAN, NAN, NAN));
+    } else {
+        FluxSample sample;
+        sample_dipole(field, vec3_load(x), &sample);
+        memcpy(flux, sample.flux, sizeof sample.flux);
+    }
+}
+
 int flux_fields_add(FluxFields *fields, FluxField *field)
 {
     size_t count = (size_t)fields->count;

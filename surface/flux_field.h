@@ -25,6 +25,9 @@ void flux_field_destroy(FluxField *field);
 /* Re-entrant. A value that is not finite leaves NaN, which the solver notices. */
 void flux_field_eval(const FluxField *field, const double x[3], double time, FluxSample *sample);
 
+/* The value alone, for a fiftieth where it is a formula. */
+void flux_field_value(const FluxField *field, const double x[3], double time, double flux[3]);
+
 /* The fields around a body, each with a factor in its block field_scale. */
 typedef struct FluxFields {
     int count;

@@ -1,7 +1,5 @@
-/* A body that does not pass through itself: derivatives, motions, adjoints, and what a resumed run needs. */
+/* A body that does not pass through itself: derivatives, motions, and what a resumed run needs. */
 #include "base/workers.h"
-#include "optim/objectives.h"
-#include "optim/trajectory_adjoint.h"
 #include "solve/check.h"
 #include "solve/march.h"
 #include "tests/self_fixture.h"
@@ -219,117 +217,6 @@ static void test_resumed(void **unused)
     body_clear(&other.body);
 }
 
-/* ---- Adjoints ---- */
-
-enum { STEPS = 14, UNKNOWNS = 3 };
-
-typedef struct Fixture {
-    SelfBody body;
-    Design design;
-    Objective objective;
-    TrajectoryProblem problem;
-    double u[UNKNOWNS];
-} Fixture;
-
-static void make(Fixture *f, double mu)
-{
-    *f = (Fixture){.body = flying_sheets(5, 2, mu)};
-    const Mesh *mesh = f->body.body.shell->mesh;
-    const char *const names[UNKNOWNS] = {"young", "self_stiffness", "self_friction"};
-    int *all = mem_alloc((size_t)mesh->vertex_count, sizeof *all);
-    for (int v = 0; v < mesh->vertex_count; v++) all[v] = v;
-    f->objective = objective_target(mesh->vertex_count, all, (const double(*)[3])mesh->rest, 1);
-    f->objective.first = f->objective.last = STEPS;
-    f->design.case_count = 1;
-    for (int k = 0; k < (mu > 0 ? UNKNOWNS : UNKNOWNS - 1); k++) {
-        const ParamBlock *block = params_find(&f->body.body.shell->params, names[k]);
-        design_add(&f->design, (Unknown){.block = block,
-                                         .group_count = 1,
-                                         .group = mem_alloc((size_t)block->count, sizeof(int)),
-                                         .map = UNKNOWN_LOG,
-                                         .scale = 1,
-                                         .lower = -INFINITY,
-                                         .upper = INFINITY});
-    }
-    design_read(&f->design, 0, f->body.body.p, f->u);
-    f->problem = (TrajectoryProblem){.sys = f->body.body.sys,
-                                     .design = &f->design,
-                                     .params = &f->body.body.shell->params,
-                                     .objectives = &f->objective,
-                                     .objective_count = 1,
-                                     .start = &f->body.body.state,
-                                     .step = 1e-3,
-                                     .steps = STEPS,
-                                     .p = f->body.body.p};
-    mem_free(all);
-}
-
-static void clear(Fixture *f)
-{
-    design_clear(&f->design);
-    objective_destroy(f->objective);
-    body_clear(&f->body.body);
-}
-
-/* dF along v from the motion's tangent. */
-static double tangent_slope(const Fixture *f, Trajectory *t, const double *v)
-{
-    int n = f->body.body.state.dofs, size = f->body.body.shell->params.size;
-    double *dx = mem_alloc((STEPS + 1) * (size_t)n, sizeof *dx), slope = 0;
-    double *gx = mem_alloc((size_t)n, sizeof *gx), *dp = mem_alloc((size_t)size, sizeof *dp);
-    trajectory_tangent(t, v, dx);
-    f->objective.ops->value(f->objective.self, 1, trajectory_frame(t, STEPS).x, f->body.body.p, gx, dp);
-    for (int i = 0; i < n; i++) slope += gx[i] * dx[STEPS * n + i];
-    mem_free(dx);
-    mem_free(gx);
-    mem_free(dp);
-    return slope;
-}
-
-static double value_at(const Fixture *f, const TrajectoryDef *def, const double *v, double a)
-{
-    double u[UNKNOWNS] = {0};
-    for (int k = 0; k < f->design.size; k++) u[k] = f->u[k] + a * v[k];
-    Trajectory *t = trajectory_create(&f->problem, def);
-    TrajectoryInfo info;
-    double F = trajectory_evaluate(t, u, NULL, &info);
-    trajectory_destroy(t);
-    return F;
-}
-
-static void check_adjoint(long factor_memory, double mu)
-{
-    Fixture f;
-    make(&f, mu);
-    TrajectoryDef def = trajectory_default();
-    def.march.newton.energy_tol = 1e-15;
-    def.factor_memory = factor_memory;
-    Trajectory *t = trajectory_create(&f.problem, &def);
-    TrajectoryInfo info;
-    const double v[UNKNOWNS] = {0.7, -0.4, 0.9};
-    double gradient[UNKNOWNS] = {0}, adjoint = 0, best = INFINITY;
-    assert_true(isfinite(trajectory_evaluate(t, f.u, gradient, &info)));
-    trajectory_accept(t);
-    for (int k = 0; k < f.design.size; k++) adjoint += gradient[k] * v[k];
-    double tangent = tangent_slope(&f, t, v);
-    for (double h = 1e-3; h > 1e-7; h /= 10) {
-        double F[4];
-        for (int k = 0; k < 4; k++) F[k] = value_at(&f, &def, v, (double[]){-2, -1, 1, 2}[k] * h);
-        best = fmin(best, fabs(adjoint / ((8 * (F[2] - F[1]) - (F[3] - F[0])) / (12 * h)) - 1));
-    }
-    print_message("adjoint against tangent %.1e, against differences %.1e\n", fabs(adjoint / tangent - 1),
-                  best);
-    assert_true(fabs(adjoint / tangent - 1) < 1e-11 && best < 1e-4);
-    trajectory_destroy(t);
-    clear(&f);
-}
-
-static void test_adjoint(void **unused)
-{
-    (void)unused;
-    for (int k = 0; k < 4; k++) check_adjoint(k % 2 ? 1L << 30 : 0, k / 2 ? 0.4 : 0);
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -340,7 +227,6 @@ int main(void)
         cmocka_unit_test(test_statics),
         cmocka_unit_test(test_threads),
         cmocka_unit_test(test_resumed),
-        cmocka_unit_test(test_adjoint),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,10 +1,12 @@
 /* The adjoint of a motion in time: against the tangent, against differences, with and without kept factors,
- * for fields over time, magnetisation, stiffness, folds and the start; cut steps and moved vertices included.
+ * for fields over time, magnetisation, stiffness, folds and the start; cut steps, moved vertices, and contact with
+ * friction included.
  */
 #include "base/random.h"
 #include "optim/objectives.h"
 #include "optim/trajectory_adjoint.h"
 #include "tests/shell_fixture.h"
+#include "world/obstacle_shapes.h"
 #include <math.h>
 #include <string.h>
 
@@ -30,11 +32,32 @@ static bool shake(void *self, double time, double *x)
     return true;
 }
 
-static Shell *make_shell(BendingModel bending)
+typedef enum Ground { NO_GROUND, LAGGED, IMPLICIT } Ground;
+
+/* A slope under the strip and a ball that is rolled over it, with friction; middles of edges and faces touch, too. */
+static void add_ground(Shell *shell, bool implicit)
+{
+    Obstacle *list = mem_alloc(2, sizeof *list);
+    list[0] = obstacle_plane((double[]){0, 0, -2.5e-4}, (double[]){0.05, 0.02, 1});
+    list[1] = obstacle_sphere((double[]){0.008, 0.002, 2.3e-3}, 2e-3, false);
+    list[1].feature = 1e-3;
+    list[1].move = formula_create((const char *[]){"0.1*t", "0", "-0.01*t"}, 3, NULL, 0,
+                                  (const char *const[]){"t", NULL}, NULL);
+    list[1].turn = formula_create((const char *[]){"0", "50*t", "10*t"}, 3, NULL, 0,
+                                  (const char *const[]){"t", NULL}, NULL);
+    WorldBody body = shell_world_body(shell);
+    shell->world = world_create(&body, list, 2);
+    shell->world->rubs = true, shell->world->implicit = implicit;
+    shell->world->slip_speed = 0.01;
+    world_add_params(shell->world, &shell->params);
+}
+
+static Shell *make_shell(BendingModel bending, Ground ground)
 {
     Shell *shell = shell_of_sheet((double[]){0.012, 0.004}, (int[]){6, 2}, PATTERN_ALTERNATE);
     shell->thickness = 4e-4, shell->poisson = 0.4, shell->density = 1000, shell->bending = bending;
     hold_root(shell, true);
+    if (ground) add_ground(shell, ground == IMPLICIT);
     return shell;
 }
 
@@ -72,13 +95,19 @@ static void start_params(Fixture *f, double *p, Random *random)
             p[f->shell->magnetization + 3 * k + i] = (i == 0 ? 5e4 : 0) + 1e4 * random_signed(random);
     }
     p[f->shell->damping] = 1e-5;
+    if (f->shell->world) {
+        p[f->shell->gravity + 2] = -200;
+        p[f->shell->world->stiffness] = 100;
+        p[f->shell->world->friction] = 0.5, p[f->shell->world->friction + 1] = 0.3;
+    }
     for (int i = 0; i < 3 * f->control.rows; i++) p[f->control.from + i] = 0.02 * random_signed(random);
 }
 
-static void make(Fixture *f, BendingModel bending, ControlKind kind, bool moving)
+static void make(Fixture *f, BendingModel bending, Ground ground, ControlKind kind, bool moving)
 {
     Random random = random_seed(7);
-    *f = (Fixture){.shell = make_shell(bending), .def = trajectory_default()};
+    *f = (Fixture){.shell = make_shell(bending, ground), .def = trajectory_default()};
+    f->def.march.implicit = ground == IMPLICIT;
     add_unknowns(f, kind);
     size_t size = (size_t)f->design.size;
     double *p = mem_alloc((size_t)f->shell->params.size, sizeof *p);
@@ -202,7 +231,7 @@ static void check(BendingModel bending, ControlKind kind, bool moving, bool cuts
 {
     Fixture f;
     TrajectoryInfo info;
-    make(&f, bending, kind, moving);
+    make(&f, bending, NO_GROUND, kind, moving);
     if (cuts) f.def.march.newton.max_iterations = 6;
     f.def.march.newton.energy_tol = 1e-14;
     Trajectory *t = trajectory_create(&f.problem, &f.def);
@@ -245,13 +274,57 @@ static void test_gradients(void **state)
     assert_int_equal(mem_live_count(), blocks);
 }
 
+/* The unknowns of the ground, too. Where contacts come and go differences of one size mislead: the best of several. */
+static void check_ground(BendingModel bending, Ground ground, ControlKind kind)
+{
+    Fixture f;
+    TrajectoryInfo info;
+    make(&f, bending, ground, kind, true);
+    f.def.march.newton.energy_tol = 1e-16;
+    Trajectory *t = trajectory_create(&f.problem, &f.def);
+    double F = trajectory_evaluate(t, f.u, f.gradient, &info), seen = INFINITY;
+    assert_true(isfinite(F));
+    WorldSums sums = {0};
+    trajectory_accept(t);
+    State end = trajectory_frame(t, STEPS);
+    Point at = state_point(&end, trajectory_params(t, STEPS));
+    world_measure(f.shell->world, &at, &sums);
+    double adjoint = dot(f.design.size, f.gradient, f.v), tangent = by_tangent(&f, t);
+    trajectory_destroy(t);
+    for (double h = 1e-3; h > 5e-7; h /= 10)
+        seen = fmin(seen, fabs(by_differences(&f, h, NULL, NULL) / adjoint - 1));
+    f.def.factor_memory = 0;
+    double *again = mem_alloc((size_t)f.design.size, sizeof *again), worst = 0;
+    t = trajectory_create(&f.problem, &f.def);
+    trajectory_evaluate(t, f.u, again, &info);
+    for (int i = 0; i < f.design.size; i++) worst = fmax(worst, fabs(again[i] - f.gradient[i]));
+    trajectory_destroy(t);
+    mem_free(again);
+    print_message("%s %-8s %s: %g touch; tangent %.1e, differences %.1e; %d Newton iterations\n",
+                  bending == BENDING_HINGE ? "hinge  " : "midedge", kinds[kind],
+                  ground == IMPLICIT ? "implicit" : "lagged", sums.contact.touching,
+                  fabs(adjoint / tangent - 1), seen, info.march.newton.iterations);
+    assert_true(sums.contact.touching > 5 && fabs(adjoint / tangent - 1) < 1e-11 && seen < 1e-4 &&
+                worst == 0);
+    clear(&f);
+}
+
+static void test_ground(void **state)
+{
+    (void)state;
+    for (Ground ground = LAGGED; ground <= IMPLICIT; ground++) {
+        check_ground(BENDING_HINGE, ground, CONTROL_KNOT);
+        check_ground(BENDING_MIDEDGE, ground, CONTROL_FRAME);
+    }
+}
+
 /* v'(2 J^T J)v is twice the squared residuals' change to first order. */
 static void test_product(void **state)
 {
     (void)state;
     Fixture f;
     TrajectoryInfo info;
-    make(&f, BENDING_HINGE, CONTROL_FRAME, false);
+    make(&f, BENDING_HINGE, NO_GROUND, CONTROL_FRAME, false);
     f.problem.objective_count = 2;
     Trajectory *t = trajectory_create(&f.problem, &f.def);
     int dofs = shell_dof_count(f.shell), tip = mesh_group(f.shell->mesh, "tip", 0)->members[0];
@@ -279,7 +352,7 @@ static void test_restore(void **state)
     (void)state;
     Fixture f;
     TrajectoryInfo info;
-    make(&f, BENDING_MIDEDGE, CONTROL_KNOT, false);
+    make(&f, BENDING_MIDEDGE, NO_GROUND, CONTROL_KNOT, false);
     f.def.march.newton.max_iterations = 6; /* with sub-steps */
     size_t size = (size_t)f.design.size;
     Trajectory *a = trajectory_create(&f.problem, &f.def);
@@ -314,7 +387,7 @@ static void test_tolerance(void **state)
     for (BendingModel bending = BENDING_MIDEDGE; bending <= BENDING_HINGE; bending++) {
         Fixture f;
         TrajectoryInfo info;
-        make(&f, bending, CONTROL_FRAME, false);
+        make(&f, bending, NO_GROUND, CONTROL_FRAME, false);
         int size = f.design.size;
         double *exact = mem_alloc((size_t)size, sizeof *exact), norm = 0, off = 0;
         Trajectory *t = trajectory_create(&f.problem, &f.def);
@@ -337,7 +410,8 @@ static void test_tolerance(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_gradients), cmocka_unit_test(test_product),
-                                       cmocka_unit_test(test_restore), cmocka_unit_test(test_tolerance)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_gradients), cmocka_unit_test(test_ground),
+                                       cmocka_unit_test(test_product), cmocka_unit_test(test_restore),
+                                       cmocka_unit_test(test_tolerance)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -13,6 +13,7 @@
 #pragma once
 #include "base/error.h"
 #include "view/chart.h"
+#include "view/raster.h"
 
 /* Curves of one kind. Many of them are drawn as thin, translucent lines, so that their density is seen. */
 typedef struct CurvesSet {
@@ -21,8 +22,9 @@ typedef struct CurvesSet {
     const int *offsets;        /* [curve_count + 1] first point of each curve                */
     const double (*points)[3]; /* m; a row of NaN interrupts its curve                       */
     Color color;
-    double width, dash; /* of a single curve, pt (canvas.h)                                  */
-    bool moment;        /* of a motion: an animation shows these sets one after the other    */
+    double width, dash;  /* of a single curve, pt (canvas.h)                                  */
+    bool moment;         /* of a motion: an animation shows these sets one after the other    */
+    Surroundings around; /* drawn below all curves: of the sets that are shown those of the last with any */
 } CurvesSet;
 
 enum { CURVES_CHARTS_MAX = 2 };

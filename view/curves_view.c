@@ -21,11 +21,13 @@ CurvesMargins curves_view_margins(const CurvesView *view)
 
 /* ---- What is seen ---- */
 
-static void widen(double low[3], double high[3], const double *point)
+static void widen(double low[3], double high[3], Mat3 directions, const double *point)
 {
-    for (int k = 0; k < 3; k++) {
-        low[k] = fmin(low[k], point[k]);
-        high[k] = fmax(high[k], point[k]);
+    double at[3];
+    vec3_store(at, mat3_times(directions, vec3_load(point)));
+    for (int k = 0; k < 3 && isfinite(at[0] + at[1] + at[2]); k++) {
+        low[k] = fmin(low[k], at[k]);
+        high[k] = fmax(high[k], at[k]);
     }
 }
 
@@ -35,11 +37,9 @@ static bool bounds(const CurvesScene *scene, Mat3 directions, double low[3], dou
     for (int k = 0; k < 3; k++) low[k] = INFINITY, high[k] = -INFINITY;
     for (int s = 0; s < scene->set_count; s++) {
         const CurvesSet *set = &scene->sets[s];
-        for (int i = set->offsets[0]; i < set->offsets[set->curve_count]; i++) {
-            double at[3];
-            vec3_store(at, mat3_times(directions, vec3_load(set->points[i])));
-            if (isfinite(at[0] + at[1] + at[2])) widen(low, high, at);
-        }
+        for (int i = set->offsets[0]; i < set->offsets[set->curve_count]; i++)
+            widen(low, high, directions, set->points[i]);
+        for (int i = 0; i < set->around.near_count; i++) widen(low, high, directions, set->around.near[i]);
     }
     return low[0] <= high[0];
 }
@@ -244,6 +244,36 @@ static void draw_measures(Canvas *canvas, const CurvesScene *scene, const Curves
     page_draw_length(canvas, view->scale, (Vec2){view->box.x + view->box.width, y});
 }
 
+/* ---- Obstacles ---- */
+
+static const RasterMesh *obstacles_of(const CurvesScene *scene, int only)
+{
+    const RasterMesh *obstacles = NULL;
+    for (int s = 0; s < scene->set_count; s++)
+        if (scene->sets[s].around.obstacles && (!scene->sets[s].moment || only < 0 || s == only))
+            obstacles = scene->sets[s].around.obstacles;
+    return obstacles;
+}
+
+static void draw_obstacles(Canvas *canvas, const RasterMesh *obstacles, const CurvesView *view)
+{
+    Box box = view->box;
+    double resolution = canvas_resolution(canvas);
+    int width = (int)lround(resolution * box.width), height = (int)lround(resolution * box.height);
+    if (width < 1 || height < 1) return;
+    Camera camera = view->camera;
+    camera.center = vec3(0, 0, 0), camera.distance = 0;
+    camera.scale = resolution * view->scale;
+    camera.x = -camera.scale * view->low[0], camera.y = camera.scale * view->high[1];
+    Raster *raster = raster_create(width, height);
+    unsigned char *rgba = mem_alloc(4 * (size_t)width * (size_t)height, 1);
+    raster_mesh(raster, &camera, obstacles);
+    raster_resolve(raster, rgba);
+    canvas_image(canvas, rgba, width, height, box);
+    mem_free(rgba);
+    raster_destroy(raster);
+}
+
 void curves_view_draw(Canvas *canvas, const CurvesScene *scene, const CurvesView *view, int only)
 {
     Box box = view->box;
@@ -256,7 +286,9 @@ void curves_view_draw(Canvas *canvas, const CurvesScene *scene, const CurvesView
                               (Vec2){box.x + box.width - 5, box.y - 8});
     } else
         draw_measures(canvas, scene, view);
+    const RasterMesh *obstacles = obstacles_of(scene, only);
     canvas_clip(canvas, box);
+    if (obstacles) draw_obstacles(canvas, obstacles, view);
     for (int s = 0; s < scene->set_count; s++)
         if (!scene->sets[s].moment || only < 0 || s == only) draw_set(canvas, view, &scene->sets[s]);
     draw_clamps(canvas, scene, view);

@@ -8,7 +8,7 @@
 #include <stdio.h>
 
 /* Points; see the sketch in picture.h. */
-static const double HEADING = 18, MEASURES = 24, PADDING = 6, KEYS = 180, CHART_HEIGHT = 150;
+static const double HEADING = 18, PADDING = 6, KEYS = 180, CHART_HEIGHT = 150;
 
 /* Where everything goes. Lengths that a raster image fills are whole pixels. */
 typedef struct Layout {
@@ -39,6 +39,14 @@ static int keys_count(const PictureScene *scene)
     return panel_any_field(scene) + panel_any_vectors(scene) + any_wires(scene);
 }
 
+/* Of axes and lengths below a panel: apart from what obstacles fill. */
+static double measures_height(const PictureScene *scene)
+{
+    bool full = false;
+    for (int i = 0; i < scene->panel_count; i++) full = full || scene->panels[i].around.obstacles;
+    return full ? 42 : 24;
+}
+
 static int scene_columns(const PictureScene *scene)
 {
     if (panel_any_beside(scene)) return 2;
@@ -65,7 +73,7 @@ static double layout_cells(const PanelStyle *style, double top, double width, Bo
             cells[i] = (Box){snap(PAGE_MARGIN + (i - first) * (width + PAGE_GAP), style->resolution),
                              snap(top + HEADING, style->resolution), width,
                              snap(height + 2 * PADDING, style->resolution)};
-        top += HEADING + height + 2 * PADDING + MEASURES + PAGE_GAP;
+        top += HEADING + height + 2 * PADDING + measures_height(scene) + PAGE_GAP;
     }
     return top;
 }
@@ -140,7 +148,8 @@ static void draw_panels(Canvas *canvas, const PanelStyle *style, const Layout *p
         Box box = page->cells[i];
         draw_result_heading(canvas, scene, &scene->panels[i], box);
         panel_draw_result(canvas, style, i, box);
-        panel_draw_measures(canvas, style, i, (Box){box.x, box.y, box.width, box.height + MEASURES});
+        panel_draw_measures(canvas, style, i,
+                            (Box){box.x, box.y, box.width, box.height + measures_height(scene)});
         box.x = snap(box.x + page->cell_width + PAGE_GAP, style->resolution);
         if (scene->panels[i].target && panel_any_beside(scene)) draw_target_cell(canvas, style, i, box);
     }
@@ -260,7 +269,8 @@ static bool animate_panel(Animation *animation, const PanelStyle *style, const L
     page_draw_head(canvas, scene_head(scene));
     draw_result_heading(canvas, scene, &scene->panels[index], box);
     panel_draw_result(canvas, style, index, box);
-    panel_draw_measures(canvas, style, index, (Box){box.x, box.y, box.width, box.height + MEASURES});
+    panel_draw_measures(canvas, style, index,
+                        (Box){box.x, box.y, box.width, box.height + measures_height(scene)});
     draw_keys(canvas, style, page);
     bool ok = animation_add(animation, canvas, seconds, err);
     canvas_destroy(canvas);

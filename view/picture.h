@@ -12,6 +12,7 @@
 #pragma once
 #include "base/error.h"
 #include "view/chart.h"
+#include "view/raster.h"
 
 /* One load case. */
 typedef struct PicturePanel {
@@ -23,6 +24,7 @@ typedef struct PicturePanel {
     const double (*vectors)[3]; /* [face] drawn as arrows, in the world's frame; NULL: none                */
     const double *flux_density; /* [3] T, drawn as an arrow beside the axes; NULL: none                    */
     const double *gravity;      /* [3] its direction, drawn as an arrow beside the axes; NULL, zeros: none */
+    Surroundings around;        /* drawn with it, and it shines through them                               */
 } PicturePanel;
 
 typedef enum PictureTarget {

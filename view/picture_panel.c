@@ -7,6 +7,7 @@
 #include <string.h>
 
 static const double ARROW_SPACING = 24; /* points */
+static const double THROUGH = 0.35;     /* of a body behind an obstacle shines through */
 enum { ARROWS_LEAST = 12, ARROWS_MOST = 250 };
 
 static const Color plain = {0.8, 0.82, 0.85, 1};
@@ -34,36 +35,62 @@ bool panel_any_vectors(const PictureScene *scene)
     return any;
 }
 
-/* The panel's result and target, one after the other. */
-static double (*panel_points(const PictureScene *scene, const PicturePanel *panel, int *count))[3]
+/* Points that a camera has to show. */
+typedef struct Shown {
+    double (*points)[3]; /* owned */
+    int count;
+} Shown;
+
+static void show_points(Shown *shown, const double (*points)[3], int count)
 {
-    size_t nv = (size_t)scene->vertex_count;
-    double(*points)[3] = mem_alloc(2 * nv, sizeof *points);
-    memcpy(points, panel->x, nv * sizeof *points);
-    if (panel->target) memcpy(points + nv, panel->target, nv * sizeof *points);
-    *count = (panel->target ? 2 : 1) * scene->vertex_count;
-    return points;
+    size_t old = (size_t)shown->count, more = (size_t)count;
+    if (!points) return;
+    shown->points = mem_resize(shown->points, old, old + more, sizeof *points);
+    memcpy(shown->points + old, points, more * sizeof *points);
+    shown->count += count;
+}
+
+/* The panel's result, target and what else is to be seen, one after the other. */
+static void show_panel(Shown *shown, const PictureScene *scene, const PicturePanel *panel)
+{
+    show_points(shown, panel->x, scene->vertex_count);
+    show_points(shown, panel->target, scene->vertex_count);
+    show_points(shown, panel->around.near, panel->around.near_count);
+}
+
+/* Pixels beside the body, where obstacles are: what it stands on is seen. */
+static double room_around(const PictureScene *scene, double width)
+{
+    for (int i = 0; i < scene->panel_count; i++)
+        if (scene->panels[i].around.obstacles) return 0.06 * width;
+    return 0;
+}
+
+/* Pixels; 0 where nothing is seen. */
+static double seen_height(const Camera *camera, const Shown *shown, double around)
+{
+    Vec3 low, high;
+    bool seen = camera_bounds(camera, (const double(*)[3])shown->points, shown->count, &low, &high);
+    return seen ? high.y - low.y + 2 * around : 0;
 }
 
 /* One camera that has room for all panels, each at its place. */
 static void fit_one_camera(PanelStyle *style, Camera view, double width, double height)
 {
     const PictureScene *scene = style->scene;
-    int count = scene->panel_count * scene->vertex_count;
-    double(*points)[3] = mem_alloc((size_t)count, sizeof *points);
-    for (int i = 0; i < scene->panel_count; i++)
-        memcpy(points + i * scene->vertex_count, scene->panels[i].x,
-               (size_t)scene->vertex_count * sizeof *points);
-    camera_fit(&view, (const double(*)[3])points, count, width, height, 0, scene->perspective);
+    Shown shown = {0};
+    for (int i = 0; i < scene->panel_count; i++) show_panel(&shown, scene, &scene->panels[i]);
+    double around = room_around(scene, width);
+    camera_fit(&view, (const double(*)[3])shown.points, shown.count, width, height, around,
+               scene->perspective);
     view.x -= 0.5 * width, view.y -= 0.5 * height;
     style->scale = view.scale;
-    Vec3 low, high;
-    bool seen = camera_bounds(&view, (const double(*)[3])points, count, &low, &high);
+    double tall = seen_height(&view, &shown, around);
     for (int i = 0; i < scene->panel_count; i++) {
         style->cameras[i] = view;
-        if (seen) style->heights[i] = (high.y - low.y) / style->resolution;
+        style->heights[i] = tall / style->resolution;
     }
-    mem_free(points);
+    mem_free(shown.points);
 }
 
 /* Fits each panel by itself, takes the least scale for all, and measures the heights that this gives. */
@@ -77,27 +104,26 @@ static void fit_cameras(PanelStyle *style, double width, double height)
         fit_one_camera(style, view, width, height);
         return;
     }
+    double around = room_around(scene, width);
     style->scale = INFINITY;
     for (int i = 0; i < scene->panel_count; i++) {
-        int count;
-        double(*points)[3] = panel_points(scene, &scene->panels[i], &count);
+        Shown shown = {0};
+        show_panel(&shown, scene, &scene->panels[i]);
         style->cameras[i] = view;
-        camera_fit(&style->cameras[i], (const double(*)[3])points, count, width, height, 0,
+        camera_fit(&style->cameras[i], (const double(*)[3])shown.points, shown.count, width, height, around,
                    scene->perspective);
         style->scale = fmin(style->scale, style->cameras[i].scale);
-        mem_free(points);
+        mem_free(shown.points);
     }
     for (int i = 0; i < scene->panel_count; i++) {
         Camera *camera = &style->cameras[i];
         camera->x = (camera->x - 0.5 * width) * style->scale / camera->scale;
         camera->y = (camera->y - 0.5 * height) * style->scale / camera->scale;
         camera->scale = style->scale;
-        int count;
-        double(*points)[3] = panel_points(scene, &scene->panels[i], &count);
-        Vec3 low, high;
-        if (camera_bounds(camera, (const double(*)[3])points, count, &low, &high))
-            style->heights[i] = (high.y - low.y) / style->resolution;
-        mem_free(points);
+        Shown shown = {0};
+        show_panel(&shown, scene, &scene->panels[i]);
+        style->heights[i] = seen_height(camera, &shown, around) / style->resolution;
+        mem_free(shown.points);
     }
 }
 
@@ -270,16 +296,29 @@ static Raster *raster_begin(const PanelStyle *style, int index, Box box, Camera 
     return raster_create(pixels_of(style, box.width), pixels_of(style, box.height));
 }
 
-/* Shades creases, puts the raster on the page and frees it. */
-static void raster_end(Canvas *canvas, const PanelStyle *style, Raster *raster, const Camera *camera, Box box)
+static void raster_crease(Raster *raster, const PanelStyle *style, const Camera *camera)
+{
+    raster_occlude(raster, camera, 10 * style->resolution / style->scale, 0.55);
+}
+
+/* Puts the raster on the page and frees it. */
+static void raster_end(Canvas *canvas, const PanelStyle *style, Raster *raster, Box box)
 {
     int width = pixels_of(style, box.width), height = pixels_of(style, box.height);
     unsigned char *rgba = mem_alloc(4 * (size_t)width * (size_t)height, 1);
-    raster_occlude(raster, camera, 10 * style->resolution / style->scale, 0.55);
     raster_resolve(raster, rgba);
     canvas_image(canvas, rgba, width, height, box);
     mem_free(rgba);
     raster_destroy(raster);
+}
+
+static void draw_body(Raster *raster, const PanelStyle *style, const Camera *camera,
+                      const PicturePanel *panel, const Color *colors)
+{
+    draw_mesh(raster, style, camera, panel->x, colors);
+    if (panel->vectors) draw_arrows(raster, style, camera, panel);
+    if (panel->target && style->scene->target != PICTURE_TARGET_BESIDE)
+        draw_wires(raster, style, camera, panel->target);
 }
 
 void panel_draw_result(Canvas *canvas, const PanelStyle *style, int index, Box box)
@@ -289,12 +328,17 @@ void panel_draw_result(Canvas *canvas, const PanelStyle *style, int index, Box b
     Color *colors = panel->field ? mem_alloc((size_t)nf, sizeof *colors) : NULL;
     for (int f = 0; colors && f < nf; f++) colors[f] = color_scale_color(&style->colors, panel->field[f]);
     Camera camera;
-    Raster *raster = raster_begin(style, index, box, &camera);
-    draw_mesh(raster, style, &camera, panel->x, colors);
-    if (panel->vectors) draw_arrows(raster, style, &camera, panel);
-    if (panel->target && style->scene->target != PICTURE_TARGET_BESIDE)
-        draw_wires(raster, style, &camera, panel->target);
-    raster_end(canvas, style, raster, &camera, box);
+    Raster *raster = raster_begin(style, index, box, &camera), *bare = NULL;
+    draw_body(raster, style, &camera, panel, colors);
+    if (panel->around.obstacles) {
+        bare = raster_begin(style, index, box, &camera);
+        draw_body(bare, style, &camera, panel, colors);
+        raster_mesh(raster, &camera, panel->around.obstacles);
+    }
+    raster_crease(raster, style, &camera);
+    if (bare) raster_show_through(raster, bare, THROUGH);
+    raster_destroy(bare);
+    raster_end(canvas, style, raster, box);
     mem_free(colors);
 }
 
@@ -303,7 +347,8 @@ void panel_draw_target(Canvas *canvas, const PanelStyle *style, int index, Box b
     Camera camera;
     Raster *raster = raster_begin(style, index, box, &camera);
     draw_mesh(raster, style, &camera, style->scene->panels[index].target, NULL);
-    raster_end(canvas, style, raster, &camera, box);
+    raster_crease(raster, style, &camera);
+    raster_end(canvas, style, raster, box);
 }
 
 static Vec2 seen_along(const Camera *camera, Vec2 from, Vec3 direction, double length)

@@ -192,6 +192,35 @@ static Color face_shade(const Camera *camera, const Vec3 v[3], Color color)
     return (Color){fmin(1, light * color.r), fmin(1, light * color.g), fmin(1, light * color.b), color.a};
 }
 
+/* A face that is seen edge-on, by its longest side. */
+static void line_paint(Raster *raster, const Vec3 p[3], Color color, double width)
+{
+    Vec3 from = p[0], to = p[0];
+    for (int k = 0; k < 3; k++) {
+        Vec3 a = p[k], b = p[(k + 1) % 3];
+        if (hypot(b.x - a.x, b.y - a.y) > hypot(to.x - from.x, to.y - from.y)) from = a, to = b;
+    }
+    double length = hypot(to.x - from.x, to.y - from.y);
+    Vec3 across = vec3(-0.5 * width * (to.y - from.y) / length, 0.5 * width * (to.x - from.x) / length, 0);
+    Vec3 quad[2][3] = {{vec3_add(from, across), vec3_sub(from, across), vec3_sub(to, across)},
+                       {vec3_add(from, across), vec3_sub(to, across), vec3_add(to, across)}};
+    for (int t = 0; t < 2 && length > 0; t++) triangle_paint(raster, quad[t], &(Paint){.fill = color});
+}
+
+/* Has it to be left to triangle_paint, with its face? */
+static bool one_side_paint(Raster *raster, const RasterMesh *mesh, const Vec3 p[3])
+{
+    const double THIN = 1e-6; /* of the square of its longest side */
+    double area = edge_function(p[0], p[1], p[2].x, p[2].y), square = 0;
+    for (int k = 0; k < 3; k++) {
+        Vec3 d = vec3_sub(p[(k + 1) % 3], p[k]);
+        square = fmax(square, d.x * d.x + d.y * d.y);
+    }
+    if (fabs(area) > THIN * square) return area < 0; /* y points down */
+    line_paint(raster, p, mesh->edge_color, SAMPLES * mesh->edge_width);
+    return false;
+}
+
 void raster_mesh(Raster *raster, const Camera *camera, const RasterMesh *mesh)
 {
     for (int f = 0; f < mesh->face_count; f++) {
@@ -203,10 +232,12 @@ void raster_mesh(Raster *raster, const Camera *camera, const RasterMesh *mesh)
             seen[k] = vec3(SAMPLES * p.x, SAMPLES * p.y, p.z + mesh->raise);
             whole = whole && isfinite(seen[k].x + seen[k].y + seen[k].z);
         }
-        if (!whole) continue;
+        if (!whole || (mesh->one_sided && !one_side_paint(raster, mesh, seen))) continue;
         Color color = mesh->face_colors ? mesh->face_colors[f] : mesh->color;
-        Paint paint = {face_shade(camera, world, color), mesh->edge_color, 0.5 * SAMPLES * mesh->edge_width,
-                       mesh->hidden};
+        Paint paint = {.fill = face_shade(camera, world, color),
+                       .edge = mesh->edge_color,
+                       .edge_width = mesh->one_sided ? 0 : 0.5 * SAMPLES * mesh->edge_width,
+                       .hidden = mesh->hidden};
         triangle_paint(raster, seen, &paint);
     }
 }
@@ -291,6 +322,18 @@ void raster_occlude(Raster *raster, const Camera *camera, double reach, double s
                         (unsigned char)lround((1 - strength * dark) * raster->samples[at].rgba[c]);
             }
         }
+}
+
+void raster_show_through(Raster *raster, const Raster *behind, double opacity)
+{
+    size_t count = (size_t)raster->width * (size_t)raster->height;
+    for (size_t i = 0; i < count; i++) {
+        const Sample *from = &behind->samples[i];
+        Sample *to = &raster->samples[i];
+        if (from->rgba[3] == 0 || from->depth >= to->depth) continue;
+        for (int c = 0; c < 4; c++)
+            to->rgba[c] = (unsigned char)lround(opacity * from->rgba[c] + (1 - opacity) * to->rgba[c]);
+    }
 }
 
 void raster_resolve(const Raster *raster, unsigned char *rgba)

@@ -51,7 +51,16 @@ typedef struct RasterMesh {
     double edge_width; /* of the faces' edges, pixels; 0: none                        */
     double hidden;     /* what lies behind other things shows with this much of its opacity */
     double raise;      /* lifts towards the eye by this length in the depth test only */
+    bool
+        one_sided; /* only faces whose normals point to the eye are seen; those seen edge-on as lines, edge_width wide */
 } RasterMesh;
+
+/* What a body meets, at one moment; borrowed. */
+typedef struct Surroundings {
+    const RasterMesh *obstacles; /* NULL: nothing                                                    */
+    int near_count;              /* points of those that a picture has room for, beside the body's own */
+    const double (*near)[3];
+} Surroundings;
 
 typedef struct Raster Raster;
 
@@ -69,6 +78,9 @@ void raster_arrow(Raster *raster, const Camera *camera, Vec3 middle, Vec3 vector
 /* Darkens what lies up to `reach` (length units) below its surroundings: creases, and the places where one
  * part passes over another. strength 0..1. Call it when everything is drawn. */
 void raster_occlude(Raster *raster, const Camera *camera, double reach, double strength);
+
+/* What of another raster of the same size lies behind what is drawn here shines through with that opacity. */
+void raster_show_through(Raster *raster, const Raster *behind, double opacity);
 
 /* Averages the samples into rgba[height][width][4] bytes, not premultiplied. */
 void raster_resolve(const Raster *raster, unsigned char *rgba);

@@ -4,6 +4,7 @@
 #include "spline/drawn.h"
 #include "view/show_data.h"
 #include "view/show_drawing.h"
+#include "view/show_obstacles.h"
 #include "view/show_rod.h"
 #include "view/ticks.h"
 #include <math.h>
@@ -22,6 +23,7 @@ typedef struct Show {
     PicturePanel *panels;
     int *steps; /* [panel] the frame that it shows; -1: the last */
     int panel_count;
+    ShowObstacles obstacles;
 } Show;
 
 ShowDef show_default(void)
@@ -235,12 +237,26 @@ static bool add_panels(Show *show, Error *err)
     return frames ? show_check_frame(show->data, 0, err) : add_cases(show, err);
 }
 
+/* What the body meets, in each panel; what of it the pictures have room for follows from where the body is in all. */
+static bool add_obstacles(Show *show, Error *err)
+{
+    if (!show_obstacles_read(&show->obstacles, show->data, err)) return false;
+    ShowWay way = show_way();
+    for (int k = 0; k < show->panel_count; k++) show_way_add(&way, show->panels[k].x, show->vertex_count);
+    for (int k = 0; k < show->panel_count; k++) {
+        PicturePanel *panel = &show->panels[k];
+        panel->around = show_obstacles_at(&show->obstacles, show->steps[k]);
+        show_obstacles_find_near(&show->obstacles, way, &panel->around);
+    }
+    return true;
+}
+
 static bool write_page(Show *show, const char *result, const char *picture, Error *err)
 {
     const ShowDef *def = show->def;
     PictureScene page = picture_default();
     if (!read_mesh(show, err)) return false;
-    if (!add_panels(show, err)) return false;
+    if (!add_panels(show, err) || !add_obstacles(show, err)) return false;
     if (!dress(show, &page, err)) return false;
     const char *slash = strrchr(result, '/');
     page.title = slash ? slash + 1 : result;

@@ -2,6 +2,7 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "view/curves_picture.h"
+#include "view/show_obstacles.h"
 #include "view/ticks.h"
 #include <math.h>
 #include <stdio.h>
@@ -24,6 +25,7 @@ typedef struct RodPage {
     int line_count;
     Chart charts[CURVES_CHARTS_MAX];
     int chart_count;
+    ShowObstacles obstacles;
 } RodPage;
 
 bool show_has_rod(const ShowData *data)
@@ -116,6 +118,12 @@ static CurvesSet *add_simulated(RodPage *page, const char *name, const double (*
     return set;
 }
 
+/* What the last set meets, in a frame; -1: in the last one. */
+static void add_obstacles(RodPage *page, int frame)
+{
+    page->sets[page->set_count - 1].around = show_obstacles_at(&page->obstacles, frame);
+}
+
 /* The simulated points of a frame, which are the first ones. */
 static bool read_frame(RodPage *page, int frame, const double (**points)[3], Error *err)
 {
@@ -136,6 +144,7 @@ static bool add_frame(RodPage *page, int frame, Error *err)
 {
     if (!read_frame(page, frame, &page->x, err)) return false;
     add_simulated(page, show_text(page->data, "simulated, %s", show_frame_name(page->data, frame)), page->x);
+    add_obstacles(page, frame);
     return true;
 }
 
@@ -150,6 +159,7 @@ static bool add_stills(RodPage *page, int count, Error *err)
         CurvesSet *set = add_set(page, show_frame_name(page->data, frame), points, colormap_series(1));
         if (count > 1) set->color = curves_fade(set->color, (double)k / (count - 1));
         set->moment = true;
+        add_obstacles(page, frame);
     }
     return true;
 }
@@ -171,7 +181,9 @@ static bool add_final(RodPage *page, Error *err)
     int frames = result_step_count(page->data->result);
     bool moves = result_has(page->data->result, "slender/history/time");
     if (!page->x && moves && frames > 0 && !read_frame(page, frames - 1, &page->x, err)) return false;
-    if (page->x) add_simulated(page, "simulated", page->x);
+    if (!page->x) return true;
+    add_simulated(page, "simulated", page->x);
+    add_obstacles(page, -1);
     return true;
 }
 
@@ -192,6 +204,15 @@ static bool add_curves(RodPage *page, Error *err)
     if (!add_stills(page, count, err)) return false;
     if (page->natural) add_set(page, "natural", page->natural, colormap_series(0))->width = 1;
     return true;
+}
+
+/* The views have room for obstacles that are no larger than the curves and near them. */
+static void frame_obstacles(RodPage *page)
+{
+    ShowWay way = show_way();
+    for (int s = 0; s < page->set_count; s++) show_way_add(&way, page->sets[s].points, page->point_count);
+    for (int s = 0; s < page->set_count; s++)
+        show_obstacles_find_near(&page->obstacles, way, &page->sets[s].around);
 }
 
 /* Where the strands are held: where they begin, and where the other end is. */
@@ -395,7 +416,10 @@ static bool check_options(const ShowDef *def, Error *err)
 static bool write_page(RodPage *page, const char *result, const char *picture, Error *err)
 {
     const ShowDef *def = page->data->def;
-    if (!check_options(def, err) || !read_curves(page, err) || !add_curves(page, err)) return false;
+    if (!check_options(def, err) || !read_curves(page, err) ||
+        !show_obstacles_read(&page->obstacles, page->data, err) || !add_curves(page, err))
+        return false;
+    frame_obstacles(page);
     add_lines(page);
     CurvesScene scene = curves_default();
     const char *slash = strrchr(result, '/');

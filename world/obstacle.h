@@ -5,6 +5,7 @@
  * (a height field, a tube along a line) |gradient| differs from 1: contact takes n = gradient/|gradient|. */
 #pragma once
 #include "io/formula.h"
+#include "io/mesh_file.h"
 
 /* phi and its derivatives at a point: m, 1, 1/m. */
 typedef struct Gap {
@@ -16,6 +17,9 @@ typedef struct ObstacleOps {
 
     /* At a point in the obstacle's own frame. Re-entrant. */
     void (*gap)(const void *self, const double x[3], Gap *gap);
+
+    /* Adds triangles of where phi = 0, about within a box, in its own frame (obstacle_surface). */
+    void (*surface)(const void *self, const double box[2][3], MeshFile *surface);
     void (*destroy)(void *self);
 } ObstacleOps;
 
@@ -26,6 +30,7 @@ typedef struct Obstacle {
     double
         feature; /* m, the smallest radius or detail: a body's longer edges are sampled between their ends too;
                       * INFINITY: flat */
+    double steepest; /* largest |grad phi|; 0: 1 */
     double pivot[3]; /* m, about which it turns                        */
     /* Three expressions of the time t each: how far it has moved, m, and turned, a rotation vector, rad; NULL: not. Owned. */
     Formula *move, *turn;
@@ -41,6 +46,11 @@ bool obstacle_pose(const Obstacle *obstacle, double time, ObstaclePose *pose, Er
 
 /* Its gap in space, there. Re-entrant. */
 void obstacle_gap(const Obstacle *obstacle, const ObstaclePose *pose, const double x[3], Gap *gap);
+
+/* Triangles of where phi = 0 in its own frame, for pictures: of what is endless (a plane, a cylinder, ground) a piece about
+ * as large as the box there, its lowest and highest corner; of all else the whole. At most 16384, but of a mesh as many as it
+ * has. Their normals point to where it is free; patches have vertices of their own. Clear it (mesh_file_clear). */
+void obstacle_surface(const Obstacle *obstacle, const double box[2][3], MeshFile *surface);
 
 /* Frees what it holds. */
 void obstacle_clear(Obstacle *obstacle);

@@ -232,6 +232,66 @@ TargetKeys = TypedDict("TargetKeys", {
     "true": "Selection",
 }, total=False)
 
+Obstacles = TypedDict("Obstacles", {
+    "name": "Number", "plane": "Plane", "sphere": "Sphere", "cylinder": "Cylinder", "box": "Box",
+    "height_field": "HeightField", "tube": "Tube", "mesh": "MeshOfAnObstacle", "friction": "float", "move": "Numbers",
+    "turn": "Numbers",
+}, total=False)
+
+Plane = TypedDict("Plane", {
+    "point": "Numbers", "normal": "Numbers",
+}, total=False)
+
+Sphere = TypedDict("Sphere", {
+    "center": "Numbers", "radius": "Number", "inside": "bool",
+}, total=False)
+
+Cylinder = TypedDict("Cylinder", {
+    "point": "Numbers", "axis": "Numbers", "radius": "Number", "inside": "bool",
+}, total=False)
+
+Box = TypedDict("Box", {
+    "center": "Numbers", "half": "Numbers", "rounding": "Number",
+}, total=False)
+
+HeightField = TypedDict("HeightField", {
+    "formula": "Number", "image": "str", "height": "Number", "range": "Table", "cells": "Numbers",
+    "where": "Mapping[str, Where]",
+}, total=False)
+
+Tube = TypedDict("Tube", {
+    "axis": "Literal['x', 'y', 'z']", "radius": "Number", "center": "Numbers", "range": "Numbers", "cells": "int",
+}, total=False)
+
+MeshOfAnObstacleKeys = TypedDict("MeshOfAnObstacleKeys", {
+    "file": "str", "scale": "float", "cell": "Number",
+}, total=False)
+
+Contact = TypedDict("Contact", {
+    "friction": "float", "self": "SelfContact", "stiffness": "StiffnessOfContact", "offset": "OffsetOfContact",
+    "slip_speed": "Number", "coupling": "Literal['lagged', 'implicit']",
+}, total=False)
+
+SelfContactKeys = TypedDict("SelfContactKeys", {
+    "enabled": "bool", "distance": "Number", "stiffness": "Number",
+}, total=False)
+
+StiffnessOfContactKeys = TypedDict("StiffnessOfContactKeys", {
+    "mode": "Literal['auto']", "value": "Number",
+}, total=False)
+
+OffsetOfContactKeys = TypedDict("OffsetOfContactKeys", {
+    "mode": "Literal['auto']", "value": "Number",
+}, total=False)
+
+Water = TypedDict("Water", {
+    "density": "Number", "velocity": "VelocityOfWater", "sides": "Literal['two', 'outer']", "viscosity": "Number",
+}, total=False)
+
+VelocityOfWaterKeys = TypedDict("VelocityOfWaterKeys", {
+    "value": "Numbers", "formula": "Numbers", "where": "Mapping[str, Where]",
+}, total=False)
+
 Cases = TypedDict("Cases", {
     "name": "Number", "weight": "float", "flux_density": "FluxDensity", "loads": "Rows[Loads]", "gravity": "Numbers",
     "target": "Target",
@@ -322,9 +382,9 @@ Scene = TypedDict("Scene", {
     "slender": "Literal[1]",
     "job": "Literal['equilibrium', 'evaluate', 'design', 'simulate', 'trajectory', 'invert', 'identify', 'draw']",
     "shell": "Shell", "rod": "Rod", "spline": "Spline", "flux_density": "FluxDensity", "fix": "Rows[Fix]",
-    "loads": "Rows[Loads]", "target": "Target", "cases": "Rows[Cases]", "sequence": "Rows[Sequence]",
-    "design": "Design", "solver": "Solver", "load_steps": "LoadSteps", "time": "Time", "start": "Start",
-    "modes": "int",
+    "loads": "Rows[Loads]", "target": "Target", "obstacles": "Rows[Obstacles]", "contact": "Contact",
+    "water": "Water", "cases": "Rows[Cases]", "sequence": "Rows[Sequence]", "design": "Design", "solver": "Solver",
+    "load_steps": "LoadSteps", "time": "Time", "start": "Start", "modes": "int",
     "checks": "Union[Literal['stability', 'self_contact', 'round_trip'], Rows[Literal['stability', 'self_contact', 'round_trip']]]",
     "output": "Output",
 }, total=False)
@@ -354,6 +414,11 @@ FluxDensity = Union["FluxDensityKeys", Numbers]
 Fix = Union["FixKeys", Number]
 Selection = Union["SelectionKeys", Number]
 Target = Union["TargetKeys", Numbers]
+MeshOfAnObstacle = Union["MeshOfAnObstacleKeys", str]
+SelfContact = Union["SelfContactKeys", bool]
+StiffnessOfContact = Union["StiffnessOfContactKeys", Literal['auto'], Number]
+OffsetOfContact = Union["OffsetOfContactKeys", Literal['auto'], Number]
+VelocityOfWater = Union["VelocityOfWaterKeys", Numbers]
 StartOfFluxDensity = Union["StartOfFluxDensityKeys", Numbers]
 LoadSteps = Union["LoadStepsKeys", Literal['auto'], int]
 Time = Union["TimeKeys", Number]

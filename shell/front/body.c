@@ -185,31 +185,29 @@ static System *make_system(const Model *model, bool motion)
     return motion ? shell_dynamic_system(model->self) : shell_system(model->self);
 }
 
-/* Systems last: fields and what is held are known by then. An equilibrium needs forces in balance. */
+/* Systems last: fields and what is held are known by then. An equilibrium needs forces in balance, unless there is something
+ * that may bear them. */
 static bool finish_cases(Model *model, const Build *b)
 {
-    bool ok = true;
+    const World *world = model->world;
+    bool ok = true, borne = world && (world->obstacle_count || world->self);
     for (int k = 0; ok && k < model->case_count; k++) {
         Case *c = &model->cases[k];
         Error err;
         case_start(c, make_system(model, model->job->motion), model->x);
         system_accept(c->sys, c->state.x, c->state.memory);
-        for (int s = 0; ok && model->job->rest && s < c->stage_count; s++)
+        for (int s = 0; ok && model->job->rest && !borne && s < c->stage_count; s++)
             ok = rigid_check_force(model->self, c->stages[s].p, &err) ||
                  yaml_refuse(b->file, "", "%s", err.text);
     }
     return ok;
 }
 
-static bool fill(Model *model, const Scene *scene, const Build *b, bool flux_is_read)
+static bool fill(Model *model, const Scene *scene, const Build *b, bool readable)
 {
     Shell *shell = model->self;
     const ShellScene *from = shell_scene(scene);
-    shell->thickness = from->thickness;
-    shell->poisson = from->poisson;
-    shell->density = from->density;
-    shell->bending = (BendingModel)from->bending;
-    bool ok = flux_is_read;
+    bool ok = readable;
     for (int k = 0; k < scene->fix_count; k++) ok = fix_entry(model, b, k, &scene->fix[k]) && ok;
     model->x = mem_alloc((size_t)shell_dof_count(shell), sizeof *model->x);
     shell_rest_state(shell, model->x);
@@ -222,6 +220,14 @@ static bool fill(Model *model, const Scene *scene, const Build *b, bool flux_is_
             model_velocity(model, b, "shell.velocity", from->velocity, b->mesh->rest[0]));
 }
 
+static void set_material(Shell *shell, const ShellScene *from)
+{
+    shell->thickness = from->thickness;
+    shell->poisson = from->poisson;
+    shell->density = from->density;
+    shell->bending = (BendingModel)from->bending;
+}
+
 static bool create(Model *model, const Scene *scene, YamlFile *file)
 {
     Mesh *mesh = build_mesh(&shell_scene(scene)->mesh, file, "shell.mesh", &model->report);
@@ -231,8 +237,9 @@ static bool create(Model *model, const Scene *scene, YamlFile *file)
     b.report = &model->report;
     b.timed = model->job->motion ? &model->flux_of_time : NULL;
     FluxFields fields;
-    bool flux_is_read = model_read_flux(model, &b, scene, &fields);
+    bool ok = model_read_flux(model, &b, scene, &fields);
     Shell *shell = model->self = shell_create(mesh, &fields);
+    set_material(shell, shell_scene(scene));
     model->mesh = mesh;
     model->params = &shell->params;
     model->gravity = shell->gravity;
@@ -242,8 +249,10 @@ static bool create(Model *model, const Scene *scene, YamlFile *file)
     model->point_count = mesh->vertex_count;
     model->load_steps = 1;
     model->step_cap = newton_default().step_cap;
+    WorldBody shown = shell_world_body(shell);
+    ok = model_read_world(model, &b, scene, &shown, &shell->world) && ok;
     model_add_blocks(model, scene);
-    return fill(model, scene, &b, flux_is_read);
+    return fill(model, scene, &b, ok);
 }
 
 static void destroy(void *self)
@@ -322,6 +331,7 @@ static const BodyOps ops = {
     .add_final = shell_add_final,
     .likeness = likeness,
     .places = shell_places,
+    .crushed = shell_crushed,
     .describe = shell_describe,
     .advise = shell_advise,
     .dof_sizes = shell_dof_sizes,

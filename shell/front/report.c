@@ -7,6 +7,8 @@
 enum { MOMENTS_MAX = 10000 }; /* at which a field over time is looked at */
 
 static const double LARGE_BODY = 2;       /* m: most likely a mesh in millimetres          */
+static const double CRUSHED = 0.05;       /* of its area: less is none                      */
+static const double NEARLY_CRUSHED = 0.2; /* .. where no next state was found              */
 static const double CELLS_PER_LENGTH = 3; /* of the magnetic bending length, at least      */
 
 static double mean_edge(const Mesh *mesh)
@@ -95,6 +97,33 @@ char *shell_describe(const Model *model, const Scene *scene)
     text = mem_join(text, line, "");
     mem_free(line);
     return text;
+}
+
+/* Of its area at rest. */
+static double area_ratio(const Mesh *mesh, const double *x, int face)
+{
+    const int *v = mesh->faces[face];
+    Vec3 a = vec3_load(x + 3 * v[0]), b = vec3_sub(vec3_load(x + 3 * v[1]), a),
+         c = vec3_sub(vec3_load(x + 3 * v[2]), a);
+    return vec3_length(vec3_cross(b, c)) / (2 * mesh->rest_area[face]);
+}
+
+/* Stretching resists being crushed less and less [St. Venant-Kirchhoff], and halved steps do not help. */
+char *shell_crushed(const Model *model, const Snapshot *shot, bool failed)
+{
+    const Shell *shell = model->self;
+    const Mesh *mesh = shell->mesh;
+    int least = 0;
+    for (int f = 1; f < mesh->face_count; f++)
+        if (area_ratio(mesh, shot->at.x, f) < area_ratio(mesh, shot->at.x, least)) least = f;
+    double ratio = area_ratio(mesh, shot->at.x, least);
+    if (!(ratio < (failed ? NEARLY_CRUSHED : CRUSHED))) return NULL;
+    double M = vec3_length(vec3_load(shot->p + shell->magnetization + 3 * least)),
+           B = vec3_length(vec3_load(shot->p + shell->flux_density)), Y = shot->p[shell->young + least];
+    return mem_format(
+        "face %d is crushed to %.2g of its area: what acts on it (a magnetisation of %.3g A/m in a "
+        "field of %.3g T is %.3g Pa) is too strong for its Young's modulus of %.3g Pa",
+        least, ratio, M, B, M * B, Y);
 }
 
 /* An edge's length, or a radian. */

@@ -1,0 +1,86 @@
+#include "job/contacts.h"
+#include "base/memory.h"
+#include <stdio.h>
+#include <string.h>
+
+Contacts contacts_create(const Model *model)
+{
+    Contacts c = {.world = model->world, .points = model->point_count};
+    if (!c.world) return c;
+    c.dofs = system_dof_count(model->cases[0].sys);
+    c.before = mem_alloc((size_t)c.dofs, sizeof *c.before);
+    c.v = mem_alloc((size_t)c.dofs, sizeof *c.v);
+    c.sums.contact.force = mem_alloc((size_t)c.world->obstacle_count, sizeof *c.sums.contact.force);
+    c.sums.contact.point = mem_alloc((size_t)c.dofs, sizeof *c.sums.contact.point);
+    return c;
+}
+
+void contacts_destroy(Contacts *contacts)
+{
+    mem_free(contacts->before);
+    mem_free(contacts->v);
+    mem_free(contacts->sums.contact.force);
+    mem_free(contacts->sums.contact.point);
+}
+
+static void reset(Contacts *c, double friction, double water)
+{
+    double(*force)[3] = c->sums.contact.force, *point = c->sums.contact.point;
+    memset(force, 0, (size_t)c->world->obstacle_count * sizeof *force);
+    memset(point, 0, (size_t)c->dofs * sizeof *point);
+    c->sums = (WorldSums){.contact = {.force = force, .point = point, .friction = friction}, .water = water};
+}
+
+void contacts_start(Contacts *c, const double *v)
+{
+    if (c->world) memcpy(c->v, v, (size_t)c->dofs * sizeof *c->v);
+}
+
+void contacts_begin(Contacts *contacts)
+{
+    if (contacts->world) reset(contacts, 0, 0);
+}
+
+void contacts_add(Contacts *c, const State *state, double dt, const double *p)
+{
+    if (!c->world) return;
+    int first = c->world->body.first, end = first + 3 * c->points;
+    memcpy(c->before, state->x, (size_t)c->dofs * sizeof *c->before);
+    for (int i = first; i < end; i++) c->before[i] -= dt * state->v[i];
+    Point at = state_point(state, p);
+    at.x_prev = c->before, at.v_prev = c->v, at.dt = dt;
+    if (c->world->implicit) at.x_lag = state->x;
+    reset(c, c->sums.contact.friction, c->sums.water);
+    world_measure(c->world, &at, &c->sums);
+    contacts_start(c, state->v);
+}
+
+int contacts_history(const Contacts *c, Array arrays[CONTACTS_ROWS])
+{
+    if (!c->world) return 0;
+    const WorldSums *sums = &c->sums;
+    int count = 0;
+    if (c->world->obstacle_count) {
+        arrays[count++] = array_float("contacts", "", &sums->contact.touching, 0, 0, 0);
+        arrays[count++] = array_float("contact_depth", "m", &sums->contact.depth, 0, 0, 0);
+        arrays[count++] =
+            array_float("contact_force", "N", sums->contact.force[0], 2, c->world->obstacle_count, 3);
+    }
+    if (c->world->rubs) arrays[count++] = array_float("friction_work", "J", &sums->contact.friction, 0, 0, 0);
+    if (c->world->self) {
+        arrays[count++] = array_float("self_contacts", "", &sums->pairs, 0, 0, 0);
+        arrays[count++] = array_float("self_distance", "m", &sums->self.distance, 0, 0, 0);
+        arrays[count++] = array_float("crossings", "", &sums->crossings, 0, 0, 0);
+    }
+    if (c->world->wet) arrays[count++] = array_float("water_work", "J", &sums->water, 0, 0, 0);
+    return count;
+}
+
+const char *contacts_text(const Contacts *c, char text[64])
+{
+    text[0] = 0;
+    if (c->world && c->world->obstacle_count)
+        snprintf(text, 64, ", %g contact%s", c->sums.contact.touching,
+                 c->sums.contact.touching == 1 ? "" : "s");
+    return text;
+}

@@ -1,0 +1,30 @@
+/* contacts.h - what a run says of what its body meets: a row for each step of time, and the forces of a state. */
+#pragma once
+#include "job/run.h"
+
+/* The steps of a body that meets something. */
+typedef struct Contacts {
+    const World *world; /* NULL: it meets nothing, and all below does nothing */
+    int dofs, points;
+    double *before, *v; /* [dofs] where a step began, and how fast               */
+    WorldSums
+        sums; /* of the step: forces and counts of its end, works summed over its parts; owns its vectors */
+} Contacts;
+
+Contacts contacts_create(const Model *model);
+void contacts_destroy(Contacts *contacts);
+
+/* Where the first step begins, which has these velocities. */
+void contacts_start(Contacts *contacts, const double *v);
+
+/* A new step; its parts, one at least, each with the state that it has reached, v included. */
+void contacts_begin(Contacts *contacts);
+void contacts_add(Contacts *contacts, const State *state, double dt, const double *p);
+
+enum { CONTACTS_ROWS = 8 };
+
+/* The step as arrays for history/, borrowed from contacts; their number. */
+int contacts_history(const Contacts *contacts, Array arrays[CONTACTS_ROWS]);
+
+/* ", 12 contacts": for progress; static. */
+const char *contacts_text(const Contacts *contacts, char text[64]);

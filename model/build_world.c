@@ -1,0 +1,185 @@
+/* What a body meets: of a scene, and the numbers that follow from the body. */
+#include "base/memory.h"
+#include "base/vec3.h"
+#include "model/model.h"
+#include <math.h>
+#include <string.h>
+
+/* Parts of the thickness: what presses with so many vertices' weights on one, or falls by the body's own size and is
+ * stopped in a step, sinks in by no more than SUNK beside the half percent of the penalty's smooth beginning. */
+static const double SUNK = 0.005, WEIGHTS = 50;
+static const double PRESSED = 30; /* times Y h: the least stiffness of a sample */
+
+static FluxField *read_flow(const Build *b, const StreamScene *scene, bool *ok)
+{
+    if (!scene->formula) return NULL;
+    Formula *formula = build_formula(b, key("water.velocity.formula"), scene->formula, 3, scene->where,
+                                     scene->where_count, build_variables_time);
+    *ok = formula != NULL;
+    return formula ? flux_field_formula(formula, b->size) : NULL;
+}
+
+bool model_read_world(Model *model, const Build *b, const Scene *scene, const WorldBody *body, World **world)
+{
+    const ContactScene *contact = &scene->contact;
+    bool self = self_contact_is_asked(&contact->self), ok = true;
+    *world = NULL;
+    if (!scene->obstacles_count && !self && !scene->water) return true;
+    Obstacle *obstacles;
+    if (!build_obstacles(b, scene->obstacles, scene->obstacles_count, &obstacles)) {
+        for (int k = 0; k < scene->obstacles_count; k++) obstacle_clear(&obstacles[k]);
+        mem_free(obstacles);
+        return false;
+    }
+    World *w = *world = world_create(body, obstacles, scene->obstacles_count);
+    model->world = w;
+    w->offset = contact->offset.mode == 0 ? body->thickness / 2 : contact->offset.value;
+    w->slip_speed = contact->slip_speed;
+    w->implicit = contact->coupling == COUPLING_IMPLICIT;
+    w->self = self;
+    w->distance = isnan(contact->self.distance) ? body->thickness : contact->self.distance;
+    w->rubs = contact->friction > 0;
+    for (int k = 0; k < scene->obstacles_count; k++)
+        w->rubs = w->rubs || scene->obstacles[k].friction > 0; /* NaN is not */
+    w->wet = scene->water != NULL;
+    if (w->wet) {
+        w->outer = scene->water->sides == SIDES_OUTER;
+        w->flow = read_flow(b, &scene->water->velocity, &ok);
+    }
+    return ok;
+}
+
+/* ---- Numbers ---- */
+
+static double largest_young(const Model *model, const double *p)
+{
+    const ParamBlock *block = params_find(model->params, "young");
+    double largest = 0;
+    for (int i = 0; i < block->count; i++) largest = fmax(largest, p[block->offset + i]);
+    return largest;
+}
+
+static double largest_mass(const Model *model)
+{
+    double *mass = mem_alloc((size_t)model->point_count, sizeof *mass), largest = 0;
+    model->body->ops->masses(model, mass);
+    for (int v = 0; v < model->point_count; v++) largest = fmax(largest, mass[v]);
+    mem_free(mass);
+    return largest;
+}
+
+/* How fast it may meet something, m/s: as it starts, or after a fall of its own size. */
+static double likely_speed(const Model *model, const Case *c, double gravity)
+{
+    const WorldBody *body = &model->world->body;
+    double fastest = 0, low[3] = {0}, high[3] = {0}, size = 0;
+    for (int v = 0; v < body->vertex_count; v++) {
+        const double *x = body->rest[v];
+        fastest = fmax(fastest, vec3_length(vec3_load(c->state.v + body->first + 3 * v)));
+        for (int i = 0; i < 3; i++) {
+            low[i] = v ? fmin(low[i], x[i]) : x[i];
+            high[i] = v ? fmax(high[i], x[i]) : x[i];
+        }
+    }
+    for (int i = 0; i < 3; i++) size += (high[i] - low[i]) * (high[i] - low[i]);
+    return fmax(fastest, sqrt(2 * gravity * sqrt(size)));
+}
+
+/* N/m at a sample. */
+static double stiffness_of(const Model *model, const Scene *scene, const Case *c, const double *p)
+{
+    double h = model->world->body.thickness, mass = largest_mass(model);
+    double gravity = model->gravity < 0 ? 0 : vec3_length(vec3_load(p + model->gravity));
+    double k = fmax(PRESSED * largest_young(model, p) * h, WEIGHTS * mass * gravity / (SUNK * h));
+    if (!model->job->motion) return k;
+    return fmax(k, mass * likely_speed(model, c, gravity) / (scene->time.step * SUNK * h));
+}
+
+static void put_numbers(const Model *model, const Scene *scene, const Case *c, double *p)
+{
+    const World *world = model->world;
+    const ContactScene *contact = &scene->contact;
+    if (world->obstacle_count)
+        p[world->stiffness] =
+            contact->stiffness.mode == 0 ? stiffness_of(model, scene, c, p) : contact->stiffness.value;
+    for (int k = 0; k < world->obstacle_count; k++) {
+        double own = scene->obstacles[k].friction;
+        p[world->friction + k] = isnan(own) ? contact->friction : own;
+    }
+    if (world->self) {
+        double given = contact->self.stiffness;
+        p[world->self_stiffness] = isnan(given) ? largest_young(model, p) * pow(world->distance, 3) : given;
+        p[world->self_friction] = contact->friction;
+    }
+    if (!world->wet) return;
+    p[world->water.density] = scene->water->density;
+    p[world->water.viscosity] = scene->water->viscosity;
+    if (!scene->water->velocity.formula)
+        memcpy(p + world->water.velocity, scene->water->velocity.value, 3 * sizeof *p);
+}
+
+void model_put_world(Model *model, const Scene *scene)
+{
+    for (int k = 0; model->world && k < model->case_count; k++)
+        for (int s = 0; s < model->cases[k].stage_count; s++)
+            put_numbers(model, scene, &model->cases[k], model->cases[k].stages[s].p);
+}
+
+/* ---- Where it starts ---- */
+
+/* Faces that an edge belongs to, by their numbers in the mesh's file where it has faces: a name for people. */
+static int face_of_edge(const WorldBody *body, int edge)
+{
+    const int *e = body->edges[edge];
+    for (int f = 0; f < body->face_count; f++) {
+        int found = 0;
+        for (int i = 0; i < 3; i++) found += body->faces[f][i] == e[0] || body->faces[f][i] == e[1];
+        if (found == 2) return f;
+    }
+    return edge;
+}
+
+static double longest_edge(const WorldBody *body)
+{
+    double longest = 0;
+    for (int e = 0; e < body->edge_count; e++) {
+        Vec3 a = vec3_load(body->rest[body->edges[e][0]]), b = vec3_load(body->rest[body->edges[e][1]]);
+        longest = fmax(longest, vec3_length(vec3_sub(a, b)));
+    }
+    return longest;
+}
+
+/* What is smaller than a quarter of an edge fits between vertices and the middles of edges and faces. */
+static void warn_of_needles(Model *model)
+{
+    const World *world = model->world;
+    double longest = longest_edge(&world->body);
+    for (int k = 0; k < world->obstacle_count; k++)
+        if (world->obstacles[k].feature + world->offset < longest / 4)
+            mesh_warn(
+                &model->report,
+                "obstacle '%s' has details of %.3g m, and the body edges of up to %.3g m: it may pass "
+                "between "
+                "the places where contact is felt (vertices, middles of edges and faces); a finer mesh would "
+                "not let it",
+                world->obstacles[k].name, world->obstacles[k].feature, longest);
+}
+
+bool model_check_world(Model *model, YamlFile *file)
+{
+    const World *world = model->world;
+    if (world) warn_of_needles(model);
+    for (int k = 0; world && world->self && k < model->case_count; k++) {
+        const Case *c = &model->cases[k];
+        int pair[1][2], count = world_crossings(world, c->state.x, pair, 1);
+        if (count == 0) continue;
+        bool faces = world->body.face_count > 0;
+        return yaml_refuse(
+            file, "contact.self",
+            "where it starts, the body passes through itself in %d place%s: first %s %d and %d. Self "
+            "contact needs a start without",
+            count, count == 1 ? "" : "s", faces ? "faces" : "elements",
+            faces ? face_of_edge(&world->body, pair[0][0]) : pair[0][0], pair[0][1]);
+    }
+    return true;
+}

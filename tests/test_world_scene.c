@@ -1,0 +1,141 @@
+/* What scenes say of obstacles, contact and water becomes what it says. */
+#include "tests/obstacle_fixture.h"
+#include "tests/scene_fixture.h"
+#include <stdio.h>
+
+/* A sheet that moves, and what it meets. */
+static Built build(const char *world)
+{
+    return scene_build(mem_format("slender: 1\njob: simulate\nshell:\n"
+                                  "  mesh: {shape: sheet, size: [10 mm, 10 mm], cells: [2, 2]}\n"
+                                  "  thickness: 1 mm\n  young: 1 MPa\n  poisson: 0.3\n"
+                                  "time: {at: 2, step: 1 ms, steps: 10}\n%s",
+                                  world));
+}
+
+static void write_file(const char *path, const char *text)
+{
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fputs(text, file);
+    assert_int_equal(fclose(file), 0);
+}
+
+/* The effective scene makes the same model again, and says the same. */
+static void check_written(const Built *b)
+{
+    char *text = yaml_write(scene_table(), &b->scene);
+    Built again = scene_try(text);
+    if (!again.model) fail_msg("%s", yaml_report(again.file));
+    char *other = yaml_write(scene_table(), &again.scene);
+    assert_string_equal(text, other);
+    assert_int_equal(again.model->world != NULL, b->model->world != NULL);
+    assert_int_equal(self_contact_is_asked(&again.scene.contact.self),
+                     self_contact_is_asked(&b->scene.contact.self));
+    mem_free(text);
+    mem_free(other);
+    clear(&again);
+}
+
+static void test_obstacles(void **state)
+{
+    (void)state;
+    long blocks = mem_live_count();
+    write_file("world_step.pgm", "P2 3 2 10\n10 10 10\n0 0 5\n"); /* high at +y, half as high at +x, -y */
+    write_file("world_corner.obj",
+               "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n");
+    Built b =
+        build("obstacles:\n"
+              "  - {plane: {point: [0, 0, -1]}}\n"
+              "  - {name: ball, sphere: {center: [0, 0, 1], radius: 10 mm, inside: true}, friction: 0.3}\n"
+              "  - {cylinder: {point: [0, 0, 1], axis: [2, 0, 0], radius: 0.5}}\n"
+              "  - {box: {center: [0, 0, 0], half: [1, 2, 3]}}\n"
+              "  - {height_field: {formula: \"1 + s*y\", where: {s: \"2*x\"}, range: [[0, 0], [1, 2]]}}\n"
+              "  - {height_field: {image: world_step.pgm, height: 3, range: [[0, 0], [3, 2]]}}\n"
+              "  - {height_field: {formula: \"x\", range: [[0, 0], [1, 2]], cells: [2, 4]}}\n"
+              "  - {tube: {axis: y, radius: \"1 + 0.1*s\", center: [\"0.5\", \"s\"], range: [0, 4]}}\n"
+              "  - {mesh: {file: world_corner.obj, scale: 2, cell: 0.05}}\n"
+              "  - {plane: {}, move: [\"0\", \"0\", \"t\"], turn: [\"pi/2\", \"0\", \"0\"]}\n");
+    check_written(&b);
+    const Obstacle *o = b.model->world->obstacles;
+    assert_int_equal(b.model->world->obstacle_count, 10);
+    assert_string_equal(o[0].name, "obstacle1");
+    assert_string_equal(o[1].name, "ball");
+    assert_true(isnan(b.scene.obstacles[0].friction) && b.scene.obstacles[1].friction == 0.3);
+    assert_near(value_at(&o[0], 5, 6, 1), 2, 0);
+    assert_near(value_at(&o[1], 0, 0, 1), 0.01, 0);
+    assert_near(value_at(&o[2], 7, 1, 1), 0.5, 1e-15);
+    assert_near(value_at(&o[3], 2, 0, 0), 1, 0);
+    assert_near(o[3].feature, 0.1, 0);
+    assert_near(value_at(&o[4], 0.3, 0.7, 4), 3 - 2 * 0.3 * 0.7, 1e-12);
+    assert_near(o[4].feature, 1.0 / 64, 1e-15);
+    assert_near(value_at(&o[5], 1, 2, 0), -3, 1e-12);
+    assert_near(value_at(&o[5], 0, 0, 0), 0, 1e-12);
+    assert_near(value_at(&o[5], 3, 0, 0), -1.5, 1e-12);
+    assert_near(o[5].feature, 1, 1e-15);
+    assert_near(o[6].feature, 0.5, 1e-15);
+    assert_near(value_at(&o[7], 0.5, 2, 2), 1.2, 1e-12);
+    assert_near(value_at(&o[7], 1, 2, 2), 0.7, 1e-12);
+    assert_near(value_at(&o[8], 0.5, 0.5, -0.1), 0.1, 1e-6);
+    assert_near(value_at(&o[8], 0.5, 0.5, 0.1), -0.1, 1e-3);
+    ObstaclePose pose;
+    Gap gap;
+    Error err;
+    assert_true(obstacle_pose(&o[9], 2, &pose, &err));
+    obstacle_gap(&o[9], &pose, (double[3]){0, -3, 0}, &gap); /* free towards -y; a point of it at (0, 0, 2) */
+    assert_near(gap.value, 3, 1e-14);
+    clear(&b);
+    assert_int_equal(mem_live_count(), blocks);
+}
+
+static void test_contact(void **state)
+{
+    (void)state;
+    Built b = build("");
+    assert_null(b.model->world);
+    assert_false(self_contact_is_asked(&b.scene.contact.self));
+    assert_null(b.scene.water);
+    clear(&b);
+    b = build("obstacles: [{plane: {}}]\n");
+    assert_true(b.scene.contact.friction == 0 && b.scene.contact.slip_speed == 1e-3);
+    assert_true(b.scene.contact.stiffness.mode == 0 && b.scene.contact.offset.mode == 0);
+    assert_int_equal(b.scene.contact.coupling, COUPLING_LAGGED);
+    clear(&b);
+    b = build("obstacles: [{plane: {}}]\ncontact: {stiffness: 1e4, offset: 0, coupling: implicit}\n");
+    assert_true(b.scene.contact.stiffness.mode == -1 && b.scene.contact.stiffness.value == 1e4);
+    assert_true(b.scene.contact.offset.mode == -1 && b.scene.contact.offset.value == 0);
+    assert_int_equal(b.scene.contact.coupling, COUPLING_IMPLICIT);
+    clear(&b);
+    static const struct {
+        const char *text;
+        bool asked;
+    } selves[] = {{"true", true}, {"false", false}, {"{distance: 1 mm}", true}, {"{stiffness: 1e-6}", true}};
+    for (size_t k = 0; k < sizeof selves / sizeof *selves; k++) {
+        char *world = mem_format("contact: {self: %s}\n", selves[k].text);
+        b = build(world);
+        assert_int_equal(self_contact_is_asked(&b.scene.contact.self), selves[k].asked);
+        check_written(&b);
+        mem_free(world);
+        clear(&b);
+    }
+}
+
+static void test_water(void **state)
+{
+    (void)state;
+    Built b = build("water: {}\n");
+    assert_true(b.scene.water->density == 1000 && b.scene.water->viscosity == 1e-3);
+    assert_true(b.scene.water->velocity.value[2] == 0 && b.scene.water->sides == SIDES_TWO);
+    clear(&b);
+    b = build("water: {density: 800, velocity: [\"t\", \"x*y\", \"0\"], sides: outer}\n");
+    assert_int_equal(b.scene.water->velocity.formula_count, 3);
+    assert_int_equal(b.scene.water->sides, SIDES_OUTER);
+    clear(&b);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_obstacles), cmocka_unit_test(test_contact),
+                                       cmocka_unit_test(test_water)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

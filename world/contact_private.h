@@ -1,0 +1,49 @@
+/* contact_private.h - what contact.c and friction.c share. */
+#pragma once
+#include "world/contact.h"
+#include "world/poses.h"
+
+typedef struct Contact {
+    ContactDef def; /* its samples are its own */
+    Poses poses;
+    bool *held;    /* [sample] all of its corners are           */
+    int dofs;      /* up to the last position                   */
+    double *trial; /* [dofs] of a way                           */
+} Contact;
+
+Contact *contact_create(const ContactDef *def);
+void contact_destroy(void *self);
+int contact_count(const void *self);
+int contact_size(const void *self);
+void contact_dofs(const void *self, int e, int *dof);
+bool contact_update(void *self, const Point *at);
+double contact_reach(const void *self, const Point *at, const double *d);
+void contact_project(const void *self, const double *from, double *x);
+
+typedef struct Penalty {
+    double energy, force, slope; /* of a depth: J, N, N/m */
+} Penalty;
+
+/* Of a positive depth d, with smoothing e and stiffness k (contact.h). */
+static inline Penalty penalty_at(double d, double e, double k)
+{
+    if (d < e) return (Penalty){k * d * d * d / (6 * e), k * d * d / (2 * e), k * d / e};
+    return (Penalty){k * (d * d / 2 - e * d / 2 + e * e / 6), k * (d - e / 2), k};
+}
+
+static inline void lane_put(Pack3 *to, int lane, const double from[3])
+{
+    to->x[lane] = from[0], to->y[lane] = from[1], to->z[lane] = from[2];
+}
+
+static inline void lane_put_matrix(PackMat *to, int lane, double from[3][3])
+{
+    lane_put(&to->r0, lane, from[0]);
+    lane_put(&to->r1, lane, from[1]);
+    lane_put(&to->r2, lane, from[2]);
+}
+
+static inline void lane_get(Pack3 from, int lane, double to[3])
+{
+    to[0] = from.x[lane], to[1] = from.y[lane], to[2] = from.z[lane];
+}

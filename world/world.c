@@ -1,0 +1,197 @@
+#include "world/world.h"
+#include "base/memory.h"
+#include "base/vec3.h"
+#include "world/crossings.h"
+
+static const double SMOOTHING =
+    0.01; /* of the thickness, the depth at which the penalty is linear: half of it is sunk */
+
+/* The vertices of each edge or face, [count][corners], of which one edge at least is longer than that; all where it is 0. */
+static Samples long_ones(const WorldBody *body, const int *corners_of, int count, int corners, double longer)
+{
+    Samples samples = {.corners = corners, .first = body->first};
+    samples.vertices = mem_alloc((size_t)count * (size_t)corners, sizeof *samples.vertices);
+    for (int e = 0; e < count; e++) {
+        const int *v = corners_of + e * corners;
+        double longest = 0;
+        for (int i = 0; i < corners; i++) {
+            Vec3 a = vec3_load(body->rest[v[i]]), b = vec3_load(body->rest[v[(i + 1) % corners]]);
+            longest = fmax(longest, vec3_length(vec3_sub(a, b)));
+        }
+        if (longest <= longer) continue;
+        for (int i = 0; i < corners; i++) samples.vertices[samples.count * corners + i] = v[i];
+        samples.count++;
+    }
+    return samples;
+}
+
+static Samples all_vertices(const WorldBody *body)
+{
+    Samples samples = {body->vertex_count, 1, mem_alloc((size_t)body->vertex_count, sizeof(int)),
+                       body->first};
+    for (int v = 0; v < body->vertex_count; v++) samples.vertices[v] = v;
+    return samples;
+}
+
+/* Takes the samples. */
+static void add_contact(World *world, Samples samples)
+{
+    if (samples.count == 0) {
+        mem_free(samples.vertices);
+        return;
+    }
+    world->contacts[world->contact_kinds++] = (ContactDef){.obstacles = world->obstacles,
+                                                           .obstacle_count = world->obstacle_count,
+                                                           .samples = samples,
+                                                           .vertex_count = world->body.vertex_count,
+                                                           .fixed = world->body.fixed,
+                                                           .smoothing = SMOOTHING * world->body.thickness};
+}
+
+World *world_create(const WorldBody *body, Obstacle *obstacles, int obstacle_count)
+{
+    World *world = mem_alloc(1, sizeof *world);
+    *world = (World){.body = *body, .obstacles = obstacles, .obstacle_count = obstacle_count};
+    double feature = INFINITY;
+    for (int k = 0; k < obstacle_count; k++) feature = fmin(feature, obstacles[k].feature);
+    if (obstacle_count == 0) return world;
+    add_contact(world, all_vertices(body));
+    add_contact(world, long_ones(body, (const int *)body->edges, body->edge_count, 2, feature));
+    if (body->face_count)
+        add_contact(world, long_ones(body, (const int *)body->faces, body->face_count, 3, feature));
+    return world;
+}
+
+void world_destroy(World *world)
+{
+    if (!world) return;
+    for (int k = 0; k < world->obstacle_count; k++) obstacle_clear(&world->obstacles[k]);
+    for (int k = 0; k < world->contact_kinds; k++) mem_free(world->contacts[k].samples.vertices);
+    mem_free(world->obstacles);
+    flux_field_destroy(world->flow);
+    mem_free(world);
+}
+
+void world_add_params(World *world, Params *params)
+{
+    if (world->obstacle_count) {
+        world->stiffness = params_add(params, "contact_stiffness", "N/m", 1, 1, false);
+        world->friction = params_add(params, "friction", "", world->obstacle_count, 1, false);
+    }
+    if (world->self) {
+        world->self_stiffness = params_add(params, "self_stiffness", "J", 1, 1, false);
+        world->self_friction = params_add(params, "self_friction", "", 1, 1, false);
+    }
+    if (!world->wet) return;
+    world->water = (Water){.density = params_add(params, "water_density", "kg/m^3", 1, 1, false),
+                           .viscosity = params_add(params, "water_viscosity", "Pa s", 1, 1, false),
+                           .velocity = params_add(params, "water_velocity", "m/s", 1, 3, false),
+                           .flow = world->flow};
+}
+
+/* As it is now: offset and slip speed are known. */
+static ContactDef contact_of(const World *world, int kind)
+{
+    ContactDef def = world->contacts[kind];
+    def.offset = world->offset;
+    def.slip_speed = world->slip_speed;
+    def.stiffness = world->stiffness;
+    def.friction = world->friction;
+    return def;
+}
+
+static SelfContactDef self_of(const World *world)
+{
+    const WorldBody *body = &world->body;
+    return (SelfContactDef){.vertex_count = body->vertex_count,
+                            .first = body->first,
+                            .face_count = body->face_count,
+                            .edge_count = body->edge_count,
+                            .faces = body->faces,
+                            .edges = body->edges,
+                            .rest = body->rest,
+                            .part = body->part,
+                            .fixed = body->fixed,
+                            .distance = world->distance,
+                            .stiffness = world->self_stiffness,
+                            .friction = world->self_friction,
+                            .slip_speed = world->slip_speed};
+}
+
+int world_crossings(const World *world, const double *x, int (*pairs)[2], int max)
+{
+    SelfContactDef def = self_of(world);
+    return self_contact_crossings(&def, x, pairs, max);
+}
+
+static Term water_of(const World *world)
+{
+    const WorldBody *body = &world->body;
+    if (body->face_count)
+        return water_term(
+            &(WaterDef){body->face_count, body->first, (int(*)[3])body->faces, world->outer, world->water});
+    return rod_water_term(&(RodWaterDef){.element_count = body->edge_count,
+                                         .first = body->first,
+                                         .length = body->length,
+                                         .radius = body->thickness / 2,
+                                         .water = world->water});
+}
+
+void world_add_terms(const World *world, System *sys, bool motion)
+{
+    for (int k = 0; k < world->contact_kinds; k++) {
+        ContactDef def = contact_of(world, k);
+        system_add(sys, contact_term(&def));
+        if (motion && world->rubs) system_add(sys, friction_term(&def));
+    }
+    if (world->self) {
+        SelfContactDef def = self_of(world);
+        system_add(sys, self_contact_term(&def));
+        if (motion && world->rubs) system_add(sys, self_friction_term(&def));
+    }
+    if (motion && world->wet) system_add(sys, water_of(world));
+}
+
+/* What the body does against a term in a step of time, J: the forces of its end times how far it went. */
+static double work_against(const Term *term, const Point *at)
+{
+    int count = term->ops->count(term->self), size = term->ops->size(term->self);
+    double sum = 0;
+    for (int e = 0; e < count; e += PACK_LANES) {
+        Pack x[TERM_MAX_DOF], moved[TERM_MAX_DOF], g[TERM_MAX_DOF];
+        for (int l = 0; l < PACK_LANES; l++) {
+            int dof[TERM_MAX_DOF];
+            term->ops->dofs(term->self, e + l < count ? e + l : count - 1, dof);
+            for (int i = 0; i < size; i++)
+                x[i][l] = at->x[dof[i]], moved[i][l] = at->x[dof[i]] - at->x_prev[dof[i]];
+        }
+        term->ops->eval(term->self, e / PACK_LANES, at, x, g, NULL);
+        for (int i = 0; i < size; i++)
+            sum += pack_sum(g[i] * moved[i], e + PACK_LANES < count ? PACK_LANES : count - e);
+    }
+    return sum;
+}
+
+static void measure_self(const World *world, const Point *at, WorldSums *sums)
+{
+    SelfContactDef def = self_of(world);
+    Term contact = self_contact_term(&def);
+    sums->self = self_contact_figures(&contact, at->x, at->p[world->self_stiffness]);
+    contact.ops->destroy(contact.self);
+    sums->pairs = sums->self.pairs;
+    sums->crossings = self_contact_crossings(&def, at->x, NULL, 0);
+}
+
+void world_measure(const World *world, const Point *at, WorldSums *sums)
+{
+    for (int k = 0; k < world->contact_kinds; k++) {
+        ContactDef def = contact_of(world, k);
+        contact_measure(&def, at, &sums->contact);
+    }
+    if (world->self) measure_self(world, at, sums);
+    if (world->wet && at->dt > 0) {
+        Term water = water_of(world);
+        sums->water += work_against(&water, at);
+        water.ops->destroy(water.self);
+    }
+}

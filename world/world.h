@@ -1,0 +1,68 @@
+/* world.h - all that a body meets, as terms for its systems. */
+#pragma once
+#include "solve/params.h"
+#include "solve/system.h"
+#include "world/contact.h"
+#include "world/self_contact.h"
+#include "world/water.h"
+
+/* What a body shows to the world; borrowed. */
+typedef struct WorldBody {
+    int vertex_count, first; /* positions of vertex v are the dofs first + 3v .. + 2 */
+    int edge_count, face_count;
+    const int (*edges)[2], (*faces)[3]; /* a rod has no faces                                */
+    const double (*rest)[3];            /* m                                                 */
+    const int *part;                    /* [vertex] the piece that it belongs to; NULL: one  */
+    const bool *fixed;                  /* [3*vertex_count] held; NULL: nothing              */
+    double thickness;                   /* m; a rod's diameter                               */
+    double length;                      /* m, of a rod                                       */
+} WorldBody;
+
+enum { SAMPLE_KINDS = 3 }; /* vertices, middles of edges, of faces */
+
+typedef struct World {
+    WorldBody body;
+    Obstacle *obstacles; /* [obstacle_count] owned */
+    int obstacle_count;
+    bool rubs;                         /* there is friction                                            */
+    bool implicit;                     /* what friction lags is the step's end's (MarchDef.implicit)    */
+    double offset, slip_speed;         /* m, m/s                                                       */
+    ContactDef contacts[SAMPLE_KINDS]; /* of those that the obstacles need                            */
+    int contact_kinds;
+
+    bool self;       /* it meets itself, and its pieces each other, ..               */
+    double distance; /* .. nearer than this, m                                       */
+    bool wet, outer; /* there is water; it knows only the outer sides of faces      */
+    FluxField *flow; /* of the water, beside its uniform velocity; owned; NULL: none */
+    Water water;
+
+    /* First entries in p, of the blocks that there are: */
+    int stiffness;      /* [1] N/m, of contact with obstacles at a sample */
+    int friction;       /* [obstacle]                                     */
+    int self_stiffness; /* [1] J, of self contact                         */
+    int self_friction;  /* [1]                                            */
+} World;
+
+/* Takes the obstacles, each with its own `feature`; all else is still to be set. */
+World *world_create(const WorldBody *body, Obstacle *obstacles, int obstacle_count);
+void world_destroy(World *world);
+
+/* Its blocks of parameters; before the body's vectors are made. */
+void world_add_params(World *world, Params *params);
+
+/* What a body feels of all that it meets, at a point of statics or at the end of a step of time: added to what is there. */
+typedef struct WorldSums {
+    ContactSums contact;
+    SelfContactFigures self;
+    double pairs;     /* that act between parts of the body                                          */
+    double crossings; /* edges that pass through faces                                       */
+    double water;     /* J, what the water has taken in the step                             */
+} WorldSums;
+
+void world_measure(const World *world, const Point *at, WorldSums *sums);
+
+/* Where the body passes through itself at x, whole vector: how often, and the first of it (self_contact_crossings). */
+int world_crossings(const World *world, const double *x, int (*pairs)[2], int max);
+
+/* Adds its terms to a system that is not prepared yet: of statics, or of steps of time. The world outlives it. */
+void world_add_terms(const World *world, System *sys, bool motion);
