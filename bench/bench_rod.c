@@ -68,7 +68,7 @@ static Hanging hanging_create(int elements)
     o.p[o.rod->gravity + 2] = -9.8;
     o.sys = rod_hanging_system(o.rod);
     o.state = system_state(o.sys);
-    rod_follow_curve(o.rod, &o.curve, frames, o.state.x);
+    rod_follow_curves(o.rod, &o.curve, &frames, o.state.x);
     RodLayout layout = rod_layout(o.rod, false);
     rod_balance(o.rod, o.sys, &layout, o.state.x, o.p);
     mem_free(frames);

@@ -80,7 +80,7 @@ void model_add_blocks(Model *model, const Scene *scene);
  * all cases; model_check_world refuses starts that pass through themselves. */
 bool model_read_world(Model *model, const Build *b, const Scene *scene, const WorldBody *body, World **world);
 void model_put_world(Model *model, const Scene *scene);
-bool model_check_world(Model *model, const Scene *scene, YamlFile *file);
+bool model_check_world(Model *model, YamlFile *file);
 
 /* A flux density, model->flux[number], into p. */
 void model_put_flux(const Model *model, int number, double *p);

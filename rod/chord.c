@@ -2,9 +2,9 @@
 
 Chord chord_at(const RodTerm *term, int pack, const double *x, const Pack *turns)
 {
-    Chord chord = {.s = segment_at(&term->layout, pack, x, turns), .h = rod_element_length(term->rod)};
+    Chord chord = {.s = segment_at(&term->layout, pack, x, turns), .h = rod_term_length(term, pack)};
     Pack3 bow = rod_term_vector(term, pack, &term->rod->bow[0].x);
-    chord.C = pack3_axpy(pack_set(chord.h), segment_chord(&chord.s), bow);
+    chord.C = pack3_axpy(chord.h, segment_chord(&chord.s), bow);
     return chord;
 }
 
@@ -16,8 +16,7 @@ Pack3 chord_world(const Chord *chord)
 /* dC of turns, in the frame of a. */
 static Pack3 body_rate(const Chord *chord, Pack3 turn_a, Pack3 turn_b)
 {
-    return pack3_scale(pack_set(chord->h),
-                       segment_chord_rate(&chord->s, segment_rate(&chord->s, turn_a, turn_b)));
+    return pack3_scale(chord->h, segment_chord_rate(&chord->s, segment_rate(&chord->s, turn_a, turn_b)));
 }
 
 Pack3 chord_rate(const Chord *chord, Pack3 turn_a, Pack3 turn_b)
@@ -30,7 +29,7 @@ Pack3 chord_rate(const Chord *chord, Pack3 turn_a, Pack3 turn_b)
 void chord_gradient(const Chord *chord, Pack3 T, Pack *g)
 {
     Pack3 F = segment_to_body(&chord->s, T), own = pack3_cross(F, chord->C);
-    Jet jet = segment_chord_jet(&chord->s, pack3_scale(pack_set(-chord->h), F), false);
+    Jet jet = segment_chord_jet(&chord->s, pack3_scale(-chord->h, F), false);
     segment_pull_gradient(&chord->s, &jet, g);
     pack3_store(g, pack3_add(pack3_load(g), own));
 }
@@ -49,7 +48,7 @@ static PackMat mixed(const Chord *chord, Pack3 F, bool b)
 void chord_hessian(const Chord *chord, Pack3 T, PackMat block[3])
 {
     Pack3 F = segment_to_body(&chord->s, T), C = chord->C;
-    Jet jet = segment_chord_jet(&chord->s, pack3_scale(pack_set(-chord->h), F), true);
+    Jet jet = segment_chord_jet(&chord->s, pack3_scale(-chord->h, F), true);
     segment_pull_hessian(&chord->s, &jet, block);
     PackMat a = mixed(chord, F, false);
     block[0] = pack_mat_add(block[0], pack_mat_add(a, pack_mat_transpose(a)));

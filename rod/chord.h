@@ -5,7 +5,7 @@
 
 typedef struct Chord {
     Segment s;
-    double h;
+    Pack h;  /* m */
     Pack3 C; /* in the frame of the first node, m */
 } Chord;
 

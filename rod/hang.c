@@ -6,10 +6,12 @@
 /* Mass beyond the element, kg. */
 static Pack beyond(const RodTerm *term, int pack)
 {
-    const Rod *rod = term->rod;
-    Pack mass;
-    for (int l = 0; l < PACK_LANES; l++) mass[l] = rod->elements - segment_lane(&term->layout, pack, l) - 0.5;
-    return rod->unit.mass * rod_element_length(rod) * mass;
+    Pack elements;
+    for (int l = 0; l < PACK_LANES; l++) {
+        int e = segment_lane(&term->layout, pack, l) % term->layout.each;
+        elements[l] = term->layout.each - e - 0.5;
+    }
+    return term->rod->unit.mass * rod_term_length(term, pack) * elements;
 }
 
 /* T with the numbers of p, or its change with those of dp. */

@@ -20,8 +20,9 @@ static void link_dofs(const void *self, int e, int *dof)
 {
     const RodLayout *layout = &((const RodTerm *)self)->layout;
     for (int i = 0; i < 6; i++) {
-        dof[i] = layout->position + 3 * e + i;
-        dof[3 * TURN_A + i] = layout->turn + 3 * e + i;
+        int node = rod_element_node(layout, e);
+        dof[i] = layout->position + 3 * node + i;
+        dof[3 * TURN_A + i] = layout->turn + 3 * node + i;
         if (i < 3) dof[3 * LAMBDA + i] = layout->multiplier + 3 * e + i;
     }
 }

@@ -30,8 +30,9 @@ static int magnetic_size(const void *self)
 static void magnetic_dofs(const void *self, int e, int *dof)
 {
     rod_term_turn_dofs(self, e, dof);
+    const RodLayout *layout = &((const RodTerm *)self)->layout;
     for (int i = 0; varies(self) && i < 6; i++)
-        dof[PLACE + i] = ((const RodTerm *)self)->layout.position + 3 * e + i;
+        dof[PLACE + i] = layout->position + 3 * rod_element_node(layout, e) + i;
 }
 
 static Pack3 rotated(const Quat *q, bool back, Pack3 v)
@@ -71,7 +72,8 @@ static Node node_at(const RodTerm *term, int pack, int k, const Point *at, const
     Node node;
     Pack3 turn = pack3_load(x + TURN + 3 * k);
     for (int l = 0; l < PACK_LANES; l++) {
-        Quat q = rod_reference(&term->layout, at->x, segment_lane(&term->layout, pack, l) + k);
+        int e = segment_lane(&term->layout, pack, l);
+        Quat q = rod_reference(&term->layout, at->x, rod_element_node(&term->layout, e) + k);
         Quat half = {1, {turn.x[l] / 2, turn.y[l] / 2, turn.z[l] / 2}};
         node.q[l] = quat_unit(quat_mul(q, half));
     }
@@ -80,9 +82,9 @@ static Node node_at(const RodTerm *term, int pack, int k, const Point *at, const
 }
 
 /* V/2, m^3 */
-static Pack half_volume(const RodTerm *term)
+static Pack half_volume(const RodTerm *term, int pack)
 {
-    return pack_set(term->rod->area * rod_element_length(term->rod) / 2);
+    return term->rod->area * rod_term_length(term, pack) / 2;
 }
 
 /* G^T R M */
@@ -117,7 +119,8 @@ static Pack magnetic_eval(const void *self, int pack, const Point *at, const Pac
 {
     const RodTerm *term = self;
     int size = magnetic_size(self);
-    Pack3 M = pack3_scale(half_volume(term), rod_term_vector(term, pack, at->p + term->rod->magnetization));
+    Pack3 M =
+        pack3_scale(half_volume(term, pack), rod_term_vector(term, pack, at->p + term->rod->magnetization));
     const double *B = at->p + term->rod->flux_density;
     Pack energy = {0};
     if (g) rod_term_clear(g, size);
@@ -161,11 +164,11 @@ static void magnetic_param(const void *self, int pack, int lanes, const Point *a
     Pack3 M = rod_term_vector(term, pack, at->p + rod->magnetization);
     for (int k = 0; k < 2; k++) {
         Node node = node_at(term, pack, k, at, x);
-        Pack3 turn = pack3_scale(half_volume(term), pack3_load(w + TURN + 3 * k));
+        Pack3 turn = pack3_scale(half_volume(term, pack), pack3_load(w + TURN + 3 * k));
         Pack3 dM = pack3_cross(turn, node.u), dB = to_world(&node, pack3_cross(M, turn));
         if (varies(term)) {
             Work work = {pack3_load(x + PLACE + 3 * k), dB, to_world(&node, M),
-                         pack3_scale(half_volume(term), pack3_load(w + PLACE + 3 * k))};
+                         pack3_scale(half_volume(term, pack), pack3_load(w + PLACE + 3 * k))};
             dM = pack3_sub(dM, to_body(&node, pack_mat_times(node.flux.gradient, work.b)));
             add_factors(term, lanes, at, &work, dp);
         }
@@ -182,8 +185,8 @@ static void magnetic_param_forward(const void *self, int pack, const Point *at, 
 {
     const RodTerm *term = self;
     const Rod *rod = term->rod;
-    Pack3 M = pack3_scale(half_volume(term), rod_term_vector(term, pack, at->p + rod->magnetization)),
-          dM = pack3_scale(half_volume(term), rod_term_vector(term, pack, dp + rod->magnetization));
+    Pack3 M = pack3_scale(half_volume(term, pack), rod_term_vector(term, pack, at->p + rod->magnetization)),
+          dM = pack3_scale(half_volume(term, pack), rod_term_vector(term, pack, dp + rod->magnetization));
     for (int k = 0; k < 2; k++) {
         Node node = node_at(term, pack, k, at, x), change = node;
         set_field(term, at, x + PLACE + 3 * k, dp, &change);

@@ -11,13 +11,17 @@ static const double PUSH = 60;          /* of a held end, in EI/L^2: clamps buck
 
 Rod *rod_create(int elements, double length, RodSection unit, double area, const FluxFields *fields)
 {
+    return rod_create_strands(1, elements, &length, unit, area, fields);
+}
+
+Rod *rod_create_strands(int strands, int each, const double *length, RodSection unit, double area,
+                        const FluxFields *fields)
+{
+    int elements = strands * each;
     Rod *rod = mem_alloc(1, sizeof *rod);
-    *rod = (Rod){.elements = elements,
-                 .length = length,
-                 .unit = unit,
-                 .area = area,
-                 .frame = quat_identity(),
-                 .start = ROD_CLAMPED};
+    *rod = (Rod){.strands = strands, .elements = elements, .unit = unit, .area = area, .start = ROD_CLAMPED};
+    rod->strand = mem_alloc((size_t)strands, sizeof *rod->strand);
+    for (int k = 0; k < strands; k++) rod->strand[k] = (RodStrand){length[k], vec3(0, 0, 0), quat_identity()};
     if (fields) rod->fields = *fields;
     rod->bow = mem_alloc((size_t)elements, sizeof *rod->bow);
     Params *params = &rod->params;
@@ -26,7 +30,7 @@ Rod *rod_create(int elements, double length, RodSection unit, double area, const
     rod->magnetization = params_add(params, "magnetization", "A/m", elements, 3, false);
     rod->flux_density = params_add(params, "flux_density", "T", 1, 3, true);
     rod->gravity = params_add(params, "gravity", "m/s^2", 1, 3, true);
-    rod->load = params_add(params, "load", "N", elements + 1, 3, true);
+    rod->load = params_add(params, "load", "N", elements + strands, 3, true);
     rod->pull = params_add(params, "pull", "N", elements, 3, true);
     rod->damping = params_add(params, "damping", "N s/m", 1, 1, false);
     rod->field_scale = params_add(params, "field_scale", "", rod->fields.count, 1, true);
@@ -36,36 +40,56 @@ Rod *rod_create(int elements, double length, RodSection unit, double area, const
 void rod_destroy(Rod *rod)
 {
     if (!rod) return;
+    mem_free(rod->strand);
     mem_free(rod->bow);
     flux_fields_clear(&rod->fields);
     world_destroy(rod->world);
     mem_free(rod->edges);
     mem_free(rod->straight);
+    mem_free(rod->part);
     params_clear(&rod->params);
     mem_free(rod);
 }
 
+double rod_length(const Rod *rod)
+{
+    double longest = 0;
+    for (int k = 0; k < rod->strands; k++) longest = fmax(longest, rod->strand[k].length);
+    return longest;
+}
+
 WorldBody rod_world_body(Rod *rod)
 {
+    RodLayout layout = rod_layout(rod, true);
     mem_free(rod->edges);
     mem_free(rod->straight);
+    mem_free(rod->part);
     rod->edges = mem_alloc((size_t)rod->elements, sizeof *rod->edges);
-    rod->straight = mem_alloc((size_t)rod->elements + 1, sizeof *rod->straight);
-    for (int e = 0; e < rod->elements; e++) rod->edges[e][0] = e, rod->edges[e][1] = e + 1;
-    for (int i = 0; i <= rod->elements; i++) rod->straight[i][0] = i * rod_element_length(rod);
-    return (WorldBody){.vertex_count = rod_node_count(rod),
-                       .first = rod_layout(rod, true).position,
+    rod->straight = mem_alloc((size_t)layout.nodes, sizeof *rod->straight);
+    rod->part = mem_alloc((size_t)layout.nodes, sizeof *rod->part);
+    for (int e = 0; e < rod->elements; e++) {
+        int node = rod->edges[e][0] = rod_element_node(&layout, e), next = rod->edges[e][1] = node + 1;
+        rod->straight[next][0] = (e % layout.each + 1) * rod_element_length(rod, e);
+        rod->part[node] = rod->part[next] = e / layout.each;
+    }
+    return (WorldBody){.vertex_count = layout.nodes,
+                       .first = layout.position,
                        .edge_count = rod->elements,
                        .edges = (const int(*)[2])rod->edges,
                        .rest = (const double(*)[3])rod->straight,
+                       .part = rod->part,
                        .thickness = 2 * rod->unit.reach,
-                       .length = rod->length};
+                       .length = rod_length(rod)};
 }
 
 void rod_node_mass(const Rod *rod, double *mass)
 {
-    double element = rod->unit.mass * rod_element_length(rod);
-    for (int i = 0; i <= rod->elements; i++) mass[i] = i == 0 || i == rod->elements ? element / 2 : element;
+    int each = rod_each(rod);
+    for (int k = 0; k < rod->strands; k++)
+        for (int i = 0; i <= each; i++) {
+            double element = rod->unit.mass * rod_element_length(rod, k * each);
+            *mass++ = i == 0 || i == each ? element / 2 : element;
+        }
 }
 
 void rod_default_params(const Rod *rod, double young, double *p)
@@ -83,26 +107,35 @@ bool rod_field_varies(const Rod *rod, const double *p)
 
 void rod_sum_loads(const Rod *rod, double *p)
 {
+    RodLayout layout = rod_layout(rod, false);
     Vec3 sum = vec3(0, 0, 0);
     for (int e = rod->elements - 1; e >= 0; e--) {
-        sum = vec3_add(sum, vec3_load(p + rod->load + 3 * (e + 1)));
+        if ((e + 1) % layout.each == 0) sum = vec3(0, 0, 0);
+        sum = vec3_add(sum, vec3_load(p + rod->load + 3 * (rod_element_node(&layout, e) + 1)));
         vec3_store(p + rod->pull + 3 * e, sum);
     }
 }
 
-void rod_share_loads(const Rod *rod, RodLoads loads, double *load)
+/* On a strand with elements of length h. */
+static void share_loads(int elements, double h, RodLoads loads, double *load)
 {
-    double h = rod_element_length(rod);
-    for (int i = 0; i <= rod->elements; i++)
-        vec3_store(load + 3 * i, vec3_scale(i == 0 || i == rod->elements ? h / 2 : h, loads.line));
+    for (int i = 0; i <= elements; i++)
+        vec3_store(load + 3 * i, vec3_scale(i == 0 || i == elements ? h / 2 : h, loads.line));
     for (int k = 0; k < loads.point_count; k++) {
-        double part = fmin(loads.points[k].s / h, rod->elements);
-        int e = part < rod->elements ? (int)part : rod->elements - 1;
+        double part = fmin(loads.points[k].s / h, elements);
+        int e = part < elements ? (int)part : elements - 1;
         for (int side = 0; side < 2; side++) {
             double *to = load + 3 * (e + side), share = side ? part - e : 1 - (part - e);
             vec3_store(to, vec3_axpy(share, loads.points[k].force, vec3_load(to)));
         }
     }
+}
+
+void rod_share_loads(const Rod *rod, RodLoads loads, double *load)
+{
+    int each = rod_each(rod);
+    for (int k = 0; k < rod->strands; k++)
+        share_loads(each, rod_element_length(rod, k * each), loads, load + 3 * k * (each + 1));
 }
 
 /* ---- Systems ---- */
@@ -135,15 +168,17 @@ static void fix(System *sys, int first, int count, bool held)
     for (int i = first; held && i < first + count; i++) system_fix(sys, i);
 }
 
-/* Node after node along the rod; an element's multipliers after both its nodes. */
+/* Node after node along the strands; an element's multipliers after both its nodes. */
 static void set_order(System *sys, const RodLayout *layout)
 {
     int *order = mem_alloc((size_t)layout->dofs, sizeof *order), count = 0;
     for (int i = 0; i < layout->nodes; i++) {
         for (int k = 0; layout->position >= 0 && k < 3; k++) order[count++] = layout->position + 3 * i + k;
         for (int k = 0; k < 3; k++) order[count++] = layout->turn + 3 * i + k;
-        for (int k = 0; layout->multiplier >= 0 && i > 0 && k < 3; k++)
-            order[count++] = layout->multiplier + 3 * (i - 1) + k;
+        int strand = i / (layout->each + 1), e = i - strand - 1;
+        bool ends = i % (layout->each + 1) > 0;
+        for (int k = 0; layout->multiplier >= 0 && ends && k < 3; k++)
+            order[count++] = layout->multiplier + 3 * e + k;
     }
     for (; count < layout->dofs; count++) order[count] = count;
     system_set_order(sys, order);
@@ -155,7 +190,7 @@ System *rod_hanging_system(const Rod *rod)
     RodLayout layout = rod_layout(rod, false);
     System *sys = system_create(layout.dofs, &(DofClass){.count = 3 * layout.nodes, .size = 1}, 1);
     add_terms(sys, rod, &layout, 0);
-    fix(sys, layout.turn, 3, true);
+    for (int k = 0; k < rod->strands; k++) fix(sys, layout.turn + 3 * k * (layout.each + 1), 3, true);
     fix(sys, layout.reference, 4 * layout.nodes, true);
     set_order(sys, &layout);
     system_prepare(sys);
@@ -165,25 +200,28 @@ System *rod_hanging_system(const Rod *rod)
 System *rod_system(const Rod *rod, double young, bool dynamic)
 {
     RodLayout layout = rod_layout(rod, true);
-    int end = 3 * (layout.nodes - 1);
-    double bend = young * fmax(rod->unit.bend1, rod->unit.bend2);
+    int end = 3 * layout.elements;
+    double bend = young * fmax(rod->unit.bend1, rod->unit.bend2), length = rod_length(rod);
     DofClass classes[] = {
-        {.first = layout.position, .count = 3 * layout.nodes, .size = rod->length},
+        {.first = layout.position, .count = 3 * layout.nodes, .size = length},
         {.first = layout.turn, .count = 3 * layout.nodes, .size = 1},
         {.first = layout.multiplier, .count = end - 3, .size = INFINITY, .multipliers = true},
         {.first = layout.multiplier + end - 3,
          .count = 3,
          .size = INFINITY,
          .multipliers = true,
-         .force = rod->end == ROD_FREE ? 0 : PUSH * bend / pow(rod->length, 2)}};
+         .force = rod->end == ROD_FREE ? 0 : PUSH * bend / pow(length, 2)}};
     System *sys = system_create(layout.dofs, classes, 4);
-    add_terms(sys, rod, &layout, HOLD * bend / pow(rod->length, 3));
+    add_terms(sys, rod, &layout, HOLD * bend / pow(length, 3));
     add_lumped_terms(sys, rod, dynamic);
     if (rod->world) world_add_terms(rod->world, sys, dynamic);
-    fix(sys, layout.position, 3, true);
-    fix(sys, layout.turn, 3, rod->start == ROD_CLAMPED);
-    fix(sys, layout.position + end, 3, rod->end != ROD_FREE);
-    fix(sys, layout.turn + end, 3, rod->end == ROD_CLAMPED);
+    for (int k = 0; k < rod->strands; k++) {
+        int first = 3 * k * (layout.each + 1), last = first + 3 * layout.each;
+        fix(sys, layout.position + first, 3, true);
+        fix(sys, layout.turn + first, 3, rod->start == ROD_CLAMPED);
+        fix(sys, layout.position + last, 3, rod->end != ROD_FREE);
+        fix(sys, layout.turn + last, 3, rod->end == ROD_CLAMPED);
+    }
     bool spins = rod->start == ROD_PINNED && rod->end != ROD_CLAMPED;
     if (spins || (rod->end != ROD_FREE && !dynamic)) system_set_base_shift(sys, BASE_SHIFT);
     fix(sys, layout.reference, 4 * layout.nodes, true);

@@ -1,4 +1,5 @@
-/* rod.h - an inextensible, unshearable rod (Kirchhoff) in N elements of constant strain, and its states.
+/* rod.h - inextensible, unshearable rods (Kirchhoff) in elements of constant strain, and their states. One rod, or
+ * several strands of as many elements each, one after the other: they know nothing of each other but by their world.
  *
  * Its shape is a rotation at each node; between two nodes strain is constant, so an element is a piece of a
  * helix and its chord is known in closed form: positions follow from rotations exactly, and never stretch
@@ -27,20 +28,25 @@
 
 typedef enum RodSupport { ROD_FREE, ROD_PINNED, ROD_CLAMPED } RodSupport;
 
+typedef struct RodStrand {
+    double length; /* m               */
+    Vec3 position; /* of its first node, m */
+    Quat frame;
+} RodStrand;
+
 typedef struct Rod {
-    int elements;
-    double length;         /* m                                            */
+    int strands, elements; /* of all strands                               */
+    RodStrand *strand;     /* [strands] owned                              */
     RodSection unit;       /* of a Young's modulus of 1 Pa; mass in kg/m   */
     double area;           /* of the section, m^2                          */
-    Vec3 position;         /* of the first node, m                         */
-    Quat frame;            /* of the first node                            */
-    RodSupport start, end; /* start: clamped or pinned                     */
+    RodSupport start, end; /* of each; start: clamped or pinned            */
     Vec3 *bow;         /* [elements] m, in the first node's frame: how far an element's chord is off that of a
                 * helix, because strain varies within it; usually 0; owned */
     FluxFields fields; /* parts of the flux density that vary in space; owned. Not for the hanging form */
     World *world;      /* what it meets; owned; NULL: nothing. Not for the hanging form                 */
     int (*edges)[2];   /* [elements] the nodes of each, and                                             */
-    double (*straight)[3]; /* [nodes] m, places along x: what its world knows of it; owned              */
+    double (*straight)[3]; /* [nodes] m, places along x,                                          */
+    int *part;             /* [nodes] and strands: what its world knows of it; all owned          */
 
     Params params;      /* blocks and their first entries in p:                           */
     int young;          /* [element] Pa                                                   */
@@ -57,16 +63,32 @@ typedef struct Rod {
 /* Clamped at the origin along x, free at the other end; material, strains and loads are up to p. Takes the fields
  * (NULL: none). */
 Rod *rod_create(int elements, double length, RodSection unit, double area, const FluxFields *fields);
+
+/* Many, of length[strands] and so many elements each. */
+Rod *rod_create_strands(int strands, int elements, const double *length, RodSection unit, double area,
+                        const FluxFields *fields);
 void rod_destroy(Rod *rod);
 
 static inline int rod_node_count(const Rod *rod)
 {
-    return rod->elements + 1;
+    return rod->elements + rod->strands;
 }
-static inline double rod_element_length(const Rod *rod)
+
+/* Elements of a strand, and its nodes. */
+static inline int rod_each(const Rod *rod)
 {
-    return rod->length / rod->elements;
+    return rod->elements / rod->strands;
 }
+
+/* Of an element. */
+static inline double rod_element_length(const Rod *rod, int e)
+{
+    int each = rod_each(rod);
+    return rod->strand[e / each].length / each;
+}
+
+/* m, of the longest strand. */
+double rod_length(const Rod *rod);
 
 /* What it shows to the world: elements as capsules around their chords, at rest straight, so that what is near along the
  * rod is its own neighbour. Borrowed from the rod. */
@@ -91,12 +113,18 @@ void rod_share_loads(const Rod *rod, RodLoads loads, double *load);
 /* ---- States ---- */
 
 typedef struct RodLayout {
-    int nodes;
+    int nodes, elements, each;                 /* each: elements of a strand */
     int position, turn, multiplier, reference; /* first dof of each; -1: none */
     int dofs;
 } RodLayout;
 
 RodLayout rod_layout(const Rod *rod, bool positions);
+
+/* The first node of element e; the other one is the next. */
+static inline int rod_element_node(const RodLayout *layout, int e)
+{
+    return e + e / layout->each;
+}
 
 static inline Quat rod_reference(const RodLayout *layout, const double *x, int node)
 {
@@ -113,14 +141,14 @@ void rod_natural_state(const Rod *rod, const RodLayout *layout, const double *p,
 /* The same state in another form. */
 void rod_copy_state(const Rod *rod, const RodLayout *from, const double *x, const RodLayout *to, double *y);
 
-/* Places of the first `count` nodes, place[count][3], from the first one (of x, or the rod's) and the
+/* Places of the first `count` nodes, place[count][3], from the strands' first ones (of x, or the rod's) and the
  * rotations, turns included. place may be x's own positions. */
 void rod_places(const Rod *rod, const RodLayout *layout, const double *x, int count, double *place);
 
-/* The hanging state x that follows a curve of as many elements: rotations from its frames[stations] at the
- * nodes; and bow so that the rod has the curve's places, to rounding. Takes position, frame and length from
- * the curve. */
-void rod_follow_curve(Rod *rod, const RodCurve *curve, const RodFrame *frames, double *x);
+/* The hanging state x that follows curves[strands] of as many elements as each strand: rotations from their
+ * frames[strand][stations] at the nodes; and bow so that the strands have the curves' places, to rounding. Takes position,
+ * frame and length of each from its curve. */
+void rod_follow_curves(Rod *rod, const RodCurve *curves, RodFrame *const *frames, double *x);
 
 /* ---- Systems ---- */
 

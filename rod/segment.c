@@ -69,7 +69,8 @@ static PackQuat gather_reference(const RodLayout *layout, int pack, int offset, 
 {
     Pack q[4];
     for (int l = 0; l < PACK_LANES; l++) {
-        const double *from = x + layout->reference + 4 * (segment_lane(layout, pack, l) + offset);
+        int node = rod_element_node(layout, segment_lane(layout, pack, l)) + offset;
+        const double *from = x + layout->reference + 4 * node;
         for (int k = 0; k < 4; k++) q[k][l] = from[k];
     }
     return (PackQuat){q[0], {q[1], q[2], q[3]}};

@@ -43,7 +43,7 @@ Segment segment_at(const RodLayout *layout, int pack, const double *x, const Pac
 
 static inline int segment_lane(const RodLayout *layout, int pack, int lane)
 {
-    int e = pack * PACK_LANES + lane, last = layout->nodes - 2;
+    int e = pack * PACK_LANES + lane, last = layout->elements - 1;
     return e < last ? e : last;
 }
 

@@ -8,6 +8,8 @@ RodLayout rod_layout(const Rod *rod, bool positions)
     int nodes = rod_node_count(rod), turn = positions ? 3 * nodes : 0, multiplier = turn + 3 * nodes;
     int reference = positions ? multiplier + 3 * rod->elements : multiplier;
     return (RodLayout){.nodes = nodes,
+                       .elements = rod->elements,
+                       .each = rod_each(rod),
                        .position = positions ? 0 : -1,
                        .turn = turn,
                        .multiplier = positions ? multiplier : -1,
@@ -17,8 +19,10 @@ RodLayout rod_layout(const Rod *rod, bool positions)
 
 static void gather_turns(const RodLayout *layout, int pack, const double *x, Pack turns[6])
 {
-    for (int l = 0; l < PACK_LANES; l++)
-        for (int i = 0; i < 6; i++) turns[i][l] = x[layout->turn + 3 * segment_lane(layout, pack, l) + i];
+    for (int l = 0; l < PACK_LANES; l++) {
+        int node = rod_element_node(layout, segment_lane(layout, pack, l));
+        for (int i = 0; i < 6; i++) turns[i][l] = x[layout->turn + 3 * node + i];
+    }
 }
 
 static int pack_count(const Rod *rod)
@@ -29,16 +33,21 @@ static int pack_count(const Rod *rod)
 void rod_places(const Rod *rod, const RodLayout *layout, const double *x, int count, double *place)
 {
     RodTerm term = {.rod = rod, .layout = *layout};
-    Vec3 now = layout->position >= 0 ? vec3_load(x + layout->position) : rod->position;
-    vec3_store(place, now);
+    Vec3 now = {0};
     for (int k = 0; k < pack_count(rod); k++) {
         Pack turns[6];
         gather_turns(layout, k, x, turns);
         Chord chord = chord_at(&term, k, x, turns);
         Pack3 step = chord_world(&chord);
-        for (int l = 0, node = k * PACK_LANES + 1; l < PACK_LANES && node < count; l++, node++) {
+        for (int l = 0, e = k * PACK_LANES; l < PACK_LANES && e < layout->elements; l++, e++) {
+            int node = rod_element_node(layout, e);
+            if (e % layout->each == 0) {
+                now = layout->position >= 0 ? vec3_load(x + layout->position + 3 * node)
+                                            : rod->strand[e / layout->each].position;
+                if (node < count) vec3_store(place + 3 * node, now);
+            }
             now = vec3_add(now, vec3(step.x[l], step.y[l], step.z[l]));
-            vec3_store(place + 3 * node, now);
+            if (node + 1 < count) vec3_store(place + 3 * (node + 1), now);
         }
     }
 }
@@ -52,7 +61,8 @@ void rod_set_state(const Rod *rod, const RodLayout *layout, const Quat *q, doubl
         vec3_store(to + 1, q[i].v);
     }
     if (layout->position < 0) return;
-    vec3_store(x + layout->position, rod->position);
+    for (int k = 0; k < rod->strands; k++)
+        vec3_store(x + layout->position + 3 * k * (layout->each + 1), rod->strand[k].position);
     rod_places(rod, layout, x, layout->nodes, x + layout->position);
 }
 
@@ -64,50 +74,62 @@ void rod_copy_state(const Rod *rod, const RodLayout *from, const double *x, cons
     mem_free(q);
 }
 
+/* Of a strand, from q[0] on. */
+static void natural_frames(int elements, double h, const double *strain, Quat *q)
+{
+    for (int e = 0; e < elements; e++)
+        q[e + 1] = quat_unit(quat_mul(q[e], quat_exp(vec3_scale(h, vec3_load(strain + 3 * e)))));
+}
+
 void rod_natural_state(const Rod *rod, const RodLayout *layout, const double *p, double *x)
 {
-    double h = rod_element_length(rod);
+    int each = layout->each;
     Quat *q = mem_alloc((size_t)layout->nodes, sizeof *q);
-    q[0] = rod->frame;
-    for (int e = 0; e < rod->elements; e++)
-        q[e + 1] =
-            quat_unit(quat_mul(q[e], quat_exp(vec3_scale(h, vec3_load(p + rod->natural_strain + 3 * e)))));
+    for (int k = 0; k < rod->strands; k++) {
+        Quat *own = q + k * (each + 1);
+        own[0] = rod->strand[k].frame;
+        natural_frames(each, rod_element_length(rod, k * each), p + rod->natural_strain + 3 * k * each, own);
+    }
     rod_set_state(rod, layout, q, x);
     mem_free(q);
 }
 
 void rod_element_strains(const Rod *rod, const RodLayout *layout, const double *x, Vec3 *strain)
 {
-    double h = rod_element_length(rod);
     for (int k = 0; k < pack_count(rod); k++) {
         Pack turns[6];
         gather_turns(layout, k, x, turns);
         Segment s = segment_at(layout, k, x, turns);
         Pack3 theta = segment_theta(&s);
-        for (int l = 0, e = k * PACK_LANES; l < PACK_LANES && e < rod->elements; l++, e++)
+        for (int l = 0, e = k * PACK_LANES; l < PACK_LANES && e < rod->elements; l++, e++) {
+            double h = rod_element_length(rod, e);
             strain[e] = vec3(theta.x[l] / h, theta.y[l] / h, theta.z[l] / h);
+        }
     }
 }
 
-void rod_follow_curve(Rod *rod, const RodCurve *curve, const RodFrame *frames, double *x)
+void rod_follow_curves(Rod *rod, const RodCurve *curves, RodFrame *const *frames, double *x)
 {
     RodLayout layout = rod_layout(rod, false);
     double *place = mem_alloc(3 * (size_t)layout.nodes, sizeof *place);
     Quat *q = mem_alloc((size_t)layout.nodes, sizeof *q);
-    for (int i = 0; i < layout.nodes; i++) {
-        RodFrame f = frames[2 * i];
-        q[i] = quat_from_axes(f.n0, f.n1, f.n2);
+    for (int k = 0; k < rod->strands; k++) {
+        Quat *own = q + k * (layout.each + 1);
+        for (int i = 0; i <= layout.each; i++) {
+            RodFrame f = frames[k][2 * i];
+            own[i] = quat_from_axes(f.n0, f.n1, f.n2);
+        }
+        rod->strand[k] = (RodStrand){curves[k].length, curves[k].x[0], own[0]};
     }
-    rod->length = curve->length;
-    rod->position = curve->x[0];
-    rod->frame = q[0];
     for (int e = 0; e < rod->elements; e++) rod->bow[e] = vec3(0, 0, 0);
     rod_set_state(rod, &layout, q, x);
     rod_places(rod, &layout, x, layout.nodes, place);
     for (int e = 0; e < rod->elements; e++) {
-        Vec3 wanted = vec3_sub(curve->x[2 * e + 2], curve->x[2 * e]),
-             chord = vec3_sub(vec3_load(place + 3 * e + 3), vec3_load(place + 3 * e));
-        rod->bow[e] = quat_rotate(quat_conj(q[e]), vec3_sub(wanted, chord));
+        int node = rod_element_node(&layout, e);
+        const Vec3 *station = curves[e / layout.each].x + 2 * (e % layout.each);
+        Vec3 wanted = vec3_sub(station[2], station[0]),
+             chord = vec3_sub(vec3_load(place + 3 * node + 3), vec3_load(place + 3 * node));
+        rod->bow[e] = quat_rotate(quat_conj(q[node]), vec3_sub(wanted, chord));
     }
     mem_free(place);
     mem_free(q);
@@ -127,27 +149,34 @@ static void turn_rows(const RodLayout *layout, const double *x, Vec3 (*rows)[6])
 {
     static const Pack none[6] = {{0}};
     Pack3 zero = {{0}, {0}, {0}};
-    for (int k = 0; k * PACK_LANES < layout->nodes - 1; k++) {
+    for (int k = 0; k * PACK_LANES < layout->elements; k++) {
         Segment s = segment_at(layout, k, x, none);
         for (int i = 0; i < 6; i++) {
             Pack3 unit = pack3(pack_set(i % 3 == 0), pack_set(i % 3 == 1), pack_set(i % 3 == 2));
             Pack3 row =
                 segment_theta_rate(&s, i < 3 ? segment_rate(&s, unit, zero) : segment_rate(&s, zero, unit));
-            for (int l = 0, e = k * PACK_LANES; l < PACK_LANES && e < layout->nodes - 1; l++, e++)
+            for (int l = 0, e = k * PACK_LANES; l < PACK_LANES && e < layout->elements; l++, e++)
                 rows[e][i] = vec3(row.x[l], row.y[l], row.z[l]);
         }
     }
+}
+
+static bool ends_strand(const RodLayout *layout, int e)
+{
+    return (e + 1) % layout->each == 0;
 }
 
 /* The multipliers that leave no force on the positions: what each element carries, from the free end on. */
 static void set_multipliers(const RodLayout *layout, System *sys, const double *p, double *x, double *force)
 {
     double *multiplier = x + layout->multiplier;
-    memset(multiplier, 0, 3 * (size_t)(layout->nodes - 1) * sizeof *multiplier);
+    memset(multiplier, 0, 3 * (size_t)layout->elements * sizeof *multiplier);
     system_gradient(sys, &(Point){.x = x, .p = p}, force);
     Vec3 carried = vec3(0, 0, 0);
-    for (int e = layout->nodes - 2; e >= 0; e--) {
-        carried = vec3_sub(carried, vec3_load(force + layout->position + 3 * (e + 1)));
+    for (int e = layout->elements - 1; e >= 0; e--) {
+        if (ends_strand(layout, e)) carried = vec3(0, 0, 0);
+        carried =
+            vec3_sub(carried, vec3_load(force + layout->position + 3 * (rod_element_node(layout, e) + 1)));
         vec3_store(multiplier + 3 * e, carried);
     }
 }
@@ -164,7 +193,9 @@ void rod_balance(const Rod *rod, System *sys, const RodLayout *layout, double *x
     turn_rows(layout, x, rows);
     Vec3 carried = vec3(0, 0, 0); /* what the element beyond does to the node */
     for (int e = rod->elements - 1; e >= 0; e--) {
-        Vec3 load = vec3_add(vec3_load(force + layout->turn + 3 * (e + 1)), carried);
+        if (ends_strand(layout, e)) carried = vec3(0, 0, 0);
+        Vec3 load =
+            vec3_add(vec3_load(force + layout->turn + 3 * (rod_element_node(layout, e) + 1)), carried);
         Vec3 m = solve(rows[e] + 3, vec3_scale(-1, load));
         for (int i = 0; i < 3; i++) (&carried.x)[i] = vec3_dot(rows[e][i], m);
         double young = p[rod->young + e], K[3] = {rod->unit.twist, rod->unit.bend1, rod->unit.bend2};

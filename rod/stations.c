@@ -14,34 +14,37 @@ static void fill_nodes(int elements, Vec3 *v)
 /* The force beyond an element's middle, and by how much weight changes it over the element. */
 static Vec3 element_pull(const Rod *rod, const double *p, int e, Vec3 *weight)
 {
-    double element = rod->unit.mass * rod_element_length(rod);
+    double element = rod->unit.mass * rod_element_length(rod, e);
+    int each = rod_each(rod);
     Vec3 g = vec3_load(p + rod->gravity), B = vec3_load(p + rod->flux_density);
     *weight = vec3_scale(element, g);
-    Vec3 pull = vec3_axpy(rod->elements - e - 0.5, *weight, vec3_load(p + rod->pull + 3 * e));
+    Vec3 pull = vec3_axpy(each - e % each - 0.5, *weight, vec3_load(p + rod->pull + 3 * e));
     return vec3_axpy(rod->area * p[rod->magnetization + 3 * e], B, pull);
 }
 
-void rod_stations(const Rod *rod, const RodLayout *layout, const double *x, const double *p, Vec3 *k, Vec3 *m,
-                  Vec3 *F)
+void rod_stations(const Rod *rod, int strand, const RodLayout *layout, const double *x, const double *p,
+                  RodStations to)
 {
-    double h = rod_element_length(rod);
-    Vec3 *strain = mem_alloc((size_t)rod->elements, sizeof *strain);
+    int each = layout->each;
+    Vec3 *strain = mem_alloc((size_t)rod->elements, sizeof *strain), *k = to.k, *m = to.m;
     rod_element_strains(rod, layout, x, strain);
-    for (int e = 0; e < rod->elements; e++) {
+    for (int i = 0; i < each; i++) {
+        int e = strand * each + i, node = rod_element_node(layout, e);
+        double h = rod_element_length(rod, e);
         Vec3 off = vec3_sub(strain[e], vec3_load(p + rod->natural_strain + 3 * e)), weight;
         double young = p[rod->young + e];
-        k[2 * e + 1] = strain[e];
-        m[2 * e + 1] = vec3_scale(
+        k[2 * i + 1] = strain[e];
+        m[2 * i + 1] = vec3_scale(
             young, vec3(rod->unit.twist * off.x, rod->unit.bend1 * off.y, rod->unit.bend2 * off.z));
         Vec3 pull = element_pull(rod, p, e, &weight);
-        Quat a = rod_reference(layout, x, e), middle = quat_mul(a, quat_exp(vec3_scale(h / 2, strain[e])));
-        Quat frame[3] = {a, middle, rod_reference(layout, x, e + 1)};
-        for (int i = 0; i < 3; i++)
-            F[3 * e + i] = quat_rotate(quat_conj(frame[i]), vec3_axpy(0.5 * (1 - i), weight, pull));
+        Quat a = rod_reference(layout, x, node), middle = quat_mul(a, quat_exp(vec3_scale(h / 2, strain[e])));
+        Quat frame[3] = {a, middle, rod_reference(layout, x, node + 1)};
+        for (int j = 0; j < 3; j++)
+            to.F[3 * i + j] = quat_rotate(quat_conj(frame[j]), vec3_axpy(0.5 * (1 - j), weight, pull));
     }
-    fill_nodes(rod->elements, k);
-    fill_nodes(rod->elements, m);
-    if (rod->end == ROD_FREE) m[2 * rod->elements] = vec3(0, 0, 0);
+    fill_nodes(each, k);
+    fill_nodes(each, m);
+    if (rod->end == ROD_FREE) m[2 * each] = vec3(0, 0, 0);
     mem_free(strain);
 }
 
@@ -62,9 +65,9 @@ static Vec3 helix_chord(Vec3 k, double h)
 void rod_curve_of(const Rod *rod, const RodLayout *layout, const double *x, RodCurve *curve)
 {
     size_t stations = 2 * (size_t)rod->elements + 1;
-    double h = rod_element_length(rod), *place = mem_alloc(3 * (size_t)layout->nodes, sizeof *place);
+    double h = rod_element_length(rod, 0), *place = mem_alloc(3 * (size_t)layout->nodes, sizeof *place);
     Vec3 *strain = mem_alloc((size_t)rod->elements, sizeof *strain);
-    *curve = (RodCurve){.elements = rod->elements, .length = rod->length};
+    *curve = (RodCurve){.elements = rod->elements, .length = rod_length(rod)};
     curve->x = mem_alloc(stations, sizeof *curve->x);
     curve->t = mem_alloc(stations, sizeof *curve->t);
     curve->c = mem_alloc(stations, sizeof *curve->c);
@@ -90,9 +93,12 @@ void rod_curve_of(const Rod *rod, const RodLayout *layout, const double *x, RodC
 
 void rod_node_moments(const Rod *rod, const RodLayout *layout, const double *x, const double *p, Vec3 *moment)
 {
-    size_t stations = 2 * (size_t)rod->elements + 1;
-    Vec3 *work = mem_alloc(2 * stations + 3 * (size_t)rod->elements, sizeof *work), *m = work + stations;
-    rod_stations(rod, layout, x, p, work, m, m + stations);
-    for (int i = 0; i < layout->nodes; i++) moment[i] = quat_rotate(rod_reference(layout, x, i), m[2 * i]);
+    size_t stations = 2 * (size_t)layout->each + 1;
+    Vec3 *work = mem_alloc(2 * stations + 3 * (size_t)layout->each, sizeof *work), *m = work + stations;
+    for (int k = 0; k < rod->strands; k++) {
+        rod_stations(rod, k, layout, x, p, (RodStations){work, m, m + stations});
+        for (int i = 0, node = k * (layout->each + 1); i <= layout->each; i++, node++)
+            moment[node] = quat_rotate(rod_reference(layout, x, node), m[2 * i]);
+    }
     mem_free(work);
 }

@@ -3,13 +3,17 @@
 #pragma once
 #include "rod/rod.h"
 
-/* Strains k[stations], moments K (k - kbar) m[stations] and pulls F[3 elements] in the frames: what elements
- * have, with means at nodes and continued to the ends; no moment at a free end. Magnetisation counts along
+/* Of a strand: strains k[stations], moments K (k - kbar) m[stations] and pulls F[3 elements] in the frames: what
+ * elements have, with means at nodes and continued to the ends; no moment at a free end. Magnetisation counts along
  * the tangent only. */
-void rod_stations(const Rod *rod, const RodLayout *layout, const double *x, const double *p, Vec3 *k, Vec3 *m,
-                  Vec3 *F);
+typedef struct RodStations {
+    Vec3 *k, *m, *F;
+} RodStations;
 
-/* The rod as a curve: the pieces of helices that its elements are, at their nodes and middles. To be cleared.
+void rod_stations(const Rod *rod, int strand, const RodLayout *layout, const double *x, const double *p,
+                  RodStations to);
+
+/* A single rod as a curve: the pieces of helices that its elements are, at their nodes and middles. To be cleared.
  */
 void rod_curve_of(const Rod *rod, const RodLayout *layout, const double *x, RodCurve *curve);
 

@@ -4,8 +4,7 @@
 
 typedef struct Strained {
     Segment s;
-    double h;
-    Pack young;
+    Pack h, young;
     Pack3 unit, off; /* K of young 1; k - kbar */
 } Strained;
 
@@ -18,11 +17,11 @@ static Strained strained(const RodTerm *term, int pack, const Point *at, const P
 {
     const Rod *rod = term->rod;
     RodSection unit = rod->unit;
-    Strained o = {.s = segment_at(&term->layout, pack, at->x, x), .h = rod_element_length(rod)};
+    Strained o = {.s = segment_at(&term->layout, pack, at->x, x), .h = rod_term_length(term, pack)};
     o.young = rod_term_number(term, pack, at->p + rod->young, 1, 0);
     o.unit = pack3(pack_set(unit.twist), pack_set(unit.bend1), pack_set(unit.bend2));
     Pack3 natural = rod_term_vector(term, pack, at->p + rod->natural_strain);
-    o.off = pack3_sub(pack3_scale(pack_set(1 / o.h), segment_theta(&o.s)), natural);
+    o.off = pack3_sub(pack3_scale(1 / o.h, segment_theta(&o.s)), natural);
     return o;
 }
 

@@ -18,7 +18,8 @@ static inline int rod_term_turns(const void *self)
 
 static inline void rod_term_turn_dofs(const void *self, int e, int *dof)
 {
-    for (int i = 0; i < 6; i++) dof[i] = ((const RodTerm *)self)->layout.turn + 3 * e + i;
+    const RodLayout *layout = &((const RodTerm *)self)->layout;
+    for (int i = 0; i < 6; i++) dof[i] = layout->turn + 3 * rod_element_node(layout, e) + i;
 }
 
 /* Number i of `width` of each element's row in a block of values. */
@@ -26,6 +27,15 @@ static inline Pack rod_term_number(const RodTerm *term, int pack, const double *
 {
     Pack r;
     for (int l = 0; l < PACK_LANES; l++) r[l] = block[width * segment_lane(&term->layout, pack, l) + i];
+    return r;
+}
+
+/* m, of the elements. */
+static inline Pack rod_term_length(const RodTerm *term, int pack)
+{
+    Pack r;
+    for (int l = 0; l < PACK_LANES; l++)
+        r[l] = rod_element_length(term->rod, segment_lane(&term->layout, pack, l));
     return r;
 }
 

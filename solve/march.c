@@ -48,6 +48,13 @@ static void compare_start(March *m, Point *at, double *energy)
     memcpy(m->trial.x, m->other, (size_t)m->trial.dofs * sizeof *m->other);
 }
 
+/* The state, with held coordinates where they are to be. */
+static void put_state(const March *m, double time, double *x)
+{
+    memcpy(x, m->state->x, (size_t)m->trial.dofs * sizeof *x);
+    if (m->def->move) m->def->move(m->def->self, time, x);
+}
+
 /* The previous state, the inertial guess x + dt v or the caller's, whichever has least energy. False where what is held
  * cannot go where it is to go. */
 static bool choose_start(March *m, Point *at)
@@ -55,15 +62,16 @@ static bool choose_start(March *m, Point *at)
     int positions = system_position_count(m->sys);
     double *x = m->trial.x;
     state_copy(&m->trial, m->state);
-    if (m->def->move) m->def->move(m->def->self, at->time, x);
+    put_state(m, at->time, x);
     if (!admit(m, x)) return false;
-    memcpy(m->other, x, (size_t)m->trial.dofs * sizeof *x);
     at->x = x;
     Evaluation rest = system_energy(m->sys, at);
     double energy = rest.finite ? rest.energy : INFINITY;
+    put_state(m, at->time, m->other);
     for (int i = 0; i < positions; i++)
         if (!system_is_fixed(m->sys, i)) m->other[i] += at->dt * m->state->v[i];
     compare_start(m, at, &energy);
+    if (m->def->guess) put_state(m, at->time, m->other);
     if (m->def->guess && m->def->guess(m->def->self, at->time, at->dt, m->other))
         compare_start(m, at, &energy);
     return true;

@@ -4,7 +4,7 @@
 #include <string.h>
 
 /* A patch is full with so many different entries: they take 200 kB, and one more slice of all terms has numbers left. */
-enum { PATCH_ENTRIES = 40000 };
+enum { PATCH_ENTRIES = 40000, MAX_LOWER = TERM_LOWER(TERM_MAX_DOF, 0) };
 
 /* Gives out places while patches are made. */
 typedef struct Register {
@@ -150,18 +150,30 @@ static void note_twice(Entry *entry, int pack, int k, int lane)
     entry->twice[count] = (Number)(k * PACK_LANES + lane);
 }
 
+/* Where the entries of each lane's element are stored; returns how many lanes there are. */
+static int find_slots(const Maker *m, const Entry *entry, int pack, int slots[PACK_LANES][MAX_LOWER])
+{
+    int lanes = 0;
+    for (; lanes < PACK_LANES && pack * PACK_LANES + lanes < entry->count; lanes++) {
+        int unknowns[TERM_MAX_DOF];
+        for (int i = 0; i < entry->size; i++)
+            unknowns[i] = m->unknown[entry->dofs[pack * entry->size + i][lanes]];
+        sparse_slots(m->matrix, entry->size, unknowns, slots[lanes]);
+    }
+    return lanes;
+}
+
 static void number_entries(Maker *m, Entry *entry, int pack)
 {
-    int(*dofs)[PACK_LANES] = &entry->dofs[pack * entry->size];
+    int(*dofs)[PACK_LANES] = &entry->dofs[pack * entry->size], slots[PACK_LANES][MAX_LOWER];
+    int lanes = find_slots(m, entry, pack, slots);
     entry->twice_start[pack + 1] = entry->twice_start[pack];
-    for (int i = 0; i < entry->size; i++)
-        for (int j = 0; j <= i; j++)
-            for (int l = 0; l < PACK_LANES && pack * PACK_LANES + l < entry->count; l++) {
-                int k = TERM_LOWER(i, j), a = m->unknown[dofs[i][l]], b = m->unknown[dofs[j][l]];
-                if (a < 0 || b < 0) continue;
-                entry->entry_numbers[(long)pack * entry->lower + k][l] =
-                    number_of(&m->slots, sparse_slot(m->matrix, a, b));
-                if (i != j && a == b) note_twice(entry, pack, k, l);
+    for (int i = 0, k = 0; i < entry->size; i++)
+        for (int j = 0; j <= i; j++, k++)
+            for (int l = 0; l < lanes; l++) {
+                if (slots[l][k] < 0) continue;
+                entry->entry_numbers[(long)pack * entry->lower + k][l] = number_of(&m->slots, slots[l][k]);
+                if (i != j && dofs[i][l] == dofs[j][l]) note_twice(entry, pack, k, l);
             }
 }
 

@@ -73,8 +73,15 @@ void pattern_destroy(Pattern *pattern)
 
 int pattern_slot(const Pattern *pattern, int row, int column)
 {
+    return pattern_slot_from(pattern, row, column, pattern->start[column]);
+}
+
+int pattern_slot_from(const Pattern *pattern, int row, int column, int from)
+{
     const int *rows = pattern->rows;
-    int low = pattern->start[column], high = pattern->start[column + 1] - 1;
+    int low = from, high = pattern->start[column + 1] - 1;
+    if (rows[low] == row) return low;
+    if (low < high && rows[low + 1] == row) return low + 1;
     while (low < high) {
         int middle = (low + high) / 2;
         if (rows[middle] < row)

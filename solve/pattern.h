@@ -21,6 +21,9 @@ void pattern_destroy(Pattern *pattern);
 /* Where entry (row, column), row >= column, is stored; it must be there. */
 int pattern_slot(const Pattern *pattern, int row, int column);
 
+/* The same where it is known to be at `from` or behind: soon, where it is there or the next one. */
+int pattern_slot_from(const Pattern *pattern, int row, int column, int from);
+
 /* All entries of both, which are of one size. where[entries of a] (or NULL): where each went. */
 Pattern pattern_union(const Pattern *a, const Pattern *b, int *where);
 

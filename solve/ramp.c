@@ -1,6 +1,7 @@
 #include "solve/ramp.h"
 #include "base/memory.h"
 #include <math.h>
+#include <math.h>
 #include <string.h>
 
 RampDef ramp_default(void)
@@ -38,6 +39,17 @@ static bool reached(NewtonStatus status)
     return status == NEWTON_CONVERGED || status == NEWTON_SADDLE || status == NEWTON_NEUTRAL;
 }
 
+/* Can what is held go from where it is to where it has been moved in the state? */
+static bool way_is_free(const System *sys, const double *from, const State *state)
+{
+    bool free = true;
+    double *x = mem_copy(state->x, (size_t)state->dofs, sizeof *x);
+    system_project(sys, from, x);
+    for (int i = 0; i < state->dofs; i++) free = free && isfinite(x[i]);
+    mem_free(x);
+    return free;
+}
+
 RampInfo ramp_solve(System *sys, const Params *params, const RampDef *def, const double *from,
                     const double *to, State *state)
 {
@@ -52,7 +64,10 @@ RampInfo ramp_solve(System *sys, const Params *params, const RampDef *def, const
         state_copy(&kept, state);
         interpolate(params, from, to, part, p);
         NewtonInfo newton = {.status = NEWTON_NOT_FINITE};
-        if (!def->move || def->move(def->self, (part - info.reached) / (1 - info.reached), state->x))
+        bool moved = !def->move || def->move(def->self, (part - info.reached) / (1 - info.reached), state->x);
+        if (moved && def->move && !way_is_free(sys, kept.x, state))
+            newton.status = NEWTON_BLOCKED;
+        else if (moved)
             newton =
                 newton_minimize(sys, &def->newton, &(Point){.p = p, .time = state->time}, state, observer);
         newton_add_counts(&newton, &info.newton);

@@ -10,6 +10,8 @@
 /* Nonzeros of L, in those of the matrix as it was made, from which on another order is looked for. */
 static const double FILL_MOST = 1.6;
 
+enum { GROUP_MOST = 32 }; /* in sparse_slots */
+
 struct Sparse {
     int n, negative;
     bool ordered; /* in an order that was given                                                     */
@@ -160,6 +162,36 @@ int sparse_slot(const Sparse *matrix, int i, int j)
 {
     int a = matrix->rank[i], b = matrix->rank[j];
     return pattern_slot(&matrix->pattern, a > b ? a : b, a > b ? b : a);
+}
+
+/* Members of the group in the order of elimination; returns how many there are. */
+static int sort_group(const Sparse *matrix, int count, const int *unknowns, int *order)
+{
+    int found = 0;
+    for (int i = 0; i < count; i++) {
+        if (unknowns[i] < 0) continue;
+        int k = found++;
+        for (; k > 0 && matrix->rank[unknowns[order[k - 1]]] > matrix->rank[unknowns[i]]; k--)
+            order[k] = order[k - 1];
+        order[k] = i;
+    }
+    return found;
+}
+
+void sparse_slots(const Sparse *matrix, int count, const int *unknowns, int *slots)
+{
+    int order[GROUP_MOST];
+    for (int k = 0; k < count * (count + 1) / 2; k++) slots[k] = -1;
+    assert(count <= GROUP_MOST);
+    int found = sort_group(matrix, count, unknowns, order);
+    for (int c = 0; c < found; c++) {
+        int column = matrix->rank[unknowns[order[c]]], at = matrix->pattern.start[column];
+        for (int r = c; r < found; r++) {
+            int i = order[c] > order[r] ? order[c] : order[r], j = order[c] + order[r] - i;
+            at = pattern_slot_from(&matrix->pattern, matrix->rank[unknowns[order[r]]], column, at);
+            slots[i * (i + 1) / 2 + j] = at;
+        }
+    }
 }
 
 double *sparse_values(Sparse *matrix)

@@ -40,6 +40,9 @@ void sparse_set_workers(Sparse *matrix, Workers *workers);
 /* Where entry (i, j) is stored in sparse_values(); either triangle. The pattern must hold it. */
 int sparse_slot(const Sparse *matrix, int i, int j);
 
+/* The same of a whole group of up to 32, its lower triangle by rows; -1 where either is none. Soon, for most come one behind the other. */
+void sparse_slots(const Sparse *matrix, int count, const int *unknowns, int *slots);
+
 /* The stored lower triangle of the permuted matrix, [sparse_nonzeros()]. */
 double *sparse_values(Sparse *matrix);
 int sparse_nonzeros(const Sparse *matrix);

@@ -269,7 +269,6 @@ Supernodal *supernodal_create(const Pattern *pattern, const SupernodalDef *def)
     set_targets(plan);
     set_vectors(plan);
     mem_free(trees);
-    plan->work = mem_alloc((size_t)plan->work_size, sizeof *plan->work);
     plan->vector = mem_alloc((size_t)plan->vector_size, sizeof *plan->vector);
     return plan;
 }

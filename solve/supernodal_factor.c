@@ -184,6 +184,7 @@ bool supernodal_factor(Supernodal *plan, const Pattern *pattern, const double *v
 {
     Factoring job = {.plan = plan, .pattern = pattern, .values = values, .numbers = numbers};
     set_desks(plan, workers_count(workers));
+    if (!plan->work) plan->work = mem_alloc((size_t)plan->work_size, sizeof *plan->work);
     workers_run(workers, plan->branch_count, branch_task, &job);
     bool good = !atomic_load(&job.failed);
     for (int s = 0; good && s < plan->count; s++)

@@ -39,7 +39,7 @@ struct Supernodal {
     int *slots;   /* [the pattern's nonzeros] where an entry comes among the rows of its column's supernode */
     long numbers, work_size, desk_size, vector_size, crown_at;
     Desk *desks;    /* as many as threads were seen                          */
-    double *work;   /* the crown's updates, and those that branches leave    */
+    double *work;   /* the crown's updates, and those that branches leave; from the first factor on */
     double *vector; /* of the branches, and at crown_at room for a supernode */
 };
 

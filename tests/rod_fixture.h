@@ -31,7 +31,7 @@ static inline Resting resting_create(const ReferenceRod *r, double young, int el
     o.layout = rod_layout(o.rod, false);
     o.hanging = rod_hanging_system(o.rod);
     o.state = system_state(o.hanging);
-    rod_follow_curve(o.rod, &o.curve, o.frames, o.state.x);
+    rod_follow_curves(o.rod, &o.curve, &o.frames, o.state.x);
     rod_balance(o.rod, o.hanging, &o.layout, o.state.x, o.p);
     return o;
 }

@@ -130,8 +130,8 @@ static inline SelfBody closing_star(int n, bool contact, double margin)
     return b;
 }
 
-/* Two sheets of 12 mm, 6 mm from each other, turned and shifted a little, which fly at each other. */
-static inline SelfBody flying_sheets(int cells, double speed, double mu)
+/* Two sheets of 12 mm, 6 mm from each other, turned and shifted a little. */
+static inline MeshFile two_sheets(int cells)
 {
     MeshFile file = {0}, both = {0};
     Error err;
@@ -153,6 +153,13 @@ static inline SelfBody flying_sheets(int cells, double speed, double mu)
             both.faces[f][i] =
                 file.faces[f % file.face_count][i] + (f >= file.face_count ? file.vertex_count : 0);
     mesh_file_clear(&file);
+    return both;
+}
+
+/* Which fly at each other. */
+static inline SelfBody flying_sheets(int cells, double speed, double mu)
+{
+    MeshFile both = two_sheets(cells);
     Shell *shell = shell_of_mesh(&both);
     shell->thickness = 5e-4, shell->poisson = 0.4, shell->density = 1000, shell->bending = BENDING_HINGE;
     SelfContactDef def = self_def(shell, 5e-4);

@@ -198,6 +198,26 @@ static void test_belt(void **state)
     }
 }
 
+/* However fast it flies at a thin wall, it does not pass through. */
+static void test_thrown(void **state)
+{
+    (void)state;
+    for (double speed = 1; speed < 101; speed *= 10) {
+        Obstacle wall = obstacle_box((double[]){0, 0, -2e-3}, (double[]){0.05, 0.05, 1e-4}, 1e-4);
+        Plate plate = plate_create(0, false, wall);
+        Body *body = &plate.body;
+        for (int v = 0; v < body->shell->mesh->vertex_count; v++) body->state.v[3 * v + 2] = -speed;
+        plate.def.newton.energy_tol = 1e-10;
+        plate_march(&plate, (double[]){0, 0, 0}, 20);
+        double lowest = INFINITY;
+        for (int v = 0; v < body->shell->mesh->vertex_count; v++)
+            lowest = fmin(lowest, body->state.x[3 * v + 2]);
+        print_message("thrown at %g m/s: lowest at %.3g mm\n", speed, 1e3 * lowest);
+        assert_true(lowest > -2e-3);
+        body_clear(body);
+    }
+}
+
 /* What it rests on with all its weight it sinks into by N/k + e/2. */
 static void test_depth(void **state)
 {
@@ -220,6 +240,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_derivatives), cmocka_unit_test(test_creep),
                                        cmocka_unit_test(test_sliding),     cmocka_unit_test(test_threshold),
-                                       cmocka_unit_test(test_belt),        cmocka_unit_test(test_depth)};
+                                       cmocka_unit_test(test_belt),        cmocka_unit_test(test_thrown),
+                                       cmocka_unit_test(test_depth)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,9 +1,8 @@
-/* A body that does not pass through itself: derivatives, motions, adjoints, and what a resumed run needs. */
+/* A body that does not pass through itself: derivatives, motions, and what a resumed run needs. */
 #include "base/workers.h"
-#include "optim/objectives.h"
-#include "optim/trajectory_adjoint.h"
 #include "solve/check.h"
 #include "solve/march.h"
+#include "solve/ramp.h"
 #include "tests/self_fixture.h"
 
 /* ---- Derivatives ---- */
@@ -209,117 +208,6 @@ static void test_resumed(void **unused)
     body_clear(&other.body);
 }
 
-/* ---- Adjoints ---- */
-
-enum { STEPS = 14, UNKNOWNS = 3 };
-
-typedef struct Fixture {
-    SelfBody body;
-    Design design;
-    Objective objective;
-    TrajectoryProblem problem;
-    double u[UNKNOWNS];
-} Fixture;
-
-static void make(Fixture *f, double mu)
-{
-    *f = (Fixture){.body = flying_sheets(5, 2, mu)};
-    const Mesh *mesh = f->body.body.shell->mesh;
-    const char *const names[UNKNOWNS] = {"young", "self_stiffness", "self_friction"};
-    int *all = mem_alloc((size_t)mesh->vertex_count, sizeof *all);
-    for (int v = 0; v < mesh->vertex_count; v++) all[v] = v;
-    f->objective = objective_target(mesh->vertex_count, all, (const double(*)[3])mesh->rest, 1);
-    f->objective.first = f->objective.last = STEPS;
-    f->design.case_count = 1;
-    for (int k = 0; k < (mu > 0 ? UNKNOWNS : UNKNOWNS - 1); k++) {
-        const ParamBlock *block = params_find(&f->body.body.shell->params, names[k]);
-        design_add(&f->design, (Unknown){.block = block,
-                                         .group_count = 1,
-                                         .group = mem_alloc((size_t)block->count, sizeof(int)),
-                                         .map = UNKNOWN_LOG,
-                                         .scale = 1,
-                                         .lower = -INFINITY,
-                                         .upper = INFINITY});
-    }
-    design_read(&f->design, 0, f->body.body.p, f->u);
-    f->problem = (TrajectoryProblem){.sys = f->body.body.sys,
-                                     .design = &f->design,
-                                     .params = &f->body.body.shell->params,
-                                     .objectives = &f->objective,
-                                     .objective_count = 1,
-                                     .start = &f->body.body.state,
-                                     .step = 1e-3,
-                                     .steps = STEPS,
-                                     .p = f->body.body.p};
-    mem_free(all);
-}
-
-static void clear(Fixture *f)
-{
-    design_clear(&f->design);
-    objective_destroy(f->objective);
-    body_clear(&f->body.body);
-}
-
-/* dF along v from the motion's tangent. */
-static double tangent_slope(const Fixture *f, Trajectory *t, const double *v)
-{
-    int n = f->body.body.state.dofs, size = f->body.body.shell->params.size;
-    double *dx = mem_alloc((STEPS + 1) * (size_t)n, sizeof *dx), slope = 0;
-    double *gx = mem_alloc((size_t)n, sizeof *gx), *dp = mem_alloc((size_t)size, sizeof *dp);
-    trajectory_tangent(t, v, dx);
-    f->objective.ops->value(f->objective.self, 1, trajectory_frame(t, STEPS).x, f->body.body.p, gx, dp);
-    for (int i = 0; i < n; i++) slope += gx[i] * dx[STEPS * n + i];
-    mem_free(dx);
-    mem_free(gx);
-    mem_free(dp);
-    return slope;
-}
-
-static double value_at(const Fixture *f, const TrajectoryDef *def, const double *v, double a)
-{
-    double u[UNKNOWNS] = {0};
-    for (int k = 0; k < f->design.size; k++) u[k] = f->u[k] + a * v[k];
-    Trajectory *t = trajectory_create(&f->problem, def);
-    TrajectoryInfo info;
-    double F = trajectory_evaluate(t, u, NULL, &info);
-    trajectory_destroy(t);
-    return F;
-}
-
-static void check_adjoint(long factor_memory, double mu)
-{
-    Fixture f;
-    make(&f, mu);
-    TrajectoryDef def = trajectory_default();
-    def.march.newton.energy_tol = 1e-15;
-    def.factor_memory = factor_memory;
-    Trajectory *t = trajectory_create(&f.problem, &def);
-    TrajectoryInfo info;
-    const double v[UNKNOWNS] = {0.7, -0.4, 0.9};
-    double gradient[UNKNOWNS] = {0}, adjoint = 0, best = INFINITY;
-    assert_true(isfinite(trajectory_evaluate(t, f.u, gradient, &info)));
-    trajectory_accept(t);
-    for (int k = 0; k < f.design.size; k++) adjoint += gradient[k] * v[k];
-    double tangent = tangent_slope(&f, t, v);
-    for (double h = 1e-3; h > 1e-7; h /= 10) {
-        double F[4];
-        for (int k = 0; k < 4; k++) F[k] = value_at(&f, &def, v, (double[]){-2, -1, 1, 2}[k] * h);
-        best = fmin(best, fabs(adjoint / ((8 * (F[2] - F[1]) - (F[3] - F[0])) / (12 * h)) - 1));
-    }
-    print_message("adjoint against tangent %.1e, against differences %.1e\n", fabs(adjoint / tangent - 1),
-                  best);
-    assert_true(fabs(adjoint / tangent - 1) < 1e-11 && best < 1e-4);
-    trajectory_destroy(t);
-    clear(&f);
-}
-
-static void test_adjoint(void **unused)
-{
-    (void)unused;
-    for (int k = 0; k < 4; k++) check_adjoint(k % 2 ? 1L << 30 : 0, k / 2 ? 0.4 : 0);
-}
-
 /* ---- Rods, held vertices, crossings ---- */
 
 enum { LOOSE = 8, FIRST = 5 };
@@ -369,6 +257,17 @@ static double height_above(const double *x, const double *y)
     return y[2] + s * (y[5] - y[2]) - x[2] - t * (x[5] - x[2]);
 }
 
+/* Each segment is above the one before it, as long as they have crossed. */
+static void expect_order(const double *x, bool along, bool crosses[LOOSE / 2])
+{
+    for (int m = 1; m < LOOSE / 2; m++) {
+        const double *own = x + 6 * m;
+        double height = along ? own[2] - own[-4] : height_above(own - 6, own);
+        crosses[m] = crosses[m] && height != 0;
+        assert_true(!crosses[m] || height > 0);
+    }
+}
+
 /* Segments that fly into each other stay above each other as long as they cross, and those along each other anyway. */
 static void test_rods(void **unused)
 {
@@ -394,12 +293,7 @@ static void test_rods(void **unused)
             MarchDef def = march_default();
             assert_true(march_step(sys, &def, 1e-3, l.p, &state, &info));
             met += self_contact_figures(system_term(sys, 1), state.x, 1).pairs > 0;
-            for (int m = 1; m < LOOSE / 2; m++) {
-                const double *x = state.x + FIRST + 6 * m;
-                double height = along ? x[2] - x[-4] : height_above(x - 6, x);
-                crosses[m] = crosses[m] && height != 0;
-                assert_true(!crosses[m] || height > 0);
-            }
+            expect_order(state.x + FIRST, along, crosses);
         }
         assert_true(met > 0 && (run == 2 || crosses[1]));
         state_destroy(&state);
@@ -431,6 +325,86 @@ static void test_held(void **unused)
     term.ops->project(term.self, from, x);
     assert_true(x[FIRST + 6 + 2] > 0 && x[FIRST + 6 + 2] < 2e-3);
     term.ops->destroy(term.self);
+}
+
+/* The first segment rises by 30 mm in a step, and drives the others before it. */
+static bool rise(void *self, double time, double *x)
+{
+    const Loose *l = self;
+    for (int v = 0; v < 2; v++) x[FIRST + 3 * v + 2] = l->rest[v][2] + 30 * time;
+    return true;
+}
+
+static void test_driven(void **unused)
+{
+    (void)unused;
+    Loose l;
+    bool fixed[3 * LOOSE] = {0}, crosses[LOOSE / 2] = {0, 1, 1, 1};
+    loose_make(&l, false);
+    for (int i = 0; i < 6; i++) fixed[i] = true;
+    l.def.fixed = fixed;
+    int dofs = FIRST + 3 * LOOSE + 1;
+    for (int v = 0; v < LOOSE + 2; v++) l.mass[v] = 1e-3;
+    System *sys = system_create(dofs, &(DofClass){.count = dofs, .size = 0.05}, 1);
+    system_add(sys, kinetic_inertia_term(dofs / 3, l.mass));
+    system_add(sys, self_contact_term(&l.def));
+    for (int i = 0; i < FIRST + 6; i++) system_fix(sys, i);
+    system_fix(sys, dofs - 1);
+    system_prepare(sys);
+    State state = system_state(sys);
+    memcpy(state.x + FIRST, l.rest, sizeof l.rest);
+    int refused = 0;
+    for (int k = 0; k < 5; k++) {
+        MarchInfo info;
+        MarchDef def = march_default();
+        def.move = rise, def.self = &l;
+        assert_true(march_step(sys, &def, 1e-3, l.p, &state, &info));
+        refused += info.refused;
+        assert_true(fabs(state.x[FIRST + 2] - 0.03 * (k + 1)) < 1e-12);
+        expect_order(state.x + FIRST, false, crosses);
+    }
+    assert_true(refused > 0 && crosses[1]);
+    state_destroy(&state);
+    system_destroy(sys);
+}
+
+/* In statics the same: a sheet that is held as a whole is moved through another one, which is held where it stands out. */
+typedef struct Lift {
+    const Mesh *mesh;
+    double height; /* m */
+} Lift;
+
+static bool lift(void *self, double part, double *x)
+{
+    Lift *l = self;
+    for (int v = 0; v < l->mesh->vertex_count; v++)
+        if (!l->mesh->vertex_component[v]) x[3 * v + 2] += part * (l->height - x[3 * v + 2]);
+    return true;
+}
+
+static void test_lifted(void **unused)
+{
+    (void)unused;
+    SelfBody b = flying_sheets(4, 1, 0);
+    Shell *shell = b.body.shell;
+    const Mesh *mesh = shell->mesh;
+    for (int v = 0; v < mesh->vertex_count; v++) {
+        if (mesh->vertex_component[v] && mesh->rest[v][0] < 0.0125) continue;
+        for (int i = 0; i < 3; i++) shell_fix(shell, v, i);
+    }
+    System *sys = self_system(shell, &b.def, false, true, false);
+    State state = system_state(sys);
+    shell_rest_state(shell, state.x);
+    Lift way = {mesh, 8e-3};
+    RampDef def = ramp_default();
+    def.move = lift, def.self = &way;
+    RampInfo info = ramp_solve(sys, &shell->params, &def, b.body.p, b.body.p, &state);
+    assert_true(info.reached == 1 && info.refused > 0 && info.newton.status == NEWTON_CONVERGED);
+    assert_true(self_contact_figures(system_term(sys, shell_term_row_count), state.x, 1).pairs > 0);
+    assert_int_equal(self_contact_crossings(&b.def, state.x, NULL, 0), 0);
+    state_destroy(&state);
+    system_destroy(sys);
+    body_clear(&b.body);
 }
 
 static void test_crossings(void **unused)
@@ -468,9 +442,10 @@ int main(void)
         cmocka_unit_test(test_statics),
         cmocka_unit_test(test_threads),
         cmocka_unit_test(test_resumed),
-        cmocka_unit_test(test_adjoint),
         cmocka_unit_test(test_rods),
         cmocka_unit_test(test_held),
+        cmocka_unit_test(test_driven),
+        cmocka_unit_test(test_lifted),
         cmocka_unit_test(test_crossings),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -2,7 +2,7 @@
 #include "base/memory.h"
 #include "solve/check.h"
 #include "world/ccd.h"
-#include "world/touch.h"
+#include "world/self_pairs.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -445,6 +445,33 @@ static void test_reach(void **unused)
     assert_true(short_of > 300 && slid < short_of / 20);
 }
 
+/* A way's reach is the same from the list at hand as from the boxes of all. */
+static void test_same_reach(void **unused)
+{
+    (void)unused;
+    static Soup soup;
+    static double from[12 * SOUP], to[12 * SOUP];
+    Random random = random_seed(40);
+    int stopped = 0;
+    soup_make(&soup, &random, 0.2);
+    SelfPairs *with = self_pairs_create(&soup.def), *without = self_pairs_create(&soup.def);
+    for (int run = 0; run < 200; run++) {
+        double size = 0.02 * random_uniform(&random);
+        for (int i = 0; i < 12 * SOUP; i++) {
+            from[i] = 0.7 * ((const double *)soup.rest)[i] + 0.05 * random_signed(&random);
+            to[i] = from[i] + (i % 3 ? 1 : 7) * 0.01 + size * random_signed(&random);
+        }
+        self_pairs_update(with, from, from);
+        double reach = self_pairs_reach(with, from, to, 0.1);
+        assert_true(reach == self_pairs_reach(without, from, to, 0.1));
+        stopped += reach < 1;
+    }
+    print_message("%d of 200 stopped\n", stopped);
+    assert_true(stopped > 20 && stopped < 200);
+    self_pairs_destroy(with);
+    self_pairs_destroy(without);
+}
+
 /* Nothing hangs or crashes on what is no number, nor where all is in one place. */
 static void test_hostile(void **unused)
 {
@@ -460,7 +487,7 @@ static void test_hostile(void **unused)
     for (int k = 0; k < 6; k++) {
         for (int i = 0; i < 12 * SOUP; i++) x[i] = k % 2 && i % 3 ? rest[i] : values[k];
         neighbours_find(n, x, 0.1, &list);
-        neighbours_sweep(n, rest, x, &list);
+        neighbours_sweep(n, rest, x, 0, &list);
         memcpy(y, x, sizeof y);
         assert_true(isnan(neighbours_moved(n, y, rest)) == !(k >= 4));
         double reach = ccd_reach(distance_edges, rest, x, 0.1, 1);
@@ -477,6 +504,7 @@ int main(void)
         cmocka_unit_test(test_slopes),     cmocka_unit_test(test_grips),
         cmocka_unit_test(test_continuity), cmocka_unit_test(test_all_pairs),
         cmocka_unit_test(test_reach),      cmocka_unit_test(test_hostile),
+        cmocka_unit_test(test_same_reach),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

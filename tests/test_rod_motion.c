@@ -47,7 +47,7 @@ static void test_relaxing(void **state)
     (void)state;
     for (int c = 0; c < 2; c++) {
         Resting o = resting_create(&reference_rods[c], reference_rods[c].young, 60);
-        o.p[o.rod->damping] = 4 * o.rod->unit.mass * rod_element_length(o.rod); /* 4/s */
+        o.p[o.rod->damping] = 4 * o.rod->unit.mass * rod_element_length(o.rod, 0); /* 4/s */
         Moving m = moving_create(o.rod, reference_rods[c].young, o.p);
         rod_natural_state(o.rod, &m.layout, o.p, m.now.x);
         int iterations = 0;
@@ -88,7 +88,8 @@ static double lowest_frequency(const Resting *o, const Moving *m, double young, 
     for (int e = o->rod->elements - 1, i = 2; e >= 0;
          e--, i = 2) /* the multipliers of rest: what hangs below */
         rest.x[m->layout.multiplier + 3 * e + i] = o->p[o->rod->gravity + 2] * o->rod->unit.mass *
-                                                   rod_element_length(o->rod) * (o->rod->elements - e - 0.5);
+                                                   rod_element_length(o->rod, 0) *
+                                                   (o->rod->elements - e - 0.5);
     Point at = state_point(&rest, o->p);
     assert_true(eigen_lowest(sys, &at, 1, &lambda, mode));
     rod_node_mass(o->rod, mass);
@@ -134,7 +135,7 @@ static void test_pendulum(void **state)
     rod_default_params(rod, young, p);
     p[rod->gravity + 2] = -g;
     rod->start = ROD_PINNED;
-    rod->frame = quat_from_axes(vec3(0, 0, -1), vec3(1, 0, 0), vec3(0, -1, 0));
+    rod->strand[0].frame = quat_from_axes(vec3(0, 0, -1), vec3(1, 0, 0), vec3(0, -1, 0));
     Moving m = moving_create(rod, young, p);
     rod_natural_state(rod, &m.layout, p, m.now.x);
     for (int i = 1; i <= N; i++) m.now.v[3 * i] = 0.02 * i / N;
@@ -151,7 +152,7 @@ static double pushed(double young)
 {
     enum { N = 200 };
     Resting o = resting_create(&reference_rods[REFERENCE_WAVE], young, N);
-    o.p[o.rod->damping] = 2 * o.rod->unit.mass * rod_element_length(o.rod);
+    o.p[o.rod->damping] = 2 * o.rod->unit.mass * rod_element_length(o.rod, 0);
     Moving m = moving_create(o.rod, young, o.p);
     Random random = random_seed(5);
     rod_copy_state(o.rod, &o.layout, o.state.x, &m.layout, m.now.x);

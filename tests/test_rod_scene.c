@@ -79,7 +79,7 @@ static void test_posed(void **state)
     rod_places(rm->rod, &rm->layout, b.model->x, N + 1, place);
     for (int i = 0; i <= N; i++) {
         off = fmax(off, vec3_length(vec3_sub(vec3_load(place + 3 * i), rm->curves[0].x[2 * i])));
-        Vec3 straight = vec3(rm->rod->length * i / N, 0, 0);
+        Vec3 straight = vec3(rod_length(rm->rod) * i / N, 0, 0);
         crooked = fmax(crooked, vec3_length(vec3_sub(vec3_load(rm->natural + 3 * i), straight)));
     }
     print_message("starts %.1e m off its curve; its natural shape is straight to %.1e m\n", off, crooked);

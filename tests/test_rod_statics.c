@@ -133,7 +133,7 @@ static void test_both_forms(void **state)
         RampInfo info = rod_relax(rod, sys, ramp_steps[c], o.p, &other);
         for (int e = 0; e < rod->elements; e++) {
             double weight =
-                rod->unit.mass * rod_element_length(rod) * (rod->elements - e - 0.5) * reference_gravity;
+                rod->unit.mass * rod_element_length(rod, 0) * (rod->elements - e - 0.5) * reference_gravity;
             off = fmax(off, fabs(other.x[layout.multiplier + 3 * e + 2] + weight));
         }
         print_message("%-8s with positions %.1e m off, multipliers %.1e N\n", reference_rods[c].name,
@@ -178,7 +178,7 @@ static void test_moments(void **state)
     Vec3 couple = vec3(0, 0, 0), moment[N + 1];
     for (int e = 0; e < N; e++)
         for (int k = 0; k < 2; k++)
-            couple = vec3_axpy(rod->area * rod_element_length(rod) / 2,
+            couple = vec3_axpy(rod->area * rod_element_length(rod, 0) / 2,
                                vec3_cross(quat_rotate(rod_reference(&layout, bent.x, e + k), M), B), couple);
     Vec3 expected = vec3_add(couple, vec3_cross(vec3_load(place + 3 * N), force));
     rod_node_moments(rod, &layout, bent.x, p, moment);
@@ -261,11 +261,11 @@ static void test_balance_in_field(void **state)
     double at[3] = {0, 0, -0.12}, moment[3] = {0, 3, 8};
     FluxFields fields = {0};
     int k = flux_fields_add(&fields, flux_field_dipole(at, moment));
-    Rod *rod = rod_create(60, o.rod->length, o.rod->unit, o.rod->area, &fields);
+    Rod *rod = rod_create(60, rod_length(o.rod), o.rod->unit, o.rod->area, &fields);
     double *p = params_vector(&rod->params);
     memcpy(p, o.p, (size_t)o.rod->params.size * sizeof *p);
     memcpy(rod->bow, o.rod->bow, 60 * sizeof *rod->bow);
-    rod->position = o.rod->position, rod->frame = o.rod->frame;
+    rod->strand[0] = o.rod->strand[0];
     p[rod->field_scale + k] = 1;
     for (int e = 0; e < 60; e++) vec3_store(p + rod->magnetization + 3 * e, vec3(2e4, 5e3, -3e3));
     RodLayout layout = rod_layout(rod, true);

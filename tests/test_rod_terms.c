@@ -37,25 +37,28 @@ static FluxFields make_fields(void)
     return fields;
 }
 
-static Rod *random_rod(Random *random, bool varies, double **params)
+static Rod *random_rod(Random *random, bool varies, int strands, double **params)
 {
     FluxFields fields = varies ? make_fields() : (FluxFields){0};
-    Rod *rod = rod_create(ELEMENTS, 0.1, rod_ellipse(1e-3, 0.7e-3, 1, 0.4, 1200), 3e-6, &fields);
+    const double length[] = {0.1, 0.07, 0.12};
+    Rod *rod =
+        rod_create_strands(strands, ELEMENTS, length, rod_ellipse(1e-3, 0.7e-3, 1, 0.4, 1200), 3e-6, &fields);
     double *p = mem_alloc((size_t)rod->params.size, sizeof *p);
     rod_default_params(rod, 1e6, p);
-    for (int e = 0; e < ELEMENTS; e++) {
+    for (int e = 0; e < rod->elements; e++) {
         p[rod->young + e] *= 1 + 0.3 * random_signed(random);
         vec3_store(p + rod->natural_strain + 3 * e, random_vec3(random, 60));
         vec3_store(p + rod->magnetization + 3 * e, random_vec3(random, 5e4));
         rod->bow[e] = random_vec3(random, 1e-3);
     }
-    for (int i = 0; i <= ELEMENTS; i++) vec3_store(p + rod->load + 3 * i, random_vec3(random, 1e-3));
+    for (int i = 0; i < rod_node_count(rod); i++)
+        vec3_store(p + rod->load + 3 * i, random_vec3(random, 1e-3));
     vec3_store(p + rod->flux_density, random_vec3(random, 0.03));
     vec3_store(p + rod->gravity, random_vec3(random, 9));
     for (int k = 0; k < rod->fields.count; k++) p[rod->field_scale + k] = 1 - 0.5 * k;
     p[rod->damping] = 0.02;
     rod_sum_loads(rod, p);
-    rod->frame = quat_exp(random_vec3(random, 2));
+    for (int k = 0; k < strands; k++) rod->strand[k].frame = quat_exp(random_vec3(random, 2));
     *params = p;
     return rod;
 }
@@ -63,9 +66,11 @@ static Rod *random_rod(Random *random, bool varies, double **params)
 /* Any rotations with turns between neighbours up to `turn`, any positions and multipliers. */
 static double *random_state(const Rod *rod, const RodLayout *layout, double turn, Random *random)
 {
-    Quat q[ELEMENTS + 1] = {rod->frame};
+    Quat q[3 * (ELEMENTS + 1)];
     double *x = mem_alloc((size_t)layout->dofs, sizeof *x);
-    for (int e = 0; e < ELEMENTS; e++) q[e + 1] = quat_mul(q[e], quat_exp(random_vec3(random, turn)));
+    for (int i = 0; i < layout->nodes; i++)
+        q[i] = i % (ELEMENTS + 1) ? quat_mul(q[i - 1], quat_exp(random_vec3(random, turn)))
+                                  : rod->strand[i / (ELEMENTS + 1)].frame;
     rod_set_state(rod, layout, q, x);
     for (int i = 0; layout->position >= 0 && i < 3 * layout->nodes; i++) x[i] += 2e-3 * random_signed(random);
     for (int i = 0; layout->multiplier >= 0 && i < 3 * rod->elements; i++)
@@ -103,11 +108,11 @@ static void check_form(const Rod *rod, const double *p, bool positions, double t
 }
 
 /* In motion too; turns so small that the series is used, and so large that it is not. */
-static void check_rod(bool fields)
+static void check_rod(bool fields, int strands)
 {
     Random random = random_seed(3);
     double *p;
-    Rod *rod = random_rod(&random, fields, &p);
+    Rod *rod = random_rod(&random, fields, strands, &p);
     for (int k = 0; k < 2; k++) {
         if (!fields) check_form(rod, p, false, k ? 1.2 : 0.2, &random);
         check_form(rod, p, true, k ? 1.2 : 0.2, &random);
@@ -119,8 +124,10 @@ static void check_rod(bool fields)
 static void test_derivatives(void **state)
 {
     (void)state;
-    check_rod(false);
-    check_rod(true);
+    for (int strands = 1; strands <= 3; strands += 2) {
+        check_rod(false, strands);
+        check_rod(true, strands);
+    }
 }
 
 int main(void)

@@ -99,7 +99,17 @@ void contact_destroy(void *self)
     Contact *c = self;
     poses_destroy(&c->poses);
     mem_free(c->def.samples.vertices);
+    mem_free(c->held);
+    mem_free(c->trial);
     mem_free(c);
+}
+
+static bool is_held(const ContactDef *def, int e)
+{
+    bool held = def->fixed != NULL;
+    for (int i = 0; held && i < 3 * def->samples.corners; i++)
+        held = def->fixed[3 * def->samples.vertices[e * def->samples.corners + i / 3] + i % 3];
+    return held;
 }
 
 Contact *contact_create(const ContactDef *def)
@@ -109,14 +119,18 @@ Contact *contact_create(const ContactDef *def)
     const Samples *samples = &def->samples;
     c->def.samples.vertices = mem_copy(samples->vertices, (size_t)samples->count * (size_t)samples->corners,
                                        sizeof *samples->vertices);
+    c->dofs = samples->first + 3 * def->vertex_count;
+    c->trial = mem_alloc((size_t)c->dofs, sizeof *c->trial);
+    c->held = mem_alloc((size_t)samples->count, sizeof *c->held);
+    for (int e = 0; e < samples->count; e++) c->held[e] = is_held(def, e);
     return c;
 }
 
 /* Its elements last; `update` is for obstacles that move only. */
 #define CONTACT_OPS                                                                                          \
     .name = "contact", .idles = true, .count = contact_count, .size = contact_size, .dofs = contact_dofs,    \
-    .eval = contact_eval, .param = contact_param, .param_forward = contact_param_forward,                    \
-    .destroy = contact_destroy
+    .reach = contact_reach, .project = contact_project, .eval = contact_eval, .param = contact_param,        \
+    .param_forward = contact_param_forward, .destroy = contact_destroy
 
 static const TermOps still_ops = {CONTACT_OPS}, moving_ops = {CONTACT_OPS, .update = contact_update};
 

@@ -9,7 +9,10 @@
  * Friction is the incremental potential dt mu N |grad phi| f0(|u|/dt), u the part of the sample's motion in the step that
  * is tangential to the obstacle and beyond the obstacle's own; f0' is 1 from the slip speed v on and 2 y/v - y^2/v^2 below
  * it [Li et al. 2020, IPC]. N, the normal and the place on the obstacle are lagged (Point.x_lag): each step is a minimisation.
- * What sticks creeps, by less than the slip speed. */
+ * What sticks creeps, by less than the slip speed.
+ *
+ * Steps, and trials that did not come along them, end where a sample is half a thickness deep: what flies at a thin obstacle
+ * does not pass through it in one step, as far as its samples meet it. */
 #pragma once
 #include "world/obstacle.h"
 #include "world/samples.h"
@@ -18,6 +21,8 @@ typedef struct ContactDef {
     const Obstacle *obstacles; /* borrowed, as long as the terms */
     int obstacle_count;
     Samples samples;   /* copied                                              */
+    int vertex_count;  /* of the body                                         */
+    const bool *fixed; /* [3*vertex_count] held; borrowed; NULL: nothing      */
     double offset;     /* m, from the sample to the body's outside: half a thickness */
     double smoothing;  /* m, e                                                */
     double slip_speed; /* m/s                                                 */

@@ -6,6 +6,9 @@
 typedef struct Contact {
     ContactDef def; /* its samples are its own */
     Poses poses;
+    bool *held;    /* [sample] all of its corners are           */
+    int dofs;      /* up to the last position                   */
+    double *trial; /* [dofs] of a way                           */
 } Contact;
 
 Contact *contact_create(const ContactDef *def);
@@ -14,6 +17,8 @@ int contact_count(const void *self);
 int contact_size(const void *self);
 void contact_dofs(const void *self, int e, int *dof);
 bool contact_update(void *self, const Point *at);
+double contact_reach(const void *self, const Point *at, const double *d);
+void contact_project(const void *self, const double *from, double *x);
 
 typedef struct Penalty {
     double energy, force, slope; /* of a depth: J, N, N/m */

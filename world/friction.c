@@ -45,6 +45,7 @@ static bool grip_at(const Contact *c, int k, const Point *at, const double place
     Penalty penalty = penalty_at(depth, c->def.smoothing, at->p[c->def.stiffness]);
     for (int i = 0; i < 3; i++) size += gap.gradient[i] * gap.gradient[i];
     size = sqrt(size);
+    if (size == 0) return false; /* in the very middle of a solid, which has no plane */
     grip->unit = penalty.force * size;
     grip->force = at->p[c->def.friction + k] * grip->unit;
     for (int i = 0; i < 3; i++) grip->normal[i] = gap.gradient[i] / size;

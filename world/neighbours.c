@@ -64,22 +64,29 @@ static void weigh(Neighbours *n)
     divide_by_mean(def->edge_count, n->edge_weight);
 }
 
-/* Of what its vertices sweep. */
-static Box box_of(const int *vertices, int count, const double *from, const double *to)
+Box neighbours_box(const int *vertices, int count, const double *from, const double *to, double grow)
 {
     Box box = box_empty();
+    double longest = 0;
     for (int i = 0; i < count; i++) {
-        box_add(&box, from + 3 * vertices[i]);
-        if (to != from) box_add(&box, to + 3 * vertices[i]);
+        const double *x = from + 3 * (long)vertices[i], *y = to + 3 * (long)vertices[i];
+        box_add(&box, x);
+        if (to == from) continue;
+        box_add(&box, y);
+        Vec3 way = vec3_sub(vec3_load(y), vec3_load(x));
+        longest = vec3_dot(way, way) > longest ? vec3_dot(way, way) : longest;
     }
+    double by = grow * sqrt(longest);
+    for (int i = 0; i < 3; i++) box.low[i] -= by, box.high[i] += by;
     return box;
 }
 
-static void fit_boxes(Neighbours *n, const double *from, const double *to)
+static void fit_boxes(Neighbours *n, const double *from, const double *to, double grow)
 {
-    for (int v = 0; v < n->def.vertex_count; v++) n->vertex_boxes[v] = box_of(&v, 1, from, to);
-    for (int f = 0; f < n->face_count; f++) n->face_boxes[f] = box_of(n->faces[f], 3, from, to);
-    for (int e = 0; e < n->def.edge_count; e++) n->edge_boxes[e] = box_of(n->def.edges[e], 2, from, to);
+    for (int v = 0; v < n->def.vertex_count; v++) n->vertex_boxes[v] = neighbours_box(&v, 1, from, to, grow);
+    for (int f = 0; f < n->face_count; f++) n->face_boxes[f] = neighbours_box(n->faces[f], 3, from, to, grow);
+    for (int e = 0; e < n->def.edge_count; e++)
+        n->edge_boxes[e] = neighbours_box(n->def.edges[e], 2, from, to, grow);
 }
 
 static void make_trees(Neighbours *n)
@@ -88,34 +95,37 @@ static void make_trees(Neighbours *n)
     n->vertex_boxes = mem_alloc((size_t)n->def.vertex_count, sizeof *n->vertex_boxes);
     n->face_boxes = mem_alloc((size_t)n->face_count, sizeof *n->face_boxes);
     n->edge_boxes = mem_alloc((size_t)n->def.edge_count, sizeof *n->edge_boxes);
-    fit_boxes(n, rest, rest);
+    fit_boxes(n, rest, rest, 0);
     n->vertex_tree = near_tree_create(n->def.vertex_count, n->vertex_boxes);
     n->face_tree = near_tree_create(n->face_count, n->face_boxes);
     n->edge_tree = near_tree_create(n->def.edge_count, n->edge_boxes);
 }
 
-static void set_centres(Neighbours *n)
+/* Of so many features with so many vertices each. */
+static Seat *seats_of(const SelfContactDef *def, int count, const int *vertices, int each)
 {
-    const SelfContactDef *def = &n->def;
-    n->face_centre = mem_alloc((size_t)n->face_count, sizeof *n->face_centre);
-    n->edge_centre = mem_alloc((size_t)def->edge_count, sizeof *n->edge_centre);
-    for (int f = 0; f < n->face_count; f++)
-        for (int i = 0; i < 9; i++) n->face_centre[f][i % 3] += def->rest[n->faces[f][i / 3]][i % 3] / 3;
-    for (int e = 0; e < def->edge_count; e++)
-        for (int i = 0; i < 6; i++) n->edge_centre[e][i % 3] += def->rest[def->edges[e][i / 3]][i % 3] / 2;
+    Seat *seats = mem_alloc((size_t)count, sizeof *seats);
+    for (int k = 0; k < count; k++) {
+        const int *own = vertices ? vertices + (long)each * k : &k;
+        seats[k].part = def->part ? def->part[own[0]] : 0;
+        for (int i = 0; i < 3 * each; i++) seats[k].centre[i % 3] += def->rest[own[i / 3]][i % 3] / each;
+    }
+    return seats;
 }
 
 Neighbours *neighbours_create(const SelfContactDef *def)
 {
     Neighbours *n = mem_alloc(1, sizeof *n);
     n->def = *def;
-    n->def.margin = def->distance * (def->margin > 0 ? def->margin : 0.5);
+    n->def.margin = def->distance * (def->margin > 0 ? def->margin : 0.25);
     copy_faces(n);
     n->vertex_weight = mem_alloc((size_t)def->vertex_count, sizeof(double));
     n->edge_weight = mem_alloc((size_t)def->edge_count, sizeof(double));
     n->edge_square = mem_alloc((size_t)def->edge_count, sizeof(double));
     weigh(n);
-    set_centres(n);
+    n->vertex_seat = seats_of(def, def->vertex_count, NULL, 1);
+    n->face_seat = seats_of(def, n->face_count, n->face_count ? n->faces[0] : NULL, 3);
+    n->edge_seat = seats_of(def, def->edge_count, def->edge_count ? def->edges[0] : NULL, 2);
     make_trees(n);
     return n;
 }
@@ -130,8 +140,9 @@ void neighbours_destroy(Neighbours *n)
     mem_free(n->vertex_weight);
     mem_free(n->edge_weight);
     mem_free(n->edge_square);
-    mem_free(n->face_centre);
-    mem_free(n->edge_centre);
+    mem_free(n->vertex_seat);
+    mem_free(n->face_seat);
+    mem_free(n->edge_seat);
     mem_free(n->vertex_boxes);
     mem_free(n->face_boxes);
     mem_free(n->edge_boxes);
@@ -165,29 +176,31 @@ static bool vertices_are_near(const double x[DISTANCE_DOFS], int second, double 
     return near;
 }
 
-/* Nearer at rest than 1.6 D: most are by their centres or by two vertices, which is soon found. */
-static bool is_near_at_rest(const Neighbours *n, const int pair[2], const int vertices[4], bool edges)
+/* Pairs of one piece nearer at rest than 1.6 D are left out. Of most of them the middles are: that is soon found. */
+static bool sits_near(const Neighbours *n, const Seat *a, const Seat *b)
 {
-    double x[DISTANCE_DOFS], least = REST_NEAR * n->def.distance;
-    const double *a = edges ? n->edge_centre[pair[0]] : n->def.rest[pair[0]];
-    const double *b = edges ? n->edge_centre[pair[1]] : n->face_centre[pair[1]];
-    Vec3 d = vec3_sub(vec3_load(a), vec3_load(b));
-    if (vec3_dot(d, d) < least * least) return true;
-    neighbours_gather(vertices, n->def.rest[0], x);
-    if (vertices_are_near(x, edges ? 2 : 1, least)) return true;
-    return distance_between(&n->def, edges)(x).square < least * least;
+    double least = REST_NEAR * n->def.distance;
+    Vec3 d = vec3_sub(vec3_load(a->centre), vec3_load(b->centre));
+    return a->part == b->part && vec3_dot(d, d) < least * least;
 }
 
-static bool may_meet(const Neighbours *n, const int pair[2], const int vertices[4], bool edges)
+static bool is_near_at_rest(const Neighbours *n, const int vertices[4], bool edges)
 {
     const SelfContactDef *def = &n->def;
+    double x[DISTANCE_DOFS], least = REST_NEAR * def->distance;
+    if (def->part && def->part[vertices[0]] != def->part[vertices[2]]) return false;
+    neighbours_gather(vertices, def->rest[0], x);
+    return vertices_are_near(x, edges ? 2 : 1, least) ||
+           distance_between(def, edges)(x).square < least * least;
+}
+
+static bool may_meet(const Neighbours *n, const int vertices[4], bool edges)
+{
     int second = edges ? 2 : 1;
     for (int i = 0; i < second; i++)
         for (int j = second; j < 4; j++)
             if (vertices[i] == vertices[j]) return false;
-    if (is_held(def, vertices)) return false;
-    bool one = !def->part || def->part[vertices[0]] == def->part[vertices[2]];
-    return !one || !is_near_at_rest(n, pair, vertices, edges);
+    return !is_held(&n->def, vertices) && !is_near_at_rest(n, vertices, edges);
 }
 
 /* ---- Who is near ---- */
@@ -221,12 +234,14 @@ static bool is_near(const Neighbours *n, const int vertices[4], bool edges, Want
 static void take(const Neighbours *n, bool edges, Wanted wanted, PairList *list)
 {
     const Box *a = edges ? n->edge_boxes : n->vertex_boxes, *b = edges ? n->edge_boxes : n->face_boxes;
+    const Seat *s = edges ? n->edge_seat : n->vertex_seat, *t = edges ? n->edge_seat : n->face_seat;
     int first = list->count, vertices[4];
     for (int k = 0; k < n->found.count; k++) {
         const int *pair = n->found.list[k];
+        if (sits_near(n, &s[pair[0]], &t[pair[1]])) continue;
         if (box_gap_square(&a[pair[0]], &b[pair[1]]) > wanted.radius * wanted.radius) continue;
         pair_vertices(n, pair, edges, vertices);
-        if (may_meet(n, pair, vertices, edges) && is_near(n, vertices, edges, wanted))
+        if (may_meet(n, vertices, edges) && is_near(n, vertices, edges, wanted))
             add_pair(list, pair[0], pair[1]);
     }
     if (list->count > first) near_pairs_sort(list->pairs + first, list->count - first);
@@ -245,15 +260,15 @@ static void find(Neighbours *n, Wanted wanted, PairList *list)
     take(n, true, wanted, list);
 }
 
-void neighbours_sweep(Neighbours *n, const double *from, const double *to, PairList *list)
+void neighbours_sweep(Neighbours *n, const double *from, const double *to, double grow, PairList *list)
 {
-    fit_boxes(n, from, to);
+    fit_boxes(n, from, to, grow);
     find(n, (Wanted){0, NULL}, list);
 }
 
 void neighbours_find(Neighbours *n, const double *x, double radius, PairList *list)
 {
-    fit_boxes(n, x, x);
+    fit_boxes(n, x, x, 0);
     find(n, (Wanted){radius, x}, list);
 }
 

@@ -14,12 +14,18 @@ typedef struct PairList {
 
 void pair_list_clear(PairList *list);
 
+/* Where a feature's middle is at rest, m, and whose it is. */
+typedef struct Seat {
+    double centre[3];
+    int part;
+} Seat;
+
 typedef struct Neighbours {
     SelfContactDef def; /* margin: m */
     int face_count, (*faces)[3];
-    double *vertex_weight, *edge_weight;         /* area over the mean one                     */
-    double *edge_square;                         /* length^2 at rest                           */
-    double (*face_centre)[3], (*edge_centre)[3]; /* at rest, m                                 */
+    double *vertex_weight, *edge_weight; /* area over the mean one                     */
+    double *edge_square;                 /* length^2 at rest                           */
+    Seat *vertex_seat, *face_seat, *edge_seat;
     NearTree *vertex_tree, *face_tree, *edge_tree;
     Box *vertex_boxes, *face_boxes, *edge_boxes; /* scratch */
     NearPairs found;
@@ -28,9 +34,11 @@ typedef struct Neighbours {
 Neighbours *neighbours_create(const SelfContactDef *def);
 void neighbours_destroy(Neighbours *n);
 
-/* In place of what the list held: all pairs that may meet, of which the boxes of what lies between from and to, [vertex][3]
- * each, do. */
-void neighbours_sweep(Neighbours *n, const double *from, const double *to, PairList *list);
+/* Around the straight ways of some vertices from `from` to `to`, and `grow` of the longest way more. */
+Box neighbours_box(const int *vertices, int count, const double *from, const double *to, double grow);
+
+/* In place of what the list held: all pairs that may meet of which these boxes do; [vertex][3] each. */
+void neighbours_sweep(Neighbours *n, const double *from, const double *to, double grow, PairList *list);
 
 /* The pairs that may meet with a distance below `radius`. */
 void neighbours_find(Neighbours *n, const double *x, double radius, PairList *list);

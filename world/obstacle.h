@@ -30,6 +30,7 @@ typedef struct Obstacle {
     double
         feature; /* m, the smallest radius or detail: a body's longer edges are sampled between their ends too;
                       * INFINITY: flat */
+    double steepest; /* largest |grad phi|; 0: 1 */
     double pivot[3]; /* m, about which it turns                        */
     /* Three expressions of the time t each: how far it has moved, m, and turned, a rotation vector, rad; NULL: not. Owned. */
     Formula *move, *turn;

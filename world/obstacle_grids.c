@@ -66,6 +66,22 @@ static const ObstacleOps height_field_ops = {.kind = "height_field",
                                              .surface = height_field_surface,
                                              .destroy = height_field_destroy};
 
+/* Largest |grad phi|, at four places of each cell along x and y. */
+static double steepest_ground(const HeightField *field, const int cells[2], const double low[2],
+                              const double step[2])
+{
+    enum { PER_CELL = 2 };
+    double steepest = 1;
+    for (int i = 0; i <= PER_CELL * cells[0]; i++)
+        for (int j = 0; j <= PER_CELL * cells[1]; j++) {
+            double x[3] = {low[0] + i * step[0] / PER_CELL, low[1] + j * step[1] / PER_CELL};
+            Gap height;
+            cubic_grid_at(&field->height, x, &height);
+            steepest = fmax(steepest, hypot(1, hypot(height.gradient[0], height.gradient[1])));
+        }
+    return steepest;
+}
+
 Obstacle obstacle_height_field(const double range[2][2], const int cells[2], const double *height)
 {
     int nodes[3] = {cells[0] + 1, cells[1] + 1, 1};
@@ -76,6 +92,7 @@ Obstacle obstacle_height_field(const double range[2][2], const int cells[2], con
     return (Obstacle){.ops = &height_field_ops,
                       .self = field,
                       .feature = fmin(step[0], step[1]),
+                      .steepest = steepest_ground(field, cells, low, step),
                       .pivot = {(range[0][0] + range[1][0]) / 2, (range[0][1] + range[1][1]) / 2, 0}};
 }
 
@@ -157,10 +174,11 @@ static CubicGrid tube_spline(const Tube *tube, int cells, const double (*sample)
     return grid;
 }
 
-/* The smallest radius of it, or of a bend of its wall or line. */
-static double tube_feature(const Tube *tube, double step, int steps)
+/* The smallest radius of it, or of a bend of its wall or line; and the largest |grad phi|. */
+static double tube_feature(const Tube *tube, double step, int steps, double *steepest)
 {
     double feature = INFINITY;
+    *steepest = 1;
     for (int k = 0; k <= steps; k++) {
         double s[3] = {tube->range[0] + k * step};
         Gap radius, center[2];
@@ -168,6 +186,8 @@ static double tube_feature(const Tube *tube, double step, int steps)
         for (int i = 0; i < 2; i++) cubic_grid_at(&tube->center[i], s, &center[i]);
         double bend = fabs(radius.hessian[0][0]) + hypot(center[0].hessian[0][0], center[1].hessian[0][0]);
         feature = fmin(feature, fmin(radius.value, 1 / bend));
+        double lean = hypot(center[0].gradient[0], center[1].gradient[0]);
+        *steepest = fmax(*steepest, hypot(1, fabs(radius.gradient[0]) + lean));
     }
     return feature;
 }
@@ -212,7 +232,7 @@ bool obstacle_tube(int axis, const double range[2], int cells, const double (*sa
     }
     enum { PER_CELL = 4 };
     double cell = (range[1] - range[0]) / cells, step = cell / PER_CELL;
-    obstacle->feature = tube_feature(tube, step, cells * PER_CELL);
+    obstacle->feature = tube_feature(tube, step, cells * PER_CELL, &obstacle->steepest);
     if (check_open(tube, step, cells * PER_CELL, 2 * cell, err)) return true;
     obstacle_clear(obstacle);
     return false;

@@ -223,7 +223,7 @@ bool obstacle_mesh(const MeshFile *file, double cell, Obstacle *obstacle, Error 
         mesh_destroy(mesh);
         return false;
     }
-    *obstacle = (Obstacle){.ops = &mesh_ops, .self = solid, .feature = cell};
+    *obstacle = (Obstacle){.ops = &mesh_ops, .self = solid, .feature = cell, .steepest = 1.2};
     mesh_bounding_box(mesh, low, high);
     for (int i = 0; i < 3; i++) obstacle->pivot[i] = (low[i] + high[i]) / 2;
     return true;

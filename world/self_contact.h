@@ -31,7 +31,7 @@ typedef struct SelfContactDef {
     const int *part;         /* [vertex] piece that it belongs to; NULL: one                  */
     const bool *fixed;       /* [3*vertex_count] held; NULL: nothing                          */
     double distance;         /* D, m: a shell's thickness, twice a rod's radius               */
-    double margin;           /* in parts of D; 0: 1/2                                         */
+    double margin;           /* in parts of D; 0: 1/4                                         */
     int stiffness, friction; /* first entries in p: k, J; the coefficient of friction         */
     double slip_speed;       /* m/s: friction is full from there on                           */
 } SelfContactDef;

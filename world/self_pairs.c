@@ -98,15 +98,13 @@ void self_pairs_gather(const SelfPairs *pairs, int e, const double *x, double ow
     neighbours_gather(vertices, x + pairs->n->def.first, own);
 }
 
-/* Do the boxes of what they sweep meet? */
-static bool ways_meet(const double *from, const double *to, int second)
+/* Do the boxes around their ways meet? */
+static bool ways_meet(const double *from, const double *to, int second, double grow)
 {
-    Box boxes[2] = {box_empty(), box_empty()};
-    for (int v = 0; v < 4; v++) {
-        box_add(&boxes[v >= second], from + 3 * v);
-        box_add(&boxes[v >= second], to + 3 * v);
-    }
-    return box_meets(&boxes[0], &boxes[1]);
+    const int all[4] = {0, 1, 2, 3};
+    Box a = neighbours_box(all, second, from, to, grow),
+        b = neighbours_box(all + second, 4 - second, from, to, grow);
+    return box_meets(&a, &b);
 }
 
 static double reach_of_list(const SelfPairs *pairs, const PairList *list, const double *from, double keep)
@@ -118,7 +116,7 @@ static double reach_of_list(const SelfPairs *pairs, const PairList *list, const 
         neighbours_vertices(pairs->n, list, k, vertices);
         neighbours_gather(vertices, from, x);
         neighbours_gather(vertices, pairs->end, to);
-        if (ways_meet(x, to, edges ? 2 : 1))
+        if (ways_meet(x, to, edges ? 2 : 1, keep / (1 - keep)))
             reach = ccd_reach(neighbours_distance(pairs->n, list, k), x, to, keep, reach);
     }
     return reach;
@@ -142,21 +140,19 @@ static double find_end(const SelfPairs *pairs, const double *from, const double 
     return sqrt(largest);
 }
 
-/* A pair that comes too near on ways of length L is nearer than 2 L/(1 - keep) before: in slow motion the list at hand has
- * them all, in a fast one they are those whose boxes meet. Others reach all the way, so that it does not matter which of
- * the two it is. */
+/* A pair whose vertices go the ways L and M comes too near only where it is nearer than (L + M)/(1 - keep) before, and
+ * then its ways come nearer than `keep` of that: in slow motion the list at hand has all these, in a fast one they are
+ * found by boxes around the ways. Others reach all the way, so that it does not matter which of the two it is. */
 double self_pairs_reach(const SelfPairs *pairs, const double *from, const double *to, double keep)
 {
     const Neighbours *n = pairs->n;
     from += n->def.first, to += n->def.first;
     double way = find_end(pairs, from, to);
     if (!(way > 0 && isfinite(way))) return 1;
-    if (pairs->any_known) {
-        double off = neighbours_moved(n, from, pairs->known);
-        if (2 * way / (1 - keep) + 2 * off < n->def.distance + n->def.margin)
-            return reach_of_list(pairs, &pairs->list, from, keep);
-    }
+    bool known = pairs->any_known && 2 * way / (1 - keep) + 2 * neighbours_moved(n, from, pairs->known) <
+                                         n->def.distance + n->def.margin;
+    if (known) return reach_of_list(pairs, &pairs->list, from, keep);
     PairList *swept = (PairList *)&pairs->swept;
-    neighbours_sweep(pairs->n, from, pairs->end, swept);
+    neighbours_sweep(pairs->n, from, pairs->end, keep / (1 - keep), swept);
     return reach_of_list(pairs, swept, from, keep);
 }

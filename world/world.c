@@ -45,6 +45,8 @@ static void add_contact(World *world, Samples samples)
     world->contacts[world->contact_kinds++] = (ContactDef){.obstacles = world->obstacles,
                                                            .obstacle_count = world->obstacle_count,
                                                            .samples = samples,
+                                                           .vertex_count = world->body.vertex_count,
+                                                           .fixed = world->body.fixed,
                                                            .smoothing = SMOOTHING * world->body.thickness};
 }
 

@@ -42,7 +42,7 @@ static bool put_target(Model *model, const Build *b, const char *at, const Targe
                                      scene->where_count, variables);
     bool ok = formula != NULL;
     for (int i = 0; ok && i <= rod->elements; i++) {
-        double place[] = {i * rod_element_length(rod), rod->length};
+        double place[] = {i * rod_element_length(rod, 0), rod_length(rod)};
         ok = formula_eval(formula, place, target[i], &err) || yaml_refuse(b->file, at, "%s", err.text);
     }
     formula_destroy(formula);
@@ -75,9 +75,9 @@ static bool read_supports(RodModel *rm, const RodScene *scene, const Build *b)
     bool ok = true;
     if (scene->clamp.frame) {
         ok = rod_model_frame(b, "rod.clamp.frame", (const double(*)[3])scene->clamp.frame, &frame);
-        if (ok) rod->frame = quat_from_axes(frame.n0, frame.n1, frame.n2);
+        if (ok) rod->strand[0].frame = quat_from_axes(frame.n0, frame.n1, frame.n2);
     }
-    rod->position = vec3_load(scene->clamp.position);
+    rod->strand[0].position = vec3_load(scene->clamp.position);
     rod->start = scene->hold == HOLD_PINNED ? ROD_PINNED : ROD_CLAMPED;
     if (!scene->end) return ok;
     rm->held = true;
@@ -89,20 +89,32 @@ static bool read_supports(RodModel *rm, const RodScene *scene, const Build *b)
         !rod_model_frame(b, "rod.end.frame", (const double(*)[3])scene->end->frame, &frame))
         return false;
     if (rod->end == ROD_CLAMPED) rm->end_frame = quat_from_axes(frame.n0, frame.n1, frame.n2);
-    double apart = vec3_length(vec3_sub(rm->end_position, rm->curves ? rm->curves[0].x[0] : rod->position));
-    if (apart > rod->length)
+    double apart =
+        vec3_length(vec3_sub(rm->end_position, rm->curves ? rm->curves[0].x[0] : rod->strand[0].position));
+    if (apart > rod_length(rod))
         return yaml_refuse(b->file, "rod.end.position",
-                           "it is %g m from the other end, and the rod %g m long", apart, rod->length);
+                           "it is %g m from the other end, and the rod %g m long", apart, rod_length(rod));
     return ok;
 }
 
-static bool check_rod(const RodModel *rm, const RodScene *from, const Build *b)
+/* What of the scene is for one rod; NULL: nothing. */
+static const char *takes_one(const RodModel *rm, const Scene *scene)
 {
+    return scene_job(scene) != &rod_job_simulate ? "jobs other than invert and simulate take one rod"
+           : rm->preview                         ? "solver: pbd takes one rod"
+           : rod_scene(scene)->end               ? "rod.end holds one rod"
+           : scene->water                        ? "water is for one rod"
+                                                 : NULL;
+}
+
+static bool check_rod(const RodModel *rm, const Scene *scene, const Build *b)
+{
+    const RodScene *from = rod_scene(scene);
+    const char *alone;
     bool given = rm->curves != NULL;
     if (from->poses) return yaml_refuse(b->file, "rod.poses", "poses are for the job identify");
-    if (given && rm->strand_count > 1)
-        return yaml_refuse(b->file, "rod.curve", "there are %d curves; jobs other than invert take one rod",
-                           rm->strand_count);
+    if (given && rm->strand_count > 1 && (alone = takes_one(rm, scene)))
+        return yaml_refuse(b->file, "rod.curve", "there are %d curves; %s", rm->strand_count, alone);
     if (!given && !from->natural_strain)
         return yaml_refuse(b->file, "rod", "`curve` or `natural_strain` is missing");
     if (!given && isnan(from->length))
@@ -110,10 +122,10 @@ static bool check_rod(const RodModel *rm, const RodScene *from, const Build *b)
     return true;
 }
 
-/* The curve's state in x, and none of its shape in the rod: that has natural strains of its own. */
+/* The curves' state in x, and none of their shape in the rod: that has natural strains of its own. */
 static void pose(RodModel *rm, double *x)
 {
-    rod_follow_curve(rm->rod, &rm->curves[0], rm->frames[0], x);
+    rod_follow_curves(rm->rod, rm->curves, rm->frames, x);
     for (int e = 0; e < rm->rod->elements; e++) rm->rod->bow[e] = vec3(0, 0, 0);
 }
 
@@ -121,7 +133,7 @@ static void pose(RodModel *rm, double *x)
  * state in x, of turns only. */
 static void balance(RodModel *rm, double *p, double *x)
 {
-    rod_follow_curve(rm->rod, &rm->curves[0], rm->frames[0], x);
+    rod_follow_curves(rm->rod, rm->curves, rm->frames, x);
     Rod rod = *rm->rod;
     if (!rod_field_varies(&rod, p)) rod.fields.count = 0; /* those of other cases: the hanging form will do */
     RodLayout turns = rod_layout(&rod, false), layout = rod_layout(&rod, rod.fields.count > 0);
@@ -133,7 +145,7 @@ static void balance(RodModel *rm, double *p, double *x)
     mem_free(y);
 }
 
-/* What the curve means: beside natural strains it is where the rod is let go. */
+/* What curves mean: beside natural strains they are where the rod is let go. */
 static void take_curve(RodModel *rm, const RodScene *scene, double *p, double *x)
 {
     if (scene->natural_strain)
@@ -243,20 +255,32 @@ static bool fill_cases(Model *model, const Scene *scene, const Build *b, bool re
     return ok;
 }
 
-/* Jobs that move one rod. */
+/* Takes the fields. */
+static Rod *make_rod(const RodModel *rm, const RodScene *scene, const FluxFields *fields)
+{
+    if (!rm->curves) return rod_create(scene->elements, scene->length, rm->unit, rm->area, fields);
+    double *length = mem_alloc((size_t)rm->strand_count, sizeof *length);
+    for (int k = 0; k < rm->strand_count; k++) length[k] = rm->curves[k].length;
+    Rod *rod = rod_create_strands(rm->strand_count, scene->elements, length, rm->unit, rm->area, fields);
+    mem_free(length);
+    return rod;
+}
+
+/* Jobs that move rods. */
 static bool fill(Model *model, const Scene *scene, const Build *b)
 {
     RodModel *rm = model->self;
     const RodScene *from = rod_scene(scene);
     Build sized = *b;
     FluxFields fields;
-    if (!check_rod(rm, from, b)) return false;
-    sized.size = rm->curves ? rm->curves[0].length : from->length;
+    if (!check_rod(rm, scene, b)) return false;
+    sized.size = rm->curves ? rod_model_longest(rm) : from->length;
     bool readable = model_read_flux(model, &sized, scene, &fields);
-    rm->rod = rod_create(from->elements, sized.size, rm->unit, rm->area, &fields);
+    rm->rod = make_rod(rm, from, &fields);
+    model->point_count = rod_node_count(rm->rod);
     WorldBody shown = rod_world_body(rm->rod);
     readable = model_read_world(model, &sized, scene, &shown, &rm->rod->world) && readable;
-    if (!read_supports(rm, from, b) || !rod_model_check_points(rm, b, rm->rod->length)) return false;
+    if (!read_supports(rm, from, b) || !rod_model_check_points(rm, b, rod_length(rm->rod))) return false;
     set_model(model);
     model_add_blocks(model, scene);
     return fill_cases(model, scene, &sized, readable) &&
@@ -353,7 +377,8 @@ static bool take_preview(RodModel *rm, const double *from, int dofs, Error *err)
     const Rod *rod = rm->rod;
     if (dofs != pbd_rod_state_count(rod->elements))
         return error_set(err, "its state is not that of `solver: pbd`, which goes on from its own only");
-    if (vec3_length(vec3_sub(vec3_load(from), rod->position)) > START_LITTLE * rod->length)
+    const RodStrand *strand = &rod->strand[0];
+    if (vec3_length(vec3_sub(vec3_load(from), strand->position)) > START_LITTLE * strand->length)
         return error_set(err, START_ELSEWHERE);
     rm->moving = mem_copy(from, (size_t)dofs, sizeof *from);
     return true;
@@ -375,11 +400,15 @@ static bool take_state(const Model *model, const double *from, int dofs, double 
         memcpy(x, from, (size_t)dofs * sizeof *x);
     else
         rod_copy_state(rod, &own, from, &rm->layout, x);
-    if (!is_at(&own, from, 0, rod->position, rod->start == ROD_CLAMPED ? &rod->frame : NULL, rod->length))
-        return error_set(err, START_ELSEWHERE);
+    for (int k = 0; k < rod->strands; k++) {
+        const RodStrand *strand = &rod->strand[k];
+        const Quat *frame = rod->start == ROD_CLAMPED ? &strand->frame : NULL;
+        if (!is_at(&own, from, k * (own.each + 1), strand->position, frame, strand->length))
+            return error_set(err, START_ELSEWHERE);
+    }
     return !rm->held || model->moves ||
            is_at(&rm->layout, x, rod->elements, rm->end_position,
-                 rod->end == ROD_CLAMPED ? &rm->end_frame : NULL, rod->length) ||
+                 rod->end == ROD_CLAMPED ? &rm->end_frame : NULL, rod_length(rod)) ||
            error_set(err, "its other end is not where rod.end holds it: an equilibrium leads it there");
 }
 

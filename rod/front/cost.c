@@ -15,7 +15,7 @@ void rod_cost(const Model *model, Cost *cost)
     predict_measure(c->sys, &at, 1, cost);
     cost->exact = true;
     predict_take_factor(system_info(c->sys), cost);
-    cost->elements = model->point_count - 1;
+    cost->elements = ((const RodModel *)model->self)->rod->elements;
     cost->system_bytes = SYSTEM_BYTES;
     if (model->job == &job_equilibrium) cost->effort = rest;
 }

@@ -135,7 +135,7 @@ static void invert_elements(Inversion *o, int k)
     RodLayout layout = rod_layout(rod, false);
     double *x = mem_alloc(2 * (size_t)layout.dofs, sizeof *x);
     System *sys = rod_hanging_system(rod);
-    rod_follow_curve(rod, &rm->curves[k], rm->frames[k], x);
+    rod_follow_curves(rod, &rm->curves[k], &rm->frames[k], x);
     rod_balance(rod, sys, &layout, x, p);
     Evaluation left = system_gradient(sys, &(Point){.x = x, .p = p}, x + layout.dofs);
     o->residual[k] = left.force_scale > 0 ? left.gradient_max / left.force_scale : 0;

@@ -22,15 +22,16 @@ static PbdRod *create(const Run *run)
     const double *p = run->model->cases[0].stages[0].p;
     Vec3 *start = mem_alloc((size_t)rod->elements, sizeof *start);
     rod_element_strains(rod, &rm->layout, run->model->x, start);
-    RodFrame clamp = {quat_rotate(rod->frame, vec3(1, 0, 0)), quat_rotate(rod->frame, vec3(0, 1, 0)),
-                      quat_rotate(rod->frame, vec3(0, 0, 1))};
+    Quat frame = rod->strand[0].frame;
+    RodFrame clamp = {quat_rotate(frame, vec3(1, 0, 0)), quat_rotate(frame, vec3(0, 1, 0)),
+                      quat_rotate(frame, vec3(0, 0, 1))};
     PbdRodDef def = {.elements = rod->elements,
-                     .length = rod->length,
+                     .length = rod_length(rod),
                      .section = rm->section,
                      .stretch = rm->young * rm->area,
                      .natural_strain = (const Vec3 *)(p + rod->natural_strain),
                      .start_strain = start,
-                     .position = rod->position,
+                     .position = rod->strand[0].position,
                      .clamp = clamp,
                      .gravity = vec3_load(p + rod->gravity),
                      .force = (const Vec3 *)(p + rod->load),

@@ -6,28 +6,36 @@
 #include <math.h>
 #include <string.h>
 
-/* Simulated, natural and (if one was given) input curve: only the first one moves. */
+/* Simulated, natural and (if they were given) input curves, strand after strand: only the first ones move. */
 void rod_add_static(const Model *model, Arrays *list)
 {
     const RodModel *rm = model->self;
     if (!rm->rod) return; /* invert and identify have their own */
-    int nodes = model->point_count, lines = rm->curves ? 3 : 2;
+    const Rod *rod = rm->rod;
+    int nodes = model->point_count, kinds = rm->curves ? 3 : 2, own = nodes / rod->strands,
+        lines = kinds * rod->strands;
     int *range = arrays_keep(list, mem_alloc(2 * (size_t)lines, sizeof *range));
-    double *still = arrays_numbers(list, 3 * (size_t)nodes * (size_t)(lines - 1)),
+    double *still = arrays_numbers(list, 3 * (size_t)nodes * (size_t)(kinds - 1)),
            *s = arrays_numbers(list, (size_t)nodes);
-    for (int k = 0; k < lines; k++) range[2 * k] = k * nodes, range[2 * k + 1] = nodes;
+    for (int k = 0; k < lines; k++) range[2 * k] = k * own, range[2 * k + 1] = own;
     memcpy(still, rm->natural, 3 * (size_t)nodes * sizeof *still);
     for (int i = 0; i < nodes; i++) {
-        s[i] = i * rod_element_length(rm->rod);
-        if (rm->curves) vec3_store(still + 3 * (nodes + i), rm->curves[0].x[2 * i]);
+        int strand = i / own, node = i % own;
+        s[i] = node * rod_element_length(rod, strand * (own - 1));
+        if (rm->curves) vec3_store(still + 3 * (nodes + i), rm->curves[strand].x[2 * node]);
+    }
+    if (rod->strands > 1) {
+        int *starts = arrays_keep(list, mem_alloc((size_t)rod->strands + 1, sizeof *starts));
+        for (int k = 0; k <= rod->strands; k++) starts[k] = k * own;
+        arrays_add(list, array_int("rod/strands", starts, 1, rod->strands + 1, 0));
     }
     arrays_add(list, array_int("lines", range, 2, lines, 2));
-    arrays_add(list, array_float("still", "m", still, 2, (lines - 1) * nodes, 3));
+    arrays_add(list, array_float("still", "m", still, 2, (kinds - 1) * nodes, 3));
     arrays_add(list, array_float("rod/s", "m", s, 1, nodes, 0));
     arrays_add(list,
                array_float("rod/gravity", "m/s^2", model->cases[0].stages[0].p + model->gravity, 1, 3, 0));
     arrays_add(list, array_float("rod/natural", "m", still, 2, nodes, 3));
-    bool pinned = rm->rod->start == ROD_PINNED || rm->rod->end == ROD_PINNED;
+    bool pinned = rod->start == ROD_PINNED || rod->end == ROD_PINNED;
     arrays_add(list, array_text("rod/supports", pinned ? "pinned" : "clamped"));
     if (rm->held) arrays_add(list, array_float("rod/held", "m", &rm->end_position.x, 1, 3, 0));
     if (rm->curves) arrays_add(list, array_float("rod/input", "m", still + 3 * nodes, 2, nodes, 3));
@@ -57,13 +65,13 @@ void rod_add_state(const Model *model, const Snapshot *shot, const char *prefix,
     arrays_add(list, array_float(name, "N m", moment, 2, model->point_count, 3));
 }
 
-/* Is it known how stable the state is? A free end, one stiffness, no magnetisation across the tangent, and no
- * field that varies in space. */
+/* Is it known how stable the state is? Of one rod with a free end, one stiffness, no magnetisation across the tangent, no
+ * field that varies in space, and nothing that it meets. */
 static bool is_judged(const Rod *rod, const double *p)
 {
     const double *B = p + rod->flux_density;
     bool across = false, field = B[0] != 0 || B[1] != 0 || B[2] != 0;
-    bool uniform = !rod_field_varies(rod, p);
+    bool uniform = !rod_field_varies(rod, p) && !rod->world && rod->strands == 1;
     for (int e = 0; e < rod->elements; e++) {
         across |= field && (p[rod->magnetization + 3 * e + 1] != 0 || p[rod->magnetization + 3 * e + 2] != 0);
         uniform &= p[rod->young + e] == p[rod->young];
@@ -78,9 +86,9 @@ static RodEquilibrium equilibrium_of(const RodModel *rm, const Snapshot *shot, V
     size_t stations = 2 * (size_t)rod->elements + 1;
     Vec3 *k = *work = mem_alloc(2 * stations + 3 * (size_t)rod->elements, sizeof *k), *m = k + stations,
          *F = m + stations;
-    rod_stations(rod, &rm->layout, shot->at.x, shot->p, k, m, F);
+    rod_stations(rod, 0, &rm->layout, shot->at.x, shot->p, (RodStations){k, m, F});
     return (RodEquilibrium){
-        rod->elements, rod->length, rod_section_of(rod->unit, shot->p[rod->young]), k, m, F};
+        rod->elements, rod_length(rod), rod_section_of(rod->unit, shot->p[rod->young]), k, m, F};
 }
 
 /* Where elements are too long for what they are to show, how stable the rod is stays unknown. */
@@ -115,7 +123,7 @@ char *rod_doubt(const Model *model, const Snapshot *shot)
     return mem_format(
         "the elements are too long: the rod bends within sqrt(EI/F) = %.2g m, and one of them has %.2g times "
         "that; rod.elements: %.0f or more would show where it rests and how stable it is",
-        rod_element_length(rod) / lengths, lengths, ceil(rod->elements * lengths));
+        rod_element_length(rod, 0) / lengths, lengths, ceil(rod->elements * lengths));
 }
 
 void rod_add_final(const Model *model, const Snapshot *shot, int modes, Arrays *list)

@@ -24,7 +24,7 @@ char *rod_describe(const Model *model, const Scene *scene)
     const RodModel *rm = model->self;
     int rods = rm->strand_count > 1 ? rm->strand_count : 1;
     char *text = mem_format("%d rod%s of %d elements, up to %.4g m long\n", rods, rods == 1 ? "" : "s",
-                            model->point_count - 1, rod_model_longest(rm));
+                            model->point_count / rods - 1, rod_model_longest(rm));
     if (!model->case_count) return text;
     char *line = mem_format("%d load case%s; %d unknowns of motion\n", model->case_count,
                             model->case_count == 1 ? "" : "s", system_free_count(model->cases[0].sys));
@@ -39,8 +39,9 @@ void rod_dof_sizes(const Model *model, double *size)
     const RodModel *rm = model->self;
     const RodLayout *layout = &rm->layout;
     for (int i = 0; i < layout->dofs; i++)
-        size[i] = i >= layout->reference                               ? 0
-                  : layout->position >= 0 && i < layout->turn          ? rod_element_length(rm->rod)
-                  : layout->multiplier >= 0 && i >= layout->multiplier ? rm->rod->unit.mass * rm->rod->length
-                                                                       : 1;
+        size[i] = i >= layout->reference                      ? 0
+                  : layout->position >= 0 && i < layout->turn ? rod_element_length(rm->rod, 0)
+                  : layout->multiplier >= 0 && i >= layout->multiplier
+                      ? rm->rod->unit.mass * rod_length(rm->rod)
+                      : 1;
 }

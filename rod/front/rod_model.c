@@ -166,6 +166,12 @@ bool rod_model_frame(const Build *b, const char *at, const double (*rows)[3], Ro
 
 /* ---- Numbers along a discrete rod ---- */
 
+/* Arclength of its strand in the middle of an element. */
+static double middle(const Rod *rod, int e)
+{
+    return (e % rod_each(rod) + 0.5) * rod_element_length(rod, e);
+}
+
 /* Three formulas of s and L at the elements' middles. */
 static bool from_formula(const Build *b, const char *at, char *const *formula, const WhereScene *where,
                          int where_count, const Rod *rod, double *values)
@@ -175,19 +181,19 @@ static bool from_formula(const Build *b, const char *at, char *const *formula, c
     Formula *made = build_formula(b, key("%s.formula", at), formula, 3, where, where_count, variables);
     bool ok = made != NULL;
     for (int e = 0; ok && e < rod->elements; e++) {
-        double place[] = {(e + 0.5) * rod_element_length(rod), rod->length};
+        double place[] = {middle(rod, e), rod->strand[e / rod_each(rod)].length};
         ok = formula_eval(made, place, values + 3 * e, &err) || yaml_refuse(b->file, at, "%s", err.text);
     }
     formula_destroy(made);
     return ok;
 }
 
-/* Has the table a row for the middle of each element? */
+/* Has the table a row for the middle of each element of a strand? */
 static bool is_at_middles(const Table *table, const Rod *rod)
 {
     const double little = 1e-2;
-    double h = rod_element_length(rod);
-    bool own = table->rows == rod->elements;
+    double h = rod_element_length(rod, 0);
+    bool own = table->rows == rod_each(rod);
     for (int e = 0; own && e < table->rows; e++)
         own = fabs(table->values[4 * e] - (e + 0.5) * h) <= little * h;
     return own;
@@ -202,13 +208,13 @@ static bool read_strains(const Build *b, const StrainScene *scene, const Rod *ro
     if (!scene->file) return true;
     Table table;
     bool ok = rod_table_read(b, "rod.natural_strain.file", scene->file,
-                             "s [m], twist [1/m], k1 [1/m], k2 [1/m]", rod->length, &table),
+                             "s [m], twist [1/m], k1 [1/m], k2 [1/m]", rod_length(rod), &table),
          own = ok && is_at_middles(&table, rod);
     for (int e = 0; ok && e < rod->elements; e++)
         if (own)
-            memcpy(strain + 3 * e, table.values + 4 * e + 1, 3 * sizeof *strain);
+            memcpy(strain + 3 * e, table.values + 4 * (e % rod_each(rod)) + 1, 3 * sizeof *strain);
         else
-            rod_table_at(&table, (e + 0.5) * rod_element_length(rod), strain + 3 * e);
+            rod_table_at(&table, middle(rod, e), strain + 3 * e);
     table_clear(&table);
     return ok;
 }
@@ -238,7 +244,7 @@ void rod_model_loads(const RodModel *model, const Rod *rod, const RodScene *scen
 {
     rod_default_params(rod, model->young, p);
     memcpy(p + rod->gravity, scene->gravity, sizeof scene->gravity);
-    p[rod->damping] = scene->damping * rod_element_length(rod);
+    p[rod->damping] = scene->damping * (rod_length(rod) / rod_each(rod));
     RodLoads beside = model->loads; /* the weight */
     beside.line = model->line;
     rod_share_loads(rod, beside, p + rod->load);
@@ -257,7 +263,7 @@ bool rod_model_params(const RodModel *model, const Scene *scene, const Build *b,
 
 double rod_model_longest(const RodModel *model)
 {
-    double longest = model->rod ? model->rod->length : 0;
+    double longest = model->rod ? rod_length(model->rod) : 0;
     for (int k = 0; k < model->strand_count; k++) longest = fmax(longest, model->curves[k].length);
     return longest;
 }

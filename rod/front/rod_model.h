@@ -19,7 +19,7 @@ typedef struct RodModel {
     Vec3 line;      /* line loads without weight, N/m                                             */
     double flux[3]; /* T, of an inversion                                                        */
 
-    /* Of jobs that move it (one strand). */
+    /* Of jobs that move it. */
     Rod *rod;
     RodLayout layout;
     double *natural; /* [nodes][3] places of the natural shape, m                                 */
