@@ -127,6 +127,7 @@ static void contact_project(const void *self, const double *from, double *x)
 
 static const TermOps contact_ops = {
     .name = "self_contact",
+    .idles = true,
     .count = self_pairs_count,
     .size = self_pairs_size,
     .dofs = self_pairs_dofs,
