@@ -111,7 +111,8 @@ static double contact_reach(const void *self, const Point *at, const double *d)
     return self_pairs_reach(pairs, from, pairs->to, KEEP_STEP);
 }
 
-/* Held vertices are where they are to be: a trial that they would have to be pulled back in is none. */
+/* Held vertices are where they are to be, and what follows from other dofs would be alone in going back: a trial in which
+ * these would have to be pulled back is none. */
 static void contact_project(const void *self, const double *from, double *x)
 {
     const SelfPairs *pairs = self;
@@ -120,7 +121,7 @@ static void contact_project(const void *self, const double *from, double *x)
     if (self_pairs_reach(pairs, from, x, KEEP_TRIAL) >= 1) return;
     double reach = self_pairs_reach(pairs, from, x, KEEP_STEP);
     for (int i = 0; i < 3 * def->vertex_count; i++) {
-        bool held = def->fixed && def->fixed[i] && x[i] != from[i];
+        bool held = def->derived || (def->fixed && def->fixed[i] && x[i] != from[i]);
         x[i] = held ? NAN : from[i] + reach * (x[i] - from[i]);
     }
 }

@@ -5,8 +5,19 @@
 #include "world/poses.h"
 #include <math.h>
 
-static const double SMOOTHING =
-    0.01; /* of the thickness, the depth at which the penalty is linear: half of it is sunk */
+/* Parts of a shell's thickness or a rod's radius: the depth at which the penalty is linear, half of which is sunk. */
+static const double SMOOTHING = 0.01;
+
+double world_body_measure(const WorldBody *body)
+{
+    return body->face_count ? body->thickness : body->thickness / 2;
+}
+
+/* From other dofs: those of rods do. */
+static bool positions_follow(const WorldBody *body)
+{
+    return body->face_count == 0;
+}
 
 /* The vertices of each edge or face, [count][corners], of which one edge at least is longer than that; all where it is 0. */
 static Samples long_ones(const WorldBody *body, const int *corners_of, int count, int corners, double longer)
@@ -42,12 +53,14 @@ static void add_contact(World *world, Samples samples)
         mem_free(samples.vertices);
         return;
     }
-    world->contacts[world->contact_kinds++] = (ContactDef){.obstacles = world->obstacles,
-                                                           .obstacle_count = world->obstacle_count,
-                                                           .samples = samples,
-                                                           .vertex_count = world->body.vertex_count,
-                                                           .fixed = world->body.fixed,
-                                                           .smoothing = SMOOTHING * world->body.thickness};
+    world->contacts[world->contact_kinds++] =
+        (ContactDef){.obstacles = world->obstacles,
+                     .obstacle_count = world->obstacle_count,
+                     .samples = samples,
+                     .vertex_count = world->body.vertex_count,
+                     .fixed = world->body.fixed,
+                     .derived = positions_follow(&world->body),
+                     .smoothing = SMOOTHING * world_body_measure(&world->body)};
 }
 
 World *world_create(const WorldBody *body, Obstacle *obstacles, int obstacle_count)
@@ -114,6 +127,7 @@ static SelfContactDef self_of(const World *world)
                             .rest = body->rest,
                             .part = body->part,
                             .fixed = body->fixed,
+                            .derived = positions_follow(body),
                             .distance = world->distance,
                             .stiffness = world->self_stiffness,
                             .friction = world->self_friction,

@@ -18,6 +18,9 @@ typedef struct WorldBody {
     double length;                      /* m, of a rod                                       */
 } WorldBody;
 
+/* Of which what touches sinks in by less than 1 %: a shell's thickness, a rod's radius, m. */
+double world_body_measure(const WorldBody *body);
+
 enum { SAMPLE_KINDS = 3 }; /* vertices, middles of edges, of faces */
 
 typedef struct World {
