@@ -2,6 +2,8 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "world/crossings.h"
+#include "world/poses.h"
+#include <math.h>
 
 /* Parts of a shell's thickness or a rod's radius: the depth at which the penalty is linear, half of which is sunk. */
 static const double SMOOTHING = 0.01;
@@ -164,6 +166,24 @@ void world_add_terms(const World *world, System *sys, bool motion)
         if (motion && world->rubs) system_add(sys, self_friction_term(&def));
     }
     if (motion && world->wet) system_add(sys, water_of(world));
+}
+
+void world_lean(const World *world, double time, double depth, double *x)
+{
+    Poses poses = poses_create(world->obstacles, world->obstacle_count);
+    double *place = x + world->body.first, way = INFINITY, normal[3] = {0};
+    poses_update(&poses, &(Point){.time = time});
+    for (int k = 0; k < world->obstacle_count; k++)
+        for (int v = 0; v < world->body.vertex_count; v++) {
+            Gap gap;
+            obstacle_gap(&world->obstacles[k], &poses.end[k], place + 3 * v, &gap);
+            if (!(gap.value - world->offset + depth < way)) continue;
+            way = gap.value - world->offset + depth;
+            vec3_store(normal, vec3_unit(vec3_load(gap.gradient)));
+        }
+    poses_destroy(&poses);
+    for (int i = 0; i < 3 * world->body.vertex_count && way > 0 && isfinite(way); i++)
+        place[i] -= way * normal[i % 3];
 }
 
 /* What the body does against a term in a step of time, J: the forces of its end times how far it went. */
