@@ -48,12 +48,12 @@ static void test_stream(void **state)
 
 /* ---- Whole runs ---- */
 
-static Result *run(SlenderScene *scene, const SlenderError *err)
+static Result *run(SlenderScene *scene, const SlenderError *err, bool resume)
 {
     SlenderError trouble;
     Error unread;
     if (!scene) fail_msg("%s", err->text);
-    SlenderRun def = {.output = NAME, .threads = 1, .force = 1};
+    SlenderRun def = {.output = NAME, .threads = 1, .resume = resume, .force = !resume};
     SlenderStatus status = slender_run(scene, &def, &trouble);
     if (status != SLENDER_DONE) fail_msg("status %d: %s", (int)status, trouble.text);
     slender_scene_destroy(scene);
@@ -65,15 +65,15 @@ static Result *run(SlenderScene *scene, const SlenderError *err)
 static Result *run_text(char *text)
 {
     SlenderError err;
-    Result *result = run(slender_scene_parse(text, NULL, 0, &err), &err);
+    Result *result = run(slender_scene_parse(text, NULL, 0, &err), &err, false);
     mem_free(text);
     return result;
 }
 
-static Result *run_file(const char *path, const char *const *settings, int count)
+static Result *run_file(const char *path, const char *const *settings, int count, bool resume)
 {
     SlenderError err;
-    return run(slender_scene_read(path, settings, count, &err), &err);
+    return run(slender_scene_read(path, settings, count, &err), &err, resume);
 }
 
 static Array read_all(Result *result, const char *path)
@@ -142,7 +142,7 @@ static void test_pipe(void **state)
     for (int k = 0; k < 2; k++) {
         const char *const settings[] = {"rod.elements=40", "time.step=10 ms", "time.steps=150",
                                         "output.every=1", "rod.magnetization=[0, 0, 0]"};
-        Result *result = run_file(SOURCE_DIR "/scenes/rod_pipe.yaml", settings, 4 + k);
+        Result *result = run_file(SOURCE_DIR "/scenes/rod_pipe.yaml", settings, 4 + k, false);
         touches[k] = tip_touches(result, 40);
         assert_true(extreme(result, "slender/history/contact_depth", false) < 1e-2 * 5e-4);
         result_close(result);
@@ -157,7 +157,7 @@ static void test_comb(void **state)
 {
     (void)state;
     const char *const settings[] = {"rod.curve.strands=25", "time.steps=200"};
-    Result *result = run_file(SOURCE_DIR "/scenes/hair_comb.yaml", settings, 2);
+    Result *result = run_file(SOURCE_DIR "/scenes/hair_comb.yaml", settings, 2, false);
     Array x = read_all(result, "slender/rod/x"), strands = read_all(result, "slender/rod/strands");
     assert_int_equal(strands.dims[0], 26);
     assert_int_equal(((const int *)strands.data)[25], 25 * 11);
@@ -177,9 +177,45 @@ static void test_comb(void **state)
     result_close(result);
 }
 
+/* A finished run of strands in contact that is extended is that which was longer from the beginning, bit by bit, its frames
+ * with what the result had beside moving points left out. */
+static void test_extended(void **state)
+{
+    (void)state;
+    double *x[2], *force[2];
+    int points = 0;
+    for (int k = 0; k < 2; k++) {
+        const char *const settings[] = {"rod.curve.strands=12", "output.every=2", "time.step=4 ms",
+                                        "time.steps=60", "time.steps=67"};
+        const char *const longer[] = {settings[0], settings[1], settings[2], settings[4]};
+        if (k) result_close(run_file(SOURCE_DIR "/scenes/hair_comb.yaml", settings, 4, false));
+        Result *result = run_file(SOURCE_DIR "/scenes/hair_comb.yaml", longer, 4, k);
+        Array end = read_all(result, "slender/state/dofs"), touch;
+        Error err;
+        points = end.dims[0] > 0 ? end.dims[end.rank - 1] : 0;
+        x[k] = mem_copy(end.data, (size_t)points, sizeof *x[k]);
+        assert_int_equal(result_step_count(result), 35);
+        assert_true(result_read_step(result, "PointData/contact_force", 28, &touch, &err));
+        force[k] = mem_copy(touch.data, 3 * 12 * 11, sizeof *force[k]);
+        array_clear(&touch);
+        array_clear(&end);
+        result_close(result);
+    }
+    double largest = 0;
+    for (int i = 0; i < 3 * 12 * 11; i++) largest = fmax(largest, fabs(force[0][i]));
+    assert_true(points > 12 * 11 * 6 && largest > 0);
+    assert_memory_equal(x[0], x[1], (size_t)points * sizeof *x[0]);
+    assert_memory_equal(force[0], force[1], 3 * 12 * 11 * sizeof *force[0]);
+    for (int k = 0; k < 2; k++) {
+        mem_free(x[k]);
+        mem_free(force[k]);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_stream), cmocka_unit_test(test_rest),
-                                       cmocka_unit_test(test_pipe), cmocka_unit_test(test_comb)};
+                                       cmocka_unit_test(test_pipe), cmocka_unit_test(test_comb),
+                                       cmocka_unit_test(test_extended)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
