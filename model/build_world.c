@@ -175,36 +175,9 @@ static int face_of_edge(const WorldBody *body, int edge)
     return edge;
 }
 
-static double longest_edge(const WorldBody *body)
-{
-    double longest = 0;
-    for (int e = 0; e < body->edge_count; e++) {
-        Vec3 a = vec3_load(body->rest[body->edges[e][0]]), b = vec3_load(body->rest[body->edges[e][1]]);
-        longest = fmax(longest, vec3_length(vec3_sub(a, b)));
-    }
-    return longest;
-}
-
-/* What is smaller than a quarter of an edge fits between vertices and the middles of edges and faces. */
-static void warn_of_needles(Model *model)
-{
-    const World *world = model->world;
-    double longest = longest_edge(&world->body);
-    for (int k = 0; k < world->obstacle_count; k++)
-        if (world->obstacles[k].feature + world->offset < longest / 4)
-            mesh_warn(
-                &model->report,
-                "obstacle '%s' has details of %.3g m, and the body edges of up to %.3g m: it may pass "
-                "between "
-                "the places where contact is felt (vertices, middles of edges and faces); a finer mesh would "
-                "not let it",
-                world->obstacles[k].name, world->obstacles[k].feature, longest);
-}
-
 bool model_check_world(Model *model, YamlFile *file)
 {
     const World *world = model->world;
-    if (world) warn_of_needles(model);
     for (int k = 0; world && world->self && k < model->case_count; k++) {
         const Case *c = &model->cases[k];
         int pair[1][2], count = world_crossings(world, c->state.x, pair, 1);

@@ -195,7 +195,7 @@ static Model *create(const Scene *scene, YamlFile *file, bool general)
     model_put_world(model, scene);
     ok = ok && model_check_world(model, file);
     if (ok && model->body->ops->advise) model->body->ops->advise(model, scene);
-    if (ok) world_advise(model, scene);
+    if (ok) world_advise(model);
     if (ok) return model;
     model_destroy(model);
     return NULL;

@@ -166,11 +166,36 @@ static void advise_damping(Model *model)
             damping, speed);
 }
 
-void world_advise(Model *model, const Scene *scene)
+static double longest_edge(const WorldBody *body)
 {
-    (void)scene;
+    double longest = 0;
+    for (int e = 0; e < body->edge_count; e++) {
+        Vec3 a = vec3_load(body->rest[body->edges[e][0]]), b = vec3_load(body->rest[body->edges[e][1]]);
+        longest = fmax(longest, vec3_length(vec3_sub(a, b)));
+    }
+    return longest;
+}
+
+/* What is smaller than a quarter of an edge fits between vertices and the middles of edges and faces. */
+static void advise_mesh(Model *model)
+{
+    const World *world = model->world;
+    double longest = longest_edge(&world->body);
+    for (int k = 0; k < world->obstacle_count; k++)
+        if (world->obstacles[k].feature + world->offset < longest / 4)
+            mesh_warn(&model->report,
+                      "obstacle '%s' has details of %.3g m, and the body edges of up to %.3g m: it may pass "
+                      "between the places where contact is felt (vertices, middles of edges and faces); a "
+                      "finer mesh would "
+                      "not let it",
+                      world->obstacles[k].name, world->obstacles[k].feature, longest);
+}
+
+void world_advise(Model *model)
+{
     const World *world = model->world;
     if (!world) return;
+    advise_mesh(model);
     for (int k = 0; k < model->case_count; k++) advise_start(model, &model->cases[k]);
     if (world->self && world->distance < OVERLAP * world->body.thickness)
         mesh_warn(

@@ -6,4 +6,4 @@
 char *world_describe(const Model *model, const Scene *scene);
 
 /* Warnings into the model's report. */
-void world_advise(Model *model, const Scene *scene);
+void world_advise(Model *model);

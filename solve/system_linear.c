@@ -16,6 +16,13 @@ static void spread(const System *sys, const double *free, double *whole)
     for (int i = 0; i < sys->dof_count; i++) whole[i] = sys->unknown[i] >= 0 ? free[sys->unknown[i]] : 0;
 }
 
+/* Where something is lagged: whether the point says where (1), or it is x_prev (0), for then things that move are where they
+ * were there, too; and the place. */
+static int lag_count(const System *sys)
+{
+    return system_lags(sys) ? 1 + sys->dof_count : 0;
+}
+
 void system_note_point(System *sys, const Point *at)
 {
     size_t n = (size_t)sys->dof_count;
@@ -27,8 +34,9 @@ void system_note_point(System *sys, const Point *at)
     if (at->x_prev) memcpy(to + n, at->x_prev, n * sizeof *to);
     if (at->v_prev) memcpy(to + 2 * n, at->v_prev, n * sizeof *to);
     to += 3 * n;
-    if (system_lags(sys) && at->x_prev) memcpy(to, point_lag(at), n * sizeof *to);
-    if (system_lags(sys)) to += n;
+    if (lag_count(sys)) to[0] = at->x_lag != NULL;
+    if (lag_count(sys) && at->x_prev) memcpy(to + 1, point_lag(at), n * sizeof *to);
+    to += lag_count(sys);
     if (at->memory) memcpy(to, at->memory, (size_t)sys->memory_count * sizeof *to);
 }
 
@@ -50,7 +58,7 @@ bool system_factor(System *sys, double shift)
 
 int system_anchor_count(const System *sys)
 {
-    return ANCHOR_X + (system_lags(sys) ? 4 : 3) * sys->dof_count + system_memory_count(sys);
+    return ANCHOR_X + 3 * sys->dof_count + lag_count(sys) + system_memory_count(sys);
 }
 
 const double *system_anchor(const System *sys)
@@ -67,18 +75,17 @@ void system_restore_factor(System *sys, const double *anchor, const double *p)
 {
     size_t n = (size_t)sys->dof_count;
     const double *x = anchor + ANCHOR_X, *lag = x + 3 * n;
-    bool lags = system_lags(sys);
     sys->anchor[ANCHOR_USABLE] = sys->factored = false;
     if (anchor[ANCHOR_USABLE] == 0) return;
     double *gradient = mem_alloc(n, sizeof *gradient);
     Point at = {.x = x,
                 .p = p,
-                .memory = lags ? lag + n : lag,
+                .memory = lag + lag_count(sys),
                 .time = anchor[ANCHOR_TIME],
                 .x_prev = x + n,
                 .v_prev = x + 2 * n,
                 .dt = anchor[ANCHOR_DT],
-                .x_lag = lags ? lag : NULL};
+                .x_lag = lag_count(sys) && lag[0] ? lag + 1 : NULL};
     system_hessian(sys, &at, gradient);
     system_factor(sys, anchor[ANCHOR_SHIFT]);
     mem_free(gradient);

@@ -30,8 +30,8 @@ struct System {
     double *work, *diag; /* [free]                                      */
 };
 
-/* Entries of an anchor before its vectors x, x_prev, v_prev [dof] each, x_lag where something is lagged, and the terms'
- * memory. */
+/* Entries of an anchor before its vectors x, x_prev, v_prev [dof] each, where something is lagged whether x_lag is given,
+ * and x_lag, and the terms' memory. */
 enum { ANCHOR_USABLE, ANCHOR_TIME, ANCHOR_DT, ANCHOR_SHIFT, ANCHOR_X };
 
 /* x of a pack's elements from a whole vector, and the sum of its elements' numbers into one. */

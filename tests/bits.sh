@@ -1,7 +1,7 @@
 #!/bin/sh
 # For who changes the program and not its results: runs small scenes of every job and body with the program of the step
 # before and with that of now, and compares what they leave byte for byte (tests/bits.py). A line for each scene; ends
-# with 1 where anything differs, with 2 where it cannot compare. A minute and a half on two cores, five with --threads 1,2,5.
+# with 1 where anything differs, with 2 where it cannot compare. Two minutes on two cores, seven with --threads 1,2,5.
 #   tests/bits.sh [--threads N,N..] OLD NEW [SCENE..]     SCENE: names below, or parts of them
 # --threads 1,2,5 runs NEW with so many threads too, and compares each with NEW's first, which has one.
 # Needs /usr/bin/python3 with h5py.
@@ -37,6 +37,14 @@ shell_vibration | scenes/strip_vibration.yaml | shell.mesh.n=12 time.steps=40
 shell_trajectory | tests/scene_trajectory.yaml | design.iterations=3
 shell_trajectory_resumed | tests/scene_trajectory.yaml | design.iterations=2 | design.iterations=3
 shell_track | scenes/track_circle.yaml | shell.mesh.cells=[9,3] design.iterations=3
+contact | tests/scene_contact.yaml |
+contact_resumed | tests/scene_contact.yaml | time.steps=45 | time.steps=80
+contact_implicit | tests/scene_contact.yaml | contact.coupling=implicit
+contact_fold | scenes/fold.yaml | shell.mesh.cells=[16,4] time.steps=120
+contact_bud | scenes/bud.yaml | shell.mesh.n=5 time.steps=60
+contact_drape | scenes/drape.yaml | shell.mesh.cells=[12,12] time.steps=60
+contact_reptile | scenes/reptile_bump.yaml | time.steps=60
+contact_octopus | scenes/octopus_pipe1.yaml | design.iterations=1
 rod_equilibrium | scenes/rod_equilibrium.yaml | rod.elements=200
 rod_cantilever | scenes/rod_cantilever.yaml | rod.elements=100
 rod_arch | scenes/rod_arch.yaml | rod.elements=80

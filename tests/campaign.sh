@@ -2,12 +2,14 @@
 # Kills and interrupts a small job at random moments and resumes it: the end must be that of an undisturbed run, bit by
 # bit, seconds aside.
 #   tests/campaign.sh PROGRAM [TRIALS] [KIND]      KIND: gauss_newton, mma, lbfgs (quasi-static), simulate, trajectory,
-#                                              rod_simulate, rod_design, draw
+#                                              rod_simulate, rod_design, draw, contact, contact_implicit
 program=$1 trials=${2:-20} kind=${3:-gauss_newton}
 here=$(cd "$(dirname "$0")" && pwd)
 case $kind in
     draw) scene=$here/scene_draw.yaml set=spline.pen=0.4mm ;;
     rod_design) scene=$here/scene_rod_design.yaml set=design.iterations=60 ;;
+    contact) scene=$here/scene_contact.yaml set=output.every=3 ;;
+    contact_implicit) scene=$here/scene_contact.yaml set=contact.coupling=implicit ;;
     simulate | trajectory | rod_simulate) scene=$here/scene_$kind.yaml set=output.every=3 ;;
     *) scene=$here/scene_small.yaml set=design.optimizer=$kind ;;
 esac
@@ -18,7 +20,7 @@ run() { "$program" run "$scene" --set "$set" --quiet --no-picture -o "$@"; }
 start() { exec "$program" run "$scene" --set "$set" --quiet --no-picture -o "$@"; }
 numbers() { # what must be the same; a kind of job has some of them
     for path in design/magnetization design/young design/flux_density design/gradient/young trajectory/flux_density state/x \
-        state/v cases/up/x rod/x rod/moment spline/nodes spline/strokes history/energy frames/x history/objective history/newton_iterations history/cg_iterations unknowns; do
+        state/v cases/up/x rod/x rod/moment spline/nodes spline/strokes history/energy frames/x history/contact_force history/friction_work history/self_distance history/water_work history/objective history/newton_iterations history/cg_iterations unknowns; do
         "$program" export "$1" -o out.csv --dataset $path 2>/dev/null && cat out.csv
     done
 }

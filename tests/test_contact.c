@@ -236,11 +236,35 @@ static void test_depth(void **state)
     body_clear(&plate.body);
 }
 
+/* On a floor that moves and turns: a system that has the state and the anchor alone goes on bit by bit. */
+static void test_restored(void **state)
+{
+    (void)state;
+    for (int implicit = 0; implicit < 2; implicit++) {
+        Plate plates[2];
+        for (int k = 0; k < 2; k++) {
+            Obstacle floor = floor_at(0);
+            floor.move = of_time("0.1*t", "0", "0"), floor.turn = of_time("2*t", "0-3*t", "9*t");
+            plates[k] = plate_create(0.5, implicit, floor);
+            plates[k].def.newton.energy_tol = 1e-10;
+        }
+        State *whole = &plates[0].body.state, *other = &plates[1].body.state;
+        System *sys = plates[0].body.sys;
+        for (int n = 0; n < 60; n++) {
+            state_copy(other, whole);
+            system_restore_factor(plates[1].body.sys, system_anchor(sys), plates[1].body.p);
+            for (int k = 0; k < 2; k++) plate_march(&plates[k], (double[]){0, 0, -G}, 1);
+            assert_memory_equal(whole->x, other->x, (size_t)whole->dofs * sizeof(double));
+        }
+        for (int k = 0; k < 2; k++) body_clear(&plates[k].body);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_derivatives), cmocka_unit_test(test_creep),
                                        cmocka_unit_test(test_sliding),     cmocka_unit_test(test_threshold),
                                        cmocka_unit_test(test_belt),        cmocka_unit_test(test_thrown),
-                                       cmocka_unit_test(test_depth)};
+                                       cmocka_unit_test(test_depth),       cmocka_unit_test(test_restored)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -9,6 +9,7 @@ SelfPairs *self_pairs_create(const SelfContactDef *def)
     SelfPairs *pairs = mem_alloc(1, sizeof *pairs);
     size_t n = 3 * (size_t)def->vertex_count;
     pairs->n = neighbours_create(def);
+    pairs->memory = pair_memory_create(def->vertex_count);
     pairs->known = mem_alloc(n, sizeof(double));
     pairs->to = mem_alloc(n, sizeof(double));
     pairs->end = mem_alloc(n, sizeof(double));
@@ -20,6 +21,7 @@ void self_pairs_destroy(void *self)
 {
     SelfPairs *pairs = self;
     neighbours_destroy(pairs->n);
+    pair_memory_clear(&pairs->memory);
     pair_list_clear(&pairs->list);
     pair_list_clear(pairs->swept);
     mem_free(pairs->swept);
@@ -82,7 +84,10 @@ bool self_pairs_update(SelfPairs *pairs, const double *x, const double *memory)
     pairs->any_known = true;
     PairList before = pairs->list;
     pairs->list = *pairs->swept;
-    neighbours_find(n, y, n->def.distance + n->def.margin, &pairs->list);
+    if (!pair_memory_find(&pairs->memory, y, &pairs->list)) {
+        neighbours_find(n, y, n->def.distance + n->def.margin, &pairs->list);
+        pair_memory_keep(&pairs->memory, y, &pairs->list);
+    }
     *pairs->swept = before;
     const PairList *now = &pairs->list;
     return now->count != before.count || now->points != before.points ||

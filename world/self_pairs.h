@@ -1,5 +1,6 @@
 /* self_pairs.h - the pairs that are the elements of self contact and of its friction, and where they are remembered from. */
 #pragma once
+#include "world/pair_memory.h"
 #include "world/touch.h"
 
 typedef struct SelfPairs {
@@ -7,6 +8,7 @@ typedef struct SelfPairs {
     PairList list;
     double *known; /* [3*vertex_count] where the list was made */
     bool any_known;
+    PairMemory memory; /* of lists before */
     /* Scratch of a step: the pairs on its ways, where these lead, and where they do beside a motion of the whole. */
     PairList *swept;
     double *to, *end;
