@@ -8,7 +8,8 @@ static const char FRAMES[] = "slender/frames/";
 /* Where a result has numbers per cell and per point, and as what the journal has them. */
 static const struct {
     const char *data, *prefix;
-} kinds[] = {{"CellData", "cell"}, {"PointData", "point"}};
+    bool cells;
+} kinds[] = {{"CellData", "cell", true}, {"PointData", "point", false}};
 
 /* Is this step's array its own, or that of the step before? Fields that never change are stored once. */
 static bool has_own(Result *result, int kind, const char *field, int step, bool *own, Error *err)
@@ -36,6 +37,20 @@ static bool put(Journal *journal, int step, Array *array, const char *name, int 
     return journal_put(journal, "frame", step, &named, 1, err);
 }
 
+/* Leaves out the points that stand still, which come last; clears the array where that fails. */
+static bool drop_still(Result *result, Array *points, Error *err)
+{
+    Array still;
+    if (!result_has(result, "slender/still")) return true;
+    if (!result_read(result, "slender/still", &still, err)) {
+        array_clear(points);
+        return false;
+    }
+    points->dims[0] -= still.dims[0];
+    array_clear(&still);
+    return true;
+}
+
 static bool recall_field(Journal *journal, Result *result, int kind, const char *field, int step, Error *err)
 {
     Array array;
@@ -44,7 +59,8 @@ static bool recall_field(Journal *journal, Result *result, int kind, const char 
     if (!own) return true;
     char *from = mem_format("%s/%s", kinds[kind].data, field),
          *to = mem_format("%s/%s", kinds[kind].prefix, field);
-    bool ok = result_read_step(result, from, step, &array, err);
+    bool ok = result_read_step(result, from, step, &array, err) &&
+              (kinds[kind].cells || drop_still(result, &array, err));
     if (ok) {
         ok = put(journal, step, &array, to, array.rank, err);
         array_clear(&array);
@@ -54,22 +70,11 @@ static bool recall_field(Journal *journal, Result *result, int kind, const char 
     return ok;
 }
 
-/* Positions of a step, without the points that stand still: float64 where the result has them. */
+/* Positions of a step: float64 where the result has them. */
 static bool read_positions(Result *result, int step, Array *x, Error *err)
 {
-    Array still;
-    if (!result_has(result, "slender/frames/x")) {
-        if (!result_read_step(result, "Points", step, x, err)) return false;
-        if (!result_has(result, "slender/still")) return true;
-        bool ok = result_read(result, "slender/still", &still, err);
-        if (ok) {
-            x->dims[0] -= still.dims[0];
-            array_clear(&still);
-        } else {
-            array_clear(x);
-        }
-        return ok;
-    }
+    if (!result_has(result, "slender/frames/x"))
+        return result_read_step(result, "Points", step, x, err) && drop_still(result, x, err);
     return result_read_rows(result, "slender/frames/x", step, 1, x, err);
 }
 

@@ -6,6 +6,7 @@
 #include "job/outputs.h"
 #include "job/recall.h"
 #include "model/stored.h"
+#include "model/world_report.h"
 #include "solve/kernels.h"
 #include <string.h>
 #include <sys/stat.h>
@@ -165,6 +166,16 @@ static void warn_sidecar(const Run *run)
         run->result);
 }
 
+/* What the body is to meet, a line each. */
+static void say_world(const Run *run)
+{
+    char *text = world_describe(run->model, run->scene), *rest = NULL;
+    if (!text) return;
+    for (char *line = strtok_r(text, "\n", &rest); line; line = strtok_r(NULL, "\n", &rest))
+        host_say(run->host, "%s", line);
+    mem_free(text);
+}
+
 static RunStatus run_job(Run *run, bool resume, Error *err)
 {
     RunStatus status = begin(run, resume, err);
@@ -184,6 +195,7 @@ static RunStatus open_and_run(const RecordDef *def, Run *run, Error *err)
         run->journal = journal_open(def->in_memory ? NULL : journal, def->journal, err);
     if (run->journal) {
         warn_sidecar(run);
+        say_world(run);
         run_share_threads(run, 1);
         status = run_job(run, def->journal == JOURNAL_RESUME, err);
         run_release_threads(run);

@@ -3,6 +3,7 @@
 #include "io/table.h"
 #include "model/scene_tables.h"
 #include "model/start.h"
+#include "model/world_report.h"
 #include <math.h>
 #include <string.h>
 
@@ -194,6 +195,7 @@ static Model *create(const Scene *scene, YamlFile *file, bool general)
     model_put_world(model, scene);
     ok = ok && model_check_world(model, file);
     if (ok && model->body->ops->advise) model->body->ops->advise(model, scene);
+    if (ok) world_advise(model);
     if (ok) return model;
     model_destroy(model);
     return NULL;

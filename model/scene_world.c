@@ -167,10 +167,12 @@ bool self_contact_is_asked(const SelfContactScene *self)
                                        .short_form = true, .required = true, .doc = number},                 \
                                       {0}}}
 
-AUTO_TABLE(contact_stiffness, "stiffness of contact", "N/m", "(0, inf)",
-           "How much an obstacle resists to be entered.",
-           "from the body, so that what rests or is pressed sinks in by less than 1 % of the thickness",
-           "per contact point");
+AUTO_TABLE(
+    contact_stiffness, "stiffness of contact", "N/m", "(0, inf)",
+    "How much an obstacle resists to be entered.",
+    "from the body, so that what rests or is pressed sinks in by less than 1 % of the thickness, or of a "
+    "rod's radius",
+    "per contact point");
 AUTO_TABLE(contact_offset, "offset of contact", "m", "[0, inf)",
            "How far from an obstacle the body's middle surface or line stays.",
            "half the thickness of a shell, the radius of a rod", "a distance");

@@ -27,7 +27,8 @@ static double ratio(Worst worst)
 static TermError errors_of(double energy, Worst gradient, Worst hessian)
 {
     bool idle = energy == 0 && gradient.size == 0 && hessian.size == 0;
-    return (TermError){.gradient = idle ? INFINITY : ratio(gradient), .hessian = ratio(hessian)};
+    return (TermError){
+        .idle = idle, .gradient = idle ? INFINITY : ratio(gradient), .hessian = ratio(hessian)};
 }
 
 /* Central difference of fourth order from values at -2h, -h, h, 2h. */

@@ -12,6 +12,7 @@
 #include "solve/params.h"
 
 typedef struct TermError {
+    bool idle;           /* all was 0: its gradient's error is infinite                          */
     double gradient;     /* dE/dx against E                                                      */
     double hessian;      /* d2E/dx2 against dE/dx                                                */
     double forward;      /* param_forward against dE/dx along a random direction dp              */

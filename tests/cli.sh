@@ -45,6 +45,23 @@ for motion in simulate rod_simulate; do # in a step of time: what acts only then
     expect 0 "$program" check "$here/scene_$motion.yaml" --derivatives
     says "derivatives of inertia .* Hessian [1-9].* start of step [1-9]"; says "derivatives of damping .* parameters [1-9]"
 done
+cat > met.yaml <<'END'
+slender: 1
+job: simulate
+shell:
+  mesh: {shape: sheet, size: [40 mm, 20 mm], cells: [12, 6]}
+  thickness: 1 mm
+  young: 0.2 MPa
+  poisson: 0.3
+  density: 1000
+obstacles: [{name: floor, plane: {point: [0, 0, -1]}}, {name: pin, sphere: {center: [1, 1, 1], radius: 1 mm}}]
+contact: {self: true, friction: 0.5}
+time: {step: 2 ms, steps: 1}
+END
+expect 0 "$program" check met.yaml --derivatives # a metre from anything: contact is checked at an obstacle
+says "derivatives of contact .* gradient [1-9].* Hessian [1-9].* parameters [1-9]"; says "derivatives of self_contact .*nothing touches there"
+says "not in it: further Newton iterations"
+expect 0 "$program" run met.yaml --no-picture; says "^2 obstacles: floor (plane, friction 0.5), pin (sphere, friction 0.5)"; says "^contact: "; says "^self contact: "
 mkdir out
 expect 0 "$program" run "$scene" -o out/beam.vtkhdf; says "result: out/beam.vtkhdf"
 expect 0 "$program" run "$scene" --quiet -o beam; [ ! -s out.txt ] || { echo "--quiet is not quiet"; bad=1; }

@@ -1,5 +1,6 @@
 /* Pictures of what bodies meet: where obstacles must be seen, and where the body in or behind them. */
 #include "base/memory.h"
+#include "leaks.h"
 #include "png_fixture.h"
 #include "slender.h"
 #include "view/show.h"
@@ -161,7 +162,9 @@ static void test_rod(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_floor), cmocka_unit_test(test_pipe),
-                                       cmocka_unit_test(test_moving), cmocka_unit_test(test_rod)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test_teardown(test_floor, nothing_leaks),
+                                       cmocka_unit_test_teardown(test_pipe, nothing_leaks),
+                                       cmocka_unit_test_teardown(test_moving, nothing_leaks),
+                                       cmocka_unit_test_teardown(test_rod, nothing_leaks)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -224,6 +224,15 @@ static void test_coupled(void **state)
     solve_coupled(a, 11, 2, many, x);
     assert_int_not_equal(memcmp(plain, many, sizeof plain), 0);
     for (int i = 0; i < N; i++) assert_int_equal(sparse_where(a)[slots[i]], sparse_slot(a, i, i));
+    const int group[5] = {4, 3, -1, 4, 3};
+    int found[15];
+    sparse_slots(a, 5, group, found);
+    for (int i = 0; i < 15; i++) {
+        const int row[] = {0, 1, 1, 2, 2, 2, 3, 3, 3, 3, 4, 4, 4, 4, 4},
+                  column[] = {0, 0, 1, 0, 1, 2, 0, 1, 2, 3, 0, 1, 2, 3, 4};
+        int p = group[row[i]], q = group[column[i]];
+        assert_int_equal(found[i], p < 0 || q < 0 ? -1 : sparse_slot(a, p, q));
+    }
     solve_coupled(a, 40, 3, again, x);
     solve_coupled(fresh, 40, 3, kept, y);
     assert_memory_equal(again, kept, sizeof kept);

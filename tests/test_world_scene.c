@@ -120,6 +120,31 @@ static void test_contact(void **state)
     }
 }
 
+/* What a rod is pressed with, what its weight, its load and its fall ask for: the largest stands. */
+static void test_rod_stiffness(void **state)
+{
+    (void)state;
+    const struct {
+        const char *young, *loads, *step;
+        double exact;
+    } cases[] = {
+        {"1 GPa", "", "1 s", 1e9 * M_PI / 40 * 1e-6 / (0.005 * 0.01)},
+        {"1 Pa", "", "1 s", 50 * 1000 * M_PI * 1e-6 * 0.01 * 10 / (0.005 * 1e-3)},
+        {"1 Pa", "  loads: [{point: 0.1, force: [3, 0, -4]}]\n", "1 s", 5 / (0.005 * 1e-3)},
+        {"1 Pa", "", "1 ms", 1000 * M_PI * 1e-6 * 0.01 * sqrt(2 * 10 * 0.1) / (1e-3 * 0.005 * 1e-3)},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        Built b = scene_build(mem_format("slender: 1\njob: simulate\nrod:\n  natural_strain: [0, 0, 0]\n"
+                                         "  length: 0.1\n  elements: 10\n  radius: 1 mm\n  young: %s\n"
+                                         "  poisson: 0.3\n  density: 1000\n  gravity: [0, 0, -10]\n%s"
+                                         "time: {step: %s, steps: 1}\nobstacles: [{plane: {}}]\n",
+                                         cases[k].young, cases[k].loads, cases[k].step));
+        const double *p = b.model->cases[0].stages[0].p;
+        assert_near(p[b.model->world->stiffness] / cases[k].exact, 1, 1e-12);
+        clear(&b);
+    }
+}
+
 static void test_water(void **state)
 {
     (void)state;
@@ -136,6 +161,6 @@ static void test_water(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_obstacles), cmocka_unit_test(test_contact),
-                                       cmocka_unit_test(test_water)};
+                                       cmocka_unit_test(test_rod_stiffness), cmocka_unit_test(test_water)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

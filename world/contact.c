@@ -128,7 +128,7 @@ Contact *contact_create(const ContactDef *def)
 
 /* Its elements last; `update` is for obstacles that move only. */
 #define CONTACT_OPS                                                                                          \
-    .name = "contact", .count = contact_count, .size = contact_size, .dofs = contact_dofs,                   \
+    .name = "contact", .idles = true, .count = contact_count, .size = contact_size, .dofs = contact_dofs,    \
     .reach = contact_reach, .project = contact_project, .eval = contact_eval, .param = contact_param,        \
     .param_forward = contact_param_forward, .destroy = contact_destroy
 

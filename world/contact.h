@@ -11,8 +11,9 @@
  * it [Li et al. 2020, IPC]. N, the normal and the place on the obstacle are lagged (Point.x_lag): each step is a minimisation.
  * What sticks creeps, by less than the slip speed.
  *
- * Steps, and trials that did not come along them, end where a sample is half a thickness deep: what flies at a thin obstacle
- * does not pass through it in one step, as far as its samples meet it. */
+ * Steps, and trials that did not come along them, end where a sample is half a thickness (of a rod half a radius) deep: what flies at a thin obstacle
+ * does not pass through it in one step, as far as its samples meet it. A trial that would have to be pulled back so is not
+ * finite where that would move held vertices, or positions that follow from other dofs. */
 #pragma once
 #include "world/obstacle.h"
 #include "world/samples.h"
@@ -23,6 +24,7 @@ typedef struct ContactDef {
     Samples samples;   /* copied                                              */
     int vertex_count;  /* of the body                                         */
     const bool *fixed; /* [3*vertex_count] held; borrowed; NULL: nothing      */
+    bool derived;      /* positions follow from other dofs, a rod's from its turns */
     double offset;     /* m, from the sample to the body's outside: half a thickness */
     double smoothing;  /* m, e                                                */
     double slip_speed; /* m/s                                                 */

@@ -55,7 +55,8 @@ void contact_project(const void *self, const double *from, double *x)
     const Contact *c = self;
     double part = part_of_way(c, from, x);
     for (int i = c->def.samples.first; part < 1 && i < c->dofs; i++) {
-        bool held = c->def.fixed && c->def.fixed[i - c->def.samples.first] && x[i] != from[i];
+        bool held =
+            c->def.derived || (c->def.fixed && c->def.fixed[i - c->def.samples.first] && x[i] != from[i]);
         x[i] = held ? NAN : from[i] + part * (x[i] - from[i]);
     }
 }

@@ -301,7 +301,7 @@ static void friction_param_forward(const void *self, int pack, const Point *at, 
 }
 
 #define FRICTION_OPS                                                                                         \
-    .name = "friction", .count = contact_count, .size = contact_size, .dofs = contact_dofs,                  \
+    .name = "friction", .idles = true, .count = contact_count, .size = contact_size, .dofs = contact_dofs,   \
     .eval = friction_eval, .param = friction_param, .param_forward = friction_param_forward,                 \
     .prev = friction_prev, .prev_forward = friction_prev_forward, .lag = friction_lag,                       \
     .lag_forward = friction_lag_forward, .destroy = contact_destroy

@@ -1,5 +1,4 @@
 #include "world/self_contact.h"
-#include "base/memory.h"
 #include "solve/element.h"
 #include "world/self_pairs.h"
 #include <math.h>
@@ -106,30 +105,30 @@ static void contact_param_forward(const void *self, int pack, const Point *at, c
 static double contact_reach(const void *self, const Point *at, const double *d)
 {
     const SelfPairs *pairs = self;
-    int first = pairs->n->def.first, count = 3 * pairs->n->def.vertex_count;
-    double *to = mem_alloc((size_t)count, sizeof *to);
-    for (int i = 0; i < count; i++) to[i] = at->x[first + i] + d[first + i];
-    double reach = self_pairs_reach(pairs, at->x, to - first, KEEP_STEP);
-    mem_free(to);
-    return reach;
+    const SelfContactDef *def = &pairs->n->def;
+    const double *from = at->x + def->first, *way = d + def->first;
+    for (int i = 0; i < 3 * def->vertex_count; i++) pairs->to[i] = from[i] + way[i];
+    return self_pairs_reach(pairs, from, pairs->to, KEEP_STEP);
 }
 
-/* Held vertices are where they are to be: a trial that they would have to be pulled back in is none. */
+/* Held vertices are where they are to be, and what follows from other dofs would be alone in going back: a trial in which
+ * these would have to be pulled back is none. */
 static void contact_project(const void *self, const double *from, double *x)
 {
     const SelfPairs *pairs = self;
     const SelfContactDef *def = &pairs->n->def;
+    from += def->first, x += def->first;
     if (self_pairs_reach(pairs, from, x, KEEP_TRIAL) >= 1) return;
     double reach = self_pairs_reach(pairs, from, x, KEEP_STEP);
     for (int i = 0; i < 3 * def->vertex_count; i++) {
-        int k = def->first + i;
-        bool held = def->fixed && def->fixed[i] && x[k] != from[k];
-        x[k] = held ? NAN : from[k] + reach * (x[k] - from[k]);
+        bool held = def->derived || (def->fixed && def->fixed[i] && x[i] != from[i]);
+        x[i] = held ? NAN : from[i] + reach * (x[i] - from[i]);
     }
 }
 
 static const TermOps contact_ops = {
     .name = "self_contact",
+    .idles = true,
     .count = self_pairs_count,
     .size = self_pairs_size,
     .dofs = self_pairs_dofs,

@@ -19,7 +19,8 @@
  *
  * Nothing passes through: a Newton step ends where a pair has come to a tenth of its distance (TermOps.reach), and a trial
  * that did not come along such a step (inertial guesses, sheets that turn, vertices that are moved) is pulled back towards
- * where it came from, or, where that would move held vertices, is not finite and so refused (TermOps.project). */
+ * where it came from, or, where that would move held vertices or positions that follow from other dofs, is not finite and
+ * so refused (TermOps.project). */
 #pragma once
 #include "solve/term.h"
 
@@ -30,6 +31,7 @@ typedef struct SelfContactDef {
     const double (*rest)[3]; /* [vertex] m; all borrowed                                      */
     const int *part;         /* [vertex] piece that it belongs to; NULL: one                  */
     const bool *fixed;       /* [3*vertex_count] held; NULL: nothing                          */
+    bool derived;            /* positions follow from other dofs, a rod's from its turns      */
     double distance;         /* D, m: a shell's thickness, twice a rod's radius               */
     double margin;           /* in parts of D; 0: 1/4                                         */
     int stiffness, friction; /* first entries in p: k, J; the coefficient of friction         */

@@ -230,6 +230,7 @@ static void friction_lag_forward(const void *self, int pack, const Point *at, co
 
 static const TermOps friction_ops = {
     .name = "self_friction",
+    .idles = true,
     .count = self_pairs_count,
     .size = self_pairs_size,
     .dofs = self_pairs_dofs,

@@ -9,8 +9,11 @@ SelfPairs *self_pairs_create(const SelfContactDef *def)
     SelfPairs *pairs = mem_alloc(1, sizeof *pairs);
     size_t n = 3 * (size_t)def->vertex_count;
     pairs->n = neighbours_create(def);
+    pairs->memory = pair_memory_create(def->vertex_count);
     pairs->known = mem_alloc(n, sizeof(double));
+    pairs->to = mem_alloc(n, sizeof(double));
     pairs->end = mem_alloc(n, sizeof(double));
+    pairs->swept = mem_alloc(1, sizeof *pairs->swept);
     return pairs;
 }
 
@@ -18,9 +21,12 @@ void self_pairs_destroy(void *self)
 {
     SelfPairs *pairs = self;
     neighbours_destroy(pairs->n);
+    pair_memory_clear(&pairs->memory);
     pair_list_clear(&pairs->list);
-    pair_list_clear(&pairs->swept);
+    pair_list_clear(pairs->swept);
+    mem_free(pairs->swept);
     mem_free(pairs->known);
+    mem_free(pairs->to);
     mem_free(pairs->end);
     mem_free(pairs);
 }
@@ -77,9 +83,12 @@ bool self_pairs_update(SelfPairs *pairs, const double *x, const double *memory)
     memcpy(pairs->known, y, size);
     pairs->any_known = true;
     PairList before = pairs->list;
-    pairs->list = pairs->swept;
-    neighbours_find(n, y, n->def.distance + n->def.margin, &pairs->list);
-    pairs->swept = before;
+    pairs->list = *pairs->swept;
+    if (!pair_memory_find(&pairs->memory, y, &pairs->list)) {
+        neighbours_find(n, y, n->def.distance + n->def.margin, &pairs->list);
+        pair_memory_keep(&pairs->memory, y, &pairs->list);
+    }
+    *pairs->swept = before;
     const PairList *now = &pairs->list;
     return now->count != before.count || now->points != before.points ||
            (now->count && memcmp(now->pairs, before.pairs, (size_t)now->count * sizeof *now->pairs));
@@ -146,13 +155,11 @@ static double find_end(const SelfPairs *pairs, const double *from, const double 
 double self_pairs_reach(const SelfPairs *pairs, const double *from, const double *to, double keep)
 {
     const Neighbours *n = pairs->n;
-    from += n->def.first, to += n->def.first;
     double way = find_end(pairs, from, to);
     if (!(way > 0 && isfinite(way))) return 1;
     bool known = pairs->any_known && 2 * way / (1 - keep) + 2 * neighbours_moved(n, from, pairs->known) <
                                          n->def.distance + n->def.margin;
     if (known) return reach_of_list(pairs, &pairs->list, from, keep);
-    PairList *swept = (PairList *)&pairs->swept;
-    neighbours_sweep(pairs->n, from, pairs->end, keep / (1 - keep), swept);
-    return reach_of_list(pairs, swept, from, keep);
+    neighbours_sweep(pairs->n, from, pairs->end, keep / (1 - keep), pairs->swept);
+    return reach_of_list(pairs, pairs->swept, from, keep);
 }

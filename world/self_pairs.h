@@ -1,5 +1,6 @@
 /* self_pairs.h - the pairs that are the elements of self contact and of its friction, and where they are remembered from. */
 #pragma once
+#include "world/pair_memory.h"
 #include "world/touch.h"
 
 typedef struct SelfPairs {
@@ -7,9 +8,10 @@ typedef struct SelfPairs {
     PairList list;
     double *known; /* [3*vertex_count] where the list was made */
     bool any_known;
-    /* Scratch of the ways of a step; where they end, beside a motion of the whole. */
-    PairList swept;
-    double *end;
+    PairMemory memory; /* of lists before */
+    /* Scratch of a step: the pairs on its ways, where these lead, and where they do beside a motion of the whole. */
+    PairList *swept;
+    double *to, *end;
 } SelfPairs;
 
 SelfPairs *self_pairs_create(const SelfContactDef *def);
@@ -29,5 +31,5 @@ bool self_pairs_update(SelfPairs *pairs, const double *x, const double *memory);
 int self_pairs_of_lane(const SelfPairs *pairs, int pack, int lane);
 void self_pairs_gather(const SelfPairs *pairs, int e, const double *x, double own[DISTANCE_DOFS]);
 
-/* The part of the straight ways from `from` to `to` on which every pair keeps `keep` of its distance; whole vectors. */
+/* The part of the straight ways from `from` to `to` on which every pair keeps `keep` of its distance; [vertex][3]. */
 double self_pairs_reach(const SelfPairs *pairs, const double *from, const double *to, double keep);

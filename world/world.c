@@ -2,9 +2,22 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "world/crossings.h"
+#include "world/poses.h"
+#include <math.h>
 
-static const double SMOOTHING =
-    0.01; /* of the thickness, the depth at which the penalty is linear: half of it is sunk */
+/* Parts of a shell's thickness or a rod's radius: the depth at which the penalty is linear, half of which is sunk. */
+static const double SMOOTHING = 0.01;
+
+double world_body_measure(const WorldBody *body)
+{
+    return body->face_count ? body->thickness : body->thickness / 2;
+}
+
+/* From other dofs: those of rods do. */
+static bool positions_follow(const WorldBody *body)
+{
+    return body->face_count == 0;
+}
 
 /* The vertices of each edge or face, [count][corners], of which one edge at least is longer than that; all where it is 0. */
 static Samples long_ones(const WorldBody *body, const int *corners_of, int count, int corners, double longer)
@@ -40,12 +53,14 @@ static void add_contact(World *world, Samples samples)
         mem_free(samples.vertices);
         return;
     }
-    world->contacts[world->contact_kinds++] = (ContactDef){.obstacles = world->obstacles,
-                                                           .obstacle_count = world->obstacle_count,
-                                                           .samples = samples,
-                                                           .vertex_count = world->body.vertex_count,
-                                                           .fixed = world->body.fixed,
-                                                           .smoothing = SMOOTHING * world->body.thickness};
+    world->contacts[world->contact_kinds++] =
+        (ContactDef){.obstacles = world->obstacles,
+                     .obstacle_count = world->obstacle_count,
+                     .samples = samples,
+                     .vertex_count = world->body.vertex_count,
+                     .fixed = world->body.fixed,
+                     .derived = positions_follow(&world->body),
+                     .smoothing = SMOOTHING * world_body_measure(&world->body)};
 }
 
 World *world_create(const WorldBody *body, Obstacle *obstacles, int obstacle_count)
@@ -112,6 +127,7 @@ static SelfContactDef self_of(const World *world)
                             .rest = body->rest,
                             .part = body->part,
                             .fixed = body->fixed,
+                            .derived = positions_follow(body),
                             .distance = world->distance,
                             .stiffness = world->self_stiffness,
                             .friction = world->self_friction,
@@ -150,6 +166,24 @@ void world_add_terms(const World *world, System *sys, bool motion)
         if (motion && world->rubs) system_add(sys, self_friction_term(&def));
     }
     if (motion && world->wet) system_add(sys, water_of(world));
+}
+
+void world_lean(const World *world, double time, double depth, double *x)
+{
+    Poses poses = poses_create(world->obstacles, world->obstacle_count);
+    double *place = x + world->body.first, way = INFINITY, normal[3] = {0};
+    poses_update(&poses, &(Point){.time = time});
+    for (int k = 0; k < world->obstacle_count; k++)
+        for (int v = 0; v < world->body.vertex_count; v++) {
+            Gap gap;
+            obstacle_gap(&world->obstacles[k], &poses.end[k], place + 3 * v, &gap);
+            if (!(gap.value - world->offset + depth < way)) continue;
+            way = gap.value - world->offset + depth;
+            vec3_store(normal, vec3_unit(vec3_load(gap.gradient)));
+        }
+    poses_destroy(&poses);
+    for (int i = 0; i < 3 * world->body.vertex_count && way > 0 && isfinite(way); i++)
+        place[i] -= way * normal[i % 3];
 }
 
 /* What the body does against a term in a step of time, J: the forces of its end times how far it went. */

@@ -18,6 +18,9 @@ typedef struct WorldBody {
     double length;                      /* m, of a rod                                       */
 } WorldBody;
 
+/* Of which what touches sinks in by less than 1 %: a shell's thickness, a rod's radius, m. */
+double world_body_measure(const WorldBody *body);
+
 enum { SAMPLE_KINDS = 3 }; /* vertices, middles of edges, of faces */
 
 typedef struct World {
@@ -63,6 +66,10 @@ void world_measure(const World *world, const Point *at, WorldSums *sums);
 
 /* Where the body passes through itself at x, whole vector: how often, and the first of it (self_contact_crossings). */
 int world_crossings(const World *world, const double *x, int (*pairs)[2], int max);
+
+/* Moves the body at x, whole vector, as it is and by the shortest way, until a vertex is so deep in what an obstacle keeps
+ * free of it (its offset); not if one is already. */
+void world_lean(const World *world, double time, double depth, double *x);
 
 /* Adds its terms to a system that is not prepared yet: of statics, or of steps of time. The world outlives it. */
 void world_add_terms(const World *world, System *sys, bool motion);

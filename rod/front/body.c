@@ -233,7 +233,7 @@ static void set_model(Model *model)
     model->moves = rm->held && model->job == &job_equilibrium && !model->general;
 }
 
-/* Cases and states. With a field that varies in space no rod is only turns. */
+/* Cases and states. With a field that varies in space, or where it meets something, no rod is only turns. */
 static bool fill_cases(Model *model, const Scene *scene, const Build *b, bool readable)
 {
     RodModel *rm = model->self;
@@ -246,13 +246,24 @@ static bool fill_cases(Model *model, const Scene *scene, const Build *b, bool re
     if (ok && rm->curves) take_curve(rm, rod_scene(scene), p, curve);
     ok = ok && model_cases(model, b, scene, p);
     bool hanging = !model->general && model->job == &job_equilibrium && rod->start == ROD_CLAMPED &&
-                   rod->end == ROD_FREE && rod->fields.count == 0;
+                   rod->end == ROD_FREE && rod->fields.count == 0 && !rod->world;
     if (ok) make_states(model, rod_scene(scene), hanging, p, curve);
     if (ok && rm->held && !model->moves && !scene->start) ok = settle(model, b, p);
     if (ok) make_systems(model, hanging, motion);
     mem_free(p);
     mem_free(curve);
     return ok;
+}
+
+static bool check_slender(const Rod *rod, const Build *b)
+{
+    double length = rod_length(rod), radius = rod->unit.reach;
+    return length > ROD_WATER_SLENDER * radius ||
+           yaml_refuse(
+               b->file, "water",
+               "its drag is that of a slender rod: longer than %d radii, but this one is %g m long with a "
+               "radius of %g m",
+               ROD_WATER_SLENDER, length, radius);
 }
 
 /* Takes the fields. */
@@ -280,6 +291,7 @@ static bool fill(Model *model, const Scene *scene, const Build *b)
     model->point_count = rod_node_count(rm->rod);
     WorldBody shown = rod_world_body(rm->rod);
     readable = model_read_world(model, &sized, scene, &shown, &rm->rod->world) && readable;
+    if (scene->water && !check_slender(rm->rod, b)) return false;
     if (!read_supports(rm, from, b) || !rod_model_check_points(rm, b, rod_length(rm->rod))) return false;
     set_model(model);
     model_add_blocks(model, scene);

@@ -1,0 +1,207 @@
+#include "model/world_report.h"
+#include "base/memory.h"
+#include "base/vec3.h"
+#include "world/poses.h"
+#include <math.h>
+
+static const double INSIDE =
+    0.02; /* of the thickness, beyond which a start within an obstacle is none that rests on it */
+static const double OVERLAP =
+    0.9;                        /* of the thickness: parts that meet only there reach into each other      */
+static const double SLOW = 0.1; /* of the speed of a free fall by the body's size                         */
+
+/* ---- What there is ---- */
+
+static const double *first_params(const Model *model)
+{
+    return model->cases[0].stages[0].p;
+}
+
+/* Takes the line. */
+static char *add_line(char *text, char *line)
+{
+    text = mem_join(text ? text : mem_text(""), line, "\n");
+    mem_free(line);
+    return text;
+}
+
+static char *obstacle_text(const Model *model, int k)
+{
+    const World *world = model->world;
+    const Obstacle *obstacle = &world->obstacles[k];
+    double friction = first_params(model)[world->friction + k];
+    char *text = mem_format("%s (%s%s%s", obstacle->name, obstacle->ops->kind,
+                            obstacle->move ? ", moves" : "", obstacle->turn ? ", turns" : "");
+    if (!model->job->motion || friction == 0) return mem_join(text, ")", "");
+    char *rubs = mem_format(", friction %.3g)", friction);
+    text = mem_join(text, rubs, "");
+    mem_free(rubs);
+    return text;
+}
+
+static char *obstacles_line(const Model *model)
+{
+    int count = model->world->obstacle_count;
+    char *line = mem_format("%d obstacle%s:", count, count == 1 ? "" : "s");
+    for (int k = 0; k < count; k++) {
+        char *one = obstacle_text(model, k);
+        line = mem_join(line, k ? ", " : " ", one);
+        mem_free(one);
+    }
+    return line;
+}
+
+/* Of the body's points, and of the middles of what lies between them. */
+static char *samples_text(const World *world)
+{
+    bool rod = world->body.face_count == 0;
+    int count[SAMPLE_KINDS + 1] = {0};
+    double detail = INFINITY;
+    for (int k = 0; k < world->contact_kinds; k++)
+        count[world->contacts[k].samples.corners] = world->contacts[k].samples.count;
+    for (int k = 0; k < world->obstacle_count; k++) detail = fmin(detail, world->obstacles[k].feature);
+    char *text = mem_format("%d %s", count[1], rod ? "nodes" : "vertices");
+    if (count[2] == 0) return text;
+    char *faces = rod ? mem_text("") : mem_format(" and %d faces", count[3]),
+         *more = mem_format(", and middles of %d %s%s longer than an obstacle's detail of %.3g m", count[2],
+                            rod ? "elements" : "edges", faces, detail);
+    mem_free(faces);
+    text = mem_join(text, more, "");
+    mem_free(more);
+    return text;
+}
+
+static char *contact_line(const Model *model, const Scene *scene)
+{
+    const World *world = model->world;
+    char *samples = samples_text(world),
+         *line = mem_format("contact: %s; the body stays %.3g m away, with %.3g N/m at each%s", samples,
+                            world->offset, first_params(model)[world->stiffness],
+                            scene->contact.stiffness.mode == 0 ? ", as follows from it" : "");
+    mem_free(samples);
+    return line;
+}
+
+static char *water_line(const Model *model)
+{
+    const World *world = model->world;
+    const double *p = first_params(model), *v = p + world->water.velocity;
+    bool flows = world->flow || v[0] != 0 || v[1] != 0 || v[2] != 0;
+    return mem_format("water: %.4g kg/m^3, %.3g Pa s%s%s", p[world->water.density], p[world->water.viscosity],
+                      flows ? ", it flows" : "", world->outer ? ", on the outer sides of faces" : "");
+}
+
+char *world_describe(const Model *model, const Scene *scene)
+{
+    const World *world = model->world;
+    char *text = NULL;
+    if (!world) return NULL;
+    if (world->obstacle_count) {
+        text = add_line(text, obstacles_line(model));
+        text = add_line(text, contact_line(model, scene));
+    }
+    if (world->self) {
+        const double *p = first_params(model);
+        text = add_line(text, mem_format("self contact: parts nearer than %.3g m, with %.3g J; friction %.3g",
+                                         world->distance, p[world->self_stiffness], p[world->self_friction]));
+    }
+    if (world->wet) text = add_line(text, water_line(model));
+    return text;
+}
+
+/* ---- What is doubtful ---- */
+
+/* How deep is it where it is deepest, beyond the obstacle's surface, m? */
+static double depth_in(const World *world, int obstacle, const ObstaclePose *pose, const double *x,
+                       int *vertex)
+{
+    double deepest = -INFINITY;
+    for (int v = 0; v < world->body.vertex_count; v++) {
+        Gap gap;
+        obstacle_gap(&world->obstacles[obstacle], pose, x + world->body.first + 3 * v, &gap);
+        if (-gap.value > deepest) deepest = -gap.value, *vertex = v;
+    }
+    return deepest;
+}
+
+/* As deep as the offset it is with its outside only. */
+static void advise_start(Model *model, const Case *c)
+{
+    const World *world = model->world;
+    Poses poses = poses_create(world->obstacles, world->obstacle_count);
+    poses_update(&poses, &(Point){.time = c->state.time});
+    for (int k = 0; k < world->obstacle_count; k++) {
+        int vertex = 0;
+        double deep = depth_in(world, k, &poses.end[k], c->state.x, &vertex);
+        if (deep > INSIDE * world->body.thickness)
+            mesh_warn(&model->report,
+                      "where %s starts, the body is inside the obstacle '%s': %s %d by %.3g m. It is driven "
+                      "out at once",
+                      c->name, world->obstacles[k].name, world->body.face_count ? "vertex" : "node", vertex,
+                      deep);
+    }
+    poses_destroy(&poses);
+}
+
+/* Each point has its own damping: what falls comes to the speed at which it bears the weight. */
+static void advise_damping(Model *model)
+{
+    const ParamBlock *block = params_find(model->params, "damping");
+    const double *p = first_params(model);
+    if (!block || model->gravity < 0 || !model->job->motion || !model->body->ops->masses) return;
+    double *mass = mem_alloc((size_t)model->point_count, sizeof *mass), sum = 0, size = 0,
+           g = vec3_length(vec3_load(p + model->gravity)), damping = p[block->offset];
+    const WorldBody *body = &model->world->body;
+    model->body->ops->masses(model, mass);
+    for (int v = 0; v < model->point_count; v++) {
+        sum += mass[v];
+        size = fmax(size, vec3_length(vec3_sub(vec3_load(body->rest[v]), vec3_load(body->rest[0]))));
+    }
+    mem_free(mass);
+    double speed = sum * g / (damping * model->point_count), fall = sqrt(2 * g * size);
+    if (damping > 0 && g > 0 && speed < SLOW * fall)
+        mesh_warn(
+            &model->report,
+            "damping outweighs all else: with %.3g N s/m at each point the body falls at %.2g m/s at most",
+            damping, speed);
+}
+
+static double longest_edge(const WorldBody *body)
+{
+    double longest = 0;
+    for (int e = 0; e < body->edge_count; e++) {
+        Vec3 a = vec3_load(body->rest[body->edges[e][0]]), b = vec3_load(body->rest[body->edges[e][1]]);
+        longest = fmax(longest, vec3_length(vec3_sub(a, b)));
+    }
+    return longest;
+}
+
+/* What is smaller than a quarter of an edge fits between vertices and the middles of edges and faces. */
+static void advise_mesh(Model *model)
+{
+    const World *world = model->world;
+    double longest = longest_edge(&world->body);
+    for (int k = 0; k < world->obstacle_count; k++)
+        if (world->obstacles[k].feature + world->offset < longest / 4)
+            mesh_warn(&model->report,
+                      "obstacle '%s' has details of %.3g m, and the body edges of up to %.3g m: it may pass "
+                      "between the places where contact is felt (vertices, middles of edges and faces); a "
+                      "finer mesh would "
+                      "not let it",
+                      world->obstacles[k].name, world->obstacles[k].feature, longest);
+}
+
+void world_advise(Model *model)
+{
+    const World *world = model->world;
+    if (!world) return;
+    advise_mesh(model);
+    for (int k = 0; k < model->case_count; k++) advise_start(model, &model->cases[k]);
+    if (world->self && world->distance < OVERLAP * world->body.thickness)
+        mesh_warn(
+            &model->report,
+            "self contact begins where middles are %.3g m apart, but the body is %.3g m thick: its parts "
+            "reach into each other",
+            world->distance, world->body.thickness);
+    if (world->obstacle_count) advise_damping(model);
+}
