@@ -1,5 +1,6 @@
 #include "job/contacts.h"
 #include "base/memory.h"
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -52,6 +53,8 @@ void contacts_add(Contacts *c, const State *state, double dt, const double *p)
     if (c->world->implicit) at.x_lag = state->x;
     reset(c, c->sums.contact.friction, c->sums.water);
     world_measure(c->world, &at, &c->sums);
+    c->deepest = fmax(c->deepest, c->sums.contact.depth);
+    c->longest = fmax(c->longest, world_longest_edge(c->world, state->x + first));
     contacts_start(c, state->v);
 }
 
@@ -74,6 +77,26 @@ int contacts_history(const Contacts *c, Array arrays[CONTACTS_ROWS])
     }
     if (c->world->wet) arrays[count++] = array_float("water_work", "J", &sums->water, 0, 0, 0);
     return count;
+}
+
+static const double DEEP = 0.05; /* of the thickness: more is no contact of thin things */
+
+void contacts_doubt(const Contacts *c, const Host *host)
+{
+    if (!c->world || c->world->obstacle_count == 0) return;
+    double thickness = c->world->body.thickness;
+    if (c->deepest > DEEP * thickness)
+        host_say(host,
+                 "up to %.2g m deep in an obstacle, %.2g of the thickness: what presses there is more than "
+                 "contact.stiffness holds, as between obstacles nearer to each other than the body is thick",
+                 c->deepest, c->deepest / thickness);
+    for (int k = 0; k < c->world->obstacle_count; k++)
+        if (world_slips_between(c->world, k, c->longest))
+            host_say(host,
+                     "edges were up to %.2g m long: obstacle '%s', with details of %.2g m, may have passed "
+                     "between "
+                     "the places where contact is felt (vertices, middles of edges and faces)",
+                     c->longest, c->world->obstacles[k].name, c->world->obstacles[k].feature);
 }
 
 const char *contacts_text(const Contacts *c, char text[64])

@@ -7,8 +7,8 @@ typedef struct Contacts {
     const World *world; /* NULL: it meets nothing, and all below does nothing */
     int dofs, points;
     double *before, *v; /* [dofs] where a step began, and how fast               */
-    WorldSums
-        sums; /* of the step: forces and counts of its end, works summed over its parts; owns its vectors */
+    WorldSums sums;     /* of the step: forces and counts of its end, works of its parts; owns its vectors */
+    double deepest, longest; /* m, of all steps: depth in an obstacle, edge */
 } Contacts;
 
 Contacts contacts_create(const Model *model);
@@ -25,6 +25,10 @@ enum { CONTACTS_ROWS = 8 };
 
 /* The step as arrays for history/, borrowed from contacts; their number. */
 int contacts_history(const Contacts *contacts, Array arrays[CONTACTS_ROWS]);
+
+/* Says what the steps so far cannot be trusted in: what was pressed too deep, or stretched so far that an obstacle fits
+ * between the places where contact is felt. */
+void contacts_doubt(const Contacts *contacts, const Host *host);
 
 /* ", 12 contacts": for progress; static. */
 const char *contacts_text(const Contacts *contacts, char text[64]);

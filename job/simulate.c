@@ -204,6 +204,7 @@ static RunStatus run_simulate(Run *run, Error *err)
     const char *said = status == RUN_INTERRUPTED ? "interrupted" : newton_status_name(s.status);
     bool ended = status != RUN_CANNOT_WRITE && status != RUN_REFUSED;
     if (ended && !put_end(&s, said)) status = RUN_CANNOT_WRITE;
+    if (ended) contacts_doubt(&s.contacts, run->host);
     mem_free(s.anchor);
     contacts_destroy(&s.contacts);
     return status;

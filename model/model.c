@@ -192,7 +192,7 @@ static Model *create(const Scene *scene, YamlFile *file, bool general)
               (!job->design || model_design(model, scene, file));
     start_close(model->start);
     model->start = NULL;
-    model_put_world(model, scene);
+    if (ok) model_put_world(model, scene);
     ok = ok && model_check_world(model, file);
     if (ok && model->body->ops->advise) model->body->ops->advise(model, scene);
     if (ok) world_advise(model);

@@ -87,8 +87,12 @@ static char *water_line(const Model *model)
     const World *world = model->world;
     const double *p = first_params(model), *v = p + world->water.velocity;
     bool flows = world->flow || v[0] != 0 || v[1] != 0 || v[2] != 0;
-    return mem_format("water: %.4g kg/m^3, %.3g Pa s%s%s", p[world->water.density], p[world->water.viscosity],
-                      flows ? ", it flows" : "", world->outer ? ", on the outer sides of faces" : "");
+    char *viscosity =
+        world->body.face_count ? mem_text("") : mem_format(", %.3g Pa s", p[world->water.viscosity]);
+    char *line = mem_format("water: %.4g kg/m^3%s%s%s", p[world->water.density], viscosity,
+                            flows ? ", it flows" : "", world->outer ? ", on the outer sides of faces" : "");
+    mem_free(viscosity);
+    return line;
 }
 
 char *world_describe(const Model *model, const Scene *scene)
@@ -111,7 +115,7 @@ char *world_describe(const Model *model, const Scene *scene)
 
 /* ---- What is doubtful ---- */
 
-/* How deep is it where it is deepest, beyond the obstacle's surface, m? */
+/* How deep is it where it is deepest, with its outside, m? */
 static double depth_in(const World *world, int obstacle, const ObstaclePose *pose, const double *x,
                        int *vertex)
 {
@@ -119,12 +123,12 @@ static double depth_in(const World *world, int obstacle, const ObstaclePose *pos
     for (int v = 0; v < world->body.vertex_count; v++) {
         Gap gap;
         obstacle_gap(&world->obstacles[obstacle], pose, x + world->body.first + 3 * v, &gap);
-        if (-gap.value > deepest) deepest = -gap.value, *vertex = v;
+        double deep = world->offset - gap.value;
+        if (deep > deepest) deepest = deep, *vertex = v;
     }
     return deepest;
 }
 
-/* As deep as the offset it is with its outside only. */
 static void advise_start(Model *model, const Case *c)
 {
     const World *world = model->world;
@@ -135,10 +139,11 @@ static void advise_start(Model *model, const Case *c)
         double deep = depth_in(world, k, &poses.end[k], c->state.x, &vertex);
         if (deep > INSIDE * world->body.thickness)
             mesh_warn(&model->report,
-                      "where %s starts, the body is inside the obstacle '%s': %s %d by %.3g m. It is driven "
-                      "out at once",
+                      "where %s starts, the body is inside the obstacle '%s': %s %d by %.3g m (its outside "
+                      "is %.3g m "
+                      "off). It is driven out at once",
                       c->name, world->obstacles[k].name, world->body.face_count ? "vertex" : "node", vertex,
-                      deep);
+                      deep, world->offset);
     }
     poses_destroy(&poses);
 }
@@ -166,23 +171,13 @@ static void advise_damping(Model *model)
             damping, speed);
 }
 
-static double longest_edge(const WorldBody *body)
-{
-    double longest = 0;
-    for (int e = 0; e < body->edge_count; e++) {
-        Vec3 a = vec3_load(body->rest[body->edges[e][0]]), b = vec3_load(body->rest[body->edges[e][1]]);
-        longest = fmax(longest, vec3_length(vec3_sub(a, b)));
-    }
-    return longest;
-}
-
 /* What is smaller than a quarter of an edge fits between vertices and the middles of edges and faces. */
 static void advise_mesh(Model *model)
 {
     const World *world = model->world;
-    double longest = longest_edge(&world->body);
+    double longest = world_longest_edge(world, world->body.rest[0]);
     for (int k = 0; k < world->obstacle_count; k++)
-        if (world->obstacles[k].feature + world->offset < longest / 4)
+        if (world_slips_between(world, k, longest))
             mesh_warn(&model->report,
                       "obstacle '%s' has details of %.3g m, and the body edges of up to %.3g m: it may pass "
                       "between the places where contact is felt (vertices, middles of edges and faces); a "

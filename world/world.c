@@ -229,3 +229,19 @@ void world_measure(const World *world, const Point *at, WorldSums *sums)
         water.ops->destroy(water.self);
     }
 }
+
+double world_longest_edge(const World *world, const double *x)
+{
+    const WorldBody *body = &world->body;
+    double longest = 0;
+    for (int e = 0; e < body->edge_count; e++) {
+        const int *v = body->edges[e];
+        longest = fmax(longest, vec3_length(vec3_sub(vec3_load(x + 3 * v[0]), vec3_load(x + 3 * v[1]))));
+    }
+    return longest;
+}
+
+bool world_slips_between(const World *world, int obstacle, double longest)
+{
+    return world->obstacles[obstacle].feature + world->offset < longest / 4;
+}

@@ -64,6 +64,11 @@ typedef struct WorldSums {
 
 void world_measure(const World *world, const Point *at, WorldSums *sums);
 
+/* Its longest edge, m, at places x[vertex][3]; and does an obstacle fit between the places where contact is felt, with such
+ * edges? */
+double world_longest_edge(const World *world, const double *x);
+bool world_slips_between(const World *world, int obstacle, double longest);
+
 /* Where the body passes through itself at x, whole vector: how often, and the first of it (self_contact_crossings). */
 int world_crossings(const World *world, const double *x, int (*pairs)[2], int max);
 
