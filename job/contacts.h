@@ -26,5 +26,9 @@ enum { CONTACTS_ROWS = 8 };
 /* The step as arrays for history/, borrowed from contacts; their number. */
 int contacts_history(const Contacts *contacts, Array arrays[CONTACTS_ROWS]);
 
+/* Forces and counts of a step from its row of history/, for a run that goes on from it: those on single points are not there.
+ */
+bool contacts_recall(Contacts *contacts, Journal *journal, int step, Error *err);
+
 /* ", 12 contacts": for progress; static. */
 const char *contacts_text(const Contacts *contacts, char text[64]);

@@ -36,6 +36,17 @@ static bool put(Journal *journal, int step, Array *array, const char *name, int 
     return journal_put(journal, "frame", step, &named, 1, err);
 }
 
+/* Without the points that stand still: a frame in the journal has none of them. */
+static bool leave_still(Result *result, Array *array, Error *err)
+{
+    Array still;
+    if (!result_has(result, "slender/still")) return true;
+    if (!result_read(result, "slender/still", &still, err)) return false;
+    array->dims[0] -= still.dims[0];
+    array_clear(&still);
+    return true;
+}
+
 static bool recall_field(Journal *journal, Result *result, int kind, const char *field, int step, Error *err)
 {
     Array array;
@@ -46,7 +57,8 @@ static bool recall_field(Journal *journal, Result *result, int kind, const char 
          *to = mem_format("%s/%s", kinds[kind].prefix, field);
     bool ok = result_read_step(result, from, step, &array, err);
     if (ok) {
-        ok = put(journal, step, &array, to, array.rank, err);
+        ok = strcmp(kinds[kind].prefix, "point") != 0 || leave_still(result, &array, err);
+        ok = ok && put(journal, step, &array, to, array.rank, err);
         array_clear(&array);
     }
     mem_free(from);
@@ -57,18 +69,11 @@ static bool recall_field(Journal *journal, Result *result, int kind, const char 
 /* Positions of a step, without the points that stand still: float64 where the result has them. */
 static bool read_positions(Result *result, int step, Array *x, Error *err)
 {
-    Array still;
     if (!result_has(result, "slender/frames/x")) {
         if (!result_read_step(result, "Points", step, x, err)) return false;
-        if (!result_has(result, "slender/still")) return true;
-        bool ok = result_read(result, "slender/still", &still, err);
-        if (ok) {
-            x->dims[0] -= still.dims[0];
-            array_clear(&still);
-        } else {
-            array_clear(x);
-        }
-        return ok;
+        if (leave_still(result, x, err)) return true;
+        array_clear(x);
+        return false;
     }
     return result_read_rows(result, "slender/frames/x", step, 1, x, err);
 }
