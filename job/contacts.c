@@ -99,6 +99,27 @@ void contacts_doubt(const Contacts *c, const Host *host)
                      c->longest, c->world->obstacles[k].name, c->world->obstacles[k].feature);
 }
 
+static void recall_numbers(const Array *stored, double *numbers, size_t count)
+{
+    if (stored->data && array_count(stored) == count) memcpy(numbers, stored->data, count * sizeof *numbers);
+}
+
+bool contacts_recall(Contacts *c, Journal *journal, int step, Error *err)
+{
+    if (!c->world || c->world->obstacle_count == 0) return true;
+    ContactSums *sums = &c->sums.contact;
+    static const char *const names[] = {"contacts", "contact_depth", "contact_force"};
+    double *const numbers[] = {&sums->touching, &sums->depth, sums->force[0]};
+    const size_t counts[] = {1, 1, 3 * (size_t)c->world->obstacle_count};
+    for (int k = 0; k < 3; k++) {
+        Array stored;
+        if (!journal_find(journal, "evaluation", step, names[k], &stored, err)) return false;
+        recall_numbers(&stored, numbers[k], counts[k]);
+        array_clear(&stored);
+    }
+    return true;
+}
+
 const char *contacts_text(const Contacts *c, char text[64])
 {
     text[0] = 0;

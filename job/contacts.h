@@ -30,5 +30,9 @@ int contacts_history(const Contacts *contacts, Array arrays[CONTACTS_ROWS]);
  * between the places where contact is felt. */
 void contacts_doubt(const Contacts *contacts, const Host *host);
 
+/* Forces and counts of a step from its row of history/, for a run that goes on from it: those on single points are not there.
+ */
+bool contacts_recall(Contacts *contacts, Journal *journal, int step, Error *err);
+
 /* ", 12 contacts": for progress; static. */
 const char *contacts_text(const Contacts *contacts, char text[64]);

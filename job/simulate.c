@@ -167,6 +167,8 @@ static RunStatus march(Simulation *s)
 {
     s->step = find_start(s);
     if (s->step < 0) return RUN_CANNOT_WRITE;
+    if (s->step > 0 && !contacts_recall(&s->contacts, s->run->journal, s->step, s->err))
+        return RUN_CANNOT_WRITE;
     contacts_start(&s->contacts, s->now->v);
     MarchDef def = march_default();
     run_newton(s->run, &def.newton);

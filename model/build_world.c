@@ -175,13 +175,28 @@ static int face_of_edge(const WorldBody *body, int edge)
     return edge;
 }
 
+/* At no distance contact has no energy, and no direction to push in. */
+static bool check_touch(const World *world, const Case *c, YamlFile *file)
+{
+    int vertices[2];
+    if (!world_touches(world, c->state.x, vertices)) return true;
+    return yaml_refuse(
+        file, "contact.self",
+        "where %s starts, parts of the body touch each other, with no distance between them: at %s %d "
+        "and %d. Self contact needs a start without",
+        c->name, world->body.face_count ? "vertices" : "nodes", vertices[0], vertices[1]);
+}
+
 bool model_check_world(Model *model, YamlFile *file)
 {
     const World *world = model->world;
     for (int k = 0; world && world->self && k < model->case_count; k++) {
         const Case *c = &model->cases[k];
         int pair[1][2], count = world_crossings(world, c->state.x, pair, 1);
-        if (count == 0) continue;
+        if (count == 0) {
+            if (!check_touch(world, c, file)) return false;
+            continue;
+        }
         bool faces = world->body.face_count > 0;
         return yaml_refuse(
             file, "contact.self",

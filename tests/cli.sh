@@ -251,4 +251,13 @@ cmp -s a.csv b.csv || { echo "an extended design ends elsewhere"; bad=1; }
 expect 0 "$program" run "$here/scene_small.yaml" --quiet --no-picture -o more --resume --set design.iterations=8
 "$program" info more.vtkhdf | head -1 | sed 's/more//' > a.txt; "$program" info once.vtkhdf | head -1 | sed 's/once//' > b.txt
 cmp -s a.txt b.txt || { echo "an extended design has other frames"; cat a.txt b.txt; bad=1; }
+# An obstacle a hundred million times larger than the body: its faces' corners are beyond all integers.
+cat > huge.yaml <<'END'
+slender: 1
+job: simulate
+shell: {mesh: {shape: sheet, size: [0.02, 0.02], cells: [2, 2]}, thickness: 1 mm, young: 1 MPa, poisson: 0.4}
+obstacles: [{sphere: {center: [0.01, 0.01, -1.0e6], radius: 1.0e6}}]
+time: {step: 1 ms, steps: 1}
+END
+expect 0 timeout -k 1 60 "$program" run huge.yaml -o huge --quiet; exists huge.png
 exit $bad

@@ -117,6 +117,20 @@ expect 3 run $scene -o x --set "start={result: both.vtkhdf, frame: 0}"; says "ke
 expect 3 run $scene -o x --set "start={result: both.vtkhdf, frame: 2}"; says "has 2 frames, from 0 on"
 expect 3 run $scene -o x --set "start={result: both.vtkhdf, frame: 1, case: up}"; says "a frame is one state"
 
+# ---- What has met itself, or will ----
+free='rod: {natural_strain: [0, 4, 0], length: 0.2, elements: 30, radius: 1 mm, young: 1 MPa, poisson: 0.4, density: 1100}'
+for body in "shell: $shell" "$free"; do
+    scene=meets.yaml
+    write meets simulate "$body" "time: {step: 1 ms, steps: 5}"
+    expect 0 run $scene -o alone
+    for contact in "{self: true}" "{self: true, friction: 0.3}"; do
+        expect 0 run $scene -o first --set contact="$contact"
+        expect 0 run $scene -o after --set start=first.vtkhdf
+        expect 0 run $scene -o again --set start=alone.vtkhdf --set contact="$contact"; near after again 1e-12
+        expect 0 run $scene -o again --set start=first.vtkhdf --set "contact={self: true}"
+    done
+done
+
 # ---- Designs ----
 scene="$here/scene_small.yaml --set shell.mesh.n=2 --set design.iterations=0"
 first() { put "$1" n.csv history/newton_iterations; sed -n 2p n.csv; }

@@ -31,7 +31,7 @@ static void test_lines(void **state)
     expect_lines("", NULL);
     expect_lines("water: {}\n", "water: 1000 kg/m^3\n");
     expect_lines("water: {density: 800, velocity: [1, 0, 0], sides: outer}\n",
-                 "water: 800 kg/m^3, 0.001 Pa s, it flows, on the outer sides of faces\n");
+                 "water: 800 kg/m^3, it flows, on the outer sides of faces\n");
     expect_lines("obstacles: [{name: floor, plane: {point: [0, 0, -1]}}]\ncontact: {stiffness: 50}\n",
                  "1 obstacle: floor (plane)\n"
                  "contact: 9 vertices; the body stays 0.0005 m away, with 50 N/m at each\n");

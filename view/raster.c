@@ -137,6 +137,24 @@ static bool edge_owns(Vec3 a, Vec3 b)
     return b.y < a.y || (b.y == a.y && b.x < a.x);
 }
 
+/* Are the samples of a row from `left` to before `right` all beyond one edge? An edge function, as it is rounded, rises or
+ * falls all along a row: what is so at both ends is so between. Faces of what is a million times larger than the picture
+ * would take minutes otherwise. */
+static bool row_misses(const Vec3 p[3], int left, int right, double y)
+{
+    for (int k = 0; k < 3; k++) {
+        Vec3 a = p[(k + 1) % 3], b = p[(k + 2) % 3];
+        if (edge_function(a, b, left + 0.5, y) < 0 && edge_function(a, b, right - 0.5, y) < 0) return true;
+    }
+    return false;
+}
+
+/* Of what may be beyond all integers. */
+static int clip(double value, int size)
+{
+    return (int)fmin(fmax(value, 0), size);
+}
+
 /* p in samples, with depth in z */
 static void triangle_paint(Raster *raster, Vec3 p[3], const Paint *paint)
 {
@@ -155,12 +173,12 @@ static void triangle_paint(Raster *raster, Vec3 p[3], const Paint *paint)
         length[k] = hypot(b.x - a.x, b.y - a.y);
         owns[k] = edge_owns(a, b);
     }
-    int left = (int)fmax(floor(fmin(p[0].x, fmin(p[1].x, p[2].x))), 0);
-    int top = (int)fmax(floor(fmin(p[0].y, fmin(p[1].y, p[2].y))), 0);
-    int right = (int)fmin(ceil(fmax(p[0].x, fmax(p[1].x, p[2].x))), raster->width);
-    int bottom = (int)fmin(ceil(fmax(p[0].y, fmax(p[1].y, p[2].y))), raster->height);
+    double x[2] = {fmin(p[0].x, fmin(p[1].x, p[2].x)), fmax(p[0].x, fmax(p[1].x, p[2].x))},
+           y[2] = {fmin(p[0].y, fmin(p[1].y, p[2].y)), fmax(p[0].y, fmax(p[1].y, p[2].y))};
+    int left = clip(floor(x[0]), raster->width), right = clip(ceil(x[1]), raster->width),
+        top = clip(floor(y[0]), raster->height), bottom = clip(ceil(y[1]), raster->height);
     for (int i = top; i < bottom; i++)
-        for (int j = left; j < right; j++) {
+        for (int j = row_misses(p, left, right, i + 0.5) ? right : left; j < right; j++) {
             double depth = 0, nearest = INFINITY;
             bool inside = true;
             for (int k = 0; k < 3 && inside; k++) {

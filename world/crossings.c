@@ -23,10 +23,15 @@ static bool passes_through(const double *x, const int edge[2], const int face[3]
     return (a > 0 && b > 0 && c > 0) || (a < 0 && b < 0 && c < 0);
 }
 
-static bool share_vertex(const int edge[2], const int face[3])
+/* Also two vertices at one place, as on a slit: there they touch, and contact leaves them out (neighbours.c). */
+static bool share_vertex(const SelfContactDef *def, const int edge[2], const int face[3])
 {
     bool shared = false;
-    for (int i = 0; i < 6; i++) shared |= edge[i % 2] == face[i / 2];
+    for (int i = 0; i < 6; i++) {
+        int a = edge[i % 2], b = face[i / 2];
+        bool one_piece = !def->part || def->part[a] == def->part[b];
+        shared |= a == b || (one_piece && !memcmp(def->rest[a], def->rest[b], sizeof def->rest[a]));
+    }
     return shared;
 }
 
@@ -66,7 +71,7 @@ int self_contact_crossings(const SelfContactDef *def, const double *x, int (*pai
     near_tree_pairs(edges, faces, 0, &found);
     for (int k = 0; k < found.count; k++) {
         const int *pair = found.list[k], *edge = def->edges[pair[0]], *face = def->faces[pair[1]];
-        if (!share_vertex(edge, face) && passes_through(x, edge, face))
+        if (!share_vertex(def, edge, face) && passes_through(x, edge, face))
             memcpy(found.list[count++], pair, sizeof *found.list);
     }
     near_pairs_sort(found.list, count);

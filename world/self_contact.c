@@ -4,6 +4,7 @@
 #include <math.h>
 
 static const double KEEP_STEP = 0.1;   /* of a distance, in a step of Newton's        */
+static const double TOUCHES = 1e-12;   /* of D: no distance                           */
 static const double KEEP_TRIAL = 0.02; /* in any trial: less, so that steps pass      */
 
 static bool contact_update(void *self, const Point *at)
@@ -167,4 +168,20 @@ SelfContactFigures self_contact_figures(const Term *self_contact, const double *
     }
     pair_list_clear(&near);
     return figures;
+}
+
+bool self_contact_touches(const SelfContactDef *def, const double *x, int vertices[2])
+{
+    Neighbours *n = neighbours_create(def);
+    PairList near = {0};
+    neighbours_find(n, x + def->first, TOUCHES * def->distance, &near);
+    bool touches = near.count > 0;
+    if (touches) {
+        int of[4];
+        neighbours_vertices(n, &near, 0, of);
+        vertices[0] = of[0], vertices[1] = of[near.points ? 1 : 2];
+    }
+    pair_list_clear(&near);
+    neighbours_destroy(n);
+    return touches;
 }

@@ -140,6 +140,12 @@ int world_crossings(const World *world, const double *x, int (*pairs)[2], int ma
     return self_contact_crossings(&def, x, pairs, max);
 }
 
+bool world_touches(const World *world, const double *x, int vertices[2])
+{
+    SelfContactDef def = self_of(world);
+    return self_contact_touches(&def, x, vertices);
+}
+
 static Term water_of(const World *world)
 {
     const WorldBody *body = &world->body;

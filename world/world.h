@@ -72,6 +72,9 @@ bool world_slips_between(const World *world, int obstacle, double longest);
 /* Where the body passes through itself at x, whole vector: how often, and the first of it (self_contact_crossings). */
 int world_crossings(const World *world, const double *x, int (*pairs)[2], int max);
 
+/* Are there parts that may meet and have no distance at x, whole vector? A vertex of each of the first two. */
+bool world_touches(const World *world, const double *x, int vertices[2]);
+
 /* Moves the body at x, whole vector, as it is and by the shortest way, until a vertex is so deep in what an obstacle keeps
  * free of it (its offset); not if one is already. */
 void world_lean(const World *world, double time, double depth, double *x);

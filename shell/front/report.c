@@ -120,6 +120,11 @@ char *shell_crushed(const Model *model, const Snapshot *shot, bool failed)
     if (!(ratio < (failed ? NEARLY_CRUSHED : CRUSHED))) return NULL;
     double M = vec3_length(vec3_load(shot->p + shell->magnetization + 3 * least)),
            B = vec3_length(vec3_load(shot->p + shell->flux_density)), Y = shot->p[shell->young + least];
+    if (M * B == 0)
+        return mem_format(
+            "face %d is crushed to %.2g of its area: what acts on it is too strong for its Young's "
+            "modulus of %.3g Pa",
+            least, ratio, Y);
     return mem_format(
         "face %d is crushed to %.2g of its area: what acts on it (a magnetisation of %.3g A/m in a "
         "field of %.3g T is %.3g Pa) is too strong for its Young's modulus of %.3g Pa",
