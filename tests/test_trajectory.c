@@ -227,6 +227,20 @@ static void check_start(Fixture *f, Trajectory *t, double *worst)
 
 static const char *const kinds[] = {"frame", "knot", "harmonic"};
 
+/* The same gradient where no factors are kept: its largest difference. */
+static double off_without_factors(Fixture *f)
+{
+    TrajectoryInfo info;
+    double *again = mem_alloc((size_t)f->design.size, sizeof *again), worst = 0;
+    f->def.factor_memory = 0;
+    Trajectory *t = trajectory_create(&f->problem, &f->def);
+    trajectory_evaluate(t, f->u, again, &info);
+    for (int i = 0; i < f->design.size; i++) worst = fmax(worst, fabs(again[i] - f->gradient[i]));
+    trajectory_destroy(t);
+    mem_free(again);
+    return worst;
+}
+
 static void check(BendingModel bending, ControlKind kind, bool moving, bool cuts)
 {
     Fixture f;
@@ -244,13 +258,7 @@ static void check(BendingModel bending, ControlKind kind, bool moving, bool cuts
     check_start(&f, t, &start_error);
     trajectory_destroy(t);
 
-    f.def.factor_memory = 0; /* nothing is kept */
-    double *again = mem_alloc((size_t)f.design.size, sizeof *again), worst = 0;
-    t = trajectory_create(&f.problem, &f.def);
-    trajectory_evaluate(t, f.u, again, &info);
-    for (int i = 0; i < f.design.size; i++) worst = fmax(worst, fabs(again[i] - f.gradient[i]));
-    trajectory_destroy(t);
-    mem_free(again);
+    double worst = off_without_factors(&f);
     print_message("%s %-8s%s%s: tangent %.1e, differences %.1e, of the start %.1e\n",
                   bending == BENDING_HINGE ? "hinge  " : "midedge", kinds[kind], moving ? " moving" : "",
                   cuts ? " cuts" : "", fabs(adjoint - tangent) / fabs(tangent),
@@ -293,13 +301,7 @@ static void check_ground(BendingModel bending, Ground ground, ControlKind kind)
     trajectory_destroy(t);
     for (double h = 1e-3; h > 5e-7; h /= 10)
         seen = fmin(seen, fabs(by_differences(&f, h, NULL, NULL) / adjoint - 1));
-    f.def.factor_memory = 0;
-    double *again = mem_alloc((size_t)f.design.size, sizeof *again), worst = 0;
-    t = trajectory_create(&f.problem, &f.def);
-    trajectory_evaluate(t, f.u, again, &info);
-    for (int i = 0; i < f.design.size; i++) worst = fmax(worst, fabs(again[i] - f.gradient[i]));
-    trajectory_destroy(t);
-    mem_free(again);
+    double worst = off_without_factors(&f);
     print_message("%s %-8s %s: %g touch; tangent %.1e, differences %.1e; %d Newton iterations\n",
                   bending == BENDING_HINGE ? "hinge  " : "midedge", kinds[kind],
                   ground == IMPLICIT ? "implicit" : "lagged", sums.contact.touching,

@@ -58,6 +58,3 @@ SelfContactFigures self_contact_figures(const Term *self_contact, const double *
 
 /* Is there a pair that may meet and has no distance, less than 1e-12 D, at x? A vertex of each side of the first. */
 bool self_contact_touches(const SelfContactDef *def, const double *x, int vertices[2]);
-
-/* What friction takes in that step of time, W; the point is the one that the term was evaluated at last. */
-double self_friction_power(const Term *self_friction, const Point *at);

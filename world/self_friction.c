@@ -251,19 +251,3 @@ Term self_friction_term(const SelfContactDef *def)
 {
     return (Term){&friction_ops, self_pairs_create(def)};
 }
-
-double self_friction_power(const Term *self_friction, const Point *at)
-{
-    const SelfPairs *pairs = self_friction->self;
-    double power = 0;
-    for (int k = 0; at->dt > 0 && k < pairs->list.count; k++) {
-        Rub rub;
-        double own[DISTANCE_DOFS];
-        Pack x[DISTANCE_DOFS];
-        self_pairs_gather(pairs, k, at->x, own);
-        for (int i = 0; i < DISTANCE_DOFS; i++) x[i] = pack_set(own[i]);
-        if (rub_of_lane(pairs, k / PACK_LANES, k % PACK_LANES, at, x, &rub))
-            power += limit(&rub, factor(pairs, at->p)) * rub.first * rub.speed * rub.speed;
-    }
-    return power;
-}

@@ -220,6 +220,13 @@ static void measure_self(const World *world, const Point *at, WorldSums *sums)
     contact.ops->destroy(contact.self);
     sums->pairs = sums->self.pairs;
     sums->crossings = self_contact_crossings(&def, at->x, NULL, 0);
+    if (!world->rubs || !(at->dt > 0)) return;
+    Term friction = self_friction_term(&def);
+    Point own = *at; /* its list is made where its forces are taken */
+    own.memory = point_lag(at) + world->body.first;
+    friction.ops->update(friction.self, &own);
+    sums->contact.friction += work_against(&friction, &own);
+    friction.ops->destroy(friction.self);
 }
 
 void world_measure(const World *world, const Point *at, WorldSums *sums)
