@@ -232,11 +232,34 @@ static void test_crossings(void **unused)
     assert_true(pairs[0][0] == 0 && pairs[0][1] == 1);
 }
 
+/* A triangle in four, so that all of it is in one plane but for the rounding of its coordinates, in many places. */
+static void test_flat(void **unused)
+{
+    (void)unused;
+    static const int faces[4][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}},
+                     edges[9][2] = {{0, 3}, {3, 1}, {1, 4}, {4, 2}, {2, 5}, {5, 0}, {3, 4}, {4, 5}, {5, 3}};
+    static const int middles[3][2] = {{0, 1}, {1, 2}, {2, 0}};
+    for (int trial = 0; trial < 200; trial++) {
+        double x[6][3];
+        for (int v = 0; v < 3; v++)
+            for (int i = 0; i < 3; i++) x[v][i] = sin(1 + 9 * trial + 3 * v + i);
+        for (int m = 0; m < 3; m++)
+            for (int i = 0; i < 3; i++) x[3 + m][i] = (x[middles[m][0]][i] + x[middles[m][1]][i]) / 2;
+        SelfContactDef def = {.vertex_count = 6,
+                              .face_count = 4,
+                              .edge_count = 9,
+                              .faces = faces,
+                              .edges = edges,
+                              .rest = (const double(*)[3])x};
+        assert_int_equal(self_contact_crossings(&def, x[0], NULL, 0), 0);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_rods),   cmocka_unit_test(test_held),      cmocka_unit_test(test_driven),
-        cmocka_unit_test(test_lifted), cmocka_unit_test(test_crossings),
+        cmocka_unit_test(test_lifted), cmocka_unit_test(test_crossings), cmocka_unit_test(test_flat),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
