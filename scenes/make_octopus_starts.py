@@ -33,7 +33,7 @@ def tail(size, frequency, closing):
 # Steps, and knots or None: a row for each step.
 STARTS = {
     "open": (500, None, strokes(40e-3, 4)),
-    "pipe1": (300, 61, tail(40e-3, 5, 30e-3)),
+    "pipe1": (300, 61, tail(40e-3, 6, 30e-3)),
     "pipe2": (400, 41, strokes(40e-3, 4)),
     "tunnel": (500, 51, strokes(40e-3, 4)),
 }

@@ -10,9 +10,18 @@ work=$(mktemp -d) || exit 2
 trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 2
 
+# The octopus with each face in four.
+for flare in 0 10 30; do
+    table=$here/../scenes/octopus_${flare}_magnetization.csv
+    "$here"/finer_mesh.py "$here/../scenes/meshes/octopus_$flare.obj" octopus_$flare.obj \
+        $([ -e "$table" ] && echo "$table" octopus_$flare.csv) || exit 2
+done
+finer_30="shell.mesh.file=$work/octopus_30.obj shell.magnetization.file=$work/octopus_30.csv"
+finer_10="shell.mesh.file=$work/octopus_10.obj shell.magnetization.file=$work/octopus_10.csv shell.pose.file=$work/octopus_0.obj"
+
 # name | scene | what is set. Without blanks within a value.
 scenes() {
-    cat <<'LIST'
+    cat <<LIST
 fold, edges of 1 thickness | fold |
 fold, of 1.7 | fold | shell.mesh.cells=[24,5]
 fold, of 3 | fold | shell.mesh.cells=[14,3]
@@ -22,8 +31,12 @@ bud, of 3 | bud | shell.mesh.n=4
 drape, edges of 6 thicknesses | drape |
 drape, of 9 | drape | shell.mesh.cells=[22,22]
 drape, of 3 | drape | shell.mesh.cells=[66,66] time.steps=150
-octopus, open water | octopus_open | design.iterations=0
+octopus, open water, edges of 2 thicknesses | octopus_open | design.iterations=0
+octopus, open water, of 3 | octopus_open | design.iterations=0 shell.thickness=0.67e-3
+octopus, open water, of 1 | octopus_open | design.iterations=0 $finer_30
 octopus, pipe 1 | octopus_pipe1 | design.iterations=0
+octopus, pipe 1, of 3 | octopus_pipe1 | design.iterations=0 shell.thickness=0.67e-3
+octopus, pipe 1, of 1 | octopus_pipe1 | design.iterations=0 $finer_10
 octopus, pipe 2 | octopus_pipe2 | design.iterations=0
 octopus, tunnel | octopus_tunnel | design.iterations=0
 gripper | gripper |
