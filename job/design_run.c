@@ -127,7 +127,8 @@ static void say_idle(const DesignRun *d)
     for (int k = 0; k < design->unknown_count && !optimiser_is_zero(d->gradient, d->n, d->objective); k++) {
         const Unknown *unknown = &design->unknowns[k];
         int end = k + 1 < design->unknown_count ? unknown[1].first : design->size;
-        if (optimiser_is_zero(d->gradient + unknown->first, end - unknown->first, d->objective))
+        if (!unknown->auxiliary &&
+            optimiser_is_zero(d->gradient + unknown->first, end - unknown->first, d->objective))
             host_say(d->run->host, "the unknown %s does not act on the objective at the start",
                      design_unknown_name(d->run->model, unknown->block));
     }

@@ -2,6 +2,7 @@
 #include "base/memory.h"
 #include "base/random.h"
 #include "model/model.h"
+#include "optim/objectives.h"
 #include <math.h>
 #include <string.h>
 
@@ -264,7 +265,7 @@ static bool add_unknowns(Model *model, const Scene *scene, const Build *b)
     return ok;
 }
 
-/* Frequencies and amplitudes of a DMP row: the first harmonics of the whole time, with no amplitude. */
+/* Frequencies and amplitudes of a DMP row. */
 static bool add_dmp(Model *model, const Scene *scene, const Build *b)
 {
     const ObjectiveScene *row = NULL;
@@ -278,18 +279,21 @@ static bool add_dmp(Model *model, const Scene *scene, const Build *b)
     }
     if (!row) return true;
     static const char *const names[] = {"dmp_omega", "dmp_alpha", "dmp_beta"};
-    double base = 2 * M_PI / model->control.duration;
+    int first[3];
     for (int k = 0; k < 3; k++) {
         const ParamBlock *block = params_find(model->params, names[k]);
-        double *values = model->cases[0].stages[0].p + block->offset;
-        for (int j = 0; k == 0 && j < row->pairs; j++) values[j] = base * (j + 1);
+        first[k] = block->offset;
         Unknown unknown = {.block = block,
                            .group_count = row->pairs,
-                           .scale = k == 0 ? base : scene->design->unknowns.flux_density->scale,
+                           .scale = k == 0 ? 2 * M_PI / model->control.duration
+                                           : scene->design->unknowns.flux_density->scale,
                            .lower = k == 0 ? 0 : -INFINITY,
-                           .upper = INFINITY};
+                           .upper = INFINITY,
+                           .auxiliary = true};
         design_add(&model->design, unknown);
     }
+    objective_dmp_start(&model->control, row->pairs, first[0], first[1], first[2],
+                        model->cases[0].stages[0].p);
     return true;
 }
 

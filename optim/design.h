@@ -25,7 +25,8 @@ typedef struct Unknown {
     double scale, limit;
     double lower, upper; /* bounds of p, -/+INFINITY: none; not for the two lengths */
     bool per_case;
-    int first; /* first entry in u (of case 0); set by design_add */
+    bool auxiliary; /* an objective's own, none that the user asks for */
+    int first;      /* first entry in u (of case 0); set by design_add */
 } Unknown;
 
 enum { DESIGN_MAX_UNKNOWNS = 8 };

@@ -41,3 +41,6 @@ Objective objective_field_smoothness(const Control *control, double weight);
  * w = p[omega ..][pairs], alpha = p[alpha ..][pairs][3], beta likewise: keeps a field near few frequencies,
  * which are unknowns too [Chen 2022, after eq. 44; alpha and beta with an index i of their own]. */
 Objective objective_dmp(const Control *control, int pairs, int omega, int alpha, int beta, double weight);
+
+/* Where they begin, into p: the first harmonics of the whole time, amplitudes as they fit the control best. */
+void objective_dmp_start(const Control *control, int pairs, int omega, int alpha, int beta, double *p);

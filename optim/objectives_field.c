@@ -155,6 +155,21 @@ Objective objective_field_smoothness(const Control *control, double weight)
     return field_row(&smoothness_ops, (Field){.control = *control, .jumps = true}, weight);
 }
 
+/* Cosines and sines of whole periods are orthogonal on the steps, until they alternate from step to step. */
+void objective_dmp_start(const Control *control, int pairs, int omega, int alpha, int beta, double *p)
+{
+    for (int j = 0; j < pairs; j++) p[omega + j] = 2 * M_PI * (j + 1) / control->duration;
+    for (int j = 0; j < pairs && 2 * (j + 1) < control->steps; j++)
+        for (int n = 1; n <= control->steps; n++) {
+            double t = control_time(control, n), value[WIDTH];
+            control_value(control, n, t, p, value);
+            for (int i = 0; i < WIDTH; i++) {
+                p[alpha + WIDTH * j + i] += 2 * value[i] * cos(p[omega + j] * t) / control->steps;
+                p[beta + WIDTH * j + i] += 2 * value[i] * sin(p[omega + j] * t) / control->steps;
+            }
+        }
+}
+
 Objective objective_dmp(const Control *control, int pairs, int omega, int alpha, int beta, double weight)
 {
     return field_row(

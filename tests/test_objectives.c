@@ -207,6 +207,35 @@ static void test_field_rows(void **state)
     free_fixture(&f);
 }
 
+/* Amplitudes that a DMP row begins with: no others fit the field better, and they are those of a field that is made of its
+ * harmonics. */
+static void test_dmp_start(void **state)
+{
+    (void)state;
+    enum {
+        STEPS = 9,
+        OMEGA = 3 * STEPS,
+        ALPHA = OMEGA + PAIRS,
+        BETA = ALPHA + 3 * PAIRS,
+        ALL = BETA + 3 * PAIRS
+    };
+    Control control = {
+        .kind = CONTROL_FRAME, .rows = STEPS, .width = 3, .steps = STEPS, .start = 1, .duration = 4};
+    double p[ALL] = {0}, dp[ALL] = {0};
+    for (int k = 0; k < 3 * STEPS; k++) p[k] = sin(k * k);
+    objective_dmp_start(&control, PAIRS, OMEGA, ALPHA, BETA, p);
+    Objective row = objective_dmp(&control, PAIRS, OMEGA, ALPHA, BETA, 1);
+    assert_true(row.ops->value(row.self, 1, NULL, p, NULL, dp) > 1);
+    for (int k = ALPHA; k < ALL; k++) assert_true(fabs(dp[k]) < 1e-13);
+    for (int n = 1; n <= STEPS; n++)
+        p[3 * n - 1] = 0.3 * cos(p[OMEGA] * control_time(&control, n)) -
+                       2 * sin(p[OMEGA + 1] * control_time(&control, n));
+    for (int k = ALPHA; k < ALL; k++) p[k] = 0;
+    objective_dmp_start(&control, PAIRS, OMEGA, ALPHA, BETA, p);
+    assert_true(fabs(p[ALPHA + 2] - 0.3) < 1e-14 && fabs(p[BETA + 5] + 2) < 1e-14);
+    objective_destroy(row);
+}
+
 /* A spline goes through its knots and is linear where they are; harmonics have the whole time as period. */
 static void test_controls(void **state)
 {
@@ -266,6 +295,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_rows),       cmocka_unit_test(test_point_rows),
         cmocka_unit_test(test_field_rows), cmocka_unit_test(test_curve_distances),
-        cmocka_unit_test(test_controls),   cmocka_unit_test(test_values)};
+        cmocka_unit_test(test_dmp_start),  cmocka_unit_test(test_controls),
+        cmocka_unit_test(test_values)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
