@@ -22,7 +22,8 @@ typedef struct TrajectoryJob {
 static void load(void *self, double time, double *p)
 {
     TrajectoryJob *job = self;
-    if (!job->run->model->control.rows) job->refused |= !model_load(job->run->model, time, p, &job->err);
+    bool given = job->run->model->control.rows > 0;
+    job->refused |= !model_load(job->run->model, time, given ? NULL : p, &job->err);
 }
 
 static bool move(void *self, double time, double *x)

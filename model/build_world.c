@@ -187,9 +187,21 @@ static bool check_touch(const World *world, const Case *c, YamlFile *file)
         c->name, world->body.face_count ? "vertices" : "nodes", vertices[0], vertices[1]);
 }
 
+/* At the times of a case's stages; those of a motion come along with it (model_load). */
+static bool check_poses(const World *world, const Case *c, YamlFile *file)
+{
+    Error err;
+    for (int s = 0; s < c->stage_count; s++)
+        if (!world_stands(world, c->stages[s].time, &err))
+            return yaml_refuse(file, "obstacles", "%s", err.text);
+    return true;
+}
+
 bool model_check_world(Model *model, YamlFile *file)
 {
     const World *world = model->world;
+    for (int k = 0; world && k < model->case_count; k++)
+        if (!check_poses(world, &model->cases[k], file)) return false;
     for (int k = 0; world && world->self && k < model->case_count; k++) {
         const Case *c = &model->cases[k];
         int pair[1][2], count = world_crossings(world, c->state.x, pair, 1);

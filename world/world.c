@@ -174,6 +174,14 @@ void world_add_terms(const World *world, System *sys, bool motion)
     if (motion && world->wet) system_add(sys, water_of(world));
 }
 
+bool world_stands(const World *world, double time, Error *err)
+{
+    ObstaclePose pose;
+    for (int k = 0; k < world->obstacle_count; k++)
+        if (!obstacle_pose(&world->obstacles[k], time, &pose, err)) return false;
+    return true;
+}
+
 void world_lean(const World *world, double time, double depth, double *x)
 {
     Poses poses = poses_create(world->obstacles, world->obstacle_count);

@@ -75,6 +75,9 @@ int world_crossings(const World *world, const double *x, int (*pairs)[2], int ma
 /* Are there parts that may meet and have no distance at x, whole vector? A vertex of each of the first two. */
 bool world_touches(const World *world, const double *x, int vertices[2]);
 
+/* Are all obstacles somewhere at that time? False and a sentence that names the first that is not. */
+bool world_stands(const World *world, double time, Error *err);
+
 /* Moves the body at x, whole vector, as it is and by the shortest way, until a vertex is so deep in what an obstacle keeps
  * free of it (its offset); not if one is already. */
 void world_lean(const World *world, double time, double depth, double *x);
