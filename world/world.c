@@ -140,10 +140,16 @@ int world_crossings(const World *world, const double *x, int (*pairs)[2], int ma
     return self_contact_crossings(&def, x, pairs, max);
 }
 
-bool world_touches(const World *world, const double *x, int vertices[2])
+double world_nearest(const World *world, const double *x, double parts, int vertices[2])
 {
     SelfContactDef def = self_of(world);
-    return self_contact_touches(&def, x, vertices);
+    return self_contact_nearest(&def, x, parts, vertices);
+}
+
+double world_meets_nothing(const World *world)
+{
+    SelfContactDef def = self_of(world);
+    return self_contact_nothing(&def);
 }
 
 static Term water_of(const World *world)
