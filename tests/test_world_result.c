@@ -210,6 +210,38 @@ static void test_extended(void **state)
     result_close(result);
 }
 
+/* Of a designed motion frames and the end have what a simulation's have: friction too. */
+static void test_trajectory(void **state)
+{
+    (void)state;
+    run("slender: 1\njob: trajectory\nshell:\n  mesh: {shape: strip, size: [20 mm, 5 mm], n: 8}\n"
+        "  thickness: 0.5 mm\n  young: 0.1 MPa\n  poisson: 0.3\n  density: 1000\n"
+        "  gravity: [3, 0, -9.81]\n  magnetization: [2.0e+4, 0, 0]\nflux_density: [0, 0, 1 mT]\n"
+        "obstacles: [{name: floor, plane: {point: [0, 0, -0.25 mm]}, friction: 0.5}]\n"
+        "time: {step: 1 ms, steps: 30}\noutput: {every: 10, precision: double}\n"
+        "design:\n  unknowns: {flux_density: {per: knot, knots: 3}}\n  iterations: 1\n"
+        "  objectives: [{waypoint: {vertex: 4, at: [15 mm, 0, 0.25 mm]}}]\n",
+        NULL, 0);
+    Result *result = open_result();
+    Array all = read_as(result, "slender/trajectory/contact_force", 3, 30, 1, 3),
+          end = read_as(result, "slender/final/contact_force", 2, 1, 3, 0);
+    const double(*force)[3] = (const double(*)[3])all.data;
+    assert_memory_equal(end.data, force[29], sizeof *force);
+    assert_true(force[29][0] < -0.1 * force[29][2] && force[29][2] > 0);
+    for (int frame = 1; frame < 4; frame++) {
+        Array step;
+        assert_true(result_read_step(result, "PointData/contact_force", frame, &step, NULL));
+        double sum[3] = {0};
+        for (size_t i = 0; i < array_count(&step); i++) sum[i % 3] += ((const double *)step.data)[i];
+        for (int i = 0; i < 3; i++)
+            assert_true(fabs(sum[i] - force[10 * frame - 1][i]) < 1e-12 * force[10 * frame - 1][2]);
+        array_clear(&step);
+    }
+    array_clear(&all);
+    array_clear(&end);
+    result_close(result);
+}
+
 /* ---- Rods ---- */
 
 /* Frames of rods have points that stand still after those that move: each has its row. */
@@ -241,6 +273,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_weight),    cmocka_unit_test(test_energy),
                                        cmocka_unit_test(test_obstacles), cmocka_unit_test(test_way),
-                                       cmocka_unit_test(test_extended),  cmocka_unit_test(test_rod)};
+                                       cmocka_unit_test(test_extended),  cmocka_unit_test(test_trajectory),
+                                       cmocka_unit_test(test_rod)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
