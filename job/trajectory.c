@@ -125,25 +125,7 @@ static Snapshot next_frame(TrajectoryJob *job, int frame)
     return shot;
 }
 
-/* trajectory/contacts, ..: a row for each step. */
-static void add_contacts(TrajectoryJob *job, int step, double *rows[CONTACTS_ROWS], Arrays *list)
-{
-    int steps = job->run->scene->time.steps;
-    Array now[CONTACTS_ROWS];
-    int count = contacts_history(&job->contacts, now);
-    for (int k = 0; k < count; k++) {
-        size_t each = array_count(&now[k]);
-        if (step == 1) rows[k] = arrays_numbers(list, (size_t)steps * each);
-        memcpy(rows[k] + (size_t)(step - 1) * each, now[k].data, each * sizeof(double));
-        if (step < steps) continue;
-        char *name = arrays_keep(list, mem_format("trajectory/%s", now[k].name));
-        Array all = array_float(name, now[k].unit, rows[k], 1 + now[k].rank, steps, now[k].dims[0]);
-        all.dims[2] = now[k].dims[1];
-        arrays_add(list, all);
-    }
-}
-
-/* Frames of the best motion, every so many, and the last, which is *end; of all steps what they met. */
+/* Frames of the best motion, every so many, and the last, which is *end; trajectory/contacts, ..: a row for each step. */
 static bool put_frames(TrajectoryJob *job, int first, Snapshot *end, Arrays *list, Error *err)
 {
     int every = job->run->scene->output.every, steps = job->run->scene->time.steps, index = first;
@@ -151,7 +133,7 @@ static bool put_frames(TrajectoryJob *job, int first, Snapshot *end, Arrays *lis
     if (every == 0) every = 1;
     for (int n = 0; n <= steps; n++) {
         *end = next_frame(job, n);
-        if (n > 0) add_contacts(job, n, rows, list);
+        if (n > 0) contacts_add_row(&job->contacts, "trajectory/", n, steps, rows, list);
         if (n % every && n != steps) continue;
         if (!run_put_frame(job->run, index, end->at.time, end, index == first, err)) return false;
         index++;

@@ -242,6 +242,41 @@ static void test_trajectory(void **state)
     result_close(result);
 }
 
+/* A motion of the library says of its steps what the program's history does, cut ones included. */
+static void test_motion(void **state)
+{
+    (void)state;
+    SlenderError err;
+    SlenderStatus status;
+    SlenderMotionDef def = {.steps = 20, .step = 2e-3};
+    assert_int_equal(run(MOVES, NULL, 0), SLENDER_DONE);
+    SlenderScene *scene = slender_scene_parse(MOVES, NULL, 0, &err);
+    SlenderModel *model = slender_model_create(scene, 1, &err);
+    SlenderState *start = slender_state_create(model, 0, &err);
+    SlenderMotion *motion = slender_simulate(model, 0, start, &def, &status, &err);
+    assert_int_equal(status, SLENDER_DONE);
+    Result *result = open_result();
+    SlenderArray met;
+    int count = 0;
+    for (;; count++) {
+        assert_int_equal(slender_motion_met(motion, count, &met, &err), SLENDER_DONE);
+        if (!met.name) break;
+        char *path = mem_format("slender/history/%s", met.name);
+        Array history = read_as(result, path, met.rank, met.dims[0], met.dims[1], met.dims[2]);
+        const double *said = met.data, *is = history.data;
+        for (size_t i = 0; i < array_count(&history); i++) assert_true(fabs(said[i] - is[i]) < 1e-9);
+        array_clear(&history);
+        mem_free(path);
+        slender_array_free(&met);
+    }
+    assert_int_equal(count, 4);
+    result_close(result);
+    slender_motion_destroy(motion);
+    slender_state_destroy(start);
+    slender_model_destroy(model);
+    slender_scene_destroy(scene);
+}
+
 /* ---- Rods ---- */
 
 /* Frames of rods have points that stand still after those that move: each has its row. */
@@ -274,6 +309,6 @@ int main(void)
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_weight),    cmocka_unit_test(test_energy),
                                        cmocka_unit_test(test_obstacles), cmocka_unit_test(test_way),
                                        cmocka_unit_test(test_extended),  cmocka_unit_test(test_trajectory),
-                                       cmocka_unit_test(test_rod)};
+                                       cmocka_unit_test(test_motion),    cmocka_unit_test(test_rod)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
