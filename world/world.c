@@ -159,6 +159,7 @@ static Term water_of(const World *world)
         return water_term(
             &(WaterDef){body->face_count, body->first, (int(*)[3])body->faces, world->outer, world->water});
     return rod_water_term(&(RodWaterDef){.element_count = body->edge_count,
+                                         .strands = body->strands,
                                          .first = body->first,
                                          .length = body->length,
                                          .radius = body->thickness / 2,

@@ -15,7 +15,8 @@ typedef struct WorldBody {
     const int *part;                    /* [vertex] the piece that it belongs to; NULL: one  */
     const bool *fixed;                  /* [3*vertex_count] held; NULL: nothing              */
     double thickness;                   /* m; a rod's diameter                               */
-    double length;                      /* m, of a rod                                       */
+    int strands;                        /* rods, one after the other; of a shell 0           */
+    const double *length;               /* [strands] m                                       */
 } WorldBody;
 
 /* Of which what touches sinks in by less than 1 %: a shell's thickness, a rod's radius, m. */
