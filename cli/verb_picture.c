@@ -24,7 +24,7 @@ static const char usage[] =
     "  --frame N      a frame of the run, from 0\n"
     "                 without any of these: the final state of every load case\n"
     "  --case NAME    one load case\n"
-    "  --field NAME   colours: magnetization, young, energy_membrane, .., or none\n"
+    "  --field NAME   colours: magnetization, young, energy_membrane, contact_force, .., or none\n"
     "  --target WHERE the target beside the body, over it as wires, or both\n"
     "  --view X,Y,Z   direction to the eye; default: three quarters from above; of rods: front, side and top";
 

@@ -195,6 +195,20 @@ SLENDER_API SlenderStatus slender_vjp(SlenderModel *model, int load_case, const 
 SLENDER_API SlenderStatus slender_jvp(SlenderModel *model, int load_case, const SlenderState *state,
                                       const double *dp, double *dx, SlenderError *err);
 
+/* ---- Arrays ---- */
+
+typedef enum SlenderType { SLENDER_DOUBLE, SLENDER_INT, SLENDER_TEXT } SlenderType;
+
+typedef struct SlenderArray {
+    SlenderType type;
+    int rank, dims[3];
+    const char *unit;
+    void *data; /* double, int (32 bits) or char, row by row */
+    const char *name;
+} SlenderArray;
+
+SLENDER_API void slender_array_free(SlenderArray *array);
+
 /* ---- Motion ---- */
 
 /* A stored motion: its states, and what its derivatives need. */
@@ -223,6 +237,12 @@ SLENDER_API void slender_motion_destroy(SlenderMotion *motion);
 SLENDER_API int slender_motion_steps(const SlenderMotion *motion);
 SLENDER_API SlenderState *slender_motion_state(const SlenderMotion *motion, int n, SlenderError *err);
 
+/* What the body met, a row for each step that was reached, named and measured as history/ of a simulation (docs/result.md):
+ * "contacts", "contact_force", "self_distance", .. Array number 0, 1, ..; beyond the last one it has no name (NULL). To be freed
+ * by slender_array_free. */
+SLENDER_API SlenderStatus slender_motion_met(SlenderMotion *motion, int number, SlenderArray *array,
+                                             SlenderError *err);
+
 /* Of F(x_n, v_n, ..): dF/dx[count][dofs] and dF/dv alike, either may be NULL, of the states after frame[count] steps, to dF/dp[params]
  * (of which flux_density is 0 where flux was given), dF/dflux[steps][3], and dF/dx, dF/dv of the start, [dofs]; NULL: not
  * wanted. Exact. */
@@ -246,20 +266,9 @@ SLENDER_API void slender_result_close(SlenderResult *result);
 SLENDER_API const char *slender_result_name(const SlenderResult *result, int number);
 SLENDER_API int slender_result_frames(SlenderResult *result);
 
-typedef enum SlenderType { SLENDER_DOUBLE, SLENDER_INT, SLENDER_TEXT } SlenderType;
-
-typedef struct SlenderArray {
-    SlenderType type;
-    int rank, dims[3];
-    const char *unit;
-    void *data; /* double, int (32 bits) or char, row by row */
-    const char *name;
-} SlenderArray;
-
 /* A dataset or, with a frame from 0 on, "Points", "CellData/NAME", "PointData/NAME" of it. To be freed by slender_array_free. */
 SLENDER_API SlenderStatus slender_result_read(SlenderResult *result, const char *name, int frame,
                                               SlenderArray *array, SlenderError *err);
-SLENDER_API void slender_array_free(SlenderArray *array);
 
 #ifdef __cplusplus
 }

@@ -79,6 +79,23 @@ int contacts_history(const Contacts *c, Array arrays[CONTACTS_ROWS])
     return count;
 }
 
+void contacts_add_row(const Contacts *c, const char *prefix, int step, int steps, double *rows[CONTACTS_ROWS],
+                      Arrays *list)
+{
+    Array now[CONTACTS_ROWS];
+    int count = contacts_history(c, now);
+    for (int k = 0; k < count; k++) {
+        size_t each = array_count(&now[k]);
+        if (step == 1) rows[k] = arrays_numbers(list, (size_t)steps * each);
+        memcpy(rows[k] + (size_t)(step - 1) * each, now[k].data, each * sizeof(double));
+        if (step < steps) continue;
+        char *name = arrays_keep(list, mem_format("%s%s", prefix, now[k].name));
+        Array all = array_float(name, now[k].unit, rows[k], 1 + now[k].rank, steps, now[k].dims[0]);
+        all.dims[2] = now[k].dims[1];
+        arrays_add(list, all);
+    }
+}
+
 static const double DEEP = 0.05; /* of the thickness: more is no contact of thin things */
 
 void contacts_doubt(const Contacts *c, const Host *host)

@@ -1,5 +1,6 @@
 /* contacts.h - what a run says of what its body meets: a row for each step of time, and the forces of a state. */
 #pragma once
+#include "io/arrays.h"
 #include "job/run.h"
 
 /* The steps of a body that meets something. */
@@ -25,6 +26,11 @@ enum { CONTACTS_ROWS = 8 };
 
 /* The step as arrays for history/, borrowed from contacts; their number. */
 int contacts_history(const Contacts *contacts, Array arrays[CONTACTS_ROWS]);
+
+/* The same in rows of `steps` numbers each: puts a step, from 1 on, into rows, which are the list's, and with the last one
+ * adds the arrays to it, named with a prefix. */
+void contacts_add_row(const Contacts *contacts, const char *prefix, int step, int steps,
+                      double *rows[CONTACTS_ROWS], Arrays *list);
 
 /* Says what the steps so far cannot be trusted in: what was pressed too deep, or stretched so far that an obstacle fits
  * between the places where contact is felt. */

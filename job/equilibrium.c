@@ -91,6 +91,7 @@ static bool solve_case(Run *run, Case *c, Snapshot *shot, int *frame, bool *inte
             shot->status = info.newton.status;
             *interrupted = info.newton.status == NEWTON_STOPPED;
             if (*interrupted) break;
+            if (shot->status != NEWTON_CONVERGED) run_say_unknown_field(run, shot, 0);
             if (run_is_crushed(run, shot, shot->status != NEWTON_CONVERGED)) shot->status = NEWTON_CRUSHED;
             host_step(run->host, *frame + 1, total,
                       "%s: %s, %d Newton iterations with %d factorisations in %d load steps", c->name,

@@ -69,14 +69,29 @@ bool run_is_crushed(Run *run, const Snapshot *shot, bool failed)
     return true;
 }
 
-/* ---- Frames ---- */
-
 static double *places(const Model *model, const Snapshot *shot, Arrays *list)
 {
     double *place = arrays_numbers(list, 3 * (size_t)model->point_count);
     model->body->ops->places(model, shot->at.x, place);
     return place;
 }
+
+void run_say_unknown_field(const Run *run, const Snapshot *shot, double dt)
+{
+    State next = state_clone(&shot->at);
+    Snapshot then = *shot;
+    Arrays list = {0};
+    Error err;
+    for (int i = 0; i < next.dofs; i++) next.x[i] += dt * next.v[i];
+    next.time += dt, then.at = next;
+    if (!model_knows_fields(run->model, shot->p, shot->at.time, places(run->model, shot, &list), &err) ||
+        !model_knows_fields(run->model, shot->p, next.time, places(run->model, &then, &list), &err))
+        host_say(run->host, "%s: %s", shot->load_case->name, err.text);
+    arrays_clear(&list);
+    state_destroy(&next);
+}
+
+/* ---- Frames ---- */
 
 /* What obstacles do to it: of a frame the forces on its points, of a state under a prefix their sums. */
 static void add_felt(Arrays *list, const Model *model, const Snapshot *shot, const char *prefix)

@@ -43,6 +43,10 @@ void run_newton(const Run *run, NewtonDef *def);
 /* Is the state one of this body's (BodyOps.crushed)? If not, says so; `failed`: nothing was found beyond it. */
 bool run_is_crushed(Run *run, const Snapshot *shot, bool failed);
 
+/* Of a solve that has failed: says which field has no value where the body was, or where it was going to be after a time dt
+ * (0: statics). */
+void run_say_unknown_field(const Run *run, const Snapshot *shot, double dt);
+
 /* A frame of the result, shown at a time of its own: viewers want each frame's time to be later than that of
  * the one before. Parameters per face, which seldom change, are left out unless `whole`. */
 bool run_put_frame(Run *run, int index, double shown, const Snapshot *shot, bool whole, Error *err);

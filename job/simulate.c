@@ -150,6 +150,7 @@ static RunStatus make_step(Simulation *s, const MarchDef *def)
         host_say(s->run->host, "step %d failed at t = %g s: %s", step, s->now->time,
                  newton_status_text(info.newton.status));
     Snapshot shot = shown_state(s);
+    if (!reached) run_say_unknown_field(s->run, &shot, scene->time.step);
     if (run_is_crushed(s->run, &shot, !reached)) s->status = NEWTON_CRUSHED;
     if (!reached) return RUN_NOT_CONVERGED;
     s->step = step;

@@ -13,7 +13,8 @@ typedef struct TrajectoryJob {
     Run *run;
     Case *c;
     Trajectory *t;
-    double *v; /* [dofs] of the state that is shown */
+    double *v;         /* [dofs] of the state that is shown */
+    Contacts contacts; /* of the step to it */
     double objective;
     bool refused; /* a formula of time is not finite; err says so */
     Error err;
@@ -22,7 +23,8 @@ typedef struct TrajectoryJob {
 static void load(void *self, double time, double *p)
 {
     TrajectoryJob *job = self;
-    if (!job->run->model->control.rows) job->refused |= !model_load(job->run->model, time, p, &job->err);
+    bool given = job->run->model->control.rows > 0;
+    job->refused |= !model_load(job->run->model, time, given ? NULL : p, &job->err);
 }
 
 static bool move(void *self, double time, double *x)
@@ -109,15 +111,31 @@ static Snapshot frame_state(TrajectoryJob *job, int frame)
     return shot;
 }
 
-/* Frames of the best motion: every so many, and the last. */
-static bool put_frames(TrajectoryJob *job, int first, Error *err)
+/* With what the body met in the step to it: all frames in their order. */
+static Snapshot next_frame(TrajectoryJob *job, int frame)
+{
+    Snapshot shot = frame_state(job, frame);
+    if (frame == 0) {
+        contacts_start(&job->contacts, shot.at.v);
+        return shot;
+    }
+    contacts_begin(&job->contacts);
+    contacts_add(&job->contacts, &shot.at, job->run->scene->time.step, shot.p);
+    if (job->contacts.world) shot.felt = &job->contacts.sums;
+    return shot;
+}
+
+/* Frames of the best motion, every so many, and the last, which is *end; trajectory/contacts, ..: a row for each step. */
+static bool put_frames(TrajectoryJob *job, int first, Snapshot *end, Arrays *list, Error *err)
 {
     int every = job->run->scene->output.every, steps = job->run->scene->time.steps, index = first;
+    double *rows[CONTACTS_ROWS];
     if (every == 0) every = 1;
     for (int n = 0; n <= steps; n++) {
+        *end = next_frame(job, n);
+        if (n > 0) contacts_add_row(&job->contacts, "trajectory/", n, steps, rows, list);
         if (n % every && n != steps) continue;
-        Snapshot shot = frame_state(job, n);
-        if (!run_put_frame(job->run, index, shot.at.time, &shot, index == first, err)) return false;
+        if (!run_put_frame(job->run, index, end->at.time, end, index == first, err)) return false;
         index++;
     }
     return true;
@@ -132,33 +150,6 @@ static void add_field(const TrajectoryJob *job, Arrays *list)
     for (int n = 1; n <= steps; n++)
         memcpy(rows + 3 * (n - 1), trajectory_params(job->t, n) + flux, 3 * sizeof *rows);
     arrays_add(list, array_float("trajectory/flux_density", "T", rows, 2, steps, 3));
-}
-
-/* trajectory/contacts, ..: a row for each step. */
-static void add_contacts(TrajectoryJob *job, Arrays *list)
-{
-    int steps = job->run->scene->time.steps;
-    Contacts contacts = contacts_create(job->run->model);
-    double *rows[CONTACTS_ROWS];
-    for (int n = 1; contacts.world && n <= steps; n++) {
-        Array now[CONTACTS_ROWS];
-        if (n == 1) contacts_start(&contacts, frame_state(job, 0).at.v);
-        Snapshot shot = frame_state(job, n);
-        contacts_begin(&contacts);
-        contacts_add(&contacts, &shot.at, job->run->scene->time.step, shot.p);
-        int count = contacts_history(&contacts, now);
-        for (int k = 0; k < count; k++) {
-            size_t each = array_count(&now[k]);
-            if (n == 1) rows[k] = arrays_numbers(list, (size_t)steps * each);
-            memcpy(rows[k] + (size_t)(n - 1) * each, now[k].data, each * sizeof(double));
-            if (n < steps) continue;
-            char *name = arrays_keep(list, mem_format("trajectory/%s", now[k].name));
-            Array all = array_float(name, now[k].unit, rows[k], 1 + now[k].rank, steps, now[k].dims[0]);
-            all.dims[2] = now[k].dims[1];
-            arrays_add(list, all);
-        }
-    }
-    contacts_destroy(&contacts);
 }
 
 /* dF/dp of the unknowns, and what the start's places and velocities do to F. */
@@ -205,13 +196,15 @@ static void add_distances(const TrajectoryJob *job, Arrays *list)
 static bool put_results(void *self, int first, const char *status, Error *err)
 {
     TrajectoryJob *job = self;
-    if (!put_frames(job, first, err)) return false;
     Arrays list = {0};
-    Snapshot end = frame_state(job, job->run->scene->time.steps);
+    Snapshot end;
+    if (!put_frames(job, first, &end, &list, err)) {
+        arrays_clear(&list);
+        return false;
+    }
     end.p = arrays_keep(&list, mem_copy(end.p, (size_t)job->run->model->params->size, sizeof *end.p));
     run_add_final(job->run, &end, 1, status, &list);
     add_field(job, &list);
-    add_contacts(job, &list);
     add_distances(job, &list);
     add_gradients(job, &list);
     return arrays_replace(&list, job->run->journal, "final", err);
@@ -247,6 +240,7 @@ static RunStatus run_trajectory(Run *run, Error *err)
     def.march.implicit = model->world && model->world->implicit;
     if (model->moves) def.march.move = move;
     job.t = trajectory_create(&problem, &def);
+    job.contacts = contacts_create(model);
     job.v = mem_alloc((size_t)c->state.dofs, sizeof *job.v);
     double *u = mem_alloc((size_t)model->design.size, sizeof *u);
     design_read(&model->design, 0, problem.p, u);
@@ -256,6 +250,7 @@ static RunStatus run_trajectory(Run *run, Error *err)
         status = RUN_REFUSED;
     }
     trajectory_destroy(job.t);
+    contacts_destroy(&job.contacts);
     mem_free(job.v);
     mem_free(u);
     return status;

@@ -1,5 +1,6 @@
 /* Motions, and their derivatives. */
 #include "base/memory.h"
+#include "job/contacts.h"
 #include "lib/objects.h"
 #include <math.h>
 #include <string.h>
@@ -12,7 +13,7 @@ enum { STEPS_MAX = 100000000 };
 static void load(void *self, double time, double *p)
 {
     SlenderMotion *motion = self;
-    if (!motion->given) motion->refused |= !model_load(motion->model->model, time, p, &motion->err);
+    motion->refused |= !model_load(motion->model->model, time, motion->given ? NULL : p, &motion->err);
 }
 
 static bool move(void *self, double time, double *x)
@@ -151,6 +152,7 @@ void slender_motion_destroy(SlenderMotion *motion)
     if (!motion) return;
     path_destroy(&motion->path);
     state_destroy(&motion->start);
+    arrays_clear(&motion->met);
     mem_free(motion->problem.p);
     mem_free(motion);
 }
@@ -198,6 +200,62 @@ SlenderState *slender_motion_state(const SlenderMotion *motion, int n, SlenderEr
     SlenderState *state = lib_state(&at.state, err);
     state_destroy(&at.state);
     return state;
+}
+
+/* ---- What the body met ---- */
+
+/* A (sub-)step. */
+static void add_part(Path *path, int k, double *v, Contacts *contacts)
+{
+    State state = *path->problem->start;
+    path_load(path, path->frame[k], path->time[k]);
+    path_velocities(path, k, v);
+    state.x = path_x(path, k), state.v = v, state.memory = path_memory(path, k), state.time = path->time[k];
+    contacts_add(contacts, &state, path->dt[k], path->p);
+}
+
+static void find_met(SlenderMotion *motion)
+{
+    Path *path = &motion->path;
+    double *v = mem_alloc((size_t)path->dofs, sizeof *v), *rows[CONTACTS_ROWS];
+    Contacts contacts = contacts_create(motion->model->model);
+    contacts_start(&contacts, motion->start.v);
+    for (int n = 1; n <= motion->reached; n++) {
+        contacts_begin(&contacts);
+        for (int k = path->end[n - 1] + 1; k <= path->end[n]; k++) add_part(path, k, v, &contacts);
+        contacts_add_row(&contacts, "", n, motion->reached, rows, &motion->met);
+    }
+    contacts_destroy(&contacts);
+    mem_free(v);
+    motion->met_known = true;
+}
+
+typedef struct Met {
+    SlenderMotion *motion;
+    int number;
+    Array array;
+} Met;
+
+static SlenderStatus copy_met(void *self, Error *err)
+{
+    (void)err;
+    Met *met = self;
+    const Arrays *all = &met->motion->met;
+    if (!met->motion->met_known) find_met(met->motion);
+    if (met->number < 0 || (size_t)met->number >= all->count) return SLENDER_DONE;
+    Array *array = &met->array;
+    *array = all->arrays[met->number];
+    array->name = mem_text(array->name), array->unit = mem_text(array->unit);
+    array->data = mem_copy((const double *)array->data, array_count(array), sizeof(double));
+    return SLENDER_DONE;
+}
+
+SlenderStatus slender_motion_met(SlenderMotion *motion, int number, SlenderArray *array, SlenderError *err)
+{
+    Met met = {.motion = motion, .number = number};
+    SlenderStatus status = lib_call(copy_met, &met, err);
+    *array = status == SLENDER_DONE ? lib_array(&met.array) : (SlenderArray){0};
+    return status;
 }
 
 /* ---- Derivatives ---- */

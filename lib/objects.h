@@ -3,6 +3,7 @@
 #include "base/guard.h"
 #include "base/workers.h"
 #include "slender.h"
+#include "io/arrays.h"
 #include "job/run.h"
 #include "optim/path.h"
 
@@ -53,6 +54,8 @@ struct SlenderMotion {
     Host host;
     Error err;
     bool refused; /* a formula of time is not finite; err says so */
+    Arrays met;   /* what the body met, from when it was asked for on */
+    bool met_known;
 };
 
 /* Does work(self) and puts what it says of itself into the caller's error. */
@@ -73,6 +76,9 @@ bool lib_has_case(const SlenderModel *model, int load_case, Error *err);
 /* The system of a case, at work with the model's threads; and its parameters, those that cases share put in. */
 System *lib_system(SlenderModel *model, int load_case, bool motion);
 double *lib_params(SlenderModel *model, int load_case);
+
+/* An array as the caller has it, which takes what is in it. */
+SlenderArray lib_array(const Array *array);
 
 /* A state of the caller's with these numbers; NULL where memory is not there. */
 SlenderState *lib_state(const State *from, SlenderError *err);

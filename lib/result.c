@@ -76,22 +76,25 @@ static SlenderStatus read_array(void *self, Error *err)
     return ok ? SLENDER_DONE : SLENDER_REFUSED;
 }
 
+SlenderArray lib_array(const Array *from)
+{
+    SlenderArray array = {.type = from->type == ARRAY_FLOAT64 ? SLENDER_DOUBLE
+                                  : from->type == ARRAY_INT32 ? SLENDER_INT
+                                                              : SLENDER_TEXT,
+                          .rank = from->rank,
+                          .unit = from->unit,
+                          .data = (void *)from->data,
+                          .name = from->name};
+    memcpy(array.dims, from->dims, sizeof array.dims);
+    return array;
+}
+
 SlenderStatus slender_result_read(SlenderResult *result, const char *name, int frame, SlenderArray *array,
                                   SlenderError *err)
 {
     Reading reading = {.result = result, .name = name, .frame = frame};
     SlenderStatus status = lib_call(read_array, &reading, err);
-    *array = (SlenderArray){0};
-    if (status != SLENDER_DONE) return status;
-    const Array *from = &reading.array;
-    *array = (SlenderArray){.type = from->type == ARRAY_FLOAT64 ? SLENDER_DOUBLE
-                                    : from->type == ARRAY_INT32 ? SLENDER_INT
-                                                                : SLENDER_TEXT,
-                            .rank = from->rank,
-                            .unit = from->unit,
-                            .data = (void *)from->data,
-                            .name = from->name};
-    memcpy(array->dims, from->dims, sizeof array->dims);
+    *array = status == SLENDER_DONE ? lib_array(&reading.array) : (SlenderArray){0};
     return status;
 }
 

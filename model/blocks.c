@@ -57,6 +57,23 @@ void model_put_flux(const Model *model, int number, double *p)
     for (int k = 0; k < model->fields->count; k++) p[model->field_scale + k] = k == flux->field;
 }
 
+static bool knows_field(const Model *model, const FluxField *field, double time, const double *place,
+                        Error *err)
+{
+    for (int k = 0; k < model->point_count; k++)
+        if (!flux_field_is_known(field, place + 3 * k, time, err)) return false;
+    return true;
+}
+
+bool model_knows_fields(const Model *model, const double *p, double time, const double *place, Error *err)
+{
+    for (int k = 0; model->fields && k < model->fields->count; k++)
+        if (p[model->field_scale + k] != 0 && !knows_field(model, model->fields->items[k], time, place, err))
+            return error_prefix(err, "flux_density");
+    const FluxField *flow = model->world ? model->world->flow : NULL;
+    return !flow || knows_field(model, flow, time, place, err) || error_prefix(err, "water.velocity");
+}
+
 /* ---- Trajectories ---- */
 
 /* Rows of the unknown flux density: one for each step, knot or coefficient. */

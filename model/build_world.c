@@ -24,6 +24,19 @@ static FluxField *read_flow(const Build *b, const StreamScene *scene, bool *ok)
     return formula ? flux_field_formula(formula, b->size) : NULL;
 }
 
+/* A face with one outer side is one of a surface with an inside, in which there is no water. */
+static bool check_closed(const Build *b)
+{
+    const Mesh *mesh = b->mesh;
+    for (int e = 0; e < mesh->edge_count; e++)
+        if (mesh_edge_is_boundary(mesh, e))
+            return yaml_refuse(b->file, "water.sides",
+                               "outer is for closed surfaces, with no water inside, and the edge of vertices "
+                               "%d and %d has one face only: take two, by which both sides feel the stream",
+                               mesh->file_vertex[mesh->edges[e][0]], mesh->file_vertex[mesh->edges[e][1]]);
+    return true;
+}
+
 bool model_read_world(Model *model, const Build *b, const Scene *scene, const WorldBody *body, World **world)
 {
     const ContactScene *contact = &scene->contact;
@@ -50,6 +63,7 @@ bool model_read_world(Model *model, const Build *b, const Scene *scene, const Wo
     if (w->wet) {
         w->outer = scene->water->sides == SIDES_OUTER;
         w->flow = read_flow(b, &scene->water->velocity, &ok);
+        ok = (!w->outer || check_closed(b)) && ok;
     }
     return ok;
 }
@@ -178,8 +192,9 @@ static int face_of_edge(const WorldBody *body, int edge)
 /* At no distance contact has no energy, and no direction to push in. */
 static bool check_touch(const World *world, const Case *c, YamlFile *file)
 {
+    const double touching = 1e-12; /* of the distance */
     int vertices[2];
-    if (!world_touches(world, c->state.x, vertices)) return true;
+    if (isinf(world_nearest(world, c->state.x, touching, vertices))) return true;
     return yaml_refuse(
         file, "contact.self",
         "where %s starts, parts of the body touch each other, with no distance between them: at %s %d "
@@ -187,9 +202,34 @@ static bool check_touch(const World *world, const Case *c, YamlFile *file)
         c->name, world->body.face_count ? "vertices" : "nodes", vertices[0], vertices[1]);
 }
 
+/* Contact of a single piece leaves out what is near at rest. */
+static bool check_size(const World *world, YamlFile *file)
+{
+    double size = world_meets_nothing(world);
+    if (isinf(size)) return true;
+    return yaml_refuse(file, "contact.self.distance",
+                       "parts nearer to each other than 1.6 distances at rest, %.3g m, do not meet, and the "
+                       "whole body is %.3g m long: nothing would. The thickness, %.3g m, is a distance that "
+                       "fits most bodies",
+                       SELF_CONTACT_REST * world->distance, size, world->body.thickness);
+}
+
+/* At the times of a case's stages; those of a motion come along with it (model_load). */
+static bool check_poses(const World *world, const Case *c, YamlFile *file)
+{
+    Error err;
+    for (int s = 0; s < c->stage_count; s++)
+        if (!world_stands(world, c->stages[s].time, &err))
+            return yaml_refuse(file, "obstacles", "%s", err.text);
+    return true;
+}
+
 bool model_check_world(Model *model, YamlFile *file)
 {
     const World *world = model->world;
+    for (int k = 0; world && k < model->case_count; k++)
+        if (!check_poses(world, &model->cases[k], file)) return false;
+    if (world && world->self && !check_size(world, file)) return false;
     for (int k = 0; world && world->self && k < model->case_count; k++) {
         const Case *c = &model->cases[k];
         int pair[1][2], count = world_crossings(world, c->state.x, pair, 1);

@@ -15,7 +15,9 @@ bool model_move(const Model *model, double time, double part, double *x, Error *
 bool model_load(const Model *model, double time, double *p, Error *err)
 {
     const TimedFlux *timed = &model->flux_of_time;
-    return !timed_flux_is_given(timed) || timed_flux_eval(timed, time, p + model->flux_density, err);
+    if (p && timed_flux_is_given(timed) && !timed_flux_eval(timed, time, p + model->flux_density, err))
+        return error_prefix(err, "flux_density");
+    return !model->world || world_stands(model->world, time, err);
 }
 
 /* ---- Loads of a case ---- */

@@ -7,8 +7,9 @@
 static const double INSIDE =
     0.02; /* of the thickness, beyond which a start within an obstacle is none that rests on it */
 static const double OVERLAP =
-    0.9;                        /* of the thickness: parts that meet only there reach into each other      */
-static const double SLOW = 0.1; /* of the speed of a free fall by the body's size                         */
+    0.9; /* of the thickness: parts that meet only there reach into each other      */
+static const double APART = 1e-3; /* of the distance: parts that begin nearer */
+static const double SLOW = 0.1;   /* of the speed of a free fall by the body's size                         */
 
 /* ---- What there is ---- */
 
@@ -148,6 +149,20 @@ static void advise_start(Model *model, const Case *c)
     poses_destroy(&poses);
 }
 
+/* Nearer than any press brings them. */
+static void advise_near(Model *model, const Case *c)
+{
+    const World *world = model->world;
+    int vertices[2];
+    double distance = world_nearest(world, c->state.x, APART, vertices);
+    if (isfinite(distance))
+        mesh_warn(&model->report,
+                  "where %s starts, parts of the body are %.3g m apart, at %s %d and %d, and self contact "
+                  "begins at %.3g m. They are driven apart at once",
+                  c->name, distance, world->body.face_count ? "vertices" : "nodes", vertices[0], vertices[1],
+                  world->distance);
+}
+
 /* Each point has its own damping: what falls comes to the speed at which it bears the weight. */
 static void advise_damping(Model *model)
 {
@@ -192,6 +207,7 @@ void world_advise(Model *model)
     if (!world) return;
     advise_mesh(model);
     for (int k = 0; k < model->case_count; k++) advise_start(model, &model->cases[k]);
+    for (int k = 0; world->self && k < model->case_count; k++) advise_near(model, &model->cases[k]);
     if (world->self && world->distance < OVERLAP * world->body.thickness)
         mesh_warn(
             &model->report,

@@ -47,6 +47,7 @@ void rod_destroy(Rod *rod)
     mem_free(rod->edges);
     mem_free(rod->straight);
     mem_free(rod->part);
+    mem_free(rod->lengths);
     params_clear(&rod->params);
     mem_free(rod);
 }
@@ -64,9 +65,12 @@ WorldBody rod_world_body(Rod *rod)
     mem_free(rod->edges);
     mem_free(rod->straight);
     mem_free(rod->part);
+    mem_free(rod->lengths);
     rod->edges = mem_alloc((size_t)rod->elements, sizeof *rod->edges);
     rod->straight = mem_alloc((size_t)layout.nodes, sizeof *rod->straight);
     rod->part = mem_alloc((size_t)layout.nodes, sizeof *rod->part);
+    rod->lengths = mem_alloc((size_t)rod->strands, sizeof *rod->lengths);
+    for (int k = 0; k < rod->strands; k++) rod->lengths[k] = rod->strand[k].length;
     for (int e = 0; e < rod->elements; e++) {
         int node = rod->edges[e][0] = rod_element_node(&layout, e), next = rod->edges[e][1] = node + 1;
         rod->straight[next][0] = (e % layout.each + 1) * rod_element_length(rod, e);
@@ -79,7 +83,8 @@ WorldBody rod_world_body(Rod *rod)
                        .rest = (const double(*)[3])rod->straight,
                        .part = rod->part,
                        .thickness = 2 * rod->unit.reach,
-                       .length = rod_length(rod)};
+                       .strands = rod->strands,
+                       .length = rod->lengths};
 }
 
 void rod_node_mass(const Rod *rod, double *mass)

@@ -46,7 +46,8 @@ typedef struct Rod {
     World *world;      /* what it meets; owned; NULL: nothing. Not for the hanging form                 */
     int (*edges)[2];   /* [elements] the nodes of each, and                                             */
     double (*straight)[3]; /* [nodes] m, places along x,                                          */
-    int *part;             /* [nodes] and strands: what its world knows of it; all owned          */
+    int *part;             /* [nodes] and strands,                                         */
+    double *lengths;       /* [strands] m: what its world knows of it; all owned             */
 
     Params params;      /* blocks and their first entries in p:                           */
     int young;          /* [element] Pa                                                   */

@@ -135,12 +135,23 @@ void flux_field_eval(const FluxField *field, const double x[3], double time, Flu
         sample_dipole(field, vec3_load(x), sample);
 }
 
+static bool formula_value(const FluxField *field, const double x[3], double time, double flux[3], Error *err)
+{
+    double variables[5];
+    put_place(variables, vec3_load(x), time);
+    return formula_eval(field->formula, variables, flux, err);
+}
+
+bool flux_field_is_known(const FluxField *field, const double x[3], double time, Error *err)
+{
+    double flux[3];
+    return !field->formula || formula_value(field, x, time, flux, err);
+}
+
 void flux_field_value(const FluxField *field, const double x[3], double time, double flux[3])
 {
     if (field->formula) {
-        double variables[5];
-        put_place(variables, vec3_load(x), time);
-        if (!formula_eval(field->formula, variables, flux, NULL)) vec3_store(flux, vec3(NAN, NAN, NAN));
+        if (!formula_value(field, x, time, flux, NULL)) vec3_store(flux, vec3(NAN, NAN, NAN));
     } else {
         FluxSample sample;
         sample_dipole(field, vec3_load(x), &sample);

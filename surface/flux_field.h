@@ -25,6 +25,9 @@ void flux_field_destroy(FluxField *field);
 /* Re-entrant. A value that is not finite leaves NaN, which the solver notices. */
 void flux_field_eval(const FluxField *field, const double x[3], double time, FluxSample *sample);
 
+/* False and a sentence where a formula's value is not finite. */
+bool flux_field_is_known(const FluxField *field, const double x[3], double time, Error *err);
+
 /* The value alone, for a fiftieth where it is a formula. */
 void flux_field_value(const FluxField *field, const double x[3], double time, double flux[3]);
 

@@ -79,6 +79,15 @@ expect 0 "$program" export beam.run -o again.vtkhdf
 cmp -s beam.vtkhdf again.vtkhdf || { echo "the journal gives another result"; bad=1; }
 for ending in svg pdf png; do expect 0 "$program" picture beam.vtkhdf -o p.$ending --field energy_bending --view 0,-1,0.3; exists p.$ending; done
 expect 3 "$program" picture beam.vtkhdf -o p.png --field nothing
+cat > rests.yaml <<'END'
+slender: 1
+job: equilibrium
+shell: {mesh: {shape: sheet, size: [10 mm, 10 mm], cells: [4, 4]}, thickness: 1 mm, young: 0.1 MPa, poisson: 0.3, density: 1000, gravity: [0, 0, -9.81]}
+obstacles: [{box: {center: [0, 0, -10.5 mm], half: [6 mm, 12 mm, 10 mm]}}]
+END
+expect 0 "$program" run rests.yaml --no-picture
+for field in contact_force none; do expect 0 "$program" picture rests.vtkhdf -o $field.png --field $field; done
+! cmp -s contact_force.png none.png || { echo "forces of contact have no colours"; bad=1; }
 for view in 0,0,0 nan,0,1 0,-inf,1 1e300,0,0 0,1e-300,0; do expect 2 "$program" picture beam.vtkhdf -o view.png --view=$view; says "not all 0"; done
 [ ! -e view.png ] || { echo "a picture from nowhere"; bad=1; }
 expect 4 "$program" run "$scene" -o no/such/folder; says "cannot be"

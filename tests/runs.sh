@@ -115,7 +115,18 @@ fix: [{group: root, clamp: true}]
 flux_density: ["sqrt(0.0025 - t)", "0", "0"]
 time: {step: 1 ms, steps: 4}
 END
-expect 3 run formula.yaml; says "is not a finite number"
+expect 3 run formula.yaml; says 'flux_density: "sqrt(0.0025 - t)" is not a finite number'
+sed '/flux_density/d' formula.yaml > pole.yaml
+echo 'obstacles: [{name: lid, plane: {point: [0, 0, -1]}, move: ["1/(0.002 - t)", "0", "0"]}]' >> pole.yaml
+expect 3 run pole.yaml --set time.steps=3; says "obstacle 'lid': move: .* is not a finite number at t = 0.002"
+
+# Of a place, it is a solve that fails, and the field is named.
+sed 's/flux_density.*/water: {velocity: ["sqrt(0.019 - x)", "0", "0"]}/; /^fix/d' formula.yaml > place.yaml
+sed -i 's/density: 1000/density: 1000, velocity: [0.3, 0, 0]/' place.yaml
+expect 1 "$program" run place.yaml --no-picture --force; says 'case1: water.velocity: "sqrt(0.019 - x)" is not a finite number at x = '
+sed 's/^flux_density.*/flux_density: ["sqrt(0.01 - x)", "0", "0"]/; s/simulate/equilibrium/; /^time/d' formula.yaml > place.yaml
+sed -i 's/density: 1000/magnetization: [1.0e+4, 0, 0]/' place.yaml
+expect 1 "$program" run place.yaml --no-picture --force; says 'case1: flux_density: "sqrt(0.01 - x)" is not a finite number at x = '
 
 # ---- Names of cases ----
 name=$(printf '%0240d' 0)

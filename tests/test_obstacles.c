@@ -331,7 +331,9 @@ static void test_pose(void **state)
     assert_near(gap.gradient[2], 0, 1e-15);
     formula_destroy(o.move);
     o.move = three("1/(t - 1)", "0", "0");
+    o.name = mem_text("lid");
     assert_false(obstacle_pose(&o, 1, &pose, &err));
+    assert_string_equal(err.text, "obstacle 'lid': move: \"1/(t - 1)\" is not a finite number at t = 1");
     obstacle_clear(&o);
 }
 

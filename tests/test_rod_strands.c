@@ -35,11 +35,21 @@ static void dress(Rod *rod, int first, double *p)
 }
 
 /* Places and moments of the nodes after the steps. */
-static void move(Rod *rod, int first, double *place, Vec3 *moment)
+static void move(Rod *rod, int first, bool wet, double *place, Vec3 *moment)
 {
     RodLayout layout = rod_layout(rod, true);
+    if (wet) {
+        WorldBody shown = rod_world_body(rod);
+        rod->world = world_create(&shown, NULL, 0);
+        rod->world->wet = true;
+        world_add_params(rod->world, &rod->params);
+    }
     double *p = params_vector(&rod->params);
     dress(rod, first, p);
+    if (wet) {
+        p[rod->world->water.density] = 200, p[rod->world->water.viscosity] = 0.5;
+        p[rod->world->water.velocity + 1] = 0.1;
+    }
     System *sys = rod_system(rod, young, true);
     MarchDef def = march_default();
     State now = system_state(sys);
@@ -55,17 +65,16 @@ static void move(Rod *rod, int first, double *place, Vec3 *moment)
     mem_free(p);
 }
 
-static void test_alone(void **state)
+static void check_alone(bool wet)
 {
-    (void)state;
     RodSection section = rod_circle(1e-3, 1, 0.4, 1200);
     double together[STRANDS * (N + 1)][3], alone[N + 1][3], area = M_PI * 1e-6, off = 0, turned = 0, far = 0;
     Vec3 moments[STRANDS * (N + 1)], moment[N + 1];
     Rod *all = rod_create_strands(STRANDS, N, lengths, section, area, NULL);
-    move(all, 0, together[0], moments);
+    move(all, 0, wet, together[0], moments);
     for (int k = 0; k < STRANDS; k++) {
         Rod *one = rod_create(N, lengths[k], section, area, NULL);
-        move(one, k, alone[0], moment);
+        move(one, k, wet, alone[0], moment);
         for (int i = 0; i <= N; i++) {
             int node = k * (N + 1) + i;
             off = fmax(off, vec3_length(vec3_sub(vec3_load(alone[i]), vec3_load(together[node]))));
@@ -75,9 +84,16 @@ static void test_alone(void **state)
         rod_destroy(one);
     }
     rod_destroy(all);
-    print_message("%d strands together are %.1e m off those alone, moments %.1e of %.1e N m\n", STRANDS, off,
-                  turned, far);
+    print_message("%d strands%s together are %.1e m off those alone, moments %.1e of %.1e N m\n", STRANDS,
+                  wet ? " in water" : "", off, turned, far);
     assert_true(off < 1e-10 && turned < 1e-8 * far); /* steps end where Newton is content with all of them */
+}
+
+static void test_alone(void **state)
+{
+    (void)state;
+    check_alone(false);
+    check_alone(true);
 }
 
 /* Strands that rest on curves of their own. */

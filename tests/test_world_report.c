@@ -1,6 +1,7 @@
 /* What check and run say of what a body meets, and what they warn of. */
 #include "model/world_report.h"
 #include "tests/scene_fixture.h"
+#include <stdio.h>
 
 /* A sheet of 10 x 10 mm whose middle is at z = 0, and what it meets. */
 static Built build(const char *more)
@@ -30,8 +31,7 @@ static void test_lines(void **state)
     (void)state;
     expect_lines("", NULL);
     expect_lines("water: {}\n", "water: 1000 kg/m^3\n");
-    expect_lines("water: {density: 800, velocity: [1, 0, 0], sides: outer}\n",
-                 "water: 800 kg/m^3, it flows, on the outer sides of faces\n");
+    expect_lines("water: {density: 800, velocity: [1, 0, 0]}\n", "water: 800 kg/m^3, it flows\n");
     expect_lines("obstacles: [{name: floor, plane: {point: [0, 0, -1]}}]\ncontact: {stiffness: 50}\n",
                  "1 obstacle: floor (plane)\n"
                  "contact: 9 vertices; the body stays 0.0005 m away, with 50 N/m at each\n");
@@ -73,6 +73,36 @@ static void test_warnings(void **state)
                    "parts reach into each other");
 }
 
+/* A ball, of which the faces know their outer sides; two triangles that begin a micrometre apart, and nearer. */
+static void test_files(void **state)
+{
+    (void)state;
+    static const char scene[] = "slender: 1\njob: simulate\nshell:\n  mesh: {file: %s}\n"
+                                "  thickness: 1 mm\n  young: 1 MPa\n  poisson: 0.3\n"
+                                "time: {step: 1 ms, steps: 10}\n%s";
+    Built b = scene_build(mem_format(scene, SOURCE_DIR "/scenes/meshes/ball.obj", "water: {sides: outer}\n"));
+    char *text = world_describe(b.model, &b.scene);
+    assert_string_equal(text, "water: 1000 kg/m^3, on the outer sides of faces\n");
+    mem_free(text);
+    clear(&b);
+    for (int k = 0; k < 2; k++) {
+        FILE *file = fopen("world_near.obj", "w");
+        assert_non_null(file);
+        fprintf(file, "v 0 0 0\nv 0.01 0 0\nv 0 0.01 0\nv 0.002 0.002 %g\nv 0.002 0.002 0.01\n",
+                k ? 9e-7 : 1e-6);
+        fputs("v 0.003 0.002 0.01\nf 1 2 3\nf 4 5 6\n", file);
+        assert_int_equal(fclose(file), 0);
+        b = scene_build(mem_format(scene, "world_near.obj", "contact: {self: true}\n"));
+        assert_int_equal(b.model->report.warning_count, k);
+        if (k)
+            assert_string_equal(
+                b.model->report.warnings[0],
+                "where case1 starts, parts of the body are 9e-07 m apart, at vertices 3 and 0, and "
+                "self contact begins at 0.001 m. They are driven apart at once");
+        clear(&b);
+    }
+}
+
 /* 1e-4 kg of nine vertices fall at m g/(9 gamma). */
 static void test_damping(void **state)
 {
@@ -93,6 +123,6 @@ static void test_damping(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_lines), cmocka_unit_test(test_warnings),
-                                       cmocka_unit_test(test_damping)};
+                                       cmocka_unit_test(test_files), cmocka_unit_test(test_damping)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -210,6 +210,73 @@ static void test_extended(void **state)
     result_close(result);
 }
 
+/* Of a designed motion frames and the end have what a simulation's have: friction too. */
+static void test_trajectory(void **state)
+{
+    (void)state;
+    run("slender: 1\njob: trajectory\nshell:\n  mesh: {shape: strip, size: [20 mm, 5 mm], n: 8}\n"
+        "  thickness: 0.5 mm\n  young: 0.1 MPa\n  poisson: 0.3\n  density: 1000\n"
+        "  gravity: [3, 0, -9.81]\n  magnetization: [2.0e+4, 0, 0]\nflux_density: [0, 0, 1 mT]\n"
+        "obstacles: [{name: floor, plane: {point: [0, 0, -0.25 mm]}, friction: 0.5}]\n"
+        "time: {step: 1 ms, steps: 30}\noutput: {every: 10, precision: double}\n"
+        "design:\n  unknowns: {flux_density: {per: knot, knots: 3}}\n  iterations: 1\n"
+        "  objectives: [{waypoint: {vertex: 4, at: [15 mm, 0, 0.25 mm]}}]\n",
+        NULL, 0);
+    Result *result = open_result();
+    Array all = read_as(result, "slender/trajectory/contact_force", 3, 30, 1, 3),
+          end = read_as(result, "slender/final/contact_force", 2, 1, 3, 0);
+    const double(*force)[3] = (const double(*)[3])all.data;
+    assert_memory_equal(end.data, force[29], sizeof *force);
+    assert_true(force[29][0] < -0.1 * force[29][2] && force[29][2] > 0);
+    for (int frame = 1; frame < 4; frame++) {
+        Array step;
+        assert_true(result_read_step(result, "PointData/contact_force", frame, &step, NULL));
+        double sum[3] = {0};
+        for (size_t i = 0; i < array_count(&step); i++) sum[i % 3] += ((const double *)step.data)[i];
+        for (int i = 0; i < 3; i++)
+            assert_true(fabs(sum[i] - force[10 * frame - 1][i]) < 1e-12 * force[10 * frame - 1][2]);
+        array_clear(&step);
+    }
+    array_clear(&all);
+    array_clear(&end);
+    result_close(result);
+}
+
+/* A motion of the library says of its steps what the program's history does, cut ones included. */
+static void test_motion(void **state)
+{
+    (void)state;
+    SlenderError err;
+    SlenderStatus status;
+    SlenderMotionDef def = {.steps = 20, .step = 2e-3};
+    assert_int_equal(run(MOVES, NULL, 0), SLENDER_DONE);
+    SlenderScene *scene = slender_scene_parse(MOVES, NULL, 0, &err);
+    SlenderModel *model = slender_model_create(scene, 1, &err);
+    SlenderState *start = slender_state_create(model, 0, &err);
+    SlenderMotion *motion = slender_simulate(model, 0, start, &def, &status, &err);
+    assert_int_equal(status, SLENDER_DONE);
+    Result *result = open_result();
+    SlenderArray met;
+    int count = 0;
+    for (;; count++) {
+        assert_int_equal(slender_motion_met(motion, count, &met, &err), SLENDER_DONE);
+        if (!met.name) break;
+        char *path = mem_format("slender/history/%s", met.name);
+        Array history = read_as(result, path, met.rank, met.dims[0], met.dims[1], met.dims[2]);
+        const double *said = met.data, *is = history.data;
+        for (size_t i = 0; i < array_count(&history); i++) assert_true(fabs(said[i] - is[i]) < 1e-9);
+        array_clear(&history);
+        mem_free(path);
+        slender_array_free(&met);
+    }
+    assert_int_equal(count, 4);
+    result_close(result);
+    slender_motion_destroy(motion);
+    slender_state_destroy(start);
+    slender_model_destroy(model);
+    slender_scene_destroy(scene);
+}
+
 /* ---- Rods ---- */
 
 /* Frames of rods have points that stand still after those that move: each has its row. */
@@ -241,6 +308,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_weight),    cmocka_unit_test(test_energy),
                                        cmocka_unit_test(test_obstacles), cmocka_unit_test(test_way),
-                                       cmocka_unit_test(test_extended),  cmocka_unit_test(test_rod)};
+                                       cmocka_unit_test(test_extended),  cmocka_unit_test(test_trajectory),
+                                       cmocka_unit_test(test_motion),    cmocka_unit_test(test_rod)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,14 +3,19 @@
 #include "tests/scene_fixture.h"
 #include <stdio.h>
 
-/* A sheet that moves, and what it meets. */
-static Built build(const char *world)
+/* A body that moves, and what it meets. */
+static Built build_of(const char *mesh, const char *world)
 {
-    return scene_build(mem_format("slender: 1\njob: simulate\nshell:\n"
-                                  "  mesh: {shape: sheet, size: [10 mm, 10 mm], cells: [2, 2]}\n"
+    return scene_build(mem_format("slender: 1\njob: simulate\nshell:\n  mesh: {%s}\n"
                                   "  thickness: 1 mm\n  young: 1 MPa\n  poisson: 0.3\n"
                                   "time: {at: 2, step: 1 ms, steps: 10}\n%s",
-                                  world));
+                                  mesh, world));
+}
+
+/* A sheet. */
+static Built build(const char *world)
+{
+    return build_of("shape: sheet, size: [10 mm, 10 mm], cells: [2, 2]", world);
 }
 
 static void write_file(const char *path, const char *text)
@@ -152,7 +157,8 @@ static void test_water(void **state)
     assert_true(b.scene.water->density == 1000 && b.scene.water->viscosity == 1e-3);
     assert_true(b.scene.water->velocity.value[2] == 0 && b.scene.water->sides == SIDES_TWO);
     clear(&b);
-    b = build("water: {density: 800, velocity: [\"t\", \"x*y\", \"0\"], sides: outer}\n");
+    b = build_of("file: " SOURCE_DIR "/scenes/meshes/ball.obj",
+                 "water: {density: 800, velocity: [\"t\", \"x*y\", \"0\"], sides: outer}\n");
     assert_int_equal(b.scene.water->velocity.formula_count, 3);
     assert_int_equal(b.scene.water->sides, SIDES_OUTER);
     clear(&b);

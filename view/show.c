@@ -100,6 +100,33 @@ static const double *lengths(Show *show, const double (*vectors)[3])
     return r;
 }
 
+/* The sizes of vectors at the points, as the mean of a face's corners. */
+static const double *means_of_corners(Show *show, const double (*vectors)[3])
+{
+    double *mean = show_block(show->data, (size_t)show->face_count, sizeof *mean);
+    for (int f = 0; f < show->face_count; f++)
+        for (int i = 0; i < 3; i++) mean[f] += vec3_length(vec3_load(vectors[show->faces[f][i]])) / 3;
+    return mean;
+}
+
+/* Of a frame, -1: the last: one number per face of CellData, or vectors of PointData. */
+static bool frame_field(Show *show, int step, const char *name, const double **values, const char **unit,
+                        Error *err)
+{
+    Array array;
+    bool points = result_has(show->data->result, show_text(show->data, "VTKHDF/PointData/%s", name));
+    if (step < 0) step = result_step_count(show->data->result) - 1;
+    const char *path = show_text(show->data, "%s/%s", points ? "PointData" : "CellData", name);
+    if (!result_read_step(show->data->result, path, step, &array, err)) return false;
+    void *data = show_keep(show->data, array);
+    *unit = array.unit && array.unit[0] ? array.unit : "";
+    if (points && array_is(&array, ARRAY_FLOAT64, 2, 3) && array.dims[0] == show->vertex_count)
+        return *values = means_of_corners(show, (const double(*)[3])data), true;
+    *values = data;
+    return (!points && array.type == ARRAY_FLOAT64 && array_count(&array) == (size_t)show->face_count) ||
+           error_set(err, "'%s' is neither one number per face nor a vector per point", name);
+}
+
 /* Numbers per face of the field that was asked for; NULL: a plain surface. False where there is no such
  * field. */
 static bool face_field(Show *show, int step, const double **values, const char **name, const char **unit,
@@ -115,17 +142,7 @@ static bool face_field(Show *show, int step, const double **values, const char *
     if (!strcmp(asked, "young") && young) return *values = young, *unit = "Pa", true;
     if (!strcmp(asked, "magnetization") && show->magnetization)
         return *values = lengths(show, show->magnetization), *unit = "A/m", true;
-    Array array;
-    char *path = mem_format("CellData/%s", asked);
-    int steps = result_step_count(show->data->result);
-    bool ok = result_read_step(show->data->result, path, step < 0 ? steps - 1 : step, &array, err);
-    mem_free(path);
-    if (!ok) return false;
-    *values = show_keep(show->data, array);
-    *unit = array.unit && array.unit[0] ? array.unit : "";
-    if (array.type != ARRAY_FLOAT64 || array_count(&array) != (size_t)show->face_count)
-        return error_set(err, "'%s' is not one number per face", asked);
-    return true;
+    return frame_field(show, step, asked, values, unit, err);
 }
 
 /* ---- Panels ---- */

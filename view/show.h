@@ -5,13 +5,14 @@
 #include "view/picture.h"
 
 typedef struct ShowDef {
-    int frame;         /* of /VTKHDF; -1: the final state of every load case */
-    int stills;        /* moments side by side, of rods over each other; 0: 6 of a motion, else none */
-    double seconds;    /* how long an animation takes, at 25 moments a second; 0: no animation */
-    const char *only;  /* one load case; NULL: all */
-    const char *field; /* magnetization, young, energy_.., none; NULL: young if it varies, else |M| */
-    bool arrows;       /* of the magnetisation, as the faces carry it */
-    bool history;      /* a chart of the objective, if there is one */
+    int frame;        /* of /VTKHDF; -1: the final state of every load case */
+    int stills;       /* moments side by side, of rods over each other; 0: 6 of a motion, else none */
+    double seconds;   /* how long an animation takes, at 25 moments a second; 0: no animation */
+    const char *only; /* one load case; NULL: all */
+    const char
+        *field; /* magnetization, young, energy_.., contact_force, none; NULL: young if it varies, else |M| */
+    bool arrows;  /* of the magnetisation, as the faces carry it */
+    bool history; /* a chart of the objective, if there is one */
     PictureTarget target;
     double view[3]; /* direction to the eye; zeros: three quarters        */
     int width;      /* pixels; of a drawing those of its paper            */

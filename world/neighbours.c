@@ -4,9 +4,6 @@
 #include <math.h>
 #include <string.h>
 
-static const double REST_NEAR =
-    1.6; /* of D: more than a quarter of a circle around it (rod/self_contact.h) */
-
 void pair_list_clear(PairList *list)
 {
     mem_free(list->pairs);
@@ -179,7 +176,7 @@ static bool vertices_are_near(const double x[DISTANCE_DOFS], int second, double 
 /* Pairs of one piece nearer at rest than 1.6 D are left out. Of most of them the middles are: that is soon found. */
 static bool sits_near(const Neighbours *n, const Seat *a, const Seat *b)
 {
-    double least = REST_NEAR * n->def.distance;
+    double least = SELF_CONTACT_REST * n->def.distance;
     Vec3 d = vec3_sub(vec3_load(a->centre), vec3_load(b->centre));
     return a->part == b->part && vec3_dot(d, d) < least * least;
 }
@@ -187,7 +184,7 @@ static bool sits_near(const Neighbours *n, const Seat *a, const Seat *b)
 static bool is_near_at_rest(const Neighbours *n, const int vertices[4], bool edges)
 {
     const SelfContactDef *def = &n->def;
-    double x[DISTANCE_DOFS], least = REST_NEAR * def->distance;
+    double x[DISTANCE_DOFS], least = SELF_CONTACT_REST * def->distance;
     if (def->part && def->part[vertices[0]] != def->part[vertices[2]]) return false;
     neighbours_gather(vertices, def->rest[0], x);
     return vertices_are_near(x, edges ? 2 : 1, least) ||

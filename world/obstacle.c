@@ -24,8 +24,10 @@ static void rotation(const double w[3], double R[3][3])
 bool obstacle_pose(const Obstacle *obstacle, double time, ObstaclePose *pose, Error *err)
 {
     double move[3] = {0}, turn[3] = {0};
-    if (obstacle->move && !formula_eval(obstacle->move, &time, move, err)) return false;
-    if (obstacle->turn && !formula_eval(obstacle->turn, &time, turn, err)) return false;
+    if (obstacle->move && !formula_eval(obstacle->move, &time, move, err))
+        return error_prefix(err, "obstacle '%s': move", obstacle->name);
+    if (obstacle->turn && !formula_eval(obstacle->turn, &time, turn, err))
+        return error_prefix(err, "obstacle '%s': turn", obstacle->name);
     rotation(turn, pose->turn);
     for (int i = 0; i < 3; i++) {
         pose->shift[i] = obstacle->pivot[i] + move[i];

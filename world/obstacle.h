@@ -41,7 +41,7 @@ typedef struct ObstaclePose {
     double turn[3][3], shift[3]; /* x = turn X + shift */
 } ObstaclePose;
 
-/* False and a sentence where a formula is not finite. Re-entrant. */
+/* False and a sentence, which names the obstacle, where a formula is not finite. Re-entrant. */
 bool obstacle_pose(const Obstacle *obstacle, double time, ObstaclePose *pose, Error *err);
 
 /* Its gap in space, there. Re-entrant. */

@@ -1,10 +1,10 @@
 #include "world/self_contact.h"
+#include "base/vec3.h"
 #include "solve/element.h"
 #include "world/self_pairs.h"
 #include <math.h>
 
 static const double KEEP_STEP = 0.1;   /* of a distance, in a step of Newton's        */
-static const double TOUCHES = 1e-12;   /* of D: no distance                           */
 static const double KEEP_TRIAL = 0.02; /* in any trial: less, so that steps pass      */
 
 static bool contact_update(void *self, const Point *at)
@@ -170,18 +170,34 @@ SelfContactFigures self_contact_figures(const Term *self_contact, const double *
     return figures;
 }
 
-bool self_contact_touches(const SelfContactDef *def, const double *x, int vertices[2])
+double self_contact_nearest(const SelfContactDef *def, const double *x, double parts, int vertices[2])
 {
     Neighbours *n = neighbours_create(def);
     PairList near = {0};
-    neighbours_find(n, x + def->first, TOUCHES * def->distance, &near);
-    bool touches = near.count > 0;
-    if (touches) {
+    double least = INFINITY;
+    neighbours_find(n, x + def->first, parts * def->distance, &near);
+    for (int k = 0; k < near.count; k++) {
         int of[4];
-        neighbours_vertices(n, &near, 0, of);
-        vertices[0] = of[0], vertices[1] = of[near.points ? 1 : 2];
+        double own[DISTANCE_DOFS];
+        neighbours_vertices(n, &near, k, of);
+        neighbours_gather(of, x + def->first, own);
+        double distance = sqrt(neighbours_distance(n, &near, k)(own).square);
+        if (!(distance < least)) continue;
+        least = distance;
+        vertices[0] = of[0], vertices[1] = of[k < near.points ? 1 : 2];
     }
     pair_list_clear(&near);
     neighbours_destroy(n);
-    return touches;
+    return least;
+}
+
+double self_contact_nothing(const SelfContactDef *def)
+{
+    Box box = box_empty();
+    for (int v = 0; v < def->vertex_count; v++) {
+        if (def->part && def->part[v] != def->part[0]) return INFINITY;
+        box_add(&box, def->rest[v]);
+    }
+    Vec3 size = vec3_sub(vec3_load(box.high), vec3_load(box.low));
+    return vec3_length(size) <= SELF_CONTACT_REST * def->distance ? vec3_length(size) : INFINITY;
 }

@@ -24,6 +24,10 @@
 #pragma once
 #include "solve/term.h"
 
+/* Pairs of one piece nearer at rest are left out; parts of D: more than a quarter of a circle around it
+ * (rod/self_contact.h). */
+static const double SELF_CONTACT_REST = 1.6;
+
 typedef struct SelfContactDef {
     int vertex_count, first;    /* positions of vertex v are the dofs first + 3v ..              */
     int face_count, edge_count; /* a rod has no faces                                            */
@@ -56,5 +60,10 @@ typedef struct SelfContactFigures {
 
 SelfContactFigures self_contact_figures(const Term *self_contact, const double *x, double stiffness);
 
-/* Is there a pair that may meet and has no distance, less than 1e-12 D, at x? A vertex of each side of the first. */
-bool self_contact_touches(const SelfContactDef *def, const double *x, int vertices[2]);
+/* The least distance, m, of pairs that may meet and are nearer than so many parts of D at x, and a vertex of each side of
+ * that pair; INFINITY: there is none. */
+double self_contact_nearest(const SelfContactDef *def, const double *x, double parts, int vertices[2]);
+
+/* Of one piece that at rest is no larger than 1.6 D, all pairs are left out: nothing may meet. Its size, m, or INFINITY
+ * where something may. */
+double self_contact_nothing(const SelfContactDef *def);

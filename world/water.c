@@ -21,19 +21,12 @@ static void water_dofs(const void *self, int element, int *dof)
         dof[i] = term->first + 3 * term->law->vertex(term, element, i / 3) + i % 3;
 }
 
-/* The element in a lane of a pack; the last one fills up. */
-static int element_of_lane(const WaterTerm *term, int pack, int lane)
-{
-    int element = pack * PACK_LANES + lane, last = term->count - 1;
-    return element < last ? element : last;
-}
-
 /* The elements' own entries of a whole vector. */
 static void gather(const WaterTerm *term, int pack, const double *vector, Pack *to)
 {
     for (int l = 0; l < PACK_LANES; l++)
         for (int corner = 0; corner < term->law->corners; corner++) {
-            int vertex = term->law->vertex(term, element_of_lane(term, pack, l), corner);
+            int vertex = term->law->vertex(term, water_element(term, pack, l), corner);
             for (int i = 0; i < 3; i++) to[3 * corner + i][l] = vector[term->first + 3 * vertex + i];
         }
 }
@@ -98,11 +91,11 @@ static Stream stream_of(Pack3 direction, Pack3 v)
 }
 
 /* With the numbers in values, which are laid out as p. */
-static Drag drag_with(const WaterTerm *term, const Stream *s, const double *values)
+static Drag drag_with(const WaterTerm *term, int pack, const Stream *s, const double *values)
 {
     double number[WATER_NUMBERS];
     for (int k = 0; k < term->law->numbers; k++) number[k] = values[term->number[k]];
-    return term->law->drag(term, s, number);
+    return term->law->drag(term, pack, s, number);
 }
 
 /* x: elements' dofs where the step ends; NULL: where it starts. */
@@ -115,7 +108,7 @@ static Moment moment_at(const WaterTerm *term, int pack, const Point *at, const 
     m.middle = mean(term, m.x);
     m.u = fluid_velocity(term, at, m.middle);
     m.s = stream_of(term->law->direction(m.x), pack3_sub(m.u, mean(term, v)));
-    m.drag = drag_with(term, &m.s, at->p);
+    m.drag = drag_with(term, pack, &m.s, at->p);
     m.v = m.s.v;
     if (x) m.v = pack3_axpy(pack_set(-1 / at->dt), pack3_sub(mean(term, x), m.middle), m.u);
     return m;
@@ -256,7 +249,7 @@ static void water_param(const void *self, int pack, int lanes, const Point *at, 
     for (int k = 0; k < term->law->numbers; k++) {
         double one[WATER_NUMBERS] = {0};
         one[k] = 1;
-        Drag unit = term->law->drag(term, &m.s, one);
+        Drag unit = term->law->drag(term, pack, &m.s, one);
         dp[term->number[k]] -= pack_sum(pack3_dot(W, force_of(&m.s, &unit, m.v)), lanes);
     }
 }
@@ -270,12 +263,18 @@ static void water_param_forward(const void *self, int pack, const Point *at, con
         return;
     }
     Moment m = moment_at(term, pack, at, x);
-    Drag change = drag_with(term, &m.s, dp);
+    Drag change = drag_with(term, pack, &m.s, dp);
     const double *u = dp + term->water.velocity;
     Pack3 du = pack3(pack_set(u[0]), pack_set(u[1]), pack_set(u[2]));
     Pack3 f = force_rate(&m.s, &m.drag, m.v, &(Back){.start = du, .end = du});
     f = pack3_add(f, force_of(&m.s, &change, m.v));
     store_corners(term, pack3_scale(pack_set(-1.0 / term->law->corners), f), r);
+}
+
+static void water_destroy(void *self)
+{
+    mem_free(((WaterTerm *)self)->strand);
+    mem_free(self);
 }
 
 static const TermOps water_ops = {
@@ -288,7 +287,7 @@ static const TermOps water_ops = {
     .param_forward = water_param_forward,
     .prev = water_prev,
     .prev_forward = water_prev_forward,
-    .destroy = mem_free,
+    .destroy = water_destroy,
 };
 
 double water_power(const Term *of, const State *state, const double *p)
@@ -326,14 +325,21 @@ Term water_term(const WaterDef *def)
 
 Term rod_water_term(const RodWaterDef *def)
 {
-    const double drag = 1.1, slenderness = log(def->length / def->radius);
-    assert(def->length > ROD_WATER_SLENDER * def->radius);
+    const double drag = 1.1;
+    int each = def->element_count / def->strands;
+    RodDrag *strand = mem_alloc((size_t)def->strands, sizeof *strand);
+    for (int k = 0; k < def->strands; k++) {
+        double slenderness = log(def->length[k] / def->radius);
+        assert(def->length[k] > ROD_WATER_SLENDER * def->radius);
+        strand[k] = (RodDrag){.length = def->length[k] / each,
+                              .along = 2 * M_PI / (slenderness - 0.5),
+                              .across = 4 * M_PI / (slenderness + 0.5),
+                              .cross = drag * def->radius};
+    }
     return make((WaterTerm){.law = &water_rod_law,
                             .count = def->element_count,
                             .first = def->first,
                             .water = def->water,
-                            .length = def->length / def->element_count,
-                            .along = 2 * M_PI / (slenderness - 0.5),
-                            .across = 4 * M_PI / (slenderness + 0.5),
-                            .cross = drag * def->radius});
+                            .each = each,
+                            .strand = strand});
 }

@@ -47,10 +47,12 @@ typedef struct WaterDef {
 
 Term water_term(const WaterDef *def);
 
-/* A rod of elements of equal length from node to node; the positions of node i are the dofs first + 3i .. */
+/* Rods, one after the other, each of as many elements of equal length from node to node; the positions of node i are the
+ * dofs first + 3i .. */
 typedef struct RodWaterDef {
-    int element_count, first;
-    double length, radius; /* m; length > ROD_WATER_SLENDER radius */
+    int element_count, strands, first; /* elements: of all */
+    const double *length;              /* [strands] m; > ROD_WATER_SLENDER radius */
+    double radius;                     /* m */
     Water water;
 } RodWaterDef;
 

@@ -48,8 +48,9 @@ static void face_direction_back(const Pack *x, Pack3 w, Pack *dx)
                     pack3_axpy(pack_set(0.5), pack3_cross(side(x, i), w), pack3_load(dx + 3 * i)));
 }
 
-static Drag face_drag(const WaterTerm *term, const Stream *s, const double *number)
+static Drag face_drag(const WaterTerm *term, int pack, const Stream *s, const double *number)
 {
+    (void)pack;
     double rho = number[0];
     Pack q = term->outer ? pack_select(s->q < 0, s->q, pack_set(0)) : s->q, Y = q * q;
     Pack R = s->V + EPSILON * EPSILON, root = pack_sqrt(R), speed = smooth_speed(Y);
@@ -74,8 +75,7 @@ const WaterLaw water_face_law = {.corners = 3,
 
 static int rod_vertex(const WaterTerm *term, int element, int corner)
 {
-    (void)term;
-    return element + corner;
+    return element + element / term->each + corner;
 }
 
 static Pack3 rod_direction(const Pack *x)
@@ -96,12 +96,17 @@ static void rod_direction_back(const Pack *x, Pack3 w, Pack *dx)
     pack3_store(dx + 3, pack3_add(pack3_load(dx + 3), w));
 }
 
-static Drag rod_drag(const WaterTerm *term, const Stream *s, const double *number)
+static Drag rod_drag(const WaterTerm *term, int pack, const Stream *s, const double *number)
 {
     Pack Y = s->V - s->q * s->q;
     Y = pack_select(Y > 0, Y, pack_set(0));
-    double cross = term->length * number[0] * term->cross, across = term->length * number[1] * term->across,
-           along = term->length * number[1] * term->along;
+    Pack cross, across, along;
+    for (int l = 0; l < PACK_LANES; l++) {
+        const RodDrag *drag = &term->strand[water_element(term, pack, l) / term->each];
+        cross[l] = drag->length * number[0] * drag->cross;
+        across[l] = drag->length * number[1] * drag->across;
+        along[l] = drag->length * number[1] * drag->along;
+    }
     Slope lambda = {.value = across + cross * smooth_speed(Y), .V = cross * smooth_speed_slope(Y)};
     lambda.q = -2 * s->q * lambda.V;
     return (Drag){.lambda = lambda, .sigma = {.value = along - lambda.value, .q = -lambda.q, .V = -lambda.V}};

@@ -38,11 +38,16 @@ typedef struct WaterLaw {
     Pack3 (*direction_rate)(const Pack *x, const Pack *dx);
     void (*direction_back)(const Pack *x, Pack3 w, Pack *dx);
 
-    /* Linear in number[numbers]. */
-    Drag (*drag)(const WaterTerm *term, const Stream *stream, const double *number);
+    /* Of the elements in a pack. Linear in number[numbers]. */
+    Drag (*drag)(const WaterTerm *term, int pack, const Stream *stream, const double *number);
 } WaterLaw;
 
 extern const WaterLaw water_face_law, water_rod_law;
+
+/* Of an element of a rod: its length, m; c_t/mu, c_n/mu; C_d r, m. */
+typedef struct RodDrag {
+    double length, along, across, cross;
+} RodDrag;
 
 struct WaterTerm {
     const WaterLaw *law;
@@ -51,5 +56,13 @@ struct WaterTerm {
     Water water;
     int (*faces)[3]; /* of faces */
     bool outer;
-    double length, along, across, cross; /* of rods: an element's, m; c_t/mu, c_n/mu; C_d r, m */
+    int each;        /* of rods: elements of a strand */
+    RodDrag *strand; /* [strands] owned */
 };
+
+/* The element in a lane of a pack; the last one fills up. */
+static inline int water_element(const WaterTerm *term, int pack, int lane)
+{
+    int element = pack * PACK_LANES + lane, last = term->count - 1;
+    return element < last ? element : last;
+}

@@ -140,10 +140,16 @@ int world_crossings(const World *world, const double *x, int (*pairs)[2], int ma
     return self_contact_crossings(&def, x, pairs, max);
 }
 
-bool world_touches(const World *world, const double *x, int vertices[2])
+double world_nearest(const World *world, const double *x, double parts, int vertices[2])
 {
     SelfContactDef def = self_of(world);
-    return self_contact_touches(&def, x, vertices);
+    return self_contact_nearest(&def, x, parts, vertices);
+}
+
+double world_meets_nothing(const World *world)
+{
+    SelfContactDef def = self_of(world);
+    return self_contact_nothing(&def);
 }
 
 static Term water_of(const World *world)
@@ -153,6 +159,7 @@ static Term water_of(const World *world)
         return water_term(
             &(WaterDef){body->face_count, body->first, (int(*)[3])body->faces, world->outer, world->water});
     return rod_water_term(&(RodWaterDef){.element_count = body->edge_count,
+                                         .strands = body->strands,
                                          .first = body->first,
                                          .length = body->length,
                                          .radius = body->thickness / 2,
@@ -172,6 +179,14 @@ void world_add_terms(const World *world, System *sys, bool motion)
         if (motion && world->rubs) system_add(sys, self_friction_term(&def));
     }
     if (motion && world->wet) system_add(sys, water_of(world));
+}
+
+bool world_stands(const World *world, double time, Error *err)
+{
+    ObstaclePose pose;
+    for (int k = 0; k < world->obstacle_count; k++)
+        if (!obstacle_pose(&world->obstacles[k], time, &pose, err)) return false;
+    return true;
 }
 
 void world_lean(const World *world, double time, double depth, double *x)

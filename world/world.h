@@ -15,7 +15,8 @@ typedef struct WorldBody {
     const int *part;                    /* [vertex] the piece that it belongs to; NULL: one  */
     const bool *fixed;                  /* [3*vertex_count] held; NULL: nothing              */
     double thickness;                   /* m; a rod's diameter                               */
-    double length;                      /* m, of a rod                                       */
+    int strands;                        /* rods, one after the other; of a shell 0           */
+    const double *length;               /* [strands] m                                       */
 } WorldBody;
 
 /* Of which what touches sinks in by less than 1 %: a shell's thickness, a rod's radius, m. */
@@ -72,8 +73,13 @@ bool world_slips_between(const World *world, int obstacle, double longest);
 /* Where the body passes through itself at x, whole vector: how often, and the first of it (self_contact_crossings). */
 int world_crossings(const World *world, const double *x, int (*pairs)[2], int max);
 
-/* Are there parts that may meet and have no distance at x, whole vector? A vertex of each of the first two. */
-bool world_touches(const World *world, const double *x, int vertices[2]);
+/* Of parts that may meet and are nearer than so many parts of their distance at x, whole vector, the nearest
+ * (self_contact_nearest); and the body's size where it is too small to meet itself (self_contact_nothing). */
+double world_nearest(const World *world, const double *x, double parts, int vertices[2]);
+double world_meets_nothing(const World *world);
+
+/* Are all obstacles somewhere at that time? False and a sentence that names the first that is not. */
+bool world_stands(const World *world, double time, Error *err);
 
 /* Moves the body at x, whole vector, as it is and by the shortest way, until a vertex is so deep in what an obstacle keeps
  * free of it (its offset); not if one is already. */

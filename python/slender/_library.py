@@ -95,6 +95,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {  # what is returned, what is giv
     "motion_destroy": (None, [_P]),
     "motion_steps": (_I, [_P]),
     "motion_state": (_P, [_P, _I, _E]),
+    "motion_met": (_I, [_P, _I, POINTER(CArray), _E]),
     "motion_vjp": (_I, [_P, _I, _P, _P, _P, _P, _P, _P, _P, _E]),
     "motion_jvp": (_I, [_P, _P, _P, _P, _P, _P, _E]),
     "result_open": (_P, [_S, _E]),

@@ -1,6 +1,7 @@
 """Stored motions, and their derivatives."""
 from __future__ import annotations
 
+from ctypes import byref
 from typing import TYPE_CHECKING, Literal, Mapping, NamedTuple, Optional, Sequence, Union, overload
 
 import numpy as np
@@ -9,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _library as c
 from ._errors import DONE
 from ._handle import Array, Handle, Shield, address
+from ._result import Read, array_of
 from ._state import State
 
 if TYPE_CHECKING:
@@ -38,6 +40,19 @@ class Motion:
     @property
     def states(self) -> States:
         return States(self)
+
+    @property
+    def history(self) -> Mapping[str, Array]:
+        """What the body met in each step, as in a simulation's history: contacts, contact_force [steps, obstacles, 3], .."""
+        found: dict[str, Array] = {}
+        while (read := self._met(len(found))).array.name:
+            found[read.array.name.decode()] = array_of(read)
+        return found
+
+    def _met(self, number: int) -> Read:
+        read = Read()
+        self._handle.do(c.lib.slender_motion_met, number, byref(read.array))
+        return read
 
     @overload
     def vjp(self, dF: Seeds, dv: Optional[Seeds] = None, *, start: Literal[False] = False) -> tuple[

@@ -14,7 +14,7 @@ from ._handle import Array, Handle, lent
 DOUBLE, INT, TEXT = 0, 1, 2
 
 
-class _Read:
+class Read:
     """A dataset's memory: freed with the last view of it."""
 
     def __init__(self) -> None:
@@ -37,8 +37,8 @@ class Result(Mapping[str, Any]):
             self.names.append(name.decode())
         self._known = set(self.names)
 
-    def _read(self, name: str, frame: int = -1) -> _Read:
-        read = _Read()
+    def _read(self, name: str, frame: int = -1) -> Read:
+        read = Read()
         self._handle.do(c.lib.slender_result_read, name.encode(), frame, byref(read.array))
         return read
 
@@ -89,7 +89,7 @@ class Frame:
 
     @property
     def x(self) -> Array:
-        return _numbers(self._result._read("Points", self.number))
+        return array_of(self._result._read("Points", self.number))
 
     @property
     def time(self) -> float:
@@ -102,7 +102,7 @@ class Frame:
     def __getitem__(self, name: str) -> NDArray[Any]:
         for kind in ("CellData", "PointData"):
             if f"VTKHDF/{kind}/{name}" in self._result._known:
-                return _numbers(self._result._read(f"{kind}/{name}", self.number))
+                return array_of(self._result._read(f"{kind}/{name}", self.number))
         raise KeyError(f"frames have no {name!r}; they have {', '.join(self.keys()) or 'places alone'}")
 
 
@@ -124,17 +124,17 @@ class Frames(Sequence[Frame]):
         return [Frame(self._result, k) for k in numbers] if isinstance(numbers, range) else Frame(self._result, numbers)
 
 
-def _numbers(read: _Read) -> NDArray[Any]:
+def array_of(read: Read) -> NDArray[Any]:
     a = read.array
     return lent(a.data, tuple(a.dims[: a.rank]), read, kind="<i4" if a.type == INT else "<f8")
 
 
-def _value(read: _Read) -> Any:
+def _value(read: Read) -> Any:
     a = read.array
     if a.type == TEXT:
         length = int(np.prod(a.dims[: a.rank]))
         return bytes(lent(a.data, (length,), read, kind="|u1")).rstrip(b"\0").decode(errors="replace")
-    return _numbers(read)
+    return array_of(read)
 
 
 def open(path: Union[str, "os.PathLike[str]"]) -> Result:

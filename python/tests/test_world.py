@@ -44,6 +44,24 @@ class Worlds(support.TestCase):
             error = abs(sum(np.sum(seed * tangent[n]) for n, seed in dF.items()) - back)
             self.assertLess(error, 1e-11 * size, coupling)
 
+    def test_a_history(self) -> None:
+        """A motion tells what a simulation's history does; one that meets nothing, nothing."""
+        scene = plate(contact={"friction": MU, "self": True})
+        motion = support.model_of(scene).simulate(steps=50, dt=1e-3)
+        told, r = motion.history, slender.run(scene, self.folder / "history", journal=False).history
+        counts = {"newton_iterations", "factorizations", "cg_iterations", "time"}
+        self.assertEqual(set(told), set(r) - counts)
+        self.assertIn("self_contacts", told)
+        for name, rows in told.items():
+            self.assertEqual(rows.shape, r[name].shape)
+            known = np.isfinite(r[name])  # nothing is near: at no distance
+            self.same(np.isfinite(rows), known)
+            self.near(np.where(known, rows, 0), np.where(known, r[name], 0), 1e-5)
+        self.assertGreater(told["friction_work"][2:].min(), 0)  # lagged by a step
+        free = plate()
+        del free["obstacles"], free["contact"]
+        self.assertEqual(dict(support.model_of(free).simulate(steps=2, dt=1e-3).history), {})
+
     def test_a_result(self) -> None:
         """Contact is in histories, frames and datasets; a plane that moves has its pose in each frame."""
         scene = plate()

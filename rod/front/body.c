@@ -103,7 +103,6 @@ static const char *takes_one(const RodModel *rm, const Scene *scene)
     return scene_job(scene) != &rod_job_simulate ? "jobs other than invert and simulate take one rod"
            : rm->preview                         ? "solver: pbd takes one rod"
            : rod_scene(scene)->end               ? "rod.end holds one rod"
-           : scene->water                        ? "water is for one rod"
                                                  : NULL;
 }
 
@@ -257,7 +256,8 @@ static bool fill_cases(Model *model, const Scene *scene, const Build *b, bool re
 
 static bool check_slender(const Rod *rod, const Build *b)
 {
-    double length = rod_length(rod), radius = rod->unit.reach;
+    double length = INFINITY, radius = rod->unit.reach;
+    for (int k = 0; k < rod->strands; k++) length = fmin(length, rod->strand[k].length);
     return length > ROD_WATER_SLENDER * radius ||
            yaml_refuse(
                b->file, "water",

@@ -107,7 +107,8 @@ static bool move(const Model *model, double time, double part, double *x, Error 
             int v = motion->vertices.items[k];
             double variables[BUILD_VARIABLES], place[3];
             build_position(variables, model->mesh->rest[v], time);
-            if (!formula_eval(motion->formula, variables, place, err)) return false;
+            if (!formula_eval(motion->formula, variables, place, err))
+                return error_prefix(err, "fix[%d].move", motion->entry);
             for (int i = 0; i < 3; i++)
                 if (motion->axis[i]) x[3 * v + i] += part * (place[i] - x[3 * v + i]);
         }
