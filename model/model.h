@@ -74,6 +74,11 @@ bool model_load(const Model *model, double time, double *p, Error *err);
  * that says where which of them is not: to be asked when a solve has failed. */
 bool model_knows_fields(const Model *model, const double *p, double time, const double *place, Error *err);
 
+/* What the scene's key `fix` holds of a body with a mesh: coordinates, fixed[3*vertex_count], and slopes, clamped[edge_count];
+ * and how it moves them, into the model. False after a refusal. model_move_held is then BodyOps.move. */
+bool model_hold(Model *model, const Build *b, const Scene *scene, bool *fixed, bool *clamped);
+bool model_move_held(const Model *model, double time, double part, double *x, Error *err);
+
 /* What of a scene counts before there can be vectors p, in this order (blocks.c): the flux densities of all cases or
  * stages, whose fields are then the body's; and, once the body and its blocks are there, the blocks that a trajectory
  * has beside them (model->control is the first one). False after a refusal. */

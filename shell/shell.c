@@ -2,7 +2,7 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "shell/hinge.h"
-#include "shell/rigid.h"
+#include "surface/rigid.h"
 #include "shell/terms.h"
 #include "solve/kinetic.h"
 #include "solve/lumped.h"
@@ -121,7 +121,8 @@ static System *make_system(const Shell *shell, bool dynamic)
         if (shell->fixed[i]) system_fix(sys, i);
     for (int e = 0; e < mesh->edge_count; e++)
         if (shell->clamped[e] || shell->bending == BENDING_HINGE) system_fix(sys, shell_angle_dof(shell, e));
-    if (!dynamic && rigid_free_count(shell)) system_set_base_shift(sys, BASE_SHIFT);
+    if (!dynamic && rigid_free_count(shell->mesh, shell->fixed, shell->clamped))
+        system_set_base_shift(sys, BASE_SHIFT);
     system_prepare(sys);
     return sys;
 }

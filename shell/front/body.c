@@ -2,119 +2,9 @@
 #include "base/memory.h"
 #include "job/jobs.h"
 #include "shell/front/front.h"
-#include "shell/rigid.h"
 #include "shell/smoothness.h"
-#include <math.h>
+#include "surface/rigid.h"
 #include <string.h>
-
-/* ---- What is held ---- */
-
-/* Do two motions lead a vertex to one place, as far as both move it? At up to 64 times, or in statics at one. */
-static bool agree(const Build *b, const Motion *motion, const Motion *other, int v)
-{
-    const double little = 1e-9;
-    int times = b->duration > 0 ? 64 : 0;
-    bool same = true;
-    for (int k = 0; same && k <= times; k++) {
-        double variables[BUILD_VARIABLES], place[3], there[3];
-        build_position(variables, b->mesh->rest[v], b->time + (times ? b->duration * k / times : 0));
-        if (!formula_eval(motion->formula, variables, place, NULL) ||
-            !formula_eval(other->formula, variables, there, NULL))
-            return true; /* what has no value is told where it is needed */
-        for (int i = 0; i < 3; i++)
-            same &= !motion->axis[i] || !other->axis[i] || fabs(place[i] - there[i]) <= little * b->size;
-    }
-    return same;
-}
-
-/* A vertex that two entries move goes to one place. */
-static bool check_motion(const Model *model, const Build *b, const Motion *motion)
-{
-    int disagree = -1, entry = 0;
-    bool *moved = mem_alloc((size_t)b->mesh->vertex_count, sizeof *moved);
-    for (int k = 0; k < motion->vertices.count; k++) moved[motion->vertices.items[k]] = true;
-    for (int m = 0; disagree < 0 && m < model->motion_count; m++) {
-        const Motion *other = &model->motions[m];
-        for (int k = 0; disagree < 0 && k < other->vertices.count; k++) {
-            int v = other->vertices.items[k];
-            if (moved[v] && !agree(b, motion, other, v)) disagree = v, entry = other->entry;
-        }
-    }
-    mem_free(moved);
-    return disagree < 0 || yaml_refuse(b->file, key("fix[%d].move", motion->entry).text,
-                                       "vertex %d is moved here to another place than by fix[%d]",
-                                       b->mesh->file_vertex[disagree], entry);
-}
-
-static bool add_motion(Model *model, const Build *b, int entry, const FixScene *fix, const bool *axis,
-                       Indices vertices)
-{
-    Key at = key("fix[%d].move", entry);
-    for (int i = 0; i < 3; i++) {
-        const char *own = (const char *[]){"x", "y", "z"}[i];
-        if (!axis[i] && strcmp(fix->move[i], "0") && strcmp(fix->move[i], own))
-            return yaml_refuse(b->file, key("%s[%d]", at.text, i).text,
-                               "axes is '%s', so nothing is moved along %s: its expression must be 0 or %s, "
-                               "not \"%s\"",
-                               fix->axes, own, own, fix->move[i]);
-    }
-    Motion motion = {.vertices = vertices, .axis = {axis[0], axis[1], axis[2]}, .entry = entry};
-    motion.formula = build_formula(b, at, fix->move, 3, NULL, 0, build_variables_time);
-    if (!motion.formula) return false;
-    if (!check_motion(model, b, &motion)) {
-        formula_destroy(motion.formula);
-        return false;
-    }
-    size_t count = (size_t)model->motion_count++;
-    model->moves = true;
-    model->motions = mem_resize(model->motions, count, count + 1, sizeof *model->motions);
-    motion.vertices.items = mem_copy(vertices.items, (size_t)vertices.count, sizeof(int));
-    model->motions[count] = motion;
-    return true;
-}
-
-static bool fix_entry(Model *model, const Build *b, int entry, const FixScene *fix)
-{
-    Key at = key("fix[%d]", entry);
-    bool axis[3] = {false}, ok = *fix->axes != 0;
-    for (const char *c = fix->axes; ok && *c; c++) {
-        ok = strchr("xyz", *c) && !axis[*c - 'x'];
-        if (ok) axis[*c - 'x'] = true;
-    }
-    if (!ok)
-        return yaml_refuse(b->file, at.text, "axes is '%s'; it must be some of xyz, each once at most",
-                           fix->axes);
-    Indices found = {0};
-    SelectionScene selection = SELECTION_OF(fix);
-    ok = build_selection(b, at, &selection, &found);
-    for (int i = 0; i < 3 * found.count; i++)
-        if (axis[i % 3]) shell_fix(model->self, found.items[i / 3], i % 3);
-    if (ok && fix->clamp) {
-        Indices edges = select_edges(b->mesh, &found);
-        for (int k = 0; k < edges.count; k++) shell_clamp(model->self, edges.items[k]);
-        mem_free(edges.items);
-    }
-    if (ok && fix->move_count) ok = add_motion(model, b, entry, fix, axis, found);
-    mem_free(found.items);
-    return ok;
-}
-
-static bool move(const Model *model, double time, double part, double *x, Error *err)
-{
-    for (int m = 0; m < model->motion_count; m++) {
-        const Motion *motion = &model->motions[m];
-        for (int k = 0; k < motion->vertices.count; k++) {
-            int v = motion->vertices.items[k];
-            double variables[BUILD_VARIABLES], place[3];
-            build_position(variables, model->mesh->rest[v], time);
-            if (!formula_eval(motion->formula, variables, place, err))
-                return error_prefix(err, "fix[%d].move", motion->entry);
-            for (int i = 0; i < 3; i++)
-                if (motion->axis[i]) x[3 * v + i] += part * (place[i] - x[3 * v + i]);
-        }
-    }
-    return true;
-}
 
 /* ---- Loads ---- */
 
@@ -191,6 +81,9 @@ static System *make_system(const Model *model, bool motion)
 static bool finish_cases(Model *model, const Build *b)
 {
     const World *world = model->world;
+    const Shell *shell = model->self;
+    double *mass = mem_alloc((size_t)model->point_count, sizeof *mass);
+    shell_vertex_mass(shell, mass);
     bool ok = true, borne = world && (world->obstacle_count || world->self);
     for (int k = 0; ok && k < model->case_count; k++) {
         Case *c = &model->cases[k];
@@ -198,9 +91,11 @@ static bool finish_cases(Model *model, const Build *b)
         case_start(c, make_system(model, model->job->motion), model->x);
         system_accept(c->sys, c->state.x, c->state.memory);
         for (int s = 0; ok && model->job->rest && !borne && s < c->stage_count; s++)
-            ok = rigid_check_force(model->self, c->stages[s].p, &err) ||
+            ok = rigid_check_force(b->mesh, shell->fixed, mass, c->stages[s].p + shell->gravity,
+                                   c->stages[s].p + shell->load, &err) ||
                  yaml_refuse(b->file, "", "%s", err.text);
     }
+    mem_free(mass);
     return ok;
 }
 
@@ -209,7 +104,7 @@ static bool fill(Model *model, const Scene *scene, const Build *b, bool readable
     Shell *shell = model->self;
     const ShellScene *from = shell_scene(scene);
     bool ok = readable;
-    for (int k = 0; k < scene->fix_count; k++) ok = fix_entry(model, b, k, &scene->fix[k]) && ok;
+    ok = model_hold(model, b, scene, shell->fixed, shell->clamped) && ok;
     model->x = mem_alloc((size_t)shell_dof_count(shell), sizeof *model->x);
     shell_rest_state(shell, model->x);
     ok = read_pose(b, from->pose, model->x) && ok;
@@ -323,7 +218,7 @@ static const BodyOps ops = {
     .select = select_part,
     .masses = masses,
     .smoothness = smoothness,
-    .move = move,
+    .move = model_move_held,
     .system = make_system,
     .pose_system = pose_system,
     .add_static = shell_add_static,

@@ -1,4 +1,4 @@
-#include "shell/rigid.h"
+#include "surface/rigid.h"
 #include "base/memory.h"
 #include "base/vec3.h"
 #include <math.h>
@@ -29,19 +29,18 @@ static int free_motions(double *gram)
     return count;
 }
 
-int rigid_free_count(const Shell *shell)
+int rigid_free_count(const Mesh *mesh, const bool *fixed, const bool *clamped)
 {
-    const Mesh *mesh = shell->mesh;
     double(*gram)[36] = mem_alloc((size_t)mesh->component_count, sizeof *gram);
     double scale = 1 / mesh_diagonal(mesh);
     for (int i = 0; i < 3 * mesh->vertex_count; i++) {
-        if (!shell->fixed[i]) continue;
+        if (!fixed[i]) continue;
         Vec3 axis = vec3(i % 3 == 0, i % 3 == 1, i % 3 == 2);
         Vec3 arm = vec3_scale(scale, vec3_sub(vec3_load(mesh->rest[i / 3]), vec3_load(mesh->rest[0])));
         hold(gram[mesh->vertex_component[i / 3]], axis, vec3_cross(arm, axis));
     }
-    for (int e = 0; e < mesh->edge_count; e++) {
-        if (!shell->clamped[e]) continue;
+    for (int e = 0; clamped && e < mesh->edge_count; e++) {
+        if (!clamped[e]) continue;
         const int *v = mesh->edges[e];
         Vec3 along = vec3_unit(vec3_sub(vec3_load(mesh->rest[v[1]]), vec3_load(mesh->rest[v[0]])));
         hold(gram[mesh->vertex_component[v[0]]], vec3(0, 0, 0), along);
@@ -52,20 +51,18 @@ int rigid_free_count(const Shell *shell)
     return count;
 }
 
-bool rigid_check_force(const Shell *shell, const double *p, Error *err)
+bool rigid_check_force(const Mesh *mesh, const bool *fixed, const double *mass, const double *gravity,
+                       const double *load, Error *err)
 {
-    const Mesh *mesh = shell->mesh;
     size_t parts = 3 * (size_t)mesh->component_count;
-    double *mass = mem_alloc((size_t)mesh->vertex_count, sizeof *mass);
     double *net = mem_alloc(parts, sizeof *net), *size = mem_alloc(parts, sizeof *size);
     bool *held = mem_alloc(parts, sizeof *held), ok = true;
-    shell_vertex_mass(shell, mass);
     for (int i = 0; i < 3 * mesh->vertex_count; i++) {
         int part = 3 * mesh->vertex_component[i / 3] + i % 3;
-        double force = mass[i / 3] * p[shell->gravity + i % 3] + p[shell->load + i];
+        double force = mass[i / 3] * gravity[i % 3] + load[i];
         net[part] += force;
         size[part] += fabs(force);
-        held[part] |= shell->fixed[i];
+        held[part] |= fixed[i];
     }
     for (size_t part = 0; ok && part < parts; part++)
         if (!held[part] && fabs(net[part]) > FORCE_TOL * size[part])
@@ -74,7 +71,6 @@ bool rigid_check_force(const Shell *shell, const double *p, Error *err)
                 "a net force of %.3g N along %c acts on a body that nothing holds along %c: it has no "
                 "equilibrium; fix a vertex, or take the force away",
                 net[part], "xyz"[part % 3], "xyz"[part % 3]);
-    mem_free(mass);
     mem_free(net);
     mem_free(size);
     mem_free(held);
