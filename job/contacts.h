@@ -8,6 +8,8 @@ typedef struct Contacts {
     int dofs, points;
     double *before, *v; /* [dofs] where a step began, and how fast               */
     WorldSums sums;     /* of the step: forces and counts of its end, works of its parts; owns its vectors */
+    double pierced;     /* faces that obstacles went through, of all steps */
+    bool crosses;       /* it is through itself at the end of the last step */
     double deepest, longest; /* m, of all steps: depth in an obstacle, edge */
 } Contacts;
 
@@ -25,6 +27,12 @@ enum { CONTACTS_ROWS = 8 };
 
 /* The step as arrays for history/, borrowed from contacts; their number. */
 int contacts_history(const Contacts *contacts, Array arrays[CONTACTS_ROWS]);
+
+/* Says so where in a step, the first in which one does, an obstacle goes through the body, or the body through itself. */
+void contacts_tell(Contacts *contacts, const Host *host, int step);
+
+/* Has an obstacle gone through the body in one of the steps, or is it through itself at the end of the last? */
+bool contacts_pierced(const Contacts *contacts);
 
 /* Says what the steps so far cannot be trusted in: what was pressed too deep, or stretched so far that an obstacle fits
  * between the places where contact is felt. */

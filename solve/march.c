@@ -112,8 +112,8 @@ static bool try_step(March *m, double dt, bool last)
     if (choose_start(m, &at)) newton = newton_minimize(m->sys, &m->def->newton, &at, trial, observer);
     if (m->lag) newton = settle_lag(m, at, newton, observer);
     at.x = trial->x;
-    if (newton.status == NEWTON_CONVERGED && !last && system_passes(m->sys, &at))
-        newton.status = NEWTON_BLOCKED;
+    bool passes = newton.status == NEWTON_CONVERGED && system_passes(m->sys, &at);
+    if (passes && !last) newton.status = NEWTON_PIERCED;
     newton_add_counts(&newton, &m->info->newton);
     m->info->newton = newton;
     if (newton.status != NEWTON_CONVERGED) return false;
@@ -121,6 +121,7 @@ static bool try_step(March *m, double dt, bool last)
     trial->time += dt;
     state_copy(state, trial);
     m->info->steps++;
+    m->info->passed += passes;
     if (m->def->stored) m->def->stored(m->def->self, state, dt);
     return true;
 }

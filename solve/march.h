@@ -30,6 +30,7 @@ MarchDef march_default(void);
 typedef struct MarchInfo {
     NewtonInfo newton; /* of the last try; iterations and factorisations those of all */
     int steps, refused;
+    int passed; /* of the shortest steps, in which something went through the body */
 } MarchInfo;
 
 /* From the state to that at time + dt; p[params] holds the parameters, of which load fills in those of each

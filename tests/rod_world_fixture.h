@@ -26,15 +26,6 @@ typedef struct Rig {
     double force[RIG_OBSTACLES][3];
 } Rig;
 
-static inline Formula *of_time(const char *x, const char *y, const char *z)
-{
-    Error err;
-    Formula *formula =
-        formula_create((const char *[]){x, y, z}, 3, NULL, 0, (const char *const[]){"t", NULL}, &err);
-    if (!formula) fail_msg("%s", err.text);
-    return formula;
-}
-
 static inline Rig rig_create(const RigDef *def)
 {
     const double length[RIG_STRANDS] = {def->length, def->length}, r = def->radius;

@@ -10,11 +10,6 @@ typedef enum Friction { SMOOTH, LAGGED, IMPLICIT } Friction;
 
 static const char *const frictions[] = {"smooth", "lagged", "implicit"};
 
-static Formula *of_time(const char *x, const char *y, const char *z)
-{
-    return formula_create((const char *[]){x, y, z}, 3, NULL, 0, (const char *const[]){"t", NULL}, NULL);
-}
-
 /* ---- Obstacles, of which each has the strip, 0 <= x <= 12, 0 <= y <= 4 mm, a quarter of a millimetre above it ---- */
 
 enum { KINDS = 9 };

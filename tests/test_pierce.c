@@ -1,20 +1,11 @@
 /* What goes through what in a step of time: found wherever it happens, and not where it does not. */
 #include "solve/march.h"
+#include "tests/obstacle_fixture.h"
 #include "tests/shell_fixture.h"
-#include "world/obstacle_shapes.h"
 #include "world/pierce.h"
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-
-static Formula *of_time(const char *x, const char *y, const char *z)
-{
-    Error err;
-    Formula *formula =
-        formula_create((const char *[]){x, y, z}, 3, NULL, 0, (const char *const[]){"t", NULL}, &err);
-    if (!formula) fail_msg("%s", err.text);
-    return formula;
-}
 
 /* ---- One face, or one element, that goes by (0, 0, -way) ---- */
 
