@@ -213,7 +213,7 @@ static void test_together(void **unused)
 static Body sheets(Friction friction, bool ball, bool wet)
 {
     Random random = random_seed(5);
-    MeshFile both = two_sheets(4);
+    MeshFile both = two_sheets(4, false);
     Shell *shell = shell_of_mesh(&both);
     shell->thickness = 5e-4, shell->poisson = 0.4, shell->density = 1000, shell->bending = BENDING_HINGE;
     Obstacle *list = ball ? mem_alloc(1, sizeof *list) : NULL;

@@ -185,7 +185,7 @@ static bool lift(void *self, double part, double *x)
 static void test_lifted(void **unused)
 {
     (void)unused;
-    SelfBody b = flying_sheets(4, 1, 0);
+    SelfBody b = flying_sheets(4, false, 1, 0);
     Shell *shell = b.body.shell;
     const Mesh *mesh = shell->mesh;
     for (int v = 0; v < mesh->vertex_count; v++) {
@@ -210,7 +210,7 @@ static void test_lifted(void **unused)
 static void test_crossings(void **unused)
 {
     (void)unused;
-    SelfBody b = flying_sheets(4, 1, 0);
+    SelfBody b = flying_sheets(4, false, 1, 0);
     const Mesh *mesh = b.body.shell->mesh;
     int pairs[4][2];
     assert_int_equal(self_crossings(&b), 0);
@@ -232,11 +232,24 @@ static void test_crossings(void **unused)
     assert_true(pairs[0][0] == 0 && pairs[0][1] == 1);
 }
 
+/* What is flat does not pass through itself, wherever it lies and however rounding has it. */
+static void test_flat(void **unused)
+{
+    (void)unused;
+    SelfBody b = flying_sheets(7, true, 1, 0);
+    double *x = b.body.state.x;
+    for (int k = 0; k < 200; k++) {
+        assert_int_equal(self_crossings(&b), 0);
+        for (int i = 0; i < 3 * b.body.shell->mesh->vertex_count; i++) x[i] += 7.3e-4 * (1 + i % 3);
+    }
+    body_clear(&b.body);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_rods),   cmocka_unit_test(test_held),      cmocka_unit_test(test_driven),
-        cmocka_unit_test(test_lifted), cmocka_unit_test(test_crossings),
+        cmocka_unit_test(test_lifted), cmocka_unit_test(test_crossings), cmocka_unit_test(test_flat),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

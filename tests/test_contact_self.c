@@ -104,7 +104,7 @@ static void test_thrown(void **unused)
     (void)unused;
     const double speeds[] = {1, 3, 10};
     for (int k = 0; k < 6; k++) {
-        SelfBody b = flying_sheets(6 + k % 2, speeds[k / 2], k % 2 ? 0.5 : 0);
+        SelfBody b = flying_sheets(6 + k % 2, false, speeds[k / 2], k % 2 ? 0.5 : 0);
         int refused = 0, crossings = 0;
         double least = INFINITY, force = 0;
         for (int step = 0; step < 30; step++) {
@@ -171,7 +171,7 @@ static void test_threads(void **unused)
     const int threads[] = {1, 2, 5};
     SelfBody first = {0};
     for (int k = 0; k < 3; k++) {
-        SelfBody b = flying_sheets(6, 3, 0.5);
+        SelfBody b = flying_sheets(6, false, 3, 0.5);
         Workers *workers = workers_create(threads[k]);
         system_set_workers(b.body.sys, workers);
         march(&b, 1e-3, 12, NULL);
@@ -190,7 +190,7 @@ static void test_threads(void **unused)
 /* The second sheet near the first: what follows is slow against the margin. */
 static SelfBody near_sheets(void)
 {
-    SelfBody b = flying_sheets(6, 0.2, 0.5);
+    SelfBody b = flying_sheets(6, false, 0.2, 0.5);
     const Mesh *mesh = b.body.shell->mesh;
     for (int v = 0; v < mesh->vertex_count; v++)
         if (mesh->vertex_component[v]) b.body.state.x[3 * v + 2] -= 5.4e-3;
