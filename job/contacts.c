@@ -89,7 +89,7 @@ static const char *piece_name(const World *world)
     return world->body.face_count ? "face" : "element";
 }
 
-void contacts_tell(Contacts *c, const Host *host, int step)
+void contacts_tell(Contacts *c, const Host *host, int step, int passed)
 {
     if (!c->world) return;
     const Pierced *pierced = &c->sums.pierced;
@@ -100,6 +100,9 @@ void contacts_tell(Contacts *c, const Host *host, int step)
                   "places where contact is felt (vertices, middles of edges and faces), or faster than the "
                   "body can follow",
                   step, c->world->obstacles[pierced->obstacle].name, piece_name(c->world), pierced->face);
+    bool through_itself = passed && !pierced->count;
+    if (through_itself && c->pierced++ == 0)
+        host_warn(host, "step %d: the body goes through itself, however short the step is made", step);
     if (crossings > 0 && !c->crosses)
         host_warn(host, "step %d: the body passes through itself in %g place%s", step, crossings,
                   crossings == 1 ? "" : "s");

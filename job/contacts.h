@@ -28,10 +28,11 @@ enum { CONTACTS_ROWS = 8 };
 /* The step as arrays for history/, borrowed from contacts; their number. */
 int contacts_history(const Contacts *contacts, Array arrays[CONTACTS_ROWS]);
 
-/* Says so where in a step, the first in which one does, an obstacle goes through the body, or the body through itself. */
-void contacts_tell(Contacts *contacts, const Host *host, int step);
+/* Says so where in a step, the first in which one does, an obstacle goes through the body, or the body through itself: in
+ * so many of the shortest parts of the step (MarchInfo.passed) something did. */
+void contacts_tell(Contacts *contacts, const Host *host, int step, int passed);
 
-/* Has an obstacle gone through the body in one of the steps, or is it through itself at the end of the last? */
+/* Has something gone through the body in one of the steps, or is it through itself at the end of the last? */
 bool contacts_pierced(const Contacts *contacts);
 
 /* Says what the steps so far cannot be trusted in: what was pressed too deep, or stretched so far that an obstacle fits

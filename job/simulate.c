@@ -120,7 +120,7 @@ static bool put_history(Simulation *s, int step, const MarchInfo *info)
                                        array_float("cg_iterations", "", &cg_iterations, 0, 0, 0),
                                        array_float("time", "s", &s->now->time, 0, 0, 0)};
     int count = 4 + contacts_history(contacts, arrays + 4);
-    if (contacts->world && contacts->world->obstacle_count)
+    if (contacts->world && (contacts->world->obstacle_count || contacts->world->self))
         arrays[count++] = array_float("pierced", "", &contacts->pierced, 0, 0, 0);
     return journal_put(s->run->journal, "evaluation", step, arrays, count, s->err);
 }
@@ -156,7 +156,7 @@ static RunStatus make_step(Simulation *s, const MarchDef *def)
     if (run_is_crushed(s->run, &shot, !reached)) s->status = NEWTON_CRUSHED;
     if (!reached) return RUN_NOT_CONVERGED;
     s->step = step;
-    contacts_tell(&s->contacts, s->run->host, step);
+    contacts_tell(&s->contacts, s->run->host, step, info.passed);
     keep_anchor(s);
     if (!put_history(s, step, &info) || (step % every == 0 && !put_step(s, step / every, step)))
         return RUN_CANNOT_WRITE;

@@ -23,6 +23,7 @@ typedef struct Rig {
     double *p;
     MarchDef march;
     WorldSums sums; /* of the last step */
+    bool fast;      /* steps may be cut */
     double force[RIG_OBSTACLES][3];
 } Rig;
 
@@ -76,7 +77,8 @@ static inline int rig_march(Rig *rig, double dt, int steps)
         MarchInfo info;
         state_copy(&before, &rig->now);
         assert_true(march_step(rig->sys, &rig->march, dt, rig->p, &rig->now, &info));
-        assert_int_equal(info.refused, 0);
+        assert_true(info.refused == 0 || rig->fast);
+        assert_int_equal(info.passed, 0);
         iterations += info.newton.iterations;
     }
     Point at = state_point(&rig->now, rig->p);
