@@ -154,12 +154,12 @@ static int check_shot(double radius, double speed, double dt, bool whole)
     Seen seen = {.world = body.shell->world, .before = state_clone(&body.state), .p = body.p};
     MarchDef def = march_default();
     def.stored = see, def.self = &seen;
-    int refused = 0;
+    int refused = 0, passed = 0;
     double end = (radius + 5e-3) / speed + 2 * dt;
     while (body.state.time < end) {
         MarchInfo info;
         assert_true(march_step(body.sys, &def, dt, body.p, &body.state, &info));
-        refused += info.refused;
+        refused += info.refused, passed += info.passed;
     }
     double middle[3] = {5.2e-3, 4.7e-3, 3e-3};
     bool held_back = is_above(mesh, body.state.x, middle);
@@ -167,6 +167,7 @@ static int check_shot(double radius, double speed, double dt, bool whole)
                   1e3 * radius, speed, 1e3 * dt, whole ? "held" : "rim held",
                   held_back ? "below" : "went through", seen.sums.pierced.count, refused);
     assert_true(held_back || seen.sums.pierced.count > 0);
+    assert_true((passed > 0) == (seen.sums.pierced.count > 0));
     int count = seen.sums.pierced.count;
     state_destroy(&seen.before);
     body_clear(&body);
