@@ -227,7 +227,8 @@ typedef struct SlenderMotionDef {
 } SlenderMotionDef;
 
 /* From a state (with its velocities) on, by implicit Euler. A motion in which a step fails or that is stopped comes back too,
- * as long as it came; *status says so. */
+ * as long as it came, and one in which an obstacle goes through the body (SLENDER_NOT_CONVERGED) as a whole; *status
+ * says so. */
 SLENDER_API SlenderMotion *slender_simulate(SlenderModel *model, int load_case, const SlenderState *start,
                                             const SlenderMotionDef *def, SlenderStatus *status,
                                             SlenderError *err);

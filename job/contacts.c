@@ -24,12 +24,15 @@ void contacts_destroy(Contacts *contacts)
     mem_free(contacts->sums.contact.point);
 }
 
-static void reset(Contacts *c, double friction, double water)
+/* A new step, or part of one: what is summed over all parts stays. */
+static void reset(Contacts *c, double friction, double water, Pierced pierced)
 {
     double(*force)[3] = c->sums.contact.force, *point = c->sums.contact.point;
     memset(force, 0, (size_t)c->world->obstacle_count * sizeof *force);
     memset(point, 0, (size_t)c->dofs * sizeof *point);
-    c->sums = (WorldSums){.contact = {.force = force, .point = point, .friction = friction}, .water = water};
+    c->sums = (WorldSums){.contact = {.force = force, .point = point, .friction = friction},
+                          .water = water,
+                          .pierced = pierced};
 }
 
 void contacts_start(Contacts *c, const double *v)
@@ -39,7 +42,7 @@ void contacts_start(Contacts *c, const double *v)
 
 void contacts_begin(Contacts *contacts)
 {
-    if (contacts->world) reset(contacts, 0, 0);
+    if (contacts->world) reset(contacts, 0, 0, (Pierced){0});
 }
 
 void contacts_add(Contacts *c, const State *state, double dt, const double *p)
@@ -51,8 +54,10 @@ void contacts_add(Contacts *c, const State *state, double dt, const double *p)
     Point at = state_point(state, p);
     at.x_prev = c->before, at.v_prev = c->v, at.dt = dt;
     if (c->world->implicit) at.x_lag = state->x;
-    reset(c, c->sums.contact.friction, c->sums.water);
+    Pierced before = c->sums.pierced;
+    reset(c, c->sums.contact.friction, c->sums.water, before);
     world_measure(c->world, &at, &c->sums);
+    c->pierced += c->sums.pierced.count - before.count;
     c->deepest = fmax(c->deepest, c->sums.contact.depth);
     c->longest = fmax(c->longest, world_longest_edge(c->world, state->x + first));
     contacts_start(c, state->v);
@@ -96,6 +101,36 @@ void contacts_add_row(const Contacts *c, const char *prefix, int step, int steps
     }
 }
 
+static const char *piece_name(const World *world)
+{
+    return world->body.face_count ? "face" : "element";
+}
+
+void contacts_tell(Contacts *c, const Host *host, int step, int passed)
+{
+    if (!c->world) return;
+    const Pierced *pierced = &c->sums.pierced;
+    double crossings = c->sums.crossings;
+    if (pierced->count && c->pierced == pierced->count)
+        host_warn(host,
+                  "step %d: obstacle '%s' goes through %s %d, however short the step is made: between the "
+                  "places where contact is felt (vertices, middles of edges and faces), or faster than the "
+                  "body can follow",
+                  step, c->world->obstacles[pierced->obstacle].name, piece_name(c->world), pierced->face);
+    bool through_itself = passed && !pierced->count;
+    if (through_itself && c->pierced++ == 0)
+        host_warn(host, "step %d: the body goes through itself, however short the step is made", step);
+    if (crossings > 0 && !c->crosses)
+        host_warn(host, "step %d: the body passes through itself in %g place%s", step, crossings,
+                  crossings == 1 ? "" : "s");
+    c->crosses = crossings > 0;
+}
+
+bool contacts_pierced(const Contacts *c)
+{
+    return c->pierced > 0 || c->sums.crossings > 0;
+}
+
 static const double DEEP = 0.05; /* of the thickness: more is no contact of thin things */
 
 void contacts_doubt(const Contacts *c, const Host *host)
@@ -123,17 +158,21 @@ static void recall_numbers(const Array *stored, double *numbers, size_t count)
 
 bool contacts_recall(Contacts *c, Journal *journal, int step, Error *err)
 {
-    if (!c->world || c->world->obstacle_count == 0) return true;
+    if (!c->world) return true;
+    enum { ROWS = 5 };
     ContactSums *sums = &c->sums.contact;
-    static const char *const names[] = {"contacts", "contact_depth", "contact_force"};
-    double *const numbers[] = {&sums->touching, &sums->depth, sums->force[0]};
-    const size_t counts[] = {1, 1, 3 * (size_t)c->world->obstacle_count};
-    for (int k = 0; k < 3; k++) {
+    static const char *const names[ROWS] = {"contacts", "contact_depth", "contact_force", "pierced",
+                                            "crossings"};
+    double *const numbers[ROWS] = {&sums->touching, &sums->depth, sums->force[0], &c->pierced,
+                                   &c->sums.crossings};
+    const size_t counts[ROWS] = {1, 1, 3 * (size_t)c->world->obstacle_count, 1, 1};
+    for (int k = 0; k < ROWS; k++) {
         Array stored;
         if (!journal_find(journal, "evaluation", step, names[k], &stored, err)) return false;
         recall_numbers(&stored, numbers[k], counts[k]);
         array_clear(&stored);
     }
+    c->crosses = c->sums.crossings > 0;
     return true;
 }
 

@@ -9,6 +9,8 @@ typedef struct Contacts {
     int dofs, points;
     double *before, *v; /* [dofs] where a step began, and how fast               */
     WorldSums sums;     /* of the step: forces and counts of its end, works of its parts; owns its vectors */
+    double pierced;     /* faces that obstacles went through, of all steps */
+    bool crosses;       /* it is through itself at the end of the last step */
     double deepest, longest; /* m, of all steps: depth in an obstacle, edge */
 } Contacts;
 
@@ -31,6 +33,13 @@ int contacts_history(const Contacts *contacts, Array arrays[CONTACTS_ROWS]);
  * adds the arrays to it, named with a prefix. */
 void contacts_add_row(const Contacts *contacts, const char *prefix, int step, int steps,
                       double *rows[CONTACTS_ROWS], Arrays *list);
+
+/* Says so where in a step, the first in which one does, an obstacle goes through the body, or the body through itself: in
+ * so many of the shortest parts of the step (MarchInfo.passed) something did. */
+void contacts_tell(Contacts *contacts, const Host *host, int step, int passed);
+
+/* Has something gone through the body in one of the steps, or is it through itself at the end of the last? */
+bool contacts_pierced(const Contacts *contacts);
 
 /* Says what the steps so far cannot be trusted in: what was pressed too deep, or stretched so far that an obstacle fits
  * between the places where contact is felt. */

@@ -114,11 +114,14 @@ static bool put_history(Simulation *s, int step, const MarchInfo *info)
 {
     double iterations = info->newton.iterations, factorizations = info->newton.factorizations,
            cg_iterations = info->newton.cg_iterations;
-    Array arrays[4 + CONTACTS_ROWS] = {array_float("newton_iterations", "", &iterations, 0, 0, 0),
+    const Contacts *contacts = &s->contacts;
+    Array arrays[5 + CONTACTS_ROWS] = {array_float("newton_iterations", "", &iterations, 0, 0, 0),
                                        array_float("factorizations", "", &factorizations, 0, 0, 0),
                                        array_float("cg_iterations", "", &cg_iterations, 0, 0, 0),
                                        array_float("time", "s", &s->now->time, 0, 0, 0)};
-    int count = 4 + contacts_history(&s->contacts, arrays + 4);
+    int count = 4 + contacts_history(contacts, arrays + 4);
+    if (contacts->world && (contacts->world->obstacle_count || contacts->world->self))
+        arrays[count++] = array_float("pierced", "", &contacts->pierced, 0, 0, 0);
     return journal_put(s->run->journal, "evaluation", step, arrays, count, s->err);
 }
 
@@ -154,6 +157,7 @@ static RunStatus make_step(Simulation *s, const MarchDef *def)
     if (run_is_crushed(s->run, &shot, !reached)) s->status = NEWTON_CRUSHED;
     if (!reached) return RUN_NOT_CONVERGED;
     s->step = step;
+    contacts_tell(&s->contacts, s->run->host, step, info.passed);
     keep_anchor(s);
     if (!put_history(s, step, &info) || (step % every == 0 && !put_step(s, step / every, step)))
         return RUN_CANNOT_WRITE;
@@ -180,7 +184,9 @@ static RunStatus march(Simulation *s)
     if (s->run->model->moves) def.move = move;
     RunStatus status = RUN_DONE;
     while (status == RUN_DONE && s->step < s->run->scene->time.steps) status = make_step(s, &def);
-    return status;
+    if (status != RUN_DONE || !contacts_pierced(&s->contacts)) return status;
+    s->status = NEWTON_PIERCED;
+    return RUN_NOT_CONVERGED;
 }
 
 /* The last state, also where it is between two frames: a resumed run replaces that frame by the one that is

@@ -128,7 +128,10 @@ static SlenderStatus simulate(void *self, Error *err)
         *err = motion->err;
         return SLENDER_REFUSED;
     }
-    if (ok) return SLENDER_DONE;
+    if (ok && info.passed)
+        error_set(err, "%s in %d of the shortest parts of steps", newton_status_text(NEWTON_PIERCED),
+                  info.passed);
+    if (ok) return info.passed ? SLENDER_NOT_CONVERGED : SLENDER_DONE;
     if (info.newton.status == NEWTON_STOPPED) {
         error_set(err, "stopped after %d of %d steps", reached, s->def->steps);
         return SLENDER_INTERRUPTED;

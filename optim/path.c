@@ -178,7 +178,8 @@ static void add_info(MarchInfo *sum, const MarchInfo *step)
 {
     NewtonInfo newton = step->newton;
     newton_add_counts(&newton, &sum->newton);
-    *sum = (MarchInfo){newton, sum->steps + step->steps, sum->refused + step->refused};
+    *sum = (MarchInfo){newton, sum->steps + step->steps, sum->refused + step->refused,
+                       sum->passed + step->passed};
 }
 
 bool path_march(Path *path, PathGuess guess, void *self, MarchInfo *info, int *reached)

@@ -127,7 +127,8 @@ double trajectory_evaluate(Trajectory *t, const double *u, double *gradient, Tra
     guess_motion(t);
     bool ok = path_march(path, find_guess, t, &info->march, &info->reached);
     info->forward = clock_seconds() - begin;
-    if (!ok) return INFINITY;
+    if (ok && info->march.passed) info->march.newton.status = NEWTON_PIERCED;
+    if (!ok || info->march.passed) return INFINITY;
     double F = objective(t, path, NULL, NULL);
     if (!gradient || !isfinite(F)) return F;
     begin = clock_seconds();

@@ -52,7 +52,8 @@ typedef struct TrajectoryInfo {
     double forward, backward; /* s */
 } TrajectoryInfo;
 
-/* F at u and, where gradient is not NULL, dF/du[size]. INFINITY with a zero gradient where a step failed. */
+/* F at u and, where gradient is not NULL, dF/du[size]. INFINITY with a zero gradient where a step failed, or
+ * something went through the body. */
 double trajectory_evaluate(Trajectory *t, const double *u, double *gradient, TrajectoryInfo *info);
 
 /* Makes the last evaluation the best motion: the next ones start from it. */

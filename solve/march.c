@@ -95,7 +95,9 @@ static NewtonInfo settle_lag(March *m, Point at, NewtonInfo first, const NewtonO
     return newton;
 }
 
-static bool try_step(March *m, double dt)
+/* `last`: one that can be cut no more. What goes through the body in it does so for want of points, and whoever knows the
+ * body says so. */
+static bool try_step(March *m, double dt, bool last)
 {
     State *state = m->state, *trial = &m->trial;
     const NewtonObserver *observer = m->def->observer.iteration ? &m->def->observer : NULL;
@@ -109,6 +111,9 @@ static bool try_step(March *m, double dt)
     NewtonInfo newton = {.status = NEWTON_BLOCKED};
     if (choose_start(m, &at)) newton = newton_minimize(m->sys, &m->def->newton, &at, trial, observer);
     if (m->lag) newton = settle_lag(m, at, newton, observer);
+    at.x = trial->x;
+    bool passes = newton.status == NEWTON_CONVERGED && system_passes(m->sys, &at);
+    if (passes && !last) newton.status = NEWTON_PIERCED;
     newton_add_counts(&newton, &m->info->newton);
     m->info->newton = newton;
     if (newton.status != NEWTON_CONVERGED) return false;
@@ -116,6 +121,7 @@ static bool try_step(March *m, double dt)
     trial->time += dt;
     state_copy(state, trial);
     m->info->steps++;
+    m->info->passed += passes;
     if (m->def->stored) m->def->stored(m->def->self, state, dt);
     return true;
 }
@@ -123,7 +129,7 @@ static bool try_step(March *m, double dt)
 /* The step, or its two halves. */
 static bool advance(March *m, double dt, int cuts)
 {
-    if (try_step(m, dt)) return true;
+    if (try_step(m, dt, cuts == 0)) return true;
     if (cuts == 0 || m->info->newton.status == NEWTON_STOPPED) return false;
     m->info->refused++;
     return advance(m, dt / 2, cuts - 1) && advance(m, dt / 2, cuts - 1);

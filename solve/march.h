@@ -3,7 +3,7 @@
  *
  * Each Newton step is solved by conjugate gradients with the factor of an earlier moment, which is made anew when they
  * take too many iterations: small steps need none of their own. A step that fails is cut in halves, down to a thousandth; the sub-steps are real steps of the discrete
- * motion. Dofs beyond the positions (edge angles) have no inertia: they are in equilibrium at the end of
+ * motion. So is a step in which something goes through the body (TermOps.passes): but not the shortest, in which it may. Dofs beyond the positions (edge angles) have no inertia: they are in equilibrium at the end of
  * every step.
  *
  * What terms lag (Point.x_lag) is taken at the start of the step; or, `implicit`, at its end: the step is then solved again
@@ -30,6 +30,7 @@ MarchDef march_default(void);
 typedef struct MarchInfo {
     NewtonInfo newton; /* of the last try; iterations and factorisations those of all */
     int steps, refused;
+    int passed; /* of the shortest steps, in which something went through the body */
 } MarchInfo;
 
 /* From the state to that at time + dt; p[params] holds the parameters, of which load fills in those of each

@@ -166,6 +166,9 @@ bool system_has_follow(const System *sys);
 /* The largest part of a step d from at->x that the terms admit, in (0, 1] (TermOps.reach). */
 double system_reach(System *sys, const Point *at, const double *d);
 
+/* Has something gone through the body in the step of time, solved, that ends at->x (TermOps.passes)? */
+bool system_passes(const System *sys, const Point *at);
+
 /* Makes x, a trial reached from `from`, admissible; and x an accepted one, of which memory[system_memory_count()] notes
  * what must be remembered. Both may write to x (TermOps). */
 void system_project(const System *sys, const double *from, double *x);

@@ -301,6 +301,16 @@ double system_reach(System *sys, const Point *at, const double *d)
     return reach;
 }
 
+bool system_passes(const System *sys, const Point *at)
+{
+    bool passes = false;
+    for (int t = 0; t < sys->term_count; t++) {
+        const Term *term = &sys->entries[t].term;
+        passes = passes || (term->ops->passes && term->ops->passes(term->self, at));
+    }
+    return passes;
+}
+
 void system_project(const System *sys, const double *from, double *x)
 {
     for (int t = 0; t < sys->term_count; t++) {

@@ -103,6 +103,10 @@ typedef struct TermOps {
      * wall). Whole vectors; NULL if nothing. */
     void (*project)(const void *self, const double *from, double *x);
 
+    /* Has something gone through the body in a step of time, from at->x_prev to at->x, which is solved? It is cut then, as
+     * one that fails (march.h). NULL: never. */
+    bool (*passes)(const void *self, const Point *at);
+
     /* After an accepted step: notes in memory what must be (the turns of a fold angle), and may write the same state
      * otherwise (rotations that are increments from a reference in x become 0, the reference turns). NULL if nothing. */
     void (*accept)(const void *self, double *x, double *memory);

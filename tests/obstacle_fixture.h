@@ -20,6 +20,16 @@ static inline double value_at(const Obstacle *obstacle, double x, double y, doub
     return gap.value;
 }
 
+/* Three expressions of t. */
+static inline Formula *of_time(const char *x, const char *y, const char *z)
+{
+    Error err;
+    Formula *formula =
+        formula_create((const char *[]){x, y, z}, 3, NULL, 0, (const char *const[]){"t", NULL}, &err);
+    if (!formula) fail_msg("%s", err.text);
+    return formula;
+}
+
 /* least: of the gradient's length. */
 static inline void assert_finite(const Gap *gap, double least)
 {

@@ -23,17 +23,9 @@ typedef struct Rig {
     double *p;
     MarchDef march;
     WorldSums sums; /* of the last step */
+    bool fast;      /* steps may be cut */
     double force[RIG_OBSTACLES][3];
 } Rig;
-
-static inline Formula *of_time(const char *x, const char *y, const char *z)
-{
-    Error err;
-    Formula *formula =
-        formula_create((const char *[]){x, y, z}, 3, NULL, 0, (const char *const[]){"t", NULL}, &err);
-    if (!formula) fail_msg("%s", err.text);
-    return formula;
-}
 
 static inline Rig rig_create(const RigDef *def)
 {
@@ -85,7 +77,8 @@ static inline int rig_march(Rig *rig, double dt, int steps)
         MarchInfo info;
         state_copy(&before, &rig->now);
         assert_true(march_step(rig->sys, &rig->march, dt, rig->p, &rig->now, &info));
-        assert_int_equal(info.refused, 0);
+        assert_true(info.refused == 0 || rig->fast);
+        assert_int_equal(info.passed, 0);
         iterations += info.newton.iterations;
     }
     Point at = state_point(&rig->now, rig->p);

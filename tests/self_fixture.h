@@ -130,8 +130,8 @@ static inline SelfBody closing_star(int n, bool contact, double margin)
     return b;
 }
 
-/* Two sheets of 12 mm, 6 mm from each other, turned and shifted a little. */
-static inline MeshFile two_sheets(int cells)
+/* Two sheets of 12 mm, 6 mm from each other, turned and shifted a little; the second stands on edge, or lies above the other. */
+static inline MeshFile two_sheets(int cells, bool on_edge)
 {
     MeshFile file = {0}, both = {0};
     Error err;
@@ -147,6 +147,10 @@ static inline MeshFile two_sheets(int cells)
         both.vertices[v][0] = second ? c * x[0] - s * x[1] + 0.003 : x[0];
         both.vertices[v][1] = second ? s * x[0] + c * x[1] + 0.001 : x[1];
         both.vertices[v][2] = second ? 0.006 + tilt * x[0] : 0;
+        if (!second || !on_edge) continue;
+        both.vertices[v][0] = c * x[0] + 0.002;
+        both.vertices[v][1] = s * x[0] + 0.004;
+        both.vertices[v][2] = 0.006 + x[1];
     }
     for (int f = 0; f < both.face_count; f++)
         for (int i = 0; i < 3; i++)
@@ -157,9 +161,9 @@ static inline MeshFile two_sheets(int cells)
 }
 
 /* Which fly at each other. */
-static inline SelfBody flying_sheets(int cells, double speed, double mu)
+static inline SelfBody flying_sheets(int cells, bool on_edge, double speed, double mu)
 {
-    MeshFile both = two_sheets(cells);
+    MeshFile both = two_sheets(cells, on_edge);
     Shell *shell = shell_of_mesh(&both);
     shell->thickness = 5e-4, shell->poisson = 0.4, shell->density = 1000, shell->bending = BENDING_HINGE;
     SelfContactDef def = self_def(shell, 5e-4);

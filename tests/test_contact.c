@@ -1,20 +1,11 @@
 /* Contact and friction with obstacles: derivatives, and what a plate does on a slope. */
 #include "solve/check.h"
 #include "solve/march.h"
+#include "tests/obstacle_fixture.h"
 #include "tests/shell_fixture.h"
-#include "world/obstacle_shapes.h"
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-
-static Formula *of_time(const char *x, const char *y, const char *z)
-{
-    Error err;
-    Formula *formula =
-        formula_create((const char *[]){x, y, z}, 3, NULL, 0, (const char *const[]){"t", NULL}, &err);
-    if (!formula) fail_msg("%s", err.text);
-    return formula;
-}
 
 /* ---- Derivatives ---- */
 

@@ -10,11 +10,6 @@ typedef enum Friction { SMOOTH, LAGGED, IMPLICIT } Friction;
 
 static const char *const frictions[] = {"smooth", "lagged", "implicit"};
 
-static Formula *of_time(const char *x, const char *y, const char *z)
-{
-    return formula_create((const char *[]){x, y, z}, 3, NULL, 0, (const char *const[]){"t", NULL}, NULL);
-}
-
 /* ---- Obstacles, of which each has the strip, 0 <= x <= 12, 0 <= y <= 4 mm, a quarter of a millimetre above it ---- */
 
 enum { KINDS = 9 };
@@ -218,7 +213,7 @@ static void test_together(void **unused)
 static Body sheets(Friction friction, bool ball, bool wet)
 {
     Random random = random_seed(5);
-    MeshFile both = two_sheets(4);
+    MeshFile both = two_sheets(4, false);
     Shell *shell = shell_of_mesh(&both);
     shell->thickness = 5e-4, shell->poisson = 0.4, shell->density = 1000, shell->bending = BENDING_HINGE;
     Obstacle *list = ball ? mem_alloc(1, sizeof *list) : NULL;

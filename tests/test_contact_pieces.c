@@ -185,7 +185,7 @@ static bool lift(void *self, double part, double *x)
 static void test_lifted(void **unused)
 {
     (void)unused;
-    SelfBody b = flying_sheets(4, 1, 0);
+    SelfBody b = flying_sheets(4, false, 1, 0);
     Shell *shell = b.body.shell;
     const Mesh *mesh = shell->mesh;
     for (int v = 0; v < mesh->vertex_count; v++) {
@@ -210,7 +210,7 @@ static void test_lifted(void **unused)
 static void test_crossings(void **unused)
 {
     (void)unused;
-    SelfBody b = flying_sheets(4, 1, 0);
+    SelfBody b = flying_sheets(4, false, 1, 0);
     const Mesh *mesh = b.body.shell->mesh;
     int pairs[4][2];
     assert_int_equal(self_crossings(&b), 0);

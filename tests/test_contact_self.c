@@ -99,26 +99,31 @@ static int march(SelfBody *b, double dt, int steps, SelfField *field)
     return refused;
 }
 
+/* Whatever the speed and the step, flat or edge on. */
+static void check_thrown(double speed, bool on_edge, double dt, double mu)
+{
+    SelfBody b = flying_sheets(mu > 0 ? 7 : 6, on_edge, speed, mu);
+    int refused = 0, crossings = 0, steps = (int)fmax(0.03 / (speed * dt), 30);
+    double least = INFINITY, force = 0;
+    for (int step = 0; step < steps; step++) {
+        refused += march(&b, dt, 1, NULL);
+        SelfContactFigures figures = self_figures(&b);
+        crossings += self_crossings(&b);
+        least = fmin(least, figures.distance);
+        force = fmax(force, figures.force);
+    }
+    print_message("%g m/s, %g ms%s: nearest %.3f D, %.2g N, %d refused\n", speed, 1e3 * dt,
+                  on_edge ? ", edge on" : "", least / b.def.distance, force, refused);
+    assert_true(crossings == 0 && least > 0 && least < b.def.distance && force > 0);
+    body_clear(&b.body);
+}
+
 static void test_thrown(void **unused)
 {
     (void)unused;
-    const double speeds[] = {1, 3, 10};
-    for (int k = 0; k < 6; k++) {
-        SelfBody b = flying_sheets(6 + k % 2, speeds[k / 2], k % 2 ? 0.5 : 0);
-        int refused = 0, crossings = 0;
-        double least = INFINITY, force = 0;
-        for (int step = 0; step < 30; step++) {
-            refused += march(&b, 1e-3, 1, NULL);
-            SelfContactFigures figures = self_figures(&b);
-            crossings += self_crossings(&b);
-            least = fmin(least, figures.distance);
-            force = fmax(force, figures.force);
-        }
-        print_message("%g m/s: nearest %.3f D, %.2g N, %d refused\n", speeds[k / 2], least / b.def.distance,
-                      force, refused);
-        assert_true(crossings == 0 && least > 0 && least < b.def.distance && force > 0);
-        body_clear(&b.body);
-    }
+    const double speeds[] = {1, 3, 10, 100};
+    for (int k = 0; k < 8; k++) check_thrown(speeds[k / 2], k % 2, 1e-3, k % 2 ? 0.5 : 0);
+    for (int k = 0; k < 4; k++) check_thrown(speeds[2 + k / 2], k % 2, 1e-4, 0);
 }
 
 static void test_folded(void **unused)
@@ -171,7 +176,7 @@ static void test_threads(void **unused)
     const int threads[] = {1, 2, 5};
     SelfBody first = {0};
     for (int k = 0; k < 3; k++) {
-        SelfBody b = flying_sheets(6, 3, 0.5);
+        SelfBody b = flying_sheets(6, false, 3, 0.5);
         Workers *workers = workers_create(threads[k]);
         system_set_workers(b.body.sys, workers);
         march(&b, 1e-3, 12, NULL);
@@ -190,7 +195,7 @@ static void test_threads(void **unused)
 /* The second sheet near the first: what follows is slow against the margin. */
 static SelfBody near_sheets(void)
 {
-    SelfBody b = flying_sheets(6, 0.2, 0.5);
+    SelfBody b = flying_sheets(6, false, 0.2, 0.5);
     const Mesh *mesh = b.body.shell->mesh;
     for (int v = 0; v < mesh->vertex_count; v++)
         if (mesh->vertex_component[v]) b.body.state.x[3 * v + 2] -= 5.4e-3;

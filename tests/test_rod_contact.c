@@ -161,10 +161,42 @@ static void test_hung(void **state)
     rig_clear(&rig);
 }
 
+/* A ball that is shot at a rod pushes it where an element's middle is; halfway between that and a node it goes through, and
+ * that is found, at whatever speed. */
+static void test_shot(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 4; k++) {
+        bool between = k % 2;
+        RigDef def = {
+            .strands = 1,
+            .elements = 10,
+            .length = 0.1,
+            .radius = 5e-4,
+            .young = 1e6,
+            .density = 1300,
+            .stiffness = 1e4,
+            .obstacles = {obstacle_sphere((double[]){between ? 0.0525 : 0.055, 2e-4, 0.01}, 1e-3, false)},
+            .obstacle_count = 1};
+        def.obstacles[0].move = of_time("0", "0", k / 2 ? "-100*t" : "-10*t");
+        Rig rig = rig_create(&def);
+        rig_start(&rig, def.young);
+        int passed = 0, steps = k / 2 ? 3 : 20;
+        for (int n = 0; n < steps; n++) {
+            MarchInfo info;
+            assert_true(march_step(rig.sys, &rig.march, 1e-4, rig.p, &rig.now, &info));
+            passed += info.passed;
+        }
+        print_message("shot at %s: goes through in %d steps\n", between ? "a quarter" : "a middle", passed);
+        assert_true((passed > 0) == between);
+        rig_clear(&rig);
+    }
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_laid), cmocka_unit_test(test_pressed),
-                                       cmocka_unit_test(test_pipe), cmocka_unit_test(test_capstan),
-                                       cmocka_unit_test(test_hung)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_laid),    cmocka_unit_test(test_pressed),
+                                       cmocka_unit_test(test_shot),    cmocka_unit_test(test_pipe),
+                                       cmocka_unit_test(test_capstan), cmocka_unit_test(test_hung)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -279,6 +279,67 @@ static void test_motion(void **state)
 
 /* ---- Rods ---- */
 
+/* ---- What goes through ---- */
+
+/* A needle that is thinner than a quarter of an edge, shot through the plate. */
+static const char SHOT[] =
+    "slender: 1\njob: simulate\n" PLATE "fix: [{box: [[-1, -1, -1], [0.1 mm, 1, 1]]}]\n"
+    "obstacles: [{name: needle, move: [\"0\", \"0\", \"30*t\"],\n"
+    "  box: {center: [21 mm, 11 mm, -21 mm], half: [0.3 mm, 0.3 mm, 20 mm], rounding: 0.3 mm}}]\n"
+    "time: {step: 0.1 ms, steps: 6}\n";
+
+typedef struct Heard {
+    int count; /* warnings that name the needle, and where */
+    char first[400];
+} Heard;
+
+static void hear(void *self, const char *sentence)
+{
+    Heard *heard = self;
+    if (!strstr(sentence, "step ")) return;
+    if (heard->count++ == 0) strncpy(heard->first, sentence, sizeof heard->first - 1);
+}
+
+static SlenderStatus shoot(const char *setting, int resume, Heard *heard)
+{
+    SlenderError err;
+    SlenderScene *scene = slender_scene_parse(SHOT, &setting, setting != NULL, &err);
+    if (!scene) fail_msg("%s", err.text);
+    SlenderRun def = {.output = NAME,
+                      .threads = 1,
+                      .resume = resume,
+                      .force = !resume,
+                      .host = {.self = heard, .warn = hear}};
+    SlenderStatus status = slender_run(scene, &def, &err);
+    slender_scene_destroy(scene);
+    return status;
+}
+
+/* It is said once, at the step in which it happens, stands in the history from then on, and is how the run ends: also of one
+ * that goes on from there. */
+static void test_shot(void **state)
+{
+    (void)state;
+    Heard heard = {0}, again = {0};
+    assert_int_equal(shoot("obstacles[0].move=[\"0\", \"0\", \"1*t\"]", 0, &heard), SLENDER_DONE);
+    assert_int_equal(heard.count, 0);
+    assert_int_equal(shoot("time.steps=3", 0, &heard), SLENDER_NOT_CONVERGED);
+    assert_int_equal(heard.count, 1);
+    print_message("%s\n", heard.first);
+    assert_true(strstr(heard.first, "step 1: obstacle 'needle' goes through face "));
+    assert_int_equal(shoot(NULL, 1, &again), SLENDER_NOT_CONVERGED);
+    assert_int_equal(again.count, 0);
+    Result *result = open_result();
+    Array pierced = read_as(result, "slender/history/pierced", 1, 6, 0, 0), status;
+    const double *count = pierced.data;
+    for (int k = 0; k < 6; k++) assert_true(count[k] >= 1 && count[k] == count[0]);
+    assert_true(result_read(result, "slender/status", &status, NULL));
+    assert_string_equal(status.data, "pierced");
+    array_clear(&pierced);
+    array_clear(&status);
+    result_close(result);
+}
+
 /* Frames of rods have points that stand still after those that move: each has its row. */
 static void test_rod(void **state)
 {
@@ -306,9 +367,9 @@ static void test_rod(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_weight),    cmocka_unit_test(test_energy),
-                                       cmocka_unit_test(test_obstacles), cmocka_unit_test(test_way),
-                                       cmocka_unit_test(test_extended),  cmocka_unit_test(test_trajectory),
-                                       cmocka_unit_test(test_motion),    cmocka_unit_test(test_rod)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_weight), cmocka_unit_test(test_energy),   cmocka_unit_test(test_obstacles),
+        cmocka_unit_test(test_way),    cmocka_unit_test(test_extended), cmocka_unit_test(test_trajectory),
+        cmocka_unit_test(test_motion), cmocka_unit_test(test_shot),     cmocka_unit_test(test_rod)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -99,6 +99,7 @@ void contact_destroy(void *self)
     Contact *c = self;
     poses_destroy(&c->poses);
     mem_free(c->def.samples.vertices);
+    mem_free(c->def.faces.vertices);
     mem_free(c->held);
     mem_free(c->trial);
     mem_free(c);
@@ -112,13 +113,19 @@ static bool is_held(const ContactDef *def, int e)
     return held;
 }
 
+static int *samples_copy(const Samples *samples)
+{
+    return mem_copy(samples->vertices, (size_t)samples->count * (size_t)samples->corners,
+                    sizeof *samples->vertices);
+}
+
 Contact *contact_create(const ContactDef *def)
 {
     Contact *c = mem_alloc(1, sizeof *c);
     *c = (Contact){.def = *def, .poses = poses_create(def->obstacles, def->obstacle_count)};
     const Samples *samples = &def->samples;
-    c->def.samples.vertices = mem_copy(samples->vertices, (size_t)samples->count * (size_t)samples->corners,
-                                       sizeof *samples->vertices);
+    c->def.samples.vertices = samples_copy(samples);
+    c->def.faces.vertices = samples_copy(&def->faces);
     c->dofs = samples->first + 3 * def->vertex_count;
     c->trial = mem_alloc((size_t)c->dofs, sizeof *c->trial);
     c->held = mem_alloc((size_t)samples->count, sizeof *c->held);
@@ -129,8 +136,8 @@ Contact *contact_create(const ContactDef *def)
 /* Its elements last; `update` is for obstacles that move only. */
 #define CONTACT_OPS                                                                                          \
     .name = "contact", .idles = true, .count = contact_count, .size = contact_size, .dofs = contact_dofs,    \
-    .reach = contact_reach, .project = contact_project, .eval = contact_eval, .param = contact_param,        \
-    .param_forward = contact_param_forward, .destroy = contact_destroy
+    .reach = contact_reach, .project = contact_project, .passes = contact_passes, .eval = contact_eval,      \
+    .param = contact_param, .param_forward = contact_param_forward, .destroy = contact_destroy
 
 static const TermOps still_ops = {CONTACT_OPS}, moving_ops = {CONTACT_OPS, .update = contact_update};
 

@@ -13,7 +13,9 @@
  *
  * Steps, and trials that did not come along them, end where a sample is half a thickness (of a rod half a radius) deep: what flies at a thin obstacle
  * does not pass through it in one step, as far as its samples meet it. A trial that would have to be pulled back so is not
- * finite where that would move held vertices, or positions that follow from other dofs. */
+ * finite where that would move held vertices, or positions that follow from other dofs.
+ *
+ * What obstacles that are thin or fast go through in a step (pierce.h) is asked for at its end. */
 #pragma once
 #include "world/obstacle.h"
 #include "world/samples.h"
@@ -21,7 +23,9 @@
 typedef struct ContactDef {
     const Obstacle *obstacles; /* borrowed, as long as the terms */
     int obstacle_count;
-    Samples samples;   /* copied                                              */
+    Samples samples; /* copied                                              */
+    Samples
+        faces; /* of the body, or a rod's elements, that nothing is to go through; copied; count 0: not asked */
     int vertex_count;  /* of the body                                         */
     const bool *fixed; /* [3*vertex_count] held; borrowed; NULL: nothing      */
     bool derived;      /* positions follow from other dofs, a rod's from its turns */

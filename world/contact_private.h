@@ -19,6 +19,7 @@ void contact_dofs(const void *self, int e, int *dof);
 bool contact_update(void *self, const Point *at);
 double contact_reach(const void *self, const Point *at, const double *d);
 void contact_project(const void *self, const double *from, double *x);
+bool contact_passes(const void *self, const Point *at);
 
 typedef struct Penalty {
     double energy, force, slope; /* of a depth: J, N, N/m */

@@ -1,6 +1,7 @@
 /* How far samples may go at once: to where they are so deep in an obstacle that it is time to look at the forces, and not
  * through it. */
 #include "world/contact_private.h"
+#include "world/pierce.h"
 
 static const double DEEP =
     50; /* smoothing lengths: half a thickness, or half of what is thin in an obstacle */
@@ -59,4 +60,10 @@ void contact_project(const void *self, const double *from, double *x)
             c->def.derived || (c->def.fixed && c->def.fixed[i - c->def.samples.first] && x[i] != from[i]);
         x[i] = held ? NAN : from[i] + part * (x[i] - from[i]);
     }
+}
+
+bool contact_passes(const void *self, const Point *at)
+{
+    const Contact *c = self;
+    return pierce_find(&c->poses, &c->def.faces, at->x_prev, at->x).count > 0;
 }

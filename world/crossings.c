@@ -2,10 +2,10 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "world/neighbours.h"
-#include <float.h>
 #include <string.h>
 
 static const double ROD_CROSSES = 0.1; /* of D */
+static const double IN_PLANE = 1e-14;  /* of a place's size: such a height above a plane may be rounding */
 
 /* Six times the volume of a tetrahedron. */
 static double volume(Vec3 a, Vec3 b, Vec3 c, Vec3 d)
@@ -13,30 +13,21 @@ static double volume(Vec3 a, Vec3 b, Vec3 c, Vec3 d)
     return vec3_dot(vec3_sub(d, a), vec3_cross(vec3_sub(b, a), vec3_sub(c, a)));
 }
 
-/* What such a volume of these points may come to by the rounding of their coordinates alone: parts in one plane, as those of a
- * flat sheet, do not pass through each other. */
-static double rounding(const Vec3 *at, int count)
+/* On which side of the face's plane is it? 0: in it, which in a flat sheet all others are. */
+static int side_of(const Vec3 face[3], Vec3 p)
 {
-    double largest = 0;
-    Box box = box_empty();
-    for (int i = 0; i < count; i++) {
-        double x[3];
-        vec3_store(x, at[i]);
-        box_add(&box, x);
-        for (int k = 0; k < 3; k++) largest = fmax(largest, fabs(x[k]));
-    }
-    double size = fmax(fmax(box.high[0] - box.low[0], box.high[1] - box.low[1]), box.high[2] - box.low[2]);
-    return 16 * DBL_EPSILON * largest * size * size;
+    Vec3 a = vec3_sub(face[1], face[0]), b = vec3_sub(face[2], face[0]), d = vec3_sub(p, face[0]);
+    double v = volume(face[0], face[1], face[2], p),
+           rounding = IN_PLANE * vec3_length(a) * vec3_length(b) * (vec3_length(d) + vec3_length(p));
+    return (v > rounding) - (v < -rounding);
 }
 
 /* Its ends are on either side of the plane, and all corners are on one side of it as seen along the edge. */
 static bool passes_through(const double *x, const int edge[2], const int face[3])
 {
-    Vec3 at[5];
-    for (int i = 0; i < 5; i++) at[i] = vec3_load(x + 3 * (i < 3 ? face[i] : edge[i - 3]));
-    const Vec3 *t = at, p = at[3], q = at[4];
-    double above = volume(t[0], t[1], t[2], p), below = volume(t[0], t[1], t[2], q);
-    if (!(above * below < 0) || fmin(fabs(above), fabs(below)) <= rounding(at, 5)) return false;
+    Vec3 p = vec3_load(x + 3 * edge[0]), q = vec3_load(x + 3 * edge[1]), t[3];
+    for (int i = 0; i < 3; i++) t[i] = vec3_load(x + 3 * face[i]);
+    if (side_of(t, p) * side_of(t, q) >= 0) return false;
     double a = volume(p, q, t[0], t[1]), b = volume(p, q, t[1], t[2]), c = volume(p, q, t[2], t[0]);
     return (a > 0 && b > 0 && c > 0) || (a < 0 && b < 0 && c < 0);
 }

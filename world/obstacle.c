@@ -36,11 +36,18 @@ bool obstacle_pose(const Obstacle *obstacle, double time, ObstaclePose *pose, Er
     return true;
 }
 
+void obstacle_own_place(const ObstaclePose *pose, const double x[3], double own[3])
+{
+    for (int i = 0; i < 3; i++) {
+        own[i] = 0;
+        for (int j = 0; j < 3; j++) own[i] += pose->turn[j][i] * (x[j] - pose->shift[j]);
+    }
+}
+
 void obstacle_gap(const Obstacle *obstacle, const ObstaclePose *pose, const double x[3], Gap *gap)
 {
-    double own[3] = {0}, gradient[3], half[3][3];
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++) own[i] += pose->turn[j][i] * (x[j] - pose->shift[j]);
+    double own[3], gradient[3], half[3][3];
+    obstacle_own_place(pose, x, own);
     obstacle->ops->gap(obstacle->self, own, gap);
     if (!obstacle->turn) return; /* its axes are those of space */
     memcpy(gradient, gap->gradient, sizeof gradient);

@@ -30,6 +30,9 @@ typedef struct Obstacle {
     double
         feature; /* m, the smallest radius or detail: a body's longer edges are sampled between their ends too;
                       * INFINITY: flat */
+    double
+        inradius; /* m, of the ball within it where it is thinnest: half as deep, a body is about to come out on its other
+                      * side; INFINITY: it has none */
     double steepest; /* largest |grad phi|; 0: 1 */
     double pivot[3]; /* m, about which it turns                        */
     /* Three expressions of the time t each: how far it has moved, m, and turned, a rotation vector, rad; NULL: not. Owned. */
@@ -43,6 +46,9 @@ typedef struct ObstaclePose {
 
 /* False and a sentence, which names the obstacle, where a formula is not finite. Re-entrant. */
 bool obstacle_pose(const Obstacle *obstacle, double time, ObstaclePose *pose, Error *err);
+
+/* The place in the obstacle's own frame of one in space. */
+void obstacle_own_place(const ObstaclePose *pose, const double x[3], double own[3]);
 
 /* Its gap in space, there. Re-entrant. */
 void obstacle_gap(const Obstacle *obstacle, const ObstaclePose *pose, const double x[3], Gap *gap);

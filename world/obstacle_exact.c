@@ -16,9 +16,10 @@ static double direction(const double w[3], double u[3])
 }
 
 static Obstacle make(const ObstacleOps *ops, const void *self, size_t size, const double pivot[3],
-                     double feature)
+                     double feature, double inradius)
 {
-    Obstacle obstacle = {.ops = ops, .self = mem_copy(self, 1, size), .feature = feature};
+    Obstacle obstacle = {
+        .ops = ops, .self = mem_copy(self, 1, size), .feature = feature, .inradius = inradius};
     memcpy(obstacle.pivot, pivot, sizeof obstacle.pivot);
     return obstacle;
 }
@@ -101,7 +102,7 @@ Obstacle obstacle_plane(const double point[3], const double normal[3])
     Plane plane;
     memcpy(plane.point, point, sizeof plane.point);
     direction(normal, plane.normal);
-    return make(&plane_ops, &plane, sizeof plane, point, INFINITY);
+    return make(&plane_ops, &plane, sizeof plane, point, INFINITY, INFINITY);
 }
 
 /* ---- Sphere and cylinder: how far it is from a point or an axis ---- */
@@ -147,7 +148,7 @@ Obstacle obstacle_sphere(const double center[3], double radius, bool inside)
 {
     Round sphere = {.radius = radius, .side = inside ? -1 : 1};
     memcpy(sphere.point, center, sizeof sphere.point);
-    return make(&sphere_ops, &sphere, sizeof sphere, center, radius);
+    return make(&sphere_ops, &sphere, sizeof sphere, center, radius, inside ? INFINITY : radius);
 }
 
 /* From one end of the box to the other. */
@@ -187,7 +188,7 @@ Obstacle obstacle_cylinder(const double point[3], const double axis[3], double r
     Round cylinder = {.radius = radius, .side = inside ? -1 : 1};
     memcpy(cylinder.point, point, sizeof cylinder.point);
     direction(axis, cylinder.axis);
-    return make(&cylinder_ops, &cylinder, sizeof cylinder, point, radius);
+    return make(&cylinder_ops, &cylinder, sizeof cylinder, point, radius, inside ? INFINITY : radius);
 }
 
 /* ---- Rounded box ---- */
@@ -246,5 +247,5 @@ Obstacle obstacle_box(const double center[3], const double half[3], double round
     Box box = {.rounding = rounding};
     memcpy(box.center, center, sizeof box.center);
     for (int i = 0; i < 3; i++) box.core[i] = half[i] - rounding;
-    return make(&box_ops, &box, sizeof box, center, rounding);
+    return make(&box_ops, &box, sizeof box, center, rounding, fmin(half[0], fmin(half[1], half[2])));
 }

@@ -92,6 +92,7 @@ Obstacle obstacle_height_field(const double range[2][2], const int cells[2], con
     return (Obstacle){.ops = &height_field_ops,
                       .self = field,
                       .feature = fmin(step[0], step[1]),
+                      .inradius = INFINITY,
                       .steepest = steepest_ground(field, cells, low, step),
                       .pivot = {(range[0][0] + range[1][0]) / 2, (range[0][1] + range[1][1]) / 2, 0}};
 }
@@ -222,7 +223,7 @@ bool obstacle_tube(int axis, const double range[2], int cells, const double (*sa
     *tube = (Tube){axis, {others[axis][0], others[axis][1]}, .range = {range[0], range[1]}};
     tube->radius = tube_spline(tube, cells, sample, 0);
     for (int k = 0; k < 2; k++) tube->center[k] = tube_spline(tube, cells, sample, 1 + k);
-    *obstacle = (Obstacle){.ops = &tube_ops, .self = tube};
+    *obstacle = (Obstacle){.ops = &tube_ops, .self = tube, .inradius = INFINITY};
     double middle[3] = {(range[0] + range[1]) / 2};
     obstacle->pivot[axis] = middle[0];
     for (int k = 0; k < 2; k++) {

@@ -194,27 +194,31 @@ static double *sample_coarse_first(const Mesh *mesh, double side, const Grid *gr
     return values;
 }
 
-/* NULL where no node is inside. */
-static Solid *make_solid(Mesh *mesh, const Grid *grid)
+/* NULL where no node is inside; the deepest one is `deepest` deep. */
+static Solid *make_solid(Mesh *mesh, const Grid *grid, double *deepest)
 {
-    bool turned = volume(mesh) < 0, inside = false;
+    bool turned = volume(mesh) < 0;
     double *values = sample_coarse_first(mesh, turned ? -1 : 1, grid);
-    for (long k = 0; k < node_count(grid); k++) inside |= values[k] < 0;
-    Solid *solid = inside ? mem_alloc(1, sizeof *solid) : NULL;
+    *deepest = 0;
+    for (long k = 0; k < node_count(grid); k++) *deepest = fmax(*deepest, -values[k]);
+    Solid *solid = *deepest > 0 ? mem_alloc(1, sizeof *solid) : NULL;
     if (solid) *solid = (Solid){mesh, make_spline(grid, values), grid->cell, turned};
     mem_free(values);
     return solid;
 }
+
+/* Cells: as thin may a part of a mesh be that is thick elsewhere. */
+static const double THIN = 2;
 
 bool obstacle_mesh(const MeshFile *file, double cell, Obstacle *obstacle, Error *err)
 {
     const double equal = 1e-12; /* m */
     Mesh *mesh = mesh_create(file, equal, NULL, err);
     Grid grid;
-    double low[3], high[3];
+    double low[3], high[3], deepest;
     if (mesh && isnan(cell)) cell = mesh_diagonal(mesh) / 48;
     bool good = mesh && check_closed(mesh, file->path, err) && find_grid(mesh, cell, file->path, &grid, err);
-    Solid *solid = good ? make_solid(mesh, &grid) : NULL;
+    Solid *solid = good ? make_solid(mesh, &grid, &deepest) : NULL;
     if (good && !solid)
         error_set(err,
                   "%s: the mesh is thinner than a cell of its grid, %.3g m, all over: give a smaller `cell`",
@@ -224,6 +228,7 @@ bool obstacle_mesh(const MeshFile *file, double cell, Obstacle *obstacle, Error 
         return false;
     }
     *obstacle = (Obstacle){.ops = &mesh_ops, .self = solid, .feature = cell, .steepest = 1.2};
+    obstacle->inradius = fmin(deepest, THIN * cell);
     mesh_bounding_box(mesh, low, high);
     for (int i = 0; i < 3; i++) obstacle->pivot[i] = (low[i] + high[i]) / 2;
     return true;

@@ -127,6 +127,14 @@ static void contact_project(const void *self, const double *from, double *x)
     }
 }
 
+/* Newton's way to the end of a step may lead around a rim that the straight way does not. */
+static bool contact_passes(const void *self, const Point *at)
+{
+    const SelfPairs *pairs = self;
+    int first = pairs->n->def.first;
+    return self_pairs_reach(pairs, at->x_prev + first, at->x + first, KEEP_TRIAL) < 1;
+}
+
 static const TermOps contact_ops = {
     .name = "self_contact",
     .idles = true,
@@ -139,6 +147,7 @@ static const TermOps contact_ops = {
     .param_forward = contact_param_forward,
     .reach = contact_reach,
     .project = contact_project,
+    .passes = contact_passes,
     .accept = self_pairs_accept,
     .memory = self_pairs_memory,
     .destroy = self_pairs_destroy,

@@ -46,17 +46,27 @@ static Samples all_vertices(const WorldBody *body)
     return samples;
 }
 
-/* Takes the samples. */
+/* What nothing is to go through: its faces, or elements; borrowed. */
+static Samples faces_of(const WorldBody *body)
+{
+    bool rod = body->face_count == 0;
+    const int *corners = rod ? (const int *)body->edges : (const int *)body->faces;
+    return (Samples){rod ? body->edge_count : body->face_count, rod ? 2 : 3, (int *)corners, body->first};
+}
+
+/* Takes the samples; the first of them ask for all faces, too. */
 static void add_contact(World *world, Samples samples)
 {
     if (samples.count == 0) {
         mem_free(samples.vertices);
         return;
     }
+    Samples faces = world->contact_kinds == 0 ? faces_of(&world->body) : (Samples){0};
     world->contacts[world->contact_kinds++] =
         (ContactDef){.obstacles = world->obstacles,
                      .obstacle_count = world->obstacle_count,
                      .samples = samples,
+                     .faces = faces,
                      .vertex_count = world->body.vertex_count,
                      .fixed = world->body.fixed,
                      .derived = positions_follow(&world->body),
@@ -244,12 +254,26 @@ static void measure_self(const World *world, const Point *at, WorldSums *sums)
     friction.ops->destroy(friction.self);
 }
 
+/* Beside what earlier parts of the step were gone through. */
+static void measure_pierced(const World *world, const Point *at, Pierced *sum)
+{
+    Samples faces = faces_of(&world->body);
+    Poses poses = poses_create(world->obstacles, world->obstacle_count);
+    poses_update(&poses, at);
+    Pierced found = pierce_find(&poses, &faces, at->x_prev, at->x);
+    poses_destroy(&poses);
+    found.count += sum->count;
+    if (sum->count) found.obstacle = sum->obstacle, found.face = sum->face;
+    *sum = found;
+}
+
 void world_measure(const World *world, const Point *at, WorldSums *sums)
 {
     for (int k = 0; k < world->contact_kinds; k++) {
         ContactDef def = contact_of(world, k);
         contact_measure(&def, at, &sums->contact);
     }
+    if (at->dt > 0) measure_pierced(world, at, &sums->pierced);
     if (world->self) measure_self(world, at, sums);
     if (world->wet && at->dt > 0) {
         Term water = water_of(world);

@@ -3,6 +3,7 @@
 #include "solve/params.h"
 #include "solve/system.h"
 #include "world/contact.h"
+#include "world/pierce.h"
 #include "world/self_contact.h"
 #include "world/water.h"
 
@@ -60,6 +61,7 @@ typedef struct WorldSums {
     SelfContactFigures self;
     double pairs;     /* that act between parts of the body                                          */
     double crossings; /* edges that pass through faces                                       */
+    Pierced pierced;  /* faces, or a rod's elements, that obstacles went through in the step */
     double water;     /* J, what the water has taken in the step                             */
 } WorldSums;
 
