@@ -23,9 +23,9 @@ typedef struct SparseDef {
 Sparse *sparse_create(int n, Groups groups, SparseDef def);
 void sparse_destroy(Sparse *matrix);
 
-/* Couples these groups beside those it was made of, in place of such given before; all its values are 0 then. The order
- * stays, unless L would have 1.6 times the nonzeros (and no order was given): it follows from the groups at hand alone, not
- * from earlier ones. The factor at hand stays good, and a new one costs no more for it. */
+/* Couples these groups beside those it was made of, in place of such given before; all its values are 0 then. The factor
+ * at hand stays good. The next one has the order of those before, unless L would have 1.6 times the nonzeros (and no order
+ * was given): it follows from the groups at hand alone, not from earlier ones, and is found when it is needed. */
 void sparse_couple(Sparse *matrix, Groups groups);
 
 /* Entries of the matrix as it was made; and where each (sparse_slot before any sparse_couple) is stored now, NULL: at its own
