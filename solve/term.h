@@ -50,7 +50,8 @@ static inline Point state_point(const State *state, const double *p)
 
 typedef struct TermOps {
     const char *name; /* also the name of its energy in the result, e.g. "bending" */
-    bool idles;       /* it acts between what is near: where nothing is, all of it is 0  */
+    bool
+        idles; /* it acts between what is near: no energy is < 0, and where one is 0 so are its derivatives */
 
     int (*count)(const void *self); /* elements                                    */
     int (*size)(const void *self);  /* dofs per element, <= TERM_MAX_DOF           */
