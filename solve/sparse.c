@@ -322,6 +322,7 @@ int sparse_solve_cg(Sparse *matrix, const double *b, double tolerance, int max_i
     for (; size > stop; k++) {
         multiply_permuted(matrix, direction, product);
         double curvature = dot(n, direction, product), a = size / curvature;
+        if (curvature <= 0) return SPARSE_INDEFINITE;
         if (k == max_iterations || !(curvature > 0)) return -1;
         for (int i = 0; i < n; i++) {
             solution[i] += a * direction[i];

@@ -61,8 +61,10 @@ void sparse_solve(Sparse *matrix, const double *b, double *x);
 void sparse_multiply(const Sparse *matrix, const double *x, double *y);
 
 /* Solves A x = b by conjugate gradients with the factor at hand, of a matrix nearby, as preconditioner M, from x = 0
- * until r'M^-1 r fell by tolerance^2. Returns the iterations; -1 when max_iterations were too few or A showed itself not
- * positive definite. b and x may be the same. */
+ * until r'M^-1 r fell by tolerance^2. Returns the iterations; less than 0: SPARSE_INDEFINITE when A showed itself not positive
+ * definite, -1 when max_iterations were too few. b and x may be the same. */
+enum { SPARSE_INDEFINITE = -2 };
+
 int sparse_solve_cg(Sparse *matrix, const double *b, double tolerance, int max_iterations, double *x);
 
 /* The factor at hand, shared: the caller releases it (direct.h), when he likes. And a factor made the one at hand,

@@ -175,6 +175,10 @@ static void test_indefinite(void **state)
     assert_true(sparse_factor(a, NULL));
     sparse_solve(a, b, x);
     assert_true(misfit(a, x, b) < 1e-13);
+    assert_int_equal(sparse_solve_cg(a, b, 1e-12, 0, x),
+                     -1); /* of its own factor, but no iteration is allowed */
+    for (int i = 0; i < N; i++) sparse_values(a)[sparse_slot(a, i, i)] -= 100;
+    assert_int_equal(sparse_solve_cg(a, b, 1e-12, 100, x), SPARSE_INDEFINITE);
     sparse_destroy(a);
 }
 
