@@ -26,10 +26,16 @@ struct Direct {
     cholmod_dense *b, *x, *work_y, *work_e;
 };
 
+/* Numbers of a plan's factor, and for how many there is room. */
+typedef struct Room {
+    double *numbers; /* NULL: none */
+    long count;
+} Room;
+
 struct Factor {
     int shares;
     Direct *direct;
-    double *numbers;         /* of a plan                */
+    Room room;               /* of a plan                */
     cholmod_factor *columns; /* if simplicial, else NULL */
 };
 
@@ -199,14 +205,34 @@ DirectCost direct_cost(const Direct *direct)
     return direct->cost;
 }
 
+/* That of a factor which nobody else has. */
+static Room take_room(Factor *factor)
+{
+    if (!factor || factor->shares > 1) return (Room){0};
+    Room room = factor->room;
+    factor->room = (Room){0};
+    return room;
+}
+
+/* Room for a factor, the one at hand if there is enough of it: fresh memory costs half a factorisation, and patterns of what
+ * touches follow each other. Where it was too little, with some to spare. */
+static Room make_room(Room old, long size)
+{
+    if (old.count >= size) return old;
+    mem_free(old.numbers);
+    long count = old.count > 0 ? size + size / 8 : size;
+    return (Room){mem_alloc((size_t)count, sizeof(double)), count};
+}
+
 /* Its numbers are still to come. */
-static Factor *new_factor(Direct *direct)
+static Factor *new_factor(Direct *direct, Room room)
 {
     Factor *factor = mem_alloc(1, sizeof *factor);
     *factor = (Factor){.shares = 1, .direct = direct};
     if (direct->plan) {
-        factor->numbers = mem_alloc((size_t)supernodal_size(direct->plan), sizeof(double));
+        factor->room = make_room(room, supernodal_size(direct->plan));
     } else {
+        mem_free(room.numbers);
         factor->columns = cholmod_copy_factor(direct->symbolic, &direct->common);
         check_memory(&direct->common);
     }
@@ -238,11 +264,13 @@ static bool factor_simplicial(Direct *direct, const Pattern *pattern, double *va
 bool direct_factor(Direct *direct, const Pattern *pattern, double *values, Factor **factor, Workers *workers)
 {
     if (!*factor || (*factor)->shares > 1 || (*factor)->direct != direct) {
+        Room room = take_room(*factor);
         factor_release(*factor);
-        *factor = new_factor(direct);
+        *factor = new_factor(direct, room);
     }
     if (!dense_is_finite(pattern->start[pattern->n], values)) return false;
-    if (direct->plan) return supernodal_factor(direct->plan, pattern, values, (*factor)->numbers, workers);
+    if (direct->plan)
+        return supernodal_factor(direct->plan, pattern, values, (*factor)->room.numbers, workers);
     return factor_simplicial(direct, pattern, values, (*factor)->columns);
 }
 
@@ -256,7 +284,7 @@ void factor_release(Factor *factor)
 {
     if (!factor || --factor->shares > 0) return;
     if (factor->columns) cholmod_free_factor(&factor->columns, &factor->direct->common);
-    mem_free(factor->numbers);
+    mem_free(factor->room.numbers);
     direct_release(factor->direct);
     mem_free(factor);
 }
@@ -277,7 +305,7 @@ const double *factor_solve(const Factor *factor, const double *b, Workers *worke
     size_t bytes = (size_t)direct->n * sizeof *b;
     if (direct->plan) {
         memcpy(direct->solution, b, bytes);
-        supernodal_solve(direct->plan, factor->numbers, direct->solution, workers);
+        supernodal_solve(direct->plan, factor->room.numbers, direct->solution, workers);
         return direct->solution;
     }
     memcpy(direct->b->x, b, bytes);

@@ -264,7 +264,7 @@ static NewtonStatus iterate(Search *s)
     if (status != NEWTON_MAX_ITERATIONS) return status;
     s->extrapolate = false;
     gap_note(s);
-    s->shifted = s->shift > 0 ? s->shifted + 1 : 0;
+    s->shifted = s->shift > 0 && !s->convex ? s->shifted + 1 : 0; /* a convex part has no way down */
     if (is_converged(s, small)) {
         finish(s);
         return NEWTON_CONVERGED;
