@@ -14,7 +14,11 @@ void bench_solver(void);
 void bench_design(void);
 void bench_march(void);
 void bench_contact(void);
+void bench_crumple(void);
 void bench_trajectory(void);
+
+/* Of a motion in scenes/, with what is set of it: milliseconds per step, and what its adjoint and a Gauss-Newton product cost. */
+void bench_sweeps(const char *name, const char *const assignments[2]);
 void bench_rod(void);
 void bench_spline(void);
 void bench_draw(void);

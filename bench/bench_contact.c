@@ -26,7 +26,7 @@ static void load(void *self, double time, double *p)
 }
 
 /* A thread's own milliseconds per step, all steps of the scene; what it does at its end. */
-static double scene_ms(const char *name, const char *assignment, WorldSums *sums)
+static double scene_ms(const char *name, const char *assignment, WorldSums *sums, NewtonInfo *all)
 {
     char path[512];
     Scene scene;
@@ -39,10 +39,12 @@ static double scene_ms(const char *name, const char *assignment, WorldSums *sums
     MarchDef def = march_default();
     def.load = load, def.self = model;
     double start = clock_thread_seconds();
+    *all = (NewtonInfo){0};
     for (int n = 0; n < scene.time.steps; n++) {
         MarchInfo info;
         if (!march_step(c->sys, &def, scene.time.step, c->stages[0].p, &c->state, &info))
             bench_fail("%s stops in step %d", name, n + 1);
+        newton_add_counts(all, &info.newton);
     }
     double ms = 1e3 * (clock_thread_seconds() - start) / scene.time.steps;
     Point at = state_point(&c->state, c->stages[0].p);
@@ -56,10 +58,14 @@ static double scene_ms(const char *name, const char *assignment, WorldSums *sums
 /* Without, it passes through itself: another motion from where it touches on. */
 static void scene(const char *name)
 {
-    WorldSums sums = {0};
-    double with = scene_ms(name, NULL, &sums), without = scene_ms(name, "contact.self=false", &sums);
+    WorldSums sums = {0}, none = {0};
+    NewtonInfo all, other;
+    double with = scene_ms(name, NULL, &sums, &all),
+           without = scene_ms(name, "contact.self=false", &none, &other);
     print(name, "ms_per_step", with, "ms");
     print(name, "over_without", with / without, "ratio");
+    print(name, "newton_over_without", (double)all.iterations / other.iterations, "ratio");
+    print(name, "factorizations_over_without", (double)all.factorizations / other.factorizations, "ratio");
     print(name, "pairs", sums.pairs, "");
 }
 
@@ -152,4 +158,5 @@ void bench_contact(void)
         for (int self = 0; self < 2; self++) stack(cells, self);
     scene("fold");
     scene("bud");
+    bench_sweeps("octopus_pipe1", (const char *const[]){"time.steps=300", "design.iterations=1"});
 }

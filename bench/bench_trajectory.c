@@ -10,6 +10,8 @@
 
 enum { PRODUCTS = 20 };
 
+#define NOISE "design.unknowns.flux_density.noise=5 mT"
+
 static TrajectoryProblem problem_of(const Model *model, const Scene *scene)
 {
     const Case *c = &model->cases[0];
@@ -51,14 +53,13 @@ static void sweeps(Model *model, const Scene *scene, const char *name)
     mem_free(u);
 }
 
-static void adjoint(const char *name, const char *assignment)
+void bench_sweeps(const char *name, const char *const assignments[2])
 {
     char path[512];
     Scene scene;
     snprintf(path, sizeof path, "%s/scenes/%s.yaml", SOURCE_DIR, name);
     YamlFile *file = yaml_read(path);
-    yaml_override(file, assignment);
-    yaml_override(file, "design.unknowns.flux_density.noise=5 mT");
+    for (int k = 0; k < 2; k++) yaml_override(file, assignments[k]);
     Model *model = yaml_load(file, scene_table(), &scene) ? model_create(&scene, file) : NULL;
     if (!model) bench_fail("%s is refused: %s check says why", path, PROGRAM);
     sweeps(model, &scene, name);
@@ -99,9 +100,9 @@ static void job(const char *name, double r)
 
 void bench_trajectory(void)
 {
-    adjoint("track_line", "shell.bending=midedge");
-    adjoint("track_circle", "shell.bending=hinge");
-    adjoint("kirigami_reach", "shell.bending=midedge");
+    bench_sweeps("track_line", (const char *const[]){"shell.bending=midedge", NOISE});
+    bench_sweeps("track_circle", (const char *const[]){"shell.bending=hinge", NOISE});
+    bench_sweeps("kirigami_reach", (const char *const[]){"shell.bending=midedge", NOISE});
     job("track_line", 3.8e-5);
     job("track_circle", 2.3e-5);
     job("kirigami_reach", 4.9e-4);

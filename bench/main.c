@@ -19,6 +19,7 @@ static const struct {
     {"solver", bench_solver},
     {"march", bench_march},
     {"contact", bench_contact},
+    {"crumple", bench_crumple},
     {"trajectory", bench_trajectory},
     {"equilibria", bench_equilibria},
     {"design", bench_design},

@@ -8,6 +8,7 @@ Contacts contacts_create(const Model *model)
 {
     Contacts c = {.world = model->world, .points = model->point_count};
     if (!c.world) return c;
+    c.gauge = world_gauge_create(c.world);
     c.dofs = system_dof_count(model->cases[0].sys);
     c.before = mem_alloc((size_t)c.dofs, sizeof *c.before);
     c.v = mem_alloc((size_t)c.dofs, sizeof *c.v);
@@ -18,6 +19,7 @@ Contacts contacts_create(const Model *model)
 
 void contacts_destroy(Contacts *contacts)
 {
+    world_gauge_destroy(contacts->gauge);
     mem_free(contacts->before);
     mem_free(contacts->v);
     mem_free(contacts->sums.contact.force);
@@ -56,7 +58,7 @@ void contacts_add(Contacts *c, const State *state, double dt, const double *p)
     if (c->world->implicit) at.x_lag = state->x;
     Pierced before = c->sums.pierced;
     reset(c, c->sums.contact.friction, c->sums.water, before);
-    world_measure(c->world, &at, &c->sums);
+    world_gauge_measure(c->gauge, &at, &c->sums);
     c->pierced += c->sums.pierced.count - before.count;
     c->deepest = fmax(c->deepest, c->sums.contact.depth);
     c->longest = fmax(c->longest, world_longest_edge(c->world, state->x + first));

@@ -6,6 +6,7 @@
 /* The steps of a body that meets something. */
 typedef struct Contacts {
     const World *world; /* NULL: it meets nothing, and all below does nothing */
+    WorldGauge *gauge;  /* of the world                                              */
     int dofs, points;
     double *before, *v; /* [dofs] where a step began, and how fast               */
     WorldSums sums;     /* of the step: forces and counts of its end, works of its parts; owns its vectors */

@@ -11,8 +11,11 @@
 typedef struct Direct Direct;
 typedef struct Factor Factor;
 
+/* How often a pattern will be factored: what takes longer to find pays for what is factored often. */
+typedef enum DirectUse { DIRECT_OFTEN, DIRECT_SELDOM } DirectUse;
+
 /* rank[i]: where an order of low fill (AMD; METIS for large ones) puts unknown i. The caller frees it. */
-int *direct_order(const Pattern *pattern);
+int *direct_order(const Pattern *pattern, DirectUse use);
 
 /* Of a pattern that is in the order of elimination already; rank[n] (copied) says where unknown i went. Of the pivots
  * exactly `negative` are to be negative: more than 0 needs LDL^T, without pivoting. */

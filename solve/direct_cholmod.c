@@ -8,8 +8,9 @@
 
 /* From this many entries of the matrix on, nested dissection: it saves a tenth of the factor's work on sheets with angles of hinges and
  * half with one angle per edge, and gives a tree that threads can share (docs/solver.md). Its own analysis takes some five
- * times longer than AMD's, once, and never pays for what is coupled to few others. */
-enum { METIS_FROM = 60000 };
+ * times longer than AMD's and never pays for what is coupled to few others; of a pattern that soon is another one (sheets that
+ * touch: L has 1.56 or 1.38 times the nonzeros with 80 000 entries, 2.45 or 2.3 with 200 000) it pays later. */
+static const int METIS_FROM[] = {[DIRECT_OFTEN] = 60000, [DIRECT_SELDOM] = 150000};
 
 /* Where columns of L are alike over many rows (CHOLMOD's rule: 40 operations for each of its numbers), supernodal.h factors
  * in a structure of CHOLMOD's; chains, and with them all that has multipliers, are factored by its simplicial LL^T or
@@ -25,10 +26,16 @@ struct Direct {
     cholmod_dense *b, *x, *work_y, *work_e;
 };
 
+/* Numbers of a plan's factor, and for how many there is room. */
+typedef struct Room {
+    double *numbers; /* NULL: none */
+    long count;
+} Room;
+
 struct Factor {
     int shares;
     Direct *direct;
-    double *numbers;         /* of a plan                */
+    Room room;               /* of a plan                */
     cholmod_factor *columns; /* if simplicial, else NULL */
 };
 
@@ -99,11 +106,11 @@ static cholmod_factor *analyse_pattern(const Pattern *pattern, cholmod_common *c
     return factor;
 }
 
-int *direct_order(const Pattern *pattern)
+int *direct_order(const Pattern *pattern, DirectUse use)
 {
     cholmod_common common;
     cholmod_l_start(&common);
-    set_options(&common, pattern->start[pattern->n] >= METIS_FROM ? CHOLMOD_METIS : CHOLMOD_AMD);
+    set_options(&common, pattern->start[pattern->n] >= METIS_FROM[use] ? CHOLMOD_METIS : CHOLMOD_AMD);
     cholmod_factor *factor = analyse_pattern(pattern, &common);
     const long *order = factor->Perm;
     int *rank = mem_alloc((size_t)pattern->n, sizeof *rank);
@@ -198,14 +205,34 @@ DirectCost direct_cost(const Direct *direct)
     return direct->cost;
 }
 
+/* That of a factor which nobody else has. */
+static Room take_room(Factor *factor)
+{
+    if (!factor || factor->shares > 1) return (Room){0};
+    Room room = factor->room;
+    factor->room = (Room){0};
+    return room;
+}
+
+/* Room for a factor, the one at hand if there is enough of it: fresh memory costs half a factorisation, and patterns of what
+ * touches follow each other. Where it was too little, with some to spare. */
+static Room make_room(Room old, long size)
+{
+    if (old.count >= size) return old;
+    mem_free(old.numbers);
+    long count = old.count > 0 ? size + size / 8 : size;
+    return (Room){mem_alloc((size_t)count, sizeof(double)), count};
+}
+
 /* Its numbers are still to come. */
-static Factor *new_factor(Direct *direct)
+static Factor *new_factor(Direct *direct, Room room)
 {
     Factor *factor = mem_alloc(1, sizeof *factor);
     *factor = (Factor){.shares = 1, .direct = direct};
     if (direct->plan) {
-        factor->numbers = mem_alloc((size_t)supernodal_size(direct->plan), sizeof(double));
+        factor->room = make_room(room, supernodal_size(direct->plan));
     } else {
+        mem_free(room.numbers);
         factor->columns = cholmod_copy_factor(direct->symbolic, &direct->common);
         check_memory(&direct->common);
     }
@@ -237,11 +264,13 @@ static bool factor_simplicial(Direct *direct, const Pattern *pattern, double *va
 bool direct_factor(Direct *direct, const Pattern *pattern, double *values, Factor **factor, Workers *workers)
 {
     if (!*factor || (*factor)->shares > 1 || (*factor)->direct != direct) {
+        Room room = take_room(*factor);
         factor_release(*factor);
-        *factor = new_factor(direct);
+        *factor = new_factor(direct, room);
     }
     if (!dense_is_finite(pattern->start[pattern->n], values)) return false;
-    if (direct->plan) return supernodal_factor(direct->plan, pattern, values, (*factor)->numbers, workers);
+    if (direct->plan)
+        return supernodal_factor(direct->plan, pattern, values, (*factor)->room.numbers, workers);
     return factor_simplicial(direct, pattern, values, (*factor)->columns);
 }
 
@@ -255,7 +284,7 @@ void factor_release(Factor *factor)
 {
     if (!factor || --factor->shares > 0) return;
     if (factor->columns) cholmod_free_factor(&factor->columns, &factor->direct->common);
-    mem_free(factor->numbers);
+    mem_free(factor->room.numbers);
     direct_release(factor->direct);
     mem_free(factor);
 }
@@ -276,7 +305,7 @@ const double *factor_solve(const Factor *factor, const double *b, Workers *worke
     size_t bytes = (size_t)direct->n * sizeof *b;
     if (direct->plan) {
         memcpy(direct->solution, b, bytes);
-        supernodal_solve(direct->plan, factor->numbers, direct->solution, workers);
+        supernodal_solve(direct->plan, factor->room.numbers, direct->solution, workers);
         return direct->solution;
     }
     memcpy(direct->b->x, b, bytes);

@@ -10,6 +10,7 @@ static const double SHIFT_LAST = 1e8;   /* D: beyond this a step is no longer a 
 static const double STALL_SHIFT = 1e6;  /* D: no decrease even with such a shift                  */
 static const double SETTLED = 1e-4;     /* of a gap's force: more is a force that goes on growing */
 static const double LONG_STEP = 1e-4;   /* body's measure: shorter ones need no extrapolated stress */
+static const double CONVEX_GROWTH = 64; /* of a shift: what is indefinite without contact is so by much */
 static const double BASE_CG_TOL = 1e-4; /* what is left of the base shift's part in a step        */
 
 NewtonDef newton_default(void)
@@ -74,12 +75,10 @@ bool search_factor(Search *s, double shift)
 static bool factor_shifted(Search *s)
 {
     const NewtonDef *def = s->def;
-    double kept = s->shift_kept;
+    double kept = s->shift_kept, growth = s->convex ? CONVEX_GROWTH : def->shift_growth;
     s->shift = kept < def->shift_decay * def->shift_least ? 0 : kept / def->shift_decay;
     while (!search_factor(s, s->shift)) {
-        s->shift = s->shift > 0 ? def->shift_growth * s->shift
-                   : kept > 0   ? def->shift_least
-                                : def->shift_first;
+        s->shift = s->shift > 0 ? growth * s->shift : kept > 0 ? def->shift_least : def->shift_first;
         if (s->shift > SHIFT_LAST) return false;
     }
     return true;
@@ -172,17 +171,42 @@ static void solve(Search *s)
     if (iterations < 0) system_solve(s->sys, s->gradient, s->step);
 }
 
+/* Hessian at x, of the stress that the last step was to bring or of its own. */
+static void linearise(Search *s, bool extrapolate)
+{
+    Point at = s->at;
+    if (extrapolate) at.x_from = s->from, at.step = s->moved;
+    s->now = system_hessian(s->sys, &at, s->gradient);
+    s->info.evaluations++;
+}
+
+/* Of the Hessian, or, where that is not positive definite, of its convex part, with the least shift that it takes. */
+static bool factor_convex(Search *s, bool indefinite)
+{
+    s->shift = 0;
+    if (!indefinite && search_factor(s, 0)) return true;
+    Point at = s->at;
+    at.convex = true;
+    system_hessian(s->sys, &at, s->gradient);
+    s->info.evaluations++;
+    s->convex = true;
+    return factor_shifted(s);
+}
+
 /* step = -H^-1 gradient: by conjugate gradients where they do, else with a new factor, shifted if need be. False where no
  * shift makes the matrix positive definite. */
 static bool newton_step(Search *s, bool small)
 {
     int iterations = -1;
+    s->convex = false;
     if (s->def->cg_iterations > 0 && s->shift_kept == 0)
         iterations = system_solve_cg(s->sys, s->gradient, s->def->cg_tol, s->def->cg_iterations, s->step);
     if (iterations >= 0) {
         s->info.cg_iterations += iterations;
     } else {
-        if (!factor_shifted(s)) return false;
+        bool indefinite = iterations == SPARSE_INDEFINITE || s->shift_kept > 0;
+        bool found = s->convexes && !small ? factor_convex(s, indefinite) : factor_shifted(s);
+        if (!found) return false;
         if (small && s->shift > 0 && s->shift_kept > 0) { /* a remembered shift proves nothing */
             if (search_factor(s, 0))
                 s->shift = 0;
@@ -199,7 +223,7 @@ static bool newton_step(Search *s, bool small)
 
 static bool is_converged(const Search *s, bool small)
 {
-    if (s->shift > 0 || system_gap(s->sys) > 0 || system_force_change(s->sys, s->step) > SETTLED)
+    if (s->shift > 0 || s->convex || system_gap(s->sys) > 0 || system_force_change(s->sys, s->step) > SETTLED)
         return false;
     double gain = -vector_dot(s->n, s->gradient, s->step);
     for (int i = 0; system_multiplier_count(s->sys) && i < s->n;
@@ -215,15 +239,6 @@ static double round_off(const Search *s)
     double largest = 0;
     for (int i = 0; i < s->n; i++) largest = fmax(largest, fabs(s->x[i]));
     return 8 * DBL_EPSILON * system_stiffness_max(s->sys) * largest;
-}
-
-/* Hessian at x, of the stress that the last step was to bring or of its own. */
-static void linearise(Search *s, bool extrapolate)
-{
-    Point at = s->at;
-    if (extrapolate) at.x_from = s->from, at.step = s->moved;
-    s->now = system_hessian(s->sys, &at, s->gradient);
-    s->info.evaluations++;
 }
 
 /* The step to take from x. Near the end the Hessian is the true one: so the end is quadratic, and its factor tells of a
@@ -250,7 +265,7 @@ static NewtonStatus iterate(Search *s)
     if (status != NEWTON_MAX_ITERATIONS) return status;
     s->extrapolate = false;
     gap_note(s);
-    s->shifted = s->shift > 0 ? s->shifted + 1 : 0;
+    s->shifted = s->shift > 0 && !s->convex ? s->shifted + 1 : 0; /* a convex part has no way down */
     if (is_converged(s, small)) {
         finish(s);
         return NEWTON_CONVERGED;
@@ -295,6 +310,7 @@ NewtonInfo newton_minimize(System *sys, const NewtonDef *def, const Point *at, S
                 .moved = work + 7 * n,
                 .gap = work + 8 * n,
                 .change = work + 9 * n,
+                .convexes = system_convexes(sys),
                 .follows = !at->x_prev && system_has_follow(sys)};
     s.at.x = state->x, s.at.memory = state->memory;
     s.info.status = NEWTON_MAX_ITERATIONS;

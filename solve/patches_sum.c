@@ -70,7 +70,9 @@ static void take_pack(const Work *w, const Patch *patch, int host, int pack, dou
     for (int i = 0; i < entry->size; i++)
         for (int l = 0; l < PACK_LANES; l++)
             x[i][l] = w->points[host].x[entry->dofs[pack * entry->size + i][l]];
-    energies[host] += evaluate_pack(w, host, pack, x, &given);
+    double energy = evaluate_pack(w, host, pack, x, &given);
+    if (entry->changes && entry->term.ops->idles && energy == 0) return; /* as most pairs of a list do */
+    energies[host] += energy;
     for (int t = 0; t < w->term_count; t++)
         if (t != host && w->entries[t].host == host) {
             energies[t] += evaluate_pack(w, t, pack, x, &rider);

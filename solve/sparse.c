@@ -12,18 +12,26 @@ static const double FILL_MOST = 1.6;
 
 enum { GROUP_MOST = 32 }; /* in sparse_slots */
 
+/* The matrix as it is factored: in its own order, or, where L would have too many nonzeros so, in another one. */
+typedef struct Elimination {
+    Direct *direct; /* NULL: nothing was factored yet      */
+    Pattern other;  /* in another order; empty: in its own */
+    int *moved;     /* [entries] where each stands there   */
+    double *values; /* there                               */
+} Elimination;
+
 struct Sparse {
     int n, negative;
-    bool ordered; /* in an order that was given                                                     */
-    Pattern made; /* of the groups that it was made of, in their order                              */
+    bool ordered;    /* in an order that was given                             */
+    Pattern made;    /* of the groups that it was made of, in their order      */
+    Pattern pattern; /* the same, or with others coupled beside them           */
+    int *where;      /* [entries of made] where each stands in it; NULL: at its own place */
     Direct *direct_made;
-    Pattern pattern; /* the same, or with others coupled beside them; in the order of elimination     */
-    int *where;      /* [entries of made] where each stands in it; NULL: at its own place             */
-    Direct *direct;
+    Elimination elimination;
     Product *product;
     Factor *factor;   /* at hand; NULL: none was made */
-    const int *rank;  /* [n] where unknown i went; the Direct's */
-    Workers *workers; /* borrowed                              */
+    const int *rank;  /* [n] where unknown i went     */
+    Workers *workers; /* borrowed                     */
     double *values;
     double *diagonal; /* [n] kept aside while a shift stands on the diagonal                          */
     double *cg;       /* [6][n] x, residual, direction, product, M^-1 residual of it; a solve's b; permuted */
@@ -38,20 +46,31 @@ static int *rank_of(int n, const int *order)
     return rank;
 }
 
+static void elimination_clear(Elimination *e)
+{
+    direct_release(e->direct);
+    pattern_destroy(&e->other);
+    mem_free(e->moved);
+    mem_free(e->values);
+    *e = (Elimination){0};
+}
+
 /* Takes over what the matrix is from now on; where may be NULL. */
-static void set_pattern(Sparse *matrix, Pattern pattern, int *where, Direct *direct)
+static void set_pattern(Sparse *matrix, Pattern pattern, int *where)
 {
     if (matrix->where) pattern_destroy(&matrix->pattern);
     mem_free(matrix->where);
-    direct_release(matrix->direct);
+    elimination_clear(&matrix->elimination);
     product_destroy(matrix->product);
     mem_free(matrix->values);
     matrix->pattern = pattern;
     matrix->where = where;
-    matrix->direct = direct;
-    matrix->rank = direct_rank(direct);
     matrix->product = product_create(&matrix->pattern);
     matrix->values = mem_alloc((size_t)sparse_nonzeros(matrix), sizeof(double));
+}
+
+static void note_cost(Sparse *matrix, const Direct *direct)
+{
     DirectCost cost = direct_cost(direct);
     matrix->info.factor_nonzeros = cost.nonzeros;
     matrix->info.factor_bytes = cost.bytes;
@@ -68,7 +87,7 @@ Sparse *sparse_create(int n, Groups groups, SparseDef def)
         rank = rank_of(n, def.order);
     } else {
         Pattern plain = pattern_create(n, groups, NULL);
-        rank = direct_order(&plain);
+        rank = direct_order(&plain, DIRECT_OFTEN);
         pattern_destroy(&plain);
     }
     matrix->negative = def.negative;
@@ -76,49 +95,58 @@ Sparse *sparse_create(int n, Groups groups, SparseDef def)
     matrix->made = pattern_create(n, groups, rank);
     matrix->direct_made = direct_analyse(&matrix->made, rank, def.negative);
     mem_free(rank);
-    set_pattern(matrix, matrix->made, NULL, direct_share(matrix->direct_made));
+    matrix->rank = direct_rank(matrix->direct_made);
+    note_cost(matrix, matrix->direct_made);
+    set_pattern(matrix, matrix->made, NULL);
     matrix->diagonal = mem_alloc((size_t)n, sizeof(double));
     matrix->cg = mem_alloc(6 * (size_t)n, sizeof *matrix->cg);
     return matrix;
-}
-
-/* The pattern in an order of its own. */
-static Direct *reorder(const Sparse *matrix, Pattern *pattern, int *where)
-{
-    int n = matrix->n, entries = sparse_made_nonzeros(matrix), *to = direct_order(pattern);
-    int *moved = mem_alloc((size_t)pattern->start[n], sizeof *moved),
-        *rank = mem_alloc((size_t)n, sizeof *rank);
-    Pattern other = pattern_permute(pattern, to, moved);
-    for (int i = 0; i < n; i++) rank[i] = to[direct_rank(matrix->direct_made)[i]];
-    for (int k = 0; k < entries; k++) where[k] = moved[where[k]];
-    pattern_destroy(pattern);
-    *pattern = other;
-    Direct *direct = direct_analyse(pattern, rank, matrix->negative);
-    mem_free(to);
-    mem_free(moved);
-    mem_free(rank);
-    return direct;
 }
 
 void sparse_couple(Sparse *matrix, Groups groups)
 {
     if (matrix->n == 0) return;
     if (groups.count == 0) {
-        set_pattern(matrix, matrix->made, NULL, direct_share(matrix->direct_made));
+        set_pattern(matrix, matrix->made, NULL);
         return;
     }
-    const int *rank = direct_rank(matrix->direct_made);
-    Pattern others = pattern_create(matrix->n, groups, rank);
+    Pattern others = pattern_create(matrix->n, groups, matrix->rank);
     int *where = mem_alloc((size_t)sparse_made_nonzeros(matrix), sizeof *where);
     Pattern all = pattern_union(&matrix->made, &others, where);
-    Direct *direct = direct_analyse(&all, rank, matrix->negative);
-    double fill = (double)direct_cost(direct).nonzeros / (double)direct_cost(matrix->direct_made).nonzeros;
-    if (!matrix->ordered && fill > FILL_MOST) {
-        direct_release(direct);
-        direct = reorder(matrix, &all, where);
-    }
     pattern_destroy(&others);
-    set_pattern(matrix, all, where, direct);
+    set_pattern(matrix, all, where);
+}
+
+/* To be factored in an order of its own. */
+static void reorder(const Sparse *matrix, Elimination *e)
+{
+    int n = matrix->n, *to = direct_order(&matrix->pattern, DIRECT_SELDOM);
+    int *rank = mem_alloc((size_t)n, sizeof *rank);
+    size_t entries = (size_t)sparse_nonzeros(matrix);
+    e->moved = mem_alloc(entries, sizeof *e->moved);
+    e->values = mem_alloc(entries, sizeof *e->values);
+    e->other = pattern_permute(&matrix->pattern, to, e->moved);
+    for (int i = 0; i < n; i++) rank[i] = to[matrix->rank[i]];
+    direct_release(e->direct);
+    e->direct = direct_analyse(&e->other, rank, matrix->negative);
+    mem_free(to);
+    mem_free(rank);
+}
+
+/* How it is factored: found where it is, so that what is coupled and not factored costs nothing of it. */
+static void analyse(Sparse *matrix)
+{
+    Elimination *e = &matrix->elimination;
+    if (e->direct) return;
+    if (!matrix->where) {
+        e->direct = direct_share(matrix->direct_made);
+    } else {
+        e->direct = direct_analyse(&matrix->pattern, matrix->rank, matrix->negative);
+        double fill =
+            (double)direct_cost(e->direct).nonzeros / (double)direct_cost(matrix->direct_made).nonzeros;
+        if (!matrix->ordered && fill > FILL_MOST) reorder(matrix, e);
+    }
+    note_cost(matrix, e->direct);
 }
 
 int sparse_made_nonzeros(const Sparse *matrix)
@@ -140,7 +168,7 @@ void sparse_destroy(Sparse *matrix)
 {
     if (!matrix) return;
     factor_release(matrix->factor);
-    direct_release(matrix->direct);
+    elimination_clear(&matrix->elimination);
     direct_release(matrix->direct_made);
     if (matrix->where) pattern_destroy(&matrix->pattern);
     pattern_destroy(&matrix->made);
@@ -209,17 +237,27 @@ void sparse_diagonal(const Sparse *matrix, double *diagonal)
     for (int i = 0; i < matrix->n; i++) diagonal[i] = *diagonal_entry(matrix, i);
 }
 
+/* Of the values as they stand. */
+static bool factor_values(Sparse *matrix)
+{
+    Elimination *e = &matrix->elimination;
+    if (!e->moved)
+        return direct_factor(e->direct, &matrix->pattern, matrix->values, &matrix->factor, matrix->workers);
+    for (int k = 0; k < sparse_nonzeros(matrix); k++) e->values[e->moved[k]] = matrix->values[k];
+    return direct_factor(e->direct, &e->other, e->values, &matrix->factor, matrix->workers);
+}
+
 bool sparse_factor(Sparse *matrix, const double *shift)
 {
     if (matrix->n == 0) return true;
     double begin = clock_seconds();
+    analyse(matrix);
     for (int i = 0; i < matrix->n; i++) {
         double *entry = diagonal_entry(matrix, i);
         matrix->diagonal[i] = *entry;
         if (shift) *entry += shift[i];
     }
-    bool definite =
-        direct_factor(matrix->direct, &matrix->pattern, matrix->values, &matrix->factor, matrix->workers);
+    bool definite = factor_values(matrix);
     for (int i = 0; i < matrix->n; i++) *diagonal_entry(matrix, i) = matrix->diagonal[i];
     matrix->info.factorizations++;
     matrix->info.factor_seconds += clock_seconds() - begin;
@@ -284,6 +322,7 @@ int sparse_solve_cg(Sparse *matrix, const double *b, double tolerance, int max_i
     for (; size > stop; k++) {
         multiply_permuted(matrix, direction, product);
         double curvature = dot(n, direction, product), a = size / curvature;
+        if (curvature <= 0) return SPARSE_INDEFINITE;
         if (k == max_iterations || !(curvature > 0)) return -1;
         for (int i = 0; i < n; i++) {
             solution[i] += a * direction[i];

@@ -23,9 +23,9 @@ typedef struct SparseDef {
 Sparse *sparse_create(int n, Groups groups, SparseDef def);
 void sparse_destroy(Sparse *matrix);
 
-/* Couples these groups beside those it was made of, in place of such given before; all its values are 0 then. The order
- * stays, unless L would have 1.6 times the nonzeros (and no order was given): it follows from the groups at hand alone, not
- * from earlier ones. The factor at hand stays good, and a new one costs no more for it. */
+/* Couples these groups beside those it was made of, in place of such given before; all its values are 0 then. The factor
+ * at hand stays good. The next one has the order of those before, unless L would have 1.6 times the nonzeros (and no order
+ * was given): it follows from the groups at hand alone, not from earlier ones, and is found when it is needed. */
 void sparse_couple(Sparse *matrix, Groups groups);
 
 /* Entries of the matrix as it was made; and where each (sparse_slot before any sparse_couple) is stored now, NULL: at its own
@@ -61,8 +61,10 @@ void sparse_solve(Sparse *matrix, const double *b, double *x);
 void sparse_multiply(const Sparse *matrix, const double *x, double *y);
 
 /* Solves A x = b by conjugate gradients with the factor at hand, of a matrix nearby, as preconditioner M, from x = 0
- * until r'M^-1 r fell by tolerance^2. Returns the iterations; -1 when max_iterations were too few or A showed itself not
- * positive definite. b and x may be the same. */
+ * until r'M^-1 r fell by tolerance^2. Returns the iterations; less than 0: SPARSE_INDEFINITE when A showed itself not positive
+ * definite, -1 when max_iterations were too few. b and x may be the same. */
+enum { SPARSE_INDEFINITE = -2 };
+
 int sparse_solve_cg(Sparse *matrix, const double *b, double tolerance, int max_iterations, double *x);
 
 /* The factor at hand, shared: the caller releases it (direct.h), when he likes. And a factor made the one at hand,

@@ -116,7 +116,8 @@ bool system_factor_positions(System *sys, double sigma);
 void system_solve(System *sys, const double *b, double *y);
 
 /* Solves H y = b, H the last Hessian, by conjugate gradients with the last factor, of a Hessian nearby, as
- * preconditioner; -1: not reached in max_iterations, no usable factor, or H not positive definite (sparse_solve_cg). */
+ * preconditioner; less than 0: not reached in max_iterations, no usable factor, or H not positive definite
+ * (SPARSE_INDEFINITE, sparse.h). */
 int system_solve_cg(System *sys, const double *b, double tolerance, int max_iterations, double *y);
 
 /* The last factor, shared (direct.h: factor_release); and one made the last one again, of whatever pattern. NULL, or one of
@@ -162,6 +163,9 @@ bool system_lags(const System *sys);
  * False from system_has_follow: no term makes anything of it. */
 void system_follow(System *sys, const double *x, const double *d, double a, double *to);
 bool system_has_follow(const System *sys);
+
+/* Does a term heed Point.convex? */
+bool system_convexes(const System *sys);
 
 /* The largest part of a step d from at->x that the terms admit, in (0, 1] (TermOps.reach). */
 double system_reach(System *sys, const Point *at, const double *d);

@@ -27,7 +27,7 @@ void system_note_point(System *sys, const Point *at)
 {
     size_t n = (size_t)sys->dof_count;
     double *to = sys->linearised + ANCHOR_X;
-    sys->linearised[ANCHOR_USABLE] = 1;
+    sys->linearised[ANCHOR_USABLE] = at->convex ? ANCHOR_OF_CONVEX : ANCHOR_OF_ALL;
     sys->linearised[ANCHOR_TIME] = at->time;
     sys->linearised[ANCHOR_DT] = at->dt;
     memcpy(to, at->x, n * sizeof *to);
@@ -51,7 +51,8 @@ bool system_factor(System *sys, double shift)
         }
     bool ok = sparse_factor(sys->matrix, sum > 0 ? diagonal : NULL);
     memcpy(sys->anchor, sys->linearised, (size_t)system_anchor_count(sys) * sizeof *sys->anchor);
-    sys->anchor[ANCHOR_USABLE] = sys->factored = ok;
+    sys->factored = ok;
+    if (!ok) sys->anchor[ANCHOR_USABLE] = ANCHOR_NONE;
     sys->anchor[ANCHOR_SHIFT] = shift;
     return ok;
 }
@@ -85,6 +86,7 @@ void system_restore_factor(System *sys, const double *anchor, const double *p)
                 .x_prev = x + n,
                 .v_prev = x + 2 * n,
                 .dt = anchor[ANCHOR_DT],
+                .convex = anchor[ANCHOR_USABLE] == ANCHOR_OF_CONVEX,
                 .x_lag = lag_count(sys) && lag[0] ? lag + 1 : NULL};
     system_hessian(sys, &at, gradient);
     system_factor(sys, anchor[ANCHOR_SHIFT]);
@@ -286,6 +288,13 @@ bool system_has_follow(const System *sys)
 {
     bool found = false;
     for (int t = 0; t < sys->term_count; t++) found = found || sys->entries[t].term.ops->follow;
+    return found;
+}
+
+bool system_convexes(const System *sys)
+{
+    bool found = false;
+    for (int t = 0; t < sys->term_count; t++) found = found || sys->entries[t].term.ops->convexes;
     return found;
 }
 

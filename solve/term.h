@@ -34,6 +34,8 @@ typedef struct Point {
     /* Where the last Newton step began, and that step: the Hessian then takes the stresses that the step was to bring
      * (TermOps.follow); NULL: its own. */
     const double *x_from, *step;
+    bool
+        convex; /* the Hessian is to be without what makes it indefinite, where a term knows (TermOps.convexes) */
 } Point;
 
 /* Where lagged quantities are taken; NULL in statics. */
@@ -50,7 +52,9 @@ static inline Point state_point(const State *state, const double *p)
 
 typedef struct TermOps {
     const char *name; /* also the name of its energy in the result, e.g. "bending" */
-    bool idles;       /* it acts between what is near: where nothing is, all of it is 0  */
+    bool idles;       /* it acts between what is near: no energy < 0, and none means no force */
+
+    bool convexes; /* its Hessian heeds Point.convex                                        */
 
     int (*count)(const void *self); /* elements                                    */
     int (*size)(const void *self);  /* dofs per element, <= TERM_MAX_DOF           */

@@ -178,6 +178,43 @@ static double slope_error(const Pairing *p, Random *random, const double x[12], 
     return error;
 }
 
+static double curvature(const double H[78], const double d[12])
+{
+    double sum = 0;
+    for (int i = 0; i < 12; i++)
+        for (int j = 0; j < 12; j++)
+            sum += d[i] * d[j] * H[i > j ? i * (i + 1) / 2 + j : j * (j + 1) / 2 + i];
+    return sum;
+}
+
+/* The convex part is never negative, and all of the Hessian where a vertex comes straight nearer. */
+static void test_convex(void **unused)
+{
+    (void)unused;
+    Random random = random_seed(5);
+    int indefinite = 0, straight = 0;
+    for (int k = 0; k < 4000; k++) {
+        Pairing p;
+        double x[12], d[12], nearer[12] = {0}, g[12], H[78], convex[78];
+        pairing_make(&p, k % 2);
+        choose(&random, 12, 0.8, x);
+        choose(&random, 12, 1, d);
+        Touch touch = touch_at(p.n, &p.list, 0, 3, x);
+        touch_slopes(&touch, x, g, H);
+        touch_convex(&touch, x, convex);
+        assert_true(curvature(convex, d) >= 0);
+        indefinite += curvature(H, d) < 0;
+        for (int i = 0; i < 3; i++) nearer[i] = touch.at.c[i];
+        double whole = curvature(H, nearer);
+        if (touch.acts && !touch.edges) {
+            assert_true(fabs(curvature(convex, nearer) - whole) <= 1e-9 * whole);
+            straight++;
+        }
+        neighbours_destroy(p.n);
+    }
+    assert_true(indefinite > 100 && straight > 100);
+}
+
 /* Of every class, and of edges that are taken out the more the more parallel they are. */
 static void test_slopes(void **unused)
 {
@@ -300,9 +337,9 @@ static void test_grips(void **unused)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_distances), cmocka_unit_test(test_known_distances),
-        cmocka_unit_test(test_slopes),    cmocka_unit_test(test_continuity),
-        cmocka_unit_test(test_grips),
+        cmocka_unit_test(test_distances),  cmocka_unit_test(test_known_distances),
+        cmocka_unit_test(test_slopes),     cmocka_unit_test(test_convex),
+        cmocka_unit_test(test_continuity), cmocka_unit_test(test_grips),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -175,6 +175,10 @@ static void test_indefinite(void **state)
     assert_true(sparse_factor(a, NULL));
     sparse_solve(a, b, x);
     assert_true(misfit(a, x, b) < 1e-13);
+    assert_int_equal(sparse_solve_cg(a, b, 1e-12, 0, x),
+                     -1); /* of its own factor, but no iteration is allowed */
+    for (int i = 0; i < N; i++) sparse_values(a)[sparse_slot(a, i, i)] -= 100;
+    assert_int_equal(sparse_solve_cg(a, b, 1e-12, 100, x), SPARSE_INDEFINITE);
     sparse_destroy(a);
 }
 
@@ -199,7 +203,8 @@ static void solve_coupled(Sparse *a, int far, int every, int *rank, double *x)
 }
 
 /* With a few others coupled the order stays; with many there is another. Both follow from what is coupled alone, and not
- * from what was before; entries are found again where sparse_where says; and the factor at hand stays what it was. */
+ * from what was before; entries are found again where sparse_where says; and the factor at hand stays what it was. What is
+ * coupled and not factored is not analysed. */
 static void test_coupled(void **state)
 {
     (void)state;
@@ -214,12 +219,15 @@ static void test_coupled(void **state)
     Factor *factor = sparse_share_factor(a);
     memcpy(plain, factor_rank(factor), sizeof plain);
     factor_release(factor);
+    long nonzeros = sparse_info(a).factor_nonzeros;
     sparse_couple(a, (Groups){1, (long[]){0, 2}, (int[]){0, N - 1}});
     for (int i = 0; i < N; i++) assert_int_equal(sparse_where(a)[slots[i]], sparse_slot(a, i, i));
     sparse_solve(a, b, y);
     assert_memory_equal(x, y, sizeof x);
+    assert_int_equal(sparse_info(a).factor_nonzeros, nonzeros);
 
     solve_coupled(a, 11, 70, few, x);
+    assert_true(sparse_info(a).factor_nonzeros > nonzeros);
     assert_memory_equal(plain, few, sizeof plain);
     solve_coupled(a, 11, 2, many, x);
     assert_int_not_equal(memcmp(plain, many, sizeof plain), 0);

@@ -1,7 +1,5 @@
 #include "world/crossings.h"
-#include "base/memory.h"
 #include "base/vec3.h"
-#include "world/neighbours.h"
 #include <string.h>
 
 static const double ROD_CROSSES = 0.1; /* of D */
@@ -44,49 +42,37 @@ static bool share_vertex(const SelfContactDef *def, const int edge[2], const int
     return shared;
 }
 
-static int rod_crossings(const SelfContactDef *def, const double *x, int (*pairs)[2], int max)
+static int rod_crossings(Neighbours *n, const double *x, int (*pairs)[2], int max)
 {
-    Neighbours *n = neighbours_create(def);
     PairList near = {0};
-    neighbours_find(n, x, ROD_CROSSES * def->distance, &near);
+    neighbours_find(n, x, ROD_CROSSES * n->def.distance, &near);
     int count = near.count - near.points;
     for (int k = 0; k < count && k < max; k++) memcpy(pairs[k], near.pairs[near.points + k], sizeof *pairs);
     pair_list_clear(&near);
-    neighbours_destroy(n);
     return count;
 }
 
-/* count features of so many vertices each. */
-static NearTree *tree_of(const double *x, int count, const int *vertices, int each)
+int crossings_find(Neighbours *n, const double *x, int (*pairs)[2], int max)
 {
-    Box *boxes = mem_alloc((size_t)count, sizeof *boxes);
-    for (int k = 0; k < count; k++) {
-        boxes[k] = box_empty();
-        for (int i = 0; i < each; i++) box_add(&boxes[k], x + 3 * (long)vertices[k * each + i]);
+    const SelfContactDef *def = &n->def;
+    x += def->first;
+    if (def->face_count == 0) return rod_crossings(n, x, pairs, max);
+    NearPairs *found = neighbours_edges_and_faces(n, x);
+    int count = 0;
+    for (int k = 0; k < found->count; k++) {
+        const int *pair = found->list[k], *edge = def->edges[pair[0]], *face = def->faces[pair[1]];
+        if (!share_vertex(def, edge, face) && passes_through(x, edge, face))
+            memcpy(found->list[count++], pair, sizeof *found->list);
     }
-    NearTree *tree = near_tree_create(count, boxes);
-    mem_free(boxes);
-    return tree;
+    near_pairs_sort(found->list, count);
+    for (int k = 0; k < count && k < max; k++) memcpy(pairs[k], found->list[k], sizeof *pairs);
+    return count;
 }
 
 int self_contact_crossings(const SelfContactDef *def, const double *x, int (*pairs)[2], int max)
 {
-    x += def->first;
-    if (def->face_count == 0) return rod_crossings(def, x, pairs, max);
-    NearTree *edges = tree_of(x, def->edge_count, def->edges[0], 2),
-             *faces = tree_of(x, def->face_count, def->faces[0], 3);
-    NearPairs found = {0};
-    int count = 0;
-    near_tree_pairs(edges, faces, 0, &found);
-    for (int k = 0; k < found.count; k++) {
-        const int *pair = found.list[k], *edge = def->edges[pair[0]], *face = def->faces[pair[1]];
-        if (!share_vertex(def, edge, face) && passes_through(x, edge, face))
-            memcpy(found.list[count++], pair, sizeof *found.list);
-    }
-    near_pairs_sort(found.list, count);
-    for (int k = 0; k < count && k < max; k++) memcpy(pairs[k], found.list[k], sizeof *pairs);
-    mem_free(found.list);
-    near_tree_destroy(edges);
-    near_tree_destroy(faces);
+    Neighbours *n = neighbours_create(def);
+    int count = crossings_find(n, x, pairs, max);
+    neighbours_destroy(n);
     return count;
 }

@@ -269,6 +269,15 @@ void neighbours_find(Neighbours *n, const double *x, double radius, PairList *li
     find(n, (Wanted){radius, x}, list);
 }
 
+NearPairs *neighbours_edges_and_faces(Neighbours *n, const double *x)
+{
+    fit_boxes(n, x, x, 0);
+    near_tree_fit(n->face_tree, n->face_boxes);
+    near_tree_fit(n->edge_tree, n->edge_boxes);
+    near_tree_pairs(n->edge_tree, n->face_tree, 0, &n->found);
+    return &n->found;
+}
+
 void neighbours_vertices(const Neighbours *n, const PairList *list, int k, int vertices[4])
 {
     pair_vertices(n, list->pairs[k], k >= list->points, vertices);

@@ -43,6 +43,9 @@ void neighbours_sweep(Neighbours *n, const double *from, const double *to, doubl
 /* The pairs that may meet with a distance below `radius`. */
 void neighbours_find(Neighbours *n, const double *x, double radius, PairList *list);
 
+/* All {edge, face} whose boxes meet at x, in no order; borrowed until n is asked again. */
+NearPairs *neighbours_edges_and_faces(Neighbours *n, const double *x);
+
 /* The four vertices of pair k of a list, and their coordinates. */
 void neighbours_vertices(const Neighbours *n, const PairList *list, int k, int vertices[4]);
 void neighbours_gather(const int vertices[4], const double *x, double to[DISTANCE_DOFS]);

@@ -70,7 +70,8 @@ static Pack contact_eval(const void *self, int pack, const Point *at, const Pack
         Touch touch = touch_of_lane(pairs, pack, l, at->p[pairs->n->def.stiffness], x, own);
         if (!touch.acts) continue;
         energy[l] = touch_energy(&touch);
-        if (g) touch_slopes(&touch, own, slope, H ? curve : NULL);
+        if (g) touch_slopes(&touch, own, slope, H && !at->convex ? curve : NULL);
+        if (H && at->convex) touch_convex(&touch, own, curve);
         for (int i = 0; g && i < DISTANCE_DOFS; i++) g[i][l] = slope[i];
         for (int i = 0; H && i < DISTANCE_LOWER; i++) H[i][l] = curve[i];
     }
@@ -138,6 +139,7 @@ static bool contact_passes(const void *self, const Point *at)
 static const TermOps contact_ops = {
     .name = "self_contact",
     .idles = true,
+    .convexes = true,
     .count = self_pairs_count,
     .size = self_pairs_size,
     .dofs = self_pairs_dofs,

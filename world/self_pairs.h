@@ -16,6 +16,12 @@ typedef struct SelfPairs {
 
 SelfPairs *self_pairs_create(const SelfContactDef *def);
 
+/* What finds the pairs of such a term. */
+static inline Neighbours *self_pairs_neighbours(const Term *term)
+{
+    return ((const SelfPairs *)term->self)->n;
+}
+
 /* What both terms have alike (TermOps); self: SelfPairs. */
 int self_pairs_count(const void *self);
 int self_pairs_size(const void *self);

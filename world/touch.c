@@ -71,6 +71,13 @@ void touch_slopes(const Touch *t, const double x[DISTANCE_DOFS], double g[DISTAN
         for (int j = 0; j <= i; j++, k++) H[k] += a * (s[i] * t->m_slope[j] + t->m_slope[i] * s[j]);
 }
 
+void touch_convex(const Touch *t, const double x[DISTANCE_DOFS], double H[DISTANCE_LOWER])
+{
+    double curve = t->scale * t->m * t->curve / (4 * t->range * t->range * t->at.square);
+    memset(H, 0, DISTANCE_LOWER * sizeof *H);
+    if (t->acts) distance_add_hessian(&t->at, x, curve, 0, H);
+}
+
 Grip touch_grip(const Touch *t)
 {
     Grip grip = {.N = touch_force(t)};

@@ -24,6 +24,9 @@ double touch_force(const Touch *touch);
 void touch_slopes(const Touch *touch, const double x[DISTANCE_DOFS], double g[DISTANCE_DOFS],
                   double H[DISTANCE_LOWER]);
 
+/* d2E/dx2 of a distance that is linear: of the normal force's change alone. Positive, and all of it where features do not turn. */
+void touch_convex(const Touch *touch, const double x[DISTANCE_DOFS], double H[DISTANCE_LOWER]);
+
 /* Normal force, weights of the nearest points and direction between them; changes of these or, backwards, derivatives to
  * them. */
 typedef struct Grip {

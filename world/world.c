@@ -2,6 +2,7 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "world/crossings.h"
+#include "world/self_pairs.h"
 #include "world/poses.h"
 #include <math.h>
 
@@ -237,14 +238,34 @@ static double work_against(const Term *term, const Point *at)
     return sum;
 }
 
-static void measure_self(const World *world, const Point *at, WorldSums *sums)
+struct WorldGauge {
+    const World *world;
+    Term self; /* where it meets itself */
+};
+
+WorldGauge *world_gauge_create(const World *world)
 {
+    WorldGauge *gauge = mem_alloc(1, sizeof *gauge);
     SelfContactDef def = self_of(world);
-    Term contact = self_contact_term(&def);
-    sums->self = self_contact_figures(&contact, at->x, at->p[world->self_stiffness]);
-    contact.ops->destroy(contact.self);
+    gauge->world = world;
+    if (world->self) gauge->self = self_contact_term(&def);
+    return gauge;
+}
+
+void world_gauge_destroy(WorldGauge *gauge)
+{
+    if (!gauge) return;
+    if (gauge->world->self) gauge->self.ops->destroy(gauge->self.self);
+    mem_free(gauge);
+}
+
+static void measure_self(const WorldGauge *gauge, const Point *at, WorldSums *sums)
+{
+    const World *world = gauge->world;
+    SelfContactDef def = self_of(world);
+    sums->self = self_contact_figures(&gauge->self, at->x, at->p[world->self_stiffness]);
     sums->pairs = sums->self.pairs;
-    sums->crossings = self_contact_crossings(&def, at->x, NULL, 0);
+    sums->crossings = crossings_find(self_pairs_neighbours(&gauge->self), at->x, NULL, 0);
     if (!world->rubs || !(at->dt > 0)) return;
     Term friction = self_friction_term(&def);
     Point own = *at; /* its list is made where its forces are taken */
@@ -267,19 +288,27 @@ static void measure_pierced(const World *world, const Point *at, Pierced *sum)
     *sum = found;
 }
 
-void world_measure(const World *world, const Point *at, WorldSums *sums)
+void world_gauge_measure(const WorldGauge *gauge, const Point *at, WorldSums *sums)
 {
+    const World *world = gauge->world;
     for (int k = 0; k < world->contact_kinds; k++) {
         ContactDef def = contact_of(world, k);
         contact_measure(&def, at, &sums->contact);
     }
     if (at->dt > 0) measure_pierced(world, at, &sums->pierced);
-    if (world->self) measure_self(world, at, sums);
+    if (world->self) measure_self(gauge, at, sums);
     if (world->wet && at->dt > 0) {
         Term water = water_of(world);
         sums->water += work_against(&water, at);
         water.ops->destroy(water.self);
     }
+}
+
+void world_measure(const World *world, const Point *at, WorldSums *sums)
+{
+    WorldGauge *gauge = world_gauge_create(world);
+    world_gauge_measure(gauge, at, sums);
+    world_gauge_destroy(gauge);
 }
 
 double world_longest_edge(const World *world, const double *x)

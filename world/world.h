@@ -67,6 +67,12 @@ typedef struct WorldSums {
 
 void world_measure(const World *world, const Point *at, WorldSums *sums);
 
+/* The same again and again, as of each step of a motion: what finds what is near is made once. The world outlives it. */
+typedef struct WorldGauge WorldGauge;
+WorldGauge *world_gauge_create(const World *world);
+void world_gauge_destroy(WorldGauge *gauge);
+void world_gauge_measure(const WorldGauge *gauge, const Point *at, WorldSums *sums);
+
 /* Its longest edge, m, at places x[vertex][3]; and does an obstacle fit between the places where contact is felt, with such
  * edges? */
 double world_longest_edge(const World *world, const double *x);
