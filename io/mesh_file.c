@@ -153,6 +153,8 @@ void mesh_file_clear(MeshFile *mesh)
     mem_free(mesh->vertex_line);
     mem_free(mesh->faces);
     mem_free(mesh->face_line);
+    mem_free(mesh->cells);
+    mem_free(mesh->cell_line);
     *mesh = (MeshFile){0};
 }
 

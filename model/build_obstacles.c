@@ -143,7 +143,7 @@ static bool tube(const Build *b, Key at, const TubeScene *scene, Obstacle *obsta
 
 /* ---- Meshes ---- */
 
-static bool solid(const Build *b, Key at, const SolidScene *scene, Obstacle *obstacle)
+static bool solid(const Build *b, Key at, const BlockScene *scene, Obstacle *obstacle)
 {
     MeshFile file = {0};
     Error err;

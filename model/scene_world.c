@@ -89,18 +89,18 @@ static const YamlTable tube_table = {
          .doc = "pieces of the splines"},
         {0}}};
 
-static const YamlTable solid_table = {
+static const YamlTable block_table = {
     .name = "mesh of an obstacle",
-    .size = sizeof(SolidScene),
+    .size = sizeof(BlockScene),
     .doc = "What a closed triangle mesh encloses: a tricubic spline (C2) through its signed distance at the "
            "nodes of a grid, which rounds edges and corners on the scale of a cell. Normals that all point "
            "inwards are turned. It turns about the middle of its box.",
     .fields = (const YamlField[]){
-        {YAML_FILE(SolidScene, file), .required = true, .short_form = true,
+        {YAML_FILE(BlockScene, file), .required = true, .short_form = true,
          .doc = "an OBJ, PLY, STL or Gmsh .msh file; vertices at equal places are one"},
-        {YAML_NUMBER(SolidScene, scale), .range = "(0, inf)", .fallback = "1",
+        {YAML_NUMBER(BlockScene, scale), .range = "(0, inf)", .fallback = "1",
          .doc = "factor on its coordinates, 1.0e-3 for a file in millimetres"},
-        {YAML_NUMBER(SolidScene, cell), .unit = "m", .range = "(0, inf)",
+        {YAML_NUMBER(BlockScene, cell), .unit = "m", .range = "(0, inf)",
          .doc = "of the grid; 1/48 of the mesh's diagonal if absent. Half as large takes 8 times the memory"},
         {0}}};
 
@@ -126,7 +126,7 @@ const YamlTable obstacle_table = {
          .doc = "ground"},
         {YAML_OPTIONAL(ObstacleScene, tube, &tube_table), .one_of = 1, .required = true,
          .doc = "a pipe of changing width"},
-        {YAML_OPTIONAL(ObstacleScene, mesh, &solid_table), .one_of = 1, .required = true,
+        {YAML_OPTIONAL(ObstacleScene, mesh, &block_table), .one_of = 1, .required = true,
          .doc = "any solid thing"},
         {YAML_NUMBER(ObstacleScene, friction), .when = MOTIONS, .otherwise = FRICTIONLESS,
          .range = "[0, inf)", .doc = "coefficient of friction; contact.friction if absent"},

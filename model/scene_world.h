@@ -34,10 +34,10 @@ typedef struct TubeScene {
     int cells, center_count;
 } TubeScene;
 
-typedef struct SolidScene {
+typedef struct BlockScene {
     char *file;
     double scale, cell;
-} SolidScene;
+} BlockScene;
 
 typedef struct ObstacleScene {
     char *name; /* NULL: obstacle1, .. */
@@ -47,7 +47,7 @@ typedef struct ObstacleScene {
     BoxScene *box;
     HeightFieldScene *height_field;
     TubeScene *tube;
-    SolidScene *mesh;
+    BlockScene *mesh;
     double friction;     /* NAN: contact.friction */
     char **move, **turn; /* three of t each       */
     int move_count, turn_count;

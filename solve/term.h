@@ -13,7 +13,7 @@
 #include <stdbool.h>
 
 enum {
-    TERM_MAX_DOF = 24,    /* largest element, in degrees of freedom */
+    TERM_MAX_DOF = 30,    /* largest element, in degrees of freedom */
     SYSTEM_MAX_TERMS = 24 /* of a System                            */
 };
 

@@ -18,6 +18,7 @@ typedef struct MagneticPack {
 typedef struct Magnetic {
     MagneticSurfaceDef def;
     MagneticPack *packs;
+    int (*faces)[3], *rows; /* copies; rows of all faces */
 } Magnetic;
 
 /* The current normal and its change with the vertices. */
@@ -39,7 +40,7 @@ static int magnetic_size(const void *self)
 
 static void magnetic_dofs(const void *self, int face, int *dof)
 {
-    face_dofs(((const Magnetic *)self)->def.faces[face], dof);
+    face_dofs(((const Magnetic *)self)->faces[face], dof);
 }
 
 static Pack3 barycentre(const Pack *x)
@@ -72,11 +73,21 @@ static Pack3 normal_gradient(const Normal *r, Pack3 b, int i)
     return pack3_scale(r->inverse, pack3_cross(across, r->edge[i]));
 }
 
-static Pack3 magnetization_of(const MagneticSurfaceDef *def, int pack, const double *values)
+/* First entry in p of the magnetisation of the face in that lane. */
+static int magnetization_entry(const Magnetic *magnetic, int pack, int lane)
 {
-    const double *M = values + def->magnetization;
-    return pack3(face_param(def->face_count, pack, M, 3, 0), face_param(def->face_count, pack, M, 3, 1),
-                 face_param(def->face_count, pack, M, 3, 2));
+    int face = face_of_lane(magnetic->def.face_count, pack, lane);
+    return magnetic->def.magnetization + 3 * magnetic->rows[face];
+}
+
+static Pack3 magnetization_of(const Magnetic *magnetic, int pack, const double *values)
+{
+    Pack3 M;
+    for (int l = 0; l < PACK_LANES; l++) {
+        const double *m = values + magnetization_entry(magnetic, pack, l);
+        M.x[l] = m[0], M.y[l] = m[1], M.z[l] = m[2];
+    }
+    return M;
 }
 
 /* Q = F0 M: the magnetisation carried along by the face. */
@@ -164,7 +175,7 @@ static Pack magnetic_eval(const void *self, int pack, const Point *at, const Pac
     const MagneticPack *face = &magnetic->packs[pack];
     Flux flux = flux_with(&magnetic->def, at, x, at->p);
     Normal normal = normal_of(x);
-    Pack3 M = magnetization_of(&magnetic->def, pack, at->p), Q = carried(face, &normal, M, x);
+    Pack3 M = magnetization_of(magnetic, pack, at->p), Q = carried(face, &normal, M, x);
     if (g) {
         forces(face, &normal, M, &flux, Q, g);
         for (int i = 0; i < 9; i++) g[i] *= -face->volume;
@@ -184,7 +195,7 @@ static void magnetic_param(const void *self, int pack, int lanes, const Point *a
     const MagneticPack *face = &magnetic->packs[pack];
     Flux flux = flux_with(def, at, x, at->p);
     Normal normal = normal_of(x);
-    Pack3 M = magnetization_of(def, pack, at->p), W = {0}, dM = {0}, mean = {0};
+    Pack3 M = magnetization_of(magnetic, pack, at->p), W = {0}, dM = {0}, mean = {0};
     Pack mu = pack3_dot(face->normal, M), along = {0};
     for (int i = 0; i < 3; i++) mean = pack3_axpy(pack_set(1.0 / 3), pack3_load(w + 3 * i), mean);
     Pack3 pull = pack_mat_times(flux.gradient, mean);
@@ -197,8 +208,7 @@ static void magnetic_param(const void *self, int pack, int lanes, const Point *a
     dM = pack3_axpy(along + pack3_dot(normal.n, pull), face->normal, dM);
     Pack3 Q = carried(face, &normal, M, x);
     for (int l = 0; l < lanes; l++) {
-        double *m = dp + def->magnetization + 3 * face_of_lane(def->face_count, pack, l),
-               *b = dp + def->flux_density;
+        double *m = dp + magnetization_entry(magnetic, pack, l), *b = dp + def->flux_density;
         double volume = face->volume[l];
         m[0] -= volume * dM.x[l], m[1] -= volume * dM.y[l], m[2] -= volume * dM.z[l];
         b[0] -= volume * W.x[l], b[1] -= volume * W.y[l], b[2] -= volume * W.z[l];
@@ -219,7 +229,7 @@ static void magnetic_param_forward(const void *self, int pack, const Point *at, 
     const MagneticPack *face = &magnetic->packs[pack];
     Flux flux = flux_with(def, at, x, at->p), change = flux_with(def, at, x, dp);
     Normal normal = normal_of(x);
-    Pack3 M = magnetization_of(def, pack, at->p), dM = magnetization_of(def, pack, dp);
+    Pack3 M = magnetization_of(magnetic, pack, at->p), dM = magnetization_of(magnetic, pack, dp);
     Pack with_M[9];
     forces(face, &normal, dM, &flux, carried(face, &normal, dM, x), with_M);
     forces(face, &normal, M, &change, carried(face, &normal, M, x), r);
@@ -228,8 +238,11 @@ static void magnetic_param_forward(const void *self, int pack, const Point *at, 
 
 static void magnetic_destroy(void *self)
 {
-    mem_free(((Magnetic *)self)->packs);
-    mem_free(self);
+    Magnetic *magnetic = self;
+    mem_free(magnetic->packs);
+    mem_free(magnetic->faces);
+    mem_free(magnetic->rows);
+    mem_free(magnetic);
 }
 
 static const TermOps magnetic_ops = {
@@ -248,6 +261,9 @@ Term magnetic_surface_term(const MagneticSurfaceDef *def)
     Magnetic *magnetic = mem_alloc(1, sizeof *magnetic);
     int packs = face_pack_count(def->face_count);
     magnetic->def = *def;
+    magnetic->faces = mem_copy(def->faces, (size_t)def->face_count, sizeof *magnetic->faces);
+    magnetic->rows = mem_alloc((size_t)def->face_count, sizeof *magnetic->rows);
+    for (int f = 0; f < def->face_count; f++) magnetic->rows[f] = def->rows ? def->rows[f] : f;
     magnetic->packs = mem_alloc((size_t)packs, sizeof *magnetic->packs);
     for (int k = 0; k < packs * PACK_LANES; k++) {
         int l = k % PACK_LANES, face = face_of_lane(def->face_count, k / PACK_LANES, l);
@@ -260,6 +276,7 @@ Term magnetic_surface_term(const MagneticSurfaceDef *def)
         pack->normal.z[l] = frame.normal[2];
         pack->volume[l] = def->volume[face];
     }
-    magnetic->def.rest = NULL, magnetic->def.volume = NULL; /* the caller's */
+    magnetic->def.faces = NULL, magnetic->def.rows = NULL; /* the caller's, as are: */
+    magnetic->def.rest = NULL, magnetic->def.volume = NULL;
     return (Term){&magnetic_ops, magnetic};
 }

@@ -7,6 +7,7 @@
 typedef struct MagneticSurfaceDef {
     int face_count;
     int (*faces)[3];                              /* [face] vertices, whichever way round                 */
+    const int *rows;                              /* [face] its row of magnetization; NULL: its own       */
     double (*rest)[3];                            /* [vertex] m                                           */
     const double *volume;                         /* [face] m^3 that is magnetised: area by thickness     */
     int magnetization, flux_density, field_scale; /* first entries in p: [face][3] A/m, in material space;
@@ -14,5 +15,5 @@ typedef struct MagneticSurfaceDef {
     const FluxFields *fields;
 } MagneticSurfaceDef;
 
-/* The term borrows faces and fields; rest and volume are only read here. */
+/* The term borrows the fields; all else is only read here. */
 Term magnetic_surface_term(const MagneticSurfaceDef *def);

@@ -151,6 +151,7 @@ static void number_vertices(const Build *build)
     bool *used = mem_alloc((size_t)n, sizeof *used);
     for (int f = 0; f < file->face_count; f++)
         for (int i = 0; i < 3; i++) used[first[file->faces[f][i]]] = true;
+    for (int i = 0; i < file->cell_count * file->cell_nodes; i++) used[first[file->cells[i]]] = true;
 
     mesh->file_vertex_count = n;
     mesh->vertex_of_file = mem_alloc((size_t)n, sizeof *mesh->vertex_of_file);
@@ -351,16 +352,21 @@ static int root_of(int *parent, int v)
     return v;
 }
 
-/* Union-find over the edges; a part's root is its lowest vertex, so it is numbered before its other vertices.
- */
-static void build_components(Mesh *mesh)
+static void join(int *parent, int a, int b)
+{
+    a = root_of(parent, a), b = root_of(parent, b);
+    parent[a > b ? a : b] = a > b ? b : a;
+}
+
+/* Union-find over edges and cells; a part's root is its lowest vertex, so it is numbered before its other vertices. */
+static void build_components(Mesh *mesh, const MeshFile *file)
 {
     int *parent = mem_alloc((size_t)mesh->vertex_count, sizeof *parent);
     for (int v = 0; v < mesh->vertex_count; v++) parent[v] = v;
-    for (int e = 0; e < mesh->edge_count; e++) {
-        int a = root_of(parent, mesh->edges[e][0]), b = root_of(parent, mesh->edges[e][1]);
-        parent[a > b ? a : b] = a > b ? b : a;
-    }
+    for (int e = 0; e < mesh->edge_count; e++) join(parent, mesh->edges[e][0], mesh->edges[e][1]);
+    for (int i = 0; i < file->cell_count * file->cell_nodes; i++)
+        join(parent, mesh->vertex_of_file[file->cells[i]],
+             mesh->vertex_of_file[file->cells[i - i % file->cell_nodes]]);
     mesh->vertex_component = mem_alloc((size_t)mesh->vertex_count, sizeof *mesh->vertex_component);
     for (int v = 0; v < mesh->vertex_count; v++) {
         int root = root_of(parent, v);
@@ -386,7 +392,7 @@ Mesh *mesh_create(const MeshFile *file, double weld, MeshReport *report, Error *
         mesh_destroy(mesh);
         return NULL;
     }
-    build_components(mesh);
+    build_components(mesh, file);
     mesh_build_groups(mesh, file, report);
     return mesh;
 }

@@ -2,8 +2,8 @@
  * then constant.
  *
  * Numbering. Vertices, edges and faces count from 0. Faces keep the file's order. Vertices keep the file's
- * order too, but those in no face are removed and those joined by `weld` are one; file_vertex and
- * vertex_of_file translate. Indices that a user writes (scene, CSV) are the file's: pass them through
+ * order too, but those in no face (and, of a solid, in no tetrahedron) are removed and those joined by `weld`
+ * are one; file_vertex and vertex_of_file translate. Indices that a user writes (scene, CSV) are the file's: pass them through
  * mesh_vertex().
  *
  * What a valid surface is: every edge has one or two faces, and two faces run along their common edge in

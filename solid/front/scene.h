@@ -1,0 +1,36 @@
+/* scene.h - what a scene says of a solid. */
+#pragma once
+#include "model/rows.h"
+
+/* The generated meshes, in the order of the key `shape`. */
+typedef enum SolidShape { SOLID_BOX, SOLID_SHAPES } SolidShape;
+
+typedef struct SolidMeshScene {
+    char *file;
+    int shape; /* SolidShape */
+    double *size, scale;
+    int *cells, size_count, cells_count;
+} SolidMeshScene;
+
+/* The magnetised layer. */
+typedef struct SkinScene {
+    double thickness;
+    VectorScene magnetization;
+    char *on; /* group of faces; NULL: all of the surface */
+} SkinScene;
+
+typedef struct SolidScene {
+    SolidMeshScene mesh;
+    PoseScene *pose;
+    VelocityScene *velocity;
+    SkinScene *skin;
+    NumberScene young;
+    VectorScene magnetization; /* of the volume */
+    double poisson, density, averaging, damping, gravity[3];
+    int order, material; /* 1 or 2; SolidMaterial */
+} SolidScene;
+
+extern const YamlTable solid_table;
+extern const BodyRow solid_body; /* body.c */
+
+const SolidScene *solid_scene(const Scene *scene);

@@ -1,0 +1,41 @@
+/* tets.h - the tetrahedra that fill a solid, and its surface: checked once and then constant.
+ *
+ * Nodes keep the file's order; where a linear mesh is made quadratic, the middles of its edges follow, in the order of
+ * the edges' ends. Quadratic tetrahedra are straight: their middle nodes are the middles of their edges.
+ *
+ * The surface is made of the tetrahedra's faces that no other one has, all outwards: in the order of the file's triangles,
+ * if it lists all of them, else in that of the tetrahedra. Both meshes of it have all nodes of the solid as vertices, in
+ * one numbering, those within too: what selects vertices (fix, loads, targets) selects nodes. */
+#pragma once
+#include "surface/mesh.h"
+
+enum { TET_LINEAR = 1, TET_QUADRATIC = 2 };
+
+typedef struct Tets {
+    int count, order;
+    int each;   /* nodes of a tetrahedron: 4 or 10                                                      */
+    int *nodes; /* [count][each]: corners, positively oriented, then middles of 01 12 02 03 23 13; owned */
+    double
+        *volume;   /* [count] m^3 at rest; owned                                                            */
+    Mesh *surface; /* its faces have corners only; owned                                                    */
+    Mesh *skin;    /* the same faces, each in four through the middles of its edges where there are any:
+                     * what meets the world, is magnetised and shown; owned                                  */
+    int *
+        skin_face; /* [skin->face_count] face of the surface that it is a part of; owned                    */
+    int group_count;
+    MeshGroup
+        *groups; /* of tetrahedra (dim 3), by the file's order; owned                                  */
+} Tets;
+
+/* From a file with cells. order 2 raises linear ones; order 1 leaves middle nodes out. report may be NULL; else clear it, also
+ * after a failure. On bad input NULL and a sentence that names file, line and element. */
+Tets *tets_create(const MeshFile *file, int order, MeshReport *report, Error *err);
+void tets_destroy(Tets *tets);
+
+static inline int tets_node_count(const Tets *tets)
+{
+    return tets->surface->vertex_count;
+}
+
+/* The group of tetrahedra of that name, or NULL. */
+const MeshGroup *tets_group(const Tets *tets, const char *name);
