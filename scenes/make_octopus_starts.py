@@ -35,7 +35,7 @@ STARTS = {
     "open": (500, None, strokes(40e-3, 4)),
     "pipe1": (300, 61, tail(40e-3, 6, 30e-3)),
     "pipe2": (400, 41, strokes(40e-3, 4)),
-    "tunnel": (500, 51, strokes(40e-3, 4)),
+    "tunnel": (500, 41, strokes(40e-3, 4)),
 }
 
 

@@ -176,7 +176,7 @@ static void test_starts(void **unused)
     (void)unused;
     const char *const names[] = {"octopus_start_open", "octopus_start_pipe1", "octopus_start_pipe2",
                                  "octopus_start_tunnel"};
-    const int rows[] = {500, 61, 41, 51};
+    const int rows[] = {500, 61, 41, 41};
     for (int k = 0; k < 4; k++) {
         Table table = table_of(names[k], "Bx [T], By, Bz");
         double largest = 0;
