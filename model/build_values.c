@@ -1,4 +1,4 @@
-/* Values over faces and edges: the same everywhere, from a file, by formula or by group. */
+/* Values over cells, faces and edges: the same everywhere, from a file, by formula or by group. */
 #include "base/memory.h"
 #include "base/plain.h"
 #include "io/table.h"
@@ -61,11 +61,21 @@ static void middle(const Mesh *mesh, const int *vertices, int count, double *x)
     }
 }
 
-/* Faces or edges: `corners` vertices each. */
+/* The mesh's edges (dim 1), faces or cells: `corners` vertices each, in rows of `each`. */
 typedef struct Elements {
     const int *vertices;
-    int corners, count;
+    int dim, corners, each, count;
 } Elements;
+
+static const char *const element_names[] = {"vertex", "edge", "face", "tetrahedron"},
+                         *const elements_names[] = {"vertices", "edges", "faces", "tetrahedra"};
+
+static Elements elements_of(const Mesh *mesh, int dim)
+{
+    if (dim == 1) return (Elements){mesh->edges[0], 1, 2, 2, mesh->edge_count};
+    if (dim == 2) return (Elements){mesh->faces[0], 2, 3, 3, mesh->face_count};
+    return (Elements){mesh->cells, 3, 4, mesh->cell_nodes, mesh->cell_count};
+}
 
 /* `width` numbers per element; the key is the formula's. */
 static bool from_formula(const Build *b, Key at, char *const *formula, int width, const WhereScene *where,
@@ -76,7 +86,7 @@ static bool from_formula(const Build *b, Key at, char *const *formula, int width
     bool ok = made != NULL;
     for (int e = 0; ok && e < elements.count; e++) {
         double x[3], variables[BUILD_VARIABLES];
-        middle(b->mesh, elements.vertices + e * elements.corners, elements.corners, x);
+        middle(b->mesh, elements.vertices + e * elements.each, elements.corners, x);
         build_position(variables, x, 0);
         ok = formula_eval(made, variables, values + e * width, &err) ||
              yaml_refuse(b->file, at.text, "%s", err.text);
@@ -101,30 +111,30 @@ bool build_vectors_at(const Build *b, Key at, char *const *formula, const WhereS
     return ok;
 }
 
-static bool from_table(const Build *b, Key at, const char *path, int width, double *values)
+static bool from_table(const Build *b, Key at, const char *path, int width, Elements elements, double *values)
 {
     Table table = {0};
     Error err;
     bool ok = table_read(path, width == 1 ? "value [Pa]" : "x [A/m], y [A/m], z [A/m]", &table, &err) ||
               yaml_refuse(b->file, at.text, "%s", err.text);
-    if (ok && table.rows != b->mesh->face_count)
-        ok =
-            yaml_refuse(b->file, at.text, "%s has %d rows, and the mesh %d faces: one row per face is needed",
-                        path, table.rows, b->mesh->face_count);
+    if (ok && table.rows != elements.count)
+        ok = yaml_refuse(b->file, at.text, "%s has %d rows, and the mesh %d %s: one row per %s is needed",
+                         path, table.rows, elements.count, elements_names[elements.dim],
+                         element_names[elements.dim]);
     if (ok) memcpy(values, table.values, (size_t)table.rows * (size_t)width * sizeof *values);
     table_clear(&table);
     return ok;
 }
 
-/* The group of faces or edges; a name may stand for both. */
-static const MeshGroup *find_group(const Build *b, Key at, const char *name, int dim, const char *needed)
+/* The group of cells, faces or edges; a name may stand for all of them. */
+static const MeshGroup *find_group(const Build *b, Key at, const char *name, int dim)
 {
     const MeshGroup *group = mesh_group(b->mesh, name, dim);
     if (group) return group;
     bool other = false;
-    for (int d = 0; d <= 2; d++) other |= mesh_group(b->mesh, name, d) != NULL;
+    for (int d = 0; d <= 3; d++) other |= mesh_group(b->mesh, name, d) != NULL;
     if (other)
-        yaml_refuse(b->file, at.text, "the group '%s' has no %s", name, needed);
+        yaml_refuse(b->file, at.text, "the group '%s' has no %s", name, elements_names[dim]);
     else
         yaml_refuse(b->file, at.text, "the mesh has no group '%s'", name);
     return NULL;
@@ -152,10 +162,10 @@ static bool same_value(const GroupList *list, int k, int other)
     return !memcmp(a + sizeof(char *), b + sizeof(char *), list->size - sizeof(char *));
 }
 
-/* The face or edge that is a group's member; -1 after a refusal. */
+/* The cell, face or edge that is a group's member; -1 after a refusal. */
 static int element_of(const Build *b, Key at, const MeshGroup *group, int member)
 {
-    if (group->dim == 2) return group->members[member];
+    if (group->dim >= 2) return group->members[member];
     const Mesh *mesh = b->mesh;
     int v = group->members[2 * member], w = group->members[2 * member + 1], edge = mesh_edge(mesh, v, w);
     if (edge < 0)
@@ -177,7 +187,7 @@ static bool take_elements(const Build *b, Key at, const GroupList *list, int k, 
                 b->file, at.text,
                 "the groups '%s' and '%s' share %s %d and are as large as one another: which value it "
                 "has cannot be told",
-                group->name, group_name(list, other), group->dim == 2 ? "face" : "edge", e);
+                group->name, group_name(list, other), element_names[group->dim], e);
         if (other < 0 || group->count < sizes[other]) owner[e] = k;
     }
     return true;
@@ -192,45 +202,44 @@ static bool assign_groups(const Build *b, Key at, const GroupList *list, int ele
     for (int e = 0; e < element_count; e++) owner[e] = -1;
     for (int k = 0; ok && k < list->count; k++) {
         Key here = key("%s.groups.%s", at.text, group_name(list, k));
-        const MeshGroup *group =
-            find_group(b, here, group_name(list, k), list->dim, list->dim == 2 ? "faces" : "edges");
+        const MeshGroup *group = find_group(b, here, group_name(list, k), list->dim);
         ok = group && take_elements(b, here, list, k, group, sizes, owner);
     }
     mem_free(sizes);
     return ok;
 }
 
-static bool put_numbers(const Build *b, Key at, const NumberScene *scene, int dim, int count, double *values)
+static bool put_numbers(const Build *b, Key at, const NumberScene *scene, Elements elements, double *values)
 {
-    GroupList list = {scene->groups, sizeof *scene->groups, scene->groups_count, dim};
-    int *owner = mem_alloc((size_t)count, sizeof *owner);
-    bool ok = assign_groups(b, at, &list, count, owner);
-    for (int e = 0; e < count; e++)
+    GroupList list = {scene->groups, sizeof *scene->groups, scene->groups_count, elements.dim};
+    int *owner = mem_alloc((size_t)elements.count, sizeof *owner);
+    bool ok = assign_groups(b, at, &list, elements.count, owner);
+    for (int e = 0; e < elements.count; e++)
         if (owner[e] >= 0) values[e] = scene->groups[owner[e]].value;
     mem_free(owner);
     return ok;
 }
 
-static bool put_vectors(const Build *b, Key at, const VectorScene *scene, int count, double *values)
+static bool put_vectors(const Build *b, Key at, const VectorScene *scene, Elements elements, double *values)
 {
-    GroupList list = {scene->groups, sizeof *scene->groups, scene->groups_count, 2};
-    int *owner = mem_alloc((size_t)count, sizeof *owner);
-    bool ok = assign_groups(b, at, &list, count, owner);
-    for (int f = 0; f < count; f++)
+    GroupList list = {scene->groups, sizeof *scene->groups, scene->groups_count, elements.dim};
+    int *owner = mem_alloc((size_t)elements.count, sizeof *owner);
+    bool ok = assign_groups(b, at, &list, elements.count, owner);
+    for (int f = 0; f < elements.count; f++)
         if (owner[f] >= 0) memcpy(values + 3 * f, scene->groups[owner[f]].value, 3 * sizeof *values);
     mem_free(owner);
     return ok;
 }
 
 /* After the groups: NAN is left where an element is in none and there is no `other`. */
-static bool check_covered(const Build *b, Key at, const double *values, int count, int width,
-                          const char *element)
+static bool check_covered(const Build *b, Key at, const double *values, Elements elements, int width)
 {
     int missing = 0;
-    for (int e = 0; e < count; e++) missing += isnan(values[e * width]) ? 1 : 0;
+    for (int e = 0; e < elements.count; e++) missing += isnan(values[e * width]) ? 1 : 0;
     if (!missing) return true;
-    return yaml_refuse(b->file, at.text, "%d %s in no group listed here: give `other`, the value elsewhere",
-                       missing, element);
+    return yaml_refuse(b->file, at.text,
+                       "%d %s are in no group listed here: give `other`, the value elsewhere", missing,
+                       elements_names[elements.dim]);
 }
 
 /* A range check for numbers that come from files and formulas; the table checks those in the scene. */
@@ -241,22 +250,6 @@ static bool check_range(const Build *b, Key at, const double *values, int count,
             return yaml_refuse(b->file, at.text, "the value of number %d is %g; it must be %s 0", e,
                                values[e], zero_allowed ? "at least" : "more than");
     return true;
-}
-
-bool build_face_numbers(const Build *b, Key at, const NumberScene *scene, double *values)
-{
-    int count = b->mesh->face_count;
-    for (int f = 0; f < count; f++) values[f] = scene->groups_count ? scene->other : scene->value;
-    bool ok = true;
-    if (scene->file) ok = from_table(b, key("%s.file", at.text), scene->file, 1, values);
-    if (scene->formula) {
-        at = key("%s.formula", at.text);
-        ok = from_formula(b, at, &scene->formula, 1, scene->where, scene->where_count,
-                          (Elements){b->mesh->faces[0], 3, count}, values);
-    }
-    ok = ok && put_numbers(b, at, scene, 2, count, values);
-    return ok && check_covered(b, at, values, count, 1, "faces are") &&
-           check_range(b, at, values, count, false);
 }
 
 /* The edge that a row names by its vertices, in the file's numbers; -1 after a refusal. */
@@ -304,36 +297,58 @@ static bool fold_table(const Build *b, Key at, const char *path, double *values)
     return ok;
 }
 
-bool build_edge_numbers(const Build *b, Key at, const NumberScene *scene, double *values)
+static bool fill_numbers(const Build *b, Key at, const NumberScene *scene, Elements elements, double *values)
 {
-    int count = b->mesh->edge_count;
-    for (int e = 0; e < count; e++) values[e] = scene->groups_count ? scene->other : scene->value;
+    for (int e = 0; e < elements.count; e++) values[e] = scene->groups_count ? scene->other : scene->value;
     bool ok = true;
-    if (scene->file) ok = fold_table(b, key("%s.file", at.text), scene->file, values);
+    if (scene->file && elements.dim == 1) ok = fold_table(b, key("%s.file", at.text), scene->file, values);
+    if (scene->file && elements.dim != 1)
+        ok = from_table(b, key("%s.file", at.text), scene->file, 1, elements, values);
     if (scene->formula) {
         at = key("%s.formula", at.text);
-        ok = from_formula(b, at, &scene->formula, 1, scene->where, scene->where_count,
-                          (Elements){b->mesh->edges[0], 2, count}, values);
+        ok = from_formula(b, at, &scene->formula, 1, scene->where, scene->where_count, elements, values);
     }
-    ok = ok && put_numbers(b, at, scene, 1, count, values);
-    return ok && check_covered(b, at, values, count, 1, "edges are") &&
-           check_range(b, at, values, count, true);
+    return ok && put_numbers(b, at, scene, elements, values) && check_covered(b, at, values, elements, 1) &&
+           check_range(b, at, values, elements.count, elements.dim == 1);
 }
 
-bool build_face_vectors(const Build *b, Key at, const VectorScene *scene, double *values)
+bool build_face_numbers(const Build *b, Key at, const NumberScene *scene, double *values)
 {
-    int count = b->mesh->face_count;
+    return fill_numbers(b, at, scene, elements_of(b->mesh, 2), values);
+}
+
+bool build_edge_numbers(const Build *b, Key at, const NumberScene *scene, double *values)
+{
+    return fill_numbers(b, at, scene, elements_of(b->mesh, 1), values);
+}
+
+bool build_cell_numbers(const Build *b, Key at, const NumberScene *scene, double *values)
+{
+    return fill_numbers(b, at, scene, elements_of(b->mesh, 3), values);
+}
+
+static bool fill_vectors(const Build *b, Key at, const VectorScene *scene, Elements elements, double *values)
+{
+    int count = elements.count;
     for (int i = 0; i < 3 * count; i++)
         values[i] = scene->groups_count ? scene->other[i % 3] : scene->value[i % 3];
     for (int i = 0; scene->groups_count && i < 3 * count; i++)
         if (isnan(scene->other[0])) values[i] = NAN;
     bool ok = true;
-    if (scene->file) ok = from_table(b, key("%s.file", at.text), scene->file, 3, values);
+    if (scene->file) ok = from_table(b, key("%s.file", at.text), scene->file, 3, elements, values);
     if (scene->formula) {
         at = key("%s.formula", at.text);
-        ok = from_formula(b, at, scene->formula, 3, scene->where, scene->where_count,
-                          (Elements){b->mesh->faces[0], 3, count}, values);
+        ok = from_formula(b, at, scene->formula, 3, scene->where, scene->where_count, elements, values);
     }
-    ok = ok && put_vectors(b, at, scene, count, values);
-    return ok && check_covered(b, at, values, count, 3, "faces are");
+    return ok && put_vectors(b, at, scene, elements, values) && check_covered(b, at, values, elements, 3);
+}
+
+bool build_face_vectors(const Build *b, Key at, const VectorScene *scene, double *values)
+{
+    return fill_vectors(b, at, scene, elements_of(b->mesh, 2), values);
+}
+
+bool build_cell_vectors(const Build *b, Key at, const VectorScene *scene, double *values)
+{
+    return fill_vectors(b, at, scene, elements_of(b->mesh, 3), values);
 }

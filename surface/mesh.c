@@ -94,13 +94,16 @@ static bool check_groups(const Build *build)
     const MeshFile *file = build->file;
     for (int g = 0; g < file->group_count; g++) {
         const MeshGroup *group = &file->groups[g];
-        int end = group->dim == 2 ? file->face_count : file->vertex_count;
+        int end = group->dim == 3   ? file->cell_count
+                  : group->dim == 2 ? file->face_count
+                                    : file->vertex_count;
         int member_count = group->dim == 1 ? 2 * group->count : group->count;
         for (int i = 0; i < member_count; i++)
             if (group->members[i] < 0 || group->members[i] >= end)
                 return error_set(build->err, "%s: group '%s' names %s %d; the last one is %d", file->path,
-                                 group->name, group->dim == 2 ? "face" : "vertex", group->members[i],
-                                 end - 1);
+                                 group->name,
+                                 (const char *[]){"vertex", "vertex", "face", "cell"}[group->dim],
+                                 group->members[i], end - 1);
     }
     return true;
 }
@@ -375,6 +378,14 @@ static void build_components(Mesh *mesh, const MeshFile *file)
     mem_free(parent);
 }
 
+static void take_cells(Mesh *mesh, const MeshFile *file)
+{
+    size_t size = (size_t)file->cell_count * (size_t)file->cell_nodes;
+    mesh->cell_count = file->cell_count, mesh->cell_nodes = file->cell_nodes;
+    mesh->cells = mem_alloc(size, sizeof *mesh->cells);
+    for (size_t i = 0; i < size; i++) mesh->cells[i] = mesh->vertex_of_file[file->cells[i]];
+}
+
 /* ---- the public face ---- */
 
 Mesh *mesh_create(const MeshFile *file, double weld, MeshReport *report, Error *err)
@@ -393,6 +404,7 @@ Mesh *mesh_create(const MeshFile *file, double weld, MeshReport *report, Error *
         return NULL;
     }
     build_components(mesh, file);
+    take_cells(mesh, file);
     mesh_build_groups(mesh, file, report);
     return mesh;
 }
@@ -406,6 +418,7 @@ void mesh_destroy(Mesh *mesh)
     }
     void *owned[] = {mesh->rest,
                      mesh->faces,
+                     mesh->cells,
                      mesh->edges,
                      mesh->edge_faces,
                      mesh->face_edges,

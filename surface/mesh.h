@@ -24,12 +24,14 @@ typedef struct Mesh {
     int (*face_edges)[3];
     /* [face][i] +1 where the face runs along face_edges[i] from v0 to v1, else -1 */
     signed char (*face_edge_sign)[3];
-    double *rest_area;     /* [face] m^2 */
-    int *vertex_component; /* [vertex] connected part, by first vertex; a common vertex connects */
-    MeshGroup *groups;     /* [group_count] the file's, in this mesh's numbering; faces as they were */
-    int *group_order;      /* [group_count] by name and dimension */
-    int *file_vertex;      /* [vertex] its number in the file (the lowest of those joined) */
-    int *vertex_of_file;   /* [file_vertex_count] the mesh's vertex, -1 where removed */
+    double *rest_area;          /* [face] m^2 */
+    int cell_count, cell_nodes; /* of a solid: tetrahedra of so many vertices; 0: a surface alone */
+    int *cells;                 /* [cell][cell_nodes], as the file's (mesh_file.h) */
+    int *vertex_component;      /* [vertex] connected part, by first vertex; a common vertex connects */
+    MeshGroup *groups;          /* [group_count] the file's, in this mesh's numbering; faces as they were */
+    int *group_order;           /* [group_count] by name and dimension */
+    int *file_vertex;           /* [vertex] its number in the file (the lowest of those joined) */
+    int *vertex_of_file;        /* [file_vertex_count] the mesh's vertex, -1 where removed */
 } Mesh;
 
 /* What the user should know about a mesh that was accepted, and about what comes with it. */
@@ -91,6 +93,6 @@ void mesh_bounding_box(const Mesh *mesh, double low[3], double high[3]);
 /* Length of the bounding box's diagonal, m. */
 double mesh_diagonal(const Mesh *mesh);
 
-/* The group of that name and dimension (0 vertices, 1 edges, 2 faces), or NULL: one name may stand for a
+/* The group of that name and dimension (0 vertices, 1 edges, 2 faces, 3 cells), or NULL: one name may stand for a
  * surface, a curve and points at once. */
 const MeshGroup *mesh_group(const Mesh *mesh, const char *name, int dim);

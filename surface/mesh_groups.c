@@ -16,7 +16,7 @@ static MeshGroup renumber_group(const MeshGroup *old, const int *vertex_of_file,
         int member[2] = {0, 1}; /* as different as two ends must be */
         for (int k = 0; k < size; k++) {
             int m = old->members[i * size + k];
-            member[k] = old->dim == 2 ? m : vertex_of_file[m];
+            member[k] = old->dim >= 2 ? m : vertex_of_file[m];
         }
         bool removed = member[0] < 0 || member[1] < 0, shrunk = size == 2 && member[0] == member[1];
         *lost += removed;

@@ -51,15 +51,17 @@ static void mark_members(const Mesh *mesh, const MeshGroup *group, bool *mark)
     for (int i = 0; i < member_count; i++) {
         int member = group->members[i];
         for (int k = 0; k < 3 && group->dim == 2; k++) mark[mesh->faces[member][k]] = true;
+        for (int k = 0; k < mesh->cell_nodes && group->dim == 3; k++)
+            mark[mesh->cells[member * mesh->cell_nodes + k]] = true;
         if (group->dim < 2) mark[member] = true;
     }
 }
 
-/* All that the name stands for: its faces, its edges and its vertices. */
+/* All that the name stands for: its cells, its faces, its edges and its vertices. */
 static bool mark_group(const Mesh *mesh, const char *name, bool *mark, Error *err)
 {
     bool found = false;
-    for (int dim = 0; dim <= 2; dim++) {
+    for (int dim = 0; dim <= 3; dim++) {
         const MeshGroup *group = mesh_group(mesh, name, dim);
         if (!group) continue;
         mark_members(mesh, group, mark);
