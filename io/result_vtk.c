@@ -4,7 +4,8 @@
 #include <math.h>
 #include <string.h>
 
-enum { VTK_POLY_LINE = 4, VTK_TRIANGLE = 5, XDMF_POLYLINE = 2 };
+enum { VTK_POLY_LINE = 4, VTK_TRIANGLE = 5, VTK_TETRA = 10, VTK_QUADRATIC_TETRA = 24 };
+enum { XDMF_POLYLINE = 2, XDMF_TRIANGLE = 4, XDMF_TETRAHEDRON = 6, XDMF_TETRAHEDRON_10 = 38 };
 
 /* ---- Cells ---- */
 
@@ -16,6 +17,36 @@ static void read_triangles(VtkCells *cells, const Array *faces)
     cells->ids = mem_copy(faces->data, (size_t)cells->id_count, sizeof *cells->ids);
     cells->offsets = mem_alloc((size_t)cells->count + 1, sizeof *cells->offsets);
     for (int f = 0; f <= cells->count; f++) cells->offsets[f] = 3 * f;
+    cells->types = mem_alloc((size_t)cells->count, sizeof *cells->types);
+    for (int f = 0; f < cells->count; f++) cells->types[f] = VTK_TRIANGLE;
+}
+
+/* A cell's nodes: Gmsh's two last middles are the other way round in VTK. */
+static void put_nodes(const int *from, int count, int *to)
+{
+    memcpy(to, from, (size_t)count * sizeof *to);
+    if (count == 10) to[8] = from[9], to[9] = from[8];
+}
+
+/* Tetrahedra, of 4 or 10 nodes, and the triangles of their skin. */
+static void read_tetrahedra(VtkCells *cells, const Array *tets, const Array *faces)
+{
+    int n = tets->dims[0], each = tets->dims[1], m = faces->dims[0];
+    cells->count = n + m;
+    cells->id_count = n * each + 3 * m;
+    cells->ids = mem_alloc((size_t)cells->id_count, sizeof *cells->ids);
+    cells->offsets = mem_alloc((size_t)cells->count + 1, sizeof *cells->offsets);
+    cells->types = mem_alloc((size_t)cells->count, sizeof *cells->types);
+    for (int k = 0; k < cells->count; k++) {
+        bool tet = k < n;
+        int *to = cells->ids + cells->offsets[k];
+        cells->types[k] = !tet ? VTK_TRIANGLE : each == 10 ? VTK_QUADRATIC_TETRA : VTK_TETRA;
+        cells->offsets[k + 1] = cells->offsets[k] + (tet ? each : 3);
+        if (tet)
+            put_nodes((const int *)tets->data + (size_t)k * (size_t)each, each, to);
+        else
+            put_nodes((const int *)faces->data + 3 * (size_t)(k - n), 3, to);
+    }
 }
 
 static bool check_lines(const Array *lines, int vertex_count, Error *err)
@@ -45,18 +76,29 @@ static void read_lines(VtkCells *cells, const int (*lines)[2], int count)
     cells->ids = mem_alloc((size_t)cells->id_count, sizeof *cells->ids);
     for (int k = 0; k < count; k++)
         for (int i = 0; i < lines[k][1]; i++) cells->ids[cells->offsets[k] + i] = lines[k][0] + i;
+    cells->types = mem_alloc((size_t)count, sizeof *cells->types);
+    for (int k = 0; k < count; k++) cells->types[k] = VTK_POLY_LINE;
 }
 
-/* For each line its type, its number of points, and these. */
-static int *mixed_topology(const VtkCells *cells)
+static int xdmf_type(int type)
 {
-    int *mixed = mem_alloc(2 * (size_t)cells->count + (size_t)cells->id_count, sizeof *mixed), *next = mixed;
+    return type == VTK_POLY_LINE         ? XDMF_POLYLINE
+           : type == VTK_TRIANGLE        ? XDMF_TRIANGLE
+           : type == VTK_QUADRATIC_TETRA ? XDMF_TETRAHEDRON_10
+                                         : XDMF_TETRAHEDRON;
+}
+
+/* For each cell its type, of a line its number of points, and these. */
+static void list_mixed(VtkCells *cells)
+{
+    cells->mixed = mem_alloc(2 * (size_t)cells->count + (size_t)cells->id_count, sizeof *cells->mixed);
+    int *next = cells->mixed;
     for (int k = 0; k < cells->count; k++) {
-        *next++ = XDMF_POLYLINE;
-        *next++ = cells->offsets[k + 1] - cells->offsets[k];
+        *next++ = xdmf_type(cells->types[k]);
+        if (cells->lines) *next++ = cells->offsets[k + 1] - cells->offsets[k];
         for (int i = cells->offsets[k]; i < cells->offsets[k + 1]; i++) *next++ = cells->ids[i];
     }
-    return mixed;
+    cells->mixed_count = (int)(next - cells->mixed);
 }
 
 bool vtk_frames_exist(Journal *journal, bool *exist, Error *err)
@@ -76,10 +118,14 @@ static bool read_cells(VtkFrames *frames, Error *err)
     bool lines = !array.data;
     if (lines && !journal_get(frames->journal, "static", 0, "lines", &array, err)) return false;
     bool ok = !lines || check_lines(&array, frames->vertex_count, err);
+    Array tets = {0};
+    ok = ok && journal_find(frames->journal, "static", 0, "cells", &tets, err);
     if (ok && lines) read_lines(&frames->cells, (void *)array.data, array.dims[0]);
-    if (ok && !lines) read_triangles(&frames->cells, &array);
-    if (ok && !frames->cells.uniform) frames->cells.mixed = mixed_topology(&frames->cells);
+    if (ok && !lines && !tets.data) read_triangles(&frames->cells, &array);
+    if (ok && !lines && tets.data) read_tetrahedra(&frames->cells, &tets, &array);
+    if (ok && !frames->cells.uniform) list_mixed(&frames->cells);
     array_clear(&array);
+    array_clear(&tets);
     return ok;
 }
 
@@ -157,6 +203,7 @@ void vtk_frames_clear(VtkFrames *frames)
     mem_free(frames->still);
     mem_free(frames->cells.ids);
     mem_free(frames->cells.offsets);
+    mem_free(frames->cells.types);
     mem_free(frames->cells.mixed);
     mem_free(frames->times);
     mem_free(frames->fields);
@@ -175,18 +222,16 @@ static bool put_ints(VtkFrames *frames, const char *path, const int *values, int
 static bool put_cells(VtkFrames *frames, Error *err)
 {
     const VtkCells *cells = &frames->cells;
-    int n = cells->count, *types = mem_alloc((size_t)n, sizeof *types);
-    for (int k = 0; k < n; k++) types[k] = cells->lines ? VTK_POLY_LINE : VTK_TRIANGLE;
+    int n = cells->count;
     Hdf5Layout wide = {.wide = true}, bytes = {.bytes = true};
     bool ok = put_ints(frames, "VTKHDF/Connectivity", cells->ids, 1, cells->id_count, 0, wide, err) &&
               put_ints(frames, "VTKHDF/Offsets", cells->offsets, 1, n + 1, 0, wide, err) &&
-              put_ints(frames, "VTKHDF/Types", types, 1, n, 0, bytes, err) &&
+              put_ints(frames, "VTKHDF/Types", cells->types, 1, n, 0, bytes, err) &&
               put_ints(frames, "VTKHDF/NumberOfPoints", &frames->vertex_count, 1, 1, 0, wide, err) &&
               put_ints(frames, "VTKHDF/NumberOfCells", &n, 1, 1, 0, wide, err) &&
               put_ints(frames, "VTKHDF/NumberOfConnectivityIds", &cells->id_count, 1, 1, 0, wide, err);
-    mem_free(types);
     if (!ok || !cells->mixed) return ok;
-    return put_ints(frames, "slender/xdmf_topology", cells->mixed, 1, 2 * n + cells->id_count, 0, wide, err);
+    return put_ints(frames, "slender/xdmf_topology", cells->mixed, 1, cells->mixed_count, 0, wide, err);
 }
 
 /* Where in the long arrays each step begins. */

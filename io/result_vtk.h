@@ -1,20 +1,23 @@
 /* result_vtk.h - the frames of a journal as the group /VTKHDF of a result. Private to result.c.
  *
- * An UnstructuredGrid over time (VTKHDF 2.0) of triangles, from static/faces, or of poly lines, from
- * static/lines; points that never move, static/still, follow those of each frame. */
+ * An UnstructuredGrid over time (VTKHDF 2.0) of triangles, from static/faces, of tetrahedra, from static/cells, and
+ * triangles after them, or of poly lines, from static/lines; points that never move, static/still, follow those of each
+ * frame. */
 #pragma once
 #include "io/hdf5_file.h"
 #include "io/journal.h"
 
-/* The cells on which the frames are shown: triangles, or polylines of two points or more. */
+/* The cells on which the frames are shown: triangles, tetrahedra and triangles, or polylines of two points or more. */
 typedef struct VtkCells {
     bool lines;
     int count;
+    int *types;   /* [count] VTK's                                                         */
     int uniform;  /* points of every cell; 0: they differ                                  */
     int id_count; /* of all cells                                                          */
     int *ids;     /* [id_count] points of the cells, one after the other                   */
     int *offsets; /* [count + 1] where each cell begins in ids                             */
-    int *mixed;   /* [2 count + id_count] as XDMF lists cells that differ; NULL if uniform */
+    int mixed_count;
+    int *mixed; /* [mixed_count] as XDMF lists cells that differ; NULL if uniform        */
 } VtkCells;
 
 /* What is being written. */

@@ -82,7 +82,7 @@ static void add_topology(Sidecar *sidecar)
              cells->count);
     if (cells->lines && cells->uniform) text_add(&sidecar->text, " NodesPerElement=\"%d\"", cells->uniform);
     text_add(&sidecar->text, ">");
-    int size = cells->mixed ? 2 * cells->count + cells->id_count : cells->id_count;
+    int size = cells->mixed ? cells->mixed_count : cells->id_count;
     add_item(sidecar, cells->mixed ? "slender/xdmf_topology" : "VTKHDF/Connectivity", 0, size, 1, size,
              "NumberType=\"Int\" Precision=\"8\"");
     text_add(&sidecar->text, "        </Topology>\n");

@@ -92,7 +92,7 @@ static bool solve_case(Run *run, Case *c, Snapshot *shot, int *frame, bool *inte
             *interrupted = info.newton.status == NEWTON_STOPPED;
             if (*interrupted) break;
             if (shot->status != NEWTON_CONVERGED) run_say_unknown_field(run, shot, 0);
-            if (run_is_crushed(run, shot, shot->status != NEWTON_CONVERGED)) shot->status = NEWTON_CRUSHED;
+            run_is_crushed(run, shot, shot->status != NEWTON_CONVERGED);
             host_step(run->host, *frame + 1, total,
                       "%s: %s, %d Newton iterations with %d factorisations in %d load steps", c->name,
                       newton_status_name(shot->status), info.newton.iterations, info.newton.factorizations,

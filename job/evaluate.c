@@ -51,7 +51,7 @@ static RunStatus run_evaluate(Run *run, Error *err)
         NewtonStatus relaxed = relax(run, c);
         if (relaxed > worst) worst = relaxed;
         shots[k] = (Snapshot){c, c->stages[0].p, c->state, judge(run, c, k), NULL, NULL};
-        if (run_is_crushed(run, &shots[k], false)) worst = shots[k].status = NEWTON_CRUSHED;
+        if (run_is_crushed(run, &shots[k], false)) worst = shots[k].status;
         ok = run_put_frame(run, k, k, &shots[k], k == 0, err);
     }
     Arrays list = {0};

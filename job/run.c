@@ -59,13 +59,14 @@ Array run_block(const char *name, const ParamBlock *block, const double *p)
     return array_float(name, block->unit, p + block->offset, rank, block->count, block->width);
 }
 
-bool run_is_crushed(Run *run, const Snapshot *shot, bool failed)
+bool run_is_crushed(Run *run, Snapshot *shot, bool failed)
 {
     const BodyOps *body = run->model->body->ops;
     char *crushed = body->crushed ? body->crushed(run->model, shot, failed) : NULL;
     if (!crushed) return false;
     host_say(run->host, "%s: %s", shot->load_case->name, crushed);
     mem_free(crushed);
+    shot->status = body->crushed_as;
     return true;
 }
 

@@ -154,14 +154,15 @@ static RunStatus make_step(Simulation *s, const MarchDef *def)
                  newton_status_text(info.newton.status));
     Snapshot shot = shown_state(s);
     if (!reached) run_say_unknown_field(s->run, &shot, scene->time.step);
-    if (run_is_crushed(s->run, &shot, !reached)) s->status = NEWTON_CRUSHED;
+    bool crushed = run_is_crushed(s->run, &shot, !reached);
+    if (crushed) s->status = shot.status;
     if (!reached) return RUN_NOT_CONVERGED;
     s->step = step;
     contacts_tell(&s->contacts, s->run->host, step, info.passed);
     keep_anchor(s);
     if (!put_history(s, step, &info) || (step % every == 0 && !put_step(s, step / every, step)))
         return RUN_CANNOT_WRITE;
-    if (s->status == NEWTON_CRUSHED) return RUN_NOT_CONVERGED;
+    if (crushed) return RUN_NOT_CONVERGED;
     host_step(s->run->host, step, scene->time.steps, "t %.4g s, %d Newton iterations%s", s->now->time,
               info.newton.iterations, contacts_text(&s->contacts, touches));
     return RUN_DONE;

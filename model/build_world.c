@@ -51,7 +51,7 @@ bool model_read_world(Model *model, const Build *b, const Scene *scene, const Wo
     }
     World *w = *world = world_create(body, obstacles, scene->obstacles_count);
     model->world = w;
-    w->offset = contact->offset.mode == 0 ? body->thickness / 2 : contact->offset.value;
+    w->offset = contact->offset.mode == 0 ? body->outside : contact->offset.value;
     w->slip_speed = contact->slip_speed;
     w->implicit = contact->coupling == COUPLING_IMPLICIT;
     w->self = self;

@@ -151,6 +151,7 @@ typedef struct BodyOps {
      * sentence of the caller's; NULL: nothing. `failed`: no state was found from there on, and what is near it is the
      * reason. Optional. */
     char *(*crushed)(const struct Model *model, const Snapshot *shot, bool failed);
+    NewtonStatus crushed_as; /* what such a state is said to be */
 
     /* Lines on what the scene made, for `slender check`; the caller's. */
     char *(*describe)(const struct Model *model, const Scene *scene);

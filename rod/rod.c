@@ -83,6 +83,7 @@ WorldBody rod_world_body(Rod *rod)
                        .rest = (const double(*)[3])rod->straight,
                        .part = rod->part,
                        .thickness = 2 * rod->unit.reach,
+                       .outside = rod->unit.reach,
                        .strands = rod->strands,
                        .length = rod->lengths};
 }

@@ -74,7 +74,8 @@ WorldBody shell_world_body(const Shell *shell)
                        .rest = (const double(*)[3])mesh->rest,
                        .part = mesh->vertex_component,
                        .fixed = shell->fixed,
-                       .thickness = shell->thickness};
+                       .thickness = shell->thickness,
+                       .outside = shell->thickness / 2};
 }
 
 void shell_fix(Shell *shell, int vertex, int axis)

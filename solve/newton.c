@@ -42,6 +42,7 @@ static const struct {
     [NEWTON_STOPPED] = {"stopped", "interrupted"},
     [NEWTON_UNBALANCED] = {"evaluated", "a pose whose forces are not in balance"},
     [NEWTON_CRUSHED] = {"crushed", "a piece of the body is crushed to nothing"},
+    [NEWTON_TANGLED] = {"tangled", "a piece of the body is turned inside out"},
     [NEWTON_BLOCKED] = {"blocked", "what is held was moved through another part of the body"},
     [NEWTON_PIERCED] = {"pierced", "something has gone through the body"},
     [NEWTON_UNSETTLED] = {"unsettled", "friction and the forces that press do not agree with each other"},

@@ -33,11 +33,23 @@ static void copy_faces(Neighbours *n)
             n->faces[f][i] = def->face_count ? def->faces[f][i] : def->edges[f][i > 0];
 }
 
-static void divide_by_mean(int count, double *values)
+/* All but `within` of them have one. */
+static void divide_by_mean(int count, int within, double *values)
 {
     double sum = 0;
     for (int i = 0; i < count; i++) sum += values[i];
-    for (int i = 0; i < count; i++) values[i] *= count / sum;
+    for (int i = 0; i < count; i++) values[i] *= (count - within) / sum;
+}
+
+/* How many. */
+static int find_within(Neighbours *n)
+{
+    const SelfContactDef *def = &n->def;
+    int count = 0;
+    for (int v = 0; v < def->vertex_count; v++) n->within[v] = def->face_count > 0;
+    for (int i = 0; i < 3 * def->face_count; i++) n->within[def->faces[i / 3][i % 3]] = false;
+    for (int v = 0; v < def->vertex_count; v++) count += n->within[v];
+    return count;
 }
 
 /* An edge as its ends do in the mean. */
@@ -51,14 +63,14 @@ static void weigh(Neighbours *n)
         double area = vec3_length(vec3_cross(vec3_sub(b, a), vec3_sub(c, a)));
         for (int i = 0; i < 3; i++) n->vertex_weight[def->faces[f][i]] += area;
     }
-    divide_by_mean(def->vertex_count, n->vertex_weight);
+    divide_by_mean(def->vertex_count, find_within(n), n->vertex_weight);
     for (int e = 0; e < def->edge_count; e++) {
         const int *ends = def->edges[e];
         Vec3 way = vec3_sub(vec3_load(def->rest[ends[1]]), vec3_load(def->rest[ends[0]]));
         n->edge_square[e] = vec3_dot(way, way);
         n->edge_weight[e] = (n->vertex_weight[ends[0]] + n->vertex_weight[ends[1]]) / 2;
     }
-    divide_by_mean(def->edge_count, n->edge_weight);
+    divide_by_mean(def->edge_count, 0, n->edge_weight);
 }
 
 Box neighbours_box(const int *vertices, int count, const double *from, const double *to, double grow)
@@ -119,6 +131,7 @@ Neighbours *neighbours_create(const SelfContactDef *def)
     n->vertex_weight = mem_alloc((size_t)def->vertex_count, sizeof(double));
     n->edge_weight = mem_alloc((size_t)def->edge_count, sizeof(double));
     n->edge_square = mem_alloc((size_t)def->edge_count, sizeof(double));
+    n->within = mem_alloc((size_t)def->vertex_count, sizeof *n->within);
     weigh(n);
     n->vertex_seat = seats_of(def, def->vertex_count, NULL, 1);
     n->face_seat = seats_of(def, n->face_count, n->face_count ? n->faces[0] : NULL, 3);
@@ -135,6 +148,7 @@ void neighbours_destroy(Neighbours *n)
     near_tree_destroy(n->edge_tree);
     mem_free(n->faces);
     mem_free(n->vertex_weight);
+    mem_free(n->within);
     mem_free(n->edge_weight);
     mem_free(n->edge_square);
     mem_free(n->vertex_seat);
@@ -235,6 +249,7 @@ static void take(const Neighbours *n, bool edges, Wanted wanted, PairList *list)
     int first = list->count, vertices[4];
     for (int k = 0; k < n->found.count; k++) {
         const int *pair = n->found.list[k];
+        if (!edges && n->within[pair[0]]) continue;
         if (sits_near(n, &s[pair[0]], &t[pair[1]])) continue;
         if (box_gap_square(&a[pair[0]], &b[pair[1]]) > wanted.radius * wanted.radius) continue;
         pair_vertices(n, pair, edges, vertices);

@@ -23,6 +23,7 @@ typedef struct Seat {
 typedef struct Neighbours {
     SelfContactDef def; /* margin: m */
     int face_count, (*faces)[3];
+    bool *within;                        /* [vertex] in a solid: in no face, meets nothing  */
     double *vertex_weight, *edge_weight; /* area over the mean one                     */
     double *edge_square;                 /* length^2 at rest                           */
     Seat *vertex_seat, *face_seat, *edge_seat;

@@ -39,11 +39,16 @@ static Samples long_ones(const WorldBody *body, const int *corners_of, int count
     return samples;
 }
 
+/* But for those within a solid, which are in no face. */
 static Samples all_vertices(const WorldBody *body)
 {
-    Samples samples = {body->vertex_count, 1, mem_alloc((size_t)body->vertex_count, sizeof(int)),
-                       body->first};
-    for (int v = 0; v < body->vertex_count; v++) samples.vertices[v] = v;
+    Samples samples = {0, 1, mem_alloc((size_t)body->vertex_count, sizeof(int)), body->first};
+    bool *inside = mem_alloc((size_t)body->vertex_count, sizeof *inside);
+    for (int v = 0; v < body->vertex_count; v++) inside[v] = body->face_count > 0;
+    for (int i = 0; i < 3 * body->face_count; i++) inside[body->faces[i / 3][i % 3]] = false;
+    for (int v = 0; v < body->vertex_count; v++)
+        if (!inside[v]) samples.vertices[samples.count++] = v;
+    mem_free(inside);
     return samples;
 }
 

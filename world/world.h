@@ -15,12 +15,13 @@ typedef struct WorldBody {
     const double (*rest)[3];            /* m                                                 */
     const int *part;                    /* [vertex] the piece that it belongs to; NULL: one  */
     const bool *fixed;                  /* [3*vertex_count] held; NULL: nothing              */
-    double thickness;                   /* m; a rod's diameter                               */
-    int strands;                        /* rods, one after the other; of a shell 0           */
-    const double *length;               /* [strands] m                                       */
+    double thickness;                   /* m; a rod's diameter, a fifth of the edges of a solid's skin */
+    double outside; /* m, from its points to its outside: half a thickness, a rod's radius; 0 of a solid */
+    int strands;    /* rods, one after the other; of a shell 0           */
+    const double *length; /* [strands] m                                       */
 } WorldBody;
 
-/* Of which what touches sinks in by less than 1 %: a shell's thickness, a rod's radius, m. */
+/* Of which what touches sinks in by less than 1 %: a shell's thickness, a rod's radius, a fifth of the edges of a solid's skin, m. */
 double world_body_measure(const WorldBody *body);
 
 enum { SAMPLE_KINDS = 3 }; /* vertices, middles of edges, of faces */

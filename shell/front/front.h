@@ -9,7 +9,6 @@ void shell_add_static(const Model *model, Arrays *list);
 void shell_places(const Model *model, const double *x, double *place);
 void shell_add_frame(const Model *model, const Snapshot *shot, bool whole, Arrays *list);
 void shell_add_state(const Model *model, const Snapshot *shot, const char *prefix, Arrays *list);
-void shell_add_final(const Model *model, const Snapshot *shot, int modes, Arrays *list);
 
 /* report.c, cost.c */
 char *shell_crushed(const Model *model, const Snapshot *shot, bool failed);

@@ -1,0 +1,245 @@
+/* The row of solids: models of them. */
+#include "base/memory.h"
+#include "job/jobs.h"
+#include "solid/front/front.h"
+#include "surface/rigid.h"
+#include <math.h>
+#include <string.h>
+
+/* ---- Loads and targets ---- */
+
+static bool put_loads(Model *model, const Build *b, const char *at, const LoadScene *loads, int count,
+                      double *p)
+{
+    return build_loads(b, key("%s", at), loads, count, p + ((const Solid *)model->self)->load);
+}
+
+static bool put_target(Model *model, const Build *b, const char *at, const TargetScene *scene,
+                       double (*target)[3])
+{
+    (void)model;
+    return build_target(b, key("%s", at), scene, target);
+}
+
+static double *base_params(Model *model, const Scene *scene, const Build *b)
+{
+    Solid *solid = model->self;
+    double *p = params_vector(model->params);
+    solid_default_params(solid, p);
+    const SolidScene *s = solid_scene(scene);
+    bool ok = build_cell_numbers(b, key("solid.young"), &s->young, p + solid->young);
+    ok = build_cell_vectors(b, key("solid.magnetization"), &s->magnetization,
+                            p + solid->volume_magnetization) &&
+         ok;
+    if (s->skin)
+        ok = build_face_vectors(b, key("solid.skin.magnetization"), &s->skin->magnetization,
+                                p + solid->magnetization) &&
+             ok;
+    memcpy(p + solid->gravity, s->gravity, sizeof s->gravity);
+    p[solid->damping] = s->damping;
+    ok = build_loads(b, key("loads"), scene->loads, scene->loads_count, p + solid->load) && ok;
+    model_put_flux(model, 0, p);
+    if (ok) return p;
+    mem_free(p);
+    return NULL;
+}
+
+/* ---- The whole ---- */
+
+/* A file with all nodes in their order; its cells are those of the mesh. */
+static bool read_pose(const Build *b, const PoseScene *pose, double *x)
+{
+    if (!pose) return true;
+    const Mesh *mesh = b->mesh;
+    MeshFile file = {0};
+    if (!build_state(b, key("solid.pose.file"), pose->file, pose->scale, &file)) return false;
+    for (int v = 0; v < mesh->vertex_count; v++)
+        memcpy(x + 3 * v, file.vertices[mesh_row(mesh, file.vertex_count, v)], 3 * sizeof *x);
+    mesh_file_clear(&file);
+    return true;
+}
+
+static System *make_system(const Model *model, bool motion)
+{
+    return solid_system(model->self, motion);
+}
+
+/* Systems last: fields and what is held are known by then. An equilibrium needs forces in balance, unless there is something
+ * that may bear them. */
+static bool finish_cases(Model *model, const Build *b)
+{
+    const World *world = model->world;
+    const Solid *solid = model->self;
+    double *mass = mem_alloc((size_t)model->point_count, sizeof *mass);
+    solid_node_mass(solid, mass);
+    bool ok = true, borne = world && (world->obstacle_count || world->self);
+    for (int k = 0; ok && k < model->case_count; k++) {
+        Case *c = &model->cases[k];
+        Error err;
+        case_start(c, make_system(model, model->job->motion), model->x);
+        system_accept(c->sys, c->state.x, c->state.memory);
+        for (int s = 0; ok && model->job->rest && !borne && s < c->stage_count; s++)
+            ok = rigid_check_force(b->mesh, solid->fixed, mass, c->stages[s].p + solid->gravity,
+                                   c->stages[s].p + solid->load, &err) ||
+                 yaml_refuse(b->file, "", "%s", err.text);
+    }
+    mem_free(mass);
+    return ok;
+}
+
+/* Faces of the surface that have the layer. */
+static bool put_skin(Solid *solid, const Build *b, const SkinScene *skin)
+{
+    if (!skin || !skin->on) return true;
+    const MeshGroup *group = mesh_group(b->mesh, skin->on, 2);
+    if (!group || !group->count)
+        return yaml_refuse(b->file, "solid.skin.on", "the surface has no group of faces '%s'", skin->on);
+    solid->skin_on = mem_alloc((size_t)b->mesh->face_count, sizeof *solid->skin_on);
+    for (int k = 0; k < group->count; k++) solid->skin_on[group->members[k]] = true;
+    return true;
+}
+
+static bool fill(Model *model, const Scene *scene, const Build *b, bool readable)
+{
+    Solid *solid = model->self;
+    const SolidScene *from = solid_scene(scene);
+    bool ok = put_skin(solid, b, from->skin) && readable;
+    ok = model_hold(model, b, scene, solid->fixed, NULL) && ok;
+    model->x = mem_copy(b->mesh->rest, (size_t)model->point_count, sizeof *b->mesh->rest);
+    ok = read_pose(b, from->pose, model->x) && ok;
+    double *p = base_params(model, scene, b);
+    ok = p && model_cases(model, b, scene, p) && ok;
+    mem_free(p);
+    return ok && finish_cases(model, b) &&
+           (!model->job->motion ||
+            model_velocity(model, b, "solid.velocity", from->velocity, b->mesh->rest[0]));
+}
+
+static const double MOST_AVERAGED =
+    0.6; /* of quadratic tetrahedra: more, and they collapse when they are pressed */
+
+static bool check(const SolidScene *from, YamlFile *file)
+{
+    bool ok = from->averaging == 0 || from->material == SOLID_NEO_HOOKEAN ||
+              yaml_refuse(file, "solid.averaging", "averaging is for the material neo_hookean");
+    return ok &&
+           (from->order == TET_LINEAR || from->averaging <= MOST_AVERAGED ||
+            yaml_refuse(file, "solid.averaging",
+                        "%g is too much: quadratic tetrahedra collapse under pressure with more than %g",
+                        from->averaging, MOST_AVERAGED));
+}
+
+static bool create(Model *model, const Scene *scene, YamlFile *file)
+{
+    const SolidScene *from = solid_scene(scene);
+    Tets *tets = check(from, file) ? solid_read_tets(from, file, &model->report) : NULL;
+    if (!tets) return false;
+    Build b = build_start(scene, tets->surface, model->time, file);
+    b.mesh_scale = from->mesh.scale;
+    b.report = &model->report;
+    b.timed = model->job->motion ? &model->flux_of_time : NULL;
+    FluxFields fields;
+    bool ok = model_read_flux(model, &b, scene, &fields);
+    SolidDef def = {.material = (SolidMaterial)from->material,
+                    .poisson = from->poisson,
+                    .density = from->density,
+                    .averaging = from->averaging,
+                    .skin = from->skin ? from->skin->thickness : 0};
+    Solid *solid = model->self = solid_create(tets, &def, &fields);
+    model->mesh = tets->surface;
+    model->params = &solid->params;
+    model->gravity = solid->gravity;
+    model->flux_density = solid->flux_density;
+    model->field_scale = solid->field_scale;
+    model->fields = &solid->fields;
+    model->point_count = tets_node_count(tets);
+    model->load_steps = 1;
+    model->step_cap = newton_default().step_cap;
+    WorldBody shown = solid_world_body(solid);
+    ok = model_read_world(model, &b, scene, &shown, &solid->world) && ok;
+    model_add_blocks(model, scene);
+    return fill(model, scene, &b, ok);
+}
+
+static void destroy(void *self)
+{
+    solid_destroy(self);
+}
+
+/* ---- Designs ---- */
+
+static bool put_numbers(Model *model, const Build *b, const char *at, const NumberScene *scene,
+                        const ParamBlock *block, double *values)
+{
+    (void)model, (void)block;
+    return build_cell_numbers(b, key("%s", at), scene, values);
+}
+
+static bool put_vectors(Model *model, const Build *b, const char *at, const VectorScene *scene,
+                        const ParamBlock *block, double *values)
+{
+    const Solid *solid = model->self;
+    return block->offset == solid->magnetization ? build_face_vectors(b, key("%s", at), scene, values)
+                                                 : build_cell_vectors(b, key("%s", at), scene, values);
+}
+
+static bool select_part(const Model *model, const Build *b, const char *at, const char *name, Indices *found)
+{
+    (void)model;
+    SelectionScene group = {.group = (char *)name};
+    return build_selection(b, key("%s", at), strcmp(name, "all") ? &group : NULL, found);
+}
+
+static void masses(const Model *model, double *mass)
+{
+    solid_node_mass(model->self, mass);
+}
+
+/* ---- The row ---- */
+
+static const Likeness likeness[] = {
+    {"cells", "a mesh with other tetrahedra"}, {"rest", "a mesh of another shape at rest"}, {0}};
+
+static const BodyOps ops = {
+    .create = create,
+    .destroy = destroy,
+    .put_loads = put_loads,
+    .put_target = put_target,
+    .put_numbers = put_numbers,
+    .put_vectors = put_vectors,
+    .select = select_part,
+    .masses = masses,
+    .move = model_move_held,
+    .system = make_system,
+    .add_static = solid_add_static,
+    .add_frame = solid_add_frame,
+    .add_state = solid_add_state,
+    .add_final = run_add_stability,
+    .likeness = likeness,
+    .places = solid_places,
+    .crushed = solid_crushed,
+    .crushed_as = NEWTON_TANGLED,
+    .describe = solid_describe,
+    .advise = solid_advise,
+    .dof_sizes = solid_dof_sizes,
+    .cost = solid_cost,
+};
+
+static const JobRow *const jobs[] = {&job_equilibrium, &job_evaluate,   &job_design,
+                                     &job_simulate,    &job_trajectory, NULL};
+
+const BodyRow solid_body = {
+    .key = "solid",
+    .noun = "a solid",
+    .nouns = "solids",
+    .doc = "the body: a solid",
+    .table = &solid_table,
+    .uses = (const KeyUse[]){{0}},
+    .jobs = jobs,
+    .ops = &ops,
+};
+
+const SolidScene *solid_scene(const Scene *scene)
+{
+    return scene_of(scene, &solid_body);
+}

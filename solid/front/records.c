@@ -1,0 +1,90 @@
+/* Solids in the journal. */
+#include "base/memory.h"
+#include "job/run.h"
+#include "solid/front/front.h"
+#include <math.h>
+#include <string.h>
+
+/* Cells of a frame: the tetrahedra, and after them the faces of the skin. */
+static int cell_count(const Solid *solid)
+{
+    return solid->tets->count + solid->tets->skin->face_count;
+}
+
+void solid_add_static(const Model *model, Arrays *list)
+{
+    const Tets *tets = ((const Solid *)model->self)->tets;
+    const Mesh *surface = tets->surface, *skin = tets->skin;
+    arrays_add(list, array_float("rest", "m", surface->rest[0], 2, surface->vertex_count, 3));
+    arrays_add(list, array_int("cells", tets->nodes, 2, tets->count, tets->each));
+    arrays_add(list, array_int("faces", skin->faces[0], 2, skin->face_count, 3));
+    arrays_add(list, array_int("surface", surface->faces[0], 2, surface->face_count, 3));
+    arrays_add(list, array_int("surface_of_face", tets->skin_face, 1, skin->face_count, 0));
+    if (surface->vertex_count != surface->file_vertex_count)
+        arrays_add(list, array_int("file_vertex", surface->file_vertex, 1, surface->vertex_count, 0));
+}
+
+void solid_places(const Model *model, const double *x, double *place)
+{
+    memcpy(place, x, 3 * (size_t)model->point_count * sizeof *place);
+}
+
+/* A number, or width of them, for each cell: NaN in those that have none. */
+static double *empty(const Solid *solid, int width, Arrays *list)
+{
+    size_t size = (size_t)cell_count(solid) * (size_t)width;
+    double *values = arrays_numbers(list, size);
+    for (size_t i = 0; i < size; i++) values[i] = NAN;
+    return values;
+}
+
+static void add_cells(const Solid *solid, const char *name, const char *unit, const double *values, int width,
+                      Arrays *list)
+{
+    arrays_add(list,
+               array_float(name, unit, values, width > 1 ? 2 : 1, cell_count(solid), width > 1 ? width : 0));
+}
+
+static void add_magnetization(const Solid *solid, const double *p, Arrays *list)
+{
+    const Tets *tets = solid->tets;
+    double *M = empty(solid, 3, list);
+    memcpy(M, p + solid->volume_magnetization, 3 * (size_t)tets->count * sizeof *M);
+    for (int f = 0; solid->skin > 0 && f < tets->skin->face_count; f++)
+        memcpy(M + 3 * (tets->count + f), p + solid->magnetization + 3 * tets->skin_face[f], 3 * sizeof *M);
+    add_cells(solid, "cell/magnetization", "A/m", M, 3, list);
+}
+
+void solid_add_frame(const Model *model, const Snapshot *shot, bool whole, Arrays *list)
+{
+    const Solid *solid = model->self;
+    System *sys = shot->load_case->sys;
+    Point at = state_point(&shot->at, shot->p);
+    for (int t = 0; t < system_term_count(sys); t++) {
+        const Term *term = system_term(sys, t);
+        if (term->ops->count(term->self) != solid->tets->count) continue;
+        double *energy = empty(solid, 1, list);
+        system_term_energy(sys, t, &at, energy);
+        char *name = arrays_keep(list, mem_format("cell/energy_%s", term->ops->name));
+        add_cells(solid, name, "J", energy, 1, list);
+    }
+    if (!whole) return;
+    add_magnetization(solid, shot->p, list);
+    double *young = empty(solid, 1, list);
+    memcpy(young, shot->p + solid->young, (size_t)solid->tets->count * sizeof *young);
+    add_cells(solid, "cell/young", "Pa", young, 1, list);
+}
+
+void solid_add_state(const Model *model, const Snapshot *shot, const char *prefix, Arrays *list)
+{
+    System *sys = shot->load_case->sys;
+    Point at = state_point(&shot->at, shot->p);
+    double *gradient = arrays_numbers(list, (size_t)system_dof_count(sys)), *least = arrays_numbers(list, 1);
+    system_gradient(sys, &at, gradient);
+    char *name = arrays_keep(list, mem_format("%s/gradient", prefix));
+    arrays_add(list, array_float(name, "N", gradient, 2, model->point_count, 3));
+    int tet;
+    *least = solid_least_jacobian(model->self, shot->at.x, &tet);
+    arrays_add(list,
+               array_float(arrays_keep(list, mem_format("%s/least_jacobian", prefix)), "", least, 0, 0, 0));
+}

@@ -1,0 +1,76 @@
+/* What `slender check` says of a solid, and what is doubtful about it. */
+#include "base/memory.h"
+#include "base/vec3.h"
+#include "solid/front/front.h"
+#include <math.h>
+
+static const double LARGE_BODY = 2; /* m: most likely a mesh in millimetres                              */
+static const double LOCKED_FROM =
+    0.47; /* Poisson's ratio from which plain quadratic tetrahedra are too stiff */
+
+static double mean_edge(const Mesh *mesh)
+{
+    double sum = 0;
+    for (int e = 0; e < mesh->edge_count; e++)
+        sum += vec3_length(
+            vec3_sub(vec3_load(mesh->rest[mesh->edges[e][0]]), vec3_load(mesh->rest[mesh->edges[e][1]])));
+    return sum / mesh->edge_count;
+}
+
+void solid_advise(Model *model, const Scene *scene)
+{
+    const Solid *solid = model->self;
+    double size = mesh_diagonal(model->mesh);
+    (void)scene;
+    if (size > LARGE_BODY)
+        mesh_warn(&model->report,
+                  "the body is %.3g m long; if its file is in millimetres, give the mesh `scale: 1.0e-3`",
+                  size);
+    if (solid->tets->order == TET_LINEAR && solid->averaging == 0)
+        mesh_warn(&model->report,
+                  "linear tetrahedra are far too stiff in bending: `order: 2`, or `averaging: 1`");
+    if (solid->tets->order == TET_QUADRATIC && solid->poisson > LOCKED_FROM && solid->averaging == 0)
+        mesh_warn(&model->report,
+                  "with a Poisson's ratio of %g quadratic tetrahedra are some per cent too stiff in bending: "
+                  "`averaging: 0.6` halves that",
+                  solid->poisson);
+}
+
+char *solid_describe(const Model *model, const Scene *scene)
+{
+    const Solid *solid = model->self;
+    const Tets *tets = solid->tets;
+    int held = 0;
+    (void)scene;
+    for (int i = 0; i < solid_dof_count(solid); i++) held += solid->fixed[i];
+    char *text = mem_format("%d %s tetrahedra, %d nodes, %d faces on the surface, %d part%s; %d load case%s; "
+                            "%d unknowns of motion, "
+                            "%d coordinates held\n",
+                            tets->count, tets->order == TET_QUADRATIC ? "quadratic" : "linear",
+                            tets_node_count(tets), tets->surface->face_count, tets->surface->component_count,
+                            tets->surface->component_count == 1 ? "" : "s", model->case_count,
+                            model->case_count == 1 ? "" : "s", system_free_count(model->cases[0].sys), held);
+    if (system_base_shift(model->cases[0].sys) > 0)
+        text = mem_join(text, "the body has free rigid motions\n", "");
+    return text;
+}
+
+char *solid_crushed(const Model *model, const Snapshot *shot, bool failed)
+{
+    const Solid *solid = model->self;
+    int tet;
+    double least = solid_least_jacobian(solid, shot->at.x, &tet);
+    (void)failed;
+    if (least > 0) return NULL;
+    return mem_format(
+        "tetrahedron %d is turned inside out (det F is %.2g there): what acts on it is too strong for its "
+        "Young's modulus of %.3g Pa, or it started so",
+        tet, least, shot->p[solid->young + tet]);
+}
+
+/* An edge's length. */
+void solid_dof_sizes(const Model *model, double *size)
+{
+    double edge = mean_edge(((const Solid *)model->self)->tets->skin);
+    for (int i = 0; i < solid_dof_count(model->self); i++) size[i] = edge;
+}
