@@ -171,8 +171,7 @@ static void number_vertices(const Build *build)
             mesh->vertex_of_file[v] = mesh->vertex_count++;
         }
     }
-    mem_free(first);
-    mem_free(used);
+    mem_free(first), mem_free(used);
     warn_removed(build);
     if (build->weld == 0) warn_coincident(build);
 }
@@ -380,10 +379,10 @@ static void build_components(Mesh *mesh, const MeshFile *file)
 
 static void take_cells(Mesh *mesh, const MeshFile *file)
 {
-    size_t size = (size_t)file->cell_count * (size_t)file->cell_nodes;
+    int size = file->cell_count * file->cell_nodes;
     mesh->cell_count = file->cell_count, mesh->cell_nodes = file->cell_nodes;
-    mesh->cells = mem_alloc(size, sizeof *mesh->cells);
-    for (size_t i = 0; i < size; i++) mesh->cells[i] = mesh->vertex_of_file[file->cells[i]];
+    mesh->cells = mem_alloc((size_t)size, sizeof *mesh->cells);
+    for (int i = 0; i < size; i++) mesh->cells[i] = mesh->vertex_of_file[file->cells[i]];
 }
 
 /* ---- the public face ---- */
