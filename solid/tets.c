@@ -8,7 +8,7 @@
 static const int sides[4][3] = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
 
 /* Of the middle nodes 4 to 9. */
-static const int ends[6][2] = {{0, 1}, {1, 2}, {0, 2}, {0, 3}, {2, 3}, {1, 3}};
+const int tet_edges[6][2] = {{0, 1}, {1, 2}, {0, 2}, {0, 3}, {2, 3}, {1, 3}};
 
 /* Some corners in ascending order, and what they are of. */
 typedef struct Corners {
@@ -86,8 +86,8 @@ static bool measure(const Build *build)
         const int *v = file->cells + (size_t)t * (size_t)file->cell_nodes;
         double longest = 0, volume = volume_of(file, v);
         for (int e = 0; e < 6; e++)
-            longest = fmax(longest, vec3_length(vec3_sub(vec3_load(file->vertices[v[ends[e][0]]]),
-                                                         vec3_load(file->vertices[v[ends[e][1]]]))));
+            longest = fmax(longest, vec3_length(vec3_sub(vec3_load(file->vertices[v[tet_edges[e][0]]]),
+                                                         vec3_load(file->vertices[v[tet_edges[e][1]]]))));
         if (fabs(volume) <= FLAT * longest * longest * longest) return refuse(build, t, "is flat");
         if (volume < 0) return refuse(build, t, "is inside out: swap two of its corners");
         build->tets->volume[t] = volume;
@@ -104,7 +104,7 @@ static void find_edges(Build *build)
     build->edges = mem_alloc(all, sizeof *build->edges);
     for (size_t k = 0; k < all; k++) {
         const int *v = file->cells + k / 6 * (size_t)file->cell_nodes;
-        int a = v[ends[k % 6][0]], b = v[ends[k % 6][1]];
+        int a = v[tet_edges[k % 6][0]], b = v[tet_edges[k % 6][1]];
         order(&a, &b);
         build->edges[k] = (Corners){{a, b, 0}, file->cell_nodes == 10 ? v[4 + k % 6] : -1};
     }
@@ -152,7 +152,8 @@ static void number_nodes(Build *build)
         const int *v = file->cells + (size_t)t * (size_t)file->cell_nodes;
         int *to = tets->nodes + (size_t)t * (size_t)tets->each;
         memcpy(to, v, 4 * sizeof *to);
-        for (int i = 4; i < tets->each; i++) to[i] = middle_of(build, v[ends[i - 4][0]], v[ends[i - 4][1]]);
+        for (int i = 4; i < tets->each; i++)
+            to[i] = middle_of(build, v[tet_edges[i - 4][0]], v[tet_edges[i - 4][1]]);
     }
     build->nodes.cell_count = tets->count, build->nodes.cell_nodes = tets->each;
     build->nodes.cells =

@@ -11,6 +11,9 @@
 
 enum { TET_LINEAR = 1, TET_QUADRATIC = 2 };
 
+/* Corners between which the middles are, in the order of Tets.nodes. */
+extern const int tet_edges[6][2];
+
 typedef struct Tets {
     int count, order;
     int each;   /* nodes of a tetrahedron: 4 or 10                                                      */
