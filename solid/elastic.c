@@ -129,5 +129,6 @@ Term solid_elastic_term(const Solid *solid)
                          .law = law_of(solid->material),
                          .lame = lame_of(solid->poisson),
                          .packs = tet_packs(solid->tets)};
+    elastic->lame.lambda *= 1 - solid->averaging; /* the rest: mean_dilation.c */
     return (Term){&elastic_ops, elastic};
 }

@@ -18,11 +18,11 @@ typedef enum SolidMaterial {
 typedef struct Solid {
     Tets *tets; /* owned */
     SolidMaterial material;
-    double poisson,
-        density; /* 1, kg/m^3                                                                          */
-    double
-        averaging; /* part (0..1) of lambda/2 (J - 1)^2 whose J is a mean: over the tetrahedron if quadratic, else
-                              * over a patch of them; against locking                                              */
+    double poisson, density; /* 1, kg/m^3 */
+    /* Part (0..1) of lambda/2 (J - 1)^2 whose J is a mean, against locking: over the tetrahedron if quadratic, else over a
+     * patch of them (tet_patches.h). Of SOLID_NEO_HOOKEAN only, else 0; of quadratic ones at most 0.6: more collapses in
+     * compression. Its energy is `mean_dilation`. */
+    double averaging;
     double skin;   /* m, thickness of the magnetised layer; 0: there is none                             */
     bool *skin_on; /* [surface face] has it the layer? owned; NULL: all                                  */
     FluxFields

@@ -176,7 +176,8 @@ static Corners *sorted_sides(const Build *build)
     return list;
 }
 
-/* Leaves those that no other tetrahedron has, sorted; their number, or -1 after a refusal. */
+/* Leaves those that no other tetrahedron has, sorted; their number, or -1 after a refusal. The others' tetrahedra are
+ * neighbours. */
 static int outer_sides(const Build *build, Corners *list)
 {
     int all = 4 * build->file->cell_count, count = 0;
@@ -186,7 +187,11 @@ static int outer_sides(const Build *build, Corners *list)
             refuse(build, list[k + 2].number / 4, "has a face that two others have, too");
             return -1;
         }
-        if (end - k == 1) list[count++] = list[k];
+        int a = list[k].number, b = list[end - 1].number;
+        if (end - k == 1)
+            list[count++] = list[k];
+        else
+            build->tets->across[a] = b / 4, build->tets->across[b] = a / 4;
     }
     return count;
 }
@@ -369,6 +374,8 @@ Tets *tets_create(const MeshFile *file, int order, MeshReport *report, Error *er
     Tets *tets = mem_alloc(1, sizeof *tets);
     *tets = (Tets){.count = file->cell_count, .order = order, .each = order == TET_QUADRATIC ? 10 : 4};
     tets->volume = mem_alloc((size_t)tets->count, sizeof *tets->volume);
+    tets->across = mem_alloc(4 * (size_t)tets->count, sizeof *tets->across);
+    for (int k = 0; k < 4 * tets->count; k++) tets->across[k] = -1;
     if (report) *report = (MeshReport){0};
     Build build = {.file = file, .tets = tets, .report = report, .err = err};
     bool ok = fill(&build);
@@ -394,6 +401,7 @@ void tets_destroy(Tets *tets)
     mem_free(tets->skin_face);
     mem_free(tets->nodes);
     mem_free(tets->volume);
+    mem_free(tets->across);
     mem_free(tets);
 }
 

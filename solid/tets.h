@@ -20,6 +20,7 @@ typedef struct Tets {
     int *nodes; /* [count][each]: corners, positively oriented, then middles of 01 12 02 03 23 13; owned */
     double
         *volume;   /* [count] m^3 at rest; owned                                                            */
+    int *across;   /* [count][4] the tetrahedra that have a side in common with it, -1: none; owned        */
     Mesh *surface; /* its faces have corners only; owned                                                    */
     Mesh *skin;    /* the same faces, each in four through the middles of its edges where there are any:
                      * what meets the world, is magnetised and shown; owned                                  */
