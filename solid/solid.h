@@ -18,11 +18,11 @@ typedef enum SolidMaterial {
 typedef struct Solid {
     Tets *tets; /* owned */
     SolidMaterial material;
-    double poisson,
-        density; /* 1, kg/m^3                                                                          */
-    double
-        averaging; /* part (0..1) of lambda/2 (J - 1)^2 whose J is a mean: over the tetrahedron if quadratic, else
-                              * over a patch of them; against locking                                              */
+    double poisson, density; /* 1, kg/m^3 */
+    /* Part (0..1) of lambda/2 (J - 1)^2 whose J is a mean, against locking: over the tetrahedron if quadratic, else over a
+     * patch of them (tet_patches.h). Of SOLID_NEO_HOOKEAN only, else 0; of quadratic ones at most 0.6: more collapses in
+     * compression. Its energy is `mean_dilation`. */
+    double averaging;
     double skin;   /* m, thickness of the magnetised layer; 0: there is none                             */
     bool *skin_on; /* [surface face] has it the layer? owned; NULL: all                                  */
     FluxFields
@@ -70,5 +70,5 @@ void solid_default_params(const Solid *solid, double *p);
 void solid_node_mass(const Solid *solid, double *mass);
 
 /* The least det F in the state, at corners and middles of edges too: where it is not positive, the solid is turned inside
- * out there; and the tetrahedron. */
+ * out there; and the tetrahedron (NULL: not asked for). */
 double solid_least_jacobian(const Solid *solid, const double *x, int *tet);

@@ -8,7 +8,7 @@
 static const int sides[4][3] = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
 
 /* Of the middle nodes 4 to 9. */
-static const int ends[6][2] = {{0, 1}, {1, 2}, {0, 2}, {0, 3}, {2, 3}, {1, 3}};
+const int tet_edges[6][2] = {{0, 1}, {1, 2}, {0, 2}, {0, 3}, {2, 3}, {1, 3}};
 
 /* Some corners in ascending order, and what they are of. */
 typedef struct Corners {
@@ -86,8 +86,8 @@ static bool measure(const Build *build)
         const int *v = file->cells + (size_t)t * (size_t)file->cell_nodes;
         double longest = 0, volume = volume_of(file, v);
         for (int e = 0; e < 6; e++)
-            longest = fmax(longest, vec3_length(vec3_sub(vec3_load(file->vertices[v[ends[e][0]]]),
-                                                         vec3_load(file->vertices[v[ends[e][1]]]))));
+            longest = fmax(longest, vec3_length(vec3_sub(vec3_load(file->vertices[v[tet_edges[e][0]]]),
+                                                         vec3_load(file->vertices[v[tet_edges[e][1]]]))));
         if (fabs(volume) <= FLAT * longest * longest * longest) return refuse(build, t, "is flat");
         if (volume < 0) return refuse(build, t, "is inside out: swap two of its corners");
         build->tets->volume[t] = volume;
@@ -104,7 +104,7 @@ static void find_edges(Build *build)
     build->edges = mem_alloc(all, sizeof *build->edges);
     for (size_t k = 0; k < all; k++) {
         const int *v = file->cells + k / 6 * (size_t)file->cell_nodes;
-        int a = v[ends[k % 6][0]], b = v[ends[k % 6][1]];
+        int a = v[tet_edges[k % 6][0]], b = v[tet_edges[k % 6][1]];
         order(&a, &b);
         build->edges[k] = (Corners){{a, b, 0}, file->cell_nodes == 10 ? v[4 + k % 6] : -1};
     }
@@ -152,7 +152,8 @@ static void number_nodes(Build *build)
         const int *v = file->cells + (size_t)t * (size_t)file->cell_nodes;
         int *to = tets->nodes + (size_t)t * (size_t)tets->each;
         memcpy(to, v, 4 * sizeof *to);
-        for (int i = 4; i < tets->each; i++) to[i] = middle_of(build, v[ends[i - 4][0]], v[ends[i - 4][1]]);
+        for (int i = 4; i < tets->each; i++)
+            to[i] = middle_of(build, v[tet_edges[i - 4][0]], v[tet_edges[i - 4][1]]);
     }
     build->nodes.cell_count = tets->count, build->nodes.cell_nodes = tets->each;
     build->nodes.cells =
@@ -175,7 +176,8 @@ static Corners *sorted_sides(const Build *build)
     return list;
 }
 
-/* Leaves those that no other tetrahedron has, sorted; their number, or -1 after a refusal. */
+/* Leaves those that no other tetrahedron has, sorted; their number, or -1 after a refusal. The others' tetrahedra are
+ * neighbours. */
 static int outer_sides(const Build *build, Corners *list)
 {
     int all = 4 * build->file->cell_count, count = 0;
@@ -185,7 +187,11 @@ static int outer_sides(const Build *build, Corners *list)
             refuse(build, list[k + 2].number / 4, "has a face that two others have, too");
             return -1;
         }
-        if (end - k == 1) list[count++] = list[k];
+        int a = list[k].number, b = list[end - 1].number;
+        if (end - k == 1)
+            list[count++] = list[k];
+        else
+            build->tets->across[a] = b / 4, build->tets->across[b] = a / 4;
     }
     return count;
 }
@@ -368,6 +374,8 @@ Tets *tets_create(const MeshFile *file, int order, MeshReport *report, Error *er
     Tets *tets = mem_alloc(1, sizeof *tets);
     *tets = (Tets){.count = file->cell_count, .order = order, .each = order == TET_QUADRATIC ? 10 : 4};
     tets->volume = mem_alloc((size_t)tets->count, sizeof *tets->volume);
+    tets->across = mem_alloc(4 * (size_t)tets->count, sizeof *tets->across);
+    for (int k = 0; k < 4 * tets->count; k++) tets->across[k] = -1;
     if (report) *report = (MeshReport){0};
     Build build = {.file = file, .tets = tets, .report = report, .err = err};
     bool ok = fill(&build);
@@ -393,6 +401,7 @@ void tets_destroy(Tets *tets)
     mem_free(tets->skin_face);
     mem_free(tets->nodes);
     mem_free(tets->volume);
+    mem_free(tets->across);
     mem_free(tets);
 }
 

@@ -11,12 +11,16 @@
 
 enum { TET_LINEAR = 1, TET_QUADRATIC = 2 };
 
+/* Corners between which the middles are, in the order of Tets.nodes. */
+extern const int tet_edges[6][2];
+
 typedef struct Tets {
     int count, order;
     int each;   /* nodes of a tetrahedron: 4 or 10                                                      */
     int *nodes; /* [count][each]: corners, positively oriented, then middles of 01 12 02 03 23 13; owned */
     double
         *volume;   /* [count] m^3 at rest; owned                                                            */
+    int *across;   /* [count][4] the tetrahedra that have a side in common with it, -1: none; owned        */
     Mesh *surface; /* its faces have corners only; owned                                                    */
     Mesh *skin;    /* the same faces, each in four through the middles of its edges where there are any:
                      * what meets the world, is magnetised and shown; owned                                  */

@@ -1,6 +1,7 @@
 /* Tetrahedra, their surface and skin. */
+#include "base/memory.h"
 #include "solid/shapes.h"
-#include "solid/tets.h"
+#include "solid/tet_patches.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -53,8 +54,30 @@ static void test_box(void **state)
     }
 }
 
+/* Every tetrahedron is in one patch; those of a cell are one; the faces of neighbours are both's. */
+static void test_patches(void **state)
+{
+    (void)state;
+    for (int order = TET_LINEAR; order <= TET_QUADRATIC; order++) {
+        Tets *tets = box_of(order);
+        int count, across = 0;
+        TetPatch *patches = tet_patches(tets, &count);
+        assert_int_equal(count, order == TET_LINEAR ? 6 : 36);
+        for (int k = 0; k < count; k++) {
+            assert_int_equal(patches[k].tet_count, order == TET_LINEAR ? 6 : 1);
+            assert_int_equal(patches[k].node_count, order == TET_LINEAR ? 8 : 10);
+            for (int i = 0; i < patches[k].tet_count; i++)
+                assert_int_equal(patches[k].tets[i] / 6, order == TET_LINEAR ? k : k / 6);
+        }
+        for (int k = 0; k < 4 * tets->count; k++) across += tets->across[k] >= 0;
+        assert_int_equal(across, 4 * tets->count - tets->surface->face_count);
+        mem_free(patches);
+        tets_destroy(tets);
+    }
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_box)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_box), cmocka_unit_test(test_patches)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
