@@ -87,14 +87,15 @@ static double largest_mass(const Model *model)
     return largest;
 }
 
-/* How fast it may meet something, m/s: as it starts, or after a fall of its own size. */
-static double likely_speed(const Model *model, const Case *c, double gravity)
+/* How fast it may meet something, m/s: as the scene has it start, or after a fall of its own size. Where it goes on from
+ * another run it is the one that was: as stiff a contact. */
+static double likely_speed(const Model *model, const Case *c, double gravity, bool goes_on)
 {
     const WorldBody *body = &model->world->body;
     double fastest = 0, low[3] = {0}, high[3] = {0}, size = 0;
     for (int v = 0; v < body->vertex_count; v++) {
         const double *x = body->rest[v];
-        fastest = fmax(fastest, vec3_length(vec3_load(c->state.v + body->first + 3 * v)));
+        if (!goes_on) fastest = fmax(fastest, vec3_length(vec3_load(c->state.v + body->first + 3 * v)));
         for (int i = 0; i < 3; i++) {
             low[i] = v ? fmin(low[i], x[i]) : x[i];
             high[i] = v ? fmax(high[i], x[i]) : x[i];
@@ -142,7 +143,7 @@ static double stiffness_of(const Model *model, const Scene *scene, const Case *c
     double k = fmax(pressed(body, largest_young(model, p)), WEIGHTS * mass * gravity / sunk);
     k = fmax(k, largest_load(model, p) / sunk);
     if (!model->job->motion) return k;
-    return fmax(k, mass * likely_speed(model, c, gravity) / (scene->time.step * sunk));
+    return fmax(k, mass * likely_speed(model, c, gravity, scene->start != NULL) / (scene->time.step * sunk));
 }
 
 static void put_numbers(const Model *model, const Scene *scene, const Case *c, double *p)

@@ -206,7 +206,7 @@ static bool newton_step(Search *s, bool small)
         s->info.cg_iterations += iterations;
     } else {
         bool indefinite = iterations == SPARSE_INDEFINITE || s->shift_kept > 0;
-        bool found = s->convexes && !small ? factor_convex(s, indefinite) : factor_shifted(s);
+        bool found = !small && system_convexes(s->sys) ? factor_convex(s, indefinite) : factor_shifted(s);
         if (!found) return false;
         if (small && s->shift > 0 && s->shift_kept > 0) { /* a remembered shift proves nothing */
             if (search_factor(s, 0))
@@ -311,7 +311,6 @@ NewtonInfo newton_minimize(System *sys, const NewtonDef *def, const Point *at, S
                 .moved = work + 7 * n,
                 .gap = work + 8 * n,
                 .change = work + 9 * n,
-                .convexes = system_convexes(sys),
                 .follows = !at->x_prev && system_has_follow(sys)};
     s.at.x = state->x, s.at.memory = state->memory;
     s.info.status = NEWTON_MAX_ITERATIONS;

@@ -164,7 +164,7 @@ bool system_lags(const System *sys);
 void system_follow(System *sys, const double *x, const double *d, double a, double *to);
 bool system_has_follow(const System *sys);
 
-/* Does a term heed Point.convex? */
+/* Does a term heed Point.convex, with the elements at hand? */
 bool system_convexes(const System *sys);
 
 /* The largest part of a step d from at->x that the terms admit, in (0, 1] (TermOps.reach). */

@@ -294,7 +294,10 @@ bool system_has_follow(const System *sys)
 bool system_convexes(const System *sys)
 {
     bool found = false;
-    for (int t = 0; t < sys->term_count; t++) found = found || sys->entries[t].term.ops->convexes;
+    for (int t = 0; t < sys->term_count; t++) {
+        const Term *term = &sys->entries[t].term;
+        found = found || (term->ops->convexes && term->ops->convexes(term->self));
+    }
     return found;
 }
 

@@ -54,7 +54,8 @@ typedef struct TermOps {
     const char *name; /* also the name of its energy in the result, e.g. "bending" */
     bool idles;       /* it acts between what is near: no energy < 0, and none means no force */
 
-    bool convexes; /* its Hessian heeds Point.convex                                        */
+    /* Does its Hessian, with the elements at hand, heed Point.convex? NULL: no. */
+    bool (*convexes)(const void *self);
 
     int (*count)(const void *self); /* elements                                    */
     int (*size)(const void *self);  /* dofs per element, <= TERM_MAX_DOF           */

@@ -19,6 +19,7 @@ typedef struct Show {
     const int (*faces)[3];
     const double (*rest)[3], (*magnetization)[3];
     bool magnetic; /* somewhere */
+    bool filled;   /* with tetrahedra */
     char *field;
     PicturePanel *panels;
     int *steps; /* [panel] the frame that it shows; -1: the last */
@@ -29,6 +30,23 @@ typedef struct Show {
 ShowDef show_default(void)
 {
     return (ShowDef){.frame = -1, .arrows = true, .history = true, .width = 1600};
+}
+
+/* A dataset with width numbers for each face, or, of a solid, for each face of the surface that the skin's are parts of; NULL:
+ * there is none. */
+static double *per_face(Show *show, const char *path, int width)
+{
+    size_t faces = (size_t)show->face_count, each = (size_t)width;
+    const int *part = show_dataset(show->data, "slender/surface_of_face", ARRAY_INT32, faces);
+    if (!part) return show_dataset(show->data, path, ARRAY_FLOAT64, each * faces);
+    int rows = 0;
+    for (int f = 0; f < show->face_count; f++) rows = part[f] >= rows ? part[f] + 1 : rows;
+    const double *own = show_dataset(show->data, path, ARRAY_FLOAT64, each * (size_t)rows);
+    double *values = own ? show_block(show->data, each * faces, sizeof *values) : NULL;
+    for (int f = 0; own && f < show->face_count; f++)
+        if (part[f] >= 0)
+            memcpy(values + each * (size_t)f, own + each * (size_t)part[f], each * sizeof *values);
+    return values;
 }
 
 static bool read_mesh(Show *show, Error *err)
@@ -46,10 +64,10 @@ static bool read_mesh(Show *show, Error *err)
     if (faces.dims[0] == 0) return error_set(err, "the result's mesh has no faces");
     show->face_count = faces.dims[0];
     show->vertex_count = rest.dims[0];
+    show->filled = result_has(show->data->result, "slender/cells");
     show->faces = (void *)faces.data;
     show->rest = (void *)rest.data;
-    show->magnetization =
-        show_dataset(show->data, "slender/design/magnetization", ARRAY_FLOAT64, 3 * (size_t)show->face_count);
+    show->magnetization = (void *)per_face(show, "slender/design/magnetization", 3);
     for (int i = 0; show->magnetization && i < 3 * show->face_count; i++)
         show->magnetic |= show->magnetization[i / 3][i % 3] != 0;
     return true;
@@ -122,9 +140,11 @@ static bool frame_field(Show *show, int step, const char *name, const double **v
     *unit = array.unit && array.unit[0] ? array.unit : "";
     if (points && array_is(&array, ARRAY_FLOAT64, 2, 3) && array.dims[0] == show->vertex_count)
         return *values = means_of_corners(show, (const double(*)[3])data), true;
-    *values = data;
-    return (!points && array.type == ARRAY_FLOAT64 && array_count(&array) == (size_t)show->face_count) ||
-           error_set(err, "'%s' is neither one number per face nor a vector per point", name);
+    size_t faces = (size_t)show->face_count, rows = array_count(&array);
+    bool fits = !points && array.type == ARRAY_FLOAT64 && (rows == faces || (show->filled && rows > faces));
+    if (!fits) return error_set(err, "'%s' is neither one number per face nor a vector per point", name);
+    *values = (const double *)data + (rows - faces); /* a solid's skin is after its tetrahedra */
+    return true;
 }
 
 /* Numbers per face of the field that was asked for; NULL: a plain surface. False where there is no such

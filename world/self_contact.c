@@ -136,10 +136,15 @@ static bool contact_passes(const void *self, const Point *at)
     return self_pairs_reach(pairs, at->x_prev + first, at->x + first, KEEP_TRIAL) < 1;
 }
 
+static bool contact_convexes(const void *self)
+{
+    return ((const SelfPairs *)self)->list.count > 0;
+}
+
 static const TermOps contact_ops = {
     .name = "self_contact",
     .idles = true,
-    .convexes = true,
+    .convexes = contact_convexes,
     .count = self_pairs_count,
     .size = self_pairs_size,
     .dofs = self_pairs_dofs,

@@ -110,6 +110,22 @@ Pbd = TypedDict("Pbd", {
     "substeps": "int", "sweeps": "int",
 }, total=False)
 
+Solid = TypedDict("Solid", {
+    "mesh": "MeshOfASolid", "order": "int",
+    "material": "Literal['neo_hookean', 'neo_hookean_log', 'st_venant_kirchhoff']", "young": "Young",
+    "poisson": "float", "density": "Number", "averaging": "float", "skin": "Skin", "magnetization": "Magnetization",
+    "pose": "Pose", "velocity": "Velocity", "damping": "Number", "gravity": "Numbers",
+}, total=False)
+
+MeshOfASolidKeys = TypedDict("MeshOfASolidKeys", {
+    "file": "str", "shape": "Literal['box']", "size": "Union[Number, Numbers]", "cells": "Union[int, Numbers]",
+    "scale": "float",
+}, total=False)
+
+Skin = TypedDict("Skin", {
+    "thickness": "Number", "magnetization": "Magnetization", "on": "Number",
+}, total=False)
+
 Spline = TypedDict("Spline", {
     "image": "str", "density": "DensityOfADrawing", "tone": "Tone", "page": "Page", "pen": "Number",
     "pens": "Rows[Pens]", "separation": "Separation", "cross": "Cross", "direction": "Direction",
@@ -381,10 +397,10 @@ Output = TypedDict("Output", {
 Scene = TypedDict("Scene", {
     "slender": "Literal[1]",
     "job": "Literal['equilibrium', 'evaluate', 'design', 'simulate', 'trajectory', 'invert', 'identify', 'draw']",
-    "shell": "Shell", "rod": "Rod", "spline": "Spline", "flux_density": "FluxDensity", "fix": "Rows[Fix]",
-    "loads": "Rows[Loads]", "target": "Target", "obstacles": "Rows[Obstacles]", "contact": "Contact",
-    "water": "Water", "cases": "Rows[Cases]", "sequence": "Rows[Sequence]", "design": "Design", "solver": "Solver",
-    "load_steps": "LoadSteps", "time": "Time", "start": "Start", "modes": "int",
+    "shell": "Shell", "rod": "Rod", "solid": "Solid", "spline": "Spline", "flux_density": "FluxDensity",
+    "fix": "Rows[Fix]", "loads": "Rows[Loads]", "target": "Target", "obstacles": "Rows[Obstacles]",
+    "contact": "Contact", "water": "Water", "cases": "Rows[Cases]", "sequence": "Rows[Sequence]", "design": "Design",
+    "solver": "Solver", "load_steps": "LoadSteps", "time": "Time", "start": "Start", "modes": "int",
     "checks": "Union[Literal['stability', 'self_contact', 'round_trip'], Rows[Literal['stability', 'self_contact', 'round_trip']]]",
     "output": "Output",
 }, total=False)
@@ -402,6 +418,7 @@ MagnetizationOfAGroup = Union["MagnetizationOfAGroupKeys", Numbers]
 Noise = Union["NoiseKeys", Literal['auto'], Number]
 NaturalStrain = Union["NaturalStrainKeys", Numbers]
 Frame = Union["FrameKeys", Literal['frenet', 'bishop']]
+MeshOfASolid = Union["MeshOfASolidKeys", str]
 DensityOfADrawing = Union["DensityOfADrawingKeys", Number]
 SizeOfAPage = Union["SizeOfAPageKeys", Number, Numbers]
 Pens = Union["PensKeys", Number]

@@ -120,6 +120,11 @@ static const double MOST_AVERAGED =
 
 static bool check(const SolidScene *from, YamlFile *file)
 {
+    if (from->poisson == 0.5)
+        return yaml_refuse(
+            file, "solid.poisson",
+            "a Poisson's ratio of 0.5 forbids every change of volume, which positions of nodes cannot obey: "
+            "take less, 0.49 at most for good results");
     bool ok = from->averaging == 0 || from->material == SOLID_NEO_HOOKEAN ||
               yaml_refuse(file, "solid.averaging", "averaging is for the material neo_hookean");
     return ok &&
