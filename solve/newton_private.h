@@ -14,12 +14,13 @@ typedef struct Search {
     double *trial, *trial_gradient; /* [n]                                                     */
     double *mode, *product;         /* [n] direction of lowest curvature, kept between uses    */
     bool mode_known;
-    bool follows;          /* steps go the way that the terms know (system_follow)       */
-    bool extrapolate;      /* the last step was long: */
-    double *from, *moved;  /* [n] where it began, and what it was                        */
-    double *gap, *change;  /* [n] of multipliers: what is to vanish; Newton's step                         */
-    bool open;             /* a held end is so far off that forces change by much (gap_take_multipliers) */
-    bool convexes, convex; /* terms have a convex part (Point.convex); the step is by that            */
+    bool follows;         /* steps go the way that the terms know (system_follow)       */
+    bool extrapolate;     /* the last step was long: */
+    double *from, *moved; /* [n] where it began, and what it was                        */
+    double *gap, *change; /* [n] of multipliers: what is to vanish; Newton's step                         */
+    bool open;            /* a held end is so far off that forces change by much (gap_take_multipliers) */
+    int tangled; /* iterations left without negative parts, if it starts inside out (TermOps.tangles) */
+    bool convexes, convex;    /* terms have a convex part (Point.convex); the step is by that            */
     double shift, shift_kept; /* in use; remembered                                      */
     int shifted;              /* iterations in a row that needed one                     */
     Evaluation now;

@@ -36,6 +36,7 @@ typedef struct Point {
     const double *x_from, *step;
     bool
         convex; /* the Hessian is to be without what makes it indefinite, where a term knows (TermOps.convexes) */
+    bool tangled; /* and so because the body is inside out, where a term knows (TermOps.tangles) */
 } Point;
 
 /* Where lagged quantities are taken; NULL in statics. */
@@ -55,6 +56,10 @@ typedef struct TermOps {
     bool idles;       /* it acts between what is near: no energy < 0, and none means no force */
 
     bool convexes; /* its Hessian heeds Point.convex                                        */
+
+    /* Is the body turned inside out somewhere? Its Hessian heeds Point.tangled then, and the first steps are by
+     * that. NULL: never. */
+    bool (*tangles)(const void *self, const Point *at);
 
     int (*count)(const void *self); /* elements                                    */
     int (*size)(const void *self);  /* dofs per element, <= TERM_MAX_DOF           */
