@@ -76,8 +76,18 @@ static Pack elastic_eval(const void *self, int pack, const Point *at, const Pack
     Pack energy = forces(elastic, points, count, g);
     if (!H) return energy;
     element_clear(H, elastic_size(self));
-    elastic->law->stiffness(elastic->lame, points, count, elastic->solid->tets->each, H);
+    int nodes = elastic->solid->tets->each;
+    if (at->tangled)
+        law_clamped_stiffness(elastic->law, elastic->lame, points, count, nodes, H);
+    else
+        elastic->law->stiffness(elastic->lame, points, count, nodes, H);
     return energy;
+}
+
+/* Inside out somewhere: there are equilibria there, too, and steps by the Hessian find them. */
+static bool elastic_tangles(const void *self, const Point *at)
+{
+    return solid_least_jacobian(((const Elastic *)self)->solid, at->x, NULL) <= 0;
 }
 
 /* The force is linear in Young's modulus. */
@@ -117,6 +127,7 @@ static const TermOps elastic_ops = {
     .size = elastic_size,
     .dofs = elastic_dofs,
     .eval = elastic_eval,
+    .tangles = elastic_tangles,
     .param = elastic_param,
     .param_forward = elastic_param_forward,
     .destroy = elastic_destroy,

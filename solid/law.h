@@ -36,3 +36,7 @@ typedef struct Law {
 } Law;
 
 const Law *law_of(SolidMaterial material);
+
+/* Adds instead the part of the stiffness that is not negative, point by point (law_clamped.c). */
+void law_clamped_stiffness(const Law *law, Lame lame, const LawPoint *points, int point_count, int nodes,
+                           Pack *H);

@@ -79,10 +79,12 @@ static Pack forces(const Mean *mean, const MeanPack *at, Pack stiffness, const P
     return 0.5 * stiffness * change * change;
 }
 
-static void add_blocks(const Mean *mean, const MeanPack *at, Pack stiffness, const Pack *x, Pack *H)
+/* convex: without the part of curvature that has no sign. */
+static void add_blocks(const Mean *mean, const MeanPack *at, Pack stiffness, bool convex, const Pack *x,
+                       Pack *H)
 {
     Pack3 y[PATCH_NODES];
-    Pack turn = -stiffness * dilation(mean, at, x, y);
+    Pack turn = (convex ? 0 : -1) * stiffness * dilation(mean, at, x, y);
     PackMat F[PATCH_TETS];
     for (int q = 0; q < mean->points; q++) F[q] = tet_field_gradient(mean->nodes, at->gradient[q], x);
     for (int i = 0; i < mean->nodes; i++) {
@@ -105,7 +107,7 @@ static Pack mean_eval(const void *self, int pack, const Point *at, const Pack *x
     const MeanPack *own = &mean->packs[pack];
     Pack stiffness = stiffness_of(mean, own, at->p);
     if (H) element_clear(H, mean_size(self));
-    if (H) add_blocks(mean, own, stiffness, x, H);
+    if (H) add_blocks(mean, own, stiffness, at->tangled, x, H);
     return forces(mean, own, stiffness, x, g);
 }
 

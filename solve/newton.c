@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { HALVINGS = 30, BASE_CG_MAX = 12 };
+enum { HALVINGS = 30, BASE_CG_MAX = 12, TANGLED_MAX = 10 };
 
 static const double SHIFT_LAST = 1e8;   /* D: beyond this a step is no longer a Newton step       */
 static const double STALL_SHIFT = 1e6;  /* D: no decrease even with such a shift                  */
@@ -172,10 +172,11 @@ static void solve(Search *s)
     if (iterations < 0) system_solve(s->sys, s->gradient, s->step);
 }
 
-/* Hessian at x, of the stress that the last step was to bring or of its own. */
-static void linearise(Search *s, bool extrapolate)
+/* Hessian at x, of the stress that the last step was to bring or of its own; or without negative parts. */
+static void linearise(Search *s, bool extrapolate, bool tangled)
 {
     Point at = s->at;
+    at.tangled = s->convex = tangled;
     if (extrapolate) at.x_from = s->from, at.step = s->moved;
     s->now = system_hessian(s->sys, &at, s->gradient);
     s->info.evaluations++;
@@ -199,14 +200,14 @@ static bool factor_convex(Search *s, bool indefinite)
 static bool newton_step(Search *s, bool small)
 {
     int iterations = -1;
-    s->convex = false;
     if (s->def->cg_iterations > 0 && s->shift_kept == 0)
         iterations = system_solve_cg(s->sys, s->gradient, s->def->cg_tol, s->def->cg_iterations, s->step);
     if (iterations >= 0) {
         s->info.cg_iterations += iterations;
     } else {
         bool indefinite = iterations == SPARSE_INDEFINITE || s->shift_kept > 0;
-        bool found = !small && system_convexes(s->sys) ? factor_convex(s, indefinite) : factor_shifted(s);
+        bool convex = !small && !s->convex && system_convexes(s->sys);
+        bool found = convex ? factor_convex(s, indefinite) : factor_shifted(s);
         if (!found) return false;
         if (small && s->shift > 0 && s->shift_kept > 0) { /* a remembered shift proves nothing */
             if (search_factor(s, 0))
@@ -246,12 +247,14 @@ static double round_off(const Search *s)
  * minimum. Returns MAX_ITERATIONS as long as there is more to do. */
 static NewtonStatus find_step(Search *s, double *floor, bool *small)
 {
-    for (bool extrapolate = s->extrapolate;; extrapolate = false) {
-        linearise(s, extrapolate);
+    bool tangled = s->tangled > 0 && system_tangles(s->sys, &s->at);
+    s->tangled = tangled ? s->tangled - 1 : 0;
+    for (bool extrapolate = s->extrapolate;; extrapolate = tangled = false) {
+        linearise(s, extrapolate, tangled);
         if (!s->now.finite) return NEWTON_NOT_FINITE;
         *floor = round_off(s);
         *small = s->now.gradient_max <= fmax(s->def->force_tol * s->now.force_scale, *floor);
-        if (extrapolate && *small) continue;
+        if ((extrapolate || tangled) && *small) continue;
         if (!newton_step(s, *small)) return NEWTON_STALLED;
         if (!extrapolate || s->info.step >= LONG_STEP) return NEWTON_MAX_ITERATIONS;
     }
@@ -311,6 +314,7 @@ NewtonInfo newton_minimize(System *sys, const NewtonDef *def, const Point *at, S
                 .moved = work + 7 * n,
                 .gap = work + 8 * n,
                 .change = work + 9 * n,
+                .tangled = TANGLED_MAX,
                 .follows = !at->x_prev && system_has_follow(sys)};
     s.at.x = state->x, s.at.memory = state->memory;
     s.info.status = NEWTON_MAX_ITERATIONS;

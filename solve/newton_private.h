@@ -19,7 +19,8 @@ typedef struct Search {
     double *from, *moved; /* [n] where it began, and what it was                        */
     double *gap, *change; /* [n] of multipliers: what is to vanish; Newton's step                         */
     bool open;            /* a held end is so far off that forces change by much (gap_take_multipliers) */
-    bool convex;          /* the step is by the convex part of what terms have one (Point.convex)     */
+    int tangled; /* iterations left without negative parts, if it starts inside out (TermOps.tangles) */
+    bool convex; /* the step is by the convex part of what terms have one (Point.convex)     */
     double shift, shift_kept; /* in use; remembered                                      */
     int shifted;              /* iterations in a row that needed one                     */
     Evaluation now;

@@ -167,6 +167,9 @@ bool system_has_follow(const System *sys);
 /* Does a term heed Point.convex, with the elements at hand? */
 bool system_convexes(const System *sys);
 
+/* Is the body turned inside out somewhere (TermOps.tangles)? */
+bool system_tangles(const System *sys, const Point *at);
+
 /* The largest part of a step d from at->x that the terms admit, in (0, 1] (TermOps.reach). */
 double system_reach(System *sys, const Point *at, const double *d);
 

@@ -27,7 +27,9 @@ void system_note_point(System *sys, const Point *at)
 {
     size_t n = (size_t)sys->dof_count;
     double *to = sys->linearised + ANCHOR_X;
-    sys->linearised[ANCHOR_USABLE] = at->convex ? ANCHOR_OF_CONVEX : ANCHOR_OF_ALL;
+    sys->linearised[ANCHOR_USABLE] = at->convex    ? ANCHOR_OF_CONVEX
+                                     : at->tangled ? ANCHOR_OF_TANGLED
+                                                   : ANCHOR_OF_ALL;
     sys->linearised[ANCHOR_TIME] = at->time;
     sys->linearised[ANCHOR_DT] = at->dt;
     memcpy(to, at->x, n * sizeof *to);
@@ -87,6 +89,7 @@ void system_restore_factor(System *sys, const double *anchor, const double *p)
                 .v_prev = x + 2 * n,
                 .dt = anchor[ANCHOR_DT],
                 .convex = anchor[ANCHOR_USABLE] == ANCHOR_OF_CONVEX,
+                .tangled = anchor[ANCHOR_USABLE] == ANCHOR_OF_TANGLED,
                 .x_lag = lag_count(sys) && lag[0] ? lag + 1 : NULL};
     system_hessian(sys, &at, gradient);
     system_factor(sys, anchor[ANCHOR_SHIFT]);
@@ -299,6 +302,15 @@ bool system_convexes(const System *sys)
         found = found || (term->ops->convexes && term->ops->convexes(term->self));
     }
     return found;
+}
+
+bool system_tangles(const System *sys, const Point *at)
+{
+    for (int t = 0; t < sys->term_count; t++) {
+        const Term *term = &sys->entries[t].term;
+        if (term->ops->tangles && term->ops->tangles(term->self, at)) return true;
+    }
+    return false;
 }
 
 double system_reach(System *sys, const Point *at, const double *d)

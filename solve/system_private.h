@@ -34,8 +34,9 @@ struct System {
  * and x_lag, and the terms' memory. */
 enum { ANCHOR_USABLE, ANCHOR_TIME, ANCHOR_DT, ANCHOR_SHIFT, ANCHOR_X };
 
-/* Values of ANCHOR_USABLE: no factor, one of the whole Hessian, one of its convex part (Point.convex). */
-enum { ANCHOR_NONE, ANCHOR_OF_ALL, ANCHOR_OF_CONVEX };
+/* Values of ANCHOR_USABLE: no factor, one of the whole Hessian, one of its convex part (Point.convex), one without
+ * negative parts (Point.tangled). */
+enum { ANCHOR_NONE, ANCHOR_OF_ALL, ANCHOR_OF_CONVEX, ANCHOR_OF_TANGLED };
 
 /* x of a pack's elements from a whole vector, and the sum of its elements' numbers into one. */
 void system_gather(const Entry *entry, int pack, const double *from, Pack *to);

@@ -36,6 +36,7 @@ typedef struct Point {
     const double *x_from, *step;
     bool
         convex; /* the Hessian is to be without what makes it indefinite, where a term knows (TermOps.convexes) */
+    bool tangled; /* and so because the body is inside out, where a term knows (TermOps.tangles) */
 } Point;
 
 /* Where lagged quantities are taken; NULL in statics. */
@@ -56,6 +57,10 @@ typedef struct TermOps {
 
     /* Does its Hessian, with the elements at hand, heed Point.convex? NULL: no. */
     bool (*convexes)(const void *self);
+
+    /* Is the body turned inside out somewhere? Its Hessian heeds Point.tangled then, and the first steps are by
+     * that. NULL: never. */
+    bool (*tangles)(const void *self, const Point *at);
 
     int (*count)(const void *self); /* elements                                    */
     int (*size)(const void *self);  /* dofs per element, <= TERM_MAX_DOF           */

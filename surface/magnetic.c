@@ -61,7 +61,8 @@ static Normal normal_of(const Pack *x)
     for (int i = 0; i < 3; i++)
         r.edge[i] = pack3_sub(pack3_load(x + 3 * ((i + 2) % 3)), pack3_load(x + 3 * ((i + 1) % 3)));
     Pack3 N = pack3_cross(r.edge[2], pack3_neg(r.edge[1]));
-    r.inverse = 1 / pack_sqrt(pack3_dot(N, N));
+    Pack square = pack3_dot(N, N); /* a face without area has no normal: 0 */
+    r.inverse = pack_select(square > 0, 1 / pack_sqrt(square), (Pack){0});
     r.n = pack3_scale(r.inverse, N);
     return r;
 }

@@ -1,4 +1,5 @@
 /* A solid's terms: derivatives against each other, closed forms, rigid motions, patch tests, momenta. */
+#include "solid/law.h"
 #include "solid/terms.h"
 #include "solve/check.h"
 #include "solve/march.h"
@@ -213,6 +214,72 @@ static void test_zero_modes(void **state)
     }
 }
 
+/* ---- Stiffness without negative parts ---- */
+
+/* The law's Hessian in F: with the axes for gradients. */
+static void law_hessian(SolidMaterial material, const double F[3][3], bool clamped, double A[81])
+{
+    const Law *law = law_of(material);
+    Lame lame = lame_of(0.45);
+    LawPoint at = {.weight = pack_set(1)};
+    Pack3 *rows[3] = {&at.F.r0, &at.F.r1, &at.F.r2};
+    for (int i = 0; i < 3; i++) {
+        *rows[i] = pack3(pack_set(F[i][0]), pack_set(F[i][1]), pack_set(F[i][2]));
+        at.gradient[i] = pack3(pack_set(i == 0), pack_set(i == 1), pack_set(i == 2));
+    }
+    at.cofactor = tet_cofactor(&at.F);
+    at.J = pack3_dot(at.F.r0, at.cofactor.r0);
+    Pack H[TERM_LOWER(9, 0)] = {{0}};
+    if (clamped)
+        law_clamped_stiffness(law, lame, &at, 1, 3, H);
+    else
+        law->stiffness(lame, &at, 1, 3, H);
+    for (int i = 0; i < 9; i++)
+        for (int j = 0; j <= i; j++) A[9 * i + j] = A[9 * j + i] = H[TERM_LOWER(i, j)][3];
+}
+
+/* Of all matrices that are >= A and >= 0, A's part without negative eigenvalues is the one with the least trace. */
+static void check_clamped(SolidMaterial material, const double F[3][3])
+{
+    double A[81], clamped[81], difference[81], values[9], trace = 0, positive = 0;
+    law_hessian(material, F, false, A);
+    law_hessian(material, F, true, clamped);
+    for (int i = 0; i < 81; i++) difference[i] = clamped[i] - A[i];
+    for (int i = 0; i < 9; i++) trace += clamped[10 * i];
+    eigenvalues(9, A, values);
+    for (int i = 0; i < 9; i++) positive += fmax(values[i], 0);
+    double tiny = 1e-12 * (fabs(values[0]) + fabs(values[8]));
+    assert_true(fabs(trace - positive) < tiny);
+    eigenvalues(9, clamped, values);
+    assert_true(values[0] > -tiny);
+    eigenvalues(9, difference, values);
+    assert_true(values[0] > -tiny);
+}
+
+static void test_clamped(void **state)
+{
+    (void)state;
+    static const double special[][3][3] = {
+        {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},   {{1, 0, 0}, {0, -1, 0}, {0, 0, 1}},
+        {{1, 2, 0}, {0, 0, 0}, {0.5, 1, 3}}, {{1, 2, 3}, {2, 4, 6}, {0, 0, 0}},
+        {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}},   {{0, 2, 0}, {2, 0, 0}, {0, 0, 2}}};
+    Random random = random_seed(11);
+    int turned = 0;
+    for (int m = SOLID_NEO_HOOKEAN; m <= SOLID_ST_VENANT_KIRCHHOFF; m++)
+        for (int k = 0; k < 200; k++) {
+            double F[3][3];
+            for (int i = 0; i < 9; i++) F[i / 3][i % 3] = 1.5 * random_signed(&random);
+            if (k < 6) memcpy(F, special[k], sizeof F);
+            double J = F[0][0] * (F[1][1] * F[2][2] - F[1][2] * F[2][1]) -
+                       F[0][1] * (F[1][0] * F[2][2] - F[1][2] * F[2][0]) +
+                       F[0][2] * (F[1][0] * F[2][1] - F[1][1] * F[2][0]);
+            if (m == SOLID_NEO_HOOKEAN_LOG && !(J > 0.01)) continue;
+            turned += J <= 0;
+            check_clamped((SolidMaterial)m, (const double(*)[3])F);
+        }
+    assert_true(turned > 100);
+}
+
 /* ---- Patch test ---- */
 
 /* What is linear on the surface is so within. */
@@ -351,10 +418,10 @@ static void test_least_jacobian(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_derivatives),    cmocka_unit_test(test_stretch),
-        cmocka_unit_test(test_zero_modes),     cmocka_unit_test(test_patch),
-        cmocka_unit_test(test_flight),         cmocka_unit_test(test_skin),
-        cmocka_unit_test(test_least_jacobian),
+        cmocka_unit_test(test_derivatives), cmocka_unit_test(test_stretch),
+        cmocka_unit_test(test_zero_modes),  cmocka_unit_test(test_clamped),
+        cmocka_unit_test(test_patch),       cmocka_unit_test(test_flight),
+        cmocka_unit_test(test_skin),        cmocka_unit_test(test_least_jacobian),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
