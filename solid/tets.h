@@ -5,7 +5,14 @@
  *
  * The surface is made of the tetrahedra's faces that no other one has, all outwards: in the order of the file's triangles,
  * if it lists all of them, else in that of the tetrahedra. Both meshes of it have all nodes of the solid as vertices, in
- * one numbering, those within too: what selects vertices (fix, loads, targets) selects nodes. */
+ * one numbering, those within too: what selects vertices (fix, loads, targets) selects nodes.
+ *
+ * Groups: all that goes by one name in the file, points, lines, faces and tetrahedra, is one group of nodes of the surface
+ * (dim 0), with the nodes between the corners; its lines and its faces that are on the surface stay groups of those, too.
+ *
+ * What valid tetrahedra are: four different corners, a volume above 1e-9 of the cube of the longest edge, two at most at each
+ * side and on different sides of it, all of the same hand (where all are of the other one they are turned round), one middle
+ * node of its own for each edge, and no node that is in none of them. Pieces need not hang together. */
 #pragma once
 #include "surface/mesh.h"
 
@@ -27,7 +34,8 @@ typedef struct Tets {
         *groups; /* of tetrahedra (dim 3), by the file's order; owned                                  */
 } Tets;
 
-/* From a file with cells. order 2 raises linear ones; order 1 leaves middle nodes out. report may be NULL; else clear it, also
+/* From a file with cells. order 2 raises linear ones, and puts middle nodes that are not in the middle there, with a warning;
+ * order 1 leaves middle nodes out, with a warning. report may be NULL; else clear it, also
  * after a failure. On bad input NULL and a sentence that names file, line and element. */
 Tets *tets_create(const MeshFile *file, int order, MeshReport *report, Error *err);
 void tets_destroy(Tets *tets);
