@@ -59,11 +59,16 @@ static void test_box(void **state)
 
 /* ---- What other programs write ---- */
 
+/* Without faces and groups. */
 static MeshFile box_file(void)
 {
     MeshFile file;
     Error err;
     assert_true(solid_shape_box((double[]){2, 1, 1}, (int[]){2, 1, 1}, &file, &err));
+    for (int g = 0; g < file.group_count; g++)
+        mem_free(file.groups[g].name), mem_free(file.groups[g].members);
+    mem_free(file.groups), mem_free(file.faces);
+    file.groups = NULL, file.faces = NULL, file.group_count = file.face_count = 0;
     return file;
 }
 
@@ -73,8 +78,8 @@ static MeshFile quadratic_file(void)
     MeshFile file = box_file();
     Tets *tets = tets_create(&file, TET_QUADRATIC, NULL, NULL);
     mesh_file_clear(&file);
-    file =
-        (MeshFile){.path = mem_text("box"), .vertex_count = tets_node_count(tets), .cell_count = tets->count};
+    file = (MeshFile){
+        .path = mem_text("solid"), .vertex_count = tets_node_count(tets), .cell_count = tets->count};
     file.cell_nodes = 10;
     file.vertices = mem_copy(tets->surface->rest, (size_t)file.vertex_count, sizeof *file.vertices);
     file.cells = mem_copy(tets->nodes, 10 * (size_t)tets->count, sizeof *file.cells);
@@ -141,7 +146,7 @@ static void test_curved(void **state)
     assert_int_equal(report.warning_count, 1);
     char sentence[200];
     snprintf(sentence, sizeof sentence,
-             "box: 2 middle nodes were put straight, as edges are here; the farthest, node %d, by 0.25 m, "
+             "solid: 2 middle nodes were put straight, as edges are here; the farthest, node %d, by 0.25 m, "
              "0.25 of its "
              "edge",
              middle);
@@ -340,29 +345,29 @@ static const struct {
     void (*spoil)(MeshFile *file);
     const char *sentence;
 } broken[] = {
-    {no_cells, "box: there are no tetrahedra in it; a solid is made of them"},
-    {flat, "box: tetrahedron 0 (corners 0, 1, 4, 10) is flat: it has no volume"},
-    {not_a_number, "box: vertex 3 has y = nan; coordinates are finite and within 1e+06 m"},
-    {far_away, "box: vertex 3 has y = 2e+06; coordinates are finite and within 1e+06 m"},
+    {no_cells, "solid: there are no tetrahedra in it; a solid is made of them"},
+    {flat, "solid: tetrahedron 0 (corners 0, 1, 4, 10) is flat: it has no volume"},
+    {not_a_number, "solid: vertex 3 has y = nan; coordinates are finite and within 1e+06 m"},
+    {far_away, "solid: vertex 3 has y = 2e+06; coordinates are finite and within 1e+06 m"},
     {one_turned,
-     "box: tetrahedron 5 (corners 0, 1, 7, 10) is inside out against the others, as are 1 of 12: the mesh "
+     "solid: tetrahedron 5 (corners 0, 10, 6, 9) is inside out against the others, as are 1 of 12: the mesh "
      "has folded over there, or two of its corners are to be swapped"},
     {all_but_one_turned,
-     "box: tetrahedron 5 (corners 0, 7, 1, 10) is inside out against the others, as are 1 of 12"},
-    {with_lines, "box:77: tetrahedron 5 (corners "},
-    {corner_twice, "box: tetrahedron 2 (corners 6, 6, 7, 10) has one of its corners twice"},
-    {no_such_node, "box: tetrahedron 2 names vertex 12; the vertices are 0 to 11"},
-    {below_zero, "box: tetrahedron 2 names vertex -1; the vertices are 0 to 11"},
+     "solid: tetrahedron 5 (corners 0, 6, 10, 9) is inside out against the others, as are 1 of 12"},
+    {with_lines, "solid:77: tetrahedron 5 (corners "},
+    {corner_twice, "solid: tetrahedron 2 (corners 6, 6, 7, 10) has one of its corners twice"},
+    {no_such_node, "solid: tetrahedron 2 names vertex 12; the vertices are 0 to 11"},
+    {below_zero, "solid: tetrahedron 2 names vertex -1; the vertices are 0 to 11"},
     {isolated,
-     "box: node 12 is in no tetrahedron: take it out (in Gmsh: make the volume a physical group, so that "
+     "solid: node 12 is in no tetrahedron: take it out (in Gmsh: make the volume a physical group, so that "
      "only what belongs to it is saved)"},
     {doubled,
-     "box: tetrahedron 12 (corners 0, 1, 4, 10) lies in tetrahedron 0: on the same side of a side of both"},
+     "solid: tetrahedron 12 (corners 0, 1, 4, 10) lies in tetrahedron 0: on the same side of a side of both"},
     {overlapping,
-     "box: tetrahedron 12 (corners 0, 1, 4, 12) lies in tetrahedron 0: on the same side of a side of both"},
+     "solid: tetrahedron 12 (corners 0, 1, 4, 12) lies in tetrahedron 0: on the same side of a side of both"},
     {edge_to_edge, "share the edge between vertices 0 and 6"},
-    {face_group, "box: group 'skin' names face 0; the last one is -1"},
-    {cell_group, "box: group 'body' names tetrahedron 12; the last one is 11"},
+    {face_group, "solid: group 'skin' names face 0; the last one is -1"},
+    {cell_group, "solid: group 'body' names tetrahedron 12; the last one is 11"},
 };
 
 static void other_middle(MeshFile *f)
@@ -407,8 +412,8 @@ static void test_broken(void **state)
         check_broken(box_file(), broken[k].spoil, broken[k].sentence);
     check_broken(
         quadratic_file(), other_middle,
-        "box: tetrahedron 1 (corners 0, 3, 9, 10) has node 20 in the middle of its edge from 0 to 3, and "
-        "tetrahedron 3 node 13");
+        "solid: tetrahedron 1 (corners 0, 1, 10, 7) has node 20 in the middle of its edge from 0 to 1, and "
+        "tetrahedron 0 node 12");
     check_broken(quadratic_file(), corner_as_middle, ": it is a corner, too");
     check_broken(quadratic_file(), middle_of_two, ": it is that of another edge, too");
     MeshFile file = box_file(); /* a third one at a side */
@@ -417,7 +422,7 @@ static void test_broken(void **state)
     vec3_store(file.vertices[12], vec3(0.3, 0.6, 0.4));
     add_cell(&file, 0, 10, 4, 12);
     check_broken(file, leave,
-                 "box: tetrahedron 12 (corners 0, 10, 4, 12) has a side that the tetrahedra 0 and");
+                 "solid: tetrahedron 12 (corners 0, 10, 4, 12) has a side that the tetrahedra 0 and");
 }
 
 int main(void)
