@@ -29,7 +29,8 @@ bool mesh_file_parse(const char *path, const char *format, const char *text, lon
         bool ok = !formats[k].is_text || scan_skip_mark(path, &text, &left, err);
         Scan scan = scan_start(path, text, left, 0, "", err);
         ok = ok && formats[k].read(&scan, &reader);
-        if (ok && mesh->face_count == 0) ok = error_set(err, "%s: there are no faces in it", path);
+        if (ok && mesh->face_count == 0 && mesh->cell_count == 0)
+            ok = error_set(err, "%s: there are no faces in it", path);
         reader_clear(&reader);
         if (!ok) mesh_file_clear(mesh);
         return ok;
@@ -51,6 +52,16 @@ bool mesh_file_read(const char *path, MeshFile *mesh, Error *err)
     bool ok = mesh_file_parse(path, dot ? dot + 1 : "", text, (long)length, mesh, err);
     mem_free(text);
     return ok;
+}
+
+bool mesh_file_check_triangles(const MeshFile *mesh, Error *err)
+{
+    if (!mesh->cell_count) return true;
+    return error_set(
+        err,
+        "%s:%d: a tetrahedron in a mesh of triangles: mesh surfaces only (gmsh -2), or save only their "
+        "physical groups",
+        mesh->path, mesh->cell_line[0]);
 }
 
 /* ---- Writing ---- */
@@ -114,7 +125,7 @@ static void write_groups(Text *text, const MeshFile *mesh)
 {
     for (int g = 0; g < mesh->group_count; g++) {
         const MeshGroup *group = &mesh->groups[g];
-        if (group->dim == 2) continue;
+        if (group->dim >= 2) continue;
         text_add(text, "g");
         write_name(text, group->name);
         text_add(text, "\n");

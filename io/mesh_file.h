@@ -38,6 +38,9 @@ bool mesh_file_read(const char *path, MeshFile *mesh, Error *err);
 bool mesh_file_parse(const char *path, const char *format, const char *text, long length, MeshFile *mesh,
                      Error *err);
 
+/* Refuses tetrahedra in a file that was read: where a mesh of triangles is asked for. */
+bool mesh_file_check_triangles(const MeshFile *mesh, Error *err);
+
 /* Writes OBJ with groups; numbers keep every bit (%.17g), blanks in names become _. */
 bool mesh_file_write_obj(const char *path, const MeshFile *mesh, Error *err);
 

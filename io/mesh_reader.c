@@ -63,6 +63,26 @@ bool reader_add_face(MeshReader *reader, const Scan *scan, const int *corners, i
     return true;
 }
 
+/* ---- Tetrahedra ---- */
+
+bool reader_add_cell(MeshReader *reader, const Scan *scan, const int *nodes, int count)
+{
+    MeshFile *mesh = reader->mesh;
+    size_t cells = (size_t)mesh->cell_count, room = reader->cell_room, each = (size_t)count;
+    if (cells && count != mesh->cell_nodes)
+        return scan_refuse(scan, "a tetrahedron of %d nodes after one of %d: all of a mesh have as many",
+                           count, mesh->cell_nodes);
+    if (cells * each > READER_MAX_INDEX)
+        return scan_refuse(scan, "more than %d tetrahedra", (int)(READER_MAX_INDEX / each));
+    mesh->cell_nodes = count;
+    mesh->cells = reader_grow(mesh->cells, &reader->cell_room, cells + 1, each * sizeof *mesh->cells);
+    mesh->cell_line = reader_grow(mesh->cell_line, &room, cells + 1, sizeof *mesh->cell_line);
+    memcpy(mesh->cells + cells * each, nodes, each * sizeof *nodes);
+    mesh->cell_line[cells] = scan->line;
+    mesh->cell_count++;
+    return true;
+}
+
 /* ---- Groups ---- */
 
 typedef struct GroupKey {
@@ -139,7 +159,7 @@ static bool check_groups(const MeshFile *mesh, const Scan *scan, int base)
 {
     for (int g = 0; g < mesh->group_count; g++) {
         const MeshGroup *group = &mesh->groups[g];
-        int count = group->dim == 2 ? 0 : group->count * (group->dim + 1);
+        int count = group->dim >= 2 ? 0 : group->count * (group->dim + 1);
         for (int k = 0; k < count; k++)
             if (group->members[k] >= mesh->vertex_count)
                 return error_set(scan->err, "%s: vertex %d of the group '%.60s' does not exist: there are %d",

@@ -17,7 +17,7 @@ typedef struct MeshReader {
     Polygon *polygons;
     int *corners; /* of all polygons */
     int polygon_count;
-    size_t corner_count, vertex_room, face_room, group_room, polygon_room, corner_room;
+    size_t corner_count, vertex_room, face_room, cell_room, group_room, polygon_room, corner_room;
     size_t *member_room; /* [group_count] */
 } MeshReader;
 
@@ -31,10 +31,13 @@ void reader_add_vertex(MeshReader *reader, const double *x, int line);
 /* A face with three corners or more; it becomes count - 2 faces of the mesh. Refused: fewer, or too many. */
 bool reader_add_face(MeshReader *reader, const Scan *scan, const int *corners, int count);
 
+/* A tetrahedron of 4 or 10 nodes. Refused: one that has not as many as those before it, or too many of them. */
+bool reader_add_cell(MeshReader *reader, const Scan *scan, const int *nodes, int count);
+
 /* The group of that name and dimension, made if it is new. */
 int reader_group(MeshReader *reader, const char *name, int length, int dim);
 
-/* One index of a vertex or face, or two of an edge. */
+/* One index of a vertex, face or cell, or two of an edge. */
 void reader_group_add(MeshReader *reader, int group, const int *members);
 
 /* The faces from the first one to the last. */

@@ -54,7 +54,7 @@ bool build_vectors_at(const Build *b, Key at, char *const *formula, const WhereS
 /* The mesh that a scene describes at that key; NULL after a refusal: a key that its shape does not take, too. */
 Mesh *build_mesh(const MeshScene *scene, YamlFile *yaml, const char *at, MeshReport *report);
 
-/* A mesh file with its coordinates times scale. */
+/* A mesh file with its coordinates times scale; of tetrahedra, too. */
 bool build_read_mesh(const char *path, double scale, MeshFile *file, Error *err);
 
 /* A file with all vertices of the mesh, in another state; scale NAN: that of the mesh's file. Refused where

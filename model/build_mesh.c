@@ -51,7 +51,7 @@ static bool make_kirigami(const MeshScene *scene, MeshFile *file, Error *err)
 }
 static bool read_file(const MeshScene *scene, MeshFile *file, Error *err)
 {
-    return build_read_mesh(scene->file, scene->scale, file, err);
+    return build_read_mesh(scene->file, scene->scale, file, err) && mesh_file_check_triangles(file, err);
 }
 
 /* A source of meshes: the keys that it takes, the number of lengths in `size`. */

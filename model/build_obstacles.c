@@ -148,7 +148,7 @@ static bool solid(const Build *b, Key at, const BlockScene *scene, Obstacle *obs
     MeshFile file = {0};
     Error err;
     bool ok = build_read_mesh(scene->file, scene->scale, &file, &err) &&
-              obstacle_mesh(&file, scene->cell, obstacle, &err);
+              mesh_file_check_triangles(&file, &err) && obstacle_mesh(&file, scene->cell, obstacle, &err);
     if (!ok) yaml_refuse(b->file, key("%s.file", at.text).text, "%s", err.text);
     mesh_file_clear(&file);
     return ok;

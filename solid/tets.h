@@ -5,7 +5,15 @@
  *
  * The surface is made of the tetrahedra's faces that no other one has, all outwards: in the order of the file's triangles,
  * if it lists all of them, else in that of the tetrahedra. Both meshes of it have all nodes of the solid as vertices, in
- * one numbering, those within too: what selects vertices (fix, loads, targets) selects nodes. */
+ * one numbering, those within too: what selects vertices (fix, loads, targets) selects nodes.
+ *
+ * Groups: all that goes by one name in the file, points, lines, faces and tetrahedra, is one group of nodes of the surface
+ * (dim 0), with the nodes between the corners; its lines, its faces that are on the surface and its tetrahedra stay groups of
+ * those, too.
+ *
+ * What valid tetrahedra are: four different corners, a volume above 1e-9 of the cube of the longest edge, two at most at each
+ * side and on different sides of it, all of the same hand (where all are of the other one they are turned round), one middle
+ * node of its own for each edge, and no node that is in none of them. Pieces need not hang together. */
 #pragma once
 #include "surface/mesh.h"
 
@@ -20,18 +28,16 @@ typedef struct Tets {
     int *nodes; /* [count][each]: corners, positively oriented, then middles of 01 12 02 03 23 13; owned */
     double
         *volume;   /* [count] m^3 at rest; owned                                                            */
-    int *across;   /* [count][4] the tetrahedra that have a side in common with it, -1: none; owned        */
-    Mesh *surface; /* its faces have corners only; owned                                                    */
+    int *across;   /* [count][4] the tetrahedra that have a side in common with it, -1: none; owned         */
+    Mesh *surface; /* its faces have corners only, its cells are the tetrahedra; owned                      */
     Mesh *skin;    /* the same faces, each in four through the middles of its edges where there are any:
                      * what meets the world, is magnetised and shown; owned                                  */
     int *
         skin_face; /* [skin->face_count] face of the surface that it is a part of; owned                    */
-    int group_count;
-    MeshGroup
-        *groups; /* of tetrahedra (dim 3), by the file's order; owned                                  */
 } Tets;
 
-/* From a file with cells. order 2 raises linear ones; order 1 leaves middle nodes out. report may be NULL; else clear it, also
+/* From a file with cells. order 2 raises linear ones, and puts middle nodes that are not in the middle there, with a warning;
+ * order 1 leaves middle nodes out, with a warning. report may be NULL; else clear it, also
  * after a failure. On bad input NULL and a sentence that names file, line and element. */
 Tets *tets_create(const MeshFile *file, int order, MeshReport *report, Error *err);
 void tets_destroy(Tets *tets);
@@ -40,6 +46,3 @@ static inline int tets_node_count(const Tets *tets)
 {
     return tets->surface->vertex_count;
 }
-
-/* The group of tetrahedra of that name, or NULL. */
-const MeshGroup *tets_group(const Tets *tets, const char *name);

@@ -6,9 +6,8 @@
 #include <stdio.h>
 #include <string.h>
 
-static const double coordinate_limit = 1e6; /* m */
-static const double area_limit = 1e-12;     /* of the squared diagonal */
-static const double height_limit = 1e-6;    /* of the longest edge */
+static const double area_limit = 1e-12;  /* of the squared diagonal */
+static const double height_limit = 1e-6; /* of the longest edge */
 
 /* What the steps of mesh_create share. */
 typedef struct Build {
@@ -19,24 +18,9 @@ typedef struct Build {
     Error *err;
 } Build;
 
-/* "file:line" of an element; generated meshes have no lines. */
-typedef struct Place {
-    char text[512];
-} Place;
-
-static Place place(const MeshFile *file, const int *lines, int element)
+static MeshPlace face_place(const Build *build, int face)
 {
-    Place at;
-    if (lines)
-        snprintf(at.text, sizeof at.text, "%.480s:%d", file->path, lines[element]);
-    else
-        snprintf(at.text, sizeof at.text, "%.480s", file->path);
-    return at;
-}
-
-static Place face_place(const Build *build, int face)
-{
-    return place(build->file, build->file->face_line, face);
+    return mesh_place(build->file, build->file->face_line, face);
 }
 
 void mesh_warn(MeshReport *report, const char *format, ...)
@@ -52,59 +36,14 @@ void mesh_warn(MeshReport *report, const char *format, ...)
     report->warnings[n] = mem_text(text);
 }
 
-/* ---- what can be judged before anything is built ---- */
-
 static bool check_counts(const Build *build)
 {
     const MeshFile *file = build->file;
     if (file->vertex_count < 1) return error_set(build->err, "%s: the mesh has no vertices", file->path);
     if (file->face_count < 1) return error_set(build->err, "%s: the mesh has no faces", file->path);
-    if (!(build->weld >= 0 && build->weld <= coordinate_limit))
+    if (!(build->weld >= 0 && build->weld <= MESH_FARTHEST))
         return error_set(build->err, "%s: weld must be a distance from 0 to %g m, not %g", file->path,
-                         coordinate_limit, build->weld);
-    return true;
-}
-
-static bool check_coordinates(const Build *build)
-{
-    const MeshFile *file = build->file;
-    for (int v = 0; v < file->vertex_count; v++)
-        for (int k = 0; k < 3; k++)
-            if (!(fabs(file->vertices[v][k]) <= coordinate_limit))
-                return error_set(build->err,
-                                 "%s: vertex %d has %c = %g; coordinates are finite and within %g m",
-                                 place(file, file->vertex_line, v).text, v, "xyz"[k], file -> vertices[v][k],
-                                 coordinate_limit);
-    return true;
-}
-
-static bool check_indices(const Build *build)
-{
-    const MeshFile *file = build->file;
-    for (int f = 0; f < file->face_count; f++)
-        for (int i = 0; i < 3; i++)
-            if (file->faces[f][i] < 0 || file->faces[f][i] >= file->vertex_count)
-                return error_set(build->err, "%s: face %d names vertex %d; the vertices are 0 to %d",
-                                 face_place(build, f).text, f, file->faces[f][i], file->vertex_count - 1);
-    return true;
-}
-
-static bool check_groups(const Build *build)
-{
-    const MeshFile *file = build->file;
-    for (int g = 0; g < file->group_count; g++) {
-        const MeshGroup *group = &file->groups[g];
-        int end = group->dim == 3   ? file->cell_count
-                  : group->dim == 2 ? file->face_count
-                                    : file->vertex_count;
-        int member_count = group->dim == 1 ? 2 * group->count : group->count;
-        for (int i = 0; i < member_count; i++)
-            if (group->members[i] < 0 || group->members[i] >= end)
-                return error_set(build->err, "%s: group '%s' names %s %d; the last one is %d", file->path,
-                                 group->name,
-                                 (const char *[]){"vertex", "vertex", "face", "cell"}[group->dim],
-                                 group->members[i], end - 1);
-    }
+                         MESH_FARTHEST, build->weld);
     return true;
 }
 
@@ -117,9 +56,11 @@ static void warn_removed(const Build *build)
     for (int v = file->vertex_count - 1; v >= 0; v--)
         if (build->mesh->vertex_of_file[v] < 0) first = v, count++;
     if (count)
-        mesh_warn(build->report, "%s: %d %s removed, being in no face; the first is vertex %d",
-                  place(file, file->vertex_line, first).text, count,
-                  count == 1 ? "vertex was" : "vertices were", first);
+        mesh_warn(build->report, "%s: %d %s removed, being %s; the first is vertex %d",
+                  mesh_place(file, file->vertex_line, first).text, count,
+                  count == 1 ? "vertex was" : "vertices were",
+                  file->cell_count ? "middles of edges, which linear tetrahedra have none of" : "in no face",
+                  first);
 }
 
 static void warn_coincident(const Build *build)
@@ -135,7 +76,7 @@ static void warn_coincident(const Build *build)
         mesh_warn(
             build->report,
             "%s: %d %s on another one and %s apart, as on a slit (vertex %d on vertex %d); weld joins such",
-            place(build->file, build->file->vertex_line, a).text, count,
+            mesh_place(build->file, build->file->vertex_line, a).text, count,
             count == 1 ? "vertex lies" : "vertices lie", count == 1 ? "stays" : "stay", a, b);
     }
     mem_free(first);
@@ -171,7 +112,8 @@ static void number_vertices(const Build *build)
             mesh->vertex_of_file[v] = mesh->vertex_count++;
         }
     }
-    mem_free(first), mem_free(used);
+    mem_free(first);
+    mem_free(used);
     warn_removed(build);
     if (build->weld == 0) warn_coincident(build);
 }
@@ -392,8 +334,7 @@ Mesh *mesh_create(const MeshFile *file, double weld, MeshReport *report, Error *
     if (report) *report = (MeshReport){0};
     Mesh *mesh = mem_alloc(1, sizeof *mesh);
     Build build = {file, weld, mesh, report, err};
-    bool good =
-        check_counts(&build) && check_coordinates(&build) && check_indices(&build) && check_groups(&build);
+    bool good = check_counts(&build) && mesh_check_file(file, err);
     if (good) {
         number_vertices(&build);
         good = build_faces(&build) && build_edges(&build);

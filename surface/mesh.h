@@ -43,6 +43,19 @@ typedef struct MeshReport {
 /* Adds a sentence; report may be NULL. */
 void mesh_warn(MeshReport *report, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
+/* "file:line" of an element; generated and binary meshes have no lines (NULL). */
+typedef struct MeshPlace {
+    char text[512];
+} MeshPlace;
+
+MeshPlace mesh_place(const MeshFile *file, const int *lines, int element);
+
+static const double MESH_FARTHEST = 1e6; /* m, of a coordinate */
+
+/* Refuses what is no mesh at all: coordinates that are not finite or too far, indices out of range in faces, tetrahedra and
+ * groups. mesh_create begins with it. */
+bool mesh_check_file(const MeshFile *file, Error *err);
+
 /* Checks the file's surface and builds the mesh; copies what it needs. Vertices closer than weld (m; 0 =
  * off) to one of lower number are joined first. report may be NULL; else clear it, also after a
  * failure. On bad input returns NULL and a sentence that names file, line and element: a coordinate

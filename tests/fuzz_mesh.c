@@ -1,6 +1,7 @@
-/* libFuzzer: mesh files, the format by the first byte; what is read goes through the mesh's own checks. */
+/* libFuzzer: mesh files, the format by the first byte; what is read goes through the mesh's own checks, or those of
+ * tetrahedra. */
 #include "base/memory.h"
-#include "surface/mesh.h"
+#include "solid/tets.h"
 #include <stdint.h>
 #include <stdlib.h>
 
@@ -15,8 +16,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size)
     if (mesh_file_parse("fuzz", formats[bytes[0] % 4], (const char *)bytes + 1, (long)size - 1, &file,
                         &err)) {
         MeshReport report;
-        Mesh *mesh = mesh_create(&file, bytes[0] & 8 ? 1e-3 : 0, &report, &err);
-        mesh_destroy(mesh);
+        if (file.cell_count)
+            tets_destroy(tets_create(&file, bytes[0] & 8 ? TET_LINEAR : TET_QUADRATIC, &report, &err));
+        else
+            mesh_destroy(mesh_create(&file, bytes[0] & 8 ? 1e-3 : 0, &report, &err));
         mesh_report_clear(&report);
         mesh_file_clear(&file);
     }

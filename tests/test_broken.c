@@ -47,7 +47,7 @@ static char *mesh_sentence(const char *path)
     MeshFile file;
     Error err;
     if (mesh_file_read(path, &file, &err)) {
-        Mesh *mesh = mesh_create(&file, 0, NULL, &err);
+        Mesh *mesh = mesh_file_check_triangles(&file, &err) ? mesh_create(&file, 0, NULL, &err) : NULL;
         assert_null(mesh);
         mesh_file_clear(&file);
     }
