@@ -24,3 +24,4 @@ void bench_spline(void);
 void bench_draw(void);
 void bench_equilibria(void);
 void bench_scale(void);
+void bench_solid(void);

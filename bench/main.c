@@ -27,6 +27,7 @@ static const struct {
     {"spline", bench_spline},
     {"draw", bench_draw},
     {"scale", bench_scale},
+    {"solid", bench_solid},
 };
 
 enum { CASE_COUNT = sizeof cases / sizeof *cases };
