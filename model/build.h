@@ -51,6 +51,20 @@ void build_position(double *variables, const double *x, double time);
 bool build_vectors_at(const Build *b, Key at, char *const *formula, const WhereScene *where, int where_count,
                       const double *place, int count, double *values);
 
+/* A key of a mesh that not all of its sources take; the keys of a table end with NULL, and are bits by their places in it. */
+typedef struct BuildKey {
+    const char *key, *needed; /* what is said where it is missing; NULL: there is a default */
+} BuildKey;
+
+/* A source of meshes ("a box"), and which of the keys it takes. */
+typedef struct BuildTakes {
+    const char *name;
+    unsigned takes;
+} BuildTakes;
+
+/* Refuses keys that were given and are not taken, and those that are missing. */
+bool build_check_keys(const BuildKey *keys, BuildTakes of, unsigned given, YamlFile *yaml, const char *at);
+
 /* The mesh that a scene describes at that key; NULL after a refusal: a key that its shape does not take, too. */
 Mesh *build_mesh(const MeshScene *scene, YamlFile *yaml, const char *at, MeshReport *report);
 

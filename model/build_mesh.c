@@ -10,16 +10,13 @@
 
 enum { SIZE = 1, CELLS = 2, N = 4, PATTERN = 8, SCALE = 16, WELD = 32 };
 
-static const struct {
-    const char *key, *needed; /* NULL: there is a default */
-} mesh_keys[] = {{"size", "its lengths, e.g. [65 mm, 65 mm]"},
-                 {"cells", "along x and y, e.g. [64, 64]"},
-                 {"n", "the number of its divisions, e.g. 16"},
-                 {"pattern", NULL},
-                 {"scale", NULL},
-                 {"weld", NULL}};
-
-enum { KEY_COUNT = sizeof mesh_keys / sizeof *mesh_keys };
+static const BuildKey mesh_keys[] = {{"size", "its lengths, e.g. [65 mm, 65 mm]"},
+                                     {"cells", "along x and y, e.g. [64, 64]"},
+                                     {"n", "the number of its divisions, e.g. 16"},
+                                     {"pattern", NULL},
+                                     {"scale", NULL},
+                                     {"weld", NULL},
+                                     {NULL, NULL}};
 
 /* A default counts as not given: it does no harm where it has no meaning. */
 static unsigned given_keys(const MeshScene *scene)
@@ -56,44 +53,46 @@ static bool read_file(const MeshScene *scene, MeshFile *file, Error *err)
 
 /* A source of meshes: the keys that it takes, the number of lengths in `size`. */
 typedef struct Source {
-    const char *name;
-    unsigned takes;
+    BuildTakes of;
     int lengths;
     bool (*make)(const MeshScene *scene, MeshFile *file, Error *err);
 } Source;
 
-static const Source shapes[] = {[MESH_SHEET] = {"a sheet", SIZE | CELLS | PATTERN, 2, make_sheet},
-                                [MESH_STRIP] = {"a strip", SIZE | N | PATTERN, 2, make_strip},
-                                [MESH_HEXAGRAM] = {"a hexagram", SIZE | N, 1, make_hexagram},
-                                [MESH_DISC] = {"a disc", SIZE | N, 1, make_disc},
-                                [MESH_KIRIGAMI] = {"a kirigami", SIZE | N, 1, make_kirigami}};
-static const Source from_file = {"a mesh from a file", SCALE | WELD, 0, read_file};
+static const Source shapes[] = {[MESH_SHEET] = {{"a sheet", SIZE | CELLS | PATTERN}, 2, make_sheet},
+                                [MESH_STRIP] = {{"a strip", SIZE | N | PATTERN}, 2, make_strip},
+                                [MESH_HEXAGRAM] = {{"a hexagram", SIZE | N}, 1, make_hexagram},
+                                [MESH_DISC] = {{"a disc", SIZE | N}, 1, make_disc},
+                                [MESH_KIRIGAMI] = {{"a kirigami", SIZE | N}, 1, make_kirigami}};
+static const Source from_file = {{"a mesh from a file", SCALE | WELD}, 0, read_file};
 
-static Key list_keys(const Source *source)
+static Key list_keys(const BuildKey *keys, unsigned takes)
 {
     Key list = {""};
-    for (int k = 0; k < KEY_COUNT; k++)
-        if (source->takes >> k & 1)
-            list = key("%s%s%s", list.text, list.text[0] ? ", " : "", mesh_keys[k].key);
+    for (int k = 0; keys[k].key; k++)
+        if (takes >> k & 1) list = key("%s%s%s", list.text, list.text[0] ? ", " : "", keys[k].key);
     return list;
 }
 
-static bool check_keys(const MeshScene *scene, const Source *source, YamlFile *yaml, const char *mesh)
+bool build_check_keys(const BuildKey *keys, BuildTakes of, unsigned given, YamlFile *yaml, const char *at)
 {
-    unsigned given = given_keys(scene);
     bool ok = true;
-    for (int k = 0; k < KEY_COUNT; k++) {
-        bool takes = source->takes >> k & 1, has = given >> k & 1;
-        Key at = key("%s.%s", mesh, mesh_keys[k].key);
+    for (int k = 0; keys[k].key; k++) {
+        bool takes = of.takes >> k & 1, has = given >> k & 1;
         if (has && !takes)
-            ok = yaml_refuse(yaml, at.text, "%s does not take this key; it takes %s", source->name,
-                             list_keys(source).text);
-        if (takes && !has && mesh_keys[k].needed)
-            ok = yaml_refuse(yaml, mesh, "%s needs `%s`: %s", source->name, mesh_keys[k].key,
-                             mesh_keys[k].needed);
+            ok = yaml_refuse(yaml, key("%s.%s", at, keys[k].key).text,
+                             "%s does not take this key; it takes %s", of.name,
+                             list_keys(keys, of.takes).text);
+        if (takes && !has && keys[k].needed)
+            ok = yaml_refuse(yaml, at, "%s needs `%s`: %s", of.name, keys[k].key, keys[k].needed);
     }
+    return ok;
+}
+
+static bool check_keys(const MeshScene *scene, const Source *source, YamlFile *yaml, const char *at)
+{
+    bool ok = build_check_keys(mesh_keys, source->of, given_keys(scene), yaml, at);
     if (ok && scene->size_count != source->lengths)
-        return yaml_refuse(yaml, key("%s.size", mesh).text, "%s has %s", source->name,
+        return yaml_refuse(yaml, key("%s.size", at).text, "%s has %s", source->of.name,
                            source->lengths == 2 ? "a length and a width: [65 mm, 65 mm]" : "one size: 40 mm");
     return ok;
 }

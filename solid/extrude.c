@@ -164,13 +164,18 @@ static void add_groups(const Prisms *p)
 
 /* ---- All ---- */
 
+bool solid_shape_check_count(double count, Error *err)
+{
+    if (count <= SHAPE_MAX_FACES) return true;
+    return error_set(err, "%.0f tetrahedra are too many; a generated solid has at most %d", count,
+                     SHAPE_MAX_FACES);
+}
+
 bool solid_shape_prisms(const Mesh *sheet, int layers, MeshFile *mesh, Error *err)
 {
     *mesh = (MeshFile){0};
     if (layers < 1) return error_set(err, "a solid has at least one layer, not %d", layers);
-    if (3.0 * layers * sheet->face_count > SHAPE_MAX_FACES)
-        return error_set(err, "%.0f tetrahedra are too many; a generated solid has at most %d",
-                         3.0 * layers * sheet->face_count, SHAPE_MAX_FACES);
+    if (!solid_shape_check_count(3.0 * layers * sheet->face_count, err)) return false;
     for (int g = 0; g < sheet->group_count; g++)
         if (!strcmp(sheet->groups[g].name, "bottom") || !strcmp(sheet->groups[g].name, "top"))
             return error_set(err,

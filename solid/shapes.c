@@ -64,7 +64,10 @@ bool solid_shape_plate(const double size[3], const int cells[3], ShapePattern pa
 {
     MeshFile sheet;
     *mesh = (MeshFile){0};
-    if (!shape_sheet(size, cells, pattern, &sheet, err)) return false;
+    double prisms = (pattern == PATTERN_CROSSED ? 4. : 2.) * cells[0] * cells[1];
+    if (!solid_shape_check_count(3 * prisms * cells[2], err) ||
+        !shape_sheet(size, cells, pattern, &sheet, err))
+        return false;
     for (int g = 0; g < sheet.group_count; g++)
         mem_free(sheet.groups[g].name), mem_free(sheet.groups[g].members);
     mem_free(sheet.groups);

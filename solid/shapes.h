@@ -45,7 +45,10 @@ bool solid_shape_heart(SolidShapeDef def, MeshFile *mesh, Error *err);
  * counter-clockwise, each a fifth of it, and centre (nodes). */
 bool solid_shape_starfish(SolidShapeDef def, MeshFile *mesh, Error *err);
 
-/* For shapes: the prisms of a sheet, whose nodes are still to be placed. */
+/* For shapes: refuses too many tetrahedra, before much is made of them. */
+bool solid_shape_check_count(double count, Error *err);
+
+/* The prisms of a sheet, whose nodes are still to be placed. */
 bool solid_shape_prisms(const Mesh *sheet, int layers, MeshFile *mesh, Error *err);
 
 /* A group that a shape adds; takes the members. There is room for four. */

@@ -118,8 +118,10 @@ Solid = TypedDict("Solid", {
 }, total=False)
 
 MeshOfASolidKeys = TypedDict("MeshOfASolidKeys", {
-    "file": "str", "shape": "Literal['box']", "size": "Union[Number, Numbers]", "cells": "Union[int, Numbers]",
-    "scale": "float",
+    "file": "str", "shape": "Literal['box', 'plate', 'hand', 'heart', 'starfish']", "extrude": "Mesh",
+    "surface": "str", "size": "Union[Number, Numbers]", "cells": "Union[int, Numbers]", "n": "int",
+    "divisions": "int", "false": "int", "pattern": "Literal['right', 'alternate', 'crossed']", "thickness": "Number",
+    "layers": "int", "scale": "float",
 }, total=False)
 
 Skin = TypedDict("Skin", {

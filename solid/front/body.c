@@ -2,6 +2,7 @@
 #include "base/memory.h"
 #include "job/jobs.h"
 #include "solid/front/front.h"
+#include "solid/front/mesh.h"
 #include "surface/rigid.h"
 #include <math.h>
 #include <string.h>
@@ -137,7 +138,9 @@ static bool check(const SolidScene *from, YamlFile *file)
 static bool create(Model *model, const Scene *scene, YamlFile *file)
 {
     const SolidScene *from = solid_scene(scene);
-    Tets *tets = check(from, file) ? solid_read_tets(from, file, &model->report) : NULL;
+    Tets *tets = check(from, file)
+                     ? solid_read_mesh(&from->mesh, file, "solid.mesh", from->order, &model->report)
+                     : NULL;
     if (!tets) return false;
     Build b = build_start(scene, tets->surface, model->time, file);
     b.mesh_scale = from->mesh.scale;

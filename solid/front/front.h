@@ -5,9 +5,6 @@
 #include "solid/front/scene.h"
 #include "solid/solid.h"
 
-/* mesh.c: the tetrahedra that the scene describes; NULL after a refusal. */
-Tets *solid_read_tets(const SolidScene *scene, YamlFile *file, MeshReport *report);
-
 /* records.c: solids in the journal. */
 void solid_add_static(const Model *model, Arrays *list);
 void solid_places(const Model *model, const double *x, double *place);

@@ -2,24 +2,56 @@
 #include "solid/front/scene.h"
 #include "model/scene_tables.h"
 
-static const YamlTable solid_mesh_table = {
+const YamlTable solid_mesh_table = {
     .name = "mesh of a solid",
     .size = sizeof(SolidMeshScene),
-    .doc = "The tetrahedra of a solid at rest, from a file or generated. A box has groups of nodes: left and "
-           "right (x), front "
-           "and back (y), bottom and top (z).",
+    .doc = "The tetrahedra of a solid at rest: from a file, generated, of a sheet that is made thick, or of "
+           "a closed surface "
+           "that is filled. A box or plate lies from the origin along +x, +y and +z, with groups of its "
+           "sides: left and right "
+           "(x), front and back (y), bottom and top (z). A hand lies on the plane z = 0, its palm from the "
+           "origin, four "
+           "fingers along +y and the thumb along +x: groups wrist, palm, thumb, index, middle, ring, little, "
+           "and anchors, "
+           "five times three nodes below and above. A heart is a cup, open above, its rim in the plane z = "
+           "0: groups rim, "
+           "centre, lower, ribbon, bottom (outside) and top (inside). A starfish lies on the plane z = 0 "
+           "around the origin: "
+           "groups arm1 (along +x) to arm5, centre, bottom and top. What is extruded keeps the groups of its "
+           "sheet, and has "
+           "bottom and top. docs/meshes.md says which groups are of nodes, faces or tetrahedra.",
     .fields = (const YamlField[]){
         {YAML_FILE(SolidMeshScene, file), .one_of = 1, .required = true, .short_form = true,
          .doc = "a Gmsh .msh (2.2 or 4.1, ASCII) file with tetrahedra of 4 or 10 nodes, and its physical "
                 "groups"},
-        {YAML_CHOICE(SolidMeshScene, shape), .one_of = 1, .required = true, .choices = YAML_NAMES("box"),
-         .doc = "a generated mesh"},
-        {YAML_NUMBERS(SolidMeshScene, size), .unit = "m", .range = "(0, inf)", .min_count = 3, .max_count = 3,
-         .doc = "of a box: its lengths along x, y and z, from the origin"},
+        {YAML_CHOICE(SolidMeshScene, shape), .one_of = 1, .required = true,
+         .choices = YAML_NAMES("box", "plate", "hand", "heart", "starfish"), .doc = "a generated mesh"},
+        {YAML_OPTIONAL(SolidMeshScene, extrude, &mesh_table), .one_of = 1, .required = true,
+         .doc = "a mesh of triangles that is made thick along its normals: three tetrahedra over each, in "
+                "layers"},
+        {YAML_FILE(SolidMeshScene, surface), .one_of = 1, .required = true,
+         .doc = "a file with a closed surface of triangles, which the program tetgen fills; it stays as it "
+                "is, with its "
+                "groups"},
+        {YAML_NUMBERS(SolidMeshScene, size), .unit = "m", .range = "(0, inf)", .min_count = 1, .max_count = 3,
+         .doc = "of a box or plate: its lengths along x, y and z; of a hand: the length of its palm; of a "
+                "heart or starfish: "
+                "its diameter; of a surface: the edges of the tetrahedra within, as large as they become"},
         {YAML_INTEGERS(SolidMeshScene, cells), .range = "[1, inf)", .min_count = 3, .max_count = 3,
-         .doc = "of a box: cells along x, y and z, of six tetrahedra each"},
+         .doc = "of a box or plate: cells along x, y and z"},
+        {YAML_INTEGER(SolidMeshScene, n), .also = YAML_NAMES("divisions", "false"), .range = "[1, 200]",
+         .doc = "of a hand: cells in a tenth of its palm (1: 1248 tetrahedra); of a heart: rings (10); of a "
+                "starfish: cells "
+                "across an arm (3)"},
+        {YAML_CHOICE(SolidMeshScene, pattern), .choices = YAML_NAMES("right", "alternate", "crossed"),
+         .fallback = "right", .doc = "of a plate: how its cells are split, seen from above"},
+        {YAML_NUMBER(SolidMeshScene, thickness), .unit = "m", .range = "(0, inf)",
+         .doc = "of what is extruded; of a hand (size/20), a heart (its wall, 3/40 size) or a starfish (3/50 "
+                "size)"},
+        {YAML_INTEGER(SolidMeshScene, layers), .range = "[1, inf)", .fallback = "1",
+         .doc = "of what is extruded, a hand, heart or starfish: tetrahedra through its thickness"},
         {YAML_NUMBER(SolidMeshScene, scale), .range = "(0, inf)", .fallback = "1",
-         .doc = "factor on the coordinates of a file, e.g. 1.0e-3 for one in millimetres"},
+         .doc = "factor on the coordinates of a file or surface, e.g. 1.0e-3 for one in millimetres"},
         {0}}};
 
 static const YamlTable skin_table = {

@@ -3,13 +3,21 @@
 #include "model/rows.h"
 
 /* The generated meshes, in the order of the key `shape`. */
-typedef enum SolidShape { SOLID_BOX, SOLID_SHAPES } SolidShape;
+typedef enum SolidShape {
+    SOLID_BOX,
+    SOLID_PLATE,
+    SOLID_HAND,
+    SOLID_HEART,
+    SOLID_STARFISH,
+    SOLID_SHAPES
+} SolidShape;
 
 typedef struct SolidMeshScene {
-    char *file;
+    char *file, *surface;
+    MeshScene *extrude;
     int shape; /* SolidShape */
-    double *size, scale;
-    int *cells, size_count, cells_count;
+    double *size, thickness, scale;
+    int *cells, n, layers, pattern, size_count, cells_count;
 } SolidMeshScene;
 
 /* The magnetised layer. */
@@ -30,7 +38,7 @@ typedef struct SolidScene {
     int order, material; /* 1 or 2; SolidMaterial */
 } SolidScene;
 
-extern const YamlTable solid_table;
+extern const YamlTable solid_table, solid_mesh_table;
 extern const BodyRow solid_body; /* body.c */
 
 const SolidScene *solid_scene(const Scene *scene);
