@@ -1,4 +1,5 @@
 /* What scenes say of obstacles, contact and water becomes what it says. */
+#include "base/memory.h"
 #include "tests/obstacle_fixture.h"
 #include "tests/scene_fixture.h"
 #include <stdio.h>
@@ -175,7 +176,9 @@ static void test_touching(void **state)
                                      "f 1 2 3\nf 4 5 6\n");
     Built b = scene_try(scene);
     assert_null(b.model);
-    assert_non_null(strstr(yaml_report(b.file), "no distance between them"));
+    char *report = yaml_report(b.file);
+    assert_non_null(strstr(report, "no distance between them"));
+    mem_free(report);
     clear(&b);
     write_file("world_touching.obj",
                "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 0 2 0\nv 1 2 0\nv 2 0 0\nv 2 1 0\n"
