@@ -102,6 +102,8 @@ Color colormap_series(int index)
     return palette[index % (int)(sizeof palette / sizeof palette[0])];
 }
 
+static const double CONSTANT = 1e-3; /* of the values: more like each other a legend cannot tell apart */
+
 ColorScale color_scale_fit(const double *values, int count)
 {
     double low = INFINITY, high = -INFINITY;
@@ -117,7 +119,7 @@ ColorScale color_scale_fit(const double *values, int count)
     }
     if (low > 0 && low < 0.2 * high) low = 0;
     if (high < 0 && high > 0.2 * low) high = 0;
-    if (high - low <= 1e-9 * fmax(fabs(low), fabs(high))) { /* constant: its colour is the middle */
+    if (high - low <= CONSTANT * fmax(fabs(low), fabs(high))) { /* its colour is the middle */
         double half = low != 0 ? 0.5 * fabs(low) : 0.5;
         low -= half;
         high += half;
