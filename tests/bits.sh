@@ -46,6 +46,8 @@ contact_drape | scenes/drape.yaml | shell.mesh.cells=[12,12] time.steps=60
 contact_reptile | scenes/reptile_bump.yaml | time.steps=60
 contact_octopus | scenes/octopus_pipe1.yaml | design.iterations=1
 solid_design | scenes/hand_fist.yaml | design.iterations=2
+solid_simulate | tests/scene_solid.yaml |
+solid_simulate_resumed | tests/scene_solid.yaml | time.steps=40 | time.steps=80
 rod_equilibrium | scenes/rod_equilibrium.yaml | rod.elements=200
 rod_cantilever | scenes/rod_cantilever.yaml | rod.elements=100
 rod_arch | scenes/rod_arch.yaml | rod.elements=80

@@ -2,13 +2,16 @@
 # Kills and interrupts a small job at random moments and resumes it: the end must be that of an undisturbed run, bit by
 # bit, seconds aside.
 #   tests/campaign.sh PROGRAM [TRIALS] [KIND]      KIND: gauss_newton, mma, lbfgs (quasi-static), simulate, trajectory,
-#                                              rod_simulate, rod_design, draw, contact, contact_implicit
+#                                              rod_simulate, rod_design, draw, contact, contact_implicit,
+#                                              solid, solid_design
 program=$1 trials=${2:-20} kind=${3:-gauss_newton}
 here=$(cd "$(dirname "$0")" && pwd)
 case $kind in
     draw) scene=$here/scene_draw.yaml set=spline.pen=0.4mm ;;
     rod_design) scene=$here/scene_rod_design.yaml set=design.iterations=60 ;;
     contact) scene=$here/scene_contact.yaml set=output.every=3 ;;
+    solid) scene=$here/scene_solid.yaml set=output.every=3 ;;
+    solid_design) scene=$here/../scenes/hand_fist.yaml set=design.iterations=4 ;;
     contact_implicit) scene=$here/scene_contact.yaml set=contact.coupling=implicit ;;
     simulate | trajectory | rod_simulate) scene=$here/scene_$kind.yaml set=output.every=3 ;;
     *) scene=$here/scene_small.yaml set=design.optimizer=$kind ;;
