@@ -1,6 +1,7 @@
-/* What is held of a body with a mesh, and where what is held is moved. */
+/* What all bodies with a mesh do alike: what is held, and where it is moved; loads, targets, parts; cases made ready. */
 #include "base/memory.h"
 #include "model/model.h"
+#include "surface/rigid.h"
 #include <math.h>
 #include <string.h>
 
@@ -122,4 +123,55 @@ bool model_move_held(const Model *model, double time, double part, double *x, Er
         }
     }
     return true;
+}
+
+/* ---- Loads, targets, parts ---- */
+
+bool model_put_loads(Model *model, const Build *b, const char *at, const LoadScene *loads, int count,
+                     double *p)
+{
+    return build_loads(b, key("%s", at), loads, count, p + params_find(model->params, "load")->offset);
+}
+
+bool model_put_target(Model *model, const Build *b, const char *at, const TargetScene *scene,
+                      double (*target)[3])
+{
+    (void)model;
+    return build_target(b, key("%s", at), scene, target);
+}
+
+bool model_select(const Model *model, const Build *b, const char *at, const char *name, Indices *found)
+{
+    (void)model;
+    SelectionScene group = {.group = (char *)name};
+    return build_selection(b, key("%s", at), strcmp(name, "all") ? &group : NULL, found);
+}
+
+void model_places(const Model *model, const double *x, double *place)
+{
+    memcpy(place, x, 3 * (size_t)model->point_count * sizeof *place);
+}
+
+/* ---- Cases ---- */
+
+bool model_start_cases(Model *model, const Build *b, const bool *fixed)
+{
+    const BodyOps *ops = model->body->ops;
+    const World *world = model->world;
+    int load = params_find(model->params, "load")->offset;
+    double *mass = mem_alloc((size_t)model->point_count, sizeof *mass);
+    ops->masses(model, mass);
+    bool ok = true, borne = world && (world->obstacle_count || world->self);
+    for (int k = 0; ok && k < model->case_count; k++) {
+        Case *c = &model->cases[k];
+        Error err;
+        case_start(c, ops->system(model, model->job->motion), model->x);
+        system_accept(c->sys, c->state.x, c->state.memory);
+        for (int s = 0; ok && model->job->rest && !borne && s < c->stage_count; s++)
+            ok = rigid_check_force(b->mesh, fixed, mass, c->stages[s].p + model->gravity,
+                                   c->stages[s].p + load, &err) ||
+                 yaml_refuse(b->file, "", "%s", err.text);
+    }
+    mem_free(mass);
+    return ok;
 }

@@ -52,15 +52,6 @@ void solid_destroy(Solid *solid)
     mem_free(solid);
 }
 
-static double mean_edge(const Mesh *mesh)
-{
-    double sum = 0;
-    for (int e = 0; e < mesh->edge_count; e++)
-        sum += vec3_length(
-            vec3_sub(vec3_load(mesh->rest[mesh->edges[e][0]]), vec3_load(mesh->rest[mesh->edges[e][1]])));
-    return sum / mesh->edge_count;
-}
-
 WorldBody solid_world_body(const Solid *solid)
 {
     const Mesh *skin = solid->tets->skin;
@@ -72,7 +63,7 @@ WorldBody solid_world_body(const Solid *solid)
                        .rest = (const double(*)[3])skin->rest,
                        .part = skin->vertex_component,
                        .fixed = solid->fixed,
-                       .thickness = mean_edge(skin) / 5};
+                       .thickness = mesh_mean_edge(skin) / 5};
 }
 
 static void add_kinetic_terms(const Solid *solid, System *sys)

@@ -439,3 +439,12 @@ double mesh_diagonal(const Mesh *mesh)
     mesh_bounding_box(mesh, low, high);
     return vec3_length(vec3_sub(vec3_load(high), vec3_load(low)));
 }
+
+double mesh_mean_edge(const Mesh *mesh)
+{
+    double sum = 0;
+    for (int e = 0; e < mesh->edge_count; e++)
+        sum += vec3_length(
+            vec3_sub(vec3_load(mesh->rest[mesh->edges[e][0]]), vec3_load(mesh->rest[mesh->edges[e][1]])));
+    return sum / mesh->edge_count;
+}

@@ -109,3 +109,6 @@ double mesh_diagonal(const Mesh *mesh);
 /* The group of that name and dimension (0 vertices, 1 edges, 2 faces, 3 cells), or NULL: one name may stand for a
  * surface, a curve and points at once. */
 const MeshGroup *mesh_group(const Mesh *mesh, const char *name, int dim);
+
+/* The mean length of its edges at rest, m. */
+double mesh_mean_edge(const Mesh *mesh);

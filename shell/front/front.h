@@ -6,7 +6,6 @@
 
 /* records.c: shells in the journal. */
 void shell_add_static(const Model *model, Arrays *list);
-void shell_places(const Model *model, const double *x, double *place);
 void shell_add_frame(const Model *model, const Snapshot *shot, bool whole, Arrays *list);
 void shell_add_state(const Model *model, const Snapshot *shot, const char *prefix, Arrays *list);
 

@@ -23,11 +23,6 @@ void shell_add_static(const Model *model, Arrays *list)
     add_edges(mesh, list);
 }
 
-void shell_places(const Model *model, const double *x, double *place)
-{
-    memcpy(place, x, 3 * (size_t)model->point_count * sizeof *place);
-}
-
 void shell_add_frame(const Model *model, const Snapshot *shot, bool whole, Arrays *list)
 {
     const Shell *shell = model->self;

@@ -11,15 +11,6 @@ static const double CRUSHED = 0.05;       /* of its area: less is none          
 static const double NEARLY_CRUSHED = 0.2; /* .. where no next state was found              */
 static const double CELLS_PER_LENGTH = 3; /* of the magnetic bending length, at least      */
 
-static double mean_edge(const Mesh *mesh)
-{
-    double sum = 0;
-    for (int e = 0; e < mesh->edge_count; e++)
-        sum += vec3_length(
-            vec3_sub(vec3_load(mesh->rest[mesh->edges[e][0]]), vec3_load(mesh->rest[mesh->edges[e][1]])));
-    return sum / mesh->edge_count;
-}
-
 /* Of a case, over the whole time of a motion; of an unknown field its bounds. */
 static double largest_field(const Model *model, const Scene *scene, const double *p)
 {
@@ -70,7 +61,7 @@ void shell_advise(Model *model, const Scene *scene)
         mesh_warn(&model->report,
                   "the thickness, %.3g m, is more than a fifth of the body's size, %.3g m: no thin shell",
                   shell->thickness, size);
-    if (bending_length(model, scene) < CELLS_PER_LENGTH * mean_edge(shell->mesh))
+    if (bending_length(model, scene) < CELLS_PER_LENGTH * mesh_mean_edge(shell->mesh))
         mesh_warn(
             &model->report,
             "fewer than %g cells over the magnetic bending length: the mesh is too coarse for this field",
@@ -93,7 +84,7 @@ char *shell_describe(const Model *model, const Scene *scene)
     double length = bending_length(model, scene);
     if (!isfinite(length)) return text;
     char *line =
-        mem_format("magnetic bending length: %.3g m, %.3g cells\n", length, length / mean_edge(mesh));
+        mem_format("magnetic bending length: %.3g m, %.3g cells\n", length, length / mesh_mean_edge(mesh));
     text = mem_join(text, line, "");
     mem_free(line);
     return text;
@@ -135,6 +126,6 @@ char *shell_crushed(const Model *model, const Snapshot *shot, bool failed)
 void shell_dof_sizes(const Model *model, double *size)
 {
     const Shell *shell = model->self;
-    double edge = mean_edge(shell->mesh);
+    double edge = mesh_mean_edge(shell->mesh);
     for (int i = 0; i < shell_dof_count(shell); i++) size[i] = i < 3 * model->point_count ? edge : 1;
 }

@@ -3,24 +3,10 @@
 #include "job/jobs.h"
 #include "solid/front/front.h"
 #include "solid/front/mesh.h"
-#include "surface/rigid.h"
 #include <math.h>
 #include <string.h>
 
-/* ---- Loads and targets ---- */
-
-static bool put_loads(Model *model, const Build *b, const char *at, const LoadScene *loads, int count,
-                      double *p)
-{
-    return build_loads(b, key("%s", at), loads, count, p + ((const Solid *)model->self)->load);
-}
-
-static bool put_target(Model *model, const Build *b, const char *at, const TargetScene *scene,
-                       double (*target)[3])
-{
-    (void)model;
-    return build_target(b, key("%s", at), scene, target);
-}
+/* ---- Parameters ---- */
 
 static double *base_params(Model *model, const Scene *scene, const Build *b)
 {
@@ -65,29 +51,6 @@ static System *make_system(const Model *model, bool motion)
     return solid_system(model->self, motion);
 }
 
-/* Systems last: fields and what is held are known by then. An equilibrium needs forces in balance, unless there is something
- * that may bear them. */
-static bool finish_cases(Model *model, const Build *b)
-{
-    const World *world = model->world;
-    const Solid *solid = model->self;
-    double *mass = mem_alloc((size_t)model->point_count, sizeof *mass);
-    solid_node_mass(solid, mass);
-    bool ok = true, borne = world && (world->obstacle_count || world->self);
-    for (int k = 0; ok && k < model->case_count; k++) {
-        Case *c = &model->cases[k];
-        Error err;
-        case_start(c, make_system(model, model->job->motion), model->x);
-        system_accept(c->sys, c->state.x, c->state.memory);
-        for (int s = 0; ok && model->job->rest && !borne && s < c->stage_count; s++)
-            ok = rigid_check_force(b->mesh, solid->fixed, mass, c->stages[s].p + solid->gravity,
-                                   c->stages[s].p + solid->load, &err) ||
-                 yaml_refuse(b->file, "", "%s", err.text);
-    }
-    mem_free(mass);
-    return ok;
-}
-
 /* Faces of the surface that have the layer. */
 static bool put_skin(Solid *solid, const Build *b, const SkinScene *skin)
 {
@@ -111,7 +74,7 @@ static bool fill(Model *model, const Scene *scene, const Build *b, bool readable
     double *p = base_params(model, scene, b);
     ok = p && model_cases(model, b, scene, p) && ok;
     mem_free(p);
-    return ok && finish_cases(model, b) &&
+    return ok && model_start_cases(model, b, solid->fixed) &&
            (!model->job->motion ||
             model_velocity(model, b, "solid.velocity", from->velocity, b->mesh->rest[0]));
 }
@@ -191,13 +154,6 @@ static bool put_vectors(Model *model, const Build *b, const char *at, const Vect
                                                  : build_cell_vectors(b, key("%s", at), scene, values);
 }
 
-static bool select_part(const Model *model, const Build *b, const char *at, const char *name, Indices *found)
-{
-    (void)model;
-    SelectionScene group = {.group = (char *)name};
-    return build_selection(b, key("%s", at), strcmp(name, "all") ? &group : NULL, found);
-}
-
 static void masses(const Model *model, double *mass)
 {
     solid_node_mass(model->self, mass);
@@ -211,11 +167,11 @@ static const Likeness likeness[] = {
 static const BodyOps ops = {
     .create = create,
     .destroy = destroy,
-    .put_loads = put_loads,
-    .put_target = put_target,
+    .put_loads = model_put_loads,
+    .put_target = model_put_target,
     .put_numbers = put_numbers,
     .put_vectors = put_vectors,
-    .select = select_part,
+    .select = model_select,
     .masses = masses,
     .move = model_move_held,
     .system = make_system,
@@ -224,7 +180,7 @@ static const BodyOps ops = {
     .add_state = solid_add_state,
     .add_final = run_add_stability,
     .likeness = likeness,
-    .places = solid_places,
+    .places = model_places,
     .crushed = solid_crushed,
     .crushed_as = NEWTON_TANGLED,
     .describe = solid_describe,

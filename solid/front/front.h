@@ -7,7 +7,6 @@
 
 /* records.c: solids in the journal. */
 void solid_add_static(const Model *model, Arrays *list);
-void solid_places(const Model *model, const double *x, double *place);
 void solid_add_frame(const Model *model, const Snapshot *shot, bool whole, Arrays *list);
 void solid_add_state(const Model *model, const Snapshot *shot, const char *prefix, Arrays *list);
 

@@ -24,11 +24,6 @@ void solid_add_static(const Model *model, Arrays *list)
         arrays_add(list, array_int("file_vertex", surface->file_vertex, 1, surface->vertex_count, 0));
 }
 
-void solid_places(const Model *model, const double *x, double *place)
-{
-    memcpy(place, x, 3 * (size_t)model->point_count * sizeof *place);
-}
-
 /* A number, or width of them, for each cell: NaN in those that have none. */
 static double *empty(const Solid *solid, int width, Arrays *list)
 {

@@ -8,15 +8,6 @@ static const double LARGE_BODY = 2; /* m: most likely a mesh in millimetres     
 static const double LOCKED_FROM =
     0.47; /* Poisson's ratio from which plain quadratic tetrahedra are too stiff */
 
-static double mean_edge(const Mesh *mesh)
-{
-    double sum = 0;
-    for (int e = 0; e < mesh->edge_count; e++)
-        sum += vec3_length(
-            vec3_sub(vec3_load(mesh->rest[mesh->edges[e][0]]), vec3_load(mesh->rest[mesh->edges[e][1]])));
-    return sum / mesh->edge_count;
-}
-
 void solid_advise(Model *model, const Scene *scene)
 {
     const Solid *solid = model->self;
@@ -71,6 +62,6 @@ char *solid_crushed(const Model *model, const Snapshot *shot, bool failed)
 /* An edge's length. */
 void solid_dof_sizes(const Model *model, double *size)
 {
-    double edge = mean_edge(((const Solid *)model->self)->tets->skin);
+    double edge = mesh_mean_edge(((const Solid *)model->self)->tets->skin);
     for (int i = 0; i < solid_dof_count(model->self); i++) size[i] = edge;
 }
