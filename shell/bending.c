@@ -14,6 +14,7 @@
 #include "base/vec3.h"
 #include "shell/hinge.h"
 #include "shell/terms.h"
+#include "shell/turn.h"
 #include "solve/element.h"
 
 enum { FLAP = 9, ALPHA = 18 };
@@ -30,6 +31,7 @@ typedef struct Bending {
     const Shell *shell;
     BendingPack *packs;
     int (*flap)[3]; /* [face] vertex of each flap */
+    Turn *turn;
 } Bending;
 
 /* One evaluation of a pack. */
@@ -290,9 +292,16 @@ static int bending_memory(const void *self, double *rest)
     return packs * 3 * PACK_LANES;
 }
 
+/* What a step turns it must not stretch: that would cost more than all bending gains. */
+static void bending_follow(void *self, const double *x, const double *d, double a, double *to)
+{
+    turn_follow(((Bending *)self)->turn, x, d, a, to);
+}
+
 static void bending_destroy(void *self)
 {
     Bending *bending = self;
+    turn_destroy(bending->turn);
     mem_free(bending->packs);
     mem_free(bending->flap);
     mem_free(bending);
@@ -306,6 +315,7 @@ static const TermOps bending_ops = {
     .eval = bending_eval,
     .param = bending_param,
     .param_forward = bending_param_forward,
+    .follow = bending_follow,
     .accept = bending_accept,
     .memory = bending_memory,
     .destroy = bending_destroy,
@@ -359,6 +369,7 @@ Term shell_bending_term(const Shell *shell)
     Bending *bending = mem_alloc(1, sizeof *bending);
     int faces = shell->mesh->face_count, packs = (faces + PACK_LANES - 1) / PACK_LANES;
     bending->shell = shell;
+    bending->turn = turn_create(shell);
     bending->packs = mem_alloc((size_t)packs, sizeof *bending->packs);
     bending->flap = mem_alloc((size_t)faces, sizeof *bending->flap);
     for (int k = 0; k < packs * PACK_LANES; k++) {

@@ -7,6 +7,7 @@
 #include "solve/kinetic.h"
 #include "solve/lumped.h"
 #include "surface/magnetic.h"
+#include "surface/membrane.h"
 
 /* Of D, for bodies with free rigid motions: decides nothing physical, drifts less than 1e-7 of the size
  * (docs/newton.md). */
@@ -162,21 +163,23 @@ void shell_vertex_mass(const Shell *shell, double *mass)
             mass[mesh->faces[f][i]] += shell->density * shell->thickness * mesh->rest_area[f] / 3;
 }
 
+/* All faces, each with its own parameters. */
+static FaceLayer layer_of(const Shell *shell)
+{
+    return face_layer(shell->mesh, shell->thickness, NULL, NULL);
+}
+
+Term shell_membrane_term(const Shell *shell)
+{
+    return membrane_term(layer_of(shell), &(MembraneDef){shell->poisson, shell->young});
+}
+
 Term shell_magnetic_term(const Shell *shell)
 {
-    const Mesh *mesh = shell->mesh;
-    double *volume = mem_alloc((size_t)mesh->face_count, sizeof *volume);
-    for (int f = 0; f < mesh->face_count; f++) volume[f] = mesh->rest_area[f] * shell->thickness;
-    Term term = magnetic_surface_term(&(MagneticSurfaceDef){.face_count = mesh->face_count,
-                                                            .faces = mesh->faces,
-                                                            .rest = mesh->rest,
-                                                            .volume = volume,
-                                                            .magnetization = shell->magnetization,
-                                                            .flux_density = shell->flux_density,
-                                                            .field_scale = shell->field_scale,
-                                                            .fields = &shell->fields});
-    mem_free(volume);
-    return term;
+    return magnetic_surface_term(layer_of(shell), &(MagneticSurfaceDef){.magnetization = shell->magnetization,
+                                                                        .flux_density = shell->flux_density,
+                                                                        .field_scale = shell->field_scale,
+                                                                        .fields = &shell->fields});
 }
 
 Term shell_gravity_term(const Shell *shell)

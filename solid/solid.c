@@ -109,33 +109,18 @@ void solid_node_mass(const Solid *solid, double *mass)
             (i % tets->each < 4 ? corner : middle) * solid->density * tets->volume[i / tets->each];
 }
 
-/* A skin face has a quarter of the area of the face that it is a part of, where that is in four. */
+/* The skin: quadratic tetrahedra have faces in four parts. */
+static FaceLayer skin_of(const Solid *solid)
+{
+    return face_layer(solid->tets->skin, solid->skin, solid->tets->skin_face, solid->skin_on);
+}
+
 Term solid_magnetic_term(const Solid *solid)
 {
-    const Mesh *skin = solid->tets->skin;
-    size_t faces = (size_t)skin->face_count;
-    int(*list)[3] = mem_alloc(faces, sizeof *list), *row = mem_alloc(faces, sizeof *row), count = 0;
-    double *volume = mem_alloc(faces, sizeof *volume);
-    for (int f = 0; solid->skin > 0 && f < skin->face_count; f++) {
-        int face = solid->tets->skin_face[f];
-        if (solid->skin_on && !solid->skin_on[face]) continue;
-        memcpy(list[count], skin->faces[f], sizeof *list);
-        row[count] = face;
-        volume[count++] = skin->rest_area[f] * solid->skin;
-    }
-    Term term = magnetic_surface_term(&(MagneticSurfaceDef){.face_count = count,
-                                                            .faces = list,
-                                                            .rows = row,
-                                                            .rest = skin->rest,
-                                                            .volume = volume,
-                                                            .magnetization = solid->magnetization,
-                                                            .flux_density = solid->flux_density,
-                                                            .field_scale = solid->field_scale,
-                                                            .fields = &solid->fields});
-    mem_free(list);
-    mem_free(row);
-    mem_free(volume);
-    return term;
+    return magnetic_surface_term(skin_of(solid), &(MagneticSurfaceDef){.magnetization = solid->magnetization,
+                                                                       .flux_density = solid->flux_density,
+                                                                       .field_scale = solid->field_scale,
+                                                                       .fields = &solid->fields});
 }
 
 Term solid_gravity_term(const Solid *solid)

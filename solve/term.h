@@ -104,8 +104,8 @@ typedef struct TermOps {
     double (*reach)(const void *self, const Point *at, const double *d);
 
     /* Moves `to`, which is x + a d, to where the motion that begins at x with velocity d is better said to be after the time
-     * a: the same to first order in a; whole vectors. Such a term's Hessian heeds Point.x_from. NULL where the straight way
-     * is as good. */
+     * a: the same to first order in a; whole vectors. A Hessian of what stretches heeds Point.x_from then. NULL where the
+     * straight way is as good. */
     void (*follow)(void *self, const double *x, const double *d, double a, double *to);
 
     /* Makes a trial x, to which a step leads from the admissible one at `from`, admissible: what follows from other dofs

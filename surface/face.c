@@ -1,5 +1,7 @@
 #include "surface/face.h"
+#include "base/memory.h"
 #include "base/vec3.h"
+#include <string.h>
 
 FaceFrame face_frame(double (*rest)[3], const int *face)
 {
@@ -26,4 +28,30 @@ void face_gradients(double (*rest)[3], const int *face, double b[3][2])
         b[i][0] = vec3_dot(vec3_load(frame.hat[i]), along);
         b[i][1] = vec3_dot(vec3_load(frame.hat[i]), across);
     }
+}
+
+FaceLayer face_layer(const Mesh *mesh, double thickness, const int *rows, const bool *on)
+{
+    size_t faces = (size_t)mesh->face_count;
+    FaceLayer layer = {.faces = mem_alloc(faces, sizeof *layer.faces),
+                       .rows = mem_alloc(faces, sizeof *layer.rows),
+                       .volume = mem_alloc(faces, sizeof *layer.volume),
+                       .rest = mesh->rest};
+    for (int f = 0; thickness > 0 && f < mesh->face_count; f++) {
+        int row = rows ? rows[f] : f, k = layer.count;
+        if (on && !on[row]) continue;
+        memcpy(layer.faces[k], mesh->faces[f], sizeof *layer.faces);
+        layer.rows[k] = row;
+        layer.volume[k] = mesh->rest_area[f] * thickness;
+        layer.count++;
+    }
+    return layer;
+}
+
+void face_layer_clear(FaceLayer *layer)
+{
+    mem_free(layer->faces);
+    mem_free(layer->rows);
+    mem_free(layer->volume);
+    *layer = (FaceLayer){0};
 }

@@ -2,6 +2,7 @@
  * numbers of its three vertices, which number places (rest[vertex]) and dofs (3*vertex + axis). */
 #pragma once
 #include "base/pack.h"
+#include "surface/mesh.h"
 
 static inline int face_pack_count(int face_count)
 {
@@ -36,5 +37,33 @@ static inline Pack face_param(int face_count, int pack, const double *values, in
 {
     Pack r;
     for (int l = 0; l < PACK_LANES; l++) r[l] = values[face_of_lane(face_count, pack, l) * width + component];
+    return r;
+}
+
+/* Faces that bear a layer of material: a shell's own, the skin of a solid. Its vertices may be some of a body's. */
+typedef struct FaceLayer {
+    int count;
+    int (*faces)[3];   /* [face] vertices, whichever way round; owned                           */
+    int *rows;         /* [face] its row in blocks of parameters; owned                         */
+    double *volume;    /* [face] m^3 at rest: area by thickness; owned                          */
+    double (*rest)[3]; /* [vertex] m; borrowed, and read only where a term is made of the layer */
+} FaceLayer;
+
+/* Of a mesh; rows NULL: each face has its own. Only of the faces whose row is on (NULL: all); of thickness 0 none. */
+FaceLayer face_layer(const Mesh *mesh, double thickness, const int *rows, const bool *on);
+void face_layer_clear(FaceLayer *layer);
+
+/* The row of the face in a lane of a pack. */
+static inline int face_layer_row(const FaceLayer *layer, int pack, int lane)
+{
+    return layer->rows[face_of_lane(layer->count, pack, lane)];
+}
+
+/* A component of the layer's faces, of values[row][width]. */
+static inline Pack face_layer_param(const FaceLayer *layer, int pack, const double *values, int width,
+                                    int component)
+{
+    Pack r;
+    for (int l = 0; l < PACK_LANES; l++) r[l] = values[face_layer_row(layer, pack, l) * width + component];
     return r;
 }

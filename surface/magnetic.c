@@ -16,9 +16,9 @@ typedef struct MagneticPack {
 } MagneticPack;
 
 typedef struct Magnetic {
+    FaceLayer layer;
     MagneticSurfaceDef def;
     MagneticPack *packs;
-    int (*faces)[3], *rows; /* copies; rows of all faces */
 } Magnetic;
 
 /* The current normal and its change with the vertices. */
@@ -29,7 +29,7 @@ typedef struct Normal {
 
 static int magnetic_count(const void *self)
 {
-    return ((const Magnetic *)self)->def.face_count;
+    return ((const Magnetic *)self)->layer.count;
 }
 
 static int magnetic_size(const void *self)
@@ -40,7 +40,7 @@ static int magnetic_size(const void *self)
 
 static void magnetic_dofs(const void *self, int face, int *dof)
 {
-    face_dofs(((const Magnetic *)self)->faces[face], dof);
+    face_dofs(((const Magnetic *)self)->layer.faces[face], dof);
 }
 
 static Pack3 barycentre(const Pack *x)
@@ -77,8 +77,7 @@ static Pack3 normal_gradient(const Normal *r, Pack3 b, int i)
 /* First entry in p of the magnetisation of the face in that lane. */
 static int magnetization_entry(const Magnetic *magnetic, int pack, int lane)
 {
-    int face = face_of_lane(magnetic->def.face_count, pack, lane);
-    return magnetic->def.magnetization + 3 * magnetic->rows[face];
+    return magnetic->def.magnetization + 3 * face_layer_row(&magnetic->layer, pack, lane);
 }
 
 static Pack3 magnetization_of(const Magnetic *magnetic, int pack, const double *values)
@@ -241,8 +240,7 @@ static void magnetic_destroy(void *self)
 {
     Magnetic *magnetic = self;
     mem_free(magnetic->packs);
-    mem_free(magnetic->faces);
-    mem_free(magnetic->rows);
+    face_layer_clear(&magnetic->layer);
     mem_free(magnetic);
 }
 
@@ -257,27 +255,22 @@ static const TermOps magnetic_ops = {
     .destroy = magnetic_destroy,
 };
 
-Term magnetic_surface_term(const MagneticSurfaceDef *def)
+Term magnetic_surface_term(FaceLayer layer, const MagneticSurfaceDef *def)
 {
     Magnetic *magnetic = mem_alloc(1, sizeof *magnetic);
-    int packs = face_pack_count(def->face_count);
-    magnetic->def = *def;
-    magnetic->faces = mem_copy(def->faces, (size_t)def->face_count, sizeof *magnetic->faces);
-    magnetic->rows = mem_alloc((size_t)def->face_count, sizeof *magnetic->rows);
-    for (int f = 0; f < def->face_count; f++) magnetic->rows[f] = def->rows ? def->rows[f] : f;
+    int packs = face_pack_count(layer.count);
+    magnetic->layer = layer, magnetic->def = *def;
     magnetic->packs = mem_alloc((size_t)packs, sizeof *magnetic->packs);
     for (int k = 0; k < packs * PACK_LANES; k++) {
-        int l = k % PACK_LANES, face = face_of_lane(def->face_count, k / PACK_LANES, l);
+        int l = k % PACK_LANES, face = face_of_lane(layer.count, k / PACK_LANES, l);
         MagneticPack *pack = &magnetic->packs[k / PACK_LANES];
-        FaceFrame frame = face_frame(def->rest, def->faces[face]);
+        FaceFrame frame = face_frame(layer.rest, layer.faces[face]);
         for (int i = 0; i < 3; i++)
             pack->hat[i].x[l] = frame.hat[i][0], pack->hat[i].y[l] = frame.hat[i][1],
             pack->hat[i].z[l] = frame.hat[i][2];
         pack->normal.x[l] = frame.normal[0], pack->normal.y[l] = frame.normal[1],
         pack->normal.z[l] = frame.normal[2];
-        pack->volume[l] = def->volume[face];
+        pack->volume[l] = layer.volume[face];
     }
-    magnetic->def.faces = NULL, magnetic->def.rows = NULL; /* the caller's, as are: */
-    magnetic->def.rest = NULL, magnetic->def.volume = NULL;
     return (Term){&magnetic_ops, magnetic};
 }

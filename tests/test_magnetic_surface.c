@@ -64,14 +64,15 @@ static void make(Skin *s, Random *random)
     for (int f = 0; f < FACES; f++) s->volume[f] = SIDE * SIDE / 2 * thickness[f];
     lay_out(s, random);
     s->sys = system_create(DOFS, &(DofClass){.count = DOFS, .size = SIDE}, 1);
-    system_add(s->sys, magnetic_surface_term(&(MagneticSurfaceDef){.face_count = FACES,
-                                                                   .faces = s->faces,
-                                                                   .rest = s->rest,
-                                                                   .volume = s->volume,
-                                                                   .magnetization = s->magnetization,
-                                                                   .flux_density = s->flux_density,
-                                                                   .field_scale = s->field_scale,
-                                                                   .fields = &s->fields}));
+    FaceLayer layer = {.count = FACES,
+                       .faces = mem_copy(faces, FACES, sizeof *faces),
+                       .rows = mem_copy((int[]){0, 1}, FACES, sizeof(int)),
+                       .volume = mem_copy(s->volume, FACES, sizeof(double)),
+                       .rest = s->rest};
+    system_add(s->sys, magnetic_surface_term(layer, &(MagneticSurfaceDef){.magnetization = s->magnetization,
+                                                                          .flux_density = s->flux_density,
+                                                                          .field_scale = s->field_scale,
+                                                                          .fields = &s->fields}));
     system_prepare(s->sys);
 }
 

@@ -2,11 +2,9 @@
  *
  * F = sum_i x_i b_i^T with the hat functions' rest gradients b_i (2-vectors in the face's rest plane),
  * G = (F^T F - I)/2, S = Y/(1-nu^2) ((1-nu) G + nu tr(G) I), E = A h/2 G:S. */
+#include "surface/membrane.h"
 #include "base/memory.h"
-#include "shell/terms.h"
-#include "shell/turn.h"
 #include "solve/element.h"
-#include "surface/face.h"
 
 typedef struct MembranePack {
     Pack b[3][2]; /* 1/m */
@@ -14,14 +12,14 @@ typedef struct MembranePack {
 } MembranePack;
 
 typedef struct Membrane {
-    const Shell *shell;
+    FaceLayer layer;
+    MembraneDef def;
     MembranePack *packs;
-    Turn *turn;
 } Membrane;
 
 static int membrane_count(const void *self)
 {
-    return ((const Membrane *)self)->shell->mesh->face_count;
+    return ((const Membrane *)self)->layer.count;
 }
 
 static int membrane_size(const void *self)
@@ -32,7 +30,7 @@ static int membrane_size(const void *self)
 
 static void membrane_dofs(const void *self, int face, int *dof)
 {
-    face_dofs(((const Membrane *)self)->shell->mesh->faces[face], dof);
+    face_dofs(((const Membrane *)self)->layer.faces[face], dof);
 }
 
 typedef struct Strain {
@@ -83,13 +81,13 @@ static void extrapolate(const Membrane *membrane, int pack, const Point *at, Str
         membrane_dofs(membrane, face_of_lane(membrane_count(membrane), pack, l), dof);
         for (int i = 0; i < 9; i++) x[i][l] = at->x_from[dof[i]], d[i][l] = at->step[dof[i]];
     }
-    Strain from = strain(face, membrane->shell->poisson, x);
+    Strain from = strain(face, membrane->def.poisson, x);
     Pack3 e0, e1;
     gradient(face, d, &e0, &e1);
     from.g00 += pack3_dot(from.f0, e0);
     from.g11 += pack3_dot(from.f1, e1);
     from.g01 += 0.5 * (pack3_dot(from.f0, e1) + pack3_dot(from.f1, e0));
-    set_stress(&from, membrane->shell->poisson);
+    set_stress(&from, membrane->def.poisson);
     s->s00 = from.s00, s->s01 = from.s01, s->s11 = from.s11;
 }
 
@@ -137,17 +135,23 @@ static void stiffness(const MembranePack *at, const Strain *s, double poisson, P
         }
 }
 
+/* Young's modulus, or its change, of values laid out as p. */
+static Pack young(const Membrane *membrane, int pack, const double *values)
+{
+    return face_layer_param(&membrane->layer, pack, values + membrane->def.young, 1, 0);
+}
+
 static Pack membrane_eval(const void *self, int pack, const Point *at, const Pack *x, Pack *g, Pack *H)
 {
     const Membrane *membrane = self;
-    const Shell *shell = membrane->shell;
+    double poisson = membrane->def.poisson;
     const MembranePack *face = &membrane->packs[pack];
-    Strain s = strain(face, shell->poisson, x);
-    Pack factor = face->volume * face_param(shell->mesh->face_count, pack, at->p + shell->young, 1, 0);
+    Strain s = strain(face, poisson, x);
+    Pack factor = face->volume * young(membrane, pack, at->p);
     Pack energy = 0.5 * factor * (s.g00 * s.s00 + 2 * s.g01 * s.s01 + s.g11 * s.s11);
     if (g) forces(face, &s, factor, g);
     if (H && at->x_from) extrapolate(membrane, pack, at, &s);
-    if (H) stiffness(face, &s, shell->poisson, factor, H);
+    if (H) stiffness(face, &s, poisson, factor, H);
     return energy;
 }
 
@@ -158,12 +162,12 @@ static void membrane_param(const void *self, int pack, int lanes, const Point *a
     (void)at;
     const Membrane *membrane = self;
     const MembranePack *face = &membrane->packs[pack];
-    Strain s = strain(face, membrane->shell->poisson, x);
+    Strain s = strain(face, membrane->def.poisson, x);
     Pack g[9], sum = {0};
     forces(face, &s, face->volume, g);
     for (int i = 0; i < 9; i++) sum += w[i] * g[i];
     for (int l = 0; l < lanes; l++)
-        dp[membrane->shell->young + face_of_lane(membrane_count(membrane), pack, l)] += sum[l];
+        dp[membrane->def.young + face_layer_row(&membrane->layer, pack, l)] += sum[l];
 }
 
 static void membrane_param_forward(const void *self, int pack, const Point *at, const Pack *x,
@@ -171,20 +175,14 @@ static void membrane_param_forward(const void *self, int pack, const Point *at, 
 {
     (void)at;
     const Membrane *membrane = self;
-    const Shell *shell = membrane->shell;
     const MembranePack *face = &membrane->packs[pack];
-    Strain s = strain(face, shell->poisson, x);
-    forces(face, &s, face->volume * face_param(shell->mesh->face_count, pack, dp + shell->young, 1, 0), r);
-}
-
-static void membrane_follow(void *self, const double *x, const double *d, double a, double *to)
-{
-    turn_follow(((Membrane *)self)->turn, x, d, a, to);
+    Strain s = strain(face, membrane->def.poisson, x);
+    forces(face, &s, face->volume * young(membrane, pack, dp), r);
 }
 
 static void membrane_destroy(void *self)
 {
-    turn_destroy(((Membrane *)self)->turn);
+    face_layer_clear(&((Membrane *)self)->layer);
     mem_free(((Membrane *)self)->packs);
     mem_free(self);
 }
@@ -197,25 +195,22 @@ static const TermOps membrane_ops = {
     .eval = membrane_eval,
     .param = membrane_param,
     .param_forward = membrane_param_forward,
-    .follow = membrane_follow,
     .destroy = membrane_destroy,
 };
 
-Term shell_membrane_term(const Shell *shell)
+Term membrane_term(FaceLayer layer, const MembraneDef *def)
 {
     Membrane *membrane = mem_alloc(1, sizeof *membrane);
-    membrane->shell = shell;
-    membrane->turn = turn_create(shell);
-    const Mesh *mesh = shell->mesh;
-    int packs = face_pack_count(mesh->face_count);
+    int packs = face_pack_count(layer.count);
+    membrane->layer = layer, membrane->def = *def;
     membrane->packs = mem_alloc((size_t)packs, sizeof *membrane->packs);
     for (int k = 0; k < packs * PACK_LANES; k++) {
-        int l = k % PACK_LANES, face = face_of_lane(mesh->face_count, k / PACK_LANES, l);
+        int l = k % PACK_LANES, face = face_of_lane(layer.count, k / PACK_LANES, l);
         MembranePack *pack = &membrane->packs[k / PACK_LANES];
         double b[3][2];
-        face_gradients(mesh->rest, mesh->faces[face], b);
+        face_gradients(layer.rest, layer.faces[face], b);
         for (int i = 0; i < 6; i++) pack->b[i / 2][i % 2][l] = b[i / 2][i % 2];
-        pack->volume[l] = mesh->rest_area[face] * shell->thickness;
+        pack->volume[l] = layer.volume[face];
     }
     return (Term){&membrane_ops, membrane};
 }
