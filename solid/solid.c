@@ -5,6 +5,7 @@
 #include "solve/kinetic.h"
 #include "solve/lumped.h"
 #include "surface/magnetic.h"
+#include "surface/membrane.h"
 #include "surface/rigid.h"
 #include <string.h>
 
@@ -20,7 +21,10 @@ Solid *solid_create(Tets *tets, const SolidDef *def, const FluxFields *fields)
                      .density = def->density,
                      .averaging = def->averaging,
                      .skin = def->skin,
-                     .magnetization = -1};
+                     .film = def->film,
+                     .film_poisson = def->film_poisson,
+                     .magnetization = -1,
+                     .skin_young = -1};
     if (fields) solid->fields = *fields;
     int nodes = tets_node_count(tets);
     solid->fixed = mem_alloc(3 * (size_t)nodes, sizeof(bool));
@@ -30,6 +34,8 @@ Solid *solid_create(Tets *tets, const SolidDef *def, const FluxFields *fields)
     if (skin)
         solid->magnetization =
             params_add(params, "magnetization", "A/m", tets->surface->face_count, 3, false);
+    if (def->film)
+        solid->skin_young = params_add(params, "skin_young", "Pa", tets->surface->face_count, 1, false);
     solid->volume_magnetization =
         params_add(params, skin ? "volume_magnetization" : "magnetization", "A/m", tets->count, 3, false);
     solid->flux_density = params_add(params, "flux_density", "T", 1, 3, true);
@@ -96,6 +102,7 @@ void solid_default_params(const Solid *solid, double *p)
 {
     memset(p, 0, (size_t)solid->params.size * sizeof *p);
     for (int t = 0; t < solid->tets->count; t++) p[solid->young + t] = 1e6;
+    for (int f = 0; solid->film && f < solid->tets->surface->face_count; f++) p[solid->skin_young + f] = 1e6;
     for (int k = 0; k < solid->fields.count; k++) p[solid->field_scale + k] = 1;
 }
 
@@ -109,18 +116,25 @@ void solid_node_mass(const Solid *solid, double *mass)
             (i % tets->each < 4 ? corner : middle) * solid->density * tets->volume[i / tets->each];
 }
 
-/* The skin: quadratic tetrahedra have faces in four parts. */
-static FaceLayer skin_of(const Solid *solid)
+/* The skin, or of thickness 0 none: quadratic tetrahedra have faces in four parts. */
+static FaceLayer skin_of(const Solid *solid, double thickness)
 {
-    return face_layer(solid->tets->skin, solid->skin, solid->tets->skin_face, solid->skin_on);
+    return face_layer(solid->tets->skin, thickness, solid->tets->skin_face, solid->skin_on);
+}
+
+Term solid_membrane_term(const Solid *solid)
+{
+    return membrane_term(skin_of(solid, solid->film ? solid->skin : 0),
+                         &(MembraneDef){solid->film_poisson, solid->skin_young});
 }
 
 Term solid_magnetic_term(const Solid *solid)
 {
-    return magnetic_surface_term(skin_of(solid), &(MagneticSurfaceDef){.magnetization = solid->magnetization,
-                                                                       .flux_density = solid->flux_density,
-                                                                       .field_scale = solid->field_scale,
-                                                                       .fields = &solid->fields});
+    return magnetic_surface_term(skin_of(solid, solid->skin),
+                                 &(MagneticSurfaceDef){.magnetization = solid->magnetization,
+                                                       .flux_density = solid->flux_density,
+                                                       .field_scale = solid->field_scale,
+                                                       .fields = &solid->fields});
 }
 
 Term solid_gravity_term(const Solid *solid)

@@ -1,4 +1,4 @@
-/* solid.h - an elastic solid of tetrahedra, whose skin may be magnetised: geometry at rest, material constants, parameter
+/* solid.h - an elastic solid of tetrahedra, whose skin may be magnetised, and may be a film: geometry at rest, material constants, parameter
  * layout and what is held.
  *
  * Dofs: 3 node_count positions, m. Energies: docs/theory.md, solids. */
@@ -23,7 +23,9 @@ typedef struct Solid {
      * patch of them (tet_patches.h). Of SOLID_NEO_HOOKEAN only, else 0; of quadratic ones at most 0.6: more collapses in
      * compression. Its energy is `mean_dilation`. */
     double averaging;
-    double skin;   /* m, thickness of the magnetised layer; 0: there is none                             */
+    double skin; /* m, thickness of the layer on the surface; 0: there is none                         */
+    bool film;   /* the layer resists stretching, with film_poisson and a modulus of its own           */
+    double film_poisson;
     bool *skin_on; /* [surface face] has it the layer? owned; NULL: all                                  */
     FluxFields
         fields;   /* parts of the flux density that vary in space; owned                                */
@@ -33,6 +35,7 @@ typedef struct Solid {
     Params params;            /* blocks and their first entries in p:                       */
     int young;                /* [tet] Pa                                                   */
     int magnetization;        /* [surface face][3] A/m, of the skin, in material space; -1: there is none */
+    int skin_young;           /* [surface face] Pa, of the film; -1: there is none                        */
     int volume_magnetization; /* [tet][3] A/m, in material space                            */
     int flux_density;         /* [3] T, the uniform part                                    */
     int gravity;              /* [3] m/s^2                                                  */
@@ -44,10 +47,13 @@ typedef struct Solid {
 typedef struct SolidDef {
     SolidMaterial material;
     double poisson, density, averaging, skin;
+    bool film;
+    double film_poisson;
 } SolidDef;
 
 /* Takes the tetrahedra and the fields (NULL: none). Sets up the blocks of parameters, and nothing held. The block of the skin's
- * magnetisation is named `magnetization`, or, without a skin, that of the volume, which else is `volume_magnetization`. */
+ * magnetisation is named `magnetization`, or, without a skin, that of the volume, which else is `volume_magnetization`; that of
+ * a film's modulus `skin_young`. */
 Solid *solid_create(Tets *tets, const SolidDef *def, const FluxFields *fields);
 void solid_destroy(Solid *solid);
 
@@ -62,7 +68,7 @@ WorldBody solid_world_body(const Solid *solid);
 /* All terms over the solid's dofs, prepared, with inertia and damping for steps of time. The solid must outlive it. */
 System *solid_system(const Solid *solid, bool motion);
 
-/* Default values of every block: young 1e6, field_scale 1, the rest 0. p[params.size]. */
+/* Default values of every block: young and skin_young 1e6, field_scale 1, the rest 0. p[params.size]. */
 void solid_default_params(const Solid *solid, double *p);
 
 /* Lumped mass of each node, kg: corners of quadratic tetrahedra bear 1/36 of them, middles 4/27 [Hinton, Rock, Zienkiewicz

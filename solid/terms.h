@@ -7,6 +7,7 @@
     X(elastic)         /* hyperelastic tetrahedra, linear or quadratic                                 */    \
     X(mean_dilation)   /* the part of it that depends on mean volumes: averaging                       */    \
     X(magnetic)        /* hard-magnetic work of the skin -A h (F M).B    [Chen 2022, eq. 24 and 6.4]   */    \
+    X(membrane)        /* stretch of a film on the skin            [Chen 2022, eqs. 18, 22]            */    \
     X(volume_magnetic) /* and of magnetised volumes, -V (F M).B                                        */    \
     X(gravity)         /* weight of the lumped masses                                                  */    \
     X(load)            /* dead loads on the nodes                                                      */

@@ -94,3 +94,26 @@ static inline void solid_map(SolidBody *b, const double A[3][3])
         b->state.x[i] = row[0] * X[0] + row[1] * X[1] + row[2] * X[2];
     }
 }
+
+/* Derivatives of psi to the principal stretches, of Young's modulus 1, from the definitions. */
+static inline double solid_stress(SolidMaterial material, double poisson, const double s[3], int i)
+{
+    double mu = 0.5 / (1 + poisson), lambda = poisson / (1 + poisson) / (1 - 2 * poisson);
+    double J = s[0] * s[1] * s[2], trace = 0.5 * (s[0] * s[0] + s[1] * s[1] + s[2] * s[2] - 3);
+    if (material == SOLID_ST_VENANT_KIRCHHOFF) return s[i] * (lambda * trace + mu * (s[i] * s[i] - 1));
+    double slope = material == SOLID_NEO_HOOKEAN ? (lambda + mu) * (J - 1) - mu : (lambda * log(J) - mu) / J;
+    return mu * s[i] + slope * J / s[i];
+}
+
+/* The stretch of the free sides, at which they bear nothing; loaded: how many axes are pulled. */
+static inline void solid_free_stretch(SolidMaterial material, double poisson, int loaded, double s[3])
+{
+    double low = 0.5, high = 1.5;
+    for (int k = 0; k < 100; k++) {
+        for (int i = loaded; i < 3; i++) s[i] = 0.5 * (low + high);
+        if (solid_stress(material, poisson, s, 2) > 0)
+            high = s[2];
+        else
+            low = s[2];
+    }
+}

@@ -125,7 +125,7 @@ MeshOfASolidKeys = TypedDict("MeshOfASolidKeys", {
 }, total=False)
 
 Skin = TypedDict("Skin", {
-    "thickness": "Number", "magnetization": "Magnetization", "on": "Number",
+    "thickness": "Number", "magnetization": "Magnetization", "young": "Young", "poisson": "float", "on": "Number",
 }, total=False)
 
 Spline = TypedDict("Spline", {

@@ -22,6 +22,8 @@ static double *base_params(Model *model, const Scene *scene, const Build *b)
         ok = build_face_vectors(b, key("solid.skin.magnetization"), &s->skin->magnetization,
                                 p + solid->magnetization) &&
              ok;
+    if (solid->film)
+        ok = build_face_numbers(b, key("solid.skin.young"), s->skin->young, p + solid->skin_young) && ok;
     memcpy(p + solid->gravity, s->gravity, sizeof s->gravity);
     p[solid->damping] = s->damping;
     ok = build_loads(b, key("loads"), scene->loads, scene->loads_count, p + solid->load) && ok;
@@ -89,8 +91,12 @@ static bool check(const SolidScene *from, YamlFile *file)
             file, "solid.poisson",
             "a Poisson's ratio of 0.5 forbids every change of volume, which positions of nodes cannot obey: "
             "take less, 0.49 at most for good results");
-    bool ok = from->averaging == 0 || from->material == SOLID_NEO_HOOKEAN ||
-              yaml_refuse(file, "solid.averaging", "averaging is for the material neo_hookean");
+    const SkinScene *skin = from->skin;
+    bool ok =
+        !skin || !skin->young || !isnan(skin->poisson) ||
+        yaml_refuse(file, "solid.skin.young", "a film needs its Poisson's ratio, too: solid.skin.poisson");
+    ok = ok && (from->averaging == 0 || from->material == SOLID_NEO_HOOKEAN ||
+                yaml_refuse(file, "solid.averaging", "averaging is for the material neo_hookean"));
     return ok &&
            (from->order == TET_LINEAR || from->averaging <= MOST_AVERAGED ||
             yaml_refuse(file, "solid.averaging",
@@ -115,7 +121,9 @@ static bool create(Model *model, const Scene *scene, YamlFile *file)
                     .poisson = from->poisson,
                     .density = from->density,
                     .averaging = from->averaging,
-                    .skin = from->skin ? from->skin->thickness : 0};
+                    .skin = from->skin ? from->skin->thickness : 0,
+                    .film = from->skin && from->skin->young,
+                    .film_poisson = from->skin ? from->skin->poisson : NAN};
     Solid *solid = model->self = solid_create(tets, &def, &fields);
     model->mesh = tets->surface;
     model->params = &solid->params;

@@ -40,14 +40,39 @@ static void add_cells(const Solid *solid, const char *name, const char *unit, co
                array_float(name, unit, values, width > 1 ? 2 : 1, cell_count(solid), width > 1 ? width : 0));
 }
 
+/* Does the face of the skin have the layer? */
+static bool has_layer(const Solid *solid, int face)
+{
+    return solid->skin > 0 && (!solid->skin_on || solid->skin_on[solid->tets->skin_face[face]]);
+}
+
 static void add_magnetization(const Solid *solid, const double *p, Arrays *list)
 {
     const Tets *tets = solid->tets;
     double *M = empty(solid, 3, list);
     memcpy(M, p + solid->volume_magnetization, 3 * (size_t)tets->count * sizeof *M);
-    for (int f = 0; solid->skin > 0 && f < tets->skin->face_count; f++)
-        memcpy(M + 3 * (tets->count + f), p + solid->magnetization + 3 * tets->skin_face[f], 3 * sizeof *M);
+    for (int f = 0; f < tets->skin->face_count; f++)
+        if (has_layer(solid, f))
+            memcpy(M + 3 * (tets->count + f), p + solid->magnetization + 3 * tets->skin_face[f],
+                   3 * sizeof *M);
     add_cells(solid, "cell/magnetization", "A/m", M, 3, list);
+}
+
+static void add_young(const Solid *solid, const double *p, Arrays *list)
+{
+    const Tets *tets = solid->tets;
+    double *young = empty(solid, 1, list);
+    memcpy(young, p + solid->young, (size_t)tets->count * sizeof *young);
+    for (int f = 0; solid->film && f < tets->skin->face_count; f++)
+        if (has_layer(solid, f)) young[tets->count + f] = p[solid->skin_young + tets->skin_face[f]];
+    add_cells(solid, "cell/young", "Pa", young, 1, list);
+}
+
+/* Is each of the term's elements a tetrahedron? The skin may have as many faces. */
+static bool is_of_tets(const Solid *solid, const Term *term)
+{
+    return term->ops->size(term->self) == 3 * solid->tets->each &&
+           term->ops->count(term->self) == solid->tets->count;
 }
 
 void solid_add_frame(const Model *model, const Snapshot *shot, bool whole, Arrays *list)
@@ -57,7 +82,7 @@ void solid_add_frame(const Model *model, const Snapshot *shot, bool whole, Array
     Point at = state_point(&shot->at, shot->p);
     for (int t = 0; t < system_term_count(sys); t++) {
         const Term *term = system_term(sys, t);
-        if (term->ops->count(term->self) != solid->tets->count) continue;
+        if (!is_of_tets(solid, term)) continue;
         double *energy = empty(solid, 1, list);
         system_term_energy(sys, t, &at, energy);
         char *name = arrays_keep(list, mem_format("cell/energy_%s", term->ops->name));
@@ -65,9 +90,7 @@ void solid_add_frame(const Model *model, const Snapshot *shot, bool whole, Array
     }
     if (!whole) return;
     add_magnetization(solid, shot->p, list);
-    double *young = empty(solid, 1, list);
-    memcpy(young, shot->p + solid->young, (size_t)solid->tets->count * sizeof *young);
-    add_cells(solid, "cell/young", "Pa", young, 1, list);
+    add_young(solid, shot->p, list);
 }
 
 void solid_add_state(const Model *model, const Snapshot *shot, const char *prefix, Arrays *list)

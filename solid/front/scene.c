@@ -57,12 +57,19 @@ const YamlTable solid_mesh_table = {
 static const YamlTable skin_table = {
     .name = "skin",
     .size = sizeof(SkinScene),
-    .doc = "A magnetised layer on the surface of a solid, thin enough to bear nothing.",
+    .doc = "A thin layer on the surface of a solid: magnetised, and with a Young's modulus of its own a film "
+           "that "
+           "resists "
+           "stretching (not bending).",
     .fields = (const YamlField[]){
         {YAML_NUMBER(SkinScene, thickness), .unit = "m", .range = "(0, inf)", .required = true,
          .doc = "of the layer"},
         {YAML_TABLE(SkinScene, magnetization, &magnetization_table), .fallback = "[0, 0, 0]",
          .doc = "its remanent magnetisation, per face of the surface"},
+        {YAML_OPTIONAL(SkinScene, young, &young_table),
+         .doc = "of a film: its Young's modulus, per face of the surface; without, the layer bears nothing"},
+        {YAML_NUMBER(SkinScene, poisson), .when = "young", .range = "[0, 0.5]",
+         .doc = "of a film, which needs it: its Poisson's ratio"},
         {YAML_TEXT(SkinScene, on), .doc = "the group of faces that it is on; all of the surface if absent"},
         {0}}};
 
@@ -90,7 +97,7 @@ const YamlTable solid_table = {
          .doc = "part of the resistance to changes of volume that is taken of means, against locking: over a "
                 "quadratic "
                 "tetrahedron (at most 0.6), or over a patch of linear ones"},
-        {YAML_OPTIONAL(SolidScene, skin, &skin_table), .doc = "a magnetised layer on its surface"},
+        {YAML_OPTIONAL(SolidScene, skin, &skin_table), .doc = "a layer on its surface: magnetised, a film"},
         {YAML_TABLE(SolidScene, magnetization, &magnetization_table), .fallback = "[0, 0, 0]",
          .doc = "remanent magnetisation of the volume, per tetrahedron"},
         {YAML_OPTIONAL(SolidScene, pose, &pose_table), .when = "!/start",

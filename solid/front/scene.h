@@ -20,9 +20,10 @@ typedef struct SolidMeshScene {
     int *cells, n, layers, pattern, size_count, cells_count;
 } SolidMeshScene;
 
-/* The magnetised layer. */
+/* The layer on the surface: magnetised, and a film if it has a modulus. */
 typedef struct SkinScene {
-    double thickness;
+    double thickness, poisson; /* the latter NAN where there is none */
+    NumberScene *young;        /* NULL: none                         */
     VectorScene magnetization;
     char *on; /* group of faces; NULL: all of the surface */
 } SkinScene;
