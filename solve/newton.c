@@ -293,6 +293,14 @@ static NewtonStatus iterate(Search *s)
     return s->shift_kept > STALL_SHIFT ? NEWTON_STALLED : status;
 }
 
+/* Where a body is inside out its energy may well be stationary, but it is no equilibrium of such a body. */
+static bool ends_tangled(const Search *s)
+{
+    NewtonStatus status = s->info.status;
+    bool stationary = status == NEWTON_CONVERGED || status == NEWTON_SADDLE || status == NEWTON_NEUTRAL;
+    return stationary && system_tangles(s->sys, &s->at);
+}
+
 NewtonInfo newton_minimize(System *sys, const NewtonDef *def, const Point *at, State *state,
                            const NewtonObserver *observer)
 {
@@ -329,6 +337,7 @@ NewtonInfo newton_minimize(System *sys, const NewtonDef *def, const Point *at, S
             !observer->iteration(observer->self, &s.info))
             s.info.status = NEWTON_STOPPED;
     }
+    if (ends_tangled(&s)) s.info.status = NEWTON_TANGLED;
     mem_free(work);
     return s.info;
 }

@@ -51,12 +51,17 @@ char *solid_crushed(const Model *model, const Snapshot *shot, bool failed)
     const Solid *solid = model->self;
     int tet;
     double least = solid_least_jacobian(solid, shot->at.x, &tet);
-    (void)failed;
+    double young = shot->p[solid->young + tet];
+    if (failed && least > 0 && shot->status == NEWTON_TANGLED)
+        return mem_format(
+            "next, something would be turned inside out; tetrahedron %d is pressed most (det F is %.2g "
+            "there): what acts on it is too strong for its Young's modulus of %.3g Pa",
+            tet, least, young);
     if (least > 0) return NULL;
     return mem_format(
         "tetrahedron %d is turned inside out (det F is %.2g there): what acts on it is too strong for its "
         "Young's modulus of %.3g Pa, or it started so",
-        tet, least, shot->p[solid->young + tet]);
+        tet, least, young);
 }
 
 /* An edge's length. */
