@@ -126,6 +126,7 @@ static bool check_derivatives(const Model *model, const Scene *scene)
         Point own = system_term_point(c->sys, t, &at);
         if (term->ops->update) term->ops->update(term->self, &own);
         bool any = term->ops->count(term->self) > 0;
+        if (!any && !term->ops->update) continue; /* the scene has none of it: a solid without a film */
         if (any) term->ops->dofs(term->self, 0, dof);
         for (int i = 0; i < term->ops->size(term->self); i++) size[i] = any ? sizes[dof[i]] : 1;
         ok = print_errors(term->ops, check_at_sizes(term, model->params, &own, dofs, size, &random)) && ok;

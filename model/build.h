@@ -75,12 +75,12 @@ bool build_read_mesh(const char *path, double scale, MeshFile *file, Error *err)
  * it is 100 times as large as the mesh, or as small. */
 bool build_state(const Build *b, Key at, const char *path, double scale, MeshFile *file);
 
-/* values[face_count], values[edge_count], values[cell_count]; values[face_count][3], values[cell_count][3]. */
-bool build_face_numbers(const Build *b, Key at, const NumberScene *scene, double *values);
-bool build_edge_numbers(const Build *b, Key at, const NumberScene *scene, double *values);
-bool build_cell_numbers(const Build *b, Key at, const NumberScene *scene, double *values);
-bool build_face_vectors(const Build *b, Key at, const VectorScene *scene, double *values);
-bool build_cell_vectors(const Build *b, Key at, const VectorScene *scene, double *values);
+/* A number, or three, for each of the mesh's edges (dim 1), faces (2) or cells (3): values[count], values[count][3]. */
+bool build_numbers(const Build *b, Key at, int dim, const NumberScene *scene, double *values);
+bool build_vectors(const Build *b, Key at, int dim, const VectorScene *scene, double *values);
+
+/* "vertices", "edges", "faces", "tetrahedra". */
+extern const char *const build_elements[];
 
 /* The vertices of any entry with SELECTION_MEMBERS; NULL: all. found->items is the caller's. */
 #define SELECTION_OF(entry)                                                                                  \

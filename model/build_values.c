@@ -67,8 +67,8 @@ typedef struct Elements {
     int dim, corners, each, count;
 } Elements;
 
-static const char *const element_names[] = {"vertex", "edge", "face", "tetrahedron"},
-                         *const elements_names[] = {"vertices", "edges", "faces", "tetrahedra"};
+static const char *const element_names[] = {"vertex", "edge", "face", "tetrahedron"};
+const char *const build_elements[] = {"vertices", "edges", "faces", "tetrahedra"};
 
 static Elements elements_of(const Mesh *mesh, int dim)
 {
@@ -119,7 +119,7 @@ static bool from_table(const Build *b, Key at, const char *path, int width, Elem
               yaml_refuse(b->file, at.text, "%s", err.text);
     if (ok && table.rows != elements.count)
         ok = yaml_refuse(b->file, at.text, "%s has %d rows, and the mesh %d %s: one row per %s is needed",
-                         path, table.rows, elements.count, elements_names[elements.dim],
+                         path, table.rows, elements.count, build_elements[elements.dim],
                          element_names[elements.dim]);
     if (ok) memcpy(values, table.values, (size_t)table.rows * (size_t)width * sizeof *values);
     table_clear(&table);
@@ -134,7 +134,7 @@ static const MeshGroup *find_group(const Build *b, Key at, const char *name, int
     bool other = false;
     for (int d = 0; d <= 3; d++) other |= mesh_group(b->mesh, name, d) != NULL;
     if (other)
-        yaml_refuse(b->file, at.text, "the group '%s' has no %s", name, elements_names[dim]);
+        yaml_refuse(b->file, at.text, "the group '%s' has no %s", name, build_elements[dim]);
     else
         yaml_refuse(b->file, at.text, "the mesh has no group '%s'", name);
     return NULL;
@@ -239,7 +239,7 @@ static bool check_covered(const Build *b, Key at, const double *values, Elements
     if (!missing) return true;
     return yaml_refuse(b->file, at.text,
                        "%d %s are in no group listed here: give `other`, the value elsewhere", missing,
-                       elements_names[elements.dim]);
+                       build_elements[elements.dim]);
 }
 
 /* A range check for numbers that come from files and formulas; the table checks those in the scene. */
@@ -297,8 +297,9 @@ static bool fold_table(const Build *b, Key at, const char *path, double *values)
     return ok;
 }
 
-static bool fill_numbers(const Build *b, Key at, const NumberScene *scene, Elements elements, double *values)
+bool build_numbers(const Build *b, Key at, int dim, const NumberScene *scene, double *values)
 {
+    Elements elements = elements_of(b->mesh, dim);
     for (int e = 0; e < elements.count; e++) values[e] = scene->groups_count ? scene->other : scene->value;
     bool ok = true;
     if (scene->file && elements.dim == 1) ok = fold_table(b, key("%s.file", at.text), scene->file, values);
@@ -312,23 +313,9 @@ static bool fill_numbers(const Build *b, Key at, const NumberScene *scene, Eleme
            check_range(b, at, values, elements.count, elements.dim == 1);
 }
 
-bool build_face_numbers(const Build *b, Key at, const NumberScene *scene, double *values)
+bool build_vectors(const Build *b, Key at, int dim, const VectorScene *scene, double *values)
 {
-    return fill_numbers(b, at, scene, elements_of(b->mesh, 2), values);
-}
-
-bool build_edge_numbers(const Build *b, Key at, const NumberScene *scene, double *values)
-{
-    return fill_numbers(b, at, scene, elements_of(b->mesh, 1), values);
-}
-
-bool build_cell_numbers(const Build *b, Key at, const NumberScene *scene, double *values)
-{
-    return fill_numbers(b, at, scene, elements_of(b->mesh, 3), values);
-}
-
-static bool fill_vectors(const Build *b, Key at, const VectorScene *scene, Elements elements, double *values)
-{
+    Elements elements = elements_of(b->mesh, dim);
     int count = elements.count;
     for (int i = 0; i < 3 * count; i++)
         values[i] = scene->groups_count ? scene->other[i % 3] : scene->value[i % 3];
@@ -341,14 +328,4 @@ static bool fill_vectors(const Build *b, Key at, const VectorScene *scene, Eleme
         ok = from_formula(b, at, scene->formula, 3, scene->where, scene->where_count, elements, values);
     }
     return ok && put_vectors(b, at, scene, elements, values) && check_covered(b, at, values, elements, 3);
-}
-
-bool build_face_vectors(const Build *b, Key at, const VectorScene *scene, double *values)
-{
-    return fill_vectors(b, at, scene, elements_of(b->mesh, 2), values);
-}
-
-bool build_cell_vectors(const Build *b, Key at, const VectorScene *scene, double *values)
-{
-    return fill_vectors(b, at, scene, elements_of(b->mesh, 3), values);
 }

@@ -1,4 +1,4 @@
-/* What all bodies with a mesh do alike: what is held, and where it is moved; loads, targets, parts; cases made ready. */
+/* What all bodies with a mesh do alike: what is held, and where it is moved; loads, targets, values, parts; cases made ready. */
 #include "base/memory.h"
 #include "model/model.h"
 #include "surface/rigid.h"
@@ -125,7 +125,7 @@ bool model_move_held(const Model *model, double time, double part, double *x, Er
     return true;
 }
 
-/* ---- Loads, targets, parts ---- */
+/* ---- Loads, targets, values, parts ---- */
 
 bool model_put_loads(Model *model, const Build *b, const char *at, const LoadScene *loads, int count,
                      double *p)
@@ -138,6 +138,18 @@ bool model_put_target(Model *model, const Build *b, const char *at, const Target
 {
     (void)model;
     return build_target(b, key("%s", at), scene, target);
+}
+
+bool model_put_numbers(Model *model, const Build *b, const char *at, const NumberScene *scene,
+                       const ParamBlock *block, double *values)
+{
+    return build_numbers(b, key("%s", at), model->body->ops->row_dim(model, block), scene, values);
+}
+
+bool model_put_vectors(Model *model, const Build *b, const char *at, const VectorScene *scene,
+                       const ParamBlock *block, double *values)
+{
+    return build_vectors(b, key("%s", at), model->body->ops->row_dim(model, block), scene, values);
 }
 
 bool model_select(const Model *model, const Build *b, const char *at, const char *name, Indices *found)

@@ -79,13 +79,17 @@ bool model_knows_fields(const Model *model, const double *p, double time, const 
 bool model_hold(Model *model, const Build *b, const Scene *scene, bool *fixed, bool *clamped);
 bool model_move_held(const Model *model, double time, double part, double *x, Error *err);
 
-/* Other operations (BodyOps) of bodies with a mesh, whose first dofs are the positions of its vertices and which have a block
- * `load`. model_start_cases, last of all, gives each case its system and start; an equilibrium needs forces in balance,
+/* Other operations (BodyOps) of bodies with a mesh, whose first dofs are the positions of its vertices, and which have a block
+ * `load` and tell the rows of others (row_dim). model_start_cases, last of all, gives each case its system and start; an equilibrium needs forces in balance,
  * unless there is something that may bear them. */
 bool model_put_loads(Model *model, const Build *b, const char *at, const LoadScene *loads, int count,
                      double *p);
 bool model_put_target(Model *model, const Build *b, const char *at, const TargetScene *scene,
                       double (*target)[3]);
+bool model_put_numbers(Model *model, const Build *b, const char *at, const NumberScene *scene,
+                       const ParamBlock *block, double *values);
+bool model_put_vectors(Model *model, const Build *b, const char *at, const VectorScene *scene,
+                       const ParamBlock *block, double *values);
 bool model_select(const Model *model, const Build *b, const char *at, const char *name, Indices *found);
 void model_places(const Model *model, const double *x, double *place);
 bool model_start_cases(Model *model, const Build *b, const bool *fixed);

@@ -105,6 +105,10 @@ typedef struct BodyOps {
     bool (*put_target)(struct Model *model, const Build *b, const char *at, const TargetScene *scene,
                        double (*target)[3]);
 
+    /* Of which elements of the mesh a block of p has a row each: edges (1), faces (2), cells (3). Optional where there is
+     * no mesh. */
+    int (*row_dim)(const struct Model *model, const ParamBlock *block);
+
     /* The values of a block of p, as an unknown's start says them. */
     bool (*put_numbers)(struct Model *model, const Build *b, const char *at, const NumberScene *scene,
                         const ParamBlock *block, double *values);

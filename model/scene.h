@@ -144,7 +144,7 @@ typedef struct StageScene {
 
 /* ---- Design ---- */
 
-typedef enum UnknownPer { PER_FACE, PER_GROUP } UnknownPer; /* young, magnetization */
+typedef enum UnknownPer { PER_FACE, PER_GROUP } UnknownPer; /* young, magnetization; or per tetrahedron */
 
 typedef enum UnknownScale { SCALE_LOG, SCALE_LINEAR } UnknownScale;
 
@@ -176,7 +176,7 @@ typedef struct FluxUnknown {
 
 typedef struct UnknownsScene {
     VectorUnknown *magnetization;
-    NumberUnknown *young, *fold;
+    NumberUnknown *young, *skin_young, *fold;
     FluxUnknown *flux_density;
 } UnknownsScene;
 

@@ -11,8 +11,10 @@
     }
 #define PER_ROW(S)                                                                                           \
     {                                                                                                        \
-        YAML_CHOICE(S, per), .choices = YAML_NAMES("face", "group"), .fallback = "face",                     \
-                             .doc = "an unknown for each face, or for each group of faces"                   \
+        YAML_CHOICE(S, per),                                                                                 \
+            .choices = YAML_NAMES("face", "group"), .fallback = "face",                                      \
+            .doc = "an unknown for each face (of what has a value per tetrahedron: for each of these), or "  \
+                   "for each group of them"                                                                  \
     }
 
 static const YamlTable magnetization_unknown_table = {
@@ -30,7 +32,7 @@ static const YamlTable magnetization_unknown_table = {
         {YAML_NUMBER(VectorUnknown, max_magnitude), .unit = "A/m", .range = "(0, inf)", .one_of = 1,
          .doc = "a cap on |M|"},
         PER_ROW(VectorUnknown),
-        {YAML_OPTIONAL(VectorUnknown, start, &magnetization_table), .doc = "in place of the shell's"},
+        {YAML_OPTIONAL(VectorUnknown, start, &magnetization_table), .doc = "in place of the body's"},
         {0}}};
 
 static const YamlTable young_unknown_table = {
@@ -44,7 +46,7 @@ static const YamlTable young_unknown_table = {
         {YAML_NUMBER(NumberUnknown, noise), .unit = "Pa", .range = "[0, inf)", .fallback = "0",
          .doc = "size of seeded noise that is added to the start"},
         PER_ROW(NumberUnknown),
-        {YAML_OPTIONAL(NumberUnknown, start, &young_table), .doc = "in place of the shell's"},
+        {YAML_OPTIONAL(NumberUnknown, start, &young_table), .doc = "in place of the body's"},
         {0}}};
 
 static const YamlTable fold_unknown_table = {
@@ -57,7 +59,7 @@ static const YamlTable fold_unknown_table = {
          .doc = "optimisers see its logarithm over 0.2, or its ratio to the start's mean"},
         {YAML_NUMBER(NumberUnknown, noise), .range = "[0, inf)", .fallback = "0",
          .doc = "size of seeded noise that is added to the start"},
-        {YAML_OPTIONAL(NumberUnknown, start, &fold_table), .doc = "in place of the shell's"},
+        {YAML_OPTIONAL(NumberUnknown, start, &fold_table), .doc = "in place of the body's"},
         {0}}};
 
 static const YamlTable flux_start_table = {
@@ -102,11 +104,14 @@ static const YamlTable flux_unknown_table = {
 static const YamlTable unknowns_table = {
     .name = "unknowns",
     .size = sizeof(UnknownsScene),
-    .doc = "What the optimiser may change; starts at the shell's values.",
+    .doc = "What the optimiser may change; starts at the body's values.",
     .fields = (const YamlField[]){
         {YAML_OPTIONAL(UnknownsScene, magnetization, &magnetization_unknown_table),
-         .doc = "three numbers per face"},
-        {YAML_OPTIONAL(UnknownsScene, young, &young_unknown_table), .doc = "a number per face"},
+         .doc = "three numbers per face; of a solid without a skin per tetrahedron"},
+        {YAML_OPTIONAL(UnknownsScene, young, &young_unknown_table),
+         .doc = "a number per face, of a solid per tetrahedron"},
+        {YAML_OPTIONAL(UnknownsScene, skin_young, &young_unknown_table),
+         .doc = "of a solid's film, a number per face of the surface"},
         {YAML_OPTIONAL(UnknownsScene, fold, &fold_unknown_table), .doc = "a number per edge"},
         {YAML_OPTIONAL(UnknownsScene, flux_density, &flux_unknown_table),
          .doc = "three numbers per load case"},

@@ -35,35 +35,40 @@ static Start start_of(Model *model, const char *name, const double *p, double no
     return start;
 }
 
-/* Face groups of the mesh: group[face] from 0, -1 in none; a face in several belongs to the last. */
-static int *face_groups(const Mesh *mesh, int *count)
+/* Groups of the mesh's faces (dim 2) or cells (3): group[element] from 0, -1 in none; what is in several belongs to the
+ * last. */
+static int *groups_of(const Mesh *mesh, int dim, int *count)
 {
-    int *group = mem_alloc((size_t)mesh->face_count, sizeof *group);
+    int elements = dim == 3 ? mesh->cell_count : mesh->face_count;
+    int *group = mem_alloc((size_t)elements, sizeof *group);
     *count = 0;
-    for (int f = 0; f < mesh->face_count; f++) group[f] = -1;
+    for (int e = 0; e < elements; e++) group[e] = -1;
     for (int g = 0; g < mesh->group_count; g++) {
-        if (mesh->groups[g].dim != 2) continue;
+        if (mesh->groups[g].dim != dim) continue;
         for (int k = 0; k < mesh->groups[g].count; k++) group[mesh->groups[g].members[k]] = *count;
         (*count)++;
     }
     return group;
 }
 
+/* The unknown has a row for each group; false after a refusal. */
+static bool take_groups(const Model *model, YamlFile *file, const Start *start, Unknown *unknown)
+{
+    Key at = key("design.unknowns.%s.per", start->name);
+    if (!model->mesh) return yaml_refuse(file, at.text, "%s has no groups", model->body->noun);
+    int dim = model->body->ops->row_dim(model, start->block);
+    unknown->group = groups_of(model->mesh, dim, &unknown->group_count);
+    return unknown->group_count > 0 ||
+           yaml_refuse(file, at.text, "the mesh has no groups of %s", build_elements[dim]);
+}
+
 /* Noise, then the start goes into all cases and the unknown into the design. Rows of one group get the same
  * noise. */
 static bool add_unknown(Model *model, YamlFile *file, Design *design, Start *start, Unknown unknown, int per)
 {
-    bool ok = true;
     const ParamBlock *block = unknown.block = start->block;
     unknown.group_count = block->count;
-    if (per == PER_GROUP && !model->mesh)
-        ok = yaml_refuse(file, key("design.unknowns.%s.per", start->name).text, "%s has no groups",
-                         model->body->noun);
-    else if (per == PER_GROUP)
-        unknown.group = face_groups(model->mesh, &unknown.group_count);
-    if (ok && unknown.group_count == 0)
-        ok = yaml_refuse(file, key("design.unknowns.%s.per", start->name).text,
-                         "the mesh has no groups of faces");
+    bool ok = per != PER_GROUP || take_groups(model, file, start, &unknown);
     double *noise = mem_alloc((size_t)(unknown.group_count * block->width), sizeof *noise);
     for (int i = 0; i < unknown.group_count * block->width; i++)
         noise[i] = start->noise * random_signed(&start->random);
@@ -249,9 +254,10 @@ static bool add_unknowns(Model *model, const Scene *scene, const Build *b)
     const UnknownsScene *unknowns = &scene->design->unknowns;
     int seed = scene->design->seed;
     design->case_count = model->case_count;
-    const bool asked[] = {unknowns->magnetization, unknowns->young, unknowns->fold, unknowns->flux_density};
-    static const char *const names[] = {"magnetization", "young", "fold", "flux_density"};
-    for (int k = 0; k < 4; k++)
+    const bool asked[] = {unknowns->magnetization, unknowns->young, unknowns->skin_young, unknowns->fold,
+                          unknowns->flux_density};
+    static const char *const names[] = {"magnetization", "young", "skin_young", "fold", "flux_density"};
+    for (int k = 0; k < 5; k++)
         if (asked[k] && !params_find(model->params, names[k]))
             return yaml_refuse(b->file, key("design.unknowns.%s", names[k]).text, "%s has no %s",
                                model->body->noun, names[k]);
@@ -259,11 +265,13 @@ static bool add_unknowns(Model *model, const Scene *scene, const Build *b)
     if (unknowns->magnetization)
         ok = magnetization_unknown(model, b, design, unknowns->magnetization, seed) && ok;
     if (unknowns->young) ok = number_unknown(model, b, design, "young", unknowns->young, seed) && ok;
+    if (unknowns->skin_young)
+        ok = number_unknown(model, b, design, "skin_young", unknowns->skin_young, seed) && ok;
     if (unknowns->fold) ok = number_unknown(model, b, design, "fold", unknowns->fold, seed) && ok;
     if (unknowns->flux_density) ok = flux_unknown(model, b, scene) && ok;
     if (ok && !design->unknown_count)
         ok = yaml_refuse(b->file, "design.unknowns",
-                         "a design needs an unknown: magnetization, young, fold or flux_density");
+                         "a design needs an unknown: magnetization, young, skin_young, fold or flux_density");
     return ok;
 }
 

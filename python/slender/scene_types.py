@@ -325,8 +325,8 @@ Design = TypedDict("Design", {
 }, total=False)
 
 Unknowns = TypedDict("Unknowns", {
-    "magnetization": "UnknownMagnetization", "young": "UnknownYoung", "fold": "UnknownFold",
-    "flux_density": "UnknownFluxDensity",
+    "magnetization": "UnknownMagnetization", "young": "UnknownYoung", "skin_young": "UnknownYoung",
+    "fold": "UnknownFold", "flux_density": "UnknownFluxDensity",
 }, total=False)
 
 UnknownMagnetization = TypedDict("UnknownMagnetization", {

@@ -1,4 +1,6 @@
 """Solids: their motions and equilibria, with derivatives."""
+import itertools
+import pathlib
 import unittest
 from typing import Any
 
@@ -16,6 +18,35 @@ def thrown(order: int, coupling: str) -> dict[str, Any]:
             "obstacles": [{"name": "floor", "plane": {"point": [0, 0, "-0.1 mm"]}},
                           {"name": "ball", "sphere": {"center": ["12.5 mm", "4 mm", 0], "radius": "2 mm"}}],
             "contact": {"friction": 0.3, "coupling": coupling}, "time": {"step": "1 ms", "steps": 30}}
+
+
+def write_bar(path: pathlib.Path, nodes: Any, cells: Any, second: Any) -> str:
+    """A .msh of tetrahedra in two groups: `second` tells of each whether it is in that one."""
+    lines = ["$MeshFormat", "2.2 0 8", "$EndMeshFormat", "$PhysicalNames", "2", '3 1 "first"', '3 2 "second"',
+             "$EndPhysicalNames", "$Nodes", str(len(nodes))]
+    lines += [f"{k + 1} {x!r} {y!r} {z!r}" for k, (x, y, z) in enumerate(np.asarray(nodes).tolist())]
+    lines += ["$EndNodes", "$Elements", str(len(cells))]
+    lines += [f"{k + 1} 4 2 {1 + b} {1 + b} " + " ".join(str(n + 1) for n in cell)
+              for k, (cell, b) in enumerate(zip(cells, map(int, second)))]
+    path.write_text("\n".join(lines + ["$EndElements", ""]))
+    return str(path)
+
+
+def bar(cells: tuple[int, int, int], size: float) -> Any:
+    """Nodes and tetrahedra of a bar of cubes, six each [Freudenthal 1942]."""
+    counts = np.array(cells) + 1
+    nodes = size * np.indices(counts).reshape(3, -1).T
+    tets = []
+    for corner in np.ndindex(*cells):
+        for order in itertools.permutations(range(3)):
+            way = [np.array(corner)]
+            for axis in order:
+                way.append(way[-1] + np.eye(3, dtype=int)[axis])
+            tet = [int(np.ravel_multi_index(tuple(place), counts)) for place in way]
+            if np.linalg.det([way[k + 1] - way[0] for k in range(3)]) < 0:
+                tet[2], tet[3] = tet[3], tet[2]
+            tets.append(tet)
+    return nodes, tets
 
 
 class Solids(support.TestCase):
@@ -48,6 +79,48 @@ class Solids(support.TestCase):
         self.near(force, [-3 * weight / 9.81, 0, weight], 1e-9 * weight)
         self.assertEqual(r["cells"].shape, (36, 10))
         self.assertTrue(0.9 < r["final/least_jacobian"] < 1)
+
+    def test_two_materials(self) -> None:
+        """The moduli of a bar's two halves, and that of its film, are found again from how it hangs."""
+        nodes, tets = bar((6, 1, 1), 5e-3)
+        second = [nodes[tet, 0].mean() > 15e-3 for tet in tets]
+        scene: dict[str, Any] = {
+            "slender": 1, "job": "equilibrium", "fix": [{"box": [[-1, -1, -1], [1e-6, 1, 1]]}],
+            "solid": {"mesh": write_bar(self.folder / "bar.msh", nodes, tets, second), "order": 1, "averaging": 1,
+                      "young": {"groups": {"first": "80 kPa", "second": "200 kPa"}}, "poisson": 0.4, "gravity": [1, 0, -9.81],
+                      "skin": {"thickness": "0.5 mm", "young": "0.3 MPa", "poisson": 0.3}}}
+        hung = slender.run(scene, self.folder / "hung", journal=False)
+        self.assertEqual(hung.status, "converged")
+        self.assertGreater(np.abs(hung["state/x"] - nodes).max(), 1e-4)
+        target = write_bar(self.folder / "target.msh", hung["state/x"], tets, second)
+        scene.update(job="design", target={"file": target}, solver={"step_tolerance": 1e-12}, design={
+            "objectives": [{"target": 1}], "optimizer": "gauss_newton", "iterations": 40, "tolerance": 1e-12,
+            "unknowns": {"young": {"per": "group", "start": "120 kPa"}}})
+        found = slender.run(scene, self.folder / "found", journal=False)
+        want = np.where(second, 2e5, 8e4)
+        self.near(found["design/young"] / want, 1, 1e-6)
+        scene["design"]["unknowns"] = {"skin_young": {"start": "0.2 MPa"}}
+        scene["design"]["iterations"] = 20
+        film = slender.run(scene, self.folder / "film", journal=False)
+        self.assertLess(film.history["objective"].min(), 1e-4 * film.history["objective"][0])
+
+    def test_tangled(self) -> None:
+        """A cube that its load turns inside out: no job calls that an equilibrium."""
+        cube: dict[str, Any] = {
+            "slender": 1, "job": "equilibrium", "fix": [{"group": "left"}],
+            "solid": {"mesh": {"shape": "box", "size": [0.01] * 3, "cells": [2, 2, 2]}, "young": "10 kPa", "poisson": 0.4},
+            "loads": [{"on": {"group": "right"}, "force": [-30, 0, 0]}]}
+        r = slender.run(cube, self.folder / "a")
+        self.assertEqual(r.status, "tangled")
+        self.assertLess(r["final/least_jacobian"], 0)
+        design = {**cube, "job": "design", "target": {"formula": ["x", "y", "z"]},
+                  "design": {"unknowns": {"young": {}}, "objectives": [{"target": 1}], "iterations": 2}}
+        self.assertEqual(slender.run(design, self.folder / "b").status, "unsolved")
+        time = {"step": "1 ms", "steps": 3}
+        self.assertEqual(slender.run({**cube, "job": "simulate", "time": time}, self.folder / "c").status, "tangled")
+        trajectory = {**cube, "job": "trajectory", "time": time, "design": {
+            "unknowns": {"young": {}}, "objectives": [{"waypoint": {"mass_center": True, "at": [0, 0, 0]}}], "iterations": 2}}
+        self.assertEqual(slender.run(trajectory, self.folder / "d").status, "unsolved")
 
 
 if __name__ == "__main__":

@@ -13,9 +13,9 @@ static double *base_params(Model *model, const Scene *scene, const Build *b)
     double *p = params_vector(model->params);
     shell_default_params(shell, p);
     const ShellScene *s = shell_scene(scene);
-    bool ok = build_face_numbers(b, key("shell.young"), &s->young, p + shell->young);
-    ok = build_edge_numbers(b, key("shell.fold"), &s->fold, p + shell->fold) && ok;
-    ok = build_face_vectors(b, key("shell.magnetization"), &s->magnetization, p + shell->magnetization) && ok;
+    bool ok = build_numbers(b, key("shell.young"), 2, &s->young, p + shell->young);
+    ok = build_numbers(b, key("shell.fold"), 1, &s->fold, p + shell->fold) && ok;
+    ok = build_vectors(b, key("shell.magnetization"), 2, &s->magnetization, p + shell->magnetization) && ok;
     memcpy(p + shell->gravity, s->gravity, sizeof s->gravity);
     p[shell->damping] = s->damping;
     ok = build_loads(b, key("loads"), scene->loads, scene->loads_count, p + shell->load) && ok;
@@ -121,19 +121,10 @@ static void destroy(void *self)
 
 /* ---- Designs ---- */
 
-static bool put_numbers(Model *model, const Build *b, const char *at, const NumberScene *scene,
-                        const ParamBlock *block, double *values)
+/* Of which elements a block has rows. */
+static int row_dim(const Model *model, const ParamBlock *block)
 {
-    const Shell *shell = model->self;
-    return block->offset == shell->fold ? build_edge_numbers(b, key("%s", at), scene, values)
-                                        : build_face_numbers(b, key("%s", at), scene, values);
-}
-
-static bool put_vectors(Model *model, const Build *b, const char *at, const VectorScene *scene,
-                        const ParamBlock *block, double *values)
-{
-    (void)model, (void)block;
-    return build_face_vectors(b, key("%s", at), scene, values);
+    return block->offset == ((const Shell *)model->self)->fold ? 1 : 2;
 }
 
 static void masses(const Model *model, double *mass)
@@ -169,8 +160,9 @@ static const BodyOps ops = {
     .destroy = destroy,
     .put_loads = model_put_loads,
     .put_target = model_put_target,
-    .put_numbers = put_numbers,
-    .put_vectors = put_vectors,
+    .row_dim = row_dim,
+    .put_numbers = model_put_numbers,
+    .put_vectors = model_put_vectors,
     .select = model_select,
     .masses = masses,
     .smoothness = smoothness,

@@ -14,16 +14,16 @@ static double *base_params(Model *model, const Scene *scene, const Build *b)
     double *p = params_vector(model->params);
     solid_default_params(solid, p);
     const SolidScene *s = solid_scene(scene);
-    bool ok = build_cell_numbers(b, key("solid.young"), &s->young, p + solid->young);
-    ok = build_cell_vectors(b, key("solid.magnetization"), &s->magnetization,
-                            p + solid->volume_magnetization) &&
-         ok;
+    bool ok = build_numbers(b, key("solid.young"), 3, &s->young, p + solid->young);
+    ok =
+        build_vectors(b, key("solid.magnetization"), 3, &s->magnetization, p + solid->volume_magnetization) &&
+        ok;
     if (s->skin)
-        ok = build_face_vectors(b, key("solid.skin.magnetization"), &s->skin->magnetization,
-                                p + solid->magnetization) &&
+        ok = build_vectors(b, key("solid.skin.magnetization"), 2, &s->skin->magnetization,
+                           p + solid->magnetization) &&
              ok;
     if (solid->film)
-        ok = build_face_numbers(b, key("solid.skin.young"), s->skin->young, p + solid->skin_young) && ok;
+        ok = build_numbers(b, key("solid.skin.young"), 2, s->skin->young, p + solid->skin_young) && ok;
     memcpy(p + solid->gravity, s->gravity, sizeof s->gravity);
     p[solid->damping] = s->damping;
     ok = build_loads(b, key("loads"), scene->loads, scene->loads_count, p + solid->load) && ok;
@@ -147,19 +147,11 @@ static void destroy(void *self)
 
 /* ---- Designs ---- */
 
-static bool put_numbers(Model *model, const Build *b, const char *at, const NumberScene *scene,
-                        const ParamBlock *block, double *values)
-{
-    (void)model, (void)block;
-    return build_cell_numbers(b, key("%s", at), scene, values);
-}
-
-static bool put_vectors(Model *model, const Build *b, const char *at, const VectorScene *scene,
-                        const ParamBlock *block, double *values)
+/* Of which elements a block has rows: what is of the skin has faces. */
+static int row_dim(const Model *model, const ParamBlock *block)
 {
     const Solid *solid = model->self;
-    return block->offset == solid->magnetization ? build_face_vectors(b, key("%s", at), scene, values)
-                                                 : build_cell_vectors(b, key("%s", at), scene, values);
+    return block->offset == solid->magnetization || block->offset == solid->skin_young ? 2 : 3;
 }
 
 static void masses(const Model *model, double *mass)
@@ -177,8 +169,9 @@ static const BodyOps ops = {
     .destroy = destroy,
     .put_loads = model_put_loads,
     .put_target = model_put_target,
-    .put_numbers = put_numbers,
-    .put_vectors = put_vectors,
+    .row_dim = row_dim,
+    .put_numbers = model_put_numbers,
+    .put_vectors = model_put_vectors,
     .select = model_select,
     .masses = masses,
     .move = model_move_held,
