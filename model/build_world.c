@@ -61,9 +61,9 @@ bool model_read_world(Model *model, const Build *b, const Scene *scene, const Wo
         w->rubs = w->rubs || scene->obstacles[k].friction > 0; /* NaN is not */
     w->wet = scene->water != NULL;
     if (w->wet) {
-        w->outer = scene->water->sides == SIDES_OUTER;
+        w->outer = body->closed || scene->water->sides == SIDES_OUTER;
         w->flow = read_flow(b, &scene->water->velocity, &ok);
-        ok = (!w->outer || check_closed(b)) && ok;
+        ok = (body->closed || !w->outer || check_closed(b)) && ok;
     }
     return ok;
 }

@@ -226,7 +226,8 @@ const YamlTable water_table = {
         {YAML_TABLE(WaterScene, velocity, &stream_table), .fallback = "[0, 0, 0]", .doc = "how it moves"},
         {YAML_CHOICE(WaterScene, sides), .when = "/shell", .choices = YAML_NAMES("two", "outer"),
          .fallback = "two",
-         .doc = "of a shell: both sides of a face feel the stream, or, of closed surfaces, the outer ones"},
+         .doc = "of a shell: both sides of a face feel the stream, or, of closed surfaces, the outer ones "
+                "(as of a solid)"},
         {YAML_NUMBER(WaterScene, viscosity), .when = "/rod", .unit = "Pa s", .range = "[0, inf)",
          .fallback = "1.0e-3", .doc = "of rods: its dynamic viscosity"},
         {0}}};

@@ -69,6 +69,7 @@ WorldBody solid_world_body(const Solid *solid)
                        .rest = (const double(*)[3])skin->rest,
                        .part = skin->vertex_component,
                        .fixed = solid->fixed,
+                       .closed = true,
                        .thickness = mesh_mean_edge(skin) / 5};
 }
 

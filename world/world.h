@@ -17,6 +17,7 @@ typedef struct WorldBody {
     const bool *fixed;                  /* [3*vertex_count] held; NULL: nothing              */
     double thickness;                   /* m; a rod's diameter, a fifth of the edges of a solid's skin */
     double outside; /* m, from its points to its outside: half a thickness, a rod's radius; 0 of a solid */
+    bool closed;    /* its faces bound a solid: there is no water within  */
     int strands;    /* rods, one after the other; of a shell 0           */
     const double *length; /* [strands] m                                       */
 } WorldBody;
