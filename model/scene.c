@@ -235,15 +235,17 @@ static const YamlTable load_table = {
     .name = "loads",
     .size = sizeof(LoadScene),
     .doc = "A dead load: a force that keeps its direction.",
-    .fields = (const YamlField[]){{YAML_VECTOR(LoadScene, force), .unit = "N", .one_of = 1, .required = true,
-                                   .doc = "in all, shared equally by the vertices"},
-                                  {YAML_VECTOR(LoadScene, line), .unit = "N/m", .one_of = 1, .required = true,
-                                   .doc = "per rest length of boundary edges"},
-                                  {YAML_VECTOR(LoadScene, area), .unit = "N/m^2", .one_of = 1,
-                                   .required = true, .doc = "per rest area"},
-                                  {YAML_OPTIONAL(LoadScene, on, &selection_table), .also = ON_NAMES,
-                                   .doc = "where; everywhere if absent"},
-                                  {0}}};
+    .fields = (const YamlField[]){
+        {YAML_VECTOR(LoadScene, force), .unit = "N", .one_of = 1, .required = true,
+         .doc =
+             "in all, shared equally by the vertices (of a solid by its nodes: use area for an even pull)"},
+        {YAML_VECTOR(LoadScene, line), .unit = "N/m", .one_of = 1, .required = true,
+         .doc = "per rest length of boundary edges"},
+        {YAML_VECTOR(LoadScene, area), .unit = "N/m^2", .one_of = 1, .required = true,
+         .doc = "per rest area"},
+        {YAML_OPTIONAL(LoadScene, on, &selection_table), .also = ON_NAMES,
+         .doc = "where; everywhere if absent"},
+        {0}}};
 
 /* ---- Load cases ---- */
 

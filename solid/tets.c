@@ -63,9 +63,11 @@ static void number_nodes(Build *build)
 
 /* ---- The meshes ---- */
 
-/* The faces, in four each, for the groups as well. */
+/* The faces, in four each, for the groups as well; the last part of each joins its middles. */
 static void split_faces(const Build *build, MeshFile *skin, int *skin_face)
 {
+    Mesh *surface = build->tets->surface;
+    surface->face_middles = mem_alloc((size_t)build->face_count, sizeof *surface->face_middles);
     skin->face_count = 4 * build->face_count;
     skin->faces = mem_alloc((size_t)skin->face_count, sizeof *skin->faces);
     for (int f = 0; f < build->face_count; f++) {
@@ -74,6 +76,7 @@ static void split_faces(const Build *build, MeshFile *skin, int *skin_face)
             ca = tets_middle(build, v[2], v[0]);
         const int parts[4][3] = {{v[0], ab, ca}, {ab, v[1], bc}, {ca, bc, v[2]}, {ab, bc, ca}};
         memcpy(skin->faces[4 * f], parts, sizeof parts);
+        memcpy(surface->face_middles[f], parts[3], sizeof parts[3]);
         for (int i = 0; i < 4; i++) skin_face[4 * f + i] = f;
     }
 }

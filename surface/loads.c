@@ -28,7 +28,8 @@ int loads_on_faces(const Mesh *mesh, const Indices *on, const double area[3], do
     for (int f = 0; f < mesh->face_count; f++) {
         const int *v = mesh->faces[f];
         if (!chosen[v[0]] || !chosen[v[1]] || !chosen[v[2]]) continue;
-        for (int i = 0; i < 3; i++) add_force(load, v[i], mesh->rest_area[f] / 3, area);
+        const int *bear = mesh->face_middles ? mesh->face_middles[f] : v;
+        for (int i = 0; i < 3; i++) add_force(load, bear[i], mesh->rest_area[f] / 3, area);
         count++;
     }
     mem_free(chosen);

@@ -359,6 +359,7 @@ void mesh_destroy(Mesh *mesh)
     void *owned[] = {mesh->rest,
                      mesh->faces,
                      mesh->cells,
+                     mesh->face_middles,
                      mesh->edges,
                      mesh->edge_faces,
                      mesh->face_edges,

@@ -27,11 +27,12 @@ typedef struct Mesh {
     double *rest_area;          /* [face] m^2 */
     int cell_count, cell_nodes; /* of a solid: tetrahedra of so many vertices; 0: a surface alone */
     int *cells;                 /* [cell][cell_nodes], as the file's (mesh_file.h) */
-    int *vertex_component;      /* [vertex] connected part, by first vertex; a common vertex connects */
-    MeshGroup *groups;          /* [group_count] the file's, in this mesh's numbering; faces as they were */
-    int *group_order;           /* [group_count] by name and dimension */
-    int *file_vertex;           /* [vertex] its number in the file (the lowest of those joined) */
-    int *vertex_of_file;        /* [file_vertex_count] the mesh's vertex, -1 where removed */
+    int (*face_middles)[3]; /* [face] of quadratic tetrahedra: the vertices between its corners; else NULL */
+    int *vertex_component;  /* [vertex] connected part, by first vertex; a common vertex connects */
+    MeshGroup *groups;      /* [group_count] the file's, in this mesh's numbering; faces as they were */
+    int *group_order;       /* [group_count] by name and dimension */
+    int *file_vertex;       /* [vertex] its number in the file (the lowest of those joined) */
+    int *vertex_of_file;    /* [file_vertex_count] the mesh's vertex, -1 where removed */
 } Mesh;
 
 /* What the user should know about a mesh that was accepted, and about what comes with it. */
