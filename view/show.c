@@ -153,7 +153,8 @@ static bool face_field(Show *show, int step, const double **values, const char *
                        Error *err)
 {
     const double *young =
-        show_dataset(show->data, "slender/design/young", ARRAY_FLOAT64, (size_t)show->face_count);
+        show->filled ? NULL : /* of a solid it is that of its tetrahedra */
+            show_dataset(show->data, "slender/design/young", ARRAY_FLOAT64, (size_t)show->face_count);
     const char *asked = show->def->field;
     *values = NULL;
     if (!asked) asked = varies(young, show->face_count) ? "young" : show->magnetic ? "magnetization" : "none";

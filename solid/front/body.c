@@ -24,6 +24,8 @@ static double *base_params(Model *model, const Scene *scene, const Build *b)
              ok;
     if (solid->film)
         ok = build_numbers(b, key("solid.skin.young"), 2, s->skin->young, p + solid->skin_young) && ok;
+    for (int f = 0; solid->skin_on && f < b->mesh->face_count; f++) /* what is not there is not shown */
+        if (!solid->skin_on[f]) memset(p + solid->magnetization + 3 * f, 0, 3 * sizeof *p);
     memcpy(p + solid->gravity, s->gravity, sizeof s->gravity);
     p[solid->damping] = s->damping;
     ok = build_loads(b, key("loads"), scene->loads, scene->loads_count, p + solid->load) && ok;
