@@ -31,6 +31,9 @@ rod='{natural_strain: [1, 20, 3], length: 0.2, elements: 30, radius: 1 mm, young
   magnetization: [20 kA/m, 0, 5 kA/m]}'
 held=$(echo "$rod" | sed 's/magnet/end: {position: [0.1, 0.02, 0.05]}, magnet/')
 preview=$(echo "$rod" | sed 's/magnet.*/solver: pbd}/')
+solid='{mesh: {shape: box, size: [20 mm, 5 mm, 5 mm], cells: [4, 1, 1]}, young: 0.1 MPa, poisson: 0.4, gravity: [0, 0, -9.81],
+  skin: {thickness: 1 mm, magnetization: [50 kA/m, 0, 0], young: 0.2 MPa, poisson: 0.3}}'
+linear=$(echo "$solid" | sed 's/1, 1]}/&, order: 1, averaging: 1/')
 field='flux_density: ["0", "0.01*cos(100*t)", "0.02*sin(300*t)"]'
 magnet='flux_density: {magnet: {at: [0.1, 0.1, 0], remanence: [0, 0, 1], volume: 1.0e-6}}'
 fix='fix: [{group: root, clamp: true}]'
@@ -54,6 +57,8 @@ motion() { # scene's name, body, further keys
 }
 motion midedge "shell: $shell" "$fix" "$field"
 motion hinge "shell: $hinge" "$fix" "$field"
+motion solid "solid: $solid" "fix: [{group: left}]" "$field"
+motion linear "solid: $linear" "$field"
 motion rod "rod: $rod" "$field"
 motion held "rod: $held" "$field"
 motion magnet "rod: $rod" "$magnet"
@@ -88,6 +93,12 @@ rest() { expect 0 "$program" run "$scene" --no-picture "$@"; }
 rest -o rest; rest -o again --set start=rest.vtkhdf
 few
 rest -o moving --set start=rest.vtkhdf --set job=simulate --set "time={step: 1 ms, steps: 5}" # what rests stays
+near rest again 1e-12; near rest moving 1e-12
+scene=block.yaml
+write block equilibrium "solid: $solid" "fix: [{group: left}]" "flux_density: [0, 0, 5 mT]"
+rest -o rest; rest -o again --set start=rest.vtkhdf
+few
+rest -o moving --set start=rest.vtkhdf --set job=simulate --set "time={step: 1 ms, steps: 5}"
 near rest again 1e-12; near rest moving 1e-12
 scene=turned.yaml
 write turned equilibrium "rod: $rod" "flux_density: [0, 3 mT, 2 mT]" # in turns only; a motion has places, too
@@ -180,6 +191,16 @@ refused "midedge.yaml is no result of slender" --set start=midedge.yaml
 refused "is of a mesh with other faces" --set start=before.vtkhdf --set shell.mesh.cells=[5,2]
 refused "is of a mesh of another shape at rest" --set start=before.vtkhdf --set "shell.mesh.size=[31 mm, 10 mm]"
 refused "time.at: a simulation goes on from the time of its start, 0.01 s: leave .at. out" --set start=before.vtkhdf --set time.at=1
+scene=solid.yaml
+expect 0 run solid.yaml -o solid --set time.steps=2
+refused "is of a mesh with other tetrahedra" --set start=solid.vtkhdf --set "solid.mesh.cells=[3, 1, 1]"
+refused "is of a mesh with other tetrahedra" --set start=solid.vtkhdf --set solid.order=1
+refused "is of a mesh of another shape at rest" --set start=solid.vtkhdf --set "solid.mesh.size=[20 mm, 5 mm, 6 mm]"
+"$program" mesh solid.yaml -o pose.obj
+expect 0 run solid.yaml -o posed --set solid.pose=pose.obj --set time.steps=2
+sed 's/^v 0 /v 1.0e-5 /' pose.obj > other.obj; mv other.obj pose.obj
+expect 3 run solid.yaml -o posed --set solid.pose=pose.obj --set time.steps=3 --resume; says "pose.obj is not the file that the run began with"
+refused "solid.pose is not used" --set start=solid.vtkhdf --set solid.pose=pose.obj
 scene=rod.yaml
 refused "before.vtkhdf is a result of a shell, and the scene has a rod" --set start=before.vtkhdf
 expect 0 run rod.yaml -o before --set time.steps=2; cp before.vtkhdf rod.vtkhdf

@@ -122,6 +122,73 @@ class Solids(support.TestCase):
             "unknowns": {"young": {}}, "objectives": [{"waypoint": {"mass_center": True, "at": [0, 0, 0]}}], "iterations": 2}}
         self.assertEqual(slender.run(trajectory, self.folder / "d").status, "unsolved")
 
+    def test_water(self) -> None:
+        """A falling cube is borne by its lower side alone: 2 rho A v^2 = rho A h g."""
+        for order in (1, 2):
+            scene = {"slender": 1, "job": "simulate", "water": {},
+                     "solid": {"mesh": {"shape": "box", "size": [0.01] * 3, "cells": [2, 2, 2]}, "order": order,
+                               "young": "1 MPa", "poisson": 0.3, "density": 3000, "gravity": [0, 0, -9.81]},
+                     "time": {"step": "5 ms", "steps": 40}}
+            model = support.model_of(scene)
+            motion = model.simulate(steps=40, dt=5e-3)
+            self.near(motion.states[40].v[:, 2].mean(), -np.sqrt(3 * 9.81 * 0.01 / 2), 2e-4)
+
+    def test_modes(self) -> None:
+        """A free solid has six motions that cost nothing, and no more."""
+        scene = {"slender": 1, "job": "equilibrium", "modes": 7, "solid": {**BLOCK, "gravity": [0, 0, 0]}}
+        values = slender.run(scene, self.folder / "free", journal=False)["final/eigenvalues"]
+        self.assertLess(np.abs(values[:6]).max(), 1e-6 * values[6])
+
+    def test_bending_frequency(self) -> None:
+        """A cantilever that is let go swings as Euler and Bernoulli say; implicit Euler lags, w dt -> atan(w dt)."""
+        length, height, young, dt = 0.06, 0.003, 1e6, 5e-4
+        scene = {"slender": 1, "job": "simulate", "fix": [{"group": "left"}],
+                 "solid": {"mesh": {"shape": "box", "size": [length, height, height], "cells": [20, 1, 1]}, "young": young,
+                           "poisson": 0.3, "gravity": [0, 0, -0.1]}, "time": {"step": dt, "steps": 1}}
+        model = support.model_of(scene)
+        start = model.equilibrium()
+        model.params["gravity"] = [0, 0, 0]
+        motion = model.simulate(start, steps=1600, dt=dt)
+        rest = model.state().x
+        tip = np.argmax(rest[:, 0])
+        z = np.array([motion.states[n].x[tip, 2] - rest[tip, 2] for n in range(1601)])
+        at = np.flatnonzero(z[:-1] * z[1:] < 0)
+        zero = at + z[at] / (z[at] - z[at + 1])
+        self.assertGreater(len(zero), 5)
+        turn = np.pi / np.diff(zero).mean()  # per step
+        want = 1.8751041**2 / length**2 * np.sqrt(young * height**2 / 12 / 1000)
+        self.near(np.tan(turn) / dt / want, 1, 0.02)
+
+    def test_loads(self) -> None:
+        """Forces and tractions on a side's group: what bears them; an even traction stretches evenly."""
+        for order, load in ((1, {"area": [2, 0, 0]}), (2, {"area": [2, 0, 0]}), (2, {"force": [2e-4, 0, 0]})):
+            scene = {"slender": 1, "job": "equilibrium", "fix": [{"group": "left"}],
+                     "solid": {"mesh": {"shape": "box", "size": ["20 mm", "10 mm", "10 mm"], "cells": [4, 2, 2]}, "order": order,
+                               "averaging": 0.5, "young": "0.1 MPa", "poisson": 0},
+                     "loads": [{"on": {"group": "right"}, **load}]}
+            r = slender.run(scene, self.folder / "a", force=True)
+            self.near(r["final/gradient"].sum(axis=0) + [2e-4, 0, 0] + [1, 1, 1], [1, 1, 1], 1e-12)
+            moved = (r["state/x"] - r["rest"])[r["rest"][:, 0] > 0.0199, 0] / (2 / 1e5 * 0.02)
+            self.near(moved if "area" in load else moved.mean(), 1, 1e-5 if "area" in load else 0.2)
+        scene["loads"] = [{"line": [1, 0, 0]}]
+        self.refuses(slender.Error, "no boundary edge", slender.run, scene, self.folder / "b")
+
+    def test_pose(self) -> None:
+        """A job that starts from a pose of all nodes is where the pose is; one of other nodes is refused."""
+        nodes, tets = bar((2, 1, 1), 5e-3)
+        half = [True] * 6 + [False] * 6
+        mesh, moved = (write_bar(self.folder / name, x, tets, half)
+                       for name, x in (("bar.msh", nodes), ("moved.msh", nodes * [1.1, 1, 1])))
+        scene: dict[str, Any] = {"slender": 1, "job": "evaluate", "solid": {
+            "mesh": mesh, "order": 1, "averaging": 1, "young": "0.1 MPa", "poisson": 0, "pose": moved}}
+        r = slender.run(scene, self.folder / "a")
+        self.near(r["state/x"], nodes * [1.1, 1, 1], 1e-15)
+        mu, J = 5e4, 1.1  # of poisson 0
+        psi = mu / 2 * (J**2 - 1) - mu * (J - 1) + mu / 2 * (J - 1)**2
+        self.near(r["final/energy/elastic"] + r["final/energy/mean_dilation"], psi * 10e-3 * 25e-6, 1e-12)
+        scene["solid"].update(order=2, averaging=0)
+        self.refuses(slender.Error, "moved.msh has 12 vertices, and the mesh 45", slender.run, scene, self.folder / "b")
+
 
 if __name__ == "__main__":
     unittest.main()
