@@ -25,6 +25,17 @@ shell:
 flux_density: ["0", "0", "0.02*(1 + t)"]
 fix: [{group: root, clamp: true}]
 """
+SOLID = """
+solid:
+  mesh: {shape: box, size: [20 mm, 6 mm, 4 mm], cells: [2, 1, 1]}
+  young: 0.1 MPa
+  poisson: 0.3
+  magnetization: [10000, 0, 5000]
+  gravity: [0, 0, -1]
+  skin: {thickness: 1 mm, magnetization: [20000, 0, 5000], young: 0.2 MPa, poisson: 0.3}
+flux_density: ["0", "0", "0.02*(1 + t)"]
+fix: [{group: left}]
+"""
 ROD = """
   length: 200 mm
   radius: 1 mm
@@ -51,6 +62,17 @@ design: {unknowns: {magnetization: {noise: 100}}, objectives: [{target: 1}], ite
 """,
     "shell simulate": "job: simulate" + SHELL + "time: {step: 5 ms, steps: 5}\n",
     "shell trajectory": "job: trajectory" + SHELL + """
+time: {step: 5 ms, steps: 5}
+design: {unknowns: {flux_density: {noise: 0.01}}, objectives: [{waypoint: {mass_center: true, at: [0.02, 0, 0.01]}}], iterations: 3}
+""",
+    "solid equilibrium": "job: equilibrium" + SOLID,
+    "solid evaluate": "job: evaluate" + SOLID,
+    "solid design": "job: design" + SOLID + """
+target: ["x", "y", "z + 10*x*x"]
+design: {unknowns: {magnetization: {noise: 100}}, objectives: [{target: 1}], iterations: 3}
+""",
+    "solid simulate": "job: simulate" + SOLID + "time: {step: 5 ms, steps: 5}\n",
+    "solid trajectory": "job: trajectory" + SOLID + """
 time: {step: 5 ms, steps: 5}
 design: {unknowns: {flux_density: {noise: 0.01}}, objectives: [{waypoint: {mass_center: true, at: [0.02, 0, 0.01]}}], iterations: 3}
 """,
@@ -125,7 +147,11 @@ VALUES = {
     "spline.start": ["random", "{kind: random, segments: 5}", "{kind: random, separation: 1}", "{kind: random, longest: 10 mm}"],
     "spline.energies": [], "unknowns.young": ["{bounds: [1 MPa, 2 MPa]}"], "unknowns.fold": ["{bounds: [0.5, 2]}"],
     "unknowns.flux_density": ["{}", "{noise: 0.01}", "{noise: 0.01, per: knot}", "{noise: 0.01, knots: 3}", "{noise: 0.01, start: [0, 0.01, 0]}"],
-    "unknowns.magnetization": [],
+    "unknowns.magnetization": [], "unknowns.skin_young": ["{bounds: [0.1 MPa, 1 MPa]}"],
+    "solid.pose": [], "solid.velocity": ["[0, 0, 0.1]"], "solid.order": ["1"], "solid.averaging": ["0.3"],
+    "mesh of a solid.file": [], "mesh of a solid.shape": [], "mesh of a solid.extrude": [], "mesh of a solid.surface": [],
+    "mesh of a solid.size": ["[30 mm, 6 mm, 4 mm]"], "mesh of a solid.cells": ["[3, 1, 1]"], "mesh of a solid.n": ["2"],
+    "skin.on": ["top"],
     "unknown magnetization.start": ["[1, 2, 3]"], "unknown flux_density.start": ["[0.01, 0, 0]"],
     "unknown magnetization.bounds": ["[-1000, 1000]"], "unknown flux_density.bounds": ["[-0.005, 0.005]"],
     "design.objectives": ["[{target: 1}, {height: 1, pairs: 7}]", "[{target: 1, of: root}]", "[{target: 1, frame: 0}]",
@@ -223,7 +249,7 @@ def main():
             base, said, seen = arrays("out.vtkhdf"), effective("out.vtkhdf"), 0
             for key, value in keys(schema, "scene", schema["allOf"][0], ""):
                 body = key.split(".")[0]
-                if body in ("shell", "rod", "spline") and not name.startswith(body): continue
+                if body in ("shell", "solid", "rod", "spline") and not name.startswith(body): continue
                 seen += 1
                 code, sentence, now = run(program, "scene.yaml", f"{key}={value}")
                 if code not in (0, 1):
