@@ -75,6 +75,9 @@ bool build_read_mesh(const char *path, double scale, MeshFile *file, Error *err)
  * it is 100 times as large as the mesh, or as small. */
 bool build_state(const Build *b, Key at, const char *path, double scale, MeshFile *file);
 
+/* The group of that dimension (2: faces, ..); NULL after a refusal that says which there are. */
+const MeshGroup *build_group(const Build *b, Key at, const char *name, int dim);
+
 /* values[face_count], values[edge_count], values[cell_count]; values[face_count][3], values[cell_count][3]. */
 bool build_face_numbers(const Build *b, Key at, const NumberScene *scene, double *values);
 bool build_edge_numbers(const Build *b, Key at, const NumberScene *scene, double *values);
