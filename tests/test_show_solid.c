@@ -1,29 +1,14 @@
 /* Pictures of solids: colours of tetrahedra on the skin and on a cut, and targets of single nodes. */
 #include "leaks.h"
-#include "png_fixture.h"
-#include "slender.h"
-#include "view/show.h"
+#include "page_fixture.h"
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
-#include <unistd.h>
 
 #define NAME "test_show_solid"
 
-typedef struct Page {
-    int width, height;
-    unsigned char *rgb;
-} Page;
-
 static void run(const char *text)
 {
-    SlenderError err;
-    SlenderScene *scene = slender_scene_parse(text, NULL, 0, &err);
-    if (!scene) fail_msg("%s", err.text);
-    SlenderRun def = {.output = NAME, .threads = 1, .force = 1};
-    if (slender_run(scene, &def, &err) == SLENDER_REFUSED) fail_msg("%s", err.text);
-    slender_scene_destroy(scene);
+    page_run(NAME, text);
 }
 
 static ShowDef from_front(const char *field)
@@ -32,16 +17,6 @@ static ShowDef from_front(const char *field)
     def.view[1] = -1, def.view[2] = 0.05;
     def.width = 600, def.field = field, def.arrows = false;
     return def;
-}
-
-static Page draw(const ShowDef *def)
-{
-    Page page;
-    Error err = {""};
-    if (show_result(NAME ".vtkhdf", NAME ".png", def, &err) != SHOW_DONE ||
-        !png_read(NAME ".png", &page.rgb, &page.width, &page.height, &err))
-        fail_msg("%s", err.text);
-    return page;
 }
 
 /* Parts of the body's pixels that have the colours of the upper and of the lower end of the scale, in any light; the colour
@@ -67,7 +42,7 @@ static void parts_of(Page page, double *high, double *low)
 static void check_parts(const ShowDef *def, double yellow, double violet)
 {
     double high, low;
-    parts_of(draw(def), &high, &low);
+    parts_of(page_draw(NAME, def), &high, &low);
     print_message("yellow %.3f, violet %.3f\n", high, low);
     assert_true(fabs(high - yellow) < 0.12 && fabs(low - violet) < 0.12);
 }
@@ -103,9 +78,9 @@ static void test_skin(void **state)
     check_parts(&def, 0, 1);
     def.field = "volume_magnetization", def.clip = (ClipPlane){{0}, {0}};
     Error err;
-    assert_int_equal(show_result(NAME ".vtkhdf", NAME ".png", &def, &err), SHOW_DONE);
+    assert_int_equal(page_show(NAME, &def, &err), SHOW_DONE);
     def.field = "least_jacobian";
-    assert_int_equal(show_result(NAME ".vtkhdf", NAME ".png", &def, &err), SHOW_DONE);
+    assert_int_equal(page_show(NAME, &def, &err), SHOW_DONE);
 }
 
 static int dots_of(Page page)
@@ -128,12 +103,12 @@ static void test_dots(void **state)
         "cases:\n  - name: one\n    target:\n      on: {box: [[9 mm, -1 mm, 4 mm], [11 mm, 1 mm, 6 mm]]}\n"
         "      formula: [\"x - 0.005\", \"y - 0.005\", \"z\"]\n");
     ShowDef def = from_front("none");
-    Page page = draw(&def);
+    Page page = page_draw(NAME, &def);
     int height = page.height, dots = dots_of(page);
     print_message("%d pixels of a dot\n", dots);
     assert_true(dots > 8 && dots < 60);
     def.target = PICTURE_TARGET_OVER;
-    page = draw(&def);
+    page = page_draw(NAME, &def);
     assert_int_equal(page.height, height);
     assert_int_equal(dots_of(page), dots);
 }
@@ -145,13 +120,13 @@ static void test_sentences(void **state)
     run(BLOCK "  young: 1 MPa\n");
     ShowDef def = from_front(NULL);
     def.clip = (ClipPlane){{0, 0, 1}, {0, 0, 1}};
-    assert_int_equal(show_result(NAME ".vtkhdf", NAME ".png", &def, &err), SHOW_HAS_NOT);
+    assert_int_equal(page_show(NAME, &def, &err), SHOW_HAS_NOT);
     assert_string_equal(err.text, "the plane does not cut the body, which at rest reaches from (0, 0, 0) to "
                                   "(0.04, 0.02, 0.01) m");
     run("slender: 1\njob: equilibrium\nrod: {natural_strain: [0, 0, 0], length: 0.1, elements: 10, radius: 1 "
         "mm,\n"
         "  young: 1 MPa, poisson: 0.4, density: 1100}\n");
-    assert_int_equal(show_result(NAME ".vtkhdf", NAME ".png", &def, &err), SHOW_HAS_NOT);
+    assert_int_equal(page_show(NAME, &def, &err), SHOW_HAS_NOT);
     assert_string_equal(err.text, "a plane cuts shells and solids open; rods are lines");
 }
 
@@ -160,11 +135,6 @@ int main(void)
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_colours), cmocka_unit_test(test_skin),
                                        cmocka_unit_test(test_dots), cmocka_unit_test(test_sentences)};
     int failed = cmocka_run_group_tests(tests, NULL, nothing_leaks);
-    const char *const endings[] = {"vtkhdf", "run", "run-lock", "xdmf", "png"};
-    for (int k = 0; k < 5; k++) {
-        char path[64];
-        snprintf(path, sizeof path, NAME ".%s", endings[k]);
-        unlink(path);
-    }
+    page_remove_files(NAME);
     return failed;
 }
