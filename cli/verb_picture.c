@@ -15,8 +15,8 @@
 static const char usage[] =
     "picture RESULT [-o FILE.png|.svg|.pdf|.webp] [--animation | --stills N | --frame N | --case NAME] "
     "[--field NAME]\n"
-    "               [--target beside|over|both] [--view X,Y,Z] [--width PIXELS] [--seconds S] [--no-arrows] "
-    "[--no-history]\n"
+    "               [--target beside|over|both] [--view X,Y,Z] [--clip PLANE] [--width PIXELS] [--seconds S] "
+    "[--no-arrows] [--no-history]\n"
     "  -o FILE        default: the result's name with .png, of an animation .webp\n"
     "  --animation    all frames one after the other, 25 a second; so does a FILE.webp\n"
     "  --seconds S    how long that takes; default: 6\n"
@@ -26,7 +26,11 @@ static const char usage[] =
     "  --case NAME    one load case\n"
     "  --field NAME   colours: magnetization, young, energy_membrane, contact_force, .., or none\n"
     "  --target WHERE the target beside the body, over it as wires, or both\n"
-    "  --view X,Y,Z   direction to the eye; default: three quarters from above; of rods: front, side and top";
+    "  --view X,Y,Z   direction to the eye; default: three quarters from above; of rods: front, side and "
+    "top\n"
+    "  --clip PLANE   cuts a shell or solid open: x=0.01 (or y, z; m), or a point and a normal, "
+    "PX,PY,PZ,NX,NY,NZ; of the\n"
+    "                 body at rest, whose cut moves with it; what is on the eye's side is left out";
 
 static bool take_target(void *target, const char *word)
 {
@@ -44,6 +48,21 @@ static bool take_view(void *view, const char *text)
     if (sscanf(text, "%lf,%lf,%lf%c", &v[0], &v[1], &v[2], &end) != 3) return false;
     length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
     return length >= 1e-6 && length <= 1e6;
+}
+
+/* One coordinate, or a point and a direction as that of a view. */
+static bool take_clip(void *clip, const char *text)
+{
+    ClipPlane plane = {.normal = {0}};
+    double *p = plane.point, *n = plane.normal, at;
+    char axis, end;
+    if (sscanf(text, "%c=%lf%c", &axis, &at, &end) == 2 && axis >= 'x' && axis <= 'z')
+        p[axis - 'x'] = at, n[axis - 'x'] = 1;
+    else if (sscanf(text, "%lf,%lf,%lf,%lf,%lf,%lf%c", &p[0], &p[1], &p[2], &n[0], &n[1], &n[2], &end) != 6)
+        return false;
+    *(ClipPlane *)clip = plane;
+    double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+    return isfinite(p[0] + p[1] + p[2]) && length >= 1e-6 && length <= 1e6;
 }
 
 /* FILE, or NAME.png, of an animation .webp. The caller frees. */
@@ -93,6 +112,8 @@ int verb_picture(int argc, char **argv)
          .allowed = "beside, over or both"},
         {"view", .kind = OPTION_OTHER, .value = def.view, .take = take_view,
          .allowed = "X,Y,Z, finite numbers up to 1e6, and not all 0"},
+        {"clip", .kind = OPTION_OTHER, .value = &def.clip, .take = take_clip,
+         .allowed = "x=.., y=.., z=.. or PX,PY,PZ,NX,NY,NZ, finite numbers, and a normal that is not 0"},
         {"width", .kind = OPTION_INT, .value = &width, .least = 400, .most = 4000},
         {"no-arrows", .value = &no_arrows},
         {"no-history", .value = &no_history},

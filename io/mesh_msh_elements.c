@@ -13,16 +13,22 @@ typedef struct ElementType {
 static const ElementType element_types[] = {{1, 1, 2, 2}, {2, 2, 3, 3}, {3, 2, 4, 4},    {4, 3, 4, 4},
                                             {8, 1, 3, 2}, {9, 2, 6, 3}, {11, 3, 10, 10}, {15, 0, 1, 1}};
 
+/* What Gmsh makes besides. */
+static const char *name_of_other(long type)
+{
+    return type == 5 ? " (hexahedra)" : type == 6 ? " (prisms)" : type == 7 ? " (pyramids)" : "";
+}
+
 static const ElementType *find_type(Msh *msh, long type)
 {
     for (size_t k = 0; k < sizeof element_types / sizeof *element_types; k++)
         if (element_types[k].type == type) return &element_types[k];
     scan_refuse(
         msh->scan,
-        "elements of Gmsh's type %ld: what is read are triangles and quadrilaterals with straight edges "
+        "elements of Gmsh's type %ld%s: what is read are triangles and quadrilaterals with straight edges "
         "(types 2 and 3), tetrahedra of 4 or 10 nodes (4 and 11) with their triangles (2 and 9), and "
         "lines and points in groups; %s",
-        type,
+        type, name_of_other(type),
         type == 10 || type == 16 ? "mesh it with Mesh.ElementOrder = 1"
                                  : "mesh it anew, or save only their physical groups");
     return NULL;

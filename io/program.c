@@ -71,6 +71,9 @@ bool program_run(const char *const *arguments, const char *folder, const char *a
     int failed = start(arguments, log, &process);
     while (!failed && waitpid(process, &status, 0) < 0)
         if (errno != EINTR) failed = errno;
+    if (!failed && WIFEXITED(status) && WEXITSTATUS(status) == 127)
+        failed =
+            ENOENT; /* POSIX: where posix_spawn could not say it, or a shell did not find what it was to run */
     last_line(log, said, sizeof said);
     mem_free(log);
     if (failed == ENOENT)

@@ -75,6 +75,9 @@ bool build_read_mesh(const char *path, double scale, MeshFile *file, Error *err)
  * it is 100 times as large as the mesh, or as small. */
 bool build_state(const Build *b, Key at, const char *path, double scale, MeshFile *file);
 
+/* The group of that dimension (2: faces, ..); NULL after a refusal that says which there are. */
+const MeshGroup *build_group(const Build *b, Key at, const char *name, int dim);
+
 /* A number, or three, for each of the mesh's edges (dim 1), faces (2) or cells (3): values[count], values[count][3]. */
 bool build_numbers(const Build *b, Key at, int dim, const NumberScene *scene, double *values);
 bool build_vectors(const Build *b, Key at, int dim, const VectorScene *scene, double *values);

@@ -126,17 +126,20 @@ static bool from_table(const Build *b, Key at, const char *path, int width, Elem
     return ok;
 }
 
-/* The group of cells, faces or edges; a name may stand for all of them. */
-static const MeshGroup *find_group(const Build *b, Key at, const char *name, int dim)
+const MeshGroup *build_group(const Build *b, Key at, const char *name, int dim)
 {
     const MeshGroup *group = mesh_group(b->mesh, name, dim);
     if (group) return group;
     bool other = false;
     for (int d = 0; d <= 3; d++) other |= mesh_group(b->mesh, name, d) != NULL;
+    char *names = mesh_group_names(b->mesh, dim);
     if (other)
-        yaml_refuse(b->file, at.text, "the group '%s' has no %s", name, build_elements[dim]);
+        yaml_refuse(b->file, at.text, "the group '%s' has no %s; groups of %s: %s", name, build_elements[dim],
+                    build_elements[dim], names);
     else
-        yaml_refuse(b->file, at.text, "the mesh has no group '%s'", name);
+        yaml_refuse(b->file, at.text, "the mesh has no group '%s'; groups of %s: %s", name,
+                    build_elements[dim], names);
+    mem_free(names);
     return NULL;
 }
 
@@ -202,7 +205,7 @@ static bool assign_groups(const Build *b, Key at, const GroupList *list, int ele
     for (int e = 0; e < element_count; e++) owner[e] = -1;
     for (int k = 0; ok && k < list->count; k++) {
         Key here = key("%s.groups.%s", at.text, group_name(list, k));
-        const MeshGroup *group = find_group(b, here, group_name(list, k), list->dim);
+        const MeshGroup *group = build_group(b, here, group_name(list, k), list->dim);
         ok = group && take_elements(b, here, list, k, group, sizes, owner);
     }
     mem_free(sizes);

@@ -216,6 +216,24 @@ static bool find_normals(const Mesh *sheet, Vec3 *normal, Error *err)
     return true;
 }
 
+/* Where it is curved inwards more narrowly than it is thick, prisms turn inside out. */
+static bool check_prisms(const Mesh *sheet, double thickness, const MeshFile *mesh, Error *err)
+{
+    for (int t = 0; t < mesh->cell_count; t++) {
+        const int *v = mesh->cells + 4 * (size_t)t, *corners = sheet->faces[t / 3 % sheet->face_count];
+        Vec3 e[3], x0 = vec3_load(mesh->vertices[v[0]]);
+        for (int i = 0; i < 3; i++) e[i] = vec3_sub(vec3_load(mesh->vertices[v[i + 1]]), x0);
+        if (vec3_dot(e[0], vec3_cross(e[1], e[2])) > 0) continue;
+        return error_set(err,
+                         "over face %d of the sheet (vertices %d, %d, %d) a thickness of %g m folds over: it "
+                         "is curved more narrowly than that along its normals; take less, or turn its faces "
+                         "round",
+                         t / 3 % sheet->face_count, sheet->file_vertex[corners[0]],
+                         sheet->file_vertex[corners[1]], sheet->file_vertex[corners[2]], thickness);
+    }
+    return true;
+}
+
 bool solid_shape_extrude(const Mesh *sheet, double thickness, int layers, MeshFile *mesh, Error *err)
 {
     *mesh = (MeshFile){0};
@@ -229,5 +247,7 @@ bool solid_shape_extrude(const Mesh *sheet, double thickness, int layers, MeshFi
                    vec3_axpy(thickness * layer / layers, normal[v], vec3_load(sheet->rest[v])));
     }
     mem_free(normal);
+    ok = ok && check_prisms(sheet, thickness, mesh, err);
+    if (!ok) mesh_file_clear(mesh);
     return ok;
 }

@@ -33,6 +33,15 @@ static Pack least_of_pack(const Tets *tets, int pack, const double *x)
     return least;
 }
 
+void solid_jacobians(const Solid *solid, const double *x, double *least)
+{
+    int count = solid->tets->count;
+    for (int k = 0; k < face_pack_count(count); k++) {
+        Pack J = least_of_pack(solid->tets, k, x);
+        for (int l = 0; l < PACK_LANES; l++) least[face_of_lane(count, k, l)] = J[l];
+    }
+}
+
 double solid_least_jacobian(const Solid *solid, const double *x, int *tet)
 {
     const Tets *tets = solid->tets;

@@ -78,3 +78,6 @@ void solid_node_mass(const Solid *solid, double *mass);
 /* The least det F in the state, at corners and middles of edges too: where it is not positive, the solid is turned inside
  * out there; and the tetrahedron (NULL: not asked for). */
 double solid_least_jacobian(const Solid *solid, const double *x, int *tet);
+
+/* That of each tetrahedron. */
+void solid_jacobians(const Solid *solid, const double *x, double *least);

@@ -166,6 +166,7 @@ void tets_destroy(Tets *tets)
     mesh_destroy(tets->surface);
     mesh_destroy(tets->skin);
     mem_free(tets->skin_face);
+    mem_free(tets->behind);
     mem_free(tets->nodes);
     mem_free(tets->volume);
     mem_free(tets->across);

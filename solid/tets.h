@@ -30,6 +30,7 @@ typedef struct Tets {
         *volume;   /* [count] m^3 at rest; owned                                                            */
     int *across;   /* [count][4] the tetrahedra that have a side in common with it, -1: none; owned         */
     Mesh *surface; /* its faces have corners only, its cells are the tetrahedra; owned                      */
+    int *behind;   /* [surface->face_count] the tetrahedron whose side each face is; owned                  */
     Mesh *skin;    /* the same faces, each in four through the middles of its edges where there are any:
                      * what meets the world, is magnetised and shown; owned                                  */
     int *

@@ -97,7 +97,11 @@ static void number_faces(Build *build, const Corners *outer, int count)
     if (listed < count) rank_by_tet(outer, count, rank);
     build->face_count = count;
     build->faces = mem_alloc((size_t)count, sizeof *build->faces);
-    for (int k = 0; k < count; k++) side_corners(build, outer[k].number, build->faces[rank[k]]);
+    build->tets->behind = mem_alloc((size_t)count, sizeof *build->tets->behind);
+    for (int k = 0; k < count; k++) {
+        side_corners(build, outer[k].number, build->faces[rank[k]]);
+        build->tets->behind[rank[k]] = outer[k].tet;
+    }
     for (int f = 0; f < file->face_count; f++)
         if (build->face_of_file[f] >= 0) build->face_of_file[f] = rank[build->face_of_file[f]];
     mem_free(rank);

@@ -111,5 +111,9 @@ double mesh_diagonal(const Mesh *mesh);
  * surface, a curve and points at once. */
 const MeshGroup *mesh_group(const Mesh *mesh, const char *name, int dim);
 
+/* For a sentence: "palm, thumb, index", those of that dimension, -1: of any; "none" where there are none. As many as there is
+ * room for; the caller frees. */
+char *mesh_group_names(const Mesh *mesh, int dim);
+
 /* The mean length of its edges at rest, m. */
 double mesh_mean_edge(const Mesh *mesh);

@@ -80,3 +80,24 @@ const MeshGroup *mesh_group(const Mesh *mesh, const char *name, int dim)
     }
     return NULL;
 }
+
+/* Of any dimension a name counts once. */
+static bool is_repeated(const Mesh *mesh, int group, int dim)
+{
+    for (int g = 0; g < group && dim < 0; g++)
+        if (!strcmp(mesh->groups[g].name, mesh->groups[group].name)) return true;
+    return false;
+}
+
+char *mesh_group_names(const Mesh *mesh, int dim)
+{
+    enum { ROOM = 700 };
+    char *names = NULL;
+    for (int g = 0; g < mesh->group_count; g++) {
+        const MeshGroup *group = &mesh->groups[g];
+        if ((dim >= 0 && group->dim != dim) || is_repeated(mesh, g, dim)) continue;
+        if (names && strlen(names) + strlen(group->name) > ROOM) return mem_join(names, ", ..", "");
+        names = names ? mem_join(names, ", ", group->name) : mem_format("%.*s", ROOM, group->name);
+    }
+    return names ? names : mem_text("none");
+}

@@ -58,14 +58,6 @@ static void mark_members(const Mesh *mesh, const MeshGroup *group, bool *mark)
     }
 }
 
-/* Groups of one name are told apart by their dimension. */
-static bool first_of_name(const Mesh *mesh, int group)
-{
-    for (int g = 0; g < group; g++)
-        if (!strcmp(mesh->groups[g].name, mesh->groups[group].name)) return false;
-    return true;
-}
-
 /* All that the name stands for: its cells, its faces, its edges and its vertices. */
 static bool mark_group(const Mesh *mesh, const char *name, bool *mark, Error *err)
 {
@@ -77,11 +69,10 @@ static bool mark_group(const Mesh *mesh, const char *name, bool *mark, Error *er
         found = true;
     }
     if (found) return true;
-    Text known = {0};
-    for (int g = 0; g < mesh->group_count && known.length + 1 < sizeof known.text; g++)
-        if (first_of_name(mesh, g)) append(&known, "%s%s", g ? ", " : "", mesh->groups[g].name);
-    return error_set(err, "group: there is no group '%s'; the mesh has %s", name,
-                     known.length ? known.text : "none");
+    char *names = mesh_group_names(mesh, -1);
+    error_set(err, "group: there is no group '%s'; the mesh has %s", name, names);
+    mem_free(names);
+    return false;
 }
 
 /* Rounding of coordinates takes no vertex off the surface of a box or ball. */

@@ -89,6 +89,8 @@ expect 0 "$program" run rests.yaml --no-picture
 for field in contact_force none; do expect 0 "$program" picture rests.vtkhdf -o $field.png --field $field; done
 ! cmp -s contact_force.png none.png || { echo "forces of contact have no colours"; bad=1; }
 for view in 0,0,0 nan,0,1 0,-inf,1 1e300,0,0 0,1e-300,0; do expect 2 "$program" picture beam.vtkhdf -o view.png --view=$view; says "not all 0"; done
+for plane in x x= w=1 x=nan 1,2,3 0,0,0,0,0,0 0,0,0,1,0,0,5; do expect 2 "$program" picture beam.vtkhdf -o view.png --clip=$plane; says "a normal that is not 0"; done
+expect 3 "$program" picture beam.vtkhdf -o view.png --clip x=100; says "the plane does not cut the body, which at rest reaches from"
 [ ! -e view.png ] || { echo "a picture from nowhere"; bad=1; }
 expect 4 "$program" run "$scene" -o no/such/folder; says "cannot be"
 expect 1 "$program" run "$scene" -o short --set solver.max_iterations=2 --set "load_steps=1"; says "short.vtkhdf"

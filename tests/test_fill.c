@@ -109,6 +109,7 @@ static const struct {
            "give its .msh as `file`"},
     {"echo begins\necho 'Error:  two facets intersect.' >&2\nexit 3\n",
      "the program tetgen ended with code 3: Error:  two facets intersect."},
+    {"exit 127\n", "the program tetgen is not installed (not in PATH)"},
     {"exit 1\n", "the program tetgen ended with code 1"},
     {"kill -9 $$\n", "the program tetgen was ended by signal 9"},
     {"true\n", "surface.1.node: "},

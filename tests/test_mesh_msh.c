@@ -113,11 +113,12 @@ static void test_refused(void **state)
                   "test:31: a node is missing");
     check_refused(FORMAT_41 NODES_10 "$Elements\n1 1 1 1\n3 1 4 1\n1 1 2 3 4 50\n$EndElements\n",
                   "test:31:11: '50' is more than belongs here");
-    check_refused(FORMAT_41 NODES_10 "$Elements\n1 1 1 1\n3 1 5 1\n1 1 2 3 4 50 60 70 80\n$EndElements\n",
-                  "test:30: elements of Gmsh's type 5: what is read are triangles and quadrilaterals with "
-                  "straight edges (types 2 and 3), tetrahedra of 4 or 10 nodes (4 and 11) with their "
-                  "triangles (2 and 9), and lines and points in groups; mesh it anew, or save only their "
-                  "physical groups");
+    check_refused(
+        FORMAT_41 NODES_10 "$Elements\n1 1 1 1\n3 1 5 1\n1 1 2 3 4 50 60 70 80\n$EndElements\n",
+        "test:30: elements of Gmsh's type 5 (hexahedra): what is read are triangles and quadrilaterals with "
+        "straight edges (types 2 and 3), tetrahedra of 4 or 10 nodes (4 and 11) with their "
+        "triangles (2 and 9), and lines and points in groups; mesh it anew, or save only their "
+        "physical groups");
     check_refused(FORMAT_41 NODES_10
                   "$Elements\n2 2 1 2\n2 1 2 1\n1 1 2 3\n1 1 8 1\n2 1 2 50\n$EndElements\n",
                   "test:33: elements of Gmsh's type 8, of second order, in a file without tetrahedra: a mesh "

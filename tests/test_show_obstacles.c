@@ -1,47 +1,23 @@
 /* Pictures of what bodies meet: where obstacles must be seen, and where the body in or behind them. */
 #include "base/memory.h"
 #include "leaks.h"
-#include "png_fixture.h"
-#include "slender.h"
-#include "view/show.h"
+#include "page_fixture.h"
 #include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
-#include <cmocka.h>
 
 #define NAME "test_show_obstacles"
 
-typedef struct Page {
-    int width, height;
-    unsigned char *rgb;
-} Page;
-
 static void run(const char *text)
 {
-    SlenderError err;
-    SlenderScene *scene = slender_scene_parse(text, NULL, 0, &err);
-    if (!scene) fail_msg("%s", err.text);
-    SlenderRun def = {.output = NAME, .threads = 1, .force = 1};
-    if (slender_run(scene, &def, &err) == SLENDER_REFUSED) fail_msg("%s", err.text);
-    slender_scene_destroy(scene);
+    page_run(NAME, text);
 }
 
 static Page draw(double x, double y, double z, int frame)
 {
-    Page page;
-    Error err = {""};
     ShowDef def = show_default();
     def.view[0] = x, def.view[1] = y, def.view[2] = z;
     def.frame = frame, def.width = 800;
-    if (show_result(NAME ".vtkhdf", NAME ".png", &def, &err) != SHOW_DONE ||
-        !png_read(NAME ".png", &page.rgb, &page.width, &page.height, &err))
-        fail_msg("%s", err.text);
-    return page;
+    return page_draw(NAME, &def);
 }
 
 /* Blue over red is 1.17 of obstacles' colour and 1.06 of a shell's without a field, in any light; the shell's edges are
@@ -166,5 +142,7 @@ int main(void)
                                        cmocka_unit_test_teardown(test_pipe, nothing_leaks),
                                        cmocka_unit_test_teardown(test_moving, nothing_leaks),
                                        cmocka_unit_test_teardown(test_rod, nothing_leaks)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    page_remove_files(NAME);
+    return failed;
 }

@@ -2,7 +2,7 @@
 #include "base/memory.h"
 #include "view/animation.h"
 #include "view/page.h"
-#include "view/picture_panel.h"
+#include "view/picture_target.h"
 #include "view/ticks.h"
 #include <math.h>
 #include <stdio.h>
@@ -27,16 +27,9 @@ static double snap(double length, double resolution)
     return round(length * resolution) / resolution;
 }
 
-static bool any_wires(const PictureScene *scene)
-{
-    bool any = false;
-    for (int i = 0; i < scene->panel_count; i++) any = any || scene->panels[i].target;
-    return any && scene->target != PICTURE_TARGET_BESIDE;
-}
-
 static int keys_count(const PictureScene *scene)
 {
-    return panel_any_field(scene) + panel_any_vectors(scene) + any_wires(scene);
+    return panel_any_field(scene) + panel_any_vectors(scene) + picture_target_any_over(scene);
 }
 
 /* Of axes and lengths below a panel: apart from what obstacles fill. */
@@ -49,7 +42,7 @@ static double measures_height(const PictureScene *scene)
 
 static int scene_columns(const PictureScene *scene)
 {
-    if (panel_any_beside(scene)) return 2;
+    if (picture_target_any_beside(scene)) return 2;
     return scene->panel_count <= 1 ? 1 : scene->panel_count <= 4 ? 2 : 3;
 }
 
@@ -64,7 +57,7 @@ static double scene_cell_width(const PictureScene *scene, double resolution)
 static double layout_cells(const PanelStyle *style, double top, double width, Box *cells)
 {
     const PictureScene *scene = style->scene;
-    int per_row = panel_any_beside(scene) ? 1 : scene_columns(scene);
+    int per_row = picture_target_any_beside(scene) ? 1 : scene_columns(scene);
     for (int first = 0; first < scene->panel_count; first += per_row) {
         int end = first + per_row < scene->panel_count ? first + per_row : scene->panel_count;
         double height = 40;
@@ -105,28 +98,14 @@ static void draw_cell_heading(Canvas *canvas, Box cell, const char *name, const 
     page_draw_fitted(canvas, (Vec2){end, y}, note, small, cell.x + cell.width - end);
 }
 
-/* Root of the mean square distance of the vertices that have a target; NaN where none has. */
-static double target_distance(const PictureScene *scene, const PicturePanel *panel)
-{
-    double sum = 0;
-    int count = 0;
-    for (int v = 0; v < scene->vertex_count; v++) {
-        Vec3 d = vec3_sub(vec3_load(panel->x[v]), vec3_load(panel->target[v]));
-        if (!isfinite(vec3_dot(d, d))) continue;
-        sum += vec3_dot(d, d);
-        count++;
-    }
-    return sqrt(sum / count);
-}
-
 /* Name and note; how far the target is away, unless its own panel says so. */
 static void draw_result_heading(Canvas *canvas, const PictureScene *scene, const PicturePanel *panel, Box box)
 {
     char number[64], note[256];
     const char *given = panel->note ? panel->note : "";
     snprintf(note, sizeof note, "%s", given);
-    if (panel->target && scene->target == PICTURE_TARGET_OVER) {
-        unit_format(target_distance(scene, panel), "m", number, sizeof number);
+    if (panel->target && picture_target_place(scene, panel) == PICTURE_TARGET_OVER) {
+        unit_format(panel->target_away, "m", number, sizeof number);
         snprintf(note, sizeof note, "%s%starget %s away (rms)", given, given[0] ? ", " : "", number);
     }
     draw_cell_heading(canvas, box, panel->name ? panel->name : "result", note);
@@ -135,7 +114,7 @@ static void draw_result_heading(Canvas *canvas, const PictureScene *scene, const
 static void draw_target_cell(Canvas *canvas, const PanelStyle *style, int index, Box box)
 {
     char number[64], note[96];
-    unit_format(target_distance(style->scene, &style->scene->panels[index]), "m", number, sizeof number);
+    unit_format(style->scene->panels[index].target_away, "m", number, sizeof number);
     snprintf(note, sizeof note, "%s away (rms)", number);
     draw_cell_heading(canvas, box, "target", note);
     panel_draw_target(canvas, style, index, box);
@@ -151,7 +130,8 @@ static void draw_panels(Canvas *canvas, const PanelStyle *style, const Layout *p
         panel_draw_measures(canvas, style, i,
                             (Box){box.x, box.y, box.width, box.height + measures_height(scene)});
         box.x = snap(box.x + page->cell_width + PAGE_GAP, style->resolution);
-        if (scene->panels[i].target && panel_any_beside(scene)) draw_target_cell(canvas, style, i, box);
+        if (scene->panels[i].target && picture_target_place(scene, &scene->panels[i]) != PICTURE_TARGET_OVER)
+            draw_target_cell(canvas, style, i, box);
     }
 }
 
@@ -197,10 +177,17 @@ static void draw_arrow_key(Canvas *canvas, const PanelStyle *style, Box box)
     canvas_text(canvas, (Vec2){box.x + length + 8, y + 3}, text, (TextStyle){.color = page_ink, .size = 8});
 }
 
-static void draw_wire_key(Canvas *canvas, Box box)
+/* Wires where any target has faces, else a dot. */
+static void draw_target_key(Canvas *canvas, const PictureScene *scene, Box box)
 {
+    bool wires = false;
     double y = box.y + 11;
-    canvas_line(canvas, (Vec2){box.x, y}, (Vec2){box.x + 22, y}, (Pen){panel_target_ink, 0.8, 0});
+    for (int i = 0; i < scene->panel_count; i++)
+        wires = wires || (scene->panels[i].target && picture_target_has_face(scene, &scene->panels[i]));
+    if (wires)
+        canvas_line(canvas, (Vec2){box.x, y}, (Vec2){box.x + 22, y}, (Pen){panel_target_ink, 0.8, 0});
+    else
+        canvas_circle(canvas, (Vec2){box.x + 11, y}, 2.2, panel_target_ink);
     canvas_text(canvas, (Vec2){box.x + 30, y + 3}, "target", (TextStyle){.color = page_ink, .size = 8});
 }
 
@@ -218,7 +205,7 @@ static void draw_keys(Canvas *canvas, const PanelStyle *style, const Layout *pag
         draw_arrow_key(canvas, style, box);
         *(stacked ? &box.y : &box.x) += stacked ? 24 : KEYS;
     }
-    if (any_wires(scene)) draw_wire_key(canvas, box);
+    if (picture_target_any_over(scene)) draw_target_key(canvas, scene, box);
 }
 
 static void draw_page(Canvas *canvas, const PictureScene *scene, const PanelStyle *style, const Layout *page)

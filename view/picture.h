@@ -20,6 +20,7 @@ typedef struct PicturePanel {
     const char *note;           /* e.g. "converged"; NULL: none                                            */
     const double (*x)[3];       /* [vertex] m                                                              */
     const double (*target)[3];  /* [vertex] m; a row of NaN: that vertex has none. NULL: no target         */
+    double target_away;         /* m, over the whole body                                                  */
     const double *field;        /* [face] drawn as colour; NaN: none. NULL: a plain surface                */
     const double (*vectors)[3]; /* [face] drawn as arrows, in the world's frame; NULL: none                */
     const double *flux_density; /* [3] T, drawn as an arrow beside the axes; NULL: none                    */

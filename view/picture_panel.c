@@ -1,6 +1,7 @@
 #include "view/picture_panel.h"
 #include "base/memory.h"
 #include "view/page.h"
+#include "view/picture_target.h"
 #include "view/ticks.h"
 #include <math.h>
 #include <stdio.h>
@@ -13,13 +14,6 @@ enum { ARROWS_LEAST = 12, ARROWS_MOST = 250 };
 static const Color plain = {0.8, 0.82, 0.85, 1};
 const Color panel_target_ink = {0.835, 0.369, 0, 1};
 static const Color vector_ink = {0.86, 0.2, 0.14, 1}, field_ink = {0, 0.447, 0.698, 1};
-
-bool panel_any_beside(const PictureScene *scene)
-{
-    bool any = false;
-    for (int i = 0; i < scene->panel_count; i++) any = any || scene->panels[i].target;
-    return any && scene->target != PICTURE_TARGET_OVER;
-}
 
 bool panel_any_field(const PictureScene *scene)
 {
@@ -317,8 +311,9 @@ static void draw_body(Raster *raster, const PanelStyle *style, const Camera *cam
 {
     draw_mesh(raster, style, camera, panel->x, colors);
     if (panel->vectors) draw_arrows(raster, style, camera, panel);
-    if (panel->target && style->scene->target != PICTURE_TARGET_BESIDE)
-        draw_wires(raster, style, camera, panel->target);
+    if (!panel->target || picture_target_place(style->scene, panel) == PICTURE_TARGET_BESIDE) return;
+    draw_wires(raster, style, camera, panel->target);
+    picture_target_dots(raster, style, camera, panel->target);
 }
 
 void panel_draw_result(Canvas *canvas, const PanelStyle *style, int index, Box box)
@@ -346,7 +341,9 @@ void panel_draw_target(Canvas *canvas, const PanelStyle *style, int index, Box b
 {
     Camera camera;
     Raster *raster = raster_begin(style, index, box, &camera);
-    draw_mesh(raster, style, &camera, style->scene->panels[index].target, NULL);
+    const double(*target)[3] = style->scene->panels[index].target;
+    draw_mesh(raster, style, &camera, target, NULL);
+    picture_target_dots(raster, style, &camera, target);
     raster_crease(raster, style, &camera);
     raster_end(canvas, style, raster, box);
 }

@@ -23,8 +23,7 @@ typedef struct PanelStyle {
 PanelStyle panel_style_create(const PictureScene *scene, double resolution, double width, double height);
 void panel_style_clear(PanelStyle *style);
 
-/* Does any panel have its target beside it, a field, vectors? */
-bool panel_any_beside(const PictureScene *scene);
+/* Does any panel have a field, vectors? */
 bool panel_any_field(const PictureScene *scene);
 bool panel_any_vectors(const PictureScene *scene);
 
@@ -35,5 +34,5 @@ void panel_draw_target(Canvas *canvas, const PanelStyle *style, int index, Box b
 /* Axes, the panel's gravity, its flux density and a length, along the box's lower edge. */
 void panel_draw_measures(Canvas *canvas, const PanelStyle *style, int index, Box box);
 
-/* The colour of a target drawn as wires. */
+/* The colour of a target that is drawn as wires or dots. */
 extern const Color panel_target_ink;

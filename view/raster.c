@@ -4,7 +4,9 @@
 #include <math.h>
 #include <stddef.h>
 
-enum { SAMPLES = 3, MAX_SIZE = 8000, ARROW_SIDES = 20, TAPS = 48 };
+enum { SAMPLES = 3, MAX_SIZE = 8000, SIDES = 20, RINGS_MOST = 9, TAPS = 48 };
+
+static const double HIDDEN_BALL = 0.5; /* of its opacity */
 
 const Vec3 CAMERA_THREE_QUARTER = {0.45, -0.75, 0.55};
 
@@ -260,40 +262,55 @@ void raster_mesh(Raster *raster, const Camera *camera, const RasterMesh *mesh)
     }
 }
 
-/* Five rings of vertices along the axis: tail (closed), tail, neck, head's base, tip (closed). */
-void raster_arrow(Raster *raster, const Camera *camera, Vec3 middle, Vec3 vector, double thickness,
-                  Color color)
+/* A surface round an axis from `middle` on: rings of vertices, how far along the axis and across it each. */
+static void paint_round(Raster *raster, const Camera *camera, const Camera *axis, Vec3 middle,
+                        const double (*rings)[2], int ring_count, RasterMesh mesh)
 {
-    enum { RINGS = 5 };
-    double vertices[RINGS * ARROW_SIDES][3], length = vec3_length(vector);
-    int faces[(RINGS - 1) * ARROW_SIDES * 2][3], face_count = 0;
-    if (!(length > 0)) return;
-    Camera frame = camera_view(vector, camera->up); /* two directions across the axis */
-    double head = fmin(2.9 * thickness, length), radius = 0.5 * thickness;
-    const double along[RINGS] = {-0.5 * length, -0.5 * length, 0.5 * length - head, 0.5 * length - head,
-                                 0.5 * length};
-    const double across[RINGS] = {0, radius, radius, 2.6 * radius, 0};
-    for (int r = 0; r < RINGS; r++)
-        for (int s = 0; s < ARROW_SIDES; s++) {
-            double angle = 2 * acos(-1) * s / ARROW_SIDES;
-            Vec3 v = vec3_axpy(along[r], frame.toward, middle);
-            v = vec3_axpy(across[r] * cos(angle), frame.right, v);
-            vec3_store(vertices[r * ARROW_SIDES + s], vec3_axpy(across[r] * sin(angle), frame.up, v));
+    double vertices[RINGS_MOST * SIDES][3];
+    int faces[(RINGS_MOST - 1) * SIDES * 2][3], face_count = 0;
+    for (int r = 0; r < ring_count; r++)
+        for (int s = 0; s < SIDES; s++) {
+            double angle = 2 * acos(-1) * s / SIDES;
+            Vec3 v = vec3_axpy(rings[r][0], axis->toward, middle);
+            v = vec3_axpy(rings[r][1] * cos(angle), axis->right, v);
+            vec3_store(vertices[r * SIDES + s], vec3_axpy(rings[r][1] * sin(angle), axis->up, v));
         }
-    for (int r = 0; r + 1 < RINGS; r++)
-        for (int s = 0; s < ARROW_SIDES; s++) {
-            int a = r * ARROW_SIDES + s, b = r * ARROW_SIDES + (s + 1) % ARROW_SIDES;
-            int quad[2][3] = {{a, b, b + ARROW_SIDES}, {a, b + ARROW_SIDES, a + ARROW_SIDES}};
+    for (int r = 0; r + 1 < ring_count; r++)
+        for (int s = 0; s < SIDES; s++) {
+            int a = r * SIDES + s, b = r * SIDES + (s + 1) % SIDES;
+            int quad[2][3] = {{a, b, b + SIDES}, {a, b + SIDES, a + SIDES}};
             for (int t = 0; t < 2; t++, face_count++)
                 for (int k = 0; k < 3; k++) faces[face_count][k] = quad[t][k];
         }
-    RasterMesh mesh = {.vertex_count = RINGS * ARROW_SIDES,
-                       .face_count = face_count,
-                       .vertices = (const double(*)[3])vertices,
-                       .faces = (const int(*)[3])faces,
-                       .color = color,
-                       .raise = 0.5 * fabs(vec3_dot(vector, camera->toward)) + 1.3 * thickness};
+    mesh.vertex_count = ring_count * SIDES, mesh.face_count = face_count;
+    mesh.vertices = (const double(*)[3])vertices, mesh.faces = (const int(*)[3])faces;
     raster_mesh(raster, camera, &mesh);
+}
+
+/* Five rings along the axis: tail (closed), tail, neck, head's base, tip (closed). */
+void raster_arrow(Raster *raster, const Camera *camera, Vec3 middle, Vec3 vector, double thickness,
+                  Color color)
+{
+    double length = vec3_length(vector);
+    if (!(length > 0)) return;
+    Camera axis = camera_view(vector, camera->up); /* two directions across the axis */
+    double head = fmin(2.9 * thickness, length), radius = 0.5 * thickness, end = 0.5 * length;
+    const double rings[][2] = {
+        {-end, 0}, {-end, radius}, {end - head, radius}, {end - head, 2.6 * radius}, {end, 0}};
+    paint_round(raster, camera, &axis, middle, rings, 5,
+                (RasterMesh){.color = color,
+                             .raise = 0.5 * fabs(vec3_dot(vector, camera->toward)) + 1.3 * thickness});
+}
+
+void raster_ball(Raster *raster, const Camera *camera, Vec3 center, double radius, Color color)
+{
+    double rings[RINGS_MOST][2];
+    for (int r = 0; r < RINGS_MOST; r++) {
+        double angle = acos(-1) * r / (RINGS_MOST - 1);
+        rings[r][0] = radius * cos(angle), rings[r][1] = radius * sin(angle);
+    }
+    paint_round(raster, camera, camera, center, (const double(*)[2])rings, RINGS_MOST,
+                (RasterMesh){.color = color, .hidden = HIDDEN_BALL});
 }
 
 /* Depth of a sample; NaN outside and where nothing was drawn. */

@@ -75,6 +75,9 @@ void raster_mesh(Raster *raster, const Camera *camera, const RasterMesh *mesh);
 void raster_arrow(Raster *raster, const Camera *camera, Vec3 middle, Vec3 vector, double thickness,
                   Color color);
 
+/* A ball; where it is behind other things it shines through them. */
+void raster_ball(Raster *raster, const Camera *camera, Vec3 center, double radius, Color color);
+
 /* Darkens what lies up to `reach` (length units) below its surroundings: creases, and the places where one
  * part passes over another. strength 0..1. Call it when everything is drawn. */
 void raster_occlude(Raster *raster, const Camera *camera, double reach, double strength);

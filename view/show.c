@@ -2,8 +2,8 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "spline/drawn.h"
-#include "view/show_data.h"
 #include "view/show_drawing.h"
+#include "view/show_mesh.h"
 #include "view/show_obstacles.h"
 #include "view/show_rod.h"
 #include "view/ticks.h"
@@ -15,12 +15,7 @@
 typedef struct Show {
     ShowData *data;
     const ShowDef *def;
-    int vertex_count, face_count;
-    const int (*faces)[3];
-    const double (*rest)[3], (*magnetization)[3];
-    bool magnetic; /* somewhere */
-    bool filled;   /* with tetrahedra */
-    char *field;
+    ShowMesh mesh;
     PicturePanel *panels;
     int *steps; /* [panel] the frame that it shows; -1: the last */
     int panel_count;
@@ -32,142 +27,9 @@ ShowDef show_default(void)
     return (ShowDef){.frame = -1, .arrows = true, .history = true, .width = 1600};
 }
 
-/* A dataset with width numbers for each face, or, of a solid, for each face of the surface that the skin's are parts of; NULL:
- * there is none. */
-static double *per_face(Show *show, const char *path, int width)
-{
-    size_t faces = (size_t)show->face_count, each = (size_t)width;
-    const int *part = show_dataset(show->data, "slender/surface_of_face", ARRAY_INT32, faces);
-    if (!part) return show_dataset(show->data, path, ARRAY_FLOAT64, each * faces);
-    int rows = 0;
-    for (int f = 0; f < show->face_count; f++) rows = part[f] >= rows ? part[f] + 1 : rows;
-    const double *own = show_dataset(show->data, path, ARRAY_FLOAT64, each * (size_t)rows);
-    double *values = own ? show_block(show->data, each * faces, sizeof *values) : NULL;
-    for (int f = 0; own && f < show->face_count; f++)
-        if (part[f] >= 0)
-            memcpy(values + each * (size_t)f, own + each * (size_t)part[f], each * sizeof *values);
-    return values;
-}
-
-static bool read_mesh(Show *show, Error *err)
-{
-    Array faces, rest;
-    if (!result_read_as(show->data->result, "slender/faces", ARRAY_INT32, 2, 3, &faces, err)) return false;
-    show_keep(show->data, faces);
-    if (!result_read_as(show->data->result, "slender/rest", ARRAY_FLOAT64, 2, 3, &rest, err)) return false;
-    show_keep(show->data, rest);
-    for (size_t i = 0; i < array_count(&faces); i++) {
-        int vertex = ((const int *)faces.data)[i];
-        if (vertex < 0 || vertex >= rest.dims[0])
-            return error_set(err, "the result's faces name vertices that it does not have");
-    }
-    if (faces.dims[0] == 0) return error_set(err, "the result's mesh has no faces");
-    show->face_count = faces.dims[0];
-    show->vertex_count = rest.dims[0];
-    show->filled = result_has(show->data->result, "slender/cells");
-    show->faces = (void *)faces.data;
-    show->rest = (void *)rest.data;
-    show->magnetization = (void *)per_face(show, "slender/design/magnetization", 3);
-    for (int i = 0; show->magnetization && i < 3 * show->face_count; i++)
-        show->magnetic |= show->magnetization[i / 3][i % 3] != 0;
-    return true;
-}
-
-/* ---- What is drawn on the faces ---- */
-
-typedef struct Edges {
-    Vec3 e1, e2, n;
-} Edges;
-
-static Edges face_edges(const Show *show, const double (*x)[3], int face)
-{
-    const int *v = show->faces[face];
-    Vec3 x0 = vec3_load(x[v[0]]), e1 = vec3_sub(vec3_load(x[v[1]]), x0),
-         e2 = vec3_sub(vec3_load(x[v[2]]), x0);
-    return (Edges){e1, e2, vec3_unit(vec3_cross(e1, e2))};
-}
-
-/* Magnetisation as the faces carry it: M = a e1 + b e2 + c n at rest is a e1' + b e2' + c n' now. */
-static const double (*carried(Show *show, const double (*x)[3], const double (*M)[3]))[3]
-{
-    double(*vectors)[3] = show_block(show->data, (size_t)show->face_count, sizeof *vectors);
-    for (int f = 0; f < show->face_count; f++) {
-        Edges rest = face_edges(show, show->rest, f), now = face_edges(show, x, f);
-        Vec3 m = vec3_load(M[f]);
-        double e11 = vec3_dot(rest.e1, rest.e1), e12 = vec3_dot(rest.e1, rest.e2),
-               e22 = vec3_dot(rest.e2, rest.e2);
-        double m1 = vec3_dot(rest.e1, m), m2 = vec3_dot(rest.e2, m), det = e11 * e22 - e12 * e12;
-        double a = (e22 * m1 - e12 * m2) / det, b = (e11 * m2 - e12 * m1) / det;
-        Vec3 turned = vec3_scale(vec3_dot(rest.n, m), now.n);
-        vec3_store(vectors[f], vec3_axpy(a, now.e1, vec3_axpy(b, now.e2, turned)));
-    }
-    return (const double(*)[3])vectors;
-}
-
-static bool varies(const double *values, int count)
-{
-    for (int f = 1; values && f < count; f++)
-        if (fabs(values[f] - values[0]) > 1e-9 * fabs(values[0])) return true;
-    return false;
-}
-
-static const double *lengths(Show *show, const double (*vectors)[3])
-{
-    double *r = show_block(show->data, (size_t)show->face_count, sizeof *r);
-    for (int f = 0; f < show->face_count; f++) r[f] = vec3_length(vec3_load(vectors[f]));
-    return r;
-}
-
-/* The sizes of vectors at the points, as the mean of a face's corners. */
-static const double *means_of_corners(Show *show, const double (*vectors)[3])
-{
-    double *mean = show_block(show->data, (size_t)show->face_count, sizeof *mean);
-    for (int f = 0; f < show->face_count; f++)
-        for (int i = 0; i < 3; i++) mean[f] += vec3_length(vec3_load(vectors[show->faces[f][i]])) / 3;
-    return mean;
-}
-
-/* Of a frame, -1: the last: one number per face of CellData, or vectors of PointData. */
-static bool frame_field(Show *show, int step, const char *name, const double **values, const char **unit,
-                        Error *err)
-{
-    Array array;
-    bool points = result_has(show->data->result, show_text(show->data, "VTKHDF/PointData/%s", name));
-    if (step < 0) step = result_step_count(show->data->result) - 1;
-    const char *path = show_text(show->data, "%s/%s", points ? "PointData" : "CellData", name);
-    if (!result_read_step(show->data->result, path, step, &array, err)) return false;
-    void *data = show_keep(show->data, array);
-    *unit = array.unit && array.unit[0] ? array.unit : "";
-    if (points && array_is(&array, ARRAY_FLOAT64, 2, 3) && array.dims[0] == show->vertex_count)
-        return *values = means_of_corners(show, (const double(*)[3])data), true;
-    size_t faces = (size_t)show->face_count, rows = array_count(&array);
-    bool fits = !points && array.type == ARRAY_FLOAT64 && (rows == faces || (show->filled && rows > faces));
-    if (!fits) return error_set(err, "'%s' is neither one number per face nor a vector per point", name);
-    *values = (const double *)data + (rows - faces); /* a solid's skin is after its tetrahedra */
-    return true;
-}
-
-/* Numbers per face of the field that was asked for; NULL: a plain surface. False where there is no such
- * field. */
-static bool face_field(Show *show, int step, const double **values, const char **name, const char **unit,
-                       Error *err)
-{
-    const double *young =
-        show->filled ? NULL : /* of a solid it is that of its tetrahedra */
-            show_dataset(show->data, "slender/design/young", ARRAY_FLOAT64, (size_t)show->face_count);
-    const char *asked = show->def->field;
-    *values = NULL;
-    if (!asked) asked = varies(young, show->face_count) ? "young" : show->magnetic ? "magnetization" : "none";
-    *name = asked, *unit = "";
-    if (!strcmp(asked, "none")) return true;
-    if (!strcmp(asked, "young") && young) return *values = young, *unit = "Pa", true;
-    if (!strcmp(asked, "magnetization") && show->magnetization)
-        return *values = lengths(show, show->magnetization), *unit = "A/m", true;
-    return frame_field(show, step, asked, values, unit, err);
-}
-
 /* ---- Panels ---- */
 
+/* Of the body with its vertices at x. */
 static PicturePanel *add_panel(Show *show, const char *name, const double (*x)[3])
 {
     size_t count = (size_t)show->panel_count++;
@@ -175,8 +37,8 @@ static PicturePanel *add_panel(Show *show, const char *name, const double (*x)[3
     show->steps = mem_resize(show->steps, count, count + 1, sizeof *show->steps);
     show->steps[count] = -1;
     PicturePanel *panel = &show->panels[count];
-    *panel = (PicturePanel){.name = name, .x = x};
-    if (show->def->arrows && show->magnetic) panel->vectors = carried(show, x, show->magnetization);
+    *panel = (PicturePanel){.name = name, .x = show_mesh_points(&show->mesh, x)};
+    if (show->def->arrows && show->mesh.magnetic) panel->vectors = show_mesh_carried(&show->mesh, x);
     return panel;
 }
 
@@ -188,7 +50,7 @@ static bool add_frame(Show *show, int frame, Error *err)
     if (!show_check_frame(show->data, frame, err)) return false;
     if (!result_read_step(result, "Points", frame, &array, err)) return false;
     const double(*points)[3] = show_keep(show->data, array);
-    if (array.dims[0] != show->vertex_count)
+    if (array.dims[0] != show->mesh.body.vertex_count)
         return error_set(err, "the result's frame %d has other points than its mesh", frame);
     PicturePanel *panel = add_panel(show, show_frame_name(show->data, frame), points);
     show->steps[show->panel_count - 1] = frame;
@@ -216,13 +78,29 @@ static void *case_dataset(Show *show, const char *name, const char *what, size_t
     return data;
 }
 
+/* Root of the mean square distance of the vertices that have a target; NaN where none has. */
+static double target_away(const double (*x)[3], const double (*target)[3], int count)
+{
+    double sum = 0;
+    int have = 0;
+    for (int v = 0; v < count; v++) {
+        Vec3 d = vec3_sub(vec3_load(x[v]), vec3_load(target[v]));
+        if (!isfinite(vec3_dot(d, d))) continue;
+        sum += vec3_dot(d, d);
+        have++;
+    }
+    return sqrt(sum / have);
+}
+
 static void add_case(Show *show, const char *name)
 {
-    size_t count = 3 * (size_t)show->vertex_count;
+    size_t count = 3 * (size_t)show->mesh.body.vertex_count;
     const double(*x)[3] = case_dataset(show, name, "x", count);
     if (!x) return;
     PicturePanel *panel = add_panel(show, show_text(show->data, "%s", name), x);
-    panel->target = case_dataset(show, name, "target", count);
+    const double(*target)[3] = case_dataset(show, name, "target", count);
+    panel->target = show_mesh_points(&show->mesh, target);
+    if (target) panel->target_away = target_away(x, target, show->mesh.body.vertex_count);
     panel->gravity = case_dataset(show, name, "gravity", 3);
     const double *flux = case_dataset(show, name, "flux_density", 3);
     if (flux && vec3_length(vec3_load(flux)) > 0) panel->flux_density = flux;
@@ -257,8 +135,8 @@ static bool dress(Show *show, PictureScene *page, Error *err)
 {
     page->vectors_name = "magnetization", page->vectors_unit = "A/m";
     for (int k = 0; k < show->panel_count; k++)
-        if (!face_field(show, show->steps[k], &show->panels[k].field, &page->field_name, &page->field_unit,
-                        err))
+        if (!show_mesh_field(&show->mesh, show->steps[k], &show->panels[k].field, &page->field_name,
+                             &page->field_unit, err))
             return false;
     return true;
 }
@@ -280,7 +158,8 @@ static bool add_obstacles(Show *show, Error *err)
 {
     if (!show_obstacles_read(&show->obstacles, show->data, err)) return false;
     ShowWay way = show_way();
-    for (int k = 0; k < show->panel_count; k++) show_way_add(&way, show->panels[k].x, show->vertex_count);
+    for (int k = 0; k < show->panel_count; k++)
+        show_way_add(&way, show->panels[k].x, show->mesh.clip.point_count);
     for (int k = 0; k < show->panel_count; k++) {
         PicturePanel *panel = &show->panels[k];
         panel->around = show_obstacles_at(&show->obstacles, show->steps[k]);
@@ -293,12 +172,14 @@ static bool write_page(Show *show, const char *result, const char *picture, Erro
 {
     const ShowDef *def = show->def;
     PictureScene page = picture_default();
-    if (!read_mesh(show, err)) return false;
+    if (!show_mesh_read(&show->mesh, show->data, err)) return false;
     if (!add_panels(show, err) || !add_obstacles(show, err)) return false;
     if (!dress(show, &page, err)) return false;
     const char *slash = strrchr(result, '/');
     page.title = slash ? slash + 1 : result;
-    page.vertex_count = show->vertex_count, page.face_count = show->face_count, page.faces = show->faces;
+    const Clip *clip = &show->mesh.clip;
+    page.vertex_count = clip->point_count, page.face_count = clip->face_count;
+    page.faces = (const int(*)[3])clip->faces;
     page.panel_count = show->panel_count, page.panels = show->panels;
     page.target = def->target, page.width = def->width;
     memcpy(page.view, def->view, sizeof page.view);
@@ -315,12 +196,17 @@ ShowStatus show_result(const char *result, const char *picture, const ShowDef *d
     ShowData data = {0};
     Show show = {.data = &data, .def = def};
     bool ok = show_data_open(&data, result, def, err);
-    if (ok && drawn_has(data.result))
+    bool drawn = ok && drawn_has(data.result), rod = ok && !drawn && show_has_rod(&data);
+    if ((drawn || rod) && clip_is_given(&def->clip))
+        ok = error_set(err, "a plane cuts shells and solids open; %s",
+                       drawn ? "a drawing has no inside" : "rods are lines");
+    else if (drawn)
         ok = show_drawing(&data, picture, err);
-    else if (ok && show_has_rod(&data))
+    else if (rod)
         ok = show_rod(&data, result, picture, err);
     else
         ok = ok && write_page(&show, result, picture, err);
+    show_mesh_clear(&show.mesh);
     mem_free(show.panels);
     mem_free(show.steps);
     show_data_clear(&data);

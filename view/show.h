@@ -2,6 +2,7 @@
  * of rods their curves (show_rod.h), of drawings their lines (show_drawing.h). */
 #pragma once
 #include "base/error.h"
+#include "view/clip.h"
 #include "view/picture.h"
 
 typedef struct ShowDef {
@@ -11,6 +12,8 @@ typedef struct ShowDef {
     const char *only; /* one load case; NULL: all */
     const char
         *field; /* magnetization, young, energy_.., contact_force, none; NULL: young if it varies, else |M| */
+    ClipPlane
+        clip;     /* cuts a shell or solid open at rest, and the eye's side of it is left out; zeros: whole */
     bool arrows;  /* of the magnetisation, as the faces carry it */
     bool history; /* a chart of the objective, if there is one */
     PictureTarget target;

@@ -59,9 +59,8 @@ static System *make_system(const Model *model, bool motion)
 static bool put_skin(Solid *solid, const Build *b, const SkinScene *skin)
 {
     if (!skin || !skin->on) return true;
-    const MeshGroup *group = mesh_group(b->mesh, skin->on, 2);
-    if (!group || !group->count)
-        return yaml_refuse(b->file, "solid.skin.on", "the surface has no group of faces '%s'", skin->on);
+    const MeshGroup *group = build_group(b, key("solid.skin.on"), skin->on, 2);
+    if (!group) return false;
     solid->skin_on = mem_alloc((size_t)b->mesh->face_count, sizeof *solid->skin_on);
     for (int k = 0; k < group->count; k++) solid->skin_on[group->members[k]] = true;
     return true;

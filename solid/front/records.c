@@ -20,6 +20,9 @@ void solid_add_static(const Model *model, Arrays *list)
     arrays_add(list, array_int("faces", skin->faces[0], 2, skin->face_count, 3));
     arrays_add(list, array_int("surface", surface->faces[0], 2, surface->face_count, 3));
     arrays_add(list, array_int("surface_of_face", tets->skin_face, 1, skin->face_count, 0));
+    int *behind = arrays_keep(list, mem_alloc((size_t)skin->face_count, sizeof *behind));
+    for (int f = 0; f < skin->face_count; f++) behind[f] = tets->behind[tets->skin_face[f]];
+    arrays_add(list, array_int("cell_of_face", behind, 1, skin->face_count, 0));
     if (surface->vertex_count != surface->file_vertex_count)
         arrays_add(list, array_int("file_vertex", surface->file_vertex, 1, surface->vertex_count, 0));
 }
@@ -88,6 +91,9 @@ void solid_add_frame(const Model *model, const Snapshot *shot, bool whole, Array
         char *name = arrays_keep(list, mem_format("cell/energy_%s", term->ops->name));
         add_cells(solid, name, "J", energy, 1, list);
     }
+    double *least = empty(solid, 1, list);
+    solid_jacobians(solid, shot->at.x, least);
+    add_cells(solid, "cell/least_jacobian", "", least, 1, list);
     if (!whole) return;
     add_magnetization(solid, shot->p, list);
     add_young(solid, shot->p, list);
