@@ -101,6 +101,12 @@ bool build_loads(const Build *b, Key at, const LoadScene *loads, int count, doub
 /* The obstacles of the scene's key `obstacles`, (*list)[count]: the caller's, to be cleared each. */
 bool build_obstacles(const Build *b, const ObstacleScene *scenes, int count, Obstacle **list);
 
+/* Has a file in another state the faces of the mesh? */
+typedef bool BuildFits(const Mesh *mesh, const MeshFile *file);
+
+/* place[vertex_count][3] m: that of the pose; as it was where there is none. A file must fit; NULL: its faces do not matter. */
+bool build_pose(const Build *b, Key at, const PoseScene *scene, BuildFits *fits, double (*place)[3]);
+
 /* uniform[3] in T, and the caller's *field NULL; or 0 and a field that varies in space. */
 bool build_flux(const Build *b, Key at, const FluxScene *scene, double *uniform, FluxField **field);
 

@@ -138,16 +138,29 @@ bool build_flux(const Build *b, Key at, const FluxScene *scene, double *uniform,
     return true;
 }
 
-/* ---- Targets ---- */
+/* ---- Poses and targets ---- */
 
-static bool target_from_file(const Build *b, Key at, const TargetScene *scene, double (*target)[3])
+/* The vertices of a file in another state; fits NULL: whatever its faces are. */
+static bool places_from_file(const Build *b, Key at, const char *path, double scale, BuildFits *fits,
+                             double (*place)[3])
 {
     MeshFile file = {0};
-    if (!build_state(b, at, scene->file, scene->scale, &file)) return false;
-    for (int v = 0; v < b->mesh->vertex_count; v++)
-        memcpy(target[v], file.vertices[mesh_row(b->mesh, file.vertex_count, v)], sizeof *target);
+    if (!build_state(b, at, path, scale, &file)) return false;
+    bool ok = !fits || fits(b->mesh, &file) ||
+              yaml_refuse(b->file, at.text, "%s has other faces than the mesh", path);
+    for (int v = 0; ok && v < b->mesh->vertex_count; v++)
+        memcpy(place[v], file.vertices[mesh_row(b->mesh, file.vertex_count, v)], sizeof *place);
     mesh_file_clear(&file);
-    return true;
+    return ok;
+}
+
+bool build_pose(const Build *b, Key at, const PoseScene *scene, BuildFits *fits, double (*place)[3])
+{
+    if (!scene) return true;
+    if (scene->file)
+        return places_from_file(b, key("%s.file", at.text), scene->file, scene->scale, fits, place);
+    return build_vectors_at(b, key("%s.formula", at.text), scene->formula, scene->where, scene->where_count,
+                            b->mesh->rest[0], b->mesh->vertex_count, place[0]);
 }
 
 static bool target_from_image(const Build *b, Key at, const TargetScene *scene, double (*target)[3])
@@ -210,7 +223,7 @@ bool build_target(const Build *b, Key at, const TargetScene *scene, double (*tar
         return yaml_refuse(b->file, at.text, "strokes need `width`, e.g. width: 6 mm");
     bool ok = true;
     if (scene->file)
-        ok = target_from_file(b, key("%s.file", at.text), scene, target);
+        ok = places_from_file(b, key("%s.file", at.text), scene->file, scene->scale, NULL, target);
     else if (scene->height_map)
         ok = target_from_image(b, key("%s.height_map", at.text), scene, target);
     else if (scene->strokes_count)

@@ -163,10 +163,14 @@ const YamlTable pose_table = {
     .name = "pose",
     .size = sizeof(PoseScene),
     .doc = "A state to start from.",
-    .fields = (const YamlField[]){{YAML_FILE(PoseScene, file), .required = true, .short_form = true,
-                                   .doc = "a mesh file with the faces of the mesh"},
-                                  {YAML_NUMBER(PoseScene, scale), .range = "(0, inf)",
-                                   .doc = "factor on its coordinates; that of the mesh if absent"},
+    .fields = (const YamlField[]){{YAML_FILE(PoseScene, file), .one_of = 1, .required = true,
+                                   .short_form = true, .doc = "a mesh file with the faces of the mesh"},
+                                  {YAML_TEXTS(PoseScene, formula), .one_of = 1, .required = true,
+                                   .short_form = true, .min_count = 3, .max_count = 3,
+                                   .doc = "three expressions, in m, of the rest position x, y, z, r"},
+                                  {YAML_NUMBER(PoseScene, scale), .when = "file", .range = "(0, inf)",
+                                   .doc = "of a file: factor on its coordinates; that of the mesh if absent"},
+                                  WHERE_ROW(PoseScene),
                                   {0}}};
 
 const YamlTable velocity_table = {

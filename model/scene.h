@@ -74,8 +74,10 @@ typedef struct MeshScene {
 } MeshScene;
 
 typedef struct PoseScene {
-    char *file;
+    char *file, **formula;
     double scale; /* NAN: the mesh's */
+    WhereScene *where;
+    int formula_count, where_count;
 } PoseScene;
 
 /* Velocities of the vertices at the start. */

@@ -26,15 +26,15 @@ MeshKeys = TypedDict("MeshKeys", {
 }, total=False)
 
 PoseKeys = TypedDict("PoseKeys", {
-    "file": "str", "scale": "float",
-}, total=False)
-
-VelocityKeys = TypedDict("VelocityKeys", {
-    "value": "Numbers", "formula": "Numbers", "file": "str", "where": "Mapping[str, Where]",
+    "file": "str", "formula": "Numbers", "scale": "float", "where": "Mapping[str, Where]",
 }, total=False)
 
 WhereKeys = TypedDict("WhereKeys", {
     "formula": "Number",
+}, total=False)
+
+VelocityKeys = TypedDict("VelocityKeys", {
+    "value": "Numbers", "formula": "Numbers", "file": "str", "where": "Mapping[str, Where]",
 }, total=False)
 
 YoungKeys = TypedDict("YoungKeys", {
@@ -408,9 +408,9 @@ Scene = TypedDict("Scene", {
 }, total=False)
 
 Mesh = Union["MeshKeys", str]
-Pose = Union["PoseKeys", str]
-Velocity = Union["VelocityKeys", Numbers]
+Pose = Union["PoseKeys", str, Numbers]
 Where = Union["WhereKeys", Number]
+Velocity = Union["VelocityKeys", Numbers]
 Young = Union["YoungKeys", Number]
 YoungOfAGroup = Union["YoungOfAGroupKeys", Number]
 Fold = Union["FoldKeys", Number]

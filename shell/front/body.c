@@ -43,20 +43,6 @@ static bool has_same_faces(const Mesh *mesh, const MeshFile *file)
     return same;
 }
 
-static bool read_pose(const Build *b, const PoseScene *pose, double *x)
-{
-    if (!pose) return true;
-    const Mesh *mesh = b->mesh;
-    MeshFile file = {0};
-    if (!build_state(b, key("shell.pose.file"), pose->file, pose->scale, &file)) return false;
-    bool ok = has_same_faces(mesh, &file);
-    if (!ok) yaml_refuse(b->file, "shell.pose.file", "%s has other faces than the mesh", pose->file);
-    for (int v = 0; ok && v < mesh->vertex_count; v++)
-        memcpy(x + 3 * v, file.vertices[mesh_row(mesh, file.vertex_count, v)], 3 * sizeof *x);
-    mesh_file_clear(&file);
-    return ok;
-}
-
 static System *make_system(const Model *model, bool motion)
 {
     return motion ? shell_dynamic_system(model->self) : shell_system(model->self);
@@ -70,7 +56,7 @@ static bool fill(Model *model, const Scene *scene, const Build *b, bool readable
     ok = model_hold(model, b, scene, shell->fixed, shell->clamped) && ok;
     model->x = mem_alloc((size_t)shell_dof_count(shell), sizeof *model->x);
     shell_rest_state(shell, model->x);
-    ok = read_pose(b, from->pose, model->x) && ok;
+    ok = build_pose(b, key("shell.pose"), from->pose, has_same_faces, (double(*)[3])model->x) && ok;
     double *p = base_params(model, scene, b);
     ok = p && model_cases(model, b, scene, p) && ok;
     mem_free(p);

@@ -37,19 +37,6 @@ static double *base_params(Model *model, const Scene *scene, const Build *b)
 
 /* ---- The whole ---- */
 
-/* A file with all nodes in their order; its cells are those of the mesh. */
-static bool read_pose(const Build *b, const PoseScene *pose, double *x)
-{
-    if (!pose) return true;
-    const Mesh *mesh = b->mesh;
-    MeshFile file = {0};
-    if (!build_state(b, key("solid.pose.file"), pose->file, pose->scale, &file)) return false;
-    for (int v = 0; v < mesh->vertex_count; v++)
-        memcpy(x + 3 * v, file.vertices[mesh_row(mesh, file.vertex_count, v)], 3 * sizeof *x);
-    mesh_file_clear(&file);
-    return true;
-}
-
 static System *make_system(const Model *model, bool motion)
 {
     return solid_system(model->self, motion);
@@ -73,7 +60,7 @@ static bool fill(Model *model, const Scene *scene, const Build *b, bool readable
     bool ok = put_skin(solid, b, from->skin) && readable;
     ok = model_hold(model, b, scene, solid->fixed, NULL) && ok;
     model->x = mem_copy(b->mesh->rest, (size_t)model->point_count, sizeof *b->mesh->rest);
-    ok = read_pose(b, from->pose, model->x) && ok;
+    ok = build_pose(b, key("solid.pose"), from->pose, NULL, (double(*)[3])model->x) && ok;
     double *p = base_params(model, scene, b);
     ok = p && model_cases(model, b, scene, p) && ok;
     mem_free(p);
