@@ -1,7 +1,7 @@
 #!/usr/bin/python3
-"""Makes the meshes of the scenes that walk, swim and grip: meshes/*.obj, in metres, and the octopus's magnetisation,
-octopus_*_magnetization.csv. All of them are sheets (or a ball) of triangles with groups of faces; every one is made of
-formulas, so that this file says what they are.
+"""Makes the meshes of the scenes that walk, swim and grip, and Cook's membrane: meshes/*.obj, in metres, and the octopus's
+magnetisation, octopus_*_magnetization.csv. All of them are sheets (or a ball) of triangles with groups of faces and edges;
+every one is made of formulas, so that this file says what they are.
 
     scenes/make_meshes.py [FOLDER]        default: this file's own"""
 import math
@@ -15,7 +15,7 @@ class Mesh:
     """Vertices by name: whoever asks for the same one gets the same number."""
 
     def __init__(self):
-        self.places, self.numbers, self.groups = [], {}, {}
+        self.places, self.numbers, self.groups, self.edges = [], {}, {}, {}
 
     def vertex(self, name, place):
         if name not in self.numbers:
@@ -29,6 +29,9 @@ class Mesh:
 
     def face(self, group, *corners):
         self.groups.setdefault(group, []).append(corners)
+
+    def edge(self, group, a, b):
+        self.edges.setdefault(group, []).append((a, b))
 
     def crossed(self, group, x, y):
         """A cell of 1 mm from (x, y) mm on: four triangles around its middle."""
@@ -54,9 +57,10 @@ class Mesh:
         with open(path, "w") as file:
             file.write("# %s\n" % comment)
             file.writelines("v %.9g %.9g %.9g\n" % tuple(x + 0.0 for x in p) for p in self.places)
-            for group, faces in self.groups.items():
-                file.write("g %s\n" % group)
-                file.writelines("f %d %d %d\n" % tuple(v + 1 for v in face) for face in faces)
+            for letter, groups in (("f", self.groups), ("l", self.edges)):
+                for group, items in groups.items():
+                    file.write("g %s\n" % group)
+                    file.writelines("%s %s\n" % (letter, " ".join(str(v + 1) for v in item)) for item in items)
 
 
 def reptile():
@@ -171,6 +175,25 @@ def add_ball(mesh, radius, centre):
                     halve(*(unit(p) for p in ((a, b, c) if outwards(a, b, c) else (a, c, b))), 2)
 
 
+def cook(n):
+    """Cook's membrane: 48 mm long, from y = 0 to 44 mm at its left and from 44 to 60 mm at its right; n by n cells."""
+    mesh = Mesh()
+
+    def at(i, j):
+        x, low, high = i / n, 44 * i / n, 44 + 16 * i / n
+        return mesh.vertex((i, j), (48 * x * MM, (low + (high - low) * j / n) * MM, 0))
+
+    for j in range(n + 1):  # numbered row by row
+        for i in range(n + 1):
+            at(i, j)
+    for j in range(n):
+        for i in range(n):
+            mesh.cell("membrane", at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1), False)
+        mesh.edge("left", at(0, j), at(0, j + 1))
+        mesh.edge("right", at(n, j), at(n, j + 1))
+    return mesh
+
+
 BALL = 4 * MM
 
 
@@ -194,6 +217,7 @@ def main():
     add_ball(ball, BALL, (0, 0, 0))
     write("ball", ball, "A ball of 4 mm")
     write("gripper_ball", both, "Four arms around a palm, and a ball of 4 mm whose top is 1 mm under it")
+    write("cook", cook(8), "Cook's membrane, 8 x 8 cells; extruded by cook.yaml")
 
 
 if __name__ == "__main__":

@@ -45,6 +45,10 @@ contact_bud | scenes/bud.yaml | shell.mesh.n=5 time.steps=60
 contact_drape | scenes/drape.yaml | shell.mesh.cells=[12,12] time.steps=60
 contact_reptile | scenes/reptile_bump.yaml | time.steps=60
 contact_octopus | scenes/octopus_pipe1.yaml | design.iterations=1
+solid_equilibrium | scenes/cook.yaml |
+solid_evaluate | scenes/plate_layers.yaml | solid.mesh.cells=[12,8,2]
+shell_pose | scenes/plate_shell.yaml | shell.mesh.cells=[12,8]
+solid_heart | scenes/heart_band.yaml | design.iterations=2
 solid_design | scenes/hand_fist.yaml | design.iterations=2
 solid_simulate | tests/scene_solid.yaml |
 solid_simulate_resumed | tests/scene_solid.yaml | time.steps=40 | time.steps=80
