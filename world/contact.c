@@ -30,7 +30,9 @@ static double press(const Contact *c, double stiffness, const double place[3], d
     for (int i = 0; H && i < 9; i++) H[i / 3][i % 3] = 0;
     for (int k = 0; k < c->def.obstacle_count; k++) {
         Gap gap;
-        obstacle_gap(&c->def.obstacles[k], &c->poses.end[k], place, &gap);
+        const Obstacle *obstacle = &c->def.obstacles[k];
+        if (obstacle_is_beyond(obstacle, &c->poses.end[k], place, c->def.offset)) continue;
+        obstacle_gap(obstacle, &c->poses.end[k], place, &gap);
         double depth = c->def.offset - gap.value;
         if (depth <= 0) continue; /* NaN is none of these */
         Penalty penalty = penalty_at(depth, c->def.smoothing, stiffness);

@@ -16,6 +16,7 @@ static double trace(const Contact *c, int k, const double from[3], const double 
            little = 0.01 * c->def.smoothing, length = 0, t = 0;
     for (int i = 0; i < 3; i++) length += (to[i] - from[i]) * (to[i] - from[i]);
     length = sqrt(length) * fmax(1, obstacle->steepest);
+    if (obstacle_is_beyond(obstacle, &c->poses.end[k], from, fmax(level, 0) + length)) return 1;
     for (int n = 0; n < STEPS && t < 1; n++) {
         Gap gap;
         double place[3];

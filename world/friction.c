@@ -39,7 +39,10 @@ static void carry(const Contact *c, int k, const Point *at, const double place[3
 static bool grip_at(const Contact *c, int k, const Point *at, const double place[3], Grip *grip)
 {
     Gap gap;
-    obstacle_gap(&c->def.obstacles[k], &poses_lag(&c->poses, at)[k], place, &gap);
+    const Obstacle *obstacle = &c->def.obstacles[k];
+    const ObstaclePose *pose = &poses_lag(&c->poses, at)[k];
+    if (obstacle_is_beyond(obstacle, pose, place, c->def.offset)) return false;
+    obstacle_gap(obstacle, pose, place, &gap);
     double depth = c->def.offset - gap.value, size = 0;
     if (depth <= 0) return false;
     Penalty penalty = penalty_at(depth, c->def.smoothing, at->p[c->def.stiffness]);
@@ -63,6 +66,20 @@ static bool grip_at(const Contact *c, int k, const Point *at, const double place
     return true;
 }
 
+/* A sample in its step: where it is, and where the lagged quantities are taken. */
+typedef struct Moved {
+    int pack, lane;
+    double now[3], lag[3];
+} Moved;
+
+static Moved moved(const Contact *c, int pack, int lane, const Point *at, Pack3 place)
+{
+    Moved m = {pack, lane, {0}, {0}};
+    samples_place(&c->def.samples, pack, lane, point_lag(at), m.lag);
+    lane_get(place, lane, m.now);
+    return m;
+}
+
 /* The slip u/dt over the plane, and of the force f(y) u/y on its speed y. */
 typedef struct Slip {
     double v[3], u[3]; /* m/s: all of it, and its part in the plane    */
@@ -70,12 +87,13 @@ typedef struct Slip {
     double potential;  /* f0(y), m/s                                   */
 } Slip;
 
-static Slip slip_at(const Contact *c, const Grip *grip, const double moved[3], double dt)
+static Slip slip_at(const Contact *c, const Grip *grip, const Moved *m, const Point *at)
 {
     Slip s;
-    double normal = 0, square = 0, v = c->def.slip_speed;
+    double normal = 0, square = 0, v = c->def.slip_speed, before[3];
+    samples_place(&c->def.samples, m->pack, m->lane, at->x_prev, before);
     for (int i = 0; i < 3; i++) {
-        s.v[i] = (moved[i] - grip->carried[i]) / dt;
+        s.v[i] = (m->now[i] - before[i] - grip->carried[i]) / at->dt;
         normal += s.v[i] * grip->normal[i];
     }
     for (int i = 0; i < 3; i++) {
@@ -102,22 +120,6 @@ static void slip_times(const Slip *s, const double b[3], double out[3])
     for (int i = 0; i < 3; i++) out[i] = s->psi * b[i] + s->fall * along * s->u[i];
 }
 
-/* A sample in its step: where the lagged quantities are taken, and how far it moves. */
-typedef struct Moved {
-    double lag[3], by[3];
-} Moved;
-
-static Moved moved(const Contact *c, int pack, int lane, const Point *at, Pack3 place)
-{
-    Moved m;
-    double now[3], before[3];
-    samples_place(&c->def.samples, pack, lane, point_lag(at), m.lag);
-    samples_place(&c->def.samples, pack, lane, at->x_prev, before);
-    lane_get(place, lane, now);
-    for (int i = 0; i < 3; i++) m.by[i] = now[i] - before[i];
-    return m;
-}
-
 static double rub(const Contact *c, const Point *at, const Moved *m, double g[3], double H[3][3])
 {
     double energy = 0;
@@ -126,7 +128,7 @@ static double rub(const Contact *c, const Point *at, const Moved *m, double g[3]
     for (int k = 0; k < c->def.obstacle_count; k++) {
         Grip grip;
         if (!grip_at(c, k, at, m->lag, &grip)) continue;
-        Slip s = slip_at(c, &grip, m->by, at->dt);
+        Slip s = slip_at(c, &grip, m, at);
         energy += at->dt * grip.force * s.potential;
         for (int i = 0; i < 3; i++) {
             g[i] += grip.force * s.psi * s.u[i];
@@ -206,7 +208,7 @@ static void lag_times(const Contact *c, const Point *at, const Moved *m, bool tr
     for (int k = 0; k < c->def.obstacle_count; k++) {
         Grip grip;
         if (!grip_at(c, k, at, m->lag, &grip)) continue;
-        Slip s = slip_at(c, &grip, m->by, at->dt);
+        Slip s = slip_at(c, &grip, m, at);
         double mu = at->p[c->def.friction + k], normal = 0, du[3][3], L[3][3];
         for (int i = 0; i < 3; i++) normal += grip.normal[i] * s.v[i];
         for (int j = 0; j < 3; j++) {
@@ -271,7 +273,7 @@ static void friction_param(const void *self, int pack, int lanes, const Point *a
         for (int k = 0; k < c->def.obstacle_count; k++) {
             Grip grip;
             if (!grip_at(c, k, at, m.lag, &grip)) continue;
-            Slip s = slip_at(c, &grip, m.by, at->dt);
+            Slip s = slip_at(c, &grip, &m, at);
             double along = s.psi * (s.u[0] * from[0] + s.u[1] * from[1] + s.u[2] * from[2]);
             dp[c->def.friction + k] += grip.unit * along;
             dp[c->def.stiffness] += grip.force * along / at->p[c->def.stiffness];
@@ -286,11 +288,12 @@ static void friction_param_forward(const void *self, int pack, const Point *at, 
     Pack3 place = samples_mean(&c->def.samples, x), sum;
     for (int l = 0; l < PACK_LANES; l++) {
         double f[3] = {0};
+        Moved m = {0};
+        if (at->dt > 0) m = moved(c, pack, l, at, place);
         for (int k = 0; at->dt > 0 && k < c->def.obstacle_count; k++) {
             Grip grip;
-            Moved m = moved(c, pack, l, at, place);
             if (!grip_at(c, k, at, m.lag, &grip)) continue;
-            Slip s = slip_at(c, &grip, m.by, at->dt);
+            Slip s = slip_at(c, &grip, &m, at);
             double change = grip.unit * dp[c->def.friction + k] +
                             grip.force * dp[c->def.stiffness] / at->p[c->def.stiffness];
             for (int i = 0; i < 3; i++) f[i] += change * s.psi * s.u[i];
@@ -333,7 +336,7 @@ static void measure_sample(const Contact *c, const Point *at, const double place
             for (int i = 0; i < 3; i++)
                 f[i] = gap.gradient[i] * penalty_at(depth, c->def.smoothing, at->p[c->def.stiffness]).force;
         if (m && grip_at(c, k, at, m->lag, &grip)) {
-            Slip s = slip_at(c, &grip, m->by, at->dt);
+            Slip s = slip_at(c, &grip, m, at);
             for (int i = 0; i < 3; i++) {
                 f[i] -= grip.force * s.psi * s.u[i];
                 sums->friction += grip.force * s.psi * s.u[i] * s.u[i] * at->dt;

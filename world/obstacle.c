@@ -44,6 +44,18 @@ void obstacle_own_place(const ObstaclePose *pose, const double x[3], double own[
     }
 }
 
+bool obstacle_is_beyond(const Obstacle *obstacle, const ObstaclePose *pose, const double x[3],
+                        double distance)
+{
+    const double rounding = 1e-9; /* of the gap's own arithmetic, and more */
+    double own[3];
+    if (!obstacle->bounded) return false;
+    obstacle_own_place(pose, x, own);
+    for (int i = 0; i < 3; i++)
+        if (fabs(own[i] - obstacle->middle[i]) > (1 + rounding) * (obstacle->half[i] + distance)) return true;
+    return false;
+}
+
 void obstacle_gap(const Obstacle *obstacle, const ObstaclePose *pose, const double x[3], Gap *gap)
 {
     double own[3], gradient[3], half[3][3];

@@ -33,8 +33,10 @@ typedef struct Obstacle {
     double
         inradius; /* m, of the ball within it where it is thinnest: half as deep, a body is about to come out on its other
                       * side; INFINITY: it has none */
-    double steepest; /* largest |grad phi|; 0: 1 */
-    double pivot[3]; /* m, about which it turns                        */
+    double steepest;           /* largest |grad phi|; 0: 1 */
+    bool bounded;              /* it ends: all of it is within a box along its own axes */
+    double middle[3], half[3]; /* m: that box                                                          */
+    double pivot[3];           /* m, about which it turns                        */
     /* Three expressions of the time t each: how far it has moved, m, and turned, a rotation vector, rad; NULL: not. Owned. */
     Formula *move, *turn;
 } Obstacle;
@@ -49,6 +51,11 @@ bool obstacle_pose(const Obstacle *obstacle, double time, ObstaclePose *pose, Er
 
 /* The place in the obstacle's own frame of one in space. */
 void obstacle_own_place(const ObstaclePose *pose, const double x[3], double own[3]);
+
+/* Is phi > distance >= 0 there, as the box around the obstacle tells? Where it is not, only phi does. Much cheaper than the
+ * gap: most places of a body are far from what is small. Re-entrant. */
+bool obstacle_is_beyond(const Obstacle *obstacle, const ObstaclePose *pose, const double x[3],
+                        double distance);
 
 /* Its gap in space, there. Re-entrant. */
 void obstacle_gap(const Obstacle *obstacle, const ObstaclePose *pose, const double x[3], Gap *gap);

@@ -24,6 +24,15 @@ static Obstacle make(const ObstacleOps *ops, const void *self, size_t size, cons
     return obstacle;
 }
 
+/* One that ends, so far from its pivot along each axis. */
+static Obstacle bounded(Obstacle obstacle, const double half[3])
+{
+    obstacle.bounded = true;
+    memcpy(obstacle.middle, obstacle.pivot, sizeof obstacle.middle);
+    memcpy(obstacle.half, half, sizeof obstacle.half);
+    return obstacle;
+}
+
 /* ---- Closed surfaces: a point for each direction, from those through the cells of a cube's faces ---- */
 
 typedef void DirectionPlace(const void *self, const double direction[3], double x[3]);
@@ -148,7 +157,8 @@ Obstacle obstacle_sphere(const double center[3], double radius, bool inside)
 {
     Round sphere = {.radius = radius, .side = inside ? -1 : 1};
     memcpy(sphere.point, center, sizeof sphere.point);
-    return make(&sphere_ops, &sphere, sizeof sphere, center, radius, inside ? INFINITY : radius);
+    Obstacle obstacle = make(&sphere_ops, &sphere, sizeof sphere, center, radius, inside ? INFINITY : radius);
+    return inside ? obstacle : bounded(obstacle, (double[]){radius, radius, radius});
 }
 
 /* From one end of the box to the other. */
@@ -247,5 +257,6 @@ Obstacle obstacle_box(const double center[3], const double half[3], double round
     Box box = {.rounding = rounding};
     memcpy(box.center, center, sizeof box.center);
     for (int i = 0; i < 3; i++) box.core[i] = half[i] - rounding;
-    return make(&box_ops, &box, sizeof box, center, rounding, fmin(half[0], fmin(half[1], half[2])));
+    return bounded(make(&box_ops, &box, sizeof box, center, rounding, fmin(half[0], fmin(half[1], half[2]))),
+                   half);
 }
