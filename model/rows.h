@@ -109,6 +109,9 @@ typedef struct BodyOps {
      * no mesh. */
     int (*row_dim)(const struct Model *model, const ParamBlock *block);
 
+    /* Which of a block's rows act on anything; [block->count]; NULL: all. Optional. */
+    const bool *(*rows_on)(const struct Model *model, const ParamBlock *block);
+
     /* The values of a block of p, as an unknown's start says them. */
     bool (*put_numbers)(struct Model *model, const Build *b, const char *at, const NumberScene *scene,
                         const ParamBlock *block, double *values);

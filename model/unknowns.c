@@ -51,6 +51,30 @@ static int *groups_of(const Mesh *mesh, int dim, int *count)
     return group;
 }
 
+/* A row of its own for each row of the block. */
+static int *each_its_own(int count)
+{
+    int *group = mem_alloc((size_t)count, sizeof *group);
+    for (int r = 0; r < count; r++) group[r] = r;
+    return group;
+}
+
+/* Rows of the block that act on nothing are left out, and groups that have no others. */
+static void leave_out(Unknown *unknown, const bool *on)
+{
+    int *number = mem_alloc((size_t)unknown->group_count, sizeof *number), count = 0;
+    for (int g = 0; g < unknown->group_count; g++) number[g] = -1;
+    for (int r = 0; r < unknown->block->count; r++) {
+        int *group = &unknown->group[r];
+        if (!on[r]) *group = -1;
+        if (*group < 0) continue;
+        if (number[*group] < 0) number[*group] = count++;
+        *group = number[*group];
+    }
+    unknown->group_count = count;
+    mem_free(number);
+}
+
 /* The unknown has a row for each group; false after a refusal. */
 static bool take_groups(const Model *model, YamlFile *file, const Start *start, Unknown *unknown)
 {
@@ -62,18 +86,29 @@ static bool take_groups(const Model *model, YamlFile *file, const Start *start, 
            yaml_refuse(file, at.text, "the mesh has no groups of %s", build_elements[dim]);
 }
 
+/* Its rows; false after a refusal. */
+static bool take_rows(const Model *model, YamlFile *file, const Start *start, int per, Unknown *unknown)
+{
+    const BodyOps *ops = model->body->ops;
+    const ParamBlock *block = unknown->block = start->block;
+    unknown->group_count = block->count;
+    if (per != PER_GROUP) unknown->group = each_its_own(block->count);
+    bool ok = per != PER_GROUP || take_groups(model, file, start, unknown);
+    const bool *on = ops->rows_on ? ops->rows_on(model, block) : NULL;
+    if (ok && on) leave_out(unknown, on);
+    return ok;
+}
+
 /* Noise, then the start goes into all cases and the unknown into the design. Rows of one group get the same
  * noise. */
-static bool add_unknown(Model *model, YamlFile *file, Design *design, Start *start, Unknown unknown, int per)
+static void add_unknown(Model *model, Design *design, Start *start, Unknown unknown)
 {
-    const ParamBlock *block = unknown.block = start->block;
-    unknown.group_count = block->count;
-    bool ok = per != PER_GROUP || take_groups(model, file, start, &unknown);
+    const ParamBlock *block = unknown.block;
     double *noise = mem_alloc((size_t)(unknown.group_count * block->width), sizeof *noise);
     for (int i = 0; i < unknown.group_count * block->width; i++)
         noise[i] = start->noise * random_signed(&start->random);
     for (int i = 0; i < block->count * block->width; i++) {
-        int row = unknown.group ? unknown.group[i / block->width] : i / block->width;
+        int row = unknown.group[i / block->width];
         if (row >= 0) start->values[i] += noise[row * block->width + i % block->width];
     }
     mem_free(noise);
@@ -81,7 +116,6 @@ static bool add_unknown(Model *model, YamlFile *file, Design *design, Start *sta
         memcpy(model->cases[c].stages[0].p + block->offset, start->values,
                (size_t)(block->count * block->width) * sizeof(double));
     design_add(design, unknown);
-    return ok;
 }
 
 static bool check_bounds(YamlFile *file, const char *name, const double *bounds)
@@ -116,9 +150,10 @@ static bool number_unknown(Model *model, const Build *b, Design *design, const c
     if (from->scale == SCALE_LOG)
         unknown.map = UNKNOWN_LOG, unknown.scale = !strcmp(name, "fold") ? FOLD_UNIT : 1;
     put_bounds(&unknown, from->bounds);
-    ok = ok && add_unknown(model, b->file, design, &start, unknown, from->per);
+    ok = take_rows(model, b->file, &start, from->per, &unknown) && ok;
+    if (unknown.group) add_unknown(model, design, &start, unknown);
     for (int i = 0; ok && i < start.block->count; i++)
-        if (!(start.values[i] > 0))
+        if (unknown.group[i] >= 0 && !(start.values[i] > 0))
             ok = yaml_refuse(b->file, at.text,
                              "its start, noise included, is %g somewhere; it must be positive",
                              start.values[i]);
@@ -150,8 +185,10 @@ static bool magnetization_unknown(Model *model, const Build *b, Design *design, 
                        .scale = from->scale,
                        .limit = fixed ? from->magnitude : from->max_magnitude};
     put_bounds(&unknown, from->bounds);
-    ok = ok && add_unknown(model, b->file, design, &start, unknown, from->per);
+    ok = take_rows(model, b->file, &start, from->per, &unknown) && ok;
+    if (unknown.group) add_unknown(model, design, &start, unknown);
     for (int i = 0; ok && i < start.block->count; i++) {
+        if (unknown.group[i] < 0) continue;
         const double *M = start.values + 3 * i;
         double length = sqrt(M[0] * M[0] + M[1] * M[1] + M[2] * M[2]);
         if (fixed && !(length > 0))

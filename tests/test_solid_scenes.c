@@ -2,6 +2,7 @@
  * shell ([Chen 2022] fig. 12), hearts. With an argument the table of the plate in full, in a minute. */
 #include "io/result.h"
 #include "slender.h"
+#include "solid/solid.h"
 #include "tests/scene_fixture.h"
 #include <math.h>
 #include <stdio.h>
@@ -186,6 +187,10 @@ static void test_known(void **state)
     for (int k = 0; k < 2; k++) {
         Built known = read_scene("heart_known", &skins[k], 1), heart = read_scene(hearts[k], NULL, 0);
         const double *x = equilibrium(&known), *target = heart.model->cases[0].target[0];
+        const Solid *solid = heart.model->self;
+        int faces = 0;
+        for (int f = 0; f < solid->tets->surface->face_count; f++) faces += solid->skin_on[f];
+        assert_int_equal(heart.model->design.size, 3 * faces); /* the others have no unknowns */
         double worst = 0;
         for (int i = 0; i < 3 * heart.model->point_count; i++) worst = fmax(worst, fabs(x[i] - target[i]));
         print_message("%s: the target within %.1e m\n", hearts[k], worst);

@@ -125,7 +125,12 @@ MeshOfASolidKeys = TypedDict("MeshOfASolidKeys", {
 }, total=False)
 
 Skin = TypedDict("Skin", {
-    "thickness": "Number", "magnetization": "Magnetization", "young": "Young", "poisson": "float", "on": "Number",
+    "thickness": "Number", "magnetization": "Magnetization", "young": "Young", "poisson": "float",
+    "on": "PlaceOfASkin",
+}, total=False)
+
+PlaceOfASkinKeys = TypedDict("PlaceOfASkinKeys", {
+    "group": "Number",
 }, total=False)
 
 Spline = TypedDict("Spline", {
@@ -421,6 +426,7 @@ Noise = Union["NoiseKeys", Literal['auto'], Number]
 NaturalStrain = Union["NaturalStrainKeys", Numbers]
 Frame = Union["FrameKeys", Literal['frenet', 'bishop']]
 MeshOfASolid = Union["MeshOfASolidKeys", str]
+PlaceOfASkin = Union["PlaceOfASkinKeys", Number]
 DensityOfADrawing = Union["DensityOfADrawingKeys", Number]
 SizeOfAPage = Union["SizeOfAPageKeys", Number, Numbers]
 Pens = Union["PensKeys", Number]

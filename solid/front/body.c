@@ -46,7 +46,7 @@ static System *make_system(const Model *model, bool motion)
 static bool put_skin(Solid *solid, const Build *b, const SkinScene *skin)
 {
     if (!skin || !skin->on) return true;
-    const MeshGroup *group = build_group(b, key("solid.skin.on"), skin->on, 2);
+    const MeshGroup *group = build_group(b, key("solid.skin.on"), skin->on->group, 2);
     if (!group) return false;
     solid->skin_on = mem_alloc((size_t)b->mesh->face_count, sizeof *solid->skin_on);
     for (int k = 0; k < group->count; k++) solid->skin_on[group->members[k]] = true;
@@ -142,6 +142,12 @@ static int row_dim(const Model *model, const ParamBlock *block)
     return block->offset == solid->magnetization || block->offset == solid->skin_young ? 2 : 3;
 }
 
+/* Faces without the layer have rows, too, so that they go by the surface's faces. */
+static const bool *rows_on(const Model *model, const ParamBlock *block)
+{
+    return row_dim(model, block) == 2 ? ((const Solid *)model->self)->skin_on : NULL;
+}
+
 static void masses(const Model *model, double *mass)
 {
     solid_node_mass(model->self, mass);
@@ -158,6 +164,7 @@ static const BodyOps ops = {
     .put_loads = model_put_loads,
     .put_target = model_put_target,
     .row_dim = row_dim,
+    .rows_on = rows_on,
     .put_numbers = model_put_numbers,
     .put_vectors = model_put_vectors,
     .select = model_select,

@@ -54,6 +54,14 @@ const YamlTable solid_mesh_table = {
          .doc = "factor on the coordinates of a file or surface, e.g. 1.0e-3 for one in millimetres"},
         {0}}};
 
+static const YamlTable skin_place_table = {
+    .name = "place of a skin",
+    .size = sizeof(SkinPlace),
+    .doc = "Where a skin is: a name, or {group: NAME}.",
+    .fields = (const YamlField[]){{YAML_TEXT(SkinPlace, group), .required = true, .short_form = true,
+                                   .doc = "a named group of faces of the surface"},
+                                  {0}}};
+
 static const YamlTable skin_table = {
     .name = "skin",
     .size = sizeof(SkinScene),
@@ -70,7 +78,7 @@ static const YamlTable skin_table = {
          .doc = "of a film: its Young's modulus, per face of the surface; without, the layer bears nothing"},
         {YAML_NUMBER(SkinScene, poisson), .when = "young", .range = "[0, 0.5]",
          .doc = "of a film, which needs it: its Poisson's ratio"},
-        {YAML_TEXT(SkinScene, on), .doc = "the group of faces that it is on; all of the surface if absent"},
+        {YAML_OPTIONAL(SkinScene, on, &skin_place_table), .doc = "where it is; all of the surface if absent"},
         {0}}};
 
 const YamlTable solid_table = {

@@ -20,12 +20,17 @@ typedef struct SolidMeshScene {
     int *cells, n, layers, pattern, size_count, cells_count;
 } SolidMeshScene;
 
+/* Where a skin is. */
+typedef struct SkinPlace {
+    char *group; /* of faces */
+} SkinPlace;
+
 /* The layer on the surface: magnetised, and a film if it has a modulus. */
 typedef struct SkinScene {
     double thickness, poisson; /* the latter NAN where there is none */
     NumberScene *young;        /* NULL: none                         */
     VectorScene magnetization;
-    char *on; /* group of faces; NULL: all of the surface */
+    SkinPlace *on; /* NULL: all of the surface */
 } SkinScene;
 
 typedef struct SolidScene {
