@@ -50,6 +50,7 @@ solid_evaluate | scenes/plate_layers.yaml | solid.mesh.cells=[12,8,2]
 shell_pose | scenes/plate_shell.yaml | shell.mesh.cells=[12,8]
 solid_heart | scenes/heart_band.yaml | design.iterations=2
 solid_design | scenes/hand_fist.yaml | design.iterations=2
+solid_trajectory | scenes/starfish_jump.yaml | solid.mesh.n=1 solid.order=1 design.iterations=1
 solid_simulate | tests/scene_solid.yaml |
 solid_simulate_resumed | tests/scene_solid.yaml | time.steps=40 | time.steps=80
 rod_equilibrium | scenes/rod_equilibrium.yaml | rod.elements=200
