@@ -6,11 +6,11 @@
 #include "solve/kernels.h"
 #include <math.h>
 
-enum { BLOCK = 6, REPEATS = 4 };
+enum { BLOCK = 6, REPEATS = 4, EXACT = 400000 };
 
-/* Numbers of L and flops of a chunky body with so many unknowns: nested dissection in space, n^4/3 and n^2 [George 1973], as
- * measured on cubes (docs/scale.md). */
-static const double NUMBERS = 2.6, FLOPS = 1.5, BYTES = 9.5, SYSTEM_BYTES[] = {1500, 9000},
+/* Numbers of L and flops of a cube with so many unknowns: nested dissection in space, n^4/3 and n^2 [George 1973], as
+ * measured on cubes of 150 000 and 350 000 (docs/scale.md). Flat and long ones take less. */
+static const double NUMBERS = 22, FLOPS = 23, BYTES = 9.7, SYSTEM_BYTES[] = {1500, 20000},
                     PICTURE_SECONDS = 0.4;
 
 /* A cube of the solid's order and material, at rest, held on one side. */
@@ -44,7 +44,7 @@ void solid_cost(const Model *model, Cost *cost)
     double parts = (double)solid->tets->count / block->tets->count, rate = kernels_flops(),
            numbers = (double)info.factor_nonzeros,
            each = fmax(0, (cost->factor - info.factor_flops / rate) / numbers);
-    cost->exact = unknowns <= PREDICT_EXACT;
+    cost->exact = unknowns <= EXACT;
     if (cost->exact) {
         predict_take_factor(system_cost(model->cases[0].sys), cost);
     } else {
