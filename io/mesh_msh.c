@@ -197,9 +197,10 @@ static bool read_format(Msh *msh)
         return scan_refuse(msh->scan, "version %.*s: save it as 2.2 or 4.1 (gmsh -format msh41)",
                            version.length > 10 ? 10 : version.length, version.text);
     if (!msh_integer(msh, "the file type", 0, 1, &binary)) return false;
-    return !binary ||
-           scan_refuse(msh->scan, "a binary file: save it as ASCII (in Gmsh: Mesh.Binary = 0; or with "
-                                  "`meshio ascii FILE`)");
+    if (binary)
+        return scan_refuse(msh->scan, "a binary file: save it as ASCII (in Gmsh: Mesh.Binary = 0; or with "
+                                      "`meshio ascii FILE`)");
+    return scan_check_text(msh->scan); /* of a binary one it would say other things */
 }
 
 /* $EndNodes is the end of $Nodes. */
@@ -269,7 +270,7 @@ static bool read_msh(Msh *msh)
 bool mesh_read_msh(Scan *scan, MeshReader *reader)
 {
     Msh msh = {.scan = scan, .reader = reader};
-    bool ok = scan_check_text(scan) && read_msh(&msh);
+    bool ok = read_msh(&msh);
     mem_free(msh.nodes);
     mem_free(msh.names);
     mem_free(msh.entities);

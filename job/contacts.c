@@ -140,10 +140,12 @@ void contacts_doubt(const Contacts *c, const Host *host)
     if (!c->world || c->world->obstacle_count == 0) return;
     double thickness = c->world->body.thickness;
     if (c->deepest > DEEP * thickness)
-        host_say(host,
-                 "up to %.2g m deep in an obstacle, %.2g of the thickness: what presses there is more than "
-                 "contact.stiffness holds, as between obstacles nearer to each other than the body is thick",
-                 c->deepest, c->deepest / thickness);
+        host_say(
+            host,
+            "up to %.2g m deep in an obstacle, %.2g of the %g m that contact.stiffness is made for: what "
+            "presses there is more than it holds, as between obstacles nearer to each other than the "
+            "body is thick",
+            c->deepest, c->deepest / thickness, thickness);
     for (int k = 0; k < c->world->obstacle_count; k++)
         if (world_slips_between(c->world, k, c->longest))
             host_say(host,

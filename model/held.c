@@ -90,6 +90,9 @@ static bool fix_entry(Model *model, const Build *b, int entry, const FixScene *f
     ok = build_selection(b, at, &selection, &found);
     for (int i = 0; i < 3 * found.count; i++)
         if (axis[i % 3]) held.fixed[3 * found.items[i / 3] + i % 3] = true;
+    if (ok && fix->clamp && !held.clamped)
+        ok = yaml_refuse(b->file, key("%s.clamp", at.text).text,
+                         "%s has no slopes of edges: what its fixed points span is held", model->body->noun);
     if (ok && fix->clamp) {
         Indices edges = select_edges(b->mesh, &found);
         for (int k = 0; k < edges.count; k++) held.clamped[edges.items[k]] = true;

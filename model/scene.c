@@ -199,9 +199,6 @@ static const YamlTable ball_table = {
          .doc = "its radius"},
         {0}}};
 
-/* Of `on`, which is `true` to readers of YAML 1.1. */
-#define ON_NAMES YAML_NAMES("region", "true")
-
 #define SELECTION_ROWS(S)                                                                                    \
     {YAML_INTEGERS(S, vertices), .range = "[0, inf)", .doc = "these vertices of the mesh file, from 0"},     \
         {YAML_ROWS(S, box), .unit = "m", .min_count = 2, .max_count = 2,                                     \

@@ -2,6 +2,9 @@
 #pragma once
 #include "model/scene.h"
 
+/* Of `on`, which is `true` to readers of YAML 1.1. */
+#define ON_NAMES YAML_NAMES("region", "true")
+
 extern const YamlTable where_table, mesh_table, pose_table, velocity_table;
 extern const YamlTable young_table, fold_table, magnetization_table;
 extern const YamlTable design_table;                               /* scene_design.c */

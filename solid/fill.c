@@ -1,8 +1,10 @@
 /* Filling by TetGen. */
 #include "solid/fill.h"
 #include "base/memory.h"
+#include "base/vec3.h"
 #include "io/program.h"
 #include "io/tetgen.h"
+#include "solid/shapes.h"
 #include "solid/tets.h"
 #include <math.h>
 
@@ -18,6 +20,24 @@ static bool check_closed(const Mesh *surface, Error *err)
                 err, "the surface is open at its edge from vertex %d to %d; only a closed one can be filled",
                 surface->file_vertex[surface->edges[e][0]], surface->file_vertex[surface->edges[e][1]]);
     return true;
+}
+
+/* TetGen would make, without a word, what no memory holds. */
+static bool check_count(const Mesh *surface, double size, Error *err)
+{
+    const double regular = 0.118; /* volume of a regular tetrahedron of edge 1 */
+    double volume = 0, middle[3] = {0};
+    for (int i = 0; i < 3 * surface->vertex_count; i++)
+        middle[i % 3] += surface->rest[i / 3][i % 3] / surface->vertex_count;
+    for (int f = 0; f < surface->face_count; f++) {
+        Vec3 x[3];
+        for (int i = 0; i < 3; i++)
+            x[i] = vec3_sub(vec3_load(surface->rest[surface->faces[f][i]]), vec3_load(middle));
+        volume += vec3_dot(x[0], vec3_cross(x[1], x[2])) / 6;
+    }
+    return solid_shape_check_count(ceil(fabs(volume) / (regular * size * size * size)), err) ||
+           error_prefix(err, "edges of %.3g m in %.3g m^3 (is the file in millimetres? then `scale: 1.0e-3`)",
+                        size, fabs(volume));
 }
 
 /* Faces and groups as they were; the vertices to the last bit. */
@@ -86,7 +106,8 @@ bool solid_fill(const Mesh *surface, double size, MeshFile *mesh, Error *err)
 {
     char *folder;
     *mesh = (MeshFile){0};
-    if (!check_closed(surface, err) || !program_folder(&folder, err)) return false;
+    if (!check_closed(surface, err) || !check_count(surface, size, err) || !program_folder(&folder, err))
+        return false;
     bool ok = run(surface, size, folder, mesh, err);
     program_remove_folder(folder);
     if (ok) take_surface(surface, size, mesh);

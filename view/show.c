@@ -64,7 +64,8 @@ static bool add_frame(Show *show, int frame, Error *err)
             return error_set(err, "slender/frames/flux_density is not as slender writes it");
         panel->flux_density = B;
         unit_format(vec3_length(vec3_load(panel->flux_density)), "T", number, sizeof number);
-        panel->note = show_text(show->data, "B = %s", number);
+        bool varies = result_has(result, "slender/design/field_scale");
+        panel->note = varies ? "B varies" : show_text(show->data, "B = %s", number);
     }
     return true;
 }

@@ -126,7 +126,7 @@ MeshOfASolidKeys = TypedDict("MeshOfASolidKeys", {
 
 Skin = TypedDict("Skin", {
     "thickness": "Number", "magnetization": "Magnetization", "young": "Young", "poisson": "float",
-    "on": "PlaceOfASkin",
+    "on": "PlaceOfASkin", "region": "PlaceOfASkin", "true": "PlaceOfASkin",
 }, total=False)
 
 PlaceOfASkinKeys = TypedDict("PlaceOfASkinKeys", {

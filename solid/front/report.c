@@ -21,10 +21,11 @@ void solid_advise(Model *model, const Scene *scene)
         mesh_warn(&model->report,
                   "linear tetrahedra are far too stiff in bending: `order: 2`, or `averaging: 1`");
     if (solid->tets->order == TET_QUADRATIC && solid->poisson > LOCKED_FROM && solid->averaging == 0)
-        mesh_warn(&model->report,
-                  "with a Poisson's ratio of %g quadratic tetrahedra are some per cent too stiff in bending: "
-                  "`averaging: 0.6` halves that",
-                  solid->poisson);
+        mesh_warn(
+            &model->report,
+            "with a Poisson's ratio of %.6g quadratic tetrahedra are some per cent too stiff in bending: "
+            "more of them through the thickness are less so, and `averaging: 0.6` is a little",
+            solid->poisson);
 }
 
 char *solid_describe(const Model *model, const Scene *scene)

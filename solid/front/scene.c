@@ -78,7 +78,8 @@ static const YamlTable skin_table = {
          .doc = "of a film: its Young's modulus, per face of the surface; without, the layer bears nothing"},
         {YAML_NUMBER(SkinScene, poisson), .when = "young", .range = "[0, 0.5]",
          .doc = "of a film, which needs it: its Poisson's ratio"},
-        {YAML_OPTIONAL(SkinScene, on, &skin_place_table), .doc = "where it is; all of the surface if absent"},
+        {YAML_OPTIONAL(SkinScene, on, &skin_place_table), .also = ON_NAMES,
+         .doc = "where it is; all of the surface if absent"},
         {0}}};
 
 const YamlTable solid_table = {
