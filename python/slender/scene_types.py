@@ -15,8 +15,9 @@ Table = Union[Rows[Numbers], NDArray[Any]]
 
 Shell = TypedDict("Shell", {
     "mesh": "Mesh", "pose": "Pose", "velocity": "Velocity", "thickness": "Number", "young": "Young",
-    "poisson": "float", "density": "Number", "bending": "Literal['midedge', 'hinge']", "fold": "Fold",
-    "magnetization": "Magnetization", "damping": "Number", "gravity": "Numbers",
+    "poisson": "float", "density": "Number", "material": "Literal['st_venant_kirchhoff', 'neo_hookean']",
+    "bending": "Literal['midedge', 'hinge']", "fold": "Fold", "magnetization": "Magnetization", "damping": "Number",
+    "gravity": "Numbers",
 }, total=False)
 
 MeshKeys = TypedDict("MeshKeys", {
@@ -125,7 +126,8 @@ MeshOfASolidKeys = TypedDict("MeshOfASolidKeys", {
 }, total=False)
 
 Skin = TypedDict("Skin", {
-    "thickness": "Number", "magnetization": "Magnetization", "young": "Young", "poisson": "float", "on": "Number",
+    "thickness": "Number", "magnetization": "Magnetization", "young": "Young", "poisson": "float",
+    "material": "Literal['st_venant_kirchhoff', 'neo_hookean']", "on": "Number",
 }, total=False)
 
 Spline = TypedDict("Spline", {

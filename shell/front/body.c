@@ -70,6 +70,7 @@ static void set_material(Shell *shell, const ShellScene *from)
     shell->thickness = from->thickness;
     shell->poisson = from->poisson;
     shell->density = from->density;
+    shell->material = (MembraneMaterial)from->material;
     shell->bending = (BendingModel)from->bending;
 }
 

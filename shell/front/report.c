@@ -99,7 +99,8 @@ static double area_ratio(const Mesh *mesh, const double *x, int face)
     return vec3_length(vec3_cross(b, c)) / (2 * mesh->rest_area[face]);
 }
 
-/* Stretching resists being crushed less and less [St. Venant-Kirchhoff], and halved steps do not help. */
+/* St. Venant-Kirchhoff stretching resists being crushed less and less, and halved steps do not help. Of neo-Hookean, which
+ * resists it more and more, a state with small faces is one like others. */
 char *shell_crushed(const Model *model, const Snapshot *shot, bool failed)
 {
     const Shell *shell = model->self;
@@ -107,8 +108,9 @@ char *shell_crushed(const Model *model, const Snapshot *shot, bool failed)
     int least = 0;
     for (int f = 1; f < mesh->face_count; f++)
         if (area_ratio(mesh, shot->at.x, f) < area_ratio(mesh, shot->at.x, least)) least = f;
-    double ratio = area_ratio(mesh, shot->at.x, least);
-    if (!(ratio < (failed ? NEARLY_CRUSHED : CRUSHED))) return NULL;
+    double ratio = area_ratio(mesh, shot->at.x, least),
+           limit = shell->material == MEMBRANE_ST_VENANT_KIRCHHOFF ? CRUSHED : 0;
+    if (!(ratio < (failed ? NEARLY_CRUSHED : limit))) return NULL;
     double M = vec3_length(vec3_load(shot->p + shell->magnetization + 3 * least)),
            B = vec3_length(vec3_load(shot->p + shell->flux_density)), Y = shot->p[shell->young + least];
     if (M * B == 0)

@@ -9,7 +9,7 @@ typedef struct ShellScene {
     double thickness, poisson, density, damping, gravity[3];
     NumberScene young, fold;
     VectorScene magnetization;
-    int bending; /* BendingModel */
+    int bending, material; /* BendingModel, MembraneMaterial */
 } ShellScene;
 
 extern const YamlTable shell_table;

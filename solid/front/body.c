@@ -111,7 +111,8 @@ static bool create(Model *model, const Scene *scene, YamlFile *file)
                     .averaging = from->averaging,
                     .skin = from->skin ? from->skin->thickness : 0,
                     .film = from->skin && from->skin->young,
-                    .film_poisson = from->skin ? from->skin->poisson : NAN};
+                    .film_poisson = from->skin ? from->skin->poisson : NAN,
+                    .film_material = from->skin ? (MembraneMaterial)from->skin->material : 0};
     Solid *solid = model->self = solid_create(tets, &def, &fields);
     model->mesh = tets->surface;
     model->params = &solid->params;

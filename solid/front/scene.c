@@ -70,6 +70,9 @@ static const YamlTable skin_table = {
          .doc = "of a film: its Young's modulus, per face of the surface; without, the layer bears nothing"},
         {YAML_NUMBER(SkinScene, poisson), .when = "young", .range = "[0, 0.5]",
          .doc = "of a film, which needs it: its Poisson's ratio"},
+        {YAML_CHOICE(SkinScene, material), .when = "young",
+         .choices = YAML_NAMES("st_venant_kirchhoff", "neo_hookean"), .fallback = "st_venant_kirchhoff",
+         .doc = "of a film: neo_hookean resists being crushed"},
         {YAML_TEXT(SkinScene, on), .doc = "the group of faces that it is on; all of the surface if absent"},
         {0}}};
 

@@ -23,6 +23,7 @@ typedef struct SolidMeshScene {
 /* The layer on the surface: magnetised, and a film if it has a modulus. */
 typedef struct SkinScene {
     double thickness, poisson; /* the latter NAN where there is none */
+    int material;              /* MembraneMaterial                    */
     NumberScene *young;        /* NULL: none                         */
     VectorScene magnetization;
     char *on; /* group of faces; NULL: all of the surface */
