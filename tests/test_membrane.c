@@ -9,7 +9,7 @@ static const double SIDE = 0.1, THICKNESS = 1e-3, YOUNG = 1e5;
 /* A flat square that stays in its plane and does not slide along x = 0 and y = 0. */
 static Shell *make_square(MembraneMaterial material, double poisson)
 {
-    Shell *shell = shell_of_sheet((double[]){SIDE, SIDE}, (int[]){5, 5}, PATTERN_CROSSED);
+    Shell *shell = shell_of_sheet((double[]){SIDE, SIDE}, (int[]){5, 3}, PATTERN_CROSSED);
     shell->material = material, shell->poisson = poisson;
     shell->thickness = THICKNESS, shell->density = 1000, shell->bending = BENDING_HINGE;
     for (int v = 0; v < shell->mesh->vertex_count; v++) {
