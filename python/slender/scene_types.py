@@ -355,9 +355,10 @@ StartOfFluxDensityKeys = TypedDict("StartOfFluxDensityKeys", {
 }, total=False)
 
 Objectives = TypedDict("Objectives", {
-    "target": "float", "height": "float", "magnetization_smoothness": "float", "waypoint": "Waypoint",
-    "curve": "Curve", "reach": "Reach", "field_magnitude": "float", "field_smoothness": "float", "dmp": "float",
-    "weight": "float", "of": "Number", "frame": "int", "frames": "Union[int, Numbers]", "pairs": "int",
+    "target": "float", "height": "float", "magnetization_smoothness": "float", "young_smoothness": "float",
+    "fold_smoothness": "float", "waypoint": "Waypoint", "curve": "Curve", "reach": "Reach",
+    "field_magnitude": "float", "field_smoothness": "float", "dmp": "float", "weight": "float", "of": "Number",
+    "frame": "int", "frames": "Union[int, Numbers]", "pairs": "int",
 }, total=False)
 
 Waypoint = TypedDict("Waypoint", {

@@ -119,9 +119,9 @@ static void masses(const Model *model, double *mass)
     shell_vertex_mass(model->self, mass);
 }
 
-static Objective smoothness(const Model *model, double weight)
+static Objective smoothness(const Model *model, const ParamBlock *block, double weight)
 {
-    return shell_magnetization_smoothness(model->self, weight);
+    return shell_smoothness(model->self, block, weight);
 }
 
 /* Of edge angles, with all positions held. */
