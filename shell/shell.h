@@ -19,6 +19,7 @@ typedef enum BendingModel {
 typedef struct Shell {
     Mesh *mesh;                         /* owned                                                          */
     double thickness, poisson, density; /* m, 1, kg/m^3                                                   */
+    double coercivity;                  /* A/m, of what it is magnetised with; NAN: not known             */
     MembraneMaterial material;          /* of the stretching; bending is of small strains                 */
     BendingModel bending;
     FluxFields fields;  /* parts of the flux density that vary in space; owned                          */

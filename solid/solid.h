@@ -20,6 +20,7 @@ typedef struct Solid {
     Tets *tets; /* owned */
     SolidMaterial material;
     double poisson, density; /* 1, kg/m^3 */
+    double coercivity;       /* A/m, of what it is magnetised with; NAN: not known */
     /* Part (0..1) of lambda/2 (J - 1)^2 whose J is a mean, against locking: over the tetrahedron if quadratic, else over a
      * patch of them (tet_patches.h). Of SOLID_NEO_HOOKEAN only, else 0; of quadratic ones at most 0.6: more collapses in
      * compression. Its energy is `mean_dilation`. */

@@ -16,8 +16,8 @@ Table = Union[Rows[Numbers], NDArray[Any]]
 Shell = TypedDict("Shell", {
     "mesh": "Mesh", "pose": "Pose", "velocity": "Velocity", "thickness": "Number", "young": "Young",
     "poisson": "float", "density": "Number", "material": "Literal['st_venant_kirchhoff', 'neo_hookean']",
-    "bending": "Literal['midedge', 'hinge']", "fold": "Fold", "magnetization": "Magnetization", "damping": "Number",
-    "gravity": "Numbers",
+    "bending": "Literal['midedge', 'hinge']", "fold": "Fold", "magnetization": "Magnetization",
+    "coercivity": "Number", "damping": "Number", "gravity": "Numbers",
 }, total=False)
 
 MeshKeys = TypedDict("MeshKeys", {
@@ -115,7 +115,7 @@ Solid = TypedDict("Solid", {
     "mesh": "MeshOfASolid", "order": "int",
     "material": "Literal['neo_hookean', 'neo_hookean_log', 'st_venant_kirchhoff']", "young": "Young",
     "poisson": "float", "density": "Number", "averaging": "float", "skin": "Skin", "magnetization": "Magnetization",
-    "pose": "Pose", "velocity": "Velocity", "damping": "Number", "gravity": "Numbers",
+    "coercivity": "Number", "pose": "Pose", "velocity": "Velocity", "damping": "Number", "gravity": "Numbers",
 }, total=False)
 
 MeshOfASolidKeys = TypedDict("MeshOfASolidKeys", {

@@ -70,6 +70,7 @@ static void set_material(Shell *shell, const ShellScene *from)
     shell->thickness = from->thickness;
     shell->poisson = from->poisson;
     shell->density = from->density;
+    shell->coercivity = from->coercivity;
     shell->material = (MembraneMaterial)from->material;
     shell->bending = (BendingModel)from->bending;
 }
@@ -162,6 +163,7 @@ static const BodyOps ops = {
     .add_final = run_add_stability,
     .likeness = likeness,
     .places = model_places,
+    .doubt = shell_doubt,
     .crushed = shell_crushed,
     .crushed_as = NEWTON_CRUSHED,
     .describe = shell_describe,

@@ -1,10 +1,10 @@
 /* What `slender check` says of a shell, and what is doubtful about it. */
 #include "base/memory.h"
 #include "base/vec3.h"
+#include "model/coercivity.h"
 #include "shell/front/front.h"
 #include <math.h>
-
-enum { MOMENTS_MAX = 10000 }; /* at which a field over time is looked at */
+#include <string.h>
 
 static const double LARGE_BODY = 2;       /* m: most likely a mesh in millimetres          */
 static const double CRUSHED = 0.05;       /* of its area: less is none                      */
@@ -16,16 +16,12 @@ static double largest_field(const Model *model, const Scene *scene, const double
 {
     const Shell *shell = model->self;
     const FluxUnknown *unknown = scene->design ? scene->design->unknowns.flux_density : NULL;
-    double largest = vec3_length(vec3_load(p + shell->flux_density));
+    double flux[3];
+    memcpy(flux, p + shell->flux_density, sizeof flux);
+    double largest =
+        timed_flux_largest(&model->flux_of_time, model->time, scene->time.step, scene->time.steps, flux);
     if (unknown && !isnan(unknown->bounds[0]))
         largest = fmax(largest, fmax(fabs(unknown->bounds[0]), fabs(unknown->bounds[1])));
-    double now[3] = {0};
-    int moments = scene->time.steps < MOMENTS_MAX ? scene->time.steps : MOMENTS_MAX;
-    for (int n = 0; timed_flux_is_given(&model->flux_of_time) && n <= moments; n++) {
-        double time = model->time + (double)n / moments * scene->time.steps * scene->time.step;
-        if (timed_flux_eval(&model->flux_of_time, time, now, NULL))
-            largest = fmax(largest, vec3_length(vec3_load(now)));
-    }
     return largest;
 }
 
@@ -49,6 +45,17 @@ static double bending_length(const Model *model, const Scene *scene)
     return largest > 0 ? shell->thickness * sqrt(young / (12 * largest)) : INFINITY;
 }
 
+static MagnetPart magnet_of(const Shell *shell)
+{
+    return (MagnetPart){.noun = "face",
+                        .coercivity = shell->coercivity,
+                        .count = shell->mesh->face_count,
+                        .corners = 3,
+                        .each = 3,
+                        .points = shell->mesh->faces[0],
+                        .magnetization = shell->magnetization};
+}
+
 void shell_advise(Model *model, const Scene *scene)
 {
     const Shell *shell = model->self;
@@ -66,6 +73,12 @@ void shell_advise(Model *model, const Scene *scene)
             &model->report,
             "fewer than %g cells over the magnetic bending length: the mesh is too coarse for this field",
             CELLS_PER_LENGTH);
+    coercivity_advise(model, scene, magnet_of(shell));
+}
+
+char *shell_doubt(const Model *model, const Snapshot *shot)
+{
+    return coercivity_doubt(model, magnet_of(model->self), shot);
 }
 
 char *shell_describe(const Model *model, const Scene *scene)

@@ -30,6 +30,10 @@ const YamlTable shell_table = {
          .doc = "factor on the curvature of each edge"},
         {YAML_TABLE(ShellScene, magnetization, &magnetization_table), .fallback = "[0, 0, 0]",
          .doc = "remanent magnetisation"},
+        {YAML_NUMBER(ShellScene, coercivity), .unit = "A/m", .range = "(0, inf)",
+         .doc = "of what it is magnetised with: a larger field than half of it, anywhere on what is "
+                "magnetised, is a "
+                "warning; not looked at if absent"},
         {YAML_NUMBER(ShellScene, damping), .when = "/job: simulate, trajectory", .unit = "N s/m",
          .range = "[0, inf)", .fallback = "0", .doc = "of a simulation: viscous damping at every vertex"},
         {YAML_VECTOR(ShellScene, gravity), .unit = "m/s^2", .fallback = "[0, 0, 0]",

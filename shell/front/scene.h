@@ -6,7 +6,7 @@ typedef struct ShellScene {
     MeshScene mesh;
     PoseScene *pose;
     VelocityScene *velocity;
-    double thickness, poisson, density, damping, gravity[3];
+    double thickness, poisson, density, coercivity, damping, gravity[3];
     NumberScene young, fold;
     VectorScene magnetization;
     int bending, material; /* BendingModel, MembraneMaterial */

@@ -103,6 +103,10 @@ const YamlTable solid_table = {
         {YAML_OPTIONAL(SolidScene, skin, &skin_table), .doc = "a layer on its surface: magnetised, a film"},
         {YAML_TABLE(SolidScene, magnetization, &magnetization_table), .fallback = "[0, 0, 0]",
          .doc = "remanent magnetisation of the volume, per tetrahedron"},
+        {YAML_NUMBER(SolidScene, coercivity), .unit = "A/m", .range = "(0, inf)",
+         .doc = "of what it is magnetised with: a larger field than half of it, anywhere on what is "
+                "magnetised, is a "
+                "warning; not looked at if absent"},
         {YAML_OPTIONAL(SolidScene, pose, &pose_table), .when = "!/start",
          .doc = "where a job starts; at rest if absent"},
         {YAML_OPTIONAL(SolidScene, velocity, &velocity_table), .when = "/job: simulate, trajectory & !/start",

@@ -36,7 +36,7 @@ typedef struct SolidScene {
     SkinScene *skin;
     NumberScene young;
     VectorScene magnetization; /* of the volume */
-    double poisson, density, averaging, damping, gravity[3];
+    double poisson, density, averaging, coercivity, damping, gravity[3];
     int order, material; /* 1 or 2; SolidMaterial */
 } SolidScene;
 
