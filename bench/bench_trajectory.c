@@ -1,4 +1,4 @@
-/* Trajectory design: the adjoint beside its motion, and whole jobs until the published reduction is reached. */
+/* Trajectory design: the adjoint beside its motion, and whole jobs until F/F0 reaches a mark (bench/README.md). */
 #include "base/clock.h"
 #include "base/memory.h"
 #include "bench/bench.h"
@@ -68,8 +68,8 @@ void bench_sweeps(const char *name, const char *const assignments[2])
     yaml_destroy(file);
 }
 
-/* Seconds and evaluations of the program until F/F0 <= r, and the job's whole time. */
-static void job(const char *name, double r)
+/* Seconds and evaluations of the program until F/F0 <= mark, and the job's whole time. */
+static void job(const char *name, double mark)
 {
     char command[1024], text[80];
     Error err;
@@ -84,12 +84,12 @@ static void job(const char *name, double r)
         bench_fail("%s", err.text);
     const double *F = objective.data, *s = seconds.data;
     int count = (int)array_count(&objective), k = 0;
-    while (k < count - 1 && !(F[k] <= r * F[0])) k++;
-    if (!(F[k] <= r * F[0]))
-        bench_fail("%s ends at F/F0 = %.3g; %.3g was published", name, F[count - 1] / F[0], r);
-    snprintf(text, sizeof text, "%s_seconds_until_published", name);
+    while (k < count - 1 && !(F[k] <= mark * F[0])) k++;
+    if (!(F[k] <= mark * F[0]))
+        bench_fail("%s ends at F/F0 = %.3g, above its mark, %.3g", name, F[count - 1] / F[0], mark);
+    snprintf(text, sizeof text, "%s_seconds_until_mark", name);
     bench_print(text, s[k], "s");
-    snprintf(text, sizeof text, "%s_evaluations_until_published", name);
+    snprintf(text, sizeof text, "%s_evaluations_until_mark", name);
     bench_print(text, k + 1, "");
     snprintf(text, sizeof text, "%s_seconds", name);
     bench_print(text, s[count - 1], "s");

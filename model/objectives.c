@@ -194,6 +194,21 @@ static bool field_objective(Model *model, const Build *b, Key at, const Objectiv
 
 /* ---- Rows ---- */
 
+typedef struct Smoothed {
+    const char *block; /* whose jumps are to be small; NULL: none */
+    double weight;
+} Smoothed;
+
+static Smoothed smoothed_of(const ObjectiveScene *from)
+{
+    const Smoothed rows[] = {{"magnetization", from->magnetization_smoothness},
+                             {"young", from->young_smoothness},
+                             {"fold", from->fold_smoothness}};
+    for (int k = 0; k < 3; k++)
+        if (!isnan(rows[k].weight)) return rows[k];
+    return (Smoothed){0};
+}
+
 /* What depends on parameters only counts once, in the first case. */
 static bool add_objective(Model *model, const Build *b, Key at, const Scene *scene,
                           const ObjectiveScene *from, int case_index)
@@ -207,13 +222,14 @@ static bool add_objective(Model *model, const Build *b, Key at, const Scene *sce
     if (point) return point_objectives(model, b, at, scene, from);
     if (field) return field_objective(model, b, at, from);
     Objective objective;
-    if (!isnan(from->magnetization_smoothness)) {
-        const BodyOps *ops = model->body->ops;
-        if (!ops->smoothness)
-            return yaml_refuse(b->file, at.text, "magnetization_smoothness is not for %s",
+    Smoothed smoothed = smoothed_of(from);
+    if (smoothed.block) {
+        if (!model->body->ops->smoothness)
+            return yaml_refuse(b->file, at.text, "%s_smoothness is not for %s", smoothed.block,
                                model->body->nouns);
         if (case_index > 0) return true;
-        objective = ops->smoothness(model, from->weight * from->magnetization_smoothness / c->weight);
+        objective = model->body->ops->smoothness(model, params_find(model->params, smoothed.block),
+                                                 from->weight * smoothed.weight / c->weight);
     } else if (!isnan(from->target)
                    ? !target_objective(c, model->point_count, b->file, at, from->weight * from->target,
                                        &objective)

@@ -4,13 +4,13 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { JOBS_MAX = 24, KEYS_MAX = 48, WHEN_MAX = 400 };
+enum { JOBS_MAX = 24, KEYS_MAX = 48, WHEN_MAX = 400, DOC_MAX = 200 };
 
 const char *scene_job_names[JOBS_MAX + 1];
 
 static pthread_once_t made = PTHREAD_ONCE_INIT;
 static YamlField keys[KEYS_MAX];
-static char conditions[KEYS_MAX][WHEN_MAX];
+static char conditions[KEYS_MAX][WHEN_MAX], docs[BODIES_MAX][DOC_MAX];
 static YamlTable table;
 
 /* ---- The table ---- */
@@ -35,6 +35,18 @@ static void put_uses(YamlField *row, char *condition)
     if (*condition) row->when = condition;
 }
 
+/* What a body's key is, with its jobs: "the body: a shell, with `job: equilibrium, design`". */
+static const char *say_jobs(const BodyRow *body, char *doc)
+{
+    snprintf(doc, DOC_MAX, "%s, with `job:", body->doc);
+    for (const JobRow *const *job = body->jobs; *job; job++) {
+        size_t length = strlen(doc);
+        snprintf(doc + length, DOC_MAX - length, "%s %s%s", job == body->jobs ? "" : ",", (*job)->name,
+                 job[1] ? "" : "`");
+    }
+    return doc;
+}
+
 static void make_table(void)
 {
     int count = 0;
@@ -49,7 +61,7 @@ static void make_table(void)
                                     .table = bodies[k]->table,
                                     .one_of = 1,
                                     .required = true,
-                                    .doc = bodies[k]->doc};
+                                    .doc = say_jobs(bodies[k], docs[k])};
     for (const YamlField *row = scene_form.fields + 1; row->key; row++, count++) {
         keys[count] = *row;
         put_uses(&keys[count], conditions[count]);

@@ -123,8 +123,8 @@ typedef struct BodyOps {
                    Indices *found);
     void (*masses)(const struct Model *model, double *mass); /* [point_count] kg; optional */
 
-    /* sum of |M - M'|^2 over neighbours, (A/m)^2; optional. */
-    Objective (*smoothness)(const struct Model *model, double weight);
+    /* Sum of squared jumps of a block of p between neighbours; optional. */
+    Objective (*smoothness)(const struct Model *model, const ParamBlock *block, double weight);
 
     /* Held coordinates where they are at that time, a part of the way (0..1) from where x has them. */
     bool (*move)(const struct Model *model, double time, double part, double *x, Error *err);

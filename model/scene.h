@@ -208,7 +208,8 @@ typedef struct ReachScene {
 
 typedef struct ObjectiveScene {
     /* One of these: a weight, or a table, to which `weight` belongs. */
-    double target, height, magnetization_smoothness, field_magnitude, field_smoothness, dmp;
+    double target, height, magnetization_smoothness, young_smoothness, fold_smoothness, field_magnitude,
+        field_smoothness, dmp;
     WaypointScene *waypoint;
     CurveScene *curve;
     ReachScene *reach;

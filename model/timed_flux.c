@@ -1,7 +1,12 @@
 #include "model/timed_flux.h"
+#include "base/vec3.h"
 #include "model/build.h"
+#include <string.h>
 
-enum { COLUMNS = 4 }; /* t, Bx, By, Bz */
+enum {
+    COLUMNS = 4,        /* t, Bx, By, Bz                  */
+    MOMENTS_MAX = 10000 /* at which a motion is looked at */
+};
 
 void timed_flux_clear(TimedFlux *timed)
 {
@@ -36,4 +41,17 @@ bool timed_flux_eval(const TimedFlux *timed, double time, double *flux, Error *e
     }
     build_position(variables, (double[3]){0}, time);
     return formula_eval(timed->formula, variables, flux, err);
+}
+
+double timed_flux_largest(const TimedFlux *timed, double start, double step, int steps, double *flux)
+{
+    double largest = vec3_length(vec3_load(flux)), now[3];
+    int moments = steps < MOMENTS_MAX ? steps : MOMENTS_MAX;
+    for (int n = 0; timed_flux_is_given(timed) && n <= moments; n++) {
+        if (!timed_flux_eval(timed, start + (double)n / moments * steps * step, now, NULL)) continue;
+        if (!(vec3_length(vec3_load(now)) > largest)) continue;
+        largest = vec3_length(vec3_load(now));
+        memcpy(flux, now, sizeof now);
+    }
+    return largest;
 }

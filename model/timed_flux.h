@@ -22,3 +22,6 @@ bool timed_flux_read(const char *path, TimedFlux *timed, Error *err);
 
 /* flux[3] in T; between rows of a table linear, before and after it as at its ends. */
 bool timed_flux_eval(const TimedFlux *timed, double time, double *flux, Error *err);
+
+/* The largest of those at up to 10 000 of a motion's moments, T; flux[3] stays where there is none larger. */
+double timed_flux_largest(const TimedFlux *timed, double start, double step, int steps, double *flux);

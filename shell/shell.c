@@ -7,7 +7,6 @@
 #include "solve/kinetic.h"
 #include "solve/lumped.h"
 #include "surface/magnetic.h"
-#include "surface/membrane.h"
 
 /* Of D, for bodies with free rigid motions: decides nothing physical, drifts less than 1e-7 of the size
  * (docs/newton.md). */
@@ -171,7 +170,7 @@ static FaceLayer layer_of(const Shell *shell)
 
 Term shell_membrane_term(const Shell *shell)
 {
-    return membrane_term(layer_of(shell), &(MembraneDef){shell->poisson, shell->young});
+    return membrane_term(layer_of(shell), &(MembraneDef){shell->material, shell->poisson, shell->young});
 }
 
 Term shell_magnetic_term(const Shell *shell)

@@ -7,6 +7,7 @@
 #include "solve/params.h"
 #include "solve/system.h"
 #include "surface/flux_field.h"
+#include "surface/membrane.h"
 #include "surface/mesh.h"
 #include "world/world.h"
 
@@ -18,6 +19,8 @@ typedef enum BendingModel {
 typedef struct Shell {
     Mesh *mesh;                         /* owned                                                          */
     double thickness, poisson, density; /* m, 1, kg/m^3                                                   */
+    double coercivity;                  /* A/m, of what it is magnetised with; NAN: not known             */
+    MembraneMaterial material;          /* of the stretching; bending is of small strains                 */
     BendingModel bending;
     FluxFields fields;  /* parts of the flux density that vary in space; owned                          */
     double *rest_angle; /* [edge] dihedral angle of the rest shape, rad; 0 on the boundary; owned         */

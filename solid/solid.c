@@ -5,7 +5,6 @@
 #include "solve/kinetic.h"
 #include "solve/lumped.h"
 #include "surface/magnetic.h"
-#include "surface/membrane.h"
 #include "surface/rigid.h"
 #include <string.h>
 
@@ -23,6 +22,7 @@ Solid *solid_create(Tets *tets, const SolidDef *def, const FluxFields *fields)
                      .skin = def->skin,
                      .film = def->film,
                      .film_poisson = def->film_poisson,
+                     .film_material = def->film_material,
                      .magnetization = -1,
                      .skin_young = -1};
     if (fields) solid->fields = *fields;
@@ -126,7 +126,7 @@ static FaceLayer skin_of(const Solid *solid, double thickness)
 Term solid_membrane_term(const Solid *solid)
 {
     return membrane_term(skin_of(solid, solid->film ? solid->skin : 0),
-                         &(MembraneDef){solid->film_poisson, solid->skin_young});
+                         &(MembraneDef){solid->film_material, solid->film_poisson, solid->skin_young});
 }
 
 Term solid_magnetic_term(const Solid *solid)

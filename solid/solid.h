@@ -7,6 +7,7 @@
 #include "solve/params.h"
 #include "solve/system.h"
 #include "surface/flux_field.h"
+#include "surface/membrane.h"
 #include "world/world.h"
 
 typedef enum SolidMaterial {
@@ -19,13 +20,15 @@ typedef struct Solid {
     Tets *tets; /* owned */
     SolidMaterial material;
     double poisson, density; /* 1, kg/m^3 */
+    double coercivity;       /* A/m, of what it is magnetised with; NAN: not known */
     /* Part (0..1) of lambda/2 (J - 1)^2 whose J is a mean, against locking: over the tetrahedron if quadratic, else over a
      * patch of them (tet_patches.h). Of SOLID_NEO_HOOKEAN only, else 0; of quadratic ones at most 0.6: more collapses in
      * compression. Its energy is `mean_dilation`. */
     double averaging;
     double skin; /* m, thickness of the layer on the surface; 0: there is none                         */
-    bool film;   /* the layer resists stretching, with film_poisson and a modulus of its own           */
+    bool film;   /* the layer resists stretching, with a modulus and a material of its own              */
     double film_poisson;
+    MembraneMaterial film_material;
     bool *skin_on; /* [surface face] has it the layer? owned; NULL: all                                  */
     FluxFields
         fields;   /* parts of the flux density that vary in space; owned                                */
@@ -49,6 +52,7 @@ typedef struct SolidDef {
     double poisson, density, averaging, skin;
     bool film;
     double film_poisson;
+    MembraneMaterial film_material;
 } SolidDef;
 
 /* Takes the tetrahedra and the fields (NULL: none). Sets up the blocks of parameters, and nothing held. The block of the skin's

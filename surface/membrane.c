@@ -1,19 +1,48 @@
-/* In-plane St. Venant-Kirchhoff stretch of constant-strain triangles [Chen 2022, eqs. 18, 22].
+/* In-plane stretch of constant-strain triangles, of a material in plane stress.
  *
- * F = sum_i x_i b_i^T with the hat functions' rest gradients b_i (2-vectors in the face's rest plane),
- * G = (F^T F - I)/2, S = Y/(1-nu^2) ((1-nu) G + nu tr(G) I), E = A h/2 G:S. */
+ * F = sum_i x_i b_i^T with the hat functions' rest gradients b_i (2-vectors in the face's rest plane), C = F^T F,
+ * G = (C - I)/2, S = 2 dW/dC, E = A h W.
+ * St. Venant-Kirchhoff [Chen 2022, eqs. 18, 22]: S = Y/(1-nu^2) ((1-nu) G + nu tr(G) I), W = G:S/2.
+ * Neo-Hookean [Blatz, Ko 1962, with their f = 1], mu = Y/2(1+nu), beta = nu/(1-2nu): mu/2 (I - 3 + (J^-2beta - 1)/beta). Without
+ * stress across, the thickness follows from the area in closed form, l^2 = (det C)^-k with k = nu/(1-nu), and so
+ *     W = mu/2 (tr C - 2 + ((det C)^-k - 1)/k),     S = mu (I - (det C)^(-k-1) adj C):
+ * for nu = 1/2 the incompressible mu/2 (tr C + 1/det C - 3), for nu = 0 the limit mu/2 (tr C - 2 - ln det C). */
 #include "surface/membrane.h"
 #include "base/memory.h"
 #include "solve/element.h"
+
+static const double LEAST_EXTRAPOLATED = 0.25; /* det C: half of the area */
 
 typedef struct MembranePack {
     Pack b[3][2]; /* 1/m */
     Pack volume;  /* A h, m^3 */
 } MembranePack;
 
+typedef struct Strain {
+    Pack3 f0, f1;       /* columns of F                                                      */
+    Pack g00, g01, g11; /* Green strain                                                      */
+    Pack s00, s01, s11; /* second Piola-Kirchhoff stress over Young's modulus                */
+    Pack twice;         /* 2 W over Young's modulus                                          */
+    Pack det, slope;    /* of laws with an area: det C, (det C)^(-k-1)                       */
+} Strain;
+
+/* dS = lambda tr(dG) I + 2 mu dG + area (adj C : dG) adj C, over Young's modulus. */
+typedef struct Tangent {
+    Pack lambda, mu, area;
+} Tangent;
+
+/* A material, a row. */
+typedef struct Law {
+    void (*stress)(double poisson,
+                   Strain *s); /* of its Green strain: stress, energy, and what the tangent needs */
+    Tangent (*tangent)(double poisson, const Strain *s);
+    bool has_area; /* Tangent.area is not 0 */
+} Law;
+
 typedef struct Membrane {
     FaceLayer layer;
     MembraneDef def;
+    const Law *law;
     MembranePack *packs;
 } Membrane;
 
@@ -33,11 +62,59 @@ static void membrane_dofs(const void *self, int face, int *dof)
     face_dofs(((const Membrane *)self)->layer.faces[face], dof);
 }
 
-typedef struct Strain {
-    Pack3 f0, f1;       /* columns of F                                  */
-    Pack g00, g01, g11; /* Green strain                                  */
-    Pack s00, s01, s11; /* second Piola-Kirchhoff stress over Young's modulus */
-} Strain;
+/* ---- Materials ---- */
+
+static void green_stress(double poisson, Strain *s)
+{
+    double shear = 1 / (1 + poisson), bulk = poisson / (1 - poisson * poisson);
+    Pack trace = bulk * (s->g00 + s->g11);
+    s->s00 = shear * s->g00 + trace;
+    s->s01 = shear * s->g01;
+    s->s11 = shear * s->g11 + trace;
+    s->twice = s->g00 * s->s00 + 2 * s->g01 * s->s01 + s->g11 * s->s11;
+}
+
+static Tangent green_tangent(double poisson, const Strain *s)
+{
+    (void)s;
+    return (Tangent){.lambda = pack_set(poisson / (1 - poisson * poisson)),
+                     .mu = pack_set(0.5 / (1 + poisson))};
+}
+
+/* With u = det C - 1 and e = (det C)^-k - 1: what is linear in G cancels in tr C - 2 - u = -4 det G, so that no digits are
+ * lost near rest. Infinite where the area is 0: no step goes there. */
+static void neo_stress(double poisson, Strain *s)
+{
+    double mu = 0.5 / (1 + poisson), k = poisson / (1 - poisson);
+    Pack det = s->g00 * s->g11 - s->g01 * s->g01, u = 2 * (s->g00 + s->g11) + 4 * det, e, swell;
+    for (int l = 0; l < PACK_LANES; l++) {
+        double log = log1p(u[l]);
+        e[l] = expm1(-k * log);
+        swell[l] = u[l] + (k > 0 ? e[l] / k : -log);
+    }
+    s->det = 1 + u, s->slope = (1 + e) / s->det;
+    Pack even = mu * (u - e) / s->det, turn = 2 * mu * s->slope;
+    s->s00 = even - turn * s->g11;
+    s->s01 = turn * s->g01;
+    s->s11 = even - turn * s->g00;
+    s->twice = pack_select(s->det > 0, mu * (swell - 4 * det), pack_set(INFINITY));
+}
+
+static Tangent neo_tangent(double poisson, const Strain *s)
+{
+    double mu = 0.5 / (1 + poisson), k = poisson / (1 - poisson);
+    return (Tangent){
+        .lambda = -2 * mu * s->slope, .mu = mu * s->slope, .area = 2 * mu * (1 + k) * s->slope / s->det};
+}
+
+static const Law *law_of(MembraneMaterial material)
+{
+    static const Law rows[] = {[MEMBRANE_ST_VENANT_KIRCHHOFF] = {green_stress, green_tangent, false},
+                               [MEMBRANE_NEO_HOOKEAN] = {neo_stress, neo_tangent, true}};
+    return &rows[material];
+}
+
+/* ---- Strain, forces, stiffness ---- */
 
 /* f0, f1 = sum_i v_i b_i^T: the gradient of a field on the face. */
 static void gradient(const MembranePack *at, const Pack *v, Pack3 *f0, Pack3 *f1)
@@ -49,29 +126,20 @@ static void gradient(const MembranePack *at, const Pack *v, Pack3 *f0, Pack3 *f1
     }
 }
 
-static void set_stress(Strain *s, double poisson)
-{
-    double shear = 1 / (1 + poisson), bulk = poisson / (1 - poisson * poisson);
-    Pack trace = bulk * (s->g00 + s->g11);
-    s->s00 = shear * s->g00 + trace;
-    s->s01 = shear * s->g01;
-    s->s11 = shear * s->g11 + trace;
-}
-
-static Strain strain(const MembranePack *at, double poisson, const Pack *x)
+static Strain strain(const Membrane *membrane, int pack, const Pack *x)
 {
     Strain s = {0};
-    gradient(at, x, &s.f0, &s.f1);
+    gradient(&membrane->packs[pack], x, &s.f0, &s.f1);
     s.g00 = 0.5 * (pack3_dot(s.f0, s.f0) - 1);
     s.g01 = 0.5 * pack3_dot(s.f0, s.f1);
     s.g11 = 0.5 * (pack3_dot(s.f1, s.f1) - 1);
-    set_stress(&s, poisson);
+    membrane->law->stress(membrane->def.poisson, &s);
     return s;
 }
 
 /* The stress that the last step was to bring, of the strain G(x0) + DG(x0) d: what a step stretches beside that, to second
  * order, the next one takes back, and it must not pass for stiffness [mixed integration points: Magisano, Leonetti,
- * Garcea 2017]. */
+ * Garcea 2017]. Where that strain would leave less than half of the area, the stress stays its own. */
 static void extrapolate(const Membrane *membrane, int pack, const Point *at, Strain *s)
 {
     const MembranePack *face = &membrane->packs[pack];
@@ -81,14 +149,17 @@ static void extrapolate(const Membrane *membrane, int pack, const Point *at, Str
         membrane_dofs(membrane, face_of_lane(membrane_count(membrane), pack, l), dof);
         for (int i = 0; i < 9; i++) x[i][l] = at->x_from[dof[i]], d[i][l] = at->step[dof[i]];
     }
-    Strain from = strain(face, membrane->def.poisson, x);
+    Strain from = strain(membrane, pack, x);
     Pack3 e0, e1;
     gradient(face, d, &e0, &e1);
     from.g00 += pack3_dot(from.f0, e0);
     from.g11 += pack3_dot(from.f1, e1);
     from.g01 += 0.5 * (pack3_dot(from.f0, e1) + pack3_dot(from.f1, e0));
-    set_stress(&from, membrane->def.poisson);
-    s->s00 = from.s00, s->s01 = from.s01, s->s11 = from.s11;
+    membrane->law->stress(membrane->def.poisson, &from);
+    PackMask fine = membrane->law->has_area ? (PackMask)(from.det > LEAST_EXTRAPOLATED) : ~(PackMask){0};
+    s->s00 = pack_select(fine, from.s00, s->s00);
+    s->s01 = pack_select(fine, from.s01, s->s01);
+    s->s11 = pack_select(fine, from.s11, s->s11);
 }
 
 /* S b_i */
@@ -109,11 +180,24 @@ static void forces(const MembranePack *at, const Strain *s, Pack factor, Pack *g
     }
 }
 
-/* With y_i = F b_i, mu = Y/2(1+nu), lambda = Y nu/(1-nu^2):
- * d2E/dx_i dx_j = A h ((b_i.S b_j) I + lambda y_i y_j^T + mu (y_j y_i^T + (b_i.b_j) F F^T)). */
-static void stiffness(const MembranePack *at, const Strain *s, double poisson, Pack factor, Pack *H)
+/* With z_i = F adj(C) b_i: A h area z_i z_j^T. */
+static void area_stiffness(const MembranePack *at, const Strain *s, Pack area, Pack *H)
 {
-    Pack mu = factor * (0.5 / (1 + poisson)), lambda = factor * (poisson / (1 - poisson * poisson));
+    Pack c00 = 1 + 2 * s->g00, c01 = 2 * s->g01, c11 = 1 + 2 * s->g11;
+    Pack3 z[3];
+    for (int i = 0; i < 3; i++)
+        z[i] = pack3_add(pack3_scale(c11 * at->b[i][0] - c01 * at->b[i][1], s->f0),
+                         pack3_scale(c00 * at->b[i][1] - c01 * at->b[i][0], s->f1));
+    for (int i = 0; i < 3; i++)
+        for (int j = 0; j < i; j++) element_add_block(H, i, j, pack_mat_outer(pack3_scale(area, z[i]), z[j]));
+    for (int i = 0; i < 3; i++) element_add_diagonal(H, i, pack_mat_outer(pack3_scale(area, z[i]), z[i]));
+}
+
+/* With y_i = F b_i, mu and lambda of the tangent, over Young's modulus:
+ * d2E/dx_i dx_j = A h ((b_i.S b_j) I + lambda y_i y_j^T + mu (y_j y_i^T + (b_i.b_j) F F^T)), and what an area adds. */
+static void stiffness(const MembranePack *at, const Strain *s, Tangent tangent, Pack factor, Pack *H)
+{
+    Pack mu = factor * tangent.mu, lambda = factor * tangent.lambda;
     PackMat metric = pack_mat_add(pack_mat_outer(s->f0, s->f0), pack_mat_outer(s->f1, s->f1));
     Pack3 y[3];
     for (int i = 0; i < 3; i++)
@@ -144,15 +228,16 @@ static Pack young(const Membrane *membrane, int pack, const double *values)
 static Pack membrane_eval(const void *self, int pack, const Point *at, const Pack *x, Pack *g, Pack *H)
 {
     const Membrane *membrane = self;
-    double poisson = membrane->def.poisson;
     const MembranePack *face = &membrane->packs[pack];
-    Strain s = strain(face, poisson, x);
+    Strain s = strain(membrane, pack, x);
     Pack factor = face->volume * young(membrane, pack, at->p);
-    Pack energy = 0.5 * factor * (s.g00 * s.s00 + 2 * s.g01 * s.s01 + s.g11 * s.s11);
     if (g) forces(face, &s, factor, g);
-    if (H && at->x_from) extrapolate(membrane, pack, at, &s);
-    if (H) stiffness(face, &s, poisson, factor, H);
-    return energy;
+    if (!H) return 0.5 * factor * s.twice;
+    Tangent tangent = membrane->law->tangent(membrane->def.poisson, &s);
+    if (at->x_from) extrapolate(membrane, pack, at, &s);
+    stiffness(face, &s, tangent, factor, H);
+    if (membrane->law->has_area) area_stiffness(face, &s, factor * tangent.area, H);
+    return 0.5 * factor * s.twice;
 }
 
 /* The force is linear in Young's modulus. */
@@ -162,7 +247,7 @@ static void membrane_param(const void *self, int pack, int lanes, const Point *a
     (void)at;
     const Membrane *membrane = self;
     const MembranePack *face = &membrane->packs[pack];
-    Strain s = strain(face, membrane->def.poisson, x);
+    Strain s = strain(membrane, pack, x);
     Pack g[9], sum = {0};
     forces(face, &s, face->volume, g);
     for (int i = 0; i < 9; i++) sum += w[i] * g[i];
@@ -176,7 +261,7 @@ static void membrane_param_forward(const void *self, int pack, const Point *at, 
     (void)at;
     const Membrane *membrane = self;
     const MembranePack *face = &membrane->packs[pack];
-    Strain s = strain(face, membrane->def.poisson, x);
+    Strain s = strain(membrane, pack, x);
     forces(face, &s, face->volume * young(membrane, pack, dp), r);
 }
 
@@ -203,6 +288,7 @@ Term membrane_term(FaceLayer layer, const MembraneDef *def)
     Membrane *membrane = mem_alloc(1, sizeof *membrane);
     int packs = face_pack_count(layer.count);
     membrane->layer = layer, membrane->def = *def;
+    membrane->law = law_of(def->material);
     membrane->packs = mem_alloc((size_t)packs, sizeof *membrane->packs);
     for (int k = 0; k < packs * PACK_LANES; k++) {
         int l = k % PACK_LANES, face = face_of_lane(layer.count, k / PACK_LANES, l);

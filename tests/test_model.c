@@ -164,7 +164,7 @@ static void test_unknowns(void **state)
         "design:\n  unknowns:\n    magnetization: {noise: 10, start: [0, 0, 5e3], max_magnitude: 1e4}\n"
         "    young: {per: group, bounds: [1e4, 1e7], start: {groups: {hub: 2e5}, other: 1e5}}\n"
         "    fold: {scale: linear, start: 2}\n  objectives: [{target: 1}, {height: 1, of: all}, "
-        "{magnetization_smoothness: 1}]\n";
+        "{magnetization_smoothness: 1}, {young_smoothness: 1}, {fold_smoothness: 1}]\n";
     char *text = mem_format("slender: 1\njob: design\nshell: {mesh: {shape: hexagram, size: 40 mm, n: 2}, "
                             "thickness: 1 mm, young: 1 MPa, poisson: 0.3}\n%s",
                             lines);
@@ -175,7 +175,7 @@ static void test_unknowns(void **state)
     assert_true(p[shell->young + hub->members[0]] == 2e5 && p[shell->fold] == 2);
     assert_true(fabs(p[shell->magnetization + 2] - 5e3) <= 10 && p[shell->magnetization + 2] != 5e3);
     assert_int_equal(b.model->design.size, 3 * shell->mesh->face_count + 7 + shell->mesh->edge_count);
-    assert_int_equal(b.model->cases[0].objective_count, 3);
+    assert_int_equal(b.model->cases[0].objective_count, 5);
     /* p -> u -> p */
     double *u = mem_alloc((size_t)b.model->design.size, sizeof *u),
            *back = mem_copy(p, (size_t)shell->params.size, sizeof *back);

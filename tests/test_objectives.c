@@ -84,6 +84,11 @@ static void check(Fixture *f, Objective objective, bool squares)
     objective_destroy(objective);
 }
 
+static const ParamBlock *block_of(const Fixture *f, const char *name)
+{
+    return params_find(&f->shell->params, name);
+}
+
 static void test_rows(void **state)
 {
     (void)state;
@@ -93,7 +98,8 @@ static void test_rows(void **state)
     double target[3][3] = {{1, 2, 3}, {-1, 0, 1}, {0.5, 0.5, 0.5}};
     check(&f, objective_target(3, vertices, (const double(*)[3])target, 0.7), true);
     check(&f, objective_height(3, vertices, -2), false);
-    check(&f, shell_magnetization_smoothness(f.shell, 1.5), true);
+    check(&f, shell_smoothness(f.shell, block_of(&f, "magnetization"), 1.5), true);
+    check(&f, shell_smoothness(f.shell, block_of(&f, "fold"), 2.5), true);
     free_fixture(&f);
     assert_int_equal(mem_live_count(), blocks);
 }
@@ -264,6 +270,18 @@ static void test_controls(void **state)
     assert_true(fabs(value[0] - 7) < 1e-14);
 }
 
+static void test_young_smoothness(void **state)
+{
+    (void)state;
+    Fixture f = make_fixture();
+    double *young = f.p + f.shell->young;
+    for (int i = 0; i < f.shell->mesh->face_count; i++) young[i] = 3 + sin(5 * i);
+    check_curved(&f, shell_smoothness(f.shell, block_of(&f, "young"), 0.7), false);
+    for (int i = 0; i < f.shell->mesh->face_count; i++) young[i] = 3;
+    check_curved(&f, shell_smoothness(f.shell, block_of(&f, "young"), 0.7), true);
+    free_fixture(&f);
+}
+
 /* Closed forms. */
 static void test_values(void **state)
 {
@@ -279,7 +297,7 @@ static void test_values(void **state)
     objective = objective_height(2, vertices, 1);
     assert_true(objective.ops->value(objective.self, 1, f.x, f.p, NULL, NULL) == 1);
     objective_destroy(objective);
-    objective = shell_magnetization_smoothness(f.shell, 1);
+    objective = shell_smoothness(f.shell, block_of(&f, "magnetization"), 1);
     for (int i = 0; i < 3 * f.shell->mesh->face_count; i++) f.p[f.shell->magnetization + i] = 5;
     assert_true(objective.ops->value(objective.self, 1, f.x, f.p, NULL, NULL) == 0);
     f.p[f.shell->magnetization] = 7; /* one face: 4 for each of its inner edges */
@@ -287,15 +305,30 @@ static void test_values(void **state)
     for (int i = 0; i < 3; i++)
         inner += !mesh_edge_is_boundary(f.shell->mesh, f.shell->mesh->face_edges[0][i]);
     assert_true(objective.ops->value(objective.self, 1, f.x, f.p, NULL, NULL) == 4 * inner);
+    objective_destroy(objective);
+    objective = shell_smoothness(f.shell, block_of(&f, "young"), 1);
+    for (int i = 0; i < f.shell->mesh->face_count; i++) f.p[f.shell->young + i] = i ? 1e5 : 1e7;
+    double jump = log(100), value = objective.ops->value(objective.self, 1, f.x, f.p, NULL, NULL);
+    assert_true(fabs(value - jump * jump * inner) < 1e-12 * value);
+    objective_destroy(objective);
+    objective = shell_smoothness(f.shell, block_of(&f, "fold"), 1);
+    for (int i = 0; i < f.shell->mesh->edge_count; i++) f.p[f.shell->fold + i] = 1;
+    f.p[f.shell->fold + f.shell->mesh->face_edges[0][0]] = 4; /* 9 to each of two edges of its faces */
+    int beside = mesh_edge_is_boundary(f.shell->mesh, f.shell->mesh->face_edges[0][0]) ? 1 : 2;
+    assert_true(objective.ops->value(objective.self, 1, f.x, f.p, NULL, NULL) == 9 * 2 * beside);
+    objective_destroy(objective);
     free_fixture(&f);
 }
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_rows),       cmocka_unit_test(test_point_rows),
-        cmocka_unit_test(test_field_rows), cmocka_unit_test(test_curve_distances),
-        cmocka_unit_test(test_dmp_start),  cmocka_unit_test(test_controls),
-        cmocka_unit_test(test_values)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_rows),
+                                       cmocka_unit_test(test_point_rows),
+                                       cmocka_unit_test(test_field_rows),
+                                       cmocka_unit_test(test_curve_distances),
+                                       cmocka_unit_test(test_dmp_start),
+                                       cmocka_unit_test(test_controls),
+                                       cmocka_unit_test(test_young_smoothness),
+                                       cmocka_unit_test(test_values)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

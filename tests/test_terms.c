@@ -60,10 +60,9 @@ static double *make_params(const Shell *shell, Random *random)
     return p;
 }
 
-static void check_rows(BendingModel bending, FluxField *field)
+static void check_rows(Shell *shell)
 {
     Random random = random_seed(17);
-    Shell *shell = make_shell(bending, field);
     double *p = make_params(shell, &random);
     System *sys = shell_dynamic_system(shell);
     State now = system_state(sys);
@@ -94,19 +93,31 @@ static void check_rows(BendingModel bending, FluxField *field)
 static void test_midedge(void **state)
 {
     (void)state;
-    check_rows(BENDING_MIDEDGE, NULL);
+    check_rows(make_shell(BENDING_MIDEDGE, NULL));
 }
 
 static void test_hinge(void **state)
 {
     (void)state;
-    check_rows(BENDING_HINGE, NULL);
+    check_rows(make_shell(BENDING_HINGE, NULL));
+}
+
+static void test_neo_hookean(void **state)
+{
+    (void)state;
+    const double poisson[] = {0, 0.3, 0.5};
+    for (int k = 0; k < 3; k++) {
+        Shell *shell = make_shell(BENDING_HINGE, NULL);
+        shell->material = MEMBRANE_NEO_HOOKEAN, shell->poisson = poisson[k];
+        check_rows(shell);
+    }
 }
 
 static void test_dipole(void **state)
 {
     (void)state;
-    check_rows(BENDING_MIDEDGE, flux_field_dipole((double[]){0.01, 0.02, 0.05}, (double[]){0.1, -0.2, 0.5}));
+    check_rows(make_shell(BENDING_MIDEDGE,
+                          flux_field_dipole((double[]){0.01, 0.02, 0.05}, (double[]){0.1, -0.2, 0.5})));
 }
 
 static void test_formula(void **state)
@@ -116,7 +127,7 @@ static void test_formula(void **state)
     static const char *const variables[] = {"x", "y", "z", "r", "t", NULL};
     Formula *formula = formula_create(expressions, 3, NULL, 0, variables, NULL);
     assert_non_null(formula);
-    check_rows(BENDING_MIDEDGE, flux_field_formula(formula, 0.06));
+    check_rows(make_shell(BENDING_MIDEDGE, flux_field_formula(formula, 0.06)));
 }
 
 /* A term whose elements change. */
@@ -240,8 +251,9 @@ static void test_blind(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_midedge), cmocka_unit_test(test_hinge),    cmocka_unit_test(test_dipole),
-        cmocka_unit_test(test_formula), cmocka_unit_test(test_changing), cmocka_unit_test(test_blind),
+        cmocka_unit_test(test_midedge), cmocka_unit_test(test_hinge),   cmocka_unit_test(test_neo_hookean),
+        cmocka_unit_test(test_dipole),  cmocka_unit_test(test_formula), cmocka_unit_test(test_changing),
+        cmocka_unit_test(test_blind),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -70,6 +70,8 @@ static void set_material(Shell *shell, const ShellScene *from)
     shell->thickness = from->thickness;
     shell->poisson = from->poisson;
     shell->density = from->density;
+    shell->coercivity = from->coercivity;
+    shell->material = (MembraneMaterial)from->material;
     shell->bending = (BendingModel)from->bending;
 }
 
@@ -118,9 +120,9 @@ static void masses(const Model *model, double *mass)
     shell_vertex_mass(model->self, mass);
 }
 
-static Objective smoothness(const Model *model, double weight)
+static Objective smoothness(const Model *model, const ParamBlock *block, double weight)
 {
-    return shell_magnetization_smoothness(model->self, weight);
+    return shell_smoothness(model->self, block, weight);
 }
 
 /* Of edge angles, with all positions held. */
@@ -161,6 +163,7 @@ static const BodyOps ops = {
     .add_final = run_add_stability,
     .likeness = likeness,
     .places = model_places,
+    .doubt = shell_doubt,
     .crushed = shell_crushed,
     .crushed_as = NEWTON_CRUSHED,
     .describe = shell_describe,

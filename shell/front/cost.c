@@ -26,7 +26,7 @@ static Piece piece_create(const Shell *like)
     Shell *shell = shell_create(mesh_create(&file, 0, NULL, &err), NULL);
     mesh_file_clear(&file);
     shell->thickness = 0.01, shell->poisson = like->poisson, shell->density = 1000,
-    shell->bending = like->bending;
+    shell->bending = like->bending, shell->material = like->material;
     for (int v = 0; v < shell->mesh->vertex_count; v++)
         for (int i = 0; shell->mesh->rest[v][0] == 0 && i < 3; i++) shell_fix(shell, v, i);
     Piece piece = {.shell = shell, .sys = shell_system(shell)};

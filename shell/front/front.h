@@ -12,6 +12,7 @@ void shell_add_state(const Model *model, const Snapshot *shot, const char *prefi
 /* report.c, cost.c */
 char *shell_crushed(const Model *model, const Snapshot *shot, bool failed);
 char *shell_describe(const Model *model, const Scene *scene);
+char *shell_doubt(const Model *model, const Snapshot *shot);
 void shell_advise(Model *model, const Scene *scene);
 void shell_dof_sizes(const Model *model, double *size);
 void shell_cost(const Model *model, Cost *cost);

@@ -1,10 +1,10 @@
 /* What `slender check` says of a shell, and what is doubtful about it. */
 #include "base/memory.h"
 #include "base/vec3.h"
+#include "model/coercivity.h"
 #include "shell/front/front.h"
 #include <math.h>
-
-enum { MOMENTS_MAX = 10000 }; /* at which a field over time is looked at */
+#include <string.h>
 
 static const double LARGE_BODY = 2;       /* m: most likely a mesh in millimetres          */
 static const double CRUSHED = 0.05;       /* of its area: less is none                      */
@@ -16,16 +16,12 @@ static double largest_field(const Model *model, const Scene *scene, const double
 {
     const Shell *shell = model->self;
     const FluxUnknown *unknown = scene->design ? scene->design->unknowns.flux_density : NULL;
-    double largest = vec3_length(vec3_load(p + shell->flux_density));
+    double flux[3];
+    memcpy(flux, p + shell->flux_density, sizeof flux);
+    double largest =
+        timed_flux_largest(&model->flux_of_time, model->time, scene->time.step, scene->time.steps, flux);
     if (unknown && !isnan(unknown->bounds[0]))
         largest = fmax(largest, fmax(fabs(unknown->bounds[0]), fabs(unknown->bounds[1])));
-    double now[3] = {0};
-    int moments = scene->time.steps < MOMENTS_MAX ? scene->time.steps : MOMENTS_MAX;
-    for (int n = 0; timed_flux_is_given(&model->flux_of_time) && n <= moments; n++) {
-        double time = model->time + (double)n / moments * scene->time.steps * scene->time.step;
-        if (timed_flux_eval(&model->flux_of_time, time, now, NULL))
-            largest = fmax(largest, vec3_length(vec3_load(now)));
-    }
     return largest;
 }
 
@@ -49,6 +45,17 @@ static double bending_length(const Model *model, const Scene *scene)
     return largest > 0 ? shell->thickness * sqrt(young / (12 * largest)) : INFINITY;
 }
 
+static MagnetPart magnet_of(const Shell *shell)
+{
+    return (MagnetPart){.noun = "face",
+                        .coercivity = shell->coercivity,
+                        .count = shell->mesh->face_count,
+                        .corners = 3,
+                        .each = 3,
+                        .points = shell->mesh->faces[0],
+                        .magnetization = shell->magnetization};
+}
+
 void shell_advise(Model *model, const Scene *scene)
 {
     const Shell *shell = model->self;
@@ -66,6 +73,12 @@ void shell_advise(Model *model, const Scene *scene)
             &model->report,
             "fewer than %g cells over the magnetic bending length: the mesh is too coarse for this field",
             CELLS_PER_LENGTH);
+    coercivity_advise(model, scene, magnet_of(shell));
+}
+
+char *shell_doubt(const Model *model, const Snapshot *shot)
+{
+    return coercivity_doubt(model, magnet_of(model->self), shot);
 }
 
 char *shell_describe(const Model *model, const Scene *scene)
@@ -99,7 +112,8 @@ static double area_ratio(const Mesh *mesh, const double *x, int face)
     return vec3_length(vec3_cross(b, c)) / (2 * mesh->rest_area[face]);
 }
 
-/* Stretching resists being crushed less and less [St. Venant-Kirchhoff], and halved steps do not help. */
+/* St. Venant-Kirchhoff stretching resists being crushed less and less, and halved steps do not help. Of neo-Hookean, which
+ * resists it more and more, a state with small faces is one like others. */
 char *shell_crushed(const Model *model, const Snapshot *shot, bool failed)
 {
     const Shell *shell = model->self;
@@ -107,8 +121,9 @@ char *shell_crushed(const Model *model, const Snapshot *shot, bool failed)
     int least = 0;
     for (int f = 1; f < mesh->face_count; f++)
         if (area_ratio(mesh, shot->at.x, f) < area_ratio(mesh, shot->at.x, least)) least = f;
-    double ratio = area_ratio(mesh, shot->at.x, least);
-    if (!(ratio < (failed ? NEARLY_CRUSHED : CRUSHED))) return NULL;
+    double ratio = area_ratio(mesh, shot->at.x, least),
+           limit = shell->material == MEMBRANE_ST_VENANT_KIRCHHOFF ? CRUSHED : 0;
+    if (!(ratio < (failed ? NEARLY_CRUSHED : limit))) return NULL;
     double M = vec3_length(vec3_load(shot->p + shell->magnetization + 3 * least)),
            B = vec3_length(vec3_load(shot->p + shell->flux_density)), Y = shot->p[shell->young + least];
     if (M * B == 0)

@@ -19,6 +19,10 @@ const YamlTable shell_table = {
          .doc = "Poisson's ratio (plane stress)"},
         {YAML_NUMBER(ShellScene, density), .unit = "kg/m^3", .range = "(0, inf)", .fallback = "1000",
          .doc = "mass density"},
+        {YAML_CHOICE(ShellScene, material), .choices = YAML_NAMES("st_venant_kirchhoff", "neo_hookean"),
+         .fallback = "st_venant_kirchhoff",
+         .doc = "of the stretching; neo_hookean resists being crushed, and is incompressible for a Poisson's "
+                "ratio of 0.5"},
         {YAML_CHOICE(ShellScene, bending), .choices = YAML_NAMES("midedge", "hinge"), .fallback = "midedge",
          .doc = "midedge converges on any mesh; hinge is faster, and 5 to 57 % off on crossed and "
                 "unstructured meshes"},
@@ -26,6 +30,10 @@ const YamlTable shell_table = {
          .doc = "factor on the curvature of each edge"},
         {YAML_TABLE(ShellScene, magnetization, &magnetization_table), .fallback = "[0, 0, 0]",
          .doc = "remanent magnetisation"},
+        {YAML_NUMBER(ShellScene, coercivity), .unit = "A/m", .range = "(0, inf)",
+         .doc = "of what it is magnetised with: a larger field than half of it, anywhere on what is "
+                "magnetised, is a "
+                "warning; not looked at if absent"},
         {YAML_NUMBER(ShellScene, damping), .when = "/job: simulate, trajectory", .unit = "N s/m",
          .range = "[0, inf)", .fallback = "0", .doc = "of a simulation: viscous damping at every vertex"},
         {YAML_VECTOR(ShellScene, gravity), .unit = "m/s^2", .fallback = "[0, 0, 0]",

@@ -6,10 +6,10 @@ typedef struct ShellScene {
     MeshScene mesh;
     PoseScene *pose;
     VelocityScene *velocity;
-    double thickness, poisson, density, damping, gravity[3];
+    double thickness, poisson, density, coercivity, damping, gravity[3];
     NumberScene young, fold;
     VectorScene magnetization;
-    int bending; /* BendingModel */
+    int bending, material; /* BendingModel, MembraneMaterial */
 } ShellScene;
 
 extern const YamlTable shell_table;

@@ -111,8 +111,10 @@ static bool create(Model *model, const Scene *scene, YamlFile *file)
                     .averaging = from->averaging,
                     .skin = from->skin ? from->skin->thickness : 0,
                     .film = from->skin && from->skin->young,
-                    .film_poisson = from->skin ? from->skin->poisson : NAN};
+                    .film_poisson = from->skin ? from->skin->poisson : NAN,
+                    .film_material = from->skin ? (MembraneMaterial)from->skin->material : 0};
     Solid *solid = model->self = solid_create(tets, &def, &fields);
+    solid->coercivity = from->coercivity;
     model->mesh = tets->surface;
     model->params = &solid->params;
     model->gravity = solid->gravity;
@@ -177,6 +179,7 @@ static const BodyOps ops = {
     .add_final = run_add_stability,
     .likeness = likeness,
     .places = model_places,
+    .doubt = solid_doubt,
     .crushed = solid_crushed,
     .crushed_as = NEWTON_TANGLED,
     .describe = solid_describe,

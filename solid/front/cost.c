@@ -19,8 +19,8 @@ static Solid *block_of(const Solid *like)
     MeshFile file;
     Error err;
     solid_shape_box((double[]){1, 1, 1}, (int[]){BLOCK, BLOCK, BLOCK}, &file, &err);
-    SolidDef def = {like->material, like->poisson, like->density,     like->averaging,
-                    like->skin,     like->film,    like->film_poisson};
+    SolidDef def = {like->material, like->poisson, like->density,      like->averaging,
+                    like->skin,     like->film,    like->film_poisson, like->film_material};
     Solid *solid = solid_create(tets_create(&file, like->tets->order, NULL, &err), &def, NULL);
     mesh_file_clear(&file);
     for (int i = 0; i < solid_dof_count(solid); i++)

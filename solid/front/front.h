@@ -13,6 +13,7 @@ void solid_add_state(const Model *model, const Snapshot *shot, const char *prefi
 /* report.c, cost.c */
 char *solid_crushed(const Model *model, const Snapshot *shot, bool failed);
 char *solid_describe(const Model *model, const Scene *scene);
+char *solid_doubt(const Model *model, const Snapshot *shot);
 void solid_advise(Model *model, const Scene *scene);
 void solid_dof_sizes(const Model *model, double *size);
 void solid_cost(const Model *model, Cost *cost);

@@ -1,6 +1,7 @@
 /* What `slender check` says of a solid, and what is doubtful about it. */
 #include "base/memory.h"
 #include "base/vec3.h"
+#include "model/coercivity.h"
 #include "solid/front/front.h"
 #include <math.h>
 
@@ -8,11 +9,31 @@ static const double LARGE_BODY = 2; /* m: most likely a mesh in millimetres     
 static const double LOCKED_FROM =
     0.47; /* Poisson's ratio from which plain quadratic tetrahedra are too stiff */
 
+/* Its tetrahedra (0), its skin (1): of none, without a skin. */
+static MagnetPart magnet_of(const Solid *solid, int which)
+{
+    const Tets *tets = solid->tets;
+    const MagnetPart parts[] = {{.noun = "tetrahedron",
+                                 .count = tets->count,
+                                 .corners = 4,
+                                 .each = tets->each,
+                                 .points = tets->nodes,
+                                 .magnetization = solid->volume_magnetization},
+                                {.noun = "face",
+                                 .count = solid->magnetization < 0 ? 0 : tets->surface->face_count,
+                                 .corners = 3,
+                                 .each = 3,
+                                 .points = tets->surface->faces[0],
+                                 .magnetization = solid->magnetization}};
+    MagnetPart part = parts[which];
+    part.coercivity = solid->coercivity;
+    return part;
+}
+
 void solid_advise(Model *model, const Scene *scene)
 {
     const Solid *solid = model->self;
     double size = mesh_diagonal(model->mesh);
-    (void)scene;
     if (size > LARGE_BODY)
         mesh_warn(&model->report,
                   "the body is %.3g m long; if its file is in millimetres, give the mesh `scale: 1.0e-3`",
@@ -26,6 +47,13 @@ void solid_advise(Model *model, const Scene *scene)
             "with a Poisson's ratio of %.6g quadratic tetrahedra are some per cent too stiff in bending: "
             "more of them through the thickness are less so, and `averaging: 0.6` is a little",
             solid->poisson);
+    for (int k = 0; k < 2; k++) coercivity_advise(model, scene, magnet_of(solid, k));
+}
+
+char *solid_doubt(const Model *model, const Snapshot *shot)
+{
+    char *doubt = coercivity_doubt(model, magnet_of(model->self, 0), shot);
+    return doubt ? doubt : coercivity_doubt(model, magnet_of(model->self, 1), shot);
 }
 
 char *solid_describe(const Model *model, const Scene *scene)

@@ -78,6 +78,9 @@ static const YamlTable skin_table = {
          .doc = "of a film: its Young's modulus, per face of the surface; without, the layer bears nothing"},
         {YAML_NUMBER(SkinScene, poisson), .when = "young", .range = "[0, 0.5]",
          .doc = "of a film, which needs it: its Poisson's ratio"},
+        {YAML_CHOICE(SkinScene, material), .when = "young",
+         .choices = YAML_NAMES("st_venant_kirchhoff", "neo_hookean"), .fallback = "st_venant_kirchhoff",
+         .doc = "of a film: neo_hookean resists being crushed"},
         {YAML_OPTIONAL(SkinScene, on, &skin_place_table), .also = ON_NAMES,
          .doc = "where it is; all of the surface if absent"},
         {0}}};
@@ -109,6 +112,10 @@ const YamlTable solid_table = {
         {YAML_OPTIONAL(SolidScene, skin, &skin_table), .doc = "a layer on its surface: magnetised, a film"},
         {YAML_TABLE(SolidScene, magnetization, &magnetization_table), .fallback = "[0, 0, 0]",
          .doc = "remanent magnetisation of the volume, per tetrahedron"},
+        {YAML_NUMBER(SolidScene, coercivity), .unit = "A/m", .range = "(0, inf)",
+         .doc = "of what it is magnetised with: a larger field than half of it, anywhere on what is "
+                "magnetised, is a "
+                "warning; not looked at if absent"},
         {YAML_OPTIONAL(SolidScene, pose, &pose_table), .when = "!/start",
          .doc = "where a job starts; at rest if absent"},
         {YAML_OPTIONAL(SolidScene, velocity, &velocity_table), .when = "/job: simulate, trajectory & !/start",

@@ -28,6 +28,7 @@ typedef struct SkinPlace {
 /* The layer on the surface: magnetised, and a film if it has a modulus. */
 typedef struct SkinScene {
     double thickness, poisson; /* the latter NAN where there is none */
+    int material;              /* MembraneMaterial                    */
     NumberScene *young;        /* NULL: none                         */
     VectorScene magnetization;
     SkinPlace *on; /* NULL: all of the surface */
@@ -40,7 +41,7 @@ typedef struct SolidScene {
     SkinScene *skin;
     NumberScene young;
     VectorScene magnetization; /* of the volume */
-    double poisson, density, averaging, damping, gravity[3];
+    double poisson, density, averaging, coercivity, damping, gravity[3];
     int order, material; /* 1 or 2; SolidMaterial */
 } SolidScene;
 
