@@ -73,6 +73,8 @@ rod_simulate_resumed | tests/scene_rod_simulate.yaml | time.steps=30 | time.step
 rod_preview | scenes/rod_preview.yaml | time.steps=40
 rod_design | tests/scene_rod_design.yaml | design.iterations=8
 rod_design_resumed | tests/scene_rod_design.yaml | design.iterations=4 | design.iterations=8
+rod_trajectory | tests/scene_rod_trajectory.yaml | design.iterations=3
+rod_trajectory_resumed | tests/scene_rod_trajectory.yaml | design.iterations=2 | design.iterations=3
 rod_design_mma | scenes/rod_magnet.yaml | design.iterations=12
 drawing | tests/scene_draw.yaml |
 drawing_crossed | scenes/spline_crossed.yaml | spline.page.size=[90mm,60mm]

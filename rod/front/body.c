@@ -100,10 +100,10 @@ static bool read_supports(RodModel *rm, const RodScene *scene, const Build *b)
 /* What of the scene is for one rod; NULL: nothing. */
 static const char *takes_one(const RodModel *rm, const Scene *scene)
 {
-    return scene_job(scene) != &rod_job_simulate ? "jobs other than invert and simulate take one rod"
-           : rm->preview                         ? "solver: pbd takes one rod"
-           : rod_scene(scene)->end               ? "rod.end holds one rod"
-                                                 : NULL;
+    return !scene_job(scene)->motion ? "jobs other than invert, simulate and trajectory take one rod"
+           : rm->preview             ? "solver: pbd takes one rod"
+           : rod_scene(scene)->end   ? "rod.end holds one rod"
+                                     : NULL;
 }
 
 static bool check_rod(const RodModel *rm, const Scene *scene, const Build *b)
@@ -355,14 +355,20 @@ static bool put_vectors(Model *model, const Build *b, const char *at, const Vect
     return rod_model_vectors(b, at, scene, ((const RodModel *)model->self)->rod, values);
 }
 
-/* All nodes, or its end. */
+/* All nodes, the ends of its strands, or the node of that number. */
 static bool select_part(const Model *model, const Build *b, const char *at, const char *name, Indices *found)
 {
-    bool tip = !strcmp(name, "tip");
-    if (!tip && strcmp(name, "all")) return yaml_refuse(b->file, at, "of a rod it is `all` or `tip`");
-    int count = tip ? 1 : model->point_count;
+    const Rod *rod = ((const RodModel *)model->self)->rod;
+    int nodes = model->point_count, first = 0, step = 1, count = nodes;
+    if (!strcmp(name, "tip"))
+        first = rod_each(rod), step = first + 1, count = rod->strands;
+    else if (model_point_number(name, nodes, &first))
+        count = 1;
+    else if (strcmp(name, "all"))
+        return yaml_refuse(b->file, at, "'%s' must be `tip`, `all`, or the number of a node, 0 to %d", name,
+                           nodes - 1);
     *found = (Indices){count, mem_alloc((size_t)count, sizeof(int))};
-    for (int i = 0; i < count; i++) found->items[i] = tip ? model->point_count - 1 : i;
+    for (int i = 0; i < count; i++) found->items[i] = first + step * i;
     return true;
 }
 
@@ -466,8 +472,9 @@ static const KeyUse uses[] = {
     {0},
 };
 
-static const JobRow *const jobs[] = {&job_equilibrium, &job_design,       &rod_job_simulate,
-                                     &rod_job_invert,  &rod_job_identify, NULL};
+static const JobRow *const jobs[] = {
+    &job_equilibrium,  &job_design, &rod_job_simulate, &job_trajectory, &rod_job_invert,
+    &rod_job_identify, NULL};
 
 const BodyRow rod_body = {
     .key = "rod",
