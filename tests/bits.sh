@@ -54,6 +54,7 @@ solid_trajectory | scenes/starfish_jump.yaml | solid.mesh.n=1 solid.order=1 desi
 solid_simulate | tests/scene_solid.yaml |
 solid_simulate_resumed | tests/scene_solid.yaml | time.steps=40 | time.steps=80
 rod_equilibrium | scenes/rod_equilibrium.yaml | rod.elements=200
+rod_evaluate | scenes/rod_equilibrium.yaml | job=evaluate rod.elements=200
 rod_cantilever | scenes/rod_cantilever.yaml | rod.elements=100
 rod_arch | scenes/rod_arch.yaml | rod.elements=80
 rod_clamped | scenes/rod_clamped.yaml | rod.elements=80

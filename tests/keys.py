@@ -79,6 +79,7 @@ design: {unknowns: {flux_density: {noise: 0.01}}, objectives: [{waypoint: {mass_
     "rod equilibrium": "job: equilibrium\nrod:\n  natural_strain: [1, 2, 3]" + ROD + "  elements: 20\n" + FLUX + "",
     "rod curve": "job: equilibrium\nrod:" + CURVE + "  elements: 20\n" + FLUX,
     "rod held": "job: equilibrium\nrod:\n  natural_strain: [1, 2, 3]" + ROD + "  elements: 20\n  end: {position: [0.15, 0, 0]}\n" + FLUX,
+    "rod evaluate": "job: evaluate\nrod:" + CURVE + "  elements: 20\n  start: curve\n" + FLUX,
     "rod design": "job: design\nrod:\n  natural_strain: [0, 0, 0]" + ROD + "  elements: 20\n" + FLUX + """target: ["s", "0", "s*s"]
 design: {unknowns: {magnetization: {noise: 100}}, objectives: [{target: 1}], iterations: 3}
 """,
