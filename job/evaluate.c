@@ -19,25 +19,50 @@ static NewtonStatus relax(Run *run, Case *c)
     return status;
 }
 
-/* Is the pose an equilibrium, as Newton's method would call it, and would the body stay? Says so. */
-static NewtonStatus judge(Run *run, const Case *c, int k)
+/* All forces, or their derivatives. */
+static Evaluation differentiate(const Case *c, bool twice)
 {
     Point at = state_point(&c->state, c->stages[0].p);
-    double *gradient = mem_alloc((size_t)c->state.dofs, sizeof *gradient), lowest = INFINITY;
-    Evaluation now = system_gradient(c->sys, &at, gradient);
+    double *gradient = mem_alloc((size_t)c->state.dofs, sizeof *gradient);
+    Evaluation now = twice ? system_hessian(c->sys, &at, gradient) : system_gradient(c->sys, &at, gradient);
     mem_free(gradient);
-    if (!now.finite || (system_free_count(c->sys) && !eigen_lowest(c->sys, &at, 1, &lowest, NULL)))
-        return NEWTON_NOT_FINITE;
-    const char *said = lowest < 0 ? "unstable" : "stable";
-    int count = run->model->case_count;
-    if (now.gradient_max > newton_default().force_tol * now.force_scale) {
+    return now;
+}
+
+static Balance balance_of_points(const Case *c)
+{
+    Evaluation now = differentiate(c, false);
+    return (Balance){"forces", "N", now.gradient_max, now.force_scale, now.finite};
+}
+
+/* Would the body leave the pose? Without an eigenvalue it does, by what moves no point (a rod that spins where it is).
+ * False where nothing is known. */
+static bool find_stability(const Case *c, bool *leaves)
+{
+    Point at = state_point(&c->state, c->stages[0].p);
+    double lowest = INFINITY;
+    bool found = system_free_count(c->sys) == 0 || eigen_lowest(c->sys, &at, 1, &lowest, NULL);
+    *leaves = !found || lowest < 0;
+    return found || differentiate(c, true).finite;
+}
+
+/* Is the pose an equilibrium, as Newton's method would call it, and would the body stay? Says so. */
+static NewtonStatus judge(Run *run, Case *c, int k)
+{
+    const Model *model = run->model;
+    Balance now = model->body->ops->balance ? model->body->ops->balance(model, c) : balance_of_points(c);
+    bool leaves;
+    if (!now.finite || !find_stability(c, &leaves)) return NEWTON_NOT_FINITE;
+    const char *said = leaves ? "unstable" : "stable";
+    int count = model->case_count;
+    if (now.most > newton_default().force_tol * now.scale) {
         host_step(run->host, k + 1, count,
-                  "%s: %s, but no equilibrium: forces of up to %.3g N are not in balance", c->name, said,
-                  now.gradient_max);
+                  "%s: %s, but no equilibrium: %s of up to %.3g %s are not in balance", c->name, said,
+                  now.what, now.most, now.unit);
         return NEWTON_UNBALANCED;
     }
     host_step(run->host, k + 1, count, "%s: an equilibrium, %s", c->name, said);
-    return lowest < 0 ? NEWTON_SADDLE : NEWTON_CONVERGED;
+    return leaves ? NEWTON_SADDLE : NEWTON_CONVERGED;
 }
 
 static RunStatus run_evaluate(Run *run, Error *err)

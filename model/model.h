@@ -122,4 +122,8 @@ bool model_velocity(Model *model, const Build *b, const char *at, const Velocity
  * (model_objectives) the objectives of all cases. Parts of model_create for designs and trajectories; false
  * after a refusal. */
 bool model_design(Model *model, const Scene *scene, YamlFile *file);
+
 bool model_objectives(Model *model, const Scene *scene, YamlFile *file);
+
+/* Is the text the number of one of so many points, 0 .. count - 1? */
+bool model_point_number(const char *text, int count, int *point);

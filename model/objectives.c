@@ -2,7 +2,6 @@
 #include "base/memory.h"
 #include "model/model.h"
 #include "optim/objectives.h"
-#include <limits.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -52,31 +51,53 @@ static bool center_of_mass(const Model *model, const Build *b, Key at, Probe *pr
     return true;
 }
 
-/* The vertex of that number in the mesh's file; without a mesh the point. */
-static bool numbered_point(const Model *model, const char *text, int *point)
+bool model_point_number(const char *text, int count, int *point)
 {
     char *end;
-    Error err;
     long number = strtol(text, &end, 10);
-    if (!*text || *end || number < 0 || number > INT_MAX) return false;
-    if (model->mesh) return mesh_vertex(model->mesh, (int)number, point, &err);
+    if (!*text || *end || number < 0 || number >= count) return false;
     *point = (int)number;
-    return number < model->point_count;
+    return true;
+}
+
+/* A vertex of the mesh's file, or a group's only one. */
+static bool mesh_point(const Model *model, const Build *b, Key at, const char *vertex, int *point)
+{
+    const Mesh *mesh = model->mesh;
+    const MeshGroup *group = mesh_group(mesh, vertex, 0);
+    Error err;
+    int number;
+    if (group && group->count == 1) {
+        *point = group->members[0];
+        return true;
+    }
+    return (model_point_number(vertex, mesh->file_vertex_count, &number) &&
+            mesh_vertex(mesh, number, point, &err)) ||
+           yaml_refuse(
+               b->file, at.text,
+               "vertex is '%s'; it must be a number from 0 to %d or the name of a group of one vertex",
+               vertex, mesh->file_vertex_count - 1);
+}
+
+/* Of a body without a mesh. */
+static bool only_point(const Model *model, const Build *b, Key at, const char *vertex, int *point)
+{
+    Indices found = {0};
+    if (!model->body->ops->select(model, b, at.text, vertex, &found)) return false;
+    bool one = found.count == 1;
+    *point = found.items[0];
+    mem_free(found.items);
+    return one || yaml_refuse(b->file, at.text, "vertex is '%s', which is %d points; it must be one", vertex,
+                              found.count);
 }
 
 /* The points and weights of a probe, which the caller frees. */
 static bool find_probe(const Model *model, const Build *b, Key at, const char *vertex, Probe *probe)
 {
     if (!vertex) return center_of_mass(model, b, at, probe);
-    const MeshGroup *group = model->mesh ? mesh_group(model->mesh, vertex, 0) : NULL;
     double one = 1;
     int point;
-    if (group && group->count == 1)
-        point = group->members[0];
-    else if (!numbered_point(model, vertex, &point))
-        return yaml_refuse(b->file, at.text, "vertex is '%s'; it must be a number from 0 to %d%s", vertex,
-                           (model->mesh ? model->mesh->file_vertex_count : model->point_count) - 1,
-                           model->mesh ? " or the name of a group of one vertex" : "");
+    if (!(model->mesh ? mesh_point : only_point)(model, b, at, vertex, &point)) return false;
     *probe = (Probe){1, mem_copy(&point, 1, sizeof point), mem_copy(&one, 1, sizeof one)};
     return true;
 }

@@ -91,6 +91,13 @@ typedef struct Likeness {
     const char *name, *other;
 } Likeness;
 
+/* What is out of balance in a pose: the largest of these forces where nothing is held, and what that is relative to. */
+typedef struct Balance {
+    const char *what, *unit; /* "forces", "N" */
+    double most, scale;
+    bool finite;
+} Balance;
+
 /* How a body becomes numbers, and how its states are written into the journal. A refusal at a key (yaml_refuse) gives
  * false. Every body has create, destroy, add_static and describe; one with load cases all else that is not said to be
  * optional. Of what is optional and NULL the body has none, and scenes that ask for it are refused. */
@@ -134,6 +141,10 @@ typedef struct BodyOps {
 
     /* All points held: what is left relaxes in a given pose. The caller's; optional. */
     System *(*pose_system)(const struct Model *model);
+
+    /* Is a given pose in balance? Forces that hold what cannot give way (multipliers) go into the case's state as they do
+     * it best. Optional, where it is the forces on the points. */
+    Balance (*balance)(const struct Model *model, Case *c);
 
     /* Into the journal: what does not change (rest shape, faces or lines); of a frame beside places and field, numbers
      * per cell and per point, cell/NAME and point/NAME (`whole`: those too that seldom change; optional); of a state beside places and energies, under prefix/..; of

@@ -163,6 +163,11 @@ typedef struct VectorUnknown {
     VectorScene *start;
 } VectorUnknown;
 
+/* Of a rod. */
+typedef struct StrainUnknown {
+    double bounds[2], noise, scale;
+} StrainUnknown;
+
 /* A row for each of a control's values, or one for all. */
 typedef struct FluxStart {
     double value[3];
@@ -179,6 +184,7 @@ typedef struct FluxUnknown {
 typedef struct UnknownsScene {
     VectorUnknown *magnetization;
     NumberUnknown *young, *skin_young, *fold;
+    StrainUnknown *natural_strain;
     FluxUnknown *flux_density;
 } UnknownsScene;
 

@@ -62,6 +62,19 @@ static const YamlTable fold_unknown_table = {
         {YAML_OPTIONAL(NumberUnknown, start, &fold_table), .doc = "in place of the body's"},
         {0}}};
 
+static const YamlTable strain_unknown_table = {
+    .name = "unknown natural_strain",
+    .size = sizeof(StrainUnknown),
+    .doc = "A rod's natural strains (twist, k1, k2) as unknowns. A motion starts in the natural shape of "
+           "their starts.",
+    .fields =
+        (const YamlField[]){{YAML_NUMBER(StrainUnknown, noise), .unit = "1/m", .range = "[0, inf)",
+                             .fallback = "0", .doc = "size of seeded noise that is added to the start"},
+                            {YAML_NUMBER(StrainUnknown, scale), .unit = "1/m", .range = "(0, inf)",
+                             .fallback = "10 1/m", .doc = "a natural size: optimisers see the value over it"},
+                            BOUNDS_ROW(StrainUnknown, "1/m"),
+                            {0}}};
+
 static const YamlTable flux_start_table = {
     .name = "start of flux_density",
     .size = sizeof(FluxStart),
@@ -107,12 +120,14 @@ static const YamlTable unknowns_table = {
     .doc = "What the optimiser may change; starts at the body's values.",
     .fields = (const YamlField[]){
         {YAML_OPTIONAL(UnknownsScene, magnetization, &magnetization_unknown_table),
-         .doc = "three numbers per face; of a solid without a skin per tetrahedron"},
+         .doc = "three numbers per face; of a solid without a skin per tetrahedron, of a rod per element"},
         {YAML_OPTIONAL(UnknownsScene, young, &young_unknown_table),
-         .doc = "a number per face, of a solid per tetrahedron"},
+         .doc = "a number per face, of a solid per tetrahedron, of a rod per element"},
         {YAML_OPTIONAL(UnknownsScene, skin_young, &young_unknown_table),
          .doc = "of a solid's film, a number per face of the surface"},
         {YAML_OPTIONAL(UnknownsScene, fold, &fold_unknown_table), .doc = "a number per edge"},
+        {YAML_OPTIONAL(UnknownsScene, natural_strain, &strain_unknown_table),
+         .doc = "of a rod, three numbers per element"},
         {YAML_OPTIONAL(UnknownsScene, flux_density, &flux_unknown_table),
          .doc = "three numbers per load case"},
         {0}}};
@@ -121,7 +136,8 @@ static const YamlTable unknowns_table = {
 
 #define POINT_ROWS(S)                                                                                        \
     {YAML_TEXT(S, vertex), .one_of = 1, .required = true,                                                    \
-     .doc = "a vertex of the mesh file, from 0, or a named group of one vertex"},                            \
+     .doc = "a vertex of the mesh file, from 0, or a named group of one vertex; of a rod a node, from 0, "   \
+            "or `tip`"},                                                                                     \
     {                                                                                                        \
         YAML_BOOL(S, mass_center), .one_of = 1, .required = true, .doc = "the body's centre of mass"         \
     }
@@ -211,7 +227,7 @@ static const YamlTable objective_table = {
         {YAML_NUMBER(ObjectiveScene, weight), .fallback = "1",
          .doc = "another factor, of a point's rows the only one"},
         {YAML_TEXT(ObjectiveScene, of), .when = "height", .fallback = "all",
-         .doc = "of height: a named group of the mesh, or all; of a rod its end, `tip`, or all"},
+         .doc = "of height: a named group of the mesh, or all; of a rod its end, `tip`, a node, or all"},
         FRAME_ROWS(ObjectiveScene, "/job: trajectory & target | height",
                    ", of a target or height in a trajectory; the last one if absent"),
         {YAML_INTEGER(ObjectiveScene, pairs), .when = "dmp", .range = "[1, 100]", .fallback = "5",

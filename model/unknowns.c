@@ -202,6 +202,19 @@ static bool magnetization_unknown(Model *model, const Build *b, Design *design, 
     return ok;
 }
 
+static bool strain_unknown(Model *model, const Build *b, Design *design, const StrainUnknown *from, int seed)
+{
+    const char *name = "natural_strain";
+    Start start = start_of(model, name, model->cases[0].stages[0].p, from->noise, seed);
+    Unknown unknown = {.map = UNKNOWN_LINEAR, .scale = from->scale};
+    put_bounds(&unknown, from->bounds);
+    bool ok = check_bounds(b->file, name, from->bounds);
+    ok = take_rows(model, b->file, &start, PER_FACE, &unknown) && ok;
+    add_unknown(model, design, &start, unknown);
+    mem_free(start.values);
+    return ok;
+}
+
 /* One value per case, each from its own start. */
 static void flux_per_case(Model *model, const FluxUnknown *from, const ParamBlock *block, Random *random,
                           Unknown unknown)
@@ -291,10 +304,11 @@ static bool add_unknowns(Model *model, const Scene *scene, const Build *b)
     const UnknownsScene *unknowns = &scene->design->unknowns;
     int seed = scene->design->seed;
     design->case_count = model->case_count;
-    const bool asked[] = {unknowns->magnetization, unknowns->young, unknowns->skin_young, unknowns->fold,
-                          unknowns->flux_density};
-    static const char *const names[] = {"magnetization", "young", "skin_young", "fold", "flux_density"};
-    for (int k = 0; k < 5; k++)
+    const bool asked[] = {unknowns->magnetization, unknowns->young,          unknowns->skin_young,
+                          unknowns->fold,          unknowns->natural_strain, unknowns->flux_density};
+    static const char *const names[] = {"magnetization", "young",          "skin_young",
+                                        "fold",          "natural_strain", "flux_density"};
+    for (int k = 0; k < 6; k++)
         if (asked[k] && !params_find(model->params, names[k]))
             return yaml_refuse(b->file, key("design.unknowns.%s", names[k]).text, "%s has no %s",
                                model->body->noun, names[k]);
@@ -305,10 +319,13 @@ static bool add_unknowns(Model *model, const Scene *scene, const Build *b)
     if (unknowns->skin_young)
         ok = number_unknown(model, b, design, "skin_young", unknowns->skin_young, seed) && ok;
     if (unknowns->fold) ok = number_unknown(model, b, design, "fold", unknowns->fold, seed) && ok;
+    if (unknowns->natural_strain) ok = strain_unknown(model, b, design, unknowns->natural_strain, seed) && ok;
     if (unknowns->flux_density) ok = flux_unknown(model, b, scene) && ok;
     if (ok && !design->unknown_count)
-        ok = yaml_refuse(b->file, "design.unknowns",
-                         "a design needs an unknown: magnetization, young, skin_young, fold or flux_density");
+        ok = yaml_refuse(
+            b->file, "design.unknowns",
+            "a design needs an unknown: magnetization, young, skin_young, fold, natural_strain or "
+            "flux_density");
     return ok;
 }
 

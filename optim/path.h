@@ -35,7 +35,7 @@ double *path_memory(const Path *path, int k);
 /* v[dofs] at state k: of the step that ends there; of the start, its own. */
 void path_velocities(const Path *path, int k, double *v);
 
-/* Another start of a step than where the motion is: x of the frame's end, from which the free dofs are taken; false: none. */
+/* Another start of a step than where the motion is: x of the frame's end; false: none. */
 typedef bool (*PathGuess)(void *self, int frame, double dt, double *x);
 
 /* All steps from the problem's start on, with the parameters in path->p and controls, and path->march. False where one

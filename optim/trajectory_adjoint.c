@@ -84,15 +84,15 @@ static void guess_motion(Trajectory *t)
 }
 
 /* The best motion's state at the end of this frame, moved along the tangent; its factor is a better
- * preconditioner than that of the step before. */
+ * preconditioner than that of the step before. What is held is where the best motion has it: turns are from the references
+ * of theirs. */
 static bool find_guess(void *self, int frame, double dt, double *x)
 {
     Trajectory *t = self;
     const Path *best = &t->paths[t->best];
     if (!t->guessed || dt != t->problem.step) return false;
     int k = best->end[frame], dofs = best->dofs;
-    for (int i = 0; i < dofs; i++)
-        if (!system_is_fixed(t->problem.sys, i)) x[i] = t->guess[(size_t)k * (size_t)dofs + (size_t)i];
+    memcpy(x, t->guess + (size_t)k * (size_t)dofs, (size_t)dofs * sizeof *x);
     if (best->factor[k]) system_use_factor(t->problem.sys, best->factor[k]);
     return true;
 }

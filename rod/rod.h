@@ -162,6 +162,10 @@ System *rod_system(const Rod *rod, double young, bool dynamic);
 /* Strains (twist, k1, k2) of the elements, strain[elements], 1/m. */
 void rod_element_strains(const Rod *rod, const RodLayout *layout, const double *x, Vec3 *strain);
 
+/* Puts the multipliers into the state x of a system at that point (at->x is x) with which forces are in balance, and, where
+ * the last end is held, moments as well as its support's force can make them. */
+void rod_carry(const Rod *rod, System *sys, const RodLayout *layout, const Point *at, double *x);
+
 /* Puts the natural strains into p with which the state x of a system is in equilibrium if its last end is
  * free, to rounding: moments from node to node, from the free end on. Sets the multipliers of x, if it has any.
  */

@@ -1,6 +1,7 @@
 /* States of a rod (rod.h). */
 #include "base/memory.h"
 #include "rod/chord.h"
+#include "solve/dense.h"
 #include <string.h>
 
 RodLayout rod_layout(const Rod *rod, bool positions)
@@ -167,11 +168,11 @@ static bool ends_strand(const RodLayout *layout, int e)
 }
 
 /* The multipliers that leave no force on the positions: what each element carries, from the free end on. */
-static void set_multipliers(const RodLayout *layout, System *sys, const double *p, double *x, double *force)
+static void set_multipliers(const RodLayout *layout, System *sys, const Point *at, double *x, double *force)
 {
     double *multiplier = x + layout->multiplier;
     memset(multiplier, 0, 3 * (size_t)layout->elements * sizeof *multiplier);
-    system_gradient(sys, &(Point){.x = x, .p = p}, force);
+    system_gradient(sys, at, force);
     Vec3 carried = vec3(0, 0, 0);
     for (int e = layout->elements - 1; e >= 0; e--) {
         if (ends_strand(layout, e)) carried = vec3(0, 0, 0);
@@ -181,6 +182,53 @@ static void set_multipliers(const RodLayout *layout, System *sys, const double *
     }
 }
 
+static void add_to_multipliers(const RodLayout *layout, double *x, Vec3 force)
+{
+    double *multiplier = x + layout->multiplier;
+    for (int e = 0; e < layout->elements; e++)
+        vec3_store(multiplier + 3 * e, vec3_add(vec3_load(multiplier + 3 * e), force));
+}
+
+static const double UNDETERMINED = 1e-14; /* a force along a straight rod turns nothing: it is 0 */
+
+/* The support's force at the last end, which all elements carry, that leaves the least moments on free turns: a linear
+ * problem of least squares. */
+static Vec3 fit_support(const RodLayout *layout, System *sys, const Point *at, double *x)
+{
+    size_t n = (size_t)layout->dofs;
+    double *g = mem_alloc(4 * n, sizeof *g), A[3][3] = {{0}}, b[3] = {0};
+    const Vec3 unit[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    system_gradient(sys, at, g);
+    for (int k = 0; k < 3; k++) {
+        add_to_multipliers(layout, x, unit[k]);
+        system_gradient(sys, at, g + (size_t)(k + 1) * n);
+        add_to_multipliers(layout, x, vec3_scale(-1, unit[k]));
+    }
+    for (int d = layout->turn; d < layout->turn + 3 * layout->nodes; d++)
+        for (int i = 0; !system_is_fixed(sys, d) && i < 3; i++) {
+            const double *gi = g + (size_t)(i + 1) * n;
+            b[i] -= (gi[d] - g[d]) * g[d];
+            for (int j = 0; j < 3; j++)
+                A[i][j] += (gi[d] - g[d]) * (g[(size_t)(j + 1) * n + (size_t)d] - g[d]);
+        }
+    mem_free(g);
+    double trace = A[0][0] + A[1][1] + A[2][2];
+    if (trace == 0) return vec3(0, 0, 0);
+    for (int i = 0; i < 3; i++) A[i][i] += UNDETERMINED * trace;
+    if (!dense_cholesky(3, A[0], 3)) return vec3(0, 0, 0); /* no numbers */
+    dense_forward(3, A[0], 3, b);
+    dense_backward(3, A[0], 3, b);
+    return vec3_load(b);
+}
+
+void rod_carry(const Rod *rod, System *sys, const RodLayout *layout, const Point *at, double *x)
+{
+    double *force = mem_alloc((size_t)layout->dofs, sizeof *force);
+    set_multipliers(layout, sys, at, x, force);
+    mem_free(force);
+    if (rod->end != ROD_FREE) add_to_multipliers(layout, x, fit_support(layout, sys, at, x));
+}
+
 void rod_balance(const Rod *rod, System *sys, const RodLayout *layout, double *x, double *p)
 {
     size_t elements = (size_t)rod->elements;
@@ -188,8 +236,9 @@ void rod_balance(const Rod *rod, System *sys, const RodLayout *layout, double *x
     double *force = mem_alloc((size_t)layout->dofs, sizeof *force);
     rod_element_strains(rod, layout, x, strain);
     for (int e = 0; e < rod->elements; e++) vec3_store(p + rod->natural_strain + 3 * e, strain[e]);
-    if (layout->multiplier >= 0) set_multipliers(layout, sys, p, x, force);
-    system_gradient(sys, &(Point){.x = x, .p = p}, force);
+    Point at = {.x = x, .p = p};
+    if (layout->multiplier >= 0) set_multipliers(layout, sys, &at, x, force);
+    system_gradient(sys, &at, force);
     turn_rows(layout, x, rows);
     Vec3 carried = vec3(0, 0, 0); /* what the element beyond does to the node */
     for (int e = rod->elements - 1; e >= 0; e--) {

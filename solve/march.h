@@ -18,7 +18,7 @@ typedef struct MarchDef {
     bool implicit;                                    /* what is lagged is the step's end's         */
     void (*load)(void *self, double time, double *p); /* what depends on time; may be NULL          */
     bool (*move)(void *self, double time, double *x); /* held coordinates at that time; may be NULL */
-    /* Another start of the step that ends at that time, free dofs only; false: none. May be NULL. */
+    /* Another start of the step that ends at that time, with what is held where it is then; false: none. May be NULL. */
     bool (*guess)(void *self, double time, double dt, double *x);
     void (*stored)(void *self, const State *state, double dt); /* after each (sub-)step; may be NULL */
     void *self;

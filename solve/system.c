@@ -293,6 +293,11 @@ Evaluation system_gradient(System *sys, const Point *at, double *gradient)
     return evaluate(sys, at, gradient, false);
 }
 
+const double *system_force_sums(const System *sys)
+{
+    return sys->force_sum;
+}
+
 double system_force_change(const System *sys, const double *step)
 {
     double change = 0, gap = fmax(sys->gap, GAP_LEAST * sys->classes[0].size);

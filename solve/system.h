@@ -82,6 +82,9 @@ typedef struct Evaluation {
 
 Evaluation system_energy(System *sys, const Point *at);
 
+/* Of the last gradient: at each dof the sum of |element force|, what rounding of the gradient is relative to. */
+const double *system_force_sums(const System *sys);
+
 /* gradient[dof_count], at fixed dofs too (there it is the support's force on the body). */
 Evaluation system_gradient(System *sys, const Point *at, double *gradient);
 

@@ -54,6 +54,7 @@ solid_trajectory | scenes/starfish_jump.yaml | solid.mesh.n=1 solid.order=1 desi
 solid_simulate | tests/scene_solid.yaml |
 solid_simulate_resumed | tests/scene_solid.yaml | time.steps=40 | time.steps=80
 rod_equilibrium | scenes/rod_equilibrium.yaml | rod.elements=200
+rod_evaluate | scenes/rod_equilibrium.yaml | job=evaluate rod.elements=200
 rod_cantilever | scenes/rod_cantilever.yaml | rod.elements=100
 rod_arch | scenes/rod_arch.yaml | rod.elements=80
 rod_clamped | scenes/rod_clamped.yaml | rod.elements=80
@@ -73,6 +74,8 @@ rod_simulate_resumed | tests/scene_rod_simulate.yaml | time.steps=30 | time.step
 rod_preview | scenes/rod_preview.yaml | time.steps=40
 rod_design | tests/scene_rod_design.yaml | design.iterations=8
 rod_design_resumed | tests/scene_rod_design.yaml | design.iterations=4 | design.iterations=8
+rod_trajectory | tests/scene_rod_trajectory.yaml | design.iterations=3
+rod_trajectory_resumed | tests/scene_rod_trajectory.yaml | design.iterations=2 | design.iterations=3
 rod_design_mma | scenes/rod_magnet.yaml | design.iterations=12
 drawing | tests/scene_draw.yaml |
 drawing_crossed | scenes/spline_crossed.yaml | spline.page.size=[90mm,60mm]

@@ -2,7 +2,7 @@
 # Kills and interrupts a small job at random moments and resumes it: the end must be that of an undisturbed run, bit by
 # bit, seconds aside.
 #   tests/campaign.sh PROGRAM [TRIALS] [KIND]      KIND: gauss_newton, mma, lbfgs (quasi-static), simulate, trajectory,
-#                                              rod_simulate, rod_design, draw, contact, contact_implicit,
+#                                              rod_simulate, rod_design, rod_trajectory, draw, contact, contact_implicit,
 #                                              solid, solid_design
 program=$1 trials=${2:-20} kind=${3:-gauss_newton}
 here=$(cd "$(dirname "$0")" && pwd)
@@ -13,7 +13,7 @@ case $kind in
     solid) scene=$here/scene_solid.yaml set=output.every=3 ;;
     solid_design) scene=$here/../scenes/hand_fist.yaml set=design.iterations=4 ;;
     contact_implicit) scene=$here/scene_contact.yaml set=contact.coupling=implicit ;;
-    simulate | trajectory | rod_simulate) scene=$here/scene_$kind.yaml set=output.every=3 ;;
+    simulate | trajectory | rod_simulate | rod_trajectory) scene=$here/scene_$kind.yaml set=output.every=3 ;;
     *) scene=$here/scene_small.yaml set=design.optimizer=$kind ;;
 esac
 work=$(mktemp -d) || exit 2
@@ -22,7 +22,7 @@ cd "$work" || exit 2
 run() { "$program" run "$scene" --set "$set" --quiet --no-picture -o "$@"; }
 start() { exec "$program" run "$scene" --set "$set" --quiet --no-picture -o "$@"; }
 numbers() { # what must be the same; a kind of job has some of them
-    for path in design/magnetization design/young design/flux_density design/gradient/young trajectory/flux_density state/x \
+    for path in design/magnetization design/young design/natural_strain design/flux_density design/gradient/young trajectory/flux_density state/x \
         state/v cases/up/x rod/x rod/moment spline/nodes spline/strokes history/energy frames/x history/contact_force history/friction_work history/self_distance history/water_work history/objective history/newton_iterations history/cg_iterations unknowns; do
         "$program" export "$1" -o out.csv --dataset $path 2>/dev/null && cat out.csv
     done

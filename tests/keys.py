@@ -80,11 +80,15 @@ design: {unknowns: {flux_density: {noise: 0.01}}, objectives: [{waypoint: {mass_
     "rod equilibrium": "job: equilibrium\nrod:\n  natural_strain: [1, 2, 3]" + ROD + "  elements: 20\n" + FLUX + "",
     "rod curve": "job: equilibrium\nrod:" + CURVE + "  elements: 20\n" + FLUX,
     "rod held": "job: equilibrium\nrod:\n  natural_strain: [1, 2, 3]" + ROD + "  elements: 20\n  end: {position: [0.15, 0, 0]}\n" + FLUX,
+    "rod evaluate": "job: evaluate\nrod:" + CURVE + "  elements: 20\n  start: curve\n" + FLUX,
     "rod design": "job: design\nrod:\n  natural_strain: [0, 0, 0]" + ROD + "  elements: 20\n" + FLUX + """target: ["s", "0", "s*s"]
 design: {unknowns: {magnetization: {noise: 100}}, objectives: [{target: 1}], iterations: 3}
 """,
     "rod simulate": "job: simulate\nrod:\n  natural_strain: [1, 2, 3]" + ROD + "  elements: 20\n" + FLUX + "time: {step: 5 ms, steps: 5}\n",
     "rod curve simulate": "job: simulate\nrod:" + CURVE + "  elements: 20\n  start: curve\n  gravity: [0, 0, -5]\n" + FLUX + "time: {step: 5 ms, steps: 5}\n",
+    "rod trajectory": "job: trajectory\nrod:\n  natural_strain: [1, 2, 3]" + ROD + "  elements: 20\n" + FLUX + """time: {step: 5 ms, steps: 5}
+design: {unknowns: {flux_density: {noise: 0.01}}, objectives: [{waypoint: {vertex: tip, at: [0.15, 0, 0.05]}}], iterations: 3}
+""",
     "rod preview": "job: simulate\nrod:" + CURVE + "  elements: 20\n  solver: pbd\ntime: {step: 5 ms, steps: 5}\n",
     "rod invert": "job: invert\nrod:" + CURVE + "  elements: 20\n  magnetization: [1000, 0, 0]\n" + FLUX,
     "rod invert file": "job: invert\nrod:\n  curve: {file: points.csv}" + CURVE.split("\n", 2)[2].join(["\n", ""]) + "  elements: 20\n" + FLUX,

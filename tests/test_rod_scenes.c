@@ -4,6 +4,7 @@
 #include "solve/march.h"
 #include "tests/scene_fixture.h"
 #include <math.h>
+#include <stdio.h>
 
 #define NAME "test_rod_scenes"
 
@@ -212,10 +213,69 @@ static void test_extended(void **state)
     }
 }
 
+/* ---- Poses ---- */
+
+/* A rod's pose evaluated: what its case is said to be. */
+static void expect_status(char *text, const char *wanted)
+{
+    Result *result = run_text(text);
+    Array status;
+    Error err;
+    if (!result_read(result, "slender/cases/case1/status", &status, &err)) fail_msg("%s", err.text);
+    assert_string_equal(status.data, wanted);
+    array_clear(&status);
+    result_close(result);
+}
+
+/* A column under its own weight stands up to g m L^3/(EI) = 7.8373 [Greenhill 1881]: of turns only, and with positions and
+ * multipliers, which a field of position asks for. */
+static void test_column(void **state)
+{
+    (void)state;
+    static const char text[] =
+        "slender: 1\njob: evaluate\nrod:\n  natural_strain: [0, 0, 0]\n  length: 1\n  radius: 10 mm\n"
+        "  clamp: {frame: [[0, 0, 1], [0, 1, 0], [-1, 0, 0]]}\n  young: 1 MPa\n  poisson: 0.4\n"
+        "  density: 1000\n  elements: 60\n  gravity: [0, 0, %.9g]\n%s";
+    double r = 0.01, bending = 1e6 * M_PI * pow(r, 4) / 4, mass = 1000 * M_PI * r * r;
+    for (int k = 0; k < 4; k++) {
+        double weight = k % 2 ? 7.88 : 7.80;
+        const char *field = k / 2 ? "flux_density: {dipole: {at: [1, 0, 0], moment: [0, 0, 1]}}\n" : "";
+        expect_status(mem_format(text, -weight * bending / mass, field), k % 2 ? "saddle" : "converged");
+    }
+}
+
+/* Where a rod came to rest it is said to rest, and nowhere else: held at its other end, on a floor, beside a magnet. */
+static void test_rest_again(void **state)
+{
+    (void)state;
+    static const char *const around[] = {
+        "  end: {position: [80 mm, 0, 0]}\nflux_density: [0, 0, %s]\n",
+        "  end: {position: [80 mm, 0, 0], hold: clamped, frame: [[0.6, 0, 0.8], [0, 1, 0], [-0.8, 0, 0.6]]}\n"
+        "flux_density: [0, 0, %s]\n",
+        "flux_density: [0, 0, %s]\nobstacles: [{plane: {point: [0, 0, -5 mm], normal: [0, 0, 1]}}]\n",
+        "flux_density: [0, 0, %s]\n",
+    };
+    static const char text[] =
+        "slender: 1\njob: %s\nrod:\n  natural_strain: [0, 2, 0]\n  length: 0.1\n  radius: 0.5 mm\n"
+        "  young: 5 MPa\n  poisson: 0.5\n  density: 1200\n  elements: 30\n  magnetization: [2.0e+4, 1000, "
+        "0]\n%s%s";
+    for (size_t k = 0; k < sizeof around / sizeof *around; k++) {
+        for (int step = 0; step < 3; step++) {
+            char *here = mem_format(around[k], step == 2 ? "6 mT" : "5 mT");
+            char *scene = mem_format(text, step ? "evaluate" : "equilibrium", here,
+                                     step ? "start: {result: rest.vtkhdf}\n" : "");
+            expect_status(scene, step == 2 ? "evaluated" : "converged");
+            if (step == 0) assert_int_equal(rename(NAME ".vtkhdf", "rest.vtkhdf"), 0);
+            mem_free(here);
+        }
+    }
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_stream), cmocka_unit_test(test_rest),
-                                       cmocka_unit_test(test_pipe), cmocka_unit_test(test_comb),
-                                       cmocka_unit_test(test_extended)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_stream),    cmocka_unit_test(test_rest),
+                                       cmocka_unit_test(test_pipe),      cmocka_unit_test(test_comb),
+                                       cmocka_unit_test(test_extended),  cmocka_unit_test(test_column),
+                                       cmocka_unit_test(test_rest_again)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

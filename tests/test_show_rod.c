@@ -25,6 +25,7 @@ static const char RESULT[] = "test_show_rod.vtkhdf";
 typedef struct Rods {
     int strands;                  /* each the helix, moved aside */
     bool simulated, motion, held; /* at the other end, too */
+    bool designed;                /* the motion, by a field over time */
 } Rods;
 
 /* Columns of tests/rod/helix.csv for every strand; strands lie 4 cm apart. */
@@ -70,6 +71,14 @@ static void put_supports(Journal *journal)
     put(journal, "static", 0, array_text("rod/supports", "clamped"));
 }
 
+static void put_field(Journal *journal)
+{
+    double field[FRAMES - 1][3];
+    for (int k = 0; k < FRAMES - 1; k++)
+        for (int i = 0; i < 3; i++) field[k][i] = 1e-3 * (i + k);
+    put(journal, "final", 0, array_float("trajectory/flux_density", "T", field[0], 2, FRAMES - 1, 3));
+}
+
 static void put_rods(Journal *journal, Rods rods, const Table *table)
 {
     int count = NODES * rods.strands, offsets[64], lines[3 * 64][2], stable = 1;
@@ -94,6 +103,7 @@ static void put_rods(Journal *journal, Rods rods, const Table *table)
     put(journal, "final", 0, array_float("metrics/round_trip", "m", &round_trip, 0, 0, 0));
     put(journal, "final", 0, array_text("status", "converged"));
     if (rods.held) put_supports(journal);
+    if (rods.designed) put_field(journal);
     if (rods.motion) put_frames(journal, input, natural, count);
     mem_free(input);
     mem_free(natural);
@@ -215,6 +225,23 @@ static void motion(void **state)
     assert_int_equal(access("test_show_rod.webp", R_OK), 0);
 }
 
+/* A designed motion: the way of the end, and the field over time. */
+static void designed(void **state)
+{
+    (void)state;
+    ShowDef def = show_default();
+    int way[2], field[2];
+    for (int k = 0; k < 2; k++) {
+        write_result((Rods){.strands = 1, .simulated = true, .motion = true, .designed = k > 0});
+        Page page = draw(&def);
+        way[k] = count_pixels(&page, colormap_series(2)), field[k] = count_pixels(&page, colormap_series(5));
+        mem_free(page.rgb);
+    }
+    print_message("pixels of the way: %d, without a design %d; of Bz: %d, %d\n", way[1], way[0], field[1],
+                  field[0]);
+    assert_true(way[1] > way[0] + 500 && field[0] < 10 && field[1] > 300);
+}
+
 /* Strands side by side fill the page that one leaves white; many are not shown in moments unless that is
  * asked for. */
 static void bundles(void **state)
@@ -264,7 +291,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_teardown(curves, nothing_leaks),  cmocka_unit_test_teardown(held, nothing_leaks),
         cmocka_unit_test_teardown(motion, nothing_leaks),  cmocka_unit_test_teardown(bundles, nothing_leaks),
-        cmocka_unit_test_teardown(refused, nothing_leaks),
+        cmocka_unit_test_teardown(refused, nothing_leaks), cmocka_unit_test_teardown(designed, nothing_leaks),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

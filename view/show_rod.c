@@ -10,6 +10,7 @@
 
 enum { LINES_MAX = 4, LINE_LENGTH = 110, STRANDS_MANY = 20 };
 
+static const char FIELD[] = "slender/trajectory/flux_density"; /* of the design of a motion */
 static const Color input_ink = {0.62, 0.62, 0.64, 1};
 
 /* A page of rods. */
@@ -140,6 +141,22 @@ static bool read_frame(RodPage *page, int frame, const double (**points)[3], Err
     return fits || error_set(err, "the result's frames have fewer points than its strands");
 }
 
+/* Of the design of a motion: the way of a rod's end, through all frames. */
+static bool add_way(RodPage *page, Error *err)
+{
+    int frames = result_step_count(page->data->result), *offsets = show_block(page->data, 2, sizeof *offsets);
+    if (page->strand_count > 1 || frames < 2 || !result_has(page->data->result, FIELD)) return true;
+    double(*way)[3] = show_block(page->data, (size_t)frames, sizeof *way);
+    for (int k = 0; k < frames; k++) {
+        const double(*points)[3] = NULL;
+        if (!read_frame(page, k, &points, err)) return false;
+        memcpy(way[k], points[page->point_count - 1], sizeof *way);
+    }
+    CurvesSet *set = add_set(page, "way of the end", (const double(*)[3])way, colormap_series(2));
+    set->offsets = offsets, offsets[1] = frames;
+    return true;
+}
+
 static bool add_frame(RodPage *page, int frame, Error *err)
 {
     if (!read_frame(page, frame, &page->x, err)) return false;
@@ -200,8 +217,8 @@ static bool add_curves(RodPage *page, Error *err)
     if (page->natural && !stills) add_set(page, "natural", page->natural, colormap_series(0));
     if (def->frame >= 0) return add_frame(page, def->frame, err);
     if (count == 0) return asked ? show_check_frame(page->data, 0, err) : add_final(page, err);
-    if (moving) return add_motion(page, count, err);
-    if (!add_stills(page, count, err)) return false;
+    if (moving) return add_motion(page, count, err) && add_way(page, err);
+    if (!add_stills(page, count, err) || !add_way(page, err)) return false;
     if (page->natural) add_set(page, "natural", page->natural, colormap_series(0))->width = 1;
     return true;
 }
@@ -210,7 +227,10 @@ static bool add_curves(RodPage *page, Error *err)
 static void frame_obstacles(RodPage *page)
 {
     ShowWay way = show_way();
-    for (int s = 0; s < page->set_count; s++) show_way_add(&way, page->sets[s].points, page->point_count);
+    for (int s = 0; s < page->set_count; s++) {
+        const CurvesSet *set = &page->sets[s];
+        show_way_add(&way, set->points, set->offsets[set->curve_count]);
+    }
     for (int s = 0; s < page->set_count; s++)
         show_obstacles_find_near(&page->obstacles, way, &page->sets[s].around);
 }
@@ -392,12 +412,42 @@ static void add_distance(RodPage *page, const double *s)
                             .first_color = 1});
 }
 
+/* The uniform field of the steps of a designed motion. */
+static void add_field(RodPage *page)
+{
+    static const char *const names[] = {"Bx", "By", "Bz"};
+    int count, frames;
+    const char *unit;
+    const double *field = numbers(page, FIELD, &count, &unit),
+                 *times = numbers(page, "VTKHDF/Steps/Values", &frames, &unit);
+    if (!field || !times) return;
+    int steps = count / 3;
+    double *t = show_block(page->data, (size_t)steps, sizeof *t),
+           *B = show_block(page->data, (size_t)count, sizeof *B);
+    ChartSeries *series = show_block(page->data, 3, sizeof *series);
+    for (int k = 0; k < steps; k++) {
+        t[k] = times[0] + (times[frames - 1] - times[0]) * (k + 1) / steps;
+        for (int i = 0; i < 3; i++) B[steps * i + k] = field[3 * k + i];
+    }
+    for (int i = 0; i < 3; i++)
+        series[i] = (ChartSeries){.name = names[i], .count = steps, .x = t, .y = B + steps * i};
+    add_chart(page, (Chart){.x_label = "t",
+                            .x_unit = "s",
+                            .y_label = "flux density",
+                            .y_unit = "T",
+                            .y_axis = CHART_LINEAR,
+                            .series_count = 3,
+                            .series = series,
+                            .first_color = 3});
+}
+
 static void add_charts(RodPage *page)
 {
     const double *s = show_dataset(page->data, "slender/rod/s", ARRAY_FLOAT64, (size_t)page->point_count);
     bool few = s && page->strand_count <= STRANDS_MANY;
     Chart history;
     if (few) add_strains(page, s);
+    add_field(page);
     if (show_history(page->data, &history)) add_chart(page, history);
     if (few) add_distance(page, s);
 }

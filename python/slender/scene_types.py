@@ -331,7 +331,7 @@ Design = TypedDict("Design", {
 
 Unknowns = TypedDict("Unknowns", {
     "magnetization": "UnknownMagnetization", "young": "UnknownYoung", "skin_young": "UnknownYoung",
-    "fold": "UnknownFold", "flux_density": "UnknownFluxDensity",
+    "fold": "UnknownFold", "natural_strain": "UnknownNaturalStrain", "flux_density": "UnknownFluxDensity",
 }, total=False)
 
 UnknownMagnetization = TypedDict("UnknownMagnetization", {
@@ -346,6 +346,10 @@ UnknownYoung = TypedDict("UnknownYoung", {
 
 UnknownFold = TypedDict("UnknownFold", {
     "bounds": "Numbers", "scale": "Literal['log', 'linear']", "noise": "float", "start": "Fold",
+}, total=False)
+
+UnknownNaturalStrain = TypedDict("UnknownNaturalStrain", {
+    "noise": "Number", "scale": "Number", "bounds": "Numbers",
 }, total=False)
 
 UnknownFluxDensity = TypedDict("UnknownFluxDensity", {

@@ -4,7 +4,7 @@
 #include "rod/front/curves.h"
 #include "rod/front/front.h"
 #include "rod/pbd.h"
-#include "solve/ramp.h"
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -49,61 +49,15 @@ static bool put_target(Model *model, const Build *b, const char *at, const Targe
     return ok;
 }
 
-/* The held end, a part of the way from where x has it. */
-static bool move(const Model *model, double time, double part, double *x, Error *err)
-{
-    (void)time, (void)err;
-    const RodModel *rm = model->self;
-    int last = rm->layout.nodes - 1;
-    double *place = x + rm->layout.position + 3 * last, *to = x + rm->layout.reference + 4 * last;
-    vec3_store(place, vec3_axpy(part, vec3_sub(rm->end_position, vec3_load(place)), vec3_load(place)));
-    if (rm->rod->end != ROD_CLAMPED) return true;
-    Quat now = rod_reference(&rm->layout, x, last), turn = quat_mul(quat_conj(now), rm->end_frame);
-    Quat next = quat_unit(quat_mul(now, quat_exp(vec3_scale(part, quat_log(turn)))));
-    to[0] = next.w;
-    vec3_store(to + 1, next.v);
-    return true;
-}
-
 /* ---- The rod ---- */
-
-/* How its ends are held. */
-static bool read_supports(RodModel *rm, const RodScene *scene, const Build *b)
-{
-    Rod *rod = rm->rod;
-    RodFrame frame;
-    bool ok = true;
-    if (scene->clamp.frame) {
-        ok = rod_model_frame(b, "rod.clamp.frame", (const double(*)[3])scene->clamp.frame, &frame);
-        if (ok) rod->strand[0].frame = quat_from_axes(frame.n0, frame.n1, frame.n2);
-    }
-    rod->strand[0].position = vec3_load(scene->clamp.position);
-    rod->start = scene->hold == HOLD_PINNED ? ROD_PINNED : ROD_CLAMPED;
-    if (!scene->end) return ok;
-    rm->held = true;
-    rod->end = scene->end->hold == HOLD_CLAMPED ? ROD_CLAMPED : ROD_PINNED;
-    rm->end_position = vec3_load(scene->end->position);
-    if (rod->end == ROD_CLAMPED && !scene->end->frame)
-        return yaml_refuse(b->file, "rod.end", "a clamped end needs its `frame`: tangent, n1, n2");
-    if (rod->end == ROD_CLAMPED &&
-        !rod_model_frame(b, "rod.end.frame", (const double(*)[3])scene->end->frame, &frame))
-        return false;
-    if (rod->end == ROD_CLAMPED) rm->end_frame = quat_from_axes(frame.n0, frame.n1, frame.n2);
-    double apart =
-        vec3_length(vec3_sub(rm->end_position, rm->curves ? rm->curves[0].x[0] : rod->strand[0].position));
-    if (apart > rod_length(rod))
-        return yaml_refuse(b->file, "rod.end.position",
-                           "it is %g m from the other end, and the rod %g m long", apart, rod_length(rod));
-    return ok;
-}
 
 /* What of the scene is for one rod; NULL: nothing. */
 static const char *takes_one(const RodModel *rm, const Scene *scene)
 {
-    return scene_job(scene) != &rod_job_simulate ? "jobs other than invert and simulate take one rod"
-           : rm->preview                         ? "solver: pbd takes one rod"
-           : rod_scene(scene)->end               ? "rod.end holds one rod"
-                                                 : NULL;
+    return !scene_job(scene)->motion ? "jobs other than invert, simulate and trajectory take one rod"
+           : rm->preview             ? "solver: pbd takes one rod"
+           : rod_scene(scene)->end   ? "rod.end holds one rod"
+                                     : NULL;
 }
 
 static bool check_rod(const RodModel *rm, const Scene *scene, const Build *b)
@@ -151,39 +105,6 @@ static void take_curve(RodModel *rm, const RodScene *scene, double *p, double *x
         pose(rm, x);
     else
         balance(rm, p, x);
-}
-
-static bool settle_move(void *self, double part, double *x)
-{
-    return move(self, 0, part, x, NULL);
-}
-
-/* Before a motion or a design, the rod is brought to its supports without loads. */
-static bool settle(Model *model, const Build *b, const double *p)
-{
-    RodModel *rm = model->self;
-    double *unloaded = mem_copy(p, (size_t)model->params->size, sizeof *p);
-    for (int k = 0; k < model->params->block_count; k++) {
-        const ParamBlock *block = &model->params->blocks[k];
-        if (block->load)
-            memset(unloaded + block->offset, 0, (size_t)(block->count * block->width) * sizeof *p);
-    }
-    System *sys = rod_system(rm->rod, rm->young, false);
-    RampDef def = ramp_default();
-    def.newton.step_cap = STEP_CAP;
-    def.steps = LOAD_STEPS;
-    def.move = settle_move, def.self = model;
-    State state = system_state(sys);
-    size_t bytes = (size_t)state.dofs * sizeof *state.x;
-    memcpy(state.x, model->x, bytes);
-    RampInfo info = ramp_solve(sys, model->params, &def, NULL, unloaded, &state);
-    memcpy(model->x, state.x, bytes);
-    state_destroy(&state);
-    system_destroy(sys);
-    mem_free(unloaded);
-    return info.reached >= 1 ||
-           yaml_refuse(b->file, "rod.end", "the rod could not be brought to where its end is held (%s)",
-                       newton_status_text(info.newton.status));
 }
 
 /* Where the job starts, in model->x, and the natural shape to be shown; x is the curve's state, if there is
@@ -244,10 +165,15 @@ static bool fill_cases(Model *model, const Scene *scene, const Build *b, bool re
     model_put_flux(model, 0, p);
     if (ok && rm->curves) take_curve(rm, rod_scene(scene), p, curve);
     ok = ok && model_cases(model, b, scene, p);
-    bool hanging = !model->general && model->job == &job_equilibrium && rod->start == ROD_CLAMPED &&
-                   rod->end == ROD_FREE && rod->fields.count == 0 && !rod->world;
+    bool posed = model->job == &job_evaluate, statics = posed || model->job == &job_equilibrium;
+    bool hanging = !model->general && statics && rod->start == ROD_CLAMPED && rod->end == ROD_FREE &&
+                   rod->fields.count == 0 && !rod->world;
     if (ok) make_states(model, rod_scene(scene), hanging, p, curve);
-    if (ok && rm->held && !model->moves && !scene->start) ok = settle(model, b, p);
+    if (ok && posed && !scene->start)
+        ok = rod_end_is_held(rm, model->x) ||
+             yaml_refuse(b->file, "rod.end", "the pose has its end elsewhere than where this holds it");
+    else if (ok && rm->held && !model->moves && !scene->start)
+        ok = rod_settle(model, b, p);
     if (ok) make_systems(model, hanging, motion);
     mem_free(p);
     mem_free(curve);
@@ -292,7 +218,7 @@ static bool fill(Model *model, const Scene *scene, const Build *b)
     WorldBody shown = rod_world_body(rm->rod);
     readable = model_read_world(model, &sized, scene, &shown, &rm->rod->world) && readable;
     if (scene->water && !check_slender(rm->rod, b)) return false;
-    if (!read_supports(rm, from, b) || !rod_model_check_points(rm, b, rod_length(rm->rod))) return false;
+    if (!rod_read_supports(rm, from, b) || !rod_model_check_points(rm, b, rod_length(rm->rod))) return false;
     set_model(model);
     model_add_blocks(model, scene);
     return fill_cases(model, scene, &sized, readable) &&
@@ -355,14 +281,20 @@ static bool put_vectors(Model *model, const Build *b, const char *at, const Vect
     return rod_model_vectors(b, at, scene, ((const RodModel *)model->self)->rod, values);
 }
 
-/* All nodes, or its end. */
+/* All nodes, the ends of its strands, or the node of that number. */
 static bool select_part(const Model *model, const Build *b, const char *at, const char *name, Indices *found)
 {
-    bool tip = !strcmp(name, "tip");
-    if (!tip && strcmp(name, "all")) return yaml_refuse(b->file, at, "of a rod it is `all` or `tip`");
-    int count = tip ? 1 : model->point_count;
+    const Rod *rod = ((const RodModel *)model->self)->rod;
+    int nodes = model->point_count, first = 0, step = 1, count = nodes;
+    if (!strcmp(name, "tip"))
+        first = rod_each(rod), step = first + 1, count = rod->strands;
+    else if (model_point_number(name, nodes, &first))
+        count = 1;
+    else if (strcmp(name, "all"))
+        return yaml_refuse(b->file, at, "'%s' must be `tip`, `all`, or the number of a node, 0 to %d", name,
+                           nodes - 1);
     *found = (Indices){count, mem_alloc((size_t)count, sizeof(int))};
-    for (int i = 0; i < count; i++) found->items[i] = tip ? model->point_count - 1 : i;
+    for (int i = 0; i < count; i++) found->items[i] = first + step * i;
     return true;
 }
 
@@ -370,19 +302,7 @@ static bool select_part(const Model *model, const Build *b, const char *at, cons
 
 static const Likeness likeness[] = {{"rod/s", "a rod of another length, or of other elements"}, {0}};
 
-/* How far off an end may be, in parts of the length, and in radians. */
-static const double START_LITTLE = 1e-6;
 #define START_ELSEWHERE "its first end is elsewhere, or clamped along another direction, than the scene's"
-
-/* Is a node where the scene holds it, and with that frame? */
-static bool is_at(const RodLayout *layout, const double *x, int node, Vec3 place, const Quat *frame,
-                  double size)
-{
-    bool same = layout->position < 0 || vec3_length(vec3_sub(vec3_load(x + layout->position + 3 * node),
-                                                             place)) <= START_LITTLE * size;
-    Quat turn = frame ? quat_mul(quat_conj(*frame), rod_reference(layout, x, node)) : (Quat){1, {0, 0, 0}};
-    return same && vec3_length(turn.v) <= START_LITTLE;
-}
 
 static bool take_preview(RodModel *rm, const double *from, int dofs, Error *err)
 {
@@ -390,7 +310,7 @@ static bool take_preview(RodModel *rm, const double *from, int dofs, Error *err)
     if (dofs != pbd_rod_state_count(rod->elements))
         return error_set(err, "its state is not that of `solver: pbd`, which goes on from its own only");
     const RodStrand *strand = &rod->strand[0];
-    if (vec3_length(vec3_sub(vec3_load(from), strand->position)) > START_LITTLE * strand->length)
+    if (!rod_is_near(vec3_load(from), strand->position, strand->length))
         return error_set(err, START_ELSEWHERE);
     rm->moving = mem_copy(from, (size_t)dofs, sizeof *from);
     return true;
@@ -415,18 +335,41 @@ static bool take_state(const Model *model, const double *from, int dofs, double 
     for (int k = 0; k < rod->strands; k++) {
         const RodStrand *strand = &rod->strand[k];
         const Quat *frame = rod->start == ROD_CLAMPED ? &strand->frame : NULL;
-        if (!is_at(&own, from, k * (own.each + 1), strand->position, frame, strand->length))
+        if (!rod_is_at(&own, from, k * (own.each + 1), strand->position, frame, strand->length))
             return error_set(err, START_ELSEWHERE);
     }
-    return !rm->held || model->moves ||
-           is_at(&rm->layout, x, rod->elements, rm->end_position,
-                 rod->end == ROD_CLAMPED ? &rm->end_frame : NULL, rod_length(rod)) ||
+    return model->moves || rod_end_is_held(rm, x) ||
            error_set(err, "its other end is not where rod.end holds it: an equilibrium leads it there");
 }
 
 static void masses(const Model *model, double *mass)
 {
     rod_node_mass(((const RodModel *)model->self)->rod, mass);
+}
+
+/* In parts of an element's stiffness: what is less is rounding of the rotations. */
+static const double MOMENT_LITTLE = 16 * DBL_EPSILON;
+
+/* Forces on nodes can be in balance always: what cannot are the moments. */
+static Balance balance_pose(const Model *model, Case *c)
+{
+    const RodModel *rm = model->self;
+    const RodLayout *layout = &rm->layout;
+    Point at = state_point(&c->state, c->stages[0].p);
+    if (layout->multiplier >= 0) rod_carry(rm->rod, c->sys, layout, &at, c->state.x);
+    double *gradient = mem_alloc((size_t)layout->dofs, sizeof *gradient);
+    Balance left = {.what = "moments", .unit = "N m"};
+    left.finite = system_gradient(c->sys, &at, gradient).finite;
+    const double *sums = system_force_sums(c->sys);
+    for (int i = layout->turn; i < layout->turn + 3 * layout->nodes; i++) {
+        left.scale = fmax(left.scale, sums[i]);
+        if (!system_is_fixed(c->sys, i)) left.most = fmax(left.most, fabs(gradient[i]));
+    }
+    mem_free(gradient);
+    double stiffest =
+        fmax(rm->section.twist, fmax(rm->section.bend1, rm->section.bend2)) / rod_element_length(rm->rod, 0);
+    if (left.most <= MOMENT_LITTLE * stiffest) left.most = 0;
+    return left;
 }
 
 static const BodyOps ops = {
@@ -438,8 +381,9 @@ static const BodyOps ops = {
     .put_vectors = put_vectors,
     .select = select_part,
     .masses = masses,
-    .move = move,
+    .move = rod_move_end,
     .system = make_system,
+    .balance = balance_pose,
     .add_static = rod_add_static,
     .add_state = rod_add_state,
     .add_final = rod_add_final,
@@ -458,7 +402,7 @@ static const KeyUse uses[] = {
     {"fix", "!rod {a rod is held by rod.clamp, rod.hold and rod.end}"},
     {"loads", "!rod {loads of a rod are under rod.loads}"},
     {"target", "/rod.solver: newton"},
-    {"solver", "/rod.solver: newton"},
+    {"solver", "/rod.solver: newton & /job: equilibrium, design, simulate, trajectory, invert"},
     {"obstacles", "/rod.solver: newton"},
     {"contact", "/rod.solver: newton"},
     {"water", "/rod.solver: newton"},
@@ -466,8 +410,8 @@ static const KeyUse uses[] = {
     {0},
 };
 
-static const JobRow *const jobs[] = {&job_equilibrium, &job_design,       &rod_job_simulate,
-                                     &rod_job_invert,  &rod_job_identify, NULL};
+static const JobRow *const jobs[] = {&job_equilibrium, &job_evaluate,   &job_design,       &rod_job_simulate,
+                                     &job_trajectory,  &rod_job_invert, &rod_job_identify, NULL};
 
 const BodyRow rod_body = {
     .key = "rod",

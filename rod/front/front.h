@@ -10,6 +10,20 @@ void rod_add_state(const Model *model, const Snapshot *shot, const char *prefix,
 void rod_add_final(const Model *model, const Snapshot *shot, int modes, Arrays *list);
 char *rod_doubt(const Model *model, const Snapshot *shot);
 
+/* supports.c: how the scene holds its ends, into the model. */
+bool rod_read_supports(RodModel *rm, const RodScene *scene, const Build *b);
+
+/* Is a place where it is wanted, to 1e-6 of a size? A node, with that frame to 1e-6 rad (NULL: any)? The other end, if it is
+ * held? */
+bool rod_is_near(Vec3 place, Vec3 wanted, double size);
+bool rod_is_at(const RodLayout *layout, const double *x, int node, Vec3 place, const Quat *frame,
+               double size);
+bool rod_end_is_held(const RodModel *rm, const double *x);
+
+/* BodyOps.move; and before a motion or a design, the rod is brought to its supports without loads, model->x. */
+bool rod_move_end(const Model *model, double time, double part, double *x, Error *err);
+bool rod_settle(Model *model, const Build *b, const double *p);
+
 /* report.c, cost.c */
 char *rod_describe(const Model *model, const Scene *scene);
 void rod_advise(Model *model, const Scene *scene);

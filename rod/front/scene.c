@@ -2,6 +2,9 @@
 #include "rod/front/scene.h"
 #include "model/scene_tables.h"
 
+#define MOTIONS "/job: simulate, trajectory"
+#define STATES  "/job: equilibrium, evaluate, design, simulate, trajectory" /* what has a discrete rod */
+
 static const YamlTable noise_table = {
     .name = "noise",
     .size = sizeof(NoiseScene),
@@ -134,8 +137,7 @@ const YamlTable rod_table = {
         {YAML_OPTIONAL(RodScene, curve, &rod_curve_table), .one_of = 1,
          .doc = "the shape that it has under its loads: its natural shape follows; with natural strains the "
                 "shape that it is held in until it is let go (`start: curve`)"},
-        {YAML_OPTIONAL(RodScene, natural_strain, &strain_table),
-         .when = "/job: equilibrium, design, simulate",
+        {YAML_OPTIONAL(RodScene, natural_strain, &strain_table), .when = STATES,
          .doc = "its natural shape, by strains; needed where there is no curve"},
         {YAML_LIST(RodScene, poses, &pose_curve_table), .one_of = 1, .when = "/job: identify",
          .doc = "of an identification: shapes that it was seen in"},
@@ -143,11 +145,10 @@ const YamlTable rod_table = {
          .doc = "without a curve: its length"},
         {YAML_TABLE(RodScene, clamp, &clamp_table), .when = "!curve & !poses", .fallback = "{}",
          .doc = "without a curve: its first end"},
-        {YAML_CHOICE(RodScene, hold), .when = "/job: equilibrium, design, simulate & solver: newton",
+        {YAML_CHOICE(RodScene, hold), .when = STATES " & solver: newton",
          .choices = YAML_NAMES("clamped", "pinned"), .fallback = "clamped",
          .doc = "how the first end is held"},
-        {YAML_OPTIONAL(RodScene, end, &end_table),
-         .when = "/job: equilibrium, design, simulate & solver: newton",
+        {YAML_OPTIONAL(RodScene, end, &end_table), .when = STATES " & solver: newton",
          .doc = "how the other end is held; free if absent"},
         {YAML_INTEGER(RodScene, elements), .range = "[2, 1000000]", .fallback = "200",
          .doc = "pieces of constant strain"},
@@ -173,14 +174,13 @@ const YamlTable rod_table = {
          .doc = "remanent magnetisation in the frame (tangent, n1, n2); formulas are of s and L, a file has "
                 "a row for "
                 "each element"},
-        {YAML_NUMBER(RodScene, damping), .when = "/job: simulate", .unit = "N s/m^2", .range = "[0, inf)",
-         .fallback = "0", .doc = "of a simulation: viscous drag per length"},
-        {YAML_CHOICE(RodScene, start), .when = "curve & /job: equilibrium, design, simulate & !/start",
+        {YAML_NUMBER(RodScene, damping), .when = MOTIONS, .unit = "N s/m^2", .range = "[0, inf)",
+         .fallback = "0", .doc = "of a motion: viscous drag per length"},
+        {YAML_CHOICE(RodScene, start), .when = "curve & " STATES " & !/start",
          .choices = YAML_NAMES("natural", "curve"), .fallback = "natural",
-         .doc = "where a simulation begins: in the natural shape, or in the curve that was given"},
-        {YAML_OPTIONAL(RodScene, velocity, &velocity_table),
-         .when = "/job: simulate & solver: newton & !/start",
-         .doc = "at the start of a simulation; formulas are of the place x, y, z, r at the start"},
+         .doc = "where the job begins: in the natural shape, or in the curve that was given"},
+        {YAML_OPTIONAL(RodScene, velocity, &velocity_table), .when = MOTIONS " & solver: newton & !/start",
+         .doc = "at the start of a motion; formulas are of the place x, y, z, r at the start"},
         {YAML_CHOICE(RodScene, solver), .when = "/job: simulate", .choices = YAML_NAMES("newton", "pbd"),
          .fallback = "newton",
          .doc = "of a simulation: implicit Euler, or position-based previews (docs/rods.md says what these "
