@@ -54,6 +54,14 @@ expect 0 "$program" run region.yaml --quiet --no-picture -o region
 expect 0 "$program" run region.yaml --quiet --no-picture -o part --set spline.rounds=0
 expect 0 "$program" run region.yaml --quiet --no-picture -o part --resume; same region.svg part.svg
 expect 0 "$program" info region.vtkhdf; says "metrics/outside"
+
+# From a result: its strokes as they are, to the last digit of the file; and on from there.
+expect 0 "$program" run region.yaml --quiet --no-picture -o whole --set spline.order=as_made
+expect 1 "$program" run region.yaml --quiet --no-picture -o again --set "spline.start={file: $work/whole.vtkhdf}" --set spline.order=as_made \
+    --set spline.rounds=0 --set spline.iterations=0; same whole.svg again.svg
+expect 0 "$program" run region.yaml --quiet --no-picture -o again --force --set "spline.start={file: $work/whole.svg}"
+expect 3 "$program" run region.yaml --quiet -o again --force --set "spline.start={file: $work/whole.vtkhdf}" --set spline.cross.from=[0,0.1]; says "crossed sets"
+
 sed 's/28/27/' moon.svg > less.svg; cp less.svg moon.svg
 expect 3 "$program" run region.yaml --quiet --no-picture -o part --resume; says "moon.svg"
 

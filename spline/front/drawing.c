@@ -4,6 +4,7 @@
 #include "spline/direction.h"
 #include "spline/front/drawing_fields.h"
 #include "spline/front/drawing_pens.h"
+#include "spline/front/drawing_start.h"
 #include "spline/tone_field.h"
 #include <math.h>
 #include <string.h>
@@ -191,6 +192,7 @@ static bool fill(Drawing *d, const SplineScene *scene, YamlFile *file)
     d->relax = relax_def(scene);
     d->start = start_def(scene, &d->page);
     d->start_kind = (StrokesStart)scene->start.kind;
+    if (scene->start.file && !drawing_read_start(d, scene, file)) return false;
     d->rounds = scene->rounds;
     d->order = (DrawOrder)scene->order;
     return read_plotter(&scene->plotter, file, &d->plotter) && check_size(d, file);
@@ -211,7 +213,10 @@ void drawing_destroy(Drawing *d)
         mem_free((char *)d->pens[k].name);
         if (d->tones) spline_field_clear(&d->tones[k]);
     }
-    for (int k = 0; k < d->part_count; k++) spline_field_clear(&d->parts[k].tone);
+    for (int k = 0; k < d->part_count; k++) {
+        spline_field_clear(&d->parts[k].tone);
+        strokes_clear(&d->parts[k].given);
+    }
     for (int k = 0; k < d->region_count; k++) {
         spline_field_clear(&d->regions[k].cover);
         spline_field_clear(&d->regions[k].outline);
@@ -238,6 +243,7 @@ static SplineField direction_of(const Drawing *d, int part)
 static Strokes start_of(const Drawing *d, int part)
 {
     const DrawingPart *from = &d->parts[part];
+    if (d->start_given) return strokes_copy(&from->given);
     SplineField direction = direction_of(d, part);
     SplineGrid tone = spline_grid(&from->tone), along = spline_grid(&direction);
     Strokes strokes = {0};

@@ -14,6 +14,7 @@ typedef struct DrawingPart {
     double turn;                  /* rad, of its strokes from that direction          */
     const SplineField *direction; /* the region's                         */
     const SplineField *outline;   /* the region's; NULL: the page         */
+    Strokes given;                /* to start from, with `start.file`     */
 } DrawingPart;
 
 /* Regions do not overlap. */
@@ -38,6 +39,7 @@ typedef struct Drawing {
     SplineField picture;   /* to be shown, as spline_preview takes it          */
     RelaxDef relax;
     StrokesStart start_kind;
+    bool start_given; /* the parts have their strokes */
     SplineStartDef start;
     int rounds;
     DrawOrder order;

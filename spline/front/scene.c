@@ -149,12 +149,17 @@ static const YamlTable strokes_table = {
     .size = sizeof(StrokesScene),
     .doc = "The strokes that a relaxation starts from.",
     .fields = (const YamlField[]){
-        {YAML_CHOICE(StrokesScene, kind), .choices = YAML_NAMES("streamlines", "random"), .required = true,
-         .short_form = true,
+        {YAML_CHOICE(StrokesScene, kind), .choices = YAML_NAMES("streamlines", "random"), .one_of = 1,
+         .required = true, .short_form = true,
          .doc = "evenly spaced along the directions, or through random places, more where it is dark"},
+        {YAML_FILE(StrokesScene, file), .one_of = 1, .required = true,
+         .doc =
+             "strokes that there are, where they lie on their paper: a result (.vtkhdf), with its pens by "
+             "their "
+             "numbers; or, for one pen, the lines of an .svg file, which become segments of the rest length"},
         {YAML_NUMBER(StrokesScene, separation), .when = "kind: streamlines", .range = "[0.2, 5]",
          .doc = "of streamlines, in units of pen/density; about 0.86 if absent"},
-        {YAML_NUMBER(StrokesScene, ink), .range = "[0, 10]", .fallback = "1",
+        {YAML_NUMBER(StrokesScene, ink), .when = "kind", .range = "[0, 10]", .fallback = "1",
          .doc = "length of all strokes, of that which gives the tone; 0: streamlines take the separation as "
                 "it is"},
         {YAML_NUMBER(StrokesScene, longest), .when = "kind: streamlines", .unit = "m", .range = "(0, 100]",

@@ -60,7 +60,9 @@ typedef struct RegionScene {
 
 typedef enum StrokesStart { START_STREAMLINES, START_RANDOM } StrokesStart;
 
+/* A kind, or a file. */
 typedef struct StrokesScene {
+    char *file;
     int kind, segments; /* StrokesStart */
     double separation, ink, longest;
 } StrokesScene;
