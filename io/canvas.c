@@ -209,6 +209,19 @@ void canvas_polygon(Canvas *canvas, const Vec2 *points, int count, Color fill)
     cairo_fill(canvas->cairo);
 }
 
+void canvas_rings(Canvas *canvas, const Vec2 *points, const int *first, int count, Color fill)
+{
+    for (int k = 0; k < count; k++) {
+        cairo_new_sub_path(canvas->cairo);
+        trace(canvas, points + first[k], first[k + 1] - first[k]);
+        cairo_close_path(canvas->cairo);
+    }
+    set_color(canvas, fill);
+    cairo_set_fill_rule(canvas->cairo, CAIRO_FILL_RULE_EVEN_ODD);
+    cairo_fill(canvas->cairo);
+    cairo_set_fill_rule(canvas->cairo, CAIRO_FILL_RULE_WINDING);
+}
+
 void canvas_circle(Canvas *canvas, Vec2 center, double radius, Color fill)
 {
     cairo_arc(canvas->cairo, center.x, center.y, radius, 0, 2 * acos(-1));

@@ -55,6 +55,9 @@ const unsigned char *canvas_pixels(Canvas *canvas, int *width, int *height, int 
 void canvas_line(Canvas *canvas, Vec2 from, Vec2 to, Pen pen);
 void canvas_polyline(Canvas *canvas, const Vec2 *points, int count, Pen pen);
 void canvas_polygon(Canvas *canvas, const Vec2 *points, int count, Color fill);
+/* Fills what is inside an odd number of closed rings: ring k has the points first[k] to first[k + 1] - 1. */
+void canvas_rings(Canvas *canvas, const Vec2 *points, const int *first, int count, Color fill);
+
 void canvas_circle(Canvas *canvas, Vec2 center, double radius, Color fill);
 void canvas_fill(Canvas *canvas, Box box, Color fill);
 void canvas_frame(Canvas *canvas, Box box, Pen pen);

@@ -1,7 +1,27 @@
-/* Linewise's boundary: psi = R n/d^2, d the distance to the nearest edge; infinite outside. It acts
- * everywhere, and has kinks where the nearest edge changes; `wall` has neither fault. */
+/* Linewise's boundary: psi = R n/d^2, d the distance to the nearest edge, or to the region's outline where that
+ * is nearer; infinite outside. It acts everywhere, and has kinks where the nearest edge changes; `wall` and
+ * `outline` have neither fault. */
 #include "spline/walls.h"
 #include <math.h>
+
+/* Where the outline is nearer than the edge. */
+static void take_outline(const SegmentTerm *term, Pack2 at, int order, Barrier *near)
+{
+    GridSample d;
+    grid_spline_sample(term->model->target->outline, at, order, &d);
+    Pack inverse = 1 / d.value[0], square = inverse * inverse, slope = -2 * square * inverse;
+    PackMask in = d.value[0] > 0, nearer = ~in | (square > near->value);
+    Barrier b = {.value = pack_select(in, square, pack_set(INFINITY))};
+    near->value = pack_select(nearer, b.value, near->value);
+    if (order < 1) return;
+    near->slope.x = pack_select(nearer, slope * d.x[0], near->slope.x);
+    near->slope.y = pack_select(nearer, slope * d.y[0], near->slope.y);
+    if (order < 2) return;
+    wall_curve(&b, slope, 6 * square * square, &d, term->positive);
+    near->xx = pack_select(nearer, b.xx, near->xx);
+    near->xy = pack_select(nearer, b.xy, near->xy);
+    near->yy = pack_select(nearer, b.yy, near->yy);
+}
 
 static Pack boundary_psi(const SegmentTerm *term, const SplineWeights *weights, const SegmentPoint *s,
                          int order, Psi *psi)
@@ -18,6 +38,7 @@ static Pack boundary_psi(const SegmentTerm *term, const SplineWeights *weights, 
         (nearest < 2 ? &near.slope.x : &near.slope.y)[0][l] = -2 * sign / (d * d * d);
         (nearest < 2 ? &near.xx : &near.yy)[0][l] = 6 / (d * d * d * d);
     }
+    if (term->model->target->outline) take_outline(term, s->r, order, &near);
     return wall_psi_of(term, weights->boundary, &near, s, order, psi);
 }
 

@@ -164,13 +164,11 @@ static bool read_picture(Result *result, SplineField *picture, Error *err)
 bool drawn_read(Result *result, Drawn *drawn, Error *err)
 {
     *drawn = (Drawn){0};
-    Strokes strokes = {0};
     if (!drawn_has(result)) return error_set(err, "the result has no drawing");
     bool ok = read_page(result, drawn, err) && read_plotter(result, &drawn->plotter, err) &&
               read_pens(result, drawn, err) && read_picture(result, &drawn->picture, err) &&
-              read_strokes(result, drawn, &strokes, err);
-    if (ok) drawn->plot = spline_plot(&strokes, &drawn->page, drawn->pens, drawn->pen_count);
-    strokes_clear(&strokes);
+              read_strokes(result, drawn, &drawn->strokes, err);
+    if (ok) drawn->plot = spline_plot(&drawn->strokes, &drawn->page, drawn->pens, drawn->pen_count);
     return ok;
 }
 
@@ -178,6 +176,7 @@ void drawn_clear(Drawn *drawn)
 {
     for (int k = 0; k < drawn->pen_count; k++) mem_free((char *)drawn->pens[k].name);
     mem_free(drawn->pens);
+    strokes_clear(&drawn->strokes);
     spline_plot_clear(&drawn->plot);
     spline_field_clear(&drawn->picture);
     *drawn = (Drawn){0};

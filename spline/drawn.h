@@ -11,11 +11,13 @@
 #include "io/result.h"
 #include "spline/grid.h"
 #include "spline/plot.h"
+#include "spline/strokes.h"
 
 typedef struct Drawn {
     SplinePage page;
     int pen_count;
     SplinePen *pens; /* names owned */
+    Strokes strokes; /* in units of the page */
     Plot plot;
     SplineField picture; /* as in Drawing */
     Plotter plotter;

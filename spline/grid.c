@@ -35,6 +35,23 @@ void spline_field_clear(SplineField *field)
     *field = (SplineField){0};
 }
 
+static size_t value_count(const SplineField *field)
+{
+    return (size_t)field->columns * (size_t)field->rows * (size_t)field->width;
+}
+
+void spline_field_add(SplineField *field, const SplineField *other)
+{
+    size_t each = (size_t)(field->width / other->width);
+    for (size_t i = 0; i < value_count(field); i++) field->values[i] += other->values[i / each];
+}
+
+void spline_field_multiply(SplineField *field, const SplineField *other)
+{
+    size_t each = (size_t)(field->width / other->width);
+    for (size_t i = 0; i < value_count(field); i++) field->values[i] *= other->values[i / each];
+}
+
 void spline_grid_sample(const SplineGrid *grid, const SplinePage *page, Vec2 at, double *values)
 {
     double x = fmin(fmax(at.x / page->width * grid->columns - 0.5, 0), grid->columns - 1);

@@ -40,6 +40,10 @@ static inline Vec2 spline_field_center(const SplineField *field, const SplinePag
     return (Vec2){(column + 0.5) / field->columns * page->width, (row + 0.5) / field->rows * page->height};
 }
 
+/* Each value plus, or times, that of another field of the same pixels and width, or of width 1. */
+void spline_field_add(SplineField *field, const SplineField *other);
+void spline_field_multiply(SplineField *field, const SplineField *other);
+
 /* values[width] at (x, y), bilinear; the outermost pixels' values continue to the page's edges and beyond. */
 void spline_grid_sample(const SplineGrid *grid, const SplinePage *page, Vec2 at, double *values);
 

@@ -1,6 +1,7 @@
 #include "spline/join.h"
 #include "base/memory.h"
 #include "spline/near.h"
+#include "spline/outline.h"
 #include <stdlib.h>
 
 enum { CANDIDATES = 8, RING_LEAST = 3 /* segments, or its two ends would meet its middle */ };
@@ -57,6 +58,22 @@ bool join_node(const Strokes *strokes, int a, int b, double angle, double node[4
     return within(from.out, (Vec2){-to.out.x, -to.out.y}, cosine) &&
            within(along, (Vec2){p.x - from.inner.x, p.y - from.inner.y}, cosine) &&
            within(along, (Vec2){to.inner.x - p.x, to.inner.y - p.y}, cosine);
+}
+
+/* Both segments beside a joint, from their other nodes to its own, within the outline. */
+static bool stays_inside(const Strokes *strokes, int a, int b, const double node[4], const JoinDef *def)
+{
+    for (int k = 0; def->outline && k < 2; k++) {
+        int end = k ? b : a, way = k ? -1 : 1, sign = end & 1 ? 1 : -1;
+        int inner = end & 1 ? strokes->start[end / 2 + 1] - 2 : strokes->start[end / 2] + 1;
+        const double *q = strokes->q + 4 * inner;
+        Vec2 c[4] = {{q[0], q[1]},
+                     {q[0] + sign * q[2], q[1] + sign * q[3]},
+                     {node[0] - way * node[2], node[1] - way * node[3]},
+                     {node[0], node[1]}};
+        if (spline_outline_depth(def->outline, def->page, c) < 0) return false;
+    }
+    return true;
 }
 
 static int by_distance(const void *left, const void *right)
@@ -118,7 +135,8 @@ static int find_pairs(const Strokes *strokes, JoinDef def, Pair *pairs)
             double node[4], dx = b.x - a.x, dy = b.y - a.y;
             if (ends.ring[found[k] / 2] == ends.ring[e / 2] &&
                 strokes->layer[found[k] / 2] == strokes->layer[e / 2] &&
-                join_node(strokes, e, found[k], def.angle, node))
+                join_node(strokes, e, found[k], def.angle, node) &&
+                stays_inside(strokes, e, found[k], node, &def))
                 pairs[count++] = (Pair){dx * dx + dy * dy, e, found[k]};
         }
     }

@@ -8,12 +8,15 @@
  * Of a gap of a pen's width nothing is seen: round ends overlap there, and each moves by half of it at most.
  */
 #pragma once
+#include "spline/grid.h"
 #include "spline/strokes.h"
 #include <stdbool.h>
 
 typedef struct JoinDef {
-    double gap;   /* in units of the page; 0: nothing is joined, even where ends meet */
-    double angle; /* rad */
+    double gap;                /* in units of the page; 0: nothing is joined, even where ends meet */
+    double angle;              /* rad */
+    const SplineGrid *outline; /* no joint leads out of it (contour.h); NULL: any may; borrowed */
+    const SplinePage *page;    /* of that */
 } JoinDef;
 
 Vec2 join_end(const Strokes *strokes, int end);

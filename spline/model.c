@@ -14,6 +14,15 @@ static void number_segments(SplineModel *model)
             model->segment_node[segment++] = node;
 }
 
+/* Places half a pen apart along the longest segment at rest; no fewer than four intervals. */
+static SplineRule outline_rule(const SplineTarget *target, const double *rest, int segments)
+{
+    double longest = 0;
+    for (int k = 0; k < segments; k++) longest = fmax(longest, rest[k]);
+    return spline_rule_even(1 +
+                            (int)fmin(fmax(ceil(2 * longest / target->page.pen), 4), RULE_MAX_POINTS - 1));
+}
+
 enum { GROUP_SEGMENTS = 64 };
 
 static void group_strokes(SplineModel *model)
@@ -49,6 +58,7 @@ SplineModel *spline_model_create(const SplineTarget *target, const Strokes *stro
                            .wall_rule = spline_rule_hull(),
                            .pair_kernel = def->pair_kernel,
                            .pair_radius = def->pair_radius * target->spacing};
+    if (target->outline) model->outline_rule = outline_rule(target, rest, model->segment_count);
     size_t segments = (size_t)model->segment_count;
     model->start = mem_alloc((size_t)strokes->count + 1, sizeof *model->start);
     if (strokes->count)

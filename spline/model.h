@@ -25,14 +25,15 @@ typedef struct SplineModel {
     const SplineTarget *target; /* borrowed */
     Workers *workers;
     int stroke_count, node_count, segment_count;
-    int *start;           /* [stroke_count + 1] first node of each stroke                    */
-    int *segment_node;    /* [segment_count] first node of each segment                      */
-    int group_count;      /* of whole strokes with about as many segments each, for threads  */
-    int *group;           /* [group_count + 1] first stroke of each                          */
-    double *rest;         /* [segment_count] L0                                              */
-    Pack *rest_pack;      /* the same in packs, as TermOps count them                        */
-    SplineRule rule;      /* quadrature of the energies                                      */
-    SplineRule wall_rule; /* the hull's                                                      */
+    int *start;              /* [stroke_count + 1] first node of each stroke                    */
+    int *segment_node;       /* [segment_count] first node of each segment                      */
+    int group_count;         /* of whole strokes with about as many segments each, for threads  */
+    int *group;              /* [group_count + 1] first stroke of each                          */
+    double *rest;            /* [segment_count] L0                                              */
+    Pack *rest_pack;         /* the same in packs, as TermOps count them                        */
+    SplineRule rule;         /* quadrature of the energies                                      */
+    SplineRule wall_rule;    /* the hull's                                                      */
+    SplineRule outline_rule; /* places half a pen apart, where there is an outline           */
     PairKernel pair_kernel;
     double pair_radius; /* units of the page */
 } SplineModel;

@@ -152,7 +152,8 @@ OrderInfo order_strokes(Strokes *strokes, const SplinePage *page, OrderDef def)
 {
     OrderInfo info = {.before = order_travel(strokes, page)};
     int *partner = mem_alloc(2 * (size_t)strokes->count, sizeof *partner);
-    info.joints = join_find(strokes, (JoinDef){def.join_gap * page->pen, def.join_angle}, partner);
+    info.joints =
+        join_find(strokes, (JoinDef){def.join_gap * page->pen, def.join_angle, def.outline, page}, partner);
     Strokes ordered = arrange(strokes, page, partner, def.work, &info.whole);
     info.after = order_travel(&ordered, page);
     if (info.after > info.before) { /* as good as never: a joint has led the pen astray */

@@ -3,14 +3,15 @@
  * Ends that all but meet are joined (join.h), then each layer is put in order and strokes are turned round
  * where that helps (tour.h). The pen begins each layer at the paper's top left corner and returns there. */
 #pragma once
-#include "spline/page.h"
+#include "spline/grid.h"
 #include "spline/strokes.h"
 #include <stdbool.h>
 
 typedef struct OrderDef {
-    double join_gap;   /* ends so near are joined where they are smooth, in pen widths; 0: none */
-    double join_angle; /* greatest turn at a joint, rad */
-    long work;         /* bound of the search, about 1e9 per second */
+    double join_gap;           /* ends so near are joined where they are smooth, in pen widths; 0: none */
+    double join_angle;         /* greatest turn at a joint, rad */
+    long work;                 /* bound of the search, about 1e9 per second */
+    const SplineGrid *outline; /* no joint leads out of it (contour.h); NULL: any may; borrowed */
 } OrderDef;
 
 /* 1.75 pen widths, 45 degrees, 3e9. */

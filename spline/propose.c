@@ -1,5 +1,6 @@
 /* Where ink is missing, and strokes for there (revise.h). */
 #include "base/memory.h"
+#include "spline/outline.h"
 #include "spline/relax_private.h"
 #include "spline/revise.h"
 #include "spline/tone.h"
@@ -203,6 +204,7 @@ void spline_propose_strokes(const SplineTarget *target, const RelaxDef *def, con
         around(&missing, tiles[k].number, &center);
         if (is_on_page(&target->page, center)) add_candidate(target, center, rest, segments, candidates);
     }
+    spline_outline_cut(target, target->page.pen / 2, candidates);
     mem_free(taken);
     mem_free(tiles);
     tone_clear(&tone);

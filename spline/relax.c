@@ -1,5 +1,6 @@
 #include "base/clock.h"
 #include "base/memory.h"
+#include "spline/outline.h"
 #include "spline/relax_private.h"
 #include <math.h>
 
@@ -172,14 +173,18 @@ static void bring_inside(const SplinePage *page, double q[4])
     }
 }
 
-/* Strokes that cross a wall would have no finite energy. */
-static void bring_strokes_inside(const SplinePage *page, Strokes *strokes)
+/* Strokes that cross a wall would have no finite energy. Those that leave the page are pressed into it, of those
+ * that leave the outline what is inside stays. */
+static void bring_strokes_inside(const SplineTarget *target, const SplineWeights *weights, Strokes *strokes)
 {
-    for (int k = 0; k < strokes->count; k++) {
+    const SplinePage *page = &target->page;
+    bool walled = weights->wall != 0 || weights->boundary != 0;
+    for (int k = 0; walled && k < strokes->count; k++) {
         if (is_inside(page, strokes, k)) continue;
         for (int node = strokes->start[k]; node < strokes->start[k + 1]; node++)
             bring_inside(page, strokes->q + 4 * node);
     }
+    if (weights->outline != 0) spline_outline_cut(target, EDGE * page->pen, strokes);
 }
 
 /* Of the strokes as they are left. */
@@ -196,6 +201,7 @@ static void take_final_figures(Relaxation *r)
 RelaxInfo spline_relax(const SplineTarget *target, const RelaxDef *def, Strokes *strokes,
                        const RelaxObserver *observer)
 {
+    bring_strokes_inside(target, &def->weights, strokes);
     Relaxation r = {.def = def,
                     .target = target,
                     .observer = observer,
@@ -204,7 +210,6 @@ RelaxInfo spline_relax(const SplineTarget *target, const RelaxDef *def, Strokes 
                     .started = clock_seconds(),
                     .weights = spline_weights_scaled(def->weights, target->page.pen, target->spacing)};
     r.info.status = RELAX_CONVERGED;
-    if (def->weights.wall != 0 || def->weights.boundary != 0) bring_strokes_inside(&target->page, strokes);
     r.workers = def->threads > 1 ? workers_create(def->threads) : NULL;
     SplineModelDef model = def->model;
     model.workers = r.workers;

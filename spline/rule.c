@@ -62,6 +62,14 @@ SplineRule spline_rule_gauss(int count)
     return build(half);
 }
 
+SplineRule spline_rule_even(int count)
+{
+    SplineRule rule = {0};
+    for (int k = 0; k < count; k++)
+        add_point(&rule, k / (count - 1.0), (k > 0 && k < count - 1 ? 1 : 0.5) / (count - 1));
+    return rule;
+}
+
 SplineRule spline_rule_hull(void)
 {
     static const double control[4][4] = {{1, 0, 0, 0}, {1, 1, 0, 0}, {0, 0, 1, -1}, {0, 0, 1, 0}};

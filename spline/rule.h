@@ -5,7 +5,7 @@
 #pragma once
 #include <stdbool.h>
 
-enum { RULE_MAX_POINTS = 8 };
+enum { RULE_MAX_GAUSS = 8, RULE_MAX_POINTS = 32 };
 
 typedef struct SplineRule {
     int count;
@@ -22,3 +22,6 @@ SplineRule spline_rule_gauss(int count);
 /* No quadrature points but the four control points, with r' at thirds: where these are, in whose convex hull
  * the segment lies, none of it can be elsewhere. */
 SplineRule spline_rule_hull(void);
+
+/* So many places at equal steps of s, with both ends: the trapezoidal rule. 2 to RULE_MAX_POINTS. */
+SplineRule spline_rule_even(int count);

@@ -221,7 +221,8 @@ void spline_streamlines(const SplineGrid *tone, const SplineGrid *direction, con
     if (!(demand.length > 0)) return;
     SplineStartDef whole = *def;
     whole.segment = segment_length(def, tone, page);
-    Tracer tracer = {.tone = tone, .direction = direction, .page = page, .blank = demand.blank};
+    Tracer tracer = {
+        .tone = tone, .direction = direction, .page = page, .outline = def->outline, .blank = demand.blank};
     tracer.step = def->separation * page->pen / demand.greatest / 4;
     double separation = def->separation;
     Strokes even = even_strokes(&tracer, &whole, layer, separation);
@@ -268,8 +269,12 @@ void spline_random_strokes(const SplineGrid *tone, const SplineGrid *direction, 
     double segment = segment_length(def, tone, page);
     double left = (def->ink > 0 ? def->ink : 1) * demand.length;
     double each = fmax(fmin(def->segments, floor(demand.length / segment)), 1) * segment;
-    Tracer tracer = {
-        .tone = tone, .direction = direction, .page = page, .blank = demand.blank, .separation = 1};
+    Tracer tracer = {.tone = tone,
+                     .direction = direction,
+                     .page = page,
+                     .outline = def->outline,
+                     .blank = demand.blank,
+                     .separation = 1};
     tracer.step = fmin(segment / 8, 0.003);
     int steps = (int)lround(each / tracer.step), tries = 100 + (int)(10 * left / each);
     double *sums = density_sums(tone, demand.blank);

@@ -18,6 +18,7 @@ typedef struct SplineStartDef {
     double segment; /* distance of nodes; default 0: of 1.2 line distances, as RelaxDef.rest        */
     int segments;   /* of a random stroke; default 8                                                */
     uint64_t seed;  /* default 1                                                                    */
+    SplineGrid outline; /* of the region (contour.h); default: no columns, the page is the region; borrowed */
 } SplineStartDef;
 
 SplineStartDef spline_start_default(void);

@@ -31,7 +31,8 @@ SplineTarget *spline_target_create(const SplinePage *page, const SplineFields *f
                              .probes = probes_create(page, &fields->density, def),
                              .align = grid_spline_create(&fields->align, page),
                              .potential = grid_spline_create(&fields->potential, page),
-                             .flow = grid_spline_create(&fields->flow, page)};
+                             .flow = grid_spline_create(&fields->flow, page),
+                             .outline = grid_spline_create(&fields->outline, page)};
     return target;
 }
 
@@ -42,6 +43,7 @@ void spline_target_destroy(SplineTarget *target)
     grid_spline_destroy(target->align);
     grid_spline_destroy(target->potential);
     grid_spline_destroy(target->flow);
+    grid_spline_destroy(target->outline);
     mem_free(target);
 }
 

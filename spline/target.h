@@ -3,7 +3,8 @@
  *
  * density D is the part of the paper that ink covers, 0 to 1: lines at distance pen/D give it. align is a
  * symmetric matrix M (xx, xy, yy): a line of unit direction u costs u.M u, which takes no notice of the
- * line's sense. potential and flow are for the energies of Linewise. All but the density may be left out. */
+ * line's sense. potential and flow are for the energies of Linewise. All but the density may be left out.
+ * Without an outline the page is the region. */
 #pragma once
 #include "spline/grid_spline.h"
 #include "spline/probes.h"
@@ -13,6 +14,7 @@ typedef struct SplineFields {
     SplineGrid align;     /* width 3 */
     SplineGrid potential; /* width 1 */
     SplineGrid flow;      /* width 2 */
+    SplineGrid outline;   /* width 1, the signed distance from it (contour.h) */
 } SplineFields;
 
 typedef struct SplineTarget {
@@ -20,7 +22,7 @@ typedef struct SplineTarget {
     double density; /* mean over the page                            */
     double spacing; /* spline_line_distance of it                    */
     Probes *probes; /* of tone                                       */
-    GridSpline *align, *potential, *flow;
+    GridSpline *align, *potential, *flow, *outline;
 } SplineTarget;
 
 /* The grids are copied into what is made of them. */

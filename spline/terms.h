@@ -13,6 +13,7 @@
     X(bend, 0.5, 0, 2)    /* B int |r''|^2/L0^3 ds = B int k^2 dl where n = L0                        */     \
     X(align, 0.2, 0, 0)   /* P int r'.M(r) r'/n ds: across a direction field costs                    */     \
     X(wall, 0.2, 0, 0)    /* R int b dl, b a logarithmic barrier two pens wide: never beyond the edge */     \
+    X(outline, 0.2, 0, 0) /* R int b dl, b the same of the distance to the region's outline           */     \
     X(stretch, 1, 0, 0)   /* S (L - L0)^2 L/L0^2 of each segment  [Linewise, strain]                  */     \
     X(curvature, 1, 0, 2) /* B int k^2 dl                         [Linewise, bending]                 */     \
     X(potential, 1, 0, 0) /* Q int Phi(r) dl                      [Linewise]                          */     \

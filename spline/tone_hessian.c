@@ -9,7 +9,7 @@ static bool ink_gradient(const Probes *probes, const ProbeLevel *level, int i, i
 {
     const SplineRule *rule = points->rule;
     Pack inverse = pack_load(probes->inverse + level->first + (long)j * level->stride + i), near = {0};
-    Pack dx[RULE_MAX_POINTS], z[RULE_MAX_POINTS];
+    Pack dx[RULE_MAX_GAUSS], z[RULE_MAX_GAUSS];
     for (int q = 0; q < rule->count; q++) {
         int p = m * rule->count + q;
         dx[q] = probe_dx(level, points->x[p], i);

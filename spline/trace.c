@@ -20,9 +20,13 @@ void points_add(Points *points, Vec2 at)
 double trace_spacing(const Tracer *tracer, Vec2 at)
 {
     const SplinePage *page = tracer->page;
-    double edge = page->pen, density;
+    double edge = page->pen, density, depth;
     if (!(at.x >= edge && at.y >= edge && at.x <= page->width - edge && at.y <= page->height - edge))
         return 0;
+    if (tracer->outline.columns) {
+        spline_grid_sample(&tracer->outline, page, at, &depth);
+        if (depth < page->pen / 2) return 0;
+    }
     spline_grid_sample(tracer->tone, page, at, &density);
     if (density < tracer->blank) return 0;
     return tracer->separation * page->pen / density;

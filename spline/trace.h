@@ -14,16 +14,17 @@ void points_add(Points *points, Vec2 at);
 typedef struct Tracer {
     const SplineGrid *tone, *direction;
     const SplinePage *page;
-    double step;       /* from point to point                                                            */
-    double blank;      /* density below which nothing is drawn                                           */
-    double separation; /* of neighbours, in units of w/D                                                 */
+    SplineGrid outline; /* signed distances (contour.h); no columns: the page is the region               */
+    double step;        /* from point to point                                                            */
+    double blank;       /* density below which nothing is drawn                                           */
+    double separation;  /* of neighbours, in units of w/D                                                 */
     Lanes *lanes; /* the curves that exist; the one under way adds its points. NULL: none are in the way */
     int curve;    /* the number of the one under way                                                     */
     double turn;  /* of it, rad                                                                          */
 } Tracer;
 
 /* The spacing that neighbours should have at a place; 0 where nothing is drawn: on blank paper, outside the
- * page and within a pen's width of its edge. */
+ * page and within a pen's width of its edge, outside the outline and within half of that of it. */
 double trace_spacing(const Tracer *tracer, Vec2 at);
 
 /* The curve through a seed, which is in the drawn part: at most `behind` steps back from it and `total` in

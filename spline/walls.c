@@ -3,17 +3,42 @@
 
 static const double FRACTION = 0.9;
 
+Pack wall_barrier(Pack d, double reach, Pack *slope, Pack *curvature)
+{
+    Pack value = {0}, zero = {0};
+    *slope = *curvature = zero;
+    for (int l = 0; l < PACK_LANES; l++) {
+        if (d[l] >= reach) continue;
+        double part = d[l] / reach, left = 1 - part, log_part = part > 0 ? log(part) : -INFINITY;
+        value[l] = -left * left * log_part;
+        (*slope)[l] = (2 * left * log_part - left * left / part) / reach;
+        (*curvature)[l] = (-2 * log_part + 4 * left / part + left * left / (part * part)) / (reach * reach);
+    }
+    return value;
+}
+
+void wall_curve(Barrier *b, Pack slope, Pack curvature, const GridSample *d, bool positive)
+{
+    b->xx = curvature * d->x[0] * d->x[0];
+    b->xy = curvature * d->x[0] * d->y[0];
+    b->yy = curvature * d->y[0] * d->y[0];
+    if (positive) return;
+    b->xx += slope * d->xx[0];
+    b->xy += slope * d->xy[0];
+    b->yy += slope * d->yy[0];
+}
+
 Pack wall_psi_of(const SegmentTerm *term, double weight, const Barrier *barrier, const SegmentPoint *s,
                  int order, Psi *psi)
 {
-    Pack zero = {0}, R = pack_set(weight), Rn = R * s->n;
+    Pack R = pack_set(weight), Rn = R * s->n;
     if (order > 0) {
         psi->r = pack2_scale(Rn, barrier->slope);
         psi->t = pack2_scale(R * barrier->value, s->u);
     }
     if (order > 1) {
         Pack2 across = pack2_across(s->u);
-        psi->rr = (PackMat2){Rn * barrier->xx, zero, zero, Rn * barrier->yy};
+        psi->rr = (PackMat2){Rn * barrier->xx, Rn * barrier->xy, Rn * barrier->xy, Rn * barrier->yy};
         psi->tt = pack_mat2_scale(R * barrier->value / s->n, pack_mat2_outer(across, across));
         if (!term->positive) psi->rt = pack_mat2_scale(R, pack_mat2_outer(barrier->slope, s->u));
     }
@@ -63,6 +88,13 @@ static double allowed_part(const SegmentTerm *term, int node, const double *from
     return part;
 }
 
+void wall_shorten(const SplineModel *model, int stroke, const double *from, double *x, double part)
+{
+    if (!(part < 1)) return;
+    for (int i = 4 * model->start[stroke]; i < 4 * model->start[stroke + 1]; i++)
+        x[i] = from[i] + part * (x[i] - from[i]);
+}
+
 typedef struct Project {
     const SegmentTerm *term;
     const double *from;
@@ -75,9 +107,7 @@ static void project_stroke(const Project *p, int stroke)
     double part = 1;
     for (int node = model->start[stroke]; node < model->start[stroke + 1] - 1; node++)
         part = fmin(part, allowed_part(p->term, node, p->from, p->x));
-    if (!(part < 1)) return;
-    for (int i = 4 * model->start[stroke]; i < 4 * model->start[stroke + 1]; i++)
-        p->x[i] = p->from[i] + part * (p->x[i] - p->from[i]);
+    wall_shorten(model, stroke, p->from, p->x, part);
 }
 
 static void project_task(void *self, int group)

@@ -1,4 +1,5 @@
-/* walls.h - the four edges of the page as walls: what their two energies share. */
+/* walls.h - the four edges of the page, and the outline of a region on it, as walls: what their energies
+ * share. */
 #pragma once
 #include "spline/segment_term.h"
 
@@ -6,8 +7,12 @@
 typedef struct Barrier {
     Pack value;
     Pack2 slope;
-    Pack xx, yy; /* no wall is oblique: xy is 0 */
+    Pack xx, xy, yy; /* xy: of the outline alone, no edge is oblique */
 } Barrier;
+
+/* b(d) = -(1 - d/reach)^2 ln(d/reach) for d < reach, else 0, with its derivatives in d: C2, convex, and
+ * infinite at the wall [Li 2020, incremental potential contact]. Not finite outside. */
+Pack wall_barrier(Pack d, double reach, Pack *slope, Pack *curvature);
 
 /* Distances of a point to the walls x = 0, x = width, y = 0, y = height, and their derivatives in x or y: 1
  * or -1. */
@@ -16,6 +21,10 @@ static inline void wall_distances(const SplinePage *page, Pack2 r, Pack distance
     distance[0] = r.x, distance[1] = page->width - r.x;
     distance[2] = r.y, distance[3] = page->height - r.y;
 }
+
+/* Second derivatives of a function of the distance d, from its first two in d; semidefinite: those of d itself are
+ * left out. */
+void wall_curve(Barrier *barrier, Pack slope, Pack curvature, const GridSample *d, bool positive);
 
 /* psi = R n b(r) */
 Pack wall_psi_of(const SegmentTerm *term, double weight, const Barrier *barrier, const SegmentPoint *s,
@@ -31,6 +40,9 @@ Term wall_term_create(const TermOps *ops, const SplineModel *model, const Spline
         .name = row_name, .count = segment_term_count, .size = segment_term_size, .dofs = segment_term_dofs, \
         .eval = segment_term_eval, .project = wall_project, .destroy = mem_free,                             \
     }
+
+/* Takes a stroke so much of the way to where it is: the others' are as they are. */
+void wall_shorten(const SplineModel *model, int stroke, const double *from, double *x, double part);
 
 /* Of the way to a trial, no stroke goes further than nine tenths of the way to the wall, be it at a point of
  * the rule. Each stroke is stopped for itself, so that one at the edge does not hold up all others. */

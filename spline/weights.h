@@ -8,7 +8,7 @@
 
 typedef struct SplineWeights {
     /* What makes good line art. */
-    double strain, bend, align, wall;
+    double strain, bend, align, wall, outline;
     /* The other energies of Linewise, corrected. */
     double stretch, curvature, potential, flow, boundary;
     /* Where strokes act on each other. */

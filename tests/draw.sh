@@ -39,6 +39,32 @@ expect 0 "$program" run "$scene" --quiet --no-picture -o d --resume; same out/a.
 expect 3 "$program" run "$scene" --quiet -o d --resume --set spline.pen=1mm; says "spline.pen is not the same"; says "spline.rounds"
 expect 0 "$program" run "$scene" --quiet --no-picture -o e --set spline.seed=2; cmp -s out/a.svg e.svg && { echo "another seed, the same drawing"; bad=1; }
 
+# Within an outline: a run that goes on ends with the same bits, and not within another outline.
+cat > region.yaml <<'EOF'
+slender: 1
+job: draw
+spline:
+  density: "0.2 + 0.3*u"
+  page: {size: [60 mm, 40 mm], margin: 2 mm}
+  pen: 0.6 mm
+  regions: [{svg: moon.svg}]
+EOF
+echo "<svg xmlns='http://www.w3.org/2000/svg'><circle cx='30' cy='30' r='28'/><circle cx='38' cy='24' r='12'/></svg>" > moon.svg
+expect 0 "$program" run region.yaml --quiet --no-picture -o region
+expect 0 "$program" run region.yaml --quiet --no-picture -o part --set spline.rounds=0
+expect 0 "$program" run region.yaml --quiet --no-picture -o part --resume; same region.svg part.svg
+expect 0 "$program" info region.vtkhdf; says "metrics/outside"
+
+# From a result: its strokes as they are, to the last digit of the file; and on from there.
+expect 0 "$program" run region.yaml --quiet --no-picture -o whole --set spline.order=as_made
+expect 1 "$program" run region.yaml --quiet --no-picture -o again --set "spline.start={file: $work/whole.vtkhdf}" --set spline.order=as_made \
+    --set spline.rounds=0 --set spline.iterations=0; same whole.svg again.svg
+expect 0 "$program" run region.yaml --quiet --no-picture -o again --force --set "spline.start={file: $work/whole.svg}"
+expect 3 "$program" run region.yaml --quiet -o again --force --set "spline.start={file: $work/whole.vtkhdf}" --set spline.cross.from=[0,0.1]; says "crossed sets"
+
+sed 's/28/27/' moon.svg > less.svg; cp less.svg moon.svg
+expect 3 "$program" run region.yaml --quiet --no-picture -o part --resume; says "moon.svg"
+
 # Paper and margin; what cannot be written is refused before the work.
 expect 0 "$program" run "$scene" --quiet --no-picture -o f --page "a6 landscape" --margin 12mm
 grep -q 'width="148mm" height="105mm" viewBox="0 0 148 105"' f.svg || { echo "no A6"; head -3 f.svg; bad=1; }

@@ -25,6 +25,7 @@ static inline void clear_fields(SplineFields *fields)
     mem_free((void *)fields->align.values);
     mem_free((void *)fields->potential.values);
     mem_free((void *)fields->flow.values);
+    mem_free((void *)fields->outline.values);
 }
 
 /* Strokes of `segments` segments of length `rest` at random places and in random directions, slightly bent,

@@ -115,6 +115,15 @@ spline:
   pens: [cyan, black]
   separation: cmyk
 """,
+    "spline regions": """job: draw
+spline:
+  density: "0.3 + 0.4*u"
+  page: {size: [60 mm, 40 mm], margin: 2 mm}
+  pen: 0.6 mm
+  iterations: 10
+  rounds: 1
+  regions: [{mask: grey.pgm}]
+""",
 }
 
 # Values by section and key; else they follow from the kind.
@@ -143,7 +152,7 @@ VALUES = {
     "magnetization.formula": ['["x", "1", "2"]'], "flux_density.file": [], "flux_density.where": ["{a: x}"],
     "mesh.file": [], "mesh.shape": [], "mesh.n": ["3"], "mesh.size": ["[50 mm, 20 mm]"], "mesh.cells": ["[3, 2]"],
     "spline.pens": ["[{name: black, turn: 30 deg}, {name: red, width: 2 mm}]"], "spline.separation": ["cmyk", "{kind: tones}"],
-    "spline.cross": ["{from: [0, 0.3]}"], "spline.direction": ["30 deg", '{formula: ["1", "u"]}', "{file: grey.pgm}"],
+    "spline.cross": ["{from: [0, 0.3]}"], "spline.regions": ["[{mask: grey.pgm}]", "[{mask: grey.pgm, invert: true, direction: 40 deg}]"], "spline.direction": ["30 deg", '{formula: ["1", "u"]}', "{file: grey.pgm}"],
     "spline.potential": ['"x"'], "spline.flow": ['["1", "u"]'], "spline.density": ['"0.5*v"'], "spline.image": [],
     "tone.curve": ["[[0, 1], [1, 0]]"], "tone.crop": ["[0, 0, 0.5, 1]"], "page.size": ["[50 mm, 40 mm]"],
     "spline.pair": ["{radius: 2}"], "direction.where": ["{a: x}"], "direction.formula": ['["1", "u"]'], "direction.file": [],

@@ -1,36 +1,12 @@
 /* Drawings from scenes: pages, pens, what each part shall cover, directions. */
 #include "base/memory.h"
 #include "spline/direction.h"
-#include "spline/front/drawing.h"
-#include "tests/leaks.h"
+#include "drawing_fixture.h"
 #include <math.h>
-#include <stdio.h>
-#include <string.h>
 
 static void expect_close(double value, double expected, double tolerance)
 {
     if (!(fabs(value - expected) <= tolerance)) fail_msg("%.15g is not %.15g", value, expected);
-}
-
-/* The drawing of a scene's spline entry in flow style; the refused sentence in place of it fails. */
-static Drawing *drawing_of(const char *entry)
-{
-    char text[1000];
-    Scene scene;
-    snprintf(text, sizeof text, "slender: 1\njob: draw\nspline: {%s}\n", entry);
-    YamlFile *file = yaml_parse("test_drawing.yaml", text, strlen(text));
-    Drawing *drawing =
-        yaml_load(file, scene_table(), &scene) ? drawing_create(spline_scene(&scene), file) : NULL;
-    if (!drawing) fail_msg("%s", yaml_report(file));
-    yaml_clear(scene_table(), &scene);
-    yaml_destroy(file);
-    return drawing;
-}
-
-static void write_file(const char *path, const char *text)
-{
-    FILE *file = fopen(path, "w");
-    assert_true(file && fputs(text, file) >= 0 && fclose(file) == 0);
 }
 
 static double value_at(const SplineField *field, const SplinePage *page, double u, double v)

@@ -4,6 +4,7 @@
 #include "spline/direction.h"
 #include "spline/front/drawing_fields.h"
 #include "spline/front/drawing_pens.h"
+#include "spline/front/drawing_start.h"
 #include "spline/tone_field.h"
 #include <math.h>
 #include <string.h>
@@ -30,24 +31,50 @@ static bool read_page(const SplineScene *scene, YamlFile *file, SplinePage *page
     return true;
 }
 
-/* The parts of a pen: sets that cross share its tone. */
-static void add_parts(Drawing *d, const SplineScene *scene, int pen)
+/* The parts of a pen in a region, NULL: the page. Sets that cross share its tone. */
+static void add_parts(Drawing *d, const SplineScene *scene, int pen, const DrawingRegion *region)
 {
     const CrossScene *cross = scene->cross;
     int sets = cross ? cross->from_count : 1;
     SplineField *share = mem_alloc((size_t)sets, sizeof *share);
+    SplineField tone = spline_field_copy(&d->tones[pen]);
+    if (region) spline_field_multiply(&tone, &region->cover);
     if (cross)
-        spline_tone_cross(&d->tones[pen], sets, cross->from, share);
+        spline_tone_cross(&tone, sets, cross->from, share);
     else
-        share[0] = spline_field_copy(&d->tones[pen]);
+        share[0] = spline_field_copy(&tone);
     d->parts = mem_resize(d->parts, (size_t)d->part_count, (size_t)(d->part_count + sets), sizeof *d->parts);
     for (int k = 0; k < sets; k++) {
         DrawingPart *part = &d->parts[d->part_count++];
-        *part = (DrawingPart){.pen = pen, .page = d->page, .tone = share[k]};
+        *part = (DrawingPart){.pen = pen,
+                              .page = d->page,
+                              .tone = share[k],
+                              .direction =
+                                  region && region->direction.columns ? &region->direction : &d->direction,
+                              .outline = region ? &region->outline : NULL};
         part->page.pen = d->pens[pen].width;
         part->turn = pens_turn(scene, d->pens, pen) + k * (cross ? cross->angle : 0);
     }
+    spline_field_clear(&tone);
     mem_free(share);
+}
+
+/* All parts, and of each pen's tone what it draws. */
+static void make_parts(Drawing *d, const SplineScene *scene)
+{
+    for (int pen = 0; pen < d->pen_count; pen++) {
+        SplineField drawn = spline_field_like(&d->tones[pen], 1);
+        for (int k = 0; k < d->region_count; k++) {
+            if (d->regions[k].pen >= 0 && d->regions[k].pen != pen) continue;
+            add_parts(d, scene, pen, &d->regions[k]);
+            spline_field_add(&drawn, &d->regions[k].cover);
+        }
+        if (d->region_count == 0)
+            add_parts(d, scene, pen, NULL);
+        else
+            spline_field_multiply(&d->tones[pen], &drawn);
+        spline_field_clear(&drawn);
+    }
 }
 
 static bool check_cross(const CrossScene *cross, YamlFile *file)
@@ -94,6 +121,7 @@ static RelaxDef relax_def(const SplineScene *scene)
     RelaxDef def = relax_default();
     def.method = (RelaxMethod)scene->method;
     def.weights = scene->energies;
+    if (!scene->regions_count) def.weights.outline = 0;
     def.model.pair_kernel = (PairKernel)scene->pair.kernel;
     def.model.pair_radius = scene->pair.radius;
     def.rest = scene->rest;
@@ -160,10 +188,11 @@ static bool fill(Drawing *d, const SplineScene *scene, YamlFile *file)
         !read_page(scene, file, &d->page) || !pens_read(scene, file, &d->page, &d->pens, &d->pen_count) ||
         !drawing_read_fields(d, scene, file))
         return false;
-    for (int k = 0; k < d->pen_count; k++) add_parts(d, scene, k);
+    make_parts(d, scene);
     d->relax = relax_def(scene);
     d->start = start_def(scene, &d->page);
     d->start_kind = (StrokesStart)scene->start.kind;
+    if (scene->start.file && !drawing_read_start(d, scene, file)) return false;
     d->rounds = scene->rounds;
     d->order = (DrawOrder)scene->order;
     return read_plotter(&scene->plotter, file, &d->plotter) && check_size(d, file);
@@ -184,9 +213,18 @@ void drawing_destroy(Drawing *d)
         mem_free((char *)d->pens[k].name);
         if (d->tones) spline_field_clear(&d->tones[k]);
     }
-    for (int k = 0; k < d->part_count; k++) spline_field_clear(&d->parts[k].tone);
-    SplineField *fields[] = {&d->direction, &d->potential, &d->flow, &d->picture};
-    for (int k = 0; k < 4; k++) spline_field_clear(fields[k]);
+    for (int k = 0; k < d->part_count; k++) {
+        spline_field_clear(&d->parts[k].tone);
+        strokes_clear(&d->parts[k].given);
+    }
+    for (int k = 0; k < d->region_count; k++) {
+        spline_field_clear(&d->regions[k].cover);
+        spline_field_clear(&d->regions[k].outline);
+        spline_field_clear(&d->regions[k].direction);
+    }
+    SplineField *fields[] = {&d->direction, &d->potential, &d->flow, &d->picture, &d->outline};
+    for (int k = 0; k < 5; k++) spline_field_clear(fields[k]);
+    mem_free(d->regions);
     mem_free(d->pens);
     mem_free(d->tones);
     mem_free(d->parts);
@@ -197,7 +235,7 @@ void drawing_destroy(Drawing *d)
 
 static SplineField direction_of(const Drawing *d, int part)
 {
-    SplineField direction = spline_field_copy(&d->direction);
+    SplineField direction = spline_field_copy(d->parts[part].direction);
     spline_direction_turn(&direction, d->parts[part].turn);
     return direction;
 }
@@ -205,11 +243,13 @@ static SplineField direction_of(const Drawing *d, int part)
 static Strokes start_of(const Drawing *d, int part)
 {
     const DrawingPart *from = &d->parts[part];
+    if (d->start_given) return strokes_copy(&from->given);
     SplineField direction = direction_of(d, part);
     SplineGrid tone = spline_grid(&from->tone), along = spline_grid(&direction);
     Strokes strokes = {0};
     SplineStartDef def = d->start;
     def.seed += (uint64_t)part;
+    if (from->outline) def.outline = spline_grid(from->outline);
     (d->start_kind == START_RANDOM ? spline_random_strokes : spline_streamlines)(&tone, &along, &from->page,
                                                                                  &def, from->pen, &strokes);
     spline_field_clear(&direction);
@@ -234,6 +274,7 @@ static SplineTarget *target_of(const Drawing *d, int part, Workers *workers)
     if (d->relax.weights.potential > 0)
         fields.potential = spline_grid(d->potential.columns ? &d->potential : &light);
     if (d->flow.columns) fields.flow = spline_grid(&d->flow);
+    if (from->outline) fields.outline = spline_grid(from->outline);
     SplineTarget *target = spline_target_create(&from->page, &fields, &probes);
     spline_field_clear(&direction);
     spline_field_clear(&light);

@@ -1,5 +1,5 @@
 /* drawing.h - the drawing of a scene made ready: the page, the pens, and parts, each a tone that one pen
- * covers with strokes of one direction. Parts do not act on each other. */
+ * covers with strokes of one direction in one region. Parts do not act on each other. */
 #pragma once
 #include "spline/front/scene.h"
 #include "spline/plot.h"
@@ -8,24 +8,38 @@
 #include "spline/target.h"
 
 typedef struct DrawingPart {
-    int pen;          /* layer of its strokes                             */
-    SplinePage page;  /* with that pen                                    */
-    SplineField tone; /* width 1                                          */
-    double turn;      /* rad, of its strokes from the drawing's direction */
+    int pen;                      /* layer of its strokes                             */
+    SplinePage page;              /* with that pen                                    */
+    SplineField tone;             /* width 1                                          */
+    double turn;                  /* rad, of its strokes from that direction          */
+    const SplineField *direction; /* the region's                         */
+    const SplineField *outline;   /* the region's; NULL: the page         */
+    Strokes given;                /* to start from, with `start.file`     */
 } DrawingPart;
+
+/* Regions do not overlap. */
+typedef struct DrawingRegion {
+    SplineField cover;     /* how much of each pixel of a tone is in it */
+    SplineField outline;   /* signed distance (contour.h)               */
+    SplineField direction; /* no columns: the drawing's                 */
+    int pen;               /* -1: all                                   */
+} DrawingRegion;
 
 typedef struct Drawing {
     SplinePage page; /* with the finest pen */
-    int pen_count, part_count;
-    SplinePen *pens;       /* names owned                                      */
-    SplineField *tones;    /* [pen_count] what each shall cover, in all its parts; width 1 */
-    DrawingPart *parts;    /* in the order of the pens                         */
+    int pen_count, part_count, region_count;
+    SplinePen *pens;    /* names owned                                      */
+    SplineField *tones; /* [pen_count] what each shall cover, in all its parts; width 1 */
+    DrawingPart *parts; /* in the order of the pens                         */
+    DrawingRegion *regions;
+    SplineField outline;   /* of all regions; no columns: there are none, the page is it */
     SplineField direction; /* width 3                                          */
     SplineField potential; /* width 1; no columns: of each part its brightness */
     SplineField flow;      /* width 2, or no columns                           */
     SplineField picture;   /* to be shown, as spline_preview takes it          */
     RelaxDef relax;
     StrokesStart start_kind;
+    bool start_given; /* the parts have their strokes */
     SplineStartDef start;
     int rounds;
     DrawOrder order;

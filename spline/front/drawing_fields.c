@@ -4,6 +4,7 @@
 #include "spline/direction.h"
 #include "spline/formula_field.h"
 #include "spline/front/drawing_pens.h"
+#include "spline/front/drawing_regions.h"
 #include "spline/tone_field.h"
 #include <math.h>
 #include <string.h>
@@ -107,6 +108,10 @@ static void share_tone(const Reader *r, const SplineField *tone, Drawing *d)
         separate(r, d);
         return;
     }
+    if (!r->scene->separation) { /* where there are several, each has regions of its own */
+        for (int k = 0; k < d->pen_count; k++) d->tones[k] = spline_field_copy(tone);
+        return;
+    }
     double *limits = pens_limits(r->scene);
     spline_tone_layers(tone, d->pen_count, limits, d->tones);
     mem_free(limits);
@@ -114,61 +119,84 @@ static void share_tone(const Reader *r, const SplineField *tone, Drawing *d)
 
 /* ---- Directions ---- */
 
-static bool direction_from_file(const Reader *r, Drawing *d)
+/* What a `direction` says, and the field that it becomes. */
+typedef struct DirectionReader {
+    const Reader *reader;
+    const DirectionScene *from;
+    const char *at; /* its key */
+    const SplinePage *page;
+    SplineField *direction;
+} DirectionReader;
+
+static bool direction_from_file(const DirectionReader *d)
 {
     Image rgb[3];
     Error err;
-    if (!image_read_rgb(r->scene->direction.file, rgb, &err)) return refuse(r, "spline.direction.file", &err);
+    if (!image_read_rgb(d->from->file, rgb, &err)) return refuse(d->reader, key("%s.file", d->at).text, &err);
     size_t bytes = (size_t)rgb[0].width * (size_t)rgb[0].height * sizeof(double);
     bool grey = !memcmp(rgb[0].grey, rgb[1].grey, bytes) && !memcmp(rgb[0].grey, rgb[2].grey, bytes);
-    d->direction =
-        grey ? spline_direction_from_grey(&rgb[0], &d->page) : spline_direction_from_rgb(rgb, &d->page);
+    *d->direction =
+        grey ? spline_direction_from_grey(&rgb[0], d->page) : spline_direction_from_rgb(rgb, d->page);
     for (int c = 0; c < 3; c++) image_clear(&rgb[c]);
     return true;
 }
 
-static bool direction_from_formula(const Reader *r, Drawing *d)
+static bool direction_from_formula(const DirectionReader *d)
 {
-    const DirectionScene *from = &r->scene->direction;
+    const DirectionScene *from = d->from;
     Error err;
-    Formula *f = formula_of(r, "spline.direction", from->formula, 2, from->where, from->where_count);
-    bool ok = f && (spline_direction_from_formula(f, &d->page, &d->direction, &err) ||
-                    refuse(r, "spline.direction.formula", &err));
+    Formula *f = formula_of(d->reader, d->at, from->formula, 2, from->where, from->where_count);
+    bool ok = f && (spline_direction_from_formula(f, d->page, d->direction, &err) ||
+                    refuse(d->reader, key("%s.formula", d->at).text, &err));
     formula_destroy(f);
     return ok;
 }
 
 /* The tone that directions follow goes on beside the picture, so that its frame is no edge. */
-static bool direction_from_tone(const Reader *r, Drawing *d)
+static bool direction_from_tone(const DirectionReader *d)
 {
-    const DirectionScene *from = &r->scene->direction;
-    SplineDirectionDef def = spline_direction_default(&d->page);
-    Reader open = *r;
+    const DirectionScene *from = d->from;
+    SplineDirectionDef def = spline_direction_default(d->page);
+    Reader open = *d->reader;
     SplineField tone;
     open.tone.extend = true;
-    if (!isnan(from->detail)) def.detail = from->detail / d->page.unit;
-    if (!isnan(from->smooth)) def.smooth = from->smooth / d->page.unit;
-    if (!isnan(from->spread)) def.spread = from->spread / d->page.unit;
-    open.pixel = fmax(r->pixel, def.detail / 2); /* no more is looked at */
-    if (!read_tone(&open, &d->page, &tone)) return false;
-    d->direction = spline_direction_from_tone(&tone, &d->page, &def);
+    if (!isnan(from->detail)) def.detail = from->detail / d->page->unit;
+    if (!isnan(from->smooth)) def.smooth = from->smooth / d->page->unit;
+    if (!isnan(from->spread)) def.spread = from->spread / d->page->unit;
+    open.pixel = fmax(open.pixel, def.detail / 2); /* no more is looked at */
+    if (!read_tone(&open, d->page, &tone)) return false;
+    *d->direction = spline_direction_from_tone(&tone, d->page, &def);
     spline_field_clear(&tone);
     return true;
 }
 
-static bool read_direction(const Reader *r, Drawing *d)
+static bool read_direction(const DirectionReader *d)
 {
-    const DirectionScene *from = &r->scene->direction;
     bool ok = true;
-    if (from->formula)
-        ok = direction_from_formula(r, d);
-    else if (from->file)
-        ok = direction_from_file(r, d);
-    else if (!isnan(from->angle))
-        d->direction = spline_direction_constant(&d->page, from->angle);
+    if (d->from->formula)
+        ok = direction_from_formula(d);
+    else if (d->from->file)
+        ok = direction_from_file(d);
+    else if (!isnan(d->from->angle))
+        *d->direction = spline_direction_constant(d->page, d->from->angle);
     else
-        ok = direction_from_tone(r, d);
-    if (ok && from->turn != 0) spline_direction_turn(&d->direction, from->turn);
+        ok = direction_from_tone(d);
+    if (ok && d->from->turn != 0) spline_direction_turn(d->direction, d->from->turn);
+    return ok;
+}
+
+/* The drawing's, and those of regions that have their own. */
+static bool read_directions(const Reader *r, Drawing *d)
+{
+    const SplineScene *scene = r->scene;
+    bool ok =
+        read_direction(&(DirectionReader){r, &scene->direction, "spline.direction", &d->page, &d->direction});
+    for (int k = 0; ok && k < d->region_count; k++) {
+        Key at = key("spline.regions[%d].direction", k);
+        ok = !scene->regions[k].direction ||
+             read_direction(&(DirectionReader){r, scene->regions[k].direction, at.text, &d->page,
+                                               &d->regions[k].direction});
+    }
     return ok;
 }
 
@@ -214,7 +242,9 @@ bool drawing_read_fields(Drawing *d, const SplineScene *scene, YamlFile *file)
         share_tone(&r, &tone, d);
         make_picture(&r, &tone, d);
     }
-    ok = ok && read_direction(&r, d) && read_energy_fields(&r, d);
+    ok = ok && drawing_read_regions(d, scene, file, &r.tone, r.pixel) && read_directions(&r, d) &&
+         read_energy_fields(&r, d);
+    if (ok && d->region_count) drawing_mask(d, &d->picture);
     spline_field_clear(&tone);
     image_clear(&r.grey);
     for (int c = 0; c < 3; c++) image_clear(&r.rgb[c]);

@@ -49,12 +49,30 @@ double pens_turn(const SplineScene *scene, const SplinePen *pens, int pen)
     return is_cmyk(scene) ? inks[pens_ink(pens[pen].name)].turn * M_PI / 180 : 0;
 }
 
+/* Without a separation each of several pens draws the regions that name it. */
+static bool check_regions(const SplineScene *scene, YamlFile *file)
+{
+    if (scene->pens_count < 2) return true;
+    if (!scene->regions_count)
+        return yaml_refuse(file, "spline.pens",
+                           "several pens need `separation`: cmyk, or tones with `from` of each pen; or "
+                           "`regions`, each with its `pen`");
+    for (int k = 0; k < scene->regions_count; k++)
+        if (!scene->regions[k].pen)
+            return yaml_refuse(file, key("spline.regions[%d]", k).text,
+                               "which of the pens draws this region? Say `pen`, or `separation` for all");
+    for (int pen = 0; pen < scene->pens_count; pen++) {
+        int k = 0;
+        while (k < scene->regions_count && strcmp(scene->regions[k].pen, scene->pens[pen].name)) k++;
+        if (k == scene->regions_count)
+            return yaml_refuse(file, key("spline.pens[%d]", pen).text, "no region is drawn by this pen");
+    }
+    return true;
+}
+
 static bool check_separation(const SplineScene *scene, YamlFile *file)
 {
-    if (!scene->separation)
-        return scene->pens_count < 2 ||
-               yaml_refuse(file, "spline.pens",
-                           "several pens need `separation`: cmyk, or tones with `from` of each pen");
+    if (!scene->separation) return check_regions(scene, file);
     if (is_cmyk(scene))
         return scene->image ||
                yaml_refuse(file, "spline.separation", "only a picture has colours that cmyk can separate");

@@ -4,6 +4,7 @@
 #include "spline/front/front.h"
 #include "spline/metrics.h"
 #include "spline/order.h"
+#include "spline/outline.h"
 #include "spline/terms.h"
 #include <math.h>
 #include <stddef.h>
@@ -109,6 +110,17 @@ static void add_plot(const Drawing *d, const Strokes *strokes, const OrderInfo *
     spline_plot_clear(&plot);
 }
 
+/* How far the middle of a line leaves the regions at most; more than half a pen is said. */
+static void add_outside(const Drawing *d, const Strokes *strokes, Run *run, Arrays *list)
+{
+    SplineGrid outline = spline_grid(&d->outline);
+    double *outside = arrays_numbers(list, 1);
+    *outside = d->page.unit * spline_outline_excess(&outline, &d->page, strokes);
+    if (*outside > d->page.unit * d->page.pen / 2)
+        host_say(run->host, "strokes leave their regions by up to %.3g mm", 1e3 * *outside);
+    arrays_add(list, array_float("metrics/outside", "m", outside, 0, 0, 0));
+}
+
 /* Why an empty drawing is one. */
 static void explain_blank(const Drawing *d, Run *run)
 {
@@ -169,15 +181,23 @@ static bool put_frame(Run *run, const Drawing *d, const Strokes *strokes, Error 
 
 /* ---- The whole ---- */
 
+static OrderDef order_def(const Drawing *d, const SplineGrid *outline)
+{
+    OrderDef def = order_default();
+    if (d->region_count) def.outline = outline;
+    return def;
+}
+
 bool draw_finish(Run *run, const Drawing *d, const Strokes *parts, const RelaxInfo *info, const char *status,
                  Error *err)
 {
     Arrays list = {0};
     Strokes all = {0};
     for (int k = 0; k < d->part_count; k++) strokes_append(&all, &parts[k], d->parts[k].pen);
+    SplineGrid outline = spline_grid(&d->outline);
     OrderInfo order = {0};
     if (d->order == ORDER_SHORTEST)
-        order = order_strokes(&all, &d->page, order_default());
+        order = order_strokes(&all, &d->page, order_def(d, &outline));
     else
         order.before = order.after = order_travel(&all, &d->page);
     drawing_add_strokes(d, &all, &list);
@@ -189,6 +209,7 @@ bool draw_finish(Run *run, const Drawing *d, const Strokes *parts, const RelaxIn
     arrays_add(&list, array_text("status", status));
     add_metrics(d, &all, run, &list);
     add_plot(d, &all, &order, run, &list);
+    if (d->region_count) add_outside(d, &all, run, &list);
     if (all.count == 0) explain_blank(d, run);
     bool ok = arrays_replace(&list, run->journal, "final", err) && put_frame(run, d, &all, err);
     strokes_clear(&all);

@@ -117,17 +117,49 @@ static const YamlTable direction_table = {
         WHERE_ROW(DirectionScene),
         {0}}};
 
+static const YamlTable region_table = {
+    .name = "regions",
+    .size = sizeof(RegionScene),
+    .doc = "A part of the page; strokes stay within its outline, and their ink within half a pen of it. What "
+           "several "
+           "share belongs to the first of them.",
+    .fields = (const YamlField[]){
+        {YAML_FILE(RegionScene, svg), .one_of = 1, .required = true,
+         .doc =
+             "an SVG drawing: what is inside an odd number of its closed shapes (an open one ends where it "
+             "began), whatever their colours are"},
+        {YAML_FILE(RegionScene, mask), .one_of = 1, .required = true,
+         .doc =
+             "a picture, PNG, JPEG, PGM or PPM: what is lighter than middle grey. It lies on the page as the "
+             "scene's picture does, with `tone.crop` and `tone.fit`, or whole where there is none"},
+        {YAML_CHOICE(RegionScene, fit), .when = "svg", .choices = YAML_NAMES("contain", "paper"),
+         .fallback = "contain",
+         .doc =
+             "its shapes as large as the drawable part has room for, centred; or in their own size from the "
+             "paper's top left corner"},
+        {YAML_BOOL(RegionScene, invert), .doc = "what is outside, or darker"},
+        {YAML_OPTIONAL(RegionScene, direction, &direction_table),
+         .doc = "of its strokes; the drawing's if absent"},
+        {YAML_TEXT(RegionScene, pen), .when = "!/spline.separation {all of its pens draw in each region}",
+         .doc = "the name of the one of `pens` that draws it; without `separation` each region has one"},
+        {0}}};
+
 static const YamlTable strokes_table = {
     .name = "start of a drawing",
     .size = sizeof(StrokesScene),
     .doc = "The strokes that a relaxation starts from.",
     .fields = (const YamlField[]){
-        {YAML_CHOICE(StrokesScene, kind), .choices = YAML_NAMES("streamlines", "random"), .required = true,
-         .short_form = true,
+        {YAML_CHOICE(StrokesScene, kind), .choices = YAML_NAMES("streamlines", "random"), .one_of = 1,
+         .required = true, .short_form = true,
          .doc = "evenly spaced along the directions, or through random places, more where it is dark"},
+        {YAML_FILE(StrokesScene, file), .one_of = 1, .required = true,
+         .doc =
+             "strokes that there are, where they lie on their paper: a result (.vtkhdf), with its pens by "
+             "their "
+             "numbers; or, for one pen, the lines of an .svg file, which become segments of the rest length"},
         {YAML_NUMBER(StrokesScene, separation), .when = "kind: streamlines", .range = "[0.2, 5]",
          .doc = "of streamlines, in units of pen/density; about 0.86 if absent"},
-        {YAML_NUMBER(StrokesScene, ink), .range = "[0, 10]", .fallback = "1",
+        {YAML_NUMBER(StrokesScene, ink), .when = "kind", .range = "[0, 10]", .fallback = "1",
          .doc = "length of all strokes, of that which gives the tone; 0: streamlines take the separation as "
                 "it is"},
         {YAML_NUMBER(StrokesScene, longest), .when = "kind: streamlines", .unit = "m", .range = "(0, 100]",
@@ -146,19 +178,21 @@ static const YamlTable energies_table = {
     .doc =
         "How much each energy counts, per length of ink: pure numbers that mean the same on every page and "
         "with every pen; 0 switches one off. docs/line_art.md has the formulas.",
-    .fields =
-        (const YamlField[]){ENERGY(tone, "1", "the ink around each place is what the picture asks for"),
-                            ENERGY(strain, "0.5", "segments keep their length, and an even speed along it"),
-                            ENERGY(bend, "0.1", "strokes are smooth"),
-                            ENERGY(align, "0.5", "strokes run along the direction"),
-                            ENERGY(wall, "0.1", "strokes stay on the page"),
-                            ENERGY(stretch, "0", "[Linewise], strain: length of each segment"),
-                            ENERGY(curvature, "0", "[Linewise], bending: curvature squared"),
-                            ENERGY(potential, "0", "[Linewise]: strokes go where `potential` is low"),
-                            ENERGY(flow, "0", "[Linewise], field: strokes run against `flow`, and are long"),
-                            ENERGY(boundary, "0", "[Linewise]: away from the page's edges"),
-                            ENERGY(pair, "0", "[Linewise], corrected: strokes keep away from each other"),
-                            {0}}};
+    .fields = (const YamlField[]){
+        ENERGY(tone, "1", "the ink around each place is what the picture asks for"),
+        ENERGY(strain, "0.5", "segments keep their length, and an even speed along it"),
+        ENERGY(bend, "0.1", "strokes are smooth"),
+        ENERGY(align, "0.5", "strokes run along the direction"),
+        ENERGY(wall, "0.1", "strokes stay on the page"),
+        {YAML_NUMBER(SplineWeights, outline), .when = "/spline.regions", .range = "(0, inf)",
+         .fallback = "0.1", .doc = "strokes stay within the outline of their region"},
+        ENERGY(stretch, "0", "[Linewise], strain: length of each segment"),
+        ENERGY(curvature, "0", "[Linewise], bending: curvature squared"),
+        ENERGY(potential, "0", "[Linewise]: strokes go where `potential` is low"),
+        ENERGY(flow, "0", "[Linewise], field: strokes run against `flow`, and are long"),
+        ENERGY(boundary, "0", "[Linewise]: away from the page's edges"),
+        ENERGY(pair, "0", "[Linewise], corrected: strokes keep away from each other"),
+        {0}}};
 
 #define FIELD_TABLE_OF(id, n, what, r)                                                                       \
     static const YamlTable id##_table = {                                                                    \
@@ -286,6 +320,8 @@ const YamlTable spline_table = {
         {YAML_LIST(SplineScene, pens, &pen_table), .max_count = 32,
          .doc = "several of them; one black pen if absent"},
         {YAML_OPTIONAL(SplineScene, separation, &separation_table), .doc = "of several pens"},
+        {YAML_LIST(SplineScene, regions, &region_table), .max_count = 64,
+         .doc = "what is drawn of the page, each with strokes of its own; all of it if absent"},
         {YAML_OPTIONAL(SplineScene, cross, &cross_table), .doc = "crossed strokes, of each pen"},
         {YAML_TABLE(SplineScene, direction, &direction_table), .fallback = "structure_tensor",
          .doc = "of the strokes"},

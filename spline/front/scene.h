@@ -49,9 +49,20 @@ typedef struct DirectionScene {
     int formula_count, where_count;
 } DirectionScene;
 
+typedef enum RegionFit { REGION_CONTAIN, REGION_PAPER } RegionFit;
+
+typedef struct RegionScene {
+    char *svg, *mask, *pen;
+    int fit; /* RegionFit */
+    bool invert;
+    DirectionScene *direction; /* NULL: the drawing's */
+} RegionScene;
+
 typedef enum StrokesStart { START_STREAMLINES, START_RANDOM } StrokesStart;
 
+/* A kind, or a file. */
 typedef struct StrokesScene {
+    char *file;
     int kind, segments; /* StrokesStart */
     double separation, ink, longest;
 } StrokesScene;
@@ -109,13 +120,14 @@ typedef struct SplineScene {
     PageScene page;
     double pen;
     PenScene *pens;
+    RegionScene *regions;
     SeparationScene *separation;
     CrossScene *cross;
     DirectionScene direction;
     StrokesScene start;
     SplineWeights energies;
     PairScene pair;
-    int method, iterations, rounds, seed, order, pens_count; /* RelaxMethod; DrawOrder */
+    int method, iterations, rounds, seed, order, pens_count, regions_count; /* RelaxMethod; DrawOrder */
     double tolerance, rest;
     MonteCarloScene monte_carlo;
     DynamicsScene dynamics;
