@@ -15,8 +15,9 @@ Table = Union[Rows[Numbers], NDArray[Any]]
 
 Shell = TypedDict("Shell", {
     "mesh": "Mesh", "pose": "Pose", "velocity": "Velocity", "thickness": "Number", "young": "Young",
-    "poisson": "float", "density": "Number", "bending": "Literal['midedge', 'hinge']", "fold": "Fold",
-    "magnetization": "Magnetization", "damping": "Number", "gravity": "Numbers",
+    "poisson": "float", "density": "Number", "material": "Literal['st_venant_kirchhoff', 'neo_hookean']",
+    "bending": "Literal['midedge', 'hinge']", "fold": "Fold", "magnetization": "Magnetization",
+    "coercivity": "Number", "damping": "Number", "gravity": "Numbers",
 }, total=False)
 
 MeshKeys = TypedDict("MeshKeys", {
@@ -114,7 +115,7 @@ Solid = TypedDict("Solid", {
     "mesh": "MeshOfASolid", "order": "int",
     "material": "Literal['neo_hookean', 'neo_hookean_log', 'st_venant_kirchhoff']", "young": "Young",
     "poisson": "float", "density": "Number", "averaging": "float", "skin": "Skin", "magnetization": "Magnetization",
-    "pose": "Pose", "velocity": "Velocity", "damping": "Number", "gravity": "Numbers",
+    "coercivity": "Number", "pose": "Pose", "velocity": "Velocity", "damping": "Number", "gravity": "Numbers",
 }, total=False)
 
 MeshOfASolidKeys = TypedDict("MeshOfASolidKeys", {
@@ -126,7 +127,8 @@ MeshOfASolidKeys = TypedDict("MeshOfASolidKeys", {
 
 Skin = TypedDict("Skin", {
     "thickness": "Number", "magnetization": "Magnetization", "young": "Young", "poisson": "float",
-    "on": "PlaceOfASkin", "region": "PlaceOfASkin", "true": "PlaceOfASkin",
+    "material": "Literal['st_venant_kirchhoff', 'neo_hookean']", "on": "PlaceOfASkin", "region": "PlaceOfASkin",
+    "true": "PlaceOfASkin",
 }, total=False)
 
 PlaceOfASkinKeys = TypedDict("PlaceOfASkinKeys", {
@@ -135,11 +137,11 @@ PlaceOfASkinKeys = TypedDict("PlaceOfASkinKeys", {
 
 Spline = TypedDict("Spline", {
     "image": "str", "density": "DensityOfADrawing", "tone": "Tone", "page": "Page", "pen": "Number",
-    "pens": "Rows[Pens]", "separation": "Separation", "cross": "Cross", "direction": "Direction",
-    "start": "StartOfADrawing", "energies": "Energies", "potential": "Potential", "flow": "Flow", "pair": "Pair",
-    "method": "Literal['auto', 'newton', 'gradient', 'monte_carlo', 'dynamics']", "iterations": "int",
-    "tolerance": "float", "rounds": "int", "rest": "float", "monte_carlo": "MonteCarlo", "dynamics": "Dynamics",
-    "seed": "int", "order": "Literal['shortest', 'as_made']", "plotter": "Plotter",
+    "pens": "Rows[Pens]", "separation": "Separation", "regions": "Rows[Regions]", "cross": "Cross",
+    "direction": "Direction", "start": "StartOfADrawing", "energies": "Energies", "potential": "Potential",
+    "flow": "Flow", "pair": "Pair", "method": "Literal['auto', 'newton', 'gradient', 'monte_carlo', 'dynamics']",
+    "iterations": "int", "tolerance": "float", "rounds": "int", "rest": "float", "monte_carlo": "MonteCarlo",
+    "dynamics": "Dynamics", "seed": "int", "order": "Literal['shortest', 'as_made']", "plotter": "Plotter",
 }, total=False)
 
 DensityOfADrawingKeys = TypedDict("DensityOfADrawingKeys", {
@@ -167,8 +169,9 @@ SeparationKeys = TypedDict("SeparationKeys", {
     "kind": "Literal['cmyk', 'tones']", "black": "float",
 }, total=False)
 
-Cross = TypedDict("Cross", {
-    "angle": "Number", "from": "Union[float, Numbers]",
+Regions = TypedDict("Regions", {
+    "svg": "str", "mask": "str", "fit": "Literal['contain', 'paper']", "invert": "bool", "direction": "Direction",
+    "pen": "Number",
 }, total=False)
 
 DirectionKeys = TypedDict("DirectionKeys", {
@@ -176,14 +179,19 @@ DirectionKeys = TypedDict("DirectionKeys", {
     "detail": "Number", "smooth": "Number", "spread": "Number", "where": "Mapping[str, Where]",
 }, total=False)
 
+Cross = TypedDict("Cross", {
+    "angle": "Number", "from": "Union[float, Numbers]",
+}, total=False)
+
 StartOfADrawingKeys = TypedDict("StartOfADrawingKeys", {
-    "kind": "Literal['streamlines', 'random']", "separation": "float", "ink": "float", "longest": "Number",
-    "segments": "int",
+    "kind": "Literal['streamlines', 'random']", "file": "str", "separation": "float", "ink": "float",
+    "longest": "Number", "segments": "int",
 }, total=False)
 
 Energies = TypedDict("Energies", {
-    "tone": "float", "strain": "float", "bend": "float", "align": "float", "wall": "float", "stretch": "float",
-    "curvature": "float", "potential": "float", "flow": "float", "boundary": "float", "pair": "float",
+    "tone": "float", "strain": "float", "bend": "float", "align": "float", "wall": "float", "outline": "float",
+    "stretch": "float", "curvature": "float", "potential": "float", "flow": "float", "boundary": "float",
+    "pair": "float",
 }, total=False)
 
 PotentialKeys = TypedDict("PotentialKeys", {
@@ -362,9 +370,10 @@ StartOfFluxDensityKeys = TypedDict("StartOfFluxDensityKeys", {
 }, total=False)
 
 Objectives = TypedDict("Objectives", {
-    "target": "float", "height": "float", "magnetization_smoothness": "float", "waypoint": "Waypoint",
-    "curve": "Curve", "reach": "Reach", "field_magnitude": "float", "field_smoothness": "float", "dmp": "float",
-    "weight": "float", "of": "Number", "frame": "int", "frames": "Union[int, Numbers]", "pairs": "int",
+    "target": "float", "height": "float", "magnetization_smoothness": "float", "young_smoothness": "float",
+    "fold_smoothness": "float", "waypoint": "Waypoint", "curve": "Curve", "reach": "Reach",
+    "field_magnitude": "float", "field_smoothness": "float", "dmp": "float", "weight": "float", "of": "Number",
+    "frame": "int", "frames": "Union[int, Numbers]", "pairs": "int",
 }, total=False)
 
 Waypoint = TypedDict("Waypoint", {
