@@ -12,7 +12,8 @@ static Vec2 on_paper(const SplinePage *page, const double *p)
     return (Vec2){1e3 * (page->left + page->unit * p[0]), 1e3 * (page->top + page->unit * p[1])};
 }
 
-#define PAGE "density: 0.35, page: {size: [80 mm, 60 mm], margin: 4 mm}, pen: 0.5 mm, start: {file: lines.svg}"
+#define PAGE                                                                                                 \
+    "density: 0.35, page: {size: [80 mm, 60 mm], margin: 4 mm}, pen: 0.5 mm, start: {file: lines.svg}"
 
 static void lines(void **state)
 {

@@ -130,11 +130,11 @@ Skin = TypedDict("Skin", {
 
 Spline = TypedDict("Spline", {
     "image": "str", "density": "DensityOfADrawing", "tone": "Tone", "page": "Page", "pen": "Number",
-    "pens": "Rows[Pens]", "separation": "Separation", "cross": "Cross", "direction": "Direction",
-    "start": "StartOfADrawing", "energies": "Energies", "potential": "Potential", "flow": "Flow", "pair": "Pair",
-    "method": "Literal['auto', 'newton', 'gradient', 'monte_carlo', 'dynamics']", "iterations": "int",
-    "tolerance": "float", "rounds": "int", "rest": "float", "monte_carlo": "MonteCarlo", "dynamics": "Dynamics",
-    "seed": "int", "order": "Literal['shortest', 'as_made']", "plotter": "Plotter",
+    "pens": "Rows[Pens]", "separation": "Separation", "regions": "Rows[Regions]", "cross": "Cross",
+    "direction": "Direction", "start": "StartOfADrawing", "energies": "Energies", "potential": "Potential",
+    "flow": "Flow", "pair": "Pair", "method": "Literal['auto', 'newton', 'gradient', 'monte_carlo', 'dynamics']",
+    "iterations": "int", "tolerance": "float", "rounds": "int", "rest": "float", "monte_carlo": "MonteCarlo",
+    "dynamics": "Dynamics", "seed": "int", "order": "Literal['shortest', 'as_made']", "plotter": "Plotter",
 }, total=False)
 
 DensityOfADrawingKeys = TypedDict("DensityOfADrawingKeys", {
@@ -162,8 +162,9 @@ SeparationKeys = TypedDict("SeparationKeys", {
     "kind": "Literal['cmyk', 'tones']", "black": "float",
 }, total=False)
 
-Cross = TypedDict("Cross", {
-    "angle": "Number", "from": "Union[float, Numbers]",
+Regions = TypedDict("Regions", {
+    "svg": "str", "mask": "str", "fit": "Literal['contain', 'paper']", "invert": "bool", "direction": "Direction",
+    "pen": "Number",
 }, total=False)
 
 DirectionKeys = TypedDict("DirectionKeys", {
@@ -171,14 +172,19 @@ DirectionKeys = TypedDict("DirectionKeys", {
     "detail": "Number", "smooth": "Number", "spread": "Number", "where": "Mapping[str, Where]",
 }, total=False)
 
+Cross = TypedDict("Cross", {
+    "angle": "Number", "from": "Union[float, Numbers]",
+}, total=False)
+
 StartOfADrawingKeys = TypedDict("StartOfADrawingKeys", {
-    "kind": "Literal['streamlines', 'random']", "separation": "float", "ink": "float", "longest": "Number",
-    "segments": "int",
+    "kind": "Literal['streamlines', 'random']", "file": "str", "separation": "float", "ink": "float",
+    "longest": "Number", "segments": "int",
 }, total=False)
 
 Energies = TypedDict("Energies", {
-    "tone": "float", "strain": "float", "bend": "float", "align": "float", "wall": "float", "stretch": "float",
-    "curvature": "float", "potential": "float", "flow": "float", "boundary": "float", "pair": "float",
+    "tone": "float", "strain": "float", "bend": "float", "align": "float", "wall": "float", "outline": "float",
+    "stretch": "float", "curvature": "float", "potential": "float", "flow": "float", "boundary": "float",
+    "pair": "float",
 }, total=False)
 
 PotentialKeys = TypedDict("PotentialKeys", {
