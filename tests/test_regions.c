@@ -150,8 +150,9 @@ static void drawings(void **state)
                       strokes.count, outside);
         assert_true(strokes.count > 20 && outside <= pen / 2);
         SplineGrid outline = spline_grid(&d->outline);
+        /* the pixels' outline cuts corners by a sixth of a pen */
         assert_true(fabs(1e3 * d->page.unit * spline_outline_excess(&outline, &d->page, &strokes) -
-                         fmax(outside, 0)) < 0.1 * pen);
+                         fmax(outside, 0)) < 0.2 * pen);
         strokes_clear(&strokes);
         drawing_destroy(d);
     }
