@@ -120,9 +120,9 @@ static const YamlTable direction_table = {
 static const YamlTable region_table = {
     .name = "regions",
     .size = sizeof(RegionScene),
-    .doc = "A part of the page; strokes stay within its outline, and their ink within half a pen of it. What "
-           "several "
-           "share belongs to the first of them.",
+    .doc = "A part of the page. The middle of each stroke stays within its outline, to a sixth of a pen at "
+           "corners "
+           "(docs/line_art.md). What several share belongs to the first of them.",
     .fields = (const YamlField[]){
         {YAML_FILE(RegionScene, svg), .one_of = 1, .required = true,
          .doc =
