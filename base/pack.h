@@ -135,3 +135,26 @@ static inline Pack3 pack3_cross(Pack3 a, Pack3 b)
 {
     return pack3(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
 }
+
+/* ---- Elements in packs: faces, tetrahedra, .. ---- */
+
+/* So many hold them all. */
+static inline int pack_count(int elements)
+{
+    return (elements + PACK_LANES - 1) / PACK_LANES;
+}
+
+/* The one in a lane of a pack; the last one fills up. */
+static inline int pack_element(int elements, int pack, int lane)
+{
+    int element = pack * PACK_LANES + lane, last = elements - 1;
+    return element < last ? element : last;
+}
+
+/* A number of each: a component of values[elements][width]. */
+static inline Pack pack_param(int elements, int pack, const double *values, int width, int component)
+{
+    Pack r;
+    for (int l = 0; l < PACK_LANES; l++) r[l] = values[pack_element(elements, pack, l) * width + component];
+    return r;
+}

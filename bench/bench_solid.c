@@ -35,10 +35,10 @@ static double kernel_seconds(const Solid *solid, const State *state, const doubl
     double best = INFINITY, sum = 0;
     for (int r = 0; r < REPEATS; r++) {
         double seconds = 0;
-        for (int k = 0; k < face_pack_count(count); k++) {
+        for (int k = 0; k < pack_count(count); k++) {
             for (int l = 0; l < PACK_LANES; l++) {
                 int dof[TERM_MAX_DOF];
-                term.ops->dofs(term.self, face_of_lane(count, k, l), dof);
+                term.ops->dofs(term.self, pack_element(count, k, l), dof);
                 for (int i = 0; i < size; i++) x[i][l] = state->x[dof[i]];
             }
             double start = clock_seconds();

@@ -26,16 +26,11 @@ static void gather_turns(const RodLayout *layout, int pack, const double *x, Pac
     }
 }
 
-static int pack_count(const Rod *rod)
-{
-    return (rod->elements + PACK_LANES - 1) / PACK_LANES;
-}
-
 void rod_places(const Rod *rod, const RodLayout *layout, const double *x, int count, double *place)
 {
     RodTerm term = {.rod = rod, .layout = *layout};
     Vec3 now = {0};
-    for (int k = 0; k < pack_count(rod); k++) {
+    for (int k = 0; k < pack_count(rod->elements); k++) {
         Pack turns[6];
         gather_turns(layout, k, x, turns);
         Chord chord = chord_at(&term, k, x, turns);
@@ -97,7 +92,7 @@ void rod_natural_state(const Rod *rod, const RodLayout *layout, const double *p,
 
 void rod_element_strains(const Rod *rod, const RodLayout *layout, const double *x, Vec3 *strain)
 {
-    for (int k = 0; k < pack_count(rod); k++) {
+    for (int k = 0; k < pack_count(rod->elements); k++) {
         Pack turns[6];
         gather_turns(layout, k, x, turns);
         Segment s = segment_at(layout, k, x, turns);

@@ -267,7 +267,7 @@ static void bending_param_forward(const void *self, int pack, const Point *at, c
 static void bending_accept(const void *self, double *positions, double *memory)
 {
     const Bending *bending = self;
-    int packs = (bending_count(self) + PACK_LANES - 1) / PACK_LANES;
+    int packs = pack_count(bending_count(self));
     for (int k = 0; k < packs; k++) {
         Pack x[18];
         for (int l = 0; l < PACK_LANES; l++) {
@@ -285,7 +285,7 @@ static void bending_accept(const void *self, double *positions, double *memory)
 static int bending_memory(const void *self, double *rest)
 {
     const Bending *bending = self;
-    int packs = (bending_count(self) + PACK_LANES - 1) / PACK_LANES;
+    int packs = pack_count(bending_count(self));
     for (int k = 0; rest && k < packs; k++)
         for (int i = 0; i < 3; i++)
             memcpy(rest + (k * 3 + i) * PACK_LANES, &bending->packs[k].rest[i], sizeof(Pack));
@@ -367,7 +367,7 @@ static void set_edge(Bending *bending, int f, int i, BendingPack *pack, int lane
 Term shell_bending_term(const Shell *shell)
 {
     Bending *bending = mem_alloc(1, sizeof *bending);
-    int faces = shell->mesh->face_count, packs = (faces + PACK_LANES - 1) / PACK_LANES;
+    int faces = shell->mesh->face_count, packs = pack_count(faces);
     bending->shell = shell;
     bending->turn = turn_create(shell);
     bending->packs = mem_alloc((size_t)packs, sizeof *bending->packs);

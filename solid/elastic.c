@@ -30,7 +30,7 @@ static void elastic_dofs(const void *self, int tet, int *dof)
 
 static Pack young_of(const Elastic *elastic, int pack, const double *values)
 {
-    return face_param(elastic->solid->tets->count, pack, values + elastic->solid->young, 1, 0);
+    return pack_param(elastic->solid->tets->count, pack, values + elastic->solid->young, 1, 0);
 }
 
 /* The points of a pack at x, with weights for Young's modulus; their number. */
@@ -102,7 +102,7 @@ static void elastic_param(const void *self, int pack, int lanes, const Point *at
     forces(elastic, points, count, g);
     for (int i = 0; i < elastic_size(self); i++) sum += w[i] * g[i];
     for (int l = 0; l < lanes; l++)
-        dp[elastic->solid->young + face_of_lane(elastic_count(self), pack, l)] += sum[l];
+        dp[elastic->solid->young + pack_element(elastic_count(self), pack, l)] += sum[l];
 }
 
 static void elastic_param_forward(const void *self, int pack, const Point *at, const Pack *x,

@@ -11,7 +11,7 @@ static Pack least_of_pack(const Tets *tets, int pack, const double *x)
     Pack own[3 * TET_MAX_NODES], least = pack_set(INFINITY);
     for (int l = 0; l < PACK_LANES; l++) {
         int dof[3 * TET_MAX_NODES];
-        tet_dofs(tets, face_of_lane(tets->count, pack, l), dof);
+        tet_dofs(tets, pack_element(tets->count, pack, l), dof);
         for (int i = 0; i < 3 * tets->each; i++) own[i][l] = x[dof[i]];
     }
     int points = tet_point_count(tets), places = points + (points > 1 ? TET_MAX_NODES : 0);
@@ -36,9 +36,9 @@ static Pack least_of_pack(const Tets *tets, int pack, const double *x)
 void solid_jacobians(const Solid *solid, const double *x, double *least)
 {
     int count = solid->tets->count;
-    for (int k = 0; k < face_pack_count(count); k++) {
+    for (int k = 0; k < pack_count(count); k++) {
         Pack J = least_of_pack(solid->tets, k, x);
-        for (int l = 0; l < PACK_LANES; l++) least[face_of_lane(count, k, l)] = J[l];
+        for (int l = 0; l < PACK_LANES; l++) least[pack_element(count, k, l)] = J[l];
     }
 }
 
@@ -46,12 +46,12 @@ double solid_least_jacobian(const Solid *solid, const double *x, int *tet)
 {
     const Tets *tets = solid->tets;
     double least = INFINITY;
-    for (int k = 0; k < face_pack_count(tets->count); k++) {
+    for (int k = 0; k < pack_count(tets->count); k++) {
         Pack J = least_of_pack(tets, k, x);
         for (int l = 0; l < PACK_LANES; l++)
             if (J[l] < least) {
                 least = J[l];
-                if (tet) *tet = face_of_lane(tets->count, k, l);
+                if (tet) *tet = pack_element(tets->count, k, l);
             }
     }
     return least;

@@ -191,10 +191,10 @@ Term solid_mean_dilation_term(const Solid *solid)
                    .points = quadratic ? TET_MAX_POINTS : PATCH_TETS,
                    .nodes = quadratic ? PATCH_NODES : PATCH_LINEAR_NODES};
     if (solid->averaging > 0) mean->patches = tet_patches(tets, &mean->count);
-    int packs = face_pack_count(mean->count);
+    int packs = pack_count(mean->count);
     mean->packs = mem_alloc((size_t)packs, sizeof *mean->packs);
     for (int k = 0; k < packs * PACK_LANES; k++)
-        set_lane(mean, &mean->patches[face_of_lane(mean->count, k / PACK_LANES, k % PACK_LANES)],
+        set_lane(mean, &mean->patches[pack_element(mean->count, k / PACK_LANES, k % PACK_LANES)],
                  k % PACK_LANES, &mean->packs[k / PACK_LANES]);
     return (Term){&mean_ops, mean};
 }

@@ -23,7 +23,7 @@ TetPack tet_pack(const Tets *tets, int pack)
 {
     TetPack r;
     for (int l = 0; l < PACK_LANES; l++) {
-        int tet = face_of_lane(tets->count, pack, l);
+        int tet = pack_element(tets->count, pack, l);
         double hat[4][3];
         hats(tets, tet, hat);
         for (int a = 0; a < 4; a++)
@@ -35,7 +35,7 @@ TetPack tet_pack(const Tets *tets, int pack)
 
 TetPack *tet_packs(const Tets *tets)
 {
-    int count = face_pack_count(tets->count);
+    int count = pack_count(tets->count);
     TetPack *packs = mem_alloc((size_t)count, sizeof *packs);
     for (int k = 0; k < count; k++) packs[k] = tet_pack(tets, k);
     return packs;

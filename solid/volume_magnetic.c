@@ -70,8 +70,8 @@ static Pack3 magnetization_of(const Solid *solid, int pack, const double *values
 {
     const double *M = values + solid->volume_magnetization;
     int count = solid->tets->count;
-    return pack3(face_param(count, pack, M, 3, 0), face_param(count, pack, M, 3, 1),
-                 face_param(count, pack, M, 3, 2));
+    return pack3(pack_param(count, pack, M, 3, 0), pack_param(count, pack, M, 3, 1),
+                 pack_param(count, pack, M, 3, 2));
 }
 
 /* g -= w (c_a B + N_a G^T Q) */
@@ -144,7 +144,7 @@ static void magnetic_param(const void *self, int pack, int lanes, const Point *a
         Pack3 dM =
             pack3_add(pack_mat_left(flux.B, W), pack_mat_left(pack_mat_times(flux.gradient, mean), place.F));
         for (int l = 0; l < lanes; l++) {
-            double *m = dp + solid->volume_magnetization + 3 * face_of_lane(solid->tets->count, pack, l),
+            double *m = dp + solid->volume_magnetization + 3 * pack_element(solid->tets->count, pack, l),
                    *b = dp + solid->flux_density, weight = place.weight[l];
             m[0] -= weight * dM.x[l], m[1] -= weight * dM.y[l], m[2] -= weight * dM.z[l];
             b[0] -= weight * dQ.x[l], b[1] -= weight * dQ.y[l], b[2] -= weight * dQ.z[l];

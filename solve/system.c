@@ -52,7 +52,7 @@ void system_list_elements(Entry *entry)
 {
     const TermOps *ops = entry->term.ops;
     entry->count = ops->count(entry->term.self);
-    entry->packs = (entry->count + PACK_LANES - 1) / PACK_LANES;
+    entry->packs = pack_count(entry->count);
     mem_free(entry->dofs);
     entry->dofs = mem_alloc((size_t)entry->packs * (size_t)entry->size, sizeof *entry->dofs);
     for (int k = 0; k < entry->packs; k++)

@@ -38,7 +38,7 @@ static void group_strokes(SplineModel *model)
 
 static Pack *packs_of(const double *values, int count)
 {
-    int packs = (count + PACK_LANES - 1) / PACK_LANES;
+    int packs = pack_count(count);
     Pack *to = mem_alloc((size_t)packs, sizeof *to);
     for (int k = 0; k < packs * PACK_LANES; k++)
         to[k / PACK_LANES][k % PACK_LANES] = values[k < count ? k : count - 1];

@@ -4,18 +4,6 @@
 #include "base/pack.h"
 #include "surface/mesh.h"
 
-static inline int face_pack_count(int face_count)
-{
-    return (face_count + PACK_LANES - 1) / PACK_LANES;
-}
-
-/* The face in a lane of a pack; the last one fills up. */
-static inline int face_of_lane(int face_count, int pack, int lane)
-{
-    int face = pack * PACK_LANES + lane, last = face_count - 1;
-    return face < last ? face : last;
-}
-
 /* Nine dofs: the three vertices' positions. */
 static inline void face_dofs(const int *face, int *dof)
 {
@@ -31,14 +19,6 @@ FaceFrame face_frame(double (*rest)[3], const int *face);
 
 /* The same gradients in two axes of the face's rest plane, 1/m. */
 void face_gradients(double (*rest)[3], const int *face, double b[3][2]);
-
-/* One parameter per face, a component of values[face_count][width]. */
-static inline Pack face_param(int face_count, int pack, const double *values, int width, int component)
-{
-    Pack r;
-    for (int l = 0; l < PACK_LANES; l++) r[l] = values[face_of_lane(face_count, pack, l) * width + component];
-    return r;
-}
 
 /* Faces that bear a layer of material: a shell's own, the skin of a solid. Its vertices may be some of a body's. */
 typedef struct FaceLayer {
@@ -56,7 +36,7 @@ void face_layer_clear(FaceLayer *layer);
 /* The row of the face in a lane of a pack. */
 static inline int face_layer_row(const FaceLayer *layer, int pack, int lane)
 {
-    return layer->rows[face_of_lane(layer->count, pack, lane)];
+    return layer->rows[pack_element(layer->count, pack, lane)];
 }
 
 /* A component of the layer's faces, of values[row][width]. */

@@ -7,6 +7,9 @@
 
 typedef struct FluxField FluxField;
 
+/* T m/A, of free space. */
+#define FLUX_MU_0 (4e-7 * 3.14159265358979323846)
+
 /* B at a point x (m) and time (s): flux[3] in T, gradient[k][l] = dB_k/dx_l in T/m, curvature[k][l][m] in T/m^2. */
 typedef struct FluxSample {
     double flux[3], gradient[3][3], curvature[3][3][3];

@@ -258,11 +258,11 @@ static const TermOps magnetic_ops = {
 Term magnetic_surface_term(FaceLayer layer, const MagneticSurfaceDef *def)
 {
     Magnetic *magnetic = mem_alloc(1, sizeof *magnetic);
-    int packs = face_pack_count(layer.count);
+    int packs = pack_count(layer.count);
     magnetic->layer = layer, magnetic->def = *def;
     magnetic->packs = mem_alloc((size_t)packs, sizeof *magnetic->packs);
     for (int k = 0; k < packs * PACK_LANES; k++) {
-        int l = k % PACK_LANES, face = face_of_lane(layer.count, k / PACK_LANES, l);
+        int l = k % PACK_LANES, face = pack_element(layer.count, k / PACK_LANES, l);
         MagneticPack *pack = &magnetic->packs[k / PACK_LANES];
         FaceFrame frame = face_frame(layer.rest, layer.faces[face]);
         for (int i = 0; i < 3; i++)

@@ -146,7 +146,7 @@ static void extrapolate(const Membrane *membrane, int pack, const Point *at, Str
     Pack x[9], d[9];
     for (int l = 0; l < PACK_LANES; l++) {
         int dof[9];
-        membrane_dofs(membrane, face_of_lane(membrane_count(membrane), pack, l), dof);
+        membrane_dofs(membrane, pack_element(membrane_count(membrane), pack, l), dof);
         for (int i = 0; i < 9; i++) x[i][l] = at->x_from[dof[i]], d[i][l] = at->step[dof[i]];
     }
     Strain from = strain(membrane, pack, x);
@@ -286,12 +286,12 @@ static const TermOps membrane_ops = {
 Term membrane_term(FaceLayer layer, const MembraneDef *def)
 {
     Membrane *membrane = mem_alloc(1, sizeof *membrane);
-    int packs = face_pack_count(layer.count);
+    int packs = pack_count(layer.count);
     membrane->layer = layer, membrane->def = *def;
     membrane->law = law_of(def->material);
     membrane->packs = mem_alloc((size_t)packs, sizeof *membrane->packs);
     for (int k = 0; k < packs * PACK_LANES; k++) {
-        int l = k % PACK_LANES, face = face_of_lane(layer.count, k / PACK_LANES, l);
+        int l = k % PACK_LANES, face = pack_element(layer.count, k / PACK_LANES, l);
         MembranePack *pack = &membrane->packs[k / PACK_LANES];
         double b[3][2];
         face_gradients(layer.rest, layer.faces[face], b);

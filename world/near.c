@@ -54,7 +54,7 @@ static void sort(Centre *centres, int count)
 /* The middle one's place, such that all leaves but the last are full. */
 static int half(int count)
 {
-    int leaves = (count + PACK_LANES - 1) / PACK_LANES;
+    int leaves = pack_count(count);
     return (leaves + 1) / 2 * PACK_LANES;
 }
 
@@ -78,7 +78,7 @@ static void make_node(NearTree *tree, Centre *centres, int count)
 NearTree *near_tree_create(int count, const Box *boxes)
 {
     NearTree *tree = mem_alloc(1, sizeof *tree);
-    int leaves = (count + PACK_LANES - 1) / PACK_LANES;
+    int leaves = pack_count(count);
     tree->count = count;
     tree->nodes = mem_alloc(2 * (size_t)leaves, sizeof *tree->nodes);
     tree->leaves = mem_alloc((size_t)leaves, sizeof *tree->leaves);
