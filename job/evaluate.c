@@ -76,7 +76,12 @@ static RunStatus run_evaluate(Run *run, Error *err)
         NewtonStatus relaxed = relax(run, c);
         if (relaxed > worst) worst = relaxed;
         shots[k] = (Snapshot){c, c->stages[0].p, c->state, judge(run, c, k), NULL, NULL};
-        if (run_is_crushed(run, &shots[k], false)) worst = shots[k].status;
+        bool finite = shots[k].status != NEWTON_NOT_FINITE;
+        if (!finite) {
+            host_say(run->host, "%s: %s", c->name, newton_status_text(NEWTON_NOT_FINITE));
+            run_say_unknown_field(run, &shots[k], 0);
+        }
+        if (run_is_crushed(run, &shots[k], false) || !finite) worst = shots[k].status;
         ok = run_put_frame(run, k, k, &shots[k], k == 0, err);
     }
     Arrays list = {0};

@@ -7,8 +7,6 @@
 #include <math.h>
 #include <string.h>
 
-static const double MU_0 = 4e-7 * M_PI;
-
 bool build_selection(const Build *b, Key at, const SelectionScene *scene, Indices *found)
 {
     if (!scene) {
@@ -131,7 +129,8 @@ bool build_flux(const Build *b, Key at, const FluxScene *scene, double *uniform,
         *field = flux_field_dipole(scene->dipole->at, scene->dipole->moment);
     else if (scene->magnet) {
         double moment[3];
-        for (int i = 0; i < 3; i++) moment[i] = scene->magnet->remanence[i] * scene->magnet->volume / MU_0;
+        for (int i = 0; i < 3; i++)
+            moment[i] = scene->magnet->remanence[i] * scene->magnet->volume / FLUX_MU_0;
         *field = flux_field_dipole(scene->magnet->at, moment);
     } else
         memcpy(uniform, scene->value, sizeof scene->value);

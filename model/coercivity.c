@@ -4,7 +4,6 @@
 #include <math.h>
 
 static const double PART = 0.5; /* of the coercivity */
-static const double MU_0 = 4e-7 * M_PI;
 
 static Vec3 middle(MagnetPart part, const double *place, int element)
 {
@@ -43,11 +42,11 @@ static char *judge(const Model *model, MagnetPart part, const double *p, const S
     }
     Vec3 x = where < 0 ? (Vec3){0} : middle(part, place, where);
     mem_free(place);
-    if (!(most > PART * MU_0 * part.coercivity)) return NULL;
+    if (!(most > PART * FLUX_MU_0 * part.coercivity)) return NULL;
     return mem_format(
         "%s %d, at (%.3g, %.3g, %.3g) m, is in a field of %.3g T, which is %.3g of its coercivity: from "
         "%g of that on a magnetisation may be lost or turn over, which the model leaves out",
-        part.noun, where, x.x, x.y, x.z, most, most / (MU_0 * part.coercivity), PART);
+        part.noun, where, x.x, x.y, x.z, most, most / (FLUX_MU_0 * part.coercivity), PART);
 }
 
 char *coercivity_doubt(const Model *model, MagnetPart part, const Snapshot *shot)

@@ -106,6 +106,25 @@ design: {unknowns: {magnetization: {scale: 1.0e+4}, young: {bounds: [1 kPa, 1 MP
 END
 expect 0 "$program" run idle.yaml --no-picture; says "the unknown young does not act on the objective at the start"
 
+# A pose in which forces are no numbers is said to be one, whatever the body.
+flux='flux_density: {formula: ["0", "0", "0.01*log(0.02 - x)"]}'
+cat > nowhere_rod.yaml <<END
+slender: 1
+job: evaluate
+rod: {natural_strain: [0, 0, 0], length: 50 mm, radius: 1 mm, young: 1 MPa, poisson: 0.4, density: 1000, magnetization: [1.0e+4, 0, 0], elements: 10}
+$flux
+END
+cat > nowhere_shell.yaml <<END
+slender: 1
+job: evaluate
+shell: {mesh: {shape: strip, size: [40 mm, 5 mm], n: 4}, thickness: 0.5 mm, young: 0.1 MPa, poisson: 0.3, magnetization: [1.0e+4, 0, 0]}
+$flux
+END
+for body in rod shell; do
+    expect 1 "$program" run nowhere_$body.yaml --no-picture; says "is not a finite number at x = 0.02"
+    is "$body, forces that are no numbers" "$(status nowhere_$body.vtkhdf)" not_finite
+done
+
 # A formula of time that is no number is a scene that is refused, whenever that shows.
 cat > formula.yaml <<'END'
 slender: 1
