@@ -81,6 +81,11 @@ static void test_skin(void **state)
     assert_int_equal(page_show(NAME, &def, &err), SHOW_DONE);
     def.field = "least_jacobian";
     assert_int_equal(page_show(NAME, &def, &err), SHOW_DONE);
+    /* A stiff film, on the lower half of the side that is seen. */
+    run(BLOCK "  young: 1 MPa\n  skin: {thickness: 1 mm, poisson: 0.3, "
+              "young: {formula: \"z < 0.005 ? 5e6 : 1e6\"}}\n");
+    def = from_front("young");
+    check_parts(&def, 0.5, 0.5);
 }
 
 static int dots_of(Page page)

@@ -253,11 +253,12 @@ static bool frame_field(const ShowMesh *mesh, int step, const char *name, const 
     return *values = shown_numbers(mesh, (ShowRows){numbers + body->cell_count, numbers}), true;
 }
 
-/* Parameters that the design has whole, whatever its frames have. */
+/* Parameters that the design has whole, whatever its frames have. A solid's young is two blocks, its own and its film's: the
+ * frames have them as one. */
 static bool design_field(const ShowMesh *mesh, const char *name, const double **values, const char **unit)
 {
     ShowRows rows = {NULL, NULL};
-    bool young = !strcmp(name, "young");
+    bool young = !strcmp(name, "young") && !mesh->body.cell_count;
     if (young) rows = design_rows(mesh, name, 1);
     if (!strcmp(name, "magnetization")) rows = sizes(mesh, mesh->magnetization);
     if (!strcmp(name, "volume_magnetization")) rows = sizes(mesh, design_rows(mesh, name, 3));
