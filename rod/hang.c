@@ -1,4 +1,4 @@
-/* Weight and dead loads of a rod without positions: E = -sum_e T_e.(chord of e), T_e the sum of the loads
+/* Weight and dead loads of a rod without positions: E = -sum_e T_e.(chord of e, stretched), T_e the sum of the loads
  * beyond the element, which is the potential of the nodes' weights and loads but for that of the first node.
  */
 #include "rod/chord.h"
@@ -22,11 +22,33 @@ static Pack3 pull(const RodTerm *term, int pack, const double *p)
                       rod_term_vector(term, pack, p + rod->pull));
 }
 
+static int hang_size(const void *self)
+{
+    return ((const RodTerm *)self)->layout.strain >= 0 ? 9 : 6;
+}
+
+static void hang_dofs(const void *self, int e, int *dof)
+{
+    rod_term_turn_dofs(self, e, dof);
+    rod_term_strain_dofs(self, e, dof + 6);
+}
+
 static void gradient(const Chord *chord, Pack3 T, Pack *g)
 {
-    rod_term_clear(g, 6);
+    rod_term_clear(g, chord->stretches ? 9 : 6);
     chord_gradient(chord, T, g);
     rod_term_turn_gradient(&chord->s, g);
+}
+
+static void hessian(const Chord *chord, Pack3 T, Pack *H)
+{
+    PackMat block[3];
+    chord_hessian(chord, T, block);
+    element_clear(H, chord->stretches ? 9 : 6);
+    rod_term_add_blocks(H, 0, block);
+    if (!chord->stretches) return;
+    chord_mixed_hessian(chord, T, block);
+    for (int k = 0; k < 2; k++) element_add_block(H, 2, k, block[k]);
 }
 
 static Pack hang_eval(const void *self, int pack, const Point *at, const Pack *x, Pack *g, Pack *H)
@@ -34,12 +56,7 @@ static Pack hang_eval(const void *self, int pack, const Point *at, const Pack *x
     Chord chord = chord_at(self, pack, at->x, x);
     Pack3 T = pull(self, pack, at->p);
     if (g) gradient(&chord, T, g);
-    if (H) {
-        PackMat block[3];
-        chord_hessian(&chord, T, block);
-        element_clear(H, 6);
-        rod_term_add_blocks(H, 0, block);
-    }
+    if (H) hessian(&chord, T, H);
     return -pack3_dot(T, chord_world(&chord));
 }
 
@@ -49,6 +66,7 @@ static void hang_param(const void *self, int pack, int lanes, const Point *at, c
     const RodTerm *term = self;
     Chord chord = chord_at(term, pack, at->x, x);
     Pack3 rate = chord_rate(&chord, pack3_load(w), pack3_load(w + 3));
+    if (chord.stretches) rate = pack3_add(rate, chord_strain_rate(&chord, pack3_load(w + 6)));
     Pack mass = beyond(term, pack);
     for (int l = 0; l < lanes; l++) {
         double *to = dp + term->rod->pull + 3 * (pack * PACK_LANES + l), *gravity = dp + term->rod->gravity;
@@ -67,8 +85,8 @@ static void hang_param_forward(const void *self, int pack, const Point *at, cons
 static const TermOps hang_ops = {
     .name = "gravity",
     .count = rod_term_count,
-    .size = rod_term_turns,
-    .dofs = rod_term_turn_dofs,
+    .size = hang_size,
+    .dofs = hang_dofs,
     .eval = hang_eval,
     .param = hang_param,
     .param_forward = hang_param_forward,

@@ -1,19 +1,24 @@
-/* Inextensibility of a rod with positions: c = x_b - x_a - R_a C = 0 for each element, by its multiplier
- * lambda, the force of the element on its first node:
+/* Positions of a rod where rotations (and the strains of a Cosserat rod) have them: c = x_b - x_a - chord = 0 for each
+ * element, by its multiplier lambda, the force of the element on its first node:
  *
  *     E = lambda.c + hold/2 |c|^2
  *
  * The second part (an augmented Lagrangian) is 0 wherever a rod may be and changes no solution, but makes the
  * matrix definite in the positions, so that its LDL^T needs no pivoting. Trials are made admissible by
- * putting the positions where the rotations have them; only a held end is reached by Newton's steps. */
+ * putting the positions where the rest has them; only a held end is reached by Newton's steps. */
 #include "rod/chord.h"
 
-enum { XA, XB, TURN_A, TURN_B, LAMBDA, BLOCKS }; /* an element's dofs, three each */
+enum { XA, XB, LAMBDA, TURN_A, TURN_B, STRAIN, BLOCKS }; /* an element's dofs, three each */
+
+/* Only Cosserat rods have the last ones. */
+static int blocks_of(bool stretches)
+{
+    return stretches ? BLOCKS : STRAIN;
+}
 
 static int link_size(const void *self)
 {
-    (void)self;
-    return 3 * BLOCKS;
+    return 3 * blocks_of(((const RodTerm *)self)->layout.strain >= 0);
 }
 
 static void link_dofs(const void *self, int e, int *dof)
@@ -25,35 +30,52 @@ static void link_dofs(const void *self, int e, int *dof)
         dof[3 * TURN_A + i] = layout->turn + 3 * node + i;
         if (i < 3) dof[3 * LAMBDA + i] = layout->multiplier + 3 * e + i;
     }
+    rod_term_strain_dofs(self, e, dof + 3 * STRAIN);
 }
 
-/* -d(R_a C) of the turns of a or of b: the rows are the three turns. */
-static PackMat turn_rows(const Chord *chord, bool b)
+/* dc of the turns of a or of b, or of the strain: the rows are its three numbers. */
+static PackMat rates(const Chord *chord, int block)
 {
     Pack3 zero = {{0}, {0}, {0}}, row[3];
     for (int i = 0; i < 3; i++) {
         Pack3 unit = pack3(pack_set(i == 0), pack_set(i == 1), pack_set(i == 2));
-        row[i] = pack3_neg(b ? chord_rate(chord, zero, unit) : chord_rate(chord, unit, zero));
+        row[i] = pack3_neg(block == TURN_A   ? chord_rate(chord, unit, zero)
+                           : block == TURN_B ? chord_rate(chord, zero, unit)
+                                             : chord_strain_rate(chord, unit));
     }
     return (PackMat){row[0], row[1], row[2]};
 }
 
+/* What a force does as chords bend. */
+static void add_bent(const Chord *chord, Pack3 force, Pack *H)
+{
+    PackMat block[3];
+    chord_hessian(chord, force, block);
+    rod_term_add_blocks(H, TURN_A, block);
+    if (!chord->stretches) return;
+    chord_mixed_hessian(chord, force, block);
+    for (int k = 0; k < 2; k++) element_add_block(H, STRAIN, TURN_A + k, block[k]);
+}
+
 static void hessian(const Chord *chord, Pack hold, Pack3 force, Pack *H)
 {
-    PackMat block[3], rows[2] = {turn_rows(chord, false), turn_rows(chord, true)};
-    chord_hessian(chord, force, block);
-    PackMat held[2] = {pack_mat_scale(hold, rows[0]), pack_mat_scale(hold, rows[1])};
-    block[0] = pack_mat_add(block[0], pack_mat_product(held[0], pack_mat_transpose(rows[0])));
-    block[1] = pack_mat_add(block[1], pack_mat_product(held[0], pack_mat_transpose(rows[1])));
-    block[2] = pack_mat_add(block[2], pack_mat_product(held[1], pack_mat_transpose(rows[1])));
-    element_clear(H, 3 * BLOCKS);
-    rod_term_add_blocks(H, TURN_A, block);
+    int blocks = blocks_of(chord->stretches);
+    element_clear(H, 3 * blocks);
+    add_bent(chord, force, H);
+    PackMat rows[BLOCKS];
+    for (int i = TURN_A; i < blocks; i++) rows[i] = rates(chord, i);
+    for (int i = TURN_A; i < blocks; i++) {
+        PackMat held = pack_mat_scale(hold, rows[i]);
+        element_add_diagonal(H, i, pack_mat_product(held, pack_mat_transpose(rows[i])));
+        for (int j = i + 1; j < blocks; j++)
+            element_add_block(H, i, j, pack_mat_product(held, pack_mat_transpose(rows[j])));
+        element_add_block(H, i, LAMBDA, rows[i]);
+        element_add_block(H, i, XA, pack_mat_neg(held));
+        element_add_block(H, i, XB, held);
+    }
     for (int k = 0; k < 2; k++) {
-        Pack sign = pack_set(k == 0 ? -1 : 1);
         element_add_diagonal(H, XA + k, pack_mat_diagonal(hold));
-        element_add_block(H, LAMBDA, XA + k, pack_mat_diagonal(sign));
-        element_add_block(H, LAMBDA, TURN_A + k, pack_mat_transpose(rows[k]));
-        for (int i = 0; i < 2; i++) element_add_block(H, TURN_A + i, XA + k, pack_mat_scale(sign, held[i]));
+        element_add_block(H, LAMBDA, XA + k, pack_mat_diagonal(pack_set(k == 0 ? -1 : 1)));
     }
     element_add_block(H, XA, XB, pack_mat_diagonal(-hold));
 }
@@ -67,7 +89,7 @@ static Pack link_eval(const void *self, int pack, const Point *at, const Pack *x
           c = pack3_sub(pack3_sub(pack3_load(x + 3 * XB), pack3_load(x)), chord_world(&chord));
     Pack3 force = pack3_axpy(hold, c, lambda);
     if (g) {
-        rod_term_clear(g, 3 * BLOCKS);
+        rod_term_clear(g, 3 * blocks_of(chord.stretches));
         pack3_store(g + 3 * XA, pack3_neg(force));
         pack3_store(g + 3 * XB, force);
         chord_gradient(&chord, force, g + 3 * TURN_A);
@@ -78,7 +100,7 @@ static Pack link_eval(const void *self, int pack, const Point *at, const Pack *x
     return pack3_dot(lambda, c) + hold / 2 * pack3_dot(c, c);
 }
 
-/* Positions where the rotations have them; a held end stays. */
+/* Positions where rotations and strains have them; a held end stays. */
 static void link_project(const void *self, const double *from, double *x)
 {
     (void)from;

@@ -148,10 +148,12 @@ void rod_share_loads(const Rod *rod, RodLoads loads, double *load)
 
 static void add_terms(System *sys, const Rod *rod, const RodLayout *layout, double hold)
 {
-    RodForm form = layout->position >= 0 ? ROD_WITH_POSITIONS : ROD_HANGING;
+    const bool has[] = {[ROD_ANY_FORM] = true,
+                        [ROD_STRETCHING] = layout->strain >= 0,
+                        [ROD_HANGING] = layout->position < 0,
+                        [ROD_WITH_POSITIONS] = layout->position >= 0};
     for (int r = 0; r < rod_term_row_count; r++)
-        if (rod_term_rows[r].form == ROD_ANY_FORM || rod_term_rows[r].form == form)
-            system_add(sys, rod_term_rows[r].create(rod, *layout, hold));
+        if (has[rod_term_rows[r].form]) system_add(sys, rod_term_rows[r].create(rod, *layout, hold));
 }
 
 /* Weight and loads on positions; in motion inertia and damping. */
@@ -174,7 +176,7 @@ static void fix(System *sys, int first, int count, bool held)
     for (int i = first; held && i < first + count; i++) system_fix(sys, i);
 }
 
-/* Node after node along the strands; an element's multipliers after both its nodes. */
+/* Node after node along the strands; an element's strain and multipliers after both its nodes. */
 static void set_order(System *sys, const RodLayout *layout)
 {
     int *order = mem_alloc((size_t)layout->dofs, sizeof *order), count = 0;
@@ -183,6 +185,8 @@ static void set_order(System *sys, const RodLayout *layout)
         for (int k = 0; k < 3; k++) order[count++] = layout->turn + 3 * i + k;
         int strand = i / (layout->each + 1), e = i - strand - 1;
         bool ends = i % (layout->each + 1) > 0;
+        for (int k = 0; layout->strain >= 0 && ends && k < 3; k++)
+            order[count++] = layout->strain + 3 * e + k;
         for (int k = 0; layout->multiplier >= 0 && ends && k < 3; k++)
             order[count++] = layout->multiplier + 3 * e + k;
     }
@@ -191,10 +195,16 @@ static void set_order(System *sys, const RodLayout *layout)
     mem_free(order);
 }
 
+static DofClass strains_of(const Rod *rod, const RodLayout *layout)
+{
+    return (DofClass){.first = layout->strain, .count = 3 * rod->elements, .size = 1};
+}
+
 System *rod_hanging_system(const Rod *rod)
 {
     RodLayout layout = rod_layout(rod, false);
-    System *sys = system_create(layout.dofs, &(DofClass){.count = 3 * layout.nodes, .size = 1}, 1);
+    DofClass classes[] = {{.count = 3 * layout.nodes, .size = 1}, strains_of(rod, &layout)};
+    System *sys = system_create(layout.dofs, classes, rod->cosserat ? 2 : 1);
     add_terms(sys, rod, &layout, 0);
     for (int k = 0; k < rod->strands; k++) fix(sys, layout.turn + 3 * k * (layout.each + 1), 3, true);
     fix(sys, layout.reference, 4 * layout.nodes, true);
@@ -216,8 +226,9 @@ System *rod_system(const Rod *rod, double young, bool dynamic)
          .count = 3,
          .size = INFINITY,
          .multipliers = true,
-         .force = rod->end == ROD_FREE ? 0 : PUSH * bend / pow(length, 2)}};
-    System *sys = system_create(layout.dofs, classes, 4);
+         .force = rod->end == ROD_FREE ? 0 : PUSH * bend / pow(length, 2)},
+        strains_of(rod, &layout)};
+    System *sys = system_create(layout.dofs, classes, rod->cosserat ? 5 : 4);
     add_terms(sys, rod, &layout, HOLD * bend / pow(length, 3));
     add_lumped_terms(sys, rod, dynamic);
     if (rod->world) world_add_terms(rod->world, sys, dynamic);

@@ -1,15 +1,19 @@
-/* rod.h - inextensible, unshearable rods (Kirchhoff) in elements of constant strain, and their states. One rod, or
- * several strands of as many elements each, one after the other: they know nothing of each other but by their world.
+/* rod.h - rods in elements of constant strain, and their states: inextensible, unshearable ones (Kirchhoff), or ones that
+ * stretch and shear, too (Cosserat). One rod, or several strands of as many elements each, one after the other: they know
+ * nothing of each other but by their world.
  *
  * Its shape is a rotation at each node; between two nodes strain is constant, so an element is a piece of a
  * helix and its chord is known in closed form: positions follow from rotations exactly, and never stretch
  * [Bertails et al. 2006, with rotations in place of curvatures as unknowns]. A node's frame is R = R(q):
- * tangent R e_x, section's axes R e_y, R e_z.
+ * tangent R e_x, section's axes R e_y, R e_z. A Cosserat rod's elements have a strain of stretch and shear each, by which
+ * their chords are longer and off the frames' tangents (chord.h): where these are stiff it is Kirchhoff's, with no more
+ * Newton iterations.
  *
  * A state x[dofs] holds, in this order (RodLayout),
  *     positions    [nodes][3], m, of the forms that have them;
  *     turns        [nodes][3], increments from the reference in the body's frame, q = reference (1, turn/2)
  *                  made a unit: terms differentiate at turn 0, and accepted turns go into the references;
+ *     strains      [elements][3], of a Cosserat rod: along the tangent, n1, n2 (stretch and shear);
  *     multipliers  [elements][3], N, what an element does to its first node, where there are positions;
  *     references   [nodes][4], unit quaternions (w, v), which are no unknowns;
  * so that x is the whole state. Two forms serve: `hanging`, of rotations only, for statics of a rod that is
@@ -39,6 +43,7 @@ typedef struct Rod {
     RodStrand *strand;     /* [strands] owned                              */
     RodSection unit;       /* of a Young's modulus of 1 Pa; mass in kg/m   */
     double area;           /* of the section, m^2                          */
+    bool cosserat;         /* stretches and shears                         */
     RodSupport start, end; /* of each; start: clamped or pinned            */
     Vec3 *bow;         /* [elements] m, in the first node's frame: how far an element's chord is off that of a
                 * helix, because strain varies within it; usually 0; owned */
@@ -114,8 +119,8 @@ void rod_share_loads(const Rod *rod, RodLoads loads, double *load);
 /* ---- States ---- */
 
 typedef struct RodLayout {
-    int nodes, elements, each;                 /* each: elements of a strand */
-    int position, turn, multiplier, reference; /* first dof of each; -1: none */
+    int nodes, elements, each;                         /* each: elements of a strand */
+    int position, turn, strain, multiplier, reference; /* first dof of each; -1: none */
     int dofs;
 } RodLayout;
 
@@ -133,17 +138,17 @@ static inline Quat rod_reference(const RodLayout *layout, const double *x, int n
     return (Quat){q[0], {q[1], q[2], q[3]}};
 }
 
-/* The state with these rotations: q[nodes], turns and multipliers 0, positions from the first node on. */
+/* The state with these rotations: q[nodes], turns, strains and multipliers 0, positions from the first node on. */
 void rod_set_state(const Rod *rod, const RodLayout *layout, const Quat *q, double *x);
 
 /* The natural shape, from the clamp on. */
 void rod_natural_state(const Rod *rod, const RodLayout *layout, const double *p, double *x);
 
-/* The same state in another form. */
+/* The same state in another form; strains as far as both have them. */
 void rod_copy_state(const Rod *rod, const RodLayout *from, const double *x, const RodLayout *to, double *y);
 
 /* Places of the first `count` nodes, place[count][3], from the strands' first ones (of x, or the rod's) and the
- * rotations, turns included. place may be x's own positions. */
+ * rotations, turns included, and strains. place may be x's own positions. */
 void rod_places(const Rod *rod, const RodLayout *layout, const double *x, int count, double *place);
 
 /* The hanging state x that follows curves[strands] of as many elements as each strand: rotations from their
@@ -163,10 +168,11 @@ System *rod_system(const Rod *rod, double young, bool dynamic);
 void rod_element_strains(const Rod *rod, const RodLayout *layout, const double *x, Vec3 *strain);
 
 /* Puts the multipliers into the state x of a system at that point (at->x is x) with which forces are in balance, and, where
- * the last end is held, moments as well as its support's force can make them. */
+ * the last end is held, moments (and the forces that a Cosserat rod's strains are of) as well as its support's force can
+ * make them. */
 void rod_carry(const Rod *rod, System *sys, const RodLayout *layout, const Point *at, double *x);
 
-/* Puts the natural strains into p with which the state x of a system is in equilibrium if its last end is
- * free, to rounding: moments from node to node, from the free end on. Sets the multipliers of x, if it has any.
- */
+/* Puts the natural strains into p with which the rotations of the state x of a system are in equilibrium if its last end is
+ * free, to rounding: moments from node to node, from the free end on. Sets the multipliers of x, if it has any; and of a
+ * Cosserat rod the strains that its loads, dead ones, give it, with the positions that follow. */
 void rod_balance(const Rod *rod, System *sys, const RodLayout *layout, double *x, double *p);

@@ -118,6 +118,16 @@ Pack3 segment_to_world(const Segment *s, Pack3 v)
     return rotate(s->qa, v);
 }
 
+Pack3 segment_to_body_b(const Segment *s, Pack3 v)
+{
+    return rotate((PackQuat){s->p.w, pack3_neg(s->p.v)}, segment_to_body(s, v));
+}
+
+Pack3 segment_to_world_b(const Segment *s, Pack3 v)
+{
+    return segment_to_world(s, rotate(s->p, v));
+}
+
 PackQuat segment_rate(const Segment *s, Pack3 a, Pack3 b)
 {
     Pack3 apart = pack3_sub(b, a), sum = pack3_add(a, b);

@@ -59,6 +59,10 @@ Pack3 segment_chord(const Segment *s);
 Pack3 segment_to_body(const Segment *s, Pack3 v);
 Pack3 segment_to_world(const Segment *s, Pack3 v);
 
+/* The same of b. */
+Pack3 segment_to_body_b(const Segment *s, Pack3 v);
+Pack3 segment_to_world_b(const Segment *s, Pack3 v);
+
 /* dp for turns phi_a, phi_b. */
 PackQuat segment_rate(const Segment *s, Pack3 a, Pack3 b);
 

@@ -6,23 +6,27 @@
 
 RodLayout rod_layout(const Rod *rod, bool positions)
 {
-    int nodes = rod_node_count(rod), turn = positions ? 3 * nodes : 0, multiplier = turn + 3 * nodes;
+    int nodes = rod_node_count(rod), turn = positions ? 3 * nodes : 0, strain = turn + 3 * nodes,
+        multiplier = rod->cosserat ? strain + 3 * rod->elements : strain;
     int reference = positions ? multiplier + 3 * rod->elements : multiplier;
     return (RodLayout){.nodes = nodes,
                        .elements = rod->elements,
                        .each = rod_each(rod),
                        .position = positions ? 0 : -1,
                        .turn = turn,
+                       .strain = rod->cosserat ? strain : -1,
                        .multiplier = positions ? multiplier : -1,
                        .reference = reference,
                        .dofs = reference + 4 * nodes};
 }
 
-static void gather_turns(const RodLayout *layout, int pack, const double *x, Pack turns[6])
+/* Turns of both nodes and strain of the elements. */
+static void gather(const RodLayout *layout, int pack, const double *x, Pack own[9])
 {
     for (int l = 0; l < PACK_LANES; l++) {
-        int node = rod_element_node(layout, segment_lane(layout, pack, l));
-        for (int i = 0; i < 6; i++) turns[i][l] = x[layout->turn + 3 * node + i];
+        int e = segment_lane(layout, pack, l), node = rod_element_node(layout, e);
+        for (int i = 0; i < 6; i++) own[i][l] = x[layout->turn + 3 * node + i];
+        for (int i = 0; i < 3; i++) own[6 + i][l] = layout->strain < 0 ? 0 : x[layout->strain + 3 * e + i];
     }
 }
 
@@ -31,9 +35,9 @@ void rod_places(const Rod *rod, const RodLayout *layout, const double *x, int co
     RodTerm term = {.rod = rod, .layout = *layout};
     Vec3 now = {0};
     for (int k = 0; k < pack_count(rod->elements); k++) {
-        Pack turns[6];
-        gather_turns(layout, k, x, turns);
-        Chord chord = chord_at(&term, k, x, turns);
+        Pack own[9];
+        gather(layout, k, x, own);
+        Chord chord = chord_at(&term, k, x, own);
         Pack3 step = chord_world(&chord);
         for (int l = 0, e = k * PACK_LANES; l < PACK_LANES && e < layout->elements; l++, e++) {
             int node = rod_element_node(layout, e);
@@ -48,6 +52,12 @@ void rod_places(const Rod *rod, const RodLayout *layout, const double *x, int co
     }
 }
 
+/* Positions where rotations and strains have them. */
+static void follow(const Rod *rod, const RodLayout *layout, double *x)
+{
+    if (layout->position >= 0) rod_places(rod, layout, x, layout->nodes, x + layout->position);
+}
+
 void rod_set_state(const Rod *rod, const RodLayout *layout, const Quat *q, double *x)
 {
     for (int i = 0; i < layout->reference; i++) x[i] = 0;
@@ -59,7 +69,7 @@ void rod_set_state(const Rod *rod, const RodLayout *layout, const Quat *q, doubl
     if (layout->position < 0) return;
     for (int k = 0; k < rod->strands; k++)
         vec3_store(x + layout->position + 3 * k * (layout->each + 1), rod->strand[k].position);
-    rod_places(rod, layout, x, layout->nodes, x + layout->position);
+    follow(rod, layout, x);
 }
 
 void rod_copy_state(const Rod *rod, const RodLayout *from, const double *x, const RodLayout *to, double *y)
@@ -68,6 +78,9 @@ void rod_copy_state(const Rod *rod, const RodLayout *from, const double *x, cons
     for (int i = 0; i < from->nodes; i++) q[i] = rod_reference(from, x, i);
     rod_set_state(rod, to, q, y);
     mem_free(q);
+    if (from->strain < 0 || to->strain < 0) return;
+    memcpy(y + to->strain, x + from->strain, 3 * (size_t)rod->elements * sizeof *y);
+    follow(rod, to, y);
 }
 
 /* Of a strand, from q[0] on. */
@@ -93,9 +106,9 @@ void rod_natural_state(const Rod *rod, const RodLayout *layout, const double *p,
 void rod_element_strains(const Rod *rod, const RodLayout *layout, const double *x, Vec3 *strain)
 {
     for (int k = 0; k < pack_count(rod->elements); k++) {
-        Pack turns[6];
-        gather_turns(layout, k, x, turns);
-        Segment s = segment_at(layout, k, x, turns);
+        Pack own[9];
+        gather(layout, k, x, own);
+        Segment s = segment_at(layout, k, x, own);
         Pack3 theta = segment_theta(&s);
         for (int l = 0, e = k * PACK_LANES; l < PACK_LANES && e < rod->elements; l++, e++) {
             double h = rod_element_length(rod, e);
@@ -186,7 +199,7 @@ static void add_to_multipliers(const RodLayout *layout, double *x, Vec3 force)
 
 static const double UNDETERMINED = 1e-14; /* a force along a straight rod turns nothing: it is 0 */
 
-/* The support's force at the last end, which all elements carry, that leaves the least moments on free turns: a linear
+/* The support's force at the last end, which all elements carry, that leaves the least on free turns and strains: a linear
  * problem of least squares. */
 static Vec3 fit_support(const RodLayout *layout, System *sys, const Point *at, double *x)
 {
@@ -199,7 +212,7 @@ static Vec3 fit_support(const RodLayout *layout, System *sys, const Point *at, d
         system_gradient(sys, at, g + (size_t)(k + 1) * n);
         add_to_multipliers(layout, x, vec3_scale(-1, unit[k]));
     }
-    for (int d = layout->turn; d < layout->turn + 3 * layout->nodes; d++)
+    for (int d = layout->turn; d < layout->multiplier; d++)
         for (int i = 0; !system_is_fixed(sys, d) && i < 3; i++) {
             const double *gi = g + (size_t)(i + 1) * n;
             b[i] -= (gi[d] - g[d]) * g[d];
@@ -224,6 +237,19 @@ void rod_carry(const Rod *rod, System *sys, const RodLayout *layout, const Point
     if (rod->end != ROD_FREE) add_to_multipliers(layout, x, fit_support(layout, sys, at, x));
 }
 
+/* The strains that a Cosserat rod's loads give its elements; its positions follow. */
+static void set_strains(const Rod *rod, System *sys, const RodLayout *layout, const Point *at, double *x,
+                        double *work)
+{
+    RodSection unit = rod->unit;
+    const double K[3] = {unit.stretch, unit.shear1, unit.shear2};
+    system_gradient(sys, at, work);
+    for (int i = 0; i < 3 * rod->elements; i++)
+        x[layout->strain + i] -= work[layout->strain + i] /
+                                 (at->p[rod->young + i / 3] * rod_element_length(rod, i / 3) * K[i % 3]);
+    follow(rod, layout, x);
+}
+
 void rod_balance(const Rod *rod, System *sys, const RodLayout *layout, double *x, double *p)
 {
     size_t elements = (size_t)rod->elements;
@@ -232,7 +258,9 @@ void rod_balance(const Rod *rod, System *sys, const RodLayout *layout, double *x
     rod_element_strains(rod, layout, x, strain);
     for (int e = 0; e < rod->elements; e++) vec3_store(p + rod->natural_strain + 3 * e, strain[e]);
     Point at = {.x = x, .p = p};
+    if (layout->strain >= 0) follow(rod, layout, x);
     if (layout->multiplier >= 0) set_multipliers(layout, sys, &at, x, force);
+    if (layout->strain >= 0) set_strains(rod, sys, layout, &at, x, force);
     system_gradient(sys, &at, force);
     turn_rows(layout, x, rows);
     Vec3 carried = vec3(0, 0, 0); /* what the element beyond does to the node */

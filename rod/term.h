@@ -22,6 +22,13 @@ static inline void rod_term_turn_dofs(const void *self, int e, int *dof)
     for (int i = 0; i < 6; i++) dof[i] = layout->turn + 3 * rod_element_node(layout, e) + i;
 }
 
+/* Where the rod stretches, the strain of an element is its next three. */
+static inline void rod_term_strain_dofs(const void *self, int e, int *dof)
+{
+    const RodLayout *layout = &((const RodTerm *)self)->layout;
+    for (int i = 0; layout->strain >= 0 && i < 3; i++) dof[i] = layout->strain + 3 * e + i;
+}
+
 /* Number i of `width` of each element's row in a block of values. */
 static inline Pack rod_term_number(const RodTerm *term, int pack, const double *block, int width, int i)
 {

@@ -9,11 +9,12 @@
 
 #define ROD_TERMS(X)                                                                                         \
     X(strain, ROD_ANY_FORM)     /* bending and twist, h/2 |k - kbar|_K^2                         */          \
+    X(stretch, ROD_STRETCHING)  /* of a Cosserat rod: stretch and shear, h/2 |G|^2               */          \
     X(magnetic, ROD_ANY_FORM)   /* hard-magnetic work -V M.R^T B                                 */          \
     X(hang, ROD_HANGING)        /* weight and dead loads on positions that follow from rotations */          \
-    X(link, ROD_WITH_POSITIONS) /* inextensibility, by multipliers                               */
+    X(link, ROD_WITH_POSITIONS) /* positions are where rotations and strains have them, by multipliers */
 
-typedef enum RodForm { ROD_ANY_FORM, ROD_HANGING, ROD_WITH_POSITIONS } RodForm;
+typedef enum RodForm { ROD_ANY_FORM, ROD_STRETCHING, ROD_HANGING, ROD_WITH_POSITIONS } RodForm;
 
 /* What every term of a rod begins with; the rod must outlive it. */
 typedef struct RodTerm {

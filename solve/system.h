@@ -18,7 +18,7 @@ typedef struct DofClass {
                        * far from it (system_gap); 0: it always vanishes */
 } DofClass;
 
-enum { SYSTEM_MAX_CLASSES = 4, SYSTEM_MAX_BULKS = 4 };
+enum { SYSTEM_MAX_CLASSES = 5, SYSTEM_MAX_BULKS = 4 };
 
 typedef struct System System;
 
