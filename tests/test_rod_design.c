@@ -1,6 +1,6 @@
 /* dF/du of designs of rods against central differences and against the forward tangent: magnetisation,
  * stiffness, natural strains and fields, with a free and with a held end, in a uniform field and in one more that
- * varies in space. */
+ * varies in space; of Kirchhoff's and of Cosserat rods. */
 #include "base/memory.h"
 #include "base/random.h"
 #include "optim/objectives.h"
@@ -27,14 +27,14 @@ typedef struct Fixture {
 static const double young = 1e6, length = 0.05;
 
 /* The shape is one that a magnetisation along the rod takes in a field across it. */
-static Fixture fixture_create(RodSupport end, bool field, Random *random)
+static Fixture fixture_create(RodSupport end, bool field, bool cosserat, Random *random)
 {
     FluxFields fields = {0};
     if (field)
         flux_fields_add(&fields, flux_field_dipole((double[]){0.03, 0.03, 0.03}, (double[]){0.2, 0.5, -0.4}));
     Fixture f = {.rod = rod_create(N, length, rod_circle(0.5e-3, 1, 0.4, 1800), M_PI * 0.25e-6, &fields)};
     Rod *rod = f.rod;
-    rod->end = end;
+    rod->end = end, rod->cosserat = cosserat;
     f.layout = rod_layout(rod, true);
     double *p = mem_alloc((size_t)rod->params.size, sizeof *p), target[N + 1][3];
     int nodes[N + 1];
@@ -102,11 +102,11 @@ static double tangent_slope(const Fixture *f, const double *u, const double *v)
     return slope;
 }
 
-static void check(RodSupport end, bool field, const char *block, Unknown unknown)
+static void check(RodSupport end, bool field, bool cosserat, const char *block, Unknown unknown)
 {
     long blocks = mem_live_count();
     Random random = random_seed(11);
-    Fixture f = fixture_create(end, field, &random);
+    Fixture f = fixture_create(end, field, cosserat, &random);
     fixture_start(&f, block, unknown);
     size_t n = (size_t)f.design.size;
     double *u = mem_alloc(4 * n, sizeof *u), *g = u + n, *v = u + 2 * n, *moved = u + 3 * n, slope = 0, F4[4];
@@ -122,9 +122,9 @@ static void check(RodSupport end, bool field, const char *block, Unknown unknown
         F4[k] = static_design_evaluate(f.sd, moved, NULL, &info);
     }
     double difference = (8 * (F4[2] - F4[1]) - (F4[3] - F4[0])) / (12 * h);
-    print_message("%-15s %s%s: tangent %.1e, differences %.1e\n", block, end == ROD_FREE ? "free" : "held",
-                  field ? ", in a dipole's field" : "", fabs(slope / tangent - 1),
-                  fabs(slope / difference - 1));
+    print_message("%-15s %s%s%s: tangent %.1e, differences %.1e\n", block, end == ROD_FREE ? "free" : "held",
+                  field ? ", in a dipole's field" : "", cosserat ? ", stretching" : "",
+                  fabs(slope / tangent - 1), fabs(slope / difference - 1));
     assert_true(fabs(slope / tangent - 1) < 1e-10 && fabs(slope / difference - 1) < 1e-6);
     mem_free(u);
     fixture_clear(&f);
@@ -134,15 +134,19 @@ static void check(RodSupport end, bool field, const char *block, Unknown unknown
 static void test_gradients(void **state)
 {
     (void)state;
-    for (int k = 0; k < 4; k++) {
+    for (int k = 0; k < 8; k++) {
         RodSupport end = k % 2 ? ROD_PINNED : ROD_FREE;
-        bool field = k / 2;
-        check(end, field, "magnetization", (Unknown){.lower = -INFINITY, .upper = INFINITY, .scale = 1e4});
-        check(end, field, "young", (Unknown){.map = UNKNOWN_LOG, .scale = 0.7, .lower = 1e4, .upper = 1e8});
-        check(end, field, "natural_strain", (Unknown){.lower = -INFINITY, .upper = INFINITY, .scale = 10});
-        check(end, field, "flux_density",
+        bool field = k / 2 % 2, stretches = k / 4;
+        check(end, field, stretches, "magnetization",
+              (Unknown){.lower = -INFINITY, .upper = INFINITY, .scale = 1e4});
+        check(end, field, stretches, "young",
+              (Unknown){.map = UNKNOWN_LOG, .scale = 0.7, .lower = 1e4, .upper = 1e8});
+        check(end, field, stretches, "natural_strain",
+              (Unknown){.lower = -INFINITY, .upper = INFINITY, .scale = 10});
+        check(end, field, stretches, "flux_density",
               (Unknown){.lower = -1, .upper = 1, .scale = 0.01, .per_case = true});
-        if (field) check(end, field, "field_scale", (Unknown){.lower = -9, .upper = 9, .scale = 1});
+        if (field)
+            check(end, field, stretches, "field_scale", (Unknown){.lower = -9, .upper = 9, .scale = 1});
     }
 }
 

@@ -1,5 +1,5 @@
 /* The adjoint of a rod's motion: against the tangent, against differences, with kept factors and without; free, held at
- * both ends and hinged, in a uniform field and beside a dipole, over an obstacle with friction, in strands. And the best motion, turns
+ * both ends and hinged, in a uniform field and beside a dipole, over an obstacle with friction, in strands, of Cosserat rods. And the best motion, turns
  * included, is where the next one starts. */
 #include "optim/control.h"
 #include "tests/motion_fixture.h"
@@ -9,7 +9,7 @@
 typedef struct Swing {
     const char *name;
     RodSupport start, end;
-    bool dipole, ground, self;
+    bool dipole, ground, self, cosserat;
     int strands;
     double differences; /* at most */
 } Swing;
@@ -26,7 +26,7 @@ static Rod *make_rod(const Swing *swing)
     const double lengths[2] = {length, length};
     Rod *rod = rod_create_strands(swing->strands, swing->strands * EACH, lengths,
                                   rod_circle(radius, 1, 0.4, 1800), M_PI * radius * radius, &fields);
-    rod->start = swing->start, rod->end = swing->end;
+    rod->start = swing->start, rod->end = swing->end, rod->cosserat = swing->cosserat;
     if (swing->strands > 1) rod->strand[1].position = vec3(0, 2e-3, 0);
     if (!swing->ground) return rod;
     Obstacle *floor = mem_alloc(1, sizeof *floor);
@@ -133,6 +133,13 @@ static void test_adjoint(void **state)
         {"between clamps, dipole", ROD_CLAMPED, ROD_CLAMPED, .dipole = true, .strands = 1,
          .differences = 1e-7},
         {"over a floor", ROD_CLAMPED, ROD_FREE, .ground = true, .strands = 1, .differences = 1e-4},
+        {"stretching", ROD_CLAMPED, ROD_FREE, .cosserat = true, .strands = 1, .differences = 1e-7},
+        {"stretching between clamps, dipole", ROD_CLAMPED, ROD_CLAMPED, .dipole = true, .cosserat = true,
+         .strands = 1, .differences = 1e-7},
+        {"stretching between hinges", ROD_PINNED, ROD_PINNED, .cosserat = true, .strands = 1,
+         .differences = 1e-6},
+        {"stretching over a floor", ROD_CLAMPED, ROD_FREE, .ground = true, .cosserat = true, .strands = 1,
+         .differences = 1e-4},
         {"two strands over a floor", ROD_CLAMPED, ROD_FREE, .ground = true, .self = true, .strands = 2,
          .differences = 1e-4},
     };

@@ -68,6 +68,15 @@ static bool check_rod(const RodModel *rm, const Scene *scene, const Build *b)
     if (from->poses) return yaml_refuse(b->file, "rod.poses", "poses are for the job identify");
     if (given && rm->strand_count > 1 && (alone = takes_one(rm, scene)))
         return yaml_refuse(b->file, "rod.curve", "there are %d curves; %s", rm->strand_count, alone);
+    if (given && from->model == ROD_COSSERAT && !from->natural_strain)
+        return yaml_refuse(
+            b->file, "rod.model",
+            "the natural shape that sags into a curve is known of model: kirchhoff; cosserat needs "
+            "`natural_strain`");
+    if (from->model == ROD_COSSERAT && !(rm->unit.shear1 > 0 && rm->unit.shear2 > 0))
+        return yaml_refuse(
+            b->file, "rod.ellipse",
+            "so flat a section of so negative a `poisson` has no shear stiffness that is known");
     if (!given && !from->natural_strain)
         return yaml_refuse(b->file, "rod", "`curve` or `natural_strain` is missing");
     if (!given && isnan(from->length))
@@ -214,6 +223,7 @@ static bool fill(Model *model, const Scene *scene, const Build *b)
     sized.size = rm->curves ? rod_model_longest(rm) : from->length;
     bool readable = model_read_flux(model, &sized, scene, &fields);
     rm->rod = make_rod(rm, from, &fields);
+    rm->rod->cosserat = from->model == ROD_COSSERAT;
     model->point_count = rod_node_count(rm->rod);
     WorldBody shown = rod_world_body(rm->rod);
     readable = model_read_world(model, &sized, scene, &shown, &rm->rod->world) && readable;
@@ -316,18 +326,29 @@ static bool take_preview(RodModel *rm, const double *from, int dofs, Error *err)
     return true;
 }
 
-/* Of turns only, or with places, too. */
+/* The form of a state of so many dofs: of turns only or with places, of the rod or (`cosserat`) of the other kind; none: of
+ * no dofs. */
+static RodLayout form_of(const Rod *rod, bool cosserat, int dofs)
+{
+    Rod other = *rod;
+    other.cosserat = cosserat;
+    RodLayout turns = rod_layout(&other, false), places = rod_layout(&other, true);
+    return dofs == turns.dofs ? turns : dofs == places.dofs ? places : (RodLayout){0};
+}
+
+/* A rod that stretches may go on from where one that does not is; not the other way. */
 static bool take_state(const Model *model, const double *from, int dofs, double *x, Error *err)
 {
     RodModel *rm = model->self;
     const Rod *rod = rm->rod;
-    RodLayout turns = rod_layout(rod, false), places = rod_layout(rod, true);
     if (rm->preview) return take_preview(rm, from, dofs, err);
     if (dofs == pbd_rod_state_count(rod->elements))
         return error_set(err, "its state is that of `solver: pbd`, from which only that goes on");
-    if (dofs != turns.dofs && dofs != places.dofs)
-        return error_set(err, "its state is no rod's of %d elements", rod->elements);
-    RodLayout own = dofs == turns.dofs ? turns : places;
+    RodLayout own = form_of(rod, rod->cosserat, dofs);
+    if (!own.dofs) own = form_of(rod, !rod->cosserat, dofs);
+    if (!own.dofs) return error_set(err, "its state is no rod's of %d elements", rod->elements);
+    if (own.strain >= 0 && !rod->cosserat)
+        return error_set(err, "its rod stretches: only model: cosserat goes on from it");
     if (dofs == rm->layout.dofs)
         memcpy(x, from, (size_t)dofs * sizeof *x);
     else
@@ -350,7 +371,20 @@ static void masses(const Model *model, double *mass)
 /* In parts of an element's stiffness: what is less is rounding of the rotations. */
 static const double MOMENT_LITTLE = 16 * DBL_EPSILON;
 
-/* Forces on nodes can be in balance always: what cannot are the moments. */
+/* What is out of balance on free dofs, and on what scale. */
+static Balance balance_of(const System *sys, const double *gradient, int first, int count)
+{
+    Balance left = {.what = "moments", .unit = "N m"};
+    const double *sums = system_force_sums(sys);
+    for (int i = first; i < first + count; i++) {
+        left.scale = fmax(left.scale, sums[i]);
+        if (!system_is_fixed(sys, i)) left.most = fmax(left.most, fabs(gradient[i]));
+    }
+    return left;
+}
+
+/* Forces on nodes can be in balance always: what cannot are the moments; and what a Cosserat rod's elements carry may not be
+ * what their strains say. */
 static Balance balance_pose(const Model *model, Case *c)
 {
     const RodModel *rm = model->self;
@@ -358,17 +392,19 @@ static Balance balance_pose(const Model *model, Case *c)
     Point at = state_point(&c->state, c->stages[0].p);
     if (layout->multiplier >= 0) rod_carry(rm->rod, c->sys, layout, &at, c->state.x);
     double *gradient = mem_alloc((size_t)layout->dofs, sizeof *gradient);
-    Balance left = {.what = "moments", .unit = "N m"};
-    left.finite = system_gradient(c->sys, &at, gradient).finite;
-    const double *sums = system_force_sums(c->sys);
-    for (int i = layout->turn; i < layout->turn + 3 * layout->nodes; i++) {
-        left.scale = fmax(left.scale, sums[i]);
-        if (!system_is_fixed(c->sys, i)) left.most = fmax(left.most, fabs(gradient[i]));
+    bool finite = system_gradient(c->sys, &at, gradient).finite;
+    Balance left = balance_of(c->sys, gradient, layout->turn, 3 * layout->nodes);
+    double h = rod_element_length(rm->rod, 0),
+           stiffest = fmax(rm->section.twist, fmax(rm->section.bend1, rm->section.bend2)) / h;
+    if (left.most <= MOMENT_LITTLE * stiffest) left.most = 0;
+    if (layout->strain >= 0) {
+        Balance carried = balance_of(c->sys, gradient, layout->strain, 3 * layout->elements);
+        if (carried.most <= MOMENT_LITTLE * h * rm->section.stretch) carried.most = 0;
+        if (carried.most * left.scale > left.most * carried.scale)
+            left = (Balance){"forces", "N", carried.most / h, carried.scale / h, true};
     }
     mem_free(gradient);
-    double stiffest =
-        fmax(rm->section.twist, fmax(rm->section.bend1, rm->section.bend2)) / rod_element_length(rm->rod, 0);
-    if (left.most <= MOMENT_LITTLE * stiffest) left.most = 0;
+    left.finite = finite;
     return left;
 }
 
@@ -385,6 +421,7 @@ static const BodyOps ops = {
     .system = make_system,
     .balance = balance_pose,
     .add_static = rod_add_static,
+    .add_frame = rod_add_frame,
     .add_state = rod_add_state,
     .add_final = rod_add_final,
     .likeness = likeness,

@@ -51,6 +51,22 @@ void rod_body_places(const Model *model, const double *x, double *place)
         rod_places(rm->rod, layout, x, layout->nodes, place);
 }
 
+/* Of a rod that stretches: at its nodes the means of the elements beside them. */
+void rod_add_frame(const Model *model, const Snapshot *shot, bool whole, Arrays *list)
+{
+    (void)whole;
+    const RodLayout *layout = &((const RodModel *)model->self)->layout;
+    if (layout->strain < 0) return;
+    double *mean = arrays_numbers(list, 3 * (size_t)layout->nodes);
+    for (int e = 0; e < layout->elements; e++)
+        for (int side = 0; side < 2; side++) {
+            bool end = side ? (e + 1) % layout->each == 0 : e % layout->each == 0;
+            double *to = mean + 3 * (rod_element_node(layout, e) + side);
+            for (int i = 0; i < 3; i++) to[i] += (end ? 1 : 0.5) * shot->at.x[layout->strain + 3 * e + i];
+        }
+    arrays_add(list, array_float("point/stretch", "", mean, 2, layout->nodes, 3));
+}
+
 void rod_add_state(const Model *model, const Snapshot *shot, const char *prefix, Arrays *list)
 {
     const RodModel *rm = model->self;
@@ -61,17 +77,21 @@ void rod_add_state(const Model *model, const Snapshot *shot, const char *prefix,
     rod_node_moments(rm->rod, &rm->layout, shot->at.x, shot->p, (Vec3 *)moment);
     char *name = arrays_keep(list, mem_format("%s/strain", prefix));
     arrays_add(list, array_float(name, "1/m", strain, 2, elements, 3));
+    if (rm->layout.strain >= 0) {
+        name = arrays_keep(list, mem_format("%s/stretch", prefix));
+        arrays_add(list, array_float(name, "", shot->at.x + rm->layout.strain, 2, elements, 3));
+    }
     name = arrays_keep(list, mem_format("%s/moment", prefix));
     arrays_add(list, array_float(name, "N m", moment, 2, model->point_count, 3));
 }
 
-/* Is it known how stable the state is? Of one rod with a free end, one stiffness, no magnetisation across the tangent, no
+/* Is it known how stable the state is? Of one rod that does not stretch, with a free end, one stiffness, no magnetisation across the tangent, no
  * field that varies in space, and nothing that it meets. */
 static bool is_judged(const Rod *rod, const double *p)
 {
     const double *B = p + rod->flux_density;
     bool across = false, field = B[0] != 0 || B[1] != 0 || B[2] != 0;
-    bool uniform = !rod_field_varies(rod, p) && !rod->world && rod->strands == 1;
+    bool uniform = !rod_field_varies(rod, p) && !rod->world && rod->strands == 1 && !rod->cosserat;
     for (int e = 0; e < rod->elements; e++) {
         across |= field && (p[rod->magnetization + 3 * e + 1] != 0 || p[rod->magnetization + 3 * e + 2] != 0);
         uniform &= p[rod->young + e] == p[rod->young];
@@ -110,10 +130,23 @@ static void add_stability(const RodModel *rm, const Snapshot *shot, Arrays *list
     mem_free(work);
 }
 
+static const double LARGE_STRAIN = 0.2;
+
+/* A stretch or shear beyond the linear law. */
+static char *doubt_strain(const RodLayout *layout, const double *x)
+{
+    double most = 0;
+    for (int i = 0; i < 3 * layout->elements; i++) most = fmax(most, fabs(x[layout->strain + i]));
+    if (most <= LARGE_STRAIN) return NULL;
+    return mem_format(
+        "an element stretches or shears by %.2g: model: cosserat has a linear law, for small strains", most);
+}
+
 char *rod_doubt(const Model *model, const Snapshot *shot)
 {
     const RodModel *rm = model->self;
     const Rod *rod = rm->rod;
+    if (rod->cosserat) return doubt_strain(&rm->layout, shot->at.x);
     if (!is_judged(rod, shot->p)) return NULL;
     Vec3 *work;
     RodEquilibrium at = equilibrium_of(rm, shot, &work);

@@ -131,9 +131,14 @@ static const YamlTable pbd_table = {
 const YamlTable rod_table = {
     .name = "rod",
     .size = sizeof(RodScene),
-    .doc = "An inextensible elastic rod. It is held at its first end and hangs, unless `end` holds the other "
+    .doc = "An elastic rod. It is held at its first end and hangs, unless `end` holds the other "
            "one, too.",
     .fields = (const YamlField[]){
+        {YAML_CHOICE(RodScene, model), .when = STATES, .choices = YAML_NAMES("kirchhoff", "cosserat"),
+         .fallback = "kirchhoff",
+         .doc = "inextensible and without shear, or with the stiffness against stretch and shear that its "
+                "section "
+                "has"},
         {YAML_OPTIONAL(RodScene, curve, &rod_curve_table), .one_of = 1,
          .doc = "the shape that it has under its loads: its natural shape follows; with natural strains the "
                 "shape that it is held in until it is let go (`start: curve`)"},

@@ -61,6 +61,8 @@ typedef struct PbdScene {
     int substeps, sweeps;
 } PbdScene;
 
+typedef enum RodKind { ROD_KIRCHHOFF, ROD_COSSERAT } RodKind;
+
 typedef enum RodStart { ROD_START_NATURAL, ROD_START_CURVE } RodStart;
 
 typedef struct RodScene {
@@ -75,7 +77,7 @@ typedef struct RodScene {
     RodLoadScene *loads;
     VectorScene magnetization;
     VelocityScene *velocity;
-    int start, hold, solver; /* RodStart; HoldKind of the clamp; RodSolver */
+    int model, start, hold, solver; /* RodKind; RodStart; HoldKind of the clamp; RodSolver */
     PbdScene pbd;
 } RodScene;
 

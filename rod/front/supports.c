@@ -27,7 +27,7 @@ bool rod_read_supports(RodModel *rm, const RodScene *scene, const Build *b)
     if (rod->end == ROD_CLAMPED) rm->end_frame = quat_from_axes(frame.n0, frame.n1, frame.n2);
     double apart =
         vec3_length(vec3_sub(rm->end_position, rm->curves ? rm->curves[0].x[0] : rod->strand[0].position));
-    if (apart > rod_length(rod))
+    if (apart > rod_length(rod) && !rod->cosserat)
         return yaml_refuse(b->file, "rod.end.position",
                            "it is %g m from the other end, and the rod %g m long", apart, rod_length(rod));
     return ok;
