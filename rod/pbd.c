@@ -4,20 +4,21 @@
 
 struct PbdRod {
     int elements, substeps, sweeps;
-    bool free_start;
+    RodSupport start, end;
     double h, drag;
     Vec3 gravity, *force;           /* force [nodes] */
+    Vec3 flux_density, *magnet;     /* magnet [elements]; NULL: none                                */
     double mass, *inverse_mass;     /* of an element; [nodes] 0: held                               */
     double inverse_inertia;         /* of an element                                                */
-    double stretch_compliance;      /* of an element's chord in parts of h, 1/J                     */
+    Vec3 stretch_compliance;        /* of an element's chord in parts of h, in its frame, 1/J       */
     Vec3 turn_compliance;           /* of half the angle between two elements (twist, 1, 2), 1/J    */
     Vec3 *chord;                    /* [elements] natural chord over h, in the element's frame      */
-    Quat clamp, *turn;              /* [elements] natural rotation from the element before, or from
-                                       the clamp, in the frame of either                            */
+    Quat clamp, end_frame, *turn;   /* [elements + 1] natural rotation from the element before, or from
+                                       the clamp, and to the end, in the frame of either            */
     Vec3 *x, *x_before, *v;         /* [nodes]                                                      */
     Quat *q, *q_before;             /* [elements] frames                                            */
     Vec3 *spin;                     /* [elements] rate of turning in its frame, 1/s                 */
-    Vec3 *stretch_load, *turn_load; /* [elements] the constraints' multipliers, J                   */
+    Vec3 *stretch_load, *turn_load; /* [elements], [elements + 1] the constraints' multipliers, J   */
     bool backwards;                 /* the first sweep of the next substep                          */
 };
 
@@ -30,11 +31,14 @@ static Vec3 natural_chord(Vec3 strain, double h)
     return vec3_axpy(lost_of_half2 * h * h / 4 * strain.x, strain, vec3(sinc, 0, 0));
 }
 
-/* Rotation from the middle of the element before (the clamp, for the first) to that of the element. */
-static Quat rotation_to(const Vec3 *strain, int e, double h)
+/* Rotation from the middle of the element before (the clamp, for the first) to that of element e of so many (the end,
+ * behind the last). */
+static Quat rotation_to(const Vec3 *strain, int e, int elements, double h)
 {
+    Quat before = e == 0 ? quat_identity() : quat_exp(vec3_scale(h / 2, strain[e - 1]));
+    if (e == elements) return before;
     Quat half = quat_exp(vec3_scale(h / 2, strain[e]));
-    return e == 0 ? half : quat_mul(quat_exp(vec3_scale(h / 2, strain[e - 1])), half);
+    return e == 0 ? half : quat_mul(before, half);
 }
 
 static void allocate(PbdRod *rod)
@@ -43,7 +47,7 @@ static void allocate(PbdRod *rod)
     rod->force = mem_alloc(nodes, sizeof *rod->force);
     rod->inverse_mass = mem_alloc(nodes, sizeof *rod->inverse_mass);
     rod->chord = mem_alloc(elements, sizeof *rod->chord);
-    rod->turn = mem_alloc(elements, sizeof *rod->turn);
+    rod->turn = mem_alloc(nodes, sizeof *rod->turn);
     rod->x = mem_alloc(nodes, sizeof *rod->x);
     rod->x_before = mem_alloc(nodes, sizeof *rod->x_before);
     rod->v = mem_alloc(nodes, sizeof *rod->v);
@@ -51,24 +55,16 @@ static void allocate(PbdRod *rod)
     rod->q_before = mem_alloc(elements, sizeof *rod->q_before);
     rod->spin = mem_alloc(elements, sizeof *rod->spin);
     rod->stretch_load = mem_alloc(elements, sizeof *rod->stretch_load);
-    rod->turn_load = mem_alloc(elements, sizeof *rod->turn_load);
+    rod->turn_load = mem_alloc(nodes, sizeof *rod->turn_load);
 }
 
 void pbd_rod_destroy(PbdRod *rod)
 {
-    void *blocks[] = {rod->force,
-                      rod->inverse_mass,
-                      rod->chord,
-                      rod->turn,
-                      rod->x,
-                      rod->x_before,
-                      rod->v,
-                      rod->q,
-                      rod->q_before,
-                      rod->spin,
-                      rod->stretch_load,
-                      rod->turn_load,
-                      rod};
+    void *blocks[] = {rod->force,     rod->magnet, rod->inverse_mass,
+                      rod->chord,     rod->turn,   rod->x,
+                      rod->x_before,  rod->v,      rod->q,
+                      rod->q_before,  rod->spin,   rod->stretch_load,
+                      rod->turn_load, rod};
     for (size_t k = 0; k < sizeof blocks / sizeof *blocks; k++) mem_free(blocks[k]);
 }
 
@@ -76,9 +72,10 @@ static void fill_nodes(PbdRod *rod, const PbdRodDef *def)
 {
     int last = rod->elements;
     for (int i = 0; i <= last; i++) {
-        bool held = (i == 0 && !def->free_start) || (i == last && def->hold_end);
+        bool held = (i == 0 && def->start != ROD_FREE) || (i == last && def->end != ROD_FREE);
         rod->inverse_mass[i] = held ? 0 : (i == 0 || i == last ? 2 : 1) / rod->mass;
         if (def->force) rod->force[i] = def->force[i];
+        if (def->start_places) rod->x[i] = def->start_places[i];
     }
 }
 
@@ -86,11 +83,13 @@ static void fill_elements(PbdRod *rod, const PbdRodDef *def)
 {
     const Vec3 *start = def->start_strain ? def->start_strain : def->natural_strain;
     double h = rod->h;
-    rod->x[0] = def->position;
-    for (int e = 0; e < rod->elements; e++) {
-        rod->turn[e] = rotation_to(def->natural_strain, e, h);
+    int n = rod->elements;
+    if (!def->start_places) rod->x[0] = def->position;
+    for (int e = 0; e <= n; e++) rod->turn[e] = rotation_to(def->natural_strain, e, n, h);
+    for (int e = 0; e < n; e++) {
         rod->chord[e] = natural_chord(def->natural_strain[e], h);
-        rod->q[e] = quat_mul(e == 0 ? rod->clamp : rod->q[e - 1], rotation_to(start, e, h));
+        rod->q[e] = quat_mul(e == 0 ? rod->clamp : rod->q[e - 1], rotation_to(start, e, n, h));
+        if (def->start_places) continue;
         rod->x[e + 1] = vec3_axpy(h, quat_rotate(rod->q[e], rod->chord[e]), rod->x[e]);
     }
 }
@@ -104,16 +103,21 @@ PbdRod *pbd_rod_create(const PbdRodDef *def)
     *rod = (PbdRod){.elements = n,
                     .substeps = def->substeps,
                     .sweeps = def->sweeps,
-                    .free_start = def->free_start,
+                    .start = def->start,
+                    .end = def->end,
                     .h = h,
                     .drag = def->drag,
                     .gravity = def->gravity,
                     .mass = m,
                     .inverse_inertia = 1 / (reach * reach * m * h * h),
-                    .stretch_compliance = 1 / (def->stretch * h),
+                    .stretch_compliance =
+                        vec3(1 / (def->stretch.x * h), 1 / (def->stretch.y * h), 1 / (def->stretch.z * h)),
                     .turn_compliance = vec3(h / (4 * def->section.twist), h / (4 * def->section.bend1),
                                             h / (4 * def->section.bend2)),
                     .clamp = quat_from_axes(def->clamp.n0, def->clamp.n1, def->clamp.n2)};
+    if (def->end == ROD_CLAMPED)
+        rod->end_frame = quat_from_axes(def->end_frame.n0, def->end_frame.n1, def->end_frame.n2);
+    if (def->magnet) rod->magnet = mem_copy(def->magnet, (size_t)n, sizeof *rod->magnet);
     allocate(rod);
     fill_nodes(rod, def);
     fill_elements(rod, def);
@@ -134,13 +138,23 @@ static Vec3 chord_of(const PbdRod *rod, int e)
     return quat_rotate(quat_conj(rod->q[e]), chord);
 }
 
-/* The rotation to an element from the one before, of the two quaternions that mean it the one near the
- * natural rotation: all four components decide, or a rod bent beyond straight takes its mirror image for its
+/* The rotation to an element (or the end, behind the last) from the one before, of the two quaternions that mean it the
+ * one near the natural rotation: all four components decide, or a rod bent beyond straight takes its mirror image for its
  * natural shape. */
 static Quat turn_to(const PbdRod *rod, int e)
 {
-    Quat p = quat_mul(quat_conj(e == 0 ? rod->clamp : rod->q[e - 1]), rod->q[e]);
+    Quat p = quat_mul(quat_conj(e == 0 ? rod->clamp : rod->q[e - 1]),
+                      e == rod->elements ? rod->end_frame : rod->q[e]);
     return quat_dot(p, rod->turn[e]) < 0 ? (Quat){-p.w, vec3_scale(-1, p.v)} : p;
+}
+
+/* (c + a + b |y|^2 - b y y^T)^-1 r, by Sherman and Morrison's formula. */
+static Vec3 solve_chord(Vec3 c, double a, double b, Vec3 y, Vec3 r)
+{
+    double all = a + b * vec3_dot(y, y);
+    Vec3 to = vec3(r.x / (all + c.x), r.y / (all + c.y), r.z / (all + c.z)),
+         own = vec3(y.x / (all + c.x), y.y / (all + c.y), y.z / (all + c.z));
+    return vec3_axpy(b * vec3_dot(y, to) / (1 - b * vec3_dot(y, own)), own, to);
 }
 
 /* The forces act on the true chord, not on the frame's tangent: with the torque they are in balance, and the
@@ -148,12 +162,11 @@ static Quat turn_to(const PbdRod *rod, int e)
 static void solve_stretch(PbdRod *rod, int e, double dt2)
 {
     Vec3 y = chord_of(rod, e), *load = &rod->stretch_load[e];
-    Vec3 r = vec3_axpy(-rod->stretch_compliance, *load, vec3_sub(rod->chord[e], y));
+    Vec3 c = rod->stretch_compliance, r = vec3_sub(rod->chord[e], y);
+    r = vec3(r.x - c.x * load->x, r.y - c.y * load->y, r.z - c.z * load->z);
     double w0 = dt2 / rod->h * rod->inverse_mass[e], w1 = dt2 / rod->h * rod->inverse_mass[e + 1];
-    double a = (w0 + w1) / rod->h + rod->stretch_compliance, b = dt2 * rod->inverse_inertia;
-    double inverse = 1 / (a * (a + b * vec3_dot(y, y)));
-    /* (a + b |y|^2 - b y y^T)^-1 r */
-    Vec3 step = vec3_axpy(inverse * b * vec3_dot(y, r), y, vec3_scale(inverse * a, r));
+    double a = (w0 + w1) / rod->h, b = dt2 * rod->inverse_inertia;
+    Vec3 step = solve_chord(c, a, b, y, r);
     Vec3 push = quat_rotate(rod->q[e], step);
     *load = vec3_add(*load, step);
     rod->x[e] = vec3_axpy(-w0, push, rod->x[e]);
@@ -163,7 +176,7 @@ static void solve_stretch(PbdRod *rod, int e, double dt2)
 
 static void solve_turn(PbdRod *rod, int e, double dt2)
 {
-    bool clamped = e == 0;
+    bool ends = e == rod->elements, clamped = e == 0 || ends;
     double part = clamped ? 0.5 : 1, b = dt2 * rod->inverse_inertia, a = clamped ? b / 4 : b / 2;
     Quat p = turn_to(rod, e);
     Vec3 C = vec3_sub(p.v, rod->turn[e].v), *load = &rod->turn_load[e];
@@ -172,18 +185,29 @@ static void solve_turn(PbdRod *rod, int e, double dt2)
                      -(C.z + c.z * load->z) / (a + c.z));
     *load = vec3_add(*load, step);
     Vec3 along = vec3_scale(p.w * b / 2, step), across = vec3_scale(b / 2, vec3_cross(p.v, step));
-    rod->q[e] = turned(rod->q[e], vec3_sub(along, across));
-    if (!clamped) rod->q[e - 1] = turned(rod->q[e - 1], vec3_scale(-1, vec3_add(along, across)));
+    if (!ends) rod->q[e] = turned(rod->q[e], vec3_sub(along, across));
+    if (e > 0) rod->q[e - 1] = turned(rod->q[e - 1], vec3_scale(-1, vec3_add(along, across)));
 }
 
 static void sweep(PbdRod *rod, bool backwards, double dt2)
 {
-    int last = rod->elements - 1, first = rod->free_start ? 1 : 0;
+    int last = rod->elements - 1, first = rod->start == ROD_CLAMPED ? 0 : 1;
+    if (backwards && rod->end == ROD_CLAMPED) solve_turn(rod, rod->elements, dt2);
     for (int k = 0; k <= last; k++) {
         int e = backwards ? last - k : k;
         if (backwards) solve_stretch(rod, e, dt2);
         if (e >= first) solve_turn(rod, e, dt2);
         if (!backwards) solve_stretch(rod, e, dt2);
+    }
+    if (!backwards && rod->end == ROD_CLAMPED) solve_turn(rod, rod->elements, dt2);
+}
+
+/* Couples of magnets, in their frames. */
+static void turn_magnets(PbdRod *rod, double dt)
+{
+    for (int e = 0; rod->magnet && e < rod->elements; e++) {
+        Vec3 B = quat_rotate(quat_conj(rod->q[e]), rod->flux_density);
+        rod->spin[e] = vec3_axpy(dt * rod->inverse_inertia, vec3_cross(rod->magnet[e], B), rod->spin[e]);
     }
 }
 
@@ -196,11 +220,13 @@ static void substep(PbdRod *rod, double dt)
         Vec3 rate = vec3_axpy(rod->inverse_mass[i], rod->force[i], rod->gravity);
         rod->x[i] = vec3_axpy(dt * slowed, vec3_axpy(dt, rate, rod->v[i]), rod->x[i]);
     }
+    turn_magnets(rod, dt);
     for (int e = 0; e < rod->elements; e++) {
         rod->q_before[e] = rod->q[e];
         rod->q[e] = quat_unit(quat_mul(rod->q[e], quat_exp(vec3_scale(dt * slowed, rod->spin[e]))));
         rod->stretch_load[e] = rod->turn_load[e] = vec3(0, 0, 0);
     }
+    rod->turn_load[rod->elements] = vec3(0, 0, 0);
     for (int k = 0; k < rod->sweeps; k++) sweep(rod, (k % 2 == 1) != rod->backwards, dt * dt * slowed);
     rod->backwards = !rod->backwards;
     for (int i = 0; i <= rod->elements; i++)
@@ -214,6 +240,11 @@ static void substep(PbdRod *rod, double dt)
 void pbd_rod_step(PbdRod *rod, double dt)
 {
     for (int k = 0; k < rod->substeps; k++) substep(rod, dt / rod->substeps);
+}
+
+void pbd_rod_set_field(PbdRod *rod, Vec3 flux_density)
+{
+    rod->flux_density = flux_density;
 }
 
 void pbd_rod_move_end(PbdRod *rod, Vec3 place)
@@ -274,14 +305,23 @@ void pbd_rod_frames(const PbdRod *rod, RodFrame *frames)
                                quat_rotate(rod->q[e], vec3(0, 0, 1))};
 }
 
-static double elastic_energy(const PbdRod *rod, int e)
+void pbd_rod_stretches(const PbdRod *rod, Vec3 *strain)
 {
-    Vec3 chord = vec3_sub(chord_of(rod, e), rod->chord[e]);
-    double energy = vec3_dot(chord, chord) / (2 * rod->stretch_compliance);
-    if (e == 0 && rod->free_start) return energy;
-    Vec3 turn = vec3_sub(turn_to(rod, e).v, rod->turn[e].v),
-         c = vec3_scale(e == 0 ? 1 : 2, rod->turn_compliance);
-    return energy + turn.x * turn.x / c.x + turn.y * turn.y / c.y + turn.z * turn.z / c.z;
+    for (int e = 0; e < rod->elements; e++) strain[e] = vec3_sub(chord_of(rod, e), rod->chord[e]);
+}
+
+/* r.r/c, component by component. */
+static double square_over(Vec3 r, Vec3 c)
+{
+    return r.x * r.x / c.x + r.y * r.y / c.y + r.z * r.z / c.z;
+}
+
+static double turn_energy(const PbdRod *rod, int e)
+{
+    bool ends = e == rod->elements;
+    if ((e == 0 && rod->start != ROD_CLAMPED) || (ends && rod->end != ROD_CLAMPED)) return 0;
+    Vec3 turn = vec3_sub(turn_to(rod, e).v, rod->turn[e].v);
+    return square_over(turn, vec3_scale(e == 0 || ends ? 1 : 2, rod->turn_compliance));
 }
 
 PbdRodSums pbd_rod_sums(const PbdRod *rod)
@@ -299,7 +339,9 @@ PbdRodSums pbd_rod_sums(const PbdRod *rod)
     for (int e = 0; e < last; e++) {
         sums.kinetic += vec3_dot(rod->spin[e], rod->spin[e]) / (2 * rod->inverse_inertia);
         sums.spin = vec3_axpy(1 / rod->inverse_inertia, quat_rotate(rod->q[e], rod->spin[e]), sums.spin);
-        sums.elastic += elastic_energy(rod, e);
+        sums.elastic += square_over(vec3_sub(chord_of(rod, e), rod->chord[e]), rod->stretch_compliance) / 2;
+        if (rod->magnet) sums.magnetic -= vec3_dot(quat_rotate(rod->q[e], rod->magnet[e]), rod->flux_density);
     }
+    for (int e = 0; e <= last; e++) sums.elastic += turn_energy(rod, e);
     return sums;
 }

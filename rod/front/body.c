@@ -228,6 +228,10 @@ static bool fill(Model *model, const Scene *scene, const Build *b)
     WorldBody shown = rod_world_body(rm->rod);
     readable = model_read_world(model, &sized, scene, &shown, &rm->rod->world) && readable;
     if (scene->water && !check_slender(rm->rod, b)) return false;
+    if (rm->preview && rm->rod->fields.count)
+        return yaml_refuse(
+            b->file, "flux_density",
+            "a preview (solver: pbd) knows a uniform field: three numbers, formulas of t, or a file");
     if (!rod_read_supports(rm, from, b) || !rod_model_check_points(rm, b, rod_length(rm->rod))) return false;
     set_model(model);
     model_add_blocks(model, scene);
@@ -322,6 +326,8 @@ static bool take_preview(RodModel *rm, const double *from, int dofs, Error *err)
     const RodStrand *strand = &rod->strand[0];
     if (!rod_is_near(vec3_load(from), strand->position, strand->length))
         return error_set(err, START_ELSEWHERE);
+    if (rm->held && !rod_is_near(vec3_load(from + 3 * rod->elements), rm->end_position, strand->length))
+        return error_set(err, "its other end is not where rod.end holds it");
     rm->moving = mem_copy(from, (size_t)dofs, sizeof *from);
     return true;
 }
@@ -435,7 +441,6 @@ static const BodyOps ops = {
 };
 
 static const KeyUse uses[] = {
-    {"flux_density", "/rod.solver: newton"},
     {"fix", "!rod {a rod is held by rod.clamp, rod.hold and rod.end}"},
     {"loads", "!rod {loads of a rod are under rod.loads}"},
     {"target", "/rod.solver: newton"},

@@ -14,33 +14,61 @@ typedef struct Preview {
     Error *err;
 } Preview;
 
+static RodFrame frame_of(Quat q)
+{
+    return (RodFrame){quat_rotate(q, vec3(1, 0, 0)), quat_rotate(q, vec3(0, 1, 0)),
+                      quat_rotate(q, vec3(0, 0, 1))};
+}
+
+/* Magnetic moments of the elements; NULL: it has none. Caller: mem_free. */
+static Vec3 *magnets(const Rod *rod, const double *p)
+{
+    Vec3 *magnet = mem_alloc((size_t)rod->elements, sizeof *magnet);
+    bool any = false;
+    for (int e = 0; e < rod->elements; e++) {
+        magnet[e] =
+            vec3_scale(rod->area * rod_element_length(rod, e), vec3_load(p + rod->magnetization + 3 * e));
+        any = any || vec3_dot(magnet[e], magnet[e]) > 0;
+    }
+    if (!any) mem_free(magnet);
+    return any ? magnet : NULL;
+}
+
 static PbdRod *create(const Run *run)
 {
     const RodModel *rm = run->model->self;
     const Rod *rod = rm->rod;
     const RodScene *scene = rod_scene(run->scene);
-    const double *p = run->model->cases[0].stages[0].p;
-    Vec3 *start = mem_alloc((size_t)rod->elements, sizeof *start);
-    rod_element_strains(rod, &rm->layout, run->model->x, start);
-    Quat frame = rod->strand[0].frame;
-    RodFrame clamp = {quat_rotate(frame, vec3(1, 0, 0)), quat_rotate(frame, vec3(0, 1, 0)),
-                      quat_rotate(frame, vec3(0, 0, 1))};
+    const RodSection *section = &rm->section;
+    const double *p = run->model->cases[0].stages[0].p, *x = run->model->x;
+    Vec3 *start = mem_alloc((size_t)rod->elements, sizeof *start), *magnet = magnets(rod, p);
+    double inextensible =
+        rm->young * rm->area; /* as stiff in all directions: what is left of it is the error */
+    rod_element_strains(rod, &rm->layout, x, start);
     PbdRodDef def = {.elements = rod->elements,
                      .length = rod_length(rod),
-                     .section = rm->section,
-                     .stretch = rm->young * rm->area,
+                     .section = *section,
+                     .stretch = rod->cosserat ? vec3(section->stretch, section->shear1, section->shear2)
+                                              : vec3(inextensible, inextensible, inextensible),
                      .natural_strain = (const Vec3 *)(p + rod->natural_strain),
                      .start_strain = start,
                      .position = rod->strand[0].position,
-                     .clamp = clamp,
+                     .start_places = rm->held ? (const Vec3 *)(x + rm->layout.position) : NULL,
+                     .clamp = frame_of(rod_reference(&rm->layout, x, 0)),
+                     .end_frame = frame_of(rm->end_frame),
+                     .start = rod->start,
+                     .end = rod->end,
+                     .magnet = magnet,
                      .gravity = vec3_load(p + rod->gravity),
                      .force = (const Vec3 *)(p + rod->load),
                      .drag = scene->damping / rod->unit.mass,
                      .substeps = scene->pbd.substeps,
                      .sweeps = scene->pbd.sweeps};
     PbdRod *made = pbd_rod_create(&def);
+    pbd_rod_set_field(made, vec3_load(p + rod->flux_density));
     if (rm->moving) pbd_rod_set_state(made, rm->moving);
     mem_free(start);
+    mem_free(magnet);
     return made;
 }
 
@@ -75,6 +103,7 @@ static bool put_step(const Preview *o, int step)
 static bool put_final(const Preview *o, const char *status)
 {
     PbdRodSums sums = pbd_rod_sums(o->rod);
+    Arrays list = {0};
     Array arrays[] = {array_text("status", status),
                       positions(o, "state/x"),
                       positions(o, "rod/x"),
@@ -84,7 +113,25 @@ static bool put_final(const Preview *o, const char *status)
                       array_float("final/energy/kinetic", "J", &sums.kinetic, 0, 0, 0),
                       array_float("final/energy/elastic", "J", &sums.elastic, 0, 0, 0),
                       array_float("final/energy/gravity", "J", &sums.potential, 0, 0, 0)};
-    return journal_replace(o->run->journal, "final", 0, arrays, sizeof arrays / sizeof *arrays, o->err);
+    for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++) arrays_add(&list, arrays[k]);
+    if (sums.magnetic != 0)
+        arrays_add(&list, array_float("final/energy/magnetic", "J", &sums.magnetic, 0, 0, 0));
+    if (((const RodModel *)o->run->model->self)->rod->cosserat) {
+        double *strain = arrays_numbers(&list, 3 * (size_t)(o->nodes - 1));
+        pbd_rod_stretches(o->rod, (Vec3 *)strain);
+        arrays_add(&list, array_float("final/stretch", "", strain, 2, o->nodes - 1, 3));
+    }
+    return arrays_replace(&list, o->run->journal, "final", o->err);
+}
+
+/* The field at the end of a step, as all loads. */
+static bool put_field(const Preview *o, double time)
+{
+    const Model *model = o->run->model;
+    double *p = model->cases[0].stages[0].p;
+    if (!model_load(model, time, p, o->err)) return false;
+    pbd_rod_set_field(o->rod, vec3_load(p + model->flux_density));
+    return true;
 }
 
 static RunStatus preview(Run *run, Error *err)
@@ -97,9 +144,11 @@ static RunStatus preview(Run *run, Error *err)
                  .err = err};
     o.state = mem_alloc((size_t)pbd_rod_state_count(o.nodes - 1), sizeof *o.state);
     int every = run->scene->output.every ? run->scene->output.every : 1, step = 0;
-    bool ok = journal_forget(run->journal, "frame", err) && journal_forget(run->journal, "evaluation", err) &&
-              put_frame(&o, 0);
+    bool known = true, ok = journal_forget(run->journal, "frame", err) &&
+                            journal_forget(run->journal, "evaluation", err) && put_frame(&o, 0);
     for (; ok && step < time->steps && !host_stops(run->host);) {
+        known = ok = put_field(&o, o.now + time->step);
+        if (!ok) break;
         pbd_rod_step(o.rod, time->step);
         o.now += time->step;
         step++;
@@ -111,7 +160,7 @@ static RunStatus preview(Run *run, Error *err)
     ok = ok && put_final(&o, interrupted ? "interrupted" : "converged");
     pbd_rod_destroy(o.rod);
     mem_free(o.state);
-    return !ok ? RUN_CANNOT_WRITE : interrupted ? RUN_INTERRUPTED : RUN_DONE;
+    return !known ? RUN_REFUSED : !ok ? RUN_CANNOT_WRITE : interrupted ? RUN_INTERRUPTED : RUN_DONE;
 }
 
 /* By implicit Euler, or so. */

@@ -150,10 +150,9 @@ const YamlTable rod_table = {
          .doc = "without a curve: its length"},
         {YAML_TABLE(RodScene, clamp, &clamp_table), .when = "!curve & !poses", .fallback = "{}",
          .doc = "without a curve: its first end"},
-        {YAML_CHOICE(RodScene, hold), .when = STATES " & solver: newton",
-         .choices = YAML_NAMES("clamped", "pinned"), .fallback = "clamped",
-         .doc = "how the first end is held"},
-        {YAML_OPTIONAL(RodScene, end, &end_table), .when = STATES " & solver: newton",
+        {YAML_CHOICE(RodScene, hold), .when = STATES, .choices = YAML_NAMES("clamped", "pinned"),
+         .fallback = "clamped", .doc = "how the first end is held"},
+        {YAML_OPTIONAL(RodScene, end, &end_table), .when = STATES,
          .doc = "how the other end is held; free if absent"},
         {YAML_INTEGER(RodScene, elements), .range = "[2, 1000000]", .fallback = "200",
          .doc = "pieces of constant strain"},
@@ -174,8 +173,7 @@ const YamlTable rod_table = {
         {YAML_VECTOR(RodScene, bishop_normal), .when = "curve",
          .doc = "the direction of n1 at the clamp; Frenet's if absent"},
         {YAML_LIST(RodScene, loads, &rod_load_table), .doc = "beside its weight"},
-        {YAML_TABLE(RodScene, magnetization, &magnetization_table), .when = "solver: newton",
-         .fallback = "[0, 0, 0]",
+        {YAML_TABLE(RodScene, magnetization, &magnetization_table), .fallback = "[0, 0, 0]",
          .doc = "remanent magnetisation in the frame (tangent, n1, n2); formulas are of s and L, a file has "
                 "a row for "
                 "each element"},
