@@ -30,6 +30,8 @@ hinge=$(echo "$shell" | sed 's/young/bending: hinge, young/')
 rod='{natural_strain: [1, 20, 3], length: 0.2, elements: 30, radius: 1 mm, young: 1 MPa, poisson: 0.4, density: 1100,
   magnetization: [20 kA/m, 0, 5 kA/m]}'
 held=$(echo "$rod" | sed 's/magnet/end: {position: [0.1, 0.02, 0.05]}, magnet/')
+swing=$(echo "$held" | sed 's/young/solver: pbd, young/')
+stretching=$(echo "$held" | sed 's/young/model: cosserat, young/')
 preview=$(echo "$rod" | sed 's/magnet.*/solver: pbd}/')
 solid='{mesh: {shape: box, size: [20 mm, 5 mm, 5 mm], cells: [4, 1, 1]}, young: 0.1 MPa, poisson: 0.4, gravity: [0, 0, -9.81],
   skin: {thickness: 1 mm, magnetization: [50 kA/m, 0, 0], young: 0.2 MPa, poisson: 0.3}}'
@@ -62,7 +64,9 @@ motion linear "solid: $linear" "$field"
 motion rod "rod: $rod" "$field"
 motion held "rod: $held" "$field"
 motion magnet "rod: $rod" "$magnet"
+motion stretching "rod: $stretching" "$field"
 motion preview "rod: $preview"
+motion swing "rod: $swing" "$field"
 
 # ---- Frames, and runs that are resumed ----
 scene=midedge.yaml
@@ -207,10 +211,14 @@ expect 0 run rod.yaml -o before --set time.steps=2; cp before.vtkhdf rod.vtkhdf
 refused "is of a rod of another length, or of other elements" --set start=rod.vtkhdf --set rod.elements=29
 refused "its first end is elsewhere" --set start=rod.vtkhdf --set "rod.clamp.position=[0, 0, 1]"
 refused "its other end is not where rod.end holds it" --set start=rod.vtkhdf --set "rod.end={position: [0.1, 0, 0]}"
+expect 0 run stretching.yaml -o before --set time.steps=2; scene=held.yaml
+refused "its rod stretches: only model: cosserat goes on from it" --set start=before.vtkhdf; scene=rod.yaml
 expect 0 run preview.yaml -o before --set time.steps=2
 refused "is that of .solver: pbd., from which only that goes on" --set start=before.vtkhdf
 scene=preview.yaml
 refused "is not that of .solver: pbd., which goes on from its own only" --set start=rod.vtkhdf
+expect 0 run swing.yaml -o before --set time.steps=2; scene=swing.yaml
+refused "its other end is not where rod.end holds it" --set start=before.vtkhdf --set "rod.end.position=[0.1, 0, 0.05]"
 cat > invert.yaml <<'END'
 slender: 1
 job: invert

@@ -82,10 +82,10 @@ static const char shell_scene[] =
     "design:\n  unknowns: {magnetization: {noise: 100, scale: 1.0e+4}}\n  objectives: [{target: 1}]\n"
     "  optimizer: mma\n";
 
-static const char rod_scene[] =
+static const char rod_of[] =
     "slender: 1\njob: design\n"
-    "rod:\n  natural_strain: [0, 2, 0]\n  length: 60 mm\n  elements: 300\n  radius: 0.5 mm\n  young: 1 MPa\n"
-    "  poisson: 0.5\n  density: 1800\n  magnetization: [5.0e+4, 0, 0]\n"
+    "rod:\n  model: %s\n  natural_strain: [0, 2, 0]\n  length: 60 mm\n  elements: 300\n  radius: 0.5 mm\n"
+    "  young: 1 MPa\n  poisson: 0.5\n  density: 1800\n  magnetization: [5.0e+4, 0, 0]\n"
     "flux_density: [\"0\", \"1e-3*cos(20*y+x)\", \"3e-3*(1+8*x)*cos(15*z)\"]\n"
     "cases:\n  - {name: a, target: [\"s\", \"0\", \"2*s*s\"]}\n"
     "  - {name: b, gravity: [0, 0, 1], target: [\"s\", \"0\", \"3*s*s\"]}\n"
@@ -178,8 +178,12 @@ static void test_rod(void **state)
 {
     (void)state;
     long blocks = mem_live_count();
-    check_system(rod_scene);
-    check_cases(rod_scene);
+    for (int k = 0; k < 2; k++) {
+        char *scene = mem_format(rod_of, k ? "cosserat" : "kirchhoff");
+        check_system(scene);
+        check_cases(scene);
+        mem_free(scene);
+    }
     assert_int_equal(mem_live_count(), blocks);
 }
 
