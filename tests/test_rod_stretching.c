@@ -78,6 +78,17 @@ static void test_result(void **state)
     result_close(result);
 }
 
+/* The same as it is without loads: no moment turns it, but what hangs below an element is more than its strain says. */
+static void test_unstretched(void **state)
+{
+    (void)state;
+    Result *result = run(HANGING, (const char *const[]){"job=evaluate", "rod.loads=[]", NULL}, 0);
+    Array status = read_all(result, "slender/cases/case1/status");
+    assert_string_equal(status.data, "evaluated");
+    array_clear(&status);
+    result_close(result);
+}
+
 /* Haringx's load, as an evaluation sees it beside a pose that is in balance: from an equilibrium under less of it. */
 static void test_column(void **state)
 {
@@ -160,7 +171,8 @@ static void test_preview(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_result), cmocka_unit_test(test_column),
-                                       cmocka_unit_test(test_resumed), cmocka_unit_test(test_preview)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_result), cmocka_unit_test(test_unstretched),
+                                       cmocka_unit_test(test_column), cmocka_unit_test(test_resumed),
+                                       cmocka_unit_test(test_preview)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -406,7 +406,7 @@ static Balance balance_pose(const Model *model, Case *c)
     if (layout->strain >= 0) {
         Balance carried = balance_of(c->sys, gradient, layout->strain, 3 * layout->elements);
         if (carried.most <= MOMENT_LITTLE * h * rm->section.stretch) carried.most = 0;
-        if (carried.most * left.scale > left.most * carried.scale)
+        if (carried.most > 0 && carried.most * left.scale >= left.most * carried.scale)
             left = (Balance){"forces", "N", carried.most / h, carried.scale / h, true};
     }
     mem_free(gradient);
