@@ -111,6 +111,11 @@ double system_scale_mean(const System *sys)
     return mean;
 }
 
+double system_shift(const System *sys)
+{
+    return sys->factored && sys->anchor[ANCHOR_USABLE] ? sys->anchor[ANCHOR_SHIFT] : 0;
+}
+
 void system_solve(System *sys, const double *b, double *y)
 {
     double *work = pick(sys, b);
@@ -275,6 +280,34 @@ bool system_lags(const System *sys)
 {
     bool found = false;
     for (int t = 0; t < sys->term_count; t++) found = found || sys->entries[t].term.ops->lag;
+    return found;
+}
+
+static void circulate_term(const Entry *entry, const Point *own, const double *d, double *r)
+{
+    Pack x[TERM_MAX_DOF], along[TERM_MAX_DOF], out[TERM_MAX_DOF];
+    for (int k = 0; k < entry->packs; k++) {
+        system_gather(entry, k, own->x, x);
+        system_gather(entry, k, d, along);
+        entry->term.ops->circulate(entry->term.self, k, own, x, along, out);
+        system_scatter(entry, k, out, r);
+    }
+}
+
+void system_circulate(System *sys, const Point *at, const double *d, double *r)
+{
+    system_update(sys, at);
+    for (int t = 0; t < sys->term_count; t++) {
+        const Entry *entry = &sys->entries[t];
+        Point own = system_term_point(sys, t, at);
+        if (entry->term.ops->circulate) circulate_term(entry, &own, d, r);
+    }
+}
+
+bool system_circulates(const System *sys)
+{
+    bool found = false;
+    for (int t = 0; t < sys->term_count; t++) found = found || sys->entries[t].term.ops->circulate;
     return found;
 }
 
