@@ -195,10 +195,12 @@ static bool check_slender(const Rod *rod, const Build *b)
 /* Takes the fields. */
 static Rod *make_rod(const RodModel *rm, const RodScene *scene, const FluxFields *fields)
 {
-    if (!rm->curves) return rod_create(scene->elements, scene->length, rm->unit, rm->area, fields);
+    if (!rm->curves)
+        return rod_create(scene->elements, scene->length, rm->unit, rm->area, &(RodActs){.fields = *fields});
     double *length = mem_alloc((size_t)rm->strand_count, sizeof *length);
     for (int k = 0; k < rm->strand_count; k++) length[k] = rm->curves[k].length;
-    Rod *rod = rod_create_strands(rm->strand_count, scene->elements, length, rm->unit, rm->area, fields);
+    Rod *rod = rod_create_strands(rm->strand_count, scene->elements, length, rm->unit, rm->area,
+                                  &(RodActs){.fields = *fields});
     mem_free(length);
     return rod;
 }

@@ -248,7 +248,7 @@ void rod_model_loads(const RodModel *model, const Rod *rod, const RodScene *scen
     p[rod->damping] = scene->damping * (rod_length(rod) / rod_each(rod));
     RodLoads beside = model->loads; /* the weight */
     beside.line = model->line;
-    rod_share_loads(rod, beside, p + rod->load);
+    for (int k = 0; k < rod->strands; k++) rod_share_loads(rod, k, beside, p);
     rod_sum_loads(rod, p);
 }
 
