@@ -181,7 +181,7 @@ void rod_element_strains(const Rod *rod, const RodLayout *layout, const double *
  * the last end is held, moments as well as its support's force can make them. */
 void rod_carry(const Rod *rod, System *sys, const RodLayout *layout, const Point *at, double *x);
 
-/* Puts the natural strains into p with which the state x of a system is in equilibrium if its last end is
+/* Puts the natural strains into p with which the state x of a system is in equilibrium at that time if its last end is
  * free, to rounding: moments from node to node, from the free end on. Sets the multipliers of x, if it has any.
  */
-void rod_balance(const Rod *rod, System *sys, const RodLayout *layout, double *x, double *p);
+void rod_balance(const Rod *rod, System *sys, const RodLayout *layout, double time, double *x, double *p);

@@ -133,7 +133,7 @@ static RodPose equilibrium(const Rod *rod, RodFrame clamp, RodCurve *curve)
     assert_true(vec3_length(left) < 1e-12 * vec3_length(M));
     RodFrame frame = {quat_rotate(q, vec3(1, 0, 0)), quat_rotate(q, vec3(0, 1, 0)),
                       quat_rotate(q, vec3(0, 0, 1))};
-    return (RodPose){curve, frame};
+    return (RodPose){.curve = curve, .clamp = frame};
 }
 
 static RodLoads weight_of(const Rod *rod)

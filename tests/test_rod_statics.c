@@ -326,7 +326,7 @@ static void test_balance_in_field(void **state)
     System *sys = rod_system(rod, 5e6, false);
     State rest = system_state(sys);
     rod_copy_state(rod, &o.layout, o.state.x, &layout, rest.x);
-    rod_balance(rod, sys, &layout, rest.x, p);
+    rod_balance(rod, sys, &layout, 0, rest.x, p);
     Point point = state_point(&rest, p);
     Evaluation left = system_gradient(sys, &point, g);
     for (int i = 0; i < layout.reference; i++)

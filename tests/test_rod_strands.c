@@ -122,7 +122,7 @@ static void test_resting(void **state)
         State at = system_state(sys), turns = {.x = mem_alloc((size_t)layout.dofs, sizeof(double))};
         rod_follow_curves(rod, curves, frames, turns.x);
         rod_copy_state(rod, &layout, turns.x, &own, at.x);
-        rod_balance(rod, sys, &own, at.x, p);
+        rod_balance(rod, sys, &own, 0, at.x, p);
         double *g = mem_alloc((size_t)own.dofs, sizeof *g), most = 0, away = 0, place[2 * (N + 1)][3];
         Point point = state_point(&at, p);
         Evaluation now = system_gradient(sys, &point, g);

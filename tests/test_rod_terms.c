@@ -158,7 +158,7 @@ static void check_whole_derivative(bool positions)
     System *sys = positions ? rod_system(rod, 1e6, false) : rod_hanging_system(rod);
     double *x = random_state(rod, &layout, 0.3, &random);
     if (positions) rod_places(rod, &layout, x, layout.nodes, x);
-    rod_balance(rod, sys, &layout, x, p);
+    rod_balance(rod, sys, &layout, 0, x, p);
     size_t n = (size_t)layout.dofs;
     double *g = mem_alloc(5 * n, sizeof *g), *d = g + n, *r = g + 2 * n, *w = g + 3 * n, *moved = g + 4 * n;
     Point at = {.x = x, .p = p};

@@ -66,12 +66,13 @@ void rod_add_state(const Model *model, const Snapshot *shot, const char *prefix,
 }
 
 /* Is it known how stable the state is? Of one rod with a free end, one stiffness, no magnetisation across the tangent, no
- * field that varies in space, and nothing that it meets. */
+ * field that varies in space, no couple, no potential, and nothing that it meets. */
 static bool is_judged(const Rod *rod, const double *p)
 {
     const double *B = p + rod->flux_density;
     bool across = false, field = B[0] != 0 || B[1] != 0 || B[2] != 0;
-    bool uniform = !rod_field_varies(rod, p) && !rod->world && rod->strands == 1;
+    bool uniform = !rod_field_varies(rod, p) && !rod_has_couples(rod, p) && rod->potentials.count == 0 &&
+                   !rod->world && rod->strands == 1;
     for (int e = 0; e < rod->elements; e++) {
         across |= field && (p[rod->magnetization + 3 * e + 1] != 0 || p[rod->magnetization + 3 * e + 2] != 0);
         uniform &= p[rod->young + e] == p[rod->young];
@@ -114,6 +115,8 @@ char *rod_doubt(const Model *model, const Snapshot *shot)
 {
     const RodModel *rm = model->self;
     const Rod *rod = rm->rod;
+    if (model->job->rest && rod_has_couples(rod, shot->p))
+        return mem_text("couples have no potential: no energy says whether the rod would stay where it is");
     if (!is_judged(rod, shot->p)) return NULL;
     Vec3 *work;
     RodEquilibrium at = equilibrium_of(rm, shot, &work);
@@ -140,5 +143,8 @@ void rod_add_final(const Model *model, const Snapshot *shot, int modes, Arrays *
     arrays_add(list, array_float("rod/moment", "N m", moment, 2, nodes, 3));
     arrays_add(list, array_float("rod/natural_strain_elements", "1/m", shot->p + rod->natural_strain, 2,
                                  rod->elements, 3));
+    if (rm->list.along || rm->list.timed)
+        arrays_add(list, array_float("rod/load", "N", shot->p + rod->load, 2, nodes, 3));
+    if (rod->couples) arrays_add(list, array_float("rod/couple", "N m", shot->p + rod->couple, 2, nodes, 3));
     if (is_judged(rod, shot->p)) add_stability(rm, shot, list);
 }
