@@ -24,10 +24,20 @@ void rod_potential_eval(const RodPotential *potential, RodPlace at, FormulaJet *
     formula_jet(&potential->of, at.x, numbers, jet);
 }
 
-bool rod_potential_value(const RodPotential *potential, RodPlace at, double *u, Error *err)
+static bool find_value(const RodPotential *potential, RodPlace at, double *u, Error *err)
 {
     double numbers[NUMBERS] = {at.time, at.s, at.L};
     return formula_jet_value(&potential->of, at.x, numbers, u, err);
+}
+
+bool rod_potential_known(const RodPotential *potential, RodPlace at, FormulaJet *jet, Error *err)
+{
+    rod_potential_eval(potential, at, jet);
+    if (isfinite(jet->value[0])) return true;
+    double u;
+    return find_value(potential, at, &u, err) &&
+           error_set(err, "a potential is not finite everywhere within %g m of x = %g, y = %g, z = %g",
+                     4 * potential->of.step, at.x.x, at.x.y, at.x.z);
 }
 
 void rod_potentials_add(RodPotentials *potentials, RodPotential *potential)
@@ -98,7 +108,7 @@ static double value_at(const RodTerm *term, int node, RodPlace place, const doub
     double sum = 0, u;
     for (int k = 0; k < term->rod->potentials.count; k++) {
         double a = factor[k] * share(term->rod, node);
-        if (a != 0) sum += rod_potential_value(term->rod->potentials.items[k], place, &u, NULL) ? a * u : NAN;
+        if (a != 0) sum += find_value(term->rod->potentials.items[k], place, &u, NULL) ? a * u : NAN;
     }
     return sum;
 }

@@ -20,11 +20,12 @@ extern const char *const rod_place_variables[];
  * formula. */
 RodPotential *rod_potential_create(Formula *formula, double length);
 
-/* u with its derivatives in space, in row 0. Re-entrant; what is not finite is NaN. */
+/* u with its derivatives in space, in row 0. Re-entrant; where u is not finite, there or at one of the places around it that
+ * tell the derivatives, it is NaN. */
 void rod_potential_eval(const RodPotential *potential, RodPlace at, FormulaJet *jet);
 
-/* u; false and a sentence where it is not finite. */
-bool rod_potential_value(const RodPotential *potential, RodPlace at, double *u, Error *err);
+/* The same; false and a sentence where it is not finite. */
+bool rod_potential_known(const RodPotential *potential, RodPlace at, FormulaJet *jet, Error *err);
 
 /* Potentials around a rod, each with a factor in its block potential_scale. */
 typedef struct RodPotentials {

@@ -143,7 +143,7 @@ static void test_times(void **state)
     }
     double *load =
         run_nodes(rod_text("simulate", N, 0.4, "{point: end, force: [\"0\", \"t^2\", \"0\"]}", steps),
-                  "slender/rod/load", N + 1);
+                  "slender/design/load", N + 1);
     assert_true(fabs(load[3 * N + 1] - 0.05 * 0.05) < 1e-15 && load[3 * N] == 0);
     mem_free(load);
 }

@@ -27,6 +27,22 @@ static bool load_rod(const Model *model, double time, double *p, Error *err)
            error_prefix(err, "rod.loads");
 }
 
+/* The potentials. */
+static bool knows_loads(const Model *model, double time, const double *place, Error *err)
+{
+    const Rod *rod = ((const RodModel *)model->self)->rod;
+    for (int i = 0; rod && i < model->point_count; i++) {
+        int each = rod_each(rod), strand = i / (each + 1);
+        double L = rod->strand[strand].length;
+        FormulaJet jet;
+        RodPlace at = {vec3_load(place + 3 * i), time, L * (i % (each + 1)) / each, L};
+        for (int k = 0; k < rod->potentials.count; k++)
+            if (!rod_potential_known(rod->potentials.items[k], at, &jet, err))
+                return error_prefix(err, "rod.loads");
+    }
+    return true;
+}
+
 /* Of cases and stages, each at its time. */
 static bool load_stages(Model *model, const Build *b)
 {
@@ -257,10 +273,16 @@ static bool is_default(const SolverScene *solver)
            solver->force_tolerance == def.force_tol;
 }
 
-static bool check_inversion(const Scene *scene, YamlFile *file)
+static bool check_inversion(const RodModel *rm, const Scene *scene, YamlFile *file)
 {
-    bool round_trip = false;
-    for (int k = 0; k < scene->checks_count; k++) round_trip |= scene->checks[k] == CHECK_ROUND_TRIP;
+    bool round_trip = false, stability = false;
+    for (int k = 0; k < scene->checks_count; k++) {
+        round_trip |= scene->checks[k] == CHECK_ROUND_TRIP;
+        stability |= scene->checks[k] == CHECK_STABILITY;
+    }
+    if (stability && (rm->list.couples || rm->list.placed))
+        return yaml_refuse(file, "checks", "stability is that of a rod under forces that stay, without %s",
+                           rm->list.couples ? "couples" : "loads that depend on its place");
     if (!rod_scene(scene)->curve)
         return yaml_refuse(file, "rod", "an inversion needs `curve`, the shape that is given");
     const char *unused = scene->load_steps.mode != 0   ? "load_steps"
@@ -280,7 +302,7 @@ static bool create(Model *model, const Scene *scene, YamlFile *file)
     model->step_cap = STEP_CAP;
     model->self = rod_model_create(scene, &b);
     if (!model->self) return false;
-    if (model->job == &rod_job_invert) return check_inversion(scene, file);
+    if (model->job == &rod_job_invert) return check_inversion(model->self, scene, file);
     return model->job == &rod_job_identify || fill(model, scene, &b);
 }
 
@@ -402,6 +424,7 @@ static const BodyOps ops = {
     .put_loads = put_loads,
     .put_target = put_target,
     .load = load_rod,
+    .knows = knows_loads,
     .put_numbers = put_numbers,
     .put_vectors = put_vectors,
     .select = select_part,

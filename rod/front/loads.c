@@ -19,18 +19,24 @@ static bool read_vector(const Build *b, Key at, const LoadVectorScene *scene, co
     return vector->formula != NULL;
 }
 
+/* What of the place a line load depends on; NULL: nothing. */
+static const char *place_of(const Formula *line)
+{
+    for (int i = 0; line && i < PLACES; i++)
+        if (formula_uses(line, rod_place_variables[i])) return rod_place_variables[i];
+    return NULL;
+}
+
 /* Of a rod that moves, forces that follow from its place have to have a potential. */
 static bool check_line(const Build *b, Key at, const Formula *line, bool known)
 {
-    bool ok = true;
-    for (int i = 0; line && !known && ok && i < PLACES; i++)
-        ok = !formula_uses(line, rod_place_variables[i]) ||
-             yaml_refuse(b->file, at.text,
-                         "a force that depends on where the rod is, %s, needs `potential` in place of "
-                         "`line`, which is of s, "
-                         "L and t",
-                         rod_place_variables[i]);
-    return ok;
+    const char *place = place_of(line);
+    return known || !place ||
+           yaml_refuse(b->file, at.text,
+                       "a force that depends on where the rod is, %s, needs `potential` in place of "
+                       "`line`, which is of s, "
+                       "L and t",
+                       place);
 }
 
 static bool read_potential(const Build *b, Key at, const RodLoadScene *scene, double size, RodLoadList *list)
@@ -71,12 +77,14 @@ bool rod_loads_read(const RodScene *scene, const Build *b, double size, bool kno
         const RodLoadScene *from = &scene->loads[k];
         if (from->potential) {
             ok = read_potential(b, key("rod.loads[%d].potential", k), from, size, list) && ok;
+            list->placed = true;
             continue;
         }
         RodLoad *load = &list->items[list->count++];
         ok = read_load(from, b, k, known, load) && ok;
         list->couples |= from->couple != NULL;
         list->along |= load->line.formula != NULL;
+        list->placed |= place_of(load->line.formula) != NULL;
         list->timed |= is_timed(load);
         if (scene->solver == ROD_SOLVER_PBD && list->timed)
             ok = yaml_refuse(b->file, key("rod.loads[%d]", k).text,
@@ -130,10 +138,8 @@ bool rod_loads_at(const RodLoadList *list, double time, RodPointLoad *points, Ro
 static bool add_potentials(const RodPotentials *potentials, RodPlace at, Vec3 *force, Error *err)
 {
     FormulaJet jet;
-    double u;
     for (int k = 0; k < potentials->count; k++) {
-        if (!rod_potential_value(potentials->items[k], at, &u, err)) return false;
-        rod_potential_eval(potentials->items[k], at, &jet);
+        if (!rod_potential_known(potentials->items[k], at, &jet, err)) return false;
         *force = vec3_axpy(-1, vec3_load(jet.gradient[0]), *force);
     }
     return true;

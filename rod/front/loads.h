@@ -23,6 +23,7 @@ typedef struct RodLoadList {
     RodPotentials potentials; /* owned                                                   */
     bool couples, timed;      /* are there any; does any but a potential depend on time? */
     bool along;               /* are there any by formula of where on the rod?           */
+    bool placed;              /* do any depend on where the rod is?                      */
 } RodLoadList;
 
 /* size: m, on which potentials vary. `known`: so is the place of the rod, of which line loads may then be formulas. False

@@ -143,8 +143,5 @@ void rod_add_final(const Model *model, const Snapshot *shot, int modes, Arrays *
     arrays_add(list, array_float("rod/moment", "N m", moment, 2, nodes, 3));
     arrays_add(list, array_float("rod/natural_strain_elements", "1/m", shot->p + rod->natural_strain, 2,
                                  rod->elements, 3));
-    if (rm->list.along || rm->list.timed)
-        arrays_add(list, array_float("rod/load", "N", shot->p + rod->load, 2, nodes, 3));
-    if (rod->couples) arrays_add(list, array_float("rod/couple", "N m", shot->p + rod->couple, 2, nodes, 3));
     if (is_judged(rod, shot->p)) add_stability(rm, shot, list);
 }
