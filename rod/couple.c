@@ -8,12 +8,6 @@
  * there, and what is lacking is TermOps.circulate. */
 #include "rod/term.h"
 
-static int couple_size(const void *self)
-{
-    (void)self;
-    return 3;
-}
-
 static void couple_dofs(const void *self, int node, int *dof)
 {
     const RodLayout *layout = &((const RodTerm *)self)->layout;
@@ -71,7 +65,7 @@ static void couple_param_forward(const void *self, int pack, const Point *at, co
 static const TermOps couple_ops = {
     .name = "couple",
     .count = rod_term_nodes,
-    .size = couple_size,
+    .size = rod_term_three,
     .dofs = couple_dofs,
     .eval = couple_eval,
     .circulate = couple_circulate,

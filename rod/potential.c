@@ -58,12 +58,6 @@ void rod_potentials_clear(RodPotentials *potentials)
 
 /* ---- The term ---- */
 
-static int potential_size(const void *self)
-{
-    (void)self;
-    return 3;
-}
-
 static void potential_dofs(const void *self, int node, int *dof)
 {
     const RodLayout *layout = &((const RodTerm *)self)->layout;
@@ -167,7 +161,7 @@ static void potential_param_forward(const void *self, int pack, const Point *at,
 static const TermOps potential_ops = {
     .name = "potential",
     .count = rod_term_nodes,
-    .size = potential_size,
+    .size = rod_term_three,
     .dofs = potential_dofs,
     .eval = potential_eval,
     .param = potential_param,

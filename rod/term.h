@@ -22,7 +22,13 @@ static inline void rod_term_turn_dofs(const void *self, int e, int *dof)
     for (int i = 0; i < 6; i++) dof[i] = layout->turn + 3 * rod_element_node(layout, e) + i;
 }
 
-/* Elements that are nodes; the node of a lane, the last one fills up. */
+static inline int rod_term_three(const void *self)
+{
+    (void)self;
+    return 3;
+}
+
+/* Elements that are nodes, with three dofs; the node of a lane, the last one fills up. */
 static inline int rod_term_nodes(const void *self)
 {
     return ((const RodTerm *)self)->layout.nodes;

@@ -241,7 +241,9 @@ static void test_end_couple(void **state)
             "end couple, %2g rad, %s: %.1e L off a helix (%d iterations); GJ < EI: %.1e, order %.2f\n", turns,
             positions ? "positions" : "hanging", round, info[0].iterations, coarse, log2(coarse / fine));
         for (int i = 0; i < 3; i++) assert_int_equal(info[i].status, NEWTON_CONVERGED);
-        assert_true(round < 1e-14 && coarse < 2e-3 && fabs(log2(coarse / fine) - 2) < 0.05);
+        /* With positions a last step below Newton's tolerance is taken or not by the rounding of forces. */
+        assert_true(round < (positions ? 1e-9 : 1e-14) && coarse < 2e-3 &&
+                    fabs(log2(coarse / fine) - 2) < 0.05);
     }
 }
 
