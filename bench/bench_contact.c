@@ -22,7 +22,7 @@ static void print(const char *name, const char *what, double value, const char *
 static void load(void *self, double time, double *p)
 {
     Error err;
-    if (!model_load(self, time, p, &err)) bench_fail("%s", err.text);
+    if (!model_load(self, time, false, p, &err)) bench_fail("%s", err.text);
 }
 
 /* A thread's own milliseconds per step, all steps of the scene; what it does at its end. */

@@ -70,7 +70,7 @@ static Hanging hanging_create(int elements)
     o.state = system_state(o.sys);
     rod_follow_curves(o.rod, &o.curve, &frames, o.state.x);
     RodLayout layout = rod_layout(o.rod, false);
-    rod_balance(o.rod, o.sys, &layout, o.state.x, o.p);
+    rod_balance(o.rod, o.sys, &layout, 0, o.state.x, o.p);
     mem_free(frames);
     return o;
 }

@@ -53,7 +53,10 @@ static NewtonStatus judge(Run *run, Case *c, int k)
     Balance now = model->body->ops->balance ? model->body->ops->balance(model, c) : balance_of_points(c);
     bool leaves;
     if (!now.finite || !find_stability(c, &leaves)) return NEWTON_NOT_FINITE;
-    const char *said = leaves ? "unstable" : "stable";
+    bool judged = !system_circulates(c->sys);
+    const char *said = !judged ? "of forces without a potential, so that no energy says whether it would stay"
+                       : leaves ? "unstable"
+                                : "stable";
     int count = model->case_count;
     if (now.most > newton_default().force_tol * now.scale) {
         host_step(run->host, k + 1, count,
@@ -62,7 +65,7 @@ static NewtonStatus judge(Run *run, Case *c, int k)
         return NEWTON_UNBALANCED;
     }
     host_step(run->host, k + 1, count, "%s: an equilibrium, %s", c->name, said);
-    return leaves ? NEWTON_SADDLE : NEWTON_CONVERGED;
+    return judged && leaves ? NEWTON_SADDLE : NEWTON_CONVERGED;
 }
 
 static RunStatus run_evaluate(Run *run, Error *err)

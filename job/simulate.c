@@ -24,7 +24,7 @@ typedef struct Simulation {
 static void load(void *self, double time, double *p)
 {
     Simulation *s = self;
-    s->refused |= !model_load(s->run->model, time, p, s->err);
+    s->refused |= !model_load(s->run->model, time, false, p, s->err);
 }
 
 static bool move(void *self, double time, double *x)

@@ -24,7 +24,7 @@ static void load(void *self, double time, double *p)
 {
     TrajectoryJob *job = self;
     bool given = job->run->model->control.rows > 0;
-    job->refused |= !model_load(job->run->model, time, given ? NULL : p, &job->err);
+    job->refused |= !model_load(job->run->model, time, given, p, &job->err);
 }
 
 static bool move(void *self, double time, double *x)

@@ -13,7 +13,7 @@ enum { STEPS_MAX = 100000000 };
 static void load(void *self, double time, double *p)
 {
     SlenderMotion *motion = self;
-    motion->refused |= !model_load(motion->model->model, time, motion->given ? NULL : p, &motion->err);
+    motion->refused |= !model_load(motion->model->model, time, motion->given, p, &motion->err);
 }
 
 static bool move(void *self, double time, double *x)

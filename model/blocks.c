@@ -70,6 +70,8 @@ bool model_knows_fields(const Model *model, const double *p, double time, const 
     for (int k = 0; model->fields && k < model->fields->count; k++)
         if (p[model->field_scale + k] != 0 && !knows_field(model, model->fields->items[k], time, place, err))
             return error_prefix(err, "flux_density");
+    const BodyOps *ops = model->body->ops;
+    if (ops->knows && !ops->knows(model, time, place, err)) return false;
     const FluxField *flow = model->world ? model->world->flow : NULL;
     return !flow || knows_field(model, flow, time, place, err) || error_prefix(err, "water.velocity");
 }

@@ -12,10 +12,13 @@ bool model_move(const Model *model, double time, double part, double *x, Error *
     return !model->moves || model->body->ops->move(model, time, part, x, err);
 }
 
-bool model_load(const Model *model, double time, double *p, Error *err)
+bool model_load(const Model *model, double time, bool flux_given, double *p, Error *err)
 {
     const TimedFlux *timed = &model->flux_of_time;
-    if (p && timed_flux_is_given(timed) && !timed_flux_eval(timed, time, p + model->flux_density, err))
+    const BodyOps *ops = model->body->ops;
+    if (ops->load && !ops->load(model, time, p, err)) return false;
+    if (!flux_given && timed_flux_is_given(timed) &&
+        !timed_flux_eval(timed, time, p + model->flux_density, err))
         return error_prefix(err, "flux_density");
     return !model->world || world_stands(model->world, time, err);
 }

@@ -66,11 +66,11 @@ void model_destroy(Model *model);
 /* Puts the moved coordinates where they are at that time, a part of the way (0..1) from where x has them. */
 bool model_move(const Model *model, double time, double part, double *x, Error *err);
 
-/* Puts what depends on time into p (NULL: it comes from elsewhere). False and a sentence that says which field or obstacle
+/* Puts what depends on time into p, but for the flux density where that is given from elsewhere. False and a sentence that says which field or obstacle
  * has a formula that is not finite then. */
-bool model_load(const Model *model, double time, double *p, Error *err);
+bool model_load(const Model *model, double time, bool flux_given, double *p, Error *err);
 
-/* Are the fields in which a case is, and the water's stream, known at all points, place[point_count][3]? False and a sentence
+/* Are the fields in which a case is, the water's stream and the body's own loads known at all points, place[point_count][3]? False and a sentence
  * that says where which of them is not: to be asked when a solve has failed. */
 bool model_knows_fields(const Model *model, const double *p, double time, const double *place, Error *err);
 

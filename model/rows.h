@@ -112,6 +112,12 @@ typedef struct BodyOps {
     bool (*put_target)(struct Model *model, const Build *b, const char *at, const TargetScene *scene,
                        double (*target)[3]);
 
+    /* What of the body's own loads depends on time, into p; a sentence where it is not finite. Optional. */
+    bool (*load)(const struct Model *model, double time, double *p, Error *err);
+
+    /* Are its loads known at its points, place[point_count][3]? A sentence where not. Optional. */
+    bool (*knows)(const struct Model *model, double time, const double *place, Error *err);
+
     /* Of which elements of the mesh a block of p has a row each: edges (1), faces (2), cells (3). Optional where there is
      * no mesh. */
     int (*row_dim)(const struct Model *model, const ParamBlock *block);

@@ -1,17 +1,18 @@
 #include "optim/implicit.h"
 #include "base/memory.h"
+#include "solve/tangent.h"
 #include <string.h>
 
 void implicit_tangent(System *sys, const Point *at, const double *dp, double *dx)
 {
     system_param_forward(sys, at, dp, dx);
-    system_solve(sys, dx, dx);
+    tangent_solve(sys, at, false, dx, dx);
     for (int i = 0; i < system_dof_count(sys); i++) dx[i] = -dx[i];
 }
 
 void implicit_adjoint(System *sys, const Point *at, double *gx, double *dp)
 {
-    system_solve(sys, gx, gx);
+    tangent_solve(sys, at, true, gx, gx);
     for (int i = 0; i < system_dof_count(sys); i++) gx[i] = -gx[i];
     system_param(sys, at, gx, dp);
 }

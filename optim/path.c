@@ -1,6 +1,6 @@
 #include "optim/path.h"
 #include "base/memory.h"
-#include "solve/gmres.h"
+#include "solve/tangent.h"
 #include <string.h>
 
 double *path_x(const Path *path, int k)
@@ -222,39 +222,10 @@ static Point stand_at(Path *path, int k)
     return at;
 }
 
-/* A step whose lagged quantities are its own end's: its matrix is A + L, L = d2E/dx dx_lag, which is not symmetric. */
-typedef struct Lagging {
-    System *sys;
-    const Point *at;
-    bool transposed;
-    double *work; /* [dofs] */
-} Lagging;
-
-/* A^-1 L x, or A^-1 L^T x. */
-static void lag_product(void *self, const double *x, double *y)
-{
-    Lagging *lagging = self;
-    int n = system_dof_count(lagging->sys);
-    memset(lagging->work, 0, (size_t)n * sizeof *lagging->work);
-    if (lagging->transposed)
-        system_lag(lagging->sys, lagging->at, x, lagging->work);
-    else
-        system_lag_forward(lagging->sys, lagging->at, x, lagging->work);
-    system_solve(lagging->sys, lagging->work, y);
-}
-
-static const double LAG_TOL = 1e-14;
-enum { LAG_ITERATIONS = 100 };
-
-/* y = A^-1 b, or of A + L or its transposed, with the factor of A at hand. */
+/* y = A^-1 b, or of A + L or its transposed where lagged quantities are the step's own end's, with the factor of A at hand. */
 static void solve_step(Path *path, const Point *at, bool transposed, const double *b, double *y)
 {
-    System *sys = path->problem->sys;
-    system_solve(sys, b, y);
-    if (!at->x_lag || !system_lags(sys)) return;
-    Lagging lagging = {sys, at, transposed, mem_alloc((size_t)path->dofs, sizeof(double))};
-    path->unsolved |= !gmres_solve(path->dofs, lag_product, &lagging, y, LAG_TOL, LAG_ITERATIONS, y);
-    mem_free(lagging.work);
+    path->unsolved |= !tangent_solve(path->problem->sys, at, transposed, b, y);
 }
 
 void path_tangent(Path *path, double *dp, const double *dv, double *dx)

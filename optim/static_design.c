@@ -2,6 +2,7 @@
 #include "base/memory.h"
 #include "base/vector.h"
 #include "optim/implicit.h"
+#include "solve/tangent.h"
 #include <math.h>
 #include <string.h>
 
@@ -85,7 +86,7 @@ static bool factor_best(StaticDesign *sd, int c)
     if (work->factored_best) return true;
     Point at = point(load, work->best_linearised, work->best_p);
     system_hessian(load->sys, &at, work->w);
-    work->factored_best = system_factor(load->sys, 0);
+    work->factored_best = tangent_factor(load->sys);
     return work->factored_best;
 }
 

@@ -26,11 +26,16 @@ static bool frame_is_sound(RodFrame f)
     return fabs(vec3_length(f.n0) - 1) < 0.02 && vec3_length(n2) < 0.02 && vec3_length(n0) < 0.02;
 }
 
-/* N, whatever the directions. */
+/* N, whatever the directions; of couples a force at the end that has them at the clamp. */
 static double total_load(const RodIdentifyDef *def)
 {
-    double sum = vec3_length(def->loads.line) * def->poses[0].curve->length + vec3_length(def->loads.end);
-    for (int k = 0; k < def->loads.point_count; k++) sum += vec3_length(def->loads.points[k].force);
+    const RodPose *first = &def->poses[0];
+    double length = first->curve->length, part = length / (2 * first->curve->elements + 1);
+    double sum = vec3_length(def->loads.line) * length + vec3_length(def->loads.end);
+    for (int k = 0; k < def->loads.point_count; k++)
+        sum += vec3_length(def->loads.points[k].force) + vec3_length(def->loads.points[k].couple) / length;
+    for (int j = 0; first->along && j <= 2 * first->curve->elements; j++)
+        sum += part * vec3_length(first->along[j]);
     return sum;
 }
 
@@ -69,9 +74,11 @@ static RodFrame orthonormal(RodFrame f)
 static void find_moments(const RodPose *pose, RodLoads loads, Vec3 *moment)
 {
     RodPointLoad *points = mem_alloc((size_t)loads.point_count, sizeof *points);
-    for (int k = 0; k < loads.point_count; k++)
-        points[k] = (RodPointLoad){fmin(loads.points[k].s, pose->curve->length), loads.points[k].force};
-    loads.points = points;
+    for (int k = 0; k < loads.point_count; k++) {
+        points[k] = loads.points[k];
+        points[k].s = fmin(points[k].s, pose->curve->length);
+    }
+    loads.points = points, loads.along = pose->along;
     rod_moments(pose->curve, loads, moment);
     mem_free(points);
 }

@@ -17,6 +17,7 @@ typedef struct RodPose {
     const RodCurve *curve; /* borrowed; all of about the same length, with the same number of elements */
     RodFrame clamp;        /* material frame at its start, of the same section in all poses; made
                               orthonormal                                                            */
+    const Vec3 *along;     /* [stations] N/m, loads that vary along it; NULL: none; borrowed           */
 } RodPose;
 
 typedef struct RodIdentifyDef {

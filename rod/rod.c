@@ -9,20 +9,20 @@ static const double HOLD = 10;          /* of the link, in parts of the whole ro
 static const double BASE_SHIFT = 1e-10; /* for a rod that may spin, or bend to any side (system.h) */
 static const double PUSH = 60;          /* of a held end, in EI/L^2: clamps buckle at 4 pi^2 (system.h) */
 
-Rod *rod_create(int elements, double length, RodSection unit, double area, const FluxFields *fields)
+Rod *rod_create(int elements, double length, RodSection unit, double area, const RodActs *acts)
 {
-    return rod_create_strands(1, elements, &length, unit, area, fields);
+    return rod_create_strands(1, elements, &length, unit, area, acts);
 }
 
 Rod *rod_create_strands(int strands, int each, const double *length, RodSection unit, double area,
-                        const FluxFields *fields)
+                        const RodActs *acts)
 {
     int elements = strands * each;
     Rod *rod = mem_alloc(1, sizeof *rod);
     *rod = (Rod){.strands = strands, .elements = elements, .unit = unit, .area = area, .start = ROD_CLAMPED};
     rod->strand = mem_alloc((size_t)strands, sizeof *rod->strand);
     for (int k = 0; k < strands; k++) rod->strand[k] = (RodStrand){length[k], vec3(0, 0, 0), quat_identity()};
-    if (fields) rod->fields = *fields;
+    if (acts) rod->fields = acts->fields, rod->potentials = acts->potentials, rod->couples = acts->couples;
     rod->bow = mem_alloc((size_t)elements, sizeof *rod->bow);
     Params *params = &rod->params;
     rod->young = params_add(params, "young", "Pa", elements, 1, false);
@@ -34,6 +34,8 @@ Rod *rod_create_strands(int strands, int each, const double *length, RodSection 
     rod->pull = params_add(params, "pull", "N", elements, 3, true);
     rod->damping = params_add(params, "damping", "N s/m", 1, 1, false);
     rod->field_scale = params_add(params, "field_scale", "", rod->fields.count, 1, true);
+    rod->couple = params_add(params, "couple", "N m", rod->couples ? elements + strands : 0, 3, true);
+    rod->potential_scale = params_add(params, "potential_scale", "", rod->potentials.count, 1, true);
     return rod;
 }
 
@@ -43,6 +45,7 @@ void rod_destroy(Rod *rod)
     mem_free(rod->strand);
     mem_free(rod->bow);
     flux_fields_clear(&rod->fields);
+    rod_potentials_clear(&rod->potentials);
     world_destroy(rod->world);
     mem_free(rod->edges);
     mem_free(rod->straight);
@@ -102,6 +105,7 @@ void rod_default_params(const Rod *rod, double young, double *p)
 {
     for (int i = 0; i < rod->params.size; i++) p[i] = 0;
     for (int e = 0; e < rod->elements; e++) p[rod->young + e] = young;
+    for (int k = 0; k < rod->potentials.count; k++) p[rod->potential_scale + k] = 1;
 }
 
 bool rod_field_varies(const Rod *rod, const double *p)
@@ -109,6 +113,13 @@ bool rod_field_varies(const Rod *rod, const double *p)
     bool varies = false;
     for (int k = 0; k < rod->fields.count; k++) varies |= p[rod->field_scale + k] != 0;
     return varies;
+}
+
+bool rod_has_couples(const Rod *rod, const double *p)
+{
+    bool has = false;
+    for (int i = 0; rod->couples && i < 3 * rod_node_count(rod); i++) has |= p[rod->couple + i] != 0;
+    return has;
 }
 
 void rod_sum_loads(const Rod *rod, double *p)
@@ -122,38 +133,53 @@ void rod_sum_loads(const Rod *rod, double *p)
     }
 }
 
-/* On a strand with elements of length h. */
-static void share_loads(int elements, double h, RodLoads loads, double *load)
+static void add_to(double *to, double part, Vec3 what)
 {
-    for (int i = 0; i <= elements; i++)
-        vec3_store(load + 3 * i, vec3_scale(i == 0 || i == elements ? h / 2 : h, loads.line));
-    for (int k = 0; k < loads.point_count; k++) {
-        double part = fmin(loads.points[k].s / h, elements);
-        int e = part < elements ? (int)part : elements - 1;
-        for (int side = 0; side < 2; side++) {
-            double *to = load + 3 * (e + side), share = side ? part - e : 1 - (part - e);
-            vec3_store(to, vec3_axpy(share, loads.points[k].force, vec3_load(to)));
-        }
-    }
+    vec3_store(to, vec3_axpy(part, what, vec3_load(to)));
 }
 
-void rod_share_loads(const Rod *rod, RodLoads loads, double *load)
+/* Of each element its load times the part of it that is a node's: Simpson's rule. */
+static void share_along(int elements, double h, const Vec3 *along, double *load)
 {
-    int each = rod_each(rod);
-    for (int k = 0; k < rod->strands; k++)
-        share_loads(each, rod_element_length(rod, k * each), loads, load + 3 * k * (each + 1));
+    for (int e = 0; e < elements; e++)
+        for (int side = 0; side < 2; side++) {
+            add_to(load + 3 * (e + side), h / 6, along[2 * (e + side)]);
+            add_to(load + 3 * (e + side), h / 3, along[2 * e + 1]);
+        }
+}
+
+void rod_share_loads(const Rod *rod, int strand, RodLoads loads, double *p)
+{
+    int each = rod_each(rod), first = strand * (each + 1);
+    double h = rod_element_length(rod, strand * each), *load = p + rod->load + 3 * first;
+    for (int i = 0; i <= each; i++)
+        vec3_store(load + 3 * i, vec3_scale(i == 0 || i == each ? h / 2 : h, loads.line));
+    if (loads.along) share_along(each, h, loads.along, load);
+    for (int i = 0; rod->couples && i <= 3 * each + 2; i++) p[rod->couple + 3 * first + i] = 0;
+    for (int k = 0; k < loads.point_count; k++) {
+        double part = fmin(loads.points[k].s / h, each);
+        int e = part < each ? (int)part : each - 1;
+        for (int side = 0; side < 2; side++) {
+            double share = side ? part - e : 1 - (part - e);
+            add_to(load + 3 * (e + side), share, loads.points[k].force);
+            if (rod->couples) add_to(p + rod->couple + 3 * (first + e + side), share, loads.points[k].couple);
+        }
+    }
 }
 
 /* ---- Systems ---- */
 
 static void add_terms(System *sys, const Rod *rod, const RodLayout *layout, double hold)
 {
-    const bool has[] = {[ROD_ANY_FORM] = true,
-                        [ROD_STRETCHING] = layout->strain >= 0,
-                        [ROD_HANGING] = layout->position < 0,
-                        [ROD_WITH_POSITIONS] = layout->position >= 0};
+    bool positions = layout->position >= 0;
+    const bool is[] = {[ROD_ANY_FORM] = true,
+                       [ROD_STRETCHING] = layout->strain >= 0,
+                       [ROD_HANGING] = !positions,
+                       [ROD_WITH_POSITIONS] = positions,
+                       [ROD_WITH_COUPLES] = rod->couples,
+                       [ROD_WITH_POTENTIALS] = rod->potentials.count > 0};
     for (int r = 0; r < rod_term_row_count; r++)
-        if (has[rod_term_rows[r].form]) system_add(sys, rod_term_rows[r].create(rod, *layout, hold));
+        if (is[rod_term_rows[r].form]) system_add(sys, rod_term_rows[r].create(rod, *layout, hold));
 }
 
 /* Weight and loads on positions; in motion inertia and damping. */

@@ -24,6 +24,7 @@
 #include "base/quat.h"
 #include "rod/frame.h"
 #include "rod/inverse.h"
+#include "rod/potential.h"
 #include "rod/section.h"
 #include "solve/params.h"
 #include "solve/system.h"
@@ -38,6 +39,13 @@ typedef struct RodStrand {
     Quat frame;
 } RodStrand;
 
+/* What acts on a rod beside weight and dead forces, and counts before its blocks are made. Taken by it. */
+typedef struct RodActs {
+    FluxFields fields;
+    RodPotentials potentials;
+    bool couples; /* are there any? */
+} RodActs;
+
 typedef struct Rod {
     int strands, elements; /* of all strands                               */
     RodStrand *strand;     /* [strands] owned                              */
@@ -48,31 +56,35 @@ typedef struct Rod {
     Vec3 *bow;         /* [elements] m, in the first node's frame: how far an element's chord is off that of a
                 * helix, because strain varies within it; usually 0; owned */
     FluxFields fields; /* parts of the flux density that vary in space; owned. Not for the hanging form */
-    World *world;      /* what it meets; owned; NULL: nothing. Not for the hanging form                 */
-    int (*edges)[2];   /* [elements] the nodes of each, and                                             */
+    RodPotentials potentials; /* energies of its places; owned. Not for the hanging form       */
+    World *world;          /* what it meets; owned; NULL: nothing. Not for the hanging form                 */
+    int (*edges)[2];       /* [elements] the nodes of each, and                                             */
     double (*straight)[3]; /* [nodes] m, places along x,                                          */
     int *part;             /* [nodes] and strands,                                         */
     double *lengths;       /* [strands] m: what its world knows of it; all owned             */
 
-    Params params;      /* blocks and their first entries in p:                           */
-    int young;          /* [element] Pa                                                   */
-    int natural_strain; /* [element][3] twist, k1, k2, 1/m                                */
-    int magnetization;  /* [element][3] A/m, in the material frame                        */
-    int flux_density;   /* [3] T, the uniform part                                        */
-    int gravity;        /* [3] m/s^2                                                      */
-    int load;           /* [node][3] N, dead                                              */
-    int pull;           /* [element][3] N, the loads beyond the element (rod_sum_loads)   */
-    int damping;        /* [1] N s/m at every node, in steps of time                      */
-    int field_scale;    /* [field] factors on the fields                                  */
+    Params params;       /* blocks and their first entries in p:                           */
+    int young;           /* [element] Pa                                                   */
+    int natural_strain;  /* [element][3] twist, k1, k2, 1/m                                */
+    int magnetization;   /* [element][3] A/m, in the material frame                        */
+    int flux_density;    /* [3] T, the uniform part                                        */
+    int gravity;         /* [3] m/s^2                                                      */
+    int load;            /* [node][3] N, dead                                              */
+    int pull;            /* [element][3] N, the loads beyond the element (rod_sum_loads)   */
+    int damping;         /* [1] N s/m at every node, in steps of time                      */
+    int field_scale;     /* [field] factors on the fields                                  */
+    int couple;          /* [node][3] N m, dead: rows are there where there are couples    */
+    int potential_scale; /* [potential] factors on the potentials                         */
+    bool couples;
 } Rod;
 
-/* Clamped at the origin along x, free at the other end; material, strains and loads are up to p. Takes the fields
- * (NULL: none). */
-Rod *rod_create(int elements, double length, RodSection unit, double area, const FluxFields *fields);
+/* Clamped at the origin along x, free at the other end; material, strains and loads are up to p. Takes what acts on it
+ * (NULL: nothing). */
+Rod *rod_create(int elements, double length, RodSection unit, double area, const RodActs *acts);
 
 /* Many, of length[strands] and so many elements each. */
 Rod *rod_create_strands(int strands, int elements, const double *length, RodSection unit, double area,
-                        const FluxFields *fields);
+                        const RodActs *acts);
 void rod_destroy(Rod *rod);
 
 static inline int rod_node_count(const Rod *rod)
@@ -109,12 +121,15 @@ void rod_default_params(const Rod *rod, double young, double *p);
 /* Is one of the fields that vary in space at work in p? */
 bool rod_field_varies(const Rod *rod, const double *p);
 
+/* Does it have couples in p? */
+bool rod_has_couples(const Rod *rod, const double *p);
+
 /* Puts the sums of p's loads into its pull. */
 void rod_sum_loads(const Rod *rod, double *p);
 
-/* Loads as forces at the nodes, load[nodes][3] in N: of a line load (N/m) by the nodes' lengths; a point load is shared by
- * the nodes beside it. */
-void rod_share_loads(const Rod *rod, RodLoads loads, double *load);
+/* Puts loads of a strand into p as forces and couples at its nodes: of a line load (N/m) by the nodes' lengths, of one that
+ * varies along them by Simpson's rule; what acts at a point is shared by the nodes beside it. */
+void rod_share_loads(const Rod *rod, int strand, RodLoads loads, double *p);
 
 /* ---- States ---- */
 
@@ -172,7 +187,7 @@ void rod_element_strains(const Rod *rod, const RodLayout *layout, const double *
  * make them. */
 void rod_carry(const Rod *rod, System *sys, const RodLayout *layout, const Point *at, double *x);
 
-/* Puts the natural strains into p with which the rotations of the state x of a system are in equilibrium if its last end is
- * free, to rounding: moments from node to node, from the free end on. Sets the multipliers of x, if it has any; and of a
- * Cosserat rod the strains that its loads, dead ones, give it, with the positions that follow. */
-void rod_balance(const Rod *rod, System *sys, const RodLayout *layout, double *x, double *p);
+/* Puts the natural strains into p with which the rotations of the state x of a system are in equilibrium at that time if its
+ * last end is free, to rounding: moments from node to node, from the free end on. Sets the multipliers of x, if it has any; and
+ * of a Cosserat rod the strains that its loads, dead ones, give it, with the positions that follow. */
+void rod_balance(const Rod *rod, System *sys, const RodLayout *layout, double time, double *x, double *p);

@@ -250,14 +250,14 @@ static void set_strains(const Rod *rod, System *sys, const RodLayout *layout, co
     follow(rod, layout, x);
 }
 
-void rod_balance(const Rod *rod, System *sys, const RodLayout *layout, double *x, double *p)
+void rod_balance(const Rod *rod, System *sys, const RodLayout *layout, double time, double *x, double *p)
 {
     size_t elements = (size_t)rod->elements;
     Vec3 *strain = mem_alloc(elements, sizeof *strain), (*rows)[6] = mem_alloc(elements, sizeof *rows);
     double *force = mem_alloc((size_t)layout->dofs, sizeof *force);
     rod_element_strains(rod, layout, x, strain);
     for (int e = 0; e < rod->elements; e++) vec3_store(p + rod->natural_strain + 3 * e, strain[e]);
-    Point at = {.x = x, .p = p};
+    Point at = {.x = x, .p = p, .time = time};
     if (layout->strain >= 0) follow(rod, layout, x);
     if (layout->multiplier >= 0) set_multipliers(layout, sys, &at, x, force);
     if (layout->strain >= 0) set_strains(rod, sys, layout, &at, x, force);

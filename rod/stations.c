@@ -22,6 +22,14 @@ static Vec3 element_pull(const Rod *rod, const double *p, int e, Vec3 *weight)
     return vec3_axpy(rod->area * p[rod->magnetization + 3 * e], B, pull);
 }
 
+/* In the frame of a strand's last node. */
+static Vec3 end_couple(const Rod *rod, int strand, const RodLayout *layout, const double *x, const double *p)
+{
+    int last = strand * (layout->each + 1) + layout->each;
+    if (!rod->couples) return vec3(0, 0, 0);
+    return quat_rotate(quat_conj(rod_reference(layout, x, last)), vec3_load(p + rod->couple + 3 * last));
+}
+
 void rod_stations(const Rod *rod, int strand, const RodLayout *layout, const double *x, const double *p,
                   RodStations to)
 {
@@ -44,7 +52,7 @@ void rod_stations(const Rod *rod, int strand, const RodLayout *layout, const dou
     }
     fill_nodes(each, k);
     fill_nodes(each, m);
-    if (rod->end == ROD_FREE) m[2 * each] = vec3(0, 0, 0);
+    if (rod->end == ROD_FREE) m[2 * each] = end_couple(rod, strand, layout, x, p);
     mem_free(strain);
 }
 

@@ -4,7 +4,7 @@
 #include "rod/rod.h"
 
 /* Of a strand: strains k[stations], moments K (k - kbar) m[stations] and pulls F[3 elements] in the frames: what
- * elements have, with means at nodes and continued to the ends; no moment at a free end. Magnetisation counts along
+ * elements have, with means at nodes and continued to the ends; at a free end the couple there. Magnetisation counts along
  * the tangent only. */
 typedef struct RodStations {
     Vec3 *k, *m, *F;

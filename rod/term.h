@@ -29,6 +29,24 @@ static inline void rod_term_strain_dofs(const void *self, int e, int *dof)
     for (int i = 0; layout->strain >= 0 && i < 3; i++) dof[i] = layout->strain + 3 * e + i;
 }
 
+static inline int rod_term_three(const void *self)
+{
+    (void)self;
+    return 3;
+}
+
+/* Elements that are nodes, with three dofs; the node of a lane, the last one fills up. */
+static inline int rod_term_nodes(const void *self)
+{
+    return ((const RodTerm *)self)->layout.nodes;
+}
+
+static inline int rod_term_node(const RodTerm *term, int pack, int lane)
+{
+    int node = pack * PACK_LANES + lane, last = term->layout.nodes - 1;
+    return node < last ? node : last;
+}
+
 /* Number i of `width` of each element's row in a block of values. */
 static inline Pack rod_term_number(const RodTerm *term, int pack, const double *block, int width, int i)
 {

@@ -12,9 +12,19 @@
     X(stretch, ROD_STRETCHING)  /* of a Cosserat rod: stretch and shear, h/2 |G|^2               */          \
     X(magnetic, ROD_ANY_FORM)   /* hard-magnetic work -V M.R^T B                                 */          \
     X(hang, ROD_HANGING)        /* weight and dead loads on positions that follow from rotations */          \
-    X(link, ROD_WITH_POSITIONS) /* positions are where rotations and strains have them, by multipliers */
+    X(link, ROD_WITH_POSITIONS) /* positions are where rotations and strains have them, by multipliers */    \
+    X(couple, ROD_WITH_COUPLES) /* couples on nodes, without a potential                         */          \
+    X(potential, ROD_WITH_POTENTIALS) /* energies by formulas of the place                       */
 
-typedef enum RodForm { ROD_ANY_FORM, ROD_STRETCHING, ROD_HANGING, ROD_WITH_POSITIONS } RodForm;
+/* The rods that have a term: of that form; or, in any form, with such loads. */
+typedef enum RodForm {
+    ROD_ANY_FORM,
+    ROD_STRETCHING,
+    ROD_HANGING,
+    ROD_WITH_POSITIONS,
+    ROD_WITH_COUPLES,
+    ROD_WITH_POTENTIALS
+} RodForm;
 
 /* What every term of a rod begins with; the rod must outlive it. */
 typedef struct RodTerm {

@@ -1,5 +1,6 @@
 #include "base/memory.h"
 #include "solve/newton_private.h"
+#include "solve/tangent.h"
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -163,10 +164,21 @@ static void finish(Search *s)
 }
 
 /* step = H^-1 gradient with the factor at hand. Where that has a base shift, which may be more than what holds a free hinge, a
- * few conjugate gradients take its part out again; they end where a motion costs nothing at all. */
+ * few conjugate gradients take its part out again; they end where a motion costs nothing at all. With forces that have no
+ * potential it is for the whole derivative: downhill still, for the symmetric part of that is positive definite; or, `plain`,
+ * without the shift. */
 static void solve(Search *s)
 {
     int iterations = -1;
+    if (s->circulates) {
+        Point at = s->at;
+        at.x_lag = NULL; /* what is lagged stays while Newton steps */
+        if (s->plain)
+            tangent_solve(s->sys, &at, false, s->gradient, s->step);
+        else
+            tangent_solve_shifted(s->sys, &at, s->gradient, s->step);
+        return;
+    }
     if (s->shift == 0 && system_base_shift(s->sys) > 0)
         iterations = system_solve_cg(s->sys, s->gradient, BASE_CG_TOL, BASE_CG_MAX, s->step);
     if (iterations < 0) system_solve(s->sys, s->gradient, s->step);
@@ -200,7 +212,7 @@ static bool factor_convex(Search *s, bool indefinite)
 static bool newton_step(Search *s, bool small)
 {
     int iterations = -1;
-    if (s->def->cg_iterations > 0 && s->shift_kept == 0)
+    if (s->def->cg_iterations > 0 && s->shift_kept == 0 && !s->circulates)
         iterations = system_solve_cg(s->sys, s->gradient, s->def->cg_tol, s->def->cg_iterations, s->step);
     if (iterations >= 0) {
         s->info.cg_iterations += iterations;
@@ -225,13 +237,15 @@ static bool newton_step(Search *s, bool small)
 
 static bool is_converged(const Search *s, bool small)
 {
-    if (s->shift > 0 || s->convex || system_gap(s->sys) > 0 || system_force_change(s->sys, s->step) > SETTLED)
+    if ((s->shift > 0 && !s->plain) || s->convex || system_gap(s->sys) > 0 ||
+        system_force_change(s->sys, s->step) > SETTLED)
         return false;
     double gain = -vector_dot(s->n, s->gradient, s->step);
     for (int i = 0; system_multiplier_count(s->sys) && i < s->n;
          i++) /* what must vanish and does not counts in full */
         if (system_is_multiplier(s->sys, i))
             gain += s->gradient[i] * s->step[i] + fabs(s->gradient[i] * s->step[i]);
+    if (s->plain) gain = fabs(gain); /* a step may lead up */
     return (small && s->info.step <= s->def->step_tol) || gain <= s->def->energy_tol * s->now.energy_scale;
 }
 
@@ -269,7 +283,8 @@ static NewtonStatus iterate(Search *s)
     if (status != NEWTON_MAX_ITERATIONS) return status;
     s->extrapolate = false;
     gap_note(s);
-    s->shifted = s->shift > 0 && !s->convex ? s->shifted + 1 : 0; /* a convex part has no way down */
+    /* A convex part has no way down, and plain steps seek none. */
+    s->shifted = s->shift > 0 && !s->convex && !s->plain ? s->shifted + 1 : 0;
     if (is_converged(s, small)) {
         finish(s);
         return NEWTON_CONVERGED;
@@ -283,7 +298,7 @@ static NewtonStatus iterate(Search *s)
     for (int i = 0; i < s->n; i++) s->step[i] *= shrink;
     double reach = system_reach(s->sys, &s->at, s->step);
     for (int i = 0; reach < 1 && i < s->n; i++) s->step[i] *= reach;
-    double a = line_search(s);
+    double a = s->plain && s->shift > 0 ? 1 : line_search(s);
     gap_keep_multipliers(s, a * shrink * reach);
     if (a > 0) {
         search_move(s, s->step, a);
@@ -301,8 +316,8 @@ static bool ends_tangled(const Search *s)
     return stationary && system_tangles(s->sys, &s->at);
 }
 
-NewtonInfo newton_minimize(System *sys, const NewtonDef *def, const Point *at, State *state,
-                           const NewtonObserver *observer)
+static NewtonInfo minimize(System *sys, const NewtonDef *def, const Point *at, State *state,
+                           const NewtonObserver *observer, bool plain)
 {
     int n = system_dof_count(sys);
     double *work = mem_alloc(10 * (size_t)n, sizeof *work);
@@ -323,7 +338,9 @@ NewtonInfo newton_minimize(System *sys, const NewtonDef *def, const Point *at, S
                 .gap = work + 8 * n,
                 .change = work + 9 * n,
                 .tangled = TANGLED_MAX,
-                .follows = !at->x_prev && system_has_follow(sys)};
+                .follows = !at->x_prev && system_has_follow(sys),
+                .circulates = system_circulates(sys),
+                .plain = plain};
     s.at.x = state->x, s.at.memory = state->memory;
     s.info.status = NEWTON_MAX_ITERATIONS;
     system_accept(sys, s.x, state->memory);
@@ -340,4 +357,29 @@ NewtonInfo newton_minimize(System *sys, const NewtonDef *def, const Point *at, S
     if (ends_tangled(&s)) s.info.status = NEWTON_TANGLED;
     mem_free(work);
     return s.info;
+}
+
+/* Without a potential: what is near by plain steps; else what energies of the symmetric part lead to; else by plain steps. */
+static const struct {
+    int most; /* iterations; 0: the caller's */
+    bool plain;
+} ways[] = {{8, true}, {100, false}, {0, true}};
+
+NewtonInfo newton_minimize(System *sys, const NewtonDef *def, const Point *at, State *state,
+                           const NewtonObserver *observer)
+{
+    if (!system_circulates(sys)) return minimize(sys, def, at, state, observer, false);
+    State start = state_clone(state);
+    NewtonInfo info = {0}, before;
+    for (size_t k = 0; k < sizeof ways / sizeof *ways; k++) {
+        NewtonDef own = *def;
+        if (ways[k].most && ways[k].most < own.max_iterations) own.max_iterations = ways[k].most;
+        state_copy(state, &start);
+        before = info;
+        info = minimize(sys, &own, at, state, observer, ways[k].plain);
+        newton_add_counts(&info, &before);
+        if (info.status == NEWTON_CONVERGED || info.status == NEWTON_STOPPED) break;
+    }
+    state_destroy(&start);
+    return info;
 }

@@ -3,7 +3,9 @@
  * The one nonlinear solver of the project; shells and rods differ only in their terms. Each iteration factors
  * H + (base + shift) D, with a shift in parts of each dof class's mean diagonal that is remembered from one iteration
  * to the next; steps are capped, accepted by Armijo's rule with a guard against round-off, and saddles are left along
- * a direction of negative curvature. The method and its constants were measured on 19 problems (docs/newton.md). */
+ * a direction of negative curvature. Forces without a potential (TermOps.circulate) are brought into balance with the whole
+ * derivative: by plain Newton steps where these do soon; else by shifted ones, which are downhill for an energy that has these
+ * forces at the point; else by plain ones. `converged` then says that there is balance, not that it is stable. The method and its constants were measured on 19 problems (docs/newton.md). */
 #pragma once
 #include "solve/system.h"
 

@@ -15,6 +15,8 @@ typedef struct Search {
     double *mode, *product;         /* [n] direction of lowest curvature, kept between uses    */
     bool mode_known;
     bool follows;         /* steps go the way that the terms know (system_follow)       */
+    bool circulates;      /* there are forces without a potential (TermOps.circulate)   */
+    bool plain;           /* and steps are taken without shift and line search          */
     bool extrapolate;     /* the last step was long: */
     double *from, *moved; /* [n] where it began, and what it was                        */
     double *gap, *change; /* [n] of multipliers: what is to vanish; Newton's step                         */

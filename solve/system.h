@@ -115,6 +115,9 @@ bool system_factor(System *sys, double shift);
 /* Factor of H + sigma on the diagonal of the free positions only (N/m), without the base shift; for eigen.h. */
 bool system_factor_positions(System *sys, double sigma);
 
+/* Of the last factor, where it is known (not of one that was shared); else 0. */
+double system_shift(const System *sys);
+
 /* y = (H + (base + shift) D)^-1 b with the last factor. */
 void system_solve(System *sys, const double *b, double *y);
 
@@ -161,6 +164,11 @@ void system_prev_forward(System *sys, const Point *at, const double *dx, const d
 void system_lag(System *sys, const Point *at, const double *w, double *dx);
 void system_lag_forward(System *sys, const Point *at, const double *dx, double *r);
 bool system_lags(const System *sys);
+
+/* r += S d, the skew part of the derivative of forces without potential (TermOps.circulate); r[dof_count]. False from
+ * system_circulates: all have one. */
+void system_circulate(System *sys, const Point *at, const double *d, double *r);
+bool system_circulates(const System *sys);
 
 /* to = where the motion from x with velocity d is after the time a: x + a d, or what the terms make of it (TermOps.follow).
  * False from system_has_follow: no term makes anything of it. */

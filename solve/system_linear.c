@@ -111,6 +111,11 @@ double system_scale_mean(const System *sys)
     return mean;
 }
 
+double system_shift(const System *sys)
+{
+    return sys->factored && sys->anchor[ANCHOR_USABLE] ? sys->anchor[ANCHOR_SHIFT] : 0;
+}
+
 void system_solve(System *sys, const double *b, double *y)
 {
     double *work = pick(sys, b);
@@ -226,13 +231,17 @@ void system_lag(System *sys, const Point *at, const double *w, double *dx)
     }
 }
 
-static void lag_forward_of_term(const Entry *entry, const Point *own, const double *dx, double *r)
+/* TermOps.lag_forward or circulate. */
+typedef void TermProduct(const void *self, int pack, const Point *at, const Pack *x, const Pack *d, Pack *r);
+
+static void product_of_term(const Entry *entry, TermProduct *product, const Point *own, const double *d,
+                            double *r)
 {
-    Pack x[TERM_MAX_DOF], to[TERM_MAX_DOF], out[TERM_MAX_DOF];
+    Pack x[TERM_MAX_DOF], along[TERM_MAX_DOF], out[TERM_MAX_DOF];
     for (int k = 0; k < entry->packs; k++) {
         system_gather(entry, k, own->x, x);
-        system_gather(entry, k, dx, to);
-        entry->term.ops->lag_forward(entry->term.self, k, own, x, to, out);
+        system_gather(entry, k, d, along);
+        product(entry->term.self, k, own, x, along, out);
         system_scatter(entry, k, out, r);
     }
 }
@@ -257,7 +266,8 @@ void system_prev_forward(System *sys, const Point *at, const double *dx, const d
         const Entry *entry = &sys->entries[t];
         Point own = system_term_point(sys, t, at);
         if (entry->term.ops->prev_forward) prev_forward_of_term(entry, &own, dx, dv, r);
-        if (entry->term.ops->lag_forward && !at->x_lag) lag_forward_of_term(entry, &own, dx, r);
+        if (entry->term.ops->lag_forward && !at->x_lag)
+            product_of_term(entry, entry->term.ops->lag_forward, &own, dx, r);
     }
 }
 
@@ -267,7 +277,7 @@ void system_lag_forward(System *sys, const Point *at, const double *dx, double *
     for (int t = 0; t < sys->term_count; t++) {
         const Entry *entry = &sys->entries[t];
         Point own = system_term_point(sys, t, at);
-        if (entry->term.ops->lag_forward) lag_forward_of_term(entry, &own, dx, r);
+        if (entry->term.ops->lag_forward) product_of_term(entry, entry->term.ops->lag_forward, &own, dx, r);
     }
 }
 
@@ -275,6 +285,23 @@ bool system_lags(const System *sys)
 {
     bool found = false;
     for (int t = 0; t < sys->term_count; t++) found = found || sys->entries[t].term.ops->lag;
+    return found;
+}
+
+void system_circulate(System *sys, const Point *at, const double *d, double *r)
+{
+    system_update(sys, at);
+    for (int t = 0; t < sys->term_count; t++) {
+        const Entry *entry = &sys->entries[t];
+        Point own = system_term_point(sys, t, at);
+        if (entry->term.ops->circulate) product_of_term(entry, entry->term.ops->circulate, &own, d, r);
+    }
+}
+
+bool system_circulates(const System *sys)
+{
+    bool found = false;
+    for (int t = 0; t < sys->term_count; t++) found = found || sys->entries[t].term.ops->circulate;
     return found;
 }
 

@@ -99,6 +99,11 @@ typedef struct TermOps {
     void (*lag)(const void *self, int pack, const Point *at, const Pack *x, const Pack *w, Pack *dx);
     void (*lag_forward)(const void *self, int pack, const Point *at, const Pack *x, const Pack *dx, Pack *r);
 
+    /* r = S d, where forces have no potential (a couple that keeps its direction on what turns): eval's Hessian is the
+     * symmetric part of their derivative, S the skew one, S^T = -S; eval's energy is one that has these forces where the
+     * references of turns stand. NULL: all have one. */
+    void (*circulate)(const void *self, int pack, const Point *at, const Pack *x, const Pack *d, Pack *r);
+
     /* The largest a in (0, 1] such that the straight way from at->x to at->x + a d is admissible (d: whole vector);
      * NULL: 1. */
     double (*reach)(const void *self, const Point *at, const double *d);

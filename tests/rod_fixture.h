@@ -32,7 +32,7 @@ static inline Resting resting_create(const ReferenceRod *r, double young, int el
     o.hanging = rod_hanging_system(o.rod);
     o.state = system_state(o.hanging);
     rod_follow_curves(o.rod, &o.curve, &o.frames, o.state.x);
-    rod_balance(o.rod, o.hanging, &o.layout, o.state.x, o.p);
+    rod_balance(o.rod, o.hanging, &o.layout, 0, o.state.x, o.p);
     return o;
 }
 

@@ -133,7 +133,7 @@ static RodPose equilibrium(const Rod *rod, RodFrame clamp, RodCurve *curve)
     assert_true(vec3_length(left) < 1e-12 * vec3_length(M));
     RodFrame frame = {quat_rotate(q, vec3(1, 0, 0)), quat_rotate(q, vec3(0, 1, 0)),
                       quat_rotate(q, vec3(0, 0, 1))};
-    return (RodPose){curve, frame};
+    return (RodPose){.curve = curve, .clamp = frame};
 }
 
 static RodLoads weight_of(const Rod *rod)
@@ -166,7 +166,7 @@ static void test_loads(void **state)
         RodCurve curves[2];
         RodPose poses[2];
         for (int p = 0; p < 2; p++) poses[p] = equilibrium(&rod, clamps[p], &curves[p]);
-        RodPointLoad point = {1.01 * rod.length, rod.tip};
+        RodPointLoad point = {.s = 1.01 * rod.length, .force = rod.tip};
         for (int magnetic = 0; magnetic < 2; magnetic++) {
             RodLoads loads = weight_of(&rod);
             if (magnetic)

@@ -141,7 +141,7 @@ static void test_timed(void **state)
     assert_true(fabs(B[0] - 0.01) < 1e-16 && fabs(B[2] - 0.02) < 1e-16 && p[shell_of(&b)->damping] == 1e-4);
     const double times[4] = {-1, 1, 2, 9}, exact[4] = {0.01, 0.03, 0.015, 0};
     for (int k = 0; k < 4; k++)
-        assert_true(model_load(b.model, times[k], p, &err) && fabs(B[2] - exact[k]) < 1e-16);
+        assert_true(model_load(b.model, times[k], false, p, &err) && fabs(B[2] - exact[k]) < 1e-16);
     assert_int_equal(b.model->report.warning_count, 1);
     assert_string_equal(strrchr(b.model->report.warnings[0], '/') + 1,
                         "test_model_field.csv: t goes from 0 to 3 s, and the motion from 0.5 to 0.502 s "
@@ -152,7 +152,7 @@ static void test_timed(void **state)
     b = build("simulate", "  young: 1 MPa\n",
               "fix: [{group: root}]\ntime: {step: 1 ms, steps: 2}\nflux_density: [\"0\", \"t\", \"2*t\"]\n");
     p = b.model->cases[0].stages[0].p, B = p + shell_of(&b)->flux_density;
-    assert_true(B[1] == 0 && model_load(b.model, 0.25, p, &err) && B[1] == 0.25 && B[2] == 0.5);
+    assert_true(B[1] == 0 && model_load(b.model, 0.25, false, p, &err) && B[1] == 0.25 && B[2] == 0.5);
     clear(&b);
 }
 

@@ -190,7 +190,7 @@ static void test_both_forms(void **state)
         double *p = mem_copy(bar.p, (size_t)rod->params.size, sizeof *p), off = 0, moved = 0;
         double *x = mem_copy(bar.now.x, (size_t)bar.layout.dofs, sizeof *x);
         memset(x + bar.layout.strain, 0, 3 * N * sizeof *x);
-        rod_balance(rod, bar.sys, &bar.layout, x, p);
+        rod_balance(rod, bar.sys, &bar.layout, 0, x, p);
         for (int i = 0; i < 3 * N; i++) {
             off = fmax(off, fabs(p[rod->natural_strain + i] - bar.p[rod->natural_strain + i]));
             moved = fmax(moved, fabs(x[bar.layout.strain + i] - bar.now.x[bar.layout.strain + i]));

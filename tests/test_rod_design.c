@@ -5,7 +5,8 @@
 #include "base/random.h"
 #include "optim/objectives.h"
 #include "optim/static_design.h"
-#include "rod/rod.h"
+#include "tests/rod_fixture.h"
+#include "solve/tangent.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -26,13 +27,31 @@ typedef struct Fixture {
 
 static const double young = 1e6, length = 0.05;
 
-/* The shape is one that a magnetisation along the rod takes in a field across it. */
-static Fixture fixture_create(RodSupport end, bool field, bool cosserat, Random *random)
+/* What acts beside uniform fields and weight. */
+typedef enum Around { NOTHING, DIPOLE, COUPLE, WOUND, POTENTIAL, AROUND_COUNT } Around;
+
+static const char *const around_names[] = {"", ", in a dipole's field", ", with couples",
+                                           ", wound up by a couple", ", in a potential"};
+
+static RodActs acts_of(Around around)
 {
-    FluxFields fields = {0};
-    if (field)
-        flux_fields_add(&fields, flux_field_dipole((double[]){0.03, 0.03, 0.03}, (double[]){0.2, 0.5, -0.4}));
-    Fixture f = {.rod = rod_create(N, length, rod_circle(0.5e-3, 1, 0.4, 1800), M_PI * 0.25e-6, &fields)};
+    RodActs acts = {.couples = around == COUPLE || around == WOUND};
+    const char *u = "0.5*(y+s)^2*exp(20*z)*L";
+    if (around == DIPOLE)
+        flux_fields_add(&acts.fields,
+                        flux_field_dipole((double[]){0.03, 0.03, 0.03}, (double[]){0.2, 0.5, -0.4}));
+    if (around == POTENTIAL)
+        rod_potentials_add(
+            &acts.potentials,
+            rod_potential_create(formula_create(&u, 1, NULL, 0, rod_place_variables, NULL), length));
+    return acts;
+}
+
+/* The shape is one that a magnetisation along the rod takes in a field across it. */
+static Fixture fixture_create(RodSupport end, Around around, bool cosserat, Random *random)
+{
+    RodActs acts = acts_of(around);
+    Fixture f = {.rod = rod_create(N, length, rod_circle(0.5e-3, 1, 0.4, 1800), M_PI * 0.25e-6, &acts)};
     Rod *rod = f.rod;
     rod->end = end, rod->cosserat = cosserat;
     f.layout = rod_layout(rod, true);
@@ -46,8 +65,13 @@ static Fixture fixture_create(RodSupport end, bool field, bool cosserat, Random 
                    vec3(2e4, 5e3 * random_signed(random), 5e3 * random_signed(random)));
     }
     vec3_store(p + rod->flux_density, vec3(0.004, -0.01, 0.015));
-    if (field) p[rod->field_scale] = 1;
+    if (around == DIPOLE) p[rod->field_scale] = 1;
+    if (around == COUPLE) {
+        vec3_store(p + rod->couple + 3 * N, vec3(6e-7, -4e-7, 8e-7));
+        vec3_store(p + rod->couple + 3 * (N / 2), vec3(-3e-7, 5e-7, 2e-7));
+    }
     vec3_store(p + rod->gravity, vec3(0, 0, -9.81));
+    if (around == WOUND) vec3_store(p + rod->couple + 3 * N, vec3(3e-6, 1e-6, 4e-6)); /* 5 EI/L */
     for (int i = 0; i <= N; i++) {
         double s = length * i / N;
         nodes[i] = i;
@@ -59,6 +83,7 @@ static Fixture fixture_create(RodSupport end, bool field, bool cosserat, Random 
     f.load = case_create("only", p, (size_t)rod->params.size, 0);
     *case_add_objective(&f.load) = objective_target(N + 1, nodes, (const double(*)[3])target, 1);
     case_start(&f.load, sys, x);
+    if (around == WOUND) assert_int_equal(rod_relax(rod, sys, 10, p, &f.load.state).reached, 1);
     mem_free(p);
     mem_free(x);
     f.design.case_count = 1;
@@ -94,7 +119,7 @@ static double tangent_slope(const Fixture *f, const double *u, const double *v)
     design_forward(&f->design, 0, u, v, dp);
     Point at = state_point(&f->load.state, p);
     system_param_forward(f->load.sys, &at, dp, dx);
-    system_solve(f->load.sys, dx, dx);
+    tangent_solve(f->load.sys, &at, false, dx, dx);
     f->load.objectives[0].ops->value(f->load.objectives[0].self, 1, f->load.state.x, p, gx, dp);
     for (size_t i = 0; i < dofs; i++) slope -= gx[i] * dx[i];
     mem_free(dp);
@@ -102,11 +127,11 @@ static double tangent_slope(const Fixture *f, const double *u, const double *v)
     return slope;
 }
 
-static void check(RodSupport end, bool field, bool cosserat, const char *block, Unknown unknown)
+static void check(RodSupport end, Around around, bool cosserat, const char *block, Unknown unknown)
 {
     long blocks = mem_live_count();
     Random random = random_seed(11);
-    Fixture f = fixture_create(end, field, cosserat, &random);
+    Fixture f = fixture_create(end, around, cosserat, &random);
     fixture_start(&f, block, unknown);
     size_t n = (size_t)f.design.size;
     double *u = mem_alloc(4 * n, sizeof *u), *g = u + n, *v = u + 2 * n, *moved = u + 3 * n, slope = 0, F4[4];
@@ -123,8 +148,8 @@ static void check(RodSupport end, bool field, bool cosserat, const char *block, 
     }
     double difference = (8 * (F4[2] - F4[1]) - (F4[3] - F4[0])) / (12 * h);
     print_message("%-15s %s%s%s: tangent %.1e, differences %.1e\n", block, end == ROD_FREE ? "free" : "held",
-                  field ? ", in a dipole's field" : "", cosserat ? ", stretching" : "",
-                  fabs(slope / tangent - 1), fabs(slope / difference - 1));
+                  around_names[around], cosserat ? ", stretching" : "", fabs(slope / tangent - 1),
+                  fabs(slope / difference - 1));
     assert_true(fabs(slope / tangent - 1) < 1e-10 && fabs(slope / difference - 1) < 1e-6);
     mem_free(u);
     fixture_clear(&f);
@@ -134,19 +159,25 @@ static void check(RodSupport end, bool field, bool cosserat, const char *block, 
 static void test_gradients(void **state)
 {
     (void)state;
-    for (int k = 0; k < 8; k++) {
+    for (int k = 0; k < 4 * AROUND_COUNT; k++) {
         RodSupport end = k % 2 ? ROD_PINNED : ROD_FREE;
-        bool field = k / 2 % 2, stretches = k / 4;
-        check(end, field, stretches, "magnetization",
+        Around around = (Around)(k / 2 % AROUND_COUNT);
+        bool stretches = k / 2 / AROUND_COUNT;
+        if (around == WOUND && end != ROD_FREE) continue;
+        check(end, around, stretches, "magnetization",
               (Unknown){.lower = -INFINITY, .upper = INFINITY, .scale = 1e4});
-        check(end, field, stretches, "young",
+        check(end, around, stretches, "young",
               (Unknown){.map = UNKNOWN_LOG, .scale = 0.7, .lower = 1e4, .upper = 1e8});
-        check(end, field, stretches, "natural_strain",
+        check(end, around, stretches, "natural_strain",
               (Unknown){.lower = -INFINITY, .upper = INFINITY, .scale = 10});
-        check(end, field, stretches, "flux_density",
+        check(end, around, stretches, "flux_density",
               (Unknown){.lower = -1, .upper = 1, .scale = 0.01, .per_case = true});
-        if (field)
-            check(end, field, stretches, "field_scale", (Unknown){.lower = -9, .upper = 9, .scale = 1});
+        Unknown factor = {.lower = -9, .upper = 9, .scale = 1};
+        if (around == DIPOLE) check(end, around, stretches, "field_scale", factor);
+        if (around == POTENTIAL) check(end, around, stretches, "potential_scale", factor);
+        if (around == COUPLE || around == WOUND)
+            check(end, around, stretches, "couple",
+                  (Unknown){.lower = -1, .upper = 1, .scale = 1e-7, .per_case = true});
     }
 }
 

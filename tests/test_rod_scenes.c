@@ -1,12 +1,9 @@
 /* Scenes of rods that meet something, as the program reads them: a stream, a floor at rest, and those of scenes/ in small. */
-#include "io/result.h"
-#include "slender.h"
+#define NAME "test_rod_scenes"
 #include "solve/march.h"
-#include "tests/scene_fixture.h"
+#include "tests/run_fixture.h"
 #include <math.h>
 #include <stdio.h>
-
-#define NAME "test_rod_scenes"
 
 /* ---- What scenes say becomes what they say ---- */
 
@@ -48,42 +45,6 @@ static void test_stream(void **state)
 }
 
 /* ---- Whole runs ---- */
-
-static Result *run(SlenderScene *scene, const SlenderError *err, bool resume)
-{
-    SlenderError trouble;
-    Error unread;
-    if (!scene) fail_msg("%s", err->text);
-    SlenderRun def = {.output = NAME, .threads = 1, .resume = resume, .force = !resume};
-    SlenderStatus status = slender_run(scene, &def, &trouble);
-    if (status != SLENDER_DONE) fail_msg("status %d: %s", (int)status, trouble.text);
-    slender_scene_destroy(scene);
-    Result *result = result_open(NAME ".vtkhdf", &unread);
-    if (!result) fail_msg("%s", unread.text);
-    return result;
-}
-
-static Result *run_text(char *text)
-{
-    SlenderError err;
-    Result *result = run(slender_scene_parse(text, NULL, 0, &err), &err, false);
-    mem_free(text);
-    return result;
-}
-
-static Result *run_file(const char *path, const char *const *settings, int count, bool resume)
-{
-    SlenderError err;
-    return run(slender_scene_read(path, settings, count, &err), &err, resume);
-}
-
-static Array read_all(Result *result, const char *path)
-{
-    Array array;
-    Error err;
-    if (!result_read(result, path, &array, &err)) fail_msg("%s: %s", path, err.text);
-    return array;
-}
 
 /* The largest number of a history; least: the least. */
 static double extreme(Result *result, const char *path, bool least)

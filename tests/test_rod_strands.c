@@ -19,9 +19,9 @@ static void dress(Rod *rod, int first, double *p)
     p[rod->gravity + 2] = -9.8;
     p[rod->damping] = 1e-5;
     vec3_store(p + rod->flux_density, vec3(0.01, 0.02, 0));
-    RodPointLoad point = {0.05, vec3(0, 2e-4, 1e-4)};
-    rod_share_loads(rod, (RodLoads){.line = vec3(0, 0, -1e-3), .points = &point, .point_count = 1},
-                    p + rod->load);
+    RodPointLoad point = {.s = 0.05, .force = {0, 2e-4, 1e-4}};
+    for (int k = 0; k < rod->strands; k++)
+        rod_share_loads(rod, k, (RodLoads){.line = vec3(0, 0, -1e-3), .points = &point, .point_count = 1}, p);
     rod_sum_loads(rod, p);
     for (int k = 0; k < rod->strands; k++) {
         int n = first + k;
@@ -122,7 +122,7 @@ static void test_resting(void **state)
         State at = system_state(sys), turns = {.x = mem_alloc((size_t)layout.dofs, sizeof(double))};
         rod_follow_curves(rod, curves, frames, turns.x);
         rod_copy_state(rod, &layout, turns.x, &own, at.x);
-        rod_balance(rod, sys, &own, at.x, p);
+        rod_balance(rod, sys, &own, 0, at.x, p);
         double *g = mem_alloc((size_t)own.dofs, sizeof *g), most = 0, away = 0, place[2 * (N + 1)][3];
         Point point = state_point(&at, p);
         Evaluation now = system_gradient(sys, &point, g);

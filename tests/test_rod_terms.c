@@ -37,12 +37,26 @@ static FluxFields make_fields(void)
     return fields;
 }
 
+/* One that depends on all that it may, and one that is off. */
+static RodPotentials make_potentials(void)
+{
+    RodPotentials potentials = {0};
+    static const char *const expressions[] = {"0.3*sin(30*x)*(y+z*z)*cos(t)+2*r^2*s/L", "5*x*x+exp(10*y)*z"};
+    for (int k = 0; k < 2; k++) {
+        Formula *formula = formula_create(&expressions[k], 1, NULL, 0, rod_place_variables, NULL);
+        assert_non_null(formula);
+        rod_potentials_add(&potentials, rod_potential_create(formula, 0.1));
+    }
+    return potentials;
+}
+
 static Rod *random_rod(Random *random, bool varies, bool cosserat, int strands, double **params)
 {
-    FluxFields fields = varies ? make_fields() : (FluxFields){0};
+    RodActs acts = {.couples = true};
+    if (varies) acts.fields = make_fields(), acts.potentials = make_potentials();
     const double length[] = {0.1, 0.07, 0.12};
     Rod *rod =
-        rod_create_strands(strands, ELEMENTS, length, rod_ellipse(1e-3, 0.7e-3, 1, 0.4, 1200), 3e-6, &fields);
+        rod_create_strands(strands, ELEMENTS, length, rod_ellipse(1e-3, 0.7e-3, 1, 0.4, 1200), 3e-6, &acts);
     rod->cosserat = cosserat;
     double *p = mem_alloc((size_t)rod->params.size, sizeof *p);
     rod_default_params(rod, 1e6, p);
@@ -54,6 +68,9 @@ static Rod *random_rod(Random *random, bool varies, bool cosserat, int strands, 
     }
     for (int i = 0; i < rod_node_count(rod); i++)
         vec3_store(p + rod->load + 3 * i, random_vec3(random, 1e-3));
+    for (int i = 0; i < rod_node_count(rod); i++)
+        vec3_store(p + rod->couple + 3 * i, random_vec3(random, 1e-4));
+    for (int k = 0; k < rod->potentials.count; k++) p[rod->potential_scale + k] = 1.5 * (1 - k);
     vec3_store(p + rod->flux_density, random_vec3(random, 0.03));
     vec3_store(p + rod->gravity, random_vec3(random, 9));
     for (int k = 0; k < rod->fields.count; k++) p[rod->field_scale + k] = 1 - 0.5 * k;
@@ -131,8 +148,65 @@ static void test_derivatives(void **state)
         for (int k = 0; k < 4; k++) check_rod(k % 2, k / 2, strands);
 }
 
+/* Where forces are in balance their whole derivative is H + S: by it the gradient changes when the references have taken a
+ * small turn. And S is skew. */
+static void check_whole_derivative(bool positions)
+{
+    Random random = random_seed(5);
+    double *p;
+    Rod *rod = random_rod(&random, false, false, 1, &p);
+    RodLayout layout = rod_layout(rod, positions);
+    System *sys = positions ? rod_system(rod, 1e6, false) : rod_hanging_system(rod);
+    double *x = random_state(rod, &layout, 0.3, &random);
+    if (positions) rod_places(rod, &layout, x, layout.nodes, x);
+    rod_balance(rod, sys, &layout, 0, x, p);
+    size_t n = (size_t)layout.dofs;
+    double *g = mem_alloc(5 * n, sizeof *g), *d = g + n, *r = g + 2 * n, *w = g + 3 * n, *moved = g + 4 * n;
+    Point at = {.x = x, .p = p};
+    Evaluation left = system_hessian(sys, &at, g);
+    assert_true(left.gradient_max <= 1e-13 * left.force_scale);
+    for (int i = 0; i < layout.dofs; i++)
+        if (!system_is_fixed(sys, i))
+            d[i] = dof_size(&layout, i) * random_signed(&random), w[i] = d[i] * random_signed(&random);
+    system_multiply(sys, d, r);
+    double skew = 0, off = 0, largest = 0, h = 1e-3, *S = mem_alloc(2 * n, sizeof *S), *T = S + n;
+    system_circulate(sys, &at, d, S);
+    system_circulate(sys, &at, w, T);
+    for (size_t i = 0; i < n; i++) skew += w[i] * S[i] + d[i] * T[i], r[i] += S[i];
+    double *sum = mem_alloc(n, sizeof *sum);
+    for (int k = -1; k <= 1; k += 2) {
+        for (size_t i = 0; i < n; i++) moved[i] = x[i] + k * h * d[i];
+        system_accept(sys, moved, NULL);
+        system_gradient(sys, &(Point){.x = moved, .p = p}, g);
+        for (size_t i = 0; i < n; i++) sum[i] += k * g[i] / (2 * h);
+    }
+    for (int i = 0; i < layout.dofs; i++) {
+        if (system_is_fixed(sys, i)) continue;
+        off = fmax(off, fabs(sum[i] - r[i]) / dof_size(&layout, i));
+        largest = fmax(largest, fabs(r[i]) / dof_size(&layout, i));
+    }
+    print_message("%s: gradient against H + S: %.1e; skew to %.1e\n", positions ? "positions" : "hanging",
+                  off / largest, fabs(skew));
+    assert_true(off < 1e-4 * largest && fabs(skew) < 1e-18);
+    mem_free(sum);
+    mem_free(S);
+    mem_free(g);
+    mem_free(x);
+    mem_free(p);
+    system_destroy(sys);
+    rod_destroy(rod);
+}
+
+static void test_whole_derivative(void **state)
+{
+    (void)state;
+    check_whole_derivative(false);
+    check_whole_derivative(true);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_derivatives)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_derivatives),
+                                       cmocka_unit_test(test_whole_derivative)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

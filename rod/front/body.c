@@ -20,6 +20,42 @@ static bool put_loads(Model *model, const Build *b, const char *at, const LoadSc
     return yaml_refuse(b->file, at, "loads of a rod are under rod.loads");
 }
 
+static bool load_rod(const Model *model, double time, double *p, Error *err)
+{
+    const RodModel *rm = model->self;
+    return !rm->list.timed || rod_loads_put(&rm->list, rm->rod, NULL, time, p, err) ||
+           error_prefix(err, "rod.loads");
+}
+
+/* The potentials. */
+static bool knows_loads(const Model *model, double time, const double *place, Error *err)
+{
+    const Rod *rod = ((const RodModel *)model->self)->rod;
+    for (int i = 0; rod && i < model->point_count; i++) {
+        int each = rod_each(rod), strand = i / (each + 1);
+        double L = rod->strand[strand].length;
+        FormulaJet jet;
+        RodPlace at = {vec3_load(place + 3 * i), time, L * (i % (each + 1)) / each, L};
+        for (int k = 0; k < rod->potentials.count; k++)
+            if (!rod_potential_known(rod->potentials.items[k], at, &jet, err))
+                return error_prefix(err, "rod.loads");
+    }
+    return true;
+}
+
+/* Of cases and stages, each at its time. */
+static bool load_stages(Model *model, const Build *b)
+{
+    Error err;
+    bool ok = true;
+    for (int k = 0; k < model->case_count; k++)
+        for (int i = 0; ok && i < model->cases[k].stage_count; i++) {
+            const Stage *stage = &model->cases[k].stages[i];
+            ok = load_rod(model, stage->time, stage->p, &err) || yaml_refuse(b->file, "rod", "%s", err.text);
+        }
+    return ok;
+}
+
 /* Places for the nodes, at equal arclengths of a curve or by formula. */
 static bool put_target(Model *model, const Build *b, const char *at, const TargetScene *scene,
                        double (*target)[3])
@@ -93,27 +129,28 @@ static void pose(RodModel *rm, double *x)
 
 /* The natural strains that make the rod rest on its curve, hanging under its loads in p; leaves the curve's
  * state in x, of turns only. */
-static void balance(RodModel *rm, double *p, double *x)
+static void balance(RodModel *rm, double time, double *p, double *x)
 {
     rod_follow_curves(rm->rod, rm->curves, rm->frames, x);
     Rod rod = *rm->rod;
     if (!rod_field_varies(&rod, p)) rod.fields.count = 0; /* those of other cases: the hanging form will do */
-    RodLayout turns = rod_layout(&rod, false), layout = rod_layout(&rod, rod.fields.count > 0);
+    bool places = rod.fields.count > 0 || rod.potentials.count > 0;
+    RodLayout turns = rod_layout(&rod, false), layout = rod_layout(&rod, places);
     double *y = mem_alloc((size_t)layout.dofs, sizeof *y);
     rod_copy_state(&rod, &turns, x, &layout, y);
-    System *sys = rod.fields.count ? rod_system(&rod, rm->young, false) : rod_hanging_system(&rod);
-    rod_balance(&rod, sys, &layout, y, p);
+    System *sys = places ? rod_system(&rod, rm->young, false) : rod_hanging_system(&rod);
+    rod_balance(&rod, sys, &layout, time, y, p);
     system_destroy(sys);
     mem_free(y);
 }
 
 /* What curves mean: beside natural strains they are where the rod is let go. */
-static void take_curve(RodModel *rm, const RodScene *scene, double *p, double *x)
+static void take_curve(RodModel *rm, const RodScene *scene, double time, double *p, double *x)
 {
     if (scene->natural_strain)
         pose(rm, x);
     else
-        balance(rm, p, x);
+        balance(rm, time, p, x);
 }
 
 /* Where the job starts, in model->x, and the natural shape to be shown; x is the curve's state, if there is
@@ -162,7 +199,7 @@ static void set_model(Model *model)
     model->moves = rm->held && model->job == &job_equilibrium && !model->general;
 }
 
-/* Cases and states. With a field that varies in space, or where it meets something, no rod is only turns. */
+/* Cases and states. With a field that varies in space or a potential, or where it meets something, no rod is only turns. */
 static bool fill_cases(Model *model, const Scene *scene, const Build *b, bool readable)
 {
     RodModel *rm = model->self;
@@ -172,11 +209,11 @@ static bool fill_cases(Model *model, const Scene *scene, const Build *b, bool re
            *curve = mem_alloc((size_t)rod_layout(rod, false).dofs, sizeof *curve);
     bool ok = rod_model_params(rm, scene, b, p) && readable;
     model_put_flux(model, 0, p);
-    if (ok && rm->curves) take_curve(rm, rod_scene(scene), p, curve);
-    ok = ok && model_cases(model, b, scene, p);
+    if (ok && rm->curves) take_curve(rm, rod_scene(scene), b->time, p, curve);
+    ok = ok && model_cases(model, b, scene, p) && load_stages(model, b);
     bool posed = model->job == &job_evaluate, statics = posed || model->job == &job_equilibrium;
     bool hanging = !model->general && statics && rod->start == ROD_CLAMPED && rod->end == ROD_FREE &&
-                   rod->fields.count == 0 && !rod->world;
+                   rod->fields.count == 0 && rod->potentials.count == 0 && !rod->world;
     if (ok) make_states(model, rod_scene(scene), hanging, p, curve);
     if (ok && posed && !scene->start)
         ok = rod_end_is_held(rm, model->x) ||
@@ -201,13 +238,16 @@ static bool check_slender(const Rod *rod, const Build *b)
                ROD_WATER_SLENDER, length, radius);
 }
 
-/* Takes the fields. */
-static Rod *make_rod(const RodModel *rm, const RodScene *scene, const FluxFields *fields)
+/* Takes the fields, and the model's potentials. */
+static Rod *make_rod(RodModel *rm, const RodScene *scene, const FluxFields *fields)
 {
-    if (!rm->curves) return rod_create(scene->elements, scene->length, rm->unit, rm->area, fields);
+    RodActs acts = rod_model_acts(rm);
+    acts.fields = *fields;
+    rm->list.potentials = (RodPotentials){0};
+    if (!rm->curves) return rod_create(scene->elements, scene->length, rm->unit, rm->area, &acts);
     double *length = mem_alloc((size_t)rm->strand_count, sizeof *length);
     for (int k = 0; k < rm->strand_count; k++) length[k] = rm->curves[k].length;
-    Rod *rod = rod_create_strands(rm->strand_count, scene->elements, length, rm->unit, rm->area, fields);
+    Rod *rod = rod_create_strands(rm->strand_count, scene->elements, length, rm->unit, rm->area, &acts);
     mem_free(length);
     return rod;
 }
@@ -247,10 +287,16 @@ static bool is_default(const SolverScene *solver)
            solver->force_tolerance == def.force_tol;
 }
 
-static bool check_inversion(const Scene *scene, YamlFile *file)
+static bool check_inversion(const RodModel *rm, const Scene *scene, YamlFile *file)
 {
-    bool round_trip = false;
-    for (int k = 0; k < scene->checks_count; k++) round_trip |= scene->checks[k] == CHECK_ROUND_TRIP;
+    bool round_trip = false, stability = false;
+    for (int k = 0; k < scene->checks_count; k++) {
+        round_trip |= scene->checks[k] == CHECK_ROUND_TRIP;
+        stability |= scene->checks[k] == CHECK_STABILITY;
+    }
+    if (stability && (rm->list.couples || rm->list.placed))
+        return yaml_refuse(file, "checks", "stability is that of a rod under forces that stay, without %s",
+                           rm->list.couples ? "couples" : "loads that depend on its place");
     if (!rod_scene(scene)->curve)
         return yaml_refuse(file, "rod", "an inversion needs `curve`, the shape that is given");
     const char *unused = scene->load_steps.mode != 0   ? "load_steps"
@@ -270,7 +316,7 @@ static bool create(Model *model, const Scene *scene, YamlFile *file)
     model->step_cap = STEP_CAP;
     model->self = rod_model_create(scene, &b);
     if (!model->self) return false;
-    if (model->job == &rod_job_invert) return check_inversion(scene, file);
+    if (model->job == &rod_job_invert) return check_inversion(model->self, scene, file);
     return model->job == &rod_job_identify || fill(model, scene, &b);
 }
 
@@ -419,6 +465,8 @@ static const BodyOps ops = {
     .destroy = destroy,
     .put_loads = put_loads,
     .put_target = put_target,
+    .load = load_rod,
+    .knows = knows_loads,
     .put_numbers = put_numbers,
     .put_vectors = put_vectors,
     .select = select_part,

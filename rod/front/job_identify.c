@@ -24,7 +24,7 @@ static void natural_shapes(const Identification *o, double *natural)
     int nodes = o->run->model->point_count;
     Vec3 *moment = mem_alloc(2 * (size_t)nodes - 1, sizeof *moment);
     for (int k = 0; k < o->count; k++) {
-        rod_moments(&o->curves[k], ((const RodModel *)o->run->model->self)->loads, moment);
+        rod_moments(&o->curves[k], rod_model_on_curve(o->run->model->self, k), moment);
         rod_invert(&o->curves[k], section, moment, NULL, (Vec3 *)(natural + 3 * (size_t)k * (size_t)nodes));
     }
     mem_free(moment);

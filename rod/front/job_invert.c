@@ -44,13 +44,14 @@ static Vec3 *strand_of(const Inversion *o, double *all, int k)
 }
 
 /* How far the two ways to the strains are apart, in parts of the largest: an independent check of both. */
-static double compare_routes(const RodModel *rm, const RodCurve *curve, const RodFrame *frames,
-                             const Vec3 *moment)
+static double compare_routes(const RodModel *rm, int k, const Vec3 *moment)
 {
+    const RodCurve *curve = &rm->curves[k];
+    const RodFrame *frames = rm->frames[k];
     int stations = 2 * curve->elements + 1;
     Vec3 *route = mem_alloc((size_t)stations, sizeof *route);
     double off = 0, largest = 0;
-    rod_strain_route(curve, rm->section, rm->loads, frames, route);
+    rod_strain_route(curve, rm->section, rod_model_on_curve(rm, k), frames, route);
     for (int j = 0; j < stations; j++) {
         Vec3 m = rod_to_frame(frames[j], moment[j]);
         Vec3 direct = vec3(-m.x / rm->section.twist, -m.y / rm->section.bend1, -m.z / rm->section.bend2);
@@ -71,7 +72,7 @@ static void judge_stability(Inversion *o, int k, const Vec3 *moment)
          *F = m + stations;
     rod_strains(curve, frames, strain);
     for (size_t j = 0; j < stations; j++) m[j] = rod_to_frame(frames[j], moment[j]);
-    rod_pulls(curve, rm->loads, F);
+    rod_pulls(curve, rod_model_on_curve(rm, k), F);
     for (int i = 0; i < 3 * o->elements; i++) F[i] = rod_to_frame(frames[2 * (i / 3) + i % 3], F[i]);
     RodEquilibrium at = {o->elements, curve->length, rm->section, strain, m, F};
     RodStability found = rod_stability(&at);
@@ -105,6 +106,7 @@ static void go_round(Inversion *o, int k, Rod *rod, System *sys, const RodLayout
 {
     State state = system_state(sys);
     double *x = state.x, *place = &strand_of(o, o->x, k)->x;
+    state.time = o->run->model->time;
     RampDef def = ramp_default();
     run_newton(o->run, &def.newton);
     def.observer = run_observer(o->run);
@@ -126,18 +128,24 @@ static void invert_elements(Inversion *o, int k)
 {
     const RodModel *rm = o->rm;
     const RodScene *scene = rod_scene(o->run->scene);
-    Rod *rod = rod_create(o->elements, rm->curves[k].length, rm->unit, rm->area, NULL);
+    const RodCurve *curve = &rm->curves[k];
+    double time = o->run->model->time;
+    RodActs acts = rod_model_acts(rm);
+    Rod *rod = rod_create(o->elements, curve->length, rm->unit, rm->area, &acts);
     double *p = mem_alloc((size_t)rod->params.size, sizeof *p);
-    rod_model_loads(rm, rod, scene, p);
+    Error err;
+    rod_model_loads(rm, rod, scene, curve, time, p, &err); /* finite: it was asked before */
     for (int e = 0; e < o->elements && !isnan(scene->magnetization.value[0]); e++)
         p[rod->magnetization + 3 * e] = scene->magnetization.value[0];
     memcpy(p + rod->flux_density, rm->flux, sizeof rm->flux);
-    RodLayout layout = rod_layout(rod, false);
-    double *x = mem_alloc(2 * (size_t)layout.dofs, sizeof *x);
-    System *sys = rod_hanging_system(rod);
-    rod_follow_curves(rod, &rm->curves[k], &rm->frames[k], x);
-    rod_balance(rod, sys, &layout, x, p);
-    Evaluation left = system_gradient(sys, &(Point){.x = x, .p = p}, x + layout.dofs);
+    bool places = acts.potentials.count > 0;
+    RodLayout turns = rod_layout(rod, false), layout = rod_layout(rod, places);
+    double *x = mem_alloc(2 * (size_t)layout.dofs, sizeof *x), *follow = x + layout.dofs;
+    System *sys = places ? rod_system(rod, rm->young, false) : rod_hanging_system(rod);
+    rod_follow_curves(rod, curve, &rm->frames[k], follow);
+    rod_copy_state(rod, &turns, follow, &layout, x);
+    rod_balance(rod, sys, &layout, time, x, p);
+    Evaluation left = system_gradient(sys, &(Point){.x = x, .p = p, .time = time}, x + layout.dofs);
     o->residual[k] = left.force_scale > 0 ? left.gradient_max / left.force_scale : 0;
     memcpy(o->strain_elements + 3 * (size_t)k * (size_t)o->elements, p + rod->natural_strain,
            3 * (size_t)o->elements * sizeof *p);
@@ -145,6 +153,7 @@ static void invert_elements(Inversion *o, int k)
     system_destroy(sys);
     mem_free(x);
     mem_free(p);
+    rod->potentials = (RodPotentials){0}; /* the model's */
     rod_destroy(rod);
 }
 
@@ -156,7 +165,7 @@ static void invert_strand(Inversion *o, int k)
     size_t stations = 2 * (size_t)o->elements + 1;
     Vec3 *moment = mem_alloc(2 * stations, sizeof *moment), *strain = moment + stations;
     bool round = rm->section.bend1 == rm->section.bend2;
-    rod_moments(curve, rm->loads, moment);
+    rod_moments(curve, rod_model_on_curve(rm, k), moment);
     rod_invert(curve, rm->section, moment, round ? NULL : rm->frames[k], strand_of(o, o->natural, k));
     rod_natural_strains(curve, rm->section, moment, rm->frames[k], strain);
     for (int i = 0; i < o->nodes; i++) {
@@ -165,7 +174,7 @@ static void invert_strand(Inversion *o, int k)
         strand_of(o, o->strain, k)[i] = strain[2 * i];
         strand_of(o, o->moment, k)[i] = moment[2 * i];
     }
-    o->route[k] = compare_routes(rm, curve, rm->frames[k], moment);
+    o->route[k] = compare_routes(rm, k, moment);
     if (is_asked(scene, CHECK_STABILITY)) judge_stability(o, k, moment);
     if (is_asked(scene, CHECK_SELF_CONTACT)) find_contacts(o, k);
     invert_elements(o, k);

@@ -129,7 +129,7 @@ static bool put_field(const Preview *o, double time)
 {
     const Model *model = o->run->model;
     double *p = model->cases[0].stages[0].p;
-    if (!model_load(model, time, p, o->err)) return false;
+    if (!model_load(model, time, false, p, o->err)) return false;
     pbd_rod_set_field(o->rod, vec3_load(p + model->flux_density));
     return true;
 }

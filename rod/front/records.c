@@ -85,13 +85,14 @@ void rod_add_state(const Model *model, const Snapshot *shot, const char *prefix,
     arrays_add(list, array_float(name, "N m", moment, 2, model->point_count, 3));
 }
 
-/* Is it known how stable the state is? Of one rod that does not stretch, with a free end, one stiffness, no magnetisation across the tangent, no
- * field that varies in space, and nothing that it meets. */
+/* Is it known how stable the state is? Of one rod that does not stretch, with a free end, one stiffness, no magnetisation across
+ * the tangent, no field that varies in space, no couple, no potential, and nothing that it meets. */
 static bool is_judged(const Rod *rod, const double *p)
 {
     const double *B = p + rod->flux_density;
     bool across = false, field = B[0] != 0 || B[1] != 0 || B[2] != 0;
-    bool uniform = !rod_field_varies(rod, p) && !rod->world && rod->strands == 1 && !rod->cosserat;
+    bool uniform = !rod_field_varies(rod, p) && !rod_has_couples(rod, p) && rod->potentials.count == 0 &&
+                   !rod->world && rod->strands == 1 && !rod->cosserat;
     for (int e = 0; e < rod->elements; e++) {
         across |= field && (p[rod->magnetization + 3 * e + 1] != 0 || p[rod->magnetization + 3 * e + 2] != 0);
         uniform &= p[rod->young + e] == p[rod->young];
@@ -146,6 +147,8 @@ char *rod_doubt(const Model *model, const Snapshot *shot)
 {
     const RodModel *rm = model->self;
     const Rod *rod = rm->rod;
+    if (model->job->rest && rod_has_couples(rod, shot->p))
+        return mem_text("couples have no potential: no energy says whether the rod would stay where it is");
     if (rod->cosserat) return doubt_strain(&rm->layout, shot->at.x);
     if (!is_judged(rod, shot->p)) return NULL;
     Vec3 *work;

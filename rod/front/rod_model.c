@@ -25,23 +25,52 @@ static bool read_section(RodModel *model, const RodScene *scene, const Build *b,
     return ok;
 }
 
-static bool read_loads(RodModel *model, const RodScene *scene, const Build *b)
+static bool is_of_curve(const JobRow *job)
 {
+    return job == &rod_job_invert || job == &rod_job_identify;
+}
+
+/* Once its curves are there. */
+static bool read_loads(RodModel *model, const Scene *scene, const Build *b)
+{
+    const RodScene *from = rod_scene(scene);
+    double size = model->strand_count ? rod_model_longest(model) : from->length;
+    if (!rod_loads_read(from, b, size, is_of_curve(scene_job(scene)), &model->list)) return false;
+    Error err;
+    model->points = mem_alloc((size_t)model->list.count, sizeof *model->points);
+    if (!rod_loads_at(&model->list, b->time, model->points, &model->loads, &err))
+        return yaml_refuse(b->file, "rod.loads", "%s", err.text);
+    model->loads.line = vec3_axpy(model->unit.mass, vec3_load(from->gravity), model->loads.line);
+    return true;
+}
+
+/* What varies along the curves of an inversion or an identification. */
+static bool find_along(RodModel *model, const Build *b)
+{
+    Error err;
     bool ok = true;
-    model->points = mem_alloc((size_t)scene->loads_count, sizeof *model->points);
-    for (int k = 0; k < scene->loads_count; k++) {
-        const RodLoadScene *load = &scene->loads[k];
-        if (!isnan(load->line[0]))
-            model->line = vec3_add(model->line, vec3_load(load->line));
-        else if (isnan(load->force[0]))
-            ok = yaml_refuse(b->file, key("rod.loads[%d]", k).text,
-                             "`force`, what acts at the point, is missing");
-        else
-            model->points[model->loads.point_count++] = (RodPointLoad){load->point, vec3_load(load->force)};
+    if (!model->list.along && model->list.potentials.count == 0) return true;
+    model->along = mem_alloc((size_t)model->strand_count, sizeof *model->along);
+    for (int k = 0; ok && k < model->strand_count; k++) {
+        const RodCurve *curve = &model->curves[k];
+        model->along[k] = mem_alloc(2 * (size_t)curve->elements + 1, sizeof(Vec3));
+        ok = rod_loads_along(&model->list, curve->elements, curve->length, curve, b->time, model->along[k],
+                             &err) ||
+             yaml_refuse(b->file, "rod.loads", "%s", err.text);
     }
-    model->loads.points = model->points;
-    model->loads.line = vec3_axpy(model->unit.mass, vec3_load(scene->gravity), model->line);
     return ok;
+}
+
+RodLoads rod_model_on_curve(const RodModel *model, int strand)
+{
+    RodLoads loads = model->loads;
+    if (model->along) loads.along = model->along[strand];
+    return loads;
+}
+
+RodActs rod_model_acts(const RodModel *model)
+{
+    return (RodActs){.potentials = model->list.potentials, .couples = model->list.couples};
 }
 
 /* Of a curve: what the magnetisation does is known along the tangent, the same all along. */
@@ -69,7 +98,7 @@ static bool read_magnetic(RodModel *model, const Scene *scene, const Build *b)
 bool rod_model_check_points(const RodModel *model, const Build *b, double length)
 {
     for (int k = 0; k < model->loads.point_count; k++)
-        if (model->points[k].s > length * (1 + 1e-9))
+        if (isfinite(model->points[k].s) && model->points[k].s > length * (1 + 1e-9))
             return yaml_refuse(b->file, "rod.loads", "a load is at s = %g m, beyond the rod's length of %g m",
                                model->points[k].s, length);
     return true;
@@ -96,7 +125,8 @@ static bool read_poses(RodModel *model, const RodScene *scene, const Build *b)
 
 RodIdentifyDef rod_model_poses(const RodModel *model, const RodScene *scene, RodPose *poses)
 {
-    for (int k = 0; k < model->strand_count; k++) poses[k] = (RodPose){&model->curves[k], model->clamps[k]};
+    for (int k = 0; k < model->strand_count; k++)
+        poses[k] = (RodPose){&model->curves[k], model->clamps[k], rod_model_on_curve(model, k).along};
     return (RodIdentifyDef){poses, model->strand_count, scene->radius, model->loads};
 }
 
@@ -121,16 +151,16 @@ RodModel *rod_model_create(const Scene *scene, const Build *b)
     bool identify = job == &rod_job_identify;
     model->preview = from->solver == ROD_SOLVER_PBD;
     bool ok = read_section(model, from, b, !identify);
-    ok = read_loads(model, from, b) && ok;
     if (from->curve) {
         RodStrands strands;
         ok = rod_strands_read(b, from, &strands) && ok;
         model->strand_count = strands.count, model->curves = strands.curves, model->frames = strands.frames;
-        for (int k = 0; ok && k < strands.count; k++)
-            ok = rod_model_check_points(model, b, strands.curves[k].length);
     }
     if (identify) ok = read_poses(model, from, b) && ok;
-    if (ok && (identify || job == &rod_job_invert)) ok = read_magnetic(model, scene, b);
+    ok = read_loads(model, scene, b) && ok;
+    for (int k = 0; ok && !identify && k < model->strand_count; k++)
+        ok = rod_model_check_points(model, b, model->curves[k].length);
+    if (ok && is_of_curve(job)) ok = read_magnetic(model, scene, b) && find_along(model, b);
     if (ok && identify) ok = check_poses(model, from, b);
     if (ok) return model;
     rod_model_destroy(model);
@@ -144,7 +174,10 @@ void rod_model_destroy(RodModel *model)
     rod_strands_clear(&strands);
     rod_destroy(model->rod);
     mem_free(model->clamps);
+    for (int k = 0; model->along && k < model->strand_count; k++) mem_free(model->along[k]);
+    mem_free(model->along);
     mem_free(model->points);
+    rod_loads_clear(&model->list);
     mem_free(model->natural);
     mem_free(model->moving);
     mem_free(model);
@@ -240,23 +273,23 @@ bool rod_model_vectors(const Build *b, const char *at, const VectorScene *scene,
     return ok;
 }
 
-void rod_model_loads(const RodModel *model, const Rod *rod, const RodScene *scene, double *p)
+bool rod_model_loads(const RodModel *model, const Rod *rod, const RodScene *scene, const RodCurve *curves,
+                     double time, double *p, Error *err)
 {
     rod_default_params(rod, model->young, p);
     memcpy(p + rod->gravity, scene->gravity, sizeof scene->gravity);
     p[rod->damping] = scene->damping * (rod_length(rod) / rod_each(rod));
-    RodLoads beside = model->loads; /* the weight */
-    beside.line = model->line;
-    rod_share_loads(rod, beside, p + rod->load);
-    rod_sum_loads(rod, p);
+    return rod_loads_put(&model->list, rod, curves, time, p, err);
 }
 
 bool rod_model_params(const RodModel *model, const Scene *scene, const Build *b, double *p)
 {
     const Rod *rod = model->rod;
     const RodScene *from = rod_scene(scene);
-    rod_model_loads(model, rod, from, p);
-    bool ok = rod_model_vectors(b, "rod.magnetization", &from->magnetization, rod, p + rod->magnetization);
+    Error err;
+    bool ok = rod_model_loads(model, rod, from, NULL, b->time, p, &err) ||
+              yaml_refuse(b->file, "rod.loads", "%s", err.text);
+    ok = rod_model_vectors(b, "rod.magnetization", &from->magnetization, rod, p + rod->magnetization) && ok;
     return (!from->natural_strain || read_strains(b, from->natural_strain, rod, p + rod->natural_strain)) &&
            ok;
 }

@@ -2,6 +2,7 @@
  * and frames, and the discrete rod of jobs that move it. */
 #pragma once
 #include "model/model.h"
+#include "rod/front/loads.h"
 #include "rod/front/scene.h"
 #include "rod/identify.h"
 #include "rod/rod.h"
@@ -14,9 +15,10 @@ typedef struct RodModel {
     double young;
     RodSection section, unit; /* with that modulus, and with 1 Pa                                 */
     double area;
+    RodLoadList list; /* what the scene says of loads                                             */
     RodPointLoad *points;
-    RodLoads loads; /* on a curve, weight included                                                */
-    Vec3 line;      /* line loads without weight, N/m                                             */
+    RodLoads loads; /* on curves, when the job begins, weight included; but for                   */
+    Vec3 **along;   /* [strand][stations] N/m, what varies along a curve; NULL: nothing            */
     double flux[3]; /* T, of an inversion                                                        */
 
     /* Of jobs that move it. */
@@ -50,8 +52,16 @@ bool rod_model_frame(const Build *b, const char *at, const double (*rows)[3], Ro
 bool rod_model_vectors(const Build *b, const char *at, const VectorScene *scene, const Rod *rod,
                        double *values);
 
-/* p[params] of a discrete rod: Young's modulus, weight, loads and damping; all else 0. */
-void rod_model_loads(const RodModel *model, const Rod *rod, const RodScene *scene, double *p);
+/* The loads on a curve. */
+RodLoads rod_model_on_curve(const RodModel *model, int strand);
+
+/* What acts on a discrete rod, to be made with it: potentials are the model's still. */
+RodActs rod_model_acts(const RodModel *model);
+
+/* p[params] of a discrete rod: Young's modulus, weight, loads at that time and damping; all else 0. curves[strands]: where
+ * the rod is known to be (NULL: nowhere). False and a sentence where a formula is not finite. */
+bool rod_model_loads(const RodModel *model, const Rod *rod, const RodScene *scene, const RodCurve *curves,
+                     double time, double *p, Error *err);
 
 /* p[params] of the discrete rod: material, magnetisation and loads; natural strains too unless a curve was
  * given. */

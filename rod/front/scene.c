@@ -94,16 +94,71 @@ static const YamlTable end_table = {
          .doc = "of a clamped end: tangent, n1 and n2 there"},
         {0}}};
 
+/* Of a load: a vector in that unit, by numbers or by formulas. */
+#define LOAD_VECTOR_TABLE(table_name, table_doc, unit_name, variables)                                       \
+    {                                                                                                        \
+        .name = table_name, .size = sizeof(LoadVectorScene), .doc = table_doc, .fields = (const YamlField[]) \
+        {                                                                                                    \
+            {YAML_VECTOR(LoadVectorScene, value),                                                            \
+             .unit = unit_name,                                                                              \
+             .one_of = 1,                                                                                    \
+             .required = true,                                                                               \
+             .short_form = true,                                                                             \
+             .doc = "as it stays"},                                                                          \
+                {YAML_TEXTS(LoadVectorScene, formula),                                                       \
+                 .one_of = 1,                                                                                \
+                 .required = true,                                                                           \
+                 .short_form = true,                                                                         \
+                 .min_count = 3,                                                                             \
+                 .max_count = 3,                                                                             \
+                 .doc = "three expressions, in " unit_name ", of " variables},                               \
+                WHERE_ROW(LoadVectorScene),                                                                  \
+            {                                                                                                \
+                0                                                                                            \
+            }                                                                                                \
+        }                                                                                                    \
+    }
+
+static const YamlTable load_line_table =
+    LOAD_VECTOR_TABLE("line load of a rod", "A force on each metre.", "N/m",
+                      "the arclength s, the length L and the time t; where the rod's place is known, in an "
+                      "inversion or identification, of x, y, z and r = sqrt(x^2 + y^2), too");
+static const YamlTable load_force_table =
+    LOAD_VECTOR_TABLE("force on a rod", "A force at a point.", "N", "the time t");
+static const YamlTable load_couple_table =
+    LOAD_VECTOR_TABLE("couple on a rod", "A couple at a point.", "N m", "the time t");
+
+static const YamlTable load_point_table = {
+    .name = "point of a load",
+    .size = sizeof(LoadPointScene),
+    .doc = "Where on the rod a load acts.",
+    .fields =
+        (const YamlField[]){{YAML_CHOICE(LoadPointScene, end), .choices = YAML_NAMES("end"), .one_of = 1,
+                             .short_form = true, .required = true, .doc = "the end that is not the clamp's"},
+                            {YAML_NUMBER(LoadPointScene, value), .unit = "m", .range = "[0, inf)",
+                             .one_of = 1, .short_form = true, .required = true, .doc = "an arclength"},
+                            {0}}};
+
 static const YamlTable rod_load_table = {
     .name = "loads of a rod",
     .size = sizeof(RodLoadScene),
-    .doc = "A dead load: a force that keeps its direction.",
+    .doc = "What acts on a rod beside its weight. Forces and couples keep their direction in the world while "
+           "the rod turns. "
+           "Formulas of t are followed in motions, and have the time of their stage elsewhere.",
     .fields = (const YamlField[]){
-        {YAML_NUMBER(RodLoadScene, point), .unit = "m", .range = "[0, inf)", .one_of = 1, .required = true,
-         .doc = "the arclength at which `force` acts"},
-        {YAML_VECTOR(RodLoadScene, line), .unit = "N/m", .one_of = 1, .required = true,
-         .doc = "on each metre, the same all along"},
-        {YAML_VECTOR(RodLoadScene, force), .when = "point", .unit = "N", .doc = "at a point"},
+        {YAML_OPTIONAL(RodLoadScene, point, &load_point_table), .one_of = 1, .required = true,
+         .doc = "where `force` and `couple` act"},
+        {YAML_OPTIONAL(RodLoadScene, line, &load_line_table), .one_of = 1, .required = true,
+         .doc = "on each metre"},
+        {YAML_TEXT(RodLoadScene, potential), .one_of = 1, .required = true, .when = "/rod.solver: newton",
+         .doc = "an energy in J/m whose gradient in space pulls at each metre: an expression of the place x, "
+                "y, z, "
+                "r = sqrt(x^2 + y^2), the arclength s, the length L and the time t"},
+        {YAML_OPTIONAL(RodLoadScene, force, &load_force_table), .when = "point", .doc = "at the point"},
+        {YAML_OPTIONAL(RodLoadScene, couple, &load_couple_table), .when = "point & /rod.solver: newton",
+         .doc = "at the point"},
+        {YAML_MAP(RodLoadScene, where, &where_table), .when = "potential",
+         .doc = "names for parts of the potential"},
         {0}}};
 
 static const YamlTable pose_curve_table = {

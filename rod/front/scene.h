@@ -44,8 +44,26 @@ typedef struct EndScene {
     int hold, frame_count; /* HoldKind */
 } EndScene;
 
+/* Three numbers, or formulas of them. */
+typedef struct LoadVectorScene {
+    double value[3];
+    char **formula;
+    WhereScene *where;
+    int formula_count, where_count;
+} LoadVectorScene;
+
+/* An arclength, or the end. */
+typedef struct LoadPointScene {
+    int end;      /* 0: the end */
+    double value; /* NAN: there */
+} LoadPointScene;
+
 typedef struct RodLoadScene {
-    double point, force[3], line[3];
+    LoadPointScene *point;
+    LoadVectorScene *line, *force, *couple;
+    char *potential;
+    WhereScene *where;
+    int where_count;
 } RodLoadScene;
 
 typedef struct RodPoseScene {
