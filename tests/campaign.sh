@@ -22,7 +22,7 @@ cd "$work" || exit 2
 run() { "$program" run "$scene" --set "$set" --quiet --no-picture -o "$@"; }
 start() { exec "$program" run "$scene" --set "$set" --quiet --no-picture -o "$@"; }
 numbers() { # what must be the same; a kind of job has some of them
-    for path in design/magnetization design/young design/natural_strain design/flux_density design/gradient/young trajectory/flux_density state/x \
+    for path in design/magnetization design/young design/natural_strain design/flux_density design/gradient/young trajectory/flux_density trajectory/followed trajectory/reference/distance state/x \
         state/v cases/up/x rod/x rod/moment spline/nodes spline/strokes history/energy frames/x history/contact_force history/friction_work history/self_distance history/water_work history/objective history/newton_iterations history/cg_iterations unknowns; do
         "$program" export "$1" -o out.csv --dataset $path 2>/dev/null && cat out.csv
     done
