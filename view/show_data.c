@@ -89,16 +89,20 @@ bool show_check_frame(const ShowData *data, int frame, Error *err)
     return frame < frames || error_set(err, "the result has %d frames, from 0", frames);
 }
 
-char *show_frame_name(ShowData *data, int frame)
+double show_frame_time(const ShowData *data, int frame)
 {
     Array times;
-    bool known =
-        data->motion && result_read_rows(data->result, "VTKHDF/Steps/Values", frame, 1, &times, NULL);
-    if (!known) return show_text(data, "frame %d", frame);
-    char *name = show_text(data, "t = %.4g s",
-                           array_is(&times, ARRAY_FLOAT64, 1, 1) ? *(const double *)times.data : NAN);
+    if (!data->motion || !result_read_rows(data->result, "VTKHDF/Steps/Values", frame, 1, &times, NULL))
+        return NAN;
+    double time = array_is(&times, ARRAY_FLOAT64, 1, 1) ? *(const double *)times.data : NAN;
     array_clear(&times);
-    return name;
+    return time;
+}
+
+char *show_frame_name(ShowData *data, int frame)
+{
+    double time = show_frame_time(data, frame);
+    return data->motion ? show_text(data, "t = %.4g s", time) : show_text(data, "frame %d", frame);
 }
 
 bool show_history(ShowData *data, Chart *chart)

@@ -39,6 +39,9 @@ int show_frame(const ShowData *data, int k);
 /* False and a sentence where the result has no such frame. */
 bool show_check_frame(const ShowData *data, int frame, Error *err);
 
+/* s; NAN where it is not known, or frames are no moments. */
+double show_frame_time(const ShowData *data, int frame);
+
 /* "t = 0.2 s" of a motion, else "frame 3". */
 char *show_frame_name(ShowData *data, int frame);
 

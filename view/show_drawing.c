@@ -8,7 +8,7 @@ static bool check_options(const ShowDef *def, Error *err)
         return error_set(err, "a drawing has no frames to show; output.every writes SVG files on the way");
     if (def->only) return error_set(err, "--case %s: a drawing has no load cases", def->only);
     if (def->field) return error_set(err, "--field %s: a drawing has no faces to colour", def->field);
-    return def->target == PICTURE_TARGET_BESIDE ||
+    return def->target == PICTURE_TARGET_AUTO || def->target == PICTURE_TARGET_BESIDE ||
            error_set(err, "--target: the target of a drawing is always beside it");
 }
 
