@@ -258,7 +258,7 @@ ShowStatus show_result(const char *result, const char *picture, const ShowDef *d
         ok = error_set(err, "a plane cuts shells and solids open; %s",
                        drawn ? "a drawing has no inside" : "rods are lines");
     else if (drawn)
-        ok = show_drawing(&data, picture, err);
+        ok = show_drawing(&data, result, picture, err);
     else if (rod)
         ok = show_rod(&data, result, picture, err);
     else

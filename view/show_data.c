@@ -65,21 +65,28 @@ char *show_text(ShowData *data, const char *format, ...)
     return own(data, mem_text(text));
 }
 
+int show_moment_count(int frames, double seconds)
+{
+    return (int)fmin(frames, ceil(seconds * FRAMES_PER_SECOND));
+}
+
+int show_moment(int frames, int count, int k)
+{
+    return count > 1 ? (int)lround((double)k * (frames - 1) / (count - 1)) : 0;
+}
+
 int show_frame_count(const ShowData *data)
 {
     const ShowDef *def = data->def;
     int frames = result_step_count(data->result);
-    int most = def->seconds > 0             ? (int)ceil(def->seconds * FRAMES_PER_SECOND)
-               : def->stills                ? def->stills
-               : data->motion && !def->only ? STILLS
-                                            : 0;
+    if (def->seconds > 0) return show_moment_count(frames, def->seconds);
+    int most = def->stills ? def->stills : data->motion && !def->only ? STILLS : 0;
     return frames < most ? frames : most;
 }
 
 int show_frame(const ShowData *data, int k)
 {
-    int frames = result_step_count(data->result), count = show_frame_count(data);
-    return count > 1 ? (int)lround((double)k * (frames - 1) / (count - 1)) : 0;
+    return show_moment(result_step_count(data->result), show_frame_count(data), k);
 }
 
 bool show_check_frame(const ShowData *data, int frame, Error *err)

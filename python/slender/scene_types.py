@@ -410,8 +410,8 @@ FrameOfAStartKeys = TypedDict("FrameOfAStartKeys", {
 }, total=False)
 
 Output = TypedDict("Output", {
-    "every": "int", "precision": "Literal['single', 'double']", "states": "Literal['last', 'all']", "svg": "Number",
-    "png": "Number", "gcode": "Number", "gcode_servo": "Number", "hpgl": "Number",
+    "every": "int", "film": "int", "precision": "Literal['single', 'double']", "states": "Literal['last', 'all']",
+    "svg": "Number", "png": "Number", "gcode": "Number", "gcode_servo": "Number", "hpgl": "Number",
 }, total=False)
 
 Scene = TypedDict("Scene", {
