@@ -17,19 +17,6 @@ static const char scene[] =
     "  page: {size: [60 mm, 40 mm], margin: 5 mm}\n  pen: 0.6 mm\n  rounds: 1\n"
     "output: {every: 10, film: 10}\n";
 
-static char *text_of(const char *path)
-{
-    FILE *file = fopen(path, "r");
-    if (!file) return NULL;
-    fseek(file, 0, SEEK_END);
-    size_t size = (size_t)ftell(file);
-    rewind(file);
-    char *text = test_calloc(size + 1, 1);
-    assert_int_equal(fread(text, 1, size, file), size);
-    fclose(file);
-    return text;
-}
-
 /* The same words, and numbers that differ by no more than a tolerance; returns how many there are. */
 static int compare(const char *a, const char *b, double tolerance)
 {
@@ -67,16 +54,16 @@ static void test_moments(void **state)
         char path[64];
         assert_int_equal(film_iteration(&film, k), EVERY * k);
         snprintf(path, sizeof path, NAME "-%06d.svg", film_iteration(&film, k));
-        char *there = text_of(path);
+        char *there = page_text(path);
         if (k == 0) continue; /* as it starts: no file has that */
         assert_non_null(there);
         Plot plot = film_plot(&film, &drawn, k);
         assert_true(plot_write_svg("test_film_frame.svg", &plot, &err));
-        char *here = text_of("test_film_frame.svg");
+        char *here = page_text("test_film_frame.svg");
         numbers += compare(here, there, 2.1e-3);
         compared++;
-        test_free(here);
-        test_free(there);
+        mem_free(here);
+        mem_free(there);
         spline_plot_clear(&plot);
         unlink(path);
     }

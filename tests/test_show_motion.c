@@ -147,15 +147,7 @@ static char *write_svg(const ShowDef *def)
 {
     Error err = {""};
     if (show_result(NAME ".vtkhdf", NAME ".svg", def, &err) != SHOW_DONE) fail_msg("%s", err.text);
-    FILE *file = fopen(NAME ".svg", "r");
-    assert_non_null(file);
-    fseek(file, 0, SEEK_END);
-    size_t size = (size_t)ftell(file);
-    rewind(file);
-    char *text = test_calloc(size + 1, 1);
-    assert_int_equal(fread(text, 1, size, file), size);
-    fclose(file);
-    return text;
+    return page_text(NAME ".svg");
 }
 
 /* The k-th open line of that colour: "rgb(25%,25%,27%)". */
@@ -221,7 +213,7 @@ static void test_drawn(void **state)
             if (def.frame > 1) assert_float_equal(third, (def.frame - 1) * step[k], 0.04);
             if (def.frame == 2) assert_true(third > 40);
         }
-        test_free(svg);
+        mem_free(svg);
     }
     clear(&all);
 }
@@ -240,12 +232,12 @@ static void test_pages(void **state)
     ShowDef def = show_default();
     char *svg = write_svg(&def);
     assert_int_equal(count_of(svg, MARK), 2 * FRAMES);
-    test_free(svg);
+    mem_free(svg);
     page_run(NAME, ROD MOTION DESIGN("tip"));
     svg = write_svg(&def);
     Polyline path = line_of(svg, "rgb(0%,62%,45.1%)", 1); /* after the legend's */
     assert_int_equal(path.count, STEPS + 1);
-    test_free(svg);
+    mem_free(svg);
     for (int k = 0; k < 2; k++) {
         Error err = {""};
         page_run(NAME, k ? SHELL MOTION DESIGN("tip") : ROD MOTION DESIGN("tip"));
