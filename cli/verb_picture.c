@@ -18,14 +18,18 @@ static const char usage[] =
     "               [--target beside|over|both] [--view X,Y,Z] [--clip PLANE] [--width PIXELS] [--seconds S] "
     "[--no-arrows] [--no-history]\n"
     "  -o FILE        default: the result's name with .png, of an animation .webp\n"
-    "  --animation    all frames one after the other, 25 a second; so does a FILE.webp\n"
+    "  --animation    all frames one after the other, 25 a second (of a drawing with output.film: how it "
+    "relaxed); so does a\n"
+    "                 FILE.webp\n"
     "  --seconds S    how long that takes; default: 6\n"
     "  --stills N     N moments side by side, of rods over each other; default for a motion: 6\n"
     "  --frame N      a frame of the run, from 0\n"
     "                 without any of these: the final state of every load case\n"
     "  --case NAME    one load case\n"
     "  --field NAME   colours: magnetization, young, energy_membrane, contact_force, .., or none\n"
-    "  --target WHERE the target beside the body, over it as wires, or both\n"
+    "  --target WHERE the target beside the body, over it as wires (default for a motion), or both; of a "
+    "motion's places and\n"
+    "                 curves: over\n"
     "  --view X,Y,Z   direction to the eye; default: three quarters from above; of rods: front, side and "
     "top\n"
     "  --clip PLANE   cuts a shell or solid open: x=0.01 (or y, z; m), or a point and a normal, "
@@ -35,8 +39,9 @@ static const char usage[] =
 static bool take_target(void *target, const char *word)
 {
     static const char *const names[] = {"beside", "over", "both"};
+    static const PictureTarget places[] = {PICTURE_TARGET_BESIDE, PICTURE_TARGET_OVER, PICTURE_TARGET_BOTH};
     for (int k = 0; k < 3; k++)
-        if (!strcmp(word, names[k])) return *(PictureTarget *)target = (PictureTarget)k, true;
+        if (!strcmp(word, names[k])) return *(PictureTarget *)target = places[k], true;
     return false;
 }
 

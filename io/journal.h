@@ -11,6 +11,7 @@
  *   frame       index n: x [n_v,3], time, turns, cell/<name> [n_f] or [n_f,3], point/<name>
  *   evaluation  index k: unknowns, gradient, and the scalars objective, gradient_norm, newton_iterations, seconds
  *   state       what the run needs to go on
+ *   film        of a drawing (spline/film.h)
  *   final       arrays of the result, named by their path below /slender
  *   result      crc32: which result the frames of a finished simulation have gone to
  *

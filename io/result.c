@@ -26,13 +26,15 @@ static bool is_attribute(const char *kind, const char *name)
     return false;
 }
 
-/* What a run goes on from has many zeros (state/velocities, cases/NAME/state/loads/.., ..). */
+/* What a run goes on from has many zeros (state/velocities, cases/NAME/state/loads/.., ..), a film many numbers that are like
+ * each other. */
 enum { MANY = 4096 }; /* a chunk takes 2 kB beside its numbers */
 
 static Hdf5Layout layout_of(const Array *array, const char *name)
 {
-    bool state = array->rank == 1 && array->type == ARRAY_FLOAT64 && strstr(name, "state/");
-    return (Hdf5Layout){.chunk_rows = state && array->dims[0] >= MANY ? array->dims[0] : 0};
+    bool state = array->rank == 1 && array->type == ARRAY_FLOAT64 && strstr(name, "state/"),
+         film = strstr(name, "film/") != NULL;
+    return (Hdf5Layout){.chunk_rows = (state || film) && array->dims[0] >= MANY ? array->dims[0] : 0};
 }
 
 /* Every other array of a kind at its own name. */

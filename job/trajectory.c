@@ -3,6 +3,7 @@
 #include "job/contacts.h"
 #include "job/design_run.h"
 #include "job/jobs.h"
+#include "job/reference.h"
 #include "optim/objectives.h"
 #include "optim/trajectory_adjoint.h"
 #include <math.h>
@@ -206,6 +207,7 @@ static bool put_results(void *self, int first, const char *status, Error *err)
     run_add_final(job->run, &end, 1, status, &list);
     add_field(job, &list);
     add_distances(job, &list);
+    reference_add(job->c, job->t, job->run->scene->time.steps, &list);
     add_gradients(job, &list);
     return arrays_replace(&list, job->run->journal, "final", err);
 }

@@ -405,6 +405,10 @@ static const YamlTable output_table = {
          .doc = "a frame for every so many steps of a motion (0: every step) or improvements of a design (0: "
                 "the final one only); of a drawing: NAME-000020.svg and so on, after every so many "
                 "iterations (0: none)"},
+        {YAML_INTEGER(OutputScene, film), .when = "/job: draw",
+         .otherwise = "other jobs have frames, by `every`", .range = "[0, inf)", .fallback = "0",
+         .doc = "of a drawing: its strokes after every so many iterations stay in the result, for `slender "
+                "picture --animation` (0: none)"},
         {YAML_CHOICE(OutputScene, precision),
          .when = "/job: equilibrium, evaluate, design, simulate, trajectory, invert",
          .choices = YAML_NAMES("single", "double"), .fallback = "single",

@@ -263,7 +263,7 @@ typedef struct StartScene {
 } StartScene;
 
 typedef struct OutputScene {
-    int every, precision, states;
+    int every, film, precision, states;
     char *svg, *png, *gcode, *gcode_servo, *hpgl; /* of a drawing: names of files */
 } OutputScene;
 

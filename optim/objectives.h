@@ -4,6 +4,7 @@
 #pragma once
 #include "optim/control.h"
 #include "solve/objective.h"
+#include <stdbool.h>
 
 /* sum over the listed vertices of |x_v - target_v|^2, m^2. */
 Objective objective_target(int count, const int *vertices, const double (*target)[3], double weight);
@@ -32,6 +33,14 @@ Objective objective_arc(Probe probe, const double points[3][3], double weight);
 
 /* Distance of q to a waypoint or to the curve of a polyline or an arc, m; NAN for other rows. */
 double objective_distance(const Objective *objective, const double *x);
+
+/* Where q is; false for rows without one. */
+bool objective_point(const Objective *objective, const double *x, double q[3]);
+
+/* What q is to meet: its place, or its curve's points, of an arc those of OBJECTIVE_CHORDS chords. The caller frees; NULL and
+ * count 0 for rows without one. */
+enum { OBJECTIVE_CHORDS = 128 };
+double (*objective_reference(const Objective *objective, int *count))[3];
 
 /* Of a control B: sum over the steps of |B_n|^2, and of |B_n - B_{n-1}|^2 from the second step on. */
 Objective objective_field_magnitude(const Control *control, double weight);

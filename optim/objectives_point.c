@@ -228,3 +228,37 @@ double objective_distance(const Objective *objective, const double *x)
     if (objective->ops == &arc_ops) return vec3_length(from_arc(tracked, probe_position(tracked, x), &t));
     return NAN;
 }
+
+static const Tracked *tracked_of(const Objective *objective)
+{
+    return objective->ops->destroy == tracked_destroy ? objective->self : NULL;
+}
+
+bool objective_point(const Objective *objective, const double *x, double q[3])
+{
+    const Tracked *tracked = tracked_of(objective);
+    if (tracked) vec3_store(q, probe_position(tracked, x));
+    return tracked != NULL;
+}
+
+static double (*arc_points(const Tracked *tracked))[3]
+{
+    double(*points)[3] = mem_alloc(OBJECTIVE_CHORDS + 1, sizeof *points);
+    for (int k = 0; k <= OBJECTIVE_CHORDS; k++) {
+        double angle = tracked->angle * k / OBJECTIVE_CHORDS, r = tracked->radius;
+        Vec3 out = vec3_axpy(r * sin(angle), tracked->e2, vec3_scale(r * cos(angle), tracked->e1));
+        vec3_store(points[k], vec3_add(tracked->center, out));
+    }
+    return points;
+}
+
+double (*objective_reference(const Objective *objective, int *count))[3]
+{
+    const Tracked *tracked = tracked_of(objective);
+    bool arc = objective->ops == &arc_ops, place = objective->ops == &waypoint_ops;
+    *count = !tracked ? 0 : arc ? OBJECTIVE_CHORDS + 1 : place ? 1 : tracked->point_count;
+    if (!tracked) return NULL;
+    if (arc) return arc_points(tracked);
+    return mem_copy(place ? &tracked->at : (const double(*)[3])tracked->points, (size_t)*count,
+                    sizeof tracked->at);
+}

@@ -1,5 +1,6 @@
 #include "spline/local.h"
 #include "base/memory.h"
+#include "spline/length.h"
 #include "spline/local_pair.h"
 #include "spline/terms.h"
 #include "spline/tone.h"
@@ -76,6 +77,12 @@ static double terms_energy(const Local *local, int stroke, const double *q)
     for (int t = 0; q && t < local->term_count; t++)
         energy += term_energy(local, &local->terms[t], stroke, q);
     return energy;
+}
+
+static double length_energy(const Local *local, const Ink *ink)
+{
+    if (!ink->there) return 0;
+    return spline_length_energy(local->model, local->weights.length, local->stroke, &ink->points);
 }
 
 static void spread_ink(const Local *local, const Ink *ink, double sign)
@@ -163,6 +170,8 @@ double local_change(Local *local, int stroke, const double *q)
     set_ink(local, &local->after, stroke, q);
     if (q) memcpy(local->q, q, 4 * (size_t)nodes * sizeof *q);
     double change = terms_energy(local, stroke, q) - terms_energy(local, stroke, old);
+    if (local->weights.length != 0)
+        change += length_energy(local, &local->after) - length_energy(local, &local->before);
     if (local->weights.tone != 0) {
         double sum = 0;
         find_boxes(local);

@@ -8,8 +8,8 @@ LocalPair local_pair_create(const SplineModel *model, double C)
 {
     const SplinePage *page = &model->target->page;
     LocalPair pair = {.model = model, .C = C};
-    pair.columns = (int)ceil(page->width / model->pair_radius);
-    pair.rows = (int)ceil(page->height / model->pair_radius);
+    pair.columns = (int)ceil(page->width / model->pair_reach);
+    pair.rows = (int)ceil(page->height / model->pair_reach);
     pair.points = model->segment_count * model->rule.count;
     size_t cells = (size_t)pair.columns * (size_t)pair.rows, points = (size_t)pair.points;
     pair.head = mem_alloc(cells, sizeof *pair.head);
@@ -31,7 +31,7 @@ void local_pair_clear(LocalPair *pair)
 
 void local_pair_insert(LocalPair *pair, int first, const SplinePoints *points)
 {
-    double size = pair->model->pair_radius;
+    double size = pair->model->pair_reach;
     for (int k = 0; k < points->count; k++) {
         int p = first + k, column = point_cell(points->x[k], size, pair->columns);
         int cell = point_cell(points->y[k], size, pair->rows) * pair->columns + column;
@@ -59,13 +59,13 @@ void local_pair_remove(LocalPair *pair, int first, int count)
 
 static double kernel(const LocalPair *pair, double dx, double dy)
 {
-    double R = pair->model->pair_radius, d2 = dx * dx + dy * dy;
-    return d2 < R * R ? pair_kernel_at(pair->model->pair_kernel, d2, R).g : 0;
+    double R = pair->model->pair_radius, reach = pair->model->pair_reach, d2 = dx * dx + dy * dy;
+    return d2 < reach * reach ? pair_kernel_at(pair->model->pair_kernel, d2, R).g : 0;
 }
 
 static double sum_others(const LocalPair *pair, double x, double y)
 {
-    double size = pair->model->pair_radius, sum = 0;
+    double size = pair->model->pair_reach, sum = 0;
     int i = point_cell(x, size, pair->columns), j = point_cell(y, size, pair->rows);
     for (int row = j - 1; row <= j + 1; row++)
         for (int column = i - 1; column <= i + 1; column++) {
@@ -80,9 +80,10 @@ double local_pair_energy(const LocalPair *pair, const SplinePoints *points)
 {
     double energy = 0;
     const SplineRule *rule = points->rule;
+    bool own = pair_kernel_has_own(pair->model->pair_kernel);
     for (int a = 0; a < points->count; a++) {
         double sum = sum_others(pair, points->x[a], points->y[a]);
-        for (int b = 0; b < points->count; b++)
+        for (int b = 0; own && b < points->count; b++)
             sum += rule->weight[b % rule->count] * points->n[b] / 2 *
                    kernel(pair, points->x[a] - points->x[b], points->y[a] - points->y[b]);
         energy += rule->weight[a % rule->count] * points->n[a] * sum;

@@ -58,6 +58,9 @@ SplineModel *spline_model_create(const SplineTarget *target, const Strokes *stro
                            .wall_rule = spline_rule_hull(),
                            .pair_kernel = def->pair_kernel,
                            .pair_radius = def->pair_radius * target->spacing};
+    const SplinePage *page = &target->page;
+    bool ends = def->pair_kernel != PAIR_COULOMB;
+    model->pair_reach = ends ? model->pair_radius : 4 * (page->width + page->height); /* beyond the page */
     if (target->outline) model->outline_rule = outline_rule(target, rest, model->segment_count);
     size_t segments = (size_t)model->segment_count;
     model->start = mem_alloc((size_t)strokes->count + 1, sizeof *model->start);

@@ -10,6 +10,7 @@
 typedef enum PairKernel {
     PAIR_WENDLAND,  /* (1 - d/R)^4 (4 d/R + 1): C2, positive definite */
     PAIR_TRIWEIGHT, /* (1 - d^2/R^2)^3                                */
+    PAIR_COULOMB,   /* R/d, everywhere, between different strokes only [Linewise, as printed] */
 } PairKernel;
 
 typedef struct SplineModelDef {
@@ -35,7 +36,7 @@ typedef struct SplineModel {
     SplineRule wall_rule;    /* the hull's                                                      */
     SplineRule outline_rule; /* places half a pen apart, where there is an outline           */
     PairKernel pair_kernel;
-    double pair_radius; /* units of the page */
+    double pair_radius, pair_reach; /* R, and where the kernel ends: units of the page */
 } SplineModel;
 
 /* Copies the layout; rest[segments] is L0 of each segment. */

@@ -1,6 +1,6 @@
 /* Pairs: E = C/2 int int g(|r1 - r2|) dl1 dl2 over all strokes and themselves. g is finite at 0, so that a
  * stroke may act on itself, and ends at R, so that the energy of a drawing does not grow with its size
- * (Linewise's 1/d has neither). */
+ * (Linewise's 1/d, PAIR_COULOMB, has neither: all points act on all others of other strokes). */
 #include "spline/pair.h"
 #include "base/memory.h"
 #include "spline/point_cells.h"
@@ -15,12 +15,20 @@ typedef struct PairTerm {
     PointCells cells;
     double *x, *y; /* [points] where they stood when pairs were listed; NULL: never yet */
     SegmentPairs pairs, own;
+    int *stroke;  /* [points] whose they are; NULL: strokes act on themselves */
     bool coupled; /* the present list was handed out */
 } PairTerm;
 
 enum { TASK_POINTS = 128 };
 
 static const double MARGIN = 0.2; /* of R: how far points may go before lists are made anew */
+
+/* Takes the points of p's own stroke out of a pack of those from place k on. */
+static void leave_own(const PairTerm *t, int p, int k, int count, Pack *dx, Pack *amount)
+{
+    for (int l = 0; l < count && l < PACK_LANES; l++)
+        if (t->stroke[t->cells.point[k + l]] == t->stroke[p]) (*dx)[l] = 1, (*amount)[l] = 0;
+}
 
 static void sum_near(const PairTerm *t, int p)
 {
@@ -35,6 +43,7 @@ static void sum_near(const PairTerm *t, int p)
             memcpy(&amount, t->cells.amount + k, sizeof amount);
             for (int l = run.end - k; l < PACK_LANES; l++) amount[l] = 0;
             dx = x - dx, dy = y - dy;
+            if (t->stroke) leave_own(t, p, k, run.end - k, &dx, &amount);
             Pack g = pair_kernel_pack(t->model->pair_kernel, dx * dx + dy * dy, R, &first);
             S += amount * g;
             sx += amount * 2 * first * dx;
@@ -103,7 +112,7 @@ static void pair_blocks(const PairTerm *t, int a, int b, double blocks[3][64])
 {
     const SplineRule *rule = t->points.rule;
     const SplinePoints *points = &t->points;
-    double R = t->model->pair_radius;
+    double R = t->model->pair_radius, reach = t->model->pair_reach;
     memset(blocks, 0, 3 * sizeof *blocks);
     for (int i = 0; i < rule->count; i++)
         for (int j = 0; j < rule->count; j++) {
@@ -114,7 +123,7 @@ static void pair_blocks(const PairTerm *t, int a, int b, double blocks[3][64])
                            .positive = t->hessian != SPLINE_EXACT};
             p.d[0] = points->x[p1] - points->x[p2], p.d[1] = points->y[p1] - points->y[p2];
             double d2 = p.d[0] * p.d[0] + p.d[1] * p.d[1];
-            if (!(d2 < R * R)) continue;
+            if (!(d2 < reach * reach)) continue;
             p.u[0][0] = points->tx[p1] / p.n[0], p.u[0][1] = points->ty[p1] / p.n[0];
             p.u[1][0] = points->tx[p2] / p.n[1], p.u[1][1] = points->ty[p2] / p.n[1];
             p.g = pair_kernel_at(t->model->pair_kernel, d2, R);
@@ -128,7 +137,7 @@ static void pair_blocks(const PairTerm *t, int a, int b, double blocks[3][64])
 
 static bool has_moved(const PairTerm *t)
 {
-    double margin = MARGIN * t->model->pair_radius;
+    double margin = MARGIN * t->model->pair_reach;
     for (int p = 0; p < t->points.count; p++) {
         double dx = t->points.x[p] - t->x[p], dy = t->points.y[p] - t->y[p];
         if (!(4 * (dx * dx + dy * dy) < margin * margin)) return true;
@@ -148,6 +157,7 @@ static void list_pairs(PairTerm *t)
             for (int k = run.first; k < run.end; k++) {
                 int m = p / Q, other = t->cells.point[k] / Q;
                 double dx = t->cells.x[k] - t->points.x[p], dy = t->cells.y[k] - t->points.y[p];
+                if (t->stroke && t->stroke[p] == t->stroke[t->cells.point[k]]) continue;
                 if (other > m || mark[other] == m + 1 || dx * dx + dy * dy >= reach * reach) continue;
                 mark[other] = m + 1;
                 spline_pairs_add(&t->pairs, m, other);
@@ -231,11 +241,21 @@ static void pair_destroy(void *self)
     spline_pairs_clear(&t->pairs);
     spline_pairs_clear(&t->own);
     mem_free(t->x);
+    mem_free(t->stroke);
     mem_free(t);
 }
 
 static const BulkOps pair_ops = {
     .name = "pair", .eval = pair_eval, .couple = pair_couple, .destroy = pair_destroy};
+
+static int *strokes_of_points(const SplinePoints *points, const SplineModel *model)
+{
+    int *stroke = mem_alloc((size_t)points->count, sizeof *stroke), Q = points->rule->count;
+    for (int k = 0; k < model->stroke_count; k++)
+        for (int p = Q * spline_first_segment(model, k); p < Q * spline_first_segment(model, k + 1); p++)
+            stroke[p] = k;
+    return stroke;
+}
 
 Bulk spline_pair_bulk(const SplineModel *model, SplineHessian hessian)
 {
@@ -244,6 +264,7 @@ Bulk spline_pair_bulk(const SplineModel *model, SplineHessian hessian)
                     .hessian = hessian,
                     .points = spline_points_create(&model->rule, model->segment_count, 0)};
     t->forces = point_forces_create(t->points.count);
-    t->cells = point_cells_create(&model->target->page, (1 + MARGIN) * model->pair_radius, t->points.count);
+    t->cells = point_cells_create(&model->target->page, (1 + MARGIN) * model->pair_reach, t->points.count);
+    if (!pair_kernel_has_own(model->pair_kernel)) t->stroke = strokes_of_points(&t->points, model);
     return (Bulk){&pair_ops, t};
 }

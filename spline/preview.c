@@ -3,10 +3,11 @@
 #include "base/memory.h"
 #include "io/canvas.h"
 
-static const double POINTS = 72 / 25.4;       /* per mm */
+const double PREVIEW_TRUE = 72 / 25.4;
 static const Color edge = {0.6, 0.6, 0.6, 1}; /* between the two papers */
 
-static void draw_target(Canvas *canvas, const SplinePage *page, const SplineGrid *target)
+void preview_draw_target(Canvas *canvas, const SplinePage *page, const SplineGrid *target, Vec2 origin,
+                         double scale)
 {
     size_t pixels = (size_t)target->columns * (size_t)target->rows;
     unsigned char *rgba = mem_alloc(pixels, 4);
@@ -18,17 +19,23 @@ static void draw_target(Canvas *canvas, const SplinePage *page, const SplineGrid
         }
         rgba[4 * k + 3] = 255;
     }
-    double points = 1e3 * POINTS;
+    double points = 1e3 * scale;
     canvas_image(canvas, rgba, target->columns, target->rows,
-                 (Box){points * page->left, points * page->top, points * page->unit * page->width,
-                       points * page->unit * page->height});
+                 (Box){origin.x + points * page->left, origin.y + points * page->top,
+                       points * page->unit * page->width, points * page->unit * page->height});
     mem_free(rgba);
 }
 
+/* Where a paper lies. */
+typedef struct Frame {
+    Vec2 origin;
+    double scale; /* pt per mm */
+} Frame;
+
 /* c to end: control points of a curve. Chords stay within a quarter of a pixel. */
-static void draw_curve(Canvas *canvas, const Vec2 *c, const Vec2 *end, Vec2 origin, Pen pen)
+static void draw_curve(Canvas *canvas, const Vec2 *c, const Vec2 *end, const Frame *frame, Pen pen)
 {
-    double tolerance = 0.25 / (POINTS * canvas_resolution(canvas));
+    double tolerance = 0.25 / (frame->scale * canvas_resolution(canvas));
     int count = 1, room = 1;
     for (const Vec2 *k = c; k < end; k += 3) room += cubic_steps(k, tolerance);
     Vec2 *points = mem_alloc((size_t)room, sizeof *points);
@@ -38,20 +45,22 @@ static void draw_curve(Canvas *canvas, const Vec2 *c, const Vec2 *end, Vec2 orig
         for (int i = 1; i <= steps; i++) points[count++] = cubic_at(c, (double)i / steps);
     }
     for (int k = 0; k < count; k++)
-        points[k] = (Vec2){origin.x + POINTS * points[k].x, origin.y + POINTS * points[k].y};
+        points[k] = (Vec2){frame->origin.x + frame->scale * points[k].x,
+                           frame->origin.y + frame->scale * points[k].y};
     canvas_polyline(canvas, points, count, pen);
     mem_free(points);
 }
 
-static void draw_plot(Canvas *canvas, const Plot *plot, Vec2 origin)
+void preview_draw(Canvas *canvas, const Plot *plot, Vec2 origin, double scale)
 {
+    const Frame frame = {origin, scale};
     for (int k = 0; k < plot->layer_count; k++) {
         const PlotLayer *layer = &plot->layers[k];
-        Pen pen = {.color = layer->color, .width = POINTS * layer->pen};
+        Pen pen = {.color = layer->color, .width = scale * layer->pen};
         canvas_begin_ink(canvas);
         for (int i = 0; i < layer->count; i++)
             draw_curve(canvas, layer->points + layer->start[i], layer->points + layer->start[i + 1] - 1,
-                       origin, pen);
+                       &frame, pen);
         canvas_end_ink(canvas);
     }
 }
@@ -59,15 +68,15 @@ static void draw_plot(Canvas *canvas, const Plot *plot, Vec2 origin)
 bool spline_preview(const char *path, const Plot *plot, const SplinePage *page, const SplineGrid *target,
                     int width, Error *err)
 {
-    double paper[2] = {POINTS * plot->paper[0], POINTS * plot->paper[1]};
+    double scale = PREVIEW_TRUE, paper[2] = {scale * plot->paper[0], scale * plot->paper[1]};
     Canvas *canvas = canvas_create(path, target ? 2 * paper[0] : paper[0], paper[1], width / paper[0], err);
     if (!canvas) return false;
     if (target) {
         double x = paper[0];
-        draw_target(canvas, page, target);
+        preview_draw_target(canvas, page, target, (Vec2){0, 0}, scale);
         canvas_line(canvas, (Vec2){x, 0}, (Vec2){x, paper[1]}, (Pen){.color = edge, .width = 0.5});
     }
-    draw_plot(canvas, plot, (Vec2){target ? paper[0] : 0, 0});
+    preview_draw(canvas, plot, (Vec2){target ? paper[0] : 0, 0}, scale);
     bool ok = canvas_save(canvas, err);
     canvas_destroy(canvas);
     return ok;

@@ -1,6 +1,7 @@
 /* preview.h - a picture of a plot as it will look: every pen with its own width and colour, one ink
  * shining through the other. */
 #pragma once
+#include "io/canvas.h"
 #include "io/plot_file.h"
 #include "spline/grid.h"
 #include "spline/page.h"
@@ -10,3 +11,9 @@
  * paper of its own; NULL: no target. */
 bool spline_preview(const char *path, const Plot *plot, const SplinePage *page, const SplineGrid *target,
                     int width, Error *err);
+
+/* What of it a page of other things shows: with the paper's corner at the origin and so many points a millimetre. */
+extern const double PREVIEW_TRUE; /* of the paper's own size */
+void preview_draw(Canvas *canvas, const Plot *plot, Vec2 origin, double scale);
+void preview_draw_target(Canvas *canvas, const SplinePage *page, const SplineGrid *target, Vec2 origin,
+                         double scale);

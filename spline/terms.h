@@ -22,7 +22,8 @@
 
 #define SPLINE_BULKS(X)                                                                                      \
     X(tone, 1, -1, 0) /* K/2 sum over probes of their ink less what the picture asks for, squared */         \
-    X(pair, 1, 0, -1) /* C/2 int int g(|r1 - r2|) dl1 dl2, g smooth with a cut-off  [Linewise, corrected] */
+    X(pair, 1, 0, -1) /* C/2 int int g(|r1 - r2|) dl1 dl2, g smooth with a cut-off  [Linewise, corrected] */ \
+    X(length, 1, 0, 0) /* S (L - L0)^2 L/L0^2 of each stroke        [Linewise, strain as printed]           */
 
 /* Which second derivatives a term gives. */
 typedef enum SplineHessian {

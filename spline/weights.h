@@ -12,7 +12,7 @@ typedef struct SplineWeights {
     /* The other energies of Linewise, corrected. */
     double stretch, curvature, potential, flow, boundary;
     /* Where strokes act on each other. */
-    double tone, pair;
+    double tone, pair, length;
 } SplineWeights;
 
 enum { SPLINE_WEIGHT_COUNT = sizeof(SplineWeights) / sizeof(double) };

@@ -7,7 +7,7 @@
 program=$1 trials=${2:-20} kind=${3:-gauss_newton}
 here=$(cd "$(dirname "$0")" && pwd)
 case $kind in
-    draw) scene=$here/scene_draw.yaml set=spline.pen=0.4mm ;;
+    draw) scene=$here/scene_draw.yaml set=output.film=7 ;;
     rod_design) scene=$here/scene_rod_design.yaml set=design.iterations=60 ;;
     contact) scene=$here/scene_contact.yaml set=output.every=3 ;;
     solid) scene=$here/scene_solid.yaml set=output.every=3 ;;
@@ -22,8 +22,8 @@ cd "$work" || exit 2
 run() { "$program" run "$scene" --set "$set" --quiet --no-picture -o "$@"; }
 start() { exec "$program" run "$scene" --set "$set" --quiet --no-picture -o "$@"; }
 numbers() { # what must be the same; a kind of job has some of them
-    for path in design/magnetization design/young design/natural_strain design/flux_density design/gradient/young trajectory/flux_density state/x \
-        state/v cases/up/x rod/x rod/moment spline/nodes spline/strokes history/energy frames/x history/contact_force history/friction_work history/self_distance history/water_work history/objective history/newton_iterations history/cg_iterations unknowns; do
+    for path in design/magnetization design/young design/natural_strain design/flux_density design/gradient/young trajectory/flux_density trajectory/followed trajectory/reference/distance state/x \
+        state/v cases/up/x rod/x rod/moment spline/nodes spline/strokes spline/film/nodes spline/film/iteration history/energy frames/x history/contact_force history/friction_work history/self_distance history/water_work history/objective history/newton_iterations history/cg_iterations unknowns; do
         "$program" export "$1" -o out.csv --dataset $path 2>/dev/null && cat out.csv
     done
 }

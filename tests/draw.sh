@@ -33,9 +33,21 @@ expect 0 "$program" export lift9.vtkhdf -o c.gcode --plotter gcode_servo; same s
 expect 4 "$program" export out/a.vtkhdf -o c.dwg; says "exported as .svg"
 expect 4 "$program" export out/a.vtkhdf -o c.yaml --plotter gcode; says "exported as .svg"
 expect 0 "$program" picture out/a.vtkhdf -o c.pdf --width 800; exists c.pdf
-expect 3 "$program" picture out/a.vtkhdf -o c.png --frame 0; says "no frames"
-expect 0 "$program" run "$scene" --quiet --no-picture -o d --set spline.rounds=0
-expect 0 "$program" run "$scene" --quiet --no-picture -o d --resume; same out/a.svg d.svg
+expect 3 "$program" picture out/a.vtkhdf -o c.png --frame 0; says "the drawing has no frames; .output: {film: N}. keeps those of a run"
+expect 3 "$program" picture out/a.vtkhdf -o c.png --stills 3; says "no moments side by side"
+expect 0 "$program" run "$scene" --quiet --no-picture -o d --set spline.rounds=0 --set output.film=30
+expect 0 "$program" run "$scene" --quiet --no-picture -o d --resume --set output.film=30; same out/a.svg d.svg
+
+# Its film: the drawing is the same, more rounds go on from what there was; a picture of each frame, and all of them.
+expect 0 "$program" run "$scene" --quiet --no-picture -o film --set output.film=30 --set spline.rounds=0
+expect 0 "$program" export film.vtkhdf -o film.csv --dataset spline/film/nodes
+expect 0 "$program" export d.vtkhdf -o d.csv --dataset spline/film/nodes
+lines=$(wc -l < film.csv); head -n "$lines" d.csv | cmp -s - film.csv || { echo "more rounds, another beginning of the film"; bad=1; }
+[ "$(wc -l < d.csv)" -gt "$lines" ] || { echo "more rounds, no more of the film"; bad=1; }
+expect 0 "$program" picture film.vtkhdf --animation --seconds 0.2 --width 400; exists film.webp
+expect 0 "$program" picture film.vtkhdf --frame 1 -o frame.svg; grep -q "<svg" frame.svg || { echo "no frame of a film"; bad=1; }
+expect 3 "$program" picture film.vtkhdf --frame 500 -o x.png; says "the drawing's film has [0-9]* frames, from 0"
+expect 3 "$program" run "$here/scene_small.yaml" --set output.film=3; says "other jobs have frames, by .every."
 expect 3 "$program" run "$scene" --quiet -o d --resume --set spline.pen=1mm; says "spline.pen is not the same"; says "spline.rounds"
 expect 0 "$program" run "$scene" --quiet --no-picture -o e --set spline.seed=2; cmp -s out/a.svg e.svg && { echo "another seed, the same drawing"; bad=1; }
 

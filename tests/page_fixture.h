@@ -1,5 +1,6 @@
 /* page_fixture.h - runs of scenes, and their pictures read back. */
 #pragma once
+#include "base/memory.h"
 #include "png_fixture.h"
 #include "slender.h"
 #include "view/show.h"
@@ -46,6 +47,20 @@ static inline Page page_draw(const char *name, const ShowDef *def)
         !png_read(picture, &page.rgb, &page.width, &page.height, &err))
         fail_msg("%s", err.text);
     return page;
+}
+
+/* A file's text, which mem_free frees; NULL where there is none. */
+static inline char *page_text(const char *path)
+{
+    FILE *file = fopen(path, "r");
+    if (!file) return NULL;
+    fseek(file, 0, SEEK_END);
+    size_t size = (size_t)ftell(file);
+    rewind(file);
+    char *text = mem_alloc(size + 1, 1);
+    assert_int_equal(fread(text, 1, size, file), size);
+    fclose(file);
+    return text;
 }
 
 static inline void page_remove_files(const char *name)

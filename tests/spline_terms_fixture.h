@@ -113,7 +113,8 @@ static inline Fixture fixture_create(PairKernel kernel)
                                 .boundary = 0.05,
                                 .outline = 0.9,
                                 .tone = 3,
-                                .pair = 1.7};
+                                .pair = 1.7,
+                                .length = 1.9};
     return f;
 }
 

@@ -29,7 +29,7 @@ static CurvesSet helix(double (*points)[3], int axis, double length, double radi
         points[i][(axis + 1) % 3] = radius * cos(20 * t);
         points[i][(axis + 2) % 3] = radius * sin(20 * t);
     }
-    return (CurvesSet){"helix", 1, offsets, (const double(*)[3])points, red, 1.6, 0, false, {0}};
+    return (CurvesSet){"helix", 1, offsets, (const double(*)[3])points, red, 1.6, 0, false, {0}, {0}, 0};
 }
 
 /* A curve of two points. */
@@ -38,7 +38,7 @@ static CurvesSet segment(double (*points)[3], Vec3 from, Vec3 to)
     static const int offsets[2] = {0, 2};
     vec3_store(points[0], from);
     vec3_store(points[1], to);
-    return (CurvesSet){"segment", 1, offsets, (const double(*)[3])points, red, 2, 0, false, {0}};
+    return (CurvesSet){"segment", 1, offsets, (const double(*)[3])points, red, 2, 0, false, {0}, {0}, 0};
 }
 
 static CurvesScene scene_of(const CurvesSet *sets, int count)
@@ -87,15 +87,16 @@ static void check_layout(const CurvesScene *scene, const CurvesLayout *layout)
     }
 }
 
-/* Tall, flat along x, flat along y; without charts, with one, with two. */
+/* Tall, flat along x, flat along y; with up to three charts. */
 static void arrangements(void **state)
 {
     (void)state;
     double points[POINTS][3], y[3] = {0, 1, 2};
     const ChartSeries series = {.count = 3, .y = y};
-    const Chart charts[2] = {{.series_count = 1, .series = &series}, {.series_count = 1, .series = &series}};
+    const Chart chart = {.series_count = 1, .series = &series};
+    const Chart charts[CURVES_CHARTS_MAX] = {chart, chart, chart};
     for (int axis = 0; axis < 3; axis++)
-        for (int count = 0; count <= 2; count++) {
+        for (int count = 0; count <= CURVES_CHARTS_MAX; count++) {
             CurvesSet set = helix(points, axis, 0.3, 0.03);
             CurvesScene scene = scene_of(&set, 1);
             scene.charts = charts, scene.chart_count = count;
@@ -186,7 +187,7 @@ static void places(void **state)
     double points[2][3], broken[5][3] = {{0, 0, -1}, {0.2, 0, -1}, {NAN, 0, 0}, {0.8, 0, -1}, {1, 0, -1}};
     const int offsets[2] = {0, 5};
     CurvesSet sets[2] = {segment(points, vec3(0, 0, 0), vec3(1, 0, -1))};
-    sets[1] = (CurvesSet){NULL, 1, offsets, (const double(*)[3])broken, blue, 2, 0, false, {0}};
+    sets[1] = (CurvesSet){NULL, 1, offsets, (const double(*)[3])broken, blue, 2, 0, false, {0}, {0}, 0};
     sets[0].name = NULL;
     CurvesScene scene = scene_of(sets, 2);
     CurvesLayout layout;
@@ -244,7 +245,7 @@ static void many(void **state)
     double(*points)[3] = mem_alloc(STRANDS * EACH, sizeof *points);
     for (int i = 0; i < STRANDS * EACH; i++) points[i][0] = points[i][2] = i / 1e5;
     offsets[1] = STRANDS * EACH;
-    CurvesSet set = {"line", 1, offsets, (const double(*)[3])points, red, 1, 0, false, {0}};
+    CurvesSet set = {"line", 1, offsets, (const double(*)[3])points, red, 1, 0, false, {0}, {0}, 0};
     CurvesScene scene = scene_of(&set, 1);
     assert_true(curves_write("curves.svg", &scene, &err));
     assert_true(file_size("curves.svg") < 40000);

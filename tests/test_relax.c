@@ -198,22 +198,13 @@ static void test_repeatable(void **state)
 }
 
 /* Changes of single strokes against energies of whole drawings: moved, gone, come. */
-static void test_local(void **state)
+static void check_local(PairKernel kernel)
 {
-    (void)state;
     Scene s = scene_create(0.02, 0.7, 4, 3);
     RelaxDef def = relax_default();
-    def.weights = (SplineWeights){.strain = 0.5,
-                                  .bend = 0.1,
-                                  .align = 0.5,
-                                  .wall = 0.1,
-                                  .stretch = 0.2,
-                                  .curvature = 0.05,
-                                  .potential = 0.3,
-                                  .flow = 0.4,
-                                  .boundary = 0.01,
-                                  .tone = 1,
-                                  .pair = 0.3};
+    def.weights =
+        (SplineWeights){0.5, 0.1, 0.5, 0.1, 0, 0.2, 0.05, 0.3, 0.4, 0.01, 1, 0.3, 0.2}; /* all but outline */
+    def.model.pair_kernel = kernel;
     SplineWeights weights = spline_weights_scaled(def.weights, s.page.pen, s.target->spacing);
     double *rest = spline_rest_lengths(s.target, &def, &s.strokes);
     SplineModel *model = spline_model_create(s.target, &s.strokes, rest, &def.model);
@@ -256,6 +247,13 @@ static void test_local(void **state)
     spline_model_destroy(model);
     mem_free(rest);
     scene_clear(&s);
+}
+
+static void test_local(void **state)
+{
+    (void)state;
+    check_local(PAIR_WENDLAND);
+    check_local(PAIR_COULOMB);
 }
 
 /* Sums over samples of one stroke of one segment: energy of bending over T and its square, ends apart

@@ -71,9 +71,25 @@ static void put_supports(Journal *journal)
     put(journal, "static", 0, array_text("rod/supports", "clamped"));
 }
 
-static void put_field(Journal *journal)
+/* A field over time, and the end of the last rod, which goes past a place. */
+static void put_design(Journal *journal, const double (*input)[3], const double (*natural)[3], int points)
 {
-    double field[FRAMES - 1][3];
+    static const int frames[] = {FRAMES - 1, FRAMES - 1}, follows[] = {0}, offsets[] = {0, 1};
+    double way[1][FRAMES][3], distance[FRAMES] = {0}, field[FRAMES - 1][3];
+    for (int k = 0; k < FRAMES; k++)
+        for (int i = 0; i < 3; i++) {
+            double from = natural[points - 1][i], w = (double)k / (FRAMES - 1);
+            way[0][k][i] = from + w * (input[points - 1][i] - from);
+        }
+    Array followed = array_float("trajectory/followed", "m", way[0][0], 3, 1, FRAMES);
+    followed.dims[2] = 3;
+    put(journal, "final", 0, followed);
+    put(journal, "final", 0, array_text("trajectory/reference/names", "waypoint\n"));
+    put(journal, "final", 0, array_int("trajectory/reference/frames", frames, 2, 1, 2));
+    put(journal, "final", 0, array_int("trajectory/reference/follows", follows, 1, 1, 0));
+    put(journal, "final", 0, array_int("trajectory/reference/offsets", offsets, 1, 2, 0));
+    put(journal, "final", 0, array_float("trajectory/reference/points", "m", way[0][FRAMES - 1], 2, 1, 3));
+    put(journal, "final", 0, array_float("trajectory/reference/distance", "m", distance, 2, 1, FRAMES));
     for (int k = 0; k < FRAMES - 1; k++)
         for (int i = 0; i < 3; i++) field[k][i] = 1e-3 * (i + k);
     put(journal, "final", 0, array_float("trajectory/flux_density", "T", field[0], 2, FRAMES - 1, 3));
@@ -103,7 +119,7 @@ static void put_rods(Journal *journal, Rods rods, const Table *table)
     put(journal, "final", 0, array_float("metrics/round_trip", "m", &round_trip, 0, 0, 0));
     put(journal, "final", 0, array_text("status", "converged"));
     if (rods.held) put_supports(journal);
-    if (rods.designed) put_field(journal);
+    if (rods.designed) put_design(journal, (const double(*)[3])input, (const double(*)[3])natural, count);
     if (rods.motion) put_frames(journal, input, natural, count);
     mem_free(input);
     mem_free(natural);
@@ -225,21 +241,34 @@ static void motion(void **state)
     assert_int_equal(access("test_show_rod.webp", R_OK), 0);
 }
 
-/* A designed motion: the way of the end, and the field over time. */
+static int count_words(const char *path, const char *word)
+{
+    char line[65536];
+    int count = 0;
+    FILE *file = fopen(path, "r");
+    assert_non_null(file);
+    while (fgets(line, sizeof line, file))
+        for (const char *at = line; (at = strstr(at, word)); at++) count++;
+    fclose(file);
+    return count;
+}
+
+/* A designed motion: the path of what it leads, and the field over time. */
 static void designed(void **state)
 {
     (void)state;
     ShowDef def = show_default();
-    int way[2], field[2];
+    int paths[2], field[2];
     for (int k = 0; k < 2; k++) {
+        Error err = {""};
         write_result((Rods){.strands = 1, .simulated = true, .motion = true, .designed = k > 0});
-        Page page = draw(&def);
-        way[k] = count_pixels(&page, colormap_series(2)), field[k] = count_pixels(&page, colormap_series(5));
-        mem_free(page.rgb);
+        assert_int_equal(show_result(RESULT, "test_show_rod.svg", &def, &err), SHOW_DONE);
+        paths[k] = count_words("test_show_rod.svg", "stroke:rgb(0%,62%,45.1%)");
+        field[k] = count_words("test_show_rod.svg", "stroke:rgb(33.7%,70.6%,91.4%)");
     }
-    print_message("pixels of the way: %d, without a design %d; of Bz: %d, %d\n", way[1], way[0], field[1],
-                  field[0]);
-    assert_true(way[1] > way[0] + 500 && field[0] < 10 && field[1] > 300);
+    unlink("test_show_rod.svg");
+    assert_int_equal(paths[1] - paths[0], 4); /* in three views and the legend */
+    assert_int_equal(field[1] - field[0], 2); /* of Bz, and in the legend */
 }
 
 /* Strands side by side fill the page that one leaves white; many are not shown in moments unless that is
@@ -278,7 +307,7 @@ static void refused(void **state)
     expect_refusal(def, "--case up: rods have no load cases");
     def = show_default(), def.field = "young";
     expect_refusal(def, "--field young: curves have no faces to colour");
-    def = show_default(), def.target = PICTURE_TARGET_OVER;
+    def = show_default(), def.target = PICTURE_TARGET_BOTH;
     expect_refusal(def, "--target: the input of a rod is always drawn under the simulated curve");
     def = show_default(), def.arrows = false;
     expect_refusal(def, "--no-arrows: curves carry no arrows of magnetization");

@@ -135,7 +135,7 @@ static int row_of(const char *name)
 {
     int row = 0;
     while (row < SPLINE_WEIGHT_COUNT && strcmp(spline_term_rows[row].name, name)) row++;
-    return row < SPLINE_WEIGHT_COUNT ? row : SPLINE_WEIGHT_COUNT - 1; /* the last are pairs, by kernel */
+    return row < SPLINE_WEIGHT_COUNT ? row : row_of("pair"); /* by kernel */
 }
 
 static void test_reference(void **state)
@@ -165,11 +165,11 @@ static void test_reference(void **state)
 }
 
 /* Walls and boundary near an edge too, where the strokes of the reference are not; with the second kernel within
- * an outline, which the boundary then is. */
+ * an outline, which the boundary then is; with the third pairs alone differ. */
 static void test_derivatives(void **state)
 {
     (void)state;
-    for (int kernel = PAIR_WENDLAND; kernel <= PAIR_TRIWEIGHT; kernel++) {
+    for (int kernel = PAIR_WENDLAND; kernel <= PAIR_COULOMB; kernel++) {
         Fixture f = fixture_create((PairKernel)kernel);
         if (kernel == PAIR_TRIWEIGHT) add_outline(&f);
         Random random = random_seed(2);
@@ -179,6 +179,7 @@ static void test_derivatives(void **state)
         Point at = {.x = f.strokes.q, .p = (const double *)&f.weights};
         for (int row = 0; row < SPLINE_WEIGHT_COUNT; row++) {
             if (kernel == PAIR_WENDLAND && row == row_of("outline")) continue; /* there is none */
+            if (kernel == PAIR_COULOMB && row != row_of("pair")) continue;
             System *sys = system_of(f.model, row, SPLINE_EXACT);
             TermError error = system_term_count(sys) ? check_term(system_term(sys, 0), &(Params){0}, &at,
                                                                   DOFS, dof_size, &random)
@@ -203,13 +204,12 @@ static double form(System *sys, const double *w, double *product)
 
 /* Value and gradient as ever; the Hessian semidefinite, and with the OWN part of it free of any coupling of
  * strokes. */
-static void test_positive(void **state)
+static void check_positive(PairKernel kernel, int first, int end)
 {
-    (void)state;
-    Fixture f = fixture_create(PAIR_WENDLAND);
+    Fixture f = fixture_create(kernel);
     add_outline(&f);
     Random random = random_seed(3);
-    for (int row = 0; row < SPLINE_WEIGHT_COUNT; row++)
+    for (int row = first; row < end; row++)
         for (int k = 0; k < 40; k++) {
             double x[DOFS], exact[DOFS], gradient[DOFS], w[DOFS], product[DOFS];
             for (int i = 0; i < DOFS; i++) x[i] = f.strokes.q[i] + 0.05 * random_signed(&random);
@@ -229,6 +229,97 @@ static void test_positive(void **state)
             }
             for (int h = SPLINE_EXACT; h <= SPLINE_OWN; h++) system_destroy(sys[h]);
         }
+    fixture_clear(&f);
+}
+
+static void test_positive(void **state)
+{
+    (void)state;
+    check_positive(PAIR_WENDLAND, 0, SPLINE_WEIGHT_COUNT);
+    check_positive(PAIR_COULOMB, row_of("pair"), row_of("pair") + 1);
+}
+
+/* Straight strokes of so many segments, which begin at x = 0.2, a line each; nodes may lie unevenly. */
+static Strokes straight_strokes(int count, int segments, double length, double apart, double uneven)
+{
+    Strokes strokes = {0};
+    for (int line = 0; line < count; line++) {
+        double(*q)[4] = strokes_extend(&strokes, segments + 1, 0);
+        for (int k = 0; k <= segments; k++) {
+            double s = (double)k / segments, slope = 1 + uneven * M_PI * cos(M_PI * s);
+            q[k][0] = 0.2 + length * (s + uneven * sin(M_PI * s));
+            q[k][1] = 0.3 + apart * line;
+            q[k][2] = length * slope / (3 * segments), q[k][3] = 0;
+        }
+    }
+    return strokes;
+}
+
+/* The energy of strokes on the fixture's page. */
+static double energy_on(Fixture *f, const Strokes *strokes, double rest, PairKernel kernel, const char *name,
+                        double *gradient)
+{
+    SplineModelDef def = spline_model_default();
+    double *rests = same_rest(strokes, rest);
+    def.pair_kernel = kernel, def.points = 8, def.pair_radius = 0.25 / f->target->spacing;
+    SplineModel *model = spline_model_create(f->target, strokes, rests, &def);
+    System *sys = system_of(model, row_of(name), SPLINE_EXACT);
+    double energy =
+        system_hessian(sys, &(Point){.x = strokes->q, .p = (const double *)&f->weights}, gradient).energy;
+    system_destroy(sys);
+    spline_model_destroy(model);
+    mem_free(rests);
+    return energy;
+}
+
+/* Two parallel strokes: C R int int dx dy/sqrt((x - y)^2 + h^2) = 2 C R (a asinh(a/h) - sqrt(a^2 + h^2) + h). A single one
+ * has no energy. */
+static void test_coulomb(void **state)
+{
+    (void)state;
+    Fixture f = fixture_create(PAIR_WENDLAND);
+    double a = 0.6, gradient[8 * 21];
+    for (double h = 0.05; h < 0.3; h *= 2) {
+        Strokes strokes = straight_strokes(2, 20, a, h, 0);
+        double exact = 2 * f.weights.pair * 0.25 * (a * asinh(a / h) - hypot(a, h) + h);
+        double energy = energy_on(&f, &strokes, 0.03, PAIR_COULOMB, "pair", gradient), force = 0;
+        for (int k = 0; k <= 20; k++) force += gradient[4 * k + 1];
+        double slope = 2 * f.weights.pair * 0.25 * (1 - hypot(a, h) / h); /* dE/dh */
+        print_message("lines at %.2f: energy %.1e, force %.1e\n", h, energy / exact - 1, -force / slope - 1);
+        assert_true(fabs(energy / exact - 1) < 1e-9 && fabs(-force / slope - 1) < 1e-8);
+        strokes.count = 1;
+        assert_true(energy_on(&f, &strokes, 0.03, PAIR_COULOMB, "pair", gradient) == 0);
+        strokes_clear(&strokes);
+    }
+    fixture_clear(&f);
+}
+
+/* S (L - L0)^2 L/L0^2 of a stroke, wherever its nodes lie along it; of strokes of one segment that of stretch. */
+static void test_length(void **state)
+{
+    (void)state;
+    Fixture f = fixture_create(PAIR_WENDLAND);
+    double L = 0.6, L0 = 6 * 0.08, one[16], other[16], uneven[28];
+    f.weights.stretch = f.weights.length;
+    double exact = f.weights.length * (L - L0) * (L - L0) * L / (L0 * L0);
+    for (int k = 0; k < 3; k++) {
+        Strokes strokes = straight_strokes(1, 6, L, 0, 0.1 * k);
+        double energy = energy_on(&f, &strokes, 0.08, PAIR_WENDLAND, "length", uneven),
+               pull = f.weights.length * (L - L0) * (3 * L - L0) / (L0 * L0);
+        assert_true(fabs(energy / exact - 1) < 1e-13);
+        for (int i = 4; i < 24; i++)
+            assert_true(fabs(uneven[i]) < 1e-12); /* nothing holds the nodes between */
+        assert_true(fabs(uneven[24] / pull - 1) < 1e-12 && fabs(uneven[0] / pull + 1) < 1e-12);
+        double held = energy_on(&f, &strokes, 0.08, PAIR_WENDLAND, "stretch", uneven);
+        assert_true(k == 0 ? fabs(held / exact - 1) < 1e-12 : held > 1.05 * exact);
+        strokes_clear(&strokes);
+    }
+    Strokes strokes = straight_strokes(2, 1, 0.5, 0.2, 0.1);
+    double length = energy_on(&f, &strokes, 0.3, PAIR_WENDLAND, "length", one),
+           stretch = energy_on(&f, &strokes, 0.3, PAIR_WENDLAND, "stretch", other);
+    assert_true(fabs(length / stretch - 1) < 1e-14);
+    for (int i = 0; i < 16; i++) assert_true(fabs(one[i] - other[i]) < 1e-14);
+    strokes_clear(&strokes);
     fixture_clear(&f);
 }
 
@@ -378,6 +469,7 @@ int main(void)
         cmocka_unit_test(test_rule),          cmocka_unit_test(test_arc),
         cmocka_unit_test(test_grid_spline),   cmocka_unit_test(test_reference),
         cmocka_unit_test(test_derivatives),   cmocka_unit_test(test_positive),
+        cmocka_unit_test(test_coulomb),       cmocka_unit_test(test_length),
         cmocka_unit_test(test_tone_of_lines), cmocka_unit_test(test_threads),
         cmocka_unit_test(test_workers),       cmocka_unit_test(test_leaks),
     };

@@ -5,7 +5,9 @@
 #include <math.h>
 #include <stdio.h>
 
-static const Color grid = {0.9, 0.9, 0.91, 1};
+static const Color grid = {0.9, 0.9, 0.91, 1}, mark = {0.5, 0.5, 0.52, 1};
+
+static const double TICK_ROOM = 40; /* pt of a narrow chart for each tick along x */
 
 /* One axis: numbers low..high, shown times factor, mapped to from..to on the page. */
 typedef struct Axis {
@@ -56,16 +58,17 @@ static void axis_label(Axis *axis, const char *label, const char *unit)
     snprintf(axis->label, sizeof axis->label, unit[0] ? "%s (%s)" : "%s", label ? label : "", unit);
 }
 
-/* x: exactly from the first to the last number. */
-static void axis_set_x(Axis *axis, const Chart *chart)
+/* x: exactly from the first to the last number, with at most so many intervals. */
+static void axis_set_x(Axis *axis, const Chart *chart, int wanted)
 {
     chart_range(chart, true, false, &axis->low, &axis->high);
+    if (chart->x_low < chart->x_high) axis->low = chart->x_low, axis->high = chart->x_high;
     if (axis->low == axis->high) axis->high = axis->low + 1;
     const char *unit = chart->x_unit ? chart->x_unit : "";
     UnitScale scale =
         unit[0] ? unit_scale(unit, fmax(fabs(axis->low), fabs(axis->high))) : (UnitScale){.factor = 1};
     axis->factor = scale.factor;
-    axis->ticks = ticks_linear(axis->low * scale.factor, axis->high * scale.factor, 6);
+    axis->ticks = ticks_linear(axis->low * scale.factor, axis->high * scale.factor, wanted);
     axis_label(axis, chart->x_label, scale.unit);
 }
 
@@ -134,6 +137,15 @@ static void draw_axes(Canvas *canvas, const Axis *x, const Axis *y)
                 (TextStyle){.color = page_ink, .size = PAGE_LABEL, .align = TEXT_CENTER});
 }
 
+static void draw_marks(Canvas *canvas, const Chart *chart, const Axis *x, const Axis *y)
+{
+    for (int k = 0; k < chart->mark_count; k++) {
+        double at = axis_place(x, chart->marks[k]);
+        if (at >= x->from - 0.01 && at <= x->to + 0.01)
+            canvas_line(canvas, (Vec2){at, y->from}, (Vec2){at, y->to}, (Pen){mark, 0.7, 0});
+    }
+}
+
 /* Runs of points that can be shown become one line each. Dots where they are few, and for a lone point. */
 static void draw_series(Canvas *canvas, const ChartSeries *series, const Axis *x, const Axis *y, Color color)
 {
@@ -170,7 +182,7 @@ static void draw_legend(Canvas *canvas, const Chart *chart, double right, double
 void chart_draw(Canvas *canvas, const Chart *chart, Box box)
 {
     Axis x = {.log = false}, y = {.log = false};
-    axis_set_x(&x, chart);
+    axis_set_x(&x, chart, (int)fmin(6, fmax(2, box.width / TICK_ROOM)));
     axis_set_y(&y, chart);
     bool head = chart->title || chart->series_count > 1;
     y.to = box.y + (head ? 2.4 * PAGE_LABEL : 0.5 * PAGE_LABEL);
@@ -180,6 +192,7 @@ void chart_draw(Canvas *canvas, const Chart *chart, Box box)
     draw_axes(canvas, &x, &y);
     canvas_text(canvas, (Vec2){box.x + PAGE_LABEL, 0.5 * (y.from + y.to)}, y.label,
                 (TextStyle){.color = page_ink, .size = PAGE_LABEL, .align = TEXT_CENTER, .upwards = true});
+    draw_marks(canvas, chart, &x, &y);
     for (int s = 0; s < chart->series_count; s++)
         draw_series(canvas, &chart->series[s], &x, &y, colormap_series(chart->first_color + s));
     if (chart->title)

@@ -19,10 +19,13 @@ typedef enum ChartAxis {
 typedef struct Chart {
     const char *title;            /* NULL: none */
     const char *x_label, *x_unit; /* "evaluation", "" */
+    double x_low, x_high;         /* both 0: from the first to the last number */
     const char *y_label, *y_unit; /* "objective", "m^2"; shown with a fitting SI prefix or power of ten */
     ChartAxis y_axis;
     int series_count;
     const ChartSeries *series;
+    int mark_count;
+    const double *marks; /* thin lines across, at these x: the moments that a page shows          */
     int first_color; /* of the series, see colormap_series: other ones than those of the page's other parts */
 } Chart;
 

@@ -63,6 +63,21 @@ static void legend_add_sets(Legend *legend, const CurvesScene *scene, bool momen
     }
 }
 
+/* Their lines and dots that have names. */
+static void legend_add_marks(Legend *legend, const Marks *marks)
+{
+    for (int k = 0; k < marks->line_count; k++) {
+        if (!marks->lines[k].name) continue;
+        Vec2 at = legend_place(legend, MARKS_SAMPLE, marks->lines[k].name);
+        if (legend->canvas) marks_draw_line(legend->canvas, &marks->lines[k], at);
+    }
+    for (int k = 0; k < marks->dot_count; k++) {
+        if (!marks->dots[k].name) continue;
+        Vec2 at = legend_place(legend, MARKS_SAMPLE, marks->dots[k].name);
+        if (legend->canvas) marks_draw_dot(legend->canvas, &marks->dots[k], at);
+    }
+}
+
 /* Returns where the legend ends. The names of moments come last: in an animation nothing else moves. */
 static double draw_legend(Canvas *canvas, Canvas *ruler, const CurvesScene *scene, int only)
 {
@@ -73,6 +88,8 @@ static double draw_legend(Canvas *canvas, Canvas *ruler, const CurvesScene *scen
         Vec2 at = legend_place(&legend, SQUARE, scene->clamps_name ? scene->clamps_name : "clamp");
         if (canvas) curves_draw_clamp(canvas, (Vec2){at.x + 0.5 * SQUARE, at.y}, SQUARE);
     }
+    const Marks *marks = curves_marks(scene, only);
+    if (marks) legend_add_marks(&legend, marks);
     legend_add_sets(&legend, scene, true, only);
     return legend.x > PAGE_MARGIN ? legend.y + LEGEND_ROW : top;
 }
@@ -84,7 +101,11 @@ static void draw_page(Canvas *canvas, const CurvesScene *scene, const CurvesLayo
     page_draw_head(canvas, scene_head(scene));
     draw_legend(canvas, canvas, scene, only);
     for (int v = 0; v < layout->view_count; v++) curves_view_draw(canvas, scene, &layout->views[v], only);
-    for (int k = 0; k < scene->chart_count; k++) chart_draw(canvas, &scene->charts[k], layout->charts[k]);
+    for (int k = 0; k < scene->chart_count; k++) {
+        Chart chart = scene->charts[k];
+        if (only >= 0) chart.marks = &scene->sets[only].time, chart.mark_count = 1;
+        chart_draw(canvas, &chart, layout->charts[k]);
+    }
 }
 
 static bool lay_out(const char *path, const CurvesScene *scene, int only, CurvesLayout *layout, Error *err)
@@ -113,12 +134,10 @@ bool curves_write(const char *path, const CurvesScene *scene, Error *err)
 
 bool curves_animate(const char *path, const CurvesScene *scene, double seconds, Error *err)
 {
-    CurvesScene page = *scene;
     CurvesLayout layout;
-    page.chart_count = 0;
     int last = scene->set_count - 1;
     while (last >= 0 && !scene->sets[last].moment) last--;
-    if (!lay_out(path, &page, last, &layout, err)) return false;
+    if (!lay_out(path, scene, last, &layout, err)) return false;
     Animation *animation = animation_create(path, err);
     bool ok = animation;
     for (int s = 0; ok && s < scene->set_count; s++) {
@@ -126,7 +145,7 @@ bool curves_animate(const char *path, const CurvesScene *scene, double seconds, 
         Canvas *canvas =
             canvas_create("page.png", PAGE_WIDTH, layout.end + PAGE_MARGIN, scene->width / PAGE_WIDTH, err);
         ok = canvas;
-        if (ok) draw_page(canvas, &page, &layout, s);
+        if (ok) draw_page(canvas, scene, &layout, s);
         ok = ok && animation_add(animation, canvas, seconds, err);
         canvas_destroy(canvas);
     }

@@ -13,6 +13,7 @@
 #pragma once
 #include "base/error.h"
 #include "view/chart.h"
+#include "view/marks.h"
 #include "view/raster.h"
 
 /* Curves of one kind. Many of them are drawn as thin, translucent lines, so that their density is seen. */
@@ -25,9 +26,11 @@ typedef struct CurvesSet {
     double width, dash;  /* of a single curve, pt (canvas.h)                                  */
     bool moment;         /* of a motion: an animation shows these sets one after the other    */
     Surroundings around; /* drawn below all curves: of the sets that are shown those of the last with any */
+    Marks marks;         /* drawn above them, alike                                            */
+    double time;         /* of a moment, s: marked in the charts of an animation               */
 } CurvesSet;
 
-enum { CURVES_CHARTS_MAX = 2 };
+enum { CURVES_CHARTS_MAX = 3 };
 
 typedef struct CurvesScene {
     const char *title;        /* NULL: none                                                  */
@@ -54,7 +57,7 @@ CurvesScene curves_default(void);
 bool curves_write(const char *path, const CurvesScene *scene, Error *err);
 
 /* Writes an animated .webp: a page for each set that is a moment, together with the sets that are none, shown
- * for so many seconds. Charts are left out. */
+ * for so many seconds; the charts are over time, and mark its time. */
 bool curves_animate(const char *path, const CurvesScene *scene, double seconds, Error *err);
 
 /* The colour mixed with white: t = 1 is the colour itself, 0 the palest that is still seen. For the moments

@@ -40,6 +40,10 @@ static bool bounds(const CurvesScene *scene, Mat3 directions, double low[3], dou
         for (int i = set->offsets[0]; i < set->offsets[set->curve_count]; i++)
             widen(low, high, directions, set->points[i]);
         for (int i = 0; i < set->around.near_count; i++) widen(low, high, directions, set->around.near[i]);
+        for (int k = 0; k < set->marks.line_count; k++)
+            for (int i = 0; i < set->marks.lines[k].count; i++)
+                widen(low, high, directions, set->marks.lines[k].points[i]);
+        for (int k = 0; k < set->marks.dot_count; k++) widen(low, high, directions, set->marks.dots[k].at);
     }
     return low[0] <= high[0];
 }
@@ -246,13 +250,38 @@ static void draw_measures(Canvas *canvas, const CurvesScene *scene, const Curves
 
 /* ---- Obstacles ---- */
 
+static bool is_shown(const CurvesSet *set, int index, int only)
+{
+    return !set->moment || only < 0 || index == only;
+}
+
+const Marks *curves_marks(const CurvesScene *scene, int only)
+{
+    const Marks *marks = NULL;
+    for (int s = 0; s < scene->set_count; s++)
+        if (scene->sets[s].marks.line_count + scene->sets[s].marks.dot_count > 0 &&
+            is_shown(&scene->sets[s], s, only))
+            marks = &scene->sets[s].marks;
+    return marks;
+}
+
 static const RasterMesh *obstacles_of(const CurvesScene *scene, int only)
 {
     const RasterMesh *obstacles = NULL;
     for (int s = 0; s < scene->set_count; s++)
-        if (scene->sets[s].around.obstacles && (!scene->sets[s].moment || only < 0 || s == only))
+        if (scene->sets[s].around.obstacles && is_shown(&scene->sets[s], s, only))
             obstacles = scene->sets[s].around.obstacles;
     return obstacles;
+}
+
+/* Its pixels begin at the box's corner. */
+static Camera camera_of(const CurvesView *view, double resolution)
+{
+    Camera camera = view->camera;
+    camera.center = vec3(0, 0, 0), camera.distance = 0;
+    camera.scale = resolution * view->scale;
+    camera.x = -camera.scale * view->low[0], camera.y = camera.scale * view->high[1];
+    return camera;
 }
 
 static void draw_obstacles(Canvas *canvas, const RasterMesh *obstacles, const CurvesView *view)
@@ -261,10 +290,7 @@ static void draw_obstacles(Canvas *canvas, const RasterMesh *obstacles, const Cu
     double resolution = canvas_resolution(canvas);
     int width = (int)lround(resolution * box.width), height = (int)lround(resolution * box.height);
     if (width < 1 || height < 1) return;
-    Camera camera = view->camera;
-    camera.center = vec3(0, 0, 0), camera.distance = 0;
-    camera.scale = resolution * view->scale;
-    camera.x = -camera.scale * view->low[0], camera.y = camera.scale * view->high[1];
+    Camera camera = camera_of(view, resolution);
     Raster *raster = raster_create(width, height);
     unsigned char *rgba = mem_alloc(4 * (size_t)width * (size_t)height, 1);
     raster_mesh(raster, &camera, obstacles);
@@ -290,7 +316,10 @@ void curves_view_draw(Canvas *canvas, const CurvesScene *scene, const CurvesView
     canvas_clip(canvas, box);
     if (obstacles) draw_obstacles(canvas, obstacles, view);
     for (int s = 0; s < scene->set_count; s++)
-        if (!scene->sets[s].moment || only < 0 || s == only) draw_set(canvas, view, &scene->sets[s]);
+        if (is_shown(&scene->sets[s], s, only)) draw_set(canvas, view, &scene->sets[s]);
+    const Marks *marks = curves_marks(scene, only);
+    Camera camera = camera_of(view, 1);
+    if (marks) marks_draw(canvas, marks, &camera, 1, (Vec2){box.x, box.y});
     draw_clamps(canvas, scene, view);
     canvas_unclip(canvas);
 }

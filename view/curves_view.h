@@ -30,6 +30,9 @@ int curves_views(const CurvesScene *scene, CurvesView views[CURVES_VIEWS_MAX]);
 /* Draws a view that has its box and scale. only: the set that is shown of those that are moments; -1: all. */
 void curves_view_draw(Canvas *canvas, const CurvesScene *scene, const CurvesView *view, int only);
 
+/* Of the sets that are shown (only: as below) the last one's that has any; NULL: none has. */
+const Marks *curves_marks(const CurvesScene *scene, int only);
+
 /* The pen for a set's curves on the page. */
 Pen curves_pen(const CurvesSet *set);
 

@@ -8,18 +8,19 @@
 #include <stdio.h>
 
 /* Points; see the sketch in picture.h. */
-static const double HEADING = 18, PADDING = 6, KEYS = 180, CHART_HEIGHT = 150;
+static const double HEADING = 18, PADDING = 6, KEYS = 180, CHART_HEIGHT = 150, TIME_CHART_HEIGHT = 118,
+                    MARK_KEY = 14;
 
 /* Where everything goes. Lengths that a raster image fills are whole pixels. */
 typedef struct Layout {
     double cell_width;
     Box *cells; /* [panel] without their headings; owned */
-    double footer, footer_height, height;
+    double footer, footer_height, charts, height;
 } Layout;
 
 PictureScene picture_default(void)
 {
-    return (PictureScene){.edges = true, .width = 1600};
+    return (PictureScene){.target = PICTURE_TARGET_BESIDE, .edges = true, .width = 1600};
 }
 
 static double snap(double length, double resolution)
@@ -27,9 +28,20 @@ static double snap(double length, double resolution)
     return round(length * resolution) / resolution;
 }
 
+/* Lines and dots that the key names. */
+static int marks_named(const PictureScene *scene)
+{
+    const Marks *marks = &scene->panels[0].marks;
+    int named = 0;
+    for (int k = 0; scene->panel_count && k < marks->line_count; k++) named += marks->lines[k].name != NULL;
+    for (int k = 0; scene->panel_count && k < marks->dot_count; k++) named += marks->dots[k].name != NULL;
+    return named;
+}
+
 static int keys_count(const PictureScene *scene)
 {
-    return panel_any_field(scene) + panel_any_vectors(scene) + picture_target_any_over(scene);
+    return panel_any_field(scene) + panel_any_vectors(scene) + picture_target_any_over(scene) +
+           (marks_named(scene) > 0);
 }
 
 /* Of axes and lengths below a panel: apart from what obstacles fill. */
@@ -82,9 +94,12 @@ static Layout layout_page(const PictureScene *scene, const PanelStyle *style, do
     page.cells = mem_alloc((size_t)scene->panel_count, sizeof *page.cells);
     page.footer = layout_cells(style, page_head_end(scene_head(scene)), width, page.cells);
     int keys = keys_count(scene);
-    page.footer_height = keys ? 44 : 0;
+    int lines = marks_named(scene) + picture_target_any_over(scene);
+    page.footer_height = keys ? fmax(44, lines * MARK_KEY + 4) : 0;
     if (scene->history) page.footer_height = keys ? CHART_HEIGHT : 2 * CHART_HEIGHT;
-    page.height = page.footer + page.footer_height + PAGE_MARGIN;
+    page.charts = page.footer + page.footer_height + (page.footer_height > 0 ? PAGE_GAP : 0);
+    page.height = page.charts + (scene->chart_count ? TIME_CHART_HEIGHT : 0) + PAGE_MARGIN;
+    if (!scene->chart_count) page.height = page.footer + page.footer_height + PAGE_MARGIN;
     return page;
 }
 
@@ -191,6 +206,26 @@ static void draw_target_key(Canvas *canvas, const PictureScene *scene, Box box)
     canvas_text(canvas, (Vec2){box.x + 30, y + 3}, "target", (TextStyle){.color = page_ink, .size = 8});
 }
 
+/* A row for each that has a name. */
+static void draw_marks_key(Canvas *canvas, const PictureScene *scene, Box box)
+{
+    const Marks *marks = &scene->panels[0].marks;
+    const TextStyle style = {.color = page_ink, .size = 8};
+    Vec2 at = {box.x, box.y + 11};
+    for (int k = 0; k < marks->line_count + marks->dot_count; k++) {
+        const MarkLine *line = k < marks->line_count ? &marks->lines[k] : NULL;
+        const MarkDot *dot = line ? NULL : &marks->dots[k - marks->line_count];
+        const char *name = line ? line->name : dot->name;
+        if (!name) continue;
+        if (line)
+            marks_draw_line(canvas, line, at);
+        else
+            marks_draw_dot(canvas, dot, at);
+        canvas_text(canvas, (Vec2){at.x + MARKS_SAMPLE + 8, at.y + 3}, name, style);
+        at.y += MARK_KEY;
+    }
+}
+
 /* Below each other beside a chart, otherwise in a row. */
 static void draw_keys(Canvas *canvas, const PanelStyle *style, const Layout *page)
 {
@@ -205,7 +240,32 @@ static void draw_keys(Canvas *canvas, const PanelStyle *style, const Layout *pag
         draw_arrow_key(canvas, style, box);
         *(stacked ? &box.y : &box.x) += stacked ? 24 : KEYS;
     }
-    if (picture_target_any_over(scene)) draw_target_key(canvas, scene, box);
+    if (picture_target_any_over(scene)) {
+        draw_target_key(canvas, scene, box);
+        box.y += MARK_KEY;
+    }
+    if (marks_named(scene)) draw_marks_key(canvas, scene, box);
+}
+
+/* Side by side, with these moments marked in them. */
+static void draw_charts(Canvas *canvas, const PictureScene *scene, const double *times, int count, double top)
+{
+    double width =
+        (PAGE_WIDTH - 2 * PAGE_MARGIN - (scene->chart_count - 1) * PAGE_GAP) / fmax(scene->chart_count, 1);
+    for (int k = 0; k < scene->chart_count; k++) {
+        Chart chart = scene->charts[k];
+        chart.marks = times, chart.mark_count = count;
+        chart_draw(canvas, &chart,
+                   (Box){PAGE_MARGIN + k * (width + PAGE_GAP), top, width, TIME_CHART_HEIGHT});
+    }
+}
+
+static void draw_panels_charts(Canvas *canvas, const PictureScene *scene, double top)
+{
+    double *times = mem_alloc((size_t)scene->panel_count, sizeof *times);
+    for (int i = 0; i < scene->panel_count; i++) times[i] = scene->panels[i].time;
+    draw_charts(canvas, scene, times, scene->panel_count, top);
+    mem_free(times);
 }
 
 static void draw_page(Canvas *canvas, const PictureScene *scene, const PanelStyle *style, const Layout *page)
@@ -213,6 +273,7 @@ static void draw_page(Canvas *canvas, const PictureScene *scene, const PanelStyl
     page_draw_head(canvas, scene_head(scene));
     draw_panels(canvas, style, page);
     if (scene->panel_count) draw_keys(canvas, style, page);
+    draw_panels_charts(canvas, scene, page->charts);
     if (!scene->history) return;
     double left = keys_count(scene) ? PAGE_MARGIN + KEYS + PAGE_GAP : PAGE_MARGIN;
     chart_draw(canvas, scene->history,
@@ -259,6 +320,7 @@ static bool animate_panel(Animation *animation, const PanelStyle *style, const L
     panel_draw_measures(canvas, style, index,
                         (Box){box.x, box.y, box.width, box.height + measures_height(scene)});
     draw_keys(canvas, style, page);
+    draw_charts(canvas, scene, &scene->panels[index].time, 1, page->charts);
     bool ok = animation_add(animation, canvas, seconds, err);
     canvas_destroy(canvas);
     return ok;

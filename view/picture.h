@@ -5,6 +5,7 @@
  *     [ result of case 1 ]  [ its target ]        with two cases or more and no targets beside
  *     [ result of case 2 ]  [ its target ]        them, cases fill the rows of a grid instead
  *     [ colour scale, size of the arrows ]  [ history chart ]
+ *     [ chart over time ]  [ chart over time ]
  *
  * All panels have the same camera and scale, so that they can be compared. Knows arrays only: positions in
  * metres, other numbers in the unit named with them. A scene is plain data that borrows everything; start
@@ -12,6 +13,7 @@
 #pragma once
 #include "base/error.h"
 #include "view/chart.h"
+#include "view/marks.h"
 #include "view/raster.h"
 
 /* One load case. */
@@ -26,13 +28,18 @@ typedef struct PicturePanel {
     const double *flux_density; /* [3] T, drawn as an arrow beside the axes; NULL: none                    */
     const double *gravity;      /* [3] its direction, drawn as an arrow beside the axes; NULL, zeros: none */
     Surroundings around;        /* drawn with it, and it shines through them                               */
+    Marks marks;                /* drawn over all; the key names those of the first panel                  */
+    double time;                /* s, marked in the charts over time                                       */
 } PicturePanel;
 
 typedef enum PictureTarget {
+    PICTURE_TARGET_AUTO,   /* of a ShowDef: beside, of a motion over */
     PICTURE_TARGET_BESIDE, /* a panel of its own                  */
     PICTURE_TARGET_OVER,   /* as wires over the result            */
     PICTURE_TARGET_BOTH
 } PictureTarget;
+
+enum { PICTURE_CHARTS_MAX = 2 };
 
 typedef struct PictureScene {
     const char *title;        /* NULL: none                                                  */
@@ -54,6 +61,8 @@ typedef struct PictureScene {
     double view[3], up[3]; /* direction to the eye, and upwards; zeros: three quarters, z */
     double perspective;    /* camera_fit's; 0: parallel                                   */
     const Chart *history;  /* NULL: none                                                  */
+    int chart_count;       /* at most PICTURE_CHARTS_MAX */
+    const Chart *charts;   /* over time; the times of the panels are marked in them       */
     int width; /* of the PNG, pixels, 400..4000; a page is 576 pt (8 inches) wide in SVG and PDF */
 } PictureScene;
 
@@ -64,6 +73,6 @@ PictureScene picture_default(void);
  * the file cannot be written or the scene has neither panels nor history. */
 bool picture_write(const char *path, const PictureScene *scene, Error *err);
 
-/* Writes an animated .webp: each panel is a page, under the same title, shown for so many seconds. The history is left
- * out. */
+/* Writes an animated .webp: each panel is a page, under the same title, shown for so many seconds; the charts over time mark
+ * its time. The history is left out. */
 bool picture_animate(const char *path, const PictureScene *scene, double seconds, Error *err);

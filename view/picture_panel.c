@@ -50,6 +50,10 @@ static void show_panel(Shown *shown, const PictureScene *scene, const PicturePan
     show_points(shown, panel->x, scene->vertex_count);
     show_points(shown, panel->target, scene->vertex_count);
     show_points(shown, panel->around.near, panel->around.near_count);
+    for (int k = 0; k < panel->marks.line_count; k++)
+        show_points(shown, panel->marks.lines[k].points, panel->marks.lines[k].count);
+    for (int k = 0; k < panel->marks.dot_count; k++)
+        show_points(shown, (const double(*)[3])panel->marks.dots[k].at, 1);
 }
 
 /* Pixels beside the body, where obstacles are: what it stands on is seen. */
@@ -334,6 +338,7 @@ void panel_draw_result(Canvas *canvas, const PanelStyle *style, int index, Box b
     if (bare) raster_show_through(raster, bare, THROUGH);
     raster_destroy(bare);
     raster_end(canvas, style, raster, box);
+    marks_draw(canvas, &panel->marks, &camera, style->resolution, (Vec2){box.x, box.y});
     mem_free(colors);
 }
 

@@ -4,6 +4,7 @@
 #include "spline/drawn.h"
 #include "view/show_drawing.h"
 #include "view/show_mesh.h"
+#include "view/show_motion.h"
 #include "view/show_obstacles.h"
 #include "view/show_rod.h"
 #include "view/ticks.h"
@@ -20,7 +21,11 @@ typedef struct Show {
     int *steps; /* [panel] the frame that it shows; -1: the last */
     int panel_count;
     ShowObstacles obstacles;
+    ShowMotion motion;
+    Chart charts[SHOW_MOTION_CHARTS];
 } Show;
+
+static const MotionInk motion_ink = {{0.835, 0.369, 0, 1}, {0.25, 0.25, 0.27, 1}, 2.6};
 
 ShowDef show_default(void)
 {
@@ -37,37 +42,9 @@ static PicturePanel *add_panel(Show *show, const char *name, const double (*x)[3
     show->steps = mem_resize(show->steps, count, count + 1, sizeof *show->steps);
     show->steps[count] = -1;
     PicturePanel *panel = &show->panels[count];
-    *panel = (PicturePanel){.name = name, .x = show_mesh_points(&show->mesh, x)};
+    *panel = (PicturePanel){.name = name, .x = show_mesh_points(&show->mesh, x), .time = NAN};
     if (show->def->arrows && show->mesh.magnetic) panel->vectors = show_mesh_carried(&show->mesh, x);
     return panel;
-}
-
-/* A frame, with its field. */
-static bool add_frame(Show *show, int frame, Error *err)
-{
-    Array array, flux;
-    Result *result = show->data->result;
-    if (!show_check_frame(show->data, frame, err)) return false;
-    if (!result_read_step(result, "Points", frame, &array, err)) return false;
-    const double(*points)[3] = show_keep(show->data, array);
-    if (array.dims[0] != show->mesh.body.vertex_count)
-        return error_set(err, "the result's frame %d has other points than its mesh", frame);
-    PicturePanel *panel = add_panel(show, show_frame_name(show->data, frame), points);
-    show->steps[show->panel_count - 1] = frame;
-    if (show->data->motion)
-        panel->gravity = show_dataset(show->data, "slender/design/gravity", ARRAY_FLOAT64, 3);
-    if (result_has(result, "slender/frames/flux_density") &&
-        result_read_rows(result, "slender/frames/flux_density", frame, 1, &flux, NULL)) {
-        char number[64];
-        const double *B = show_keep(show->data, flux);
-        if (!array_is(&flux, ARRAY_FLOAT64, 2, 3))
-            return error_set(err, "slender/frames/flux_density is not as slender writes it");
-        panel->flux_density = B;
-        unit_format(vec3_length(vec3_load(panel->flux_density)), "T", number, sizeof number);
-        bool varies = result_has(result, "slender/design/field_scale");
-        panel->note = varies ? "B varies" : show_text(show->data, "B = %s", number);
-    }
-    return true;
 }
 
 /* An array of a case, or NULL. */
@@ -93,15 +70,74 @@ static double target_away(const double (*x)[3], const double (*target)[3], int c
     return sqrt(sum / have);
 }
 
+/* Of a load case, with the body's vertices at x. */
+static void add_target(Show *show, PicturePanel *panel, const char *name, const double (*x)[3])
+{
+    int vertices = show->mesh.body.vertex_count;
+    const double(*target)[3] = case_dataset(show, name, "target", 3 * (size_t)vertices);
+    panel->target = show_mesh_points(&show->mesh, target);
+    if (target) panel->target_away = target_away(x, target, vertices);
+}
+
+/* Its name; NULL where there are several, or none. */
+static const char *only_case(Show *show)
+{
+    Array names;
+    Result *result = show->data->result;
+    if (!result_has(result, "slender/case_names") ||
+        !result_read_as(result, "slender/case_names", ARRAY_TEXT, 1, 0, &names, NULL))
+        return NULL;
+    char *name = show_keep(show->data, names), *end = strchr(name, '\n');
+    if (!end || end[1]) return NULL;
+    *end = 0;
+    return name;
+}
+
+/* Of a motion: what it was to meet, where it went, and the time. */
+static void add_moment(Show *show, PicturePanel *panel, int frame, const double (*x)[3])
+{
+    panel->time = show_frame_time(show->data, frame);
+    panel->marks = show_motion_marks(&show->motion, panel->time, motion_ink);
+    panel->gravity = show_dataset(show->data, "slender/design/gravity", ARRAY_FLOAT64, 3);
+    const char *name = only_case(show);
+    if (name) add_target(show, panel, name, x);
+}
+
+/* A frame, with its field. */
+static bool add_frame(Show *show, int frame, Error *err)
+{
+    Array array, flux;
+    Result *result = show->data->result;
+    if (!show_check_frame(show->data, frame, err)) return false;
+    if (!result_read_step(result, "Points", frame, &array, err)) return false;
+    const double(*points)[3] = show_keep(show->data, array);
+    if (array.dims[0] != show->mesh.body.vertex_count)
+        return error_set(err, "the result's frame %d has other points than its mesh", frame);
+    PicturePanel *panel = add_panel(show, show_frame_name(show->data, frame), points);
+    show->steps[show->panel_count - 1] = frame;
+    if (show->data->motion) add_moment(show, panel, frame, points);
+    if (result_has(result, "slender/frames/flux_density") &&
+        result_read_rows(result, "slender/frames/flux_density", frame, 1, &flux, NULL)) {
+        char number[64];
+        const double *B = show_keep(show->data, flux);
+        if (!array_is(&flux, ARRAY_FLOAT64, 2, 3))
+            return error_set(err, "slender/frames/flux_density is not as slender writes it");
+        panel->flux_density = B;
+        unit_format(vec3_length(vec3_load(panel->flux_density)), "T", number, sizeof number);
+        bool varies = result_has(result, "slender/design/field_scale");
+        panel->note = varies ? "B varies" : show_text(show->data, "B = %s", number);
+    }
+    return true;
+}
+
 static void add_case(Show *show, const char *name)
 {
     size_t count = 3 * (size_t)show->mesh.body.vertex_count;
     const double(*x)[3] = case_dataset(show, name, "x", count);
     if (!x) return;
     PicturePanel *panel = add_panel(show, show_text(show->data, "%s", name), x);
-    const double(*target)[3] = case_dataset(show, name, "target", count);
-    panel->target = show_mesh_points(&show->mesh, target);
-    if (target) panel->target_away = target_away(x, target, show->mesh.body.vertex_count);
+    add_target(show, panel, name, x);
+    panel->marks = show_motion_marks(&show->motion, NAN, motion_ink);
     panel->gravity = case_dataset(show, name, "gravity", 3);
     const double *flux = case_dataset(show, name, "flux_density", 3);
     if (flux && vec3_length(vec3_load(flux)) > 0) panel->flux_density = flux;
@@ -169,12 +205,31 @@ static bool add_obstacles(Show *show, Error *err)
     return true;
 }
 
+/* Where targets are shown; a sentence where one was asked for and there is none, or it can only be over the body. */
+static bool place_targets(const Show *show, PictureTarget *place, Error *err)
+{
+    const ShowDef *def = show->def;
+    bool any = false, marks = show->motion.row_count > 0;
+    for (int k = 0; k < show->panel_count; k++) any |= show->panels[k].target != NULL;
+    *place = def->target;
+    if (def->target == PICTURE_TARGET_AUTO)
+        return *place = show->steps[0] >= 0 ? PICTURE_TARGET_OVER : PICTURE_TARGET_BESIDE, true;
+    if (!any && !marks)
+        return error_set(err, "--target: there is none: no shape of a load case that is shown, no place or "
+                              "curve of a motion");
+    if (def->target == PICTURE_TARGET_OVER || (any && !(def->seconds > 0))) return true;
+    return error_set(err, any ? "--target: an animation has its target over the body"
+                              : "--target: the places and curves of a motion are always over the body");
+}
+
 static bool write_page(Show *show, const char *result, const char *picture, Error *err)
 {
     const ShowDef *def = show->def;
     PictureScene page = picture_default();
-    if (!show_mesh_read(&show->mesh, show->data, err)) return false;
-    if (!add_panels(show, err) || !add_obstacles(show, err)) return false;
+    if (!show_mesh_read(&show->mesh, show->data, err) || !show_motion_read(&show->motion, show->data, err))
+        return false;
+    if (!add_panels(show, err) || !add_obstacles(show, err) || !place_targets(show, &page.target, err))
+        return false;
     if (!dress(show, &page, err)) return false;
     const char *slash = strrchr(result, '/');
     page.title = slash ? slash + 1 : result;
@@ -182,7 +237,8 @@ static bool write_page(Show *show, const char *result, const char *picture, Erro
     page.vertex_count = clip->point_count, page.face_count = clip->face_count;
     page.faces = (const int(*)[3])clip->faces;
     page.panel_count = show->panel_count, page.panels = show->panels;
-    page.target = def->target, page.width = def->width;
+    page.width = def->width;
+    page.charts = show->charts, page.chart_count = show_motion_charts(&show->motion, show->charts);
     memcpy(page.view, def->view, sizeof page.view);
     page.same_view = show->steps[0] >= 0;
     show->data->drawn = true;
@@ -202,7 +258,7 @@ ShowStatus show_result(const char *result, const char *picture, const ShowDef *d
         ok = error_set(err, "a plane cuts shells and solids open; %s",
                        drawn ? "a drawing has no inside" : "rods are lines");
     else if (drawn)
-        ok = show_drawing(&data, picture, err);
+        ok = show_drawing(&data, result, picture, err);
     else if (rod)
         ok = show_rod(&data, result, picture, err);
     else

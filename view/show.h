@@ -16,9 +16,9 @@ typedef struct ShowDef {
         clip;     /* cuts a shell or solid open at rest, and the eye's side of it is left out; zeros: whole */
     bool arrows;  /* of the magnetisation, as the faces carry it */
     bool history; /* a chart of the objective, if there is one */
-    PictureTarget target;
-    double view[3]; /* direction to the eye; zeros: three quarters        */
-    int width;      /* pixels; of a drawing those of its paper            */
+    PictureTarget target; /* as it fits; else it must be there */
+    double view[3];       /* direction to the eye; zeros: three quarters        */
+    int width;            /* pixels; of a drawing those of its paper            */
 } ShowDef;
 
 ShowDef show_default(void);

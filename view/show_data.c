@@ -65,21 +65,28 @@ char *show_text(ShowData *data, const char *format, ...)
     return own(data, mem_text(text));
 }
 
+int show_moment_count(int frames, double seconds)
+{
+    return (int)fmin(frames, ceil(seconds * FRAMES_PER_SECOND));
+}
+
+int show_moment(int frames, int count, int k)
+{
+    return count > 1 ? (int)lround((double)k * (frames - 1) / (count - 1)) : 0;
+}
+
 int show_frame_count(const ShowData *data)
 {
     const ShowDef *def = data->def;
     int frames = result_step_count(data->result);
-    int most = def->seconds > 0             ? (int)ceil(def->seconds * FRAMES_PER_SECOND)
-               : def->stills                ? def->stills
-               : data->motion && !def->only ? STILLS
-                                            : 0;
+    if (def->seconds > 0) return show_moment_count(frames, def->seconds);
+    int most = def->stills ? def->stills : data->motion && !def->only ? STILLS : 0;
     return frames < most ? frames : most;
 }
 
 int show_frame(const ShowData *data, int k)
 {
-    int frames = result_step_count(data->result), count = show_frame_count(data);
-    return count > 1 ? (int)lround((double)k * (frames - 1) / (count - 1)) : 0;
+    return show_moment(result_step_count(data->result), show_frame_count(data), k);
 }
 
 bool show_check_frame(const ShowData *data, int frame, Error *err)
@@ -89,16 +96,20 @@ bool show_check_frame(const ShowData *data, int frame, Error *err)
     return frame < frames || error_set(err, "the result has %d frames, from 0", frames);
 }
 
-char *show_frame_name(ShowData *data, int frame)
+double show_frame_time(const ShowData *data, int frame)
 {
     Array times;
-    bool known =
-        data->motion && result_read_rows(data->result, "VTKHDF/Steps/Values", frame, 1, &times, NULL);
-    if (!known) return show_text(data, "frame %d", frame);
-    char *name = show_text(data, "t = %.4g s",
-                           array_is(&times, ARRAY_FLOAT64, 1, 1) ? *(const double *)times.data : NAN);
+    if (!data->motion || !result_read_rows(data->result, "VTKHDF/Steps/Values", frame, 1, &times, NULL))
+        return NAN;
+    double time = array_is(&times, ARRAY_FLOAT64, 1, 1) ? *(const double *)times.data : NAN;
     array_clear(&times);
-    return name;
+    return time;
+}
+
+char *show_frame_name(ShowData *data, int frame)
+{
+    double time = show_frame_time(data, frame);
+    return data->motion ? show_text(data, "t = %.4g s", time) : show_text(data, "frame %d", frame);
 }
 
 bool show_history(ShowData *data, Chart *chart)

@@ -36,8 +36,15 @@ char *show_text(ShowData *data, const char *format, ...) __attribute__((format(p
 int show_frame_count(const ShowData *data);
 int show_frame(const ShowData *data, int k);
 
+/* Of so many frames: how many an animation of that length shows, and which is the k-th of `count`. */
+int show_moment_count(int frames, double seconds);
+int show_moment(int frames, int count, int k);
+
 /* False and a sentence where the result has no such frame. */
 bool show_check_frame(const ShowData *data, int frame, Error *err);
+
+/* s; NAN where it is not known, or frames are no moments. */
+double show_frame_time(const ShowData *data, int frame);
 
 /* "t = 0.2 s" of a motion, else "frame 3". */
 char *show_frame_name(ShowData *data, int frame);

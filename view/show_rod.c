@@ -2,6 +2,7 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "view/curves_picture.h"
+#include "view/show_motion.h"
 #include "view/show_obstacles.h"
 #include "view/ticks.h"
 #include <math.h>
@@ -10,8 +11,8 @@
 
 enum { LINES_MAX = 4, LINE_LENGTH = 110, STRANDS_MANY = 20 };
 
-static const char FIELD[] = "slender/trajectory/flux_density"; /* of the design of a motion */
 static const Color input_ink = {0.62, 0.62, 0.64, 1};
+static const MotionInk motion_ink = {{0.62, 0.62, 0.64, 1}, {0, 0.62, 0.451, 1}, 3};
 
 /* A page of rods. */
 typedef struct RodPage {
@@ -27,6 +28,7 @@ typedef struct RodPage {
     Chart charts[CURVES_CHARTS_MAX];
     int chart_count;
     ShowObstacles obstacles;
+    ShowMotion motion;
 } RodPage;
 
 bool show_has_rod(const ShowData *data)
@@ -119,10 +121,13 @@ static CurvesSet *add_simulated(RodPage *page, const char *name, const double (*
     return set;
 }
 
-/* What the last set meets, in a frame; -1: in the last one. */
-static void add_obstacles(RodPage *page, int frame)
+/* What the last set meets and follows, in a frame; -1: in the last one. */
+static void add_surroundings(RodPage *page, int frame)
 {
-    page->sets[page->set_count - 1].around = show_obstacles_at(&page->obstacles, frame);
+    CurvesSet *set = &page->sets[page->set_count - 1];
+    set->around = show_obstacles_at(&page->obstacles, frame);
+    set->time = frame < 0 ? NAN : show_frame_time(page->data, frame);
+    set->marks = show_motion_marks(&page->motion, set->time, motion_ink);
 }
 
 /* The simulated points of a frame, which are the first ones. */
@@ -141,27 +146,11 @@ static bool read_frame(RodPage *page, int frame, const double (**points)[3], Err
     return fits || error_set(err, "the result's frames have fewer points than its strands");
 }
 
-/* Of the design of a motion: the way of a rod's end, through all frames. */
-static bool add_way(RodPage *page, Error *err)
-{
-    int frames = result_step_count(page->data->result), *offsets = show_block(page->data, 2, sizeof *offsets);
-    if (page->strand_count > 1 || frames < 2 || !result_has(page->data->result, FIELD)) return true;
-    double(*way)[3] = show_block(page->data, (size_t)frames, sizeof *way);
-    for (int k = 0; k < frames; k++) {
-        const double(*points)[3] = NULL;
-        if (!read_frame(page, k, &points, err)) return false;
-        memcpy(way[k], points[page->point_count - 1], sizeof *way);
-    }
-    CurvesSet *set = add_set(page, "way of the end", (const double(*)[3])way, colormap_series(2));
-    set->offsets = offsets, offsets[1] = frames;
-    return true;
-}
-
 static bool add_frame(RodPage *page, int frame, Error *err)
 {
     if (!read_frame(page, frame, &page->x, err)) return false;
     add_simulated(page, show_text(page->data, "simulated, %s", show_frame_name(page->data, frame)), page->x);
-    add_obstacles(page, frame);
+    add_surroundings(page, frame);
     return true;
 }
 
@@ -176,7 +165,7 @@ static bool add_stills(RodPage *page, int count, Error *err)
         CurvesSet *set = add_set(page, show_frame_name(page->data, frame), points, colormap_series(1));
         if (count > 1) set->color = curves_fade(set->color, (double)k / (count - 1));
         set->moment = true;
-        add_obstacles(page, frame);
+        add_surroundings(page, frame);
     }
     return true;
 }
@@ -200,7 +189,7 @@ static bool add_final(RodPage *page, Error *err)
     if (!page->x && moves && frames > 0 && !read_frame(page, frames - 1, &page->x, err)) return false;
     if (!page->x) return true;
     add_simulated(page, "simulated", page->x);
-    add_obstacles(page, -1);
+    add_surroundings(page, -1);
     return true;
 }
 
@@ -217,8 +206,8 @@ static bool add_curves(RodPage *page, Error *err)
     if (page->natural && !stills) add_set(page, "natural", page->natural, colormap_series(0));
     if (def->frame >= 0) return add_frame(page, def->frame, err);
     if (count == 0) return asked ? show_check_frame(page->data, 0, err) : add_final(page, err);
-    if (moving) return add_motion(page, count, err) && add_way(page, err);
-    if (!add_stills(page, count, err) || !add_way(page, err)) return false;
+    if (moving) return add_motion(page, count, err);
+    if (!add_stills(page, count, err)) return false;
     if (page->natural) add_set(page, "natural", page->natural, colormap_series(0))->width = 1;
     return true;
 }
@@ -412,33 +401,11 @@ static void add_distance(RodPage *page, const double *s)
                             .first_color = 1});
 }
 
-/* The uniform field of the steps of a designed motion. */
-static void add_field(RodPage *page)
+static void add_over_time(RodPage *page)
 {
-    static const char *const names[] = {"Bx", "By", "Bz"};
-    int count, frames;
-    const char *unit;
-    const double *field = numbers(page, FIELD, &count, &unit),
-                 *times = numbers(page, "VTKHDF/Steps/Values", &frames, &unit);
-    if (!field || !times) return;
-    int steps = count / 3;
-    double *t = show_block(page->data, (size_t)steps, sizeof *t),
-           *B = show_block(page->data, (size_t)count, sizeof *B);
-    ChartSeries *series = show_block(page->data, 3, sizeof *series);
-    for (int k = 0; k < steps; k++) {
-        t[k] = times[0] + (times[frames - 1] - times[0]) * (k + 1) / steps;
-        for (int i = 0; i < 3; i++) B[steps * i + k] = field[3 * k + i];
-    }
-    for (int i = 0; i < 3; i++)
-        series[i] = (ChartSeries){.name = names[i], .count = steps, .x = t, .y = B + steps * i};
-    add_chart(page, (Chart){.x_label = "t",
-                            .x_unit = "s",
-                            .y_label = "flux density",
-                            .y_unit = "T",
-                            .y_axis = CHART_LINEAR,
-                            .series_count = 3,
-                            .series = series,
-                            .first_color = 3});
+    Chart charts[SHOW_MOTION_CHARTS];
+    int count = show_motion_charts(&page->motion, charts);
+    for (int k = 0; k < count; k++) add_chart(page, charts[k]);
 }
 
 static void add_charts(RodPage *page)
@@ -447,18 +414,25 @@ static void add_charts(RodPage *page)
     bool few = s && page->strand_count <= STRANDS_MANY;
     Chart history;
     if (few) add_strains(page, s);
-    add_field(page);
+    add_over_time(page);
     if (show_history(page->data, &history)) add_chart(page, history);
     if (few) add_distance(page, s);
 }
 
 /* ---- The page ---- */
 
+/* There is one, if it was asked for. */
+static bool check_target(const RodPage *page, Error *err)
+{
+    return page->data->def->target == PICTURE_TARGET_AUTO || page->input || page->motion.row_count > 0 ||
+           error_set(err, "--target: there is none: no given curve, no place or curve of a motion");
+}
+
 static bool check_options(const ShowDef *def, Error *err)
 {
     if (def->only) return error_set(err, "--case %s: rods have no load cases", def->only);
     if (def->field) return error_set(err, "--field %s: curves have no faces to colour", def->field);
-    if (def->target != PICTURE_TARGET_BESIDE)
+    if (def->target == PICTURE_TARGET_BESIDE || def->target == PICTURE_TARGET_BOTH)
         return error_set(err, "--target: the input of a rod is always drawn under the simulated curve");
     return def->arrows || error_set(err, "--no-arrows: curves carry no arrows of magnetization");
 }
@@ -467,6 +441,7 @@ static bool write_page(RodPage *page, const char *result, const char *picture, E
 {
     const ShowDef *def = page->data->def;
     if (!check_options(def, err) || !read_curves(page, err) ||
+        !show_motion_read(&page->motion, page->data, err) || !check_target(page, err) ||
         !show_obstacles_read(&page->obstacles, page->data, err) || !add_curves(page, err))
         return false;
     frame_obstacles(page);
@@ -483,9 +458,12 @@ static bool write_page(RodPage *page, const char *result, const char *picture, E
     scene.width = def->width;
     page->data->drawn = true;
     if (def->seconds > 0)
-        return curves_animate(picture, &scene, def->seconds / show_frame_count(page->data), err);
-    add_charts(page);
+        add_over_time(page);
+    else
+        add_charts(page);
     scene.charts = page->charts, scene.chart_count = page->chart_count;
+    if (def->seconds > 0)
+        return curves_animate(picture, &scene, def->seconds / show_frame_count(page->data), err);
     return curves_write(picture, &scene, err);
 }
 

@@ -191,7 +191,7 @@ StartOfADrawingKeys = TypedDict("StartOfADrawingKeys", {
 Energies = TypedDict("Energies", {
     "tone": "float", "strain": "float", "bend": "float", "align": "float", "wall": "float", "outline": "float",
     "stretch": "float", "curvature": "float", "potential": "float", "flow": "float", "boundary": "float",
-    "pair": "float",
+    "pair": "float", "length": "float",
 }, total=False)
 
 PotentialKeys = TypedDict("PotentialKeys", {
@@ -203,7 +203,7 @@ FlowKeys = TypedDict("FlowKeys", {
 }, total=False)
 
 Pair = TypedDict("Pair", {
-    "kernel": "Literal['wendland', 'triweight']", "radius": "float",
+    "kernel": "Literal['wendland', 'triweight', 'coulomb']", "radius": "float",
 }, total=False)
 
 MonteCarlo = TypedDict("MonteCarlo", {
@@ -410,8 +410,8 @@ FrameOfAStartKeys = TypedDict("FrameOfAStartKeys", {
 }, total=False)
 
 Output = TypedDict("Output", {
-    "every": "int", "precision": "Literal['single', 'double']", "states": "Literal['last', 'all']", "svg": "Number",
-    "png": "Number", "gcode": "Number", "gcode_servo": "Number", "hpgl": "Number",
+    "every": "int", "film": "int", "precision": "Literal['single', 'double']", "states": "Literal['last', 'all']",
+    "svg": "Number", "png": "Number", "gcode": "Number", "gcode_servo": "Number", "hpgl": "Number",
 }, total=False)
 
 Scene = TypedDict("Scene", {

@@ -1,6 +1,7 @@
 #include "spline/front/final.h"
 #include "base/cubic.h"
 #include "base/memory.h"
+#include "spline/film.h"
 #include "spline/front/front.h"
 #include "spline/metrics.h"
 #include "spline/order.h"
@@ -211,7 +212,9 @@ bool draw_finish(Run *run, const Drawing *d, const Strokes *parts, const RelaxIn
     add_plot(d, &all, &order, run, &list);
     if (d->region_count) add_outside(d, &all, run, &list);
     if (all.count == 0) explain_blank(d, run);
-    bool ok = arrays_replace(&list, run->journal, "final", err) && put_frame(run, d, &all, err);
+    bool ok = film_add(run->journal, &list, err);
+    if (!ok) arrays_clear(&list);
+    ok = ok && arrays_replace(&list, run->journal, "final", err) && put_frame(run, d, &all, err);
     strokes_clear(&all);
     return ok;
 }

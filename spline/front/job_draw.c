@@ -7,6 +7,7 @@
 #include "base/clock.h"
 #include "base/memory.h"
 #include "job/run.h"
+#include "spline/film.h"
 #include "spline/front/final.h"
 #include "spline/front/front.h"
 #include "spline/metrics.h"
@@ -102,7 +103,6 @@ static void take_part(DrawJob *job, const Array *part, const Array *nodes, const
     for (int k = 0; k + 1 < start->dims[0]; k++)
         strokes_add(&job->strokes[job->part], first[k + 1] - first[k], q + first[k],
                     job->d->parts[job->part].pen);
-    job->iteration = (int)job->parts[job->part].iteration;
     job->started = clock_seconds() - job->parts[job->part].clock;
 }
 
@@ -121,6 +121,22 @@ static bool get_part(DrawJob *job, bool *has)
     return ok;
 }
 
+/* Iterations count on from the last that any part has kept: a run with more rounds writes over none of them. */
+static bool find_iteration(DrawJob *job)
+{
+    bool ok = true;
+    for (job->part = 0; ok && job->part < job->d->part_count; job->part++) {
+        Array part = {0};
+        ok = get_array(job, "part", ARRAY_FLOAT64, &part);
+        if (ok && part.data && array_count(&part) == PART_NUMBERS) {
+            double last = ((const Part *)part.data)->iteration;
+            if (last > job->iteration) job->iteration = (int)last;
+        }
+        array_clear(&part);
+    }
+    return ok;
+}
+
 /* ---- Progress ---- */
 
 /* The tone's error now and then: no more than a twentieth of the time goes into it, by one thread. */
@@ -133,13 +149,36 @@ static void judge(DrawJob *job, const Strokes *strokes)
     job->cost = job->judged - now;
 }
 
-static bool write_svg(DrawJob *job, const Strokes *strokes)
+/* Strokes of the parts that are done and of the one at work, for their pens. */
+static Strokes all_so_far(const DrawJob *job, const Strokes *strokes)
 {
-    char *name = mem_format("%.*s-%06d.svg", (int)(strlen(job->run->result) - strlen(".vtkhdf")),
-                            job->run->result, job->iteration);
     Strokes all = {0};
     for (int k = 0; k <= job->part; k++)
         strokes_append(&all, k < job->part ? &job->strokes[k] : strokes, job->d->parts[k].pen);
+    return all;
+}
+
+/* Does a cadence fall on this iteration? */
+static bool is_due(const DrawJob *job, int every)
+{
+    return every > 0 && job->iteration % every == 0;
+}
+
+static bool put_film(DrawJob *job, const Strokes *strokes)
+{
+    if (!is_due(job, job->run->scene->output.film)) return true;
+    Strokes all = all_so_far(job, strokes);
+    bool ok = film_put(job->run->journal, &job->d->page, &all, job->iteration, job->err);
+    strokes_clear(&all);
+    return ok;
+}
+
+static bool write_svg(DrawJob *job, const Strokes *strokes)
+{
+    if (!is_due(job, job->run->scene->output.every)) return true;
+    char *name = mem_format("%.*s-%06d.svg", (int)(strlen(job->run->result) - strlen(".vtkhdf")),
+                            job->run->result, job->iteration);
+    Strokes all = all_so_far(job, strokes);
     Plot plot = spline_plot(&all, &job->d->page, job->d->pens, job->d->pen_count);
     bool ok = plot_write_svg(name, &plot, job->err);
     spline_plot_clear(&plot);
@@ -161,10 +200,9 @@ static bool watch(void *self, const RelaxInfo *info, const Strokes *strokes)
 {
     DrawJob *job = self;
     const Drawing *d = job->d;
-    int every = job->run->scene->output.every, done = (int)fmax(job->parts[job->part].rounds + 1, 0);
+    int done = (int)fmax(job->parts[job->part].rounds + 1, 0);
     job->iteration++;
-    job->failed = !put_evaluation(job, info, strokes) ||
-                  (every > 0 && job->iteration % every == 0 && !write_svg(job, strokes));
+    job->failed = !put_evaluation(job, info, strokes) || !write_svg(job, strokes) || !put_film(job, strokes);
     judge(job, strokes);
     double ink = job->judge ? strokes_length(strokes) / fmax(spline_ink_budget(job->target), 1e-30) : 0;
     host_step(job->run->host, job->part * (d->rounds + 1) + done, d->part_count * (d->rounds + 1),
@@ -203,6 +241,8 @@ static bool relax_part(DrawJob *job)
     if (job->failed) return false;
     drawing_begin(d, job->part, job->run->threads, going ? NULL : strokes, &job->target);
     if (!going) {
+        job->failed = job->part == 0 && !put_film(job, strokes); /* as it starts */
+        if (job->failed) return false;
         RelaxInfo info = spline_relax(job->target, &job->relax, strokes, &observer);
         going = keep(job, &info, true);
     }
@@ -266,7 +306,8 @@ static RunStatus run_draw(Run *run, Error *err)
     job.relax.threads = run->threads;
     job.strokes = mem_alloc((size_t)d->part_count, sizeof *job.strokes);
     job.parts = mem_alloc((size_t)d->part_count, sizeof *job.parts);
-    bool going = true;
+    bool going = find_iteration(&job);
+    job.failed = !going;
     for (int k = 0; going && k < d->part_count; k++) going = run_part(&job, k);
     RelaxInfo info = sum_up(&job);
     bool interrupted = !going && !job.failed;

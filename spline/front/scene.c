@@ -192,6 +192,8 @@ static const YamlTable energies_table = {
         ENERGY(flow, "0", "[Linewise], field: strokes run against `flow`, and are long"),
         ENERGY(boundary, "0", "[Linewise]: away from the page's edges"),
         ENERGY(pair, "0", "[Linewise], corrected: strokes keep away from each other"),
+        ENERGY(length, "0",
+               "[Linewise], strain as printed: length of each stroke; its segments are not held"),
         {0}}};
 
 #define FIELD_TABLE_OF(id, n, what, r)                                                                       \
@@ -223,12 +225,14 @@ static const YamlTable pair_table = {
     .name = "pair",
     .size = sizeof(PairScene),
     .doc = "Of the energy pair.",
-    .fields =
-        (const YamlField[]){{YAML_CHOICE(PairScene, kernel), .choices = YAML_NAMES("wendland", "triweight"),
-                             .fallback = "wendland", .doc = "how it falls off"},
-                            {YAML_NUMBER(PairScene, radius), .range = "[0.1, 20]", .fallback = "1.6",
-                             .doc = "where it is 0, in mean distances of lines"},
-                            {0}}};
+    .fields = (const YamlField[]){
+        {YAML_CHOICE(PairScene, kernel), .choices = YAML_NAMES("wendland", "triweight", "coulomb"),
+         .fallback = "wendland",
+         .doc = "how it falls off; coulomb is [Linewise]'s 1/d as printed: between different "
+                "strokes only, with no end"},
+        {YAML_NUMBER(PairScene, radius), .range = "[0.1, 20]", .fallback = "1.6",
+         .doc = "where it is 0 (of coulomb 1), in mean distances of lines"},
+        {0}}};
 
 static const YamlTable monte_carlo_table = {
     .name = "monte_carlo",
