@@ -230,13 +230,13 @@ static void flux_per_case(Model *model, const FluxUnknown *from, const ParamBloc
 static bool sample_flux(Model *model, const Build *b, const Control *control, double *rows)
 {
     double *p = model->cases[0].stages[0].p;
-    const TimedFlux *timed = &model->flux_of_time;
+    const Timed *timed = &model->flux_of_time;
     int count = control->kind == CONTROL_KNOT ? control->rows : control->steps;
     Error err;
     for (int k = 0; k < count; k++) {
         double part = control->kind == CONTROL_KNOT ? (double)k / (count - 1) : (double)(k + 1) / count;
         double time = control->start + part * control->duration;
-        if (timed_flux_is_given(timed) && !timed_flux_eval(timed, time, p + control->to, &err))
+        if (timed_is_given(timed) && !timed_eval(timed, time, p + control->to, &err))
             return yaml_refuse(b->file, "flux_density", "%s", err.text);
         const double *B = p + control->to;
         if (control->kind != CONTROL_HARMONIC) memcpy(rows + 3 * k, B, 3 * sizeof *B);

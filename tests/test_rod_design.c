@@ -45,8 +45,8 @@ static Fixture fixture_create(RodSupport end, bool field, Random *random)
         vec3_store(p + rod->magnetization + 3 * e,
                    vec3(2e4, 5e3 * random_signed(random), 5e3 * random_signed(random)));
     }
-    vec3_store(p + rod->flux_density, vec3(0.004, -0.01, 0.015));
-    if (field) p[rod->field_scale] = 1;
+    vec3_store(p + rod->flux.uniform, vec3(0.004, -0.01, 0.015));
+    if (field) p[rod->flux.scale] = 1;
     vec3_store(p + rod->gravity, vec3(0, 0, -9.81));
     for (int i = 0; i <= N; i++) {
         double s = length * i / N;

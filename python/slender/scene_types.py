@@ -227,8 +227,8 @@ Servo = TypedDict("Servo", {
 }, total=False)
 
 FluxDensityKeys = TypedDict("FluxDensityKeys", {
-    "value": "Numbers", "formula": "Numbers", "file": "str", "dipole": "Dipole", "magnet": "Magnet",
-    "where": "Mapping[str, Where]",
+    "value": "Numbers", "uniform": "Numbers", "formula": "Numbers", "file": "str", "dipole": "Dipole",
+    "magnet": "Magnet", "coil": "Coil", "map": "Map", "where": "Mapping[str, Where]", "move": "Path", "turn": "Path",
 }, total=False)
 
 Dipole = TypedDict("Dipole", {
@@ -236,7 +236,21 @@ Dipole = TypedDict("Dipole", {
 }, total=False)
 
 Magnet = TypedDict("Magnet", {
-    "at": "Numbers", "remanence": "Numbers", "volume": "Number",
+    "at": "Numbers", "remanence": "Numbers", "size": "Numbers", "radius": "Number", "volume": "Number",
+    "length": "Number", "axis": "Numbers",
+}, total=False)
+
+Coil = TypedDict("Coil", {
+    "at": "Numbers", "axis": "Numbers", "radius": "Number", "size": "Numbers", "length": "Number",
+    "current": "Number", "turns": "float",
+}, total=False)
+
+Map = TypedDict("Map", {
+    "file": "str", "scale": "float",
+}, total=False)
+
+PathKeys = TypedDict("PathKeys", {
+    "formula": "Numbers", "file": "str",
 }, total=False)
 
 FixKeys = TypedDict("FixKeys", {
@@ -265,8 +279,8 @@ TargetKeys = TypedDict("TargetKeys", {
 
 Obstacles = TypedDict("Obstacles", {
     "name": "Number", "plane": "Plane", "sphere": "Sphere", "cylinder": "Cylinder", "box": "Box",
-    "height_field": "HeightField", "tube": "Tube", "mesh": "MeshOfAnObstacle", "friction": "float", "move": "Numbers",
-    "turn": "Numbers",
+    "height_field": "HeightField", "tube": "Tube", "mesh": "MeshOfAnObstacle", "friction": "float", "move": "Path",
+    "turn": "Path",
 }, total=False)
 
 Plane = TypedDict("Plane", {
@@ -324,12 +338,13 @@ VelocityOfWaterKeys = TypedDict("VelocityOfWaterKeys", {
 }, total=False)
 
 Cases = TypedDict("Cases", {
-    "name": "Number", "weight": "float", "flux_density": "FluxDensity", "loads": "Rows[Loads]", "gravity": "Numbers",
-    "target": "Target",
+    "name": "Number", "weight": "float", "flux_density": "Union[FluxDensity, Rows[FluxDensity]]",
+    "loads": "Rows[Loads]", "gravity": "Numbers", "target": "Target",
 }, total=False)
 
 Sequence = TypedDict("Sequence", {
-    "flux_density": "FluxDensity", "loads": "Rows[Loads]", "gravity": "Numbers", "time": "Number",
+    "flux_density": "Union[FluxDensity, Rows[FluxDensity]]", "loads": "Rows[Loads]", "gravity": "Numbers",
+    "time": "Number",
 }, total=False)
 
 Design = TypedDict("Design", {
@@ -417,10 +432,11 @@ Output = TypedDict("Output", {
 Scene = TypedDict("Scene", {
     "slender": "Literal[1]",
     "job": "Literal['equilibrium', 'evaluate', 'design', 'simulate', 'trajectory', 'invert', 'identify', 'draw']",
-    "shell": "Shell", "rod": "Rod", "solid": "Solid", "spline": "Spline", "flux_density": "FluxDensity",
-    "fix": "Rows[Fix]", "loads": "Rows[Loads]", "target": "Target", "obstacles": "Rows[Obstacles]",
-    "contact": "Contact", "water": "Water", "cases": "Rows[Cases]", "sequence": "Rows[Sequence]", "design": "Design",
-    "solver": "Solver", "load_steps": "LoadSteps", "time": "Time", "start": "Start", "modes": "int",
+    "shell": "Shell", "rod": "Rod", "solid": "Solid", "spline": "Spline",
+    "flux_density": "Union[FluxDensity, Rows[FluxDensity]]", "fix": "Rows[Fix]", "loads": "Rows[Loads]",
+    "target": "Target", "obstacles": "Rows[Obstacles]", "contact": "Contact", "water": "Water",
+    "cases": "Rows[Cases]", "sequence": "Rows[Sequence]", "design": "Design", "solver": "Solver",
+    "load_steps": "LoadSteps", "time": "Time", "start": "Start", "modes": "int",
     "checks": "Union[Literal['stability', 'self_contact', 'round_trip'], Rows[Literal['stability', 'self_contact', 'round_trip']]]",
     "output": "Output",
 }, total=False)
@@ -449,6 +465,7 @@ StartOfADrawing = Union["StartOfADrawingKeys", Literal['streamlines', 'random']]
 Potential = Union["PotentialKeys", Number]
 Flow = Union["FlowKeys", Numbers]
 FluxDensity = Union["FluxDensityKeys", Numbers]
+Path = Union["PathKeys", Numbers]
 Fix = Union["FixKeys", Number]
 Selection = Union["SelectionKeys", Number]
 Target = Union["TargetKeys", Numbers]

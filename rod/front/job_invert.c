@@ -131,7 +131,7 @@ static void invert_elements(Inversion *o, int k)
     rod_model_loads(rm, rod, scene, p);
     for (int e = 0; e < o->elements && !isnan(scene->magnetization.value[0]); e++)
         p[rod->magnetization + 3 * e] = scene->magnetization.value[0];
-    memcpy(p + rod->flux_density, rm->flux, sizeof rm->flux);
+    memcpy(p + rod->flux.uniform, rm->flux, sizeof rm->flux);
     RodLayout layout = rod_layout(rod, false);
     double *x = mem_alloc(2 * (size_t)layout.dofs, sizeof *x);
     System *sys = rod_hanging_system(rod);
