@@ -11,6 +11,7 @@ typedef struct FluxKind {
 } FluxKind;
 
 struct FluxField {
+    char *name; /* owned; NULL: none */
     const FluxKind *kind;
     RigidMove motion;   /* its pivot is the frame's origin                              */
     bool own_axes;      /* its frame has other axes than space                          */
@@ -188,9 +189,21 @@ void flux_field_set_move(FluxField *field, Timed move, Timed turn)
     field->motion.move = move, field->motion.turn = turn;
 }
 
+void flux_field_set_name(FluxField *field, const char *name)
+{
+    mem_free(field->name);
+    field->name = mem_text(name);
+}
+
+const char *flux_field_name(const FluxField *field)
+{
+    return field->name ? field->name : "";
+}
+
 void flux_field_destroy(FluxField *field)
 {
     if (!field) return;
+    mem_free(field->name);
     formula_destroy(field->formula);
     for (int k = 0; k < 3; k++) cubic_grid_clear(&field->grid[k]);
     rigid_move_clear(&field->motion);

@@ -40,6 +40,10 @@ FluxField *flux_field_rectangular_coil(const double at[3], const double axis[3],
 
 void flux_field_destroy(FluxField *field);
 
+/* Its name, which is copied; "" until it has one. */
+void flux_field_set_name(FluxField *field, const char *name);
+const char *flux_field_name(const FluxField *field);
+
 /* Moves and turns it about its middle, or a formula's or map's origin; takes both (rigid_move.h). */
 void flux_field_set_move(FluxField *field, Timed move, Timed turn);
 

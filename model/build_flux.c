@@ -11,6 +11,7 @@ typedef struct Sources {
     double *uniform;    /* [3] T, of all, now        */
     double lasting[3];  /* of those that do not change */
     FluxFields *fields; /* the body's                */
+    int first;          /* of them that is of this key */
 } Sources;
 
 static bool add_uniform(Sources *sources, const double *value)
@@ -192,13 +193,20 @@ static bool add_source(const Build *b, Key at, const FluxScene *scene, Sources *
     RigidMove motion = {0};
     bool ok = build_rigid_move(b, at, scene->move, scene->turn, &motion);
     flux_field_set_move(field, motion.move, motion.turn);
+    char *name = scene->name ? mem_text(scene->name) : mem_format("source%d", sources->fields->count + 1);
+    ok = build_check_name(b, key("%s.name", at.text), "a source", name) && ok;
+    for (int k = sources->first; k < sources->fields->count; k++)
+        if (!strcmp(flux_field_name(sources->fields->items[k]), name))
+            ok = yaml_refuse(b->file, key("%s.name", at.text).text, "there are two sources named '%s'", name);
+    flux_field_set_name(field, name);
+    mem_free(name);
     flux_fields_add(sources->fields, field);
     return ok;
 }
 
 bool build_flux(const Build *b, Key at, const FluxScene *list, int count, double *uniform, FluxFields *fields)
 {
-    Sources sources = {.uniform = uniform, .fields = fields};
+    Sources sources = {.uniform = uniform, .fields = fields, .first = fields->count};
     bool ok = true;
     memset(uniform, 0, 3 * sizeof *uniform);
     for (int k = 0; k < count; k++)

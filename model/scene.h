@@ -148,6 +148,13 @@ typedef struct VectorUnknown {
 } VectorUnknown;
 
 /* Of a rod. */
+/* Of sources of the flux density: strengths, moves or turns. */
+typedef struct SourceUnknown {
+    double noise, scale, bounds[2];
+    char **sources; /* names; NULL: all */
+    int sources_count;
+} SourceUnknown;
+
 typedef struct StrainUnknown {
     double bounds[2], noise, scale;
 } StrainUnknown;
@@ -170,6 +177,7 @@ typedef struct UnknownsScene {
     NumberUnknown *young, *skin_young, *fold;
     StrainUnknown *natural_strain;
     FluxUnknown *flux_density;
+    SourceUnknown *source_strength, *source_move, *source_turn;
 } UnknownsScene;
 
 /* Members of every objective of one point of the body; and frames at which it counts. */

@@ -88,6 +88,7 @@ const YamlTable flux_density_table = {
            "list. Where B "
            "varies in space, forces follow from its gradient.",
     .fields = (const YamlField[]){
+        {YAML_TEXT(FluxScene, name), .doc = "of what has a place: its name; source1, source2, .. if absent"},
         {YAML_VECTOR(FluxScene, value), .unit = "T", .one_of = 1, .required = true, .short_form = true,
          .also = YAML_NAMES("uniform"), .doc = "uniform"},
         {YAML_TEXTS(FluxScene, formula), .one_of = 1, .required = true, .short_form = true, .min_count = 3,

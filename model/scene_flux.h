@@ -29,6 +29,7 @@ typedef struct FluxMapScene {
 
 /* One source; a flux density is a list of them, summed. */
 typedef struct FluxScene {
+    char *name;
     double value[3];
     char **formula, *file;
     WhereScene *where;
