@@ -60,6 +60,20 @@ void model_put_flux(const Model *model, int number, double *p)
         p[model->flux_blocks.scale + k] = k >= flux->first && k < flux->first + flux->count;
 }
 
+void model_flux(const Model *model, const double *p, double time, double flux[3])
+{
+    double middle[3] = {0}, *place = NULL;
+    const double *at = model->mesh ? model->mesh->rest[0] : NULL;
+    if (!at) {
+        at = place = mem_alloc(3 * (size_t)model->point_count, sizeof *place);
+        model->body->ops->places(model, model->x, place);
+    }
+    for (int v = 0; v < model->point_count; v++)
+        for (int i = 0; i < 3; i++) middle[i] += at[3 * v + i] / model->point_count;
+    flux_value((FluxSum){model->fields, model->flux_blocks, p, time}, middle, flux);
+    mem_free(place);
+}
+
 static bool knows_field(const Model *model, const FluxField *field, FluxPlace where, const double *place,
                         Error *err)
 {

@@ -111,6 +111,10 @@ bool model_check_world(Model *model, YamlFile *file);
 /* A flux density, model->flux[number], into p. */
 void model_put_flux(const Model *model, int number, double *p);
 
+/* The flux density with those numbers and at that time in the middle of the body: the mean of its points at rest, or, of a
+ * body without a mesh, where it starts. T. */
+void model_flux(const Model *model, const double *p, double time, double flux[3]);
+
 /* The load cases or stages of a scene, each with p as a copy; false after a refusal. */
 bool model_cases(Model *model, const Build *b, const Scene *scene, const double *p);
 
