@@ -82,7 +82,7 @@ static void magnetise(Body *b, int face, double x, double y, double z)
 
 static void set_field(Body *b, double x, double y, double z)
 {
-    double *field = b->p + b->shell->flux_density;
+    double *field = b->p + b->shell->flux.uniform;
     field[0] = x, field[1] = y, field[2] = z;
 }
 

@@ -31,7 +31,7 @@ Sheet sheet_create_fine(int cells, BendingModel bending, bool dynamic)
     shell_default_params(s.shell, s.p);
     for (int f = 0; f < mesh->face_count; f++)
         s.p[s.shell->young + f] = 1e5, s.p[s.shell->magnetization + 3 * f] = 1e4;
-    s.p[s.shell->flux_density + 2] = dynamic ? 0 : 2e-3;
+    s.p[s.shell->flux.uniform + 2] = dynamic ? 0 : 2e-3;
     s.p[s.shell->gravity + 2] = dynamic ? -9.81 : 0;
     shell_rest_state(s.shell, s.state.x);
     return s;

@@ -76,6 +76,7 @@ typedef struct YamlField {
     bool short_form;      /* the table may be written as this row's value alone, where that is no mapping:
                            * `young: 1 MPa` for `young: {value: 1 MPa}`. The first such row that accepts the
                            * value takes it: numbers before formulas                                */
+    bool alone;           /* of a LIST: one entry may stand without the list                        */
     const char *fallback; /* default, as scene text: "1 mm", "[0, 0, 0]", "{every: 1}"; NULL: none  */
     const char *unit;     /* SI unit, any product: "m", "A/m", "N s/m"; NULL: a plain number        */
     const char *range;    /* of each number, SI: "(0, inf)", "[0, 0.5]", "(-inf, 0]"; NULL: any     */

@@ -91,6 +91,12 @@ static size_t entry_size(const YamlField *row)
     }
 }
 
+/* Is it one entry of a list that may stand without it: no list of mappings? */
+bool load_is_alone(const YamlField *row, const Node *node)
+{
+    return row->alone && (node->kind != NODE_LIST || (node->count && node->items[0]->kind == NODE_SCALAR));
+}
+
 /* Lists whose entries the struct owns, or arrays of fixed width in it. */
 static bool load_list(Load *load, const YamlField *row, const Node *node, void *scene)
 {
@@ -107,10 +113,13 @@ static bool load_list(Load *load, const YamlField *row, const Node *node, void *
         return check_count(load, row, node, row->width, row->width) &&
                load_entries(load, row, node, row_member(row, scene), entry_size(row), entries[row->kind]);
     }
-    if (!check_count(load, row, node, row->min_count, row->max_count)) return false;
-    void *array = mem_alloc((size_t)node->count, entry_size(row));
+    bool single = load_is_alone(row, node);
+    if (!single && !check_count(load, row, node, row->min_count, row->max_count)) return false;
+    int count = single ? 1 : node->count;
+    void *array = mem_alloc((size_t)count, entry_size(row));
     *(void **)row_member(row, scene) = array;
-    *row_count(row, scene) = node->count;
+    *row_count(row, scene) = count;
+    if (single) return table_entry(load, row, node, array);
     return load_entries(load, row, node, array, entry_size(row), entries[row->kind]);
 }
 

@@ -96,8 +96,8 @@ static void schema_list(Text *text, const YamlField *row)
 {
     int least = row->count_offset ? row->min_count : row->width,
         most = row->count_offset ? row->max_count : row->width;
-    bool alone = row->count_offset &&
-                 (row->kind == FIELD_NUMBERS || row->kind == FIELD_INTEGERS || row->kind == FIELD_CHOICES);
+    bool scalars = row->kind == FIELD_NUMBERS || row->kind == FIELD_INTEGERS || row->kind == FIELD_CHOICES,
+         alone = row->alone || (row->count_offset && scalars);
     if (alone) {
         text_add(text, "{\"anyOf\": [");
         schema_entry(text, row);
@@ -260,6 +260,7 @@ static void manual_kind(Text *text, const YamlField *row)
     for (int k = 0; row->choices && row->choices[k]; k++)
         text_add(text, "%s `%s`", k ? "," : "", row->choices[k]);
     if (row->table) manual_link(text, names[row->kind][0] ? " " : "", row->table->name);
+    if (row->alone) text_add(text, ", or one alone");
     if (row->unit) text_add(text, ", %s", row->unit);
     if (row->range) text_add(text, ", in %s", row->range);
 }

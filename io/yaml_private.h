@@ -103,6 +103,9 @@ static inline int *row_count(const YamlField *row, const void *scene)
     return (int *)((char *)scene + row->count_offset);
 }
 
+/* Is it one entry of a list that may stand without it (YamlField.alone): no list of mappings? */
+bool load_is_alone(const YamlField *row, const Node *node);
+
 /* Is the value there, or as it is when absent? */
 bool row_is_given(const YamlField *row, const void *scene);
 

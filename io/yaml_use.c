@@ -175,7 +175,7 @@ static void check_table(const Place *at, const char *path);
 static void check_entries(const Place *at, const YamlField *row, const Node *item, const char *path)
 {
     Place below = {at->file, at->root, row->table, item};
-    bool many = row->kind == FIELD_LIST || row->kind == FIELD_MAP;
+    bool many = (row->kind == FIELD_LIST && !load_is_alone(row, item)) || row->kind == FIELD_MAP;
     if (!many) check_table(&below, path);
     for (int i = 0; many && i < item->count; i++) {
         char *entry =

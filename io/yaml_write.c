@@ -84,6 +84,10 @@ static void write_tables(Text *text, const YamlField *row, const void *scene, in
     const char *array = *(char *const *)row_member(row, scene);
     int count = *row_count(row, scene);
     text_add(text, count ? "\n" : row->kind == FIELD_MAP ? "{}\n" : "[]\n");
+    if (row->alone && count == 1) {
+        write_table(text, row->table, array, depth);
+        return;
+    }
     for (int i = 0; i < count; i++) {
         const char *entry = array + (size_t)i * row->size;
         text_indent(text, depth);
@@ -184,8 +188,10 @@ static void visit_row(const Visit *visit, const YamlField *row, const void *scen
     if (row->kind != FIELD_LIST && row->kind != FIELD_MAP) return;
     const char *entry = *(char *const *)member;
     for (int i = 0; i < *row_count(row, scene); i++, entry += row->size) {
-        char *below = row->kind == FIELD_LIST ? mem_format("%s[%d]", key, i)
-                                              : mem_format("%s.%s", key, *(char *const *)entry);
+        bool single = row->alone && *row_count(row, scene) == 1;
+        char *below = single                    ? mem_text(key)
+                      : row->kind == FIELD_LIST ? mem_format("%s[%d]", key, i)
+                                                : mem_format("%s.%s", key, *(char *const *)entry);
         visit_table(visit, row->table, entry, below);
         mem_free(below);
     }

@@ -112,12 +112,13 @@ static void add_gradients(const DesignJob *job, Arrays *list)
     for (int c = 0; c < cases; c++) {
         static_design_param_gradient(job->sd, c, dp);
         for (size_t i = 0; i < size; i++) sum[i] += dp[i];
-        if (model->flux_density >= 0) memcpy(flux + 3 * c, dp + model->flux_density, 3 * sizeof *flux);
+        if (model->flux_blocks.uniform >= 0)
+            memcpy(flux + 3 * c, dp + model->flux_blocks.uniform, 3 * sizeof *flux);
     }
     mem_free(dp);
     for (int k = 0; k < model->design.unknown_count; k++) {
         const ParamBlock *block = model->design.unknowns[k].block;
-        bool per_case = block->offset == model->flux_density;
+        bool per_case = block->offset == model->flux_blocks.uniform;
         design_add_gradient(list, block->name, block->unit, per_case ? flux : sum + block->offset,
                             per_case ? cases : block->count, block->width);
     }

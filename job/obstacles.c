@@ -13,7 +13,7 @@ static Poses poses_at(const World *world, double time)
     return poses;
 }
 
-static void put_pose(const ObstaclePose *pose, double row[12])
+static void put_pose(const RigidPose *pose, double row[12])
 {
     for (int i = 0; i < 3; i++) {
         memcpy(row + 4 * i, pose->turn[i], 3 * sizeof *row);

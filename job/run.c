@@ -132,8 +132,11 @@ bool run_put_frame(Run *run, int index, double shown, const Snapshot *shot, bool
     if (run->host->frame) run->host->frame(run->host->self, shown, model->point_count, place);
     arrays_add(&list, array_float("x", "m", place, 2, model->point_count, 3));
     arrays_add(&list, array_float("time", "s", &shown, 0, 0, 0));
-    if (model->flux_density >= 0)
-        arrays_add(&list, array_float("flux_density", "T", shot->p + model->flux_density, 2, 1, 3));
+    if (model->flux_blocks.uniform >= 0) {
+        double *flux = arrays_numbers(&list, 3);
+        model_flux(model, shot->p, shot->at.time, flux);
+        arrays_add(&list, array_float("flux_density", "T", flux, 2, 1, 3));
+    }
     add_felt(&list, model, shot, NULL);
     obstacles_add_poses(model, shot->at.time, &list);
     if (model->body->ops->add_frame) model->body->ops->add_frame(model, shot, whole, &list);
@@ -204,7 +207,7 @@ static void add_case(Arrays *list, const Model *model, const Snapshot *shot)
     add_state(list, model, x_name, prefix, shot);
     arrays_add(list, array_text(arrays_keep(list, mem_format("%s/status", prefix)),
                                 newton_status_name(shot->status)));
-    add_vector(list, mem_format("%s/flux_density", prefix), "T", shot->p, model->flux_density);
+    add_vector(list, mem_format("%s/flux_density", prefix), "T", shot->p, model->flux_blocks.uniform);
     add_vector(list, mem_format("%s/gravity", prefix), "m/s^2", shot->p, model->gravity);
     if (shot->load_case->target)
         arrays_add(list, array_float(arrays_keep(list, mem_format("%s/target", prefix)), "m",

@@ -145,7 +145,7 @@ static bool put_frames(TrajectoryJob *job, int first, Snapshot *end, Arrays *lis
 /* trajectory/flux_density: what acts in each step. */
 static void add_field(const TrajectoryJob *job, Arrays *list)
 {
-    int steps = job->run->scene->time.steps, flux = job->run->model->flux_density;
+    int steps = job->run->scene->time.steps, flux = job->run->model->flux_blocks.uniform;
     if (flux < 0) return;
     double *rows = arrays_numbers(list, 3 * (size_t)steps);
     for (int n = 1; n <= steps; n++)

@@ -111,7 +111,8 @@ const char *slender_model_term(const SlenderModel *model, int term)
 static bool is_per_case(const Model *model, const ParamBlock *block)
 {
     int at = block->offset;
-    return block->load || at == model->gravity || at == model->flux_density || at == model->field_scale;
+    return block->load || at == model->gravity || at == model->flux_blocks.uniform ||
+           at == model->flux_blocks.scale;
 }
 
 SlenderBlock slender_model_block(const SlenderModel *model, int block)

@@ -51,7 +51,7 @@ static void put_parameters(SlenderMotion *motion, const SlenderMotionDef *def, c
     memcpy(motion->problem.p + size, def->flux, 3 * (size_t)steps * sizeof *p);
     motion->control = (Control){.kind = CONTROL_FRAME,
                                 .from = size,
-                                .to = model->flux_density,
+                                .to = model->flux_blocks.uniform,
                                 .rows = steps,
                                 .width = 3,
                                 .steps = steps,
@@ -99,7 +99,7 @@ static SlenderStatus check(const Simulation *s, Error *err)
     if (s->start->now.dofs != dofs)
         return lib_refuse(err, "the state has %d dofs and the model %d: it is of another model",
                           s->start->now.dofs, dofs);
-    if (s->def->flux && s->model->model->flux_density < 0)
+    if (s->def->flux && s->model->model->flux_blocks.uniform < 0)
         return lib_refuse(err, "%s feels no flux density", s->model->model->body->noun);
     if (s->def->steps < 0 || s->def->steps > STEPS_MAX || !(s->def->step > 0) || !isfinite(s->def->step))
         return lib_refuse(err, "%d steps of %g s; they must be 0 to %d, and longer than 0 s", s->def->steps,

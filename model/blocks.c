@@ -7,13 +7,14 @@
 /* ---- Flux densities ---- */
 
 /* What an entry says; what it does not say is as in `flux` already. */
-static bool read_flux(const Build *b, Key at, const FluxScene *scene, CaseFlux *flux, FluxFields *fields)
+static bool read_flux(const Build *b, Key at, const FluxScene *list, int count, CaseFlux *flux,
+                      FluxFields *fields)
 {
-    FluxField *field;
-    if (!scene) return true;
-    if (!build_flux(b, at, scene, flux->uniform, &field)) return false;
-    flux->field = field ? flux_fields_add(fields, field) : -1;
-    return true;
+    if (!list) return true;
+    flux->first = fields->count;
+    bool ok = build_flux(b, at, list, count, flux->uniform, fields);
+    flux->count = fields->count - flux->first;
+    return ok;
 }
 
 /* Stages, each from the one before. */
@@ -26,8 +27,8 @@ static bool read_stages(Model *model, const Build *b, const Scene *scene, FluxFi
         const StageScene *stage = &scene->sequence[k];
         if (!isnan(stage->time)) now.time = stage->time;
         model->flux[1 + k] = model->flux[k];
-        ok = read_flux(&now, key("sequence[%d].flux_density", k), stage->flux_density, &model->flux[1 + k],
-                       fields) &&
+        ok = read_flux(&now, key("sequence[%d].flux_density", k), stage->flux_density,
+                       stage->flux_density_count, &model->flux[1 + k], fields) &&
              ok;
     }
     return ok;
@@ -38,12 +39,13 @@ bool model_read_flux(Model *model, const Build *b, const Scene *scene, FluxField
     *fields = (FluxFields){0};
     size_t count = 1 + (size_t)(scene->sequence_count ? scene->sequence_count : scene->cases_count);
     model->flux = mem_alloc(count, sizeof *model->flux);
-    bool ok = read_flux(b, key("flux_density"), &scene->flux_density, &model->flux[0], fields);
+    bool ok = read_flux(b, key("flux_density"), scene->flux_density, scene->flux_density_count,
+                        &model->flux[0], fields);
     if (scene->sequence_count) return read_stages(model, b, scene, fields) && ok;
     for (int k = 0; k < scene->cases_count; k++) {
         model->flux[1 + k] = model->flux[0];
-        ok = read_flux(b, key("cases[%d].flux_density", k), scene->cases[k].flux_density, &model->flux[1 + k],
-                       fields) &&
+        ok = read_flux(b, key("cases[%d].flux_density", k), scene->cases[k].flux_density,
+                       scene->cases[k].flux_density_count, &model->flux[1 + k], fields) &&
              ok;
     }
     return ok;
@@ -51,29 +53,48 @@ bool model_read_flux(Model *model, const Build *b, const Scene *scene, FluxField
 
 void model_put_flux(const Model *model, int number, double *p)
 {
-    if (model->flux_density < 0) return;
+    if (model->flux_blocks.uniform < 0) return;
     const CaseFlux *flux = &model->flux[number];
-    memcpy(p + model->flux_density, flux->uniform, sizeof flux->uniform);
-    for (int k = 0; k < model->fields->count; k++) p[model->field_scale + k] = k == flux->field;
+    memcpy(p + model->flux_blocks.uniform, flux->uniform, sizeof flux->uniform);
+    for (int k = 0; k < model->fields->count; k++)
+        p[model->flux_blocks.scale + k] = k >= flux->first && k < flux->first + flux->count;
 }
 
-static bool knows_field(const Model *model, const FluxField *field, double time, const double *place,
+void model_flux(const Model *model, const double *p, double time, double flux[3])
+{
+    double middle[3] = {0}, *place = NULL;
+    const double *at = model->mesh ? model->mesh->rest[0] : NULL;
+    if (!at) {
+        at = place = mem_alloc(3 * (size_t)model->point_count, sizeof *place);
+        model->body->ops->places(model, model->x, place);
+    }
+    for (int v = 0; v < model->point_count; v++)
+        for (int i = 0; i < 3; i++) middle[i] += at[3 * v + i] / model->point_count;
+    flux_value((FluxSum){model->fields, model->flux_blocks, p, time}, middle, flux);
+    mem_free(place);
+}
+
+static bool knows_field(const Model *model, const FluxField *field, FluxPlace where, const double *place,
                         Error *err)
 {
     for (int k = 0; k < model->point_count; k++)
-        if (!flux_field_is_known(field, place + 3 * k, time, err)) return false;
+        if (!flux_field_is_known(field, place + 3 * k, where, err)) return false;
     return true;
 }
 
 bool model_knows_fields(const Model *model, const double *p, double time, const double *place, Error *err)
 {
-    for (int k = 0; model->fields && k < model->fields->count; k++)
-        if (p[model->field_scale + k] != 0 && !knows_field(model, model->fields->items[k], time, place, err))
+    const FluxBlocks *blocks = &model->flux_blocks;
+    for (int k = 0; model->fields && k < model->fields->count; k++) {
+        FluxPlace where = {time, p + blocks->move + 3 * k, p + blocks->turn + 3 * k};
+        if (p[blocks->scale + k] != 0 && !knows_field(model, model->fields->items[k], where, place, err))
             return error_prefix(err, "flux_density");
+    }
     const BodyOps *ops = model->body->ops;
     if (ops->knows && !ops->knows(model, time, place, err)) return false;
     const FluxField *flow = model->world ? model->world->flow : NULL;
-    return !flow || knows_field(model, flow, time, place, err) || error_prefix(err, "water.velocity");
+    return !flow || knows_field(model, flow, (FluxPlace){.time = time}, place, err) ||
+           error_prefix(err, "water.velocity");
 }
 
 /* ---- Trajectories ---- */
@@ -84,7 +105,7 @@ static void add_control(Model *model, const Scene *scene)
     const FluxUnknown *from = scene->design->unknowns.flux_density;
     Control *control = &model->control;
     *control = (Control){.kind = (ControlKind)from->per,
-                         .to = model->flux_density,
+                         .to = model->flux_blocks.uniform,
                          .width = 3,
                          .steps = scene->time.steps,
                          .start = model->time,

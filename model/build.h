@@ -5,8 +5,8 @@
  * at the line: they return false after adding an error to the file (yaml_refuse). */
 #pragma once
 #include "model/scene.h"
-#include "model/timed_flux.h"
-#include "surface/flux_field.h"
+#include "field/timed.h"
+#include "field/flux_field.h"
 #include "surface/select.h"
 #include "world/obstacle.h"
 
@@ -16,7 +16,7 @@ typedef struct Build {
     double size;        /* m, the body's: the scale on which fields vary */
     double time;        /* s, of formulas; where a motion begins */
     double duration;    /* s, of a motion; 0: statics */
-    TimedFlux *timed;   /* where a uniform field that depends on time is left; NULL: in statics */
+    Timed *timed;       /* where a uniform field that depends on time is left; NULL: in statics */
     double mesh_scale;  /* of the mesh's file; 1 where it is generated */
     MeshReport *report; /* of warnings; NULL: none are wanted */
 } Build;
@@ -107,8 +107,16 @@ typedef bool BuildFits(const Mesh *mesh, const MeshFile *file);
 /* place[vertex_count][3] m: that of the pose; as it was where there is none. A file must fit; NULL: its faces do not matter. */
 bool build_pose(const Build *b, Key at, const PoseScene *scene, BuildFits *fits, double (*place)[3]);
 
-/* uniform[3] in T, and the caller's *field NULL; or 0 and a field that varies in space. */
-bool build_flux(const Build *b, Key at, const FluxScene *scene, double *uniform, FluxField **field);
+/* The sum of a list: uniform[3] in T, and what varies in space, added to the fields. */
+bool build_flux(const Build *b, Key at, const FluxScene *list, int count, double *uniform,
+                FluxFields *fields);
+
+/* Three numbers in time; NULL: nothing. The columns of a file as in table_read. */
+bool build_path(const Build *b, Key at, const PathScene *scene, const char *columns, Timed *path);
+
+/* How something moves and turns, the scene's keys `move` and `turn` below `at`; its pivot stays. */
+bool build_rigid_move(const Build *b, Key at, const PathScene *move, const PathScene *turn,
+                      RigidMove *motion);
 
 /* target[vertex_count][3] m; a row of NAN where a vertex has none. */
 bool build_target(const Build *b, Key at, const TargetScene *scene, double (*target)[3]);

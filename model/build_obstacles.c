@@ -170,25 +170,6 @@ static bool shape(const Build *b, Key at, const ObstacleScene *scene, Obstacle *
     return true;
 }
 
-/* At up to 64 times of a motion, or in statics at one. */
-static bool check_motion(const Build *b, Key at, Formula *formula)
-{
-    int times = b->duration > 0 ? 64 : 0;
-    for (int k = 0; k <= times; k++) {
-        double time = b->time + (times ? b->duration * k / times : 0), value[3];
-        Error err;
-        if (!formula_eval(formula, &time, value, &err)) return yaml_refuse(b->file, at.text, "%s", err.text);
-    }
-    return true;
-}
-
-static bool motion(const Build *b, Key at, char *const *formula, Formula **made)
-{
-    if (!formula) return true;
-    *made = build_formula(b, at, formula, 3, NULL, 0, (const char *const[]){"t", NULL});
-    return *made && check_motion(b, at, *made);
-}
-
 static bool check_other_names(const Build *b, Key at, const Obstacle *list, int count)
 {
     for (int k = 0; k < count; k++)
@@ -208,8 +189,7 @@ bool build_obstacles(const Build *b, const ObstacleScene *scenes, int count, Obs
         obstacle->name = scenes[k].name ? mem_text(scenes[k].name) : mem_format("obstacle%d", k + 1);
         ok = build_check_name(b, at, "an obstacle", obstacle->name) && ok;
         ok = check_other_names(b, at, *list, k) && ok;
-        ok = motion(b, key("%s.move", at.text), scenes[k].move, &obstacle->move) && ok;
-        ok = motion(b, key("%s.turn", at.text), scenes[k].turn, &obstacle->turn) && ok;
+        ok = build_rigid_move(b, at, scenes[k].move, scenes[k].turn, &obstacle->motion) && ok;
     }
     return ok;
 }

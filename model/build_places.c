@@ -1,4 +1,4 @@
-/* Selections, loads, fields and targets. */
+/* Selections, loads, poses and targets. */
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "io/image.h"
@@ -50,91 +50,6 @@ bool build_loads(const Build *b, Key at, const LoadScene *loads, int count, doub
     memset(load, 0, 3 * (size_t)b->mesh->vertex_count * sizeof *load);
     for (int k = 0; k < count; k++) ok = add_load(b, key("%s[%d]", at.text, k), &loads[k], load) && ok;
     return ok;
-}
-
-/* ---- Fields ---- */
-
-/* A uniform field: its value now, and where time matters later, what it follows from. Takes timed. */
-static bool put_uniform(const Build *b, Key at, TimedFlux timed, bool changes, double *uniform)
-{
-    Error err;
-    bool ok =
-        timed_flux_eval(&timed, b->time, uniform, &err) || yaml_refuse(b->file, at.text, "%s", err.text);
-    if (ok && b->timed && changes)
-        *b->timed = timed;
-    else
-        timed_flux_clear(&timed);
-    return ok;
-}
-
-/* A formula that depends on time only is a uniform field. */
-static bool flux_formula(const Build *b, Key at, const FluxScene *scene, FluxField **field, double *uniform)
-{
-    at = key("%s.formula", at.text);
-    Formula *formula =
-        build_formula(b, at, scene->formula, 3, scene->where, scene->where_count, build_variables_time);
-    if (!formula) return false;
-    bool varies = false;
-    for (int k = 0; k < 4; k++) varies |= formula_uses(formula, build_variables_time[k]);
-    if (!varies)
-        return put_uniform(b, at, (TimedFlux){.formula = formula}, formula_uses(formula, "t"), uniform);
-    *field = flux_field_formula(formula, b->size);
-    return true;
-}
-
-/* In statics a table must have rows around that time, in a motion over a good part of it. */
-static bool check_times(const Build *b, Key at, const char *path, const Table *table)
-{
-    int last = table->rows - 1;
-    double from = table->values[0], to = table->values[(size_t)table->columns * (size_t)last],
-           end = b->time + b->duration, covered = fmin(to, end) - fmax(from, b->time);
-    const double little = 0.01;
-    if (covered >= (1 - 1e-9) * TABLE_SHARE * b->duration) {
-        if (b->duration > 0 && b->duration < little * (to - from))
-            mesh_warn(b->report,
-                      "%s: t goes from %g to %g s, and the motion from %g to %g s only: is t in seconds?",
-                      path, from, to, b->time, end);
-        return true;
-    }
-    if (b->duration == 0)
-        return yaml_refuse(b->file, at.text,
-                           "%s:%d: t goes from %g to %g s, and the field is needed at %g s (time.at)", path,
-                           table->line[last], from, to, b->time);
-    return yaml_refuse(b->file, at.text,
-                       "%s:%d: t goes from %g to %g s, and the motion from %g to %g s: rows along half of it "
-                       "at least are needed",
-                       path, table->line[last], from, to, b->time, end);
-}
-
-static bool flux_table(const Build *b, Key at, const char *path, double *uniform)
-{
-    TimedFlux timed = {0};
-    Error err;
-    at = key("%s.file", at.text);
-    if (!timed_flux_read(path, &timed, &err)) return yaml_refuse(b->file, at.text, "%s", err.text);
-    if (!check_times(b, at, path, &timed.table)) {
-        timed_flux_clear(&timed);
-        return false;
-    }
-    return put_uniform(b, at, timed, true, uniform);
-}
-
-bool build_flux(const Build *b, Key at, const FluxScene *scene, double *uniform, FluxField **field)
-{
-    *field = NULL;
-    memset(uniform, 0, 3 * sizeof *uniform);
-    if (scene->formula_count) return flux_formula(b, at, scene, field, uniform);
-    if (scene->file) return flux_table(b, at, scene->file, uniform);
-    if (scene->dipole)
-        *field = flux_field_dipole(scene->dipole->at, scene->dipole->moment);
-    else if (scene->magnet) {
-        double moment[3];
-        for (int i = 0; i < 3; i++)
-            moment[i] = scene->magnet->remanence[i] * scene->magnet->volume / FLUX_MU_0;
-        *field = flux_field_dipole(scene->magnet->at, moment);
-    } else
-        memcpy(uniform, scene->value, sizeof scene->value);
-    return true;
 }
 
 /* ---- Poses and targets ---- */

@@ -18,14 +18,8 @@ static double flux_at_place(const Model *model, const double *p, Vec3 place, dou
 {
     double x[3], flux[3];
     vec3_store(x, place);
-    Vec3 sum = vec3_load(p + model->flux_density);
-    for (int k = 0; k < model->fields->count; k++) {
-        double factor = p[model->field_scale + k];
-        if (factor == 0) continue;
-        flux_field_value(model->fields->items[k], x, time, flux);
-        sum = vec3_add(sum, vec3_scale(factor, vec3_load(flux)));
-    }
-    return vec3_length(sum);
+    flux_value((FluxSum){model->fields, model->flux_blocks, p, time}, x, flux);
+    return vec3_length(vec3_load(flux));
 }
 
 /* Of the magnetised element in the largest field. */
@@ -60,8 +54,8 @@ void coercivity_advise(Model *model, const Scene *scene, MagnetPart part)
     for (int c = 0; c < model->case_count; c++)
         for (int s = 0; s < model->cases[c].stage_count; s++) {
             double *p = mem_copy(model->cases[c].stages[s].p, (size_t)model->params->size, sizeof *p);
-            timed_flux_largest(&model->flux_of_time, model->time, scene->time.step, scene->time.steps,
-                               p + model->flux_density);
+            timed_largest(&model->flux_of_time, model->time, scene->time.step, scene->time.steps,
+                          p + model->flux_blocks.uniform);
             char *doubt = judge(model, part, p, &model->cases[c].state);
             if (doubt) mesh_warn(&model->report, "%s: %s", model->cases[c].name, doubt);
             mem_free(doubt);

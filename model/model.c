@@ -14,11 +14,10 @@ bool model_move(const Model *model, double time, double part, double *x, Error *
 
 bool model_load(const Model *model, double time, bool flux_given, double *p, Error *err)
 {
-    const TimedFlux *timed = &model->flux_of_time;
+    const Timed *timed = &model->flux_of_time;
     const BodyOps *ops = model->body->ops;
     if (ops->load && !ops->load(model, time, p, err)) return false;
-    if (!flux_given && timed_flux_is_given(timed) &&
-        !timed_flux_eval(timed, time, p + model->flux_density, err))
+    if (!flux_given && timed_is_given(timed) && !timed_eval(timed, time, p + model->flux_blocks.uniform, err))
         return error_prefix(err, "flux_density");
     return !model->world || world_stands(model->world, time, err);
 }
@@ -36,7 +35,7 @@ static bool put_loads(Model *model, const Build *b, Key at, const LoadScene *loa
 {
     bool pulls = !isnan(gravity[0]);
     if (pulls && model->gravity < 0) return feels_none(model, b, at, "gravity");
-    if (flux && model->flux_density < 0) return feels_none(model, b, at, "flux_density");
+    if (flux && model->flux_blocks.uniform < 0) return feels_none(model, b, at, "flux_density");
     if (pulls) memcpy(p + model->gravity, gravity, 3 * sizeof *gravity);
     return !loads || model->body->ops->put_loads(model, b, key("%s.loads", at.text).text, loads, count, p);
 }
@@ -186,7 +185,7 @@ static Model *create(const Scene *scene, YamlFile *file, bool general)
 {
     Model *model = mem_alloc(1, sizeof *model);
     model->general = general;
-    model->gravity = model->flux_density = model->field_scale = -1;
+    model->gravity = model->flux_blocks.uniform = -1;
     model->time = scene->time.at;
     const JobRow *job = scene_job(scene);
     model->body = scene_body(scene);
@@ -225,7 +224,7 @@ void model_destroy(Model *model)
         mem_free(model->motions[m].vertices.items);
     }
     design_clear(&model->design);
-    timed_flux_clear(&model->flux_of_time);
+    timed_clear(&model->flux_of_time);
     mesh_report_clear(&model->report);
     if (model->self) model->body->ops->destroy(model->self);
     mem_free(model->cases);

@@ -2,7 +2,8 @@
  * cases (a drawing), which has its own job. */
 #pragma once
 #include "model/rows.h"
-#include "model/timed_flux.h"
+#include "field/flux.h"
+#include "field/timed.h"
 #include "optim/control.h"
 #include "optim/design.h"
 #include "surface/select.h"
@@ -22,7 +23,7 @@ typedef struct Start Start; /* start.h */
 /* What a scene says of the flux density, of all cases or of one. */
 typedef struct CaseFlux {
     double uniform[3]; /* T */
-    int field;         /* one of the body's fields, which vary in space; -1: none */
+    int first, count;  /* of the body's fields, which vary in space */
 } CaseFlux;
 
 struct Model {
@@ -35,9 +36,9 @@ struct Model {
     Start *start;     /* while it is made: what it starts from; NULL: nothing   */
     /* Nothing below is of a body without cases. */
     Params *params; /* the body's                                          */
-    /* First entries in p of gravity, of the uniform flux density and of the factors on `fields`; -1: it feels none. */
+    /* First entries in p of gravity, of the flux density and its `fields`; -1: it feels none. */
     int gravity;
-    int flux_density, field_scale;
+    FluxBlocks flux_blocks;
     FluxFields *fields; /* the body's */
     World *world;       /* what it meets, the body's; NULL: nothing */
     int point_count;    /* vertices or nodes                                   */
@@ -48,11 +49,11 @@ struct Model {
     int case_count, motion_count;
     Case *cases;
     Motion *motions;
-    double *x;              /* [dofs] rest or pose */
-    Design design;          /* of a design or trajectory */
-    Control control;        /* of a trajectory: the unknown flux density; no rows: none */
-    CaseFlux *flux;         /* of the scene, then of each case or stage */
-    TimedFlux flux_of_time; /* of a motion: the uniform flux density, if it changes */
+    double *x;          /* [dofs] rest or pose */
+    Design design;      /* of a design or trajectory */
+    Control control;    /* of a trajectory: the unknown flux density; no rows: none */
+    CaseFlux *flux;     /* of the scene, then of each case or stage */
+    Timed flux_of_time; /* of a motion: the uniform flux density, if it changes */
 };
 
 /* Reads the files that the scene names and builds everything. On bad input NULL, and the errors are in the
@@ -109,6 +110,10 @@ bool model_check_world(Model *model, YamlFile *file);
 
 /* A flux density, model->flux[number], into p. */
 void model_put_flux(const Model *model, int number, double *p);
+
+/* The flux density with those numbers and at that time in the middle of the body: the mean of its points at rest, or, of a
+ * body without a mesh, where it starts. T. */
+void model_flux(const Model *model, const double *p, double time, double flux[3]);
 
 /* The load cases or stages of a scene, each with p as a copy; false after a refusal. */
 bool model_cases(Model *model, const Build *b, const Scene *scene, const double *p);

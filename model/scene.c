@@ -79,48 +79,6 @@ const YamlTable magnetization_table = {
         WHERE_ROW(VectorScene),
         {0}}};
 
-static const YamlTable dipole_table = {
-    .name = "dipole",
-    .size = sizeof(DipoleScene),
-    .doc = "The field of a point dipole.",
-    .fields = (const YamlField[]){
-        {YAML_VECTOR(DipoleScene, at), .unit = "m", .required = true, .doc = "where it is"},
-        {YAML_VECTOR(DipoleScene, moment), .unit = "A m^2", .required = true, .doc = "its moment"},
-        {0}}};
-
-static const YamlTable magnet_table = {
-    .name = "magnet",
-    .size = sizeof(MagnetScene),
-    .doc =
-        "The field of a permanent magnet, taken as a dipole of moment remanence*volume/mu_0 at its centre.",
-    .fields = (const YamlField[]){
-        {YAML_VECTOR(MagnetScene, at), .unit = "m", .required = true, .doc = "its centre"},
-        {YAML_VECTOR(MagnetScene, remanence), .unit = "T", .required = true,
-         .doc = "its remanence, along its axis"},
-        {YAML_NUMBER(MagnetScene, volume), .unit = "m^3", .range = "(0, inf)", .required = true,
-         .doc = "its volume"},
-        {0}}};
-
-static const YamlTable flux_density_table = {
-    .name = "flux_density",
-    .size = sizeof(FluxScene),
-    .doc = "The applied magnetic flux density B. Where it varies in space, forces follow from its gradient.",
-    .fields = (const YamlField[]){
-        {YAML_VECTOR(FluxScene, value), .unit = "T", .one_of = 1, .required = true, .short_form = true,
-         .doc = "uniform"},
-        {YAML_TEXTS(FluxScene, formula), .one_of = 1, .required = true, .short_form = true, .min_count = 3,
-         .max_count = 3, .doc = "three expressions, in T, of the current position x, y, z, r and the time t"},
-        {YAML_FILE(FluxScene, file), .one_of = 1, .required = true,
-         .doc = "a CSV file with rows t, Bx, By, Bz (s, T), t ascending, along half of a motion at least: "
-                "uniform, linear "
-                "between the rows, constant beyond them"},
-        {YAML_OPTIONAL(FluxScene, dipole, &dipole_table), .one_of = 1, .required = true,
-         .doc = "a point dipole"},
-        {YAML_OPTIONAL(FluxScene, magnet, &magnet_table), .one_of = 1, .required = true,
-         .doc = "a permanent magnet"},
-        WHERE_ROW(FluxScene),
-        {0}}};
-
 /* ---- A mesh and its parts ---- */
 
 const YamlTable mesh_table = {
@@ -284,7 +242,8 @@ static const YamlTable case_table = {
         {YAML_TEXT(CaseScene, name), .doc = "its name in the result; case1, case2, .. if absent"},
         {YAML_NUMBER(CaseScene, weight), .when = "/job: design", .range = "[0, inf)", .fallback = "1",
          .doc = "of its objectives"},
-        {YAML_OPTIONAL(CaseScene, flux_density, &flux_density_table), .doc = "in place of the scene's"},
+        {YAML_LIST(CaseScene, flux_density, &flux_density_table), .alone = true,
+         .doc = "in place of the scene's"},
         {YAML_LIST(CaseScene, loads, &load_table), .doc = "in place of the scene's"},
         {YAML_VECTOR(CaseScene, gravity), .unit = "m/s^2", .doc = "in place of the shell's"},
         {YAML_OPTIONAL(CaseScene, target, &target_table), .doc = "in place of the scene's"},
@@ -297,7 +256,7 @@ static const YamlTable stage_table = {
            "What a stage does "
            "not say stays as it was.",
     .fields = (const YamlField[]){
-        {YAML_OPTIONAL(StageScene, flux_density, &flux_density_table), .doc = "the field"},
+        {YAML_LIST(StageScene, flux_density, &flux_density_table), .alone = true, .doc = "the field"},
         {YAML_LIST(StageScene, loads, &load_table), .doc = "the dead loads"},
         {YAML_VECTOR(StageScene, gravity), .unit = "m/s^2", .doc = "acceleration of gravity"},
         {YAML_NUMBER(StageScene, time), .unit = "s", .doc = "the time t of formulas"},
@@ -443,7 +402,7 @@ const YamlTable scene_form = {
         "them.",
     .fields = (const YamlField[]){
         {YAML_CHOICE(Scene, job), .choices = scene_job_names, .required = true, .doc = "what to do"},
-        {YAML_TABLE(Scene, flux_density, &flux_density_table), .fallback = "[0, 0, 0]",
+        {YAML_LIST(Scene, flux_density, &flux_density_table), .alone = true, .fallback = "[0, 0, 0]",
          .doc = "applied field"},
         {YAML_LIST(Scene, fix, &fix_table), .doc = "what is held"},
         {YAML_LIST(Scene, loads, &load_table), .doc = "dead loads"},

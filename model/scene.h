@@ -5,14 +5,15 @@
  * Numbers are SI; an absent number is NAN, an absent choice -1, an absent list or table NULL (YamlKind). */
 #pragma once
 #include "io/yaml.h"
+#include "model/scene_flux.h"
 #include "model/scene_world.h"
 
 /* ---- Values over faces, edges or space ---- */
 
 /* Helper of a formula: where: {a: "atan2(y, x)"} */
-typedef struct WhereScene {
+struct WhereScene {
     char *name, *formula;
-} WhereScene;
+};
 
 typedef struct NumberGroup {
     char *group;
@@ -43,23 +44,6 @@ typedef struct VectorScene {
     double other[3];
     int formula_count, where_count, groups_count;
 } VectorScene;
-
-typedef struct DipoleScene {
-    double at[3], moment[3];
-} DipoleScene;
-
-typedef struct MagnetScene {
-    double at[3], remanence[3], volume;
-} MagnetScene;
-
-typedef struct FluxScene {
-    double value[3];
-    char **formula, *file;
-    WhereScene *where;
-    DipoleScene *dipole;
-    MagnetScene *magnet;
-    int formula_count, where_count;
-} FluxScene;
 
 /* ---- A mesh and its parts ---- */
 
@@ -130,10 +114,10 @@ typedef struct TargetScene {
 typedef struct CaseScene {
     char *name;
     double weight, gravity[3];
-    FluxScene *flux_density;
+    FluxScene *flux_density; /* NULL: the scene's */
     LoadScene *loads;
     TargetScene *target;
-    int loads_count;
+    int flux_density_count, loads_count;
 } CaseScene;
 
 /* One stage of a sequence; what it does not say stays as in the stage before. */
@@ -141,7 +125,7 @@ typedef struct StageScene {
     double gravity[3], time;
     FluxScene *flux_density;
     LoadScene *loads;
-    int loads_count;
+    int flux_density_count, loads_count;
 } StageScene;
 
 /* ---- Design ---- */
@@ -164,6 +148,13 @@ typedef struct VectorUnknown {
 } VectorUnknown;
 
 /* Of a rod. */
+/* Of sources of the flux density: strengths, moves or turns. */
+typedef struct SourceUnknown {
+    double noise, scale, bounds[2];
+    char **sources; /* names; NULL: all */
+    int sources_count;
+} SourceUnknown;
+
 typedef struct StrainUnknown {
     double bounds[2], noise, scale;
 } StrainUnknown;
@@ -186,6 +177,7 @@ typedef struct UnknownsScene {
     NumberUnknown *young, *skin_young, *fold;
     StrainUnknown *natural_strain;
     FluxUnknown *flux_density;
+    SourceUnknown *source_strength, *source_move, *source_turn;
 } UnknownsScene;
 
 /* Members of every objective of one point of the body; and frames at which it counts. */
@@ -275,7 +267,7 @@ enum { BODIES_MAX = 8 };
 typedef struct Scene {
     int job;                /* number of its name (rows.h)                        */
     void *body[BODIES_MAX]; /* what it says of its body, in the place of its row; else NULL (scene_of) */
-    FluxScene flux_density;
+    FluxScene *flux_density;
     FixScene *fix;
     LoadScene *loads;
     TargetScene *target;
@@ -292,7 +284,8 @@ typedef struct Scene {
     int modes;
     OutputScene output;
     int *checks; /* SceneCheck */
-    int fix_count, loads_count, cases_count, sequence_count, obstacles_count, checks_count;
+    int flux_density_count, fix_count, loads_count, cases_count, sequence_count, obstacles_count,
+        checks_count;
 } Scene;
 
 /* Its keys: the common ones, and one for each body (rows.h). */

@@ -114,6 +114,45 @@ static const YamlTable flux_unknown_table = {
          .doc = "of a trajectory, in place of the scene's flux_density over time"},
         {0}}};
 
+#define SOURCE_UNKNOWN(u, natural)                                                                           \
+    (const YamlField[])                                                                                      \
+    {                                                                                                        \
+        {YAML_TEXTS(SourceUnknown, sources), .doc = "of which sources, by their names; of all if absent"},   \
+            {YAML_NUMBER(SourceUnknown, noise), .unit = u, .range = "[0, inf)", .fallback = "0",             \
+             .doc = "size of seeded noise that is added to the start"},                                      \
+            {YAML_NUMBER(SourceUnknown, scale), .unit = u, .range = "(0, inf)", .fallback = natural,         \
+             .doc = "a natural size: optimisers see the value over it"},                                     \
+            BOUNDS_ROW(SourceUnknown, u),                                                                    \
+        {                                                                                                    \
+            0                                                                                                \
+        }                                                                                                    \
+    }
+
+static const YamlTable strength_unknown_table = {.name = "unknown source_strength",
+                                                 .size = sizeof(SourceUnknown),
+                                                 .doc =
+                                                     "Factors on sources of the flux density as unknowns, "
+                                                     "the same in all load cases and at all times: of a coil "
+                                                     "its current over the scene's. They start at 1. A "
+                                                     "uniform source has none: its unknown is flux_density.",
+                                                 .fields = SOURCE_UNKNOWN(NULL, "1")};
+
+static const YamlTable move_unknown_table = {.name = "unknown source_move",
+                                             .size = sizeof(SourceUnknown),
+                                             .doc =
+                                                 "How far sources of the flux density are moved as unknowns, "
+                                                 "beyond where the scene has them, the same in all "
+                                                 "load cases and at all times. They start at 0.",
+                                             .fields = SOURCE_UNKNOWN("m", "10 mm")};
+
+static const YamlTable turn_unknown_table = {.name = "unknown source_turn",
+                                             .size = sizeof(SourceUnknown),
+                                             .doc =
+                                                 "How far sources of the flux density are turned about their "
+                                                 "centres as unknowns, beyond how the scene has them, "
+                                                 "rotation vectors. They start at 0.",
+                                             .fields = SOURCE_UNKNOWN("rad", "1 rad")};
+
 static const YamlTable unknowns_table = {
     .name = "unknowns",
     .size = sizeof(UnknownsScene),
@@ -130,6 +169,12 @@ static const YamlTable unknowns_table = {
          .doc = "of a rod, three numbers per element"},
         {YAML_OPTIONAL(UnknownsScene, flux_density, &flux_unknown_table),
          .doc = "three numbers per load case"},
+        {YAML_OPTIONAL(UnknownsScene, source_strength, &strength_unknown_table),
+         .doc = "a factor per source of the flux density: of coils, their currents"},
+        {YAML_OPTIONAL(UnknownsScene, source_move, &move_unknown_table),
+         .doc = "three numbers per source: where magnets and coils are"},
+        {YAML_OPTIONAL(UnknownsScene, source_turn, &turn_unknown_table),
+         .doc = "three numbers per source: how they are turned"},
         {0}}};
 
 /* ---- Objectives ---- */

@@ -130,10 +130,10 @@ const YamlTable obstacle_table = {
          .doc = "any solid thing"},
         {YAML_NUMBER(ObstacleScene, friction), .when = MOTIONS, .otherwise = FRICTIONLESS,
          .range = "[0, inf)", .doc = "coefficient of friction; contact.friction if absent"},
-        {YAML_TEXTS(ObstacleScene, move), .min_count = 3, .max_count = 3,
-         .doc = "how far it has moved: three expressions of the time t, in m; friction feels its velocity"},
-        {YAML_TEXTS(ObstacleScene, turn), .min_count = 3, .max_count = 3,
-         .doc = "how far it has turned: a rotation vector, three expressions of t, in rad"},
+        {YAML_OPTIONAL(ObstacleScene, move, &path_table),
+         .doc = "how far it has moved, m; friction feels its velocity"},
+        {YAML_OPTIONAL(ObstacleScene, turn, &path_table),
+         .doc = "how far it has turned: a rotation vector, rad"},
         {0}}};
 
 /* ---- Contact ---- */

@@ -1,5 +1,6 @@
 /* scene_world.h - what a scene says of what its body meets: obstacles, contact and water. */
 #pragma once
+#include "model/scene_flux.h"
 #include <stdbool.h>
 
 typedef struct PlaneScene {
@@ -48,9 +49,8 @@ typedef struct ObstacleScene {
     HeightFieldScene *height_field;
     TubeScene *tube;
     BlockScene *mesh;
-    double friction;     /* NAN: contact.friction */
-    char **move, **turn; /* three of t each       */
-    int move_count, turn_count;
+    double friction; /* NAN: contact.friction */
+    PathScene *move, *turn;
 } ObstacleScene;
 
 /* true or false, or what it is made of */

@@ -215,6 +215,49 @@ static bool strain_unknown(Model *model, const Build *b, Design *design, const S
     return ok;
 }
 
+/* Which rows of a block of sources are meant; false after a refusal. */
+static bool mark_sources(const Model *model, const Build *b, const char *name, const SourceUnknown *from,
+                         bool *on)
+{
+    Key at = key("design.unknowns.%s", name);
+    const FluxFields *fields = model->fields;
+    if (!fields->count)
+        return yaml_refuse(b->file, at.text,
+                           "the flux density has no source that has a place: a magnet, coil, ..");
+    for (int k = 0; k < fields->count; k++) on[k] = !from->sources;
+    for (int s = 0; s < from->sources_count; s++) {
+        bool known = false;
+        for (int k = 0; k < fields->count; k++)
+            if (!strcmp(flux_field_name(fields->items[k]), from->sources[s])) on[k] = known = true;
+        if (!known)
+            return yaml_refuse(b->file, key("%s.sources[%d]", at.text, s).text,
+                               "the flux density has no source with a place that is named '%s'",
+                               from->sources[s]);
+    }
+    return true;
+}
+
+static bool source_unknown(Model *model, const Build *b, Design *design, const char *name,
+                           const SourceUnknown *from, int seed)
+{
+    Unknown unknown = {.map = UNKNOWN_LINEAR, .scale = from->scale};
+    put_bounds(&unknown, from->bounds);
+    bool *on = mem_alloc((size_t)model->fields->count, sizeof *on),
+         ok = check_bounds(b->file, name, from->bounds);
+    if (mark_sources(model, b, name, from, on)) {
+        Start start = start_of(model, name, model->cases[0].stages[0].p, from->noise, seed);
+        unknown.block = start.block, unknown.group_count = start.block->count;
+        unknown.group = each_its_own(start.block->count);
+        leave_out(&unknown, on);
+        add_unknown(model, design, &start, unknown);
+        mem_free(start.values);
+    } else {
+        ok = false;
+    }
+    mem_free(on);
+    return ok;
+}
+
 /* One value per case, each from its own start. */
 static void flux_per_case(Model *model, const FluxUnknown *from, const ParamBlock *block, Random *random,
                           Unknown unknown)
@@ -230,13 +273,13 @@ static void flux_per_case(Model *model, const FluxUnknown *from, const ParamBloc
 static bool sample_flux(Model *model, const Build *b, const Control *control, double *rows)
 {
     double *p = model->cases[0].stages[0].p;
-    const TimedFlux *timed = &model->flux_of_time;
+    const Timed *timed = &model->flux_of_time;
     int count = control->kind == CONTROL_KNOT ? control->rows : control->steps;
     Error err;
     for (int k = 0; k < count; k++) {
         double part = control->kind == CONTROL_KNOT ? (double)k / (count - 1) : (double)(k + 1) / count;
         double time = control->start + part * control->duration;
-        if (timed_flux_is_given(timed) && !timed_flux_eval(timed, time, p + control->to, &err))
+        if (timed_is_given(timed) && !timed_eval(timed, time, p + control->to, &err))
             return yaml_refuse(b->file, "flux_density", "%s", err.text);
         const double *B = p + control->to;
         if (control->kind != CONTROL_HARMONIC) memcpy(rows + 3 * k, B, 3 * sizeof *B);
@@ -308,6 +351,9 @@ static bool add_unknowns(Model *model, const Scene *scene, const Build *b)
                           unknowns->fold,          unknowns->natural_strain, unknowns->flux_density};
     static const char *const names[] = {"magnetization", "young",          "skin_young",
                                         "fold",          "natural_strain", "flux_density"};
+    const SourceUnknown *sources[] = {unknowns->source_strength, unknowns->source_move,
+                                      unknowns->source_turn};
+    static const char *const source_names[] = {"source_strength", "source_move", "source_turn"};
     for (int k = 0; k < 6; k++)
         if (asked[k] && !params_find(model->params, names[k]))
             return yaml_refuse(b->file, key("design.unknowns.%s", names[k]).text, "%s has no %s",
@@ -321,11 +367,13 @@ static bool add_unknowns(Model *model, const Scene *scene, const Build *b)
     if (unknowns->fold) ok = number_unknown(model, b, design, "fold", unknowns->fold, seed) && ok;
     if (unknowns->natural_strain) ok = strain_unknown(model, b, design, unknowns->natural_strain, seed) && ok;
     if (unknowns->flux_density) ok = flux_unknown(model, b, scene) && ok;
+    for (int k = 0; k < 3; k++)
+        if (sources[k]) ok = source_unknown(model, b, design, source_names[k], sources[k], seed) && ok;
     if (ok && !design->unknown_count)
-        ok = yaml_refuse(
-            b->file, "design.unknowns",
-            "a design needs an unknown: magnetization, young, skin_young, fold, natural_strain or "
-            "flux_density");
+        ok = yaml_refuse(b->file, "design.unknowns",
+                         "a design needs an unknown: magnetization, young, skin_young, fold, natural_strain, "
+                         "flux_density, "
+                         "source_strength, source_move or source_turn");
     return ok;
 }
 

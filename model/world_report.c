@@ -32,7 +32,8 @@ static char *obstacle_text(const Model *model, int k)
     const Obstacle *obstacle = &world->obstacles[k];
     double friction = first_params(model)[world->friction + k];
     char *text = mem_format("%s (%s%s%s", obstacle->name, obstacle->ops->kind,
-                            obstacle->move ? ", moves" : "", obstacle->turn ? ", turns" : "");
+                            timed_is_given(&obstacle->motion.move) ? ", moves" : "",
+                            timed_is_given(&obstacle->motion.turn) ? ", turns" : "");
     if (!model->job->motion || friction == 0) return mem_join(text, ")", "");
     char *rubs = mem_format(", friction %.3g)", friction);
     text = mem_join(text, rubs, "");
@@ -117,8 +118,7 @@ char *world_describe(const Model *model, const Scene *scene)
 /* ---- What is doubtful ---- */
 
 /* How deep is it where it is deepest, with its outside, m? */
-static double depth_in(const World *world, int obstacle, const ObstaclePose *pose, const double *x,
-                       int *vertex)
+static double depth_in(const World *world, int obstacle, const RigidPose *pose, const double *x, int *vertex)
 {
     double deepest = -INFINITY;
     for (int v = 0; v < world->body.vertex_count; v++) {

@@ -29,7 +29,7 @@ typedef struct Unknown {
     int first;      /* first entry in u (of case 0); set by design_add */
 } Unknown;
 
-enum { DESIGN_MAX_UNKNOWNS = 8 };
+enum { DESIGN_MAX_UNKNOWNS = 12 };
 
 typedef struct Design {
     int case_count, unknown_count, size; /* size of u */

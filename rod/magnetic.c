@@ -5,7 +5,7 @@
  *
  * With u = R^T B and Q = R M a turn of the node feels u x M, its position -G^T Q. */
 #include "rod/term.h"
-#include "surface/flux.h"
+#include "field/flux.h"
 #include <assert.h>
 
 enum { TURN = 0, PLACE = 6 }; /* an element's dofs: turns of both nodes; where fields vary, their positions */
@@ -55,14 +55,15 @@ static Pack3 to_body(const Node *node, Pack3 v)
     return rotated(node->q, true, v);
 }
 
-/* The field of the numbers in values, which are laid out as p: p's own, or derivatives. */
-static void set_field(const RodTerm *term, const Point *at, const Pack *place, const double *values,
-                      Node *node)
+static FluxSum sum_of(const RodTerm *term, const Point *at)
 {
-    const Rod *rod = term->rod;
-    FluxNumbers numbers = {values + rod->flux_density, values + rod->field_scale};
-    node->flux = varies(term) ? flux_at(&rod->fields, numbers, pack3_load(place), at->time)
-                              : flux_uniform(numbers.uniform);
+    return (FluxSum){&term->rod->fields, term->rod->flux, at->p, at->time};
+}
+
+static void set_field(const RodTerm *term, const Point *at, const Pack *place, Node *node)
+{
+    node->flux = varies(term) ? flux_at(sum_of(term, at), pack3_load(place))
+                              : flux_uniform(at->p + term->rod->flux.uniform);
     node->u = to_body(node, node->flux.B);
 }
 
@@ -77,7 +78,7 @@ static Node node_at(const RodTerm *term, int pack, int k, const Point *at, const
         Quat half = {1, {turn.x[l] / 2, turn.y[l] / 2, turn.z[l] / 2}};
         node.q[l] = quat_unit(quat_mul(q, half));
     }
-    set_field(term, at, x + PLACE + 3 * k, at->p, &node);
+    set_field(term, at, x + PLACE + 3 * k, &node);
     return node;
 }
 
@@ -121,7 +122,7 @@ static Pack magnetic_eval(const void *self, int pack, const Point *at, const Pac
     int size = magnetic_size(self);
     Pack3 M =
         pack3_scale(half_volume(term, pack), rod_term_vector(term, pack, at->p + term->rod->magnetization));
-    const double *B = at->p + term->rod->flux_density;
+    const double *B = at->p + term->rod->flux.uniform;
     Pack energy = {0};
     if (g) rod_term_clear(g, size);
     if (H) element_clear(H, size);
@@ -140,21 +141,6 @@ static Pack magnetic_eval(const void *self, int pack, const Point *at, const Pac
     return energy;
 }
 
-/* What the motions w of a node do with a field there: w.dE/dx is a.B - Q.G b, but for the sign. */
-typedef struct Work {
-    Pack3 place, a, Q, b;
-} Work;
-
-static void add_factors(const RodTerm *term, int lanes, const Point *at, const Work *work, double *dp)
-{
-    const Rod *rod = term->rod;
-    for (int k = 0; k < rod->fields.count; k++) {
-        Flux flux = flux_of_field(rod->fields.items[k], work->place, at->time);
-        Pack r = pack3_dot(work->a, flux.B) - pack3_dot(work->Q, pack_mat_times(flux.gradient, work->b));
-        for (int l = 0; l < lanes; l++) dp[rod->field_scale + k] += r[l];
-    }
-}
-
 /* The force on a turn is u x M, that on a place -G^T R M. */
 static void magnetic_param(const void *self, int pack, int lanes, const Point *at, const Pack *x,
                            const Pack *w, double *dp)
@@ -166,16 +152,16 @@ static void magnetic_param(const void *self, int pack, int lanes, const Point *a
         Node node = node_at(term, pack, k, at, x);
         Pack3 turn = pack3_scale(half_volume(term, pack), pack3_load(w + TURN + 3 * k));
         Pack3 dM = pack3_cross(turn, node.u), dB = to_world(&node, pack3_cross(M, turn));
+        FluxWork work = {.weight = pack_set(1), .a = dB};
         if (varies(term)) {
-            Work work = {pack3_load(x + PLACE + 3 * k), dB, to_world(&node, M),
-                         pack3_scale(half_volume(term, pack), pack3_load(w + PLACE + 3 * k))};
+            work.x = pack3_load(x + PLACE + 3 * k), work.Q = pack3_neg(to_world(&node, M));
+            work.b = pack3_scale(half_volume(term, pack), pack3_load(w + PLACE + 3 * k));
             dM = pack3_sub(dM, to_body(&node, pack_mat_times(node.flux.gradient, work.b)));
-            add_factors(term, lanes, at, &work, dp);
         }
+        flux_add_param(sum_of(term, at), &work, lanes, dp);
         for (int l = 0; l < lanes; l++) {
-            double *m = dp + rod->magnetization + 3 * (pack * PACK_LANES + l), *b = dp + rod->flux_density;
+            double *m = dp + rod->magnetization + 3 * (pack * PACK_LANES + l);
             m[0] += dM.x[l], m[1] += dM.y[l], m[2] += dM.z[l];
-            b[0] += dB.x[l], b[1] += dB.y[l], b[2] += dB.z[l];
         }
     }
 }
@@ -189,7 +175,9 @@ static void magnetic_param_forward(const void *self, int pack, const Point *at, 
           dM = pack3_scale(half_volume(term, pack), rod_term_vector(term, pack, dp + rod->magnetization));
     for (int k = 0; k < 2; k++) {
         Node node = node_at(term, pack, k, at, x), change = node;
-        set_field(term, at, x + PLACE + 3 * k, dp, &change);
+        change.flux = varies(term) ? flux_change(sum_of(term, at), dp, pack3_load(x + PLACE + 3 * k))
+                                   : flux_uniform(dp + rod->flux.uniform);
+        change.u = to_body(&change, change.flux.B);
         pack3_store(r + TURN + 3 * k, pack3_add(pack3_cross(node.u, dM), pack3_cross(change.u, M)));
         if (varies(term))
             pack3_store(r + PLACE + 3 * k, pack3_neg(pack3_add(pull(&node, dM), pull(&change, M))));

@@ -2,7 +2,7 @@
  * the arclength s and the length L of its strand. The force on each metre is -grad u: a spring to a wall, buoyancy in
  * layers, charges. */
 #pragma once
-#include "surface/formula_jet.h"
+#include "field/formula_jet.h"
 
 typedef struct RodPotential RodPotential;
 

@@ -28,12 +28,12 @@ Rod *rod_create_strands(int strands, int each, const double *length, RodSection 
     rod->young = params_add(params, "young", "Pa", elements, 1, false);
     rod->natural_strain = params_add(params, "natural_strain", "1/m", elements, 3, false);
     rod->magnetization = params_add(params, "magnetization", "A/m", elements, 3, false);
-    rod->flux_density = params_add(params, "flux_density", "T", 1, 3, true);
+    rod->flux.uniform = params_add(params, "flux_density", "T", 1, 3, true);
     rod->gravity = params_add(params, "gravity", "m/s^2", 1, 3, true);
     rod->load = params_add(params, "load", "N", elements + strands, 3, true);
     rod->pull = params_add(params, "pull", "N", elements, 3, true);
     rod->damping = params_add(params, "damping", "N s/m", 1, 1, false);
-    rod->field_scale = params_add(params, "field_scale", "", rod->fields.count, 1, true);
+    rod->flux = flux_blocks_add(params, &rod->fields, rod->flux.uniform);
     rod->couple = params_add(params, "couple", "N m", rod->couples ? elements + strands : 0, 3, true);
     rod->potential_scale = params_add(params, "potential_scale", "", rod->potentials.count, 1, true);
     return rod;
@@ -105,13 +105,14 @@ void rod_default_params(const Rod *rod, double young, double *p)
 {
     for (int i = 0; i < rod->params.size; i++) p[i] = 0;
     for (int e = 0; e < rod->elements; e++) p[rod->young + e] = young;
+    flux_blocks_default(&rod->fields, &rod->flux, p);
     for (int k = 0; k < rod->potentials.count; k++) p[rod->potential_scale + k] = 1;
 }
 
 bool rod_field_varies(const Rod *rod, const double *p)
 {
     bool varies = false;
-    for (int k = 0; k < rod->fields.count; k++) varies |= p[rod->field_scale + k] != 0;
+    for (int k = 0; k < rod->fields.count; k++) varies |= p[rod->flux.scale + k] != 0;
     return varies;
 }
 

@@ -28,7 +28,7 @@
 #include "rod/section.h"
 #include "solve/params.h"
 #include "solve/system.h"
-#include "surface/flux_field.h"
+#include "field/flux.h"
 #include "world/world.h"
 
 typedef enum RodSupport { ROD_FREE, ROD_PINNED, ROD_CLAMPED } RodSupport;
@@ -67,12 +67,11 @@ typedef struct Rod {
     int young;           /* [element] Pa                                                   */
     int natural_strain;  /* [element][3] twist, k1, k2, 1/m                                */
     int magnetization;   /* [element][3] A/m, in the material frame                        */
-    int flux_density;    /* [3] T, the uniform part                                        */
+    FluxBlocks flux;     /* flux_density [3] T, the uniform part, and those of fields      */
     int gravity;         /* [3] m/s^2                                                      */
     int load;            /* [node][3] N, dead                                              */
     int pull;            /* [element][3] N, the loads beyond the element (rod_sum_loads)   */
     int damping;         /* [1] N s/m at every node, in steps of time                      */
-    int field_scale;     /* [field] factors on the fields                                  */
     int couple;          /* [node][3] N m, dead: rows are there where there are couples    */
     int potential_scale; /* [potential] factors on the potentials                         */
     bool couples;
@@ -115,7 +114,7 @@ WorldBody rod_world_body(Rod *rod);
 /* Mass of each node, mass[nodes], kg: half an element at the ends. */
 void rod_node_mass(const Rod *rod, double *mass);
 
-/* Young's modulus everywhere, all else 0. p[params.size] */
+/* Young's modulus everywhere, scales and strengths of fields 1, all else 0. p[params.size] */
 void rod_default_params(const Rod *rod, double young, double *p);
 
 /* Is one of the fields that vary in space at work in p? */

@@ -16,7 +16,7 @@ static Vec3 element_pull(const Rod *rod, const double *p, int e, Vec3 *weight)
 {
     double element = rod->unit.mass * rod_element_length(rod, e);
     int each = rod_each(rod);
-    Vec3 g = vec3_load(p + rod->gravity), B = vec3_load(p + rod->flux_density);
+    Vec3 g = vec3_load(p + rod->gravity), B = vec3_load(p + rod->flux.uniform);
     *weight = vec3_scale(element, g);
     Vec3 pull = vec3_axpy(each - e % each - 0.5, *weight, vec3_load(p + rod->pull + 3 * e));
     return vec3_axpy(rod->area * p[rod->magnetization + 3 * e], B, pull);

@@ -42,11 +42,11 @@ Shell *shell_create(Mesh *mesh, const FluxFields *fields)
     shell->young = params_add(params, "young", "Pa", mesh->face_count, 1, false);
     shell->fold = params_add(params, "fold", "", mesh->edge_count, 1, false);
     shell->magnetization = params_add(params, "magnetization", "A/m", mesh->face_count, 3, false);
-    shell->flux_density = params_add(params, "flux_density", "T", 1, 3, true);
+    shell->flux.uniform = params_add(params, "flux_density", "T", 1, 3, true);
     shell->gravity = params_add(params, "gravity", "m/s^2", 1, 3, true);
     shell->load = params_add(params, "load", "N", mesh->vertex_count, 3, true);
     shell->damping = params_add(params, "damping", "N s/m", 1, 1, false);
-    shell->field_scale = params_add(params, "field_scale", "", shell->fields.count, 1, true);
+    shell->flux = flux_blocks_add(params, &shell->fields, shell->flux.uniform);
     return shell;
 }
 
@@ -143,7 +143,7 @@ void shell_default_params(const Shell *shell, double *p)
     for (int i = 0; i < shell->params.size; i++) p[i] = 0;
     for (int f = 0; f < shell->mesh->face_count; f++) p[shell->young + f] = 1e6;
     for (int e = 0; e < shell->mesh->edge_count; e++) p[shell->fold + e] = 1;
-    for (int k = 0; k < shell->fields.count; k++) p[shell->field_scale + k] = 1;
+    flux_blocks_default(&shell->fields, &shell->flux, p);
 }
 
 void shell_rest_state(const Shell *shell, double *x)
@@ -176,8 +176,7 @@ Term shell_membrane_term(const Shell *shell)
 Term shell_magnetic_term(const Shell *shell)
 {
     return magnetic_surface_term(layer_of(shell), &(MagneticSurfaceDef){.magnetization = shell->magnetization,
-                                                                        .flux_density = shell->flux_density,
-                                                                        .field_scale = shell->field_scale,
+                                                                        .flux = shell->flux,
                                                                         .fields = &shell->fields});
 }
 

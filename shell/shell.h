@@ -6,7 +6,7 @@
 #pragma once
 #include "solve/params.h"
 #include "solve/system.h"
-#include "surface/flux_field.h"
+#include "field/flux.h"
 #include "surface/membrane.h"
 #include "surface/mesh.h"
 #include "world/world.h"
@@ -32,11 +32,10 @@ typedef struct Shell {
     int young;         /* [face] Pa                                                            */
     int fold;          /* [edge] factor on the edge's curvature                                */
     int magnetization; /* [face][3] A/m, in material space                                     */
-    int flux_density;  /* [3] T, the uniform part                                              */
+    FluxBlocks flux;   /* flux_density [3] T, the uniform part, and those of fields */
     int gravity;       /* [3] m/s^2                                                            */
     int load;          /* [vertex][3] N, dead                                                  */
     int damping;       /* [1] N s/m at every vertex, in steps of time                          */
-    int field_scale;   /* [field] factors on the fields                                            */
 } Shell;
 
 /* Takes the mesh and the fields (NULL: none). Sets up the blocks of parameters, rest angles and nothing held. */
@@ -68,7 +67,7 @@ System *shell_system(const Shell *shell);
 /* The same with inertia and damping, for steps of time (march.h). */
 System *shell_dynamic_system(const Shell *shell);
 
-/* Default values of every block: young 1e6, fold 1, field_scale 1, the rest 0. p[params.size]. */
+/* Default values of every block: young 1e6, fold 1, scales and strengths of fields 1, the rest 0. p[params.size]. */
 void shell_default_params(const Shell *shell, double *p);
 
 /* x[dof_count] at rest: rest positions, angles 0. */

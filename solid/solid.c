@@ -38,11 +38,11 @@ Solid *solid_create(Tets *tets, const SolidDef *def, const FluxFields *fields)
         solid->skin_young = params_add(params, "skin_young", "Pa", tets->surface->face_count, 1, false);
     solid->volume_magnetization =
         params_add(params, skin ? "volume_magnetization" : "magnetization", "A/m", tets->count, 3, false);
-    solid->flux_density = params_add(params, "flux_density", "T", 1, 3, true);
+    solid->flux.uniform = params_add(params, "flux_density", "T", 1, 3, true);
     solid->gravity = params_add(params, "gravity", "m/s^2", 1, 3, true);
     solid->load = params_add(params, "load", "N", nodes, 3, true);
     solid->damping = params_add(params, "damping", "N s/m", 1, 1, false);
-    solid->field_scale = params_add(params, "field_scale", "", solid->fields.count, 1, true);
+    solid->flux = flux_blocks_add(params, &solid->fields, solid->flux.uniform);
     return solid;
 }
 
@@ -104,7 +104,7 @@ void solid_default_params(const Solid *solid, double *p)
     memset(p, 0, (size_t)solid->params.size * sizeof *p);
     for (int t = 0; t < solid->tets->count; t++) p[solid->young + t] = 1e6;
     for (int f = 0; solid->film && f < solid->tets->surface->face_count; f++) p[solid->skin_young + f] = 1e6;
-    for (int k = 0; k < solid->fields.count; k++) p[solid->field_scale + k] = 1;
+    flux_blocks_default(&solid->fields, &solid->flux, p);
 }
 
 void solid_node_mass(const Solid *solid, double *mass)
@@ -133,8 +133,7 @@ Term solid_magnetic_term(const Solid *solid)
 {
     return magnetic_surface_term(skin_of(solid, solid->skin),
                                  &(MagneticSurfaceDef){.magnetization = solid->magnetization,
-                                                       .flux_density = solid->flux_density,
-                                                       .field_scale = solid->field_scale,
+                                                       .flux = solid->flux,
                                                        .fields = &solid->fields});
 }
 

@@ -6,7 +6,7 @@
 #include "solid/tets.h"
 #include "solve/params.h"
 #include "solve/system.h"
-#include "surface/flux_field.h"
+#include "field/flux.h"
 #include "surface/membrane.h"
 #include "world/world.h"
 
@@ -40,11 +40,10 @@ typedef struct Solid {
     int magnetization;        /* [surface face][3] A/m, of the skin, in material space; -1: there is none */
     int skin_young;           /* [surface face] Pa, of the film; -1: there is none                        */
     int volume_magnetization; /* [tet][3] A/m, in material space                            */
-    int flux_density;         /* [3] T, the uniform part                                    */
+    FluxBlocks flux;          /* flux_density [3] T, the uniform part, and those of fields */
     int gravity;              /* [3] m/s^2                                                  */
     int load;                 /* [node][3] N, dead                                          */
     int damping;              /* [1] N s/m at every node, in steps of time                  */
-    int field_scale;          /* [field] factors on the fields                              */
 } Solid;
 
 typedef struct SolidDef {
@@ -72,7 +71,7 @@ WorldBody solid_world_body(const Solid *solid);
 /* All terms over the solid's dofs, prepared, with inertia and damping for steps of time. The solid must outlive it. */
 System *solid_system(const Solid *solid, bool motion);
 
-/* Default values of every block: young and skin_young 1e6, field_scale 1, the rest 0. p[params.size]. */
+/* Default values of every block: young and skin_young 1e6, scales and strengths of fields 1, the rest 0. p[params.size]. */
 void solid_default_params(const Solid *solid, double *p);
 
 /* Lumped mass of each node, kg: corners of quadratic tetrahedra bear 1/36 of them, middles 4/27 [Hinton, Rock, Zienkiewicz

@@ -9,7 +9,7 @@
 #include "solid/tet_pack.h"
 #include "solve/element.h"
 #include "surface/face.h"
-#include "surface/flux.h"
+#include "field/flux.h"
 
 typedef struct VolumeMagnetic {
     const Solid *solid;
@@ -59,11 +59,9 @@ static Place place_of(const VolumeMagnetic *magnetic, int pack, int q, const Pac
     return place;
 }
 
-/* With the numbers in values, which are laid out as p. */
-static Flux flux_with(const Solid *solid, const Point *at, const Place *place, const double *values)
+static FluxSum sum_of(const Solid *solid, const Point *at)
 {
-    FluxNumbers numbers = {values + solid->flux_density, values + solid->field_scale};
-    return flux_at(&solid->fields, numbers, place->x, at->time);
+    return (FluxSum){&solid->fields, solid->flux, at->p, at->time};
 }
 
 static Pack3 magnetization_of(const Solid *solid, int pack, const double *values)
@@ -119,7 +117,7 @@ static Pack magnetic_eval(const void *self, int pack, const Point *at, const Pac
     if (H) element_clear(H, 3 * nodes);
     for (int q = 0; q < tet_point_count(solid->tets); q++) {
         Place place = place_of(magnetic, pack, q, x);
-        Flux flux = flux_with(solid, at, &place, at->p);
+        Flux flux = flux_at(sum_of(solid, at), place.x);
         energy -= place.weight * pack3_dot(pack_mat_times(place.F, M), flux.B);
         if (g) add_forces(&place, nodes, M, &flux, g);
         if (H && solid->fields.count) add_stiffness(&place, nodes, M, &flux, H);
@@ -127,8 +125,8 @@ static Pack magnetic_eval(const void *self, int pack, const Point *at, const Pac
     return energy;
 }
 
-/* All blocks enter the force linearly. With W and w' the gradient and the value of w at a point, over -w:
- *     w.d/dB = W M,   w.d/dscale = (W M).B_field + Q.(G_field w'),   w.d/dM = W^T B + F^T (G w'). */
+/* M and B enter the force linearly. With W and w' the gradient and the value of w at a point, over -w:
+ *     w.d/dB = W M,   of a field in p: (W M).B' + Q.(G' w'),   w.d/dM = W^T B + F^T (G w'). */
 static void magnetic_param(const void *self, int pack, int lanes, const Point *at, const Pack *x,
                            const Pack *w, double *dp)
 {
@@ -136,25 +134,21 @@ static void magnetic_param(const void *self, int pack, int lanes, const Point *a
     const Solid *solid = magnetic->solid;
     int nodes = solid->tets->each;
     Pack3 M = magnetization_of(solid, pack, at->p);
+    FluxSum sum = sum_of(solid, at);
     for (int q = 0; q < tet_point_count(solid->tets); q++) {
         Place place = place_of(magnetic, pack, q, x);
-        Flux flux = flux_with(solid, at, &place, at->p);
+        Flux flux = flux_at(sum, place.x);
         PackMat W = tet_field_gradient(nodes, place.gradient, w);
         Pack3 mean = value_at(&place, nodes, w), Q = pack_mat_times(place.F, M), dQ = pack_mat_times(W, M);
         Pack3 dM =
             pack3_add(pack_mat_left(flux.B, W), pack_mat_left(pack_mat_times(flux.gradient, mean), place.F));
         for (int l = 0; l < lanes; l++) {
             double *m = dp + solid->volume_magnetization + 3 * pack_element(solid->tets->count, pack, l),
-                   *b = dp + solid->flux_density, weight = place.weight[l];
+                   weight = place.weight[l];
             m[0] -= weight * dM.x[l], m[1] -= weight * dM.y[l], m[2] -= weight * dM.z[l];
-            b[0] -= weight * dQ.x[l], b[1] -= weight * dQ.y[l], b[2] -= weight * dQ.z[l];
         }
-        for (int k = 0; k < solid->fields.count; k++) {
-            Flux field = flux_of_field(solid->fields.items[k], place.x, at->time);
-            Pack scale =
-                place.weight * (pack3_dot(dQ, field.B) + pack3_dot(Q, pack_mat_times(field.gradient, mean)));
-            dp[solid->field_scale + k] -= pack_sum(scale, lanes);
-        }
+        FluxWork work = {-place.weight, place.x, dQ, Q, mean};
+        flux_add_param(sum, &work, lanes, dp);
     }
 }
 
@@ -168,7 +162,7 @@ static void magnetic_param_forward(const void *self, int pack, const Point *at, 
     for (int i = 0; i < 3 * nodes; i++) r[i] = (Pack){0};
     for (int q = 0; q < tet_point_count(solid->tets); q++) {
         Place place = place_of(magnetic, pack, q, x);
-        Flux flux = flux_with(solid, at, &place, at->p), change = flux_with(solid, at, &place, dp);
+        Flux flux = flux_at(sum_of(solid, at), place.x), change = flux_change(sum_of(solid, at), dp, place.x);
         add_forces(&place, nodes, M, &change, r);
         add_forces(&place, nodes, dM, &flux, r);
     }

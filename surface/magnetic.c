@@ -8,7 +8,6 @@
 #include "base/memory.h"
 #include "solve/element.h"
 #include "surface/face.h"
-#include "surface/flux.h"
 
 typedef struct MagneticPack {
     Pack3 hat[3], normal; /* at rest; 1/m, 1 */
@@ -48,11 +47,9 @@ static Pack3 barycentre(const Pack *x)
     return pack3((x[0] + x[3] + x[6]) / 3, (x[1] + x[4] + x[7]) / 3, (x[2] + x[5] + x[8]) / 3);
 }
 
-/* At the barycentres, with the numbers in values, which are laid out as p. */
-static Flux flux_with(const MagneticSurfaceDef *def, const Point *at, const Pack *x, const double *values)
+static FluxSum sum_of(const MagneticSurfaceDef *def, const Point *at)
 {
-    FluxNumbers numbers = {values + def->flux_density, values + def->field_scale};
-    return flux_at(def->fields, numbers, barycentre(x), at->time);
+    return (FluxSum){def->fields, def->flux, at->p, at->time};
 }
 
 static Normal normal_of(const Pack *x)
@@ -173,7 +170,7 @@ static Pack magnetic_eval(const void *self, int pack, const Point *at, const Pac
 {
     const Magnetic *magnetic = self;
     const MagneticPack *face = &magnetic->packs[pack];
-    Flux flux = flux_with(&magnetic->def, at, x, at->p);
+    Flux flux = flux_at(sum_of(&magnetic->def, at), barycentre(x));
     Normal normal = normal_of(x);
     Pack3 M = magnetization_of(magnetic, pack, at->p), Q = carried(face, &normal, M, x);
     if (g) {
@@ -184,16 +181,16 @@ static Pack magnetic_eval(const void *self, int pack, const Point *at, const Pac
     return -face->volume * pack3_dot(Q, flux.B);
 }
 
-/* All blocks enter the force linearly. With W = sum_i dQ/dx_i w_i, w' the mean of w and G = dB/dx:
- *     w.d/dB     = -A h W,    w.d/dscale = -A h (W.B_field + Q.(G_field w'))
+/* M and B enter the force linearly. With W = sum_i dQ/dx_i w_i, w' the mean of w and G = dB/dx:
+ *     w.d/dB     = -A h W,    of a field in p: -A h (W.B' + Q.(G' w'))
  *     w.d/dM     = -A h (F0^T (G w') + sum_i (w_i.B) b_i + N sum_i w_i.d(n.B)/dx_i). */
 static void magnetic_param(const void *self, int pack, int lanes, const Point *at, const Pack *x,
                            const Pack *w, double *dp)
 {
     const Magnetic *magnetic = self;
-    const MagneticSurfaceDef *def = &magnetic->def;
     const MagneticPack *face = &magnetic->packs[pack];
-    Flux flux = flux_with(def, at, x, at->p);
+    FluxSum sum = sum_of(&magnetic->def, at);
+    Flux flux = flux_at(sum, barycentre(x));
     Normal normal = normal_of(x);
     Pack3 M = magnetization_of(magnetic, pack, at->p), W = {0}, dM = {0}, mean = {0};
     Pack mu = pack3_dot(face->normal, M), along = {0};
@@ -208,26 +205,20 @@ static void magnetic_param(const void *self, int pack, int lanes, const Point *a
     dM = pack3_axpy(along + pack3_dot(normal.n, pull), face->normal, dM);
     Pack3 Q = carried(face, &normal, M, x);
     for (int l = 0; l < lanes; l++) {
-        double *m = dp + magnetization_entry(magnetic, pack, l), *b = dp + def->flux_density;
-        double volume = face->volume[l];
+        double *m = dp + magnetization_entry(magnetic, pack, l), volume = face->volume[l];
         m[0] -= volume * dM.x[l], m[1] -= volume * dM.y[l], m[2] -= volume * dM.z[l];
-        b[0] -= volume * W.x[l], b[1] -= volume * W.y[l], b[2] -= volume * W.z[l];
     }
-    for (int k = 0; k < def->fields->count; k++) {
-        Flux field = flux_of_field(def->fields->items[k], barycentre(x), at->time);
-        Pack scale =
-            face->volume * (pack3_dot(W, field.B) + pack3_dot(Q, pack_mat_times(field.gradient, mean)));
-        for (int l = 0; l < lanes; l++) dp[def->field_scale + k] -= scale[l];
-    }
+    FluxWork work = {-face->volume, barycentre(x), W, Q, mean};
+    flux_add_param(sum, &work, lanes, dp);
 }
 
 static void magnetic_param_forward(const void *self, int pack, const Point *at, const Pack *x,
                                    const double *dp, Pack *r)
 {
     const Magnetic *magnetic = self;
-    const MagneticSurfaceDef *def = &magnetic->def;
     const MagneticPack *face = &magnetic->packs[pack];
-    Flux flux = flux_with(def, at, x, at->p), change = flux_with(def, at, x, dp);
+    FluxSum sum = sum_of(&magnetic->def, at);
+    Flux flux = flux_at(sum, barycentre(x)), change = flux_change(sum, dp, barycentre(x));
     Normal normal = normal_of(x);
     Pack3 M = magnetization_of(magnetic, pack, at->p), dM = magnetization_of(magnetic, pack, dp);
     Pack with_M[9];

@@ -8,10 +8,11 @@ check() { # folder, folders it may include (a front is no part of its body's fol
 }
 fronts=$(ls -d */front) # a body is a folder with one
 bodies=$(echo $fronts | sed 's#/front##g; s/ /|/g')
-physics='base|solve|io|surface'
+physics='base|solve|io|field|surface'
 check base 'base'
 check solve 'base|solve'
 check io 'base|io'
+check field 'base|solve|io|field'
 check optim 'base|solve|optim'
 check surface "$physics"
 check world "$physics|world"
@@ -28,7 +29,7 @@ check lib "$physics|optim|model|job|lib|[a-z]*/front"
 check cli "$physics|optim|model|job|lib|view|cli|spline"
 
 # What is not alike for bodies and jobs is in their rows (model/rows.h).
-for folder in base solve io optim surface world model job view lib cli; do
+for folder in base solve io field optim surface world model job view lib cli; do
     found=$(grep -HnE "(->|\.)($bodies|drawing)\b[^/\"]|\b(JOB|BODY)_[A-Z]" $folder/*.[ch] | grep -v '#include')
     [ -z "$found" ] || { echo "$folder/ asks for the kind of a body or job:"; echo "$found"; bad=1; }
 done

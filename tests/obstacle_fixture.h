@@ -11,7 +11,7 @@
 #include <string.h>
 #include <cmocka.h>
 
-static const ObstaclePose here = {.turn = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+static const RigidPose here = {.turn = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
 
 static inline double value_at(const Obstacle *obstacle, double x, double y, double z)
 {
@@ -21,13 +21,14 @@ static inline double value_at(const Obstacle *obstacle, double x, double y, doub
 }
 
 /* Three expressions of t. */
-static inline Formula *of_time(const char *x, const char *y, const char *z)
+static inline Timed of_time(const char *x, const char *y, const char *z)
 {
     Error err;
-    Formula *formula =
-        formula_create((const char *[]){x, y, z}, 3, NULL, 0, (const char *const[]){"t", NULL}, &err);
-    if (!formula) fail_msg("%s", err.text);
-    return formula;
+    const char *const t[] = {"t", NULL};
+    Timed timed = {.formula = formula_create((const char *[]){x, y, z}, 3, NULL, 0, t, &err),
+                   .first = TIMED_ALONE};
+    assert_non_null(timed.formula);
+    return timed;
 }
 
 /* least: of the gradient's length. */

@@ -47,7 +47,7 @@ static void make_cases(Fixture *f, Random *random)
         shell_default_params(shell, p);
         for (int i = 0; i < shell->mesh->face_count; i++) p[shell->young + i] = 1e5;
         memcpy(p + shell->magnetization, M, 3 * (size_t)shell->mesh->face_count * sizeof *M);
-        p[shell->flux_density] = 0.01, p[shell->flux_density + 2] = c ? -0.03 : 0.05;
+        p[shell->flux.uniform] = 0.01, p[shell->flux.uniform + 2] = c ? -0.03 : 0.05;
         f->cases[c] = case_create(c ? "down" : "up", p, (size_t)shell->params.size, 0);
         f->cases[c].weight = c ? 0.5 : 1;
         *case_add_objective(&f->cases[c]) = objective_target(count, all, (const double(*)[3])target, 1);

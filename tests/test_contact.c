@@ -17,8 +17,8 @@ static void check_terms(int corners, bool moving)
     Obstacle obstacles[] = {obstacle_sphere((double[]){0, 0, 0}, 0.02, false),
                             obstacle_plane((double[]){0, 0, -0.01}, (double[]){0.1, 0, 1})};
     if (moving) {
-        obstacles[0].move = of_time("0.02*t", "0.01*sin(3*t)", "0");
-        obstacles[0].turn = of_time("t", "2*t", "-t*t");
+        obstacles[0].motion.move = of_time("0.02*t", "0.01*sin(3*t)", "0");
+        obstacles[0].motion.turn = of_time("t", "2*t", "-t*t");
     }
     double x[3 * POINTS], p[4] = {300, 0.4, 0.7, 0};
     for (int v = 0; v < POINTS; v++) {
@@ -181,7 +181,7 @@ static void test_belt(void **state)
     (void)state;
     for (int implicit = 0; implicit < 2; implicit++) {
         Obstacle belt = floor_at(0);
-        belt.move = of_time("0.1*t", "0", "0");
+        belt.motion.move = of_time("0.1*t", "0", "0");
         Plate plate = plate_create(0.5, implicit, belt);
         plate_march(&plate, (double[]){0, 0, -G}, 100);
         assert_true(fabs(plate_speed(&plate) - 0.1) < 1e-3 * SLIP);
@@ -235,7 +235,8 @@ static void test_restored(void **state)
         Plate plates[2];
         for (int k = 0; k < 2; k++) {
             Obstacle floor = floor_at(0);
-            floor.move = of_time("0.1*t", "0", "0"), floor.turn = of_time("2*t", "0-3*t", "9*t");
+            floor.motion.move = of_time("0.1*t", "0", "0"),
+            floor.motion.turn = of_time("2*t", "0-3*t", "9*t");
             plates[k] = plate_create(0.5, implicit, floor);
             plates[k].def.newton.energy_tol = 1e-10;
         }

@@ -99,7 +99,7 @@ static Body strip_over(Obstacle *list, int count, Friction friction, BendingMode
     for (int f = 0; f < shell->mesh->face_count; f++)
         for (int i = 0; i < 3; i++)
             body.p[shell->magnetization + 3 * f + i] = (i == 0 ? 4e4 : 0) + 1e4 * random_signed(&random);
-    body.p[shell->flux_density + 2] = 0.03;
+    body.p[shell->flux.uniform + 2] = 0.03;
     body.p[shell->gravity + 2] = -200;
     body.p[world->stiffness] = 100;
     for (int k = 0; k < count; k++) body.p[world->friction + k] = 0.5;
@@ -163,8 +163,8 @@ static void check_strip(Obstacle *list, int count, Friction friction, BendingMod
 
 static void set_moving(Obstacle *obstacle)
 {
-    obstacle->move = of_time("0.1*t", "0.02*t", "0.05*t");
-    obstacle->turn = of_time("10*t", "0-5*t", "20*t");
+    obstacle->motion.move = of_time("0.1*t", "0.02*t", "0.05*t");
+    obstacle->motion.turn = of_time("10*t", "0-5*t", "20*t");
 }
 
 static void test_obstacles(void **unused)

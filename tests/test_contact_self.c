@@ -131,7 +131,7 @@ static void test_folded(void **unused)
     (void)unused;
     for (int contact = 0; contact < 2; contact++) {
         SelfBody b = folding_strip((int[]){24, 5}, contact, 0, 0);
-        SelfField field = {b.body.shell->flux_density, 0.2};
+        SelfField field = {b.body.shell->flux.uniform, 0.2};
         int crossings = 0;
         for (int k = 0; k < 20; k++) {
             march(&b, 2e-3, 5, &field);
@@ -156,7 +156,7 @@ static void test_statics(void **unused)
     shell_rest_state(b.body.shell, state.x);
     for (int k = 1; k <= 5; k++) {
         NewtonDef def = newton_default();
-        b.body.p[b.body.shell->flux_density + 2] = 0.01 * k;
+        b.body.p[b.body.shell->flux.uniform + 2] = 0.01 * k;
         NewtonInfo info = newton_minimize(sys, &def, &(Point){.p = b.body.p}, &state, NULL);
         assert_int_equal(info.status, NEWTON_CONVERGED);
         assert_int_equal(self_contact_crossings(&b.def, state.x, NULL, 0), 0);

@@ -44,7 +44,7 @@ static Body make_problem(ShapePattern pattern, int cells, double q, const double
     Body s = body_create(shell, shell_system(shell), YOUNG);
     for (int f = 0; f < shell->mesh->face_count; f++) s.p[shell->magnetization + 3 * f] = MAGNETIZATION;
     double B = q * YOUNG * THICKNESS * THICKNESS / (12 * MAGNETIZATION * LENGTH * LENGTH);
-    for (int i = 0; i < 3; i++) s.p[shell->flux_density + i] = B * direction[i];
+    for (int i = 0; i < 3; i++) s.p[shell->flux.uniform + i] = B * direction[i];
     return s;
 }
 

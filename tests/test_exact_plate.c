@@ -127,7 +127,7 @@ static void test_linear_magnetic(void **state)
     for (int f = 0; f < mesh->face_count; f++)
         for (int i = 0; i < 3; i++)
             b.p[b.shell->magnetization + 3 * f + i] = M[i], b.p[b.shell->young + f] = 0;
-    for (int i = 0; i < 3; i++) b.p[b.shell->flux_density + i] = B[i];
+    for (int i = 0; i < 3; i++) b.p[b.shell->flux.uniform + i] = B[i];
     for (int e = 0; e < mesh->edge_count; e++) {
         if (!mesh_edge_is_boundary(mesh, e)) continue;
         const int *v = mesh->edges[e];
@@ -169,11 +169,11 @@ static void test_balance(void **state)
     randomise(&b, &random);
     double B[3] = {0.02, -0.03, 0.05}, moment[3];
     for (int i = 0; i < 3; i++) { /* E_magnetic = -m.B: m from three unit fields */
-        b.p[shell->flux_density + i] = 1;
+        b.p[shell->flux.uniform + i] = 1;
         moment[i] = -term_energy(&b, 2);
-        b.p[shell->flux_density + i] = 0;
+        b.p[shell->flux.uniform + i] = 0;
     }
-    for (int i = 0; i < 3; i++) b.p[shell->flux_density + i] = B[i];
+    for (int i = 0; i < 3; i++) b.p[shell->flux.uniform + i] = B[i];
     /* Edge angles must be relaxed for a balance of positions alone: a rigid turn does not change them, so it
      * holds for any. */
     Point at = state_point(&b.state, b.p);

@@ -5,6 +5,7 @@
 #include "solve/params.h"
 #include "solve/system.h"
 #include "surface/magnetic.h"
+#include "tests/flux_fixture.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -23,7 +24,8 @@ typedef struct Skin {
     int faces[FACES][3];
     FluxFields fields;
     Params params;
-    int magnetization, flux_density, field_scale;
+    int magnetization;
+    FluxBlocks flux;
     double *p;
     System *sys;
 } Skin;
@@ -45,11 +47,13 @@ static void lay_out(Skin *s, Random *random)
     flux_fields_add(&s->fields, linear_field());
     flux_fields_add(&s->fields, flux_field_dipole((double[]){0, 0, -0.05}, (double[]){0.3, 0.1, 0.2}));
     s->magnetization = params_add(&s->params, "magnetization", "A/m", FACES, 3, false);
-    s->flux_density = params_add(&s->params, "flux_density", "T", 1, 3, true);
-    s->field_scale = params_add(&s->params, "field_scale", "", s->fields.count, 1, true);
+    s->flux.uniform = params_add(&s->params, "flux_density", "T", 1, 3, true);
+    s->flux = flux_blocks_add(&s->params, &s->fields, s->flux.uniform);
     s->p = params_vector(&s->params);
+    flux_blocks_default(&s->fields, &s->flux, s->p);
+    s->p[s->flux.scale + 1] = 0;
     for (int i = 0; i < 3 * FACES; i++) s->p[s->magnetization + i] = 5e4 * random_signed(random);
-    for (int i = 0; i < 3; i++) s->p[s->flux_density + i] = 0.05 * random_signed(random);
+    for (int i = 0; i < 3; i++) s->p[s->flux.uniform + i] = 0.05 * random_signed(random);
 }
 
 static void make(Skin *s, Random *random)
@@ -70,8 +74,7 @@ static void make(Skin *s, Random *random)
                        .volume = mem_copy(s->volume, FACES, sizeof(double)),
                        .rest = s->rest};
     system_add(s->sys, magnetic_surface_term(layer, &(MagneticSurfaceDef){.magnetization = s->magnetization,
-                                                                          .flux_density = s->flux_density,
-                                                                          .field_scale = s->field_scale,
+                                                                          .flux = s->flux,
                                                                           .fields = &s->fields}));
     system_prepare(s->sys);
 }
@@ -89,10 +92,10 @@ static double closed_form(const Skin *s, Quat turn, const double *x)
 {
     double energy = 0;
     for (int f = 0; f < FACES; f++) {
-        Vec3 middle = vec3(0, 0, 0), B = vec3_load(s->p + s->flux_density),
+        Vec3 middle = vec3(0, 0, 0), B = vec3_load(s->p + s->flux.uniform),
              M = quat_rotate(turn, vec3_load(s->p + s->magnetization + 3 * f));
         for (int i = 0; i < 3; i++) middle = vec3_axpy(1.0 / 3, vec3_load(x + 3 * s->faces[f][i]), middle);
-        B = vec3_axpy(s->p[s->field_scale], linear_at(middle), B);
+        B = vec3_axpy(s->p[s->flux.scale], linear_at(middle), B);
         energy -= s->volume[f] * vec3_dot(M, B);
     }
     return energy;
@@ -113,7 +116,7 @@ static void test_tilted(void **unused)
         vec3_store(state.x + 3 * v,
                    vec3_add(vec3(0.01, 0.02, -0.01), quat_rotate(turn, vec3_load(s.rest[v]))));
     for (int varies = 0; varies < 2; varies++) {
-        s.p[s.field_scale] = 0.8 * varies;
+        s.p[s.flux.scale] = 0.8 * varies;
         Point at = state_point(&state, s.p);
         double energy = system_gradient(s.sys, &at, g).energy, expected = closed_form(&s, turn, state.x);
         print_message("%s field: %.3g J, %.1e of it off\n", varies ? "varying" : "uniform", expected,
@@ -138,7 +141,8 @@ static void test_derivatives(void **unused)
     for (int i = 0; i < 9; i++) dof_size[i] = SIDE / 10;
     for (int i = 0; i < DOFS; i++) state.x[i] = s.rest[i / 3][i % 3] + SIDE / 10 * random_signed(&random);
     for (int on = 0; on < 2; on++) {
-        s.p[s.field_scale + on] = 1, s.p[s.field_scale + 1 - on] = 0;
+        disturb_fields(&s.fields, &s.flux, 2e-3, &random, s.p);
+        s.p[s.flux.scale + on] = 1, s.p[s.flux.scale + 1 - on] = 0;
         Point at = state_point(&state, s.p);
         TermError error = check_term(system_term(s.sys, 0), &s.params, &at, DOFS, dof_size, &random);
         print_message("gradient %.1e  hessian %.1e  param_forward %.1e  param %.1e\n", error.gradient,

@@ -115,9 +115,9 @@ static void test_fields(void **state)
         "design: {unknowns: {flux_density: {noise: 1 mT}}, objectives: [{target: 1}]}\n");
     const Shell *shell = b.model->self;
     assert_int_equal(shell->fields.count, 2);
-    assert_true(fabs(params_of(&b, 0, 0)[shell->flux_density + 2] - 0.02) < 1.01e-3);
+    assert_true(fabs(params_of(&b, 0, 0)[shell->flux.uniform + 2] - 0.02) < 1.01e-3);
     for (int c = 0; c < 3; c++)
-        for (int k = 0; k < 2; k++) assert_true(params_of(&b, c, 0)[shell->field_scale + k] == (c == k + 1));
+        for (int k = 0; k < 2; k++) assert_true(params_of(&b, c, 0)[shell->flux.scale + k] == (c == k + 1));
     assert_string_equal(b.model->cases[1].name, "case2");
     assert_int_equal(b.model->design.size, 9); /* three numbers for each case */
     clear(&b);
@@ -137,7 +137,7 @@ static void test_timed(void **state)
                        "%s/test_model_field.csv}\n",
                        folder);
     Built b = build("simulate", "  young: 1 MPa\n  damping: 1e-4\n", lines);
-    double *p = b.model->cases[0].stages[0].p, *B = p + shell_of(&b)->flux_density;
+    double *p = b.model->cases[0].stages[0].p, *B = p + shell_of(&b)->flux.uniform;
     assert_true(fabs(B[0] - 0.01) < 1e-16 && fabs(B[2] - 0.02) < 1e-16 && p[shell_of(&b)->damping] == 1e-4);
     const double times[4] = {-1, 1, 2, 9}, exact[4] = {0.01, 0.03, 0.015, 0};
     for (int k = 0; k < 4; k++)
@@ -151,7 +151,7 @@ static void test_timed(void **state)
     unlink("test_model_field.csv");
     b = build("simulate", "  young: 1 MPa\n",
               "fix: [{group: root}]\ntime: {step: 1 ms, steps: 2}\nflux_density: [\"0\", \"t\", \"2*t\"]\n");
-    p = b.model->cases[0].stages[0].p, B = p + shell_of(&b)->flux_density;
+    p = b.model->cases[0].stages[0].p, B = p + shell_of(&b)->flux.uniform;
     assert_true(B[1] == 0 && model_load(b.model, 0.25, false, p, &err) && B[1] == 0.25 && B[2] == 0.5);
     clear(&b);
 }

@@ -56,8 +56,8 @@ static void choose(const Place *place, Random *random, double x[3])
 }
 
 /* Differences of fourth order with a step h against gradient and Hessian, in parts of 1 and 1/size. */
-static double derivative_error(const Obstacle *obstacle, const ObstaclePose *pose, const double x[3],
-                               double h, double size)
+static double derivative_error(const Obstacle *obstacle, const RigidPose *pose, const double x[3], double h,
+                               double size)
 {
     static const double weight[4] = {1.0 / 12, -8.0 / 12, 8.0 / 12, -1.0 / 12}, step[4] = {-2, -1, 1, 2};
     Gap gap, other;
@@ -79,15 +79,6 @@ static double derivative_error(const Obstacle *obstacle, const ObstaclePose *pos
     return worst;
 }
 
-static Formula *three(const char *x, const char *y, const char *z)
-{
-    Error err;
-    Formula *formula =
-        formula_create((const char *const[]){x, y, z}, 3, NULL, 0, (const char *const[]){"t", NULL}, &err);
-    if (!formula) fail_msg("%s", err.text);
-    return formula;
-}
-
 /* As it is, moved, and moved and turned. The obstacle is cleared. */
 static void check_derivatives(Obstacle obstacle, Place place, double h, double size)
 {
@@ -95,9 +86,9 @@ static void check_derivatives(Obstacle obstacle, Place place, double h, double s
     double worst[3] = {0};
     for (int way = 0; way < 3; way++) {
         Error err;
-        if (way == 1) obstacle.move = three("0.3*t", "sin(t)", "-t");
-        if (way == 2) obstacle.turn = three("t", "0.5*t", "2 - t");
-        ObstaclePose pose;
+        if (way == 1) obstacle.motion.move = of_time("0.3*t", "sin(t)", "-t");
+        if (way == 2) obstacle.motion.turn = of_time("t", "0.5*t", "2 - t");
+        RigidPose pose;
         assert_true(obstacle_pose(&obstacle, 0.7, &pose, &err));
         for (int n = 0; n < 300; n++) {
             double own[3], x[3];
@@ -319,9 +310,9 @@ static void test_pose(void **state)
     (void)state;
     double point[3] = {1, 0, 2};
     Obstacle o = obstacle_plane(point, (double[3]){0, 0, 1});
-    o.move = three("0", "t", "0.5*t");
-    o.turn = three("0", "pi/4*t", "0");
-    ObstaclePose pose;
+    o.motion.move = of_time("0", "t", "0.5*t");
+    o.motion.turn = of_time("0", "pi/4*t", "0");
+    RigidPose pose;
     Gap gap;
     Error err;
     assert_true(obstacle_pose(&o, 2, &pose, &err));
@@ -329,8 +320,8 @@ static void test_pose(void **state)
     assert_near(gap.value, 3, 1e-14);
     assert_near(gap.gradient[0], 1, 1e-15);
     assert_near(gap.gradient[2], 0, 1e-15);
-    formula_destroy(o.move);
-    o.move = three("1/(t - 1)", "0", "0");
+    timed_clear(&o.motion.move);
+    o.motion.move = of_time("1/(t - 1)", "0", "0");
     o.name = mem_text("lid");
     assert_false(obstacle_pose(&o, 1, &pose, &err));
     assert_string_equal(err.text, "obstacle 'lid': move: \"1/(t - 1)\" is not a finite number at t = 1");

@@ -56,11 +56,11 @@ static void test_relative(void **unused)
 {
     (void)unused;
     Obstacle ball = obstacle_sphere((double[]){0, 0, 0}, 1e-3, false);
-    ball.move = of_time("0", "0", "-0.1*t");
+    ball.motion.move = of_time("0", "0", "-0.1*t");
     assert_int_equal(passes(&ball, 3, 0, 0.1, 1), 0);
     assert_int_equal(passes(&ball, 3, 0, 0, 1), 0);
-    formula_destroy(ball.move);
-    ball.move = of_time("0", "0", "0.1*t");
+    timed_clear(&ball.motion.move);
+    ball.motion.move = of_time("0", "0", "0.1*t");
     assert_int_equal(passes(&ball, 3, 0, 0, 1), 1);
     obstacle_clear(&ball);
 }
@@ -103,7 +103,7 @@ static Body shot_at(double radius, double speed, bool whole)
     snprintf(z, sizeof z, "min(%g*t, %g)", speed, radius + 5 * mm);
     Obstacle ball = obstacle_sphere((double[]){5.2 * mm, 4.7 * mm, -radius - 2 * mm}, radius, false);
     ball.name = mem_text("ball");
-    ball.move = of_time("0", "0", z);
+    ball.motion.move = of_time("0", "0", z);
     WorldBody shown = shell_world_body(shell);
     World *world = shell->world = world_create(&shown, mem_copy(&ball, 1, sizeof ball), 1);
     world->slip_speed = 1e-3, world->offset = shell->thickness / 2;

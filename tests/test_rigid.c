@@ -64,7 +64,7 @@ static void test_compass(void **state)
     Body b = body_create(shell, shell_system(shell), 1e6);
     assert_true(system_base_shift(b.sys) > 0);
     for (int f = 0; f < shell->mesh->face_count; f++) b.p[shell->magnetization + 3 * f] = 1e5;
-    b.p[shell->flux_density] = 1e-3, b.p[shell->flux_density + 2] = 2e-3;
+    b.p[shell->flux.uniform] = 1e-3, b.p[shell->flux.uniform + 2] = 2e-3;
     NewtonDef def = newton_default();
     NewtonInfo info = newton_minimize(b.sys, &def, &(Point){.p = b.p}, &b.state, NULL);
     assert_int_equal(info.status, NEWTON_CONVERGED);

@@ -51,7 +51,7 @@ static void test_pressed(void **state)
                   .stiffness = 1e4,
                   .obstacles = {obstacle_cylinder((double[]){L, 0, 6e-3}, (double[]){0, 1, 0}, 5e-3, false)},
                   .obstacle_count = 1};
-    def.obstacles[0].move = of_time("0", "0", "-0.001*min(t/0.1, 1)");
+    def.obstacles[0].motion.move = of_time("0", "0", "-0.001*min(t/0.1, 1)");
     Rig rig = rig_create(&def);
     rig.p[rig.rod->damping] = 1e-3;
     rig_start(&rig, young);
@@ -79,7 +79,7 @@ static void test_pipe(void **state)
                   .stiffness = 1e4,
                   .obstacles = {obstacle_cylinder((double[]){0, 0, 3 * r}, (double[]){1, 0, 0}, 4 * r, true)},
                   .obstacle_count = 1};
-    def.obstacles[0].move = of_time("0.05*t", "0", "0");
+    def.obstacles[0].motion.move = of_time("0.05*t", "0", "0");
     Rig rig = rig_create(&def);
     rig.p[rig.rod->gravity + 2] = -G;
     rig.p[rig.rod->damping] = 1e-3;
@@ -110,7 +110,7 @@ static void test_capstan(void **state)
                       .stiffness = 1e3,
                       .obstacles = {obstacle_cylinder((double[]){0, 0, 0}, (double[]){0, 1, 0}, R, false)},
                       .obstacle_count = 1};
-        def.obstacles[0].turn = of_time("0", back ? "-2*t" : "2*t", "0");
+        def.obstacles[0].motion.turn = of_time("0", back ? "-2*t" : "2*t", "0");
         Rig rig = rig_create(&def);
         Rod *rod = rig.rod;
         rod->strand[0].position = vec3(-R - r, 0, -STRAIGHT * step);
@@ -178,7 +178,7 @@ static void test_shot(void **state)
             .stiffness = 1e4,
             .obstacles = {obstacle_sphere((double[]){between ? 0.0525 : 0.055, 2e-4, 0.01}, 1e-3, false)},
             .obstacle_count = 1};
-        def.obstacles[0].move = of_time("0", "0", k / 2 ? "-100*t" : "-10*t");
+        def.obstacles[0].motion.move = of_time("0", "0", k / 2 ? "-100*t" : "-10*t");
         Rig rig = rig_create(&def);
         rig_start(&rig, def.young);
         int passed = 0, steps = k / 2 ? 3 : 20;

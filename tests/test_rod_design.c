@@ -64,8 +64,8 @@ static Fixture fixture_create(RodSupport end, Around around, bool cosserat, Rand
         vec3_store(p + rod->magnetization + 3 * e,
                    vec3(2e4, 5e3 * random_signed(random), 5e3 * random_signed(random)));
     }
-    vec3_store(p + rod->flux_density, vec3(0.004, -0.01, 0.015));
-    if (around == DIPOLE) p[rod->field_scale] = 1;
+    vec3_store(p + rod->flux.uniform, vec3(0.004, -0.01, 0.015));
+    if (around == DIPOLE) p[rod->flux.scale] = 1;
     if (around == COUPLE) {
         vec3_store(p + rod->couple + 3 * N, vec3(6e-7, -4e-7, 8e-7));
         vec3_store(p + rod->couple + 3 * (N / 2), vec3(-3e-7, 5e-7, 2e-7));
@@ -83,7 +83,8 @@ static Fixture fixture_create(RodSupport end, Around around, bool cosserat, Rand
     f.load = case_create("only", p, (size_t)rod->params.size, 0);
     *case_add_objective(&f.load) = objective_target(N + 1, nodes, (const double(*)[3])target, 1);
     case_start(&f.load, sys, x);
-    if (around == WOUND) assert_int_equal(rod_relax(rod, sys, cosserat ? 40 : 10, p, &f.load.state).reached, 1);
+    if (around == WOUND)
+        assert_int_equal(rod_relax(rod, sys, cosserat ? 40 : 10, p, &f.load.state).reached, 1);
     mem_free(p);
     mem_free(x);
     f.design.case_count = 1;

@@ -141,7 +141,7 @@ static Rig touching_rig(double smoothing)
                                 obstacle_plane((double[]){0, 0, -5e-4}, (double[]){0.1, 0, 1})},
                   .obstacle_count = 2,
                   .self = true};
-    def.obstacles[0].move = of_time("0.02*t", "0.01*sin(3*t)", "0");
+    def.obstacles[0].motion.move = of_time("0.02*t", "0.01*sin(3*t)", "0");
     Rig rig = rig_create(&def);
     Rod *rod = rig.rod;
     World *world = rod->world;

@@ -166,7 +166,7 @@ static void test_moments(void **state)
     Rod *rod = plain_rod(N, 0.1, 1e6, NULL, &p);
     Vec3 force = vec3(2e-4, 3e-4, -5e-4), M = vec3(3e4, -1e4, 2e4), B = vec3(0.01, -0.02, 0.03);
     for (int e = 0; e < N; e++) vec3_store(p + rod->magnetization + 3 * e, M);
-    vec3_store(p + rod->flux_density, B);
+    vec3_store(p + rod->flux.uniform, B);
     vec3_store(p + rod->load + 3 * N, force);
     rod_sum_loads(rod, p);
     RodLayout layout = rod_layout(rod, false);
@@ -268,7 +268,7 @@ static double pole_error(int elements)
     FluxFields fields = {0};
     int k = flux_fields_add(&fields, magnet);
     Rod *rod = plain_rod(elements, 0.1, 1e6, &fields, &p);
-    p[rod->field_scale + k] = 1;
+    p[rod->flux.scale + k] = 1;
     for (int e = 0; e < elements; e++) p[rod->magnetization + 3 * e] = M;
     System *sys = rod_system(rod, 1e6, false);
     State beside = with_positions(rod, sys, p);
@@ -276,8 +276,8 @@ static double pole_error(int elements)
 
     FluxSample sample;
     const double *end = beside.x + 3 * elements;
-    flux_field_eval(magnet, end, 0, &sample);
-    p[rod->field_scale + k] = 0;
+    flux_field_eval(magnet, end, (FluxPlace){0}, &sample);
+    p[rod->flux.scale + k] = 0;
     vec3_store(p + rod->load + 3 * elements, vec3_scale(rod->area * M, vec3_load(sample.flux)));
     rod_sum_loads(rod, p);
     System *other = rod_system(loaded, 1e6, false);
@@ -321,7 +321,7 @@ static void test_balance_in_field(void **state)
     memcpy(p, o.p, (size_t)o.rod->params.size * sizeof *p);
     memcpy(rod->bow, o.rod->bow, 60 * sizeof *rod->bow);
     rod->strand[0] = o.rod->strand[0];
-    p[rod->field_scale + k] = 1;
+    p[rod->flux.scale + k] = 1;
     for (int e = 0; e < 60; e++) vec3_store(p + rod->magnetization + 3 * e, vec3(2e4, 5e3, -3e3));
     RodLayout layout = rod_layout(rod, true);
     double *g = mem_alloc((size_t)layout.dofs, sizeof *g);

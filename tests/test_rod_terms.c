@@ -7,6 +7,7 @@
 #include "solve/check.h"
 #include "solve/newton.h"
 #include "solve/ramp.h"
+#include "tests/flux_fixture.h"
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -71,9 +72,10 @@ static Rod *random_rod(Random *random, bool varies, bool cosserat, int strands, 
     for (int i = 0; i < rod_node_count(rod); i++)
         vec3_store(p + rod->couple + 3 * i, random_vec3(random, 1e-4));
     for (int k = 0; k < rod->potentials.count; k++) p[rod->potential_scale + k] = 1.5 * (1 - k);
-    vec3_store(p + rod->flux_density, random_vec3(random, 0.03));
+    vec3_store(p + rod->flux.uniform, random_vec3(random, 0.03));
     vec3_store(p + rod->gravity, random_vec3(random, 9));
-    for (int k = 0; k < rod->fields.count; k++) p[rod->field_scale + k] = 1 - 0.5 * k;
+    for (int k = 0; k < rod->fields.count; k++) p[rod->flux.scale + k] = 1 - 0.5 * k;
+    disturb_fields(&rod->fields, &rod->flux, 2e-3, random, p);
     p[rod->damping] = 0.02;
     rod_sum_loads(rod, p);
     for (int k = 0; k < strands; k++) rod->strand[k].frame = quat_exp(random_vec3(random, 2));

@@ -52,7 +52,7 @@ static double *make_params(Rod *rod, Random *random)
     }
     vec3_store(p + rod->gravity, vec3(0, 1, -9.81));
     p[rod->damping] = 1e-4;
-    if (rod->fields.count) p[rod->field_scale] = 1;
+    if (rod->fields.count) p[rod->flux.scale] = 1;
     if (rod->couples) vec3_store(p + rod->couple + 3 * EACH, vec3(5e-7, -8e-7, 6e-7));
     if (!rod->world) return p;
     p[rod->world->friction] = 0.4;
@@ -95,7 +95,7 @@ static void check(const Swing *swing)
     long blocks = mem_live_count();
     Random random = random_seed(11);
     Rod *rod = make_rod(swing);
-    Control control = control_of(&rod->params, rod->flux_density);
+    Control control = control_of(&rod->params, rod->flux.uniform);
     double *p = make_params(rod, &random);
     for (int i = 0; i < 3 * control.rows; i++) p[control.from + i] = 0.02 * random_signed(&random);
     System *sys = rod_system(rod, young, true);

@@ -86,7 +86,7 @@ static SolidBody make_body(const Problem *p)
     SolidBody b = solid_body(solid, false, 1e5);
     for (int f = 0; p->magnetization > 0 && f < solid->tets->surface->face_count; f++)
         b.p[solid->magnetization + 3 * f] = p->magnetization;
-    b.p[solid->flux_density] = -0.05, b.p[solid->flux_density + 2] = 1e-3;
+    b.p[solid->flux.uniform] = -0.05, b.p[solid->flux.uniform + 2] = 1e-3;
     b.p[solid->gravity + 2] = -p->gravity;
     Random random = random_seed(3);
     for (int v = 0; v < tets_node_count(solid->tets); v++)

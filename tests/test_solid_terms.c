@@ -5,6 +5,7 @@
 #include "solve/check.h"
 #include "solve/march.h"
 #include "tests/solid_fixture.h"
+#include "tests/flux_fixture.h"
 #include <stdlib.h>
 
 static const double cube[3] = {0.02, 0.02, 0.02};
@@ -23,10 +24,11 @@ static double *make_params(const Solid *solid, Random *random)
         p[solid->magnetization + i] = 5e4 * random_signed(random);
     for (int f = 0; f < solid->tets->surface->face_count; f++)
         p[solid->skin_young + f] = 2e5 * (1 + random_uniform(random));
-    if (solid->fields.count) p[solid->field_scale + 1] = 0; /* off: what it would do is known too */
+    disturb_fields(&solid->fields, &solid->flux, 2e-3, random, p);
+    if (solid->fields.count) p[solid->flux.scale + 1] = 0; /* off: what it would do is known too */
     p[solid->damping] = 0.02;
     for (int i = 0; i < 3; i++) {
-        p[solid->flux_density + i] = 0.05 * random_signed(random);
+        p[solid->flux.uniform + i] = 0.05 * random_signed(random);
         p[solid->gravity + i] = 10 * random_signed(random);
     }
     for (int i = 0; i < solid_dof_count(solid); i++) p[solid->load + i] = 1e-3 * random_signed(random);

@@ -4,6 +4,7 @@
 #include "solve/check.h"
 #include "tests/cloud_fixture.h"
 #include "tests/shell_fixture.h"
+#include "tests/flux_fixture.h"
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -49,11 +50,12 @@ static double *make_params(const Shell *shell, Random *random)
         p[shell->young + f] = 1e5 * (1 + random_uniform(random));
         for (int i = 0; i < 3; i++) p[shell->magnetization + 3 * f + i] = 5e4 * random_signed(random);
     }
-    if (shell->fields.count) p[shell->field_scale + 1] = 0; /* off: what it would do is known too */
+    disturb_fields(&shell->fields, &shell->flux, 2e-3, random, p);
+    if (shell->fields.count) p[shell->flux.scale + 1] = 0; /* off: what it would do is known too */
     for (int e = 0; e < shell->mesh->edge_count; e++) p[shell->fold + e] = 0.5 + random_uniform(random);
     p[shell->damping] = 0.02;
     for (int i = 0; i < 3; i++) {
-        p[shell->flux_density + i] = 0.05 * random_signed(random);
+        p[shell->flux.uniform + i] = 0.05 * random_signed(random);
         p[shell->gravity + i] = 10 * random_signed(random);
     }
     for (int i = 0; i < 3 * shell->mesh->vertex_count; i++) p[shell->load + i] = 1e-3 * random_signed(random);

@@ -41,10 +41,12 @@ static void add_ground(Shell *shell, bool implicit)
     list[0] = obstacle_plane((double[]){0, 0, -2.5e-4}, (double[]){0.05, 0.02, 1});
     list[1] = obstacle_sphere((double[]){0.008, 0.002, 2.3e-3}, 2e-3, false);
     list[1].feature = 1e-3;
-    list[1].move = formula_create((const char *[]){"0.1*t", "0", "-0.01*t"}, 3, NULL, 0,
-                                  (const char *const[]){"t", NULL}, NULL);
-    list[1].turn = formula_create((const char *[]){"0", "50*t", "10*t"}, 3, NULL, 0,
-                                  (const char *const[]){"t", NULL}, NULL);
+    list[1].motion.move = (Timed){.first = TIMED_ALONE,
+                                  .formula = formula_create((const char *[]){"0.1*t", "0", "-0.01*t"}, 3,
+                                                            NULL, 0, (const char *const[]){"t", NULL}, NULL)};
+    list[1].motion.turn = (Timed){.first = TIMED_ALONE,
+                                  .formula = formula_create((const char *[]){"0", "50*t", "10*t"}, 3, NULL, 0,
+                                                            (const char *const[]){"t", NULL}, NULL)};
     WorldBody body = shell_world_body(shell);
     shell->world = world_create(&body, list, 2);
     shell->world->rubs = true, shell->world->implicit = implicit;
@@ -67,7 +69,7 @@ static void add_unknowns(Fixture *f, ControlKind kind)
     int rows = control_rows(kind, STEPS, kind == CONTROL_KNOT ? 5 : 2);
     f->control = (Control){.kind = kind,
                            .from = params_add(params, "control", "T", rows, 3, false),
-                           .to = f->shell->flux_density,
+                           .to = f->shell->flux.uniform,
                            .rows = rows,
                            .width = 3,
                            .steps = STEPS,

@@ -44,7 +44,7 @@ static void test_shell_adjoint(void **unused)
         Body body = body_create(shell, sys, 1e5);
         for (int f = 0; f < mesh->face_count; f++)
             body.p[shell->magnetization + 3 * f] = mesh->rest[mesh->faces[f][0]][0] < 0.006 ? 3e4 : -3e4;
-        body.p[shell->flux_density + 2] = 0.02;
+        body.p[shell->flux.uniform + 2] = 0.02;
         body.p[water.density] = RHO;
         body.p[water.velocity + 2] = -0.05;
         check_motion(sys, &shell->params, body.p, &body.state, mesh->vertex_count,

@@ -84,7 +84,7 @@ static void test_obstacles(void **state)
     assert_near(value_at(&o[7], 1, 2, 2), 0.7, 1e-12);
     assert_near(value_at(&o[8], 0.5, 0.5, -0.1), 0.1, 1e-6);
     assert_near(value_at(&o[8], 0.5, 0.5, 0.1), -0.1, 1e-3);
-    ObstaclePose pose;
+    RigidPose pose;
     Gap gap;
     Error err;
     assert_true(obstacle_pose(&o[9], 2, &pose, &err));

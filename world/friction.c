@@ -15,8 +15,7 @@ typedef struct Grip {
 
 static void carry(const Contact *c, int k, const Point *at, const double place[3], Grip *grip)
 {
-    const ObstaclePose *lag = &poses_lag(&c->poses, at)[k], *end = &c->poses.end[k],
-                       *start = &c->poses.start[k];
+    const RigidPose *lag = &poses_lag(&c->poses, at)[k], *end = &c->poses.end[k], *start = &c->poses.start[k];
     double turn[3][3], own[3];
     for (int i = 0; i < 3; i++) {
         own[i] = 0;
@@ -40,7 +39,7 @@ static bool grip_at(const Contact *c, int k, const Point *at, const double place
 {
     Gap gap;
     const Obstacle *obstacle = &c->def.obstacles[k];
-    const ObstaclePose *pose = &poses_lag(&c->poses, at)[k];
+    const RigidPose *pose = &poses_lag(&c->poses, at)[k];
     if (obstacle_is_beyond(obstacle, pose, place, c->def.offset)) return false;
     obstacle_gap(obstacle, pose, place, &gap);
     double depth = c->def.offset - gap.value, size = 0;

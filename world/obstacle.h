@@ -4,13 +4,12 @@
  * C2 spline; several are summed as energies, never by min or max, which would have kinks. Where phi is no true distance
  * (a height field, a tube along a line) |gradient| differs from 1: contact takes n = gradient/|gradient|. */
 #pragma once
-#include "io/formula.h"
+#include "field/cubic_grid.h"
+#include "field/rigid_move.h"
 #include "io/mesh_file.h"
 
 /* phi and its derivatives at a point: m, 1, 1/m. */
-typedef struct Gap {
-    double value, gradient[3], hessian[3][3];
-} Gap;
+typedef SpaceSample Gap;
 
 typedef struct ObstacleOps {
     const char *kind; /* as in a scene: "sphere" */
@@ -36,29 +35,18 @@ typedef struct Obstacle {
     double steepest;           /* largest |grad phi|; 0: 1 */
     bool bounded;              /* it ends: all of it is within a box along its own axes */
     double middle[3], half[3]; /* m: that box                                                          */
-    double pivot[3];           /* m, about which it turns                        */
-    /* Three expressions of the time t each: how far it has moved, m, and turned, a rotation vector, rad; NULL: not. Owned. */
-    Formula *move, *turn;
+    RigidMove motion;          /* about its pivot                              */
 } Obstacle;
 
-/* Where an obstacle is: what was at X is at turn (X - pivot) + pivot + move. */
-typedef struct ObstaclePose {
-    double turn[3][3], shift[3]; /* x = turn X + shift */
-} ObstaclePose;
-
 /* False and a sentence, which names the obstacle, where a formula is not finite. Re-entrant. */
-bool obstacle_pose(const Obstacle *obstacle, double time, ObstaclePose *pose, Error *err);
-
-/* The place in the obstacle's own frame of one in space. */
-void obstacle_own_place(const ObstaclePose *pose, const double x[3], double own[3]);
+bool obstacle_pose(const Obstacle *obstacle, double time, RigidPose *pose, Error *err);
 
 /* Is phi > distance >= 0 there, as the box around the obstacle tells? Where it is not, only phi does. Much cheaper than the
  * gap: most places of a body are far from what is small. Re-entrant. */
-bool obstacle_is_beyond(const Obstacle *obstacle, const ObstaclePose *pose, const double x[3],
-                        double distance);
+bool obstacle_is_beyond(const Obstacle *obstacle, const RigidPose *pose, const double x[3], double distance);
 
 /* Its gap in space, there. Re-entrant. */
-void obstacle_gap(const Obstacle *obstacle, const ObstaclePose *pose, const double x[3], Gap *gap);
+void obstacle_gap(const Obstacle *obstacle, const RigidPose *pose, const double x[3], Gap *gap);
 
 /* Triangles of where phi = 0 in its own frame, for pictures: of what is endless (a plane, a cylinder, ground) a piece about
  * as large as the box there, its lowest and highest corner; of all else the whole. At most 16384, but of a mesh as many as it

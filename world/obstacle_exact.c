@@ -20,7 +20,7 @@ static Obstacle make(const ObstacleOps *ops, const void *self, size_t size, cons
 {
     Obstacle obstacle = {
         .ops = ops, .self = mem_copy(self, 1, size), .feature = feature, .inradius = inradius};
-    memcpy(obstacle.pivot, pivot, sizeof obstacle.pivot);
+    memcpy(obstacle.motion.pivot, pivot, sizeof obstacle.motion.pivot);
     return obstacle;
 }
 
@@ -28,7 +28,7 @@ static Obstacle make(const ObstacleOps *ops, const void *self, size_t size, cons
 static Obstacle bounded(Obstacle obstacle, const double half[3])
 {
     obstacle.bounded = true;
-    memcpy(obstacle.middle, obstacle.pivot, sizeof obstacle.middle);
+    memcpy(obstacle.middle, obstacle.motion.pivot, sizeof obstacle.middle);
     memcpy(obstacle.half, half, sizeof obstacle.half);
     return obstacle;
 }

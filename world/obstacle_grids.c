@@ -1,6 +1,6 @@
 /* Obstacles of splines through samples: height fields and tubes. */
 #include "base/memory.h"
-#include "world/cubic_grid.h"
+#include "field/cubic_grid.h"
 #include "world/obstacle_shapes.h"
 #include "world/obstacle_surface.h"
 #include <math.h>
@@ -94,7 +94,7 @@ Obstacle obstacle_height_field(const double range[2][2], const int cells[2], con
                       .feature = fmin(step[0], step[1]),
                       .inradius = INFINITY,
                       .steepest = steepest_ground(field, cells, low, step),
-                      .pivot = {(range[0][0] + range[1][0]) / 2, (range[0][1] + range[1][1]) / 2, 0}};
+                      .motion.pivot = {(range[0][0] + range[1][0]) / 2, (range[0][1] + range[1][1]) / 2, 0}};
 }
 
 /* ---- Tube ---- */
@@ -225,11 +225,11 @@ bool obstacle_tube(int axis, const double range[2], int cells, const double (*sa
     for (int k = 0; k < 2; k++) tube->center[k] = tube_spline(tube, cells, sample, 1 + k);
     *obstacle = (Obstacle){.ops = &tube_ops, .self = tube, .inradius = INFINITY};
     double middle[3] = {(range[0] + range[1]) / 2};
-    obstacle->pivot[axis] = middle[0];
+    obstacle->motion.pivot[axis] = middle[0];
     for (int k = 0; k < 2; k++) {
         Gap center;
         cubic_grid_at(&tube->center[k], middle, &center);
-        obstacle->pivot[tube->across[k]] = center.value;
+        obstacle->motion.pivot[tube->across[k]] = center.value;
     }
     enum { PER_CELL = 4 };
     double cell = (range[1] - range[0]) / cells, step = cell / PER_CELL;

@@ -1,7 +1,7 @@
 /* Obstacles of closed triangle meshes. */
 #include "base/memory.h"
 #include "base/vec3.h"
-#include "world/cubic_grid.h"
+#include "field/cubic_grid.h"
 #include "world/mesh_distance.h"
 #include "world/obstacle_shapes.h"
 #include <math.h>
@@ -230,6 +230,6 @@ bool obstacle_mesh(const MeshFile *file, double cell, Obstacle *obstacle, Error 
     *obstacle = (Obstacle){.ops = &mesh_ops, .self = solid, .feature = cell, .steepest = 1.2};
     obstacle->inradius = fmin(deepest, THIN * cell);
     mesh_bounding_box(mesh, low, high);
-    for (int i = 0; i < 3; i++) obstacle->pivot[i] = (low[i] + high[i]) / 2;
+    for (int i = 0; i < 3; i++) obstacle->motion.pivot[i] = (low[i] + high[i]) / 2;
     return true;
 }

@@ -110,8 +110,8 @@ Pierced pierce_find(const Poses *poses, const Samples *faces, const double *from
             Prism prism = {.corners = faces->corners};
             for (int c = 0; c < faces->corners; c++) {
                 int place = faces->first + 3 * faces->vertices[f * faces->corners + c];
-                obstacle_own_place(&poses->start[k], from + place, prism.x[0][c]);
-                obstacle_own_place(&poses->end[k], to + place, prism.x[1][c]);
+                rigid_own_place(&poses->start[k], from + place, prism.x[0][c]);
+                rigid_own_place(&poses->end[k], to + place, prism.x[1][c]);
             }
             if (!is_pierced(&poses->obstacles[k], &prism)) continue;
             if (found.count++ == 0) found.obstacle = k, found.face = f;

@@ -1,7 +1,7 @@
 #include "world/poses.h"
 #include "base/memory.h"
 
-static void put(const Obstacle *obstacle, double time, ObstaclePose *pose)
+static void put(const Obstacle *obstacle, double time, RigidPose *pose)
 {
     if (obstacle_pose(obstacle, time, pose, NULL)) return;
     for (int i = 0; i < 3; i++) pose->shift[i] = NAN;
@@ -22,7 +22,9 @@ Poses poses_create(const Obstacle *obstacles, int count)
     Poses poses = {.obstacles = obstacles, .count = count};
     poses.end = mem_alloc((size_t)count, sizeof *poses.end);
     poses.start = mem_alloc((size_t)count, sizeof *poses.start);
-    for (int k = 0; k < count; k++) poses.moves = poses.moves || obstacles[k].move || obstacles[k].turn;
+    for (int k = 0; k < count; k++)
+        poses.moves = poses.moves || timed_is_given(&obstacles[k].motion.move) ||
+                      timed_is_given(&obstacles[k].motion.turn);
     if (!poses.moves) put_all(&poses, 0, 0);
     return poses;
 }

@@ -6,10 +6,10 @@
 typedef struct Poses {
     const Obstacle *obstacles; /* [count] borrowed                          */
     int count;
-    bool moves;                /* one of them does                          */
-    bool known;                /* the poses are of this time and step:      */
-    double time, dt;           /* s                                         */
-    ObstaclePose *end, *start; /* [count] in statics the same               */
+    bool moves;             /* one of them does                          */
+    bool known;             /* the poses are of this time and step:      */
+    double time, dt;        /* s                                         */
+    RigidPose *end, *start; /* [count] in statics the same               */
 } Poses;
 
 /* Of obstacles that all stand still the poses are known at once. */
@@ -20,7 +20,7 @@ void poses_destroy(Poses *poses);
 bool poses_update(Poses *poses, const Point *at);
 
 /* Those at which lagged quantities are taken. */
-static inline const ObstaclePose *poses_lag(const Poses *poses, const Point *at)
+static inline const RigidPose *poses_lag(const Poses *poses, const Point *at)
 {
     return at->x_lag ? poses->end : poses->start;
 }

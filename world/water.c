@@ -60,7 +60,8 @@ static Pack3 fluid_velocity(const WaterTerm *term, const Point *at, Pack3 x)
     Pack3 u = pack3(pack_set(uniform[0]), pack_set(uniform[1]), pack_set(uniform[2]));
     for (int l = 0; term->water.flow && l < PACK_LANES; l++) {
         double flow[3];
-        flux_field_value(term->water.flow, (double[]){x.x[l], x.y[l], x.z[l]}, at->time, flow);
+        flux_field_value(term->water.flow, (double[]){x.x[l], x.y[l], x.z[l]}, (FluxPlace){.time = at->time},
+                         flow);
         u.x[l] += flow[0], u.y[l] += flow[1], u.z[l] += flow[2];
     }
     return u;
@@ -73,7 +74,8 @@ static PackMat flow_gradient(const WaterTerm *term, const Point *at, Pack3 x)
     Pack3 *row[] = {&G.r0, &G.r1, &G.r2};
     for (int l = 0; term->water.flow && l < PACK_LANES; l++) {
         FluxSample sample;
-        flux_field_eval(term->water.flow, (double[]){x.x[l], x.y[l], x.z[l]}, at->time, &sample);
+        flux_field_eval(term->water.flow, (double[]){x.x[l], x.y[l], x.z[l]}, (FluxPlace){.time = at->time},
+                        &sample);
         for (int k = 0; k < 3; k++)
             row[k]->x[l] = sample.gradient[k][0], row[k]->y[l] = sample.gradient[k][1],
             row[k]->z[l] = sample.gradient[k][2];

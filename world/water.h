@@ -26,7 +26,7 @@
  *     lambda = l (c_n + rho C_d r y^2/sqrt(y^2 + eps^2)),   sigma = l c_t - lambda. */
 #pragma once
 #include "solve/term.h"
-#include "surface/flux_field.h"
+#include "field/flux_field.h"
 
 /* A fluid: first entries in p, and how it flows beside the uniform part: a velocity in m/s of place and time, taken where
  * an element was at the start of the step, at the time of its end. */

@@ -199,7 +199,7 @@ void world_add_terms(const World *world, System *sys, bool motion)
 
 bool world_stands(const World *world, double time, Error *err)
 {
-    ObstaclePose pose;
+    RigidPose pose;
     for (int k = 0; k < world->obstacle_count; k++)
         if (!obstacle_pose(&world->obstacles[k], time, &pose, err)) return false;
     return true;

@@ -66,12 +66,13 @@ MagnetizationOfAGroupKeys = TypedDict("MagnetizationOfAGroupKeys", {
 }, total=False)
 
 Rod = TypedDict("Rod", {
-    "curve": "CurveOfARod", "natural_strain": "NaturalStrain", "poses": "Rows[Poses]", "length": "Number",
-    "clamp": "Clamp", "hold": "Literal['clamped', 'pinned']", "end": "End", "elements": "int", "radius": "Number",
-    "ellipse": "Union[Number, Numbers]", "young": "Number", "poisson": "float", "density": "Number",
-    "gravity": "Numbers", "frame": "Frame", "bishop_normal": "Numbers", "loads": "Rows[LoadsOfARod]",
-    "magnetization": "Magnetization", "damping": "Number", "start": "Literal['natural', 'curve']",
-    "velocity": "Velocity", "solver": "Literal['newton', 'pbd']", "pbd": "Pbd",
+    "model": "Literal['kirchhoff', 'cosserat']", "curve": "CurveOfARod", "natural_strain": "NaturalStrain",
+    "poses": "Rows[Poses]", "length": "Number", "clamp": "Clamp", "hold": "Literal['clamped', 'pinned']",
+    "end": "End", "elements": "int", "radius": "Number", "ellipse": "Union[Number, Numbers]", "young": "Number",
+    "poisson": "float", "density": "Number", "gravity": "Numbers", "frame": "Frame", "bishop_normal": "Numbers",
+    "loads": "Rows[LoadsOfARod]", "magnetization": "Magnetization", "damping": "Number",
+    "start": "Literal['natural', 'curve']", "velocity": "Velocity", "solver": "Literal['newton', 'pbd']",
+    "pbd": "Pbd",
 }, total=False)
 
 CurveOfARod = TypedDict("CurveOfARod", {
@@ -104,7 +105,24 @@ FrameKeys = TypedDict("FrameKeys", {
 }, total=False)
 
 LoadsOfARod = TypedDict("LoadsOfARod", {
-    "point": "Number", "line": "Numbers", "force": "Numbers",
+    "point": "PointOfALoad", "line": "LineLoadOfARod", "potential": "Number", "force": "ForceOnARod",
+    "couple": "CoupleOnARod", "where": "Mapping[str, Where]",
+}, total=False)
+
+PointOfALoadKeys = TypedDict("PointOfALoadKeys", {
+    "end": "Literal['end']", "value": "Number",
+}, total=False)
+
+LineLoadOfARodKeys = TypedDict("LineLoadOfARodKeys", {
+    "value": "Numbers", "formula": "Numbers", "where": "Mapping[str, Where]",
+}, total=False)
+
+ForceOnARodKeys = TypedDict("ForceOnARodKeys", {
+    "value": "Numbers", "formula": "Numbers", "where": "Mapping[str, Where]",
+}, total=False)
+
+CoupleOnARodKeys = TypedDict("CoupleOnARodKeys", {
+    "value": "Numbers", "formula": "Numbers", "where": "Mapping[str, Where]",
 }, total=False)
 
 Pbd = TypedDict("Pbd", {
@@ -227,8 +245,9 @@ Servo = TypedDict("Servo", {
 }, total=False)
 
 FluxDensityKeys = TypedDict("FluxDensityKeys", {
-    "value": "Numbers", "formula": "Numbers", "file": "str", "dipole": "Dipole", "magnet": "Magnet",
-    "where": "Mapping[str, Where]",
+    "name": "Number", "value": "Numbers", "uniform": "Numbers", "formula": "Numbers", "file": "str",
+    "dipole": "Dipole", "magnet": "Magnet", "coil": "Coil", "map": "Map", "where": "Mapping[str, Where]",
+    "move": "Path", "turn": "Path",
 }, total=False)
 
 Dipole = TypedDict("Dipole", {
@@ -236,7 +255,21 @@ Dipole = TypedDict("Dipole", {
 }, total=False)
 
 Magnet = TypedDict("Magnet", {
-    "at": "Numbers", "remanence": "Numbers", "volume": "Number",
+    "at": "Numbers", "remanence": "Numbers", "size": "Numbers", "radius": "Number", "volume": "Number",
+    "length": "Number", "axis": "Numbers",
+}, total=False)
+
+Coil = TypedDict("Coil", {
+    "at": "Numbers", "axis": "Numbers", "radius": "Number", "size": "Numbers", "length": "Number",
+    "current": "Number", "turns": "float",
+}, total=False)
+
+Map = TypedDict("Map", {
+    "file": "str", "scale": "float",
+}, total=False)
+
+PathKeys = TypedDict("PathKeys", {
+    "formula": "Numbers", "file": "str",
 }, total=False)
 
 FixKeys = TypedDict("FixKeys", {
@@ -265,8 +298,8 @@ TargetKeys = TypedDict("TargetKeys", {
 
 Obstacles = TypedDict("Obstacles", {
     "name": "Number", "plane": "Plane", "sphere": "Sphere", "cylinder": "Cylinder", "box": "Box",
-    "height_field": "HeightField", "tube": "Tube", "mesh": "MeshOfAnObstacle", "friction": "float", "move": "Numbers",
-    "turn": "Numbers",
+    "height_field": "HeightField", "tube": "Tube", "mesh": "MeshOfAnObstacle", "friction": "float", "move": "Path",
+    "turn": "Path",
 }, total=False)
 
 Plane = TypedDict("Plane", {
@@ -324,12 +357,13 @@ VelocityOfWaterKeys = TypedDict("VelocityOfWaterKeys", {
 }, total=False)
 
 Cases = TypedDict("Cases", {
-    "name": "Number", "weight": "float", "flux_density": "FluxDensity", "loads": "Rows[Loads]", "gravity": "Numbers",
-    "target": "Target",
+    "name": "Number", "weight": "float", "flux_density": "Union[FluxDensity, Rows[FluxDensity]]",
+    "loads": "Rows[Loads]", "gravity": "Numbers", "target": "Target",
 }, total=False)
 
 Sequence = TypedDict("Sequence", {
-    "flux_density": "FluxDensity", "loads": "Rows[Loads]", "gravity": "Numbers", "time": "Number",
+    "flux_density": "Union[FluxDensity, Rows[FluxDensity]]", "loads": "Rows[Loads]", "gravity": "Numbers",
+    "time": "Number",
 }, total=False)
 
 Design = TypedDict("Design", {
@@ -340,6 +374,8 @@ Design = TypedDict("Design", {
 Unknowns = TypedDict("Unknowns", {
     "magnetization": "UnknownMagnetization", "young": "UnknownYoung", "skin_young": "UnknownYoung",
     "fold": "UnknownFold", "natural_strain": "UnknownNaturalStrain", "flux_density": "UnknownFluxDensity",
+    "source_strength": "UnknownSourceStrength", "source_move": "UnknownSourceMove",
+    "source_turn": "UnknownSourceTurn",
 }, total=False)
 
 UnknownMagnetization = TypedDict("UnknownMagnetization", {
@@ -367,6 +403,18 @@ UnknownFluxDensity = TypedDict("UnknownFluxDensity", {
 
 StartOfFluxDensityKeys = TypedDict("StartOfFluxDensityKeys", {
     "value": "Numbers", "file": "str",
+}, total=False)
+
+UnknownSourceStrength = TypedDict("UnknownSourceStrength", {
+    "sources": "Numbers", "noise": "float", "scale": "float", "bounds": "Numbers",
+}, total=False)
+
+UnknownSourceMove = TypedDict("UnknownSourceMove", {
+    "sources": "Numbers", "noise": "Number", "scale": "Number", "bounds": "Numbers",
+}, total=False)
+
+UnknownSourceTurn = TypedDict("UnknownSourceTurn", {
+    "sources": "Numbers", "noise": "Number", "scale": "Number", "bounds": "Numbers",
 }, total=False)
 
 Objectives = TypedDict("Objectives", {
@@ -417,10 +465,11 @@ Output = TypedDict("Output", {
 Scene = TypedDict("Scene", {
     "slender": "Literal[1]",
     "job": "Literal['equilibrium', 'evaluate', 'design', 'simulate', 'trajectory', 'invert', 'identify', 'draw']",
-    "shell": "Shell", "rod": "Rod", "solid": "Solid", "spline": "Spline", "flux_density": "FluxDensity",
-    "fix": "Rows[Fix]", "loads": "Rows[Loads]", "target": "Target", "obstacles": "Rows[Obstacles]",
-    "contact": "Contact", "water": "Water", "cases": "Rows[Cases]", "sequence": "Rows[Sequence]", "design": "Design",
-    "solver": "Solver", "load_steps": "LoadSteps", "time": "Time", "start": "Start", "modes": "int",
+    "shell": "Shell", "rod": "Rod", "solid": "Solid", "spline": "Spline",
+    "flux_density": "Union[FluxDensity, Rows[FluxDensity]]", "fix": "Rows[Fix]", "loads": "Rows[Loads]",
+    "target": "Target", "obstacles": "Rows[Obstacles]", "contact": "Contact", "water": "Water",
+    "cases": "Rows[Cases]", "sequence": "Rows[Sequence]", "design": "Design", "solver": "Solver",
+    "load_steps": "LoadSteps", "time": "Time", "start": "Start", "modes": "int",
     "checks": "Union[Literal['stability', 'self_contact', 'round_trip'], Rows[Literal['stability', 'self_contact', 'round_trip']]]",
     "output": "Output",
 }, total=False)
@@ -438,6 +487,10 @@ MagnetizationOfAGroup = Union["MagnetizationOfAGroupKeys", Numbers]
 Noise = Union["NoiseKeys", Literal['auto'], Number]
 NaturalStrain = Union["NaturalStrainKeys", Numbers]
 Frame = Union["FrameKeys", Literal['frenet', 'bishop']]
+PointOfALoad = Union["PointOfALoadKeys", Literal['end'], Number]
+LineLoadOfARod = Union["LineLoadOfARodKeys", Numbers]
+ForceOnARod = Union["ForceOnARodKeys", Numbers]
+CoupleOnARod = Union["CoupleOnARodKeys", Numbers]
 MeshOfASolid = Union["MeshOfASolidKeys", str]
 PlaceOfASkin = Union["PlaceOfASkinKeys", Number]
 DensityOfADrawing = Union["DensityOfADrawingKeys", Number]
@@ -449,6 +502,7 @@ StartOfADrawing = Union["StartOfADrawingKeys", Literal['streamlines', 'random']]
 Potential = Union["PotentialKeys", Number]
 Flow = Union["FlowKeys", Numbers]
 FluxDensity = Union["FluxDensityKeys", Numbers]
+Path = Union["PathKeys", Numbers]
 Fix = Union["FixKeys", Number]
 Selection = Union["SelectionKeys", Number]
 Target = Union["TargetKeys", Numbers]

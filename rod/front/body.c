@@ -193,8 +193,7 @@ static void set_model(Model *model)
     Rod *rod = rm->rod;
     model->params = &rod->params;
     model->gravity = rod->gravity;
-    model->flux_density = rod->flux_density;
-    model->field_scale = rod->field_scale;
+    model->flux_blocks = rod->flux;
     model->fields = &rod->fields;
     model->moves = rm->held && model->job == &job_equilibrium && !model->general;
 }

@@ -137,7 +137,7 @@ static void invert_elements(Inversion *o, int k)
     rod_model_loads(rm, rod, scene, curve, time, p, &err); /* finite: it was asked before */
     for (int e = 0; e < o->elements && !isnan(scene->magnetization.value[0]); e++)
         p[rod->magnetization + 3 * e] = scene->magnetization.value[0];
-    memcpy(p + rod->flux_density, rm->flux, sizeof rm->flux);
+    memcpy(p + rod->flux.uniform, rm->flux, sizeof rm->flux);
     bool places = acts.potentials.count > 0;
     RodLayout turns = rod_layout(rod, false), layout = rod_layout(rod, places);
     double *x = mem_alloc(2 * (size_t)layout.dofs, sizeof *x), *follow = x + layout.dofs;

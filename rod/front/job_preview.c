@@ -65,7 +65,7 @@ static PbdRod *create(const Run *run)
                      .substeps = scene->pbd.substeps,
                      .sweeps = scene->pbd.sweeps};
     PbdRod *made = pbd_rod_create(&def);
-    pbd_rod_set_field(made, vec3_load(p + rod->flux_density));
+    pbd_rod_set_field(made, vec3_load(p + rod->flux.uniform));
     if (rm->moving) pbd_rod_set_state(made, rm->moving);
     mem_free(start);
     mem_free(magnet);
@@ -130,7 +130,7 @@ static bool put_field(const Preview *o, double time)
     const Model *model = o->run->model;
     double *p = model->cases[0].stages[0].p;
     if (!model_load(model, time, false, p, o->err)) return false;
-    pbd_rod_set_field(o->rod, vec3_load(p + model->flux_density));
+    pbd_rod_set_field(o->rod, vec3_load(p + model->flux_blocks.uniform));
     return true;
 }
 

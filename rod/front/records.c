@@ -89,7 +89,7 @@ void rod_add_state(const Model *model, const Snapshot *shot, const char *prefix,
  * the tangent, no field that varies in space, no couple, no potential, and nothing that it meets. */
 static bool is_judged(const Rod *rod, const double *p)
 {
-    const double *B = p + rod->flux_density;
+    const double *B = p + rod->flux.uniform;
     bool across = false, field = B[0] != 0 || B[1] != 0 || B[2] != 0;
     bool uniform = !rod_field_varies(rod, p) && !rod_has_couples(rod, p) && rod->potentials.count == 0 &&
                    !rod->world && rod->strands == 1 && !rod->cosserat;

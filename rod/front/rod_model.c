@@ -77,15 +77,17 @@ RodActs rod_model_acts(const RodModel *model)
 static bool read_magnetic(RodModel *model, const Scene *scene, const Build *b)
 {
     const VectorScene *M = &rod_scene(scene)->magnetization;
-    FluxField *field;
+    FluxFields fields = {0};
     double *flux = model->flux;
-    if (!build_flux(b, key("flux_density"), &scene->flux_density, flux, &field)) return false;
-    if (field) {
-        flux_field_destroy(field);
+    bool ok = build_flux(b, key("flux_density"), scene->flux_density, scene->flux_density_count, flux,
+                         &fields),
+         varies = fields.count > 0;
+    flux_fields_clear(&fields);
+    if (!ok) return false;
+    if (varies)
         return yaml_refuse(
             b->file, "flux_density",
             "an inversion knows a field that is uniform: three numbers, formulas of t, or a file");
-    }
     bool none = flux[0] == 0 && flux[1] == 0 && flux[2] == 0,
          along = !isnan(M->value[0]) && M->value[1] == 0 && M->value[2] == 0;
     if (!along)

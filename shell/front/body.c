@@ -90,8 +90,7 @@ static bool create(Model *model, const Scene *scene, YamlFile *file)
     model->mesh = mesh;
     model->params = &shell->params;
     model->gravity = shell->gravity;
-    model->flux_density = shell->flux_density;
-    model->field_scale = shell->field_scale;
+    model->flux_blocks = shell->flux;
     model->fields = &shell->fields;
     model->point_count = mesh->vertex_count;
     model->load_steps = 1;

@@ -17,9 +17,9 @@ static double largest_field(const Model *model, const Scene *scene, const double
     const Shell *shell = model->self;
     const FluxUnknown *unknown = scene->design ? scene->design->unknowns.flux_density : NULL;
     double flux[3];
-    memcpy(flux, p + shell->flux_density, sizeof flux);
+    memcpy(flux, p + shell->flux.uniform, sizeof flux);
     double largest =
-        timed_flux_largest(&model->flux_of_time, model->time, scene->time.step, scene->time.steps, flux);
+        timed_largest(&model->flux_of_time, model->time, scene->time.step, scene->time.steps, flux);
     if (unknown && !isnan(unknown->bounds[0]))
         largest = fmax(largest, fmax(fabs(unknown->bounds[0]), fabs(unknown->bounds[1])));
     return largest;
@@ -125,7 +125,7 @@ char *shell_crushed(const Model *model, const Snapshot *shot, bool failed)
            limit = shell->material == MEMBRANE_ST_VENANT_KIRCHHOFF ? CRUSHED : 0;
     if (!(ratio < (failed ? NEARLY_CRUSHED : limit))) return NULL;
     double M = vec3_length(vec3_load(shot->p + shell->magnetization + 3 * least)),
-           B = vec3_length(vec3_load(shot->p + shell->flux_density)), Y = shot->p[shell->young + least];
+           B = vec3_length(vec3_load(shot->p + shell->flux.uniform)), Y = shot->p[shell->young + least];
     if (M * B == 0)
         return mem_format(
             "face %d is crushed to %.2g of its area: what acts on it is too strong for its Young's "

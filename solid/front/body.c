@@ -118,8 +118,7 @@ static bool create(Model *model, const Scene *scene, YamlFile *file)
     model->mesh = tets->surface;
     model->params = &solid->params;
     model->gravity = solid->gravity;
-    model->flux_density = solid->flux_density;
-    model->field_scale = solid->field_scale;
+    model->flux_blocks = solid->flux;
     model->fields = &solid->fields;
     model->point_count = tets_node_count(tets);
     model->load_steps = 1;

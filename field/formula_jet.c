@@ -1,4 +1,4 @@
-#include "surface/formula_jet.h"
+#include "field/formula_jet.h"
 #include <string.h>
 
 /* Where a formula is sampled: the point itself, then REACH steps either way along each line. */

@@ -5,7 +5,12 @@
  * cell goes on for a while: along each axis the place where it is evaluated comes to rest one cell beyond the edge, within
  * two, by a C2 map. From there on the function is constant or, `linear`, goes on with the slope that it has. */
 #pragma once
-#include "world/obstacle.h"
+#include <stdbool.h>
+
+/* A function of space at a point, and its derivatives there. */
+typedef struct SpaceSample {
+    double value, gradient[3], hessian[3][3];
+} SpaceSample;
 
 typedef struct CubicGrid {
     int nodes[3]; /* along each axis; 1: it does not depend on that coordinate */
@@ -23,4 +28,4 @@ void cubic_grid_clear(CubicGrid *grid);
 void cubic_grid_beyond(const CubicGrid *grid, int axis, double x, double beyond[3]);
 
 /* Value, gradient and Hessian at a point. Re-entrant. */
-void cubic_grid_at(const CubicGrid *grid, const double x[3], Gap *sample);
+void cubic_grid_at(const CubicGrid *grid, const double x[3], SpaceSample *sample);

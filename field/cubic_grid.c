@@ -1,4 +1,4 @@
-#include "world/cubic_grid.h"
+#include "field/cubic_grid.h"
 #include "base/memory.h"
 #include <math.h>
 #include <string.h>
@@ -174,15 +174,15 @@ static void sum_taps(const CubicGrid *grid, const Taps *x, const Taps *y, const 
     }
 }
 
-void cubic_grid_at(const CubicGrid *grid, const double x[3], Gap *sample)
+void cubic_grid_at(const CubicGrid *grid, const double x[3], SpaceSample *sample)
 {
     double sum[3][3][3] = {0};
     Taps taps[3];
     for (int axis = 0; axis < 3; axis++) taps[axis] = find_taps(grid, axis, x[axis]);
     sum_taps(grid, &taps[0], &taps[1], &taps[2], sum);
-    *sample = (Gap){.value = sum[0][0][0],
-                    .gradient = {sum[1][0][0], sum[0][1][0], sum[0][0][1]},
-                    .hessian = {{sum[2][0][0], sum[1][1][0], sum[1][0][1]},
-                                {sum[1][1][0], sum[0][2][0], sum[0][1][1]},
-                                {sum[1][0][1], sum[0][1][1], sum[0][0][2]}}};
+    *sample = (SpaceSample){.value = sum[0][0][0],
+                            .gradient = {sum[1][0][0], sum[0][1][0], sum[0][0][1]},
+                            .hessian = {{sum[2][0][0], sum[1][1][0], sum[1][0][1]},
+                                        {sum[1][1][0], sum[0][2][0], sum[0][1][1]},
+                                        {sum[1][0][1], sum[0][1][1], sum[0][0][2]}}};
 }
