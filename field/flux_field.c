@@ -1,13 +1,17 @@
 #include "field/flux_field.h"
 #include "base/memory.h"
+#include "field/flux_shape.h"
 #include "field/formula_jet.h"
 #include <string.h>
 
 /* What a field is, in its own frame. */
 typedef struct FluxKind {
+    const char *name; /* as in a scene */
     void (*eval)(const FluxField *field, const double x[3], double time, FluxSample *sample);
     /* Of kinds for which that is less work, or which are not known everywhere; else NULL. */
     bool (*value)(const FluxField *field, const double x[3], double time, double flux[3], Error *err);
+    void (*shape)(const FluxField *field, MeshFile *shape); /* NULL: it has none */
+    bool poles;                                             /* its strength is a remanence */
 } FluxKind;
 
 struct FluxField {
@@ -110,10 +114,34 @@ static void eval_rectangular_coil(const FluxField *field, const double x[3], dou
     flux_of_rectangular_coil(field->half, field->strength[0], x, sample);
 }
 
-static const FluxKind by_formula = {eval_formula, value_formula}, by_map = {eval_map, value_map},
-                      of_dipole = {eval_dipole, NULL}, of_block = {eval_block, NULL},
-                      of_cylinder = {eval_cylinder, NULL}, of_round_coil = {eval_round_coil, NULL},
-                      of_rectangular_coil = {eval_rectangular_coil, NULL};
+static void shape_block(const FluxField *field, MeshFile *shape)
+{
+    flux_shape_block(field->half, shape);
+}
+
+static void shape_cylinder(const FluxField *field, MeshFile *shape)
+{
+    flux_shape_cylinder(field->half[0], field->half[1], shape);
+}
+
+static void shape_round_coil(const FluxField *field, MeshFile *shape)
+{
+    flux_shape_round_coil(field->half[0], field->half[1], shape);
+}
+
+static void shape_rectangular_coil(const FluxField *field, MeshFile *shape)
+{
+    flux_shape_rectangular_coil(field->half, shape);
+}
+
+static const FluxKind by_formula = {"formula", eval_formula, value_formula, NULL, false},
+                      by_map = {"map", eval_map, value_map, NULL, false},
+                      of_dipole = {"dipole", eval_dipole, NULL, NULL, false},
+                      of_block = {"magnet", eval_block, NULL, shape_block, true},
+                      of_cylinder = {"magnet", eval_cylinder, NULL, shape_cylinder, true},
+                      of_round_coil = {"coil", eval_round_coil, NULL, shape_round_coil, false},
+                      of_rectangular_coil = {"coil", eval_rectangular_coil, NULL, shape_rectangular_coil,
+                                             false};
 
 /* ---- Making them ---- */
 
@@ -345,6 +373,45 @@ bool flux_field_is_known(const FluxField *field, const double x[3], FluxPlace pl
 void flux_field_value(const FluxField *field, const double x[3], FluxPlace place, double flux[3])
 {
     if (!value_at(field, x, place, flux, NULL)) vec3_store(flux, vec3(NAN, NAN, NAN));
+}
+
+bool flux_field_pose(const FluxField *field, FluxPlace place, RigidPose *pose, Error *err)
+{
+    Stand stand;
+    if (!stand_at(field, place, &stand, err)) return false;
+    for (int i = 0; i < 3; i++) {
+        pose->shift[i] = stand.origin[i];
+        for (int j = 0; j < 3; j++) pose->turn[i][j] = stand.axes ? stand.axes[j][i] : i == j;
+    }
+    return true;
+}
+
+const char *flux_field_kind(const FluxField *field)
+{
+    return field->kind->name;
+}
+
+bool flux_field_has_shape(const FluxField *field)
+{
+    return field->kind->shape;
+}
+
+/* n.B_r/|B_r| */
+static double pole_of(const FluxField *field, const MeshFile *shape, int face)
+{
+    Vec3 Br = vec3_load(field->strength), x[3];
+    for (int i = 0; i < 3; i++) x[i] = vec3_load(shape->vertices[shape->faces[face][i]]);
+    Vec3 n = vec3_cross(vec3_sub(x[1], x[0]), vec3_sub(x[2], x[0]));
+    double scale = vec3_length(n) * vec3_length(Br);
+    return field->kind->poles && scale > 0 ? vec3_dot(n, Br) / scale : 0;
+}
+
+void flux_field_shape(const FluxField *field, MeshFile *shape, double **pole)
+{
+    *shape = (MeshFile){.path = mem_text(flux_field_name(field))};
+    if (field->kind->shape) field->kind->shape(field, shape);
+    *pole = mem_alloc((size_t)shape->face_count, sizeof **pole);
+    for (int f = 0; f < shape->face_count; f++) (*pole)[f] = pole_of(field, shape, f);
 }
 
 void flux_field_middle(const FluxField *field, FluxPlace place, double middle[3])

@@ -7,6 +7,7 @@
 #include "field/cubic_grid.h"
 #include "field/flux_sources.h"
 #include "field/rigid_move.h"
+#include "io/mesh_file.h"
 
 typedef struct FluxField FluxField;
 
@@ -53,6 +54,16 @@ typedef struct FluxPlace {
     double time;
     const double *move, *turn;
 } FluxPlace;
+
+/* x = turn X + shift, X in its own frame. False and a sentence where that is not known. */
+bool flux_field_pose(const FluxField *field, FluxPlace place, RigidPose *pose, Error *err);
+
+/* What it looks like in its own frame: its surface, and for each face, (*pole)[face], in which measure it is a north (1) or
+ * south pole (-1); of what has no shape an empty surface. Clear it (mesh_file_clear); *pole is the caller's. Its kind as in a
+ * scene. */
+const char *flux_field_kind(const FluxField *field);
+bool flux_field_has_shape(const FluxField *field);
+void flux_field_shape(const FluxField *field, MeshFile *shape, double **pole);
 
 /* Re-entrant. A value that is not finite leaves NaN, which the solver notices. */
 void flux_field_eval(const FluxField *field, const double x[3], FluxPlace place, FluxSample *sample);

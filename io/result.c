@@ -138,11 +138,18 @@ static bool put_last_x(VtkFrames *w, Error *err)
     return ok;
 }
 
-/* What else the frames hold: frames/flux_density and obstacle_pose, and frames/NAME of state/NAME, what is kept of whole
+bool result_is_pose(const char *field)
+{
+    static const char END[] = "_pose";
+    size_t length = strlen(field), end = sizeof END - 1;
+    return length > end && !strcmp(field + length - end, END);
+}
+
+/* What else the frames hold: frames/flux_density and poses, and frames/NAME of state/NAME, what is kept of whole
  * states. */
 static bool put_frames(VtkFrames *w, const char *field, Error *err)
 {
-    bool state = !strncmp(field, "state/", 6), pose = !strcmp(field, "obstacle_pose");
+    bool state = !strncmp(field, "state/", 6), pose = result_is_pose(field);
     if (!state && !pose && strcmp(field, "flux_density") != 0) return true;
     char *path = mem_format("slender/frames/%s", state ? field + 6 : field);
     bool ok = vtk_frames_put(w, field, path, NULL, pose, err);

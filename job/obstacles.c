@@ -1,4 +1,5 @@
 #include "job/obstacles.h"
+#include "job/pose_rows.h"
 #include "world/poses.h"
 #include <math.h>
 #include <string.h>
@@ -13,14 +14,6 @@ static Poses poses_at(const World *world, double time)
     return poses;
 }
 
-static void put_pose(const RigidPose *pose, double row[12])
-{
-    for (int i = 0; i < 3; i++) {
-        memcpy(row + 4 * i, pose->turn[i], 3 * sizeof *row);
-        row[4 * i + 3] = pose->shift[i];
-    }
-}
-
 void obstacles_add_poses(const Model *model, double time, Arrays *list)
 {
     const World *world = model->world;
@@ -28,7 +21,7 @@ void obstacles_add_poses(const Model *model, double time, Arrays *list)
     Poses poses = poses_at(world, time);
     if (poses.moves) {
         double *rows = arrays_numbers(list, 12 * (size_t)poses.count);
-        for (int k = 0; k < poses.count; k++) put_pose(&poses.end[k], rows + 12 * k);
+        for (int k = 0; k < poses.count; k++) pose_put_row(&poses.end[k], rows + 12 * k);
         arrays_add(list, array_float("obstacle_pose", "1, m", rows, 2, poses.count, 12));
     }
     poses_destroy(&poses);

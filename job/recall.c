@@ -98,7 +98,7 @@ static bool recall_step(Journal *journal, Result *result, int step, Error *err)
 static bool recall_state(Journal *journal, Result *result, const char *name, int step, Error *err)
 {
     Array array;
-    bool pose = !strcmp(name, "obstacle_pose");
+    bool pose = result_is_pose(name);
     if (!strcmp(name, "x") || !strcmp(name, "flux_density")) return true;
     char *from = mem_format("%s%s", FRAMES, name), *to = mem_format("%s%s", pose ? "" : "state/", name);
     bool ok = result_read_rows(result, from, step, 1, &array, err);

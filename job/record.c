@@ -3,6 +3,7 @@
 #include "io/result.h"
 #include "job/inputs.h"
 #include "job/obstacles.h"
+#include "job/sources.h"
 #include "job/outputs.h"
 #include "job/recall.h"
 #include "model/stored.h"
@@ -94,6 +95,7 @@ static bool put_start(Run *run, const char *scene, const char *inputs, Error *er
     Array meta[] = {array_text("scene", scene), array_text("versions", versions),
                     array_text("kernels", kernels), array_text("inputs", inputs)};
     run->model->body->ops->add_static(run->model, &statics);
+    sources_add(run->model, &statics);
     bool ok = journal_replace(run->journal, "meta", 0, meta, *inputs ? 4 : 3, err) &&
               journal_replace(run->journal, "final", 0, NULL, 0, err);
     ok = arrays_replace(&statics, run->journal, "static", ok ? err : NULL) && ok;

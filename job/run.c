@@ -1,6 +1,7 @@
 #include "job/run.h"
 #include "base/memory.h"
 #include "job/obstacles.h"
+#include "job/sources.h"
 #include "model/state_arrays.h"
 #include <string.h>
 
@@ -139,6 +140,7 @@ bool run_put_frame(Run *run, int index, double shown, const Snapshot *shot, bool
     }
     add_felt(&list, model, shot, NULL);
     obstacles_add_poses(model, shot->at.time, &list);
+    sources_add_poses(model, shot, &list);
     if (model->body->ops->add_frame) model->body->ops->add_frame(model, shot, whole, &list);
     if (run->scene->output.states == STATES_ALL) state_arrays_add(model, shot, "state", true, &list);
     return arrays_put(&list, run->journal, "frame", index, err);

@@ -1,5 +1,6 @@
-/* show_obstacles.h - the obstacles of a result, as its pictures draw them: plain, and seen from where they are free only, so
- * that one looks into a pipe and from above onto what stands on a floor. */
+/* show_obstacles.h - the obstacles of a result, and the magnets and coils around, as its pictures draw them: seen from where
+ * they are free only, so that one looks into a pipe and from above onto what stands on a floor. Obstacles are plain, magnets
+ * red at their north pole and blue at their south pole, coils of copper. */
 #pragma once
 #include "view/raster.h"
 #include "view/show_data.h"
@@ -8,13 +9,17 @@ typedef struct ShowObstacle {
     int point_count, face_count;
     const double (*points)[3]; /* m, in its own frame */
     const int (*faces)[3];
+    const double *pole; /* [face] of a magnet or coil: 1 north .. -1 south; NULL: an obstacle */
+    const char *kind;   /* "magnet", .. */
 } ShowObstacle;
 
 typedef struct ShowObstacles {
     ShowData *data; /* keeps all */
     int count;      /* 0: there are none, and nothing below */
+    int obstacles;  /* those of them that are obstacles, the first ones */
     ShowObstacle *list;
     int point_count, face_count, (*faces)[3]; /* of all, one after the other */
+    Color *colors;                            /* [face_count] */
 } ShowObstacles;
 
 /* False and a sentence where they are not as slender writes them. */

@@ -42,6 +42,12 @@ void obstacle_gap(const Obstacle *obstacle, const RigidPose *pose, const double 
         }
 }
 
+void obstacle_surface(const Obstacle *obstacle, const double box[2][3], MeshFile *surface)
+{
+    *surface = (MeshFile){.path = mem_text(obstacle->name)};
+    obstacle->ops->surface(obstacle->self, box, surface);
+}
+
 void obstacle_clear(Obstacle *obstacle)
 {
     if (obstacle->ops) obstacle->ops->destroy(obstacle->self);

@@ -2,7 +2,7 @@
 #include "base/memory.h"
 #include "field/cubic_grid.h"
 #include "world/obstacle_shapes.h"
-#include "world/obstacle_surface.h"
+#include "field/surface_patch.h"
 #include <math.h>
 #include <string.h>
 

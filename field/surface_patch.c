@@ -1,4 +1,4 @@
-#include "world/obstacle_surface.h"
+#include "field/surface_patch.h"
 #include "base/memory.h"
 #include "base/vec3.h"
 #include <string.h>
@@ -40,10 +40,4 @@ void surface_frame(const double axis[3], double first[3], double second[3])
     Vec3 e = vec3_unit(vec3_cross(a, least));
     vec3_store(first, e);
     vec3_store(second, vec3_cross(a, e));
-}
-
-void obstacle_surface(const Obstacle *obstacle, const double box[2][3], MeshFile *surface)
-{
-    *surface = (MeshFile){.path = mem_text(obstacle->name)};
-    obstacle->ops->surface(obstacle->self, box, surface);
 }

@@ -1,8 +1,6 @@
-/* obstacle_surface.h - how the kinds of obstacles make their surfaces (ObstacleOps.surface): patches of triangles over a
- * square of parameters. */
+/* surface_patch.h - surfaces for pictures, of obstacles and of sources: patches of triangles over a square of parameters. */
 #pragma once
 #include "io/mesh_file.h"
-#include "world/obstacle.h"
 
 /* The point at u, v in 0..1. */
 typedef void SurfacePlace(const void *self, double u, double v, double x[3]);

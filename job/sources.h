@@ -1,0 +1,11 @@
+/* sources.h - what a result shows of magnets and coils: what they look like, and where they are in each frame. */
+#pragma once
+#include "job/run.h"
+
+/* source_names and, for each that has a shape, sources/NAME/kind, points, faces and pole [face], how much of a north (1) or
+ * south pole (-1) it is, in its own frame. */
+void sources_add(const Model *model, Arrays *list);
+
+/* Of a frame: source_pose [source][12], rows of 3x4 matrices (R | s), x = R X + s; NaN where the frame's load case is without
+ * it. Nothing where there are none. */
+void sources_add_poses(const Model *model, const Snapshot *shot, Arrays *list);

@@ -1,0 +1,163 @@
+/* Scenes with sources of the flux density, whole runs: the field in frames is the sum of all, magnets and coils are in the
+ * result where they are, maps give the field that they were made of, and a design finds currents and a magnet's place. */
+#include "base/memory.h"
+#include "field/flux_sources.h"
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+#include <cmocka.h>
+
+#define NAME "test_source_runs"
+#include "tests/run_fixture.h"
+
+#define STRIP                                                                                                \
+    "slender: 1\nshell:\n  mesh: {shape: strip, size: [40 mm, 5 mm], n: 8}\n  thickness: 0.5 mm\n"           \
+    "  young: 1 MPa\n  poisson: 0.4\n  magnetization: [80 kA/m, 0, 0]\n"                                     \
+    "fix:\n  - {group: root, clamp: true}\n"
+
+static char *text_of(const char *more)
+{
+    return mem_format("%s%s", STRIP, more);
+}
+
+/* The middle of a strip that lies in z = 0. */
+static const double middle[3] = {0.02, 0.0025, 0};
+
+static void test_sum(void **unused)
+{
+    (void)unused;
+    Result *result =
+        run_text(text_of("job: simulate\n"
+                         "flux_density:\n"
+                         "  - {uniform: [1 mT, 0, 2 mT]}\n"
+                         "  - [\"0\", \"1e-3*t\", \"0\"]\n"
+                         "  - {name: big, magnet: {at: [20 mm, 0, 40 mm], size: [10 mm, 8 mm, 6 mm], "
+                         "remanence: [0, 0, 1.2]},\n"
+                         "     move: [\"0\", \"0\", \"-0.1*t\"], turn: [\"pi/2\", \"0\", \"0\"]}\n"
+                         "  - {coil: {at: [20 mm, 0, -10 mm], radius: 15 mm, current: 3, turns: 20}}\n"
+                         "time: {step: 2 ms, steps: 5}\noutput: {precision: double}\n"));
+    Array B = read_all(result, "slender/frames/flux_density"),
+          pose = read_all(result, "slender/frames/source_pose"),
+          names = read_all(result, "slender/source_names"),
+          pole = read_all(result, "slender/sources/big/pole");
+    assert_string_equal(names.data, "big\nsource2\n");
+    assert_int_equal(pose.rank, 3);
+    assert_int_equal(pose.dims[1], 2);
+    for (int n = 0; n <= 5; n++) {
+        double t = 2e-3 * n, own[3], x[3];
+        FluxSample magnet, coil;
+        for (int i = 0; i < 3; i++) x[i] = middle[i];
+        own[0] = x[0] - 0.02, own[1] = x[2] - (0.04 - 0.1 * t), own[2] = -x[1]; /* a quarter about x */
+        flux_of_block((double[]){0.005, 0.004, 0.003}, (double[]){0, 0, 1.2}, own, &magnet);
+        flux_of_round_coil(0.015, 0, 60, (double[]){x[0] - 0.02, x[1], x[2] + 0.01}, &coil);
+        const double *found = (const double *)B.data + 3 * n, *R = (const double *)pose.data + 24 * n;
+        assert_true(fabs(found[0] - (1e-3 + magnet.flux[0] + coil.flux[0])) < 1e-15);
+        assert_true(fabs(found[1] - (1e-3 * t - magnet.flux[2] + coil.flux[1])) < 1e-15);
+        assert_true(fabs(found[2] - (2e-3 + magnet.flux[1] + coil.flux[2])) < 1e-15);
+        const double expected[12] = {1, 0, 0, 0.02, 0, 0, -1, 0, 0, 1, 0, 0.04 - 0.1 * t};
+        for (int i = 0; i < 12; i++) assert_true(fabs(R[i] - expected[i]) < 1e-15);
+    }
+    double most = 0, least = 0;
+    for (int f = 0; f < pole.dims[0]; f++) {
+        most = fmax(most, ((const double *)pole.data)[f]);
+        least = fmin(least, ((const double *)pole.data)[f]);
+    }
+    assert_true(most == 1 && least == -1);
+    array_clear(&B), array_clear(&pose), array_clear(&names), array_clear(&pole);
+    result_close(result);
+}
+
+/* Of a field that is a polynomial of third order the spline is it. */
+static void test_map(void **unused)
+{
+    (void)unused;
+    FILE *file = fopen(NAME ".csv", "w");
+    assert_non_null(file);
+    fprintf(file, "x [mm], y [mm], z [mm], Bx [mT], By [mT], Bz [mT]\n");
+    for (int i = 0; i < 9; i++)
+        for (int j = 0; j < 4; j++)
+            for (int k = 0; k < 6; k++) {
+                double x = -5 + 6.5 * i, y = -11 + 8 * j, z = -15 + 16 * k;
+                fprintf(file, "%.17g, %.17g, %.17g, %.17g, %.17g, %.17g\n", x, y, z, 1e-3 * x * y, 0.1 * z,
+                        5 + 1e-4 * x * x * z);
+            }
+    fclose(file);
+    static const char *const ways[] = {"{map: {file: " NAME ".csv, scale: 0.4}}",
+                                       "[\"0.4e-3*x*y*1000\", \"0.4*0.1*z\", \"0.4e-3*(5 + 1e-4*1e9*x*x*z)\"]"};
+    double x[2][3 * 18];
+    for (int k = 0; k < 2; k++) {
+        char *more =
+            mem_format("job: equilibrium\nsolver: {force_tolerance: 1.0e-10}\nflux_density: %s\n", ways[k]);
+        Result *result = run_text(text_of(more));
+        Array found = read_all(result, "slender/state/x");
+        assert_int_equal(found.dims[0], 18);
+        memcpy(x[k], found.data, sizeof x[k]);
+        array_clear(&found);
+        result_close(result);
+        mem_free(more);
+    }
+    double most = 0, off = 0;
+    for (int i = 0; i < 3 * 18; i++)
+        most = fmax(most, fabs(x[0][i])), off = fmax(off, fabs(x[0][i] - x[1][i]));
+    print_message("a map and its formula: %.1e m apart\n", off);
+    assert_true(x[0][3 * 8 + 2] > 1e-3 && off < 1e-9);
+}
+
+/* The target is what currents of 2 and -1.5 and a magnet that is elsewhere make of the strip. */
+static void test_design(void **unused)
+{
+    (void)unused;
+    static const char around[] =
+        "flux_density:\n"
+        "  - {name: below, coil: {at: [20 mm, 0, -20 mm], radius: 15 mm, current: %s, turns: 500}}\n"
+        "  - {name: beyond, coil: {at: [60 mm, 0, 0], axis: [1, 0, 0], radius: 15 mm, length: 5 mm, current: "
+        "%s, "
+        "turns: 500}}\n"
+        "  - {magnet: {at: [30 mm, 2 mm, %s], radius: 5 mm, length: 10 mm, remanence: [0, 0, 0.5]}}\n";
+    char *there = mem_format(around, "2", "-1.5", "42 mm"), *more = mem_format("job: equilibrium\n%s", there);
+    Result *result = run_text(text_of(more));
+    Array x = read_all(result, "slender/state/x");
+    FILE *file = fopen(NAME ".obj", "w");
+    assert_non_null(file);
+    for (int v = 0; v < x.dims[0]; v++) {
+        const double *place = (const double *)x.data + 3 * v;
+        fprintf(file, "v %.17g %.17g %.17g\n", place[0], place[1], place[2]);
+    }
+    Array faces = read_all(result, "slender/faces");
+    for (int f = 0; f < faces.dims[0]; f++) {
+        const int *v = (const int *)faces.data + 3 * f;
+        fprintf(file, "f %d %d %d\n", v[0] + 1, v[1] + 1, v[2] + 1);
+    }
+    fclose(file);
+    array_clear(&faces);
+    array_clear(&x), result_close(result), mem_free(there), mem_free(more);
+    there = mem_format(around, "1", "1", "45 mm");
+    more = mem_format("job: design\n%starget: {file: " NAME ".obj}\ndesign:\n  unknowns:\n"
+                      "    source_strength: {sources: [below, beyond], bounds: [-5, 5]}\n"
+                      "    source_move: {sources: [source3]}\n"
+                      "  objectives:\n    - target: 1\n  optimizer: gauss_newton\n  iterations: 30\n",
+                      there);
+    result = run_text(text_of(more));
+    Array F = read_all(result, "slender/history/objective"),
+          I = read_all(result, "slender/design/source_strength"),
+          move = read_all(result, "slender/design/source_move");
+    const double *objective = F.data, *strength = I.data, *way = move.data;
+    int last = F.dims[0] - 1;
+    print_message("F %.1e of the start; strengths %.6f, %.6f, %g; the magnet %.6f mm up\n",
+                  objective[last] / objective[0], strength[0], strength[1], strength[2], 1e3 * way[8]);
+    assert_true(strength[2] == 1 && way[0] == 0 && way[3] == 0);
+    assert_true(objective[last] < 1e-6 * objective[0]);
+    array_clear(&F), array_clear(&I), array_clear(&move);
+    result_close(result), mem_free(there), mem_free(more);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_sum), cmocka_unit_test(test_map),
+                                       cmocka_unit_test(test_design)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
