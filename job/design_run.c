@@ -337,8 +337,9 @@ RunStatus design_run(Run *run, const DesignOps *ops, void *self, const double *u
 
 const char *design_unknown_name(const Model *model, const ParamBlock *block)
 {
-    bool control = model->control.rows && block->offset == model->control.from;
-    return control ? "flux_density" : block->name;
+    if (model->control.rows && block->offset == model->control.from) return "flux_density";
+    if (model->strengths.rows && block->offset == model->strengths.from) return "source_strength";
+    return block->name;
 }
 
 void design_add_gradient(Arrays *list, const char *name, const char *unit, const double *values, int count,

@@ -142,15 +142,27 @@ static bool put_frames(TrajectoryJob *job, int first, Snapshot *end, Arrays *lis
     return true;
 }
 
-/* trajectory/flux_density: what acts in each step. */
+/* What acts in each step: numbers of p from an entry on. */
+static void add_over_time(const TrajectoryJob *job, Arrays *list, Array named, int entry, int width)
+{
+    int steps = job->run->scene->time.steps;
+    double *rows = arrays_numbers(list, (size_t)width * (size_t)steps);
+    for (int n = 1; n <= steps; n++)
+        memcpy(rows + width * (n - 1), trajectory_params(job->t, n) + entry, (size_t)width * sizeof *rows);
+    arrays_add(list, array_float(named.name, named.unit, rows, 2, steps, width));
+}
+
+/* trajectory/flux_density, and trajectory/source_strength where that is unknown over time. */
 static void add_field(const TrajectoryJob *job, Arrays *list)
 {
-    int steps = job->run->scene->time.steps, flux = job->run->model->flux_blocks.uniform;
-    if (flux < 0) return;
-    double *rows = arrays_numbers(list, 3 * (size_t)steps);
-    for (int n = 1; n <= steps; n++)
-        memcpy(rows + 3 * (n - 1), trajectory_params(job->t, n) + flux, 3 * sizeof *rows);
-    arrays_add(list, array_float("trajectory/flux_density", "T", rows, 2, steps, 3));
+    const Model *model = job->run->model;
+    const Control *strengths = &model->strengths;
+    if (model->flux_blocks.uniform >= 0)
+        add_over_time(job, list, (Array){.name = "trajectory/flux_density", .unit = "T"},
+                      model->flux_blocks.uniform, 3);
+    if (strengths->rows)
+        add_over_time(job, list, (Array){.name = "trajectory/source_strength", .unit = ""}, strengths->to,
+                      strengths->width);
 }
 
 /* dF/dp of the unknowns, and what the start's places and velocities do to F. */
@@ -162,12 +174,12 @@ static void add_gradients(const TrajectoryJob *job, Arrays *list)
     trajectory_gradients(job->t, dp, dx, dx + dofs);
     for (int k = 0; k < model->design.unknown_count; k++) {
         const ParamBlock *block = model->design.unknowns[k].block;
-        bool control = model->control.rows && block->offset == model->control.from;
-        design_add_gradient(list, design_unknown_name(model, block), block->unit, dp + block->offset,
-                            block->count, block->width);
-        if (control) /* its rows, in the place of what acts at the end */
-            arrays_add(list, array_float("design/flux_density", "T",
-                                         trajectory_params(job->t, 0) + block->offset, 2, block->count, 3));
+        const char *name = design_unknown_name(model, block);
+        design_add_gradient(list, name, block->unit, dp + block->offset, block->count, block->width);
+        if (name != block->name) /* a control's rows, in the place of what acts at the end */
+            arrays_add(list, array_float(arrays_keep(list, mem_format("design/%s", name)), block->unit,
+                                         trajectory_params(job->t, 0) + block->offset, 2, block->count,
+                                         block->width));
     }
     int vertices = model->point_count;
     design_add_gradient(list, "start_x", "m", dx, vertices, 3);
@@ -224,12 +236,14 @@ static RunStatus run_trajectory(Run *run, Error *err)
     const TimeScene *time = &run->scene->time;
     Case *c = &model->cases[0];
     TrajectoryJob job = {.run = run, .c = c};
+    Control controls[2];
+    int control_count = model_controls(model, controls);
     TrajectoryProblem problem = {.sys = c->sys,
                                  .design = &model->design,
                                  .params = model->params,
-                                 .controls = &model->control,
+                                 .controls = controls,
                                  .objectives = c->objectives,
-                                 .control_count = model->control.rows > 0,
+                                 .control_count = control_count,
                                  .objective_count = c->objective_count,
                                  .start = &c->state,
                                  .step = time->step,

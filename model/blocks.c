@@ -99,20 +99,49 @@ bool model_knows_fields(const Model *model, const double *p, double time, const 
 
 /* ---- Trajectories ---- */
 
-/* Rows of the unknown flux density: one for each step, knot or coefficient. */
-static void add_control(Model *model, const Scene *scene)
+/* A row for each step, knot or coefficient of so many numbers. */
+static Control make_control(Model *model, const Scene *scene, ControlKind kind, int count, int width)
 {
-    const FluxUnknown *from = scene->design->unknowns.flux_density;
+    Control control = {.kind = kind,
+                       .width = width,
+                       .steps = scene->time.steps,
+                       .start = model->time,
+                       .duration = scene->time.step * scene->time.steps};
+    control.rows = control_rows(control.kind, control.steps, count);
+    return control;
+}
+
+static void add_flux_control(Model *model, const Scene *scene, const FluxUnknown *from)
+{
+    ControlKind kind = (ControlKind)from->per;
     Control *control = &model->control;
-    *control = (Control){.kind = (ControlKind)from->per,
-                         .to = model->flux_blocks.uniform,
-                         .width = 3,
-                         .steps = scene->time.steps,
-                         .start = model->time,
-                         .duration = scene->time.step * scene->time.steps};
-    control->rows = control_rows(control->kind, control->steps,
-                                 control->kind == CONTROL_KNOT ? from->knots : from->harmonics);
+    *control = make_control(model, scene, kind, kind == CONTROL_KNOT ? from->knots : from->harmonics, 3);
+    control->to = model->flux_blocks.uniform;
     control->from = params_add(model->params, "control", "T", control->rows, 3, false);
+}
+
+/* Of the sources that are meant, from the first to the last; model_design refuses what is not so. */
+static void add_strength_control(Model *model, const Scene *scene, const SourceUnknown *from)
+{
+    ControlKind kind = (ControlKind)from->per;
+    int first = 0, width = model->fields->count;
+    for (int k = 0; from->sources && k < model->fields->count; k++) {
+        const char *name = flux_field_name(model->fields->items[k]);
+        if (!strcmp(name, from->sources[0])) first = k, width = from->sources_count;
+    }
+    if (width < 1 || width > CONTROL_MAX_WIDTH || first + width > model->fields->count) return;
+    Control *control = &model->strengths;
+    *control = make_control(model, scene, kind, kind == CONTROL_KNOT ? from->knots : from->harmonics, width);
+    control->to = model->flux_blocks.strength + first;
+    control->from = params_add(model->params, "strengths", "", control->rows, width, false);
+}
+
+int model_controls(const Model *model, Control controls[2])
+{
+    int count = 0;
+    if (model->control.rows) controls[count++] = model->control;
+    if (model->strengths.rows) controls[count++] = model->strengths;
+    return count;
 }
 
 void model_add_blocks(Model *model, const Scene *scene)
@@ -120,8 +149,11 @@ void model_add_blocks(Model *model, const Scene *scene)
     if (model->world) world_add_params(model->world, model->params);
     const DesignScene *design = scene->design;
     bool trajectory = model->job->design && model->job->motion;
-    if (!trajectory || !design || !design->unknowns.flux_density) return;
-    add_control(model, scene);
+    if (!trajectory || !design) return;
+    const SourceUnknown *strength = design->unknowns.source_strength;
+    if (strength && strength->per >= 0) add_strength_control(model, scene, strength);
+    if (!design->unknowns.flux_density) return;
+    add_flux_control(model, scene, design->unknowns.flux_density);
     for (int k = 0; k < design->objectives_count; k++) {
         const ObjectiveScene *row = &design->objectives[k];
         if (isnan(row->dmp)) continue;

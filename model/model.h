@@ -52,6 +52,7 @@ struct Model {
     double *x;          /* [dofs] rest or pose */
     Design design;      /* of a design or trajectory */
     Control control;    /* of a trajectory: the unknown flux density; no rows: none */
+    Control strengths;  /* of a trajectory: unknown strengths of sources; no rows: none, or constant */
     CaseFlux *flux;     /* of the scene, then of each case or stage */
     Timed flux_of_time; /* of a motion: the uniform flux density, if it changes */
 };
@@ -107,6 +108,9 @@ void model_add_blocks(Model *model, const Scene *scene);
 bool model_read_world(Model *model, const Build *b, const Scene *scene, const WorldBody *body, World **world);
 void model_put_world(Model *model, const Scene *scene);
 bool model_check_world(Model *model, YamlFile *file);
+
+/* What of a trajectory changes in time as an unknown; how many. */
+int model_controls(const Model *model, Control controls[2]);
 
 /* A flux density, model->flux[number], into p. */
 void model_put_flux(const Model *model, int number, double *p);

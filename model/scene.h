@@ -151,8 +151,8 @@ typedef struct VectorUnknown {
 /* Of sources of the flux density: strengths, moves or turns. */
 typedef struct SourceUnknown {
     double noise, scale, bounds[2];
-    char **sources; /* names; NULL: all */
-    int sources_count;
+    char **sources;                           /* names; NULL: all */
+    int sources_count, per, knots, harmonics; /* per: ControlKind, of strengths over time; -1: constant */
 } SourceUnknown;
 
 typedef struct StrainUnknown {

@@ -87,6 +87,14 @@ static const YamlTable flux_start_table = {
                             {YAML_FILE(FluxStart, file), .one_of = 1, .required = true, .doc = "a CSV file"},
                             {0}}};
 
+#define CONTROL_ROWS(S)                                                                                      \
+    {YAML_INTEGER(S, knots), .when = "per: knot", .range = "[2, 1000000]", .fallback = "20",                 \
+     .doc = "per knot: how many"},                                                                           \
+    {                                                                                                        \
+        YAML_INTEGER(S, harmonics), .when = "per: harmonic", .range = "[1, 32]", .fallback = "5",            \
+                                    .doc = "per harmonic: how many"                                          \
+    }
+
 static const YamlTable flux_unknown_table = {
     .name = "unknown flux_density",
     .size = sizeof(FluxUnknown),
@@ -99,10 +107,7 @@ static const YamlTable flux_unknown_table = {
          .doc = "of a trajectory: a value for each step of time, for each knot of a C1 cubic spline "
                 "(Catmull-Rom, equal "
                 "distances), or a mean and (cos, sin) of 1, 2, .. periods in the whole time"},
-        {YAML_INTEGER(FluxUnknown, knots), .when = "per: knot", .range = "[2, 1000000]", .fallback = "20",
-         .doc = "per knot: how many"},
-        {YAML_INTEGER(FluxUnknown, harmonics), .when = "per: harmonic", .range = "[1, 32]", .fallback = "5",
-         .doc = "per harmonic: how many"},
+        CONTROL_ROWS(FluxUnknown),
         {YAML_NUMBER(FluxUnknown, noise), .unit = "T", .range = "[0, inf)", .fallback = "0",
          .doc = "size of seeded noise that is added to the start"},
         {YAML_NUMBER(FluxUnknown, scale), .unit = "T", .range = "(0, inf)", .fallback = "0.01 T",
@@ -114,28 +119,30 @@ static const YamlTable flux_unknown_table = {
          .doc = "of a trajectory, in place of the scene's flux_density over time"},
         {0}}};
 
-#define SOURCE_UNKNOWN(u, natural)                                                                           \
-    (const YamlField[])                                                                                      \
-    {                                                                                                        \
-        {YAML_TEXTS(SourceUnknown, sources), .doc = "of which sources, by their names; of all if absent"},   \
-            {YAML_NUMBER(SourceUnknown, noise), .unit = u, .range = "[0, inf)", .fallback = "0",             \
-             .doc = "size of seeded noise that is added to the start"},                                      \
-            {YAML_NUMBER(SourceUnknown, scale), .unit = u, .range = "(0, inf)", .fallback = natural,         \
-             .doc = "a natural size: optimisers see the value over it"},                                     \
-            BOUNDS_ROW(SourceUnknown, u),                                                                    \
-        {                                                                                                    \
-            0                                                                                                \
-        }                                                                                                    \
-    }
-
-static const YamlTable strength_unknown_table = {.name = "unknown source_strength",
-                                                 .size = sizeof(SourceUnknown),
-                                                 .doc =
-                                                     "Factors on sources of the flux density as unknowns, "
-                                                     "the same in all load cases and at all times: of a coil "
-                                                     "its current over the scene's. They start at 1. A "
-                                                     "uniform source has none: its unknown is flux_density.",
-                                                 .fields = SOURCE_UNKNOWN(NULL, "1")};
+#define SOURCE_ROWS(u, natural)                                                                              \
+    {YAML_TEXTS(SourceUnknown, sources), .doc = "of which sources, by their names; of all if absent"},       \
+        {YAML_NUMBER(SourceUnknown, noise), .unit = u, .range = "[0, inf)", .fallback = "0",                 \
+         .doc = "size of seeded noise that is added to the start"},                                          \
+        {YAML_NUMBER(SourceUnknown, scale), .unit = u, .range = "(0, inf)", .fallback = natural,             \
+         .doc = "a natural size: optimisers see the value over it"},                                         \
+        BOUNDS_ROW(SourceUnknown, u)
+static const YamlTable strength_unknown_table = {
+    .name = "unknown source_strength",
+    .size = sizeof(SourceUnknown),
+    .doc = "Factors on sources of the flux density as unknowns, "
+           "the same in all load cases and at all times: of a coil "
+           "its current over the scene's. They start at 1. A "
+           "uniform source has none: its unknown is flux_density.",
+    .fields = (const YamlField[]){SOURCE_ROWS(NULL, "1"),
+                                  {YAML_CHOICE(SourceUnknown, per), .when = "/job: trajectory",
+                                   .choices = YAML_NAMES("frame", "knot", "harmonic"),
+                                   .doc = "of a trajectory: they change in time, with a value for each step, "
+                                          "for each knot of a C1 cubic spline, or a "
+                                          "mean and (cos, sin) of 1, 2, .. periods in the whole time; of up "
+                                          "to eight sources that stand one after the "
+                                          "other; the same at all times if absent"},
+                                  CONTROL_ROWS(SourceUnknown),
+                                  {0}}};
 
 static const YamlTable move_unknown_table = {.name = "unknown source_move",
                                              .size = sizeof(SourceUnknown),
@@ -143,7 +150,7 @@ static const YamlTable move_unknown_table = {.name = "unknown source_move",
                                                  "How far sources of the flux density are moved as unknowns, "
                                                  "beyond where the scene has them, the same in all "
                                                  "load cases and at all times. They start at 0.",
-                                             .fields = SOURCE_UNKNOWN("m", "10 mm")};
+                                             .fields = (const YamlField[]){SOURCE_ROWS("m", "10 mm"), {0}}};
 
 static const YamlTable turn_unknown_table = {.name = "unknown source_turn",
                                              .size = sizeof(SourceUnknown),
@@ -151,7 +158,7 @@ static const YamlTable turn_unknown_table = {.name = "unknown source_turn",
                                                  "How far sources of the flux density are turned about their "
                                                  "centres as unknowns, beyond how the scene has them, "
                                                  "rotation vectors. They start at 0.",
-                                             .fields = SOURCE_UNKNOWN("rad", "1 rad")};
+                                             .fields = (const YamlField[]){SOURCE_ROWS("rad", "1 rad"), {0}}};
 
 static const YamlTable unknowns_table = {
     .name = "unknowns",

@@ -237,6 +237,37 @@ static bool mark_sources(const Model *model, const Build *b, const char *name, c
     return true;
 }
 
+/* Strengths over time begin with those of the scene: 1. */
+static bool strengths_over_time(Model *model, const Build *b, const SourceUnknown *from, int seed)
+{
+    const Control *control = &model->strengths;
+    const ParamBlock *block = params_find(model->params, "strengths");
+    Key at = key("design.unknowns.source_strength");
+    bool *on = mem_alloc((size_t)model->fields->count, sizeof *on);
+    bool known = mark_sources(model, b, "source_strength", from, on);
+    mem_free(on);
+    if (!known) return false;
+    for (int s = 0; control->rows && s < from->sources_count; s++) {
+        int field = control->to - model->flux_blocks.strength + s;
+        if (strcmp(flux_field_name(model->fields->items[field]), from->sources[s]) != 0)
+            return yaml_refuse(b->file, key("%s.sources[%d]", at.text, s).text,
+                               "with `per` the sources are named in the scene's order, without gaps");
+    }
+    if (!control->rows)
+        return yaml_refuse(b->file, key("%s.per", at.text).text,
+                           "over time there may be %d sources, which stand one after the other",
+                           CONTROL_MAX_WIDTH);
+    double *rows = model->cases[0].stages[0].p + control->from;
+    int ones = control->kind == CONTROL_HARMONIC ? 1 : control->rows;
+    Random random = random_of(model, block, seed);
+    for (int i = 0; i < control->rows * control->width; i++)
+        rows[i] = (i < ones * control->width) + from->noise * random_signed(&random);
+    Unknown unknown = {.block = block, .group_count = control->rows, .scale = from->scale};
+    put_bounds(&unknown, from->bounds);
+    design_add(&model->design, unknown);
+    return check_bounds(b->file, "source_strength", from->bounds);
+}
+
 static bool source_unknown(Model *model, const Build *b, Design *design, const char *name,
                            const SourceUnknown *from, int seed)
 {
@@ -367,8 +398,13 @@ static bool add_unknowns(Model *model, const Scene *scene, const Build *b)
     if (unknowns->fold) ok = number_unknown(model, b, design, "fold", unknowns->fold, seed) && ok;
     if (unknowns->natural_strain) ok = strain_unknown(model, b, design, unknowns->natural_strain, seed) && ok;
     if (unknowns->flux_density) ok = flux_unknown(model, b, scene) && ok;
-    for (int k = 0; k < 3; k++)
-        if (sources[k]) ok = source_unknown(model, b, design, source_names[k], sources[k], seed) && ok;
+    for (int k = 0; k < 3; k++) {
+        bool over_time = k == 0 && sources[k] && sources[k]->per >= 0;
+        if (over_time)
+            ok = strengths_over_time(model, b, sources[k], seed) && ok;
+        else if (sources[k])
+            ok = source_unknown(model, b, design, source_names[k], sources[k], seed) && ok;
+    }
     if (ok && !design->unknown_count)
         ok = yaml_refuse(b->file, "design.unknowns",
                          "a design needs an unknown: magnetization, young, skin_young, fold, natural_strain, "

@@ -1,8 +1,6 @@
 #include "optim/control.h"
 #include <math.h>
 
-enum { MAX_WIDTH = 3 };
-
 int control_rows(ControlKind kind, int steps, int count)
 {
     return kind == CONTROL_FRAME ? steps : kind == CONTROL_KNOT ? count : 1 + 2 * count;
@@ -80,7 +78,7 @@ void control_add(const Control *control, int step, double time, const double *va
 
 void control_apply(const Control *control, int step, double time, double *p)
 {
-    double value[MAX_WIDTH];
+    double value[CONTROL_MAX_WIDTH];
     control_value(control, step, time, p, value);
     for (int i = 0; i < control->width; i++) p[control->to + i] = value[i];
 }

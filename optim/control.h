@@ -14,10 +14,11 @@ typedef enum ControlKind {
 typedef struct Control {
     ControlKind kind;
     int from, to;           /* entries in p of the rows and of the current value */
-    int rows, width, steps; /* width <= 3 */
+    int rows, width, steps; /* width <= CONTROL_MAX_WIDTH */
     double start, duration; /* s, of the whole motion */
 } Control;
 
+enum { CONTROL_MAX_WIDTH = 8 };    /* numbers in a value                                               */
 enum { CONTROL_MAX_WEIGHTS = 65 }; /* so many rows at most make a value: up to 32 harmonics */
 
 /* Rows that a control of so many steps has; `count` is that of knots (>= 2) or harmonics (1..32). */

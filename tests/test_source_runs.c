@@ -86,8 +86,9 @@ static void test_map(void **unused)
                         5 + 1e-4 * x * x * z);
             }
     fclose(file);
-    static const char *const ways[] = {"{map: {file: " NAME ".csv, scale: 0.4}}",
-                                       "[\"0.4e-3*x*y*1000\", \"0.4*0.1*z\", \"0.4e-3*(5 + 1e-4*1e9*x*x*z)\"]"};
+    static const char *const ways[] = {
+        "{map: {file: " NAME ".csv, scale: 0.4}}",
+        "[\"0.4e-3*x*y*1000\", \"0.4*0.1*z\", \"0.4e-3*(5 + 1e-4*1e9*x*x*z)\"]"};
     double x[2][3 * 18];
     for (int k = 0; k < 2; k++) {
         char *more =
@@ -155,9 +156,48 @@ static void test_design(void **unused)
     result_close(result), mem_free(there), mem_free(more);
 }
 
+/* F and the sum of its gradient over the rows of the first coil's strength, of currents that change in time: all rows are the
+ * same at the start, so that the sum is what the scene's current does. */
+static double motion(double current, double *sum)
+{
+    char *more = mem_format(
+        "job: trajectory\nflux_density:\n"
+        "  - {name: below, coil: {at: [20 mm, 0, -20 mm], radius: 15 mm, current: %.17g, turns: 300}}\n"
+        "  - {name: beyond, coil: {at: [60 mm, 0, 0], axis: [1, 0, 0], radius: 15 mm, current: 1, turns: "
+        "300}}\n"
+        "time: {step: 5 ms, steps: 8}\ndesign:\n"
+        "  unknowns: {source_strength: {per: knot, knots: 3}, source_turn: {sources: [beyond]}}\n"
+        "  objectives:\n    - waypoint: {vertex: tip, at: [38 mm, 2.5 mm, 8 mm]}\n"
+        "  iterations: 0\n",
+        current);
+    Result *result = run_text(text_of(more));
+    Array F = read_all(result, "slender/history/objective"),
+          g = read_all(result, "slender/design/gradient/source_strength"),
+          over = read_all(result, "slender/trajectory/source_strength");
+    assert_true(array_is(&g, ARRAY_FLOAT64, 2, 2) && g.dims[0] == 3);
+    assert_true(over.dims[0] == 8 && ((const double *)over.data)[15] == 1);
+    double value = *(const double *)F.data;
+    for (int r = 0; sum && r < 3; r++) *sum += ((const double *)g.data)[2 * r];
+    array_clear(&F), array_clear(&g), array_clear(&over);
+    result_close(result), mem_free(more);
+    return value;
+}
+
+static void test_currents_over_time(void **unused)
+{
+    (void)unused;
+    const double h = 1e-3;
+    double sum = 0;
+    motion(1, &sum);
+    double difference = (motion(1 + h, NULL) - motion(1 - h, NULL)) / (2 * h);
+    print_message("gradient %.9g, differences %.9g\n", sum, difference);
+    assert_true(fabs(sum - difference) < 1e-5 * fabs(sum));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_sum), cmocka_unit_test(test_map),
-                                       cmocka_unit_test(test_design)};
+                                       cmocka_unit_test(test_design),
+                                       cmocka_unit_test(test_currents_over_time)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -407,6 +407,7 @@ StartOfFluxDensityKeys = TypedDict("StartOfFluxDensityKeys", {
 
 UnknownSourceStrength = TypedDict("UnknownSourceStrength", {
     "sources": "Numbers", "noise": "float", "scale": "float", "bounds": "Numbers",
+    "per": "Literal['frame', 'knot', 'harmonic']", "knots": "int", "harmonics": "int",
 }, total=False)
 
 UnknownSourceMove = TypedDict("UnknownSourceMove", {
