@@ -296,6 +296,44 @@ static bool corner(void *self, double u, Vec3 *x)
 }
 
 /* However many waves there are: followed, or refused. */
+/* x = (u, u^2, u^3): tau = 3/(1 + 9 u^2 + 9 u^4), against its middle; no torsion where there is no curvature. */
+static bool twisted_cubic(void *self, double u, Vec3 *x)
+{
+    (void)self;
+    *x = vec3(u, u * u, u * u * u);
+    return true;
+}
+
+static void test_torsion(void **state)
+{
+    (void)state;
+    enum { N = 160 };
+    double off[2], torsion[2 * N + 1];
+    RodCurve curve;
+    Error err;
+    for (int k = 0; k < 2; k++) {
+        int elements = k ? N : N / 2;
+        assert_true(rod_curve_create(twisted_cubic, NULL, -1, 1, elements, &curve, &err));
+        rod_torsion(&curve, torsion);
+        off[k] = 0;
+        for (int j = 0; j <= 2 * elements; j++) {
+            double u2 = curve.x[j].x * curve.x[j].x;
+            off[k] = fmax(off[k], fabs(torsion[j] - 3 / (1 + 9 * u2 + 9 * u2 * u2)));
+        }
+        rod_curve_clear(&curve);
+    }
+    print_message("torsion off by %.1e 1/m of 3, with half as many elements by %.1e\n", off[1], off[0]);
+    assert_true(off[1] < 2e-5 && off[1] < off[0] / 10);
+    assert_true(rod_curve_create(straight, NULL, 0, 1, N, &curve, &err));
+    rod_torsion(&curve, torsion);
+    for (int j = 0; j <= 2 * N; j++) assert_true(isnan(torsion[j]));
+    rod_curve_clear(&curve);
+    assert_true(rod_curve_create(inflected, NULL, -1, 1, N, &curve, &err));
+    rod_torsion(&curve, torsion);
+    for (int j = 0; j <= 2 * N; j++) assert_true(j == N ? isnan(torsion[j]) : fabs(torsion[j]) < 1e-12);
+    rod_curve_clear(&curve);
+}
+
 static void test_fine_curves(void **state)
 {
     (void)state;
@@ -330,7 +368,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_natural_shapes), cmocka_unit_test(test_natural_strains),
-        cmocka_unit_test(test_framings), cmocka_unit_test(test_straight_and_inflected),
-        cmocka_unit_test(test_fine_curves)};
+        cmocka_unit_test(test_framings),       cmocka_unit_test(test_straight_and_inflected),
+        cmocka_unit_test(test_torsion),        cmocka_unit_test(test_fine_curves)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

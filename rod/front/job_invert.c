@@ -18,8 +18,10 @@ typedef struct Inversion {
     Run *run;
     const RodModel *rm;
     int strands, elements, nodes;
-    double *s, *input, *natural, *strain, *moment, *strain_elements; /* [strands*nodes][3], ..        */
-    double *x;                                                       /* simulated; NULL: not asked for */
+    double *s, *curvature, *torsion;                                     /* [strands*nodes]               */
+    double *input, *natural, *natural_strain, *moment, *strain_elements; /* [strands*nodes][3], ..    */
+    double *tangent, *n1, *n2, *strain, *force;                          /* of the input                  */
+    double *x;                                                           /* simulated; NULL: not asked for */
     double *lowest, *critical_young, *tail, *contact, *round_trip, *residual, *route; /* [strands]     */
     double *gain; /* [strands] energy at the curve less that where the simulated rod rests, J */
     int *stable, *index, *touching; /* [strands]     */
@@ -148,6 +150,35 @@ static void invert_elements(Inversion *o, int k)
     rod_destroy(rod);
 }
 
+/* What the given curve is: its frames, its strains in them, its curvature and torsion, and the force that it carries just
+ * beyond each node. */
+static void describe_input(Inversion *o, int k)
+{
+    const RodModel *rm = o->rm;
+    const RodCurve *curve = &rm->curves[k];
+    const RodFrame *frames = rm->frames[k];
+    size_t stations = 2 * (size_t)o->elements + 1, pulls = 3 * (size_t)o->elements;
+    Vec3 *strain = mem_alloc(stations + pulls, sizeof *strain), *pull = strain + stations;
+    double *torsion = mem_alloc(stations, sizeof *torsion);
+    rod_strains(curve, frames, strain);
+    rod_torsion(curve, torsion);
+    rod_pulls(curve, rm->loads, pull);
+    for (int i = 0; i < o->nodes; i++) {
+        int node = k * o->nodes + i, j = 2 * i;
+        o->s[node] = curve->length * i / o->elements;
+        o->curvature[node] = vec3_length(curve->c[j]);
+        o->torsion[node] = torsion[j];
+        strand_of(o, o->input, k)[i] = curve->x[j];
+        strand_of(o, o->tangent, k)[i] = frames[j].n0;
+        strand_of(o, o->n1, k)[i] = frames[j].n1;
+        strand_of(o, o->n2, k)[i] = frames[j].n2;
+        strand_of(o, o->strain, k)[i] = strain[j];
+        strand_of(o, o->force, k)[i] = vec3_sub(pull[i < o->elements ? 3 * i : 3 * i - 1], rm->magnetic);
+    }
+    mem_free(strain);
+    mem_free(torsion);
+}
+
 static void invert_strand(Inversion *o, int k)
 {
     const RodModel *rm = o->rm;
@@ -160,11 +191,10 @@ static void invert_strand(Inversion *o, int k)
     rod_invert(curve, rm->section, moment, round ? NULL : rm->frames[k], strand_of(o, o->natural, k));
     rod_natural_strains(curve, rm->section, moment, rm->frames[k], strain);
     for (int i = 0; i < o->nodes; i++) {
-        o->s[k * o->nodes + i] = curve->length * i / o->elements;
-        strand_of(o, o->input, k)[i] = curve->x[2 * i];
-        strand_of(o, o->strain, k)[i] = strain[2 * i];
+        strand_of(o, o->natural_strain, k)[i] = strain[2 * i];
         strand_of(o, o->moment, k)[i] = moment[2 * i];
     }
+    describe_input(o, k);
     o->route[k] = compare_routes(rm, curve, rm->frames[k], moment);
     if (is_asked(scene, CHECK_STABILITY)) judge_stability(o, k, moment);
     if (is_asked(scene, CHECK_SELF_CONTACT)) find_contacts(o, k);
@@ -188,6 +218,22 @@ static Array flag_per_strand(const Inversion *o, const char *name, const int *va
 static Array per_node(const Inversion *o, const char *name, const char *unit, const double *values)
 {
     return array_float(name, unit, values, 2, o->strands * o->nodes, 3);
+}
+
+/* Of the given curve. */
+static void add_input(const Inversion *o, Arrays *list)
+{
+    int nodes = o->strands * o->nodes;
+    arrays_add(list, array_float("rod/s", "m", o->s, 1, nodes, 0));
+    arrays_add(list, per_node(o, "rod/input", "m", o->input));
+    arrays_add(list, per_node(o, "rod/tangent", "", o->tangent));
+    arrays_add(list, per_node(o, "rod/n1", "", o->n1));
+    arrays_add(list, per_node(o, "rod/n2", "", o->n2));
+    arrays_add(list, per_node(o, "rod/strain", "1/m", o->strain));
+    arrays_add(list, array_float("rod/curvature", "1/m", o->curvature, 1, nodes, 0));
+    arrays_add(list, array_float("rod/torsion", "1/m", o->torsion, 1, nodes, 0));
+    arrays_add(list, per_node(o, "rod/force", "N", o->force));
+    arrays_add(list, per_node(o, "rod/moment", "N m", o->moment));
 }
 
 static void add_checks(const Inversion *o, Arrays *list)
@@ -239,11 +285,9 @@ static bool put_results(const Inversion *o, const char *status, Error *err)
     int *starts = arrays_keep(&list, mem_alloc((size_t)o->strands + 1, sizeof *starts));
     for (int k = 0; k <= o->strands; k++) starts[k] = k * o->nodes;
     arrays_add(&list, array_text("status", status));
-    arrays_add(&list, array_float("rod/s", "m", o->s, 1, o->strands * o->nodes, 0));
-    arrays_add(&list, per_node(o, "rod/input", "m", o->input));
+    add_input(o, &list);
     arrays_add(&list, per_node(o, "rod/natural", "m", o->natural));
-    arrays_add(&list, per_node(o, "rod/natural_strain", "1/m", o->strain));
-    arrays_add(&list, per_node(o, "rod/moment", "N m", o->moment));
+    arrays_add(&list, per_node(o, "rod/natural_strain", "1/m", o->natural_strain));
     arrays_add(&list, array_float("rod/natural_strain_elements", "1/m", o->strain_elements, 2,
                                   o->strands * o->elements, 3));
     arrays_add(&list, per_strand(o, "metrics/residual", "", o->residual));
@@ -303,20 +347,37 @@ static void say(const Inversion *o)
         host_say(host, "the simulated rod rests %.2g m from its curve", worst);
 }
 
+/* All vectors, numbers of nodes and of strands, in one block. */
+static double *make_numbers(Inversion *o)
+{
+    double **vectors[] = {
+        &o->input, &o->natural, &o->natural_strain, &o->moment, &o->strain_elements, &o->x, &o->tangent,
+        &o->n1,    &o->n2,      &o->strain,         &o->force};
+    double **scalars[] = {&o->s, &o->curvature, &o->torsion};
+    double **alone[] = {&o->lowest,     &o->critical_young, &o->tail,  &o->contact,
+                        &o->round_trip, &o->residual,       &o->route, &o->gain};
+    enum {
+        VECTORS = sizeof vectors / sizeof *vectors,
+        SCALARS = sizeof scalars / sizeof *scalars,
+        ALONE = sizeof alone / sizeof *alone
+    };
+    size_t strands = (size_t)o->strands, all = strands * (size_t)o->nodes;
+    double *numbers = mem_alloc((3 * VECTORS + SCALARS) * all + ALONE * strands, sizeof *numbers),
+           *at = numbers;
+    for (int i = 0; i < VECTORS; i++, at += 3 * all) *vectors[i] = at;
+    for (int i = 0; i < SCALARS; i++, at += all) *scalars[i] = at;
+    for (int i = 0; i < ALONE; i++, at += strands) *alone[i] = at;
+    return numbers;
+}
+
 static RunStatus run_invert(Run *run, Error *err)
 {
     const RodModel *rm = ((const RodModel *)run->model->self);
-    size_t strands = (size_t)rm->strand_count, nodes = (size_t)run->model->point_count, all = strands * nodes;
+    size_t strands = (size_t)rm->strand_count, nodes = (size_t)run->model->point_count;
     Inversion o = {
         .run = run, .rm = rm, .strands = rm->strand_count, .elements = (int)nodes - 1, .nodes = (int)nodes};
     bool round_trip = is_asked(run->scene, CHECK_ROUND_TRIP);
-    double *numbers = mem_alloc(19 * all + 8 * strands, sizeof *numbers), *at = numbers;
-    double **vectors[] = {&o.input, &o.natural, &o.strain, &o.moment, &o.strain_elements, &o.x};
-    for (int i = 0; i < 6; i++, at += 3 * all) *vectors[i] = at;
-    o.s = at, at += all;
-    double **scalars[] = {&o.lowest,     &o.critical_young, &o.tail,  &o.contact,
-                          &o.round_trip, &o.residual,       &o.route, &o.gain};
-    for (int i = 0; i < 8; i++, at += strands) *scalars[i] = at;
+    double *numbers = make_numbers(&o);
     if (!round_trip) o.x = NULL;
     o.stable = mem_alloc(3 * strands, sizeof *o.stable), o.index = o.stable + strands,
     o.touching = o.index + strands;

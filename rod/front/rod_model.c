@@ -62,7 +62,8 @@ static bool read_magnetic(RodModel *model, const Scene *scene, const Build *b)
     if (!along)
         return yaml_refuse(b->file, "rod.magnetization",
                            "of a curve it must be along the tangent and the same all along: [m, 0, 0]");
-    if (!none) model->loads.end = vec3_scale(model->area * M->value[0], vec3_load(flux));
+    if (!none) model->magnetic = vec3_scale(model->area * M->value[0], vec3_load(flux));
+    model->loads.end = model->magnetic;
     return true;
 }
 

@@ -17,6 +17,7 @@ typedef struct RodModel {
     RodPointLoad *points;
     RodLoads loads; /* on a curve, weight included                                                */
     Vec3 line;      /* line loads without weight, N/m                                             */
+    Vec3 magnetic;  /* of loads.end what is no force: a field's couple on the magnetisation, N     */
     double flux[3]; /* T, of an inversion                                                        */
 
     /* Of jobs that move it. */

@@ -1,0 +1,105 @@
+/* Whole runs of job: invert, and what their results say of the given curve. */
+#include "base/memory.h"
+#include "base/vec3.h"
+#include "io/result.h"
+#include "slender.h"
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#define NAME "test_rod_invert"
+
+enum { N = 100 };
+
+/* Round, of E I = 1.988e-5 N m^2 and G J = 1.325e-5; takes the text of lines. */
+static const char SCENE[] =
+    "slender: 1\njob: invert\nrod:\n"
+    "  curve: {formula: [\"0.015*cos(u)\", \"0.015*sin(u)\", \"-0.00318*u\"], range: [0, 19.565163762857]}\n"
+    "  elements: 100\n  radius: 1.5 mm\n  young: 5 MPa\n  poisson: 0.5\n  density: 1200\n"
+    "  gravity: [0, 0, -9.8]\n%s";
+static const double BEND = 5e6 * M_PI * 5.0625e-12 / 4, WEIGHT = 1200 * M_PI * 2.25e-6 * 9.8;
+
+static Result *run(const char *lines)
+{
+    SlenderError trouble;
+    Error unread;
+    char *text = mem_format(SCENE, lines);
+    SlenderScene *scene = slender_scene_parse(text, NULL, 0, &trouble);
+    if (!scene) fail_msg("%s", trouble.text);
+    SlenderRun def = {.output = NAME, .threads = 1, .force = true};
+    SlenderStatus status = slender_run(scene, &def, &trouble);
+    if (status != SLENDER_DONE) fail_msg("status %d: %s", (int)status, trouble.text);
+    slender_scene_destroy(scene);
+    mem_free(text);
+    Result *result = result_open(NAME ".vtkhdf", &unread);
+    if (!result) fail_msg("%s", unread.text);
+    return result;
+}
+
+/* Numbers of all nodes; the caller clears. */
+static Array read_all(Result *result, const char *path)
+{
+    Array array;
+    Error err;
+    if (!result_read(result, path, &array, &err)) fail_msg("%s: %s", path, err.text);
+    assert_int_equal(array.dims[0], N + 1);
+    return array;
+}
+
+/* One vector of a dataset of nodes. */
+static Vec3 vector_at(const Array *array, int i)
+{
+    return vec3_load((const double *)array->data + 3 * i);
+}
+
+/* Frames are orthonormal, and follow the curve; curvature and torsion are those of a helix; strains are the natural ones
+ * and what moments add in the frames; the force is the weight of what hangs beyond a node, and the load at the middle. */
+static void test_input(void **state)
+{
+    (void)state;
+    enum { TANGENT, N1, N2, STRAIN, NATURAL, FORCE, MOMENT, CURVATURE, TORSION, COUNT };
+    static const char *const paths[COUNT] = {"tangent", "n1",     "n2",        "strain", "natural_strain",
+                                             "force",   "moment", "curvature", "torsion"};
+    Result *result =
+        run("  frame: {formula: \"-6*pi*s/L\"}\n  loads: [{point: 0.1499, force: [1 mN, 2 mN, -3 mN]}]\n"
+            "  magnetization: [10 kA/m, 0, 0]\nflux_density: [0, 3 mT, 0]\n");
+    Array a[COUNT];
+    for (int k = 0; k < COUNT; k++) {
+        char *path = mem_format("slender/rod/%s", paths[k]);
+        a[k] = read_all(result, path);
+        mem_free(path);
+    }
+    double length = 0.3, radius2 = 0.015 * 0.015 + 0.00318 * 0.00318, K[3] = {BEND / 1.5, BEND, BEND};
+    double off[4] = {0};
+    for (int i = 0; i <= N; i++) {
+        double u = 19.565163762857 * i / N;
+        Vec3 t = vector_at(&a[TANGENT], i), n1 = vector_at(&a[N1], i), n2 = vector_at(&a[N2], i);
+        Vec3 along = vec3_scale(1 / sqrt(radius2), vec3(-0.015 * sin(u), 0.015 * cos(u), -0.00318));
+        off[0] = fmax(off[0], vec3_length(vec3_sub(t, along)) + fabs(vec3_dot(t, n1)) +
+                                  vec3_length(vec3_sub(vec3_cross(t, n1), n2)));
+        Vec3 strain = vector_at(&a[STRAIN], i), M = vector_at(&a[MOMENT], i);
+        Vec3 m = vec3(vec3_dot(M, t) / K[0], vec3_dot(M, n1) / K[1], vec3_dot(M, n2) / K[2]);
+        off[1] = fmax(off[1], vec3_length(vec3_sub(vec3_sub(strain, vector_at(&a[NATURAL], i)), m)));
+        double curvature = ((double *)a[CURVATURE].data)[i], torsion = ((double *)a[TORSION].data)[i];
+        off[2] = fmax(off[2],
+                      fabs(curvature - 0.015 / radius2) + fabs(hypot(strain.y, strain.z) - curvature) +
+                          fabs(torsion + 0.00318 / radius2) + fabs(strain.x - torsion + 6 * M_PI / length));
+        Vec3 force = vec3(0, 0, -WEIGHT * length * (N - i) / N);
+        if (i < 50) force = vec3_add(force, vec3(1e-3, 2e-3, -3e-3));
+        off[3] = fmax(off[3], vec3_length(vec3_sub(vector_at(&a[FORCE], i), force)));
+    }
+    print_message("frames off by %.0e, strains %.0e, curvature and torsion %.0e 1/m, force %.0e N\n", off[0],
+                  off[1], off[2], off[3]);
+    assert_true(off[0] < 1e-10 && off[1] < 1e-10 && off[2] < 2e-3 && off[3] < 1e-12);
+    for (int k = 0; k < COUNT; k++) array_clear(&a[k]);
+    result_close(result);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_input)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
