@@ -106,6 +106,26 @@ void rod_natural_strains(const RodCurve *curve, RodSection section, const Vec3 *
         strains[j] = vec3_sub(strains[j], strain_of(section, frames[j], moment[j]));
 }
 
+/* The strain in a frame that is turned by an angle about the tangent and has no twist. */
+static Vec3 untwisted(Vec3 k, double angle)
+{
+    double c = cos(angle), s = sin(angle);
+    return vec3(0, c * k.y + s * k.z, c * k.z - s * k.y);
+}
+
+void rod_untwist(const RodCurve *curve, Vec3 *k)
+{
+    double h = curve->length / curve->elements, angle = 0; /* minus the integral of the twist */
+    Vec3 *to = k;
+    for (int e = 0; e < curve->elements; e++, to += 2) {
+        double twist = to[0].x, middle = to[1].x, end = to[2].x;
+        to[0] = untwisted(to[0], angle);
+        to[1] = untwisted(to[1], angle - h / 24 * (5 * twist + 8 * middle - end));
+        angle -= h / 6 * (twist + 4 * middle + end);
+    }
+    to[0] = untwisted(to[0], angle);
+}
+
 /* d of -K^-1 R^T M over ds: K^-1 ([ex]x R^T T + K d x k), T = line (L - s) the pull of what hangs beyond. */
 static Vec3 strain_rate(RodSection section, RodFrame frame, Vec3 k, Vec3 pull, Vec3 d)
 {

@@ -45,7 +45,11 @@ void rod_strains(const RodCurve *curve, const RodFrame *frames, Vec3 *strains);
 void rod_natural_strains(const RodCurve *curve, RodSection section, const Vec3 *moment,
                          const RodFrame *frames, Vec3 *strains);
 
-/* The same strains less the curve's by the way of eq. (10) of the paper, an equation for the strain alone
+/* Natural strains in frames that do not twist where the rod is unloaded, from those in any frames with the same n1 at the
+ * clamp: one and the same for every equilibrium of a round rod, whatever frames each was seen in. All stations. */
+void rod_untwist(const RodCurve *curve, Vec3 *strains);
+
+/* Natural strains less the curve's by the way of eq. (10) of the paper, an equation for the strain alone
  * that is integrated from the free end: an independent check. */
 void rod_strain_route(const RodCurve *curve, RodSection section, RodLoads loads, const RodFrame *frames,
                       Vec3 *difference);

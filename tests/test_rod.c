@@ -204,7 +204,7 @@ static void test_framings(void **state)
     mem_free(invert(r, N, &curve));
     RodSection section = rod_circle(1.5e-3, r->young, 0.5, 1200);
     static RodFrame frames[2 * N + 1];
-    static Vec3 moment[2 * N + 1], strains[2 * N + 1], route[2 * N + 1];
+    static Vec3 moment[2 * N + 1], strains[2 * N + 1], route[2 * N + 1], untwisted[2 * N + 1];
     rod_moments(&curve, weight(section.mass), moment);
     for (int k = 0; k < 4; k++) {
         double worst = 0, largest = 0;
@@ -228,6 +228,15 @@ static void test_framings(void **state)
             worst / largest, strains[0].x, strains[0].y, strains[0].z);
         assert_true(worst < 1e-9 * largest);
         if (k < 3) assert_true(distance(strains[0], start[k]) < 1e-6 * 80);
+        /* What does not twist in the natural shape is the same for all of them. */
+        double apart = 0;
+        rod_untwist(&curve, strains);
+        for (int j = 0; j <= 2 * N; j++) {
+            if (k == 0) untwisted[j] = strains[j];
+            apart = fmax(apart, vec3_length(vec3_sub(strains[j], untwisted[j])));
+            assert_true(strains[j].x == 0);
+        }
+        assert_true(apart < 1e-8 * vec3_length(untwisted[0]));
     }
     rod_curve_clear(&curve);
 }

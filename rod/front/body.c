@@ -33,7 +33,8 @@ static bool put_target(Model *model, const Build *b, const char *at, const Targe
                            "the target of a rod is a file with a polyline, or three formulas of s and L");
     if (scene->file) {
         RodCurve curve;
-        if (!rod_curve_read(b, (Sampled){at, scene->file, 1, {-1, 0}, rod->elements}, &curve)) return false;
+        if (!rod_curve_read(b, (Sampled){at, scene->file, 1, {-1, 0}, rod->elements}, &curve, NULL))
+            return false;
         for (int i = 0; i <= rod->elements; i++) vec3_store(target[i], curve.x[2 * i]);
         rod_curve_clear(&curve);
         return true;

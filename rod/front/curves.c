@@ -50,12 +50,18 @@ static bool curves_from_formula(const Build *b, const RodCurveScene *scene, int 
     return ok;
 }
 
+static RodSamplesDef samples_def(Sampled from)
+{
+    RodSamplesDef def = rod_samples_default();
+    if (from.noise.mode < 0) def.noise = from.noise.value;
+    return def;
+}
+
 /* Through the points of a strand; refused with the file's name and line. */
 static bool curve_from_strand(const Build *b, Sampled from, const PolylineFile *file, int k, RodCurve *curve)
 {
-    RodSamplesDef def = rod_samples_default();
+    RodSamplesDef def = samples_def(from);
     Error err;
-    if (from.noise.mode < 0) def.noise = from.noise.value;
     return rod_samples_curve(file->points + file->first[k], file->first[k + 1] - file->first[k], &def,
                              from.elements, curve, NULL, &err) ||
            yaml_refuse(b->file, from.at, "%s:%d: %s", from.path, file->line[k], err.text);
@@ -74,14 +80,20 @@ static bool read_polylines(const Build *b, Sampled from, PolylineFile *file)
     return true;
 }
 
-bool rod_curve_read(const Build *b, Sampled from, RodCurve *curve)
+bool rod_curve_read(const Build *b, Sampled from, RodCurve *curve, RodDraws *draws)
 {
     PolylineFile file;
+    RodSamplesDef def = samples_def(from);
+    Error err;
     bool ok = read_polylines(b, from, &file);
     if (ok && file.strand_count > 1)
         ok = yaml_refuse(b->file, from.at, "%s has %d polylines; one is needed here", from.path,
                          file.strand_count);
     ok = ok && curve_from_strand(b, from, &file, 0, curve);
+    if (ok && draws)
+        ok = rod_samples_draw(file.points, file.first[1], &def, from.elements, draws, &err) ||
+             yaml_refuse(b->file, from.at, "%s:%d: with noise as large as its own: %s", from.path,
+                         file.line[0], err.text);
     polyline_file_clear(&file);
     return ok;
 }

@@ -5,16 +5,39 @@
 #include <math.h>
 #include <string.h>
 
+enum { DRAWS = 32 }; /* of poses' noise: standard errors are good to 12 % */
+
 /* ---- What a rod is made of ---- */
 
-/* `known`: of what it is made is not looked for. */
-static bool read_section(RodModel *model, const RodScene *scene, const Build *b, bool known)
+/* All that a rod is made of must be there. */
+static bool check_known(const RodScene *scene, const Build *b)
 {
     bool ok = true;
-    if (known && isnan(scene->young))
-        ok = yaml_refuse(b->file, "rod", "`young`, Young's modulus, is missing");
-    if (known && isnan(scene->poisson))
-        ok = yaml_refuse(b->file, "rod", "`poisson`, Poisson's ratio, is missing");
+    if (isnan(scene->radius) && !scene->ellipse)
+        ok = yaml_refuse(b->file, "rod", "`radius` or `ellipse` is missing");
+    if (isnan(scene->young)) ok = yaml_refuse(b->file, "rod", "`young`, Young's modulus, is missing");
+    if (isnan(scene->poisson)) ok = yaml_refuse(b->file, "rod", "`poisson`, Poisson's ratio, is missing");
+    if (isnan(scene->density)) ok = yaml_refuse(b->file, "rod", "`density` is missing");
+    return ok;
+}
+
+/* One number must not. */
+static bool check_sought(const RodScene *scene, const Build *b)
+{
+    int missing = isnan(scene->young) + isnan(scene->radius) + isnan(scene->density);
+    if (missing == 1) return true;
+    return yaml_refuse(
+        b->file, "rod", "%s",
+        missing ? "of `young`, `radius` and `density` two must be given: what the poses tell is the "
+                  "rod's bending stiffness over its loads, and Poisson's ratio"
+                : "`young`, `radius` and `density` are all given: the one that is looked for must be "
+                  "left out");
+}
+
+/* sought: a part of what it is made of is looked for. */
+static bool read_section(RodModel *model, const RodScene *scene, const Build *b, bool sought)
+{
+    bool ok = (sought ? check_sought : check_known)(scene, b);
     const double *a = scene->ellipse;
     double poisson = isnan(scene->poisson) ? 0.5 : scene->poisson;
     model->young = scene->young;
@@ -81,13 +104,17 @@ static bool read_poses(RodModel *model, const RodScene *scene, const Build *b)
     bool ok = true;
     model->curves = mem_alloc((size_t)scene->poses_count, sizeof *model->curves);
     model->clamps = mem_alloc((size_t)scene->poses_count, sizeof *model->clamps);
+    model->draws = mem_alloc((size_t)scene->poses_count, sizeof *model->draws);
     model->strand_count = scene->poses_count;
+    Random random = random_seed(1);
     for (int k = 0; k < scene->poses_count; k++) {
         const RodPoseScene *pose = &scene->poses[k];
         Key at = key("rod.poses[%d].file", k);
+        model->draws[k] = (RodDraws){.wanted = DRAWS, .random = random};
         ok = rod_curve_read(b, (Sampled){at.text, pose->file, 1, pose->noise, scene->elements},
-                            &model->curves[k]) &&
+                            &model->curves[k], &model->draws[k]) &&
              ok;
+        random = model->draws[k].random;
         ok = rod_model_frame(b, key("rod.poses[%d].frame", k).text, (const double(*)[3])pose->frame,
                              &model->clamps[k]) &&
              ok;
@@ -97,8 +124,24 @@ static bool read_poses(RodModel *model, const RodScene *scene, const Build *b)
 
 RodIdentifyDef rod_model_poses(const RodModel *model, const RodScene *scene, RodPose *poses)
 {
-    for (int k = 0; k < model->strand_count; k++) poses[k] = (RodPose){&model->curves[k], model->clamps[k]};
-    return (RodIdentifyDef){poses, model->strand_count, scene->radius, model->loads};
+    for (int k = 0; k < model->strand_count; k++)
+        poses[k] = (RodPose){&model->curves[k], model->clamps[k], model->draws[k].curves};
+    return (RodIdentifyDef){
+        .poses = poses,
+        .pose_count = model->strand_count,
+        .draw_count = DRAWS,
+        .sought = isnan(scene->young)    ? ROD_SOUGHT_YOUNG
+                  : isnan(scene->radius) ? ROD_SOUGHT_RADIUS
+                                         : ROD_SOUGHT_DENSITY,
+        .young = scene->young,
+        .radius = scene->radius,
+        .density = scene->density,
+        .poisson = scene->poisson,
+        .gravity = vec3_load(scene->gravity),
+        .loads = {.line = model->line, .point_count = model->loads.point_count, .points = model->points},
+        .magnetization = scene->magnetization.value[0],
+        .flux_density = vec3_load(model->flux),
+    };
 }
 
 /* What can be said of poses before they are compared: their lengths may differ by 2 %. */
@@ -121,7 +164,7 @@ RodModel *rod_model_create(const Scene *scene, const Build *b)
     const JobRow *job = scene_job(scene);
     bool identify = job == &rod_job_identify;
     model->preview = from->solver == ROD_SOLVER_PBD;
-    bool ok = read_section(model, from, b, !identify);
+    bool ok = read_section(model, from, b, identify);
     ok = read_loads(model, from, b) && ok;
     if (from->curve) {
         RodStrands strands;
@@ -142,9 +185,11 @@ void rod_model_destroy(RodModel *model)
 {
     if (!model) return;
     RodStrands strands = {model->strand_count, model->curves, model->frames};
+    for (int k = 0; model->draws && k < model->strand_count; k++) rod_draws_clear(&model->draws[k]);
     rod_strands_clear(&strands);
     rod_destroy(model->rod);
     mem_free(model->clamps);
+    mem_free(model->draws);
     mem_free(model->points);
     mem_free(model->natural);
     mem_free(model->moving);

@@ -2,7 +2,7 @@
  * and frames, and the discrete rod of jobs that move it. */
 #pragma once
 #include "model/model.h"
-#include "rod/front/scene.h"
+#include "rod/front/curves.h"
 #include "rod/identify.h"
 #include "rod/rod.h"
 
@@ -11,6 +11,7 @@ typedef struct RodModel {
     RodCurve *curves;  /* [strand] what was given; NULL: natural strains were                     */
     RodFrame **frames; /* [strand][stations]; NULL: of poses                                      */
     RodFrame *clamps;  /* [strand] of poses: the clamps' material frames                          */
+    RodDraws *draws;   /* [strand] of poses                                                       */
     double young;
     RodSection section, unit; /* with that modulus, and with 1 Pa                                 */
     double area;
