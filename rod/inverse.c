@@ -1,6 +1,7 @@
 #include "rod/inverse.h"
 #include "base/memory.h"
 #include "base/quat.h"
+#include "solve/dense.h"
 
 /* The place at arclength s: cubic between stations. */
 static Vec3 place_at(const RodCurve *curve, double s)
@@ -37,6 +38,7 @@ void rod_moments(const RodCurve *curve, RodLoads loads, Vec3 *moment)
     for (int k = 0; k < loads.point_count; k++)
         add_point(curve, loads.points[k].s, loads.points[k].force, moment);
     add_point(curve, curve->length, loads.end, moment);
+    for (int j = 0; j <= last; j++) moment[j] = vec3_add(moment[j], loads.end_couple);
 }
 
 void rod_pulls(const RodCurve *curve, RodLoads loads, Vec3 *pull)
@@ -145,6 +147,7 @@ void rod_strain_route(const RodCurve *curve, RodSection section, RodLoads loads,
     rod_strains(curve, frames, k);
     rod_pulls(curve, loads, pulls);
     for (int j = 0; j <= last; j++) d[j] = vec3(0, 0, 0);
+    d[last] = vec3_scale(-1, strain_of(section, frames[last], loads.end_couple));
     for (int j = last; j > 0; j -= 2) { /* Runge-Kutta over an element, backwards */
         const Vec3 *pull = pulls + 3 * (j / 2 - 1);
         Vec3 rates[4], at = d[j];
@@ -161,4 +164,50 @@ void rod_strain_route(const RodCurve *curve, RodSection section, RodLoads loads,
     }
     mem_free(k);
     mem_free(pulls);
+}
+
+/* What is least of a station: rows of it for the moment there, r = r0 + A M. */
+static void least_rows(RodSection section, RodFrame f, RodEndChoice choice, Vec3 rows[3])
+{
+    bool straight = choice == ROD_STRAIGHTEST;
+    double K[3] = {section.twist, section.bend1, section.bend2};
+    const Vec3 axes[3] = {f.n0, f.n1, f.n2};
+    for (int i = 0; i < 3; i++)
+        rows[i] = vec3_scale(!straight ? 1 / sqrt(K[i]) : i > 0 ? -1 / K[i] : 0, axes[i]);
+}
+
+static const double UNDETERMINED = 1e-12;
+
+void rod_choose_end(const RodCurve *curve, RodSection section, const RodFrame *frames, RodEndChoice choice,
+                    bool hinge, RodLoads *loads)
+{
+    enum { UNKNOWNS = 6 }; /* force times length, couple */
+    int last = 2 * curve->elements, n = hinge ? 3 : UNKNOWNS;
+    double A[UNKNOWNS][UNKNOWNS] = {{0}}, b[UNKNOWNS] = {0}, trace = 0, L = curve->length;
+    Vec3 *moment = mem_alloc(2 * ((size_t)last + 1), sizeof *moment), *k = moment + last + 1;
+    rod_moments(curve, *loads, moment);
+    rod_natural_strains(curve, section, moment, frames, k);
+    for (int j = 0; j <= last; j++) {
+        double simpson = j == 0 || j == last ? 1 : j % 2 ? 4 : 2;
+        Vec3 rows[3], arm = vec3_scale(1 / L, vec3_sub(curve->x[last], curve->x[j]));
+        least_rows(section, frames[j], choice, rows);
+        for (int i = 0; i < 3; i++) {
+            double r = choice == ROD_STRAIGHTEST ? i > 0 ? (&k[j].x)[i] : 0 : vec3_dot(rows[i], moment[j]);
+            double slope[UNKNOWNS]; /* row.(arm x F + C) */
+            vec3_store(slope, vec3_cross(rows[i], arm));
+            vec3_store(slope + 3, rows[i]);
+            for (int u = 0; u < n; u++) {
+                b[u] -= simpson * slope[u] * r;
+                for (int v = 0; v < n; v++) A[u][v] += simpson * slope[u] * slope[v];
+            }
+        }
+    }
+    mem_free(moment);
+    for (int u = 0; u < n; u++) trace += A[u][u];
+    for (int u = 0; u < n; u++) A[u][u] += UNDETERMINED * trace;
+    if (!dense_cholesky(n, A[0], UNKNOWNS)) return; /* no numbers */
+    dense_forward(n, A[0], UNKNOWNS, b);
+    dense_backward(n, A[0], UNKNOWNS, b);
+    loads->end = vec3_axpy(1 / L, vec3_load(b), loads->end);
+    if (!hinge) loads->end_couple = vec3_add(loads->end_couple, vec3_load(b + 3));
 }

@@ -1,5 +1,6 @@
 /* inverse.h - the one natural shape that sags into a given curve, clamped at its first end [Hafner 2021 after
- * the errata of docs/theory.md; the frame-free form is ours].
+ * the errata of docs/theory.md; the frame-free form is ours], and free at the other one, or held by a known force and
+ * couple.
  *
  * What hangs beyond a station pulls on it with the moment M(s) = int_s^L (x(u) - x(s)) x p du, a plain
  * integral. The curve is in equilibrium if its strains differ from the natural ones by K^-1 R^T M; so a
@@ -18,8 +19,9 @@ typedef struct RodPointLoad {
 /* All dead. A rod that is magnetised along its tangent by m (A m^2 per metre) in a uniform flux density B
  * feels the couple m t x B, which is that of a force m B at its end. */
 typedef struct RodLoads {
-    Vec3 line; /* weight and what else pulls on each metre, N/m, the same all along */
-    Vec3 end;  /* at the free end, N                                                */
+    Vec3 line;       /* weight and what else pulls on each metre, N/m, the same all along */
+    Vec3 end;        /* at the last end, N: of what holds it, too                         */
+    Vec3 end_couple; /* there, N m                                                  */
     int point_count;
     const RodPointLoad *points; /* borrowed */
 } RodLoads;
@@ -48,6 +50,17 @@ void rod_natural_strains(const RodCurve *curve, RodSection section, const Vec3 *
 /* Natural strains in frames that do not twist where the rod is unloaded, from those in any frames with the same n1 at the
  * clamp: one and the same for every equilibrium of a round rod, whatever frames each was seen in. All stations. */
 void rod_untwist(const RodCurve *curve, Vec3 *strains);
+
+/* What a support at the last end does where it is not known. */
+typedef enum RodEndChoice {
+    ROD_STRAIGHTEST,    /* so that the natural shape bends least: int k1^2 + k2^2 ds of its natural strains */
+    ROD_LEAST_STRESSED, /* so that the rod stores the least energy: int M.K^-1 M ds                           */
+} RodEndChoice;
+
+/* Puts that force and couple (of a hinge: the force alone) into loads->end, beside what is there, and end_couple: least
+ * squares; what makes no difference, or 1e-12 of the most that something makes, is zero. */
+void rod_choose_end(const RodCurve *curve, RodSection section, const RodFrame *frames, RodEndChoice choice,
+                    bool hinge, RodLoads *loads);
 
 /* Natural strains less the curve's by the way of eq. (10) of the paper, an equation for the strain alone
  * that is integrated from the free end: an independent check. */

@@ -96,7 +96,8 @@ Clamp = TypedDict("Clamp", {
 }, total=False)
 
 End = TypedDict("End", {
-    "position": "Numbers", "hold": "Literal['clamped', 'pinned']", "frame": "Table",
+    "position": "Numbers", "hold": "Literal['clamped', 'pinned']", "frame": "Table", "force": "Numbers",
+    "choose": "Literal['straightest', 'least_stressed']", "couple": "Numbers",
 }, total=False)
 
 FrameKeys = TypedDict("FrameKeys", {

@@ -20,6 +20,9 @@ bool rod_is_at(const RodLayout *layout, const double *x, int node, Vec3 place, c
                double size);
 bool rod_end_is_held(const RodModel *rm, const double *x);
 
+/* The last node, a part of the way from where x has it to a place and a frame (NULL: it turns freely). */
+void rod_lead_end(const RodLayout *layout, Vec3 place, const Quat *frame, double part, double *x);
+
 /* BodyOps.move; and before a motion or a design, the rod is brought to its supports without loads, model->x. */
 bool rod_move_end(const Model *model, double time, double part, double *x, Error *err);
 bool rod_settle(Model *model, const Build *b, const double *p);

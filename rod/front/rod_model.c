@@ -90,6 +90,19 @@ static bool read_magnetic(RodModel *model, const Scene *scene, const Build *b)
     return true;
 }
 
+/* Of a curve that is inverted: what holds its last end, as far as it is known. */
+static bool read_end(RodModel *model, const EndScene *end, const Build *b)
+{
+    if (end->choose < 0 && isnan(end->force[0]))
+        return yaml_refuse(
+            b->file, "rod.end",
+            "of an inversion it needs `force` (and `couple`), what holds the end, or `choose`");
+    if (end->choose >= 0) return true;
+    model->loads.end = vec3_add(model->loads.end, vec3_load(end->force));
+    if (end->hold == HOLD_CLAMPED) model->loads.end_couple = vec3_load(end->couple);
+    return true;
+}
+
 bool rod_model_check_points(const RodModel *model, const Build *b, double length)
 {
     for (int k = 0; k < model->loads.point_count; k++)
@@ -175,6 +188,7 @@ RodModel *rod_model_create(const Scene *scene, const Build *b)
     }
     if (identify) ok = read_poses(model, from, b) && ok;
     if (ok && (identify || job == &rod_job_invert)) ok = read_magnetic(model, scene, b);
+    if (ok && job == &rod_job_invert && from->end) ok = read_end(model, from->end, b);
     if (ok && identify) ok = check_poses(model, from, b);
     if (ok) return model;
     rod_model_destroy(model);

@@ -85,13 +85,22 @@ static const YamlTable clamp_table = {
 static const YamlTable end_table = {
     .name = "end",
     .size = sizeof(EndScene),
-    .doc = "Where the rod's other end is held.",
+    .doc = "Where the rod's other end is held; of an inversion, where the curve says it, what holds it.",
     .fields = (const YamlField[]){
-        {YAML_VECTOR(EndScene, position), .unit = "m", .required = true, .doc = "of the end"},
+        {YAML_VECTOR(EndScene, position), .when = STATES, .unit = "m", .doc = "of the end; needed"},
         {YAML_CHOICE(EndScene, hold), .choices = YAML_NAMES("clamped", "pinned"), .fallback = "pinned",
          .doc = "with its frame, or free to turn"},
-        {YAML_ROWS(EndScene, frame), .when = "hold: clamped", .min_count = 3, .max_count = 3,
+        {YAML_ROWS(EndScene, frame), .when = "hold: clamped & " STATES, .min_count = 3, .max_count = 3,
          .doc = "of a clamped end: tangent, n1 and n2 there"},
+        {YAML_VECTOR(EndScene, force), .when = "/job: invert", .unit = "N", .one_of = 1,
+         .doc = "of an inversion: what its support does to the end; this or `choose` is needed"},
+        {YAML_CHOICE(EndScene, choose), .when = "/job: invert",
+         .choices = YAML_NAMES("straightest", "least_stressed"), .one_of = 1,
+         .doc = "of an inversion: force and couple, unknown, are those with which the natural shape bends "
+                "least, or the "
+                "rod stores the least energy"},
+        {YAML_VECTOR(EndScene, couple), .when = "force & hold: clamped", .unit = "N m",
+         .fallback = "[0, 0, 0]", .doc = "beside `force`: the couple of a clamp"},
         {0}}};
 
 static const YamlTable rod_load_table = {
@@ -148,7 +157,7 @@ const YamlTable rod_table = {
         {YAML_CHOICE(RodScene, hold), .when = STATES " & solver: newton",
          .choices = YAML_NAMES("clamped", "pinned"), .fallback = "clamped",
          .doc = "how the first end is held"},
-        {YAML_OPTIONAL(RodScene, end, &end_table), .when = STATES " & solver: newton",
+        {YAML_OPTIONAL(RodScene, end, &end_table), .when = STATES ", invert & solver: newton",
          .doc = "how the other end is held; free if absent"},
         {YAML_INTEGER(RodScene, elements), .range = "[2, 1000000]", .fallback = "200",
          .doc = "pieces of constant strain"},

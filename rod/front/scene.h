@@ -39,9 +39,10 @@ typedef struct ClampScene {
 
 typedef enum HoldKind { HOLD_CLAMPED, HOLD_PINNED } HoldKind;
 
+/* The other end: where it is held, or, of a curve that is inverted, what its support does there. */
 typedef struct EndScene {
-    double position[3], (*frame)[3];
-    int hold, frame_count; /* HoldKind */
+    double position[3], (*frame)[3], force[3], couple[3];
+    int hold, frame_count, choose; /* HoldKind; RodEndChoice, -1: force and couple are given */
 } EndScene;
 
 typedef struct RodLoadScene {
