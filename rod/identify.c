@@ -112,8 +112,10 @@ static RodFrame orthonormal(RodFrame f)
 static void find_moments(const RodCurve *curve, RodLoads loads, Vec3 *moment)
 {
     RodPointLoad *points = mem_alloc((size_t)loads.point_count, sizeof *points);
-    for (int k = 0; k < loads.point_count; k++)
-        points[k] = (RodPointLoad){fmin(loads.points[k].s, curve->length), loads.points[k].force};
+    for (int k = 0; k < loads.point_count; k++) {
+        points[k] = loads.points[k];
+        points[k].s = fmin(points[k].s, curve->length);
+    }
     loads.points = points;
     rod_moments(curve, loads, moment);
     mem_free(points);

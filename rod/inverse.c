@@ -23,6 +23,52 @@ static void add_point(const RodCurve *curve, double s, Vec3 force, Vec3 *moment)
         moment[j] = vec3_add(moment[j], vec3_cross(vec3_sub(place, curve->x[j]), force));
 }
 
+/* The part of a couple at arclength s that station j feels: all of it before, nothing beyond; at the middle of its own
+ * element 1/6 + 4/6 part = what of the element lies before it. */
+static double couple_part(const RodCurve *curve, double s, int j)
+{
+    double h = curve->length / curve->elements, little = 1e-9;
+    if (s >= curve->length * (1 - little)) return 1;
+    int node = (int)ceil(s / h - little), last = 2 * node; /* that its element ends in */
+    return j < last - 1 ? 1 : j >= last ? 0 : 1.5 * (s / h - (node - 1)) - 0.25;
+}
+
+/* What point loads beyond do, where they are no forces. */
+static Vec3 couple_at(const RodCurve *curve, RodLoads loads, int j)
+{
+    Vec3 sum = vec3(0, 0, 0);
+    for (int k = 0; k < loads.point_count; k++)
+        sum = vec3_axpy(couple_part(curve, loads.points[k].s, j), loads.points[k].couple, sum);
+    return sum;
+}
+
+/* The integral over the step from station j on of f, by the cubic through its values at four stations, f(i) at j - 1 + i;
+ * at the ends the four next ones. */
+static const double cubic_weights[3][4] = {{9, 19, -5, 1}, {-1, 13, 13, -1}, {1, -5, 19, 9}};
+
+/* What a load that varies pulls beyond station j + 1 is *pull, and its moment about there moment: both for station j. */
+static Vec3 add_step(const RodCurve *curve, const Vec3 *load, int j, Vec3 moment, Vec3 *pull)
+{
+    int last = 2 * curve->elements, first = j == 0 ? 0 : j == last - 1 ? j - 2 : j - 1;
+    const double *weight = cubic_weights[j - first], h = curve->length / last;
+    moment = vec3_add(moment, vec3_cross(vec3_sub(curve->x[j + 1], curve->x[j]), *pull));
+    for (int i = 0; i < 4; i++) {
+        Vec3 p = vec3_scale(h / 24 * weight[i], load[first + i]);
+        moment = vec3_add(moment, vec3_cross(vec3_sub(curve->x[first + i], curve->x[j]), p));
+        *pull = vec3_add(*pull, p);
+    }
+    return moment;
+}
+
+static void add_along(const RodCurve *curve, const Vec3 *load, Vec3 *moment)
+{
+    Vec3 pull = vec3(0, 0, 0), own = pull;
+    for (int j = 2 * curve->elements - 1; j >= 0; j--) {
+        own = add_step(curve, load, j, own, &pull);
+        moment[j] = vec3_add(moment[j], own);
+    }
+}
+
 void rod_moments(const RodCurve *curve, RodLoads loads, Vec3 *moment)
 {
     int last = 2 * curve->elements;
@@ -38,6 +84,9 @@ void rod_moments(const RodCurve *curve, RodLoads loads, Vec3 *moment)
     for (int k = 0; k < loads.point_count; k++)
         add_point(curve, loads.points[k].s, loads.points[k].force, moment);
     add_point(curve, curve->length, loads.end, moment);
+    if (loads.along) add_along(curve, loads.along, moment);
+    for (int j = 0; loads.point_count && j <= last; j++)
+        moment[j] = vec3_add(moment[j], couple_at(curve, loads, j));
     for (int j = 0; j <= last; j++) moment[j] = vec3_add(moment[j], loads.end_couple);
 }
 
@@ -50,6 +99,13 @@ void rod_pulls(const RodCurve *curve, RodLoads loads, Vec3 *pull)
         pull[i] = vec3_axpy(curve->length - s, loads.line, loads.end);
         for (int k = 0; k < loads.point_count; k++)
             if (loads.points[k].s > inside) pull[i] = vec3_add(pull[i], loads.points[k].force);
+    }
+    Vec3 beyond = vec3(0, 0, 0);
+    for (int j = 2 * curve->elements; loads.along && j >= 0; j--) {
+        if (j < 2 * curve->elements) add_step(curve, loads.along, j, beyond, &beyond);
+        int start = 3 * (j / 2) + j % 2; /* of the element that begins there, and the end of the one before */
+        if (j < 2 * curve->elements) pull[start] = vec3_add(pull[start], beyond);
+        if (j > 0 && j % 2 == 0) pull[start - 1] = vec3_add(pull[start - 1], beyond);
     }
 }
 
@@ -128,7 +184,7 @@ void rod_untwist(const RodCurve *curve, Vec3 *k)
     to[0] = untwisted(to[0], angle);
 }
 
-/* d of -K^-1 R^T M over ds: K^-1 ([ex]x R^T T + K d x k), T = line (L - s) the pull of what hangs beyond. */
+/* d of -K^-1 R^T M over ds: K^-1 ([ex]x R^T T + K d x k), T the pull of what hangs beyond. */
 static Vec3 strain_rate(RodSection section, RodFrame frame, Vec3 k, Vec3 pull, Vec3 d)
 {
     Vec3 Kd = vec3(section.twist * d.x, section.bend1 * d.y, section.bend2 * d.z),
@@ -146,8 +202,8 @@ void rod_strain_route(const RodCurve *curve, RodSection section, RodLoads loads,
          *pulls = mem_alloc(3 * (size_t)curve->elements, sizeof *pulls);
     rod_strains(curve, frames, k);
     rod_pulls(curve, loads, pulls);
-    for (int j = 0; j <= last; j++) d[j] = vec3(0, 0, 0);
-    d[last] = vec3_scale(-1, strain_of(section, frames[last], loads.end_couple));
+    Vec3 held = vec3_add(couple_at(curve, loads, last), loads.end_couple);
+    d[last] = vec3_scale(-1, strain_of(section, frames[last], held));
     for (int j = last; j > 0; j -= 2) { /* Runge-Kutta over an element, backwards */
         const Vec3 *pull = pulls + 3 * (j / 2 - 1);
         Vec3 rates[4], at = d[j];
@@ -161,6 +217,10 @@ void rod_strain_route(const RodCurve *curve, RodSection section, RodLoads loads,
             0.5, vec3_add(d[j], d[j - 2]),
             vec3_scale(h / 8,
                        vec3_sub(strain_rate(section, frames[j - 2], k[j - 2], pull[0], d[j - 2]), rates[0])));
+        for (int i = j - 2; i < j; i++) { /* couples within the element */
+            Vec3 jump = vec3_sub(couple_at(curve, loads, i), couple_at(curve, loads, j));
+            d[i] = vec3_sub(d[i], strain_of(section, frames[i], jump));
+        }
     }
     mem_free(k);
     mem_free(pulls);

@@ -12,21 +12,26 @@
 #include "rod/section.h"
 
 typedef struct RodPointLoad {
-    double s; /* arclength, m */
-    Vec3 force;
+    double s;    /* arclength, m                       */
+    Vec3 force;  /* N                                  */
+    Vec3 couple; /* N m, of the world as the force is  */
 } RodPointLoad;
 
 /* All dead. A rod that is magnetised along its tangent by m (A m^2 per metre) in a uniform flux density B
  * feels the couple m t x B, which is that of a force m B at its end. */
 typedef struct RodLoads {
-    Vec3 line;       /* weight and what else pulls on each metre, N/m, the same all along */
-    Vec3 end;        /* at the last end, N: of what holds it, too                         */
-    Vec3 end_couple; /* there, N m                                                  */
+    Vec3 line;       /* weight and what else pulls on each metre, N/m, the same all along          */
+    Vec3 end;        /* at the last end, N: of what holds it, too                                  */
+    Vec3 end_couple; /* there, N m                                                                 */
+    const Vec3
+        *along; /* [stations] what varies from metre to metre beside line, N/m; NULL: nothing; borrowed */
     int point_count;
     const RodPointLoad *points; /* borrowed */
 } RodLoads;
 
-/* M at all stations, N m. Fourth order; second order in an element that a point load acts within. */
+/* M at all stations, N m. Fourth order; second order in an element that a point load acts within. A couple makes M
+ * jump: nodes have what it is on their own side of the couple (one at a node is beyond those before it, one at the end beyond
+ * all), and the middle of the element that the couple acts in what makes Simpson's rule over it exact. */
 void rod_moments(const RodCurve *curve, RodLoads loads, Vec3 *moment);
 
 /* T = what pulls beyond, at each element's start, middle and end, pull[3 elements]: point loads make it jump

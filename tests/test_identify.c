@@ -44,7 +44,7 @@ static void test_loads(void **state)
         RodCurve curves[2];
         RodPose poses[2];
         for (int p = 0; p < 2; p++) poses[p] = equilibrium(&rod, clamps[p], &curves[p]);
-        RodPointLoad point = {1.01 * rod.length, rod.tip};
+        RodPointLoad point = {.s = 1.01 * rod.length, .force = rod.tip};
         for (int magnetic = 0; magnetic < 2; magnetic++) {
             RodLoads loads = weight_of(&rod);
             if (magnetic)

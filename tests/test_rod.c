@@ -284,6 +284,121 @@ static void test_straight_and_inflected(void **state)
     }
 }
 
+/* A helix about an axis to which its tangent has the angle 0.7, and turns about it by 0.3 rad per mm. */
+static const double helix_angle = 0.7, helix_rate = 300, helix_length = 0.05;
+
+static bool helix(void *self, double s, Vec3 *x)
+{
+    (void)self;
+    double r = sin(helix_angle) / helix_rate, turn = helix_rate * s;
+    *x = vec3(r * sin(turn), r * (1 - cos(turn)), cos(helix_angle) * s);
+    return true;
+}
+
+/* A straight rod with a couple at its end is a helix about the couple, whatever GJ is: its tangent turns about C at the rate
+ * C/EI. So what the couple bent into a helix is straight without it, and twisted by nothing. */
+static void test_end_couple(void **state)
+{
+    (void)state;
+    enum { N = 400 };
+    RodCurve curve;
+    Error err;
+    assert_true(rod_curve_create(helix, NULL, 0, helix_length, N, &curve, &err));
+    static Vec3 moment[2 * N + 1], natural[N + 1], route[2 * N + 1];
+    static RodFrame frames[2 * N + 1];
+    rod_frenet(&curve, frames);
+    for (int k = 0; k < 2; k++) {
+        RodSection section = rod_circle(1.5e-3, 1e6, k ? 0.3 : 0, 1200); /* GJ = EI/(1 + nu) */
+        double off = 0, routes = 0, C = section.bend1 * helix_rate;
+        RodPointLoad point = {.s = curve.length, .couple = {0, 0, C}};
+        RodLoads loads = {.points = &point, .point_count = 1};
+        rod_moments(&curve, loads, moment);
+        rod_invert(&curve, section, moment, NULL, natural);
+        rod_strain_route(&curve, section, loads, frames, route);
+        for (int i = 0; i <= N; i++) {
+            Vec3 straight_on = vec3_scale(curve.length * i / N, curve.t[0]);
+            off = fmax(off, vec3_length(vec3_sub(vec3_sub(natural[i], natural[0]), straight_on)));
+        }
+        for (int j = 0; j <= 2 * N; j++) {
+            Vec3 m = rod_to_frame(frames[j], moment[j]);
+            Vec3 direct = vec3(-m.x / section.twist, -m.y / section.bend1, -m.z / section.bend2);
+            routes = fmax(routes, vec3_length(vec3_sub(route[j], direct)));
+        }
+        print_message("GJ/EI = %.2f: %.1e of the length off a straight rod; strain route %.1e off\n",
+                      section.twist / section.bend1, off / curve.length, routes / helix_rate);
+        assert_true(off < 1e-8 * curve.length && routes < 1e-9 * helix_rate);
+    }
+    rod_curve_clear(&curve);
+}
+
+/* How far the natural shape of a straight rod with a couple across it at s is off the circle, and the straight line beyond
+ * it, of which it consists. */
+static double off_the_arc(double s, int elements)
+{
+    RodCurve curve;
+    Error err;
+    assert_true(rod_curve_create(straight, NULL, 0, 1, elements, &curve, &err));
+    RodSection section = rod_circle(1.5e-3, 1e6, 0.3, 1200);
+    double k = 4, off = 0;
+    RodPointLoad point = {.s = s, .couple = {0, 0, -k * section.bend1}};
+    Vec3 *moment = mem_alloc(3 * (size_t)elements + 2, sizeof *moment), *natural = moment + 2 * elements + 1;
+    rod_moments(&curve, (RodLoads){.points = &point, .point_count = 1}, moment);
+    rod_invert(&curve, section, moment, NULL, natural);
+    for (int i = 0; i <= elements; i++) {
+        double at = curve.length * i / elements, bent = fmin(at, s), on = at - bent;
+        Vec3 x = vec3(sin(k * bent) / k + on * cos(k * s), (1 - cos(k * bent)) / k + on * sin(k * s), 0);
+        off = fmax(off, vec3_length(vec3_sub(natural[i], x)));
+    }
+    mem_free(moment);
+    rod_curve_clear(&curve);
+    return off;
+}
+
+/* At a node to rounding but for the quadrature; within an element second order. */
+static void test_couple_within(void **state)
+{
+    (void)state;
+    double end = off_the_arc(0.3, 64), within = off_the_arc(0.1234, 64), fine = off_the_arc(0.1234, 640);
+    print_message("couple at the end %.1e m off; within an element %.1e m, ten times as many %.1e m\n", end,
+                  within, fine);
+    assert_true(end < 1e-9 && within < 3e-6 && fine < within / 50);
+}
+
+/* A load that varies along the rod: the moment of a cubic one is that of the integral, to rounding; the strain route is of
+ * fourth order. */
+static void test_load_along(void **state)
+{
+    (void)state;
+    enum { N = 50 };
+    RodCurve curve;
+    Error err;
+    Vec3 moment[2 * N + 1], along[2 * N + 1], pull[3 * N], d[2 * N + 1];
+    RodFrame frames[2 * N + 1];
+    assert_true(rod_curve_create(straight, NULL, 0, 1, N, &curve, &err));
+    RodSection section = rod_circle(1.5e-3, 1e6, 0.3, 1200);
+    double L = curve.length, q = 0.4, off = 0, F = 0, routes = 0;
+    for (int j = 0; j <= 2 * N; j++) along[j] = vec3(0, 0, -q * (1 - j / (2.0 * N)));
+    RodLoads loads = {.along = along};
+    rod_moments(&curve, loads, moment);
+    rod_pulls(&curve, loads, pull);
+    rod_bishop(&curve, vec3(0, 1, 0), frames);
+    rod_strain_route(&curve, section, loads, frames, d);
+    for (int j = 0; j <= 2 * N; j++) { /* what is left of the triangle, and its centre */
+        double left = L - L * j / (2.0 * N), M = q * left * left * left / (6 * L);
+        off = fmax(off, vec3_length(vec3_sub(moment[j], vec3(0, M, 0))));
+        Vec3 m = rod_to_frame(frames[j], moment[j]);
+        routes = fmax(routes, vec3_length(vec3_add(d[j], vec3_scale(1 / section.bend1, m))));
+    }
+    for (int i = 0; i < 3 * N; i++) {
+        double left = L - L / N * (i / 3 + i % 3 / 2.0);
+        F = fmax(F, fabs(pull[i].z + q * left * left / (2 * L)));
+    }
+    print_message("triangular load: moments %.1e, pulls %.1e of the largest off; strain route %.1e\n",
+                  off / (q * L * L / 6), F / (q * L / 2), routes * section.bend1 / (q * L * L / 6));
+    assert_true(off < 1e-14 * q * L * L && F < 1e-14 * q * L && routes * section.bend1 < 1e-8 * q * L * L);
+    rod_curve_clear(&curve);
+}
+
 static bool coil(void *self, double u, Vec3 *x)
 {
     (void)self;
@@ -378,6 +493,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_natural_shapes), cmocka_unit_test(test_natural_strains),
         cmocka_unit_test(test_framings),       cmocka_unit_test(test_straight_and_inflected),
-        cmocka_unit_test(test_torsion),        cmocka_unit_test(test_fine_curves)};
+        cmocka_unit_test(test_end_couple),     cmocka_unit_test(test_couple_within),
+        cmocka_unit_test(test_load_along),     cmocka_unit_test(test_torsion),
+        cmocka_unit_test(test_fine_curves)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -19,7 +19,7 @@ static void dress(Rod *rod, int first, double *p)
     p[rod->gravity + 2] = -9.8;
     p[rod->damping] = 1e-5;
     vec3_store(p + rod->flux_density, vec3(0.01, 0.02, 0));
-    RodPointLoad point = {0.05, vec3(0, 2e-4, 1e-4)};
+    RodPointLoad point = {.s = 0.05, .force = {0, 2e-4, 1e-4}};
     rod_share_loads(rod, (RodLoads){.line = vec3(0, 0, -1e-3), .points = &point, .point_count = 1},
                     p + rod->load);
     rod_sum_loads(rod, p);

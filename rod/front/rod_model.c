@@ -60,7 +60,8 @@ static bool read_loads(RodModel *model, const RodScene *scene, const Build *b)
             ok = yaml_refuse(b->file, key("rod.loads[%d]", k).text,
                              "`force`, what acts at the point, is missing");
         else
-            model->points[model->loads.point_count++] = (RodPointLoad){load->point, vec3_load(load->force)};
+            model->points[model->loads.point_count++] =
+                (RodPointLoad){.s = load->point, .force = vec3_load(load->force)};
     }
     model->loads.points = model->points;
     model->loads.line = vec3_axpy(model->unit.mass, vec3_load(scene->gravity), model->line);
