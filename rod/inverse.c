@@ -69,6 +69,19 @@ static void add_along(const RodCurve *curve, const Vec3 *load, Vec3 *moment)
     }
 }
 
+void rod_inertia(const RodCurve *const curves[3], const double time[3], int at, double mass, double drag,
+                 Vec3 *along)
+{
+    double before = time[1] - time[0], after = time[2] - time[1], both = time[2] - time[0];
+    for (int j = 0; j <= 2 * curves[0]->elements; j++) {
+        Vec3 x0 = curves[0]->x[j], x1 = curves[1]->x[j], x2 = curves[2]->x[j];
+        Vec3 v01 = vec3_scale(1 / before, vec3_sub(x1, x0)), v12 = vec3_scale(1 / after, vec3_sub(x2, x1));
+        Vec3 a = vec3_scale(2 / both, vec3_sub(v12, v01)),
+             v = at == 1 ? vec3_scale(1 / both, vec3_sub(x2, x0)) : v12;
+        along[j] = vec3_axpy(-mass, a, vec3_scale(-drag, v));
+    }
+}
+
 void rod_moments(const RodCurve *curve, RodLoads loads, Vec3 *moment)
 {
     int last = 2 * curve->elements;

@@ -29,6 +29,12 @@ typedef struct RodLoads {
     const RodPointLoad *points; /* borrowed */
 } RodLoads;
 
+/* What inertia and drag of a moving rod are as loads, along[stations]: -mass a - drag v (kg/m, N s/m^2), by the places at
+ * three times, curves of as many elements. The acceleration is their second difference: of second order for the middle one
+ * where steps are even; and for the last one just what implicit Euler took it for. `at`, 1 or 2, says whose it is. */
+void rod_inertia(const RodCurve *const curves[3], const double time[3], int at, double mass, double drag,
+                 Vec3 *along);
+
 /* M at all stations, N m. Fourth order; second order in an element that a point load acts within. A couple makes M
  * jump: nodes have what it is on their own side of the couple (one at a node is beyond those before it, one at the end beyond
  * all), and the middle of the element that the couple acts in what makes Simpson's rule over it exact. */

@@ -8,6 +8,7 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <cmocka.h>
 
 #define NAME "test_rod_invert"
@@ -154,8 +155,92 @@ static void test_held(void **state)
     result_close(result);
 }
 
+/* ---- Of a moving rod ---- */
+
+static const char MATERIAL[] = "  radius: 1 mm\n  young: 2 MPa\n  poisson: 0.4\n  density: 1200\n";
+
+static void run_whole(char *text, const char *output)
+{
+    SlenderError trouble;
+    SlenderScene *scene = slender_scene_parse(text, NULL, 0, &trouble);
+    if (!scene) fail_msg("%s", trouble.text);
+    SlenderRun def = {.output = output, .threads = 1, .force = true};
+    if (slender_run(scene, &def, &trouble) != SLENDER_DONE) fail_msg("%s", trouble.text);
+    slender_scene_destroy(scene);
+    mem_free(text);
+}
+
+/* Natural strains from a simulation's frames, of so many elements: how far they are off, rms over the rod and 18 times. With
+ * files three frames are written out, and read again. */
+static double strains_off(int elements, bool files)
+{
+    run_whole(
+        mem_format(
+            "slender: 1\njob: simulate\nrod:\n  natural_strain: [\"0\", \"6 + 40*s\", \"8*cos(15*s)\"]\n"
+            "  length: 0.2\n  elements: %d\n%stime: {step: 5 ms, steps: 20}\noutput: {precision: double}\n",
+            elements, MATERIAL),
+        NAME "_motion");
+    const char *from = files ? "frames: [{file: " NAME "_7.csv, time: 35 ms, noise: 0}, {file: " NAME
+                               "_8.csv, time: 40 ms, noise: 0}, {file: " NAME
+                               "_9.csv, time: 45 ms, noise: 0}]"
+                             : "result: " NAME "_motion.vtkhdf";
+    Error err;
+    Result *result = result_open(NAME "_motion.vtkhdf", &err);
+    for (int k = 7; files && k < 10; k++) {
+        Array x;
+        char *path = mem_format(NAME "_%d.csv", k);
+        FILE *file = fopen(path, "w");
+        assert_true(result_read_rows(result, "slender/frames/x", k, 1, &x, &err));
+        for (int i = 0; i <= elements; i++) {
+            Vec3 at = vector_at(&x, i);
+            fprintf(file, "%.17g, %.17g, %.17g\n", at.x, at.y, at.z);
+        }
+        fclose(file);
+        mem_free(path);
+        array_clear(&x);
+    }
+    result_close(result);
+    run_whole(
+        mem_format("slender: 1\njob: invert\nrod:\n  motion: {%s, difference: backward}\n  elements: %d\n"
+                   "  bishop_normal: [0, 1, 0]\n%s",
+                   from, elements, MATERIAL),
+        NAME);
+    result = result_open(NAME ".vtkhdf", &err);
+    Array strain, s;
+    assert_true(result_read(result, "slender/rod/natural_strain", &strain, &err));
+    assert_true(result_read(result, "slender/rod/s", &s, &err));
+    assert_int_equal(strain.dims[0], (files ? 1 : 19) * (elements + 1));
+    double sum = 0;
+    for (int i = 0; i < strain.dims[0]; i++) {
+        double at = ((double *)s.data)[i];
+        Vec3 off = vec3_sub(vector_at(&strain, i), vec3(0, 6 + 40 * at, 8 * cos(15 * at)));
+        sum += vec3_dot(off, off) / strain.dims[0];
+    }
+    array_clear(&strain);
+    array_clear(&s);
+    result_close(result);
+    return sqrt(sum);
+}
+
+/* Frames of a simulation, places only, give back its natural strains to the square of an element's length; so do files. */
+static void test_motion(void **state)
+{
+    (void)state;
+    double coarse = strains_off(50, false), fine = strains_off(100, false), files = strains_off(100, true);
+    for (int k = 7; k < 10; k++) {
+        char *path = mem_format(NAME "_%d.csv", k);
+        remove(path);
+        mem_free(path);
+    }
+    print_message("natural strains from frames of 50 and 100 elements off by %.2g and %.2g 1/m, rms; from "
+                  "files by %.2g\n",
+                  coarse, fine, files);
+    assert_true(fine < 0.02 * 14 && fine < coarse / 3 && files < 0.02 * 14);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_input), cmocka_unit_test(test_held)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_input), cmocka_unit_test(test_held),
+                                       cmocka_unit_test(test_motion)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

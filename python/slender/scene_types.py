@@ -66,12 +66,13 @@ MagnetizationOfAGroupKeys = TypedDict("MagnetizationOfAGroupKeys", {
 }, total=False)
 
 Rod = TypedDict("Rod", {
-    "curve": "CurveOfARod", "natural_strain": "NaturalStrain", "poses": "Rows[Poses]", "length": "Number",
-    "clamp": "Clamp", "hold": "Literal['clamped', 'pinned']", "end": "End", "elements": "int", "radius": "Number",
-    "ellipse": "Union[Number, Numbers]", "young": "Number", "poisson": "float", "density": "Number",
-    "gravity": "Numbers", "frame": "Frame", "bishop_normal": "Numbers", "loads": "Rows[LoadsOfARod]",
-    "magnetization": "Magnetization", "damping": "Number", "start": "Literal['natural', 'curve']",
-    "velocity": "Velocity", "solver": "Literal['newton', 'pbd']", "pbd": "Pbd",
+    "curve": "CurveOfARod", "natural_strain": "NaturalStrain", "poses": "Rows[Poses]", "motion": "MotionOfARod",
+    "length": "Number", "clamp": "Clamp", "hold": "Literal['clamped', 'pinned']", "end": "End", "elements": "int",
+    "radius": "Number", "ellipse": "Union[Number, Numbers]", "young": "Number", "poisson": "float",
+    "density": "Number", "gravity": "Numbers", "frame": "Frame", "bishop_normal": "Numbers",
+    "loads": "Rows[LoadsOfARod]", "magnetization": "Magnetization", "damping": "Number",
+    "start": "Literal['natural', 'curve']", "velocity": "Velocity", "solver": "Literal['newton', 'pbd']",
+    "pbd": "Pbd",
 }, total=False)
 
 CurveOfARod = TypedDict("CurveOfARod", {
@@ -89,6 +90,14 @@ NaturalStrainKeys = TypedDict("NaturalStrainKeys", {
 
 Poses = TypedDict("Poses", {
     "file": "str", "frame": "Table", "noise": "Noise",
+}, total=False)
+
+MotionOfARod = TypedDict("MotionOfARod", {
+    "frames": "Rows[FramesOfAMotion]", "result": "str", "difference": "Literal['central', 'backward']",
+}, total=False)
+
+FramesOfAMotion = TypedDict("FramesOfAMotion", {
+    "file": "str", "time": "Number", "noise": "Noise",
 }, total=False)
 
 Clamp = TypedDict("Clamp", {

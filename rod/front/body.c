@@ -236,10 +236,19 @@ static bool is_default(const SolverScene *solver)
 
 static bool check_inversion(const Scene *scene, YamlFile *file)
 {
-    bool round_trip = false;
-    for (int k = 0; k < scene->checks_count; k++) round_trip |= scene->checks[k] == CHECK_ROUND_TRIP;
-    if (!rod_scene(scene)->curve)
-        return yaml_refuse(file, "rod", "an inversion needs `curve`, the shape that is given");
+    const RodScene *from = rod_scene(scene);
+    bool round_trip = false, rests = false; /* asked about */
+    for (int k = 0; k < scene->checks_count; k++) {
+        round_trip |= scene->checks[k] == CHECK_ROUND_TRIP;
+        rests |= scene->checks[k] != CHECK_SELF_CONTACT;
+    }
+    if (!from->curve && !from->motion)
+        return yaml_refuse(file, "rod", "an inversion needs `curve`, the shape that is given, or `motion`");
+    if (from->motion && rests)
+        return yaml_refuse(file, "checks",
+                           "a rod that moves is in no equilibrium: of `motion` only self_contact is checked");
+    if (!from->motion && from->damping != 0)
+        return yaml_refuse(file, "rod.damping", "an inversion uses this for a rod in `motion` only");
     const char *unused = scene->load_steps.mode != 0   ? "load_steps"
                          : !is_default(&scene->solver) ? "solver"
                                                        : NULL;

@@ -19,6 +19,17 @@ typedef struct Discrete {
     double *p;
 } Discrete;
 
+/* A load that varies from station to station, on the nodes. */
+static void add_along(const Rod *rod, const Vec3 *along, double *p)
+{
+    double h = rod_element_length(rod, 0);
+    for (int i = 0; i <= rod->elements; i++) {
+        double *load = p + rod->load + 3 * i, length = i == 0 || i == rod->elements ? h / 2 : h;
+        vec3_store(load, vec3_axpy(length, along[2 * i], vec3_load(load)));
+    }
+    rod_sum_loads(rod, p);
+}
+
 /* A hanging rod is of turns only; one whose last end is held has places and multipliers, too. */
 static Discrete discrete_create(const Inversion *o, int k)
 {
@@ -28,6 +39,7 @@ static Discrete discrete_create(const Inversion *o, int k)
     d.rod = rod_create(o->elements, d.curve->length, rm->unit, rm->area, NULL);
     d.p = mem_alloc((size_t)d.rod->params.size, sizeof *d.p);
     rod_model_loads(rm, d.rod, scene, d.p);
+    if (rm->along) add_along(d.rod, rm->along[k], d.p);
     for (int e = 0; e < o->elements && !isnan(scene->magnetization.value[0]); e++)
         d.p[d.rod->magnetization + 3 * e] = scene->magnetization.value[0];
     memcpy(d.p + d.rod->flux_density, rm->flux, sizeof rm->flux);

@@ -10,6 +10,13 @@ void rod_add_state(const Model *model, const Snapshot *shot, const char *prefix,
 void rod_add_final(const Model *model, const Snapshot *shot, int modes, Arrays *list);
 char *rod_doubt(const Model *model, const Snapshot *shot);
 
+/* motion.c: the curves of a moving rod become strands, with their inertia and drag as loads. */
+bool rod_read_motion(RodModel *rm, const RodScene *scene, const Build *b);
+
+/* Natural strains of several curves of one rod, strain[count][nodes][3]: their mean, and how far they are from it, rms. Returns
+ * that of all of them, 1/m. */
+double rod_add_mean_strains(const double *strain, int count, int nodes, Arrays *list);
+
 /* supports.c: how the scene holds its ends, into the model. */
 bool rod_read_supports(RodModel *rm, const RodScene *scene, const Build *b);
 

@@ -17,6 +17,7 @@ typedef struct Inversion {
     double *lowest, *critical_young, *tail, *contact, *round_trip, *residual, *route; /* [strands]     */
     double *gain; /* [strands] energy at the curve less that where the simulated rod rests, J */
     int *stable, *index, *touching; /* [strands]     */
+    double spread;                  /* rms, of a moving rod's natural strains over time, 1/m */
     int pair_count;
     int *pairs;     /* [pair_count][3] strand, elements */
     double lengths; /* of the longest element, in bending lengths (stability.h) */

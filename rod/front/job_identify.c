@@ -43,24 +43,11 @@ static void natural_shapes(const Identification *o, double *natural, double *str
     mem_free(moment);
 }
 
-/* Mean over the poses, and how far they are from it, rms: [nodes][3] each. */
-static void mean_strains(const Identification *o, const double *strain, double *mean, double *spread)
-{
-    int numbers = 3 * o->run->model->point_count;
-    for (int i = 0; i < numbers; i++) {
-        double sum = 0;
-        for (int p = 0; p < o->count; p++) mean[i] += strain[p * numbers + i] / o->count;
-        for (int p = 0; p < o->count; p++) sum += pow(strain[p * numbers + i] - mean[i], 2);
-        spread[i] = sqrt(sum / o->count);
-    }
-}
-
 static void add_poses(const Identification *o, Arrays *list)
 {
     int nodes = o->run->model->point_count, all = o->count * nodes;
     double *input = arrays_numbers(list, 3 * (size_t)all), *natural = arrays_numbers(list, 3 * (size_t)all),
-           *strain = arrays_numbers(list, 3 * (size_t)all), *s = arrays_numbers(list, (size_t)all),
-           *mean = arrays_numbers(list, 3 * (size_t)nodes), *spread = arrays_numbers(list, 3 * (size_t)nodes);
+           *strain = arrays_numbers(list, 3 * (size_t)all), *s = arrays_numbers(list, (size_t)all);
     int *starts = arrays_keep(list, mem_alloc((size_t)o->count + 1, sizeof *starts));
     for (int k = 0; k <= o->count; k++) starts[k] = k * nodes;
     for (int k = 0; k < o->count; k++)
@@ -69,9 +56,7 @@ static void add_poses(const Identification *o, Arrays *list)
             vec3_store(input + 3 * (k * nodes + i), o->curves[k].x[2 * i]);
         }
     natural_shapes(o, natural, strain);
-    mean_strains(o, strain, mean, spread);
-    arrays_add(list, array_float("rod/identified/natural_strain", "1/m", mean, 2, nodes, 3));
-    arrays_add(list, array_float("rod/identified/natural_strain_spread", "1/m", spread, 2, nodes, 3));
+    rod_add_mean_strains(strain, o->count, nodes, list);
     arrays_add(list, array_float("rod/s", "m", s, 1, all, 0));
     arrays_add(list, array_float("rod/input", "m", input, 2, all, 3));
     arrays_add(list, array_float("rod/natural", "m", natural, 2, all, 3));

@@ -113,6 +113,7 @@ static RodLoads find_loads(const Inversion *o, int k)
     const RodModel *rm = o->rm;
     const EndScene *end = rod_scene(o->run->scene)->end;
     RodLoads loads = rm->loads;
+    if (rm->along) loads.along = rm->along[k];
     if (end && end->choose >= 0)
         rod_choose_end(&rm->curves[k], rm->section, rm->frames[k], (RodEndChoice)end->choose,
                        end->hold == HOLD_PINNED, &loads);
@@ -131,6 +132,7 @@ static void invert_strand(Inversion *o, int k)
     rod_moments(curve, o->loads[k], moment);
     rod_invert(curve, rm->section, moment, round ? NULL : rm->frames[k], inversion_strand(o, o->natural, k));
     rod_natural_strains(curve, rm->section, moment, rm->frames[k], strain);
+    if (rm->times) rod_untwist(curve, strain);
     for (int i = 0; i < o->nodes; i++) {
         inversion_strand(o, o->natural_strain, k)[i] = strain[2 * i];
         inversion_strand(o, o->moment, k)[i] = moment[2 * i];
@@ -233,7 +235,14 @@ static bool put_shapes(const Inversion *o, Error *err)
     return ok;
 }
 
-static bool put_results(const Inversion *o, const char *status, Error *err)
+/* Of a moving rod. */
+static void add_motion(Inversion *o, Arrays *list)
+{
+    arrays_add(list, array_float("rod/times", "s", o->rm->times, 1, o->strands, 0));
+    o->spread = rod_add_mean_strains(o->natural_strain, o->strands, o->nodes, list);
+}
+
+static bool put_results(Inversion *o, const char *status, Error *err)
 {
     Arrays list = {0};
     int *starts = arrays_keep(&list, mem_alloc((size_t)o->strands + 1, sizeof *starts));
@@ -249,6 +258,7 @@ static bool put_results(const Inversion *o, const char *status, Error *err)
     arrays_add(&list, array_float("rod/gravity", "m/s^2", rod_scene(o->run->scene)->gravity, 1, 3, 0));
     if (o->strands > 1) arrays_add(&list, array_int("rod/strands", starts, 1, o->strands + 1, 0));
     if (rod_scene(o->run->scene)->end) add_support(o, &list);
+    if (o->rm->times) add_motion(o, &list);
     add_checks(o, &list);
     return put_shapes(o, err) && arrays_replace(&list, o->run->journal, "final", err);
 }
@@ -295,6 +305,8 @@ static void say(const Inversion *o)
                  "the elements are too long to tell how stable a curve is: one of them has %.2g times the "
                  "length sqrt(EI/F) within which the rod bends; rod.elements: %.0f or more would",
                  o->lengths, ceil(o->elements * o->lengths));
+    if (o->rm->times)
+        host_say(host, "natural strains at %d times agree to %.2g 1/m, rms", o->strands, o->spread);
     if (touching) host_say(host, "%d of %d natural shapes touch themselves", touching, o->strands);
     if (elsewhere)
         say_elsewhere(o, elsewhere, worst);

@@ -187,6 +187,7 @@ RodModel *rod_model_create(const Scene *scene, const Build *b)
         for (int k = 0; ok && k < strands.count; k++)
             ok = rod_model_check_points(model, b, strands.curves[k].length);
     }
+    if (from->motion) ok = ok && rod_read_motion(model, from, b);
     if (identify) ok = read_poses(model, from, b) && ok;
     if (ok && (identify || job == &rod_job_invert)) ok = read_magnetic(model, scene, b);
     if (ok && job == &rod_job_invert && from->end) ok = read_end(model, from->end, b);
@@ -199,6 +200,9 @@ RodModel *rod_model_create(const Scene *scene, const Build *b)
 void rod_model_destroy(RodModel *model)
 {
     if (!model) return;
+    for (int k = 0; model->along && k < model->strand_count; k++) mem_free(model->along[k]);
+    mem_free(model->along);
+    mem_free(model->times);
     RodStrands strands = {model->strand_count, model->curves, model->frames};
     for (int k = 0; model->draws && k < model->strand_count; k++) rod_draws_clear(&model->draws[k]);
     rod_strands_clear(&strands);

@@ -12,6 +12,8 @@ typedef struct RodModel {
     RodFrame **frames; /* [strand][stations]; NULL: of poses                                      */
     RodFrame *clamps;  /* [strand] of poses: the clamps' material frames                          */
     RodDraws *draws;   /* [strand] of poses                                                       */
+    double *times;     /* [strand] s, where the curves are those of a moving rod, and             */
+    Vec3 **along;      /* [strand][stations] its inertia and drag as loads, N/m; else NULL        */
     double young;
     RodSection section, unit; /* with that modulus, and with 1 Pa                                 */
     double area;

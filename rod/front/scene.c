@@ -127,6 +127,34 @@ static const YamlTable pose_curve_table = {
         {YAML_TABLE(RodPoseScene, noise, &noise_table), .fallback = "auto", .doc = "of its points"},
         {0}}};
 
+static const YamlTable motion_frame_table = {
+    .name = "frames of a motion",
+    .size = sizeof(RodMotionFrameScene),
+    .doc = "A shape that a moving rod had.",
+    .fields = (const YamlField[]){
+        {YAML_FILE(RodMotionFrameScene, file), .required = true,
+         .doc = "points from the clamp on: a CSV file with rows x, y, z or s, x, y, z"},
+        {YAML_NUMBER(RodMotionFrameScene, time), .required = true, .unit = "s", .doc = "when; they increase"},
+        {YAML_TABLE(RodMotionFrameScene, noise, &noise_table), .fallback = "auto", .doc = "of its points"},
+        {0}}};
+
+static const YamlTable motion_table = {
+    .name = "motion of a rod",
+    .size = sizeof(RodMotionScene),
+    .doc = "Shapes of one moving rod, three or more, from which its accelerations follow. Its clamp stays as "
+           "it is.",
+    .fields = (const YamlField[]){
+        {YAML_LIST(RodMotionScene, frames, &motion_frame_table), .one_of = 1, .required = true,
+         .doc = "from files"},
+        {YAML_FILE(RodMotionScene, result), .one_of = 1, .required = true,
+         .doc = "all frames of a simulation's result (best with `output: {precision: double}`)"},
+        {YAML_CHOICE(RodMotionScene, difference), .choices = YAML_NAMES("central", "backward"),
+         .fallback = "central",
+         .doc = "whose acceleration the second difference of three frames is: of the middle one, or of the "
+                "last one, "
+                "as implicit Euler has it (exact for what slender has simulated with a frame for each step)"},
+        {0}}};
+
 static const YamlTable pbd_table = {
     .name = "pbd",
     .size = sizeof(PbdScene),
@@ -150,21 +178,24 @@ const YamlTable rod_table = {
          .doc = "its natural shape, by strains; needed where there is no curve"},
         {YAML_LIST(RodScene, poses, &pose_curve_table), .one_of = 1, .when = "/job: identify",
          .doc = "of an identification: shapes that it was seen in"},
-        {YAML_NUMBER(RodScene, length), .when = "!curve & !poses", .unit = "m", .range = "(0, inf)",
+        {YAML_OPTIONAL(RodScene, motion, &motion_table), .one_of = 1, .when = "/job: invert",
+         .doc = "of an inversion: shapes that it had while it moved"},
+        {YAML_NUMBER(RodScene, length), .when = "!curve & !poses & !motion", .unit = "m", .range = "(0, inf)",
          .doc = "without a curve: its length"},
-        {YAML_TABLE(RodScene, clamp, &clamp_table), .when = "!curve & !poses", .fallback = "{}",
+        {YAML_TABLE(RodScene, clamp, &clamp_table), .when = "!curve & !poses & !motion", .fallback = "{}",
          .doc = "without a curve: its first end"},
         {YAML_CHOICE(RodScene, hold), .when = STATES " & solver: newton",
          .choices = YAML_NAMES("clamped", "pinned"), .fallback = "clamped",
          .doc = "how the first end is held"},
-        {YAML_OPTIONAL(RodScene, end, &end_table), .when = STATES ", invert & solver: newton",
+        {YAML_OPTIONAL(RodScene, end, &end_table), .when = STATES ", invert & solver: newton & !motion",
          .doc = "how the other end is held; free if absent"},
         {YAML_INTEGER(RodScene, elements), .range = "[2, 1000000]", .fallback = "200",
          .doc = "pieces of constant strain"},
         {YAML_NUMBER(RodScene, radius), .unit = "m", .range = "(0, inf)", .one_of = 2,
          .doc = "of a round section"},
-        {YAML_NUMBERS(RodScene, ellipse), .when = "!poses", .unit = "m", .range = "(0, inf)", .one_of = 2,
-         .min_count = 2, .max_count = 2, .doc = "half-axes along n1 and n2 of an elliptic section"},
+        {YAML_NUMBERS(RodScene, ellipse), .when = "!poses & !motion", .unit = "m", .range = "(0, inf)",
+         .one_of = 2, .min_count = 2, .max_count = 2,
+         .doc = "half-axes along n1 and n2 of an elliptic section"},
         {YAML_NUMBER(RodScene, young), .unit = "Pa", .range = "(0, inf)",
          .doc = "Young's modulus. Needed, as `radius` (or `ellipse`) and `density` are; of an identification "
                 "two of "
@@ -176,7 +207,7 @@ const YamlTable rod_table = {
          .doc = "acceleration of gravity"},
         {YAML_TABLE(RodScene, frame, &rod_frame_table), .when = "curve", .fallback = "bishop",
          .doc = "with a curve: the frames of section and strains"},
-        {YAML_VECTOR(RodScene, bishop_normal), .when = "curve",
+        {YAML_VECTOR(RodScene, bishop_normal), .when = "curve | motion",
          .doc = "the direction of n1 at the clamp; Frenet's if absent"},
         {YAML_LIST(RodScene, loads, &rod_load_table), .doc = "beside its weight"},
         {YAML_TABLE(RodScene, magnetization, &magnetization_table), .when = "solver: newton",
@@ -184,7 +215,7 @@ const YamlTable rod_table = {
          .doc = "remanent magnetisation in the frame (tangent, n1, n2); formulas are of s and L, a file has "
                 "a row for "
                 "each element"},
-        {YAML_NUMBER(RodScene, damping), .when = MOTIONS, .unit = "N s/m^2", .range = "[0, inf)",
+        {YAML_NUMBER(RodScene, damping), .when = MOTIONS ", invert", .unit = "N s/m^2", .range = "[0, inf)",
          .fallback = "0", .doc = "of a motion: viscous drag per length"},
         {YAML_CHOICE(RodScene, start), .when = "curve & " STATES " & !/start",
          .choices = YAML_NAMES("natural", "curve"), .fallback = "natural",

@@ -56,6 +56,21 @@ typedef struct RodPoseScene {
     int frame_count;
 } RodPoseScene;
 
+/* A curve of a moving rod. */
+typedef struct RodMotionFrameScene {
+    char *file;
+    double time;
+    NoiseScene noise;
+} RodMotionFrameScene;
+
+typedef enum RodDifference { ROD_CENTRAL, ROD_BACKWARD } RodDifference;
+
+typedef struct RodMotionScene {
+    RodMotionFrameScene *frames;
+    char *result;
+    int frames_count, difference; /* RodDifference */
+} RodMotionScene;
+
 typedef enum RodSolver { ROD_SOLVER_NEWTON, ROD_SOLVER_PBD } RodSolver;
 
 typedef struct PbdScene {
@@ -68,6 +83,7 @@ typedef struct RodScene {
     RodCurveScene *curve;
     StrainScene *natural_strain;
     RodPoseScene *poses;
+    RodMotionScene *motion;
     double length, radius, *ellipse, young, poisson, density, gravity[3], bishop_normal[3], damping;
     ClampScene clamp;
     EndScene *end;
