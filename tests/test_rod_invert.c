@@ -9,6 +9,7 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
+#include <string.h>
 #include <cmocka.h>
 
 #define NAME "test_rod_invert"
@@ -155,6 +156,37 @@ static void test_held(void **state)
     result_close(result);
 }
 
+/* Four framings of one curve: four strands, other natural strains, one natural shape; turned twice by an angle that is zero
+ * they are Frenet's. */
+static void test_framings(void **state)
+{
+    (void)state;
+    Result *result =
+        run("  gravity: [0, 0, -9.8]\n"
+            "  frames: [frenet, bishop, {formula: \"-6*pi*s/L\"}, {formula: \"0*s\", from: frenet}]\n");
+    Array natural, strain, names;
+    Error err;
+    assert_true(result_read_as(result, "slender/rod/natural", ARRAY_FLOAT64, 2, 3, &natural, &err));
+    assert_true(result_read_as(result, "slender/rod/natural_strain", ARRAY_FLOAT64, 2, 3, &strain, &err));
+    assert_true(result_read_as(result, "slender/rod/frames", ARRAY_TEXT, 1, 0, &names, &err));
+    assert_int_equal(natural.dims[0], 4 * (N + 1));
+    assert_memory_equal(names.data, "frenet\nbishop\n-6*pi*s/L\n0*s",
+                        strlen("frenet\nbishop\n-6*pi*s/L\n0*s"));
+    for (int k = 1; k < 4; k++) {
+        double apart = 0;
+        for (int i = 0; i <= N; i++) {
+            int own = k * (N + 1) + i;
+            assert_true(vec3_length(vec3_sub(vector_at(&natural, own), vector_at(&natural, i))) == 0);
+            apart = fmax(apart, vec3_length(vec3_sub(vector_at(&strain, own), vector_at(&strain, i))));
+        }
+        assert_true(k == 3 ? apart < 1e-9 : apart > 10);
+    }
+    array_clear(&natural);
+    array_clear(&strain);
+    array_clear(&names);
+    result_close(result);
+}
+
 /* ---- Of a moving rod ---- */
 
 static const char MATERIAL[] = "  radius: 1 mm\n  young: 2 MPa\n  poisson: 0.4\n  density: 1200\n";
@@ -241,6 +273,6 @@ static void test_motion(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_input), cmocka_unit_test(test_held),
-                                       cmocka_unit_test(test_motion)};
+                                       cmocka_unit_test(test_framings), cmocka_unit_test(test_motion)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

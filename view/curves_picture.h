@@ -27,7 +27,7 @@ typedef struct CurvesSet {
     Surroundings around; /* drawn below all curves: of the sets that are shown those of the last with any */
 } CurvesSet;
 
-enum { CURVES_CHARTS_MAX = 2 };
+enum { CURVES_CHARTS_MAX = 3 };
 
 typedef struct CurvesScene {
     const char *title;        /* NULL: none                                                  */

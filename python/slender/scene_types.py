@@ -69,7 +69,7 @@ Rod = TypedDict("Rod", {
     "curve": "CurveOfARod", "natural_strain": "NaturalStrain", "poses": "Rows[Poses]", "motion": "MotionOfARod",
     "length": "Number", "clamp": "Clamp", "hold": "Literal['clamped', 'pinned']", "end": "End", "elements": "int",
     "radius": "Number", "ellipse": "Union[Number, Numbers]", "young": "Number", "poisson": "float",
-    "density": "Number", "gravity": "Numbers", "frame": "Frame", "bishop_normal": "Numbers",
+    "density": "Number", "gravity": "Numbers", "frame": "Frame", "frames": "Rows[Frame]", "bishop_normal": "Numbers",
     "loads": "Rows[LoadsOfARod]", "magnetization": "Magnetization", "damping": "Number",
     "start": "Literal['natural', 'curve']", "velocity": "Velocity", "solver": "Literal['newton', 'pbd']",
     "pbd": "Pbd",

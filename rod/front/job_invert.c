@@ -235,6 +235,23 @@ static bool put_shapes(const Inversion *o, Error *err)
     return ok;
 }
 
+/* What each strand's frames are: a line each, as the scene says it. */
+static void add_framings(const Inversion *o, Arrays *list)
+{
+    static const char *const kinds[] = {"frenet", "bishop"};
+    char *text = mem_text("");
+    for (int k = 0; k < o->strands; k++) {
+        const RodFrameScene *frame = &rod_scene(o->run->scene)->frames[k];
+        const char *slash = frame->file ? strrchr(frame->file, '/') : NULL;
+        text = mem_join(text, k ? "\n" : "",
+                        frame->formula ? frame->formula
+                        : slash        ? slash + 1
+                        : frame->file  ? frame->file
+                                       : kinds[frame->kind]);
+    }
+    arrays_add(list, array_text("rod/frames", arrays_keep(list, text)));
+}
+
 /* Of a moving rod. */
 static void add_motion(Inversion *o, Arrays *list)
 {
@@ -259,6 +276,7 @@ static bool put_results(Inversion *o, const char *status, Error *err)
     if (o->strands > 1) arrays_add(&list, array_int("rod/strands", starts, 1, o->strands + 1, 0));
     if (rod_scene(o->run->scene)->end) add_support(o, &list);
     if (o->rm->times) add_motion(o, &list);
+    if (rod_scene(o->run->scene)->frames) add_framings(o, &list);
     add_checks(o, &list);
     return put_shapes(o, err) && arrays_replace(&list, o->run->journal, "final", err);
 }

@@ -205,8 +205,12 @@ const YamlTable rod_table = {
         {YAML_NUMBER(RodScene, density), .unit = "kg/m^3", .range = "(0, inf)", .doc = "mass density"},
         {YAML_VECTOR(RodScene, gravity), .unit = "m/s^2", .fallback = "[0, 0, -9.81]",
          .doc = "acceleration of gravity"},
-        {YAML_TABLE(RodScene, frame, &rod_frame_table), .when = "curve", .fallback = "bishop",
+        {YAML_TABLE(RodScene, frame, &rod_frame_table), .when = "curve", .one_of = 3, .fallback = "bishop",
          .doc = "with a curve: the frames of section and strains"},
+        {YAML_LIST(RodScene, frames, &rod_frame_table), .when = "curve & /job: invert", .one_of = 3,
+         .doc = "of an inversion of one curve: several framings of it, each a strand of the result; their "
+                "natural strains "
+                "are compared in the picture"},
         {YAML_VECTOR(RodScene, bishop_normal), .when = "curve | motion",
          .doc = "the direction of n1 at the clamp; Frenet's if absent"},
         {YAML_LIST(RodScene, loads, &rod_load_table), .doc = "beside its weight"},

@@ -87,8 +87,8 @@ typedef struct RodScene {
     double length, radius, *ellipse, young, poisson, density, gravity[3], bishop_normal[3], damping;
     ClampScene clamp;
     EndScene *end;
-    int elements, ellipse_count, poses_count, loads_count;
-    RodFrameScene frame;
+    int elements, ellipse_count, poses_count, loads_count, frames_count;
+    RodFrameScene frame, *frames;
     RodLoadScene *loads;
     VectorScene magnetization;
     VelocityScene *velocity;
