@@ -100,7 +100,8 @@ void rod_moments(const RodCurve *curve, RodLoads loads, Vec3 *moment)
     if (loads.along) add_along(curve, loads.along, moment);
     for (int j = 0; loads.point_count && j <= last; j++)
         moment[j] = vec3_add(moment[j], couple_at(curve, loads, j));
-    for (int j = 0; j <= last; j++) moment[j] = vec3_add(moment[j], loads.end_couple);
+    bool turned = vec3_length(loads.end_couple) > 0;
+    for (int j = 0; turned && j <= last; j++) moment[j] = vec3_add(moment[j], loads.end_couple);
 }
 
 void rod_pulls(const RodCurve *curve, RodLoads loads, Vec3 *pull)
