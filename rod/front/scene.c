@@ -205,9 +205,9 @@ const YamlTable rod_table = {
         {YAML_NUMBER(RodScene, density), .unit = "kg/m^3", .range = "(0, inf)", .doc = "mass density"},
         {YAML_VECTOR(RodScene, gravity), .unit = "m/s^2", .fallback = "[0, 0, -9.81]",
          .doc = "acceleration of gravity"},
-        {YAML_TABLE(RodScene, frame, &rod_frame_table), .when = "curve", .one_of = 3, .fallback = "bishop",
+        {YAML_TABLE(RodScene, frame, &rod_frame_table), .when = "curve & !frames", .fallback = "bishop",
          .doc = "with a curve: the frames of section and strains"},
-        {YAML_LIST(RodScene, frames, &rod_frame_table), .when = "curve & /job: invert", .one_of = 3,
+        {YAML_LIST(RodScene, frames, &rod_frame_table), .when = "curve & /job: invert",
          .doc = "of an inversion of one curve: several framings of it, each a strand of the result; their "
                 "natural strains "
                 "are compared in the picture"},
