@@ -66,12 +66,14 @@ MagnetizationOfAGroupKeys = TypedDict("MagnetizationOfAGroupKeys", {
 }, total=False)
 
 Rod = TypedDict("Rod", {
-    "curve": "CurveOfARod", "natural_strain": "NaturalStrain", "poses": "Rows[Poses]", "length": "Number",
-    "clamp": "Clamp", "hold": "Literal['clamped', 'pinned']", "end": "End", "elements": "int", "radius": "Number",
+    "model": "Literal['kirchhoff', 'cosserat']", "curve": "CurveOfARod", "natural_strain": "NaturalStrain",
+    "poses": "Rows[Poses]", "motion": "MotionOfARod", "length": "Number", "clamp": "Clamp",
+    "hold": "Literal['clamped', 'pinned']", "end": "End", "elements": "int", "radius": "Number",
     "ellipse": "Union[Number, Numbers]", "young": "Number", "poisson": "float", "density": "Number",
-    "gravity": "Numbers", "frame": "Frame", "bishop_normal": "Numbers", "loads": "Rows[LoadsOfARod]",
-    "magnetization": "Magnetization", "damping": "Number", "start": "Literal['natural', 'curve']",
-    "velocity": "Velocity", "solver": "Literal['newton', 'pbd']", "pbd": "Pbd",
+    "gravity": "Numbers", "frame": "Frame", "frames": "Rows[Frame]", "bishop_normal": "Numbers",
+    "loads": "Rows[LoadsOfARod]", "magnetization": "Magnetization", "damping": "Number",
+    "start": "Literal['natural', 'curve']", "velocity": "Velocity", "solver": "Literal['newton', 'pbd']",
+    "pbd": "Pbd",
 }, total=False)
 
 CurveOfARod = TypedDict("CurveOfARod", {
@@ -91,12 +93,21 @@ Poses = TypedDict("Poses", {
     "file": "str", "frame": "Table", "noise": "Noise",
 }, total=False)
 
+MotionOfARod = TypedDict("MotionOfARod", {
+    "frames": "Rows[FramesOfAMotion]", "result": "str", "difference": "Literal['central', 'backward']",
+}, total=False)
+
+FramesOfAMotion = TypedDict("FramesOfAMotion", {
+    "file": "str", "time": "Number", "noise": "Noise",
+}, total=False)
+
 Clamp = TypedDict("Clamp", {
     "position": "Numbers", "frame": "Table",
 }, total=False)
 
 End = TypedDict("End", {
-    "position": "Numbers", "hold": "Literal['clamped', 'pinned']", "frame": "Table",
+    "position": "Numbers", "hold": "Literal['clamped', 'pinned']", "frame": "Table", "force": "Numbers",
+    "choose": "Literal['straightest', 'least_stressed']", "couple": "Numbers",
 }, total=False)
 
 FrameKeys = TypedDict("FrameKeys", {
@@ -104,7 +115,24 @@ FrameKeys = TypedDict("FrameKeys", {
 }, total=False)
 
 LoadsOfARod = TypedDict("LoadsOfARod", {
-    "point": "Number", "line": "Numbers", "force": "Numbers",
+    "point": "PointOfALoad", "line": "LineLoadOfARod", "potential": "Number", "force": "ForceOnARod",
+    "couple": "CoupleOnARod", "where": "Mapping[str, Where]",
+}, total=False)
+
+PointOfALoadKeys = TypedDict("PointOfALoadKeys", {
+    "end": "Literal['end']", "value": "Number",
+}, total=False)
+
+LineLoadOfARodKeys = TypedDict("LineLoadOfARodKeys", {
+    "value": "Numbers", "formula": "Numbers", "where": "Mapping[str, Where]",
+}, total=False)
+
+ForceOnARodKeys = TypedDict("ForceOnARodKeys", {
+    "value": "Numbers", "formula": "Numbers", "where": "Mapping[str, Where]",
+}, total=False)
+
+CoupleOnARodKeys = TypedDict("CoupleOnARodKeys", {
+    "value": "Numbers", "formula": "Numbers", "where": "Mapping[str, Where]",
 }, total=False)
 
 Pbd = TypedDict("Pbd", {
@@ -438,6 +466,10 @@ MagnetizationOfAGroup = Union["MagnetizationOfAGroupKeys", Numbers]
 Noise = Union["NoiseKeys", Literal['auto'], Number]
 NaturalStrain = Union["NaturalStrainKeys", Numbers]
 Frame = Union["FrameKeys", Literal['frenet', 'bishop']]
+PointOfALoad = Union["PointOfALoadKeys", Literal['end'], Number]
+LineLoadOfARod = Union["LineLoadOfARodKeys", Numbers]
+ForceOnARod = Union["ForceOnARodKeys", Numbers]
+CoupleOnARod = Union["CoupleOnARodKeys", Numbers]
 MeshOfASolid = Union["MeshOfASolidKeys", str]
 PlaceOfASkin = Union["PlaceOfASkinKeys", Number]
 DensityOfADrawing = Union["DensityOfADrawingKeys", Number]

@@ -69,7 +69,8 @@ static bool put_target(Model *model, const Build *b, const char *at, const Targe
                            "the target of a rod is a file with a polyline, or three formulas of s and L");
     if (scene->file) {
         RodCurve curve;
-        if (!rod_curve_read(b, (Sampled){at, scene->file, 1, {-1, 0}, rod->elements}, &curve)) return false;
+        if (!rod_curve_read(b, (Sampled){at, scene->file, 1, {-1, 0}, rod->elements}, &curve, NULL))
+            return false;
         for (int i = 0; i <= rod->elements; i++) vec3_store(target[i], curve.x[2 * i]);
         rod_curve_clear(&curve);
         return true;
@@ -289,16 +290,23 @@ static bool is_default(const SolverScene *solver)
 
 static bool check_inversion(const RodModel *rm, const Scene *scene, YamlFile *file)
 {
-    bool round_trip = false, stability = false;
+    const RodScene *from = rod_scene(scene);
+    bool round_trip = false, stability = false, rests = false; /* asked about */
     for (int k = 0; k < scene->checks_count; k++) {
         round_trip |= scene->checks[k] == CHECK_ROUND_TRIP;
         stability |= scene->checks[k] == CHECK_STABILITY;
+        rests |= scene->checks[k] != CHECK_SELF_CONTACT;
     }
+    if (!from->curve && !from->motion)
+        return yaml_refuse(file, "rod", "an inversion needs `curve`, the shape that is given, or `motion`");
+    if (from->motion && rests)
+        return yaml_refuse(file, "checks",
+                           "a rod that moves is in no equilibrium: of `motion` only self_contact is checked");
     if (stability && (rm->list.couples || rm->list.placed))
         return yaml_refuse(file, "checks", "stability is that of a rod under forces that stay, without %s",
                            rm->list.couples ? "couples" : "loads that depend on its place");
-    if (!rod_scene(scene)->curve)
-        return yaml_refuse(file, "rod", "an inversion needs `curve`, the shape that is given");
+    if (!from->motion && from->damping != 0)
+        return yaml_refuse(file, "rod.damping", "an inversion uses this for a rod in `motion` only");
     const char *unused = scene->load_steps.mode != 0   ? "load_steps"
                          : !is_default(&scene->solver) ? "solver"
                                                        : NULL;
