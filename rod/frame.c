@@ -38,13 +38,14 @@ static Vec3 any_normal(Vec3 t)
     return vec3_unit(vec3_axpy(-vec3_dot(axis, t), t, axis));
 }
 
+static const double STRAIGHT = 1e-6; /* radians over the whole curve */
+
 void rod_frenet(const RodCurve *curve, RodFrame *frames)
 {
-    const double straight = 1e-6; /* radians over the whole curve */
     Vec3 n1 = any_normal(curve->t[0]);
     for (int j = 0; j <= 2 * curve->elements; j++) {
         double bend = vec3_length(curve->c[j]);
-        if (bend * curve->length > straight)
+        if (bend * curve->length > STRAIGHT)
             n1 = vec3_scale(1 / bend, curve->c[j]);
         else if (j > 0)
             n1 = carry(curve, j, n1);
@@ -58,8 +59,8 @@ RodFrame rod_turned(RodFrame f, double angle)
     return complete(f.n0, vec3_axpy(c, f.n1, vec3_scale(s, f.n2)));
 }
 
-/* Differences on five neighbouring values, one-sided at the ends. */
-static double derivative(const double *f, int count, int j, double h)
+/* Differences on five neighbouring values, every `stride`-th number, one-sided at the ends. */
+static double derivative(const double *f, int stride, int count, int j, double h)
 {
     static const double rows[5][5] = {{-25, 48, -36, 16, -3},
                                       {-3, -10, 18, -6, 1},
@@ -68,7 +69,7 @@ static double derivative(const double *f, int count, int j, double h)
                                       {3, -16, 36, -48, 25}};
     int first = j - 2 < 0 ? 0 : j - 2 > count - 5 ? count - 5 : j - 2;
     double sum = 0;
-    for (int k = 0; k < 5; k++) sum += rows[j - first][k] * f[first + k];
+    for (int k = 0; k < 5; k++) sum += rows[j - first][k] * f[stride * (first + k)];
     return sum / (12 * h);
 }
 
@@ -84,9 +85,29 @@ void rod_twist(const RodCurve *curve, const RodFrame *frames, double *twist)
     }
     for (int j = 0; j < stations; j++)
         twist[j] = stations < 5 ? (angle[stations - 1] - angle[0]) / curve->length
-                                : derivative(angle, stations, j, curve->length / (stations - 1));
+                                : derivative(angle, 1, stations, j, curve->length / (stations - 1));
     mem_free(bishop);
     mem_free(angle);
 }
 
 /* Magnus with Simpson's rule; to the middle with the parabola through the three rates. */
+
+/* dc/ds; a curve of one element bends alike all along. */
+static Vec3 bend_rate(const RodCurve *curve, int j)
+{
+    int stations = 2 * curve->elements + 1;
+    double h = curve->length / (stations - 1), rate[3] = {0};
+    for (int i = 0; stations >= 5 && i < 3; i++) rate[i] = derivative(&curve->c[0].x + i, 3, stations, j, h);
+    return vec3_load(rate);
+}
+
+void rod_torsion(const RodCurve *curve, double *torsion)
+{
+    for (int j = 0; j <= 2 * curve->elements; j++) {
+        Vec3 c = curve->c[j];
+        double bend2 = vec3_dot(c, c);
+        torsion[j] = sqrt(bend2) * curve->length > STRAIGHT
+                         ? vec3_dot(curve->t[j], vec3_cross(c, bend_rate(curve, j))) / bend2
+                         : NAN;
+    }
+}

@@ -35,6 +35,10 @@ static inline Vec3 rod_to_world(RodFrame f, Vec3 v)
  * the Bishop frame. twist[stations]. */
 void rod_twist(const RodCurve *curve, const RodFrame *frames, double *twist);
 
+/* The curve's own torsion t.(c x c')/|c|^2 at all stations, 1/m, c' by differences of fourth order: that is the twist of
+ * Frenet's frames. NAN where the curve is straight and has none. torsion[stations]. */
+void rod_torsion(const RodCurve *curve, double *torsion);
+
 /* The rotation from an element's start to its end, seen from its start, and the one to its middle: R' = R
  * [w]x with the rates w at its start, middle and end. Fourth order. */
 static inline Quat rod_turn(double h, Vec3 w0, Vec3 w1, Vec3 w2, Quat *half)

@@ -7,18 +7,47 @@ static const double poisson_least = -0.9, poisson_most = 0.5;
 typedef struct Match {
     const RodIdentifyDef *def;
     int nodes;
-    RodFrame *clamps; /* [poses] */
-    Vec3 **moments;   /* [poses][stations] of the weight                              */
-    Vec3 **shapes;    /* [poses][nodes] natural shapes seen from the clamp, the last  */
-    Vec3 *residuals;  /* [poses * nodes] times the root of the node's weight          */
+    const RodCurve **curves; /* [poses] borrowed: the poses', or a draw of them, and             */
+    const Vec3 **along;      /* [poses] the loads that vary along it; NULL: none                 */
+    RodFrame *clamps;        /* [poses] */
+    Vec3 **moments;          /* [poses][stations] of all loads                               */
+    Vec3 **shapes;           /* [poses][nodes] natural shapes seen from the clamp, the last  */
+    Vec3 *residuals;         /* [poses * nodes] times the root of the node's weight          */
     Vec3 *others, *slopes[2];
+    double least, most;  /* of Poisson's ratio: equal where it was given                      */
     double length, size; /* of the rod; mean square distance of the shapes from the clamp    */
 } Match;
 
 /* Unknowns. */
 typedef struct Guess {
-    double log_young, poisson;
+    double log_value, poisson;
 } Guess;
+
+RodSection rod_identify_section(const RodIdentifyDef *def, double value, double poisson)
+{
+    const RodSought sought = def->sought;
+    return rod_circle(sought == ROD_SOUGHT_RADIUS ? value : def->radius,
+                      sought == ROD_SOUGHT_YOUNG ? value : def->young, poisson,
+                      sought == ROD_SOUGHT_DENSITY ? value : def->density);
+}
+
+/* What does not follow from the section. */
+static RodLoads own_loads(const RodIdentifyDef *def, int pose)
+{
+    RodLoads loads = def->loads;
+    loads.along = def->poses[pose].along;
+    return loads;
+}
+
+RodLoads rod_identify_loads(const RodIdentifyDef *def, int pose, double value)
+{
+    RodSection section = rod_identify_section(def, value, 0.5);
+    RodLoads loads = own_loads(def, pose);
+    loads.line = vec3_axpy(section.mass, def->gravity, loads.line);
+    double area = M_PI * (section.reach * section.reach);
+    loads.end = vec3_add(loads.end, vec3_scale(area * def->magnetization, def->flux_density));
+    return loads;
+}
 
 static bool frame_is_sound(RodFrame f)
 {
@@ -26,24 +55,47 @@ static bool frame_is_sound(RodFrame f)
     return fabs(vec3_length(f.n0) - 1) < 0.02 && vec3_length(n2) < 0.02 && vec3_length(n0) < 0.02;
 }
 
-/* N, whatever the directions; of couples a force at the end that has them at the clamp. */
-static double total_load(const RodIdentifyDef *def)
+/* N on that curve, whatever the directions; of couples a force at the end that has them at the clamp. */
+static double total_load(RodLoads loads, const RodCurve *curve)
 {
-    const RodPose *first = &def->poses[0];
-    double length = first->curve->length, part = length / (2 * first->curve->elements + 1);
-    double sum = vec3_length(def->loads.line) * length + vec3_length(def->loads.end);
-    for (int k = 0; k < def->loads.point_count; k++)
-        sum += vec3_length(def->loads.points[k].force) + vec3_length(def->loads.points[k].couple) / length;
-    for (int j = 0; first->along && j <= 2 * first->curve->elements; j++)
-        sum += part * vec3_length(first->along[j]);
+    int stations = 2 * curve->elements + 1;
+    double length = curve->length, sum = vec3_length(loads.line) * length + vec3_length(loads.end);
+    for (int k = 0; k < loads.point_count; k++)
+        sum += vec3_length(loads.points[k].force) + vec3_length(loads.points[k].couple) / length;
+    for (int j = 0; loads.along && j < stations; j++) sum += length / stations * vec3_length(loads.along[j]);
     return sum;
+}
+
+/* The logarithm of the value sought with which load L^2 = EI; for a radius with all of its loads or with those that do
+ * not grow with it, whatever is more. */
+static double middle_value(const RodIdentifyDef *def)
+{
+    const RodCurve *first = def->poses[0].curve;
+    double length = first->length, inertia = M_PI * pow(def->radius, 4) / 4,
+           area = M_PI * def->radius * def->radius;
+    if (def->sought == ROD_SOUGHT_YOUNG)
+        return log(total_load(rod_identify_loads(def, 0, 1), first) * pow(length, 2) / inertia);
+    if (def->sought == ROD_SOUGHT_DENSITY)
+        return log(def->young * inertia / (area * vec3_length(def->gravity) * pow(length, 3)));
+    double grows = def->density * vec3_length(def->gravity) * length +
+                   fabs(def->magnetization) * vec3_length(def->flux_density),
+           stays = total_load(own_loads(def, 0), first), bend = pow(length, 2) * 4 / def->young;
+    return log(fmax(sqrt(grows * bend), pow(stays / M_PI * bend, 0.25)));
+}
+
+/* By which power of the value EI changes against the weight. */
+static double scan_power(const RodIdentifyDef *def)
+{
+    return def->sought == ROD_SOUGHT_RADIUS ? 2 : 1;
 }
 
 bool rod_identify_check(const RodIdentifyDef *def, Error *err)
 {
     if (def->pose_count < 2) return error_set(err, "a material needs two poses of the rod or more");
-    if (!(total_load(def) * def->radius > 0))
-        return error_set(err, "a material needs a rod that has weight or loads, and a radius");
+    if (!(total_load(rod_identify_loads(def, 0, 1), def->poses[0].curve) > 0))
+        return error_set(err, "a material needs a rod that has weight or loads");
+    if (def->sought == ROD_SOUGHT_DENSITY && !(vec3_length(def->gravity) > 0))
+        return error_set(err, "without gravity the poses do not tell density");
     const RodCurve *first = def->poses[0].curve;
     for (int p = 0; p < def->pose_count; p++) {
         const RodPose *pose = &def->poses[p];
@@ -71,22 +123,35 @@ static RodFrame orthonormal(RodFrame f)
 }
 
 /* The loads on a pose, whose length is measured: what acts at the end acts at its end. */
-static void find_moments(const RodPose *pose, RodLoads loads, Vec3 *moment)
+static void find_moments(const RodCurve *curve, RodLoads loads, Vec3 *moment)
 {
     RodPointLoad *points = mem_alloc((size_t)loads.point_count, sizeof *points);
     for (int k = 0; k < loads.point_count; k++) {
         points[k] = loads.points[k];
-        points[k].s = fmin(points[k].s, pose->curve->length);
+        points[k].s = fmin(points[k].s, curve->length);
     }
-    loads.points = points, loads.along = pose->along;
-    rod_moments(pose->curve, loads, moment);
+    loads.points = points;
+    rod_moments(curve, loads, moment);
     mem_free(points);
+}
+
+static void match_moments(Match *m, double value)
+{
+    for (int p = 0; p < m->def->pose_count; p++) {
+        RodLoads loads = rod_identify_loads(m->def, p, value);
+        loads.along = m->along[p];
+        find_moments(m->curves[p], loads, m->moments[p]);
+    }
 }
 
 static Match match_create(const RodIdentifyDef *def)
 {
     size_t poses = (size_t)def->pose_count, nodes = (size_t)def->poses[0].curve->elements + 1;
+    bool given = !isnan(def->poisson);
     Match m = {.def = def, .nodes = (int)nodes, .length = def->poses[0].curve->length};
+    m.least = given ? def->poisson : poisson_least, m.most = given ? def->poisson : poisson_most;
+    m.curves = mem_alloc(poses, sizeof *m.curves);
+    m.along = mem_alloc(poses, sizeof *m.along);
     m.clamps = mem_alloc(poses, sizeof *m.clamps);
     m.moments = mem_alloc(poses, sizeof *m.moments);
     m.shapes = mem_alloc(poses, sizeof *m.shapes);
@@ -94,11 +159,13 @@ static Match match_create(const RodIdentifyDef *def)
     m.others = mem_alloc(poses * nodes, sizeof *m.others);
     for (int i = 0; i < 2; i++) m.slopes[i] = mem_alloc(poses * nodes, sizeof *m.slopes[i]);
     for (size_t p = 0; p < poses; p++) {
+        m.curves[p] = def->poses[p].curve;
+        m.along[p] = def->poses[p].along;
         m.clamps[p] = orthonormal(def->poses[p].clamp);
         m.moments[p] = mem_alloc(2 * nodes - 1, sizeof *m.moments[p]);
         m.shapes[p] = mem_alloc(nodes, sizeof *m.shapes[p]);
-        find_moments(&def->poses[p], def->loads, m.moments[p]);
     }
+    if (def->sought == ROD_SOUGHT_YOUNG) match_moments(&m, 1);
     return m;
 }
 
@@ -108,6 +175,8 @@ static void match_clear(Match *m)
         mem_free(m->moments[p]);
         mem_free(m->shapes[p]);
     }
+    mem_free(m->curves);
+    mem_free(m->along);
     mem_free(m->clamps);
     mem_free(m->moments);
     mem_free(m->shapes);
@@ -126,10 +195,12 @@ static double node_weight(const Match *m, int i)
 static double match_residuals(Match *m, Guess guess, Vec3 *residuals)
 {
     int poses = m->def->pose_count;
-    RodSection section = rod_circle(m->def->radius, exp(guess.log_young), guess.poisson, 0);
+    double value = exp(guess.log_value);
+    RodSection section = rod_identify_section(m->def, value, guess.poisson);
+    if (m->def->sought != ROD_SOUGHT_YOUNG) match_moments(m, value); /* which is no load */
     for (int p = 0; p < poses; p++) {
-        Vec3 *shape = m->shapes[p], start = m->def->poses[p].curve->x[0];
-        rod_invert(m->def->poses[p].curve, section, m->moments[p], NULL, shape);
+        Vec3 *shape = m->shapes[p], start = m->curves[p]->x[0];
+        rod_invert(m->curves[p], section, m->moments[p], NULL, shape);
         for (int i = 0; i < m->nodes; i++) shape[i] = rod_to_frame(m->clamps[p], vec3_sub(shape[i], start));
     }
     double sum = 0;
@@ -161,8 +232,8 @@ static void match_slopes(Match *m, Guess guess)
     const double step = 1e-4;
     for (int i = 0; i < 2; i++) {
         Guess more = guess, less = guess;
-        *(i == 0 ? &more.log_young : &more.poisson) += step;
-        *(i == 0 ? &less.log_young : &less.poisson) -= step;
+        *(i == 0 ? &more.log_value : &more.poisson) += step;
+        *(i == 0 ? &less.log_value : &less.poisson) -= step;
         match_residuals(m, more, m->slopes[i]);
         match_residuals(m, less, m->others);
         for (int k = 0; k < m->def->pose_count * m->nodes; k++)
@@ -188,9 +259,9 @@ static Guess next_guess(const Match *m, Normal n, double damping, Guess from)
 {
     double tiny = pow(1e-12 * m->length, 2), a = n.a * (1 + damping) + tiny, c = n.c * (1 + damping) + tiny;
     double whole = from.poisson - (a * n.k - n.b * n.g) / (a * c - n.b * n.b);
-    double poisson = fmin(fmax(whole, poisson_least), poisson_most);
+    double poisson = fmin(fmax(whole, m->least), m->most);
     double step = -(n.g + n.b * (poisson - from.poisson)) / a;
-    return (Guess){from.log_young + fmin(fmax(step, -1), 1), poisson};
+    return (Guess){from.log_value + fmin(fmax(step, -1), 1), poisson};
 }
 
 /* Goes down to the minimum nearby; false where it has not come there. */
@@ -211,7 +282,7 @@ static bool descend(Match *m, Guess *from, int *iterations)
         }
         lower = less < sum;
         if (!lower) break;
-        moved = fabs(next.log_young - guess.log_young) + fabs(next.poisson - guess.poisson);
+        moved = fabs(next.log_value - guess.log_value) + fabs(next.poisson - guess.poisson);
         guess = next, damping = fmax(damping / 10, 1e-12);
         sum = match_residuals(m, guess, m->residuals);
         match_slopes(m, guess);
@@ -221,18 +292,18 @@ static bool descend(Match *m, Guess *from, int *iterations)
     return !lower || moved <= 1e-9;
 }
 
-enum { SCAN = 49, STARTS = 3 }; /* eight steps per decade of E */
+enum { SCAN = 49, STARTS = 3 }; /* eight steps per decade of EI over the weight */
 
 typedef struct Start {
     Guess guess;
     double relative; /* squared distance over squared size */
 } Start;
 
-static Start scan_at(Match *m, double log_young)
+static Start scan_at(Match *m, double log_value)
 {
     Start best = {.relative = INFINITY};
     for (int k = 0; k < 3; k++) {
-        Guess guess = {log_young, 0.25 * k};
+        Guess guess = {log_value, fmin(fmax(0.25 * k, m->least), m->most)};
         double relative = match_residuals(m, guess, m->others) / m->size;
         if (relative < best.relative) best = (Start){guess, relative};
     }
@@ -243,10 +314,9 @@ static Start scan_at(Match *m, double log_young)
 static int scan(Match *m, Start *starts)
 {
     Start row[SCAN];
-    double inertia = M_PI * pow(m->def->radius, 4) / 4;
-    double middle = log(total_load(m->def) * pow(m->length, 2) / inertia);
+    double middle = middle_value(m->def), power = scan_power(m->def);
     int count = 0;
-    for (int k = 0; k < SCAN; k++) row[k] = scan_at(m, middle + (k - SCAN / 2) * log(10) / 8);
+    for (int k = 0; k < SCAN; k++) row[k] = scan_at(m, middle + (k - SCAN / 2) * log(10) / 8 / power);
     for (int k = 0; k < SCAN; k++) {
         if ((k > 0 && row[k - 1].relative < row[k].relative) ||
             (k + 1 < SCAN && row[k + 1].relative < row[k].relative))
@@ -261,25 +331,84 @@ static int scan(Match *m, Start *starts)
     return count;
 }
 
-/* What the normal equations at the minimum say of both numbers; c is what nu's slope is worth beside an
- * unknown E. */
-static void judge(const Match *m, Guess guess, double sum, RodMaterial *material)
+/* Relative variance of the value, and of nu (0 where it is held). */
+typedef struct Variance {
+    double value, poisson;
+} Variance;
+
+/* By the distance that is left; c is what nu's slope is worth beside an unknown value. */
+static Variance left_variance(const Match *m, Normal n, double sum, bool held)
+{
+    double least = pow(1e-6 * m->length, 2); /* slopes below are rounding and quadrature */
+    double freedom = fmax(1, 3 * (m->def->pose_count - 1) - (m->least == m->most ? 1 : 2)),
+           variance = sum / freedom, c = n.a > 0 ? n.c - n.b * n.b / n.a : 0;
+    /* What the value's slope is worth beside an unknown nu; all of it where nu is held, or tells nothing. */
+    double a = held || c <= least ? n.a : n.a - n.b * n.b / n.c;
+    if (!(a > least)) return (Variance){INFINITY, INFINITY};
+    return (Variance){variance / a, c > least ? variance / c : INFINITY};
+}
+
+/* Puts a draw of their noise in the place of the poses that have noise. */
+static void take_draw(Match *m, int draw)
+{
+    size_t stations = 2 * (size_t)m->nodes - 1;
+    for (int p = 0; p < m->def->pose_count; p++) {
+        const RodPose *pose = &m->def->poses[p];
+        if (!pose->draws) continue;
+        m->curves[p] = &pose->draws[draw];
+        if (pose->along) m->along[p] = pose->along + ((size_t)draw + 1) * stations;
+    }
+}
+
+/* By how far a Gauss-Newton step from the optimum goes with each draw of the poses' noise: more by as much as the distance
+ * that is left, squared, is more than what noise leaves. False without noise. Leaves the moments of the last draw. */
+static bool drawn_variance(Match *m, Guess guess, double sum, bool held, Variance *variance)
 {
     Normal n = normal_equations(m);
-    double least = pow(1e-6 * m->length, 2); /* slopes below are rounding and quadrature */
-    double freedom = fmax(1, 3 * (m->def->pose_count - 1) - 2), variance = sum / freedom;
-    double c = n.a > 0 ? n.c - n.b * n.b / n.a : 0;
-    bool at_limit = guess.poisson == poisson_least || guess.poisson == poisson_most;
-    /* What E's slope is worth beside an unknown nu; all of it where nu is held, or tells nothing. */
-    double a = at_limit || c <= least ? n.a : n.a - n.b * n.b / n.c;
-    double young_error = a > least ? sqrt(variance / a) : INFINITY,
-           poisson_error = a > least && c > least ? sqrt(variance / c) : INFINITY;
-    material->young_known = young_error < 1.0 / 3, material->poisson_known = poisson_error < 0.3;
-    material->young = material->young_known ? exp(guess.log_young) : NAN;
-    material->young_error = material->young_known ? young_error * material->young : INFINITY;
+    double left = 0;
+    int draws = m->def->draw_count;
+    *variance = (Variance){0, 0};
+    for (int d = 0; d < draws; d++) {
+        take_draw(m, d);
+        match_moments(m, exp(guess.log_value));
+        match_residuals(m, guess, m->others);
+        for (int i = 0; i < m->def->pose_count * m->nodes; i++)
+            m->others[i] = vec3_sub(m->others[i], m->residuals[i]);
+        double g = product(m, m->slopes[0], m->others), k = product(m, m->slopes[1], m->others);
+        double nu = held ? 0 : (n.a * k - n.b * g) / (n.a * n.c - n.b * n.b), value = (g - n.b * nu) / n.a;
+        left += (product(m, m->others, m->others) - value * g - nu * k) / draws;
+        variance->value += value * value / draws;
+        variance->poisson += nu * nu / draws;
+    }
+    if (!(left > 0)) return false;
+    double more = fmax(1, sum / left);
+    variance->value *= more, variance->poisson *= more;
+    return true;
+}
+
+/* Of the slopes: the root of the largest eigenvalue of H over the least. */
+static double condition_of(Normal n)
+{
+    double mean = (n.a + n.c) / 2, off = hypot((n.a - n.c) / 2, n.b), least = mean - off;
+    return least > 0 ? sqrt((mean + off) / least) : INFINITY;
+}
+
+/* What the slopes at the minimum say of both numbers. */
+static void judge(Match *m, Guess guess, double sum, RodMaterial *material)
+{
+    Normal n = normal_equations(m);
+    bool given = m->least == m->most, held = guess.poisson == m->least || guess.poisson == m->most;
+    Variance left = left_variance(m, n, sum, held), drawn;
+    if (!isinf(left.value) && drawn_variance(m, guess, sum, held || isinf(left.poisson), &drawn))
+        left = (Variance){drawn.value, isinf(left.poisson) ? INFINITY : drawn.poisson};
+    double error = sqrt(left.value), poisson_error = given ? 0 : sqrt(left.poisson);
+    material->known = error < 1.0 / 3, material->poisson_known = poisson_error < 0.3;
+    material->value = material->known ? exp(guess.log_value) : NAN;
+    material->error = material->known ? error * material->value : INFINITY;
     material->poisson = material->poisson_known ? guess.poisson : NAN;
     material->poisson_error = material->poisson_known ? poisson_error : INFINITY;
-    material->poisson_at_limit = material->poisson_known && at_limit;
+    material->poisson_at_limit = material->poisson_known && !given && held;
+    material->condition = given ? 1 : condition_of(n);
 }
 
 RodMaterial rod_identify(const RodIdentifyDef *def)

@@ -1,6 +1,7 @@
 #include "rod/inverse.h"
 #include "base/memory.h"
 #include "base/quat.h"
+#include "solve/dense.h"
 
 /* The place at arclength s: cubic between stations. */
 static Vec3 place_at(const RodCurve *curve, double s)
@@ -68,6 +69,19 @@ static void add_along(const RodCurve *curve, const Vec3 *load, Vec3 *moment)
     }
 }
 
+void rod_inertia(const RodCurve *const curves[3], const double time[3], int at, double mass, double drag,
+                 Vec3 *along)
+{
+    double before = time[1] - time[0], after = time[2] - time[1], both = time[2] - time[0];
+    for (int j = 0; j <= 2 * curves[0]->elements; j++) {
+        Vec3 x0 = curves[0]->x[j], x1 = curves[1]->x[j], x2 = curves[2]->x[j];
+        Vec3 v01 = vec3_scale(1 / before, vec3_sub(x1, x0)), v12 = vec3_scale(1 / after, vec3_sub(x2, x1));
+        Vec3 a = vec3_scale(2 / both, vec3_sub(v12, v01)),
+             v = at == 1 ? vec3_scale(1 / both, vec3_sub(x2, x0)) : v12;
+        along[j] = vec3_axpy(-mass, a, vec3_scale(-drag, v));
+    }
+}
+
 void rod_moments(const RodCurve *curve, RodLoads loads, Vec3 *moment)
 {
     int last = 2 * curve->elements;
@@ -86,6 +100,8 @@ void rod_moments(const RodCurve *curve, RodLoads loads, Vec3 *moment)
     if (loads.along) add_along(curve, loads.along, moment);
     for (int j = 0; loads.point_count && j <= last; j++)
         moment[j] = vec3_add(moment[j], couple_at(curve, loads, j));
+    bool turned = vec3_length(loads.end_couple) > 0;
+    for (int j = 0; turned && j <= last; j++) moment[j] = vec3_add(moment[j], loads.end_couple);
 }
 
 void rod_pulls(const RodCurve *curve, RodLoads loads, Vec3 *pull)
@@ -162,6 +178,26 @@ void rod_natural_strains(const RodCurve *curve, RodSection section, const Vec3 *
         strains[j] = vec3_sub(strains[j], strain_of(section, frames[j], moment[j]));
 }
 
+/* The strain in a frame that is turned by an angle about the tangent and has no twist. */
+static Vec3 untwisted(Vec3 k, double angle)
+{
+    double c = cos(angle), s = sin(angle);
+    return vec3(0, c * k.y + s * k.z, c * k.z - s * k.y);
+}
+
+void rod_untwist(const RodCurve *curve, Vec3 *k)
+{
+    double h = curve->length / curve->elements, angle = 0; /* minus the integral of the twist */
+    Vec3 *to = k;
+    for (int e = 0; e < curve->elements; e++, to += 2) {
+        double twist = to[0].x, middle = to[1].x, end = to[2].x;
+        to[0] = untwisted(to[0], angle);
+        to[1] = untwisted(to[1], angle - h / 24 * (5 * twist + 8 * middle - end));
+        angle -= h / 6 * (twist + 4 * middle + end);
+    }
+    to[0] = untwisted(to[0], angle);
+}
+
 /* d of -K^-1 R^T M over ds: K^-1 ([ex]x R^T T + K d x k), T the pull of what hangs beyond. */
 static Vec3 strain_rate(RodSection section, RodFrame frame, Vec3 k, Vec3 pull, Vec3 d)
 {
@@ -180,7 +216,8 @@ void rod_strain_route(const RodCurve *curve, RodSection section, RodLoads loads,
          *pulls = mem_alloc(3 * (size_t)curve->elements, sizeof *pulls);
     rod_strains(curve, frames, k);
     rod_pulls(curve, loads, pulls);
-    d[last] = vec3_scale(-1, strain_of(section, frames[last], couple_at(curve, loads, last)));
+    Vec3 held = vec3_add(couple_at(curve, loads, last), loads.end_couple);
+    d[last] = vec3_scale(-1, strain_of(section, frames[last], held));
     for (int j = last; j > 0; j -= 2) { /* Runge-Kutta over an element, backwards */
         const Vec3 *pull = pulls + 3 * (j / 2 - 1);
         Vec3 rates[4], at = d[j];
@@ -201,4 +238,50 @@ void rod_strain_route(const RodCurve *curve, RodSection section, RodLoads loads,
     }
     mem_free(k);
     mem_free(pulls);
+}
+
+/* What is least of a station: rows of it for the moment there, r = r0 + A M. */
+static void least_rows(RodSection section, RodFrame f, RodEndChoice choice, Vec3 rows[3])
+{
+    bool straight = choice == ROD_STRAIGHTEST;
+    double K[3] = {section.twist, section.bend1, section.bend2};
+    const Vec3 axes[3] = {f.n0, f.n1, f.n2};
+    for (int i = 0; i < 3; i++)
+        rows[i] = vec3_scale(!straight ? 1 / sqrt(K[i]) : i > 0 ? -1 / K[i] : 0, axes[i]);
+}
+
+static const double UNDETERMINED = 1e-12;
+
+void rod_choose_end(const RodCurve *curve, RodSection section, const RodFrame *frames, RodEndChoice choice,
+                    bool hinge, RodLoads *loads)
+{
+    enum { UNKNOWNS = 6 }; /* force times length, couple */
+    int last = 2 * curve->elements, n = hinge ? 3 : UNKNOWNS;
+    double A[UNKNOWNS][UNKNOWNS] = {{0}}, b[UNKNOWNS] = {0}, trace = 0, L = curve->length;
+    Vec3 *moment = mem_alloc(2 * ((size_t)last + 1), sizeof *moment), *k = moment + last + 1;
+    rod_moments(curve, *loads, moment);
+    rod_natural_strains(curve, section, moment, frames, k);
+    for (int j = 0; j <= last; j++) {
+        double simpson = j == 0 || j == last ? 1 : j % 2 ? 4 : 2;
+        Vec3 rows[3], arm = vec3_scale(1 / L, vec3_sub(curve->x[last], curve->x[j]));
+        least_rows(section, frames[j], choice, rows);
+        for (int i = 0; i < 3; i++) {
+            double r = choice == ROD_STRAIGHTEST ? i > 0 ? (&k[j].x)[i] : 0 : vec3_dot(rows[i], moment[j]);
+            double slope[UNKNOWNS]; /* row.(arm x F + C) */
+            vec3_store(slope, vec3_cross(rows[i], arm));
+            vec3_store(slope + 3, rows[i]);
+            for (int u = 0; u < n; u++) {
+                b[u] -= simpson * slope[u] * r;
+                for (int v = 0; v < n; v++) A[u][v] += simpson * slope[u] * slope[v];
+            }
+        }
+    }
+    mem_free(moment);
+    for (int u = 0; u < n; u++) trace += A[u][u];
+    for (int u = 0; u < n; u++) A[u][u] += UNDETERMINED * trace;
+    if (!dense_cholesky(n, A[0], UNKNOWNS)) return; /* no numbers */
+    dense_forward(n, A[0], UNKNOWNS, b);
+    dense_backward(n, A[0], UNKNOWNS, b);
+    loads->end = vec3_axpy(1 / L, vec3_load(b), loads->end);
+    if (!hinge) loads->end_couple = vec3_add(loads->end_couple, vec3_load(b + 3));
 }

@@ -1,5 +1,6 @@
 /* inverse.h - the one natural shape that sags into a given curve, clamped at its first end [Hafner 2021 after
- * the errata of docs/theory.md; the frame-free form is ours].
+ * the errata of docs/theory.md; the frame-free form is ours], and free at the other one, or held by a known force and
+ * couple.
  *
  * What hangs beyond a station pulls on it with the moment M(s) = int_s^L (x(u) - x(s)) x p du, a plain
  * integral. The curve is in equilibrium if its strains differ from the natural ones by K^-1 R^T M; so a
@@ -19,13 +20,20 @@ typedef struct RodPointLoad {
 /* All dead. A rod that is magnetised along its tangent by m (A m^2 per metre) in a uniform flux density B
  * feels the couple m t x B, which is that of a force m B at its end. */
 typedef struct RodLoads {
-    Vec3 line; /* weight and what else pulls on each metre, N/m, the same all along */
-    Vec3 end;  /* at the free end, N                                                */
+    Vec3 line;       /* weight and what else pulls on each metre, N/m, the same all along          */
+    Vec3 end;        /* at the last end, N: of what holds it, too                                  */
+    Vec3 end_couple; /* there, N m                                                                 */
     const Vec3
-        *along; /* [stations] what varies from metre to metre beside it, N/m; NULL: nothing; borrowed */
+        *along; /* [stations] what varies from metre to metre beside line, N/m; NULL: nothing; borrowed */
     int point_count;
     const RodPointLoad *points; /* borrowed */
 } RodLoads;
+
+/* What inertia and drag of a moving rod are as loads, along[stations]: -mass a - drag v (kg/m, N s/m^2), by the places at
+ * three times, curves of as many elements. The acceleration is their second difference: of second order for the middle one
+ * where steps are even; and for the last one just what implicit Euler took it for. `at`, 1 or 2, says whose it is. */
+void rod_inertia(const RodCurve *const curves[3], const double time[3], int at, double mass, double drag,
+                 Vec3 *along);
 
 /* M at all stations, N m. Fourth order; second order in an element that a point load acts within. A couple makes M
  * jump: nodes have what it is on their own side of the couple (one at a node is beyond those before it, one at the end beyond
@@ -50,7 +58,22 @@ void rod_strains(const RodCurve *curve, const RodFrame *frames, Vec3 *strains);
 void rod_natural_strains(const RodCurve *curve, RodSection section, const Vec3 *moment,
                          const RodFrame *frames, Vec3 *strains);
 
-/* The same strains less the curve's by the way of eq. (10) of the paper, an equation for the strain alone
+/* Natural strains in frames that do not twist where the rod is unloaded, from those in any frames with the same n1 at the
+ * clamp: one and the same for every equilibrium of a round rod, whatever frames each was seen in. All stations. */
+void rod_untwist(const RodCurve *curve, Vec3 *strains);
+
+/* What a support at the last end does where it is not known. */
+typedef enum RodEndChoice {
+    ROD_STRAIGHTEST,    /* so that the natural shape bends least: int k1^2 + k2^2 ds of its natural strains */
+    ROD_LEAST_STRESSED, /* so that the rod stores the least energy: int M.K^-1 M ds                           */
+} RodEndChoice;
+
+/* Puts that force and couple (of a hinge: the force alone) into loads->end, beside what is there, and end_couple: least
+ * squares; what makes no difference, or 1e-12 of the most that something makes, is zero. */
+void rod_choose_end(const RodCurve *curve, RodSection section, const RodFrame *frames, RodEndChoice choice,
+                    bool hinge, RodLoads *loads);
+
+/* Natural strains less the curve's by the way of eq. (10) of the paper, an equation for the strain alone
  * that is integrated from the free end: an independent check. */
 void rod_strain_route(const RodCurve *curve, RodSection section, RodLoads loads, const RodFrame *frames,
                       Vec3 *difference);

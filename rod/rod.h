@@ -190,3 +190,8 @@ void rod_carry(const Rod *rod, System *sys, const RodLayout *layout, const Point
  * last end is free, to rounding: moments from node to node, from the free end on. Sets the multipliers of x, if it has any; and
  * of a Cosserat rod the strains that its loads, dead ones, give it, with the positions that follow. */
 void rod_balance(const Rod *rod, System *sys, const RodLayout *layout, double time, double *x, double *p);
+
+/* The same with a couple (N m, in the world) on the last end of each strand, beside the force on it that p's load has. With
+ * both in its support instead the state is in equilibrium, too. */
+void rod_balance_end(const Rod *rod, System *sys, const RodLayout *layout, double time, Vec3 couple,
+                     double *x, double *p);

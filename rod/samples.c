@@ -143,6 +143,12 @@ static RodSpline fit(const Vec3 *x, int count, double noise)
     return fit_on(x, count, all_intervals(count), noise);
 }
 
+/* What a fit of n samples takes their noise for. */
+static double fit_noise(const RodSamplesDef *def, int n)
+{
+    return isnan(def->noise) && n < FEW ? 0 : def->noise;
+}
+
 static RodSamplesInfo report(const RodSpline *spline)
 {
     double free = spline->points - spline->freedom;
@@ -179,7 +185,7 @@ bool rod_samples_curve(const Vec3 *x, int count, const RodSamplesDef *def, int e
     int n = differing(x, count, kept, err);
     bool ok = n > 0;
     if (ok) {
-        RodSpline spline = fit(kept, n, isnan(def->noise) && n < FEW ? 0 : def->noise);
+        RodSpline spline = fit(kept, n, fit_noise(def, n));
         ok = rod_curve_create_pieces(rod_spline_jet, &spline, spline.intervals, elements, curve, err);
         if (!ok) name_turn(kept, n, err);
         double longer = ok ? curve->length / chords(kept, n) : 0;
@@ -196,4 +202,49 @@ bool rod_samples_curve(const Vec3 *x, int count, const RodSamplesDef *def, int e
     }
     mem_free(kept);
     return ok;
+}
+
+/* Each coordinate off by as much, by even chances. */
+static bool draw(const RodSpline *spline, double noise, int elements, Random *random, RodCurve *curve,
+                 Error *err)
+{
+    size_t points = (size_t)spline->points;
+    Vec3 *y = mem_alloc(points, sizeof *y);
+    for (size_t i = 0; i < points; i++) {
+        Vec3 jet[3];
+        double a = random_signed(random), b = random_signed(random), c = random_signed(random);
+        rod_spline_jet((void *)spline, spline->u[i], jet);
+        y[i] = vec3_axpy(sqrt(3) * noise, vec3(a, b, c), jet[0]);
+    }
+    RodSpline other = rod_spline_create(spline->u, y, spline->points, spline->intervals);
+    rod_spline_fit(&other, spline->weight);
+    bool ok = rod_curve_create_pieces(rod_spline_jet, &other, other.intervals, elements, curve, err);
+    rod_spline_clear(&other);
+    mem_free(y);
+    return ok;
+}
+
+bool rod_samples_draw(const Vec3 *x, int count, const RodSamplesDef *def, int elements, RodDraws *draws,
+                      Error *err)
+{
+    Vec3 *kept = mem_alloc((size_t)count + 1, sizeof *kept);
+    int n = differing(x, count, kept, err);
+    bool ok = n > 0;
+    if (ok) {
+        RodSpline spline = fit(kept, n, fit_noise(def, n));
+        double noise = isnan(def->noise) ? report(&spline).noise : def->noise;
+        draws->curves = mem_alloc((size_t)draws->wanted, sizeof *draws->curves);
+        for (; noise > 0 && ok && draws->count < draws->wanted; draws->count += ok)
+            ok = draw(&spline, noise, elements, &draws->random, &draws->curves[draws->count], err);
+        rod_spline_clear(&spline);
+    }
+    mem_free(kept);
+    return ok;
+}
+
+void rod_draws_clear(RodDraws *draws)
+{
+    for (int k = 0; k < draws->count; k++) rod_curve_clear(&draws->curves[k]);
+    mem_free(draws->curves);
+    *draws = (RodDraws){0};
 }

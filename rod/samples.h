@@ -15,6 +15,7 @@
  * start, about the noise away from the first sample. Nothing here knows of weight: where a rod's whole weight
  * is known rather than its mass per metre, divide it by the curve's length. */
 #pragma once
+#include "base/random.h"
 #include "rod/curve.h"
 
 typedef struct RodSamplesDef {
@@ -38,3 +39,16 @@ typedef struct RodSamplesInfo {
  * not finite, or where there are too few. */
 bool rod_samples_curve(const Vec3 *x, int count, const RodSamplesDef *def, int elements, RodCurve *curve,
                        RodSamplesInfo *info, Error *err);
+
+/* Curves that the same samples would have given with other noise of the same size: curves[count], made with the same knots
+ * and weight from where the samples' curve is and noise at each of them; none of samples without noise. */
+typedef struct RodDraws {
+    int wanted, count;
+    RodCurve *curves; /* owned */
+    Random random;
+} RodDraws;
+
+/* Makes as many as are wanted. False and a sentence as above. To be cleared in any case. */
+bool rod_samples_draw(const Vec3 *x, int count, const RodSamplesDef *def, int elements, RodDraws *draws,
+                      Error *err);
+void rod_draws_clear(RodDraws *draws);

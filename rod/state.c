@@ -252,6 +252,12 @@ static void set_strains(const Rod *rod, System *sys, const RodLayout *layout, co
 
 void rod_balance(const Rod *rod, System *sys, const RodLayout *layout, double time, double *x, double *p)
 {
+    rod_balance_end(rod, sys, layout, time, vec3(0, 0, 0), x, p);
+}
+
+void rod_balance_end(const Rod *rod, System *sys, const RodLayout *layout, double time, Vec3 couple,
+                     double *x, double *p)
+{
     size_t elements = (size_t)rod->elements;
     Vec3 *strain = mem_alloc(elements, sizeof *strain), (*rows)[6] = mem_alloc(elements, sizeof *rows);
     double *force = mem_alloc((size_t)layout->dofs, sizeof *force);
@@ -265,9 +271,10 @@ void rod_balance(const Rod *rod, System *sys, const RodLayout *layout, double ti
     turn_rows(layout, x, rows);
     Vec3 carried = vec3(0, 0, 0); /* what the element beyond does to the node */
     for (int e = rod->elements - 1; e >= 0; e--) {
-        if (ends_strand(layout, e)) carried = vec3(0, 0, 0);
-        Vec3 load =
-            vec3_add(vec3_load(force + layout->turn + 3 * (rod_element_node(layout, e) + 1)), carried);
+        int node = rod_element_node(layout, e) + 1;
+        if (ends_strand(layout, e))
+            carried = vec3_scale(-1, quat_rotate(quat_conj(rod_reference(layout, x, node)), couple));
+        Vec3 load = vec3_add(vec3_load(force + layout->turn + 3 * node), carried);
         Vec3 m = solve(rows[e] + 3, vec3_scale(-1, load));
         for (int i = 0; i < 3; i++) (&carried.x)[i] = vec3_dot(rows[e][i], m);
         double young = p[rod->young + e], K[3] = {rod->unit.twist, rod->unit.bend1, rod->unit.bend2};

@@ -62,6 +62,8 @@ rod_helix | scenes/rod_helix.yaml |
 rod_conical | scenes/rod_conical.yaml |
 rod_ellipse | scenes/rod_ellipse.yaml | rod.elements=150
 rod_framed | scenes/rod_framed.yaml | rod.elements=100
+rod_held | scenes/rod_held.yaml | rod.elements=100
+rod_framings | scenes/rod_framings.yaml | rod.elements=100
 rod_knot | scenes/rod_knot.yaml | rod.elements=300
 rod_samples | scenes/rod_samples.yaml |
 rod_wave | scenes/rod_wave.yaml | rod.elements=200

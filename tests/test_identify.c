@@ -1,11 +1,9 @@
 /* Young's modulus and Poisson's ratio from poses: of curves that are exact equilibria of one rod, and of
  * what is left of them after noise. */
 #include "base/clock.h"
-#include "base/memory.h"
-#include "base/quat.h"
 #include "base/random.h"
-#include "rod/identify.h"
-#include "rod/section.h"
+#include "rod/samples.h"
+#include "tests/pose_fixture.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -13,128 +11,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-enum { N = 200, STATIONS = 2 * N + 1, POSES = 3, DEGREE = 16 };
-
-/* The rod: made of something like soft rubber, its natural strains a formula. */
-typedef struct Rod {
-    double radius, density, young, poisson, length;
-    Vec3 (*natural)(double s);
-    Vec3 tip; /* N, at its end */
-} Rod;
-
-static Vec3 curly(double s)
-{
-    return vec3(8 + 20 * s, 12 * sin(14 * s), 25 - 30 * s);
-}
-
-static Vec3 flat(double s)
-{
-    return vec3(0, 12 * cos(9 * s), 0);
-}
-
-static const Rod curly_rod = {1.3e-3, 1180, 6e6, 0.42, 0.2, curly, {0, 0, 0}},
-                 flat_rod = {1.3e-3, 1180, 6e6, 0.42, 0.2, flat, {0, 0, 0}};
-static const Vec3 gravity = {0, 0, -9.81};
-
-/* As a scene may have them, with four digits; the last one head down. */
-static const RodFrame clamps[POSES] = {
-    {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
-    {{0.9397, 0, -0.3420}, {0.3368, -0.1736, 0.9254}, {-0.0594, -0.9848, -0.1632}},
-    {{0, 0, -1}, {0, 1, 0}, {1, 0, 0}},
-};
-
-/* A section of the hanging rod: place, frame, moment of what hangs beyond. */
-typedef struct Section {
-    Vec3 x, M;
-    Quat q;
-} Section;
-
-static Vec3 strain_at(const Rod *rod, Section at, double s)
-{
-    RodSection section = rod_circle(rod->radius, rod->young, rod->poisson, rod->density);
-    Vec3 m = quat_rotate(quat_conj(at.q), at.M);
-    return vec3_add(rod->natural(s), vec3(m.x / section.twist, m.y / section.bend1, m.z / section.bend2));
-}
-
-static Section slope_at(const Rod *rod, Section at, double s, Vec3 line)
-{
-    Vec3 t = quat_rotate(at.q, vec3(1, 0, 0));
-    Quat turn = quat_mul(at.q, (Quat){0, vec3_scale(0.5, strain_at(rod, at, s))});
-    Vec3 pull = vec3_axpy(rod->length - s, line, rod->tip);
-    return (Section){t, vec3_scale(-1, vec3_cross(t, pull)), turn};
-}
-
-static Section along(Section a, double h, Section slope)
-{
-    Quat q = {a.q.w + h * slope.q.w, vec3_axpy(h, slope.q.v, a.q.v)};
-    return (Section){vec3_axpy(h, slope.x, a.x), vec3_axpy(h, slope.M, a.M), q};
-}
-
-/* From station to station, `parts` Runge-Kutta steps each; curve may be NULL. Returns the moment that is left
- * at the free end. */
-static Vec3 hang(const Rod *rod, Section at, Vec3 line, int parts, RodCurve *curve)
-{
-    double h = rod->length / (2 * N * parts);
-    for (int k = 0; k <= 2 * N * parts; k++) {
-        double s = k * h;
-        if (curve && k % parts == 0) {
-            Vec3 strain = strain_at(rod, at, s);
-            curve->x[k / parts] = at.x;
-            curve->t[k / parts] = quat_rotate(at.q, vec3(1, 0, 0));
-            curve->c[k / parts] = quat_rotate(at.q, vec3(0, strain.z, -strain.y));
-        }
-        if (k == 2 * N * parts) break;
-        Section a = slope_at(rod, at, s, line), b = slope_at(rod, along(at, h / 2, a), s + h / 2, line);
-        Section c = slope_at(rod, along(at, h / 2, b), s + h / 2, line),
-                d = slope_at(rod, along(at, h, c), s + h, line);
-        at = along(along(along(along(at, h / 6, a), h / 3, b), h / 3, c), h / 6, d);
-        at.q = quat_unit(at.q);
-    }
-    return at.M;
-}
-
-/* Newton on the clamp's moment until none is left at the end. */
-static Vec3 clamp_moment(const Rod *rod, Quat clamp, Vec3 line, int parts, Vec3 M)
-{
-    for (int k = 0; k < 20; k++) {
-        Section at = {vec3(0, 0, 0), M, clamp};
-        Vec3 left = hang(rod, at, line, parts, NULL), column[3];
-        const double step = 1e-8;
-        for (int i = 0; i < 3; i++) {
-            at.M = vec3_add(M, vec3(i == 0 ? step : 0, i == 1 ? step : 0, i == 2 ? step : 0));
-            column[i] = vec3_scale(1 / step, vec3_sub(hang(rod, at, line, parts, NULL), left));
-        }
-        double volume = vec3_dot(column[0], vec3_cross(column[1], column[2]));
-        Vec3 off = vec3(vec3_dot(left, vec3_cross(column[1], column[2])),
-                        vec3_dot(left, vec3_cross(column[2], column[0])),
-                        vec3_dot(left, vec3_cross(column[0], column[1])));
-        M = vec3_axpy(-1 / volume, off, M);
-        if (vec3_length(left) < 1e-15) break;
-    }
-    return M;
-}
-
-enum { LOAD_STEPS = 50 };
-
-/* The equilibrium, its weight put on in steps, and the pose it is, held in just that frame. */
-static RodPose equilibrium(const Rod *rod, RodFrame clamp, RodCurve *curve)
-{
-    *curve = (RodCurve){N, rod->length, mem_alloc(STATIONS, sizeof(Vec3)), mem_alloc(STATIONS, sizeof(Vec3)),
-                        mem_alloc(STATIONS, sizeof(Vec3))};
-    Vec3 weight = vec3_scale(rod->density * M_PI * rod->radius * rod->radius, gravity), M = vec3(0, 0, 0);
-    Quat q = quat_from_axes(clamp.n0, clamp.n1, clamp.n2);
-    Rod part = *rod;
-    for (int k = 1; k <= LOAD_STEPS; k++) {
-        part.tip = vec3_scale((double)k / LOAD_STEPS, rod->tip);
-        M = clamp_moment(&part, q, vec3_scale((double)k / LOAD_STEPS, weight), 1, M);
-    }
-    M = clamp_moment(rod, q, weight, 3, M);
-    Vec3 left = hang(rod, (Section){vec3(0, 0, 0), M, q}, weight, 3, curve);
-    assert_true(vec3_length(left) < 1e-12 * vec3_length(M));
-    RodFrame frame = {quat_rotate(q, vec3(1, 0, 0)), quat_rotate(q, vec3(0, 1, 0)),
-                      quat_rotate(q, vec3(0, 0, 1))};
-    return (RodPose){.curve = curve, .clamp = frame};
-}
+enum { DEGREE = 16 };
 
 static RodLoads weight_of(const Rod *rod)
 {
@@ -143,7 +20,8 @@ static RodLoads weight_of(const Rod *rod)
 
 static RodMaterial identify_loaded(const RodPose *poses, int count, RodLoads loads)
 {
-    RodIdentifyDef def = {poses, count, 1.3e-3, loads};
+    RodIdentifyDef def = {
+        .poses = poses, .pose_count = count, .radius = 1.3e-3, .poisson = NAN, .loads = loads};
     Error err;
     assert_true(rod_identify_check(&def, &err));
     return rod_identify(&def);
@@ -174,9 +52,54 @@ static void test_loads(void **state)
             else
                 loads.point_count = 1, loads.points = &point;
             RodMaterial found = identify_loaded(poses, 2, loads);
-            print_message("with a force at the end: E off by %.0e, nu by %.0e\n", found.young / rod.young - 1,
+            print_message("with a force at the end: E off by %.0e, nu by %.0e\n", found.value / rod.young - 1,
                           found.poisson - rod.poisson);
-            assert_true(fabs(found.young / rod.young - 1) < 1e-6 && fabs(found.poisson - rod.poisson) < 1e-6);
+            assert_true(fabs(found.value / rod.young - 1) < 1e-6 && fabs(found.poisson - rod.poisson) < 1e-6);
+        }
+        for (int p = 0; p < 2; p++) rod_curve_clear(&curves[p]);
+    }
+}
+
+/* The rod's radius or its density, Young's modulus being known; with and without a force at the end, in a field, and with
+ * Poisson's ratio given. */
+static void test_sought(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"E", "radius", "density"};
+    for (int loaded = 0; loaded < 2; loaded++) {
+        Rod rod = curly_rod;
+        RodCurve curves[2];
+        RodPose poses[2];
+        if (loaded) rod.tip = vec3(2e-3, 1e-3, -6e-3);
+        for (int p = 0; p < 2; p++) poses[p] = equilibrium(&rod, clamps[p], &curves[p]);
+        const double truth[] = {rod.young, rod.radius, rod.density};
+        /* Half of the force is that of a field on the rod, whose magnetisation is so many A/m. */
+        double half = loaded ? 0.5 : 0;
+        for (int k = 0; k < 6; k++) {
+            RodIdentifyDef def = {
+                .poses = poses,
+                .pose_count = 2,
+                .sought = (RodSought)(k % 3),
+                .young = rod.young,
+                .radius = rod.radius,
+                .density = rod.density,
+                .poisson = k < 3 ? NAN : rod.poisson,
+                .gravity = gravity,
+                .loads = {.end = vec3_scale(1 - half, rod.tip)},
+                .magnetization = half / (M_PI * rod.radius * rod.radius),
+                .flux_density = rod.tip,
+            };
+            *(k % 3 == 0 ? &def.young : k % 3 == 1 ? &def.radius : &def.density) = NAN; /* is not read */
+            RodMaterial found = rod_identify(&def);
+            print_message("%s off by %.0e, nu by %.0e; condition %.1f\n", names[k % 3],
+                          found.value / truth[k % 3] - 1, found.poisson - rod.poisson, found.condition);
+            assert_true(found.converged && found.known && found.poisson_known &&
+                        found.error < 1e-5 * found.value);
+            assert_true(fabs(found.value / truth[k % 3] - 1) < 1e-6);
+            if (k < 3)
+                assert_true(fabs(found.poisson - rod.poisson) < 1e-6 && found.condition > 1);
+            else
+                assert_true(found.poisson == rod.poisson && found.poisson_error == 0 && found.condition == 1);
         }
         for (int p = 0; p < 2; p++) rod_curve_clear(&curves[p]);
     }
@@ -201,18 +124,18 @@ static void test_exact(void **state)
             seconds = clock_thread_seconds() - seconds;
             print_message(
                 "E %.0e, %d poses: E off by %.0e, nu by %.0e; shapes by %.0e m, %d iterations, %.0f ms\n",
-                rod.young, count, found.young / rod.young - 1, found.poisson - rod.poisson, found.distance,
+                rod.young, count, found.value / rod.young - 1, found.poisson - rod.poisson, found.distance,
                 found.iterations, seconds * 1e3);
-            assert_true(fabs(found.young / rod.young - 1) < 1e-6 && fabs(found.poisson - rod.poisson) < 1e-6);
-            assert_true(found.young_known && found.poisson_known && found.converged && found.distance < 1e-8);
+            assert_true(fabs(found.value / rod.young - 1) < 1e-6 && fabs(found.poisson - rod.poisson) < 1e-6);
+            assert_true(found.known && found.poisson_known && found.converged && found.distance < 1e-8);
             assert_int_equal(found.poisson_at_limit, k == 1);
         }
         if (k == 0) {
             poses[1].clamp = clamps[1];
             RodMaterial found = identify(poses, 2);
-            print_message("frame of four digits: E off by %.1e, nu by %.1e\n", found.young / rod.young - 1,
+            print_message("frame of four digits: E off by %.1e, nu by %.1e\n", found.value / rod.young - 1,
                           found.poisson - rod.poisson);
-            assert_true(fabs(found.young / rod.young - 1) < 1e-3 && fabs(found.poisson - rod.poisson) < 1e-3);
+            assert_true(fabs(found.value / rod.young - 1) < 1e-3 && fabs(found.poisson - rod.poisson) < 1e-3);
         }
         for (int p = 0; p < POSES; p++) rod_curve_clear(&curves[p]);
     }
@@ -298,11 +221,11 @@ static void test_noise(void **state)
                 poses[p].curve = &noisy[p];
             }
             RodMaterial found = identify(poses, count);
-            assert_true(found.young_known && found.poisson_known);
-            double off = found.young / 6e6 - 1, nu_off = found.poisson - 0.42;
+            assert_true(found.known && found.poisson_known);
+            double off = found.value / 6e6 - 1, nu_off = found.poisson - 0.42;
             young += off * off / DRAWS;
             twist += pow((1 + off) * 1.42 / (1 + found.poisson) - 1, 2) / DRAWS;
-            young_said += pow(off * 6e6 / found.young_error, 2) / DRAWS;
+            young_said += pow(off * 6e6 / found.error, 2) / DRAWS;
             poisson_said += pow(nu_off / found.poisson_error, 2) / DRAWS;
             for (int p = 0; p < count; p++) rod_curve_clear(&noisy[p]);
         }
@@ -312,6 +235,63 @@ static void test_noise(void **state)
         assert_true(sqrt(young) < 0.015 && sqrt(twist) < 0.015);
         assert_true(sqrt(young_said) < 2.5 && sqrt(poisson_said) < 2.5 && sqrt(young_said) > 0.3);
     }
+    for (int p = 0; p < POSES; p++) rod_curve_clear(&curves[p]);
+}
+
+/* 0.1 mm on 201 samples, as the program takes them: over 20 draws E, radius and nu scatter as the standard errors say. */
+static void test_scatter(void **state)
+{
+    (void)state;
+    enum { DRAWS = 20, OTHERS = 12 };
+    RodCurve curves[POSES], noisy[POSES];
+    RodDraws others[POSES];
+    RodPose poses[POSES], measured[POSES];
+    Random random = random_seed(11);
+    RodSamplesDef samples = rod_samples_default();
+    double off[2][3] = {{0}}, said[2][3] = {{0}};
+    for (int p = 0; p < POSES; p++) poses[p] = equilibrium(&curly_rod, clamps[p], &curves[p]);
+    for (int k = 0; k < DRAWS; k++) {
+        for (int p = 0; p < POSES; p++) {
+            Vec3 x[N + 1];
+            for (int i = 0; i <= N; i++) x[i] = vec3_add(curves[p].x[2 * i], noise(&random, 1e-4));
+            assert_true(rod_samples_curve(x, N + 1, &samples, N, &noisy[p], NULL, NULL));
+            others[p] = (RodDraws){.wanted = OTHERS, .random = random};
+            assert_true(rod_samples_draw(x, N + 1, &samples, N, &others[p], NULL));
+            random = others[p].random;
+            measured[p] = (RodPose){.curve = &noisy[p], .clamp = poses[p].clamp, .draws = others[p].curves};
+        }
+        for (int count = 2; count <= POSES; count++)
+            for (int sought = 0; sought < 2; sought++) {
+                RodIdentifyDef def = {.poses = measured,
+                                      .pose_count = count,
+                                      .draw_count = OTHERS,
+                                      .sought = sought ? ROD_SOUGHT_RADIUS : ROD_SOUGHT_YOUNG,
+                                      .young = 6e6,
+                                      .radius = 1.3e-3,
+                                      .density = 1180,
+                                      .poisson = NAN,
+                                      .gravity = gravity};
+                RodMaterial found = rod_identify(&def);
+                double *o = off[count - 2], *e = said[count - 2], truth = sought ? 1.3e-3 : 6e6;
+                assert_true(found.known && found.poisson_known);
+                o[sought] += pow(found.value / truth - 1, 2) / DRAWS,
+                    e[sought] += pow(found.error / truth, 2) / DRAWS;
+                if (sought) continue;
+                o[2] += pow(found.poisson - 0.42, 2) / DRAWS, e[2] += pow(found.poisson_error, 2) / DRAWS;
+            }
+        for (int p = 0; p < POSES; p++) {
+            rod_curve_clear(&noisy[p]);
+            rod_draws_clear(&others[p]);
+        }
+    }
+    for (int count = 2; count <= POSES; count++)
+        for (int i = 0; i < 3; i++) {
+            static const char *const names[] = {"E", "radius", "nu"};
+            double scatter = sqrt(off[count - 2][i]), error = sqrt(said[count - 2][i]);
+            print_message("%d poses: %s scatters by %.2g, standard errors say %.2g\n", count, names[i],
+                          scatter, error);
+            assert_true(scatter < 1.5 * error && error < 1.5 * scatter);
+        }
     for (int p = 0; p < POSES; p++) rod_curve_clear(&curves[p]);
 }
 
@@ -328,24 +308,24 @@ static void test_not_identifiable(void **state)
     static const RodFrame turned = {{0, 1, 0}, {-1, 0, 0}, {0, 0, 1}};
     for (int p = 0; p < 2; p++) poses[p] = equilibrium(&flat_rod, planar[p], &curves[p]);
     RodMaterial found = identify(poses, 2);
-    assert_true(found.young_known && found.converged && fabs(found.young / 6e6 - 1) < 1e-6);
+    assert_true(found.known && found.converged && fabs(found.value / 6e6 - 1) < 1e-6);
     assert_true(!found.poisson_known && isnan(found.poisson) && isinf(found.poisson_error));
     for (int p = 0; p < 2; p++) noisy[p] = measured(&curves[p], 1e-4, &random), poses[p].curve = &noisy[p];
     found = identify(poses, 2);
-    print_message("in a plane, with noise: E off by %+.2f %%, nu %g\n", 100 * (found.young / 6e6 - 1),
+    print_message("in a plane, with noise: E off by %+.2f %%, nu %g\n", 100 * (found.value / 6e6 - 1),
                   found.poisson);
-    assert_true(found.young_known && fabs(found.young / 6e6 - 1) < 0.02 && !found.poisson_known);
+    assert_true(found.known && fabs(found.value / 6e6 - 1) < 0.02 && !found.poisson_known);
     for (int p = 0; p < 2; p++) rod_curve_clear(&curves[p]), rod_curve_clear(&noisy[p]);
 
     poses[0] = equilibrium(&curly_rod, clamps[0], &curves[0]), poses[1] = poses[0];
     found = identify(poses, 2);
-    assert_true(!found.young_known && !found.poisson_known && isnan(found.young));
+    assert_true(!found.known && !found.poisson_known && isnan(found.value));
     poses[1] = equilibrium(&curly_rod, turned, &curves[1]);
     found = identify(poses, 2);
-    assert_true(!found.young_known && !found.poisson_known);
+    assert_true(!found.known && !found.poisson_known);
     for (int p = 0; p < 2; p++) noisy[p] = measured(&curves[p], 1e-4, &random), poses[p].curve = &noisy[p];
     found = identify(poses, 2);
-    assert_true(!found.young_known && !found.poisson_known);
+    assert_true(!found.known && !found.poisson_known);
     for (int p = 0; p < 2; p++) rod_curve_clear(&curves[p]), rod_curve_clear(&noisy[p]);
 
     Rod stiff = curly_rod;
@@ -355,7 +335,7 @@ static void test_not_identifiable(void **state)
         noisy[p] = measured(&curves[p], 1e-4, &random), poses[p].curve = &noisy[p];
     }
     found = identify(poses, 2);
-    assert_true(!found.young_known && !found.poisson_known);
+    assert_true(!found.known && !found.poisson_known);
     for (int p = 0; p < 2; p++) rod_curve_clear(&curves[p]), rod_curve_clear(&noisy[p]);
 }
 
@@ -365,7 +345,8 @@ static void test_refusals(void **state)
     RodCurve curves[2];
     RodPose poses[2];
     for (int p = 0; p < 2; p++) poses[p] = equilibrium(&curly_rod, clamps[p], &curves[p]);
-    RodIdentifyDef def = {poses, 1, 1.3e-3, weight_of(&curly_rod)};
+    RodIdentifyDef def = {
+        .poses = poses, .pose_count = 1, .radius = 1.3e-3, .poisson = NAN, .loads = weight_of(&curly_rod)};
     Error err;
     assert_false(rod_identify_check(&def, &err));
     assert_string_equal(err.text, "a material needs two poses of the rod or more");
@@ -385,7 +366,7 @@ static void test_refusals(void **state)
     assert_string_equal(err.text, "pose 2 has 100 elements, the first one 200");
     def.loads.line = vec3(0, 0, 0);
     assert_false(rod_identify_check(&def, &err));
-    assert_string_equal(err.text, "a material needs a rod that has weight or loads, and a radius");
+    assert_string_equal(err.text, "a material needs a rod that has weight or loads");
     for (int p = 0; p < 2; p++) rod_curve_clear(&curves[p]);
 }
 
@@ -393,7 +374,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_exact),    cmocka_unit_test(test_loads),
-        cmocka_unit_test(test_noise),    cmocka_unit_test(test_not_identifiable),
+        cmocka_unit_test(test_sought),   cmocka_unit_test(test_noise),
+        cmocka_unit_test(test_scatter),  cmocka_unit_test(test_not_identifiable),
         cmocka_unit_test(test_refusals),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -204,7 +204,7 @@ static void test_framings(void **state)
     mem_free(invert(r, N, &curve));
     RodSection section = rod_circle(1.5e-3, r->young, 0.5, 1200);
     static RodFrame frames[2 * N + 1];
-    static Vec3 moment[2 * N + 1], strains[2 * N + 1], route[2 * N + 1];
+    static Vec3 moment[2 * N + 1], strains[2 * N + 1], route[2 * N + 1], untwisted[2 * N + 1];
     rod_moments(&curve, weight(section.mass), moment);
     for (int k = 0; k < 4; k++) {
         double worst = 0, largest = 0;
@@ -228,6 +228,15 @@ static void test_framings(void **state)
             worst / largest, strains[0].x, strains[0].y, strains[0].z);
         assert_true(worst < 1e-9 * largest);
         if (k < 3) assert_true(distance(strains[0], start[k]) < 1e-6 * 80);
+        /* What does not twist in the natural shape is the same for all of them. */
+        double apart = 0;
+        rod_untwist(&curve, strains);
+        for (int j = 0; j <= 2 * N; j++) {
+            if (k == 0) untwisted[j] = strains[j];
+            apart = fmax(apart, vec3_length(vec3_sub(strains[j], untwisted[j])));
+            assert_true(strains[j].x == 0);
+        }
+        assert_true(apart < 1e-8 * vec3_length(untwisted[0]));
     }
     rod_curve_clear(&curve);
 }
@@ -411,6 +420,44 @@ static bool corner(void *self, double u, Vec3 *x)
 }
 
 /* However many waves there are: followed, or refused. */
+/* x = (u, u^2, u^3): tau = 3/(1 + 9 u^2 + 9 u^4), against its middle; no torsion where there is no curvature. */
+static bool twisted_cubic(void *self, double u, Vec3 *x)
+{
+    (void)self;
+    *x = vec3(u, u * u, u * u * u);
+    return true;
+}
+
+static void test_torsion(void **state)
+{
+    (void)state;
+    enum { N = 160 };
+    double off[2], torsion[2 * N + 1];
+    RodCurve curve;
+    Error err;
+    for (int k = 0; k < 2; k++) {
+        int elements = k ? N : N / 2;
+        assert_true(rod_curve_create(twisted_cubic, NULL, -1, 1, elements, &curve, &err));
+        rod_torsion(&curve, torsion);
+        off[k] = 0;
+        for (int j = 0; j <= 2 * elements; j++) {
+            double u2 = curve.x[j].x * curve.x[j].x;
+            off[k] = fmax(off[k], fabs(torsion[j] - 3 / (1 + 9 * u2 + 9 * u2 * u2)));
+        }
+        rod_curve_clear(&curve);
+    }
+    print_message("torsion off by %.1e 1/m of 3, with half as many elements by %.1e\n", off[1], off[0]);
+    assert_true(off[1] < 2e-5 && off[1] < off[0] / 10);
+    assert_true(rod_curve_create(straight, NULL, 0, 1, N, &curve, &err));
+    rod_torsion(&curve, torsion);
+    for (int j = 0; j <= 2 * N; j++) assert_true(isnan(torsion[j]));
+    rod_curve_clear(&curve);
+    assert_true(rod_curve_create(inflected, NULL, -1, 1, N, &curve, &err));
+    rod_torsion(&curve, torsion);
+    for (int j = 0; j <= 2 * N; j++) assert_true(j == N ? isnan(torsion[j]) : fabs(torsion[j]) < 1e-12);
+    rod_curve_clear(&curve);
+}
+
 static void test_fine_curves(void **state)
 {
     (void)state;
@@ -447,6 +494,7 @@ int main(void)
         cmocka_unit_test(test_natural_shapes), cmocka_unit_test(test_natural_strains),
         cmocka_unit_test(test_framings),       cmocka_unit_test(test_straight_and_inflected),
         cmocka_unit_test(test_end_couple),     cmocka_unit_test(test_couple_within),
-        cmocka_unit_test(test_load_along),     cmocka_unit_test(test_fine_curves)};
+        cmocka_unit_test(test_load_along),     cmocka_unit_test(test_torsion),
+        cmocka_unit_test(test_fine_curves)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

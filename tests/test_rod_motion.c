@@ -8,6 +8,8 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
 #include <cmocka.h>
 
 typedef struct Moving {
@@ -172,13 +174,140 @@ static void test_pushed_waves(void **state)
     assert_true(pushed(27e6) < 1e-5);
 }
 
+/* ---- Natural strains from a motion ---- */
+
+enum { PIECES = 40 };
+
+/* A rod's state at three times; its places as curves that know their nodes only. */
+typedef struct Seen {
+    RodCurve curves[3];
+    double times[3];
+    double *state; /* the one that natural strains are of */
+} Seen;
+
+static Seen seen_create(const Moving *m)
+{
+    Seen seen = {.state = mem_alloc((size_t)m->layout.dofs, sizeof(double))};
+    for (int k = 0; k < 3; k++)
+        seen.curves[k] = (RodCurve){.elements = PIECES, .x = mem_alloc(2 * PIECES + 1, sizeof(Vec3))};
+    return seen;
+}
+
+static void seen_clear(Seen *seen)
+{
+    for (int k = 0; k < 3; k++) rod_curve_clear(&seen->curves[k]);
+    mem_free(seen->state);
+}
+
+static void see(Seen *seen, int k, const Moving *m, double time, bool keep)
+{
+    for (int i = 0; i <= PIECES; i++)
+        seen->curves[k].x[2 * i] = vec3_load(m->now.x + m->layout.position + 3 * i);
+    seen->times[k] = time;
+    if (keep) memcpy(seen->state, m->now.x, (size_t)m->layout.dofs * sizeof *seen->state);
+}
+
+/* By the balance of forces at what was seen at time `at`; strain[PIECES][3]. */
+static void find_strains(const Rod *rod, Seen *seen, int at, const double *p, double *strain)
+{
+    const RodCurve *const three[] = {&seen->curves[0], &seen->curves[1], &seen->curves[2]};
+    Vec3 inertia[2 * PIECES + 1], drag[2 * PIECES + 1];
+    double *q = mem_copy(p, (size_t)rod->params.size, sizeof *q), mass[PIECES + 1];
+    RodLayout layout = rod_layout(rod, true);
+    System *sys = rod_system(rod, 1e6, false);
+    rod_node_mass(rod, mass);
+    rod_inertia(three, seen->times, at, 1, 0, inertia);
+    rod_inertia(three, seen->times, at, 0, p[rod->damping], drag);
+    for (int i = 0; i <= PIECES; i++)
+        vec3_store(q + rod->load + 3 * i, vec3_axpy(mass[i], inertia[2 * i], drag[2 * i]));
+    rod_balance(rod, sys, &layout, 0, seen->state, q);
+    memcpy(strain, q + rod->natural_strain, 3 * PIECES * sizeof *strain);
+    system_destroy(sys);
+    mem_free(q);
+}
+
+static double apart(const double *a, const double *b)
+{
+    double most = 0;
+    for (int i = 0; i < 3 * PIECES; i++) most = fmax(most, fabs(a[i] - b[i]));
+    return most;
+}
+
+static Rod *curly_rod(double **p)
+{
+    Rod *rod = rod_create(PIECES, 0.2, rod_circle(1e-3, 1, 0.4, 1200), M_PI * 1e-6, NULL);
+    *p = params_vector(&rod->params);
+    rod_default_params(rod, 2e6, *p);
+    (*p)[rod->gravity + 2] = -9.81;
+    (*p)[rod->damping] = 1e-5;
+    for (int e = 0; e < PIECES; e++)
+        vec3_store(*p + rod->natural_strain + 3 * e, vec3(3, 6 + 0.2 * e, 8 * cos(0.1 * e)));
+    return rod;
+}
+
+/* What implicit Euler took for accelerations is the backward difference: natural strains come back to rounding, whatever the
+ * step. */
+static void test_strains_of_steps(void **state)
+{
+    (void)state;
+    double *p, strain[3 * PIECES];
+    Rod *rod = curly_rod(&p);
+    Moving m = moving_create(rod, 2e6, p);
+    Seen seen = seen_create(&m);
+    rod_natural_state(rod, &m.layout, p, m.now.x);
+    for (int k = 0; k < 12; k++) {
+        step(&m, 5e-3);
+        if (k >= 9) see(&seen, k - 9, &m, 5e-3 * k, k == 11);
+    }
+    find_strains(rod, &seen, 2, p, strain);
+    double off = apart(strain, p + rod->natural_strain);
+    print_message("natural strains of a motion: off by %.0e of up to 14 1/m\n", off);
+    assert_true(off < 1e-7);
+    seen_clear(&seen);
+    moving_clear(&m);
+    mem_free(p);
+    rod_destroy(rod);
+}
+
+/* Central differences of a motion that is known more finely than it is sampled: second order in the time between samples. */
+static void test_strains_of_samples(void **state)
+{
+    (void)state;
+    enum { MIDDLE = 1000, COUNT = 4, FINEST = 0 };
+    const double dt = 5e-5;
+    const int apart_by[COUNT] = {1, 20, 40, 80};
+    double *p, strain[COUNT][3 * PIECES], off[COUNT];
+    Rod *rod = curly_rod(&p);
+    Moving m = moving_create(rod, 2e6, p);
+    Seen seen[COUNT];
+    for (int c = 0; c < COUNT; c++) seen[c] = seen_create(&m);
+    rod_natural_state(rod, &m.layout, p, m.now.x);
+    for (int k = 1; k <= MIDDLE + apart_by[COUNT - 1]; k++) {
+        step(&m, dt);
+        for (int c = 0; c < COUNT; c++)
+            if ((k - MIDDLE) % apart_by[c] == 0 && abs(k - MIDDLE) <= apart_by[c])
+                see(&seen[c], 1 + (k - MIDDLE) / apart_by[c], &m, k * dt, k == MIDDLE);
+    }
+    for (int c = 0; c < COUNT; c++) {
+        find_strains(rod, &seen[c], 1, p, strain[c]);
+        off[c] = apart(strain[c], c == FINEST ? p + rod->natural_strain : strain[FINEST]);
+        print_message("samples %.2f ms apart: natural strains off by %.1e 1/m\n", apart_by[c] * dt * 1e3,
+                      off[c]);
+        seen_clear(&seen[c]);
+    }
+    assert_true(off[FINEST] < 0.15 && off[1] < 0.05);
+    for (int c = 2; c < COUNT; c++) assert_true(fabs(log2(off[c] / off[c - 1]) - 2) < 0.15);
+    moving_clear(&m);
+    mem_free(p);
+    rod_destroy(rod);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_relaxing),
-        cmocka_unit_test(test_frequencies),
-        cmocka_unit_test(test_pendulum),
-        cmocka_unit_test(test_pushed_waves),
+        cmocka_unit_test(test_relaxing),         cmocka_unit_test(test_frequencies),
+        cmocka_unit_test(test_pendulum),         cmocka_unit_test(test_pushed_waves),
+        cmocka_unit_test(test_strains_of_steps), cmocka_unit_test(test_strains_of_samples),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -345,6 +345,47 @@ static void test_balance_in_field(void **state)
     assert_int_equal(mem_live_count(), blocks);
 }
 
+/* The helix held at both ends, with a force and a couple of the last clamp that are given: its natural strains hold it there
+ * to rounding, it comes back from a push, and its clamp does what was given. */
+static void test_balance_between_clamps(void **state)
+{
+    (void)state;
+    enum { N = 60 };
+    const Vec3 force = {1e-3, 2e-3, 1.5e-2}, couple = {2e-5, -1e-5, 3e-5};
+    long blocks = mem_live_count();
+    Resting o = resting_create(&reference_rods[REFERENCE_HELIX], 5e6, N);
+    RodLayout layout = rod_layout(o.rod, true);
+    o.rod->end = ROD_CLAMPED;
+    System *sys = rod_system(o.rod, 5e6, false);
+    State rest = system_state(sys);
+    rod_copy_state(o.rod, &o.layout, o.state.x, &layout, rest.x);
+    double *load = o.p + o.rod->load + 3 * N, *g = mem_alloc((size_t)layout.dofs, sizeof *g);
+    vec3_store(load, force);
+    rod_balance_end(o.rod, sys, &layout, 0, couple, rest.x, o.p);
+    vec3_store(load, vec3(0, 0, 0));
+    for (int k = 0; k < 2; k++) {
+        Point at = state_point(&rest, o.p);
+        Evaluation left = system_gradient(sys, &at, g);
+        Vec3 holds = vec3_load(g + layout.position + 3 * N),
+             turns = quat_rotate(rod_reference(&layout, rest.x, N), vec3_load(g + layout.turn + 3 * N));
+        print_message("between clamps: forces left %.0e of theirs, %.1e m off the curve; the clamp's force "
+                      "off by %.0e N, "
+                      "its couple by %.0e N m\n",
+                      left.gradient_max / left.force_scale, resting_distance(&o, rest.x),
+                      vec3_length(vec3_sub(holds, force)), vec3_length(vec3_sub(turns, couple)));
+        assert_true(left.gradient_max < 1e-12 * left.force_scale && resting_distance(&o, rest.x) < 1e-12);
+        assert_true(vec3_length(vec3_sub(holds, force)) < 1e-12);
+        assert_true(vec3_length(vec3_sub(turns, couple)) < 1e-14);
+        for (int i = 3; k == 0 && i < 3 * N; i++) rest.x[layout.turn + i] = 2e-2 * sin(i);
+        if (k == 0) assert_int_equal(rod_relax(o.rod, sys, 1, o.p, &rest).newton.status, NEWTON_CONVERGED);
+    }
+    system_destroy(sys);
+    mem_free(g);
+    state_destroy(&rest);
+    resting_clear(&o);
+    assert_int_equal(mem_live_count(), blocks);
+}
+
 typedef struct Ends {
     RodLayout layout;
     double shortening;
@@ -480,6 +521,7 @@ int main(void)
         cmocka_unit_test(test_end_couple),
         cmocka_unit_test(test_pole),
         cmocka_unit_test(test_balance_in_field),
+        cmocka_unit_test(test_balance_between_clamps),
         cmocka_unit_test(test_pushed),
         cmocka_unit_test(test_straight),
         cmocka_unit_test(test_held_ends),

@@ -8,6 +8,8 @@ static const double HIGHEST = 560, CHART_HEIGHT = 150, CHART_LOWEST = 115, CHART
 static const double BESIDE_GAP = 26;
 static const double GAIN = 1.1; /* another arrangement must make the curves larger by this much */
 
+enum { CHARTS_IN_ROW = 2 }; /* more are one above the other */
+
 /* In which column and row each view is. */
 typedef struct Grid {
     int columns, rows;
@@ -158,13 +160,14 @@ static void place_charts(const CurvesScene *scene, CurvesLayout *layout, const P
                          double top)
 {
     CurvesMargins margins = curves_view_margins(&layout->views[0]);
-    int count = scene->chart_count;
+    int count = scene->chart_count, columns = count <= CHARTS_IN_ROW ? count : 1;
     if (plan->place == CHARTS_BELOW) {
-        double width = (PAGE_WIDTH - 2 * PAGE_MARGIN - (count - 1) * BESIDE_GAP) / count;
+        double width = (PAGE_WIDTH - 2 * PAGE_MARGIN - (columns - 1) * BESIDE_GAP) / columns;
         top += figure_height(plan, margins) + PAGE_GAP;
         for (int k = 0; k < count; k++)
-            layout->charts[k] = (Box){PAGE_MARGIN + k * (width + BESIDE_GAP), top, width, CHART_HEIGHT};
-        layout->end = top + CHART_HEIGHT;
+            layout->charts[k] = (Box){PAGE_MARGIN + k % columns * (width + BESIDE_GAP),
+                                      top + k / columns * (CHART_HEIGHT + PAGE_GAP), width, CHART_HEIGHT};
+        layout->end = layout->charts[count - 1].y + CHART_HEIGHT;
         return;
     }
     Box room = chart_room(plan, margins, left, top);

@@ -2,14 +2,14 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "view/curves_picture.h"
+#include "view/show_framings.h"
 #include "view/show_motion.h"
 #include "view/show_obstacles.h"
 #include "view/ticks.h"
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
-enum { LINES_MAX = 4, LINE_LENGTH = 110, STRANDS_MANY = 20 };
+enum { LINES_MAX = 4, LINE_LENGTH = 110, STRANDS_MANY = 20, CHARTS_USUAL = 2 };
 
 static const Color input_ink = {0.62, 0.62, 0.64, 1};
 static const MotionInk motion_ink = {{0.62, 0.62, 0.64, 1}, {0, 0.62, 0.451, 1}, 3};
@@ -361,7 +361,7 @@ static ChartSeries make_series(RodPage *page, const char *name, const double *s,
 
 static void add_chart(RodPage *page, Chart chart)
 {
-    if (page->chart_count < CURVES_CHARTS_MAX) page->charts[page->chart_count++] = chart;
+    if (page->chart_count < CHARTS_USUAL) page->charts[page->chart_count++] = chart;
 }
 
 static void add_strains(RodPage *page, const double *s)
@@ -370,6 +370,8 @@ static void add_strains(RodPage *page, const double *s)
     const double *strain =
         show_dataset(page->data, "slender/rod/natural_strain", ARRAY_FLOAT64, 3 * (size_t)page->point_count);
     if (!strain) return;
+    page->chart_count = show_framings(page->data, page->strand_count, page->strands, s, strain, page->charts);
+    if (page->chart_count) return;
     ChartSeries *series = show_block(page->data, 3, sizeof *series);
     for (int k = 0; k < 3; k++) series[k] = make_series(page, names[k], s, strain + k, 3);
     add_chart(page, (Chart){.x_label = "s",

@@ -67,9 +67,10 @@ MagnetizationOfAGroupKeys = TypedDict("MagnetizationOfAGroupKeys", {
 
 Rod = TypedDict("Rod", {
     "model": "Literal['kirchhoff', 'cosserat']", "curve": "CurveOfARod", "natural_strain": "NaturalStrain",
-    "poses": "Rows[Poses]", "length": "Number", "clamp": "Clamp", "hold": "Literal['clamped', 'pinned']",
-    "end": "End", "elements": "int", "radius": "Number", "ellipse": "Union[Number, Numbers]", "young": "Number",
-    "poisson": "float", "density": "Number", "gravity": "Numbers", "frame": "Frame", "bishop_normal": "Numbers",
+    "poses": "Rows[Poses]", "motion": "MotionOfARod", "length": "Number", "clamp": "Clamp",
+    "hold": "Literal['clamped', 'pinned']", "end": "End", "elements": "int", "radius": "Number",
+    "ellipse": "Union[Number, Numbers]", "young": "Number", "poisson": "float", "density": "Number",
+    "gravity": "Numbers", "frame": "Frame", "frames": "Rows[Frame]", "bishop_normal": "Numbers",
     "loads": "Rows[LoadsOfARod]", "magnetization": "Magnetization", "damping": "Number",
     "start": "Literal['natural', 'curve']", "velocity": "Velocity", "solver": "Literal['newton', 'pbd']",
     "pbd": "Pbd",
@@ -92,12 +93,21 @@ Poses = TypedDict("Poses", {
     "file": "str", "frame": "Table", "noise": "Noise",
 }, total=False)
 
+MotionOfARod = TypedDict("MotionOfARod", {
+    "frames": "Rows[FramesOfAMotion]", "result": "str", "difference": "Literal['central', 'backward']",
+}, total=False)
+
+FramesOfAMotion = TypedDict("FramesOfAMotion", {
+    "file": "str", "time": "Number", "noise": "Noise",
+}, total=False)
+
 Clamp = TypedDict("Clamp", {
     "position": "Numbers", "frame": "Table",
 }, total=False)
 
 End = TypedDict("End", {
-    "position": "Numbers", "hold": "Literal['clamped', 'pinned']", "frame": "Table",
+    "position": "Numbers", "hold": "Literal['clamped', 'pinned']", "frame": "Table", "force": "Numbers",
+    "choose": "Literal['straightest', 'least_stressed']", "couple": "Numbers",
 }, total=False)
 
 FrameKeys = TypedDict("FrameKeys", {

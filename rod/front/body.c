@@ -69,7 +69,8 @@ static bool put_target(Model *model, const Build *b, const char *at, const Targe
                            "the target of a rod is a file with a polyline, or three formulas of s and L");
     if (scene->file) {
         RodCurve curve;
-        if (!rod_curve_read(b, (Sampled){at, scene->file, 1, {-1, 0}, rod->elements}, &curve)) return false;
+        if (!rod_curve_read(b, (Sampled){at, scene->file, 1, {-1, 0}, rod->elements}, &curve, NULL))
+            return false;
         for (int i = 0; i <= rod->elements; i++) vec3_store(target[i], curve.x[2 * i]);
         rod_curve_clear(&curve);
         return true;
@@ -288,16 +289,23 @@ static bool is_default(const SolverScene *solver)
 
 static bool check_inversion(const RodModel *rm, const Scene *scene, YamlFile *file)
 {
-    bool round_trip = false, stability = false;
+    const RodScene *from = rod_scene(scene);
+    bool round_trip = false, stability = false, rests = false; /* asked about */
     for (int k = 0; k < scene->checks_count; k++) {
         round_trip |= scene->checks[k] == CHECK_ROUND_TRIP;
         stability |= scene->checks[k] == CHECK_STABILITY;
+        rests |= scene->checks[k] != CHECK_SELF_CONTACT;
     }
+    if (!from->curve && !from->motion)
+        return yaml_refuse(file, "rod", "an inversion needs `curve`, the shape that is given, or `motion`");
+    if (from->motion && rests)
+        return yaml_refuse(file, "checks",
+                           "a rod that moves is in no equilibrium: of `motion` only self_contact is checked");
     if (stability && (rm->list.couples || rm->list.placed))
         return yaml_refuse(file, "checks", "stability is that of a rod under forces that stay, without %s",
                            rm->list.couples ? "couples" : "loads that depend on its place");
-    if (!rod_scene(scene)->curve)
-        return yaml_refuse(file, "rod", "an inversion needs `curve`, the shape that is given");
+    if (!from->motion && from->damping != 0)
+        return yaml_refuse(file, "rod.damping", "an inversion uses this for a rod in `motion` only");
     const char *unused = scene->load_steps.mode != 0   ? "load_steps"
                          : !is_default(&scene->solver) ? "solver"
                                                        : NULL;
@@ -360,59 +368,6 @@ static bool select_part(const Model *model, const Build *b, const char *at, cons
 /* ---- The row ---- */
 
 static const Likeness likeness[] = {{"rod/s", "a rod of another length, or of other elements"}, {0}};
-
-#define START_ELSEWHERE "its first end is elsewhere, or clamped along another direction, than the scene's"
-
-static bool take_preview(RodModel *rm, const double *from, int dofs, Error *err)
-{
-    const Rod *rod = rm->rod;
-    if (dofs != pbd_rod_state_count(rod->elements))
-        return error_set(err, "its state is not that of `solver: pbd`, which goes on from its own only");
-    const RodStrand *strand = &rod->strand[0];
-    if (!rod_is_near(vec3_load(from), strand->position, strand->length))
-        return error_set(err, START_ELSEWHERE);
-    if (rm->held && !rod_is_near(vec3_load(from + 3 * rod->elements), rm->end_position, strand->length))
-        return error_set(err, "its other end is not where rod.end holds it");
-    rm->moving = mem_copy(from, (size_t)dofs, sizeof *from);
-    return true;
-}
-
-/* The form of a state of so many dofs: of turns only or with places, of the rod or (`cosserat`) of the other kind; none: of
- * no dofs. */
-static RodLayout form_of(const Rod *rod, bool cosserat, int dofs)
-{
-    Rod other = *rod;
-    other.cosserat = cosserat;
-    RodLayout turns = rod_layout(&other, false), places = rod_layout(&other, true);
-    return dofs == turns.dofs ? turns : dofs == places.dofs ? places : (RodLayout){0};
-}
-
-/* A rod that stretches may go on from where one that does not is; not the other way. */
-static bool take_state(const Model *model, const double *from, int dofs, double *x, Error *err)
-{
-    RodModel *rm = model->self;
-    const Rod *rod = rm->rod;
-    if (rm->preview) return take_preview(rm, from, dofs, err);
-    if (dofs == pbd_rod_state_count(rod->elements))
-        return error_set(err, "its state is that of `solver: pbd`, from which only that goes on");
-    RodLayout own = form_of(rod, rod->cosserat, dofs);
-    if (!own.dofs) own = form_of(rod, !rod->cosserat, dofs);
-    if (!own.dofs) return error_set(err, "its state is no rod's of %d elements", rod->elements);
-    if (own.strain >= 0 && !rod->cosserat)
-        return error_set(err, "its rod stretches: only model: cosserat goes on from it");
-    if (dofs == rm->layout.dofs)
-        memcpy(x, from, (size_t)dofs * sizeof *x);
-    else
-        rod_copy_state(rod, &own, from, &rm->layout, x);
-    for (int k = 0; k < rod->strands; k++) {
-        const RodStrand *strand = &rod->strand[k];
-        const Quat *frame = rod->start == ROD_CLAMPED ? &strand->frame : NULL;
-        if (!rod_is_at(&own, from, k * (own.each + 1), strand->position, frame, strand->length))
-            return error_set(err, START_ELSEWHERE);
-    }
-    return model->moves || rod_end_is_held(rm, x) ||
-           error_set(err, "its other end is not where rod.end holds it: an equilibrium leads it there");
-}
 
 static void masses(const Model *model, double *mass)
 {
@@ -478,7 +433,7 @@ static const BodyOps ops = {
     .add_state = rod_add_state,
     .add_final = rod_add_final,
     .likeness = likeness,
-    .take_state = take_state,
+    .take_state = rod_take_state,
     .places = rod_body_places,
     .doubt = rod_doubt,
     .describe = rod_describe,

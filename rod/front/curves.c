@@ -50,12 +50,18 @@ static bool curves_from_formula(const Build *b, const RodCurveScene *scene, int 
     return ok;
 }
 
+static RodSamplesDef samples_def(Sampled from)
+{
+    RodSamplesDef def = rod_samples_default();
+    if (from.noise.mode < 0) def.noise = from.noise.value;
+    return def;
+}
+
 /* Through the points of a strand; refused with the file's name and line. */
 static bool curve_from_strand(const Build *b, Sampled from, const PolylineFile *file, int k, RodCurve *curve)
 {
-    RodSamplesDef def = rod_samples_default();
+    RodSamplesDef def = samples_def(from);
     Error err;
-    if (from.noise.mode < 0) def.noise = from.noise.value;
     return rod_samples_curve(file->points + file->first[k], file->first[k + 1] - file->first[k], &def,
                              from.elements, curve, NULL, &err) ||
            yaml_refuse(b->file, from.at, "%s:%d: %s", from.path, file->line[k], err.text);
@@ -74,14 +80,20 @@ static bool read_polylines(const Build *b, Sampled from, PolylineFile *file)
     return true;
 }
 
-bool rod_curve_read(const Build *b, Sampled from, RodCurve *curve)
+bool rod_curve_read(const Build *b, Sampled from, RodCurve *curve, RodDraws *draws)
 {
     PolylineFile file;
+    RodSamplesDef def = samples_def(from);
+    Error err;
     bool ok = read_polylines(b, from, &file);
     if (ok && file.strand_count > 1)
         ok = yaml_refuse(b->file, from.at, "%s has %d polylines; one is needed here", from.path,
                          file.strand_count);
     ok = ok && curve_from_strand(b, from, &file, 0, curve);
+    if (ok && draws)
+        ok = rod_samples_draw(file.points, file.first[1], &def, from.elements, draws, &err) ||
+             yaml_refuse(b->file, from.at, "%s:%d: with noise as large as its own: %s", from.path,
+                         file.line[0], err.text);
     polyline_file_clear(&file);
     return ok;
 }
@@ -115,34 +127,39 @@ static bool first_normal(const Build *b, const RodScene *scene, const RodCurve *
            yaml_refuse(b->file, "rod.bishop_normal", "it is along the curve's tangent at the clamp, or zero");
 }
 
-static bool turn_frames(const Build *b, const RodScene *scene, const RodCurve *curve, RodFrame *frames)
+/* How a curve is to be framed, and where the scene says so: rod.frame, or an entry of rod.frames. */
+typedef struct Framing {
+    const RodFrameScene *frame;
+    Key at;
+} Framing;
+
+static bool turn_frames(const Build *b, Framing how, const RodCurve *curve, RodFrame *frames)
 {
     static const char *const variables[] = {"s", "L", NULL};
-    const char *at = "rod.frame.formula";
+    Key at = key("%s.formula", how.at.text);
     Error err;
-    Formula *formula =
-        build_formula(b, key("%s", at), (char *const *)&scene->frame.formula, 1, NULL, 0, variables);
+    Formula *formula = build_formula(b, at, (char *const *)&how.frame->formula, 1, NULL, 0, variables);
     bool ok = formula != NULL;
     for (int j = 0; ok && j <= 2 * curve->elements; j++) {
         double angle, values[] = {curve->length * j / (2 * curve->elements), curve->length};
-        ok = formula_eval(formula, values, &angle, &err) || yaml_refuse(b->file, at, "%s", err.text);
+        ok = formula_eval(formula, values, &angle, &err) || yaml_refuse(b->file, at.text, "%s", err.text);
         if (ok) frames[j] = rod_turned(frames[j], angle);
     }
     formula_destroy(formula);
     return ok;
 }
 
-static bool frames_from_file(const Build *b, const RodScene *scene, const RodCurve *curve, RodFrame *frames)
+static bool frames_from_file(const Build *b, Framing how, const RodCurve *curve, RodFrame *frames)
 {
-    const char *at = "rod.frame.file";
+    Key at = key("%s.file", how.at.text);
     Table table;
-    bool ok = rod_table_read(b, at, scene->frame.file, "s [m], x, y, z", curve->length, &table);
+    bool ok = rod_table_read(b, at.text, how.frame->file, "s [m], x, y, z", curve->length, &table);
     for (int j = 0; ok && j <= 2 * curve->elements; j++) {
         double normal[3];
         rod_table_at(&table, curve->length * j / (2 * curve->elements), normal);
         Vec3 n1 = vec3_load(normal), t = curve->t[j], across = vec3_axpy(-vec3_dot(n1, t), t, n1);
         ok = vec3_length(across) > 1e-3 * vec3_length(n1) ||
-             yaml_refuse(b->file, at, "n1 is along the tangent near s = %g m",
+             yaml_refuse(b->file, at.text, "n1 is along the tangent near s = %g m",
                          curve->length * j / (2 * curve->elements));
         if (ok) frames[j] = (RodFrame){t, vec3_unit(across), vec3_cross(t, vec3_unit(across))};
     }
@@ -150,18 +167,37 @@ static bool frames_from_file(const Build *b, const RodScene *scene, const RodCur
     return ok;
 }
 
-static bool make_frames(const Build *b, const RodScene *scene, const RodCurve *curve, RodFrame *frames)
+static bool make_frames(const Build *b, const RodScene *scene, Framing how, const RodCurve *curve,
+                        RodFrame *frames)
 {
     Vec3 normal;
-    int kind = scene->frame.formula ? scene->frame.from : scene->frame.kind;
-    bool turns_least = !scene->frame.file && kind == FRAME_BISHOP;
-    if (!isnan(scene->bishop_normal[0]) && !turns_least)
+    const RodFrameScene *frame = how.frame;
+    int kind = frame->formula ? frame->from : frame->kind;
+    bool turns_least = !frame->file && kind == FRAME_BISHOP;
+    if (!isnan(scene->bishop_normal[0]) && !turns_least && !scene->frames)
         return yaml_refuse(b->file, "rod.bishop_normal",
                            "it is of Bishop's frames, and `frame` gives others");
-    if (scene->frame.file) return frames_from_file(b, scene, curve, frames);
+    if (frame->file) return frames_from_file(b, how, curve, frames);
     if (!first_normal(b, scene, curve, frames, &normal)) return false;
     if (kind == FRAME_BISHOP) rod_bishop(curve, normal, frames);
-    return !scene->frame.formula || turn_frames(b, scene, curve, frames);
+    return !frame->formula || turn_frames(b, how, curve, frames);
+}
+
+/* One curve as many times as it has framings. */
+static bool repeat_curve(const Build *b, const RodScene *scene, RodStrands *strands)
+{
+    if (strands->count > 1)
+        return yaml_refuse(b->file, "rod.frames", "they are of one curve, and there are %d", strands->count);
+    size_t count = (size_t)scene->frames_count, stations = 2 * (size_t)scene->elements + 1;
+    strands->curves = mem_resize(strands->curves, 1, count, sizeof *strands->curves);
+    for (; strands->count < scene->frames_count; strands->count++) {
+        RodCurve *curve = &strands->curves[strands->count];
+        *curve = strands->curves[0];
+        curve->x = mem_copy(curve->x, stations, sizeof *curve->x);
+        curve->t = mem_copy(curve->t, stations, sizeof *curve->t);
+        curve->c = mem_copy(curve->c, stations, sizeof *curve->c);
+    }
+    return true;
 }
 
 bool rod_strands_read(const Build *b, const RodScene *scene, RodStrands *strands)
@@ -170,10 +206,13 @@ bool rod_strands_read(const Build *b, const RodScene *scene, RodStrands *strands
     *strands = (RodStrands){0};
     if (!(curve->formula ? curves_from_formula : curves_from_file)(b, curve, scene->elements, strands))
         return false;
+    if (scene->frames && !repeat_curve(b, scene, strands)) return false;
     strands->frames = mem_alloc((size_t)strands->count, sizeof *strands->frames);
     for (int k = 0; k < strands->count; k++) {
         strands->frames[k] = mem_alloc(2 * (size_t)scene->elements + 1, sizeof **strands->frames);
-        if (!make_frames(b, scene, &strands->curves[k], strands->frames[k])) return false;
+        Framing how = scene->frames ? (Framing){&scene->frames[k], key("rod.frames[%d]", k)}
+                                    : (Framing){&scene->frame, key("rod.frame")};
+        if (!make_frames(b, scene, how, &strands->curves[k], strands->frames[k])) return false;
     }
     return true;
 }

@@ -4,6 +4,7 @@
 #include "model/build.h"
 #include "rod/frame.h"
 #include "rod/front/scene.h"
+#include "rod/samples.h"
 
 typedef struct RodStrands {
     int count;
@@ -23,8 +24,9 @@ typedef struct Sampled {
     int elements;
 } Sampled;
 
-/* The curve through the points of a file with one polyline. Else to be cleared. */
-bool rod_curve_read(const Build *b, Sampled from, RodCurve *curve);
+/* The curve through the points of a file with one polyline, and draws of their noise (NULL: none).
+ * Else both to be cleared. */
+bool rod_curve_read(const Build *b, Sampled from, RodCurve *curve, RodDraws *draws);
 
 /* Rows by arclength, s first, on a rod of that length: two at least, s increasing and on the rod. To be
  * cleared in any case. */

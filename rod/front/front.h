@@ -11,6 +11,13 @@ void rod_add_state(const Model *model, const Snapshot *shot, const char *prefix,
 void rod_add_final(const Model *model, const Snapshot *shot, int modes, Arrays *list);
 char *rod_doubt(const Model *model, const Snapshot *shot);
 
+/* motion.c: the curves of a moving rod become strands, with their inertia and drag as loads. */
+bool rod_read_motion(RodModel *rm, const RodScene *scene, const Build *b);
+
+/* Natural strains of several curves of one rod, strain[count][nodes][3]: their mean, and how far they are from it, rms. Returns
+ * that of all of them, 1/m. */
+double rod_add_mean_strains(const double *strain, int count, int nodes, Arrays *list);
+
 /* supports.c: how the scene holds its ends, into the model. */
 bool rod_read_supports(RodModel *rm, const RodScene *scene, const Build *b);
 
@@ -21,9 +28,15 @@ bool rod_is_at(const RodLayout *layout, const double *x, int node, Vec3 place, c
                double size);
 bool rod_end_is_held(const RodModel *rm, const double *x);
 
+/* The last node, a part of the way from where x has it to a place and a frame (NULL: it turns freely). */
+void rod_lead_end(const RodLayout *layout, Vec3 place, const Quat *frame, double part, double *x);
+
 /* BodyOps.move; and before a motion or a design, the rod is brought to its supports without loads, model->x. */
 bool rod_move_end(const Model *model, double time, double part, double *x, Error *err);
 bool rod_settle(Model *model, const Build *b, const double *p);
+
+/* take_state.c: BodyOps.take_state. */
+bool rod_take_state(const Model *model, const double *from, int dofs, double *x, Error *err);
 
 /* report.c, cost.c */
 char *rod_describe(const Model *model, const Scene *scene);

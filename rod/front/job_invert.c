@@ -1,35 +1,16 @@
 /* The natural shape of rods that hang in given curves: by the frame-free integral, as strains, and as the
  * strains of a discrete rod that rests on its curve to rounding. */
 #include "base/memory.h"
-#include "job/run.h"
-#include "rod/front/front.h"
+#include "rod/front/inversion.h"
 #include "rod/self_contact.h"
 #include "rod/stability.h"
-#include "solve/ramp.h"
 #include <math.h>
 #include <string.h>
 
-enum { LOAD_STEPS = 10 };
 static const double ELSEWHERE = 1e-4; /* of the length: another equilibrium */
 static const double COARSE = 1e-2;    /* two ways to the same strains differ by that */
 
-/* Everything about all strands, one after the other: nodes N + 1 and elements N each. */
-typedef struct Inversion {
-    Run *run;
-    const RodModel *rm;
-    int strands, elements, nodes;
-    double *s, *input, *natural, *strain, *moment, *strain_elements; /* [strands*nodes][3], ..        */
-    double *x;                                                       /* simulated; NULL: not asked for */
-    double *lowest, *critical_young, *tail, *contact, *round_trip, *residual, *route; /* [strands]     */
-    double *gain; /* [strands] energy at the curve less that where the simulated rod rests, J */
-    int *stable, *index, *touching; /* [strands]     */
-    int pair_count;
-    int *pairs;     /* [pair_count][3] strand, elements */
-    double lengths; /* of the longest element, in bending lengths (stability.h) */
-    NewtonStatus worst;
-} Inversion;
-
-static bool is_asked(const Scene *scene, SceneCheck check)
+bool inversion_asks(const Scene *scene, SceneCheck check)
 {
     for (int k = 0; k < scene->checks_count; k++)
         if (scene->checks[k] == (int)check) return true;
@@ -38,20 +19,16 @@ static bool is_asked(const Scene *scene, SceneCheck check)
 
 /* ---- One strand ---- */
 
-static Vec3 *strand_of(const Inversion *o, double *all, int k)
-{
-    return (Vec3 *)(all + 3 * (size_t)k * (size_t)o->nodes);
-}
-
 /* How far the two ways to the strains are apart, in parts of the largest: an independent check of both. */
-static double compare_routes(const RodModel *rm, int k, const Vec3 *moment)
+static double compare_routes(const Inversion *o, int k, const Vec3 *moment)
 {
+    const RodModel *rm = o->rm;
     const RodCurve *curve = &rm->curves[k];
     const RodFrame *frames = rm->frames[k];
     int stations = 2 * curve->elements + 1;
     Vec3 *route = mem_alloc((size_t)stations, sizeof *route);
     double off = 0, largest = 0;
-    rod_strain_route(curve, rm->section, rod_model_on_curve(rm, k), frames, route);
+    rod_strain_route(curve, rm->section, o->loads[k], frames, route);
     for (int j = 0; j < stations; j++) {
         Vec3 m = rod_to_frame(frames[j], moment[j]);
         Vec3 direct = vec3(-m.x / rm->section.twist, -m.y / rm->section.bend1, -m.z / rm->section.bend2);
@@ -72,7 +49,7 @@ static void judge_stability(Inversion *o, int k, const Vec3 *moment)
          *F = m + stations;
     rod_strains(curve, frames, strain);
     for (size_t j = 0; j < stations; j++) m[j] = rod_to_frame(frames[j], moment[j]);
-    rod_pulls(curve, rod_model_on_curve(rm, k), F);
+    rod_pulls(curve, o->loads[k], F);
     for (int i = 0; i < 3 * o->elements; i++) F[i] = rod_to_frame(frames[2 * (i / 3) + i % 3], F[i]);
     RodEquilibrium at = {o->elements, curve->length, rm->section, strain, m, F};
     RodStability found = rod_stability(&at);
@@ -87,7 +64,8 @@ static void judge_stability(Inversion *o, int k, const Vec3 *moment)
 
 static void find_contacts(Inversion *o, int k)
 {
-    RodContacts contacts = rod_self_contacts(strand_of(o, o->natural, k), o->nodes, 2 * o->rm->section.reach);
+    RodContacts contacts =
+        rod_self_contacts(inversion_strand(o, o->natural, k), o->nodes, 2 * o->rm->section.reach);
     size_t before = (size_t)o->pair_count;
     o->pairs = mem_resize(o->pairs, 3 * before, 3 * (before + (size_t)contacts.count), sizeof *o->pairs);
     for (int i = 0; i < contacts.count; i++) {
@@ -99,62 +77,46 @@ static void find_contacts(Inversion *o, int k)
     rod_contacts_clear(&contacts);
 }
 
-/* From the natural shape, loads in steps, back to the curve, where the rod has the given energy: how far it ends from
- * it, and how much lower. */
-static void go_round(Inversion *o, int k, Rod *rod, System *sys, const RodLayout *layout, const double *p,
-                     double energy)
-{
-    State state = system_state(sys);
-    double *x = state.x, *place = &strand_of(o, o->x, k)->x;
-    state.time = o->run->model->time;
-    RampDef def = ramp_default();
-    run_newton(o->run, &def.newton);
-    def.observer = run_observer(o->run);
-    def.steps = o->run->scene->load_steps.mode < 0 ? o->run->scene->load_steps.count : LOAD_STEPS;
-    rod_natural_state(rod, layout, p, x);
-    RampInfo info = ramp_solve(sys, &rod->params, &def, NULL, p, &state);
-    if (info.newton.status > o->worst) o->worst = info.newton.status;
-    o->gain[k] = energy - info.newton.energy;
-    rod_places(rod, layout, x, layout->nodes, place);
-    for (int i = 0; i < layout->nodes; i++) {
-        Vec3 off = vec3_sub(vec3_load(place + 3 * i), o->rm->curves[k].x[2 * i]);
-        o->round_trip[k] = fmax(o->round_trip[k], vec3_length(off));
-    }
-    state_destroy(&state);
-}
-
-/* The discrete rod that rests on the curve. */
-static void invert_elements(Inversion *o, int k)
+/* What the given curve is: its frames, its strains in them, its curvature and torsion, and the force that it carries just
+ * beyond each node. */
+static void describe_input(Inversion *o, int k)
 {
     const RodModel *rm = o->rm;
-    const RodScene *scene = rod_scene(o->run->scene);
     const RodCurve *curve = &rm->curves[k];
-    double time = o->run->model->time;
-    RodActs acts = rod_model_acts(rm);
-    Rod *rod = rod_create(o->elements, curve->length, rm->unit, rm->area, &acts);
-    double *p = mem_alloc((size_t)rod->params.size, sizeof *p);
-    Error err;
-    rod_model_loads(rm, rod, scene, curve, time, p, &err); /* finite: it was asked before */
-    for (int e = 0; e < o->elements && !isnan(scene->magnetization.value[0]); e++)
-        p[rod->magnetization + 3 * e] = scene->magnetization.value[0];
-    memcpy(p + rod->flux.uniform, rm->flux, sizeof rm->flux);
-    bool places = acts.potentials.count > 0;
-    RodLayout turns = rod_layout(rod, false), layout = rod_layout(rod, places);
-    double *x = mem_alloc(2 * (size_t)layout.dofs, sizeof *x), *follow = x + layout.dofs;
-    System *sys = places ? rod_system(rod, rm->young, false) : rod_hanging_system(rod);
-    rod_follow_curves(rod, curve, &rm->frames[k], follow);
-    rod_copy_state(rod, &turns, follow, &layout, x);
-    rod_balance(rod, sys, &layout, time, x, p);
-    Evaluation left = system_gradient(sys, &(Point){.x = x, .p = p, .time = time}, x + layout.dofs);
-    o->residual[k] = left.force_scale > 0 ? left.gradient_max / left.force_scale : 0;
-    memcpy(o->strain_elements + 3 * (size_t)k * (size_t)o->elements, p + rod->natural_strain,
-           3 * (size_t)o->elements * sizeof *p);
-    if (o->x) go_round(o, k, rod, sys, &layout, p, left.energy);
-    system_destroy(sys);
-    mem_free(x);
-    mem_free(p);
-    rod->potentials = (RodPotentials){0}; /* the model's */
-    rod_destroy(rod);
+    const RodFrame *frames = rm->frames[k];
+    size_t stations = 2 * (size_t)o->elements + 1, pulls = 3 * (size_t)o->elements;
+    Vec3 *strain = mem_alloc(stations + pulls, sizeof *strain), *pull = strain + stations;
+    double *torsion = mem_alloc(stations, sizeof *torsion);
+    rod_strains(curve, frames, strain);
+    rod_torsion(curve, torsion);
+    rod_pulls(curve, o->loads[k], pull);
+    for (int i = 0; i < o->nodes; i++) {
+        int node = k * o->nodes + i, j = 2 * i;
+        o->s[node] = curve->length * i / o->elements;
+        o->curvature[node] = vec3_length(curve->c[j]);
+        o->torsion[node] = torsion[j];
+        inversion_strand(o, o->input, k)[i] = curve->x[j];
+        inversion_strand(o, o->tangent, k)[i] = frames[j].n0;
+        inversion_strand(o, o->n1, k)[i] = frames[j].n1;
+        inversion_strand(o, o->n2, k)[i] = frames[j].n2;
+        inversion_strand(o, o->strain, k)[i] = strain[j];
+        inversion_strand(o, o->force, k)[i] =
+            vec3_sub(pull[i < o->elements ? 3 * i : 3 * i - 1], rm->magnetic);
+    }
+    mem_free(strain);
+    mem_free(torsion);
+}
+
+/* What acts on a curve: of its last end's support, too, where that is unknown. */
+static RodLoads find_loads(const Inversion *o, int k)
+{
+    const RodModel *rm = o->rm;
+    const EndScene *end = rod_scene(o->run->scene)->end;
+    RodLoads loads = rod_model_on_curve(rm, k);
+    if (end && end->choose >= 0)
+        rod_choose_end(&rm->curves[k], rm->section, rm->frames[k], (RodEndChoice)end->choose,
+                       end->hold == HOLD_PINNED, &loads);
+    return loads;
 }
 
 static void invert_strand(Inversion *o, int k)
@@ -165,19 +127,20 @@ static void invert_strand(Inversion *o, int k)
     size_t stations = 2 * (size_t)o->elements + 1;
     Vec3 *moment = mem_alloc(2 * stations, sizeof *moment), *strain = moment + stations;
     bool round = rm->section.bend1 == rm->section.bend2;
-    rod_moments(curve, rod_model_on_curve(rm, k), moment);
-    rod_invert(curve, rm->section, moment, round ? NULL : rm->frames[k], strand_of(o, o->natural, k));
+    o->loads[k] = find_loads(o, k);
+    rod_moments(curve, o->loads[k], moment);
+    rod_invert(curve, rm->section, moment, round ? NULL : rm->frames[k], inversion_strand(o, o->natural, k));
     rod_natural_strains(curve, rm->section, moment, rm->frames[k], strain);
+    if (rm->times) rod_untwist(curve, strain);
     for (int i = 0; i < o->nodes; i++) {
-        o->s[k * o->nodes + i] = curve->length * i / o->elements;
-        strand_of(o, o->input, k)[i] = curve->x[2 * i];
-        strand_of(o, o->strain, k)[i] = strain[2 * i];
-        strand_of(o, o->moment, k)[i] = moment[2 * i];
+        inversion_strand(o, o->natural_strain, k)[i] = strain[2 * i];
+        inversion_strand(o, o->moment, k)[i] = moment[2 * i];
     }
-    o->route[k] = compare_routes(rm, k, moment);
-    if (is_asked(scene, CHECK_STABILITY)) judge_stability(o, k, moment);
-    if (is_asked(scene, CHECK_SELF_CONTACT)) find_contacts(o, k);
-    invert_elements(o, k);
+    describe_input(o, k);
+    o->route[k] = compare_routes(o, k, moment);
+    if (inversion_asks(scene, CHECK_STABILITY) && !rod_scene(scene)->end) judge_stability(o, k, moment);
+    if (inversion_asks(scene, CHECK_SELF_CONTACT)) find_contacts(o, k);
+    inversion_elements(o, k);
     mem_free(moment);
 }
 
@@ -199,17 +162,46 @@ static Array per_node(const Inversion *o, const char *name, const char *unit, co
     return array_float(name, unit, values, 2, o->strands * o->nodes, 3);
 }
 
+/* Of the given curve. */
+static void add_input(const Inversion *o, Arrays *list)
+{
+    int nodes = o->strands * o->nodes;
+    arrays_add(list, array_float("rod/s", "m", o->s, 1, nodes, 0));
+    arrays_add(list, per_node(o, "rod/input", "m", o->input));
+    arrays_add(list, per_node(o, "rod/tangent", "", o->tangent));
+    arrays_add(list, per_node(o, "rod/n1", "", o->n1));
+    arrays_add(list, per_node(o, "rod/n2", "", o->n2));
+    arrays_add(list, per_node(o, "rod/strain", "1/m", o->strain));
+    arrays_add(list, array_float("rod/curvature", "1/m", o->curvature, 1, nodes, 0));
+    arrays_add(list, array_float("rod/torsion", "1/m", o->torsion, 1, nodes, 0));
+    arrays_add(list, per_node(o, "rod/force", "N", o->force));
+    arrays_add(list, per_node(o, "rod/moment", "N m", o->moment));
+}
+
+/* What holds the last ends. */
+static void add_support(const Inversion *o, Arrays *list)
+{
+    size_t size = 3 * (size_t)o->strands;
+    double *force = arrays_numbers(list, size), *couple = arrays_numbers(list, size);
+    for (int k = 0; k < o->strands; k++) {
+        vec3_store(force + 3 * k, vec3_sub(o->loads[k].end, o->rm->magnetic));
+        vec3_store(couple + 3 * k, o->loads[k].end_couple);
+    }
+    arrays_add(list, array_float("rod/end_force", "N", force, 2, o->strands, 3));
+    arrays_add(list, array_float("rod/end_couple", "N m", couple, 2, o->strands, 3));
+}
+
 static void add_checks(const Inversion *o, Arrays *list)
 {
     const Scene *scene = o->run->scene;
-    if (is_asked(scene, CHECK_STABILITY)) {
-        arrays_add(list, flag_per_strand(o, "rod/stable", o->stable));
+    if (inversion_asks(scene, CHECK_STABILITY)) arrays_add(list, flag_per_strand(o, "rod/stable", o->stable));
+    if (inversion_asks(scene, CHECK_STABILITY) && !rod_scene(scene)->end) {
         arrays_add(list, flag_per_strand(o, "rod/morse_index", o->index));
         arrays_add(list, per_strand(o, "rod/lowest_eigenvalue", "1/m^2", o->lowest));
         arrays_add(list, per_strand(o, "rod/critical_young", "Pa", o->critical_young));
         arrays_add(list, per_strand(o, "rod/stable_tail", "m", o->tail));
     }
-    if (is_asked(scene, CHECK_SELF_CONTACT)) {
+    if (inversion_asks(scene, CHECK_SELF_CONTACT)) {
         arrays_add(list, flag_per_strand(o, "rod/self_contact", o->touching));
         arrays_add(list, per_strand(o, "rod/contact_distance", "m", o->contact));
         if (o->pair_count) arrays_add(list, array_int("rod/contact_pairs", o->pairs, 2, o->pair_count, 3));
@@ -242,23 +234,48 @@ static bool put_shapes(const Inversion *o, Error *err)
     return ok;
 }
 
-static bool put_results(const Inversion *o, const char *status, Error *err)
+/* What each strand's frames are: a line each, as the scene says it. */
+static void add_framings(const Inversion *o, Arrays *list)
+{
+    static const char *const kinds[] = {"frenet", "bishop"};
+    char *text = mem_text("");
+    for (int k = 0; k < o->strands; k++) {
+        const RodFrameScene *frame = &rod_scene(o->run->scene)->frames[k];
+        const char *slash = frame->file ? strrchr(frame->file, '/') : NULL;
+        text = mem_join(text, k ? "\n" : "",
+                        frame->formula ? frame->formula
+                        : slash        ? slash + 1
+                        : frame->file  ? frame->file
+                                       : kinds[frame->kind]);
+    }
+    arrays_add(list, array_text("rod/frames", arrays_keep(list, text)));
+}
+
+/* Of a moving rod. */
+static void add_motion(Inversion *o, Arrays *list)
+{
+    arrays_add(list, array_float("rod/times", "s", o->rm->times, 1, o->strands, 0));
+    o->spread = rod_add_mean_strains(o->natural_strain, o->strands, o->nodes, list);
+}
+
+static bool put_results(Inversion *o, const char *status, Error *err)
 {
     Arrays list = {0};
     int *starts = arrays_keep(&list, mem_alloc((size_t)o->strands + 1, sizeof *starts));
     for (int k = 0; k <= o->strands; k++) starts[k] = k * o->nodes;
     arrays_add(&list, array_text("status", status));
-    arrays_add(&list, array_float("rod/s", "m", o->s, 1, o->strands * o->nodes, 0));
-    arrays_add(&list, per_node(o, "rod/input", "m", o->input));
+    add_input(o, &list);
     arrays_add(&list, per_node(o, "rod/natural", "m", o->natural));
-    arrays_add(&list, per_node(o, "rod/natural_strain", "1/m", o->strain));
-    arrays_add(&list, per_node(o, "rod/moment", "N m", o->moment));
+    arrays_add(&list, per_node(o, "rod/natural_strain", "1/m", o->natural_strain));
     arrays_add(&list, array_float("rod/natural_strain_elements", "1/m", o->strain_elements, 2,
                                   o->strands * o->elements, 3));
     arrays_add(&list, per_strand(o, "metrics/residual", "", o->residual));
     arrays_add(&list, per_strand(o, "metrics/strain_route", "", o->route));
     arrays_add(&list, array_float("rod/gravity", "m/s^2", rod_scene(o->run->scene)->gravity, 1, 3, 0));
     if (o->strands > 1) arrays_add(&list, array_int("rod/strands", starts, 1, o->strands + 1, 0));
+    if (rod_scene(o->run->scene)->end) add_support(o, &list);
+    if (o->rm->times) add_motion(o, &list);
+    if (rod_scene(o->run->scene)->frames) add_framings(o, &list);
     add_checks(o, &list);
     return put_shapes(o, err) && arrays_replace(&list, o->run->journal, "final", err);
 }
@@ -284,7 +301,7 @@ static void say(const Inversion *o)
     int unstable = 0, touching = 0, elsewhere = 0;
     double worst = 0, route = 0;
     for (int k = 0; k < o->strands; k++) {
-        unstable += is_asked(o->run->scene, CHECK_STABILITY) && !o->stable[k];
+        unstable += inversion_asks(o->run->scene, CHECK_STABILITY) && !o->stable[k];
         touching += o->touching[k];
         elsewhere += o->round_trip[k] > ELSEWHERE * o->rm->curves[k].length;
         worst = fmax(worst, o->round_trip[k]);
@@ -296,15 +313,17 @@ static void say(const Inversion *o)
             "natural strains are good to %.2g of the largest only: the curve bends too much for %d elements",
             route, o->elements);
     if (unstable)
-        host_say(host,
-                 "%d of %d curves unstable: the rod would not stay there (rod/critical_young says from "
-                 "which Young's modulus on it would)",
-                 unstable, o->strands);
+        host_say(host, "%d of %d curves unstable: the rod would not stay there%s", unstable, o->strands,
+                 rod_scene(o->run->scene)->end
+                     ? ""
+                     : " (rod/critical_young says from which Young's modulus on it would)");
     if (o->lengths > 1)
         host_say(host,
                  "the elements are too long to tell how stable a curve is: one of them has %.2g times the "
                  "length sqrt(EI/F) within which the rod bends; rod.elements: %.0f or more would",
                  o->lengths, ceil(o->elements * o->lengths));
+    if (o->rm->times)
+        host_say(host, "natural strains at %d times agree to %.2g 1/m, rms", o->strands, o->spread);
     if (touching) host_say(host, "%d of %d natural shapes touch themselves", touching, o->strands);
     if (elsewhere)
         say_elsewhere(o, elsewhere, worst);
@@ -312,20 +331,38 @@ static void say(const Inversion *o)
         host_say(host, "the simulated rod rests %.2g m from its curve", worst);
 }
 
+/* All vectors, numbers of nodes and of strands, in one block. */
+static double *make_numbers(Inversion *o)
+{
+    double **vectors[] = {
+        &o->input, &o->natural, &o->natural_strain, &o->moment, &o->strain_elements, &o->x, &o->tangent,
+        &o->n1,    &o->n2,      &o->strain,         &o->force};
+    double **scalars[] = {&o->s, &o->curvature, &o->torsion};
+    double **alone[] = {&o->lowest,     &o->critical_young, &o->tail,  &o->contact,
+                        &o->round_trip, &o->residual,       &o->route, &o->gain};
+    enum {
+        VECTORS = sizeof vectors / sizeof *vectors,
+        SCALARS = sizeof scalars / sizeof *scalars,
+        ALONE = sizeof alone / sizeof *alone
+    };
+    size_t strands = (size_t)o->strands, all = strands * (size_t)o->nodes;
+    double *numbers = mem_alloc((3 * VECTORS + SCALARS) * all + ALONE * strands, sizeof *numbers),
+           *at = numbers;
+    for (int i = 0; i < VECTORS; i++, at += 3 * all) *vectors[i] = at;
+    for (int i = 0; i < SCALARS; i++, at += all) *scalars[i] = at;
+    for (int i = 0; i < ALONE; i++, at += strands) *alone[i] = at;
+    return numbers;
+}
+
 static RunStatus run_invert(Run *run, Error *err)
 {
     const RodModel *rm = ((const RodModel *)run->model->self);
-    size_t strands = (size_t)rm->strand_count, nodes = (size_t)run->model->point_count, all = strands * nodes;
+    size_t strands = (size_t)rm->strand_count, nodes = (size_t)run->model->point_count;
     Inversion o = {
         .run = run, .rm = rm, .strands = rm->strand_count, .elements = (int)nodes - 1, .nodes = (int)nodes};
-    bool round_trip = is_asked(run->scene, CHECK_ROUND_TRIP);
-    double *numbers = mem_alloc(19 * all + 8 * strands, sizeof *numbers), *at = numbers;
-    double **vectors[] = {&o.input, &o.natural, &o.strain, &o.moment, &o.strain_elements, &o.x};
-    for (int i = 0; i < 6; i++, at += 3 * all) *vectors[i] = at;
-    o.s = at, at += all;
-    double **scalars[] = {&o.lowest,     &o.critical_young, &o.tail,  &o.contact,
-                          &o.round_trip, &o.residual,       &o.route, &o.gain};
-    for (int i = 0; i < 8; i++, at += strands) *scalars[i] = at;
+    bool round_trip = inversion_asks(run->scene, CHECK_ROUND_TRIP);
+    double *numbers = make_numbers(&o);
+    o.loads = mem_alloc(strands, sizeof *o.loads);
     if (!round_trip) o.x = NULL;
     o.stable = mem_alloc(3 * strands, sizeof *o.stable), o.index = o.stable + strands,
     o.touching = o.index + strands;
@@ -338,6 +375,7 @@ static RunStatus run_invert(Run *run, Error *err)
     bool ok = put_results(&o, interrupted ? "interrupted" : newton_status_name(o.worst), err);
     if (ok && !interrupted) say(&o);
     mem_free(numbers);
+    mem_free(o.loads);
     mem_free(o.stable);
     mem_free(o.pairs);
     if (!ok) return RUN_CANNOT_WRITE;

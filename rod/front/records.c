@@ -178,3 +178,19 @@ void rod_add_final(const Model *model, const Snapshot *shot, int modes, Arrays *
                                  rod->elements, 3));
     if (is_judged(rod, shot->p)) add_stability(rm, shot, list);
 }
+
+double rod_add_mean_strains(const double *strain, int count, int nodes, Arrays *list)
+{
+    size_t numbers = 3 * (size_t)nodes;
+    double *mean = arrays_numbers(list, numbers), *spread = arrays_numbers(list, numbers), all = 0;
+    for (size_t i = 0; i < numbers; i++) {
+        double sum = 0;
+        for (int k = 0; k < count; k++) mean[i] += strain[(size_t)k * numbers + i] / count;
+        for (int k = 0; k < count; k++) sum += pow(strain[(size_t)k * numbers + i] - mean[i], 2);
+        spread[i] = sqrt(sum / count);
+        all += sum / count / nodes;
+    }
+    arrays_add(list, array_float("rod/identified/natural_strain", "1/m", mean, 2, nodes, 3));
+    arrays_add(list, array_float("rod/identified/natural_strain_spread", "1/m", spread, 2, nodes, 3));
+    return sqrt(all);
+}

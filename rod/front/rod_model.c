@@ -5,16 +5,39 @@
 #include <math.h>
 #include <string.h>
 
+enum { DRAWS = 32 }; /* of poses' noise: standard errors are good to 12 % */
+
 /* ---- What a rod is made of ---- */
 
-/* `known`: of what it is made is not looked for. */
-static bool read_section(RodModel *model, const RodScene *scene, const Build *b, bool known)
+/* All that a rod is made of must be there. */
+static bool check_known(const RodScene *scene, const Build *b)
 {
     bool ok = true;
-    if (known && isnan(scene->young))
-        ok = yaml_refuse(b->file, "rod", "`young`, Young's modulus, is missing");
-    if (known && isnan(scene->poisson))
-        ok = yaml_refuse(b->file, "rod", "`poisson`, Poisson's ratio, is missing");
+    if (isnan(scene->radius) && !scene->ellipse)
+        ok = yaml_refuse(b->file, "rod", "`radius` or `ellipse` is missing");
+    if (isnan(scene->young)) ok = yaml_refuse(b->file, "rod", "`young`, Young's modulus, is missing");
+    if (isnan(scene->poisson)) ok = yaml_refuse(b->file, "rod", "`poisson`, Poisson's ratio, is missing");
+    if (isnan(scene->density)) ok = yaml_refuse(b->file, "rod", "`density` is missing");
+    return ok;
+}
+
+/* One number must not. */
+static bool check_sought(const RodScene *scene, const Build *b)
+{
+    int missing = isnan(scene->young) + isnan(scene->radius) + isnan(scene->density);
+    if (missing == 1) return true;
+    return yaml_refuse(
+        b->file, "rod", "%s",
+        missing ? "of `young`, `radius` and `density` two must be given: what the poses tell is the "
+                  "rod's bending stiffness over its loads, and Poisson's ratio"
+                : "`young`, `radius` and `density` are all given: the one that is looked for must be "
+                  "left out");
+}
+
+/* sought: a part of what it is made of is looked for. */
+static bool read_section(RodModel *model, const RodScene *scene, const Build *b, bool sought)
+{
+    bool ok = (sought ? check_sought : check_known)(scene, b);
     const double *a = scene->ellipse;
     double poisson = isnan(scene->poisson) ? 0.5 : scene->poisson;
     model->young = scene->young;
@@ -37,33 +60,54 @@ static bool read_loads(RodModel *model, const Scene *scene, const Build *b)
     double size = model->strand_count ? rod_model_longest(model) : from->length;
     if (!rod_loads_read(from, b, size, is_of_curve(scene_job(scene)), &model->list)) return false;
     Error err;
-    model->points = mem_alloc((size_t)model->list.count, sizeof *model->points);
-    if (!rod_loads_at(&model->list, b->time, model->points, &model->loads, &err))
-        return yaml_refuse(b->file, "rod.loads", "%s", err.text);
-    model->loads.line = vec3_axpy(model->unit.mass, vec3_load(from->gravity), model->loads.line);
+    int count = model->list.count, curves = model->strand_count ? model->strand_count : 1;
+    model->points = mem_alloc((size_t)curves * (size_t)count, sizeof *model->points);
+    for (int k = 0; k < curves; k++)
+        if (!rod_loads_at(&model->list, rod_model_time(model, k, b->time), model->points + k * count,
+                          &model->loads, &err))
+            return yaml_refuse(b->file, "rod.loads", "%s", err.text);
+    model->line = model->loads.line;
+    model->loads.line = vec3_axpy(model->unit.mass, vec3_load(from->gravity), model->line);
     return true;
 }
 
-/* What varies along the curves of an inversion or an identification. */
-static bool find_along(RodModel *model, const Build *b)
+/* What varies along the curves of a strand: its own, and draws of its noise. */
+static bool find_along(RodModel *model, const Build *b, int k)
 {
-    Error err;
-    bool ok = true;
-    if (!model->list.along && model->list.potentials.count == 0) return true;
-    model->along = mem_alloc((size_t)model->strand_count, sizeof *model->along);
-    for (int k = 0; ok && k < model->strand_count; k++) {
-        const RodCurve *curve = &model->curves[k];
-        model->along[k] = mem_alloc(2 * (size_t)curve->elements + 1, sizeof(Vec3));
-        ok = rod_loads_along(&model->list, curve->elements, curve->length, curve, b->time, model->along[k],
-                             &err) ||
-             yaml_refuse(b->file, "rod.loads", "%s", err.text);
+    int drawn = model->draws ? model->draws[k].count : 0, stations = 2 * model->curves[k].elements + 1;
+    Vec3 *along = mem_alloc((size_t)(1 + drawn) * (size_t)stations, sizeof *along);
+    double time = rod_model_time(model, k, b->time);
+    model->along[k] = along;
+    for (int i = 0; i <= drawn; i++, along += stations) {
+        const RodCurve *curve = i ? &model->draws[k].curves[i - 1] : &model->curves[k];
+        Error err;
+        if (!rod_loads_along(&model->list, curve->elements, curve->length, curve, time, along, &err))
+            return yaml_refuse(b->file, "rod.loads", "%s", err.text);
+        for (int j = 0; model->inertia && j < stations; j++)
+            along[j] = vec3_add(along[j], model->inertia[k][j]);
     }
+    return true;
+}
+
+/* Of an inversion or an identification. */
+static bool find_all_along(RodModel *model, const Build *b)
+{
+    bool ok = true;
+    if (!model->list.along && !model->list.potentials.count && !model->inertia) return true;
+    model->along = mem_alloc((size_t)model->strand_count, sizeof *model->along);
+    for (int k = 0; ok && k < model->strand_count; k++) ok = find_along(model, b, k);
     return ok;
+}
+
+double rod_model_time(const RodModel *model, int strand, double time)
+{
+    return model->times ? model->times[strand] : time;
 }
 
 RodLoads rod_model_on_curve(const RodModel *model, int strand)
 {
     RodLoads loads = model->loads;
+    loads.points = model->points + strand * model->list.count;
     if (model->along) loads.along = model->along[strand];
     return loads;
 }
@@ -93,7 +137,21 @@ static bool read_magnetic(RodModel *model, const Scene *scene, const Build *b)
     if (!along)
         return yaml_refuse(b->file, "rod.magnetization",
                            "of a curve it must be along the tangent and the same all along: [m, 0, 0]");
-    if (!none) model->loads.end = vec3_scale(model->area * M->value[0], vec3_load(flux));
+    if (!none) model->magnetic = vec3_scale(model->area * M->value[0], vec3_load(flux));
+    model->loads.end = model->magnetic;
+    return true;
+}
+
+/* Of a curve that is inverted: what holds its last end, as far as it is known. */
+static bool read_end(RodModel *model, const EndScene *end, const Build *b)
+{
+    if (end->choose < 0 && isnan(end->force[0]))
+        return yaml_refuse(
+            b->file, "rod.end",
+            "of an inversion it needs `force` (and `couple`), what holds the end, or `choose`");
+    if (end->choose >= 0) return true;
+    model->loads.end = vec3_add(model->loads.end, vec3_load(end->force));
+    if (end->hold == HOLD_CLAMPED) model->loads.end_couple = vec3_load(end->couple);
     return true;
 }
 
@@ -111,13 +169,17 @@ static bool read_poses(RodModel *model, const RodScene *scene, const Build *b)
     bool ok = true;
     model->curves = mem_alloc((size_t)scene->poses_count, sizeof *model->curves);
     model->clamps = mem_alloc((size_t)scene->poses_count, sizeof *model->clamps);
+    model->draws = mem_alloc((size_t)scene->poses_count, sizeof *model->draws);
     model->strand_count = scene->poses_count;
+    Random random = random_seed(1);
     for (int k = 0; k < scene->poses_count; k++) {
         const RodPoseScene *pose = &scene->poses[k];
         Key at = key("rod.poses[%d].file", k);
+        model->draws[k] = (RodDraws){.wanted = DRAWS, .random = random};
         ok = rod_curve_read(b, (Sampled){at.text, pose->file, 1, pose->noise, scene->elements},
-                            &model->curves[k]) &&
+                            &model->curves[k], &model->draws[k]) &&
              ok;
+        random = model->draws[k].random;
         ok = rod_model_frame(b, key("rod.poses[%d].frame", k).text, (const double(*)[3])pose->frame,
                              &model->clamps[k]) &&
              ok;
@@ -128,8 +190,24 @@ static bool read_poses(RodModel *model, const RodScene *scene, const Build *b)
 RodIdentifyDef rod_model_poses(const RodModel *model, const RodScene *scene, RodPose *poses)
 {
     for (int k = 0; k < model->strand_count; k++)
-        poses[k] = (RodPose){&model->curves[k], model->clamps[k], rod_model_on_curve(model, k).along};
-    return (RodIdentifyDef){poses, model->strand_count, scene->radius, model->loads};
+        poses[k] = (RodPose){&model->curves[k], model->clamps[k], model->draws[k].curves,
+                             model->along ? model->along[k] : NULL};
+    return (RodIdentifyDef){
+        .poses = poses,
+        .pose_count = model->strand_count,
+        .draw_count = DRAWS,
+        .sought = isnan(scene->young)    ? ROD_SOUGHT_YOUNG
+                  : isnan(scene->radius) ? ROD_SOUGHT_RADIUS
+                                         : ROD_SOUGHT_DENSITY,
+        .young = scene->young,
+        .radius = scene->radius,
+        .density = scene->density,
+        .poisson = scene->poisson,
+        .gravity = vec3_load(scene->gravity),
+        .loads = {.line = model->line, .point_count = model->loads.point_count, .points = model->points},
+        .magnetization = scene->magnetization.value[0],
+        .flux_density = vec3_load(model->flux),
+    };
 }
 
 /* What can be said of poses before they are compared: their lengths may differ by 2 %. */
@@ -152,17 +230,19 @@ RodModel *rod_model_create(const Scene *scene, const Build *b)
     const JobRow *job = scene_job(scene);
     bool identify = job == &rod_job_identify;
     model->preview = from->solver == ROD_SOLVER_PBD;
-    bool ok = read_section(model, from, b, !identify);
+    bool ok = read_section(model, from, b, identify);
     if (from->curve) {
         RodStrands strands;
         ok = rod_strands_read(b, from, &strands) && ok;
         model->strand_count = strands.count, model->curves = strands.curves, model->frames = strands.frames;
     }
+    if (from->motion) ok = ok && rod_read_motion(model, from, b);
     if (identify) ok = read_poses(model, from, b) && ok;
     ok = read_loads(model, scene, b) && ok;
     for (int k = 0; ok && !identify && k < model->strand_count; k++)
         ok = rod_model_check_points(model, b, model->curves[k].length);
-    if (ok && is_of_curve(job)) ok = read_magnetic(model, scene, b) && find_along(model, b);
+    if (ok && is_of_curve(job)) ok = read_magnetic(model, scene, b) && find_all_along(model, b);
+    if (ok && job == &rod_job_invert && from->end) ok = read_end(model, from->end, b);
     if (ok && identify) ok = check_poses(model, from, b);
     if (ok) return model;
     rod_model_destroy(model);
@@ -172,12 +252,17 @@ RodModel *rod_model_create(const Scene *scene, const Build *b)
 void rod_model_destroy(RodModel *model)
 {
     if (!model) return;
+    for (int k = 0; model->inertia && k < model->strand_count; k++) mem_free(model->inertia[k]);
+    mem_free(model->inertia);
+    for (int k = 0; model->along && k < model->strand_count; k++) mem_free(model->along[k]);
+    mem_free(model->along);
+    mem_free(model->times);
     RodStrands strands = {model->strand_count, model->curves, model->frames};
+    for (int k = 0; model->draws && k < model->strand_count; k++) rod_draws_clear(&model->draws[k]);
     rod_strands_clear(&strands);
     rod_destroy(model->rod);
     mem_free(model->clamps);
-    for (int k = 0; model->along && k < model->strand_count; k++) mem_free(model->along[k]);
-    mem_free(model->along);
+    mem_free(model->draws);
     mem_free(model->points);
     rod_loads_clear(&model->list);
     mem_free(model->natural);

@@ -2,8 +2,8 @@
  * and frames, and the discrete rod of jobs that move it. */
 #pragma once
 #include "model/model.h"
+#include "rod/front/curves.h"
 #include "rod/front/loads.h"
-#include "rod/front/scene.h"
 #include "rod/identify.h"
 #include "rod/rod.h"
 
@@ -12,13 +12,20 @@ typedef struct RodModel {
     RodCurve *curves;  /* [strand] what was given; NULL: natural strains were                     */
     RodFrame **frames; /* [strand][stations]; NULL: of poses                                      */
     RodFrame *clamps;  /* [strand] of poses: the clamps' material frames                          */
+    RodDraws *draws;   /* [strand] of poses                                                       */
+    double *times;     /* [strand] s, where the curves are those of a moving rod, and             */
+    Vec3 **inertia;    /* [strand][stations] its inertia and drag as loads, N/m; else NULL        */
     double young;
     RodSection section, unit; /* with that modulus, and with 1 Pa                                 */
     double area;
-    RodLoadList list; /* what the scene says of loads                                             */
-    RodPointLoad *points;
-    RodLoads loads; /* on curves, when the job begins, weight included; but for                   */
-    Vec3 **along;   /* [strand][stations] N/m, what varies along a curve; NULL: nothing            */
+    RodLoadList list;     /* what the scene says of loads                                             */
+    RodPointLoad *points; /* [strand][list.count], each at its time; of rods without curves once  */
+    RodLoads loads;       /* on curves, when the job begins, weight included; but for what varies       */
+    Vec3 line;            /* line loads without weight, N/m                                             */
+    Vec3 **
+        along; /* [strand] N/m, what varies along a curve, [stations], inertia and drag included, and then along
+                       each of its draws; NULL: nothing                                           */
+    Vec3 magnetic;  /* of loads.end what is no force: a field's couple on the magnetisation, N     */
     double flux[3]; /* T, of an inversion                                                        */
 
     /* Of jobs that move it. */
@@ -51,6 +58,9 @@ bool rod_model_frame(const Build *b, const char *at, const double (*rows)[3], Ro
 /* Three numbers for each element, values[elements][3]. */
 bool rod_model_vectors(const Build *b, const char *at, const VectorScene *scene, const Rod *rod,
                        double *values);
+
+/* The time of a curve, s. */
+double rod_model_time(const RodModel *model, int strand, double time);
 
 /* The loads on a curve. */
 RodLoads rod_model_on_curve(const RodModel *model, int strand);

@@ -85,13 +85,22 @@ static const YamlTable clamp_table = {
 static const YamlTable end_table = {
     .name = "end",
     .size = sizeof(EndScene),
-    .doc = "Where the rod's other end is held.",
+    .doc = "Where the rod's other end is held; of an inversion, where the curve says it, what holds it.",
     .fields = (const YamlField[]){
-        {YAML_VECTOR(EndScene, position), .unit = "m", .required = true, .doc = "of the end"},
+        {YAML_VECTOR(EndScene, position), .when = STATES, .unit = "m", .doc = "of the end; needed"},
         {YAML_CHOICE(EndScene, hold), .choices = YAML_NAMES("clamped", "pinned"), .fallback = "pinned",
          .doc = "with its frame, or free to turn"},
-        {YAML_ROWS(EndScene, frame), .when = "hold: clamped", .min_count = 3, .max_count = 3,
+        {YAML_ROWS(EndScene, frame), .when = "hold: clamped & " STATES, .min_count = 3, .max_count = 3,
          .doc = "of a clamped end: tangent, n1 and n2 there"},
+        {YAML_VECTOR(EndScene, force), .when = "/job: invert", .unit = "N", .one_of = 1,
+         .doc = "of an inversion: what its support does to the end; this or `choose` is needed"},
+        {YAML_CHOICE(EndScene, choose), .when = "/job: invert",
+         .choices = YAML_NAMES("straightest", "least_stressed"), .one_of = 1,
+         .doc = "of an inversion: force and couple, unknown, are those with which the natural shape bends "
+                "least, or the "
+                "rod stores the least energy"},
+        {YAML_VECTOR(EndScene, couple), .when = "force & hold: clamped", .unit = "N m",
+         .fallback = "[0, 0, 0]", .doc = "beside `force`: the couple of a clamp"},
         {0}}};
 
 /* Of a load: a vector in that unit, by numbers or by formulas. */
@@ -173,6 +182,34 @@ static const YamlTable pose_curve_table = {
         {YAML_TABLE(RodPoseScene, noise, &noise_table), .fallback = "auto", .doc = "of its points"},
         {0}}};
 
+static const YamlTable motion_frame_table = {
+    .name = "frames of a motion",
+    .size = sizeof(RodMotionFrameScene),
+    .doc = "A shape that a moving rod had.",
+    .fields = (const YamlField[]){
+        {YAML_FILE(RodMotionFrameScene, file), .required = true,
+         .doc = "points from the clamp on: a CSV file with rows x, y, z or s, x, y, z"},
+        {YAML_NUMBER(RodMotionFrameScene, time), .required = true, .unit = "s", .doc = "when; they increase"},
+        {YAML_TABLE(RodMotionFrameScene, noise, &noise_table), .fallback = "auto", .doc = "of its points"},
+        {0}}};
+
+static const YamlTable motion_table = {
+    .name = "motion of a rod",
+    .size = sizeof(RodMotionScene),
+    .doc = "Shapes of one moving rod, three or more, from which its accelerations follow. Its clamp stays as "
+           "it is.",
+    .fields = (const YamlField[]){
+        {YAML_LIST(RodMotionScene, frames, &motion_frame_table), .one_of = 1, .required = true,
+         .doc = "from files"},
+        {YAML_FILE(RodMotionScene, result), .one_of = 1, .required = true,
+         .doc = "all frames of a simulation's result (best with `output: {precision: double}`)"},
+        {YAML_CHOICE(RodMotionScene, difference), .choices = YAML_NAMES("central", "backward"),
+         .fallback = "central",
+         .doc = "whose acceleration the second difference of three frames is: of the middle one, or of the "
+                "last one, "
+                "as implicit Euler has it (exact for what slender has simulated with a frame for each step)"},
+        {0}}};
+
 static const YamlTable pbd_table = {
     .name = "pbd",
     .size = sizeof(PbdScene),
@@ -201,38 +238,46 @@ const YamlTable rod_table = {
          .doc = "its natural shape, by strains; needed where there is no curve"},
         {YAML_LIST(RodScene, poses, &pose_curve_table), .one_of = 1, .when = "/job: identify",
          .doc = "of an identification: shapes that it was seen in"},
-        {YAML_NUMBER(RodScene, length), .when = "!curve & !poses", .unit = "m", .range = "(0, inf)",
+        {YAML_OPTIONAL(RodScene, motion, &motion_table), .one_of = 1, .when = "/job: invert",
+         .doc = "of an inversion: shapes that it had while it moved"},
+        {YAML_NUMBER(RodScene, length), .when = "!curve & !poses & !motion", .unit = "m", .range = "(0, inf)",
          .doc = "without a curve: its length"},
-        {YAML_TABLE(RodScene, clamp, &clamp_table), .when = "!curve & !poses", .fallback = "{}",
+        {YAML_TABLE(RodScene, clamp, &clamp_table), .when = "!curve & !poses & !motion", .fallback = "{}",
          .doc = "without a curve: its first end"},
         {YAML_CHOICE(RodScene, hold), .when = STATES, .choices = YAML_NAMES("clamped", "pinned"),
          .fallback = "clamped", .doc = "how the first end is held"},
-        {YAML_OPTIONAL(RodScene, end, &end_table), .when = STATES,
+        {YAML_OPTIONAL(RodScene, end, &end_table), .when = STATES ", invert & !motion",
          .doc = "how the other end is held; free if absent"},
         {YAML_INTEGER(RodScene, elements), .range = "[2, 1000000]", .fallback = "200",
          .doc = "pieces of constant strain"},
-        {YAML_NUMBER(RodScene, radius), .unit = "m", .range = "(0, inf)", .one_of = 2, .required = true,
+        {YAML_NUMBER(RodScene, radius), .unit = "m", .range = "(0, inf)", .one_of = 2,
          .doc = "of a round section"},
-        {YAML_NUMBERS(RodScene, ellipse), .when = "!poses", .unit = "m", .range = "(0, inf)", .one_of = 2,
-         .required = true, .min_count = 2, .max_count = 2,
+        {YAML_NUMBERS(RodScene, ellipse), .when = "!poses & !motion", .unit = "m", .range = "(0, inf)",
+         .one_of = 2, .min_count = 2, .max_count = 2,
          .doc = "half-axes along n1 and n2 of an elliptic section"},
-        {YAML_NUMBER(RodScene, young), .when = "!poses", .unit = "Pa", .range = "(0, inf)",
-         .doc = "Young's modulus"},
-        {YAML_NUMBER(RodScene, poisson), .when = "!poses", .range = "[-0.99, 0.5]", .doc = "Poisson's ratio"},
-        {YAML_NUMBER(RodScene, density), .unit = "kg/m^3", .range = "(0, inf)", .required = true,
-         .doc = "mass density"},
+        {YAML_NUMBER(RodScene, young), .unit = "Pa", .range = "(0, inf)",
+         .doc = "Young's modulus. Needed, as `radius` (or `ellipse`) and `density` are; of an identification "
+                "two of "
+                "the three, and the third one is what is looked for"},
+        {YAML_NUMBER(RodScene, poisson), .range = "[-0.99, 0.5]",
+         .doc = "Poisson's ratio. Needed; of an identification looked for unless it is given"},
+        {YAML_NUMBER(RodScene, density), .unit = "kg/m^3", .range = "(0, inf)", .doc = "mass density"},
         {YAML_VECTOR(RodScene, gravity), .unit = "m/s^2", .fallback = "[0, 0, -9.81]",
          .doc = "acceleration of gravity"},
-        {YAML_TABLE(RodScene, frame, &rod_frame_table), .when = "curve", .fallback = "bishop",
+        {YAML_TABLE(RodScene, frame, &rod_frame_table), .when = "curve & !frames", .fallback = "bishop",
          .doc = "with a curve: the frames of section and strains"},
-        {YAML_VECTOR(RodScene, bishop_normal), .when = "curve",
+        {YAML_LIST(RodScene, frames, &rod_frame_table), .when = "curve & /job: invert",
+         .doc = "of an inversion of one curve: several framings of it, each a strand of the result; their "
+                "natural strains "
+                "are compared in the picture"},
+        {YAML_VECTOR(RodScene, bishop_normal), .when = "curve | motion",
          .doc = "the direction of n1 at the clamp; Frenet's if absent"},
         {YAML_LIST(RodScene, loads, &rod_load_table), .doc = "beside its weight"},
         {YAML_TABLE(RodScene, magnetization, &magnetization_table), .fallback = "[0, 0, 0]",
          .doc = "remanent magnetisation in the frame (tangent, n1, n2); formulas are of s and L, a file has "
                 "a row for "
                 "each element"},
-        {YAML_NUMBER(RodScene, damping), .when = MOTIONS, .unit = "N s/m^2", .range = "[0, inf)",
+        {YAML_NUMBER(RodScene, damping), .when = MOTIONS ", invert", .unit = "N s/m^2", .range = "[0, inf)",
          .fallback = "0", .doc = "of a motion: viscous drag per length"},
         {YAML_CHOICE(RodScene, start), .when = "curve & " STATES " & !/start",
          .choices = YAML_NAMES("natural", "curve"), .fallback = "natural",

@@ -39,9 +39,10 @@ typedef struct ClampScene {
 
 typedef enum HoldKind { HOLD_CLAMPED, HOLD_PINNED } HoldKind;
 
+/* The other end: where it is held, or, of a curve that is inverted, what its support does there. */
 typedef struct EndScene {
-    double position[3], (*frame)[3];
-    int hold, frame_count; /* HoldKind */
+    double position[3], (*frame)[3], force[3], couple[3];
+    int hold, frame_count, choose; /* HoldKind; RodEndChoice, -1: force and couple are given */
 } EndScene;
 
 /* Three numbers, or formulas of them. */
@@ -73,6 +74,21 @@ typedef struct RodPoseScene {
     int frame_count;
 } RodPoseScene;
 
+/* A curve of a moving rod. */
+typedef struct RodMotionFrameScene {
+    char *file;
+    double time;
+    NoiseScene noise;
+} RodMotionFrameScene;
+
+typedef enum RodDifference { ROD_CENTRAL, ROD_BACKWARD } RodDifference;
+
+typedef struct RodMotionScene {
+    RodMotionFrameScene *frames;
+    char *result;
+    int frames_count, difference; /* RodDifference */
+} RodMotionScene;
+
 typedef enum RodSolver { ROD_SOLVER_NEWTON, ROD_SOLVER_PBD } RodSolver;
 
 typedef struct PbdScene {
@@ -87,11 +103,12 @@ typedef struct RodScene {
     RodCurveScene *curve;
     StrainScene *natural_strain;
     RodPoseScene *poses;
+    RodMotionScene *motion;
     double length, radius, *ellipse, young, poisson, density, gravity[3], bishop_normal[3], damping;
     ClampScene clamp;
     EndScene *end;
-    int elements, ellipse_count, poses_count, loads_count;
-    RodFrameScene frame;
+    int elements, ellipse_count, poses_count, loads_count, frames_count;
+    RodFrameScene frame, *frames;
     RodLoadScene *loads;
     VectorScene magnetization;
     VelocityScene *velocity;

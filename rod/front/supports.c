@@ -2,6 +2,7 @@
 #include "base/memory.h"
 #include "rod/front/front.h"
 #include "solve/ramp.h"
+#include <math.h>
 #include <string.h>
 
 bool rod_read_supports(RodModel *rm, const RodScene *scene, const Build *b)
@@ -25,6 +26,8 @@ bool rod_read_supports(RodModel *rm, const RodScene *scene, const Build *b)
         !rod_model_frame(b, "rod.end.frame", (const double(*)[3])scene->end->frame, &frame))
         return false;
     if (rod->end == ROD_CLAMPED) rm->end_frame = quat_from_axes(frame.n0, frame.n1, frame.n2);
+    if (isnan(scene->end->position[0]))
+        return yaml_refuse(b->file, "rod.end", "`position`, where it is held, is missing");
     double apart =
         vec3_length(vec3_sub(rm->end_position, rm->curves ? rm->curves[0].x[0] : rod->strand[0].position));
     if (apart > rod_length(rod) && !rod->cosserat)
@@ -54,19 +57,23 @@ bool rod_end_is_held(const RodModel *rm, const double *x)
                                   rod->end == ROD_CLAMPED ? &rm->end_frame : NULL, rod_length(rod));
 }
 
-/* The held end, a part of the way from where x has it. */
+void rod_lead_end(const RodLayout *layout, Vec3 place, const Quat *frame, double part, double *x)
+{
+    int last = layout->nodes - 1;
+    double *at = x + layout->position + 3 * last, *to = x + layout->reference + 4 * last;
+    vec3_store(at, vec3_axpy(part, vec3_sub(place, vec3_load(at)), vec3_load(at)));
+    if (!frame) return;
+    Quat now = rod_reference(layout, x, last), turn = quat_mul(quat_conj(now), *frame);
+    Quat next = quat_unit(quat_mul(now, quat_exp(vec3_scale(part, quat_log(turn)))));
+    to[0] = next.w;
+    vec3_store(to + 1, next.v);
+}
+
 bool rod_move_end(const Model *model, double time, double part, double *x, Error *err)
 {
     (void)time, (void)err;
     const RodModel *rm = model->self;
-    int last = rm->layout.nodes - 1;
-    double *place = x + rm->layout.position + 3 * last, *to = x + rm->layout.reference + 4 * last;
-    vec3_store(place, vec3_axpy(part, vec3_sub(rm->end_position, vec3_load(place)), vec3_load(place)));
-    if (rm->rod->end != ROD_CLAMPED) return true;
-    Quat now = rod_reference(&rm->layout, x, last), turn = quat_mul(quat_conj(now), rm->end_frame);
-    Quat next = quat_unit(quat_mul(now, quat_exp(vec3_scale(part, quat_log(turn)))));
-    to[0] = next.w;
-    vec3_store(to + 1, next.v);
+    rod_lead_end(&rm->layout, rm->end_position, rm->rod->end == ROD_CLAMPED ? &rm->end_frame : NULL, part, x);
     return true;
 }
 
