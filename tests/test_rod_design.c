@@ -83,7 +83,8 @@ static Fixture fixture_create(RodSupport end, Around around, bool cosserat, Rand
     f.load = case_create("only", p, (size_t)rod->params.size, 0);
     *case_add_objective(&f.load) = objective_target(N + 1, nodes, (const double(*)[3])target, 1);
     case_start(&f.load, sys, x);
-    if (around == WOUND) assert_int_equal(rod_relax(rod, sys, cosserat ? 40 : 10, p, &f.load.state).reached, 1);
+    if (around == WOUND)
+        assert_int_equal(rod_relax(rod, sys, cosserat ? 40 : 10, p, &f.load.state).reached, 1);
     mem_free(p);
     mem_free(x);
     f.design.case_count = 1;
