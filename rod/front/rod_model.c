@@ -117,6 +117,24 @@ RodActs rod_model_acts(const RodModel *model)
     return (RodActs){.potentials = model->list.potentials, .couples = model->list.couples};
 }
 
+/* What is known of a field in an inversion is one for all frames of a motion. */
+static bool check_flux_stays(const RodModel *model, const Scene *scene, const Build *b)
+{
+    for (int k = 0; model->times && k < model->strand_count; k++) {
+        Build then = *b;
+        double flux[3];
+        FluxField *field;
+        then.time = model->times[k];
+        if (!build_flux(&then, key("flux_density"), &scene->flux_density, flux, &field)) return false;
+        flux_field_destroy(field);
+        if (memcmp(flux, model->flux, sizeof flux))
+            return yaml_refuse(
+                b->file, "flux_density",
+                "an inversion knows a field on a rod in `motion` that stays: no formulas of t");
+    }
+    return true;
+}
+
 /* Of a curve: what the magnetisation does is known along the tangent, the same all along. */
 static bool read_magnetic(RodModel *model, const Scene *scene, const Build *b)
 {
@@ -130,6 +148,7 @@ static bool read_magnetic(RodModel *model, const Scene *scene, const Build *b)
             b->file, "flux_density",
             "an inversion knows a field that is uniform: three numbers, formulas of t, or a file");
     }
+    if (!check_flux_stays(model, scene, b)) return false;
     bool none = flux[0] == 0 && flux[1] == 0 && flux[2] == 0,
          along = !isnan(M->value[0]) && M->value[1] == 0 && M->value[2] == 0;
     if (!along)
