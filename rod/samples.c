@@ -233,7 +233,7 @@ bool rod_samples_draw(const Vec3 *x, int count, const RodSamplesDef *def, int el
     if (ok) {
         RodSpline spline = fit(kept, n, fit_noise(def, n));
         double noise = isnan(def->noise) ? report(&spline).noise : def->noise;
-        draws->curves = mem_alloc((size_t)draws->wanted, sizeof *draws->curves);
+        if (noise > 0) draws->curves = mem_alloc((size_t)draws->wanted, sizeof *draws->curves);
         for (; noise > 0 && ok && draws->count < draws->wanted; draws->count += ok)
             ok = draw(&spline, noise, elements, &draws->random, &draws->curves[draws->count], err);
         rod_spline_clear(&spline);

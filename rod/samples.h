@@ -44,7 +44,7 @@ bool rod_samples_curve(const Vec3 *x, int count, const RodSamplesDef *def, int e
  * and weight from where the samples' curve is and noise at each of them; none of samples without noise. */
 typedef struct RodDraws {
     int wanted, count;
-    RodCurve *curves; /* owned */
+    RodCurve *curves; /* owned; NULL: there is no noise */
     Random random;
 } RodDraws;
 

@@ -1,4 +1,4 @@
-/* rod_fixture.h - a discrete rod that rests on a reference curve, for tests. */
+/* rod_fixture.h - a discrete rod that rests on a reference curve, and one that is straight, for tests. */
 #pragma once
 #include "base/memory.h"
 #include "rod/rod.h"
@@ -62,6 +62,17 @@ static inline double resting_distance_of(const Resting *o, const double *x)
     double worst = resting_distance(o, place);
     mem_free(place);
     return worst;
+}
+
+/* A straight rod along x without weight. */
+static inline Rod *rod_plain(int elements, double length, double young, const FluxFields *fields,
+                             double **params)
+{
+    Rod *rod = rod_create(elements, length, rod_circle(1e-3, 1, 0.4, 1000), M_PI * 1e-6,
+                          fields ? &(RodActs){.fields = *fields} : NULL);
+    *params = mem_alloc((size_t)rod->params.size, sizeof **params);
+    rod_default_params(rod, young, *params);
+    return rod;
 }
 
 static inline NewtonDef rod_newton(void)

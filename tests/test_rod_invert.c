@@ -156,6 +156,33 @@ static void test_held(void **state)
     result_close(result);
 }
 
+/* Held at both ends under a load by formula, a potential and a couple: the discrete rod is in equilibrium, both ways to the
+ * strains agree, and let down from its natural shape it comes back. */
+static void test_held_loads(void **state)
+{
+    (void)state;
+    static const char *const ends[] = {
+        "{hold: clamped, force: [1 mN, -2 mN, 3 mN], couple: [20 uN m, 0, -10 uN m]}",
+        "{hold: pinned, choose: least_stressed}"};
+    for (int k = 0; k < 2; k++) {
+        char *lines = mem_format(
+            "  gravity: [0, 0, -9.8]\n  end: %s\n  loads: [{line: [\"0\", \"2e-3*s/L\", \"0.1*x\"]}, "
+            "{potential: \"2*r^2\"}, {point: 0.15, couple: [10 uN m, 0, 0]}]\n"
+            "checks: [round_trip]\n",
+            ends[k]);
+        Result *result = run(lines);
+        double left = number(result, "slender/metrics/residual"),
+               route = number(result, "slender/metrics/strain_route"),
+               trip = number(result, "slender/metrics/round_trip");
+        print_message(
+            "held, loads by formula: forces left %.0e of theirs, strains %.0e apart, back to %.0e m\n", left,
+            route, trip);
+        assert_true(left < 1e-12 && route < 1e-3 && trip < 1e-12);
+        result_close(result);
+        mem_free(lines);
+    }
+}
+
 /* Four framings of one curve: four strands, other natural strains, one natural shape; turned twice by an angle that is zero
  * they are Frenet's. */
 static void test_framings(void **state)
@@ -202,15 +229,16 @@ static void run_whole(char *text, const char *output)
     mem_free(text);
 }
 
-/* Natural strains from a simulation's frames, of so many elements: how far they are off, rms over the rod and 18 times. With
- * files three frames are written out, and read again. */
-static double strains_off(int elements, bool files)
+/* Natural strains from a simulation's frames, of so many elements, under loads: how far they are off, rms over the rod and 18
+ * times. With files three frames are written out, and read again. */
+static double strains_off(int elements, bool files, const char *loads)
 {
     run_whole(
         mem_format(
             "slender: 1\njob: simulate\nrod:\n  natural_strain: [\"0\", \"6 + 40*s\", \"8*cos(15*s)\"]\n"
-            "  length: 0.2\n  elements: %d\n%stime: {step: 5 ms, steps: 20}\noutput: {precision: double}\n",
-            elements, MATERIAL),
+            "  length: 0.2\n  elements: %d\n%s  loads: [%s]\ntime: {step: 5 ms, steps: 20}\n"
+            "output: {precision: double}\n",
+            elements, MATERIAL, loads),
         NAME "_motion");
     const char *from = files ? "frames: [{file: " NAME "_7.csv, time: 35 ms, noise: 0}, {file: " NAME
                                "_8.csv, time: 40 ms, noise: 0}, {file: " NAME
@@ -234,8 +262,8 @@ static double strains_off(int elements, bool files)
     result_close(result);
     run_whole(
         mem_format("slender: 1\njob: invert\nrod:\n  motion: {%s, difference: backward}\n  elements: %d\n"
-                   "  bishop_normal: [0, 1, 0]\n%s",
-                   from, elements, MATERIAL),
+                   "  bishop_normal: [0, 1, 0]\n%s  loads: [%s]\n",
+                   from, elements, MATERIAL, loads),
         NAME);
     result = result_open(NAME ".vtkhdf", &err);
     Array strain, s;
@@ -258,7 +286,8 @@ static double strains_off(int elements, bool files)
 static void test_motion(void **state)
 {
     (void)state;
-    double coarse = strains_off(50, false), fine = strains_off(100, false), files = strains_off(100, true);
+    double coarse = strains_off(50, false, ""), fine = strains_off(100, false, ""),
+           files = strains_off(100, true, "");
     for (int k = 7; k < 10; k++) {
         char *path = mem_format(NAME "_%d.csv", k);
         remove(path);
@@ -270,9 +299,22 @@ static void test_motion(void **state)
     assert_true(fine < 0.02 * 14 && fine < coarse / 3 && files < 0.02 * 14);
 }
 
+/* The same where loads by formula, a force and a couple change in time, each frame having those of its own: as well as without. */
+static void test_motion_loads(void **state)
+{
+    (void)state;
+    static const char loads[] =
+        "{line: [\"0\", \"0.2*t*s/L\", \"0\"]}, {potential: \"(0.1+t)*z^2\"}, {point: end, force: "
+        "[\"0\", \"2e-2*t\", \"0\"], couple: [\"0\", \"2e-5*t\", \"1e-5*t\"]}";
+    double coarse = strains_off(50, false, loads), fine = strains_off(100, false, loads);
+    print_message("under loads that change off by %.2g and %.2g 1/m, rms\n", coarse, fine);
+    assert_true(fine < 0.02 * 14 && fine < coarse / 3);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_input), cmocka_unit_test(test_held),
-                                       cmocka_unit_test(test_framings), cmocka_unit_test(test_motion)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_input),    cmocka_unit_test(test_held),   cmocka_unit_test(test_held_loads),
+        cmocka_unit_test(test_framings), cmocka_unit_test(test_motion), cmocka_unit_test(test_motion_loads)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

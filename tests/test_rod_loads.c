@@ -155,15 +155,15 @@ static const char pose_loads[] =
 static const char *const frames[] = {"[[1, 0, 0], [0, 1, 0], [0, 0, 1]]", "[[0, 0, 1], [1, 0, 0], [0, 1, 0]]",
                                      "[[0, 1, 0], [0, 0, 1], [1, 0, 0]]"};
 
-static void write_pose(int k, const char *job_loads)
+static void write_pose(int k, const char *job_loads, double gravity)
 {
     enum { N = 200 };
     char path[40];
     double *x = run_nodes(mem_format("slender: 1\njob: equilibrium\nrod:\n  natural_strain: [4, 8, 2]\n"
                                      "  length: 0.1\n  clamp: {frame: %s}\n  radius: 1 mm\n  elements: %d\n"
-                                     "  young: 1 MPa\n  poisson: 0.4\n  density: 1000\n  gravity: [0, 0, 0]\n"
-                                     "  loads: [%s]\n",
-                                     frames[k], N, job_loads),
+                                     "  young: 1 MPa\n  poisson: 0.4\n  density: 1000\n"
+                                     "  gravity: [0, 0, %g]\n  loads: [%s]\n",
+                                     frames[k], N, gravity, job_loads),
                           "slender/rod/x", N + 1);
     snprintf(path, sizeof path, NAME "_%d.csv", k);
     FILE *file = fopen(path, "w");
@@ -172,35 +172,78 @@ static void write_pose(int k, const char *job_loads)
     mem_free(x);
 }
 
-/* Poses of a rod that formulas pull at and a couple turns tell its modulus: with the loads as they were. */
-static void test_identify(void **state)
+static double number(Result *result, const char *name)
 {
-    (void)state;
-    for (int k = 0; k < 3; k++) write_pose(k, pose_loads);
+    char *path = mem_format("slender/rod/identified/%s", name);
+    Array array = read_all(result, path);
+    double value = *(const double *)array.data;
+    array_clear(&array);
+    mem_free(path);
+    return value;
+}
+
+/* What the poses are said to be of, with loads as they were. */
+static Result *identify_poses(const char *noise, const char *material, double gravity, const char *loads)
+{
     char *poses = mem_text("");
     for (int k = 0; k < 3; k++) {
-        char *pose = mem_format("    - {file: " NAME "_%d.csv, noise: 0, frame: %s}\n", k, frames[k]);
+        char *pose = mem_format("    - {file: " NAME "_%d.csv, noise: %s, frame: %s}\n", k, noise, frames[k]);
         poses = mem_join(poses, pose, "");
         mem_free(pose);
     }
-    Result *result =
-        run_text(mem_format("slender: 1\njob: identify\nrod:\n  poses:\n%s  radius: 1 mm\n  density: 1000\n"
-                            "  gravity: [0, 0, 0]\n  loads: [%s]\n",
-                            poses, pose_loads));
-    Array found = read_all(result, "slender/rod/identified/young"),
-          ratio = read_all(result, "slender/rod/identified/poisson");
-    double E = *(const double *)found.data, nu = *(const double *)ratio.data;
+    Result *result = run_text(
+        mem_format("slender: 1\njob: identify\nrod:\n  poses:\n%s%s  gravity: [0, 0, %g]\n  loads: [%s]\n",
+                   poses, material, gravity, loads));
+    mem_free(poses);
+    return result;
+}
+
+/* Poses of a rod that formulas pull at and a couple turns tell its modulus. */
+static void test_identify(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 3; k++) write_pose(k, pose_loads, 0);
+    Result *result = identify_poses("0", "  radius: 1 mm\n  density: 1000\n", 0, pose_loads);
+    double E = number(result, "young"), nu = number(result, "poisson");
     print_message("identified: E off by %.1e, nu by %.1e\n", E / young - 1, nu - 0.4);
     assert_true(fabs(E / young - 1) < 1e-3 && fabs(nu - 0.4) < 5e-3);
-    array_clear(&found);
-    array_clear(&ratio);
     result_close(result);
-    mem_free(poses);
+}
+
+/* Radius and density: the weight grows with what is looked for, formulas and potentials do not. What is called noise is put on
+ * the poses with the loads where it has them: the standard error covers what the smoothing does. */
+static void test_identify_weight(void **state)
+{
+    (void)state;
+    static const char loads[] = "{line: [\"0\", \"1e-3*s/L\", \"0\"]}, {potential: \"5e-2*(x^2+y^2)\"}";
+    static const struct {
+        const char *name, *material;
+        double exact;
+    } sought[] = {{"radius", "  young: 1 MPa\n  poisson: 0.4\n  density: 1000\n", 1e-3},
+                  {"density", "  young: 1 MPa\n  poisson: 0.4\n  radius: 1 mm\n", 1000}};
+    for (int k = 0; k < 3; k++) write_pose(k, loads, -9.81);
+    for (int k = 0; k < 4; k++) {
+        bool exact = k < 2;
+        char *error_name = mem_format("%s_error", sought[k % 2].name);
+        Result *result = identify_poses(exact ? "0" : "1.0e-5", sought[k % 2].material, -9.81, loads);
+        double off = number(result, sought[k % 2].name) / sought[k % 2].exact - 1,
+               error = number(result, error_name) / sought[k % 2].exact;
+        print_message("%s off by %.1e +- %.1e\n", sought[k % 2].name, off, error);
+        assert_true(fabs(off) < (exact ? 1e-3 : 4 * error) && error < 1e-2 && error > (exact ? 0 : 1e-5));
+        result_close(result);
+        mem_free(error_name);
+    }
+    for (int k = 0; k < 3; k++) {
+        char *path = mem_format(NAME "_%d.csv", k);
+        remove(path);
+        mem_free(path);
+    }
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_helix), cmocka_unit_test(test_deflections),
-                                       cmocka_unit_test(test_times), cmocka_unit_test(test_identify)};
+                                       cmocka_unit_test(test_times), cmocka_unit_test(test_identify),
+                                       cmocka_unit_test(test_identify_weight)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

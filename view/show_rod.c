@@ -9,7 +9,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { LINES_MAX = 4, LINE_LENGTH = 110, STRANDS_MANY = 20, CHARTS_USUAL = 2 };
+enum { LINES_MAX = 4, LINE_LENGTH = 110, STRANDS_MANY = 20 };
 
 static const Color input_ink = {0.62, 0.62, 0.64, 1};
 static const MotionInk motion_ink = {{0.62, 0.62, 0.64, 1}, {0, 0.62, 0.451, 1}, 3};
@@ -361,7 +361,7 @@ static ChartSeries make_series(RodPage *page, const char *name, const double *s,
 
 static void add_chart(RodPage *page, Chart chart)
 {
-    if (page->chart_count < CHARTS_USUAL) page->charts[page->chart_count++] = chart;
+    if (page->chart_count < CURVES_CHARTS_MAX) page->charts[page->chart_count++] = chart;
 }
 
 static void add_strains(RodPage *page, const double *s)

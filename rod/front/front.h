@@ -18,6 +18,9 @@ bool rod_read_motion(RodModel *rm, const RodScene *scene, const Build *b);
  * that of all of them, 1/m. */
 double rod_add_mean_strains(const double *strain, int count, int nodes, Arrays *list);
 
+/* job_invert.c: does the scene say what an inversion needs, and nothing that it does not use? */
+bool rod_check_inversion(const RodModel *rm, const Scene *scene, YamlFile *file);
+
 /* supports.c: how the scene holds its ends, into the model. */
 bool rod_read_supports(RodModel *rm, const RodScene *scene, const Build *b);
 

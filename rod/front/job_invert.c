@@ -17,6 +17,41 @@ bool inversion_asks(const Scene *scene, SceneCheck check)
     return false;
 }
 
+/* ---- What it takes ---- */
+
+static bool is_default(const SolverScene *solver)
+{
+    NewtonDef def = newton_default();
+    return solver->max_iterations == def.max_iterations && solver->step_tolerance == def.step_tol &&
+           solver->force_tolerance == def.force_tol;
+}
+
+bool rod_check_inversion(const RodModel *rm, const Scene *scene, YamlFile *file)
+{
+    const RodScene *from = rod_scene(scene);
+    bool round_trip = false, stability = false, rests = false; /* asked about */
+    for (int k = 0; k < scene->checks_count; k++) {
+        round_trip |= scene->checks[k] == CHECK_ROUND_TRIP;
+        stability |= scene->checks[k] == CHECK_STABILITY;
+        rests |= scene->checks[k] != CHECK_SELF_CONTACT;
+    }
+    if (!from->curve && !from->motion)
+        return yaml_refuse(file, "rod", "an inversion needs `curve`, the shape that is given, or `motion`");
+    if (from->motion && rests)
+        return yaml_refuse(file, "checks",
+                           "a rod that moves is in no equilibrium: of `motion` only self_contact is checked");
+    if (stability && (rm->list.couples || rm->list.placed))
+        return yaml_refuse(file, "checks", "stability is that of a rod under forces that stay, without %s",
+                           rm->list.couples ? "couples" : "loads that depend on its place");
+    if (!from->motion && from->damping != 0)
+        return yaml_refuse(file, "rod.damping", "an inversion uses this for a rod in `motion` only");
+    const char *unused = scene->load_steps.mode != 0   ? "load_steps"
+                         : !is_default(&scene->solver) ? "solver"
+                                                       : NULL;
+    return round_trip || !unused ||
+           yaml_refuse(file, unused, "an inversion uses this for its round trip only: checks: [round_trip]");
+}
+
 /* ---- One strand ---- */
 
 /* How far the two ways to the strains are apart, in parts of the largest: an independent check of both. */

@@ -117,6 +117,26 @@ RodActs rod_model_acts(const RodModel *model)
     return (RodActs){.potentials = model->list.potentials, .couples = model->list.couples};
 }
 
+/* What is known of a field in an inversion is one for all frames of a motion. */
+static bool check_flux_stays(const RodModel *model, const Scene *scene, const Build *b)
+{
+    bool stays = true;
+    for (int k = 0; stays && model->times && k < model->strand_count; k++) {
+        Build then = *b;
+        double flux[3];
+        FluxFields fields = {0};
+        then.time = model->times[k];
+        bool known = build_flux(&then, key("flux_density"), scene->flux_density, scene->flux_density_count,
+                                flux, &fields);
+        flux_fields_clear(&fields);
+        if (!known) return false;
+        stays = !memcmp(flux, model->flux, sizeof flux);
+    }
+    return stays ||
+           yaml_refuse(b->file, "flux_density",
+                       "an inversion knows a field on a rod in `motion` that stays: no formulas of t");
+}
+
 /* Of a curve: what the magnetisation does is known along the tangent, the same all along. */
 static bool read_magnetic(RodModel *model, const Scene *scene, const Build *b)
 {
@@ -132,6 +152,7 @@ static bool read_magnetic(RodModel *model, const Scene *scene, const Build *b)
         return yaml_refuse(
             b->file, "flux_density",
             "an inversion knows a field that is uniform: three numbers, formulas of t, or a file");
+    if (!check_flux_stays(model, scene, b)) return false;
     bool none = flux[0] == 0 && flux[1] == 0 && flux[2] == 0,
          along = !isnan(M->value[0]) && M->value[1] == 0 && M->value[2] == 0;
     if (!along)
