@@ -15,6 +15,11 @@ static const char *const solid =
     "  skin: {thickness: 1 mm, on: top, magnetization: [0, 0, 1000]}\n  %s\n"
     "fix: [{group: left}]\n%s\n";
 
+static const char *const rod = "slender: 1\njob: %s\nrod:\n  natural_strain: [0, 0, 0]\n  length: 40 mm\n  "
+                               "elements: 8\n  radius: 0.5 mm\n"
+                               "  young: 1 MPa\n  poisson: 0.3\n  density: 1000\n  gravity: [0, 0, 0]\n"
+                               "  magnetization: [\"s > 0.03 ? 1000 : 0\", \"0\", \"0\"]\n  %s\n%s\n";
+
 /* Whether each of them, in this order and no other, is the beginning of a warning. */
 static void check(const char *scene, const char *job, const char *key, const char *field,
                   const char *const expected[])
@@ -46,6 +51,10 @@ static void test_start(void **state)
     static const char *const both[] = {"case1: tetrahedron 0,", "case1: face ", NULL};
     check(solid, "equilibrium", "coercivity: 100 kA/m", weak, NONE);
     check(solid, "equilibrium", "coercivity: 100 kA/m", strong, both);
+    static const char *const element[] = {"case1: element 6, at (0.0325, 0, 0) m, is in a field of 0.064 T",
+                                          NULL};
+    check(rod, "equilibrium", "coercivity: 100 kA/m", weak, NONE);
+    check(rod, "equilibrium", "coercivity: 100 kA/m", strong, element);
 }
 
 /* Largest in the middle of a motion; in a later stage. */

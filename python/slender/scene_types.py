@@ -71,7 +71,7 @@ Rod = TypedDict("Rod", {
     "hold": "Literal['clamped', 'pinned']", "end": "End", "elements": "int", "radius": "Number",
     "ellipse": "Union[Number, Numbers]", "young": "Number", "poisson": "float", "density": "Number",
     "gravity": "Numbers", "frame": "Frame", "frames": "Rows[Frame]", "bishop_normal": "Numbers",
-    "loads": "Rows[LoadsOfARod]", "magnetization": "Magnetization", "damping": "Number",
+    "loads": "Rows[LoadsOfARod]", "magnetization": "Magnetization", "coercivity": "Number", "damping": "Number",
     "start": "Literal['natural', 'curve']", "velocity": "Velocity", "solver": "Literal['newton', 'pbd']",
     "pbd": "Pbd",
 }, total=False)

@@ -42,6 +42,7 @@ bool rod_settle(Model *model, const Build *b, const double *p);
 bool rod_take_state(const Model *model, const double *from, int dofs, double *x, Error *err);
 
 /* report.c, cost.c */
+char *rod_doubt_magnets(const Model *model, const Snapshot *shot);
 char *rod_describe(const Model *model, const Scene *scene);
 void rod_advise(Model *model, const Scene *scene);
 void rod_dof_sizes(const Model *model, double *size);

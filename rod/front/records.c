@@ -147,6 +147,8 @@ char *rod_doubt(const Model *model, const Snapshot *shot)
 {
     const RodModel *rm = model->self;
     const Rod *rod = rm->rod;
+    char *lost = rod_doubt_magnets(model, shot);
+    if (lost) return lost;
     if (model->job->rest && rod_has_couples(rod, shot->p))
         return mem_text("couples have no potential: no energy says whether the rod would stay where it is");
     if (rod->cosserat) return doubt_strain(&rm->layout, shot->at.x);

@@ -1,12 +1,37 @@
 /* What `slender check` says of a rod, and what is doubtful about it. */
 #include "base/memory.h"
+#include "model/coercivity.h"
 #include "rod/front/front.h"
 
 static const double LARGE_BODY = 2; /* m: most likely a curve in millimetres */
 
+/* The elements as magnets; the caller frees points. */
+static MagnetPart magnets_of(const RodModel *rm, int **points)
+{
+    const Rod *rod = rm->rod;
+    *points = mem_alloc(2 * (size_t)rod->elements, sizeof **points);
+    for (int e = 0; e < rod->elements; e++)
+        for (int k = 0; k < 2; k++) (*points)[2 * e + k] = rod_element_node(&rm->layout, e) + k;
+    return (MagnetPart){.noun = "element",
+                        .coercivity = rm->coercivity,
+                        .count = rod->elements,
+                        .corners = 2,
+                        .each = 2,
+                        .points = *points,
+                        .magnetization = rod->magnetization};
+}
+
+char *rod_doubt_magnets(const Model *model, const Snapshot *shot)
+{
+    int *points;
+    MagnetPart part = magnets_of(model->self, &points);
+    char *doubt = coercivity_doubt(model, part, shot);
+    mem_free(points);
+    return doubt;
+}
+
 void rod_advise(Model *model, const Scene *scene)
 {
-    (void)scene;
     const RodModel *rm = model->self;
     double longest = rod_model_longest(rm);
     if (longest > LARGE_BODY)
@@ -16,6 +41,10 @@ void rod_advise(Model *model, const Scene *scene)
     if (rm->section.reach > longest / 5 && longest > 0)
         mesh_warn(&model->report, "the section, %.3g m, is more than a fifth of the length: no thin rod",
                   rm->section.reach);
+    if (!rm->rod || !model->case_count) return;
+    int *points;
+    coercivity_advise(model, scene, magnets_of(rm, &points));
+    mem_free(points);
 }
 
 char *rod_describe(const Model *model, const Scene *scene)

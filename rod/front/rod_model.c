@@ -251,6 +251,7 @@ RodModel *rod_model_create(const Scene *scene, const Build *b)
     const JobRow *job = scene_job(scene);
     bool identify = job == &rod_job_identify;
     model->preview = from->solver == ROD_SOLVER_PBD;
+    model->coercivity = from->coercivity;
     bool ok = read_section(model, from, b, identify);
     if (from->curve) {
         RodStrands strands;

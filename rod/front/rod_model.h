@@ -8,6 +8,7 @@
 #include "rod/rod.h"
 
 typedef struct RodModel {
+    double coercivity; /* A/m, of what it is magnetised with; NAN: not known */
     int strand_count;
     RodCurve *curves;  /* [strand] what was given; NULL: natural strains were                     */
     RodFrame **frames; /* [strand][stations]; NULL: of poses                                      */

@@ -277,6 +277,11 @@ const YamlTable rod_table = {
          .doc = "remanent magnetisation in the frame (tangent, n1, n2); formulas are of s and L, a file has "
                 "a row for "
                 "each element"},
+        {YAML_NUMBER(RodScene, coercivity), .when = STATES " & solver: newton", .unit = "A/m",
+         .range = "(0, inf)",
+         .doc = "of what it is magnetised with: a larger field than half of it, anywhere on what is "
+                "magnetised, is "
+                "a warning; not looked at if absent"},
         {YAML_NUMBER(RodScene, damping), .when = MOTIONS ", invert", .unit = "N s/m^2", .range = "[0, inf)",
          .fallback = "0", .doc = "of a motion: viscous drag per length"},
         {YAML_CHOICE(RodScene, start), .when = "curve & " STATES " & !/start",

@@ -111,6 +111,7 @@ typedef struct RodScene {
     RodFrameScene frame, *frames;
     RodLoadScene *loads;
     VectorScene magnetization;
+    double coercivity; /* A/m */
     VelocityScene *velocity;
     int model, start, hold, solver; /* RodKind; RodStart; HoldKind of the clamp; RodSolver */
     PbdScene pbd;
