@@ -7,6 +7,36 @@ status() { "$program" info "$1" | sed -n '1s/^[^:]*: \([a-z_]*\),.*/\1/p'; }
 is() { [ "$2" = "$3" ] || { echo "$1: '$2', not '$3'"; bad=1; }; }
 datasets() { "$program" info "$1" | sed -n 's/^  \([^ ]*\) .*/\1/p'; }
 
+# ---- The result of an earlier run ----
+# The same scene may be run again; another one, or one of other files, is refused, and neither result nor journal is lost.
+cat > earlier.yaml <<'END'
+slender: 1
+job: simulate
+shell: {mesh: {shape: sheet, size: [20 mm, 10 mm], cells: [2, 1]}, thickness: 1 mm, young: {file: young.csv}, poisson: 0.3, density: 1000}
+fix: [{group: root, clamp: true}]
+time: {step: 1 ms, steps: 2}
+END
+young() { printf '%s\n' "$1" "$1" "$1" "$1" > young.csv; } # of four faces
+young 1e6
+expect 0 run earlier.yaml -o e
+expect 0 run earlier.yaml -o e
+cp e.vtkhdf e.copy; cp e.run e.journal
+expect 4 run earlier.yaml -o e --set shell.thickness=2mm; says "e.vtkhdf: it is the result of another scene: shell.thickness is not the same; give another name with -o, replace it with --force$"
+expect 4 run earlier.yaml -o e --set time.steps=3; says "time.steps is not the same; .* or go on with it with --resume$"
+young 2e6
+expect 4 run earlier.yaml -o e; says "shell.young.file: .*young.csv is not the file that the run began with"
+mv e.run away.run; expect 4 run earlier.yaml -o e --set shell.thickness=2mm; says "the result of another scene"; mv away.run e.run
+same e.vtkhdf e.copy; same e.run e.journal
+expect 0 run earlier.yaml -o e --force
+young 1e6
+expect 0 run earlier.yaml -o e --force; same e.vtkhdf e.copy
+mkdir elsewhere; cp earlier.yaml young.csv elsewhere
+expect 0 run elsewhere/earlier.yaml -o e # by what is in the files, not by where they are
+echo "no result" > f.vtkhdf
+expect 4 run earlier.yaml -o f; says "f.vtkhdf is no result of slender.*; with --force it is replaced"
+[ "$(cat f.vtkhdf)" = "no result" ] || { echo "a file of another kind is lost"; bad=1; }
+expect 0 run earlier.yaml -o f --force
+
 # ---- Input files ----
 sheet() { # how far one vertex is from its place
     printf 'v 0 0 0\nv %s 0 0\nv 0.02 0 0\nv 0 0.01 0\nv 0.01 0.01 0\nv 0.02 0.01 0\nf 1 2 5\nf 1 5 4\nf 2 3 6\nf 2 6 5\n' "$1"
