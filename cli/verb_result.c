@@ -203,6 +203,10 @@ static RunStatus export_frame(Result *result, int frame, const char *path, Error
         error_set(err, "there is no frame %d: the result has %d, from 0", frame, result_step_count(result));
         return RUN_REFUSED;
     }
+    if (!result_has(result, "slender/faces")) {
+        error_set(err, "there is no mesh in it: its numbers are exported as .csv, with --dataset");
+        return RUN_REFUSED;
+    }
     if (!result_read_as(result, "slender/faces", ARRAY_INT32, 2, 3, &faces, err)) return RUN_REFUSED;
     bool ok = frame < 0 ? result_read_as(result, "slender/state/x", ARRAY_FLOAT64, 2, 3, &points, err)
                         : result_read_step(result, "Points", frame, &points, err);
@@ -259,6 +263,30 @@ static bool check_source(Result *result, const char *input, const char *output, 
 }
 
 /* A scene's path is not in its result: what is written is at least never named like one. */
+/* What is asked for, in the right words: an ending that says what is to be written, and no option that it does not use. */
+static bool check_request(const Export *what, bool run, Error *err)
+{
+    static const char *const endings[] = {".csv", ".obj",  ".svg", ".gcode", ".ngc",
+                                          ".nc",  ".hpgl", ".plt", ".vtkhdf"};
+    bool known = false, mesh = has_ending(what->output, ".obj");
+    for (size_t k = 0; k < sizeof endings / sizeof *endings; k++)
+        known = known || has_ending(what->output, endings[k]);
+    if (!known)
+        return error_set(
+            err,
+            "%s: numbers are exported as .csv, with --dataset, a mesh as .obj, a drawing as .svg, "
+            ".gcode, .ngc, .nc, .hpgl or .plt, a run as .vtkhdf; slender picture draws .png, .svg "
+            "and .pdf",
+            what->output);
+    if (what->dataset && run)
+        return error_set(err, "--dataset is not used with a run: export its result first");
+    if (what->frame >= 0 && (what->dataset || !mesh))
+        return error_set(err, "--frame is for a mesh, -o FILE.obj, and is not used here");
+    if (what->language && (what->dataset || mesh || run))
+        return error_set(err, "--plotter is for a drawing, -o FILE.gcode, and is not used here");
+    return true;
+}
+
 static bool check_ending(const char *path, const char *what, const char *ending, Error *err)
 {
     return has_ending(path, ending) || error_set(err, "%s: %s exported as %s", path, what, ending);
@@ -286,7 +314,7 @@ static RunStatus export_result(const char *input, const Export *what, Error *err
     if (!result) return RUN_REFUSED;
     RunStatus status = RUN_CANNOT_WRITE;
     if (check_source(result, input, what->output, err) && replace_check(what->output, err)) {
-        status = write_export(result, what, err);
+        status = check_request(what, false, err) ? write_export(result, what, err) : RUN_USAGE;
         if (status != RUN_DONE) error_prefix(err, "%s", input);
     }
     result_close(result);
@@ -310,12 +338,14 @@ static bool result_def(Journal *journal, const char *input, const char *output, 
     return ok;
 }
 
-static RunStatus export_journal(const char *input, const char *path, Error *err)
+static RunStatus export_journal(const char *input, const Export *what, Error *err)
 {
+    const char *path = what->output;
     if (!has_ending(path, ".vtkhdf")) {
         error_set(err, "%s: a run is exported as .vtkhdf, and that as other files", path);
         return RUN_CANNOT_WRITE;
     }
+    if (!check_request(what, true, err)) return RUN_USAGE;
     char *sidecar = result_sidecar(path);
     bool free = outputs_check_source(NULL, input, sidecar, err) && replace_check(sidecar, err);
     mem_free(sidecar);
@@ -353,7 +383,7 @@ int verb_export(int argc, char **argv)
     if (!what.output) return verb_fail(RUN_USAGE, "-o FILE must be given; slender export --help says more");
     Error err;
     if (!outputs_check_source(NULL, input, what.output, &err)) return verb_fail(RUN_CANNOT_WRITE, err.text);
-    RunStatus status = has_ending(input, ".run") ? export_journal(input, what.output, &err)
-                                                 : export_result(input, &what, &err);
+    RunStatus status =
+        has_ending(input, ".run") ? export_journal(input, &what, &err) : export_result(input, &what, &err);
     return status == RUN_DONE ? RUN_DONE : verb_fail(status, err.text);
 }
