@@ -317,10 +317,10 @@ char *yaml_manual(const YamlTable *table, const char *title)
     Tables tables = {0};
     collect(&tables, table);
     Text text = {0};
-    text_add(
-        &text,
-        "# %s\n\nMade by `slender schema --manual` from the field tables of the program; do not edit.\n\n",
-        title);
+    text_add(&text,
+             "# %s\n\nMade by `slender schema --manual` from the field tables of the program; do not edit. "
+             "What formulas may say is in formulas.md, units and --set are in units.md.\n\n",
+             title);
     for (int k = 0; k < tables.count; k++) {
         text_add(&text, "## <a name=\"");
         manual_anchor(&text, tables.tables[k]->name);

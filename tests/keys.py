@@ -3,7 +3,7 @@
   /usr/bin/python3 tests/keys.py PROGRAM [SCENE ..]      needs numpy and h5py
 
 A key that may change nothing is in FREE. Prints what is ignored, what is refused and why; ends with 1 where a key is
-ignored. Two minutes."""
+ignored. Ten minutes."""
 import json, os, subprocess, sys, tempfile
 import h5py, numpy as np
 
@@ -89,14 +89,14 @@ design: {unknowns: {magnetization: {noise: 100}}, objectives: [{target: 1}], ite
     "rod trajectory": "job: trajectory\nrod:\n  natural_strain: [1, 2, 3]" + ROD + "  elements: 20\n" + FLUX + """time: {step: 5 ms, steps: 5}
 design: {unknowns: {flux_density: {noise: 0.01}}, objectives: [{waypoint: {vertex: tip, at: [0.15, 0, 0.05]}}], iterations: 3}
 """,
-    "rod preview": "job: simulate\nrod:" + CURVE + "  elements: 20\n  solver: pbd\ntime: {step: 5 ms, steps: 5}\n",
+    "rod preview": "job: simulate\nrod:" + CURVE + "  elements: 20\n  solver: pbd\n  magnetization: [20000, 0, 0]\n" + FLUX + "time: {step: 5 ms, steps: 5}\n",
     "rod invert": "job: invert\nrod:" + CURVE + "  elements: 20\n  magnetization: [1000, 0, 0]\n" + FLUX,
-    "rod invert file": "job: invert\nrod:\n  curve: {file: points.csv}" + CURVE.split("\n", 2)[2].join(["\n", ""]) + "  elements: 20\n" + FLUX,
+    "rod invert file": "job: invert\nrod:\n  curve: {file: points.csv}" + CURVE.split("\n", 2)[2].join(["\n", ""]) + "  elements: 20\n  magnetization: [1000, 0, 0]\n" + FLUX,
     "rod identify": "job: identify\nrod:\n  poses:\n" + "".join(
         "    - {file: pose%d.csv, frame: %s, noise: 0.1 mm}\n" % (k, f) for k, f in enumerate([
             "[[1, 0, 0], [0, 1, 0], [0, 0, 1]]",
             "[[0.9397, 0, -0.3420], [0.3368, -0.1736, 0.9254], [-0.0594, -0.9848, -0.1632]]",
-            "[[0, 0, -1], [0, 1, 0], [1, 0, 0]]"])) + "  radius: 1.3 mm\n  density: 1180\n  elements: 40\n",
+            "[[0, 0, -1], [0, 1, 0], [1, 0, 0]]"])) + "  radius: 1.3 mm\n  density: 1180\n  elements: 40\n  magnetization: [2000, 0, 0]\n" + FLUX,
     "spline": """job: draw
 spline:
   density: "0.3 + 0.4*u"
@@ -129,7 +129,7 @@ spline:
 # Values by section and key; else they follow from the kind.
 VALUES = {
     "scene.fix": ["[{boundary: true}]"], "scene.loads": ["[{force: [0, 0, 1 mN]}]"],
-    "scene.target": ['["x + 1 mm/m", "y", "10*x"]', '["s", "0", "-s"]'],
+    "scene.target": ['["x + 0.001", "y", "10*x"]', '["s", "0", "-s"]'],
     "scene.cases": ["[{name: one, gravity: [0, 0, -3]}, {name: two}]", "[{weight: 2}]"],
     "scene.sequence": ["[{gravity: [0, 0, -3]}, {gravity: [0, 0, -4]}]"],
     "scene.design": ["{unknowns: {magnetization: {}}, objectives: [{target: 1}]}"],
