@@ -35,22 +35,26 @@ static bool is_interrupted(void *self)
     return interrupted != 0;
 }
 
-/* Seconds left if steps go on as the last ones did: a run that is resumed has not made its first ones, and repeats others in no
- * time. */
+/* Seconds left if steps go on as the last ones did; NAN before the first one. A run that is resumed has not made its first
+ * steps, and repeats others in no time. */
 static double seconds_left(Progress *progress, double now, int step, int total)
 {
     const double memory = 0.9;
-    double since = now - (progress->step > 0 ? progress->stepped : progress->started),
-           pace = progress->step > 0 && step > progress->step ? since / (step - progress->step) : since;
-    progress->pace = progress->step > 0 ? memory * progress->pace + (1 - memory) * pace : pace;
-    progress->step = step, progress->stepped = now;
-    return progress->pace * (total - step);
+    bool first = progress->step == 0;
+    if (step > progress->step) {
+        double pace = first ? now - progress->started : (now - progress->stepped) / (step - progress->step);
+        progress->pace = first ? pace : memory * progress->pace + (1 - memory) * pace;
+        progress->step = step, progress->stepped = now;
+    }
+    return progress->step == 0 ? NAN : progress->pace * (total - step);
 }
 
-/* ", about 20 s left", or nothing at the end; the caller frees. */
-static char *left_text(double seconds)
+/* ", about 20 s left", or nothing where that is not known, or at the end; the caller frees. */
+static char *left_text(ProgressMode mode, double seconds)
 {
     const double minute = 60, hour = 3600;
+    if (isnan(seconds)) return mem_text("");
+    if (mode == PROGRESS_JSON) return mem_format(" \"left\": %.3g,", seconds);
     if (seconds <= 0) return mem_text("");
     if (seconds < 2 * minute) return mem_format(", about %.0f s left", ceil(seconds));
     return seconds < 2 * hour ? mem_format(", about %.0f min left", seconds / minute)
@@ -81,10 +85,10 @@ static void show_step(void *self, int step, int total, const char *text)
     bool last = step >= total;
     if (!last && progress->shown >= 0 && now - progress->shown < pause) return;
     progress->shown = now;
-    char *detail = shown_text(progress, text), *until = left_text(left);
+    char *detail = shown_text(progress, text), *until = left_text(progress->mode, left);
     if (progress->mode == PROGRESS_JSON)
-        printf("{\"step\": %d, \"of\": %d, \"seconds\": %.3f, \"left\": %.3g, \"detail\": \"%s\"}\n", step,
-               total, seconds, left, detail);
+        printf("{\"step\": %d, \"of\": %d, \"seconds\": %.3f,%s \"detail\": \"%s\"}\n", step, total, seconds,
+               until, detail);
     else {
         if (progress->terminal) show_bar(step, total);
         printf("%d/%d  %.1f s%s  %s%s", step, total, seconds, until, detail,
