@@ -37,6 +37,21 @@ expect 4 run earlier.yaml -o f; says "f.vtkhdf is no result of slender.*; with -
 [ "$(cat f.vtkhdf)" = "no result" ] || { echo "a file of another kind is lost"; bad=1; }
 expect 0 run earlier.yaml -o f --force
 
+# ---- What journals are said to hold ----
+expect 0 "$program" info e.run; says "e.run: finished, 2 steps, 0 frames, [0-9]* states*; the frames are in the result"; says "t 0.001 s  [0-9]* Newton iterations*  [0-9]* factorizations*$"
+cat > preview.yaml <<'END'
+slender: 1
+job: simulate
+rod: {natural_strain: [0, 20, 0], length: 0.2, elements: 5, radius: 1 mm, young: 1 MPa, poisson: 0.4, density: 1100, solver: pbd}
+time: {step: 5 ms, steps: 2}
+END
+expect 0 run preview.yaml
+expect 0 "$program" info preview.run; says "1  t 0.005 s$" # it has no iterations
+sed '/^time/d; s/simulate/equilibrium/; s/, solver: pbd//' preview.yaml > rests.yaml
+expect 0 run rests.yaml
+expect 0 "$program" info rests.run; says "rests.run: finished, 1 frame, 1 state$"
+expect 0 "$program" info rests.vtkhdf; says "converged, 1 frame$"; says "slender/rod/s  *real "
+
 # ---- Input files ----
 sheet() { # how far one vertex is from its place
     printf 'v 0 0 0\nv %s 0 0\nv 0.02 0 0\nv 0 0.01 0\nv 0.01 0.01 0\nv 0.02 0.01 0\nf 1 2 5\nf 1 5 4\nf 2 3 6\nf 2 6 5\n' "$1"
