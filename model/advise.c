@@ -2,6 +2,7 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 #include <math.h>
+#include <string.h>
 
 enum { POINTS = 300, MOMENTS = 30 }; /* at most, of which fields are asked */
 
@@ -59,6 +60,53 @@ static void advise_field(Model *model, const Scene *scene, const Case *c)
             c->name, largest, STRONG);
 }
 
+static bool is_magnetization(const ParamBlock *block)
+{
+    return !strcmp(block->unit, "A/m");
+}
+
+/* Has a block numbers that are not 0, in any stage of any case? */
+static bool is_used(const Model *model, const ParamBlock *block)
+{
+    for (int c = 0; c < model->case_count; c++)
+        for (int s = 0; s < model->cases[c].stage_count; s++)
+            for (int i = 0; i < block->count * block->width; i++)
+                if (model->cases[c].stages[s].p[block->offset + i] != 0) return true;
+    return false;
+}
+
+static bool is_magnetised(const Model *model)
+{
+    bool is = false;
+    for (int b = 0; !is && b < model->params->block_count; b++)
+        is = is_magnetization(&model->params->blocks[b]) && is_used(model, &model->params->blocks[b]);
+    return is;
+}
+
+static const Unknown *unknown_magnetization(const Model *model)
+{
+    for (int k = 0; k < model->design.unknown_count; k++)
+        if (is_magnetization(model->design.unknowns[k].block)) return &model->design.unknowns[k];
+    return NULL;
+}
+
+/* A field and what is magnetised act on each other; one without the other is idle. */
+static void advise_idle(Model *model, const Scene *scene)
+{
+    const Unknown *unknown = unknown_magnetization(model);
+    double largest = 0;
+    for (int k = 0; k < model->case_count; k++)
+        for (int s = 0; s < model->cases[k].stage_count; s++)
+            largest = fmax(largest,
+                           advise_largest_flux(model, scene, &model->cases[k], model->cases[k].stages[s].p));
+    bool field = largest > 0 || (scene->design && scene->design->unknowns.flux_density);
+    if (unknown && !field)
+        mesh_warn(&model->report, "the unknown %s moves nothing: there is no `flux_density`",
+                  unknown->block->name);
+    if (!unknown && field && !is_magnetised(model))
+        mesh_warn(&model->report, "the flux density moves nothing: nothing is magnetised");
+}
+
 /* ---- Targets ---- */
 
 /* Of the box around the points that are somewhere, m. */
@@ -98,4 +146,5 @@ void model_advise(Model *model, const Scene *scene)
         advise_field(model, scene, &model->cases[k]);
         advise_target(model, &model->cases[k]);
     }
+    if (model->flux_blocks.uniform >= 0) advise_idle(model, scene);
 }

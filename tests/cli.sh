@@ -60,9 +60,11 @@ doubts() { # words, settings ..
 doubts "case1: a flux density of 20 T" --set "flux_density=[0, 0, 20]"
 doubts "case1: a flux density of 4 T" --set 'flux_density=["0", "0", "100*x"]'
 doubts "case1: the target is 40 m across, and the body 0.0447 m" --set 'target=["1000*x", "y", "0"]'
+doubts "the unknown magnetization moves nothing: there is no .flux_density." --set "flux_density=[0, 0, 0]"
 sed '/^target/d; /^design/d; s/job: design/job: simulate/' doubt.yaml > still.yaml; mv still.yaml doubt.yaml
 doubts "case1: a flux density of 3 T" --set 'flux_density=["0", "0", "3*sin(pi*t)"]' --set "time={step: 0.1, steps: 10}"
 doubts "case1: a flux density of 3 T" --set 'flux_density=["0", "0", "3*sin(pi*t)*(1 + 0*x)"]' --set "time={step: 0.1, steps: 10}"
+doubts "the flux density moves nothing: nothing is magnetised" --set "shell.magnetization=[0, 0, 0]" --set "time={step: 0.1, steps: 10}"
 sed 's/simulate/equilibrium/' doubt.yaml > stages.yaml; mv stages.yaml doubt.yaml
 doubts "sequence: a flux density of 2 T" --set "sequence=[{flux_density: [0, 0, 1 mT]}, {flux_density: [0, 2, 0]}, {flux_density: [0, 0, 0]}]"
 

@@ -136,7 +136,8 @@ done
 # shellcheck disable=SC2086
 {
     expect 1 "$program" run $hexagram --set "cases[0].flux_density=[0,0,0]" --set "cases[1].flux_density=[0,0,0]" --no-picture -o h --force
-    says "the gradient is zero at the start"; says "noise"
+    says "the gradient is zero at the start: either no unknown (magnetization)"; says "noise"
+    says "warning: the unknown magnetization moves nothing: there is no .flux_density."
     expect 0 "$program" run $hexagram --set design.iterations=1 --no-picture -o h --force
     says "stopped at design.iterations = 1, not yet converged"
 }
