@@ -4,6 +4,7 @@
 #include "cli/say.h"
 #include "cli/verb.h"
 #include <fcntl.h>
+#include <poll.h>
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
@@ -73,11 +74,19 @@ static void end_without_memory(void *self, const char *sentence)
     _exit(RUN_NO_MEMORY);
 }
 
-/* What could not be printed is lost, and known only now: a full disk, a closed stream. */
+/* Has who reads what is printed gone, as `head` does when it has enough? */
+static bool is_unread(int stream)
+{
+    struct pollfd at = {.fd = stream, .events = POLLOUT};
+    return poll(&at, 1, 0) > 0 && (at.revents & (POLLERR | POLLHUP));
+}
+
+/* What could not be printed is lost, and known only now: a full disk, a closed stream; but for what nobody wanted to read. */
 static int finish(int code)
 {
-    bool lost = fflush(stdout) != 0 || ferror(stdout) || ferror(stderr);
+    bool unread = is_unread(STDOUT_FILENO), lost = fflush(stdout) != 0 || ferror(stdout);
     lost = fclose(stdout) != 0 || lost;
+    lost = (lost && !unread) || ferror(stderr);
     return lost ? verb_fail(RUN_CANNOT_WRITE, "what it prints cannot be written: all of it or a part is lost")
                 : code;
 }
@@ -86,6 +95,7 @@ int main(int argc, char **argv)
 {
     hold_streams();
     mem_set_hook((MemHook){end_without_memory, NULL});
+    signal(SIGPIPE, SIG_IGN); /* a run goes on to its result, whether its words are read or not */
     signal(SIGXFSZ, SIG_IGN); /* a file beyond the limit of sizes is what a full disk is: write says EFBIG */
     kernels_start(argv);
     const char *name = argc > 1 ? argv[1] : "help";

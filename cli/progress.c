@@ -3,6 +3,7 @@
 #include "base/memory.h"
 #include "base/plain.h"
 #include "cli/say.h"
+#include <math.h>
 #include <signal.h>
 #include <stdio.h>
 #include <unistd.h>
@@ -34,16 +35,40 @@ static bool is_interrupted(void *self)
     return interrupted != 0;
 }
 
-/* Time left if steps go on as they did. */
-static void show_bar(double seconds, int step, int total)
+/* Seconds left if steps go on as the last ones did; NAN before the first one. A run that is resumed has not made its first
+ * steps, and repeats others in no time. */
+static double seconds_left(Progress *progress, double now, int step, int total)
+{
+    const double memory = 0.9;
+    bool first = progress->step == 0;
+    if (step > progress->step) {
+        double pace = first ? now - progress->started : (now - progress->stepped) / (step - progress->step);
+        progress->pace = first ? pace : memory * progress->pace + (1 - memory) * pace;
+        progress->step = step, progress->stepped = now;
+    }
+    return progress->step == 0 ? NAN : progress->pace * (total - step);
+}
+
+/* ", about 20 s left", or nothing where that is not known, or at the end; the caller frees. */
+static char *left_text(ProgressMode mode, double seconds)
+{
+    const double minute = 60, hour = 3600;
+    if (isnan(seconds)) return mem_text("");
+    if (mode == PROGRESS_JSON) return mem_format(" \"left\": %.3g,", seconds);
+    if (seconds <= 0) return mem_text("");
+    if (seconds < 2 * minute) return mem_format(", about %.0f s left", ceil(seconds));
+    return seconds < 2 * hour ? mem_format(", about %.0f min left", seconds / minute)
+                              : mem_format(", about %.1f h left", seconds / hour);
+}
+
+static void show_bar(int step, int total)
 {
     enum { WIDTH = 24 };
     int filled = total > 0 ? step * WIDTH / total : 0;
     char bar[WIDTH + 1];
     for (int i = 0; i < WIDTH; i++) bar[i] = i < filled ? '#' : '.';
     bar[WIDTH] = 0;
-    printf("\r\033[K[%s] %d/%d ", bar, step, total);
-    if (step > 0 && step < total) printf("%.0f s left ", seconds / step * (total - step));
+    printf("\r\033[K[%s] ", bar);
 }
 
 /* As JSON or as plain text; the caller frees. */
@@ -56,19 +81,21 @@ static void show_step(void *self, int step, int total, const char *text)
 {
     Progress *progress = self;
     double now = clock_seconds(), seconds = now - progress->started, pause = progress->terminal ? 0.1 : 2;
+    double left = seconds_left(progress, now, step, total);
     bool last = step >= total;
     if (!last && progress->shown >= 0 && now - progress->shown < pause) return;
     progress->shown = now;
-    char *detail = shown_text(progress, text);
+    char *detail = shown_text(progress, text), *until = left_text(progress->mode, left);
     if (progress->mode == PROGRESS_JSON)
-        printf("{\"step\": %d, \"of\": %d, \"seconds\": %.3f, \"detail\": \"%s\"}\n", step, total, seconds,
-               detail);
-    else if (progress->terminal) {
-        show_bar(seconds, step, total);
-        printf("%s%s", detail, last ? "\n" : "");
-    } else
-        printf("%d/%d  %.1f s  %s\n", step, total, seconds, detail);
+        printf("{\"step\": %d, \"of\": %d, \"seconds\": %.3f,%s \"detail\": \"%s\"}\n", step, total, seconds,
+               until, detail);
+    else {
+        if (progress->terminal) show_bar(step, total);
+        printf("%d/%d  %.1f s%s  %s%s", step, total, seconds, until, detail,
+               progress->terminal && !last ? "" : "\n");
+    }
     mem_free(detail);
+    mem_free(until);
     fflush(stdout);
 }
 

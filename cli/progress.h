@@ -1,7 +1,8 @@
 /* progress.h - the program as the host of a job (job/host.h): what a run says while it runs, and whether it has been
  * interrupted.
  *
- * On a terminal one line that changes; otherwise a line now and then; with JSON one object per line. */
+ * On a terminal one line that changes; otherwise a line now and then; with JSON one object per line. Each says of how many
+ * steps, and how long the others will take if they go on so. */
 #pragma once
 #include "job/host.h"
 #include <stdbool.h>
@@ -12,6 +13,8 @@ typedef struct Progress {
     ProgressMode mode;
     bool terminal;
     double started, shown; /* s */
+    int step;              /* the last one, 0: none yet        */
+    double stepped, pace;  /* s: when it was; of the last ones */
 } Progress;
 
 /* Catches Ctrl-C and SIGTERM: the first one asks the run to save and stop, the second one ends the program.

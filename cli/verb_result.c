@@ -38,7 +38,8 @@ static char *shape_text(const Array *array, const char *unit)
 
 static void print_array(const char *path, const Array *array)
 {
-    static const char *const types[] = {"float64", "int32", "text"};
+    static const char *const types[] = {"real", "integer",
+                                        "text"}; /* of whatever length they are in the file */
     const char *unit = array->unit ? array->unit : "";
     char *what;
     if (array->type == ARRAY_TEXT)
@@ -52,13 +53,19 @@ static void print_array(const char *path, const Array *array)
     mem_free(what);
 }
 
-/* "a.vtkhdf: settled, 1 frames" */
+static const char *plural(int count)
+{
+    return count == 1 ? "" : "s";
+}
+
+/* "a.vtkhdf: settled, 1 frame" */
 static void print_title(Result *result, const char *path)
 {
     Array status = {0};
     bool known = result_read(result, "slender/status", &status, NULL);
-    say(stdout, "%s: %s%s%d frames", path, known ? (const char *)status.data : "", known ? ", " : "",
-        result_step_count(result));
+    int frames = result_step_count(result);
+    say(stdout, "%s: %s%s%d frame%s", path, known ? (const char *)status.data : "", known ? ", " : "", frames,
+        plural(frames));
     array_clear(&status);
     Array kernels = {0};
     if (result_read(result, "slender/kernels", &kernels, NULL))
@@ -102,25 +109,63 @@ static double evaluation_number(Journal *journal, int index, const char *name)
     return value;
 }
 
-/* An evaluation of a design, an iteration of a drawing, or a step of a simulation. */
-static void print_evaluation(Journal *journal, int index)
+static void print_design(Journal *journal, int index)
 {
-    bool design = false, drawing = false;
-    journal_has(journal, "evaluation", index, "objective", &design, NULL); /* journal_check says more */
-    journal_has(journal, "evaluation", index, "energy", &drawing, NULL);
-    if (design)
-        printf("  %4d  objective %.6e  gradient %.3e  %.1f s\n", index,
-               evaluation_number(journal, index, "objective"),
-               evaluation_number(journal, index, "gradient_norm"),
-               evaluation_number(journal, index, "seconds"));
-    else if (drawing)
-        printf("  %4d  energy %.6e  %g strokes  %.1f s\n", index, evaluation_number(journal, index, "energy"),
-               evaluation_number(journal, index, "strokes"), evaluation_number(journal, index, "seconds"));
-    else
-        printf("  %4d  t %.6g s  %g Newton iterations  %g factorizations\n", index,
-               evaluation_number(journal, index, "time"),
-               evaluation_number(journal, index, "newton_iterations"),
-               evaluation_number(journal, index, "factorizations"));
+    printf("  objective %.6e  gradient %.3e  %.1f s\n", evaluation_number(journal, index, "objective"),
+           evaluation_number(journal, index, "gradient_norm"), evaluation_number(journal, index, "seconds"));
+}
+
+static void print_drawing(Journal *journal, int index)
+{
+    printf("  energy %.6e  %g strokes  %.1f s\n", evaluation_number(journal, index, "energy"),
+           evaluation_number(journal, index, "strokes"), evaluation_number(journal, index, "seconds"));
+}
+
+/* Where it is known: a preview's steps have no iterations. */
+static void print_count(Journal *journal, int index, const char *name, const char *noun)
+{
+    double count = evaluation_number(journal, index, name);
+    if (!isnan(count)) printf("  %g %s%s", count, noun, count == 1 ? "" : "s");
+}
+
+static void print_step(Journal *journal, int index)
+{
+    printf("  t %.6g s", evaluation_number(journal, index, "time"));
+    print_count(journal, index, "newton_iterations", "Newton iteration");
+    print_count(journal, index, "factorizations", "factorization");
+    printf("\n");
+}
+
+/* What "evaluations" of a journal are, by what they hold. */
+typedef struct EvaluationKind {
+    const char *has; /* NULL: anything else */
+    const char *noun;
+    void (*print)(Journal *journal, int index);
+} EvaluationKind;
+
+static const EvaluationKind *kind_of(Journal *journal, const int *indices, int count)
+{
+    static const EvaluationKind kinds[] = {{"objective", "evaluation", print_design},
+                                           {"energy", "iteration", print_drawing},
+                                           {NULL, "step", print_step}};
+    const EvaluationKind *kind = kinds;
+    for (bool has = false; kind->has && count > 0; kind++) {
+        journal_has(journal, "evaluation", indices[0], kind->has, &has, NULL); /* journal_check says more */
+        if (has) break;
+    }
+    return kind;
+}
+
+/* "b.run: not finished, 12 evaluations, 3 frames, 2 states". Once the result is safe, frames may be there only. */
+static void print_journal(Journal *journal, const char *path, const char *noun, int count, int frames,
+                          int states)
+{
+    bool finished = journal_is_finished(journal);
+    char *done = count ? mem_format(", %d %s%s", count, noun, plural(count)) : mem_text("");
+    say(stdout, "%s: %s%s, %d frame%s, %d state%s%s", path, finished ? "finished" : "not finished", done,
+        frames, plural(frames), states, plural(states),
+        finished && frames == 0 ? "; the frames are in the result" : "");
+    mem_free(done);
 }
 
 static int info_journal(const char *path)
@@ -128,15 +173,18 @@ static int info_journal(const char *path)
     Error err;
     Journal *journal = journal_open(path, JOURNAL_READ, &err);
     if (!journal) return verb_fail(RUN_REFUSED, err.text);
-    int evaluations, frames, states, *indices = NULL, count = 0;
-    bool ok = journal_count(journal, "evaluation", &evaluations, &err) &&
-              journal_count(journal, "frame", &frames, &err) &&
-              journal_count(journal, "state", &states, &err);
-    if (ok)
-        say(stdout, "%s: %s, %d evaluations, %d frames, %d states", path,
-            journal_is_finished(journal) ? "finished" : "not finished", evaluations, frames, states);
-    ok = ok && journal_indices(journal, "evaluation", &indices, &count, &err);
-    for (int k = 0; ok && k < count; k++) print_evaluation(journal, indices[k]);
+    int frames, states, *indices = NULL, count = 0;
+    bool ok = journal_count(journal, "frame", &frames, &err) &&
+              journal_count(journal, "state", &states, &err) &&
+              journal_indices(journal, "evaluation", &indices, &count, &err);
+    if (ok) {
+        const EvaluationKind *kind = kind_of(journal, indices, count);
+        print_journal(journal, path, kind->noun, count, frames, states);
+        for (int k = 0; k < count; k++) {
+            printf("  %4d", indices[k]);
+            kind->print(journal, indices[k]);
+        }
+    }
     mem_free(indices);
     ok = ok && journal_check(journal, &err);
     if (!ok) say(stderr, "slender: %s", err.text);
@@ -203,6 +251,10 @@ static RunStatus export_frame(Result *result, int frame, const char *path, Error
         error_set(err, "there is no frame %d: the result has %d, from 0", frame, result_step_count(result));
         return RUN_REFUSED;
     }
+    if (!result_has(result, "slender/faces")) {
+        error_set(err, "there is no mesh in it: its numbers are exported as .csv, with --dataset");
+        return RUN_REFUSED;
+    }
     if (!result_read_as(result, "slender/faces", ARRAY_INT32, 2, 3, &faces, err)) return RUN_REFUSED;
     bool ok = frame < 0 ? result_read_as(result, "slender/state/x", ARRAY_FLOAT64, 2, 3, &points, err)
                         : result_read_step(result, "Points", frame, &points, err);
@@ -259,6 +311,30 @@ static bool check_source(Result *result, const char *input, const char *output, 
 }
 
 /* A scene's path is not in its result: what is written is at least never named like one. */
+/* What is asked for, in the right words: an ending that says what is to be written, and no option that it does not use. */
+static bool check_request(const Export *what, bool run, Error *err)
+{
+    static const char *const endings[] = {".csv", ".obj",  ".svg", ".gcode", ".ngc",
+                                          ".nc",  ".hpgl", ".plt", ".vtkhdf"};
+    bool known = false, mesh = has_ending(what->output, ".obj");
+    for (size_t k = 0; k < sizeof endings / sizeof *endings; k++)
+        known = known || has_ending(what->output, endings[k]);
+    if (!known)
+        return error_set(
+            err,
+            "%s: numbers are exported as .csv, with --dataset, a mesh as .obj, a drawing as .svg, "
+            ".gcode, .ngc, .nc, .hpgl or .plt, a run as .vtkhdf; slender picture draws .png, .svg "
+            "and .pdf",
+            what->output);
+    if (what->dataset && run)
+        return error_set(err, "--dataset is not used with a run: export its result first");
+    if (what->frame >= 0 && (what->dataset || !mesh))
+        return error_set(err, "--frame is for a mesh, -o FILE.obj, and is not used here");
+    if (what->language && (what->dataset || mesh || run))
+        return error_set(err, "--plotter is for a drawing, -o FILE.gcode, and is not used here");
+    return true;
+}
+
 static bool check_ending(const char *path, const char *what, const char *ending, Error *err)
 {
     return has_ending(path, ending) || error_set(err, "%s: %s exported as %s", path, what, ending);
@@ -286,7 +362,7 @@ static RunStatus export_result(const char *input, const Export *what, Error *err
     if (!result) return RUN_REFUSED;
     RunStatus status = RUN_CANNOT_WRITE;
     if (check_source(result, input, what->output, err) && replace_check(what->output, err)) {
-        status = write_export(result, what, err);
+        status = check_request(what, false, err) ? write_export(result, what, err) : RUN_USAGE;
         if (status != RUN_DONE) error_prefix(err, "%s", input);
     }
     result_close(result);
@@ -310,12 +386,14 @@ static bool result_def(Journal *journal, const char *input, const char *output, 
     return ok;
 }
 
-static RunStatus export_journal(const char *input, const char *path, Error *err)
+static RunStatus export_journal(const char *input, const Export *what, Error *err)
 {
+    const char *path = what->output;
     if (!has_ending(path, ".vtkhdf")) {
         error_set(err, "%s: a run is exported as .vtkhdf, and that as other files", path);
         return RUN_CANNOT_WRITE;
     }
+    if (!check_request(what, true, err)) return RUN_USAGE;
     char *sidecar = result_sidecar(path);
     bool free = outputs_check_source(NULL, input, sidecar, err) && replace_check(sidecar, err);
     mem_free(sidecar);
@@ -353,7 +431,7 @@ int verb_export(int argc, char **argv)
     if (!what.output) return verb_fail(RUN_USAGE, "-o FILE must be given; slender export --help says more");
     Error err;
     if (!outputs_check_source(NULL, input, what.output, &err)) return verb_fail(RUN_CANNOT_WRITE, err.text);
-    RunStatus status = has_ending(input, ".run") ? export_journal(input, what.output, &err)
-                                                 : export_result(input, &what, &err);
+    RunStatus status =
+        has_ending(input, ".run") ? export_journal(input, &what, &err) : export_result(input, &what, &err);
     return status == RUN_DONE ? RUN_DONE : verb_fail(status, err.text);
 }

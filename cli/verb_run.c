@@ -34,7 +34,7 @@ static const char usage[] =
     "  --page SIZE      of a drawing: a4, a3, .., 'a4 landscape', 210x297mm\n"
     "  --margin LENGTH  of a drawing: 10mm\n"
     "  --resume         goes on with a run that was interrupted, or extends one that has finished\n"
-    "  --force          discards an unfinished run of that name\n"
+    "  --force          discards an unfinished run of that name, or replaces the result of another scene\n"
     "  --threads N      that share the work, 1 to 64; the same numbers come out; default: as many as there "
     "are "
     "processors\n"

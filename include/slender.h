@@ -107,7 +107,7 @@ SLENDER_API void slender_scene_destroy(SlenderScene *scene);
 typedef struct SlenderRun {
     const char *output; /* NAME of NAME.vtkhdf, NAME.run, ..                                                */
     int threads;        /* 1 to 64 */
-    int resume, force;  /* goes on with a run that was interrupted, or extends one; discards one            */
+    int resume, force;  /* goes on with a run, or extends one; discards one, or the result of another scene */
     int no_journal;     /* keeps the journal in memory: what is interrupted is lost                         */
     SlenderHost host;
 } SlenderRun;

@@ -304,11 +304,11 @@ static void manual_units(Text *text)
     text_add(text, "## <a name=\"units\"></a>units\n\nA number may carry a unit of the kind that its key "
                    "has, `1.5 mm` or `1.5mm`; "
                    "without one it is in that of its key. Units are ");
-    unit_list(true, text);
+    unit_list(true, "`", text);
     text_add(text, ", which take the prefixes ");
-    unit_list_prefixes(text);
+    unit_list_prefixes("`", text);
     text_add(text, " (`\xc2\xb5` is `u`), and ");
-    unit_list(false, text);
+    unit_list(false, "`", text);
     text_add(text, "; and products of them with powers and one slash: `kN/m^2`, `N s/m`, `1/mm`.\n");
 }
 
@@ -317,10 +317,10 @@ char *yaml_manual(const YamlTable *table, const char *title)
     Tables tables = {0};
     collect(&tables, table);
     Text text = {0};
-    text_add(
-        &text,
-        "# %s\n\nMade by `slender schema --manual` from the field tables of the program; do not edit.\n\n",
-        title);
+    text_add(&text,
+             "# %s\n\nMade by `slender schema --manual` from the field tables of the program; do not edit. "
+             "What formulas may say is in formulas.md, units and --set are in units.md.\n\n",
+             title);
     for (int k = 0; k < tables.count; k++) {
         text_add(&text, "## <a name=\"");
         manual_anchor(&text, tables.tables[k]->name);

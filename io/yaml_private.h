@@ -79,9 +79,9 @@ bool unit_is_number(const char *text);
  * YamlField. */
 bool unit_parse(const char *text, const char *unit, double *value, char *wrong, size_t size);
 
-/* For the manual: the units that take prefixes, or those that take none; the prefixes. */
-void unit_list(bool prefixed, Text *text);
-void unit_list_prefixes(Text *text);
+/* The units that take prefixes, or those that take none; the prefixes; each between two marks. */
+void unit_list(bool prefixed, const char *mark, Text *text);
+void unit_list_prefixes(const char *mark, Text *text);
 
 /* Is it a unit that the table of units can read? */
 bool unit_is_known(const char *unit);

@@ -1,4 +1,5 @@
 /* Numbers with units: "1.5 mm", "20 mT", "120 kA/m", "N s/m". */
+#include "base/memory.h"
 #include "io/yaml_private.h"
 #include <ctype.h>
 #include <math.h>
@@ -43,20 +44,47 @@ static const struct {
 } prefixes[] = {{"G", 1e9},  {"M", 1e6},         {"k", 1e3},         {"d", 1e-1}, {"c", 1e-2}, {"m", 1e-3},
                 {"u", 1e-6}, {"\xc2\xb5", 1e-6}, {"\xce\xbc", 1e-6}, {"n", 1e-9}, {"p", 1e-12}};
 
-void unit_list(bool prefixed, Text *text)
+/* What units may be of, for a sentence that says of which one it is. */
+static const struct {
+    const char *noun, *unit;
+} kinds[] = {
+    {"a length", "m"},
+    {"an area", "m^2"},
+    {"a volume", "m^3"},
+    {"a mass", "g"},
+    {"a density", "kg/m^3"},
+    {"a time", "s"},
+    {"a rate", "1/s"},
+    {"an angle", "rad"},
+    {"a speed", "m/s"},
+    {"an acceleration", "m/s^2"},
+    {"a curvature", "1/m"},
+    {"a force", "N"},
+    {"a force per length", "N/m"},
+    {"a pressure", "Pa"},
+    {"an energy", "J"},
+    {"a power", "W"},
+    {"a current", "A"},
+    {"a magnetisation", "A/m"},
+    {"a magnetic moment", "A m^2"},
+    {"a flux density", "T"},
+};
+
+void unit_list(bool prefixed, const char *mark, Text *text)
 {
     const char *before = "";
     for (size_t k = 0; k < sizeof units / sizeof *units; k++) {
         if (units[k].prefixed != prefixed) continue;
-        text_add(text, "%s`%s`", before, units[k].symbol);
+        text_add(text, "%s%s%s%s", before, mark, units[k].symbol, mark);
         before = ", ";
     }
 }
 
-void unit_list_prefixes(Text *text)
+void unit_list_prefixes(const char *mark, Text *text)
 {
     for (size_t k = 0; k < sizeof prefixes / sizeof *prefixes; k++)
-        if (!(prefixes[k].symbol[0] & 0x80)) text_add(text, "%s`%s`", k ? ", " : "", prefixes[k].symbol);
+        if (!(prefixes[k].symbol[0] & 0x80))
+            text_add(text, "%s%s%s%s", k ? ", " : "", mark, prefixes[k].symbol, mark);
 }
 
 static const Unit *find_unit(const char *symbol, size_t length, bool prefixed)
@@ -89,9 +117,10 @@ static bool is_symbol(char c)
     return isalpha((unsigned char)c) || (unsigned char)c >= 0x80;
 }
 
-/* A product of symbols with powers; after a slash they divide. */
-static bool parse_unit(const char *text, Unit *product)
+/* A product of symbols with powers; after a slash they divide. False: *text is then where it is none. */
+static bool parse_unit(const char **at, Unit *product)
 {
+    const char *text = *at;
     *product = (Unit){.factor = 1};
     if (text[0] == '1' && text[1] == '/') text++;
     for (int sign = 1; *text;) {
@@ -100,7 +129,7 @@ static bool parse_unit(const char *text, Unit *product)
             continue;
         }
         if (*text == '/') {
-            if (sign < 0) return false;
+            if (sign < 0) return *at = text, false;
             sign = -1;
             text++;
             continue;
@@ -108,11 +137,11 @@ static bool parse_unit(const char *text, Unit *product)
         size_t length = 0;
         while (is_symbol(text[length])) length++;
         Unit unit;
-        if (!length || !symbol_unit(text, length, &unit)) return false;
+        if (!length || !symbol_unit(text, length, &unit)) return *at = text, false;
         text += length;
         int power = 1;
         if (*text == '^') {
-            if (!isdigit((unsigned char)text[1]) || isdigit((unsigned char)text[2])) return false;
+            if (!isdigit((unsigned char)text[1]) || isdigit((unsigned char)text[2])) return *at = text, false;
             power = text[1] - '0';
             text += 2;
         }
@@ -125,7 +154,46 @@ static bool parse_unit(const char *text, Unit *product)
 bool unit_is_known(const char *unit)
 {
     Unit parsed;
-    return !unit || (parse_unit(unit, &parsed) && parsed.factor == 1);
+    return !unit || (parse_unit(&unit, &parsed) && parsed.factor == 1);
+}
+
+static bool is_alike(const Unit *a, const Unit *b)
+{
+    return !memcmp(a->exponent, b->exponent, sizeof a->exponent);
+}
+
+/* "is a length", of a known one. */
+static const char *kind_of(const Unit *unit)
+{
+    for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
+        const char *text = kinds[k].unit;
+        Unit kind;
+        if (parse_unit(&text, &kind) && is_alike(unit, &kind)) return kinds[k].noun;
+    }
+    return "of another kind";
+}
+
+/* What of the text from `at` on is no unit, and which there are. */
+static void no_unit(const char *text, const char *at, const char *wanted, char *wrong, size_t size)
+{
+    int length = 0;
+    while (is_symbol(at[length])) length++;
+    if (length == 0) {
+        snprintf(
+            wrong, size,
+            "must be a number in %s, and '%.60s' is none: units have powers by ^ and one slash, as kg/m^3",
+            wanted, text);
+        return;
+    }
+    Text list = {0};
+    unit_list(true, "", &list);
+    text_add(&list, ", with ");
+    unit_list_prefixes("", &list);
+    text_add(&list, " before them, and ");
+    unit_list(false, "", &list);
+    snprintf(wrong, size, "must be a number in %s, and '%.*s' is no unit: there are %s", wanted,
+             length < 60 ? length : 60, at, list.text);
+    mem_free(list.text);
 }
 
 /* Decimal only: strtod would take hexadecimal, "inf" and "nan" too. */
@@ -179,10 +247,10 @@ bool unit_parse(const char *text, const char *unit, double *value, char *wrong, 
             snprintf(wrong, size, "must be a plain number, without the unit in '%.60s'", text);
             return false;
         }
-        bool fits = parse_unit(rest, &given) && parse_unit(unit, &wanted) &&
-                    !memcmp(given.exponent, wanted.exponent, sizeof given.exponent);
-        if (!fits) {
-            snprintf(wrong, size, "must be a number in %s, and '%.60s' is none", unit, text);
+        const char *in_unit = unit;
+        if (!parse_unit(&rest, &given)) return no_unit(text, rest, unit, wrong, size), false;
+        if (!parse_unit(&in_unit, &wanted) || !is_alike(&given, &wanted)) {
+            snprintf(wrong, size, "must be a number in %s, and '%.60s' is %s", unit, text, kind_of(&given));
             return false;
         }
         *value *= given.factor;

@@ -52,7 +52,7 @@ const char *node_kind_name(const Node *node)
 
 bool load_number(Load *load, const YamlField *row, const Node *node, double *value)
 {
-    char what[256];
+    char what[400];
     if (node->kind != NODE_SCALAR) {
         snprintf(what, sizeof what, "must be a number%s%s, not %s", row->unit ? " in " : "",
                  row->unit ? row->unit : "", node_kind_name(node));

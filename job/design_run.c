@@ -223,6 +223,30 @@ static char *reached(const DesignRun *d, const OptimiserInfo *info)
     return text;
 }
 
+/* "magnetization, young"; the caller frees. */
+static char *unknown_names(const Model *model)
+{
+    char *list = mem_text("");
+    for (int k = 0; k < model->design.unknown_count; k++) {
+        const Unknown *unknown = &model->design.unknowns[k];
+        if (!unknown->auxiliary)
+            list = mem_join(list, *list ? ", " : "", design_unknown_name(model, unknown->block));
+    }
+    return list;
+}
+
+static void say_stationary(const DesignRun *d)
+{
+    char *names = unknown_names(d->run->model);
+    host_say(
+        d->run->host,
+        "the gradient is zero at the start: either no unknown (%s) acts on the objective (is something "
+        "magnetised, is there a field, can what the objective looks at move?), or the start is a symmetric "
+        "point: give the unknowns `noise` or another `start`",
+        names);
+    mem_free(names);
+}
+
 /* What has happened, in a sentence. */
 static void say(const DesignRun *d, const OptimiserInfo *info)
 {
@@ -246,10 +270,7 @@ static void say(const DesignRun *d, const OptimiserInfo *info)
         host_say(host, "stalled after %d evaluations, no better design was found: %s", d->evaluations, F);
         break;
     case OPTIMISER_STATIONARY:
-        host_say(host,
-                 "the gradient is zero at the start: either no unknown acts on the objective (is something "
-                 "magnetised, is there a field?), or the start is a symmetric point: give the unknowns "
-                 "`noise` or another `start`");
+        say_stationary(d);
         break;
     default: /* stopped: the verb says it */
         break;

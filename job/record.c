@@ -11,6 +11,7 @@
 #include "solve/kernels.h"
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 /* ---- The journal's beginning ---- */
 
@@ -46,6 +47,14 @@ static char *scene_of_journal(const Array *text)
     return effective;
 }
 
+/* Which key of the scene is not as it was there, but for some keys; NULL: none. The caller frees. */
+static char *difference(const Array *text, const char *scene, const char *const *keys)
+{
+    char *before = scene_of_journal(text), *key = yaml_difference(before, scene, keys);
+    mem_free(before);
+    return key;
+}
+
 /* `files`: keys whose paths need not be the same. */
 static bool check_scene(Run *run, const char *scene, char *const *files, Error *err)
 {
@@ -53,17 +62,16 @@ static bool check_scene(Run *run, const char *scene, char *const *files, Error *
     Array old;
     if (!journal_get(run->journal, "meta", 0, "scene", &old, err)) return false;
     const char **keys = ignored_keys(free, files);
-    char *before = scene_of_journal(&old), *difference = yaml_difference(before, scene, keys);
-    mem_free(before);
+    char *changed = difference(&old, scene, keys);
     array_clear(&old);
     mem_free(keys);
-    if (!difference) return true;
+    if (!changed) return true;
     char *list = list_of(free);
     error_set(err,
               "the scene has changed since that run: %s is not the same; with --resume only %s may change",
-              difference, list);
+              changed, list);
     mem_free(list);
-    mem_free(difference);
+    mem_free(changed);
     return false;
 }
 
@@ -84,6 +92,74 @@ static bool check_resumed(Run *run, const char *scene, const char *inputs, Error
     array_clear(&old);
     return ok;
 }
+
+/* ---- The result of an earlier run ---- */
+
+/* That a finished run left: what an unfinished one did, its journal keeps. */
+static bool is_finished(Result *result)
+{
+    Array status;
+    if (!result_read(result, "slender/status", &status, NULL)) return false;
+    bool unfinished = !strcmp(status.data, "unfinished") || !strcmp(status.data, "interrupted");
+    array_clear(&status);
+    return !unfinished;
+}
+
+/* `files`: keys whose paths need not be the same. */
+static bool is_of_scene(const Run *run, const Array *text, const char *scene, char *const *files, Error *err)
+{
+    static const char *const none[] = {NULL};
+    const char **keys = ignored_keys(none, files), **free = ignored_keys(run->model->job->free_keys, files);
+    char *changed = difference(text, scene, keys), *fixed = difference(text, scene, free);
+    if (changed)
+        error_set(
+            err,
+            "it is the result of another scene: %s is not the same; give another name with -o, replace it "
+            "with --force%s",
+            changed, fixed ? "" : ", or go on with it with --resume");
+    bool same = !changed;
+    mem_free(changed);
+    mem_free(fixed);
+    mem_free(keys);
+    mem_free(free);
+    return same;
+}
+
+/* Of the same scene, made of the same files? An older result does not tell files by what was in them. */
+static bool is_same_run(const Run *run, Result *result, const char *scene, const char *inputs, Error *err)
+{
+    static char *const none[] = {NULL};
+    Array text, before = {0};
+    if (!result_read(result, "slender/scene", &text, err)) return false;
+    bool told = result_has(result, "slender/inputs");
+    char **keys = told ? inputs_keys(run->scene) : NULL;
+    bool ok = (!told || result_read(result, "slender/inputs", &before, err)) &&
+              is_of_scene(run, &text, scene, keys ? keys : none, err) &&
+              (!told || inputs_check(run->scene, before.data, inputs, err));
+    array_clear(&text);
+    array_clear(&before);
+    mem_free(keys);
+    return ok;
+}
+
+/* A finished result is replaced by one of the same scene, of the same files, only. */
+static bool check_earlier(const Run *run, Error *err)
+{
+    if (access(run->result, F_OK) != 0) return true;
+    Error why;
+    Result *result = result_open(run->result, &why);
+    if (!result) return error_set(err, "%.900s; with --force it is replaced", why.text);
+    char *scene = yaml_write(scene_table(), run->scene), *inputs = inputs_text(run->scene, err);
+    bool ok = inputs != NULL;
+    if (ok && is_finished(result))
+        ok = is_same_run(run, result, scene, inputs, err) || error_prefix(err, "%s", run->result);
+    mem_free(scene);
+    mem_free(inputs);
+    result_close(result);
+    return ok;
+}
+
+/* ---- The beginning ---- */
 
 /* What is known from the start, in the place of what an earlier part of the run has put there; its end is
  * none now. */
@@ -193,7 +269,8 @@ static RunStatus open_and_run(const RecordDef *def, Run *run, Error *err)
     char *journal = mem_format("%s.run", def->name);
     RunStatus status = RUN_CANNOT_WRITE;
     if (check_output(def->name, run->result, err) &&
-        outputs_check(def->scene, def->path, run->result, def->picture, err))
+        outputs_check(def->scene, def->path, run->result, def->picture, err) &&
+        (def->journal != JOURNAL_NEW || check_earlier(run, err)))
         run->journal = journal_open(def->in_memory ? NULL : journal, def->journal, err);
     if (run->journal) {
         warn_sidecar(run);

@@ -1,6 +1,7 @@
 #include "model/model.h"
 #include "base/memory.h"
 #include "io/table.h"
+#include "model/advise.h"
 #include "model/scene_tables.h"
 #include "model/start.h"
 #include "model/world_report.h"
@@ -198,6 +199,7 @@ static Model *create(const Scene *scene, YamlFile *file, bool general)
     model->start = NULL;
     if (ok) model_put_world(model, scene);
     ok = ok && model_check_world(model, file);
+    if (ok) model_advise(model, scene);
     if (ok && model->body->ops->advise) model->body->ops->advise(model, scene);
     if (ok) world_advise(model);
     if (ok) return model;

@@ -38,6 +38,36 @@ for verb in check "run --no-picture -o coarse"; do
     says "warning: fewer than 3 cells over the magnetic bending length"
 done
 
+# What is doubtful is said by both, before the work: fields that no magnet gives, wherever they are and whenever; targets of
+# another size than the body; and nothing of what is not.
+cat > doubt.yaml <<'END'
+slender: 1
+job: design
+shell: {mesh: {shape: sheet, size: [40 mm, 20 mm], cells: [4, 2]}, thickness: 1 mm, young: 1 MPa, poisson: 0.3, magnetization: [10 kA/m, 0, 0]}
+flux_density: [0, 0, 2 mT]
+fix: [{group: root, clamp: true}]
+target: ["x", "y", "5*x^2"]
+design: {unknowns: {magnetization: {noise: 100}}, objectives: [{target: 1}], iterations: 0}
+END
+"$program" check doubt.yaml > out.txt 2> err.txt; [ ! -s err.txt ] || { echo "nothing is doubtful, and it says"; cat err.txt; bad=1; }
+doubts() { # words, settings ..
+    words=$1; shift
+    for verb in check "run --no-picture --force -o doubt"; do
+        # shellcheck disable=SC2086
+        "$program" $verb doubt.yaml "$@" > out.txt 2> err.txt; says "warning: $words"
+    done
+}
+doubts "case1: a flux density of 20 T" --set "flux_density=[0, 0, 20]"
+doubts "case1: a flux density of 4 T" --set 'flux_density=["0", "0", "100*x"]'
+doubts "case1: the target is 40 m across, and the body 0.0447 m" --set 'target=["1000*x", "y", "0"]'
+doubts "the unknown magnetization moves nothing: there is no .flux_density." --set "flux_density=[0, 0, 0]"
+sed '/^target/d; /^design/d; s/job: design/job: simulate/' doubt.yaml > still.yaml; mv still.yaml doubt.yaml
+doubts "case1: a flux density of 3 T" --set 'flux_density=["0", "0", "3*sin(pi*t)"]' --set "time={step: 0.1, steps: 10}"
+doubts "case1: a flux density of 3 T" --set 'flux_density=["0", "0", "3*sin(pi*t)*(1 + 0*x)"]' --set "time={step: 0.1, steps: 10}"
+doubts "the flux density moves nothing: nothing is magnetised" --set "shell.magnetization=[0, 0, 0]" --set "time={step: 0.1, steps: 10}"
+sed 's/simulate/equilibrium/' doubt.yaml > stages.yaml; mv stages.yaml doubt.yaml
+doubts "sequence: a flux density of 2 T" --set "sequence=[{flux_density: [0, 0, 1 mT]}, {flux_density: [0, 2, 0]}, {flux_density: [0, 0, 0]}]"
+
 # An equilibrium and everything that can be made of it.
 scene=$here/../scenes/cantilever.yaml
 expect 0 "$program" check "$scene" --derivatives; says "derivatives of bending"
@@ -75,6 +105,10 @@ expect 3 "$program" export beam.vtkhdf -o x.csv --dataset scene; says "a text, n
 expect 3 "$program" export beam.vtkhdf -o x.obj --frame 7; says "there is no frame 7"
 expect 3 "$program" picture beam.vtkhdf -o x.png --frame 7; says "frames, from 0"
 expect 2 "$program" export beam.vtkhdf -o x.csv; says "which numbers? --dataset names them"
+for ending in png csv.txt vtk stl; do expect 2 "$program" export beam.vtkhdf -o x.$ending; says "numbers are exported as .csv, with --dataset, a mesh as .obj, a drawing as .svg"; done
+expect 2 "$program" export beam.vtkhdf -o x.obj --plotter hpgl; says "plotter is for a drawing"
+expect 2 "$program" export beam.vtkhdf -o x.csv --dataset state/x --frame 0; says "frame is for a mesh"
+expect 2 "$program" export beam.run -o x.vtkhdf --dataset state/x; says "dataset is not used with a run"
 expect 0 "$program" export beam.run -o again.vtkhdf
 cmp -s beam.vtkhdf again.vtkhdf || { echo "the journal gives another result"; bad=1; }
 for ending in svg pdf png; do expect 0 "$program" picture beam.vtkhdf -o p.$ending --field energy_bending --view 0,-1,0.3; exists p.$ending; done
@@ -95,7 +129,7 @@ expect 3 "$program" picture beam.vtkhdf -o view.png --clip x=100; says "the plan
 expect 4 "$program" run "$scene" -o no/such/folder; says "cannot be"
 expect 1 "$program" run "$scene" -o short --set solver.max_iterations=2 --set "load_steps=1"; says "short.vtkhdf"
 expect 0 "$program" info short.vtkhdf;          says "state/x"
-expect 0 "$program" run "$scene" -o json --log=json; says '"step": 1'
+expect 0 "$program" run "$scene" -o json --log=json; says '"step": 1, "of": 1, "seconds": [0-9.]*, "left": 0,'
 expect 0 "$program" schema;                     says "json-schema.org"
 expect 0 "$program" schema --manual;            says "| .thickness. |"
 "$program" schema --manual | cmp -s - "$here/../docs/scene.md" || { echo "docs/scene.md is not what slender schema --manual says"; bad=1; }
@@ -125,8 +159,8 @@ expect 0 "$program" run star.yaml --quiet --no-picture
 expect 4 "$program" export star.vtkhdf -o star.obj; says "the scene is made of it"
 expect 4 "$program" export star.vtkhdf -o ./star.obj --dataset state/x; says "the scene is made of it"
 mkdir aside; (cd aside; expect 4 "$program" export ../star.vtkhdf -o ../star.obj; says "the scene is made of it"; exit $bad) || bad=1
-expect 4 "$program" export star.vtkhdf -o star.yaml --dataset state/x; says "numbers are exported as .csv"
-expect 4 "$program" export star.vtkhdf -o star.yaml; says "a mesh is exported as .obj"
+expect 2 "$program" export star.vtkhdf -o star.yaml --dataset state/x; says "numbers are exported as .csv"
+expect 2 "$program" export star.vtkhdf -o star.yaml; says "a mesh as .obj"
 grep -q "star.obj" star.yaml || { echo "the scene is written over"; bad=1; }
 ln -s star.obj star.svg
 expect 4 "$program" picture star.vtkhdf -o star.svg; says "the scene is made of it"
@@ -149,6 +183,15 @@ done
 "$program" run "$scene" --quiet --no-picture -o closed >&- 2>&-; code=$?
 [ $code = 0 ] || { echo "a quiet run without streams ends with $code"; bad=1; }
 expect 0 "$program" info closed.vtkhdf
+
+# A reader that has enough, as `head` has, ends nothing and is no fault.
+rm -f unread.*
+for words in "run $scene --no-picture -o unread --log=json" "info beam.vtkhdf" schema; do
+    # shellcheck disable=SC2086
+    { sleep 0.2; "$program" $words 2> err.txt; echo $? > code.txt; } | true
+    [ "$(cat code.txt)" = 0 ] && [ ! -s err.txt ] || { echo "$words, which nobody reads, ends with $(cat code.txt)"; cat err.txt; bad=1; }
+done
+same unread.vtkhdf beam.vtkhdf
 
 # A picture that cannot be drawn is said by a quiet run, too: files may have 220 blocks, and it alone has more.
 (ulimit -f 220; "$program" run "$here/scene_small.yaml" --set shell.mesh.n=2 --set design.iterations=0 --quiet -o undrawn) > out.txt 2> err.txt; code=$?

@@ -166,5 +166,5 @@ expect 0 "$program" run picture.yaml --quiet --no-picture -o way --set spline.im
     --set output.every=1 --set "spline.start={kind: random, ink: 0.1}"
 grep -q 4-black way.svg || { echo "no black"; bad=1; }
 grep -l 1-cyan way-*.svg && { echo "strokes of another pen on the way"; bad=1; }
-expect 0 "$program" info inks.vtkhdf;           says "metrics/tone_rmse  *float64  4"
+expect 0 "$program" info inks.vtkhdf;           says "metrics/tone_rmse  *real *4"
 exit $bad

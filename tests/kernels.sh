@@ -46,7 +46,7 @@ done
 for limit in 130000 200000 260000; do
     expect 0 "$program" run "$here/scene_small.yaml" --quiet --no-picture -o little --force --set design.iterations=1
     cp little.vtkhdf before.vtkhdf
-    (ulimit -v $limit && exec timeout -s KILL 60 "$program" run "$here/scene_small.yaml" --set shell.mesh.n=60 --quiet --no-picture -o little) > out.txt 2> err.txt
+    (ulimit -v $limit && exec timeout -s KILL 60 "$program" run "$here/scene_small.yaml" --set shell.mesh.n=60 --quiet --no-picture --force -o little) > out.txt 2> err.txt
     code=$?
     [ $code = 5 ] || { echo "with $limit kB it ends with $code"; cat err.txt; bad=1; }
     says "slender: out of memory"

@@ -3,7 +3,7 @@
   /usr/bin/python3 tests/keys.py PROGRAM [SCENE ..]      needs numpy and h5py
 
 A key that may change nothing is in FREE. Prints what is ignored, what is refused and why; ends with 1 where a key is
-ignored. Two minutes."""
+ignored. Ten minutes."""
 import json, os, subprocess, sys, tempfile
 import h5py, numpy as np
 
@@ -11,6 +11,7 @@ FREE = {
     "solver.max_iterations", "solver.step_tolerance", "solver.force_tolerance",  # where the first guess is good enough
     "output.every", "output.precision",  # of frames, where there is one
     "design.tolerance", "rod.curve.where", "output.png",  # no pictures are made here
+    "spline.tolerance", "spline.rounds",  # where iterations are done before
     "shell.coercivity", "solid.coercivity",  # which warn only
     "time", "time.step", "time.steps",  # the statics of a motion's scene leave them
 }
@@ -89,14 +90,14 @@ design: {unknowns: {magnetization: {noise: 100}}, objectives: [{target: 1}], ite
     "rod trajectory": "job: trajectory\nrod:\n  natural_strain: [1, 2, 3]" + ROD + "  elements: 20\n" + FLUX + """time: {step: 5 ms, steps: 5}
 design: {unknowns: {flux_density: {noise: 0.01}}, objectives: [{waypoint: {vertex: tip, at: [0.15, 0, 0.05]}}], iterations: 3}
 """,
-    "rod preview": "job: simulate\nrod:" + CURVE + "  elements: 20\n  solver: pbd\ntime: {step: 5 ms, steps: 5}\n",
+    "rod preview": "job: simulate\nrod:" + CURVE + "  elements: 20\n  solver: pbd\n  magnetization: [20000, 0, 0]\n" + FLUX + "time: {step: 5 ms, steps: 5}\n",
     "rod invert": "job: invert\nrod:" + CURVE + "  elements: 20\n  magnetization: [1000, 0, 0]\n" + FLUX,
-    "rod invert file": "job: invert\nrod:\n  curve: {file: points.csv}" + CURVE.split("\n", 2)[2].join(["\n", ""]) + "  elements: 20\n" + FLUX,
+    "rod invert file": "job: invert\nrod:\n  curve: {file: points.csv}" + CURVE.split("\n", 2)[2].join(["\n", ""]) + "  elements: 20\n  magnetization: [1000, 0, 0]\n" + FLUX,
     "rod identify": "job: identify\nrod:\n  poses:\n" + "".join(
         "    - {file: pose%d.csv, frame: %s, noise: 0.1 mm}\n" % (k, f) for k, f in enumerate([
             "[[1, 0, 0], [0, 1, 0], [0, 0, 1]]",
             "[[0.9397, 0, -0.3420], [0.3368, -0.1736, 0.9254], [-0.0594, -0.9848, -0.1632]]",
-            "[[0, 0, -1], [0, 1, 0], [1, 0, 0]]"])) + "  radius: 1.3 mm\n  density: 1180\n  elements: 40\n",
+            "[[0, 0, -1], [0, 1, 0], [1, 0, 0]]"])) + "  radius: 1.3 mm\n  density: 1180\n  elements: 40\n  magnetization: [2000, 0, 0]\n" + FLUX,
     "spline": """job: draw
 spline:
   density: "0.3 + 0.4*u"
@@ -129,13 +130,29 @@ spline:
 # Values by section and key; else they follow from the kind.
 VALUES = {
     "scene.fix": ["[{boundary: true}]"], "scene.loads": ["[{force: [0, 0, 1 mN]}]"],
-    "scene.target": ['["x + 1 mm/m", "y", "10*x"]', '["s", "0", "-s"]'],
+    "scene.target": ['["x + 0.001", "y", "10*x"]', '["s", "0", "-s"]'],
     "scene.cases": ["[{name: one, gravity: [0, 0, -3]}, {name: two}]", "[{weight: 2}]"],
     "scene.sequence": ["[{gravity: [0, 0, -3]}, {gravity: [0, 0, -4]}]"],
     "scene.design": ["{unknowns: {magnetization: {}}, objectives: [{target: 1}]}"],
     "scene.checks": ["[stability]", "[self_contact]", "[round_trip]"], "scene.load_steps": ["3"],
     "scene.time": ["0.1 s", "{step: 1 ms, steps: 3}"], "time.at": ["0.1 s"], "time.step": ["4 ms"], "time.steps": ["4"],
     "scene.flux_density": ["[0.01, 0, 0]", '["0.01*t", "0.1*x", "0.02"]', "{dipole: {at: [0, 0, 0.1], moment: [0, 0, 1]}}"],
+    "scene.obstacles": ["[{plane: {point: [0, 0, -0.0005]}}]", "[{sphere: {center: [0.03, 0, 0.005], radius: 5 mm}}]"],
+    "shell.gravity": ["[0, 1, -3]"], "solid.gravity": ["[0, 1, -3]"], "clamp.position": ["[0.01, 0, 0]"],
+    "end.position": ["[0.1, 0, 0]"], "magnetization.value": ["[1, 2, 3]"], "natural_strain.value": ["[0, 0, 4]"],
+    "natural_strain.formula": ['["0", "s", "1"]'], "natural_strain.where": ["{a: s}"], "natural_strain.file": [],
+    "velocity.value": ["[0, 0, 0.1]"], "velocity.formula": ['["0", "0", "x"]'], "velocity.where": ["{a: x}"], "velocity.file": [],
+    "velocity of water.value": ["[0.1, 0, 0]"], "velocity of water.formula": ['["0.1", "0", "x"]'], "velocity of water.where": ["{a: x}"],
+    "unknown young.bounds": ["[0.1 MPa, 0.2 MPa]"], "unknown fold.bounds": ["[0.5, 0.9]"],
+    "unknown natural_strain.bounds": ["[-0.5, 0.5]"], "unknown source_strength.bounds": ["[0.5, 0.9]"],
+    "unknown source_move.bounds": ["[-1 mm, 1 mm]"], "unknown source_turn.bounds": ["[-0.1, 0.1]"],
+    "unknown source_strength.sources": ["[source1]"], "unknown source_move.sources": ["[source1]"],
+    "unknown source_turn.sources": ["[source1]"], "cross.from": ["0.3"], "flow.formula": ['["1", "u"]'], "flow.where": ["{a: u}"],
+    "potential.formula": ['"x"'], "potential.where": ["{a: u}"], "frame.formula": ['"s"'], "frame.file": ["frame.csv"],
+    "pose.file": [], "pose.formula": ['["x", "y", "0.1*x"]'], "pose.where": ["{a: x}"], "start.result": [], "start.case": [],
+    "start of flux_density.file": [], "start of flux_density.value": ["[0.01, 0, 0]"], "start of a drawing.file": [],
+    "servo.up": ["M1"], "servo.down": ["M2"], "size of a page.name": ["a6"], "size of a page.sides": ["[50 mm, 40 mm]"],
+    "place of a skin.group": ["left"],
     "shell.pose": [], "shell.velocity": ["[0, 0, 0.1]"],
     "rod.natural_strain": ["[0, 0, 4]"], "rod.poses": [], "rod.ellipse": ["[1 mm, 2 mm]"],
     "rod.clamp": ["{position: [0.01, 0, 0]}", "{frame: [[0, 1, 0], [-1, 0, 0], [0, 0, 1]]}"],

@@ -7,6 +7,51 @@ status() { "$program" info "$1" | sed -n '1s/^[^:]*: \([a-z_]*\),.*/\1/p'; }
 is() { [ "$2" = "$3" ] || { echo "$1: '$2', not '$3'"; bad=1; }; }
 datasets() { "$program" info "$1" | sed -n 's/^  \([^ ]*\) .*/\1/p'; }
 
+# ---- The result of an earlier run ----
+# The same scene may be run again; another one, or one of other files, is refused, and neither result nor journal is lost.
+cat > earlier.yaml <<'END'
+slender: 1
+job: simulate
+shell: {mesh: {shape: sheet, size: [20 mm, 10 mm], cells: [2, 1]}, thickness: 1 mm, young: {file: young.csv}, poisson: 0.3, density: 1000}
+fix: [{group: root, clamp: true}]
+time: {step: 1 ms, steps: 2}
+END
+young() { printf '%s\n' "$1" "$1" "$1" "$1" > young.csv; } # of four faces
+young 1e6
+expect 0 run earlier.yaml -o e
+expect 0 run earlier.yaml -o e
+cp e.vtkhdf e.copy; cp e.run e.journal
+expect 4 run earlier.yaml -o e --set shell.thickness=2mm; says "e.vtkhdf: it is the result of another scene: shell.thickness is not the same; give another name with -o, replace it with --force$"
+expect 4 run earlier.yaml -o e --set time.steps=3; says "time.steps is not the same; .* or go on with it with --resume$"
+young 2e6
+expect 4 run earlier.yaml -o e; says "shell.young.file: .*young.csv is not the file that the run began with"
+mv e.run away.run; expect 4 run earlier.yaml -o e --set shell.thickness=2mm; says "the result of another scene"; mv away.run e.run
+same e.vtkhdf e.copy; same e.run e.journal
+expect 0 run earlier.yaml -o e --force
+young 1e6
+expect 0 run earlier.yaml -o e --force; same e.vtkhdf e.copy
+mkdir elsewhere; cp earlier.yaml young.csv elsewhere
+expect 0 run elsewhere/earlier.yaml -o e # by what is in the files, not by where they are
+echo "no result" > f.vtkhdf
+expect 4 run earlier.yaml -o f; says "f.vtkhdf is no result of slender.*; with --force it is replaced"
+[ "$(cat f.vtkhdf)" = "no result" ] || { echo "a file of another kind is lost"; bad=1; }
+expect 0 run earlier.yaml -o f --force
+
+# ---- What journals are said to hold ----
+expect 0 "$program" info e.run; says "e.run: finished, 2 steps, 0 frames, [0-9]* states*; the frames are in the result"; says "t 0.001 s  [0-9]* Newton iterations*  [0-9]* factorizations*$"
+cat > preview.yaml <<'END'
+slender: 1
+job: simulate
+rod: {natural_strain: [0, 20, 0], length: 0.2, elements: 5, radius: 1 mm, young: 1 MPa, poisson: 0.4, density: 1100, solver: pbd}
+time: {step: 5 ms, steps: 2}
+END
+expect 0 run preview.yaml
+expect 0 "$program" info preview.run; says "1  t 0.005 s$" # it has no iterations
+sed '/^time/d; s/simulate/equilibrium/; s/, solver: pbd//' preview.yaml > rests.yaml
+expect 0 run rests.yaml
+expect 0 "$program" info rests.run; says "rests.run: finished, 1 frame, 1 state$"
+expect 0 "$program" info rests.vtkhdf; says "converged, 1 frame$"; says "slender/rod/s  *real "
+
 # ---- Input files ----
 sheet() { # how far one vertex is from its place
     printf 'v 0 0 0\nv %s 0 0\nv 0.02 0 0\nv 0 0.01 0\nv 0.01 0.01 0\nv 0.02 0.01 0\nf 1 2 5\nf 1 5 4\nf 2 3 6\nf 2 6 5\n' "$1"
@@ -91,7 +136,8 @@ done
 # shellcheck disable=SC2086
 {
     expect 1 "$program" run $hexagram --set "cases[0].flux_density=[0,0,0]" --set "cases[1].flux_density=[0,0,0]" --no-picture -o h --force
-    says "the gradient is zero at the start"; says "noise"
+    says "the gradient is zero at the start: either no unknown (magnetization)"; says "noise"
+    says "warning: the unknown magnetization moves nothing: there is no .flux_density."
     expect 0 "$program" run $hexagram --set design.iterations=1 --no-picture -o h --force
     says "stopped at design.iterations = 1, not yet converged"
 }

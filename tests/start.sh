@@ -2,7 +2,10 @@
 # Jobs that start from what another run left: the same bits as the undivided run, and what is refused.
 #   tests/start.sh PROGRAM
 . "$(dirname "$0")/expect.sh"
-run() { "$program" run "$@" --quiet --no-picture; }
+run() { # anew, whatever was left under that name
+    case " $* " in *" --resume "* | *" --force "*) ;; *) set -- "$@" --force ;; esac
+    "$program" run "$@" --quiet --no-picture
+}
 put() { "$program" export "$1.vtkhdf" -o "$2" --dataset "$3"; }
 has() { "$program" info "$1.vtkhdf" | grep -q "^  $2 "; }
 
@@ -93,7 +96,7 @@ expect 4 run $scene -o first --set start=first.vtkhdf --force; says "the scene i
 # ---- Equilibria ----
 scene=rest.yaml
 write rest equilibrium "shell: $shell" "$fix" "flux_density: [0, 0, 5 mT]"
-rest() { expect 0 "$program" run "$scene" --no-picture "$@"; }
+rest() { expect 0 "$program" run "$scene" --no-picture --force "$@"; }
 rest -o rest; rest -o again --set start=rest.vtkhdf
 few
 rest -o moving --set start=rest.vtkhdf --set job=simulate --set "time={step: 1 ms, steps: 5}" # what rests stays

@@ -136,7 +136,7 @@ static void test_timed(void **state)
     lines = mem_format("fix: [{group: root}]\ntime: {at: 0.5 s, step: 1 ms, steps: 2}\nflux_density: {file: "
                        "%s/test_model_field.csv}\n",
                        folder);
-    Built b = build("simulate", "  young: 1 MPa\n  damping: 1e-4\n", lines);
+    Built b = build("simulate", "  young: 1 MPa\n  damping: 1e-4\n  magnetization: [1, 0, 0]\n", lines);
     double *p = b.model->cases[0].stages[0].p, *B = p + shell_of(&b)->flux.uniform;
     assert_true(fabs(B[0] - 0.01) < 1e-16 && fabs(B[2] - 0.02) < 1e-16 && p[shell_of(&b)->damping] == 1e-4);
     const double times[4] = {-1, 1, 2, 9}, exact[4] = {0.01, 0.03, 0.015, 0};

@@ -42,7 +42,7 @@ static void run(const char *text, const char *setting, const char *output)
 {
     SlenderError err;
     SlenderScene *scene = scene_of(text, &setting, 1);
-    SlenderRun def = {.output = output, .threads = 1, .no_journal = 1};
+    SlenderRun def = {.output = output, .threads = 1, .force = 1, .no_journal = 1};
     if (slender_run(scene, &def, &err) != SLENDER_DONE) fail_msg("%s", err.text);
     slender_scene_destroy(scene);
 }

@@ -91,7 +91,8 @@ def run(scene: Union[Scene, Source], output: Union[str, "os.PathLike[str]", None
     none), and returns the result opened; its status says how it ended. OUTPUT is the scene's name where it is not given.
 
     progress(sentence) is told of every step, on_frame(time, x[points, 3]) of frames. Ctrl-C, or what a callback raises, ends
-    it: what was done is in the journal, and resume=True goes on with it; force=True discards a journal. With check=True
+    it: what was done is in the journal, and resume=True goes on with it; force=True discards a journal, or
+    the result of another scene under that name, which else is refused. With check=True
     a job that did not converge raises NotConverged, when its result is written."""
     if not isinstance(scene, Scene):
         scene = Scene(scene)

@@ -1,6 +1,7 @@
 /* What `slender check` says of a shell, and what is doubtful about it. */
 #include "base/memory.h"
 #include "base/vec3.h"
+#include "model/advise.h"
 #include "model/coercivity.h"
 #include "shell/front/front.h"
 #include <math.h>
@@ -11,20 +12,6 @@ static const double CRUSHED = 0.05;       /* of its area: less is none          
 static const double NEARLY_CRUSHED = 0.2; /* .. where no next state was found              */
 static const double CELLS_PER_LENGTH = 3; /* of the magnetic bending length, at least      */
 
-/* Of a case, over the whole time of a motion; of an unknown field its bounds. */
-static double largest_field(const Model *model, const Scene *scene, const double *p)
-{
-    const Shell *shell = model->self;
-    const FluxUnknown *unknown = scene->design ? scene->design->unknowns.flux_density : NULL;
-    double flux[3];
-    memcpy(flux, p + shell->flux.uniform, sizeof flux);
-    double largest =
-        timed_largest(&model->flux_of_time, model->time, scene->time.step, scene->time.steps, flux);
-    if (unknown && !isnan(unknown->bounds[0]))
-        largest = fmax(largest, fmax(fabs(unknown->bounds[0]), fabs(unknown->bounds[1])));
-    return largest;
-}
-
 /* Over a length h sqrt(Y/(12 M B)) a field bends the sheet by about a radian: cells must be smaller. */
 static double bending_length(const Model *model, const Scene *scene)
 {
@@ -33,7 +20,7 @@ static double bending_length(const Model *model, const Scene *scene)
     for (int c = 0; c < model->case_count; c++)
         for (int s = 0; s < model->cases[c].stage_count; s++) {
             const double *p = model->cases[c].stages[s].p;
-            double B = largest_field(model, scene, p);
+            double B = advise_largest_flux(model, scene, &model->cases[c], p);
             for (int f = 0; f < shell->mesh->face_count; f++) {
                 M_max = fmax(M_max, vec3_length(vec3_load(p + shell->magnetization + 3 * f)));
                 young = fmin(young, p[shell->young + f]);

@@ -1,0 +1,150 @@
+#include "model/advise.h"
+#include "base/memory.h"
+#include "base/vec3.h"
+#include <math.h>
+#include <string.h>
+
+enum { POINTS = 300, MOMENTS = 30 }; /* at most, of which fields are asked */
+
+static const double STRONG = 1; /* T: about what magnets reach at their surface; most likely it is in mT   */
+static const double LARGE = 10; /* of the body's size: no slender body stretches so far                    */
+
+/* ---- Fields ---- */
+
+/* Of the moments of a motion, and of some of the points. */
+static double largest_at(const Model *model, const Scene *scene, const double *p, const double *place)
+{
+    bool varies = model->fields->count > 0, moves = varies && model->job->motion;
+    int points = varies ? model->point_count : 1, stride = 1 + (points - 1) / POINTS,
+        moments = moves ? (scene->time.steps < MOMENTS ? scene->time.steps : MOMENTS) : 0;
+    double largest = 0;
+    for (int t = 0; t <= moments; t++) {
+        double part = moments ? scene->time.steps * (double)t / moments : 0,
+               time = model->time + (moves ? part * scene->time.step : 0);
+        for (int k = 0; k < points; k += stride) {
+            double flux[3];
+            flux_value((FluxSum){model->fields, model->flux_blocks, p, time}, place + 3 * k, flux);
+            largest = fmax(largest, vec3_length(vec3_load(flux)));
+        }
+    }
+    return largest;
+}
+
+double advise_largest_flux(const Model *model, const Scene *scene, const Case *c, const double *p)
+{
+    if (model->flux_blocks.uniform < 0) return 0;
+    const FluxUnknown *unknown = scene->design ? scene->design->unknowns.flux_density : NULL;
+    double *q = mem_copy(p, (size_t)model->params->size, sizeof *p),
+           *place = mem_alloc(3 * (size_t)model->point_count, sizeof *place);
+    model->body->ops->places(model, c->state.x, place);
+    timed_largest(&model->flux_of_time, model->time, scene->time.step, scene->time.steps,
+                  q + model->flux_blocks.uniform);
+    double largest = largest_at(model, scene, q, place);
+    if (unknown && !isnan(unknown->bounds[0]))
+        largest = fmax(largest, fmax(fabs(unknown->bounds[0]), fabs(unknown->bounds[1])));
+    mem_free(place);
+    mem_free(q);
+    return largest;
+}
+
+static void advise_field(Model *model, const Scene *scene, const Case *c)
+{
+    double largest = 0;
+    for (int s = 0; s < c->stage_count; s++)
+        largest = fmax(largest, advise_largest_flux(model, scene, c, c->stages[s].p));
+    if (largest > STRONG)
+        mesh_warn(
+            &model->report,
+            "%s: a flux density of %.3g T, and few magnets give more than %g: a number without a unit is "
+            "in T, `20 mT` is 0.02",
+            c->name, largest, STRONG);
+}
+
+static bool is_magnetization(const ParamBlock *block)
+{
+    return !strcmp(block->unit, "A/m");
+}
+
+/* Has a block numbers that are not 0, in any stage of any case? */
+static bool is_used(const Model *model, const ParamBlock *block)
+{
+    for (int c = 0; c < model->case_count; c++)
+        for (int s = 0; s < model->cases[c].stage_count; s++)
+            for (int i = 0; i < block->count * block->width; i++)
+                if (model->cases[c].stages[s].p[block->offset + i] != 0) return true;
+    return false;
+}
+
+static bool is_magnetised(const Model *model)
+{
+    bool is = false;
+    for (int b = 0; !is && b < model->params->block_count; b++)
+        is = is_magnetization(&model->params->blocks[b]) && is_used(model, &model->params->blocks[b]);
+    return is;
+}
+
+static const Unknown *unknown_magnetization(const Model *model)
+{
+    for (int k = 0; k < model->design.unknown_count; k++)
+        if (is_magnetization(model->design.unknowns[k].block)) return &model->design.unknowns[k];
+    return NULL;
+}
+
+/* A field and what is magnetised act on each other; one without the other is idle. */
+static void advise_idle(Model *model, const Scene *scene)
+{
+    const Unknown *unknown = unknown_magnetization(model);
+    double largest = 0;
+    for (int k = 0; k < model->case_count; k++)
+        for (int s = 0; s < model->cases[k].stage_count; s++)
+            largest = fmax(largest,
+                           advise_largest_flux(model, scene, &model->cases[k], model->cases[k].stages[s].p));
+    bool field = largest > 0 || (scene->design && scene->design->unknowns.flux_density);
+    if (unknown && !field)
+        mesh_warn(&model->report, "the unknown %s moves nothing: there is no `flux_density`",
+                  unknown->block->name);
+    if (!unknown && field && !is_magnetised(model))
+        mesh_warn(&model->report, "the flux density moves nothing: nothing is magnetised");
+}
+
+/* ---- Targets ---- */
+
+/* Of the box around the points that are somewhere, m. */
+static double diagonal(const double (*place)[3], int count)
+{
+    Vec3 low = vec3(INFINITY, INFINITY, INFINITY), high = vec3_scale(-1, low);
+    for (int k = 0; k < count; k++) {
+        const double *at = place[k];
+        if (isnan(at[0])) continue;
+        low = vec3(fmin(low.x, at[0]), fmin(low.y, at[1]), fmin(low.z, at[2]));
+        high = vec3(fmax(high.x, at[0]), fmax(high.y, at[1]), fmax(high.z, at[2]));
+    }
+    return high.x < low.x ? 0 : vec3_length(vec3_sub(high, low));
+}
+
+static void advise_target(Model *model, const Case *c)
+{
+    if (!c->target) return;
+    double(*place)[3] = mem_alloc((size_t)model->point_count, sizeof *place);
+    model->body->ops->places(model, c->state.x, place[0]);
+    double size = diagonal((const double(*)[3])place, model->point_count),
+           target = diagonal((const double(*)[3])c->target, model->point_count);
+    if (target > LARGE * size)
+        mesh_warn(
+            &model->report,
+            "%s: the target is %.3g m across, and the body %.3g m at the start: expressions and numbers "
+            "without a unit are in metres, a file's `scale` is a factor to metres",
+            c->name, target, size);
+    mem_free(place);
+}
+
+/* ---- The whole ---- */
+
+void model_advise(Model *model, const Scene *scene)
+{
+    for (int k = 0; k < model->case_count; k++) {
+        advise_field(model, scene, &model->cases[k]);
+        advise_target(model, &model->cases[k]);
+    }
+    if (model->flux_blocks.uniform >= 0) advise_idle(model, scene);
+}
