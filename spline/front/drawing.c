@@ -185,8 +185,7 @@ static bool read_plotter(const PlotterScene *from, YamlFile *file, Plotter *to)
 static bool fill(Drawing *d, const SplineScene *scene, YamlFile *file)
 {
     if (!check_cross(scene->cross, file) || !check_rest(scene->rest, file) ||
-        !read_page(scene, file, &d->page) || !pens_read(scene, file, &d->page, &d->pens, &d->pen_count) ||
-        !drawing_read_fields(d, scene, file))
+        !read_page(scene, file, &d->page) || !drawing_read_fields(d, scene, file))
         return false;
     make_parts(d, scene);
     d->relax = relax_def(scene);

@@ -10,7 +10,8 @@ static const YamlTable tone_table = {
         {YAML_VECTOR(ToneScene, crop), .range = "[0, 1]", .fallback = "[0, 0, 1, 1]",
          .doc = "left, top, right and bottom of what is drawn, in parts of the picture"},
         {YAML_CHOICE(ToneScene, fit), .choices = YAML_NAMES("contain", "cover"), .fallback = "contain",
-         .doc = "all of it, centred on the page, or the page filled and the rest lost"},
+         .doc = "all of it, centred on the page, and nothing drawn beside it; or the page filled and the "
+                "rest lost"},
         {YAML_BOOL(ToneScene, invert), .doc = "white is drawn"},
         {YAML_NUMBER(ToneScene, black), .when = "!curve", .range = "[0, 1]", .fallback = "0",
          .doc = "grey level that becomes black, and all that is darker"},
