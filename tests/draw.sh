@@ -38,6 +38,28 @@ expect 3 "$program" picture out/a.vtkhdf -o c.png --stills 3; says "no moments s
 expect 0 "$program" run "$scene" --quiet --no-picture -o d --set spline.rounds=0 --set output.film=30
 expect 0 "$program" run "$scene" --quiet --no-picture -o d --resume --set output.film=30; same out/a.svg d.svg
 
+# What plotting takes is foretold, and may have an end: the files, added up move by move, keep to it. Runs go on with the
+# tones that they began with.
+expect 0 "$program" check "$scene";             says "to plot: about .* min, .* m of ink in .* strokes"; says "to compute: about"
+foretold=$(sed -n 's/^to plot: about \([0-9.]*\) min.*/\1/p' out.txt)
+seconds_of() { # of G-code with a z axis: G0 and G1 with X, Y or Z at F
+    awk '/^G[01] / { x2 = x; y2 = y; z2 = z
+        for (i = 2; i <= NF; i++) { v = substr($i, 2); if ($i ~ /^X/) x2 = v; if ($i ~ /^Y/) y2 = v; if ($i ~ /^Z/) z2 = v; if ($i ~ /^F/) f = v }
+        t += sqrt((x2 - x)^2 + (y2 - y)^2 + (z2 - z)^2)/(f/60); x = x2; y = y2; z = z2 }
+        BEGIN { y = 60; z = 5 } END { print t }' "$1"
+}
+for limit in 1000 60 30; do
+    expect 0 "$program" run "$scene" --no-picture -o limit --force --set output.gcode=limit.gcode --set spline.plotter.at_most=${limit}s
+    seconds_of limit.gcode | awk -v limit=$limit -v foretold="$foretold" '{ exit !($1 <= limit + 0.5 && (limit == 1000 || $1 > 0.75 * limit)) }' ||
+        { echo "no plot of $limit s: $(seconds_of limit.gcode)"; bad=1; }
+    [ $limit = 1000 ] || says "to take no more than .* min to plot, the picture is drawn with .* % of its ink"
+done
+expect 3 "$program" run "$scene" --no-picture -o limit --resume --set output.gcode=limit.gcode --set spline.plotter.at_most=40s; says "spline.plotter.at_most is not the same"
+expect 3 "$program" run "$scene" --no-picture -o limit --resume --set output.gcode=limit.gcode --set spline.plotter.at_most=30s --set spline.plotter.down=30mm/s
+says "the plotter's speeds may not change"
+expect 0 "$program" run "$scene" --quiet --no-picture -o d --resume --set output.film=30 --set spline.plotter.down=30mm/s
+expect 3 "$program" check "$scene" --set spline.plotter.at_most=2s; says "less than a tenth of its ink"
+
 # Its film: the drawing is the same, more rounds go on from what there was; a picture of each frame, and all of them.
 expect 0 "$program" run "$scene" --quiet --no-picture -o film --set output.film=30 --set spline.rounds=0
 expect 0 "$program" export film.vtkhdf -o film.csv --dataset spline/film/nodes

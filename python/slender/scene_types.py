@@ -233,7 +233,7 @@ Dynamics = TypedDict("Dynamics", {
 }, total=False)
 
 Plotter = TypedDict("Plotter", {
-    "down": "Number", "up": "Number", "lift": "Number", "z": "ZAxis", "servo": "Servo",
+    "down": "Number", "up": "Number", "lift": "Number", "at_most": "Number", "z": "ZAxis", "servo": "Servo",
 }, total=False)
 
 ZAxis = TypedDict("ZAxis", {

@@ -194,7 +194,11 @@ static bool fill(Drawing *d, const SplineScene *scene, YamlFile *file)
     if (scene->start.file && !drawing_read_start(d, scene, file)) return false;
     d->rounds = scene->rounds;
     d->order = (DrawOrder)scene->order;
-    return read_plotter(&scene->plotter, file, &d->plotter) && check_size(d, file);
+    d->thinned = 1;
+    d->at_most = isnan(scene->plotter.at_most) ? 0 : scene->plotter.at_most;
+    if (!read_plotter(&scene->plotter, file, &d->plotter) || !check_size(d, file)) return false;
+    d->timed = d->plotter;
+    return true;
 }
 
 Drawing *drawing_create(const SplineScene *scene, YamlFile *file)
@@ -239,7 +243,7 @@ static SplineField direction_of(const Drawing *d, int part)
     return direction;
 }
 
-static Strokes start_of(const Drawing *d, int part)
+Strokes drawing_first_strokes(const Drawing *d, int part)
 {
     const DrawingPart *from = &d->parts[part];
     if (d->start_given) return strokes_copy(&from->given);
@@ -294,7 +298,7 @@ static void begin_task(void *self, int k)
     if (k == 0)
         *b->target = target_of(b->d, b->part, b->workers);
     else
-        *b->strokes = start_of(b->d, b->part);
+        *b->strokes = drawing_first_strokes(b->d, b->part);
 }
 
 /* Strokes take one thread as long as the target takes it, more or less: with threads of its own beside that, the target

@@ -302,6 +302,10 @@ static const YamlTable plotter_table = {
         {YAML_NUMBER(PlotterScene, lift), .unit = "s", .range = "[0, 60]", .fallback = "0.3 s",
          .doc = "to lift and to lower it, together; a z axis takes longer where its "
                 "speed asks for that"},
+        {YAML_NUMBER(PlotterScene, at_most), .unit = "s", .range = "[1, 1.0e+7]",
+         .doc = "the time that plotting may take: where the picture takes longer, all of it is drawn "
+                "lighter, by one factor that "
+                "`check` and `run` say; at least a tenth of its ink stays. No end if absent"},
         {YAML_OPTIONAL(PlotterScene, z, &z_axis_table), .doc = "of a pen on a z axis"},
         {YAML_OPTIONAL(PlotterScene, servo, &servo_table), .doc = "of a pen on a servo"},
         {0}}};
