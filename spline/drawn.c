@@ -192,10 +192,22 @@ void drawn_clear(Drawn *drawn)
     *drawn = (Drawn){0};
 }
 
+/* Names of languages have no dot. */
+static bool is_profile_file(const char *language)
+{
+    return strchr(language, '.') || strchr(language, '/');
+}
+
 bool drawn_write(const Drawn *drawn, const char *language, const char *path, Error *err)
 {
     PlotProfile profile;
     if (!strcmp(language, "svg")) return plot_write_svg(path, &drawn->plot, err);
+    if (is_profile_file(language)) {
+        bool ok = plot_profile_read(language, &profile, err) &&
+                  plot_write_machine(path, &drawn->plot, &profile, &drawn->plotter, err);
+        plot_profile_clear(&profile);
+        return ok;
+    }
     return plot_profile(language, &profile, err) &&
            plot_write_machine(path, &drawn->plot, &profile, &drawn->plotter, err);
 }

@@ -31,5 +31,5 @@ bool drawn_has(Result *result);
 bool drawn_read(Result *result, Drawn *drawn, Error *err);
 void drawn_clear(Drawn *drawn);
 
-/* Writes it as "svg", or in the words of a profile (plot_file.h). */
+/* Writes it as "svg", or in the words of a profile (plot_file.h): its name, or the path of its file. */
 bool drawn_write(const Drawn *drawn, const char *language, const char *path, Error *err);

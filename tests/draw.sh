@@ -20,6 +20,13 @@ done
 expect 0 "$program" export out/a.vtkhdf -o c.svg; same out/a.svg c.svg
 expect 0 "$program" export out/a.vtkhdf -o c.gcode; same out/a.gcode c.gcode
 expect 0 "$program" export out/a.vtkhdf -o c.nc --plotter gcode_servo; grep -q "M3 S30" c.nc || { echo "no servo"; bad=1; }
+# In the words of a machine of one's own; a plotter that does not reach so far, and words that stand for nothing, are refused.
+sed 's/^origin.*/origin: [0, 0]/' "$here/../scenes/plotters/hp7475a.yaml" > near.yaml
+expect 0 "$program" export out/a.vtkhdf -o c.plt --plotter near.yaml; grep -q "^SP1;" c.plt || { echo "no HP 7475A"; bad=1; }
+sed 's/276 mm/70 mm/' near.yaml > small.yaml; sed 's/{feed}/{speed}/' "$here/../scenes/plotters/brush.yaml" > wrong.yaml
+expect 4 "$program" export out/a.vtkhdf -o d.plt --plotter small.yaml; says "it reaches from (0, 0) to (70, 193) mm"
+expect 4 "$program" export out/a.vtkhdf -o d.gcode --plotter wrong.yaml; says 'wrong.yaml:.*"{speed}" stands for nothing'
+[ ! -e d.plt ] && [ ! -e d.gcode ] || { echo "a refused plot was written"; bad=1; }
 # How the pen is lifted is in the files, in the time, and in what is exported later.
 for lift in 0.3 9; do
     expect 0 "$program" run "$scene" --quiet --no-picture -o "lift$lift" --set spline.rounds=0 --set output.gcode="lift$lift.gcode" --set output.gcode_servo=s.nc \
