@@ -15,36 +15,7 @@
 #include <string.h>
 #include <unistd.h>
 #include <cmocka.h>
-
-/* Two curves of the first pen (the second of two segments), none of the second, a straight one of the third.
- */
-static Vec2 black[] = {{10, 20}, {12.5, 20.0004}, {14.99996, 21}, {15, 25},      {40, 30},   {50, 10},
-                       {60, 50}, {70, 30},        {75, 20},       {90, -0.0001}, {100, 47.5}};
-static int black_start[] = {0, 4, 11};
-static Vec2 red[] = {{5, 5}, {5, 15}, {5, 25}, {5, 35}};
-static int red_start[] = {0, 4};
-static PlotLayer layers[] = {
-    {.name = "black", .color = {0, 0, 0, 1}, .pen = 0.5, .count = 2, .start = black_start, .points = black},
-    {.name = "none", .color = {0, 1, 0, 1}, .pen = 0.3},
-    {.name = "a \"red\" <&\xc3\xa9>\n",
-     .color = {1, 0.5, 0, 1},
-     .pen = 0.25,
-     .count = 1,
-     .start = red_start,
-     .points = red}};
-static const Plot plot = {.paper = {148, 105}, .layer_count = 3, .layers = layers};
-
-static Plotter usual;
-
-static char *file_text(const char *path)
-{
-    FILE *file = fopen(path, "rb");
-    assert_non_null(file);
-    char *text = mem_alloc(1 << 20, 1);
-    assert_true(fread(text, 1, (1 << 20) - 1, file) > 0);
-    fclose(file);
-    return text;
-}
+#include "plot_fixture.h"
 
 static char *written_svg(const Plot *what)
 {
@@ -150,100 +121,6 @@ static void refused_plots(void **state)
     assert_non_null(strstr(err.text, "gcode, gcode_servo or hpgl"));
     mem_free(before);
     mem_free(after);
-}
-
-/* What a machine would do: polylines drawn with the pen down, mm, y down. */
-typedef struct Drawn {
-    int lines, points, line[400], pens, pen[8];
-    Vec2 at[400];
-} Drawn;
-
-static void draw_to(Drawn *drawn, Vec2 p)
-{
-    drawn->line[drawn->points] = drawn->lines - 1;
-    drawn->at[drawn->points++] = p;
-    assert_true(drawn->points < 400);
-}
-
-static Drawn read_hpgl(const char *c)
-{
-    Drawn drawn = {0};
-    Vec2 at = {0, 0};
-    bool down = false;
-    for (; *c; c = strchr(c, ';') + 1 + (strchr(c, ';')[1] == '\n')) {
-        int x, y, pen, given = sscanf(c + 2, "%d,%d;", &x, &y);
-        if (sscanf(c, "SP%d;", &pen) == 1) drawn.pen[drawn.pens++] = pen;
-        bool lowers = !strncmp(c, "PD", 2), lifts = !strncmp(c, "PU", 2);
-        assert_true(lowers || lifts || !strncmp(c, "SP", 2) || !strncmp(c, "IN;", 3) || !strncmp(c, "VS", 2));
-        if (lowers && !down) drawn.lines++, draw_to(&drawn, at);
-        down = lowers || (down && !lifts);
-        if (given == 2 && (lowers || lifts)) at = (Vec2){x / 40.0, 105 - y / 40.0};
-        if (given == 2 && lowers) draw_to(&drawn, at);
-    }
-    return drawn;
-}
-
-static Drawn read_gcode(const char *c, const char *down_words, const char *up_words)
-{
-    Drawn drawn = {0};
-    bool down = false;
-    Vec2 at = {NAN, NAN};
-    for (; *c; c = strchr(c, '\n') + 1) {
-        double x, y, feed;
-        int g;
-        if (!strncmp(c, down_words, strlen(down_words))) {
-            drawn.lines++;
-            down = true;
-            draw_to(&drawn, at);
-        }
-        if (!strncmp(c, up_words, strlen(up_words))) down = false;
-        if (sscanf(c, "G%d X%lf Y%lf F%lf", &g, &x, &y, &feed) == 4) {
-            at = (Vec2){x, 105 - y};
-            assert_int_equal(g, down ? 1 : 0);
-            assert_true(feed == (down ? 2400 : 6000));
-            if (down) draw_to(&drawn, at);
-        }
-        if (sscanf(c, "; layer %d-", &g) == 1) drawn.pen[drawn.pens++] = g;
-    }
-    return drawn;
-}
-
-static double to_chord(Vec2 p, Vec2 a, Vec2 b)
-{
-    double dx = b.x - a.x, dy = b.y - a.y, square = dx * dx + dy * dy;
-    double t = square > 0 ? ((p.x - a.x) * dx + (p.y - a.y) * dy) / square : 0;
-    t = fmin(fmax(t, 0), 1);
-    return hypot(p.x - a.x - t * dx, p.y - a.y - t * dy);
-}
-
-/* The farthest that a point of the curves is from what was drawn for them; ends must be ends. */
-static double deviation(const Drawn *drawn, double rounding)
-{
-    double worst = 0;
-    int line = 0, first = 0;
-    for (int l = 0; l < 3; l++) {
-        for (int k = 0; k < layers[l].count; k++, line++) {
-            const Vec2 *c = layers[l].points + layers[l].start[k],
-                       *end = layers[l].points + layers[l].start[k + 1] - 1;
-            int last = first;
-            while (last + 1 < drawn->points && drawn->line[last + 1] == line) last++;
-            assert_true(drawn->line[first] == line);
-            assert_true(hypot(drawn->at[first].x - c->x, drawn->at[first].y - c->y) < rounding);
-            assert_true(hypot(drawn->at[last].x - end->x, drawn->at[last].y - end->y) < rounding);
-            for (; c < end; c += 3) {
-                for (int s = 0; s <= 100; s++) {
-                    double nearest = INFINITY;
-                    for (int i = first; i < last; i++)
-                        nearest =
-                            fmin(nearest, to_chord(cubic_at(c, s / 100.0), drawn->at[i], drawn->at[i + 1]));
-                    worst = fmax(worst, nearest);
-                }
-            }
-            first = last + 1;
-        }
-    }
-    assert_int_equal(line, drawn->lines);
-    return worst;
 }
 
 static void machines(void **state)
@@ -423,131 +300,6 @@ static int live(void **state)
     return mem_live_count() == 0 ? 0 : -1;
 }
 
-static void write_profile(const char *text)
-{
-    FILE *file = fopen("own.yaml", "w");
-    assert_true(file && fputs(text, file) >= 0 && fclose(file) == 0);
-}
-
-#define OWN                                                                                                  \
-    "slender: 1\n"                                                                                           \
-    "travel: \"T{x},{y}\\n\"\ndown: \"D\\n\"\nline: \"L{x},{y}\\n\"\nup: \"U\\n\"\n"
-
-/* The plot in the words of own.yaml; NULL where it is refused. */
-static char *written_own(const Plot *what, Error *err)
-{
-    PlotProfile profile;
-    bool ok = plot_profile_read("own.yaml", &profile, err) &&
-              plot_write_machine("plot.out", what, &profile, &usual, err);
-    plot_profile_clear(&profile);
-    return ok ? file_text("plot.out") : NULL;
-}
-
-/* A page that stands, turned, in hundredths from a place within it: read back, the curves are where they were. */
-static void profiles_of_files(void **state)
-{
-    (void)state;
-    Error err = {""};
-    Plot high = plot;
-    high.paper[0] = 105, high.paper[1] = 148;
-    write_profile(OWN "units: 100\ndecimals: 0\nturn: portrait\norigin: [1 mm, 2 mm]\n");
-    char *text = written_own(&high, &err);
-    if (!text) fail_msg("%s", err.text);
-    Drawn drawn = {0};
-    double x = 0, y = 0;
-    for (const char *c = text; *c; c = strchr(c, '\n') + 1) {
-        if (sscanf(c + 1, "%lf,%lf", &x, &y) == 2) assert_true(*c == 'T' || *c == 'L');
-        Vec2 at = {105 - (y / 100 + 2), 148 - (x / 100 + 1)};
-        if (*c == 'D') drawn.lines++;
-        if (*c == 'D' || *c == 'L') draw_to(&drawn, at);
-    }
-    assert_true(deviation(&drawn, 0.0071) < 0.05 + 0.0071);
-    mem_free(text);
-    /* the plot reaches to x = 100 and y = 50 of the paper, from 5 and 0 on; turned: 97 .. 147 mm, 3 .. 98 mm */
-    write_profile(OWN "turn: portrait\norigin: [90 mm, 5 mm]\nlimits: [58.1 mm, 95.1 mm]\n");
-    text = written_own(&high, &err);
-    if (!text) fail_msg("%s", err.text);
-    mem_free(text);
-    static const char *const narrow[] = {"[58.1 mm, 94.8 mm]", "[57.8 mm, 95.1 mm]"};
-    for (int k = 0; k < 2; k++) {
-        char words[400];
-        snprintf(words, sizeof words, OWN "turn: portrait\norigin: [90 mm, 5 mm]\nlimits: %s\n", narrow[k]);
-        write_profile(words);
-        assert_null(written_own(&high, &err));
-        assert_non_null(strstr(err.text, "and it reaches from (0, 0) to (5"));
-    }
-}
-
-/* Those that come with the program: their words draw the plot. */
-static void shipped_profiles(void **state)
-{
-    (void)state;
-    static const char *const names[] = {"grbl_servo", "brush", "hp7475a"};
-    for (int m = 0; m < 3; m++) {
-        Error err = {""};
-        PlotProfile profile;
-        char path[300];
-        snprintf(path, sizeof path, SOURCE_DIR "/scenes/plotters/%s.yaml", names[m]);
-        if (!plot_profile_read(path, &profile, &err)) fail_msg("%s", err.text);
-        if (m == 2) profile.origin[0] = profile.origin[1] = 0; /* as the reader has it */
-        if (!plot_write_machine("plot.out", &plot, &profile, &usual, &err)) fail_msg("%s", err.text);
-        plot_profile_clear(&profile);
-        char *text = file_text("plot.out");
-        const char *first = strstr(text, m == 2 ? "SP1;" : "; pen 1"); /* the brush has been to its pot */
-        memmove(text, first, strlen(first) + 1);
-        Drawn drawn = m == 0   ? read_gcode(text, "M3 S30", "M5")
-                      : m == 1 ? read_gcode(text, "G1 Z0", "G0 Z5")
-                               : read_hpgl(text);
-        assert_true(deviation(&drawn, m == 2 ? 0.018 : 0.001) < 0.07);
-        mem_free(text);
-    }
-}
-
-/* Lines of 30 mm and one of 100 mm, which is not broken; each pen begins anew. */
-static void refills(void **state)
-{
-    (void)state;
-    Error err = {""};
-    static Vec2 points[24];
-    static int start[] = {0, 4, 8, 12, 16, 20, 24};
-    for (int k = 0; k < 6; k++)
-        for (int i = 0; i < 4; i++) points[4 * k + i] = (Vec2){10 + (k == 3 ? 100 : 30) * i / 3.0, 10.0 + k};
-    PlotLayer two[] = {{.name = "a", .pen = 1, .count = 6, .start = start, .points = points},
-                       {.name = "b", .pen = 1, .count = 2, .start = start, .points = points}};
-    Plot lines = {.paper = {148, 105}, .layer_count = 2, .layers = two};
-    write_profile(OWN "layer: \"P{pen}\\n\"\nrefill: \"R\\n\"\nrefill_after: 70 mm\n");
-    char *text = written_own(&lines, &err), order[64] = "";
-    if (!text) fail_msg("%s", err.text);
-    for (const char *c = text; *c; c = strchr(c, '\n') + 1)
-        if (strchr("PRD", *c)) strncat(order, c, 1);
-    assert_string_equal(order, "PDDRDRDRDDPDD");
-    mem_free(text);
-}
-
-static void refused_profiles(void **state)
-{
-    (void)state;
-    static const struct {
-        const char *text, *says;
-    } rows[] = {
-        {OWN "header: \"G0 {speed}\"\n",
-         "own.yaml:6:9: header: \"{speed}\" stands for nothing; there are {x}, {y},"},
-        {OWN "header: \"G0 {x\"\n", "\"{x\" stands for nothing"},
-        {OWN "refill: R\n", "after how much ink? Say `refill_after`"},
-        {OWN "refill_after: 1 m\n", "refill_after"},
-        {OWN "unit: 40\n", "units"},
-        {OWN "limits: [0, 1 m]\n", "limits"},
-        {"slender: 1\ntravel: a\nup: b\ndown: c\n", "line"},
-    };
-    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
-        Error err = {""};
-        write_profile(rows[k].text);
-        if (written_own(&plot, &err)) fail_msg("taken: %s", rows[k].text);
-        if (!strstr(err.text, "own.yaml") || !strstr(err.text, rows[k].says))
-            fail_msg("\"%s\" does not say \"%s\"", err.text, rows[k].says);
-    }
-}
-
 int main(void)
 {
     usual = plotter_default();
@@ -559,10 +311,6 @@ int main(void)
                                        cmocka_unit_test(own_profile),
                                        cmocka_unit_test(times),
                                        cmocka_unit_test(papers),
-                                       cmocka_unit_test(lifts),
-                                       cmocka_unit_test(profiles_of_files),
-                                       cmocka_unit_test(shipped_profiles),
-                                       cmocka_unit_test(refills),
-                                       cmocka_unit_test(refused_profiles)};
+                                       cmocka_unit_test(lifts)};
     return cmocka_run_group_tests(tests, NULL, live);
 }
