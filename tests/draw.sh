@@ -67,6 +67,11 @@ says "the plotter's speeds may not change"
 expect 0 "$program" run "$scene" --quiet --no-picture -o d --resume --set output.film=30 --set spline.plotter.down=30mm/s
 expect 3 "$program" check "$scene" --set spline.plotter.at_most=2s; says "less than a tenth of its ink"
 
+# A draft ends well where its iterations do, the same each time.
+expect 0 "$program" run "$scene" --quiet --no-picture -o draft --set spline.draft=true --set spline.iterations=12
+expect 0 "$program" info draft.vtkhdf;          says "max_iterations"
+expect 3 "$program" check "$scene" --set spline.draft=true --set spline.method=gradient; says "spline.draft"
+
 # Its film: the drawing is the same, more rounds go on from what there was; a picture of each frame, and all of them.
 expect 0 "$program" run "$scene" --quiet --no-picture -o film --set output.film=30 --set spline.rounds=0
 expect 0 "$program" export film.vtkhdf -o film.csv --dataset spline/film/nodes

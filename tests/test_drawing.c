@@ -95,6 +95,30 @@ static void nothing_beside(void **state)
     drawing_destroy(d);
 }
 
+/* As many iterations as fit into two seconds, and no rounds; fewer for more segments, ten at least. */
+static void drafts(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *pen;
+        int least, most;
+    } rows[] = {{"2 mm", 500, 500}, {"0.5 mm", 12, 60}, {"0.2 mm", 10, 10}};
+    int before = 501;
+    for (int k = 0; k < 3; k++) {
+        char entry[100];
+        snprintf(entry, sizeof entry, "density: 0.3, draft: true, rounds: 5, pen: %s", rows[k].pen);
+        Drawing *d = drawing_of(entry);
+        assert_true(d->draft && d->rounds == 0);
+        assert_in_range(d->relax.max_iterations, rows[k].least, rows[k].most);
+        assert_true(d->relax.max_iterations < before);
+        before = d->relax.max_iterations;
+        drawing_destroy(d);
+    }
+    Drawing *d = drawing_of("density: 0.3, draft: true, iterations: 7");
+    assert_int_equal(d->relax.max_iterations, 7);
+    drawing_destroy(d);
+}
+
 /* What a scene does not say is what the library takes. */
 static void defaults(void **state)
 {
@@ -271,6 +295,7 @@ int main(void)
     const struct CMUnitTest tests[] = {cmocka_unit_test_teardown(pages, nothing_leaks),
                                        cmocka_unit_test_teardown(shapes_of_pictures, nothing_leaks),
                                        cmocka_unit_test_teardown(nothing_beside, nothing_leaks),
+                                       cmocka_unit_test_teardown(drafts, nothing_leaks),
                                        cmocka_unit_test_teardown(defaults, nothing_leaks),
                                        cmocka_unit_test_teardown(formulas, nothing_leaks),
                                        cmocka_unit_test_teardown(inks, nothing_leaks),

@@ -158,8 +158,9 @@ Spline = TypedDict("Spline", {
     "pens": "Rows[Pens]", "separation": "Separation", "regions": "Rows[Regions]", "cross": "Cross",
     "direction": "Direction", "start": "StartOfADrawing", "energies": "Energies", "potential": "Potential",
     "flow": "Flow", "pair": "Pair", "method": "Literal['auto', 'newton', 'gradient', 'monte_carlo', 'dynamics']",
-    "iterations": "int", "tolerance": "float", "rounds": "int", "rest": "float", "monte_carlo": "MonteCarlo",
-    "dynamics": "Dynamics", "seed": "int", "order": "Literal['shortest', 'as_made']", "plotter": "Plotter",
+    "iterations": "int", "tolerance": "float", "draft": "bool", "rounds": "int", "rest": "float",
+    "monte_carlo": "MonteCarlo", "dynamics": "Dynamics", "seed": "int", "order": "Literal['shortest', 'as_made']",
+    "plotter": "Plotter",
 }, total=False)
 
 DensityOfADrawingKeys = TypedDict("DensityOfADrawingKeys", {

@@ -5,11 +5,14 @@
 #include "spline/front/drawing_fields.h"
 #include "spline/front/drawing_pens.h"
 #include "spline/front/drawing_start.h"
+#include "spline/front/plot_time.h"
 #include "spline/tone_field.h"
 #include <math.h>
 #include <string.h>
 
-enum { SEGMENTS_MAX = 3000000 };
+enum { SEGMENTS_MAX = 3000000, DRAFT_LEAST = 10 };
+
+static const double DRAFT_TIME = 2; /* s */
 
 static const double REST_LEAST = 0.05; /* mean distances of lines */
 
@@ -182,6 +185,16 @@ static bool read_plotter(const PlotterScene *from, YamlFile *file, Plotter *to)
 
 /* ---- The whole ---- */
 
+/* As many iterations as are foretold to fit, so that it is the same on every machine; a few there must be. */
+static void make_draft(Drawing *d)
+{
+    d->draft = true;
+    d->rounds = 0;
+    int most = d->relax.max_iterations;
+    for (d->relax.max_iterations = 0; d->relax.max_iterations < most; d->relax.max_iterations++)
+        if (d->relax.max_iterations >= DRAFT_LEAST && drawing_work_time(d) > DRAFT_TIME) break;
+}
+
 static bool fill(Drawing *d, const SplineScene *scene, YamlFile *file)
 {
     if (!check_cross(scene->cross, file) || !check_rest(scene->rest, file) ||
@@ -198,6 +211,7 @@ static bool fill(Drawing *d, const SplineScene *scene, YamlFile *file)
     d->at_most = isnan(scene->plotter.at_most) ? 0 : scene->plotter.at_most;
     if (!read_plotter(&scene->plotter, file, &d->plotter) || !check_size(d, file)) return false;
     d->timed = d->plotter;
+    if (scene->draft) make_draft(d);
     return true;
 }
 

@@ -42,6 +42,7 @@ typedef struct Drawing {
     bool start_given; /* the parts have their strokes */
     SplineStartDef start;
     int rounds;
+    bool draft; /* it ends where its iterations do */
     DrawOrder order;
     Plotter plotter, timed; /* timed: with the lift of the slowest of the files asked for */
     double at_most;         /* s, what the plot may take; 0: no end                        */

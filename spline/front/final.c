@@ -190,6 +190,7 @@ static void keep_time(const Drawing *d, Strokes *strokes, OrderInfo *order, Run 
 static OrderDef order_def(const Drawing *d, const SplineGrid *outline)
 {
     OrderDef def = order_default();
+    if (d->draft) def.work /= 10;
     if (d->region_count) def.outline = outline;
     return def;
 }

@@ -306,10 +306,10 @@ static RelaxInfo sum_up(const DrawJob *job)
     return sum;
 }
 
-/* Monte Carlo and dynamics end when they have done what they were told. */
-static bool has_ended_well(const RelaxInfo *info, RelaxMethod method)
+/* Monte Carlo, dynamics and drafts end when they have done what they were told. */
+static bool has_ended_well(const RelaxInfo *info, const Drawing *d)
 {
-    bool counted = method == RELAX_MONTE_CARLO || method == RELAX_DYNAMICS;
+    bool counted = d->relax.method == RELAX_MONTE_CARLO || d->relax.method == RELAX_DYNAMICS || d->draft;
     return info->status == RELAX_CONVERGED || info->status == RELAX_SETTLED ||
            (counted && info->status == RELAX_MAX_ITERATIONS);
 }
@@ -328,15 +328,13 @@ static RunStatus run_draw(Run *run, Error *err)
     bool interrupted = !going && !job.failed;
     bool ok = !job.failed && draw_finish(run, d, job.strokes, &info,
                                          interrupted ? "interrupted" : relax_status_name(info.status), err);
-    if (ok && !interrupted && !has_ended_well(&info, d->relax.method))
+    if (ok && !interrupted && !has_ended_well(&info, d))
         host_say(run->host, "%s", relax_status_text(info.status));
     for (int k = 0; k < d->part_count; k++) strokes_clear(&job.strokes[k]);
     mem_free(job.strokes);
     mem_free(job.parts);
     if (!ok) return job.refused ? RUN_REFUSED : RUN_CANNOT_WRITE;
-    return interrupted                              ? RUN_INTERRUPTED
-           : has_ended_well(&info, d->relax.method) ? RUN_DONE
-                                                    : RUN_NOT_CONVERGED;
+    return interrupted ? RUN_INTERRUPTED : has_ended_well(&info, d) ? RUN_DONE : RUN_NOT_CONVERGED;
 }
 
 static const char *const free_keys[] = {"output",

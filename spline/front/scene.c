@@ -350,6 +350,9 @@ const YamlTable spline_table = {
          .doc = "of auto, newton and gradient, in each round, at most"},
         {YAML_NUMBER(SplineScene, tolerance), .when = "method: auto, newton, gradient", .range = "[0, 1)",
          .fallback = "3.0e-3", .doc = "settled when the energy fell by less than this part in 20 iterations"},
+        {YAML_BOOL(SplineScene, draft), .when = "method: auto",
+         .doc = "a first look, in about 2 s up to 20 000 segments: no rounds, and no more iterations than "
+                "there is time for"},
         {YAML_INTEGER(SplineScene, rounds), .range = "[0, 1000]", .fallback = "2",
          .doc = "after the first relaxation: strokes come and go where that helps, then all relax again"},
         {YAML_NUMBER(SplineScene, rest), .range = "[0, 10]", .fallback = "1.2",

@@ -129,6 +129,7 @@ typedef struct SplineScene {
     PairScene pair;
     int method, iterations, rounds, seed, order, pens_count, regions_count; /* RelaxMethod; DrawOrder */
     double tolerance, rest;
+    bool draft;
     MonteCarloScene monte_carlo;
     DynamicsScene dynamics;
     PlotterScene plotter;
