@@ -415,7 +415,7 @@ int verb_export(int argc, char **argv)
         "export NAME.vtkhdf -o FILE.csv --dataset PATH      numbers, e.g. --dataset design/magnetization\n"
         "       slender export NAME.vtkhdf -o FILE.obj [--frame N]  a mesh; default: the final state\n"
         "       slender export NAME.vtkhdf -o FILE.svg | .gcode | .hpgl [--plotter gcode | gcode_servo | "
-        "hpgl]  a "
+        "hpgl | PROFILE.yaml]  a "
         "drawing\n"
         "       slender export NAME.run -o NAME.vtkhdf              the result of a running or interrupted "
         "job";

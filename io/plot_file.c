@@ -119,6 +119,19 @@ static double distance(Vec2 a, Vec2 b)
     return hypot(b.x - a.x, b.y - a.y);
 }
 
+void plot_add_length(const Vec2 *c, const Vec2 *end, double *length)
+{
+    for (; c < end; c += 3) {
+        int steps = cubic_steps(c, 0.001);
+        Vec2 at = *c;
+        for (int i = 1; i <= steps; i++) {
+            Vec2 next = cubic_at(c, (double)i / steps);
+            *length += distance(at, next);
+            at = next;
+        }
+    }
+}
+
 PlotEstimate plot_estimate(const PlotLayer *layer, const Plotter *plotter)
 {
     PlotEstimate estimate = {0};
@@ -126,14 +139,8 @@ PlotEstimate plot_estimate(const PlotLayer *layer, const Plotter *plotter)
     for (int k = 0; k < layer->count; k++) {
         const Vec2 *c = layer->points + layer->start[k], *end = layer->points + layer->start[k + 1] - 1;
         estimate.travel += distance(at, *c);
-        for (at = *c; c < end; c += 3) {
-            int steps = cubic_steps(c, 0.001);
-            for (int i = 1; i <= steps; i++) {
-                Vec2 next = cubic_at(c, (double)i / steps);
-                estimate.ink += distance(at, next);
-                at = next;
-            }
-        }
+        plot_add_length(c, end, &estimate.ink);
+        at = *end;
     }
     estimate.travel += distance(at, home);
     estimate.seconds =

@@ -81,6 +81,12 @@ typedef struct PlotProfile {
     int decimals;     /* of {x} and {y} */
     double tolerance; /* mm, of the chords that replace a curve */
     bool y_up;        /* y counts from the lower edge of the paper */
+    bool turn;        /* a paper that is higher than wide lies turned by a quarter, clockwise */
+    double origin[2]; /* mm, the machine's (0, 0) from the corner that x and y count from */
+    double limits[2]; /* mm, how far it reaches from there; 0: no matter */
+    const char
+        *refill; /* before a curve with which more than so much were drawn since the last one; NULL: none */
+    double refill_after; /* mm of ink, by one pen; a curve is never broken */
 } PlotProfile;
 
 /* By name; a sentence for an unknown one.
@@ -89,6 +95,14 @@ typedef struct PlotProfile {
  *   hpgl         40 units per mm, SP per pen, VS: its speed; x to the right and y up from the lower left
  *                corner. The plotter lifts the pen as it can: no word of HPGL waits */
 bool plot_profile(const char *name, PlotProfile *profile, Error *err);
+
+/* From a YAML file of one's own (scenes/plotters/, docs/line_art.md): the table of io/plot_profile.c. A sentence with the
+ * line where it is refused. The profile owns its words then: clear it. */
+bool plot_profile_read(const char *path, PlotProfile *profile, Error *err);
+void plot_profile_clear(PlotProfile *profile);
+
+/* Is every word in braces one that stands for something? */
+bool plot_words_check(const char *words, Error *err);
 
 /* Writes the plot in the words of a profile, curves as chords. */
 bool plot_write_machine(const char *path, const Plot *plot, const PlotProfile *profile,

@@ -45,7 +45,10 @@ bool plot_profile(const char *name, PlotProfile *profile, Error *err)
         *profile = profiles[k].profile;
         return true;
     }
-    return error_set(err, "\"%s\" is no plotter's language; say gcode, gcode_servo or hpgl", name);
+    return error_set(err,
+                     "\"%s\" is no plotter's language; say gcode, gcode_servo or hpgl, or the path of a "
+                     "profile, a .yaml file",
+                     name);
 }
 
 /* What is being written, and what the words in braces stand for. */
@@ -53,8 +56,9 @@ typedef struct Writer {
     Text text;
     const PlotProfile *profile;
     const Plotter *plotter;
-    double height; /* of the paper, mm */
-    Vec2 at;       /* {x} and {y} */
+    const double *paper; /* mm */
+    Vec2 at;             /* {x} and {y} */
+    double ink;          /* mm, since the last refill */
     int pen;
     char *name;
 } Writer;
@@ -139,18 +143,83 @@ static void add_template(Writer *writer, const char *words)
     }
 }
 
+bool plot_words_check(const char *words, Error *err)
+{
+    const Plotter plotter = plotter_default();
+    const PlotProfile profile = {0};
+    Writer writer = {.profile = &profile, .plotter = &plotter, .name = ""};
+    bool ok = true;
+    for (const char *c = strchr(words, '{'); ok && c; c = strchr(c + 1, '{')) {
+        const char *end = strchr(c, '}');
+        ok =
+            (end && add_word(&writer, c, (size_t)(end + 1 - c))) ||
+            error_set(
+                err,
+                "\"%.*s\" stands for nothing; there are {x}, {y}, {feed}, {travel_feed}, {velocity}, {z_up}, "
+                "{z_down}, {z_feed}, {servo_up}, {servo_down}, {pause}, {half_pause}, {pen} and {name}",
+                (int)strcspn(c, "} \n") + 1, c);
+    }
+    mem_free(writer.text.text);
+    return ok;
+}
+
+/* Where the machine has a place of the paper, mm. */
+static Vec2 machine_place(const Writer *writer, Vec2 p)
+{
+    const PlotProfile *profile = writer->profile;
+    double width = writer->paper[0], height = writer->paper[1];
+    if (profile->turn && height > width) {
+        p = (Vec2){height - p.y, p.x};
+        height = width;
+    }
+    return (Vec2){p.x - profile->origin[0], (profile->y_up ? height - p.y : p.y) - profile->origin[1]};
+}
+
 /* In the machine's units, as they will be written. */
 static Vec2 machine_point(const Writer *writer, Vec2 p)
 {
     const PlotProfile *profile = writer->profile;
     double scale = profile->units, tick = pow(10, -profile->decimals);
-    return (Vec2){tick * round(scale * p.x / tick),
-                  tick * round(scale * (profile->y_up ? writer->height - p.y : p.y) / tick)};
+    Vec2 at = machine_place(writer, p);
+    return (Vec2){tick * round(scale * at.x / tick), tick * round(scale * at.y / tick)};
+}
+
+/* All control points, in whose hull the curves lie; a hundredth of a millimetre is nothing. */
+static bool check_limits(const Writer *writer, const char *path, const Plot *plot, Error *err)
+{
+    const double *limits = writer->profile->limits, slack = 0.01;
+    if (limits[0] == 0) return true;
+    for (int k = 0; k < plot->layer_count; k++) {
+        const PlotLayer *layer = &plot->layers[k];
+        for (int i = 0; i < (layer->count ? layer->start[layer->count] : 0); i++) {
+            Vec2 at = machine_place(writer, layer->points[i]);
+            if (fmin(at.x, at.y) < -slack || at.x > limits[0] + slack || at.y > limits[1] + slack)
+                return error_set(
+                    err,
+                    "%s: the plot has a point where the machine has (%.4g, %.4g) mm, and it reaches from "
+                    "(0, 0) to (%g, %g) mm; a wider margin or a smaller page helps",
+                    path, at.x, at.y, limits[0], limits[1]);
+        }
+    }
+    return true;
+}
+
+static void refill(Writer *writer, const Vec2 *c, const Vec2 *end)
+{
+    if (!writer->profile->refill_after) return;
+    double length = 0;
+    plot_add_length(c, end, &length);
+    if (writer->ink > 0 && writer->ink + length > writer->profile->refill_after) {
+        add_template(writer, writer->profile->refill);
+        writer->ink = 0;
+    }
+    writer->ink += length;
 }
 
 /* Points that round to where the pen is are no moves. */
 static void add_curve(Writer *writer, const Vec2 *c, const Vec2 *end)
 {
+    refill(writer, c, end);
     writer->at = machine_point(writer, *c);
     add_template(writer, writer->profile->travel);
     add_template(writer, writer->profile->down);
@@ -169,14 +238,15 @@ static void add_curve(Writer *writer, const Vec2 *c, const Vec2 *end)
 bool plot_write_machine(const char *path, const Plot *plot, const PlotProfile *profile,
                         const Plotter *plotter, Error *err)
 {
-    Writer writer = {.profile = profile, .plotter = plotter, .height = plot->paper[1]};
+    Writer writer = {.profile = profile, .plotter = plotter, .paper = plot->paper};
     bool first = true;
-    if (!plot_check(path, plot, err)) return false;
+    if (!plot_check(path, plot, err) || !check_limits(&writer, path, plot, err)) return false;
     add_template(&writer, profile->header);
     for (int k = 0; k < plot->layer_count; k++) {
         const PlotLayer *layer = &plot->layers[k];
         if (!layer->count) continue;
         writer.pen = k + 1;
+        writer.ink = 0;
         writer.name = plain_name(layer->name);
         if (!first) add_template(&writer, profile->change);
         add_template(&writer, profile->layer);

@@ -31,15 +31,25 @@ static bool read_numbers(Result *result, const char *name, int count, double *va
     return true;
 }
 
+/* One number in results of versions whose margins were all alike. */
+static bool read_margin(Result *result, double margin[2], Error *err)
+{
+    Array array;
+    if (!read_array(result, "margin", ARRAY_FLOAT64, -1, &array, err)) return false;
+    size_t count = array_count(&array);
+    for (int k = 0; k < 2; k++) margin[k] = ((const double *)array.data)[count == 2 ? k : 0];
+    array_clear(&array);
+    return count == 1 || count == 2 || error_set(err, "spline/margin is not as slender writes it");
+}
+
 static bool read_page(Result *result, Drawn *drawn, Error *err)
 {
-    double paper[2], margin;
-    if (!read_numbers(result, "paper", 2, paper, err) || !read_numbers(result, "margin", 1, &margin, err))
-        return false;
+    double paper[2], margin[2];
+    if (!read_numbers(result, "paper", 2, paper, err) || !read_margin(result, margin, err)) return false;
     for (int k = 0; k < 2; k++)
-        if (!(paper[k] > 2 * fmax(margin, 0) && paper[k] < PAPER_MAX && margin >= 0))
+        if (!(paper[k] > 2 * fmax(margin[k], 0) && paper[k] < PAPER_MAX && margin[k] >= 0))
             return error_set(err, "spline/paper and spline/margin leave no page");
-    drawn->page = spline_page(paper[0], paper[1], margin, 0);
+    drawn->page = spline_page_margins(paper, margin[0], margin[1], 0);
     return true;
 }
 
@@ -182,10 +192,22 @@ void drawn_clear(Drawn *drawn)
     *drawn = (Drawn){0};
 }
 
+/* Names of languages have no dot. */
+static bool is_profile_file(const char *language)
+{
+    return strchr(language, '.') || strchr(language, '/');
+}
+
 bool drawn_write(const Drawn *drawn, const char *language, const char *path, Error *err)
 {
     PlotProfile profile;
     if (!strcmp(language, "svg")) return plot_write_svg(path, &drawn->plot, err);
+    if (is_profile_file(language)) {
+        bool ok = plot_profile_read(language, &profile, err) &&
+                  plot_write_machine(path, &drawn->plot, &profile, &drawn->plotter, err);
+        plot_profile_clear(&profile);
+        return ok;
+    }
     return plot_profile(language, &profile, err) &&
            plot_write_machine(path, &drawn->plot, &profile, &drawn->plotter, err);
 }

@@ -3,7 +3,8 @@
  *
  * In a result, under /slender/spline: nodes [K,4] m (p and v on the paper, from its top left corner, y down),
  * strokes [S+1] first node of each stroke in the order in which they are plotted, pen [S]; and names (of the
- * pens, a line each), width [pens] m, color [pens,3], paper [2] m, margin m, speed [2] m/s (pen down, up),
+ * pens, a line each), width [pens] m, color [pens,3], paper [2] m, margin [2] m (left and right,
+ * above and below), speed [2] m/s (pen down, up),
  * lift s, z [3] (up, down m; m/s), servo (two commands, a line each: up, down), pause s (what G4 P1 waits),
  * picture [rows,columns] or [rows,columns,3]: what was to be drawn, 0 white .. 255 black or, of a
  * coloured one, what takes away red, green and blue. */
@@ -30,5 +31,5 @@ bool drawn_has(Result *result);
 bool drawn_read(Result *result, Drawn *drawn, Error *err);
 void drawn_clear(Drawn *drawn);
 
-/* Writes it as "svg", or in the words of a profile (plot_file.h). */
+/* Writes it as "svg", or in the words of a profile (plot_file.h): its name, or the path of its file. */
 bool drawn_write(const Drawn *drawn, const char *language, const char *path, Error *err);

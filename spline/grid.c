@@ -52,6 +52,11 @@ void spline_field_multiply(SplineField *field, const SplineField *other)
     for (size_t i = 0; i < value_count(field); i++) field->values[i] *= other->values[i / each];
 }
 
+void spline_field_scale(SplineField *field, double factor)
+{
+    for (size_t i = 0; i < value_count(field); i++) field->values[i] *= factor;
+}
+
 void spline_grid_sample(const SplineGrid *grid, const SplinePage *page, Vec2 at, double *values)
 {
     double x = fmin(fmax(at.x / page->width * grid->columns - 0.5, 0), grid->columns - 1);

@@ -43,6 +43,7 @@ static inline Vec2 spline_field_center(const SplineField *field, const SplinePag
 /* Each value plus, or times, that of another field of the same pixels and width, or of width 1. */
 void spline_field_add(SplineField *field, const SplineField *other);
 void spline_field_multiply(SplineField *field, const SplineField *other);
+void spline_field_scale(SplineField *field, double factor);
 
 /* values[width] at (x, y), bilinear; the outermost pixels' values continue to the page's edges and beyond. */
 void spline_grid_sample(const SplineGrid *grid, const SplinePage *page, Vec2 at, double *values);

@@ -20,6 +20,13 @@ done
 expect 0 "$program" export out/a.vtkhdf -o c.svg; same out/a.svg c.svg
 expect 0 "$program" export out/a.vtkhdf -o c.gcode; same out/a.gcode c.gcode
 expect 0 "$program" export out/a.vtkhdf -o c.nc --plotter gcode_servo; grep -q "M3 S30" c.nc || { echo "no servo"; bad=1; }
+# In the words of a machine of one's own; a plotter that does not reach so far, and words that stand for nothing, are refused.
+sed 's/^origin.*/origin: [0, 0]/' "$here/../scenes/plotters/hp7475a.yaml" > near.yaml
+expect 0 "$program" export out/a.vtkhdf -o c.plt --plotter near.yaml; grep -q "^SP1;" c.plt || { echo "no HP 7475A"; bad=1; }
+sed 's/276 mm/70 mm/' near.yaml > small.yaml; sed 's/{feed}/{speed}/' "$here/../scenes/plotters/brush.yaml" > wrong.yaml
+expect 4 "$program" export out/a.vtkhdf -o d.plt --plotter small.yaml; says "it reaches from (0, 0) to (70, 193) mm"
+expect 4 "$program" export out/a.vtkhdf -o d.gcode --plotter wrong.yaml; says 'wrong.yaml:.*"{speed}" stands for nothing'
+[ ! -e d.plt ] && [ ! -e d.gcode ] || { echo "a refused plot was written"; bad=1; }
 # How the pen is lifted is in the files, in the time, and in what is exported later.
 for lift in 0.3 9; do
     expect 0 "$program" run "$scene" --quiet --no-picture -o "lift$lift" --set spline.rounds=0 --set output.gcode="lift$lift.gcode" --set output.gcode_servo=s.nc \
@@ -37,6 +44,33 @@ expect 3 "$program" picture out/a.vtkhdf -o c.png --frame 0; says "the drawing h
 expect 3 "$program" picture out/a.vtkhdf -o c.png --stills 3; says "no moments side by side"
 expect 0 "$program" run "$scene" --quiet --no-picture -o d --set spline.rounds=0 --set output.film=30
 expect 0 "$program" run "$scene" --quiet --no-picture -o d --resume --set output.film=30; same out/a.svg d.svg
+
+# What plotting takes is foretold, and may have an end: the files, added up move by move, keep to it. Runs go on with the
+# tones that they began with.
+expect 0 "$program" check "$scene";             says "to plot: about .* min, .* m of ink in .* strokes"; says "to compute: about"
+foretold=$(sed -n 's/^to plot: about \([0-9.]*\) min.*/\1/p' out.txt)
+seconds_of() { # of G-code with a z axis: G0 and G1 with X, Y or Z at F
+    awk '/^G[01] / { x2 = x; y2 = y; z2 = z
+        for (i = 2; i <= NF; i++) { v = substr($i, 2); if ($i ~ /^X/) x2 = v; if ($i ~ /^Y/) y2 = v; if ($i ~ /^Z/) z2 = v; if ($i ~ /^F/) f = v }
+        t += sqrt((x2 - x)^2 + (y2 - y)^2 + (z2 - z)^2)/(f/60); x = x2; y = y2; z = z2 }
+        BEGIN { y = 60; z = 5 } END { print t }' "$1"
+}
+for limit in 1000 60 30; do
+    expect 0 "$program" run "$scene" --no-picture -o limit --force --set output.gcode=limit.gcode --set spline.plotter.at_most=${limit}s
+    seconds_of limit.gcode | awk -v limit=$limit -v foretold="$foretold" '{ exit !($1 <= limit + 0.5 && (limit == 1000 || $1 > 0.75 * limit)) }' ||
+        { echo "no plot of $limit s: $(seconds_of limit.gcode)"; bad=1; }
+    [ $limit = 1000 ] || says "to take no more than .* min to plot, the picture is drawn with .* % of its ink"
+done
+expect 3 "$program" run "$scene" --no-picture -o limit --resume --set output.gcode=limit.gcode --set spline.plotter.at_most=40s; says "spline.plotter.at_most is not the same"
+expect 3 "$program" run "$scene" --no-picture -o limit --resume --set output.gcode=limit.gcode --set spline.plotter.at_most=30s --set spline.plotter.down=30mm/s
+says "the plotter's speeds may not change"
+expect 0 "$program" run "$scene" --quiet --no-picture -o d --resume --set output.film=30 --set spline.plotter.down=30mm/s
+expect 3 "$program" check "$scene" --set spline.plotter.at_most=2s; says "less than a tenth of its ink"
+
+# A draft ends well where its iterations do, the same each time.
+expect 0 "$program" run "$scene" --quiet --no-picture -o draft --set spline.draft=true --set spline.iterations=12
+expect 0 "$program" info draft.vtkhdf;          says "max_iterations"
+expect 3 "$program" check "$scene" --set spline.draft=true --set spline.method=gradient; says "spline.draft"
 
 # Its film: the drawing is the same, more rounds go on from what there was; a picture of each frame, and all of them.
 expect 0 "$program" run "$scene" --quiet --no-picture -o film --set output.film=30 --set spline.rounds=0

@@ -37,6 +37,88 @@ static void pages(void **state)
     drawing_destroy(d);
 }
 
+/* A picture that is shown whole is all that is drawn on, in the middle: what a mask, a formula and strokes see of the
+ * page, too. One that covers the page leaves the page as it is. */
+static void shapes_of_pictures(void **state)
+{
+    (void)state;
+    write_file("wide.pgm", "P2 4 1 255  0 90 180 255\n");
+    static const double size[][2] = {{0.080, 0.020}, {0.060, 0.040}, {0.080, 0.060}, {0.040, 0.010}};
+    static const char *const tones[] = {"{}", "{crop: [0, 0, 0.375, 1]}", "{fit: cover}", "{}"};
+    for (int k = 0; k < 4; k++) {
+        char entry[300];
+        snprintf(entry, sizeof entry,
+                 "image: wide.pgm, tone: %s, pen: %s, page: {size: [90 mm, %s], margin: 5 mm}", tones[k],
+                 k == 3 ? "1 mm" : "0.5 mm",
+                 k == 1   ? "50 mm"
+                 : k == 3 ? "20 mm"
+                          : "70 mm");
+        Drawing *d = drawing_of(entry);
+        const SplinePage *page = &d->page;
+        expect_close(page->unit * page->width, size[k][0], 1e-15);
+        expect_close(page->unit * page->height, size[k][1], 1e-15);
+        expect_close(2 * page->left + size[k][0], page->paper[0], 1e-15);
+        expect_close(2 * page->top + size[k][1], page->paper[1], 1e-15);
+        expect_close(page->width * page->height, 1, 1e-14);
+        expect_close(d->pens[0].width * page->unit, k == 3 ? 1e-3 : 0.5e-3, 1e-15);
+        if (k != 2)
+            expect_close(value_at(&d->parts[0].tone, page, 0.01, 0.02), 0.85, 1e-6); /* no blank beside it */
+        drawing_destroy(d);
+    }
+    /* of a strip there is room for some lines */
+    Drawing *d = drawing_of("image: wide.pgm, pen: 3 mm, page: {size: [80 mm, 80 mm], margin: 0}");
+    expect_close(d->page.unit * d->page.height, 0.030, 1e-15);
+    drawing_destroy(d);
+}
+
+/* All control points of what a plotter gets, within the picture. */
+static void nothing_beside(void **state)
+{
+    (void)state;
+    write_file("grey.pgm", "P2 2 1 255  100 200\n");
+    Drawing *d = drawing_of(
+        "image: grey.pgm, pen: 1 mm, page: {size: [90 mm, 130 mm], margin: 5 mm}, direction: 80 deg");
+    SplineTarget *target;
+    Strokes strokes = {0};
+    drawing_begin(d, 0, 1, &strokes, &target);
+    spline_relax(target, &d->relax, &strokes, NULL);
+    Plot plot = spline_plot(&strokes, &d->page, d->pens, d->pen_count);
+    const PlotLayer *layer = &plot.layers[0];
+    assert_true(layer->count > 30);
+    for (int i = 0; i < layer->start[layer->count]; i++) {
+        Vec2 p = layer->points[i]; /* 80 mm x 40 mm in the middle of the paper */
+        assert_true(fabs(p.x - 45) < 40 && fabs(p.y - 65) < 20);
+    }
+    spline_plot_clear(&plot);
+    strokes_clear(&strokes);
+    spline_target_destroy(target);
+    drawing_destroy(d);
+}
+
+/* As many iterations as fit into two seconds, and no rounds; fewer for more segments, ten at least. */
+static void drafts(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *pen;
+        int least, most;
+    } rows[] = {{"2 mm", 500, 500}, {"0.5 mm", 12, 60}, {"0.2 mm", 10, 10}};
+    int before = 501;
+    for (int k = 0; k < 3; k++) {
+        char entry[100];
+        snprintf(entry, sizeof entry, "density: 0.3, draft: true, rounds: 5, pen: %s", rows[k].pen);
+        Drawing *d = drawing_of(entry);
+        assert_true(d->draft && d->rounds == 0);
+        assert_in_range(d->relax.max_iterations, rows[k].least, rows[k].most);
+        assert_true(d->relax.max_iterations < before);
+        before = d->relax.max_iterations;
+        drawing_destroy(d);
+    }
+    Drawing *d = drawing_of("density: 0.3, draft: true, iterations: 7");
+    assert_int_equal(d->relax.max_iterations, 7);
+    drawing_destroy(d);
+}
+
 /* What a scene does not say is what the library takes. */
 static void defaults(void **state)
 {
@@ -211,6 +293,9 @@ static void colors(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test_teardown(pages, nothing_leaks),
+                                       cmocka_unit_test_teardown(shapes_of_pictures, nothing_leaks),
+                                       cmocka_unit_test_teardown(nothing_beside, nothing_leaks),
+                                       cmocka_unit_test_teardown(drafts, nothing_leaks),
                                        cmocka_unit_test_teardown(defaults, nothing_leaks),
                                        cmocka_unit_test_teardown(formulas, nothing_leaks),
                                        cmocka_unit_test_teardown(inks, nothing_leaks),

@@ -168,8 +168,9 @@ Spline = TypedDict("Spline", {
     "pens": "Rows[Pens]", "separation": "Separation", "regions": "Rows[Regions]", "cross": "Cross",
     "direction": "Direction", "start": "StartOfADrawing", "energies": "Energies", "potential": "Potential",
     "flow": "Flow", "pair": "Pair", "method": "Literal['auto', 'newton', 'gradient', 'monte_carlo', 'dynamics']",
-    "iterations": "int", "tolerance": "float", "rounds": "int", "rest": "float", "monte_carlo": "MonteCarlo",
-    "dynamics": "Dynamics", "seed": "int", "order": "Literal['shortest', 'as_made']", "plotter": "Plotter",
+    "iterations": "int", "tolerance": "float", "draft": "bool", "rounds": "int", "rest": "float",
+    "monte_carlo": "MonteCarlo", "dynamics": "Dynamics", "seed": "int", "order": "Literal['shortest', 'as_made']",
+    "plotter": "Plotter",
 }, total=False)
 
 DensityOfADrawingKeys = TypedDict("DensityOfADrawingKeys", {
@@ -243,7 +244,7 @@ Dynamics = TypedDict("Dynamics", {
 }, total=False)
 
 Plotter = TypedDict("Plotter", {
-    "down": "Number", "up": "Number", "lift": "Number", "z": "ZAxis", "servo": "Servo",
+    "down": "Number", "up": "Number", "lift": "Number", "at_most": "Number", "z": "ZAxis", "servo": "Servo",
 }, total=False)
 
 ZAxis = TypedDict("ZAxis", {

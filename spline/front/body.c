@@ -2,6 +2,7 @@
 #include "base/memory.h"
 #include "spline/drawn.h"
 #include "spline/front/front.h"
+#include "spline/front/plot_time.h"
 
 /* What says how a pen is lifted needs the file that says so. */
 static bool check_plotter(const Scene *scene, YamlFile *file)
@@ -17,8 +18,9 @@ static bool check_plotter(const Scene *scene, YamlFile *file)
 static bool create(Model *model, const Scene *scene, YamlFile *file)
 {
     if (!check_plotter(scene, file)) return false;
-    model->self = drawing_create(spline_scene(scene), file);
-    return model->self != NULL;
+    Drawing *d = model->self = drawing_create(spline_scene(scene), file);
+    if (d && scene->output.gcode) d->timed.lift = plotter_z_lift(&d->plotter);
+    return d && (d->at_most == 0 || drawing_fit_time(d, file));
 }
 
 static void destroy(void *self)
@@ -29,6 +31,23 @@ static void destroy(void *self)
 static void add_static(const Model *model, Arrays *list)
 {
     drawing_add_static(model->self, list);
+}
+
+static char *describe_times(const Drawing *d)
+{
+    PlotTime time = drawing_foretell(d);
+    char *text =
+        mem_format("to plot: about %.3g min, %.3g m of ink in %d strokes, %.3g m with the pen lifted\n",
+                   time.seconds / 60, 1e-3 * time.ink, time.strokes, 1e-3 * time.travel);
+    char *thinned = drawing_thinned(d);
+    char *work = d->relax.method == RELAX_AUTO
+                     ? mem_format("to compute: about %.2g s by one thread\n", drawing_work_time(d))
+                     : mem_text("to compute: only method auto is foretold\n");
+    text = mem_join(text, thinned, "");
+    text = mem_join(text, work, "");
+    mem_free(thinned);
+    mem_free(work);
+    return text;
 }
 
 static char *describe(const Model *model, const Scene *scene)
@@ -49,6 +68,9 @@ static char *describe(const Model *model, const Scene *scene)
         text = mem_join(text, line, "");
         mem_free(line);
     }
+    char *times = describe_times(d);
+    text = mem_join(text, times, "");
+    mem_free(times);
     return text;
 }
 

@@ -5,11 +5,14 @@
 #include "spline/front/drawing_fields.h"
 #include "spline/front/drawing_pens.h"
 #include "spline/front/drawing_start.h"
+#include "spline/front/plot_time.h"
 #include "spline/tone_field.h"
 #include <math.h>
 #include <string.h>
 
-enum { SEGMENTS_MAX = 3000000 };
+enum { SEGMENTS_MAX = 3000000, DRAFT_LEAST = 10 };
+
+static const double DRAFT_TIME = 2; /* s */
 
 static const double REST_LEAST = 0.05; /* mean distances of lines */
 
@@ -182,11 +185,20 @@ static bool read_plotter(const PlotterScene *from, YamlFile *file, Plotter *to)
 
 /* ---- The whole ---- */
 
+/* As many iterations as are foretold to fit, so that it is the same on every machine; a few there must be. */
+static void make_draft(Drawing *d)
+{
+    d->draft = true;
+    d->rounds = 0;
+    int most = d->relax.max_iterations;
+    for (d->relax.max_iterations = 0; d->relax.max_iterations < most; d->relax.max_iterations++)
+        if (d->relax.max_iterations >= DRAFT_LEAST && drawing_work_time(d) > DRAFT_TIME) break;
+}
+
 static bool fill(Drawing *d, const SplineScene *scene, YamlFile *file)
 {
     if (!check_cross(scene->cross, file) || !check_rest(scene->rest, file) ||
-        !read_page(scene, file, &d->page) || !pens_read(scene, file, &d->page, &d->pens, &d->pen_count) ||
-        !drawing_read_fields(d, scene, file))
+        !read_page(scene, file, &d->page) || !drawing_read_fields(d, scene, file))
         return false;
     make_parts(d, scene);
     d->relax = relax_def(scene);
@@ -195,7 +207,12 @@ static bool fill(Drawing *d, const SplineScene *scene, YamlFile *file)
     if (scene->start.file && !drawing_read_start(d, scene, file)) return false;
     d->rounds = scene->rounds;
     d->order = (DrawOrder)scene->order;
-    return read_plotter(&scene->plotter, file, &d->plotter) && check_size(d, file);
+    d->thinned = 1;
+    d->at_most = isnan(scene->plotter.at_most) ? 0 : scene->plotter.at_most;
+    if (!read_plotter(&scene->plotter, file, &d->plotter) || !check_size(d, file)) return false;
+    d->timed = d->plotter;
+    if (scene->draft) make_draft(d);
+    return true;
 }
 
 Drawing *drawing_create(const SplineScene *scene, YamlFile *file)
@@ -240,7 +257,7 @@ static SplineField direction_of(const Drawing *d, int part)
     return direction;
 }
 
-static Strokes start_of(const Drawing *d, int part)
+Strokes drawing_first_strokes(const Drawing *d, int part)
 {
     const DrawingPart *from = &d->parts[part];
     if (d->start_given) return strokes_copy(&from->given);
@@ -295,7 +312,7 @@ static void begin_task(void *self, int k)
     if (k == 0)
         *b->target = target_of(b->d, b->part, b->workers);
     else
-        *b->strokes = start_of(b->d, b->part);
+        *b->strokes = drawing_first_strokes(b->d, b->part);
 }
 
 /* Strokes take one thread as long as the target takes it, more or less: with threads of its own beside that, the target

@@ -42,9 +42,15 @@ typedef struct Drawing {
     bool start_given; /* the parts have their strokes */
     SplineStartDef start;
     int rounds;
+    bool draft; /* it ends where its iterations do */
     DrawOrder order;
-    Plotter plotter;
+    Plotter plotter, timed; /* timed: with the lift of the slowest of the files asked for */
+    double at_most;         /* s, what the plot may take; 0: no end                        */
+    double thinned;         /* what of its ink the picture keeps for that; 1: all           */
 } Drawing;
+
+/* The strokes that a part starts from; the caller's. */
+Strokes drawing_first_strokes(const Drawing *drawing, int part);
 
 /* About how many segments its strokes will have. */
 double drawing_segments(const DrawingPart *part);

@@ -9,7 +9,10 @@
 #include <math.h>
 #include <string.h>
 
-enum { SHOWN = 600 }; /* pixels of the longer side of what is shown */
+enum {
+    SHOWN = 600,    /* pixels of the longer side of what is shown                        */
+    STRIP_PENS = 10 /* across a picture, at least, that is alone what is drawn on        */
+};
 
 typedef struct Reader {
     const SplineScene *scene;
@@ -77,6 +80,17 @@ static bool read_image(Reader *r, const SplinePage *page)
     spline_tone_useful(page, &r->tone, fmin(r->pixel, shown_pixel(page)), useful);
     return image_read_useful(path, useful, &r->grey, coloured ? r->rgb : NULL, &err) ||
            refuse(r, "spline.image", &err);
+}
+
+/* A picture that is shown whole, centred, is all that is drawn on: no stroke leaves it. A strip of fewer pens has no
+ * room for lines of its own: they may stick out. */
+static void fit_page(Reader *r, SplinePage *page)
+{
+    const double *c = r->tone.crop, least = STRIP_PENS * page->pen;
+    if (!r->grey.grey || r->tone.cover) return;
+    double shape = (c[3] - c[1]) * r->grey.height / ((c[2] - c[0]) * r->grey.width);
+    *page = spline_page_shaped(page, fmin(fmax(shape, least / page->width), page->height / least));
+    r->pixel = spline_tone_pixel(page);
 }
 
 /* Of the picture, or of the formula. */
@@ -237,7 +251,9 @@ bool drawing_read_fields(Drawing *d, const SplineScene *scene, YamlFile *file)
 {
     Reader r = {.scene = scene, .build = {.file = file}, .pixel = spline_tone_pixel(&d->page)};
     SplineField tone = {0};
-    bool ok = read_tone_def(&r) && read_image(&r, &d->page) && read_tone(&r, &d->page, &tone);
+    bool ok = read_tone_def(&r) && read_image(&r, &d->page);
+    if (ok) fit_page(&r, &d->page);
+    ok = ok && pens_read(scene, file, &d->page, &d->pens, &d->pen_count) && read_tone(&r, &d->page, &tone);
     if (ok) {
         share_tone(&r, &tone, d);
         make_picture(&r, &tone, d);

@@ -3,6 +3,7 @@
 #include "base/memory.h"
 #include "spline/film.h"
 #include "spline/front/front.h"
+#include "spline/front/plot_time.h"
 #include "spline/metrics.h"
 #include "spline/order.h"
 #include "spline/outline.h"
@@ -89,26 +90,17 @@ static void add_metrics(const Drawing *d, const Strokes *strokes, Run *run, Arra
 /* What the plotter does: way of the lifted pen before and after ordering, time. */
 static void add_plot(const Drawing *d, const Strokes *strokes, const OrderInfo *order, Run *run, Arrays *list)
 {
-    Plotter plotter = d->plotter;
-    Plot plot = spline_plot(strokes, &d->page, d->pens, d->pen_count);
-    double *seconds = arrays_numbers(list, (size_t)d->pen_count), *travel = arrays_numbers(list, 2), sum = 0,
-           ink = 0;
-    if (run->scene->output.gcode) plotter.lift = plotter_z_lift(&plotter);
-    for (int k = 0; k < d->pen_count; k++) {
-        PlotEstimate estimate = plot_estimate(&plot.layers[k], &plotter);
-        seconds[k] = estimate.seconds;
-        sum += estimate.seconds;
-        ink += estimate.ink;
-    }
+    double *seconds = arrays_numbers(list, (size_t)d->pen_count), *travel = arrays_numbers(list, 2);
+    PlotTime time = drawing_plot_time(d, strokes, seconds);
     travel[0] = order->before * d->page.unit, travel[1] = order->after * d->page.unit;
     host_say(run->host,
              "%d strokes, %.2f m of ink; the lifted pen moves %.2f m, %.2f m before ordering; about %.0f "
              "min to plot",
-             strokes->count, 1e-3 * ink, travel[1], travel[0], sum / 60);
+             strokes->count, 1e-3 * time.ink, travel[1], travel[0], time.seconds / 60);
     arrays_add(list, array_float("metrics/travel_before", "m", &travel[0], 0, 0, 0));
     arrays_add(list, array_float("metrics/travel", "m", &travel[1], 0, 0, 0));
     arrays_add(list, per_pen(d, "metrics/plot_time", "s", seconds));
-    spline_plot_clear(&plot);
+    if (d->at_most > 0) arrays_add(list, array_float("metrics/thinned", "", &d->thinned, 0, 0, 0));
 }
 
 /* How far the middle of a line leaves the regions at most; more than half a pen is said. */
@@ -182,9 +174,23 @@ static bool put_frame(Run *run, const Drawing *d, const Strokes *strokes, Error 
 
 /* ---- The whole ---- */
 
+/* As long as the plotter may take, and no longer; what that costs is said. */
+static void keep_time(const Drawing *d, Strokes *strokes, OrderInfo *order, Run *run)
+{
+    int count = drawing_keep_time(d, strokes);
+    char *thinned = drawing_thinned(d);
+    if (*thinned) host_say(run->host, "%.*s", (int)strcspn(thinned, "\n"), thinned);
+    if (count) {
+        order->after = order_travel(strokes, &d->page);
+        host_say(run->host, "and %d of the shortest strokes are left out for that", count);
+    }
+    mem_free(thinned);
+}
+
 static OrderDef order_def(const Drawing *d, const SplineGrid *outline)
 {
     OrderDef def = order_default();
+    if (d->draft) def.work /= 10;
     if (d->region_count) def.outline = outline;
     return def;
 }
@@ -201,6 +207,7 @@ bool draw_finish(Run *run, const Drawing *d, const Strokes *parts, const RelaxIn
         order = order_strokes(&all, &d->page, order_def(d, &outline));
     else
         order.before = order.after = order_travel(&all, &d->page);
+    keep_time(d, &all, &order, run);
     drawing_add_strokes(d, &all, &list);
     for (int t = 0; t < SPLINE_WEIGHT_COUNT; t++) {
         char *name = arrays_keep(&list, mem_format("final/energy/%s", spline_term_rows[t].name));

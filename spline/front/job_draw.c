@@ -37,7 +37,7 @@ typedef struct DrawJob {
     SplineTarget *target;
     SplineJudge *judge; /* of the part, where progress is shown */
     double started, judged, cost, tone;
-    bool failed;
+    bool failed, refused;
     Error *err;
 } DrawJob;
 
@@ -135,6 +135,21 @@ static bool find_iteration(DrawJob *job)
         array_clear(&part);
     }
     return ok;
+}
+
+/* A run that goes on has the tones that it began with: with `at_most` they follow from the plotter's speeds. */
+static bool keeps_tones(DrawJob *job)
+{
+    static const char *const kind = "state", *const name = "thinned";
+    Array kept = {0}, own = array_float(name, "", &job->d->thinned, 0, 0, 0);
+    if (!journal_find(job->run->journal, kind, 0, name, &kept, job->err)) return false;
+    if (!kept.data) return journal_put(job->run->journal, kind, 0, &own, 1, job->err);
+    bool same = kept.type == ARRAY_FLOAT64 && *(const double *)kept.data == job->d->thinned;
+    array_clear(&kept);
+    job->refused = !same;
+    return same ||
+           error_set(job->err,
+                     "with --resume the plotter's speeds may not change where its `at_most` counts on them");
 }
 
 /* ---- Progress ---- */
@@ -291,10 +306,10 @@ static RelaxInfo sum_up(const DrawJob *job)
     return sum;
 }
 
-/* Monte Carlo and dynamics end when they have done what they were told. */
-static bool has_ended_well(const RelaxInfo *info, RelaxMethod method)
+/* Monte Carlo, dynamics and drafts end when they have done what they were told. */
+static bool has_ended_well(const RelaxInfo *info, const Drawing *d)
 {
-    bool counted = method == RELAX_MONTE_CARLO || method == RELAX_DYNAMICS;
+    bool counted = d->relax.method == RELAX_MONTE_CARLO || d->relax.method == RELAX_DYNAMICS || d->draft;
     return info->status == RELAX_CONVERGED || info->status == RELAX_SETTLED ||
            (counted && info->status == RELAX_MAX_ITERATIONS);
 }
@@ -306,25 +321,31 @@ static RunStatus run_draw(Run *run, Error *err)
     job.relax.threads = run->threads;
     job.strokes = mem_alloc((size_t)d->part_count, sizeof *job.strokes);
     job.parts = mem_alloc((size_t)d->part_count, sizeof *job.parts);
-    bool going = find_iteration(&job);
+    bool going = keeps_tones(&job) && find_iteration(&job);
     job.failed = !going;
     for (int k = 0; going && k < d->part_count; k++) going = run_part(&job, k);
     RelaxInfo info = sum_up(&job);
     bool interrupted = !going && !job.failed;
     bool ok = !job.failed && draw_finish(run, d, job.strokes, &info,
                                          interrupted ? "interrupted" : relax_status_name(info.status), err);
-    if (ok && !interrupted && !has_ended_well(&info, d->relax.method))
+    if (ok && !interrupted && !has_ended_well(&info, d))
         host_say(run->host, "%s", relax_status_text(info.status));
     for (int k = 0; k < d->part_count; k++) strokes_clear(&job.strokes[k]);
     mem_free(job.strokes);
     mem_free(job.parts);
-    if (!ok) return RUN_CANNOT_WRITE;
-    return interrupted                              ? RUN_INTERRUPTED
-           : has_ended_well(&info, d->relax.method) ? RUN_DONE
-                                                    : RUN_NOT_CONVERGED;
+    if (!ok) return job.refused ? RUN_REFUSED : RUN_CANNOT_WRITE;
+    return interrupted ? RUN_INTERRUPTED : has_ended_well(&info, d) ? RUN_DONE : RUN_NOT_CONVERGED;
 }
 
-static const char *const free_keys[] = {"output", "spline.rounds", "spline.order", "spline.plotter", NULL};
+static const char *const free_keys[] = {"output",
+                                        "spline.rounds",
+                                        "spline.order",
+                                        "spline.plotter.down",
+                                        "spline.plotter.up",
+                                        "spline.plotter.lift",
+                                        "spline.plotter.z",
+                                        "spline.plotter.servo",
+                                        NULL};
 
 const JobRow spline_job_draw = {
     .name = "draw",

@@ -48,7 +48,9 @@ void drawing_add_static(const Drawing *d, Arrays *list)
     add_pens(d, list);
     add_picture(&d->picture, list);
     arrays_add(list, array_float("spline/paper", "m", d->page.paper, 1, 2, 0));
-    arrays_add(list, array_float("spline/margin", "m", &d->page.left, 0, 0, 0));
+    double *margin = arrays_numbers(list, 2);
+    margin[0] = d->page.left, margin[1] = d->page.top;
+    arrays_add(list, array_float("spline/margin", "m", margin, 1, 2, 0));
     add_plotter(&d->plotter, list);
 }
 

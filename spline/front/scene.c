@@ -10,7 +10,8 @@ static const YamlTable tone_table = {
         {YAML_VECTOR(ToneScene, crop), .range = "[0, 1]", .fallback = "[0, 0, 1, 1]",
          .doc = "left, top, right and bottom of what is drawn, in parts of the picture"},
         {YAML_CHOICE(ToneScene, fit), .choices = YAML_NAMES("contain", "cover"), .fallback = "contain",
-         .doc = "all of it, centred on the page, or the page filled and the rest lost"},
+         .doc = "all of it, centred on the page, and nothing drawn beside it; or the page filled and the "
+                "rest lost"},
         {YAML_BOOL(ToneScene, invert), .doc = "white is drawn"},
         {YAML_NUMBER(ToneScene, black), .when = "!curve", .range = "[0, 1]", .fallback = "0",
          .doc = "grey level that becomes black, and all that is darker"},
@@ -301,6 +302,10 @@ static const YamlTable plotter_table = {
         {YAML_NUMBER(PlotterScene, lift), .unit = "s", .range = "[0, 60]", .fallback = "0.3 s",
          .doc = "to lift and to lower it, together; a z axis takes longer where its "
                 "speed asks for that"},
+        {YAML_NUMBER(PlotterScene, at_most), .unit = "s", .range = "[1, 1.0e+7]",
+         .doc = "the time that plotting may take: where the picture takes longer, all of it is drawn "
+                "lighter, by one factor that "
+                "`check` and `run` say; at least a tenth of its ink stays. No end if absent"},
         {YAML_OPTIONAL(PlotterScene, z, &z_axis_table), .doc = "of a pen on a z axis"},
         {YAML_OPTIONAL(PlotterScene, servo, &servo_table), .doc = "of a pen on a servo"},
         {0}}};
@@ -345,6 +350,9 @@ const YamlTable spline_table = {
          .doc = "of auto, newton and gradient, in each round, at most"},
         {YAML_NUMBER(SplineScene, tolerance), .when = "method: auto, newton, gradient", .range = "[0, 1)",
          .fallback = "3.0e-3", .doc = "settled when the energy fell by less than this part in 20 iterations"},
+        {YAML_BOOL(SplineScene, draft), .when = "method: auto",
+         .doc = "a first look, in about 2 s up to 20 000 segments: no rounds, and no more iterations than "
+                "there is time for"},
         {YAML_INTEGER(SplineScene, rounds), .range = "[0, 1000]", .fallback = "2",
          .doc = "after the first relaxation: strokes come and go where that helps, then all relax again"},
         {YAML_NUMBER(SplineScene, rest), .range = "[0, 10]", .fallback = "1.2",

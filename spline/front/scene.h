@@ -107,7 +107,7 @@ typedef struct ServoScene {
 typedef enum ServoPause { PAUSE_SECONDS, PAUSE_MILLISECONDS } ServoPause;
 
 typedef struct PlotterScene {
-    double down, up, lift;
+    double down, up, lift, at_most;
     ZAxisScene *z;     /* NULL: the default */
     ServoScene *servo; /* NULL: the default */
 } PlotterScene;
@@ -129,6 +129,7 @@ typedef struct SplineScene {
     PairScene pair;
     int method, iterations, rounds, seed, order, pens_count, regions_count; /* RelaxMethod; DrawOrder */
     double tolerance, rest;
+    bool draft;
     MonteCarloScene monte_carlo;
     DynamicsScene dynamics;
     PlotterScene plotter;
