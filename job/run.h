@@ -43,8 +43,8 @@ void run_newton(const Run *run, NewtonDef *def);
 /* Is the state none of this body's (BodyOps.crushed)? Then says so, as its status does; `failed`: nothing was found beyond it. */
 bool run_is_crushed(Run *run, Snapshot *shot, bool failed);
 
-/* The lowest eigenvalues of a state whose first dofs are positions of the model's points, and so many modes, as final/..:
- * for bodies (BodyOps.add_final). */
+/* The lowest eigenvalues of a state whose first dofs are positions of the model's points, and so many modes and vibrations,
+ * as final/..: for bodies (BodyOps.add_final). */
 void run_add_stability(const Model *model, const Snapshot *shot, int modes, Arrays *list);
 
 /* Of a solve that has failed: says which field has no value where the body was, or where it was going to be after a time dt
