@@ -32,7 +32,7 @@ static void put_turns(const System *sys, const Point *at, double (*turn)[3])
     shell_bending_turns(system_term(sys, t), &own, turn);
 }
 
-void shell_stress(const Shell *shell, const System *sys, const Point *at, FaceStress *stress)
+void shell_stresses(const Shell *shell, const System *sys, const Point *at, FaceStress *stress)
 {
     const Mesh *mesh = shell->mesh;
     double(*turn)[3] = mem_alloc((size_t)mesh->face_count, sizeof *turn);

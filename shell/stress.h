@@ -15,4 +15,4 @@ typedef struct FaceStress {
 } FaceStress;
 
 /* stress[face]; the system is one of the shell's. */
-void shell_stress(const Shell *shell, const System *sys, const Point *at, FaceStress *stress);
+void shell_stresses(const Shell *shell, const System *sys, const Point *at, FaceStress *stress);

@@ -1,8 +1,9 @@
 /* What shells, solids and rods bear, against closed forms: stretched, sheared and rolled sheets, a strip with a load at its
  * end, stretched bars and films. */
 #include "shell/stress.h"
-#include "base/vec3.h"
+#include "solid/stress.h"
 #include "tests/shell_fixture.h"
+#include "tests/solid_fixture.h"
 #include <math.h>
 
 #define NAME "test_stress"
@@ -29,7 +30,7 @@ static FaceStress *stress_of(const Body *b)
 {
     Point at = state_point(&b->state, b->p);
     FaceStress *stress = mem_alloc((size_t)b->shell->mesh->face_count, sizeof *stress);
-    shell_stress(b->shell, b->sys, &at, stress);
+    shell_stresses(b->shell, b->sys, &at, stress);
     return stress;
 }
 
@@ -150,9 +151,103 @@ static void test_cantilever(void **state)
     result_close(result);
 }
 
+/* ---- Solids ---- */
+
+/* Stretched by l along x and m along y and z, and turned by 0.5 about z: Cauchy's stress along the turned axis is sigma, and
+ * across it tau. */
+static void check_block(int order, SolidMaterial material, double averaging, double nu, double l, double m,
+                        double sigma, double tau)
+{
+    SolidDef def = {.material = material, .poisson = nu, .density = 1000, .averaging = averaging};
+    SolidBody b =
+        solid_body(solid_box((double[]){0.3, 0.2, 0.1}, (int[]){3, 2, 1}, order, &def), false, YOUNG);
+    double c = cos(0.5), s = sin(0.5);
+    for (int v = 0; v < tets_node_count(b.solid->tets); v++) {
+        double *x = b.state.x + 3 * v, along = l * x[0], across = m * x[1];
+        x[0] = c * along - s * across, x[1] = s * along + c * across, x[2] *= m;
+    }
+    int count = b.solid->tets->count;
+    TetStress *stress = mem_alloc((size_t)count, sizeof *stress);
+    Point at = state_point(&b.state, b.p);
+    solid_stresses(b.solid, b.sys, &at, stress);
+    double exact[6] = {c * c * sigma + s * s * tau, s * s * sigma + c * c * tau, tau, c * s * (sigma - tau)};
+    for (int t = 0; t < count; t++) {
+        for (int k = 0; k < 6; k++) assert_true(fabs(stress[t].cauchy[k] - exact[k]) < 1e-10 * YOUNG);
+        assert_true(fabs(stress[t].von_mises - fabs(sigma - tau)) < 1e-10 * YOUNG);
+        assert_true(near(stress[t].stretch, fmax(l, m), 1e-7));
+    }
+    mem_free(stress);
+    solid_body_clear(&b);
+}
+
+/* St. Venant-Kirchhoff: S = lambda tr E + 2 mu E; neo-Hookean with ln J: sigma_i = (mu (l_i^2 - 1) + lambda ln J)/J; and that
+ * of solid.h which is finite at J = 0: (mu l_i^2 + J ((lambda + mu)(J - 1) - mu))/J, whatever part of it is averaged. */
+static void test_blocks(void **state)
+{
+    (void)state;
+    for (int order = 1; order <= 2; order++) {
+        double l = 1.4, m = 0.9, nu = 0.3, J = l * m * m, mu = YOUNG / (2 * (1 + nu)),
+               lambda = YOUNG * nu / ((1 + nu) * (1 - 2 * nu)), E = (l * l - 1) / 2, e = (m * m - 1) / 2,
+               sum = E + 2 * e, push[2] = {l * l, m * m};
+        check_block(order, SOLID_ST_VENANT_KIRCHHOFF, 0, nu, l, m, push[0] / J * (lambda * sum + 2 * mu * E),
+                    push[1] / J * (lambda * sum + 2 * mu * e));
+        check_block(order, SOLID_NEO_HOOKEAN_LOG, 0, nu, l, m, (mu * (push[0] - 1) + lambda * log(J)) / J,
+                    (mu * (push[1] - 1) + lambda * log(J)) / J);
+        for (int k = 0; k < 2; k++) {
+            double even = (lambda + mu) * (J - 1) - mu;
+            check_block(order, SOLID_NEO_HOOKEAN, 0.5 * k, nu, l, m, mu * push[0] / J + even,
+                        mu * push[1] / J + even);
+        }
+    }
+}
+
+/* The mean of a dataset of the only frame over its first rows, and how far rows are from it. */
+static double mean_of(Result *result, const char *path, int first, int count, double *off)
+{
+    Array array = read_all(result, path);
+    const double *values = array.data;
+    double mean = 0;
+    for (int i = first; i < first + count; i++) mean += values[i] / count;
+    *off = 0;
+    for (int i = first; i < first + count; i++) *off = fmax(*off, fabs(values[i] - mean));
+    array_clear(&array);
+    return mean;
+}
+
+/* A bar that is pulled, as a scene: its stress is the force over the section that is left; a film on it, much softer, is
+ * stretched as it is. */
+static void test_bar(void **state)
+{
+    (void)state;
+    Result *result = run_text(mem_text(
+        "slender: 1\njob: equilibrium\nsolid:\n  mesh: {shape: box, size: [3, 2, 1], cells: [2, 2, 1]}\n"
+        "  young: 1 MPa\n  poisson: 0.3\n"
+        "  skin: {thickness: 1 mm, young: 1 Pa, poisson: 0.3, material: neo_hookean, on: {group: top}}\n"
+        "fix:\n  - {group: left, axes: x}\n  - {group: front, axes: y}\n  - {group: bottom, axes: z}\n"
+        "loads: [{area: [400 kPa, 0, 0], on: {group: right}}]\noutput: {precision: double}\n"));
+    Array x = read_all(result, "slender/state/x"), cells = read_all(result, "slender/cells"),
+          all = read_all(result, "VTKHDF/CellData/von_mises");
+    const double *place = x.data, *values = all.data;
+    double stretch[3] = {0}, off;
+    for (int i = 0; i < 3 * x.dims[0]; i++) stretch[i % 3] = fmax(stretch[i % 3], place[i] / (3 - i % 3));
+    int tets = cells.dims[0], films = 0;
+    double sigma = mean_of(result, "VTKHDF/CellData/von_mises", 0, tets, &off);
+    assert_true(near(sigma, 4e5 / (stretch[1] * stretch[2]), 1e-6) && off < 1e-6 * sigma);
+    double longest = mean_of(result, "VTKHDF/CellData/stretch", 0, tets, &off);
+    assert_true(near(longest, stretch[0], 1e-6) && off < 1e-6);
+    PlaneTensor strain = {.xx = (stretch[0] * stretch[0] - 1) / 2, .yy = (stretch[1] * stretch[1] - 1) / 2};
+    double film = membrane_von_mises(MEMBRANE_NEO_HOOKEAN, 0.3, strain);
+    for (int i = tets; i < all.dims[0]; i++)
+        if (!isnan(values[i])) films++, assert_true(near(values[i], film, 1e-5));
+    assert_true(films > 0 && films < all.dims[0] - tets);
+    array_clear(&x), array_clear(&cells), array_clear(&all);
+    result_close(result);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_pulled), cmocka_unit_test(test_rolled),
-                                       cmocka_unit_test(test_cantilever)};
+                                       cmocka_unit_test(test_cantilever), cmocka_unit_test(test_blocks),
+                                       cmocka_unit_test(test_bar)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -74,7 +74,7 @@ void shell_add_stress(const Model *model, const Snapshot *shot, Arrays *list)
     int count = shell->mesh->face_count;
     Point at = state_point(&shot->at, shot->p);
     FaceStress *stress = mem_alloc((size_t)count, sizeof *stress);
-    shell_stress(shell, shot->load_case->sys, &at, stress);
+    shell_stresses(shell, shot->load_case->sys, &at, stress);
     for (size_t k = 0; k < sizeof shown / sizeof *shown; k++) {
         double *values = arrays_numbers(list, (size_t)count);
         for (int f = 0; f < count; f++)
