@@ -380,9 +380,9 @@ static const YamlTable output_table = {
              "`start` from: the last one (of each load case), or those of all frames, too"},
         {YAML_BOOL(OutputScene, stress), .when = "/job: simulate, trajectory",
          .otherwise = "frames of other jobs always have strains and stresses", .fallback = "false",
-         .doc =
-             "of motions: strains and stresses (of rods moments) in each frame, which frames of other jobs "
-             "always have"},
+         .doc = "of motions: strains and stresses (of rods forces and moments) in each frame, which frames "
+                "of other jobs "
+                "always have"},
         DRAWING_FILE(svg, "curves in mm, a layer for each pen; NAME.svg if absent"),
         DRAWING_FILE(png, "target and drawing side by side; NAME.png if absent"),
         DRAWING_FILE(gcode, "for a pen on a z axis; none if absent"),

@@ -244,10 +244,77 @@ static void test_bar(void **state)
     result_close(result);
 }
 
+/* ---- Rods ---- */
+
+/* Section pi/4 r^4: GJ = Y/(2 (1 + nu)) pi/2 r^4. */
+static char *rod(const char *loads, const char *rest)
+{
+    return mem_format("slender: 1\njob: equilibrium\nrod:\n  natural_strain: [0, 0, 0]\n  length: 0.2\n"
+                      "  elements: 20\n  radius: 1 mm\n  young: 100 MPa\n  poisson: 0.25\n  density: 1000\n"
+                      "%s%soutput: {precision: double}\n",
+                      loads, rest);
+}
+
+static void check_rows(Result *result, const char *path, int count, const double row[3], double within)
+{
+    Array array = read_all(result, path);
+    const double(*values)[3] = (const double(*)[3])array.data;
+    for (int k = 0; k < count; k++)
+        for (int i = 0; i < 3; i++)
+            if (!(fabs(values[k][i] - row[i]) <= within))
+                fail_msg("%s, row %d: %.12g, %.12g, %.12g", path, k, values[k][0], values[k][1],
+                         values[k][2]);
+    array_clear(&array);
+}
+
+/* A couple about the rod twists it by M/GJ, and nothing else. */
+static void test_twisted(void **state)
+{
+    (void)state;
+    double GJ = 1e8 / 2.5 * M_PI / 2 * 1e-12, M = 3e-6;
+    Result *result =
+        run_text(rod("  gravity: [0, 0, 0]\n  loads: [{point: end, couple: [3.0e-6, 0, 0]}]\n", ""));
+    check_rows(result, "VTKHDF/PointData/moment", 21, (double[]){M, 0, 0}, 1e-8 * M);
+    check_rows(result, "VTKHDF/PointData/strain", 21, (double[]){M / GJ, 0, 0}, 1e-8 * M / GJ);
+    check_rows(result, "slender/final/strain", 20, (double[]){M / GJ, 0, 0}, 1e-8 * M / GJ);
+    check_rows(result, "slender/final/force", 20, (double[]){0, 0, 0}, 1e-12);
+    result_close(result);
+}
+
+/* A load at the end of a rod that hangs in its weight, with positions as dofs (a potential that is 0) and without: each
+ * element bears the load and the weight beyond it; the moment at the clamp is theirs. */
+static void test_hanging(void **state)
+{
+    (void)state;
+    static const char *const more[] = {"", "    - {potential: \"0*x\"}\n"};
+    double weight = 1000 * M_PI * 1e-6 * 0.2 * 9.81, load = 1e-4;
+    for (int k = 0; k < 2; k++) {
+        Result *result = run_text(
+            rod("  gravity: [0, 0, -9.81]\n  loads:\n    - {point: end, force: [0, 0, -1.0e-4]}\n", more[k]));
+        Array force = read_all(result, "slender/final/force"), place = read_all(result, "slender/state/x"),
+              moment = read_all(result, "VTKHDF/PointData/moment");
+        const double *F = force.data, *x = place.data, *m = moment.data;
+        double turning = 0;
+        for (int e = 0; e < 20; e++) {
+            double exact = -load - weight * (20 - e - 0.5) / 20;
+            assert_true(near(F[3 * e + 2], exact, 1e-7) && fabs(F[3 * e]) < 1e-9 &&
+                        fabs(F[3 * e + 1]) < 1e-9);
+        }
+        for (int i = 1; i <= 20; i++)
+            turning += (x[3 * i] - x[0]) * (weight / 20 * (i == 20 ? 0.5 : 1) + (i == 20 ? load : 0));
+        print_message("at the clamp %.6e N m, of the loads %.6e\n", m[1], turning);
+        assert_true(near(m[1], turning, 0.01));
+        array_clear(&force), array_clear(&place), array_clear(&moment);
+        result_close(result);
+    }
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_pulled), cmocka_unit_test(test_rolled),
-                                       cmocka_unit_test(test_cantilever), cmocka_unit_test(test_blocks),
-                                       cmocka_unit_test(test_bar)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_pulled),  cmocka_unit_test(test_rolled), cmocka_unit_test(test_cantilever),
+        cmocka_unit_test(test_blocks),  cmocka_unit_test(test_bar),    cmocka_unit_test(test_twisted),
+        cmocka_unit_test(test_hanging),
+    };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
