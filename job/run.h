@@ -47,6 +47,10 @@ bool run_is_crushed(Run *run, Snapshot *shot, bool failed);
  * as final/..: for bodies (BodyOps.add_final). */
 void run_add_stability(const Model *model, const Snapshot *shot, int modes, Arrays *list);
 
+/* How a body vibrates about a state, undamped: so many frequencies and their modes, as final/..; its first dofs are
+ * positions. Nothing where they are not found: the state is too unstable, or has no number. */
+void run_add_vibrations(const Model *model, System *sys, const Point *at, int count, Arrays *list);
+
 /* Of a solve that has failed: says which field has no value where the body was, or where it was going to be after a time dt
  * (0: statics). */
 void run_say_unknown_field(const Run *run, const Snapshot *shot, double dt);

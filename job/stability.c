@@ -33,8 +33,8 @@ static double *position_masses(const Model *model, Arrays *list)
     return M;
 }
 
-/* Small vibrations about the state, without damping: H v = omega^2 M v. */
-static void add_vibrations(const Model *model, System *sys, const Point *at, int count, Arrays *list)
+/* H v = omega^2 M v */
+void run_add_vibrations(const Model *model, System *sys, const Point *at, int count, Arrays *list)
 {
     const double *M = position_masses(model, list);
     int dofs = system_dof_count(sys);
@@ -65,5 +65,5 @@ void run_add_stability(const Model *model, const Snapshot *shot, int modes, Arra
     if (!modes && values[0] >= 0) return;
     arrays_add(list, array_float("final/eigenvalues", "N/m", values, 1, count, 0));
     add_modes(model, "final/modes", vectors, dofs, count, list);
-    if (modes) add_vibrations(model, sys, &at, count, list);
+    if (modes) run_add_vibrations(model, sys, &at, count, list);
 }

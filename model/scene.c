@@ -438,8 +438,8 @@ const YamlTable scene_form = {
          .otherwise = "only these jobs have states; any run goes on by --resume",
          .doc = "what another run left, to go on from"},
         {YAML_INTEGER(Scene, modes), .range = "[0, 100]", .fallback = "0",
-         .doc = "lowest eigenmodes to put into the result, and of shells and solids the lowest vibrations, "
-                "in Hz"},
+         .doc = "the lowest vibrations to put into the result, in Hz, and of shells and solids the lowest "
+                "eigenmodes, in N/m"},
         {YAML_CHOICES(Scene, checks), .when = "/job: invert",
          .choices = YAML_NAMES("stability", "self_contact", "round_trip"),
          .doc = "of a rod: what else to find out"},

@@ -1,4 +1,4 @@
-/* Modes in Hz: strips and bars that are clamped at one end, or free, against Euler and Bernoulli's beam. */
+/* Modes in Hz: strips, bars and rods that are clamped at one end, or free, against Euler and Bernoulli's beam. */
 #include "base/memory.h"
 #include <math.h>
 
@@ -83,9 +83,47 @@ static void test_clamped_bar(void **state)
           0.01);
 }
 
+/* Without positions as dofs, and with them (a potential that is 0). */
+static char *rod(const char *gravity, int positions)
+{
+    return mem_format("slender: 1\njob: equilibrium\nrod:\n  natural_strain: [0, 0, 0]\n  length: 0.1\n"
+                      "  elements: 50\n  radius: 1 mm\n  young: 1 MPa\n  poisson: 0.3\n  density: 1100\n"
+                      "  gravity: [%s, 0, 0]\n%smodes: 4\n",
+                      gravity, positions ? "  loads: [{potential: \"0*x\"}]\n" : "");
+}
+
+/* Section pi r^2, EI = Y pi r^4/4: as if sqrt 3 r high. Modes come in pairs. */
+static void test_rod(void **state)
+{
+    (void)state;
+    double first = beam(1.875104, sqrt(3) * 1e-3, 1100), second = beam(4.694091, sqrt(3) * 1e-3, 1100);
+    for (int k = 0; k < 2; k++)
+        check(rod("0", k), 4, (int[]){0, 1, 2, 3, -1}, (double[]){first, first, second, second}, 0.01);
+}
+
+/* Hanging down it swings faster: with w = rho A g L^3/(EI) the square is Rayleigh's of the clamped rod's mode,
+ * 1 + 1.5709 w/3.51602^2, from above. */
+static void test_hanging_rod(void **state)
+{
+    (void)state;
+    double w = 1100 * 9.81 * 1e-3 / (1e6 * 1e-6 / 4), found[2],
+           most = beam(1.875104, sqrt(3) * 1e-3, 1100) * sqrt(1 + 1.5709 * w / 3.51602 / 3.51602);
+    for (int k = 0; k < 2; k++) {
+        Result *result = run_text(rod("9.81", k));
+        Array hz = read_all(result, "slender/final/modes_hz");
+        found[k] = *(const double *)hz.data;
+        print_message("hanging: %.5f Hz, at most %.5f Hz\n", found[k], most);
+        array_clear(&hz);
+        result_close(result);
+    }
+    assert_true(fabs(found[1] / found[0] - 1) < 1e-6);
+    assert_true(found[0] < most && found[0] > 0.98 * most);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_clamped_strip),
-                                       cmocka_unit_test(test_free_strip), cmocka_unit_test(test_clamped_bar)};
+                                       cmocka_unit_test(test_free_strip), cmocka_unit_test(test_clamped_bar),
+                                       cmocka_unit_test(test_rod), cmocka_unit_test(test_hanging_rod)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -493,7 +493,7 @@ static const KeyUse uses[] = {
     {"obstacles", "/rod.solver: newton"},
     {"contact", "/rod.solver: newton"},
     {"water", "/rod.solver: newton"},
-    {"modes", "!rod"},
+    {"modes", "/rod.solver: newton & /job: equilibrium, evaluate, design, simulate, trajectory"},
     {0},
 };
 

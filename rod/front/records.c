@@ -1,5 +1,6 @@
 /* Rods in the journal. */
 #include "base/memory.h"
+#include "job/run.h"
 #include "rod/front/front.h"
 #include "rod/stability.h"
 #include "rod/stations.h"
@@ -187,9 +188,29 @@ char *rod_doubt(const Model *model, const Snapshot *shot)
         rod_element_length(rod, 0) / lengths, lengths, ceil(rod->elements * lengths));
 }
 
+/* A rod of turns only is looked at with positions, which have the mass. */
+static void add_vibrations(const Model *model, const Snapshot *shot, int modes, Arrays *list)
+{
+    const RodModel *rm = model->self;
+    if (rm->layout.position >= 0) {
+        Point at = state_point(&shot->at, shot->p);
+        run_add_vibrations(model, shot->load_case->sys, &at, modes, list);
+        return;
+    }
+    RodLayout layout = rod_layout(rm->rod, true);
+    System *sys = rod_system(rm->rod, shot->p[rm->rod->young], false);
+    State state = system_state(sys);
+    rod_copy_state(rm->rod, &rm->layout, shot->at.x, &layout, state.x);
+    state.time = shot->at.time;
+    Point at = state_point(&state, shot->p);
+    rod_carry(rm->rod, sys, &layout, &at, state.x);
+    run_add_vibrations(model, sys, &at, modes, list);
+    state_destroy(&state);
+    system_destroy(sys);
+}
+
 void rod_add_final(const Model *model, const Snapshot *shot, int modes, Arrays *list)
 {
-    (void)modes;
     const RodModel *rm = model->self;
     const Rod *rod = rm->rod;
     int nodes = model->point_count;
@@ -202,4 +223,5 @@ void rod_add_final(const Model *model, const Snapshot *shot, int modes, Arrays *
     arrays_add(list, array_float("rod/natural_strain_elements", "1/m", shot->p + rod->natural_strain, 2,
                                  rod->elements, 3));
     if (is_judged(rod, shot->p)) add_stability(rm, shot, list);
+    if (modes) add_vibrations(model, shot, modes, list);
 }
