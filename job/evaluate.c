@@ -41,7 +41,7 @@ static bool find_stability(const Case *c, bool *leaves)
 {
     Point at = state_point(&c->state, c->stages[0].p);
     double lowest = INFINITY;
-    bool found = system_free_count(c->sys) == 0 || eigen_lowest(c->sys, &at, 1, &lowest, NULL);
+    bool found = system_free_count(c->sys) == 0 || eigen_lowest(c->sys, &at, NULL, 1, &lowest, NULL);
     *leaves = !found || lowest < 0;
     return found || differentiate(c, true).finite;
 }

@@ -142,6 +142,8 @@ bool run_put_frame(Run *run, int index, double shown, const Snapshot *shot, bool
     obstacles_add_poses(model, shot->at.time, &list);
     sources_add_poses(model, shot, &list);
     if (model->body->ops->add_frame) model->body->ops->add_frame(model, shot, whole, &list);
+    bool stress = !model->job->motion || run->scene->output.stress; /* frames of rest are few */
+    if (stress && model->body->ops->add_stress) model->body->ops->add_stress(model, shot, &list);
     if (run->scene->output.states == STATES_ALL) state_arrays_add(model, shot, "state", true, &list);
     return arrays_put(&list, run->journal, "frame", index, err);
 }

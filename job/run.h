@@ -43,9 +43,13 @@ void run_newton(const Run *run, NewtonDef *def);
 /* Is the state none of this body's (BodyOps.crushed)? Then says so, as its status does; `failed`: nothing was found beyond it. */
 bool run_is_crushed(Run *run, Snapshot *shot, bool failed);
 
-/* The lowest eigenvalues of a state whose first dofs are positions of the model's points, and so many modes, as final/..:
- * for bodies (BodyOps.add_final). */
+/* The lowest eigenvalues of a state whose first dofs are positions of the model's points, and so many modes and vibrations,
+ * as final/..: for bodies (BodyOps.add_final). */
 void run_add_stability(const Model *model, const Snapshot *shot, int modes, Arrays *list);
+
+/* How a body vibrates about a state, undamped: so many frequencies and their modes, as final/..; its first dofs are
+ * positions. Nothing where they are not found: the state is too unstable, or has no number. */
+void run_add_vibrations(const Model *model, System *sys, const Point *at, int count, Arrays *list);
 
 /* Of a solve that has failed: says which field has no value where the body was, or where it was going to be after a time dt
  * (0: statics). */

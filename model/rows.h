@@ -158,6 +158,8 @@ typedef struct BodyOps {
     void (*add_static)(const struct Model *model, Arrays *list);
     void (*add_frame)(const struct Model *model, const Snapshot *shot, bool whole, Arrays *list);
     void (*add_state)(const struct Model *model, const Snapshot *shot, const char *prefix, Arrays *list);
+    /* What its parts bear in a frame, cell/NAME and point/NAME: strains, stresses, moments. Optional. */
+    void (*add_stress)(const struct Model *model, const Snapshot *shot, Arrays *list);
     void (*add_final)(const struct Model *model, const Snapshot *shot, int modes, Arrays *list);
 
     /* What a result that a model starts from has to have alike; ends with {0}; optional. And a state from[dofs] of such a result

@@ -378,6 +378,11 @@ static const YamlTable output_table = {
          .doc =
              "which states are kept whole, in double precision and with all that is remembered, for a job to "
              "`start` from: the last one (of each load case), or those of all frames, too"},
+        {YAML_BOOL(OutputScene, stress), .when = "/job: simulate, trajectory",
+         .otherwise = "frames of other jobs always have strains and stresses", .fallback = "false",
+         .doc = "of motions: strains and stresses (of rods forces and moments) in each frame, which frames "
+                "of other jobs "
+                "always have"},
         DRAWING_FILE(svg, "curves in mm, a layer for each pen; NAME.svg if absent"),
         DRAWING_FILE(png, "target and drawing side by side; NAME.png if absent"),
         DRAWING_FILE(gcode, "for a pen on a z axis; none if absent"),
@@ -433,7 +438,8 @@ const YamlTable scene_form = {
          .otherwise = "only these jobs have states; any run goes on by --resume",
          .doc = "what another run left, to go on from"},
         {YAML_INTEGER(Scene, modes), .range = "[0, 100]", .fallback = "0",
-         .doc = "lowest eigenmodes to put into the result"},
+         .doc = "the lowest vibrations to put into the result, in Hz, and of shells and solids the lowest "
+                "eigenmodes, in N/m"},
         {YAML_CHOICES(Scene, checks), .when = "/job: invert",
          .choices = YAML_NAMES("stability", "self_contact", "round_trip"),
          .doc = "of a rod: what else to find out"},

@@ -256,6 +256,7 @@ typedef struct StartScene {
 
 typedef struct OutputScene {
     int every, film, precision, states;
+    bool stress;
     char *svg, *png, *gcode, *gcode_servo, *hpgl; /* of a drawing: names of files */
 } OutputScene;
 

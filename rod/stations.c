@@ -11,15 +11,20 @@ static void fill_nodes(int elements, Vec3 *v)
     v[last] = elements > 1 ? vec3_axpy(0.5, vec3_sub(v[last - 1], v[last - 3]), v[last - 1]) : v[1];
 }
 
-/* The force beyond an element's middle, and by how much weight changes it over the element. */
-static Vec3 element_pull(const Rod *rod, const double *p, int e, Vec3 *weight)
+/* The dead loads beyond an element's middle, and by how much weight changes them over the element. */
+static Vec3 loads_beyond(const Rod *rod, const double *p, int e, Vec3 *weight)
 {
     double element = rod->unit.mass * rod_element_length(rod, e);
     int each = rod_each(rod);
-    Vec3 g = vec3_load(p + rod->gravity), B = vec3_load(p + rod->flux.uniform);
-    *weight = vec3_scale(element, g);
-    Vec3 pull = vec3_axpy(each - e % each - 0.5, *weight, vec3_load(p + rod->pull + 3 * e));
-    return vec3_axpy(rod->area * p[rod->magnetization + 3 * e], B, pull);
+    *weight = vec3_scale(element, vec3_load(p + rod->gravity));
+    return vec3_axpy(each - e % each - 0.5, *weight, vec3_load(p + rod->pull + 3 * e));
+}
+
+/* With the force that turns the element as a uniform field does. */
+static Vec3 element_pull(const Rod *rod, const double *p, int e, Vec3 *weight)
+{
+    Vec3 B = vec3_load(p + rod->flux.uniform);
+    return vec3_axpy(rod->area * p[rod->magnetization + 3 * e], B, loads_beyond(rod, p, e, weight));
 }
 
 /* In the frame of a strand's last node. */
@@ -97,6 +102,15 @@ void rod_curve_of(const Rod *rod, const RodLayout *layout, const double *x, RodC
     }
     mem_free(place);
     mem_free(strain);
+}
+
+void rod_element_forces(const Rod *rod, const RodLayout *layout, const double *x, const double *p,
+                        Vec3 *force)
+{
+    Vec3 weight;
+    for (int e = 0; e < layout->elements; e++)
+        force[e] = layout->multiplier >= 0 ? vec3_load(x + layout->multiplier + 3 * e)
+                                           : loads_beyond(rod, p, e, &weight);
 }
 
 void rod_node_moments(const Rod *rod, const RodLayout *layout, const double *x, const double *p, Vec3 *moment)

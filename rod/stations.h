@@ -17,6 +17,11 @@ void rod_stations(const Rod *rod, int strand, const RodLayout *layout, const dou
  */
 void rod_curve_of(const Rod *rod, const RodLayout *layout, const double *x, RodCurve *curve);
 
+/* What the rod beyond each element's middle does to what is before it, in the world, force[elements], N; in a motion what
+ * moves it, too. */
+void rod_element_forces(const Rod *rod, const RodLayout *layout, const double *x, const double *p,
+                        Vec3 *force);
+
 /* Moments at the nodes in the world, moment[nodes], N m. */
 void rod_node_moments(const Rod *rod, const RodLayout *layout, const double *x, const double *p,
                       Vec3 *moment);

@@ -264,17 +264,22 @@ static void bending_param_forward(const void *self, int pack, const Point *at, c
     }
 }
 
+static void gather(const Bending *bending, int pack, int count, const double *from, Pack *x)
+{
+    for (int l = 0; l < PACK_LANES; l++) {
+        int dof[TERM_MAX_DOF];
+        bending_dofs(bending, bending->packs[pack].face[l], dof);
+        for (int i = 0; i < count; i++) x[i][l] = from[dof[i]];
+    }
+}
+
 static void bending_accept(const void *self, double *positions, double *memory)
 {
     const Bending *bending = self;
     int packs = pack_count(bending_count(self));
     for (int k = 0; k < packs; k++) {
         Pack x[18];
-        for (int l = 0; l < PACK_LANES; l++) {
-            int dof[TERM_MAX_DOF];
-            bending_dofs(self, bending->packs[k].face[l], dof);
-            for (int i = 0; i < 18; i++) x[i][l] = positions[dof[i]];
-        }
+        gather(bending, k, 18, positions, x);
         for (int i = 0; i < 3; i++) {
             Pack angle = unwrap(angle_of(&bending->packs[k], x, i).angle, accepted_angle(memory, k, i));
             memcpy(memory + (k * 3 + i) * PACK_LANES, &angle, sizeof angle);
@@ -380,4 +385,17 @@ Term shell_bending_term(const Shell *shell)
         for (int i = 0; i < 3; i++) set_edge(bending, f, i, pack, lane);
     }
     return (Term){&bending_ops, bending};
+}
+
+void shell_bending_turns(const Term *term, const Point *at, double (*turn)[3])
+{
+    const Bending *bending = term->self;
+    for (int k = 0; k < pack_count(bending_count(bending)); k++) {
+        Pack x[21];
+        Bent bent;
+        gather(bending, k, bending_size(bending), at->x, x);
+        bend(bending, k, at, x, &bent);
+        for (int i = 0; i < 3 * PACK_LANES; i++)
+            turn[bending->packs[k].face[i / 3]][i % 3] = bent.difference[i % 3][i / 3];
+    }
 }

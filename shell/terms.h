@@ -27,3 +27,7 @@ typedef struct ShellTermRow {
 
 extern const ShellTermRow shell_term_rows[];
 extern const int shell_term_row_count;
+
+/* Of the bending term, at the point as it sees it (system_term_point): how far the three edges of each face are turned,
+ * theta - rest theta + 2 s alpha (bending.c), rad; turn[face][3]. */
+void shell_bending_turns(const Term *bending, const Point *at, double (*turn)[3]);

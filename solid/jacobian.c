@@ -9,11 +9,7 @@ static Pack least_of_pack(const Tets *tets, int pack, const double *x)
 {
     TetPack tet = tet_pack(tets, pack);
     Pack own[3 * TET_MAX_NODES], least = pack_set(INFINITY);
-    for (int l = 0; l < PACK_LANES; l++) {
-        int dof[3 * TET_MAX_NODES];
-        tet_dofs(tets, pack_element(tets->count, pack, l), dof);
-        for (int i = 0; i < 3 * tets->each; i++) own[i][l] = x[dof[i]];
-    }
+    tet_gather(tets, pack, x, own);
     int points = tet_point_count(tets), places = points + (points > 1 ? TET_MAX_NODES : 0);
     for (int k = 0; k < places; k++) {
         double L[4] = {0};

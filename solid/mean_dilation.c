@@ -198,3 +198,22 @@ Term solid_mean_dilation_term(const Solid *solid)
                  k % PACK_LANES, &mean->packs[k / PACK_LANES]);
     return (Term){&mean_ops, mean};
 }
+
+/* dE/dF of a point is its volume times L/V (J' - 1) cof F, with L/V the mean of a lambda Y. */
+void solid_mean_tensions(const Term *term, const Point *at, double *tension)
+{
+    const Mean *mean = term->self;
+    for (int k = 0; k < pack_count(mean->count); k++) {
+        const MeanPack *own = &mean->packs[k];
+        Pack x[TERM_MAX_DOF];
+        for (int l = 0; l < PACK_LANES; l++) {
+            int dof[TERM_MAX_DOF];
+            mean_dofs(mean, pack_element(mean->count, k, l), dof);
+            for (int i = 0; i < mean_size(mean); i++) x[i][l] = at->x[dof[i]];
+        }
+        Pack value = stiffness_of(mean, own, at->p) / own->volume * dilation(mean, own, x, NULL);
+        for (int q = 0; q < mean->points; q++)
+            for (int l = 0; l < PACK_LANES; l++)
+                if (own->part[q][l] > 0) tension[own->tet[q][l]] = value[l];
+    }
+}

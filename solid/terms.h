@@ -26,3 +26,6 @@ typedef struct SolidTermRow {
 
 extern const SolidTermRow solid_term_rows[];
 extern const int solid_term_row_count;
+
+/* Of the term of mean dilation: what it adds to the stress of each tetrahedron in all directions, Pa; tension[tet]. */
+void solid_mean_tensions(const Term *mean_dilation, const Point *at, double *tension);

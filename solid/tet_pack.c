@@ -41,6 +41,15 @@ TetPack *tet_packs(const Tets *tets)
     return packs;
 }
 
+void tet_gather(const Tets *tets, int pack, const double *values, Pack *x)
+{
+    for (int l = 0; l < PACK_LANES; l++) {
+        int dof[3 * TET_MAX_NODES];
+        tet_dofs(tets, pack_element(tets->count, pack, l), dof);
+        for (int i = 0; i < 3 * tets->each; i++) x[i][l] = values[dof[i]];
+    }
+}
+
 int tet_point_count(const Tets *tets)
 {
     return tets->order == TET_QUADRATIC ? 4 : 1;

@@ -44,6 +44,9 @@ static inline PackMat tet_cofactor(const PackMat *F)
     return (PackMat){pack3_cross(F->r1, F->r2), pack3_cross(F->r2, F->r0), pack3_cross(F->r0, F->r1)};
 }
 
+/* The numbers of a pack's nodes, of values that are laid out as positions. */
+void tet_gather(const Tets *tets, int pack, const double *values, Pack *x);
+
 /* The dofs of a tetrahedron: its nodes' positions. */
 static inline void tet_dofs(const Tets *tets, int tet, int *dof)
 {

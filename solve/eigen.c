@@ -17,6 +17,7 @@ void dstev_(const char *jobz, const int *n, double *d, double *e, double *z, con
 typedef struct Lanczos {
     System *sys;
     int n, positions; /* dofs; the first ones that M counts */
+    const double *M;  /* [positions]; NULL: 1               */
     int count, steps;
     double sigma;
     double *basis[STEPS_MAX + 1]; /* [steps + 1][n] M-orthonormal */
@@ -24,17 +25,22 @@ typedef struct Lanczos {
     double *theta, *ritz;         /* [steps] [steps*steps]                */
 } Lanczos;
 
+static double mass(const Lanczos *l, int i)
+{
+    return l->M ? l->M[i] : 1;
+}
+
 static double m_dot(const Lanczos *l, const double *a, const double *b)
 {
     double sum = 0;
-    for (int i = 0; i < l->positions; i++) sum += a[i] * b[i];
+    for (int i = 0; i < l->positions; i++) sum += mass(l, i) * a[i] * b[i];
     return sum;
 }
 
 /* y = (H + sigma M)^-1 M v */
 static void apply(const Lanczos *l, const double *v, double *y)
 {
-    for (int i = 0; i < l->n; i++) y[i] = i < l->positions ? v[i] : 0;
+    for (int i = 0; i < l->n; i++) y[i] = i < l->positions ? mass(l, i) * v[i] : 0;
     system_solve(l->sys, y, y);
 }
 
@@ -133,15 +139,26 @@ static void run(Lanczos *l, double *values, double *modes)
     mem_free(l->ritz);
 }
 
-bool eigen_lowest(System *sys, const Point *at, int count, double *values, double *modes)
+/* What sigma is measured by: the stiffest position, over the mean of M. */
+static double unit_of(const Lanczos *l)
 {
-    Lanczos l = {
-        .sys = sys, .n = system_dof_count(sys), .positions = system_position_count(sys), .count = count};
+    double sum = 0;
+    for (int i = 0; i < l->positions; i++) sum += mass(l, i);
+    return system_scale_mean(l->sys) / (sum / l->positions);
+}
+
+bool eigen_lowest(System *sys, const Point *at, const double *M, int count, double *values, double *modes)
+{
+    Lanczos l = {.sys = sys,
+                 .n = system_dof_count(sys),
+                 .positions = system_position_count(sys),
+                 .M = M,
+                 .count = count};
     double *gradient = mem_alloc((size_t)l.n, sizeof *gradient);
     bool ok = system_hessian(sys, at, gradient).finite;
     mem_free(gradient);
-    double unit = system_scale_mean(sys), factor = 0;
-    while (ok && !system_factor_positions(sys, factor * unit)) {
+    double unit = unit_of(&l), factor = 0;
+    while (ok && !system_factor_positions(sys, factor * unit, M)) {
         factor = fmax(1e-9, 4 * factor);
         ok = factor < 1e6;
     }

@@ -96,10 +96,11 @@ void system_restore_factor(System *sys, const double *anchor, const double *p)
     mem_free(gradient);
 }
 
-bool system_factor_positions(System *sys, double sigma)
+bool system_factor_positions(System *sys, double sigma, const double *M)
 {
     for (int i = 0; i < sys->dof_count; i++)
-        if (sys->unknown[i] >= 0) sys->work[sys->unknown[i]] = i < sys->classes[0].count ? sigma : 0;
+        if (sys->unknown[i] >= 0)
+            sys->work[sys->unknown[i]] = i < sys->classes[0].count ? sigma * (M ? M[i] : 1) : 0;
     sys->anchor[ANCHOR_USABLE] = 0;
     return sys->factored = sparse_factor(sys->matrix, sys->work);
 }

@@ -80,7 +80,7 @@ static double evaluate(Descent *d, double *x, double *gradient, double *gradient
 static void refresh(Descent *d)
 {
     system_hessian(d->r->sys, &d->at, d->trial_gradient);
-    d->factored = system_factor_positions(d->r->sys, SHIFT / d->r->target->spacing);
+    d->factored = system_factor_positions(d->r->sys, SHIFT / d->r->target->spacing, NULL);
     d->r->info.factorizations++;
     d->age = 0;
 }

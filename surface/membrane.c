@@ -10,6 +10,7 @@
 #include "surface/membrane.h"
 #include "base/memory.h"
 #include "solve/element.h"
+#include <math.h>
 
 static const double LEAST_EXTRAPOLATED = 0.25; /* det C: half of the area */
 
@@ -36,7 +37,9 @@ typedef struct Law {
     void (*stress)(double poisson,
                    Strain *s); /* of its Green strain: stress, energy, and what the tangent needs */
     Tangent (*tangent)(double poisson, const Strain *s);
-    bool has_area; /* Tangent.area is not 0 */
+    double (*across)(double poisson, double trace,
+                     double det); /* of C - 1, C: squared stretch of the thickness */
+    bool has_area;                /* Tangent.area is not 0 */
 } Law;
 
 typedef struct Membrane {
@@ -81,6 +84,13 @@ static Tangent green_tangent(double poisson, const Strain *s)
                      .mu = pack_set(0.5 / (1 + poisson))};
 }
 
+/* What leaves no stress across: G33 = -nu/(1-nu) tr G. */
+static double green_across(double poisson, double trace, double det)
+{
+    (void)det;
+    return 1 - poisson / (1 - poisson) * trace;
+}
+
 /* With u = det C - 1 and e = (det C)^-k - 1: what is linear in G cancels in tr C - 2 - u = -4 det G, so that no digits are
  * lost near rest. Infinite where the area is 0: no step goes there. */
 static void neo_stress(double poisson, Strain *s)
@@ -107,10 +117,17 @@ static Tangent neo_tangent(double poisson, const Strain *s)
         .lambda = -2 * mu * s->slope, .mu = mu * s->slope, .area = 2 * mu * (1 + k) * s->slope / s->det};
 }
 
+static double neo_across(double poisson, double trace, double det)
+{
+    (void)trace;
+    return pow(det, -poisson / (1 - poisson));
+}
+
 static const Law *law_of(MembraneMaterial material)
 {
-    static const Law rows[] = {[MEMBRANE_ST_VENANT_KIRCHHOFF] = {green_stress, green_tangent, false},
-                               [MEMBRANE_NEO_HOOKEAN] = {neo_stress, neo_tangent, true}};
+    static const Law rows[] = {
+        [MEMBRANE_ST_VENANT_KIRCHHOFF] = {green_stress, green_tangent, green_across, false},
+        [MEMBRANE_NEO_HOOKEAN] = {neo_stress, neo_tangent, neo_across, true}};
     return &rows[material];
 }
 
@@ -299,4 +316,39 @@ Term membrane_term(FaceLayer layer, const MembraneDef *def)
         pack->volume[l] = layer.volume[face];
     }
     return (Term){&membrane_ops, membrane};
+}
+
+/* ---- What a state bears ---- */
+
+void plane_principal(PlaneTensor t, double value[2])
+{
+    double mean = 0.5 * (t.xx + t.yy), radius = hypot(0.5 * (t.xx - t.yy), t.xy);
+    value[0] = mean + radius, value[1] = mean - radius;
+}
+
+PlaneTensor membrane_strain(double (*rest)[3], const double *x, const int *face)
+{
+    double b[3][2], g00 = -1, g01 = 0, g11 = -1;
+    face_gradients(rest, face, b);
+    for (int k = 0; k < 3; k++) {
+        double f[2] = {0};
+        for (int i = 0; i < 6; i++) f[i % 2] += b[i / 2][i % 2] * x[3 * face[i / 2] + k];
+        g00 += f[0] * f[0], g01 += f[0] * f[1], g11 += f[1] * f[1];
+    }
+    return (PlaneTensor){0.5 * g00, 0.5 * g01, 0.5 * g11};
+}
+
+/* sigma = F S F^T/J has the trace and determinant of S C/J, and J^2 = det C times the thickness' squared stretch; without
+ * stress across, von Mises' is tr^2 - 3 det. */
+double membrane_von_mises(MembraneMaterial material, double poisson, PlaneTensor strain)
+{
+    const Law *law = law_of(material);
+    Strain s = {.g00 = pack_set(strain.xx), .g01 = pack_set(strain.xy), .g11 = pack_set(strain.yy)};
+    law->stress(poisson, &s);
+    double xx = s.s00[0], xy = s.s01[0], yy = s.s11[0];
+    double c00 = 1 + 2 * strain.xx, c01 = 2 * strain.xy, c11 = 1 + 2 * strain.yy, det = c00 * c11 - c01 * c01;
+    double J2 = det * law->across(poisson, 2 * (strain.xx + strain.yy), det);
+    double trace = xx * c00 + 2 * xy * c01 + yy * c11,
+           squared = trace * trace - 3 * (xx * yy - xy * xy) * det;
+    return c00 > 0 && det > 0 && J2 > 0 ? sqrt(fmax(squared, 0) / J2) : NAN;
 }

@@ -17,3 +17,18 @@ typedef struct MembraneDef {
 
 /* Takes the layer. Where steps turn (TermOps.follow), its Hessian heeds Point.x_from. */
 Term membrane_term(FaceLayer layer, const MembraneDef *def);
+
+/* Symmetric, in the two axes of face_gradients. */
+typedef struct PlaneTensor {
+    double xx, xy, yy;
+} PlaneTensor;
+
+/* Both principal values, the larger one first. */
+void plane_principal(PlaneTensor t, double value[2]);
+
+/* Green's strain of a face, (F^T F - 1)/2. */
+PlaneTensor membrane_strain(double (*rest)[3], const double *x, const int *face);
+
+/* Von Mises' stress, of Cauchy's, that a material in plane stress has at Green's strain, over Young's modulus; NAN where
+ * nothing is left of the area, or of the thickness. */
+double membrane_von_mises(MembraneMaterial material, double poisson, PlaneTensor strain);

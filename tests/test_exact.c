@@ -106,7 +106,7 @@ static void test_buckling(void **state)
         double lowest[3];
         compress(&s);
         Point straight = state_point(&s.state, s.p);
-        assert_true(eigen_lowest(s.sys, &straight, 3, lowest, NULL));
+        assert_true(eigen_lowest(s.sys, &straight, NULL, 3, lowest, NULL));
         print_message("q = %.4f: lowest eigenvalues of the straight strip %.3e %.3e %.3e N/m\n", q, lowest[0],
                       lowest[1], lowest[2]);
         assert_true(above ? lowest[0] < 0 : lowest[0] > 0);

@@ -93,7 +93,7 @@ static double lowest_frequency(const Resting *o, const Moving *m, double young, 
                                                    rod_element_length(o->rod, 0) *
                                                    (o->rod->elements - e - 0.5);
     Point at = state_point(&rest, o->p);
-    assert_true(eigen_lowest(sys, &at, 1, &lambda, mode));
+    assert_true(eigen_lowest(sys, &at, NULL, 1, &lambda, mode));
     rod_node_mass(o->rod, mass);
     for (int i = 0; i < 3 * m->layout.nodes; i++) inertia += mass[i / 3] * mode[i] * mode[i];
     system_destroy(sys);

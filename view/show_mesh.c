@@ -1,4 +1,5 @@
 #include "view/show_mesh.h"
+#include "base/memory.h"
 #include "base/vec3.h"
 #include <math.h>
 #include <string.h>
@@ -231,6 +232,25 @@ static const double *means_of_corners(const ShowMesh *mesh, const double (*vecto
     return mean;
 }
 
+/* What there is instead. */
+static bool refuse_field(ShowData *data, const char *name, Error *err)
+{
+    static const char *const kinds[] = {"VTKHDF/CellData/", "VTKHDF/PointData/"};
+    char **paths, *names = mem_text("");
+    int count;
+    if (!result_list(data->result, &paths, &count, err)) return mem_free(names), false;
+    for (int k = 0; k < count; k++)
+        for (int d = 0; d < 2; d++)
+            if (!strncmp(paths[k], kinds[d], strlen(kinds[d])))
+                names = mem_join(mem_join(names, *names ? ", " : "", ""), paths[k] + strlen(kinds[d]), "");
+    error_set(err, "the frames of the result have no '%s', only %s%s", name, names,
+              strstr(names, "von_mises") ? ""
+                                         : "; those of motions have stresses with `output: {stress: true}`");
+    mem_free(paths);
+    mem_free(names);
+    return false;
+}
+
 /* Of a frame, -1: the last: one number per cell of CellData (a solid's tetrahedra are before the faces of its skin), or
  * vectors of PointData. */
 static bool frame_field(const ShowMesh *mesh, int step, const char *name, const double **values,
@@ -240,6 +260,8 @@ static bool frame_field(const ShowMesh *mesh, int step, const char *name, const 
     ShowData *data = mesh->data;
     const ClipBody *body = &mesh->body;
     bool points = result_has(data->result, show_text(data, "VTKHDF/PointData/%s", name));
+    if (!points && !result_has(data->result, show_text(data, "VTKHDF/CellData/%s", name)))
+        return refuse_field(data, name, err);
     if (step < 0) step = result_step_count(data->result) - 1;
     const char *path = show_text(data, "%s/%s", points ? "PointData" : "CellData", name);
     if (!result_read_step(data->result, path, step, &array, err)) return false;

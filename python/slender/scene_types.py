@@ -471,7 +471,7 @@ FrameOfAStartKeys = TypedDict("FrameOfAStartKeys", {
 
 Output = TypedDict("Output", {
     "every": "int", "film": "int", "precision": "Literal['single', 'double']", "states": "Literal['last', 'all']",
-    "svg": "Number", "png": "Number", "gcode": "Number", "gcode_servo": "Number", "hpgl": "Number",
+    "stress": "bool", "svg": "Number", "png": "Number", "gcode": "Number", "gcode_servo": "Number", "hpgl": "Number",
 }, total=False)
 
 Scene = TypedDict("Scene", {

@@ -268,10 +268,7 @@ static bool fill(Model *model, const Scene *scene, const Build *b)
     WorldBody shown = rod_world_body(rm->rod);
     readable = model_read_world(model, &sized, scene, &shown, &rm->rod->world) && readable;
     if (scene->water && !check_slender(rm->rod, b)) return false;
-    if (rm->preview && rm->rod->fields.count)
-        return yaml_refuse(
-            b->file, "flux_density",
-            "a preview (solver: pbd) knows a uniform field: three numbers, formulas of t, or a file");
+    if (rm->preview && !rod_model_check_preview(rm, scene, b->file)) return false;
     if (!rod_read_supports(rm, from, b) || !rod_model_check_points(rm, b, rod_length(rm->rod))) return false;
     set_model(model);
     model_add_blocks(model, scene);
@@ -398,6 +395,7 @@ static const BodyOps ops = {
     .add_static = rod_add_static,
     .add_frame = rod_add_frame,
     .add_state = rod_add_state,
+    .add_stress = rod_add_stress,
     .add_final = rod_add_final,
     .likeness = likeness,
     .take_state = rod_take_state,
@@ -417,7 +415,7 @@ static const KeyUse uses[] = {
     {"obstacles", "/rod.solver: newton"},
     {"contact", "/rod.solver: newton"},
     {"water", "/rod.solver: newton"},
-    {"modes", "!rod"},
+    {"modes", "/rod.solver: newton & /job: equilibrium, evaluate, design, simulate, trajectory"},
     {0},
 };
 

@@ -7,6 +7,7 @@
 void rod_add_static(const Model *model, Arrays *list);
 void rod_body_places(const Model *model, const double *x, double *place);
 void rod_add_frame(const Model *model, const Snapshot *shot, bool whole, Arrays *list);
+void rod_add_stress(const Model *model, const Snapshot *shot, Arrays *list);
 void rod_add_state(const Model *model, const Snapshot *shot, const char *prefix, Arrays *list);
 void rod_add_final(const Model *model, const Snapshot *shot, int modes, Arrays *list);
 char *rod_doubt(const Model *model, const Snapshot *shot);

@@ -1,5 +1,6 @@
 /* Rods in the journal. */
 #include "base/memory.h"
+#include "job/run.h"
 #include "rod/front/front.h"
 #include "rod/stability.h"
 #include "rod/stations.h"
@@ -51,20 +52,41 @@ void rod_body_places(const Model *model, const double *x, double *place)
         rod_places(rm->rod, layout, x, layout->nodes, place);
 }
 
-/* Of a rod that stretches: at its nodes the means of the elements beside them. */
-void rod_add_frame(const Model *model, const Snapshot *shot, bool whole, Arrays *list)
+/* At the nodes the means of the elements beside them. */
+static void add_means(const RodLayout *layout, const char *name, const char *unit, const double *values,
+                      Arrays *list)
 {
-    (void)whole;
-    const RodLayout *layout = &((const RodModel *)model->self)->layout;
-    if (layout->strain < 0) return;
     double *mean = arrays_numbers(list, 3 * (size_t)layout->nodes);
     for (int e = 0; e < layout->elements; e++)
         for (int side = 0; side < 2; side++) {
             bool end = side ? (e + 1) % layout->each == 0 : e % layout->each == 0;
             double *to = mean + 3 * (rod_element_node(layout, e) + side);
-            for (int i = 0; i < 3; i++) to[i] += (end ? 1 : 0.5) * shot->at.x[layout->strain + 3 * e + i];
+            for (int i = 0; i < 3; i++) to[i] += (end ? 1 : 0.5) * values[3 * e + i];
         }
-    arrays_add(list, array_float("point/stretch", "", mean, 2, layout->nodes, 3));
+    arrays_add(list, array_float(name, unit, mean, 2, layout->nodes, 3));
+}
+
+void rod_add_frame(const Model *model, const Snapshot *shot, bool whole, Arrays *list)
+{
+    (void)whole;
+    const RodLayout *layout = &((const RodModel *)model->self)->layout;
+    if (layout->strain >= 0) add_means(layout, "point/stretch", "", shot->at.x + layout->strain, list);
+}
+
+void rod_add_stress(const Model *model, const Snapshot *shot, Arrays *list)
+{
+    const RodModel *rm = model->self;
+    const RodLayout *layout = &rm->layout;
+    const double *x = shot->at.x;
+    Vec3 *values = mem_alloc((size_t)layout->elements, sizeof *values);
+    double *moment = arrays_numbers(list, 3 * (size_t)layout->nodes);
+    rod_element_strains(rm->rod, layout, x, values);
+    add_means(layout, "point/strain", "1/m", &values->x, list);
+    rod_element_forces(rm->rod, layout, x, shot->p, values);
+    add_means(layout, "point/force", "N", &values->x, list);
+    rod_node_moments(rm->rod, layout, x, shot->p, (Vec3 *)moment);
+    arrays_add(list, array_float("point/moment", "N m", moment, 2, layout->nodes, 3));
+    mem_free(values);
 }
 
 void rod_add_state(const Model *model, const Snapshot *shot, const char *prefix, Arrays *list)
@@ -72,8 +94,10 @@ void rod_add_state(const Model *model, const Snapshot *shot, const char *prefix,
     const RodModel *rm = model->self;
     int elements = rm->rod->elements;
     double *strain = arrays_numbers(list, 3 * (size_t)elements),
+           *force = arrays_numbers(list, 3 * (size_t)elements),
            *moment = arrays_numbers(list, 3 * (size_t)model->point_count);
     rod_element_strains(rm->rod, &rm->layout, shot->at.x, (Vec3 *)strain);
+    rod_element_forces(rm->rod, &rm->layout, shot->at.x, shot->p, (Vec3 *)force);
     rod_node_moments(rm->rod, &rm->layout, shot->at.x, shot->p, (Vec3 *)moment);
     char *name = arrays_keep(list, mem_format("%s/strain", prefix));
     arrays_add(list, array_float(name, "1/m", strain, 2, elements, 3));
@@ -81,6 +105,8 @@ void rod_add_state(const Model *model, const Snapshot *shot, const char *prefix,
         name = arrays_keep(list, mem_format("%s/stretch", prefix));
         arrays_add(list, array_float(name, "", shot->at.x + rm->layout.strain, 2, elements, 3));
     }
+    name = arrays_keep(list, mem_format("%s/force", prefix));
+    arrays_add(list, array_float(name, "N", force, 2, elements, 3));
     name = arrays_keep(list, mem_format("%s/moment", prefix));
     arrays_add(list, array_float(name, "N m", moment, 2, model->point_count, 3));
 }
@@ -164,9 +190,29 @@ char *rod_doubt(const Model *model, const Snapshot *shot)
         rod_element_length(rod, 0) / lengths, lengths, ceil(rod->elements * lengths));
 }
 
+/* A rod of turns only is looked at with positions, which have the mass. */
+static void add_vibrations(const Model *model, const Snapshot *shot, int modes, Arrays *list)
+{
+    const RodModel *rm = model->self;
+    if (rm->layout.position >= 0) {
+        Point at = state_point(&shot->at, shot->p);
+        run_add_vibrations(model, shot->load_case->sys, &at, modes, list);
+        return;
+    }
+    RodLayout layout = rod_layout(rm->rod, true);
+    System *sys = rod_system(rm->rod, shot->p[rm->rod->young], false);
+    State state = system_state(sys);
+    rod_copy_state(rm->rod, &rm->layout, shot->at.x, &layout, state.x);
+    state.time = shot->at.time;
+    Point at = state_point(&state, shot->p);
+    rod_carry(rm->rod, sys, &layout, &at, state.x);
+    run_add_vibrations(model, sys, &at, modes, list);
+    state_destroy(&state);
+    system_destroy(sys);
+}
+
 void rod_add_final(const Model *model, const Snapshot *shot, int modes, Arrays *list)
 {
-    (void)modes;
     const RodModel *rm = model->self;
     const Rod *rod = rm->rod;
     int nodes = model->point_count;
@@ -179,6 +225,7 @@ void rod_add_final(const Model *model, const Snapshot *shot, int modes, Arrays *
     arrays_add(list, array_float("rod/natural_strain_elements", "1/m", shot->p + rod->natural_strain, 2,
                                  rod->elements, 3));
     if (is_judged(rod, shot->p)) add_stability(rm, shot, list);
+    if (modes) add_vibrations(model, shot, modes, list);
 }
 
 double rod_add_mean_strains(const double *strain, int count, int nodes, Arrays *list)

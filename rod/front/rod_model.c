@@ -409,3 +409,13 @@ double rod_model_longest(const RodModel *model)
     for (int k = 0; k < model->strand_count; k++) longest = fmax(longest, model->curves[k].length);
     return longest;
 }
+
+bool rod_model_check_preview(const RodModel *model, const Scene *scene, YamlFile *file)
+{
+    if (model->rod->fields.count)
+        return yaml_refuse(
+            file, "flux_density",
+            "a preview (solver: pbd) knows a uniform field: three numbers, formulas of t, or a file");
+    return !scene->output.stress ||
+           yaml_refuse(file, "output.stress", "a preview (solver: pbd) knows no moments and forces");
+}

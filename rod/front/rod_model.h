@@ -53,6 +53,9 @@ bool rod_model_check_points(const RodModel *model, const Build *b, double length
 /* Of an identification: its poses, poses[strand_count], and loads. */
 RodIdentifyDef rod_model_poses(const RodModel *model, const RodScene *scene, RodPose *poses);
 
+/* Refuses what a preview does not know. */
+bool rod_model_check_preview(const RodModel *model, const Scene *scene, YamlFile *file);
+
 /* Rows of a frame, tangent, n1, n2, made orthonormal; refused where they are further off than 1e-3. */
 bool rod_model_frame(const Build *b, const char *at, const double (*rows)[3], RodFrame *frame);
 

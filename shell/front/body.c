@@ -159,6 +159,7 @@ static const BodyOps ops = {
     .add_static = shell_add_static,
     .add_frame = shell_add_frame,
     .add_state = shell_add_state,
+    .add_stress = shell_add_stress,
     .add_final = run_add_stability,
     .likeness = likeness,
     .places = model_places,

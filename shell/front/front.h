@@ -7,6 +7,7 @@
 /* records.c: shells in the journal. */
 void shell_add_static(const Model *model, Arrays *list);
 void shell_add_frame(const Model *model, const Snapshot *shot, bool whole, Arrays *list);
+void shell_add_stress(const Model *model, const Snapshot *shot, Arrays *list);
 void shell_add_state(const Model *model, const Snapshot *shot, const char *prefix, Arrays *list);
 
 /* report.c, cost.c */

@@ -2,6 +2,8 @@
 #include "base/memory.h"
 #include "job/run.h"
 #include "shell/front/front.h"
+#include "shell/stress.h"
+#include <stddef.h>
 #include <string.h>
 
 /* Edges are named as scenes and their tables name them: by the vertices of the file. Where some of these were
@@ -50,4 +52,34 @@ void shell_add_state(const Model *model, const Snapshot *shot, const char *prefi
     system_gradient(sys, &at, gradient);
     char *name = arrays_keep(list, mem_format("%s/gradient", prefix));
     arrays_add(list, array_float(name, "N", gradient, 2, model->point_count, 3));
+}
+
+/* Numbers of FaceStress that a frame shows. */
+static const struct {
+    const char *name, *unit;
+    size_t offset;
+} shown[] = {
+    {"cell/strain_1", "", offsetof(FaceStress, strain[0])},
+    {"cell/strain_2", "", offsetof(FaceStress, strain[1])},
+    {"cell/curvature_1", "1/m", offsetof(FaceStress, curvature[0])},
+    {"cell/curvature_2", "1/m", offsetof(FaceStress, curvature[1])},
+    {"cell/von_mises", "Pa", offsetof(FaceStress, von_mises[STRESS_MIDDLE])},
+    {"cell/von_mises_top", "Pa", offsetof(FaceStress, von_mises[STRESS_TOP])},
+    {"cell/von_mises_bottom", "Pa", offsetof(FaceStress, von_mises[STRESS_BOTTOM])},
+};
+
+void shell_add_stress(const Model *model, const Snapshot *shot, Arrays *list)
+{
+    const Shell *shell = model->self;
+    int count = shell->mesh->face_count;
+    Point at = state_point(&shot->at, shot->p);
+    FaceStress *stress = mem_alloc((size_t)count, sizeof *stress);
+    shell_stresses(shell, shot->load_case->sys, &at, stress);
+    for (size_t k = 0; k < sizeof shown / sizeof *shown; k++) {
+        double *values = arrays_numbers(list, (size_t)count);
+        for (int f = 0; f < count; f++)
+            values[f] = *(const double *)((const char *)&stress[f] + shown[k].offset);
+        arrays_add(list, array_float(shown[k].name, shown[k].unit, values, 1, count, 0));
+    }
+    mem_free(stress);
 }

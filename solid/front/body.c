@@ -175,6 +175,7 @@ static const BodyOps ops = {
     .add_static = solid_add_static,
     .add_frame = solid_add_frame,
     .add_state = solid_add_state,
+    .add_stress = solid_add_stress,
     .add_final = run_add_stability,
     .likeness = likeness,
     .places = model_places,

@@ -8,6 +8,7 @@
 /* records.c: solids in the journal. */
 void solid_add_static(const Model *model, Arrays *list);
 void solid_add_frame(const Model *model, const Snapshot *shot, bool whole, Arrays *list);
+void solid_add_stress(const Model *model, const Snapshot *shot, Arrays *list);
 void solid_add_state(const Model *model, const Snapshot *shot, const char *prefix, Arrays *list);
 
 /* report.c, cost.c */

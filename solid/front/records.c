@@ -2,6 +2,7 @@
 #include "base/memory.h"
 #include "job/run.h"
 #include "solid/front/front.h"
+#include "solid/stress.h"
 #include <math.h>
 #include <string.h>
 
@@ -111,4 +112,36 @@ void solid_add_state(const Model *model, const Snapshot *shot, const char *prefi
     *least = solid_least_jacobian(model->self, shot->at.x, &tet);
     arrays_add(list,
                array_float(arrays_keep(list, mem_format("%s/least_jacobian", prefix)), "", least, 0, 0, 0));
+}
+
+/* Of the faces of a skin that is a film: the stress of its material in plane stress. */
+static void put_film(const Solid *solid, const Snapshot *shot, double *von_mises)
+{
+    const Mesh *skin = solid->tets->skin;
+    for (int f = 0; solid->film && f < skin->face_count; f++) {
+        if (!has_layer(solid, f)) continue;
+        PlaneTensor strain = membrane_strain(solid->tets->surface->rest, shot->at.x, skin->faces[f]);
+        von_mises[f] = shot->p[solid->skin_young + solid->tets->skin_face[f]] *
+                       membrane_von_mises(solid->film_material, solid->film_poisson, strain);
+    }
+}
+
+void solid_add_stress(const Model *model, const Snapshot *shot, Arrays *list)
+{
+    const Solid *solid = model->self;
+    int count = solid->tets->count;
+    Point at = state_point(&shot->at, shot->p);
+    TetStress *stress = mem_alloc((size_t)count, sizeof *stress);
+    double *cauchy = empty(solid, 6, list), *von_mises = empty(solid, 1, list),
+           *stretch = empty(solid, 1, list);
+    solid_stresses(solid, shot->load_case->sys, &at, stress);
+    for (int t = 0; t < count; t++) {
+        memcpy(cauchy + 6 * t, stress[t].cauchy, sizeof stress[t].cauchy);
+        von_mises[t] = stress[t].von_mises, stretch[t] = stress[t].stretch;
+    }
+    put_film(solid, shot, von_mises + count);
+    add_cells(solid, "cell/cauchy_stress", "Pa", cauchy, 6, list);
+    add_cells(solid, "cell/von_mises", "Pa", von_mises, 1, list);
+    add_cells(solid, "cell/stretch", "", stretch, 1, list);
+    mem_free(stress);
 }
