@@ -1,6 +1,7 @@
 #include "model/model.h"
 #include "base/memory.h"
 #include "io/table.h"
+#include "model/probe.h"
 #include "model/scene_tables.h"
 #include "model/start.h"
 #include "model/world_report.h"
@@ -193,7 +194,7 @@ static Model *create(const Scene *scene, YamlFile *file, bool general)
     bool ok = check_job(scene, file) && yaml_check_use(file, scene_table()) &&
               check_motion(scene, job, file) && start_open(model, scene, file) &&
               model->body->ops->create(model, scene, file) && start_take(model, scene, file) &&
-              (!job->design || model_design(model, scene, file));
+              (!job->design || model_design(model, scene, file)) && model_probes(model, scene, file);
     start_close(model->start);
     model->start = NULL;
     if (ok) model_put_world(model, scene);
@@ -223,6 +224,8 @@ void model_destroy(Model *model)
         formula_destroy(model->motions[m].formula);
         mem_free(model->motions[m].vertices.items);
     }
+    for (int k = 0; k < model->support_count; k++) mem_free(model->supports[k].points.items);
+    model_clear_probes(model);
     design_clear(&model->design);
     timed_clear(&model->flux_of_time);
     mesh_report_clear(&model->report);
@@ -230,6 +233,7 @@ void model_destroy(Model *model)
     mem_free(model->cases);
     mem_free(model->flux);
     mem_free(model->motions);
+    mem_free(model->supports);
     mem_free(model->x);
     mem_free(model);
 }

@@ -420,6 +420,8 @@ const YamlTable scene_form = {
          .doc = "load cases of a design; one with the scene's loads if absent"},
         {YAML_LIST(Scene, sequence, &stage_table), .when = "/job: equilibrium",
          .otherwise = "what changes in a motion is a formula of t", .doc = "stages of an equilibrium"},
+        {YAML_MAP(Scene, probes, &probe_table), .when = WITH_STATES,
+         .doc = "numbers to follow: a table in the result, and NAME_probes.csv"},
         {YAML_OPTIONAL(Scene, design, &design_table), .when = "/job: design, trajectory",
          .doc = "what a design or trajectory job looks for"},
         {YAML_TABLE(Scene, solver, &solver_table),

@@ -224,6 +224,22 @@ typedef struct DesignScene {
     double tolerance;
 } DesignScene;
 
+/* ---- Probes ---- */
+
+typedef struct ForceScene {
+    int fix;
+    char *group, *obstacle; /* one of them */
+} ForceScene;
+
+/* What is followed; one of these. Points are those of a vertex, a group's mean or mass_center. */
+typedef struct ProbeScene {
+    char *name, *vertex, *group, *height, **distance, **angle;
+    bool mass_center;
+    double axis[3];
+    ForceScene *force;
+    int distance_count, angle_count;
+} ProbeScene;
+
 /* ---- The whole ---- */
 
 typedef enum SceneCheck { CHECK_STABILITY, CHECK_SELF_CONTACT, CHECK_ROUND_TRIP } SceneCheck;
@@ -273,6 +289,7 @@ typedef struct Scene {
     TargetScene *target;
     CaseScene *cases;
     StageScene *sequence;
+    ProbeScene *probes;
     DesignScene *design;
     SolverScene solver;
     LoadStepsScene load_steps;
@@ -285,7 +302,7 @@ typedef struct Scene {
     OutputScene output;
     int *checks; /* SceneCheck */
     int flux_density_count, fix_count, loads_count, cases_count, sequence_count, obstacles_count,
-        checks_count;
+        probes_count, checks_count;
 } Scene;
 
 /* Its keys: the common ones, and one for each body (rows.h). */

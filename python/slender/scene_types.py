@@ -366,6 +366,15 @@ Sequence = TypedDict("Sequence", {
     "time": "Number",
 }, total=False)
 
+Probes = TypedDict("Probes", {
+    "vertex": "Number", "group": "Number", "mass_center": "bool", "height": "Number", "distance": "Numbers",
+    "angle": "Numbers", "axis": "Numbers", "force": "ForceOfAProbe",
+}, total=False)
+
+ForceOfAProbeKeys = TypedDict("ForceOfAProbeKeys", {
+    "group": "Number", "fix": "int", "obstacle": "Number",
+}, total=False)
+
 Design = TypedDict("Design", {
     "unknowns": "Unknowns", "objectives": "Rows[Objectives]", "optimizer": "Literal['mma', 'lbfgs', 'gauss_newton']",
     "iterations": "int", "tolerance": "float", "seed": "int",
@@ -468,8 +477,8 @@ Scene = TypedDict("Scene", {
     "shell": "Shell", "rod": "Rod", "solid": "Solid", "spline": "Spline",
     "flux_density": "Union[FluxDensity, Rows[FluxDensity]]", "fix": "Rows[Fix]", "loads": "Rows[Loads]",
     "target": "Target", "obstacles": "Rows[Obstacles]", "contact": "Contact", "water": "Water",
-    "cases": "Rows[Cases]", "sequence": "Rows[Sequence]", "design": "Design", "solver": "Solver",
-    "load_steps": "LoadSteps", "time": "Time", "start": "Start", "modes": "int",
+    "cases": "Rows[Cases]", "sequence": "Rows[Sequence]", "probes": "Mapping[str, Probes]", "design": "Design",
+    "solver": "Solver", "load_steps": "LoadSteps", "time": "Time", "start": "Start", "modes": "int",
     "checks": "Union[Literal['stability', 'self_contact', 'round_trip'], Rows[Literal['stability', 'self_contact', 'round_trip']]]",
     "output": "Output",
 }, total=False)
@@ -511,6 +520,7 @@ SelfContact = Union["SelfContactKeys", bool]
 StiffnessOfContact = Union["StiffnessOfContactKeys", Literal['auto'], Number]
 OffsetOfContact = Union["OffsetOfContactKeys", Literal['auto'], Number]
 VelocityOfWater = Union["VelocityOfWaterKeys", Numbers]
+ForceOfAProbe = Union["ForceOfAProbeKeys", Number]
 StartOfFluxDensity = Union["StartOfFluxDensityKeys", Numbers]
 LoadSteps = Union["LoadStepsKeys", Literal['auto'], int]
 Time = Union["TimeKeys", Number]

@@ -272,6 +272,7 @@ static bool fill(Model *model, const Scene *scene, const Build *b)
             b->file, "flux_density",
             "a preview (solver: pbd) knows a uniform field: three numbers, formulas of t, or a file");
     if (!rod_read_supports(rm, from, b) || !rod_model_check_points(rm, b, rod_length(rm->rod))) return false;
+    rod_add_supports(model);
     set_model(model);
     model_add_blocks(model, scene);
     return fill_cases(model, scene, &sized, readable) &&
@@ -472,6 +473,7 @@ static const BodyOps ops = {
     .masses = masses,
     .move = rod_move_end,
     .system = make_system,
+    .supports = rod_support_forces,
     .balance = balance_pose,
     .add_static = rod_add_static,
     .add_frame = rod_add_frame,
@@ -495,6 +497,7 @@ static const KeyUse uses[] = {
     {"obstacles", "/rod.solver: newton"},
     {"contact", "/rod.solver: newton"},
     {"water", "/rod.solver: newton"},
+    {"probes", "/rod.solver: newton"},
     {"modes", "!rod"},
     {0},
 };

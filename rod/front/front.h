@@ -25,6 +25,10 @@ bool rod_end_is_held(const RodModel *rm, const double *x);
 bool rod_move_end(const Model *model, double time, double part, double *x, Error *err);
 bool rod_settle(Model *model, const Build *b, const double *p);
 
+/* BodyOps.supports; and the nodes that are held, into the model. */
+void rod_support_forces(const Model *model, const Snapshot *shot, double *force);
+void rod_add_supports(Model *model);
+
 /* report.c, cost.c */
 char *rod_describe(const Model *model, const Scene *scene);
 void rod_advise(Model *model, const Scene *scene);
