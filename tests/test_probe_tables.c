@@ -253,6 +253,46 @@ static void test_design(void **state)
     mem_free(parted);
 }
 
+/* Frames of a sequence, to be cleared. */
+static Array frames_of(const char *sequence)
+{
+    Result *result = run_text(
+        mem_format("%s  magnetization: [1000, 0, 500]\n  gravity: [0, 0, -9.81]\njob: equilibrium\n"
+                   "fix: [{group: root, clamp: true}, {group: tip, axes: y, move: [0, \"y + 0.001*t\", 0]}]\n"
+                   "sequence: %s\n",
+                   SHEET, sequence));
+    Array x = read_all(result, "slender/frames/x");
+    result_close(result);
+    return x;
+}
+
+/* A range is the list of its stages, to rounding: fields, loads, gravity and what moves in time, side by side. */
+static void test_ranges(void **state)
+{
+    (void)state;
+    Array range = frames_of(
+              "{flux_density: {from: [0, 0, 0], to: [0, 0, 8 mT], count: 5}, gravity: {from: [0, 0, "
+              "-8], to: [0, 0, 0]},\n  time: {from: 0, to: 4 s, count: 5}, loads: {from: {force: [0, "
+              "0, 0], on: tip}, to: [{force: [0, 0, 4 mN], on: tip}]}}"),
+          list = frames_of("[{flux_density: [0, 0, 0], gravity: [0, 0, -8], time: 0, loads: [{force: [0, 0, "
+                           "0], on: tip}]},\n"
+                           "  {flux_density: [0, 0, 2 mT], gravity: [0, 0, -6], time: 1, loads: [{force: [0, "
+                           "0, 1 mN], on: tip}]},\n"
+                           "  {flux_density: [0, 0, 4 mT], gravity: [0, 0, -4], time: 2, loads: [{force: [0, "
+                           "0, 2 mN], on: tip}]},\n"
+                           "  {flux_density: [0, 0, 6 mT], gravity: [0, 0, -2], time: 3, loads: [{force: [0, "
+                           "0, 3 mN], on: tip}]},\n"
+                           "  {flux_density: [0, 0, 8 mT], gravity: [0, 0, 0], time: 4, loads: [{force: [0, "
+                           "0, 4 mN], on: tip}]}]");
+    assert_true(range.dims[0] == 5 && list.dims[0] == 5);
+    for (size_t i = 0; i < array_count(&list); i++) assert_near(numbers(&range)[i], numbers(&list)[i], 1e-12);
+    const double *x = numbers(&range);
+    for (int n = 0; n < 5; n++) assert_near(x[3 * (n * 27 + 17) + 1], 0.005 + 0.001 * n, 1e-15);
+    assert_true(x[3 * 17 + 2] < 0 && x[3 * (4 * 27 + 17) + 2] > 0.01);
+    array_clear(&range);
+    array_clear(&list);
+}
+
 static int clean(void **state)
 {
     (void)state;
@@ -268,7 +308,7 @@ static int clean(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_closed_forms), cmocka_unit_test(test_stages),
-                                       cmocka_unit_test(test_forces), cmocka_unit_test(test_motion),
-                                       cmocka_unit_test(test_design)};
+                                       cmocka_unit_test(test_forces),       cmocka_unit_test(test_motion),
+                                       cmocka_unit_test(test_design),       cmocka_unit_test(test_ranges)};
     return cmocka_run_group_tests(tests, clean, clean);
 }
