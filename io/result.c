@@ -3,6 +3,7 @@
 #include "io/hdf5_file.h"
 #include "io/result_vtk.h"
 #include "io/safe_file.h"
+#include "io/text.h"
 #include "io/xdmf.h"
 #include <errno.h>
 #include <math.h>
@@ -81,7 +82,12 @@ static bool is_history(const Array *array)
     return (array->rank == 0 || array->rank == 2) && array->type == ARRAY_FLOAT64;
 }
 
-/* history/<name> from the arrays of that name in all evaluations, which are like the first one. */
+static bool is_probe(const char *name)
+{
+    return !strncmp(name, "probes/", 7);
+}
+
+/* history/<name> from the arrays of that name in all evaluations, which are like the first one; of probes their own. */
 static bool put_history(VtkFrames *w, const char *name, const int *indices, int count, const Array *first,
                         Error *err)
 {
@@ -96,7 +102,7 @@ static bool put_history(VtkFrames *w, const char *name, const int *indices, int 
             values[(size_t)k * each + i] = alike ? ((const double *)array.data)[i] : NAN;
         array_clear(&array);
     }
-    char *path = mem_format("slender/history/%s", name);
+    char *path = mem_format("slender/%s%s", is_probe(name) ? "" : "history/", name);
     Array history = array_float(path, first->unit, values, 1 + first->rank, count, first->dims[0]);
     history.dims[2] = first->dims[1];
     ok = ok && hdf5_write(w->file, path, &history, (Hdf5Layout){0}, err);
@@ -115,7 +121,8 @@ static bool put_histories(VtkFrames *w, Error *err)
         Array array;
         ok = journal_get(w->journal, "evaluation", indices[0], names[k], &array, err);
         if (!ok) break;
-        if (is_history(&array)) ok = put_history(w, names[k], indices, count, &array, err);
+        if (is_history(&array) || is_probe(names[k]))
+            ok = put_history(w, names[k], indices, count, &array, err);
         array_clear(&array);
     }
     mem_free(names);
@@ -145,14 +152,38 @@ bool result_is_pose(const char *field)
     return length > end && !strcmp(field + length - end, END);
 }
 
-/* What else the frames hold: frames/flux_density and poses, and frames/NAME of state/NAME, what is kept of whole
- * states. */
+/* The texts that frames have, a line each. */
+static bool put_lines(VtkFrames *w, const char *field, const char *path, Error *err)
+{
+    Text lines = {0};
+    bool ok = true;
+    for (int k = 0; ok && k < w->count; k++) {
+        Array text;
+        ok = journal_find(w->journal, "frame", w->frames[k], field, &text, err);
+        if (ok) text_add(&lines, "%s\n", text.data ? (const char *)text.data : "");
+        if (ok) array_clear(&text);
+    }
+    Array all = array_text(path, lines.text);
+    ok = ok && hdf5_write(w->file, path, &all, (Hdf5Layout){0}, err);
+    mem_free(lines.text);
+    return ok;
+}
+
+static bool begins(const char *name, const char *start)
+{
+    return !strncmp(name, start, strlen(start));
+}
+
+/* What else the frames hold: frames/flux_density and poses, frames/NAME of state/NAME, what is kept of whole
+ * states; probes/NAME, and stages/NAME of the stages of a sequence. */
 static bool put_frames(VtkFrames *w, const char *field, Error *err)
 {
-    bool state = !strncmp(field, "state/", 6), pose = result_is_pose(field);
-    if (!state && !pose && strcmp(field, "flux_density") != 0) return true;
-    char *path = mem_format("slender/frames/%s", state ? field + 6 : field);
-    bool ok = vtk_frames_put(w, field, path, NULL, pose, err);
+    bool stage = begins(field, "stages/"), own = stage || is_probe(field), state = begins(field, "state/"),
+         many = result_is_pose(field) || (stage && strstr(field, "_force"));
+    if (!own && !state && !many && strcmp(field, "flux_density") != 0) return true;
+    char *path = mem_format("slender/%s%s", own ? "" : "frames/", state ? field + 6 : field);
+    bool ok = !strcmp(field, "stages/status") ? put_lines(w, field, path, err)
+                                              : vtk_frames_put(w, field, path, NULL, many, err);
     mem_free(path);
     return ok;
 }

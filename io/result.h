@@ -21,6 +21,8 @@
  *     frames/obstacle_pose   [T,n_o,12]      float64, where the frames have it
  *     frames/x               [T,n_v,3]       float64, if those are
  *     frames/NAME            [T,n]           float64: the frames' arrays state/NAME
+ *     probes/NAME            [T], [T,3]      float64: the frames' arrays probes/NAME, or those of the evaluations
+ *     stages/NAME            [T], [T,n,3]    float64, of texts lines: the frames' arrays stages/NAME
  *     state/x                [n_v,3]         the last frame's x, until final has it
  *     attribute status       text            final/status; "unfinished" if there is none yet
  *     attribute kernels      text            meta/kernels

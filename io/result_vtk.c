@@ -256,22 +256,35 @@ static bool put_steps(VtkFrames *frames, Error *err)
     return ok;
 }
 
+/* What runs go on from, and what is measured. */
+static bool is_exact(const char *name)
+{
+    static const char *const prefixes[] = {"state/", "probes/", "stages/"};
+    bool exact = false;
+    for (int k = 0; k < 3; k++) exact |= !strncmp(name, prefixes[k], strlen(prefixes[k]));
+    return exact;
+}
+
+static int rows_of(const Array *array)
+{
+    return array->rank > 0 ? array->dims[0] : 1;
+}
+
 bool vtk_frames_put(VtkFrames *frames, const char *name, const char *path, const char *offsets_path,
                     bool stacked, Error *err)
 {
     Hdf5Rows *rows = NULL;
     int *offsets = mem_alloc((size_t)frames->count, sizeof *offsets), stored = 0, chunk = 0, width = 0;
-    bool ok = true,
-         single = frames->single && !stacked && strncmp(name, "state/", 6) != 0; /* runs go on from these */
+    bool ok = true, single = frames->single && !stacked && !is_exact(name);
     for (int k = 0; ok && k < frames->count; k++) {
         Array array;
         ok = journal_find(frames->journal, "frame", frames->frames[k], name, &array, err);
         if (array.data) {
             if (!rows) {
-                chunk = array.dims[0], width = array.rank > 1 ? array.dims[1] : 0;
+                chunk = rows_of(&array), width = array.rank > 1 ? array.dims[1] : 0;
                 rows = hdf5_rows_create(frames->file, path, array.unit, chunk, width, stacked, single, err);
             }
-            bool fits = array.type == ARRAY_FLOAT64 && array.dims[0] == chunk &&
+            bool fits = array.type == ARRAY_FLOAT64 && rows_of(&array) == chunk &&
                         (array.rank > 1 ? array.dims[1] : 0) == width;
             if (ok && !fits) ok = error_set(err, "the frames' %s change their shape", name);
             ok = ok && rows && hdf5_rows_append(rows, array.data, err);

@@ -1,4 +1,4 @@
-/* text.h - a text that grows. Private to the writers of io/. */
+/* text.h - a text that grows, for writers of files. */
 #pragma once
 #include <stddef.h>
 

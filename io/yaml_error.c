@@ -93,6 +93,7 @@ Node *tree_follow(const YamlFile *file, const char *key, const char **rest)
         if (index >= 0 && node->kind == NODE_LIST && index < node->count) item = node->items[index];
         int known = index < 0 && node->kind == NODE_MAP ? node_index(node, name, (size_t)length) : -1;
         if (known >= 0) item = node->items[known];
+        if (index < 0 && node->kind == NODE_LIST) item = node; /* the short form of a table with such a key */
         if (!item) return node;
         node = item;
     }

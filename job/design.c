@@ -2,6 +2,7 @@
 #include "base/memory.h"
 #include "job/design_run.h"
 #include "job/jobs.h"
+#include "model/probe.h"
 #include "optim/static_design.h"
 #include "solve/ramp.h"
 #include <math.h>
@@ -13,14 +14,32 @@ typedef struct DesignJob {
     StaticDesign *sd;
     CaseInfo *info;          /* [case] of the last evaluation */
     double *case_objectives; /* [case]                        */
+    double *probes;          /* [case][probe_count] likewise; NULL: none */
 } DesignJob;
+
+/* What the probes say of a case's last evaluation; NAN where no equilibrium was found. */
+static void measure(const DesignJob *job, int c)
+{
+    const Model *model = job->run->model;
+    int count = model_probe_count(model);
+    double *values = job->probes + c * count;
+    const double *p;
+    const State *state = static_design_trial(job->sd, c, &p);
+    Snapshot shot = {&model->cases[c], p, *state, NEWTON_CONVERGED, NULL, NULL};
+    if (job->info[c].newton.status == NEWTON_CONVERGED)
+        model_measure(model, &shot, values);
+    else
+        for (int i = 0; i < count; i++) values[i] = NAN;
+}
 
 static double evaluate(void *self, const double *u, double *gradient, Evaluated *evaluated)
 {
     DesignJob *job = self;
     int cases = job->run->model->case_count;
     double F = static_design_evaluate(job->sd, u, gradient, job->info);
-    *evaluated = (Evaluated){.case_objectives = job->case_objectives, .case_count = cases};
+    *evaluated =
+        (Evaluated){.case_objectives = job->case_objectives, .case_count = cases, .probes = job->probes};
+    for (int c = 0; job->probes && c < cases; c++) measure(job, c);
     evaluated->status = job->info[0].newton.status;
     for (int c = 0; c < cases; c++) {
         evaluated->newton_iterations += job->info[c].newton.iterations;
@@ -175,6 +194,8 @@ static RunStatus run_design(Run *run, Error *err)
     DesignJob job = {.run = run,
                      .info = mem_alloc(cases, sizeof *job.info),
                      .case_objectives = mem_alloc(cases, sizeof *job.case_objectives)};
+    if (model->probe_count)
+        job.probes = mem_alloc(cases * (size_t)model_probe_count(model), sizeof *job.probes);
     double *u = mem_alloc((size_t)model->design.size, sizeof *u);
     for (int c = 0; c < model->case_count; c++)
         design_read(&model->design, c, model->cases[c].stages[0].p, u);
@@ -190,6 +211,7 @@ static RunStatus run_design(Run *run, Error *err)
     static_design_destroy(job.sd);
     mem_free(job.info);
     mem_free(job.case_objectives);
+    mem_free(job.probes);
     mem_free(u);
     return status;
 }
@@ -204,6 +226,7 @@ const JobRow job_design = {
     .rest = true,
     .design = true,
     .frames = FRAMES_STAY,
+    .probed = PROBED_EVALUATIONS,
     .free_keys = free_keys,
     .effort = {5, 5, 1.1, 8, 60e6},
 };

@@ -1,6 +1,7 @@
 #include "job/design_run.h"
 #include "base/clock.h"
 #include "base/memory.h"
+#include "model/probe.h"
 #include "optim/optimiser.h"
 #include <math.h>
 #include <string.h>
@@ -32,7 +33,7 @@ static bool put_evaluation(DesignRun *d)
 {
     double size = norm(d->gradient, d->n), seconds = clock_seconds() - d->started;
     double newton = d->evaluated.newton_iterations;
-    Array arrays[] = {
+    const Array arrays[] = {
         array_float("unknowns", "", d->u, 1, d->n, 0),
         array_float("gradient", "", d->gradient, 1, d->n, 0),
         array_float("case_objectives", "", d->evaluated.case_objectives, 1, d->evaluated.case_count, 0),
@@ -41,8 +42,12 @@ static bool put_evaluation(DesignRun *d)
         array_float("newton_iterations", "", &newton, 0, 0, 0),
         array_float("seconds", "s", &seconds, 0, 0, 0),
     };
-    return journal_put(d->run->journal, "evaluation", d->evaluations, arrays, sizeof arrays / sizeof *arrays,
-                       d->err);
+    Arrays list = {0};
+    for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++) arrays_add(&list, arrays[k]);
+    if (d->evaluated.probes)
+        model_add_probes(d->run->model, d->evaluated.probes, d->evaluated.case_count, false, d->evaluations,
+                         &list);
+    return arrays_put(&list, d->run->journal, "evaluation", d->evaluations, d->err);
 }
 
 /* The best design's state, which is that of the evaluation about to be put. */

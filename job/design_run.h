@@ -13,6 +13,7 @@ typedef struct Evaluated {
     NewtonStatus status;           /* of what failed, where F is infinite       */
     const double *case_objectives; /* [case_count] borrowed until the next one  */
     int case_count;
+    const double *probes; /* [case_count][model_probe_count], borrowed likewise; NULL: none */
 } Evaluated;
 
 /* One kind of design. Those that return bool set the error. */

@@ -3,11 +3,14 @@
 #include "io/path.h"
 #include "io/replace.h"
 #include "io/safe_file.h"
+#include "job/probe_table.h"
 #include <string.h>
 #include <strings.h>
 #include <unistd.h>
 
-enum { FILES = 5, OWN = 6 };
+#define PROBE_TABLE "_probes.csv" /* RESULT_probes.csv */
+
+enum { FILES = 5, OWN = 7, WRITTEN = 3 };
 
 typedef struct OutputFile {
     const char *language; /* of drawn_write; NULL: the picture */
@@ -77,11 +80,16 @@ bool outputs_check_source(const Scene *scene, const char *input, const char *out
                output);
 }
 
-/* Is the file one of those that a run writes itself? */
-static bool is_own(const char *const *own, const char *output)
+/* Those that a run writes itself. */
+typedef struct OwnFiles {
+    int count;
+    const char *const *names;
+} OwnFiles;
+
+static bool is_own(const OwnFiles *own, const char *output)
 {
-    for (int k = 0; k < OWN; k++)
-        if (replace_is_same(own[k], output)) return true;
+    for (int k = 0; k < own->count; k++)
+        if (replace_is_same(own->names[k], output)) return true;
     return false;
 }
 
@@ -113,7 +121,7 @@ static bool check_iterations(const Scene *scene, const char *path, const char *b
                lost);
 }
 
-static bool check_once(const OutputFile *files, int file, const char *const *own, Error *err)
+static bool check_once(const OutputFile *files, int file, const OwnFiles *own, Error *err)
 {
     bool twice = is_own(own, files[file].path);
     for (int k = 0; k < file; k++)
@@ -132,7 +140,7 @@ static bool check_picture(const char *path, Error *err)
     return error_set(err, "the picture '%s' must be a .png, .svg or .pdf", path);
 }
 
-static bool check_files(const OutputFile *files, const char *const *own, const Scene *scene, const char *path,
+static bool check_files(const OutputFile *files, const OwnFiles *own, const Scene *scene, const char *path,
                         Error *err)
 {
     bool ok = true;
@@ -145,39 +153,38 @@ static bool check_files(const OutputFile *files, const char *const *own, const S
 
 bool outputs_check(const Scene *scene, const char *path, const char *result, bool picture, Error *err)
 {
-    static const char *const endings[OWN] = {".vtkhdf", ".xdmf", ".run", ".run-wal", ".run-shm", ".run-lock"};
+    static const char *const endings[OWN] = {PROBE_TABLE, ".vtkhdf",  ".xdmf",    ".run",
+                                             ".run-wal",  ".run-shm", ".run-lock"};
     OutputFile files[FILES];
-    char *own[OWN], *base = path_without_ending(result, ".vtkhdf");
+    char *names[OWN], *base = path_without_ending(result, ".vtkhdf");
+    int first = scene->probes_count ? 0 : 1;
+    OwnFiles own = {OWN - first, (const char *const *)names + first};
     bool ok = true;
     for (int k = 0; k < OWN; k++) {
-        own[k] = mem_format("%s%s", base, endings[k]);
-        ok = ok && outputs_check_source(scene, path, own[k], err);
+        names[k] = mem_format("%s%s", base, endings[k]);
+        ok = ok && (k < first || outputs_check_source(scene, path, names[k], err));
     }
-    for (int k = 0; ok && k < 2; k++) { /* the result and its sidecar */
-        ok = replace_check(own[k], err);
-        if (ok) safe_file_sweep(own[k]);
+    for (int k = first; ok && k < WRITTEN; k++) { /* the others are the journal's */
+        ok = replace_check(names[k], err);
+        if (ok) safe_file_sweep(names[k]);
     }
     files_of(scene, result, files);
     if (!picture) mem_free(files[0].path), files[0].path = NULL;
     ok = ok && (!picture || check_picture(files[0].path, err)) &&
-         check_files(files, (const char *const *)own, scene, path, err) &&
-         check_iterations(scene, path, base, files, err);
+         check_files(files, &own, scene, path, err) && check_iterations(scene, path, base, files, err);
     for (int k = 0; ok && k < FILES; k++)
         if (files[k].path) safe_file_sweep(files[k].path);
     clear_files(files);
-    for (int k = 0; k < OWN; k++) mem_free(own[k]);
+    for (int k = 0; k < OWN; k++) mem_free(names[k]);
     mem_free(base);
     return ok;
 }
 
-bool outputs_write(Run *run, Error *err)
+static bool write_drawing(Run *run, Result *result, Error *err)
 {
     const BodyOps *ops = run->model->body->ops;
-    if (!ops->write) return true;
     OutputFile files[FILES];
-    bool written;
-    Result *result = result_open(run->result, err);
-    bool ok = result != NULL;
+    bool written, ok = true;
     files_of(run->scene, run->result, files);
     for (int k = 1; ok && k < FILES; k++) {
         if (!files[k].path) continue;
@@ -185,6 +192,26 @@ bool outputs_write(Run *run, Error *err)
         if (ok && written) host_say(run->host, "%s: %s", files[k].language, files[k].path);
     }
     clear_files(files);
+    return ok;
+}
+
+static bool write_probes(Run *run, Result *result, Error *err)
+{
+    char *path = path_of(run->result, NULL, PROBE_TABLE);
+    bool ok = probe_table_write(run->model, result, path, err);
+    if (ok) host_say(run->host, "probes: %s", path);
+    mem_free(path);
+    return ok;
+}
+
+bool outputs_write(Run *run, Error *err)
+{
+    bool drawing = run->model->body->ops->write != NULL, probes = run->model->probe_count > 0;
+    if (!drawing && !probes) return true;
+    Result *result = result_open(run->result, err);
+    bool ok = result != NULL;
+    if (ok && probes) ok = write_probes(run, result, err);
+    if (ok && drawing) ok = write_drawing(run, result, err);
     result_close(result);
     return ok;
 }

@@ -1,5 +1,5 @@
-/* outputs.h - the files of a drawing beside its result, as the scene's key `output` names them: relative to
- * the result's folder. */
+/* outputs.h - files beside a result: the table of its probes, and of a drawing those that the scene's key `output` names, relative
+ * to the result's folder. */
 #pragma once
 #include "job/run.h"
 

@@ -3,7 +3,7 @@
 #include "io/result.h"
 #include <string.h>
 
-static const char FRAMES[] = "slender/frames/";
+static const char FRAMES[] = "slender/frames/", PROBES[] = "slender/probes/";
 
 /* Where a result has numbers per cell and per point, and as what the journal has them. */
 static const struct {
@@ -111,9 +111,20 @@ static bool recall_state(Journal *journal, Result *result, const char *name, int
     return ok;
 }
 
+/* A row of probes/NAME. */
+static bool recall_probe(Journal *journal, Result *result, const char *path, int step, Error *err)
+{
+    Array array;
+    if (!result_read_rows(result, path, step, 1, &array, err)) return false;
+    bool ok = put(journal, step, &array, path + strlen("slender/"), array.rank, err);
+    array_clear(&array);
+    return ok;
+}
+
 /* What a step has at a path of the result, if that is of the frames. */
 static bool recall_path(Journal *journal, Result *result, const char *path, int step, Error *err)
 {
+    if (!strncmp(path, PROBES, sizeof PROBES - 1)) return recall_probe(journal, result, path, step, err);
     if (!strncmp(path, FRAMES, sizeof FRAMES - 1))
         return recall_state(journal, result, path + sizeof FRAMES - 1, step, err);
     for (int kind = 0; kind < 2; kind++) {

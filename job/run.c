@@ -2,6 +2,8 @@
 #include "base/memory.h"
 #include "job/obstacles.h"
 #include "job/sources.h"
+#include "model/forces.h"
+#include "model/probe.h"
 #include "model/state_arrays.h"
 #include <string.h>
 
@@ -93,6 +95,22 @@ void run_say_unknown_field(const Run *run, const Snapshot *shot, double dt)
     state_destroy(&next);
 }
 
+/* Of terms of one name (contact at vertices, at the middles of edges, ..) the sum. */
+static void add_energies(Arrays *list, const char *prefix, System *sys, const Point *at)
+{
+    int count = system_term_count(sys);
+    double *energy = arrays_numbers(list, (size_t)count);
+    for (int t = 0; t < count; t++) {
+        const char *name = system_term(sys, t)->ops->name;
+        int first = 0;
+        while (strcmp(system_term(sys, first)->ops->name, name) != 0) first++;
+        energy[first] += system_term_energy(sys, t, at, NULL);
+        if (first < t) continue;
+        char *path = arrays_keep(list, mem_format("%s/energy/%s", prefix, name));
+        arrays_add(list, array_float(path, "J", &energy[t], 0, 0, 0));
+    }
+}
+
 /* ---- Frames ---- */
 
 /* What obstacles do to it: of a frame the forces on its points, of a state under a prefix their sums. */
@@ -100,17 +118,7 @@ static void add_felt(Arrays *list, const Model *model, const Snapshot *shot, con
 {
     const World *world = model->world;
     if (!world || world->obstacle_count == 0) return;
-    int obstacles = world->obstacle_count, dofs = shot->at.dofs;
-    ContactSums sums = {.force = (double(*)[3])arrays_numbers(list, 3 * (size_t)obstacles),
-                        .point = arrays_numbers(list, (size_t)dofs)};
-    if (shot->felt) {
-        sums = shot->felt->contact;
-    } else {
-        WorldSums all = {.contact = sums};
-        Point at = state_point(&shot->at, shot->p);
-        world_measure(world, &at, &all);
-        sums = all.contact;
-    }
+    ContactSums sums = model_contacts(model, shot, list);
     double *numbers = arrays_numbers(list, 2);
     numbers[0] = sums.touching, numbers[1] = sums.depth;
     if (!prefix) {
@@ -122,7 +130,31 @@ static void add_felt(Arrays *list, const Model *model, const Snapshot *shot, con
     arrays_add(list, array_float(arrays_keep(list, mem_format("%s/contact_depth", prefix)), "m", numbers + 1,
                                  0, 0, 0));
     arrays_add(list, array_float(arrays_keep(list, mem_format("%s/contact_force", prefix)), "N",
-                                 sums.force[0], 2, obstacles, 3));
+                                 sums.force[0], 2, world->obstacle_count, 3));
+}
+
+/* What each stage of a sequence keeps of its own, under stages/. */
+static void add_stage(Arrays *list, const Model *model, const Snapshot *shot)
+{
+    if (shot->load_case->stage_count < 2) return;
+    Point at = state_point(&shot->at, shot->p);
+    double *force = arrays_numbers(list, 3 * (size_t)model->support_count);
+    model_support_forces(model, shot, (double(*)[3])force);
+    arrays_add(list, array_text("stages/status", newton_status_name(shot->status)));
+    arrays_add(list, array_float("stages/time", "s", &shot->at.time, 0, 0, 0));
+    add_energies(list, "stages", shot->load_case->sys, &at);
+    add_felt(list, model, shot, "stages");
+    if (model->support_count)
+        arrays_add(list, array_float("stages/support_force", "N", force, 2, model->support_count, 3));
+}
+
+/* Of a frame, unless a row is an evaluation. */
+static void add_probes(Arrays *list, const Model *model, const Snapshot *shot, int index)
+{
+    if (model->probe_count == 0 || model->job->probed == PROBED_EVALUATIONS) return;
+    double *values = arrays_numbers(list, (size_t)model_probe_count(model));
+    model_measure(model, shot, values);
+    model_add_probes(model, values, 1, true, model->job->motion ? shot->at.time : index, list);
 }
 
 bool run_put_frame(Run *run, int index, double shown, const Snapshot *shot, bool whole, Error *err)
@@ -144,27 +176,13 @@ bool run_put_frame(Run *run, int index, double shown, const Snapshot *shot, bool
     if (model->body->ops->add_frame) model->body->ops->add_frame(model, shot, whole, &list);
     bool stress = !model->job->motion || run->scene->output.stress; /* frames of rest are few */
     if (stress && model->body->ops->add_stress) model->body->ops->add_stress(model, shot, &list);
+    add_stage(&list, model, shot);
+    add_probes(&list, model, shot, index);
     if (run->scene->output.states == STATES_ALL) state_arrays_add(model, shot, "state", true, &list);
     return arrays_put(&list, run->journal, "frame", index, err);
 }
 
 /* ---- Final arrays ---- */
-
-/* Of terms of one name (contact at vertices, at the middles of edges, ..) the sum. */
-static void add_energies(Arrays *list, const char *prefix, System *sys, const Point *at)
-{
-    int count = system_term_count(sys);
-    double *energy = arrays_numbers(list, (size_t)count);
-    for (int t = 0; t < count; t++) {
-        const char *name = system_term(sys, t)->ops->name;
-        int first = 0;
-        while (strcmp(system_term(sys, first)->ops->name, name) != 0) first++;
-        energy[first] += system_term_energy(sys, t, at, NULL);
-        if (first < t) continue;
-        char *path = arrays_keep(list, mem_format("%s/energy/%s", prefix, name));
-        arrays_add(list, array_float(path, "J", &energy[t], 0, 0, 0));
-    }
-}
 
 /* What both the plain paths and cases/<name> have. */
 static void add_state(Arrays *list, const Model *model, const char *x_name, const char *prefix,

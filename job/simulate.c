@@ -228,6 +228,7 @@ const JobRow job_simulate = {
     .run = run_simulate,
     .motion = true,
     .frames = FRAMES_MOVE,
+    .probed = PROBED_TIMES,
     .free_keys = job_simulate_free_keys,
     .effort = {2, 2, 0.9, 4, 25e6},
 };

@@ -284,6 +284,7 @@ const JobRow job_trajectory = {
     .path = true,
     .design = true,
     .frames = FRAMES_AGAIN,
+    .probed = PROBED_TIMES,
     .free_keys = free_keys,
     .effort = {2, 2, 1, 8, 25e6},
 };

@@ -1,6 +1,7 @@
 /* What of a scene counts before its parameters are laid out: flux densities, and the blocks of a trajectory. */
 #include "base/memory.h"
 #include "model/model.h"
+#include "model/sequence.h"
 #include <math.h>
 #include <string.h>
 
@@ -23,12 +24,12 @@ static bool read_stages(Model *model, const Build *b, const Scene *scene, FluxFi
     Build now = *b;
     bool ok = true;
     now.time = model->time;
-    for (int k = 0; k < scene->sequence_count; k++) {
-        const StageScene *stage = &scene->sequence[k];
-        if (!isnan(stage->time)) now.time = stage->time;
+    for (int k = 0; k < sequence_said(scene); k++) {
+        StageScene stage = sequence_stage(scene, k);
+        if (!isnan(stage.time)) now.time = stage.time;
         model->flux[1 + k] = model->flux[k];
-        ok = read_flux(&now, key("sequence[%d].flux_density", k), stage->flux_density,
-                       stage->flux_density_count, &model->flux[1 + k], fields) &&
+        ok = read_flux(&now, sequence_key(scene, k, "flux_density"), stage.flux_density,
+                       stage.flux_density_count, &model->flux[1 + k], fields) &&
              ok;
     }
     return ok;
@@ -37,11 +38,11 @@ static bool read_stages(Model *model, const Build *b, const Scene *scene, FluxFi
 bool model_read_flux(Model *model, const Build *b, const Scene *scene, FluxFields *fields)
 {
     *fields = (FluxFields){0};
-    size_t count = 1 + (size_t)(scene->sequence_count ? scene->sequence_count : scene->cases_count);
+    size_t count = 1 + (size_t)(scene->sequence ? sequence_said(scene) : scene->cases_count);
     model->flux = mem_alloc(count, sizeof *model->flux);
     bool ok = read_flux(b, key("flux_density"), scene->flux_density, scene->flux_density_count,
                         &model->flux[0], fields);
-    if (scene->sequence_count) return read_stages(model, b, scene, fields) && ok;
+    if (scene->sequence) return read_stages(model, b, scene, fields) && ok;
     for (int k = 0; k < scene->cases_count; k++) {
         model->flux[1 + k] = model->flux[0];
         ok = read_flux(b, key("cases[%d].flux_density", k), scene->cases[k].flux_density,

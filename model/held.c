@@ -1,6 +1,6 @@
 /* What all bodies with a mesh do alike: what is held, and where it is moved; loads, targets, values, parts; cases made ready. */
 #include "base/memory.h"
-#include "model/model.h"
+#include "model/forces.h"
 #include "surface/rigid.h"
 #include <math.h>
 #include <string.h>
@@ -99,7 +99,7 @@ static bool fix_entry(Model *model, const Build *b, int entry, const FixScene *f
         mem_free(edges.items);
     }
     if (ok && fix->move_count) ok = add_motion(model, b, entry, fix, axis, found);
-    mem_free(found.items);
+    model_add_support(model, found, axis);
     return ok;
 }
 
@@ -165,6 +165,11 @@ bool model_select(const Model *model, const Build *b, const char *at, const char
 void model_places(const Model *model, const double *x, double *place)
 {
     memcpy(place, x, 3 * (size_t)model->point_count * sizeof *place);
+}
+
+void model_supports(const Model *model, const Snapshot *shot, double *force)
+{
+    model_held_forces(model, shot, 0, force);
 }
 
 /* ---- Cases ---- */

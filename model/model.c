@@ -2,7 +2,9 @@
 #include "base/memory.h"
 #include "io/table.h"
 #include "model/advise.h"
+#include "model/probe.h"
 #include "model/scene_tables.h"
+#include "model/sequence.h"
 #include "model/start.h"
 #include "model/world_report.h"
 #include <math.h>
@@ -25,20 +27,29 @@ bool model_load(const Model *model, double time, bool flux_given, double *p, Err
 
 /* ---- Loads of a case ---- */
 
-static bool feels_none(const Model *model, const Build *b, Key at, const char *name)
+/* What a case or a stage says, NULL or NAN where it does not, and where. */
+typedef struct Said {
+    Key loads_at, gravity_at, flux_at;
+    const LoadScene *loads;
+    int count;
+    const double *gravity;
+    const FluxScene *flux;
+} Said;
+
+static bool feels_none(const Model *model, const Build *b, Key at)
 {
-    return yaml_refuse(b->file, key("%s.%s", at.text, name).text, "%s feels none", model->body->noun);
+    return yaml_refuse(b->file, at.text, "%s feels none", model->body->noun);
 }
 
-/* Loads and gravity of a case or stage, where it says them; and is its field felt? */
-static bool put_loads(Model *model, const Build *b, Key at, const LoadScene *loads, int count,
-                      const double *gravity, const FluxScene *flux, double *p)
+/* Loads and gravity; and is its field felt? */
+static bool put_loads(Model *model, const Build *b, const Said *said, double *p)
 {
-    bool pulls = !isnan(gravity[0]);
-    if (pulls && model->gravity < 0) return feels_none(model, b, at, "gravity");
-    if (flux && model->flux_blocks.uniform < 0) return feels_none(model, b, at, "flux_density");
-    if (pulls) memcpy(p + model->gravity, gravity, 3 * sizeof *gravity);
-    return !loads || model->body->ops->put_loads(model, b, key("%s.loads", at.text).text, loads, count, p);
+    bool pulls = !isnan(said->gravity[0]);
+    if (pulls && model->gravity < 0) return feels_none(model, b, said->gravity_at);
+    if (said->flux && model->flux_blocks.uniform < 0) return feels_none(model, b, said->flux_at);
+    if (pulls) memcpy(p + model->gravity, said->gravity, 3 * sizeof *p);
+    return !said->loads ||
+           model->body->ops->put_loads(model, b, said->loads_at.text, said->loads, said->count, p);
 }
 
 static Case *add_case(Model *model, const char *name, const double *p, double time)
@@ -59,33 +70,45 @@ static bool add_target(Model *model, const Build *b, Key at, const TargetScene *
     return model->body->ops->put_target(model, b, at.text, target, c->target);
 }
 
+/* Each from the one before. */
+static bool add_stage(Model *model, const Build *b, const Scene *scene, int k, Case *c)
+{
+    StageScene stage = sequence_stage(scene, k);
+    Stage *now = &c->stages[k];
+    Build then = *b;
+    if (k > 0) *now = (Stage){mem_copy(now[-1].p, (size_t)model->params->size, sizeof *now->p), now[-1].time};
+    if (!isnan(stage.time)) now->time = stage.time;
+    then.time = now->time;
+    Said said = {.loads_at = sequence_key(scene, k, "loads"),
+                 .gravity_at = sequence_key(scene, k, "gravity"),
+                 .flux_at = sequence_key(scene, k, "flux_density"),
+                 .loads = stage.loads,
+                 .count = stage.loads_count,
+                 .gravity = stage.gravity,
+                 .flux = stage.flux_density};
+    bool ok = put_loads(model, &then, &said, now->p);
+    model_put_flux(model, 1 + k, now->p);
+    return ok;
+}
+
 static bool add_stages(Model *model, const Build *b, const Scene *scene, const double *p)
 {
     Case *c = add_case(model, "sequence", p, model->time);
-    c->stages = mem_resize(c->stages, 1, (size_t)scene->sequence_count, sizeof *c->stages);
-    c->stage_count = scene->sequence_count;
+    int said = sequence_said(scene), count;
     bool ok = true;
-    for (int k = 0; k < scene->sequence_count; k++) {
-        const StageScene *stage = &scene->sequence[k];
-        Build now = *b;
-        if (k > 0)
-            c->stages[k] = (Stage){mem_copy(c->stages[k - 1].p, (size_t)model->params->size, sizeof *p),
-                                   c->stages[k - 1].time};
-        if (!isnan(stage->time)) c->stages[k].time = stage->time;
-        now.time = c->stages[k].time;
-        ok = put_loads(model, &now, key("sequence[%d]", k), stage->loads, stage->loads_count, stage->gravity,
-                       stage->flux_density, c->stages[k].p) &&
-             ok;
-        model_put_flux(model, 1 + k, c->stages[k].p);
-    }
+    if (!sequence_check(scene, b->file, &count)) return false;
+    c->stages = mem_resize(c->stages, 1, (size_t)said, sizeof *c->stages);
+    c->stage_count = said;
+    for (int k = 0; k < said; k++) ok = add_stage(model, b, scene, k, c) && ok;
+    if (ok && count > said) sequence_fill(c, count, model->params->size);
     return ok;
 }
 
 bool model_cases(Model *model, const Build *b, const Scene *scene, const double *p)
 {
-    if (scene->sequence_count && scene->cases_count)
+    if (scene->sequence && scene->cases_count)
         return yaml_refuse(b->file, "sequence", "a scene has either cases or a sequence");
-    if (scene->sequence_count) return add_stages(model, b, scene, p);
+    if (scene->sequence) return add_stages(model, b, scene, p);
     bool ok = true;
     for (int k = 0; k < scene->cases_count; k++) {
         const CaseScene *from = &scene->cases[k];
@@ -96,9 +119,14 @@ bool model_cases(Model *model, const Build *b, const Scene *scene, const double 
             if (!strcmp(model->cases[i].name, c->name))
                 ok = yaml_refuse(b->file, at.text, "there are two cases named '%s'", c->name);
         ok = build_check_name(b, at, "a case", c->name) && ok;
-        ok = put_loads(model, b, at, from->loads, from->loads_count, from->gravity, from->flux_density,
-                       c->stages[0].p) &&
-             ok;
+        Said said = {.loads_at = key("%s.loads", at.text),
+                     .gravity_at = key("%s.gravity", at.text),
+                     .flux_at = key("%s.flux_density", at.text),
+                     .loads = from->loads,
+                     .count = from->loads_count,
+                     .gravity = from->gravity,
+                     .flux = from->flux_density};
+        ok = put_loads(model, b, &said, c->stages[0].p) && ok;
         model_put_flux(model, 1 + k, c->stages[0].p);
         bool own = from->target != NULL;
         ok = add_target(model, b, own ? key("%s.target", at.text) : key("target"),
@@ -194,7 +222,7 @@ static Model *create(const Scene *scene, YamlFile *file, bool general)
     bool ok = check_job(scene, file) && yaml_check_use(file, scene_table()) &&
               check_motion(scene, job, file) && start_open(model, scene, file) &&
               model->body->ops->create(model, scene, file) && start_take(model, scene, file) &&
-              (!job->design || model_design(model, scene, file));
+              (!job->design || model_design(model, scene, file)) && model_probes(model, scene, file);
     start_close(model->start);
     model->start = NULL;
     if (ok) model_put_world(model, scene);
@@ -225,6 +253,8 @@ void model_destroy(Model *model)
         formula_destroy(model->motions[m].formula);
         mem_free(model->motions[m].vertices.items);
     }
+    for (int k = 0; k < model->support_count; k++) mem_free(model->supports[k].points.items);
+    model_clear_probes(model);
     design_clear(&model->design);
     timed_clear(&model->flux_of_time);
     mesh_report_clear(&model->report);
@@ -232,6 +262,7 @@ void model_destroy(Model *model)
     mem_free(model->cases);
     mem_free(model->flux);
     mem_free(model->motions);
+    mem_free(model->supports);
     mem_free(model->x);
     mem_free(model);
 }

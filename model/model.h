@@ -17,8 +17,15 @@ typedef struct Motion {
     int entry; /* of the scene's `fix` */
 } Motion;
 
+/* Points that are held along these axes (forces.h). */
+typedef struct Support {
+    Indices points;
+    bool axis[3];
+} Support;
+
 typedef struct Model Model;
-typedef struct Start Start; /* start.h */
+typedef struct ModelProbe ModelProbe; /* probe.h */
+typedef struct Start Start;           /* start.h */
 
 /* What a scene says of the flux density, of all cases or of one. */
 typedef struct CaseFlux {
@@ -46,9 +53,11 @@ struct Model {
     double step_cap;    /* of Newton                                           */
     bool moves;         /* held coordinates do: BodyOps.move                   */
     MeshReport report;  /* warnings about the mesh */
-    int case_count, motion_count;
+    int case_count, motion_count, support_count, probe_count;
     Case *cases;
     Motion *motions;
+    Support *supports; /* what holds it, as the scene says it */
+    ModelProbe *probes;
     double *x;          /* [dofs] rest or pose */
     Design design;      /* of a design or trajectory */
     Control control;    /* of a trajectory: the unknown flux density; no rows: none */
@@ -94,6 +103,7 @@ bool model_put_vectors(Model *model, const Build *b, const char *at, const Vecto
                        const ParamBlock *block, double *values);
 bool model_select(const Model *model, const Build *b, const char *at, const char *name, Indices *found);
 void model_places(const Model *model, const double *x, double *place);
+void model_supports(const Model *model, const Snapshot *shot, double *force);
 bool model_start_cases(Model *model, const Build *b, const bool *fixed);
 
 /* What of a scene counts before there can be vectors p, in this order (blocks.c): the flux densities of all cases or

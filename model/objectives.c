@@ -1,7 +1,6 @@
 /* The scene's objectives. */
 #include "base/memory.h"
-#include "model/model.h"
-#include "optim/objectives.h"
+#include "model/probe.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -91,8 +90,7 @@ static bool only_point(const Model *model, const Build *b, Key at, const char *v
                               found.count);
 }
 
-/* The points and weights of a probe, which the caller frees. */
-static bool find_probe(const Model *model, const Build *b, Key at, const char *vertex, Probe *probe)
+bool model_find_point(const Model *model, const Build *b, Key at, const char *vertex, Probe *probe)
 {
     if (!vertex) return center_of_mass(model, b, at, probe);
     double one = 1;
@@ -102,7 +100,7 @@ static bool find_probe(const Model *model, const Build *b, Key at, const char *v
     return true;
 }
 
-static void free_probe(Probe probe)
+void model_free_point(Probe probe)
 {
     mem_free((void *)probe.vertices);
     mem_free((void *)probe.weights);
@@ -174,7 +172,7 @@ static bool point_objectives(Model *model, const Build *b, Key at, const Scene *
     const CurveScene *curve = from->curve;
     const char *vertex = waypoint ? waypoint->vertex : curve ? curve->vertex : from->reach->vertex;
     Probe probe;
-    if (!find_probe(model, b, at, vertex, &probe)) return false;
+    if (!model_find_point(model, b, at, vertex, &probe)) return false;
     bool ok;
     if (from->reach) {
         ok = reach_objectives(model, b, at, scene, from->reach, probe, from->weight);
@@ -187,7 +185,7 @@ static bool point_objectives(Model *model, const Build *b, Key at, const Scene *
             *case_add_objective(&model->cases[0]) = objective;
         }
     }
-    free_probe(probe);
+    model_free_point(probe);
     return ok;
 }
 

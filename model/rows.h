@@ -36,6 +36,13 @@ typedef enum FramesThen {
     FRAMES_AGAIN, /* in the result only: a run that is extended makes them again, from what it has kept */
 } FramesThen;
 
+/* What the rows of a job's probes are (probe.h). */
+typedef enum ProbeRows {
+    PROBED_STAGES, /* frames that are states of rest */
+    PROBED_TIMES,  /* frames of a motion             */
+    PROBED_EVALUATIONS,
+} ProbeRows;
+
 /* As measured on scenes/ and by ./do bench equilibria: Newton iterations of a solve and of one that goes on from another,
  * factorisations and solves of each (in time some iterations make do with an older factor; a design's solves are those
  * of its optimiser, too), and bytes of the picture while it is drawn. */
@@ -52,6 +59,7 @@ typedef struct JobRow {
     bool design;                                   /* the scene's key `design` says what it looks for      */
     bool rest;                                     /* it looks for rest: forces on a free body must balance */
     FramesThen frames;
+    ProbeRows probed;
     const char *const *free_keys; /* that a run which goes on may change; ends with NULL */
     Effort effort;
 } JobRow;
@@ -144,6 +152,9 @@ typedef struct BodyOps {
 
     /* Its energies over its dofs, prepared: of statics, or with inertia. The caller's; the model outlives it. */
     System *(*system)(const struct Model *model, bool motion);
+
+    /* What its supports do to its points in a state of rest, force[point_count][3] N: 0 where nothing is held. */
+    void (*supports)(const struct Model *model, const Snapshot *shot, double *force);
 
     /* All points held: what is left relaxes in a given pose. The caller's; optional. */
     System *(*pose_system)(const struct Model *model);

@@ -128,6 +128,37 @@ typedef struct StageScene {
     int flux_density_count, loads_count;
 } StageScene;
 
+/* From one end to the other; of ranges beside each other one at least has a count. */
+typedef struct FluxRange {
+    FluxScene *from, *to;
+    int from_count, to_count, count;
+} FluxRange;
+
+typedef struct LoadsRange {
+    LoadScene *from, *to;
+    int from_count, to_count, count;
+} LoadsRange;
+
+typedef struct GravityRange {
+    double from[3], to[3];
+    int count;
+} GravityRange;
+
+typedef struct TimeRange {
+    double from, to;
+    int count;
+} TimeRange;
+
+/* Stages one by one, or ranges. */
+typedef struct SequenceScene {
+    StageScene *stages;
+    FluxRange *flux_density;
+    LoadsRange *loads;
+    GravityRange *gravity;
+    TimeRange *time;
+    int stages_count;
+} SequenceScene;
+
 /* ---- Design ---- */
 
 typedef enum UnknownPer { PER_FACE, PER_GROUP } UnknownPer; /* young, magnetization; or per tetrahedron */
@@ -224,6 +255,22 @@ typedef struct DesignScene {
     double tolerance;
 } DesignScene;
 
+/* ---- Probes ---- */
+
+typedef struct ForceScene {
+    int fix;
+    char *group, *obstacle; /* one of them */
+} ForceScene;
+
+/* What is followed; one of these. Points are those of a vertex, a group's mean or mass_center. */
+typedef struct ProbeScene {
+    char *name, *vertex, *group, *height, **distance, **angle;
+    bool mass_center;
+    double axis[3];
+    ForceScene *force;
+    int distance_count, angle_count;
+} ProbeScene;
+
 /* ---- The whole ---- */
 
 typedef enum SceneCheck { CHECK_STABILITY, CHECK_SELF_CONTACT, CHECK_ROUND_TRIP } SceneCheck;
@@ -273,7 +320,8 @@ typedef struct Scene {
     LoadScene *loads;
     TargetScene *target;
     CaseScene *cases;
-    StageScene *sequence;
+    SequenceScene *sequence;
+    ProbeScene *probes;
     DesignScene *design;
     SolverScene solver;
     LoadStepsScene load_steps;
@@ -285,8 +333,7 @@ typedef struct Scene {
     int modes;
     OutputScene output;
     int *checks; /* SceneCheck */
-    int flux_density_count, fix_count, loads_count, cases_count, sequence_count, obstacles_count,
-        checks_count;
+    int flux_density_count, fix_count, loads_count, cases_count, obstacles_count, probes_count, checks_count;
 } Scene;
 
 /* Its keys: the common ones, and one for each body (rows.h). */

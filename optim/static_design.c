@@ -189,6 +189,12 @@ void static_design_accept(StaticDesign *sd)
     }
 }
 
+const State *static_design_trial(const StaticDesign *sd, int load_case, const double **p)
+{
+    *p = sd->work[load_case].p;
+    return &sd->work[load_case].state;
+}
+
 CaseState static_design_state(StaticDesign *sd, int load_case)
 {
     return (CaseState){&sd->cases[load_case].state, sd->work[load_case].best_linearised};

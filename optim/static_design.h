@@ -40,6 +40,9 @@ double static_design_evaluate(StaticDesign *sd, const double *u, double *gradien
 /* Makes the last evaluation the best design: the next ones start from it. */
 void static_design_accept(StaticDesign *sd);
 
+/* A case's state in the last evaluation, borrowed, and its p. */
+const State *static_design_trial(const StaticDesign *sd, int load_case, const double **p);
+
 /* What the best design's case is, beyond u: with it, static_design_restore goes on bit by bit as the run that
  * saved it. */
 typedef struct CaseState {

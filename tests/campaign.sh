@@ -19,13 +19,16 @@ esac
 work=$(mktemp -d) || exit 2
 trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 2
-run() { "$program" run "$scene" --set "$set" --quiet --no-picture -o "$@"; }
-start() { exec "$program" run "$scene" --set "$set" --quiet --no-picture -o "$@"; }
+probes='probes={middle: {group: all}, centre: {mass_center: true}}'
+[ "$kind" = draw ] && probes=output.every=0
+run() { "$program" run "$scene" --set "$set" --set "$probes" --quiet --no-picture -o "$@"; }
+start() { exec "$program" run "$scene" --set "$set" --set "$probes" --quiet --no-picture -o "$@"; }
 numbers() { # what must be the same; a kind of job has some of them
     for path in design/magnetization design/young design/natural_strain design/flux_density design/gradient/young trajectory/flux_density trajectory/followed trajectory/reference/distance state/x \
         state/v cases/up/x rod/x rod/moment spline/nodes spline/strokes spline/film/nodes spline/film/iteration history/energy frames/x history/contact_force history/friction_work history/self_distance history/water_work history/objective history/newton_iterations history/cg_iterations unknowns; do
         "$program" export "$1" -o out.csv --dataset $path 2>/dev/null && cat out.csv
     done
+    [ "$kind" = draw ] || cat "${1%.vtkhdf}_probes.csv"
 }
 run whole || exit 1
 numbers whole.vtkhdf > whole.txt
@@ -34,7 +37,7 @@ start=$(date +%s%N); run again --force || exit 1; took=$(( ($(date +%s%N) - star
 bad=0
 for trial in $(seq "$trials"); do
     for signal in KILL INT; do
-        rm -f part.*
+        rm -f part.* part_*
         start part & pid=$!
         pause=$(awk -v seed="$trial$signal" -v ms="$took" 'BEGIN { srand(seed + length(seed) * 7919); print rand() * ms / 1000 }')
         sleep "$pause"

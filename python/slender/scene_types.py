@@ -372,9 +372,39 @@ Cases = TypedDict("Cases", {
     "loads": "Rows[Loads]", "gravity": "Numbers", "target": "Target",
 }, total=False)
 
-Sequence = TypedDict("Sequence", {
+SequenceKeys = TypedDict("SequenceKeys", {
+    "stages": "Rows[Stages]", "flux_density": "RangeOfFluxDensities", "loads": "RangeOfLoads",
+    "gravity": "RangeOfGravity", "time": "RangeOfTimes",
+}, total=False)
+
+Stages = TypedDict("Stages", {
     "flux_density": "Union[FluxDensity, Rows[FluxDensity]]", "loads": "Rows[Loads]", "gravity": "Numbers",
     "time": "Number",
+}, total=False)
+
+RangeOfFluxDensities = TypedDict("RangeOfFluxDensities", {
+    "from": "Union[FluxDensity, Rows[FluxDensity]]", "to": "Union[FluxDensity, Rows[FluxDensity]]", "count": "int",
+}, total=False)
+
+RangeOfLoads = TypedDict("RangeOfLoads", {
+    "from": "Union[Loads, Rows[Loads]]", "to": "Union[Loads, Rows[Loads]]", "count": "int",
+}, total=False)
+
+RangeOfGravity = TypedDict("RangeOfGravity", {
+    "from": "Numbers", "to": "Numbers", "count": "int",
+}, total=False)
+
+RangeOfTimes = TypedDict("RangeOfTimes", {
+    "from": "Number", "to": "Number", "count": "int",
+}, total=False)
+
+Probes = TypedDict("Probes", {
+    "vertex": "Number", "group": "Number", "mass_center": "bool", "height": "Number", "distance": "Numbers",
+    "angle": "Numbers", "axis": "Numbers", "force": "ForceOfAProbe",
+}, total=False)
+
+ForceOfAProbeKeys = TypedDict("ForceOfAProbeKeys", {
+    "group": "Number", "fix": "int", "obstacle": "Number",
 }, total=False)
 
 Design = TypedDict("Design", {
@@ -480,8 +510,8 @@ Scene = TypedDict("Scene", {
     "shell": "Shell", "rod": "Rod", "solid": "Solid", "spline": "Spline",
     "flux_density": "Union[FluxDensity, Rows[FluxDensity]]", "fix": "Rows[Fix]", "loads": "Rows[Loads]",
     "target": "Target", "obstacles": "Rows[Obstacles]", "contact": "Contact", "water": "Water",
-    "cases": "Rows[Cases]", "sequence": "Rows[Sequence]", "design": "Design", "solver": "Solver",
-    "load_steps": "LoadSteps", "time": "Time", "start": "Start", "modes": "int",
+    "cases": "Rows[Cases]", "sequence": "Sequence", "probes": "Mapping[str, Probes]", "design": "Design",
+    "solver": "Solver", "load_steps": "LoadSteps", "time": "Time", "start": "Start", "modes": "int",
     "checks": "Union[Literal['stability', 'self_contact', 'round_trip'], Rows[Literal['stability', 'self_contact', 'round_trip']]]",
     "output": "Output",
 }, total=False)
@@ -523,6 +553,8 @@ SelfContact = Union["SelfContactKeys", bool]
 StiffnessOfContact = Union["StiffnessOfContactKeys", Literal['auto'], Number]
 OffsetOfContact = Union["OffsetOfContactKeys", Literal['auto'], Number]
 VelocityOfWater = Union["VelocityOfWaterKeys", Numbers]
+Sequence = Union["SequenceKeys", Rows["Stages"]]
+ForceOfAProbe = Union["ForceOfAProbeKeys", Number]
 StartOfFluxDensity = Union["StartOfFluxDensityKeys", Numbers]
 LoadSteps = Union["LoadStepsKeys", Literal['auto'], int]
 Time = Union["TimeKeys", Number]

@@ -270,6 +270,7 @@ static bool fill(Model *model, const Scene *scene, const Build *b)
     if (scene->water && !check_slender(rm->rod, b)) return false;
     if (rm->preview && !rod_model_check_preview(rm, scene, b->file)) return false;
     if (!rod_read_supports(rm, from, b) || !rod_model_check_points(rm, b, rod_length(rm->rod))) return false;
+    rod_add_supports(model);
     set_model(model);
     model_add_blocks(model, scene);
     return fill_cases(model, scene, &sized, readable) &&
@@ -391,6 +392,7 @@ static const BodyOps ops = {
     .masses = masses,
     .move = rod_move_end,
     .system = make_system,
+    .supports = rod_support_forces,
     .balance = balance_pose,
     .add_static = rod_add_static,
     .add_frame = rod_add_frame,
@@ -415,6 +417,7 @@ static const KeyUse uses[] = {
     {"obstacles", "/rod.solver: newton"},
     {"contact", "/rod.solver: newton"},
     {"water", "/rod.solver: newton"},
+    {"probes", "/rod.solver: newton"},
     {"modes", "/rod.solver: newton & /job: equilibrium, evaluate, design, simulate, trajectory"},
     {0},
 };

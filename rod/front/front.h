@@ -42,6 +42,10 @@ bool rod_settle(Model *model, const Build *b, const double *p);
 /* take_state.c: BodyOps.take_state. */
 bool rod_take_state(const Model *model, const double *from, int dofs, double *x, Error *err);
 
+/* BodyOps.supports; and the nodes that are held, into the model. */
+void rod_support_forces(const Model *model, const Snapshot *shot, double *force);
+void rod_add_supports(Model *model);
+
 /* report.c, cost.c */
 char *rod_doubt_magnets(const Model *model, const Snapshot *shot);
 char *rod_describe(const Model *model, const Scene *scene);

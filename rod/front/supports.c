@@ -1,5 +1,6 @@
 /* Where rods are held: what a scene says of it, and states that are so or are brought there. */
 #include "base/memory.h"
+#include "model/forces.h"
 #include "rod/front/front.h"
 #include "solve/ramp.h"
 #include <math.h>
@@ -107,4 +108,44 @@ bool rod_settle(Model *model, const Build *b, const double *p)
     return info.reached >= 1 ||
            yaml_refuse(b->file, "rod.end", "the rod could not be brought to where its end is held (%s)",
                        newton_status_text(info.newton.status));
+}
+
+/* The first node of each strand, or the last one. */
+static Indices end_nodes(const Rod *rod, bool last)
+{
+    Indices nodes = {rod->strands, mem_alloc((size_t)rod->strands, sizeof(int))};
+    for (int k = 0; k < rod->strands; k++)
+        nodes.items[k] = k * (rod_each(rod) + 1) + (last ? rod_each(rod) : 0);
+    return nodes;
+}
+
+void rod_add_supports(Model *model)
+{
+    const RodModel *rm = model->self;
+    static const bool all[3] = {true, true, true};
+    model_add_support(model, end_nodes(rm->rod, false), all);
+    if (rm->held) model_add_support(model, end_nodes(rm->rod, true), all);
+}
+
+/* A hanging rod, whose places are no dofs, is held by its first nodes against all of its weight and its dead loads. */
+static void hanging_forces(const Rod *rod, const double *p, double *force)
+{
+    int each = rod_each(rod);
+    for (int k = 0; k < rod->strands; k++) {
+        double *own = force + 3 * k * (each + 1), mass = rod->unit.mass * rod->strand[k].length;
+        for (int i = 0; i < 3; i++) {
+            double load = mass * p[rod->gravity + i];
+            for (int n = 0; n <= each; n++) load += p[rod->load + 3 * (k * (each + 1) + n) + i];
+            own[i] = -load;
+        }
+    }
+}
+
+void rod_support_forces(const Model *model, const Snapshot *shot, double *force)
+{
+    const RodModel *rm = model->self;
+    if (rm->layout.position >= 0)
+        model_held_forces(model, shot, rm->layout.position, force);
+    else
+        hanging_forces(rm->rod, shot->p, force);
 }

@@ -155,6 +155,7 @@ static const BodyOps ops = {
     .smoothness = smoothness,
     .move = model_move_held,
     .system = make_system,
+    .supports = model_supports,
     .pose_system = pose_system,
     .add_static = shell_add_static,
     .add_frame = shell_add_frame,

@@ -172,6 +172,7 @@ static const BodyOps ops = {
     .masses = masses,
     .move = model_move_held,
     .system = make_system,
+    .supports = model_supports,
     .add_static = solid_add_static,
     .add_frame = solid_add_frame,
     .add_state = solid_add_state,

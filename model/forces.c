@@ -1,0 +1,59 @@
+#include "model/forces.h"
+#include "base/memory.h"
+#include <string.h>
+
+void model_add_support(Model *model, Indices points, const bool axis[3])
+{
+    size_t count = (size_t)model->support_count++;
+    model->supports = mem_resize(model->supports, count, count + 1, sizeof *model->supports);
+    model->supports[count] = (Support){points, {axis[0], axis[1], axis[2]}};
+}
+
+void model_support_forces(const Model *model, const Snapshot *shot, double (*force)[3])
+{
+    double *left = mem_alloc(3 * (size_t)model->point_count, sizeof *left); /* not yet counted */
+    model->body->ops->supports(model, shot, left);
+    for (int k = 0; k < model->support_count; k++) {
+        const Support *support = &model->supports[k];
+        memset(force[k], 0, sizeof force[k]);
+        for (int n = 0; n < 3 * support->points.count; n++) {
+            int axis = n % 3, i = 3 * support->points.items[n / 3] + axis;
+            if (!support->axis[axis]) continue;
+            force[k][axis] += left[i];
+            left[i] = 0;
+        }
+    }
+    mem_free(left);
+}
+
+void model_force_on(const Model *model, const Snapshot *shot, const Indices *points, double force[3])
+{
+    double *all = mem_alloc(3 * (size_t)model->point_count, sizeof *all);
+    model->body->ops->supports(model, shot, all);
+    memset(force, 0, 3 * sizeof *force);
+    for (int n = 0; n < 3 * points->count; n++) force[n % 3] += all[3 * points->items[n / 3] + n % 3];
+    mem_free(all);
+}
+
+ContactSums model_contacts(const Model *model, const Snapshot *shot, Arrays *list)
+{
+    const World *world = model->world;
+    if (shot->felt) return shot->felt->contact;
+    WorldSums all = {
+        .contact = {.force = (double(*)[3])arrays_numbers(list, 3 * (size_t)world->obstacle_count),
+                    .point = arrays_numbers(list, (size_t)shot->at.dofs)}};
+    Point at = state_point(&shot->at, shot->p);
+    world_measure(world, &at, &all);
+    return all.contact;
+}
+
+void model_held_forces(const Model *model, const Snapshot *shot, int first, double *force)
+{
+    System *sys = shot->load_case->sys;
+    Point at = state_point(&shot->at, shot->p);
+    double *gradient = mem_alloc((size_t)shot->at.dofs, sizeof *gradient);
+    system_gradient(sys, &at, gradient);
+    for (int i = 0; i < 3 * model->point_count; i++)
+        force[i] = system_is_fixed(sys, first + i) ? gradient[first + i] : 0;
+    mem_free(gradient);
+}
