@@ -130,20 +130,27 @@ typedef struct StageScene {
 
 /* ---- Design ---- */
 
-typedef enum UnknownPer { PER_FACE, PER_GROUP } UnknownPer; /* young, magnetization; or per tetrahedron */
+/* Of a block with a row per face (edge, tetrahedron, element). */
+typedef enum UnknownPer { PER_FACE, PER_GROUP, PER_BODY } UnknownPer;
+
+/* Which of its rows are unknown, and which are one. */
+#define ROWS_MEMBERS                                                                                         \
+    int per;       /* UnknownPer                */                                                           \
+    char **groups; /* of the mesh's; NULL: all  */                                                           \
+    int groups_count
 
 typedef enum UnknownScale { SCALE_LOG, SCALE_LINEAR } UnknownScale;
 
 typedef struct NumberUnknown {
     double bounds[2], noise;
     int scale; /* UnknownScale */
-    int per;
+    ROWS_MEMBERS;
     NumberScene *start;
 } NumberUnknown;
 
 typedef struct VectorUnknown {
     double bounds[2], noise, scale, magnitude, max_magnitude;
-    int per;
+    ROWS_MEMBERS;
     VectorScene *start;
 } VectorUnknown;
 

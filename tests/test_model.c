@@ -187,6 +187,50 @@ static void test_unknowns(void **state)
     clear(&b);
 }
 
+/* One value for the whole body, or for chosen groups only: what is in none of them stays as it is. */
+static void test_rows_of_unknowns(void **state)
+{
+    (void)state;
+    Built b = scene_build(
+        mem_text("slender: 1\njob: design\nshell: {mesh: {shape: hexagram, size: 40 mm, n: 2}, "
+                 "thickness: 1 mm, poisson: 0.3, young: {groups: {hub: 3 MPa}, other: 1 MPa}}\n"
+                 "fix: [{ball: {center: [0, 0, 0], radius: 5 mm}}]\n"
+                 "design:\n  unknowns:\n    magnetization: {groups: [flap3, flap1], per: group, noise: 10}\n"
+                 "    young: {groups: [hub], noise: 1}\n    fold: {per: body}\n"
+                 "  objectives: [{height: 1}]\n"));
+    const Design *design = &b.model->design;
+    const Mesh *mesh = b.model->mesh;
+    const MeshGroup *hub = mesh_group(mesh, "hub", 2), *flap = mesh_group(mesh, "flap3", 2);
+    const double *p = params_of(&b, 0, 0), *M = p + shell_of(&b)->magnetization;
+    assert_int_equal(design->unknown_count, 3);
+    assert_int_equal(design->unknowns[0].group_count, 2);
+    assert_int_equal(design->unknowns[1].group_count, hub->count);
+    assert_int_equal(design->size, 2 * 3 + hub->count + 1);
+    int moved = 0;
+    for (int f = 0; f < mesh->face_count; f++) moved += M[3 * f] != 0;
+    assert_int_equal(moved, 2 * flap->count);
+    for (int k = 0; k < flap->count; k++) assert_true(M[3 * flap->members[k]] == M[3 * flap->members[0]]);
+    double *u = mem_alloc((size_t)design->size, sizeof *u),
+           *back = mem_copy(p, (size_t)b.model->params->size, sizeof *back);
+    design_read(design, 0, p, u);
+    for (int k = 0; k < hub->count; k++) u[6 + k] = log(5e6);
+    u[design->size - 1] += 1;
+    design_apply(design, 0, u, back);
+    int stiff = 0;
+    for (int f = 0; f < mesh->face_count; f++) {
+        double E = back[shell_of(&b)->young + f];
+        stiff += fabs(E - 5e6) < 1;
+        assert_true(fabs(E - 5e6) < 1 || E == 1e6);
+    }
+    assert_int_equal(stiff, hub->count);
+    for (int e = 0; e < mesh->edge_count; e++)
+        assert_true(back[shell_of(&b)->fold + e] == back[shell_of(&b)->fold]);
+    assert_true(back[shell_of(&b)->fold] > 1);
+    mem_free(u);
+    mem_free(back);
+    clear(&b);
+}
+
 /* What lies in several groups has the value of the smallest one, in whatever order the scene lists them. */
 static void test_nested_groups(void **state)
 {
@@ -232,9 +276,11 @@ static void test_scale(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_scale),  cmocka_unit_test(test_nested_groups),
-                                       cmocka_unit_test(test_values), cmocka_unit_test(test_loads),
-                                       cmocka_unit_test(test_motion), cmocka_unit_test(test_fields),
-                                       cmocka_unit_test(test_timed),  cmocka_unit_test(test_unknowns)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_scale),           cmocka_unit_test(test_nested_groups),
+        cmocka_unit_test(test_values),          cmocka_unit_test(test_loads),
+        cmocka_unit_test(test_motion),          cmocka_unit_test(test_fields),
+        cmocka_unit_test(test_timed),           cmocka_unit_test(test_unknowns),
+        cmocka_unit_test(test_rows_of_unknowns)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

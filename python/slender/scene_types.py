@@ -380,16 +380,17 @@ Unknowns = TypedDict("Unknowns", {
 
 UnknownMagnetization = TypedDict("UnknownMagnetization", {
     "noise": "Number", "scale": "Number", "bounds": "Numbers", "magnitude": "Number", "max_magnitude": "Number",
-    "per": "Literal['face', 'group']", "start": "Magnetization",
+    "per": "Literal['face', 'group', 'body']", "groups": "Numbers", "start": "Magnetization",
 }, total=False)
 
 UnknownYoung = TypedDict("UnknownYoung", {
-    "bounds": "Numbers", "scale": "Literal['log', 'linear']", "noise": "Number", "per": "Literal['face', 'group']",
-    "start": "Young",
+    "bounds": "Numbers", "scale": "Literal['log', 'linear']", "noise": "Number",
+    "per": "Literal['face', 'group', 'body']", "groups": "Numbers", "start": "Young",
 }, total=False)
 
 UnknownFold = TypedDict("UnknownFold", {
-    "bounds": "Numbers", "scale": "Literal['log', 'linear']", "noise": "float", "start": "Fold",
+    "bounds": "Numbers", "scale": "Literal['log', 'linear']", "noise": "float",
+    "per": "Literal['edge', 'group', 'body']", "groups": "Numbers", "start": "Fold",
 }, total=False)
 
 UnknownNaturalStrain = TypedDict("UnknownNaturalStrain", {
