@@ -98,6 +98,9 @@ extern const char *const build_elements[];
     }
 bool build_selection(const Build *b, Key at, const SelectionScene *scene, Indices *found);
 
+/* Which of the coordinates a key `axes` names. */
+bool build_axes(const Build *b, Key at, const char *text, bool axes[3]);
+
 /* load[3*vertex_count] N: the sum of all entries; the key is the list's. */
 bool build_loads(const Build *b, Key at, const LoadScene *loads, int count, double *load);
 

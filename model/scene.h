@@ -104,8 +104,8 @@ typedef struct LoadScene {
 /* ---- Load cases ---- */
 
 typedef struct TargetScene {
-    char *file, *height_map, **formula;
-    double (*strokes)[4], width, height, scale; /* of a file, NAN: the mesh's */
+    char *file, *height_map, **formula, *cloud, *axes;
+    double (*strokes)[4], width, height, blend, weight, scale; /* of a file, NAN: the mesh's, of a cloud 1 */
     WhereScene *where;
     SelectionScene *on;
     int formula_count, strokes_count, where_count;
@@ -117,7 +117,7 @@ typedef struct CaseScene {
     FluxScene *flux_density; /* NULL: the scene's */
     LoadScene *loads;
     TargetScene *target;
-    int flux_density_count, loads_count;
+    int flux_density_count, loads_count, target_count;
 } CaseScene;
 
 /* One stage of a sequence; what it does not say stays as in the stage before. */
@@ -220,6 +220,7 @@ typedef struct ObjectiveScene {
     ReachScene *reach;
     double weight;
     char *of;                         /* height: a group, or all */
+    double at;                        /* height: NAN, or its mean that is wanted */
     int frame, *frames, frames_count; /* target, height          */
     int pairs;                        /* dmp                     */
 } ObjectiveScene;
@@ -291,8 +292,8 @@ typedef struct Scene {
     int modes;
     OutputScene output;
     int *checks; /* SceneCheck */
-    int flux_density_count, fix_count, loads_count, cases_count, sequence_count, obstacles_count,
-        checks_count;
+    int flux_density_count, fix_count, loads_count, target_count, cases_count, sequence_count,
+        obstacles_count, checks_count;
 } Scene;
 
 /* Its keys: the common ones, and one for each body (rows.h). */

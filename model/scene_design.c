@@ -251,7 +251,8 @@ static const YamlTable objective_table = {
         {YAML_NUMBER(ObjectiveScene, target), .one_of = 1, .required = true,
          .doc = "weight of the squared distances to each case's target, m^2"},
         {YAML_NUMBER(ObjectiveScene, height), .one_of = 1, .required = true,
-         .doc = "weight of the mean height (z), m; a negative one asks for height"},
+         .doc = "weight of the mean height (z), m, a negative one asks for height; with `at` of its squared "
+                "difference to that, m^2"},
         {YAML_NUMBER(ObjectiveScene, magnetization_smoothness), .one_of = 1, .required = true,
          .doc = "weight of the squared jumps of the magnetisation over inner edges, (A/m)^2"},
         {YAML_NUMBER(ObjectiveScene, young_smoothness), .one_of = 1, .required = true,
@@ -276,6 +277,8 @@ static const YamlTable objective_table = {
          .doc = "another factor, of a point's rows the only one"},
         {YAML_TEXT(ObjectiveScene, of), .when = "height", .fallback = "all",
          .doc = "of height: a named group of the mesh, or all; of a rod its end, `tip`, a node, or all"},
+        {YAML_NUMBER(ObjectiveScene, at), .when = "height", .unit = "m",
+         .doc = "the mean height that is wanted"},
         FRAME_ROWS(ObjectiveScene, "/job: trajectory & target | height",
                    ", of a target or height in a trajectory; the last one if absent"),
         {YAML_INTEGER(ObjectiveScene, pairs), .when = "dmp", .range = "[1, 100]", .fallback = "5",

@@ -249,6 +249,38 @@ static void test_nested_groups(void **state)
     assert_int_equal(mem_live_count(), blocks);
 }
 
+/* Several targets, of some coordinates or of points that are no vertices: an objective each. */
+static void test_targets(void **state)
+{
+    (void)state;
+    long blocks = mem_live_count();
+    Built b = scene_build(mem_format(
+        "slender: 1\njob: design\nshell: {mesh: {shape: strip, size: [40 mm, 10 mm], n: 8}, thickness: 1 mm, "
+        "young: 1 MPa, poisson: 0.3}\nfix: [{group: root, clamp: true}]\n"
+        "target:\n  - {formula: [\"7\", \"8\", \"0.01\"], axes: z, on: tip, weight: 3}\n"
+        "  - {formula: [\"x\", \"y\", \"z\"], axes: xy}\n"
+        "  - {cloud: %s/tests/broken/cloud.csv, axes: xz, scale: 2, on: {boundary: true}}\n"
+        "design: {unknowns: {young: {}}, objectives: [{target: 2}, {height: 5, at: 2 mm}]}\n",
+        SOURCE_DIR));
+    const Case *c = &b.model->cases[0];
+    assert_int_equal(c->target_count, 3);
+    assert_int_equal(c->objective_count, 4);
+    double value[4];
+    for (int k = 0; k < 4; k++)
+        value[k] = c->objectives[k].weight * c->objectives[k].ops->value(c->objectives[k].self,
+                                                                         c->objectives[k].weight, b.model->x,
+                                                                         NULL, NULL, NULL);
+    assert_true(fabs(value[0] - 2 * 3 * 1e-4) < 1e-18 && value[1] == 0);
+    assert_true(fabs(value[2] - 2 * (4e-6 + 64e-6)) < 1e-18 && fabs(value[3] - 5 * 4e-6) < 1e-18);
+    double(*place)[3] = model_target_places(c, b.model->point_count);
+    for (int v = 0; v < b.model->point_count; v++)
+        assert_true(place[v][0] == b.model->mesh->rest[v][0] &&
+                    isnan(place[v][2]) == isnan(c->targets[0].place[v][2]));
+    mem_free(place);
+    clear(&b);
+    assert_int_equal(mem_live_count(), blocks);
+}
+
 /* Poses and targets are files of the same kind as the mesh's, and take its scale or one of their own. */
 static void test_scale(void **state)
 {
@@ -266,7 +298,8 @@ static void test_scale(void **state)
         for (int i = 0; i < 3 * mesh->vertex_count; i++) {
             double rest = mesh->rest[i / 3][i % 3];
             assert_true(b.model->x[i] == (own ? 2 : 1) * rest);
-            assert_true(fabs(b.model->cases[0].target[i / 3][i % 3] - (own ? 3 : 1) * rest) < 1e-17);
+            assert_true(fabs(b.model->cases[0].targets[0].place[i / 3][i % 3] - (own ? 3 : 1) * rest) <
+                        1e-17);
         }
         assert_true(mesh->rest[1][0] == 0.01);
         clear(&b);
@@ -276,11 +309,15 @@ static void test_scale(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_scale),           cmocka_unit_test(test_nested_groups),
-        cmocka_unit_test(test_values),          cmocka_unit_test(test_loads),
-        cmocka_unit_test(test_motion),          cmocka_unit_test(test_fields),
-        cmocka_unit_test(test_timed),           cmocka_unit_test(test_unknowns),
-        cmocka_unit_test(test_rows_of_unknowns)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_scale),
+                                       cmocka_unit_test(test_nested_groups),
+                                       cmocka_unit_test(test_values),
+                                       cmocka_unit_test(test_loads),
+                                       cmocka_unit_test(test_motion),
+                                       cmocka_unit_test(test_fields),
+                                       cmocka_unit_test(test_timed),
+                                       cmocka_unit_test(test_unknowns),
+                                       cmocka_unit_test(test_rows_of_unknowns),
+                                       cmocka_unit_test(test_targets)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -292,8 +292,8 @@ SelectionKeys = TypedDict("SelectionKeys", {
 
 TargetKeys = TypedDict("TargetKeys", {
     "file": "str", "height_map": "str", "strokes": "Table", "formula": "Numbers", "height": "Number",
-    "width": "Number", "scale": "float", "where": "Mapping[str, Where]", "on": "Selection", "region": "Selection",
-    "true": "Selection",
+    "width": "Number", "cloud": "str", "scale": "float", "blend": "Number", "where": "Mapping[str, Where]",
+    "axes": "Number", "weight": "float", "on": "Selection", "region": "Selection", "true": "Selection",
 }, total=False)
 
 Obstacles = TypedDict("Obstacles", {
@@ -358,7 +358,7 @@ VelocityOfWaterKeys = TypedDict("VelocityOfWaterKeys", {
 
 Cases = TypedDict("Cases", {
     "name": "Number", "weight": "float", "flux_density": "Union[FluxDensity, Rows[FluxDensity]]",
-    "loads": "Rows[Loads]", "gravity": "Numbers", "target": "Target",
+    "loads": "Rows[Loads]", "gravity": "Numbers", "target": "Union[Target, Rows[Target]]",
 }, total=False)
 
 Sequence = TypedDict("Sequence", {
@@ -422,7 +422,7 @@ Objectives = TypedDict("Objectives", {
     "target": "float", "height": "float", "magnetization_smoothness": "float", "young_smoothness": "float",
     "fold_smoothness": "float", "waypoint": "Waypoint", "curve": "Curve", "reach": "Reach",
     "field_magnitude": "float", "field_smoothness": "float", "dmp": "float", "weight": "float", "of": "Number",
-    "frame": "int", "frames": "Union[int, Numbers]", "pairs": "int",
+    "at": "Number", "frame": "int", "frames": "Union[int, Numbers]", "pairs": "int",
 }, total=False)
 
 Waypoint = TypedDict("Waypoint", {
@@ -468,7 +468,7 @@ Scene = TypedDict("Scene", {
     "job": "Literal['equilibrium', 'evaluate', 'design', 'simulate', 'trajectory', 'invert', 'identify', 'draw']",
     "shell": "Shell", "rod": "Rod", "solid": "Solid", "spline": "Spline",
     "flux_density": "Union[FluxDensity, Rows[FluxDensity]]", "fix": "Rows[Fix]", "loads": "Rows[Loads]",
-    "target": "Target", "obstacles": "Rows[Obstacles]", "contact": "Contact", "water": "Water",
+    "target": "Union[Target, Rows[Target]]", "obstacles": "Rows[Obstacles]", "contact": "Contact", "water": "Water",
     "cases": "Rows[Cases]", "sequence": "Rows[Sequence]", "design": "Design", "solver": "Solver",
     "load_steps": "LoadSteps", "time": "Time", "start": "Start", "modes": "int",
     "checks": "Union[Literal['stability', 'self_contact', 'round_trip'], Rows[Literal['stability', 'self_contact', 'round_trip']]]",
