@@ -222,6 +222,27 @@ static void add_vector(Arrays *list, char *name, const char *unit, const double 
     if (first >= 0) arrays_add(list, array_float(name, unit, p + first, 1, 3, 0));
 }
 
+/* Places of the points, and clouds, one after the other. */
+static void add_targets(Arrays *list, const Model *model, const char *prefix, const Case *c)
+{
+    double(*place)[3] = model_target_places(c, model->point_count), (*cloud)[3] = NULL;
+    size_t count = 0;
+    if (place)
+        arrays_add(list, array_float(arrays_keep(list, mem_format("%s/target", prefix)), "m",
+                                     arrays_keep(list, place), 2, model->point_count, 3));
+    for (int k = 0; k < c->target_count; k++) {
+        const PointCloud *own = &c->targets[k].cloud;
+        size_t more = (size_t)own->point_count;
+        cloud = mem_resize(cloud, count, count + more, sizeof *cloud);
+        if (more) memcpy(cloud[count], own->points, more * sizeof *cloud);
+        count += more;
+    }
+    if (count)
+        arrays_add(list, array_float(arrays_keep(list, mem_format("%s/cloud", prefix)), "m", cloud[0], 2,
+                                     (int)count, 3));
+    arrays_keep(list, cloud);
+}
+
 static void add_case(Arrays *list, const Model *model, const Snapshot *shot)
 {
     const char *prefix = arrays_keep(list, mem_format("cases/%s", shot->load_case->name));
@@ -231,9 +252,7 @@ static void add_case(Arrays *list, const Model *model, const Snapshot *shot)
                                 newton_status_name(shot->status)));
     add_vector(list, mem_format("%s/flux_density", prefix), "T", shot->p, model->flux_blocks.uniform);
     add_vector(list, mem_format("%s/gravity", prefix), "m/s^2", shot->p, model->gravity);
-    if (shot->load_case->target)
-        arrays_add(list, array_float(arrays_keep(list, mem_format("%s/target", prefix)), "m",
-                                     shot->load_case->target[0], 2, model->point_count, 3));
+    add_targets(list, model, prefix, shot->load_case);
 }
 
 /* In the scene's order, a line each. */

@@ -78,6 +78,9 @@ bool build_state(const Build *b, Key at, const char *path, double scale, MeshFil
 /* The group of that dimension (2: faces, ..); NULL after a refusal that says which there are. */
 const MeshGroup *build_group(const Build *b, Key at, const char *name, int dim);
 
+/* The cell, face or edge that is a group's member; -1 after a refusal. */
+int build_element(const Build *b, Key at, const MeshGroup *group, int member);
+
 /* A number, or three, for each of the mesh's edges (dim 1), faces (2) or cells (3): values[count], values[count][3]. */
 bool build_numbers(const Build *b, Key at, int dim, const NumberScene *scene, double *values);
 bool build_vectors(const Build *b, Key at, int dim, const VectorScene *scene, double *values);
@@ -94,6 +97,9 @@ extern const char *const build_elements[];
         .box_count = (entry)->box_count                                                                      \
     }
 bool build_selection(const Build *b, Key at, const SelectionScene *scene, Indices *found);
+
+/* Which of the coordinates a key `axes` names. */
+bool build_axes(const Build *b, Key at, const char *text, bool axes[3]);
 
 /* load[3*vertex_count] N: the sum of all entries; the key is the list's. */
 bool build_loads(const Build *b, Key at, const LoadScene *loads, int count, double *load);

@@ -26,6 +26,18 @@ bool build_selection(const Build *b, Key at, const SelectionScene *scene, Indice
     return select_vertices(b->mesh, &selection, found, &err) || yaml_refuse(b->file, at.text, "%s", err.text);
 }
 
+bool build_axes(const Build *b, Key at, const char *text, bool axes[3])
+{
+    bool ok = *text != 0;
+    memset(axes, 0, 3 * sizeof *axes);
+    for (const char *c = text; ok && *c; c++) {
+        ok = strchr("xyz", *c) && !axes[*c - 'x'];
+        if (ok) axes[*c - 'x'] = true;
+    }
+    return ok ||
+           yaml_refuse(b->file, at.text, "axes is '%s'; it must be some of xyz, each once at most", text);
+}
+
 /* ---- Dead loads ---- */
 
 static bool add_load(const Build *b, Key at, const LoadScene *entry, double *load)

@@ -165,8 +165,7 @@ static bool same_value(const GroupList *list, int k, int other)
     return !memcmp(a + sizeof(char *), b + sizeof(char *), list->size - sizeof(char *));
 }
 
-/* The cell, face or edge that is a group's member; -1 after a refusal. */
-static int element_of(const Build *b, Key at, const MeshGroup *group, int member)
+int build_element(const Build *b, Key at, const MeshGroup *group, int member)
 {
     if (group->dim >= 2) return group->members[member];
     const Mesh *mesh = b->mesh;
@@ -183,7 +182,7 @@ static bool take_elements(const Build *b, Key at, const GroupList *list, int k, 
 {
     sizes[k] = group->count;
     for (int m = 0; m < group->count; m++) {
-        int e = element_of(b, at, group, m), other = e < 0 ? -1 : owner[e];
+        int e = build_element(b, at, group, m), other = e < 0 ? -1 : owner[e];
         if (e < 0) return false;
         if (other >= 0 && sizes[other] == group->count && !same_value(list, k, other))
             return yaml_refuse(

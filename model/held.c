@@ -77,17 +77,11 @@ typedef struct Held {
 static bool fix_entry(Model *model, const Build *b, int entry, const FixScene *fix, Held held)
 {
     Key at = key("fix[%d]", entry);
-    bool axis[3] = {false}, ok = *fix->axes != 0;
-    for (const char *c = fix->axes; ok && *c; c++) {
-        ok = strchr("xyz", *c) && !axis[*c - 'x'];
-        if (ok) axis[*c - 'x'] = true;
-    }
-    if (!ok)
-        return yaml_refuse(b->file, at.text, "axes is '%s'; it must be some of xyz, each once at most",
-                           fix->axes);
+    bool axis[3];
+    if (!build_axes(b, at, fix->axes, axis)) return false;
     Indices found = {0};
     SelectionScene selection = SELECTION_OF(fix);
-    ok = build_selection(b, at, &selection, &found);
+    bool ok = build_selection(b, at, &selection, &found);
     for (int i = 0; i < 3 * found.count; i++)
         if (axis[i % 3]) held.fixed[3 * found.items[i / 3] + i % 3] = true;
     if (ok && fix->clamp && !held.clamped)

@@ -63,13 +63,6 @@ static Case *add_case(Model *model, const char *name, const double *p, double ti
     return c;
 }
 
-static bool add_target(Model *model, const Build *b, Key at, const TargetScene *target, Case *c)
-{
-    if (!target) return true;
-    c->target = mem_alloc((size_t)model->point_count, sizeof *c->target);
-    return model->body->ops->put_target(model, b, at.text, target, c->target);
-}
-
 /* Each from the one before. */
 static bool add_stage(Model *model, const Build *b, const Scene *scene, int k, Case *c)
 {
@@ -128,13 +121,14 @@ bool model_cases(Model *model, const Build *b, const Scene *scene, const double 
                      .flux = from->flux_density};
         ok = put_loads(model, b, &said, c->stages[0].p) && ok;
         model_put_flux(model, 1 + k, c->stages[0].p);
-        bool own = from->target != NULL;
-        ok = add_target(model, b, own ? key("%s.target", at.text) : key("target"),
-                        own ? from->target : scene->target, c) &&
+        ok = (from->target_count
+                  ? model_targets(model, b, key("%s.target", at.text), from->target, from->target_count, c)
+                  : model_targets(model, b, key("target"), scene->target, scene->target_count, c)) &&
              ok;
     }
     if (!scene->cases_count)
-        ok = add_target(model, b, key("target"), scene->target, add_case(model, NULL, p, model->time));
+        ok = model_targets(model, b, key("target"), scene->target, scene->target_count,
+                           add_case(model, NULL, p, model->time));
     return ok;
 }
 

@@ -132,6 +132,13 @@ void model_flux(const Model *model, const double *p, double time, double flux[3]
 /* The load cases or stages of a scene, each with p as a copy; false after a refusal. */
 bool model_cases(Model *model, const Build *b, const Scene *scene, const double *p);
 
+/* Where a scene or case says that the body should be, into the case; false after a refusal. What one of them asks for; and the
+ * places of all of them, [point][3], the last one's where several give one: NAN where there is none. The caller frees; NULL:
+ * there are none. */
+bool model_targets(Model *model, const Build *b, Key at, const TargetScene *list, int count, Case *c);
+Objective model_target_objective(const Target *target, int point_count, double weight);
+double (*model_target_places(const Case *c, int point_count))[3];
+
 /* Velocities at the start of a motion, of the free coordinates, into its case; place[point_count][3] is what formulas know.
  */
 bool model_velocity(Model *model, const Build *b, const char *at, const VelocityScene *scene,

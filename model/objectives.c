@@ -7,29 +7,13 @@
 
 /* ---- Shapes ---- */
 
-static bool target_objective(const Case *c, int vertex_count, YamlFile *file, Key at, double weight,
-                             Objective *objective)
-{
-    if (!c->target) return yaml_refuse(file, at.text, "the case '%s' has no target", c->name);
-    int *vertices = mem_alloc((size_t)vertex_count, sizeof *vertices), count = 0;
-    double(*target)[3] = mem_alloc((size_t)vertex_count, sizeof *target);
-    for (int v = 0; v < vertex_count; v++) {
-        if (isnan(c->target[v][0])) continue;
-        vertices[count] = v;
-        memcpy(target[count++], c->target[v], sizeof *target);
-    }
-    *objective = objective_target(count, vertices, (const double(*)[3])target, weight);
-    mem_free(vertices);
-    mem_free(target);
-    return true;
-}
-
 static bool height_objective(const Model *model, const Build *b, Key at, const ObjectiveScene *from,
                              double weight, Objective *objective)
 {
     Indices chosen = {0};
     if (!model->body->ops->select(model, b, at.text, from->of, &chosen)) return false;
-    *objective = objective_height(chosen.count, chosen.items, weight);
+    *objective = isnan(from->at) ? objective_height(chosen.count, chosen.items, weight)
+                                 : objective_height_at(chosen.count, chosen.items, from->at, weight);
     mem_free(chosen.items);
     return true;
 }
@@ -229,10 +213,51 @@ static Smoothed smoothed_of(const ObjectiveScene *from)
 }
 
 /* What depends on parameters only counts once, in the first case. */
+static bool smoothness_objective(Model *model, const Build *b, Key at, Smoothed smoothed, double weight,
+                                 int case_index)
+{
+    Case *c = &model->cases[case_index];
+    if (!model->body->ops->smoothness)
+        return yaml_refuse(b->file, at.text, "%s_smoothness is not for %s", smoothed.block,
+                           model->body->nouns);
+    if (case_index > 0) return true;
+    *case_add_objective(c) = model->body->ops->smoothness(model, params_find(model->params, smoothed.block),
+                                                          weight * smoothed.weight / c->weight);
+    return true;
+}
+
+/* A target or height, which in a motion has frames. */
+static bool add_shape(Model *model, const Build *b, Key at, const Scene *scene, const ObjectiveScene *from,
+                      Case *c, Objective objective)
+{
+    bool ok =
+        !model->job->motion || put_frames(b, at, from->frame, from->frames, scene->time.steps, &objective);
+    if (ok)
+        *case_add_objective(c) = objective;
+    else
+        objective_destroy(objective);
+    return ok;
+}
+
+static bool shape_objectives(Model *model, const Build *b, Key at, const Scene *scene,
+                             const ObjectiveScene *from, Case *c)
+{
+    Objective objective;
+    if (isnan(from->target))
+        return height_objective(model, b, at, from, from->weight * from->height, &objective) &&
+               add_shape(model, b, at, scene, from, c, objective);
+    if (!c->target_count) return yaml_refuse(b->file, at.text, "the case '%s' has no target", c->name);
+    bool ok = true;
+    for (int k = 0; ok && k < c->target_count; k++) {
+        objective = model_target_objective(&c->targets[k], model->point_count, from->weight * from->target);
+        ok = add_shape(model, b, at, scene, from, c, objective);
+    }
+    return ok;
+}
+
 static bool add_objective(Model *model, const Build *b, Key at, const Scene *scene,
                           const ObjectiveScene *from, int case_index)
 {
-    Case *c = &model->cases[case_index];
     bool trajectory = model->job->motion, point = from->waypoint || from->curve || from->reach;
     bool field = !isnan(from->field_magnitude) || !isnan(from->field_smoothness) || !isnan(from->dmp);
     if (point && !trajectory)
@@ -240,26 +265,9 @@ static bool add_objective(Model *model, const Build *b, Key at, const Scene *sce
                            "objectives of a point are for trajectories; a design has `target` and `height`");
     if (point) return point_objectives(model, b, at, scene, from);
     if (field) return field_objective(model, b, at, from);
-    Objective objective;
     Smoothed smoothed = smoothed_of(from);
-    if (smoothed.block) {
-        if (!model->body->ops->smoothness)
-            return yaml_refuse(b->file, at.text, "%s_smoothness is not for %s", smoothed.block,
-                               model->body->nouns);
-        if (case_index > 0) return true;
-        objective = model->body->ops->smoothness(model, params_find(model->params, smoothed.block),
-                                                 from->weight * smoothed.weight / c->weight);
-    } else if (!isnan(from->target)
-                   ? !target_objective(c, model->point_count, b->file, at, from->weight * from->target,
-                                       &objective)
-                   : !height_objective(model, b, at, from, from->weight * from->height, &objective)) {
-        return false;
-    } else if (trajectory && !put_frames(b, at, from->frame, from->frames, scene->time.steps, &objective)) {
-        objective_destroy(objective);
-        return false;
-    }
-    *case_add_objective(c) = objective;
-    return true;
+    if (smoothed.block) return smoothness_objective(model, b, at, smoothed, from->weight, case_index);
+    return shape_objectives(model, b, at, scene, from, &model->cases[case_index]);
 }
 
 bool model_objectives(Model *model, const Scene *scene, YamlFile *file)

@@ -211,7 +211,9 @@ static const YamlTable load_table = {
 static const YamlTable target_table = {
     .name = "target",
     .size = sizeof(TargetScene),
-    .doc = "Where vertices should be.",
+    .doc = "Where vertices should be: each at a place of its own, or points on the body, which do not say "
+           "which vertex they "
+           "are of. Of several targets, a list, the squared distances are added, each times its weight.",
     .fields = (const YamlField[]){
         {YAML_FILE(TargetScene, file), .one_of = 1, .required = true,
          .doc = "a mesh file with the vertices of the mesh"},
@@ -227,9 +229,28 @@ static const YamlTable target_table = {
          .doc = "of a height map or strokes"},
         {YAML_NUMBER(TargetScene, width), .when = "strokes", .unit = "m", .range = "(0, inf)",
          .doc = "of strokes, at half their height"},
-        {YAML_NUMBER(TargetScene, scale), .when = "file", .range = "(0, inf)",
-         .doc = "of a file: factor on its coordinates; that of the mesh if absent"},
+        {YAML_FILE(TargetScene, cloud), .one_of = 1, .required = true,
+         .doc =
+             "a CSV file with a point x, y, z in each row (of `axes: xz` x, z will do), in any order, as of "
+             "an "
+             "outline in a photograph: each is to lie on the body's line, the edges of the mesh whose ends "
+             "are both chosen by `on`, of a rod its elements. What counts is the sum over the points of the "
+             "squared distance "
+             "to that line, m^2; parts of the body that the points do not show are free"},
+        {YAML_NUMBER(TargetScene, scale), .when = "file | cloud", .range = "(0, inf)",
+         .doc = "of a file: factor on its coordinates; that of the mesh if absent, of a cloud 1"},
+        {YAML_NUMBER(TargetScene, blend), .when = "cloud", .unit = "m", .range = "(0, inf)",
+         .fallback = "0.1 mm",
+         .doc = "of a cloud: edges whose squared distances differ by less than its square are blended, so "
+                "that the "
+                "gradient has no jump where the nearest one changes"},
         WHERE_ROW(TargetScene),
+        {YAML_TEXT(TargetScene, axes), .fallback = "xyz",
+         .doc = "the coordinates that count: some of xyz, each once at most; of a cloud those of the plane "
+                "that it "
+                "is seen in"},
+        {YAML_NUMBER(TargetScene, weight), .range = "[0, inf)", .fallback = "1",
+         .doc = "a factor beside that of the objective, between several targets"},
         {YAML_OPTIONAL(TargetScene, on, &selection_table), .also = ON_NAMES,
          .doc = "for these vertices only"},
         {0}}};
@@ -246,7 +267,7 @@ static const YamlTable case_table = {
          .doc = "in place of the scene's"},
         {YAML_LIST(CaseScene, loads, &load_table), .doc = "in place of the scene's"},
         {YAML_VECTOR(CaseScene, gravity), .unit = "m/s^2", .doc = "in place of the shell's"},
-        {YAML_OPTIONAL(CaseScene, target, &target_table), .doc = "in place of the scene's"},
+        {YAML_LIST(CaseScene, target, &target_table), .alone = true, .doc = "in place of the scene's"},
         {0}}};
 
 static const YamlTable stage_table = {
@@ -476,7 +497,7 @@ const YamlTable scene_form = {
          .doc = "applied field"},
         {YAML_LIST(Scene, fix, &fix_table), .doc = "what is held"},
         {YAML_LIST(Scene, loads, &load_table), .doc = "dead loads"},
-        {YAML_OPTIONAL(Scene, target, &target_table),
+        {YAML_LIST(Scene, target, &target_table), .alone = true,
          .when = "/job: equilibrium, evaluate, design, simulate, trajectory & !sequence",
          .doc = "where vertices should be, in all cases without one of their own"},
         {YAML_LIST(Scene, obstacles, &obstacle_table), .when = WITH_STATES,

@@ -104,8 +104,8 @@ typedef struct LoadScene {
 /* ---- Load cases ---- */
 
 typedef struct TargetScene {
-    char *file, *height_map, **formula;
-    double (*strokes)[4], width, height, scale; /* of a file, NAN: the mesh's */
+    char *file, *height_map, **formula, *cloud, *axes;
+    double (*strokes)[4], width, height, blend, weight, scale; /* of a file, NAN: the mesh's, of a cloud 1 */
     WhereScene *where;
     SelectionScene *on;
     int formula_count, strokes_count, where_count;
@@ -117,7 +117,7 @@ typedef struct CaseScene {
     FluxScene *flux_density; /* NULL: the scene's */
     LoadScene *loads;
     TargetScene *target;
-    int flux_density_count, loads_count;
+    int flux_density_count, loads_count, target_count;
 } CaseScene;
 
 /* One stage of a sequence; what it does not say stays as in the stage before. */
@@ -161,20 +161,27 @@ typedef struct SequenceScene {
 
 /* ---- Design ---- */
 
-typedef enum UnknownPer { PER_FACE, PER_GROUP } UnknownPer; /* young, magnetization; or per tetrahedron */
+/* Of a block with a row per face (edge, tetrahedron, element). */
+typedef enum UnknownPer { PER_FACE, PER_GROUP, PER_BODY } UnknownPer;
+
+/* Which of its rows are unknown, and which are one. */
+#define ROWS_MEMBERS                                                                                         \
+    int per;       /* UnknownPer                */                                                           \
+    char **groups; /* of the mesh's; NULL: all  */                                                           \
+    int groups_count
 
 typedef enum UnknownScale { SCALE_LOG, SCALE_LINEAR } UnknownScale;
 
 typedef struct NumberUnknown {
     double bounds[2], noise;
     int scale; /* UnknownScale */
-    int per;
+    ROWS_MEMBERS;
     NumberScene *start;
 } NumberUnknown;
 
 typedef struct VectorUnknown {
     double bounds[2], noise, scale, magnitude, max_magnitude;
-    int per;
+    ROWS_MEMBERS;
     VectorScene *start;
 } VectorUnknown;
 
@@ -244,6 +251,7 @@ typedef struct ObjectiveScene {
     ReachScene *reach;
     double weight;
     char *of;                         /* height: a group, or all */
+    double at;                        /* height: NAN, or its mean that is wanted */
     int frame, *frames, frames_count; /* target, height          */
     int pairs;                        /* dmp                     */
 } ObjectiveScene;
@@ -333,7 +341,8 @@ typedef struct Scene {
     int modes;
     OutputScene output;
     int *checks; /* SceneCheck */
-    int flux_density_count, fix_count, loads_count, cases_count, obstacles_count, probes_count, checks_count;
+    int flux_density_count, fix_count, loads_count, target_count, cases_count, obstacles_count, probes_count,
+        checks_count;
 } Scene;
 
 /* Its keys: the common ones, and one for each body (rows.h). */

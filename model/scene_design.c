@@ -9,12 +9,14 @@
         YAML_VECTOR(S, bounds), .unit = u,                                                                   \
                                 .doc = "lower and upper bound; a start beyond them is put on them"           \
     }
-#define PER_ROW(S)                                                                                           \
+#define ROWS_ROWS(S, element)                                                                                \
+    {YAML_CHOICE(S, per), .choices = YAML_NAMES(element, "group", "body"), .fallback = element,              \
+     .doc = "an unknown for each " element " (of what has a value per tetrahedron or element: for each of "  \
+            "these), for each named group of them, or one for the whole body"},                              \
     {                                                                                                        \
-        YAML_CHOICE(S, per),                                                                                 \
-            .choices = YAML_NAMES("face", "group"), .fallback = "face",                                      \
-            .doc = "an unknown for each face (of what has a value per tetrahedron: for each of these), or "  \
-                   "for each group of them"                                                                  \
+        YAML_TEXTS(S, groups), .min_count = 1,                                                               \
+                               .doc = "these named groups only, what is in none of them stays as it is; "    \
+                                      "all if absent"                                                        \
     }
 
 static const YamlTable magnetization_unknown_table = {
@@ -31,7 +33,7 @@ static const YamlTable magnetization_unknown_table = {
          .doc = "fixes |M|: only its direction is free"},
         {YAML_NUMBER(VectorUnknown, max_magnitude), .unit = "A/m", .range = "(0, inf)", .one_of = 1,
          .doc = "a cap on |M|"},
-        PER_ROW(VectorUnknown),
+        ROWS_ROWS(VectorUnknown, "face"),
         {YAML_OPTIONAL(VectorUnknown, start, &magnetization_table), .doc = "in place of the body's"},
         {0}}};
 
@@ -45,7 +47,7 @@ static const YamlTable young_unknown_table = {
          .doc = "optimisers see its logarithm, or its ratio to the start's mean"},
         {YAML_NUMBER(NumberUnknown, noise), .unit = "Pa", .range = "[0, inf)", .fallback = "0",
          .doc = "size of seeded noise that is added to the start"},
-        PER_ROW(NumberUnknown),
+        ROWS_ROWS(NumberUnknown, "face"),
         {YAML_OPTIONAL(NumberUnknown, start, &young_table), .doc = "in place of the body's"},
         {0}}};
 
@@ -59,6 +61,7 @@ static const YamlTable fold_unknown_table = {
          .doc = "optimisers see its logarithm over 0.2, or its ratio to the start's mean"},
         {YAML_NUMBER(NumberUnknown, noise), .range = "[0, inf)", .fallback = "0",
          .doc = "size of seeded noise that is added to the start"},
+        ROWS_ROWS(NumberUnknown, "edge"),
         {YAML_OPTIONAL(NumberUnknown, start, &fold_table), .doc = "in place of the body's"},
         {0}}};
 
@@ -255,7 +258,8 @@ static const YamlTable objective_table = {
         {YAML_NUMBER(ObjectiveScene, target), .one_of = 1, .required = true,
          .doc = "weight of the squared distances to each case's target, m^2"},
         {YAML_NUMBER(ObjectiveScene, height), .one_of = 1, .required = true,
-         .doc = "weight of the mean height (z), m; a negative one asks for height"},
+         .doc = "weight of the mean height (z), m, a negative one asks for height; with `at` of its squared "
+                "difference to that, m^2"},
         {YAML_NUMBER(ObjectiveScene, magnetization_smoothness), .one_of = 1, .required = true,
          .doc = "weight of the squared jumps of the magnetisation over inner edges, (A/m)^2"},
         {YAML_NUMBER(ObjectiveScene, young_smoothness), .one_of = 1, .required = true,
@@ -280,6 +284,8 @@ static const YamlTable objective_table = {
          .doc = "another factor, of a point's rows the only one"},
         {YAML_TEXT(ObjectiveScene, of), .when = "height", .fallback = "all",
          .doc = "of height: a named group of the mesh, or all; of a rod its end, `tip`, a node, or all"},
+        {YAML_NUMBER(ObjectiveScene, at), .when = "height", .unit = "m",
+         .doc = "the mean height that is wanted"},
         FRAME_ROWS(ObjectiveScene, "/job: trajectory & target | height",
                    ", of a target or height in a trajectory; the last one if absent"),
         {YAML_INTEGER(ObjectiveScene, pairs), .when = "dmp", .range = "[1, 100]", .fallback = "5",

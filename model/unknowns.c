@@ -35,22 +35,6 @@ static Start start_of(Model *model, const char *name, const double *p, double no
     return start;
 }
 
-/* Groups of the mesh's faces (dim 2) or cells (3): group[element] from 0, -1 in none; what is in several belongs to the
- * last. */
-static int *groups_of(const Mesh *mesh, int dim, int *count)
-{
-    int elements = dim == 3 ? mesh->cell_count : mesh->face_count;
-    int *group = mem_alloc((size_t)elements, sizeof *group);
-    *count = 0;
-    for (int e = 0; e < elements; e++) group[e] = -1;
-    for (int g = 0; g < mesh->group_count; g++) {
-        if (mesh->groups[g].dim != dim) continue;
-        for (int k = 0; k < mesh->groups[g].count; k++) group[mesh->groups[g].members[k]] = *count;
-        (*count)++;
-    }
-    return group;
-}
-
 /* A row of its own for each row of the block. */
 static int *each_its_own(int count)
 {
@@ -59,14 +43,14 @@ static int *each_its_own(int count)
     return group;
 }
 
-/* Rows of the block that act on nothing are left out, and groups that have no others. */
+/* Rows of the block that act on nothing are left out (`on` NULL: none), and groups that have no others. */
 static void leave_out(Unknown *unknown, const bool *on)
 {
     int *number = mem_alloc((size_t)unknown->group_count, sizeof *number), count = 0;
     for (int g = 0; g < unknown->group_count; g++) number[g] = -1;
     for (int r = 0; r < unknown->block->count; r++) {
         int *group = &unknown->group[r];
-        if (!on[r]) *group = -1;
+        if (on && !on[r]) *group = -1;
         if (*group < 0) continue;
         if (number[*group] < 0) number[*group] = count++;
         *group = number[*group];
@@ -75,27 +59,66 @@ static void leave_out(Unknown *unknown, const bool *on)
     mem_free(number);
 }
 
-/* The unknown has a row for each group; false after a refusal. */
-static bool take_groups(const Model *model, YamlFile *file, const Start *start, Unknown *unknown)
+/* Which of a block's rows are unknown, and which are one. */
+typedef struct Rows {
+    int per; /* UnknownPer */
+    char *const *groups;
+    int groups_count;
+} Rows;
+
+#define ROWS_OF(from)                                                                                        \
+    (Rows)                                                                                                   \
+    {                                                                                                        \
+        (from)->per, (from)->groups, (from)->groups_count                                                    \
+    }
+
+static bool mark_group(const Build *b, Key at, const MeshGroup *group, int number, int *mark)
 {
-    Key at = key("design.unknowns.%s.per", start->name);
-    if (!model->mesh) return yaml_refuse(file, at.text, "%s has no groups", model->body->noun);
+    for (int m = 0; m < group->count; m++) {
+        int element = build_element(b, at, group, m);
+        if (element < 0) return false;
+        mark[element] = number;
+    }
+    return true;
+}
+
+/* The number of each row's group among those that are meant, from 0, -1: it is in none; what is in several belongs to the
+ * last. False after a refusal. */
+static bool mark_rows(const Model *model, const Build *b, const Start *start, Rows rows, int *mark,
+                      int *count)
+{
+    Key at = key("design.unknowns.%s.%s", start->name, rows.groups ? "groups" : "per");
+    if (!model->mesh) return yaml_refuse(b->file, at.text, "%s has no groups", model->body->noun);
     int dim = model->body->ops->row_dim(model, start->block);
-    unknown->group = groups_of(model->mesh, dim, &unknown->group_count);
-    return unknown->group_count > 0 ||
-           yaml_refuse(file, at.text, "the mesh has no groups of %s", build_elements[dim]);
+    for (int r = 0; r < start->block->count; r++) mark[r] = -1;
+    bool ok = true;
+    for (int k = 0; ok && k < rows.groups_count; k++) {
+        Key here = key("%s[%d]", at.text, k);
+        const MeshGroup *group = build_group(b, here, rows.groups[k], dim);
+        ok = group && mark_group(b, here, group, (*count)++, mark);
+    }
+    for (int g = 0; ok && !rows.groups && g < model->mesh->group_count; g++)
+        if (model->mesh->groups[g].dim == dim)
+            ok = mark_group(b, at, &model->mesh->groups[g], (*count)++, mark);
+    return ok &&
+           (*count > 0 || yaml_refuse(b->file, at.text, "the mesh has no groups of %s", build_elements[dim]));
 }
 
 /* Its rows; false after a refusal. */
-static bool take_rows(const Model *model, YamlFile *file, const Start *start, int per, Unknown *unknown)
+static bool take_rows(const Model *model, const Build *b, const Start *start, Rows rows, Unknown *unknown)
 {
     const BodyOps *ops = model->body->ops;
     const ParamBlock *block = unknown->block = start->block;
-    unknown->group_count = block->count;
-    if (per != PER_GROUP) unknown->group = each_its_own(block->count);
-    bool ok = per != PER_GROUP || take_groups(model, file, start, unknown);
+    int *group = unknown->group = each_its_own(block->count), groups = 0;
+    bool marked = rows.groups || rows.per == PER_GROUP;
+    int *mark = mem_alloc((size_t)block->count, sizeof *mark); /* all in the one group 0 */
+    bool ok = !marked || mark_rows(model, b, start, rows, mark, &groups);
+    for (int r = 0; r < block->count; r++)
+        group[r] = mark[r] < 0 ? -1 : rows.per == PER_FACE ? r : rows.per == PER_GROUP ? mark[r] : 0;
+    mem_free(mark);
+    unknown->group_count = rows.per == PER_FACE ? block->count : rows.per == PER_GROUP ? groups : 1;
     const bool *on = ops->rows_on ? ops->rows_on(model, block) : NULL;
-    if (ok && on) leave_out(unknown, on);
+    if (ok && (on || rows.groups)) leave_out(unknown, on);
     return ok;
 }
 
@@ -150,8 +173,8 @@ static bool number_unknown(Model *model, const Build *b, Design *design, const c
     if (from->scale == SCALE_LOG)
         unknown.map = UNKNOWN_LOG, unknown.scale = !strcmp(name, "fold") ? FOLD_UNIT : 1;
     put_bounds(&unknown, from->bounds);
-    ok = take_rows(model, b->file, &start, from->per, &unknown) && ok;
-    if (unknown.group) add_unknown(model, design, &start, unknown);
+    ok = take_rows(model, b, &start, ROWS_OF(from), &unknown) && ok;
+    add_unknown(model, design, &start, unknown);
     for (int i = 0; ok && i < start.block->count; i++)
         if (unknown.group[i] >= 0 && !(start.values[i] > 0))
             ok = yaml_refuse(b->file, at.text,
@@ -185,8 +208,8 @@ static bool magnetization_unknown(Model *model, const Build *b, Design *design, 
                        .scale = from->scale,
                        .limit = fixed ? from->magnitude : from->max_magnitude};
     put_bounds(&unknown, from->bounds);
-    ok = take_rows(model, b->file, &start, from->per, &unknown) && ok;
-    if (unknown.group) add_unknown(model, design, &start, unknown);
+    ok = take_rows(model, b, &start, ROWS_OF(from), &unknown) && ok;
+    add_unknown(model, design, &start, unknown);
     for (int i = 0; ok && i < start.block->count; i++) {
         if (unknown.group[i] < 0) continue;
         const double *M = start.values + 3 * i;
@@ -209,7 +232,7 @@ static bool strain_unknown(Model *model, const Build *b, Design *design, const S
     Unknown unknown = {.map = UNKNOWN_LINEAR, .scale = from->scale};
     put_bounds(&unknown, from->bounds);
     bool ok = check_bounds(b->file, name, from->bounds);
-    ok = take_rows(model, b->file, &start, PER_FACE, &unknown) && ok;
+    ok = take_rows(model, b, &start, (Rows){PER_FACE, NULL, 0}, &unknown) && ok;
     add_unknown(model, design, &start, unknown);
     mem_free(start.values);
     return ok;

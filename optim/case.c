@@ -19,7 +19,12 @@ void case_clear(Case *c)
     mem_free(c->name);
     mem_free(c->stages);
     mem_free(c->objectives);
-    mem_free(c->target);
+    for (int k = 0; k < c->target_count; k++) {
+        mem_free(c->targets[k].place);
+        mem_free(c->targets[k].cloud.segments);
+        mem_free(c->targets[k].cloud.points);
+    }
+    mem_free(c->targets);
     mem_free(c->loads);
     mem_free(c->anchor);
     *c = (Case){0};

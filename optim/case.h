@@ -1,6 +1,6 @@
 /* case.h - a load case: a system of energies with its loads, where it is, and what it should do. */
 #pragma once
-#include "solve/objective.h"
+#include "optim/objectives.h"
 #include "solve/system.h"
 
 /* Loads at a moment: one, or the stages of a sequence. */
@@ -8,6 +8,13 @@ typedef struct Stage {
     double *p; /* [params] owned */
     double time;
 } Stage;
+
+/* Where something of the body should be. */
+typedef struct Target {
+    double weight;
+    double (*place)[3]; /* [point] m, coordinates that do not count NAN; NULL: a cloud; owned */
+    PointCloud cloud;   /* of which its lists are owned */
+} Target;
 
 typedef struct Case {
     char *name;    /* owned, as all below */
@@ -20,7 +27,8 @@ typedef struct Case {
     Stage *stages; /* [stage_count]; a design has one, whose p gets the unknowns */
     int objective_count;
     Objective *objectives;
-    double (*target)[3]; /* [point] m, NAN where there is none; NULL: no target */
+    int target_count;
+    Target *targets;
 } Case;
 
 /* One stage with p[size], a copy, at that time; and a name (a copy). */

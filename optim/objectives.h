@@ -6,11 +6,26 @@
 #include "solve/objective.h"
 #include <stdbool.h>
 
-/* sum over the listed vertices of |x_v - target_v|^2, m^2. */
+/* sum over the listed vertices of |x_v - target_v|^2, m^2; coordinates whose target is NAN do not count. */
 Objective objective_target(int count, const int *vertices, const double (*target)[3], double weight);
 
-/* Mean height (z) of the listed vertices, m; no sum of squares. */
+/* Points that are to lie on the body's line, which is made of segments between its vertices. */
+typedef struct PointCloud {
+    int segment_count, point_count;
+    int (*segments)[2];
+    double (*points)[3]; /* m; coordinates that are NAN (of all points alike) do not count */
+    double blend;        /* m, > 0 */
+} PointCloud;
+
+/* sum over the points of the squared distance to the body's line, m^2: that to the nearest segment, blended between
+ * segments as objective_polyline does. Each POINT has its distance, not each vertex: points are measured, with an error of
+ * their own, so that the sum is that of orthogonal least squares, which errors of zero mean do not bias; how finely the body
+ * is divided, and which part of it the points show, changes nothing. */
+Objective objective_cloud(const PointCloud *cloud, double weight);
+
+/* Mean height (z) of the listed vertices, m; no sum of squares. Or the square of its difference to one, m^2. */
 Objective objective_height(int count, const int *vertices, double weight);
+Objective objective_height_at(int count, const int *vertices, double at, double weight);
 
 /* A point of the body, q = sum weights[k] x_vertices[k]: a vertex, or a centre of mass. */
 typedef struct Probe {

@@ -2,6 +2,7 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "optim/objectives.h"
+#include "optim/segment.h"
 #include <math.h>
 #include <stdbool.h>
 #include <string.h>
@@ -55,21 +56,17 @@ static void waypoint_product(const void *self, double weight, const double *x, c
 
 /* ---- Polyline ---- */
 
-/* From the nearest point of segment s to q; t: the segment's direction where that is inside it, else 0. */
-static Vec3 from_segment(const Tracked *tracked, int s, Vec3 q, Vec3 *t)
+static Vec3 from_piece(const Tracked *tracked, int s, Vec3 q, Vec3 *t)
 {
-    Vec3 a = vec3_load(tracked->points[s]), edge = vec3_sub(vec3_load(tracked->points[s + 1]), a),
-         d = vec3_sub(q, a);
-    double length2 = vec3_dot(edge, edge), part = length2 > 0 ? vec3_dot(d, edge) / length2 : 0;
-    *t = part > 0 && part < 1 ? vec3_scale(1 / sqrt(length2), edge) : vec3(0, 0, 0);
-    return vec3_axpy(-fmin(fmax(part, 0), 1), edge, d);
+    double part;
+    return from_segment(vec3_load(tracked->points[s]), vec3_load(tracked->points[s + 1]), q, t, &part);
 }
 
 static double least_distance2(const Tracked *tracked, Vec3 q)
 {
     double least = INFINITY;
     for (int s = 0; s + 1 < tracked->point_count; s++) {
-        Vec3 t, d = from_segment(tracked, s, q, &t);
+        Vec3 t, d = from_piece(tracked, s, q, &t);
         least = fmin(least, vec3_dot(d, d));
     }
     return least;
@@ -89,14 +86,14 @@ static double polyline_value(const void *self, double weight, const double *x, c
     Vec3 q = probe_position(tracked, x), t;
     double least = least_distance2(tracked, q), sum = 0, mean = 0;
     for (int s = 0; s + 1 < tracked->point_count; s++) {
-        Vec3 d = from_segment(tracked, s, q, &t);
+        Vec3 d = from_piece(tracked, s, q, &t);
         double d2 = vec3_dot(d, d), w = segment_weight(tracked, d2, least);
         sum += w;
         mean += w * d2;
     }
     mean /= sum;
     for (int s = 0; dx && s + 1 < tracked->point_count; s++) {
-        Vec3 d = from_segment(tracked, s, q, &t);
+        Vec3 d = from_piece(tracked, s, q, &t);
         double d2 = vec3_dot(d, d), w = segment_weight(tracked, d2, least) / sum;
         probe_add(tracked, 2 * weight * w * (1 - (d2 - mean) / (tracked->blend * tracked->blend)), d, dx);
     }
@@ -113,7 +110,7 @@ static void polyline_product(const void *self, double weight, const double *x, c
     double least = least_distance2(tracked, q), sum = 0;
     for (int pass = 0; pass < 2; pass++)
         for (int s = 0; s + 1 < tracked->point_count; s++) {
-            Vec3 d = from_segment(tracked, s, q, &t);
+            Vec3 d = from_piece(tracked, s, q, &t);
             double w = segment_weight(tracked, vec3_dot(d, d), least);
             if (pass == 0)
                 sum += w;

@@ -187,6 +187,50 @@ static void test_unknowns(void **state)
     clear(&b);
 }
 
+/* One value for the whole body, or for chosen groups only: what is in none of them stays as it is. */
+static void test_rows_of_unknowns(void **state)
+{
+    (void)state;
+    Built b = scene_build(
+        mem_text("slender: 1\njob: design\nshell: {mesh: {shape: hexagram, size: 40 mm, n: 2}, "
+                 "thickness: 1 mm, poisson: 0.3, young: {groups: {hub: 3 MPa}, other: 1 MPa}}\n"
+                 "fix: [{ball: {center: [0, 0, 0], radius: 5 mm}}]\n"
+                 "design:\n  unknowns:\n    magnetization: {groups: [flap3, flap1], per: group, noise: 10}\n"
+                 "    young: {groups: [hub], noise: 1}\n    fold: {per: body}\n"
+                 "  objectives: [{height: 1}]\n"));
+    const Design *design = &b.model->design;
+    const Mesh *mesh = b.model->mesh;
+    const MeshGroup *hub = mesh_group(mesh, "hub", 2), *flap = mesh_group(mesh, "flap3", 2);
+    const double *p = params_of(&b, 0, 0), *M = p + shell_of(&b)->magnetization;
+    assert_int_equal(design->unknown_count, 3);
+    assert_int_equal(design->unknowns[0].group_count, 2);
+    assert_int_equal(design->unknowns[1].group_count, hub->count);
+    assert_int_equal(design->size, 2 * 3 + hub->count + 1);
+    int moved = 0;
+    for (int f = 0; f < mesh->face_count; f++) moved += M[3 * f] != 0;
+    assert_int_equal(moved, 2 * flap->count);
+    for (int k = 0; k < flap->count; k++) assert_true(M[3 * flap->members[k]] == M[3 * flap->members[0]]);
+    double *u = mem_alloc((size_t)design->size, sizeof *u),
+           *back = mem_copy(p, (size_t)b.model->params->size, sizeof *back);
+    design_read(design, 0, p, u);
+    for (int k = 0; k < hub->count; k++) u[6 + k] = log(5e6);
+    u[design->size - 1] += 1;
+    design_apply(design, 0, u, back);
+    int stiff = 0;
+    for (int f = 0; f < mesh->face_count; f++) {
+        double E = back[shell_of(&b)->young + f];
+        stiff += fabs(E - 5e6) < 1;
+        assert_true(fabs(E - 5e6) < 1 || E == 1e6);
+    }
+    assert_int_equal(stiff, hub->count);
+    for (int e = 0; e < mesh->edge_count; e++)
+        assert_true(back[shell_of(&b)->fold + e] == back[shell_of(&b)->fold]);
+    assert_true(back[shell_of(&b)->fold] > 1);
+    mem_free(u);
+    mem_free(back);
+    clear(&b);
+}
+
 /* What lies in several groups has the value of the smallest one, in whatever order the scene lists them. */
 static void test_nested_groups(void **state)
 {
@@ -202,6 +246,38 @@ static void test_nested_groups(void **state)
         for (int f = 0; f < 4; f++) assert_true(young[f] == (f < 2 ? 2e6 : 1e6));
         clear(&b);
     }
+    assert_int_equal(mem_live_count(), blocks);
+}
+
+/* Several targets, of some coordinates or of points that are no vertices: an objective each. */
+static void test_targets(void **state)
+{
+    (void)state;
+    long blocks = mem_live_count();
+    Built b = scene_build(mem_format(
+        "slender: 1\njob: design\nshell: {mesh: {shape: strip, size: [40 mm, 10 mm], n: 8}, thickness: 1 mm, "
+        "young: 1 MPa, poisson: 0.3}\nfix: [{group: root, clamp: true}]\n"
+        "target:\n  - {formula: [\"7\", \"8\", \"0.01\"], axes: z, on: tip, weight: 3}\n"
+        "  - {formula: [\"x\", \"y\", \"z\"], axes: xy}\n"
+        "  - {cloud: %s/tests/broken/cloud.csv, axes: xz, scale: 2, on: {boundary: true}}\n"
+        "design: {unknowns: {young: {}}, objectives: [{target: 2}, {height: 5, at: 2 mm}]}\n",
+        SOURCE_DIR));
+    const Case *c = &b.model->cases[0];
+    assert_int_equal(c->target_count, 3);
+    assert_int_equal(c->objective_count, 4);
+    double value[4];
+    for (int k = 0; k < 4; k++)
+        value[k] = c->objectives[k].weight * c->objectives[k].ops->value(c->objectives[k].self,
+                                                                         c->objectives[k].weight, b.model->x,
+                                                                         NULL, NULL, NULL);
+    assert_true(fabs(value[0] - 2 * 3 * 1e-4) < 1e-18 && value[1] == 0);
+    assert_true(fabs(value[2] - 2 * (4e-6 + 64e-6)) < 1e-18 && fabs(value[3] - 5 * 4e-6) < 1e-18);
+    double(*place)[3] = model_target_places(c, b.model->point_count);
+    for (int v = 0; v < b.model->point_count; v++)
+        assert_true(place[v][0] == b.model->mesh->rest[v][0] &&
+                    isnan(place[v][2]) == isnan(c->targets[0].place[v][2]));
+    mem_free(place);
+    clear(&b);
     assert_int_equal(mem_live_count(), blocks);
 }
 
@@ -222,7 +298,8 @@ static void test_scale(void **state)
         for (int i = 0; i < 3 * mesh->vertex_count; i++) {
             double rest = mesh->rest[i / 3][i % 3];
             assert_true(b.model->x[i] == (own ? 2 : 1) * rest);
-            assert_true(fabs(b.model->cases[0].target[i / 3][i % 3] - (own ? 3 : 1) * rest) < 1e-17);
+            assert_true(fabs(b.model->cases[0].targets[0].place[i / 3][i % 3] - (own ? 3 : 1) * rest) <
+                        1e-17);
         }
         assert_true(mesh->rest[1][0] == 0.01);
         clear(&b);
@@ -232,9 +309,15 @@ static void test_scale(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_scale),  cmocka_unit_test(test_nested_groups),
-                                       cmocka_unit_test(test_values), cmocka_unit_test(test_loads),
-                                       cmocka_unit_test(test_motion), cmocka_unit_test(test_fields),
-                                       cmocka_unit_test(test_timed),  cmocka_unit_test(test_unknowns)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_scale),
+                                       cmocka_unit_test(test_nested_groups),
+                                       cmocka_unit_test(test_values),
+                                       cmocka_unit_test(test_loads),
+                                       cmocka_unit_test(test_motion),
+                                       cmocka_unit_test(test_fields),
+                                       cmocka_unit_test(test_timed),
+                                       cmocka_unit_test(test_unknowns),
+                                       cmocka_unit_test(test_rows_of_unknowns),
+                                       cmocka_unit_test(test_targets)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

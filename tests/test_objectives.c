@@ -97,7 +97,10 @@ static void test_rows(void **state)
     int vertices[3] = {0, 4, 7};
     double target[3][3] = {{1, 2, 3}, {-1, 0, 1}, {0.5, 0.5, 0.5}};
     check(&f, objective_target(3, vertices, (const double(*)[3])target, 0.7), true);
+    target[0][0] = target[1][2] = NAN; /* these coordinates do not count */
+    check(&f, objective_target(3, vertices, (const double(*)[3])target, 0.7), true);
     check(&f, objective_height(3, vertices, -2), false);
+    check(&f, objective_height_at(3, vertices, 0.3, 0.6), true);
     check(&f, shell_smoothness(f.shell, block_of(&f, "magnetization"), 1.5), true);
     check(&f, shell_smoothness(f.shell, block_of(&f, "fold"), 2.5), true);
     free_fixture(&f);
@@ -147,6 +150,43 @@ static void test_point_rows(void **state)
     for (int i = 0; i < 3; i++) f.x[15 + i] = (points[0][i] + points[1][i]) / 2; /* inside a segment */
     check_curved(&f, objective_polyline(vertex, 3, points, 0.01, 1.3), true);
     free_fixture(&f);
+}
+
+/* Points near the line of three segments, as it is seen along y, and on it. */
+static void test_cloud(void **state)
+{
+    (void)state;
+    long blocks = mem_live_count();
+    Fixture f = make_fixture();
+    int segments[3][2] = {{0, 4}, {4, 7}, {7, 9}};
+    double points[5][3];
+    for (int k = 0; k < 5; k++) /* within a segment, beyond the ends, near a corner */
+        for (int i = 0; i < 3; i++)
+            points[k][i] = (k < 3 ? 0.6 * f.x[3 * segments[k][0] + i] + 0.4 * f.x[3 * segments[k][1] + i]
+                                  : f.x[3 * (k == 3 ? 0 : 7) + i]) +
+                           0.1 * (k + i);
+    PointCloud cloud = {3, 5, segments, points, 0.4};
+    check_curved(&f, objective_cloud(&cloud, 1.3), false);
+    cloud.blend = 1e-3;
+    check_curved(&f, objective_cloud(&cloud, 1.3), false);
+    for (int k = 0; k < 5; k++) points[k][1] = NAN;
+    check_curved(&f, objective_cloud(&cloud, 1.3), false);
+    cloud.blend = 0.4;
+    check_curved(&f, objective_cloud(&cloud, 1.3), false);
+    for (int k = 0; k < 3; k++)
+        for (int i = 0; i < 3; i++)
+            points[k][i] = 0.6 * f.x[3 * segments[k][0] + i] + 0.4 * f.x[3 * segments[k][1] + i];
+    cloud.point_count = 3, cloud.blend = 1e-3; /* in space, where the segments do not cross */
+    check_curved(&f, objective_cloud(&cloud, 1.3), true);
+    /* A point's distance to a straight line, to its end, and between two equal halves of it. */
+    double x[9] = {0, 0, 0, 1, 5, 0, 2, -5, 0}, seen[3][3] = {{0.5, NAN, 0.25}, {3, NAN, 0}, {1, NAN, 2}};
+    PointCloud exact = {2, 3, (int[2][2]){{0, 1}, {1, 2}}, seen, 1e-3};
+    Objective objective = objective_cloud(&exact, 1);
+    assert_true(fabs(objective.ops->value(objective.self, 1, x, NULL, NULL, NULL) - (0.0625 + 1 + 4)) <
+                1e-14);
+    objective_destroy(objective);
+    free_fixture(&f);
+    assert_int_equal(mem_live_count(), blocks);
 }
 
 static void test_curve_distances(void **state)
@@ -322,13 +362,11 @@ static void test_values(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_rows),
-                                       cmocka_unit_test(test_point_rows),
-                                       cmocka_unit_test(test_field_rows),
-                                       cmocka_unit_test(test_curve_distances),
-                                       cmocka_unit_test(test_dmp_start),
-                                       cmocka_unit_test(test_controls),
-                                       cmocka_unit_test(test_young_smoothness),
-                                       cmocka_unit_test(test_values)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_rows),       cmocka_unit_test(test_point_rows),
+        cmocka_unit_test(test_field_rows), cmocka_unit_test(test_curve_distances),
+        cmocka_unit_test(test_cloud),      cmocka_unit_test(test_dmp_start),
+        cmocka_unit_test(test_controls),   cmocka_unit_test(test_young_smoothness),
+        cmocka_unit_test(test_values)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

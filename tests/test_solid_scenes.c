@@ -186,7 +186,7 @@ static void test_known(void **state)
     (void)state;
     for (int k = 0; k < 2; k++) {
         Built known = read_scene("heart_known", &skins[k], 1), heart = read_scene(hearts[k], NULL, 0);
-        const double *x = equilibrium(&known), *target = heart.model->cases[0].target[0];
+        const double *x = equilibrium(&known), *target = heart.model->cases[0].targets[0].place[0];
         const Solid *solid = heart.model->self;
         int faces = 0;
         for (int f = 0; f < solid->tets->surface->face_count; f++) faces += solid->skin_on[f];

@@ -64,12 +64,14 @@ static bool put_target(Model *model, const Build *b, const char *at, const Targe
     const RodModel *rm = model->self;
     const Rod *rod = rm->rod;
     Error err;
+    double scale = isnan(scene->scale) ? 1 : scene->scale;
     if (scene->height_map || scene->strokes || scene->on)
         return yaml_refuse(b->file, at,
-                           "the target of a rod is a file with a polyline, or three formulas of s and L");
+                           "the target of a rod is a file with a polyline, three formulas of s and L, or a "
+                           "cloud of points");
     if (scene->file) {
         RodCurve curve;
-        if (!rod_curve_read(b, (Sampled){at, scene->file, 1, {-1, 0}, rod->elements}, &curve, NULL))
+        if (!rod_curve_read(b, (Sampled){at, scene->file, scale, {-1, 0}, rod->elements}, &curve, NULL))
             return false;
         for (int i = 0; i <= rod->elements; i++) vec3_store(target[i], curve.x[2 * i]);
         rod_curve_clear(&curve);

@@ -124,7 +124,7 @@ void inversion_elements(Inversion *o, int k)
     memcpy(o->strain_elements + 3 * (size_t)k * (size_t)o->elements, d.p + d.rod->natural_strain,
            3 * (size_t)o->elements * sizeof *d.p);
     if (d.rod->end != ROD_FREE && inversion_asks(o->run->scene, CHECK_STABILITY))
-        o->stable[k] = eigen_lowest(d.sys, &at, 1, &lowest, NULL) && lowest >= 0;
+        o->stable[k] = eigen_lowest(d.sys, &at, NULL, 1, &lowest, NULL) && lowest >= 0;
     if (o->x) go_round(o, k, &d, left.energy);
     mem_free(gradient);
     discrete_clear(&d);
