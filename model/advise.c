@@ -109,26 +109,38 @@ static void advise_idle(Model *model, const Scene *scene)
 
 /* ---- Targets ---- */
 
-/* Of the box around the points that are somewhere, m. */
+/* Of the box around the coordinates that are numbers, m. */
 static double diagonal(const double (*place)[3], int count)
 {
     Vec3 low = vec3(INFINITY, INFINITY, INFINITY), high = vec3_scale(-1, low);
     for (int k = 0; k < count; k++) {
         const double *at = place[k];
-        if (isnan(at[0])) continue;
-        low = vec3(fmin(low.x, at[0]), fmin(low.y, at[1]), fmin(low.z, at[2]));
+        low = vec3(fmin(low.x, at[0]), fmin(low.y, at[1]), fmin(low.z, at[2])); /* NaN aside */
         high = vec3(fmax(high.x, at[0]), fmax(high.y, at[1]), fmax(high.z, at[2]));
     }
-    return high.x < low.x ? 0 : vec3_length(vec3_sub(high, low));
+    Vec3 size = vec3_sub(high, low);
+    return vec3_length(vec3(fmax(size.x, 0), fmax(size.y, 0), fmax(size.z, 0)));
+}
+
+/* Of the places of a case's targets, clouds of points among them. */
+static double targets_size(const Model *model, const Case *c)
+{
+    double size = 0;
+    for (int k = 0; k < c->target_count; k++) {
+        const Target *target = &c->targets[k];
+        size = fmax(size, target->place ? diagonal((const double(*)[3])target->place, model->point_count)
+                                        : diagonal((const double(*)[3])target->cloud.points,
+                                                   target->cloud.point_count));
+    }
+    return size;
 }
 
 static void advise_target(Model *model, const Case *c)
 {
-    if (!c->target) return;
+    if (!c->target_count) return;
     double(*place)[3] = mem_alloc((size_t)model->point_count, sizeof *place);
     model->body->ops->places(model, c->state.x, place[0]);
-    double size = diagonal((const double(*)[3])place, model->point_count),
-           target = diagonal((const double(*)[3])c->target, model->point_count);
+    double size = diagonal((const double(*)[3])place, model->point_count), target = targets_size(model, c);
     if (target > LARGE * size)
         mesh_warn(
             &model->report,
