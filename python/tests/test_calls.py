@@ -161,7 +161,7 @@ class Callbacks(support.TestCase):
 
     def test_warnings_as_errors(self) -> None:
         warnings.simplefilter("error", slender.SlenderWarning)
-        scene = support.strip(flux_density=[0, 0, 5])
+        scene = support.strip(flux_density=[0, 0, 0.9])
         self.refuses(slender.SlenderWarning, "too coarse", slender.run, scene, self.folder / "a")
 
 
