@@ -5,7 +5,7 @@
 
 SplineDirectionDef spline_direction_default(const SplinePage *page)
 {
-    double pen = fmin(fmax(page->pen, 0.002), 0.01);
+    double pen = fmin(fmax(page->pen, 0.004), 0.01);
     return (SplineDirectionDef){.detail = pen, .smooth = 3.3 * pen, .spread = 5 * pen};
 }
 

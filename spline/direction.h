@@ -17,7 +17,8 @@ typedef struct SplineDirectionDef {
     double angle;  /* of strokes on a picture without any edge, rad; default 0                        */
 } SplineDirectionDef;
 
-/* detail 1, smooth 3.3 and spread 5 widths of the pen, of one between 0.002 and 0.01 of the page. */
+/* detail 1, smooth 3.3 and spread 5 widths of the pen, of one between 0.004 and 0.01 of the page: finer pens do not
+ * follow what is no more than texture. */
 SplineDirectionDef spline_direction_default(const SplinePage *page);
 
 /* Along the edges and isophotes of a density (width 1; made with `extend`, so that its frame is no edge).

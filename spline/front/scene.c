@@ -109,7 +109,8 @@ static const YamlTable direction_table = {
              "one 2R - 1, 2G - 1 is the vector"},
         {YAML_NUMBER(DirectionScene, turn), .unit = "rad", .fallback = "0", .doc = "turns all of it"},
         {YAML_NUMBER(DirectionScene, detail), .when = "image", .unit = "m", .range = "(0, 1]",
-         .doc = "of the structure tensor: blur before the gradient; about a pen's width if absent"},
+         .doc = "of the structure tensor: blur before the gradient; about a pen's width if absent, 0.004 of "
+                "the page at least"},
         {YAML_NUMBER(DirectionScene, smooth), .when = "image", .unit = "m", .range = "(0, 1]",
          .doc = "and over the tensor; about 3 widths"},
         {YAML_NUMBER(DirectionScene, spread), .when = "image", .unit = "m", .range = "(0, 10]",
