@@ -57,12 +57,12 @@ FoldOfAGroupKeys = TypedDict("FoldOfAGroupKeys", {
 }, total=False)
 
 MagnetizationKeys = TypedDict("MagnetizationKeys", {
-    "value": "Numbers", "file": "str", "formula": "Numbers", "groups": "Mapping[str, MagnetizationOfAGroup]",
-    "other": "Numbers", "where": "Mapping[str, Where]",
+    "value": "Numbers", "remanence": "Numbers", "file": "str", "formula": "Numbers",
+    "groups": "Mapping[str, MagnetizationOfAGroup]", "other": "Numbers", "where": "Mapping[str, Where]",
 }, total=False)
 
 MagnetizationOfAGroupKeys = TypedDict("MagnetizationOfAGroupKeys", {
-    "value": "Numbers",
+    "value": "Numbers", "remanence": "Numbers",
 }, total=False)
 
 Rod = TypedDict("Rod", {
