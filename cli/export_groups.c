@@ -56,7 +56,7 @@ static bool read_mesh(Result *result, int vertices, MeshFile *file, Error *err)
     const int count[4] = {vertices, 0, cells.data ? surface.dims[0] : file->face_count, file->cell_count};
     ok = ok && result_groups_read(result, count, file, err) && take_shown(result, file, err);
     for (int f = 0; ok && f < 3 * file->face_count; f++)
-        ok = (file->faces[0][f] >= 0 && file->faces[0][f] < vertices) ||
+        ok = (file->faces[f / 3][f % 3] >= 0 && file->faces[f / 3][f % 3] < vertices) ||
              error_set(err, "slender/faces is not as slender writes it");
     array_clear(&faces);
     array_clear(&cells);
