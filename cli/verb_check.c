@@ -137,11 +137,29 @@ static bool check_derivatives(const Model *model, const Scene *scene)
     return ok;
 }
 
+/* "groups of faces: hub (24), flap1 (48)", a line for each kind that there is. */
+static void report_groups(const Mesh *mesh)
+{
+    for (int dim = 3; dim >= 0; dim--) {
+        char *list = mem_text("");
+        for (int g = 0; g < mesh->group_count; g++) {
+            const MeshGroup *group = &mesh->groups[g];
+            if (group->dim != dim) continue;
+            char *more = mem_format("%s%s%s (%d)", list, *list ? ", " : "", group->name, group->count);
+            mem_free(list);
+            list = more;
+        }
+        if (*list) say(stdout, "groups of %s: %s", build_elements[dim], list);
+        mem_free(list);
+    }
+}
+
 static bool report(const Model *model, const Scene *scene, bool derivatives)
 {
     char *lines = model->body->ops->describe(model, scene), *world = world_describe(model, scene);
     say_lines(stdout, lines);
     if (world) say_lines(stdout, world);
+    if (model->mesh) report_groups(model->mesh);
     mem_free(lines);
     mem_free(world);
     if (scene->design) printf("%d design unknowns\n", model->design.size);

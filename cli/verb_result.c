@@ -1,9 +1,9 @@
 /* slender info and slender export: what is in a result, or in the journal of a running job. */
 #include "base/memory.h"
 #include "base/plain.h"
+#include "cli/export_groups.h"
 #include "cli/say.h"
 #include "cli/verb.h"
-#include "io/mesh_file.h"
 #include "io/replace.h"
 #include "io/result.h"
 #include "io/table.h"
@@ -244,33 +244,6 @@ static RunStatus export_dataset(Result *result, const char *dataset, const char 
     return status;
 }
 
-static RunStatus export_frame(Result *result, int frame, const char *path, Error *err)
-{
-    Array faces, points;
-    if (frame >= result_step_count(result)) {
-        error_set(err, "there is no frame %d: the result has %d, from 0", frame, result_step_count(result));
-        return RUN_REFUSED;
-    }
-    if (!result_has(result, "slender/faces")) {
-        error_set(err, "there is no mesh in it: its numbers are exported as .csv, with --dataset");
-        return RUN_REFUSED;
-    }
-    if (!result_read_as(result, "slender/faces", ARRAY_INT32, 2, 3, &faces, err)) return RUN_REFUSED;
-    bool ok = frame < 0 ? result_read_as(result, "slender/state/x", ARRAY_FLOAT64, 2, 3, &points, err)
-                        : result_read_step(result, "Points", frame, &points, err);
-    RunStatus status = ok ? RUN_DONE : RUN_REFUSED;
-    if (ok) {
-        MeshFile file = {.vertex_count = points.dims[0],
-                         .face_count = faces.dims[0],
-                         .vertices = (double(*)[3])points.data,
-                         .faces = (int(*)[3])faces.data};
-        if (!mesh_file_write_obj(path, &file, err)) status = RUN_CANNOT_WRITE;
-        array_clear(&points);
-    }
-    array_clear(&faces);
-    return status;
-}
-
 /* In that plotter's language, or as the name's ending says. */
 static RunStatus export_drawing(Result *result, const char *language, const char *path, Error *err)
 {
@@ -294,7 +267,7 @@ static RunStatus export_drawing(Result *result, const char *language, const char
 }
 
 typedef struct Export {
-    const char *output, *dataset, *language;
+    const char *output, *dataset, *language, *per;
     int frame;
 } Export;
 
@@ -310,7 +283,6 @@ static bool check_source(Result *result, const char *input, const char *output, 
     return ok;
 }
 
-/* A scene's path is not in its result: what is written is at least never named like one. */
 /* What is asked for, in the right words: an ending that says what is to be written, and no option that it does not use. */
 static bool check_request(const Export *what, bool run, Error *err)
 {
@@ -326,6 +298,8 @@ static bool check_request(const Export *what, bool run, Error *err)
             ".gcode, .ngc, .nc, .hpgl or .plt, a run as .vtkhdf; slender picture draws .png, .svg "
             "and .pdf",
             what->output);
+    if (what->per && (run || what->dataset || what->frame >= 0 || !has_ending(what->output, ".csv")))
+        return error_set(err, "--per group is for a CSV of a result's groups, -o FILE.csv, and is not used here");
     if (what->dataset && run)
         return error_set(err, "--dataset is not used with a run: export its result first");
     if (what->frame >= 0 && (what->dataset || !mesh))
@@ -343,6 +317,7 @@ static bool check_ending(const char *path, const char *what, const char *ending,
 static RunStatus write_export(Result *result, const Export *what, Error *err)
 {
     const char *path = what->output;
+    if (what->per) return export_groups(result, path, err);
     if (what->dataset)
         return check_ending(path, "numbers are", ".csv", err)
                    ? export_dataset(result, what->dataset, path, err)
@@ -413,7 +388,11 @@ int verb_export(int argc, char **argv)
 {
     static const char usage[] =
         "export NAME.vtkhdf -o FILE.csv --dataset PATH      numbers, e.g. --dataset design/magnetization\n"
-        "       slender export NAME.vtkhdf -o FILE.obj [--frame N]  a mesh; default: the final state\n"
+        "       slender export NAME.vtkhdf -o FILE.csv --per group  of each named group |M|, azimuth, "
+        "elevation\n"
+        "       slender export NAME.vtkhdf -o FILE.obj [--frame N]  a mesh with its groups; default: the "
+        "final "
+        "state\n"
         "       slender export NAME.vtkhdf -o FILE.svg | .gcode | .hpgl [--plotter gcode | gcode_servo | "
         "hpgl | PROFILE.yaml]  a "
         "drawing\n"
@@ -425,9 +404,13 @@ int verb_export(int argc, char **argv)
     const Option options[] = {
         {"output", .letter = 'o', .kind = OPTION_TEXT, .value = &what.output},
         {"dataset", .kind = OPTION_TEXT, .value = &what.dataset},
+        {"per", .kind = OPTION_TEXT, .value = &what.per},
         {"frame", .kind = OPTION_INT, .value = &what.frame, .least = 0, .most = INT_MAX},
         {"plotter", .kind = OPTION_TEXT, .value = &what.language}};
-    if (!options_parse(argc, argv, usage, options, 4, &input, &code)) return code;
+    if (!options_parse(argc, argv, usage, options, 5, &input, &code)) return code;
+    if (what.per && strcmp(what.per, "group"))
+        return verb_fail(RUN_USAGE, "--per must be group: slender export --help says more");
+    if (what.per && what.dataset) return verb_fail(RUN_USAGE, "--per and --dataset exclude each other");
     if (!what.output) return verb_fail(RUN_USAGE, "-o FILE must be given; slender export --help says more");
     Error err;
     if (!outputs_check_source(NULL, input, what.output, &err)) return verb_fail(RUN_CANNOT_WRITE, err.text);

@@ -1,5 +1,6 @@
 #include "job/record.h"
 #include "base/memory.h"
+#include "io/result_groups.h"
 #include "io/result.h"
 #include "job/inputs.h"
 #include "job/obstacles.h"
@@ -172,6 +173,8 @@ static bool put_start(Run *run, const char *scene, const char *inputs, Error *er
                     array_text("kernels", kernels), array_text("inputs", inputs)};
     run->model->body->ops->add_static(run->model, &statics);
     sources_add(run->model, &statics);
+    if (run->model->mesh)
+        result_groups_add(&statics, run->model->mesh->groups, run->model->mesh->group_count);
     bool ok = journal_replace(run->journal, "meta", 0, meta, *inputs ? 4 : 3, err) &&
               journal_replace(run->journal, "final", 0, NULL, 0, err);
     ok = arrays_replace(&statics, run->journal, "static", ok ? err : NULL) && ok;

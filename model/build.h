@@ -85,6 +85,9 @@ int build_element(const Build *b, Key at, const MeshGroup *group, int member);
 bool build_numbers(const Build *b, Key at, int dim, const NumberScene *scene, double *values);
 bool build_vectors(const Build *b, Key at, int dim, const VectorScene *scene, double *values);
 
+/* Magnetisation as it is written, A/m: itself, or a remanence over mu_0. */
+void build_magnetization(const double value[3], const double remanence[3], double to[3]);
+
 /* "vertices", "edges", "faces", "tetrahedra". */
 extern const char *const build_elements[];
 

@@ -222,13 +222,21 @@ static bool put_numbers(const Build *b, Key at, const NumberScene *scene, Elemen
     return ok;
 }
 
+void build_magnetization(const double value[3], const double remanence[3], double to[3])
+{
+    for (int i = 0; i < 3; i++) to[i] = isnan(remanence[0]) ? value[i] : remanence[i] / FLUX_MU_0;
+}
+
 static bool put_vectors(const Build *b, Key at, const VectorScene *scene, Elements elements, double *values)
 {
     GroupList list = {scene->groups, sizeof *scene->groups, scene->groups_count, elements.dim};
     int *owner = mem_alloc((size_t)elements.count, sizeof *owner);
     bool ok = assign_groups(b, at, &list, elements.count, owner);
     for (int f = 0; f < elements.count; f++)
-        if (owner[f] >= 0) memcpy(values + 3 * f, scene->groups[owner[f]].value, 3 * sizeof *values);
+        if (owner[f] >= 0) {
+            const VectorGroup *group = &scene->groups[owner[f]];
+            build_magnetization(group->value, group->remanence, values + 3 * f);
+        }
     mem_free(owner);
     return ok;
 }
@@ -319,8 +327,9 @@ bool build_vectors(const Build *b, Key at, int dim, const VectorScene *scene, do
 {
     Elements elements = elements_of(b->mesh, dim);
     int count = elements.count;
-    for (int i = 0; i < 3 * count; i++)
-        values[i] = scene->groups_count ? scene->other[i % 3] : scene->value[i % 3];
+    for (int e = 0; e < count && !scene->groups_count; e++)
+        build_magnetization(scene->value, scene->remanence, values + 3 * e);
+    for (int i = 0; i < 3 * count && scene->groups_count; i++) values[i] = scene->other[i % 3];
     for (int i = 0; scene->groups_count && i < 3 * count; i++)
         if (isnan(scene->other[0])) values[i] = NAN;
     bool ok = true;

@@ -32,12 +32,12 @@ typedef struct NumberScene {
 
 typedef struct VectorGroup {
     char *group;
-    double value[3];
+    double value[3], remanence[3]; /* one of them */
 } VectorGroup;
 
 /* One vector per face. */
 typedef struct VectorScene {
-    double value[3];
+    double value[3], remanence[3];
     char *file, **formula;
     WhereScene *where;
     VectorGroup *groups;

@@ -249,6 +249,25 @@ static void test_nested_groups(void **state)
     assert_int_equal(mem_live_count(), blocks);
 }
 
+/* Magnetisation as remanence is the same magnetisation. */
+static void test_remanence(void **state)
+{
+    (void)state;
+    static const char *const written[] = {
+        "[0, 0, 59683.1036594]", "{remanence: [0, 0, 75 mT]}",
+        "{groups: {hub: {remanence: [0, 0, 75 mT]}, flap1: [1, 2, 3]}, other: [0, 0, 0]}"};
+    for (int k = 0; k < 3; k++) {
+        Built b = scene_build(
+            mem_format("slender: 1\njob: evaluate\nshell: {mesh: {shape: hexagram, size: 40 mm, n: 1}, "
+                       "thickness: 1 mm, young: 1 MPa, poisson: 0.3, magnetization: %s}\n",
+                       written[k]));
+        const double *M = params_of(&b, 0, 0) + shell_of(&b)->magnetization;
+        int hub = mesh_group(b.model->mesh, "hub", 2)->members[0];
+        assert_true(fabs(M[3 * hub + 2] / 59683.1036594 - 1) < 1e-10 && M[3 * hub] == 0);
+        clear(&b);
+    }
+}
+
 /* Several targets, of some coordinates or of points that are no vertices: an objective each. */
 static void test_targets(void **state)
 {
@@ -318,6 +337,7 @@ int main(void)
                                        cmocka_unit_test(test_timed),
                                        cmocka_unit_test(test_unknowns),
                                        cmocka_unit_test(test_rows_of_unknowns),
-                                       cmocka_unit_test(test_targets)};
+                                       cmocka_unit_test(test_targets),
+                                       cmocka_unit_test(test_remanence)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,6 +2,7 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "spline/drawn.h"
+#include "view/picture_panel.h"
 #include "view/show_drawing.h"
 #include "view/show_mesh.h"
 #include "view/show_motion.h"
@@ -74,9 +75,33 @@ static double target_away(const double (*x)[3], const double (*target)[3], int c
 static void add_target(Show *show, PicturePanel *panel, const char *name, const double (*x)[3])
 {
     int vertices = show->mesh.body.vertex_count;
-    const double(*target)[3] = case_dataset(show, name, "target", 3 * (size_t)vertices);
-    panel->target = show_mesh_points(&show->mesh, target);
-    if (target) panel->target_away = target_away(x, target, vertices);
+    double(*target)[3] = case_dataset(show, name, "target", 3 * (size_t)vertices);
+    if (target) show_fill_places(target, x, vertices);
+    panel->target = show_mesh_points(&show->mesh, (const double(*)[3])target);
+    if (target) panel->target_away = target_away(x, (const double(*)[3])target, vertices);
+}
+
+static const double CLOUD_DOT = 1.2; /* its radius, points */
+
+/* The points of a load case's clouds, those seen in a plane at the body's middle across it. */
+static void add_cloud(Show *show, PicturePanel *panel, const char *name, const double (*x)[3])
+{
+    Array cloud;
+    Result *result = show->data->result;
+    char *path = mem_format("slender/cases/%s/cloud", name);
+    bool there = !panel->marks.dot_count && result_has(result, path) &&
+                 result_read_as(result, path, ARRAY_FLOAT64, 2, 3, &cloud, NULL);
+    mem_free(path);
+    if (!there) return;
+    int count = cloud.dims[0], vertices = show->mesh.body.vertex_count;
+    double(*points)[3] = show_keep(show->data, cloud), middle[3] = {0};
+    MarkDot *dots = show_block(show->data, (size_t)count, sizeof *dots);
+    for (int i = 0; i < 3 * vertices; i++) middle[i % 3] += x[i / 3][i % 3] / vertices;
+    for (int k = 0; k < count; k++) {
+        show_fill_places(&points[k], (const double(*)[3]) & middle, 1);
+        dots[k] = (MarkDot){k ? NULL : "cloud", points[k], panel_target_ink, CLOUD_DOT, false};
+    }
+    panel->marks.dots = dots, panel->marks.dot_count = count;
 }
 
 /* Its name; NULL where there are several, or none. */
@@ -138,6 +163,7 @@ static void add_case(Show *show, const char *name)
     PicturePanel *panel = add_panel(show, show_text(show->data, "%s", name), x);
     add_target(show, panel, name, x);
     panel->marks = show_motion_marks(&show->motion, NAN, motion_ink);
+    add_cloud(show, panel, name, x);
     panel->gravity = case_dataset(show, name, "gravity", 3);
     const double *flux = case_dataset(show, name, "flux_density", 3);
     if (flux && vec3_length(vec3_load(flux)) > 0) panel->flux_density = flux;

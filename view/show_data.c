@@ -55,6 +55,16 @@ void *show_dataset(ShowData *data, const char *path, ArrayType type, size_t coun
     return NULL;
 }
 
+void show_fill_places(double (*places)[3], const double (*x)[3], int count)
+{
+    for (int v = 0; v < count; v++) {
+        double *place = places[v];
+        if (isnan(place[0]) && isnan(place[1]) && isnan(place[2])) continue;
+        for (int i = 0; i < 3; i++)
+            if (isnan(place[i])) place[i] = x[v][i];
+    }
+}
+
 char *show_text(ShowData *data, const char *format, ...)
 {
     char text[512];

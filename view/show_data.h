@@ -24,6 +24,9 @@ void *show_block(ShowData *data, size_t count, size_t size);
 /* Keeps an array that was read; returns its numbers. */
 void *show_keep(ShowData *data, Array array);
 
+/* Places of which only some coordinates are known: the others as the body has them, x[count][3]. What has none stays NaN. */
+void show_fill_places(double (*places)[3], const double (*x)[3], int count);
+
 /* A dataset of this many numbers; NULL where there is none. */
 void *show_dataset(ShowData *data, const char *path, ArrayType type, size_t count);
 

@@ -72,7 +72,9 @@ static void read_target(RodPage *page)
         return;
     const char *first = names.data;
     char *path = mem_format("slender/cases/%.*s/target", (int)strcspn(first, "\n"), first);
-    page->input = show_dataset(page->data, path, ARRAY_FLOAT64, 3 * (size_t)page->point_count);
+    double(*target)[3] = show_dataset(page->data, path, ARRAY_FLOAT64, 3 * (size_t)page->point_count);
+    if (target && page->x) show_fill_places(target, page->x, page->point_count);
+    page->input = (const double(*)[3])target;
     page->input_name = "target";
     mem_free(path);
     array_clear(&names);

@@ -153,12 +153,14 @@ static bool read_magnetic(RodModel *model, const Scene *scene, const Build *b)
             b->file, "flux_density",
             "an inversion knows a field that is uniform: three numbers, formulas of t, or a file");
     if (!check_flux_stays(model, scene, b)) return false;
+    double value[3];
+    build_magnetization(M->value, M->remanence, value);
     bool none = flux[0] == 0 && flux[1] == 0 && flux[2] == 0,
-         along = !isnan(M->value[0]) && M->value[1] == 0 && M->value[2] == 0;
+         along = !isnan(value[0]) && value[1] == 0 && value[2] == 0;
     if (!along)
         return yaml_refuse(b->file, "rod.magnetization",
                            "of a curve it must be along the tangent and the same all along: [m, 0, 0]");
-    if (!none) model->magnetic = vec3_scale(model->area * M->value[0], vec3_load(flux));
+    if (!none) model->magnetic = vec3_scale(model->area * value[0], vec3_load(flux));
     model->loads.end = model->magnetic;
     return true;
 }
@@ -368,7 +370,8 @@ bool rod_model_vectors(const Build *b, const char *at, const VectorScene *scene,
         return yaml_refuse(b->file, at, "a rod has no groups: give three numbers, formulas of s, or a file");
     if (scene->formula)
         return from_formula(b, at, scene->formula, scene->where, scene->where_count, rod, values);
-    for (int i = 0; !scene->file && i < 3 * rod->elements; i++) values[i] = scene->value[i % 3];
+    for (int e = 0; !scene->file && e < rod->elements; e++)
+        build_magnetization(scene->value, scene->remanence, values + 3 * e);
     if (!scene->file) return true;
     Table table;
     Error err;
