@@ -9,6 +9,7 @@ extern const YamlTable where_table, mesh_table, pose_table, velocity_table;
 extern const YamlTable flux_density_table, path_table; /* scene_flux.c */
 extern const YamlTable young_table, fold_table, magnetization_table;
 extern const YamlTable design_table;                               /* scene_design.c */
+extern const YamlTable load_table, sequence_table;                 /* scene.c, scene_sequence.c */
 extern const YamlTable probe_table;                                /* scene_probes.c */
 extern const YamlTable obstacle_table, contact_table, water_table; /* scene_world.c  */
 
