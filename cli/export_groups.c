@@ -72,6 +72,10 @@ RunStatus export_frame(Result *result, int frame, const char *path, Error *err)
         error_set(err, "there is no frame %d: the result has %d, from 0", frame, result_step_count(result));
         return RUN_REFUSED;
     }
+    if (!result_has(result, "slender/faces")) {
+        error_set(err, "there is no mesh in it: its numbers are exported as .csv, with --dataset");
+        return RUN_REFUSED;
+    }
     bool ok = frame < 0 ? result_read_as(result, "slender/state/x", ARRAY_FLOAT64, 2, 3, &points, err)
                         : result_read_step(result, "Points", frame, &points, err);
     if (!ok) return RUN_REFUSED;

@@ -299,7 +299,8 @@ static bool check_request(const Export *what, bool run, Error *err)
             "and .pdf",
             what->output);
     if (what->per && (run || what->dataset || what->frame >= 0 || !has_ending(what->output, ".csv")))
-        return error_set(err, "--per group is for a CSV of a result's groups, -o FILE.csv, and is not used here");
+        return error_set(err,
+                         "--per group is for a CSV of a result's groups, -o FILE.csv, and is not used here");
     if (what->dataset && run)
         return error_set(err, "--dataset is not used with a run: export its result first");
     if (what->frame >= 0 && (what->dataset || !mesh))

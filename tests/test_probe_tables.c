@@ -229,7 +229,7 @@ static void test_design(void **state)
     (void)state;
     static const char scene[] = SOURCE_DIR "/tests/scene_small.yaml";
     const char *settings[] = {"shell.mesh.n=5",
-                              "probes={tip: {vertex: 5}, span: {distance: [\"0\", \"5\"]}}"},
+                              "probes={tip: {vertex: 30}, span: {distance: [\"0\", \"30\"]}}"},
                *whole[] = {"design.iterations=6"}, *parts[] = {"design.iterations=2", "design.iterations=6"};
     char *parted = table_of(scene, settings, 2, parts, 2), *text = table_of(scene, settings, 2, whole, 1);
     assert_string_equal(text, parted);
@@ -245,7 +245,8 @@ static void test_design(void **state)
         if (numbers(&objective)[k] < numbers(&objective)[best]) best = k;
     assert_true(tip.rank == 3 && tip.dims[0] == count && tip.dims[1] == 2 && tip.dims[2] == 3);
     assert_true(number.rank == 1 && span.rank == 2 && numbers(&number)[count - 1] == count - 1);
-    assert_memory_equal(numbers(&tip) + 6 * best, numbers(&up) + 15, 3 * sizeof(double));
+    assert_true(numbers(&tip)[6 * best + 2] != numbers(&tip)[2]);
+    assert_memory_equal(numbers(&tip) + 6 * best, numbers(&up) + 90, 3 * sizeof(double));
     Array *read[] = {&objective, &tip, &number, &span, &up};
     for (int i = 0; i < 5; i++) array_clear(read[i]);
     result_close(result);

@@ -7,11 +7,14 @@
 #include "view/show_mesh.h"
 #include "view/show_motion.h"
 #include "view/show_obstacles.h"
+#include "view/show_probes.h"
 #include "view/show_rod.h"
 #include "view/ticks.h"
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+
+enum { PROBE_CHARTS = 3, CHARTS = PROBE_CHARTS + SHOW_MOTION_CHARTS };
 
 /* A page of a mesh. */
 typedef struct Show {
@@ -23,7 +26,7 @@ typedef struct Show {
     int panel_count;
     ShowObstacles obstacles;
     ShowMotion motion;
-    Chart charts[SHOW_MOTION_CHARTS];
+    Chart charts[CHARTS];
 } Show;
 
 static const MotionInk motion_ink = {{0.835, 0.369, 0, 1}, {0.25, 0.25, 0.27, 1}, 2.6};
@@ -248,6 +251,14 @@ static bool place_targets(const Show *show, PictureTarget *place, Error *err)
                               : "--target: the places and curves of a motion are always over the body");
 }
 
+/* What the scene wanted to be told, and, where there is room for them, what else there is of a motion. */
+static int add_charts(Show *show)
+{
+    int count = show_probes_charts(show->data, show->charts, PROBE_CHARTS);
+    if (count <= 1) count += show_motion_charts(&show->motion, show->charts + count);
+    return count;
+}
+
 static bool write_page(Show *show, const char *result, const char *picture, Error *err)
 {
     const ShowDef *def = show->def;
@@ -264,7 +275,7 @@ static bool write_page(Show *show, const char *result, const char *picture, Erro
     page.faces = (const int(*)[3])clip->faces;
     page.panel_count = show->panel_count, page.panels = show->panels;
     page.width = def->width;
-    page.charts = show->charts, page.chart_count = show_motion_charts(&show->motion, show->charts);
+    page.charts = show->charts, page.chart_count = add_charts(show);
     memcpy(page.view, def->view, sizeof page.view);
     page.same_view = show->steps[0] >= 0;
     show->data->drawn = true;

@@ -5,6 +5,7 @@
 #include "view/show_framings.h"
 #include "view/show_motion.h"
 #include "view/show_obstacles.h"
+#include "view/show_probes.h"
 #include "view/ticks.h"
 #include <math.h>
 #include <string.h>
@@ -408,6 +409,8 @@ static void add_distance(RodPage *page, const double *s)
 static void add_over_time(RodPage *page)
 {
     Chart charts[SHOW_MOTION_CHARTS];
+    page->chart_count += show_probes_charts(page->data, page->charts + page->chart_count,
+                                            CURVES_CHARTS_MAX - page->chart_count);
     int count = show_motion_charts(&page->motion, charts);
     for (int k = 0; k < count; k++) add_chart(page, charts[k]);
 }
