@@ -100,8 +100,12 @@ static bool check_text(const char *text, Error *err)
 
 static bool refuse(const Formula *formula, muParserHandle_t parser, const char *text, int slots, Error *err)
 {
+    enum { READABLE = 1000 }; /* muParser's C interface has 2 KiB for what it says */
     char known[512];
     list_names(formula, slots, known, sizeof known);
+    if (strlen(text) > READABLE)
+        return error_set(err, "an expression of %zu characters is not understood; known are %s, pi, e",
+                         strlen(text), known);
     const char *token = mupGetErrorToken(parser);
     if (mupGetErrorCode(parser) == 1 || mupGetErrorCode(parser) == 4)
         return error_set(err, "unknown name '%s' in \"%s\"; known are %s, pi, e", token, text, known);

@@ -101,11 +101,20 @@ static void write_tables(Text *text, const YamlField *row, const void *scene, in
     }
 }
 
+/* Do readers of YAML 1.1 take the key for true or false? Such keys are in quotes. */
+static bool is_boolean_elsewhere(const char *key)
+{
+    static const char *const words[] = {"on", "off", "yes", "no", "y", "n"};
+    for (size_t k = 0; k < sizeof words / sizeof *words; k++)
+        if (!strcmp(key, words[k])) return true;
+    return false;
+}
+
 static void write_row(Text *text, const YamlField *row, const void *scene, int depth)
 {
     const void *member = row_member(row, scene);
     text_indent(text, depth);
-    text_add(text, row->also ? "\"%s\": " : "%s: ", row->key); /* what some take for a boolean, in quotes */
+    text_add(text, is_boolean_elsewhere(row->key) ? "\"%s\": " : "%s: ", row->key);
     switch (row->kind) {
     case FIELD_NUMBER:
         write_number(text, *(const double *)member);

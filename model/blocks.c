@@ -18,19 +18,36 @@ static bool read_flux(const Build *b, Key at, const FluxScene *list, int count, 
     return ok;
 }
 
+/* What stays as it was is that of another time: the uniform part, for fields of space know the time themselves. */
+static bool follow_time(const Build *now, Key at, const FluxScene *list, int count, CaseFlux *flux)
+{
+    FluxFields there = {0};
+    bool ok = build_flux(now, at, list, count, flux->uniform, &there);
+    flux_fields_clear(&there);
+    return ok;
+}
+
 /* Stages, each from the one before. */
 static bool read_stages(Model *model, const Build *b, const Scene *scene, FluxFields *fields)
 {
     Build now = *b;
     bool ok = true;
+    const FluxScene *said = scene->flux_density; /* last */
+    int count = scene->flux_density_count;
+    Key at = key("flux_density");
     now.time = model->time;
     for (int k = 0; k < sequence_said(scene); k++) {
         StageScene stage = sequence_stage(scene, k);
+        CaseFlux *flux = &model->flux[1 + k];
         if (!isnan(stage.time)) now.time = stage.time;
-        model->flux[1 + k] = model->flux[k];
-        ok = read_flux(&now, sequence_key(scene, k, "flux_density"), stage.flux_density,
-                       stage.flux_density_count, &model->flux[1 + k], fields) &&
-             ok;
+        *flux = model->flux[k];
+        if (stage.flux_density) {
+            said = stage.flux_density, count = stage.flux_density_count;
+            at = sequence_key(scene, k, "flux_density");
+            ok = read_flux(&now, at, said, count, flux, fields) && ok;
+        } else if (!isnan(stage.time)) {
+            ok = follow_time(&now, at, said, count, flux) && ok;
+        }
     }
     return ok;
 }

@@ -133,17 +133,16 @@ static bool reach_objectives(Model *model, const Build *b, Key at, const Scene *
 {
     double step = scene->time.step;
     for (int k = 0; k < reach->targets_count; k++) {
-        int first = (int)ceil((k * reach->every + reach->delay) / step - 1e-6),
-            last = (int)floor((k + 1) * reach->every / step + 1e-6);
-        if (last > scene->time.steps) last = scene->time.steps;
-        if (first > last)
+        double due = ceil((k * reach->every + reach->delay) / step - 1e-6),
+               gone = fmin(floor((k + 1) * reach->every / step + 1e-6), scene->time.steps);
+        if (due > gone)
             return yaml_refuse(
                 b->file, at.text,
                 "no frame counts for target %d: it is due from %g s to %g s, the motion takes %g s", k + 1,
                 k * reach->every + reach->delay, (k + 1) * reach->every, step * scene->time.steps);
         Objective *objective = case_add_objective(&model->cases[0]);
         *objective = objective_waypoint(probe, reach->targets[k], weight);
-        objective->first = first, objective->last = last;
+        objective->first = (int)due, objective->last = (int)gone;
     }
     return true;
 }

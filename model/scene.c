@@ -329,7 +329,7 @@ static const YamlTable output_table = {
              "which states are kept whole, in double precision and with all that is remembered, for a job to "
              "`start` from: the last one (of each load case), or those of all frames, too"},
         {YAML_BOOL(OutputScene, stress), .when = "/job: simulate, trajectory",
-         .otherwise = "frames of other jobs always have strains and stresses", .fallback = "false",
+         .otherwise = "frames of other jobs always have strains and stresses",
          .doc = "of motions: strains and stresses (of rods forces and moments) in each frame, which frames "
                 "of other jobs "
                 "always have"},

@@ -123,7 +123,8 @@ static const YamlTable flux_unknown_table = {
         {0}}};
 
 #define SOURCE_ROWS(u, natural)                                                                              \
-    {YAML_TEXTS(SourceUnknown, sources), .doc = "of which sources, by their names; of all if absent"},       \
+    {YAML_TEXTS(SourceUnknown, sources), .min_count = 1,                                                     \
+     .doc = "of which sources, by their names; of all if absent"},                                           \
         {YAML_NUMBER(SourceUnknown, noise), .unit = u, .range = "[0, inf)", .fallback = "0",                 \
          .doc = "size of seeded noise that is added to the start"},                                          \
         {YAML_NUMBER(SourceUnknown, scale), .unit = u, .range = "(0, inf)", .fallback = natural,             \

@@ -32,7 +32,7 @@ Rod *rod_create_strands(int strands, int each, const double *length, RodSection 
     rod->gravity = params_add(params, "gravity", "m/s^2", 1, 3, true);
     rod->load = params_add(params, "load", "N", elements + strands, 3, true);
     rod->pull = params_add(params, "pull", "N", elements, 3, true);
-    rod->damping = params_add(params, "damping", "N s/m", 1, 1, false);
+    rod->damping = params_add(params, "damping", "N s/m^2", 1, 1, false);
     rod->flux = flux_blocks_add(params, &rod->fields, rod->flux.uniform);
     rod->couple = params_add(params, "couple", "N m", rod->couples ? elements + strands : 0, 3, true);
     rod->potential_scale = params_add(params, "potential_scale", "", rod->potentials.count, 1, true);
@@ -183,6 +183,15 @@ static void add_terms(System *sys, const Rod *rod, const RodLayout *layout, doub
         if (is[rod_term_rows[r].form]) system_add(sys, rod_term_rows[r].create(rod, *layout, hold));
 }
 
+/* m, of the half elements beside each node: what drag it has. */
+static void node_lengths(const Rod *rod, double *share)
+{
+    int each = rod_each(rod);
+    for (int k = 0; k < rod->strands; k++)
+        for (int i = 0; i <= each; i++)
+            share[k * (each + 1) + i] = (i == 0 || i == each ? 0.5 : 1) * rod->strand[k].length / each;
+}
+
 /* Weight and loads on positions; in motion inertia and damping. */
 static void add_lumped_terms(System *sys, const Rod *rod, bool dynamic)
 {
@@ -193,7 +202,8 @@ static void add_lumped_terms(System *sys, const Rod *rod, bool dynamic)
     system_add(sys, lumped_load_term(nodes, rod->load));
     if (dynamic) {
         system_add(sys, kinetic_inertia_term(nodes, mass));
-        system_add(sys, kinetic_damping_term(nodes, rod->damping));
+        node_lengths(rod, mass);
+        system_add(sys, kinetic_damping_term(nodes, mass, rod->damping));
     }
     mem_free(mass);
 }

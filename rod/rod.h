@@ -71,7 +71,7 @@ typedef struct Rod {
     int gravity;         /* [3] m/s^2                                                      */
     int load;            /* [node][3] N, dead                                              */
     int pull;            /* [element][3] N, the loads beyond the element (rod_sum_loads)   */
-    int damping;         /* [1] N s/m at every node, in steps of time                      */
+    int damping;         /* [1] N s/m^2, drag on each metre, in steps of time              */
     int couple;          /* [node][3] N m, dead: rows are there where there are couples    */
     int potential_scale; /* [potential] factors on the potentials                         */
     bool couples;

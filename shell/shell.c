@@ -104,7 +104,7 @@ static void add_kinetic_terms(const Shell *shell, System *sys)
     double *mass = mem_alloc((size_t)vertices, sizeof *mass);
     shell_vertex_mass(shell, mass);
     system_add(sys, kinetic_inertia_term(vertices, mass));
-    system_add(sys, kinetic_damping_term(vertices, shell->damping));
+    system_add(sys, kinetic_damping_term(vertices, NULL, shell->damping));
     mem_free(mass);
 }
 

@@ -79,7 +79,7 @@ static void add_kinetic_terms(const Solid *solid, System *sys)
     double *mass = mem_alloc((size_t)nodes, sizeof *mass);
     solid_node_mass(solid, mass);
     system_add(sys, kinetic_inertia_term(nodes, mass));
-    system_add(sys, kinetic_damping_term(nodes, solid->damping));
+    system_add(sys, kinetic_damping_term(nodes, NULL, solid->damping));
     mem_free(mass);
 }
 

@@ -6,17 +6,27 @@
 /* Both are c/2 |x - y|^2 with y = x_prev + a v_prev. */
 typedef struct Kinetic {
     int vertex_count;
-    double *mass; /* [vertex_count]; NULL: damping */
-    int damping;  /* first entry in p              */
+    double *weight; /* [vertex_count] mass, or share of damping */
+    int damping;    /* first entry in p; -1: inertia            */
 } Kinetic;
+
+static bool is_inertia(const Kinetic *kinetic)
+{
+    return kinetic->damping < 0;
+}
+
+static double weight_of(const Kinetic *kinetic, int pack, int lane)
+{
+    return kinetic->weight[vertex_of_lane(kinetic, pack, lane)];
+}
 
 /* c, N/m; 0 in statics. */
 static Pack stiffness(const Kinetic *kinetic, int pack, const Point *at)
 {
     Pack c = {0};
     for (int l = 0; at->dt > 0 && l < PACK_LANES; l++)
-        c[l] = kinetic->mass ? kinetic->mass[vertex_of_lane(kinetic, pack, l)] / (at->dt * at->dt)
-                             : at->p[kinetic->damping] / at->dt;
+        c[l] = is_inertia(kinetic) ? weight_of(kinetic, pack, l) / (at->dt * at->dt)
+                                   : weight_of(kinetic, pack, l) * (at->p[kinetic->damping] / at->dt);
     return c;
 }
 
@@ -25,7 +35,7 @@ static Pack offset(const Kinetic *kinetic, int pack, const Point *at, int i, Pac
 {
     for (int l = 0; l < PACK_LANES; l++) {
         int dof = 3 * vertex_of_lane(kinetic, pack, l) + i;
-        x[l] -= at->x_prev[dof] + (kinetic->mass ? at->dt * at->v_prev[dof] : 0);
+        x[l] -= at->x_prev[dof] + (is_inertia(kinetic) ? at->dt * at->v_prev[dof] : 0);
     }
     return x;
 }
@@ -51,7 +61,7 @@ static void kinetic_prev(const void *self, int pack, const Point *at, const Pack
     Pack c = stiffness(kinetic, pack, at), zero = {0};
     for (int i = 0; i < 3; i++) {
         dx[i] = -c * w[i];
-        dv[i] = kinetic->mass ? -c * at->dt * w[i] : zero;
+        dv[i] = is_inertia(kinetic) ? -c * at->dt * w[i] : zero;
     }
 }
 
@@ -61,29 +71,39 @@ static void kinetic_prev_forward(const void *self, int pack, const Point *at, co
     (void)x;
     const Kinetic *kinetic = self;
     Pack c = stiffness(kinetic, pack, at);
-    for (int i = 0; i < 3; i++) r[i] = -c * (kinetic->mass ? dx[i] + at->dt * dv[i] : dx[i]);
+    for (int i = 0; i < 3; i++) r[i] = -c * (is_inertia(kinetic) ? dx[i] + at->dt * dv[i] : dx[i]);
 }
 
-/* The force is gamma/dt (x - x_prev). */
+static Pack shares(const Kinetic *kinetic, int pack)
+{
+    Pack share;
+    for (int l = 0; l < PACK_LANES; l++) share[l] = weight_of(kinetic, pack, l);
+    return share;
+}
+
+/* The force is share gamma/dt (x - x_prev). */
 static void damping_param(const void *self, int pack, int lanes, const Point *at, const Pack *x,
                           const Pack *w, double *dp)
 {
     const Kinetic *kinetic = self;
+    Pack share = shares(kinetic, pack);
     for (int i = 0; at->dt > 0 && i < 3; i++)
-        dp[kinetic->damping] += pack_sum(w[i] * offset(kinetic, pack, at, i, x[i]), lanes) / at->dt;
+        dp[kinetic->damping] += pack_sum(share * w[i] * offset(kinetic, pack, at, i, x[i]), lanes) / at->dt;
 }
 
 static void damping_param_forward(const void *self, int pack, const Point *at, const Pack *x,
                                   const double *dp, Pack *r)
 {
     const Kinetic *kinetic = self;
+    Pack share = shares(kinetic, pack);
     for (int i = 0; i < 3; i++)
-        r[i] = at->dt > 0 ? dp[kinetic->damping] / at->dt * offset(kinetic, pack, at, i, x[i]) : pack_set(0);
+        r[i] = at->dt > 0 ? share * (dp[kinetic->damping] / at->dt) * offset(kinetic, pack, at, i, x[i])
+                          : pack_set(0);
 }
 
 static void kinetic_destroy(void *self)
 {
-    mem_free(((Kinetic *)self)->mass);
+    mem_free(((Kinetic *)self)->weight);
     mem_free(self);
 }
 
@@ -111,17 +131,22 @@ static const TermOps damping_ops = {
     .destroy = kinetic_destroy,
 };
 
-Term kinetic_inertia_term(int vertex_count, const double *mass)
+/* Takes the weights. */
+static Term make(const TermOps *ops, int vertex_count, double *weight, int damping)
 {
     Kinetic *kinetic = mem_alloc(1, sizeof *kinetic);
-    *kinetic =
-        (Kinetic){.vertex_count = vertex_count, .mass = mem_copy(mass, (size_t)vertex_count, sizeof *mass)};
-    return (Term){&inertia_ops, kinetic};
+    *kinetic = (Kinetic){.vertex_count = vertex_count, .weight = weight, .damping = damping};
+    return (Term){ops, kinetic};
 }
 
-Term kinetic_damping_term(int vertex_count, int damping)
+Term kinetic_inertia_term(int vertex_count, const double *mass)
 {
-    Kinetic *kinetic = mem_alloc(1, sizeof *kinetic);
-    *kinetic = (Kinetic){.vertex_count = vertex_count, .damping = damping};
-    return (Term){&damping_ops, kinetic};
+    return make(&inertia_ops, vertex_count, mem_copy(mass, (size_t)vertex_count, sizeof *mass), -1);
+}
+
+Term kinetic_damping_term(int vertex_count, const double *share, int damping)
+{
+    double *weight = mem_alloc((size_t)vertex_count, sizeof *weight);
+    for (int v = 0; v < vertex_count; v++) weight[v] = share ? share[v] : 1;
+    return make(&damping_ops, vertex_count, weight, damping);
 }

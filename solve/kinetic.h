@@ -10,5 +10,5 @@
 /* mass[vertex_count] in kg is copied. */
 Term kinetic_inertia_term(int vertex_count, const double *mass);
 
-/* gamma = p[damping], N s/m, the same at every vertex. */
-Term kinetic_damping_term(int vertex_count, int damping);
+/* gamma = share[v] p[damping], N s/m; share[vertex_count], of p's unit what makes that, is copied; NULL: 1 everywhere. */
+Term kinetic_damping_term(int vertex_count, const double *share, int damping);

@@ -35,7 +35,7 @@ static inline System *cloud_system(const Cloud *cloud)
     system_add(sys, lumped_gravity_term(CLOUD_VERTICES, cloud->mass, cloud->gravity));
     system_add(sys, near_springs_term(CLOUD_VERTICES, 0.3, cloud->stiffness));
     system_add(sys, kinetic_inertia_term(CLOUD_VERTICES, cloud->mass));
-    system_add(sys, kinetic_damping_term(CLOUD_VERTICES, cloud->damping));
+    system_add(sys, kinetic_damping_term(CLOUD_VERTICES, NULL, cloud->damping));
     for (int i = 0; i < 3; i++) system_fix(sys, i);
     system_prepare(sys);
     return sys;

@@ -45,7 +45,7 @@ static inline System *self_system(const Shell *shell, const SelfContactDef *def,
     for (int t = 0; t < shell_term_row_count; t++) system_add(sys, shell_term_rows[t].create(shell));
     if (dynamic) {
         system_add(sys, kinetic_inertia_term(mesh->vertex_count, mass));
-        system_add(sys, kinetic_damping_term(mesh->vertex_count, shell->damping));
+        system_add(sys, kinetic_damping_term(mesh->vertex_count, NULL, shell->damping));
     }
     if (contact) system_add(sys, self_contact_term(def));
     if (friction) system_add(sys, self_friction_term(def));

@@ -36,6 +36,6 @@ sed 's/shape: hexagram, size: 40 mm, n: 1/file: star.obj/' star.yaml > again.yam
 expect 0 "$program" check again.yaml; says "groups of faces: hub (6), flap1 (1)"
 expect 2 "$program" export star.vtkhdf -o x.csv --per face; says "--per must be group"
 expect 2 "$program" export star.vtkhdf -o x.csv --per group --dataset rest; says "exclude each other"
-expect 4 "$program" export star.vtkhdf -o x.obj --per group; says "groups are exported as .csv"
+expect 2 "$program" export star.vtkhdf -o x.obj --per group; says "per group is for a CSV"
 expect 3 "$program" export strip.vtkhdf -o x.csv --per group; says "nothing is magnetised"
 exit $bad

@@ -21,7 +21,7 @@ static void test_laid(void **state)
                   .obstacle_count = 1};
     Rig rig = rig_create(&def);
     rig.p[rig.rod->gravity + 2] = -G;
-    rig.p[rig.rod->damping] = 1e-3;
+    rig.p[rig.rod->damping] = 1e-3 / rod_element_length(rig.rod, 0);
     rig.rod->strand[0].position = vec3(0, 0, 2 * r);
     rig_start(&rig, def.young);
     int iterations = rig_march(&rig, 5e-3, 200);
@@ -53,7 +53,7 @@ static void test_pressed(void **state)
                   .obstacle_count = 1};
     def.obstacles[0].motion.move = of_time("0", "0", "-0.001*min(t/0.1, 1)");
     Rig rig = rig_create(&def);
-    rig.p[rig.rod->damping] = 1e-3;
+    rig.p[rig.rod->damping] = 1e-3 / rod_element_length(rig.rod, 0);
     rig_start(&rig, young);
     rig_march(&rig, 5e-3, 200);
     double sunk = -rig_place(&rig, N).z, force = -rig.force[0][2];
@@ -82,7 +82,7 @@ static void test_pipe(void **state)
     def.obstacles[0].motion.move = of_time("0.05*t", "0", "0");
     Rig rig = rig_create(&def);
     rig.p[rig.rod->gravity + 2] = -G;
-    rig.p[rig.rod->damping] = 1e-3;
+    rig.p[rig.rod->damping] = 1e-3 / rod_element_length(rig.rod, 0);
     rig_start(&rig, def.young);
     rig_march(&rig, 20e-3, 100);
     print_message("pipe: friction %.6g of %.6g N, the clamp holds %.6g\n", rig.force[0][0], rig.force[0][2],
@@ -121,7 +121,7 @@ static void test_capstan(void **state)
         for (int e = 0; e < N; e++) rig.p[rod->natural_strain + 3 * e + 1] = 0;
         rig.p[rod->load + 3 * N + 2] = -pull;
         rod_sum_loads(rod, rig.p);
-        rig.p[rod->damping] = 1e-4;
+        rig.p[rod->damping] = 1e-4 / rod_element_length(rod, 0);
         rig_march(&rig, 5e-3, 200);
         double held = rig_pull(&rig, 0).z, expected = exp((back ? -mu : mu) * M_PI);
         print_message("capstan: %.5f times the load, exp(mu pi) = %.5f, %.2f %% of the radius deep\n",
@@ -148,7 +148,7 @@ static void test_hung(void **state)
         .obstacle_count = 1};
     Rig rig = rig_create(&def);
     rig.p[rig.rod->gravity + 2] = -G;
-    rig.p[rig.rod->damping] = 1e-3;
+    rig.p[rig.rod->damping] = 1e-3 / rod_element_length(rig.rod, 0);
     rig_start(&rig, def.young);
     rig_march(&rig, 20e-3, 400);
     Vec3 clamp = rig_pull(&rig, 0), bar = vec3_load(rig.force[0]);

@@ -49,7 +49,7 @@ static void test_relaxing(void **state)
     (void)state;
     for (int c = 0; c < 2; c++) {
         Resting o = resting_create(&reference_rods[c], reference_rods[c].young, 60);
-        o.p[o.rod->damping] = 4 * o.rod->unit.mass * rod_element_length(o.rod, 0); /* 4/s */
+        o.p[o.rod->damping] = 4 * o.rod->unit.mass; /* 4/s */
         Moving m = moving_create(o.rod, reference_rods[c].young, o.p);
         rod_natural_state(o.rod, &m.layout, o.p, m.now.x);
         int iterations = 0;
@@ -154,7 +154,7 @@ static double pushed(double young)
 {
     enum { N = 200 };
     Resting o = resting_create(&reference_rods[REFERENCE_WAVE], young, N);
-    o.p[o.rod->damping] = 2 * o.rod->unit.mass * rod_element_length(o.rod, 0);
+    o.p[o.rod->damping] = 2 * o.rod->unit.mass;
     Moving m = moving_create(o.rod, young, o.p);
     Random random = random_seed(5);
     rod_copy_state(o.rod, &o.layout, o.state.x, &m.layout, m.now.x);
@@ -219,7 +219,8 @@ static void find_strains(const Rod *rod, Seen *seen, int at, const double *p, do
     rod_inertia(three, seen->times, at, 1, 0, inertia);
     rod_inertia(three, seen->times, at, 0, p[rod->damping], drag);
     for (int i = 0; i <= PIECES; i++)
-        vec3_store(q + rod->load + 3 * i, vec3_axpy(mass[i], inertia[2 * i], drag[2 * i]));
+        vec3_store(q + rod->load + 3 * i,
+                   vec3_axpy(mass[i], inertia[2 * i], vec3_scale(mass[i] / rod->unit.mass, drag[2 * i])));
     rod_balance(rod, sys, &layout, 0, seen->state, q);
     memcpy(strain, q + rod->natural_strain, 3 * PIECES * sizeof *strain);
     system_destroy(sys);
@@ -239,7 +240,7 @@ static Rod *curly_rod(double **p)
     *p = params_vector(&rod->params);
     rod_default_params(rod, 2e6, *p);
     (*p)[rod->gravity + 2] = -9.81;
-    (*p)[rod->damping] = 1e-5;
+    (*p)[rod->damping] = 2e-3;
     for (int e = 0; e < PIECES; e++)
         vec3_store(*p + rod->natural_strain + 3 * e, vec3(3, 6 + 0.2 * e, 8 * cos(0.1 * e)));
     return rod;

@@ -104,7 +104,7 @@ static void test_coiled(void **state)
         rig_start(&rig, def.young);
         for (int e = 0; e < N; e++)
             vec3_store(rig.p + rig.rod->natural_strain + 3 * e, vec3(8 * (e < N / 2 ? 1 : -1), 160, 0));
-        rig.p[rig.rod->damping] = 1e-4;
+        rig.p[rig.rod->damping] = 1e-4 / rod_element_length(rig.rod, 0);
         double least = INFINITY;
         int iterations = 0;
         for (int k = 0; k < 50; k++) {

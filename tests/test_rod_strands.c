@@ -17,7 +17,7 @@ static void dress(Rod *rod, int first, double *p)
     int each = rod_each(rod);
     rod_default_params(rod, young, p);
     p[rod->gravity + 2] = -9.8;
-    p[rod->damping] = 1e-5;
+    p[rod->damping] = 1e-3;
     vec3_store(p + rod->flux.uniform, vec3(0.01, 0.02, 0));
     RodPointLoad point = {.s = 0.05, .force = {0, 2e-4, 1e-4}};
     for (int k = 0; k < rod->strands; k++)

@@ -51,7 +51,7 @@ static double *make_params(Rod *rod, Random *random)
                    vec3(2e4, 5e3 * random_signed(random), 5e3 * random_signed(random)));
     }
     vec3_store(p + rod->gravity, vec3(0, 1, -9.81));
-    p[rod->damping] = 1e-4;
+    p[rod->damping] = 1e-4 / rod_element_length(rod, 0);
     if (rod->fields.count) p[rod->flux.scale] = 1;
     if (rod->couples) vec3_store(p + rod->couple + 3 * EACH, vec3(5e-7, -8e-7, 6e-7));
     if (!rod->world) return p;

@@ -156,6 +156,27 @@ static void test_design(void **unused)
     result_close(result), mem_free(there), mem_free(more);
 }
 
+/* A uniform field of t in a sequence is that of each stage's time, also where the stage says no more than that. */
+static void test_stages_of_time(void **unused)
+{
+    (void)unused;
+    static const char *const ways[] = {"{time: {from: 0, to: 1, count: 3}}",
+                                       "[{time: 0}, {time: 0.5}, {time: 1}]",
+                                       "[{time: 0}, {time: 0.5, gravity: [0, 0, 0]}, {time: 1}]"};
+    for (int k = 0; k < 3; k++) {
+        char *more = mem_format("job: equilibrium\noutput: {precision: double}\nsequence: %s\nflux_density:\n"
+                                "  - [\"0\", \"0\", \"0.002*t\"]\n  - {uniform: [1 mT, 0, 0]}\n",
+                                ways[k]);
+        Result *result = run_text(text_of(more));
+        Array B = read_all(result, "slender/frames/flux_density");
+        const double *found = B.data;
+        assert_int_equal(B.dims[0], 3);
+        for (int n = 0; n < 3; n++)
+            assert_true(found[3 * n] == 1e-3 && fabs(found[3 * n + 2] - 1e-3 * n) < 1e-16);
+        array_clear(&B), result_close(result), mem_free(more);
+    }
+}
+
 /* F and the sum of its gradient over the rows of the first coil's strength, of currents that change in time: all rows are the
  * same at the start, so that the sum is what the scene's current does. */
 static double motion(double current, double *sum)
@@ -197,7 +218,7 @@ static void test_currents_over_time(void **unused)
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_sum), cmocka_unit_test(test_map),
-                                       cmocka_unit_test(test_design),
+                                       cmocka_unit_test(test_design), cmocka_unit_test(test_stages_of_time),
                                        cmocka_unit_test(test_currents_over_time)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

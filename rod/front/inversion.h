@@ -6,6 +6,7 @@
 
 /* Everything about all strands, one after the other: nodes N + 1 and elements N each. */
 typedef struct Inversion {
+    int lost; /* natural shapes that are not finite */
     Run *run;
     const RodModel *rm;
     RodLoads *loads; /* [strands] what acts on each curve, its last end's support included */

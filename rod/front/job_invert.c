@@ -154,6 +154,18 @@ static RodLoads find_loads(const Inversion *o, int k)
     return loads;
 }
 
+static bool is_finite_shape(const Inversion *o, int k)
+{
+    double sum = 0;
+    for (int i = 0; i < o->nodes; i++) {
+        Vec3 x = inversion_strand(o, o->natural, k)[i], strain = inversion_strand(o, o->natural_strain, k)[i];
+        sum += fabs(x.x) + fabs(x.y) + fabs(x.z) + fabs(strain.x) + fabs(strain.y) + fabs(strain.z);
+    }
+    for (int i = 0; i < 3 * o->elements; i++)
+        sum += fabs(o->strain_elements[3 * (size_t)k * (size_t)o->elements + (size_t)i]);
+    return isfinite(sum);
+}
+
 static void invert_strand(Inversion *o, int k)
 {
     const RodModel *rm = o->rm;
@@ -177,6 +189,7 @@ static void invert_strand(Inversion *o, int k)
     if (inversion_asks(scene, CHECK_SELF_CONTACT)) find_contacts(o, k);
     inversion_elements(o, k);
     mem_free(moment);
+    if (!is_finite_shape(o, k)) o->lost++, o->worst = NEWTON_NOT_FINITE;
 }
 
 /* ---- What is left ---- */
@@ -342,6 +355,10 @@ static void say(const Inversion *o)
         worst = fmax(worst, o->round_trip[k]);
         route = fmax(route, o->route[k]);
     }
+    if (o->lost)
+        host_say(host,
+                 "%d of %d natural shapes are not finite numbers: loads or stiffness are beyond all bounds",
+                 o->lost, o->strands);
     if (route > COARSE)
         host_say(
             host,

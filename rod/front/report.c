@@ -49,11 +49,10 @@ void rod_advise(Model *model, const Scene *scene)
 
 char *rod_describe(const Model *model, const Scene *scene)
 {
-    (void)scene;
     const RodModel *rm = model->self;
     int rods = rm->strand_count > 1 ? rm->strand_count : 1;
     char *text = mem_format("%d rod%s of %d elements, up to %.4g m long\n", rods, rods == 1 ? "" : "s",
-                            model->point_count / rods - 1, rod_model_longest(rm));
+                            rod_scene(scene)->elements, rod_model_longest(rm));
     if (!model->case_count) return text;
     char *line = mem_format("%d load case%s; %d unknowns of motion\n", model->case_count,
                             model->case_count == 1 ? "" : "s", system_free_count(model->cases[0].sys));

@@ -390,7 +390,7 @@ bool rod_model_loads(const RodModel *model, const Rod *rod, const RodScene *scen
 {
     rod_default_params(rod, model->young, p);
     memcpy(p + rod->gravity, scene->gravity, sizeof scene->gravity);
-    p[rod->damping] = scene->damping * (rod_length(rod) / rod_each(rod));
+    p[rod->damping] = scene->damping;
     return rod_loads_put(&model->list, rod, curves, time, p, err);
 }
 

@@ -266,7 +266,7 @@ const YamlTable rod_table = {
          .doc = "acceleration of gravity"},
         {YAML_TABLE(RodScene, frame, &rod_frame_table), .when = "curve & !frames", .fallback = "bishop",
          .doc = "with a curve: the frames of section and strains"},
-        {YAML_LIST(RodScene, frames, &rod_frame_table), .when = "curve & /job: invert",
+        {YAML_LIST(RodScene, frames, &rod_frame_table), .when = "curve & /job: invert", .min_count = 1,
          .doc = "of an inversion of one curve: several framings of it, each a strand of the result; their "
                 "natural strains "
                 "are compared in the picture"},
