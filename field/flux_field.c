@@ -12,6 +12,8 @@ typedef struct FluxKind {
     bool (*value)(const FluxField *field, const double x[3], double time, double flux[3], Error *err);
     void (*shape)(const FluxField *field, MeshFile *shape); /* NULL: it has none */
     bool poles;                                             /* its strength is a remanence */
+    /* Is it itself there, or a winding so near that the field is not known? NULL: never. */
+    bool (*within)(const FluxField *field, const double x[3]);
 } FluxKind;
 
 struct FluxField {
@@ -134,14 +136,32 @@ static void shape_rectangular_coil(const FluxField *field, MeshFile *shape)
     flux_shape_rectangular_coil(field->half, shape);
 }
 
-static const FluxKind by_formula = {"formula", eval_formula, value_formula, NULL, false},
-                      by_map = {"map", eval_map, value_map, NULL, false},
-                      of_dipole = {"dipole", eval_dipole, NULL, NULL, false},
-                      of_block = {"magnet", eval_block, NULL, shape_block, true},
-                      of_cylinder = {"magnet", eval_cylinder, NULL, shape_cylinder, true},
-                      of_round_coil = {"coil", eval_round_coil, NULL, shape_round_coil, false},
-                      of_rectangular_coil = {"coil", eval_rectangular_coil, NULL, shape_rectangular_coil,
-                                             false};
+static bool within_block(const FluxField *field, const double x[3])
+{
+    return fabs(x[0]) < field->half[0] && fabs(x[1]) < field->half[1] && fabs(x[2]) < field->half[2];
+}
+
+static bool within_cylinder(const FluxField *field, const double x[3])
+{
+    return hypot(x[0], x[1]) < field->half[0] && fabs(x[2]) < field->half[1];
+}
+
+static bool within_winding(const FluxField *field, const double x[3])
+{
+    const double near = 0.01; /* of the radius: docs/theory.md */
+    double beyond = fmax(0, fabs(x[2]) - field->half[1]);
+    return hypot(hypot(x[0], x[1]) - field->half[0], beyond) < near * field->half[0];
+}
+
+static const FluxKind by_formula = {"formula", eval_formula, value_formula, NULL, false, NULL},
+                      by_map = {"map", eval_map, value_map, NULL, false, NULL},
+                      of_dipole = {"dipole", eval_dipole, NULL, NULL, false, NULL},
+                      of_block = {"magnet", eval_block, NULL, shape_block, true, within_block},
+                      of_cylinder = {"magnet", eval_cylinder, NULL, shape_cylinder, true, within_cylinder},
+                      of_round_coil = {"coil",           eval_round_coil, NULL,
+                                       shape_round_coil, false,           within_winding},
+                      of_rectangular_coil = {
+                          "coil", eval_rectangular_coil, NULL, shape_rectangular_coil, false, NULL};
 
 /* ---- Making them ---- */
 
@@ -419,6 +439,15 @@ void flux_field_middle(const FluxField *field, FluxPlace place, double middle[3]
     Stand stand;
     if (!stand_at(field, place, &stand, NULL)) vec3_store(stand.origin, vec3(NAN, NAN, NAN));
     memcpy(middle, stand.origin, sizeof stand.origin);
+}
+
+bool flux_field_is_within(const FluxField *field, const double x[3], FluxPlace place)
+{
+    Stand stand;
+    double own[3];
+    if (!field->kind->within || !stand_at(field, place, &stand, NULL)) return false;
+    own_place(&stand, x, own);
+    return field->kind->within(field, own);
 }
 
 int flux_fields_add(FluxFields *fields, FluxField *field)

@@ -47,9 +47,34 @@ double advise_largest_flux(const Model *model, const Scene *scene, const Case *c
     return largest;
 }
 
+/* Of a magnet or coil that the body is in at the start, which no formula means: true if there is one. */
+static bool advise_within(Model *model, const Case *c, const double *p)
+{
+    const FluxBlocks *blocks = &model->flux_blocks;
+    double *place = mem_alloc(3 * (size_t)model->point_count, sizeof *place);
+    model->body->ops->places(model, c->state.x, place);
+    bool within = false;
+    for (int k = 0; !within && blocks->uniform >= 0 && k < model->fields->count; k++) {
+        const FluxField *field = model->fields->items[k];
+        FluxPlace where = {model->time, p + blocks->move + 3 * k, p + blocks->turn + 3 * k};
+        for (int v = 0; !within && p[blocks->scale + k] != 0 && v < model->point_count; v++) {
+            const double *x = place + 3 * v;
+            if (!(within = flux_field_is_within(field, x, where))) continue;
+            mesh_warn(&model->report,
+                      "%s: the body starts in the %s '%s', at (%.4g, %.4g, %.4g) m: its field there is that "
+                      "within it, "
+                      "and nothing keeps the two apart but an obstacle",
+                      c->name, flux_field_kind(field), flux_field_name(field), x[0], x[1], x[2]);
+        }
+    }
+    mem_free(place);
+    return within;
+}
+
 static void advise_field(Model *model, const Scene *scene, const Case *c)
 {
     double largest = 0;
+    if (advise_within(model, c, c->stages[0].p)) return;
     for (int s = 0; s < c->stage_count; s++)
         largest = fmax(largest, advise_largest_flux(model, scene, c, c->stages[s].p));
     if (largest > STRONG)

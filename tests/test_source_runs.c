@@ -177,6 +177,27 @@ static void test_stages_of_time(void **unused)
     }
 }
 
+/* A body that starts in a magnet is told so, by its name. */
+static void test_within(void **unused)
+{
+    (void)unused;
+    static const char *const sources[] = {
+        "{name: in, magnet: {at: [20 mm, 0, 0], size: [8 mm, 8 mm, 8 mm], remanence: [0, 0, 1 mT]}}",
+        "{name: in, magnet: {at: [20 mm, 0, 0], radius: 4 mm, length: 8 mm, remanence: [0, 0, 1 mT]}}",
+        "{name: in, coil: {at: [20 mm, 0, 0], radius: 20 mm, current: 1 mA}}",
+        "{name: by, magnet: {at: [20 mm, 0, 5 mm], size: [8 mm, 8 mm, 8 mm], remanence: [0, 0, 1 mT]}}"};
+    for (int k = 0; k < 4; k++) {
+        char *more = mem_format("job: equilibrium\nflux_density: %s\n", sources[k]);
+        Built b = scene_build(text_of(more));
+        bool told = false;
+        for (int w = 0; w < b.model->report.warning_count; w++)
+            told = told || strstr(b.model->report.warnings[w], " 'in', at (");
+        assert_true(told == (k < 3));
+        clear(&b);
+        mem_free(more);
+    }
+}
+
 /* F and the sum of its gradient over the rows of the first coil's strength, of currents that change in time: all rows are the
  * same at the start, so that the sum is what the scene's current does. */
 static double motion(double current, double *sum)
@@ -217,8 +238,9 @@ static void test_currents_over_time(void **unused)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_sum), cmocka_unit_test(test_map),
-                                       cmocka_unit_test(test_design), cmocka_unit_test(test_stages_of_time),
-                                       cmocka_unit_test(test_currents_over_time)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_sum),    cmocka_unit_test(test_map),
+        cmocka_unit_test(test_design), cmocka_unit_test(test_stages_of_time),
+        cmocka_unit_test(test_within), cmocka_unit_test(test_currents_over_time)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
