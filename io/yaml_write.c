@@ -102,11 +102,10 @@ static void write_tables(Text *text, const YamlField *row, const void *scene, in
 }
 
 /* Do readers of YAML 1.1 take the key for true or false? Such keys are in quotes. */
-static bool is_boolean_elsewhere(const char *key)
+static bool is_boolean_elsewhere(const YamlField *row)
 {
-    static const char *const words[] = {"on", "off", "yes", "no", "y", "n"};
-    for (size_t k = 0; k < sizeof words / sizeof *words; k++)
-        if (!strcmp(key, words[k])) return true;
+    for (int k = 0; row->also && row->also[k]; k++)
+        if (!strcmp(row->also[k], "true") || !strcmp(row->also[k], "false")) return true;
     return false;
 }
 
@@ -114,7 +113,7 @@ static void write_row(Text *text, const YamlField *row, const void *scene, int d
 {
     const void *member = row_member(row, scene);
     text_indent(text, depth);
-    text_add(text, is_boolean_elsewhere(row->key) ? "\"%s\": " : "%s: ", row->key);
+    text_add(text, is_boolean_elsewhere(row) ? "\"%s\": " : "%s: ", row->key);
     switch (row->kind) {
     case FIELD_NUMBER:
         write_number(text, *(const double *)member);
