@@ -137,19 +137,23 @@ static bool check_derivatives(const Model *model, const Scene *scene)
     return ok;
 }
 
-/* "groups of faces: hub (24), flap1 (48)", a line for each kind that there is. */
+/* "groups of faces: hub (24), flap1 (48)", a line for each kind that there is; so many are named. */
 static void report_groups(const Mesh *mesh)
 {
+    enum { NAMED = 60 };
     for (int dim = 3; dim >= 0; dim--) {
         char *list = mem_text("");
+        int count = 0;
         for (int g = 0; g < mesh->group_count; g++) {
             const MeshGroup *group = &mesh->groups[g];
-            if (group->dim != dim) continue;
+            if (group->dim != dim || ++count > NAMED) continue;
             char *more = mem_format("%s%s%s (%d)", list, *list ? ", " : "", group->name, group->count);
             mem_free(list);
             list = more;
         }
-        if (*list) say(stdout, "groups of %s: %s", build_elements[dim], list);
+        if (*list)
+            say(stdout, count > NAMED ? "groups of %s: %s, .. (%d in all)" : "groups of %s: %s",
+                build_elements[dim], list, count);
         mem_free(list);
     }
 }

@@ -1,5 +1,6 @@
 #include "io/result_groups.h"
 #include "base/memory.h"
+#include "io/text.h"
 #include <string.h>
 
 static int each_of(int dim)
@@ -12,18 +13,18 @@ void result_groups_add(Arrays *list, const MeshGroup *groups, int count)
     if (!count) return;
     int *dim = arrays_keep(list, mem_alloc((size_t)count, sizeof *dim)),
         *offsets = arrays_keep(list, mem_alloc((size_t)count + 1, sizeof *offsets));
-    char *names = mem_text("");
+    Text names = {0};
     for (int g = 0; g < count; g++) {
         dim[g] = groups[g].dim;
         offsets[g + 1] = offsets[g] + each_of(dim[g]) * groups[g].count;
-        names = mem_join(names, groups[g].name, "\n");
+        text_add(&names, "%s\n", groups[g].name);
     }
     int *members = arrays_keep(list, mem_alloc((size_t)offsets[count], sizeof *members));
     for (int g = 0; g < count; g++)
         if (groups[g].count)
             memcpy(members + offsets[g], groups[g].members,
                    (size_t)(offsets[g + 1] - offsets[g]) * sizeof *members);
-    arrays_add(list, array_text("groups/names", arrays_keep(list, names)));
+    arrays_add(list, array_text("groups/names", arrays_keep(list, names.text)));
     arrays_add(list, array_int("groups/dim", dim, 1, count, 0));
     arrays_add(list, array_int("groups/offsets", offsets, 1, count + 1, 0));
     arrays_add(list, array_int("groups/members", members, 1, offsets[count], 0));

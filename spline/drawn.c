@@ -31,24 +31,22 @@ static bool read_numbers(Result *result, const char *name, int count, double *va
     return true;
 }
 
-/* One number in results of versions whose margins were all alike. */
-static bool read_margin(Result *result, double margin[2], Error *err)
+/* One for all in results of versions before. */
+static bool read_margins(Result *result, double margin[2], Error *err)
 {
-    Array array;
-    if (!read_array(result, "margin", ARRAY_FLOAT64, -1, &array, err)) return false;
-    size_t count = array_count(&array);
-    for (int k = 0; k < 2; k++) margin[k] = ((const double *)array.data)[count == 2 ? k : 0];
-    array_clear(&array);
-    return count == 1 || count == 2 || error_set(err, "spline/margin is not as slender writes it");
+    if (result_has(result, "slender/spline/margins")) return read_numbers(result, "margins", 2, margin, err);
+    if (!read_numbers(result, "margin", 1, margin, err)) return false;
+    margin[1] = margin[0];
+    return true;
 }
 
 static bool read_page(Result *result, Drawn *drawn, Error *err)
 {
     double paper[2], margin[2];
-    if (!read_numbers(result, "paper", 2, paper, err) || !read_margin(result, margin, err)) return false;
+    if (!read_numbers(result, "paper", 2, paper, err) || !read_margins(result, margin, err)) return false;
     for (int k = 0; k < 2; k++)
         if (!(paper[k] > 2 * fmax(margin[k], 0) && paper[k] < PAPER_MAX && margin[k] >= 0))
-            return error_set(err, "spline/paper and spline/margin leave no page");
+            return error_set(err, "spline/paper and spline/margins leave no page");
     drawn->page = spline_page_margins(paper, margin[0], margin[1], 0);
     return true;
 }

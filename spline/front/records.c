@@ -50,7 +50,11 @@ void drawing_add_static(const Drawing *d, Arrays *list)
     arrays_add(list, array_float("spline/paper", "m", d->page.paper, 1, 2, 0));
     double *margin = arrays_numbers(list, 2);
     margin[0] = d->page.left, margin[1] = d->page.top;
-    arrays_add(list, array_float("spline/margin", "m", margin, 1, 2, 0));
+    arrays_add(list, array_float("spline/margins", "m", margin, 1, 2, 0));
+    double *least =
+        arrays_numbers(list, 1); /* the scene's: of a picture that is shown whole one of them is wider */
+    *least = fmin(margin[0], margin[1]);
+    arrays_add(list, array_float("spline/margin", "m", least, 0, 0, 0));
     add_plotter(&d->plotter, list);
 }
 
