@@ -152,8 +152,8 @@ static int ring_nodes(double radius, double half, const double x[3])
     return PACK_LANES * (int)fmax(n, 2); /* acosh(1) = 0: the most */
 }
 
-/* Lines along z of half a length around a circle, or, 0, points. The weights' factors[3] of even, cosine, sine: 0 is not
- * needed. */
+/* Lines along z of half a length around a circle, or, 0, points: those of a charge[0] cos + charge[1] sin (NULL: none), and,
+ * for a current, of cos and of sin. */
 static RingSum ring(double radius, double half, const double charge[2], bool current, const double x[3])
 {
     RingSum sum = {0};

@@ -1,8 +1,6 @@
 /* Whole runs of job: invert, and what their results say of the given curve. */
 #include "base/memory.h"
 #include "base/vec3.h"
-#include "io/result.h"
-#include "slender.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -13,6 +11,7 @@
 #include <cmocka.h>
 
 #define NAME "test_rod_invert"
+#include "tests/run_fixture.h"
 
 enum { N = 100 };
 
@@ -24,29 +23,15 @@ static const char SCENE[] =
     "%s";
 static const double BEND = 5e6 * M_PI * 5.0625e-12 / 4, WEIGHT = 1200 * M_PI * 2.25e-6 * 9.8;
 
-static Result *run(const char *lines)
+static Result *invert(const char *lines)
 {
-    SlenderError trouble;
-    Error unread;
-    char *text = mem_format(SCENE, lines);
-    SlenderScene *scene = slender_scene_parse(text, NULL, 0, &trouble);
-    if (!scene) fail_msg("%s", trouble.text);
-    SlenderRun def = {.output = NAME, .threads = 1, .force = true};
-    SlenderStatus status = slender_run(scene, &def, &trouble);
-    if (status != SLENDER_DONE) fail_msg("status %d: %s", (int)status, trouble.text);
-    slender_scene_destroy(scene);
-    mem_free(text);
-    Result *result = result_open(NAME ".vtkhdf", &unread);
-    if (!result) fail_msg("%s", unread.text);
-    return result;
+    return run_text(mem_format(SCENE, lines));
 }
 
 /* Numbers of all nodes; the caller clears. */
-static Array read_all(Result *result, const char *path)
+static Array read_nodes(Result *result, const char *path)
 {
-    Array array;
-    Error err;
-    if (!result_read(result, path, &array, &err)) fail_msg("%s: %s", path, err.text);
+    Array array = read_all(result, path);
     assert_int_equal(array.dims[0], N + 1);
     return array;
 }
@@ -65,13 +50,13 @@ static void test_input(void **state)
     enum { TANGENT, N1, N2, STRAIN, NATURAL, FORCE, MOMENT, CURVATURE, TORSION, COUNT };
     static const char *const paths[COUNT] = {"tangent", "n1",     "n2",        "strain", "natural_strain",
                                              "force",   "moment", "curvature", "torsion"};
-    Result *result = run("  gravity: [0, 0, -9.8]\n  frame: {formula: \"-6*pi*s/L\"}\n  loads: [{point: "
-                         "0.1499, force: [1 mN, 2 mN, -3 mN]}]\n"
-                         "  magnetization: [10 kA/m, 0, 0]\nflux_density: [0, 3 mT, 0]\n");
+    Result *result = invert("  gravity: [0, 0, -9.8]\n  frame: {formula: \"-6*pi*s/L\"}\n  loads: [{point: "
+                            "0.1499, force: [1 mN, 2 mN, -3 mN]}]\n"
+                            "  magnetization: [10 kA/m, 0, 0]\nflux_density: [0, 3 mT, 0]\n");
     Array a[COUNT];
     for (int k = 0; k < COUNT; k++) {
         char *path = mem_format("slender/rod/%s", paths[k]);
-        a[k] = read_all(result, path);
+        a[k] = read_nodes(result, path);
         mem_free(path);
     }
     double length = 0.3, radius2 = 0.015 * 0.015 + 0.00318 * 0.00318, K[3] = {BEND / 1.5, BEND, BEND};
@@ -113,7 +98,7 @@ static double number(Result *result, const char *path)
 /* rms along the rod, of the components from `first` on. */
 static double rms(Result *result, const char *path, int first)
 {
-    Array array = read_all(result, path);
+    Array array = read_nodes(result, path);
     double sum = 0;
     for (int i = 0; i <= N; i++)
         for (int k = first; k < 3; k++) sum += pow(((double *)array.data)[3 * i + k], 2) / (N + 1);
@@ -127,10 +112,10 @@ static void test_held(void **state)
 {
     (void)state;
     Result *result =
-        run("  gravity: [0, 0, -9.8]\n"
-            "  end: {hold: clamped, force: [1 mN, -2 mN, 3 mN], couple: [20 uN m, 0, -10 uN m]}\n"
-            "checks: [stability]\n");
-    Array force = read_all(result, "slender/rod/force"), moment = read_all(result, "slender/rod/moment");
+        invert("  gravity: [0, 0, -9.8]\n"
+               "  end: {hold: clamped, force: [1 mN, -2 mN, 3 mN], couple: [20 uN m, 0, -10 uN m]}\n"
+               "checks: [stability]\n");
+    Array force = read_nodes(result, "slender/rod/force"), moment = read_nodes(result, "slender/rod/moment");
     assert_true(vec3_length(vec3_sub(vector_at(&force, N), vec3(1e-3, -2e-3, 3e-3))) < 1e-16);
     assert_true(vec3_length(vec3_sub(vector_at(&moment, N), vec3(2e-5, 0, -1e-5))) < 1e-18);
     assert_true(number(result, "slender/rod/stable") == 1 &&
@@ -141,15 +126,15 @@ static void test_held(void **state)
     array_clear(&moment);
     result_close(result);
 
-    result = run("  gravity: [0, 0, -9.8]\n  end: {hold: clamped, choose: least_stressed}\nchecks: "
-                 "[stability, round_trip]\n");
+    result = invert("  gravity: [0, 0, -9.8]\n  end: {hold: clamped, choose: least_stressed}\nchecks: "
+                    "[stability, round_trip]\n");
     double stress = rms(result, "slender/rod/moment", 0) / BEND;
     print_message("least stressed: rms |M|/EI %.2f 1/m\n", stress);
     assert_true(fabs(stress - 5.4) < 0.05 && number(result, "slender/rod/stable") == 1);
     assert_true(number(result, "slender/metrics/round_trip") < 1e-12);
     result_close(result);
 
-    result = run("  gravity: [0, 0, -9.8]\n  end: {hold: clamped, choose: straightest}\n");
+    result = invert("  gravity: [0, 0, -9.8]\n  end: {hold: clamped, choose: straightest}\n");
     double bend = rms(result, "slender/rod/natural_strain", 1);
     print_message("straightest: rms natural curvature %.2f 1/m\n", bend);
     assert_true(fabs(bend - 1.48) < 0.03);
@@ -170,7 +155,7 @@ static void test_held_loads(void **state)
             "{potential: \"2*r^2\"}, {point: 0.15, couple: [10 uN m, 0, 0]}]\n"
             "checks: [round_trip]\n",
             ends[k]);
-        Result *result = run(lines);
+        Result *result = invert(lines);
         double left = number(result, "slender/metrics/residual"),
                route = number(result, "slender/metrics/strain_route"),
                trip = number(result, "slender/metrics/round_trip");
@@ -189,8 +174,8 @@ static void test_framings(void **state)
 {
     (void)state;
     Result *result =
-        run("  gravity: [0, 0, -9.8]\n"
-            "  frames: [frenet, bishop, {formula: \"-6*pi*s/L\"}, {formula: \"0*s\", from: frenet}]\n");
+        invert("  gravity: [0, 0, -9.8]\n"
+               "  frames: [frenet, bishop, {formula: \"-6*pi*s/L\"}, {formula: \"0*s\", from: frenet}]\n");
     Array natural, strain, names;
     Error err;
     assert_true(result_read_as(result, "slender/rod/natural", ARRAY_FLOAT64, 2, 3, &natural, &err));

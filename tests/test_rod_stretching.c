@@ -1,35 +1,18 @@
 /* Scenes of rods with model: cosserat: what their results have, a column that stands or falls, states that are gone on
  * from and resumed, and previews beside equilibria. */
-#include "io/result.h"
-#include "slender.h"
-#include "tests/scene_fixture.h"
 #include <math.h>
 #include <string.h>
 
 #define NAME "test_rod_stretching"
+#include "tests/run_fixture.h"
 
 /* By a row of settings that ends with NULL. */
-static Result *run(const char *text, const char *const *settings, int resume)
+static Result *run_set(const char *text, const char *const *settings, bool resume)
 {
     SlenderError err;
-    Error unread;
     int count = 0;
     while (settings && settings[count]) count++;
-    SlenderScene *scene = slender_scene_parse(text, settings, count, &err);
-    SlenderRun def = {.output = NAME, .threads = 1, .resume = resume, .force = !resume};
-    if (!scene || slender_run(scene, &def, &err) > SLENDER_NOT_CONVERGED) fail_msg("%s", err.text);
-    slender_scene_destroy(scene);
-    Result *result = result_open(NAME ".vtkhdf", &unread);
-    if (!result) fail_msg("%s", unread.text);
-    return result;
-}
-
-static Array read_all(Result *result, const char *path)
-{
-    Array array;
-    Error err;
-    if (!result_read(result, path, &array, &err)) fail_msg("%s: %s", path, err.text);
-    return array;
+    return run_to(slender_scene_parse(text, settings, count, &err), &err, resume, SLENDER_NOT_CONVERGED);
 }
 
 /* Copies the numbers of a dataset; returns how many. */
@@ -55,7 +38,7 @@ static void test_result(void **state)
 {
     (void)state;
     double G[30], energy, x[33];
-    Result *result = run(HANGING, NULL, 0);
+    Result *result = run_set(HANGING, NULL, 0);
     assert_int_equal(numbers(result, "slender/final/stretch", 30, G), 30);
     numbers(result, "slender/final/energy/stretch", 1, &energy);
     numbers(result, "slender/rod/x", 33, x);
@@ -82,7 +65,7 @@ static void test_result(void **state)
 static void test_unstretched(void **state)
 {
     (void)state;
-    Result *result = run(HANGING, (const char *const[]){"job=evaluate", "rod.loads=[]", NULL}, 0);
+    Result *result = run_set(HANGING, (const char *const[]){"job=evaluate", "rod.loads=[]", NULL}, 0);
     Array status = read_all(result, "slender/cases/case1/status");
     assert_string_equal(status.data, "evaluated");
     array_clear(&status);
@@ -101,7 +84,7 @@ static void test_column(void **state)
            euler = M_PI * M_PI * EA * r * r / 4 / (4 * 0.01), P = (sqrt(1 + 4 * euler * c) - 1) / (2 * c);
     for (int k = 0; k < 2; k++) {
         char *scene = mem_format(text, "equilibrium", -P * (k ? 1.002 : 0.998));
-        Result *result = run(scene, NULL, 0);
+        Result *result = run_set(scene, NULL, 0);
         double x[51 * 3], off = 0;
         numbers(result, "slender/rod/x", 51 * 3, x);
         for (int i = 0; i < 51; i++) off = fmax(off, hypot(x[3 * i + 1], x[3 * i + 2]));
@@ -124,8 +107,8 @@ static void test_resumed(void **state)
     double x[2][1000];
     size_t count = 0;
     for (int k = 0; k < 2; k++) {
-        if (k) result_close(run(SWINGING, (const char *const[]){"time.steps=9", NULL}, 0));
-        Result *result = run(SWINGING, NULL, k);
+        if (k) result_close(run_set(SWINGING, (const char *const[]){"time.steps=9", NULL}, 0));
+        Result *result = run_set(SWINGING, NULL, k);
         count = numbers(result, "slender/state/dofs", 1000, x[k]);
         result_close(result);
     }
@@ -154,7 +137,7 @@ static void test_preview(void **state)
                 text, preview ? "simulate" : "equilibrium", k % 2 ? "cosserat" : "kirchhoff", ends[k / 2],
                 preview ? "  solver: pbd\n  damping: 0.3\n  pbd: {substeps: 80, sweeps: 4}\n" : "",
                 preview ? "time: {step: 10 ms, steps: 200}\n" : "");
-            Result *result = run(scene, NULL, 0);
+            Result *result = run_set(scene, NULL, 0);
             assert_int_equal(numbers(result, "slender/rod/x", 75, x[preview]), 75);
             result_close(result);
             mem_free(scene);
