@@ -34,13 +34,19 @@ void rigid_turn_rates(const double w[3], double J[3][3])
     }
 }
 
-bool rigid_move_pose(const RigidMove *move, double time, RigidPose *pose, Error *err)
+bool rigid_move_vectors(const RigidMove *move, double time, double moved[3], double turned[3], Error *err)
 {
-    double moved[3] = {0}, turned[3] = {0};
+    for (int i = 0; i < 3; i++) moved[i] = turned[i] = 0;
     if (timed_is_given(&move->move) && !timed_eval(&move->move, time, moved, err))
         return error_prefix(err, "move");
-    if (timed_is_given(&move->turn) && !timed_eval(&move->turn, time, turned, err))
-        return error_prefix(err, "turn");
+    return !timed_is_given(&move->turn) || timed_eval(&move->turn, time, turned, err) ||
+           error_prefix(err, "turn");
+}
+
+bool rigid_move_pose(const RigidMove *move, double time, RigidPose *pose, Error *err)
+{
+    double moved[3], turned[3];
+    if (!rigid_move_vectors(move, time, moved, turned, err)) return false;
     rigid_rotation(turned, pose->turn);
     for (int i = 0; i < 3; i++) {
         pose->shift[i] = move->pivot[i] + moved[i];

@@ -18,7 +18,14 @@ void rigid_rotation(const double w[3], double R[3][3]);
 /* J dw is the angular velocity with which that rotation changes as w does. */
 void rigid_turn_rates(const double w[3], double J[3][3]);
 
-/* False and a sentence where a formula is not finite. Re-entrant. */
+static inline bool rigid_move_is_given(const RigidMove *move)
+{
+    return timed_is_given(&move->move) || timed_is_given(&move->turn);
+}
+
+/* How far it has moved and turned, 0 where nothing says so; and where it then is. False and a sentence where a formula is not
+ * finite. Re-entrant. */
+bool rigid_move_vectors(const RigidMove *move, double time, double moved[3], double turned[3], Error *err);
 bool rigid_move_pose(const RigidMove *move, double time, RigidPose *pose, Error *err);
 
 /* The place in the thing's own frame of one in space. */

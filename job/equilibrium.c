@@ -2,25 +2,34 @@
 #include "base/memory.h"
 #include "job/jobs.h"
 #include "solve/ramp.h"
+#include <math.h>
 #include <string.h>
 
 typedef struct Mover {
     const Model *model;
-    double time;
+    double since, time;
     Error *err;
     bool failed;
 } Mover;
 
-static bool move(void *self, double part, double *x)
+static bool move(void *self, double from, double to, double *x)
 {
     Mover *mover = self;
-    mover->failed = !model_move(mover->model, mover->time, part, x, mover->err);
+    HeldWay way = {mover->since, mover->time, from, to};
+    mover->failed = !model_move(mover->model, way, x, mover->err);
     return !mover->failed;
+}
+
+/* Where what is held is before a stage: where the one before has left it; at first where the body was made, or, of one that
+ * starts from a result, near where it goes. */
+static double held_since(const Case *c, int stage)
+{
+    return stage > 0 ? c->stages[stage - 1].time : c->loads ? c->stages[0].time : NAN;
 }
 
 static RampInfo solve_stage(Run *run, Case *c, int stage)
 {
-    Mover mover = {.model = run->model, .time = c->stages[stage].time};
+    Mover mover = {.model = run->model, .since = held_since(c, stage), .time = c->stages[stage].time};
     RampDef def = ramp_default();
     run_newton(run, &def.newton);
     def.observer = run_observer(run);

@@ -30,7 +30,7 @@ static void load(void *self, double time, double *p)
 static bool move(void *self, double time, double *x)
 {
     Simulation *s = self;
-    s->refused |= !model_move(s->run->model, time, 1, x, s->err);
+    s->refused |= !model_move(s->run->model, held_way(time), x, s->err);
     return !s->refused;
 }
 

@@ -31,7 +31,7 @@ static void load(void *self, double time, double *p)
 static bool move(void *self, double time, double *x)
 {
     TrajectoryJob *job = self;
-    job->refused |= !model_move(job->run->model, time, 1, x, &job->err);
+    job->refused |= !model_move(job->run->model, held_way(time), x, &job->err);
     return !job->refused;
 }
 

@@ -19,7 +19,7 @@ static void load(void *self, double time, double *p)
 static bool move(void *self, double time, double *x)
 {
     SlenderMotion *motion = self;
-    motion->refused |= !model_move(motion->model->model, time, 1, x, &motion->err);
+    motion->refused |= !model_move(motion->model->model, held_way(time), x, &motion->err);
     return !motion->refused;
 }
 

@@ -131,10 +131,10 @@ typedef struct Mover {
     double time;
 } Mover;
 
-static bool move(void *self, double part, double *x)
+static bool move(void *self, double from, double to, double *x)
 {
     const Mover *mover = self;
-    return model_move(mover->model, mover->time, part, x, NULL);
+    return model_move(mover->model, (HeldWay){mover->time, mover->time, from, to}, x, NULL);
 }
 
 /* Tells of each iteration, and asks whether to go on. */

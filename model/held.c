@@ -1,6 +1,7 @@
 /* What all bodies with a mesh do alike: what is held, and where it is moved; loads, targets, values, parts; cases made ready. */
 #include "base/memory.h"
 #include "model/forces.h"
+#include "solve/ramp.h"
 #include "surface/rigid.h"
 #include <math.h>
 #include <string.h>
@@ -105,14 +106,15 @@ bool model_hold(Model *model, const Build *b, const Scene *scene, bool *fixed, b
     return ok;
 }
 
-bool model_move_held(const Model *model, double time, double part, double *x, Error *err)
+bool model_move_held(const Model *model, HeldWay way, double *x, Error *err)
 {
+    double part = ramp_part(way.from, way.to);
     for (int m = 0; m < model->motion_count; m++) {
         const Motion *motion = &model->motions[m];
         for (int k = 0; k < motion->vertices.count; k++) {
             int v = motion->vertices.items[k];
             double variables[BUILD_VARIABLES], place[3];
-            build_position(variables, model->mesh->rest[v], time);
+            build_position(variables, model->mesh->rest[v], way.time);
             if (!formula_eval(motion->formula, variables, place, err))
                 return error_prefix(err, "fix[%d].move", motion->entry);
             for (int i = 0; i < 3; i++)

@@ -10,9 +10,9 @@
 #include <math.h>
 #include <string.h>
 
-bool model_move(const Model *model, double time, double part, double *x, Error *err)
+bool model_move(const Model *model, HeldWay way, double *x, Error *err)
 {
-    return !model->moves || model->body->ops->move(model, time, part, x, err);
+    return !model->moves || model->body->ops->move(model, way, x, err);
 }
 
 bool model_load(const Model *model, double time, bool flux_given, double *p, Error *err)

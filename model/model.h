@@ -74,8 +74,8 @@ Model *model_create(const Scene *scene, YamlFile *file);
 Model *model_create_general(const Scene *scene, YamlFile *file);
 void model_destroy(Model *model);
 
-/* Puts the moved coordinates where they are at that time, a part of the way (0..1) from where x has them. */
-bool model_move(const Model *model, double time, double part, double *x, Error *err);
+/* Puts the moved coordinates where they are then. */
+bool model_move(const Model *model, HeldWay way, double *x, Error *err);
 
 /* Puts what depends on time into p, but for the flux density where that is given from elsewhere. False and a sentence that says which field or obstacle
  * has a formula that is not finite then. */
@@ -88,7 +88,7 @@ bool model_knows_fields(const Model *model, const double *p, double time, const 
 /* What the scene's key `fix` holds of a body with a mesh: coordinates, fixed[3*vertex_count], and slopes, clamped[edge_count];
  * and how it moves them, into the model. False after a refusal. model_move_held is then BodyOps.move. */
 bool model_hold(Model *model, const Build *b, const Scene *scene, bool *fixed, bool *clamped);
-bool model_move_held(const Model *model, double time, double part, double *x, Error *err);
+bool model_move_held(const Model *model, HeldWay way, double *x, Error *err);
 
 /* Other operations (BodyOps) of bodies with a mesh, whose first dofs are the positions of its vertices, and which have a block
  * `load` and tell the rows of others (row_dim). model_start_cases, last of all, gives each case its system and start; an equilibrium needs forces in balance,

@@ -106,6 +106,18 @@ typedef struct Balance {
     bool finite;
 } Balance;
 
+/* On which way what is held is: from where it is at `since` (NAN: from where the body was made) to where it is at `time`. x has it
+ * at a part (0..1) of the way, `from`, and gets it at the part `to`. */
+typedef struct HeldWay {
+    double since, time, from, to;
+} HeldWay;
+
+/* All of it. */
+static inline HeldWay held_way(double time)
+{
+    return (HeldWay){time, time, 0, 1};
+}
+
 /* How a body becomes numbers, and how its states are written into the journal. A refusal at a key (yaml_refuse) gives
  * false. Every body has create, destroy, add_static and describe; one with load cases all else that is not said to be
  * optional. Of what is optional and NULL the body has none, and scenes that ask for it are refused. */
@@ -147,8 +159,8 @@ typedef struct BodyOps {
     /* Sum of squared jumps of a block of p between neighbours; optional. */
     Objective (*smoothness)(const struct Model *model, const ParamBlock *block, double weight);
 
-    /* Held coordinates where they are at that time, a part of the way (0..1) from where x has them. */
-    bool (*move)(const struct Model *model, double time, double part, double *x, Error *err);
+    /* Held coordinates, further on their way. */
+    bool (*move)(const struct Model *model, HeldWay way, double *x, Error *err);
 
     /* Its energies over its dofs, prepared: of statics, or with inertia. The caller's; the model outlives it. */
     System *(*system)(const struct Model *model, bool motion);

@@ -64,7 +64,7 @@ RampInfo ramp_solve(System *sys, const Params *params, const RampDef *def, const
         state_copy(&kept, state);
         interpolate(params, from, to, part, p);
         NewtonInfo newton = {.status = NEWTON_NOT_FINITE};
-        bool moved = !def->move || def->move(def->self, (part - info.reached) / (1 - info.reached), state->x);
+        bool moved = !def->move || def->move(def->self, info.reached, part, state->x);
         if (moved && def->move && !way_is_free(sys, kept.x, state))
             newton.status = NEWTON_BLOCKED;
         else if (moved)

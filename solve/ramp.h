@@ -13,10 +13,17 @@ typedef struct RampDef {
     int steps;       /* at first; default 1. One where nothing changes: loads are the same, nothing moves */
     double step_min; /* of the whole, before it gives up; default 1/1024 */
     NewtonObserver observer; /* may be zero */
-    bool (*move)(void *self, double part,
-                 double *x); /* moves held coordinates a part of the way that is left; may be NULL */
+    /* Leads held coordinates on: x has them at a part (0..1) of their way, `from`, and gets them at the part `to`. May be
+     * NULL. */
+    bool (*move)(void *self, double from, double to, double *x);
     void *self;
 } RampDef;
+
+/* Of what is left of the way at `from`. */
+static inline double ramp_part(double from, double to)
+{
+    return (to - from) / (1 - from);
+}
 
 RampDef ramp_default(void);
 

@@ -174,9 +174,10 @@ typedef struct Lift {
     double height; /* m */
 } Lift;
 
-static bool lift(void *self, double part, double *x)
+static bool lift(void *self, double from, double to, double *x)
 {
     Lift *l = self;
+    double part = ramp_part(from, to);
     for (int v = 0; v < l->mesh->vertex_count; v++)
         if (!l->mesh->vertex_component[v]) x[3 * v + 2] += part * (l->height - x[3 * v + 2]);
     return true;

@@ -94,9 +94,9 @@ static void test_motion(void **state)
     double *x = mem_copy(b.model->x, (size_t)shell_dof_count(b.model->self), sizeof *x);
     int v = tip->items[0];
     double y = x[3 * v + 1];
-    assert_true(model_move(b.model, 2, 0.5, x, &err));
+    assert_true(model_move(b.model, (HeldWay){NAN, 2, 0, 0.5}, x, &err));
     assert_true(fabs(x[3 * v] - 0.039) < 1e-15 && fabs(x[3 * v + 2] - 0.004) < 1e-15 && x[3 * v + 1] == y);
-    assert_true(model_move(b.model, 2, 1, x, &err));
+    assert_true(model_move(b.model, held_way(2), x, &err));
     assert_true(fabs(x[3 * v] - 0.038) < 1e-15 && fabs(x[3 * v + 2] - 0.008) < 1e-15);
     mem_free(x);
     clear(&b);

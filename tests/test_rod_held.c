@@ -53,10 +53,11 @@ typedef struct Ends {
 } Ends;
 
 /* The last node towards (1 - shortening, 0, 0) and the frame of the world's axes, a part of the way. */
-static bool push_end(void *self, double part, double *x)
+static bool push_end(void *self, double from, double until, double *x)
 {
     const Ends *ends = self;
     int last = ends->layout.nodes - 1;
+    double part = ramp_part(from, until);
     double *place = x + 3 * last, *to = x + ends->layout.reference + 4 * last;
     place[0] += part * (1 - ends->shortening - place[0]);
     for (int i = 1; i < 3; i++) place[i] -= part * place[i];

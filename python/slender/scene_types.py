@@ -102,12 +102,16 @@ FramesOfAMotion = TypedDict("FramesOfAMotion", {
 }, total=False)
 
 Clamp = TypedDict("Clamp", {
-    "position": "Numbers", "frame": "Table",
+    "position": "Numbers", "frame": "Table", "move": "Path", "turn": "Path",
+}, total=False)
+
+PathKeys = TypedDict("PathKeys", {
+    "formula": "Numbers", "file": "str",
 }, total=False)
 
 End = TypedDict("End", {
-    "position": "Numbers", "hold": "Literal['clamped', 'pinned']", "frame": "Table", "force": "Numbers",
-    "choose": "Literal['straightest', 'least_stressed']", "couple": "Numbers",
+    "position": "Numbers", "hold": "Literal['clamped', 'pinned']", "frame": "Table", "move": "Path", "turn": "Path",
+    "force": "Numbers", "choose": "Literal['straightest', 'least_stressed']", "couple": "Numbers",
 }, total=False)
 
 FrameKeys = TypedDict("FrameKeys", {
@@ -277,10 +281,6 @@ Coil = TypedDict("Coil", {
 
 Map = TypedDict("Map", {
     "file": "str", "scale": "float",
-}, total=False)
-
-PathKeys = TypedDict("PathKeys", {
-    "formula": "Numbers", "file": "str",
 }, total=False)
 
 FixKeys = TypedDict("FixKeys", {
@@ -529,6 +529,7 @@ Magnetization = Union["MagnetizationKeys", Numbers]
 MagnetizationOfAGroup = Union["MagnetizationOfAGroupKeys", Numbers]
 Noise = Union["NoiseKeys", Literal['auto'], Number]
 NaturalStrain = Union["NaturalStrainKeys", Numbers]
+Path = Union["PathKeys", Numbers]
 Frame = Union["FrameKeys", Literal['frenet', 'bishop']]
 PointOfALoad = Union["PointOfALoadKeys", Literal['end'], Number]
 LineLoadOfARod = Union["LineLoadOfARodKeys", Numbers]
@@ -545,7 +546,6 @@ StartOfADrawing = Union["StartOfADrawingKeys", Literal['streamlines', 'random']]
 Potential = Union["PotentialKeys", Number]
 Flow = Union["FlowKeys", Numbers]
 FluxDensity = Union["FluxDensityKeys", Numbers]
-Path = Union["PathKeys", Numbers]
 Fix = Union["FixKeys", Number]
 Selection = Union["SelectionKeys", Number]
 Target = Union["TargetKeys", Numbers]

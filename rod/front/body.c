@@ -198,7 +198,16 @@ static void set_model(Model *model)
     model->gravity = rod->gravity;
     model->flux_blocks = rod->flux;
     model->fields = &rod->fields;
-    model->moves = rm->held && model->job == &job_equilibrium && !model->general;
+    model->moves = (rm->held && rod_leads_ends(model)) || rigid_move_is_given(&rm->first_moves) ||
+                   rigid_move_is_given(&rm->last_moves);
+}
+
+/* Where the ends are. x: the state of turns only on the curve. */
+static bool stand(Model *model, const Scene *scene, const Build *b, double *x)
+{
+    Error err;
+    return (rod_stand_first(model, x, &err) || yaml_refuse(b->file, "rod", "%s", err.text)) &&
+           rod_check_ends(model, scene, b);
 }
 
 /* Cases and states. With a field that varies in space or a potential, or where it meets something, no rod is only turns. */
@@ -212,15 +221,15 @@ static bool fill_cases(Model *model, const Scene *scene, const Build *b, bool re
     bool ok = rod_model_params(rm, scene, b, p) && readable;
     model_put_flux(model, 0, p);
     if (ok && rm->curves) take_curve(rm, rod_scene(scene), b->time, p, curve);
-    ok = ok && model_cases(model, b, scene, p) && load_stages(model, b);
+    ok = ok && model_cases(model, b, scene, p) && load_stages(model, b) && stand(model, scene, b, curve);
     bool posed = model->job == &job_evaluate, statics = posed || model->job == &job_equilibrium;
     bool hanging = !model->general && statics && rod->start == ROD_CLAMPED && rod->end == ROD_FREE &&
-                   rod->fields.count == 0 && rod->potentials.count == 0 && !rod->world;
+                   rod->fields.count == 0 && rod->potentials.count == 0 && !rod->world && !model->moves;
     if (ok) make_states(model, rod_scene(scene), hanging, p, curve);
     if (ok && posed && !scene->start)
-        ok = rod_end_is_held(rm, model->x) ||
+        ok = rod_end_is_held(rm, model->time, model->x) ||
              yaml_refuse(b->file, "rod.end", "the pose has its end elsewhere than where this holds it");
-    else if (ok && rm->held && !model->moves && !scene->start)
+    else if (ok && rm->held && !rod_leads_ends(model) && !scene->start)
         ok = rod_settle(model, b, p);
     if (ok) make_systems(model, hanging, motion);
     mem_free(p);
@@ -392,7 +401,7 @@ static const BodyOps ops = {
     .put_vectors = put_vectors,
     .select = select_part,
     .masses = masses,
-    .move = rod_move_end,
+    .move = rod_move_ends,
     .system = make_system,
     .supports = rod_support_forces,
     .balance = balance_pose,

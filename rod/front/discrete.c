@@ -80,12 +80,12 @@ static void balance(Discrete *d, Vec3 force, Vec3 couple)
     vec3_store(load, own);
 }
 
-static bool lead_end(void *self, double part, double *x)
+static bool lead_end(void *self, double from, double to, double *x)
 {
     const Discrete *d = self;
     Quat frame = rod_reference(&d->layout, d->state.x, d->rod->elements);
-    rod_lead_end(&d->layout, d->curve->x[2 * d->rod->elements], d->rod->end == ROD_CLAMPED ? &frame : NULL,
-                 part, x);
+    rod_lead_end(&d->layout, d->layout.nodes - 1, d->curve->x[2 * d->rod->elements],
+                 d->rod->end == ROD_CLAMPED ? &frame : NULL, ramp_part(from, to), x);
     return true;
 }
 

@@ -25,19 +25,30 @@ bool rod_check_inversion(const RodModel *rm, const Scene *scene, YamlFile *file)
 /* supports.c: how the scene holds its ends, into the model. */
 bool rod_read_supports(RodModel *rm, const RodScene *scene, const Build *b);
 
+/* ends.c: */
+
 /* Is a place where it is wanted, to 1e-6 of a size? A node, with that frame to 1e-6 rad (NULL: any)? The other end, if it is
  * held? */
 bool rod_is_near(Vec3 place, Vec3 wanted, double size);
 bool rod_is_at(const RodLayout *layout, const double *x, int node, Vec3 place, const Quat *frame,
                double size);
-bool rod_end_is_held(const RodModel *rm, const double *x);
+bool rod_end_is_held(const RodModel *rm, double time, const double *x);
 
-/* The last node, a part of the way from where x has it to a place and a frame (NULL: it turns freely). */
-void rod_lead_end(const RodLayout *layout, Vec3 place, const Quat *frame, double part, double *x);
+/* Keeps where the first ends are before they move; unless the job leads them, the strands of the rod and the state x, of turns
+ * only, stand where it begins. */
+bool rod_stand_first(const Model *model, double *x, Error *err);
 
-/* BodyOps.move; and before a motion or a design, the rod is brought to its supports without loads, model->x. */
-bool rod_move_end(const Model *model, double time, double part, double *x, Error *err);
+/* Can the rod follow its ends? Sees to enough load steps. */
+bool rod_check_ends(Model *model, const Scene *scene, const Build *b);
+
+/* A node, a part of the way from where x has it to a place and a frame (NULL: it turns freely). */
+void rod_lead_end(const RodLayout *layout, int node, Vec3 place, const Quat *frame, double part, double *x);
+
+/* Does the job itself bring the rod to its supports? If not, before it begins the rod is brought there without loads, model->x.
+ * And BodyOps.move. */
+bool rod_leads_ends(const Model *model);
 bool rod_settle(Model *model, const Build *b, const double *p);
+bool rod_move_ends(const Model *model, HeldWay way, double *x, Error *err);
 
 /* take_state.c: BodyOps.take_state. */
 bool rod_take_state(const Model *model, const double *from, int dofs, double *x, Error *err);

@@ -289,6 +289,9 @@ void rod_model_destroy(RodModel *model)
     mem_free(model->draws);
     mem_free(model->points);
     rod_loads_clear(&model->list);
+    rigid_move_clear(&model->first_moves);
+    rigid_move_clear(&model->last_moves);
+    mem_free(model->base);
     mem_free(model->natural);
     mem_free(model->moving);
     mem_free(model);

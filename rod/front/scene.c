@@ -3,7 +3,8 @@
 #include "model/scene_tables.h"
 
 #define MOTIONS "/job: simulate, trajectory"
-#define STATES  "/job: equilibrium, evaluate, design, simulate, trajectory" /* what has a discrete rod */
+#define MOVES   "/job: equilibrium, simulate, trajectory & /rod.solver: newton" /* whose ends may move */
+#define STATES  "/job: equilibrium, evaluate, design, simulate, trajectory"     /* what has a discrete rod */
 
 static const YamlTable noise_table = {
     .name = "noise",
@@ -75,11 +76,16 @@ static const YamlTable rod_frame_table = {
 static const YamlTable clamp_table = {
     .name = "clamp",
     .size = sizeof(ClampScene),
-    .doc = "Where a rod of given natural strains is held.",
+    .doc = "Where a rod's first end is held, and how what holds it moves. A curve says where it is before it "
+           "moves. Clamps of several strands are one rigid thing, which turns about the first one.",
     .fields = (const YamlField[]){
-        {YAML_VECTOR(ClampScene, position), .unit = "m", .fallback = "[0, 0, 0]", .doc = "of its first end"},
-        {YAML_ROWS(ClampScene, frame), .min_count = 3, .max_count = 3,
+        {YAML_VECTOR(ClampScene, position), .when = "!/rod.curve", .unit = "m", .fallback = "[0, 0, 0]",
+         .doc = "of its first end"},
+        {YAML_ROWS(ClampScene, frame), .when = "!/rod.curve", .min_count = 3, .max_count = 3,
          .doc = "tangent, n1 and n2 there; the axes x, y, z if absent"},
+        {YAML_OPTIONAL(ClampScene, move, &path_table), .when = MOVES, .doc = "how far it has moved, m"},
+        {YAML_OPTIONAL(ClampScene, turn, &path_table), .when = MOVES " & /rod.hold: clamped",
+         .doc = "how far it has turned about where it is: a rotation vector, rad, of any size"},
         {0}}};
 
 static const YamlTable end_table = {
@@ -92,6 +98,11 @@ static const YamlTable end_table = {
          .doc = "with its frame, or free to turn"},
         {YAML_ROWS(EndScene, frame), .when = "hold: clamped & " STATES, .min_count = 3, .max_count = 3,
          .doc = "of a clamped end: tangent, n1 and n2 there"},
+        {YAML_OPTIONAL(EndScene, move, &path_table), .when = MOVES,
+         .doc = "how far it has moved from there, m"},
+        {YAML_OPTIONAL(EndScene, turn, &path_table), .when = "hold: clamped & " MOVES,
+         .doc = "of a clamped end: how far it has turned about where it is: a rotation vector, rad, of any "
+                "size"},
         {YAML_VECTOR(EndScene, force), .when = "/job: invert", .unit = "N", .one_of = 1,
          .doc = "of an inversion: what its support does to the end; this or `choose` is needed"},
         {YAML_CHOICE(EndScene, choose), .when = "/job: invert",
@@ -242,8 +253,8 @@ const YamlTable rod_table = {
          .doc = "of an inversion: shapes that it had while it moved"},
         {YAML_NUMBER(RodScene, length), .when = "!curve & !poses & !motion", .unit = "m", .range = "(0, inf)",
          .doc = "without a curve: its length"},
-        {YAML_TABLE(RodScene, clamp, &clamp_table), .when = "!curve & !poses & !motion", .fallback = "{}",
-         .doc = "without a curve: its first end"},
+        {YAML_TABLE(RodScene, clamp, &clamp_table), .when = "!poses & !motion", .fallback = "{}",
+         .doc = "its first end"},
         {YAML_CHOICE(RodScene, hold), .when = STATES, .choices = YAML_NAMES("clamped", "pinned"),
          .fallback = "clamped", .doc = "how the first end is held"},
         {YAML_OPTIONAL(RodScene, end, &end_table), .when = STATES ", invert & !motion",

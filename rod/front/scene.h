@@ -34,6 +34,7 @@ typedef struct RodFrameScene {
 /* Rows of a frame: tangent, n1, n2. */
 typedef struct ClampScene {
     double position[3], (*frame)[3];
+    PathScene *move, *turn;
     int frame_count;
 } ClampScene;
 
@@ -42,6 +43,7 @@ typedef enum HoldKind { HOLD_CLAMPED, HOLD_PINNED } HoldKind;
 /* The other end: where it is held, or, of a curve that is inverted, what its support does there. */
 typedef struct EndScene {
     double position[3], (*frame)[3], force[3], couple[3];
+    PathScene *move, *turn;
     int hold, frame_count, choose; /* HoldKind; RodEndChoice, -1: force and couple are given */
 } EndScene;
 

@@ -46,12 +46,12 @@ bool rod_take_state(const Model *model, const double *from, int dofs, double *x,
         memcpy(x, from, (size_t)dofs * sizeof *x);
     else
         rod_copy_state(rod, &own, from, &rm->layout, x);
-    for (int k = 0; k < rod->strands; k++) {
+    for (int k = 0; k < rod->strands && !(rm->base && rod_leads_ends(model)); k++) {
         const RodStrand *strand = &rod->strand[k];
         const Quat *frame = rod->start == ROD_CLAMPED ? &strand->frame : NULL;
         if (!rod_is_at(&own, from, k * (own.each + 1), strand->position, frame, strand->length))
             return error_set(err, START_ELSEWHERE);
     }
-    return model->moves || rod_end_is_held(rm, x) ||
+    return rod_leads_ends(model) || rod_end_is_held(rm, model->time, x) ||
            error_set(err, "its other end is not where rod.end holds it: an equilibrium leads it there");
 }
