@@ -174,12 +174,18 @@ static bool begins(const char *name, const char *start)
     return !strncmp(name, start, strlen(start));
 }
 
+/* Of a stage: rows for each obstacle or support. */
+static bool has_rows(const char *stage)
+{
+    return strstr(stage, "_force") || strstr(stage, "_couple");
+}
+
 /* What else the frames hold: frames/flux_density and poses, frames/NAME of state/NAME, what is kept of whole
  * states; probes/NAME, and stages/NAME of the stages of a sequence. */
 static bool put_frames(VtkFrames *w, const char *field, Error *err)
 {
     bool stage = begins(field, "stages/"), own = stage || is_probe(field), state = begins(field, "state/"),
-         many = result_is_pose(field) || (stage && strstr(field, "_force"));
+         many = result_is_pose(field) || (stage && has_rows(field));
     if (!own && !state && !many && strcmp(field, "flux_density") != 0) return true;
     char *path = mem_format("slender/%s%s", own ? "" : "frames/", state ? field + 6 : field);
     bool ok = !strcmp(field, "stages/status") ? put_lines(w, field, path, err)

@@ -138,14 +138,11 @@ static void add_stage(Arrays *list, const Model *model, const Snapshot *shot)
 {
     if (shot->load_case->stage_count < 2) return;
     Point at = state_point(&shot->at, shot->p);
-    double *force = arrays_numbers(list, 3 * (size_t)model->support_count);
-    model_support_forces(model, shot, (double(*)[3])force);
     arrays_add(list, array_text("stages/status", newton_status_name(shot->status)));
     arrays_add(list, array_float("stages/time", "s", &shot->at.time, 0, 0, 0));
     add_energies(list, "stages", shot->load_case->sys, &at);
     add_felt(list, model, shot, "stages");
-    if (model->support_count)
-        arrays_add(list, array_float("stages/support_force", "N", force, 2, model->support_count, 3));
+    model_add_supports(model, shot, "stages", list);
 }
 
 /* Of a frame, unless a row is an evaluation. */
@@ -194,6 +191,7 @@ static void add_state(Arrays *list, const Model *model, const char *x_name, cons
     arrays_add(list, array_float(name, "m", places(model, shot, list), 2, model->point_count, 3));
     add_energies(list, prefix, sys, &at);
     add_felt(list, model, shot, prefix);
+    if (!model->job->motion) model_add_supports(model, shot, prefix, list); /* where inertia does nothing */
     model->body->ops->add_state(model, shot, prefix, list);
 }
 

@@ -9,10 +9,12 @@ void model_add_support(Model *model, Indices points, const bool axis[3])
     model->supports[count] = (Support){points, {axis[0], axis[1], axis[2]}};
 }
 
-void model_support_forces(const Model *model, const Snapshot *shot, double (*force)[3])
+typedef void OnPoints(const Model *model, const Snapshot *shot, double *force);
+
+static void sum_supports(const Model *model, const Snapshot *shot, OnPoints *find, double (*force)[3])
 {
     double *left = mem_alloc(3 * (size_t)model->point_count, sizeof *left); /* not yet counted */
-    model->body->ops->supports(model, shot, left);
+    find(model, shot, left);
     for (int k = 0; k < model->support_count; k++) {
         const Support *support = &model->supports[k];
         memset(force[k], 0, sizeof force[k]);
@@ -24,6 +26,31 @@ void model_support_forces(const Model *model, const Snapshot *shot, double (*for
         }
     }
     mem_free(left);
+}
+
+void model_support_forces(const Model *model, const Snapshot *shot, double (*force)[3])
+{
+    sum_supports(model, shot, model->body->ops->supports, force);
+}
+
+void model_support_couples(const Model *model, const Snapshot *shot, double (*couple)[3])
+{
+    sum_supports(model, shot, model->body->ops->couples, couple);
+}
+
+void model_add_supports(const Model *model, const Snapshot *shot, const char *prefix, Arrays *list)
+{
+    int count = model->support_count;
+    if (!count) return;
+    double *force = arrays_numbers(list, 3 * (size_t)count);
+    model_support_forces(model, shot, (double(*)[3])force);
+    char *name = arrays_keep(list, mem_format("%s/support_force", prefix));
+    arrays_add(list, array_float(name, "N", force, 2, count, 3));
+    if (!model->body->ops->couples) return;
+    double *couple = arrays_numbers(list, 3 * (size_t)count);
+    model_support_couples(model, shot, (double(*)[3])couple);
+    name = arrays_keep(list, mem_format("%s/support_couple", prefix));
+    arrays_add(list, array_float(name, "N m", couple, 2, count, 3));
 }
 
 void model_force_on(const Model *model, const Snapshot *shot, const Indices *points, double force[3])

@@ -11,6 +11,13 @@ void model_add_support(Model *model, Indices points, const bool axis[3]);
  * so that the sum is that of all. */
 void model_support_forces(const Model *model, const Snapshot *shot, double (*force)[3]);
 
+/* The couples of each, of a body whose frames are held, too (BodyOps.couples), couple[support_count][3] N m: the sum of those on
+ * its points, each about its own. */
+void model_support_couples(const Model *model, const Snapshot *shot, double (*couple)[3]);
+
+/* Both, as PREFIX/support_force and support_couple, into the list. */
+void model_add_supports(const Model *model, const Snapshot *shot, const char *prefix, Arrays *list);
+
 /* The part of what the supports do that acts on these points: on all that is held of them. */
 void model_force_on(const Model *model, const Snapshot *shot, const Indices *points, double force[3]);
 

@@ -71,6 +71,14 @@ static void measure_support(const ModelProbe *probe, const Moment *now, double *
     mem_free(force);
 }
 
+static void measure_couple(const ModelProbe *probe, const Moment *now, double *values)
+{
+    double(*couple)[3] = mem_alloc((size_t)now->model->support_count, sizeof *couple);
+    model_support_couples(now->model, now->shot, couple);
+    memcpy(values, couple[probe->number], sizeof *couple);
+    mem_free(couple);
+}
+
 static void measure_held(const ModelProbe *probe, const Moment *now, double *values)
 {
     model_force_on(now->model, now->shot, &probe->held, values);
@@ -79,7 +87,7 @@ static void measure_held(const ModelProbe *probe, const Moment *now, double *val
 static const ProbeKind place_kind = {"m", 3, measure_place}, height_kind = {"m", 1, measure_height},
                        distance_kind = {"m", 1, measure_distance}, angle_kind = {"rad", 1, measure_angle},
                        obstacle_kind = {"N", 3, measure_obstacle}, support_kind = {"N", 3, measure_support},
-                       held_kind = {"N", 3, measure_held};
+                       held_kind = {"N", 3, measure_held}, couple_kind = {"N m", 3, measure_couple};
 
 /* ---- Points ---- */
 
@@ -145,11 +153,11 @@ static bool obstacle_probe(const Model *model, const Build *b, Key at, const cha
     return found;
 }
 
+/* `at`: the key of the number. */
 static bool support_probe(const Model *model, const Build *b, Key at, int number, ModelProbe *probe)
 {
     probe->number = number;
     if (number < model->support_count) return true;
-    at = key("%s.fix", at.text);
     return model->support_count == 0
                ? yaml_refuse(b->file, at.text, "nothing holds the body")
                : yaml_refuse(b->file, at.text, "fix is %d; what holds the body has the numbers 0 to %d",
@@ -161,7 +169,7 @@ static bool force_probe(const Model *model, const Build *b, Key at, const ForceS
     at = key("%s.force", at.text);
     probe->kind = from->obstacle ? &obstacle_kind : from->group ? &held_kind : &support_kind;
     if (from->obstacle) return obstacle_probe(model, b, at, from->obstacle, probe);
-    if (!from->group) return support_probe(model, b, at, from->fix, probe);
+    if (!from->group) return support_probe(model, b, key("%s.fix", at.text), from->fix, probe);
     return model->body->ops->select(model, b, key("%s.group", at.text).text, from->group, &probe->held);
 }
 
@@ -183,6 +191,10 @@ static bool check_name(const Build *b, Key at, const char *name)
 static bool read_probe(const Model *model, const Build *b, Key at, const ProbeScene *from, ModelProbe *probe)
 {
     if (from->force) return force_probe(model, b, at, from->force, probe);
+    if (from->couple != YAML_ABSENT) {
+        probe->kind = &couple_kind;
+        return support_probe(model, b, key("%s.couple", at.text), from->couple, probe);
+    }
     if (from->angle) return probe->kind = &angle_kind, angle_probe(model, b, at, from, probe);
     if (from->distance) {
         probe->kind = &distance_kind;

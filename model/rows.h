@@ -167,6 +167,8 @@ typedef struct BodyOps {
 
     /* What its supports do to its points in a state of rest, force[point_count][3] N: 0 where nothing is held. */
     void (*supports)(const struct Model *model, const Snapshot *shot, double *force);
+    /* The couples there, couple[point_count][3] N m: 0 where no frame is held. Optional. */
+    void (*couples)(const struct Model *model, const Snapshot *shot, double *couple);
 
     /* All points held: what is left relaxes in a given pose. The caller's; optional. */
     System *(*pose_system)(const struct Model *model);

@@ -276,6 +276,7 @@ typedef struct ProbeScene {
     bool mass_center;
     double axis[3];
     ForceScene *force;
+    int couple; /* of this support; absent: none */
     int distance_count, angle_count;
 } ProbeScene;
 

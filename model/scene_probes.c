@@ -43,4 +43,7 @@ const YamlTable probe_table = {
         {YAML_VECTOR(ProbeScene, axis), .when = "angle", .doc = "with an angle of two points: a direction"},
         {YAML_OPTIONAL(ProbeScene, force, &force_table), .one_of = 1, .required = true,
          .doc = "what a support or an obstacle does to the body"},
+        {YAML_INTEGER(ProbeScene, couple), .when = "/rod & " AT_REST, .range = "[0, inf)", .one_of = 1,
+         .required = true,
+         .doc = "of a rod: the couple of its clamp (0), or of its held end (1), N m along x, y, z"},
         {0}}};

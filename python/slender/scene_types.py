@@ -400,7 +400,7 @@ RangeOfTimes = TypedDict("RangeOfTimes", {
 
 Probes = TypedDict("Probes", {
     "vertex": "Number", "group": "Number", "mass_center": "bool", "height": "Number", "distance": "Numbers",
-    "angle": "Numbers", "axis": "Numbers", "force": "ForceOfAProbe",
+    "angle": "Numbers", "axis": "Numbers", "force": "ForceOfAProbe", "couple": "int",
 }, total=False)
 
 ForceOfAProbeKeys = TypedDict("ForceOfAProbeKeys", {

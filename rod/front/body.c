@@ -404,6 +404,7 @@ static const BodyOps ops = {
     .move = rod_move_ends,
     .system = make_system,
     .supports = rod_support_forces,
+    .couples = rod_support_couples,
     .balance = balance_pose,
     .add_static = rod_add_static,
     .add_frame = rod_add_frame,

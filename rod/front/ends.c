@@ -56,14 +56,17 @@ typedef struct EndPose {
 
 static bool pose_at(const Hold *hold, double time, EndPose *pose, Error *err)
 {
-    return rigid_move_vectors(hold->moves, time, &pose->moved.x, &pose->turned.x, err) ||
-           error_prefix(err, "%s", hold->at.text);
+    double moved[3], turned[3];
+    if (!rigid_move_vectors(hold->moves, time, moved, turned, err))
+        return error_prefix(err, "%s", hold->at.text);
+    *pose = (EndPose){vec3_load(moved), vec3_load(turned)};
+    return true;
 }
 
 /* At a part of the way. */
 static bool pose_on(const Hold *hold, HeldWay way, double part, EndPose *pose, Error *err)
 {
-    EndPose was = {0}, is;
+    EndPose was = {0}, is = {0};
     if (!isnan(way.since) && !pose_at(hold, way.since, &was, err)) return false;
     if (!pose_at(hold, way.time, &is, err)) return false;
     pose->moved = vec3_axpy(part, is.moved, vec3_scale(1 - part, was.moved));
@@ -165,7 +168,7 @@ void rod_lead_end(const RodLayout *layout, int node, Vec3 place, const Quat *fra
 /* One that moves: what it has moved and turned grows evenly, by whole turns, too; beside that x comes to the hold. */
 static bool lead_moving(const RodLayout *layout, const Hold *hold, HeldWay way, double *x, Error *err)
 {
-    EndPose was, is;
+    EndPose was = {0}, is = {0};
     if (!pose_on(hold, way, way.from, &was, err) || !pose_on(hold, way, way.to, &is, err)) return false;
     Vec3 pivot = vec3_load(hold->moves->pivot), place = vec3_load(x + layout->position + 3 * hold->node);
     Quat free = rod_reference(layout, x, hold->node), frame = free;
@@ -254,7 +257,7 @@ static bool check_apart(const RodModel *rm, const Build *b, Hold first, Hold las
 /* rad, between two times; since NAN: from where it was made. A formula that is not finite is told where it is used. */
 static double turned(const Hold *hold, double since, double time)
 {
-    EndPose was, is;
+    EndPose was = {0}, is = {0};
     HeldWay way = {since, time, 0, 1};
     if (!pose_on(hold, way, 0, &was, NULL) || !pose_on(hold, way, 1, &is, NULL)) return 0;
     return vec3_length(vec3_sub(is.turned, was.turned));

@@ -53,8 +53,9 @@ bool rod_move_ends(const Model *model, HeldWay way, double *x, Error *err);
 /* take_state.c: BodyOps.take_state. */
 bool rod_take_state(const Model *model, const double *from, int dofs, double *x, Error *err);
 
-/* BodyOps.supports; and the nodes that are held, into the model. */
+/* BodyOps.supports and couples; and the nodes that are held, into the model. */
 void rod_support_forces(const Model *model, const Snapshot *shot, double *force);
+void rod_support_couples(const Model *model, const Snapshot *shot, double *couple);
 void rod_add_supports(Model *model);
 
 /* report.c, cost.c */

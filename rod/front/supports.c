@@ -78,3 +78,19 @@ void rod_support_forces(const Model *model, const Snapshot *shot, double *force)
     else
         hanging_forces(rm->rod, shot->p, force);
 }
+
+/* Turns are increments in the frames of their nodes. */
+void rod_support_couples(const Model *model, const Snapshot *shot, double *couple)
+{
+    const RodLayout *layout = &((const RodModel *)model->self)->layout;
+    System *sys = shot->load_case->sys;
+    Point at = state_point(&shot->at, shot->p);
+    double *gradient = mem_alloc((size_t)layout->dofs, sizeof *gradient);
+    system_gradient(sys, &at, gradient);
+    for (int i = 0; i < layout->nodes; i++) {
+        int turn = layout->turn + 3 * i;
+        Vec3 own = system_is_fixed(sys, turn) ? vec3_load(gradient + turn) : vec3(0, 0, 0);
+        vec3_store(couple + 3 * i, quat_rotate(rod_reference(layout, at.x, i), own));
+    }
+    mem_free(gradient);
+}

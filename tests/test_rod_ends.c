@@ -1,0 +1,217 @@
+/* Rods whose ends are led by formulas of time, in whole runs of scenes; and what holds them. */
+#define NAME "test_rod_ends"
+#include "tests/run_fixture.h"
+#include "base/vec3.h"
+#include <math.h>
+
+static const double PI = 3.14159265358979323846;
+
+static const double *numbers(const Array *array)
+{
+    return array->data;
+}
+
+/* A straight rod along x of round section: GJ = E/(2(1 + nu)) pi r^4/2 with nu = 0.5. */
+enum { N = 40 };
+static const double LENGTH = 0.2, GJ = 1e6 / 3 * 3.14159265358979323846e-12 / 2;
+
+#define STRAIGHT                                                                                             \
+    "slender: 1\nrod:\n  radius: 1 mm\n  young: 1 MPa\n  poisson: 0.5\n  density: 1000\n  elements: 40\n"    \
+    "  natural_strain: [0, 0, 0]\n  length: 0.2\n"
+#define WEIGHTLESS STRAIGHT "  gravity: [0, 0, 0]\n"
+#define END        "  end: {position: [0.2, 0, 0], hold: clamped, frame: [[1, 0, 0], [0, 1, 0], [0, 0, 1]], "
+
+static void check_rows(Result *result, const char *path, const double *wanted, int count, double most)
+{
+    Array rows = read_all(result, path);
+    assert_int_equal((int)array_count(&rows), count);
+    for (int i = 0; i < count; i++)
+        if (!(fabs(numbers(&rows)[i] - wanted[i]) <= most))
+            fail_msg("%s[%d] is %.12g, not %.12g", path, i, numbers(&rows)[i], wanted[i]);
+    array_clear(&rows);
+}
+
+/* ---- Statics ---- */
+
+/* An end that turns about the rod, by two turns and more: the torque is G J angle/L, with as many turns as were made, also
+ * where one stage makes all of them. */
+static void test_torque(void **state)
+{
+    (void)state;
+    static const char *const sequences[] = {"[{time: 0}, {time: 1}, {time: 2}]", "[{time: 2}]"};
+    for (int k = 0; k < 2; k++) {
+        Result *result =
+            run_text(mem_format("%s%sturn: [\"7*t\", \"0\", \"0\"]}\njob: equilibrium\nsequence: %s\n"
+                                "probes: {first: {couple: 0}, last: {couple: 1}}\n",
+                                WEIGHTLESS, END, sequences[k]));
+        double wanted[2][9] = {{0}}, torque = GJ * 7 / LENGTH;
+        for (int n = 0; n < 3; n++) wanted[1][3 * n] = n * torque, wanted[0][3 * n] = -n * torque;
+        int from = k ? 6 : 0;
+        check_rows(result, "slender/probes/first", wanted[0] + from, 9 - from, 1e-7 * torque);
+        check_rows(result, "slender/probes/last", wanted[1] + from, 9 - from, 1e-7 * torque);
+        const double both[6] = {-2 * torque, 0, 0, 2 * torque, 0, 0};
+        check_rows(result, "slender/final/support_couple", both, 6, 1e-7 * torque);
+        Array energy = read_all(result, "slender/final/energy/strain");
+        assert_true(fabs(*numbers(&energy) / (torque * 14) - 1) < 1e-9);
+        array_clear(&energy);
+        result_close(result);
+    }
+}
+
+/* Euler's elastica between hinges: an end that moves by 2 (1 - E/K) of the length, k = sin 30 degrees, is pushed by
+ * 4 K^2 EI/L^2. The last stage returns, and the rod with it. */
+static void test_elastica(void **state)
+{
+    (void)state;
+    const double K = 1.6857503548125961, E = 1.4674622093394272, EI = 1e6 * PI * 1e-12 / 4;
+    Result *result = run_text(mem_format("slender: 1\njob: equilibrium\nrod:\n  radius: 1 mm\n  young: 1 "
+                                         "MPa\n  poisson: 0.5\n  density: 1000\n"
+                                         "  natural_strain: [0, 1.0e-4, 0]\n  length: 1\n  elements: 100\n  "
+                                         "gravity: [0, 0, 0]\n  hold: pinned\n"
+                                         "  end: {position: [1, 0, 0], move: [\"-%.16g*t\", 0, 0]}\n"
+                                         "sequence: [{time: 0.1}, {time: 1}, {time: 0.1}]\nprobes: {push: "
+                                         "{force: {fix: 1}}, mid: {vertex: 50}}\n",
+                                         2 * (1 - E / K)));
+    Array push = read_all(result, "slender/probes/push"), mid = read_all(result, "slender/probes/mid");
+    const double *F = numbers(&push), *x = numbers(&mid);
+    double off = -F[3] / (4 * K * K * EI) - 1, deflection = hypot(x[4], x[5]) - 0.5 / K;
+    print_message("elastica by an end that moves: force %.1e off, deflection %.1e m off\n", off, deflection);
+    assert_true(fabs(off) < 4e-4 && fabs(deflection) < 2e-4);
+    assert_true(fabs(F[6] / F[0] - 1) < 1e-6);
+    array_clear(&push);
+    array_clear(&mid);
+    result_close(result);
+}
+
+/* What holds a rod bears its weight and the moment of it, in both forms: of turns only, and (with a potential of nothing)
+ * with positions. A load at a point and its couple are borne, too. */
+static void test_weight(void **state)
+{
+    (void)state;
+    const double weight = 1000 * PI * 1e-6 * LENGTH * 9.81;
+    for (int k = 0; k < 2; k++) {
+        Result *result = run_text(
+            mem_format("%s  loads:\n    - {point: 0.1, force: [0, 1 mN, 0], couple: [0, 0, 2.0e-6]}\n%s"
+                       "job: equilibrium\nprobes: {mass: {mass_center: true}, at: {vertex: 20}}\n",
+                       STRAIGHT, k ? "    - {potential: \"0*z\"}\n" : ""));
+        Array mass = read_all(result, "slender/probes/mass"), at = read_all(result, "slender/probes/at");
+        Vec3 moment = vec3_add(vec3_cross(vec3_load(numbers(&mass)), vec3(0, 0, -weight)),
+                               vec3_cross(vec3_load(numbers(&at)), vec3(0, 1e-3, 0)));
+        const double force[3] = {0, -1e-3, weight}, couple[3] = {-moment.x, -moment.y, -moment.z - 2e-6};
+        check_rows(result, "slender/final/support_force", force, 3, 1e-9 * weight);
+        check_rows(result, "slender/final/support_couple", couple, 3, 1e-7 * weight * LENGTH);
+        check_rows(result, "slender/cases/case1/support_couple", couple, 3, 1e-7 * weight * LENGTH);
+        array_clear(&mass);
+        array_clear(&at);
+        result_close(result);
+    }
+}
+
+/* A clamp that turns to where gravity is another: the rod hangs from it as one that is clamped so. */
+static void test_turned_clamp(void **state)
+{
+    (void)state;
+    Array x[2];
+    for (int k = 0; k < 2; k++) {
+        Result *result = run_text(mem_format(
+            "%s  clamp: {%s}\njob: equilibrium\n", STRAIGHT,
+            k ? "position: [0.01, 0, 0], frame: [[0, 0.6, 0.8], [0, -0.8, 0.6], [1, 0, 0]]"
+              : "position: [0, 0, 0], move: [\"0.01\", \"0\", \"0\"], turn: [\"0\", \"0\", \"0\"], "
+                "frame: [[0, 0.6, 0.8], [0, -0.8, 0.6], [1, 0, 0]]"));
+        x[k] = read_all(result, "slender/state/x");
+        result_close(result);
+    }
+    for (int i = 0; i < 3 * (N + 1); i++) assert_true(fabs(numbers(&x[0])[i] - numbers(&x[1])[i]) < 1e-9);
+    for (int k = 0; k < 2; k++) array_clear(&x[k]);
+}
+
+/* ---- Motions ---- */
+
+/* A clamp that is accelerated evenly, from rest as implicit Euler has it (a (t^2 + t dt)/2): a rod whose curve bears its inertia
+ * goes with it as a rigid one. The load that stands for the inertia acts at the beginning only, where the natural strains are
+ * found. */
+static void test_accelerated(void **state)
+{
+    (void)state;
+    enum { STEPS = 60 };
+    Result *result = run_text(mem_format(
+        "slender: 1\njob: simulate\nrod:\n  radius: 1 mm\n  young: 20 MPa\n  poisson: 0.5\n  density: 1000\n"
+        "  elements: 40\n  curve: {formula: [\"0.02*sin(20*u)\", \"u/2\", \"-u\"], range: [0, 0.15]}\n"
+        "  start: curve\n  clamp: {move: [\"2*(t*t + 0.01*t)/2\", \"0\", \"-1*(t*t + 0.01*t)/2\"]}\n"
+        "  loads: [{line: [\"-2*%.17g*(t > 0 ? 0 : 1)\", \"0\", \"%.17g*(t > 0 ? 0 : 1)\"]}]\n"
+        "time: {step: 10 ms, steps: %d}\noutput: {precision: double}\n",
+        1e-3 * PI, 1e-3 * PI, STEPS));
+    Array x = read_all(result, "slender/frames/x");
+    double most = 0;
+    assert_int_equal(x.dims[0], STEPS + 1);
+    for (int n = 0; n <= STEPS; n++)
+        for (int i = 0; i < 3 * (N + 1); i++) {
+            double t = 0.01 * n, way = (t * t + 0.01 * t) / 2, a[3] = {2, 0, -1};
+            double off = numbers(&x)[3 * (N + 1) * n + i] - a[i % 3] * way - numbers(&x)[i];
+            most = fmax(most, fabs(off));
+        }
+    print_message("accelerated by 2.2 m/s^2 over 0.4 m: %.1e m off a rigid motion\n", most);
+    assert_true(most < 1e-12);
+    array_clear(&x);
+    result_close(result);
+}
+
+/* Turns have no inertia: a straight rod whose last clamp turns about it, while the first one turns the other way, is twisted
+ * evenly in every frame. Both begin turned already. */
+static void test_wound_up(void **state)
+{
+    (void)state;
+    Result *result =
+        run_text(mem_format("%s  clamp: {turn: [\"-1 - 10*t\", \"0\", \"0\"]}\n%sturn: [\"1 + 30*t\", \"0\", "
+                            "\"0\"]}\njob: simulate\n"
+                            "time: {step: 5 ms, steps: 60}\noutput: {precision: double, stress: true}\n",
+                            WEIGHTLESS, END));
+    Array strain;
+    Error err;
+    for (int n = 0; n <= 60; n += 20) {
+        if (!result_read_step(result, "PointData/strain", n, &strain, &err)) fail_msg("%s", err.text);
+        double wanted = (2 + 40 * 0.005 * n) / LENGTH, off = 0;
+        for (int i = 0; i < 3 * (N + 1); i++) {
+            double value =
+                strain.type == ARRAY_FLOAT64 ? numbers(&strain)[i] : ((const float *)strain.data)[i];
+            off = fmax(off, fabs(value - (i % 3 ? 0 : wanted)));
+        }
+        assert_true(off < 2e-6 * wanted);
+        array_clear(&strain);
+    }
+    result_close(result);
+}
+
+/* A motion that goes on from another one's end is that one, bit for bit. */
+static void test_resumed(void **state)
+{
+    (void)state;
+    static const char form[] =
+        "%s  clamp: {move: [\"0.02*sin(20*t)\", \"0\", \"0\"], turn: [\"0\", \"t\", \"0\"]}\njob: "
+        "simulate\ntime: {step: 5 ms, steps: %d}\noutput: {precision: double}\n";
+    SlenderError err;
+    Array x[2];
+    for (int k = 0; k < 2; k++) {
+        for (int part = k; part < 2; part++) {
+            char *text = mem_format(form, STRAIGHT, part ? 20 : 7);
+            Result *result = run(slender_scene_parse(text, NULL, 0, &err), &err, part > k);
+            mem_free(text);
+            if (part) x[k] = read_all(result, "slender/frames/x");
+            result_close(result);
+        }
+    }
+    assert_int_equal(x[0].dims[0], 21);
+    assert_memory_equal(x[0].data, x[1].data, array_count(&x[0]) * sizeof(double));
+    for (int k = 0; k < 2; k++) array_clear(&x[k]);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_torque),      cmocka_unit_test(test_elastica),
+        cmocka_unit_test(test_weight),      cmocka_unit_test(test_turned_clamp),
+        cmocka_unit_test(test_accelerated), cmocka_unit_test(test_wound_up),
+        cmocka_unit_test(test_resumed),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
