@@ -153,14 +153,16 @@ static bool obstacle_probe(const Model *model, const Build *b, Key at, const cha
     return found;
 }
 
-/* `at`: the key of the number. */
-static bool support_probe(const Model *model, const Build *b, Key at, int number, ModelProbe *probe)
+/* What the key `name` below `at` says. */
+static bool support_probe(const Model *model, const Build *b, Key at, const char *name, int number,
+                          ModelProbe *probe)
 {
     probe->number = number;
     if (number < model->support_count) return true;
+    at = key("%s.%s", at.text, name);
     return model->support_count == 0
                ? yaml_refuse(b->file, at.text, "nothing holds the body")
-               : yaml_refuse(b->file, at.text, "fix is %d; what holds the body has the numbers 0 to %d",
+               : yaml_refuse(b->file, at.text, "%s is %d; what holds the body has the numbers 0 to %d", name,
                              number, model->support_count - 1);
 }
 
@@ -169,7 +171,7 @@ static bool force_probe(const Model *model, const Build *b, Key at, const ForceS
     at = key("%s.force", at.text);
     probe->kind = from->obstacle ? &obstacle_kind : from->group ? &held_kind : &support_kind;
     if (from->obstacle) return obstacle_probe(model, b, at, from->obstacle, probe);
-    if (!from->group) return support_probe(model, b, key("%s.fix", at.text), from->fix, probe);
+    if (!from->group) return support_probe(model, b, at, "fix", from->fix, probe);
     return model->body->ops->select(model, b, key("%s.group", at.text).text, from->group, &probe->held);
 }
 
@@ -193,7 +195,7 @@ static bool read_probe(const Model *model, const Build *b, Key at, const ProbeSc
     if (from->force) return force_probe(model, b, at, from->force, probe);
     if (from->couple != YAML_ABSENT) {
         probe->kind = &couple_kind;
-        return support_probe(model, b, key("%s.couple", at.text), from->couple, probe);
+        return support_probe(model, b, at, "couple", from->couple, probe);
     }
     if (from->angle) return probe->kind = &angle_kind, angle_probe(model, b, at, from, probe);
     if (from->distance) {

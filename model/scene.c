@@ -196,21 +196,39 @@ static const YamlTable fix_table = {
              "that two entries move must go to one place"},
         {0}}};
 
+const YamlTable load_point_table = {
+    .name = "point of a load",
+    .size = sizeof(LoadPointScene),
+    .doc = "Where on the rod a load acts.",
+    .fields =
+        (const YamlField[]){{YAML_CHOICE(LoadPointScene, end), .choices = YAML_NAMES("end"), .one_of = 1,
+                             .short_form = true, .required = true, .doc = "the end that is not the clamp's"},
+                            {YAML_NUMBER(LoadPointScene, value), .unit = "m", .range = "[0, inf)",
+                             .one_of = 1, .short_form = true, .required = true, .doc = "an arclength"},
+                            {0}}};
+
 const YamlTable load_table = {
     .name = "loads",
     .size = sizeof(LoadScene),
-    .doc = "A dead load: a force that keeps its direction.",
-    .fields = (const YamlField[]){
-        {YAML_VECTOR(LoadScene, force), .unit = "N", .one_of = 1, .required = true,
-         .doc =
-             "in all, shared equally by the vertices (of a solid by its nodes: use area for an even pull)"},
-        {YAML_VECTOR(LoadScene, line), .unit = "N/m", .one_of = 1, .required = true,
-         .doc = "per rest length of boundary edges"},
-        {YAML_VECTOR(LoadScene, area), .unit = "N/m^2", .one_of = 1, .required = true,
-         .doc = "per rest area"},
-        {YAML_OPTIONAL(LoadScene, on, &selection_table), .also = ON_NAMES,
-         .doc = "where; everywhere if absent"},
-        {0}}};
+    .doc = "A dead load: a force, or a couple on a rod, that keeps its direction. Of stages and cases they "
+           "come in "
+           "place of the scene's; those of a rod in place of `rod.loads`, but for potentials.",
+    .fields = (const YamlField[]){{YAML_VECTOR(LoadScene, force), .unit = "N", .one_of = 1, .required = true,
+                                   .doc = "in all, shared equally by the vertices (of a solid by its nodes: "
+                                          "use area for an even pull); of "
+                                          "a rod at its `point`"},
+                                  {YAML_VECTOR(LoadScene, line), .unit = "N/m", .one_of = 1, .required = true,
+                                   .doc = "per rest length of boundary edges; on each metre of a rod"},
+                                  {YAML_VECTOR(LoadScene, area), .when = "!/rod", .unit = "N/m^2",
+                                   .one_of = 1, .required = true, .doc = "per rest area"},
+                                  {YAML_VECTOR(LoadScene, couple), .when = "/rod", .unit = "N m", .one_of = 1,
+                                   .required = true, .doc = "of a rod, at its `point`"},
+                                  {YAML_OPTIONAL(LoadScene, on, &selection_table), .when = "!/rod",
+                                   .also = ON_NAMES, .doc = "where; everywhere if absent"},
+                                  {YAML_OPTIONAL(LoadScene, point, &load_point_table),
+                                   .when = "/rod & force | couple",
+                                   .doc = "of a rod: where `force` or `couple` acts"},
+                                  {0}}};
 
 /* ---- The whole ---- */
 

@@ -96,9 +96,16 @@ typedef struct FixScene {
     int move_count;
 } FixScene;
 
+/* On a rod: an arclength, or its end. */
+typedef struct LoadPointScene {
+    int end;      /* 0: the end */
+    double value; /* m; NAN: there */
+} LoadPointScene;
+
 typedef struct LoadScene {
-    double force[3], line[3], area[3]; /* one of them */
-    SelectionScene *on;
+    double force[3], line[3], area[3], couple[3]; /* one of them */
+    SelectionScene *on;                           /* of a mesh   */
+    LoadPointScene *point;                        /* of a rod    */
 } LoadScene;
 
 /* ---- Load cases ---- */

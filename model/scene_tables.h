@@ -6,7 +6,7 @@
 #define ON_NAMES YAML_NAMES("region", "true")
 
 extern const YamlTable where_table, mesh_table, pose_table, velocity_table;
-extern const YamlTable selection_table, load_table;
+extern const YamlTable selection_table, load_table, load_point_table;
 extern const YamlTable target_table, case_table;       /* scene_cases.c */
 extern const YamlTable flux_density_table, path_table; /* scene_flux.c */
 extern const YamlTable young_table, fold_table, magnetization_table;

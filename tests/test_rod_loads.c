@@ -240,10 +240,50 @@ static void test_identify_weight(void **state)
     }
 }
 
+/* A range of loads, in place of the scene's, is the same as formulas of a time that goes evenly; the last stage alone is a case
+ * with its loads. A potential stays beside them. */
+static void test_ranges(void **state)
+{
+    (void)state;
+    enum { N = 20, STAGES = 5 };
+    static const char beside[] = "{potential: \"-1e-5*y\"}";
+    static const char last[] =
+        "[{line: [0, 0, 2.0e-5]}, {point: end, force: [0, 2 uN, 0]}, {point: 0.031, couple: [1.0e-6, 0, 0]}]";
+    char *formulas =
+        mem_format("%s, {line: [\"0\", \"0\", \"1e-5*(1+t)\"]}, {point: end, force: [\"0\", \"2e-6*t\", "
+                   "\"0\"]}, {point: 0.031, couple: [\"1e-6*t\", \"0\", \"0\"]}",
+                   beside);
+    char *replaced = mem_format("%s, {point: 0.05, force: [0, 0, 1]}", beside);
+    char *more[] = {
+        mem_format("sequence: {time: {from: 0, to: 1, count: %d}}\noutput: {precision: double}\n", STAGES),
+        mem_format("sequence: {loads: {from: [{line: [0, 0, 1.0e-5]}], to: %s, count: %d}}\noutput: "
+                   "{precision: double}\n",
+                   last, STAGES),
+        mem_format("cases: [{name: last, loads: %s}]\n", last)};
+    Array x[2];
+    for (int k = 0; k < 2; k++) {
+        Result *result = run_text(rod_text("equilibrium", N, 0.4, k ? replaced : formulas, more[k]));
+        x[k] = read_all(result, "slender/frames/x");
+        assert_int_equal(x[k].dims[0], STAGES);
+        result_close(result);
+    }
+    double *a = run_nodes(rod_text("equilibrium", N, 0.4, replaced, more[2]), "slender/rod/x", N + 1);
+    double off = farthest(x[0].data, x[1].data, STAGES * (N + 1)),
+           alone = farthest((const double *)x[0].data + 3 * (STAGES - 1) * (N + 1), a, N + 1);
+    print_message("ranges of loads: %.1e m off formulas of t, the last one alone %.1e m\n", off, alone);
+    assert_true(off < 1e-9 && alone < 1e-9);
+    mem_free(a);
+    mem_free(formulas);
+    mem_free(replaced);
+    for (int k = 0; k < 3; k++) mem_free(more[k]);
+    for (int k = 0; k < 2; k++) array_clear(&x[k]);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_helix), cmocka_unit_test(test_deflections),
-                                       cmocka_unit_test(test_times), cmocka_unit_test(test_identify),
-                                       cmocka_unit_test(test_identify_weight)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_helix),           cmocka_unit_test(test_deflections),
+        cmocka_unit_test(test_times),           cmocka_unit_test(test_identify),
+        cmocka_unit_test(test_identify_weight), cmocka_unit_test(test_ranges)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

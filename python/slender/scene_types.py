@@ -293,8 +293,8 @@ Ball = TypedDict("Ball", {
 }, total=False)
 
 Loads = TypedDict("Loads", {
-    "force": "Numbers", "line": "Numbers", "area": "Numbers", "on": "Selection", "region": "Selection",
-    "true": "Selection",
+    "force": "Numbers", "line": "Numbers", "area": "Numbers", "couple": "Numbers", "on": "Selection",
+    "region": "Selection", "true": "Selection", "point": "PointOfALoad",
 }, total=False)
 
 SelectionKeys = TypedDict("SelectionKeys", {

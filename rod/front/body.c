@@ -16,8 +16,11 @@ static const double STEP_CAP = 1.5; /* rad */
 static bool put_loads(Model *model, const Build *b, const char *at, const LoadScene *loads, int count,
                       double *p)
 {
-    (void)model, (void)loads, (void)count, (void)p;
-    return yaml_refuse(b->file, at, "loads of a rod are under rod.loads");
+    const RodModel *rm = model->self;
+    if (rm->list.timed)
+        return yaml_refuse(
+            b->file, at, "rod.loads follow formulas of t in all stages: loads in their place are not known");
+    return rod_loads_put_dead(rm->rod, b, at, loads, count, p);
 }
 
 static bool load_rod(const Model *model, double time, double *p, Error *err)
@@ -250,10 +253,12 @@ static bool check_slender(const Rod *rod, const Build *b)
 }
 
 /* Takes the fields, and the model's potentials. */
-static Rod *make_rod(RodModel *rm, const RodScene *scene, const FluxFields *fields)
+static Rod *make_rod(RodModel *rm, const Scene *whole, const FluxFields *fields)
 {
+    const RodScene *scene = rod_scene(whole);
     RodActs acts = rod_model_acts(rm);
     acts.fields = *fields;
+    acts.couples |= rod_loads_couple(whole);
     rm->list.potentials = (RodPotentials){0};
     if (!rm->curves) return rod_create(scene->elements, scene->length, rm->unit, rm->area, &acts);
     double *length = mem_alloc((size_t)rm->strand_count, sizeof *length);
@@ -273,7 +278,7 @@ static bool fill(Model *model, const Scene *scene, const Build *b)
     if (!check_rod(rm, scene, b)) return false;
     sized.size = rm->curves ? rod_model_longest(rm) : from->length;
     bool readable = model_read_flux(model, &sized, scene, &fields);
-    rm->rod = make_rod(rm, from, &fields);
+    rm->rod = make_rod(rm, scene, &fields);
     rm->rod->cosserat = from->model == ROD_COSSERAT;
     model->point_count = rod_node_count(rm->rod);
     WorldBody shown = rod_world_body(rm->rod);

@@ -1,5 +1,6 @@
 #include "rod/front/loads.h"
 #include "base/memory.h"
+#include "model/sequence.h"
 #include <math.h>
 
 static const char *const time_variables[] = {"t", NULL};
@@ -182,6 +183,58 @@ bool rod_loads_put(const RodLoadList *list, const Rod *rod, const RodCurve *curv
     }
     if (ok) rod_sum_loads(rod, p);
     mem_free(along);
+    mem_free(points);
+    return ok;
+}
+
+/* ---- Of stages and cases ---- */
+
+static bool have_couples(const LoadScene *loads, int count)
+{
+    bool have = false;
+    for (int k = 0; k < count; k++) have |= !isnan(loads[k].couple[0]);
+    return have;
+}
+
+bool rod_loads_couple(const Scene *scene)
+{
+    bool have = false;
+    for (int k = 0; k < sequence_said(scene); k++) {
+        StageScene stage = sequence_stage(scene, k);
+        have |= have_couples(stage.loads, stage.loads_count);
+    }
+    for (int k = 0; k < scene->cases_count; k++)
+        have |= have_couples(scene->cases[k].loads, scene->cases[k].loads_count);
+    return have;
+}
+
+static bool read_dead(const Rod *rod, const Build *b, Key at, const LoadScene *load, RodPointLoad *point)
+{
+    double length = rod_length(rod);
+    if (!load->point)
+        return yaml_refuse(b->file, at.text,
+                           "of a rod it needs `point`, where it acts: an arclength, or `end`");
+    *point = (RodPointLoad){.s = isnan(load->point->value) ? INFINITY : load->point->value};
+    if (!isnan(load->force[0])) point->force = vec3_load(load->force);
+    if (!isnan(load->couple[0])) point->couple = vec3_load(load->couple);
+    return !isfinite(point->s) || point->s <= length * (1 + 1e-9) ||
+           yaml_refuse(b->file, at.text, "a load is at s = %g m, beyond the rod's length of %g m", point->s,
+                       length);
+}
+
+bool rod_loads_put_dead(const Rod *rod, const Build *b, const char *at, const LoadScene *loads, int count,
+                        double *p)
+{
+    RodPointLoad *points = mem_alloc((size_t)count, sizeof *points);
+    RodLoads all = {.points = points};
+    bool ok = true;
+    for (int k = 0; k < count; k++)
+        if (!isnan(loads[k].line[0]))
+            all.line = vec3_add(all.line, vec3_load(loads[k].line));
+        else
+            ok = read_dead(rod, b, key("%s[%d]", at, k), &loads[k], &points[all.point_count++]) && ok;
+    for (int k = 0; ok && k < rod->strands; k++) rod_share_loads(rod, k, all, p);
+    if (ok) rod_sum_loads(rod, p);
     mem_free(points);
     return ok;
 }

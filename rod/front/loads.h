@@ -39,6 +39,13 @@ bool rod_loads_at(const RodLoadList *list, double time, RodPointLoad *points, Ro
 bool rod_loads_along(const RodLoadList *list, int elements, double length, const RodCurve *curve, double time,
                      Vec3 *along, Error *err);
 
+/* Those of a stage or case in place of all of them into p. False after a refusal. */
+bool rod_loads_put_dead(const Rod *rod, const Build *b, const char *at, const LoadScene *loads, int count,
+                        double *p);
+
+/* Are there couples among those of stages and cases? */
+bool rod_loads_couple(const Scene *scene);
+
 /* All into p, but for weight; curves[strands]: where line loads know the rod to be (NULL: nowhere). */
 bool rod_loads_put(const RodLoadList *list, const Rod *rod, const RodCurve *curves, double time, double *p,
                    Error *err);

@@ -36,10 +36,11 @@ typedef struct RodModel {
     bool held;       /* `end` says where the last node is                                         */
     Vec3 end_position;
     Quat end_frame;
-    RigidMove first_moves, last_moves; /* how what holds them moves and turns, all first ends as one rigid thing; owned */
+    RigidMove first_moves,
+        last_moves;  /* how what holds them moves and turns, all first ends as one rigid thing; owned */
     RodStrand *base; /* [strands] where the first ends are before they move; owned; NULL: they stay */
-    bool preview;   /* by the position-based solver                                               */
-    double *moving; /* the state that it goes on from (pbd_rod_get_state); NULL: from rest, in model->x */
+    bool preview;    /* by the position-based solver                                               */
+    double *moving;  /* the state that it goes on from (pbd_rod_get_state); NULL: from rest, in model->x */
 } RodModel;
 
 /* Curves, section and loads of rod_scene(scene); NULL after a refusal. */

@@ -148,17 +148,6 @@ static const YamlTable load_force_table =
 static const YamlTable load_couple_table =
     LOAD_VECTOR_TABLE("couple on a rod", "A couple at a point.", "N m", "the time t");
 
-static const YamlTable load_point_table = {
-    .name = "point of a load",
-    .size = sizeof(LoadPointScene),
-    .doc = "Where on the rod a load acts.",
-    .fields =
-        (const YamlField[]){{YAML_CHOICE(LoadPointScene, end), .choices = YAML_NAMES("end"), .one_of = 1,
-                             .short_form = true, .required = true, .doc = "the end that is not the clamp's"},
-                            {YAML_NUMBER(LoadPointScene, value), .unit = "m", .range = "[0, inf)",
-                             .one_of = 1, .short_form = true, .required = true, .doc = "an arclength"},
-                            {0}}};
-
 static const YamlTable rod_load_table = {
     .name = "loads of a rod",
     .size = sizeof(RodLoadScene),

@@ -55,12 +55,6 @@ typedef struct LoadVectorScene {
     int formula_count, where_count;
 } LoadVectorScene;
 
-/* An arclength, or the end. */
-typedef struct LoadPointScene {
-    int end;      /* 0: the end */
-    double value; /* NAN: there */
-} LoadPointScene;
-
 typedef struct RodLoadScene {
     LoadPointScene *point;
     LoadVectorScene *line, *force, *couple;
