@@ -29,7 +29,7 @@ static CurvesSet helix(double (*points)[3], int axis, double length, double radi
         points[i][(axis + 1) % 3] = radius * cos(20 * t);
         points[i][(axis + 2) % 3] = radius * sin(20 * t);
     }
-    return (CurvesSet){"helix", 1, offsets, (const double(*)[3])points, red, 1.6, 0, false, {0}, {0}, 0};
+    return (CurvesSet){"helix", 1, offsets, (const double(*)[3])points, red, 1.6, 0, false, {0}, {0}, 0, {0}};
 }
 
 /* A curve of two points. */
@@ -38,7 +38,7 @@ static CurvesSet segment(double (*points)[3], Vec3 from, Vec3 to)
     static const int offsets[2] = {0, 2};
     vec3_store(points[0], from);
     vec3_store(points[1], to);
-    return (CurvesSet){"segment", 1, offsets, (const double(*)[3])points, red, 2, 0, false, {0}, {0}, 0};
+    return (CurvesSet){"segment", 1, offsets, (const double(*)[3])points, red, 2, 0, false, {0}, {0}, 0, {0}};
 }
 
 static CurvesScene scene_of(const CurvesSet *sets, int count)
@@ -187,7 +187,7 @@ static void places(void **state)
     double points[2][3], broken[5][3] = {{0, 0, -1}, {0.2, 0, -1}, {NAN, 0, 0}, {0.8, 0, -1}, {1, 0, -1}};
     const int offsets[2] = {0, 5};
     CurvesSet sets[2] = {segment(points, vec3(0, 0, 0), vec3(1, 0, -1))};
-    sets[1] = (CurvesSet){NULL, 1, offsets, (const double(*)[3])broken, blue, 2, 0, false, {0}, {0}, 0};
+    sets[1] = (CurvesSet){NULL, 1, offsets, (const double(*)[3])broken, blue, 2, 0, false, {0}, {0}, 0, {0}};
     sets[0].name = NULL;
     CurvesScene scene = scene_of(sets, 2);
     CurvesLayout layout;
@@ -225,6 +225,36 @@ static void marks(void **state)
     assert_true(with_clamp > with_gravity + 4 * 150); /* three views and the legend, 14 x 14 pixels each */
 }
 
+/* A frame that is held has its axes, and the outline of the section where these put it; one that turns freely a square only. */
+static void holds(void **state)
+{
+    (void)state;
+    const Color n1 = {0.48, 0.20, 0.58, 1}, n2 = {0.80, 0.28, 0.55, 1};
+    const double outline[4][2] = {{2, 0}, {0, 1}, {-2, 0}, {0, -1}};
+    double points[2][3];
+    CurvesSet set = segment(points, vec3(0, 0, 0), vec3(1, 0, -1));
+    set.name = NULL;
+    Hold items[2] = {{.at = {0.25, 0, -0.75}, .n1 = {0, 0, 1}, .n2 = {-1, 0, 0}},
+                     {.at = {0.75, 0, -0.25}, .n1 = {NAN, NAN, NAN}, .n2 = {NAN, NAN, NAN}}};
+    set.holds = (Holds){2, items, 4, outline};
+    CurvesScene scene = scene_of(&set, 1);
+    CurvesLayout layout;
+    assert_true(
+        curves_layout(&scene, page_head_end((PageHead){0}) + 1.5 * 15, &layout)); /* with its legend */
+    Page page = page_write(&scene);
+    const CurvesView *view = &layout.views[0];
+    double point = 1 / view->scale;
+    assert_true(is_color(pixel_at(&page, view, 0.25, -0.75 + 13 * point), n1));
+    assert_true(is_color(pixel_at(&page, view, 0.25 - 13 * point, -0.75), n2));
+    assert_true(is_color(pixel_at(&page, view, 0.25, -0.75 - 7.6 * point), page_ink)); /* long along n1 */
+    assert_true(
+        is_color(pixel_at(&page, view, 0.25 + 3.8 * point, -0.75), page_ink)); /* and short along n2 */
+    assert_false(is_color(pixel_at(&page, view, 0.25 + 7.6 * point, -0.75), page_ink));
+    assert_true(is_color(pixel_at(&page, view, 0.75 + point, -0.25 + point), page_ink));
+    assert_false(is_color(pixel_at(&page, view, 0.75, -0.25 + 13 * point), n1));
+    mem_free(page.rgb);
+}
+
 /* ---- Many curves, formats, motion ---- */
 
 static size_t file_size(const char *path)
@@ -245,7 +275,7 @@ static void many(void **state)
     double(*points)[3] = mem_alloc(STRANDS * EACH, sizeof *points);
     for (int i = 0; i < STRANDS * EACH; i++) points[i][0] = points[i][2] = i / 1e5;
     offsets[1] = STRANDS * EACH;
-    CurvesSet set = {"line", 1, offsets, (const double(*)[3])points, red, 1, 0, false, {0}, {0}, 0};
+    CurvesSet set = {"line", 1, offsets, (const double(*)[3])points, red, 1, 0, false, {0}, {0}, 0, {0}};
     CurvesScene scene = scene_of(&set, 1);
     assert_true(curves_write("curves.svg", &scene, &err));
     assert_true(file_size("curves.svg") < 40000);
@@ -346,6 +376,7 @@ int main(void)
         cmocka_unit_test_teardown(planes, nothing_leaks),
         cmocka_unit_test_teardown(places, nothing_leaks),
         cmocka_unit_test_teardown(marks, nothing_leaks),
+        cmocka_unit_test_teardown(holds, nothing_leaks),
         cmocka_unit_test_teardown(many, nothing_leaks),
         cmocka_unit_test_teardown(formats, nothing_leaks),
         cmocka_unit_test_teardown(moments, nothing_leaks),

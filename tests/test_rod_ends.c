@@ -127,6 +127,26 @@ static void test_turned_clamp(void **state)
 
 /* ---- Motions ---- */
 
+/* Results say where the ends are: the last one's columns are those of a turn about z of 0.3 rad a stage. */
+static void test_poses(void **state)
+{
+    (void)state;
+    Result *result =
+        run_text(mem_format("%s%smove: [\"-0.01*t\", \"0\", \"0\"], turn: [\"0\", \"0\", \"0.3*t\"]}\n"
+                            "job: equilibrium\nsequence: {time: {from: 0, to: 2, count: 3}}\n",
+                            WEIGHTLESS, END));
+    double wanted[3][2][12] = {{{0}}};
+    for (int n = 0; n < 3; n++)
+        for (int k = 0; k < 2; k++) {
+            double c = cos(0.3 * n * k), s = sin(0.3 * n * k), x = k * (LENGTH - 0.01 * n);
+            const double pose[12] = {c, -s, 0, x, s, c, 0, 0, 0, 0, 1, 0};
+            memcpy(wanted[n][k], pose, sizeof pose);
+        }
+    check_rows(result, "slender/frames/support_pose", wanted[0][0], 72, 1e-12);
+    check_rows(result, "slender/rod/support_pose", wanted[0][0], 24, 1e-12);
+    result_close(result);
+}
+
 /* A clamp that is accelerated evenly, from rest as implicit Euler has it (a (t^2 + t dt)/2): a rod whose curve bears its inertia
  * goes with it as a rigid one. The load that stands for the inertia acts at the beginning only, where the natural strains are
  * found. */
@@ -211,7 +231,7 @@ int main(void)
         cmocka_unit_test(test_torque),      cmocka_unit_test(test_elastica),
         cmocka_unit_test(test_weight),      cmocka_unit_test(test_turned_clamp),
         cmocka_unit_test(test_accelerated), cmocka_unit_test(test_wound_up),
-        cmocka_unit_test(test_resumed),
+        cmocka_unit_test(test_resumed),     cmocka_unit_test(test_poses),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

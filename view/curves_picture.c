@@ -78,16 +78,27 @@ static void legend_add_marks(Legend *legend, const Marks *marks)
     }
 }
 
+/* Clamps, and the axes of their frames. */
+static void legend_add_holds(Legend *legend, const CurvesScene *scene, int only)
+{
+    static const char *const names[] = {"n1", "n2"};
+    const Holds *holds = curves_holds(scene, only);
+    if (!scene->clamp_count && !holds) return;
+    Vec2 at = legend_place(legend, SQUARE, scene->clamps_name ? scene->clamps_name : "clamp");
+    if (legend->canvas) holds_draw_square(legend->canvas, (Vec2){at.x + 0.5 * SQUARE, at.y}, SQUARE);
+    for (int k = 0; holds && holds_have_frames(holds) && k < 2; k++) {
+        at = legend_place(legend, SAMPLE, names[k]);
+        if (legend->canvas) holds_draw_axis(legend->canvas, k + 1, at, SAMPLE);
+    }
+}
+
 /* Returns where the legend ends. The names of moments come last: in an animation nothing else moves. */
 static double draw_legend(Canvas *canvas, Canvas *ruler, const CurvesScene *scene, int only)
 {
     double top = page_head_end(scene_head(scene));
     Legend legend = {canvas, ruler, PAGE_MARGIN, top + 0.5 * LEGEND_ROW};
     legend_add_sets(&legend, scene, false, only);
-    if (scene->clamp_count) {
-        Vec2 at = legend_place(&legend, SQUARE, scene->clamps_name ? scene->clamps_name : "clamp");
-        if (canvas) curves_draw_clamp(canvas, (Vec2){at.x + 0.5 * SQUARE, at.y}, SQUARE);
-    }
+    legend_add_holds(&legend, scene, only);
     const Marks *marks = curves_marks(scene, only);
     if (marks) legend_add_marks(&legend, marks);
     legend_add_sets(&legend, scene, true, only);

@@ -13,6 +13,7 @@
 #pragma once
 #include "base/error.h"
 #include "view/chart.h"
+#include "view/holds.h"
 #include "view/marks.h"
 #include "view/raster.h"
 
@@ -28,6 +29,7 @@ typedef struct CurvesSet {
     Surroundings around; /* drawn below all curves: of the sets that are shown those of the last with any */
     Marks marks;         /* drawn above them, alike                                            */
     double time;         /* of a moment, s: marked in the charts of an animation               */
+    Holds holds;         /* drawn above all                                                    */
 } CurvesSet;
 
 enum { CURVES_CHARTS_MAX = 3 };
@@ -39,7 +41,7 @@ typedef struct CurvesScene {
     int set_count;
     const CurvesSet *sets; /* later ones lie over earlier ones                               */
     int clamp_count;
-    const double (*clamps)[3]; /* m; small squares                                           */
+    const double (*clamps)[3]; /* m; small squares, beside the sets' holds                   */
     const char *clamps_name;   /* in the legend; NULL: "clamp"                               */
     double gravity[3];         /* its direction, an arrow at each view; zeros: none          */
     double view[3];            /* one view, with this direction to the eye and z upwards;
@@ -59,6 +61,10 @@ bool curves_write(const char *path, const CurvesScene *scene, Error *err);
 /* Writes an animated .webp: a page for each set that is a moment, together with the sets that are none, shown
  * for so many seconds; the charts are over time, and mark its time. */
 bool curves_animate(const char *path, const CurvesScene *scene, double seconds, Error *err);
+
+/* Where curves are held, of the sets that are shown: all, or those that are no moments and that one. The last set's that has any;
+ * NULL: none has. */
+const Holds *curves_holds(const CurvesScene *scene, int only);
 
 /* The colour mixed with white: t = 1 is the colour itself, 0 the palest that is still seen. For the moments
  * of a motion over each other. */

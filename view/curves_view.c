@@ -180,18 +180,13 @@ static void draw_set(Canvas *canvas, const CurvesView *view, const CurvesSet *se
     mem_free(stack);
 }
 
-void curves_draw_clamp(Canvas *canvas, Vec2 at, double side)
-{
-    canvas_fill(canvas, (Box){at.x - 0.5 * side, at.y - 0.5 * side, side, side}, page_ink);
-}
-
 static void draw_clamps(Canvas *canvas, const CurvesScene *scene, const CurvesView *view)
 {
     int count = scene->clamp_count > 2 ? scene->clamp_count : 1; /* a rod has two ends */
     double side = fmax(5 * pow(count, -0.35), 0.35);
     for (int k = 0; k < scene->clamp_count; k++) {
         Vec2 at = place(view, scene->clamps[k]);
-        if (isfinite(at.x + at.y)) curves_draw_clamp(canvas, at, side);
+        if (isfinite(at.x + at.y)) holds_draw_square(canvas, at, side);
     }
 }
 
@@ -265,6 +260,14 @@ const Marks *curves_marks(const CurvesScene *scene, int only)
     return marks;
 }
 
+const Holds *curves_holds(const CurvesScene *scene, int only)
+{
+    const Holds *holds = NULL;
+    for (int s = 0; s < scene->set_count; s++)
+        if (scene->sets[s].holds.count && is_shown(&scene->sets[s], s, only)) holds = &scene->sets[s].holds;
+    return holds;
+}
+
 static const RasterMesh *obstacles_of(const CurvesScene *scene, int only)
 {
     const RasterMesh *obstacles = NULL;
@@ -321,5 +324,8 @@ void curves_view_draw(Canvas *canvas, const CurvesScene *scene, const CurvesView
     Camera camera = camera_of(view, 1);
     if (marks) marks_draw(canvas, marks, &camera, 1, (Vec2){box.x, box.y});
     draw_clamps(canvas, scene, view);
+    for (int s = 0; s < scene->set_count; s++)
+        if (is_shown(&scene->sets[s], s, only))
+            holds_draw(canvas, &scene->sets[s].holds, &camera, (Vec2){box.x, box.y});
     canvas_unclip(canvas);
 }

@@ -35,6 +35,3 @@ const Marks *curves_marks(const CurvesScene *scene, int only);
 
 /* The pen for a set's curves on the page. */
 Pen curves_pen(const CurvesSet *set);
-
-/* A square that marks a clamp. */
-void curves_draw_clamp(Canvas *canvas, Vec2 at, double side);

@@ -3,6 +3,7 @@
 #include "base/vec3.h"
 #include "view/curves_picture.h"
 #include "view/show_framings.h"
+#include "view/show_holds.h"
 #include "view/show_motion.h"
 #include "view/show_obstacles.h"
 #include "view/show_probes.h"
@@ -131,6 +132,7 @@ static void add_surroundings(RodPage *page, int frame)
     set->around = show_obstacles_at(&page->obstacles, frame);
     set->time = frame < 0 ? NAN : show_frame_time(page->data, frame);
     set->marks = show_motion_marks(&page->motion, set->time, motion_ink);
+    set->holds = show_holds(page->data, frame);
 }
 
 /* The simulated points of a frame, which are the first ones. */
@@ -227,8 +229,8 @@ static void frame_obstacles(RodPage *page)
         show_obstacles_find_near(&page->obstacles, way, &page->sets[s].around);
 }
 
-/* Where the strands are held: where they begin, and where the other end is. */
-static void add_clamps(RodPage *page, CurvesScene *scene)
+/* Where the strands are held, unless the sets say it: where they begin, and where the other end is. */
+static void add_squares(RodPage *page, CurvesScene *scene)
 {
     Result *result = page->data->result;
     Array array;
@@ -240,12 +242,19 @@ static void add_clamps(RodPage *page, CurvesScene *scene)
         if (array_is(&array, ARRAY_FLOAT64, 1, 3)) memcpy(held[count++], array.data, sizeof *held);
         array_clear(&array);
     }
+    scene->clamps = (const double(*)[3])held, scene->clamp_count = count;
+}
+
+static void add_clamps(RodPage *page, CurvesScene *scene)
+{
+    Result *result = page->data->result;
+    Array array;
+    if (!curves_holds(scene, -1)) add_squares(page, scene);
     if (result_has(result, "slender/rod/supports") &&
         result_read(result, "slender/rod/supports", &array, NULL)) {
         if (array.type == ARRAY_TEXT && strstr(array.data, "pinned")) scene->clamps_name = "held";
         array_clear(&array);
     }
-    scene->clamps = (const double(*)[3])held, scene->clamp_count = count;
 }
 
 /* ---- Small print ---- */

@@ -201,8 +201,7 @@ static void set_model(Model *model)
     model->gravity = rod->gravity;
     model->flux_blocks = rod->flux;
     model->fields = &rod->fields;
-    model->moves = (rm->held && rod_leads_ends(model)) || rigid_move_is_given(&rm->first_moves) ||
-                   rigid_move_is_given(&rm->last_moves);
+    model->moves = (rm->held && rod_leads_ends(model)) || rod_ends_move(rm);
 }
 
 /* Where the ends are. x: the state of turns only on the curve. */

@@ -50,6 +50,11 @@ static void put_frame(const RodLayout *layout, int node, Quat frame, double *x)
     vec3_store(to + 1, frame.v);
 }
 
+bool rod_ends_move(const RodModel *rm)
+{
+    return rigid_move_is_given(&rm->first_moves) || rigid_move_is_given(&rm->last_moves);
+}
+
 typedef struct EndPose {
     Vec3 moved, turned; /* m; a rotation vector */
 } EndPose;
@@ -144,6 +149,46 @@ bool rod_end_is_held(const RodModel *rm, double time, const double *x)
     if (!rm->held) return true;
     return stand_at(&hold, time, NULL) && rod_is_at(&rm->layout, x, hold.node, hold.place,
                                                     hold.clamped ? &hold.frame : NULL, rod_length(rm->rod));
+}
+
+/* ---- As results show them ---- */
+
+int rod_support_count(const RodModel *rm)
+{
+    return rm->rod->strands + rm->held;
+}
+
+static void put_pose(const Hold *hold, double pose[12])
+{
+    const Vec3 axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    for (int j = 0; j < 4; j++) {
+        Vec3 column = j < 3 ? quat_rotate(hold->frame, axes[j]) : hold->place;
+        if (j < 3 && !hold->clamped) column = vec3(NAN, NAN, NAN);
+        pose[j] = column.x, pose[4 + j] = column.y, pose[8 + j] = column.z;
+    }
+}
+
+static Hold hold_of(const RodModel *rm, int k)
+{
+    return k < rm->rod->strands ? first_hold(rm, k) : last_hold(rm);
+}
+
+void rod_support_poses(const RodModel *rm, double *poses)
+{
+    for (int k = 0; k < rod_support_count(rm); k++) {
+        Hold hold = hold_of(rm, k);
+        put_pose(&hold, poses + 12 * k);
+    }
+}
+
+void rod_support_poses_in(const RodModel *rm, const double *x, double *poses)
+{
+    for (int k = 0; k < rod_support_count(rm); k++) {
+        Hold hold = hold_of(rm, k);
+        hold.place = vec3_load(x + rm->layout.position + 3 * hold.node);
+        hold.frame = rod_reference(&rm->layout, x, hold.node);
+        put_pose(&hold, poses + 12 * k);
+    }
 }
 
 /* ---- Leading them there ---- */
@@ -300,7 +345,7 @@ bool rod_check_ends(Model *model, const Scene *scene, const Build *b)
 {
     const RodModel *rm = model->self;
     const Hold holds[2] = {first_hold(rm, 0), last_hold(rm)};
-    if (!rigid_move_is_given(&rm->first_moves) && !rigid_move_is_given(&rm->last_moves)) return true;
+    if (!rod_ends_move(rm)) return true;
     bool ok = true;
     for (int c = 0; ok && c < model->case_count; c++)
         for (int s = 0; ok && s < model->cases[c].stage_count; s++) {

@@ -50,6 +50,15 @@ bool rod_leads_ends(const Model *model);
 bool rod_settle(Model *model, const Build *b, const double *p);
 bool rod_move_ends(const Model *model, HeldWay way, double *x, Error *err);
 
+/* Do ends move by formulas? */
+bool rod_ends_move(const RodModel *rm);
+
+/* The first ends, then the last one if it is held: rows of 3x4 matrices whose columns are tangent, n1, n2 (NAN where it turns
+ * freely) and place, poses[rod_support_count][12]: as they stand where the job begins to lead them, and in a state. */
+int rod_support_count(const RodModel *rm);
+void rod_support_poses(const RodModel *rm, double *poses);
+void rod_support_poses_in(const RodModel *rm, const double *x, double *poses);
+
 /* take_state.c: BodyOps.take_state. */
 bool rod_take_state(const Model *model, const double *from, int dofs, double *x, Error *err);
 

@@ -7,6 +7,16 @@
 #include <math.h>
 #include <string.h>
 
+/* How what holds the rod stands at first, and the section there. */
+static void add_supports(const RodModel *rm, Arrays *list)
+{
+    int count = rod_support_count(rm);
+    double *poses = arrays_numbers(list, 12 * (size_t)count);
+    rod_support_poses(rm, poses);
+    arrays_add(list, array_float("rod/support_pose", "1, m", poses, 2, count, 12));
+    arrays_add(list, array_float("rod/section_outline", "m", rm->outline[0], 2, ROD_OUTLINE, 2));
+}
+
 /* Simulated, natural and (if they were given) input curves, strand after strand: only the first ones move. */
 void rod_add_static(const Model *model, Arrays *list)
 {
@@ -38,6 +48,7 @@ void rod_add_static(const Model *model, Arrays *list)
     arrays_add(list, array_float("rod/natural", "m", still, 2, nodes, 3));
     bool pinned = rod->start == ROD_PINNED || rod->end == ROD_PINNED;
     arrays_add(list, array_text("rod/supports", pinned ? "pinned" : "clamped"));
+    add_supports(rm, list);
     if (rm->held) arrays_add(list, array_float("rod/held", "m", &rm->end_position.x, 1, 3, 0));
     if (rm->curves) arrays_add(list, array_float("rod/input", "m", still + 3 * nodes, 2, nodes, 3));
 }
@@ -69,7 +80,13 @@ static void add_means(const RodLayout *layout, const char *name, const char *uni
 void rod_add_frame(const Model *model, const Snapshot *shot, bool whole, Arrays *list)
 {
     (void)whole;
-    const RodLayout *layout = &((const RodModel *)model->self)->layout;
+    const RodModel *rm = model->self;
+    const RodLayout *layout = &rm->layout;
+    if (rod_ends_move(rm)) {
+        double *poses = arrays_numbers(list, 12 * (size_t)rod_support_count(rm));
+        rod_support_poses_in(rm, shot->at.x, poses);
+        arrays_add(list, array_float("support_pose", "1, m", poses, 2, rod_support_count(rm), 12));
+    }
     if (layout->strain >= 0) add_means(layout, "point/stretch", "", shot->at.x + layout->strain, list);
 }
 

@@ -34,6 +34,16 @@ static bool check_sought(const RodScene *scene, const Build *b)
                   "left out");
 }
 
+/* Of the section where the rod begins. */
+static void find_outline(const RodScene *scene, double (*outline)[2])
+{
+    for (int i = 0; i < ROD_OUTLINE; i++) {
+        double angle = 2 * M_PI * i / ROD_OUTLINE;
+        outline[i][0] = (scene->ellipse ? scene->ellipse[0] : scene->radius) * cos(angle);
+        outline[i][1] = (scene->ellipse ? scene->ellipse[1] : scene->radius) * sin(angle);
+    }
+}
+
 /* sought: a part of what it is made of is looked for. */
 static bool read_section(RodModel *model, const RodScene *scene, const Build *b, bool sought)
 {
@@ -41,6 +51,7 @@ static bool read_section(RodModel *model, const RodScene *scene, const Build *b,
     const double *a = scene->ellipse;
     double poisson = isnan(scene->poisson) ? 0.5 : scene->poisson;
     model->young = scene->young;
+    find_outline(scene, model->outline);
     model->area = M_PI * (a ? a[0] * a[1] : scene->radius * scene->radius);
     model->unit = a ? rod_ellipse(a[0], a[1], 1, poisson, scene->density)
                     : rod_circle(scene->radius, 1, poisson, scene->density);

@@ -7,6 +7,8 @@
 #include "rod/identify.h"
 #include "rod/rod.h"
 
+enum { ROD_OUTLINE = 24 };
+
 typedef struct RodModel {
     double coercivity; /* A/m, of what it is magnetised with; NAN: not known */
     int strand_count;
@@ -19,6 +21,7 @@ typedef struct RodModel {
     double young;
     RodSection section, unit; /* with that modulus, and with 1 Pa                                 */
     double area;
+    double outline[ROD_OUTLINE][2]; /* m, along n1 and n2: the section's, a polygon */
     RodLoadList list;     /* what the scene says of loads                                             */
     RodPointLoad *points; /* [strand][list.count], each at its time; of rods without curves once  */
     RodLoads loads;       /* on curves, when the job begins, weight included; but for what varies       */
