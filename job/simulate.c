@@ -43,7 +43,12 @@ static void stored(void *self, const State *state, double dt)
 
 static Snapshot shown_state(const Simulation *s)
 {
-    return (Snapshot){s->c, s->p, *s->now, s->status, s->anchor, s->step ? &s->contacts.sums : NULL};
+    return (Snapshot){.load_case = s->c,
+                      .p = s->p,
+                      .at = *s->now,
+                      .status = s->status,
+                      .anchor = s->anchor,
+                      .felt = s->step ? &s->contacts.sums : NULL};
 }
 
 enum { KEPT = 6 };

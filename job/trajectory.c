@@ -104,8 +104,7 @@ static bool get_best(void *self, int slot, const double *u, bool *has, Error *er
 static Snapshot frame_state(TrajectoryJob *job, int frame)
 {
     Snapshot shot = {
-        job->c, trajectory_params(job->t, frame), trajectory_frame(job->t, frame), NEWTON_CONVERGED, NULL,
-        NULL};
+        .load_case = job->c, .p = trajectory_params(job->t, frame), .at = trajectory_frame(job->t, frame)};
     trajectory_velocities(job->t, frame, job->v);
     shot.at.v = job->v;
     shot.at.time = job->run->model->time + job->run->scene->time.step * frame;

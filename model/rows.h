@@ -80,6 +80,7 @@ typedef struct Snapshot {
     NewtonStatus status;
     const double *anchor;  /* of a simulation: where the next step's factor stands (system_anchor) */
     const WorldSums *felt; /* of a step of time, what it met at its end; NULL: as in statics */
+    double part;           /* of an equilibrium's frame: how much of its loads it bears */
 } Snapshot;
 
 /* What one evaluation takes on this machine, and the factor; s, bytes (job/predict.h). */
