@@ -43,12 +43,9 @@ static void stored(void *self, const State *state, double dt)
 
 static Snapshot shown_state(const Simulation *s)
 {
-    return (Snapshot){.load_case = s->c,
-                      .p = s->p,
-                      .at = *s->now,
-                      .status = s->status,
-                      .anchor = s->anchor,
-                      .felt = s->step ? &s->contacts.sums : NULL};
+    Snapshot shot = {.load_case = s->c, .p = s->p, .at = *s->now, .status = s->status, .anchor = s->anchor};
+    if (s->step) contacts_show(&s->contacts, &shot);
+    return shot;
 }
 
 enum { KEPT = 6 };
@@ -180,7 +177,7 @@ static RunStatus march(Simulation *s)
     if (s->step < 0) return RUN_CANNOT_WRITE;
     if (s->step > 0 && !contacts_recall(&s->contacts, s->run->journal, s->step, s->err))
         return RUN_CANNOT_WRITE;
-    contacts_start(&s->contacts, s->now->v);
+    contacts_start(&s->contacts, s->now);
     MarchDef def = march_default();
     run_newton(s->run, &def.newton);
     def.observer = run_observer(s->run);
@@ -214,7 +211,7 @@ static RunStatus run_simulate(Run *run, Error *err)
     Case *c = &run->model->cases[0];
     Simulation s = {.run = run, .err = err, .c = c, .p = c->stages[0].p, .now = &c->state};
     s.anchor = mem_alloc((size_t)system_anchor_count(c->sys), sizeof *s.anchor);
-    s.contacts = contacts_create(run->model);
+    s.contacts = contacts_create(run->model, c);
     RunStatus status = march(&s);
     const char *said = status == RUN_INTERRUPTED ? "interrupted" : newton_status_name(s.status);
     bool ended = status != RUN_CANNOT_WRITE && status != RUN_REFUSED;
