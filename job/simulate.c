@@ -5,6 +5,7 @@
 #include "base/memory.h"
 #include "job/contacts.h"
 #include "job/jobs.h"
+#include "job/sources.h"
 #include "solve/march.h"
 #include <string.h>
 
@@ -160,6 +161,7 @@ static RunStatus make_step(Simulation *s, const MarchDef *def)
     if (crushed) s->status = shot.status;
     if (!reached) return RUN_NOT_CONVERGED;
     s->step = step;
+    sources_tell_within(s->run, &shot, 0);
     contacts_tell(&s->contacts, s->run->host, step, info.passed);
     keep_anchor(s);
     if (!put_history(s, step, &info) || (step % every == 0 && !put_step(s, step / every, step)))
