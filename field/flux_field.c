@@ -146,11 +146,22 @@ static bool within_cylinder(const FluxField *field, const double x[3])
     return hypot(x[0], x[1]) < field->half[0] && fabs(x[2]) < field->half[1];
 }
 
-static bool within_winding(const FluxField *field, const double x[3])
+static const double NEAR = 0.01; /* of the radius: docs/theory.md */
+
+static bool within_round(const FluxField *field, const double x[3])
 {
-    const double near = 0.01; /* of the radius: docs/theory.md */
     double beyond = fmax(0, fabs(x[2]) - field->half[1]);
-    return hypot(hypot(x[0], x[1]) - field->half[0], beyond) < near * field->half[0];
+    return hypot(hypot(x[0], x[1]) - field->half[0], beyond) < NEAR * field->half[0];
+}
+
+/* Its four wires lie in the plane of its first two axes. */
+static bool within_rectangle(const FluxField *field, const double x[3])
+{
+    double out[2], least = fmin(field->half[0], field->half[1]);
+    for (int i = 0; i < 2; i++) out[i] = fabs(x[i]) - field->half[i];
+    double inside = fmin(0, fmax(out[0], out[1])),
+           away = fmax(-inside, hypot(fmax(0, out[0]), fmax(0, out[1])));
+    return hypot(away, x[2]) < NEAR * least;
 }
 
 static const FluxKind by_formula = {"formula", eval_formula, value_formula, NULL, false, NULL},
@@ -158,10 +169,9 @@ static const FluxKind by_formula = {"formula", eval_formula, value_formula, NULL
                       of_dipole = {"dipole", eval_dipole, NULL, NULL, false, NULL},
                       of_block = {"magnet", eval_block, NULL, shape_block, true, within_block},
                       of_cylinder = {"magnet", eval_cylinder, NULL, shape_cylinder, true, within_cylinder},
-                      of_round_coil = {"coil",           eval_round_coil, NULL,
-                                       shape_round_coil, false,           within_winding},
-                      of_rectangular_coil = {
-                          "coil", eval_rectangular_coil, NULL, shape_rectangular_coil, false, NULL};
+                      of_round_coil = {"coil", eval_round_coil, NULL, shape_round_coil, false, within_round},
+                      of_rectangular_coil = {"coil", eval_rectangular_coil, NULL, shape_rectangular_coil,
+                                             false,  within_rectangle};
 
 /* ---- Making them ---- */
 
@@ -448,6 +458,11 @@ bool flux_field_is_within(const FluxField *field, const double x[3], FluxPlace p
     if (!field->kind->within || !stand_at(field, place, &stand, NULL)) return false;
     own_place(&stand, x, own);
     return field->kind->within(field, own);
+}
+
+bool flux_field_has_winding(const FluxField *field)
+{
+    return field->kind->within && !field->kind->poles;
 }
 
 int flux_fields_add(FluxFields *fields, FluxField *field)

@@ -238,8 +238,8 @@ SLENDER_API void slender_motion_destroy(SlenderMotion *motion);
 SLENDER_API int slender_motion_steps(const SlenderMotion *motion);
 SLENDER_API SlenderState *slender_motion_state(const SlenderMotion *motion, int n, SlenderError *err);
 
-/* What the body met, a row for each step that was reached, named and measured as history/ of a simulation (docs/result.md):
- * "contacts", "contact_force", "self_distance", .. Array number 0, 1, ..; beyond the last one it has no name (NULL). To be freed
+/* What the body met and what held it, a row for each step that was reached, named and measured as history/ of a simulation (docs/result.md):
+ * "contacts", "contact_force", "support_force", .. Array number 0, 1, ..; beyond the last one it has no name (NULL). To be freed
  * by slender_array_free. */
 SLENDER_API SlenderStatus slender_motion_met(SlenderMotion *motion, int number, SlenderArray *array,
                                              SlenderError *err);

@@ -1,19 +1,26 @@
 #include "job/contacts.h"
 #include "base/memory.h"
+#include "model/forces.h"
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
-Contacts contacts_create(const Model *model)
+Contacts contacts_create(const Model *model, const Case *load_case)
 {
-    Contacts c = {.world = model->world, .points = model->point_count};
+    Contacts c = {.model = model, .load_case = load_case, .world = model->world};
+    size_t dofs = (size_t)system_dof_count(load_case->sys);
+    c.dofs = (int)dofs;
+    c.before = mem_alloc(dofs, sizeof *c.before);
+    c.v = mem_alloc(dofs, sizeof *c.v);
+    if (model->support_count) {
+        c.held = mem_alloc(3 * (size_t)model->point_count, sizeof *c.held);
+        c.support = mem_alloc((size_t)model->support_count, sizeof *c.support);
+        if (model->body->ops->couples) c.couple = mem_alloc((size_t)model->support_count, sizeof *c.couple);
+    }
     if (!c.world) return c;
     c.gauge = world_gauge_create(c.world);
-    c.dofs = system_dof_count(model->cases[0].sys);
-    c.before = mem_alloc((size_t)c.dofs, sizeof *c.before);
-    c.v = mem_alloc((size_t)c.dofs, sizeof *c.v);
     c.sums.contact.force = mem_alloc((size_t)c.world->obstacle_count, sizeof *c.sums.contact.force);
-    c.sums.contact.point = mem_alloc((size_t)c.dofs, sizeof *c.sums.contact.point);
+    c.sums.contact.point = mem_alloc(dofs, sizeof *c.sums.contact.point);
     return c;
 }
 
@@ -22,6 +29,9 @@ void contacts_destroy(Contacts *contacts)
     world_gauge_destroy(contacts->gauge);
     mem_free(contacts->before);
     mem_free(contacts->v);
+    mem_free(contacts->held);
+    mem_free(contacts->support);
+    mem_free(contacts->couple);
     mem_free(contacts->sums.contact.force);
     mem_free(contacts->sums.contact.point);
 }
@@ -37,9 +47,10 @@ static void reset(Contacts *c, double friction, double water, Pierced pierced)
                           .pierced = pierced};
 }
 
-void contacts_start(Contacts *c, const double *v)
+void contacts_start(Contacts *c, const State *state)
 {
-    if (c->world) memcpy(c->v, v, (size_t)c->dofs * sizeof *c->v);
+    memcpy(c->before, state->x, (size_t)c->dofs * sizeof *c->before);
+    memcpy(c->v, state->v, (size_t)c->dofs * sizeof *c->v);
 }
 
 void contacts_begin(Contacts *contacts)
@@ -47,27 +58,46 @@ void contacts_begin(Contacts *contacts)
     if (contacts->world) reset(contacts, 0, 0, (Pierced){0});
 }
 
-void contacts_add(Contacts *c, const State *state, double dt, const double *p)
+static void meet(Contacts *c, const Snapshot *shot)
 {
-    if (!c->world) return;
-    int first = c->world->body.first, end = first + 3 * c->points;
-    memcpy(c->before, state->x, (size_t)c->dofs * sizeof *c->before);
-    for (int i = first; i < end; i++) c->before[i] -= dt * state->v[i];
-    Point at = state_point(state, p);
-    at.x_prev = c->before, at.v_prev = c->v, at.dt = dt;
-    if (c->world->implicit) at.x_lag = state->x;
+    Point at = model_point(shot);
+    const double *place = shot->at.x + c->world->body.first;
     Pierced before = c->sums.pierced;
     reset(c, c->sums.contact.friction, c->sums.water, before);
     world_gauge_measure(c->gauge, &at, &c->sums);
     c->pierced += c->sums.pierced.count - before.count;
     c->deepest = fmax(c->deepest, c->sums.contact.depth);
-    c->longest = fmax(c->longest, world_longest_edge(c->world, state->x + first));
-    contacts_start(c, state->v);
+    c->longest = fmax(c->longest, world_longest_edge(c->world, place));
 }
 
-int contacts_history(const Contacts *c, Array arrays[CONTACTS_ROWS])
+static void hold(Contacts *c, Snapshot *shot)
 {
-    if (!c->world) return 0;
+    c->model->body->ops->supports(c->model, shot, c->held);
+    shot->held = c->held;
+    model_support_forces(c->model, shot, c->support);
+    if (c->couple) model_support_couples(c->model, shot, c->couple);
+}
+
+void contacts_add(Contacts *c, const State *state, double dt, const double *p)
+{
+    bool implicit = c->world && c->world->implicit;
+    StepStart from = {c->before, c->v, implicit ? state->x : NULL, dt};
+    Snapshot shot = {.load_case = c->load_case, .p = p, .at = *state, .from = &from};
+    if (c->world) meet(c, &shot);
+    if (c->held) hold(c, &shot);
+    c->stepped = true;
+    contacts_start(c, state);
+}
+
+void contacts_show(const Contacts *c, Snapshot *shot)
+{
+    if (c->world) shot->felt = &c->sums;
+    if (c->stepped) shot->held = c->held;
+}
+
+/* What the world has to say, arrays[CONTACTS_ROWS - 2]; their number. */
+static int met_history(const Contacts *c, Array *arrays)
+{
     const WorldSums *sums = &c->sums;
     int count = 0;
     if (c->world->obstacle_count) {
@@ -83,6 +113,16 @@ int contacts_history(const Contacts *c, Array arrays[CONTACTS_ROWS])
         arrays[count++] = array_float("crossings", "", &sums->crossings, 0, 0, 0);
     }
     if (c->world->wet) arrays[count++] = array_float("water_work", "J", &sums->water, 0, 0, 0);
+    return count;
+}
+
+int contacts_history(const Contacts *c, Array arrays[CONTACTS_ROWS])
+{
+    int count = c->world ? met_history(c, arrays) : 0;
+    if (c->held)
+        arrays[count++] = array_float("support_force", "N", c->support[0], 2, c->model->support_count, 3);
+    if (c->couple)
+        arrays[count++] = array_float("support_couple", "N m", c->couple[0], 2, c->model->support_count, 3);
     return count;
 }
 

@@ -1,31 +1,42 @@
-/* contacts.h - what a run says of what its body meets: a row for each step of time, and the forces of a state. */
+/* contacts.h - what a motion says of what its body meets and of what holds it: a row for each step of time, and the forces of
+ * a state. */
 #pragma once
 #include "io/arrays.h"
 #include "job/run.h"
 
-/* The steps of a body that meets something. */
+/* The steps of a body that meets something, or is held. */
 typedef struct Contacts {
-    const World *world; /* NULL: it meets nothing, and all below does nothing */
-    WorldGauge *gauge;  /* of the world                                              */
-    int dofs, points;
-    double *before, *v; /* [dofs] where a step began, and how fast               */
+    const Model *model;
+    const Case *load_case; /* which moves */
+    const World *world;    /* NULL: it meets nothing */
+    WorldGauge *gauge;     /* of the world                                              */
+    int dofs;
+    double *before, *v; /* [dofs] where a step begins, and how fast               */
     WorldSums sums;     /* of the step: forces and counts of its end, works of its parts; owns its vectors */
-    double pierced;     /* faces that obstacles went through, of all steps */
-    bool crosses;       /* it is through itself at the end of the last step */
+    double *held;       /* [3*points] N, what holds each of them at the end of the step; NULL: nothing does */
+    double (*support)[3];    /* [supports] N, their sums (model_support_forces)                             */
+    double (*couple)[3];     /* [supports] N m (model_support_couples); NULL: no frames are held       */
+    bool stepped;            /* a step was made, and all of that is known */
+    double pierced;          /* faces that obstacles went through, of all steps */
+    bool crosses;            /* it is through itself at the end of the last step */
     double deepest, longest; /* m, of all steps: depth in an obstacle, edge */
 } Contacts;
 
-Contacts contacts_create(const Model *model);
+/* Both are borrowed. */
+Contacts contacts_create(const Model *model, const Case *load_case);
 void contacts_destroy(Contacts *contacts);
 
-/* Where the first step begins, which has these velocities. */
-void contacts_start(Contacts *contacts, const double *v);
+/* Where the first step begins, velocities included. */
+void contacts_start(Contacts *contacts, const State *state);
 
 /* A new step; its parts, one at least, each with the state that it has reached, v included. */
 void contacts_begin(Contacts *contacts);
 void contacts_add(Contacts *contacts, const State *state, double dt, const double *p);
 
-enum { CONTACTS_ROWS = 8 };
+/* The last step's end, as long as there is no other one: what it met and what holds it there. */
+void contacts_show(const Contacts *contacts, Snapshot *shot);
+
+enum { CONTACTS_ROWS = 10 };
 
 /* The step as arrays for history/, borrowed from contacts; their number. */
 int contacts_history(const Contacts *contacts, Array arrays[CONTACTS_ROWS]);

@@ -25,7 +25,7 @@ static void measure(const DesignJob *job, int c)
     double *values = job->probes + c * count;
     const double *p;
     const State *state = static_design_trial(job->sd, c, &p);
-    Snapshot shot = {&model->cases[c], p, *state, NEWTON_CONVERGED, NULL, NULL};
+    Snapshot shot = {.load_case = &model->cases[c], .p = p, .at = *state};
     if (job->info[c].newton.status == NEWTON_CONVERGED)
         model_measure(model, &shot, values);
     else
@@ -111,7 +111,7 @@ static bool get_best(void *self, int slot, const double *u, bool *has, Error *er
 static Snapshot best_state(const DesignJob *job, int c)
 {
     const Case *best = &job->run->model->cases[c];
-    return (Snapshot){best, static_design_params(job->sd, c), best->state, NEWTON_CONVERGED, NULL, NULL};
+    return (Snapshot){.load_case = best, .p = static_design_params(job->sd, c), .at = best->state};
 }
 
 static bool put_frame(void *self, int index, Error *err)

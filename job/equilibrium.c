@@ -1,6 +1,8 @@
-/* Equilibria of all cases, and of the stages of a sequence, each from the one before. */
+/* Equilibria of all cases, and of the stages of a sequence, each from the one before; or of all load steps of these, where
+ * they are frames. */
 #include "base/memory.h"
 #include "job/jobs.h"
+#include "model/sequence.h"
 #include "solve/ramp.h"
 #include <math.h>
 #include <string.h>
@@ -20,6 +22,38 @@ static bool move(void *self, double from, double to, double *x)
     return !mover->failed;
 }
 
+/* What makes a frame: a stage, or that part of its way. */
+typedef struct Piece {
+    int stage;
+    double begin, end;
+} Piece;
+
+static Piece piece_of(const Run *run, int k)
+{
+    int each = sequence_frames_each(run->scene), step = k % each;
+    return (Piece){k / each, (double)step / each, step + 1 < each ? (step + 1.0) / each : 1};
+}
+
+static int piece_count(const Run *run, const Case *c)
+{
+    return c->stage_count * sequence_frames_each(run->scene);
+}
+
+/* What acts before a stage; NULL: nothing. */
+static const double *loads_before(const Case *c, int stage)
+{
+    return stage > 0 ? c->stages[stage - 1].p : c->loads;
+}
+
+/* What acts at the end of a piece, maybe in p. */
+static const double *loads_after(const Run *run, const Case *c, Piece piece, double *p)
+{
+    const double *all = c->stages[piece.stage].p;
+    if (piece.end >= 1) return all;
+    ramp_loads(run->model->params, loads_before(c, piece.stage), all, piece.end, p);
+    return p;
+}
+
 /* Where what is held is before a stage: where the one before has left it; at first where the body was made, or, of one that
  * starts from a result, near where it goes. */
 static double held_since(const Case *c, int stage)
@@ -27,22 +61,25 @@ static double held_since(const Case *c, int stage)
     return stage > 0 ? c->stages[stage - 1].time : c->loads ? c->stages[0].time : NAN;
 }
 
-static RampInfo solve_stage(Run *run, Case *c, int stage)
+static RampInfo solve_piece(Run *run, Case *c, Piece piece)
 {
-    Mover mover = {.model = run->model, .since = held_since(c, stage), .time = c->stages[stage].time};
+    Mover mover = {
+        .model = run->model, .since = held_since(c, piece.stage), .time = c->stages[piece.stage].time};
     RampDef def = ramp_default();
     run_newton(run, &def.newton);
     def.observer = run_observer(run);
-    def.steps = run->scene->load_steps.mode < 0 ? run->scene->load_steps.count : run->model->load_steps;
+    def.begin = piece.begin, def.end = piece.end;
+    if (!run->scene->load_steps.frames) def.steps = sequence_load_steps(run->model, run->scene);
     if (run->model->moves) def.move = move, def.self = &mover;
-    const double *from = stage > 0 ? c->stages[stage - 1].p : c->loads;
-    return ramp_solve(c->sys, run->model->params, &def, from, c->stages[stage].p, &c->state);
+    return ramp_solve(c->sys, run->model->params, &def, loads_before(c, piece.stage),
+                      c->stages[piece.stage].p, &c->state);
 }
 
 /* Frames are shown at the times of their stages, if those go on; else they are numbered. */
-static double shown_time(const Case *c, const Snapshot *shot, int frame)
+static double shown_time(const Run *run, const Snapshot *shot, int frame)
 {
-    bool goes_on = c->stage_count > 1;
+    const Case *c = shot->load_case;
+    bool goes_on = c->stage_count > 1 && sequence_frames_each(run->scene) == 1;
     for (int s = 1; s < c->stage_count; s++) goes_on = goes_on && c->stages[s].time > c->stages[s - 1].time;
     return goes_on ? shot->at.time : frame;
 }
@@ -63,7 +100,7 @@ static bool put_progress(Run *run, int frame, const Snapshot *shot, Error *err)
     double status = shot->status;
     Kept rows[KEPT];
     kept_rows(&shot->at, &status, rows);
-    return run_put_frame(run, frame, shown_time(shot->load_case, shot, frame), shot, frame == 0, err) &&
+    return run_put_frame(run, frame, shown_time(run, shot, frame), shot, frame == 0, err) &&
            run_put_state(run, frame, rows, KEPT, err);
 }
 
@@ -77,38 +114,46 @@ static bool get_progress(Run *run, int frame, Snapshot *shot, bool *has, Error *
     return true;
 }
 
-static int total_stages(const Model *model)
+static int total_frames(const Run *run)
 {
+    const Model *model = run->model;
     int total = 0;
-    for (int c = 0; c < model->case_count; c++) total += model->cases[c].stage_count;
+    for (int c = 0; c < model->case_count; c++) total += piece_count(run, &model->cases[c]);
     return total;
 }
 
-/* One case, its stages from frame number *frame on. False where err has to be said. */
-static bool solve_case(Run *run, Case *c, Snapshot *shot, int *frame, bool *interrupted, Error *err)
+/* One piece, as the frame of that number. False where err has to be said. */
+static bool solve_frame(Run *run, Case *c, Piece piece, int frame, Snapshot *shot, Error *err)
+{
+    RampInfo info = solve_piece(run, c, piece);
+    shot->status = info.newton.status, shot->part = info.reached;
+    if (shot->status == NEWTON_STOPPED) return true;
+    if (shot->status != NEWTON_CONVERGED) run_say_unknown_field(run, shot, 0);
+    run_is_crushed(run, shot, shot->status != NEWTON_CONVERGED);
+    host_step(run->host, frame + 1, total_frames(run),
+              "%s: %s, %d Newton iterations with %d factorisations in %d load steps", c->name,
+              newton_status_name(shot->status), info.newton.iterations, info.newton.factorizations,
+              info.steps + info.refused);
+    return put_progress(run, frame, shot, err);
+}
+
+/* One case, its pieces from frame number *frame on; p is for what acts at the last one. False where err has to be said. */
+static bool solve_case(Run *run, Case *c, double *p, Snapshot *shot, int *frame, bool *interrupted,
+                       Error *err)
 {
     bool ok = true;
-    int total = total_stages(run->model);
     NewtonStatus worst = NEWTON_CONVERGED;
-    for (int s = 0; ok && !*interrupted && s < c->stage_count; s++, (*frame)++) {
-        c->state.time = c->stages[s].time;
-        *shot = (Snapshot){c, c->stages[s].p, c->state, NEWTON_CONVERGED, NULL, NULL};
+    for (int k = 0; ok && !*interrupted && k < piece_count(run, c); k++) {
+        Piece piece = piece_of(run, k);
+        c->state.time = c->stages[piece.stage].time;
+        *shot = (Snapshot){.load_case = c, .p = loads_after(run, c, piece, p), .at = c->state};
         bool has;
         ok = get_progress(run, *frame, shot, &has, err);
-        if (ok && !has) {
-            RampInfo info = solve_stage(run, c, s);
-            shot->status = info.newton.status;
-            *interrupted = info.newton.status == NEWTON_STOPPED;
-            if (*interrupted) break;
-            if (shot->status != NEWTON_CONVERGED) run_say_unknown_field(run, shot, 0);
-            run_is_crushed(run, shot, shot->status != NEWTON_CONVERGED);
-            host_step(run->host, *frame + 1, total,
-                      "%s: %s, %d Newton iterations with %d factorisations in %d load steps", c->name,
-                      newton_status_name(shot->status), info.newton.iterations, info.newton.factorizations,
-                      info.steps + info.refused);
-            ok = put_progress(run, *frame, shot, err);
-        }
+        if (ok && !has) ok = solve_frame(run, c, piece, *frame, shot, err);
+        *interrupted = shot->status == NEWTON_STOPPED;
         if (shot->status > worst) worst = shot->status;
+        if (!*interrupted) ++*frame;
+        if (piece.end < 1 && !ramp_reached(shot->status)) break; /* what follows would not begin there */
     }
     if (!*interrupted) shot->status = worst;
     return ok;
@@ -121,11 +166,12 @@ static RunStatus run_equilibrium(Run *run, Error *err)
     NewtonStatus worst = NEWTON_CONVERGED;
     bool ok = true, interrupted = false;
     int frame = 0, done = 0;
+    Arrays list = {0};
     for (; ok && !interrupted && done < model->case_count; done++) {
-        ok = solve_case(run, &model->cases[done], &shots[done], &frame, &interrupted, err);
+        double *p = arrays_numbers(&list, (size_t)model->params->size);
+        ok = solve_case(run, &model->cases[done], p, &shots[done], &frame, &interrupted, err);
         if (shots[done].status > worst) worst = shots[done].status;
     }
-    Arrays list = {0};
     if (ok) run_add_final(run, shots, done, interrupted ? "interrupted" : newton_status_name(worst), &list);
     ok = ok && arrays_replace(&list, run->journal, "final", err);
     if (ok && !interrupted && worst != NEWTON_CONVERGED) host_say(run->host, "%s", newton_status_text(worst));

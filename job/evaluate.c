@@ -78,7 +78,8 @@ static RunStatus run_evaluate(Run *run, Error *err)
         Case *c = &model->cases[k];
         NewtonStatus relaxed = relax(run, c);
         if (relaxed > worst) worst = relaxed;
-        shots[k] = (Snapshot){c, c->stages[0].p, c->state, judge(run, c, k), NULL, NULL};
+        shots[k] =
+            (Snapshot){.load_case = c, .p = c->stages[0].p, .at = c->state, .status = judge(run, c, k)};
         bool finite = shots[k].status != NEWTON_NOT_FINITE;
         if (!finite) {
             host_say(run->host, "%s: %s", c->name, newton_status_text(NEWTON_NOT_FINITE));

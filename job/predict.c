@@ -1,6 +1,7 @@
 #include "job/predict.h"
 #include "base/clock.h"
 #include "base/memory.h"
+#include "model/sequence.h"
 #include "optim/trajectory_adjoint.h"
 #include <math.h>
 
@@ -51,8 +52,7 @@ static double stage_count(const Model *model)
 static double iteration_count(const Model *model, const Scene *scene, const Effort *effort)
 {
     double solves = stage_count(model), firsts = model->case_count;
-    if (model->job->rest && !model->job->design)
-        solves *= scene->load_steps.mode < 0 ? scene->load_steps.count : model->load_steps;
+    if (model->job->rest && !model->job->design) solves *= sequence_load_steps(model, scene);
     if (model->job->motion) solves *= scene->time.steps;
     if (scene->design) solves *= scene->design->iterations + 1, firsts *= scene->design->iterations + 1;
     return firsts * effort->first + (solves - firsts) * effort->more;
@@ -60,7 +60,7 @@ static double iteration_count(const Model *model, const Scene *scene, const Effo
 
 static double frame_count(const Model *model, const Scene *scene)
 {
-    if (!model->job->motion) return stage_count(model);
+    if (!model->job->motion) return stage_count(model) * sequence_frames_each(scene);
     return 1 + (scene->output.every > 0 ? scene->time.steps / scene->output.every : 0);
 }
 

@@ -133,13 +133,16 @@ static void add_felt(Arrays *list, const Model *model, const Snapshot *shot, con
                                  sums.force[0], 2, world->obstacle_count, 3));
 }
 
-/* What each stage of a sequence keeps of its own, under stages/. */
-static void add_stage(Arrays *list, const Model *model, const Snapshot *shot)
+/* What each stage of a sequence, or load step, keeps of its own, under stages/. */
+static void add_stage(Arrays *list, const Run *run, const Snapshot *shot)
 {
-    if (shot->load_case->stage_count < 2) return;
+    const Model *model = run->model;
+    bool steps = run->scene->load_steps.frames;
+    if (shot->load_case->stage_count < 2 && !steps) return;
     Point at = state_point(&shot->at, shot->p);
     arrays_add(list, array_text("stages/status", newton_status_name(shot->status)));
     arrays_add(list, array_float("stages/time", "s", &shot->at.time, 0, 0, 0));
+    if (steps) arrays_add(list, array_float("stages/load_part", "", &shot->part, 0, 0, 0));
     add_energies(list, "stages", shot->load_case->sys, &at);
     add_felt(list, model, shot, "stages");
     model_add_supports(model, shot, "stages", list);
@@ -170,10 +173,11 @@ bool run_put_frame(Run *run, int index, double shown, const Snapshot *shot, bool
     add_felt(&list, model, shot, NULL);
     obstacles_add_poses(model, shot->at.time, &list);
     sources_add_poses(model, shot, &list);
+    sources_tell_within(run, shot, index);
     if (model->body->ops->add_frame) model->body->ops->add_frame(model, shot, whole, &list);
     bool stress = !model->job->motion || run->scene->output.stress; /* frames of rest are few */
     if (stress && model->body->ops->add_stress) model->body->ops->add_stress(model, shot, &list);
-    add_stage(&list, model, shot);
+    add_stage(&list, run, shot);
     add_probes(&list, model, shot, index);
     if (run->scene->output.states == STATES_ALL) state_arrays_add(model, shot, "state", true, &list);
     return arrays_put(&list, run->journal, "frame", index, err);

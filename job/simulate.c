@@ -5,6 +5,7 @@
 #include "base/memory.h"
 #include "job/contacts.h"
 #include "job/jobs.h"
+#include "job/sources.h"
 #include "solve/march.h"
 #include <string.h>
 
@@ -43,7 +44,9 @@ static void stored(void *self, const State *state, double dt)
 
 static Snapshot shown_state(const Simulation *s)
 {
-    return (Snapshot){s->c, s->p, *s->now, s->status, s->anchor, s->step ? &s->contacts.sums : NULL};
+    Snapshot shot = {.load_case = s->c, .p = s->p, .at = *s->now, .status = s->status, .anchor = s->anchor};
+    if (s->step) contacts_show(&s->contacts, &shot);
+    return shot;
 }
 
 enum { KEPT = 6 };
@@ -158,6 +161,7 @@ static RunStatus make_step(Simulation *s, const MarchDef *def)
     if (crushed) s->status = shot.status;
     if (!reached) return RUN_NOT_CONVERGED;
     s->step = step;
+    sources_tell_within(s->run, &shot, 0);
     contacts_tell(&s->contacts, s->run->host, step, info.passed);
     keep_anchor(s);
     if (!put_history(s, step, &info) || (step % every == 0 && !put_step(s, step / every, step)))
@@ -175,7 +179,7 @@ static RunStatus march(Simulation *s)
     if (s->step < 0) return RUN_CANNOT_WRITE;
     if (s->step > 0 && !contacts_recall(&s->contacts, s->run->journal, s->step, s->err))
         return RUN_CANNOT_WRITE;
-    contacts_start(&s->contacts, s->now->v);
+    contacts_start(&s->contacts, s->now);
     MarchDef def = march_default();
     run_newton(s->run, &def.newton);
     def.observer = run_observer(s->run);
@@ -209,7 +213,7 @@ static RunStatus run_simulate(Run *run, Error *err)
     Case *c = &run->model->cases[0];
     Simulation s = {.run = run, .err = err, .c = c, .p = c->stages[0].p, .now = &c->state};
     s.anchor = mem_alloc((size_t)system_anchor_count(c->sys), sizeof *s.anchor);
-    s.contacts = contacts_create(run->model);
+    s.contacts = contacts_create(run->model, c);
     RunStatus status = march(&s);
     const char *said = status == RUN_INTERRUPTED ? "interrupted" : newton_status_name(s.status);
     bool ended = status != RUN_CANNOT_WRITE && status != RUN_REFUSED;

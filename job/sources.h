@@ -1,4 +1,5 @@
-/* sources.h - what a result shows of magnets and coils: what they look like, and where they are in each frame. */
+/* sources.h - what a result shows of magnets and coils: what they look like, and where they are in each frame; and what a run
+ * says of them. */
 #pragma once
 #include "job/run.h"
 
@@ -9,3 +10,7 @@ void sources_add(const Model *model, Arrays *list);
 /* Of a frame: source_pose [source][12], rows of 3x4 matrices (R | s), x = R X + s; NaN where the frame's load case is without
  * it. Nothing where there are none. */
 void sources_add_poses(const Model *model, const Snapshot *shot, Arrays *list);
+
+/* Warns of each magnet and coil that the body is in, or at the winding of, the first time that it is: in a step of time, or in
+ * the frame of that number. */
+void sources_tell_within(Run *run, const Snapshot *shot, int frame);

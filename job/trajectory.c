@@ -104,8 +104,7 @@ static bool get_best(void *self, int slot, const double *u, bool *has, Error *er
 static Snapshot frame_state(TrajectoryJob *job, int frame)
 {
     Snapshot shot = {
-        job->c, trajectory_params(job->t, frame), trajectory_frame(job->t, frame), NEWTON_CONVERGED, NULL,
-        NULL};
+        .load_case = job->c, .p = trajectory_params(job->t, frame), .at = trajectory_frame(job->t, frame)};
     trajectory_velocities(job->t, frame, job->v);
     shot.at.v = job->v;
     shot.at.time = job->run->model->time + job->run->scene->time.step * frame;
@@ -117,12 +116,12 @@ static Snapshot next_frame(TrajectoryJob *job, int frame)
 {
     Snapshot shot = frame_state(job, frame);
     if (frame == 0) {
-        contacts_start(&job->contacts, shot.at.v);
+        contacts_start(&job->contacts, &shot.at);
         return shot;
     }
     contacts_begin(&job->contacts);
     contacts_add(&job->contacts, &shot.at, job->run->scene->time.step, shot.p);
-    if (job->contacts.world) shot.felt = &job->contacts.sums;
+    contacts_show(&job->contacts, &shot);
     return shot;
 }
 
@@ -256,7 +255,7 @@ static RunStatus run_trajectory(Run *run, Error *err)
     def.march.implicit = model->world && model->world->implicit;
     if (model->moves) def.march.move = move;
     job.t = trajectory_create(&problem, &def);
-    job.contacts = contacts_create(model);
+    job.contacts = contacts_create(model, c);
     job.v = mem_alloc((size_t)c->state.dofs, sizeof *job.v);
     double *u = mem_alloc((size_t)model->design.size, sizeof *u);
     design_read(&model->design, 0, problem.p, u);

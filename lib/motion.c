@@ -221,8 +221,10 @@ static void find_met(SlenderMotion *motion)
 {
     Path *path = &motion->path;
     double *v = mem_alloc((size_t)path->dofs, sizeof *v), *rows[CONTACTS_ROWS];
-    Contacts contacts = contacts_create(motion->model->model);
-    contacts_start(&contacts, motion->start.v);
+    Case moving = motion->model->model->cases[motion->load_case];
+    moving.sys = motion->problem.sys; /* a scene of rest has another one */
+    Contacts contacts = contacts_create(motion->model->model, &moving);
+    contacts_start(&contacts, &motion->start);
     for (int n = 1; n <= motion->reached; n++) {
         contacts_begin(&contacts);
         for (int k = path->end[n - 1] + 1; k <= path->end[n]; k++) add_part(path, k, v, &contacts);

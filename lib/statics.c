@@ -1,6 +1,7 @@
 /* States, and equilibria with their derivatives. */
 #include "base/memory.h"
 #include "lib/objects.h"
+#include "model/sequence.h"
 #include "optim/implicit.h"
 #include "solve/ramp.h"
 #include <math.h>
@@ -152,7 +153,7 @@ static NewtonInfo from_start(const Rest *rest, Run *run, System *sys, double *p)
     RampDef def = ramp_default();
     run_newton(run, &def.newton);
     def.observer = (NewtonObserver){tell, run};
-    def.steps = run->scene->load_steps.mode < 0 ? run->scene->load_steps.count : model->load_steps;
+    def.steps = sequence_load_steps(model, run->scene);
     if (model->moves) def.move = move, def.self = &mover;
     const double *loads = model->cases[rest->load_case].loads; /* of a scene that starts from a result */
     return ramp_solve(sys, model->params, &def, loads, p, &rest->state->now).newton;

@@ -1,6 +1,7 @@
 #include "model/advise.h"
 #include "base/memory.h"
 #include "base/vec3.h"
+#include "model/within.h"
 #include <math.h>
 #include <string.h>
 
@@ -47,28 +48,22 @@ double advise_largest_flux(const Model *model, const Scene *scene, const Case *c
     return largest;
 }
 
-/* Of a magnet or coil that the body is in at the start, which no formula means: true if there is one. */
+static void warn(void *report, const char *sentence)
+{
+    mesh_warn(report, "%s", sentence);
+}
+
+/* Of a magnet or coil that the body is in at the start: true if there is one. */
 static bool advise_within(Model *model, const Case *c, const double *p)
 {
-    const FluxBlocks *blocks = &model->flux_blocks;
     double *place = mem_alloc(3 * (size_t)model->point_count, sizeof *place);
+    char *where = mem_format("%s: the body starts in", c->name);
+    int before = model->report.warning_count;
     model->body->ops->places(model, c->state.x, place);
-    bool within = false;
-    for (int k = 0; !within && blocks->uniform >= 0 && k < model->fields->count; k++) {
-        const FluxField *field = model->fields->items[k];
-        FluxPlace where = {model->time, p + blocks->move + 3 * k, p + blocks->turn + 3 * k};
-        for (int v = 0; !within && p[blocks->scale + k] != 0 && v < model->point_count; v++) {
-            const double *x = place + 3 * v;
-            if (!(within = flux_field_is_within(field, x, where))) continue;
-            mesh_warn(&model->report,
-                      "%s: the body starts in the %s '%s', at (%.4g, %.4g, %.4g) m: its field there is that "
-                      "within it, "
-                      "and nothing keeps the two apart but an obstacle",
-                      c->name, flux_field_kind(field), flux_field_name(field), x[0], x[1], x[2]);
-        }
-    }
+    model_tell_within(model, p, model->time, place, where, warn, &model->report);
+    mem_free(where);
     mem_free(place);
-    return within;
+    return model->report.warning_count > before;
 }
 
 static void advise_field(Model *model, const Scene *scene, const Case *c)

@@ -9,12 +9,27 @@ void model_add_support(Model *model, Indices points, const bool axis[3])
     model->supports[count] = (Support){points, {axis[0], axis[1], axis[2]}};
 }
 
-typedef void OnPoints(const Model *model, const Snapshot *shot, double *force);
-
-static void sum_supports(const Model *model, const Snapshot *shot, OnPoints *find, double (*force)[3])
+Point model_point(const Snapshot *shot)
 {
-    double *left = mem_alloc(3 * (size_t)model->point_count, sizeof *left); /* not yet counted */
-    find(model, shot, left);
+    Point at = state_point(&shot->at, shot->p);
+    const StepStart *from = shot->from;
+    if (from) at.x_prev = from->x, at.v_prev = from->v, at.x_lag = from->lag, at.dt = from->dt;
+    return at;
+}
+
+/* What holds each point; to be freed. */
+static double *held_forces(const Model *model, const Snapshot *shot)
+{
+    size_t count = 3 * (size_t)model->point_count;
+    if (shot->held) return mem_copy(shot->held, count, sizeof *shot->held);
+    double *force = mem_alloc(count, sizeof *force);
+    model->body->ops->supports(model, shot, force);
+    return force;
+}
+
+/* Of what is done to each point (freed here) the sums over the supports. */
+static void sum_supports(const Model *model, double *left, double (*force)[3])
+{
     for (int k = 0; k < model->support_count; k++) {
         const Support *support = &model->supports[k];
         memset(force[k], 0, sizeof force[k]);
@@ -30,12 +45,14 @@ static void sum_supports(const Model *model, const Snapshot *shot, OnPoints *fin
 
 void model_support_forces(const Model *model, const Snapshot *shot, double (*force)[3])
 {
-    sum_supports(model, shot, model->body->ops->supports, force);
+    sum_supports(model, held_forces(model, shot), force);
 }
 
 void model_support_couples(const Model *model, const Snapshot *shot, double (*couple)[3])
 {
-    sum_supports(model, shot, model->body->ops->couples, couple);
+    double *all = mem_alloc(3 * (size_t)model->point_count, sizeof *all);
+    model->body->ops->couples(model, shot, all);
+    sum_supports(model, all, couple);
 }
 
 void model_add_supports(const Model *model, const Snapshot *shot, const char *prefix, Arrays *list)
@@ -55,8 +72,7 @@ void model_add_supports(const Model *model, const Snapshot *shot, const char *pr
 
 void model_force_on(const Model *model, const Snapshot *shot, const Indices *points, double force[3])
 {
-    double *all = mem_alloc(3 * (size_t)model->point_count, sizeof *all);
-    model->body->ops->supports(model, shot, all);
+    double *all = held_forces(model, shot);
     memset(force, 0, 3 * sizeof *force);
     for (int n = 0; n < 3 * points->count; n++) force[n % 3] += all[3 * points->items[n / 3] + n % 3];
     mem_free(all);
@@ -77,7 +93,7 @@ ContactSums model_contacts(const Model *model, const Snapshot *shot, Arrays *lis
 void model_held_forces(const Model *model, const Snapshot *shot, int first, double *force)
 {
     System *sys = shot->load_case->sys;
-    Point at = state_point(&shot->at, shot->p);
+    Point at = model_point(shot);
     double *gradient = mem_alloc((size_t)shot->at.dofs, sizeof *gradient);
     system_gradient(sys, &at, gradient);
     for (int i = 0; i < 3 * model->point_count; i++)

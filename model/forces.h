@@ -7,8 +7,8 @@
  * the points. */
 void model_add_support(Model *model, Indices points, const bool axis[3]);
 
-/* What each does to the body in a state of rest, force[support_count][3] N. What two of them hold counts for the first,
- * so that the sum is that of all. */
+/* What each does to the body, force[support_count][3] N: at the end of a step of time also what accelerates and damps what it
+ * holds, else as at rest. What two of them hold counts for the first, so that the sum is that of all. */
 void model_support_forces(const Model *model, const Snapshot *shot, double (*force)[3]);
 
 /* The couples of each, of a body whose frames are held, too (BodyOps.couples), couple[support_count][3] N m: the sum of those on
@@ -24,6 +24,9 @@ void model_force_on(const Model *model, const Snapshot *shot, const Indices *poi
 /* What obstacles do to the body: of a step of time at its end, else as in statics. The vectors are the snapshot's or the
  * list's. For a body with a world. */
 ContactSums model_contacts(const Model *model, const Snapshot *shot, Arrays *list);
+
+/* Where a snapshot stands: at the end of a step of time, or in statics. */
+Point model_point(const Snapshot *shot);
 
 /* BodyOps.supports of a body whose positions are dofs, from `first` on: forces that are not in balance where it is held. */
 void model_held_forces(const Model *model, const Snapshot *shot, int first, double *force);

@@ -255,6 +255,7 @@ void model_destroy(Model *model)
     if (model->self) model->body->ops->destroy(model->self);
     mem_free(model->cases);
     mem_free(model->flux);
+    mem_free(model->told_within);
     mem_free(model->motions);
     mem_free(model->supports);
     mem_free(model->x);

@@ -58,11 +58,12 @@ struct Model {
     Motion *motions;
     Support *supports; /* what holds it, as the scene says it */
     ModelProbe *probes;
-    double *x;          /* [dofs] rest or pose */
-    Design design;      /* of a design or trajectory */
-    Control control;    /* of a trajectory: the unknown flux density; no rows: none */
-    Control strengths;  /* of a trajectory: unknown strengths of sources; no rows: none, or constant */
-    CaseFlux *flux;     /* of the scene, then of each case or stage */
+    double *x;         /* [dofs] rest or pose */
+    Design design;     /* of a design or trajectory */
+    Control control;   /* of a trajectory: the unknown flux density; no rows: none */
+    Control strengths; /* of a trajectory: unknown strengths of sources; no rows: none, or constant */
+    CaseFlux *flux;    /* of the scene, then of each case or stage */
+    bool *told_within; /* [fields] in which of their sources the body was said to be; NULL: none (within.h) */
     Timed flux_of_time; /* of a motion: the uniform flux density, if it changes */
 };
 

@@ -72,6 +72,12 @@ typedef struct KeyUse {
     const char *key, *when;
 } KeyUse;
 
+/* Where the step of time began that ended in a state, as a Point has it; lag NULL: at x. */
+typedef struct StepStart {
+    const double *x, *v, *lag; /* [dofs] */
+    double dt;
+} StepStart;
+
 /* One state to be shown or stored, with p[params] of a case; borrowed. */
 typedef struct Snapshot {
     const Case *load_case;
@@ -79,7 +85,10 @@ typedef struct Snapshot {
     State at;
     NewtonStatus status;
     const double *anchor;  /* of a simulation: where the next step's factor stands (system_anchor) */
+    const StepStart *from; /* of a step of time, for BodyOps.supports; NULL: as in statics          */
     const WorldSums *felt; /* of a step of time, what it met at its end; NULL: as in statics */
+    const double *held;    /* [point_count][3] of a step of time, what its supports do; NULL: as in statics */
+    double part;           /* of an equilibrium's frame: how much of its loads it bears */
 } Snapshot;
 
 /* What one evaluation takes on this machine, and the factor; s, bytes (job/predict.h). */
@@ -165,7 +174,8 @@ typedef struct BodyOps {
     /* Its energies over its dofs, prepared: of statics, or with inertia. The caller's; the model outlives it. */
     System *(*system)(const struct Model *model, bool motion);
 
-    /* What its supports do to its points in a state of rest, force[point_count][3] N: 0 where nothing is held. */
+    /* What its supports do to its points, force[point_count][3] N: 0 where nothing is held. At rest, or at the end of a step
+     * of time, what is held being accelerated and damped (model_point). */
     void (*supports)(const struct Model *model, const Snapshot *shot, double *force);
     /* The couples there, couple[point_count][3] N m: 0 where no frame is held. Optional. */
     void (*couples)(const struct Model *model, const Snapshot *shot, double *couple);

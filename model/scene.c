@@ -256,6 +256,12 @@ static const YamlTable load_steps_table = {
          .required = true, .doc = "one step, halved where it fails"},
         {YAML_INTEGER(LoadStepsScene, count), .range = "[1, 10000]", .one_of = 1, .short_form = true,
          .required = true, .doc = "this many, halved where one fails"},
+        {YAML_BOOL(LoadStepsScene, frames), .when = "/job: equilibrium & count",
+         .doc =
+             "each of them is a stage of the result, as those of a `sequence`: a frame, with how it ended, "
+             "energies, forces of supports, a row of the probes, and the part of the loads that it bears. "
+             "Of a "
+             "`sequence` each of its stages comes on so"},
         {0}}};
 
 /* Of the time of a motion, which may stay where its scene is put to rest: `--set job=equilibrium`. */

@@ -299,6 +299,7 @@ typedef struct SolverScene {
 /* auto, or a number */
 typedef struct LoadStepsScene {
     int mode, count; /* mode 0: auto */
+    bool frames;
 } LoadStepsScene;
 
 /* The time t of formulas in statics, or the steps of a simulation. */

@@ -1,20 +1,17 @@
 /* The field tables of probes. */
 #include "model/scene_tables.h"
 
-/* Where nothing is at rest, what is held also bears what it accelerates. */
-#define AT_REST "/job: equilibrium, evaluate, design"
-
 static const YamlTable force_table = {
     .name = "force of a probe",
     .size = sizeof(ForceScene),
-    .doc = "What a support or an obstacle does to the body, N along x, y, z. Forces of supports are those in "
-           "a state of rest.",
+    .doc =
+        "What a support or an obstacle does to the body, N along x, y, z. At the end of a step of "
+        "time a support also bears what accelerates and damps what it holds; at the start of a motion it is "
+        "taken as at rest.",
     .fields = (const YamlField[]){
-        {YAML_TEXT(ForceScene, group), .when = AT_REST, .otherwise = "it is that in a state of rest",
-         .one_of = 1, .required = true, .short_form = true,
+        {YAML_TEXT(ForceScene, group), .one_of = 1, .required = true, .short_form = true,
          .doc = "on all that is held of a group, of a rod's end or node, or of `all`"},
-        {YAML_INTEGER(ForceScene, fix), .when = AT_REST, .otherwise = "it is that in a state of rest",
-         .range = "[0, inf)", .one_of = 1, .required = true,
+        {YAML_INTEGER(ForceScene, fix), .range = "[0, inf)", .one_of = 1, .required = true,
          .doc = "of this entry of `fix`, from 0 on; of a rod 0 is its clamp and 1 its held end. What two "
                 "entries hold counts for the first"},
         {YAML_TEXT(ForceScene, obstacle), .one_of = 1, .required = true,
@@ -43,7 +40,6 @@ const YamlTable probe_table = {
         {YAML_VECTOR(ProbeScene, axis), .when = "angle", .doc = "with an angle of two points: a direction"},
         {YAML_OPTIONAL(ProbeScene, force, &force_table), .one_of = 1, .required = true,
          .doc = "what a support or an obstacle does to the body"},
-        {YAML_INTEGER(ProbeScene, couple), .when = "/rod & " AT_REST, .range = "[0, inf)", .one_of = 1,
-         .required = true,
+        {YAML_INTEGER(ProbeScene, couple), .when = "/rod", .range = "[0, inf)", .one_of = 1, .required = true,
          .doc = "of a rod: the couple of its clamp (0), or of its held end (1), N m along x, y, z"},
         {0}}};

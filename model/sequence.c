@@ -76,3 +76,13 @@ void sequence_fill(Case *c, int count, int size)
         for (int i = 0; i < size; i++) stage->p[i] = between(first.p[i], end.p[i], k, count - 1);
     }
 }
+
+int sequence_load_steps(const Model *model, const Scene *scene)
+{
+    return scene->load_steps.mode < 0 ? scene->load_steps.count : model->load_steps;
+}
+
+int sequence_frames_each(const Scene *scene)
+{
+    return scene->load_steps.frames ? scene->load_steps.count : 1;
+}

@@ -6,11 +6,10 @@
 
 RampDef ramp_default(void)
 {
-    return (RampDef){.newton = newton_default(), .steps = 1, .step_min = 1.0 / 1024};
+    return (RampDef){.newton = newton_default(), .end = 1, .steps = 1, .step_min = 1.0 / 1024};
 }
 
-/* p at a part of the way; what is no load is as in `to`. */
-static void interpolate(const Params *params, const double *from, const double *to, double part, double *p)
+void ramp_loads(const Params *params, const double *from, const double *to, double part, double *p)
 {
     memcpy(p, to, (size_t)params->size * sizeof *p);
     for (int b = 0; part < 1 && b < params->block_count; b++) {
@@ -34,7 +33,7 @@ static bool is_steady(const Params *params, const double *from, const double *to
     return same;
 }
 
-static bool reached(NewtonStatus status)
+bool ramp_reached(NewtonStatus status)
 {
     return status == NEWTON_CONVERGED || status == NEWTON_SADDLE || status == NEWTON_NEUTRAL;
 }
@@ -56,13 +55,13 @@ RampInfo ramp_solve(System *sys, const Params *params, const RampDef *def, const
     double *p = mem_alloc((size_t)params->size, sizeof *p);
     State kept = state_clone(state);
     const NewtonObserver *observer = def->observer.iteration ? &def->observer : NULL;
-    RampInfo info = {0};
+    RampInfo info = {.reached = def->begin};
     bool steady = from && !def->move && is_steady(params, from, to);
-    double step = steady ? 1 : 1.0 / def->steps;
-    while (info.reached < 1) {
-        double part = info.reached + step > 1 - 1e-9 ? 1 : info.reached + step;
+    double step = (def->end - def->begin) / (steady ? 1 : def->steps);
+    while (info.reached < def->end) {
+        double part = info.reached + step > def->end - 1e-9 ? def->end : info.reached + step;
         state_copy(&kept, state);
-        interpolate(params, from, to, part, p);
+        ramp_loads(params, from, to, part, p);
         NewtonInfo newton = {.status = NEWTON_NOT_FINITE};
         bool moved = !def->move || def->move(def->self, info.reached, part, state->x);
         if (moved && def->move && !way_is_free(sys, kept.x, state))
@@ -72,7 +71,7 @@ RampInfo ramp_solve(System *sys, const Params *params, const RampDef *def, const
                 newton_minimize(sys, &def->newton, &(Point){.p = p, .time = state->time}, state, observer);
         newton_add_counts(&newton, &info.newton);
         info.newton = newton;
-        if (reached(newton.status)) {
+        if (ramp_reached(newton.status)) {
             info.reached = part;
             info.steps++;
             continue;

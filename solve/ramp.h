@@ -10,8 +10,9 @@
 
 typedef struct RampDef {
     NewtonDef newton;
-    int steps;       /* at first; default 1. One where nothing changes: loads are the same, nothing moves */
-    double step_min; /* of the whole, before it gives up; default 1/1024 */
+    double begin, end; /* which part of the way; default 0 and 1: all of it */
+    int steps;         /* at first; default 1. One where nothing changes: loads are the same, nothing moves */
+    double step_min;   /* of the whole, before it gives up; default 1/1024 */
     NewtonObserver observer; /* may be zero */
     /* Leads held coordinates on: x has them at a part (0..1) of their way, `from`, and gets them at the part `to`. May be
      * NULL. */
@@ -33,7 +34,14 @@ typedef struct RampInfo {
     double reached; /* part of the loads that x is in equilibrium with; 1: all */
 } RampInfo;
 
-/* The state, in equilibrium with from (NULL: no loads), comes to be in equilibrium with to, all at its time.
+/* The loads at a part of the way, p[params->size]; what is no load is as in `to`. */
+void ramp_loads(const Params *params, const double *from, const double *to, double part, double *p);
+
+/* Is it a stationary point, stable or not? */
+bool ramp_reached(NewtonStatus status);
+
+/* The state, in equilibrium with from (NULL: no loads), or with where the part of the way begins, comes to be in equilibrium
+ * with to, or where it ends, all at its time.
  * Stationary points that are no minima count as reached: the status says so. On failure it is the last state
  * that was found. */
 RampInfo ramp_solve(System *sys, const Params *params, const RampDef *def, const double *from,

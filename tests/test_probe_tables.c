@@ -294,6 +294,103 @@ static void test_ranges(void **state)
     array_clear(&list);
 }
 
+/* ---- Load steps that are frames ---- */
+
+/* What holds a body, and what stretches: bodies of each kind under a weight of 1 in parts of the load. */
+static const char ROD[] =
+    "slender: 1\njob: equilibrium\noutput: {precision: double}\n"
+    "rod: {natural_strain: [1, 5, 3], length: 0.2, elements: 20, radius: 1 mm, young: 10 "
+    "MPa, poisson: 0.4, density: 1000, gravity: [0, 0, -10]}\n",
+                  SOLID[] =
+                      "slender: 1\njob: equilibrium\noutput: {precision: double}\n"
+                      "solid: {mesh: {shape: box, size: [20 mm, 4 mm, 4 mm], cells: [4, 1, 1]}, young: 1 "
+                      "MPa, poisson: 0.3, density: 1000, gravity: [0, 0, -9.81]}\n"
+                      "fix: [{box: [[-1, -1, -1], [0, 1, 1]]}]\n",
+                  STRIP[] =
+                      SHEET "  gravity: [0, 0, -9.81]\njob: equilibrium\nfix: [{group: root, clamp: true}, "
+                            "{group: tip, axes: y, move: [0, \"y + 0.001*t\", 0]}]\ntime: 4 s\n";
+
+static char *stepped(const char *scene, const char *steps)
+{
+    return mem_format("%sprobes: {support: {force: all}}\nload_steps: %s\n", scene, steps);
+}
+
+/* Each frame bears its part of the weight; the last one has the bits of the run that keeps none of them. */
+static void test_load_steps(void **state)
+{
+    (void)state;
+    const char *scenes[] = {ROD, SOLID, STRIP};
+    const double weights[] = {1000 * acos(-1) * 1e-6 * 0.2 * 10, 0.32e-3 * 9.81, WEIGHT};
+    for (int k = 0; k < 3; k++) {
+        Result *last = run_text(stepped(scenes[k], "4"));
+        Array alone = read_all(last, "slender/state/x");
+        result_close(last);
+        Result *result = run_text(stepped(scenes[k], "{count: 4, frames: true}"));
+        Array x = read_all(result, "slender/state/x"), force = read_all(result, "slender/probes/support"),
+              part = read_all(result, "slender/stages/load_part"),
+              status = read_all(result, "slender/stages/status"),
+              own = read_all(result, "slender/stages/support_force");
+        assert_memory_equal(x.data, alone.data, array_count(&x) * sizeof(double));
+        assert_string_equal(status.data, "converged\nconverged\nconverged\nconverged\n");
+        assert_true(force.dims[0] == 4 && own.dims[0] == 4);
+        for (int n = 0; n < 4; n++) {
+            assert_true(numbers(&part)[n] == (n + 1) / 4.0);
+            assert_near(numbers(&force)[3 * n + 2], (n + 1) / 4.0 * weights[k], 1e-6 * weights[k]);
+        }
+        Array *read[] = {&alone, &x, &force, &part, &status, &own};
+        for (int i = 0; i < 6; i++) array_clear(read[i]);
+        result_close(result);
+    }
+}
+
+/* Stops a run after so many frames. */
+static void count_frame(void *self, double time, int points, const double *place)
+{
+    (void)time, (void)points, (void)place;
+    --*(int *)self;
+}
+
+static int stop(void *self)
+{
+    return *(int *)self <= 0;
+}
+
+/* A sequence of which each stage comes on in frames, stopped and gone on with: the bytes of the one in one go. */
+static void test_stopped_steps(void **state)
+{
+    (void)state;
+    char *said = mem_format("%ssequence: [{time: 2 s}, {gravity: [0, 0, 0]}]\n", STRIP),
+         *text = stepped(said, "{count: 3, frames: true}"), *scene = strstr(text, "time: 4 s\n");
+    memset(scene, ' ', 9);
+    Result *whole = run_text(mem_text(text));
+    Array x = read_all(whole, "slender/frames/x"), part = read_all(whole, "slender/stages/load_part"),
+          force = read_all(whole, "slender/probes/support");
+    assert_true(x.dims[0] == 6 && numbers(&part)[3] == 1.0 / 3 && numbers(&part)[5] == 1);
+    assert_near(numbers(&force)[3 * 3 + 2], 2 * WEIGHT / 3, 1e-9);
+    result_close(whole);
+    for (int stops = 1; stops < 6; stops += 3) {
+        SlenderError err;
+        int left = stops;
+        SlenderScene *again = slender_scene_parse(text, NULL, 0, &err);
+        SlenderRun def = {.output = NAME, .threads = 1, .force = true};
+        def.host = (SlenderHost){.self = &left, .frame = count_frame, .stop = stop};
+        assert_int_equal(slender_run(again, &def, &err), SLENDER_INTERRUPTED);
+        Result *result = run(again, &err, true);
+        Array parted = read_all(result, "slender/frames/x"),
+              held = read_all(result, "slender/probes/support");
+        assert_memory_equal(parted.data, x.data, array_count(&x) * sizeof(double));
+        assert_memory_equal(held.data, force.data, array_count(&force) * sizeof(double));
+        array_clear(&parted);
+        array_clear(&held);
+        result_close(result);
+    }
+    array_clear(&x);
+    array_clear(&part);
+    array_clear(&force);
+    mem_free(said);
+    mem_free(text);
+}
+
 static int clean(void **state)
 {
     (void)state;
@@ -308,8 +405,10 @@ static int clean(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_closed_forms), cmocka_unit_test(test_stages),
-                                       cmocka_unit_test(test_forces),       cmocka_unit_test(test_motion),
-                                       cmocka_unit_test(test_design),       cmocka_unit_test(test_ranges)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_closed_forms), cmocka_unit_test(test_stages),
+        cmocka_unit_test(test_forces),       cmocka_unit_test(test_motion),
+        cmocka_unit_test(test_design),       cmocka_unit_test(test_ranges),
+        cmocka_unit_test(test_load_steps),   cmocka_unit_test(test_stopped_steps)};
     return cmocka_run_group_tests(tests, clean, clean);
 }

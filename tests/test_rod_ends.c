@@ -147,6 +147,44 @@ static void test_poses(void **state)
     result_close(result);
 }
 
+/* kg, of a node: half an element at the ends. */
+static double node_mass(double length, int i)
+{
+    return 1e-3 * PI * length / N * (i == 0 || i == N ? 0.5 : 1);
+}
+
+/* What held the first end in each step of a motion is what accelerated the rod and bore its weight, and turned it about there:
+ * implicit Euler's accelerations are second differences of its frames. With `couple` the moments are balanced, too; returns the
+ * largest force. */
+static double check_reactions(Result *result, double length, double dt, bool couple)
+{
+    Array x = read_all(result, "slender/frames/x"), force = read_all(result, "slender/history/support_force"),
+          turn = read_all(result, "slender/history/support_couple");
+    double most = 0, off = 0, turned = 0;
+    for (int n = 2; n < x.dims[0]; n++) {
+        Vec3 sum = vec3(0, 0, 0), moment = sum, own = vec3_load(numbers(&force) + 3 * (n - 1)),
+             held = vec3_load(numbers(&turn) + 3 * (n - 1));
+        const double *at = numbers(&x) + 3 * (N + 1) * n;
+        for (int i = 0; i <= N; i++) {
+            Vec3 x0 = vec3_load(at + 3 * i), x1 = vec3_load(at - 3 * (N + 1) + 3 * i),
+                 x2 = vec3_load(at - 6 * (N + 1) + 3 * i);
+            Vec3 a = vec3_scale(1 / (dt * dt), vec3_add(vec3_axpy(-2, x1, x0), x2));
+            Vec3 f = vec3_scale(node_mass(length, i), vec3_add(a, vec3(0, 0, 9.81)));
+            sum = vec3_add(sum, f);
+            moment = vec3_add(moment, vec3_cross(vec3_sub(x0, vec3_load(at)), f));
+        }
+        off = fmax(off, vec3_length(vec3_sub(sum, own)));
+        turned = fmax(turned, vec3_length(vec3_sub(moment, held)));
+        most = fmax(most, vec3_length(own));
+    }
+    print_message("reactions: %.1e of %.1e N off, couples %.1e N m\n", off, most, turned);
+    assert_true(off < 1e-6 * most && (!couple || turned < 1e-6 * most * length));
+    array_clear(&x);
+    array_clear(&force);
+    array_clear(&turn);
+    return most;
+}
+
 /* A clamp that is accelerated evenly, from rest as implicit Euler has it (a (t^2 + t dt)/2): a rod whose curve bears its inertia
  * goes with it as a rigid one. The load that stands for the inertia acts at the beginning only, where the natural strains are
  * found. */
@@ -162,6 +200,7 @@ static void test_accelerated(void **state)
         "time: {step: 10 ms, steps: %d}\noutput: {precision: double}\n",
         1e-3 * PI, 1e-3 * PI, STEPS));
     Array x = read_all(result, "slender/frames/x");
+    Array length = read_all(result, "slender/rod/s");
     double most = 0;
     assert_int_equal(x.dims[0], STEPS + 1);
     for (int n = 0; n <= STEPS; n++)
@@ -172,7 +211,34 @@ static void test_accelerated(void **state)
         }
     print_message("accelerated by 2.2 m/s^2 over 0.4 m: %.1e m off a rigid motion\n", most);
     assert_true(most < 1e-12);
+    check_reactions(result, numbers(&length)[N], 0.01, true);
     array_clear(&x);
+    array_clear(&length);
+    result_close(result);
+}
+
+/* A stiff rod on a hinge, let go as it lies: where it hangs its hinge bears 5/2 of its weight (1 % less with these steps of first
+ * order), and does not turn it. */
+static void test_pendulum(void **state)
+{
+    (void)state;
+    Result *result = run_text(mem_format(
+        "slender: 1\njob: simulate\nrod:\n  radius: 1 mm\n  young: 10 GPa\n  poisson: 0.5\n  density: 1000\n"
+        "  elements: 40\n  natural_strain: [0, 0, 0]\n  length: 0.2\n  hold: pinned\n"
+        "time: {step: 0.5 ms, steps: 450}\noutput: {precision: double}\nprobes: {hinge: {force: {fix: 0}}, "
+        "none: {couple: 0}}\n"));
+    double weight = 1e-3 * PI * LENGTH * 9.81, most = check_reactions(result, LENGTH, 5e-4, true);
+    print_message("a pendulum's hinge bears %.4f of its weight\n", most / weight);
+    assert_true(fabs(most / weight - 2.5) < 0.03);
+    Array probe = read_all(result, "slender/probes/hinge"),
+          force = read_all(result, "slender/history/support_force"),
+          none = read_all(result, "slender/probes/none");
+    assert_int_equal(probe.dims[0], 451);
+    assert_memory_equal(numbers(&probe) + 3, force.data, array_count(&force) * sizeof(double));
+    for (size_t i = 0; i < array_count(&none); i++) assert_true(numbers(&none)[i] == 0);
+    array_clear(&probe);
+    array_clear(&force);
+    array_clear(&none);
     result_close(result);
 }
 
@@ -199,6 +265,13 @@ static void test_wound_up(void **state)
         assert_true(off < 2e-6 * wanted);
         array_clear(&strain);
     }
+    Array couple = read_all(result, "slender/history/support_couple");
+    for (int n = 1; n <= 60; n++) {
+        double torque = GJ * (2 + 40 * 0.005 * n) / LENGTH;
+        const double *own = numbers(&couple) + 6 * (n - 1);
+        assert_true(fabs(own[0] + torque) < 1e-7 * torque && fabs(own[3] - torque) < 1e-7 * torque);
+    }
+    array_clear(&couple);
     result_close(result);
 }
 
@@ -232,6 +305,7 @@ int main(void)
         cmocka_unit_test(test_weight),      cmocka_unit_test(test_turned_clamp),
         cmocka_unit_test(test_accelerated), cmocka_unit_test(test_wound_up),
         cmocka_unit_test(test_resumed),     cmocka_unit_test(test_poses),
+        cmocka_unit_test(test_pendulum),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -185,16 +185,63 @@ static void test_within(void **unused)
         "{name: in, magnet: {at: [20 mm, 0, 0], size: [8 mm, 8 mm, 8 mm], remanence: [0, 0, 1 mT]}}",
         "{name: in, magnet: {at: [20 mm, 0, 0], radius: 4 mm, length: 8 mm, remanence: [0, 0, 1 mT]}}",
         "{name: in, coil: {at: [20 mm, 0, 0], radius: 20 mm, current: 1 mA}}",
+        "{name: in, coil: {at: [20 mm, 0, 0], size: [40 mm, 20 mm], current: 1 mA}}",
+        "{name: in, coil: {at: [20 mm, 0, 0], size: [60 mm, 10 mm], current: 1 mA}}",
+        "{name: by, coil: {at: [20 mm, 0, 0], size: [60 mm, 20 mm], current: 1 mA}}",
         "{name: by, magnet: {at: [20 mm, 0, 5 mm], size: [8 mm, 8 mm, 8 mm], remanence: [0, 0, 1 mT]}}"};
-    for (int k = 0; k < 4; k++) {
+    for (int k = 0; k < 7; k++) {
         char *more = mem_format("job: equilibrium\nflux_density: %s\n", sources[k]);
         Built b = scene_build(text_of(more));
         bool told = false;
         for (int w = 0; w < b.model->report.warning_count; w++)
             told = told || strstr(b.model->report.warnings[w], " 'in', at (");
-        assert_true(told == (k < 3));
+        assert_true(told == !strncmp(sources[k], "{name: in", 9));
         clear(&b);
         mem_free(more);
+    }
+}
+
+typedef struct Told {
+    int count;
+    char first[300];
+} Told;
+
+static void keep_warning(void *self, const char *sentence)
+{
+    Told *told = self;
+    if (strstr(sentence, ": the body is in") && told->count++ == 0)
+        snprintf(told->first, sizeof told->first, "%s", sentence);
+}
+
+/* One that comes to the body later: told once, by its name and when. */
+static void test_meets(void **unused)
+{
+    (void)unused;
+    static const struct {
+        const char *scene, *said;
+    } rows[] = {
+        {"job: equilibrium\nflux_density: {name: ring, coil: {at: [20 mm, 0, 40 mm], radius: 20 mm, current: "
+         "1 "
+         "mA}, move: [\"0\", \"0\", \"-0.02*t\"]}\nsequence: [{time: 0}, {time: 1}, {time: 2}, {time: 2}]\n",
+         "sequence, frame 2: the body is in the coil 'ring', at "},
+        {"job: simulate\ntime: {step: 1 ms, steps: 8}\noutput: {every: 4}\n"
+         "flux_density: {name: bar, magnet: {at: [50 mm, 0, 0], size: [12 mm, 20 mm, 9 mm], remanence: [0, "
+         "0, 1 "
+         "mT]}, move: [\"-1.5*t\", \"0\", \"0\"]}\n",
+         "case1, t = 0.003 s: the body is in the magnet 'bar', at (0.04"}};
+    for (int k = 0; k < 2; k++) {
+        SlenderError err;
+        Told told = {0};
+        char *text = text_of(rows[k].scene);
+        SlenderScene *scene = slender_scene_parse(text, NULL, 0, &err);
+        if (!scene) fail_msg("%s", err.text);
+        SlenderRun def = {.output = NAME, .threads = 1, .force = true};
+        def.host = (SlenderHost){.self = &told, .warn = keep_warning};
+        assert_int_equal(slender_run(scene, &def, &err), SLENDER_DONE);
+        if (told.count != 1 || strncmp(told.first, rows[k].said, strlen(rows[k].said)) != 0)
+            fail_msg("%d: %s", told.count, told.first);
+        slender_scene_destroy(scene);
+        mem_free(text);
     }
 }
 
@@ -238,9 +285,12 @@ static void test_currents_over_time(void **unused)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_sum),    cmocka_unit_test(test_map),
-        cmocka_unit_test(test_design), cmocka_unit_test(test_stages_of_time),
-        cmocka_unit_test(test_within), cmocka_unit_test(test_currents_over_time)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_sum),
+                                       cmocka_unit_test(test_map),
+                                       cmocka_unit_test(test_design),
+                                       cmocka_unit_test(test_stages_of_time),
+                                       cmocka_unit_test(test_within),
+                                       cmocka_unit_test(test_meets),
+                                       cmocka_unit_test(test_currents_over_time)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -485,7 +485,7 @@ Solver = TypedDict("Solver", {
 }, total=False)
 
 LoadStepsKeys = TypedDict("LoadStepsKeys", {
-    "mode": "Literal['auto']", "count": "int",
+    "mode": "Literal['auto']", "count": "int", "frames": "bool",
 }, total=False)
 
 TimeKeys = TypedDict("TimeKeys", {
