@@ -51,7 +51,7 @@ static RodActs acts_of(Around around)
 static Fixture fixture_create(RodSupport end, Around around, bool cosserat, Random *random)
 {
     RodActs acts = acts_of(around);
-    Fixture f = {.rod = rod_create(N, length, rod_circle(0.5e-3, 1, 0.4, 1800), M_PI * 0.25e-6, &acts)};
+    Fixture f = {.rod = rod_create(N, length, rod_circle(0.5e-3, 1, 0.4, 1800), &acts)};
     Rod *rod = f.rod;
     rod->end = end, rod->cosserat = cosserat;
     f.layout = rod_layout(rod, true);

@@ -68,12 +68,12 @@ static void move(Rod *rod, int first, bool wet, double *place, Vec3 *moment)
 static void check_alone(bool wet)
 {
     RodSection section = rod_circle(1e-3, 1, 0.4, 1200);
-    double together[STRANDS * (N + 1)][3], alone[N + 1][3], area = M_PI * 1e-6, off = 0, turned = 0, far = 0;
+    double together[STRANDS * (N + 1)][3], alone[N + 1][3], off = 0, turned = 0, far = 0;
     Vec3 moments[STRANDS * (N + 1)], moment[N + 1];
-    Rod *all = rod_create_strands(STRANDS, N, lengths, section, area, NULL);
+    Rod *all = rod_create_strands(STRANDS, N, lengths, section, NULL);
     move(all, 0, wet, together[0], moments);
     for (int k = 0; k < STRANDS; k++) {
-        Rod *one = rod_create(N, lengths[k], section, area, NULL);
+        Rod *one = rod_create(N, lengths[k], section, NULL);
         move(one, k, wet, alone[0], moment);
         for (int i = 0; i <= N; i++) {
             int node = k * (N + 1) + i;
@@ -111,7 +111,7 @@ static void test_resting(void **state)
         rod_frenet(&curves[k], frames[k]);
         length[k] = curves[k].length;
     }
-    Rod *rod = rod_create_strands(2, N, length, reference_section(1), 1e-6, NULL);
+    Rod *rod = rod_create_strands(2, N, length, reference_section(1), NULL);
     RodLayout layout = rod_layout(rod, false);
     double *p = params_vector(&rod->params);
     rod_default_params(rod, reference_rods[0].young, p);

@@ -26,7 +26,7 @@ static Rod *make_rod(const Swing *swing)
                         flux_field_dipole((double[]){0.03, 0.03, 0.03}, (double[]){0.2, 0.5, -0.4}));
     const double lengths[2] = {length, length};
     Rod *rod = rod_create_strands(swing->strands, swing->strands * EACH, lengths,
-                                  rod_circle(radius, 1, 0.4, 1800), M_PI * radius * radius, &acts);
+                                  rod_circle(radius, 1, 0.4, 1800), &acts);
     rod->start = swing->start, rod->end = swing->end, rod->cosserat = swing->cosserat;
     if (swing->strands > 1) rod->strand[1].position = vec3(0, 2e-3, 0);
     if (!swing->ground) return rod;

@@ -230,7 +230,7 @@ static bool fill_cases(Model *model, const Scene *scene, const Build *b, bool re
 
 static bool check_slender(const Rod *rod, const Build *b)
 {
-    double length = INFINITY, radius = rod->unit.reach;
+    double length = INFINITY, radius = rod_largest_section(rod).reach;
     for (int k = 0; k < rod->strands; k++) length = fmin(length, rod->strand[k].length);
     return length > ROD_WATER_SLENDER * radius ||
            yaml_refuse(
@@ -246,10 +246,10 @@ static Rod *make_rod(RodModel *rm, const RodScene *scene, const FluxFields *fiel
     RodActs acts = rod_model_acts(rm);
     acts.fields = *fields;
     rm->list.potentials = (RodPotentials){0};
-    if (!rm->curves) return rod_create(scene->elements, scene->length, rm->unit, rm->area, &acts);
+    if (!rm->curves) return rod_create(scene->elements, scene->length, rm->unit, &acts);
     double *length = mem_alloc((size_t)rm->strand_count, sizeof *length);
     for (int k = 0; k < rm->strand_count; k++) length[k] = rm->curves[k].length;
-    Rod *rod = rod_create_strands(rm->strand_count, scene->elements, length, rm->unit, rm->area, &acts);
+    Rod *rod = rod_create_strands(rm->strand_count, scene->elements, length, rm->unit, &acts);
     mem_free(length);
     return rod;
 }

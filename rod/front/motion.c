@@ -128,7 +128,7 @@ static void make_strands(RodModel *model, const RodScene *scene, Sequence *m)
         const RodCurve *const three[] = {&m->curves[k], &m->curves[k + 1], &m->curves[k + 2]};
         model->inertia[k] = mem_alloc(stations, sizeof **model->inertia);
         model->frames[k] = mem_alloc(stations, sizeof **model->frames);
-        rod_inertia(three, m->times + k, at, model->unit.mass, scene->damping, model->inertia[k]);
+        rod_inertia(three, m->times + k, at, rod_alike(&model->unit), scene->damping, model->inertia[k]);
         if (k == 0 && isnan(normal.x)) {
             rod_frenet(three[at], model->frames[0]);
             normal = model->frames[0][0].n1;

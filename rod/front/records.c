@@ -130,12 +130,13 @@ static bool is_judged(const Rod *rod, const double *p)
 static RodEquilibrium equilibrium_of(const RodModel *rm, const Snapshot *shot, Vec3 **work)
 {
     const Rod *rod = rm->rod;
-    size_t stations = 2 * (size_t)rod->elements + 1;
-    Vec3 *k = *work = mem_alloc(2 * stations + 3 * (size_t)rod->elements, sizeof *k), *m = k + stations,
-         *F = m + stations;
+    size_t stations = 2 * (size_t)rod->elements + 1, ends = 3 * (size_t)rod->elements;
+    Vec3 *k = *work = mem_alloc(2 * stations + 2 * ends, sizeof *k), *m = k + stations, *F = m + stations,
+         *K = F + ends;
+    for (size_t i = 0; i < ends; i++)
+        K[i] = rod_stiffness(&rod->unit[i / 3], shot->p[(size_t)rod->young + i / 3]);
     rod_stations(rod, 0, &rm->layout, shot->at.x, shot->p, (RodStations){k, m, F});
-    return (RodEquilibrium){
-        rod->elements, rod_length(rod), rod_section_of(rod->unit, shot->p[rod->young]), k, m, F};
+    return (RodEquilibrium){rod->elements, rod_length(rod), k, m, K, F};
 }
 
 /* Where elements are too long for what they are to show, how stable the rod is stays unknown. */

@@ -41,7 +41,6 @@ static bool read_section(RodModel *model, const RodScene *scene, const Build *b,
     const double *a = scene->ellipse;
     double poisson = isnan(scene->poisson) ? 0.5 : scene->poisson;
     model->young = scene->young;
-    model->area = M_PI * (a ? a[0] * a[1] : scene->radius * scene->radius);
     model->unit = a ? rod_ellipse(a[0], a[1], 1, poisson, scene->density)
                     : rod_circle(scene->radius, 1, poisson, scene->density);
     model->section = rod_section_of(model->unit, scene->young);
@@ -160,7 +159,7 @@ static bool read_magnetic(RodModel *model, const Scene *scene, const Build *b)
     if (!along)
         return yaml_refuse(b->file, "rod.magnetization",
                            "of a curve it must be along the tangent and the same all along: [m, 0, 0]");
-    if (!none) model->magnetic = vec3_scale(model->area * value[0], vec3_load(flux));
+    if (!none) model->magnetic = vec3_scale(model->unit.area * value[0], vec3_load(flux));
     model->loads.end = model->magnetic;
     return true;
 }

@@ -18,11 +18,10 @@ typedef struct RodModel {
     Vec3 **inertia;    /* [strand][stations] its inertia and drag as loads, N/m; else NULL        */
     double young;
     RodSection section, unit; /* with that modulus, and with 1 Pa                                 */
-    double area;
-    RodLoadList list;     /* what the scene says of loads                                             */
-    RodPointLoad *points; /* [strand][list.count], each at its time; of rods without curves once  */
-    RodLoads loads;       /* on curves, when the job begins, weight included; but for what varies       */
-    Vec3 line;            /* line loads without weight, N/m                                             */
+    RodLoadList list;         /* what the scene says of loads                                             */
+    RodPointLoad *points;     /* [strand][list.count], each at its time; of rods without curves once  */
+    RodLoads loads;           /* on curves, when the job begins, weight included; but for what varies       */
+    Vec3 line;                /* line loads without weight, N/m                                             */
     Vec3 **
         along; /* [strand] N/m, what varies along a curve, [stations], inertia and drag included, and then along
                        each of its draws; NULL: nothing                                           */
