@@ -56,6 +56,7 @@ void rod_destroy(Rod *rod)
     mem_free(rod->straight);
     mem_free(rod->part);
     mem_free(rod->lengths);
+    mem_free(rod->radii);
     params_clear(&rod->params);
     mem_free(rod);
 }
@@ -73,11 +74,7 @@ void rod_set_sections(Rod *rod, const RodSection *unit)
 RodSection rod_largest_section(const Rod *rod)
 {
     RodSection most = rod->unit[0];
-    for (int e = 1; e < rod->elements; e++) {
-        const double *own = (const double *)&rod->unit[e];
-        double *to = (double *)&most;
-        for (size_t k = 0; k < sizeof most / sizeof *to; k++) to[k] = fmax(to[k], own[k]);
-    }
+    for (int e = 1; e < rod->elements; e++) rod_section_most(&most, &rod->unit[e]);
     return most;
 }
 
@@ -95,12 +92,15 @@ WorldBody rod_world_body(Rod *rod)
     mem_free(rod->straight);
     mem_free(rod->part);
     mem_free(rod->lengths);
+    mem_free(rod->radii);
     rod->edges = mem_alloc((size_t)rod->elements, sizeof *rod->edges);
     rod->straight = mem_alloc((size_t)layout.nodes, sizeof *rod->straight);
     rod->part = mem_alloc((size_t)layout.nodes, sizeof *rod->part);
     rod->lengths = mem_alloc((size_t)rod->strands, sizeof *rod->lengths);
+    rod->radii = mem_alloc((size_t)rod->elements, sizeof *rod->radii);
     for (int k = 0; k < rod->strands; k++) rod->lengths[k] = rod->strand[k].length;
     for (int e = 0; e < rod->elements; e++) {
+        rod->radii[e] = rod->unit[e].reach;
         int node = rod->edges[e][0] = rod_element_node(&layout, e), next = rod->edges[e][1] = node + 1;
         rod->straight[next][0] = (e % layout.each + 1) * rod_element_length(rod, e);
         rod->part[node] = rod->part[next] = e / layout.each;
@@ -115,7 +115,8 @@ WorldBody rod_world_body(Rod *rod)
                        .thickness = 2 * reach,
                        .outside = reach,
                        .strands = rod->strands,
-                       .length = rod->lengths};
+                       .length = rod->lengths,
+                       .radius = rod->radii};
 }
 
 void rod_node_mass(const Rod *rod, double *mass)

@@ -61,7 +61,8 @@ typedef struct Rod {
     int (*edges)[2];       /* [elements] the nodes of each, and                                             */
     double (*straight)[3]; /* [nodes] m, places along x,                                          */
     int *part;             /* [nodes] and strands,                                         */
-    double *lengths;       /* [strands] m: what its world knows of it; all owned             */
+    double *lengths;       /* [strands] m, and                                               */
+    double *radii;         /* [elements] m: what its world knows of it; all owned            */
 
     Params params;       /* blocks and their first entries in p:                           */
     int young;           /* [element] Pa                                                   */

@@ -7,6 +7,21 @@
 #include <math.h>
 #include <string.h>
 
+void rod_add_sections(const RodModel *rm, int strands, int each, Arrays *list)
+{
+    if (!rm->varied && !rm->properties.scene->section) return;
+    int elements = strands * each;
+    double *stiffness = arrays_numbers(list, 3 * (size_t)elements),
+           *mass = arrays_numbers(list, (size_t)elements);
+    for (int e = 0; e < elements; e++) {
+        const RodSection *section = rod_section_at(rod_model_sections(rm, e / each), 2 * (e % each) + 1);
+        vec3_store(stiffness + 3 * e, rod_stiffness(section, 1));
+        mass[e] = section->mass;
+    }
+    arrays_add(list, array_float("rod/stiffness", "N m^2", stiffness, 2, elements, 3));
+    arrays_add(list, array_float("rod/line_density", "kg/m", mass, 1, elements, 0));
+}
+
 /* Simulated, natural and (if they were given) input curves, strand after strand: only the first ones move. */
 void rod_add_static(const Model *model, Arrays *list)
 {
@@ -39,6 +54,7 @@ void rod_add_static(const Model *model, Arrays *list)
     bool pinned = rod->start == ROD_PINNED || rod->end == ROD_PINNED;
     arrays_add(list, array_text("rod/supports", pinned ? "pinned" : "clamped"));
     if (rm->held) arrays_add(list, array_float("rod/held", "m", &rm->end_position.x, 1, 3, 0));
+    rod_add_sections(rm, rod->strands, own - 1, list);
     if (rm->curves) arrays_add(list, array_float("rod/input", "m", still + 3 * nodes, 2, nodes, 3));
 }
 
@@ -66,10 +82,21 @@ static void add_means(const RodLayout *layout, const char *name, const char *uni
     arrays_add(list, array_float(name, unit, mean, 2, layout->nodes, 3));
 }
 
+/* At the nodes, for those who draw tubes. */
+static void add_radius(const RodModel *rm, Arrays *list)
+{
+    int nodes = rm->layout.nodes, own = rm->layout.each + 1;
+    double *radius = arrays_numbers(list, (size_t)nodes);
+    for (int i = 0; i < nodes; i++) radius[i] = rm->varied[i / own].unit[2 * (i % own)].reach;
+    arrays_add(list, array_float("point/radius", "m", radius, 1, nodes, 0));
+}
+
 void rod_add_frame(const Model *model, const Snapshot *shot, bool whole, Arrays *list)
 {
     (void)whole;
-    const RodLayout *layout = &((const RodModel *)model->self)->layout;
+    const RodModel *rm = model->self;
+    const RodLayout *layout = &rm->layout;
+    if (rm->properties.scene->radius && rm->properties.section_varies) add_radius(rm, list);
     if (layout->strain >= 0) add_means(layout, "point/stretch", "", shot->at.x + layout->strain, list);
 }
 
@@ -111,19 +138,16 @@ void rod_add_state(const Model *model, const Snapshot *shot, const char *prefix,
     arrays_add(list, array_float(name, "N m", moment, 2, model->point_count, 3));
 }
 
-/* Is it known how stable the state is? Of one rod that does not stretch, with a free end, one stiffness, no magnetisation across
- * the tangent, no field that varies in space, no couple, no potential, and nothing that it meets. */
+/* Is it known how stable the state is? Of one rod that does not stretch, with a free end, no magnetisation across the tangent, no field that varies in space, no couple, no potential, and nothing that it meets. */
 static bool is_judged(const Rod *rod, const double *p)
 {
     const double *B = p + rod->flux.uniform;
     bool across = false, field = B[0] != 0 || B[1] != 0 || B[2] != 0;
-    bool uniform = !rod_field_varies(rod, p) && !rod_has_couples(rod, p) && rod->potentials.count == 0 &&
-                   !rod->world && rod->strands == 1 && !rod->cosserat;
-    for (int e = 0; e < rod->elements; e++) {
+    bool alone = !rod_field_varies(rod, p) && !rod_has_couples(rod, p) && rod->potentials.count == 0 &&
+                 !rod->world && rod->strands == 1 && !rod->cosserat;
+    for (int e = 0; e < rod->elements; e++)
         across |= field && (p[rod->magnetization + 3 * e + 1] != 0 || p[rod->magnetization + 3 * e + 2] != 0);
-        uniform &= p[rod->young + e] == p[rod->young];
-    }
-    return uniform && rod->start == ROD_CLAMPED && rod->end == ROD_FREE && !across;
+    return alone && rod->start == ROD_CLAMPED && rod->end == ROD_FREE && !across;
 }
 
 /* The rod as stability.h takes it; *work is the caller's. */
