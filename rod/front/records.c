@@ -12,13 +12,14 @@ void rod_add_sections(const RodModel *rm, int strands, int each, Arrays *list)
     if (!rm->varied && !rm->properties.scene->section) return;
     int elements = strands * each;
     double *stiffness = arrays_numbers(list, 3 * (size_t)elements),
-           *mass = arrays_numbers(list, (size_t)elements);
+           *mass = arrays_numbers(list, (size_t)elements), *radius = arrays_numbers(list, (size_t)elements);
     for (int e = 0; e < elements; e++) {
         const RodSection *section = rod_section_at(rod_model_sections(rm, e / each), 2 * (e % each) + 1);
         vec3_store(stiffness + 3 * e, rod_stiffness(section, 1));
-        mass[e] = section->mass;
+        mass[e] = section->mass, radius[e] = section->reach;
     }
     arrays_add(list, array_float("rod/stiffness", "N m^2", stiffness, 2, elements, 3));
+    arrays_add(list, array_float("rod/radius", "m", radius, 1, elements, 0));
     arrays_add(list, array_float("rod/line_density", "kg/m", mass, 1, elements, 0));
 }
 
@@ -82,21 +83,10 @@ static void add_means(const RodLayout *layout, const char *name, const char *uni
     arrays_add(list, array_float(name, unit, mean, 2, layout->nodes, 3));
 }
 
-/* At the nodes, for those who draw tubes. */
-static void add_radius(const RodModel *rm, Arrays *list)
-{
-    int nodes = rm->layout.nodes, own = rm->layout.each + 1;
-    double *radius = arrays_numbers(list, (size_t)nodes);
-    for (int i = 0; i < nodes; i++) radius[i] = rm->varied[i / own].unit[2 * (i % own)].reach;
-    arrays_add(list, array_float("point/radius", "m", radius, 1, nodes, 0));
-}
-
 void rod_add_frame(const Model *model, const Snapshot *shot, bool whole, Arrays *list)
 {
     (void)whole;
-    const RodModel *rm = model->self;
-    const RodLayout *layout = &rm->layout;
-    if (rm->properties.scene->radius && rm->properties.section_varies) add_radius(rm, list);
+    const RodLayout *layout = &((const RodModel *)model->self)->layout;
     if (layout->strain >= 0) add_means(layout, "point/stretch", "", shot->at.x + layout->strain, list);
 }
 
