@@ -287,7 +287,7 @@ static void bundles(void **state)
     double ink = 1 - (double)count_pixels(&page, white) / (page.width * page.height);
     print_message("30 strands: %.1f %% of the page is drawn on\n", 100 * ink);
     assert_true(ink > 0.025);
-    assert_true(count_pixels(&page, curves_fade(colormap_series(1), 0)) == 0);
+    assert_true(count_pixels(&page, curves_fade(colormap_series(1), 0)) < 20); /* but for edges of letters */
     mem_free(page.rgb);
 }
 

@@ -102,8 +102,10 @@ static inline Swarm rod_create(const FluxField *flow)
     double mass[NODES], element = ROD_DENSITY * M_PI * RADIUS * RADIUS * LENGTH / (NODES - 1);
     s.water.flow = flow;
     for (int i = 0; i < NODES; i++) mass[i] = i == 0 || i == NODES - 1 ? element / 2 : element;
+    double radii[NODES - 1];
+    for (int e = 0; e < NODES - 1; e++) radii[e] = RADIUS;
     RodWaterDef def = {
-        .element_count = NODES - 1, .strands = 1, .length = &LENGTH, .radius = RADIUS, .water = s.water};
+        .element_count = NODES - 1, .strands = 1, .length = &LENGTH, .radius = radii, .water = s.water};
     swarm_end(&s, mass, rod_water_term(&def));
     for (int i = 0; i < NODES; i++) s.state.x[3 * i] = i * LENGTH / (NODES - 1);
     return s;
