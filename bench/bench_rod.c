@@ -37,7 +37,7 @@ static double invert(const RodCurve *curve, int times)
     for (int k = 0; k < times; k++) {
         double start = clock_seconds();
         rod_moments(curve, loads, moment);
-        rod_invert(curve, section, moment, NULL, natural);
+        rod_invert(curve, rod_alike(&section), moment, NULL, natural);
         best = fmin(best, clock_seconds() - start);
     }
     mem_free(moment);
@@ -61,8 +61,7 @@ static Hanging hanging_create(int elements)
     RodFrame *frames = mem_alloc(stations, sizeof *frames);
     rod_frenet(&o.curve, frames);
     rod_bishop(&o.curve, frames[0].n1, frames);
-    o.rod =
-        rod_create(elements, o.curve.length, rod_circle(radius, 1, 0.5, 1200), M_PI * radius * radius, NULL);
+    o.rod = rod_create(elements, o.curve.length, rod_circle(radius, 1, 0.5, 1200), NULL);
     o.p = mem_alloc((size_t)o.rod->params.size, sizeof *o.p);
     rod_default_params(o.rod, young, o.p);
     o.p[o.rod->gravity + 2] = -9.8;

@@ -3,15 +3,17 @@
  */
 #include "rod/chord.h"
 
-/* Mass beyond the element, kg. */
+/* Mass beyond the element's middle, kg. */
 static Pack beyond(const RodTerm *term, int pack)
 {
-    Pack elements;
+    const Rod *rod = term->rod;
+    Pack elements, h = rod_term_length(term, pack);
     for (int l = 0; l < PACK_LANES; l++) {
         int e = segment_lane(&term->layout, pack, l) % term->layout.each;
         elements[l] = term->layout.each - e - 0.5;
     }
-    return term->rod->unit.mass * rod_term_length(term, pack) * elements;
+    return rod_term_section(term, pack, &rod->unit->mass) * h * elements +
+           rod_term_number(term, pack, rod->heavier, 1, 0) * h;
 }
 
 /* T with the numbers of p, or its change with those of dp. */

@@ -44,8 +44,7 @@ RodLoads rod_identify_loads(const RodIdentifyDef *def, int pose, double value)
     RodSection section = rod_identify_section(def, value, 0.5);
     RodLoads loads = own_loads(def, pose);
     loads.line = vec3_axpy(section.mass, def->gravity, loads.line);
-    double area = M_PI * (section.reach * section.reach);
-    loads.end = vec3_add(loads.end, vec3_scale(area * def->magnetization, def->flux_density));
+    loads.end = vec3_add(loads.end, vec3_scale(section.area * def->magnetization, def->flux_density));
     return loads;
 }
 
@@ -200,7 +199,7 @@ static double match_residuals(Match *m, Guess guess, Vec3 *residuals)
     if (m->def->sought != ROD_SOUGHT_YOUNG) match_moments(m, value); /* which is no load */
     for (int p = 0; p < poses; p++) {
         Vec3 *shape = m->shapes[p], start = m->curves[p]->x[0];
-        rod_invert(m->curves[p], section, m->moments[p], NULL, shape);
+        rod_invert(m->curves[p], rod_alike(&section), m->moments[p], NULL, shape);
         for (int i = 0; i < m->nodes; i++) shape[i] = rod_to_frame(m->clamps[p], vec3_sub(shape[i], start));
     }
     double sum = 0;

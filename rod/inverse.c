@@ -69,8 +69,8 @@ static void add_along(const RodCurve *curve, const Vec3 *load, Vec3 *moment)
     }
 }
 
-void rod_inertia(const RodCurve *const curves[3], const double time[3], int at, double mass, double drag,
-                 Vec3 *along)
+void rod_inertia(const RodCurve *const curves[3], const double time[3], int at, RodSections sections,
+                 double drag, Vec3 *along)
 {
     double before = time[1] - time[0], after = time[2] - time[1], both = time[2] - time[0];
     for (int j = 0; j <= 2 * curves[0]->elements; j++) {
@@ -78,7 +78,7 @@ void rod_inertia(const RodCurve *const curves[3], const double time[3], int at, 
         Vec3 v01 = vec3_scale(1 / before, vec3_sub(x1, x0)), v12 = vec3_scale(1 / after, vec3_sub(x2, x1));
         Vec3 a = vec3_scale(2 / both, vec3_sub(v12, v01)),
              v = at == 1 ? vec3_scale(1 / both, vec3_sub(x2, x0)) : v12;
-        along[j] = vec3_axpy(-mass, a, vec3_scale(-drag, v));
+        along[j] = vec3_axpy(-rod_section_at(sections, j)->mass, a, vec3_scale(-drag, v));
     }
 }
 
@@ -124,29 +124,30 @@ void rod_pulls(const RodCurve *curve, RodLoads loads, Vec3 *pull)
 }
 
 /* K^-1 R^T M in the frame. */
-static Vec3 strain_of(RodSection section, RodFrame frame, Vec3 moment)
+static Vec3 strain_of(const RodSection *section, RodFrame frame, Vec3 moment)
 {
-    Vec3 m = rod_to_frame(frame, moment);
-    return vec3(m.x / section.twist, m.y / section.bend1, m.z / section.bend2);
+    return rod_bent(section, rod_to_frame(frame, moment));
 }
 
-static Vec3 rate(const RodCurve *curve, RodSection section, const Vec3 *moment, const RodFrame *frames, int j)
+static Vec3 rate(const RodCurve *curve, RodSections sections, const Vec3 *moment, const RodFrame *frames,
+                 int j)
 {
+    const RodSection *section = rod_section_at(sections, j);
     if (frames) return vec3_scale(-1, rod_to_world(frames[j], strain_of(section, frames[j], moment[j])));
     Vec3 t = curve->t[j], along = vec3_scale(vec3_dot(moment[j], t), t), across = vec3_sub(moment[j], along);
-    return vec3_scale(-1, vec3_axpy(1 / section.bend1, across, vec3_scale(1 / section.twist, along)));
+    return vec3_scale(-1, vec3_axpy(1 / section->bend1, across, vec3_scale(1 / section->twist, along)));
 }
 
-void rod_invert(const RodCurve *curve, RodSection section, const Vec3 *moment, const RodFrame *frames,
+void rod_invert(const RodCurve *curve, RodSections sections, const Vec3 *moment, const RodFrame *frames,
                 Vec3 *natural)
 {
     double h = curve->length / curve->elements;
     Quat Q = quat_identity();
-    Vec3 w0 = rate(curve, section, moment, frames, 0);
+    Vec3 w0 = rate(curve, sections, moment, frames, 0);
     natural[0] = curve->x[0];
     for (int e = 0; e < curve->elements; e++) {
-        Vec3 w1 = rate(curve, section, moment, frames, 2 * e + 1),
-             w2 = rate(curve, section, moment, frames, 2 * e + 2);
+        Vec3 w1 = rate(curve, sections, moment, frames, 2 * e + 1),
+             w2 = rate(curve, sections, moment, frames, 2 * e + 2);
         Quat half, whole = rod_turn(h, w0, w1, w2, &half), middle = quat_mul(Q, half);
         Q = quat_trim(quat_mul(Q, whole));
         /* int Q dx by parts: exact for a constant Q, however sharply the curve bends within the element. */
@@ -170,12 +171,12 @@ void rod_strains(const RodCurve *curve, const RodFrame *frames, Vec3 *strains)
     mem_free(twist);
 }
 
-void rod_natural_strains(const RodCurve *curve, RodSection section, const Vec3 *moment,
+void rod_natural_strains(const RodCurve *curve, RodSections sections, const Vec3 *moment,
                          const RodFrame *frames, Vec3 *strains)
 {
     rod_strains(curve, frames, strains);
     for (int j = 0; j <= 2 * curve->elements; j++)
-        strains[j] = vec3_sub(strains[j], strain_of(section, frames[j], moment[j]));
+        strains[j] = vec3_sub(strains[j], strain_of(rod_section_at(sections, j), frames[j], moment[j]));
 }
 
 /* The strain in a frame that is turned by an angle about the tangent and has no twist. */
@@ -198,53 +199,49 @@ void rod_untwist(const RodCurve *curve, Vec3 *k)
     to[0] = untwisted(to[0], angle);
 }
 
-/* d of -K^-1 R^T M over ds: K^-1 ([ex]x R^T T + K d x k), T the pull of what hangs beyond. */
-static Vec3 strain_rate(RodSection section, RodFrame frame, Vec3 k, Vec3 pull, Vec3 d)
+/* d of m = R^T M over ds, T the pull of what hangs beyond. */
+static Vec3 moment_rate(RodFrame frame, Vec3 k, Vec3 pull, Vec3 m)
 {
-    Vec3 Kd = vec3(section.twist * d.x, section.bend1 * d.y, section.bend2 * d.z),
-         T = rod_to_frame(frame, pull);
-    Vec3 r = vec3_add(vec3_cross(vec3(1, 0, 0), T), vec3_cross(Kd, k));
-    return vec3(r.x / section.twist, r.y / section.bend1, r.z / section.bend2);
+    return vec3_sub(vec3_cross(m, k), vec3_cross(vec3(1, 0, 0), rod_to_frame(frame, pull)));
 }
 
-void rod_strain_route(const RodCurve *curve, RodSection section, RodLoads loads, const RodFrame *frames,
+void rod_strain_route(const RodCurve *curve, RodSections sections, RodLoads loads, const RodFrame *frames,
                       Vec3 *d)
 {
     int last = 2 * curve->elements;
     double h = curve->length / curve->elements;
-    Vec3 *k = mem_alloc((size_t)last + 1, sizeof *k),
+    Vec3 *k = mem_alloc((size_t)last + 1, sizeof *k), *m = d,
          *pulls = mem_alloc(3 * (size_t)curve->elements, sizeof *pulls);
     rod_strains(curve, frames, k);
     rod_pulls(curve, loads, pulls);
-    Vec3 held = vec3_add(couple_at(curve, loads, last), loads.end_couple);
-    d[last] = vec3_scale(-1, strain_of(section, frames[last], held));
+    m[last] = rod_to_frame(frames[last], vec3_add(couple_at(curve, loads, last), loads.end_couple));
     for (int j = last; j > 0; j -= 2) { /* Runge-Kutta over an element, backwards */
         const Vec3 *pull = pulls + 3 * (j / 2 - 1);
-        Vec3 rates[4], at = d[j];
-        rates[0] = strain_rate(section, frames[j], k[j], pull[2], at);
-        rates[1] = strain_rate(section, frames[j - 1], k[j - 1], pull[1], vec3_axpy(-h / 2, rates[0], at));
-        rates[2] = strain_rate(section, frames[j - 1], k[j - 1], pull[1], vec3_axpy(-h / 2, rates[1], at));
-        rates[3] = strain_rate(section, frames[j - 2], k[j - 2], pull[0], vec3_axpy(-h, rates[2], at));
+        Vec3 rates[4], at = m[j];
+        rates[0] = moment_rate(frames[j], k[j], pull[2], at);
+        rates[1] = moment_rate(frames[j - 1], k[j - 1], pull[1], vec3_axpy(-h / 2, rates[0], at));
+        rates[2] = moment_rate(frames[j - 1], k[j - 1], pull[1], vec3_axpy(-h / 2, rates[1], at));
+        rates[3] = moment_rate(frames[j - 2], k[j - 2], pull[0], vec3_axpy(-h, rates[2], at));
         Vec3 sum = vec3_add(vec3_add(rates[0], rates[3]), vec3_scale(2, vec3_add(rates[1], rates[2])));
-        d[j - 2] = vec3_axpy(-h / 6, sum, at);
-        d[j - 1] = vec3_axpy(
-            0.5, vec3_add(d[j], d[j - 2]),
-            vec3_scale(h / 8,
-                       vec3_sub(strain_rate(section, frames[j - 2], k[j - 2], pull[0], d[j - 2]), rates[0])));
+        m[j - 2] = vec3_axpy(-h / 6, sum, at);
+        m[j - 1] = vec3_axpy(
+            0.5, vec3_add(m[j], m[j - 2]),
+            vec3_scale(h / 8, vec3_sub(moment_rate(frames[j - 2], k[j - 2], pull[0], m[j - 2]), rates[0])));
         for (int i = j - 2; i < j; i++) { /* couples within the element */
             Vec3 jump = vec3_sub(couple_at(curve, loads, i), couple_at(curve, loads, j));
-            d[i] = vec3_sub(d[i], strain_of(section, frames[i], jump));
+            m[i] = vec3_add(m[i], rod_to_frame(frames[i], jump));
         }
     }
+    for (int j = 0; j <= last; j++) d[j] = vec3_scale(-1, rod_bent(rod_section_at(sections, j), m[j]));
     mem_free(k);
     mem_free(pulls);
 }
 
 /* What is least of a station: rows of it for the moment there, r = r0 + A M. */
-static void least_rows(RodSection section, RodFrame f, RodEndChoice choice, Vec3 rows[3])
+static void least_rows(const RodSection *section, RodFrame f, RodEndChoice choice, Vec3 rows[3])
 {
     bool straight = choice == ROD_STRAIGHTEST;
-    double K[3] = {section.twist, section.bend1, section.bend2};
+    double K[3] = {section->twist, section->bend1, section->bend2};
     const Vec3 axes[3] = {f.n0, f.n1, f.n2};
     for (int i = 0; i < 3; i++)
         rows[i] = vec3_scale(!straight ? 1 / sqrt(K[i]) : i > 0 ? -1 / K[i] : 0, axes[i]);
@@ -252,7 +249,7 @@ static void least_rows(RodSection section, RodFrame f, RodEndChoice choice, Vec3
 
 static const double UNDETERMINED = 1e-12;
 
-void rod_choose_end(const RodCurve *curve, RodSection section, const RodFrame *frames, RodEndChoice choice,
+void rod_choose_end(const RodCurve *curve, RodSections sections, const RodFrame *frames, RodEndChoice choice,
                     bool hinge, RodLoads *loads)
 {
     enum { UNKNOWNS = 6 }; /* force times length, couple */
@@ -260,11 +257,11 @@ void rod_choose_end(const RodCurve *curve, RodSection section, const RodFrame *f
     double A[UNKNOWNS][UNKNOWNS] = {{0}}, b[UNKNOWNS] = {0}, trace = 0, L = curve->length;
     Vec3 *moment = mem_alloc(2 * ((size_t)last + 1), sizeof *moment), *k = moment + last + 1;
     rod_moments(curve, *loads, moment);
-    rod_natural_strains(curve, section, moment, frames, k);
+    rod_natural_strains(curve, sections, moment, frames, k);
     for (int j = 0; j <= last; j++) {
         double simpson = j == 0 || j == last ? 1 : j % 2 ? 4 : 2;
         Vec3 rows[3], arm = vec3_scale(1 / L, vec3_sub(curve->x[last], curve->x[j]));
-        least_rows(section, frames[j], choice, rows);
+        least_rows(rod_section_at(sections, j), frames[j], choice, rows);
         for (int i = 0; i < 3; i++) {
             double r = choice == ROD_STRAIGHTEST ? i > 0 ? (&k[j].x)[i] : 0 : vec3_dot(rows[i], moment[j]);
             double slope[UNKNOWNS]; /* row.(arm x F + C) */

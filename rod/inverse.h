@@ -6,7 +6,7 @@
  * integral. The curve is in equilibrium if its strains differ from the natural ones by K^-1 R^T M; so a
  * material frame of the natural shape turns against the same frame of the curve by Q' = Q [w]x, w = -R K^-1
  * R^T M, and the natural curve is xbar' = Q t. For a circular section no frame is needed at all: w =
- * -(M_across/EI + M_along/GJ). Fourth order. */
+ * -(M_across/EI + M_along/GJ). Fourth order. Sections are those of the stations, [2 elements + 1], with Young's modulus. */
 #pragma once
 #include "rod/frame.h"
 #include "rod/section.h"
@@ -29,11 +29,11 @@ typedef struct RodLoads {
     const RodPointLoad *points; /* borrowed */
 } RodLoads;
 
-/* What inertia and drag of a moving rod are as loads, along[stations]: -mass a - drag v (kg/m, N s/m^2), by the places at
+/* What inertia and drag of a moving rod are as loads, along[stations]: -mass a - drag v (kg/m, N s/m^2), by its places at
  * three times, curves of as many elements. The acceleration is their second difference: of second order for the middle one
  * where steps are even; and for the last one just what implicit Euler took it for. `at`, 1 or 2, says whose it is. */
-void rod_inertia(const RodCurve *const curves[3], const double time[3], int at, double mass, double drag,
-                 Vec3 *along);
+void rod_inertia(const RodCurve *const curves[3], const double time[3], int at, RodSections sections,
+                 double drag, Vec3 *along);
 
 /* M at all stations, N m. Fourth order; second order in an element that a point load acts within. A couple makes M
  * jump: nodes have what it is on their own side of the couple (one at a node is beyond those before it, one at the end beyond
@@ -47,7 +47,7 @@ void rod_pulls(const RodCurve *curve, RodLoads loads, Vec3 *pull);
 /* natural[elements + 1]: the natural shape's nodes, from the curve's first place and tangent on.
  * frames[stations] tell where the section's axes are; NULL for a section that bends alike in all directions.
  */
-void rod_invert(const RodCurve *curve, RodSection section, const Vec3 *moment, const RodFrame *frames,
+void rod_invert(const RodCurve *curve, RodSections sections, const Vec3 *moment, const RodFrame *frames,
                 Vec3 *natural);
 
 /* The curve's own strains (twist, k1, k2) in the given frames, at all stations, 1/m. */
@@ -55,7 +55,7 @@ void rod_strains(const RodCurve *curve, const RodFrame *frames, Vec3 *strains);
 
 /* Natural strains (twist, k1, k2) in the given frames, at all stations, 1/m: those of the curve less K^-1 R^T
  * M. */
-void rod_natural_strains(const RodCurve *curve, RodSection section, const Vec3 *moment,
+void rod_natural_strains(const RodCurve *curve, RodSections sections, const Vec3 *moment,
                          const RodFrame *frames, Vec3 *strains);
 
 /* Natural strains in frames that do not twist where the rod is unloaded, from those in any frames with the same n1 at the
@@ -70,10 +70,10 @@ typedef enum RodEndChoice {
 
 /* Puts that force and couple (of a hinge: the force alone) into loads->end, beside what is there, and end_couple: least
  * squares; what makes no difference, or 1e-12 of the most that something makes, is zero. */
-void rod_choose_end(const RodCurve *curve, RodSection section, const RodFrame *frames, RodEndChoice choice,
+void rod_choose_end(const RodCurve *curve, RodSections sections, const RodFrame *frames, RodEndChoice choice,
                     bool hinge, RodLoads *loads);
 
-/* Natural strains less the curve's by the way of eq. (10) of the paper, an equation for the strain alone
- * that is integrated from the free end: an independent check. */
-void rod_strain_route(const RodCurve *curve, RodSection section, RodLoads loads, const RodFrame *frames,
+/* Natural strains less the curve's by the way of eq. (10) of the paper, an equation in the frames alone that is integrated
+ * from the free end, for the moment in place of the strain, whatever the sections: an independent check. */
+void rod_strain_route(const RodCurve *curve, RodSections sections, RodLoads loads, const RodFrame *frames,
                       Vec3 *difference);

@@ -85,7 +85,7 @@ static Node node_at(const RodTerm *term, int pack, int k, const Point *at, const
 /* V/2, m^3 */
 static Pack half_volume(const RodTerm *term, int pack)
 {
-    return term->rod->area * rod_term_length(term, pack) / 2;
+    return rod_term_section(term, pack, &term->rod->unit->area) * rod_term_length(term, pack) / 2;
 }
 
 /* G^T R M */

@@ -4,26 +4,29 @@
 #include "solve/kinetic.h"
 #include "solve/lumped.h"
 #include <math.h>
+#include <string.h>
 
 static const double HOLD = 10;          /* of the link, in parts of the whole rod's stiffness */
 static const double BASE_SHIFT = 1e-10; /* for a rod that may spin, or bend to any side (system.h) */
 static const double PUSH = 60;          /* of a held end, in EI/L^2: clamps buckle at 4 pi^2 (system.h) */
 
-Rod *rod_create(int elements, double length, RodSection unit, double area, const RodActs *acts)
+Rod *rod_create(int elements, double length, RodSection unit, const RodActs *acts)
 {
-    return rod_create_strands(1, elements, &length, unit, area, acts);
+    return rod_create_strands(1, elements, &length, unit, acts);
 }
 
-Rod *rod_create_strands(int strands, int each, const double *length, RodSection unit, double area,
-                        const RodActs *acts)
+Rod *rod_create_strands(int strands, int each, const double *length, RodSection unit, const RodActs *acts)
 {
     int elements = strands * each;
     Rod *rod = mem_alloc(1, sizeof *rod);
-    *rod = (Rod){.strands = strands, .elements = elements, .unit = unit, .area = area, .start = ROD_CLAMPED};
+    *rod = (Rod){.strands = strands, .elements = elements, .start = ROD_CLAMPED};
     rod->strand = mem_alloc((size_t)strands, sizeof *rod->strand);
     for (int k = 0; k < strands; k++) rod->strand[k] = (RodStrand){length[k], vec3(0, 0, 0), quat_identity()};
     if (acts) rod->fields = acts->fields, rod->potentials = acts->potentials, rod->couples = acts->couples;
     rod->bow = mem_alloc((size_t)elements, sizeof *rod->bow);
+    rod->unit = mem_alloc((size_t)elements, sizeof *rod->unit);
+    rod->heavier = mem_alloc((size_t)elements, sizeof *rod->heavier);
+    for (int e = 0; e < elements; e++) rod->unit[e] = unit;
     Params *params = &rod->params;
     rod->young = params_add(params, "young", "Pa", elements, 1, false);
     rod->natural_strain = params_add(params, "natural_strain", "1/m", elements, 3, false);
@@ -44,6 +47,8 @@ void rod_destroy(Rod *rod)
     if (!rod) return;
     mem_free(rod->strand);
     mem_free(rod->bow);
+    mem_free(rod->unit);
+    mem_free(rod->heavier);
     flux_fields_clear(&rod->fields);
     rod_potentials_clear(&rod->potentials);
     world_destroy(rod->world);
@@ -51,8 +56,26 @@ void rod_destroy(Rod *rod)
     mem_free(rod->straight);
     mem_free(rod->part);
     mem_free(rod->lengths);
+    mem_free(rod->radii);
     params_clear(&rod->params);
     mem_free(rod);
+}
+
+void rod_set_sections(Rod *rod, const RodSection *unit)
+{
+    int each = rod_each(rod);
+    memcpy(rod->unit, unit, (size_t)rod->elements * sizeof *unit);
+    for (int e = rod->elements - 1; e >= 0; e--) {
+        int beyond = each - 1 - e % each;
+        rod->heavier[e] = beyond ? rod->heavier[e + 1] + beyond * (unit[e + 1].mass - unit[e].mass) : 0;
+    }
+}
+
+RodSection rod_largest_section(const Rod *rod)
+{
+    RodSection most = rod->unit[0];
+    for (int e = 1; e < rod->elements; e++) rod_section_most(&most, &rod->unit[e]);
+    return most;
 }
 
 double rod_length(const Rod *rod)
@@ -69,36 +92,49 @@ WorldBody rod_world_body(Rod *rod)
     mem_free(rod->straight);
     mem_free(rod->part);
     mem_free(rod->lengths);
+    mem_free(rod->radii);
     rod->edges = mem_alloc((size_t)rod->elements, sizeof *rod->edges);
     rod->straight = mem_alloc((size_t)layout.nodes, sizeof *rod->straight);
     rod->part = mem_alloc((size_t)layout.nodes, sizeof *rod->part);
     rod->lengths = mem_alloc((size_t)rod->strands, sizeof *rod->lengths);
+    rod->radii = mem_alloc((size_t)rod->elements, sizeof *rod->radii);
     for (int k = 0; k < rod->strands; k++) rod->lengths[k] = rod->strand[k].length;
     for (int e = 0; e < rod->elements; e++) {
+        rod->radii[e] = rod->unit[e].reach;
         int node = rod->edges[e][0] = rod_element_node(&layout, e), next = rod->edges[e][1] = node + 1;
         rod->straight[next][0] = (e % layout.each + 1) * rod_element_length(rod, e);
         rod->part[node] = rod->part[next] = e / layout.each;
     }
+    double reach = rod_largest_section(rod).reach;
     return (WorldBody){.vertex_count = layout.nodes,
                        .first = layout.position,
                        .edge_count = rod->elements,
                        .edges = (const int(*)[2])rod->edges,
                        .rest = (const double(*)[3])rod->straight,
                        .part = rod->part,
-                       .thickness = 2 * rod->unit.reach,
-                       .outside = rod->unit.reach,
+                       .thickness = 2 * reach,
+                       .outside = reach,
                        .strands = rod->strands,
-                       .length = rod->lengths};
+                       .length = rod->lengths,
+                       .radius = rod->radii};
 }
 
 void rod_node_mass(const Rod *rod, double *mass)
 {
-    int each = rod_each(rod);
-    for (int k = 0; k < rod->strands; k++)
-        for (int i = 0; i <= each; i++) {
-            double element = rod->unit.mass * rod_element_length(rod, k * each);
-            *mass++ = i == 0 || i == each ? element / 2 : element;
-        }
+    RodLayout layout = rod_layout(rod, false);
+    memset(mass, 0, (size_t)layout.nodes * sizeof *mass);
+    for (int e = 0; e < rod->elements; e++) {
+        double half = rod->unit[e].mass * rod_element_length(rod, e) / 2,
+               *node = mass + rod_element_node(&layout, e);
+        node[0] += half, node[1] += half;
+    }
+}
+
+double rod_strand_mass(const Rod *rod, int strand)
+{
+    int first = strand * rod_each(rod);
+    return rod->unit[first].mass * rod->strand[strand].length +
+           rod->heavier[first] * rod_element_length(rod, first);
 }
 
 void rod_default_params(const Rod *rod, double young, double *p)
@@ -254,7 +290,8 @@ System *rod_system(const Rod *rod, double young, bool dynamic)
 {
     RodLayout layout = rod_layout(rod, true);
     int end = 3 * layout.elements;
-    double bend = young * fmax(rod->unit.bend1, rod->unit.bend2), length = rod_length(rod);
+    RodSection most = rod_largest_section(rod);
+    double bend = young * fmax(most.bend1, most.bend2), length = rod_length(rod);
     DofClass classes[] = {
         {.first = layout.position, .count = 3 * layout.nodes, .size = length},
         {.first = layout.turn, .count = 3 * layout.nodes, .size = 1},

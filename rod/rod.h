@@ -49,9 +49,9 @@ typedef struct RodActs {
 typedef struct Rod {
     int strands, elements; /* of all strands                               */
     RodStrand *strand;     /* [strands] owned                              */
-    RodSection unit;       /* of a Young's modulus of 1 Pa; mass in kg/m   */
-    double area;           /* of the section, m^2                          */
-    bool cosserat;         /* stretches and shears                         */
+    RodSection *unit;      /* [elements] of a Young's modulus of 1 Pa; owned (rod_set_sections)  */
+    double *heavier; /* [elements] kg/m: what the elements beyond it have more than as many like it; owned */
+    bool cosserat;   /* stretches and shears                         */
     RodSupport start, end; /* of each; start: clamped or pinned            */
     Vec3 *bow;         /* [elements] m, in the first node's frame: how far an element's chord is off that of a
                 * helix, because strain varies within it; usually 0; owned */
@@ -61,7 +61,8 @@ typedef struct Rod {
     int (*edges)[2];       /* [elements] the nodes of each, and                                             */
     double (*straight)[3]; /* [nodes] m, places along x,                                          */
     int *part;             /* [nodes] and strands,                                         */
-    double *lengths;       /* [strands] m: what its world knows of it; all owned             */
+    double *lengths;       /* [strands] m, and                                               */
+    double *radii;         /* [elements] m: what its world knows of it; all owned            */
 
     Params params;       /* blocks and their first entries in p:                           */
     int young;           /* [element] Pa                                                   */
@@ -77,14 +78,20 @@ typedef struct Rod {
     bool couples;
 } Rod;
 
-/* Clamped at the origin along x, free at the other end; material, strains and loads are up to p. Takes what acts on it
- * (NULL: nothing). */
-Rod *rod_create(int elements, double length, RodSection unit, double area, const RodActs *acts);
+/* Clamped at the origin along x, free at the other end, of one section; material, strains and loads are up to p. Takes what
+ * acts on it (NULL: nothing). */
+Rod *rod_create(int elements, double length, RodSection unit, const RodActs *acts);
 
 /* Many, of length[strands] and so many elements each. */
-Rod *rod_create_strands(int strands, int elements, const double *length, RodSection unit, double area,
+Rod *rod_create_strands(int strands, int elements, const double *length, RodSection unit,
                         const RodActs *acts);
 void rod_destroy(Rod *rod);
+
+/* A section for each element, unit[elements]; before there are systems of it. */
+void rod_set_sections(Rod *rod, const RodSection *unit);
+
+/* Of each number the largest one along the rod. */
+RodSection rod_largest_section(const Rod *rod);
 
 static inline int rod_node_count(const Rod *rod)
 {
@@ -111,8 +118,11 @@ double rod_length(const Rod *rod);
  * rod is its own neighbour. Borrowed from the rod. */
 WorldBody rod_world_body(Rod *rod);
 
-/* Mass of each node, mass[nodes], kg: half an element at the ends. */
+/* Mass of each node, mass[nodes], kg: half of the elements beside it. */
 void rod_node_mass(const Rod *rod, double *mass);
+
+/* Of a strand, kg. */
+double rod_strand_mass(const Rod *rod, int strand);
 
 /* Young's modulus everywhere, scales and strengths of fields 1, all else 0. p[params.size] */
 void rod_default_params(const Rod *rod, double young, double *p);

@@ -28,9 +28,9 @@ static const double weights[PLACES] = {1.0 / 6, 4.0 / 6, 1.0 / 6};
 static const double slopes[PLACES][PLACES] = {{3, -4, 1}, {1, 0, -1}, {-1, 4, -3}};
 
 /* eta.K eta at a place, for eta = a sum of eta[.][i] y_i. */
-static void add_stiffness(Element *element, RodSection section, double weight, double eta[3][SIZE])
+static void add_stiffness(Element *element, Vec3 stiffness, double weight, double eta[3][SIZE])
 {
-    double K[3] = {section.twist, section.bend1, section.bend2};
+    const double *K = &stiffness.x;
     for (int i = 0; i < SIZE; i++)
         for (int j = 0; j <= i; j++)
             for (int n = 0; n < 3; n++) element->stiff[i][j] += weight * K[n] * eta[n][i] * eta[n][j];
@@ -51,8 +51,8 @@ static void add_load(Element *element, double weight, Vec3 m, Vec3 F, double eta
     }
 }
 
-/* From strains, moments and forces at the element's end, middle and start. */
-static Element element_create(RodSection section, double h, const Vec3 *k, const Vec3 *m, const Vec3 *F)
+/* From stiffnesses, strains, moments and forces at the element's end, middle and start. */
+static Element element_create(double h, const Vec3 *K, const Vec3 *k, const Vec3 *m, const Vec3 *F)
 {
     Element element = {0};
     Vec3 axes[PLACES][3];
@@ -64,7 +64,7 @@ static Element element_create(RodSection section, double h, const Vec3 *k, const
         for (int i = 0; i < 3; i++)
             for (int j = 0; j < SIZE; j++)
                 eta[i][j] = slopes[a][j / 3] / h * vec3_dot(axes[a][i], axes[j / 3][j % 3]);
-        add_stiffness(&element, section, weights[a] * h, eta);
+        add_stiffness(&element, K[a], weights[a] * h, eta);
         add_load(&element, weights[a] * h, m[a], F[a], eta, 3 * a);
     }
     return element;
@@ -80,22 +80,26 @@ static Vec3 parabola(const Vec3 *f, double x)
 /* What lies between x (0: start) and the end of element e. */
 static Element element_rest(const RodEquilibrium *rod, int e, double x)
 {
-    Vec3 k[PLACES], m[PLACES], F[PLACES];
+    Vec3 K[PLACES], k[PLACES], m[PLACES], F[PLACES];
     for (int a = 0; a < PLACES; a++) {
         double place = 1 - (1 - x) * a / 2;
+        K[a] = parabola(rod->K + 3 * e, place);
         k[a] = parabola(rod->k + 2 * e, place);
         m[a] = parabola(rod->m + 2 * e, place);
         F[a] = parabola(rod->F + 3 * e, place);
     }
-    return element_create(rod->section, rod->length / rod->elements * (1 - x), k, m, F);
+    return element_create(rod->length / rod->elements * (1 - x), K, k, m, F);
 }
 
 static Form form_create(const RodEquilibrium *rod)
 {
-    RodSection section = rod->section;
-    Form form = {.rod = rod, .h = rod->length / rod->elements, .inertia = fmin(section.bend1, section.bend2)};
-    form.softest = fmin(section.twist, form.inertia);
-    form.stiffest = fmax(section.twist, fmax(section.bend1, section.bend2));
+    Form form = {.rod = rod, .h = rod->length / rod->elements, .inertia = INFINITY, .softest = INFINITY};
+    for (int i = 0; i < 3 * rod->elements; i++) {
+        Vec3 K = rod->K[i];
+        form.inertia = fmin(form.inertia, fmin(K.y, K.z));
+        form.softest = fmin(form.softest, fmin(K.x, form.inertia));
+        form.stiffest = fmax(form.stiffest, fmax(K.x, fmax(K.y, K.z)));
+    }
     for (int j = 0; j <= 2 * rod->elements; j++) form.moment = fmax(form.moment, vec3_length(rod->m[j]));
     for (int i = 0; i < 3 * rod->elements; i++) {
         double force = vec3_length(rod->F[i]);
@@ -253,10 +257,11 @@ double rod_stable_tail(const RodEquilibrium *rod)
 
 double rod_bending_lengths(const RodEquilibrium *rod)
 {
-    double h = rod->length / rod->elements, bend = fmin(rod->section.bend1, rod->section.bend2), most = 0;
+    double h = rod->length / rod->elements, most = 0;
     for (int e = 0; e < rod->elements; e++) {
+        double bend = fmin(rod->K[3 * e + 1].y, rod->K[3 * e + 1].z);
         if (h * vec3_length(rod->m[2 * e + 1]) < BENT * bend) continue;
-        for (int i = 0; i < 3; i++) most = fmax(most, vec3_length(rod->F[3 * e + i]));
+        for (int i = 0; i < 3; i++) most = fmax(most, vec3_length(rod->F[3 * e + i]) / bend);
     }
-    return h * sqrt(most / bend);
+    return h * sqrt(most);
 }

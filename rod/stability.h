@@ -13,15 +13,14 @@
  * Jacobi field that needs no rescaling). All cost O(elements). */
 #pragma once
 #include "base/vec3.h"
-#include "rod/section.h"
 #include <stdbool.h>
 
 typedef struct RodEquilibrium {
     int elements;
-    double length; /* m */
-    RodSection section;
+    double length;     /* m */
     const Vec3 *k, *m; /* [2 elements + 1] strains, 1/m, and moments, N m, in the frames */
-    const Vec3 *F;     /* [3 elements] the pull of what lies beyond, N, in the frame at each element's start,
+    const Vec3 *K; /* [3 elements] stiffness (GJ, EI1, EI2), N m^2, at each element's start, middle and end */
+    const Vec3 *F; /* [3 elements] the pull of what lies beyond, N, in the frame at each element's start,
                         * middle and end: point loads make it jump at nodes */
 } RodEquilibrium;
 

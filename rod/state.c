@@ -241,12 +241,13 @@ void rod_carry(const Rod *rod, System *sys, const RodLayout *layout, const Point
 static void set_strains(const Rod *rod, System *sys, const RodLayout *layout, const Point *at, double *x,
                         double *work)
 {
-    RodSection unit = rod->unit;
-    const double K[3] = {unit.stretch, unit.shear1, unit.shear2};
     system_gradient(sys, at, work);
-    for (int i = 0; i < 3 * rod->elements; i++)
+    for (int i = 0; i < 3 * rod->elements; i++) {
+        const RodSection *unit = &rod->unit[i / 3];
+        const double K[3] = {unit->stretch, unit->shear1, unit->shear2};
         x[layout->strain + i] -= work[layout->strain + i] /
                                  (at->p[rod->young + i / 3] * rod_element_length(rod, i / 3) * K[i % 3]);
+    }
     follow(rod, layout, x);
 }
 
@@ -277,7 +278,8 @@ void rod_balance_end(const Rod *rod, System *sys, const RodLayout *layout, doubl
         Vec3 load = vec3_add(vec3_load(force + layout->turn + 3 * node), carried);
         Vec3 m = solve(rows[e] + 3, vec3_scale(-1, load));
         for (int i = 0; i < 3; i++) (&carried.x)[i] = vec3_dot(rows[e][i], m);
-        double young = p[rod->young + e], K[3] = {rod->unit.twist, rod->unit.bend1, rod->unit.bend2};
+        const RodSection *unit = &rod->unit[e];
+        double young = p[rod->young + e], K[3] = {unit->twist, unit->bend1, unit->bend2};
         for (int i = 0; i < 3; i++) p[rod->natural_strain + 3 * e + i] -= (&m.x)[i] / (young * K[i]);
     }
     mem_free(strain);

@@ -14,17 +14,19 @@ static void fill_nodes(int elements, Vec3 *v)
 /* The dead loads beyond an element's middle, and by how much weight changes them over the element. */
 static Vec3 loads_beyond(const Rod *rod, const double *p, int e, Vec3 *weight)
 {
-    double element = rod->unit.mass * rod_element_length(rod, e);
+    double h = rod_element_length(rod, e);
     int each = rod_each(rod);
-    *weight = vec3_scale(element, vec3_load(p + rod->gravity));
-    return vec3_axpy(each - e % each - 0.5, *weight, vec3_load(p + rod->pull + 3 * e));
+    Vec3 gravity = vec3_load(p + rod->gravity),
+         pull = vec3_axpy(h * rod->heavier[e], gravity, vec3_load(p + rod->pull + 3 * e));
+    *weight = vec3_scale(rod->unit[e].mass * h, gravity);
+    return vec3_axpy(each - e % each - 0.5, *weight, pull);
 }
 
 /* With the force that turns the element as a uniform field does. */
 static Vec3 element_pull(const Rod *rod, const double *p, int e, Vec3 *weight)
 {
     Vec3 B = vec3_load(p + rod->flux.uniform);
-    return vec3_axpy(rod->area * p[rod->magnetization + 3 * e], B, loads_beyond(rod, p, e, weight));
+    return vec3_axpy(rod->unit[e].area * p[rod->magnetization + 3 * e], B, loads_beyond(rod, p, e, weight));
 }
 
 /* In the frame of a strand's last node. */
@@ -45,10 +47,10 @@ void rod_stations(const Rod *rod, int strand, const RodLayout *layout, const dou
         int e = strand * each + i, node = rod_element_node(layout, e);
         double h = rod_element_length(rod, e);
         Vec3 off = vec3_sub(strain[e], vec3_load(p + rod->natural_strain + 3 * e)), weight;
-        double young = p[rod->young + e];
+        const RodSection *unit = &rod->unit[e];
         k[2 * i + 1] = strain[e];
-        m[2 * i + 1] = vec3_scale(
-            young, vec3(rod->unit.twist * off.x, rod->unit.bend1 * off.y, rod->unit.bend2 * off.z));
+        m[2 * i + 1] = vec3_scale(p[rod->young + e],
+                                  vec3(unit->twist * off.x, unit->bend1 * off.y, unit->bend2 * off.z));
         Vec3 pull = element_pull(rod, p, e, &weight);
         Quat a = rod_reference(layout, x, node), middle = quat_mul(a, quat_exp(vec3_scale(h / 2, strain[e])));
         Quat frame[3] = {a, middle, rod_reference(layout, x, node + 1)};

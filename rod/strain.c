@@ -16,10 +16,11 @@ static Pack3 times(Pack3 a, Pack3 b)
 static Strained strained(const RodTerm *term, int pack, const Point *at, const Pack *x)
 {
     const Rod *rod = term->rod;
-    RodSection unit = rod->unit;
+    const RodSection *unit = rod->unit;
     Strained o = {.s = segment_at(&term->layout, pack, at->x, x), .h = rod_term_length(term, pack)};
     o.young = rod_term_number(term, pack, at->p + rod->young, 1, 0);
-    o.unit = pack3(pack_set(unit.twist), pack_set(unit.bend1), pack_set(unit.bend2));
+    o.unit = pack3(rod_term_section(term, pack, &unit->twist), rod_term_section(term, pack, &unit->bend1),
+                   rod_term_section(term, pack, &unit->bend2));
     Pack3 natural = rod_term_vector(term, pack, at->p + rod->natural_strain);
     o.off = pack3_sub(pack3_scale(1 / o.h, segment_theta(&o.s)), natural);
     return o;

@@ -8,26 +8,32 @@ static int stretch_size(const void *self)
     return 3;
 }
 
+/* f K */
+static Pack3 stiffness(const RodTerm *term, int pack, Pack f)
+{
+    const RodSection *unit = term->rod->unit;
+    return pack3_scale(f, pack3(rod_term_section(term, pack, &unit->stretch),
+                                rod_term_section(term, pack, &unit->shear1),
+                                rod_term_section(term, pack, &unit->shear2)));
+}
+
 /* h K G; the energy is young G.(that)/2. */
 static Pack3 stress(const RodTerm *term, int pack, Pack3 G)
 {
-    RodSection unit = term->rod->unit;
-    Pack h = rod_term_length(term, pack);
-    return pack3(h * unit.stretch * G.x, h * unit.shear1 * G.y, h * unit.shear2 * G.z);
+    Pack3 K = stiffness(term, pack, rod_term_length(term, pack));
+    return pack3(K.x * G.x, K.y * G.y, K.z * G.z);
 }
 
 static Pack stretch_eval(const void *self, int pack, const Point *at, const Pack *x, Pack *g, Pack *H)
 {
     const RodTerm *term = self;
-    RodSection unit = term->rod->unit;
-    Pack young = rod_term_number(term, pack, at->p + term->rod->young, 1, 0), h = rod_term_length(term, pack);
+    Pack young = rod_term_number(term, pack, at->p + term->rod->young, 1, 0);
     Pack3 G = pack3_load(x), force = pack3_scale(young, stress(term, pack, G));
     if (g) pack3_store(g, force);
     if (H) {
+        Pack3 K = stiffness(term, pack, young * rod_term_length(term, pack));
         element_clear(H, 3);
-        H[TERM_LOWER(0, 0)] = young * h * unit.stretch;
-        H[TERM_LOWER(1, 1)] = young * h * unit.shear1;
-        H[TERM_LOWER(2, 2)] = young * h * unit.shear2;
+        H[TERM_LOWER(0, 0)] = K.x, H[TERM_LOWER(1, 1)] = K.y, H[TERM_LOWER(2, 2)] = K.z;
     }
     return pack3_dot(force, G) / 2;
 }

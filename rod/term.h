@@ -70,6 +70,12 @@ static inline Pack3 rod_term_vector(const RodTerm *term, int pack, const double 
                  rod_term_number(term, pack, block, 3, 2));
 }
 
+/* A stiffness, .. of the elements' sections, which begins at `number` in the first element's. */
+static inline Pack rod_term_section(const RodTerm *term, int pack, const double *number)
+{
+    return rod_term_number(term, pack, number, sizeof(RodSection) / sizeof(double), 0);
+}
+
 static inline Pack3 rod_term_uniform(const double *v)
 {
     return pack3(pack_set(v[0]), pack_set(v[1]), pack_set(v[2]));

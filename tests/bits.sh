@@ -74,6 +74,7 @@ rod_fall | scenes/rod_fall.yaml | rod.elements=80 time.steps=40
 rod_wave_pushed | scenes/rod_wave_pushed.yaml | rod.elements=80 time.steps=60
 rod_simulate | tests/scene_rod_simulate.yaml | time.steps=60
 rod_simulate_resumed | tests/scene_rod_simulate.yaml | time.steps=30 | time.steps=60
+rod_tentacle | scenes/rod_tentacle.yaml |
 rod_preview | scenes/rod_preview.yaml | time.steps=40
 rod_design | tests/scene_rod_design.yaml | design.iterations=8
 rod_design_resumed | tests/scene_rod_design.yaml | design.iterations=4 | design.iterations=8

@@ -79,6 +79,8 @@ time: {step: 5 ms, steps: 5}
 design: {unknowns: {flux_density: {noise: 0.01}}, objectives: [{waypoint: {mass_center: true, at: [0.02, 0, 0.01]}}], iterations: 3}
 """,
     "rod equilibrium": "job: equilibrium\nrod:\n  natural_strain: [1, 2, 3]" + ROD + "  elements: 20\n" + FLUX + "",
+    "rod section": "job: equilibrium\nrod:\n  model: cosserat\n  natural_strain: [1, 2, 3]\n  length: 0.2\n  section: {area: 4.0e-6, I1: 1.0e-12, I2: 2.0e-12, J: 1.5e-12, kappa: [0.8, 0.7]}\n"
+    "  young: 5 MPa\n  poisson: 0.4\n  density: 1180\n  elements: 20\n" + FLUX,
     "rod curve": "job: equilibrium\nrod:" + CURVE + "  elements: 20\n" + FLUX,
     "rod held": "job: equilibrium\nrod:\n  natural_strain: [1, 2, 3]" + ROD + "  elements: 20\n  end: {position: [0.15, 0, 0]}\n" + FLUX,
     "rod evaluate": "job: evaluate\nrod:" + CURVE + "  elements: 20\n  start: curve\n" + FLUX,
@@ -154,6 +156,11 @@ VALUES = {
     "servo.up": ["M1"], "servo.down": ["M2"], "size of a page.name": ["a6"], "size of a page.sides": ["[50 mm, 40 mm]"],
     "place of a skin.group": ["left"],
     "shell.pose": [], "shell.velocity": ["[0, 0, 0.1]"],
+    "rod.radius": ["1.2 mm", '"0.001*(1 + s/L)"'], "rod.young": ["4 MPa", '"4e6*(1 + s/L)"'], "section of a rod.kappa": ["[0.6, 0.7]"],
+    "section of a rod.area": ["3.0e-6"], "section of a rod.I1": ["2.0e-12"], "section of a rod.I2": ['"2e-12*(1 + s/L)"'], "section of a rod.J": ["2.0e-12"],
+    "length along a rod.formula": ['"0.001*(1 + s/L)"'], "young along a rod.formula": ['"4e6*(1 + s/L)"'],
+    "length along a rod.where": ["{a: s}"], "young along a rod.where": ["{a: s}"], "area along a rod.where": ["{a: s}"],
+    "moment of area along a rod.where": ["{a: s}"],
     "rod.natural_strain": ["[0, 0, 4]"], "rod.poses": [], "rod.ellipse": ["[1 mm, 2 mm]"],
     "rod.clamp": ["{position: [0.01, 0, 0]}", "{frame: [[0, 1, 0], [-1, 0, 0], [0, 0, 1]]}"],
     "rod.end": ["{position: [0.1, 0, 0]}"], "rod.loads": ["[{point: 0.1, force: [0, 0, -1 mN]}]", "[{line: [0, 0, -1 mN/m]}]"],

@@ -23,8 +23,7 @@ static inline Resting resting_create(const ReferenceRod *r, double young, int el
     o.frames = mem_alloc(2 * (size_t)elements + 1, sizeof *o.frames);
     rod_frenet(&o.curve, o.frames);
     rod_bishop(&o.curve, o.frames[0].n1, o.frames);
-    o.rod = rod_create(elements, o.curve.length, reference_section(1),
-                       M_PI * reference_radius * reference_radius, NULL);
+    o.rod = rod_create(elements, o.curve.length, reference_section(1), NULL);
     o.p = mem_alloc((size_t)o.rod->params.size, sizeof *o.p);
     rod_default_params(o.rod, young, o.p);
     o.p[o.rod->gravity + 2] = -reference_gravity;
@@ -68,7 +67,7 @@ static inline double resting_distance_of(const Resting *o, const double *x)
 static inline Rod *rod_plain(int elements, double length, double young, const FluxFields *fields,
                              double **params)
 {
-    Rod *rod = rod_create(elements, length, rod_circle(1e-3, 1, 0.4, 1000), M_PI * 1e-6,
+    Rod *rod = rod_create(elements, length, rod_circle(1e-3, 1, 0.4, 1000),
                           fields ? &(RodActs){.fields = *fields} : NULL);
     *params = mem_alloc((size_t)rod->params.size, sizeof **params);
     rod_default_params(rod, young, *params);

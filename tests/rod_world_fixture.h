@@ -31,7 +31,7 @@ static inline Rig rig_create(const RigDef *def)
 {
     const double length[RIG_STRANDS] = {def->length, def->length}, r = def->radius;
     Rig rig = {.rod = rod_create_strands(def->strands, def->elements, length,
-                                         rod_circle(r, 1, 0.4, def->density), M_PI * r * r, NULL),
+                                         rod_circle(r, 1, 0.4, def->density), NULL),
                .march = march_default()};
     Rod *rod = rig.rod;
     WorldBody shown = rod_world_body(rod);

@@ -44,7 +44,7 @@ static PbdRodDef sagging_helix(int elements, Vec3 *places)
     RodSection section = rod_circle(1.5e-3, 5e6, 0.5, 1200);
     rod_moments(&curve, (RodLoads){.line = vec3(0, 0, -9.8 * section.mass)}, moment);
     rod_frenet(&curve, frames);
-    rod_natural_strains(&curve, section, moment, frames, strains);
+    rod_natural_strains(&curve, rod_alike(&section), moment, frames, strains);
     for (int e = 0; e < elements; e++) strain[e] = strains[2 * e + 1];
     for (int i = 0; i <= elements; i++) places[i] = curve.x[2 * i];
     PbdRodDef def = {.elements = elements,

@@ -88,7 +88,7 @@ static Vec3 *invert(const Reference *r, int elements, RodCurve *curve)
     Vec3 *moment = mem_alloc(2 * (size_t)elements + 1, sizeof *moment),
          *natural = mem_alloc((size_t)elements + 1, sizeof *natural);
     rod_moments(curve, weight(section.mass), moment);
-    rod_invert(curve, section, moment, NULL, natural);
+    rod_invert(curve, rod_alike(&section), moment, NULL, natural);
     mem_free(moment);
     return natural;
 }
@@ -172,7 +172,7 @@ static void test_natural_strains(void **state)
         /* The conical one's file starts with the Frenet normal. */
         if (k == 1) rod_frenet(&curve, frames);
         rod_bishop(&curve, k == 1 ? frames[0].n1 : normals[k], frames);
-        rod_natural_strains(&curve, section, moment, frames, strains);
+        rod_natural_strains(&curve, rod_alike(&section), moment, frames, strains);
         for (int i = 0; i < 31; i++) {
             int j = i * 2 * N / 30;
             scale = fmax(scale, vec3_length(vec3_load(rows[i] + 7)));
@@ -215,8 +215,8 @@ static void test_framings(void **state)
             frames[j] =
                 rod_turned(frames[j], k == 2 ? -6 * M_PI * part : -6 * M_PI * (exp(part) - 1) / (exp(1) - 1));
         }
-        rod_natural_strains(&curve, section, moment, frames, strains);
-        rod_strain_route(&curve, section, weight(section.mass), frames, route);
+        rod_natural_strains(&curve, rod_alike(&section), moment, frames, strains);
+        rod_strain_route(&curve, rod_alike(&section), weight(section.mass), frames, route);
         for (int j = 0; j <= 2 * N; j++) {
             Vec3 M = rod_to_frame(frames[j], moment[j]);
             Vec3 direct = vec3(-M.x / section.twist, -M.y / section.bend1, -M.z / section.bend2);
@@ -271,11 +271,11 @@ static void test_straight_and_inflected(void **state)
         Vec3 moment[2 * N + 1], natural[N + 1], strains[2 * N + 1];
         RodFrame frames[2 * N + 1];
         rod_moments(&curve, loads, moment);
-        rod_invert(&curve, section, moment, NULL, natural);
+        rod_invert(&curve, rod_alike(&section), moment, NULL, natural);
         for (int f = 0; f < 2; f++) {
             rod_frenet(&curve, frames);
             if (f) rod_bishop(&curve, frames[0].n1, frames);
-            rod_natural_strains(&curve, section, moment, frames, strains);
+            rod_natural_strains(&curve, rod_alike(&section), moment, frames, strains);
             for (int j = 0; j <= 2 * N; j++) assert_true(isfinite(vec3_length(strains[j])));
             for (int j = 0; f && j <= 2 * N; j++) assert_true(fabs(strains[j].x) < 1e-12);
         }
@@ -313,8 +313,8 @@ static void test_end_couple(void **state)
         RodPointLoad point = {.s = curve.length, .couple = {0, 0, C}};
         RodLoads loads = {.points = &point, .point_count = 1};
         rod_moments(&curve, loads, moment);
-        rod_invert(&curve, section, moment, NULL, natural);
-        rod_strain_route(&curve, section, loads, frames, route);
+        rod_invert(&curve, rod_alike(&section), moment, NULL, natural);
+        rod_strain_route(&curve, rod_alike(&section), loads, frames, route);
         for (int i = 0; i <= N; i++) {
             Vec3 straight_on = vec3_scale(curve.length * i / N, curve.t[0]);
             off = fmax(off, vec3_length(vec3_sub(vec3_sub(natural[i], natural[0]), straight_on)));
@@ -343,7 +343,7 @@ static double off_the_arc(double s, int elements)
     RodPointLoad point = {.s = s, .couple = {0, 0, -k * section.bend1}};
     Vec3 *moment = mem_alloc(3 * (size_t)elements + 2, sizeof *moment), *natural = moment + 2 * elements + 1;
     rod_moments(&curve, (RodLoads){.points = &point, .point_count = 1}, moment);
-    rod_invert(&curve, section, moment, NULL, natural);
+    rod_invert(&curve, rod_alike(&section), moment, NULL, natural);
     for (int i = 0; i <= elements; i++) {
         double at = curve.length * i / elements, bent = fmin(at, s), on = at - bent;
         Vec3 x = vec3(sin(k * bent) / k + on * cos(k * s), (1 - cos(k * bent)) / k + on * sin(k * s), 0);
@@ -382,7 +382,7 @@ static void test_load_along(void **state)
     rod_moments(&curve, loads, moment);
     rod_pulls(&curve, loads, pull);
     rod_bishop(&curve, vec3(0, 1, 0), frames);
-    rod_strain_route(&curve, section, loads, frames, d);
+    rod_strain_route(&curve, rod_alike(&section), loads, frames, d);
     for (int j = 0; j <= 2 * N; j++) { /* what is left of the triangle, and its centre */
         double left = L - L * j / (2.0 * N), M = q * left * left * left / (6 * L);
         off = fmax(off, vec3_length(vec3_sub(moment[j], vec3(0, M, 0))));

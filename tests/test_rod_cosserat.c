@@ -25,7 +25,7 @@ typedef struct Bar {
 
 static Rod *make_rod(int elements, RodSection unit, bool cosserat)
 {
-    Rod *rod = rod_create(elements, length, unit, unit.mass / density, NULL);
+    Rod *rod = rod_create(elements, length, unit, NULL);
     rod->cosserat = cosserat;
     return rod;
 }
@@ -135,7 +135,7 @@ static bool stands(Bar *bar, double P)
     bar->p[rod->load + 3 * N] = -P;
     rod_sum_loads(rod, bar->p);
     for (int e = 0; e < N; e++) {
-        x[layout->strain + 3 * e] = -P / (young * rod->unit.stretch);
+        x[layout->strain + 3 * e] = -P / (young * rod->unit[0].stretch);
         if (layout->multiplier >= 0) x[layout->multiplier + 3 * e] = -P;
     }
     if (layout->position >= 0) rod_places(rod, layout, x, layout->nodes, x + layout->position);

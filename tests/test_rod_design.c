@@ -6,6 +6,7 @@
 #include "optim/objectives.h"
 #include "optim/static_design.h"
 #include "tests/rod_fixture.h"
+#include "tests/rod_taper.h"
 #include "solve/tangent.h"
 #include <math.h>
 #include <setjmp.h>
@@ -27,11 +28,11 @@ typedef struct Fixture {
 
 static const double young = 1e6, length = 0.05;
 
-/* What acts beside uniform fields and weight. */
-typedef enum Around { NOTHING, DIPOLE, COUPLE, WOUND, POTENTIAL, AROUND_COUNT } Around;
+/* What acts beside uniform fields and weight; or how the section is. */
+typedef enum Around { NOTHING, DIPOLE, COUPLE, WOUND, POTENTIAL, TAPERED, AROUND_COUNT } Around;
 
-static const char *const around_names[] = {"", ", in a dipole's field", ", with couples",
-                                           ", wound up by a couple", ", in a potential"};
+static const char *const around_names[] = {
+    "", ", in a dipole's field", ", with couples", ", wound up by a couple", ", in a potential", ", tapered"};
 
 static RodActs acts_of(Around around)
 {
@@ -51,9 +52,10 @@ static RodActs acts_of(Around around)
 static Fixture fixture_create(RodSupport end, Around around, bool cosserat, Random *random)
 {
     RodActs acts = acts_of(around);
-    Fixture f = {.rod = rod_create(N, length, rod_circle(0.5e-3, 1, 0.4, 1800), M_PI * 0.25e-6, &acts)};
+    Fixture f = {.rod = rod_create(N, length, rod_circle(0.5e-3, 1, 0.4, 1800), &acts)};
     Rod *rod = f.rod;
     rod->end = end, rod->cosserat = cosserat;
+    if (around == TAPERED) rod_taper(rod, 1e-3, 0.8e-3, (double[]){0.5, 0.8}, 0.4, 1800);
     f.layout = rod_layout(rod, true);
     double *p = mem_alloc((size_t)rod->params.size, sizeof *p), target[N + 1][3];
     int nodes[N + 1];

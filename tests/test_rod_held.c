@@ -109,7 +109,7 @@ static double elastica_force(Push push, double *deflection, NewtonInfo *info)
     *deflection = 0;
     const double *x = state.x;
     for (int i = 0; i <= elements; i++) *deflection = fmax(*deflection, hypot(x[3 * i + 1], x[3 * i + 2]));
-    double force = fabs(x[ends.layout.multiplier]) / (young * rod->unit.bend1);
+    double force = fabs(x[ends.layout.multiplier]) / (young * rod->unit[0].bend1);
     system_destroy(sys);
     rod_destroy(rod);
     mem_free(p);

@@ -49,7 +49,7 @@ static void test_relaxing(void **state)
     (void)state;
     for (int c = 0; c < 2; c++) {
         Resting o = resting_create(&reference_rods[c], reference_rods[c].young, 60);
-        o.p[o.rod->damping] = 4 * o.rod->unit.mass; /* 4/s */
+        o.p[o.rod->damping] = 4 * o.rod->unit[0].mass; /* 4/s */
         Moving m = moving_create(o.rod, reference_rods[c].young, o.p);
         rod_natural_state(o.rod, &m.layout, o.p, m.now.x);
         int iterations = 0;
@@ -89,7 +89,7 @@ static double lowest_frequency(const Resting *o, const Moving *m, double young, 
     State rest = state_clone(&m->now);
     for (int e = o->rod->elements - 1, i = 2; e >= 0;
          e--, i = 2) /* the multipliers of rest: what hangs below */
-        rest.x[m->layout.multiplier + 3 * e + i] = o->p[o->rod->gravity + 2] * o->rod->unit.mass *
+        rest.x[m->layout.multiplier + 3 * e + i] = o->p[o->rod->gravity + 2] * o->rod->unit[0].mass *
                                                    rod_element_length(o->rod, 0) *
                                                    (o->rod->elements - e - 0.5);
     Point at = state_point(&rest, o->p);
@@ -132,7 +132,7 @@ static void test_pendulum(void **state)
     (void)state;
     enum { N = 10 };
     double length = 0.3, young = 1e9, g = 9.8;
-    Rod *rod = rod_create(N, length, rod_circle(2e-3, 1, 0.4, 1000), M_PI * 4e-6, NULL);
+    Rod *rod = rod_create(N, length, rod_circle(2e-3, 1, 0.4, 1000), NULL);
     double *p = mem_alloc((size_t)rod->params.size, sizeof *p);
     rod_default_params(rod, young, p);
     p[rod->gravity + 2] = -g;
@@ -154,7 +154,7 @@ static double pushed(double young)
 {
     enum { N = 200 };
     Resting o = resting_create(&reference_rods[REFERENCE_WAVE], young, N);
-    o.p[o.rod->damping] = 2 * o.rod->unit.mass;
+    o.p[o.rod->damping] = 2 * o.rod->unit[0].mass;
     Moving m = moving_create(o.rod, young, o.p);
     Random random = random_seed(5);
     rod_copy_state(o.rod, &o.layout, o.state.x, &m.layout, m.now.x);
@@ -216,11 +216,11 @@ static void find_strains(const Rod *rod, Seen *seen, int at, const double *p, do
     RodLayout layout = rod_layout(rod, true);
     System *sys = rod_system(rod, 1e6, false);
     rod_node_mass(rod, mass);
-    rod_inertia(three, seen->times, at, 1, 0, inertia);
-    rod_inertia(three, seen->times, at, 0, p[rod->damping], drag);
+    rod_inertia(three, seen->times, at, rod_alike(&(RodSection){.mass = 1}), 0, inertia);
+    rod_inertia(three, seen->times, at, rod_alike(&(RodSection){.mass = 0}), p[rod->damping], drag);
     for (int i = 0; i <= PIECES; i++)
         vec3_store(q + rod->load + 3 * i,
-                   vec3_axpy(mass[i], inertia[2 * i], vec3_scale(mass[i] / rod->unit.mass, drag[2 * i])));
+                   vec3_axpy(mass[i], inertia[2 * i], vec3_scale(mass[i] / rod->unit[0].mass, drag[2 * i])));
     rod_balance(rod, sys, &layout, 0, seen->state, q);
     memcpy(strain, q + rod->natural_strain, 3 * PIECES * sizeof *strain);
     system_destroy(sys);
@@ -236,7 +236,7 @@ static double apart(const double *a, const double *b)
 
 static Rod *curly_rod(double **p)
 {
-    Rod *rod = rod_create(PIECES, 0.2, rod_circle(1e-3, 1, 0.4, 1200), M_PI * 1e-6, NULL);
+    Rod *rod = rod_create(PIECES, 0.2, rod_circle(1e-3, 1, 0.4, 1200), NULL);
     *p = params_vector(&rod->params);
     rod_default_params(rod, 2e6, *p);
     (*p)[rod->gravity + 2] = -9.81;

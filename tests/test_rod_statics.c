@@ -47,7 +47,7 @@ static double forward_error(int c, int elements)
     Vec3 *moment = mem_alloc(2 * stations, sizeof *moment), *strain = moment + stations;
     RodSection section = reference_section(young);
     rod_moments(&o.curve, reference_weight(section), moment);
-    rod_natural_strains(&o.curve, section, moment, o.frames, strain);
+    rod_natural_strains(&o.curve, rod_alike(&section), moment, o.frames, strain);
     for (int e = 0; e < elements; e++) {
         vec3_store(o.p + o.rod->natural_strain + 3 * e, strain[2 * e + 1]);
         o.rod->bow[e] = vec3(0, 0, 0);
@@ -88,8 +88,7 @@ static void test_cantilevers(void **state)
     for (int k = 0; k < 5; k++) {
         double radius = 2.225e-3, off = 0;
         RodSection section = rod_circle(radius, young[k], 0.5, reference_density);
-        Rod *rod =
-            rod_create(N, 0.2, rod_circle(radius, 1, 0.5, reference_density), M_PI * radius * radius, NULL);
+        Rod *rod = rod_create(N, 0.2, rod_circle(radius, 1, 0.5, reference_density), NULL);
         double *p = mem_alloc((size_t)rod->params.size, sizeof *p);
         rod_default_params(rod, young[k], p);
         p[rod->gravity + 2] = -reference_gravity;
@@ -102,7 +101,7 @@ static void test_cantilevers(void **state)
         Vec3 moment[2 * N + 1], natural[N + 1];
         rod_curve_of(rod, &layout, hanging.x, &curve);
         rod_moments(&curve, reference_weight(section), moment);
-        rod_invert(&curve, section, moment, NULL, natural);
+        rod_invert(&curve, rod_alike(&section), moment, NULL, natural);
         for (int i = 0; i <= N; i++) off = fmax(off, fabs(natural[i].z));
         double angle = atan2(curve.t[2 * N].z, curve.t[2 * N].x) * 180 / M_PI;
         print_message("E = %8.3g Pa: tip at %.3f degrees, %d iterations; inverted: max |z| = %.1e L\n",
@@ -132,8 +131,8 @@ static void test_both_forms(void **state)
         rod_natural_state(rod, &layout, o.p, other.x);
         RampInfo info = rod_relax(rod, sys, ramp_steps[c], o.p, &other);
         for (int e = 0; e < rod->elements; e++) {
-            double weight =
-                rod->unit.mass * rod_element_length(rod, 0) * (rod->elements - e - 0.5) * reference_gravity;
+            double weight = rod->unit[0].mass * rod_element_length(rod, 0) * (rod->elements - e - 0.5) *
+                            reference_gravity;
             off = fmax(off, fabs(other.x[layout.multiplier + 3 * e + 2] + weight));
         }
         print_message("%-8s with positions %.1e m off, multipliers %.1e N\n", reference_rods[c].name,
@@ -169,7 +168,7 @@ static void test_moments(void **state)
     Vec3 couple = vec3(0, 0, 0), moment[N + 1];
     for (int e = 0; e < N; e++)
         for (int k = 0; k < 2; k++)
-            couple = vec3_axpy(rod->area * rod_element_length(rod, 0) / 2,
+            couple = vec3_axpy(rod->unit[0].area * rod_element_length(rod, 0) / 2,
                                vec3_cross(quat_rotate(rod_reference(&layout, bent.x, e + k), M), B), couple);
     Vec3 expected = vec3_add(couple, vec3_cross(vec3_load(place + 3 * N), force));
     rod_node_moments(rod, &layout, bent.x, p, moment);
@@ -189,7 +188,7 @@ static double off_the_helix(double poisson, double turns, int elements, bool pos
 {
     const double angle = 0.7, L = 0.1, young = 1e6;
     RodSection unit = rod_circle(1e-3, 1, poisson, 1000);
-    Rod *rod = rod_create(elements, L, unit, M_PI * 1e-6, &(RodActs){.couples = true});
+    Rod *rod = rod_create(elements, L, unit, &(RodActs){.couples = true});
     RodLayout layout = rod_layout(rod, positions);
     double *p = params_vector(&rod->params), k = turns / L, worst = 0;
     rod_default_params(rod, young, p);
@@ -268,7 +267,7 @@ static double pole_error(int elements)
     const double *end = beside.x + 3 * elements;
     flux_field_eval(magnet, end, (FluxPlace){0}, &sample);
     p[rod->flux.scale + k] = 0;
-    vec3_store(p + rod->load + 3 * elements, vec3_scale(rod->area * M, vec3_load(sample.flux)));
+    vec3_store(p + rod->load + 3 * elements, vec3_scale(rod->unit[0].area * M, vec3_load(sample.flux)));
     rod_sum_loads(rod, p);
     System *other = rod_system(loaded, 1e6, false);
     State pulled = with_positions(loaded, other, p);
@@ -306,7 +305,7 @@ static void test_balance_in_field(void **state)
     double at[3] = {0, 0, -0.12}, moment[3] = {0, 3, 8};
     FluxFields fields = {0};
     int k = flux_fields_add(&fields, flux_field_dipole(at, moment));
-    Rod *rod = rod_create(60, rod_length(o.rod), o.rod->unit, o.rod->area, &(RodActs){.fields = fields});
+    Rod *rod = rod_create(60, rod_length(o.rod), o.rod->unit[0], &(RodActs){.fields = fields});
     double *p = params_vector(&rod->params);
     memcpy(p, o.p, (size_t)o.rod->params.size * sizeof *p);
     memcpy(rod->bow, o.rod->bow, 60 * sizeof *rod->bow);

@@ -1,6 +1,7 @@
 /* Many rods in one system: each moves as it would alone. */
 #include "rod/stations.h"
 #include "solve/march.h"
+#include "tests/rod_taper.h"
 #include "tests/rod_fixture.h"
 #include <setjmp.h>
 #include <stdarg.h>
@@ -67,13 +68,16 @@ static void move(Rod *rod, int first, bool wet, double *place, Vec3 *moment)
 
 static void check_alone(bool wet)
 {
+    const double taper[] = {0.4, 0.7};
     RodSection section = rod_circle(1e-3, 1, 0.4, 1200);
-    double together[STRANDS * (N + 1)][3], alone[N + 1][3], area = M_PI * 1e-6, off = 0, turned = 0, far = 0;
+    double together[STRANDS * (N + 1)][3], alone[N + 1][3], off = 0, turned = 0, far = 0;
     Vec3 moments[STRANDS * (N + 1)], moment[N + 1];
-    Rod *all = rod_create_strands(STRANDS, N, lengths, section, area, NULL);
+    Rod *all = rod_create_strands(STRANDS, N, lengths, section, NULL);
+    rod_taper(all, 2e-3, 1.6e-3, taper, 0.4, 1200);
     move(all, 0, wet, together[0], moments);
     for (int k = 0; k < STRANDS; k++) {
-        Rod *one = rod_create(N, lengths[k], section, area, NULL);
+        Rod *one = rod_create(N, lengths[k], section, NULL);
+        rod_taper(one, 2e-3, 1.6e-3, taper, 0.4, 1200);
         move(one, k, wet, alone[0], moment);
         for (int i = 0; i <= N; i++) {
             int node = k * (N + 1) + i;
@@ -111,7 +115,7 @@ static void test_resting(void **state)
         rod_frenet(&curves[k], frames[k]);
         length[k] = curves[k].length;
     }
-    Rod *rod = rod_create_strands(2, N, length, reference_section(1), 1e-6, NULL);
+    Rod *rod = rod_create_strands(2, N, length, reference_section(1), NULL);
     RodLayout layout = rod_layout(rod, false);
     double *p = params_vector(&rod->params);
     rod_default_params(rod, reference_rods[0].young, p);

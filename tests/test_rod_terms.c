@@ -8,6 +8,7 @@
 #include "solve/newton.h"
 #include "solve/ramp.h"
 #include "tests/flux_fixture.h"
+#include "tests/rod_taper.h"
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -56,8 +57,8 @@ static Rod *random_rod(Random *random, bool varies, bool cosserat, int strands, 
     RodActs acts = {.couples = true};
     if (varies) acts.fields = make_fields(), acts.potentials = make_potentials();
     const double length[] = {0.1, 0.07, 0.12};
-    Rod *rod =
-        rod_create_strands(strands, ELEMENTS, length, rod_ellipse(1e-3, 0.7e-3, 1, 0.4, 1200), 3e-6, &acts);
+    Rod *rod = rod_create_strands(strands, ELEMENTS, length, rod_circle(1e-3, 1, 0.4, 1200), &acts);
+    rod_taper(rod, 2e-3, 1.2e-3, (double[]){0.4, 0.7}, 0.4, 1200);
     rod->cosserat = cosserat;
     double *p = mem_alloc((size_t)rod->params.size, sizeof *p);
     rod_default_params(rod, 1e6, p);

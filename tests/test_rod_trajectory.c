@@ -3,13 +3,14 @@
  * included, is where the next one starts. */
 #include "optim/control.h"
 #include "tests/motion_fixture.h"
+#include "tests/rod_taper.h"
 #include "tests/rod_world_fixture.h"
 #include <math.h>
 
 typedef struct Swing {
     const char *name;
     RodSupport start, end;
-    bool dipole, ground, self, couple, cosserat, moves;
+    bool dipole, ground, self, couple, cosserat, moves, tapered;
     int strands;
     double differences; /* at most */
 } Swing;
@@ -26,8 +27,9 @@ static Rod *make_rod(const Swing *swing)
                         flux_field_dipole((double[]){0.03, 0.03, 0.03}, (double[]){0.2, 0.5, -0.4}));
     const double lengths[2] = {length, length};
     Rod *rod = rod_create_strands(swing->strands, swing->strands * EACH, lengths,
-                                  rod_circle(radius, 1, 0.4, 1800), M_PI * radius * radius, &acts);
+                                  rod_circle(radius, 1, 0.4, 1800), &acts);
     rod->start = swing->start, rod->end = swing->end, rod->cosserat = swing->cosserat;
+    if (swing->tapered) rod_taper(rod, 2 * radius, 1.5 * radius, (double[]){0.5, 0.8}, 0.4, 1800);
     if (swing->strands > 1) rod->strand[1].position = vec3(0, 2e-3, 0);
     if (!swing->ground) return rod;
     Obstacle *floor = mem_alloc(1, sizeof *floor);
@@ -193,6 +195,9 @@ static void test_adjoint(void **state)
          .differences = 1e-7},
         {"stretching between hinges that move", ROD_PINNED, ROD_PINNED, .moves = true, .cosserat = true,
          .strands = 1, .differences = 1e-5},
+        {"tapered", ROD_CLAMPED, ROD_FREE, .tapered = true, .strands = 1, .differences = 1e-7},
+        {"tapered, stretching, over a floor", ROD_CLAMPED, ROD_FREE, .ground = true, .cosserat = true,
+         .tapered = true, .strands = 1, .differences = 1e-4},
         {"two strands over a floor", ROD_CLAMPED, ROD_FREE, .ground = true, .self = true, .strands = 2,
          .differences = 1e-4},
     };

@@ -46,7 +46,7 @@ static Vec3 *natural_shape(const RodCurve *curve, double young, double weight)
     Vec3 *moment = mem_alloc(2 * (size_t)curve->elements + 1, sizeof *moment),
          *natural = mem_alloc((size_t)curve->elements + 1, sizeof *natural);
     rod_moments(curve, (RodLoads){.line = vec3(0, 0, -weight / curve->length)}, moment);
-    rod_invert(curve, section, moment, NULL, natural);
+    rod_invert(curve, rod_alike(&section), moment, NULL, natural);
     mem_free(moment);
     return natural;
 }

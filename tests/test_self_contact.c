@@ -26,7 +26,7 @@ static Vec3 *natural_of(RodCurvePoint *point, void *self, double range, double y
     Vec3 *moment = mem_alloc(2 * (size_t)elements + 1, sizeof *moment),
          *natural = mem_alloc((size_t)elements + 1, sizeof *natural);
     rod_moments(&curve, (RodLoads){.line = vec3(0, 0, -9.8 * section.mass)}, moment);
-    rod_invert(&curve, section, moment, NULL, natural);
+    rod_invert(&curve, rod_alike(&section), moment, NULL, natural);
     mem_free(moment);
     rod_curve_clear(&curve);
     return natural;

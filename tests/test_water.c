@@ -262,6 +262,25 @@ static void test_falling_rod(void **unused)
     }
 }
 
+/* Each element has the drag of its own radius: the power of the water on a rod that moves as one is the sum of theirs. */
+static void test_tapered_rod(void **unused)
+{
+    (void)unused;
+    double radii[NODES - 1], mu = 0.05, v = 0.2, expected = 0;
+    for (int e = 0; e < NODES - 1; e++) {
+        radii[e] = RADIUS * (1 - 0.03 * e);
+        double across = 4 * M_PI * mu / (log(LENGTH / radii[e]) + 0.5);
+        expected += LENGTH / (NODES - 1) * (across + 1.1 * RHO * radii[e] * v) * v * v;
+    }
+    Swarm s = rod_create_of(radii, NULL);
+    s.p[s.water.density] = RHO, s.p[s.water.viscosity] = mu;
+    for (int i = 0; i < NODES; i++) s.state.v[3 * i + 2] = v;
+    double power = water_power(s.term, &s.state, s.p);
+    print_message("tapered rod: %.9e W, closed form %.9e\n", power, expected);
+    assert_true(fabs(power - expected) < 1e-9 * expected);
+    swarm_clear(&s);
+}
+
 static void test_rod(void **unused)
 {
     (void)unused;
@@ -290,7 +309,8 @@ int main(void)
         cmocka_unit_test(test_falling_plate), cmocka_unit_test(test_slowing_plate),
         cmocka_unit_test(test_derivatives),   cmocka_unit_test(test_power),
         cmocka_unit_test(test_nothing),       cmocka_unit_test(test_outer),
-        cmocka_unit_test(test_falling_rod),   cmocka_unit_test(test_rod),
+        cmocka_unit_test(test_falling_rod),   cmocka_unit_test(test_tapered_rod),
+        cmocka_unit_test(test_rod),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

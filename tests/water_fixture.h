@@ -96,15 +96,22 @@ enum { NODES = 21 };
 
 static const double LENGTH = 0.04, RADIUS = 2e-4, ROD_DENSITY = 1100;
 
-static inline Swarm rod_create(const FluxField *flow)
+static inline Swarm rod_create_of(const double *radii, const FluxField *flow)
 {
     Swarm s = swarm_begin(NODES);
     double mass[NODES], element = ROD_DENSITY * M_PI * RADIUS * RADIUS * LENGTH / (NODES - 1);
     s.water.flow = flow;
     for (int i = 0; i < NODES; i++) mass[i] = i == 0 || i == NODES - 1 ? element / 2 : element;
     RodWaterDef def = {
-        .element_count = NODES - 1, .strands = 1, .length = &LENGTH, .radius = RADIUS, .water = s.water};
+        .element_count = NODES - 1, .strands = 1, .length = &LENGTH, .radius = radii, .water = s.water};
     swarm_end(&s, mass, rod_water_term(&def));
     for (int i = 0; i < NODES; i++) s.state.x[3 * i] = i * LENGTH / (NODES - 1);
     return s;
+}
+
+static inline Swarm rod_create(const FluxField *flow)
+{
+    double radii[NODES - 1];
+    for (int e = 0; e < NODES - 1; e++) radii[e] = RADIUS;
+    return rod_create_of(radii, flow);
 }

@@ -275,7 +275,7 @@ static void water_param_forward(const void *self, int pack, const Point *at, con
 
 static void water_destroy(void *self)
 {
-    mem_free(((WaterTerm *)self)->strand);
+    mem_free(((WaterTerm *)self)->rods);
     mem_free(self);
 }
 
@@ -329,19 +329,19 @@ Term rod_water_term(const RodWaterDef *def)
 {
     const double drag = 1.1;
     int each = def->element_count / def->strands;
-    RodDrag *strand = mem_alloc((size_t)def->strands, sizeof *strand);
-    for (int k = 0; k < def->strands; k++) {
-        double slenderness = log(def->length[k] / def->radius);
-        assert(def->length[k] > ROD_WATER_SLENDER * def->radius);
-        strand[k] = (RodDrag){.length = def->length[k] / each,
-                              .along = 2 * M_PI / (slenderness - 0.5),
-                              .across = 4 * M_PI / (slenderness + 0.5),
-                              .cross = drag * def->radius};
+    RodDrag *rods = mem_alloc((size_t)def->element_count, sizeof *rods);
+    for (int e = 0; e < def->element_count; e++) {
+        double length = def->length[e / each], slenderness = log(length / def->radius[e]);
+        assert(length > ROD_WATER_SLENDER * def->radius[e]);
+        rods[e] = (RodDrag){.length = length / each,
+                            .along = 2 * M_PI / (slenderness - 0.5),
+                            .across = 4 * M_PI / (slenderness + 0.5),
+                            .cross = drag * def->radius[e]};
     }
     return make((WaterTerm){.law = &water_rod_law,
                             .count = def->element_count,
                             .first = def->first,
                             .water = def->water,
                             .each = each,
-                            .strand = strand});
+                            .rods = rods});
 }

@@ -52,7 +52,7 @@ Term water_term(const WaterDef *def);
 typedef struct RodWaterDef {
     int element_count, strands, first; /* elements: of all */
     const double *length;              /* [strands] m; > ROD_WATER_SLENDER radius */
-    double radius;                     /* m */
+    const double *radius;              /* [elements] m; borrowed while the term is made */
     Water water;
 } RodWaterDef;
 

@@ -102,7 +102,7 @@ static Drag rod_drag(const WaterTerm *term, int pack, const Stream *s, const dou
     Y = pack_select(Y > 0, Y, pack_set(0));
     Pack cross, across, along;
     for (int l = 0; l < PACK_LANES; l++) {
-        const RodDrag *drag = &term->strand[water_element(term, pack, l) / term->each];
+        const RodDrag *drag = &term->rods[water_element(term, pack, l)];
         cross[l] = drag->length * number[0] * drag->cross;
         across[l] = drag->length * number[1] * drag->across;
         along[l] = drag->length * number[1] * drag->along;

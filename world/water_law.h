@@ -56,8 +56,8 @@ struct WaterTerm {
     Water water;
     int (*faces)[3]; /* of faces */
     bool outer;
-    int each;        /* of rods: elements of a strand */
-    RodDrag *strand; /* [strands] owned */
+    int each;      /* of rods: elements of a strand */
+    RodDrag *rods; /* [elements] owned */
 };
 
 /* The element in a lane of a pack; the last one fills up. */

@@ -178,7 +178,7 @@ static Term water_of(const World *world)
                                          .strands = body->strands,
                                          .first = body->first,
                                          .length = body->length,
-                                         .radius = body->thickness / 2,
+                                         .radius = body->radius,
                                          .water = world->water});
 }
 

@@ -20,6 +20,7 @@ typedef struct WorldBody {
     bool closed;    /* its faces bound a solid: there is no water within  */
     int strands;    /* rods, one after the other; of a shell 0           */
     const double *length; /* [strands] m                                       */
+    const double *radius; /* [edges] m, of rods: what water flows round        */
 } WorldBody;
 
 /* Of which what touches sinks in by less than 1 %: a shell's thickness, a rod's radius, a fifth of the edges of a solid's skin, m. */

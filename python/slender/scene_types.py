@@ -68,9 +68,9 @@ MagnetizationOfAGroupKeys = TypedDict("MagnetizationOfAGroupKeys", {
 Rod = TypedDict("Rod", {
     "model": "Literal['kirchhoff', 'cosserat']", "curve": "CurveOfARod", "natural_strain": "NaturalStrain",
     "poses": "Rows[Poses]", "motion": "MotionOfARod", "length": "Number", "clamp": "Clamp",
-    "hold": "Literal['clamped', 'pinned']", "end": "End", "elements": "int", "radius": "Number",
-    "ellipse": "Union[Number, Numbers]", "young": "Number", "poisson": "float", "density": "Number",
-    "gravity": "Numbers", "frame": "Frame", "frames": "Rows[Frame]", "bishop_normal": "Numbers",
+    "hold": "Literal['clamped', 'pinned']", "end": "End", "elements": "int", "radius": "LengthAlongARod",
+    "ellipse": "Union[Number, Numbers]", "section": "SectionOfARod", "young": "YoungAlongARod", "poisson": "float",
+    "density": "Number", "gravity": "Numbers", "frame": "Frame", "frames": "Rows[Frame]", "bishop_normal": "Numbers",
     "loads": "Rows[LoadsOfARod]", "magnetization": "Magnetization", "coercivity": "Number", "damping": "Number",
     "start": "Literal['natural', 'curve']", "velocity": "Velocity", "solver": "Literal['newton', 'pbd']",
     "pbd": "Pbd",
@@ -112,6 +112,27 @@ PathKeys = TypedDict("PathKeys", {
 End = TypedDict("End", {
     "position": "Numbers", "hold": "Literal['clamped', 'pinned']", "frame": "Table", "move": "Path", "turn": "Path",
     "force": "Numbers", "choose": "Literal['straightest', 'least_stressed']", "couple": "Numbers",
+}, total=False)
+
+LengthAlongARodKeys = TypedDict("LengthAlongARodKeys", {
+    "value": "Number", "formula": "Number", "file": "str", "where": "Mapping[str, Where]",
+}, total=False)
+
+SectionOfARod = TypedDict("SectionOfARod", {
+    "width": "LengthAlongARod", "height": "LengthAlongARod", "area": "AreaAlongARod", "I1": "MomentOfAreaAlongARod",
+    "I2": "MomentOfAreaAlongARod", "J": "MomentOfAreaAlongARod", "kappa": "Numbers", "contact_radius": "Number",
+}, total=False)
+
+AreaAlongARodKeys = TypedDict("AreaAlongARodKeys", {
+    "value": "Number", "formula": "Number", "file": "str", "where": "Mapping[str, Where]",
+}, total=False)
+
+MomentOfAreaAlongARodKeys = TypedDict("MomentOfAreaAlongARodKeys", {
+    "value": "Number", "formula": "Number", "file": "str", "where": "Mapping[str, Where]",
+}, total=False)
+
+YoungAlongARodKeys = TypedDict("YoungAlongARodKeys", {
+    "value": "Number", "formula": "Number", "file": "str", "where": "Mapping[str, Where]",
 }, total=False)
 
 FrameKeys = TypedDict("FrameKeys", {
@@ -530,6 +551,10 @@ MagnetizationOfAGroup = Union["MagnetizationOfAGroupKeys", Numbers]
 Noise = Union["NoiseKeys", Literal['auto'], Number]
 NaturalStrain = Union["NaturalStrainKeys", Numbers]
 Path = Union["PathKeys", Numbers]
+LengthAlongARod = Union["LengthAlongARodKeys", Number]
+AreaAlongARod = Union["AreaAlongARodKeys", Number]
+MomentOfAreaAlongARod = Union["MomentOfAreaAlongARodKeys", Number]
+YoungAlongARod = Union["YoungAlongARodKeys", Number]
 Frame = Union["FrameKeys", Literal['frenet', 'bishop']]
 PointOfALoad = Union["PointOfALoadKeys", Literal['end'], Number]
 LineLoadOfARod = Union["LineLoadOfARodKeys", Numbers]

@@ -116,9 +116,12 @@ static bool check_rod(const RodModel *rm, const Scene *scene, const Build *b)
             "the natural shape that sags into a curve is known of model: kirchhoff; cosserat needs "
             "`natural_strain`");
     if (from->model == ROD_COSSERAT && !(rm->unit.shear1 > 0 && rm->unit.shear2 > 0))
-        return yaml_refuse(
-            b->file, "rod.ellipse",
-            "so flat a section of so negative a `poisson` has no shear stiffness that is known");
+        return from->section
+                   ? yaml_refuse(b->file, "rod.section",
+                                 "model: cosserat needs `kappa`, its shear coefficients")
+                   : yaml_refuse(
+                         b->file, "rod.ellipse",
+                         "so flat a section of so negative a `poisson` has no shear stiffness that is known");
     if (!given && !from->natural_strain)
         return yaml_refuse(b->file, "rod", "`curve` or `natural_strain` is missing");
     if (!given && isnan(from->length))
@@ -241,7 +244,7 @@ static bool fill_cases(Model *model, const Scene *scene, const Build *b, bool re
 
 static bool check_slender(const Rod *rod, const Build *b)
 {
-    double length = INFINITY, radius = rod->unit.reach;
+    double length = INFINITY, radius = rod_largest_section(rod).reach;
     for (int k = 0; k < rod->strands; k++) length = fmin(length, rod->strand[k].length);
     return length > ROD_WATER_SLENDER * radius ||
            yaml_refuse(
@@ -259,10 +262,11 @@ static Rod *make_rod(RodModel *rm, const Scene *whole, const FluxFields *fields)
     acts.fields = *fields;
     acts.couples |= rod_loads_couple(whole);
     rm->list.potentials = (RodPotentials){0};
-    if (!rm->curves) return rod_create(scene->elements, scene->length, rm->unit, rm->area, &acts);
-    double *length = mem_alloc((size_t)rm->strand_count, sizeof *length);
-    for (int k = 0; k < rm->strand_count; k++) length[k] = rm->curves[k].length;
-    Rod *rod = rod_create_strands(rm->strand_count, scene->elements, length, rm->unit, rm->area, &acts);
+    int strands = rm->curves ? rm->strand_count : 1;
+    double *length = mem_alloc((size_t)strands, sizeof *length);
+    for (int k = 0; k < strands; k++) length[k] = rm->curves ? rm->curves[k].length : scene->length;
+    Rod *rod = rod_create_strands(strands, scene->elements, length, rm->unit, &acts);
+    rod_model_put_sections(rm, 0, rod);
     mem_free(length);
     return rod;
 }

@@ -228,29 +228,42 @@ void rod_strands_clear(RodStrands *strands)
     *strands = (RodStrands){0};
 }
 
-bool rod_table_read(const Build *b, const char *at, const char *path, const char *names, double length,
-                    Table *table)
+bool rod_table_open(const Build *b, const char *at, const char *path, const char *names, Table *table)
 {
-    const double little = 1e-3;
     Error err;
     if (!table_read(path, names, table, &err) || !table_check_increasing(table, path, "s", &err))
         return yaml_refuse(b->file, at, "%s", err.text);
-    if (table->rows < 2) return yaml_refuse(b->file, at, "%s has fewer than two rows", path);
-    double first = table->values[0], last = table->values[(size_t)(table->rows - 1) * (size_t)table->columns];
+    return table->rows >= 2 || yaml_refuse(b->file, at, "%s has fewer than two rows", path);
+}
+
+bool rod_table_check(const Build *b, const char *at, const char *path, double length, const Table *table)
+{
+    const double little = 1e-3;
+    int end = table->rows - 1;
+    double first = table->values[0], last = table->values[(size_t)end * (size_t)table->columns];
     if (first < -little * length || last > (1 + little) * length)
         return yaml_refuse(b->file, at, "%s:%d: s goes from %g to %g m, and the rod is %g m long", path,
-                           table->line[table->rows - 1], first, last, length);
+                           table->line[end], first, last, length);
     return last - first >= (1 - little) * TABLE_SHARE * length ||
            yaml_refuse(b->file, at,
                        "%s:%d: s goes from %g to %g m only, and the rod is %g m long: rows along half of it "
                        "at least are needed",
-                       path, table->line[table->rows - 1], first, last, length);
+                       path, table->line[end], first, last, length);
+}
+
+bool rod_table_read(const Build *b, const char *at, const char *path, const char *names, double length,
+                    Table *table)
+{
+    return rod_table_open(b, at, path, names, table) && rod_table_check(b, at, path, length, table);
 }
 
 void rod_table_at(const Table *table, double s, double *values)
 {
-    int width = table->columns, row = 0;
-    while (row + 2 < table->rows && table->values[(row + 1) * width] < s) row++;
+    int width = table->columns, row = 0, above = table->rows - 1; /* s is beyond `row`, or it is the first */
+    while (above - row > 1) {
+        int middle = (row + above) / 2;
+        *(table->values[middle * width] < s ? &row : &above) = middle;
+    }
     const double *a = table->values + row * width, *b = a + width;
     double part = b[0] > a[0] ? fmin(fmax((s - a[0]) / (b[0] - a[0]), 0), 1) : 0;
     for (int k = 1; k < width; k++) values[k - 1] = a[k] + part * (b[k] - a[k]);

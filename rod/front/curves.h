@@ -28,8 +28,10 @@ typedef struct Sampled {
  * Else both to be cleared. */
 bool rod_curve_read(const Build *b, Sampled from, RodCurve *curve, RodDraws *draws);
 
-/* Rows by arclength, s first, on a rod of that length: two at least, s increasing and on the rod. To be
+/* Rows by arclength, s first: two at least, s increasing. Are they on a rod of that length? Both at once. Tables are to be
  * cleared in any case. */
+bool rod_table_open(const Build *b, const char *at, const char *path, const char *names, Table *table);
+bool rod_table_check(const Build *b, const char *at, const char *path, double length, const Table *table);
 bool rod_table_read(const Build *b, const char *at, const char *path, const char *names, double length,
                     Table *table);
 

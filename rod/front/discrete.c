@@ -40,9 +40,10 @@ static Discrete discrete_create(const Inversion *o, int k)
     RodActs acts = rod_model_acts(rm);
     bool places = scene->end || acts.potentials.count > 0;
     Error err;
-    d.rod = rod_create(o->elements, d.curve->length, rm->unit, rm->area, &acts);
+    d.rod = rod_create(o->elements, d.curve->length, rm->unit, &acts);
+    rod_model_put_sections(rm, k, d.rod);
     d.p = mem_alloc((size_t)d.rod->params.size, sizeof *d.p);
-    rod_model_loads(rm, d.rod, scene, d.curve, time, d.p, &err); /* finite: it was asked before */
+    rod_model_loads(rm, k, d.rod, scene, d.curve, time, d.p, &err); /* finite: it was asked before */
     if (rm->inertia) add_inertia(d.rod, rm->inertia[k], d.p);
     for (int e = 0; e < o->elements && !isnan(scene->magnetization.value[0]); e++)
         d.p[d.rod->magnetization + 3 * e] = scene->magnetization.value[0];

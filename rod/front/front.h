@@ -5,6 +5,9 @@
 
 /* records.c: rods in the journal. */
 void rod_add_static(const Model *model, Arrays *list);
+
+/* Of each element of strands, where they vary or a section is given. */
+void rod_add_sections(const RodModel *rm, int strands, int each, Arrays *list);
 void rod_body_places(const Model *model, const double *x, double *place);
 void rod_add_frame(const Model *model, const Snapshot *shot, bool whole, Arrays *list);
 void rod_add_stress(const Model *model, const Snapshot *shot, Arrays *list);

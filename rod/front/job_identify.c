@@ -33,9 +33,9 @@ static void natural_shapes(const Identification *o, double *natural, double *str
         const RodCurve *curve = &o->curves[p];
         if (o->found.known) rod_moments(curve, rod_identify_loads(&o->def, p, o->found.value), moment);
         if (!o->found.known) section = rod_circle(1, INFINITY, 0.5, 1);
-        rod_invert(curve, section, moment, NULL, (Vec3 *)(natural + 3 * (size_t)p * nodes));
+        rod_invert(curve, rod_alike(&section), moment, NULL, (Vec3 *)(natural + 3 * (size_t)p * nodes));
         rod_bishop(curve, o->poses[p].clamp.n1, frames);
-        rod_natural_strains(curve, section, moment, frames, k);
+        rod_natural_strains(curve, rod_alike(&section), moment, frames, k);
         rod_untwist(curve, k);
         for (size_t i = 0; i < nodes; i++) vec3_store(strain + 3 * ((size_t)p * nodes + i), k[2 * i]);
     }

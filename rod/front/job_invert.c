@@ -63,10 +63,10 @@ static double compare_routes(const Inversion *o, int k, const Vec3 *moment)
     int stations = 2 * curve->elements + 1;
     Vec3 *route = mem_alloc((size_t)stations, sizeof *route);
     double off = 0, largest = 0;
-    rod_strain_route(curve, rm->section, o->loads[k], frames, route);
+    rod_strain_route(curve, rod_model_sections(rm, k), o->loads[k], frames, route);
     for (int j = 0; j < stations; j++) {
-        Vec3 m = rod_to_frame(frames[j], moment[j]);
-        Vec3 direct = vec3(-m.x / rm->section.twist, -m.y / rm->section.bend1, -m.z / rm->section.bend2);
+        Vec3 direct = vec3_scale(
+            -1, rod_bent(rod_section_at(rod_model_sections(rm, k), j), rod_to_frame(frames[j], moment[j])));
         off = fmax(off, vec3_length(vec3_sub(route[j], direct)));
         largest = fmax(largest, vec3_length(direct));
     }
@@ -79,14 +79,18 @@ static void judge_stability(Inversion *o, int k, const Vec3 *moment)
     const RodModel *rm = o->rm;
     const RodCurve *curve = &rm->curves[k];
     const RodFrame *frames = rm->frames[k];
-    size_t stations = 2 * (size_t)o->elements + 1;
-    Vec3 *strain = mem_alloc(2 * stations + 3 * (size_t)o->elements, sizeof *strain), *m = strain + stations,
-         *F = m + stations;
+    size_t stations = 2 * (size_t)o->elements + 1, ends = 3 * (size_t)o->elements;
+    Vec3 *strain = mem_alloc(2 * stations + 2 * ends, sizeof *strain), *m = strain + stations,
+         *F = m + stations, *K = F + ends;
     rod_strains(curve, frames, strain);
     for (size_t j = 0; j < stations; j++) m[j] = rod_to_frame(frames[j], moment[j]);
     rod_pulls(curve, o->loads[k], F);
-    for (int i = 0; i < 3 * o->elements; i++) F[i] = rod_to_frame(frames[2 * (i / 3) + i % 3], F[i]);
-    RodEquilibrium at = {o->elements, curve->length, rm->section, strain, m, F};
+    for (int i = 0; i < 3 * o->elements; i++) {
+        int j = 2 * (i / 3) + i % 3;
+        F[i] = rod_to_frame(frames[j], F[i]);
+        K[i] = rod_stiffness(rod_section_at(rod_model_sections(rm, k), j), 1);
+    }
+    RodEquilibrium at = {o->elements, curve->length, strain, m, K, F};
     RodStability found = rod_stability(&at);
     o->lengths = fmax(o->lengths, rod_bending_lengths(&at));
     o->stable[k] = found.stable;
@@ -149,7 +153,7 @@ static RodLoads find_loads(const Inversion *o, int k)
     const EndScene *end = rod_scene(o->run->scene)->end;
     RodLoads loads = rod_model_on_curve(rm, k);
     if (end && end->choose >= 0)
-        rod_choose_end(&rm->curves[k], rm->section, rm->frames[k], (RodEndChoice)end->choose,
+        rod_choose_end(&rm->curves[k], rod_model_sections(rm, k), rm->frames[k], (RodEndChoice)end->choose,
                        end->hold == HOLD_PINNED, &loads);
     return loads;
 }
@@ -166,6 +170,14 @@ static bool is_finite_shape(const Inversion *o, int k)
     return isfinite(sum);
 }
 
+static bool is_round(RodSections sections, int stations)
+{
+    bool round = true;
+    for (int j = 0; j < (sections.vary ? stations : 1); j++)
+        round &= sections.at[j].bend1 == sections.at[j].bend2;
+    return round;
+}
+
 static void invert_strand(Inversion *o, int k)
 {
     const RodModel *rm = o->rm;
@@ -173,11 +185,12 @@ static void invert_strand(Inversion *o, int k)
     const Scene *scene = o->run->scene;
     size_t stations = 2 * (size_t)o->elements + 1;
     Vec3 *moment = mem_alloc(2 * stations, sizeof *moment), *strain = moment + stations;
-    bool round = rm->section.bend1 == rm->section.bend2;
+    RodSections sections = rod_model_sections(rm, k);
+    bool round = is_round(sections, (int)stations);
     o->loads[k] = find_loads(o, k);
     rod_moments(curve, o->loads[k], moment);
-    rod_invert(curve, rm->section, moment, round ? NULL : rm->frames[k], inversion_strand(o, o->natural, k));
-    rod_natural_strains(curve, rm->section, moment, rm->frames[k], strain);
+    rod_invert(curve, sections, moment, round ? NULL : rm->frames[k], inversion_strand(o, o->natural, k));
+    rod_natural_strains(curve, sections, moment, rm->frames[k], strain);
     if (rm->times) rod_untwist(curve, strain);
     for (int i = 0; i < o->nodes; i++) {
         inversion_strand(o, o->natural_strain, k)[i] = strain[2 * i];
@@ -320,6 +333,7 @@ static bool put_results(Inversion *o, const char *status, Error *err)
     arrays_add(&list, per_strand(o, "metrics/residual", "", o->residual));
     arrays_add(&list, per_strand(o, "metrics/strain_route", "", o->route));
     arrays_add(&list, array_float("rod/gravity", "m/s^2", rod_scene(o->run->scene)->gravity, 1, 3, 0));
+    rod_add_sections(o->rm, o->strands, o->elements, &list);
     if (o->strands > 1) arrays_add(&list, array_int("rod/strands", starts, 1, o->strands + 1, 0));
     if (rod_scene(o->run->scene)->end) add_support(o, &list);
     if (o->rm->times) add_motion(o, &list);

@@ -26,8 +26,8 @@ static Vec3 *magnets(const Rod *rod, const double *p)
     Vec3 *magnet = mem_alloc((size_t)rod->elements, sizeof *magnet);
     bool any = false;
     for (int e = 0; e < rod->elements; e++) {
-        magnet[e] =
-            vec3_scale(rod->area * rod_element_length(rod, e), vec3_load(p + rod->magnetization + 3 * e));
+        magnet[e] = vec3_scale(rod->unit[e].area * rod_element_length(rod, e),
+                               vec3_load(p + rod->magnetization + 3 * e));
         any = any || vec3_dot(magnet[e], magnet[e]) > 0;
     }
     if (!any) mem_free(magnet);
@@ -43,7 +43,7 @@ static PbdRod *create(const Run *run)
     const double *p = run->model->cases[0].stages[0].p, *x = run->model->x;
     Vec3 *start = mem_alloc((size_t)rod->elements, sizeof *start), *magnet = magnets(rod, p);
     double inextensible =
-        rm->young * rm->area; /* as stiff in all directions: what is left of it is the error */
+        rm->young * rm->unit.area; /* as stiff in all directions: what is left of it is the error */
     rod_element_strains(rod, &rm->layout, x, start);
     PbdRodDef def = {.elements = rod->elements,
                      .length = rod_length(rod),
@@ -61,7 +61,7 @@ static PbdRod *create(const Run *run)
                      .magnet = magnet,
                      .gravity = vec3_load(p + rod->gravity),
                      .force = (const Vec3 *)(p + rod->load),
-                     .drag = scene->damping / rod->unit.mass,
+                     .drag = scene->damping / section->mass,
                      .substeps = scene->pbd.substeps,
                      .sweeps = scene->pbd.sweeps};
     PbdRod *made = pbd_rod_create(&def);

@@ -114,7 +114,7 @@ static bool check(const Build *b, const Sequence *m)
 }
 
 /* Each frame that has its neighbours becomes a strand, with frames that begin with one and the same n1. */
-static void make_strands(RodModel *model, const RodScene *scene, Sequence *m)
+static bool make_strands(RodModel *model, const RodScene *scene, const Build *b, Sequence *m)
 {
     int at = scene->motion->difference == ROD_CENTRAL ? 1 : 2, count = m->count - 2;
     size_t stations = 2 * (size_t)scene->elements + 1;
@@ -124,21 +124,21 @@ static void make_strands(RodModel *model, const RodScene *scene, Sequence *m)
     model->frames = mem_alloc((size_t)count, sizeof *model->frames);
     model->inertia = mem_alloc((size_t)count, sizeof *model->inertia);
     model->times = mem_copy(m->times + at, (size_t)count, sizeof *model->times);
-    for (int k = 0; k < count; k++) {
+    for (int k = 0; k < count; k++) model->curves[k] = m->curves[k + at];
+    bool ok = rod_model_take_properties(model, scene, b);
+    for (int k = 0; ok && k < count; k++) {
         const RodCurve *const three[] = {&m->curves[k], &m->curves[k + 1], &m->curves[k + 2]};
         model->inertia[k] = mem_alloc(stations, sizeof **model->inertia);
         model->frames[k] = mem_alloc(stations, sizeof **model->frames);
-        rod_inertia(three, m->times + k, at, model->unit.mass, scene->damping, model->inertia[k]);
+        rod_inertia(three, m->times + k, at, rod_model_sections(model, k), scene->damping, model->inertia[k]);
         if (k == 0 && isnan(normal.x)) {
             rod_frenet(three[at], model->frames[0]);
             normal = model->frames[0][0].n1;
         }
         rod_bishop(three[at], normal, model->frames[k]);
     }
-    for (int k = 0; k < count; k++) {
-        model->curves[k] = m->curves[k + at];
-        m->curves[k + at] = (RodCurve){0};
-    }
+    for (int k = 0; k < count; k++) m->curves[k + at] = (RodCurve){0};
+    return ok;
 }
 
 bool rod_read_motion(RodModel *model, const RodScene *scene, const Build *b)
@@ -146,7 +146,7 @@ bool rod_read_motion(RodModel *model, const RodScene *scene, const Build *b)
     Sequence m = {0};
     const RodMotionScene *motion = scene->motion;
     bool ok = (motion->result ? from_result : from_files)(b, motion, scene->elements, &m) && check(b, &m);
-    if (ok) make_strands(model, scene, &m);
+    ok = ok && make_strands(model, scene, b, &m);
     sequence_clear(&m);
     return ok;
 }

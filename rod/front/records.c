@@ -17,6 +17,22 @@ static void add_supports(const RodModel *rm, Arrays *list)
     arrays_add(list, array_float("rod/section_outline", "m", rm->outline[0], 2, ROD_OUTLINE, 2));
 }
 
+void rod_add_sections(const RodModel *rm, int strands, int each, Arrays *list)
+{
+    if (!rm->varied && !rm->properties.scene->section) return;
+    int elements = strands * each;
+    double *stiffness = arrays_numbers(list, 3 * (size_t)elements),
+           *mass = arrays_numbers(list, (size_t)elements), *radius = arrays_numbers(list, (size_t)elements);
+    for (int e = 0; e < elements; e++) {
+        const RodSection *section = rod_section_at(rod_model_sections(rm, e / each), 2 * (e % each) + 1);
+        vec3_store(stiffness + 3 * e, rod_stiffness(section, 1));
+        mass[e] = section->mass, radius[e] = section->reach;
+    }
+    arrays_add(list, array_float("rod/stiffness", "N m^2", stiffness, 2, elements, 3));
+    arrays_add(list, array_float("rod/radius", "m", radius, 1, elements, 0));
+    arrays_add(list, array_float("rod/line_density", "kg/m", mass, 1, elements, 0));
+}
+
 /* Simulated, natural and (if they were given) input curves, strand after strand: only the first ones move. */
 void rod_add_static(const Model *model, Arrays *list)
 {
@@ -50,6 +66,7 @@ void rod_add_static(const Model *model, Arrays *list)
     arrays_add(list, array_text("rod/supports", pinned ? "pinned" : "clamped"));
     add_supports(rm, list);
     if (rm->held) arrays_add(list, array_float("rod/held", "m", &rm->end_position.x, 1, 3, 0));
+    rod_add_sections(rm, rod->strands, own - 1, list);
     if (rm->curves) arrays_add(list, array_float("rod/input", "m", still + 3 * nodes, 2, nodes, 3));
 }
 
@@ -128,31 +145,29 @@ void rod_add_state(const Model *model, const Snapshot *shot, const char *prefix,
     arrays_add(list, array_float(name, "N m", moment, 2, model->point_count, 3));
 }
 
-/* Is it known how stable the state is? Of one rod that does not stretch, with a free end, one stiffness, no magnetisation across
- * the tangent, no field that varies in space, no couple, no potential, and nothing that it meets. */
+/* Is it known how stable the state is? Of one rod that does not stretch, with a free end, no magnetisation across the tangent, no field that varies in space, no couple, no potential, and nothing that it meets. */
 static bool is_judged(const Rod *rod, const double *p)
 {
     const double *B = p + rod->flux.uniform;
     bool across = false, field = B[0] != 0 || B[1] != 0 || B[2] != 0;
-    bool uniform = !rod_field_varies(rod, p) && !rod_has_couples(rod, p) && rod->potentials.count == 0 &&
-                   !rod->world && rod->strands == 1 && !rod->cosserat;
-    for (int e = 0; e < rod->elements; e++) {
+    bool alone = !rod_field_varies(rod, p) && !rod_has_couples(rod, p) && rod->potentials.count == 0 &&
+                 !rod->world && rod->strands == 1 && !rod->cosserat;
+    for (int e = 0; e < rod->elements; e++)
         across |= field && (p[rod->magnetization + 3 * e + 1] != 0 || p[rod->magnetization + 3 * e + 2] != 0);
-        uniform &= p[rod->young + e] == p[rod->young];
-    }
-    return uniform && rod->start == ROD_CLAMPED && rod->end == ROD_FREE && !across;
+    return alone && rod->start == ROD_CLAMPED && rod->end == ROD_FREE && !across;
 }
 
 /* The rod as stability.h takes it; *work is the caller's. */
 static RodEquilibrium equilibrium_of(const RodModel *rm, const Snapshot *shot, Vec3 **work)
 {
     const Rod *rod = rm->rod;
-    size_t stations = 2 * (size_t)rod->elements + 1;
-    Vec3 *k = *work = mem_alloc(2 * stations + 3 * (size_t)rod->elements, sizeof *k), *m = k + stations,
-         *F = m + stations;
+    size_t stations = 2 * (size_t)rod->elements + 1, ends = 3 * (size_t)rod->elements;
+    Vec3 *k = *work = mem_alloc(2 * stations + 2 * ends, sizeof *k), *m = k + stations, *F = m + stations,
+         *K = F + ends;
+    for (size_t i = 0; i < ends; i++)
+        K[i] = rod_stiffness(&rod->unit[i / 3], shot->p[(size_t)rod->young + i / 3]);
     rod_stations(rod, 0, &rm->layout, shot->at.x, shot->p, (RodStations){k, m, F});
-    return (RodEquilibrium){
-        rod->elements, rod_length(rod), rod_section_of(rod->unit, shot->p[rod->young]), k, m, F};
+    return (RodEquilibrium){rod->elements, rod_length(rod), k, m, K, F};
 }
 
 /* Where elements are too long for what they are to show, how stable the rod is stays unknown. */

@@ -67,9 +67,8 @@ void rod_dof_sizes(const Model *model, double *size)
     const RodModel *rm = model->self;
     const RodLayout *layout = &rm->layout;
     for (int i = 0; i < layout->dofs; i++)
-        size[i] = i >= layout->reference                      ? 0
-                  : layout->position >= 0 && i < layout->turn ? rod_element_length(rm->rod, 0)
-                  : layout->multiplier >= 0 && i >= layout->multiplier
-                      ? rm->rod->unit.mass * rod_length(rm->rod)
-                      : 1;
+        size[i] = i >= layout->reference                               ? 0
+                  : layout->position >= 0 && i < layout->turn          ? rod_element_length(rm->rod, 0)
+                  : layout->multiplier >= 0 && i >= layout->multiplier ? rm->unit.mass * rod_length(rm->rod)
+                                                                       : 1;
 }

@@ -13,9 +13,9 @@ enum { DRAWS = 32 }; /* of poses' noise: standard errors are good to 12 % */
 static bool check_known(const RodScene *scene, const Build *b)
 {
     bool ok = true;
-    if (isnan(scene->radius) && !scene->ellipse)
-        ok = yaml_refuse(b->file, "rod", "`radius` or `ellipse` is missing");
-    if (isnan(scene->young)) ok = yaml_refuse(b->file, "rod", "`young`, Young's modulus, is missing");
+    if (!scene->radius && !scene->ellipse && !scene->section)
+        ok = yaml_refuse(b->file, "rod", "`radius`, `ellipse` or `section` is missing");
+    if (!scene->young) ok = yaml_refuse(b->file, "rod", "`young`, Young's modulus, is missing");
     if (isnan(scene->poisson)) ok = yaml_refuse(b->file, "rod", "`poisson`, Poisson's ratio, is missing");
     if (isnan(scene->density)) ok = yaml_refuse(b->file, "rod", "`density` is missing");
     return ok;
@@ -24,7 +24,7 @@ static bool check_known(const RodScene *scene, const Build *b)
 /* One number must not. */
 static bool check_sought(const RodScene *scene, const Build *b)
 {
-    int missing = isnan(scene->young) + isnan(scene->radius) + isnan(scene->density);
+    int missing = !scene->young + !scene->radius + isnan(scene->density);
     if (missing == 1) return true;
     return yaml_refuse(
         b->file, "rod", "%s",
@@ -34,28 +34,15 @@ static bool check_sought(const RodScene *scene, const Build *b)
                   "left out");
 }
 
-/* Of the section where the rod begins. */
-static void find_outline(const RodScene *scene, double (*outline)[2])
-{
-    for (int i = 0; i < ROD_OUTLINE; i++) {
-        double angle = 2 * M_PI * i / ROD_OUTLINE;
-        outline[i][0] = (scene->ellipse ? scene->ellipse[0] : scene->radius) * cos(angle);
-        outline[i][1] = (scene->ellipse ? scene->ellipse[1] : scene->radius) * sin(angle);
-    }
-}
-
 /* sought: a part of what it is made of is looked for. */
-static bool read_section(RodModel *model, const RodScene *scene, const Build *b, bool sought)
+static bool read_properties(RodModel *model, const RodScene *scene, const Build *b, bool sought)
 {
     bool ok = (sought ? check_sought : check_known)(scene, b);
-    const double *a = scene->ellipse;
-    double poisson = isnan(scene->poisson) ? 0.5 : scene->poisson;
-    model->young = scene->young;
-    find_outline(scene, model->outline);
-    model->area = M_PI * (a ? a[0] * a[1] : scene->radius * scene->radius);
-    model->unit = a ? rod_ellipse(a[0], a[1], 1, poisson, scene->density)
-                    : rod_circle(scene->radius, 1, poisson, scene->density);
-    model->section = rod_section_of(model->unit, scene->young);
+    const RodProperties *properties = &model->properties;
+    ok = rod_properties_read(scene, b, &model->properties) && ok;
+    if (sought && properties->varies)
+        return yaml_refuse(b->file, properties->varies,
+                           "an identification is of a rod that is the same all along: a number");
     return ok;
 }
 
@@ -78,12 +65,13 @@ static bool read_loads(RodModel *model, const Scene *scene, const Build *b)
                           &model->loads, &err))
             return yaml_refuse(b->file, "rod.loads", "%s", err.text);
     model->line = model->loads.line;
-    model->loads.line = vec3_axpy(model->unit.mass, vec3_load(from->gravity), model->line);
+    double mass = model->varied ? 0 : model->unit.mass; /* find_along has what varies */
+    model->loads.line = vec3_axpy(mass, vec3_load(from->gravity), model->line);
     return true;
 }
 
 /* What varies along the curves of a strand: its own, and draws of its noise. */
-static bool find_along(RodModel *model, const Build *b, int k)
+static bool find_along(RodModel *model, Vec3 gravity, const Build *b, int k)
 {
     int drawn = model->draws ? model->draws[k].count : 0, stations = 2 * model->curves[k].elements + 1;
     Vec3 *along = mem_alloc((size_t)(1 + drawn) * (size_t)stations, sizeof *along);
@@ -96,17 +84,20 @@ static bool find_along(RodModel *model, const Build *b, int k)
             return yaml_refuse(b->file, "rod.loads", "%s", err.text);
         for (int j = 0; model->inertia && j < stations; j++)
             along[j] = vec3_add(along[j], model->inertia[k][j]);
+        for (int j = 0; model->varied && j < stations; j++)
+            along[j] = vec3_axpy(model->varied[k].unit[j].mass, gravity, along[j]);
     }
     return true;
 }
 
 /* Of an inversion or an identification. */
-static bool find_all_along(RodModel *model, const Build *b)
+static bool find_all_along(RodModel *model, const RodScene *scene, const Build *b)
 {
     bool ok = true;
-    if (!model->list.along && !model->list.potentials.count && !model->inertia) return true;
+    if (!model->list.along && !model->list.potentials.count && !model->inertia && !model->varied) return true;
     model->along = mem_alloc((size_t)model->strand_count, sizeof *model->along);
-    for (int k = 0; ok && k < model->strand_count; k++) ok = find_along(model, b, k);
+    for (int k = 0; ok && k < model->strand_count; k++)
+        ok = find_along(model, vec3_load(scene->gravity), b, k);
     return ok;
 }
 
@@ -171,7 +162,10 @@ static bool read_magnetic(RodModel *model, const Scene *scene, const Build *b)
     if (!along)
         return yaml_refuse(b->file, "rod.magnetization",
                            "of a curve it must be along the tangent and the same all along: [m, 0, 0]");
-    if (!none) model->magnetic = vec3_scale(model->area * value[0], vec3_load(flux));
+    if (!none && value[0] != 0 && model->properties.section_varies)
+        return yaml_refuse(b->file, model->properties.section_varies,
+                           "in a field an inversion knows a magnetised rod of one section: a number");
+    if (!none) model->magnetic = vec3_scale(model->unit.area * value[0], vec3_load(flux));
     model->loads.end = model->magnetic;
     return true;
 }
@@ -230,11 +224,11 @@ RodIdentifyDef rod_model_poses(const RodModel *model, const RodScene *scene, Rod
         .poses = poses,
         .pose_count = model->strand_count,
         .draw_count = DRAWS,
-        .sought = isnan(scene->young)    ? ROD_SOUGHT_YOUNG
-                  : isnan(scene->radius) ? ROD_SOUGHT_RADIUS
-                                         : ROD_SOUGHT_DENSITY,
-        .young = scene->young,
-        .radius = scene->radius,
+        .sought = !scene->young    ? ROD_SOUGHT_YOUNG
+                  : !scene->radius ? ROD_SOUGHT_RADIUS
+                                   : ROD_SOUGHT_DENSITY,
+        .young = model->young,
+        .radius = scene->radius ? scene->radius->value : NAN,
         .density = scene->density,
         .poisson = scene->poisson,
         .gravity = vec3_load(scene->gravity),
@@ -265,7 +259,7 @@ RodModel *rod_model_create(const Scene *scene, const Build *b)
     bool identify = job == &rod_job_identify;
     model->preview = from->solver == ROD_SOLVER_PBD;
     model->coercivity = from->coercivity;
-    bool ok = read_section(model, from, b, identify);
+    bool ok = read_properties(model, from, b, identify);
     if (from->curve) {
         RodStrands strands;
         ok = rod_strands_read(b, from, &strands) && ok;
@@ -273,10 +267,13 @@ RodModel *rod_model_create(const Scene *scene, const Build *b)
     }
     if (from->motion) ok = ok && rod_read_motion(model, from, b);
     if (identify) ok = read_poses(model, from, b) && ok;
+    if (!from->motion) ok = ok && rod_model_take_properties(model, from, b);
+    double length = model->strand_count ? rod_model_longest(model) : from->length;
+    if (ok) rod_properties_outline(&model->properties, b, length, model->unit.reach, model->outline);
     ok = read_loads(model, scene, b) && ok;
     for (int k = 0; ok && !identify && k < model->strand_count; k++)
         ok = rod_model_check_points(model, b, model->curves[k].length);
-    if (ok && is_of_curve(job)) ok = read_magnetic(model, scene, b) && find_all_along(model, b);
+    if (ok && is_of_curve(job)) ok = read_magnetic(model, scene, b) && find_all_along(model, from, b);
     if (ok && job == &rod_job_invert && from->end) ok = read_end(model, from->end, b);
     if (ok && identify) ok = check_poses(model, from, b);
     if (ok) return model;
@@ -292,6 +289,7 @@ void rod_model_destroy(RodModel *model)
     for (int k = 0; model->along && k < model->strand_count; k++) mem_free(model->along[k]);
     mem_free(model->along);
     mem_free(model->times);
+    rod_model_clear_varied(model);
     RodStrands strands = {model->strand_count, model->curves, model->frames};
     for (int k = 0; model->draws && k < model->strand_count; k++) rod_draws_clear(&model->draws[k]);
     rod_strands_clear(&strands);
@@ -399,10 +397,11 @@ bool rod_model_vectors(const Build *b, const char *at, const VectorScene *scene,
     return ok;
 }
 
-bool rod_model_loads(const RodModel *model, const Rod *rod, const RodScene *scene, const RodCurve *curves,
-                     double time, double *p, Error *err)
+bool rod_model_loads(const RodModel *model, int strand, const Rod *rod, const RodScene *scene,
+                     const RodCurve *curves, double time, double *p, Error *err)
 {
     rod_default_params(rod, model->young, p);
+    rod_model_put_young(model, strand, rod, p);
     memcpy(p + rod->gravity, scene->gravity, sizeof scene->gravity);
     p[rod->damping] = scene->damping;
     return rod_loads_put(&model->list, rod, curves, time, p, err);
@@ -413,7 +412,7 @@ bool rod_model_params(const RodModel *model, const Scene *scene, const Build *b,
     const Rod *rod = model->rod;
     const RodScene *from = rod_scene(scene);
     Error err;
-    bool ok = rod_model_loads(model, rod, from, NULL, b->time, p, &err) ||
+    bool ok = rod_model_loads(model, 0, rod, from, NULL, b->time, p, &err) ||
               yaml_refuse(b->file, "rod.loads", "%s", err.text);
     ok = rod_model_vectors(b, "rod.magnetization", &from->magnetization, rod, p + rod->magnetization) && ok;
     return (!from->natural_strain || read_strains(b, from->natural_strain, rod, p + rod->natural_strain)) &&
@@ -433,6 +432,9 @@ bool rod_model_check_preview(const RodModel *model, const Scene *scene, YamlFile
         return yaml_refuse(
             file, "flux_density",
             "a preview (solver: pbd) knows a uniform field: three numbers, formulas of t, or a file");
+    if (model->varied)
+        return yaml_refuse(file, model->properties.varies,
+                           "a preview (solver: pbd) knows a rod that is the same all along: a number");
     return !scene->output.stress ||
            yaml_refuse(file, "output.stress", "a preview (solver: pbd) knows no moments and forces");
 }

@@ -4,10 +4,15 @@
 #include "model/model.h"
 #include "rod/front/curves.h"
 #include "rod/front/loads.h"
+#include "rod/front/properties.h"
 #include "rod/identify.h"
 #include "rod/rod.h"
 
-enum { ROD_OUTLINE = 24 };
+/* What varies along a strand, at its stations. */
+typedef struct RodVaried {
+    RodSection *unit, *section; /* [stations] of 1 Pa, and with Young's modulus; owned */
+    double *young;              /* [stations] Pa; owned                                */
+} RodVaried;
 
 typedef struct RodModel {
     double coercivity; /* A/m, of what it is magnetised with; NAN: not known */
@@ -18,10 +23,11 @@ typedef struct RodModel {
     RodDraws *draws;   /* [strand] of poses                                                       */
     double *times;     /* [strand] s, where the curves are those of a moving rod, and             */
     Vec3 **inertia;    /* [strand][stations] its inertia and drag as loads, N/m; else NULL        */
-    double young;
-    RodSection section, unit; /* with that modulus, and with 1 Pa                                 */
-    double area;
-    double outline[ROD_OUTLINE][2]; /* m, along n1 and n2: the section's, a polygon */
+    RodProperties properties;
+    double young;                   /* Pa, the largest one along it                                     */
+    RodSection section, unit;       /* with its modulus, and with 1 Pa: of each number the largest one  */
+    RodVaried *varied;              /* [strand], or that of a rod without a curve; NULL: nothing varies */
+    double outline[ROD_OUTLINE][2]; /* m: the section's at the first end (rod_properties_outline) */
     RodLoadList list;     /* what the scene says of loads                                             */
     RodPointLoad *points; /* [strand][list.count], each at its time; of rods without curves once  */
     RodLoads loads;       /* on curves, when the job begins, weight included; but for what varies       */
@@ -53,6 +59,17 @@ void rod_model_destroy(RodModel *model);
 /* m: of the rod, or the longest strand. */
 double rod_model_longest(const RodModel *model);
 
+/* Of a strand, at its stations. */
+RodSections rod_model_sections(const RodModel *model, int strand);
+
+/* Finds what the rod is made of along its strands, of the scene's length without curves. */
+bool rod_model_take_properties(RodModel *model, const RodScene *scene, const Build *b);
+
+/* A discrete rod takes the sections of the strands from that one on, and p their Young's moduli, where they vary. */
+void rod_model_put_sections(const RodModel *model, int strand, Rod *rod);
+void rod_model_put_young(const RodModel *model, int strand, const Rod *rod, double *p);
+void rod_model_clear_varied(RodModel *model);
+
 /* Do all point loads act on a rod of that length? */
 bool rod_model_check_points(const RodModel *model, const Build *b, double length);
 
@@ -78,10 +95,10 @@ RodLoads rod_model_on_curve(const RodModel *model, int strand);
 /* What acts on a discrete rod, to be made with it: potentials are the model's still. */
 RodActs rod_model_acts(const RodModel *model);
 
-/* p[params] of a discrete rod: Young's modulus, weight, loads at that time and damping; all else 0. curves[strands]: where
- * the rod is known to be (NULL: nowhere). False and a sentence where a formula is not finite. */
-bool rod_model_loads(const RodModel *model, const Rod *rod, const RodScene *scene, const RodCurve *curves,
-                     double time, double *p, Error *err);
+/* p[params] of a discrete rod, of the strands from that one on: Young's modulus, weight, loads at that time and damping; all
+ * else 0. curves[strands]: where the rod is known to be (NULL: nowhere). False and a sentence where a formula is not finite. */
+bool rod_model_loads(const RodModel *model, int strand, const Rod *rod, const RodScene *scene,
+                     const RodCurve *curves, double time, double *p, Error *err);
 
 /* p[params] of the discrete rod: material, magnetisation and loads; natural strains too unless a curve was
  * given. */

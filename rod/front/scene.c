@@ -56,6 +56,54 @@ static const YamlTable strain_table = {
         WHERE_ROW(StrainScene),
         {0}}};
 
+/* Of a number along a rod, in that unit. */
+#define ALONG_TABLE(id, table_name, table_doc, unit_name)                                                    \
+    static const YamlTable id = {                                                                            \
+        .name = table_name,                                                                                  \
+        .size = sizeof(AlongScene),                                                                          \
+        .doc = table_doc,                                                                                    \
+        .fields = (const YamlField[]){                                                                       \
+            {YAML_NUMBER(AlongScene, value), .unit = unit_name, .range = "(0, inf)", .one_of = 1,            \
+             .required = true, .short_form = true, .doc = "the same everywhere"},                            \
+            {YAML_TEXT(AlongScene, formula), .one_of = 1, .required = true, .short_form = true,              \
+             .doc = "an expression of the arclength s and the length L"},                                    \
+            {YAML_FILE(AlongScene, file), .one_of = 1, .required = true,                                     \
+             .doc = "a CSV file with rows of s and the number, along half of the rod at least: linear "      \
+                    "between the rows, constant beyond them"},                                               \
+            WHERE_ROW(AlongScene),                                                                           \
+            {0}}}
+
+ALONG_TABLE(along_length, "length along a rod", "A radius or width of a rod's section.", "m");
+ALONG_TABLE(along_young, "young along a rod", "Young's modulus of a rod.", "Pa");
+ALONG_TABLE(along_area, "area along a rod", "The area of a rod's section.", "m^2");
+ALONG_TABLE(along_moment, "moment of area along a rod", "A second moment of area of a rod's section.", "m^4");
+
+static const YamlTable section_table = {
+    .name = "section of a rod",
+    .size = sizeof(SectionScene),
+    .doc = "A section that is not round: a rectangle, or one of which is given what it amounts to. Its axes "
+           "are n1 and n2 of the rod's frames.",
+    .fields = (const YamlField[]){
+        {YAML_OPTIONAL(SectionScene, width, &along_length), .one_of = 1, .required = true,
+         .doc = "of a rectangle, along n1"},
+        {YAML_OPTIONAL(SectionScene, height, &along_length), .when = "width",
+         .doc = "of a rectangle, along n2; needed"},
+        {YAML_OPTIONAL(SectionScene, area, &along_area), .one_of = 1, .required = true,
+         .doc = "of any section"},
+        {YAML_OPTIONAL(SectionScene, I1, &along_moment), .when = "area",
+         .doc = "beside `area`: of bending about n1, the integral of the square of the distance along n2; "
+                "needed"},
+        {YAML_OPTIONAL(SectionScene, I2, &along_moment), .when = "area",
+         .doc = "beside `area`: of bending about n2; needed"},
+        {YAML_OPTIONAL(SectionScene, J, &along_moment), .when = "area",
+         .doc = "beside `area`: of torsion, which the shear modulus times it resists; needed"},
+        {YAML_VECTOR(SectionScene, kappa), .when = "area & /rod.model: cosserat", .range = "(0, inf)",
+         .doc = "beside `area`: shear coefficients along n1 and n2; needed by model: cosserat"},
+        {YAML_NUMBER(SectionScene, contact_radius), .unit = "m", .range = "(0, inf)",
+         .doc = "of the round rod that others, obstacles and water meet; if absent half of the larger side "
+                "of a rectangle, else that of a circle of `area`"},
+        {0}}};
+
 static const YamlTable rod_frame_table = {
     .name = "frame",
     .size = sizeof(RodFrameScene),
@@ -250,13 +298,15 @@ const YamlTable rod_table = {
          .doc = "how the other end is held; free if absent"},
         {YAML_INTEGER(RodScene, elements), .range = "[2, 1000000]", .fallback = "200",
          .doc = "pieces of constant strain"},
-        {YAML_NUMBER(RodScene, radius), .unit = "m", .range = "(0, inf)", .one_of = 2,
-         .doc = "of a round section"},
+        {YAML_OPTIONAL(RodScene, radius, &along_length), .one_of = 2, .doc = "of a round section"},
         {YAML_NUMBERS(RodScene, ellipse), .when = "!poses & !motion", .unit = "m", .range = "(0, inf)",
          .one_of = 2, .min_count = 2, .max_count = 2,
          .doc = "half-axes along n1 and n2 of an elliptic section"},
-        {YAML_NUMBER(RodScene, young), .unit = "Pa", .range = "(0, inf)",
-         .doc = "Young's modulus. Needed, as `radius` (or `ellipse`) and `density` are; of an identification "
+        {YAML_OPTIONAL(RodScene, section, &section_table), .when = "!poses & !motion", .one_of = 2,
+         .doc = "another section"},
+        {YAML_OPTIONAL(RodScene, young, &along_young),
+         .doc = "Young's modulus. Needed, as `radius` (or `ellipse`, `section`) and `density` are; of an "
+                "identification "
                 "two of "
                 "the three, and the third one is what is looked for"},
         {YAML_NUMBER(RodScene, poisson), .range = "[-0.99, 0.5]",

@@ -91,6 +91,19 @@ typedef struct PbdScene {
     int substeps, sweeps;
 } PbdScene;
 
+/* A number of a rod, the same everywhere or along it. */
+typedef struct AlongScene {
+    double value;
+    char *formula, *file;
+    WhereScene *where;
+    int where_count;
+} AlongScene;
+
+typedef struct SectionScene {
+    AlongScene *width, *height, *area, *I1, *I2, *J;
+    double kappa[2], contact_radius;
+} SectionScene;
+
 typedef enum RodKind { ROD_KIRCHHOFF, ROD_COSSERAT } RodKind;
 
 typedef enum RodStart { ROD_START_NATURAL, ROD_START_CURVE } RodStart;
@@ -100,7 +113,9 @@ typedef struct RodScene {
     StrainScene *natural_strain;
     RodPoseScene *poses;
     RodMotionScene *motion;
-    double length, radius, *ellipse, young, poisson, density, gravity[3], bishop_normal[3], damping;
+    AlongScene *radius, *young;
+    SectionScene *section;
+    double length, *ellipse, poisson, density, gravity[3], bishop_normal[3], damping;
     ClampScene clamp;
     EndScene *end;
     int elements, ellipse_count, poses_count, loads_count, frames_count;

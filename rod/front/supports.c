@@ -61,7 +61,7 @@ static void hanging_forces(const Rod *rod, const double *p, double *force)
 {
     int each = rod_each(rod);
     for (int k = 0; k < rod->strands; k++) {
-        double *own = force + 3 * k * (each + 1), mass = rod->unit.mass * rod->strand[k].length;
+        double *own = force + 3 * k * (each + 1), mass = rod_strand_mass(rod, k);
         for (int i = 0; i < 3; i++) {
             double load = mass * p[rod->gravity + i];
             for (int n = 0; n <= each; n++) load += p[rod->load + 3 * (k * (each + 1) + n) + i];
