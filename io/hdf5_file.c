@@ -173,10 +173,8 @@ static bool write_numbers(Hdf5 *file, const char *path, const Array *array, Hdf5
     hid_t dataset =
         H5Dcreate2(file->file, path, file_type(array, layout), space, file->links, properties, H5P_DEFAULT);
     bool ok = dataset >= 0 && H5Dwrite(dataset, memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, array->data) >= 0;
-    if (ok && array->unit && array->unit[0])
-        ok = put_text_attribute(dataset, "unit", array->unit);
-    else if (ok && array->type == ARRAY_FLOAT64)
-        ok = put_text_attribute(dataset, "unit", "");
+    const char *unit = array->unit ? array->unit : "";
+    if (unit[0] || array->type == ARRAY_FLOAT64) ok = ok && put_text_attribute(dataset, "unit", unit);
     ok = dataset >= 0 && H5Dclose(dataset) >= 0 && ok;
     H5Pclose(properties);
     H5Sclose(space);
@@ -300,16 +298,18 @@ static bool is_one_text(const Hdf5 *file, hid_t type, hid_t space)
            H5Sget_simple_extent_npoints(space) == 1 && H5Tget_size(type) <= file->size;
 }
 
-/* NULL where there is none, or it is not one text. */
+/* NULL where there is none, or it is not one text; of one of no fixed length (h5py's) HDF5 allocates it. */
 static char *attribute_text(const Hdf5 *file, hid_t object, const char *name)
 {
-    char *text = NULL;
+    char *text = NULL, *read = NULL;
     hid_t attribute = H5Aexists(object, name) > 0 ? H5Aopen(object, name, H5P_DEFAULT) : -1;
     if (attribute < 0) return NULL;
     hid_t type = H5Aget_type(attribute), space = H5Aget_space(attribute);
     if (is_one_text(file, type, space)) {
         text = mem_alloc(H5Tget_size(type) + 1, 1);
         if (H5Aread(attribute, type, text) < 0) mem_free(text), text = NULL;
+    } else if (H5Tis_variable_str(type) > 0 && H5Sget_simple_extent_npoints(space) == 1) {
+        if (H5Aread(attribute, type, &read) >= 0 && read) text = mem_text(read), H5free_memory(read);
     }
     H5Sclose(space);
     H5Tclose(type);
@@ -398,6 +398,7 @@ static bool read_dataset(const Hdf5 *file, hid_t dataset, int first, int count, 
     H5T_class_t class = H5Tget_class(type);
     bool number = (class == H5T_INTEGER || class == H5T_FLOAT) && H5Tget_size(type) <= 8;
     char *unit = attribute_text(file, dataset, "unit");
+    if (!unit) unit = attribute_text(file, dataset, "units"); /* others' word */
     array->unit = unit ? unit : mem_text("");
     bool ok = is_stored(file, dataset, type, space);
     if (ok && class == H5T_STRING)

@@ -1,5 +1,5 @@
 /* hdf5_file.h - HDF5 files as images in memory: built whole, and read only after their bytes have been
- * checked. Private to result.c. A failing disk or a damaged file never meets the HDF5 library. */
+ * checked. Private to io/. A failing disk or a damaged file never meets the HDF5 library. */
 #pragma once
 #include "base/error.h"
 #include "io/array.h"

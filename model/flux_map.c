@@ -1,16 +1,13 @@
 #include "model/flux_map.h"
 #include "base/memory.h"
+#include "io/grid_file.h"
 #include "io/table.h"
 #include <math.h>
 #include <stdlib.h>
+#include <strings.h>
+#include <string.h>
 
 enum { COLUMNS = 6 };
-
-/* The nodes along an axis: from low on, in equal steps. */
-typedef struct Axis {
-    int nodes;
-    double low, step;
-} Axis;
 
 static int by_value(const void *a, const void *b)
 {
@@ -19,7 +16,7 @@ static int by_value(const void *a, const void *b)
 }
 
 /* The steps are as long as the first one that is longer than rounding. */
-static Axis axis_of(const Table *table, int axis)
+static void find_axis(const Table *table, int axis, GridFile *grid)
 {
     const double rounding = 1e-6; /* of the whole length: digits of a file */
     size_t rows = (size_t)table->rows;
@@ -27,79 +24,92 @@ static Axis axis_of(const Table *table, int axis)
     for (size_t k = 0; k < rows; k++) place[k] = table->values[COLUMNS * k + (size_t)axis];
     qsort(place, rows, sizeof *place, by_value);
     double length = place[rows - 1] - place[0];
-    Axis found = {1, place[0], 1};
+    int nodes = 1;
     for (size_t k = 1; k < rows; k++)
-        if (place[k] - place[k - 1] > rounding * length) found.nodes++;
-    if (found.nodes > 1) found.step = length / (found.nodes - 1);
+        if (place[k] - place[k - 1] > rounding * length) nodes++;
+    grid->nodes[axis] = nodes;
+    grid->low[axis] = place[0];
+    grid->step[axis] = nodes > 1 ? length / (nodes - 1) : 1;
     mem_free(place);
-    return found;
 }
 
 /* The number of a row's node on the grid; -1: it is on none. */
-static long node_of(const Axis axis[3], const double *row)
+static long node_of(const GridFile *grid, const double *row)
 {
     const double little = 1e-3;
     long node = 0;
     for (int i = 0; i < 3; i++) {
-        double steps = (row[i] - axis[i].low) / axis[i].step, whole = rint(steps);
+        double steps = (row[i] - grid->low[i]) / grid->step[i], whole = rint(steps);
         if (!(fabs(steps - whole) < little)) return -1;
-        node = node * axis[i].nodes + (long)whole;
+        node = node * grid->nodes[i] + (long)whole;
     }
     return node;
 }
 
-/* values[3][nodes], and in line[nodes] where each is in the file. */
-static bool fill(const char *path, const Table *table, const Axis axis[3], size_t nodes, double *values,
-                 int *line, Error *err)
+/* The grid's values, [3][nodes], and in line[nodes] where each is in the file. */
+static bool fill(const char *path, const Table *table, GridFile *grid, int *line, Error *err)
 {
+    const int *n = grid->nodes;
+    size_t nodes = (size_t)table->rows;
     for (int k = 0; k < table->rows; k++) {
         const double *row = table->values + (size_t)k * COLUMNS;
-        long node = node_of(axis, row);
+        long node = node_of(grid, row);
         if (node < 0)
             return error_set(err, "%s:%d: (%g, %g, %g) m is not on a grid of equal steps, %d x %d x %d nodes",
-                             path, table->line[k], row[0], row[1], row[2], axis[0].nodes, axis[1].nodes,
-                             axis[2].nodes);
+                             path, table->line[k], row[0], row[1], row[2], n[0], n[1], n[2]);
         if (line[node])
             return error_set(err, "%s:%d: the node at (%g, %g, %g) m is there already, in line %d", path,
                              table->line[k], row[0], row[1], row[2], line[node]);
         line[node] = table->line[k];
-        for (size_t i = 0; i < 3; i++) values[i * nodes + (size_t)node] = row[3 + i];
+        for (size_t i = 0; i < 3; i++) grid->values[i * nodes + (size_t)node] = row[3 + i];
     }
     return true;
 }
 
-static FluxField *make(const Axis axis[3], size_t nodes, const double *values)
+static bool read_table(const char *path, GridFile *grid, Error *err)
 {
-    int count[3];
-    double low[3], step[3];
-    CubicGrid grid[3];
-    for (int i = 0; i < 3; i++) count[i] = axis[i].nodes, low[i] = axis[i].low, step[i] = axis[i].step;
-    for (size_t i = 0; i < 3; i++) grid[i] = cubic_grid_create(count, low, step, values + i * nodes, false);
-    return flux_field_map(grid);
+    Table table;
+    if (!table_read(path, "x [m], y [m], z [m], Bx [T], By [T], Bz [T]", &table, err)) return false;
+    for (int i = 0; i < 3; i++) find_axis(&table, i, grid);
+    const int *n = grid->nodes;
+    size_t count = (size_t)table.rows;
+    int *line = mem_alloc(count, sizeof *line);
+    grid->values = mem_alloc(3 * count, sizeof *grid->values);
+    bool ok =
+        (double)n[0] * n[1] * n[2] == table.rows
+            ? fill(path, &table, grid, line, err)
+            : error_set(err,
+                        "%s: %d rows are no grid: there are %d places along x, %d along y and %d along z",
+                        path, table.rows, n[0], n[1], n[2]);
+    mem_free(line);
+    table_clear(&table);
+    return ok;
+}
+
+static FluxField *make(const GridFile *grid, double factor)
+{
+    const int *n = grid->nodes;
+    size_t nodes = (size_t)n[0] * (size_t)n[1] * (size_t)n[2];
+    CubicGrid component[3];
+    for (size_t k = 0; k < 3 * nodes; k++) grid->values[k] *= factor;
+    for (size_t i = 0; i < 3; i++)
+        component[i] = cubic_grid_create(n, grid->low, grid->step, grid->values + i * nodes, false);
+    return flux_field_map(component);
+}
+
+static bool is_hdf5(const char *path)
+{
+    const char *dot = strrchr(path, '.');
+    return dot && (!strcasecmp(dot, ".h5") || !strcasecmp(dot, ".hdf5"));
 }
 
 FluxField *flux_map_read(const char *path, double factor, Error *err)
 {
-    Table table;
-    if (!table_read(path, "x [m], y [m], z [m], Bx [T], By [T], Bz [T]", &table, err)) return NULL;
-    Axis axis[3];
-    double nodes = 1;
-    for (int i = 0; i < 3; i++) axis[i] = axis_of(&table, i), nodes *= axis[i].nodes;
-    FluxField *field = NULL;
-    if (nodes != table.rows) {
-        error_set(err, "%s: %d rows are no grid: there are %d places along x, %d along y and %d along z",
-                  path, table.rows, axis[0].nodes, axis[1].nodes, axis[2].nodes);
-    } else {
-        size_t count = (size_t)table.rows;
-        double *values = mem_alloc(3 * count, sizeof *values);
-        int *line = mem_alloc(count, sizeof *line);
-        if (fill(path, &table, axis, count, values, line, err)) {
-            for (size_t k = 0; k < 3 * count; k++) values[k] *= factor;
-            field = make(axis, count, values);
-        }
-        mem_free(values);
-        mem_free(line);
-    }
-    table_clear(&table);
+    static const char *const components[] = {"Bx", "By", "Bz"};
+    GridFile grid = {0};
+    bool ok =
+        is_hdf5(path) ? grid_file_read(path, components, 3, "T", &grid, err) : read_table(path, &grid, err);
+    FluxField *field = ok ? make(&grid, factor) : NULL;
+    grid_file_clear(&grid);
     return field;
 }

@@ -75,9 +75,11 @@ static const YamlTable map_table = {
            "it.",
     .fields = (const YamlField[]){
         {YAML_FILE(FluxMapScene, file), .required = true,
-         .doc = "a CSV file with rows x, y, z, Bx, By, Bz (m, T), one for each node, in any order; along an "
-                "axis with "
-                "one place only the field is the same everywhere"},
+         .doc =
+             "a CSV file with rows x, y, z, Bx, By, Bz (m, T), one for each node, in any order; or an HDF5 "
+             "file, .h5 or .hdf5, with the datasets x [nx], y [ny], z [nz] (m, ascending in equal steps) "
+             "and Bx, By, Bz [nx,ny,nz] (T), whose attributes `unit` count. Along an axis with one place "
+             "only the field is the same everywhere"},
         {YAML_NUMBER(FluxMapScene, scale), .fallback = "1", .doc = "factor on B: a current, for instance"},
         {0}}};
 

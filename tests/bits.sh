@@ -57,6 +57,7 @@ rod_equilibrium | scenes/rod_equilibrium.yaml | rod.elements=200
 rod_evaluate | scenes/rod_equilibrium.yaml | job=evaluate rod.elements=200
 rod_cantilever | scenes/rod_cantilever.yaml | rod.elements=100
 rod_arch | scenes/rod_arch.yaml | rod.elements=80
+rod_twist | scenes/rod_twist.yaml | rod.elements=60
 rod_clamped | scenes/rod_clamped.yaml | rod.elements=80
 rod_helix | scenes/rod_helix.yaml |
 rod_conical | scenes/rod_conical.yaml |

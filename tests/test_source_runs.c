@@ -2,6 +2,7 @@
  * result where they are, maps give the field that they were made of, and a design finds currents and a magnet's place. */
 #include "base/memory.h"
 #include "field/flux_sources.h"
+#include "io/hdf5_file.h"
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -71,26 +72,63 @@ static void test_sum(void **unused)
     result_close(result);
 }
 
-/* Of a field that is a polynomial of third order the spline is it. */
-static void test_map(void **unused)
+enum { NX = 9, NY = 4, NZ = 6 };
+
+/* A grid in mm, and on it polynomials of third order in mT. */
+static void polynomial(int i, int j, int k, double place[3], double B[3])
 {
-    (void)unused;
+    double x = -5 + 6.5 * i, y = -11 + 8 * j, z = -15 + 16 * k;
+    place[0] = x, place[1] = y, place[2] = z;
+    B[0] = 1e-3 * x * y, B[1] = 0.1 * z, B[2] = 5 + 1e-4 * x * x * z;
+}
+
+static void write_maps(void)
+{
+    static double axis[3][NX], B[3][NX * NY * NZ];
     FILE *file = fopen(NAME ".csv", "w");
     assert_non_null(file);
     fprintf(file, "x [mm], y [mm], z [mm], Bx [mT], By [mT], Bz [mT]\n");
-    for (int i = 0; i < 9; i++)
-        for (int j = 0; j < 4; j++)
-            for (int k = 0; k < 6; k++) {
-                double x = -5 + 6.5 * i, y = -11 + 8 * j, z = -15 + 16 * k;
-                fprintf(file, "%.17g, %.17g, %.17g, %.17g, %.17g, %.17g\n", x, y, z, 1e-3 * x * y, 0.1 * z,
-                        5 + 1e-4 * x * x * z);
-            }
+    for (int n = 0; n < NX * NY * NZ; n++) {
+        int at[3] = {n / NZ / NY, n / NZ % NY, n % NZ};
+        double place[3], b[3];
+        polynomial(at[0], at[1], at[2], place, b);
+        for (int c = 0; c < 3; c++) axis[c][at[c]] = place[c], B[c][n] = b[c];
+        fprintf(file, "%.17g, %.17g, %.17g, %.17g, %.17g, %.17g\n", place[0], place[1], place[2], b[0], b[1],
+                b[2]);
+    }
     fclose(file);
+    static const char *const names[] = {"x", "y", "z", "Bx", "By", "Bz"};
+    static const int nodes[] = {NX, NY, NZ};
+    Hdf5 *grid = hdf5_create();
+    void *bytes;
+    size_t size;
+    Error err;
+    for (int c = 0; c < 3; c++) {
+        Array places = array_float(names[c], "mm", axis[c], 1, nodes[c], 0),
+              values = array_float(names[3 + c], "mT", B[c], 3, NX, NY);
+        values.dims[2] = NZ;
+        assert_true(hdf5_write(grid, places.name, &places, (Hdf5Layout){0}, &err));
+        assert_true(hdf5_write(grid, values.name, &values, (Hdf5Layout){0}, &err));
+    }
+    assert_true(hdf5_image(grid, &bytes, &size, &err));
+    hdf5_close(grid);
+    file = fopen(NAME ".h5", "w");
+    assert_non_null(file);
+    assert_int_equal(fwrite(bytes, 1, size, file), size);
+    fclose(file);
+    mem_free(bytes);
+}
+
+/* Of a field that is a polynomial of third order the spline is it, from either file. */
+static void test_map(void **unused)
+{
+    (void)unused;
+    write_maps();
     static const char *const ways[] = {
-        "{map: {file: " NAME ".csv, scale: 0.4}}",
+        "{map: {file: " NAME ".csv, scale: 0.4}}", "{map: {file: " NAME ".h5, scale: 0.4}}",
         "[\"0.4e-3*x*y*1000\", \"0.4*0.1*z\", \"0.4e-3*(5 + 1e-4*1e9*x*x*z)\"]"};
-    double x[2][3 * 18];
-    for (int k = 0; k < 2; k++) {
+    double x[3][3 * 18];
+    for (int k = 0; k < 3; k++) {
         char *more =
             mem_format("job: equilibrium\nsolver: {force_tolerance: 1.0e-10}\nflux_density: %s\n", ways[k]);
         Result *result = run_text(text_of(more));
@@ -101,11 +139,13 @@ static void test_map(void **unused)
         result_close(result);
         mem_free(more);
     }
-    double most = 0, off = 0;
-    for (int i = 0; i < 3 * 18; i++)
-        most = fmax(most, fabs(x[0][i])), off = fmax(off, fabs(x[0][i] - x[1][i]));
-    print_message("a map and its formula: %.1e m apart\n", off);
-    assert_true(x[0][3 * 8 + 2] > 1e-3 && off < 1e-9);
+    double most = 0, off = 0, apart = 0;
+    for (int i = 0; i < 3 * 18; i++) {
+        most = fmax(most, fabs(x[0][i])), off = fmax(off, fabs(x[0][i] - x[2][i]));
+        apart = fmax(apart, fabs(x[0][i] - x[1][i]));
+    }
+    print_message("a map and its formula: %.1e m apart; its two files: %.1e m\n", off, apart);
+    assert_true(x[0][3 * 8 + 2] > 1e-3 && off < 1e-9 && apart < 1e-15);
 }
 
 /* The target is what currents of 2 and -1.5 and a magnet that is elsewhere make of the strip. */

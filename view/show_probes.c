@@ -14,7 +14,7 @@ static const struct {
 
 static const struct {
     const char *unit, *label;
-} units[] = {{"m", "place, distance"}, {"N", "force"}, {"rad", "angle"}};
+} units[] = {{"m", "place, distance"}, {"N", "force"}, {"N m", "couple"}, {"rad", "angle"}};
 
 enum { UNITS = sizeof units / sizeof *units };
 

@@ -28,9 +28,7 @@ bool rod_model_take_properties(RodModel *model, const RodScene *scene, const Bui
     int strands = model->strand_count ? model->strand_count : 1;
     double length = model->strand_count ? rod_model_longest(model) : scene->length;
     if (properties->varies && isnan(length)) return true; /* check_rod refuses it */
-    if (!rod_properties_at(properties, b, 0, length, &model->unit, &model->young) ||
-        !rod_properties_outline(properties, b, 0, length, model->outline))
-        return false;
+    if (!rod_properties_at(properties, b, 0, length, &model->unit, &model->young)) return false;
     model->section = rod_section_of(model->unit, model->young);
     if (!properties->varies) return true;
     bool ok = rod_properties_check(properties, b, length);

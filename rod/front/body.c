@@ -438,6 +438,7 @@ static const KeyUse uses[] = {
     {"contact", "/rod.solver: newton"},
     {"water", "/rod.solver: newton"},
     {"probes", "/rod.solver: newton"},
+    {"time", "!/rod.motion {the frames of rod.motion have times of their own}"},
     {"modes", "/rod.solver: newton & /job: equilibrium, evaluate, design, simulate, trajectory"},
     {0},
 };

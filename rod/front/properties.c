@@ -101,20 +101,13 @@ static RodSection own_section(const SectionScene *own, const double *v, double p
     return unit;
 }
 
-static bool values_at(const RodProperties *properties, const Build *b, double s, double L,
-                      double v[ROD_ALONGS])
-{
-    for (int k = 0; k < ROD_ALONGS; k++)
-        if (!value_at(&properties->along[k], b, rows[k].key, s, L, &v[k])) return false;
-    return true;
-}
-
 bool rod_properties_at(const RodProperties *properties, const Build *b, double s, double L, RodSection *unit,
                        double *young)
 {
     const RodScene *scene = properties->scene;
     double v[ROD_ALONGS], poisson = isnan(scene->poisson) ? 0.5 : scene->poisson;
-    if (!values_at(properties, b, s, L, v)) return false;
+    for (int k = 0; k < ROD_ALONGS; k++)
+        if (!value_at(&properties->along[k], b, rows[k].key, s, L, &v[k])) return false;
     const double *a = scene->ellipse;
     *unit = scene->section ? own_section(scene->section, v, poisson, scene->density)
             : a            ? rod_ellipse(a[0], a[1], 1, poisson, scene->density)
@@ -123,29 +116,30 @@ bool rod_properties_at(const RodProperties *properties, const Build *b, double s
     return true;
 }
 
-/* Half-axes of its ellipse, or half-sides of its rectangle, along n1 and n2. */
-static void half_sizes(const RodScene *scene, const double *v, double half[2])
+/* From (1, -1) on around the square of half-width 1, or the circle that it is round. */
+static void corner_of(bool round, int i, double at[2])
 {
-    const SectionScene *own = scene->section;
-    double ratio = own && !own->width ? sqrt(v[ROD_I2] / v[ROD_I1]) : 1,
-           round = own ? sqrt(v[ROD_AREA] / M_PI) : v[ROD_RADIUS];
-    half[0] = round * sqrt(ratio), half[1] = round / sqrt(ratio);
-    if (own && own->width) half[0] = v[ROD_WIDTH] / 2, half[1] = v[ROD_HEIGHT] / 2;
-    if (!own && scene->ellipse) half[0] = scene->ellipse[0], half[1] = scene->ellipse[1];
+    static const double corners[5][2] = {{1, -1}, {1, 1}, {-1, 1}, {-1, -1}, {1, -1}};
+    int side = i / ROD_OUTLINE_SIDE;
+    double part = (double)(i % ROD_OUTLINE_SIDE) / ROD_OUTLINE_SIDE, angle = 2 * M_PI * i / ROD_OUTLINE;
+    for (int k = 0; k < 2; k++)
+        at[k] = round ? (k ? sin(angle) : cos(angle))
+                      : corners[side][k] + part * (corners[side + 1][k] - corners[side][k]);
 }
 
-bool rod_properties_outline(const RodProperties *properties, const Build *b, double s, double L,
+void rod_properties_outline(const RodProperties *properties, const Build *b, double L, double reach,
                             double (*outline)[2])
 {
     const RodScene *scene = properties->scene;
-    bool square = scene->section && scene->section->width;
-    double v[ROD_ALONGS], half[2];
-    if (!values_at(properties, b, s, L, v)) return false;
-    half_sizes(scene, v, half);
+    const SectionScene *own = scene->section;
+    double half[2] = {reach, reach};
+    bool flat = own && own->width;
+    if (scene->ellipse) half[0] = scene->ellipse[0], half[1] = scene->ellipse[1];
+    for (int k = 0; flat && k < 2; k++)
+        if (value_at(&properties->along[ROD_WIDTH + k], b, rows[ROD_WIDTH + k].key, 0, L, &half[k]))
+            half[k] /= 2;
     for (int i = 0; i < ROD_OUTLINE; i++) {
-        double angle = 2 * M_PI * i / ROD_OUTLINE, c = cos(angle), n = sin(angle),
-               out = square ? fmax(fabs(c), fabs(n)) : 1;
-        outline[i][0] = half[0] * c / out, outline[i][1] = half[1] * n / out;
+        corner_of(!flat, i, outline[i]);
+        for (int k = 0; k < 2; k++) outline[i][k] *= half[k];
     }
-    return true;
 }

@@ -16,8 +16,6 @@ typedef struct RodAlong {
     Table table;            /* rows s, number; owned                       */
 } RodAlong;
 
-enum { ROD_OUTLINE = 24 };
-
 typedef struct RodProperties {
     const RodScene *scene;
     RodAlong along[ROD_ALONGS];
@@ -37,7 +35,9 @@ bool rod_properties_check(const RodProperties *properties, const Build *b, doubl
 bool rod_properties_at(const RodProperties *properties, const Build *b, double s, double L, RodSection *unit,
                        double *young);
 
-/* The outline of the section there, a polygon along n1 and n2, m: of a given section the ellipse of its area and of the ratio
- * of its second moments. False after a refusal. */
-bool rod_properties_outline(const RodProperties *properties, const Build *b, double s, double L,
+enum { ROD_OUTLINE_SIDE = 6, ROD_OUTLINE = 4 * ROD_OUTLINE_SIDE };
+
+/* The outline of the section at the first end of a rod of length L, a polygon along n1 and n2, outline[ROD_OUTLINE][2] m; of a section that is given
+ * by what it amounts to a circle of that reach. */
+void rod_properties_outline(const RodProperties *properties, const Build *b, double L, double reach,
                             double (*outline)[2]);

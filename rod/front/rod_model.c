@@ -268,6 +268,8 @@ RodModel *rod_model_create(const Scene *scene, const Build *b)
     if (from->motion) ok = ok && rod_read_motion(model, from, b);
     if (identify) ok = read_poses(model, from, b) && ok;
     if (!from->motion) ok = ok && rod_model_take_properties(model, from, b);
+    double length = model->strand_count ? rod_model_longest(model) : from->length;
+    if (ok) rod_properties_outline(&model->properties, b, length, model->unit.reach, model->outline);
     ok = read_loads(model, scene, b) && ok;
     for (int k = 0; ok && !identify && k < model->strand_count; k++)
         ok = rod_model_check_points(model, b, model->curves[k].length);

@@ -26,8 +26,8 @@ typedef struct RodModel {
     RodProperties properties;
     double young;                   /* Pa, the largest one along it                                     */
     RodSection section, unit;       /* with its modulus, and with 1 Pa: of each number the largest one  */
-    double outline[ROD_OUTLINE][2]; /* m, along n1 and n2: that of the section where it begins      */
     RodVaried *varied;              /* [strand], or that of a rod without a curve; NULL: nothing varies */
+    double outline[ROD_OUTLINE][2]; /* m: the section's at the first end (rod_properties_outline) */
     RodLoadList list;     /* what the scene says of loads                                             */
     RodPointLoad *points; /* [strand][list.count], each at its time; of rods without curves once  */
     RodLoads loads;       /* on curves, when the job begins, weight included; but for what varies       */
