@@ -290,6 +290,32 @@ static void test_found(void **state)
     result_close(result);
 }
 
+/* The scene's design is as thick as a beam that bends to a circle is, of the width's mean. */
+static void test_taper(void **state)
+{
+    (void)state;
+    enum { COLUMNS = 16 };
+    const char *const settings[] = {"shell.mesh.n=24"};
+    Result *result = run_file(SOURCE_DIR "/scenes/strip_taper.yaml", settings, 1, false);
+    Array rest = read_all(result, "slender/rest"), faces = read_all(result, "slender/faces"),
+          thickness = read_all(result, "slender/design/thickness");
+    double sum[COLUMNS] = {0}, wanted[COLUMNS] = {0}, count[COLUMNS] = {0}, worst = 0;
+    for (int f = 0; f < faces.dims[0]; f++) {
+        double x = 0;
+        for (int i = 0; i < 3; i++) x += ((double *)rest.data)[3 * ((int *)faces.data)[3 * f + i]] / 3;
+        int k = (int)(x / 0.04 * COLUMNS);
+        sum[k] += ((double *)thickness.data)[f], wanted[k] += 1e-3 * sqrt(1 - sin(M_PI / 2 * x / 0.04)),
+            count[k]++;
+    }
+    for (int k = 0; k < COLUMNS - 2; k++) worst = fmax(worst, fabs(sum[k] - wanted[k]) / count[k]);
+    print_message("tapered within %.1e m\n", worst);
+    assert_true(worst < 2e-5);
+    array_clear(&rest);
+    array_clear(&faces);
+    array_clear(&thickness);
+    result_close(result);
+}
+
 #define FALL                                                                                                 \
     "slender: 1\njob: %s\nshell:\n  mesh: {shape: strip, size: [40 mm, 10 mm], n: 8}\n  thickness: %s\n"     \
     "  young: 0.1 MPa\n  poisson: 0.3\n  gravity: [0, 0, -9.81]\n  damping: 1.0e-4\n"                        \
@@ -321,10 +347,10 @@ static void test_found_in_motion(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_stepped_beam),    cmocka_unit_test(test_stress),
-        cmocka_unit_test(test_stretched),       cmocka_unit_test(test_mass),
-        cmocka_unit_test(test_frequency),       cmocka_unit_test(test_found),
-        cmocka_unit_test(test_found_in_motion),
+        cmocka_unit_test(test_stepped_beam), cmocka_unit_test(test_stress),
+        cmocka_unit_test(test_stretched),    cmocka_unit_test(test_mass),
+        cmocka_unit_test(test_frequency),    cmocka_unit_test(test_found),
+        cmocka_unit_test(test_taper),        cmocka_unit_test(test_found_in_motion),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
