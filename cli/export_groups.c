@@ -91,7 +91,7 @@ RunStatus export_frame(Result *result, int frame, const char *path, Error *err)
 
 /* ---- A row for each group ---- */
 
-/* Elements of one dimension, with their magnetisation and, as its weight, area or volume at rest. */
+/* Elements of one dimension, with their magnetisation and, as its weight, area (of a shell by thickness) or volume at rest. */
 typedef struct Magnets {
     int count;
     const double (*M)[3];
@@ -104,7 +104,8 @@ static Vec3 edge(const MeshFile *file, const int *v, int k)
     return vec3_sub(vec3_load(file->vertices[v[k]]), vec3_load(file->vertices[v[0]]));
 }
 
-static Magnets magnets_of(const MeshFile *file, int dim, const double (*M)[3])
+/* Thickness of each face; NULL: all have the same. */
+static Magnets magnets_of(const MeshFile *file, int dim, const double (*M)[3], const double *thickness)
 {
     Magnets all = {.count = dim == 3 ? file->cell_count : file->face_count, .M = M};
     all.size = mem_alloc((size_t)all.count, sizeof *all.size);
@@ -113,6 +114,7 @@ static Magnets magnets_of(const MeshFile *file, int dim, const double (*M)[3])
         const int *v = dim == 3 ? file->cells + e * file->cell_nodes : file->faces[e];
         Vec3 normal = vec3_cross(edge(file, v, 1), edge(file, v, 2));
         all.size[e] = dim == 3 ? fabs(vec3_dot(normal, edge(file, v, 3))) / 6 : vec3_length(normal) / 2;
+        if (thickness) all.size[e] *= thickness[e];
     }
     return all;
 }
@@ -153,9 +155,10 @@ static void write_row(const Magnets *all, const char *name, const int *members, 
     *text = mem_join(row, "", "\n");
 }
 
-static void write_rows(const MeshFile *file, int dim, const double (*M)[3], char **text)
+static void write_rows(const MeshFile *file, int dim, const double (*M)[3], const double *thickness,
+                       char **text)
 {
-    Magnets all = magnets_of(file, dim, M);
+    Magnets all = magnets_of(file, dim, M, thickness);
     for (int g = 0; g < file->group_count; g++) {
         const MeshGroup *group = &file->groups[g];
         if (group->dim != dim) continue;
@@ -171,8 +174,19 @@ static void write_rows(const MeshFile *file, int dim, const double (*M)[3], char
     mem_free(all.named);
 }
 
+/* Of a shell, of each face; of others nothing. */
+static bool read_thickness(Result *result, const MeshFile *file, Array *thickness, Error *err)
+{
+    static const char path[] = "slender/design/thickness";
+    *thickness = (Array){0};
+    if (!result_has(result, path)) return true;
+    if (!result_read_as(result, path, ARRAY_FLOAT64, 1, 0, thickness, err)) return false;
+    return thickness->dims[0] == file->face_count || error_set(err, "%s is not as slender writes it", path);
+}
+
 /* Of the last frame: tetrahedra first, then faces. */
-static RunStatus write_groups(Result *result, const MeshFile *file, const char *path, Error *err)
+static RunStatus write_groups(Result *result, const MeshFile *file, const double *thickness, const char *path,
+                              Error *err)
 {
     Array M;
     if (!result_read_step(result, "CellData/magnetization", result_step_count(result) - 1, &M, err))
@@ -185,8 +199,8 @@ static RunStatus write_groups(Result *result, const MeshFile *file, const char *
         error_set(err, "CellData/magnetization is not as slender writes it");
     } else {
         const double(*rows)[3] = (const double(*)[3])M.data;
-        if (file->cell_count) write_rows(file, 3, rows, &text);
-        write_rows(file, 2, rows + file->cell_count, &text);
+        if (file->cell_count) write_rows(file, 3, rows, NULL, &text);
+        write_rows(file, 2, rows + file->cell_count, thickness, &text);
         if (!strcmp(text, HEADER))
             error_set(err, "nothing is magnetised");
         else
@@ -199,7 +213,7 @@ static RunStatus write_groups(Result *result, const MeshFile *file, const char *
 
 RunStatus export_groups(Result *result, const char *path, Error *err)
 {
-    Array rest;
+    Array rest, thickness = {0};
     MeshFile file = {0};
     if (!result_has(result, "slender/groups/names")) {
         error_set(err, "the body's mesh has no groups");
@@ -211,7 +225,9 @@ RunStatus export_groups(Result *result, const char *path, Error *err)
     for (int i = 0; ok && i < file.cell_count * file.cell_nodes; i++)
         ok = (file.cells[i] >= 0 && file.cells[i] < file.vertex_count) ||
              error_set(err, "slender/cells is not as slender writes it");
-    RunStatus status = ok ? write_groups(result, &file, path, err) : RUN_REFUSED;
+    ok = ok && read_thickness(result, &file, &thickness, err);
+    RunStatus status = ok ? write_groups(result, &file, thickness.data, path, err) : RUN_REFUSED;
+    array_clear(&thickness);
     mesh_file_clear(&file);
     array_clear(&rest);
     return status;

@@ -26,7 +26,7 @@ static const char usage[] =
     "  --frame N      a frame of the run, from 0\n"
     "                 without any of these: the final state of every load case\n"
     "  --case NAME    one load case\n"
-    "  --field NAME   colours: magnetization, young, von_mises, energy_membrane, contact_force, .., or none\n"
+    "  --field NAME   colours: magnetization, young, thickness, von_mises, contact_force, .., or none\n"
     "  --target WHERE the target beside the body, over it as wires (default for a motion), or both; of a "
     "motion's places and\n"
     "                 curves: over\n"

@@ -19,13 +19,13 @@ static void add_modes(const Model *model, const char *name, const double *vector
 }
 
 /* Of every position the lumped mass of its point; NULL: some have none, and there are no frequencies. */
-static double *position_masses(const Model *model, Arrays *list)
+static double *position_masses(const Model *model, const double *p, Arrays *list)
 {
     const BodyOps *body = model->body->ops;
     int points = model->point_count;
     if (!body->masses) return NULL;
     double *mass = arrays_numbers(list, (size_t)points), *M = arrays_numbers(list, 3 * (size_t)points);
-    body->masses(model, mass);
+    body->masses(model, p, mass);
     for (int i = 0; i < 3 * points; i++) {
         M[i] = mass[i / 3];
         if (!(M[i] > 0)) return NULL;
@@ -36,7 +36,7 @@ static double *position_masses(const Model *model, Arrays *list)
 /* H v = omega^2 M v */
 void run_add_vibrations(const Model *model, System *sys, const Point *at, int count, Arrays *list)
 {
-    const double *M = position_masses(model, list);
+    const double *M = position_masses(model, at->p, list);
     int dofs = system_dof_count(sys);
     double *hz = arrays_numbers(list, (size_t)count),
            *vectors = arrays_numbers(list, (size_t)count * (size_t)dofs);

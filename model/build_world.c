@@ -78,10 +78,10 @@ static double largest_young(const Model *model, const double *p)
     return largest;
 }
 
-static double largest_mass(const Model *model)
+static double largest_mass(const Model *model, const double *p)
 {
     double *mass = mem_alloc((size_t)model->point_count, sizeof *mass), largest = 0;
-    model->body->ops->masses(model, mass);
+    model->body->ops->masses(model, p, mass);
     for (int v = 0; v < model->point_count; v++) largest = fmax(largest, mass[v]);
     mem_free(mass);
     return largest;
@@ -138,7 +138,7 @@ static double pressed(const WorldBody *body, double young)
 static double stiffness_of(const Model *model, const Scene *scene, const Case *c, const double *p)
 {
     const WorldBody *body = &model->world->body;
-    double sunk = SUNK * world_body_measure(body), mass = largest_mass(model);
+    double sunk = SUNK * world_body_measure(body), mass = largest_mass(model, p);
     double gravity = model->gravity < 0 ? 0 : vec3_length(vec3_load(p + model->gravity));
     double k = fmax(pressed(body, largest_young(model, p)), WEIGHTS * mass * gravity / sunk);
     k = fmax(k, largest_load(model, p) / sunk);

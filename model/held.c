@@ -176,7 +176,7 @@ bool model_start_cases(Model *model, const Build *b, const bool *fixed)
     const World *world = model->world;
     int load = params_find(model->params, "load")->offset;
     double *mass = mem_alloc((size_t)model->point_count, sizeof *mass);
-    ops->masses(model, mass);
+    ops->masses(model, model->cases[0].stages[0].p, mass);
     bool ok = true, borne = world && (world->obstacle_count || world->self);
     for (int k = 0; ok && k < model->case_count; k++) {
         Case *c = &model->cases[k];

@@ -20,14 +20,19 @@ static bool height_objective(const Model *model, const Build *b, Key at, const O
 
 /* ---- Points ---- */
 
+/* Its weights do not follow an unknown that they depend on. */
 static bool center_of_mass(const Model *model, const Build *b, Key at, Probe *probe)
 {
     int count = model->point_count;
+    for (int k = 0; k < model->design.unknown_count; k++)
+        if (!strcmp(model->design.unknowns[k].block->name, "thickness"))
+            return yaml_refuse(b->file, at.text,
+                               "where the thickness is unknown, so is the centre of mass: name a vertex");
     if (!model->body->ops->masses)
         return yaml_refuse(b->file, at.text, "the centre of mass of %s is not known", model->body->noun);
     int *all = mem_alloc((size_t)count, sizeof *all);
     double *mass = mem_alloc((size_t)count, sizeof *mass), total = 0;
-    model->body->ops->masses(model, mass);
+    model->body->ops->masses(model, model->cases[0].stages[0].p, mass);
     for (int v = 0; v < count; v++) all[v] = v, total += mass[v];
     for (int v = 0; v < count; v++) mass[v] /= total;
     *probe = (Probe){count, all, mass};
@@ -205,8 +210,9 @@ static Smoothed smoothed_of(const ObjectiveScene *from)
 {
     const Smoothed rows[] = {{"magnetization", from->magnetization_smoothness},
                              {"young", from->young_smoothness},
+                             {"thickness", from->thickness_smoothness},
                              {"fold", from->fold_smoothness}};
-    for (int k = 0; k < 3; k++)
+    for (int k = 0; k < 4; k++)
         if (!isnan(rows[k].weight)) return rows[k];
     return (Smoothed){0};
 }

@@ -163,7 +163,8 @@ typedef struct BodyOps {
     /* The points of a part that has a name, or `all`. */
     bool (*select)(const struct Model *model, const Build *b, const char *at, const char *name,
                    Indices *found);
-    void (*masses)(const struct Model *model, double *mass); /* [point_count] kg; optional */
+    /* With those numbers, mass[point_count] kg; optional. */
+    void (*masses)(const struct Model *model, const double *p, double *mass);
 
     /* Sum of squared jumps of a block of p between neighbours; optional. */
     Objective (*smoothness)(const struct Model *model, const ParamBlock *block, double weight);

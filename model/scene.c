@@ -47,6 +47,8 @@ const YamlTable where_table = {
             {0}}}
 
 NUMBER_TABLE(young, "Young's modulus, per face. A file has one number per face.", "Pa", "(0, inf)");
+NUMBER_TABLE(thickness, "Thickness, per face. A file has one number per face.", "m", "(0, inf)");
+NUMBER_TABLE(density, "Mass density, per face. A file has one number per face.", "kg/m^3", "(0, inf)");
 NUMBER_TABLE(
     fold,
     "Factor on the curvature of each edge's fold; the energy goes with its square. A file has rows v0, v1, "

@@ -219,7 +219,7 @@ typedef struct FluxUnknown {
 
 typedef struct UnknownsScene {
     VectorUnknown *magnetization;
-    NumberUnknown *young, *skin_young, *fold;
+    NumberUnknown *young, *skin_young, *thickness, *fold;
     StrainUnknown *natural_strain;
     FluxUnknown *flux_density;
     SourceUnknown *source_strength, *source_move, *source_turn;
@@ -251,8 +251,8 @@ typedef struct ReachScene {
 
 typedef struct ObjectiveScene {
     /* One of these: a weight, or a table, to which `weight` belongs. */
-    double target, height, magnetization_smoothness, young_smoothness, fold_smoothness, field_magnitude,
-        field_smoothness, dmp;
+    double target, height, magnetization_smoothness, young_smoothness, thickness_smoothness, fold_smoothness,
+        field_magnitude, field_smoothness, dmp;
     WaypointScene *waypoint;
     CurveScene *curve;
     ReachScene *reach;

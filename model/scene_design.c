@@ -37,19 +37,24 @@ static const YamlTable magnetization_unknown_table = {
         {YAML_OPTIONAL(VectorUnknown, start, &magnetization_table), .doc = "in place of the body's"},
         {0}}};
 
-static const YamlTable young_unknown_table = {
-    .name = "unknown young",
-    .size = sizeof(NumberUnknown),
-    .doc = "Young's modulus as an unknown.",
-    .fields = (const YamlField[]){
-        BOUNDS_ROW(NumberUnknown, "Pa"),
-        {YAML_CHOICE(NumberUnknown, scale), .choices = YAML_NAMES("log", "linear"), .fallback = "log",
-         .doc = "optimisers see its logarithm, or its ratio to the start's mean"},
-        {YAML_NUMBER(NumberUnknown, noise), .unit = "Pa", .range = "[0, inf)", .fallback = "0",
-         .doc = "size of seeded noise that is added to the start"},
-        ROWS_ROWS(NumberUnknown, "face"),
-        {YAML_OPTIONAL(NumberUnknown, start, &young_table), .doc = "in place of the body's"},
-        {0}}};
+/* A positive number per face, with the unit of its parameter. */
+#define NUMBER_UNKNOWN_TABLE(id, of, u)                                                                      \
+    static const YamlTable id##_unknown_table = {                                                            \
+        .name = "unknown " #id,                                                                              \
+        .size = sizeof(NumberUnknown),                                                                       \
+        .doc = of " as an unknown.",                                                                         \
+        .fields = (const YamlField[]){                                                                       \
+            BOUNDS_ROW(NumberUnknown, u),                                                                    \
+            {YAML_CHOICE(NumberUnknown, scale), .choices = YAML_NAMES("log", "linear"), .fallback = "log",   \
+             .doc = "optimisers see its logarithm, or its ratio to the start's mean"},                       \
+            {YAML_NUMBER(NumberUnknown, noise), .unit = u, .range = "[0, inf)", .fallback = "0",             \
+             .doc = "size of seeded noise that is added to the start"},                                      \
+            ROWS_ROWS(NumberUnknown, "face"),                                                                \
+            {YAML_OPTIONAL(NumberUnknown, start, &id##_table), .doc = "in place of the body's"},             \
+            {0}}}
+
+NUMBER_UNKNOWN_TABLE(young, "Young's modulus", "Pa");
+NUMBER_UNKNOWN_TABLE(thickness, "A shell's thickness", "m");
 
 static const YamlTable fold_unknown_table = {
     .name = "unknown fold",
@@ -175,6 +180,10 @@ static const YamlTable unknowns_table = {
          .doc = "a number per face, of a solid per tetrahedron, of a rod per element"},
         {YAML_OPTIONAL(UnknownsScene, skin_young, &young_unknown_table),
          .doc = "of a solid's film, a number per face of the surface"},
+        {YAML_OPTIONAL(UnknownsScene, thickness, &thickness_unknown_table),
+         .doc =
+             "of a shell, a number per face; what it keeps from obstacles and from itself stays that of the "
+             "scene's thickness"},
         {YAML_OPTIONAL(UnknownsScene, fold, &fold_unknown_table), .doc = "a number per edge"},
         {YAML_OPTIONAL(UnknownsScene, natural_strain, &strain_unknown_table),
          .doc = "of a rod, three numbers per element"},
@@ -265,6 +274,8 @@ static const YamlTable objective_table = {
          .doc = "weight of the squared jumps of the magnetisation over inner edges, (A/m)^2"},
         {YAML_NUMBER(ObjectiveScene, young_smoothness), .one_of = 1, .required = true,
          .doc = "weight of the squared jumps of the logarithm of Young's modulus over inner edges"},
+        {YAML_NUMBER(ObjectiveScene, thickness_smoothness), .one_of = 1, .required = true,
+         .doc = "weight of the squared jumps of the logarithm of a shell's thickness over inner edges"},
         {YAML_NUMBER(ObjectiveScene, fold_smoothness), .one_of = 1, .required = true,
          .doc = "weight of the squared jumps of the folds' factors between the edges of each face"},
         {YAML_OPTIONAL(ObjectiveScene, waypoint, &waypoint_table), .one_of = 1, .required = true,

@@ -9,7 +9,7 @@ extern const YamlTable where_table, mesh_table, pose_table, velocity_table;
 extern const YamlTable selection_table, load_table, load_point_table;
 extern const YamlTable target_table, case_table;       /* scene_cases.c */
 extern const YamlTable flux_density_table, path_table; /* scene_flux.c */
-extern const YamlTable young_table, fold_table, magnetization_table;
+extern const YamlTable young_table, thickness_table, density_table, fold_table, magnetization_table;
 extern const YamlTable design_table;                               /* scene_design.c */
 extern const YamlTable sequence_table;                             /* scene_sequence.c */
 extern const YamlTable probe_table;                                /* scene_probes.c */

@@ -9,12 +9,21 @@
 /* ---- Unknowns ---- */
 
 /* Each block has a sequence of its own, so that another unknown beside it changes nothing: of any seed there is one for
- * each of so many blocks, the first ones. */
+ * each of so many blocks, the first ones. What became a block after others has one of the last, so that these keep theirs. */
 enum { SEQUENCES = 16 };
+
+static bool came_later(const ParamBlock *block)
+{
+    return !strcmp(block->name, "thickness") || !strcmp(block->name, "density");
+}
 
 static Random random_of(const Model *model, const ParamBlock *block, int seed)
 {
-    return random_seed((uint64_t)seed * SEQUENCES + (uint64_t)(block - model->params->blocks));
+    bool later = came_later(block);
+    int number = later ? SEQUENCES : 0;
+    for (const ParamBlock *before = model->params->blocks; before < block; before++)
+        if (came_later(before) == later) number += later ? -1 : 1;
+    return random_seed((uint64_t)seed * SEQUENCES + (uint64_t)(later ? number - 1 : number));
 }
 
 /* One unknown being made: its block, where it stands in the scene, and its start. */
@@ -395,30 +404,35 @@ static bool flux_unknown(Model *model, const Build *b, const Scene *scene)
     return ok;
 }
 
+/* Is it asked of a body that has no such block? */
+static bool lacks(const Model *model, const Build *b, const char *name, const void *asked)
+{
+    return asked && !params_find(model->params, name) &&
+           !yaml_refuse(b->file, key("design.unknowns.%s", name).text, "%s has no %s", model->body->noun,
+                        name);
+}
+
 static bool add_unknowns(Model *model, const Scene *scene, const Build *b)
 {
     Design *design = &model->design;
     const UnknownsScene *unknowns = &scene->design->unknowns;
     int seed = scene->design->seed;
     design->case_count = model->case_count;
-    const bool asked[] = {unknowns->magnetization, unknowns->young,          unknowns->skin_young,
-                          unknowns->fold,          unknowns->natural_strain, unknowns->flux_density};
-    static const char *const names[] = {"magnetization", "young",          "skin_young",
-                                        "fold",          "natural_strain", "flux_density"};
+    const NumberUnknown *numbers[] = {unknowns->young, unknowns->skin_young, unknowns->thickness,
+                                      unknowns->fold};
+    static const char *const number_names[] = {"young", "skin_young", "thickness", "fold"};
     const SourceUnknown *sources[] = {unknowns->source_strength, unknowns->source_move,
                                       unknowns->source_turn};
     static const char *const source_names[] = {"source_strength", "source_move", "source_turn"};
-    for (int k = 0; k < 6; k++)
-        if (asked[k] && !params_find(model->params, names[k]))
-            return yaml_refuse(b->file, key("design.unknowns.%s", names[k]).text, "%s has no %s",
-                               model->body->noun, names[k]);
-    bool ok = true;
+    bool ok = !lacks(model, b, "magnetization", unknowns->magnetization) &&
+              !lacks(model, b, "natural_strain", unknowns->natural_strain) &&
+              !lacks(model, b, "flux_density", unknowns->flux_density);
+    for (int k = 0; k < 4; k++) ok = ok && !lacks(model, b, number_names[k], numbers[k]);
+    if (!ok) return false;
     if (unknowns->magnetization)
         ok = magnetization_unknown(model, b, design, unknowns->magnetization, seed) && ok;
-    if (unknowns->young) ok = number_unknown(model, b, design, "young", unknowns->young, seed) && ok;
-    if (unknowns->skin_young)
-        ok = number_unknown(model, b, design, "skin_young", unknowns->skin_young, seed) && ok;
-    if (unknowns->fold) ok = number_unknown(model, b, design, "fold", unknowns->fold, seed) && ok;
+    for (int k = 0; k < 4; k++)
+        if (numbers[k]) ok = number_unknown(model, b, design, number_names[k], numbers[k], seed) && ok;
     if (unknowns->natural_strain) ok = strain_unknown(model, b, design, unknowns->natural_strain, seed) && ok;
     if (unknowns->flux_density) ok = flux_unknown(model, b, scene) && ok;
     for (int k = 0; k < 3; k++) {
@@ -430,9 +444,8 @@ static bool add_unknowns(Model *model, const Scene *scene, const Build *b)
     }
     if (ok && !design->unknown_count)
         ok = yaml_refuse(b->file, "design.unknowns",
-                         "a design needs an unknown: magnetization, young, skin_young, fold, natural_strain, "
-                         "flux_density, "
-                         "source_strength, source_move or source_turn");
+                         "a design needs an unknown: magnetization, young, skin_young, thickness, fold, "
+                         "natural_strain, flux_density, source_strength, source_move or source_turn");
     return ok;
 }
 

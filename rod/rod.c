@@ -234,10 +234,10 @@ static void add_lumped_terms(System *sys, const Rod *rod, bool dynamic)
     int nodes = rod_node_count(rod);
     double *mass = mem_alloc((size_t)nodes, sizeof *mass);
     rod_node_mass(rod, mass);
-    system_add(sys, lumped_gravity_term(nodes, mass, rod->gravity));
+    system_add(sys, lumped_gravity_term(masses_fixed(nodes, mass), rod->gravity));
     system_add(sys, lumped_load_term(nodes, rod->load));
     if (dynamic) {
-        system_add(sys, kinetic_inertia_term(nodes, mass));
+        system_add(sys, kinetic_inertia_term(masses_fixed(nodes, mass)));
         node_lengths(rod, mass);
         system_add(sys, kinetic_damping_term(nodes, mass, rod->damping));
     }

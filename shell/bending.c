@@ -1,11 +1,11 @@
 /* Bending from the shape operator [Gingold et al. 2004; Chen 2022, eqs. 19, 23], with one director angle per edge in
  * the mid-edge model [Grinspun et al. 2006].
  *
- * A face's energy is a constant form in its three edge quantities, E = Y/2 q^T C q, with
+ * A face's energy is a constant form in its three edge quantities, E = Y h^3/2 q^T C q, with
  *     q_i = fold_i (theta_i - rest theta_i + 2 s_i alpha_i),
  * theta the dihedral angle, alpha the edge's angle dof and s = +1 where the face runs along the edge from v0 to v1.
  * G = sum_i q_i t_i t_i^T/(2 A |a_i|) and E = D A/2 ((1-nu) tr G^2 + nu tr^2 G) give
- *     C_ij = h^3/(12 (1-nu^2)) A ((1-nu) (a_i.a_j)^2 + nu |a_i|^2 |a_j|^2)/(4 A^2 |a_i| |a_j|).
+ *     C_ij = 1/(12 (1-nu^2)) A ((1-nu) (a_i.a_j)^2 + nu |a_i|^2 |a_j|^2)/(4 A^2 |a_i| |a_j|).
  *
  * Local dofs: the face's vertices x0 x1 x2, the flaps y0 y1 y2 opposite to them, and (mid-edge) alpha0..2. A boundary
  * edge has its own face's third vertex for a flap, and its theta counts with weight 0. A clamped edge has the mirror
@@ -21,7 +21,7 @@ enum { FLAP = 9, ALPHA = 18 };
 
 typedef struct BendingPack {
     int face[PACK_LANES], edge[3][PACK_LANES];
-    Pack form[6];                     /* C as a packed lower triangle, m^3; 0 where the face is rigid */
+    Pack form[6];                     /* C as a packed lower triangle, 1; 0 where the face is rigid */
     Pack weight[3], rest[3], sign[3]; /* of theta; its rest value; s */
     Pack3 mirror[3];                  /* t of clamped edges, else 0 */
     bool mirrored;                    /* any lane */
@@ -38,8 +38,9 @@ typedef struct Bending {
 typedef struct Bent {
     Dihedral d[3];
     Pack difference[3]; /* q over fold                               */
-    Pack fold[3], young;
-    Pack moment[3]; /* (C q)_i, dE/dq over Young's modulus        */
+    Pack fold[3], young, thickness;
+    Pack stiffness; /* Y h^3                                      */
+    Pack moment[3]; /* (C q)_i, dE/dq over the stiffness          */
 } Bent;
 
 static int bending_count(const void *self)
@@ -98,11 +99,20 @@ static Pack accepted_angle(const double *memory, int pack, int i)
     return accepted;
 }
 
+static Pack face_values(const BendingPack *face, const double *values)
+{
+    Pack r;
+    for (int l = 0; l < PACK_LANES; l++) r[l] = values[face->face[l]];
+    return r;
+}
+
 static void bend(const Bending *bending, int pack, const Point *at, const Pack *x, Bent *bent)
 {
     const Shell *shell = bending->shell;
     const BendingPack *face = &bending->packs[pack];
-    for (int l = 0; l < PACK_LANES; l++) bent->young[l] = at->p[shell->young + face->face[l]];
+    bent->young = face_values(face, at->p + shell->young);
+    bent->thickness = face_values(face, at->p + shell->face_thickness);
+    bent->stiffness = bent->young * bent->thickness * bent->thickness * bent->thickness;
     for (int i = 0; i < 3; i++) {
         for (int l = 0; l < PACK_LANES; l++) bent->fold[i][l] = at->p[shell->fold + face->edge[i][l]];
         bent->d[i] = angle_of(face, x, i);
@@ -133,13 +143,13 @@ static void difference_row(const BendingPack *face, const Dihedral *d, int i, Pa
     row[ALPHA + i] = 2 * face->sign[i];
 }
 
-/* H = sum_ij row_i (Y C_ij fold_i fold_j) row_j^T, skipping the zeros: flap i and alpha i appear in row i only. */
+/* H = sum_ij row_i (Y h^3 C_ij fold_i fold_j) row_j^T, skipping the zeros: flap i and alpha i appear in row i only. */
 static void material_hessian(const BendingPack *face, const Bent *bent, Pack (*row)[21], int size, Pack *H)
 {
     Pack right[3][21];
     for (int i = 0; i < 3; i++) {
         Pack c[3];
-        for (int j = 0; j < 3; j++) c[j] = bent->young * bent->fold[i] * bent->fold[j] * form(face, i, j);
+        for (int j = 0; j < 3; j++) c[j] = bent->stiffness * bent->fold[i] * bent->fold[j] * form(face, i, j);
         for (int k = 0; k < size; k++) right[i][k] = c[0] * row[0][k] + c[1] * row[1][k] + c[2] * row[2][k];
     }
     for (int k = 0; k < 9; k++)
@@ -171,7 +181,7 @@ static void geometric_hessian(const BendingPack *face, const Bent *bent, int i, 
     int a = (i + 1) % 3, b = (i + 2) % 3, o = i, y = 3 + i;
     DihedralHessian h = dihedral_hessian(&bent->d[i]);
     if (face->mirrored) mirror_hessian(face->mirror[i], &h);
-    Pack tau = bent->young * bent->fold[i] * bent->moment[i] * face->weight[i];
+    Pack tau = bent->stiffness * bent->fold[i] * bent->moment[i] * face->weight[i];
     element_add_diagonal(H, a, pack_mat_scale(tau, h.aa));
     element_add_diagonal(H, b, pack_mat_scale(tau, h.bb));
     element_add_diagonal(H, o, pack_mat_scale(tau, h.oo));
@@ -192,13 +202,13 @@ static Pack bending_eval(const void *self, int pack, const Point *at, const Pack
     bend(bending, pack, at, x, &bent);
     Pack energy = {0}, row[3][21];
     for (int i = 0; i < 3; i++)
-        energy += 0.5 * bent.young * bent.fold[i] * bent.difference[i] * bent.moment[i];
+        energy += 0.5 * bent.stiffness * bent.fold[i] * bent.difference[i] * bent.moment[i];
     if (!g) return energy;
 
     for (int i = 0; i < 3; i++) difference_row(face, &bent.d[i], i, row[i]);
     for (int k = 0; k < size; k++) {
         g[k] = pack_set(0);
-        for (int i = 0; i < 3; i++) g[k] += bent.young * bent.fold[i] * bent.moment[i] * row[i][k];
+        for (int i = 0; i < 3; i++) g[k] += bent.stiffness * bent.fold[i] * bent.moment[i] * row[i][k];
     }
     if (!H) return energy;
     material_hessian(face, &bent, row, size, H);
@@ -217,9 +227,9 @@ static void row_products(const Bending *bending, int pack, const Bent *bent, con
     }
 }
 
-/* With dE/dx = sum_i Y fold_i (C q)_i row_i:
- *     w.d/dY      = sum_i fold_i (C q)_i beta_i
- *     w.d/dfold_i = Y ((C q)_i beta_i + difference_i sum_j C_ij fold_j beta_j). */
+/* With D = Y h^3 and dE/dx = sum_i D fold_i (C q)_i row_i:
+ *     w.d/dD      = sum_i fold_i (C q)_i beta_i
+ *     w.d/dfold_i = D ((C q)_i beta_i + difference_i sum_j C_ij fold_j beta_j). */
 static void bending_param(const void *self, int pack, int lanes, const Point *at, const Pack *x,
                           const Pack *w, double *dp)
 {
@@ -227,17 +237,21 @@ static void bending_param(const void *self, int pack, int lanes, const Point *at
     const Shell *shell = bending->shell;
     const BendingPack *face = &bending->packs[pack];
     Bent bent;
-    Pack beta[3], young = {0};
+    Pack beta[3], stiffness = {0}, square;
     bend(bending, pack, at, x, &bent);
     row_products(bending, pack, &bent, w, beta);
     for (int i = 0; i < 3; i++) {
         Pack sum = {0};
         for (int j = 0; j < 3; j++) sum += form(face, i, j) * bent.fold[j] * beta[j];
-        Pack fold = bent.young * (bent.moment[i] * beta[i] + bent.difference[i] * sum);
-        young += bent.fold[i] * bent.moment[i] * beta[i];
+        Pack fold = bent.stiffness * (bent.moment[i] * beta[i] + bent.difference[i] * sum);
+        stiffness += bent.fold[i] * bent.moment[i] * beta[i];
         for (int l = 0; l < lanes; l++) dp[shell->fold + face->edge[i][l]] += fold[l];
     }
-    for (int l = 0; l < lanes; l++) dp[shell->young + face->face[l]] += young[l];
+    square = bent.thickness * bent.thickness;
+    for (int l = 0; l < lanes; l++) {
+        dp[shell->young + face->face[l]] += square[l] * bent.thickness[l] * stiffness[l];
+        dp[shell->face_thickness + face->face[l]] += 3 * bent.young[l] * square[l] * stiffness[l];
+    }
 }
 
 static void bending_param_forward(const void *self, int pack, const Point *at, const Pack *x,
@@ -249,16 +263,17 @@ static void bending_param_forward(const void *self, int pack, const Point *at, c
     int size = bending_size(self);
     Bent bent;
     bend(bending, pack, at, x, &bent);
-    Pack young, fold[3];
-    for (int l = 0; l < PACK_LANES; l++) young[l] = dp[shell->young + face->face[l]];
+    Pack fold[3], square = bent.thickness * bent.thickness;
+    Pack stiffness = square * (bent.thickness * face_values(face, dp + shell->young) +
+                               3 * bent.young * face_values(face, dp + shell->face_thickness));
     for (int i = 0; i < 3; i++)
         for (int l = 0; l < PACK_LANES; l++) fold[i][l] = dp[shell->fold + face->edge[i][l]];
     memset(r, 0, (size_t)size * sizeof *r);
     for (int i = 0; i < 3; i++) {
         Pack sum = {0}, row[21];
         for (int j = 0; j < 3; j++) sum += form(face, i, j) * bent.difference[j] * fold[j];
-        Pack tau =
-            bent.moment[i] * (young * bent.fold[i] + bent.young * fold[i]) + bent.young * bent.fold[i] * sum;
+        Pack tau = bent.moment[i] * (stiffness * bent.fold[i] + bent.stiffness * fold[i]) +
+                   bent.stiffness * bent.fold[i] * sum;
         difference_row(face, &bent.d[i], i, row);
         for (int k = 0; k < size; k++) r[k] += tau * row[k];
     }
@@ -333,9 +348,8 @@ static void set_form(const Shell *shell, int f, BendingPack *pack, int lane)
     for (int i = 0; i < 3; i++)
         a[i] = vec3_sub(vec3_load(mesh->rest[mesh->faces[f][(i + 2) % 3]]),
                         vec3_load(mesh->rest[mesh->faces[f][(i + 1) % 3]]));
-    double h = shell->thickness, nu = shell->poisson;
-    double scale =
-        shell_face_is_rigid(shell, f) ? 0 : h * h * h / (12 * (1 - nu * nu)) / (4 * mesh->rest_area[f]);
+    double nu = shell->poisson;
+    double scale = shell_face_is_rigid(shell, f) ? 0 : 1 / (12 * (1 - nu * nu)) / (4 * mesh->rest_area[f]);
     for (int i = 0; i < 3; i++)
         for (int j = 0; j <= i; j++) {
             double product = vec3_dot(a[i], a[j]), lengths = vec3_length(a[i]) * vec3_length(a[j]);

@@ -46,6 +46,8 @@ Shell *shell_create(Mesh *mesh, const FluxFields *fields)
     shell->gravity = params_add(params, "gravity", "m/s^2", 1, 3, true);
     shell->load = params_add(params, "load", "N", mesh->vertex_count, 3, true);
     shell->damping = params_add(params, "damping", "N s/m", 1, 1, false);
+    shell->face_thickness = params_add(params, "thickness", "m", mesh->face_count, 1, false);
+    shell->face_density = params_add(params, "density", "kg/m^3", mesh->face_count, 1, false);
     shell->flux = flux_blocks_add(params, &shell->fields, shell->flux.uniform);
     return shell;
 }
@@ -100,12 +102,8 @@ bool shell_face_is_rigid(const Shell *shell, int face)
 
 static void add_kinetic_terms(const Shell *shell, System *sys)
 {
-    int vertices = shell->mesh->vertex_count;
-    double *mass = mem_alloc((size_t)vertices, sizeof *mass);
-    shell_vertex_mass(shell, mass);
-    system_add(sys, kinetic_inertia_term(vertices, mass));
-    system_add(sys, kinetic_damping_term(vertices, NULL, shell->damping));
-    mem_free(mass);
+    system_add(sys, kinetic_inertia_term(shell_masses(shell)));
+    system_add(sys, kinetic_damping_term(shell->mesh->vertex_count, NULL, shell->damping));
 }
 
 static System *make_system(const Shell *shell, bool dynamic)
@@ -141,7 +139,11 @@ System *shell_dynamic_system(const Shell *shell)
 void shell_default_params(const Shell *shell, double *p)
 {
     for (int i = 0; i < shell->params.size; i++) p[i] = 0;
-    for (int f = 0; f < shell->mesh->face_count; f++) p[shell->young + f] = 1e6;
+    for (int f = 0; f < shell->mesh->face_count; f++) {
+        p[shell->young + f] = 1e6;
+        p[shell->face_thickness + f] = shell->thickness;
+        p[shell->face_density + f] = shell->density;
+    }
     for (int e = 0; e < shell->mesh->edge_count; e++) p[shell->fold + e] = 1;
     flux_blocks_default(&shell->fields, &shell->flux, p);
 }
@@ -153,19 +155,26 @@ void shell_rest_state(const Shell *shell, double *x)
     for (int e = 0; e < mesh->edge_count; e++) x[shell_angle_dof(shell, e)] = 0;
 }
 
-void shell_vertex_mass(const Shell *shell, double *mass)
+Masses shell_masses(const Shell *shell)
 {
     const Mesh *mesh = shell->mesh;
-    for (int v = 0; v < mesh->vertex_count; v++) mass[v] = 0;
-    for (int f = 0; f < mesh->face_count; f++)
-        for (int i = 0; i < 3; i++)
-            mass[mesh->faces[f][i]] += shell->density * shell->thickness * mesh->rest_area[f] / 3;
+    return masses_of_faces(mesh->vertex_count, mesh->face_count, (const int(*)[3])mesh->faces,
+                           mesh->rest_area, shell->face_density, shell->face_thickness);
+}
+
+void shell_vertex_mass(const Shell *shell, const double *p, double *mass)
+{
+    Masses masses = shell_masses(shell);
+    for (int v = 0; v < masses.count; v++) mass[v] = masses_at(&masses, v, p);
+    masses_clear(&masses);
 }
 
 /* All faces, each with its own parameters. */
 static FaceLayer layer_of(const Shell *shell)
 {
-    return face_layer(shell->mesh, shell->thickness, NULL, NULL);
+    FaceLayer layer = face_layer(shell->mesh, 1, NULL, NULL);
+    layer.thickness = shell->face_thickness;
+    return layer;
 }
 
 Term shell_membrane_term(const Shell *shell)
@@ -182,11 +191,7 @@ Term shell_magnetic_term(const Shell *shell)
 
 Term shell_gravity_term(const Shell *shell)
 {
-    double *mass = mem_alloc((size_t)shell->mesh->vertex_count, sizeof *mass);
-    shell_vertex_mass(shell, mass);
-    Term term = lumped_gravity_term(shell->mesh->vertex_count, mass, shell->gravity);
-    mem_free(mass);
-    return term;
+    return lumped_gravity_term(shell_masses(shell), shell->gravity);
 }
 
 Term shell_load_term(const Shell *shell)

@@ -4,6 +4,7 @@
  * away from the mean of its two faces' normals (the director of the mid-edge model; zero in the hinge model).
  * Energies follow [Chen, Ni, Zhu, Wang, Chen 2022, eqs. 18-25] with the corrections in docs/theory.md. */
 #pragma once
+#include "solve/masses.h"
 #include "solve/params.h"
 #include "solve/system.h"
 #include "field/flux.h"
@@ -17,10 +18,12 @@ typedef enum BendingModel {
 } BendingModel;
 
 typedef struct Shell {
-    Mesh *mesh;                         /* owned                                                          */
-    double thickness, poisson, density; /* m, 1, kg/m^3                                                   */
-    double coercivity;                  /* A/m, of what it is magnetised with; NAN: not known             */
-    MembraneMaterial material;          /* of the stretching; bending is of small strains                 */
+    Mesh *mesh; /* owned                                                          */
+    /* m: the largest, by which it keeps its distance to the world; kg/m^3; both the default of all faces. */
+    double thickness, density;
+    double poisson;
+    double coercivity;         /* A/m, of what it is magnetised with; NAN: not known             */
+    MembraneMaterial material; /* of the stretching; bending is of small strains                 */
     BendingModel bending;
     FluxFields fields;  /* parts of the flux density that vary in space; owned                          */
     double *rest_angle; /* [edge] dihedral angle of the rest shape, rad; 0 on the boundary; owned         */
@@ -28,14 +31,16 @@ typedef struct Shell {
     bool *clamped;      /* [edge] the slope is held as at rest; owned                                     */
     World *world;       /* what it meets; owned; NULL: nothing                                             */
 
-    Params params;     /* blocks and their first entries in p: */
-    int young;         /* [face] Pa                                                            */
-    int fold;          /* [edge] factor on the edge's curvature                                */
-    int magnetization; /* [face][3] A/m, in material space                                     */
-    FluxBlocks flux;   /* flux_density [3] T, the uniform part, and those of fields */
-    int gravity;       /* [3] m/s^2                                                            */
-    int load;          /* [vertex][3] N, dead                                                  */
-    int damping;       /* [1] N s/m at every vertex, in steps of time                          */
+    Params params;      /* blocks and their first entries in p: */
+    int young;          /* [face] Pa                                                            */
+    int fold;           /* [edge] factor on the edge's curvature                                */
+    int magnetization;  /* [face][3] A/m, in material space                                     */
+    FluxBlocks flux;    /* flux_density [3] T, the uniform part, and those of fields */
+    int gravity;        /* [3] m/s^2                                                            */
+    int load;           /* [vertex][3] N, dead                                                  */
+    int damping;        /* [1] N s/m at every vertex, in steps of time                          */
+    int face_thickness; /* [face] m, about the middle surface: the block `thickness`            */
+    int face_density;   /* [face] kg/m^3: the block `density`                                   */
 } Shell;
 
 /* Takes the mesh and the fields (NULL: none). Sets up the blocks of parameters, rest angles and nothing held. */
@@ -67,11 +72,13 @@ System *shell_system(const Shell *shell);
 /* The same with inertia and damping, for steps of time (march.h). */
 System *shell_dynamic_system(const Shell *shell);
 
-/* Default values of every block: young 1e6, fold 1, scales and strengths of fields 1, the rest 0. p[params.size]. */
+/* Default values of every block: young 1e6, fold 1, thickness and density those of the struct, scales and strengths of
+ * fields 1, the rest 0. p[params.size]. */
 void shell_default_params(const Shell *shell, double *p);
 
 /* x[dof_count] at rest: rest positions, angles 0. */
 void shell_rest_state(const Shell *shell, double *x);
 
-/* Lumped mass of each vertex, a third of its faces, kg; mass[vertex_count]. */
-void shell_vertex_mass(const Shell *shell, double *mass);
+/* Lumped mass of each vertex, a third of its faces, kg: as what terms take, the caller's; at p, mass[vertex_count]. */
+Masses shell_masses(const Shell *shell);
+void shell_vertex_mass(const Shell *shell, const double *p, double *mass);

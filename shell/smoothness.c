@@ -93,7 +93,9 @@ static void pair_edges(const Mesh *mesh, Smoothness *s)
 Objective shell_smoothness(const Shell *shell, const ParamBlock *block, double weight)
 {
     Smoothness *s = mem_alloc(1, sizeof *s);
-    *s = (Smoothness){.first = block->offset, .width = block->width, .ratios = block->offset == shell->young};
+    *s = (Smoothness){.first = block->offset,
+                      .width = block->width,
+                      .ratios = block->offset == shell->young || block->offset == shell->face_thickness};
     (block->offset == shell->fold ? pair_edges : pair_faces)(shell->mesh, s);
     return (Objective){&smoothness_ops, s, weight, 0, 0};
 }

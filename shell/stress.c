@@ -45,8 +45,9 @@ void shell_stresses(const Shell *shell, const System *sys, const Point *at, Face
         PlaneTensor K = curvature(mesh, f, turn[f]);
         for (int k = STRESS_BOTTOM; k <= STRESS_TOP; k++)
             stress[f].von_mises[k] =
-                at->p[shell->young + f] * membrane_von_mises(shell->material, shell->poisson,
-                                                             strain_at(G, (k - 1) * shell->thickness / 2, K));
+                at->p[shell->young + f] *
+                membrane_von_mises(shell->material, shell->poisson,
+                                   strain_at(G, (k - 1) * at->p[shell->face_thickness + f] / 2, K));
     }
     mem_free(turn);
 }

@@ -78,7 +78,7 @@ static void add_kinetic_terms(const Solid *solid, System *sys)
     int nodes = tets_node_count(solid->tets);
     double *mass = mem_alloc((size_t)nodes, sizeof *mass);
     solid_node_mass(solid, mass);
-    system_add(sys, kinetic_inertia_term(nodes, mass));
+    system_add(sys, kinetic_inertia_term(masses_fixed(nodes, mass)));
     system_add(sys, kinetic_damping_term(nodes, NULL, solid->damping));
     mem_free(mass);
 }
@@ -142,7 +142,7 @@ Term solid_gravity_term(const Solid *solid)
     int nodes = tets_node_count(solid->tets);
     double *mass = mem_alloc((size_t)nodes, sizeof *mass);
     solid_node_mass(solid, mass);
-    Term term = lumped_gravity_term(nodes, mass, solid->gravity);
+    Term term = lumped_gravity_term(masses_fixed(nodes, mass), solid->gravity);
     mem_free(mass);
     return term;
 }

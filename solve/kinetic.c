@@ -6,8 +6,8 @@
 /* Both are c/2 |x - y|^2 with y = x_prev + a v_prev. */
 typedef struct Kinetic {
     int vertex_count;
-    double *weight; /* [vertex_count] mass, or share of damping */
-    int damping;    /* first entry in p; -1: inertia            */
+    Masses weight; /* or shares of damping, which are fixed */
+    int damping;   /* first entry in p; -1: inertia         */
 } Kinetic;
 
 static bool is_inertia(const Kinetic *kinetic)
@@ -15,9 +15,9 @@ static bool is_inertia(const Kinetic *kinetic)
     return kinetic->damping < 0;
 }
 
-static double weight_of(const Kinetic *kinetic, int pack, int lane)
+static double weight_of(const Kinetic *kinetic, int pack, int lane, const double *p)
 {
-    return kinetic->weight[vertex_of_lane(kinetic, pack, lane)];
+    return masses_at(&kinetic->weight, vertex_of_lane(kinetic, pack, lane), p);
 }
 
 /* c, N/m; 0 in statics. */
@@ -25,8 +25,8 @@ static Pack stiffness(const Kinetic *kinetic, int pack, const Point *at)
 {
     Pack c = {0};
     for (int l = 0; at->dt > 0 && l < PACK_LANES; l++)
-        c[l] = is_inertia(kinetic) ? weight_of(kinetic, pack, l) / (at->dt * at->dt)
-                                   : weight_of(kinetic, pack, l) * (at->p[kinetic->damping] / at->dt);
+        c[l] = is_inertia(kinetic) ? weight_of(kinetic, pack, l, at->p) / (at->dt * at->dt)
+                                   : weight_of(kinetic, pack, l, at->p) * (at->p[kinetic->damping] / at->dt);
     return c;
 }
 
@@ -74,10 +74,33 @@ static void kinetic_prev_forward(const void *self, int pack, const Point *at, co
     for (int i = 0; i < 3; i++) r[i] = -c * (is_inertia(kinetic) ? dx[i] + at->dt * dv[i] : dx[i]);
 }
 
-static Pack shares(const Kinetic *kinetic, int pack)
+/* The force is m/dt^2 (x - y). */
+static void inertia_param(const void *self, int pack, int lanes, const Point *at, const Pack *x,
+                          const Pack *w, double *dp)
+{
+    const Kinetic *kinetic = self;
+    Pack work = {0};
+    for (int i = 0; at->dt > 0 && i < 3; i++) work += w[i] * offset(kinetic, pack, at, i, x[i]);
+    for (int l = 0; at->dt > 0 && l < lanes; l++)
+        masses_add_param(&kinetic->weight, vertex_of_lane(kinetic, pack, l), at->p,
+                         work[l] / (at->dt * at->dt), dp);
+}
+
+static void inertia_param_forward(const void *self, int pack, const Point *at, const Pack *x,
+                                  const double *dp, Pack *r)
+{
+    const Kinetic *kinetic = self;
+    Pack change = {0};
+    for (int l = 0; at->dt > 0 && l < PACK_LANES; l++)
+        change[l] =
+            masses_change(&kinetic->weight, vertex_of_lane(kinetic, pack, l), at->p, dp) / (at->dt * at->dt);
+    for (int i = 0; i < 3; i++) r[i] = at->dt > 0 ? change * offset(kinetic, pack, at, i, x[i]) : change;
+}
+
+static Pack shares(const Kinetic *kinetic, int pack, const double *p)
 {
     Pack share;
-    for (int l = 0; l < PACK_LANES; l++) share[l] = weight_of(kinetic, pack, l);
+    for (int l = 0; l < PACK_LANES; l++) share[l] = weight_of(kinetic, pack, l, p);
     return share;
 }
 
@@ -86,7 +109,7 @@ static void damping_param(const void *self, int pack, int lanes, const Point *at
                           const Pack *w, double *dp)
 {
     const Kinetic *kinetic = self;
-    Pack share = shares(kinetic, pack);
+    Pack share = shares(kinetic, pack, at->p);
     for (int i = 0; at->dt > 0 && i < 3; i++)
         dp[kinetic->damping] += pack_sum(share * w[i] * offset(kinetic, pack, at, i, x[i]), lanes) / at->dt;
 }
@@ -95,7 +118,7 @@ static void damping_param_forward(const void *self, int pack, const Point *at, c
                                   const double *dp, Pack *r)
 {
     const Kinetic *kinetic = self;
-    Pack share = shares(kinetic, pack);
+    Pack share = shares(kinetic, pack, at->p);
     for (int i = 0; i < 3; i++)
         r[i] = at->dt > 0 ? share * (dp[kinetic->damping] / at->dt) * offset(kinetic, pack, at, i, x[i])
                           : pack_set(0);
@@ -103,7 +126,7 @@ static void damping_param_forward(const void *self, int pack, const Point *at, c
 
 static void kinetic_destroy(void *self)
 {
-    mem_free(((Kinetic *)self)->weight);
+    masses_clear(&((Kinetic *)self)->weight);
     mem_free(self);
 }
 
@@ -113,6 +136,8 @@ static const TermOps inertia_ops = {
     .size = vertex_term_size,
     .dofs = vertex_term_dofs,
     .eval = kinetic_eval,
+    .param = inertia_param,
+    .param_forward = inertia_param_forward,
     .prev = kinetic_prev,
     .prev_forward = kinetic_prev_forward,
     .destroy = kinetic_destroy,
@@ -132,21 +157,21 @@ static const TermOps damping_ops = {
 };
 
 /* Takes the weights. */
-static Term make(const TermOps *ops, int vertex_count, double *weight, int damping)
+static Term make(const TermOps *ops, Masses weight, int damping)
 {
     Kinetic *kinetic = mem_alloc(1, sizeof *kinetic);
-    *kinetic = (Kinetic){.vertex_count = vertex_count, .weight = weight, .damping = damping};
+    *kinetic = (Kinetic){.vertex_count = weight.count, .weight = weight, .damping = damping};
     return (Term){ops, kinetic};
 }
 
-Term kinetic_inertia_term(int vertex_count, const double *mass)
+Term kinetic_inertia_term(Masses mass)
 {
-    return make(&inertia_ops, vertex_count, mem_copy(mass, (size_t)vertex_count, sizeof *mass), -1);
+    return make(&inertia_ops, mass, -1);
 }
 
 Term kinetic_damping_term(int vertex_count, const double *share, int damping)
 {
-    double *weight = mem_alloc((size_t)vertex_count, sizeof *weight);
-    for (int v = 0; v < vertex_count; v++) weight[v] = share ? share[v] : 1;
-    return make(&damping_ops, vertex_count, weight, damping);
+    Masses weight = {.count = vertex_count, .fixed = mem_alloc((size_t)vertex_count, sizeof(double))};
+    for (int v = 0; v < vertex_count; v++) weight.fixed[v] = share ? share[v] : 1;
+    return make(&damping_ops, weight, damping);
 }

@@ -5,10 +5,11 @@
  * In statics (dt = 0) both are nothing. Elements are single vertices with three position dofs each (3v ..
  * 3v+2). */
 #pragma once
+#include "solve/masses.h"
 #include "solve/term.h"
 
-/* mass[vertex_count] in kg is copied. */
-Term kinetic_inertia_term(int vertex_count, const double *mass);
+/* Takes the masses. */
+Term kinetic_inertia_term(Masses mass);
 
 /* gamma = share[v] p[damping], N s/m; share[vertex_count], of p's unit what makes that, is copied; NULL: 1 everywhere. */
 Term kinetic_damping_term(int vertex_count, const double *share, int damping);

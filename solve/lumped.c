@@ -5,82 +5,113 @@
 
 typedef struct Lumped {
     int vertex_count;
-    int block;    /* gravity: first of three numbers in p; load: first of three per vertex */
-    double *mass; /* [vertex_count]; NULL for loads                                        */
+    int block;   /* gravity: first of three numbers in p; load: first of three per vertex */
+    Masses mass; /* none of loads                                                         */
 } Lumped;
 
-/* The potential's gradient -f of coordinate i, for values laid out as p. */
-static Pack slope(const Lumped *lumped, int pack, int i, const double *values)
+static bool weighs(const Lumped *lumped)
 {
-    Pack r;
+    return lumped->mass.count > 0;
+}
+
+/* -m times each component of g, of values laid out as p. */
+static void weight(const Lumped *lumped, int pack, const double *p, const double *values, Pack force[3])
+{
     for (int l = 0; l < PACK_LANES; l++) {
-        int vertex = vertex_of_lane(lumped, pack, l);
-        r[l] = lumped->mass ? -lumped->mass[vertex] * values[lumped->block + i]
-                            : -values[lumped->block + 3 * vertex + i];
+        double mass = masses_at(&lumped->mass, vertex_of_lane(lumped, pack, l), p);
+        for (int i = 0; i < 3; i++) force[i][l] = -mass * values[lumped->block + i];
     }
-    return r;
+}
+
+static void pull(const Lumped *lumped, int pack, const double *values, Pack force[3])
+{
+    for (int i = 0; i < 3 * PACK_LANES; i++)
+        force[i % 3][i / 3] = -values[lumped->block + 3 * vertex_of_lane(lumped, pack, i / 3) + i % 3];
 }
 
 static Pack lumped_eval(const void *self, int pack, const Point *at, const Pack *x, Pack *g, Pack *H)
 {
-    Pack energy = {0};
+    Pack energy = {0}, slope[3];
+    if (weighs(self))
+        weight(self, pack, at->p, at->p, slope);
+    else
+        pull(self, pack, at->p, slope);
     for (int i = 0; i < 3; i++) {
-        Pack force = slope(self, pack, i, at->p);
-        energy += force * x[i];
-        if (g) g[i] = force;
+        energy += slope[i] * x[i];
+        if (g) g[i] = slope[i];
     }
     if (H) element_clear(H, 3);
     return energy;
 }
 
-static void lumped_param(const void *self, int pack, int lanes, const Point *at, const Pack *x, const Pack *w,
-                         double *dp)
+static void gravity_param(const void *self, int pack, int lanes, const Point *at, const Pack *x,
+                          const Pack *w, double *dp)
+{
+    (void)x;
+    const Lumped *lumped = self;
+    const double *g = at->p + lumped->block;
+    for (int l = 0; l < lanes; l++) {
+        int vertex = vertex_of_lane(lumped, pack, l);
+        double mass = masses_at(&lumped->mass, vertex, at->p), fall = 0;
+        for (int i = 0; i < 3; i++) dp[lumped->block + i] -= mass * w[i][l], fall += g[i] * w[i][l];
+        masses_add_param(&lumped->mass, vertex, at->p, -fall, dp);
+    }
+}
+
+static void gravity_param_forward(const void *self, int pack, const Point *at, const Pack *x,
+                                  const double *dp, Pack *r)
+{
+    (void)x;
+    const Lumped *lumped = self;
+    weight(lumped, pack, at->p, dp, r);
+    for (int l = 0; l < PACK_LANES; l++) {
+        double change = masses_change(&lumped->mass, vertex_of_lane(lumped, pack, l), at->p, dp);
+        for (int i = 0; i < 3; i++) r[i][l] -= change * at->p[lumped->block + i];
+    }
+}
+
+static void load_param(const void *self, int pack, int lanes, const Point *at, const Pack *x, const Pack *w,
+                       double *dp)
 {
     (void)at, (void)x;
     const Lumped *lumped = self;
-    for (int l = 0; l < lanes; l++)
-        for (int i = 0; i < 3; i++) {
-            int vertex = vertex_of_lane(lumped, pack, l);
-            if (lumped->mass)
-                dp[lumped->block + i] -= lumped->mass[vertex] * w[i][l];
-            else
-                dp[lumped->block + 3 * vertex + i] -= w[i][l];
-        }
+    for (int i = 0; i < 3 * lanes; i++)
+        dp[lumped->block + 3 * vertex_of_lane(lumped, pack, i / 3) + i % 3] -= w[i % 3][i / 3];
 }
 
-static void lumped_param_forward(const void *self, int pack, const Point *at, const Pack *x, const double *dp,
-                                 Pack *r)
+static void load_param_forward(const void *self, int pack, const Point *at, const Pack *x, const double *dp,
+                               Pack *r)
 {
     (void)at, (void)x;
-    for (int i = 0; i < 3; i++) r[i] = slope(self, pack, i, dp);
+    pull(self, pack, dp, r);
 }
 
 static void lumped_destroy(void *self)
 {
-    mem_free(((Lumped *)self)->mass);
+    masses_clear(&((Lumped *)self)->mass);
     mem_free(self);
 }
 
-#define LUMPED_OPS(row_name)                                                                                 \
+#define LUMPED_OPS(row)                                                                                      \
     {                                                                                                        \
-        .name = row_name, .count = vertex_term_count, .size = vertex_term_size, .dofs = vertex_term_dofs,    \
-        .eval = lumped_eval, .param = lumped_param, .param_forward = lumped_param_forward,                   \
+        .name = #row, .count = vertex_term_count, .size = vertex_term_size, .dofs = vertex_term_dofs,        \
+        .eval = lumped_eval, .param = row##_param, .param_forward = row##_param_forward,                     \
         .destroy = lumped_destroy,                                                                           \
     }
 
-static const TermOps gravity_ops = LUMPED_OPS("gravity");
-static const TermOps load_ops = LUMPED_OPS("load");
+static const TermOps gravity_ops = LUMPED_OPS(gravity);
+static const TermOps load_ops = LUMPED_OPS(load);
 
-Term lumped_gravity_term(int vertex_count, const double *mass, int gravity)
+Term lumped_gravity_term(Masses mass, int gravity)
 {
     Lumped *lumped = mem_alloc(1, sizeof *lumped);
-    *lumped = (Lumped){vertex_count, gravity, mem_copy(mass, (size_t)vertex_count, sizeof *mass)};
+    *lumped = (Lumped){mass.count, gravity, mass};
     return (Term){&gravity_ops, lumped};
 }
 
 Term lumped_load_term(int vertex_count, int load)
 {
     Lumped *lumped = mem_alloc(1, sizeof *lumped);
-    *lumped = (Lumped){vertex_count, load, NULL};
+    *lumped = (Lumped){.vertex_count = vertex_count, .block = load};
     return (Term){&load_ops, lumped};
 }

@@ -36,6 +36,7 @@ FaceLayer face_layer(const Mesh *mesh, double thickness, const int *rows, const 
     FaceLayer layer = {.faces = mem_alloc(faces, sizeof *layer.faces),
                        .rows = mem_alloc(faces, sizeof *layer.rows),
                        .volume = mem_alloc(faces, sizeof *layer.volume),
+                       .thickness = -1,
                        .rest = mesh->rest};
     for (int f = 0; thickness > 0 && f < mesh->face_count; f++) {
         int row = rows ? rows[f] : f, k = layer.count;

@@ -25,7 +25,8 @@ typedef struct FaceLayer {
     int count;
     int (*faces)[3];   /* [face] vertices, whichever way round; owned                           */
     int *rows;         /* [face] its row in blocks of parameters; owned                         */
-    double *volume;    /* [face] m^3 at rest: area by thickness; owned                          */
+    double *volume;    /* [face] m^3 at rest: area by thickness; of thicknesses in p m^2; owned */
+    int thickness;     /* first entry in p of [row] m; -1: it is in the volume                  */
     double (*rest)[3]; /* [vertex] m; borrowed, and read only where a term is made of the layer */
 } FaceLayer;
 
@@ -46,4 +47,21 @@ static inline Pack face_layer_param(const FaceLayer *layer, int pack, const doub
     Pack r;
     for (int l = 0; l < PACK_LANES; l++) r[l] = values[face_layer_row(layer, pack, l) * width + component];
     return r;
+}
+
+/* The volumes of a pack at p, of FaceLayer.volume as terms keep it, m^3; how they change with p, dp laid out as p; and
+ * dp += amount times their derivative. */
+static inline Pack face_layer_volume(const FaceLayer *layer, int pack, Pack volume, const double *p)
+{
+    return layer->thickness < 0 ? volume : volume * face_layer_param(layer, pack, p + layer->thickness, 1, 0);
+}
+static inline Pack face_layer_volume_change(const FaceLayer *layer, int pack, Pack volume, const double *dp)
+{
+    return layer->thickness < 0 ? pack_set(0) : face_layer_volume(layer, pack, volume, dp);
+}
+static inline void face_layer_add_volume(const FaceLayer *layer, int pack, int lanes, Pack volume,
+                                         Pack amount, double *dp)
+{
+    for (int l = 0; layer->thickness >= 0 && l < lanes; l++)
+        dp[layer->thickness + face_layer_row(layer, pack, l)] += volume[l] * amount[l];
 }

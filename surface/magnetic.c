@@ -11,7 +11,7 @@
 
 typedef struct MagneticPack {
     Pack3 hat[3], normal; /* at rest; 1/m, 1 */
-    Pack volume;          /* A h, m^3        */
+    Pack volume;          /* FaceLayer.volume */
 } MagneticPack;
 
 typedef struct Magnetic {
@@ -40,6 +40,11 @@ static int magnetic_size(const void *self)
 static void magnetic_dofs(const void *self, int face, int *dof)
 {
     face_dofs(((const Magnetic *)self)->layer.faces[face], dof);
+}
+
+static Pack volume_of(const Magnetic *magnetic, int pack, const double *p)
+{
+    return face_layer_volume(&magnetic->layer, pack, magnetic->packs[pack].volume, p);
 }
 
 static Pack3 barycentre(const Pack *x)
@@ -146,7 +151,7 @@ static PackMat field_hessian(const Flux *flux, Pack3 Q, PackMat dQi, PackMat dQj
 }
 
 static void hessian(const Magnetic *magnetic, int pack, const Normal *normal, Pack3 M, const Flux *flux,
-                    Pack3 Q, Pack *H)
+                    Pack3 Q, Pack volume, Pack *H)
 {
     const MagneticPack *face = &magnetic->packs[pack];
     Pack mu = pack3_dot(face->normal, M);
@@ -158,7 +163,7 @@ static void hessian(const Magnetic *magnetic, int pack, const Normal *normal, Pa
         for (int j = 0; j <= i; j++) {
             PackMat block = pack_mat_scale(mu, normal_hessian(normal, flux->B, i, j));
             if (varies) block = pack_mat_add(block, field_hessian(flux, Q, dQ[i], dQ[j]));
-            block = pack_mat_scale(-face->volume, block);
+            block = pack_mat_scale(-volume, block);
             if (i == j)
                 element_add_diagonal(H, i, block);
             else
@@ -172,18 +177,20 @@ static Pack magnetic_eval(const void *self, int pack, const Point *at, const Pac
     const MagneticPack *face = &magnetic->packs[pack];
     Flux flux = flux_at(sum_of(&magnetic->def, at), barycentre(x));
     Normal normal = normal_of(x);
+    Pack volume = volume_of(magnetic, pack, at->p);
     Pack3 M = magnetization_of(magnetic, pack, at->p), Q = carried(face, &normal, M, x);
     if (g) {
         forces(face, &normal, M, &flux, Q, g);
-        for (int i = 0; i < 9; i++) g[i] *= -face->volume;
+        for (int i = 0; i < 9; i++) g[i] *= -volume;
     }
-    if (H) hessian(magnetic, pack, &normal, M, &flux, Q, H);
-    return -face->volume * pack3_dot(Q, flux.B);
+    if (H) hessian(magnetic, pack, &normal, M, &flux, Q, volume, H);
+    return -volume * pack3_dot(Q, flux.B);
 }
 
-/* M and B enter the force linearly. With W = sum_i dQ/dx_i w_i, w' the mean of w and G = dB/dx:
+/* M, B and h enter the force linearly. With W = sum_i dQ/dx_i w_i, w' the mean of w and G = dB/dx:
  *     w.d/dB     = -A h W,    of a field in p: -A h (W.B' + Q.(G' w'))
- *     w.d/dM     = -A h (F0^T (G w') + sum_i (w_i.B) b_i + N sum_i w_i.d(n.B)/dx_i). */
+ *     w.d/dM     = -A h (F0^T (G w') + sum_i (w_i.B) b_i + N sum_i w_i.d(n.B)/dx_i),
+ *     w.d/dh     = -A (W.B + Q.(G w')). */
 static void magnetic_param(const void *self, int pack, int lanes, const Point *at, const Pack *x,
                            const Pack *w, double *dp)
 {
@@ -204,11 +211,14 @@ static void magnetic_param(const void *self, int pack, int lanes, const Point *a
     }
     dM = pack3_axpy(along + pack3_dot(normal.n, pull), face->normal, dM);
     Pack3 Q = carried(face, &normal, M, x);
+    Pack volume = volume_of(magnetic, pack, at->p);
     for (int l = 0; l < lanes; l++) {
-        double *m = dp + magnetization_entry(magnetic, pack, l), volume = face->volume[l];
-        m[0] -= volume * dM.x[l], m[1] -= volume * dM.y[l], m[2] -= volume * dM.z[l];
+        double *m = dp + magnetization_entry(magnetic, pack, l);
+        m[0] -= volume[l] * dM.x[l], m[1] -= volume[l] * dM.y[l], m[2] -= volume[l] * dM.z[l];
     }
-    FluxWork work = {-face->volume, barycentre(x), W, Q, mean};
+    face_layer_add_volume(&magnetic->layer, pack, lanes, face->volume,
+                          -(pack3_dot(W, flux.B) + pack3_dot(Q, pull)), dp);
+    FluxWork work = {-volume, barycentre(x), W, Q, mean};
     flux_add_param(sum, &work, lanes, dp);
 }
 
@@ -221,10 +231,13 @@ static void magnetic_param_forward(const void *self, int pack, const Point *at, 
     Flux flux = flux_at(sum, barycentre(x)), change = flux_change(sum, dp, barycentre(x));
     Normal normal = normal_of(x);
     Pack3 M = magnetization_of(magnetic, pack, at->p), dM = magnetization_of(magnetic, pack, dp);
-    Pack with_M[9];
+    Pack3 Q = carried(face, &normal, M, x);
+    Pack with_M[9], with_h[9], volume = volume_of(magnetic, pack, at->p),
+                               swell = face_layer_volume_change(&magnetic->layer, pack, face->volume, dp);
     forces(face, &normal, dM, &flux, carried(face, &normal, dM, x), with_M);
-    forces(face, &normal, M, &change, carried(face, &normal, M, x), r);
-    for (int i = 0; i < 9; i++) r[i] = -face->volume * (r[i] + with_M[i]);
+    forces(face, &normal, M, &flux, Q, with_h);
+    forces(face, &normal, M, &change, Q, r);
+    for (int i = 0; i < 9; i++) r[i] = -volume * (r[i] + with_M[i]) - swell * with_h[i];
 }
 
 static void magnetic_destroy(void *self)

@@ -16,7 +16,7 @@ static const double LEAST_EXTRAPOLATED = 0.25; /* det C: half of the area */
 
 typedef struct MembranePack {
     Pack b[3][2]; /* 1/m */
-    Pack volume;  /* A h, m^3 */
+    Pack volume;  /* FaceLayer.volume */
 } MembranePack;
 
 typedef struct Strain {
@@ -242,12 +242,17 @@ static Pack young(const Membrane *membrane, int pack, const double *values)
     return face_layer_param(&membrane->layer, pack, values + membrane->def.young, 1, 0);
 }
 
+static Pack volume_of(const Membrane *membrane, int pack, const Point *at)
+{
+    return face_layer_volume(&membrane->layer, pack, membrane->packs[pack].volume, at->p);
+}
+
 static Pack membrane_eval(const void *self, int pack, const Point *at, const Pack *x, Pack *g, Pack *H)
 {
     const Membrane *membrane = self;
     const MembranePack *face = &membrane->packs[pack];
     Strain s = strain(membrane, pack, x);
-    Pack factor = face->volume * young(membrane, pack, at->p);
+    Pack factor = volume_of(membrane, pack, at) * young(membrane, pack, at->p);
     if (g) forces(face, &s, factor, g);
     if (!H) return 0.5 * factor * s.twice;
     Tangent tangent = membrane->law->tangent(membrane->def.poisson, &s);
@@ -257,29 +262,32 @@ static Pack membrane_eval(const void *self, int pack, const Point *at, const Pac
     return 0.5 * factor * s.twice;
 }
 
-/* The force is linear in Young's modulus. */
+/* The force is linear in Young's modulus and in the volume. */
 static void membrane_param(const void *self, int pack, int lanes, const Point *at, const Pack *x,
                            const Pack *w, double *dp)
 {
-    (void)at;
     const Membrane *membrane = self;
     const MembranePack *face = &membrane->packs[pack];
     Strain s = strain(membrane, pack, x);
-    Pack g[9], sum = {0};
-    forces(face, &s, face->volume, g);
+    Pack g[9], sum = {0}, volume = volume_of(membrane, pack, at);
+    forces(face, &s, volume, g);
     for (int i = 0; i < 9; i++) sum += w[i] * g[i];
     for (int l = 0; l < lanes; l++)
         dp[membrane->def.young + face_layer_row(&membrane->layer, pack, l)] += sum[l];
+    face_layer_add_volume(&membrane->layer, pack, lanes, face->volume,
+                          young(membrane, pack, at->p) * sum / volume, dp);
 }
 
 static void membrane_param_forward(const void *self, int pack, const Point *at, const Pack *x,
                                    const double *dp, Pack *r)
 {
-    (void)at;
     const Membrane *membrane = self;
     const MembranePack *face = &membrane->packs[pack];
     Strain s = strain(membrane, pack, x);
-    forces(face, &s, face->volume * young(membrane, pack, dp), r);
+    Pack swell = face_layer_volume_change(&membrane->layer, pack, face->volume, dp);
+    forces(face, &s,
+           volume_of(membrane, pack, at) * young(membrane, pack, dp) + swell * young(membrane, pack, at->p),
+           r);
 }
 
 static void membrane_destroy(void *self)

@@ -29,6 +29,7 @@ shell_design_mma | tests/scene_small.yaml | shell.mesh.n=5 design.optimizer=mma 
 shell_design_lbfgs | tests/scene_small.yaml | shell.mesh.n=5 design.optimizer=lbfgs design.iterations=8
 shell_design_fields | tests/scene_fields.yaml |
 shell_design_fold | scenes/banner_letter.yaml | design.iterations=2
+shell_thickness | scenes/strip_taper.yaml | shell.mesh.n=12 design.iterations=4
 shell_design_height | scenes/kirigami_height.yaml | shell.mesh.n=5 design.iterations=8
 shell_simulate | tests/scene_simulate.yaml | time.steps=40
 shell_simulate_resumed | tests/scene_simulate.yaml | time.steps=20 | time.steps=40

@@ -32,9 +32,9 @@ static inline Cloud cloud_create(void)
 static inline System *cloud_system(const Cloud *cloud)
 {
     System *sys = system_create(CLOUD_DOFS, &(DofClass){.count = CLOUD_DOFS, .size = 1}, 1);
-    system_add(sys, lumped_gravity_term(CLOUD_VERTICES, cloud->mass, cloud->gravity));
+    system_add(sys, lumped_gravity_term(masses_fixed(CLOUD_VERTICES, cloud->mass), cloud->gravity));
     system_add(sys, near_springs_term(CLOUD_VERTICES, 0.3, cloud->stiffness));
-    system_add(sys, kinetic_inertia_term(CLOUD_VERTICES, cloud->mass));
+    system_add(sys, kinetic_inertia_term(masses_fixed(CLOUD_VERTICES, cloud->mass)));
     system_add(sys, kinetic_damping_term(CLOUD_VERTICES, NULL, cloud->damping));
     for (int i = 0; i < 3; i++) system_fix(sys, i);
     system_prepare(sys);

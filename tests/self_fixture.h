@@ -40,11 +40,9 @@ static inline System *self_system(const Shell *shell, const SelfContactDef *def,
     DofClass classes[] = {{.count = positions, .size = mesh_diagonal(mesh)},
                           {.first = positions, .count = mesh->edge_count, .size = 1}};
     System *sys = system_create(shell_dof_count(shell), classes, 2);
-    double *mass = mem_alloc((size_t)mesh->vertex_count, sizeof *mass);
-    shell_vertex_mass(shell, mass);
     for (int t = 0; t < shell_term_row_count; t++) system_add(sys, shell_term_rows[t].create(shell));
     if (dynamic) {
-        system_add(sys, kinetic_inertia_term(mesh->vertex_count, mass));
+        system_add(sys, kinetic_inertia_term(shell_masses(shell)));
         system_add(sys, kinetic_damping_term(mesh->vertex_count, NULL, shell->damping));
     }
     if (contact) system_add(sys, self_contact_term(def));
@@ -54,7 +52,6 @@ static inline System *self_system(const Shell *shell, const SelfContactDef *def,
     for (int e = 0; e < mesh->edge_count; e++)
         if (shell->clamped[e] || shell->bending == BENDING_HINGE) system_fix(sys, shell_angle_dof(shell, e));
     system_prepare(sys);
-    mem_free(mass);
     return sys;
 }
 

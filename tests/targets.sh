@@ -30,6 +30,10 @@ expect 0 "$program" export star.vtkhdf -o star.csv --per group
 is "rows" "$(wc -l < star.csv | tr -d ' ')" 3
 is "hub" "$(line 2 star.csv)" "hub,6,10000,12.5664,0.0000,-90.0000,0.0000"
 is "flap2" "$(line 3 star.csv)" "flap2,1,33761.9,42.4264,45.0000,0.0000,0.0000"
+# Two of the hub's six faces are thrice as thick and thrice as magnetised: (2 3 3 + 4)/(2 3 + 4) = 2.2
+run star.yaml -o uneven --set 'shell.thickness="y > 0 ? 0.003 : 0.001"' --set 'shell.magnetization=["y > 0 ? 3e4 : 1e4", "0", "0"]' > run.txt 2>&1
+expect 0 "$program" export uneven.vtkhdf -o uneven.csv --per group
+is "hub, by volume" "$(line 2 uneven.csv)" "hub,6,22000,27.646,0.0000,0.0000,0.0000"
 expect 0 "$program" export star.vtkhdf -o star.obj
 is "g lines" "$(grep -c '^g ' star.obj)" 7
 sed 's/shape: hexagram, size: 40 mm, n: 1/file: star.obj/' star.yaml > again.yaml

@@ -55,6 +55,7 @@ static void make_cases(Fixture *f, Random *random, bool seen)
         shell_default_params(shell, p);
         for (int i = 0; i < shell->mesh->face_count; i++) p[shell->young + i] = 1e5;
         memcpy(p + shell->magnetization, M, 3 * (size_t)shell->mesh->face_count * sizeof *M);
+        p[shell->gravity + 2] = -0.3;
         p[shell->flux.uniform] = 0.01, p[shell->flux.uniform + 2] = c ? -0.03 : 0.05;
         f->cases[c] = case_create(c ? "down" : "up", p, (size_t)shell->params.size, 0);
         f->cases[c].weight = c ? 0.5 : 1;
@@ -223,6 +224,10 @@ static void test_gradients(void **state)
               false);
         check(bending, "young", (Unknown){.map = UNKNOWN_LOG, .scale = 0.7, .lower = 1e4, .upper = 1e8},
               true);
+        check(bending, "thickness", (Unknown){.map = UNKNOWN_LOG, .scale = 0.7, .lower = 1e-4, .upper = 1e-2},
+              false);
+        check(bending, "density", (Unknown){.map = UNKNOWN_LOG, .scale = 0.7, .lower = 1, .upper = 1e5},
+              false);
         check(bending, "fold", (Unknown){.map = UNKNOWN_LOG, .scale = 0.7, .lower = 0.01, .upper = 100},
               false);
         check(bending, "flux_density", (Unknown){.scale = 0.05, .lower = -1, .upper = 1, .per_case = true},

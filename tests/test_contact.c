@@ -105,7 +105,7 @@ static double plate_speed(const Plate *plate)
     const Shell *shell = plate->body.shell;
     int count = shell->mesh->vertex_count;
     double *mass = mem_alloc((size_t)count, sizeof *mass), sum = 0, total = 0;
-    shell_vertex_mass(shell, mass);
+    shell_vertex_mass(shell, plate->body.p, mass);
     for (int v = 0; v < count; v++) sum += mass[v] * plate->body.state.v[3 * v], total += mass[v];
     mem_free(mass);
     return sum / total;

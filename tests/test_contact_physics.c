@@ -200,7 +200,7 @@ static void check_tumbling(double dt, double gravity, bool implicit)
     const Shell *shell = body.shell;
     System *statics = shell_system(shell);
     double *mass = mem_alloc((size_t)shell->mesh->vertex_count, sizeof *mass);
-    shell_vertex_mass(shell, mass);
+    shell_vertex_mass(shell, body.p, mass);
     MarchDef def = march_default();
     def.implicit = implicit;
     double before = energy_of(&body, statics, mass), first = before, worst = -INFINITY;

@@ -72,6 +72,7 @@ static void make(Skin *s, Random *random)
                        .faces = mem_copy(faces, FACES, sizeof *faces),
                        .rows = mem_copy((int[]){0, 1}, FACES, sizeof(int)),
                        .volume = mem_copy(s->volume, FACES, sizeof(double)),
+                       .thickness = -1,
                        .rest = s->rest};
     system_add(s->sys, magnetic_surface_term(layer, &(MagneticSurfaceDef){.magnetization = s->magnetization,
                                                                           .flux = s->flux,

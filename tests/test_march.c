@@ -59,7 +59,7 @@ static void test_oscillator(void **state)
     double k = 40, mass = 0.1, dt = 0.01, w = sqrt(k / mass), p[1] = {0}, worst = 0;
     System *sys = system_create(3, &(DofClass){.count = 3, .size = 1}, 1);
     system_add(sys, (Term){&spring_ops, &k});
-    system_add(sys, kinetic_inertia_term(1, &mass));
+    system_add(sys, kinetic_inertia_term(masses_fixed(1, &mass)));
     system_prepare(sys);
     MarchDef def = march_default();
     State now = system_state(sys);
@@ -114,7 +114,7 @@ static void test_momenta(void **state)
     Random random = random_seed(3);
     int vertices = s.shell->mesh->vertex_count;
     double *mass = mem_alloc((size_t)vertices, sizeof *mass);
-    shell_vertex_mass(s.shell, mass);
+    shell_vertex_mass(s.shell, s.p, mass);
     for (int v = 0; v < vertices; v++) {
         Vec3 arm = vec3_sub(vec3_load(s.state.x + 3 * v), vec3(0.02, 0.01, 0));
         Vec3 speed = vec3_add(vec3(0.1, 0, 0.05), vec3_cross(vec3(3, 10, 5), arm));

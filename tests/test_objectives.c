@@ -319,6 +319,9 @@ static void test_young_smoothness(void **state)
     check_curved(&f, shell_smoothness(f.shell, block_of(&f, "young"), 0.7), false);
     for (int i = 0; i < f.shell->mesh->face_count; i++) young[i] = 3;
     check_curved(&f, shell_smoothness(f.shell, block_of(&f, "young"), 0.7), true);
+    double *thickness = f.p + f.shell->face_thickness;
+    for (int i = 0; i < f.shell->mesh->face_count; i++) thickness[i] = 2 + sin(3 * i);
+    check_curved(&f, shell_smoothness(f.shell, block_of(&f, "thickness"), 0.7), false);
     free_fixture(&f);
 }
 

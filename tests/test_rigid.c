@@ -29,7 +29,7 @@ static void test_count(void **state)
 static bool is_balanced(const Shell *shell, const double *p, Error *err)
 {
     double *mass = mem_alloc((size_t)shell->mesh->vertex_count, sizeof *mass);
-    shell_vertex_mass(shell, mass);
+    shell_vertex_mass(shell, p, mass);
     bool ok = rigid_check_force(shell->mesh, shell->fixed, mass, p + shell->gravity, p + shell->load, err);
     mem_free(mass);
     return ok;

@@ -48,6 +48,8 @@ static double *make_params(const Shell *shell, Random *random)
     shell_default_params(shell, p);
     for (int f = 0; f < shell->mesh->face_count; f++) {
         p[shell->young + f] = 1e5 * (1 + random_uniform(random));
+        p[shell->face_thickness + f] *= 0.5 + random_uniform(random);
+        p[shell->face_density + f] *= 0.5 + random_uniform(random);
         for (int i = 0; i < 3; i++) p[shell->magnetization + 3 * f + i] = 5e4 * random_signed(random);
     }
     disturb_fields(&shell->fields, &shell->flux, 2e-3, random, p);

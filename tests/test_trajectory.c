@@ -75,9 +75,9 @@ static void add_unknowns(Fixture *f, ControlKind kind)
                            .steps = STEPS,
                            .duration = 1e-3 * STEPS};
     f->design.case_count = 1;
-    const char *const names[] = {"control", "magnetization", "young", "fold"};
-    const double scales[] = {0.01, 1e4, 1, 0.2};
-    for (int k = 0; k < 4; k++) {
+    const char *const names[] = {"control", "magnetization", "young", "fold", "thickness", "density"};
+    const double scales[] = {0.01, 1e4, 1, 0.2, 0.2, 0.2};
+    for (int k = 0; k < 6; k++) {
         const ParamBlock *block = params_find(params, names[k]);
         design_add(&f->design, (Unknown){.block = block,
                                          .group_count = block->count,

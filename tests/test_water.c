@@ -45,9 +45,12 @@ static Sheet sheet_create(bool outer, const FluxField *flow)
 {
     Sheet sheet = {.shell = shell_of_sheet((double[]){3e-3, 2e-3}, (int[]){3, 2}, PATTERN_CROSSED)};
     Mesh *mesh = sheet.shell->mesh;
-    double *mass = mem_alloc((size_t)mesh->vertex_count, sizeof *mass);
+    double *mass = mem_alloc((size_t)mesh->vertex_count, sizeof *mass),
+           *p = mem_alloc((size_t)sheet.shell->params.size, sizeof *p);
     sheet.shell->density = RHO, sheet.shell->thickness = THICKNESS;
-    shell_vertex_mass(sheet.shell, mass);
+    shell_default_params(sheet.shell, p);
+    shell_vertex_mass(sheet.shell, p, mass);
+    mem_free(p);
     sheet.swarm = swarm_begin(mesh->vertex_count);
     sheet.swarm.water.flow = flow;
     for (int f = 0; outer && f < mesh->face_count; f += 2) turn_over(mesh->faces[f]);

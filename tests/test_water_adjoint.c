@@ -10,7 +10,7 @@ static void check_motion(System *sys, const Params *params, double *p, const Sta
                          const char *name)
 {
     Motion m = motion_create(sys, params, p, start, vertices);
-    motion_unknown(&m, "density", UNKNOWN_LINEAR, 1000, false);
+    motion_unknown(&m, "water_density", UNKNOWN_LINEAR, 1000, false);
     motion_unknown(&m, "viscosity", UNKNOWN_LINEAR, 0.01, false);
     motion_unknown(&m, "velocity", UNKNOWN_LINEAR, 0.1, false);
     trajectory_destroy(motion_check(&m, name, 1e-6));
@@ -32,10 +32,8 @@ static void test_shell_adjoint(void **unused)
         DofClass classes[] = {{.count = positions, .size = mesh_diagonal(mesh)},
                               {.first = positions, .count = mesh->edge_count, .size = 1}};
         System *sys = system_create(shell_dof_count(shell), classes, 2);
-        double *mass = mem_alloc((size_t)mesh->vertex_count, sizeof *mass);
-        shell_vertex_mass(shell, mass);
         for (int t = 0; t < shell_term_row_count; t++) system_add(sys, shell_term_rows[t].create(shell));
-        system_add(sys, kinetic_inertia_term(mesh->vertex_count, mass));
+        system_add(sys, kinetic_inertia_term(shell_masses(shell)));
         water.flow = flow;
         system_add(
             sys, water_term(&(WaterDef){
@@ -49,7 +47,6 @@ static void test_shell_adjoint(void **unused)
         body.p[water.velocity + 2] = -0.05;
         check_motion(sys, &shell->params, body.p, &body.state, mesh->vertex_count,
                      outer ? "shell, outer" : "shell, two");
-        mem_free(mass);
         body_clear(&body);
     }
     flux_field_destroy(flow);

@@ -30,7 +30,7 @@ typedef struct Swarm {
 
 static inline Water add_water(Params *params)
 {
-    return (Water){.density = params_add(params, "density", "kg/m3", 1, 1, false),
+    return (Water){.density = params_add(params, "water_density", "kg/m3", 1, 1, false),
                    .viscosity = params_add(params, "viscosity", "Pa s", 1, 1, false),
                    .velocity = params_add(params, "velocity", "m/s", 1, 3, false)};
 }
@@ -51,8 +51,8 @@ static inline void swarm_end(Swarm *s, const double *mass, Term water)
     int dofs = 3 * s->vertices;
     s->sys = system_create(dofs, &(DofClass){.count = dofs, .size = 1}, 1);
     system_add(s->sys, water);
-    system_add(s->sys, lumped_gravity_term(s->vertices, mass, s->gravity));
-    system_add(s->sys, kinetic_inertia_term(s->vertices, mass));
+    system_add(s->sys, lumped_gravity_term(masses_fixed(s->vertices, mass), s->gravity));
+    system_add(s->sys, kinetic_inertia_term(masses_fixed(s->vertices, mass)));
     system_prepare(s->sys);
     s->term = system_term(s->sys, 0);
     s->state = system_state(s->sys);

@@ -10,8 +10,8 @@ typedef struct ShowDef {
     int stills;       /* moments side by side, of rods over each other; 0: 6 of a motion, else none */
     double seconds;   /* how long an animation takes, at 25 moments a second; 0: no animation */
     const char *only; /* one load case; NULL: all */
-    const char
-        *field; /* magnetization, young, energy_.., contact_force, none; NULL: young if it varies, else |M| */
+    const char *
+        field; /* magnetization, young, thickness, energy_.., none; NULL: young or thickness if it varies, else |M| */
     ClipPlane
         clip;     /* cuts a shell or solid open at rest, and the eye's side of it is left out; zeros: whole */
     bool arrows;  /* of the magnetisation, as the faces carry it */

@@ -275,26 +275,38 @@ static bool frame_field(const ShowMesh *mesh, int step, const char *name, const 
     return *values = shown_numbers(mesh, (ShowRows){numbers + body->cell_count, numbers}), true;
 }
 
-/* Parameters that the design has whole, whatever its frames have. A solid's young is two blocks, its own and its film's: the
- * frames have them as one. */
+/* Parameters that the design has whole, whatever its frames have: of each face a number, or a vector's length. A solid's young is
+ * two blocks, its own and its film's: the frames have them as one. */
 static bool design_field(const ShowMesh *mesh, const char *name, const double **values, const char **unit)
 {
+    static const char *const numbers[][2] = {{"young", "Pa"}, {"thickness", "m"}, {"density", "kg/m^3"}};
     ShowRows rows = {NULL, NULL};
-    bool young = !strcmp(name, "young") && !mesh->body.cell_count;
-    if (young) rows = design_rows(mesh, name, 1);
+    *unit = "A/m";
+    for (int k = 0; k < 3 && !mesh->body.cell_count; k++)
+        if (!strcmp(name, numbers[k][0])) rows = design_rows(mesh, name, 1), *unit = numbers[k][1];
     if (!strcmp(name, "magnetization")) rows = sizes(mesh, mesh->magnetization);
     if (!strcmp(name, "volume_magnetization")) rows = sizes(mesh, design_rows(mesh, name, 3));
-    if (!rows.faces && !rows.cells) return false;
-    return *values = shown_numbers(mesh, rows), *unit = young ? "Pa" : "A/m", true;
+    return (rows.faces || rows.cells) && (*values = shown_numbers(mesh, rows), true);
+}
+
+/* What differs from place to place. */
+static const char *telling_field(const ShowMesh *mesh)
+{
+    static const char *const names[] = {"young", "thickness"};
+    for (int k = 0; k < 2; k++) {
+        ShowRows rows = design_rows(mesh, names[k], 1);
+        if (varies(rows.faces, mesh->body.face_count) || varies(rows.cells, mesh->body.cell_count))
+            return names[k];
+    }
+    return mesh->magnetic ? "magnetization" : "none";
 }
 
 bool show_mesh_field(const ShowMesh *mesh, int step, const double **values, const char **name,
                      const char **unit, Error *err)
 {
-    ShowRows young = design_rows(mesh, "young", 1);
-    bool soft = varies(young.faces, mesh->body.face_count) || varies(young.cells, mesh->body.cell_count);
     *name = mesh->data->def->field, *unit = "", *values = NULL;
-    if (!*name) *name = soft ? "young" : mesh->magnetic ? "magnetization" : "none";
+    if (!*name) *name = telling_field(mesh);
     if (!strcmp(*name, "none") || design_field(mesh, *name, values, unit)) return true;
+    *unit = "";
     return frame_field(mesh, step, *name, values, unit, err);
 }

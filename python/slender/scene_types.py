@@ -14,8 +14,8 @@ Table = Union[Rows[Numbers], NDArray[Any]]
 
 
 Shell = TypedDict("Shell", {
-    "mesh": "Mesh", "pose": "Pose", "velocity": "Velocity", "thickness": "Number", "young": "Young",
-    "poisson": "float", "density": "Number", "material": "Literal['st_venant_kirchhoff', 'neo_hookean']",
+    "mesh": "Mesh", "pose": "Pose", "velocity": "Velocity", "thickness": "Thickness", "young": "Young",
+    "poisson": "float", "density": "Density", "material": "Literal['st_venant_kirchhoff', 'neo_hookean']",
     "bending": "Literal['midedge', 'hinge']", "fold": "Fold", "magnetization": "Magnetization",
     "coercivity": "Number", "damping": "Number", "gravity": "Numbers",
 }, total=False)
@@ -38,12 +38,30 @@ VelocityKeys = TypedDict("VelocityKeys", {
     "value": "Numbers", "formula": "Numbers", "file": "str", "where": "Mapping[str, Where]",
 }, total=False)
 
+ThicknessKeys = TypedDict("ThicknessKeys", {
+    "value": "Number", "file": "str", "formula": "Number", "groups": "Mapping[str, ThicknessOfAGroup]",
+    "other": "Number", "where": "Mapping[str, Where]",
+}, total=False)
+
+ThicknessOfAGroupKeys = TypedDict("ThicknessOfAGroupKeys", {
+    "value": "Number",
+}, total=False)
+
 YoungKeys = TypedDict("YoungKeys", {
     "value": "Number", "file": "str", "formula": "Number", "groups": "Mapping[str, YoungOfAGroup]", "other": "Number",
     "where": "Mapping[str, Where]",
 }, total=False)
 
 YoungOfAGroupKeys = TypedDict("YoungOfAGroupKeys", {
+    "value": "Number",
+}, total=False)
+
+DensityKeys = TypedDict("DensityKeys", {
+    "value": "Number", "file": "str", "formula": "Number", "groups": "Mapping[str, DensityOfAGroup]",
+    "other": "Number", "where": "Mapping[str, Where]",
+}, total=False)
+
+DensityOfAGroupKeys = TypedDict("DensityOfAGroupKeys", {
     "value": "Number",
 }, total=False)
 
@@ -435,9 +453,9 @@ Design = TypedDict("Design", {
 
 Unknowns = TypedDict("Unknowns", {
     "magnetization": "UnknownMagnetization", "young": "UnknownYoung", "skin_young": "UnknownYoung",
-    "fold": "UnknownFold", "natural_strain": "UnknownNaturalStrain", "flux_density": "UnknownFluxDensity",
-    "source_strength": "UnknownSourceStrength", "source_move": "UnknownSourceMove",
-    "source_turn": "UnknownSourceTurn",
+    "thickness": "UnknownThickness", "fold": "UnknownFold", "natural_strain": "UnknownNaturalStrain",
+    "flux_density": "UnknownFluxDensity", "source_strength": "UnknownSourceStrength",
+    "source_move": "UnknownSourceMove", "source_turn": "UnknownSourceTurn",
 }, total=False)
 
 UnknownMagnetization = TypedDict("UnknownMagnetization", {
@@ -448,6 +466,11 @@ UnknownMagnetization = TypedDict("UnknownMagnetization", {
 UnknownYoung = TypedDict("UnknownYoung", {
     "bounds": "Numbers", "scale": "Literal['log', 'linear']", "noise": "Number",
     "per": "Literal['face', 'group', 'body']", "groups": "Numbers", "start": "Young",
+}, total=False)
+
+UnknownThickness = TypedDict("UnknownThickness", {
+    "bounds": "Numbers", "scale": "Literal['log', 'linear']", "noise": "Number",
+    "per": "Literal['face', 'group', 'body']", "groups": "Numbers", "start": "Thickness",
 }, total=False)
 
 UnknownFold = TypedDict("UnknownFold", {
@@ -483,9 +506,9 @@ UnknownSourceTurn = TypedDict("UnknownSourceTurn", {
 
 Objectives = TypedDict("Objectives", {
     "target": "float", "height": "float", "magnetization_smoothness": "float", "young_smoothness": "float",
-    "fold_smoothness": "float", "waypoint": "Waypoint", "curve": "Curve", "reach": "Reach",
-    "field_magnitude": "float", "field_smoothness": "float", "dmp": "float", "weight": "float", "of": "Number",
-    "at": "Number", "frame": "int", "frames": "Union[int, Numbers]", "pairs": "int",
+    "thickness_smoothness": "float", "fold_smoothness": "float", "waypoint": "Waypoint", "curve": "Curve",
+    "reach": "Reach", "field_magnitude": "float", "field_smoothness": "float", "dmp": "float", "weight": "float",
+    "of": "Number", "at": "Number", "frame": "int", "frames": "Union[int, Numbers]", "pairs": "int",
 }, total=False)
 
 Waypoint = TypedDict("Waypoint", {
@@ -542,8 +565,12 @@ Mesh = Union["MeshKeys", str]
 Pose = Union["PoseKeys", str, Numbers]
 Where = Union["WhereKeys", Number]
 Velocity = Union["VelocityKeys", Numbers]
+Thickness = Union["ThicknessKeys", Number]
+ThicknessOfAGroup = Union["ThicknessOfAGroupKeys", Number]
 Young = Union["YoungKeys", Number]
 YoungOfAGroup = Union["YoungOfAGroupKeys", Number]
+Density = Union["DensityKeys", Number]
+DensityOfAGroup = Union["DensityOfAGroupKeys", Number]
 Fold = Union["FoldKeys", Number]
 FoldOfAGroup = Union["FoldOfAGroupKeys", float]
 Magnetization = Union["MagnetizationKeys", Numbers]

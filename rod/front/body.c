@@ -353,8 +353,9 @@ static bool select_part(const Model *model, const Build *b, const char *at, cons
 
 static const Likeness likeness[] = {{"rod/s", "a rod of another length, or of other elements"}, {0}};
 
-static void masses(const Model *model, double *mass)
+static void masses(const Model *model, const double *p, double *mass)
 {
+    (void)p;
     rod_node_mass(((const RodModel *)model->self)->rod, mass);
 }
 

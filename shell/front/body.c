@@ -3,17 +3,28 @@
 #include "job/jobs.h"
 #include "shell/front/front.h"
 #include "shell/smoothness.h"
+#include <math.h>
 #include <string.h>
 
 /* ---- Parameters ---- */
 
-static double *base_params(Model *model, const Scene *scene, const Build *b)
+/* The largest of so many. */
+static double largest_of(const double *values, int count)
+{
+    double largest = values[0];
+    for (int i = 1; i < count; i++) largest = fmax(largest, values[i]);
+    return largest;
+}
+
+static double *base_params(Model *model, const Scene *scene, const Build *b, const double *thickness)
 {
     Shell *shell = model->self;
     double *p = params_vector(model->params);
     shell_default_params(shell, p);
     const ShellScene *s = shell_scene(scene);
     bool ok = build_numbers(b, key("shell.young"), 2, &s->young, p + shell->young);
+    ok = build_numbers(b, key("shell.density"), 2, &s->density, p + shell->face_density) && ok;
+    memcpy(p + shell->face_thickness, thickness, (size_t)shell->mesh->face_count * sizeof *p);
     ok = build_numbers(b, key("shell.fold"), 1, &s->fold, p + shell->fold) && ok;
     ok = build_vectors(b, key("shell.magnetization"), 2, &s->magnetization, p + shell->magnetization) && ok;
     memcpy(p + shell->gravity, s->gravity, sizeof s->gravity);
@@ -48,7 +59,7 @@ static System *make_system(const Model *model, bool motion)
     return motion ? shell_dynamic_system(model->self) : shell_system(model->self);
 }
 
-static bool fill(Model *model, const Scene *scene, const Build *b, bool readable)
+static bool fill(Model *model, const Scene *scene, const Build *b, const double *thickness, bool readable)
 {
     Shell *shell = model->self;
     const ShellScene *from = shell_scene(scene);
@@ -57,7 +68,7 @@ static bool fill(Model *model, const Scene *scene, const Build *b, bool readable
     model->x = mem_alloc((size_t)shell_dof_count(shell), sizeof *model->x);
     shell_rest_state(shell, model->x);
     ok = build_pose(b, key("shell.pose"), from->pose, has_same_faces, (double(*)[3])model->x) && ok;
-    double *p = base_params(model, scene, b);
+    double *p = base_params(model, scene, b, thickness);
     ok = p && model_cases(model, b, scene, p) && ok;
     mem_free(p);
     return ok && model_start_cases(model, b, shell->fixed) &&
@@ -67,9 +78,7 @@ static bool fill(Model *model, const Scene *scene, const Build *b, bool readable
 
 static void set_material(Shell *shell, const ShellScene *from)
 {
-    shell->thickness = from->thickness;
     shell->poisson = from->poisson;
-    shell->density = from->density;
     shell->coercivity = from->coercivity;
     shell->material = (MembraneMaterial)from->material;
     shell->bending = (BendingModel)from->bending;
@@ -86,6 +95,9 @@ static bool create(Model *model, const Scene *scene, YamlFile *file)
     FluxFields fields;
     bool ok = model_read_flux(model, &b, scene, &fields);
     Shell *shell = model->self = shell_create(mesh, &fields);
+    double *thickness = mem_alloc((size_t)mesh->face_count, sizeof *thickness);
+    bool thick = build_numbers(&b, key("shell.thickness"), 2, &shell_scene(scene)->thickness, thickness);
+    shell->thickness = thick ? largest_of(thickness, mesh->face_count) : mesh_mean_edge(mesh);
     set_material(shell, shell_scene(scene));
     model->mesh = mesh;
     model->params = &shell->params;
@@ -98,7 +110,9 @@ static bool create(Model *model, const Scene *scene, YamlFile *file)
     WorldBody shown = shell_world_body(shell);
     ok = model_read_world(model, &b, scene, &shown, &shell->world) && ok;
     model_add_blocks(model, scene);
-    return fill(model, scene, &b, ok);
+    ok = fill(model, scene, &b, thickness, ok && thick);
+    mem_free(thickness);
+    return ok;
 }
 
 static void destroy(void *self)
@@ -114,9 +128,9 @@ static int row_dim(const Model *model, const ParamBlock *block)
     return block->offset == ((const Shell *)model->self)->fold ? 1 : 2;
 }
 
-static void masses(const Model *model, double *mass)
+static void masses(const Model *model, const double *p, double *mass)
 {
-    shell_vertex_mass(model->self, mass);
+    shell_vertex_mass(model->self, p, mass);
 }
 
 static Objective smoothness(const Model *model, const ParamBlock *block, double weight)

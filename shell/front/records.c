@@ -25,6 +25,15 @@ void shell_add_static(const Model *model, Arrays *list)
     add_edges(mesh, list);
 }
 
+/* Does it differ from face to face, or from one design to the next? */
+static bool matters(const Model *model, const ParamBlock *block, const double *p)
+{
+    bool is = false;
+    for (int k = 0; k < model->design.unknown_count; k++) is |= model->design.unknowns[k].block == block;
+    for (int f = 1; f < block->count; f++) is |= p[block->offset + f] != p[block->offset];
+    return is;
+}
+
 void shell_add_frame(const Model *model, const Snapshot *shot, bool whole, Arrays *list)
 {
     const Shell *shell = model->self;
@@ -42,6 +51,11 @@ void shell_add_frame(const Model *model, const Snapshot *shot, bool whole, Array
     if (!whole) return;
     arrays_add(list, run_block("cell/magnetization", params_find(&shell->params, "magnetization"), shot->p));
     arrays_add(list, run_block("cell/young", params_find(&shell->params, "young"), shot->p));
+    for (int k = 0; k < 2; k++) {
+        const ParamBlock *block = params_find(&shell->params, k ? "density" : "thickness");
+        char *name = arrays_keep(list, mem_format("cell/%s", block->name));
+        if (matters(model, block, shot->p)) arrays_add(list, run_block(name, block, shot->p));
+    }
 }
 
 void shell_add_state(const Model *model, const Snapshot *shot, const char *prefix, Arrays *list)

@@ -16,20 +16,20 @@ static const double CELLS_PER_LENGTH = 3; /* of the magnetic bending length, at 
 static double bending_length(const Model *model, const Scene *scene)
 {
     const Shell *shell = model->self;
-    double largest = 0, young = INFINITY, M_max = 0;
+    double largest = 0, stiffness = INFINITY, M_max = 0; /* of Y h^2 the smallest */
     for (int c = 0; c < model->case_count; c++)
         for (int s = 0; s < model->cases[c].stage_count; s++) {
             const double *p = model->cases[c].stages[s].p;
             double B = advise_largest_flux(model, scene, &model->cases[c], p);
             for (int f = 0; f < shell->mesh->face_count; f++) {
                 M_max = fmax(M_max, vec3_length(vec3_load(p + shell->magnetization + 3 * f)));
-                young = fmin(young, p[shell->young + f]);
+                stiffness = fmin(stiffness, p[shell->young + f] * pow(p[shell->face_thickness + f], 2));
             }
             if (scene->design && scene->design->unknowns.magnetization)
                 M_max = fmax(M_max, scene->design->unknowns.magnetization->scale);
             largest = fmax(largest, M_max * B);
         }
-    return largest > 0 ? shell->thickness * sqrt(young / (12 * largest)) : INFINITY;
+    return largest > 0 ? sqrt(stiffness / (12 * largest)) : INFINITY;
 }
 
 static MagnetPart magnet_of(const Shell *shell)

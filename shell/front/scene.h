@@ -6,8 +6,8 @@ typedef struct ShellScene {
     MeshScene mesh;
     PoseScene *pose;
     VelocityScene *velocity;
-    double thickness, poisson, density, coercivity, damping, gravity[3];
-    NumberScene young, fold;
+    double poisson, coercivity, damping, gravity[3];
+    NumberScene thickness, young, density, fold;
     VectorScene magnetization;
     int bending, material; /* BendingModel, MembraneMaterial */
 } ShellScene;
