@@ -13,6 +13,32 @@ awk -F, '!/^#/ && ($1 < 0.81e6 || $1 > 0.85e6) {bad = 1} END {exit bad}' young.c
 expect 0 "$program" export strip.vtkhdf -o cloud.csv --dataset cases/case1/cloud
 is "points of the cloud" "$(grep -vc '^#' cloud.csv)" 120
 
+# ---- A rod's end, by its name or number; both conditions hold; a part of it on a cloud ----
+cat > rod.yaml <<'END'
+slender: 1
+job: design
+rod: {length: 100 mm, radius: 1 mm, young: 1 MPa, poisson: 0.5, density: 1100, natural_strain: [0, 0, 0], elements: 10}
+flux_density: [0, 0, 10 mT]
+target: {formula: ["0.09", "7", "0.02"], axes: xz, on: {group: tip}}
+design: {unknowns: {magnetization: {noise: 100}}, objectives: [{target: 1}], iterations: 30}
+END
+expect 0 run rod.yaml -o tip
+expect 0 "$program" export tip.vtkhdf -o tip.csv --dataset rod/x
+tail -n 1 tip.csv | awk -F, '{exit ($1 - 0.09)^2 + ($3 - 0.02)^2 < 1e-7 ? 0 : 1}' || { echo "the end is not there:"; tail -n 1 tip.csv; bad=1; }
+for on in '{group: "10"}' '{vertices: [10]}' '{vertices: [3, 10], group: tip}'; do
+    expect 0 run rod.yaml -o other --force --set "target.on=$on"
+    expect 0 "$program" export other.vtkhdf -o other.csv --dataset rod/x
+    same tip.csv other.csv
+done
+printf '0.05, 0, 0.01\n' > cloud.csv
+for on in all '{vertices: [4, 5, 6]}' '{vertices: [9, 10]}'; do
+    expect 0 run rod.yaml -o cloud --force --set "target={cloud: cloud.csv, on: $on}" --set design.iterations=0 --set design.unknowns.magnetization.noise=0 --set rod.gravity=[0,0,0]
+    expect 0 "$program" export cloud.vtkhdf -o f.csv --dataset history/objective
+    tail -n 1 f.csv >> objectives.txt
+done
+awk '{d = $1 - (NR < 3 ? 1e-4 : 17e-4)} d*d > 1e-14 {bad = 1} END {exit bad || NR != 3}' objectives.txt || # the rod is straight
+    { echo "a cloud of a part:"; cat objectives.txt; bad=1; }
+
 # ---- Groups ----
 cat > star.yaml <<'END'
 slender: 1

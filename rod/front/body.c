@@ -65,7 +65,7 @@ static bool put_target(Model *model, const Build *b, const char *at, const Targe
     const Rod *rod = rm->rod;
     Error err;
     double scale = isnan(scene->scale) ? 1 : scene->scale;
-    if (scene->height_map || scene->strokes || scene->on)
+    if (scene->height_map || scene->strokes)
         return yaml_refuse(b->file, at,
                            "the target of a rod is a file with a polyline, three formulas of s and L, or a "
                            "cloud of points");
