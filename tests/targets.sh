@@ -60,6 +60,46 @@ expect 0 "$program" export star.vtkhdf -o star.obj
 is "g lines" "$(grep -c '^g ' star.obj)" 7
 sed 's/shape: hexagram, size: 40 mm, n: 1/file: star.obj/' star.yaml > again.yaml
 expect 0 "$program" check again.yaml; says "groups of faces: hub (6), flap1 (1)"
+cat > box.yaml <<'END'
+slender: 1
+job: evaluate
+solid:
+  mesh: {shape: box, size: [20 mm, 6 mm, 4 mm], cells: [2, 1, 1]}
+  young: 1 MPa
+  poisson: 0.3
+  skin: {thickness: 1 mm, on: {group: top}, magnetization: [1 kA/m, 0, 0]}
+END
+expect 0 run box.yaml -o box
+expect 0 "$program" export box.vtkhdf -o box.csv --per group # of the groups that have some of the top only its own has the layer
+is "groups of a skin" "$(sed 1d box.csv)" "top,16,1000,1.25664,0.0000,0.0000,0.0000"
+cat > wedge.msh << 'END'
+$MeshFormat
+2.2 0 8
+$EndMeshFormat
+$PhysicalNames
+3
+2 1 "layer"
+2 2 "half"
+3 3 "inside"
+$EndPhysicalNames
+$Nodes
+4
+1 0 0 0
+2 0.01 0 0
+3 0 0.01 0
+4 0 0 0.01
+$EndNodes
+$Elements
+4
+1 2 2 1 1 1 2 3
+2 2 2 2 2 1 2 3
+3 2 2 2 2 1 2 4
+4 4 2 3 3 1 2 3 4
+$EndElements
+END
+expect 0 run box.yaml -o wedge --set solid.mesh=wedge.msh --set solid.skin.on=layer --set solid.order=1 --set solid.averaging=1
+expect 0 "$program" export wedge.vtkhdf -o wedge.csv --per group
+is "groups that share faces" "$(cut -d, -f1-3 wedge.csv | sed 1d | tr '\n' ' ')" "layer,1,1000 half,1,1000 "
 expect 2 "$program" export star.vtkhdf -o x.csv --per face; says "--per must be group"
 expect 2 "$program" export star.vtkhdf -o x.csv --per group --dataset rest; says "exclude each other"
 expect 2 "$program" export star.vtkhdf -o x.obj --per group; says "per group is for a CSV"
