@@ -180,6 +180,28 @@ bool outputs_check(const Scene *scene, const char *path, const char *result, boo
     return ok;
 }
 
+static bool check_new(const char *path, const char *result, Error *err)
+{
+    return !path || access(path, F_OK) != 0 ||
+           error_set(err,
+                     "'%s' is there, and no '%s' that it would belong to: give another name, or replace it "
+                     "with --force",
+                     path, result);
+}
+
+bool outputs_check_new(const Scene *scene, const char *result, bool picture, Error *err)
+{
+    OutputFile files[FILES];
+    char *beside[] = {scene->probes_count ? path_of(result, NULL, PROBE_TABLE) : NULL,
+                      path_of(result, NULL, ".xdmf")};
+    files_of(scene, result, files);
+    bool ok = check_new(beside[0], result, err) && check_new(beside[1], result, err);
+    for (int k = picture ? 0 : 1; ok && k < FILES; k++) ok = check_new(files[k].path, result, err);
+    clear_files(files);
+    for (int k = 0; k < 2; k++) mem_free(beside[k]);
+    return ok;
+}
+
 static bool write_drawing(Run *run, Result *result, Error *err)
 {
     const BodyOps *ops = run->model->body->ops;

@@ -30,6 +30,24 @@ same e.vtkhdf e.copy; same e.run e.journal
 expect 0 run earlier.yaml -o e --force
 young 1e6
 expect 0 run earlier.yaml -o e --force; same e.vtkhdf e.copy
+# Files beside a result go with it; without one they are somebody else's, unless a journal tells that they are the run's.
+probed="earlier.yaml -o own --set probes.tip.group=tip"
+for file in own.png own_probes.csv own.xdmf; do
+    echo mine > $file
+    # shellcheck disable=SC2086
+    expect 4 "$program" run $probed --quiet; says "'$file' is there, and no 'own.vtkhdf' that it would belong to: give another name, or replace it with --force$"
+    is "$file" "$(cat $file)" mine
+    [ ! -e own.run ] || { echo "a refused run leaves its journal"; bad=1; }
+    rm $file
+done
+echo mine > own.png
+# shellcheck disable=SC2086
+{
+    expect 0 run $probed; is "a run without a picture" "$(cat own.png)" mine
+    rm own.vtkhdf own.run own_probes.csv own.xdmf
+    expect 0 "$program" run $probed --quiet --force; expect 0 "$program" run $probed --quiet; grep -q PNG own.png || { echo "own.png is no picture"; bad=1; }
+    rm own.vtkhdf; expect 0 "$program" run $probed --quiet
+}
 mkdir elsewhere; cp earlier.yaml young.csv elsewhere
 expect 0 run elsewhere/earlier.yaml -o e # by what is in the files, not by where they are
 echo "no result" > f.vtkhdf
