@@ -7,6 +7,15 @@ status() { "$program" info "$1" | sed -n '1s/^[^:]*: \([a-z_]*\),.*/\1/p'; }
 is() { [ "$2" = "$3" ] || { echo "$1: '$2', not '$3'"; bad=1; }; }
 datasets() { "$program" info "$1" | sed -n 's/^  \([^ ]*\) .*/\1/p'; }
 
+# ---- A pose without finite forces, in any of the cases, is a failure ----
+cat > pose.yaml <<'END'
+slender: 1
+job: evaluate
+rod: {length: 100 mm, radius: 1 mm, young: 1 MPa, poisson: 0.5, density: 1100, elements: 5, natural_strain: [0, 0, 0], magnetization: [1e4, 0, 0]}
+cases: [{name: first, flux_density: ["1/x", "0", "0"]}, {name: second, flux_density: [0, 0, 1 mT]}]
+END
+expect 1 run pose.yaml -o pose; expect 0 "$program" info pose.vtkhdf; says "not_finite"
+
 # ---- The result of an earlier run ----
 # The same scene may be run again; another one, or one of other files, is refused, and neither result nor journal is lost.
 cat > earlier.yaml <<'END'
