@@ -7,14 +7,14 @@
 typedef struct Mover {
     const Model *model;
     double time;
-    Error *err;
+    Error err; /* where it failed */
     bool failed;
 } Mover;
 
 static bool move(void *self, double part, double *x)
 {
     Mover *mover = self;
-    mover->failed = !model_move(mover->model, mover->time, part, x, mover->err);
+    mover->failed = !model_move(mover->model, mover->time, part, x, &mover->err);
     return !mover->failed;
 }
 
@@ -27,7 +27,9 @@ static RampInfo solve_stage(Run *run, Case *c, int stage)
     def.steps = run->scene->load_steps.mode < 0 ? run->scene->load_steps.count : run->model->load_steps;
     if (run->model->moves) def.move = move, def.self = &mover;
     const double *from = stage > 0 ? c->stages[stage - 1].p : c->loads;
-    return ramp_solve(c->sys, run->model->params, &def, from, c->stages[stage].p, &c->state);
+    RampInfo info = ramp_solve(c->sys, run->model->params, &def, from, c->stages[stage].p, &c->state);
+    if (mover.failed) host_say(run->host, "%s: %s", c->name, mover.err.text);
+    return info;
 }
 
 /* Frames are shown at the times of their stages, if those go on; else they are numbered. */

@@ -191,14 +191,17 @@ static bool check_new(const char *path, const char *result, Error *err)
 
 bool outputs_check_new(const Scene *scene, const char *result, bool picture, Error *err)
 {
-    OutputFile files[FILES];
-    char *beside[] = {scene->probes_count ? path_of(result, NULL, PROBE_TABLE) : NULL,
-                      path_of(result, NULL, ".xdmf")};
-    files_of(scene, result, files);
-    bool ok = check_new(beside[0], result, err) && check_new(beside[1], result, err);
-    for (int k = picture ? 0 : 1; ok && k < FILES; k++) ok = check_new(files[k].path, result, err);
-    clear_files(files);
-    for (int k = 0; k < 2; k++) mem_free(beside[k]);
+    enum { NAMED = 4 };
+    const OutputScene *output = &scene->output;
+    bool drawing = scene_body(scene)->ops->write && !output->svg;
+    char *names[NAMED] = {scene->probes_count ? path_of(result, NULL, PROBE_TABLE) : NULL,
+                          path_of(result, NULL, ".xdmf"), drawing ? path_of(result, NULL, ".svg") : NULL,
+                          picture && !output->png ? outputs_picture(scene, result) : NULL};
+    bool ok = true;
+    for (int k = 0; k < NAMED; k++) {
+        ok = ok && check_new(names[k], result, err);
+        mem_free(names[k]);
+    }
     return ok;
 }
 

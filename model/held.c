@@ -114,7 +114,7 @@ bool model_move_held(const Model *model, double time, double part, double *x, Er
             double variables[BUILD_VARIABLES], place[3];
             build_position(variables, model->mesh->rest[v], time);
             if (!formula_eval(motion->formula, variables, place, err))
-                return error_prefix(err, "fix[%d].move", motion->entry);
+                return model_unknown(model, key("fix[%d].move", motion->entry).text, err);
             for (int i = 0; i < 3; i++)
                 if (motion->axis[i]) x[3 * v + i] += part * (place[i] - x[3 * v + i]);
         }

@@ -207,7 +207,13 @@ fix: [{group: root, clamp: true}]
 flux_density: ["sqrt(0.0025 - t)", "0", "0"]
 time: {step: 1 ms, steps: 4}
 END
-expect 3 run formula.yaml; says 'flux_density: "sqrt(0.0025 - t)" is not a finite number'
+expect 3 run formula.yaml; says 'flux_density: "sqrt(0.0025 - t)" is not a finite number at x = 0, .* (formula.yaml:5:15)$'
+for job in equilibrium simulate; do # what moves, too
+    sed "s/simulate/$job/; /^flux/d; s/^fix.*/fix: [{group: root, clamp: true}, {group: tip, move: [\"x\", \"y\", \"z + sqrt(x - 1)\"]}]/" formula.yaml > moved.yaml
+    [ $job = simulate ] || sed -i '/^time/d' moved.yaml
+    "$program" run moved.yaml --no-picture --force > out.txt 2> err.txt && { echo "a move that is no number is one"; bad=1; }
+    says 'fix\[1\].move: "z + sqrt(x - 1)" is not a finite number at x = 0.02, .* (moved.yaml:4:54)$'
+done
 sed '/flux_density/d' formula.yaml > pole.yaml
 echo 'obstacles: [{name: lid, plane: {point: [0, 0, -1]}, move: ["1/(0.002 - t)", "0", "0"]}]' >> pole.yaml
 expect 3 run pole.yaml --set time.steps=3; says "obstacle 'lid': move: .* is not a finite number at t = 0.002"

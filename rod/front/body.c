@@ -24,7 +24,7 @@ static bool load_rod(const Model *model, double time, double *p, Error *err)
 {
     const RodModel *rm = model->self;
     return !rm->list.timed || rod_loads_put(&rm->list, rm->rod, NULL, time, p, err) ||
-           error_prefix(err, "rod.loads");
+           model_unknown(model, "rod.loads", err);
 }
 
 /* The potentials. */
@@ -38,7 +38,7 @@ static bool knows_loads(const Model *model, double time, const double *place, Er
         RodPlace at = {vec3_load(place + 3 * i), time, L * (i % (each + 1)) / each, L};
         for (int k = 0; k < rod->potentials.count; k++)
             if (!rod_potential_known(rod->potentials.items[k], at, &jet, err))
-                return error_prefix(err, "rod.loads");
+                return model_unknown(model, "rod.loads", err);
     }
     return true;
 }
