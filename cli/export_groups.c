@@ -130,9 +130,10 @@ static void write_row(const Magnets *all, const char *name, const int *members, 
 {
     Vec3 sum = vec3(0, 0, 0);
     double size = 0, spread = 0;
-    int magnets = 0;
+    int there = 0, magnets = 0;
     for (int k = 0; k < count; k++) {
-        if (isnan(all->M[members[k]][0])) continue;
+        if (isnan(all->M[members[k]][0])) continue; /* a face without the layer */
+        there++;
         size += all->size[members[k]];
         sum = vec3_axpy(all->size[members[k]], vec3_load(all->M[members[k]]), sum);
         magnets += is_magnet(all, members[k]);
@@ -148,7 +149,7 @@ static void write_row(const Magnets *all, const char *name, const int *members, 
     char *word = plain_text(name, ""), *row;
     for (char *c = word; *c; c++)
         if (*c == ',' || *c == '"') *c = '_';
-    row = mem_format("%s%s,%d,%.6g,%.6g,%.4f,%.4f,%.4f", *text, word, count, length, 1e3 * FLUX_MU_0 * length,
+    row = mem_format("%s%s,%d,%.6g,%.6g,%.4f,%.4f,%.4f", *text, word, there, length, 1e3 * FLUX_MU_0 * length,
                      degree * atan2(M.y, M.x), degree * atan2(M.z, hypot(M.x, M.y)), degree * spread);
     mem_free(word);
     mem_free(*text);

@@ -1,5 +1,6 @@
 #include "io/formula.h"
 #include "base/memory.h"
+#include "io/yaml_private.h"
 #include <ctype.h>
 #include <muParserDLL.h>
 #include <math.h>
@@ -98,17 +99,61 @@ static bool check_text(const char *text, Error *err)
     return check_assignment(text, err);
 }
 
+static bool is_word(char c)
+{
+    return isalnum((unsigned char)c) || c == '_' || c == '.';
+}
+
+/* Does a number begin there? */
+static bool begins_number(const char *text, const char *c)
+{
+    return (c == text || !is_word(c[-1])) && (isdigit((unsigned char)*c) || *c == '.');
+}
+
+/* "3 mm * x": an expression has no units. */
+static bool refuse_unit(const char *text, Error *err)
+{
+    double value;
+    int length;
+    for (const char *c = text; *c; c++)
+        if (begins_number(text, c) && unit_begins(c, &value, &length))
+            return error_set(err,
+                             "\"%s\": '%.*s' has a unit, and numbers in expressions are plain, in SI: %.6g",
+                             text, length, c, value);
+    return true;
+}
+
+/* "0,5*x": muParser has commas between the parameters of functions, and parts of lists. */
+static bool refuse_comma(const char *text, Error *err)
+{
+    for (const char *c = text; *c; c++) {
+        if (!begins_number(text, c)) continue;
+        int whole = (int)strspn(c, "0123456789"), part = 0;
+        if (whole && c[whole] == ',') part = (int)strspn(c + whole + 1, "0123456789");
+        if (part)
+            return error_set(err, "\"%s\": numbers have a decimal point: %.*s.%.*s, not %.*s", text, whole, c,
+                             part, c + whole + 1, whole + 1 + part, c);
+    }
+    return true;
+}
+
+enum { UNKNOWN_TOKEN = 1, UNEXPECTED_COMMA = 3, UNKNOWN_NAME = 4, TOO_MANY = 14 }; /* of muParser's errors */
+
 static bool refuse(const Formula *formula, muParserHandle_t parser, const char *text, int slots, Error *err)
 {
     enum { READABLE = 1000 }; /* muParser's C interface has 2 KiB for what it says */
     char known[512];
+    int code = mupGetErrorCode(parser);
     list_names(formula, slots, known, sizeof known);
     if (strlen(text) > READABLE)
         return error_set(err, "an expression of %zu characters is not understood; known are %s, pi, e",
                          strlen(text), known);
-    const char *token = mupGetErrorToken(parser);
-    if (mupGetErrorCode(parser) == 1 || mupGetErrorCode(parser) == 4)
-        return error_set(err, "unknown name '%s' in \"%s\"; known are %s, pi, e", token, text, known);
+    bool comma = code == UNEXPECTED_COMMA || code == TOO_MANY || !*mupGetErrorToken(parser);
+    if (comma && !refuse_comma(text, err)) return false;
+    if (!refuse_unit(text, err)) return false;
+    if (code == UNKNOWN_TOKEN || code == UNKNOWN_NAME)
+        return error_set(err, "unknown name '%s' in \"%s\"; known are %s, pi, e", mupGetErrorToken(parser),
+                         text, known);
     return error_set(err, "\"%s\": %s", text, mupGetErrorMsg(parser));
 }
 
@@ -188,9 +233,8 @@ static bool check_item(Formula *formula, const Evaluator *own, int i, Error *err
     int results = 1;
     mupEvalMulti(parser, &results);
     if (results != 1)
-        return error_set(
-            err, "\"%s\": a list of %d; a formula is one expression, and numbers have a decimal point",
-            item->text, results);
+        return refuse_comma(item->text, err) &&
+               error_set(err, "\"%s\": a list of %d; a formula is one expression", item->text, results);
     int used = mupGetExprVarNum(parser);
     for (int k = 0; k < used; k++) {
         const char *name;

@@ -180,6 +180,9 @@ const char *yaml_find_file(const YamlTable *table, const void *scene,
 bool yaml_refuse(YamlFile *file, const char *key, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
+/* Does the file itself, or --set, say it? */
+bool yaml_says(const YamlFile *file, const char *key);
+
 /* Where a key is written: "scene.yaml:7:14", or "--set shell.young=2" if it was set so. */
 char *yaml_where(const YamlFile *file, const char *key);
 

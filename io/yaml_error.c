@@ -116,6 +116,12 @@ bool yaml_refuse(YamlFile *file, const char *key, const char *format, ...)
     return false;
 }
 
+bool yaml_says(const YamlFile *file, const char *key)
+{
+    const char *rest;
+    return tree_follow(file, key, &rest) != NULL && !*rest;
+}
+
 char *yaml_where(const YamlFile *file, const char *key)
 {
     const char *rest;

@@ -79,6 +79,9 @@ bool unit_is_number(const char *text);
  * YamlField. */
 bool unit_parse(const char *text, const char *unit, double *value, char *wrong, size_t size);
 
+/* Does the text begin with a number and the symbol of a unit, `3 mm * x`? What that is in SI, and how long. */
+bool unit_begins(const char *text, double *value, int *length);
+
 /* The units that take prefixes, or those that take none; the prefixes; each between two marks. */
 void unit_list(bool prefixed, const char *mark, Text *text);
 void unit_list_prefixes(const char *mark, Text *text);

@@ -232,6 +232,22 @@ bool unit_is_number(const char *text)
     return *rest == 0 || is_symbol(*rest);
 }
 
+bool unit_begins(const char *text, double *value, int *length)
+{
+    const char *rest;
+    if (!decimal(text, value, &rest)) return false;
+    while (*rest == ' ') rest++;
+    size_t symbol = 0;
+    while (is_symbol(rest[symbol])) symbol++;
+    Unit unit;
+    if (!symbol || isdigit((unsigned char)rest[symbol]) || rest[symbol] == '_' ||
+        !symbol_unit(rest, symbol, &unit))
+        return false;
+    *value *= unit.factor;
+    *length = (int)(rest + symbol - text);
+    return true;
+}
+
 bool unit_parse(const char *text, const char *unit, double *value, char *wrong, size_t size)
 {
     const char *in = unit ? " in " : "", *name = unit ? unit : "", *rest;

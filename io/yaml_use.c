@@ -72,7 +72,7 @@ static const char *value_at(const YamlTable *table, const Node *node, const char
         fallback = row ? row->fallback : NULL;
         table = row ? row->table : NULL;
     }
-    *given = node != NULL;
+    *given = node != NULL && !(node->kind == NODE_LIST && node->count == 0);
     return node && node->kind == NODE_SCALAR ? node->text : fallback;
 }
 

@@ -10,7 +10,7 @@
 typedef struct Mover {
     const Model *model;
     double since, time;
-    Error *err;
+    Error err; /* where it failed */
     bool failed;
 } Mover;
 
@@ -18,7 +18,7 @@ static bool move(void *self, double from, double to, double *x)
 {
     Mover *mover = self;
     HeldWay way = {mover->since, mover->time, from, to};
-    mover->failed = !model_move(mover->model, way, x, mover->err);
+    mover->failed = !model_move(mover->model, way, x, &mover->err);
     return !mover->failed;
 }
 
@@ -71,8 +71,10 @@ static RampInfo solve_piece(Run *run, Case *c, Piece piece)
     def.begin = piece.begin, def.end = piece.end;
     if (!run->scene->load_steps.frames) def.steps = sequence_load_steps(run->model, run->scene);
     if (run->model->moves) def.move = move, def.self = &mover;
-    return ramp_solve(c->sys, run->model->params, &def, loads_before(c, piece.stage),
-                      c->stages[piece.stage].p, &c->state);
+    RampInfo info = ramp_solve(c->sys, run->model->params, &def, loads_before(c, piece.stage),
+                               c->stages[piece.stage].p, &c->state);
+    if (mover.failed) host_say(run->host, "%s: %s", c->name, mover.err.text);
+    return info;
 }
 
 /* Frames are shown at the times of their stages, if those go on; else they are numbered. */

@@ -180,6 +180,31 @@ bool outputs_check(const Scene *scene, const char *path, const char *result, boo
     return ok;
 }
 
+static bool check_new(const char *path, const char *result, Error *err)
+{
+    return !path || access(path, F_OK) != 0 ||
+           error_set(err,
+                     "'%s' is there, and no '%s' that it would belong to: give another name, or replace it "
+                     "with --force",
+                     path, result);
+}
+
+bool outputs_check_new(const Scene *scene, const char *result, bool picture, Error *err)
+{
+    enum { NAMED = 4 };
+    const OutputScene *output = &scene->output;
+    bool drawing = scene_body(scene)->ops->write && !output->svg;
+    char *names[NAMED] = {scene->probes_count ? path_of(result, NULL, PROBE_TABLE) : NULL,
+                          path_of(result, NULL, ".xdmf"), drawing ? path_of(result, NULL, ".svg") : NULL,
+                          picture && !output->png ? outputs_picture(scene, result) : NULL};
+    bool ok = true;
+    for (int k = 0; k < NAMED; k++) {
+        ok = ok && check_new(names[k], result, err);
+        mem_free(names[k]);
+    }
+    return ok;
+}
+
 static bool write_drawing(Run *run, Result *result, Error *err)
 {
     const BodyOps *ops = run->model->body->ops;

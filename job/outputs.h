@@ -7,6 +7,10 @@
  * of them the scene of that path (NULL: of none) or a file that it names? Refused before the work, not after it. */
 bool outputs_check(const Scene *scene, const char *path, const char *result, bool picture, Error *err);
 
+/* Of a result that is not there yet: false and a sentence where one of them is, by the result's name: it is somebody else's.
+ * Those that the scene names are its own. */
+bool outputs_check_new(const Scene *scene, const char *result, bool picture, Error *err);
+
 /* False and a sentence where what is to be written is the input (NULL: there is none), or one of the files that the scene names
  * (NULL: none). */
 bool outputs_check_source(const Scene *scene, const char *input, const char *output, Error *err);

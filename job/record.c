@@ -143,10 +143,11 @@ static bool is_same_run(const Run *run, Result *result, const char *scene, const
     return ok;
 }
 
-/* A finished result is replaced by one of the same scene, of the same files, only. */
-static bool check_earlier(const Run *run, Error *err)
+/* A finished result is replaced by one of the same scene, of the same files, only; and files beside it together with it. */
+static bool check_earlier(const Run *run, const char *journal, bool picture, Error *err)
 {
-    if (access(run->result, F_OK) != 0) return true;
+    if (access(run->result, F_OK) != 0)
+        return access(journal, F_OK) == 0 || outputs_check_new(run->scene, run->result, picture, err);
     Error why;
     Result *result = result_open(run->result, &why);
     if (!result) return error_set(err, "%.900s; with --force it is replaced", why.text);
@@ -273,7 +274,7 @@ static RunStatus open_and_run(const RecordDef *def, Run *run, Error *err)
     RunStatus status = RUN_CANNOT_WRITE;
     if (check_output(def->name, run->result, err) &&
         outputs_check(def->scene, def->path, run->result, def->picture, err) &&
-        (def->journal != JOURNAL_NEW || check_earlier(run, err)))
+        (def->journal != JOURNAL_NEW || check_earlier(run, journal, def->picture, err)))
         run->journal = journal_open(def->in_memory ? NULL : journal, def->journal, err);
     if (run->journal) {
         warn_sidecar(run);

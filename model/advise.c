@@ -170,10 +170,67 @@ static void advise_target(Model *model, const Case *c)
     mem_free(place);
 }
 
+/* ---- Values ---- */
+
+/* Of any slender body; what is outside was most likely meant in another unit. */
+typedef struct Usual {
+    const char *unit;
+    double least, most;
+    const char *hint;
+} Usual;
+
+static const Usual usuals[] = {
+    {"Pa", 100, 1e13, "a number without a unit is in Pa, `m` is milli and `M` mega: `1 MPa` is 1e6"},
+    {"A/m", 0, 3e6, "a number without a unit is in A/m, and `remanence` takes mT"},
+    {"m/s^2", 0, 1000, "a number without a unit is in m/s^2: the Earth's gravity is 9.81"},
+    {"kg/m^3", 1, 3e4, "a number without a unit is in kg/m^3: water has 1000, and `1.1 g/cm^3` is 1100"},
+};
+
+/* NULL: any value is one, of that unit too. */
+static const Usual *unusual(const char *unit, double value)
+{
+    for (size_t k = 0; k < sizeof usuals / sizeof *usuals; k++)
+        if (!strcmp(usuals[k].unit, unit))
+            return fabs(value) < usuals[k].least || fabs(value) > usuals[k].most ? &usuals[k] : NULL;
+    return NULL;
+}
+
+void advise_value(Model *model, const char *name, const char *unit, double value)
+{
+    const Usual *usual = unusual(unit, value);
+    if (usual)
+        mesh_warn(&model->report, "%s is %.3g %s, and usual is %g to %g: %s", name, value, unit, usual->least,
+                  usual->most, usual->hint);
+}
+
+/* The first unusual one of a block in any stage of any case; NAN: there is none. */
+static double unusual_in(const Model *model, const ParamBlock *block)
+{
+    for (int c = 0; c < model->case_count; c++)
+        for (int s = 0; s < model->cases[c].stage_count; s++)
+            for (int i = 0; i < block->count * block->width; i++) {
+                double value = model->cases[c].stages[s].p[block->offset + i];
+                if (unusual(block->unit, value)) return value;
+            }
+    return NAN;
+}
+
+static void advise_values(Model *model, const Scene *scene)
+{
+    for (int b = 0; b < model->params->block_count; b++) {
+        const ParamBlock *block = &model->params->blocks[b];
+        advise_value(model, block->name, block->unit, unusual_in(model, block));
+    }
+    const NumberUnknown *young = scene->design ? scene->design->unknowns.young : NULL;
+    for (int k = 0; young && k < 2; k++)
+        advise_value(model, "a bound of the unknown young", "Pa", young->bounds[k]);
+}
+
 /* ---- The whole ---- */
 
 void model_advise(Model *model, const Scene *scene)
 {
+    if (model->params) advise_values(model, scene);
     for (int k = 0; k < model->case_count; k++) {
         advise_field(model, scene, &model->cases[k]);
         advise_target(model, &model->cases[k]);

@@ -7,5 +7,8 @@
  * an unknown one with its bounds. T; 0 where it feels none. Of many points and moments some are asked. */
 double advise_largest_flux(const Model *model, const Scene *scene, const Case *c, const double *p);
 
-/* Fields that no magnets give, and targets of another size than the body. */
+/* A value, of a quantity with that unit, that no such body has: most likely it was meant in another unit. NAN is none. */
+void advise_value(Model *model, const char *name, const char *unit, double value);
+
+/* Values outside of what there is, fields that no magnets give, and targets of another size than the body. */
 void model_advise(Model *model, const Scene *scene);

@@ -106,13 +106,13 @@ bool model_knows_fields(const Model *model, const double *p, double time, const 
     for (int k = 0; model->fields && k < model->fields->count; k++) {
         FluxPlace where = {time, p + blocks->move + 3 * k, p + blocks->turn + 3 * k};
         if (p[blocks->scale + k] != 0 && !knows_field(model, model->fields->items[k], where, place, err))
-            return error_prefix(err, "flux_density");
+            return model_unknown(model, "flux_density", err);
     }
     const BodyOps *ops = model->body->ops;
     if (ops->knows && !ops->knows(model, time, place, err)) return false;
     const FluxField *flow = model->world ? model->world->flow : NULL;
     return !flow || knows_field(model, flow, (FluxPlace){.time = time}, place, err) ||
-           error_prefix(err, "water.velocity");
+           model_unknown(model, "water.velocity", err);
 }
 
 /* ---- Trajectories ---- */

@@ -125,21 +125,6 @@ static void target_from_strokes(const Build *b, const TargetScene *scene, double
     }
 }
 
-/* Drops the targets of vertices that are not among those chosen. */
-static bool keep_chosen(const Build *b, Key at, const TargetScene *scene, double (*target)[3])
-{
-    if (!scene->on) return true;
-    Indices chosen = {0};
-    bool ok = build_selection(b, at, scene->on, &chosen);
-    for (int v = 0, k = 0; ok && v < b->mesh->vertex_count; v++)
-        if (k < chosen.count && chosen.items[k] == v)
-            k++;
-        else
-            target[v][0] = target[v][1] = target[v][2] = NAN;
-    mem_free(chosen.items);
-    return ok;
-}
-
 bool build_target(const Build *b, Key at, const TargetScene *scene, double (*target)[3])
 {
     memcpy(target, b->mesh->rest, (size_t)b->mesh->vertex_count * sizeof *target);
@@ -157,5 +142,5 @@ bool build_target(const Build *b, Key at, const TargetScene *scene, double (*tar
     else
         ok = build_vectors_at(b, key("%s.formula", at.text), scene->formula, scene->where, scene->where_count,
                               b->mesh->rest[0], b->mesh->vertex_count, target[0]);
-    return ok && keep_chosen(b, key("%s.on", at.text), scene, target);
+    return ok;
 }

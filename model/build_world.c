@@ -37,11 +37,20 @@ static bool check_closed(const Build *b)
     return true;
 }
 
+/* What is switched off has no use for more. */
+static bool check_self(const SelfContactScene *self, YamlFile *file)
+{
+    static const char ENABLED[] = "contact.self.enabled";
+    return self->enabled || (isnan(self->distance) && isnan(self->stiffness)) || !yaml_says(file, ENABLED) ||
+           yaml_refuse(file, ENABLED, "false leaves `distance` and `stiffness` without use: leave them out");
+}
+
 bool model_read_world(Model *model, const Build *b, const Scene *scene, const WorldBody *body, World **world)
 {
     const ContactScene *contact = &scene->contact;
     bool self = self_contact_is_asked(&contact->self), ok = true;
     *world = NULL;
+    if (!check_self(&contact->self, b->file)) return false;
     if (!scene->obstacles_count && !self && !scene->water) return true;
     Obstacle *obstacles;
     if (!build_obstacles(b, scene->obstacles, scene->obstacles_count, &obstacles)) {

@@ -116,7 +116,7 @@ bool model_move_held(const Model *model, HeldWay way, double *x, Error *err)
             double variables[BUILD_VARIABLES], place[3];
             build_position(variables, model->mesh->rest[v], way.time);
             if (!formula_eval(motion->formula, variables, place, err))
-                return error_prefix(err, "fix[%d].move", motion->entry);
+                return model_unknown(model, key("fix[%d].move", motion->entry).text, err);
             for (int i = 0; i < 3; i++)
                 if (motion->axis[i]) x[3 * v + i] += part * (place[i] - x[3 * v + i]);
         }

@@ -10,6 +10,34 @@
 #include <math.h>
 #include <string.h>
 
+/* ---- Formulas that are not finite in a run ---- */
+
+static void keep_written(Model *model, const YamlFile *file, Key key)
+{
+    size_t count = (size_t)model->written_count;
+    if (!yaml_says(file, key.text)) return;
+    model->written = mem_resize(model->written, count, count + 1, sizeof *model->written);
+    model->written[model->written_count++] = (Written){mem_text(key.text), yaml_where(file, key.text)};
+}
+
+static void keep_all_written(Model *model, const Scene *scene, const YamlFile *file)
+{
+    static const char *const keys[] = {"flux_density", "water.velocity", "rod.loads"};
+    for (int k = 0; k < 3; k++) keep_written(model, file, key("%s", keys[k]));
+    for (int k = 0; k < scene->fix_count; k++) keep_written(model, file, key("fix[%d].move", k));
+}
+
+bool model_unknown(const Model *model, const char *key, Error *err)
+{
+    const char *where = NULL;
+    for (int k = 0; !where && k < model->written_count; k++)
+        if (!strcmp(model->written[k].key, key)) where = model->written[k].where;
+    error_prefix(err, "%s", key);
+    if (!where) return false;
+    Error said = *err;
+    return error_set(err, "%s (%s)", said.text, where);
+}
+
 bool model_move(const Model *model, HeldWay way, double *x, Error *err)
 {
     return !model->moves || model->body->ops->move(model, way, x, err);
@@ -21,7 +49,7 @@ bool model_load(const Model *model, double time, bool flux_given, double *p, Err
     const BodyOps *ops = model->body->ops;
     if (ops->load && !ops->load(model, time, p, err)) return false;
     if (!flux_given && timed_is_given(timed) && !timed_eval(timed, time, p + model->flux_blocks.uniform, err))
-        return error_prefix(err, "flux_density");
+        return model_unknown(model, "flux_density", err);
     return !model->world || world_stands(model->world, time, err);
 }
 
@@ -219,6 +247,7 @@ static Model *create(const Scene *scene, YamlFile *file, bool general)
               (!job->design || model_design(model, scene, file)) && model_probes(model, scene, file);
     start_close(model->start);
     model->start = NULL;
+    if (ok) keep_all_written(model, scene, file);
     if (ok) model_put_world(model, scene);
     ok = ok && model_check_world(model, file);
     if (ok) model_advise(model, scene);
@@ -248,6 +277,10 @@ void model_destroy(Model *model)
         mem_free(model->motions[m].vertices.items);
     }
     for (int k = 0; k < model->support_count; k++) mem_free(model->supports[k].points.items);
+    for (int k = 0; k < model->written_count; k++) {
+        mem_free(model->written[k].key);
+        mem_free(model->written[k].where);
+    }
     model_clear_probes(model);
     design_clear(&model->design);
     timed_clear(&model->flux_of_time);
@@ -257,6 +290,7 @@ void model_destroy(Model *model)
     mem_free(model->flux);
     mem_free(model->told_within);
     mem_free(model->motions);
+    mem_free(model->written);
     mem_free(model->supports);
     mem_free(model->x);
     mem_free(model);

@@ -9,6 +9,11 @@
 #include "surface/select.h"
 #include "world/world.h"
 
+/* Where the scene writes a key whose formulas are asked in a run. */
+typedef struct Written {
+    char *key, *where;
+} Written;
+
 /* Coordinates that follow formulas of rest position and time. */
 typedef struct Motion {
     Formula *formula;
@@ -53,9 +58,10 @@ struct Model {
     double step_cap;    /* of Newton                                           */
     bool moves;         /* held coordinates do: BodyOps.move                   */
     MeshReport report;  /* warnings about the mesh */
-    int case_count, motion_count, support_count, probe_count;
+    int case_count, motion_count, support_count, probe_count, written_count;
     Case *cases;
     Motion *motions;
+    Written *written;
     Support *supports; /* what holds it, as the scene says it */
     ModelProbe *probes;
     double *x;         /* [dofs] rest or pose */
@@ -74,6 +80,9 @@ Model *model_create(const Scene *scene, YamlFile *file);
 /* The same for any use, whatever the scene's job: its systems and states have all points as dofs, first of all. */
 Model *model_create_general(const Scene *scene, YamlFile *file);
 void model_destroy(Model *model);
+
+/* The sentence with the key, and the place where the scene writes it; false. */
+bool model_unknown(const Model *model, const char *key, Error *err);
 
 /* Puts the moved coordinates where they are then. */
 bool model_move(const Model *model, HeldWay way, double *x, Error *err);

@@ -45,7 +45,8 @@ const YamlTable target_table = {
         {YAML_NUMBER(TargetScene, weight), .range = "[0, inf)", .fallback = "1",
          .doc = "a factor beside that of the objective, between several targets"},
         {YAML_OPTIONAL(TargetScene, on, &selection_table), .also = ON_NAMES,
-         .doc = "for these vertices only"},
+         .doc = "for these vertices only; of a rod by `group` (`tip`, or a node's number) or `vertices`, its "
+                "nodes"},
         {0}}};
 
 const YamlTable case_table = {

@@ -254,6 +254,19 @@ static bool take_case(const StatePlace *place, const Model *model, Case *c, Erro
            take_velocities(place, model, c, err) && take_anchor(place, model, c, err);
 }
 
+/* What the run ended as, where its state cannot be trusted: nothing in the state itself tells. */
+static void warn_end(Model *model, const char *path)
+{
+    static const char *const doubtful[] = {"pierced", "crushed", "tangled", "not_finite"};
+    Array status;
+    if (!result_read(model->start->result, "slender/status", &status, NULL)) return;
+    for (int k = 0; k < 4; k++)
+        if (!strcmp(status.data, doubtful[k]))
+            mesh_warn(&model->report, "%s: %s ended as %s, and what starts from it has that in it", KEY, path,
+                      doubtful[k]);
+    array_clear(&status);
+}
+
 bool start_take(Model *model, const Scene *scene, YamlFile *file)
 {
     const StartScene *from = scene->start;
@@ -267,6 +280,7 @@ bool start_take(Model *model, const Scene *scene, YamlFile *file)
         StatePlace place = place_of(model->start, from, scene->cases_count ? c->name : NULL);
         ok = take_case(&place, model, c, &err) || yaml_refuse(file, KEY, "%s: %s", from->result, err.text);
     }
+    if (ok) warn_end(model, from->result);
     return ok;
 }
 

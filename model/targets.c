@@ -6,31 +6,59 @@
 #include <math.h>
 #include <string.h>
 
+/* ---- Which points ---- */
+
+/* Of a body without a mesh: numbers of points, and parts that have names. */
+static bool mark_parts(const Model *model, const Build *b, Key at, const SelectionScene *on, bool *marked)
+{
+    Indices part = {0};
+    int count = model->point_count;
+    if (on->boundary || on->ball || on->box_count || (!on->group && !on->vertices_count))
+        return yaml_refuse(b->file, at.text, "the points of %s are chosen by `group` or `vertices`",
+                           model->body->noun);
+    for (int k = 0; k < on->vertices_count; k++)
+        if (on->vertices[k] < 0 || on->vertices[k] >= count)
+            return yaml_refuse(b->file, at.text, "there is no point %d; there are 0 to %d", on->vertices[k],
+                               count - 1);
+        else
+            marked[on->vertices[k]] = true;
+    if (!on->group) return true;
+    if (!model->body->ops->select(model, b, at.text, on->group, &part)) return false;
+    for (int v = 0, k = 0; v < count; v++) { /* both conditions hold */
+        bool within = k < part.count && part.items[k] == v;
+        k += within;
+        marked[v] = within && (marked[v] || !on->vertices_count);
+    }
+    mem_free(part.items);
+    return true;
+}
+
+/* marked[point_count], all of them where nothing is said. */
+static bool mark_points(const Model *model, const Build *b, Key at, const SelectionScene *on, bool *marked)
+{
+    Indices chosen = {0};
+    if (on && !model->mesh) return mark_parts(model, b, at, on, marked);
+    if (on && !build_selection(b, at, on, &chosen)) return false;
+    for (int v = 0; v < model->point_count; v++) marked[v] = !on;
+    for (int k = 0; k < chosen.count; k++) marked[chosen.items[k]] = true;
+    mem_free(chosen.items);
+    return true;
+}
+
 /* ---- Clouds ---- */
 
 /* The edges of the mesh both of whose ends are chosen; of a body without one what joins its points in turn. */
-static bool take_segments(const Model *model, const Build *b, Key at, const TargetScene *scene,
-                          PointCloud *cloud)
+static bool take_segments(const Model *model, const Build *b, Key at, const bool *chosen, PointCloud *cloud)
 {
     const Mesh *mesh = model->mesh;
     int most = mesh ? mesh->edge_count : model->point_count - 1;
     cloud->segments = mem_alloc((size_t)most, sizeof *cloud->segments);
-    if (!mesh) {
-        if (scene->on) return yaml_refuse(b->file, at.text, "a cloud is for all of %s", model->body->noun);
-        for (int s = 0; s < most; s++) cloud->segments[s][0] = s, cloud->segments[s][1] = s + 1;
-        cloud->segment_count = most;
-        return true;
+    for (int e = 0; e < most; e++) {
+        int ends[2] = {e, e + 1};
+        if (mesh) memcpy(ends, mesh->edges[e], sizeof ends);
+        if (chosen[ends[0]] && chosen[ends[1]])
+            memcpy(cloud->segments[cloud->segment_count++], ends, sizeof ends);
     }
-    Indices chosen = {0};
-    if (!build_selection(b, at, scene->on, &chosen)) return false;
-    bool *on = mem_alloc((size_t)mesh->vertex_count, sizeof *on);
-    for (int k = 0; k < chosen.count; k++) on[chosen.items[k]] = true;
-    for (int e = 0; e < mesh->edge_count; e++) {
-        const int *v = mesh->edges[e];
-        if (on[v[0]] && on[v[1]]) memcpy(cloud->segments[cloud->segment_count++], v, sizeof *cloud->segments);
-    }
-    mem_free(on);
-    mem_free(chosen.items);
     return cloud->segment_count > 0 ||
            yaml_refuse(b->file, at.text, "no edge has both ends among these vertices");
 }
@@ -76,22 +104,31 @@ static bool take_points(const Build *b, Key at, const TargetScene *scene, const 
 
 /* ---- Targets ---- */
 
+/* Of the chosen points, in the coordinates that count. */
+static bool take_places(Model *model, const Build *b, Key at, const TargetScene *scene, const bool *axes,
+                        const bool *chosen, Target *target)
+{
+    target->place = mem_alloc((size_t)model->point_count, sizeof *target->place);
+    if (!model->body->ops->put_target(model, b, at.text, scene, target->place)) return false;
+    for (int i = 0; i < 3 * model->point_count; i++)
+        if (!axes[i % 3] || !chosen[i / 3]) target->place[i / 3][i % 3] = NAN;
+    return true;
+}
+
 static bool add_target(Model *model, const Build *b, Key at, const TargetScene *scene, Case *c)
 {
     size_t count = (size_t)c->target_count++;
     c->targets = mem_resize(c->targets, count, count + 1, sizeof *c->targets);
     Target *target = &c->targets[count];
     *target = (Target){.weight = scene->weight, .cloud.blend = scene->blend};
-    bool axes[3];
-    if (!build_axes(b, at, scene->axes, axes)) return false;
-    if (scene->cloud)
-        return take_points(b, at, scene, axes, &target->cloud) &&
-               take_segments(model, b, key("%s.on", at.text), scene, &target->cloud);
-    target->place = mem_alloc((size_t)model->point_count, sizeof *target->place);
-    if (!model->body->ops->put_target(model, b, at.text, scene, target->place)) return false;
-    for (int i = 0; i < 3 * model->point_count; i++)
-        if (!axes[i % 3]) target->place[i / 3][i % 3] = NAN;
-    return true;
+    Key on = key("%s.on", at.text);
+    bool axes[3], *chosen = mem_alloc((size_t)model->point_count, sizeof *chosen);
+    bool ok = build_axes(b, at, scene->axes, axes) && mark_points(model, b, on, scene->on, chosen) &&
+              (scene->cloud ? take_points(b, at, scene, axes, &target->cloud) &&
+                                  take_segments(model, b, on, chosen, &target->cloud)
+                            : take_places(model, b, at, scene, axes, chosen, target));
+    mem_free(chosen);
+    return ok;
 }
 
 bool model_targets(Model *model, const Build *b, Key at, const TargetScene *list, int count, Case *c)

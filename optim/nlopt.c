@@ -8,10 +8,13 @@
 #include <stdio.h>
 #include <string.h>
 
+static const double LEAST_GRADIENT =
+    1e-8; /* of F as NLopt sees it: its L-BFGS ends there, whatever F's unit is */
+
 typedef struct Run {
     Best *best;
     nlopt_opt opt;
-    double *gradient;
+    double *gradient, scale; /* NLopt sees scale*F */
     bool begun;
 } Run;
 
@@ -19,7 +22,7 @@ static double objective(unsigned n, const double *u, double *gradient, void *dat
 {
     Run *run = data;
     Best *best = run->best;
-    if (best_is_done(best)) return best->objective; /* asked once more after the stop */
+    if (best_is_done(best)) return run->scale * best->objective; /* asked once more after the stop */
     /* The start of L-BFGS after Gauss-Newton. Later on the same point counts: within very narrow bounds MMA asks for
      * one without end. */
     bool known = !run->begun && isfinite(best->objective) && !memcmp(u, best->u, n * sizeof *u);
@@ -29,16 +32,16 @@ static double objective(unsigned n, const double *u, double *gradient, void *dat
         memcpy(run->gradient, best->gradient, n * sizeof *gradient);
     else
         value = best_evaluate(best, u, run->gradient);
-    if (gradient) memcpy(gradient, run->gradient, n * sizeof *gradient);
+    for (unsigned i = 0; gradient && i < n; i++) gradient[i] = run->scale * run->gradient[i];
     if (best_is_done(best)) nlopt_force_stop(run->opt);
-    return value;
+    return run->scale * value;
 }
 
-static void run_algorithm(Best *best, double *u, nlopt_algorithm algorithm)
+static void run_scaled(Best *best, double *u, nlopt_algorithm algorithm, double scale)
 {
     const Problem *problem = best->problem;
     unsigned n = (unsigned)problem->n;
-    Run run = {.best = best, .gradient = mem_alloc(n, sizeof(double))};
+    Run run = {.best = best, .gradient = mem_alloc(n, sizeof(double)), .scale = scale};
     run.opt = nlopt_create(algorithm, n);
     nlopt_set_min_objective(run.opt, objective, &run);
     nlopt_set_lower_bounds(run.opt, problem->lower);
@@ -52,12 +55,25 @@ static void run_algorithm(Best *best, double *u, nlopt_algorithm algorithm)
 
 void mma_run(Best *best, double *u)
 {
-    run_algorithm(best, u, NLOPT_LD_MMA);
+    run_scaled(best, u, NLOPT_LD_MMA, 1);
 }
 
+/* Where NLopt finds the gradient too small, it goes on from the best point with one of 1: by a power of two, which takes no
+ * digits. */
 void lbfgs_run(Best *best, double *u)
 {
-    run_algorithm(best, u, NLOPT_LD_LBFGS);
+    double scale = 1;
+    for (;;) {
+        run_scaled(best, u, NLOPT_LD_LBFGS, scale);
+        double norm = best->info.gradient_norm;
+        if (best_is_done(best) || !isfinite(best->objective) || !(norm > 0) ||
+            scale * norm > LEAST_GRADIENT * sqrt(best->problem->n))
+            return;
+        int exponent;
+        frexp(norm, &exponent);
+        scale = ldexp(1, -exponent);
+        memcpy(u, best->u, (size_t)best->problem->n * sizeof *u);
+    }
 }
 
 const char *optimiser_nlopt_version(void)

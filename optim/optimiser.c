@@ -1,6 +1,8 @@
 #include "optim/optimiser.h"
 #include "base/memory.h"
+#include "base/vector.h"
 #include "optim/best.h"
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -95,11 +97,29 @@ const char *const optimiser_names[] = {
 static void (*const runs[])(Best *best, double *u) = {
     [OPTIMISER_MMA] = mma_run, [OPTIMISER_LBFGS] = lbfgs_run, [OPTIMISER_GAUSS_NEWTON] = gauss_newton_run};
 
+/* What is left of a sum of squares is less than the rounding of the unknowns makes: residuals are below `digits` of what a
+ * unit of the scaled unknowns does to them, along the gradient; a linear model says the same of F. */
+static bool is_rounding(const Best *best)
+{
+    const double digits = 16 * DBL_EPSILON;
+    const Problem *problem = best->problem;
+    int n = problem->n;
+    double size = vector_dot(n, best->gradient, best->gradient), F = best->objective;
+    if (!(F >= 0 && size > 0 && F <= digits * sqrt(size))) return false;
+    double *product = mem_alloc((size_t)n, sizeof *product);
+    problem->product(problem->self, best->gradient, 0, product);
+    double along = vector_dot(n, best->gradient, product);
+    mem_free(product);
+    return along > 0 && F * size <= digits * digits * along;
+}
+
 OptimiserInfo optimise(const Problem *problem, const OptimiserDef *def, double *u)
 {
     Best best = best_create(problem, def);
     for (int i = 0; i < problem->n; i++) u[i] = fmin(fmax(u[i], problem->lower[i]), problem->upper[i]);
     runs[def->method](&best, u);
+    bool ended = best.info.status == OPTIMISER_STALLED || best.info.status == OPTIMISER_MAX_ITERATIONS;
+    if (ended && isfinite(best.objective) && is_rounding(&best)) best.info.status = OPTIMISER_CONVERGED;
     OptimiserInfo info = best.info;
     if (!isfinite(best.objective))
         info.status = OPTIMISER_FAILED;

@@ -61,12 +61,44 @@ doubts "case1: a flux density of 20 T" --set "flux_density=[0, 0, 20]"
 doubts "case1: a flux density of 4 T" --set 'flux_density=["0", "0", "100*x"]'
 doubts "case1: the target is 40 m across, and the body 0.0447 m" --set 'target=["1000*x", "y", "0"]'
 doubts "the unknown magnetization moves nothing: there is no .flux_density." --set "flux_density=[0, 0, 0]"
+doubts "young is 0.001 Pa, and usual is 100 to 1e+13" --set "shell.young=1 mPa"
+doubts "young is 10 Pa, and usual is" --set 'shell.young={formula: "x < 0.01 ? 10 : 1e6"}'
+doubts "a bound of the unknown young is 0.01 Pa" --set "design.unknowns={young: {bounds: [10 mPa, 2 MPa]}}"
+doubts "magnetization is 1e+07 A/m, and usual is 0 to 3e+06" --set "shell.magnetization=[10 MA/m, 0, 0]"
+doubts "gravity is -9.81e+03 m/s^2" --set "shell.gravity=[0, 0, -9810]"
+doubts "density is 0.001 kg/m^3, and usual is 1 to 30000" --set "shell.density=1 g/m^3"
+doubts "the thickness, 0.1 m, is more than a fifth of the body's size" --set "shell.thickness=0.1"
 sed '/^target/d; /^design/d; s/job: design/job: simulate/' doubt.yaml > still.yaml; mv still.yaml doubt.yaml
 doubts "case1: a flux density of 3 T" --set 'flux_density=["0", "0", "3*sin(pi*t)"]' --set "time={step: 0.1, steps: 10}"
 doubts "case1: a flux density of 3 T" --set 'flux_density=["0", "0", "3*sin(pi*t)*(1 + 0*x)"]' --set "time={step: 0.1, steps: 10}"
 doubts "the flux density moves nothing: nothing is magnetised" --set "shell.magnetization=[0, 0, 0]" --set "time={step: 0.1, steps: 10}"
 sed 's/simulate/equilibrium/' doubt.yaml > stages.yaml; mv stages.yaml doubt.yaml
 doubts "sequence: a flux density of 2 T" --set "sequence=[{flux_density: [0, 0, 1 mT]}, {flux_density: [0, 2, 0]}, {flux_density: [0, 0, 0]}]"
+
+cat > doubt.yaml <<'END'
+slender: 1
+job: equilibrium
+solid:
+  mesh: {shape: box, size: [20 mm, 6 mm, 4 mm], cells: [2, 1, 1]}
+  young: 1 MPa
+  poisson: 0.3
+  skin: {thickness: 1 mm, on: {group: top}, magnetization: {groups: {top: [1 kA/m, 0, 0], left: [1 kA/m, 0, 0]}, other: [0, 0, 0]}}
+flux_density: [0, 0, 2 mT]
+fix: [{group: left}]
+END
+doubts "solid.skin.magnetization.groups.left is without effect: .solid.skin.on. leaves it out"
+! grep -q "groups.top" err.txt || { echo "what is there is doubted"; bad=1; }
+doubts "the skin's thickness, 2 m, is more than a fifth" --set "solid.skin.thickness=2 m"
+doubts "the flux density moves nothing: nothing is magnetised" --set "solid.skin.magnetization={groups: {left: [1 kA/m, 0, 0]}, other: [0, 0, 0]}"
+doubts "density is 1e+06 kg/m^3" --set "solid.density=1000 g/cm^3"
+cat > doubt.yaml <<'END'
+slender: 1
+job: equilibrium
+rod: {length: 100 mm, radius: 1 mm, young: 1 mPa, poisson: 0.5, density: 1100, natural_strain: [0, 0, 0], elements: 10}
+END
+doubts "young is 0.001 Pa"
+doubts "young is 0.001 Pa" --set job=invert --set "rod={curve: {formula: ['u', '0', '-u*u'], range: [0, 0.1]}, radius: 1 mm, young: 1 mPa, poisson: 0.5, density: 1100}"
+doubts "density is 0.5 kg/m^3, and" --set "rod.young=1 MPa" --set "rod.density=0.5"
 
 # An equilibrium and everything that can be made of it.
 scene=$here/../scenes/cantilever.yaml

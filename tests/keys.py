@@ -11,7 +11,7 @@ FREE = {
     "solver.max_iterations", "solver.step_tolerance", "solver.force_tolerance",  # where the first guess is good enough
     "output.every", "output.precision",  # of frames, where there is one
     "design.tolerance", "rod.curve.where", "output.png",  # no pictures are made here
-    "spline.tolerance", "spline.rounds",  # where iterations are done before
+    "spline.tolerance", "spline.rounds", "spline.draft",  # where iterations are done before
     "shell.coercivity", "solid.coercivity", "rod.coercivity",  # which warn only
     "time", "time.step", "time.steps",  # the statics of a motion's scene leave them
 }

@@ -7,6 +7,15 @@ status() { "$program" info "$1" | sed -n '1s/^[^:]*: \([a-z_]*\),.*/\1/p'; }
 is() { [ "$2" = "$3" ] || { echo "$1: '$2', not '$3'"; bad=1; }; }
 datasets() { "$program" info "$1" | sed -n 's/^  \([^ ]*\) .*/\1/p'; }
 
+# ---- A pose without finite forces, in any of the cases, is a failure ----
+cat > pose.yaml <<'END'
+slender: 1
+job: evaluate
+rod: {length: 100 mm, radius: 1 mm, young: 1 MPa, poisson: 0.5, density: 1100, elements: 5, natural_strain: [0, 0, 0], magnetization: [1e4, 0, 0]}
+cases: [{name: first, flux_density: ["1/x", "0", "0"]}, {name: second, flux_density: [0, 0, 1 mT]}]
+END
+expect 1 run pose.yaml -o pose; expect 0 "$program" info pose.vtkhdf; says "not_finite"
+
 # ---- The result of an earlier run ----
 # The same scene may be run again; another one, or one of other files, is refused, and neither result nor journal is lost.
 cat > earlier.yaml <<'END'
@@ -30,6 +39,24 @@ same e.vtkhdf e.copy; same e.run e.journal
 expect 0 run earlier.yaml -o e --force
 young 1e6
 expect 0 run earlier.yaml -o e --force; same e.vtkhdf e.copy
+# Files beside a result go with it; without one they are somebody else's, unless a journal tells that they are the run's.
+probed="earlier.yaml -o own --set probes.tip.group=tip"
+for file in own.png own_probes.csv own.xdmf; do
+    echo mine > $file
+    # shellcheck disable=SC2086
+    expect 4 "$program" run $probed --quiet; says "'$file' is there, and no 'own.vtkhdf' that it would belong to: give another name, or replace it with --force$"
+    is "$file" "$(cat $file)" mine
+    [ ! -e own.run ] || { echo "a refused run leaves its journal"; bad=1; }
+    rm $file
+done
+echo mine > own.png
+# shellcheck disable=SC2086
+{
+    expect 0 run $probed; is "a run without a picture" "$(cat own.png)" mine
+    rm own.vtkhdf own.run own_probes.csv own.xdmf
+    expect 0 "$program" run $probed --quiet --force; expect 0 "$program" run $probed --quiet; grep -q PNG own.png || { echo "own.png is no picture"; bad=1; }
+    rm own.vtkhdf; expect 0 "$program" run $probed --quiet
+}
 mkdir elsewhere; cp earlier.yaml young.csv elsewhere
 expect 0 run elsewhere/earlier.yaml -o e # by what is in the files, not by where they are
 echo "no result" > f.vtkhdf
@@ -180,7 +207,13 @@ fix: [{group: root, clamp: true}]
 flux_density: ["sqrt(0.0025 - t)", "0", "0"]
 time: {step: 1 ms, steps: 4}
 END
-expect 3 run formula.yaml; says 'flux_density: "sqrt(0.0025 - t)" is not a finite number'
+expect 3 run formula.yaml; says 'flux_density: "sqrt(0.0025 - t)" is not a finite number at x = 0, .* (formula.yaml:5:15)$'
+for job in equilibrium simulate; do # what moves, too
+    sed "s/simulate/$job/; /^flux/d; s/^fix.*/fix: [{group: root, clamp: true}, {group: tip, move: [\"x\", \"y\", \"z + sqrt(x - 1)\"]}]/" formula.yaml > moved.yaml
+    [ $job = simulate ] || sed -i '/^time/d' moved.yaml
+    "$program" run moved.yaml --no-picture --force > out.txt 2> err.txt && { echo "a move that is no number is one"; bad=1; }
+    says 'fix\[1\].move: "z + sqrt(x - 1)" is not a finite number at x = 0.02, .* (moved.yaml:4:54)$'
+done
 sed '/flux_density/d' formula.yaml > pole.yaml
 echo 'obstacles: [{name: lid, plane: {point: [0, 0, -1]}, move: ["1/(0.002 - t)", "0", "0"]}]' >> pole.yaml
 expect 3 run pole.yaml --set time.steps=3; says "obstacle 'lid': move: .* is not a finite number at t = 0.002"

@@ -229,4 +229,15 @@ rod: {curve: {formula: ["0.1*sin(u)", "0", "0.1*cos(u)"], range: [0, 1]}, radius
 END
 expect 0 run invert.yaml -o inverse
 refused "has no state to start from" --set start=inverse.vtkhdf
+# ---- What something has gone through is told by how the run ended, not by its state ----
+cat > thrown.yaml <<'END'
+slender: 1
+job: simulate
+shell: {mesh: {shape: sheet, size: [10 mm, 10 mm], cells: [10, 10], pattern: alternate}, thickness: 0.2 mm, young: 0.2 MPa, poisson: 0.3, velocity: [0, 0, -100]}
+obstacles: [{sphere: {center: [5.3 mm, 4.8 mm, -2.3 mm], radius: 0.5 mm}}]
+time: {step: 1 ms, steps: 1}
+END
+expect 1 run thrown.yaml -o thrown
+sed 's/, velocity: [^}]*//; $a start: {result: thrown.vtkhdf}' thrown.yaml > onward.yaml
+expect 0 "$program" check onward.yaml; says "warning: start.result: .*thrown.vtkhdf ended as pierced, and what starts from it has that in it"
 exit $bad

@@ -13,6 +13,32 @@ awk -F, '!/^#/ && ($1 < 0.81e6 || $1 > 0.85e6) {bad = 1} END {exit bad}' young.c
 expect 0 "$program" export strip.vtkhdf -o cloud.csv --dataset cases/case1/cloud
 is "points of the cloud" "$(grep -vc '^#' cloud.csv)" 120
 
+# ---- A rod's end, by its name or number; both conditions hold; a part of it on a cloud ----
+cat > rod.yaml <<'END'
+slender: 1
+job: design
+rod: {length: 100 mm, radius: 1 mm, young: 1 MPa, poisson: 0.5, density: 1100, natural_strain: [0, 0, 0], elements: 10}
+flux_density: [0, 0, 10 mT]
+target: {formula: ["0.09", "7", "0.02"], axes: xz, on: {group: tip}}
+design: {unknowns: {magnetization: {noise: 100}}, objectives: [{target: 1}], iterations: 30}
+END
+expect 0 run rod.yaml -o tip
+expect 0 "$program" export tip.vtkhdf -o tip.csv --dataset rod/x
+tail -n 1 tip.csv | awk -F, '{exit ($1 - 0.09)^2 + ($3 - 0.02)^2 < 1e-7 ? 0 : 1}' || { echo "the end is not there:"; tail -n 1 tip.csv; bad=1; }
+for on in '{group: "10"}' '{vertices: [10]}' '{vertices: [3, 10], group: tip}'; do
+    expect 0 run rod.yaml -o other --force --set "target.on=$on"
+    expect 0 "$program" export other.vtkhdf -o other.csv --dataset rod/x
+    same tip.csv other.csv
+done
+printf '0.05, 0, 0.01\n' > cloud.csv
+for on in all '{vertices: [4, 5, 6]}' '{vertices: [9, 10]}'; do
+    expect 0 run rod.yaml -o cloud --force --set "target={cloud: cloud.csv, on: $on}" --set design.iterations=0 --set design.unknowns.magnetization.noise=0 --set rod.gravity=[0,0,0]
+    expect 0 "$program" export cloud.vtkhdf -o f.csv --dataset history/objective
+    tail -n 1 f.csv >> objectives.txt
+done
+awk '{d = $1 - (NR < 3 ? 1e-4 : 17e-4)} d*d > 1e-14 {bad = 1} END {exit bad || NR != 3}' objectives.txt || # the rod is straight
+    { echo "a cloud of a part:"; cat objectives.txt; bad=1; }
+
 # ---- Groups ----
 cat > star.yaml <<'END'
 slender: 1
@@ -38,6 +64,46 @@ expect 0 "$program" export star.vtkhdf -o star.obj
 is "g lines" "$(grep -c '^g ' star.obj)" 7
 sed 's/shape: hexagram, size: 40 mm, n: 1/file: star.obj/' star.yaml > again.yaml
 expect 0 "$program" check again.yaml; says "groups of faces: hub (6), flap1 (1)"
+cat > box.yaml <<'END'
+slender: 1
+job: evaluate
+solid:
+  mesh: {shape: box, size: [20 mm, 6 mm, 4 mm], cells: [2, 1, 1]}
+  young: 1 MPa
+  poisson: 0.3
+  skin: {thickness: 1 mm, on: {group: top}, magnetization: [1 kA/m, 0, 0]}
+END
+expect 0 run box.yaml -o box
+expect 0 "$program" export box.vtkhdf -o box.csv --per group # of the groups that have some of the top only its own has the layer
+is "groups of a skin" "$(sed 1d box.csv)" "top,16,1000,1.25664,0.0000,0.0000,0.0000"
+cat > wedge.msh << 'END'
+$MeshFormat
+2.2 0 8
+$EndMeshFormat
+$PhysicalNames
+3
+2 1 "layer"
+2 2 "half"
+3 3 "inside"
+$EndPhysicalNames
+$Nodes
+4
+1 0 0 0
+2 0.01 0 0
+3 0 0.01 0
+4 0 0 0.01
+$EndNodes
+$Elements
+4
+1 2 2 1 1 1 2 3
+2 2 2 2 2 1 2 3
+3 2 2 2 2 1 2 4
+4 4 2 3 3 1 2 3 4
+$EndElements
+END
+expect 0 run box.yaml -o wedge --set solid.mesh=wedge.msh --set solid.skin.on=layer --set solid.order=1 --set solid.averaging=1
+expect 0 "$program" export wedge.vtkhdf -o wedge.csv --per group
+is "groups that share faces" "$(cut -d, -f1-3 wedge.csv | sed 1d | tr '\n' ' ')" "layer,1,1000 half,1,1000 "
 expect 2 "$program" export star.vtkhdf -o x.csv --per face; says "--per must be group"
 expect 2 "$program" export star.vtkhdf -o x.csv --per group --dataset rest; says "exclude each other"
 expect 2 "$program" export star.vtkhdf -o x.obj --per group; says "per group is for a CSV"

@@ -50,13 +50,25 @@ static void test_refused(void **state)
                   "\"x + (y = 3)\": the = at position 7 is no part of an expression; == compares");
     check_refused("x ? y=1 : 2",
                   "\"x ? y=1 : 2\": the = at position 5 is no part of an expression; == compares");
-    check_refused("x, y",
-                  "\"x, y\": a list of 2; a formula is one expression, and numbers have a decimal point");
-    check_refused("1,5",
-                  "\"1,5\": a list of 2; a formula is one expression, and numbers have a decimal point");
+    check_refused("x, y", "\"x, y\": a list of 2; a formula is one expression");
+    check_refused("sin(x), 2, 3", "\"sin(x), 2, 3\": a list of 3; a formula is one expression");
+    check_refused("1,5", "\"1,5\": numbers have a decimal point: 1.5, not 1,5");
+    check_refused("0,25*sin(t)", "\"0,25*sin(t)\": numbers have a decimal point: 0.25, not 0,25");
+    check_refused("(x + 0,5)*t", "\"(x + 0,5)*t\": numbers have a decimal point: 0.5, not 0,5");
+    check_refused("sin(0,5*t)", "\"sin(0,5*t)\": numbers have a decimal point: 0.5, not 0,5");
+    check_refused("clamp(x, 0,5, 1)", "\"clamp(x, 0,5, 1)\": numbers have a decimal point: 0.5, not 0,5");
+    check_refused("3 mm * x",
+                  "\"3 mm * x\": '3 mm' has a unit, and numbers in expressions are plain, in SI: 0.003");
     check_refused(
-        "sin(x), 2, 3",
-        "\"sin(x), 2, 3\": a list of 3; a formula is one expression, and numbers have a decimal point");
+        "sin(2*x) + 20mT",
+        "\"sin(2*x) + 20mT\": '20mT' has a unit, and numbers in expressions are plain, in SI: 0.02");
+    check_refused(
+        "x + 1.5e-3 m",
+        "\"x + 1.5e-3 m\": '1.5e-3 m' has a unit, and numbers in expressions are plain, in SI: 0.0015");
+    check_refused("3 x", "\"3 x\": Unexpected variable \"x\" found at position 2");
+    check_refused(
+        "30 deg + q",
+        "\"30 deg + q\": '30 deg' has a unit, and numbers in expressions are plain, in SI: 0.523599");
     check_refused("\"abc\"", "\"\"abc\"\": Strings must only be used as function arguments!");
 }
 

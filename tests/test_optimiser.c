@@ -196,9 +196,92 @@ static void test_narrow(void **unused)
     assert_true(minimise_smooth(def, 1, 1 + 1e-9).evaluations <= 30);
 }
 
+/* ---- Endings ---- */
+
+enum { ENDS = 5 };
+
+/* unit^2 |u^2 - a|^2, or, of a plain sum of u, what has no squares. */
+typedef struct Ending {
+    double unit, best[ENDS], u[ENDS];
+    bool plain;
+} Ending;
+
+static double wanted(int i)
+{
+    return 1 + 0.3 * i;
+}
+
+static double ending_value(void *self, const double *u, double *gradient)
+{
+    Ending *ending = self;
+    double F = 0;
+    memcpy(ending->u, u, sizeof ending->u);
+    for (int i = 0; i < ENDS; i++) {
+        double r = ending->unit * (u[i] * u[i] - wanted(i));
+        F += ending->plain ? ending->unit * (u[i] - 1) : r * r;
+        gradient[i] = ending->plain ? ending->unit : 4 * ending->unit * r * u[i];
+    }
+    return F;
+}
+
+static void ending_accept(void *self)
+{
+    Ending *ending = self;
+    memcpy(ending->best, ending->u, sizeof ending->best);
+}
+
+static void ending_product(void *self, const double *v, double soft, double *out)
+{
+    const Ending *ending = self;
+    (void)soft;
+    for (int i = 0; i < ENDS; i++)
+        out[i] =
+            ending->plain ? 0 : 8 * ending->unit * ending->unit * ending->best[i] * ending->best[i] * v[i];
+}
+
+/* From so far off the solution. */
+static OptimiserInfo end_of(Ending ending, OptimiserMethod method, double off)
+{
+    double lower[ENDS], upper[ENDS], u[ENDS];
+    for (int i = 0; i < ENDS; i++)
+        lower[i] = -INFINITY, upper[i] = INFINITY, u[i] = sqrt(wanted(i)) * (1 + off);
+    for (int i = 0; i < ENDS && ending.plain; i++) u[i] = 1;
+    Problem problem = {.n = ENDS,
+                       .lower = lower,
+                       .upper = upper,
+                       .self = &ending,
+                       .evaluate = ending_value,
+                       .accept = ending_accept,
+                       .product = ending_product,
+                       .recall = recall,
+                       .go_on = go_on};
+    OptimiserDef def = optimiser_default();
+    def.method = method, def.evaluations = ending.plain ? 1 : 60;
+    return optimise(&problem, &def, u);
+}
+
+/* In whatever unit F is, and where it starts at what rounding leaves of it. */
+static void test_endings(void **unused)
+{
+    (void)unused;
+    static const double units[] = {1, 1e-4, 1e-9}, offs[] = {0, 1e-15, 1e-9, 1e-4, 0.1};
+    for (int method = 0; method < 3; method++)
+        for (int k = 0; k < 3; k++)
+            for (int o = 0; o < (method == OPTIMISER_MMA ? 1 : 5); o++) { /* MMA goes by F's unit */
+                OptimiserInfo info = end_of((Ending){.unit = units[k]}, (OptimiserMethod)method, offs[o]);
+                if (info.status != OPTIMISER_CONVERGED)
+                    fail_msg("%s, unit %g, off %g: %s, F %g", optimiser_names[method], units[k], offs[o],
+                             optimiser_status_name(info.status), info.objective);
+            }
+    /* A start where F, no sum of squares, happens to be 0. */
+    assert_int_equal(end_of((Ending){.unit = 1, .plain = true}, OPTIMISER_LBFGS, 0).status,
+                     OPTIMISER_MAX_ITERATIONS);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_thorough), cmocka_unit_test(test_edge),
-                                       cmocka_unit_test(test_bounds), cmocka_unit_test(test_narrow)};
+                                       cmocka_unit_test(test_bounds), cmocka_unit_test(test_narrow),
+                                       cmocka_unit_test(test_endings)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

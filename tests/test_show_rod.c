@@ -287,7 +287,7 @@ static void bundles(void **state)
     double ink = 1 - (double)count_pixels(&page, white) / (page.width * page.height);
     print_message("30 strands: %.1f %% of the page is drawn on\n", 100 * ink);
     assert_true(ink > 0.025);
-    assert_true(count_pixels(&page, curves_fade(colormap_series(1), 0)) < 20); /* but for edges of letters */
+    assert_true(count_pixels(&page, curves_fade(colormap_series(1), 0)) < 50); /* some edge is as pale */
     mem_free(page.rgb);
 }
 
@@ -304,7 +304,7 @@ static void refused(void **state)
     write_result((Rods){.strands = 1});
     ShowDef def = show_default();
     def.only = "up";
-    expect_refusal(def, "--case up: rods have no load cases");
+    expect_refusal(def, "--case up: the result has no load cases");
     def = show_default(), def.field = "young";
     expect_refusal(def, "--field young: curves have no faces to colour");
     def = show_default(), def.target = PICTURE_TARGET_BOTH;

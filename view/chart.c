@@ -4,6 +4,7 @@
 #include "view/ticks.h"
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 static const Color grid = {0.9, 0.9, 0.91, 1}, mark = {0.5, 0.5, 0.52, 1};
 
@@ -164,18 +165,61 @@ static void draw_series(Canvas *canvas, const ChartSeries *series, const Axis *x
     mem_free(points);
 }
 
-/* In one row above the plot, from its right end to the left. */
-static void draw_legend(Canvas *canvas, const Chart *chart, double right, double baseline)
+/* ---- The legend: rows above the plot, each from its right end to the left ---- */
+
+/* Points. */
+static const double SAMPLE = 12, SAMPLE_GAP = 5, ENTRY_GAP = 14, ROW = 11;
+
+enum { NAME_MAX_BYTES = 120, SERIES_MAX = 64 };
+
+typedef struct Legend {
+    char name[SERIES_MAX][NAME_MAX_BYTES]; /* as they are shown */
+    double width[SERIES_MAX];              /* of an entry       */
+    int row[SERIES_MAX], count, rows;
+} Legend;
+
+/* The name, or as much of it as there is room for. */
+static double fit_name(Canvas *canvas, const char *whole, double room, char name[NAME_MAX_BYTES])
 {
-    for (int s = chart->series_count - 1; s >= 0; s--) {
-        const char *name = chart->series[s].name ? chart->series[s].name : "";
-        const TextStyle style = {.color = page_ink, .size = PAGE_LABEL, .align = TEXT_RIGHT};
-        canvas_text(canvas, (Vec2){right, baseline}, name, style);
-        right -= canvas_text_width(canvas, name, style) + 5;
-        double y = baseline - 0.32 * PAGE_LABEL;
-        canvas_line(canvas, (Vec2){right - 12, y}, (Vec2){right, y},
+    const TextStyle style = {.size = PAGE_LABEL};
+    snprintf(name, NAME_MAX_BYTES, "%s", whole ? whole : "");
+    size_t length = strlen(name);
+    double width;
+    while ((width = canvas_text_width(canvas, name, style)) > room && length > 1) {
+        while (length > 1 && ((unsigned char)name[--length] & 0xc0) == 0x80) continue;
+        snprintf(name + length, NAME_MAX_BYTES - length, "%s", "..");
+    }
+    return width;
+}
+
+static Legend lay_legend(Canvas *canvas, const Chart *chart, double room)
+{
+    Legend legend = {.count = chart->series_count < 2 ? 0 : chart->series_count};
+    if (legend.count > SERIES_MAX) legend.count = SERIES_MAX;
+    double used = 0;
+    for (int s = 0; s < legend.count; s++) {
+        double sample = SAMPLE + SAMPLE_GAP;
+        legend.width[s] = sample + fit_name(canvas, chart->series[s].name, room - sample, legend.name[s]);
+        bool next = s > 0 && used + ENTRY_GAP + legend.width[s] > room;
+        legend.row[s] = s == 0 ? 0 : legend.row[s - 1] + next;
+        used = next || s == 0 ? legend.width[s] : used + ENTRY_GAP + legend.width[s];
+        legend.rows = legend.row[s] + 1;
+    }
+    return legend;
+}
+
+static void draw_legend(Canvas *canvas, const Chart *chart, const Legend *legend, double end, double baseline)
+{
+    const TextStyle style = {.color = page_ink, .size = PAGE_LABEL, .align = TEXT_RIGHT};
+    double right = end;
+    for (int s = legend->count - 1; s >= 0; s--) {
+        if (s + 1 < legend->count && legend->row[s] != legend->row[s + 1]) right = end;
+        double line = baseline + legend->row[s] * ROW, y = line - 0.32 * PAGE_LABEL,
+               left = right - legend->width[s];
+        canvas_text(canvas, (Vec2){right, line}, legend->name[s], style);
+        canvas_line(canvas, (Vec2){left, y}, (Vec2){left + SAMPLE, y},
                     (Pen){colormap_series(chart->first_color + s), 1.6, 0});
-        right -= 26;
+        right = left - ENTRY_GAP;
     }
 }
 
@@ -184,8 +228,12 @@ void chart_draw(Canvas *canvas, const Chart *chart, Box box)
     Axis x = {.log = false}, y = {.log = false};
     axis_set_x(&x, chart, (int)fmin(6, fmax(2, box.width / TICK_ROOM)));
     axis_set_y(&y, chart);
-    bool head = chart->title || chart->series_count > 1;
-    y.to = box.y + (head ? 2.4 * PAGE_LABEL : 0.5 * PAGE_LABEL);
+    const TextStyle title = {.color = page_ink, .size = PAGE_LABEL + 1, .bold = true};
+    double titled = chart->title ? canvas_text_width(canvas, chart->title, title) + ENTRY_GAP : 0;
+    Legend legend = lay_legend(canvas, chart, box.width - titled);
+    bool head = chart->title || legend.count;
+    y.to = box.y + (head ? 2.4 * PAGE_LABEL : 0.5 * PAGE_LABEL) +
+           (legend.rows > 1 ? (legend.rows - 1) * ROW : 0);
     y.from = box.y + box.height - 11 - 2.2 * PAGE_LABEL;
     x.from = box.x + ticks_width(canvas, &y.ticks) + 2 * PAGE_LABEL + 5;
     x.to = box.x + box.width;
@@ -195,8 +243,6 @@ void chart_draw(Canvas *canvas, const Chart *chart, Box box)
     draw_marks(canvas, chart, &x, &y);
     for (int s = 0; s < chart->series_count; s++)
         draw_series(canvas, &chart->series[s], &x, &y, colormap_series(chart->first_color + s));
-    if (chart->title)
-        canvas_text(canvas, (Vec2){x.from, box.y + PAGE_LABEL}, chart->title,
-                    (TextStyle){.color = page_ink, .size = PAGE_LABEL + 1, .bold = true});
-    if (chart->series_count > 1) draw_legend(canvas, chart, x.to, box.y + PAGE_LABEL);
+    if (chart->title) canvas_text(canvas, (Vec2){x.from, box.y + PAGE_LABEL}, chart->title, title);
+    draw_legend(canvas, chart, &legend, x.to, box.y + PAGE_LABEL);
 }

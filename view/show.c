@@ -5,6 +5,7 @@
 #include "view/picture_panel.h"
 #include "view/show_drawing.h"
 #include "view/show_mesh.h"
+#include "view/show_cases.h"
 #include "view/show_motion.h"
 #include "view/show_obstacles.h"
 #include "view/show_probes.h"
@@ -52,14 +53,6 @@ static PicturePanel *add_panel(Show *show, const char *name, const double (*x)[3
 }
 
 /* An array of a case, or NULL. */
-static void *case_dataset(Show *show, const char *name, const char *what, size_t count)
-{
-    char *path = mem_format("slender/cases/%s/%s", name, what);
-    void *data = show_dataset(show->data, path, ARRAY_FLOAT64, count);
-    mem_free(path);
-    return data;
-}
-
 /* Root of the mean square distance of the vertices that have a target; NaN where none has. */
 static double target_away(const double (*x)[3], const double (*target)[3], int count)
 {
@@ -78,47 +71,9 @@ static double target_away(const double (*x)[3], const double (*target)[3], int c
 static void add_target(Show *show, PicturePanel *panel, const char *name, const double (*x)[3])
 {
     int vertices = show->mesh.body.vertex_count;
-    double(*target)[3] = case_dataset(show, name, "target", 3 * (size_t)vertices);
-    if (target) show_fill_places(target, x, vertices);
-    panel->target = show_mesh_points(&show->mesh, (const double(*)[3])target);
-    if (target) panel->target_away = target_away(x, (const double(*)[3])target, vertices);
-}
-
-static const double CLOUD_DOT = 1.2; /* its radius, points */
-
-/* The points of a load case's clouds, those seen in a plane at the body's middle across it. */
-static void add_cloud(Show *show, PicturePanel *panel, const char *name, const double (*x)[3])
-{
-    Array cloud;
-    Result *result = show->data->result;
-    char *path = mem_format("slender/cases/%s/cloud", name);
-    bool there = !panel->marks.dot_count && result_has(result, path) &&
-                 result_read_as(result, path, ARRAY_FLOAT64, 2, 3, &cloud, NULL);
-    mem_free(path);
-    if (!there) return;
-    int count = cloud.dims[0], vertices = show->mesh.body.vertex_count;
-    double(*points)[3] = show_keep(show->data, cloud), middle[3] = {0};
-    MarkDot *dots = show_block(show->data, (size_t)count, sizeof *dots);
-    for (int i = 0; i < 3 * vertices; i++) middle[i % 3] += x[i / 3][i % 3] / vertices;
-    for (int k = 0; k < count; k++) {
-        show_fill_places(&points[k], (const double(*)[3]) & middle, 1);
-        dots[k] = (MarkDot){k ? NULL : "cloud", points[k], panel_target_ink, CLOUD_DOT, false};
-    }
-    panel->marks.dots = dots, panel->marks.dot_count = count;
-}
-
-/* Its name; NULL where there are several, or none. */
-static const char *only_case(Show *show)
-{
-    Array names;
-    Result *result = show->data->result;
-    if (!result_has(result, "slender/case_names") ||
-        !result_read_as(result, "slender/case_names", ARRAY_TEXT, 1, 0, &names, NULL))
-        return NULL;
-    char *name = show_keep(show->data, names), *end = strchr(name, '\n');
-    if (!end || end[1]) return NULL;
-    *end = 0;
-    return name;
+    const double(*target)[3] = show_case_target(show->data, name, x, vertices);
+    panel->target = show_mesh_points(&show->mesh, target);
+    if (target) panel->target_away = target_away(x, target, vertices);
 }
 
 /* Of a motion: what it was to meet, where it went, and the time. */
@@ -127,8 +82,8 @@ static void add_moment(Show *show, PicturePanel *panel, int frame, const double 
     panel->time = show_frame_time(show->data, frame);
     panel->marks = show_motion_marks(&show->motion, panel->time, motion_ink);
     panel->gravity = show_dataset(show->data, "slender/design/gravity", ARRAY_FLOAT64, 3);
-    const char *name = only_case(show);
-    if (name) add_target(show, panel, name, x);
+    ShowCases cases;
+    if (show_cases(show->data, &cases, NULL) && cases.count == 1) add_target(show, panel, cases.names[0], x);
 }
 
 /* A frame, with its field. */
@@ -161,14 +116,16 @@ static bool add_frame(Show *show, int frame, Error *err)
 static void add_case(Show *show, const char *name)
 {
     size_t count = 3 * (size_t)show->mesh.body.vertex_count;
-    const double(*x)[3] = case_dataset(show, name, "x", count);
+    const double(*x)[3] = show_case_dataset(show->data, name, "x", count);
     if (!x) return;
     PicturePanel *panel = add_panel(show, show_text(show->data, "%s", name), x);
     add_target(show, panel, name, x);
     panel->marks = show_motion_marks(&show->motion, NAN, motion_ink);
-    add_cloud(show, panel, name, x);
-    panel->gravity = case_dataset(show, name, "gravity", 3);
-    const double *flux = case_dataset(show, name, "flux_density", 3);
+    if (!panel->marks.dot_count)
+        panel->marks.dot_count = show_case_cloud(show->data, name, x, show->mesh.body.vertex_count,
+                                                 panel_target_ink, &panel->marks.dots);
+    panel->gravity = show_case_dataset(show->data, name, "gravity", 3);
+    const double *flux = show_case_dataset(show->data, name, "flux_density", 3);
     if (flux && vec3_length(vec3_load(flux)) > 0) panel->flux_density = flux;
     Array status;
     char *path = mem_format("slender/cases/%s/status", name);
@@ -179,21 +136,12 @@ static void add_case(Show *show, const char *name)
     mem_free(path);
 }
 
-/* The cases in the scene's order, or the one asked for. */
 static bool add_cases(Show *show, Error *err)
 {
-    Array names;
-    if (!result_has(show->data->result, "slender/case_names"))
-        return error_set(err, "the result has no state yet");
-    if (!result_read_as(show->data->result, "slender/case_names", ARRAY_TEXT, 1, 0, &names, err))
-        return false;
-    char *rest = NULL;
-    for (char *name = strtok_r((char *)names.data, "\n", &rest); name; name = strtok_r(NULL, "\n", &rest))
-        if (!show->def->only || !strcmp(show->def->only, name)) add_case(show, name);
-    array_clear(&names);
-    if (show->panel_count == 0)
-        return error_set(err, "the result has no load case '%s'", show->def->only ? show->def->only : "");
-    return true;
+    ShowCases cases;
+    if (!show_cases(show->data, &cases, err)) return false;
+    for (int k = 0; k < cases.count; k++) add_case(show, cases.names[k]);
+    return show->panel_count > 0 || error_set(err, "the result has no state yet");
 }
 
 /* The colours, and what the arrows are. */

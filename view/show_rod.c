@@ -2,19 +2,30 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "view/curves_picture.h"
+#include "view/show_cases.h"
 #include "view/show_framings.h"
 #include "view/show_holds.h"
 #include "view/show_motion.h"
 #include "view/show_obstacles.h"
 #include "view/show_probes.h"
+#include "view/show_rod_lines.h"
 #include "view/ticks.h"
 #include <math.h>
 #include <string.h>
 
-enum { LINES_MAX = 4, LINE_LENGTH = 110, STRANDS_MANY = 20 };
+enum { STRANDS_MANY = 20 };
 
 static const Color input_ink = {0.62, 0.62, 0.64, 1};
 static const MotionInk motion_ink = {{0.62, 0.62, 0.64, 1}, {0, 0.62, 0.451, 1}, 3};
+
+static const double PLACE_DOT = 3; /* its radius, points */
+
+/* One of the states of rest that are shown: of a load case, or the only one. */
+typedef struct RodState {
+    const char *name; /* NULL: the only one */
+    const double (*x)[3], (*target)[3];
+    bool line; /* its target has some */
+} RodState;
 
 /* A page of rods. */
 typedef struct RodPage {
@@ -22,11 +33,12 @@ typedef struct RodPage {
     int strand_count, point_count;
     const int *strands; /* [strand_count + 1] first point of each */
     const double (*input)[3], (*natural)[3], (*x)[3];
-    const char *input_name; /* "input", or the "target" of a design */
-    CurvesSet *sets;        /* owned */
+    RodState *states;
+    int state_count;
+    Marks given;     /* of them: what of their targets is no line */
+    CurvesSet *sets; /* owned */
     int set_count;
-    const char *lines[LINES_MAX];
-    int line_count;
+    RodLines lines;
     Chart charts[CURVES_CHARTS_MAX];
     int chart_count;
     ShowObstacles obstacles;
@@ -65,21 +77,64 @@ static bool read_one_strand(RodPage *page, Error *err)
     return true;
 }
 
-/* Of a design: where the first case should be. */
-static void read_target(RodPage *page)
+static bool has_place(const double (*place)[3], int point, int count)
 {
-    Array names;
-    if (!result_has(page->data->result, "slender/case_names") ||
-        !result_read_as(page->data->result, "slender/case_names", ARRAY_TEXT, 1, 0, &names, NULL))
-        return;
-    const char *first = names.data;
-    char *path = mem_format("slender/cases/%.*s/target", (int)strcspn(first, "\n"), first);
-    double(*target)[3] = show_dataset(page->data, path, ARRAY_FLOAT64, 3 * (size_t)page->point_count);
-    if (target && page->x) show_fill_places(target, page->x, page->point_count);
-    page->input = (const double(*)[3])target;
-    page->input_name = "target";
-    mem_free(path);
-    array_clear(&names);
+    return point >= 0 && point < count && !isnan(place[point][0]);
+}
+
+/* Each name once in the legend. */
+static void add_dots(RodPage *page, const MarkDot *more, int count)
+{
+    Marks *given = &page->given;
+    MarkDot *dots = show_block(page->data, (size_t)(given->dot_count + count), sizeof *dots);
+    for (int k = 0; k < given->dot_count; k++) dots[k] = given->dots[k];
+    for (int k = 0; k < count; k++) {
+        dots[given->dot_count + k] = more[k];
+        for (int n = 0; more[k].name && n < given->dot_count + k; n++)
+            if (dots[n].name && !strcmp(dots[n].name, more[k].name)) dots[given->dot_count + k].name = NULL;
+    }
+    given->dots = dots, given->dot_count += count;
+}
+
+/* Of a target, what is no line of it: points whose neighbours have no place; and of a case its clouds. */
+static void add_given(RodPage *page, const char *name, RodState *state)
+{
+    const MarkDot *cloud;
+    int count = page->point_count, alone = 0,
+        dots = show_case_cloud(page->data, name, state->x, count, input_ink, &cloud);
+    if (dots) add_dots(page, cloud, dots);
+    if (!state->target) return;
+    MarkDot *places = show_block(page->data, (size_t)count, sizeof *places);
+    for (int i = 0; i < count; i++) {
+        if (!has_place(state->target, i, count)) continue;
+        bool joined = has_place(state->target, i - 1, count) || has_place(state->target, i + 1, count);
+        state->line |= joined;
+        if (!joined) places[alone++] = (MarkDot){"target", state->target[i], input_ink, PLACE_DOT, false};
+    }
+    add_dots(page, places, alone);
+}
+
+/* Of a result without cases the state that it has. */
+static bool read_states(RodPage *page, Error *err)
+{
+    ShowCases cases;
+    size_t numbers = 3 * (size_t)page->point_count;
+    if (!show_cases(page->data, &cases, err)) return false;
+    page->states = show_block(page->data, (size_t)cases.count + 1, sizeof *page->states);
+    for (int k = 0; k < cases.count; k++) {
+        RodState *state = &page->states[page->state_count];
+        state->name = cases.count > 1 ? cases.names[k] : NULL;
+        state->x = show_case_dataset(page->data, cases.names[k], "x", numbers);
+        if (!state->x) continue;
+        page->state_count++;
+        if (page->input) continue;
+        state->target = show_case_target(page->data, cases.names[k], state->x, page->point_count);
+        add_given(page, cases.names[k], state);
+    }
+    if (page->state_count) return true;
+    page->states[0].x = show_dataset(page->data, "slender/rod/x", ARRAY_FLOAT64, numbers);
+    page->state_count = page->states[0].x != NULL;
+    return true;
 }
 
 static bool read_curves(RodPage *page, Error *err)
@@ -98,9 +153,8 @@ static bool read_curves(RodPage *page, Error *err)
     size_t numbers = 3 * (size_t)page->point_count;
     page->input = show_dataset(page->data, "slender/rod/input", ARRAY_FLOAT64, numbers);
     page->natural = show_dataset(page->data, "slender/rod/natural", ARRAY_FLOAT64, numbers);
-    page->x = show_dataset(page->data, "slender/rod/x", ARRAY_FLOAT64, numbers);
-    page->input_name = "input";
-    if (!page->input) read_target(page);
+    if (!read_states(page, err)) return false;
+    page->x = page->states[0].x;
     return page->input || page->x || error_set(err, "the result's curves are not as slender writes them");
 }
 
@@ -117,11 +171,23 @@ static CurvesSet *add_set(RodPage *page, const char *name, const double (*points
     return &page->sets[count];
 }
 
+/* "target", of one of several cases "target, NAME". */
+static const char *state_words(RodPage *page, const char *word, const RodState *state)
+{
+    return state->name ? show_text(page->data, "%s, %s", word, state->name) : word;
+}
+
+static void add_target(RodPage *page, const RodState *state)
+{
+    if (state->target)
+        add_set(page, state_words(page, "target", state), state->target, input_ink)->width = 3.4;
+}
+
 /* Over the input, so that both are seen. */
 static CurvesSet *add_simulated(RodPage *page, const char *name, const double (*points)[3])
 {
     CurvesSet *set = add_set(page, name, points, colormap_series(1));
-    if (page->input) set->width = 1.2, set->dash = 3;
+    if (page->input || page->states[0].target) set->width = 1.2, set->dash = 3;
     return set;
 }
 
@@ -133,6 +199,7 @@ static void add_surroundings(RodPage *page, int frame)
     set->time = frame < 0 ? NAN : show_frame_time(page->data, frame);
     set->marks = show_motion_marks(&page->motion, set->time, motion_ink);
     set->holds = show_holds(page->data, frame);
+    if (!set->marks.line_count && !set->marks.dot_count) set->marks = page->given;
 }
 
 /* The simulated points of a frame, which are the first ones. */
@@ -193,7 +260,11 @@ static bool add_final(RodPage *page, Error *err)
     bool moves = result_has(page->data->result, "slender/history/time");
     if (!page->x && moves && frames > 0 && !read_frame(page, frames - 1, &page->x, err)) return false;
     if (!page->x) return true;
-    add_simulated(page, "simulated", page->x);
+    if (!page->state_count) add_simulated(page, "simulated", page->x);
+    for (int k = 0; k < page->state_count; k++) {
+        const RodState *state = &page->states[k];
+        add_simulated(page, state_words(page, "simulated", state), state->x)->color = colormap_series(1 + k);
+    }
     add_surroundings(page, -1);
     return true;
 }
@@ -206,8 +277,9 @@ static bool add_curves(RodPage *page, Error *err)
     bool moving = def->seconds > 0, asked = moving || def->stills > 0;
     int count = show_frame_count(page->data);
     if (!asked && page->strand_count > STRANDS_MANY) count = 0;
-    bool stills = count > 0 && !moving && def->frame < 0;
-    if (page->input) add_set(page, page->input_name, page->input, input_ink)->width = 3.4;
+    bool final = count == 0 && def->frame<0, stills = count> 0 && !moving && def->frame < 0;
+    if (page->input) add_set(page, "input", page->input, input_ink)->width = 3.4;
+    for (int k = 0; k < (final ? page->state_count : 1); k++) add_target(page, &page->states[k]);
     if (page->natural && !stills) add_set(page, "natural", page->natural, colormap_series(0));
     if (def->frame >= 0) return add_frame(page, def->frame, err);
     if (count == 0) return asked ? show_check_frame(page->data, 0, err) : add_final(page, err);
@@ -234,7 +306,10 @@ static void add_squares(RodPage *page, CurvesScene *scene)
 {
     Result *result = page->data->result;
     Array array;
-    const double(*points)[3] = page->sets[0].points;
+    int from = 0;
+    while (from + 1 < page->set_count && isnan(page->sets[from].points[0][0]))
+        from++; /* a target of some points */
+    const double(*points)[3] = page->sets[from].points;
     double(*held)[3] = show_block(page->data, (size_t)page->strand_count + 1, sizeof *held);
     int count = page->strand_count;
     for (int k = 0; k < count; k++) memcpy(held[k], points[page->strands[k]], sizeof *held);
@@ -255,103 +330,6 @@ static void add_clamps(RodPage *page, CurvesScene *scene)
         if (array.type == ARRAY_TEXT && strstr(array.data, "pinned")) scene->clamps_name = "held";
         array_clear(&array);
     }
-}
-
-/* ---- Small print ---- */
-
-/* Adds to the last line, or begins another one where that is full. */
-static void add_text(RodPage *page, const char *text)
-{
-    if (page->line_count > 0) {
-        const char *last = page->lines[page->line_count - 1];
-        if (strlen(last) + strlen(text) < LINE_LENGTH) {
-            page->lines[page->line_count - 1] = show_text(page->data, "%s, %s", last, text);
-            return;
-        }
-    }
-    if (page->line_count < LINES_MAX) page->lines[page->line_count++] = show_text(page->data, "%s", text);
-}
-
-/* Numbers at a path, as doubles: one, or one for each strand. NULL where there are none. */
-static const double *numbers(RodPage *page, const char *path, int *count, const char **unit)
-{
-    Array array;
-    if (!result_has(page->data->result, path) || !result_read(page->data->result, path, &array, NULL))
-        return NULL;
-    *count = array.type == ARRAY_TEXT ? 0 : (int)array_count(&array);
-    *unit = show_text(page->data, "%s", array.unit ? array.unit : "");
-    double *values = show_block(page->data, (size_t)*count, sizeof *values);
-    for (int k = 0; k < *count; k++)
-        values[k] =
-            array.type == ARRAY_INT32 ? ((const int *)array.data)[k] : ((const double *)array.data)[k];
-    array_clear(&array);
-    return *count ? values : NULL;
-}
-
-/* "lowest eigenvalue 25.8 1/m²", of several strands the least or the greatest. */
-static void add_number(RodPage *page, const char *path, const char *words, bool least)
-{
-    int count;
-    const char *unit;
-    char text[64];
-    const double *values = numbers(page, path, &count, &unit);
-    if (!values) return;
-    double shown = values[0];
-    for (int k = 1; k < count; k++) shown = least ? fmin(shown, values[k]) : fmax(shown, values[k]);
-    if (!isfinite(shown)) return;
-    unit_format(shown, unit, text, sizeof text);
-    add_text(page, show_text(page->data, "%s %s", words, text));
-}
-
-static void add_stability(RodPage *page)
-{
-    int count, stable = 0;
-    const char *unit;
-    const double *values = numbers(page, "slender/rod/stable", &count, &unit);
-    for (int k = 0; values && k < count; k++) stable += values[k] != 0;
-    if (values && count > 1)
-        add_text(page, show_text(page->data, "%d of %d stable", stable, count));
-    else if (values)
-        add_text(page, stable ? "stable" : "unstable");
-    add_number(page, "slender/rod/lowest_eigenvalue", "lowest eigenvalue", true);
-    add_number(page, "slender/rod/critical_young", "stable above a Young's modulus of", false);
-    if (values && stable < count) add_number(page, "slender/rod/morse_index", "Morse index", false);
-}
-
-/* Each number below a group, named as it is: metrics/largest_distance is "largest distance". */
-static void add_group(RodPage *page, const char *group)
-{
-    char **paths;
-    int count;
-    size_t length = strlen(group);
-    if (!result_list(page->data->result, &paths, &count, NULL)) return;
-    for (int k = 0; k < count; k++) {
-        int values;
-        const char *unit;
-        if (strncmp(paths[k], group, length) || !numbers(page, paths[k], &values, &unit) || values > 1)
-            continue;
-        char *words = show_text(page->data, "%s", paths[k] + length);
-        for (char *c = words; *c; c++)
-            if (*c == '_' || *c == '/') *c = ' ';
-        add_number(page, paths[k], words, true);
-    }
-    mem_free(paths);
-}
-
-static void add_lines(RodPage *page)
-{
-    Array status;
-    if (result_read(page->data->result, "slender/status", &status, NULL)) {
-        add_text(page, status.data);
-        array_clear(&status);
-    }
-    if (page->strand_count > 1)
-        add_text(page, show_text(page->data, "%d strands, %d points", page->strand_count, page->point_count));
-    else
-        add_text(page, show_text(page->data, "%d elements", page->point_count - 1));
-    add_stability(page);
-    add_group(page, "slender/rod/identified/");
-    add_group(page, "slender/metrics/");
 }
 
 /* ---- Charts ---- */
@@ -396,21 +374,35 @@ static void add_strains(RodPage *page, const double *s)
                             .first_color = 2});
 }
 
-/* How far the simulated curve is from the input. */
+/* Has any of the states one? */
+static bool has_target(const RodPage *page)
+{
+    bool has = false;
+    for (int k = 0; k < page->state_count; k++) has |= page->states[k].target != NULL;
+    return has;
+}
+
+/* How far the simulated curve is from the input, or those of the states from their targets. */
 static void add_distance(RodPage *page, const double *s)
 {
-    if (!page->input || !page->x) return;
-    double *distance = show_block(page->data, (size_t)page->point_count, sizeof *distance);
-    for (int i = 0; i < page->point_count; i++)
-        distance[i] = vec3_length(vec3_sub(vec3_load(page->x[i]), vec3_load(page->input[i])));
-    ChartSeries *series = show_block(page->data, 1, sizeof *series);
-    *series = make_series(page, "simulated", s, distance, 1);
+    if (!(page->input || has_target(page)) || !page->x) return;
+    int count = page->input ? 1 : page->state_count;
+    ChartSeries *series = show_block(page->data, (size_t)count, sizeof *series);
+    for (int k = 0; k < count; k++) {
+        const double(*x)[3] = k ? page->states[k].x : page->x,
+              (*to)[3] = page->input ? page->input : page->states[k].target;
+        double *distance = show_block(page->data, (size_t)page->point_count, sizeof *distance);
+        for (int i = 0; i < page->point_count; i++)
+            distance[i] = to ? vec3_length(vec3_sub(vec3_load(x[i]), vec3_load(to[i]))) : NAN;
+        const char *name = page->states[k].name;
+        series[k] = make_series(page, name ? name : "simulated", s, distance, 1);
+    }
     add_chart(page, (Chart){.x_label = "s",
                             .x_unit = "m",
-                            .y_label = "distance to input",
+                            .y_label = page->input ? "distance to input" : "distance to target",
                             .y_unit = "m",
                             .y_axis = CHART_LINEAR,
-                            .series_count = 1,
+                            .series_count = count,
                             .series = series,
                             .first_color = 1});
 }
@@ -440,13 +432,13 @@ static void add_charts(RodPage *page)
 /* There is one, if it was asked for. */
 static bool check_target(const RodPage *page, Error *err)
 {
-    return page->data->def->target == PICTURE_TARGET_AUTO || page->input || page->motion.row_count > 0 ||
+    bool any = page->input || has_target(page) || page->given.dot_count > 0 || page->motion.row_count > 0;
+    return page->data->def->target == PICTURE_TARGET_AUTO || any ||
            error_set(err, "--target: there is none: no given curve, no place or curve of a motion");
 }
 
 static bool check_options(const ShowDef *def, Error *err)
 {
-    if (def->only) return error_set(err, "--case %s: rods have no load cases", def->only);
     if (def->field) return error_set(err, "--field %s: curves have no faces to colour", def->field);
     if (def->target == PICTURE_TARGET_BESIDE || def->target == PICTURE_TARGET_BOTH)
         return error_set(err, "--target: the input of a rod is always drawn under the simulated curve");
@@ -461,11 +453,11 @@ static bool write_page(RodPage *page, const char *result, const char *picture, E
         !show_obstacles_read(&page->obstacles, page->data, err) || !add_curves(page, err))
         return false;
     frame_obstacles(page);
-    add_lines(page);
     CurvesScene scene = curves_default();
     const char *slash = strrchr(result, '/');
     scene.title = slash ? slash + 1 : result;
-    scene.lines = page->lines, scene.line_count = page->line_count;
+    page->lines = show_rod_lines(page->data, page->strand_count, page->point_count);
+    scene.lines = page->lines.text, scene.line_count = page->lines.count;
     scene.sets = page->sets, scene.set_count = page->set_count;
     add_clamps(page, &scene);
     const double *gravity = show_dataset(page->data, "slender/rod/gravity", ARRAY_FLOAT64, 3);

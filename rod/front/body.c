@@ -27,7 +27,7 @@ static bool load_rod(const Model *model, double time, double *p, Error *err)
 {
     const RodModel *rm = model->self;
     return !rm->list.timed || rod_loads_put(&rm->list, rm->rod, NULL, time, p, err) ||
-           error_prefix(err, "rod.loads");
+           model_unknown(model, "rod.loads", err);
 }
 
 /* The potentials. */
@@ -41,7 +41,7 @@ static bool knows_loads(const Model *model, double time, const double *place, Er
         RodPlace at = {vec3_load(place + 3 * i), time, L * (i % (each + 1)) / each, L};
         for (int k = 0; k < rod->potentials.count; k++)
             if (!rod_potential_known(rod->potentials.items[k], at, &jet, err))
-                return error_prefix(err, "rod.loads");
+                return model_unknown(model, "rod.loads", err);
     }
     return true;
 }
@@ -68,7 +68,7 @@ static bool put_target(Model *model, const Build *b, const char *at, const Targe
     const Rod *rod = rm->rod;
     Error err;
     double scale = isnan(scene->scale) ? 1 : scene->scale;
-    if (scene->height_map || scene->strokes || scene->on)
+    if (scene->height_map || scene->strokes)
         return yaml_refuse(b->file, at,
                            "the target of a rod is a file with a polyline, three formulas of s and L, or a "
                            "cloud of points");

@@ -1,5 +1,6 @@
 /* What `slender check` says of a rod, and what is doubtful about it. */
 #include "base/memory.h"
+#include "model/advise.h"
 #include "model/coercivity.h"
 #include "rod/front/front.h"
 
@@ -41,6 +42,8 @@ void rod_advise(Model *model, const Scene *scene)
     if (rm->section.reach > longest / 5 && longest > 0)
         mesh_warn(&model->report, "the section, %.3g m, is more than a fifth of the length: no thin rod",
                   rm->section.reach);
+    advise_value(model, "density", "kg/m^3", rod_scene(scene)->density);
+    if (!model->case_count) advise_value(model, "young", "Pa", rm->young); /* else it is in p */
     if (!rm->rod || !model->case_count) return;
     int *points;
     coercivity_advise(model, scene, magnets_of(rm, &points));

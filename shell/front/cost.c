@@ -50,57 +50,83 @@ static void piece_destroy(Piece *piece)
 /* ---- What the factor of a surface costs ---- */
 
 /* Numbers of L over n = slope * log2(n) - less, flops = rate * n^1.5: METIS on sheets of 33 000 to a million
- * triangles twice as long as wide, by the bending model. */
+ * triangles twice as long as wide, by the bending model. Of small ones, 2 to 2000 triangles: small * sqrt(n). */
 static const struct {
-    double slope, less, rate;
-} laws[] = {[BENDING_MIDEDGE] = {33.6, 316, 480}, [BENDING_HINGE] = {39, 324, 690}};
+    double slope, less, rate, small;
+} laws[] = {[BENDING_MIDEDGE] = {33.6, 316, 480, 2.1}, [BENDING_HINGE] = {39, 324, 690, 2.3}};
 
+static const double SMALL_MOST = 110;   /* numbers over n, where the laws meet                 */
 static const double REFERENCE = 4.5;    /* elongation of those sheets                          */
 static const double BYTES = 9.5;        /* of a number of L: supernodes store a few zeros, too */
 static const double METIS_COST = 2.2;   /* to order an unknown, over AMD                       */
 static const double OUT_OF_CACHE = 1.5; /* assembly of a large mesh, over that of the piece    */
 
-/* Vertices by their distance in edges from a vertex; returns the one farthest off, and how far. */
-static int sweep(const int *first, const int *next, int count, int from, int *distance, int *queue,
-                 int *depth)
+/* The vertices of each vertex's edges: next[first[v] .. first[v + 1] - 1]. */
+typedef struct Ways {
+    int *first, *next;
+} Ways;
+
+static Ways ways_create(const Mesh *mesh)
+{
+    int n = mesh->vertex_count;
+    Ways ways = {mem_alloc((size_t)n + 2, sizeof(int)), mem_alloc(2 * (size_t)mesh->edge_count, sizeof(int))};
+    for (int e = 0; e < mesh->edge_count; e++)
+        for (int i = 0; i < 2; i++) ways.first[mesh->edges[e][i] + 2]++;
+    for (int v = 0; v < n; v++) ways.first[v + 2] += ways.first[v + 1];
+    for (int e = 0; e < mesh->edge_count; e++)
+        for (int i = 0; i < 2; i++) ways.next[ways.first[mesh->edges[e][i] + 1]++] = mesh->edges[e][1 - i];
+    return ways;
+}
+
+/* A part's vertices, by their distance in edges from one of them, which is -1 before. The last is farthest off. */
+typedef struct Sweep {
+    int end, depth, count;
+} Sweep;
+
+static Sweep sweep(Ways ways, int from, int *distance, int *queue)
 {
     int head = 0, tail = 0;
-    for (int v = 0; v < count; v++) distance[v] = -1;
     queue[tail++] = from;
     for (distance[from] = 0; head < tail; head++)
-        for (int k = first[queue[head]]; k < first[queue[head] + 1]; k++)
-            if (distance[next[k]] < 0) distance[next[k]] = distance[queue[head]] + 1, queue[tail++] = next[k];
-    *depth = distance[queue[tail - 1]];
-    return queue[tail - 1];
+        for (int v = queue[head], k = ways.first[v]; k < ways.first[v + 1]; k++)
+            if (distance[ways.next[k]] < 0)
+                distance[ways.next[k]] = distance[v] + 1, queue[tail++] = ways.next[k];
+    return (Sweep){queue[tail - 1], distance[queue[tail - 1]], tail};
 }
 
-/* The squared diameter over the vertices, in edges: about length over width. Separators are as long as the body is
- * wide. */
-static double elongation(const Mesh *mesh)
+/* Of a part of the body with that diameter, in edges, whose square over the vertices is about length over width: a long one is
+ * a row of pieces of the sheets' form, as separators are as long as it is wide. */
+static void add_part(BendingModel bending, Sweep part, double unknowns, Cost *cost)
 {
-    int n = mesh->vertex_count, end = 0, depth = 0;
-    int *first = mem_alloc((size_t)n + 2, sizeof *first),
-        *next = mem_alloc(2 * (size_t)mesh->edge_count, sizeof *next),
-        *work = mem_alloc(2 * (size_t)n, sizeof *work);
-    for (int e = 0; e < mesh->edge_count; e++)
-        for (int i = 0; i < 2; i++) first[mesh->edges[e][i] + 2]++;
-    for (int v = 0; v < n; v++) first[v + 2] += first[v + 1];
-    for (int e = 0; e < mesh->edge_count; e++)
-        for (int i = 0; i < 2; i++) next[first[mesh->edges[e][i] + 1]++] = mesh->edges[e][1 - i];
-    for (int pass = 0; pass < 3; pass++) end = sweep(first, next, n, end, work, work + n, &depth);
-    mem_free(first);
-    mem_free(next);
-    mem_free(work);
-    return (double)depth * depth / n;
+    double elongation = (double)part.depth * part.depth / part.count,
+           pieces = fmax(1, elongation / REFERENCE), n = unknowns / pieces,
+           large = laws[bending].slope * log2(n) - laws[bending].less,
+           small = fmin(laws[bending].small * sqrt(n), SMALL_MOST);
+    cost->numbers += unknowns * fmax(large, small);
+    cost->flops += pieces * fmin(laws[bending].rate * pow(n, 1.5), n * n * n / 3);
 }
 
-/* A long body is a row of pieces of the sheets' form. */
 static void count_by_law(const Shell *shell, double unknowns, Cost *cost)
 {
-    double pieces = fmax(1, elongation(shell->mesh) / REFERENCE), n = unknowns / pieces;
-    cost->numbers = unknowns * (laws[shell->bending].slope * log2(n) - laws[shell->bending].less);
-    cost->flops = pieces * laws[shell->bending].rate * pow(n, 1.5);
+    enum { PASSES = 3 };
+    const Mesh *mesh = shell->mesh;
+    int n = mesh->vertex_count, *distance[PASSES], *queue = mem_alloc((size_t)n, sizeof *queue);
+    Ways ways = ways_create(mesh);
+    for (int k = 0; k < PASSES; k++) {
+        distance[k] = mem_alloc((size_t)n, sizeof *distance[k]);
+        for (int v = 0; v < n; v++) distance[k][v] = -1;
+    }
+    for (int v = 0; v < n; v++) {
+        if (distance[0][v] >= 0) continue;
+        Sweep part = {.end = v};
+        for (int k = 0; k < PASSES; k++) part = sweep(ways, part.end, distance[k], queue);
+        add_part(shell->bending, part, unknowns * part.count / n, cost);
+    }
     cost->factor_bytes = BYTES * cost->numbers;
+    for (int k = 0; k < PASSES; k++) mem_free(distance[k]);
+    mem_free(queue);
+    mem_free(ways.first);
+    mem_free(ways.next);
 }
 
 /* ---- The whole ---- */

@@ -1,6 +1,7 @@
 /* What `slender check` says of a solid, and what is doubtful about it. */
 #include "base/memory.h"
 #include "base/vec3.h"
+#include "model/advise.h"
 #include "model/coercivity.h"
 #include "solid/front/front.h"
 #include <math.h>
@@ -30,6 +31,32 @@ static MagnetPart magnet_of(const Solid *solid, int which)
     return part;
 }
 
+/* A group that is given a value of the skin, and has none of it. */
+static void advise_group(Model *model, const char *key, const char *name)
+{
+    const Solid *solid = model->self;
+    const MeshGroup *group = mesh_group(model->mesh, name, 2);
+    bool any = !solid->skin_on;
+    for (int k = 0; !any && k < group->count; k++) any = solid->skin_on[group->members[k]];
+    if (!any)
+        mesh_warn(&model->report, "solid.skin.%s.groups.%s is without effect: `solid.skin.on` leaves it out",
+                  key, name);
+}
+
+static void advise_skin(Model *model, const SkinScene *skin, double size)
+{
+    if (!skin) return;
+    if (skin->thickness > size / 5)
+        mesh_warn(
+            &model->report,
+            "the skin's thickness, %.3g m, is more than a fifth of the body's size, %.3g m: no thin skin",
+            skin->thickness, size);
+    for (int k = 0; k < skin->magnetization.groups_count; k++)
+        advise_group(model, "magnetization", skin->magnetization.groups[k].group);
+    for (int k = 0; skin->young && k < skin->young->groups_count; k++)
+        advise_group(model, "young", skin->young->groups[k].group);
+}
+
 void solid_advise(Model *model, const Scene *scene)
 {
     const Solid *solid = model->self;
@@ -38,6 +65,8 @@ void solid_advise(Model *model, const Scene *scene)
         mesh_warn(&model->report,
                   "the body is %.3g m long; if its file is in millimetres, give the mesh `scale: 1.0e-3`",
                   size);
+    advise_value(model, "density", "kg/m^3", solid->density);
+    advise_skin(model, solid_scene(scene)->skin, size);
     if (solid->tets->order == TET_LINEAR && solid->averaging == 0)
         mesh_warn(&model->report,
                   "linear tetrahedra are far too stiff in bending: `order: 2`, or `averaging: 1`");
