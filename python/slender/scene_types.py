@@ -165,7 +165,7 @@ PlaceOfASkinKeys = TypedDict("PlaceOfASkinKeys", {
 
 Spline = TypedDict("Spline", {
     "image": "str", "density": "DensityOfADrawing", "tone": "Tone", "page": "Page", "pen": "Number",
-    "pens": "Rows[Pens]", "separation": "Separation", "regions": "Rows[Regions]", "cross": "Cross",
+    "pens": "Rows[Pens]", "paper": "Number", "separation": "Separation", "regions": "Rows[Regions]", "cross": "Cross",
     "direction": "Direction", "start": "StartOfADrawing", "energies": "Energies", "potential": "Potential",
     "flow": "Flow", "pair": "Pair", "method": "Literal['auto', 'newton', 'gradient', 'monte_carlo', 'dynamics']",
     "iterations": "int", "tolerance": "float", "draft": "bool", "rounds": "int", "rest": "float",
@@ -191,7 +191,7 @@ SizeOfAPageKeys = TypedDict("SizeOfAPageKeys", {
 }, total=False)
 
 PensKeys = TypedDict("PensKeys", {
-    "name": "Number", "color": "Number", "width": "Number", "from": "float", "turn": "Number",
+    "name": "Number", "color": "Number", "opaque": "bool", "width": "Number", "from": "float", "turn": "Number",
 }, total=False)
 
 SeparationKeys = TypedDict("SeparationKeys", {

@@ -28,7 +28,8 @@ typedef struct DrawingRegion {
 typedef struct Drawing {
     SplinePage page; /* with the finest pen */
     int pen_count, part_count, region_count;
-    SplinePen *pens;    /* names owned                                      */
+    SplinePen *pens; /* names owned                                      */
+    Color paper;
     SplineField *tones; /* [pen_count] what each shall cover, in all its parts; width 1 */
     DrawingPart *parts; /* in the order of the pens                         */
     DrawingRegion *regions;

@@ -253,7 +253,8 @@ bool drawing_read_fields(Drawing *d, const SplineScene *scene, YamlFile *file)
     SplineField tone = {0};
     bool ok = read_tone_def(&r) && read_image(&r, &d->page);
     if (ok) fit_page(&r, &d->page);
-    ok = ok && pens_read(scene, file, &d->page, &d->pens, &d->pen_count) && read_tone(&r, &d->page, &tone);
+    ok = ok && pens_paper(scene, file, &d->paper) &&
+         pens_read(scene, file, &d->page, &d->pens, &d->pen_count) && read_tone(&r, &d->page, &tone);
     if (ok) {
         share_tone(&r, &tone, d);
         make_picture(&r, &tone, d);

@@ -113,6 +113,7 @@ static bool read_pen(const SplineScene *scene, YamlFile *file, const SplinePage 
     Error err;
     double width = isnan(from->width) ? scene->pen : from->width;
     pen->width = width / page->unit;
+    pen->opaque = from->opaque;
     if (pen->width > PEN_MAX || pen->width > PEN_ACROSS * fmin(page->width, page->height))
         return yaml_refuse(file, at.text, "a pen of %g m is too wide for a page of %g x %g m", width,
                            page->paper[0], page->paper[1]);
@@ -120,6 +121,13 @@ static bool read_pen(const SplineScene *scene, YamlFile *file, const SplinePage 
     if (from->color) return yaml_refuse(file, at.text, "%s", err.text);
     pen->color = (Color){0, 0, 0, 1}; /* of a pen whose name is no colour */
     return true;
+}
+
+bool pens_paper(const SplineScene *scene, YamlFile *file, Color *paper)
+{
+    Error err;
+    return color_parse(scene->paper ? scene->paper : "white", paper, &err) ||
+           yaml_refuse(file, "spline.paper", "%s", err.text);
 }
 
 bool pens_read(const SplineScene *scene, YamlFile *file, const SplinePage *page, SplinePen **pens, int *count)

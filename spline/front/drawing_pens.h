@@ -10,6 +10,9 @@ double pens_finest(const SplineScene *scene);
 bool pens_read(const SplineScene *scene, YamlFile *file, const SplinePage *page, SplinePen **pens,
                int *count);
 
+/* The colour of the paper. False after a refusal. */
+bool pens_paper(const SplineScene *scene, YamlFile *file, Color *paper);
+
 /* Which of the inks of spline_separate the pen of that name draws; -1: none. */
 int pens_ink(const char *name);
 

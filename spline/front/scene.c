@@ -56,6 +56,10 @@ static const YamlTable pen_table = {
         {YAML_TEXT(PenScene, color),
          .doc = "#rrggbb, or black, grey, red, green, blue, cyan, magenta, yellow, orange, brown, purple; "
                 "the pen's name if absent"},
+        {YAML_BOOL(PenScene, opaque),
+         .doc =
+             "its ink covers what is below it, as paint markers and gel pens do; else that shines through, "
+             "and `color` is what it looks like on white paper"},
         {YAML_NUMBER(PenScene, width), .unit = "m", .range = "(0, 0.1]", .doc = "`pen` if absent"},
         {YAML_NUMBER(PenScene, from), .when = "/spline.separation.kind: tones", .range = "[0, 1)",
          .doc = "with `separation: tones`: it draws where the density is this or more, up to the next pen's; "
@@ -329,6 +333,8 @@ const YamlTable spline_table = {
          .doc = "width of the line"},
         {YAML_LIST(SplineScene, pens, &pen_table), .max_count = 32,
          .doc = "several of them; one black pen if absent"},
+        {YAML_TEXT(SplineScene, paper),
+         .doc = "its colour, as a pen's; white if absent. Light pens on dark paper are `opaque`"},
         {YAML_OPTIONAL(SplineScene, separation, &separation_table), .doc = "of several pens"},
         {YAML_LIST(SplineScene, regions, &region_table), .max_count = 64,
          .doc = "what is drawn of the page, each with strokes of its own; all of it if absent"},
