@@ -195,7 +195,7 @@ PensKeys = TypedDict("PensKeys", {
 }, total=False)
 
 SeparationKeys = TypedDict("SeparationKeys", {
-    "kind": "Literal['cmyk', 'tones']", "black": "float",
+    "kind": "Literal['cmyk', 'tones', 'match']", "black": "float", "intent": "Literal['relative', 'absolute']",
 }, total=False)
 
 Regions = TypedDict("Regions", {
@@ -539,7 +539,7 @@ PlaceOfASkin = Union["PlaceOfASkinKeys", Number]
 DensityOfADrawing = Union["DensityOfADrawingKeys", Number]
 SizeOfAPage = Union["SizeOfAPageKeys", Number, Numbers]
 Pens = Union["PensKeys", Number]
-Separation = Union["SeparationKeys", Literal['cmyk', 'tones']]
+Separation = Union["SeparationKeys", Literal['cmyk', 'tones', 'match']]
 Direction = Union["DirectionKeys", Literal['structure_tensor'], Number]
 StartOfADrawing = Union["StartOfADrawingKeys", Literal['streamlines', 'random']]
 Potential = Union["PotentialKeys", Number]

@@ -22,7 +22,9 @@ static const YamlTable tone_table = {
         {YAML_ROWS(ToneScene, curve), .range = "[0, 1]", .min_count = 2,
          .doc = "instead of black, white and gamma: rows of grey level and brightness, linear between"},
         {YAML_NUMBER(ToneScene, density), .range = "(0, 1)", .fallback = "0.85",
-         .doc = "part of the paper covered where the picture is black"},
+         .doc = "part of the paper covered where the picture is black; with `separation: match` what each "
+                "pen covers at "
+                "most"},
         {0}}};
 
 static const YamlTable paper_table = {
@@ -66,7 +68,7 @@ static const YamlTable pen_table = {
                 "0 for the first"},
         {YAML_NUMBER(PenScene, turn), .unit = "rad",
          .doc = "its strokes are turned by this angle from the direction; 0 if absent, with cmyk -30, 30, 90 "
-                "and 0 deg"},
+                "and 0 deg, with match 180 deg over their number from each to the next"},
         {0}}};
 
 static const YamlTable separation_table = {
@@ -74,11 +76,20 @@ static const YamlTable separation_table = {
     .size = sizeof(SeparationScene),
     .doc = "What each pen draws.",
     .fields = (const YamlField[]){
-        {YAML_CHOICE(SeparationScene, kind), .choices = YAML_NAMES("cmyk", "tones"), .required = true,
-         .short_form = true,
-         .doc = "inks that give the picture's colours, or each pen its own range of tones"},
+        {YAML_CHOICE(SeparationScene, kind), .choices = YAML_NAMES("cmyk", "tones", "match"),
+         .required = true, .short_form = true,
+         .doc = "inks that give the picture's colours; or each pen its own range of tones; or as much of "
+                "each pen as "
+                "gives the picture's colours with the pens and the paper that there are"},
         {YAML_NUMBER(SeparationScene, black), .when = "kind: cmyk", .range = "[0, 1]", .fallback = "1",
          .doc = "of cmyk: how much of what cyan, magenta and yellow have in common becomes black"},
+        {YAML_CHOICE(SeparationScene, intent), .when = "kind: match",
+         .choices = YAML_NAMES("relative", "absolute"), .fallback = "relative",
+         .doc = "of match: the picture's white and black become the nearest colours to them that pens and "
+                "paper have, "
+                "and all between them goes along; or every colour becomes the nearest one, and beyond all of "
+                "them "
+                "there is no difference"},
         {0}}};
 
 static const YamlTable cross_table = {

@@ -30,10 +30,10 @@ typedef struct PenScene {
     bool opaque;
 } PenScene;
 
-typedef enum SeparationKind { SEPARATE_CMYK, SEPARATE_TONES } SeparationKind;
+typedef enum SeparationKind { SEPARATE_CMYK, SEPARATE_TONES, SEPARATE_MATCH } SeparationKind;
 
 typedef struct SeparationScene {
-    int kind; /* SeparationKind */
+    int kind, intent; /* SeparationKind, InkIntent */
     double black;
 } SeparationScene;
 
