@@ -2,7 +2,7 @@
 #include <math.h>
 #include <string.h>
 
-static const double LEAST_INK = 1e-4; /* how much squares of amounts count */
+static const double INK = 1e-4, EVEN = 1e-4; /* how much amounts and their squares count */
 
 enum { STEPS = 60, HALVINGS = 30 };
 
@@ -96,8 +96,8 @@ static double cost(const Fit *fit, const double *cover)
 {
     Vec3 off = vec3_sub(lab(ink_mix(fit->set, cover)), fit->want);
     double ink = 0;
-    for (int k = 0; k < fit->set->count; k++) ink += cover[k] * cover[k];
-    return vec3_dot(off, off) + LEAST_INK * ink;
+    for (int k = 0; k < fit->set->count; k++) ink += cover[k] * (INK + EVEN * cover[k]);
+    return vec3_dot(off, off) + ink;
 }
 
 /* x of a x = b, a symmetric and positive, by Cramer's rule. */
@@ -108,25 +108,59 @@ static Vec3 solve3(Mat3 a, Vec3 b)
                                                    vec3_dot(a.r0, vec3_cross(a.r1, b))));
 }
 
-/* Where the linearised problem is least, to[count]; an ink at a bound that it would leave only outwards stays. The free
- * ones are -J^T (J J^T + e I)^-1 (r - J a), a matrix of three rows however many they are. */
-static void aim(const Fit *fit, const double *cover, double *to)
+/* The problem made linear at `cover`. */
+typedef struct Linear {
+    const InkSet *set;
+    const double *cover;
+    Vec3 off, slopes[INK_MAX]; /* J                             */
+    bool held[INK_MAX];        /* stays at the bound where it is */
+} Linear;
+
+static bool leaves(const Linear *l, int k, double way)
 {
-    const InkSet *set = fit->set;
-    Vec3 slopes[INK_MAX], color = mix_slopes(set, cover, slopes), off = vec3_sub(lab(color), fit->want);
-    Vec3 rest = off;
-    Mat3 square = mat3_scale(LEAST_INK, mat3_identity());
-    bool held[INK_MAX];
-    for (int k = 0; k < set->count; k++) {
-        slopes[k] = lab_slope(color, slopes[k]);
-        double uphill = vec3_dot(slopes[k], off) + LEAST_INK * cover[k];
-        held[k] = (cover[k] <= 0 && uphill > 0) || (cover[k] >= set->most && uphill < 0);
-        if (held[k]) continue;
-        rest = vec3_axpy(-cover[k], slopes[k], rest);
-        square = mat3_add(square, mat3_outer(slopes[k], slopes[k]));
+    return (l->cover[k] <= 0 && way < 0) || (l->cover[k] >= l->set->most && way > 0);
+}
+
+static Linear linear(const Fit *fit, const double *cover)
+{
+    Linear l = {.set = fit->set, .cover = cover};
+    Vec3 color = mix_slopes(fit->set, cover, l.slopes);
+    l.off = vec3_sub(lab(color), fit->want);
+    for (int k = 0; k < fit->set->count; k++) {
+        l.slopes[k] = lab_slope(color, l.slopes[k]);
+        l.held[k] = leaves(&l, k, -(vec3_dot(l.slopes[k], l.off) + EVEN * cover[k] + INK / 2));
+    }
+    return l;
+}
+
+/* The least of it with those that are held where they are: b = -J^T (J J^T + e I)^-1 (r - J (a + i)) - i of the free
+ * ones, e = EVEN and i = INK/2e: a matrix of three rows however many inks there are. */
+static void solve(const Linear *l, double *to)
+{
+    const double shift = INK / (2 * EVEN);
+    Vec3 rest = l->off;
+    Mat3 square = mat3_scale(EVEN, mat3_identity());
+    for (int k = 0; k < l->set->count; k++) {
+        if (l->held[k]) continue;
+        rest = vec3_axpy(-l->cover[k] - shift, l->slopes[k], rest);
+        square = mat3_add(square, mat3_outer(l->slopes[k], l->slopes[k]));
     }
     rest = solve3(square, rest);
-    for (int k = 0; k < set->count; k++) to[k] = held[k] ? cover[k] : -vec3_dot(slopes[k], rest);
+    for (int k = 0; k < l->set->count; k++)
+        to[k] = l->held[k] ? l->cover[k] : -vec3_dot(l->slopes[k], rest) - shift;
+}
+
+/* Where to go. An ink at a bound that it would leave only outwards stays there, and what the others do without it is
+ * found anew: all that is left then leads downhill. */
+static void aim(const Fit *fit, const double *cover, double *to)
+{
+    Linear l = linear(fit, cover);
+    for (bool again = true; again;) {
+        again = false;
+        solve(&l, to);
+        for (int k = 0; k < l.set->count; k++)
+            if (!l.held[k] && leaves(&l, k, to[k] - cover[k])) again = l.held[k] = true;
+    }
 }
 
 /* A step of that part of the way, within the bounds. */

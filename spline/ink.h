@@ -31,8 +31,8 @@ Vec3 ink_mix(const InkSet *set, const double *cover);
 
 double ink_difference(Vec3 a, Vec3 b);
 
-/* What the inks should cover, 0 to `most`: the minimum of (Delta E/100)^2 and 1e-4 of the sum of squares, which takes
- * least ink where several amounts make the colour. Non-negative least squares on a model that is not linear: projected
- * Gauss-Newton steps [Bertsekas 1982] with as many unknowns as the colour has, three; from no ink and from half of it,
- * the better end. */
+/* What the inks should cover, 0 to `most`: the minimum of (Delta E/100)^2 and 1e-4 of all amounts and their squares,
+ * which takes least ink where several mixtures make the colour, and costs less than one Delta E as a rule.
+ * Non-negative least squares of a model that is not linear: projected Gauss-Newton steps [Bertsekas 1982]; from no ink
+ * and from half of it, the better end. */
 void ink_match(const InkSet *set, Vec3 color, double *cover);
