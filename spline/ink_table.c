@@ -65,14 +65,34 @@ static void look_up(InkTable *table, const double *dark, double *cover)
     }
 }
 
-void ink_table_cover(const InkSet *set, InkIntent intent, const SplineField *dark, SplineField *cover)
+/* Without its nodes. */
+static InkTable table_of(const InkSet *set, InkIntent intent)
 {
-    size_t entries = NODES * (size_t)set->count;
-    InkTable table = {set, vec3(0, 0, 0), vec3(1, 1, 1), mem_alloc(entries, sizeof *table.cover)};
+    InkTable table = {set, vec3(0, 0, 0), vec3(1, 1, 1), NULL};
     if (intent == INK_RELATIVE) {
         table.black = nearest(set, table.black);
         table.white = nearest(set, table.white);
     }
+    return table;
+}
+
+SplineField ink_table_light(const InkSet *set, InkIntent intent, const SplineField *dark)
+{
+    InkTable table = table_of(set, intent);
+    SplineField light = spline_field_like(dark, 3);
+    for (size_t i = 0; i < (size_t)dark->columns * (size_t)dark->rows; i++) {
+        const double *d = dark->values + 3 * i;
+        Vec3 color = between(&table, ink_linear((Color){1 - d[0], 1 - d[1], 1 - d[2], 1}));
+        vec3_store(light.values + 3 * i, vec3_sub(color, set->paper));
+    }
+    return light;
+}
+
+void ink_table_cover(const InkSet *set, InkIntent intent, const SplineField *dark, SplineField *cover)
+{
+    size_t entries = NODES * (size_t)set->count;
+    InkTable table = table_of(set, intent);
+    table.cover = mem_alloc(entries, sizeof *table.cover);
     for (size_t i = 0; i < entries; i++) table.cover[i] = NAN;
     for (int k = 0; k < set->count; k++) cover[k] = spline_field_like(dark, 1);
     for (size_t i = 0; i < (size_t)dark->columns * (size_t)dark->rows; i++) {

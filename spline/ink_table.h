@@ -16,3 +16,6 @@ Vec3 ink_linear(Color color);
 
 /* dark: of each pixel 1 - red, 1 - green and 1 - blue, of sRGB. cover[count]: what each ink shall cover; owned. */
 void ink_table_cover(const InkSet *set, InkIntent intent, const SplineField *dark, SplineField *cover);
+
+/* The light that they should add to the paper's, [3] of each pixel; owned. */
+SplineField ink_table_light(const InkSet *set, InkIntent intent, const SplineField *dark);

@@ -3,6 +3,7 @@
 #include "base/memory.h"
 #include "drawing_fixture.h"
 #include "spline/ink.h"
+#include "spline/ink_seen.h"
 #include "spline/ink_table.h"
 #include <math.h>
 
@@ -175,6 +176,37 @@ static void tables(void **state)
     spline_field_clear(&dark);
 }
 
+/* Lines of two pens across each other, from edge to edge, have the colour that covered parts of 1/2 and 1/3 make, by
+ * both kinds of ink; from another colour they are as far as that is. */
+static void seen(void **state)
+{
+    (void)state;
+    enum { ACROSS = 25, DOWN = 50 };
+    SplinePage page = spline_page(0.1, 0.1, 0, 1e-3);
+    const double widths[] = {page.pen, 4.0 / 3 * page.pen}, cover[] = {0.5, 1.0 / 3};
+    Strokes strokes = {0};
+    for (int k = 0; k < DOWN; k++) {
+        double y = (k + 0.5) / DOWN;
+        strokes_add(&strokes, 2, (const double[2][4]){{0, y, 1.0 / 3, 0}, {1, y, 1.0 / 3, 0}}, 0);
+    }
+    for (int k = 0; k < ACROSS; k++) {
+        double x = (k + 0.5) / ACROSS;
+        strokes_add(&strokes, 2, (const double[2][4]){{x, 0, 0, 1.0 / 3}, {x, 1, 0, 1.0 / 3}}, 1);
+    }
+    for (int first = 0; first < 3; first++) { /* none is opaque, or the second, or the first */
+        InkSet set = {vec3(0.9, 0.8, 0.7), 2, four + first, 1};
+        SplineField light = spline_field_create(&page, 0.02, 3);
+        Vec3 mixed = ink_mix(&set, cover);
+        expect_close(ink_seen_error(&set, &page, widths, &strokes, &light), ink_difference(mixed, set.paper),
+                     1);
+        for (int i = 0; i < light.columns * light.rows; i++)
+            vec3_store(light.values + 3 * i, vec3_sub(mixed, set.paper));
+        assert_true(ink_seen_error(&set, &page, widths, &strokes, &light) < 0.5);
+        spline_field_clear(&light);
+    }
+    strokes_clear(&strokes);
+}
+
 /* A picture of pure colours by pens in these colours on black paper; beside a strip the paper stays as it is. */
 static void scenes(void **state)
 {
@@ -217,6 +249,7 @@ int main(void)
                                        cmocka_unit_test_teardown(separable, nothing_leaks),
                                        cmocka_unit_test_teardown(nearest, nothing_leaks),
                                        cmocka_unit_test_teardown(tables, nothing_leaks),
+                                       cmocka_unit_test_teardown(seen, nothing_leaks),
                                        cmocka_unit_test_teardown(scenes, nothing_leaks)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -129,29 +129,36 @@ static SplineField colours(const Reader *r, const SplinePage *page, SplineToneDe
 }
 
 /* 1 where the picture is, 0 beside it. */
-static SplineField picture_cover(const Reader *r, const SplinePage *page)
+static SplineField picture_cover(const Reader *r, const SplinePage *page, double pixel)
 {
     size_t pixels = (size_t)r->grey.width * (size_t)r->grey.height;
     Image black = {r->grey.width, r->grey.height, mem_alloc(pixels, sizeof *black.grey)};
     SplineToneDef def = spline_tone_default();
     memcpy(def.crop, r->tone.crop, sizeof def.crop);
     def.cover = r->tone.cover, def.density = 1;
-    SplineField cover = spline_tone(&black, page, &def, r->pixel);
+    SplineField cover = spline_tone(&black, page, &def, pixel);
     image_clear(&black);
     return cover;
 }
 
-/* As much of each pen as makes the picture's colours; paper beside it stays blank. */
+/* As much of each pen as makes the picture's colours, and these; paper beside it stays blank. */
 static void match(const Reader *r, Drawing *d)
 {
     Ink inks[INK_MAX];
-    for (int k = 0; k < d->pen_count; k++) inks[k] = pens_coat(&d->pens[k]);
-    InkSet set = {ink_linear(d->paper), d->pen_count, inks, r->tone.density};
+    InkSet set = pens_inks(d->paper, d->pens, d->pen_count, inks);
+    set.most = r->tone.density;
+    InkIntent intent = (InkIntent)r->scene->separation->intent;
     SplineToneDef open = r->tone;
     open.extend = true;
-    SplineField dark = colours(r, &d->page, open, r->pixel), cover = picture_cover(r, &d->page);
-    ink_table_cover(&set, (InkIntent)r->scene->separation->intent, &dark, d->tones);
+    SplineField dark = colours(r, &d->page, open, r->pixel), cover = picture_cover(r, &d->page, r->pixel);
+    ink_table_cover(&set, intent, &dark, d->tones);
     for (int k = 0; k < d->pen_count; k++) spline_field_multiply(&d->tones[k], &cover);
+    spline_field_clear(&dark);
+    spline_field_clear(&cover);
+    dark = colours(r, &d->page, open, shown_pixel(&d->page));
+    cover = picture_cover(r, &d->page, shown_pixel(&d->page));
+    d->light = ink_table_light(&set, intent, &dark);
+    spline_field_multiply(&d->light, &cover);
     spline_field_clear(&dark);
     spline_field_clear(&cover);
 }
@@ -294,6 +301,7 @@ bool drawing_read_fields(Drawing *d, const SplineScene *scene, YamlFile *file)
     ok = ok && drawing_read_regions(d, scene, file, &r.tone, r.pixel) && read_directions(&r, d) &&
          read_energy_fields(&r, d);
     if (ok && d->region_count) drawing_mask(d, &d->picture);
+    if (ok && d->region_count && d->light.columns) drawing_mask(d, &d->light);
     spline_field_clear(&tone);
     image_clear(&r.grey);
     for (int c = 0; c < 3; c++) image_clear(&r.rgb[c]);

@@ -145,16 +145,17 @@ static bool read_paper(const SplineScene *scene, YamlFile *file, Color *paper)
            yaml_refuse(file, "spline.paper", "%s", err.text);
 }
 
-Ink pens_coat(const SplinePen *pen)
+InkSet pens_inks(Color paper, const SplinePen *pens, int count, Ink *coats)
 {
-    return (Ink){ink_linear(pen->color), pen->opaque};
+    for (int k = 0; k < count; k++) coats[k] = (Ink){ink_linear(pens[k].color), pens[k].opaque};
+    return (InkSet){ink_linear(paper), count, coats, 1};
 }
 
 /* Who says what the paper is, or wants colours, means pens that are seen on it. */
 static bool check_seen(const SplineScene *scene, YamlFile *file, Color paper, const SplinePen *pen, Key at)
 {
-    Ink coat = pens_coat(pen);
-    InkSet set = {ink_linear(paper), 1, &coat, 1};
+    Ink coat;
+    InkSet set = pens_inks(paper, pen, 1, &coat);
     if (pen->opaque || !(scene->paper || is(scene, SEPARATE_MATCH)) ||
         ink_difference(ink_mix(&set, (const double[]){1}), set.paper) >= SEEN)
         return true;

@@ -12,8 +12,8 @@ double pens_finest(const SplineScene *scene);
 bool pens_read(const SplineScene *scene, YamlFile *file, const SplinePage *page, Color *paper,
                SplinePen **pens, int *count);
 
-/* The pen's ink. */
-Ink pens_coat(const SplinePen *pen);
+/* Their inks, each of which may cover all; coats[count] is what the set borrows. */
+InkSet pens_inks(Color paper, const SplinePen *pens, int count, Ink *coats);
 
 /* Which of the inks of spline_separate the pen of that name draws; -1: none. */
 int pens_ink(const char *name);
