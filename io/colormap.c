@@ -17,7 +17,7 @@ static const unsigned diverging[DIVERGING_COUNT] = {
     0x1d4d87, 0x2c61a0, 0x3c75ba, 0x5289cf, 0x6d9fdf, 0x8bb4ea, 0xaccaf0, 0xcfdff3, 0xf3f3f3,
     0xf9d3ce, 0xf9b2ab, 0xf3938a, 0xe8756c, 0xd75952, 0xc1413d, 0xa6302d, 0x8b1e1e};
 
-static double linear_from_srgb(double c)
+double color_linear(double c)
 {
     return c <= 0.04045 ? c / 12.92 : pow((c + 0.055) / 1.055, 2.4);
 }
@@ -41,7 +41,7 @@ static Vec3 oklab_from_rgb(Vec3 c)
     const Mat3 lab = {{0.2104542553, 0.7936177850, -0.0040720468},
                       {1.9779984951, -2.4285922050, 0.4505937099},
                       {0.0259040371, 0.7827717662, -0.8086757660}};
-    Vec3 v = mat3_times(lms, vec3(linear_from_srgb(c.x), linear_from_srgb(c.y), linear_from_srgb(c.z)));
+    Vec3 v = mat3_times(lms, vec3(color_linear(c.x), color_linear(c.y), color_linear(c.z)));
     return mat3_times(lab, vec3(cbrt(v.x), cbrt(v.y), cbrt(v.z)));
 }
 

@@ -15,6 +15,9 @@ typedef struct Color {
  * sentence for anything else. */
 bool color_parse(const char *text, Color *color, Error *err);
 
+/* A component of sRGB as light, 0..1 [IEC 61966-2-1]. */
+double color_linear(double srgb);
+
 typedef enum Colormap { COLORMAP_VIRIDIS, COLORMAP_DIVERGING } Colormap;
 
 /* The colour at t in 0..1; t outside is clamped, NaN is a neutral grey. */

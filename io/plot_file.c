@@ -44,16 +44,22 @@ static void add_point(Text *text, char before, Vec2 p)
     plot_add_number(text, p.y, 3);
 }
 
+static void add_color(Text *text, Color color)
+{
+    text_add(text, "#%02x%02x%02x", (unsigned)lround(255 * color.r), (unsigned)lround(255 * color.g),
+             (unsigned)lround(255 * color.b));
+}
+
 static void add_layer(Text *text, const PlotLayer *layer, int number)
 {
-    unsigned rgb[3] = {(unsigned)lround(255 * layer->color.r), (unsigned)lround(255 * layer->color.g),
-                       (unsigned)lround(255 * layer->color.b)};
     text_add(text, "<g id=\"layer%d\" inkscape:groupmode=\"layer\" inkscape:label=\"%d-", number, number);
     text_add_xml(text, layer->name);
-    text_add(text, "\" fill=\"none\" stroke=\"#%02x%02x%02x\" stroke-width=\"", rgb[0], rgb[1], rgb[2]);
+    text_add(text, "\" fill=\"none\" stroke=\"");
+    add_color(text, layer->color);
+    text_add(text, "\" stroke-width=\"");
     plot_add_number(text, layer->pen, 3);
-    text_add(text, "\" stroke-linecap=\"round\" stroke-linejoin=\"round\" "
-                   "style=\"mix-blend-mode:multiply\">\n");
+    text_add(text, "\" stroke-linecap=\"round\" stroke-linejoin=\"round\"%s>\n",
+             layer->opaque ? "" : " style=\"mix-blend-mode:multiply\"");
     for (int k = 0; k < layer->count; k++) {
         text_add(text, "<path d=\"");
         for (int i = layer->start[k]; i < layer->start[k + 1]; i++)
@@ -76,8 +82,15 @@ bool plot_write_svg(const char *path, const Plot *plot, Error *err)
     text_add(&text,
              "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" "
              "xmlns:inkscape=\"http://www.inkscape.org/namespaces/inkscape\" width=\"%smm\" height=\"%smm\" "
-             "viewBox=\"0 0 %s %s\">\n",
+             "viewBox=\"0 0 %s %s\"",
              width.text, height.text, width.text, height.text);
+    Color c = plot->color;
+    if (c.a > 0 && (c.r < 1 || c.g < 1 || c.b < 1)) {
+        text_add(&text, " style=\"background:");
+        add_color(&text, c);
+        text_add(&text, "\"");
+    }
+    text_add(&text, ">\n");
     for (int k = 0; k < plot->layer_count; k++)
         if (plot->layers[k].count) add_layer(&text, &plot->layers[k], k + 1);
     text_add(&text, "</svg>\n");

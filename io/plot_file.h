@@ -13,22 +13,25 @@
 typedef struct PlotLayer {
     const char *name; /* "black"; borrowed by writers */
     Color color;
-    double pen; /* width of the line, mm */
+    bool opaque; /* hides what is below; else that shines through */
+    double pen;  /* width of the line, mm */
     int count;
     int *start;   /* [count + 1] */
     Vec2 *points; /* [start[count]] */
 } PlotLayer;
 
 typedef struct Plot {
-    double paper[2]; /* width and height, mm */
+    double paper[2]; /* width and height, mm         */
+    Color color;     /* of the paper; a = 0: not said */
     int layer_count;
     PlotLayer *layers;
 } Plot;
 
 /* Writes an SVG in millimetres: width and height in mm, one user unit a millimetre, cubic curves rounded to
  * micrometres, a layer "1-black" of Inkscape's kind at the top level for each pen (AxiDraw and vpype read the
- * number) whose ink lets those below shine through, no transforms, no frame. Layers without curves are left
- * out, but count. */
+ * number) whose ink lets those below shine through unless it is opaque, no transforms, no frame. The colour
+ * of a paper that is not white is a style of the whole: no shape that a plotter would draw. Layers without curves are left out, but
+ * count. */
 bool plot_write_svg(const char *path, const Plot *plot, Error *err);
 
 enum { PLOTTER_COMMAND_MAX = 60 }; /* characters */

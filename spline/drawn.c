@@ -84,6 +84,21 @@ static bool read_plotter(Result *result, Plotter *plotter, Error *err)
     return plotter_check(plotter, err);
 }
 
+/* Results of versions that knew no other have white paper and inks that are not opaque. */
+static bool read_paper(Result *result, Drawn *drawn, Error *err)
+{
+    double color[] = {1, 1, 1};
+    Array opaque;
+    bool told = result_has(result, "slender/spline/paper_color");
+    if (told && !read_numbers(result, "paper_color", 3, color, err)) return false;
+    drawn->paper = (Color){color[0], color[1], color[2], 1};
+    if (!told) return true;
+    if (!read_array(result, "opaque", ARRAY_INT32, drawn->pen_count, &opaque, err)) return false;
+    for (int k = 0; k < drawn->pen_count; k++) drawn->pens[k].opaque = ((const int *)opaque.data)[k];
+    array_clear(&opaque);
+    return true;
+}
+
 static bool read_pens(Result *result, Drawn *drawn, Error *err)
 {
     Array names, width, color;
@@ -174,9 +189,10 @@ bool drawn_read(Result *result, Drawn *drawn, Error *err)
     *drawn = (Drawn){0};
     if (!drawn_has(result)) return error_set(err, "the result has no drawing");
     bool ok = read_page(result, drawn, err) && read_plotter(result, &drawn->plotter, err) &&
-              read_pens(result, drawn, err) && read_picture(result, &drawn->picture, err) &&
-              read_strokes(result, drawn, &drawn->strokes, err);
-    if (ok) drawn->plot = spline_plot(&drawn->strokes, &drawn->page, drawn->pens, drawn->pen_count);
+              read_pens(result, drawn, err) && read_paper(result, drawn, err) &&
+              read_picture(result, &drawn->picture, err) && read_strokes(result, drawn, &drawn->strokes, err);
+    if (ok)
+        drawn->plot = spline_plot(&drawn->strokes, &drawn->page, drawn->pens, drawn->pen_count, drawn->paper);
     return ok;
 }
 

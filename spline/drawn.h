@@ -3,7 +3,7 @@
  *
  * In a result, under /slender/spline: nodes [K,4] m (p and v on the paper, from its top left corner, y down),
  * strokes [S+1] first node of each stroke in the order in which they are plotted, pen [S]; and names (of the
- * pens, a line each), width [pens] m, color [pens,3], paper [2] m, margin [2] m (left and right,
+ * pens, a line each), width [pens] m, color [pens,3], opaque [pens] 0 or 1, paper [2] m, paper_color [3], margin [2] m (left and right,
  * above and below), speed [2] m/s (pen down, up),
  * lift s, z [3] (up, down m; m/s), servo (two commands, a line each: up, down), pause s (what G4 P1 waits),
  * picture [rows,columns] or [rows,columns,3]: what was to be drawn, 0 white .. 255 black or, of a
@@ -18,6 +18,7 @@ typedef struct Drawn {
     SplinePage page;
     int pen_count;
     SplinePen *pens; /* names owned */
+    Color paper;
     Strokes strokes; /* in units of the page */
     Plot plot;
     SplineField picture; /* as in Drawing */

@@ -157,7 +157,7 @@ Plot film_plot(const Film *film, const Drawn *drawn, int frame)
             q[i / 4][i % 4] = (GRAIN * from[i] - corner) / page->unit;
         }
     }
-    Plot plot = spline_plot(&strokes, page, drawn->pens, drawn->pen_count);
+    Plot plot = spline_plot(&strokes, page, drawn->pens, drawn->pen_count, drawn->paper);
     strokes_clear(&strokes);
     return plot;
 }

@@ -112,15 +112,18 @@ static void add_stroke(Builder *builder, const SplinePage *page, const Strokes *
     }
 }
 
-Plot spline_plot(const Strokes *strokes, const SplinePage *page, const SplinePen *pens, int pen_count)
+Plot spline_plot(const Strokes *strokes, const SplinePage *page, const SplinePen *pens, int pen_count,
+                 Color paper)
 {
     Plot plot = {.paper = {1e3 * page->paper[0], 1e3 * page->paper[1]},
+                 .color = paper,
                  .layer_count = pen_count,
                  .layers = mem_alloc((size_t)pen_count, sizeof *plot.layers)};
     double scale = 1e3 * page->unit;
     for (int layer = 0; layer < pen_count; layer++) {
         Builder builder = {.layer = {.name = mem_text(pens[layer].name),
                                      .color = pens[layer].color,
+                                     .opaque = pens[layer].opaque,
                                      .pen = scale * pens[layer].width}};
         for (int k = 0; k < strokes->count; k++)
             if (strokes->layer[k] == layer) add_stroke(&builder, page, strokes, k);

@@ -54,14 +54,17 @@ static void draw_curve(Canvas *canvas, const Vec2 *c, const Vec2 *end, const Fra
 void preview_draw(Canvas *canvas, const Plot *plot, Vec2 origin, double scale)
 {
     const Frame frame = {origin, scale};
+    if (plot->color.a > 0)
+        canvas_fill(canvas, (Box){origin.x, origin.y, scale * plot->paper[0], scale * plot->paper[1]},
+                    plot->color);
     for (int k = 0; k < plot->layer_count; k++) {
         const PlotLayer *layer = &plot->layers[k];
         Pen pen = {.color = layer->color, .width = scale * layer->pen};
-        canvas_begin_ink(canvas);
+        if (!layer->opaque) canvas_begin_ink(canvas);
         for (int i = 0; i < layer->count; i++)
             draw_curve(canvas, layer->points + layer->start[i], layer->points + layer->start[i + 1] - 1,
                        &frame, pen);
-        canvas_end_ink(canvas);
+        if (!layer->opaque) canvas_end_ink(canvas);
     }
 }
 

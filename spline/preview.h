@@ -1,5 +1,5 @@
-/* preview.h - a picture of a plot as it will look: every pen with its own width and colour, one ink
- * shining through the other. */
+/* preview.h - a picture of a plot as it will look: every pen with its own width and colour on paper of
+ * its colour, one ink shining through the other unless it is opaque. */
 #pragma once
 #include "io/canvas.h"
 #include "io/plot_file.h"

@@ -43,6 +43,14 @@ void strokes_add_from(Strokes *strokes, const Strokes *from, int stroke)
                 from->layer[stroke]);
 }
 
+Strokes strokes_of_layer(const Strokes *strokes, int layer)
+{
+    Strokes some = {0};
+    for (int k = 0; k < strokes->count; k++)
+        if (strokes->layer[k] == layer) strokes_add_from(&some, strokes, k);
+    return some;
+}
+
 void strokes_append(Strokes *strokes, const Strokes *more, int layer)
 {
     for (int k = 0; k < more->count; k++) {

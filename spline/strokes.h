@@ -34,6 +34,9 @@ void strokes_add(Strokes *strokes, int nodes, const double (*q)[4], int layer);
 void strokes_add_from(Strokes *strokes, const Strokes *from, int stroke);
 void strokes_append(Strokes *strokes, const Strokes *more, int layer);
 
+/* Those of one layer, alone; the caller frees. */
+Strokes strokes_of_layer(const Strokes *strokes, int layer);
+
 /* A copy; and frees what it owns. */
 Strokes strokes_copy(const Strokes *strokes);
 void strokes_clear(Strokes *strokes);

@@ -89,6 +89,7 @@ drawing_monte_carlo | scenes/spline_linewise.yaml | spline.page.size=[90mm,90mm]
 drawing_dynamics | tests/scene_draw.yaml | spline.method=dynamics
 drawing_regions | scenes/spline_regions.yaml | spline.rounds=1 spline.iterations=60
 drawing_cmyk | scenes/spline_cmyk.yaml | spline.page.size=[90mm,60mm] spline.page.margin=4mm
+drawing_match | scenes/spline_night.yaml | spline.page.size=[90mm,60mm] spline.page.margin=4mm
 drawing_plotter | scenes/spline_tones.yaml | spline.page.size=[90mm,60mm] output.gcode=a.gcode output.hpgl=a.hpgl
 LIST
 }

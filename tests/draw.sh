@@ -37,6 +37,10 @@ grep -q "^G1 Z-1 F40$" lift9.gcode || { echo "no z that takes its time"; bad=1; 
 [ "$(grep -A1 "^M3 S10$" s.nc | grep -c "^G4 P4.5$")" = "$(grep -c "^M3 S10$" s.nc)" ] || { echo "no pause after lowering"; bad=1; }
 expect 0 "$program" export lift9.vtkhdf -o c.gcode; same lift9.gcode c.gcode
 expect 0 "$program" export lift9.vtkhdf -o c.gcode --plotter gcode_servo; same s.nc c.gcode
+# White paint on black paper: results know both.
+expect 0 "$program" run "$scene" --quiet --no-picture -o night --set spline.rounds=0 --set 'spline.paper="#101020"' --set 'spline.pens=[{name: white, opaque: true, width: 0.6 mm}]'
+grep -q 'style="background:#101020"' night.svg && ! grep -q multiply night.svg || { echo "no white paint on black paper"; bad=1; }
+expect 0 "$program" export night.vtkhdf -o c.svg; same night.svg c.svg
 expect 2 "$program" export out/a.vtkhdf -o c.dwg; says "a drawing as .svg"
 expect 2 "$program" export out/a.vtkhdf -o c.yaml --plotter gcode; says "a drawing as .svg"
 expect 0 "$program" picture out/a.vtkhdf -o c.pdf --width 800; exists c.pdf

@@ -175,7 +175,7 @@ VALUES = {
     "magnetization.groups": [], "magnetization.other": ["[1, 2, 3]"], "magnetization.where": ["{a: x}"], "magnetization.file": [],
     "magnetization.formula": ['["x", "1", "2"]'], "flux_density.file": [], "flux_density.where": ["{a: x}"],
     "mesh.file": [], "mesh.shape": [], "mesh.n": ["3"], "mesh.size": ["[50 mm, 20 mm]"], "mesh.cells": ["[3, 2]"],
-    "spline.pens": ["[{name: black, turn: 30 deg}, {name: red, width: 2 mm}]"], "spline.separation": ["cmyk", "{kind: tones}"],
+    "spline.pens": ["[{name: black, turn: 30 deg}, {name: red, width: 2 mm}]", "[{name: white, opaque: true}]"], "spline.paper": ['"#101010"'], "spline.separation": ["cmyk", "{kind: tones}"],
     "spline.cross": ["{from: [0, 0.3]}"], "spline.regions": ["[{mask: grey.pgm}]", "[{mask: grey.pgm, invert: true, direction: 40 deg}]"], "spline.direction": ["30 deg", '{formula: ["1", "u"]}', "{file: grey.pgm}"],
     "spline.potential": ['"x"'], "spline.flow": ['["1", "u"]'], "spline.density": ['"0.5*v"'], "spline.image": [],
     "tone.curve": ["[[0, 1], [1, 0]]"], "tone.crop": ["[0, 0, 0.5, 1]"], "page.size": ["[50 mm, 40 mm]"],

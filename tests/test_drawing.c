@@ -82,7 +82,7 @@ static void nothing_beside(void **state)
     Strokes strokes = {0};
     drawing_begin(d, 0, 1, &strokes, &target);
     spline_relax(target, &d->relax, &strokes, NULL);
-    Plot plot = spline_plot(&strokes, &d->page, d->pens, d->pen_count);
+    Plot plot = spline_plot(&strokes, &d->page, d->pens, d->pen_count, d->paper);
     const PlotLayer *layer = &plot.layers[0];
     assert_true(layer->count > 30);
     for (int i = 0; i < layer->start[layer->count]; i++) {

@@ -53,6 +53,24 @@ static void svg_words(void **state)
     mem_free(again);
 }
 
+/* Paper of a colour is a style of the whole; opaque ink hides what is below it. White paper says nothing. */
+static void svg_paper(void **state)
+{
+    (void)state;
+    PlotLayer paint = layers[2];
+    paint.opaque = true;
+    Plot dark = {.paper = {148, 105}, .color = {0.2, 0, 1, 1}, .layer_count = 1, .layers = &paint};
+    char *text = written_svg(&dark);
+    assert_non_null(strstr(text, "viewBox=\"0 0 148 105\" style=\"background:#3300ff\">\n<g "));
+    assert_non_null(strstr(text, "stroke-linejoin=\"round\">\n<path"));
+    assert_null(strstr(text, "multiply"));
+    mem_free(text);
+    dark.color = (Color){1, 1, 1, 1};
+    text = written_svg(&dark);
+    assert_null(strstr(text, "background"));
+    mem_free(text);
+}
+
 /* One tag that begins at <: its name and whether it ends or begins an element; what follows it. Attributes
  * must be name="value" with nothing in the value that XML forbids there. */
 static const char *read_tag(const char *c, char name[32], int *depth)
@@ -303,14 +321,10 @@ static int live(void **state)
 int main(void)
 {
     usual = plotter_default();
-    const struct CMUnitTest tests[] = {cmocka_unit_test(svg_words),
-                                       cmocka_unit_test(svg_is_xml),
-                                       cmocka_unit_test(refused_plots),
-                                       cmocka_unit_test(machines),
-                                       cmocka_unit_test(names_for_machines),
-                                       cmocka_unit_test(own_profile),
-                                       cmocka_unit_test(times),
-                                       cmocka_unit_test(papers),
-                                       cmocka_unit_test(lifts)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(svg_words),   cmocka_unit_test(svg_paper),
+                                       cmocka_unit_test(svg_is_xml),  cmocka_unit_test(refused_plots),
+                                       cmocka_unit_test(machines),    cmocka_unit_test(names_for_machines),
+                                       cmocka_unit_test(own_profile), cmocka_unit_test(times),
+                                       cmocka_unit_test(papers),      cmocka_unit_test(lifts)};
     return cmocka_run_group_tests(tests, NULL, live);
 }

@@ -10,6 +10,7 @@
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <cmocka.h>
 
 static void expect_close(double value, double expected, double tolerance)
@@ -71,11 +72,14 @@ static SplinePage small_page(void)
     return spline_page(0.06, 0.04, 0.01, 0.001);
 }
 
+static const Color white = {1, 1, 1, 1};
+
 /* A black pen as wide as the page's, and a red one of that many times its width. */
 static Plot plot_of(const Strokes *strokes, const SplinePage *page, int pen_count, double red)
 {
-    SplinePen pens[] = {{"black", {0, 0, 0, 1}, page->pen}, {"red", {1, 0, 0, 1}, red * page->pen}};
-    return spline_plot(strokes, page, pens, pen_count);
+    SplinePen pens[] = {{"black", {0, 0, 0, 1}, page->pen, false},
+                        {"red", {1, 0, 0, 1}, red * page->pen, false}};
+    return spline_plot(strokes, page, pens, pen_count, white);
 }
 
 static void expect_point(Vec2 p, double x, double y)
@@ -229,6 +233,42 @@ static void previews(void **state)
     strokes_clear(&strokes);
 }
 
+static void expect_rgb(const unsigned char *rgb, int r, int g, int b)
+{
+    if (abs(rgb[0] - r) > 1 || abs(rgb[1] - g) > 1 || abs(rgb[2] - b) > 1)
+        fail_msg("%d %d %d is not %d %d %d", rgb[0], rgb[1], rgb[2], r, g, b);
+}
+
+/* On blue paper: of a transparent ink what it shares with the paper; of an opaque one its colour, also where it lies
+ * on the other one. */
+static void papers(void **state)
+{
+    (void)state;
+    SplinePage page = small_page();
+    const Color blue = {0.2, 0.4, 1, 1};
+    SplinePen pens[] = {{"clear", {1, 0.5, 0, 1}, page.pen, false},
+                        {"paint", {1, 1, 0.6, 1}, page.pen, true}};
+    double mm = 1e-3 / page.unit;
+    Strokes strokes = {0};
+    strokes_add(&strokes, 2,
+                (const double[2][4]){{5 * mm, 5 * mm, 10 * mm, 0}, {35 * mm, 5 * mm, 10 * mm, 0}}, 0);
+    strokes_add(&strokes, 2,
+                (const double[2][4]){{20 * mm, 2 * mm, 0, 5 * mm}, {20 * mm, 17 * mm, 0, 5 * mm}}, 1);
+    Plot plot = spline_plot(&strokes, &page, pens, 2, blue);
+    Error err = {""};
+    unsigned char *rgb;
+    int width, height;
+    assert_true(spline_preview("papers.png", &plot, &page, NULL, 600, &err));
+    assert_true(png_read("papers.png", &rgb, &width, &height, &err));
+    expect_rgb(rgb + 3 * (5 * width + 5), 51, 102, 255);
+    expect_rgb(rgb + 3 * (150 * width + 200), 51, 51, 0);
+    expect_rgb(rgb + 3 * (200 * width + 300), 255, 255, 153);
+    expect_rgb(rgb + 3 * (150 * width + 300), 255, 255, 153);
+    mem_free(rgb);
+    spline_plot_clear(&plot);
+    strokes_clear(&strokes);
+}
+
 static int live(void **state)
 {
     (void)state;
@@ -237,7 +277,8 @@ static int live(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(cubics), cmocka_unit_test(inside_is_kept),
-                                       cmocka_unit_test(outside_is_cut), cmocka_unit_test(previews)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(cubics), cmocka_unit_test(papers),
+                                       cmocka_unit_test(inside_is_kept), cmocka_unit_test(outside_is_cut),
+                                       cmocka_unit_test(previews)};
     return cmocka_run_group_tests(tests, NULL, live);
 }

@@ -208,7 +208,7 @@ PlaceOfASkinKeys = TypedDict("PlaceOfASkinKeys", {
 
 Spline = TypedDict("Spline", {
     "image": "str", "density": "DensityOfADrawing", "tone": "Tone", "page": "Page", "pen": "Number",
-    "pens": "Rows[Pens]", "separation": "Separation", "regions": "Rows[Regions]", "cross": "Cross",
+    "pens": "Rows[Pens]", "paper": "Number", "separation": "Separation", "regions": "Rows[Regions]", "cross": "Cross",
     "direction": "Direction", "start": "StartOfADrawing", "energies": "Energies", "potential": "Potential",
     "flow": "Flow", "pair": "Pair", "method": "Literal['auto', 'newton', 'gradient', 'monte_carlo', 'dynamics']",
     "iterations": "int", "tolerance": "float", "draft": "bool", "rounds": "int", "rest": "float",
@@ -234,11 +234,11 @@ SizeOfAPageKeys = TypedDict("SizeOfAPageKeys", {
 }, total=False)
 
 PensKeys = TypedDict("PensKeys", {
-    "name": "Number", "color": "Number", "width": "Number", "from": "float", "turn": "Number",
+    "name": "Number", "color": "Number", "opaque": "bool", "width": "Number", "from": "float", "turn": "Number",
 }, total=False)
 
 SeparationKeys = TypedDict("SeparationKeys", {
-    "kind": "Literal['cmyk', 'tones']", "black": "float",
+    "kind": "Literal['cmyk', 'tones', 'match']", "black": "float", "intent": "Literal['relative', 'absolute']",
 }, total=False)
 
 Regions = TypedDict("Regions", {
@@ -592,7 +592,7 @@ PlaceOfASkin = Union["PlaceOfASkinKeys", Number]
 DensityOfADrawing = Union["DensityOfADrawingKeys", Number]
 SizeOfAPage = Union["SizeOfAPageKeys", Number, Numbers]
 Pens = Union["PensKeys", Number]
-Separation = Union["SeparationKeys", Literal['cmyk', 'tones']]
+Separation = Union["SeparationKeys", Literal['cmyk', 'tones', 'match']]
 Direction = Union["DirectionKeys", Literal['structure_tensor'], Number]
 StartOfADrawing = Union["StartOfADrawingKeys", Literal['streamlines', 'random']]
 Potential = Union["PotentialKeys", Number]

@@ -239,8 +239,8 @@ void drawing_destroy(Drawing *d)
         spline_field_clear(&d->regions[k].outline);
         spline_field_clear(&d->regions[k].direction);
     }
-    SplineField *fields[] = {&d->direction, &d->potential, &d->flow, &d->picture, &d->outline};
-    for (int k = 0; k < 5; k++) spline_field_clear(fields[k]);
+    SplineField *fields[] = {&d->direction, &d->potential, &d->flow, &d->picture, &d->outline, &d->light};
+    for (int k = 0; k < 6; k++) spline_field_clear(fields[k]);
     mem_free(d->regions);
     mem_free(d->pens);
     mem_free(d->tones);

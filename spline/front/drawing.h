@@ -28,7 +28,8 @@ typedef struct DrawingRegion {
 typedef struct Drawing {
     SplinePage page; /* with the finest pen */
     int pen_count, part_count, region_count;
-    SplinePen *pens;    /* names owned                                      */
+    SplinePen *pens; /* names owned                                      */
+    Color paper;
     SplineField *tones; /* [pen_count] what each shall cover, in all its parts; width 1 */
     DrawingPart *parts; /* in the order of the pens                         */
     DrawingRegion *regions;
@@ -37,6 +38,8 @@ typedef struct Drawing {
     SplineField potential; /* width 1; no columns: of each part its brightness */
     SplineField flow;      /* width 2, or no columns                           */
     SplineField picture;   /* to be shown, as spline_preview takes it          */
+    SplineField
+        light; /* width 3, or no columns: where colours are matched, what inks should add to the paper's */
     RelaxDef relax;
     StrokesStart start_kind;
     bool start_given; /* the parts have their strokes */

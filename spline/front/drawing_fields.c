@@ -74,7 +74,7 @@ static bool read_image(Reader *r, const SplinePage *page)
 {
     Error err;
     const char *path = r->scene->image;
-    bool coloured = r->scene->separation && r->scene->separation->kind == SEPARATE_CMYK;
+    bool coloured = r->scene->separation && r->scene->separation->kind != SEPARATE_TONES;
     double useful[2];
     if (!path) return true;
     spline_tone_useful(page, &r->tone, fmin(r->pixel, shown_pixel(page)), useful);
@@ -114,12 +114,61 @@ static void separate(const Reader *r, Drawing *d)
     for (int c = 0; c < 4; c++) image_clear(&ink[c]);
 }
 
+/* What takes away red, green and blue, after the tone's curve. */
+static SplineField colours(const Reader *r, const SplinePage *page, SplineToneDef def, double pixel)
+{
+    SplineField dark = {0};
+    def.density = 1;
+    for (int c = 0; c < 3; c++) {
+        SplineField one = spline_tone(&r->rgb[c], page, &def, pixel);
+        if (c == 0) dark = spline_field_like(&one, 3);
+        for (int i = 0; i < one.columns * one.rows; i++) dark.values[3 * i + c] = one.values[i];
+        spline_field_clear(&one);
+    }
+    return dark;
+}
+
+/* 1 where the picture is, 0 beside it. */
+static SplineField picture_cover(const Reader *r, const SplinePage *page, double pixel)
+{
+    size_t pixels = (size_t)r->grey.width * (size_t)r->grey.height;
+    Image black = {r->grey.width, r->grey.height, mem_alloc(pixels, sizeof *black.grey)};
+    SplineToneDef def = spline_tone_default();
+    memcpy(def.crop, r->tone.crop, sizeof def.crop);
+    def.cover = r->tone.cover, def.density = 1;
+    SplineField cover = spline_tone(&black, page, &def, pixel);
+    image_clear(&black);
+    return cover;
+}
+
+/* As much of each pen as makes the picture's colours, and these; paper beside it stays blank. */
+static void match(const Reader *r, Drawing *d)
+{
+    Ink inks[INK_MAX];
+    InkSet set = pens_inks(d->paper, d->pens, d->pen_count, inks);
+    set.most = r->tone.density;
+    InkIntent intent = (InkIntent)r->scene->separation->intent;
+    SplineToneDef open = r->tone;
+    open.extend = true;
+    SplineField dark = colours(r, &d->page, open, r->pixel), cover = picture_cover(r, &d->page, r->pixel);
+    ink_table_cover(&set, intent, &dark, d->tones);
+    for (int k = 0; k < d->pen_count; k++) spline_field_multiply(&d->tones[k], &cover);
+    spline_field_clear(&dark);
+    spline_field_clear(&cover);
+    dark = colours(r, &d->page, open, shown_pixel(&d->page));
+    cover = picture_cover(r, &d->page, shown_pixel(&d->page));
+    d->light = ink_table_light(&set, intent, &dark);
+    spline_field_multiply(&d->light, &cover);
+    spline_field_clear(&dark);
+    spline_field_clear(&cover);
+}
+
 /* What each pen shall cover; `tone` is what all do. */
 static void share_tone(const Reader *r, const SplineField *tone, Drawing *d)
 {
     d->tones = mem_alloc((size_t)d->pen_count, sizeof *d->tones);
     if (r->rgb[0].grey) {
-        separate(r, d);
+        (r->scene->separation->kind == SEPARATE_MATCH ? match : separate)(r, d);
         return;
     }
     if (!r->scene->separation) { /* where there are several, each has regions of its own */
@@ -233,18 +282,8 @@ static bool read_energy_fields(const Reader *r, Drawing *d)
 static void make_picture(const Reader *r, const SplineField *tone, Drawing *d)
 {
     double pixel = shown_pixel(&d->page);
-    SplineToneDef def = r->tone;
-    if (!r->rgb[0].grey) {
-        d->picture = spline_field_resize(tone, &d->page, pixel);
-        return;
-    }
-    def.density = 1;
-    for (int c = 0; c < 3; c++) {
-        SplineField one = spline_tone(&r->rgb[c], &d->page, &def, pixel);
-        if (c == 0) d->picture = spline_field_like(&one, 3);
-        for (int i = 0; i < one.columns * one.rows; i++) d->picture.values[3 * i + c] = one.values[i];
-        spline_field_clear(&one);
-    }
+    d->picture =
+        r->rgb[0].grey ? colours(r, &d->page, r->tone, pixel) : spline_field_resize(tone, &d->page, pixel);
 }
 
 bool drawing_read_fields(Drawing *d, const SplineScene *scene, YamlFile *file)
@@ -253,7 +292,8 @@ bool drawing_read_fields(Drawing *d, const SplineScene *scene, YamlFile *file)
     SplineField tone = {0};
     bool ok = read_tone_def(&r) && read_image(&r, &d->page);
     if (ok) fit_page(&r, &d->page);
-    ok = ok && pens_read(scene, file, &d->page, &d->pens, &d->pen_count) && read_tone(&r, &d->page, &tone);
+    ok = ok && pens_read(scene, file, &d->page, &d->paper, &d->pens, &d->pen_count) &&
+         read_tone(&r, &d->page, &tone);
     if (ok) {
         share_tone(&r, &tone, d);
         make_picture(&r, &tone, d);
@@ -261,6 +301,7 @@ bool drawing_read_fields(Drawing *d, const SplineScene *scene, YamlFile *file)
     ok = ok && drawing_read_regions(d, scene, file, &r.tone, r.pixel) && read_directions(&r, d) &&
          read_energy_fields(&r, d);
     if (ok && d->region_count) drawing_mask(d, &d->picture);
+    if (ok && d->region_count && d->light.columns) drawing_mask(d, &d->light);
     spline_field_clear(&tone);
     image_clear(&r.grey);
     for (int c = 0; c < 3; c++) image_clear(&r.rgb[c]);

@@ -16,9 +16,16 @@ static const struct {
 
 enum { INKS = 4 };
 
+static const double SEEN = 1; /* Delta E, about the least difference that is */
+
+static bool is(const SplineScene *scene, SeparationKind kind)
+{
+    return scene->separation && scene->separation->kind == (int)kind;
+}
+
 static bool is_cmyk(const SplineScene *scene)
 {
-    return scene->separation && scene->separation->kind == SEPARATE_CMYK;
+    return is(scene, SEPARATE_CMYK);
 }
 
 double pens_finest(const SplineScene *scene)
@@ -46,6 +53,7 @@ double *pens_limits(const SplineScene *scene)
 double pens_turn(const SplineScene *scene, const SplinePen *pens, int pen)
 {
     if (scene->pens_count && !isnan(scene->pens[pen].turn)) return scene->pens[pen].turn;
+    if (is(scene, SEPARATE_MATCH)) return pen * M_PI / scene->pens_count;
     return is_cmyk(scene) ? inks[pens_ink(pens[pen].name)].turn * M_PI / 180 : 0;
 }
 
@@ -54,9 +62,10 @@ static bool check_regions(const SplineScene *scene, YamlFile *file)
 {
     if (scene->pens_count < 2) return true;
     if (!scene->regions_count)
-        return yaml_refuse(file, "spline.pens",
-                           "several pens need `separation`: cmyk, or tones with `from` of each pen; or "
-                           "`regions`, each with its `pen`");
+        return yaml_refuse(
+            file, "spline.pens",
+            "several pens need `separation`: cmyk, match, or tones with `from` of each pen; or "
+            "`regions`, each with its `pen`");
     for (int k = 0; k < scene->regions_count; k++)
         if (!scene->regions[k].pen)
             return yaml_refuse(file, key("spline.regions[%d]", k).text,
@@ -72,19 +81,23 @@ static bool check_regions(const SplineScene *scene, YamlFile *file)
 
 static bool check_separation(const SplineScene *scene, YamlFile *file)
 {
+    static const struct {
+        const char *image, *pens; /* why it needs them */
+    } rows[] = {
+        [SEPARATE_CMYK] = {.image = "only a picture has colours that cmyk can separate"},
+        [SEPARATE_TONES] = {.pens = "tones needs `pens`, each with the density `from` which it draws"},
+        [SEPARATE_MATCH] = {"only a picture has colours that pens can match",
+                            "match needs `pens`, each with its colour"}};
     if (!scene->separation) return check_regions(scene, file);
-    if (is_cmyk(scene))
-        return scene->image ||
-               yaml_refuse(file, "spline.separation", "only a picture has colours that cmyk can separate");
-    return scene->pens_count > 0 ||
-           yaml_refuse(file, "spline.separation",
-                       "tones needs `pens`, each with the density `from` which it draws");
+    const char *image = rows[scene->separation->kind].image, *pens = rows[scene->separation->kind].pens;
+    return (!image || scene->image || yaml_refuse(file, "spline.separation", "%s", image)) &&
+           (!pens || scene->pens_count > 0 || yaml_refuse(file, "spline.separation", "%s", pens));
 }
 
 static bool check_from(const SplineScene *scene, YamlFile *file)
 {
     double before = 0;
-    for (int k = 1; scene->separation && !is_cmyk(scene) && k < scene->pens_count; k++) {
+    for (int k = 1; is(scene, SEPARATE_TONES) && k < scene->pens_count; k++) {
         if (!(scene->pens[k].from > before))
             return yaml_refuse(file, key("spline.pens[%d]", k).text,
                                "this pen needs `from`, a density above the pen's before it, %g", before);
@@ -113,18 +126,50 @@ static bool read_pen(const SplineScene *scene, YamlFile *file, const SplinePage 
     Error err;
     double width = isnan(from->width) ? scene->pen : from->width;
     pen->width = width / page->unit;
+    pen->opaque = from->opaque;
     if (pen->width > PEN_MAX || pen->width > PEN_ACROSS * fmin(page->width, page->height))
         return yaml_refuse(file, at.text, "a pen of %g m is too wide for a page of %g x %g m", width,
                            page->paper[0], page->paper[1]);
     if (color_parse(from->color ? from->color : from->name, &pen->color, &err)) return true;
     if (from->color) return yaml_refuse(file, at.text, "%s", err.text);
+    if (is(scene, SEPARATE_MATCH))
+        return yaml_refuse(file, at.text, "which colour does this pen draw? Its name is none; say `color`");
     pen->color = (Color){0, 0, 0, 1}; /* of a pen whose name is no colour */
     return true;
 }
 
-bool pens_read(const SplineScene *scene, YamlFile *file, const SplinePage *page, SplinePen **pens, int *count)
+static bool read_paper(const SplineScene *scene, YamlFile *file, Color *paper)
 {
-    if (!check_separation(scene, file) || !check_from(scene, file)) return false;
+    Error err;
+    return color_parse(scene->paper ? scene->paper : "white", paper, &err) ||
+           yaml_refuse(file, "spline.paper", "%s", err.text);
+}
+
+InkSet pens_inks(Color paper, const SplinePen *pens, int count, Ink *coats)
+{
+    for (int k = 0; k < count; k++) coats[k] = (Ink){ink_linear(pens[k].color), pens[k].opaque};
+    return (InkSet){ink_linear(paper), count, coats, 1};
+}
+
+/* Who says what the paper is, or wants colours, means pens that are seen on it. */
+static bool check_seen(const SplineScene *scene, YamlFile *file, Color paper, const SplinePen *pen, Key at)
+{
+    Ink coat;
+    InkSet set = pens_inks(paper, pen, 1, &coat);
+    if (pen->opaque || !(scene->paper || is(scene, SEPARATE_MATCH)) ||
+        ink_difference(ink_mix(&set, (const double[]){1}), set.paper) >= SEEN)
+        return true;
+    return yaml_refuse(
+        file, at.text,
+        "its ink is transparent, and not seen on paper of this colour; say `opaque: true` of a "
+        "pen that covers what is below");
+}
+
+bool pens_read(const SplineScene *scene, YamlFile *file, const SplinePage *page, Color *paper,
+               SplinePen **pens, int *count)
+{
+    if (!read_paper(scene, file, paper) || !check_separation(scene, file) || !check_from(scene, file))
+        return false;
     bool own = scene->pens_count > 0, ok = true;
     *count = own ? scene->pens_count : is_cmyk(scene) ? INKS : 1;
     *pens = mem_alloc((size_t)*count, sizeof **pens);
@@ -135,7 +180,8 @@ bool pens_read(const SplineScene *scene, YamlFile *file, const SplinePage *page,
         if (own) given = scene->pens[k];
         (*pens)[k].name = mem_text(given.name);
         ok = ok && (!own || check_name(scene, file, k)) &&
-             read_pen(scene, file, page, &given, at, &(*pens)[k]);
+             read_pen(scene, file, page, &given, at, &(*pens)[k]) &&
+             check_seen(scene, file, *paper, &(*pens)[k], at);
     }
     return ok;
 }

@@ -3,7 +3,9 @@
 #include "base/memory.h"
 #include "spline/film.h"
 #include "spline/front/front.h"
+#include "spline/front/drawing_pens.h"
 #include "spline/front/plot_time.h"
+#include "spline/ink_seen.h"
 #include "spline/metrics.h"
 #include "spline/order.h"
 #include "spline/outline.h"
@@ -42,14 +44,6 @@ static const MetricRow rows[] = {{LENGTH(ink_length)}, {LENGTH(ink_budget)},    
 
 enum { ROWS = sizeof rows / sizeof *rows };
 
-static Strokes of_pen(const Strokes *strokes, int pen)
-{
-    Strokes some = {0};
-    for (int k = 0; k < strokes->count; k++)
-        if (strokes->layer[k] == pen) strokes_add_from(&some, strokes, k);
-    return some;
-}
-
 /* A number, or one for each pen. */
 static Array per_pen(const Drawing *d, const char *name, const char *unit, const double *values)
 {
@@ -61,7 +55,7 @@ static SplineMetrics measure(const Drawing *d, const Strokes *strokes, int pen)
     SplinePage page = d->page;
     SplineGrid tone = spline_grid(&d->tones[pen]);
     page.pen = d->pens[pen].width;
-    Strokes own = of_pen(strokes, pen);
+    Strokes own = strokes_of_layer(strokes, pen);
     SplineJudge *judge = spline_judge_create(&page, &tone);
     SplineMetrics metrics = spline_judge_measure(judge, &own);
     spline_judge_destroy(judge);
@@ -85,6 +79,18 @@ static void add_metrics(const Drawing *d, const Strokes *strokes, Run *run, Arra
     }
     for (int r = 0; r < ROWS; r++)
         arrays_add(list, per_pen(d, rows[r].name, rows[r].unit, values + r * d->pen_count));
+}
+
+/* Where a picture's colours are matched: how far off they are. */
+static void add_colours(const Drawing *d, const Strokes *strokes, Run *run, Arrays *list)
+{
+    Ink inks[INK_MAX];
+    InkSet set = pens_inks(d->paper, d->pens, d->pen_count, inks);
+    double widths[INK_MAX], *error = arrays_numbers(list, 1);
+    for (int k = 0; k < d->pen_count; k++) widths[k] = d->pens[k].width;
+    *error = ink_seen_error(&set, &d->page, widths, strokes, &d->light);
+    host_say(run->host, "colours: Delta E %.1f on the mean", *error);
+    arrays_add(list, array_float("metrics/color_error", "", error, 0, 0, 0));
 }
 
 /* What the plotter does: way of the lifted pen before and after ordering, time. */
@@ -216,6 +222,7 @@ bool draw_finish(Run *run, const Drawing *d, const Strokes *parts, const RelaxIn
     }
     arrays_add(&list, array_text("status", status));
     add_metrics(d, &all, run, &list);
+    if (d->light.columns) add_colours(d, &all, run, &list);
     add_plot(d, &all, &order, run, &list);
     if (d->region_count) add_outside(d, &all, run, &list);
     if (all.count == 0) explain_blank(d, run);

@@ -194,7 +194,7 @@ static bool write_svg(DrawJob *job, const Strokes *strokes)
     char *name = mem_format("%.*s-%06d.svg", (int)(strlen(job->run->result) - strlen(".vtkhdf")),
                             job->run->result, job->iteration);
     Strokes all = all_so_far(job, strokes);
-    Plot plot = spline_plot(&all, &job->d->page, job->d->pens, job->d->pen_count);
+    Plot plot = spline_plot(&all, &job->d->page, job->d->pens, job->d->pen_count, job->d->paper);
     bool ok = plot_write_svg(name, &plot, job->err);
     spline_plot_clear(&plot);
     strokes_clear(&all);

@@ -12,7 +12,7 @@ enum { TRIES = 5 };
 
 PlotTime drawing_plot_time(const Drawing *d, const Strokes *strokes, double *seconds)
 {
-    Plot plot = spline_plot(strokes, &d->page, d->pens, d->pen_count);
+    Plot plot = spline_plot(strokes, &d->page, d->pens, d->pen_count, d->paper);
     PlotTime time = {.strokes = strokes->count};
     for (int k = 0; k < d->pen_count; k++) {
         PlotEstimate estimate = plot_estimate(&plot.layers[k], &d->timed);

@@ -7,17 +7,22 @@
 static void add_pens(const Drawing *d, Arrays *list)
 {
     double *width = arrays_numbers(list, (size_t)d->pen_count),
-           *color = arrays_numbers(list, 3 * (size_t)d->pen_count);
+           *color = arrays_numbers(list, 3 * (size_t)d->pen_count), *paper = arrays_numbers(list, 3);
+    int *opaque = arrays_keep(list, mem_alloc((size_t)d->pen_count, sizeof *opaque));
     char *names = mem_text("");
     for (int k = 0; k < d->pen_count; k++) {
         const SplinePen *pen = &d->pens[k];
         names = mem_join(names, pen->name, "\n");
         width[k] = pen->width * d->page.unit;
+        opaque[k] = pen->opaque;
         memcpy(color + 3 * k, (double[]){pen->color.r, pen->color.g, pen->color.b}, 3 * sizeof *color);
     }
     arrays_add(list, array_text("spline/names", arrays_keep(list, names)));
     arrays_add(list, array_float("spline/width", "m", width, 1, d->pen_count, 0));
+    memcpy(paper, (double[]){d->paper.r, d->paper.g, d->paper.b}, 3 * sizeof *paper);
     arrays_add(list, array_float("spline/color", "", color, 2, d->pen_count, 3));
+    arrays_add(list, array_int("spline/opaque", opaque, 1, d->pen_count, 0));
+    arrays_add(list, array_float("spline/paper_color", "", paper, 1, 3, 0));
 }
 
 static void add_picture(const SplineField *picture, Arrays *list)

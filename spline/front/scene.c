@@ -22,7 +22,9 @@ static const YamlTable tone_table = {
         {YAML_ROWS(ToneScene, curve), .range = "[0, 1]", .min_count = 2,
          .doc = "instead of black, white and gamma: rows of grey level and brightness, linear between"},
         {YAML_NUMBER(ToneScene, density), .range = "(0, 1)", .fallback = "0.85",
-         .doc = "part of the paper covered where the picture is black"},
+         .doc = "part of the paper covered where the picture is black; with `separation: match` what each "
+                "pen covers at "
+                "most"},
         {0}}};
 
 static const YamlTable paper_table = {
@@ -56,13 +58,17 @@ static const YamlTable pen_table = {
         {YAML_TEXT(PenScene, color),
          .doc = "#rrggbb, or black, grey, red, green, blue, cyan, magenta, yellow, orange, brown, purple; "
                 "the pen's name if absent"},
+        {YAML_BOOL(PenScene, opaque),
+         .doc =
+             "its ink covers what is below it, as paint markers and gel pens do; else that shines through, "
+             "and `color` is what it looks like on white paper"},
         {YAML_NUMBER(PenScene, width), .unit = "m", .range = "(0, 0.1]", .doc = "`pen` if absent"},
         {YAML_NUMBER(PenScene, from), .when = "/spline.separation.kind: tones", .range = "[0, 1)",
          .doc = "with `separation: tones`: it draws where the density is this or more, up to the next pen's; "
                 "0 for the first"},
         {YAML_NUMBER(PenScene, turn), .unit = "rad",
          .doc = "its strokes are turned by this angle from the direction; 0 if absent, with cmyk -30, 30, 90 "
-                "and 0 deg"},
+                "and 0 deg, with match 180 deg over their number from each to the next"},
         {0}}};
 
 static const YamlTable separation_table = {
@@ -70,11 +76,20 @@ static const YamlTable separation_table = {
     .size = sizeof(SeparationScene),
     .doc = "What each pen draws.",
     .fields = (const YamlField[]){
-        {YAML_CHOICE(SeparationScene, kind), .choices = YAML_NAMES("cmyk", "tones"), .required = true,
-         .short_form = true,
-         .doc = "inks that give the picture's colours, or each pen its own range of tones"},
+        {YAML_CHOICE(SeparationScene, kind), .choices = YAML_NAMES("cmyk", "tones", "match"),
+         .required = true, .short_form = true,
+         .doc = "inks that give the picture's colours; or each pen its own range of tones; or as much of "
+                "each pen as "
+                "gives the picture's colours with the pens and the paper that there are"},
         {YAML_NUMBER(SeparationScene, black), .when = "kind: cmyk", .range = "[0, 1]", .fallback = "1",
          .doc = "of cmyk: how much of what cyan, magenta and yellow have in common becomes black"},
+        {YAML_CHOICE(SeparationScene, intent), .when = "kind: match",
+         .choices = YAML_NAMES("relative", "absolute"), .fallback = "relative",
+         .doc = "of match: the picture's white and black become the nearest colours to them that pens and "
+                "paper have, "
+                "and all between them goes along; or every colour becomes the nearest one, and beyond all of "
+                "them "
+                "there is no difference"},
         {0}}};
 
 static const YamlTable cross_table = {
@@ -329,6 +344,8 @@ const YamlTable spline_table = {
          .doc = "width of the line"},
         {YAML_LIST(SplineScene, pens, &pen_table), .max_count = 32,
          .doc = "several of them; one black pen if absent"},
+        {YAML_TEXT(SplineScene, paper),
+         .doc = "its colour, as a pen's; white if absent. Light pens on dark paper are `opaque`"},
         {YAML_OPTIONAL(SplineScene, separation, &separation_table), .doc = "of several pens"},
         {YAML_LIST(SplineScene, regions, &region_table), .max_count = 64,
          .doc = "what is drawn of the page, each with strokes of its own; all of it if absent"},

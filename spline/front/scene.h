@@ -27,12 +27,13 @@ typedef struct PageScene {
 typedef struct PenScene {
     char *name, *color;
     double width, from, turn;
+    bool opaque;
 } PenScene;
 
-typedef enum SeparationKind { SEPARATE_CMYK, SEPARATE_TONES } SeparationKind;
+typedef enum SeparationKind { SEPARATE_CMYK, SEPARATE_TONES, SEPARATE_MATCH } SeparationKind;
 
 typedef struct SeparationScene {
-    int kind; /* SeparationKind */
+    int kind, intent; /* SeparationKind, InkIntent */
     double black;
 } SeparationScene;
 
@@ -113,7 +114,7 @@ typedef struct PlotterScene {
 } PlotterScene;
 
 typedef struct SplineScene {
-    char *image;
+    char *image, *paper;
     FieldScene *density, *potential;
     FlowScene *flow;
     ToneScene tone;
