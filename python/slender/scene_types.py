@@ -166,11 +166,11 @@ PlaceOfASkinKeys = TypedDict("PlaceOfASkinKeys", {
 Spline = TypedDict("Spline", {
     "image": "str", "density": "DensityOfADrawing", "tone": "Tone", "page": "Page", "pen": "Number",
     "pens": "Rows[Pens]", "separation": "Separation", "regions": "Rows[Regions]", "cross": "Cross",
-    "direction": "Direction", "start": "StartOfADrawing", "energies": "Energies", "potential": "Potential",
-    "flow": "Flow", "pair": "Pair", "method": "Literal['auto', 'newton', 'gradient', 'monte_carlo', 'dynamics']",
-    "iterations": "int", "tolerance": "float", "draft": "bool", "rounds": "int", "rest": "float",
-    "monte_carlo": "MonteCarlo", "dynamics": "Dynamics", "seed": "int", "order": "Literal['shortest', 'as_made']",
-    "plotter": "Plotter",
+    "contours": "Contours", "direction": "Direction", "start": "StartOfADrawing", "energies": "Energies",
+    "potential": "Potential", "flow": "Flow", "pair": "Pair",
+    "method": "Literal['auto', 'newton', 'gradient', 'monte_carlo', 'dynamics']", "iterations": "int",
+    "tolerance": "float", "draft": "bool", "rounds": "int", "rest": "float", "monte_carlo": "MonteCarlo",
+    "dynamics": "Dynamics", "seed": "int", "order": "Literal['shortest', 'as_made']", "plotter": "Plotter",
 }, total=False)
 
 DensityOfADrawingKeys = TypedDict("DensityOfADrawingKeys", {
@@ -210,6 +210,11 @@ DirectionKeys = TypedDict("DirectionKeys", {
 
 Cross = TypedDict("Cross", {
     "angle": "Number", "from": "Union[float, Numbers]",
+}, total=False)
+
+ContoursKeys = TypedDict("ContoursKeys", {
+    "kind": "Literal['edges']", "levels": "Union[float, Numbers]", "contrast": "float", "detail": "Number",
+    "shortest": "Number", "width": "Number", "color": "Number",
 }, total=False)
 
 StartOfADrawingKeys = TypedDict("StartOfADrawingKeys", {
@@ -541,6 +546,7 @@ SizeOfAPage = Union["SizeOfAPageKeys", Number, Numbers]
 Pens = Union["PensKeys", Number]
 Separation = Union["SeparationKeys", Literal['cmyk', 'tones']]
 Direction = Union["DirectionKeys", Literal['structure_tensor'], Number]
+Contours = Union["ContoursKeys", Literal['edges']]
 StartOfADrawing = Union["StartOfADrawingKeys", Literal['streamlines', 'random']]
 Potential = Union["PotentialKeys", Number]
 Flow = Union["FlowKeys", Numbers]

@@ -68,6 +68,13 @@ static char *describe(const Model *model, const Scene *scene)
         text = mem_join(text, line, "");
         mem_free(line);
     }
+    if (d->layer_count > d->pen_count) {
+        char *line = mem_format("contours, %.3g mm: %.3g m of ink in %d strokes\n",
+                                1e3 * page->unit * d->pens[d->pen_count].width,
+                                page->unit * strokes_length(&d->contours), d->contours.count);
+        text = mem_join(text, line, "");
+        mem_free(line);
+    }
     char *times = describe_times(d);
     text = mem_join(text, times, "");
     mem_free(times);

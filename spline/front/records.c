@@ -6,18 +6,18 @@
 
 static void add_pens(const Drawing *d, Arrays *list)
 {
-    double *width = arrays_numbers(list, (size_t)d->pen_count),
-           *color = arrays_numbers(list, 3 * (size_t)d->pen_count);
+    double *width = arrays_numbers(list, (size_t)d->layer_count),
+           *color = arrays_numbers(list, 3 * (size_t)d->layer_count);
     char *names = mem_text("");
-    for (int k = 0; k < d->pen_count; k++) {
+    for (int k = 0; k < d->layer_count; k++) {
         const SplinePen *pen = &d->pens[k];
         names = mem_join(names, pen->name, "\n");
         width[k] = pen->width * d->page.unit;
         memcpy(color + 3 * k, (double[]){pen->color.r, pen->color.g, pen->color.b}, 3 * sizeof *color);
     }
     arrays_add(list, array_text("spline/names", arrays_keep(list, names)));
-    arrays_add(list, array_float("spline/width", "m", width, 1, d->pen_count, 0));
-    arrays_add(list, array_float("spline/color", "", color, 2, d->pen_count, 3));
+    arrays_add(list, array_float("spline/width", "m", width, 1, d->layer_count, 0));
+    arrays_add(list, array_float("spline/color", "", color, 2, d->layer_count, 3));
 }
 
 static void add_picture(const SplineField *picture, Arrays *list)

@@ -49,6 +49,14 @@ typedef struct DirectionScene {
     int formula_count, where_count;
 } DirectionScene;
 
+/* Edges, or lines of equal tone. */
+typedef struct ContoursScene {
+    int kind;
+    double *levels, contrast, detail, shortest, width;
+    int levels_count;
+    char *color;
+} ContoursScene;
+
 typedef enum RegionFit { REGION_CONTAIN, REGION_PAPER } RegionFit;
 
 typedef struct RegionScene {
@@ -123,6 +131,7 @@ typedef struct SplineScene {
     RegionScene *regions;
     SeparationScene *separation;
     CrossScene *cross;
+    ContoursScene *contours;
     DirectionScene direction;
     StrokesScene start;
     SplineWeights energies;
