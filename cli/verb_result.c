@@ -395,7 +395,7 @@ int verb_export(int argc, char **argv)
         "final "
         "state\n"
         "       slender export NAME.vtkhdf -o FILE.svg | .gcode | .hpgl [--plotter gcode | gcode_servo | "
-        "hpgl | PROFILE.yaml]  a "
+        "hpgl | profile | PROFILE.yaml]  a "
         "drawing\n"
         "       slender export NAME.run -o NAME.vtkhdf              the result of a running or interrupted "
         "job";

@@ -27,6 +27,14 @@ sed 's/276 mm/70 mm/' near.yaml > small.yaml; sed 's/{feed}/{speed}/' "$here/../
 expect 4 "$program" export out/a.vtkhdf -o d.plt --plotter small.yaml; says "it reaches from (0, 0) to (70, 193) mm"
 expect 4 "$program" export out/a.vtkhdf -o d.gcode --plotter wrong.yaml; says 'wrong.yaml:.*"{speed}" stands for nothing'
 [ ! -e d.plt ] && [ ! -e d.gcode ] || { echo "a refused plot was written"; bad=1; }
+# The scene may name the machine: its file is written by the run, and again from the result alone.
+sed "s/^spline:/output: {plotter: m.plt}\nspline:\n  plotter: {profile: near.yaml}/" "$scene" > machine.yaml
+cp near.yaml kept.yaml
+expect 0 "$program" run machine.yaml --quiet --no-picture -o m; expect 0 "$program" export m.vtkhdf -o c.plt --plotter kept.yaml; same m.plt c.plt
+rm near.yaml
+expect 0 "$program" export m.vtkhdf -o e.plt --plotter profile; same m.plt e.plt
+expect 4 "$program" export out/a.vtkhdf -o e.plt --plotter profile; says "the result has no profile of its own"
+cp small.yaml near.yaml; expect 3 "$program" check machine.yaml; says "near.yaml: the plot has a point where the machine has"
 # How the pen is lifted is in the files, in the time, and in what is exported later.
 for lift in 0.3 9; do
     expect 0 "$program" run "$scene" --quiet --no-picture -o "lift$lift" --set spline.rounds=0 --set output.gcode="lift$lift.gcode" --set output.gcode_servo=s.nc \

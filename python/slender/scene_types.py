@@ -250,6 +250,7 @@ Dynamics = TypedDict("Dynamics", {
 
 Plotter = TypedDict("Plotter", {
     "down": "Number", "up": "Number", "lift": "Number", "at_most": "Number", "z": "ZAxis", "servo": "Servo",
+    "profile": "str",
 }, total=False)
 
 ZAxis = TypedDict("ZAxis", {
@@ -508,6 +509,7 @@ FrameOfAStartKeys = TypedDict("FrameOfAStartKeys", {
 Output = TypedDict("Output", {
     "every": "int", "film": "int", "precision": "Literal['single', 'double']", "states": "Literal['last', 'all']",
     "stress": "bool", "svg": "Number", "png": "Number", "gcode": "Number", "gcode_servo": "Number", "hpgl": "Number",
+    "plotter": "Number",
 }, total=False)
 
 Scene = TypedDict("Scene", {

@@ -243,6 +243,7 @@ void drawing_destroy(Drawing *d)
     SplineField *fields[] = {&d->direction, &d->potential, &d->flow, &d->picture, &d->outline, &d->contoured};
     for (int k = 0; k < 6; k++) spline_field_clear(fields[k]);
     strokes_clear(&d->contours);
+    mem_free(d->profile);
     mem_free(d->regions);
     mem_free(d->pens);
     mem_free(d->tones);

@@ -50,6 +50,7 @@ typedef struct Drawing {
     bool draft; /* it ends where its iterations do */
     DrawOrder order;
     Plotter plotter, timed; /* timed: with the lift of the slowest of the files asked for */
+    char *profile;          /* text of the machine's file; NULL: none                     */
     double at_most;         /* s, what the plot may take; 0: no end                        */
     double thinned;         /* what of its ink the picture keeps for that; 1: all           */
 } Drawing;

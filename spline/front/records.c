@@ -30,8 +30,9 @@ static void add_picture(const SplineField *picture, Arrays *list)
     arrays_add(list, array);
 }
 
-static void add_plotter(const Plotter *plotter, Arrays *list)
+static void add_plotter(const Drawing *d, Arrays *list)
 {
+    const Plotter *plotter = &d->plotter;
     double *speed = arrays_numbers(list, 2), *z = arrays_numbers(list, 3);
     char *servo = arrays_keep(list, mem_format("%s\n%s\n", plotter->servo_up, plotter->servo_down));
     speed[0] = 1e-3 * plotter->down, speed[1] = 1e-3 * plotter->up;
@@ -40,6 +41,7 @@ static void add_plotter(const Plotter *plotter, Arrays *list)
     arrays_add(list, array_float("spline/lift", "s", &plotter->lift, 0, 0, 0));
     arrays_add(list, array_float("spline/z", "m, m, m/s", z, 1, 3, 0));
     arrays_add(list, array_text("spline/servo", servo));
+    if (d->profile) arrays_add(list, array_text("spline/profile", d->profile));
     arrays_add(list, array_float("spline/pause", "s", &plotter->pause, 0, 0, 0));
 }
 
@@ -55,7 +57,7 @@ void drawing_add_static(const Drawing *d, Arrays *list)
         arrays_numbers(list, 1); /* the scene's: of a picture that is shown whole one of them is wider */
     *least = fmin(margin[0], margin[1]);
     arrays_add(list, array_float("spline/margin", "m", least, 0, 0, 0));
-    add_plotter(&d->plotter, list);
+    add_plotter(d, list);
 }
 
 void drawing_add_strokes(const Drawing *d, const Strokes *strokes, Arrays *list)

@@ -334,6 +334,9 @@ static const YamlTable plotter_table = {
                 "`check` and `run` say; at least a tenth of its ink stays. No end if absent"},
         {YAML_OPTIONAL(PlotterScene, z, &z_axis_table), .doc = "of a pen on a z axis"},
         {YAML_OPTIONAL(PlotterScene, servo, &servo_table), .doc = "of a pen on a servo"},
+        {YAML_FILE(PlotterScene, profile), .doc = "a machine's own words (docs/line_art.md, "
+                                                  "scenes/plotters), for `output.plotter`; the result keeps "
+                                                  "them for `export --plotter profile`"},
         {0}}};
 
 const YamlTable spline_table = {

@@ -116,6 +116,7 @@ typedef enum ServoPause { PAUSE_SECONDS, PAUSE_MILLISECONDS } ServoPause;
 
 typedef struct PlotterScene {
     double down, up, lift, at_most;
+    char *profile;
     ZAxisScene *z;     /* NULL: the default */
     ServoScene *servo; /* NULL: the default */
 } PlotterScene;
