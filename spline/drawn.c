@@ -224,11 +224,17 @@ static bool profile_of(const Drawn *drawn, const char *language, PlotProfile *pr
 
 bool drawn_write(const Drawn *drawn, const char *language, const char *path, Error *err)
 {
+    return drawn_write_plot(drawn, &drawn->plot, language, path, err);
+}
+
+bool drawn_write_plot(const Drawn *drawn, const Plot *plot, const char *language, const char *path,
+                      Error *err)
+{
     PlotProfile profile;
     bool owned;
-    if (!strcmp(language, "svg")) return plot_write_svg(path, &drawn->plot, err);
+    if (!strcmp(language, "svg")) return plot_write_svg(path, plot, err);
     bool ok = profile_of(drawn, language, &profile, &owned, err) &&
-              plot_write_machine(path, &drawn->plot, &profile, &drawn->plotter, err);
+              plot_write_machine(path, plot, &profile, &drawn->plotter, err);
     if (owned) plot_profile_clear(&profile);
     return ok;
 }

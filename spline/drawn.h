@@ -35,3 +35,7 @@ void drawn_clear(Drawn *drawn);
 /* Writes it as "svg", or in the words of a profile (plot_file.h): its name, the path of its file, or "profile": the
  * result's own. */
 bool drawn_write(const Drawn *drawn, const char *language, const char *path, Error *err);
+
+/* The same of a plot that is a part of its own (plot_split.h). */
+bool drawn_write_plot(const Drawn *drawn, const Plot *plot, const char *language, const char *path,
+                      Error *err);
