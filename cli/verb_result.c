@@ -1,9 +1,11 @@
 /* slender info and slender export: what is in a result, or in the journal of a running job. */
 #include "base/memory.h"
 #include "base/plain.h"
+#include "cli/export_drawing.h"
 #include "cli/export_groups.h"
 #include "cli/say.h"
 #include "cli/verb.h"
+#include "io/path.h"
 #include "io/replace.h"
 #include "io/result.h"
 #include "io/table.h"
@@ -15,12 +17,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-static bool has_ending(const char *path, const char *ending)
-{
-    size_t length = strlen(path), size = strlen(ending);
-    return length > size && !strcmp(path + length - size, ending);
-}
 
 /* ---- info ---- */
 
@@ -199,7 +195,7 @@ int verb_info(int argc, char **argv)
     const char *path;
     int code;
     if (!options_parse(argc, argv, usage, NULL, 0, &path, &code)) return code;
-    return has_ending(path, ".run") ? info_journal(path) : info_result(path);
+    return path_has_ending(path, ".run") ? info_journal(path) : info_result(path);
 }
 
 /* ---- export ---- */
@@ -244,31 +240,10 @@ static RunStatus export_dataset(Result *result, const char *dataset, const char 
     return status;
 }
 
-/* In that plotter's language, or as the name's ending says. */
-static RunStatus export_drawing(Result *result, const char *language, const char *path, Error *err)
-{
-    static const struct {
-        const char *ending, *language;
-    } endings[] = {{".svg", "svg"},  {".gcode", "gcode"}, {".ngc", "gcode"},
-                   {".nc", "gcode"}, {".hpgl", "hpgl"},   {".plt", "hpgl"}};
-    Drawn drawn = {0};
-    const char *usual = NULL;
-    for (size_t k = 0; k < sizeof endings / sizeof *endings; k++)
-        if (has_ending(path, endings[k].ending)) usual = endings[k].language;
-    if (!usual) {
-        error_set(err, "%s: a drawing is exported as .svg, .gcode or .hpgl, or numbers with --dataset", path);
-        return RUN_CANNOT_WRITE;
-    }
-    RunStatus status = !drawn_read(result, &drawn, err)                               ? RUN_REFUSED
-                       : !drawn_write(&drawn, language ? language : usual, path, err) ? RUN_CANNOT_WRITE
-                                                                                      : RUN_DONE;
-    drawn_clear(&drawn);
-    return status;
-}
-
 typedef struct Export {
     const char *output, *dataset, *language, *per;
     int frame;
+    DrawingSplit split;
 } Export;
 
 /* The scene may be made of meshes, numbers and drawings, too. */
@@ -288,9 +263,9 @@ static bool check_request(const Export *what, bool run, Error *err)
 {
     static const char *const endings[] = {".csv", ".obj",  ".svg", ".gcode", ".ngc",
                                           ".nc",  ".hpgl", ".plt", ".vtkhdf"};
-    bool known = false, mesh = has_ending(what->output, ".obj");
+    bool known = false, mesh = path_has_ending(what->output, ".obj");
     for (size_t k = 0; k < sizeof endings / sizeof *endings; k++)
-        known = known || has_ending(what->output, endings[k]);
+        known = known || path_has_ending(what->output, endings[k]);
     if (!known)
         return error_set(
             err,
@@ -298,7 +273,7 @@ static bool check_request(const Export *what, bool run, Error *err)
             ".gcode, .ngc, .nc, .hpgl or .plt, a run as .vtkhdf; slender picture draws .png, .svg "
             "and .pdf",
             what->output);
-    if (what->per && (run || what->dataset || what->frame >= 0 || !has_ending(what->output, ".csv")))
+    if (what->per && (run || what->dataset || what->frame >= 0 || !path_has_ending(what->output, ".csv")))
         return error_set(err,
                          "--per group is for a CSV of a result's groups, -o FILE.csv, and is not used here");
     if (what->dataset && run)
@@ -307,15 +282,29 @@ static bool check_request(const Export *what, bool run, Error *err)
         return error_set(err, "--frame is for a mesh, -o FILE.obj, and is not used here");
     if (what->language && (what->dataset || mesh || run))
         return error_set(err, "--plotter is for a drawing, -o FILE.gcode, and is not used here");
+    if ((what->split.pens || what->split.ink > 0) && (what->dataset || mesh || run))
+        return error_set(err, "--split is for a drawing, -o FILE.gcode, and is not used here");
     return true;
 }
 
 static bool check_ending(const char *path, const char *what, const char *ending, Error *err)
 {
-    return has_ending(path, ending) || error_set(err, "%s: %s exported as %s", path, what, ending);
+    return path_has_ending(path, ending) || error_set(err, "%s: %s exported as %s", path, what, ending);
 }
 
-static RunStatus write_export(Result *result, const Export *what, Error *err)
+/* A file beside the one that was asked for. */
+typedef struct Further {
+    Result *result;
+    const char *input;
+} Further;
+
+static bool check_further(void *self, const char *path, Error *err)
+{
+    const Further *further = self;
+    return check_source(further->result, further->input, path, err) && replace_check(path, err);
+}
+
+static RunStatus write_export(Result *result, const char *input, const Export *what, Error *err)
 {
     const char *path = what->output;
     if (what->per) return export_groups(result, path, err);
@@ -323,11 +312,17 @@ static RunStatus write_export(Result *result, const Export *what, Error *err)
         return check_ending(path, "numbers are", ".csv", err)
                    ? export_dataset(result, what->dataset, path, err)
                    : RUN_CANNOT_WRITE;
-    if (has_ending(path, ".csv")) {
+    if (path_has_ending(path, ".csv")) {
         error_set(err, "%s: which numbers? --dataset names them; slender info lists what there is", path);
         return RUN_USAGE;
     }
-    if (drawn_has(result)) return export_drawing(result, what->language, path, err);
+    if (drawn_has(result))
+        return export_drawing(result, what->language, what->split, path, check_further,
+                              &(Further){result, input}, err);
+    if (what->split.pens || what->split.ink > 0) {
+        error_set(err, "--split is for a drawing, and the result has none");
+        return RUN_USAGE;
+    }
     return check_ending(path, "a mesh is", ".obj", err) ? export_frame(result, what->frame, path, err)
                                                         : RUN_CANNOT_WRITE;
 }
@@ -338,7 +333,7 @@ static RunStatus export_result(const char *input, const Export *what, Error *err
     if (!result) return RUN_REFUSED;
     RunStatus status = RUN_CANNOT_WRITE;
     if (check_source(result, input, what->output, err) && replace_check(what->output, err)) {
-        status = check_request(what, false, err) ? write_export(result, what, err) : RUN_USAGE;
+        status = check_request(what, false, err) ? write_export(result, input, what, err) : RUN_USAGE;
         if (status != RUN_DONE) error_prefix(err, "%s", input);
     }
     result_close(result);
@@ -365,7 +360,7 @@ static bool result_def(Journal *journal, const char *input, const char *output, 
 static RunStatus export_journal(const char *input, const Export *what, Error *err)
 {
     const char *path = what->output;
-    if (!has_ending(path, ".vtkhdf")) {
+    if (!path_has_ending(path, ".vtkhdf")) {
         error_set(err, "%s: a run is exported as .vtkhdf, and that as other files", path);
         return RUN_CANNOT_WRITE;
     }
@@ -395,8 +390,10 @@ int verb_export(int argc, char **argv)
         "final "
         "state\n"
         "       slender export NAME.vtkhdf -o FILE.svg | .gcode | .hpgl [--plotter gcode | gcode_servo | "
-        "hpgl | PROFILE.yaml]  a "
-        "drawing\n"
+        "hpgl | profile | PROFILE.yaml]  a "
+        "drawing;\n"
+        "              --split pen, or --split \"5 m\": a file for each pen, or for so much ink, "
+        "FILE_1.gcode, ..\n"
         "       slender export NAME.run -o NAME.vtkhdf              the result of a running or interrupted "
         "job";
     Export what = {.frame = -1};
@@ -407,15 +404,18 @@ int verb_export(int argc, char **argv)
         {"dataset", .kind = OPTION_TEXT, .value = &what.dataset},
         {"per", .kind = OPTION_TEXT, .value = &what.per},
         {"frame", .kind = OPTION_INT, .value = &what.frame, .least = 0, .most = INT_MAX},
-        {"plotter", .kind = OPTION_TEXT, .value = &what.language}};
-    if (!options_parse(argc, argv, usage, options, 5, &input, &code)) return code;
+        {"plotter", .kind = OPTION_TEXT, .value = &what.language},
+        {"split", .kind = OPTION_OTHER, .value = &what.split, .take = drawing_split_take,
+         .allowed = DRAWING_SPLIT_ALLOWED}};
+    if (!options_parse(argc, argv, usage, options, sizeof options / sizeof *options, &input, &code))
+        return code;
     if (what.per && strcmp(what.per, "group"))
         return verb_fail(RUN_USAGE, "--per must be group: slender export --help says more");
     if (what.per && what.dataset) return verb_fail(RUN_USAGE, "--per and --dataset exclude each other");
     if (!what.output) return verb_fail(RUN_USAGE, "-o FILE must be given; slender export --help says more");
     Error err;
     if (!outputs_check_source(NULL, input, what.output, &err)) return verb_fail(RUN_CANNOT_WRITE, err.text);
-    RunStatus status =
-        has_ending(input, ".run") ? export_journal(input, &what, &err) : export_result(input, &what, &err);
+    RunStatus status = path_has_ending(input, ".run") ? export_journal(input, &what, &err)
+                                                      : export_result(input, &what, &err);
     return status == RUN_DONE ? RUN_DONE : verb_fail(status, err.text);
 }

@@ -150,6 +150,9 @@ typedef struct YamlError {
  * documents, NULs, invalid UTF-8, duplicate keys. */
 YamlFile *yaml_read(const char *path);
 YamlFile *yaml_parse(const char *path, const char *text, size_t length);
+
+/* The number that a text says in that unit, as the value of a key would; false where it says none. */
+bool yaml_number(const char *text, const char *unit, double *value);
 void yaml_destroy(YamlFile *file);
 
 /* Sets one value before loading: "shell.mesh.n=7", "fix[0].ball.radius=1 mm", "gravity=[0, 0, -9.81]".

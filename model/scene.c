@@ -364,6 +364,7 @@ static const YamlTable output_table = {
         DRAWING_FILE(gcode, "for a pen on a z axis; none if absent"),
         DRAWING_FILE(gcode_servo, "for a pen on a servo; none if absent"),
         DRAWING_FILE(hpgl, "none if absent"),
+        DRAWING_FILE(plotter, "in the words of `spline.plotter.profile`; none if absent"),
         {0}}};
 
 const YamlTable scene_form = {

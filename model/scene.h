@@ -321,7 +321,7 @@ typedef struct StartScene {
 typedef struct OutputScene {
     int every, film, precision, states;
     bool stress;
-    char *svg, *png, *gcode, *gcode_servo, *hpgl; /* of a drawing: names of files */
+    char *svg, *png, *gcode, *gcode_servo, *hpgl, *plotter; /* of a drawing: names of files */
 } OutputScene;
 
 enum { OUTPUT_SINGLE, OUTPUT_DOUBLE };

@@ -56,6 +56,7 @@ static void add_parts(Drawing *d, const SplineScene *scene, int pen, const Drawi
                                   region && region->direction.columns ? &region->direction : &d->direction,
                               .outline = region ? &region->outline : NULL};
         part->page.pen = d->pens[pen].width;
+        part->contour_share = d->contour_shares[pen] / sets;
         part->turn = pens_turn(scene, d->pens, pen) + k * (cross ? cross->angle : 0);
     }
     spline_field_clear(&tone);
@@ -65,7 +66,9 @@ static void add_parts(Drawing *d, const SplineScene *scene, int pen, const Drawi
 /* All parts, and of each pen's tone what it draws. */
 static void make_parts(Drawing *d, const SplineScene *scene)
 {
+    d->contour_shares = mem_alloc((size_t)d->pen_count, sizeof *d->contour_shares);
     for (int pen = 0; pen < d->pen_count; pen++) {
+        d->contour_shares[pen] = pens_contour_share(scene, d->pens[pen].name);
         SplineField drawn = spline_field_like(&d->tones[pen], 1);
         for (int k = 0; k < d->region_count; k++) {
             if (d->regions[k].pen >= 0 && d->regions[k].pen != pen) continue;
@@ -226,10 +229,8 @@ Drawing *drawing_create(const SplineScene *scene, YamlFile *file)
 void drawing_destroy(Drawing *d)
 {
     if (!d) return;
-    for (int k = 0; k < d->pen_count; k++) {
-        mem_free((char *)d->pens[k].name);
-        if (d->tones) spline_field_clear(&d->tones[k]);
-    }
+    for (int k = 0; k < d->layer_count; k++) mem_free((char *)d->pens[k].name);
+    for (int k = 0; d->tones && k < d->pen_count; k++) spline_field_clear(&d->tones[k]);
     for (int k = 0; k < d->part_count; k++) {
         spline_field_clear(&d->parts[k].tone);
         strokes_clear(&d->parts[k].given);
@@ -239,13 +240,38 @@ void drawing_destroy(Drawing *d)
         spline_field_clear(&d->regions[k].outline);
         spline_field_clear(&d->regions[k].direction);
     }
-    SplineField *fields[] = {&d->direction, &d->potential, &d->flow, &d->picture, &d->outline, &d->light};
-    for (int k = 0; k < 6; k++) spline_field_clear(fields[k]);
+    SplineField *fields[] = {&d->direction, &d->potential, &d->flow, &d->picture, &d->outline,
+                             &d->contoured, &d->light};
+    for (int k = 0; k < 7; k++) spline_field_clear(fields[k]);
+    strokes_clear(&d->contours);
+    mem_free(d->profile);
     mem_free(d->regions);
     mem_free(d->pens);
     mem_free(d->tones);
+    mem_free(d->contour_shares);
     mem_free(d->parts);
     mem_free(d);
+}
+
+/* ---- Contours ---- */
+
+void drawing_add_contours(const Drawing *d, Strokes *strokes)
+{
+    strokes_append(strokes, &d->contours, d->pen_count);
+}
+
+SplineField drawing_uncovered(const Drawing *d, const SplineField *tone, double share)
+{
+    SplineField left = spline_field_copy(tone);
+    if (!d->contoured.columns || share == 0) return left;
+    for (int i = 0; i < left.columns * left.rows; i++) left.values[i] -= share * d->contoured.values[i];
+    return left;
+}
+
+static SplineFixed fixed_of(const Drawing *d, int part)
+{
+    if (!d->contours.count) return (SplineFixed){0};
+    return (SplineFixed){&d->contours, d->pens[d->pen_count].width, d->parts[part].contour_share};
 }
 
 /* ---- Parts at work ---- */
@@ -266,6 +292,7 @@ Strokes drawing_first_strokes(const Drawing *d, int part)
     Strokes strokes = {0};
     SplineStartDef def = d->start;
     def.seed += (uint64_t)part;
+    def.fixed = fixed_of(d, part);
     if (from->outline) def.outline = spline_grid(from->outline);
     (d->start_kind == START_RANDOM ? spline_random_strokes : spline_streamlines)(&tone, &along, &from->page,
                                                                                  &def, from->pen, &strokes);
@@ -293,6 +320,8 @@ static SplineTarget *target_of(const Drawing *d, int part, Workers *workers)
     if (d->flow.columns) fields.flow = spline_grid(&d->flow);
     if (from->outline) fields.outline = spline_grid(from->outline);
     SplineTarget *target = spline_target_create(&from->page, &fields, &probes);
+    SplineFixed fixed = fixed_of(d, part);
+    spline_fixed_take_ink(&fixed, target);
     spline_field_clear(&direction);
     spline_field_clear(&light);
     return target;

@@ -7,8 +7,8 @@
 /* The width of the finest pen, m. */
 double pens_finest(const SplineScene *scene);
 
-/* pens[count], with widths in units of the page, and the colour of the paper; names are the caller's. False after a
- * refusal. */
+/* pens[count], with widths in units of the page, and behind them that of contours where there are any; names are the
+ * caller's. False after a refusal. */
 bool pens_read(const SplineScene *scene, YamlFile *file, const SplinePage *page, Color *paper,
                SplinePen **pens, int *count);
 
@@ -17,6 +17,10 @@ InkSet pens_inks(Color paper, const SplinePen *pens, int count, Ink *coats);
 
 /* Which of the inks of spline_separate the pen of that name draws; -1: none. */
 int pens_ink(const char *name);
+
+/* The part of the contours' ink that is of this pen's tone: with cmyk they are black ink, else each place has but one
+ * pen. */
+double pens_contour_share(const SplineScene *scene, const char *name);
 
 /* The densities from which the pens draw, but for the first one's: the caller frees. */
 double *pens_limits(const SplineScene *scene);
