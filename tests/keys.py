@@ -12,7 +12,7 @@ FREE = {
     "output.every", "output.precision",  # of frames, where there is one
     "design.tolerance", "rod.curve.where", "output.png",  # no pictures are made here
     "spline.tolerance", "spline.rounds",  # where iterations are done before
-    "shell.coercivity", "solid.coercivity",  # which warn only
+    "shell.coercivity", "solid.coercivity", "rod.coercivity",  # which warn only
     "time", "time.step", "time.steps",  # the statics of a motion's scene leave them
 }
 

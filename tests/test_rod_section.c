@@ -72,6 +72,7 @@ static const Beam beams[] = {
      {0, 1, 0},
      DISC / 3 * 2.5,
      3e-5},
+    {"a step", "radius: \"s < L/2 ? 1.0e-3 : 0.5e-3\"", {0, 1, 0}, DISC * 23 / 24, 3e-5},
     {"a triangle",
      "section: {width: \"4.0e-3*(1 - 0.99999999*s/L)\", height: 1 mm}",
      {0, 0, 1},
