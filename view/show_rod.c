@@ -415,13 +415,27 @@ static void add_distance(RodPage *page, const double *s)
                             .first_color = 1});
 }
 
+/* The moments that are shown, in charts over time. */
+static void mark_moments(RodPage *page, int first)
+{
+    double *times = show_block(page->data, (size_t)page->set_count, sizeof *times);
+    int count = 0;
+    for (int k = 0; k < page->set_count; k++)
+        if (page->sets[k].moment) times[count++] = page->sets[k].time;
+    for (int k = first; k < page->chart_count; k++)
+        if (!strcmp(page->charts[k].x_unit, "s"))
+            page->charts[k].marks = times, page->charts[k].mark_count = count;
+}
+
 static void add_over_time(RodPage *page)
 {
     Chart charts[SHOW_MOTION_CHARTS];
+    int first = page->chart_count;
     page->chart_count += show_probes_charts(page->data, page->charts + page->chart_count,
                                             CURVES_CHARTS_MAX - page->chart_count);
     int count = show_motion_charts(&page->motion, charts);
     for (int k = 0; k < count; k++) add_chart(page, charts[k]);
+    mark_moments(page, first);
 }
 
 static void add_charts(RodPage *page)
