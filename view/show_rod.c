@@ -229,34 +229,6 @@ static void frame_obstacles(RodPage *page)
         show_obstacles_find_near(&page->obstacles, way, &page->sets[s].around);
 }
 
-/* Where the strands are held, unless the sets say it: where they begin, and where the other end is. */
-static void add_squares(RodPage *page, CurvesScene *scene)
-{
-    Result *result = page->data->result;
-    Array array;
-    const double(*points)[3] = page->sets[0].points;
-    double(*held)[3] = show_block(page->data, (size_t)page->strand_count + 1, sizeof *held);
-    int count = page->strand_count;
-    for (int k = 0; k < count; k++) memcpy(held[k], points[page->strands[k]], sizeof *held);
-    if (result_has(result, "slender/rod/held") && result_read(result, "slender/rod/held", &array, NULL)) {
-        if (array_is(&array, ARRAY_FLOAT64, 1, 3)) memcpy(held[count++], array.data, sizeof *held);
-        array_clear(&array);
-    }
-    scene->clamps = (const double(*)[3])held, scene->clamp_count = count;
-}
-
-static void add_clamps(RodPage *page, CurvesScene *scene)
-{
-    Result *result = page->data->result;
-    Array array;
-    if (!curves_holds(scene, -1)) add_squares(page, scene);
-    if (result_has(result, "slender/rod/supports") &&
-        result_read(result, "slender/rod/supports", &array, NULL)) {
-        if (array.type == ARRAY_TEXT && strstr(array.data, "pinned")) scene->clamps_name = "held";
-        array_clear(&array);
-    }
-}
-
 /* ---- Small print ---- */
 
 /* Adds to the last line, or begins another one where that is full. */
@@ -481,7 +453,7 @@ static bool write_page(RodPage *page, const char *result, const char *picture, E
     scene.title = slash ? slash + 1 : result;
     scene.lines = page->lines, scene.line_count = page->line_count;
     scene.sets = page->sets, scene.set_count = page->set_count;
-    add_clamps(page, &scene);
+    show_clamps(page->data, page->strand_count, page->strands, &scene);
     const double *gravity = show_dataset(page->data, "slender/rod/gravity", ARRAY_FLOAT64, 3);
     if (gravity) memcpy(scene.gravity, gravity, sizeof scene.gravity);
     memcpy(scene.view, def->view, sizeof scene.view);
