@@ -133,6 +133,7 @@ bool show_history(ShowData *data, Chart *chart)
         .name = "objective", .count = (int)array_count(&history), .y = show_keep(data, history)};
     *chart = (Chart){.x_label = "evaluation",
                      .x_unit = "",
+                     .x_counts = true,
                      .y_label = "objective",
                      .y_unit = "",
                      .series_count = 1,
