@@ -137,10 +137,10 @@ void spline_edge_strokes(const SplineField *tone, const SplinePage *page, const 
     search_clear(&s);
 }
 
-void spline_level_strokes(const SplineField *tone, const SplinePage *page, const SplineEdgeDef *def,
+void spline_level_strokes(const SplineField *field, const SplinePage *page, const SplineEdgeDef *def,
                           double level, int layer, Strokes *strokes)
 {
-    Search s = {.page = page, .def = def, .tone = looked_at(tone, page, def->detail)};
+    Search s = {.page = page, .def = def, .tone = looked_at(field, page, def->detail)};
     isolines_visit(&s.tone, page, level, take_piece, &s);
     add_strokes(&s, layer, strokes);
     search_clear(&s);

@@ -22,6 +22,6 @@ typedef struct SplineEdgeDef {
 void spline_edge_strokes(const SplineField *tone, const SplinePage *page, const SplineEdgeDef *def, int layer,
                          Strokes *strokes);
 
-/* Appends strokes along the lines where the density, so blurred, is `level`; contrast is not used. */
-void spline_level_strokes(const SplineField *tone, const SplinePage *page, const SplineEdgeDef *def,
+/* Appends strokes along the lines where a field, a density or a distance, is `level`, so blurred; contrast is not used. */
+void spline_level_strokes(const SplineField *field, const SplinePage *page, const SplineEdgeDef *def,
                           double level, int layer, Strokes *strokes);

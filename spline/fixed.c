@@ -2,25 +2,46 @@
 #include "spline/tone.h"
 #include <math.h>
 
-/* Their area: lines with half a disc beyond each end. */
-static double area(const SplineFixed *fixed)
+static double counted_at(const SplineFixed *fixed, const SplinePage *page, Vec2 at)
 {
-    if (!fixed->strokes) return 0;
-    return fixed->pen * (strokes_length(fixed->strokes) + fixed->strokes->count * M_PI / 4 * fixed->pen);
+    double counted = 1;
+    if (fixed->counts.columns) spline_grid_sample(&fixed->counts, page, at, &counted);
+    return counted;
 }
 
-double spline_fixed_length(const SplineFixed *fixed, double pen)
+double spline_fixed_length(const SplineFixed *fixed, const SplinePage *page)
 {
-    return fixed->share * area(fixed) / pen;
+    const Strokes *strokes = fixed->strokes;
+    double length = 0;
+    for (int k = 0; strokes && k < strokes->count; k++)
+        for (int first = strokes->start[k], end = strokes->start[k + 1] - 1, node = first; node < end;
+             node++) {
+            const double *p = strokes->q + 4 * node;
+            double own = strokes_segment_length(strokes, node) +
+                         M_PI / 8 * fixed->pen * ((node == first) + (node + 1 == end));
+            length += own * counted_at(fixed, page, (Vec2){(p[0] + p[4]) / 2, (p[1] + p[5]) / 2});
+        }
+    return length * fixed->pen / page->pen;
+}
+
+static void take_level(const SplineFixed *fixed, const Tone *tone, const ProbeLevel *level,
+                       SplineTarget *target)
+{
+    for (int j = 0; j < level->rows; j++)
+        for (int i = 0; i < level->columns; i++) {
+            long k = level->first + (long)j * level->stride + i;
+            if (target->probes->inverse[k] == 0) continue;
+            Vec2 at = {(i + 0.5) * level->dx, (j + 0.5) * level->dy};
+            target->probes->target[k] -= counted_at(fixed, &target->page, at) * tone->ink[k];
+        }
 }
 
 void spline_fixed_take_ink(const SplineFixed *fixed, SplineTarget *target)
 {
-    Probes *probes = target->probes;
-    if (!fixed->strokes || !fixed->strokes->count || fixed->share == 0) return;
+    if (!fixed->strokes || !fixed->strokes->count) return;
     Tone tone = tone_of_strokes(target, fixed->strokes, fixed->pen);
-    for (long k = 0; k < probes->size; k++)
-        if (probes->inverse[k] != 0) probes->target[k] -= fixed->share * tone.ink[k];
+    for (int l = 0; l < target->probes->level_count; l++)
+        take_level(fixed, &tone, &target->probes->levels[l], target);
     tone_clear(&tone);
-    target->density -= fixed->share * area(fixed);
+    target->density -= spline_fixed_length(fixed, &target->page) * target->page.pen;
 }

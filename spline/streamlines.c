@@ -41,7 +41,7 @@ static Demand tone_demand(const SplineGrid *tone, const SplinePage *page, const 
         sum += density;
         demand.greatest = fmax(demand.greatest, density);
     }
-    demand.length = fmax(sum / count / page->pen - spline_fixed_length(fixed, page->pen), 0);
+    demand.length = fmax(sum / count / page->pen - spline_fixed_length(fixed, page), 0);
     return demand;
 }
 

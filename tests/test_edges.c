@@ -234,7 +234,7 @@ static void ink_is_counted(void **state)
     SplineTarget *whole = target_of(&tone, &direction), *left = target_of(&tone, &direction);
     Strokes fixed = line(0.1, 0.3, 0.8, 0.6), others = line(0.2, 0.8, 0.9, 0.2), all = strokes_copy(&fixed);
     strokes_append(&all, &others, 0);
-    SplineFixed counted = {&fixed, page.pen, 1};
+    SplineFixed counted = {.strokes = &fixed, .pen = page.pen};
     spline_fixed_take_ink(&counted, left);
     Tone together = tone_of_strokes(whole, &all, page.pen), beside = tone_of_strokes(left, &others, page.pen);
     for (long k = 0; k < whole->probes->size; k++) {
@@ -244,8 +244,12 @@ static void ink_is_counted(void **state)
     }
     double length = strokes_length(&fixed) + 2 * spline_pen_cap(&page);
     expect_close(spline_ink_budget(whole) - spline_ink_budget(left), length, 1e-12);
-    counted.pen = 2 * page.pen, counted.share = 0.5; /* as much, but for the ends */
-    expect_close(spline_fixed_length(&counted, page.pen), length + 2 * spline_pen_cap(&page), 1e-12);
+    expect_close(spline_fixed_length(&counted, &page), length, 1e-12);
+    SplineField half = spline_field_create(&page, 0.1, 1);
+    for (int k = 0; k < half.columns * half.rows; k++) half.values[k] = k % half.columns < half.columns / 2;
+    counted.counts = spline_grid(&half); /* to the left of 0.5 */
+    expect_close(spline_fixed_length(&counted, &page), strokes_length(&fixed) * 4 / 7, 0.02);
+    spline_field_clear(&half);
     tone_clear(&together);
     tone_clear(&beside);
     strokes_clear(&fixed);
@@ -273,7 +277,7 @@ static void streamlines_keep_away(void **state)
     for (int k = 0; k < 2; k++) {
         Strokes fixed = k ? line(0.503, 0.1, 0.503, 0.9) : line(0.1, 0.503, 0.9, 0.503), strokes = {0};
         SplineStartDef def = spline_start_default();
-        def.fixed = (SplineFixed){&fixed, page.pen, 1};
+        def.fixed = (SplineFixed){.strokes = &fixed, .pen = page.pen};
         spline_streamlines(&density, &along, &page, &def, 0, &strokes);
         assert_true(strokes.count > 10);
         for (int node = 0; node < strokes_node_count(&strokes); node++) {
@@ -282,7 +286,7 @@ static void streamlines_keep_away(void **state)
             assert_true(hypot(k ? p[0] - 0.503 : p[1] - 0.503, beyond) > 0.6 * spacing);
         }
         double ink = strokes_length(&strokes) + 2 * strokes.count * spline_pen_cap(&page);
-        expect_close(ink + spline_fixed_length(&def.fixed, page.pen), 0.2 / page.pen, 2);
+        expect_close(ink + spline_fixed_length(&def.fixed, &page), 0.2 / page.pen, 2);
         strokes_clear(&strokes);
         strokes_clear(&fixed);
     }

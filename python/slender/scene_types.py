@@ -256,8 +256,8 @@ Cross = TypedDict("Cross", {
 }, total=False)
 
 ContoursKeys = TypedDict("ContoursKeys", {
-    "kind": "Literal['edges']", "levels": "Union[float, Numbers]", "contrast": "float", "detail": "Number",
-    "shortest": "Number", "width": "Number", "color": "Number",
+    "kind": "Literal['edges', 'outlines']", "levels": "Union[float, Numbers]", "contrast": "float",
+    "detail": "Number", "shortest": "Number", "width": "Number", "color": "Number",
 }, total=False)
 
 StartOfADrawingKeys = TypedDict("StartOfADrawingKeys", {
@@ -601,7 +601,7 @@ SizeOfAPage = Union["SizeOfAPageKeys", Number, Numbers]
 Pens = Union["PensKeys", Number]
 Separation = Union["SeparationKeys", Literal['cmyk', 'tones', 'match']]
 Direction = Union["DirectionKeys", Literal['structure_tensor'], Number]
-Contours = Union["ContoursKeys", Literal['edges']]
+Contours = Union["ContoursKeys", Literal['edges', 'outlines']]
 StartOfADrawing = Union["StartOfADrawingKeys", Literal['streamlines', 'random']]
 Potential = Union["PotentialKeys", Number]
 Flow = Union["FlowKeys", Numbers]

@@ -2,6 +2,7 @@
 #include "base/memory.h"
 #include "io/paper.h"
 #include "spline/direction.h"
+#include "spline/front/drawing_contours.h"
 #include "spline/front/drawing_fields.h"
 #include "spline/front/drawing_pens.h"
 #include "spline/front/drawing_start.h"
@@ -56,7 +57,7 @@ static void add_parts(Drawing *d, const SplineScene *scene, int pen, const Drawi
                                   region && region->direction.columns ? &region->direction : &d->direction,
                               .outline = region ? &region->outline : NULL};
         part->page.pen = d->pens[pen].width;
-        part->contour_share = d->contour_shares[pen] / sets;
+        if (d->contours.count) part->counts = drawing_contours_counted(d, scene, pen, region, sets);
         part->turn = pens_turn(scene, d->pens, pen) + k * (cross ? cross->angle : 0);
     }
     spline_field_clear(&tone);
@@ -66,9 +67,7 @@ static void add_parts(Drawing *d, const SplineScene *scene, int pen, const Drawi
 /* All parts, and of each pen's tone what it draws. */
 static void make_parts(Drawing *d, const SplineScene *scene)
 {
-    d->contour_shares = mem_alloc((size_t)d->pen_count, sizeof *d->contour_shares);
     for (int pen = 0; pen < d->pen_count; pen++) {
-        d->contour_shares[pen] = pens_contour_share(scene, d->pens[pen].name);
         SplineField drawn = spline_field_like(&d->tones[pen], 1);
         for (int k = 0; k < d->region_count; k++) {
             if (d->regions[k].pen >= 0 && d->regions[k].pen != pen) continue;
@@ -233,6 +232,7 @@ void drawing_destroy(Drawing *d)
     for (int k = 0; d->tones && k < d->pen_count; k++) spline_field_clear(&d->tones[k]);
     for (int k = 0; k < d->part_count; k++) {
         spline_field_clear(&d->parts[k].tone);
+        spline_field_clear(&d->parts[k].counts);
         strokes_clear(&d->parts[k].given);
     }
     for (int k = 0; k < d->region_count; k++) {
@@ -248,7 +248,6 @@ void drawing_destroy(Drawing *d)
     mem_free(d->regions);
     mem_free(d->pens);
     mem_free(d->tones);
-    mem_free(d->contour_shares);
     mem_free(d->parts);
     mem_free(d);
 }
@@ -260,18 +259,31 @@ void drawing_add_contours(const Drawing *d, Strokes *strokes)
     strokes_append(strokes, &d->contours, d->pen_count);
 }
 
-SplineField drawing_uncovered(const Drawing *d, const SplineField *tone, double share)
+static void take_contours(const Drawing *d, const SplineField *counts, SplineField *tone)
 {
-    SplineField left = spline_field_copy(tone);
-    if (!d->contoured.columns || share == 0) return left;
-    for (int i = 0; i < left.columns * left.rows; i++) left.values[i] -= share * d->contoured.values[i];
+    for (int i = 0; d->contoured.columns && i < tone->columns * tone->rows; i++)
+        tone->values[i] -= d->contoured.values[i] * (counts->columns ? counts->values[i] : 1);
+}
+
+SplineField drawing_part_left(const Drawing *d, int part)
+{
+    SplineField left = spline_field_copy(&d->parts[part].tone);
+    take_contours(d, &d->parts[part].counts, &left);
+    return left;
+}
+
+SplineField drawing_pen_left(const Drawing *d, int pen)
+{
+    SplineField left = spline_field_copy(&d->tones[pen]);
+    for (int k = 0; k < d->part_count; k++)
+        if (d->parts[k].pen == pen) take_contours(d, &d->parts[k].counts, &left);
     return left;
 }
 
 static SplineFixed fixed_of(const Drawing *d, int part)
 {
     if (!d->contours.count) return (SplineFixed){0};
-    return (SplineFixed){&d->contours, d->pens[d->pen_count].width, d->parts[part].contour_share};
+    return (SplineFixed){&d->contours, d->pens[d->pen_count].width, spline_grid(&d->parts[part].counts)};
 }
 
 /* ---- Parts at work ---- */

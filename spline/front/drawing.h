@@ -15,7 +15,8 @@ typedef struct DrawingPart {
     const SplineField *direction; /* the region's                         */
     const SplineField *outline;   /* the region's; NULL: the page         */
     Strokes given;                /* to start from, with `start.file`     */
-    double contour_share;         /* the pen's, of its crossed sets each as much */
+    SplineField
+        counts; /* the part of the contours' ink that its tone counts, at each place; no columns: all */
 } DrawingPart;
 
 /* Regions do not overlap. */
@@ -29,14 +30,13 @@ typedef struct DrawingRegion {
 typedef struct Drawing {
     SplinePage page; /* with the finest pen */
     int pen_count, part_count, region_count;
-    int layer_count;        /* the pens, and the contours where they are asked for */
-    SplinePen *pens;        /* [layer_count] names owned                        */
+    int layer_count;       /* the pens, and the contours where they are asked for */
+    SplinePen *pens;       /* [layer_count] names owned                        */
     Color paper;
-    SplineField *tones;     /* [pen_count] what each shall cover, in all its parts; width 1 */
-    Strokes contours;       /* fixed (fixed.h); of layer pen_count, drawn by that pen */
-    double *contour_shares; /* [pen_count] of their ink that the pen's tone counts */
-    SplineField contoured;  /* how much of each pixel of a tone they cover; no columns: there are none */
-    DrawingPart *parts;     /* in the order of the pens                         */
+    SplineField *tones;    /* [pen_count] what each shall cover, in all its parts; width 1 */
+    Strokes contours;      /* fixed (fixed.h); of layer pen_count, drawn by that pen */
+    SplineField contoured; /* how much of each pixel of a tone they cover; no columns: there are none */
+    DrawingPart *parts;    /* in the order of the pens                         */
     DrawingRegion *regions;
     SplineField outline;   /* of all regions; no columns: there are none, the page is it */
     SplineField direction; /* width 3                                          */
@@ -64,9 +64,10 @@ Strokes drawing_first_strokes(const Drawing *drawing, int part);
 /* Adds the contours, which are part of every drawing. */
 void drawing_add_contours(const Drawing *drawing, Strokes *strokes);
 
-/* What strokes are to cover of a tone that counts such a share of the contours' ink: less than 0 where these cover more.
- * The caller's. */
-SplineField drawing_uncovered(const Drawing *drawing, const SplineField *tone, double share);
+/* What its strokes are to cover of a part's tone, of all parts of a pen: less than 0 where contours cover more. The
+ * caller's. */
+SplineField drawing_part_left(const Drawing *drawing, int part);
+SplineField drawing_pen_left(const Drawing *drawing, int pen);
 
 /* About how many segments its strokes will have. */
 double drawing_segments(const DrawingPart *part);

@@ -271,11 +271,17 @@ static bool read_directions(const Reader *r, Drawing *d)
 
 static bool read_contours(const Reader *r, Drawing *d)
 {
+    const ContoursScene *contours = r->scene->contours;
     SplineField tone;
-    if (!r->scene->contours) return true;
-    SplineEdgeDef def = drawing_contours_def(d, r->scene->contours);
+    if (!contours) return true;
+    SplineEdgeDef def = drawing_contours_def(d, contours);
+    if (!contours->levels_count && contours->kind == CONTOURS_OUTLINES) {
+        drawing_find_outlines(d, &def);
+        return d->region_count > 0 || yaml_refuse(r->build.file, "spline.contours",
+                                                  "outlines are those of `regions`, and there are none");
+    }
     if (!read_open_tone(r, &d->page, def.detail, &tone)) return false;
-    drawing_find_contours(d, r->scene->contours, &def, &tone);
+    drawing_find_contours(d, contours, &def, &tone);
     spline_field_clear(&tone);
     return true;
 }

@@ -43,11 +43,6 @@ int pens_ink(const char *name)
     return -1;
 }
 
-double pens_contour_share(const SplineScene *scene, const char *name)
-{
-    return !is_cmyk(scene) || !strcmp(name, "black");
-}
-
 double *pens_limits(const SplineScene *scene)
 {
     double *limits = mem_alloc((size_t)scene->pens_count, sizeof *limits);

@@ -18,10 +18,6 @@ InkSet pens_inks(Color paper, const SplinePen *pens, int count, Ink *coats);
 /* Which of the inks of spline_separate the pen of that name draws; -1: none. */
 int pens_ink(const char *name);
 
-/* The part of the contours' ink that is of this pen's tone: with cmyk they are black ink, else each place has but one
- * pen. */
-double pens_contour_share(const SplineScene *scene, const char *name);
-
 /* The densities from which the pens draw, but for the first one's: the caller frees. */
 double *pens_limits(const SplineScene *scene);
 

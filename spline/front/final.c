@@ -54,7 +54,7 @@ static Array per_pen(const char *name, const char *unit, const double *values, i
 static SplineMetrics measure(const Drawing *d, const Strokes *strokes, int pen)
 {
     SplinePage page = d->page;
-    SplineField left = drawing_uncovered(d, &d->tones[pen], d->contour_shares[pen]);
+    SplineField left = drawing_pen_left(d, pen);
     SplineGrid tone = spline_grid(&left);
     page.pen = d->pens[pen].width;
     Strokes own = strokes_of_layer(strokes, pen);

@@ -274,7 +274,7 @@ static bool relax_part(DrawJob *job)
 static bool run_part(DrawJob *job, int part)
 {
     const DrawingPart *from = &job->d->parts[part];
-    SplineField left = drawing_uncovered(job->d, &from->tone, from->contour_share);
+    SplineField left = drawing_part_left(job->d, part);
     SplineGrid tone = spline_grid(&left);
     job->part = part;
     job->target = NULL;

@@ -108,22 +108,25 @@ static const YamlTable cross_table = {
 static const YamlTable contours_table = {
     .name = "contours",
     .size = sizeof(ContoursScene),
-    .doc = "Strokes along edges or lines of equal tone of the picture. They stay where they are, are a layer "
+    .doc = "Strokes along edges or lines of equal tone of the picture, or outlines of regions. They stay "
+           "where they are, are a layer "
            "of their "
            "own, `contours`, behind those of the pens, and the tone counts their ink: hatching keeps away "
            "from them.",
     .fields = (const YamlField[]){
-        {YAML_CHOICE(ContoursScene, kind), .choices = YAML_NAMES("edges"), .one_of = 1, .required = true,
-         .short_form = true, .doc = "where the density changes most, across the way that it does"},
+        {YAML_CHOICE(ContoursScene, kind), .choices = YAML_NAMES("edges", "outlines"), .one_of = 1,
+         .required = true, .short_form = true,
+         .doc = "edges: where the density changes most, across the way that it does; outlines: of each of "
+                "the `regions`, within it"},
         {YAML_NUMBERS(ContoursScene, levels), .range = "(0, 1)", .one_of = 1, .required = true,
          .min_count = 1, .max_count = 32,
          .doc = "where the density, the part of the paper to be covered, is this"},
-        {YAML_NUMBER(ContoursScene, contrast), .when = "kind", .range = "(0, 1]", .fallback = "0.1",
+        {YAML_NUMBER(ContoursScene, contrast), .when = "kind: edges", .range = "(0, 1]", .fallback = "0.1",
          .doc = "of edges: at least so high a step of the density somewhere along them, and half of it "
                 "everywhere"},
         {YAML_NUMBER(ContoursScene, detail), .unit = "m", .range = "(0, 1]",
-         .doc = "the density is blurred by a Gaussian of this deviation before; if "
-                "absent that of the direction"},
+         .doc = "edges and levels are those of the density blurred by a Gaussian of this deviation, outlines "
+                "those of the distance to them; if absent that of the direction, of outlines half a pen"},
         {YAML_NUMBER(ContoursScene, shortest), .unit = "m", .range = "[0, 10]",
          .doc = "lines that are shorter are left out; 10 widths if absent"},
         {YAML_NUMBER(ContoursScene, width), .unit = "m", .range = "(0, 0.1]", .doc = "`pen` if absent"},

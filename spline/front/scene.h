@@ -50,9 +50,11 @@ typedef struct DirectionScene {
     int formula_count, where_count;
 } DirectionScene;
 
-/* Edges, or lines of equal tone. */
+typedef enum ContoursKind { CONTOURS_EDGES, CONTOURS_OUTLINES } ContoursKind;
+
+/* Edges, outlines, or lines of equal tone. */
 typedef struct ContoursScene {
-    int kind;
+    int kind; /* ContoursKind */
     double *levels, contrast, detail, shortest, width;
     int levels_count;
     char *color;
