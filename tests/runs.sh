@@ -216,7 +216,7 @@ for job in equilibrium simulate; do # what moves, too
 done
 sed '/flux_density/d' formula.yaml > pole.yaml
 echo 'obstacles: [{name: lid, plane: {point: [0, 0, -1]}, move: ["1/(0.002 - t)", "0", "0"]}]' >> pole.yaml
-expect 3 run pole.yaml --set time.steps=3; says "obstacle 'lid': move: .* is not a finite number at t = 0.002"
+expect 3 run pole.yaml --set time.steps=3; says "obstacle 'lid': move: .* is not a finite number at t = 0.002 (pole.yaml:6:13)\$"
 
 # Of a place, it is a solve that fails, and the field is named.
 sed 's/flux_density.*/water: {velocity: ["sqrt(0.019 - x)", "0", "0"]}/; /^fix/d' formula.yaml > place.yaml
