@@ -31,8 +31,9 @@ static Evaluation differentiate(const Case *c, bool twice)
 
 static Balance balance_of_points(const Case *c)
 {
-    Evaluation now = differentiate(c, false);
-    return (Balance){"forces", "N", now.gradient_max, now.force_scale, now.finite};
+    Evaluation now = differentiate(c, true);
+    bool little = now.finite && now.gradient_max <= newton_round_off(c->sys, c->state.x);
+    return (Balance){"forces", "N", little ? 0 : now.gradient_max, now.force_scale, now.finite};
 }
 
 /* Would the body leave the pose? Without an eigenvalue it does, by what moves no point (a rod that spins where it is).

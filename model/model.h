@@ -9,9 +9,9 @@
 #include "surface/select.h"
 #include "world/world.h"
 
-/* Where the scene writes a key whose formulas are asked in a run. */
+/* Where the scene writes a key whose formulas are asked in a run, and how sentences about it begin. */
 typedef struct Written {
-    char *key, *where;
+    char *how, *where;
 } Written;
 
 /* Coordinates that follow formulas of rest position and time. */
