@@ -199,8 +199,9 @@ bool drawn_read(Result *result, Drawn *drawn, Error *err)
     *drawn = (Drawn){0};
     if (!drawn_has(result)) return error_set(err, "the result has no drawing");
     bool ok = read_page(result, drawn, err) && read_plotter(result, &drawn->plotter, err) &&
-              read_profile(result, &drawn->profile, err) && read_pens(result, drawn, err) && read_paper(result, drawn, err) &&
-              read_picture(result, &drawn->picture, err) && read_strokes(result, drawn, &drawn->strokes, err);
+              read_profile(result, &drawn->profile, err) && read_pens(result, drawn, err) &&
+              read_paper(result, drawn, err) && read_picture(result, &drawn->picture, err) &&
+              read_strokes(result, drawn, &drawn->strokes, err);
     if (ok)
         drawn->plot = spline_plot(&drawn->strokes, &drawn->page, drawn->pens, drawn->pen_count, drawn->paper);
     return ok;

@@ -240,8 +240,8 @@ void drawing_destroy(Drawing *d)
         spline_field_clear(&d->regions[k].outline);
         spline_field_clear(&d->regions[k].direction);
     }
-    SplineField *fields[] = {&d->direction, &d->potential, &d->flow, &d->picture, &d->outline,
-                             &d->contoured, &d->light};
+    SplineField *fields[] = {&d->direction, &d->potential, &d->flow, &d->picture,
+                             &d->outline,   &d->contoured, &d->light};
     for (int k = 0; k < 7; k++) spline_field_clear(fields[k]);
     strokes_clear(&d->contours);
     mem_free(d->profile);

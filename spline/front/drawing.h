@@ -30,8 +30,8 @@ typedef struct DrawingRegion {
 typedef struct Drawing {
     SplinePage page; /* with the finest pen */
     int pen_count, part_count, region_count;
-    int layer_count;       /* the pens, and the contours where they are asked for */
-    SplinePen *pens;       /* [layer_count] names owned                        */
+    int layer_count; /* the pens, and the contours where they are asked for */
+    SplinePen *pens; /* [layer_count] names owned                        */
     Color paper;
     SplineField *tones;    /* [pen_count] what each shall cover, in all its parts; width 1 */
     Strokes contours;      /* fixed (fixed.h); of layer pen_count, drawn by that pen */
