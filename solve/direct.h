@@ -1,5 +1,5 @@
-/* direct.h - the direct solver behind sparse.h: an order of elimination, factors, solutions. CHOLMOD
- * (direct_cholmod.c), with the numbers of positive definite ones by supernodal.h; another stands behind these same functions.
+/* direct.h - the direct solver behind sparse.h: an order of elimination, factors, solutions. Each solver is a row (direct_row.h);
+ * CHOLMOD (direct_cholmod.c) has the numbers of positive definite ones by supernodal.h.
  *
  * A Direct is what follows from a pattern alone. A Factor is its numbers and a share of the Direct that they were made
  * in, so that it outlives the matrix and its pattern; whoever keeps one shares it. */
