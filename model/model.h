@@ -36,11 +36,12 @@ typedef struct CaseFlux {
 struct Model {
     const BodyRow *body;
     const JobRow *job;
-    void *self;       /* the body as its front knows it: a Shell, ..; owned     */
-    const Mesh *mesh; /* of a body that has one; the body's                     */
-    bool general;     /* of any use, not only that of its job: all points are dofs */
-    double time;      /* s, where it begins                                     */
-    Start *start;     /* while it is made: what it starts from; NULL: nothing   */
+    void *self;        /* the body as its front knows it: a Shell, ..; owned     */
+    const Mesh *mesh;  /* of a body that has one; the body's                     */
+    DirectKind direct; /* what factors matrices of its systems                  */
+    bool general;      /* of any use, not only that of its job: all points are dofs */
+    double time;       /* s, where it begins                                     */
+    Start *start;      /* while it is made: what it starts from; NULL: nothing   */
     /* Nothing below is of a body without cases. */
     Params *params; /* the body's                                          */
     /* First entries in p of gravity, of the flux density and its `fields`; -1: it feels none. */
@@ -73,6 +74,9 @@ Model *model_create(const Scene *scene, YamlFile *file);
 /* The same for any use, whatever the scene's job: its systems and states have all points as dofs, first of all. */
 Model *model_create_general(const Scene *scene, YamlFile *file);
 void model_destroy(Model *model);
+
+/* A system of the model's that was just made, with what the scene says of solvers; it is returned. */
+System *model_take_system(const Model *model, System *sys);
 
 /* Puts the moved coordinates where they are at that time, a part of the way (0..1) from where x has them. */
 bool model_move(const Model *model, double time, double part, double *x, Error *err);

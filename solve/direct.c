@@ -3,6 +3,9 @@
 #include "solve/dense.h"
 #include "solve/direct_row.h"
 
+static const DirectRow *const rows[DIRECT_KINDS] = {
+    [DIRECT_CHOLMOD] = &direct_cholmod, [DIRECT_MUMPS] = &direct_mumps};
+
 struct Direct {
     int shares, n;
     const DirectRow *row;
@@ -16,12 +19,27 @@ struct Factor {
     void *numbers;
 };
 
-Direct *direct_analyse(const Pattern *pattern, const int *rank, int negative)
+const char *direct_version(DirectKind kind)
+{
+    return rows[kind]->version;
+}
+
+bool direct_is_spread(DirectKind kind)
+{
+    return rows[kind]->spread;
+}
+
+bool direct_is_ready(DirectKind kind, Error *err)
+{
+    return !rows[kind]->ready || rows[kind]->ready(err);
+}
+
+Direct *direct_analyse(DirectKind kind, const Pattern *pattern, const int *rank, int negative)
 {
     Direct *direct = mem_alloc(1, sizeof *direct);
     direct->shares = 1;
     direct->n = pattern->n;
-    direct->row = &direct_cholmod;
+    direct->row = rows[kind];
     direct->rank = mem_copy(rank, (size_t)pattern->n, sizeof *rank);
     direct->analysis = direct->row->analyse(pattern, negative);
     return direct;

@@ -124,7 +124,7 @@ static bool analyse_supernodal(Analysis *analysis, const Pattern *pattern)
         analysis->plan = supernodal_create(pattern, &def);
         analysis->solution = mem_alloc((size_t)analysis->n, sizeof *analysis->solution);
         long bytes = supernodal_size(analysis->plan) * (long)sizeof(double);
-        analysis->cost = (DirectCost){(long)common.lnz, bytes, common.fl};
+        analysis->cost = (DirectCost){.nonzeros = (long)common.lnz, .bytes = bytes, .flops = common.fl};
     }
     cholmod_l_free_factor(&factor, &common);
     cholmod_l_finish(&common);
@@ -145,8 +145,9 @@ static void analyse_simplicial(Analysis *analysis, const Pattern *pattern)
     analysis->b = cholmod_zeros((size_t)pattern->n, 1, CHOLMOD_REAL, common);
     check_memory(common);
     long numbers = (long)analysis->symbolic->nzmax;
-    analysis->cost =
-        (DirectCost){(long)common->lnz, numbers * (long)(sizeof(double) + sizeof(int)), common->fl};
+    analysis->cost = (DirectCost){.nonzeros = (long)common->lnz,
+                                  .bytes = numbers * (long)(sizeof(double) + sizeof(int)),
+                                  .flops = common->fl};
 }
 
 static void *analyse(const Pattern *pattern, int negative)
@@ -268,12 +269,15 @@ static const double *solve(void *self, void *of, const double *b, Workers *worke
     return analysis->x->x;
 }
 
-const DirectRow direct_cholmod = {analyse, forget, cost_of, make_room, drop, factor, solve};
-
 #define TEXT(x)               #x
 #define VERSION_TEXT(a, b, c) TEXT(a) "." TEXT(b) "." TEXT(c)
 
-const char *direct_version(void)
-{
-    return VERSION_TEXT(CHOLMOD_MAIN_VERSION, CHOLMOD_SUB_VERSION, CHOLMOD_SUBSUB_VERSION);
-}
+const DirectRow direct_cholmod = {
+    .version = "CHOLMOD " VERSION_TEXT(CHOLMOD_MAIN_VERSION, CHOLMOD_SUB_VERSION, CHOLMOD_SUBSUB_VERSION),
+    .analyse = analyse,
+    .forget = forget,
+    .cost = cost_of,
+    .make_room = make_room,
+    .drop = drop,
+    .factor = factor,
+    .solve = solve};

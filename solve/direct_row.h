@@ -5,6 +5,10 @@
 /* What a row keeps of a pattern, and the numbers of one factor, are known to it alone. Nothing is called with NULL where it is
  * not said. */
 typedef struct DirectRow {
+    const char *version;       /* "CHOLMOD 3.0.14"; NULL: not in this program          */
+    bool spread;               /* over all processes of the run (ranks.h)              */
+    bool (*ready)(Error *err); /* Optional: is there all that it needs? */
+
     /* Of a pattern, as in direct_analyse. */
     void *(*analyse)(const Pattern *pattern, int negative);
     void (*forget)(void *analysis);
@@ -19,4 +23,4 @@ typedef struct DirectRow {
     const double *(*solve)(void *analysis, void *numbers, const double *b, Workers *workers);
 } DirectRow;
 
-extern const DirectRow direct_cholmod;
+extern const DirectRow direct_cholmod, direct_mumps;
