@@ -41,7 +41,7 @@ const int *direct_rank(const Direct *direct);
 typedef struct DirectCost {
     long nonzeros, bytes; /* of a factor       */
     double flops;         /* to make one       */
-    /* Of spread ones: memory to make one, the most that was taken so far, by a process and by all together. */
+    /* Of spread ones: memory that making one has taken, at most, of a process, and of all together. */
     long process_bytes, all_bytes;
 } DirectCost;
 DirectCost direct_cost(const Direct *direct);

@@ -141,11 +141,13 @@ static void list_entries(Analysis *analysis, const Pattern *pattern)
 }
 
 /* Counts that an int cannot hold are given in millions, as less than 0. */
-static long counted(int value)
+static double counted(int value)
 {
-    const long million = 1000000;
-    return value < 0 ? -million * value : value;
+    return value < 0 ? -1e6 * value : value;
 }
+
+/* Its work space stays with a factor (measured: 1.33 on sheets of 15 000 and 91 000 unknowns), and each process has buffers. */
+static const double KEPT = 1.35, INSTANCE_BYTES = 1e5;
 
 static void *analyse(const Pattern *pattern, int negative)
 {
@@ -155,9 +157,9 @@ static void *analyse(const Pattern *pattern, int negative)
     analysis->solution = mem_alloc((size_t)pattern->n, sizeof(double));
     analysis->first = begin_instance(analysis);
     const DMUMPS_STRUC_C *mumps = &analysis->first->mumps;
-    long numbers = counted(INFOG(mumps, 20));
-    analysis->cost =
-        (DirectCost){.nonzeros = numbers, .bytes = numbers * (long)sizeof(double), .flops = mumps->rinfog[0]};
+    double numbers = counted(INFOG(mumps, 20)),
+           bytes = KEPT * numbers * sizeof(double) + INSTANCE_BYTES * ranks_count();
+    analysis->cost = (DirectCost){.nonzeros = (long)numbers, .bytes = (long)bytes, .flops = mumps->rinfog[0]};
     return analysis;
 }
 

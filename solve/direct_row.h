@@ -2,12 +2,11 @@
 #pragma once
 #include "solve/direct.h"
 
-/* What a row keeps of a pattern, and the numbers of one factor, are known to it alone. Nothing is called with NULL where it is
- * not said. */
+/* What a row keeps of a pattern, and the numbers of one factor, are known to it alone. */
 typedef struct DirectRow {
-    const char *version;       /* "CHOLMOD 3.0.14"; NULL: not in this program          */
-    bool spread;               /* over all processes of the run (ranks.h)              */
-    bool (*ready)(Error *err); /* Optional: is there all that it needs? */
+    const char *version;       /* "CHOLMOD 3.0.14"; NULL: not in this program   */
+    bool spread;               /* over all processes of the run (ranks.h)       */
+    bool (*ready)(Error *err); /* is there all that it needs? NULL: there is    */
 
     /* Of a pattern, as in direct_analyse. */
     void *(*analyse)(const Pattern *pattern, int negative);

@@ -76,6 +76,7 @@ static void note_cost(Sparse *matrix, const Direct *direct)
     matrix->info.factor_nonzeros = cost.nonzeros;
     matrix->info.factor_bytes = cost.bytes;
     matrix->info.factor_flops = cost.flops;
+    if (cost.all_bytes < matrix->info.all_bytes) return;
     matrix->info.process_bytes = cost.process_bytes;
     matrix->info.all_bytes = cost.all_bytes;
 }

@@ -79,7 +79,7 @@ typedef struct SparseInfo {
     long factor_nonzeros;          /* of L                                              */
     double factor_flops;           /* of one factorisation                              */
     long factor_bytes;             /* of a factor that is kept                          */
-    long process_bytes, all_bytes; /* DirectCost's */
+    long process_bytes, all_bytes; /* DirectCost's, of the factor that took most */
     long factorizations, solves;   /* so far, failed factorisations included            */
     double factor_seconds, solve_seconds;
 } SparseInfo;

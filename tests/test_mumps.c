@@ -130,6 +130,33 @@ static void test_inertia(void **state)
     }
 }
 
+/* [0 B; B^T 0], which has as many eigenvalues below 0 as above, and no pivot on its diagonal: all are 2 x 2, or put off, and more
+ * room is needed than was foreseen. */
+static void test_pivots(void **state)
+{
+    (void)state;
+    enum { HALF = 600, N = 2 * HALF, ROW = 5 };
+    long start[ROW * HALF + 1];
+    int dofs[2 * ROW * HALF], order[N], count = 0;
+    for (int i = 0; i < HALF; i++)
+        for (int k = 0; k < ROW; k++, count++)
+            start[count] = 2L * count, dofs[2 * count] = i,
+            dofs[2 * count + 1] = HALF + (i + k * k * k) % HALF;
+    start[count] = 2L * count;
+    for (int i = 0; i < N; i++) order[i] = i;
+    Sparse *a = sparse_create(N, (Groups){count, start, dofs},
+                              (SparseDef){.order = order, .negative = HALF, .direct = DIRECT_MUMPS});
+    double *values = sparse_values(a), *b = random_vector(N, 3), *x = random_vector(N, 4);
+    for (int e = 0; e < count; e++)
+        values[sparse_slot(a, dofs[2 * e], dofs[2 * e + 1])] = e % ROW ? 0.2 * (1 + e % 3) : 3;
+    assert_true(sparse_factor(a, NULL));
+    sparse_solve(a, b, x);
+    assert_true(misfit(a, N, x, b) < 1e-11);
+    sparse_destroy(a);
+    mem_free(b);
+    mem_free(x);
+}
+
 /* What is not definite, wherever that comes in the order, singular, or not finite is found; the next factor is right again. */
 static void test_indefinite(void **state)
 {
@@ -253,9 +280,10 @@ static void test_threads(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_elements),   cmocka_unit_test(test_inertia),
-                                       cmocka_unit_test(test_indefinite), cmocka_unit_test(test_kept),
-                                       cmocka_unit_test(test_coupled),    cmocka_unit_test(test_threads)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_elements), cmocka_unit_test(test_inertia),
+                                       cmocka_unit_test(test_pivots),   cmocka_unit_test(test_indefinite),
+                                       cmocka_unit_test(test_kept),     cmocka_unit_test(test_coupled),
+                                       cmocka_unit_test(test_threads)};
     ranks_start();
     if (ranks_serve()) return 0;
     int failed = cmocka_run_group_tests(tests, NULL, NULL);

@@ -28,7 +28,7 @@ static const Trial trials[] = {
     /* a rod that multipliers hold */
     {"scenes/rod_arch.yaml", {"rod.elements=80"}, {{"slender/state/x", 1e-10}}},
     /* a rod of turns only */
-    {"scenes/rod_equilibrium.yaml", {"rod.elements=200"}, {{"slender/state/x", 1e-10}}},
+    {"scenes/rod_equilibrium.yaml", {"rod.elements=100"}, {{"slender/state/x", 1e-10}}},
     /* a solid */
     {"scenes/cook.yaml", {0}, {{"slender/state/x", 1e-10}}},
     /* a design by gauss_newton and one by mma: two cases with adjoints */
@@ -37,7 +37,7 @@ static const Trial trials[] = {
      {{"slender/history/objective", 1e-8}, {"slender/state/x", 1e-6}}},
     /* a motion whose path is kept with its factors, and swept back */
     {"tests/scene_trajectory.yaml",
-     {"design.iterations=2"},
+     {"design.iterations=1"},
      {{"slender/history/objective", 1e-8}, {"slender/state/x", 1e-8}}},
 };
 
