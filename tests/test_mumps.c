@@ -1,6 +1,7 @@
 /* Factors by MUMPS, over the processes that this is started as: right, of the inertia they are asked for, values as CHOLMOD's. */
 #include "base/memory.h"
 #include "base/workers.h"
+#include "leaks.h"
 #include "matrix_fixture.h"
 #include "solve/ranks.h"
 #include <setjmp.h>
@@ -286,7 +287,7 @@ int main(void)
                                        cmocka_unit_test(test_threads)};
     ranks_start();
     if (ranks_serve()) return 0;
-    int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    int failed = cmocka_run_group_tests(tests, NULL, nothing_leaks);
     ranks_end();
     return failed;
 }
