@@ -56,10 +56,11 @@ for which in first last; do
     wait $launcher && { echo "a run whose $which process was killed ends well"; bad=1; }
     wait_for $which 0
 done
+steps=$("$program" info first.run | sed -n 's/.*, \([0-9]*\) steps*,.*/\1/p')
+expect 0 several 2 run moves.yaml -o first --no-picture --resume --set "time.steps=$((steps + 5))"; once "result: first.vtkhdf"
 several 2 run moves.yaml -o stopped --no-picture --log=json > stopped.txt 2>&1 &
 launcher=$!
-stopped=stopped
-stepped $stopped
+stepped stopped
 for process in $(processes stopped); do grep -q "^OMPI_COMM_WORLD_RANK=0$" "/proc/$process/environ" -z && kill -INT "$process"; done
 wait $launcher; code=$?
 [ $code = 75 ] && grep -q "interrupted; all is saved" stopped.txt || { echo "an interrupted run ends with $code"; cat stopped.txt; bad=1; }
