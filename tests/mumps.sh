@@ -47,21 +47,21 @@ wait_for() { # so many processes of that run
     echo "$(processes "$1" | wc -l) processes, not $2"; bad=1
 }
 stepped() { for _ in $(seq 300); do grep -q '"step": [1-9]' "$1.txt" && return; sleep 0.1; done; echo "$1 makes no steps"; bad=1; }
-for which in first last; do
-    several 2 run moves.yaml -o $which --no-picture --log=json > $which.txt 2>&1 &
+of_rank() { for process in $(processes "$1"); do tr '\0' '\n' < "/proc/$process/environ" | grep -qx "OMPI_COMM_WORLD_RANK=$2" && echo "$process"; done; }
+for rank in 0 1; do
+    several 2 run moves.yaml -o killed$rank --no-picture --log=json > killed$rank.txt 2>&1 &
     launcher=$!
-    stepped $which
-    [ $which = first ] && victim=$(processes $which | head -1) || victim=$(processes $which | tail -1)
-    kill -KILL "$victim"
-    wait $launcher && { echo "a run whose $which process was killed ends well"; bad=1; }
-    wait_for $which 0
+    stepped killed$rank
+    kill -KILL "$(of_rank killed$rank $rank)"
+    wait $launcher && { echo "a run whose process $rank was killed ends well"; bad=1; }
+    wait_for killed$rank 0
 done
-steps=$("$program" info first.run | sed -n 's/.*, \([0-9]*\) steps*,.*/\1/p')
-expect 0 several 2 run moves.yaml -o first --no-picture --resume --set "time.steps=$((steps + 5))"; once "result: first.vtkhdf"
+steps=$("$program" info killed0.run | sed -n 's/.*, \([0-9]*\) steps*,.*/\1/p')
+expect 0 several 2 run moves.yaml -o killed0 --no-picture --resume --set "time.steps=$((steps + 5))"; once "result: killed0.vtkhdf"
 several 2 run moves.yaml -o stopped --no-picture --log=json > stopped.txt 2>&1 &
 launcher=$!
 stepped stopped
-for process in $(processes stopped); do grep -q "^OMPI_COMM_WORLD_RANK=0$" "/proc/$process/environ" -z && kill -INT "$process"; done
+kill -INT "$(of_rank stopped 0)"
 wait $launcher; code=$?
 [ $code = 75 ] && grep -q "interrupted; all is saved" stopped.txt || { echo "an interrupted run ends with $code"; cat stopped.txt; bad=1; }
 wait_for stopped 0
