@@ -31,10 +31,12 @@ static const Trial trials[] = {
     {"scenes/rod_equilibrium.yaml", {"rod.elements=100"}, {{"slender/state/x", 1e-10}}},
     /* a solid */
     {"scenes/cook.yaml", {0}, {{"slender/state/x", 1e-10}}},
-    /* a design by gauss_newton and one by mma: two cases with adjoints */
+    /* a design: two cases with their adjoints; rounding grows from one iteration to the next */
     {"tests/scene_small.yaml",
-     {"shell.mesh.n=5", "design.iterations=4"},
-     {{"slender/history/objective", 1e-8}, {"slender/state/x", 1e-6}}},
+     {"shell.mesh.n=5", "design.iterations=1"},
+     {{"slender/history/objective", 1e-10},
+      {"slender/history/gradient_norm", 1e-10},
+      {"slender/state/x", 1e-10}}},
     /* a motion whose path is kept with its factors, and swept back */
     {"tests/scene_trajectory.yaml",
      {"design.iterations=1"},
