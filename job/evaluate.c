@@ -9,7 +9,7 @@
 static NewtonStatus relax(Run *run, Case *c)
 {
     const BodyOps *ops = run->model->body->ops;
-    System *held = ops->pose_system ? ops->pose_system(run->model) : NULL;
+    System *held = ops->pose_system ? model_take_system(run->model, ops->pose_system(run->model)) : NULL;
     NewtonStatus status = NEWTON_CONVERGED;
     NewtonDef def = newton_default();
     run_newton(run, &def);

@@ -249,17 +249,24 @@ static bool check_job(const Scene *scene, YamlFile *file)
     return false;
 }
 
+static bool check_solver(const Scene *scene, YamlFile *file)
+{
+    Error err;
+    return direct_is_ready(scene->solver.direct, &err) || yaml_refuse(file, "solver.direct", "%s", err.text);
+}
+
 static Model *create(const Scene *scene, YamlFile *file, bool general)
 {
     Model *model = mem_alloc(1, sizeof *model);
     model->general = general;
     model->gravity = model->flux_blocks.uniform = -1;
     model->time = scene->time.at;
+    model->direct = scene->solver.direct;
     const JobRow *job = scene_job(scene);
     model->body = scene_body(scene);
     model->job = job;
     bool ok = check_job(scene, file) && yaml_check_use(file, scene_table()) &&
-              check_motion(scene, job, file) && start_open(model, scene, file) &&
+              check_motion(scene, job, file) && check_solver(scene, file) && start_open(model, scene, file) &&
               model->body->ops->create(model, scene, file) && start_take(model, scene, file) &&
               (!job->design || model_design(model, scene, file)) && model_probes(model, scene, file);
     start_close(model->start);
@@ -283,6 +290,12 @@ Model *model_create(const Scene *scene, YamlFile *file)
 Model *model_create_general(const Scene *scene, YamlFile *file)
 {
     return create(scene, file, true);
+}
+
+System *model_take_system(const Model *model, System *sys)
+{
+    system_set_direct(sys, model->direct);
+    return sys;
 }
 
 void model_destroy(Model *model)

@@ -13,6 +13,7 @@ FREE = {
     "design.tolerance", "rod.curve.where", "output.png",  # no pictures are made here
     "spline.tolerance", "spline.rounds", "spline.draft",  # where iterations are done before
     "shell.coercivity", "solid.coercivity", "rod.coercivity",  # which warn only
+    "solver.direct",  # finds the same
     "time", "time.step", "time.steps",  # the statics of a motion's scene leave them
 }
 

@@ -532,6 +532,7 @@ Reach = TypedDict("Reach", {
 
 Solver = TypedDict("Solver", {
     "max_iterations": "int", "step_tolerance": "float", "force_tolerance": "float",
+    "direct": "Literal['cholmod', 'mumps']",
 }, total=False)
 
 LoadStepsKeys = TypedDict("LoadStepsKeys", {
