@@ -119,12 +119,12 @@ static char *argument_sentence(const char *usage, int given, const char *first)
 
 /* ---- All of them ---- */
 
-/* "argument SCENE", then "--output -o value .png .svg", "--force - flag", .. */
+/* "argument - value SCENE", then "--output -o value .png .svg", "--force - flag", .. */
 static void print_rows(const char *usage, const Option *options, int count)
 {
     const char *argument = usage + strcspn(usage, " \n");
     int length = (int)strcspn(argument, "[-\n");
-    if (length > 1) printf("argument%.*s\n", length, argument);
+    if (length > 1) printf("argument - value%.*s\n", length, argument);
     for (int k = 0; k < count; k++) {
         const Option *option = &options[k];
         char letter[] = {'-', option->letter, 0};

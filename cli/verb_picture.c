@@ -27,7 +27,7 @@ static const char usage[] =
     "                 without any of these: the final state of every load case\n"
     "  --case NAME    one load case\n"
     "  --field NAME   colours: magnetization, young, thickness, von_mises, contact_force, .., or none\n"
-    "  --target WHERE the target beside the body, over it as wires (default for a motion), or both; of a "
+    "  --target KIND  the target beside the body, over it as wires (default for a motion), or both; of a "
     "motion's places and\n"
     "                 curves: over\n"
     "  --view X,Y,Z   direction to the eye; default: three quarters from above; of rods: front, side and "

@@ -17,7 +17,7 @@ for verb in $verbs; do # --help names every option that there is
         esac
     done < options.txt
 done
-expect 0 "$program" picture --options; says "^argument RESULT"; says "^--output -o value .png"; says "^--no-arrows - flag$"; says "^--target - value beside over both$"
+expect 0 "$program" picture --options; says "^argument - value RESULT"; says "^--output -o value .png"; says "^--no-arrows - flag$"; says "^--target - value beside over both$"
 refuses() { # a sentence, what the program is given ..
     sentence=$1; shift
     expect 2 "$program" "$@"; says "$sentence"; [ "$(cat out.txt err.txt | wc -l)" = 1 ] || { echo "more than a sentence:"; cat out.txt err.txt; bad=1; }
