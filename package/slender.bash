@@ -45,7 +45,8 @@ _slender_values() { # word ..
         SCENE*) endings+=(.yaml .yml) ;;
         RESULT*) endings+=(.vtkhdf) ;;
         .* | NAME.*) endings+=(".${word#*.}") ;;
-        [[:alpha:]]*) _slender_offer <<< "$word" ;;
+        [[:upper:]]* | '|') ;; # any file
+        *) _slender_offer <<< "$word" ;;
         esac
     done
     [[ ${#endings[@]} -eq 0 ]] || _slender_files "${endings[@]}"

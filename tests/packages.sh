@@ -25,7 +25,7 @@ gzip -dc x/usr/share/man/man1/slender.1.gz > slender.1
 verbs=$("$build/slender" help | sed -n 's/^  slender \([a-z]*\) .*/\1/p')
 [ "$verbs" ] && [ "$(sed -n 's/^\.SS //p' slender.1)" = "$verbs" ] || { echo "the man page has other verbs than" $verbs; bad=1; }
 for verb in $verbs; do
-    sed -n "/^\.SS $verb\$/,/^\.S[SH] [^$verb]/p" slender.1 | sed 's/\\-/-/g' > part.txt
+    awk -v heading=".SS $verb" '/^\.S[SH]/ { on = $0 == heading } on' slender.1 | sed 's/\\-/-/g' > part.txt
     for option in $("$build/slender" "$verb" --options | sed -n 's/^\(--[a-z-]*\) - .*/\1/p; s/^--[a-z-]* \(-[a-z]\) .*/\1/p'); do
         grep -q -e "$option" part.txt || { echo "the man page has no $option of $verb"; bad=1; }
     done
@@ -70,6 +70,7 @@ completes rod/x export helix.vtkhdf --dataset ""
 expect 0 slender run "$here/scene_small.yaml" --set shell.mesh.n=2 --set design.iterations=0 --quiet --no-picture -o star
 completes von_mises picture star.vtkhdf --field ""
 offers_only "down up" picture star.vtkhdf --case ""
+expect 0 bash -c '. x/usr/share/bash-completion/completions/slender; _slender_values FILE; [[ ${#COMPREPLY[@]} = 0 ]]' # another word for a file
 [ ! -e run ] || { echo "the name of a file was run"; bad=1; }
 
 # Python finds the package's library.
