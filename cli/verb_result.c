@@ -241,8 +241,8 @@ static RunStatus export_dataset(Result *result, const char *dataset, const char 
 }
 
 typedef struct Export {
-    const char *output, *dataset, *language, *per;
-    int frame;
+    const char *output, *dataset, *language;
+    int frame, per; /* per: 1: group */
     DrawingSplit split;
 } Export;
 
@@ -258,14 +258,14 @@ static bool check_source(Result *result, const char *input, const char *output, 
     return ok;
 }
 
+static const char *const endings[] = {".csv", ".obj",  ".svg", ".gcode",  ".ngc",
+                                      ".nc",  ".hpgl", ".plt", ".vtkhdf", NULL};
+
 /* What is asked for, in the right words: an ending that says what is to be written, and no option that it does not use. */
 static bool check_request(const Export *what, bool run, Error *err)
 {
-    static const char *const endings[] = {".csv", ".obj",  ".svg", ".gcode", ".ngc",
-                                          ".nc",  ".hpgl", ".plt", ".vtkhdf"};
     bool known = false, mesh = path_has_ending(what->output, ".obj");
-    for (size_t k = 0; k < sizeof endings / sizeof *endings; k++)
-        known = known || path_has_ending(what->output, endings[k]);
+    for (int k = 0; endings[k]; k++) known = known || path_has_ending(what->output, endings[k]);
     if (!known)
         return error_set(
             err,
@@ -400,17 +400,16 @@ int verb_export(int argc, char **argv)
     const char *input;
     int code;
     const Option options[] = {
-        {"output", .letter = 'o', .kind = OPTION_TEXT, .value = &what.output},
-        {"dataset", .kind = OPTION_TEXT, .value = &what.dataset},
-        {"per", .kind = OPTION_TEXT, .value = &what.per},
+        {"output", .letter = 'o', .kind = OPTION_TEXT, .value = &what.output, .words = endings},
+        {"dataset", .kind = OPTION_TEXT, .value = &what.dataset, .words = OPTION_WORDS("DATASET")},
+        {"per", .kind = OPTION_CHOICE, .value = &what.per, .words = OPTION_WORDS("group")},
         {"frame", .kind = OPTION_INT, .value = &what.frame, .least = 0, .most = INT_MAX},
-        {"plotter", .kind = OPTION_TEXT, .value = &what.language},
+        {"plotter", .kind = OPTION_TEXT, .value = &what.language,
+         .words = OPTION_WORDS("gcode", "gcode_servo", "hpgl", "profile", ".yaml")},
         {"split", .kind = OPTION_OTHER, .value = &what.split, .take = drawing_split_take,
-         .allowed = DRAWING_SPLIT_ALLOWED}};
+         .allowed = DRAWING_SPLIT_ALLOWED, .words = OPTION_WORDS("pen")}};
     if (!options_parse(argc, argv, usage, options, sizeof options / sizeof *options, &input, &code))
         return code;
-    if (what.per && strcmp(what.per, "group"))
-        return verb_fail(RUN_USAGE, "--per must be group: slender export --help says more");
     if (what.per && what.dataset) return verb_fail(RUN_USAGE, "--per and --dataset exclude each other");
     if (!what.output) return verb_fail(RUN_USAGE, "-o FILE must be given; slender export --help says more");
     Error err;

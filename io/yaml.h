@@ -222,6 +222,10 @@ char *yaml_schema(const YamlTable *table, const char *title);
 /* The manual of all keys, Markdown: one section per table. */
 char *yaml_manual(const YamlTable *table, const char *title);
 
+/* All keys as --set has them, a line each: "shell.thickness=", one for each word that may be its value, "job=design", of a
+ * list those of its first entry, "fix[0].ball.radius="; of a mapping with names its own alone. */
+char *yaml_keys(const YamlTable *table);
+
 /* For the tests of a table: asserts that its defaults, ranges, units and sub-tables are sound. A FIELD_TABLE
  * that is not required must load from nothing; a table must not contain itself. */
 void yaml_check_table(const YamlTable *table);

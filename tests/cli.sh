@@ -5,9 +5,19 @@
 expect 0 "$program" help;                       says "slender run"
 expect 0 "$program" --version;                  says "CHOLMOD"; says "OpenBLAS"; says "NLopt"; says "HDF5"
 expect 2 "$program" fly;                        says "no verb 'fly'"
-for verb in run check info export picture schema mesh help version; do
+verbs=$("$program" help | sed -n 's/^  slender \([a-z]*\) .*/\1/p')
+[ "$(echo "$verbs" | wc -l)" -ge 9 ] || { echo "help lists only" $verbs; bad=1; }
+for verb in $verbs; do # --help names every option that there is
+    expect 0 "$program" $verb --options; mv out.txt options.txt
     expect 0 "$program" $verb --help; [ ! -s err.txt ] && grep -q "^usage: slender $verb" out.txt || { echo "$verb does not say how it is used"; bad=1; }
+    while read -r name letter rest; do
+        case $name in
+        argument) ;;
+        *) grep -q -e "$name" -e "$letter [A-Zk]" out.txt || { echo "$verb --help does not say $name"; bad=1; } ;;
+        esac
+    done < options.txt
 done
+expect 0 "$program" picture --options; says "^argument - value RESULT"; says "^--output -o value .png"; says "^--no-arrows - flag$"; says "^--target - value beside over both$"
 refuses() { # a sentence, what the program is given ..
     sentence=$1; shift
     expect 2 "$program" "$@"; says "$sentence"; [ "$(cat out.txt err.txt | wc -l)" = 1 ] || { echo "more than a sentence:"; cat out.txt err.txt; bad=1; }
@@ -164,6 +174,8 @@ expect 1 "$program" run "$scene" -o short --set solver.max_iterations=2 --set "l
 expect 0 "$program" info short.vtkhdf;          says "state/x"
 expect 0 "$program" run "$scene" -o json --log=json; says '"step": 1, "of": 1, "seconds": [0-9.]*, "left": 0,'
 expect 0 "$program" schema;                     says "json-schema.org"
+expect 0 "$program" schema --keys;              says "^shell.thickness=$"; says "^job=design$"; says "^fix\[0\].ball.radius=$"
+expect 2 "$program" schema --keys --manual;     says "exclude each other"
 expect 0 "$program" schema --manual;            says "| .thickness. |"
 "$program" schema --manual | cmp -s - "$here/../docs/scene.md" || { echo "docs/scene.md is not what slender schema --manual says"; bad=1; }
 
