@@ -1,0 +1,19 @@
+/* body.h - what a result's body looks like to other programs: triangles that move, and the colours on them. */
+#pragma once
+#include "export/moments.h"
+
+typedef struct ExportBody {
+    const char *name;
+    int point_count, face_count;
+    int (*faces)[3];
+    const float (**x)[3];     /* [moment][point] m                                   */
+    const float (*colors)[3]; /* [point] light, 0..1; NULL: plain                   */
+    const float *values;      /* [point] the number that its colour stands for; NULL: not everywhere */
+    const char *field_name, *field_unit; /* of them                                            */
+} ExportBody;
+
+/* The mesh, at most one point for each vertex and colour around it; kept in the data. False and a sentence where there is none. */
+bool body_of_mesh(ShowData *data, const Moments *moments, ExportBody *body, Error *err);
+
+/* The simulated strands as tubes of twelve sides, as thick as what the world meets; caps close them. */
+bool body_of_rods(ShowData *data, const Moments *moments, ExportBody *body, Error *err);
