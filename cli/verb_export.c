@@ -8,8 +8,10 @@
 #include "io/path.h"
 #include "io/replace.h"
 #include "io/result.h"
+#include "io/safe_file.h"
 #include "io/table.h"
 #include "job/outputs.h"
+#include "job/probe_table.h"
 #include "model/stored.h"
 #include "spline/drawn.h"
 #include <limits.h>
@@ -58,6 +60,7 @@ static RunStatus export_dataset(Result *result, const char *dataset, const char 
 /* What is asked for. */
 typedef struct Export {
     const char *input, *output, *dataset, *language, *per;
+    bool probes;
     ExportDef how; /* of a .glb; others take its frame */
     int levels;
     DrawingSplit split;
@@ -89,9 +92,25 @@ static bool check_further(void *self, const char *path, Error *err)
     return check_source(further->result, further->input, path, err) && replace_check(path, err);
 }
 
+static RunStatus export_probes(Result *result, const char *path, Error *err)
+{
+    Scene scene;
+    YamlFile *file;
+    stored_result_scene(result, &file, &scene);
+    char *text = probe_table_text(&scene, result, err);
+    RunStatus status = !text                                                   ? RUN_REFUSED
+                       : safe_file_write(path, text, strlen(text), false, err) ? RUN_DONE
+                                                                               : RUN_CANNOT_WRITE;
+    mem_free(text);
+    yaml_clear(scene_table(), &scene);
+    yaml_destroy(file);
+    return status;
+}
+
 static RunStatus write_numbers(Result *result, const Export *what, Error *err)
 {
     if (what->per) return export_groups(result, what->output, err);
+    if (what->probes) return export_probes(result, what->output, err);
     if (what->dataset) return export_dataset(result, what->dataset, what->output, err);
     error_set(err, "%s: which numbers? --dataset names them; slender info lists what there is", what->output);
     return RUN_USAGE;
@@ -132,7 +151,17 @@ static RunStatus write_drawing(Result *result, const Export *what, Error *err)
 }
 
 /* The options that say what of a result, and how. */
-enum { DATASET = 1, PER = 2, FRAME = 4, FRAMES = 8, FIELD = 16, LEVELS = 32, PLOTTER = 64, SPLIT = 128 };
+enum {
+    DATASET = 1,
+    PER = 2,
+    FRAME = 4,
+    FRAMES = 8,
+    FIELD = 16,
+    LEVELS = 32,
+    PLOTTER = 64,
+    SPLIT = 128,
+    PROBES = 256
+};
 
 /* Of an ending: what it is of, and which options it takes. */
 typedef struct Format {
@@ -142,7 +171,7 @@ typedef struct Format {
     RunStatus (*write)(Result *result, const Export *what, Error *err);
 } Format;
 
-static const Format formats[] = {{".csv", OF_ALL, DATASET | PER, write_numbers},
+static const Format formats[] = {{".csv", OF_ALL, DATASET | PER | PROBES, write_numbers},
                                  {".npz", OF_ALL, 0, write_npz},
                                  {".obj", OF_BODY, FRAME, write_obj},
                                  {".ply", OF_BODY, FRAME, write_ply},
@@ -172,9 +201,10 @@ static const Format *format_of(const char *path, Error *err)
 
 static unsigned options_given(const Export *what)
 {
-    return (what->dataset ? DATASET : 0) | (what->per ? PER : 0) | (what->how.frame >= 0 ? FRAME : 0) |
-           (what->how.frames ? FRAMES : 0) | (what->how.field ? FIELD : 0) | (what->levels ? LEVELS : 0) |
-           (what->language ? PLOTTER : 0) | (what->split.pens || what->split.ink > 0 ? SPLIT : 0);
+    return (what->probes ? PROBES : 0) | (what->dataset ? DATASET : 0) | (what->per ? PER : 0) |
+           (what->how.frame >= 0 ? FRAME : 0) | (what->how.frames ? FRAMES : 0) |
+           (what->how.field ? FIELD : 0) | (what->levels ? LEVELS : 0) | (what->language ? PLOTTER : 0) |
+           (what->split.pens || what->split.ink > 0 ? SPLIT : 0);
 }
 
 /* False and a sentence for an option that the format does not use, and for two that exclude each other. */
@@ -185,6 +215,7 @@ static bool check_options(const Export *what, const Format *format, Error *err)
         const char *is;
     } uses[] = {
         {PER, "--per group is for a CSV of a result's groups, -o FILE.csv, or parts to print, .stl or .3mf,"},
+        {PROBES, "--probes is for a table of them, -o FILE.csv,"},
         {DATASET, "--dataset is for numbers, -o FILE.csv,"},
         {FRAME, "--frame is for a mesh, -o FILE.obj, .ply, .glb, .stl or .3mf,"},
         {FRAMES, "--frames is for a body that moves, -o FILE.glb,"},
@@ -196,6 +227,8 @@ static bool check_options(const Export *what, const Format *format, Error *err)
         unsigned both;
         const char *names;
     } pairs[] = {{PER | DATASET, "--per and --dataset"},
+                 {PER | PROBES, "--per and --probes"},
+                 {DATASET | PROBES, "--dataset and --probes"},
                  {PER | LEVELS, "--per and --levels"},
                  {FRAME | FRAMES, "--frame and --frames"}};
     unsigned given = options_given(what);
@@ -286,6 +319,7 @@ int verb_export(int argc, char **argv)
 {
     static const char usage[] =
         "export NAME.vtkhdf -o FILE.csv --dataset PATH      numbers, e.g. --dataset design/magnetization\n"
+        "       slender export NAME.vtkhdf -o FILE.csv --probes     the table of the scene's probes\n"
         "       slender export NAME.vtkhdf -o FILE.csv --per group  of each named group |M|, azimuth, "
         "elevation\n"
         "       slender export NAME.vtkhdf -o FILE.npz              all numbers and frames, for numpy.load\n"
@@ -318,6 +352,7 @@ int verb_export(int argc, char **argv)
     const Option options[] = {
         {"output", .letter = 'o', .kind = OPTION_TEXT, .value = &what.output},
         {"dataset", .kind = OPTION_TEXT, .value = &what.dataset},
+        {"probes", .value = &what.probes},
         {"per", .kind = OPTION_TEXT, .value = &what.per},
         {"frame", .kind = OPTION_INT, .value = &what.how.frame, .least = 0, .most = INT_MAX},
         {"frames", .kind = OPTION_INT, .value = &what.how.frames, .least = 1, .most = 10000},

@@ -62,6 +62,19 @@ solid:
 """
 
 
+MOVING = """slender: 1
+job: simulate
+shell:
+  mesh: {shape: strip, size: [20 mm, 5 mm], n: 4}
+  thickness: 1 mm
+  young: 1 MPa
+  poisson: 0.3
+  density: 1000
+  gravity: [0, 0, -9.81]
+%stime: {step: 1 ms, steps: 5}
+output: {every: 2}
+"""
+
 # ---- Closed surfaces ----
 
 
@@ -398,6 +411,39 @@ class Moving(unittest.TestCase):
         run("again", EVALUATE % ("file: moving.ply", "1 mm", "[0, 0, 1e4]"))  # by slender's own reader
         back = numbers("again")
         self.assertTrue(np.array_equal(back["rest"], z["VTKHDF/Points"][5]) and np.array_equal(back["faces"], z["faces"]))
+
+    def test_probes(self):
+        """What the run has written beside the result, once more."""
+        probes = "probes:\n  tip: {vertex: \"3\"}\n  high: {height: \"3\"}\n"
+        cases = "cases:\n  - {name: a, flux_density: [0, 0, 1 mT], target: [x, y, 9*x^2]}\n  - {name: b, flux_density: [0, 0, -1 mT], target: [x, y, -9*x^2]}\n"
+        strip = EVALUATE % ("shape: strip, size: [20 mm, 5 mm], n: 4", "1 mm", "[1e4, 0, 0]")
+        design = strip.replace("evaluate", "design") + "fix: [{group: root, clamp: true}]\n" + probes + cases
+        design += "design: {iterations: 2, unknowns: {magnetization: {noise: 100}}, objectives: [{target: 1}], optimizer: gauss_newton}\n"
+        for name, scene in (("stage", strip + probes), ("time", MOVING % probes), ("evaluation", design)):
+            run(name, scene)
+            export(name, "again.csv", "--probes")
+            with open("again.csv") as one, open(name + "_probes.csv") as other:
+                text = one.read()
+                self.assertEqual(text, other.read())
+            self.assertTrue(text.startswith(name + (",case" if name == "evaluation" else "") + ",tip.x,tip.y,tip.z,high\n"))
+            self.assertGreater(text.count("\n"), 1)
+        self.assertIn("no rows of probes", slender("export", "moving.vtkhdf", "-o", "x.csv", "--probes", code=3))
+        self.assertIn("--probes is for a table", slender("export", "stage.vtkhdf", "-o", "x.obj", "--probes", code=2))
+
+    def test_what_is_not_there(self):
+        """A magnet that one load case has: in the other one it has no size."""
+        hand = "{name: hand, magnet: {at: [30 mm, 2.5 mm, 50 mm], radius: 6 mm, length: 12 mm, remanence: [0, 0, 1.3]}}"
+        strip = EVALUATE % ("shape: strip, size: [40 mm, 5 mm], n: 8", "0.5 mm", "[1e4, 0, 0]")
+        cases = "cases:\n  - {name: none, flux_density: [0, 0, 1 mT]}\n  - {name: near, flux_density: %s}\n" % hand
+        run("two", strip.replace("evaluate", "equilibrium") + "fix: [{group: root, clamp: true}]\n" + cases)
+        export("two", "two.glb")
+        glb = Glb("two.glb")
+        self.assertEqual(glb.json["nodes"][glb.node("hand")]["scale"], [0, 0, 0])
+        times, sizes = glb.channels("hand")["scale"]
+        self.assertEqual((times.tolist(), sizes.tolist()), ([0, 1], [[0, 0, 0], [1, 1, 1]]))
+        places = glb.channels("hand")["translation"][1]
+        pose = numbers("two")["frames/source_pose"].reshape(2, 3, 4)
+        self.assertTrue(np.isnan(pose[0]).all() and abs(places[1] - pose[1, :, 3]).max() < 1e-8)
 
     def test_solid_ply(self):
         """Faces without a number of their own have that of the tetrahedron behind them."""
