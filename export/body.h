@@ -1,11 +1,12 @@
-/* body.h - what a result's body looks like to other programs: triangles that move, and the colours on them. */
+/* body.h - what a result's body looks like to other programs: triangles or lines that move, and the colours on them. */
 #pragma once
 #include "export/moments.h"
 
 typedef struct ExportBody {
     const char *name;
-    int point_count, face_count;
-    int (*faces)[3];
+    bool lines; /* else triangles */
+    int point_count, index_count;
+    const int *indices;       /* [index_count] points: three for each triangle, two for each line */
     const float (**x)[3];     /* [moment][point] m                                   */
     const float (*colors)[3]; /* [point] light, 0..1; NULL: plain                   */
     const float *values;      /* [point] the number that its colour stands for; NULL: not everywhere */
@@ -15,5 +16,6 @@ typedef struct ExportBody {
 /* The mesh, at most one point for each vertex and colour around it; kept in the data. False and a sentence where there is none. */
 bool body_of_mesh(ShowData *data, const Moments *moments, ExportBody *body, Error *err);
 
-/* The simulated strands as tubes of twelve sides, as thick as what the world meets; caps close them. */
+/* The simulated strands as tubes of twelve sides, as thick as what the world meets, closed by caps; as lines where the result does
+ * not say how thick they are (of inversions). */
 bool body_of_rods(ShowData *data, const Moments *moments, ExportBody *body, Error *err);

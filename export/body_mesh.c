@@ -90,8 +90,8 @@ static bool fill(ShowData *data, const ShowMesh *mesh, const Moments *moments, E
     if (!show_mesh_field(mesh, last, &values, &body->field_name, &body->field_unit, err)) return false;
     int(*faces)[3] = show_block(data, (size_t)clip->face_count, sizeof *faces);
     find_corners(data, clip, values, &corners, faces);
-    body->name = "body", body->faces = faces;
-    body->point_count = corners.count, body->face_count = clip->face_count;
+    body->name = "body", body->indices = faces[0];
+    body->point_count = corners.count, body->index_count = 3 * clip->face_count;
     if (values) paint(data, &corners, values, clip->face_count, body);
     return place_corners(data, mesh, &corners, moments, body, err);
 }

@@ -2,13 +2,13 @@
 #include "export/body.h"
 #include <math.h>
 
-enum { SIDES = 12 };
+enum { SIDES = 12, OUTLINE = 24 };
 
 /* Strands of nodes, and how thick they are there. */
 typedef struct Strands {
     int count, node_count;
     const int *first;     /* [count + 1]  */
-    const double *radius; /* [node] m     */
+    const double *radius; /* [node] m; NULL: not known */
 } Strands;
 
 /* ---- Reading ---- */
@@ -34,17 +34,15 @@ static bool read_strands(ShowData *data, Strands *strands, Error *err)
 }
 
 /* Of elements the mean of those beside a node, of an even rod how far its section reaches. */
-static bool read_radii(ShowData *data, Strands *strands, Error *err)
+static void read_radii(ShowData *data, Strands *strands)
 {
-    size_t nodes = (size_t)strands->node_count;
-    const double *each =
-                     show_dataset(data, "slender/rod/radius", ARRAY_FLOAT64, nodes - (size_t)strands->count),
-                 *outline = show_dataset(data, "slender/rod/section_outline", ARRAY_FLOAT64, 2 * 24);
+    size_t nodes = (size_t)strands->node_count, elements = nodes - (size_t)strands->count;
+    const double *each = show_dataset(data, "slender/rod/radius", ARRAY_FLOAT64, elements),
+                 *outline = show_dataset(data, "slender/rod/section_outline", ARRAY_FLOAT64, 2 * OUTLINE);
+    if (!each && !outline) return;
     double *radius = show_block(data, nodes, sizeof *radius), reach = 0;
-    if (!each && !outline)
-        return error_set(err,
-                         "the result does not say how thick its rods are: --dataset rod/x has the curves");
-    for (int i = 0; outline && i < 24; i++) reach = fmax(reach, hypot(outline[2 * i], outline[2 * i + 1]));
+    for (int i = 0; outline && i < OUTLINE; i++)
+        reach = fmax(reach, hypot(outline[2 * i], outline[2 * i + 1]));
     for (int k = 0; k < strands->count; k++)
         for (int i = strands->first[k]; i < strands->first[k + 1]; i++) {
             int before = i > strands->first[k] ? i - 1 - k : i - k,
@@ -52,7 +50,6 @@ static bool read_radii(ShowData *data, Strands *strands, Error *err)
             radius[i] = each ? (each[before] + each[after]) / 2 : reach;
         }
     strands->radius = radius;
-    return true;
 }
 
 /* ---- Tubes ---- */
@@ -123,25 +120,42 @@ static int (*connect(const Strands *strands, int strand, int (*face)[3]))[3]
     return face;
 }
 
+static void make_tubes(ShowData *data, const Strands *strands, ExportBody *body)
+{
+    size_t faces = 2 * SIDES * (size_t)strands->node_count;
+    int(*first)[3] = show_block(data, faces, sizeof *first), (*face)[3] = first;
+    for (int s = 0; s < strands->count; s++) face = connect(strands, s, face);
+    body->point_count = points_before(strands, strands->count);
+    body->indices = first[0], body->index_count = 3 * (int)faces;
+}
+
+static void make_lines(ShowData *data, const Strands *strands, ExportBody *body)
+{
+    int *index = show_block(data, 2 * (size_t)strands->node_count, sizeof *index);
+    body->indices = index, body->lines = true, body->point_count = strands->node_count;
+    for (int s = 0; s < strands->count; s++)
+        for (int i = strands->first[s]; i + 1 < strands->first[s + 1]; i++) *index++ = i, *index++ = i + 1;
+    body->index_count = (int)(index - body->indices);
+}
+
 bool body_of_rods(ShowData *data, const Moments *moments, ExportBody *body, Error *err)
 {
     Strands strands = {0};
-    if (!read_strands(data, &strands, err) || !read_radii(data, &strands, err)) return false;
-    int count = points_before(&strands, strands.count);
-    *body = (ExportBody){.name = "rod", .point_count = count};
-    body->face_count = 2 * SIDES * strands.node_count;
-    int(*face)[3] = body->faces = show_block(data, (size_t)body->face_count, sizeof *body->faces);
-    for (int s = 0; s < strands.count; s++) face = connect(&strands, s, face);
+    if (!read_strands(data, &strands, err)) return false;
+    read_radii(data, &strands);
+    *body = (ExportBody){.name = "rod"};
+    (strands.radius ? make_tubes : make_lines)(data, &strands, body);
     Vec3 *sides = show_block(data, (size_t)strands.count, sizeof *sides);
     body->x = show_block(data, (size_t)moments->count, sizeof *body->x);
     for (int k = 0; k < moments->count; k++) {
         const double(*x)[3] =
             moments_points(data, moments->frames[k], "slender/rod/x", strands.node_count, err);
         if (!x) return false;
-        float(*rings)[3] = show_block(data, (size_t)count, sizeof *rings);
-        for (int s = 0; s < strands.count; s++)
-            sweep(&strands, s, x, &sides[s], rings + points_before(&strands, s));
-        body->x[k] = (const float(*)[3])rings;
+        float(*points)[3] = show_block(data, (size_t)body->point_count, sizeof *points);
+        for (int s = 0; strands.radius && s < strands.count; s++)
+            sweep(&strands, s, x, &sides[s], points + points_before(&strands, s));
+        for (int i = 0; !strands.radius && i < body->point_count; i++) put(points[i], vec3_load(x[i]));
+        body->x[k] = (const float(*)[3])points;
     }
     return true;
 }

@@ -75,8 +75,9 @@ static int add_body_mesh(Glb *glb, const ExportBody *body)
     if (body->values)
         text_add(text, ",\"%s\":%d", attribute_name(glb->data, body->field_name),
                  gltf_vertices(gltf, body->values, body->point_count, 1));
-    text_add(text, "},\"indices\":%d,\"material\":%d",
-             gltf_indices(gltf, body->faces[0], 3 * body->face_count), material);
+    text_add(text, "},\"indices\":%d,\"material\":%d", gltf_indices(gltf, body->indices, body->index_count),
+             material);
+    if (body->lines) text_add(text, ",\"mode\":1");
     if (glb->moments.count > 1) add_targets(glb, body, &names);
     text_add(text, "}]");
     add_extras(glb, body, &names);

@@ -27,7 +27,9 @@ const double (*moments_points(ShowData *data, int frame, const char *final, int 
                          : result_read_as(data->result, final, ARRAY_FLOAT64, 2, 3, &points, err);
     if (!ok) return NULL;
     const double(*x)[3] = show_keep(data, points);
-    if (points.dims[0] >= count) return x;
-    error_set(err, "there are fewer points in it than the body has");
-    return NULL;
+    if (points.dims[0] < count) return error_set(err, "there are fewer points in it than the body has"), NULL;
+    for (int i = 0; i < 3 * count; i++)
+        if (!isfinite(x[i / 3][i % 3]))
+            return error_set(err, "point %d is nowhere: it is no number", i / 3), NULL;
+    return x;
 }

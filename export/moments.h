@@ -13,5 +13,5 @@ typedef struct Moments {
 bool moments_choose(ShowData *data, const ExportDef *def, Moments *moments, Error *err);
 
 /* Points of the frame, of the final state those of `final`: the first `count` of them. NULL and a sentence where there are
- * fewer. Kept in the data. */
+ * fewer, or one is no number. Kept in the data. */
 const double (*moments_points(ShowData *data, int frame, const char *final, int count, Error *err))[3];

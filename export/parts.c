@@ -123,8 +123,9 @@ static bool by_levels(Sorting *sorting, Result *result, int levels, Error *err)
     for (int level = 0; high > 0 && level < levels; level++) take_level(sorting, M, low, high, level, levels);
     take_rest(sorting, "not magnetised");
     array_clear(&array);
-    return high > 0 || error_set(err, sorting->mesh->cell_count ? "no tetrahedron is magnetised"
-                                                                : "nothing is magnetised");
+    return high > 0 || error_set(err, sorting->mesh->cell_count
+                                          ? "no tetrahedron is magnetised, and its skin has no volume"
+                                          : "nothing is magnetised");
 }
 
 /* ---- All of it ---- */

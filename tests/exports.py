@@ -355,6 +355,20 @@ class Moving(unittest.TestCase):
         self.assertIn("--field is of meshes", slender("export", "rod.vtkhdf", "-o", "x.glb", "--field", "young", code=3))
         self.assertIn("there is no mesh in it", slender("export", "rod.vtkhdf", "-o", "x.ply", code=3))
 
+    def test_lines(self):
+        """An inversion does not say how thick its rods are."""
+        curve = '{formula: ["0.02*cos(u)", "0.02*sin(u)", "-0.003*u"], range: [0, 6], parameter: u}'
+        rod = f"{{curve: {curve}, elements: 20, radius: 1 mm, young: 5 MPa, poisson: 0.5, density: 1000}}"
+        run("helix", f"slender: 1\njob: invert\nrod: {rod}\nchecks: [round_trip]\n")
+        export("helix", "helix.glb")
+        glb, z = Glb("helix.glb"), numbers("helix")
+        primitive = glb.primitive("rod")
+        points = glb.numbers(primitive["attributes"]["POSITION"])
+        self.assertEqual(primitive["mode"], 1)
+        self.assertLess(abs(points - z["VTKHDF/Points"][0][: len(points)]).max(), 1e-8)
+        lines = glb.numbers(primitive["indices"]).reshape(-1, 2)
+        self.assertTrue(np.array_equal(lines, [[i, i + 1] for i in range(len(z["rod/x"]) - 1)]))
+
     def test_refusals(self):
         for options, code, words in (
             (("-o", "x.glb", "--frame", "99"), 3, "the result has 9 frames, from 0"),
