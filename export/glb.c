@@ -26,23 +26,40 @@ static char *attribute_name(ShowData *data, const char *field)
     return name;
 }
 
-/* Where the points are less where they are at first. */
-static int add_target(Glb *glb, const ExportBody *body, int moment)
+/* Numbers of a target less those that the body has itself. */
+static int add_difference(Glb *glb, const float (*of)[3], const float (*base)[3], int count)
 {
-    float *away = show_block(glb->data, 3 * (size_t)body->point_count, sizeof *away);
-    for (int p = 0; p < body->point_count; p++)
-        for (int i = 0; i < 3; i++) away[3 * p + i] = body->x[moment][p][i] - body->x[0][p][i];
-    return gltf_vertices(&glb->gltf, away, body->point_count, 3);
+    float *away = show_block(glb->data, 3 * (size_t)count, sizeof *away);
+    for (int i = 0; i < 3 * count; i++) away[i] = of[i / 3][i % 3] - base[i / 3][i % 3];
+    return gltf_vertices(&glb->gltf, away, count, 3);
 }
 
-/* The moments after the first one, and what viewers call them. */
+/* The body itself is at its first moment, and has the colours of its last one: those who cannot change colours show them. */
+static const float (*base_colors(const ExportBody *body))[3]
+{
+    return body->colors[body->color_count - 1];
+}
+
+/* The first moment that is a target: with colours that change also that of the body itself. */
+static int first_target(const ExportBody *body)
+{
+    return body->color_count > 1 ? 0 : 1;
+}
+
+/* The moments, and what viewers call them. */
 static void add_targets(Glb *glb, const ExportBody *body, Text *names)
 {
     Text *text = &glb->gltf.meshes.text;
+    int first = first_target(body), points = body->point_count;
     text_add(text, ",\"targets\":[");
-    for (int k = 1; k < glb->moments.count; k++) {
-        text_add(text, "%s{\"POSITION\":%d}", k > 1 ? "," : "", add_target(glb, body, k));
-        if (k > 1) text_add(names, ",");
+    for (int k = first; k < glb->moments.count; k++) {
+        text_add(text, "%s{\"POSITION\":%d", k > first ? "," : "",
+                 add_difference(glb, body->x[k], body->x[0], points));
+        if (body->color_count > 1)
+            text_add(text, ",\"COLOR_0\":%d",
+                     add_difference(glb, body->colors[k], base_colors(body), points));
+        text_add(text, "}");
+        if (k > first) text_add(names, ",");
         text_add_quoted(names, show_frame_name(glb->data, glb->moments.frames[k]));
     }
     text_add(text, "]");
@@ -53,7 +70,7 @@ static void add_extras(Glb *glb, const ExportBody *body, const Text *names)
 {
     Text *text = &glb->gltf.meshes.text;
     text_add(text, ",\"extras\":{\"targetNames\":[%s]", names->text ? names->text : "");
-    if (body->colors) {
+    if (body->color_count) {
         text_add(text, ",\"field\":");
         text_add_quoted(text, body->field_name);
         text_add(text, ",\"unit\":");
@@ -67,11 +84,11 @@ static int add_body_mesh(Glb *glb, const ExportBody *body)
     Gltf *gltf = &glb->gltf;
     Text names = {0}, *text = &gltf->meshes.text;
     int mesh = gltf_next(&gltf->meshes),
-        material = gltf_material(gltf, body->name, body->colors ? white : plain, true);
+        material = gltf_material(gltf, body->name, body->color_count ? white : plain, true);
     text_add(text, "{\"name\":\"%s\",\"primitives\":[{\"attributes\":{\"POSITION\":%d", body->name,
              gltf_vertices(gltf, body->x[0][0], body->point_count, 3));
-    if (body->colors)
-        text_add(text, ",\"COLOR_0\":%d", gltf_vertices(gltf, body->colors[0], body->point_count, 3));
+    if (body->color_count)
+        text_add(text, ",\"COLOR_0\":%d", gltf_vertices(gltf, base_colors(body)[0], body->point_count, 3));
     if (body->values)
         text_add(text, ",\"%s\":%d", attribute_name(glb->data, body->field_name),
                  gltf_vertices(gltf, body->values, body->point_count, 1));
@@ -100,9 +117,10 @@ static void add_body(Glb *glb, const ExportBody *body)
 {
     int node = add_node(&glb->gltf, body->name, add_body_mesh(glb, body)), count = glb->moments.count;
     if (count < 2) return;
-    float *weights = show_block(glb->data, (size_t)count * (size_t)(count - 1), sizeof *weights);
-    for (int k = 1; k < count; k++) weights[k * (count - 1) + k - 1] = 1;
-    gltf_animate(&glb->gltf, node, "weights", glb->times, weights, count, count - 1, false);
+    int first = first_target(body), targets = count - first;
+    float *weights = show_block(glb->data, (size_t)count * (size_t)targets, sizeof *weights);
+    for (int k = first; k < count; k++) weights[k * targets + k - first] = 1;
+    gltf_animate(&glb->gltf, node, "weights", glb->times, weights, count, targets, false);
 }
 
 /* ---- What is around ---- */
