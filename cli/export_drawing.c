@@ -77,7 +77,10 @@ RunStatus export_drawing(Result *result, const char *language, DrawingSplit spli
     const char *usual = usual_language(path);
     bool ok = true;
     if (!usual) {
-        error_set(err, "%s: a drawing is exported as .svg, .gcode or .hpgl, or numbers with --dataset", path);
+        error_set(
+            err,
+            "%s: a drawing is exported as .svg, .gcode or .hpgl, numbers as .csv, with --dataset, and .npz",
+            path);
         return RUN_CANNOT_WRITE;
     }
     if (!language) language = usual;

@@ -41,11 +41,6 @@ void bytes_add_float(Bytes *bytes, double number)
     bytes_add(bytes, &single, sizeof single);
 }
 
-void bytes_pad(Bytes *bytes, size_t multiple, char fill)
-{
-    while (bytes->size % multiple) bytes_add(bytes, &fill, 1);
-}
-
 void bytes_clear(Bytes *bytes)
 {
     mem_free(bytes->data);

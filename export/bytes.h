@@ -15,7 +15,4 @@ void bytes_add_u16(Bytes *bytes, unsigned number);
 void bytes_add_u32(Bytes *bytes, uint32_t number);
 void bytes_add_float(Bytes *bytes, double number); /* in single precision */
 
-/* So many of `fill` that the size is a multiple. */
-void bytes_pad(Bytes *bytes, size_t multiple, char fill);
-
 void bytes_clear(Bytes *bytes);

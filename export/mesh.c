@@ -64,7 +64,9 @@ static bool read_points(Result *result, int frame, Array *points, Error *err)
     if (frame >= count)
         return error_set(err, "there is no frame %d: the result has %d, from 0", frame, count);
     if (!result_has(result, "slender/faces"))
-        return error_set(err, "there is no mesh in it: its numbers are exported as .csv, with --dataset");
+        return error_set(
+            err,
+            "there is no mesh in it: rods are exported as .glb, numbers as .csv, with --dataset, and .npz");
     if (frame >= 0) return result_read_step(result, "Points", frame, points, err);
     return result_read_as(result, frame == MESH_REST ? "slender/rest" : "slender/state/x", ARRAY_FLOAT64, 2,
                           3, points, err);

@@ -5,7 +5,8 @@
  * thickness (twice as far at most). Walls along the normals close it at its edges, along slits, and between parts, which
  * share them: they touch without gaps. A point where a part touches itself at a corner only is there once for each side.
  *
- * Of a solid a part is the surface of its tetrahedra, four triangles for each side of a quadratic one. */
+ * Of a solid a part is the surface of its tetrahedra, four triangles for each side of a quadratic one. Where
+ * tetrahedra of a part touch along an edge only, that edge has four triangles. */
 #pragma once
 #include "base/error.h"
 #include "export/bytes.h"
