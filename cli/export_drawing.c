@@ -32,13 +32,6 @@ static const char *usual_language(const char *path)
 
 /* ---- Several files ---- */
 
-/* dir/NAME_3.gcode of dir/NAME.gcode. */
-static char *part_name(const char *path, int number)
-{
-    const char *dot = strrchr(path, '.');
-    return mem_format("%.*s_%d%s", (int)(dot - path), path, number, dot);
-}
-
 /* "a_2.gcode: black, contours: 12 strokes, 3.1 m of ink, about 4.2 min" */
 static void say_part(const char *path, const Plot *plot, const Plotter *plotter)
 {
@@ -68,7 +61,7 @@ static bool write_parts(const Drawn *drawn, const PlotParts *parts, const char *
                           parts->count, FILES_MOST));
     for (int pass = 0; pass < 2; pass++) /* no file is written unless all may be */
         for (int k = 0; ok && k < parts->count; k++) {
-            char *name = part_name(path, k + 1);
+            char *name = path_numbered(path, k + 1);
             ok = pass ? drawn_write_plot(drawn, &parts->plots[k], language, name, err)
                       : check(self, name, err);
             if (ok && pass) say_part(name, &parts->plots[k], &drawn->plotter);
@@ -84,7 +77,10 @@ RunStatus export_drawing(Result *result, const char *language, DrawingSplit spli
     const char *usual = usual_language(path);
     bool ok = true;
     if (!usual) {
-        error_set(err, "%s: a drawing is exported as .svg, .gcode or .hpgl, or numbers with --dataset", path);
+        error_set(
+            err,
+            "%s: a drawing is exported as .svg, .gcode or .hpgl, numbers as .csv, with --dataset, and .npz",
+            path);
         return RUN_CANNOT_WRITE;
     }
     if (!language) language = usual;

@@ -20,3 +20,9 @@ char *path_without_ending(const char *path, const char *ending)
     size_t cut = path_has_ending(path, ending) ? strlen(ending) : 0;
     return mem_format("%.*s", (int)(strlen(path) - cut), path);
 }
+
+char *path_numbered(const char *path, int number)
+{
+    const char *dot = strrchr(path, '.');
+    return mem_format("%.*s_%d%s", (int)(dot - path), path, number, dot);
+}

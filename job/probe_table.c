@@ -11,6 +11,14 @@ typedef struct Column {
     Array array;
 } Column;
 
+/* What a table is of: what counts its rows, and the probes in the scene's order. */
+typedef struct ProbeNames {
+    const char *rows;
+    int cases, count;
+    const char **names; /* [count] borrowed; the list is owned      */
+    int *widths;        /* [count] numbers in a row; owned          */
+} ProbeNames;
+
 typedef struct Columns {
     int count, rows, cases; /* rows of the result, with so many cases each */
     Column *items; /* [count] what counts the rows, the probes, and what a sequence has beside them */
@@ -91,20 +99,20 @@ static bool is_zero(const Array *array)
 }
 
 /* What there is; without any rows too, whose columns are then named alone. */
-static bool read_columns(const Model *model, Result *result, Columns *columns, Error *err)
+static bool read_columns(const ProbeNames *probes, Result *result, Columns *columns, Error *err)
 {
-    const char *rows = model_probe_rows(model);
-    columns->items = mem_alloc(1 + (size_t)model->probe_count + STAGED, sizeof *columns->items);
+    const char *rows = probes->rows;
+    columns->items = mem_alloc(1 + (size_t)probes->count + STAGED, sizeof *columns->items);
     char *counter = mem_format("probes/%s", rows);
     bool any = has(result, counter), ok = true, stages = any && has(result, "stages/time");
     mem_free(counter);
     if (any) ok = add_probe(result, rows, 1, columns, err);
     if (!any) columns->items[columns->count++] = (Column){.name = rows, .width = 1};
-    for (int k = 0; ok && k < model->probe_count; k++) {
-        const ModelProbe *probe = &model->probes[k];
-        int width = model_probe_width(probe);
-        if (any) ok = add_probe(result, probe->name, width, columns, err);
-        if (!any) columns->items[columns->count++] = (Column){.name = probe->name, .width = width};
+    for (int k = 0; ok && k < probes->count; k++) {
+        const char *name = probes->names[k];
+        int width = probes->widths[k];
+        if (any) ok = add_probe(result, name, width, columns, err);
+        if (!any) columns->items[columns->count++] = (Column){.name = name, .width = width};
     }
     for (int k = 0; ok && stages && k < STAGED; k++) {
         if (!has(result, staged[k].path)) continue;
@@ -116,17 +124,80 @@ static bool read_columns(const Model *model, Result *result, Columns *columns, E
     return ok;
 }
 
-bool probe_table_write(const Model *model, Result *result, const char *path, Error *err)
+/* NULL and a sentence where it cannot be read. Clears the names. */
+static char *make_table(ProbeNames *probes, Result *result, Error *err)
 {
-    Columns columns = {.cases = model->job->probed == PROBED_EVALUATIONS ? model->case_count : 1};
-    bool ok = read_columns(model, result, &columns, err);
+    Columns columns = {.cases = probes->cases};
+    bool ok = read_columns(probes, result, &columns, err);
     Text text = {0};
     if (ok) add_header(&columns, &text);
     for (int r = 0; ok && r < columns.rows * columns.cases; r++)
         add_line(&columns, r / columns.cases, r % columns.cases, &text);
-    ok = ok && safe_file_write(path, text.text, text.length, false, err);
     for (int k = 0; k < columns.count; k++) array_clear(&columns.items[k].array);
     mem_free(columns.items);
-    mem_free(text.text);
+    mem_free(probes->names);
+    mem_free(probes->widths);
+    return text.text;
+}
+
+static ProbeNames names_create(const char *rows, int cases, int count)
+{
+    return (ProbeNames){rows, cases, count, mem_alloc((size_t)count, sizeof(char *)),
+                        mem_alloc((size_t)count, sizeof(int))};
+}
+
+bool probe_table_write(const Model *model, Result *result, const char *path, Error *err)
+{
+    int cases = model->job->probed == PROBED_EVALUATIONS ? model->case_count : 1;
+    ProbeNames probes = names_create(model_probe_rows(model), cases, model->probe_count);
+    for (int k = 0; k < probes.count; k++)
+        probes.names[k] = model->probes[k].name, probes.widths[k] = model_probe_width(&model->probes[k]);
+    char *text = make_table(&probes, result, err);
+    bool ok = text && safe_file_write(path, text, strlen(text), false, err);
+    mem_free(text);
     return ok;
+}
+
+/* ---- Of a result alone ---- */
+
+/* How many numbers a dataset has; 0: it cannot be read. */
+static int count_at(Result *result, const char *name)
+{
+    Array array;
+    char *path = mem_format("slender/probes/%s", name);
+    int count = 0;
+    if (result_read(result, path, &array, NULL)) {
+        count = (int)array_count(&array);
+        array_clear(&array);
+    }
+    mem_free(path);
+    return count;
+}
+
+static int count_cases(Result *result)
+{
+    Array names;
+    int count = 1;
+    if (!result_read_as(result, "slender/case_names", ARRAY_TEXT, 1, 0, &names, NULL)) return 1;
+    for (const char *c = names.data; *c; c++) count += c[0] == '\n' && c[1];
+    array_clear(&names);
+    return count;
+}
+
+char *probe_table_text(const Scene *scene, Result *result, Error *err)
+{
+    const char *rows = has(result, "probes/stage")        ? "stage"
+                       : has(result, "probes/time")       ? "time"
+                       : has(result, "probes/evaluation") ? "evaluation"
+                                                          : NULL;
+    int count = rows ? count_at(result, rows) : 0;
+    if (!count || !scene->probes_count)
+        return error_set(err, "the result has no rows of probes, which a scene names in `probes`"), NULL;
+    ProbeNames probes =
+        names_create(rows, strcmp(rows, "evaluation") ? 1 : count_cases(result), scene->probes_count);
+    for (int k = 0; k < probes.count; k++) {
+        probes.names[k] = scene->probes[k].name;
+        probes.widths[k] = count_at(result, probes.names[k]) / (count * probes.cases);
+    }
+    return make_table(&probes, result, err);
 }

@@ -148,7 +148,7 @@ expect 3 "$program" export beam.vtkhdf -o x.csv --dataset scene; says "a text, n
 expect 3 "$program" export beam.vtkhdf -o x.obj --frame 7; says "there is no frame 7"
 expect 3 "$program" picture beam.vtkhdf -o x.png --frame 7; says "frames, from 0"
 expect 2 "$program" export beam.vtkhdf -o x.csv; says "which numbers? --dataset names them"
-for ending in png csv.txt vtk stl; do expect 2 "$program" export beam.vtkhdf -o x.$ending; says "numbers are exported as .csv, with --dataset, a mesh as .obj, a drawing as .svg"; done
+for ending in png csv.txt vtk; do expect 2 "$program" export beam.vtkhdf -o x.$ending; says "numbers are exported as .csv, with --dataset, a mesh as .obj, a drawing as .svg"; done
 expect 2 "$program" export beam.vtkhdf -o x.obj --plotter hpgl; says "plotter is for a drawing"
 expect 2 "$program" export beam.vtkhdf -o x.csv --dataset state/x --frame 0; says "frame is for a mesh"
 expect 2 "$program" export beam.run -o x.vtkhdf --dataset state/x; says "dataset is not used with a run"
