@@ -1,0 +1,152 @@
+/* A mesh at a moment: where its points are, the colours of its faces, the arrows of its magnetisation. */
+
+/* Row `at` of R rows, in between by parts of both; a moment between two frames. */
+function rowAt(array, at) {
+  const { rows, width, data } = array, low = Math.min(Math.floor(at), rows - 1), part = at - low;
+  const row = data.subarray(low * width, (low + 1) * width);
+  if (part <= 0 || low + 1 >= rows) return row;
+  const next = data.subarray((low + 1) * width, (low + 2) * width);
+  return row.map((value, i) => value + part * (next[i] - value));
+}
+
+/* The nearest row, of what is not to be mixed. */
+function rowNear(array, at) {
+  const low = Math.min(Math.round(at), array.rows - 1);
+  return array.data.subarray(low * array.width, (low + 1) * array.width);
+}
+
+/* The corners of all faces, one after the other. */
+function corners(points, faces) {
+  const out = new Float32Array(3 * faces.length);
+  for (let k = 0; k < faces.length; k++)
+    for (let i = 0; i < 3; i++) out[3 * k + i] = points[3 * faces[k] + i];
+  return out;
+}
+
+/* Three times the same colour for each face; rgb(f): its [r, g, b] 0..255. */
+function faceColors(count, rgb) {
+  const out = new Uint8Array(12 * count);
+  for (let f = 0; f < count; f++) {
+    const color = rgb(f);
+    for (let i = 0; i < 3; i++) out.set([color[0], color[1], color[2], 255], 12 * f + 4 * i);
+  }
+  return out;
+}
+
+function parseColor(text) {
+  return [1, 3, 5].map((k) => parseInt(text.slice(k, k + 2), 16));
+}
+
+/* A colour for each number, grey for none; low..high are the ends of the map. */
+function makeScale(maps, low, high) {
+  const diverging = low < 0 && high > 0, end = Math.max(-low, high);
+  if (diverging) (low = -end), (high = end);
+  else if (low > 0 && low < 0.2 * high) low = 0;
+  const map = (diverging ? maps.diverging : maps.sequential).map(parseColor);
+  function color(value) {
+    if (!Number.isFinite(value)) return [140, 140, 145];
+    const t = high > low ? Math.min(Math.max((value - low) / (high - low), 0), 1) * (map.length - 1) : 0, k = Math.min(Math.floor(t), map.length - 2);
+    return map[k].map((c, i) => c + (t - k) * (map[k + 1][i] - c));
+  }
+  return { low, high, color };
+}
+
+/* ---- Magnetisation ---- */
+
+function sub(x, a, b) {
+  return [x[3 * a] - x[3 * b], x[3 * a + 1] - x[3 * b + 1], x[3 * a + 2] - x[3 * b + 2]];
+}
+
+function cross(a, b) {
+  return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+}
+
+/* Two edges and the unit normal of a triangle, or three edges of a tetrahedron (the last of its corners is not -1). */
+function frameOf(x, v) {
+  const a = sub(x, v[1], v[0]), b = sub(x, v[2], v[0]);
+  if (v[3] >= 0) return [a, b, sub(x, v[3], v[0])];
+  const n = cross(a, b), l = Math.hypot(...n) || 1;
+  return [a, b, n.map((c) => c / l)];
+}
+
+/* M = a e1 + b e2 + c e3 at rest is a e1' + b e2' + c e3' now. */
+function carry(rest, now, M) {
+  const det = dot(rest[0], cross(rest[1], rest[2])) || 1;
+  const parts = [0, 1, 2].map((i) => dot(M, cross(rest[(i + 1) % 3], rest[(i + 2) % 3])) / det);
+  return [0, 1, 2].map((k) => parts[0] * now[0][k] + parts[1] * now[1][k] + parts[2] * now[2][k]);
+}
+
+/* The faces that carry an arrow: about `most` of them, spread over the surface (each in a cell of space of its own). */
+function chooseFaces(rest, carriers, M, most) {
+  const count = carriers.length / 4, { radius } = enclose([rest]), taken = new Map();
+  let cell = (2 * radius) / Math.sqrt(most);
+  for (let turn = 0; turn < 12; turn++, cell *= 1.25) {
+    taken.clear();
+    for (let f = 0; f < count; f++) {
+      if (!(Math.hypot(M[3 * f], M[3 * f + 1], M[3 * f + 2]) > 0)) continue;
+      const at = [0, 1, 2].map((i) => Math.floor((rest[3 * carriers[4 * f] + i] + rest[3 * carriers[4 * f + 1] + i] + rest[3 * carriers[4 * f + 2] + i]) / 3 / cell));
+      if (!taken.has(at.join())) taken.set(at.join(), f);
+    }
+    if (taken.size <= most) break;
+  }
+  return { faces: [...taken.values()], length: cell };
+}
+
+function prepareArrows(magnetization, most) {
+  const M = magnetization.values.data, rest = magnetization.rest.data, carriers = magnetization.carriers.data;
+  const { faces, length } = chooseFaces(rest, carriers, M, most);
+  const greatest = Math.max(...faces.map((f) => Math.hypot(M[3 * f], M[3 * f + 1], M[3 * f + 2])), 0);
+  return { M, rest, carriers, faces, length: 0.9 * length, greatest };
+}
+
+/* Strokes of the arrows with the body's points at x. */
+function arrowStrokes(arrows, x, ratio) {
+  const count = arrows.faces.length, from = new Float32Array(3 * count), to = new Float32Array(3 * count);
+  const colors = new Uint8Array(4 * count), widths = new Float32Array(count).fill(1.6 * ratio);
+  arrows.faces.forEach((f, k) => {
+    const v = arrows.carriers.subarray(4 * f, 4 * f + 4), M = arrows.M.subarray(3 * f, 3 * f + 3);
+    const now = carry(frameOf(arrows.rest, v), frameOf(x, v), M);
+    for (let i = 0; i < 3; i++) {
+      const middle = (x[3 * v[0] + i] + x[3 * v[1] + i] + x[3 * v[2] + i]) / 3, half = (0.5 * arrows.length * now[i]) / arrows.greatest;
+      from[3 * k + i] = middle - half;
+      to[3 * k + i] = middle + half;
+    }
+    colors.set([20, 20, 22, 235], 4 * k);
+  });
+  return { from, to, colors, widths };
+}
+
+/* ---- Lines ---- */
+
+/* Polylines whose points begin at `offsets`, up to point `end`. */
+function lineStrokes(points, offsets, color, width, end = Infinity) {
+  const from = [], to = [];
+  for (let s = 0; s + 1 < offsets.length; s++)
+    for (let k = offsets[s]; k + 1 < offsets[s + 1] && k < end; k++)
+      for (let i = 0; i < 3; i++) from.push(points[3 * k + i]), to.push(points[3 * k + 3 + i]);
+  const count = from.length / 3, colors = new Uint8Array(4 * count), widths = new Float32Array(count).fill(width);
+  for (let k = 0; k < count; k++) colors.set([...color, 255], 4 * k);
+  return { from: new Float32Array(from), to: new Float32Array(to), colors, widths };
+}
+
+/* Each edge of a mesh once, [2 vertices]; of those whose points are known. */
+function edgesOf(faces) {
+  const seen = new Set(), edges = [];
+  for (let k = 0; k < faces.length; k++) {
+    const a = faces[k], b = faces[k % 3 === 2 ? k - 2 : k + 1], key = Math.min(a, b) * 4294967296 + Math.max(a, b);
+    if (!seen.has(key)) seen.add(key), edges.push(a, b);
+  }
+  return edges;
+}
+
+function edgeStrokes(points, edges, color, width) {
+  const from = [], to = [];
+  for (let k = 0; k < edges.length; k += 2) {
+    const a = 3 * edges[k], b = 3 * edges[k + 1];
+    if (!Number.isFinite(points[a] + points[b])) continue;
+    for (let i = 0; i < 3; i++) from.push(points[a + i]), to.push(points[b + i]);
+  }
+  const count = from.length / 3, colors = new Uint8Array(4 * count), widths = new Float32Array(count).fill(width);
+  for (let k = 0; k < count; k++) colors.set([...color, 200], 4 * k);
+  return { from: new Float32Array(from), to: new Float32Array(to), colors, widths };
+}

@@ -1,0 +1,166 @@
+/* A panel in space: a body or rods, with all that belongs to them at a moment. */
+
+const TARGET_INK = [213, 94, 0];
+
+function posePoints(points, pose) {
+  const out = new Float32Array(points.length);
+  for (let v = 0; v < points.length; v += 3)
+    for (let i = 0; i < 3; i++)
+      out[v + i] = pose[4 * i] * points[v] + pose[4 * i + 1] * points[v + 1] + pose[4 * i + 2] * points[v + 2] + pose[4 * i + 3];
+  return out;
+}
+
+function makeSpacePanel(result, page) {
+  const { body, target, obstacles = [], curves = [], places = [] } = result, count = result.frames.labels.length;
+  const moving = [...(body ? [body.points.data] : []), ...curves.map((curve) => curve.points.data), ...(target ? [target.points.data] : [])];
+  const sphere = enclose(moving), arrows = body && body.magnetization ? prepareArrows(body.magnetization, 260) : null;
+  const edges = body && target ? edgesOf(body.faces.data) : [];
+  const canvas = document.createElement("canvas"), context = canvas.getContext("2d");
+  let view = null, pointsNow = null;
+
+  function field() {
+    return body ? body.fields.find((one) => one.name === page.choice.field) : null;
+  }
+
+  /* The target of a frame; null: it has none. */
+  function targetAt(at) {
+    const row = target ? target.of[Math.round(at)] : -1;
+    return row >= 0 ? target.points.data.subarray(row * target.points.width, (row + 1) * target.points.width) : null;
+  }
+
+  function drawBody(gl, at, offset) {
+    const faces = body.faces.data, shown = field(), plain = parseColor(page.color("--body"));
+    const values = shown ? rowNear(shown.values, at) : null, scale = shown ? page.scaleOf(shown.name) : null;
+    pointsNow = rowAt(body.points, at);
+    gl.drawMesh(offset, corners(pointsNow, faces), faceColors(faces.length / 3, (f) => (values ? scale.color(values[f]) : plain)),
+                { edges: page.choice.edges ? 1 : 0 });
+    if (arrows && page.choice.arrows) gl.drawStrokes(offset, arrowStrokes(arrows, pointsNow, page.ratio), { head: true, raise: 0.004 });
+  }
+
+  function drawTarget(gl, at) {
+    const points = targetAt(at);
+    if (!points || page.choice.target === "none") return;
+    if (page.choice.target === "over") return gl.drawStrokes(view, edgeStrokes(points, edges, TARGET_INK, page.ratio));
+    const beside = { ...view, x: view.x + view.width / 2 }, faces = body.faces.data;
+    gl.drawMesh(beside, corners(points, faces), faceColors(faces.length / 3, () => TARGET_INK), { edges: 0.7 });
+  }
+
+  function drawObstacles(gl, at) {
+    const near = Math.min(Math.round(at), count - 1);
+    for (const obstacle of obstacles) {
+      const points = obstacle.poses ? posePoints(obstacle.points.data, obstacle.poses.slice(12 * near, 12 * near + 12)) : obstacle.points.data;
+      const faces = obstacle.faces.data, rgb = obstacle.colors.data;
+      gl.drawMesh(view, corners(points, faces), faceColors(faces.length / 3, (f) => [255 * rgb[3 * f], 255 * rgb[3 * f + 1], 255 * rgb[3 * f + 2]]),
+                  { edges: 0.3, alpha: obstacle.kind === "obstacle" ? 0.7 : 1, oneSided: obstacle.kind === "obstacle" });
+    }
+  }
+
+  function drawCurves(gl, at) {
+    for (const curve of curves) {
+      const offsets = curve.offsets.data, part = count > 1 ? at / (count - 1) : 1;
+      const end = curve.grows ? Math.round(part * (offsets[offsets.length - 1] - 1)) : Infinity;
+      gl.drawStrokes(view, lineStrokes(rowAt(curve.points, at), offsets, page.ink(curve.color), curve.width * page.ratio, end), { raise: 0.01 });
+    }
+    const dots = places.map((place) => place.at).flat();
+    const inks = new Uint8Array(places.flatMap((place) => [...parseColor(place.color), 255]));
+    gl.drawStrokes(view, { from: new Float32Array(dots), to: new Float32Array(dots), colors: inks, widths: new Float32Array(places.length).fill(8 * page.ratio) }, { raise: 0.02 });
+  }
+
+  /* ---- Over it ---- */
+
+  function arrow(x, y, dx, dy, text) {
+    const length = Math.hypot(dx, dy), tip = Math.min(7, length / 2) * page.ratio;
+    context.beginPath();
+    context.moveTo(x, y);
+    context.lineTo(x + dx, y + dy);
+    context.stroke();
+    if (length > 3) {
+      const ux = dx / length, uy = dy / length;
+      context.beginPath();
+      context.moveTo(x + dx, y + dy);
+      context.lineTo(x + dx - tip * (ux - 0.4 * uy), y + dy - tip * (uy + 0.4 * ux));
+      context.lineTo(x + dx - tip * (ux + 0.4 * uy), y + dy - tip * (uy - 0.4 * ux));
+      context.fill();
+    }
+    context.fillText(text, x + dx + Math.sign(dx || 1) * 4 * page.ratio, y + dy - 3 * page.ratio);
+  }
+
+  /* A direction of the world in pixels. */
+  function direction(vector, length) {
+    const size = Math.hypot(...vector) || 1;
+    return [0, 1].map((k) => ((k ? -1 : 1) * dot(view.axes[k], vector) * length) / size);
+  }
+
+  function drawGauges(at) {
+    const r = page.ratio, x = 44 * r, y = view.height - 44 * r, row = 3 * Math.min(Math.round(at), count - 1);
+    context.lineWidth = 1.4 * r;
+    context.font = `${12 * r}px system-ui, sans-serif`;
+    context.strokeStyle = context.fillStyle = page.color("--faint");
+    [[1, 0, 0], [0, 1, 0], [0, 0, 1]].forEach((axis, i) => arrow(x, y, ...direction(axis, 26 * r), "xyz"[i]));
+    const B = result.flux ? result.flux.slice(row, row + 3) : null, size = B ? Math.hypot(...B) : 0;
+    if (size > 0) {
+      context.strokeStyle = context.fillStyle = page.color("--accent");
+      arrow(x + 90 * r, y, ...direction(B, Math.max(34 * r * Math.min(size / page.greatestFlux, 1), 4)), `B ${say(size, "T")}`);
+    }
+    if (result.gravity && Math.hypot(...result.gravity) > 0) {
+      context.strokeStyle = context.fillStyle = page.color("--faint");
+      arrow(x + 190 * r, y - 10 * r, ...direction(result.gravity, 24 * r), "g");
+    }
+    drawLength();
+  }
+
+  /* A bar of a round length. */
+  function drawLength() {
+    const r = page.ratio, wanted = (110 * r) / view.scale, power = 10 ** Math.floor(Math.log10(wanted));
+    const length = [5, 2, 1].map((k) => k * power).find((l) => l <= wanted), pixels = length * view.scale;
+    const x = view.width - 16 * r - pixels, y = view.height - 18 * r;
+    context.strokeStyle = context.fillStyle = page.color("--ink");
+    context.strokeRect(x, y, pixels, 0);
+    context.textAlign = "right";
+    context.fillText(say(length, "m"), view.width - 16 * r, y - 5 * r);
+    context.textAlign = "left";
+  }
+
+  /* ---- The panel ---- */
+
+  function draw(at) {
+    const width = Math.round(canvas.clientWidth * page.ratio), height = Math.round(canvas.clientHeight * page.ratio), gl = page.renderer;
+    if (!width || !height || count === 0) return;
+    if (canvas.width !== width || canvas.height !== height) (canvas.width = width), (canvas.height = height);
+    view = makeView(page.camera, sphere, width, height, target && page.choice.target === "beside");
+    context.clearRect(0, 0, width, height);
+    if (gl) {
+      gl.begin(width, height);
+      if (body) drawBody(gl, at, view);
+      if (target) drawTarget(gl, at);
+      drawCurves(gl, at);
+      drawObstacles(gl, at);
+      context.drawImage(gl.canvas, 0, 0);
+    }
+    drawGauges(at);
+  }
+
+  /* The face under a place in CSS pixels, and what it has; "" where there is none. */
+  function readAt(x, y, at) {
+    const shown = field();
+    if (!shown || !view || !pointsNow) return "";
+    const face = pick(view, pointsNow, body.faces.data, x * page.ratio, y * page.ratio);
+    return face < 0 ? "" : `face ${face}: ${say(rowNear(shown.values, at)[face], shown.unit)}`;
+  }
+
+  return { canvas, draw, readAt, count, times: result.frames.times, label: (at) => result.frames.labels[Math.min(Math.round(at), count - 1)] };
+}
+
+/* The frontmost face at a pixel; -1: none. */
+function pick(view, points, faces, x, y) {
+  let best = -1, nearest = -Infinity;
+  for (let f = 0; f < faces.length / 3; f++) {
+    const [a, b, c] = [0, 1, 2].map((i) => { const v = 3 * faces[3 * f + i]; return project(view, [points[v], points[v + 1], points[v + 2]]); });
+    const area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+    const u = ((b[0] - x) * (c[1] - y) - (b[1] - y) * (c[0] - x)) / area, v = ((c[0] - x) * (a[1] - y) - (c[1] - y) * (a[0] - x)) / area;
+    if (!(u >= 0 && v >= 0 && u + v <= 1)) continue;
+    const height = u * a[2] + v * b[2] + (1 - u - v) * c[2];
+    if (height > nearest) (nearest = height), (best = f);
+  }
+  return best;
+}

@@ -1,0 +1,189 @@
+/* The page: one state, what is shown of it, and how it begins. */
+
+/* One report's state. Panels ask it for colours and the camera; it tells them the moment. */
+function makePage(data) {
+  const page = { data, camera: { ...CAMERA_START }, ratio: window.devicePixelRatio || 1, renderer: makeRenderer(), at: 1, playing: false, panels: [], charts: [],
+                 choice: { field: null, target: "over", arrows: true, edges: true } };
+  const scales = new Map();
+  const fields = data.results.flatMap((result) => (result.body ? result.body.fields : []));
+  page.fieldNames = [...new Set(fields.map((one) => one.name))];
+  page.greatestFlux = Math.max(...data.results.flatMap((result) => (result.flux || []).map(Math.abs)), 1e-30);
+
+  /* One for all results, so that colours can be compared. */
+  page.scaleOf = (name) => {
+    if (!scales.has(name)) {
+      const same = fields.filter((one) => one.name === name);
+      scales.set(name, makeScale(data.colormaps, Math.min(...same.map((one) => one.values.low)), Math.max(...same.map((one) => one.values.high))));
+    }
+    return scales.get(name);
+  };
+  page.unitOf = (name) => fields.find((one) => one.name === name).unit;
+  page.color = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+  page.dark = () => document.documentElement.dataset.theme === "dark";
+  /* A curve's colour, light enough on a dark ground. */
+  page.ink = (color) => parseColor(color).map((c) => (page.dark() ? 70 + 0.73 * c : c));
+  page.times = () => page.panels.filter((panel) => panel.times).flatMap((panel) => panel.times);
+  page.timed = () => page.panels.some((panel) => panel.times) && page.panels.every((panel) => panel.times || panel.count < 2);
+
+  /* Where in its frames a panel is; frames that are moments all stand at one time. */
+  page.frameOf = (panel) => {
+    if (panel.paper) return page.at;
+    if (!page.timed() || !panel.times) return page.at * (panel.count - 1);
+    const now = page.time();
+    let k = panel.times.findIndex((t) => t >= now);
+    if (k <= 0) return k < 0 ? panel.count - 1 : 0;
+    return k - (panel.times[k] - now) / (panel.times[k] - panel.times[k - 1] || 1);
+  };
+  page.time = () => {
+    const times = page.times(), first = Math.min(...times);
+    return first + page.at * (Math.max(...times) - first);
+  };
+
+  page.words = () => {
+    if (page.timed()) return `t = ${say(page.time(), "s")}`;
+    const panel = page.panels.find((one) => one.count > 1) || page.panels[0];
+    return panel ? panel.label(page.frameOf(panel)) : "";
+  };
+
+  let asked = false;
+  page.redraw = () => {
+    if (asked) return;
+    asked = true;
+    requestAnimationFrame(() => { asked = false; page.draw(); });
+  };
+  page.draw = () => {
+    for (const panel of page.panels) panel.draw(page.frameOf(panel));
+    for (const { chart, kind, panel } of page.charts) {
+      if (kind === "t") chart.mark(page.timed() ? page.time() : NaN);
+      if (kind === "stage") chart.mark(Math.round(page.frameOf(panel)));
+    }
+    document.getElementById("scrub").value = page.at;
+    document.getElementById("moment").textContent = page.words();
+  };
+  page.go = (at) => { page.at = Math.min(Math.max(at, 0), 1); page.redraw(); };
+  page.step = (frames) => {
+    const most = Math.max(...page.panels.map((panel) => (panel.paper ? 101 : panel.count)), 2) - 1;
+    page.go(Math.round(page.at * most + frames) / most);
+  };
+  page.look = (camera) => { Object.assign(page.camera, { zoom: 1, panX: 0, panY: 0 }, camera); page.redraw(); };
+  page.play = (on) => {
+    page.playing = on;
+    document.getElementById("play").textContent = on ? "\u275a\u275a" : "\u25b6";
+    if (!on) return;
+    if (page.at >= 1) page.at = 0;
+    let last = performance.now();
+    const tick = (now) => {
+      if (!page.playing) return;
+      page.go(page.at + (now - last) / 1000 / Number(document.getElementById("speed").value));
+      last = now;
+      if (page.at >= 1) page.play(false);
+      else requestAnimationFrame(tick);
+    };
+    requestAnimationFrame(tick);
+  };
+  return page;
+}
+
+/* ---- What is on it ---- */
+
+function node(name, properties, ...children) {
+  const made = Object.assign(document.createElement(name), properties);
+  made.append(...children);
+  return made;
+}
+
+function addPanel(page, result) {
+  const panel = result.drawing ? makePaperPanel(result, page) : makeSpacePanel(result, page);
+  const readout = node("div", { className: "readout" }), legend = node("div", { className: "legend" });
+  panel.canvas.setAttribute("aria-label", `${result.name}: drag turns it, the wheel zooms`);
+  panel.legend = legend;
+  document.getElementById("panels").append(
+    node("article", { className: "panel" }, node("h2", {}, result.name, node("small", {}, result.status || "")),
+         node("div", { className: "stage" }, panel.canvas, readout), legend));
+  if (panel.count === 0) panel.canvas.remove();
+  addPointer(panel, page, readout);
+  page.panels.push(panel);
+  for (const one of result.charts) {
+    const chart = makeChart(one, page.data.results.length > 1 ? result.name : "");
+    page.charts.push({ chart, kind: one.x.label, panel });
+    document.getElementById("charts").append(chart.svg);
+  }
+  addWords(page, result);
+}
+
+function addWords(page, result) {
+  const many = page.data.results.length > 1, of = many ? ` of ${result.name}` : "", words = document.getElementById("words");
+  const rows = result.facts.map(([name, value]) => node("tr", {}, node("th", { textContent: name }), node("td", { textContent: value })));
+  words.append(node("details", { open: !many }, node("summary", { textContent: `facts${of}` }), node("table", {}, ...rows)));
+  if (result.scene) words.append(node("details", {}, node("summary", { textContent: `the scene${of}` }), node("pre", { textContent: result.scene })));
+}
+
+function showLegends(page) {
+  const name = page.choice.field;
+  page.data.results.forEach((result, k) => {
+    const has = result.body && result.body.fields.some((one) => one.name === name), legend = page.panels[k].legend;
+    legend.replaceChildren();
+    if (!has) return;
+    const scale = page.scaleOf(name), steps = Array.from({ length: 17 }, (_, i) => `rgb(${scale.color(scale.low + ((scale.high - scale.low) * i) / 16).map(Math.round)})`);
+    const bar = node("i", {});
+    bar.style.background = `linear-gradient(to right, ${steps})`;
+    legend.append(say(scale.low, page.unitOf(name)), bar, say(scale.high, page.unitOf(name)), node("span", { className: "faint", textContent: name.replaceAll("_", " ") }));
+  });
+}
+
+function addChoices(page) {
+  const bar = document.getElementById("choices"), results = page.data.results;
+  const has = (key) => results.some((result) => result[key]), body = has("body");
+  const set = (key) => (value) => { page.choice[key] = value; showLegends(page); page.redraw(); };
+  const fields = addSelect(bar, "colours", [...page.fieldNames.map((name) => [name, name.replaceAll("_", " ")]), ["", "none"]], page.choice.field, set("field"));
+  const targets = has("target") ? [["over", "over"], ["beside", "beside"], ["none", "hidden"]] : has("drawing") ? [["none", "hidden"], ["beside", "beside"]] : [];
+  const target = addSelect(bar, "target", targets, page.choice.target, set("target"));
+  const arrows = results.some((result) => result.body && result.body.magnetization) ? addSwitch(bar, "magnetisation", page.choice.arrows, set("arrows")) : null;
+  const edges = body ? addSwitch(bar, "edges", page.choice.edges, set("edges")) : null;
+  if (results.some((result) => !result.drawing)) addSelect(bar, "view", [["", "free"], ...Object.keys(VIEWS).map((name) => [name, name])], "", (name) => name && page.look(VIEWS[name]));
+  const theme = node("button", { type: "button", textContent: "light / dark" });
+  theme.addEventListener("click", () => setTheme(page, page.dark() ? "light" : "dark"));
+  bar.append(theme);
+  const next = (select) => () => { if (select) (select.selectedIndex = (select.selectedIndex + 1) % select.length), select.dispatchEvent(new Event("change")); };
+  addKeys(page, { f: next(fields), t: next(target), m: () => arrows && arrows.click(), e: () => edges && edges.click(), d: () => theme.click() });
+}
+
+function setTheme(page, theme) {
+  document.documentElement.dataset.theme = theme;
+  page.redraw();
+}
+
+/* "#frame=3&field=young&theme=dark&target=beside": how it begins. */
+function readHash(page) {
+  const asked = new URLSearchParams(location.hash.slice(1));
+  if (asked.has("field")) page.choice.field = asked.get("field");
+  if (asked.has("target")) page.choice.target = asked.get("target");
+  if (asked.has("view") && VIEWS[asked.get("view")]) Object.assign(page.camera, VIEWS[asked.get("view")]);
+  if (asked.has("arrows")) page.choice.arrows = asked.get("arrows") !== "0";
+  if (asked.has("edges")) page.choice.edges = asked.get("edges") !== "0";
+  const dark = asked.get("theme") || (matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light");
+  document.documentElement.dataset.theme = dark;
+  return asked.has("at") ? Number(asked.get("at")) : 1;
+}
+
+async function start() {
+  const page = makePage(await readDocument()), results = page.data.results;
+  document.getElementById("title").textContent = results.length > 1 ? `${results.length} results` : results[0].name;
+  page.choice.field = page.fieldNames[0] || "";
+  if (results.every((result) => result.drawing)) page.choice.target = "beside";
+  page.at = readHash(page);
+  if (page.choice.field && !page.fieldNames.includes(page.choice.field)) page.choice.field = "";
+  results.forEach((result) => addPanel(page, result));
+  addChoices(page);
+  showLegends(page);
+  const scrub = document.getElementById("scrub");
+  scrub.addEventListener("input", () => { page.play(false); page.go(Number(scrub.value)); });
+  document.getElementById("play").addEventListener("click", () => page.play(!page.playing));
+  document.getElementById("transport").hidden = page.panels.every((panel) => panel.count < 2);
+  new ResizeObserver(() => page.redraw()).observe(document.getElementById("panels"));
+  page.draw();
+  if (!page.renderer) document.getElementById("panels").prepend("This browser has no WebGL 2: bodies cannot be shown.");
+  document.documentElement.dataset.ready = String(Math.round(performance.now()));
+}
+
+start().catch((error) => document.getElementById("panels").prepend(`This report cannot be read: ${error.message}`));
