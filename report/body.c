@@ -240,9 +240,10 @@ static bool add_body(Body *body, Error *err)
     add_faces(body, "faces", body->mesh.body.faces[0], 3);
     bool ok = add_points(body, err) && add_fields(body, err);
     if (ok && body->mesh.magnetic) add_magnetization(body);
-    if (ok) add_cases(body);
-    if (ok) document_close(document);
-    return ok;
+    if (!ok) return false;
+    document_close(document);
+    add_cases(body);
+    return true;
 }
 
 bool report_body(const ReportPart *part, Error *err)

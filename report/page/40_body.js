@@ -40,7 +40,8 @@ function parseColor(text) {
 /* A colour for each number, grey for none; low..high are the ends of the map. */
 function makeScale(maps, low, high) {
   const diverging = low < 0 && high > 0, end = Math.max(-low, high);
-  if (diverging) (low = -end), (high = end);
+  if (high - low <= 1e-3 * Math.max(Math.abs(low), Math.abs(high))) (low = Math.min(low, 0)), (high = Math.max(high, 0)); /* one number everywhere */
+  else if (diverging) (low = -end), (high = end);
   else if (low > 0 && low < 0.2 * high) low = 0;
   const map = (diverging ? maps.diverging : maps.sequential).map(parseColor);
   function color(value) {

@@ -10,10 +10,27 @@ function posePoints(points, pose) {
   return out;
 }
 
+/* An obstacle's points at a frame. */
+function obstacleAt(obstacle, frame) {
+  return obstacle.poses ? posePoints(obstacle.points.data, obstacle.poses.slice(12 * frame, 12 * frame + 12)) : obstacle.points.data;
+}
+
+/* Points of what is not much larger than the body's way and near it, where it begins, is half way and ends: there is room for all
+ * of that. The same rule as in slender picture. */
+function nearPoints(obstacles, sphere, count) {
+  return obstacles.flatMap((obstacle) => {
+    const [largest, near] = obstacle.kind === "obstacle" ? [1.5, 0.5] : [4, 2];
+    return [0, Math.floor((count - 1) / 2), count - 1].map((frame) => obstacleAt(obstacle, frame)).filter((points) => {
+      const own = enclose([points]), gap = Math.hypot(...own.center.map((c, i) => c - sphere.center[i])) - own.radius - sphere.radius;
+      return own.radius <= largest * sphere.radius && gap <= 2 * near * sphere.radius;
+    });
+  });
+}
+
 function makeSpacePanel(result, page) {
   const { body, target, obstacles = [], curves = [], places = [] } = result, count = result.frames.labels.length;
   const moving = [...(body ? [body.points.data] : []), ...curves.map((curve) => curve.points.data), ...(target ? [target.points.data] : [])];
-  const sphere = enclose(moving), arrows = body && body.magnetization ? prepareArrows(body.magnetization, 260) : null;
+  const sphere = enclose([...moving, ...nearPoints(obstacles, enclose(moving), count)]), arrows = body && body.magnetization ? prepareArrows(body.magnetization, 260) : null;
   const edges = body && target ? edgesOf(body.faces.data) : [];
   const canvas = document.createElement("canvas"), context = canvas.getContext("2d");
   let view = null, pointsNow = null;
@@ -48,9 +65,8 @@ function makeSpacePanel(result, page) {
   function drawObstacles(gl, at) {
     const near = Math.min(Math.round(at), count - 1);
     for (const obstacle of obstacles) {
-      const points = obstacle.poses ? posePoints(obstacle.points.data, obstacle.poses.slice(12 * near, 12 * near + 12)) : obstacle.points.data;
       const faces = obstacle.faces.data, rgb = obstacle.colors.data;
-      gl.drawMesh(view, corners(points, faces), faceColors(faces.length / 3, (f) => [255 * rgb[3 * f], 255 * rgb[3 * f + 1], 255 * rgb[3 * f + 2]]),
+      gl.drawMesh(view, corners(obstacleAt(obstacle, near), faces), faceColors(faces.length / 3, (f) => [255 * rgb[3 * f], 255 * rgb[3 * f + 1], 255 * rgb[3 * f + 2]]),
                   { edges: 0.3, alpha: obstacle.kind === "obstacle" ? 0.7 : 1, oneSided: obstacle.kind === "obstacle" });
     }
   }

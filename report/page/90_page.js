@@ -17,6 +17,7 @@ function makePage(data) {
     }
     return scales.get(name);
   };
+  page.varies = (name) => fields.some((one) => one.name === name && one.values.high - one.values.low > 1e-3 * Math.max(Math.abs(one.values.low), Math.abs(one.values.high)));
   page.unitOf = (name) => fields.find((one) => one.name === name).unit;
   page.color = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
   page.dark = () => document.documentElement.dataset.theme === "dark";
@@ -169,7 +170,7 @@ function readHash(page) {
 async function start() {
   const page = makePage(await readDocument()), results = page.data.results;
   document.getElementById("title").textContent = results.length > 1 ? `${results.length} results` : results[0].name;
-  page.choice.field = page.fieldNames[0] || "";
+  page.choice.field = page.fieldNames.find((name) => page.varies(name)) || "";
   if (results.every((result) => result.drawing)) page.choice.target = "beside";
   page.at = readHash(page);
   if (page.choice.field && !page.fieldNames.includes(page.choice.field)) page.choice.field = "";
