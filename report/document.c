@@ -78,10 +78,10 @@ void document_text(Document *d, const char *key, const char *text)
         text_add(&d->json, "null");
 }
 
-static void add_number(Document *d, double value)
+static void add_number(Document *d, double value, int digits)
 {
     if (isfinite(value))
-        text_add(&d->json, "%.7g", value);
+        text_add(&d->json, "%.*g", digits, value);
     else
         text_add(&d->json, "null");
 }
@@ -89,7 +89,7 @@ static void add_number(Document *d, double value)
 void document_number(Document *d, const char *key, double value)
 {
     begin(d, key);
-    add_number(d, value);
+    add_number(d, value, 12);
 }
 
 void document_flag(Document *d, const char *key, bool value)
@@ -101,7 +101,7 @@ void document_flag(Document *d, const char *key, bool value)
 void document_numbers(Document *d, const char *key, const double *values, size_t count)
 {
     document_open(d, key, '[');
-    for (size_t k = 0; k < count; k++) begin(d, NULL), add_number(d, values[k]);
+    for (size_t k = 0; k < count; k++) begin(d, NULL), add_number(d, values[k], 7);
     document_close(d);
 }
 

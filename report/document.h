@@ -19,7 +19,7 @@ void document_destroy(Document *document);
 void document_open(Document *document, const char *key, char bracket); /* '{' or '[' */
 void document_close(Document *document);
 void document_text(Document *document, const char *key, const char *text); /* NULL: null */
-void document_number(Document *document, const char *key, double value);   /* not finite: null */
+void document_number(Document *document, const char *key, double value);   /* 12 digits; not finite: null */
 void document_flag(Document *document, const char *key, bool value);
 
 /* As a list in the JSON, seven digits each. */
