@@ -71,8 +71,7 @@ static void add_frames(const ReportPart *part)
     for (int k = 0; k < part->frame_count; k++) {
         int case_of = cases - (steps - part->frames[k]);
         bool named = !part->timed && cases > 1 && case_of >= 0;
-        document_text(document, NULL,
-                      named ? names[case_of] : show_frame_name(part->data, part->frames[k]));
+        document_text(document, NULL, named ? names[case_of] : show_frame_name(part->data, part->frames[k]));
     }
     document_close(document);
     if (part->timed) {
@@ -100,9 +99,9 @@ static bool add_result(Document *document, ShowData *data, ShowDef *show, const 
     }
     choose_frames(&part, def);
     add_frames(&part);
-    bool ok = drawn_has(data->result) ? report_drawing(&part, err)
-                                      : report_body(&part, err) && report_curves(&part, err) &&
-                                            report_surroundings(&part, err);
+    bool ok = drawn_has(data->result)
+                  ? report_drawing(&part, err)
+                  : report_body(&part, err) && report_curves(&part, err) && report_surroundings(&part, err);
     ok = ok && report_charts(&part, err) && report_facts(&part, err);
     if (ok) document_close(document);
     return ok;
@@ -112,8 +111,7 @@ static bool read_result(Document *document, const char *path, const ReportDef *d
 {
     ShowDef show = show_default();
     ShowData data;
-    bool ok = show_data_open(&data, path, &show, err) &&
-              add_result(document, &data, &show, path, def, err);
+    bool ok = show_data_open(&data, path, &show, err) && add_result(document, &data, &show, path, def, err);
     show_data_clear(&data);
     return ok || (error_prefix(err, "%s", path), false);
 }
@@ -138,12 +136,14 @@ static bool write_page(const Document *document, const char *title, const char *
 {
     Text page = {0};
     char *block = document_block(document);
-    text_add(&page, "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>");
+    text_add(&page, "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+                    "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>");
     text_add_xml(&page, title);
-    text_add(&page, "</title>\n<style>\n%s</style>\n</head>\n%s\n<script id=\"document\" type=\"application/json\">",
+    text_add(&page,
+             "</title>\n<style>\n%s</style>\n</head>\n%s\n<script id=\"document\" type=\"application/json\">",
              report_page_style, report_page_body);
-    text_add(&page, "%s</script>\n<script id=\"block\" type=\"text/plain\">%s</script>\n", document_json(document),
-             block);
+    text_add(&page, "%s</script>\n<script id=\"block\" type=\"text/plain\">%s</script>\n",
+             document_json(document), block);
     text_add(&page, "<script>\n\"use strict\";\n%s</script>\n</html>\n", report_page_script);
     mem_free(block);
     bool ok = safe_file_write(path, page.text, page.length, false, err);

@@ -166,7 +166,7 @@ static bool add_strands(const ReportPart *part, const int (*lines)[2], Strands s
     return true;
 }
 
-/* The simulated strands, behind them those of the input and of the natural shape, as far as there are. */
+/* The strands of the input, over them those of the natural shape and the simulated ones, as far as there are. */
 static bool add_rods(const ReportPart *part, Error *err)
 {
     Array array;
@@ -178,11 +178,11 @@ static bool add_rods(const ReportPart *part, Error *err)
     if (result_has(result, "slender/rod/strands") &&
         result_read_as(result, "slender/rod/strands", ARRAY_INT32, 1, 0, &array, NULL))
         strands = array.dims[0] - 1, array_clear(&array);
-    const Strands sets[] = {{"rod", colormap_series(1), 3, 0, strands, true},
-                            {"input", {0.62, 0.62, 0.64, 1}, 5, strands, strands, false},
-                            {"natural", colormap_series(0), 2, 2 * strands, strands, false}};
-    for (int k = 0; k < 3 && sets[k].first + strands <= count; k++)
-        if (!add_strands(part, lines, sets[k], err)) return false;
+    const Strands sets[] = {{"input", {0.62, 0.62, 0.64, 1}, 5, strands, strands, false},
+                            {"natural", colormap_series(0), 2, 2 * strands, strands, false},
+                            {"rod", colormap_series(1), 3, 0, strands, true}};
+    for (int k = 0; k < 3; k++)
+        if (sets[k].first + strands <= count && !add_strands(part, lines, sets[k], err)) return false;
     return true;
 }
 

@@ -54,6 +54,6 @@ function say(value, unit) {
 
 function trim(value) {
   const size = Math.abs(value);
-  if (size !== 0 && (size < 1e-3 || size >= 1e5)) return value.toExponential(2);
+  if (size !== 0 && (size < 1e-3 || size >= 1e5)) return Number(value.toPrecision(3)).toExponential();
   return String(Number(value.toPrecision(3)));
 }

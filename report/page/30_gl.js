@@ -88,11 +88,21 @@ function setAttribute(gl, program, name, data, each, instanced) {
   return { at, buffer };
 }
 
-function makeRenderer() {
+/* null: the browser cannot; redraw() is called when all must be drawn again. */
+function makeRenderer(redraw) {
   const canvas = document.createElement("canvas");
   const gl = canvas.getContext("webgl2", { antialias: true, alpha: true, premultipliedAlpha: true });
   if (!gl) return null;
-  const mesh = makeProgram(gl, MESH_VERTEX, MESH_FRAGMENT), stroke = makeProgram(gl, STROKE_VERTEX, STROKE_FRAGMENT);
+  let mesh, stroke;
+
+  /* The graphics card may take all of it away, and give it back empty. */
+  function prepare() {
+    mesh = makeProgram(gl, MESH_VERTEX, MESH_FRAGMENT);
+    stroke = makeProgram(gl, STROKE_VERTEX, STROKE_FRAGMENT);
+  }
+  prepare();
+  canvas.addEventListener("webglcontextlost", (event) => event.preventDefault());
+  canvas.addEventListener("webglcontextrestored", () => { prepare(); redraw(); });
 
   function begin(width, height) {
     if (canvas.width !== width || canvas.height !== height) (canvas.width = width), (canvas.height = height);
@@ -105,6 +115,7 @@ function makeRenderer() {
   }
 
   function draw(program, view, attributes, uniforms, run) {
+    if (gl.isContextLost()) return;
     gl.useProgram(program);
     gl.uniformMatrix4fv(gl.getUniformLocation(program, "view"), false, viewMatrix(view));
     for (const [name, value] of Object.entries(uniforms)) {

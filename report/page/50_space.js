@@ -72,11 +72,11 @@ function makeSpacePanel(result, page) {
   }
 
   function drawCurves(gl, at) {
-    for (const curve of curves) {
+    curves.forEach((curve, k) => { /* later ones over those before them */
       const offsets = curve.offsets.data, part = count > 1 ? at / (count - 1) : 1;
       const end = curve.grows ? Math.round(part * (offsets[offsets.length - 1] - 1)) : Infinity;
-      gl.drawStrokes(view, lineStrokes(rowAt(curve.points, at), offsets, page.ink(curve.color), curve.width * page.ratio, end), { raise: 0.01 });
-    }
+      gl.drawStrokes(view, lineStrokes(rowAt(curve.points, at), offsets, page.ink(curve.color), curve.width * page.ratio, end), { raise: 0.01 + 0.002 * k });
+    });
     const dots = places.map((place) => place.at).flat();
     const inks = new Uint8Array(places.flatMap((place) => [...parseColor(place.color), 255]));
     gl.drawStrokes(view, { from: new Float32Array(dots), to: new Float32Array(dots), colors: inks, widths: new Float32Array(places.length).fill(8 * page.ratio) }, { raise: 0.02 });
@@ -98,7 +98,9 @@ function makeSpacePanel(result, page) {
       context.lineTo(x + dx - tip * (ux + 0.4 * uy), y + dy - tip * (uy - 0.4 * ux));
       context.fill();
     }
-    context.fillText(text, x + dx + Math.sign(dx || 1) * 4 * page.ratio, y + dy - 3 * page.ratio);
+    context.textAlign = dx < 0 ? "right" : "left";
+    context.fillText(text, x + dx + (dx < 0 ? -4 : 4) * page.ratio, y + dy - 3 * page.ratio);
+    context.textAlign = "left";
   }
 
   /* A direction of the world in pixels. */
@@ -116,11 +118,11 @@ function makeSpacePanel(result, page) {
     const B = result.flux ? result.flux.slice(row, row + 3) : null, size = B ? Math.hypot(...B) : 0;
     if (size > 0) {
       context.strokeStyle = context.fillStyle = page.color("--accent");
-      arrow(x + 90 * r, y, ...direction(B, Math.max(34 * r * Math.min(size / page.greatestFlux, 1), 4)), `B ${say(size, "T")}`);
+      arrow(x + 120 * r, y, ...direction(B, Math.max(34 * r * Math.min(size / page.greatestFlux, 1), 4)), `B ${say(size, "T")}`);
     }
     if (result.gravity && Math.hypot(...result.gravity) > 0) {
       context.strokeStyle = context.fillStyle = page.color("--faint");
-      arrow(x + 190 * r, y - 10 * r, ...direction(result.gravity, 24 * r), "g");
+      arrow(x + 62 * r, y - 10 * r, ...direction(result.gravity, 24 * r), "g");
     }
     drawLength();
   }

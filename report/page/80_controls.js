@@ -48,7 +48,7 @@ function addSelect(bar, words, options, chosen, set) {
   if (options.length < 2) return null;
   const label = document.createElement("label"), select = document.createElement("select");
   for (const [value, text] of options) select.append(new Option(text, value, false, value === chosen));
-  select.addEventListener("change", () => set(select.value));
+  select.addEventListener("change", () => set(select.value, select));
   label.append(`${words} `, select);
   bar.append(label);
   return select;
@@ -71,10 +71,11 @@ function addKeys(page, switches) {
   document.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey || /^(INPUT|SELECT|TEXTAREA)$/.test(event.target.tagName) && event.target.type !== "range") return;
     const step = { ArrowLeft: -1, ArrowRight: 1, PageUp: -10, PageDown: 10 }[event.key];
-    if (event.key === " " && event.target.tagName !== "BUTTON") page.play(!page.playing);
-    else if (event.key === "Home") page.go(0);
-    else if (event.key === "End") page.go(1);
-    else if (step) page.step(step);
+    const moves = page.panels.some((panel) => panel.count > 1);
+    if (moves && event.key === " " && !/^(BUTTON|SUMMARY)$/.test(event.target.tagName)) page.play(!page.playing);
+    else if (moves && event.key === "Home") page.go(0);
+    else if (moves && event.key === "End") page.go(1);
+    else if (moves && step) page.play(false), page.step(step);
     else if (event.key === "0") page.look(CAMERA_START);
     else if (switches[event.key]) switches[event.key]();
     else return;

@@ -2,8 +2,9 @@
 
 /* One report's state. Panels ask it for colours and the camera; it tells them the moment. */
 function makePage(data) {
-  const page = { data, camera: { ...CAMERA_START }, ratio: window.devicePixelRatio || 1, renderer: makeRenderer(), at: 1, playing: false, panels: [], charts: [],
+  const page = { data, camera: { ...CAMERA_START }, renderer: makeRenderer(() => page.redraw()), at: 1, playing: false, panels: [], charts: [],
                  choice: { field: null, target: "over", arrows: true, edges: true } };
+  Object.defineProperty(page, "ratio", { get: () => window.devicePixelRatio || 1 }); /* it changes with the browser's zoom */
   const scales = new Map();
   const fields = data.results.flatMap((result) => (result.body ? result.body.fields : []));
   page.fieldNames = [...new Set(fields.map((one) => one.name))];
@@ -62,22 +63,31 @@ function makePage(data) {
     document.getElementById("moment").textContent = page.words();
   };
   page.go = (at) => { page.at = Math.min(Math.max(at, 0), 1); page.redraw(); };
-  page.step = (frames) => {
+  /* The moments that are frames of some panel, 0..1 in order; of a drawing hundredths of its ink. */
+  page.stops = () => {
+    const times = page.timed() ? page.times() : [], first = Math.min(...times), all = Math.max(...times) - first || 1;
     const most = Math.max(...page.panels.map((panel) => (panel.paper ? 101 : panel.count)), 2) - 1;
-    page.go(Math.round(page.at * most + frames) / most);
+    const stops = times.length ? times.map((t) => (t - first) / all) : Array.from({ length: most + 1 }, (_, k) => k / most);
+    return [...new Set(stops)].sort((a, b) => a - b);
+  };
+  page.step = (frames) => {
+    const stops = page.stops(), nearest = stops.findIndex((stop) => stop >= page.at - 1e-9), here = nearest < 0 ? stops.length - 1 : nearest;
+    const between = frames > 0 && stops[here] > page.at + 1e-9 ? 1 : 0; /* the next one is at hand */
+    page.go(stops[Math.min(Math.max(here + frames - between, 0), stops.length - 1)]);
   };
   page.look = (camera) => { Object.assign(page.camera, { zoom: 1, panX: 0, panY: 0 }, camera); page.redraw(); };
   page.play = (on) => {
     page.playing = on;
     document.getElementById("play").textContent = on ? "\u275a\u275a" : "\u25b6";
     if (!on) return;
-    if (page.at >= 1) page.at = 0;
-    let last = performance.now();
+    let last = performance.now(), now_at = page.at >= 1 ? 0 : page.at;
+    const calm = matchMedia("(prefers-reduced-motion: reduce)").matches, stops = page.stops();
     const tick = (now) => {
       if (!page.playing) return;
-      page.go(page.at + (now - last) / 1000 / Number(document.getElementById("speed").value));
+      now_at = Math.min(now_at + (now - last) / 1000 / Number(document.getElementById("speed").value), 1);
       last = now;
-      if (page.at >= 1) page.play(false);
+      page.go(calm ? stops.findLast((stop) => stop <= now_at) : now_at); /* from frame to frame, nothing in between */
+      if (now_at >= 1) page.play(false);
       else requestAnimationFrame(tick);
     };
     requestAnimationFrame(tick);
@@ -141,7 +151,7 @@ function addChoices(page) {
   const target = addSelect(bar, "target", targets, page.choice.target, set("target"));
   const arrows = results.some((result) => result.body && result.body.magnetization) ? addSwitch(bar, "magnetisation", page.choice.arrows, set("arrows")) : null;
   const edges = body ? addSwitch(bar, "edges", page.choice.edges, set("edges")) : null;
-  if (results.some((result) => !result.drawing)) addSelect(bar, "view", [["", "free"], ...Object.keys(VIEWS).map((name) => [name, name])], "", (name) => name && page.look(VIEWS[name]));
+  if (results.some((result) => !result.drawing)) addSelect(bar, "view", [["", "free"], ...Object.keys(VIEWS).map((name) => [name, name])], "", (name, select) => { page.look(VIEWS[name]); select.value = ""; });
   const theme = node("button", { type: "button", textContent: "light / dark" });
   theme.addEventListener("click", () => setTheme(page, page.dark() ? "light" : "dark"));
   bar.append(theme);
@@ -154,7 +164,14 @@ function setTheme(page, theme) {
   page.redraw();
 }
 
-/* "#frame=3&field=young&theme=dark&target=beside": how it begins. */
+/* What is printed is light, whatever is seen. */
+function addPrinting(page) {
+  let seen = "light";
+  window.addEventListener("beforeprint", () => { seen = document.documentElement.dataset.theme; document.documentElement.dataset.theme = "light"; page.draw(); });
+  window.addEventListener("afterprint", () => setTheme(page, seen));
+}
+
+/* "#at=0.5&field=young&theme=dark&target=beside": how it begins. */
 function readHash(page) {
   const asked = new URLSearchParams(location.hash.slice(1));
   if (asked.has("field")) page.choice.field = asked.get("field");
@@ -182,6 +199,8 @@ async function start() {
   document.getElementById("play").addEventListener("click", () => page.play(!page.playing));
   document.getElementById("transport").hidden = page.panels.every((panel) => panel.count < 2);
   new ResizeObserver(() => page.redraw()).observe(document.getElementById("panels"));
+  addPrinting(page);
+  window.addEventListener("hashchange", () => location.reload());
   page.draw();
   if (!page.renderer) document.getElementById("panels").prepend("This browser has no WebGL 2: bodies cannot be shown.");
   document.documentElement.dataset.ready = String(Math.round(performance.now()));
