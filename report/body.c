@@ -5,12 +5,15 @@
 #include <math.h>
 #include <string.h>
 
+static const double LOG_SPAN = 1000; /* positive numbers that span more are told by their logarithms */
+
 /* What the page needs of the points: those of faces that are seen, and of the tetrahedra behind them. */
 typedef struct Body {
     const ReportPart *part;
     ShowMesh mesh;
     int point_count, *place; /* [vertex] its place in the page; -1: none */
-    int (*carriers)[4];      /* [face] vertices that its magnetisation goes with; the last one -1: three, and the normal */
+    int (*carriers)
+        [4]; /* [face] vertices that its magnetisation goes with; the last one -1: three, and the normal */
 } Body;
 
 /* ---- Points ---- */
@@ -58,7 +61,7 @@ static void take_points(const Body *body, const double (*x)[3], double *row)
 
 static Packed points_shape(const Body *body, int rows)
 {
-    return (Packed){(size_t)rows, 3 * (size_t)body->point_count, 3, 16};
+    return (Packed){(size_t)rows, 3 * (size_t)body->point_count, 3, 16, false};
 }
 
 static bool add_points(const Body *body, Error *err)
@@ -124,10 +127,14 @@ static void add_field(const Body *body, const char *name)
     double *rows = mem_alloc(count * faces, sizeof *rows);
     if (read_field(body, name, rows, &unit)) {
         bool still = is_static(rows, count, faces);
+        double low, high;
+        document_range(rows, count * faces, &low, &high);
         document_open(part->document, NULL, '{');
         document_text(part->document, "name", name);
         document_text(part->document, "unit", unit);
-        document_packed(part->document, "values", rows, (Packed){still ? 1 : count, faces, 1, still ? 16 : 8});
+        document_packed(
+            part->document, "values", rows,
+            (Packed){still ? 1 : count, faces, 1, still ? 16 : 8, low > 0 && high > LOG_SPAN * low});
         document_close(part->document);
     }
     mem_free(rows);
@@ -174,7 +181,7 @@ static void add_magnetization(const Body *body)
         for (int i = 0; i < 3; i++) M[3 * f + (size_t)i] = rows ? rows[3 * row + (size_t)i] : 0;
     }
     document_open(document, "magnetization", '{');
-    document_packed(document, "values", M, (Packed){1, 3 * faces, 3, 16});
+    document_packed(document, "values", M, (Packed){1, 3 * faces, 3, 16, false});
     add_faces(body, "carriers", body->carriers[0], 4);
     add_rest(body);
     document_close(document);
@@ -191,7 +198,8 @@ static bool read_target(const Body *body, const char *name, double *row)
     size_t count = 3 * (size_t)vertices;
     double(*target)[3] =
         show_dataset(data, show_text(data, "slender/cases/%s/target", name), ARRAY_FLOAT64, count);
-    const double(*x)[3] = show_dataset(data, show_text(data, "slender/cases/%s/x", name), ARRAY_FLOAT64, count);
+    const double(*x)[3] =
+        show_dataset(data, show_text(data, "slender/cases/%s/x", name), ARRAY_FLOAT64, count);
     if (!target) return false;
     if (x) show_fill_places(target, x, vertices);
     take_points(body, (const double(*)[3])target, row);
@@ -232,6 +240,39 @@ static void add_cases(const Body *body)
     if (cases) add_targets(body, names, cases);
 }
 
+/* Named groups of faces, of a solid those of rows of its surface: which of these a face is, is told beside them. */
+static void add_groups(const Body *body)
+{
+    ShowData *data = body->part->data;
+    Document *document = body->part->document;
+    Array names, dims, offsets, members;
+    Result *result = data->result;
+    if (!result_has(result, "slender/groups/names") ||
+        !result_read_as(result, "slender/groups/names", ARRAY_TEXT, 1, 0, &names, NULL))
+        return;
+    char *rest = NULL, *name = strtok_r(show_keep(data, names), "\n", &rest);
+    if (!result_read_as(result, "slender/groups/dim", ARRAY_INT32, 1, 0, &dims, NULL)) return;
+    const int *dim = show_keep(data, dims);
+    if (!result_read_as(result, "slender/groups/offsets", ARRAY_INT32, 1, dims.dims[0] + 1, &offsets, NULL))
+        return;
+    const int *offset = show_keep(data, offsets);
+    if (!result_read_as(result, "slender/groups/members", ARRAY_INT32, 1, offset[dims.dims[0]], &members,
+                        NULL))
+        return;
+    const int *member = show_keep(data, members);
+    if (body->mesh.part)
+        document_indices(document, "part", body->mesh.part, (size_t)body->mesh.body.face_count, 1);
+    document_open(document, "groups", '[');
+    for (int g = 0; name && g < dims.dims[0]; g++, name = strtok_r(NULL, "\n", &rest)) {
+        if (dim[g] != 2) continue;
+        document_open(document, NULL, '{');
+        document_text(document, "name", name);
+        document_indices(document, "members", member + offset[g], (size_t)(offset[g + 1] - offset[g]), 1);
+        document_close(document);
+    }
+    document_close(document);
+}
+
 static bool add_body(Body *body, Error *err)
 {
     Document *document = body->part->document;
@@ -241,6 +282,7 @@ static bool add_body(Body *body, Error *err)
     bool ok = add_points(body, err) && add_fields(body, err);
     if (ok && body->mesh.magnetic) add_magnetization(body);
     if (!ok) return false;
+    add_groups(body);
     document_close(document);
     add_cases(body);
     return true;

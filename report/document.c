@@ -141,7 +141,7 @@ static void refer(Document *d, const char *type, Packed shape)
 
 void document_indices(Document *d, const char *key, const int *values, size_t count, size_t stride)
 {
-    Packed shape = {1, count, stride, 32};
+    Packed shape = {1, count, stride, 32, false};
     uint32_t *numbers = mem_copy(values, count, sizeof *numbers);
     document_open(d, key, '{');
     refer(d, "i32", shape);
@@ -150,21 +150,35 @@ void document_indices(Document *d, const char *key, const int *values, size_t co
     mem_free(numbers);
 }
 
+void document_range(const double *values, size_t count, double *low, double *high)
+{
+    *low = INFINITY, *high = -INFINITY;
+    for (size_t i = 0; i < count; i++)
+        if (isfinite(values[i])) *low = fmin(*low, values[i]), *high = fmax(*high, values[i]);
+    if (*low > *high) *low = *high = 0;
+}
+
+/* Where between the ends: 0 .. 1. */
+static double part_of(double value, double low, double high, bool log_scale)
+{
+    if (!(high > low)) return 0;
+    return log_scale ? log(value / low) / log(high / low) : (value - low) / (high - low);
+}
+
 void document_packed(Document *d, const char *key, const double *values, Packed shape)
 {
     size_t count = shape.rows * shape.width;
-    double low = INFINITY, high = -INFINITY, top = shape.bits == 8 ? 254 : 65534;
-    for (size_t i = 0; i < count; i++)
-        if (isfinite(values[i])) low = fmin(low, values[i]), high = fmax(high, values[i]);
-    if (low > high) low = high = 0;
-    double scale = high > low ? top / (high - low) : 0;
+    double low, high, top = shape.bits == 8 ? 254 : 65534;
+    document_range(values, count, &low, &high);
     uint32_t *numbers = mem_alloc(count, sizeof *numbers);
     for (size_t i = 0; i < count; i++)
-        numbers[i] = (uint32_t)(isfinite(values[i]) ? lround((values[i] - low) * scale) : (long)top + 1);
+        numbers[i] = (uint32_t)(isfinite(values[i]) ? lround(top * part_of(values[i], low, high, shape.log))
+                                                    : (long)top + 1);
     document_open(d, key, '{');
     refer(d, shape.bits == 8 ? "q8" : "q16", shape);
     document_number(d, "low", low);
     document_number(d, "high", high);
+    document_flag(d, "log", shape.log);
     document_close(d);
     add_differences(d, numbers, shape, (size_t)shape.bits / 8);
     mem_free(numbers);

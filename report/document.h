@@ -1,9 +1,9 @@
 /* document.h - what a report tells its page: JSON, in which arrays of many numbers are references to one block of bytes
  * that is compressed at the end. page/data.js reads it.
  *
- *     {"at": first byte, "type": "i32" | "q8" | "q16", "rows": R, "width": W, "low": .., "high": ..}
+ *     {"at": first byte, "type": "i32" | "q8" | "q16", "rows": R, "width": W, "stride": .., "low": .., "high": .., "log": true | false}
  *
- * is R x W numbers. q8 and q16 are quantised: low + (high - low) q / (2^bits - 2), the last q means NaN. Every number is kept as its
+ * is R x W numbers. q8 and q16 are quantised: low + (high - low) q / (2^bits - 2), with log low (high / low)^(q / (2^bits - 2)), the last q means NaN. Every number is kept as its
  * difference from the same one of the row before, in the first row from the one `stride` before it, modulo 2^bits; the lowest
  * bytes of all come first, then the next ones. So a motion takes a byte or two a number before it is compressed, and half after. */
 #pragma once
@@ -29,7 +29,11 @@ void document_numbers(Document *document, const char *key, const double *values,
 typedef struct Packed {
     size_t rows, width, stride;
     int bits; /* 8 or 16 */
+    bool log; /* the logarithm is quantised: all that are finite must be positive */
 } Packed;
+
+/* The least and the greatest finite number; 0 and 0 where there is none. */
+void document_range(const double *values, size_t count, double *low, double *high);
 
 void document_indices(Document *document, const char *key, const int *values, size_t count, size_t stride);
 

@@ -11,7 +11,7 @@ static void add_layer(Document *document, const PlotLayer *layer)
     document_number(document, "width", layer->pen);
     document_indices(document, "offsets", layer->start, (size_t)layer->count + 1, 1);
     document_packed(document, "points", layer->count ? &layer->points[0].x : NULL,
-                    (Packed){1, 2 * (size_t)layer->start[layer->count], 2, 16});
+                    (Packed){1, 2 * (size_t)layer->start[layer->count], 2, 16, false});
     document_close(document);
 }
 
@@ -24,7 +24,7 @@ static void add_picture(Document *document, const SplineField *picture)
     document_number(document, "rows", picture->rows);
     document_packed(document, "values", picture->values,
                     (Packed){(size_t)picture->rows, pixels / (size_t)picture->rows * (size_t)picture->width,
-                             (size_t)picture->width, 8});
+                             (size_t)picture->width, 8, false});
     document_close(document);
 }
 

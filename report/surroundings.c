@@ -33,12 +33,12 @@ static void add_obstacle(const ReportPart *part, const ShowObstacles *all, int i
     bool source = index >= all->obstacles;
     document_open(document, NULL, '{');
     document_text(document, "kind", source ? one->kind : "obstacle");
-    document_packed(document, "points", one->points[0], (Packed){1, 3 * points, 3, 16});
+    document_packed(document, "points", one->points[0], (Packed){1, 3 * points, 3, 16, false});
     document_indices(document, "faces", one->faces[0], 3 * faces, 3);
     double *rgb = show_block(part->data, 3 * faces, sizeof *rgb);
     for (size_t f = 0; f < faces; f++)
         rgb[3 * f] = colors[f].r, rgb[3 * f + 1] = colors[f].g, rgb[3 * f + 2] = colors[f].b;
-    document_packed(document, "colors", rgb, (Packed){1, 3 * faces, 3, 8});
+    document_packed(document, "colors", rgb, (Packed){1, 3 * faces, 3, 8, false});
     double *poses = show_block(part->data, 12 * (size_t)part->frame_count, sizeof *poses);
     const char *path = source ? "slender/frames/source_pose" : "slender/frames/obstacle_pose";
     int of = source ? index - all->obstacles : index;
@@ -109,7 +109,7 @@ static void add_line(Document *document, const MarkLine *line, bool grows)
     document_number(document, "width", line->width);
     document_flag(document, "grows", grows);
     document_indices(document, "offsets", ends, 2, 1);
-    document_packed(document, "points", line->points[0], (Packed){1, 3 * (size_t)line->count, 3, 16});
+    document_packed(document, "points", line->points[0], (Packed){1, 3 * (size_t)line->count, 3, 16, false});
     document_close(document);
 }
 
@@ -138,8 +138,7 @@ static bool add_strands(const ReportPart *part, const int (*lines)[2], Strands s
 {
     int points = 0, rows = strands.moves ? part->frame_count : 1,
         *offsets = show_block(part->data, (size_t)strands.count + 1, sizeof *offsets);
-    for (int k = 0; k < strands.count; k++)
-        offsets[k + 1] = points += lines[strands.first + k][1];
+    for (int k = 0; k < strands.count; k++) offsets[k + 1] = points += lines[strands.first + k][1];
     size_t width = 3 * (size_t)points;
     double *x = show_block(part->data, (size_t)rows * width, sizeof *x);
     for (int k = 0; k < rows; k++) {
@@ -161,7 +160,7 @@ static bool add_strands(const ReportPart *part, const int (*lines)[2], Strands s
     document_number(document, "width", strands.width);
     document_flag(document, "body", strands.moves);
     document_indices(document, "offsets", offsets, (size_t)strands.count + 1, 1);
-    document_packed(document, "points", x, (Packed){(size_t)rows, width, 3, 16});
+    document_packed(document, "points", x, (Packed){(size_t)rows, width, 3, 16, false});
     document_close(document);
     return true;
 }

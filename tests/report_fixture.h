@@ -109,6 +109,7 @@ static inline Unpacked unpack(const Page *page, const char *json, const char *ke
                   : !strncmp(type, "\"q16\"", 5) ? 2
                                                  : 1;
     Unpacked array = {.rows = (size_t)number_after(ref, "rows"), .width = (size_t)number_after(ref, "width")};
+    bool logarithmic = size < 4 && !strncmp(after(ref, "log"), "true", 4);
     if (size < 4) array.low = number_after(ref, "low"), array.high = number_after(ref, "high");
     size_t count = array.rows * array.width;
     assert_true(at + size * count <= page->length);
@@ -119,9 +120,10 @@ static inline Unpacked unpack(const Page *page, const char *json, const char *ke
         for (size_t b = 0; b < size; b++) q[i] |= (uint32_t)page->bytes[at + b * count + i] << 8 * b;
         if (i >= back) q[i] += q[i - back];
         if (size < 4) q[i] &= size == 1 ? 0xff : 0xffff;
-        array.values[i] = size == 4    ? (int32_t)q[i]
-                          : q[i] > top ? NAN
-                                       : array.low + (array.high - array.low) * q[i] / top;
+        array.values[i] = size == 4     ? (int32_t)q[i]
+                          : q[i] > top  ? NAN
+                          : logarithmic ? array.low * pow(array.high / array.low, (double)q[i] / top)
+                                        : array.low + (array.high - array.low) * q[i] / top;
     }
     mem_free(q);
     return array;

@@ -39,14 +39,17 @@ static void fill(double *values, size_t count)
 static void test_packed(void **unused)
 {
     (void)unused;
-    static const Packed shapes[] = {
-        {1, 30, 3, 16}, {4, 30, 3, 16}, {3, 10, 1, 8}, {1, 1, 1, 8}, {5, 2, 2, 8}};
+    static const Packed shapes[] = {{1, 30, 3, 16, false},
+                                    {4, 30, 3, 16, false},
+                                    {3, 10, 1, 8, false},
+                                    {1, 1, 1, 8, false},
+                                    {5, 2, 2, 8, false}};
     double values[120];
     fill(values, 120);
     for (size_t k = 0; k < sizeof shapes / sizeof *shapes; k++) {
         Document *document = document_create();
         document_open(document, NULL, '{');
-        document_packed(document, "before", values, (Packed){1, 5, 1, 8});
+        document_packed(document, "before", values, (Packed){1, 5, 1, 8, false});
         document_packed(document, "numbers", values, shapes[k]);
         document_close(document);
         Page page = close_document(document);
@@ -69,9 +72,9 @@ static void test_narrow(void **unused)
     const double same[3] = {0.1, 0.1, 0.1}, none[2] = {NAN, INFINITY}, far[3] = {1000, 1000.0005, 1000.001};
     Document *document = document_create();
     document_open(document, NULL, '{');
-    document_packed(document, "same", same, (Packed){1, 3, 3, 16});
-    document_packed(document, "none", none, (Packed){1, 2, 1, 8});
-    document_packed(document, "far", far, (Packed){1, 3, 3, 16});
+    document_packed(document, "same", same, (Packed){1, 3, 3, 16, false});
+    document_packed(document, "none", none, (Packed){1, 2, 1, 8, false});
+    document_packed(document, "far", far, (Packed){1, 3, 3, 16, false});
     document_close(document);
     Page page = close_document(document);
     Unpacked got = unpack(&page, page.json, "same");
@@ -82,6 +85,25 @@ static void test_narrow(void **unused)
     mem_free(got.values);
     got = unpack(&page, page.json, "far");
     for (int i = 0; i < 3; i++) assert_true(fabs(got.values[i] - far[i]) < 2e-8);
+    mem_free(got.values);
+    page_clear(&page);
+}
+
+/* Numbers of very different sizes by their logarithms: each as exact as the others. */
+static void test_log(void **unused)
+{
+    (void)unused;
+    double values[40];
+    for (int i = 0; i < 40; i++) values[i] = i == 7 ? NAN : 1e-3 * pow(10, 0.2 * i);
+    Document *document = document_create();
+    document_open(document, NULL, '{');
+    document_packed(document, "young", values, (Packed){1, 40, 1, 16, true});
+    document_close(document);
+    Page page = close_document(document);
+    assert_true(!strncmp(after(page.json, "log"), "true", 4));
+    Unpacked got = unpack(&page, page.json, "young");
+    for (int i = 0; i < 40; i++)
+        assert_true(i == 7 ? isnan(got.values[i]) : fabs(got.values[i] / values[i] - 1) < 2e-4);
     mem_free(got.values);
     page_clear(&page);
 }
@@ -120,9 +142,10 @@ static void test_json(void **unused)
     document_number(document, NULL, 1e-30);
     document_close(document);
     document_close(document);
-    assert_string_equal(document_json(document),
-                        "{\"a\\\"b\":\"\\u003c/script>\\u003c!-- \\\\ \\u000a\\u0009\\u0001 \xc3\xa9\",\"none\":null,"
-                        "\"numbers\":[1.5,null,null],\"yes\":true,\"list\":[{},1e-30]}");
+    assert_string_equal(
+        document_json(document),
+        "{\"a\\\"b\":\"\\u003c/script>\\u003c!-- \\\\ \\u000a\\u0009\\u0001 \xc3\xa9\",\"none\":null,"
+        "\"numbers\":[1.5,null,null],\"yes\":true,\"list\":[{},1e-30]}");
     document_destroy(document);
 }
 
@@ -306,6 +329,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test_teardown(test_packed, nothing_leaks),
                                        cmocka_unit_test_teardown(test_narrow, nothing_leaks),
+                                       cmocka_unit_test_teardown(test_log, nothing_leaks),
                                        cmocka_unit_test_teardown(test_indices, nothing_leaks),
                                        cmocka_unit_test_teardown(test_json, nothing_leaks),
                                        cmocka_unit_test_teardown(test_shell, nothing_leaks),

@@ -20,11 +20,11 @@ function unpackIntegers(block, ref, size) {
 
 function unpack(block, ref) {
   if (ref.type === "i32") return unpackIntegers(block, ref, 4);
-  const size = ref.type === "q8" ? 1 : 2, top = size === 1 ? 254 : 65534, step = (ref.high - ref.low) / top;
-  return Float32Array.from(unpackIntegers(block, ref, size), (q) => (q > top ? NaN : ref.low + q * step));
+  const size = ref.type === "q8" ? 1 : 2, top = size === 1 ? 254 : 65534, step = ref.log ? Math.log(ref.high / ref.low) / top : (ref.high - ref.low) / top;
+  return Float32Array.from(unpackIntegers(block, ref, size), (q) => (q > top ? NaN : ref.log ? ref.low * Math.exp(q * step) : ref.low + q * step));
 }
 
-/* The same document with arrays where it has references: {rows, width, low, high, data}. */
+/* The same document with arrays where it has references: {rows, width, low, high, log, data}. */
 function resolve(block, value) {
   if (Array.isArray(value)) return value.map((one) => resolve(block, one));
   if (value === null || typeof value !== "object") return value;

@@ -37,19 +37,34 @@ function parseColor(text) {
   return [1, 3, 5].map((k) => parseInt(text.slice(k, k + 2), 16));
 }
 
-/* A colour for each number, grey for none; low..high are the ends of the map. */
-function makeScale(maps, low, high) {
+/* A colour for each number, grey for none; low..high are the ends of the map, of logarithms with `log`. */
+function makeScale(maps, low, high, log) {
   const diverging = low < 0 && high > 0, end = Math.max(-low, high);
+  if (log) return { low, high, log, color: mapColors(maps.sequential, (value) => Math.log(value / low) / Math.log(high / low)) };
   if (high - low <= 1e-3 * Math.max(Math.abs(low), Math.abs(high))) (low = Math.min(low, 0)), (high = Math.max(high, 0)); /* one number everywhere */
   else if (diverging) (low = -end), (high = end);
   else if (low > 0 && low < 0.2 * high) low = 0;
-  const map = (diverging ? maps.diverging : maps.sequential).map(parseColor);
-  function color(value) {
+  return { low, high, log: false, color: mapColors(diverging ? maps.diverging : maps.sequential, (value) => (high > low ? (value - low) / (high - low) : 0)) };
+}
+
+/* part(value): where it is on the map, 0..1 or beyond. */
+function mapColors(names, part) {
+  const map = names.map(parseColor);
+  return (value) => {
     if (!Number.isFinite(value)) return [140, 140, 145];
-    const t = high > low ? Math.min(Math.max((value - low) / (high - low), 0), 1) * (map.length - 1) : 0, k = Math.min(Math.floor(t), map.length - 2);
+    const t = Math.min(Math.max(part(value), 0), 1) * (map.length - 1), k = Math.min(Math.floor(t), map.length - 2);
     return map[k].map((c, i) => c + (t - k) * (map[k + 1][i] - c));
+  };
+}
+
+/* The least and the greatest number. */
+function extent(values) {
+  let low = Infinity, high = -Infinity;
+  for (const value of values) {
+    if (value < low) low = value;
+    if (value > high) high = value;
   }
-  return { low, high, color };
+  return { low, high };
 }
 
 /* ---- Magnetisation ---- */

@@ -47,7 +47,7 @@ function makeSpacePanel(result, page) {
 
   function drawBody(gl, at, offset) {
     const faces = body.faces.data, shown = field(), plain = parseColor(page.color("--body"));
-    const values = shown ? rowNear(shown.values, at) : null, scale = shown ? page.scaleOf(shown.name) : null;
+    const values = shown ? rowNear(shown.values, at) : null, { scale } = page;
     pointsNow = rowAt(body.points, at);
     gl.drawMesh(offset, corners(pointsNow, faces), faceColors(faces.length / 3, (f) => (values ? scale.color(values[f]) : plain)),
                 { edges: page.choice.edges ? 1 : 0 });
@@ -161,24 +161,34 @@ function makeSpacePanel(result, page) {
   /* The face under a place in CSS pixels, and what it has; "" where there is none. */
   function readAt(x, y, at) {
     const shown = field();
-    if (!shown || !view || !pointsNow) return "";
+    if (!view || !pointsNow) return "";
     const face = pick(view, pointsNow, body.faces.data, x * page.ratio, y * page.ratio);
-    return face < 0 ? "" : `face ${face}: ${say(rowNear(shown.values, at)[face], shown.unit)}`;
+    if (face < 0) return "";
+    const groups = groupsOf(body, face), value = shown ? `: ${say(rowNear(shown.values, at)[face], shown.unit)}` : "";
+    return `face ${face}${groups.length ? ` (${groups.join(", ")})` : ""}${value}`;
   }
 
-  return { canvas, draw, readAt, count, times: result.frames.times, label: (at) => result.frames.labels[Math.min(Math.round(at), count - 1)] };
+  return { canvas, draw, readAt, field, count, times: result.frames.times, label: (at) => result.frames.labels[Math.min(Math.round(at), count - 1)] };
+}
+
+/* The names of a face's groups. */
+function groupsOf(body, face) {
+  const row = body.part ? body.part.data[face] : face;
+  return (body.groups || []).filter((group) => group.members.data.includes(row)).map((group) => group.name);
 }
 
 /* The frontmost face at a pixel; -1: none. */
 function pick(view, points, faces, x, y) {
+  const at = new Float32Array(points.length); /* [x, y, height] of each point */
+  for (let v = 0; v < points.length; v += 3) at.set(project(view, points.subarray(v, v + 3)), v);
   let best = -1, nearest = -Infinity;
-  for (let f = 0; f < faces.length / 3; f++) {
-    const [a, b, c] = [0, 1, 2].map((i) => { const v = 3 * faces[3 * f + i]; return project(view, [points[v], points[v + 1], points[v + 2]]); });
-    const area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-    const u = ((b[0] - x) * (c[1] - y) - (b[1] - y) * (c[0] - x)) / area, v = ((c[0] - x) * (a[1] - y) - (c[1] - y) * (a[0] - x)) / area;
+  for (let k = 0; k < faces.length; k += 3) {
+    const a = 3 * faces[k], b = 3 * faces[k + 1], c = 3 * faces[k + 2];
+    const ax = at[a] - x, ay = at[a + 1] - y, bx = at[b] - x, by = at[b + 1] - y, cx = at[c] - x, cy = at[c + 1] - y;
+    const area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax), u = (bx * cy - by * cx) / area, v = (cx * ay - cy * ax) / area;
     if (!(u >= 0 && v >= 0 && u + v <= 1)) continue;
-    const height = u * a[2] + v * b[2] + (1 - u - v) * c[2];
-    if (height > nearest) (nearest = height), (best = f);
+    const height = u * at[a + 2] + v * at[b + 2] + (1 - u - v) * at[c + 2];
+    if (height > nearest) (nearest = height), (best = k / 3);
   }
   return best;
 }

@@ -3,20 +3,23 @@
 /* One report's state. Panels ask it for colours and the camera; it tells them the moment. */
 function makePage(data) {
   const page = { data, camera: { ...CAMERA_START }, renderer: makeRenderer(() => page.redraw()), at: 1, playing: false, panels: [], charts: [],
-                 choice: { field: null, target: "over", arrows: true, edges: true } };
+                 choice: { field: null, target: "over", range: "whole", arrows: true, edges: true } };
   Object.defineProperty(page, "ratio", { get: () => window.devicePixelRatio || 1 }); /* it changes with the browser's zoom */
-  const scales = new Map();
   const fields = data.results.flatMap((result) => (result.body ? result.body.fields : []));
   page.fieldNames = [...new Set(fields.map((one) => one.name))];
   page.greatestFlux = Math.max(...data.results.flatMap((result) => (result.flux || []).map(Math.abs)), 1e-30);
 
-  /* One for all results, so that colours can be compared. */
-  page.scaleOf = (name) => {
-    if (!scales.has(name)) {
-      const same = fields.filter((one) => one.name === name);
-      scales.set(name, makeScale(data.colormaps, Math.min(...same.map((one) => one.values.low)), Math.max(...same.map((one) => one.values.high))));
-    }
-    return scales.get(name);
+  /* One for all results, so that colours can be compared: of all frames, or of the one that is shown. */
+  page.scale = null;
+  page.scaleFrames = () => {
+    const name = page.choice.field, shown = page.choice.range === "frame";
+    const ranges = page.panels.map((panel) => panel.field()).flatMap((field, k) =>
+      field ? [shown ? extent(rowNear(field.values, page.frameOf(page.panels[k]))) : field.values] : []);
+    const low = Math.min(...ranges.map((one) => one.low)), high = Math.max(...ranges.map((one) => one.high));
+    const scale = ranges.length ? makeScale(data.colormaps, low, high, low > 0 && high > low && fields.some((one) => one.name === name && one.values.log)) : null;
+    if (JSON.stringify(scale) === JSON.stringify(page.scale)) return;
+    page.scale = scale;
+    showLegends(page);
   };
   page.varies = (name) => fields.some((one) => one.name === name && one.values.high - one.values.low > 1e-3 * Math.max(Math.abs(one.values.low), Math.abs(one.values.high)));
   page.unitOf = (name) => fields.find((one) => one.name === name).unit;
@@ -54,6 +57,7 @@ function makePage(data) {
     requestAnimationFrame(() => { asked = false; page.draw(); });
   };
   page.draw = () => {
+    page.scaleFrames();
     for (const panel of page.panels) panel.draw(page.frameOf(panel));
     for (const { chart, kind, panel } of page.charts) {
       if (kind === "t") chart.mark(page.timed() ? page.time() : NaN);
@@ -130,23 +134,34 @@ function addWords(page, result) {
 }
 
 function showLegends(page) {
-  const name = page.choice.field;
-  page.data.results.forEach((result, k) => {
-    const has = result.body && result.body.fields.some((one) => one.name === name), legend = page.panels[k].legend;
+  const name = page.choice.field, { scale } = page;
+  for (const { legend, field } of page.panels) {
     legend.replaceChildren();
-    if (!has) return;
-    const scale = page.scaleOf(name), steps = Array.from({ length: 17 }, (_, i) => `rgb(${scale.color(scale.low + ((scale.high - scale.low) * i) / 16).map(Math.round)})`);
-    const bar = node("i", {});
-    bar.style.background = `linear-gradient(to right, ${steps})`;
-    legend.append(say(scale.low, page.unitOf(name)), bar, say(scale.high, page.unitOf(name)), node("span", { className: "faint", textContent: name.replaceAll("_", " ") }));
-  });
+    legend.classList.toggle("ticked", Boolean(scale && scale.log && field()));
+    if (field()) legend.append(say(scale.low, page.unitOf(name)), colorBar(scale, page.unitOf(name)), say(scale.high, page.unitOf(name)),
+                               node("span", { className: "faint", textContent: name.replaceAll("_", " ") }));
+  }
+}
+
+/* The colours from the least to the greatest, with powers of ten where they are of logarithms. */
+function colorBar(scale, unit) {
+  const { low, high, log } = scale, at = (t) => (log ? low * (high / low) ** t : low + (high - low) * t);
+  const bar = node("i", {});
+  bar.style.background = `linear-gradient(to right, ${Array.from({ length: 17 }, (_, i) => `rgb(${scale.color(at(i / 16)).map(Math.round)})`)})`;
+  for (const tick of log ? powerTicks(low, high) : []) {
+    const mark = bar.appendChild(node("s", { textContent: say(tick, unit) }));
+    mark.style.left = `${(100 * Math.log(tick / low)) / Math.log(high / low)}%`;
+  }
+  return bar;
 }
 
 function addChoices(page) {
   const bar = document.getElementById("choices"), results = page.data.results;
   const has = (key) => results.some((result) => result[key]), body = has("body");
-  const set = (key) => (value) => { page.choice[key] = value; showLegends(page); page.redraw(); };
+  const set = (key) => (value) => { page.choice[key] = value; page.redraw(); };
   const fields = addSelect(bar, "colours", [...page.fieldNames.map((name) => [name, name.replaceAll("_", " ")]), ["", "none"]], page.choice.field, set("field"));
+  const changes = results.some((result) => result.body && result.body.fields.some((one) => one.values.rows > 1));
+  if (changes) addSelect(bar, "from", [["whole", "all frames"], ["frame", "this frame"]], page.choice.range, set("range"));
   const targets = has("target") ? [["over", "over"], ["beside", "beside"], ["none", "hidden"]] : has("drawing") ? [["none", "hidden"], ["beside", "beside"]] : [];
   const target = addSelect(bar, "target", targets, page.choice.target, set("target"));
   const arrows = results.some((result) => result.body && result.body.magnetization) ? addSwitch(bar, "magnetisation", page.choice.arrows, set("arrows")) : null;
@@ -175,6 +190,7 @@ function addPrinting(page) {
 function readHash(page) {
   const asked = new URLSearchParams(location.hash.slice(1));
   if (asked.has("field")) page.choice.field = asked.get("field");
+  if (asked.has("range")) page.choice.range = asked.get("range") === "frame" ? "frame" : "whole";
   if (asked.has("target")) page.choice.target = asked.get("target");
   if (asked.has("view") && VIEWS[asked.get("view")]) Object.assign(page.camera, VIEWS[asked.get("view")]);
   if (asked.has("arrows")) page.choice.arrows = asked.get("arrows") !== "0";
@@ -193,7 +209,6 @@ async function start() {
   if (page.choice.field && !page.fieldNames.includes(page.choice.field)) page.choice.field = "";
   results.forEach((result) => addPanel(page, result));
   addChoices(page);
-  showLegends(page);
   const scrub = document.getElementById("scrub");
   scrub.addEventListener("input", () => { page.play(false); page.go(Number(scrub.value)); });
   document.getElementById("play").addEventListener("click", () => page.play(!page.playing));
