@@ -206,30 +206,58 @@ static bool read_target(const Body *body, const char *name, double *row)
     return true;
 }
 
-/* The targets of the cases, and which of them each frame has: the last frames are one of each case; of a motion, and of what
- * is before them in a design, it is the last case's. */
+/* The targets of the cases, and which of them each frame has. */
 static void add_targets(const Body *body, char **names, int cases)
 {
     const ReportPart *part = body->part;
     size_t width = 3 * (size_t)body->point_count;
     double *rows = mem_alloc((size_t)cases * width, sizeof *rows);
-    int *row = mem_alloc((size_t)cases + 1, sizeof *row), count = 0;
+    int *row = mem_alloc((size_t)cases, sizeof *row), count = 0;
     for (int c = 0; c < cases; c++)
         row[c] = read_target(body, names[c], rows + (size_t)count * width) ? count++ : -1;
     if (count) {
-        int steps = result_step_count(part->data->result);
         document_open(part->document, "target", '{');
         document_packed(part->document, "points", rows, points_shape(body, count));
-        document_open(part->document, "of", '[');
-        for (int k = 0; k < part->frame_count; k++) {
-            int from_end = steps - part->frames[k];
-            document_number(part->document, NULL, row[from_end > cases ? cases - 1 : cases - from_end]);
-        }
-        document_close(part->document);
+        report_rows(part, row, cases);
         document_close(part->document);
     }
     mem_free(row);
     mem_free(rows);
+}
+
+/* The points of a case's clouds, those seen in a plane at the body's middle across it; NULL: it has none. */
+static const double *read_cloud(const Body *body, const char *name, int *count)
+{
+    Array cloud;
+    ShowData *data = body->part->data;
+    int vertices = body->mesh.body.vertex_count;
+    const char *path = show_text(data, "slender/cases/%s/cloud", name);
+    const double(*x)[3] =
+        show_dataset(data, show_text(data, "slender/cases/%s/x", name), ARRAY_FLOAT64, 3 * (size_t)vertices);
+    if (!x || !result_has(data->result, path) ||
+        !result_read_as(data->result, path, ARRAY_FLOAT64, 2, 3, &cloud, NULL))
+        return NULL;
+    double(*points)[3] = show_keep(data, cloud), middle[1][3] = {{0}};
+    *count = cloud.dims[0];
+    for (int i = 0; i < 3 * vertices; i++) middle[0][i % 3] += x[i / 3][i % 3] / vertices;
+    for (int k = 0; k < *count; k++) show_fill_places(&points[k], (const double(*)[3])middle, 1);
+    return points[0];
+}
+
+static void add_clouds(const Body *body, char **names, int cases)
+{
+    Document *document = body->part->document;
+    int *row = show_block(body->part->data, (size_t)cases, sizeof *row), clouds = 0, count;
+    document_open(document, "clouds", '{');
+    document_open(document, "sets", '[');
+    for (int c = 0; c < cases; c++) {
+        const double *points = read_cloud(body, names[c], &count);
+        if (points) document_packed(document, NULL, points, (Packed){1, 3 * (size_t)count, 3, 16, false});
+        row[c] = points ? clouds++ : -1;
+    }
+    document_close(document);
+    report_rows(body->part, row, cases);
+    document_close(document);
 }
 
 static void add_cases(const Body *body)
@@ -237,7 +265,7 @@ static void add_cases(const Body *body)
     ShowData *data = body->part->data;
     char **names;
     int cases = report_case_names(data, &names);
-    if (cases) add_targets(body, names, cases);
+    if (cases) add_targets(body, names, cases), add_clouds(body, names, cases);
 }
 
 /* Named groups of faces, of a solid those of rows of its surface: which of these a face is, is told beside them. */

@@ -1,6 +1,7 @@
 /* Charts, and what a result says in single numbers. */
 #include "base/memory.h"
 #include "report/report_private.h"
+#include "view/show_curves.h"
 #include "view/show_motion.h"
 #include "view/show_probes.h"
 #include "view/ticks.h"
@@ -41,11 +42,16 @@ static void add_chart(Document *document, const Chart *chart)
 bool report_charts(const ReportPart *part, Error *err)
 {
     ShowMotion motion;
-    Chart charts[PROBE_CHARTS + SHOW_MOTION_CHARTS + 1];
-    if (!show_motion_read(&motion, part->data, err)) return false;
+    ShowCurves curves;
+    Chart charts[PROBE_CHARTS + SHOW_MOTION_CHARTS + FRAMING_CHARTS + 2];
+    bool rods = show_curves_has(part->data);
+    if (!show_motion_read(&motion, part->data, err) || (rods && !show_curves_read(&curves, part->data, err)))
+        return false;
     int count = show_probes_charts(part->data, charts, PROBE_CHARTS);
     count += show_motion_charts(&motion, charts + count);
     count += show_history(part->data, &charts[count]);
+    if (rods) count += show_curves_strains(&curves, charts + count);
+    if (rods) count += show_curves_distance(&curves, &charts[count]);
     document_open(part->document, "charts", '[');
     for (int k = 0; k < count; k++) add_chart(part->document, &charts[k]);
     document_close(part->document);
@@ -75,9 +81,34 @@ static void add_single(Document *document, const char *name, const Array *array)
     }
 }
 
-static bool is_told_elsewhere(const char *path)
+static bool begins_with(const char *path, const char *const *groups, int count)
 {
-    return !strncmp(path, "state/", 6) || !strcmp(path, "scene") || !strncmp(path, "cases/", 6);
+    for (int k = 0; k < count; k++)
+        if (!strncmp(path, groups[k], strlen(groups[k]))) return true;
+    return false;
+}
+
+static bool is_told_elsewhere(const char *path, bool rods)
+{
+    static const char *const all[] = {"state/", "scene", "cases/"}, *const of_rods[] = {
+                                                                        "rod/stable",
+                                                                        "rod/lowest_eigenvalue",
+                                                                        "rod/critical_young",
+                                                                        "rod/morse_index",
+                                                                        "rod/identified/",
+                                                                        "metrics/"};
+    return begins_with(path, all, 3) || (rods && begins_with(path, of_rods, 6));
+}
+
+static bool add_rods(const ReportPart *part, Error *err)
+{
+    ShowCurves curves;
+    const ShowFact *facts;
+    if (!show_curves_read(&curves, part->data, err)) return false;
+    int count = show_curves_facts(&curves, &facts);
+    for (int k = 0; k < count; k++)
+        add_fact(part->document, facts[k].name ? facts[k].name : "stability", facts[k].value);
+    return true;
 }
 
 bool report_facts(const ReportPart *part, Error *err)
@@ -87,11 +118,13 @@ bool report_facts(const ReportPart *part, Error *err)
     char **paths;
     int count;
     Array array;
+    bool rods = show_curves_has(part->data);
     if (!result_list(result, &paths, &count, err)) return false;
     document_open(part->document, "facts", '[');
+    bool ok = !rods || add_rods(part, err);
     for (int k = 0; k < count; k++) {
         const char *name = paths[k] + strlen(group);
-        if (strncmp(paths[k], group, strlen(group)) != 0 || is_told_elsewhere(name) ||
+        if (strncmp(paths[k], group, strlen(group)) != 0 || is_told_elsewhere(name, rods) ||
             !result_read(result, paths[k], &array, NULL))
             continue;
         add_single(part->document, name, &array);
@@ -103,5 +136,5 @@ bool report_facts(const ReportPart *part, Error *err)
         document_text(part->document, "scene", array.data);
         array_clear(&array);
     }
-    return true;
+    return ok;
 }

@@ -37,6 +37,20 @@ int report_case_names(ShowData *data, char ***names)
     return count;
 }
 
+int report_case_of(const ReportPart *part, int k, int cases)
+{
+    int from_end = result_step_count(part->data->result) - part->frames[k];
+    return from_end > cases ? cases - 1 : cases - from_end;
+}
+
+void report_rows(const ReportPart *part, const int *row, int cases)
+{
+    document_open(part->document, "of", '[');
+    for (int k = 0; k < part->frame_count; k++)
+        document_number(part->document, NULL, row[report_case_of(part, k, cases)]);
+    document_close(part->document);
+}
+
 /* ---- Frames ---- */
 
 /* As many as there is room for, of what takes two bytes for a coordinate and, say, six for the numbers of a face. */

@@ -36,3 +36,10 @@ void report_color(Document *document, const char *key, Color color);
 
 /* The names of the load cases, kept in the data, and how many there are. */
 int report_case_names(ShowData *data, char ***names);
+
+/* Of the k-th frame that is shown: the last frames of all are one of each case; of a motion, and of what is before them in
+ * a design, it is the last case's. */
+int report_case_of(const ReportPart *part, int k, int cases);
+
+/* "of": [row of each frame's case], row[cases]: which target of a list a case has, -1: none. */
+void report_rows(const ReportPart *part, const int *row, int cases);

@@ -259,6 +259,51 @@ static void test_rod(void **unused)
     result_close(result);
 }
 
+/* Each case's target is that of its frame, of a shell as of a rod. */
+static void test_targets(void **unused)
+{
+    (void)unused;
+    static const char *const settings[] = {"design.iterations=0", "shell.mesh.n=2"};
+    SlenderError trouble;
+    Result *result = run_to(slender_scene_read(SOURCE_DIR "/tests/scene_small.yaml", settings, 2, &trouble),
+                            &trouble, false, SLENDER_NOT_CONVERGED);
+    Page page = report(0);
+    const char *target = after(page.json, "target");
+    assert_true(!strncmp(strchr(after(target, "of"), ']') - 3, "0,1]",
+                         4)); /* the last frames are those of the cases */
+    Unpacked points = unpack(&page, target, "points");
+    static const char *const paths[] = {"slender/cases/up/target", "slender/cases/down/target"};
+    for (size_t k = 0; k < 2; k++) {
+        Array own = read_all(result, paths[k]);
+        assert_int_equal(array_count(&own), points.width);
+        for (size_t i = 0; i < points.width; i++)
+            assert_true(fabs(points.values[k * points.width + i] - ((double *)own.data)[i]) < 1e-6);
+        array_clear(&own);
+    }
+    mem_free(points.values);
+    page_clear(&page);
+    result_close(result);
+    result = run_to(slender_scene_read(SOURCE_DIR "/tests/scene_rod_design.yaml", settings, 1, &trouble),
+                    &trouble, false, SLENDER_NOT_CONVERGED);
+    page = report(0);
+    target = strstr(page.json, "\"name\":\"target\"");
+    assert_non_null(target);
+    points = unpack(&page, target, "points");
+    Array names = read_all(result, "slender/case_names");
+    char *path = mem_format("slender/cases/%.*s/target", (int)strcspn(names.data, "\n"), (char *)names.data);
+    Array own = read_all(result, path);
+    for (size_t i = 0; i < points.width; i++) {
+        double is = ((double *)own.data)[i];
+        assert_true(isnan(is) || fabs(points.values[i] - is) < 2e-6);
+    }
+    array_clear(&own);
+    array_clear(&names);
+    mem_free(path);
+    mem_free(points.values);
+    page_clear(&page);
+    result_close(result);
+}
+
 static void test_drawing(void **unused)
 {
     (void)unused;
@@ -336,6 +381,7 @@ int main(void)
                                        cmocka_unit_test_teardown(test_solid, nothing_leaks),
                                        cmocka_unit_test_teardown(test_rod, nothing_leaks),
                                        cmocka_unit_test_teardown(test_drawing, nothing_leaks),
+                                       cmocka_unit_test_teardown(test_targets, nothing_leaks),
                                        cmocka_unit_test_teardown(test_several, nothing_leaks),
                                        cmocka_unit_test_teardown(test_refused, nothing_leaks)};
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -134,15 +134,44 @@ function arrowStrokes(arrows, x, ratio) {
 
 /* ---- Lines ---- */
 
-/* Polylines whose points begin at `offsets`, up to point `end`. */
+/* Strokes of one ink [r, g, b, a] from points to points, [3 a stroke]. */
+function makeStrokes(from, to, ink, width) {
+  const count = from.length / 3, colors = new Uint8Array(4 * count);
+  for (let k = 0; k < count; k++) colors.set(ink, 4 * k);
+  return { from: new Float32Array(from), to: new Float32Array(to), colors, widths: new Float32Array(count).fill(width) };
+}
+
+/* A stroke without length is a dot. */
+function dotStrokes(points, color, width) {
+  return makeStrokes(points, points, [...color, 255], width);
+}
+
+/* Polylines whose points begin at `offsets`, up to point `end`; points that are NaN interrupt them. */
 function lineStrokes(points, offsets, color, width, end = Infinity) {
   const from = [], to = [];
   for (let s = 0; s + 1 < offsets.length; s++)
     for (let k = offsets[s]; k + 1 < offsets[s + 1] && k < end; k++)
-      for (let i = 0; i < 3; i++) from.push(points[3 * k + i]), to.push(points[3 * k + 3 + i]);
-  const count = from.length / 3, colors = new Uint8Array(4 * count), widths = new Float32Array(count).fill(width);
-  for (let k = 0; k < count; k++) colors.set([...color, 255], 4 * k);
-  return { from: new Float32Array(from), to: new Float32Array(to), colors, widths };
+      if (Number.isFinite(points[3 * k] + points[3 * k + 3]))
+        for (let i = 0; i < 3; i++) from.push(points[3 * k + i]), to.push(points[3 * k + 3 + i]);
+  return makeStrokes(from, to, [...color, 255], width);
+}
+
+/* Points of polylines between points that are NaN, [3 each]. */
+function lonePoints(points, offsets) {
+  const lone = [], has = (k, s) => k >= offsets[s] && k < offsets[s + 1] && Number.isFinite(points[3 * k]);
+  for (let s = 0; s + 1 < offsets.length; s++)
+    for (let k = offsets[s]; k < offsets[s + 1]; k++)
+      if (has(k, s) && !has(k - 1, s) && !has(k + 1, s)) lone.push(...points.subarray(3 * k, 3 * k + 3));
+  return lone;
+}
+
+/* Points of a mesh that are there in no face that is there whole, [3 each]. */
+function loosePoints(points, faces) {
+  const whole = new Uint8Array(points.length / 3), loose = [], has = (v) => Number.isFinite(points[3 * v]);
+  for (let k = 0; k < faces.length; k += 3)
+    if (has(faces[k]) && has(faces[k + 1]) && has(faces[k + 2])) whole[faces[k]] = whole[faces[k + 1]] = whole[faces[k + 2]] = 1;
+  for (let v = 0; v < whole.length; v++) if (has(v) && !whole[v]) loose.push(...points.subarray(3 * v, 3 * v + 3));
+  return loose;
 }
 
 /* Each edge of a mesh once, [2 vertices]; of those whose points are known. */
@@ -162,7 +191,5 @@ function edgeStrokes(points, edges, color, width) {
     if (!Number.isFinite(points[a] + points[b])) continue;
     for (let i = 0; i < 3; i++) from.push(points[a + i]), to.push(points[b + i]);
   }
-  const count = from.length / 3, colors = new Uint8Array(4 * count), widths = new Float32Array(count).fill(width);
-  for (let k = 0; k < count; k++) colors.set([...color, 200], 4 * k);
-  return { from: new Float32Array(from), to: new Float32Array(to), colors, widths };
+  return makeStrokes(from, to, [...color, 200], width);
 }

@@ -28,8 +28,8 @@ function nearPoints(obstacles, sphere, count) {
 }
 
 function makeSpacePanel(result, page) {
-  const { body, target, obstacles = [], curves = [], places = [] } = result, count = result.frames.labels.length;
-  const moving = [...(body ? [body.points.data] : []), ...curves.map((curve) => curve.points.data), ...(target ? [target.points.data] : [])];
+  const { body, target, clouds, obstacles = [], curves = [], places = [] } = result, count = result.frames.labels.length;
+  const moving = [...(body ? [body.points.data] : []), ...curves.map((curve) => curve.points.data), ...(target ? [target.points.data] : []), ...(clouds ? clouds.sets.map((set) => set.data) : [])];
   const sphere = enclose([...moving, ...nearPoints(obstacles, enclose(moving), count)]), arrows = body && body.magnetization ? prepareArrows(body.magnetization, 260) : null;
   const edges = body && target ? edgesOf(body.faces.data) : [];
   const canvas = document.createElement("canvas"), context = canvas.getContext("2d");
@@ -39,10 +39,14 @@ function makeSpacePanel(result, page) {
     return body ? body.fields.find((one) => one.name === page.choice.field) : null;
   }
 
-  /* The target of a frame; null: it has none. */
+  /* The target of a frame, and the points of its cloud; null: it has none. */
   function targetAt(at) {
     const row = target ? target.of[Math.round(at)] : -1;
     return row >= 0 ? target.points.data.subarray(row * target.points.width, (row + 1) * target.points.width) : null;
+  }
+  function cloudAt(at) {
+    const set = clouds ? clouds.sets[clouds.of[Math.round(at)]] : null;
+    return set ? set.data : null;
   }
 
   function drawBody(gl, at, offset) {
@@ -55,10 +59,13 @@ function makeSpacePanel(result, page) {
   }
 
   function drawTarget(gl, at) {
-    const points = targetAt(at);
-    if (!points || page.choice.target === "none") return;
+    const points = targetAt(at), cloud = cloudAt(at), faces = body.faces.data;
+    if (page.choice.target === "none") return;
+    if (cloud) gl.drawStrokes(view, dotStrokes(cloud, TARGET_INK, 3.5 * page.ratio), { raise: 0.004 });
+    if (!points) return;
+    gl.drawStrokes(view, dotStrokes(loosePoints(points, faces), TARGET_INK, 7 * page.ratio), { raise: 0.02 });
     if (page.choice.target === "over") return gl.drawStrokes(view, edgeStrokes(points, edges, TARGET_INK, page.ratio));
-    const beside = { ...view, x: view.x + view.width / 2 }, faces = body.faces.data;
+    const beside = { ...view, x: view.x + view.width / 2 };
     gl.drawMesh(beside, corners(points, faces), faceColors(faces.length / 3, () => TARGET_INK), { edges: 0.7 });
   }
 
@@ -73,13 +80,14 @@ function makeSpacePanel(result, page) {
 
   function drawCurves(gl, at) {
     curves.forEach((curve, k) => { /* later ones over those before them */
+      if (curve.of && (curve.of[Math.round(at)] < 0 || page.choice.target === "none")) return;
       const offsets = curve.offsets.data, part = count > 1 ? at / (count - 1) : 1;
       const end = curve.grows ? Math.round(part * (offsets[offsets.length - 1] - 1)) : Infinity;
-      gl.drawStrokes(view, lineStrokes(rowAt(curve.points, at), offsets, page.ink(curve.color), curve.width * page.ratio, end), { raise: 0.01 + 0.002 * k });
+      const points = rowAt(curve.points, at), ink = page.ink(curve.color);
+      gl.drawStrokes(view, lineStrokes(points, offsets, ink, curve.width * page.ratio, end), { raise: 0.01 + 0.002 * k });
+      if (curve.of) gl.drawStrokes(view, dotStrokes(lonePoints(points, offsets), ink, 9 * page.ratio), { raise: 0.02 });
     });
-    const dots = places.map((place) => place.at).flat();
-    const inks = new Uint8Array(places.flatMap((place) => [...parseColor(place.color), 255]));
-    gl.drawStrokes(view, { from: new Float32Array(dots), to: new Float32Array(dots), colors: inks, widths: new Float32Array(places.length).fill(8 * page.ratio) }, { raise: 0.02 });
+    for (const place of places) gl.drawStrokes(view, dotStrokes(place.at, parseColor(place.color), 8 * page.ratio), { raise: 0.02 });
   }
 
   /* ---- Over it ---- */
@@ -150,7 +158,7 @@ function makeSpacePanel(result, page) {
     if (gl) {
       gl.begin(width, height);
       if (body) drawBody(gl, at, view);
-      if (target) drawTarget(gl, at);
+      if (body) drawTarget(gl, at);
       drawCurves(gl, at);
       drawObstacles(gl, at);
       context.drawImage(gl.canvas, 0, 0);
@@ -168,7 +176,8 @@ function makeSpacePanel(result, page) {
     return `face ${face}${groups.length ? ` (${groups.join(", ")})` : ""}${value}`;
   }
 
-  return { canvas, draw, readAt, field, count, times: result.frames.times, label: (at) => result.frames.labels[Math.min(Math.round(at), count - 1)] };
+  const lines = [...new Map(curves.filter((curve) => curve.name).map((curve) => [curve.name, curve.color]))];
+  return { canvas, draw, readAt, field, lines, count, times: result.frames.times, label: (at) => result.frames.labels[Math.min(Math.round(at), count - 1)] };
 }
 
 /* The names of a face's groups. */

@@ -64,5 +64,5 @@ function makePaperPanel(result, page) {
     if (beside) context.drawImage(target, paper[0] + gap + area[0], area[1], area[2], area[3]);
   }
 
-  return { canvas, draw, readAt: () => "", field: () => null, count: 2, times: null, paper: true, label: (at) => `${(ink * Math.min(at, 1) / 1000).toFixed(1)} m of ink` };
+  return { canvas, draw, readAt: () => "", field: () => null, lines: [], count: 2, times: null, paper: true, label: (at) => `${(ink * Math.min(at, 1) / 1000).toFixed(1)} m of ink` };
 }

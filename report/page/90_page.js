@@ -135,8 +135,8 @@ function addWords(page, result) {
 
 function showLegends(page) {
   const name = page.choice.field, { scale } = page;
-  for (const { legend, field } of page.panels) {
-    legend.replaceChildren();
+  for (const { legend, field, lines } of page.panels) {
+    legend.replaceChildren(...lines.map(([name, color]) => Object.assign(node("b", { textContent: name }), { style: `color: rgb(${page.ink(color)})` })));
     legend.classList.toggle("ticked", Boolean(scale && scale.log && field()));
     if (field()) legend.append(say(scale.low, page.unitOf(name)), colorBar(scale, page.unitOf(name)), say(scale.high, page.unitOf(name)),
                                node("span", { className: "faint", textContent: name.replaceAll("_", " ") }));
@@ -162,7 +162,8 @@ function addChoices(page) {
   const fields = addSelect(bar, "colours", [...page.fieldNames.map((name) => [name, name.replaceAll("_", " ")]), ["", "none"]], page.choice.field, set("field"));
   const changes = results.some((result) => result.body && result.body.fields.some((one) => one.values.rows > 1));
   if (changes) addSelect(bar, "from", [["whole", "all frames"], ["frame", "this frame"]], page.choice.range, set("range"));
-  const targets = has("target") ? [["over", "over"], ["beside", "beside"], ["none", "hidden"]] : has("drawing") ? [["none", "hidden"], ["beside", "beside"]] : [];
+  const lines = results.some((result) => (result.curves || []).some((curve) => curve.of)), clouds = results.some((result) => result.clouds && result.clouds.sets.length);
+  const targets = has("target") ? [["over", "over"], ["beside", "beside"], ["none", "hidden"]] : clouds || lines ? [["over", "shown"], ["none", "hidden"]] : has("drawing") ? [["none", "hidden"], ["beside", "beside"]] : [];
   const target = addSelect(bar, "target", targets, page.choice.target, set("target"));
   const arrows = results.some((result) => result.body && result.body.magnetization) ? addSwitch(bar, "magnetisation", page.choice.arrows, set("arrows")) : null;
   const edges = body ? addSwitch(bar, "edges", page.choice.edges, set("edges")) : null;
@@ -176,6 +177,7 @@ function addChoices(page) {
 
 function setTheme(page, theme) {
   document.documentElement.dataset.theme = theme;
+  showLegends(page);
   page.redraw();
 }
 
@@ -209,6 +211,7 @@ async function start() {
   if (page.choice.field && !page.fieldNames.includes(page.choice.field)) page.choice.field = "";
   results.forEach((result) => addPanel(page, result));
   addChoices(page);
+  showLegends(page);
   const scrub = document.getElementById("scrub");
   scrub.addEventListener("input", () => { page.play(false); page.go(Number(scrub.value)); });
   document.getElementById("play").addEventListener("click", () => page.play(!page.playing));
