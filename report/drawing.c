@@ -1,6 +1,6 @@
 /* The drawing of a result, for its report. */
 #include "report/report_private.h"
-#include "spline/drawn.h"
+#include "spline/film.h"
 
 /* The curves of a pen in the order in which they are plotted, mm. */
 static void add_layer(Document *document, const PlotLayer *layer)
@@ -28,6 +28,31 @@ static void add_picture(Document *document, const SplineField *picture)
     document_close(document);
 }
 
+/* How it relaxed: what its pens would have drawn after some iterations, 40 at most. */
+static bool add_film(const ReportPart *part, const Drawn *drawn, Error *err)
+{
+    enum { MOST = 40 };
+    Film film;
+    Document *document = part->document;
+    bool ok = film_read(part->data->result, drawn, &film, err);
+    int count = ok && film.count > MOST ? MOST : ok ? film.count : 0;
+    if (count) document_open(document, "film", '[');
+    for (int k = 0; k < count; k++) {
+        int frame = show_moment(film.count, count, k);
+        Plot plot = film_plot(&film, drawn, frame);
+        document_open(document, NULL, '{');
+        document_number(document, "iteration", film_iteration(&film, frame));
+        document_open(document, "layers", '[');
+        for (int l = 0; l < plot.layer_count; l++) add_layer(document, &plot.layers[l]);
+        document_close(document);
+        document_close(document);
+        spline_plot_clear(&plot);
+    }
+    if (count) document_close(document);
+    film_clear(&film);
+    return ok;
+}
+
 bool report_drawing(const ReportPart *part, Error *err)
 {
     Drawn drawn = {0};
@@ -45,6 +70,7 @@ bool report_drawing(const ReportPart *part, Error *err)
         for (int k = 0; k < drawn.plot.layer_count; k++) add_layer(document, &drawn.plot.layers[k]);
         document_close(document);
         add_picture(document, &drawn.picture);
+        ok = add_film(part, &drawn, err);
         document_close(document);
     }
     drawn_clear(&drawn);

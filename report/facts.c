@@ -1,64 +1,9 @@
-/* Charts, and what a result says in single numbers. */
+/* What a result says in single numbers, and its scene. */
 #include "base/memory.h"
 #include "report/report_private.h"
 #include "view/show_curves.h"
-#include "view/show_motion.h"
-#include "view/show_probes.h"
 #include "view/ticks.h"
 #include <string.h>
-
-enum { PROBE_CHARTS = 3 };
-
-/* ---- Charts ---- */
-
-static void add_axis(Document *document, const char *key, const char *label, const char *unit)
-{
-    document_open(document, key, '{');
-    document_text(document, "label", label);
-    document_text(document, "unit", unit);
-    document_close(document);
-}
-
-static void add_chart(Document *document, const Chart *chart)
-{
-    document_open(document, NULL, '{');
-    add_axis(document, "x", chart->x_label, chart->x_unit);
-    add_axis(document, "y", chart->y_label, chart->y_unit);
-    document_flag(document, "linear", chart->y_axis == CHART_LINEAR);
-    document_open(document, "series", '[');
-    for (int k = 0; k < chart->series_count; k++) {
-        const ChartSeries *series = &chart->series[k];
-        document_open(document, NULL, '{');
-        document_text(document, "name", series->name);
-        report_color(document, "color", colormap_series(chart->first_color + k));
-        if (series->x) document_numbers(document, "x", series->x, (size_t)series->count);
-        document_numbers(document, "y", series->y, (size_t)series->count);
-        document_close(document);
-    }
-    document_close(document);
-    document_close(document);
-}
-
-bool report_charts(const ReportPart *part, Error *err)
-{
-    ShowMotion motion;
-    ShowCurves curves;
-    Chart charts[PROBE_CHARTS + SHOW_MOTION_CHARTS + FRAMING_CHARTS + 2];
-    bool rods = show_curves_has(part->data);
-    if (!show_motion_read(&motion, part->data, err) || (rods && !show_curves_read(&curves, part->data, err)))
-        return false;
-    int count = show_probes_charts(part->data, charts, PROBE_CHARTS);
-    count += show_motion_charts(&motion, charts + count);
-    count += show_history(part->data, &charts[count]);
-    if (rods) count += show_curves_strains(&curves, charts + count);
-    if (rods) count += show_curves_distance(&curves, &charts[count]);
-    document_open(part->document, "charts", '[');
-    for (int k = 0; k < count; k++) add_chart(part->document, &charts[k]);
-    document_close(part->document);
-    return true;
-}
-
-/* ---- Facts ---- */
 
 static void add_fact(Document *document, const char *name, const char *value)
 {

@@ -304,19 +304,46 @@ static void test_targets(void **unused)
     result_close(result);
 }
 
+/* Frames of a sequence are called after what it changes; its energies are a chart. */
+static void test_stages(void **unused)
+{
+    (void)unused;
+    Result *result = run_text(mem_format(
+        "slender: 1\njob: equilibrium\nshell:\n  mesh: {shape: sheet, size: [40 mm, 20 mm], cells: [4, 2]}\n"
+        "  thickness: 1 mm\n  young: 1 MPa\n  poisson: 0.3\n  magnetization: [1.0e+4, 0, 0]\n"
+        "fix: [{group: root, clamp: true}]\n"
+        "sequence: {flux_density: {from: [0, 0, 0], to: [0, 0, 1 mT], count: 3}}\n"));
+    Page page = report(0);
+    assert_non_null(strstr(page.json, "\"labels\":[\"stage 0: 0 T\",\"stage 1: 500 µT\",\"stage 2: 1 mT\"]"));
+    Array energy = read_all(result, "slender/stages/energy/bending");
+    const char *chart = strstr(page.json, "\"y\":{\"label\":\"energy\",\"unit\":\"J\"}");
+    assert_non_null(chart);
+    const char *y = after(strstr(chart, "\"name\":\"bending\""), "y");
+    char *rest;
+    for (int k = 0; k < 3; k++, y = rest) {
+        double is = ((double *)energy.data)[k], got = strtod(y + 1, &rest);
+        assert_true(fabs(got - is) <= 1e-6 * fabs(is));
+    }
+    array_clear(&energy);
+    page_clear(&page);
+    result_close(result);
+}
+
 static void test_drawing(void **unused)
 {
     (void)unused;
-    static const char *const settings[] = {"spline.rounds=0", "spline.iterations=5"};
+    static const char *const settings[] = {"spline.rounds=0", "spline.iterations=5", "output.film=2"};
     SlenderError trouble;
     Error err;
-    Result *result = run_to(slender_scene_read(SOURCE_DIR "/tests/scene_draw.yaml", settings, 2, &trouble),
+    Result *result = run_to(slender_scene_read(SOURCE_DIR "/tests/scene_draw.yaml", settings, 3, &trouble),
                             &trouble, false, SLENDER_NOT_CONVERGED);
     Drawn drawn = {0};
     assert_true(drawn_read(result, &drawn, &err));
     Page page = report(0);
     const PlotLayer *layer = &drawn.plot.layers[0];
-    const char *layers = after(page.json, "layers");
+    const char *layers = after(page.json, "layers"), *film = after(page.json, "film");
+    assert_int_equal((int)number_after(film, "iteration"), 0);
+    assert_int_equal((int)number_after(after(film, "iteration"), "iteration"), 2);
     Unpacked offsets = unpack(&page, layers, "offsets"), points = unpack(&page, layers, "points");
     assert_int_equal(offsets.width, layer->count + 1);
     for (size_t k = 0; k < offsets.width; k++) assert_int_equal((int)offsets.values[k], layer->start[k]);
@@ -382,6 +409,7 @@ int main(void)
                                        cmocka_unit_test_teardown(test_rod, nothing_leaks),
                                        cmocka_unit_test_teardown(test_drawing, nothing_leaks),
                                        cmocka_unit_test_teardown(test_targets, nothing_leaks),
+                                       cmocka_unit_test_teardown(test_stages, nothing_leaks),
                                        cmocka_unit_test_teardown(test_several, nothing_leaks),
                                        cmocka_unit_test_teardown(test_refused, nothing_leaks)};
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -19,7 +19,7 @@ function curveLength(points, first, end) {
 }
 
 function makePaperPanel(result, page) {
-  const { paper, area, layers, picture } = result.drawing;
+  const { paper, area, layers, picture, film = [] } = result.drawing;
   const canvas = document.createElement("canvas"), context = canvas.getContext("2d"), target = pictureCanvas(picture);
   const ends = []; /* [layer][curve] ink up to its end, mm */
   let ink = 0;
@@ -41,8 +41,24 @@ function makePaperPanel(result, page) {
     context.lineWidth = layer.width;
     context.lineCap = context.lineJoin = "round";
     context.beginPath();
-    for (let k = 0; k < last.length && (k ? last[k - 1] : 0) < used; k++) drawCurve(layer.points.data, offsets[k], offsets[k + 1]);
+    for (let k = 0; k + 1 < offsets.length && (k ? last[k - 1] : 0) < used; k++) drawCurve(layer.points.data, offsets[k], offsets[k + 1]);
     context.stroke();
+  }
+
+  /* What is shown of how it relaxed; null: the drawing itself. */
+  function filmAt(at) {
+    return page.choice.shown === "film" ? film[Math.round(at * film.length)] || null : null;
+  }
+
+  function iteration(at) {
+    const frame = filmAt(at);
+    return frame ? frame.iteration : NaN;
+  }
+
+  function label(at) {
+    const frame = filmAt(at);
+    if (frame) return `iteration ${frame.iteration}`;
+    return page.choice.shown === "film" && film.length ? "as drawn" : `${((ink * Math.min(at, 1)) / 1000).toFixed(1)} m of ink`;
   }
 
   function draw(at) {
@@ -59,10 +75,11 @@ function makePaperPanel(result, page) {
       context.fillRect(k * (paper[0] + gap), 0, ...paper);
     }
     context.globalCompositeOperation = "multiply"; /* inks shine through each other */
-    layers.forEach((layer, k) => drawLayer(layer, ends[k], at >= 1 ? Infinity : at * ink));
+    const frame = filmAt(at);
+    (frame ? frame.layers : layers).forEach((layer, k) => drawLayer(layer, frame ? [] : ends[k], frame || at >= 1 ? Infinity : at * ink));
     context.globalCompositeOperation = "source-over";
     if (beside) context.drawImage(target, paper[0] + gap + area[0], area[1], area[2], area[3]);
   }
 
-  return { canvas, draw, readAt: () => "", field: () => null, lines: [], count: 2, times: null, paper: true, label: (at) => `${(ink * Math.min(at, 1) / 1000).toFixed(1)} m of ink` };
+  return { canvas, draw, readAt: () => "", field: () => null, lines: [], count: 2, times: null, paper: true, label, iteration };
 }

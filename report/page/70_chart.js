@@ -91,7 +91,7 @@ function makeChart(chart, title) {
   if (chart.series.length > 1)
     for (const series of [...chart.series].reverse()) {
       svg.append(svgNode("text", { x, y: 15, "text-anchor": "end", style: `fill: ${series.color}` }, series.name));
-      x -= 8 + 6.4 * String(series.name).length;
+      x -= 10 + 7 * String(series.name).length;
     }
   function mark(place) {
     now.setAttribute("visibility", place >= xs[0] && place <= xs[1] ? "visible" : "hidden");

@@ -3,7 +3,7 @@
 /* One report's state. Panels ask it for colours and the camera; it tells them the moment. */
 function makePage(data) {
   const page = { data, camera: { ...CAMERA_START }, renderer: makeRenderer(() => page.redraw()), at: 1, playing: false, panels: [], charts: [],
-                 choice: { field: null, target: "over", range: "whole", arrows: true, edges: true } };
+                 choice: { field: null, target: "over", range: "whole", shown: "ink", arrows: true, edges: true } };
   Object.defineProperty(page, "ratio", { get: () => window.devicePixelRatio || 1 }); /* it changes with the browser's zoom */
   const fields = data.results.flatMap((result) => (result.body ? result.body.fields : []));
   page.fieldNames = [...new Set(fields.map((one) => one.name))];
@@ -61,6 +61,7 @@ function makePage(data) {
     for (const panel of page.panels) panel.draw(page.frameOf(panel));
     for (const { chart, kind, panel } of page.charts) {
       if (kind === "t") chart.mark(page.timed() ? page.time() : NaN);
+      if (kind === "iteration") chart.mark(panel.iteration(page.frameOf(panel)));
       if (kind === "stage") chart.mark(Math.round(page.frameOf(panel)));
     }
     document.getElementById("scrub").value = page.at;
@@ -138,7 +139,7 @@ function showLegends(page) {
   for (const { legend, field, lines } of page.panels) {
     legend.replaceChildren(...lines.map(([name, color]) => Object.assign(node("b", { textContent: name }), { style: `color: rgb(${page.ink(color)})` })));
     legend.classList.toggle("ticked", Boolean(scale && scale.log && field()));
-    if (field()) legend.append(say(scale.low, page.unitOf(name)), colorBar(scale, page.unitOf(name)), say(scale.high, page.unitOf(name)),
+    if (scale && field()) legend.append(say(scale.low, page.unitOf(name)), colorBar(scale, page.unitOf(name)), say(scale.high, page.unitOf(name)),
                                node("span", { className: "faint", textContent: name.replaceAll("_", " ") }));
   }
 }
@@ -165,6 +166,7 @@ function addChoices(page) {
   const lines = results.some((result) => (result.curves || []).some((curve) => curve.of)), clouds = results.some((result) => result.clouds && result.clouds.sets.length);
   const targets = has("target") ? [["over", "over"], ["beside", "beside"], ["none", "hidden"]] : clouds || lines ? [["over", "shown"], ["none", "hidden"]] : has("drawing") ? [["none", "hidden"], ["beside", "beside"]] : [];
   const target = addSelect(bar, "target", targets, page.choice.target, set("target"));
+  if (results.some((result) => result.drawing && result.drawing.film)) addSelect(bar, "shown", [["ink", "stroke by stroke"], ["film", "as it relaxed"]], page.choice.shown, set("shown"));
   const arrows = results.some((result) => result.body && result.body.magnetization) ? addSwitch(bar, "magnetisation", page.choice.arrows, set("arrows")) : null;
   const edges = body ? addSwitch(bar, "edges", page.choice.edges, set("edges")) : null;
   if (results.some((result) => !result.drawing)) addSelect(bar, "view", [["", "free"], ...Object.keys(VIEWS).map((name) => [name, name])], "", (name, select) => { page.look(VIEWS[name]); select.value = ""; });
@@ -192,6 +194,7 @@ function addPrinting(page) {
 function readHash(page) {
   const asked = new URLSearchParams(location.hash.slice(1));
   if (asked.has("field")) page.choice.field = asked.get("field");
+  if (asked.has("shown")) page.choice.shown = asked.get("shown") === "film" ? "film" : "ink";
   if (asked.has("range")) page.choice.range = asked.get("range") === "frame" ? "frame" : "whole";
   if (asked.has("target")) page.choice.target = asked.get("target");
   if (asked.has("view") && VIEWS[asked.get("view")]) Object.assign(page.camera, VIEWS[asked.get("view")]);
