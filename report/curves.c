@@ -7,7 +7,9 @@
 
 /* ---- A motion ---- */
 
-static const MotionInk motion_ink = {{0.835, 0.369, 0, 1}, {0.25, 0.25, 0.27, 1}, 2.6};
+/* As in pictures. */
+static const MotionInk ink_of_bodies = {{0.835, 0.369, 0, 1}, {0.25, 0.25, 0.27, 1}, 2.6};
+static const MotionInk ink_of_rods = {{0.62, 0.62, 0.64, 1}, {0, 0.62, 0.451, 1}, 3};
 
 /* From one line of points on; `grows`: as the motion goes on. */
 static void add_line(Document *document, const MarkLine *line, bool grows)
@@ -37,6 +39,8 @@ static void add_places(Document *document, const ShowMotion *motion, const Marks
 
 /* ---- Rods ---- */
 
+enum { FEW = 20 };
+
 /* Curves of one kind, and where their points begin. */
 typedef struct Strands {
     const char *name;
@@ -48,13 +52,14 @@ typedef struct Strands {
     int cases;
 } Strands;
 
+/* Of many the lines are thinner: so their density is seen. */
 static void add_strands(const ReportPart *part, Strands strands, const double *x, int rows)
 {
     Document *document = part->document;
     document_open(document, NULL, '{');
     document_text(document, "name", strands.name);
     report_color(document, "color", strands.color);
-    document_number(document, "width", strands.width);
+    document_number(document, "width", fmax(1, strands.width * fmin(1, sqrt(FEW / (double)strands.count))));
     if (strands.row) report_rows(part, strands.row, strands.cases);
     document_indices(document, "offsets", strands.offsets, (size_t)strands.count + 1, 1);
     document_packed(document, "points", x,
@@ -143,7 +148,7 @@ bool report_curves(const ReportPart *part, Error *err)
     Document *document = part->document;
     if (part->frame_count == 0) return true;
     if (!show_motion_read(&motion, part->data, err)) return false;
-    Marks marks = show_motion_marks(&motion, NAN, motion_ink);
+    Marks marks = show_motion_marks(&motion, NAN, show_curves_has(part->data) ? ink_of_rods : ink_of_bodies);
     document_open(document, "curves", '[');
     for (int k = 0; k < marks.line_count; k++)
         add_line(document, &marks.lines[k], k >= marks.line_count - motion.followed_count);

@@ -45,12 +45,23 @@ static bool is_told_elsewhere(const char *path, bool rods)
     return begins_with(path, all, 3) || (rods && begins_with(path, of_rods, 6));
 }
 
+/* How much of it there is. */
+static void add_size(const ReportPart *part, const char *name, const char *path)
+{
+    Array array;
+    if (!result_has(part->data->result, path) || !result_read(part->data->result, path, &array, NULL)) return;
+    add_fact(part->document, name, show_text(part->data, "%d", array.dims[0]));
+    array_clear(&array);
+}
+
 static bool add_rods(const ReportPart *part, Error *err)
 {
     ShowCurves curves;
     const ShowFact *facts;
     if (!show_curves_read(&curves, part->data, err)) return false;
     int count = show_curves_facts(&curves, &facts);
+    add_fact(part->document, "strands", show_text(part->data, "%d", curves.strand_count));
+    add_fact(part->document, "nodes", show_text(part->data, "%d", curves.point_count));
     for (int k = 0; k < count; k++)
         add_fact(part->document, facts[k].name ? facts[k].name : "stability", facts[k].value);
     return true;
@@ -67,6 +78,9 @@ bool report_facts(const ReportPart *part, Error *err)
     if (!result_list(result, &paths, &count, err)) return false;
     document_open(part->document, "facts", '[');
     bool ok = !rods || add_rods(part, err);
+    add_size(part, "faces", "slender/faces");
+    add_size(part, "tetrahedra", "slender/cells");
+    if (result_has(result, "slender/faces")) add_size(part, "vertices", "slender/rest");
     for (int k = 0; k < count; k++) {
         const char *name = paths[k] + strlen(group);
         if (strncmp(paths[k], group, strlen(group)) != 0 || is_told_elsewhere(name, rods) ||

@@ -88,6 +88,28 @@ def sheet_from_above():
     check("words", words() == "t = 0 s", words())
 
 
+def colors_of_a_frame():
+    """Of one frame the colours go from its own least to its greatest; logarithms have ticks of powers of ten."""
+    page("sheet", "at=0.5&field=energy_bending")
+    whole = browser.evaluate("document.querySelector('.legend').textContent")
+    page("sheet", "at=0.5&field=energy_bending&range=frame")
+    check("a frame's own range", browser.evaluate("document.querySelector('.legend').textContent") != whole, whole)
+    page("stiff", "at=1&field=young&view=top&edges=0&arrows=0")
+    ticks = browser.evaluate("[...document.querySelectorAll('.legend s')].map((tick) => [tick.textContent, parseFloat(tick.style.left)])")
+    check("powers of ten", [tick[0] for tick in ticks] == ["100 kPa", "1 MPa", "10 MPa", "100 MPa", "1 GPa"], ticks)
+    check("evenly spaced", np.ptp(np.diff([tick[1] for tick in ticks])) < 0.1, ticks)
+
+
+def lines():
+    """A curve's name in the legend hides it."""
+    page("rod", "at=0.5")
+    blue = lambda image: (image[..., 2] > image[..., 0] + 60)[:-90].sum()
+    before = blue(panel())
+    browser.evaluate("[...document.querySelectorAll('.line')].find((button) => button.textContent === 'natural').click()")
+    browser.settle()
+    check("the natural shape is hidden", before > 100 and blue(panel()) == 0, (before, blue(panel())))
+
+
 def sheet_sinks():
     """Seen against its length it reaches down to where its tip is."""
     for frame, begin in ((5, 0.5), (10, 1)):
@@ -232,7 +254,7 @@ def broken():
         check("a broken page says so", "cannot be read" in str(error), error)
 
 
-for part in (sheet_from_above, sheet_sinks, keys, calm, lost, printed, touch, theme, rod, drawing, two):
+for part in (sheet_from_above, colors_of_a_frame, lines, sheet_sinks, keys, calm, lost, printed, touch, theme, rod, drawing, two):
     part()
 check("no errors", not browser.errors, browser.errors)
 broken()

@@ -37,6 +37,16 @@ async function readDocument() {
   return resolve(block, JSON.parse(document.getElementById("document").textContent));
 }
 
+/* The least and the greatest number. */
+function extent(values) {
+  let low = Infinity, high = -Infinity;
+  for (const value of values) {
+    if (value < low) low = value;
+    if (value > high) high = value;
+  }
+  return { low, high };
+}
+
 /* ---- Numbers as people read them ---- */
 
 const PREFIXES = { "-12": "p", "-9": "n", "-6": "\u00b5", "-3": "m", 0: "", 3: "k", 6: "M", 9: "G" };

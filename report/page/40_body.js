@@ -57,15 +57,6 @@ function mapColors(names, part) {
   };
 }
 
-/* The least and the greatest number. */
-function extent(values) {
-  let low = Infinity, high = -Infinity;
-  for (const value of values) {
-    if (value < low) low = value;
-    if (value > high) high = value;
-  }
-  return { low, high };
-}
 
 /* ---- Magnetisation ---- */
 
@@ -137,7 +128,7 @@ function arrowStrokes(arrows, x, ratio) {
 /* Strokes of one ink [r, g, b, a] from points to points, [3 a stroke]. */
 function makeStrokes(from, to, ink, width) {
   const count = from.length / 3, colors = new Uint8Array(4 * count);
-  for (let k = 0; k < count; k++) colors.set(ink, 4 * k);
+  for (let k = 0; k < 4 * count; k++) colors[k] = ink[k % 4];
   return { from: new Float32Array(from), to: new Float32Array(to), colors, widths: new Float32Array(count).fill(width) };
 }
 
@@ -146,14 +137,29 @@ function dotStrokes(points, color, width) {
   return makeStrokes(points, points, [...color, 255], width);
 }
 
-/* Polylines whose points begin at `offsets`, up to point `end`; points that are NaN interrupt them. */
-function lineStrokes(points, offsets, color, width, end = Infinity) {
-  const from = [], to = [];
+/* The points of polylines that begin at `offsets`: pairs [from, to]. Of very many only every second, fourth, .. point and the last
+ * one: strokes much shorter than a pixel take time, and nothing is seen of them. */
+function segmentsOf(offsets) {
+  const most = 150000, count = offsets[offsets.length - 1];
+  let by = 1;
+  while (count / by > most && by < count / offsets.length) by *= 2;
+  const pairs = new Int32Array(2 * count);
+  let at = 0;
   for (let s = 0; s + 1 < offsets.length; s++)
-    for (let k = offsets[s]; k + 1 < offsets[s + 1] && k < end; k++)
-      if (Number.isFinite(points[3 * k] + points[3 * k + 3]))
-        for (let i = 0; i < 3; i++) from.push(points[3 * k + i]), to.push(points[3 * k + 3 + i]);
-  return makeStrokes(from, to, [...color, 255], width);
+    for (let k = offsets[s], last = offsets[s + 1] - 1; k < last; k += by) (pairs[at++] = k), (pairs[at++] = Math.min(k + by, last));
+  return pairs.subarray(0, at);
+}
+
+/* Segments as strokes, up to point `end`; points that are NaN interrupt them. */
+function lineStrokes(points, segments, color, width, end = Infinity) {
+  const from = new Float32Array(1.5 * segments.length), to = new Float32Array(1.5 * segments.length);
+  let count = 0;
+  for (let k = 0; k < segments.length && segments[k] < end; k += 2) {
+    const a = 3 * segments[k], b = 3 * segments[k + 1];
+    if (!Number.isFinite(points[a] + points[b])) continue;
+    for (let i = 0; i < 3; i++, count++) (from[count] = points[a + i]), (to[count] = points[b + i]);
+  }
+  return makeStrokes(from.subarray(0, count), to.subarray(0, count), [...color, 255], width);
 }
 
 /* Points of polylines between points that are NaN, [3 each]. */

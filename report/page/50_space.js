@@ -31,7 +31,7 @@ function makeSpacePanel(result, page) {
   const { body, target, clouds, obstacles = [], curves = [], places = [] } = result, count = result.frames.labels.length;
   const moving = [...(body ? [body.points.data] : []), ...curves.map((curve) => curve.points.data), ...(target ? [target.points.data] : []), ...(clouds ? clouds.sets.map((set) => set.data) : [])];
   const sphere = enclose([...moving, ...nearPoints(obstacles, enclose(moving), count)]), arrows = body && body.magnetization ? prepareArrows(body.magnetization, 260) : null;
-  const edges = body && target ? edgesOf(body.faces.data) : [];
+  const segments = curves.map((curve) => segmentsOf(curve.offsets.data)), edges = body && target ? edgesOf(body.faces.data) : [];
   const canvas = document.createElement("canvas"), context = canvas.getContext("2d");
   let view = null, pointsNow = null;
 
@@ -81,10 +81,11 @@ function makeSpacePanel(result, page) {
   function drawCurves(gl, at) {
     curves.forEach((curve, k) => { /* later ones over those before them */
       if (curve.of && (curve.of[Math.round(at)] < 0 || page.choice.target === "none")) return;
+      if (page.hidden.has(curve.name)) return;
       const offsets = curve.offsets.data, part = count > 1 ? at / (count - 1) : 1;
       const end = curve.grows ? Math.round(part * (offsets[offsets.length - 1] - 1)) : Infinity;
       const points = rowAt(curve.points, at), ink = page.ink(curve.color);
-      gl.drawStrokes(view, lineStrokes(points, offsets, ink, curve.width * page.ratio, end), { raise: 0.01 + 0.002 * k });
+      gl.drawStrokes(view, lineStrokes(points, segments[k], ink, curve.width * page.ratio, end), { raise: 0.01 + 0.002 * k });
       if (curve.of) gl.drawStrokes(view, dotStrokes(lonePoints(points, offsets), ink, 9 * page.ratio), { raise: 0.02 });
     });
     for (const place of places) gl.drawStrokes(view, dotStrokes(place.at, parseColor(place.color), 8 * page.ratio), { raise: 0.02 });

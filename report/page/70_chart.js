@@ -30,7 +30,7 @@ function powerTicks(low, high) {
 /* A range that has a size, about its numbers. */
 function rangeOf(values, log) {
   const finite = values.filter((v) => Number.isFinite(v) && (!log || v > 0));
-  let low = Math.min(...finite), high = Math.max(...finite);
+  const { low, high } = extent(finite);
   if (!finite.length) return [0, 1];
   if (log) return low < high ? [low / 1.15, high * 1.15] : [low / 2, high * 2];
   if (high - low <= 1e-12 * Math.max(Math.abs(low), Math.abs(high))) return [low - (Math.abs(low) || 1) * 0.5, high + (Math.abs(high) || 1) * 0.5];
@@ -40,7 +40,8 @@ function rangeOf(values, log) {
 /* Logarithmic where all numbers are positive and span more than a factor of 100, as in slender picture. */
 function isLog(chart, values) {
   const finite = values.filter(Number.isFinite);
-  return !chart.linear && finite.length > 1 && Math.min(...finite) > 0 && Math.max(...finite) > 100 * Math.min(...finite);
+  const { low, high } = extent(finite);
+  return !chart.linear && finite.length > 1 && low > 0 && high > 100 * low;
 }
 
 function addAxes(svg, chart, xOf, yOf, xs, ys, log) {
@@ -77,7 +78,7 @@ function makeChart(chart, title) {
   const { width, height, left, right, top, bottom } = CHART;
   const values = chart.series.flatMap((s) => s.y.map((y) => (y === null ? NaN : y))), log = isLog(chart, values);
   const places = chart.series.flatMap((s) => s.x || s.y.map((_, k) => k)).filter((x) => x !== null);
-  const ys = rangeOf(values, log), xs = [Math.min(...places), Math.max(...places)];
+  const ys = rangeOf(values, log), { low: first, high: last } = extent(places), xs = [first, last];
   if (!(xs[1] > xs[0])) xs[1] = xs[0] + 1;
   const xOf = (x) => left + ((x - xs[0]) / (xs[1] - xs[0])) * (width - left - right);
   const part = (y) => (log ? Math.log(y / ys[0]) / Math.log(ys[1] / ys[0]) : (y - ys[0]) / (ys[1] - ys[0]));
@@ -94,7 +95,9 @@ function makeChart(chart, title) {
       x -= 10 + 7 * String(series.name).length;
     }
   function mark(place) {
-    now.setAttribute("visibility", place >= xs[0] && place <= xs[1] ? "visible" : "hidden");
+    const within = place >= xs[0] && place <= xs[1];
+    now.setAttribute("visibility", within ? "visible" : "hidden");
+    if (!within) return;
     now.setAttribute("x1", xOf(place));
     now.setAttribute("x2", xOf(place));
   }

@@ -2,12 +2,12 @@
 
 /* One report's state. Panels ask it for colours and the camera; it tells them the moment. */
 function makePage(data) {
-  const page = { data, camera: { ...CAMERA_START }, renderer: makeRenderer(() => page.redraw()), at: 1, playing: false, panels: [], charts: [],
+  const page = { data, camera: { ...CAMERA_START }, renderer: makeRenderer(() => page.redraw()), at: 1, playing: false, panels: [], charts: [], hidden: new Set(),
                  choice: { field: null, target: "over", range: "whole", shown: "ink", arrows: true, edges: true } };
   Object.defineProperty(page, "ratio", { get: () => window.devicePixelRatio || 1 }); /* it changes with the browser's zoom */
   const fields = data.results.flatMap((result) => (result.body ? result.body.fields : []));
   page.fieldNames = [...new Set(fields.map((one) => one.name))];
-  page.greatestFlux = Math.max(...data.results.flatMap((result) => (result.flux || []).map(Math.abs)), 1e-30);
+  page.greatestFlux = Math.max(extent(data.results.flatMap((result) => (result.flux || []).map(Math.abs))).high, 1e-30);
 
   /* One for all results, so that colours can be compared: of all frames, or of the one that is shown. */
   page.scale = null;
@@ -40,8 +40,8 @@ function makePage(data) {
     return k - (panel.times[k] - now) / (panel.times[k] - panel.times[k - 1] || 1);
   };
   page.time = () => {
-    const times = page.times(), first = Math.min(...times);
-    return first + page.at * (Math.max(...times) - first);
+    const { low, high } = extent(page.times());
+    return low + page.at * (high - low);
   };
 
   page.words = () => {
@@ -70,7 +70,7 @@ function makePage(data) {
   page.go = (at) => { page.at = Math.min(Math.max(at, 0), 1); page.redraw(); };
   /* The moments that are frames of some panel, 0..1 in order; of a drawing hundredths of its ink. */
   page.stops = () => {
-    const times = page.timed() ? page.times() : [], first = Math.min(...times), all = Math.max(...times) - first || 1;
+    const times = page.timed() ? page.times() : [], { low: first, high: last } = extent(times), all = last - first || 1;
     const most = Math.max(...page.panels.map((panel) => (panel.paper ? 101 : panel.count)), 2) - 1;
     const stops = times.length ? times.map((t) => (t - first) / all) : Array.from({ length: most + 1 }, (_, k) => k / most);
     return [...new Set(stops)].sort((a, b) => a - b);
@@ -130,18 +130,31 @@ function addPanel(page, result) {
 function addWords(page, result) {
   const many = page.data.results.length > 1, of = many ? ` of ${result.name}` : "", words = document.getElementById("words");
   const rows = result.facts.map(([name, value]) => node("tr", {}, node("th", { textContent: name }), node("td", { textContent: value })));
-  words.append(node("details", { open: !many }, node("summary", { textContent: `facts${of}` }), node("table", {}, ...rows)));
+  if (rows.length) words.append(node("details", { open: !many }, node("summary", { textContent: `facts${of}` }), node("table", {}, ...rows)));
   if (result.scene) words.append(node("details", {}, node("summary", { textContent: `the scene${of}` }), node("pre", { textContent: result.scene })));
 }
 
 function showLegends(page) {
   const name = page.choice.field, { scale } = page;
   for (const { legend, field, lines } of page.panels) {
-    legend.replaceChildren(...lines.map(([name, color]) => Object.assign(node("b", { textContent: name }), { style: `color: rgb(${page.ink(color)})` })));
+    legend.replaceChildren(...lines.map(([name, color]) => lineSwitch(page, name, color)));
     legend.classList.toggle("ticked", Boolean(scale && scale.log && field()));
     if (scale && field()) legend.append(say(scale.low, page.unitOf(name)), colorBar(scale, page.unitOf(name)), say(scale.high, page.unitOf(name)),
                                node("span", { className: "faint", textContent: name.replaceAll("_", " ") }));
   }
+}
+
+/* A curve's name, which hides it and shows it again. */
+function lineSwitch(page, name, color) {
+  const button = node("button", { type: "button", textContent: name, title: "hide or show", className: "line" });
+  button.style.color = `rgb(${page.ink(color)})`;
+  button.setAttribute("aria-pressed", !page.hidden.has(name));
+  button.addEventListener("click", () => {
+    if (!page.hidden.delete(name)) page.hidden.add(name);
+    showLegends(page);
+    page.redraw();
+  });
+  return button;
 }
 
 /* The colours from the least to the greatest, with powers of ten where they are of logarithms. */
