@@ -5,7 +5,9 @@
 #include <math.h>
 #include <string.h>
 
-static const double LOG_SPAN = 1000; /* positive numbers that span more are told by their logarithms */
+/* Positive numbers that span more than the one are told by their logarithms; what spans more than the other is 0 somewhere, but for
+ * rounding. */
+static const double LOG_LEAST = 1e3, LOG_MOST = 1e6;
 
 /* What the page needs of the points: those of faces that are seen, and of the tetrahedra behind them. */
 typedef struct Body {
@@ -132,9 +134,9 @@ static void add_field(const Body *body, const char *name)
         document_open(part->document, NULL, '{');
         document_text(part->document, "name", name);
         document_text(part->document, "unit", unit);
-        document_packed(
-            part->document, "values", rows,
-            (Packed){still ? 1 : count, faces, 1, still ? 16 : 8, low > 0 && high > LOG_SPAN * low});
+        document_packed(part->document, "values", rows,
+                        (Packed){still ? 1 : count, faces, 1, still ? 16 : 8,
+                                 low > 0 && high > LOG_LEAST * low && high < LOG_MOST * low});
         document_close(part->document);
     }
     mem_free(rows);

@@ -56,8 +56,8 @@ const PREFIXED = /^(m|N|T|J|Pa|A\/m|s|Hz|W|N m|V)$/;
 function say(value, unit) {
   if (!Number.isFinite(value)) return "\u2013";
   if (value !== 0 && PREFIXED.test(unit)) {
-    const power = Math.max(-12, Math.min(9, 3 * Math.floor(Math.log10(Math.abs(value)) / 3 + 1e-9)));
-    return `${trim(value / 10 ** power)} ${PREFIXES[power]}${unit}`;
+    const power = 3 * Math.floor(Math.log10(Math.abs(value)) / 3 + 1e-9);
+    if (power in PREFIXES) return `${trim(value / 10 ** power)} ${PREFIXES[power]}${unit}`;
   }
   return `${trim(value)} ${unit}`.trim();
 }
