@@ -11,10 +11,13 @@ static const char usage[] =
     "  -o FILE     default: the first result's name with .html\n"
     "  --frames N  how many of each result's frames are in it, evenly spread, at most; default: as many as\n"
     "              10 MB hold\n"
-    "  One file that any browser shows, without a net: frames to play, to turn and to zoom, colours, targets,\n"
-    "  charts, facts and the scene. Several results are beside each other, at one time and seen from one side.\n"
-    "  In the page: space plays, arrows step, f colours, t target, m magnetisation, e edges, d dark, 0 as at first;\n"
-    "  FILE.html#at=0.5&field=young&target=beside&view=top&theme=dark begins so.";
+    "  One file that any browser shows, without a net: frames to play, to turn and to zoom, colours, "
+    "targets,\n"
+    "  charts, facts and the scene. Several results are beside each other, at one time and seen from one "
+    "side.\n"
+    "  In the page: space plays, arrows step, f colours, t target, m magnetisation, e edges, d dark, 0 as at "
+    "first;\n"
+    "  FILE.html#at=0.5&field=young&target=beside&view=top&theme=dark begins so (docs/report.md).";
 
 /* The page is neither a result that it is made of nor a file of its scene. */
 static RunStatus check_output(const char *result, const char *page, Error *err)
@@ -51,7 +54,8 @@ int verb_report(int argc, char **argv)
         {"output", .letter = 'o', .kind = OPTION_TEXT, .value = &output},
         {"frames", .kind = OPTION_INT, .value = &def.frames, .least = 1, .most = 100000},
     };
-    if (!options_parse_all(argc, argv, usage, options, sizeof options / sizeof *options, &results, &count, &code))
+    if (!options_parse_all(argc, argv, usage, options, sizeof options / sizeof *options, &results, &count,
+                           &code))
         return code;
     Error err;
     char *base = path_without_ending(results[0], ".vtkhdf"),

@@ -270,30 +270,44 @@ static void add_cases(const Body *body)
     if (cases) add_targets(body, names, cases), add_clouds(body, names, cases);
 }
 
+/* Whole numbers [count] at a path, 0: as many as there are; NULL: they are not there. */
+static const int *read_integers(ShowData *data, const char *path, int *count)
+{
+    Array array;
+    if (!result_has(data->result, path) ||
+        !result_read_as(data->result, path, ARRAY_INT32, 1, *count, &array, NULL))
+        return NULL;
+    *count = array.dims[0];
+    return show_keep(data, array);
+}
+
+static bool grow(const int *offset, int count)
+{
+    for (int k = 0; k < count; k++)
+        if (offset[k] < 0 || offset[k + 1] < offset[k]) return false;
+    return true;
+}
+
 /* Named groups of faces, of a solid those of rows of its surface: which of these a face is, is told beside them. */
 static void add_groups(const Body *body)
 {
     ShowData *data = body->part->data;
     Document *document = body->part->document;
-    Array names, dims, offsets, members;
-    Result *result = data->result;
-    if (!result_has(result, "slender/groups/names") ||
-        !result_read_as(result, "slender/groups/names", ARRAY_TEXT, 1, 0, &names, NULL))
+    Array names;
+    int groups = 0, ends, members;
+    const int *dim = read_integers(data, "slender/groups/dim", &groups);
+    const int *offset =
+        dim ? (ends = groups + 1, read_integers(data, "slender/groups/offsets", &ends)) : NULL;
+    if (!offset || !grow(offset, groups)) return;
+    members = offset[groups];
+    const int *member = members ? read_integers(data, "slender/groups/members", &members) : NULL;
+    if (!member || !result_read_as(data->result, "slender/groups/names", ARRAY_TEXT, 1, 0, &names, NULL))
         return;
     char *rest = NULL, *name = strtok_r(show_keep(data, names), "\n", &rest);
-    if (!result_read_as(result, "slender/groups/dim", ARRAY_INT32, 1, 0, &dims, NULL)) return;
-    const int *dim = show_keep(data, dims);
-    if (!result_read_as(result, "slender/groups/offsets", ARRAY_INT32, 1, dims.dims[0] + 1, &offsets, NULL))
-        return;
-    const int *offset = show_keep(data, offsets);
-    if (!result_read_as(result, "slender/groups/members", ARRAY_INT32, 1, offset[dims.dims[0]], &members,
-                        NULL))
-        return;
-    const int *member = show_keep(data, members);
     if (body->mesh.part)
         document_indices(document, "part", body->mesh.part, (size_t)body->mesh.body.face_count, 1);
     document_open(document, "groups", '[');
-    for (int g = 0; name && g < dims.dims[0]; g++, name = strtok_r(NULL, "\n", &rest)) {
+    for (int g = 0; name && g < groups; g++, name = strtok_r(NULL, "\n", &rest)) {
         if (dim[g] != 2) continue;
         document_open(document, NULL, '{');
         document_text(document, "name", name);

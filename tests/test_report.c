@@ -259,6 +259,25 @@ static void test_rod(void **unused)
     result_close(result);
 }
 
+/* The first group of faces has the faces that the result's has. */
+static void check_group(const Page *page, Result *result, const char *name)
+{
+    const char *group = after(page->json, "groups");
+    Unpacked faces = unpack(page, group, "members");
+    Array names = read_all(result, "slender/groups/names"),
+          offsets = read_all(result, "slender/groups/offsets"),
+          members = read_all(result, "slender/groups/members");
+    assert_true(!strncmp(names.data, name, strlen(name)) &&
+                !strncmp(after(group, "name") + 1, name, strlen(name)));
+    assert_int_equal(faces.width, ((int *)offsets.data)[1]);
+    assert_true(faces.width > 0);
+    for (size_t k = 0; k < faces.width; k++) assert_int_equal((int)faces.values[k], ((int *)members.data)[k]);
+    array_clear(&names);
+    array_clear(&offsets);
+    array_clear(&members);
+    mem_free(faces.values);
+}
+
 /* Each case's target is that of its frame, of a shell as of a rod. */
 static void test_targets(void **unused)
 {
@@ -281,6 +300,7 @@ static void test_targets(void **unused)
         array_clear(&own);
     }
     mem_free(points.values);
+    check_group(&page, result, "hub");
     page_clear(&page);
     result_close(result);
     result = run_to(slender_scene_read(SOURCE_DIR "/tests/scene_rod_design.yaml", settings, 1, &trouble),
