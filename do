@@ -14,7 +14,7 @@ root=$(pwd)
 
 packages="gcc cmake make pkg-config libsuitesparse-dev libopenblas-dev libnlopt-dev libmuparser-dev libcairo2-dev
           libyaml-dev libsqlite3-dev libhdf5-dev libwebp-dev libjpeg-dev zlib1g-dev libexpat1-dev fonts-dejavu-core libcmocka-dev"
-tools="clang-format-14 python3-h5py" # of tests that are skipped without
+tools="clang-format-14 python3-h5py chromium" # of tests that are skipped without
 wheel="python3-setuptools python3-wheel python3-numpy"
 
 # Runs a command without a word, unless it fails.

@@ -25,6 +25,7 @@ static const struct {
     {"export", verb_export,
      "CSV of a dataset, OBJ of a frame, SVG or G-code of a drawing, the result of a running job"},
     {"picture", verb_picture, "draw a result: PNG, SVG or PDF"},
+    {"report", verb_report, "a page of HTML of results, to turn, play and share"},
     {"schema", verb_schema, "JSON Schema, or the manual, of scene files"},
     {"mesh", verb_mesh, "write a scene's mesh as OBJ"},
     {"help", verb_help, "say this"},

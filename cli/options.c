@@ -203,6 +203,14 @@ bool options_parse(int argc, char **argv, const char *usage, const Option *optio
     return true;
 }
 
+bool options_parse_all(int argc, char **argv, const char *usage, const Option *options, int count,
+                       char ***arguments, int *argument_count, int *code)
+{
+    if (!take_all(argc, argv, usage, options, count, code)) return false;
+    *arguments = argv + optind, *argument_count = argc - optind;
+    return *argument_count > 0 || refuse(usage, argument_sentence(usage, 0, NULL), code);
+}
+
 /* ---- Settings ---- */
 
 bool settings_put(Settings *settings, const char *key, const char *value)

@@ -35,6 +35,10 @@ typedef struct Option {
 bool options_parse(int argc, char **argv, const char *usage, const Option *options, int count,
                    const char **argument, int *code);
 
+/* The same of a verb that takes one argument or more: *arguments, in argv. */
+bool options_parse_all(int argc, char **argv, const char *usage, const Option *options, int count,
+                       char ***arguments, int *argument_count, int *code);
+
 /* Assignments "key=value" to a scene. */
 enum { SETTINGS_MAX = 64 };
 

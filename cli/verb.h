@@ -11,6 +11,7 @@ int verb_check(int argc, char **argv);
 int verb_info(int argc, char **argv);
 int verb_export(int argc, char **argv);
 int verb_picture(int argc, char **argv);
+int verb_report(int argc, char **argv);
 int verb_schema(int argc, char **argv);
 int verb_mesh(int argc, char **argv);
 

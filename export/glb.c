@@ -2,7 +2,7 @@
 #include "export/body.h"
 #include "export/gltf.h"
 #include "view/show_obstacles.h"
-#include "view/show_rod.h"
+#include "view/show_curves.h"
 #include <ctype.h>
 #include <math.h>
 #include <string.h>
@@ -264,7 +264,7 @@ static bool make(Glb *glb, const ExportDef *def, Bytes *file, Error *err)
 {
     ExportBody body = {0};
     ShowObstacles obstacles;
-    bool rods = show_has_rod(glb->data);
+    bool rods = show_curves_has(glb->data);
     if (rods && def->field) return error_set(err, "--field is of meshes, and the result has rods");
     if (!moments_choose(glb->data, def, &glb->moments, err)) return false;
     if (!(rods ? body_of_rods : body_of_mesh)(glb->data, &glb->moments, &body, err)) return false;

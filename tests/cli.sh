@@ -35,6 +35,8 @@ refuses "one of them" run --resume --force x.yaml
 refuses "--seconds must be a number from 0.04 to 600, and is 'nan'" picture --seconds nan x.vtkhdf
 refuses "--frame must be a whole number from 0, and is '-1'" export --frame -1 x.vtkhdf -o x.obj
 refuses "-o FILE must be given" export x.vtkhdf
+refuses "a RESULT.. must be given" report
+refuses "--frames must be a whole number from 1 to 100000, and is '0'" report x.vtkhdf --frames 0
 expect 3 "$program" run missing.yaml;           says "missing.yaml: cannot be read"
 expect 3 "$program" run "$here/broken/wrong_unit.yaml"; says "must be a number in Pa"
 "$program" version | grep -q MUMPS || { expect 3 "$program" run "$here/broken/mumps.yaml"; says "built without it: cmake -DSLENDER_MUMPS=ON"; }
@@ -193,6 +195,8 @@ for output in beam.run ./beam.run beam.run-wal beam.run-shm beam.run-lock beam.p
     expect 4 "$program" mesh own.yaml -o $output; says "a run's journal"
 done
 expect 4 "$program" picture beam.vtkhdf -o beam.png2.png; says "a run's journal"
+expect 4 "$program" report beam.vtkhdf -o beam.run-wal; says "a run's journal"
+expect 4 "$program" report again.vtkhdf beam.vtkhdf -o ./beam.vtkhdf; says "but it is read here"
 expect 4 "$program" export beam.run -o again.vtkhdf.run; says "exported as .vtkhdf"
 expect 4 "$program" mesh own.yaml -o ./own.yaml; says "but it is read here"
 expect 4 "$program" run own.xdmf --quiet --no-picture; says "but it is read here"
@@ -207,12 +211,15 @@ mkdir aside; (cd aside; expect 4 "$program" export ../star.vtkhdf -o ../star.obj
 expect 2 "$program" export star.vtkhdf -o star.yaml --dataset state/x; says "numbers are exported as .csv"
 expect 2 "$program" export star.vtkhdf -o star.yaml; says "a mesh as .obj"
 grep -q "star.obj" star.yaml || { echo "the scene is written over"; bad=1; }
+expect 4 "$program" report beam.vtkhdf star.vtkhdf -o star.obj; says "the scene is made of it"
 ln -s star.obj star.svg
 expect 4 "$program" picture star.vtkhdf -o star.svg; says "the scene is made of it"
 echo junk > junk.vtkhdf; echo junk > junk.run
 for input in missing.vtkhdf junk.vtkhdf; do # what cannot be read is refused by every verb alike
     expect 3 "$program" info $input; expect 3 "$program" picture $input -o p.png; expect 3 "$program" export $input -o o.obj
+    expect 3 "$program" report beam.vtkhdf $input -o p.html; says "$input"; [ ! -e p.html ] || { echo "a report of what cannot be read"; bad=1; }
 done
+expect 0 "$program" report beam.vtkhdf again.vtkhdf --frames 2; exists beam.html
 for input in missing.run junk.run; do expect 3 "$program" info $input; expect 3 "$program" export $input -o o.vtkhdf; done
 same star.obj keep.obj
 

@@ -9,6 +9,7 @@
 #include "view/show_motion.h"
 #include "view/show_obstacles.h"
 #include "view/show_probes.h"
+#include "view/show_curves.h"
 #include "view/show_rod.h"
 #include "view/ticks.h"
 #include <math.h>
@@ -238,7 +239,7 @@ ShowStatus show_result(const char *result, const char *picture, const ShowDef *d
     ShowData data = {0};
     Show show = {.data = &data, .def = def};
     bool ok = show_data_open(&data, result, def, err);
-    bool drawn = ok && drawn_has(data.result), rod = ok && !drawn && show_has_rod(&data);
+    bool drawn = ok && drawn_has(data.result), rod = ok && !drawn && show_curves_has(&data);
     if ((drawn || rod) && clip_is_given(&def->clip))
         ok = error_set(err, "a plane cuts shells and solids open; %s",
                        drawn ? "a drawing has no inside" : "rods are lines");

@@ -1,15 +1,13 @@
 #include "view/show_rod.h"
 #include "base/memory.h"
-#include "base/vec3.h"
 #include "view/curves_picture.h"
 #include "view/show_cases.h"
-#include "view/show_framings.h"
+#include "view/show_curves.h"
 #include "view/show_holds.h"
 #include "view/show_motion.h"
 #include "view/show_obstacles.h"
 #include "view/show_probes.h"
 #include "view/show_rod_lines.h"
-#include "view/ticks.h"
 #include <math.h>
 #include <string.h>
 
@@ -20,23 +18,12 @@ static const MotionInk motion_ink = {{0.62, 0.62, 0.64, 1}, {0, 0.62, 0.451, 1},
 
 static const double PLACE_DOT = 3; /* its radius, points */
 
-/* One of the states of rest that are shown: of a load case, or the only one. */
-typedef struct RodState {
-    const char *name; /* NULL: the only one */
-    const double (*x)[3], (*target)[3];
-    bool line; /* its target has some */
-} RodState;
-
 /* A page of rods. */
 typedef struct RodPage {
     ShowData *data;
-    int strand_count, point_count;
-    const int *strands; /* [strand_count + 1] first point of each */
-    const double (*input)[3], (*natural)[3], (*x)[3];
-    RodState *states;
-    int state_count;
-    Marks given;     /* of them: what of their targets is no line */
-    CurvesSet *sets; /* owned */
+    ShowCurves curves; /* whose x is of the frame that is shown */
+    Marks given;       /* of them: what of their targets is no line */
+    CurvesSet *sets;   /* owned */
     int set_count;
     RodLines lines;
     Chart charts[CURVES_CHARTS_MAX];
@@ -45,37 +32,7 @@ typedef struct RodPage {
     ShowMotion motion;
 } RodPage;
 
-bool show_has_rod(const ShowData *data)
-{
-    Result *result = data->result;
-    return !result_has(result, "slender/faces") &&
-           (result_has(result, "slender/rod/input") || result_has(result, "slender/rod/x"));
-}
-
 /* ---- Curves ---- */
-
-/* Offsets that begin at 0 and grow. */
-static bool offsets_fit(const Array *array)
-{
-    const int *offsets = array->data;
-    bool fits = array->dims[0] >= 2 && offsets[0] == 0;
-    for (int k = 1; fits && k < array->dims[0]; k++) fits = offsets[k] > offsets[k - 1];
-    return fits;
-}
-
-/* One strand: all points of the curves. */
-static bool read_one_strand(RodPage *page, Error *err)
-{
-    Result *result = page->data->result;
-    Array array;
-    const char *path = result_has(result, "slender/rod/x") ? "slender/rod/x" : "slender/rod/input";
-    if (!result_read_as(result, path, ARRAY_FLOAT64, 2, 3, &array, err)) return false;
-    int *offsets = show_block(page->data, 2, sizeof *offsets);
-    offsets[1] = array.dims[0];
-    page->strands = offsets, page->strand_count = 1;
-    array_clear(&array);
-    return true;
-}
 
 static bool has_place(const double (*place)[3], int point, int count)
 {
@@ -96,66 +53,32 @@ static void add_dots(RodPage *page, const MarkDot *more, int count)
     given->dots = dots, given->dot_count += count;
 }
 
-/* Of a target, what is no line of it: points whose neighbours have no place; and of a case its clouds. */
-static void add_given(RodPage *page, const char *name, RodState *state)
+/* Of a state's target, what is no line of it: points whose neighbours have no place. */
+static void add_alone(RodPage *page, const ShowCurvesState *state)
 {
-    const MarkDot *cloud;
-    int count = page->point_count, alone = 0,
-        dots = show_case_cloud(page->data, name, state->x, count, input_ink, &cloud);
-    if (dots) add_dots(page, cloud, dots);
-    if (!state->target) return;
+    int count = page->curves.point_count, alone = 0;
     MarkDot *places = show_block(page->data, (size_t)count, sizeof *places);
     for (int i = 0; i < count; i++) {
-        if (!has_place(state->target, i, count)) continue;
         bool joined = has_place(state->target, i - 1, count) || has_place(state->target, i + 1, count);
-        state->line |= joined;
-        if (!joined) places[alone++] = (MarkDot){"target", state->target[i], input_ink, PLACE_DOT, false};
+        if (has_place(state->target, i, count) && !joined)
+            places[alone++] = (MarkDot){"target", state->target[i], input_ink, PLACE_DOT, false};
     }
     add_dots(page, places, alone);
 }
 
-/* Of a result without cases the state that it has. */
-static bool read_states(RodPage *page, Error *err)
+/* Of each state its clouds, and what of its target is no line. */
+static void add_given(RodPage *page)
 {
-    ShowCases cases;
-    size_t numbers = 3 * (size_t)page->point_count;
-    if (!show_cases(page->data, &cases, err)) return false;
-    page->states = show_block(page->data, (size_t)cases.count + 1, sizeof *page->states);
-    for (int k = 0; k < cases.count; k++) {
-        RodState *state = &page->states[page->state_count];
-        state->name = cases.count > 1 ? cases.names[k] : NULL;
-        state->x = show_case_dataset(page->data, cases.names[k], "x", numbers);
-        if (!state->x) continue;
-        page->state_count++;
-        if (page->input) continue;
-        state->target = show_case_target(page->data, cases.names[k], state->x, page->point_count);
-        add_given(page, cases.names[k], state);
+    const ShowCurves *curves = &page->curves;
+    for (int k = 0; k < curves->state_count && !curves->input; k++) {
+        const ShowCurvesState *state = &curves->states[k];
+        const MarkDot *cloud;
+        int dots = state->load_case ? show_case_cloud(page->data, state->load_case, state->x,
+                                                      curves->point_count, input_ink, &cloud)
+                                    : 0;
+        if (dots) add_dots(page, cloud, dots);
+        if (state->target) add_alone(page, state);
     }
-    if (page->state_count) return true;
-    page->states[0].x = show_dataset(page->data, "slender/rod/x", ARRAY_FLOAT64, numbers);
-    page->state_count = page->states[0].x != NULL;
-    return true;
-}
-
-static bool read_curves(RodPage *page, Error *err)
-{
-    static const char STRANDS[] = "slender/rod/strands";
-    Array array;
-    if (!result_has(page->data->result, STRANDS)) {
-        if (!read_one_strand(page, err)) return false;
-    } else {
-        if (!result_read_as(page->data->result, STRANDS, ARRAY_INT32, 1, 0, &array, err)) return false;
-        page->strands = show_keep(page->data, array);
-        page->strand_count = array.dims[0] - 1;
-        if (!offsets_fit(&array)) return error_set(err, "%s is not as slender writes it", STRANDS);
-    }
-    page->point_count = page->strands[page->strand_count];
-    size_t numbers = 3 * (size_t)page->point_count;
-    page->input = show_dataset(page->data, "slender/rod/input", ARRAY_FLOAT64, numbers);
-    page->natural = show_dataset(page->data, "slender/rod/natural", ARRAY_FLOAT64, numbers);
-    if (!read_states(page, err)) return false;
-    page->x = page->states[0].x;
-    return page->input || page->x || error_set(err, "the result's curves are not as slender writes them");
 }
 
 static CurvesSet *add_set(RodPage *page, const char *name, const double (*points)[3], Color color)
@@ -163,8 +86,8 @@ static CurvesSet *add_set(RodPage *page, const char *name, const double (*points
     size_t count = (size_t)page->set_count++;
     page->sets = mem_resize(page->sets, count, count + 1, sizeof *page->sets);
     page->sets[count] = (CurvesSet){.name = name,
-                                    .curve_count = page->strand_count,
-                                    .offsets = page->strands,
+                                    .curve_count = page->curves.strand_count,
+                                    .offsets = page->curves.strands,
                                     .points = points,
                                     .color = color,
                                     .width = 1.6};
@@ -172,12 +95,12 @@ static CurvesSet *add_set(RodPage *page, const char *name, const double (*points
 }
 
 /* "target", of one of several cases "target, NAME". */
-static const char *state_words(RodPage *page, const char *word, const RodState *state)
+static const char *state_words(RodPage *page, const char *word, const ShowCurvesState *state)
 {
     return state->name ? show_text(page->data, "%s, %s", word, state->name) : word;
 }
 
-static void add_target(RodPage *page, const RodState *state)
+static void add_target(RodPage *page, const ShowCurvesState *state)
 {
     if (state->target)
         add_set(page, state_words(page, "target", state), state->target, input_ink)->width = 3.4;
@@ -187,7 +110,7 @@ static void add_target(RodPage *page, const RodState *state)
 static CurvesSet *add_simulated(RodPage *page, const char *name, const double (*points)[3])
 {
     CurvesSet *set = add_set(page, name, points, colormap_series(1));
-    if (page->input || page->states[0].target) set->width = 1.2, set->dash = 3;
+    if (page->curves.input || page->curves.states[0].target) set->width = 1.2, set->dash = 3;
     return set;
 }
 
@@ -209,10 +132,10 @@ static bool read_frame(RodPage *page, int frame, const double (**points)[3], Err
     if (!show_check_frame(page->data, frame, err) ||
         !result_read_step(page->data->result, "Points", frame, &array, err))
         return false;
-    bool fits = array.dims[0] >= page->point_count;
+    bool fits = array.dims[0] >= page->curves.point_count;
     if (fits) {
-        double(*x)[3] = show_block(page->data, (size_t)page->point_count, sizeof *x);
-        *points = (const double(*)[3])memcpy(x, array.data, (size_t)page->point_count * sizeof *x);
+        double(*x)[3] = show_block(page->data, (size_t)page->curves.point_count, sizeof *x);
+        *points = (const double(*)[3])memcpy(x, array.data, (size_t)page->curves.point_count * sizeof *x);
     }
     array_clear(&array);
     return fits || error_set(err, "the result's frames have fewer points than its strands");
@@ -220,8 +143,9 @@ static bool read_frame(RodPage *page, int frame, const double (**points)[3], Err
 
 static bool add_frame(RodPage *page, int frame, Error *err)
 {
-    if (!read_frame(page, frame, &page->x, err)) return false;
-    add_simulated(page, show_text(page->data, "simulated, %s", show_frame_name(page->data, frame)), page->x);
+    if (!read_frame(page, frame, &page->curves.x, err)) return false;
+    add_simulated(page, show_text(page->data, "simulated, %s", show_frame_name(page->data, frame)),
+                  page->curves.x);
     add_surroundings(page, frame);
     return true;
 }
@@ -229,7 +153,7 @@ static bool add_frame(RodPage *page, int frame, Error *err)
 /* Moments over each other, later ones darker. */
 static bool add_stills(RodPage *page, int count, Error *err)
 {
-    page->x = NULL;
+    page->curves.x = NULL;
     for (int k = 0; k < count; k++) {
         int frame = show_frame(page->data, k);
         const double(*points)[3];
@@ -258,11 +182,12 @@ static bool add_final(RodPage *page, Error *err)
 {
     int frames = result_step_count(page->data->result);
     bool moves = result_has(page->data->result, "slender/history/time");
-    if (!page->x && moves && frames > 0 && !read_frame(page, frames - 1, &page->x, err)) return false;
-    if (!page->x) return true;
-    if (!page->state_count) add_simulated(page, "simulated", page->x);
-    for (int k = 0; k < page->state_count; k++) {
-        const RodState *state = &page->states[k];
+    if (!page->curves.x && moves && frames > 0 && !read_frame(page, frames - 1, &page->curves.x, err))
+        return false;
+    if (!page->curves.x) return true;
+    if (!page->curves.state_count) add_simulated(page, "simulated", page->curves.x);
+    for (int k = 0; k < page->curves.state_count; k++) {
+        const ShowCurvesState *state = &page->curves.states[k];
         add_simulated(page, state_words(page, "simulated", state), state->x)->color = colormap_series(1 + k);
     }
     add_surroundings(page, -1);
@@ -276,16 +201,17 @@ static bool add_curves(RodPage *page, Error *err)
     const ShowDef *def = page->data->def;
     bool moving = def->seconds > 0, asked = moving || def->stills > 0;
     int count = show_frame_count(page->data);
-    if (!asked && page->strand_count > STRANDS_MANY) count = 0;
+    if (!asked && page->curves.strand_count > STRANDS_MANY) count = 0;
     bool final = count == 0 && def->frame<0, stills = count> 0 && !moving && def->frame < 0;
-    if (page->input) add_set(page, "input", page->input, input_ink)->width = 3.4;
-    for (int k = 0; k < (final ? page->state_count : 1); k++) add_target(page, &page->states[k]);
-    if (page->natural && !stills) add_set(page, "natural", page->natural, colormap_series(0));
+    if (page->curves.input) add_set(page, "input", page->curves.input, input_ink)->width = 3.4;
+    for (int k = 0; k < (final ? page->curves.state_count : 1); k++)
+        add_target(page, &page->curves.states[k]);
+    if (page->curves.natural && !stills) add_set(page, "natural", page->curves.natural, colormap_series(0));
     if (def->frame >= 0) return add_frame(page, def->frame, err);
     if (count == 0) return asked ? show_check_frame(page->data, 0, err) : add_final(page, err);
     if (moving) return add_motion(page, count, err);
     if (!add_stills(page, count, err)) return false;
-    if (page->natural) add_set(page, "natural", page->natural, colormap_series(0))->width = 1;
+    if (page->curves.natural) add_set(page, "natural", page->curves.natural, colormap_series(0))->width = 1;
     return true;
 }
 
@@ -303,77 +229,9 @@ static void frame_obstacles(RodPage *page)
 
 /* ---- Charts ---- */
 
-/* A series over s, interrupted between the strands. values: every `stride`-th number. */
-static ChartSeries make_series(RodPage *page, const char *name, const double *s, const double *values,
-                               int stride)
-{
-    int count = page->point_count + page->strand_count, at = 0;
-    double *x = show_block(page->data, (size_t)count, sizeof *x),
-           *y = show_block(page->data, (size_t)count, sizeof *y);
-    for (int k = 0; k < page->strand_count; k++) {
-        for (int i = page->strands[k]; i < page->strands[k + 1]; i++)
-            x[at] = s[i], y[at++] = values[i * stride];
-        x[at] = s[page->strands[k]], y[at++] = NAN;
-    }
-    return (ChartSeries){.name = name, .count = count, .x = x, .y = y};
-}
-
 static void add_chart(RodPage *page, Chart chart)
 {
     if (page->chart_count < CURVES_CHARTS_MAX) page->charts[page->chart_count++] = chart;
-}
-
-static void add_strains(RodPage *page, const double *s)
-{
-    static const char *const names[] = {"twist", "k1", "k2"};
-    const double *strain =
-        show_dataset(page->data, "slender/rod/natural_strain", ARRAY_FLOAT64, 3 * (size_t)page->point_count);
-    if (!strain) return;
-    page->chart_count = show_framings(page->data, page->strand_count, page->strands, s, strain, page->charts);
-    if (page->chart_count) return;
-    ChartSeries *series = show_block(page->data, 3, sizeof *series);
-    for (int k = 0; k < 3; k++) series[k] = make_series(page, names[k], s, strain + k, 3);
-    add_chart(page, (Chart){.x_label = "s",
-                            .x_unit = "m",
-                            .y_label = "natural strain",
-                            .y_unit = "1/m",
-                            .y_axis = CHART_LINEAR,
-                            .series_count = 3,
-                            .series = series,
-                            .first_color = 2});
-}
-
-/* Has any of the states one? */
-static bool has_target(const RodPage *page)
-{
-    bool has = false;
-    for (int k = 0; k < page->state_count; k++) has |= page->states[k].target != NULL;
-    return has;
-}
-
-/* How far the simulated curve is from the input, or those of the states from their targets. */
-static void add_distance(RodPage *page, const double *s)
-{
-    if (!(page->input || has_target(page)) || !page->x) return;
-    int count = page->input ? 1 : page->state_count;
-    ChartSeries *series = show_block(page->data, (size_t)count, sizeof *series);
-    for (int k = 0; k < count; k++) {
-        const double(*x)[3] = k ? page->states[k].x : page->x,
-              (*to)[3] = page->input ? page->input : page->states[k].target;
-        double *distance = show_block(page->data, (size_t)page->point_count, sizeof *distance);
-        for (int i = 0; i < page->point_count; i++)
-            distance[i] = to ? vec3_length(vec3_sub(vec3_load(x[i]), vec3_load(to[i]))) : NAN;
-        const char *name = page->states[k].name;
-        series[k] = make_series(page, name ? name : "simulated", s, distance, 1);
-    }
-    add_chart(page, (Chart){.x_label = "s",
-                            .x_unit = "m",
-                            .y_label = page->input ? "distance to input" : "distance to target",
-                            .y_unit = "m",
-                            .y_axis = CHART_LINEAR,
-                            .series_count = count,
-                            .series = series,
-                            .first_color = 1});
 }
 
 /* The moments that are shown, in charts over time. */
@@ -401,13 +259,11 @@ static void add_over_time(RodPage *page)
 
 static void add_charts(RodPage *page)
 {
-    const double *s = show_dataset(page->data, "slender/rod/s", ARRAY_FLOAT64, (size_t)page->point_count);
-    bool few = s && page->strand_count <= STRANDS_MANY;
-    Chart history;
-    if (few) add_strains(page, s);
+    Chart chart;
+    page->chart_count = show_curves_strains(&page->curves, page->charts);
     add_over_time(page);
-    if (show_history(page->data, &history)) add_chart(page, history);
-    if (few) add_distance(page, s);
+    if (show_history(page->data, &chart)) add_chart(page, chart);
+    if (show_curves_distance(&page->curves, &chart)) add_chart(page, chart);
 }
 
 /* ---- The page ---- */
@@ -415,7 +271,8 @@ static void add_charts(RodPage *page)
 /* There is one, if it was asked for. */
 static bool check_target(const RodPage *page, Error *err)
 {
-    bool any = page->input || has_target(page) || page->given.dot_count > 0 || page->motion.row_count > 0;
+    bool any = page->curves.input || show_curves_have_target(&page->curves) || page->given.dot_count > 0 ||
+               page->motion.row_count > 0;
     return page->data->def->target == PICTURE_TARGET_AUTO || any ||
            error_set(err, "--target: there is none: no given curve, no place or curve of a motion");
 }
@@ -431,18 +288,19 @@ static bool check_options(const ShowDef *def, Error *err)
 static bool write_page(RodPage *page, const char *result, const char *picture, Error *err)
 {
     const ShowDef *def = page->data->def;
-    if (!check_options(def, err) || !read_curves(page, err) ||
-        !show_motion_read(&page->motion, page->data, err) || !check_target(page, err) ||
+    if (!check_options(def, err) || !show_curves_read(&page->curves, page->data, err)) return false;
+    add_given(page);
+    if (!show_motion_read(&page->motion, page->data, err) || !check_target(page, err) ||
         !show_obstacles_read(&page->obstacles, page->data, err) || !add_curves(page, err))
         return false;
     frame_obstacles(page);
     CurvesScene scene = curves_default();
     const char *slash = strrchr(result, '/');
     scene.title = slash ? slash + 1 : result;
-    page->lines = show_rod_lines(page->data, page->strand_count, page->point_count);
+    page->lines = show_rod_lines(&page->curves);
     scene.lines = page->lines.text, scene.line_count = page->lines.count;
     scene.sets = page->sets, scene.set_count = page->set_count;
-    show_clamps(page->data, page->strand_count, page->strands, &scene);
+    show_clamps(page->data, page->curves.strand_count, page->curves.strands, &scene);
     const double *gravity = show_dataset(page->data, "slender/rod/gravity", ARRAY_FLOAT64, 3);
     if (gravity) memcpy(scene.gravity, gravity, sizeof scene.gravity);
     memcpy(scene.view, def->view, sizeof scene.view);

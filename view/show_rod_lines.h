@@ -1,6 +1,6 @@
 /* show_rod_lines.h - the small print of a rod's page: how the run ended, how stable the rod is, and what was measured. */
 #pragma once
-#include "view/show_data.h"
+#include "view/show_curves.h"
 
 enum { ROD_LINES_MAX = 4 };
 
@@ -9,4 +9,4 @@ typedef struct RodLines {
     const char *text[ROD_LINES_MAX]; /* kept in the data */
 } RodLines;
 
-RodLines show_rod_lines(ShowData *data, int strands, int points);
+RodLines show_rod_lines(const ShowCurves *curves);

@@ -137,6 +137,10 @@ void unit_format(double number, const char *unit, char *text, size_t size)
     }
     UnitScale scale = unit_scale(unit, number);
     double shown = number * scale.factor;
+    if (number != 0 && fabs(shown) < 1e-3) { /* less than the least prefix can say */
+        snprintf(text, size, "%.3g%s%s", number, *unit ? " " : "", unit);
+        return;
+    }
     char digits[TICKS_TEXT];
     int whole = shown == 0 ? 1 : (int)floor(log10(fabs(shown)) + 1e-9) + 1;
     int decimals = whole >= 3 ? 0 : 3 - whole;

@@ -1,0 +1,17 @@
+# Makes a C source of text files: cmake -DOUT=page.c -DHEADER=report/page.h "-DTEXTS=NAME:FILE FILE,NAME:FILE" -P embed.cmake
+# Each NAME becomes a text: its files, one after the other. A literal a line: C limits the length of one.
+set(source "#include \"${HEADER}\"\n")
+string(REPLACE "," ";" texts "${TEXTS}")
+foreach(text ${texts})
+    string(REGEX MATCH "^([a-z_]+):(.*)$" matched "${text}")
+    set(name ${CMAKE_MATCH_1})
+    string(REPLACE " " ";" files "${CMAKE_MATCH_2}")
+    set(bytes "")
+    foreach(file ${files})
+        file(READ ${file} hex HEX)
+        string(APPEND bytes ${hex})
+    endforeach()
+    string(REGEX REPLACE "(..)" "0x\\1," bytes "${bytes}")
+    string(APPEND source "const char ${name}[] = {${bytes}0};\n")
+endforeach()
+file(WRITE ${OUT} "${source}")

@@ -1,0 +1,159 @@
+/* Curves of a result, for its report: rods, and of a motion what was to be followed and how it went. */
+#include "report/report_private.h"
+#include "view/show_curves.h"
+#include "view/show_motion.h"
+#include <math.h>
+#include <string.h>
+
+/* ---- A motion ---- */
+
+/* As in pictures. */
+static const MotionInk ink_of_bodies = {{0.835, 0.369, 0, 1}, {0.25, 0.25, 0.27, 1}, 2.6};
+static const MotionInk ink_of_rods = {{0.62, 0.62, 0.64, 1}, {0, 0.62, 0.451, 1}, 3};
+
+/* From one line of points on; `grows`: as the motion goes on. */
+static void add_line(Document *document, const MarkLine *line, bool grows)
+{
+    int ends[2] = {0, line->count};
+    document_open(document, NULL, '{');
+    document_text(document, "name", line->name);
+    report_color(document, "color", line->color);
+    document_number(document, "width", line->width);
+    document_flag(document, "grows", grows);
+    document_indices(document, "offsets", ends, 2, 1);
+    document_packed(document, "points", line->points[0], (Packed){1, 3 * (size_t)line->count, 3, 16, false});
+    document_close(document);
+}
+
+static void add_places(Document *document, const ShowMotion *motion, const Marks *marks)
+{
+    document_open(document, "places", '[');
+    for (int k = 0; k < marks->dot_count - motion->followed_count; k++) {
+        document_open(document, NULL, '{');
+        report_color(document, "color", marks->dots[k].color);
+        document_numbers(document, "at", marks->dots[k].at, 3);
+        document_close(document);
+    }
+    document_close(document);
+}
+
+/* ---- Rods ---- */
+
+enum { FEW = 20 };
+
+/* Curves of one kind, and where their points begin. */
+typedef struct Strands {
+    const char *name;
+    Color color;
+    double width;
+    int count;
+    const int *offsets; /* [count + 1] */
+    const int *row;     /* [cases] 0 of those whose frames show it, -1 of others; NULL: all do */
+    int cases;
+} Strands;
+
+/* Of many the lines are thinner: so their density is seen. */
+static void add_strands(const ReportPart *part, Strands strands, const double *x, int rows)
+{
+    Document *document = part->document;
+    document_open(document, NULL, '{');
+    document_text(document, "name", strands.name);
+    report_color(document, "color", strands.color);
+    document_number(document, "width", fmax(1, strands.width * fmin(1, sqrt(FEW / (double)strands.count))));
+    if (strands.row) report_rows(part, strands.row, strands.cases);
+    document_indices(document, "offsets", strands.offsets, (size_t)strands.count + 1, 1);
+    document_packed(document, "points", x,
+                    (Packed){(size_t)rows, 3 * (size_t)strands.offsets[strands.count], 3, 16, false});
+    document_close(document);
+}
+
+/* Lines of the frames, one after the other: their points in `rows` frames. */
+static bool add_lines(const ReportPart *part, const int (*lines)[2], Strands strands, int rows, Error *err)
+{
+    int *offsets = show_block(part->data, (size_t)strands.count + 1, sizeof *offsets);
+    for (int k = 0; k < strands.count; k++) offsets[k + 1] = offsets[k] + lines[k][1];
+    strands.offsets = offsets;
+    size_t width = 3 * (size_t)offsets[strands.count];
+    double *x = show_block(part->data, (size_t)rows * width, sizeof *x);
+    for (int k = 0; k < rows; k++) {
+        Array frame;
+        if (!result_read_step(part->data->result, "Points", part->frames[k], &frame, err)) return false;
+        for (int s = 0; s < strands.count; s++) {
+            const int *line = lines[s];
+            if (line[0] < 0 || line[1] < 0 || line[0] + line[1] > frame.dims[0])
+                return array_clear(&frame), error_set(err, "slender/lines is not as slender writes it");
+            memcpy(x + (size_t)k * width + 3 * (size_t)offsets[s],
+                   (const double *)frame.data + 3 * (size_t)line[0], 3 * (size_t)line[1] * sizeof *x);
+        }
+        array_clear(&frame);
+    }
+    add_strands(part, strands, x, rows);
+    return true;
+}
+
+/* Of a design: where each case should be. Its points are those of the strands. */
+static void add_targets(const ReportPart *part, Strands strands)
+{
+    char **names;
+    ShowData *data = part->data;
+    int cases = report_case_names(data, &names), points = strands.offsets[strands.count];
+    for (int c = 0; c < cases; c++) {
+        double(*target)[3] = show_dataset(data, show_text(data, "slender/cases/%s/target", names[c]),
+                                          ARRAY_FLOAT64, 3 * (size_t)points);
+        const double(*x)[3] = show_dataset(data, show_text(data, "slender/cases/%s/x", names[c]),
+                                           ARRAY_FLOAT64, 3 * (size_t)points);
+        if (!target) continue;
+        if (x) show_fill_places(target, x, points);
+        int *row = show_block(data, (size_t)cases, sizeof *row);
+        for (int k = 0; k < cases; k++) row[k] = k == c ? 0 : -1;
+        strands.row = row, strands.cases = cases;
+        add_strands(part, strands, target[0], 1);
+    }
+}
+
+/* The strands of the input or target, over them those of the natural shape and the simulated ones, as far as there are. */
+static bool add_rods(const ReportPart *part, Error *err)
+{
+    ShowCurves curves;
+    Array array;
+    if (!show_curves_has(part->data) || !result_has(part->data->result, "slender/lines")) return true;
+    if (!show_curves_read(&curves, part->data, err) ||
+        !result_read_as(part->data->result, "slender/lines", ARRAY_INT32, 2, 2, &array, err))
+        return false;
+    const int(*lines)[2] = show_keep(part->data, array);
+    int strands = curves.strand_count;
+    if (array.dims[0] < strands) return error_set(err, "slender/lines is not as slender writes it");
+    Strands rod = {.name = "rod", .color = colormap_series(1), .width = 3, .count = strands},
+            input = {.name = "input",
+                     .color = {0.62, 0.62, 0.64, 1},
+                     .width = 5,
+                     .count = strands,
+                     .offsets = curves.strands},
+            natural = {.name = "natural",
+                       .color = colormap_series(0),
+                       .width = 2,
+                       .count = strands,
+                       .offsets = curves.strands};
+    Strands target = input;
+    target.name = "target";
+    if (curves.input) add_strands(part, input, curves.input[0], 1);
+    add_targets(part, target);
+    if (curves.natural) add_strands(part, natural, curves.natural[0], 1);
+    return add_lines(part, lines, rod, part->frame_count, err);
+}
+
+bool report_curves(const ReportPart *part, Error *err)
+{
+    ShowMotion motion;
+    Document *document = part->document;
+    if (part->frame_count == 0) return true;
+    if (!show_motion_read(&motion, part->data, err)) return false;
+    Marks marks = show_motion_marks(&motion, NAN, show_curves_has(part->data) ? ink_of_rods : ink_of_bodies);
+    document_open(document, "curves", '[');
+    for (int k = 0; k < marks.line_count; k++)
+        add_line(document, &marks.lines[k], k >= marks.line_count - motion.followed_count);
+    bool ok = add_rods(part, err);
+    document_close(document);
+    add_places(document, &motion, &marks);
+    return ok;
+}

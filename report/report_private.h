@@ -1,0 +1,45 @@
+/* report_private.h - what the parts of a report share: each adds itself to the object of its result in the document. */
+#pragma once
+#include "report/document.h"
+#include "report/report.h"
+#include "view/show_data.h"
+
+typedef struct ReportPart {
+    Document *document;
+    ShowData *data;
+    ShowDef *show; /* the data's, whose field may be set */
+    int frame_count;
+    const int *frames; /* [frame_count] which of the result's are shown */
+    bool timed;        /* they are moments */
+} ReportPart;
+
+/* A mesh: its frames with the numbers on its faces, targets, how it is magnetised. Adds nothing where there is none. */
+bool report_body(const ReportPart *part, Error *err);
+
+/* Strands of rods, and of motions the curves and places that were to be followed. */
+bool report_curves(const ReportPart *part, Error *err);
+
+/* Obstacles, magnets and coils, and where they are; field and gravity. */
+bool report_surroundings(const ReportPart *part, Error *err);
+
+/* A drawing: its strokes as they are plotted, its pens, what was to be drawn. */
+bool report_drawing(const ReportPart *part, Error *err);
+
+/* Charts of probes, of motions and of designs. */
+bool report_charts(const ReportPart *part, Error *err);
+
+/* Every single number of the result, and the scene's text. */
+bool report_facts(const ReportPart *part, Error *err);
+
+/* "#d55e00" */
+void report_color(Document *document, const char *key, Color color);
+
+/* The names of the load cases, kept in the data, and how many there are. */
+int report_case_names(ShowData *data, char ***names);
+
+/* Of the k-th frame that is shown: the last frames of all are one of each case; of a motion, and of what is before them in
+ * a design, it is the last case's. */
+int report_case_of(const ReportPart *part, int k, int cases);
+
+/* "of": [row of each frame's case], row[cases]: which target of a list a case has, -1: none. */
+void report_rows(const ReportPart *part, const int *row, int cases);

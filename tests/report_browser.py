@@ -1,0 +1,264 @@
+"""What a browser shows of reports: tests/report_browser.sh makes them.    report_browser.py CHROMIUM FOLDER"""
+import json, re, sys
+import h5py
+import numpy as np
+from browser import Browser
+
+program, folder = sys.argv[1:]
+browser = Browser(program, f"{folder}/profile")
+failures = []
+
+
+def check(what, ok, seen=""):
+    if not ok:
+        failures.append(f"{what}: {seen}")
+
+
+def page(name, hash="", **how):
+    browser.open(f"file://{folder}/{name}.html#{hash}", **how)
+
+
+def canvas():
+    """Where the first panel's canvas is, in whole pixels; all pages here have a ratio of 1."""
+    box = browser.evaluate("(() => { const b = document.querySelector('canvas').getBoundingClientRect(); return [b.x, b.y, b.width, b.height]; })()")
+    return [round(v) for v in box]
+
+
+def panel():
+    x, y, width, height = canvas()
+    return browser.shot()[y:y + height, x:x + width]
+
+
+def near(image, color, most=14):
+    return np.abs(image - np.array(color)).max(axis=2) <= most
+
+
+def box_of(mask):
+    rows, columns = np.nonzero(mask.any(axis=1))[0], np.nonzero(mask.any(axis=0))[0]
+    return columns[0], rows[0], columns[-1] + 1, rows[-1] + 1
+
+
+def projection(points, size, right, up):
+    """Pixels of points [frames][n][3], as the page projects what fills it, and its scale."""
+    flat = points.reshape(-1, 3)
+    center = (flat.min(axis=0) + flat.max(axis=0)) / 2
+    scale = 0.47 * min(size) / np.sqrt(((flat - center) ** 2).sum(axis=1).max())
+    d = points - center
+    return np.stack([size[0] / 2 + scale * d @ np.array(right), size[1] / 2 - scale * d @ np.array(up)], axis=-1), scale
+
+
+def frames_of(name, first=None):
+    with h5py.File(f"{folder}/{name}.vtkhdf") as file:
+        steps = file["VTKHDF/Steps/Values"].shape[0]
+        points = file["VTKHDF/Points"][:].astype(float).reshape(steps, -1, 3)
+    return points[:, :first]
+
+
+def colors_of(name, count=33):
+    """Ends of the colormap, as they are lit from straight above."""
+    html = open(f"{folder}/{name}.html").read()
+    maps = json.loads(re.search(r'"sequential":(\[[^]]*\])', html).group(1))
+    light = 0.42 + 0.34 + 0.28 * 0.55
+    return [[int(text[k:k + 2], 16) * light for k in (1, 3, 5)] for text in (maps[0], maps[-1])]
+
+
+def words():
+    return browser.evaluate("document.getElementById('moment').textContent")
+
+
+def at():
+    return float(browser.evaluate("document.getElementById('scrub').value"))
+
+
+# ---- A sheet of two Young's moduli from above, as it lies at first ----
+
+def sheet_from_above():
+    page("sheet", "view=top&at=0&edges=0&arrows=0&field=young")
+    image, (soft, stiff) = panel(), colors_of("sheet")
+    size = image.shape[1], image.shape[0]
+    _, scale = projection(frames_of("sheet"), size, [1, 0, 0], [0, 1, 0])
+    left, right = near(image, soft), near(image, stiff)
+    box = box_of(left | right)
+    check("width of the sheet", abs(box[2] - box[0] - 0.04 * scale) <= 2, (box, 0.04 * scale))
+    check("height of the sheet", abs(box[3] - box[1] - 0.02 * scale) <= 2, (box, 0.02 * scale))
+    half = 0.02 * 0.02 * scale**2
+    check("soft area", abs(left.sum() / half - 1) < 0.02, left.sum() / half)
+    check("stiff area", abs(right.sum() / half - 1) < 0.02, right.sum() / half)
+    check("soft is left", box_of(left)[2] <= box_of(right)[0] + 2, (box_of(left), box_of(right)))
+    check("words", words() == "t = 0 s", words())
+
+
+def colors_of_a_frame():
+    """Of one frame the colours go from its own least to its greatest; logarithms have ticks of powers of ten."""
+    page("sheet", "at=0.5&field=energy_bending")
+    whole = browser.evaluate("document.querySelector('.legend').textContent")
+    page("sheet", "at=0.5&field=energy_bending&range=frame")
+    check("a frame's own range", browser.evaluate("document.querySelector('.legend').textContent") != whole, whole)
+    page("stiff", "at=1&field=young&view=top&edges=0&arrows=0")
+    ticks = browser.evaluate("[...document.querySelectorAll('.legend s')].map((tick) => [tick.textContent, parseFloat(tick.style.left)])")
+    check("powers of ten", [tick[0] for tick in ticks] == ["100 kPa", "1 MPa", "10 MPa", "100 MPa", "1 GPa"], ticks)
+    check("evenly spaced", np.ptp(np.diff([tick[1] for tick in ticks])) < 0.1, ticks)
+
+
+def lines():
+    """A curve's name in the legend hides it."""
+    page("rod", "at=0.5")
+    blue = lambda image: (image[..., 2] > image[..., 0] + 60)[:-90].sum()
+    before = blue(panel())
+    browser.evaluate("[...document.querySelectorAll('.line')].find((button) => button.textContent === 'natural').click()")
+    browser.settle()
+    check("the natural shape is hidden", before > 100 and blue(panel()) == 0, (before, blue(panel())))
+
+
+def sheet_sinks():
+    """Seen against its length it reaches down to where its tip is."""
+    for frame, begin in ((5, 0.5), (10, 1)):
+        page("sheet", f"view=side&at={begin}&edges=0&arrows=0&field=young")
+        image = panel()
+        size = image.shape[1], image.shape[0]
+        places, scale = projection(frames_of("sheet"), size, [0, 1, 0], [0, 0, 1])
+        body = box_of(near(image, image[round(places[frame][:, 1].max()) - 3, round(size[0] / 2)]))
+        check(f"the tip of frame {frame}", abs(body[3] - places[frame][:, 1].max()) <= 2, (body, places[frame][:, 1].max()))
+        check(f"the width of frame {frame}", abs(body[2] - body[0] - 0.02 * scale) <= 2, (body, 0.02 * scale))
+
+
+# ---- How it is used ----
+
+def keys():
+    page("sheet", "at=0")
+    first = panel()
+    browser.key("ArrowRight")
+    check("a step", abs(at() - 0.1) < 1e-9 and words() == "t = 4 ms", (at(), words()))
+    browser.key("End")
+    check("the end", at() == 1 and words() == "t = 40 ms", words())
+    browser.key("Home")
+    check("the beginning again", (panel() == first).all())
+    browser.key(" ")
+    browser.evaluate("new Promise((done) => setTimeout(done, 300))")
+    browser.key(" ")
+    played = at()
+    browser.settle()
+    check("it plays, and stops", 0 < played < 1 and at() == played, (played, at()))
+    browser.key("Home")
+    browser.drag(*[v + 200 for v in canvas()[:2]], 60, 20)
+    check("it turns", np.abs(panel() - first).max(axis=2).mean() > 1)
+    browser.evaluate("document.activeElement.blur()")
+    browser.key("0")
+    check("and back", (panel() == first).all())
+    browser.key("d")
+    ground = browser.shot()[-1, 5]
+    check("dark", ground.max() < 60, ground)
+
+
+def calm():
+    """Who wants less motion gets frames, and nothing in between."""
+    page("sheet", "at=0", reduced_motion="reduce")
+    seen = browser.evaluate("""new Promise((done) => { const seen = []; document.getElementById("play").click();
+        const look = () => { seen.push(Number(document.getElementById("scrub").value)); seen.length < 40 ? requestAnimationFrame(look) : done(seen); };
+        document.getElementById("speed").value = 2; look(); })""")
+    check("whole frames", len(set(seen)) > 1 and all(abs(10 * at - round(10 * at)) < 1e-6 for at in seen), set(seen))
+
+
+def lost():
+    """The graphics card takes its things away and gives them back."""
+    page("sheet", "at=0.5")
+    before = panel()
+    browser.evaluate("""(async () => { const draw = CanvasRenderingContext2D.prototype.drawImage; let canvas;
+        CanvasRenderingContext2D.prototype.drawImage = function (from, ...rest) { canvas = from; return draw.call(this, from, ...rest); };
+        window.dispatchEvent(new Event("beforeprint")); /* draws at once */
+        const gl = canvas.getContext("webgl2"), lose = gl.getExtension("WEBGL_lose_context"), wait = () => new Promise((done) => setTimeout(done, 100));
+        lose.loseContext(); await wait(); window.dispatchEvent(new Event("beforeprint")); await wait(); lose.restoreContext(); await wait(); })()""")
+    browser.settle()
+    check("all is there again", (panel() == before).all())
+
+
+def printed():
+    page("sheet", "theme=dark")
+    check("it prints", len(browser.call("Page.printToPDF", printBackground=True)["data"]) > 20000)
+    browser.settle()
+    check("and is dark again", browser.shot()[-1, 5].max() < 60)
+
+
+def touch():
+    page("sheet", "at=0", width=390, height=800, mobile=True)
+    x, y, width, height = canvas()
+    check("nothing is wider than a phone", browser.evaluate("document.documentElement.scrollWidth") <= 390)
+    before = (panel().max(axis=2) - panel().min(axis=2) > 40).sum()
+    a, b = (x + width / 2, y + height / 2 - 30), (x + width / 2, y + height / 2 + 30)
+    browser.touch([a, b], [(a[0], a[1] - 10), (b[0], b[1] + 10)], [(a[0], a[1] - 30), (b[0], b[1] + 30)])
+    check("two fingers make it larger", (panel().max(axis=2) - panel().min(axis=2) > 40).sum() > 1.5 * before)
+
+
+def theme():
+    page("rod", color_scheme="dark")
+    check("dark where that is preferred", browser.shot()[-1, 5].max() < 60)
+    page("rod", "theme=light", color_scheme="dark")
+    check("light where that is asked for", browser.shot()[-1, 5].min() > 200)
+
+
+# ---- Rods and drawings ----
+
+def rod():
+    points = frames_of("rod", 41)
+    for begin, frame in ((0, 0), (1, -1)):
+        page("rod", f"view=front&at={begin}")
+        image = panel()
+        size = image.shape[1], image.shape[0]
+        places, _ = projection(frames_of("rod"), size, [1, 0, 0], [0, 0, 1])
+        inked = image.max(axis=2) - image.min(axis=2) > 60
+        hits = [inked[round(v) - 1:round(v) + 2, round(u) - 1:round(u) + 2].any() for u, v in places[frame][:41]]
+        check(f"the rod at {begin}", np.mean(hits) > 0.95, np.mean(hits))
+        inked[-90:] = False  # axes and field
+        far = inked & (np.abs(np.indices(inked.shape)[..., None] - places[frame][:41, ::-1].T[:, None, None, :]).max(axis=0).min(axis=2) > 30)
+        check(f"nothing but the rod at {begin}", far.sum() < 200, far.sum())
+
+
+def drawing():
+    with h5py.File(f"{folder}/drawing.vtkhdf") as file:
+        nodes, paper = file["slender/spline/nodes"][:, :2], file["slender/spline/paper"][:]
+        start = file["slender/spline/strokes"][:]
+    inks = []
+    for begin in (1, 0.5):
+        page("drawing", f"target=none&at={begin}", color_scheme="light")
+        image = panel()
+        height, width, _ = image.shape
+        scale = min(width / paper[0], height / paper[1])
+        corner = np.array([width, height]) / 2 - scale * paper / 2
+        dark = 255 - image.min(axis=2)
+        sheet = dark[int(corner[1]) + 2:int(corner[1] + scale * paper[1]) - 2, int(corner[0]) + 2:int(corner[0] + scale * paper[0]) - 2]
+        inks.append(sheet.sum())
+        if begin == 1:
+            hits = [dark[round(v), round(u)] > 100 for u, v in corner + scale * nodes]
+            check("ink at the nodes", np.mean(hits) > 0.98, np.mean(hits))
+            length = sum(np.hypot(*np.diff(nodes[a:b], axis=0).T).sum() for a, b in zip(start, start[1:]))
+            ratio = sheet.mean() / 255 / (0.6e-3 * length / paper.prod())
+            check("as much ink as there is", 0.75 < ratio < 1.05, ratio)
+    check("half of it half way", 0.45 < inks[1] / inks[0] < 0.58, inks)
+
+
+# ---- What goes wrong ----
+
+def two():
+    page("two")
+    check("two panels", browser.evaluate("document.querySelectorAll('canvas').length") == 2)
+    check("one time", words() == "t = 40 ms", words())
+
+
+def broken():
+    html = open(f"{folder}/sheet.html").read()
+    open(f"{folder}/broken.html", "w").write(re.sub(r'(<script id="block" type="text/plain">.{200})[^<]*', r"\1", html))
+    try:
+        page("broken")
+        check("a broken page says so", False)
+    except RuntimeError as error:
+        check("a broken page says so", "cannot be read" in str(error), error)
+
+
+for part in (sheet_from_above, colors_of_a_frame, lines, sheet_sinks, keys, calm, lost, printed, touch, theme, rod, drawing, two):
+    part()
+check("no errors", not browser.errors, browser.errors)
+broken()
+browser.close()
+for failure in failures:
+    print(failure)
+sys.exit(bool(failures))
