@@ -126,21 +126,30 @@ static bool check_tables(const Sweep *sweep, Error *err)
     return ok;
 }
 
-/* What is to be done of these runs, before the first one starts; *todo: those that a scheduler must see. */
-static int check_runs(const Sweep *sweep, const SweepOptions *o, const int *runs, int count, bool *todo)
+/* A run that is not to be done is counted as it ended. */
+static bool check_one(const Sweep *sweep, const SweepOptions *o, int run, Problems *problems,
+                      SweepTally *tally)
+{
+    RunState state;
+    bool right = check_run(sweep, run, o->force, &state, problems),
+         next = right && state_next(&state, o->retry, o->force);
+    if (right && !next) tally_add(tally, state.code);
+    state_clear(&state);
+    return next;
+}
+
+/* Before the first one starts: leaves of these runs those that are to be done. False after printing what is wrong. */
+static bool check_runs(const Sweep *sweep, const SweepOptions *o, int *runs, int *count, SweepTally *tally)
 {
     Problems problems = {0};
-    for (int k = 0; k < count; k++) {
-        RunState state;
-        bool right = check_run(sweep, runs[k], o->force, &state, &problems);
-        bool failed = state_is_failed(&state);
-        todo[k] = right && (failed ? o->retry || o->force : state.record != RECORD_FINISHED);
-        state_clear(&state);
-    }
+    int left = 0;
+    for (int k = 0; k < *count; k++)
+        if (check_one(sweep, o, runs[k], &problems, tally)) runs[left++] = runs[k];
+    *count = left;
     print_problems(&problems);
-    int code = problems.count ? RUN_REFUSED : RUN_DONE;
+    bool ok = problems.count == 0;
     problems_clear(&problems);
-    return code;
+    return ok;
 }
 
 /* ---- What can be done ---- */
@@ -188,39 +197,43 @@ static int code_of(const SweepTally *t)
     return t->failed || t->not_converged ? RUN_NOT_CONVERGED : t->held ? SWEEP_HELD : RUN_DONE;
 }
 
-static int run_all(const Sweep *sweep, const SweepOptions *o, const int *runs, int count, const Host *host)
+static int run_all(const Sweep *sweep, const SweepOptions *o, const int *runs, int count, SweepTally *t,
+                   const Host *host)
 {
     Error err;
-    SweepTally t;
     SweepWork work = {.sweep = sweep,
                       .host = host,
                       .jobs = o->jobs < count ? o->jobs : count,
                       .threads = o->threads,
                       .retry = o->retry,
                       .force = o->force};
-    if (!work_run(&work, runs, count, &t, &err)) return verb_fail(RUN_CANNOT_WRITE, err.text);
-    if (o->index) return t.held ? SWEEP_HELD : t.interrupted ? RUN_INTERRUPTED : t.code;
-    host_say(host, "%d runs: %d done, %d did not converge, %d failed, %d interrupted, %d under way elsewhere",
-             count, t.converged, t.not_converged, t.failed, t.interrupted, t.held);
-    if (t.interrupted) host_say(host, "interrupted; all is saved: the same command goes on");
-    int table = collect(sweep, host);
-    return table ? table : code_of(&t);
+    if (count && !work_run(&work, runs, count, t, &err)) return verb_fail(RUN_CANNOT_WRITE, err.text);
+    host_say(host,
+             "%d done, %d did not converge, %d failed, %d interrupted or not begun, %d under way elsewhere",
+             t->converged, t->not_converged, t->failed, t->interrupted, t->held);
+    if (t->interrupted) host_say(host, "all is saved: the same command goes on");
+    int table = o->index ? RUN_DONE : collect(sweep, host);
+    return table ? table : code_of(t);
 }
 
-static int submit(const Sweep *sweep, const SweepOptions *o, const bool *todo)
+static int submit(const Sweep *sweep, const SweepOptions *o, const int *runs, int count)
 {
     Error err;
     int submitted, waiting;
+    bool *todo = mem_alloc((size_t)sweep->run_count, sizeof *todo);
+    for (int k = 0; k < count; k++) todo[runs[k]] = true;
     SlurmDef def = {.sweep = sweep, .options = o->sbatch, .retry = o->retry, .force = o->force};
-    if (!slurm_submit(&def, todo, &submitted, &waiting, &err)) return verb_fail(RUN_CANNOT_WRITE, err.text);
-    say(stdout, "%d runs submitted, %d are with Slurm already, %d need nothing", submitted, waiting,
-        sweep->run_count - submitted - waiting);
+    bool ok = slurm_submit(&def, todo, &submitted, &waiting, &err);
+    mem_free(todo);
+    if (!ok) return verb_fail(RUN_CANNOT_WRITE, err.text);
+    say(stdout, "%d runs submitted, %d are with Slurm already", submitted, waiting);
     return RUN_DONE;
 }
 
 static int do_runs(const Sweep *sweep, const SweepOptions *o)
 {
     Error err;
+    SweepTally tally = {0};
     Progress progress = progress_start(o->quiet ? PROGRESS_QUIET : PROGRESS_NORMAL);
     Host host = progress_host(&progress);
     if (o->index > sweep->run_count)
@@ -228,12 +241,11 @@ static int do_runs(const Sweep *sweep, const SweepOptions *o)
     if (!o->force && !check_tables(sweep, &err)) return verb_fail(RUN_CANNOT_WRITE, err.text);
     if (o->collect) return collect(sweep, &host);
     int count = o->index ? 1 : sweep->run_count, *runs = mem_alloc((size_t)count, sizeof *runs);
-    bool *todo = mem_alloc((size_t)count, sizeof *todo);
     for (int k = 0; k < count; k++) runs[k] = o->index ? o->index - 1 : k;
-    int code = check_runs(sweep, o, runs, count, todo);
-    if (code == RUN_DONE) code = o->slurm ? submit(sweep, o, todo) : run_all(sweep, o, runs, count, &host);
+    int code = !check_runs(sweep, o, runs, &count, &tally) ? RUN_REFUSED
+               : o->slurm                                  ? submit(sweep, o, runs, count)
+                                                           : run_all(sweep, o, runs, count, &tally, &host);
     mem_free(runs);
-    mem_free(todo);
     return code;
 }
 

@@ -34,12 +34,9 @@ static bool is_number(const char *text)
 
 bool column_is_number(const Column *column, int rows)
 {
-    bool any = false;
-    for (int r = 0; r < rows; r++) {
+    for (int r = 0; r < rows; r++)
         if (column->cells[r] && !is_number(column->cells[r])) return false;
-        any = any || column->cells[r];
-    }
-    return any;
+    return true;
 }
 
 /* "tip.x" or "steps[4]". */

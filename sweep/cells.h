@@ -19,7 +19,7 @@ typedef struct Columns {
 Column *columns_add(Columns *columns, char *name);
 void columns_clear(Columns *columns);
 
-/* Is each cell that is there a number, and one there? */
+/* Is each cell that is there a number? */
 bool column_is_number(const Column *column, int rows);
 
 /* What a run has under a path, up to CELLS_WIDTH_MAX texts. */

@@ -54,6 +54,15 @@ bool state_is_failed(const RunState *state)
     return state->code > RUN_NOT_CONVERGED && state->record != RECORD_OTHER;
 }
 
+const char *state_next(const RunState *state, bool retry, bool force)
+{
+    bool failed = state_is_failed(state);
+    if (state->record == RECORD_OTHER || (failed && force)) return force ? "--force" : NULL;
+    if (failed && !retry) return NULL;
+    if (state->record == RECORD_FINISHED && !failed) return state->code < 0 ? "--resume" : NULL;
+    return state->record == RECORD_UNFINISHED ? "--resume" : "--quiet";
+}
+
 static char *result_word(const Sweep *sweep, int run)
 {
     Array status;

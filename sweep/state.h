@@ -19,6 +19,11 @@ void state_clear(RunState *state);
 
 bool state_is_failed(const RunState *state);
 
+/* The option with which `slender run` is to do what there is to do; NULL: nothing. `retry`: go on with what has failed;
+ * `force`: begin that anew, and what is of another scene. A result whose end nobody saw may lack the files beside it: it is
+ * gone through again, which takes no time. */
+const char *state_next(const RunState *state, bool retry, bool force);
+
 /* "converged", "max_iterations", .. of a result; else "absent", "interrupted", "running", "failed: 3", "changed". The caller
  * frees. */
 char *state_word(const RunState *state, const Sweep *sweep, int run);

@@ -5,6 +5,7 @@
 #include "sweep/state.h"
 #include <errno.h>
 #include <signal.h>
+#include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -26,32 +27,25 @@ typedef struct Working {
     Error *err;
 } Working;
 
+void tally_add(SweepTally *tally, int code)
+{
+    if (code == RUN_DONE)
+        tally->converged++;
+    else if (code == RUN_NOT_CONVERGED)
+        tally->not_converged++;
+    else if (code == RUN_INTERRUPTED)
+        tally->interrupted++;
+    else
+        tally->failed++;
+}
+
 static void count(Working *w, int run, int code, const char *what)
 {
-    SweepTally *t = w->tally;
-    t->code = code;
-    *(code == RUN_DONE            ? &t->converged
-      : code == RUN_NOT_CONVERGED ? &t->not_converged
-      : code == RUN_INTERRUPTED   ? &t->interrupted
-                                  : &t->failed) += 1;
+    tally_add(w->tally, code);
     host_step(w->work->host, ++w->done, w->total, "run %d %s", run + 1, what);
 }
 
 /* ---- The start of a run ---- */
-
-/* How `slender run` is to begin; NULL: nothing is to be computed, and *code is what it has ended with. */
-static const char *begin_mode(const SweepWork *work, const RunState *state, int *code)
-{
-    bool failed = state_is_failed(state), other = state->record == RECORD_OTHER;
-    *code = other ? RUN_REFUSED : state->code;
-    if (other || (failed && work->force)) return work->force ? "--force" : NULL;
-    if (failed && !work->retry) return NULL;
-    if (state->record == RECORD_FINISHED && !failed) {
-        if (*code < 0) *code = RUN_DONE; /* nobody saw its end */
-        return NULL;
-    }
-    return state->record == RECORD_UNFINISHED ? "--resume" : "--quiet";
-}
 
 static int spawn(const SweepWork *work, int run, const char *mode, int lock, pid_t *process)
 {
@@ -73,27 +67,36 @@ static int spawn(const SweepWork *work, int run, const char *mode, int lock, pid
     return failed;
 }
 
-/* False where no process can be made. */
-static bool start_locked(Working *w, Task *task)
+/* The option to begin it with; NULL: another process has done it meanwhile, with *code. */
+static const char *next_of(const SweepWork *work, int run, int *code)
 {
     YamlFile *file;
     Scene scene;
-    int code = RUN_REFUSED;
     const char *mode = NULL;
-    if (sweep_load(w->work->sweep, task->run, &file, &scene)) {
-        RunState state = state_read(w->work->sweep, task->run, &scene);
-        mode = begin_mode(w->work, &state, &code);
+    *code = RUN_REFUSED;
+    if (sweep_load(work->sweep, run, &file, &scene)) {
+        RunState state = state_read(work->sweep, run, &scene);
+        mode = state_next(&state, work->retry, work->force);
+        if (state.record != RECORD_OTHER) *code = state.code;
         state_clear(&state);
     }
     yaml_clear(scene_table(), &scene);
     yaml_destroy(file);
-    int failed = 0;
+    return mode;
+}
+
+/* False where no process can be made. */
+static bool start_locked(Working *w, Task *task)
+{
+    int code, failed = 0;
+    const char *mode = next_of(w->work, task->run, &code);
     if (mode) {
         state_put_begin(w->work->sweep, task->run);
         failed = spawn(w->work, task->run, mode, task->lock, &task->process);
+    } else {
+        count(w, task->run, code, "was done elsewhere");
     }
     if (mode && !failed) return w->active++, true;
-    if (!mode) count(w, task->run, code, code > RUN_NOT_CONVERGED ? "failed before" : "is there");
     close(task->lock);
     task->run = -1;
     return !failed || error_set(w->err, "no process can be started: %s", strerror(failed));
@@ -139,7 +142,10 @@ static void finish(Working *w, Task *task, int status)
     char said[400] = "", *name = sweep_run_name(w->work->sweep, task->run), *log = mem_format("%s.log", name);
     Error unwritten;
     bool failed = code > RUN_NOT_CONVERGED && code != RUN_INTERRUPTED;
-    if (failed) program_last_line(log, said, sizeof said);
+    if (WIFSIGNALED(status))
+        snprintf(said, sizeof said, "ended by signal %d, %s", WTERMSIG(status), strsignal(WTERMSIG(status)));
+    else if (failed)
+        program_last_line(log, said, sizeof said);
     if (code != RUN_INTERRUPTED && !state_put_end(w->work->sweep, task->run, code, said, &unwritten))
         host_warn(w->work->host, "%s", unwritten.text);
     say_end(w, task->run, code, said);
@@ -174,7 +180,6 @@ static void stop(Working *w)
 
 bool work_run(const SweepWork *work, const int *runs, int total, SweepTally *tally, Error *err)
 {
-    *tally = (SweepTally){0};
     if (mkdir(work->sweep->name, 0777) != 0 && errno != EEXIST)
         return error_set(err, "%s: cannot be made: %s", work->sweep->name, strerror(errno));
     Working w = {.work = work, .total = total, .tally = tally, .err = err};
@@ -188,7 +193,7 @@ bool work_run(const SweepWork *work, const int *runs, int total, SweepTally *tal
         else if (w.active)
             wait_for_some(&w);
     }
-    tally->interrupted += w.stopping ? total - w.done - tally->interrupted : 0;
+    tally->interrupted += total - w.done; /* those that were not begun */
     mem_free(w.tasks);
     return ok;
 }

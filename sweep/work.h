@@ -9,14 +9,16 @@ typedef struct SweepWork {
     const Sweep *sweep;
     const Host *host;
     int jobs, threads; /* side by side, of each */
-    bool retry; /* go on with what has failed                                                         */
-    bool force; /* begin that anew, and what is of another scene                                      */
+    bool retry, force; /* state_next */
 } SweepWork;
 
 typedef struct SweepTally {
-    int converged, not_converged, failed, interrupted, held, code; /* code: of the run that ended last */
+    int converged, not_converged, failed, interrupted, held;
 } SweepTally;
 
-/* Returns when all of them are done, or the host has stopped it and all is saved. False and a sentence where no run can be
+/* Counts a run that has ended with that code. */
+void tally_add(SweepTally *tally, int code);
+
+/* Does these runs, and counts them: returns when all are done, or the host has stopped it and all is saved. False and a sentence where no run can be
  * started at all. */
 bool work_run(const SweepWork *work, const int *runs, int count, SweepTally *tally, Error *err);
