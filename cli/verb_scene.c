@@ -3,19 +3,21 @@
 #include "cli/verb.h"
 #include "io/path.h"
 #include "job/outputs.h"
+#include "sweep/sweep.h"
 #include <stdio.h>
 
 int verb_schema(int argc, char **argv)
 {
     static const char usage[] =
-        "schema [--manual]\n  JSON Schema of scene files for editors; with --manual the "
-        "manual of all keys (docs/scene.md)";
-    bool manual = false;
+        "schema [--manual] [--sweep]\n  JSON Schema of scene files for editors; with --manual the "
+        "manual of all keys (docs/scene.md); with --sweep those of sweeps";
+    bool manual = false, sweep = false;
     int code;
-    const Option options[] = {{"manual", .value = &manual}};
-    if (!options_parse(argc, argv, usage, options, 1, NULL, &code)) return code;
-    char *text =
-        manual ? yaml_manual(scene_table(), "Scene files") : yaml_schema(scene_table(), "slender scene");
+    const Option options[] = {{"manual", .value = &manual}, {"sweep", .value = &sweep}};
+    if (!options_parse(argc, argv, usage, options, 2, NULL, &code)) return code;
+    const YamlTable *table = sweep ? &sweep_table : scene_table();
+    char *text = manual ? yaml_manual(table, sweep ? "Sweeps" : "Scene files")
+                        : yaml_schema(table, sweep ? "slender sweep" : "slender scene");
     fputs(text, stdout);
     mem_free(text);
     return RUN_DONE;

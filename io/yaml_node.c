@@ -74,8 +74,9 @@ static bool is_plain(const char *text)
 {
     static const char marks[] = " ._+-*/^()";
     size_t length = strlen(text);
-    bool plain = length > 0 && (isalnum((unsigned char)*text) || strchr("-+./", *text)) &&
-                 text[length - 1] != ' ' && strcmp(text, "-");
+    const char *first =
+        text + (*text && strchr("-+./", *text) != NULL); /* no mark of YAML's, as "- x" and "---" */
+    bool plain = isalnum((unsigned char)*first) && text[length - 1] != ' ';
     for (const char *c = text; plain && *c; c++) plain = isalnum((unsigned char)*c) || strchr(marks, *c);
     return plain;
 }

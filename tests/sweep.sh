@@ -44,11 +44,11 @@ sed 's/equilibrium/design/' strip.yaml > seeded.yaml
 printf 'design: {unknowns: {young: {noise: 0.2 MPa}}, objectives: [{height: 1}], iterations: 0}\n' >> seeded.yaml
 sweep seeds 'vary: {shell.thickness: [1 mm, 2 mm]}
 seeds: 3
-best: history/objective'
+best: {of: final/objective, least: true}'
 sed -i 's/strip.yaml/seeded.yaml/' seeds.yaml
 expect 0 "$program" sweep seeds.yaml --quiet
 is seeds "$(column design.seed seeds.csv)" "1 2 3 1 2 3"
-is "six starts" "$(column history/objective seeds.csv | tr ' ' '\n' | sort -u | wc -l)" 6
+is "six starts" "$(column final/objective seeds.csv | tr ' ' '\n' | sort -u | wc -l)" 6
 
 # ---- What has finished is kept; another sweep's results are refused; a run more is one run more ----
 touch -d 2001-01-01 zip/000*.vtkhdf
