@@ -90,7 +90,6 @@ static bool parse(int argc, char **argv, SweepOptions *o, int *code)
     }
     if (o->index) o->jobs = 1;
     if (!o->jobs) o->jobs = processors();
-    if (!o->threads) o->threads = processors() / o->jobs > 1 ? processors() / o->jobs : 1;
     return true;
 }
 
@@ -201,10 +200,13 @@ static int run_all(const Sweep *sweep, const SweepOptions *o, const int *runs, i
                    const Host *host)
 {
     Error err;
+    int jobs = o->jobs < count ? o->jobs : count, share = count ? processors() / jobs : 1;
     SweepWork work = {.sweep = sweep,
                       .host = host,
-                      .jobs = o->jobs < count ? o->jobs : count,
-                      .threads = o->threads,
+                      .jobs = jobs,
+                      .threads = o->threads  ? o->threads
+                                 : share > 1 ? share
+                                             : 1,
                       .retry = o->retry,
                       .force = o->force};
     if (count && !work_run(&work, runs, count, t, &err)) return verb_fail(RUN_CANNOT_WRITE, err.text);

@@ -1,5 +1,6 @@
 #include "sweep/check.h"
 #include "base/memory.h"
+#include "job/outputs.h"
 #include "model/model.h"
 #include <string.h>
 
@@ -46,6 +47,22 @@ static void add_errors(const Sweep *sweep, int run, const YamlFile *file, Proble
     }
 }
 
+/* The tables are none of the files that the scene is made of. */
+static bool check_tables(const Sweep *sweep, const Scene *scene, Problems *problems)
+{
+    static const char *const endings[] = {".csv", ".h5"};
+    bool ok = true;
+    for (size_t k = 0; k < sizeof endings / sizeof *endings; k++) {
+        Error err;
+        char *table = mem_format("%s%s", sweep->name, endings[k]);
+        bool free = outputs_check_source(scene, sweep->scene, table, &err);
+        if (!free) add(problems, mem_text(err.text));
+        ok = ok && free;
+        mem_free(table);
+    }
+    return ok;
+}
+
 /* Will nothing be computed? */
 static bool is_settled(const RunState *state)
 {
@@ -67,6 +84,7 @@ bool check_run(const Sweep *sweep, int run, bool force, RunState *state, Problem
         ok = model != NULL;
         model_destroy(model);
     }
+    ok = ok && check_tables(sweep, &scene, problems);
     add_errors(sweep, run, file, problems);
     yaml_clear(scene_table(), &scene);
     yaml_destroy(file);

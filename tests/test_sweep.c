@@ -1,8 +1,10 @@
 /* The table of a sweep's keys, and what is read through it: free keys beside others, values of any kind. */
 #include "base/memory.h"
 #include "sweep/cells.h"
+#include "sweep/check.h"
+#include "sweep/lock.h"
 #include "sweep/runs_file.h"
-#include "sweep/sweep.h"
+#include "sweep/table.h"
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -10,6 +12,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 #include <cmocka.h>
 
@@ -137,6 +140,96 @@ static void test_runs_file(void **state)
     unlink("test_sweep.csv");
 }
 
+/* Another open file is another holder, in one process, too. */
+static void test_lock(void **state)
+{
+    (void)state;
+    Error err;
+    bool held;
+    assert_false(lock_is_held("test_sweep.lock"));
+    int first = lock_take("test_sweep.lock", &held, &err);
+    assert_true(first >= 0 && !held);
+    assert_true(lock_is_held("test_sweep.lock"));
+    assert_true(lock_take("test_sweep.lock", &held, &err) < 0 && held);
+    close(first);
+    assert_false(lock_is_held("test_sweep.lock"));
+    assert_true(lock_take("no/such/folder/lock", &held, &err) < 0 && !held);
+    unlink("test_sweep.lock");
+}
+
+static void test_next(void **state)
+{
+    (void)state;
+    static const struct {
+        RecordState record;
+        int code;
+        const char *usual, *retry, *force;
+    } rows[] = {
+        {RECORD_ABSENT, -1, "--quiet", "--quiet", "--quiet"},
+        {RECORD_ABSENT, 3, NULL, "--quiet", "--force"},
+        {RECORD_UNFINISHED, -1, "--resume", "--resume", "--resume"},
+        {RECORD_UNFINISHED, 137, NULL, "--resume", "--force"},
+        {RECORD_FINISHED, 0, NULL, NULL, NULL},
+        {RECORD_FINISHED, 1, NULL, NULL, NULL},
+        {RECORD_FINISHED, 4, NULL, "--quiet", "--force"},
+        {RECORD_FINISHED, -1, "--resume", "--resume", "--resume"},
+        {RECORD_OTHER, 0, NULL, NULL, "--force"},
+    };
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        RunState at = {.record = rows[k].record, .code = rows[k].code};
+        const char *next[] = {state_next(&at, false, false), state_next(&at, true, false),
+                              state_next(&at, false, true)},
+                   *wanted[] = {rows[k].usual, rows[k].retry, rows[k].force};
+        for (int i = 0; i < 3; i++)
+            if ((next[i] == NULL) != (wanted[i] == NULL) || (next[i] && strcmp(next[i], wanted[i])))
+                fail_msg("row %zu, %d: %s", k, i, next[i] ? next[i] : "nothing");
+    }
+}
+
+/* Of runs that are not there; a table that the scene is made of is refused. */
+static void test_absent(void **state)
+{
+    (void)state;
+    static const char text[] =
+        "sweep: 1\nscene: " SOURCE_DIR "/scenes/hexagram_motion.yaml\nvary: {shell.thickness: [1 mm, "
+        "2 Q]}\nbest: {of: final/objective}\n";
+    Sweep sweep;
+    Error err;
+    Problems problems = {0};
+    char *report, line[200];
+    int best;
+    write_file("test_absent.yaml", text);
+    if (!sweep_read("test_absent.yaml", NULL, &sweep, &report)) fail_msg("%s", report);
+    for (int r = 0; r < 2; r++) {
+        RunState at;
+        assert_true(check_run(&sweep, r, false, &at, &problems) == (r == 0));
+        state_clear(&at);
+    }
+    assert_int_equal(problems.count, 1);
+    assert_non_null(
+        strstr(problems.sentences[0], "test_absent.yaml:3:32: shell.thickness.value must be a number in m"));
+    problems_clear(&problems);
+    Host host = {0};
+    assert_int_equal(mkdir(sweep.name, 0777), 0);
+    if (!table_collect(&sweep, &host, &best, &err)) fail_msg("%s", err.text);
+    assert_int_equal(best, -1);
+    FILE *file = fopen("test_absent.csv", "r");
+    const char *const lines[] = {"run,shell.thickness,status,final/objective,best\n", "1,1 mm,absent,,0\n",
+                                 "2,2 Q,refused,,0\n"};
+    for (int k = 0; k < 3; k++) assert_string_equal(fgets(line, sizeof line, file), lines[k]);
+    fclose(file);
+    mem_free(sweep.name);
+    sweep.name = mem_text(SOURCE_DIR "/scenes/hexagram_magnetization");
+    RunState at;
+    assert_false(check_run(&sweep, 0, true, &at, &problems));
+    assert_non_null(strstr(problems.sentences[0], "the scene is made of it"));
+    state_clear(&at);
+    problems_clear(&problems);
+    sweep_clear(&sweep);
+    rmdir("test_absent");
+    unlink("test_absent.yaml"), unlink("test_absent.csv"), unlink("test_absent.h5");
+}
+
 /* Nothing is left, of what is refused either. */
 static int check_blocks(void **state)
 {
@@ -150,6 +243,9 @@ int main(void)
                                        cmocka_unit_test_teardown(test_again, check_blocks),
                                        cmocka_unit_test_teardown(test_order, check_blocks),
                                        cmocka_unit_test_teardown(test_quantities, check_blocks),
-                                       cmocka_unit_test_teardown(test_runs_file, check_blocks)};
+                                       cmocka_unit_test_teardown(test_runs_file, check_blocks),
+                                       cmocka_unit_test_teardown(test_lock, check_blocks),
+                                       cmocka_unit_test_teardown(test_next, check_blocks),
+                                       cmocka_unit_test_teardown(test_absent, check_blocks)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
