@@ -83,8 +83,12 @@ echo "tasks queued: $(wc -l < queued.txt), different: $(sort -u queued.txt | wc 
 # ---- Tasks and the controller that are killed ----
 scontrol update partition=all state=up
 began=$(date +%s.%N); killed=0; restarts=0
+mend() { # what an administrator does after such a controller: nodes that it mistrusts, tasks that it holds
+    ! sinfo -h -o %T 2> err.txt | grep -qE "drain|down" || scontrol update nodename="$host" state=resume 2> err.txt
+    for task in $(squeue --noheader --array --format='%i %r' 2> err.txt | awk '/Held/ { print $1 }'); do scontrol release "$task" 2> err.txt; done
+}
 while [ -n "$(queued)" ] || ! kill -0 $controller 2> err.txt; do
-    sleep 0.5
+    sleep 0.5; mend
     r=$(random)
     if [ $((r % 100)) = 0 ]; then
         kill -9 $controller 2> err.txt; wait $controller 2> err.txt; restarts=$((restarts + 1))
@@ -102,7 +106,7 @@ echo "tasks requeued or killed: $killed, controllers killed: $restarts, $(date +
 "$program" sweep s.yaml --list | awk '{ print $NF }' | sort | uniq -c
 for _ in 1 2 3; do # what was killed for good is submitted again
     "$program" sweep s.yaml --slurm -- --quiet
-    while [ -n "$(queued)" ]; do sleep 1; done
+    while [ -n "$(queued)" ]; do sleep 1; mend; done
 done
 
 # ---- Every run once, none twice ----
