@@ -85,7 +85,7 @@ scontrol update partition=all state=up
 began=$(date +%s.%N); killed=0; restarts=0
 mend() { # what an administrator does after such a controller: nodes that it mistrusts, tasks that it holds
     ! sinfo -h -o %T 2> err.txt | grep -qE "drain|down" || scontrol update nodename="$host" state=resume 2> err.txt
-    for task in $(squeue --noheader --array --format='%i %r' 2> err.txt | awk '/Held/ { print $1 }'); do scontrol release "$task" 2> err.txt; done
+    for task in $(squeue --noheader --array --format='%i %r' 2> err.txt | awk '/[Hh]eld/ { print $1 }'); do scontrol release "$task" 2> err.txt; done
 }
 while [ -n "$(queued)" ] || ! kill -0 $controller 2> err.txt; do
     sleep 0.5; mend

@@ -95,7 +95,10 @@ expect 0 "$program" sweep parts.yaml --list; says "1  .*running"
 kill -INT $pid; wait $pid; is "Ctrl-C" $? 75
 is interrupted "$(column status parts.csv)" "interrupted absent"
 "$program" sweep parts.yaml --jobs 1 --quiet & pid=$!
-sleep 0.2; child=$(pgrep -P $pid); kill -9 $pid "$child" 2> err.txt; wait $pid 2> err.txt
+until child=$(pgrep -P $pid); do sleep 0.02; done
+kill -9 $pid; wait $pid 2> err.txt
+expect 76 "$program" sweep parts.yaml --index 1 # the run that the sweep has left behind
+kill -9 "$child"; while kill -0 "$child" 2> err.txt; do sleep 0.02; done
 expect 0 "$program" sweep parts.yaml --jobs 2 --quiet
 same whole.csv parts.csv
 
