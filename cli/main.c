@@ -20,6 +20,8 @@ static const struct {
     const char *doc;
 } verbs[] = {
     {"run", verb_run, "run a scene file and write its result"},
+    {"sweep", verb_sweep,
+     "run a scene many times with other values, here or on a cluster, and make one table"},
     {"check", verb_check, "check a scene file: what it says, and how long it may take"},
     {"info", verb_info, "say what is in a result or a running job"},
     {"export", verb_export,
@@ -45,7 +47,8 @@ static int verb_help(int argc, char **argv)
     printf("\nEach verb explains its options: slender run --help\n"
            "Exit codes: 0 done; 1 computed but did not converge; 2 usage; 3 scene or mesh refused; 4 cannot "
            "write;\n"
-           "5 out of memory; 75 interrupted, state saved: run again with --resume\n");
+           "5 out of memory; 75 interrupted, state saved: run again with --resume; 76 another process is at "
+           "it\n");
     return RUN_DONE;
 }
 

@@ -17,7 +17,7 @@ typedef struct Progress {
     double stepped, pace;  /* s: when it was; of the last ones */
 } Progress;
 
-/* Catches Ctrl-C and SIGTERM: the first one asks the run to save and stop, the second one ends the program.
+/* Catches Ctrl-C and SIGTERM: the first one asks the run to save and stop, one that comes a second later or more ends the program.
  */
 Progress progress_start(ProgressMode mode);
 

@@ -7,6 +7,7 @@
 #include "job/run.h"
 
 int verb_run(int argc, char **argv);
+int verb_sweep(int argc, char **argv);
 int verb_check(int argc, char **argv);
 int verb_info(int argc, char **argv);
 int verb_export(int argc, char **argv);

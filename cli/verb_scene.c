@@ -3,22 +3,25 @@
 #include "cli/verb.h"
 #include "io/path.h"
 #include "job/outputs.h"
+#include "sweep/sweep.h"
 #include <stdio.h>
 
 int verb_schema(int argc, char **argv)
 {
     static const char usage[] =
-        "schema [--manual | --keys]\n  JSON Schema of scene files for editors; with --manual the "
+        "schema [--manual | --keys] [--sweep]\n  JSON Schema of scene files for editors; with --manual the "
         "manual of all keys (docs/scene.md),\n"
-        "  with --keys a line for each, as --set has it";
-    bool manual = false, keys = false;
+        "  with --keys a line for each, as --set has it; with --sweep those of sweeps";
+    bool manual = false, keys = false, sweep = false;
     int code;
-    const Option options[] = {{"manual", .value = &manual}, {"keys", .value = &keys}};
-    if (!options_parse(argc, argv, usage, options, 2, NULL, &code)) return code;
+    const Option options[] = {
+        {"manual", .value = &manual}, {"keys", .value = &keys}, {"sweep", .value = &sweep}};
+    if (!options_parse(argc, argv, usage, options, 3, NULL, &code)) return code;
     if (manual && keys) return verb_fail(RUN_USAGE, "--manual and --keys exclude each other");
-    char *text = manual ? yaml_manual(scene_table(), "Scene files")
-                 : keys ? yaml_keys(scene_table())
-                        : yaml_schema(scene_table(), "slender scene");
+    const YamlTable *table = sweep ? &sweep_table : scene_table();
+    char *text = manual ? yaml_manual(table, sweep ? "Sweeps" : "Scene files")
+                 : keys ? yaml_keys(table)
+                        : yaml_schema(table, sweep ? "slender sweep" : "slender scene");
     fputs(text, stdout);
     mem_free(text);
     return RUN_DONE;

@@ -37,8 +37,7 @@ void program_remove_folder(char *folder)
 
 /* ---- Running ---- */
 
-/* The last line of a file that is not blank; "" if there is none. */
-static void last_line(const char *path, char *line, int size)
+void program_last_line(const char *path, char *line, int size)
 {
     char next[400];
     FILE *file = fopen(path, "r");
@@ -50,16 +49,23 @@ static void last_line(const char *path, char *line, int size)
     if (file) fclose(file);
 }
 
-/* With nothing to read, and both outputs in the file. */
-static int start(const char *const *arguments, const char *log, pid_t *process)
+int program_start(const char *const *arguments, const char *log, int keep, pid_t *process)
 {
     posix_spawn_file_actions_t actions;
+    posix_spawnattr_t attributes;
     posix_spawn_file_actions_init(&actions);
+    posix_spawnattr_init(&attributes);
     posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
-    posix_spawn_file_actions_addopen(&actions, 1, log, O_WRONLY | O_CREAT | O_TRUNC, 0600);
+    posix_spawn_file_actions_addopen(&actions, 1, log, O_WRONLY | O_CREAT | O_TRUNC, 0666);
     posix_spawn_file_actions_adddup2(&actions, 1, 2);
-    int failed = posix_spawnp(process, arguments[0], &actions, NULL, (char *const *)arguments, environ);
+    if (keep >= 0) {
+        posix_spawn_file_actions_adddup2(&actions, keep, keep); /* closes no more on exec */
+        posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
+    }
+    int failed =
+        posix_spawnp(process, arguments[0], &actions, &attributes, (char *const *)arguments, environ);
     posix_spawn_file_actions_destroy(&actions);
+    posix_spawnattr_destroy(&attributes);
     return failed;
 }
 
@@ -68,13 +74,13 @@ bool program_run(const char *const *arguments, const char *folder, const char *a
     pid_t process;
     int status = 0;
     char said[400], *log = mem_format("%s/log", folder);
-    int failed = start(arguments, log, &process);
+    int failed = program_start(arguments, log, -1, &process);
     while (!failed && waitpid(process, &status, 0) < 0)
         if (errno != EINTR) failed = errno;
     if (!failed && WIFEXITED(status) && WEXITSTATUS(status) == 127)
         failed =
             ENOENT; /* POSIX: where posix_spawn could not say it, or a shell did not find what it was to run */
-    last_line(log, said, sizeof said);
+    program_last_line(log, said, sizeof said);
     mem_free(log);
     if (failed == ENOENT)
         return error_set(err, "the program %s is not installed (not in PATH): %s", arguments[0], advice);

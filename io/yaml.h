@@ -47,6 +47,7 @@ typedef enum YamlKind {
     FIELD_TEXTS,    /* char ** and count                      ["x", "2*y"]         NULL                   */
     FIELD_CHOICES,  /* int * and count                        [stability, modes]   NULL                   */
     FIELD_ROWS,     /* double (*)[n] and count                [[0, 0, 1], [1, 0, 0]]  NULL                */
+    FIELD_VALUES,   /* YamlValue * and count                  [1 mm, [0, 1], up]   NULL                   */
     FIELD_TABLE,    /* struct inside the struct               {radius: 1 mm}       its own defaults       */
     FIELD_OPTIONAL, /* pointer to a struct                    {radius: 1 mm}       NULL                   */
     FIELD_LIST,     /* struct * and count                     [{..}, {..}]         NULL                   */
@@ -55,6 +56,12 @@ typedef enum YamlKind {
 } YamlKind;
 
 enum { YAML_ABSENT = INT_MIN };
+
+/* A value of any kind as it is written, on one line: what --set takes; and where. */
+typedef struct YamlValue {
+    char *text;
+    int line, column; /* from 1; 0: not in the file */
+} YamlValue;
 
 typedef struct YamlTable YamlTable;
 
@@ -77,6 +84,7 @@ typedef struct YamlField {
                            * `young: 1 MPa` for `young: {value: 1 MPa}`. The first such row that accepts the
                            * value takes it: numbers before formulas                                */
     bool alone;           /* of a LIST: one entry may stand without the list                        */
+    bool rest;            /* of a MAP: its names stand in the table itself, beside the other rows   */
     const char *fallback; /* default, as scene text: "1 mm", "[0, 0, 0]", "{every: 1}"; NULL: none  */
     const char *unit;     /* SI unit, any product: "m", "A/m", "N s/m"; NULL: a plain number        */
     const char *range;    /* of each number, SI: "(0, inf)", "[0, 0.5]", "(-inf, 0]"; NULL: any     */
@@ -97,6 +105,7 @@ struct YamlTable {
     const char *doc;         /* sentences that open the section                                           */
     size_t size;             /* sizeof the struct                                                         */
     const YamlField *fields; /* ends with {0}                                                             */
+    const char *version;     /* of the root: the key whose value is 1, the format's; NULL: "slender"      */
 };
 
 #define YAML_NUMBER(S, m)         YAML_FIELD(S, m, FIELD_NUMBER, double)
@@ -108,6 +117,7 @@ struct YamlTable {
 #define YAML_NUMBERS(S, m)        YAML_FIELD(S, m, FIELD_NUMBERS, double *), YAML_COUNT(S, m)
 #define YAML_INTEGERS(S, m)       YAML_FIELD(S, m, FIELD_INTEGERS, int *), YAML_COUNT(S, m)
 #define YAML_TEXTS(S, m)          YAML_FIELD(S, m, FIELD_TEXTS, char **), YAML_COUNT(S, m)
+#define YAML_VALUES(S, m)         YAML_FIELD(S, m, FIELD_VALUES, YamlValue *), YAML_COUNT(S, m)
 #define YAML_CHOICES(S, m)        YAML_FIELD(S, m, FIELD_CHOICES, int *), YAML_COUNT(S, m)
 #define YAML_VECTOR(S, m)         YAML_ARRAY(S, m, FIELD_NUMBERS, double) /* double m[n]           */
 #define YAML_INTEGER_VECTOR(S, m) YAML_ARRAY(S, m, FIELD_INTEGERS, int)   /* int m[n]              */
@@ -160,14 +170,17 @@ void yaml_destroy(YamlFile *file);
  * shell.mesh.n=7: ". */
 bool yaml_override(YamlFile *file, const char *assignment);
 
-/* Fills the table's struct, defaults included. The file must have the key `slender: 1`, which no table
- * lists. The order of keys means nothing, and a number or boolean in quotes is one. Paths are taken relative
+/* Fills the table's struct, defaults included. The file must have the key `slender: 1` (YamlTable.version), which no
+ * table lists. The order of keys means nothing, and a number or boolean in quotes is one. Paths are taken relative
  * to the scene file. False if the file has any error; the struct is then empty (zeroed). */
 bool yaml_load(YamlFile *file, const YamlTable *table, void *scene);
 
 /* Of a file that was loaded: refuses every key that is written where nothing uses it (YamlField.when), unless
  * it says no more than its default. */
 bool yaml_check_use(YamlFile *file, const YamlTable *table);
+
+/* The number that a text is, with a unit or not, in SI; false: it is none. */
+bool yaml_quantity(const char *text, double *value);
 
 /* Frees what the struct owns, by the same table, and zeroes it. (libyaml already has a yaml_free.) */
 void yaml_clear(const YamlTable *table, void *scene);

@@ -3,6 +3,18 @@
 #include <stdio.h>
 #include <string.h>
 
+const YamlField *table_rest(const YamlTable *table)
+{
+    for (const YamlField *row = table->fields; row->key; row++)
+        if (row->rest) return row;
+    return NULL;
+}
+
+const char *table_version(const YamlTable *root)
+{
+    return root->version ? root->version : "slender";
+}
+
 static const char *field_word(const void *self, int i)
 {
     return ((const YamlField *)self)[i].key;
@@ -18,12 +30,12 @@ void load_list_keys(const YamlTable *table, char *text, size_t size)
 
 static bool unknown_key(Load *load, const YamlTable *table, const Node *node, int i)
 {
-    char known[700];
+    char known[700], root[80];
     const char *near = nearest_word(load->file, node->keys[i], field_word, table->fields);
     Node at = {
         .line = node->key_place[i][0], .column = node->key_place[i][1], .origin = node->items[i]->origin};
     load_list_keys(table, known, sizeof known);
-    const char *where = load->path[0] ? load->path : "the scene";
+    const char *where = load_place(load, root);
     if (near)
         yaml_error(load->file, &at, "%s has no key '%.60s'; did you mean '%s'?", where, node->keys[i], near);
     else
@@ -42,22 +54,22 @@ bool load_is_misspelt(const Load *load, const YamlTable *table, const Node *node
 
 static const char *version_word(const void *self, int i)
 {
-    (void)self;
-    return i ? NULL : VERSION_KEY;
+    return i ? NULL : table_version(self);
 }
 
 /* The version's key, at the root, is no row of a table; that it is missing, misspelt perhaps, is told by then. */
 static bool is_version(const Load *load, const Node *node, const char *key)
 {
     if (load->path[0]) return false;
-    return !strcmp(key, VERSION_KEY) ||
-           (!node_find(node, VERSION_KEY) && nearest_word(load->file, key, version_word, NULL));
+    const char *version = table_version(load->root);
+    return !strcmp(key, version) ||
+           (!node_find(node, version) && nearest_word(load->file, key, version_word, load->root));
 }
 
 bool load_keys(Load *load, const YamlTable *table, const Node *node)
 {
     bool ok = true;
-    for (int i = 0; i < node->count; i++)
+    for (int i = 0; i < node->count && !table_rest(table); i++)
         if (!table_row(table, node->keys[i]) && !is_version(load, node, node->keys[i]))
             ok = unknown_key(load, table, node, i);
     return ok;

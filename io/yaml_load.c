@@ -66,6 +66,15 @@ static bool table_entry(Load *load, const YamlField *row, const Node *node, void
     return load_table(load, row->table, node, value);
 }
 
+static bool value_entry(Load *load, const YamlField *row, const Node *node, void *value)
+{
+    (void)load, (void)row;
+    Text text = {0};
+    node_write(node, &text);
+    *(YamlValue *)value = (YamlValue){text.text, node->line, node->column};
+    return true;
+}
+
 static bool row_entry(Load *load, const YamlField *row, const Node *node, void *value)
 {
     YamlField numbers = *row;
@@ -86,6 +95,8 @@ static size_t entry_size(const YamlField *row)
         return sizeof(char *);
     case FIELD_ROWS:
         return (size_t)row->width * sizeof(double);
+    case FIELD_VALUES:
+        return sizeof(YamlValue);
     default:
         return row->size;
     }
@@ -102,7 +113,8 @@ static bool load_list(Load *load, const YamlField *row, const Node *node, void *
 {
     static bool (*const entries[])(Load *, const YamlField *, const Node *, void *) = {
         [FIELD_NUMBERS] = number_entry, [FIELD_INTEGERS] = integer_entry, [FIELD_CHOICES] = choice_entry,
-        [FIELD_TEXTS] = text_entry,     [FIELD_ROWS] = row_entry,         [FIELD_LIST] = table_entry};
+        [FIELD_TEXTS] = text_entry,     [FIELD_ROWS] = row_entry,         [FIELD_LIST] = table_entry,
+        [FIELD_VALUES] = value_entry};
     Node alone = {
         .kind = NODE_LIST, .line = node->line, .column = node->column, .origin = node->origin, .count = 1};
     Node *item = (Node *)node;
@@ -136,6 +148,21 @@ static bool load_map(Load *load, const YamlField *row, const Node *node, void *s
         *(char **)(array + (size_t)i * row->size) = mem_text(node->keys[i]);
         load_leave(load, length);
     }
+    return ok;
+}
+
+/* The keys of the table's mapping that have no row, as if they had a mapping of their own. */
+static bool load_rest(Load *load, const YamlTable *table, const YamlField *row, const Node *node, void *scene)
+{
+    Node rest = {.kind = NODE_MAP, .line = node->line, .column = node->column, .origin = node->origin};
+    rest.items = mem_alloc((size_t)node->count, sizeof *rest.items);
+    rest.keys = mem_alloc((size_t)node->count, sizeof *rest.keys);
+    for (int i = 0; i < node->count; i++)
+        if (!table_row(table, node->keys[i]))
+            rest.items[rest.count] = node->items[i], rest.keys[rest.count++] = node->keys[i];
+    bool ok = load_map(load, row, &rest, scene);
+    mem_free(rest.items);
+    mem_free(rest.keys);
     return ok;
 }
 
@@ -267,7 +294,7 @@ const Node *load_row_item(const YamlField *row, const Node *node)
 const YamlField *table_row(const YamlTable *table, const char *key)
 {
     for (const YamlField *row = table->fields; row->key; row++)
-        if (row_is(row, key)) return row;
+        if (!row->rest && row_is(row, key)) return row;
     return NULL;
 }
 
@@ -317,6 +344,7 @@ bool load_row_alone(Load *load, const YamlField *row, const Node *item, void *sc
 
 static bool load_row(Load *load, const YamlTable *table, const YamlField *row, const Node *node, void *scene)
 {
+    if (row->rest) return load_rest(load, table, row, node, scene);
     int count, index = row_index(row, node, &count);
     size_t length = load_enter(load, row->key, 0);
     bool ok = true;
@@ -380,18 +408,19 @@ static bool load_table(Load *load, const YamlTable *table, const Node *node, voi
 bool yaml_load(YamlFile *file, const YamlTable *table, void *scene)
 {
     memset(scene, 0, table->size);
+    const char *name = table->name, *key = table_version(table);
     if (!file->root && !file->error_count)
-        yaml_error_at(file, 1, 1, "the file is empty; a scene has the key `slender: 1`");
+        yaml_error_at(file, 1, 1, "the file is empty; a %s has the key `%s: 1`", name, key);
     if (!file->root) return false;
     if (file->root->kind != NODE_MAP) {
-        yaml_error(file, file->root, "a scene is a mapping with the key `slender: 1`");
+        yaml_error(file, file->root, "a %s is a mapping with the key `%s: 1`", name, key);
         return false;
     }
-    const Node *version = node_find(file->root, VERSION_KEY);
+    const Node *version = node_find(file->root, key);
     if (!version || version->kind != NODE_SCALAR || strcmp(version->text, "1"))
         yaml_error(file, version ? version : file->root,
-                   "a scene must have the key `slender: 1`, the format's version");
-    Load load = {.file = file};
+                   "a %s must have the key `%s: 1`, the format's version", name, key);
+    Load load = {.file = file, .root = table};
     load_table(&load, table, file->root, scene);
     if (!file->error_count) return true;
     yaml_clear(table, scene);
@@ -441,6 +470,7 @@ static void clear_row(const YamlField *row, void *scene)
     int count = row->count_offset ? *row_count(row, scene) : 1;
     for (int i = 0; block && i < count; i++) {
         if (row->kind == FIELD_TEXTS) mem_free(((char **)block)[i]);
+        if (row->kind == FIELD_VALUES) mem_free(((YamlValue *)block)[i].text);
         if (row->kind == FIELD_MAP) mem_free(*(char **)((char *)block + (size_t)i * row->size));
         if (row->kind == FIELD_LIST || row->kind == FIELD_MAP)
             yaml_clear(row->table, (char *)block + (size_t)i * row->size);

@@ -3,18 +3,19 @@
 #pragma once
 #include "io/yaml_private.h"
 
-/* At the root, of the format's version; no row of a table. */
-#define VERSION_KEY "slender"
-
 /* Where loading stands: the key path, for sentences. */
 typedef struct Load {
     YamlFile *file;
+    const YamlTable *root;
     char path[512];
 } Load;
 
 /* Goes down to a key or (key NULL) an index; returns what load_leave needs. */
 size_t load_enter(Load *load, const char *key, int index);
 void load_leave(Load *load, size_t length);
+
+/* The key that loading is at; "the scene" at the root. The text is good until the next call. */
+const char *load_place(const Load *load, char text[80]);
 
 /* Adds "key what" at the node; returns false. */
 bool load_wrong(Load *load, const Node *at, const char *what);

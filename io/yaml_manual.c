@@ -84,6 +84,9 @@ static void schema_entry(Text *text, const YamlField *row)
     case FIELD_LIST:
         schema_reference(text, row->table);
         break;
+    case FIELD_VALUES:
+        text_add(text, "{}");
+        break;
     default: /* FIELD_ROWS */
         text_add(text, "{\"type\": \"array\", \"minItems\": %d, \"maxItems\": %d, \"items\": ", row->width,
                  row->width);
@@ -164,10 +167,18 @@ static void schema_object(Text *text, const YamlTable *table, bool root)
 {
     text_add(text, "{\"type\": \"object\", \"description\": ");
     text_add_quoted(text, table->doc);
-    text_add(text, ", \"additionalProperties\": false, \"properties\": {\n");
+    const YamlField *rest = table_rest(table);
+    text_add(text, ", \"additionalProperties\": ");
+    if (rest)
+        schema_reference(text, rest->table);
+    else
+        text_add(text, "false");
+    text_add(text, ", \"properties\": {\n");
     if (root)
-        text_add(text, "        \"slender\": {\"description\": \"the format's version\", \"const\": 1}");
+        text_add(text, "        \"%s\": {\"description\": \"the format's version\", \"const\": 1}",
+                 table_version(table));
     for (const YamlField *row = table->fields; row->key; row++) {
+        if (row->rest) continue;
         if (root || row != table->fields) text_add(text, ",\n");
         schema_property(text, row, row->key);
         for (int k = 0; row->also && row->also[k]; k++) {
@@ -177,7 +188,7 @@ static void schema_object(Text *text, const YamlTable *table, bool root)
     }
     text_add(text, "\n      }");
     int required = 0;
-    if (root) text_add(text, ", \"required\": [\"slender\""), required++;
+    if (root) text_add(text, ", \"required\": [\"%s\"", table_version(table)), required++;
     for (const YamlField *row = table->fields; row->key; row++) {
         if (!row->required || row->one_of) continue;
         text_add(text, required++ ? ", " : ", \"required\": [");
@@ -249,6 +260,7 @@ static void manual_kind(Text *text, const YamlField *row)
                                         [FIELD_TEXTS] = "texts",
                                         [FIELD_CHOICES] = "some of",
                                         [FIELD_ROWS] = "rows of numbers",
+                                        [FIELD_VALUES] = "list of values",
                                         [FIELD_TABLE] = "",
                                         [FIELD_OPTIONAL] = "",
                                         [FIELD_LIST] = "list of",
@@ -283,7 +295,7 @@ static void manual_when(Text *text, const char *when)
 
 static void manual_row(Text *text, const YamlField *row)
 {
-    text_add(text, "| `%s`", row->key);
+    text_add(text, row->rest ? "| %s" : "| `%s`", row->key);
     for (int k = 0; row->also && row->also[k]; k++) text_add(text, ", `%s`", row->also[k]);
     text_add(text, " | ");
     manual_kind(text, row);

@@ -1,6 +1,7 @@
 /* Nodes of a scene's tree: made, found, copied. */
 #include "base/memory.h"
 #include "io/yaml_private.h"
+#include <ctype.h>
 #include <string.h>
 
 Node *node_create(NodeKind kind, int line, int column)
@@ -66,6 +67,41 @@ Node *node_find(const Node *map, const char *key)
 {
     int index = map && map->kind == NODE_MAP ? node_index(map, key, strlen(key)) : -1;
     return index < 0 ? NULL : map->items[index];
+}
+
+/* Would it be read as the same text without quotes, within brackets too? */
+static bool is_plain(const char *text)
+{
+    static const char marks[] = " ._+-*/^()";
+    size_t length = strlen(text);
+    const char *first =
+        text + (*text && strchr("-+./", *text) != NULL); /* no mark of YAML's, as "- x" and "---" */
+    bool plain = isalnum((unsigned char)*first) && text[length - 1] != ' ';
+    for (const char *c = text; plain && *c; c++) plain = isalnum((unsigned char)*c) || strchr(marks, *c);
+    return plain;
+}
+
+static void write_scalar(const char *scalar, Text *text)
+{
+    if (is_plain(scalar))
+        text_add(text, "%s", scalar);
+    else
+        text_add_quoted(text, scalar);
+}
+
+void node_write(const Node *node, Text *text)
+{
+    if (node->kind == NODE_SCALAR) {
+        write_scalar(node->text, text);
+        return;
+    }
+    text_add(text, node->kind == NODE_LIST ? "[" : "{");
+    for (int i = 0; i < node->count; i++) {
+        text_add(text, "%s", i ? ", " : "");
+        if (node->kind == NODE_MAP) write_scalar(node->keys[i], text), text_add(text, ": ");
+        node_write(node->items[i], text);
+    }
+    text_add(text, node->kind == NODE_LIST ? "]" : "}");
 }
 
 Node *node_copy(const Node *node, int depth, int *left)

@@ -50,6 +50,9 @@ void node_append(Node *node, char *key, int line, int column, Node *item);
 Node *node_find(const Node *map, const char *key);
 int node_index(const Node *map, const char *key, size_t length);
 
+/* The value on one line: what tree_parse makes the same value of. */
+void node_write(const Node *node, Text *text);
+
 /* A copy of so many levels and, taken from *left, so many values at most; else NULL. */
 Node *node_copy(const Node *node, int depth, int *left);
 
@@ -95,6 +98,12 @@ void number_format(double value, char text[40]);
 /* ---- Tables ---- */
 
 const YamlField *table_row(const YamlTable *table, const char *key);
+
+/* The row that takes the keys which have none (YamlField.rest); NULL: they are refused. */
+const YamlField *table_rest(const YamlTable *table);
+
+/* The key of the format's version. */
+const char *table_version(const YamlTable *root);
 
 /* The member of a struct, and the count beside it. */
 static inline void *row_member(const YamlField *row, const void *scene)

@@ -276,6 +276,17 @@ bool unit_parse(const char *text, const char *unit, double *value, char *wrong, 
     return false;
 }
 
+bool yaml_quantity(const char *text, double *value)
+{
+    const char *rest;
+    Unit unit;
+    if (!decimal(text, value, &rest) || (*rest && *rest != ' ' && !is_symbol(*rest))) return false;
+    while (*rest == ' ') rest++;
+    if (!parse_unit(&rest, &unit)) return false;
+    *value *= unit.factor;
+    return isfinite(*value);
+}
+
 void number_format(double value, char text[40])
 {
     for (int digits = 15; digits <= 17; digits++) {

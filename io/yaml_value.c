@@ -26,9 +26,16 @@ void load_leave(Load *load, size_t length)
     load->path[length] = 0;
 }
 
+const char *load_place(const Load *load, char text[80])
+{
+    snprintf(text, 80, "the %s", load->root->name);
+    return load->path[0] ? load->path : text;
+}
+
 bool load_wrong(Load *load, const Node *at, const char *what)
 {
-    yaml_error(load->file, at, "%s %s", load->path[0] ? load->path : "the scene", what);
+    char root[80];
+    yaml_error(load->file, at, "%s %s", load_place(load, root), what);
     return false;
 }
 

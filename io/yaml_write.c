@@ -55,6 +55,9 @@ static void write_entry(Text *text, const YamlField *row, const void *array, int
     case FIELD_CHOICES:
         text_add(text, "%s", row->choices[((const int *)array)[i]]);
         break;
+    case FIELD_VALUES:
+        text_add(text, "%s", ((const YamlValue *)array)[i].text);
+        break;
     default: /* FIELD_ROWS */
         text_add(text, "[");
         for (int k = 0; k < row->width; k++) {
@@ -83,7 +86,7 @@ static void write_tables(Text *text, const YamlField *row, const void *scene, in
 {
     const char *array = *(char *const *)row_member(row, scene);
     int count = *row_count(row, scene);
-    text_add(text, count ? "\n" : row->kind == FIELD_MAP ? "{}\n" : "[]\n");
+    if (!row->rest) text_add(text, count ? "\n" : row->kind == FIELD_MAP ? "{}\n" : "[]\n");
     if (row->alone && count == 1) {
         write_table(text, row->table, array, depth);
         return;
@@ -112,6 +115,10 @@ static bool is_boolean_elsewhere(const YamlField *row)
 static void write_row(Text *text, const YamlField *row, const void *scene, int depth)
 {
     const void *member = row_member(row, scene);
+    if (row->rest) {
+        write_tables(text, row, scene, depth);
+        return;
+    }
     text_indent(text, depth);
     text_add(text, is_boolean_elsewhere(row) ? "\"%s\": " : "%s: ", row->key);
     switch (row->kind) {
@@ -172,7 +179,7 @@ char *row_text(const YamlField *row, const void *scene)
 char *yaml_write(const YamlTable *table, const void *scene)
 {
     Text text = {0};
-    text_add(&text, "slender: 1\n");
+    text_add(&text, "%s: 1\n", table_version(table));
     write_table(&text, table, scene, 0);
     return text.text;
 }

@@ -297,7 +297,10 @@ static RunStatus finish(DesignRun *d, const OptimiserInfo *info)
     const char *status = interrupted           ? "interrupted"
                          : limit && start_only ? "evaluated"
                                                : optimiser_status_name(info->status);
-    if (!d->ops->put_results(d->self, first, status, d->err)) return RUN_CANNOT_WRITE;
+    const Array best = array_float("final/objective", "", &d->best, 0, 0, 0);
+    if (!d->ops->put_results(d->self, first, status, d->err) ||
+        !journal_put(d->run->journal, "final", 0, &best, 1, d->err))
+        return RUN_CANNOT_WRITE;
     say(d, info);
     if (interrupted) return RUN_INTERRUPTED;
     return limit || info->status == OPTIMISER_CONVERGED ? RUN_DONE : RUN_NOT_CONVERGED;

@@ -108,10 +108,10 @@ static bool is_finished(Result *result)
 }
 
 /* `files`: keys whose paths need not be the same. */
-static bool is_of_scene(const Run *run, const Array *text, const char *scene, char *const *files, Error *err)
+static bool is_of_scene(const Scene *of, const Array *text, const char *scene, char *const *files, Error *err)
 {
     static const char *const none[] = {NULL};
-    const char **keys = ignored_keys(none, files), **free = ignored_keys(run->model->job->free_keys, files);
+    const char **keys = ignored_keys(none, files), **free = ignored_keys(scene_job(of)->free_keys, files);
     char *changed = difference(text, scene, keys), *fixed = difference(text, scene, free);
     if (changed)
         error_set(
@@ -128,16 +128,16 @@ static bool is_of_scene(const Run *run, const Array *text, const char *scene, ch
 }
 
 /* Of the same scene, made of the same files? An older result does not tell files by what was in them. */
-static bool is_same_run(const Run *run, Result *result, const char *scene, const char *inputs, Error *err)
+static bool is_same_run(const Scene *of, Result *result, const char *scene, const char *inputs, Error *err)
 {
     static char *const none[] = {NULL};
     Array text, before = {0};
     if (!result_read(result, "slender/scene", &text, err)) return false;
     bool told = result_has(result, "slender/inputs");
-    char **keys = told ? inputs_keys(run->scene) : NULL;
+    char **keys = told ? inputs_keys(of) : NULL;
     bool ok = (!told || result_read(result, "slender/inputs", &before, err)) &&
-              is_of_scene(run, &text, scene, keys ? keys : none, err) &&
-              (!told || inputs_check(run->scene, before.data, inputs, err));
+              is_of_scene(of, &text, scene, keys ? keys : none, err) &&
+              (!told || inputs_check(of, before.data, inputs, err));
     array_clear(&text);
     array_clear(&before);
     mem_free(keys);
@@ -155,11 +155,63 @@ static bool check_earlier(const Run *run, const char *journal, bool picture, Err
     char *scene = yaml_write(scene_table(), run->scene), *inputs = inputs_text(run->scene, err);
     bool ok = inputs != NULL;
     if (ok && is_finished(result))
-        ok = is_same_run(run, result, scene, inputs, err) || error_prefix(err, "%s", run->result);
+        ok = is_same_run(run->scene, result, scene, inputs, err) || error_prefix(err, "%s", run->result);
     mem_free(scene);
     mem_free(inputs);
     result_close(result);
     return ok;
+}
+
+/* ---- What there is of a run ---- */
+
+/* Of an unfinished one, which nobody could go on with where nothing was put. */
+static RecordState journal_state(Journal *journal, const Scene *of, const char *scene, Error *err)
+{
+    static const char *const none[] = {NULL};
+    Array text;
+    if (!journal_find(journal, "meta", 0, "scene", &text, err)) return RECORD_OTHER;
+    if (!text.data) return RECORD_ABSENT;
+    char **files = inputs_keys(of), *changed;
+    const char **keys = ignored_keys(none, files);
+    changed = difference(&text, scene, keys);
+    if (changed) error_set(err, "it is an unfinished run of another scene: %s is not the same", changed);
+    RecordState state = changed ? RECORD_OTHER : RECORD_UNFINISHED;
+    mem_free(changed);
+    mem_free(keys);
+    mem_free(files);
+    array_clear(&text);
+    return state;
+}
+
+static RecordState result_state(Result *result, const Scene *of, const char *scene, Error *err)
+{
+    if (!is_finished(result)) return RECORD_ABSENT;
+    char *inputs = inputs_text(of, err);
+    RecordState state =
+        inputs && is_same_run(of, result, scene, inputs, err) ? RECORD_FINISHED : RECORD_OTHER;
+    mem_free(inputs);
+    return state;
+}
+
+RecordState record_state(const Scene *of, const char *name, Error *err)
+{
+    char *path = mem_format("%s.run", name), *file = mem_format("%s.vtkhdf", name),
+         *scene = yaml_write(scene_table(), of);
+    RecordState state = RECORD_ABSENT;
+    Journal *journal = access(path, F_OK) == 0 ? journal_open(path, JOURNAL_READ, NULL) : NULL;
+    bool unfinished = journal && !journal_is_finished(journal);
+    if (unfinished) state = journal_state(journal, of, scene, err);
+    journal_close(journal, NULL);
+    if (!unfinished && access(file, F_OK) == 0) {
+        Result *result = result_open(file, err);
+        state = result ? result_state(result, of, scene, err) : RECORD_OTHER;
+        result_close(result);
+    }
+    if (state == RECORD_OTHER) error_prefix(err, "%s", unfinished ? path : file);
+    mem_free(path);
+    mem_free(file);
+    mem_free(scene);
+    return state;
 }
 
 /* ---- The beginning ---- */

@@ -18,3 +18,14 @@ typedef struct RecordDef {
 /* Begins the journal, or goes on with the run that it holds; runs the job, writes the result and the further files. On
  * RUN_REFUSED and RUN_CANNOT_WRITE err says why. *drawable: the result has something that a picture could show. */
 RunStatus record_run(const RecordDef *def, bool *drawable, Error *err);
+
+/* What there is under a name. */
+typedef enum RecordState {
+    RECORD_ABSENT,     /* nothing that one could go on with */
+    RECORD_UNFINISHED, /* a journal of this scene           */
+    RECORD_FINISHED,   /* a result of this scene            */
+    RECORD_OTHER,      /* what a run of this scene would not replace: err says why */
+} RecordState;
+
+/* Files are not changed; the run may live. */
+RecordState record_state(const Scene *scene, const char *name, Error *err);

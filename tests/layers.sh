@@ -28,10 +28,11 @@ check view 'base|io|spline|view'
 check export 'base|io|view|export'
 check report 'base|io|spline|view|report'
 check lib "$physics|optim|model|job|lib|[a-z]*/front"
-check cli "$physics|optim|model|job|lib|view|export|report|cli|spline"
+check sweep "$physics|optim|model|job|sweep"
+check cli "$physics|optim|model|job|lib|view|export|report|sweep|cli|spline"
 
 # What is not alike for bodies and jobs is in their rows (model/rows.h).
-for folder in base solve io field optim surface world model job view export report lib cli; do
+for folder in base solve io field optim surface world model job view export report lib sweep cli; do
     found=$(grep -HnE "(->|\.)($bodies|drawing)\b[^/\"]|\b(JOB|BODY)_[A-Z]" $folder/*.[ch] | grep -v '#include')
     [ -z "$found" ] || { echo "$folder/ asks for the kind of a body or job:"; echo "$found"; bad=1; }
 done

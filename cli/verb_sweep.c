@@ -1,0 +1,268 @@
+/* slender sweep: many runs of one scene, here or by a scheduler, and their table. */
+#include "base/memory.h"
+#include "cli/progress.h"
+#include "cli/say.h"
+#include "cli/verb.h"
+#include "solve/kernels.h"
+#include "sweep/check.h"
+#include "sweep/slurm.h"
+#include "sweep/table.h"
+#include "sweep/work.h"
+#include <limits.h>
+#include <sched.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { SWEEP_HELD = 76, THREADS_MAX = 64 };
+
+typedef struct SweepOptions {
+    const char *file, *output;
+    int jobs, threads, index;
+    bool list, collect, slurm, retry, force, quiet;
+    const char *const *sbatch; /* options behind --; ends with NULL */
+} SweepOptions;
+
+static const char usage[] =
+    "sweep FILE [-o NAME] [--jobs N] [--threads N] [--retry | --force] [--quiet]\n"
+    "       slender sweep FILE --list | --index N | --collect | --slurm [-- OPTIONS of sbatch]\n"
+    "  Runs a scene many times with other values, each run a `slender run`; NAME/0001.vtkhdf .. are the "
+    "results,\n"
+    "  NAME.csv and NAME.h5 their table. The same command again goes on: what has finished is kept.\n"
+    "  -o NAME      default: the sweep's file without its ending\n"
+    "  --jobs N     so many runs side by side; default: as many as there are processors\n"
+    "  --threads N  of each run; default: the processors shared out among them\n"
+    "  --retry      goes on with the runs that have failed, too\n"
+    "  --force      begins them anew, and replaces results of another scene\n"
+    "  --quiet      says nothing but errors\n"
+    "  --list       the runs, their values and what has become of them\n"
+    "  --index N    does one run, from 1 on: for schedulers\n"
+    "  --collect    makes the table only\n"
+    "  --slurm      submits what is to be computed as a job array";
+
+/* ---- Options ---- */
+
+/* What stands behind -- is not the verb's. */
+static int split(int argc, char **argv, const char *const **rest)
+{
+    static const char *const none[] = {NULL};
+    *rest = none;
+    for (int k = 1; k < argc; k++)
+        if (!strcmp(argv[k], "--")) {
+            *rest = (const char *const *)&argv[k + 1];
+            return k;
+        }
+    return argc;
+}
+
+static int processors(void)
+{
+    cpu_set_t set;
+    int count = sched_getaffinity(0, sizeof set, &set) == 0 ? CPU_COUNT(&set) : 1;
+    return count < 1 ? 1 : count > THREADS_MAX ? THREADS_MAX : count;
+}
+
+static bool parse(int argc, char **argv, SweepOptions *o, int *code)
+{
+    const Option options[] = {
+        {"output", .letter = 'o', .kind = OPTION_TEXT, .value = &o->output},
+        {"jobs", .kind = OPTION_INT, .value = &o->jobs, .least = 1, .most = 1024},
+        {"threads", .kind = OPTION_INT, .value = &o->threads, .least = 1, .most = THREADS_MAX},
+        {"index", .kind = OPTION_INT, .value = &o->index, .least = 1, .most = SWEEP_RUNS_MAX},
+        {"list", .value = &o->list},
+        {"collect", .value = &o->collect},
+        {"slurm", .value = &o->slurm},
+        {"retry", .value = &o->retry},
+        {"force", .value = &o->force},
+        {"quiet", .value = &o->quiet},
+    };
+    argc = split(argc, argv, &o->sbatch);
+    if (!options_parse(argc, argv, usage, options, sizeof options / sizeof *options, &o->file, code))
+        return false;
+    if (o->list + o->collect + o->slurm + (o->index > 0) > 1) {
+        *code = verb_fail(RUN_USAGE, "one of --list, --index, --collect and --slurm can be given");
+        return false;
+    }
+    if (*o->sbatch && !o->slurm) {
+        *code = verb_fail(RUN_USAGE, "what stands behind -- is for sbatch, with --slurm");
+        return false;
+    }
+    if (o->index) o->jobs = 1;
+    if (!o->jobs) o->jobs = processors();
+    return true;
+}
+
+/* ---- Checks ---- */
+
+static void print_problems(const Problems *problems)
+{
+    enum { SHOWN = 100 };
+    for (int k = 0; k < problems->count && k < SHOWN; k++) say(stderr, "%s", problems->sentences[k]);
+    if (problems->count > SHOWN) say(stderr, "and %d more", problems->count - SHOWN);
+}
+
+/* Tables of those names are this sweep's where its folder is there. */
+static bool check_tables(const Sweep *sweep, Error *err)
+{
+    static const char *const endings[] = {".csv", ".h5"};
+    struct stat info;
+    bool ok = true, begun = stat(sweep->name, &info) == 0;
+    if (begun && !S_ISDIR(info.st_mode))
+        return error_set(
+            err, "'%s' is a file, and the results go to a folder of this name; give another one with -o",
+            sweep->name);
+    for (size_t k = 0; k < 2 && !begun && ok; k++) {
+        char *path = mem_format("%s%s", sweep->name, endings[k]);
+        if (access(path, F_OK) == 0)
+            ok =
+                error_set(err,
+                          "'%s' is there, and no table of this sweep, which has not begun; give another name "
+                          "with -o, or replace it with --force",
+                          path);
+        mem_free(path);
+    }
+    return ok;
+}
+
+/* A run that is not to be done is counted as it ended. */
+static bool check_one(const Sweep *sweep, const SweepOptions *o, int run, Problems *problems,
+                      SweepTally *tally)
+{
+    RunState state;
+    bool right = check_run(sweep, run, o->force, &state, problems),
+         next = right && state_next(&state, o->retry, o->force);
+    if (right && !next) tally_add(tally, state.code);
+    state_clear(&state);
+    return next;
+}
+
+/* Before the first one starts: leaves of these runs those that are to be done. False after printing what is wrong. */
+static bool check_runs(const Sweep *sweep, const SweepOptions *o, int *runs, int *count, SweepTally *tally)
+{
+    Problems problems = {0};
+    int left = 0;
+    for (int k = 0; k < *count; k++)
+        if (check_one(sweep, o, runs[k], &problems, tally)) runs[left++] = runs[k];
+    *count = left;
+    print_problems(&problems);
+    bool ok = problems.count == 0;
+    problems_clear(&problems);
+    return ok;
+}
+
+/* ---- What can be done ---- */
+
+static int list_runs(const Sweep *sweep)
+{
+    for (int r = 0; r < sweep->run_count; r++) {
+        YamlFile *file;
+        Scene scene;
+        bool loaded = sweep_load(sweep, r, &file, &scene);
+        RunState state = loaded ? state_read(sweep, r, &scene) : (RunState){0};
+        char *word = loaded ? state_word(&state, sweep, r) : mem_text("refused"),
+             *line = mem_format("%d", r + 1);
+        for (int k = 0; k < sweep->key_count; k++) {
+            char *assignment = sweep_assignment(sweep, r, k);
+            line = mem_join(line, "  ", assignment);
+            mem_free(assignment);
+        }
+        say(stdout, "%s  %s%s%s", line, word, state.said && state_is_failed(&state) ? ": " : "",
+            state.said && state_is_failed(&state) ? state.said : "");
+        state_clear(&state);
+        mem_free(word);
+        mem_free(line);
+        yaml_clear(scene_table(), &scene);
+        yaml_destroy(file);
+    }
+    return RUN_DONE;
+}
+
+static int collect(const Sweep *sweep, const Host *host)
+{
+    Error err;
+    int best;
+    if (!table_collect(sweep, host, &best, &err)) return verb_fail(RUN_CANNOT_WRITE, err.text);
+    host_say(host, "table: %s.csv", sweep->name);
+    if (best >= 0) host_say(host, "the best is run %d: %s/best.vtkhdf", best + 1, sweep->name);
+    if (sweep->best && best < 0)
+        host_say(host, "no result has a number at %s: none is the best", sweep->best);
+    return RUN_DONE;
+}
+
+static int code_of(const SweepTally *t)
+{
+    if (t->interrupted) return RUN_INTERRUPTED;
+    return t->failed || t->not_converged ? RUN_NOT_CONVERGED : t->held ? SWEEP_HELD : RUN_DONE;
+}
+
+static int run_all(const Sweep *sweep, const SweepOptions *o, const int *runs, int count, SweepTally *t,
+                   const Host *host)
+{
+    Error err;
+    int jobs = o->jobs < count ? o->jobs : count, share = count ? processors() / jobs : 1;
+    SweepWork work = {.sweep = sweep,
+                      .host = host,
+                      .jobs = jobs,
+                      .threads = o->threads  ? o->threads
+                                 : share > 1 ? share
+                                             : 1,
+                      .retry = o->retry,
+                      .force = o->force};
+    if (count && !work_run(&work, runs, count, t, &err)) return verb_fail(RUN_CANNOT_WRITE, err.text);
+    host_say(host,
+             "%d done, %d did not converge, %d failed, %d interrupted or not begun, %d under way elsewhere",
+             t->converged, t->not_converged, t->failed, t->interrupted, t->held);
+    if (t->interrupted) host_say(host, "all is saved: the same command goes on");
+    int table = o->index ? RUN_DONE : collect(sweep, host);
+    return table ? table : code_of(t);
+}
+
+static int submit(const Sweep *sweep, const SweepOptions *o, const int *runs, int count)
+{
+    Error err;
+    int submitted, waiting;
+    bool *todo = mem_alloc((size_t)sweep->run_count, sizeof *todo);
+    for (int k = 0; k < count; k++) todo[runs[k]] = true;
+    SlurmDef def = {.sweep = sweep, .options = o->sbatch, .retry = o->retry, .force = o->force};
+    bool ok = slurm_submit(&def, todo, &submitted, &waiting, &err);
+    mem_free(todo);
+    if (!ok) return verb_fail(RUN_CANNOT_WRITE, err.text);
+    say(stdout, "%d runs submitted, %d are with Slurm already", submitted, waiting);
+    return RUN_DONE;
+}
+
+static int do_runs(const Sweep *sweep, const SweepOptions *o)
+{
+    Error err;
+    SweepTally tally = {0};
+    Progress progress = progress_start(o->quiet ? PROGRESS_QUIET : PROGRESS_NORMAL);
+    Host host = progress_host(&progress);
+    if (o->index > sweep->run_count)
+        return verb_fail(RUN_USAGE, "--index is beyond the last run; --list names them");
+    if (!o->force && !check_tables(sweep, &err)) return verb_fail(RUN_CANNOT_WRITE, err.text);
+    if (o->collect) return collect(sweep, &host);
+    int count = o->index ? 1 : sweep->run_count, *runs = mem_alloc((size_t)count, sizeof *runs);
+    for (int k = 0; k < count; k++) runs[k] = o->index ? o->index - 1 : k;
+    int code = !check_runs(sweep, o, runs, &count, &tally) ? RUN_REFUSED
+               : o->slurm                                  ? submit(sweep, o, runs, count)
+                                                           : run_all(sweep, o, runs, count, &tally, &host);
+    mem_free(runs);
+    return code;
+}
+
+int verb_sweep(int argc, char **argv)
+{
+    SweepOptions options = {0};
+    Sweep sweep;
+    char *report;
+    int code;
+    if (!parse(argc, argv, &options, &code)) return code;
+    if (kernels_reserve(1) < 1) mem_exhausted("OpenBLAS, which works in 128 MB");
+    bool ok = sweep_read(options.file, options.output, &sweep, &report);
+    if (report) say_lines(stderr, report);
+    code = !ok ? RUN_REFUSED : options.list ? list_runs(&sweep) : do_runs(&sweep, &options);
+    mem_free(report);
+    sweep_clear(&sweep);
+    return code;
+}

@@ -1,0 +1,99 @@
+#include "sweep/check.h"
+#include "base/memory.h"
+#include "job/outputs.h"
+#include "model/model.h"
+#include <string.h>
+
+/* Takes the sentence. */
+static void add(Problems *problems, char *sentence)
+{
+    for (int k = 0; k < problems->count; k++)
+        if (!strcmp(problems->sentences[k], sentence)) {
+            mem_free(sentence);
+            return;
+        }
+    size_t count = (size_t)problems->count++;
+    problems->sentences = mem_resize(problems->sentences, count, count + 1, sizeof(char *));
+    problems->sentences[count] = sentence;
+}
+
+/* What is said of an assignment, "--set key=value: ..", is said of the value's place. NULL: it is of none. */
+static char *at_value(const Sweep *sweep, int run, const char *sentence)
+{
+    static const char set[] = "--set ", colon[] = ": ";
+    char *placed = NULL;
+    for (int k = 0; !placed && k < sweep->key_count; k++) {
+        char *assignment = sweep_assignment(sweep, run, k);
+        size_t length = strlen(assignment);
+        const char *rest = sentence + strlen(set) + length;
+        if (!strncmp(sentence, set, strlen(set)) && !strncmp(sentence + strlen(set), assignment, length) &&
+            !strncmp(rest, colon, strlen(colon)))
+            placed = mem_format("%s%s%s", sweep_value(sweep, run, k)->where, colon, rest + strlen(colon));
+        mem_free(assignment);
+    }
+    return placed;
+}
+
+static void add_errors(const Sweep *sweep, int run, const YamlFile *file, Problems *problems)
+{
+    int count;
+    const YamlError *errors = yaml_errors(file, &count);
+    for (int k = 0; k < count; k++) {
+        const YamlError *error = &errors[k];
+        char *placed = error->line ? mem_format("%s:%d:%d: %s", sweep->scene, error->line, error->column,
+                                                error->sentence)
+                                   : at_value(sweep, run, error->sentence);
+        add(problems, placed ? placed : mem_format("%s: %s", sweep->scene, error->sentence));
+    }
+}
+
+/* The tables are none of the files that the scene is made of. */
+static bool check_tables(const Sweep *sweep, const Scene *scene, Problems *problems)
+{
+    static const char *const endings[] = {".csv", ".h5"};
+    bool ok = true;
+    for (size_t k = 0; k < sizeof endings / sizeof *endings; k++) {
+        Error err;
+        char *table = mem_format("%s%s", sweep->name, endings[k]);
+        bool free = outputs_check_source(scene, sweep->scene, table, &err);
+        if (!free) add(problems, mem_text(err.text));
+        ok = ok && free;
+        mem_free(table);
+    }
+    return ok;
+}
+
+/* Will nothing be computed? */
+static bool is_settled(const RunState *state)
+{
+    return state->record == RECORD_FINISHED || state->held;
+}
+
+bool check_run(const Sweep *sweep, int run, bool force, RunState *state, Problems *problems)
+{
+    YamlFile *file;
+    Scene scene;
+    *state = (RunState){0};
+    bool ok = sweep_load(sweep, run, &file, &scene);
+    if (ok) *state = state_read(sweep, run, &scene);
+    if (ok && state->record == RECORD_OTHER && !force) {
+        add(problems, mem_text(state->wrong.text));
+        ok = false;
+    } else if (ok && !is_settled(state)) {
+        Model *model = model_create(&scene, file);
+        ok = model != NULL;
+        model_destroy(model);
+    }
+    ok = ok && check_tables(sweep, &scene, problems);
+    add_errors(sweep, run, file, problems);
+    yaml_clear(scene_table(), &scene);
+    yaml_destroy(file);
+    return ok;
+}
+
+void problems_clear(Problems *problems)
+{
+    for (int k = 0; k < problems->count; k++) mem_free(problems->sentences[k]);
+    mem_free(problems->sentences);
+    *problems = (Problems){0};
+}

@@ -1,0 +1,103 @@
+#include "sweep/state.h"
+#include "base/memory.h"
+#include "io/safe_file.h"
+#include "io/result.h"
+#include "sweep/lock.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static char *file_of(const Sweep *sweep, int run, const char *ending)
+{
+    return mem_join(sweep_run_name(sweep, run), ending, "");
+}
+
+/* "3: words". */
+static void read_end(const char *path, RunState *state)
+{
+    char line[600] = "", *end;
+    FILE *file = fopen(path, "r");
+    state->code = -1;
+    if (!file) return;
+    if (fgets(line, sizeof line, file)) {
+        line[strcspn(line, "\n")] = 0;
+        long code = strtol(line, &end, 10);
+        if (end > line) state->code = (int)code;
+        if (*end == ':') state->said = mem_text(end + 1 + (end[1] == ' '));
+    }
+    fclose(file);
+}
+
+RunState state_read(const Sweep *sweep, int run, const Scene *scene)
+{
+    RunState state = {0};
+    char *name = sweep_run_name(sweep, run), *end = file_of(sweep, run, ".end"),
+         *lock = file_of(sweep, run, ".lock");
+    state.record = record_state(scene, name, &state.wrong);
+    state.held = lock_is_held(lock);
+    read_end(end, &state);
+    mem_free(name);
+    mem_free(end);
+    mem_free(lock);
+    return state;
+}
+
+void state_clear(RunState *state)
+{
+    mem_free(state->said);
+    state->said = NULL;
+}
+
+bool state_is_failed(const RunState *state)
+{
+    return state->code > RUN_NOT_CONVERGED && state->record != RECORD_OTHER;
+}
+
+const char *state_next(const RunState *state, bool retry, bool force)
+{
+    bool failed = state_is_failed(state);
+    if (state->record == RECORD_OTHER || (failed && force)) return force ? "--force" : NULL;
+    if (failed && !retry) return NULL;
+    if (state->record == RECORD_FINISHED && !failed) return state->code < 0 ? "--resume" : NULL;
+    return state->record == RECORD_UNFINISHED ? "--resume" : "--quiet";
+}
+
+static char *result_word(const Sweep *sweep, int run)
+{
+    Array status;
+    char *path = file_of(sweep, run, ".vtkhdf"), *word;
+    Result *result = result_open(path, NULL);
+    bool has = result && result_read(result, "slender/status", &status, NULL);
+    word = mem_text(has ? status.data : "absent");
+    if (has) array_clear(&status);
+    result_close(result);
+    mem_free(path);
+    return word;
+}
+
+char *state_word(const RunState *state, const Sweep *sweep, int run)
+{
+    if (state->held) return mem_text("running");
+    if (state->record == RECORD_OTHER) return mem_text("changed");
+    if (state_is_failed(state)) return mem_format("failed: %d", state->code);
+    if (state->record == RECORD_FINISHED) return result_word(sweep, run);
+    return mem_text(state->record == RECORD_UNFINISHED ? "interrupted" : "absent");
+}
+
+void state_put_begin(const Sweep *sweep, int run)
+{
+    char *path = file_of(sweep, run, ".end");
+    unlink(path);
+    mem_free(path);
+}
+
+bool state_put_end(const Sweep *sweep, int run, int code, const char *said, Error *err)
+{
+    char *path = file_of(sweep, run, ".end");
+    char *text = said && *said ? mem_format("%d: %s\n", code, said) : mem_format("%d\n", code);
+    bool ok = safe_file_write(path, text, strlen(text), false, err);
+    mem_free(path);
+    mem_free(text);
+    return ok;
+}

@@ -1,0 +1,14 @@
+/* table.h - a sweep's results as one table: NAME.csv, and NAME.h5 with a dataset for each column.
+ *
+ * Columns: `run` (from 1); the varied keys, in SI where all their values are numbers; `status`; what is collected; with `best`
+ * a last one, `best`, 1 of the best run and 0 of the others. Three numbers are NAME.x, NAME.y, NAME.z, others NAME[0], ..; of
+ * what has a row for each time, stage or evaluation (probes, history, stages, frames) it is the last row. What is not there
+ * is an empty cell, and NaN. */
+#pragma once
+#include "base/error.h"
+#include "job/host.h"
+#include "sweep/sweep.h"
+
+/* Writes both files, and makes NAME/best.vtkhdf a link to the best run's result. *best: that run, -1: none. Warns of
+ * paths that no result has. */
+bool table_collect(const Sweep *sweep, const Host *host, int *best, Error *err);

@@ -1,0 +1,199 @@
+#include "sweep/work.h"
+#include "base/memory.h"
+#include "io/program.h"
+#include "sweep/lock.h"
+#include "sweep/state.h"
+#include <errno.h>
+#include <signal.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+/* A run under way; run < 0: none. */
+typedef struct Task {
+    int run, lock;
+    pid_t process;
+} Task;
+
+typedef struct Working {
+    const SweepWork *work;
+    Task *tasks; /* [jobs] */
+    int active, done, total;
+    bool stopping;
+    SweepTally *tally;
+    Error *err;
+} Working;
+
+void tally_add(SweepTally *tally, int code)
+{
+    if (code == RUN_DONE)
+        tally->converged++;
+    else if (code == RUN_NOT_CONVERGED)
+        tally->not_converged++;
+    else if (code == RUN_INTERRUPTED)
+        tally->interrupted++;
+    else
+        tally->failed++;
+}
+
+static void count(Working *w, int run, int code, const char *what)
+{
+    tally_add(w->tally, code);
+    host_step(w->work->host, ++w->done, w->total, "run %d %s", run + 1, what);
+}
+
+/* ---- The start of a run ---- */
+
+static int spawn(const SweepWork *work, int run, const char *mode, int lock, pid_t *process)
+{
+    const Sweep *sweep = work->sweep;
+    enum { FIXED = 9 };
+    char *name = sweep_run_name(sweep, run), *log = mem_format("%s.log", name),
+         *threads = mem_format("%d", work->threads), *assignments[SWEEP_KEYS_MAX];
+    const char *arguments[FIXED + 2 * SWEEP_KEYS_MAX + 1] = {
+        "/proc/self/exe", "run", sweep->scene, "-o", name, "--no-picture", "--threads", threads, mode};
+    for (int k = 0; k < sweep->key_count; k++) {
+        arguments[FIXED + 2 * k] = "--set";
+        arguments[FIXED + 2 * k + 1] = assignments[k] = sweep_assignment(sweep, run, k);
+    }
+    int failed = program_start(arguments, log, lock, process);
+    for (int k = 0; k < sweep->key_count; k++) mem_free(assignments[k]);
+    mem_free(name);
+    mem_free(log);
+    mem_free(threads);
+    return failed;
+}
+
+/* The option to begin it with; NULL: another process has done it meanwhile, with *code. */
+static const char *next_of(const SweepWork *work, int run, int *code)
+{
+    YamlFile *file;
+    Scene scene;
+    const char *mode = NULL;
+    *code = RUN_REFUSED;
+    if (sweep_load(work->sweep, run, &file, &scene)) {
+        RunState state = state_read(work->sweep, run, &scene);
+        mode = state_next(&state, work->retry, work->force);
+        if (state.record != RECORD_OTHER) *code = state.code;
+        state_clear(&state);
+    }
+    yaml_clear(scene_table(), &scene);
+    yaml_destroy(file);
+    return mode;
+}
+
+/* False where no process can be made. */
+static bool start_locked(Working *w, Task *task)
+{
+    int code, failed = 0;
+    const char *mode = next_of(w->work, task->run, &code);
+    if (mode) {
+        state_put_begin(w->work->sweep, task->run);
+        failed = spawn(w->work, task->run, mode, task->lock, &task->process);
+    } else {
+        count(w, task->run, code, "was done elsewhere");
+    }
+    if (mode && !failed) return w->active++, true;
+    close(task->lock);
+    task->run = -1;
+    return !failed || error_set(w->err, "no process can be started: %s", strerror(failed));
+}
+
+static bool start(Working *w, int run)
+{
+    Task *task = w->tasks;
+    while (task->run >= 0) task++;
+    char *name = sweep_run_name(w->work->sweep, run), *lock = mem_format("%s.lock", name);
+    bool held;
+    task->lock = lock_take(lock, &held, w->err);
+    mem_free(name);
+    mem_free(lock);
+    if (held) {
+        w->tally->held++;
+        host_step(w->work->host, ++w->done, w->total, "run %d is under way elsewhere", run + 1);
+        return true;
+    }
+    task->run = task->lock >= 0 ? run : -1;
+    return task->lock >= 0 && start_locked(w, task);
+}
+
+/* ---- The end of one ---- */
+
+static void say_end(Working *w, int run, int code, const char *said)
+{
+    if (code > RUN_NOT_CONVERGED && code != RUN_INTERRUPTED)
+        host_say(w->work->host, "run %d has failed with code %d%s%s", run + 1, code, *said ? ": " : "", said);
+    count(w, run, code,
+          code == RUN_DONE            ? "done"
+          : code == RUN_NOT_CONVERGED ? "did not converge"
+          : code == RUN_INTERRUPTED   ? "interrupted"
+                                      : "failed");
+}
+
+/* A run that was stopped with the sweep has not ended. */
+static void finish(Working *w, Task *task, int status)
+{
+    enum { SIGNALLED = 128 };
+    int code = WIFSIGNALED(status) ? SIGNALLED + WTERMSIG(status) : WEXITSTATUS(status);
+    if (WIFSIGNALED(status) && w->stopping) code = RUN_INTERRUPTED;
+    char said[400] = "", *name = sweep_run_name(w->work->sweep, task->run), *log = mem_format("%s.log", name);
+    Error unwritten;
+    bool failed = code > RUN_NOT_CONVERGED && code != RUN_INTERRUPTED;
+    if (WIFSIGNALED(status))
+        snprintf(said, sizeof said, "ended by signal %d, %s", WTERMSIG(status), strsignal(WTERMSIG(status)));
+    else if (failed)
+        program_last_line(log, said, sizeof said);
+    if (code != RUN_INTERRUPTED && !state_put_end(w->work->sweep, task->run, code, said, &unwritten))
+        host_warn(w->work->host, "%s", unwritten.text);
+    say_end(w, task->run, code, said);
+    close(task->lock);
+    task->run = -1;
+    w->active--;
+    mem_free(name);
+    mem_free(log);
+}
+
+static void wait_for_some(Working *w)
+{
+    const struct timespec pause = {.tv_nsec = 5000000};
+    bool any = false;
+    for (int k = 0; k < w->work->jobs; k++) {
+        int status;
+        Task *task = &w->tasks[k];
+        if (task->run < 0 || waitpid(task->process, &status, WNOHANG) != task->process) continue;
+        finish(w, task, status);
+        any = true;
+    }
+    if (!any) nanosleep(&pause, NULL);
+}
+
+/* Each saves and ends, as by a Ctrl-C of its own. */
+static void stop(Working *w)
+{
+    w->stopping = true;
+    for (int k = 0; k < w->work->jobs; k++)
+        if (w->tasks[k].run >= 0) kill(w->tasks[k].process, SIGINT);
+}
+
+bool work_run(const SweepWork *work, const int *runs, int total, SweepTally *tally, Error *err)
+{
+    if (mkdir(work->sweep->name, 0777) != 0 && errno != EEXIST)
+        return error_set(err, "%s: cannot be made: %s", work->sweep->name, strerror(errno));
+    Working w = {.work = work, .total = total, .tally = tally, .err = err};
+    w.tasks = mem_alloc((size_t)work->jobs, sizeof *w.tasks);
+    for (int k = 0; k < work->jobs; k++) w.tasks[k].run = -1;
+    bool ok = true;
+    for (int next = 0; w.active || (next < total && ok && !w.stopping);) {
+        if (!w.stopping && (!ok || host_stops(work->host))) stop(&w);
+        if (!w.stopping && next < total && w.active < work->jobs)
+            ok = start(&w, runs[next++]);
+        else if (w.active)
+            wait_for_some(&w);
+    }
+    tally->interrupted += total - w.done; /* those that were not begun */
+    mem_free(w.tasks);
+    return ok;
+}

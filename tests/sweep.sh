@@ -1,0 +1,141 @@
+#!/bin/sh
+# Sweeps: what their files say and may not say, runs that end in all ways, tables.    tests/sweep.sh PROGRAM
+. "$(dirname "$0")/expect.sh"
+is() { [ "$2" = "$3" ] || { echo "$1: '$2', not '$3'"; bad=1; }; }
+column() { # of a table without quotes: its name, the file
+    awk -F, -v name="$1" 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == name) k = i; if (!k) print "no column " name }
+                          NR > 1 && k { printf "%s%s", (NR > 2 ? " " : ""), $k } END { print "" }' "$2"
+}
+sweep() { name=$1; shift; printf 'sweep: 1\nscene: strip.yaml\n%s\n' "$*" > "$name.yaml"; }
+cat > strip.yaml <<'END'
+slender: 1
+job: equilibrium
+shell: {mesh: {shape: sheet, size: [20 mm, 5 mm], cells: [4, 1]}, thickness: 1 mm, young: 1 MPa, poisson: 0.4, density: 1000 kg/m^3, gravity: [0, 0, -9.81]}
+fix: [{group: root, clamp: true}]
+probes: {tip: {group: tip}}
+END
+
+# ---- All combinations, the last key fastest; the numbers are those of single runs ----
+sweep all 'vary: {shell.thickness: [0.5 mm, 1 mm, 2 mm], shell.gravity: [[0, 0, -9.81], [0, 0, -1]]}
+collect: [status, final/energy/bending, probes/tip]
+best: {of: final/energy/bending, least: true}'
+expect 0 "$program" sweep all.yaml --jobs 2; says "6 done"; says "the best is run 6"
+is columns "$(head -1 all.csv)" "run,shell.thickness,shell.gravity.x,shell.gravity.y,shell.gravity.z,status,final/energy/bending,probes/tip.x,probes/tip.y,probes/tip.z,best"
+is runs "$(column run all.csv)" "1 2 3 4 5 6"
+is thickness "$(column shell.thickness all.csv)" "0.00050000000000000001 0.00050000000000000001 0.001 0.001 0.002 0.002"
+is gravity "$(column shell.gravity.z all.csv)" "-9.8100000000000005 -1 -9.8100000000000005 -1 -9.8100000000000005 -1"
+is status "$(column status all.csv)" "converged converged converged converged converged converged"
+is best "$(column best all.csv)" "0 0 0 0 0 1"
+same all/best.vtkhdf all/0006.vtkhdf; exists all.h5
+expect 0 "$program" run strip.yaml --set shell.thickness=2mm --set 'shell.gravity=[0, 0, -9.81]' -o single --no-picture --quiet
+is tip "$(tail -1 single_probes.csv | cut -d, -f2-4)" "$(sed -n 6p all.csv | cut -d, -f8-10)"
+expect 0 "$program" export single.vtkhdf -o single.csv --dataset final/energy/bending
+is energy "$(tail -1 single.csv)" "$(sed -n 6p all.csv | cut -d, -f7)"
+
+# ---- Keys that go together, runs from a file, seeds ----
+sweep zip 'vary: {zip: true, shell.thickness: [0.5 mm, 1 mm], shell.young: [1 MPa, 2 MPa]}'
+expect 0 "$program" sweep zip.yaml --quiet
+is zip "$(column shell.thickness zip.csv); $(column shell.young zip.csv)" "0.00050000000000000001 0.001; 1000000 2000000"
+printf 'shell.thickness; shell.gravity\n# a remark\n0.5 mm; [0, 0, -1]\n\n"1 mm";"[0, 0, -2]"\n' > runs.csv
+sweep file 'vary: {file: runs.csv}'
+expect 0 "$program" sweep file.yaml --quiet
+is file "$(column shell.gravity.z file.csv)" "-1 -2"
+sed 's/equilibrium/design/' strip.yaml > seeded.yaml
+printf 'design: {unknowns: {young: {noise: 0.2 MPa}}, objectives: [{height: 1}], iterations: 0}\n' >> seeded.yaml
+sweep seeds 'vary: {shell.thickness: [1 mm, 2 mm]}
+seeds: 3
+best: {of: final/objective, least: true}'
+sed -i 's/strip.yaml/seeded.yaml/' seeds.yaml
+expect 0 "$program" sweep seeds.yaml --quiet
+is seeds "$(column design.seed seeds.csv)" "1 2 3 1 2 3"
+is "six starts" "$(column final/objective seeds.csv | tr ' ' '\n' | sort -u | wc -l)" 6
+
+# ---- What has finished is kept; another sweep's results are refused; a run more is one run more ----
+touch -d 2001-01-01 zip/000*.vtkhdf
+expect 0 "$program" sweep zip.yaml
+is kept "$(find zip -name '000*.vtkhdf' ! -newermt 2001-01-02 | wc -l)" 2
+sed -i 's/\[1 MPa, 2 MPa\]/[1 MPa, 3 MPa]/' zip.yaml
+expect 3 "$program" sweep zip.yaml; says "zip/0002.vtkhdf: it is the result of another scene: shell.young.value is not the same"
+expect 0 "$program" sweep zip.yaml --list; says "2  shell.thickness=1 mm  shell.young=3 MPa  changed"
+expect 0 "$program" sweep zip.yaml --collect; is changed "$(column status zip.csv)" "converged changed"
+expect 0 "$program" sweep zip.yaml --force
+is replaced "$(find zip -name '000*.vtkhdf' ! -newermt 2001-01-02)" zip/0001.vtkhdf
+sed -i 's/1 mm\]/1 mm, 2 mm]/; s/3 MPa\]/3 MPa, 4 MPa]/' zip.yaml
+expect 0 "$program" sweep zip.yaml --index 3; exists zip/0003.vtkhdf
+expect 0 "$program" sweep zip.yaml; is more "$(column status zip.csv)" "converged converged converged"
+
+# ---- Runs that fail and do not converge end nothing else ----
+sweep bad 'vary: {solver.max_iterations: [1, 50], load_steps: [1, 2]}
+collect: [final/energy/bending]'
+mkdir bad; echo junk > bad/0003.run
+expect 1 "$program" sweep bad.yaml; says "run 3 has failed with code 4: .*not a journal"
+is ends "$(column status bad.csv | sed 's/[a-z_]* [a-z_]* /_ _ /')" "_ _ failed: 4 converged"
+expect 1 "$program" sweep bad.yaml; says "1 done, 2 did not converge, 1 failed"
+expect 0 "$program" sweep bad.yaml --list; says "3  .*failed: 4: .*not a journal"
+rm bad/0003.run
+expect 1 "$program" sweep bad.yaml --retry; says "2 done, 2 did not converge, 0 failed"
+
+# ---- Interrupted and killed runs go on to the numbers of those that were not ----
+cat > motion.yaml <<'END'
+slender: 1
+job: simulate
+shell: {mesh: {shape: sheet, size: [20 mm, 5 mm], cells: [4, 1]}, thickness: 1 mm, young: 1 MPa, poisson: 0.4, density: 1000 kg/m^3, gravity: [0, 0, -9.81]}
+fix: [{group: root, clamp: true}]
+time: {step: 1 ms, steps: 3000}
+output: {every: 100}
+END
+sweep whole 'vary: {shell.young: [1 MPa, 2 MPa]}
+collect: [final/energy/bending, final/energy/membrane]'
+sed -i 's/strip.yaml/motion.yaml/' whole.yaml; cp whole.yaml parts.yaml
+"$program" sweep whole.yaml --quiet
+"$program" sweep parts.yaml --jobs 1 --quiet & pid=$!
+until "$program" info parts/0001.run > out.txt 2>&1; do sleep 0.02; kill -0 $pid || break; done
+expect 76 "$program" sweep parts.yaml --index 1; says "under way elsewhere"
+expect 0 "$program" sweep parts.yaml --list; says "1  .*running"
+kill -INT $pid; wait $pid; is "Ctrl-C" $? 75
+is interrupted "$(column status parts.csv)" "interrupted absent"
+"$program" sweep parts.yaml --jobs 1 --quiet & pid=$!
+until child=$(pgrep -P $pid); do sleep 0.02; done
+kill -9 $pid; wait $pid 2> err.txt
+expect 76 "$program" sweep parts.yaml --index 1 # the run that the sweep has left behind
+kill -9 "$child"; while kill -0 "$child" 2> err.txt; do sleep 0.02; done
+expect 0 "$program" sweep parts.yaml --jobs 2 --quiet
+same whole.csv parts.csv
+
+# ---- What is refused, each wrong value once, before anything is made ----
+refused() { # words, what the file says after its scene
+    words=$1; shift; sweep no "$*"
+    expect 3 "$program" sweep no.yaml; says "$words"
+    [ ! -e no ] || { echo "'$*' has begun"; bad=1; }
+}
+refused "no.yaml:3:1: the sweep has no key 'colect'; did you mean 'collect'" 'colect: [a]'
+refused "no.yaml:3:32: shell.thickness.value must be a number in m, and '1 T' is a flux density" 'vary: {shell.thickness: [1 mm, 1 T], shell.young: [1 MPa, 2 MPa]}'
+is "sentences" "$(wc -l < err.txt)" 1
+refused "no.yaml:3:21: shell has no key 'yong'; did you mean 'young'" 'vary: {shell.yong: [1 MPa]}'
+refused "no.yaml:3:21: shell.mesh.file: .*none.obj: cannot be read" 'vary: {shell.mesh: [{file: none.obj}]}'
+refused "nothing is varied" 'collect: [status]'
+refused "all keys must have as many values, and shell.young has 2, shell.thickness 1" 'vary: {zip: true, shell.young: [1, 2], shell.thickness: [1]}'
+refused "must be a list of entries, not a text" 'vary: {shell.young: 1 MPa}'
+refused "give only one of zip, file" 'vary: {zip: true, file: runs.csv}'
+refused "the file lists all keys that differ, and 'shell.young' stands beside it" 'vary: {file: runs.csv, shell.young: [1]}'
+refused "none.csv: cannot be read" 'vary: {file: none.csv}'
+refused "design.seed is varied already" 'vary: {design.seed: [1]}
+seeds: 2'
+printf 'shell.young,shell.thickness\n1 MPa\n' > short.csv
+refused "short.csv:2: 1 cells, and the first line names 2 keys" 'vary: {file: short.csv}'
+printf 'shell.young\n"1 MPa\n' > quote.csv
+refused "quote.csv:2: a quote without an end" 'vary: {file: quote.csv}'
+printf 'shell.young\n1 Mpa\n' > unit.csv
+refused "unit.csv:2: shell.young.value must be a number in Pa" 'vary: {file: unit.csv}'
+printf 'shell.young\n1 MPa\n' > no.csv
+refused "the sweep's own table will have this name" 'vary: {file: no.csv}'
+sweep no 'vary: {shell.young: [1 MPa]}'
+expect 4 "$program" sweep no.yaml; says "'no.csv' is there, and no table of this sweep"
+sed -i 's/strip.yaml/none.yaml/' no.yaml; expect 3 "$program" sweep no.yaml; says "no.yaml:2:8: scene: .*none.yaml: cannot be read"
+echo 'scene: strip.yaml' > no.yaml; expect 3 "$program" sweep no.yaml; says "a sweep must have the key .sweep: 1."
+expect 2 "$program" sweep all.yaml --list --collect
+expect 2 "$program" sweep all.yaml --index 7
+expect 2 "$program" sweep all.yaml -- --partition=x
+expect 1 "$program" sweep bad.yaml --index 1
+expect 0 "$program" sweep all.yaml --index 6; says "1 done"
+exit $bad
