@@ -5,6 +5,7 @@
 #   ./do run SCENE ..     build, then run a scene (options: build/slender run --help)
 #   ./do test [NAME]      build, then run all tests (or those whose name matches)
 #   ./do bench [NAME ..]  build, then measure (bench/README.md)
+#   ./do verify [NAME ..] build, then run published cases (docs/verification.md, which all of them rewrite)
 #   ./do wheel            the Python package in python/dist/: a wheel, and an sdist
 set -eu
 here=$(pwd) # scenes and results are where the user is
@@ -66,6 +67,11 @@ bench)
     build > /dev/null
     cd build && exec bench/bench "$@"
     ;;
+verify)
+    setup python3-h5py
+    build quiet
+    exec /usr/bin/python3 verify/verify.py build/slender --page docs/verification.md "$@"
+    ;;
 test)
     build
     (setup $tools) || echo "tests that need them are skipped"
@@ -79,5 +85,5 @@ wheel)
     quietly /usr/bin/python3 setup.py bdist_wheel sdist
     ls dist/*
     ;;
-*) sed -n '2,8s/^# \{0,1\}//p' do ;;
+*) sed -n '2,9s/^# \{0,1\}//p' do ;;
 esac
