@@ -57,7 +57,7 @@ def graded_box(sides: list[np.ndarray]) -> str:
     nx, ny, nz = (len(side) for side in sides)
     node = np.arange(nx * ny * nz).reshape(nx, ny, nz) + 1
     places = np.stack(np.meshgrid(*sides, indexing="ij"), -1).reshape(-1, 3)
-    paths = [(4, 6), (4, 5), (2, 6), (2, 3), (1, 5), (1, 3)]  # from corner 0 to 7 along the axes, corners in binary
+    paths = [(4, 6), (5, 4), (6, 2), (2, 3), (1, 5), (3, 1)]  # from corner 0 to 7 along the axes, corners in binary
     lines = []
     for i, j, k in np.ndindex(nx - 1, ny - 1, nz - 1):
         corner = [node[i + (c >> 2), j + (c >> 1 & 1), k + (c & 1)] for c in range(8)]

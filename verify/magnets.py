@@ -114,7 +114,7 @@ def block() -> Case:
     def half(d: float) -> float:
         return math.atan(a * b / (2 * d * math.sqrt(4 * d * d + a * a + b * b)))
     size = remanence / math.pi * (half(z - h / 2) - half(z + h / 2))
-    return field("block magnet, on its axis", "Furlani 2001, section 4.2", {"magnet": {"at": [0, 0, 0], "size": [a, b, h],
+    return field("block magnet, on its axis", "Furlani 2001", {"magnet": {"at": [0, 0, 0], "size": [a, b, h],
                  "remanence": [0, 0, remanence]}}, 0, z, {2: size})
 
 
@@ -122,7 +122,7 @@ def cylinder(rho: float) -> Case:
     """Its side is a sheet of current, Br/mu_0 per metre."""
     radius, length, z, remanence = 0.01, 0.02, 0.015, 1.2
     layers = [integral(lambda s, k=k: loop(radius, remanence / MU0, rho, z - s)[k], -length / 2, length / 2, 20) for k in (0, 1)]
-    source = "Derby, Olbert 2010, by elliptic integrals of its layers" if rho else "Camacho, Sosa 2013, eq. 7"
+    source = "Derby, Olbert 2010, by elliptic integrals of its layers" if rho else "Camacho, Sosa 2013"
     if not rho:
         far, near = z + length / 2, z - length / 2
         layers[1] = remanence / 2 * (far / math.hypot(far, radius) - near / math.hypot(near, radius))

@@ -16,23 +16,24 @@ def stiffness(poisson: float) -> float:
     return YOUNG * THICKNESS**3 / (12 * (1 - poisson**2))
 
 
-def plate(grid_or_mesh, poisson: float, fix: dict, load: dict) -> dict:
+def plate(mesh: str | dict, poisson: float, fix: dict, load: dict, bending: str = "midedge") -> dict:
     return {"job": "equilibrium",
-            "shell": {"mesh": grid_or_mesh, "thickness": THICKNESS, "young": YOUNG, "poisson": poisson},
+            "shell": {"mesh": mesh, "thickness": THICKNESS, "young": YOUNG, "poisson": poisson, "bending": bending},
             "fix": [fix], "loads": [load]}
 
 
-def square(pattern: str, clamped: bool, cells: int) -> Case:
+def square(pattern: str, clamped: bool, cells: int, bending: str = "midedge") -> Case:
     grid = Grid((cells, cells), lambda u, v: (u, v, 0), pattern)
     edge = {"boundary": True, "clamp": True} if clamped else {"boundary": True}
     return Case(
-        name=f"{'clamped' if clamped else 'supported'} square, {pattern}",
+        name=f"{'clamped' if clamped else 'supported'} square, {pattern}" + (", hinges" if bending == "hinge" else ""),
         source="Timoshenko, Woinowsky-Krieger 1959, tables 8 and 35, series with more digits",
         mesh=f"{cells} x {cells} cells",
-        scenes=[plate("plate.obj", 0.3, edge, {"area": [0, 0, -LOAD]})], files={"plate.obj": grid.obj()},
+        scenes=[plate("plate.obj", 0.3, edge, {"area": [0, 0, -LOAD]}, bending)], files={"plate.obj": grid.obj()},
         figures=[Figure("w D/(q a^4) in the middle",
                         lambda r: -r.moved(0.5, 0.5, 0)[2] * stiffness(0.3) / LOAD,
-                        0.00126532 if clamped else 0.00406235, 0.01)])
+                        0.00126532 if clamped else 0.00406235, 0.01,
+                        miss="hinges alone do not converge on such meshes (docs/theory.md)" if bending == "hinge" else "")])
 
 
 def central_force() -> Case:
@@ -57,10 +58,10 @@ def circle(clamped: bool) -> Case:
 
 
 def skew() -> Case:
-    cells, angle = 48, math.radians(30)
+    cells, angle = 128, math.radians(30)
 
     def place(u: float, v: float) -> tuple:
-        a, b = denser(u, 0.8), denser(v, 0.8)  # towards the corners, which are singular
+        a, b = denser(u, 0.93), denser(v, 0.93)  # towards the corners, which are singular
         return a + b * math.cos(angle), b * math.sin(angle), 0
     grid = Grid((cells, cells), place, "crossed")
     middle = grid.points[grid.nearest(0.5, 0.5)]
@@ -84,4 +85,4 @@ def cantilever(poisson: float) -> Case:
 
 CASES = [square(pattern, clamped, 48 if pattern == "crossed" else 64)
          for clamped in (False, True) for pattern in ("right", "crossed", "unstructured")]
-CASES += [central_force(), circle(True), circle(False), skew(), *(cantilever(nu) for nu in (0, 0.3, 0.49))]
+CASES += [square("unstructured", False, 64, "hinge"), central_force(), circle(True), circle(False), skew(), *(cantilever(nu) for nu in (0, 0.3, 0.49))]

@@ -35,7 +35,7 @@ def heavy(load: int) -> Case:
 
 def mattiasson(load: int, along: float, across: float) -> Case:
     return Case(
-        name=f"cantilever, F L^2/EI = {load}", source="Mattiasson 1981, table 1", mesh="200 elements",
+        name=f"cantilever, F L^2/EI = {load}", source="Mattiasson 1981", mesh="200 elements",
         scenes=[rod(200, [{"force": [0, 0, load * BENDING], "point": "end"}])],
         figures=[Figure("u/L of the end", lambda r: 1 - r.x[-1][0], along, 1e-3),
                  Figure("w/L", lambda r: r.x[-1][2], across, 1e-3)])

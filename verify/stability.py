@@ -21,10 +21,14 @@ def blade(loads: list, gravity: list, density: float = 1000) -> dict:
                     "clamp": {"frame": [[1, 0, 0], [0, 1, 0], [0, 0, 1]]}, "loads": loads}}
 
 
-def crossing(power: int):
-    """Where the lowest eigenvalue is zero, linear in that power of the load, in parts of the expected load."""
+def lowest(r) -> float:
+    return float(r["final/lowest_eigenvalue"])
+
+
+def crossing(power: int, stiffness=lowest):
+    """Where a stiffness is zero that is linear in that power of the load, in parts of the expected load."""
     def read(one, two) -> float:
-        a, b = (float(r["final/lowest_eigenvalue"]) for r in (one, two))
+        a, b = stiffness(one), stiffness(two)
         s, t = (near**power for near in NEAR)
         return (s + a * (t - s) / (a - b)) ** (1 / power)
     return read
@@ -104,4 +108,24 @@ def magnetised_strip() -> Case:
         figures=[Figure("12 M B L^2/(Y h^2)", lambda *r: crossing(1)(*r) * load, load, 0.01)])
 
 
-CASES = [euler(), greenhill(), lateral_tip(), lateral_weight(), supported_strip(), magnetised_strip()]
+def twisted_ring() -> Case:
+    """A straight rod bent to a ring, its ends turned against each other before they are joined: it spins freely within itself
+    (frequency 0), and at the critical twist its first bending frequency is 0, too."""
+    length, radius = 1.0, 1e-3
+    ring, ratio = length / (2 * math.pi), 1.0  # EI/GJ of a round rod, nu = 0
+    twist = 2 * math.pi * math.sqrt(3) * ratio
+
+    def scene(turn: float) -> dict:
+        rod = {"curve": {"formula": [f"{ring}*sin(u)", f"{ring} - {ring}*cos(u)", "0*u"], "range": [0, 2 * math.pi]},
+               "natural_strain": [0, 0, 0], "frame": {"formula": f"{turn}*s/L", "from": "frenet"}, "start": "curve",
+               "elements": 200, "radius": radius, "young": YOUNG, "poisson": 0, "density": 1000, "gravity": [0, 0, 0],
+               "end": {"position": [0, 0, 0], "hold": "clamped",
+                       "frame": [[1, 0, 0], [0, math.cos(turn), math.sin(turn)], [0, -math.sin(turn), math.cos(turn)]]}}
+        return {"job": "equilibrium", "rod": rod, "modes": 2}
+    stiffness = crossing(2, lambda r: r["final/modes_hz"][1] ** 2)
+    return Case(
+        name="ring that is twisted and closed", source="Michell 1889: 2 pi sqrt(3) EI/GJ", mesh="200 elements",
+        scenes=[scene(near * twist) for near in NEAR], figures=[Figure("twist, rad", lambda *r: stiffness(*r) * twist, twist, 1e-3)])
+
+
+CASES = [euler(), greenhill(), lateral_tip(), lateral_weight(), twisted_ring(), supported_strip(), magnetised_strip()]
