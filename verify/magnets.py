@@ -127,7 +127,8 @@ def cylinder(rho: float) -> Case:
         far, near = z + length / 2, z - length / 2
         layers[1] = remanence / 2 * (far / math.hypot(far, radius) - near / math.hypot(near, radius))
     return field(f"cylinder magnet, {'off' if rho else 'on'} its axis", source, {"magnet": {"at": [0, 0, 0], "radius": radius,
-                 "length": length, "remanence": [0, 0, remanence]}}, rho, z, {0: layers[0], 2: layers[1]} if rho else {2: layers[1]})
+                 "length": length, "remanence": [0, 0, remanence]}}, rho, z,
+                 {0: layers[0], 2: layers[1]} if rho else {2: layers[1]})
 
 
 def coil() -> Case:

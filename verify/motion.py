@@ -3,8 +3,6 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from case import Case, Figure
 
 STRIP = {"shape": "sheet", "size": [0.1, 0.01], "cells": [60, 6], "pattern": "alternate"}
@@ -13,9 +11,9 @@ THICKNESS, YOUNG, DENSITY = 1e-3, 1e6, 1000.0
 
 def oscillator() -> Case:
     """One triangle, one free coordinate: a spring of Y h/2 and a third of its mass."""
-    side, speed, dt, steps = 0.01, 1e-6, 1e-3, 50
+    side, speed, steps = 0.01, 1e-6, 50
     omega2 = (YOUNG * THICKNESS / 2) / (DENSITY * THICKNESS * side**2 / 2 / 3)
-    dt /= math.sqrt(omega2) * 1e-3 * 5  # a fifth of 1/omega
+    dt = 0.2 / math.sqrt(omega2)
     scene = {"job": "simulate",
              "shell": {"mesh": "one.obj", "thickness": THICKNESS, "young": YOUNG, "poisson": 0, "density": DENSITY,
                        "velocity": [speed, 0, 0]},
@@ -37,7 +35,8 @@ def flight() -> Case:
     scene = {"job": "simulate",
              "shell": {"mesh": {**STRIP, "cells": [20, 2]}, "thickness": THICKNESS, "young": YOUNG, "poisson": 0.3,
                        "density": DENSITY, "gravity": [0, 0, -9.81],
-                       "velocity": {"formula": [f"{speed[0]} + 5*z", f"{speed[1]} + 20*(x - 0.05)", f"{speed[2]} + 40*(x - 0.05)"]}},
+                       "velocity": {"formula": [f"{speed[0]} + 5*z", f"{speed[1]} + 20*(x - 0.05)",
+                                                f"{speed[2]} + 40*(x - 0.05)"]}},
              "time": {"step": dt, "steps": steps}, "probes": {"middle": {"mass_center": True}}}
     fall = -9.81 * dt * dt * steps * (steps + 1) / 2
 

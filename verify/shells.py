@@ -45,8 +45,9 @@ def pinched_cylinder(cells: int = 56, pattern: str = "crossed") -> Case:
     fix = [{"vertices": grid.where(lambda u, v: v in (0, 1)), "axes": "xz"}, {"vertices": [grid.nearest(0, 0.5)], "axes": "y"}]
     loads = [point_force(grid, 0, 0.5, [0, 0, -1]), point_force(grid, 0.5, 0.5, [0, 0, 1])]
     return Case(
-        name="pinched cylinder", source="Lindberg, Olson, Cowper 1969: w = 164.24 P/(E h)", mesh=f"{2 * cells} x {cells} cells, {pattern}",
-        files={"shell.obj": grid.obj()}, scenes=[equilibrium(3, 3e6, 0.3, fix, loads)],
+        name="pinched cylinder", source="Lindberg, Olson, Cowper 1969: w = 164.24 P/(E h)",
+        mesh=f"{2 * cells} x {cells} cells, {pattern}, denser under the forces", files={"shell.obj": grid.obj()},
+        scenes=[equilibrium(3, 3e6, 0.3, fix, loads)],
         figures=[Figure("w E h/P under the force", lambda r: -r.moved(0, 300, 300)[2] * 3e6 * 3, 164.24, 0.01)])
 
 

@@ -125,7 +125,8 @@ def twisted_ring() -> Case:
     stiffness = crossing(2, lambda r: r["final/modes_hz"][1] ** 2)
     return Case(
         name="ring that is twisted and closed", source="Michell 1889: 2 pi sqrt(3) EI/GJ", mesh="200 elements",
-        scenes=[scene(near * twist) for near in NEAR], figures=[Figure("twist, rad", lambda *r: stiffness(*r) * twist, twist, 1e-3)])
+        scenes=[scene(near * twist) for near in NEAR],
+        figures=[Figure("twist, rad", lambda *r: stiffness(*r) * twist, twist, 1e-3)])
 
 
 CASES = [euler(), greenhill(), lateral_tip(), lateral_weight(), twisted_ring(), supported_strip(), magnetised_strip()]
