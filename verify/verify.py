@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Published cases against the program: verify.py PROGRAM [--page FILE] [NAME ..]
+"""Published cases against the program: verify.py PROGRAM [--page FILE] [--jobs N] [NAME ..]
 
 Runs the cases (all, or those that a NAME begins), prints a line for each figure, and writes the page of docs where --page
 names it. Ends with 1 where a figure misses, a known miss passes, or a run does not end as it should."""
@@ -8,10 +8,11 @@ from __future__ import annotations
 import argparse
 import json
 import math
-import resource
+import os
 import subprocess
 import sys
 import tempfile
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -57,24 +58,23 @@ class Outcome:
         return "known miss" if self.figure.miss else "MISSES"
 
 
-def children_seconds() -> float:
-    """CPU time of all runs so far."""
-    used = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return used.ru_utime + used.ru_stime
-
-
-def run_scene(program: str, folder: Path, name: str, scene: dict, status: str) -> Result:
-    """Runs a scene, which is JSON, and so YAML."""
+def run_scene(program: str, folder: Path, name: str, scene: dict, status: str) -> tuple[Result, float]:
+    """Runs a scene, which is JSON, and so YAML; its result, and CPU seconds."""
     (folder / f"{name}.yaml").write_text(json.dumps({"slender": 1, **scene}))
-    done = subprocess.run([program, "run", f"{name}.yaml", "-o", name, "--quiet", "--no-picture", "--threads", "1"],
-                          cwd=folder, capture_output=True, text=True)
+    command = [program, "run", f"{name}.yaml", "-o", name, "--quiet", "--no-picture", "--threads", "1"]
+    with open(folder / "said", "w+") as said:
+        process = subprocess.Popen(command, cwd=folder, stdout=subprocess.DEVNULL, stderr=said)
+        _, code, used = os.wait4(process.pid, 0)
+        process.returncode = os.waitstatus_to_exitcode(code)
+        said.seek(0)
+        words = said.read().strip()
     result = folder / f"{name}.vtkhdf"
     if not result.exists():
-        raise RuntimeError(done.stderr.strip() or f"code {done.returncode}")
+        raise RuntimeError(words or f"code {process.returncode}")
     opened = Result(str(result))
     if status and opened.status != status:
-        raise RuntimeError(f"{opened.status}, not {status}: {done.stderr.strip()}")
-    return opened
+        raise RuntimeError(f"{opened.status}, not {status}: {words}")
+    return opened, used.ru_utime + used.ru_stime
 
 
 def run_case(program: str, case: Case) -> list[Outcome]:
@@ -82,9 +82,8 @@ def run_case(program: str, case: Case) -> list[Outcome]:
         folder = Path(name)
         for file, text in case.files.items():
             (folder / file).write_text(text)
-        start = children_seconds()
-        results = [run_scene(program, folder, f"scene{k}", scene, case.status) for k, scene in enumerate(case.scenes)]
-        seconds = children_seconds() - start
+        runs = [run_scene(program, folder, f"scene{k}", scene, case.status) for k, scene in enumerate(case.scenes)]
+        results, seconds = [r for r, _ in runs], sum(s for _, s in runs)
         return [Outcome(case, figure, float(figure.read(*results)), seconds) for figure in case.figures]
 
 
@@ -121,12 +120,12 @@ def chosen(case: Case, names: list[str]) -> bool:
     return not names or any(case.name.startswith(name) for name in names)
 
 
-def run_group(program: str, cases: list[Case]) -> tuple[list[Outcome], int]:
+def collect(runs: list[tuple[Case, Future]]) -> tuple[list[Outcome], int]:
     """What came out, and how much of it is not as it should be."""
     outcomes, wrong = [], 0
-    for case in cases:
+    for case, run in runs:
         try:
-            found = run_case(program, case)
+            found = run.result()
         except (RuntimeError, KeyError, OSError) as error:
             print(f"{case.name}: {error}", flush=True)
             wrong += 1
@@ -144,11 +143,15 @@ def main() -> int:
     parser.add_argument("program", help="slender")
     parser.add_argument("names", nargs="*", metavar="NAME", help="cases whose names begin so")
     parser.add_argument("--page", type=Path, help="docs/verification.md, where all cases are run")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="how many cases run at a time")
     options = parser.parse_args()
     program, wrong, groups = str(Path(options.program).resolve()), 0, {}
-    for group, cases in GROUPS.items():
-        groups[group], bad = run_group(program, [c for c in cases if chosen(c, options.names)])
-        wrong += bad
+    with ThreadPoolExecutor(options.jobs) as pool:
+        runs = {group: [(c, pool.submit(run_case, program, c)) for c in cases if chosen(c, options.names)]
+                for group, cases in GROUPS.items()}
+        for group, started in runs.items():
+            groups[group], bad = collect(started)
+            wrong += bad
     if not any(groups.values()) and not wrong:
         parser.error("no case has such a name")
     if options.page and not options.names:
