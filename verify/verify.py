@@ -144,7 +144,7 @@ def main() -> int:
     parser.add_argument("names", nargs="*", metavar="NAME", help="cases whose names begin so")
     parser.add_argument("--page", type=Path, help="docs/verification.md, where all cases are run")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="how many cases run at a time")
-    options = parser.parse_args()
+    options = parser.parse_intermixed_args()
     program, wrong, groups = str(Path(options.program).resolve()), 0, {}
     with ThreadPoolExecutor(options.jobs) as pool:
         runs = {group: [(c, pool.submit(run_case, program, c)) for c in cases if chosen(c, options.names)]
