@@ -6,6 +6,7 @@
 #   ./do test [NAME]      build, then run all tests (or those whose name matches)
 #   ./do bench [NAME ..]  build, then measure (bench/README.md)
 #   ./do verify [NAME ..] build, then run published cases (docs/verification.md, which all of them rewrite)
+#   ./do deb              a Debian package in build-deb/, for any processor of this kind (docs/packages.md)
 #   ./do wheel            the Python package in python/dist/: a wheel, and an sdist
 set -eu
 here=$(pwd) # scenes and results are where the user is
@@ -85,5 +86,15 @@ wheel)
     quietly /usr/bin/python3 setup.py bdist_wheel sdist
     ls dist/*
     ;;
-*) sed -n '2,9s/^# \{0,1\}//p' do ;;
+deb)
+    # shellcheck disable=SC2086
+    setup $packages dpkg-dev file
+    quietly cmake -B build-deb -DCMAKE_BUILD_TYPE=Release -DCMAKE_C_FLAGS_RELEASE=-O3 -DCMAKE_INSTALL_PREFIX=/usr -DSLENDER_NATIVE=OFF -DSLENDER_TESTS=OFF
+    quietly cmake --build build-deb -j"$(nproc)"
+    cd build-deb
+    rm -f ./*.deb
+    quietly cpack
+    ls "$PWD"/*.deb
+    ;;
+*) sed -n '2,10s/^# \{0,1\}//p' do ;;
 esac

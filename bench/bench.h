@@ -11,6 +11,7 @@ void bench_newton(void);
 void bench_factor(void);
 void bench_couple(void);
 void bench_solver(void);
+void bench_spread(void);
 void bench_design(void);
 void bench_march(void);
 void bench_contact(void);

@@ -3,6 +3,7 @@
 #include "bench/bench.h"
 #include "cli/kernels_start.h"
 #include "solve/kernels.h"
+#include "solve/ranks.h"
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -17,6 +18,7 @@ static const struct {
     {"factor", bench_factor},
     {"couple", bench_couple},
     {"solver", bench_solver},
+    {"spread", bench_spread},
     {"march", bench_march},
     {"contact", bench_contact},
     {"crumple", bench_crumple},
@@ -52,6 +54,8 @@ _Noreturn void bench_fail(const char *format, ...)
 int main(int argc, char **argv)
 {
     kernels_start(argv);
+    if (ranks_are_given()) ranks_start();
+    if (ranks_serve()) return 0;
     for (int a = 1; a < argc; a++) {
         int known = 0;
         for (int k = 0; k < CASE_COUNT; k++) known |= !strcmp(argv[a], cases[k].name);
@@ -67,5 +71,6 @@ int main(int argc, char **argv)
         for (int a = 1; a < argc; a++) wanted |= !strcmp(argv[a], cases[k].name);
         if (wanted) cases[k].run();
     }
+    ranks_end();
     return 0;
 }

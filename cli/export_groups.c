@@ -2,90 +2,22 @@
 #include "base/memory.h"
 #include "base/plain.h"
 #include "base/vec3.h"
+#include "export/mesh.h"
 #include "field/flux_field.h"
 #include "io/mesh_file.h"
-#include "io/result_groups.h"
 #include "io/safe_file.h"
 #include <math.h>
 #include <string.h>
 
 /* ---- Meshes with groups ---- */
 
-/* Of a solid: faces are those of its skin, groups those of all its boundary; of the others the faces that are shown. */
-static bool take_shown(Result *result, MeshFile *file, Error *err)
-{
-    Array of;
-    if (!result_has(result, "slender/surface_of_face")) return true;
-    if (!result_read_as(result, "slender/surface_of_face", ARRAY_INT32, 1, 0, &of, err)) return false;
-    const int *surface = of.data;
-    bool ok = of.dims[0] == file->face_count ||
-              error_set(err, "slender/surface_of_face is not as slender writes it");
-    for (int g = 0; ok && g < file->group_count; g++) {
-        MeshGroup *group = &file->groups[g];
-        if (group->dim != 2) continue;
-        int most = 0, shown = 0;
-        for (int k = 0; k < group->count; k++) most = group->members[k] > most ? group->members[k] : most;
-        bool *in = mem_alloc((size_t)most + 1, sizeof *in);
-        for (int k = 0; k < group->count; k++) in[group->members[k]] = true;
-        mem_free(group->members);
-        group->members = mem_alloc((size_t)file->face_count, sizeof *group->members);
-        for (int f = 0; f < file->face_count; f++)
-            if (surface[f] >= 0 && surface[f] <= most && in[surface[f]]) group->members[shown++] = f;
-        group->count = shown;
-        mem_free(in);
-    }
-    array_clear(&of);
-    return ok;
-}
-
-/* Faces, tetrahedra and groups of a result; points are the caller's. file is to be cleared. */
-static bool read_mesh(Result *result, int vertices, MeshFile *file, Error *err)
-{
-    Array faces, cells = {0}, surface = {0};
-    *file = (MeshFile){.vertex_count = vertices};
-    if (!result_read_as(result, "slender/faces", ARRAY_INT32, 2, 3, &faces, err)) return false;
-    bool ok = true;
-    if (result_has(result, "slender/cells"))
-        ok = result_read_as(result, "slender/cells", ARRAY_INT32, 2, 0, &cells, err) &&
-             result_read_as(result, "slender/surface", ARRAY_INT32, 2, 3, &surface, err);
-    file->face_count = faces.dims[0], file->cell_count = cells.dims[0], file->cell_nodes = cells.dims[1];
-    file->faces = mem_copy(faces.data, (size_t)file->face_count, sizeof *file->faces);
-    if (ok && cells.data)
-        file->cells =
-            mem_copy(cells.data, (size_t)(file->cell_count * file->cell_nodes), sizeof *file->cells);
-    const int count[4] = {vertices, 0, cells.data ? surface.dims[0] : file->face_count, file->cell_count};
-    ok = ok && result_groups_read(result, count, file, err) && take_shown(result, file, err);
-    for (int f = 0; ok && f < 3 * file->face_count; f++)
-        ok = (file->faces[f / 3][f % 3] >= 0 && file->faces[f / 3][f % 3] < vertices) ||
-             error_set(err, "slender/faces is not as slender writes it");
-    array_clear(&faces);
-    array_clear(&cells);
-    array_clear(&surface);
-    return ok;
-}
-
 RunStatus export_frame(Result *result, int frame, const char *path, Error *err)
 {
-    Array points;
     MeshFile file;
-    if (frame >= result_step_count(result)) {
-        error_set(err, "there is no frame %d: the result has %d, from 0", frame, result_step_count(result));
-        return RUN_REFUSED;
-    }
-    if (!result_has(result, "slender/faces")) {
-        error_set(err, "there is no mesh in it: its numbers are exported as .csv, with --dataset");
-        return RUN_REFUSED;
-    }
-    bool ok = frame < 0 ? result_read_as(result, "slender/state/x", ARRAY_FLOAT64, 2, 3, &points, err)
-                        : result_read_step(result, "Points", frame, &points, err);
-    if (!ok) return RUN_REFUSED;
     RunStatus status = RUN_REFUSED;
-    if (read_mesh(result, points.dims[0], &file, err)) {
-        file.vertices = mem_copy(points.data, (size_t)points.dims[0], sizeof *file.vertices);
+    if (export_mesh_read(result, frame, &file, err))
         status = mesh_file_write_obj(path, &file, err) ? RUN_DONE : RUN_CANNOT_WRITE;
-    }
     mesh_file_clear(&file);
-    array_clear(&points);
     return status;
 }
 
@@ -175,38 +107,23 @@ static void write_rows(const MeshFile *file, int dim, const double (*M)[3], cons
     mem_free(all.named);
 }
 
-/* Of a shell, of each face; of others nothing. */
-static bool read_thickness(Result *result, const MeshFile *file, Array *thickness, Error *err)
-{
-    static const char path[] = "slender/design/thickness";
-    *thickness = (Array){0};
-    if (!result_has(result, path)) return true;
-    if (!result_read_as(result, path, ARRAY_FLOAT64, 1, 0, thickness, err)) return false;
-    return thickness->dims[0] == file->face_count || error_set(err, "%s is not as slender writes it", path);
-}
-
 /* Of the last frame: tetrahedra first, then faces. */
 static RunStatus write_groups(Result *result, const MeshFile *file, const double *thickness, const char *path,
                               Error *err)
 {
     Array M;
-    if (!result_read_step(result, "CellData/magnetization", result_step_count(result) - 1, &M, err))
-        return RUN_REFUSED;
+    if (!export_magnetization_read(result, file, &M, err)) return RUN_REFUSED;
     RunStatus status = RUN_REFUSED;
     static const char HEADER[] =
         "name,count,magnetization [A/m],remanence [mT],azimuth [deg],elevation [deg],spread [deg]\n";
     char *text = mem_text(HEADER);
-    if (!array_is(&M, ARRAY_FLOAT64, 2, 3) || M.dims[0] != file->cell_count + file->face_count) {
-        error_set(err, "CellData/magnetization is not as slender writes it");
-    } else {
-        const double(*rows)[3] = (const double(*)[3])M.data;
-        if (file->cell_count) write_rows(file, 3, rows, NULL, &text);
-        write_rows(file, 2, rows + file->cell_count, thickness, &text);
-        if (!strcmp(text, HEADER))
-            error_set(err, "nothing is magnetised");
-        else
-            status = safe_file_write(path, text, strlen(text), false, err) ? RUN_DONE : RUN_CANNOT_WRITE;
-    }
+    const double(*rows)[3] = (const double(*)[3])M.data;
+    if (file->cell_count) write_rows(file, 3, rows, NULL, &text);
+    write_rows(file, 2, rows + file->cell_count, thickness, &text);
+    if (!strcmp(text, HEADER))
+        error_set(err, "nothing is magnetised");
+    else
+        status = safe_file_write(path, text, strlen(text), false, err) ? RUN_DONE : RUN_CANNOT_WRITE;
     mem_free(text);
     array_clear(&M);
     return status;
@@ -214,22 +131,16 @@ static RunStatus write_groups(Result *result, const MeshFile *file, const double
 
 RunStatus export_groups(Result *result, const char *path, Error *err)
 {
-    Array rest, thickness = {0};
-    MeshFile file = {0};
+    Array thickness = {0};
+    MeshFile file;
     if (!result_has(result, "slender/groups/names")) {
         error_set(err, "the body's mesh has no groups");
         return RUN_REFUSED;
     }
-    if (!result_read_as(result, "slender/rest", ARRAY_FLOAT64, 2, 3, &rest, err)) return RUN_REFUSED;
-    bool ok = read_mesh(result, rest.dims[0], &file, err);
-    file.vertices = mem_copy(rest.data, (size_t)rest.dims[0], sizeof *file.vertices);
-    for (int i = 0; ok && i < file.cell_count * file.cell_nodes; i++)
-        ok = (file.cells[i] >= 0 && file.cells[i] < file.vertex_count) ||
-             error_set(err, "slender/cells is not as slender writes it");
-    ok = ok && read_thickness(result, &file, &thickness, err);
+    bool ok = export_mesh_read(result, MESH_REST, &file, err);
+    ok = ok && export_thickness_read(result, &file, &thickness, err);
     RunStatus status = ok ? write_groups(result, &file, thickness.data, path, err) : RUN_REFUSED;
     array_clear(&thickness);
     mesh_file_clear(&file);
-    array_clear(&rest);
     return status;
 }

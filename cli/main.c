@@ -3,6 +3,7 @@
 #include "cli/kernels_start.h"
 #include "cli/say.h"
 #include "cli/verb.h"
+#include "solve/ranks.h"
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
@@ -71,6 +72,7 @@ static void end_without_memory(void *self, const char *sentence)
     (void)self;
     fprintf(stderr, "slender: %s\n", sentence);
     fflush(stdout);
+    ranks_abort(RUN_NO_MEMORY);
     _exit(RUN_NO_MEMORY);
 }
 
@@ -91,17 +93,26 @@ static int finish(int code)
                 : code;
 }
 
-int main(int argc, char **argv)
+static int run_verb(int argc, char **argv)
 {
-    hold_streams();
-    mem_set_hook((MemHook){end_without_memory, NULL});
-    signal(SIGPIPE, SIG_IGN); /* a run goes on to its result, whether its words are read or not */
-    signal(SIGXFSZ, SIG_IGN); /* a file beyond the limit of sizes is what a full disk is: write says EFBIG */
-    kernels_start(argv);
     const char *name = argc > 1 ? argv[1] : "help";
     if (!strncmp(name, "--", 2)) name += 2;
     for (int k = 0; k < VERB_COUNT; k++)
         if (!strcmp(name, verbs[k].name)) return finish(verbs[k].run(argc - 1, argv + 1));
     say(stderr, "slender: there is no verb '%s'; slender help lists them", name);
     return RUN_USAGE;
+}
+
+int main(int argc, char **argv)
+{
+    hold_streams();
+    mem_set_hook((MemHook){end_without_memory, NULL});
+    signal(SIGPIPE, SIG_IGN); /* a run goes on to its result, whether its words are read or not */
+    signal(SIGXFSZ, SIG_IGN); /* a file beyond the limit of sizes is what a full disk is: write says EFBIG */
+    kernels_start(argv);      /* may begin the program again: before MPI */
+    if (ranks_are_given()) ranks_start();
+    if (ranks_serve()) return RUN_DONE;
+    int code = run_verb(argc, argv);
+    ranks_end();
+    return code;
 }

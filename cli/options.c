@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { FIRST = 256 }; /* what getopt calls the first row: letters are below */
+enum { ROWS = 256, FIRST }; /* what getopt calls --options and the first row: letters are below */
 
 /* ---- One value ---- */
 
@@ -32,6 +32,13 @@ static bool take_double(const Option *option, const char *text)
     return true;
 }
 
+static bool take_choice(const Option *option, const char *text)
+{
+    for (int k = 0; option->words[k]; k++)
+        if (!strcmp(option->words[k], text)) return *(int *)option->value = k + 1, true;
+    return false;
+}
+
 static bool take(const Option *option, const char *text)
 {
     switch (option->kind) {
@@ -44,10 +51,20 @@ static bool take(const Option *option, const char *text)
         return take_int(option, text);
     case OPTION_DOUBLE:
         return take_double(option, text);
+    case OPTION_CHOICE:
+        return take_choice(option, text);
     case OPTION_OTHER:
         break;
     }
     return option->take(option->value, text);
+}
+
+/* "beside, over or both"; the caller frees. */
+static char *choices_text(const char *const *words)
+{
+    char *text = mem_text(words[0]);
+    for (int k = 1; words[k]; k++) text = mem_join(text, words[k + 1] ? ", " : " or ", words[k]);
+    return text;
 }
 
 /* "a whole number from 1 to 64"; the caller frees. */
@@ -55,6 +72,7 @@ static char *allowed_of(const Option *option)
 {
     if (option->kind == OPTION_TEXT) return mem_text("a text");
     if (option->kind == OPTION_OTHER) return mem_text(option->allowed);
+    if (option->kind == OPTION_CHOICE) return choices_text(option->words);
     const char *number = option->kind == OPTION_INT ? "a whole number" : "a number";
     return option->most == INT_MAX ? mem_format("%s from %g", number, option->least)
                                    : mem_format("%s from %g to %g", number, option->least, option->most);
@@ -85,7 +103,7 @@ static char *value_sentence(const Option *option, const char *text)
 /* What getopt has stopped at: a letter, or the word before the next one. */
 static char *unknown_sentence(char **argv)
 {
-    if (optopt >= FIRST) return mem_format("'%s': this option takes no value", argv[optind - 1]);
+    if (optopt >= ROWS) return mem_format("'%s': this option takes no value", argv[optind - 1]);
     return optopt ? mem_format("there is no option -%c", optopt)
                   : mem_format("there is no option %s", argv[optind - 1]);
 }
@@ -101,15 +119,31 @@ static char *argument_sentence(const char *usage, int given, const char *first)
 
 /* ---- All of them ---- */
 
+/* "argument - value SCENE", then "--output -o value .png .svg", "--force - flag", .. */
+static void print_rows(const char *usage, const Option *options, int count)
+{
+    const char *argument = usage + strcspn(usage, " \n");
+    int length = (int)strcspn(argument, "[-\n");
+    if (length > 1) printf("argument - value%.*s\n", length, argument);
+    for (int k = 0; k < count; k++) {
+        const Option *option = &options[k];
+        char letter[] = {'-', option->letter, 0};
+        printf("--%s %s %s", option->name, letter, option->kind == OPTION_FLAG ? "flag" : "value");
+        for (int w = 0; option->words && option->words[w]; w++) printf(" %s", option->words[w]);
+        printf("\n");
+    }
+}
+
 /* Rows as getopt has them; the caller frees. */
 static struct option *long_options(const Option *options, int count)
 {
-    struct option *table = mem_alloc((size_t)count + 2, sizeof *table);
+    struct option *table = mem_alloc((size_t)count + 3, sizeof *table);
     for (int k = 0; k < count; k++)
         table[k] =
             (struct option){options[k].name, options[k].kind == OPTION_FLAG ? no_argument : required_argument,
                             NULL, FIRST + k};
     table[count] = (struct option){"help", no_argument, NULL, 'h'};
+    table[count + 1] = (struct option){"options", no_argument, NULL, ROWS};
     return table;
 }
 
@@ -140,8 +174,11 @@ static bool take_all(int argc, char **argv, const char *usage, const Option *opt
     opterr = 0;
     for (int c; ok && (c = getopt_long(argc, argv, letters, table, NULL)) >= 0;) {
         const Option *option = row_of(options, count, c == ':' ? optopt : c);
-        if (c == 'h') {
-            printf("usage: slender %s\n", usage);
+        if (c == 'h' || c == ROWS) {
+            if (c == 'h')
+                printf("usage: slender %s\n", usage);
+            else
+                print_rows(usage, options, count);
             *code = RUN_DONE;
             ok = false;
         } else if (!option)

@@ -1,7 +1,7 @@
 /* options.h - what is given to a verb: rows of options, and one argument.
  *
  * A row says where its value goes and what is allowed; whatever else is given is refused with one sentence that names
- * it. --help prints how the verb is used. */
+ * it. --help prints how the verb is used, and --options, for shells that complete what is typed, its rows. */
 #pragma once
 #include <stdbool.h>
 
@@ -10,6 +10,7 @@ typedef enum OptionKind {
     OPTION_TEXT,   /* const char *, as it is given                      */
     OPTION_INT,    /* int from `least` to `most`                        */
     OPTION_DOUBLE, /* double from `least` to `most`                     */
+    OPTION_CHOICE, /* int or enum: which of `words` it is, from 1       */
     OPTION_OTHER,  /* whatever `take` makes of the text                 */
 } OptionKind;
 
@@ -21,7 +22,12 @@ typedef struct Option {
     double least, most;
     bool (*take)(void *value, const char *text); /* false: it is not allowed */
     const char *allowed; /* where `take` is: "must be .."; of the others it is known */
+    const char *const
+        *words; /* NULL-terminated; what shells complete: words, the endings of files (".png"), or what
+                               * can be had elsewhere, in capitals (--set: "KEY"). NULL: nothing is known */
 } Option;
+
+#define OPTION_WORDS(...) ((const char *const[]){__VA_ARGS__, NULL})
 
 /* Fills in what is given. `usage` begins with the verb's name and, where there is one, that of its argument, which
  * *argument gets ("run SCENE [-o NAME] .."); a verb without one passes NULL. False where nothing is left to do:
@@ -40,6 +46,7 @@ typedef struct Settings {
 /* `take` of a row whose value is Settings, and what it allows. */
 bool settings_take(void *settings, const char *text);
 #define SETTINGS_ALLOWED "key=value, and given 64 times at most"
+#define SETTINGS_WORDS   OPTION_WORDS("KEY")
 
 /* The same of a key of its own. */
 bool settings_put(Settings *settings, const char *key, const char *value);

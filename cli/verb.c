@@ -2,6 +2,7 @@
 #include "base/memory.h"
 #include "cli/say.h"
 #include "solve/kernels.h"
+#include "solve/ranks.h"
 #include <stdio.h>
 #include <string.h>
 
@@ -18,14 +19,28 @@ static void print_report(YamlFile *file)
     mem_free(report);
 }
 
+/* What factors are spread over is started; others of several processes have nothing to do, and no thought of it. */
+static void start_ranks(const Scene *scene)
+{
+    if (direct_is_spread(scene->solver.direct))
+        ranks_start();
+    else if (ranks_count() > 1)
+        say(stderr,
+            "warning: of %d processes one works: only `solver: {direct: mumps}` gives work to the others",
+            ranks_count());
+}
+
 bool verb_load_scene(const char *path, const Settings *settings, YamlFile **file, Scene *scene)
 {
     *scene = (Scene){0};
     *file = yaml_read(path);
     for (int k = 0; settings && k < settings->count; k++) yaml_override(*file, settings->text[k]);
-    if (yaml_load(*file, scene_table(), scene)) return true;
-    print_report(*file);
-    return false;
+    if (!yaml_load(*file, scene_table(), scene)) {
+        print_report(*file);
+        return false;
+    }
+    start_ranks(scene);
+    return true;
 }
 
 Model *verb_build_model(const Scene *scene, YamlFile *file)

@@ -181,7 +181,8 @@ int verb_check(int argc, char **argv)
     int code;
     bool derivatives = false;
     const Option options[] = {
-        {"set", .kind = OPTION_OTHER, .value = &settings, .take = settings_take, .allowed = SETTINGS_ALLOWED},
+        {"set", .kind = OPTION_OTHER, .value = &settings, .take = settings_take, .allowed = SETTINGS_ALLOWED,
+         .words = SETTINGS_WORDS},
         {"derivatives", .value = &derivatives},
     };
     if (!options_parse(argc, argv, usage, options, 2, &path, &code)) {

@@ -27,7 +27,7 @@ static const char usage[] =
     "                 without any of these: the final state of every load case\n"
     "  --case NAME    one load case\n"
     "  --field NAME   colours: magnetization, young, thickness, von_mises, contact_force, .., or none\n"
-    "  --target WHERE the target beside the body, over it as wires (default for a motion), or both; of a "
+    "  --target KIND  the target beside the body, over it as wires (default for a motion), or both; of a "
     "motion's places and\n"
     "                 curves: over\n"
     "  --view X,Y,Z   direction to the eye; default: three quarters from above; of rods: front, side and "
@@ -36,14 +36,10 @@ static const char usage[] =
     "PX,PY,PZ,NX,NY,NZ; of the\n"
     "                 body at rest, whose cut moves with it; what is on the eye's side is left out";
 
-static bool take_target(void *target, const char *word)
-{
-    static const char *const names[] = {"beside", "over", "both"};
-    static const PictureTarget places[] = {PICTURE_TARGET_BESIDE, PICTURE_TARGET_OVER, PICTURE_TARGET_BOTH};
-    for (int k = 0; k < 3; k++)
-        if (!strcmp(word, names[k])) return *(PictureTarget *)target = places[k], true;
-    return false;
-}
+static const char *const target_words[] = {[PICTURE_TARGET_BESIDE - 1] = "beside",
+                                           [PICTURE_TARGET_OVER - 1] = "over",
+                                           [PICTURE_TARGET_BOTH - 1] = "both",
+                                           NULL};
 
 /* A direction, however long: but its square must be a number, and not 0. */
 static bool take_view(void *view, const char *text)
@@ -106,15 +102,15 @@ int verb_picture(int argc, char **argv)
     bool animation = false, no_arrows = false, no_history = false;
     int width = 0, code; /* 0: as usual */
     const Option options[] = {
-        {"output", .letter = 'o', .kind = OPTION_TEXT, .value = &output},
+        {"output", .letter = 'o', .kind = OPTION_TEXT, .value = &output,
+         .words = OPTION_WORDS(".png", ".svg", ".pdf", ".webp")},
         {"frame", .kind = OPTION_INT, .value = &def.frame, .least = 0, .most = INT_MAX},
         {"animation", .value = &animation},
         {"seconds", .kind = OPTION_DOUBLE, .value = &seconds, .least = 0.04, .most = 600},
         {"stills", .kind = OPTION_INT, .value = &def.stills, .least = 1, .most = 100},
-        {"case", .kind = OPTION_TEXT, .value = &def.only},
-        {"field", .kind = OPTION_TEXT, .value = &def.field},
-        {"target", .kind = OPTION_OTHER, .value = &def.target, .take = take_target,
-         .allowed = "beside, over or both"},
+        {"case", .kind = OPTION_TEXT, .value = &def.only, .words = OPTION_WORDS("CASE")},
+        {"field", .kind = OPTION_TEXT, .value = &def.field, .words = OPTION_WORDS("FIELD", "none")},
+        {"target", .kind = OPTION_CHOICE, .value = &def.target, .words = target_words},
         {"view", .kind = OPTION_OTHER, .value = def.view, .take = take_view,
          .allowed = "X,Y,Z, finite numbers up to 1e6, and not all 0"},
         {"clip", .kind = OPTION_OTHER, .value = &def.clip, .take = take_clip,

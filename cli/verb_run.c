@@ -52,12 +52,6 @@ static bool take_margin(void *settings, const char *text)
     return settings_put(settings, "spline.page.margin=", text);
 }
 
-static bool take_log(void *mode, const char *text)
-{
-    *(ProgressMode *)mode = PROGRESS_JSON;
-    return !strcmp(text, "json");
-}
-
 /* A machine may have more processors than are of use, or not know how many. */
 static int default_threads(void)
 {
@@ -68,24 +62,25 @@ static int default_threads(void)
 static bool parse(int argc, char **argv, RunOptions *o, int *code)
 {
     bool quiet = false;
+    int json = 0;
     const Option options[] = {
         {"output", .letter = 'o', .kind = OPTION_TEXT, .value = &o->output},
         {"set", .kind = OPTION_OTHER, .value = &o->settings, .take = settings_take,
-         .allowed = SETTINGS_ALLOWED},
-        {"page", .kind = OPTION_OTHER, .value = &o->settings, .take = take_page,
-         .allowed = "a size of paper"},
+         .allowed = SETTINGS_ALLOWED, .words = SETTINGS_WORDS},
+        {"page", .kind = OPTION_OTHER, .value = &o->settings, .take = take_page, .allowed = "a size of paper",
+         .words = OPTION_WORDS("a5", "a4", "a3", "a2", "letter")},
         {"margin", .kind = OPTION_OTHER, .value = &o->settings, .take = take_margin, .allowed = "a length"},
         {"resume", .value = &o->resume},
         {"force", .value = &o->force},
         {"threads", .kind = OPTION_INT, .value = &o->threads, .least = 1, .most = THREADS_MAX},
         {"quiet", .value = &quiet},
-        {"log", .kind = OPTION_OTHER, .value = &o->mode, .take = take_log, .allowed = "json"},
+        {"log", .kind = OPTION_CHOICE, .value = &json, .words = OPTION_WORDS("json")},
         {"no-picture", .value = &o->no_picture},
     };
     o->threads = default_threads();
     if (!options_parse(argc, argv, usage, options, sizeof options / sizeof *options, &o->scene, code))
         return false;
-    if (quiet && o->mode == PROGRESS_NORMAL) o->mode = PROGRESS_QUIET;
+    o->mode = json ? PROGRESS_JSON : quiet ? PROGRESS_QUIET : PROGRESS_NORMAL;
     if (!o->resume || !o->force) return true;
     *code =
         verb_fail(RUN_USAGE, "--resume goes on with a run and --force discards it: one of them can be given");

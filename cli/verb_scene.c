@@ -8,14 +8,17 @@
 int verb_schema(int argc, char **argv)
 {
     static const char usage[] =
-        "schema [--manual]\n  JSON Schema of scene files for editors; with --manual the "
-        "manual of all keys (docs/scene.md)";
-    bool manual = false;
+        "schema [--manual | --keys]\n  JSON Schema of scene files for editors; with --manual the "
+        "manual of all keys (docs/scene.md),\n"
+        "  with --keys a line for each, as --set has it";
+    bool manual = false, keys = false;
     int code;
-    const Option options[] = {{"manual", .value = &manual}};
-    if (!options_parse(argc, argv, usage, options, 1, NULL, &code)) return code;
-    char *text =
-        manual ? yaml_manual(scene_table(), "Scene files") : yaml_schema(scene_table(), "slender scene");
+    const Option options[] = {{"manual", .value = &manual}, {"keys", .value = &keys}};
+    if (!options_parse(argc, argv, usage, options, 2, NULL, &code)) return code;
+    if (manual && keys) return verb_fail(RUN_USAGE, "--manual and --keys exclude each other");
+    char *text = manual ? yaml_manual(scene_table(), "Scene files")
+                 : keys ? yaml_keys(scene_table())
+                        : yaml_schema(scene_table(), "slender scene");
     fputs(text, stdout);
     mem_free(text);
     return RUN_DONE;
@@ -39,7 +42,8 @@ int verb_mesh(int argc, char **argv)
         "mesh SCENE [-o FILE.obj]\n  Writes the scene's mesh, generated or read, as OBJ with its groups.";
     const char *output = NULL, *scene_path;
     int code;
-    const Option options[] = {{"output", .letter = 'o', .kind = OPTION_TEXT, .value = &output}};
+    const Option options[] = {
+        {"output", .letter = 'o', .kind = OPTION_TEXT, .value = &output, .words = OPTION_WORDS(".obj")}};
     if (!options_parse(argc, argv, usage, options, 1, &scene_path, &code)) return code;
     YamlFile *file;
     Scene scene;

@@ -451,13 +451,16 @@ void flux_field_middle(const FluxField *field, FluxPlace place, double middle[3]
     memcpy(middle, stand.origin, sizeof stand.origin);
 }
 
-bool flux_field_is_within(const FluxField *field, const double x[3], FluxPlace place)
+int flux_field_find_within(const FluxField *field, const double *x, int count, FluxPlace place)
 {
     Stand stand;
-    double own[3];
-    if (!field->kind->within || !stand_at(field, place, &stand, NULL)) return false;
-    own_place(&stand, x, own);
-    return field->kind->within(field, own);
+    if (!field->kind->within || !stand_at(field, place, &stand, NULL)) return -1;
+    for (int k = 0; k < count; k++) {
+        double own[3];
+        own_place(&stand, x + 3 * k, own);
+        if (field->kind->within(field, own)) return k;
+    }
+    return -1;
 }
 
 bool flux_field_has_winding(const FluxField *field)

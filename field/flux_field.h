@@ -74,8 +74,9 @@ bool flux_field_is_known(const FluxField *field, const double x[3], FluxPlace pl
 /* The value alone, for a fiftieth where it is a formula. */
 void flux_field_value(const FluxField *field, const double x[3], FluxPlace place, double flux[3]);
 
-/* Is the place within a magnet, or so near to the winding of a coil, if it has one, that its field is not known there? */
-bool flux_field_is_within(const FluxField *field, const double x[3], FluxPlace place);
+/* The first of so many places, x[count][3], that is within a magnet, or so near to the winding of a coil, if it has one, that
+ * its field is not known there; -1: none is. */
+int flux_field_find_within(const FluxField *field, const double *x, int count, FluxPlace place);
 bool flux_field_has_winding(const FluxField *field);
 
 /* The middle about which it turns, m. */

@@ -14,6 +14,9 @@
 
 enum { MAX_POINTS = 10000, PNG_BAND = 64 };
 
+/* Alike on all machines, with all the signs of ticks.c; where it is not there, Cairo takes the machine's own. */
+static const char FONT[] = "DejaVu Sans";
+
 typedef enum Format { FORMAT_PNG, FORMAT_SVG, FORMAT_PDF, FORMAT_COUNT } Format;
 
 static const char *const endings[FORMAT_COUNT] = {".png", ".svg", ".pdf"};
@@ -263,7 +266,7 @@ void canvas_arrow(Canvas *canvas, Vec2 tail, Vec2 tip, Pen pen)
 
 static void select_font(Canvas *canvas, TextStyle style)
 {
-    cairo_select_font_face(canvas->cairo, "sans-serif", CAIRO_FONT_SLANT_NORMAL,
+    cairo_select_font_face(canvas->cairo, FONT, CAIRO_FONT_SLANT_NORMAL,
                            style.bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
     cairo_set_font_size(canvas->cairo, style.size);
 }

@@ -9,9 +9,20 @@ char *path_base_name(const char *path)
     return mem_format("%.*s", (int)(dot && dot > name ? dot - name : (long)strlen(name)), name);
 }
 
+bool path_has_ending(const char *path, const char *ending)
+{
+    size_t length = strlen(path), size = strlen(ending);
+    return length > size && !strcmp(path + length - size, ending);
+}
+
 char *path_without_ending(const char *path, const char *ending)
 {
-    size_t length = strlen(path), cut = strlen(ending);
-    bool has = length > cut && !strcmp(path + length - cut, ending);
-    return mem_format("%.*s", (int)(has ? length - cut : length), path);
+    size_t cut = path_has_ending(path, ending) ? strlen(ending) : 0;
+    return mem_format("%.*s", (int)(strlen(path) - cut), path);
+}
+
+char *path_numbered(const char *path, int number)
+{
+    const char *dot = strrchr(path, '.');
+    return mem_format("%.*s_%d%s", (int)(dot - path), path, number, dot);
 }

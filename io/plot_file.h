@@ -102,7 +102,15 @@ bool plot_profile(const char *name, PlotProfile *profile, Error *err);
 /* From a YAML file of one's own (scenes/plotters/, docs/line_art.md): the table of io/plot_profile.c. A sentence with the
  * line where it is refused. The profile owns its words then: clear it. */
 bool plot_profile_read(const char *path, PlotProfile *profile, Error *err);
+/* The same of such a file's text; `path` is for the sentence. */
+bool plot_profile_parse(const char *path, const char *text, PlotProfile *profile, Error *err);
 void plot_profile_clear(PlotProfile *profile);
+
+/* Is a place of the paper (mm, as in PlotLayer) within the limits? */
+bool plot_profile_reaches(const PlotProfile *profile, const double paper[2], Vec2 place, Error *err);
+
+/* Do its pens go up and down with {z_feed}, so that lifts take as long as a z axis does? */
+bool plot_profile_lifts_by_z(const PlotProfile *profile);
 
 /* Is every word in braces one that stands for something? */
 bool plot_words_check(const char *words, Error *err);

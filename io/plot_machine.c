@@ -164,10 +164,9 @@ bool plot_words_check(const char *words, Error *err)
 }
 
 /* Where the machine has a place of the paper, mm. */
-static Vec2 machine_place(const Writer *writer, Vec2 p)
+static Vec2 machine_place(const PlotProfile *profile, const double paper[2], Vec2 p)
 {
-    const PlotProfile *profile = writer->profile;
-    double width = writer->paper[0], height = writer->paper[1];
+    double width = paper[0], height = paper[1];
     if (profile->turn && height > width) {
         p = (Vec2){height - p.y, p.x};
         height = width;
@@ -180,26 +179,30 @@ static Vec2 machine_point(const Writer *writer, Vec2 p)
 {
     const PlotProfile *profile = writer->profile;
     double scale = profile->units, tick = pow(10, -profile->decimals);
-    Vec2 at = machine_place(writer, p);
+    Vec2 at = machine_place(profile, writer->paper, p);
     return (Vec2){tick * round(scale * at.x / tick), tick * round(scale * at.y / tick)};
 }
 
-/* All control points, in whose hull the curves lie; a hundredth of a millimetre is nothing. */
-static bool check_limits(const Writer *writer, const char *path, const Plot *plot, Error *err)
+bool plot_profile_reaches(const PlotProfile *profile, const double paper[2], Vec2 place, Error *err)
 {
-    const double *limits = writer->profile->limits, slack = 0.01;
-    if (limits[0] == 0) return true;
+    const double *limits = profile->limits, slack = 0.01; /* a hundredth of a millimetre is nothing */
+    Vec2 at = machine_place(profile, paper, place);
+    return limits[0] == 0 ||
+           (fmin(at.x, at.y) >= -slack && at.x <= limits[0] + slack && at.y <= limits[1] + slack) ||
+           error_set(err,
+                     "the plot has a point where the machine has (%.4g, %.4g) mm, and it reaches from "
+                     "(0, 0) to (%g, %g) mm; a wider margin or a smaller page helps",
+                     at.x, at.y, limits[0], limits[1]);
+}
+
+/* All control points, in whose hull the curves lie. */
+static bool check_limits(const PlotProfile *profile, const char *path, const Plot *plot, Error *err)
+{
     for (int k = 0; k < plot->layer_count; k++) {
         const PlotLayer *layer = &plot->layers[k];
-        for (int i = 0; i < (layer->count ? layer->start[layer->count] : 0); i++) {
-            Vec2 at = machine_place(writer, layer->points[i]);
-            if (fmin(at.x, at.y) < -slack || at.x > limits[0] + slack || at.y > limits[1] + slack)
-                return error_set(
-                    err,
-                    "%s: the plot has a point where the machine has (%.4g, %.4g) mm, and it reaches from "
-                    "(0, 0) to (%g, %g) mm; a wider margin or a smaller page helps",
-                    path, at.x, at.y, limits[0], limits[1]);
-        }
+        for (int i = 0; i < (layer->count ? layer->start[layer->count] : 0); i++)
+            if (!plot_profile_reaches(profile, plot->paper, layer->points[i], err))
+                return error_prefix(err, "%s", path);
     }
     return true;
 }
@@ -240,7 +243,7 @@ bool plot_write_machine(const char *path, const Plot *plot, const PlotProfile *p
 {
     Writer writer = {.profile = profile, .plotter = plotter, .paper = plot->paper};
     bool first = true;
-    if (!plot_check(path, plot, err) || !check_limits(&writer, path, plot, err)) return false;
+    if (!plot_check(path, plot, err) || !check_limits(profile, path, plot, err)) return false;
     add_template(&writer, profile->header);
     for (int k = 0; k < plot->layer_count; k++) {
         const PlotLayer *layer = &plot->layers[k];

@@ -53,6 +53,13 @@ static const YamlTable table = {
          .doc = "how far it reaches from its (0, 0); a plot beyond it is refused"},
         {0}}};
 
+/* Words that go nowhere would draw nothing. */
+static bool check_place(const char *at, const char *words, YamlFile *file)
+{
+    return (strstr(words, "{x}") && strstr(words, "{y}")) ||
+           yaml_refuse(file, at, "these words do not say where to: {x} and {y} are needed");
+}
+
 static bool check_words(const ProfileFile *from, YamlFile *file)
 {
     const struct {
@@ -111,15 +118,31 @@ static bool refuse(YamlFile *file, Error *err)
     return false;
 }
 
-bool plot_profile_read(const char *path, PlotProfile *profile, Error *err)
+static bool take(YamlFile *file, PlotProfile *profile, Error *err)
 {
     ProfileFile from;
-    YamlFile *file = yaml_read(path);
-    bool ok = (yaml_load(file, &table, &from) && check_words(&from, file)) || refuse(file, err);
+    bool ok = (yaml_load(file, &table, &from) && check_place("travel", from.travel, file) &&
+               check_place("line", from.line, file) && check_words(&from, file)) ||
+              refuse(file, err);
     *profile = ok ? profile_of(&from) : (PlotProfile){0};
     yaml_clear(&table, &from);
     yaml_destroy(file);
     return ok;
+}
+
+bool plot_profile_read(const char *path, PlotProfile *profile, Error *err)
+{
+    return take(yaml_read(path), profile, err);
+}
+
+bool plot_profile_parse(const char *path, const char *text, PlotProfile *profile, Error *err)
+{
+    return take(yaml_parse(path, text, strlen(text)), profile, err);
+}
+
+bool plot_profile_lifts_by_z(const PlotProfile *profile)
+{
+    return strstr(profile->down, "{z_feed}") || strstr(profile->up, "{z_feed}");
 }
 
 void plot_profile_clear(PlotProfile *p)

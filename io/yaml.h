@@ -150,6 +150,9 @@ typedef struct YamlError {
  * documents, NULs, invalid UTF-8, duplicate keys. */
 YamlFile *yaml_read(const char *path);
 YamlFile *yaml_parse(const char *path, const char *text, size_t length);
+
+/* The number that a text says in that unit, as the value of a key would; false where it says none. */
+bool yaml_number(const char *text, const char *unit, double *value);
 void yaml_destroy(YamlFile *file);
 
 /* Sets one value before loading: "shell.mesh.n=7", "fix[0].ball.radius=1 mm", "gravity=[0, 0, -9.81]".
@@ -218,6 +221,10 @@ char *yaml_schema(const YamlTable *table, const char *title);
 
 /* The manual of all keys, Markdown: one section per table. */
 char *yaml_manual(const YamlTable *table, const char *title);
+
+/* All keys as --set has them, a line each: "shell.thickness=", one for each word that may be its value, "job=design", of a
+ * list those of its first entry, "fix[0].ball.radius="; of a mapping with names its own alone. */
+char *yaml_keys(const YamlTable *table);
 
 /* For the tests of a table: asserts that its defaults, ranges, units and sub-tables are sound. A FIELD_TABLE
  * that is not required must load from nothing; a table must not contain itself. */

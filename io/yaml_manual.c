@@ -333,6 +333,40 @@ char *yaml_manual(const YamlTable *table, const char *title)
     return text.text;
 }
 
+/* ---- Keys ---- */
+
+static void key_lines(Text *text, const YamlTable *table, const char *before);
+
+static void key_line(Text *text, const YamlField *row, const char *key)
+{
+    static const char *const truth[] = {"true", "false", NULL};
+    const char *const *words = row->kind == FIELD_CHOICE ? row->choices
+                               : row->kind == FIELD_BOOL ? truth
+                                                         : NULL;
+    if (!words) text_add(text, "%s=\n", key);
+    for (int k = 0; words && words[k]; k++) text_add(text, "%s=%s\n", key, words[k]);
+    if (!row->table || row->kind == FIELD_MAP) return;
+    char *below = mem_format(row->kind == FIELD_LIST ? "%s[0]." : "%s.", key);
+    key_lines(text, row->table, below);
+    mem_free(below);
+}
+
+static void key_lines(Text *text, const YamlTable *table, const char *before)
+{
+    for (const YamlField *row = table->fields; row->key; row++) {
+        char *key = mem_format("%s%s", before, row->key);
+        key_line(text, row, key);
+        mem_free(key);
+    }
+}
+
+char *yaml_keys(const YamlTable *table)
+{
+    Text text = {0};
+    key_lines(&text, table, "");
+    return text.text;
+}
+
 /* ---- Check ---- */
 
 static void check_row(const YamlField *row)

@@ -289,3 +289,9 @@ void number_format(double value, char text[40])
     snprintf(tail, sizeof tail, "%s", e);
     snprintf(e, (size_t)(text + 40 - e), ".0%s", tail);
 }
+
+bool yaml_number(const char *text, const char *unit, double *value)
+{
+    char wrong[200];
+    return unit_parse(text, unit, value, wrong, sizeof wrong) && isfinite(*value);
+}

@@ -9,7 +9,7 @@
 static NewtonStatus relax(Run *run, Case *c)
 {
     const BodyOps *ops = run->model->body->ops;
-    System *held = ops->pose_system ? ops->pose_system(run->model) : NULL;
+    System *held = ops->pose_system ? model_take_system(run->model, ops->pose_system(run->model)) : NULL;
     NewtonStatus status = NEWTON_CONVERGED;
     NewtonDef def = newton_default();
     run_newton(run, &def);
@@ -31,8 +31,9 @@ static Evaluation differentiate(const Case *c, bool twice)
 
 static Balance balance_of_points(const Case *c)
 {
-    Evaluation now = differentiate(c, false);
-    return (Balance){"forces", "N", now.gradient_max, now.force_scale, now.finite};
+    Evaluation now = differentiate(c, true);
+    bool little = now.finite && now.gradient_max <= newton_round_off(c->sys, c->state.x);
+    return (Balance){"forces", "N", little ? 0 : now.gradient_max, now.force_scale, now.finite};
 }
 
 /* Would the body leave the pose? Without an eigenvalue it does, by what moves no point (a rod that spins where it is).

@@ -10,7 +10,7 @@
 
 #define PROBE_TABLE "_probes.csv" /* RESULT_probes.csv */
 
-enum { FILES = 5, OWN = 7, WRITTEN = 3 };
+enum { FILES = 6, OWN = 7, WRITTEN = 3 };
 
 typedef struct OutputFile {
     const char *language; /* of drawn_write; NULL: the picture */
@@ -53,6 +53,7 @@ static void files_of(const Scene *scene, const char *result, OutputFile files[FI
     files[2] = (OutputFile){"gcode", path_of(result, output->gcode, NULL)};
     files[3] = (OutputFile){"gcode_servo", path_of(result, output->gcode_servo, NULL)};
     files[4] = (OutputFile){"hpgl", path_of(result, output->hpgl, NULL)};
+    files[5] = (OutputFile){"profile", path_of(result, output->plotter, NULL)};
 }
 
 static void clear_files(OutputFile files[FILES])

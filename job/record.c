@@ -10,6 +10,7 @@
 #include "model/stored.h"
 #include "model/world_report.h"
 #include "solve/kernels.h"
+#include "solve/ranks.h"
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -258,11 +259,26 @@ static void say_world(const Run *run)
     mem_free(text);
 }
 
+/* What spread factors took of the processes' memory; the first one has all else, too. */
+static void say_processes(const Run *run)
+{
+    const double MB = 1e6;
+    SparseInfo most = {0};
+    if (!direct_is_spread(run->model->direct)) return;
+    for (int c = 0; c < run->model->case_count; c++) {
+        SparseInfo info = system_info(run->model->cases[c].sys);
+        if (info.all_bytes >= most.all_bytes) most = info;
+    }
+    host_say(run->host, "factors over %d process%s: %.0f MB in all, at most %.0f MB in one", ranks_count(),
+             ranks_count() > 1 ? "es" : "", (double)most.all_bytes / MB, (double)most.process_bytes / MB);
+}
+
 static RunStatus run_job(Run *run, bool resume, Error *err)
 {
     RunStatus status = begin(run, resume, err);
     if (status == RUN_DONE) status = job_run(run, err);
     if (status == RUN_CANNOT_WRITE || status == RUN_REFUSED) return status;
+    say_processes(run);
     if (!write_result(run, status != RUN_INTERRUPTED, err)) return RUN_CANNOT_WRITE;
     host_say(run->host, "result: %s", run->result);
     return outputs_write(run, err) ? status : RUN_CANNOT_WRITE;

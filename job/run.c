@@ -142,6 +142,13 @@ static void add_stage(Arrays *list, const Run *run, const Snapshot *shot)
     Point at = state_point(&shot->at, shot->p);
     arrays_add(list, array_text("stages/status", newton_status_name(shot->status)));
     arrays_add(list, array_float("stages/time", "s", &shot->at.time, 0, 0, 0));
+    if (model->flux_blocks.uniform >= 0) {
+        double *flux = arrays_numbers(list, 3);
+        model_flux(model, shot->p, shot->at.time, flux);
+        arrays_add(list, array_float("stages/flux_density", "T", flux, 2, 1, 3));
+    }
+    if (model->gravity >= 0)
+        arrays_add(list, array_float("stages/gravity", "m/s^2", shot->p + model->gravity, 2, 1, 3));
     if (steps) arrays_add(list, array_float("stages/load_part", "", &shot->part, 0, 0, 0));
     add_energies(list, "stages", shot->load_case->sys, &at);
     add_felt(list, model, shot, "stages");
@@ -265,6 +272,24 @@ static char *case_names(const Snapshot *shots, int count)
     return names;
 }
 
+/* The lowest frequencies, where they were asked for. */
+static void say_vibrations(const Run *run, const Arrays *list)
+{
+    enum { SAID = 10 };
+    for (size_t k = 0; k < list->count; k++) {
+        const Array *hz = &list->arrays[k];
+        if (strcmp(hz->name, "final/modes_hz") != 0) continue;
+        char *text = mem_text("");
+        for (int i = 0; i < hz->dims[0] && i < SAID; i++) {
+            char *number = mem_format("%.4g", ((const double *)hz->data)[i]);
+            text = mem_join(text, i ? ", " : "", number);
+            mem_free(number);
+        }
+        host_say(run->host, "vibrations: %s%s Hz", text, hz->dims[0] > SAID ? ", .." : "");
+        mem_free(text);
+    }
+}
+
 static void say_doubt(Run *run, const Snapshot *shot)
 {
     const BodyOps *body = run->model->body->ops;
@@ -280,6 +305,7 @@ void run_add_final(Run *run, const Snapshot *shots, int count, const char *statu
     state_arrays_add(model, &shots[count - 1], "state", false, list);
     add_params(list, model->params, shots, count);
     model->body->ops->add_final(model, &shots[count - 1], run->scene->modes, list);
+    say_vibrations(run, list);
     arrays_add(list, array_text("status", status));
     arrays_add(list, array_text("case_names", arrays_keep(list, case_names(shots, count))));
     for (int k = 0; k < count; k++) {

@@ -151,7 +151,18 @@ static void add_over_time(const TrajectoryJob *job, Arrays *list, Array named, i
     arrays_add(list, array_float(named.name, named.unit, rows, 2, steps, width));
 }
 
-/* trajectory/flux_density, and trajectory/source_strength where that is unknown over time. */
+/* Of the sources whose strengths are unknown over time, a line each. */
+static char *strength_names(const Model *model)
+{
+    const Control *strengths = &model->strengths;
+    int first = strengths->to - model->flux_blocks.strength;
+    char *names = mem_text("");
+    for (int k = 0; k < strengths->width; k++)
+        names = mem_join(names, flux_field_name(model->fields->items[first + k]), "\n");
+    return names;
+}
+
+/* trajectory/flux_density, and trajectory/source_strength, source_names where that is unknown over time. */
 static void add_field(const TrajectoryJob *job, Arrays *list)
 {
     const Model *model = job->run->model;
@@ -159,9 +170,10 @@ static void add_field(const TrajectoryJob *job, Arrays *list)
     if (model->flux_blocks.uniform >= 0)
         add_over_time(job, list, (Array){.name = "trajectory/flux_density", .unit = "T"},
                       model->flux_blocks.uniform, 3);
-    if (strengths->rows)
-        add_over_time(job, list, (Array){.name = "trajectory/source_strength", .unit = ""}, strengths->to,
-                      strengths->width);
+    if (!strengths->rows) return;
+    add_over_time(job, list, (Array){.name = "trajectory/source_strength", .unit = ""}, strengths->to,
+                  strengths->width);
+    arrays_add(list, array_text("trajectory/source_names", arrays_keep(list, strength_names(model))));
 }
 
 /* dF/dp of the unknowns, and what the start's places and velocities do to F. */

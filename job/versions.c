@@ -31,9 +31,14 @@ char *run_kernels(Run *run, Error *err)
 char *run_versions(void)
 {
     const char *note = kernels_note();
-    return mem_format("slender %s\nCHOLMOD %s\n%s%s\nkernels %s%s%s\nNLopt %s\nHDF5 %s\nSQLite %s\n",
-                      SLENDER_VERSION, direct_version(), kernels_blas_version(),
-                      kernels_blas_is_fast() ? "" : " (slow: OpenBLAS is ten times faster)", kernels_name(),
-                      *note ? ", " : "", note, optimiser_nlopt_version(), result_hdf5_version(),
-                      journal_sqlite_version());
+    char *text = mem_text("slender " SLENDER_VERSION "\n");
+    for (int k = 0; k < DIRECT_KINDS; k++)
+        if (direct_version(k)) text = mem_join(text, direct_version(k), "\n");
+    char *others = mem_format("%s%s\nkernels %s%s%s\nNLopt %s\nHDF5 %s\nSQLite %s\n", kernels_blas_version(),
+                              kernels_blas_is_fast() ? "" : " (slow: OpenBLAS is ten times faster)",
+                              kernels_name(), *note ? ", " : "", note, optimiser_nlopt_version(),
+                              result_hdf5_version(), journal_sqlite_version());
+    text = mem_join(text, others, "");
+    mem_free(others);
+    return text;
 }

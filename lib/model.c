@@ -157,7 +157,7 @@ System *lib_system(SlenderModel *model, int load_case, bool motion)
     LibCase *c = &model->cases[load_case];
     System **sys = motion ? &c->motion : &c->statics;
     if (!*sys) {
-        *sys = model->model->body->ops->system(model->model, motion);
+        *sys = model_take_system(model->model, model->model->body->ops->system(model->model, motion));
         system_set_workers(*sys, model->workers);
     }
     return *sys;

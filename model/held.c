@@ -181,7 +181,7 @@ bool model_start_cases(Model *model, const Build *b, const bool *fixed)
     for (int k = 0; ok && k < model->case_count; k++) {
         Case *c = &model->cases[k];
         Error err;
-        case_start(c, ops->system(model, model->job->motion), model->x);
+        case_start(c, model_take_system(model, ops->system(model, model->job->motion)), model->x);
         system_accept(c->sys, c->state.x, c->state.memory);
         for (int s = 0; ok && model->job->rest && !borne && s < c->stage_count; s++)
             ok = rigid_check_force(b->mesh, fixed, mass, c->stages[s].p + model->gravity,

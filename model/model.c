@@ -12,30 +12,47 @@
 
 /* ---- Formulas that are not finite in a run ---- */
 
-static void keep_written(Model *model, const YamlFile *file, Key key)
+/* how: what sentences about it begin with. */
+static void keep_written(Model *model, const YamlFile *file, Key key, char *how)
 {
     size_t count = (size_t)model->written_count;
-    if (!yaml_says(file, key.text)) return;
+    if (!yaml_says(file, key.text)) {
+        mem_free(how);
+        return;
+    }
     model->written = mem_resize(model->written, count, count + 1, sizeof *model->written);
-    model->written[model->written_count++] = (Written){mem_text(key.text), yaml_where(file, key.text)};
+    model->written[model->written_count++] = (Written){how, yaml_where(file, key.text)};
 }
 
 static void keep_all_written(Model *model, const Scene *scene, const YamlFile *file)
 {
     static const char *const keys[] = {"flux_density", "water.velocity", "rod.loads"};
-    for (int k = 0; k < 3; k++) keep_written(model, file, key("%s", keys[k]));
-    for (int k = 0; k < scene->fix_count; k++) keep_written(model, file, key("fix[%d].move", k));
+    for (int k = 0; k < 3; k++) keep_written(model, file, key("%s", keys[k]), mem_text(keys[k]));
+    for (int k = 0; k < scene->fix_count; k++) {
+        Key at = key("fix[%d].move", k);
+        keep_written(model, file, at, mem_text(at.text));
+    }
+    for (int k = 0; model->world && k < model->world->obstacle_count; k++)
+        keep_written(model, file, key("obstacles[%d]", k),
+                     mem_format("obstacle '%s'", model->world->obstacles[k].name));
+}
+
+/* Adds where that is written of which the sentence begins to speak; false. */
+static bool add_where(const Model *model, Error *err)
+{
+    for (int k = 0; k < model->written_count; k++) {
+        size_t length = strlen(model->written[k].how);
+        if (strncmp(err->text, model->written[k].how, length) != 0 || err->text[length] != ':') continue;
+        Error said = *err;
+        return error_set(err, "%s (%s)", said.text, model->written[k].where);
+    }
+    return false;
 }
 
 bool model_unknown(const Model *model, const char *key, Error *err)
 {
-    const char *where = NULL;
-    for (int k = 0; !where && k < model->written_count; k++)
-        if (!strcmp(model->written[k].key, key)) where = model->written[k].where;
     error_prefix(err, "%s", key);
-    if (!where) return false;
-    Error said = *err;
-    return error_set(err, "%s (%s)", said.text, where);
+    return add_where(model, err);
 }
 
 bool model_move(const Model *model, HeldWay way, double *x, Error *err)
@@ -50,7 +67,7 @@ bool model_load(const Model *model, double time, bool flux_given, double *p, Err
     if (ops->load && !ops->load(model, time, p, err)) return false;
     if (!flux_given && timed_is_given(timed) && !timed_eval(timed, time, p + model->flux_blocks.uniform, err))
         return model_unknown(model, "flux_density", err);
-    return !model->world || world_stands(model->world, time, err);
+    return !model->world || world_stands(model->world, time, err) || add_where(model, err);
 }
 
 /* ---- Loads of a case ---- */
@@ -232,17 +249,24 @@ static bool check_job(const Scene *scene, YamlFile *file)
     return false;
 }
 
+static bool check_solver(const Scene *scene, YamlFile *file)
+{
+    Error err;
+    return direct_is_ready(scene->solver.direct, &err) || yaml_refuse(file, "solver.direct", "%s", err.text);
+}
+
 static Model *create(const Scene *scene, YamlFile *file, bool general)
 {
     Model *model = mem_alloc(1, sizeof *model);
     model->general = general;
     model->gravity = model->flux_blocks.uniform = -1;
     model->time = scene->time.at;
+    model->direct = scene->solver.direct;
     const JobRow *job = scene_job(scene);
     model->body = scene_body(scene);
     model->job = job;
     bool ok = check_job(scene, file) && yaml_check_use(file, scene_table()) &&
-              check_motion(scene, job, file) && start_open(model, scene, file) &&
+              check_motion(scene, job, file) && check_solver(scene, file) && start_open(model, scene, file) &&
               model->body->ops->create(model, scene, file) && start_take(model, scene, file) &&
               (!job->design || model_design(model, scene, file)) && model_probes(model, scene, file);
     start_close(model->start);
@@ -268,6 +292,12 @@ Model *model_create_general(const Scene *scene, YamlFile *file)
     return create(scene, file, true);
 }
 
+System *model_take_system(const Model *model, System *sys)
+{
+    system_set_direct(sys, model->direct);
+    return sys;
+}
+
 void model_destroy(Model *model)
 {
     if (!model) return;
@@ -278,7 +308,7 @@ void model_destroy(Model *model)
     }
     for (int k = 0; k < model->support_count; k++) mem_free(model->supports[k].points.items);
     for (int k = 0; k < model->written_count; k++) {
-        mem_free(model->written[k].key);
+        mem_free(model->written[k].how);
         mem_free(model->written[k].where);
     }
     model_clear_probes(model);

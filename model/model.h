@@ -9,9 +9,9 @@
 #include "surface/select.h"
 #include "world/world.h"
 
-/* Where the scene writes a key whose formulas are asked in a run. */
+/* Where the scene writes a key whose formulas are asked in a run, and how sentences about it begin. */
 typedef struct Written {
-    char *key, *where;
+    char *how, *where;
 } Written;
 
 /* Coordinates that follow formulas of rest position and time. */
@@ -41,11 +41,12 @@ typedef struct CaseFlux {
 struct Model {
     const BodyRow *body;
     const JobRow *job;
-    void *self;       /* the body as its front knows it: a Shell, ..; owned     */
-    const Mesh *mesh; /* of a body that has one; the body's                     */
-    bool general;     /* of any use, not only that of its job: all points are dofs */
-    double time;      /* s, where it begins                                     */
-    Start *start;     /* while it is made: what it starts from; NULL: nothing   */
+    void *self;        /* the body as its front knows it: a Shell, ..; owned     */
+    const Mesh *mesh;  /* of a body that has one; the body's                     */
+    DirectKind direct; /* what factors matrices of its systems                  */
+    bool general;      /* of any use, not only that of its job: all points are dofs */
+    double time;       /* s, where it begins                                     */
+    Start *start;      /* while it is made: what it starts from; NULL: nothing   */
     /* Nothing below is of a body without cases. */
     Params *params; /* the body's                                          */
     /* First entries in p of gravity, of the flux density and its `fields`; -1: it feels none. */
@@ -86,6 +87,9 @@ bool model_unknown(const Model *model, const char *key, Error *err);
 
 /* Puts the moved coordinates where they are then. */
 bool model_move(const Model *model, HeldWay way, double *x, Error *err);
+
+/* A system of the model's that was just made, with what the scene says of solvers; it is returned. */
+System *model_take_system(const Model *model, System *sys);
 
 /* Puts what depends on time into p, but for the flux density where that is given from elsewhere. False and a sentence that says which field or obstacle
  * has a formula that is not finite then. */

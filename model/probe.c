@@ -178,13 +178,19 @@ static bool force_probe(const Model *model, const Build *b, Key at, const ForceS
 /* ---- Probes ---- */
 
 /* A column's name, too. */
-static bool check_name(const Build *b, Key at, const char *name)
+static bool check_name(const Build *b, Key at, const char *name, bool stages)
 {
-    static const char *const taken[] = {"stage", "time", "evaluation", "case"};
-    bool free = true;
-    for (int k = 0; k < 4; k++) free &= strcmp(name, taken[k]) != 0;
-    if (!free)
+    static const char *const counts[] = {"stage", "time", "evaluation", "case"}, *const staged[] = {
+                                                                                     "t", "load_part", "B",
+                                                                                     "gravity"};
+    bool count = false, stage = false;
+    for (int k = 0; k < 4; k++) count |= !strcmp(name, counts[k]);
+    for (int k = 0; stages && k < 4; k++) stage |= !strcmp(name, staged[k]);
+    if (count)
         return yaml_refuse(b->file, at.text, "'%s' is the name of the column that counts the rows", name);
+    if (stage)
+        return yaml_refuse(b->file, at.text,
+                           "'%s' is the name of a column that stages have: t, load_part, B, gravity", name);
     return (*name && !strpbrk(name, " .,;\"'#") && build_check_name(b, at, "a probe", name)) ||
            yaml_refuse(b->file, "probes", "'%s' names a column: no blanks, quotes, '.', ',', ';' or '#'",
                        name);
@@ -212,14 +218,15 @@ static bool read_probe(const Model *model, const Build *b, Key at, const ProbeSc
 bool model_probes(Model *model, const Scene *scene, YamlFile *file)
 {
     Build b = build_start(scene, model->mesh, model->time, file);
-    bool ok = true;
+    bool ok = true, stages = scene->sequence || scene->load_steps.frames;
     model->probes = mem_alloc((size_t)scene->probes_count, sizeof *model->probes);
     model->probe_count = scene->probes_count;
     for (int k = 0; k < scene->probes_count; k++) {
         const ProbeScene *from = &scene->probes[k];
         Key at = key("probes.%s", from->name);
         model->probes[k].name = mem_text(from->name);
-        ok = check_name(&b, at, from->name) && read_probe(model, &b, at, from, &model->probes[k]) && ok;
+        ok = check_name(&b, at, from->name, stages) && read_probe(model, &b, at, from, &model->probes[k]) &&
+             ok;
     }
     return ok;
 }

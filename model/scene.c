@@ -237,7 +237,7 @@ const YamlTable load_table = {
 static const YamlTable solver_table = {
     .name = "solver",
     .size = sizeof(SolverScene),
-    .doc = "When the equilibrium solver is content.",
+    .doc = "When the equilibrium solver is content, and what it solves with.",
     .fields = (const YamlField[]){
         {YAML_INTEGER(SolverScene, max_iterations), .range = "[1, inf)", .fallback = "300",
          .doc = "Newton iterations of a solve"},
@@ -247,6 +247,13 @@ static const YamlTable solver_table = {
                 "next one would gain less than 1e-10 of the energies"},
         {YAML_NUMBER(SolverScene, force_tolerance), .range = "(0, 1)", .fallback = "1.0e-6",
          .doc = "largest force left, in parts of the element forces"},
+        {YAML_CHOICE(SolverScene, direct),
+         .when = "/job: equilibrium, evaluate, design, simulate, trajectory",
+         .choices = YAML_NAMES("cholmod", "mumps"), .fallback = "cholmod",
+         .doc =
+             "what factors matrices: mumps spreads a factor over the processes of `mpirun -n 2 slender run "
+             "SCENE`, for what one machine's memory does not hold, in a program that is built with it "
+             "(docs/solver.md)"},
         {0}}};
 
 static const YamlTable load_steps_table = {
@@ -364,6 +371,7 @@ static const YamlTable output_table = {
         DRAWING_FILE(gcode, "for a pen on a z axis; none if absent"),
         DRAWING_FILE(gcode_servo, "for a pen on a servo; none if absent"),
         DRAWING_FILE(hpgl, "none if absent"),
+        DRAWING_FILE(plotter, "in the words of `spline.plotter.profile`; none if absent"),
         {0}}};
 
 const YamlTable scene_form = {
@@ -407,7 +415,7 @@ const YamlTable scene_form = {
          .doc = "what a design or trajectory job looks for"},
         {YAML_TABLE(Scene, solver, &solver_table),
          .when = "/job: equilibrium, evaluate, design, simulate, trajectory, invert", .fallback = "{}",
-         .doc = "tolerances"},
+         .doc = "tolerances, and what solves"},
         {YAML_TABLE(Scene, load_steps, &load_steps_table), .when = "/job: equilibrium, invert",
          .fallback = "auto", .doc = "how loads come on"},
         {YAML_TABLE(Scene, time, &time_table), .fallback = "0 s",

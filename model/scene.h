@@ -7,6 +7,7 @@
 #include "io/yaml.h"
 #include "model/scene_flux.h"
 #include "model/scene_world.h"
+#include "solve/direct.h"
 
 /* ---- Values over faces, edges or space ---- */
 
@@ -294,6 +295,7 @@ typedef enum SceneCheck { CHECK_STABILITY, CHECK_SELF_CONTACT, CHECK_ROUND_TRIP 
 typedef struct SolverScene {
     int max_iterations;
     double step_tolerance, force_tolerance;
+    DirectKind direct;
 } SolverScene;
 
 /* auto, or a number */
@@ -321,7 +323,7 @@ typedef struct StartScene {
 typedef struct OutputScene {
     int every, film, precision, states;
     bool stress;
-    char *svg, *png, *gcode, *gcode_servo, *hpgl; /* of a drawing: names of files */
+    char *svg, *png, *gcode, *gcode_servo, *hpgl, *plotter; /* of a drawing: names of files */
 } OutputScene;
 
 enum { OUTPUT_SINGLE, OUTPUT_DOUBLE };

@@ -7,9 +7,7 @@ static int point_within(const Model *model, int field, const double *p, double t
 {
     const FluxBlocks *blocks = &model->flux_blocks;
     FluxPlace where = {time, p + blocks->move + 3 * field, p + blocks->turn + 3 * field};
-    for (int v = 0; v < model->point_count; v++)
-        if (flux_field_is_within(model->fields->items[field], place + 3 * v, where)) return v;
-    return -1;
+    return flux_field_find_within(model->fields->items[field], place, model->point_count, where);
 }
 
 /* Stages have fields of their own for what is one thing. */

@@ -15,7 +15,7 @@ from wheel.bdist_wheel import bdist_wheel
 
 HERE = Path(__file__).resolve().parent
 SOURCE = HERE / "source" if (HERE / "source").exists() else HERE.parent
-PARTS = ("CMakeLists.txt", "LICENSE", "cmake/*", "include/*", "lib/CMakeLists.txt", "lib/slender.map", "*/*.[ch]",
+PARTS = ("CMakeLists.txt", "LICENSE", "cmake/*", "include/*", "lib/CMakeLists.txt", "lib/slender.map", "package/*", "*/*.[ch]",
          "*/front/*.[ch]")
 VERSION = re.search(r'^VERSION = "(.*?)"', (HERE / "slender/_library.py").read_text(), re.MULTILINE)[1]
 

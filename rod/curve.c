@@ -1,5 +1,6 @@
 #include "rod/curve.h"
 #include "base/memory.h"
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -138,6 +139,7 @@ static bool fill_stations(Path *path, RodCurve *curve)
 typedef struct Miss {
     double off, at;           /* the farthest, and its parameter */
     double slope, bend, size; /* the largest dx/du, d2x/du2 and distance from the start */
+    double far;               /* the largest distance from (0, 0, 0)                    */
 } Miss;
 
 /* At a place in each interval, the golden section's so that no wave hides between them. */
@@ -156,16 +158,17 @@ static Miss find_miss(Path *path)
         miss.slope = fmax(miss.slope, vec3_length(jet[1]));
         miss.bend = fmax(miss.bend, vec3_length(jet[2]));
         miss.size = fmax(miss.size, vec3_length(vec3_sub(x, path->grid[0])));
+        miss.far = fmax(miss.far, vec3_length(x));
     }
     return miss;
 }
 
 /* Halves the grid's intervals until they follow the curve: curvatures are then right to 1e-6 of the largest.
- * Where curvature jumps that is never so, and the finest grid will do; where the tangent jumps it will not.
- */
+ * Where curvature jumps that is never so, and the finest grid will do; where the tangent jumps it will not. Places far
+ * from (0, 0, 0) are rounded by themselves: a finer grid would follow the rounding. */
 static bool fill_grid(Path *path, Error *err)
 {
-    const double follows = 2e-8, rounding = 1e-13, smooth = 1e-4;
+    const double follows = 2e-8, rounding = 1e-13, rounding_far = 16 * DBL_EPSILON, smooth = 1e-4;
     for (path->intervals = GRID_LEAST;; path->intervals *= 2) {
         double h = (path->u1 - path->u0) / path->intervals;
         mem_free(path->grid);
@@ -173,7 +176,8 @@ static bool fill_grid(Path *path, Error *err)
         for (int k = 0; k <= path->intervals && isnan(path->bad); k++)
             path->grid[k] = place(path, path->u0 + k * h);
         Miss miss = find_miss(path);
-        if (!isnan(path->bad) || miss.off <= follows * h * h * miss.bend + rounding * miss.size) return true;
+        double enough = follows * h * h * miss.bend + fmax(rounding * miss.size, rounding_far * miss.far);
+        if (!isnan(path->bad) || miss.off <= enough) return true;
         if (path->intervals < GRID_MOST) continue;
         return miss.off <= smooth * fabs(h) * miss.slope ||
                error_set(

@@ -1,6 +1,5 @@
 #include "base/memory.h"
-#include "solve/dense.h"
-#include "solve/direct.h"
+#include "solve/direct_row.h"
 #include "solve/supernodal.h"
 #include <cholmod.h>
 #include <pthread.h>
@@ -15,29 +14,22 @@ static const int METIS_FROM[] = {[DIRECT_OFTEN] = 60000, [DIRECT_SELDOM] = 15000
 /* Where columns of L are alike over many rows (CHOLMOD's rule: 40 operations for each of its numbers), supernodal.h factors
  * in a structure of CHOLMOD's; chains, and with them all that has multipliers, are factored by its simplicial LL^T or
  * LDL^T, whose solves take half the time there. */
-struct Direct {
-    int shares, n, negative;
-    int *rank;
+typedef struct Analysis {
+    int n, negative;
     DirectCost cost;
     Supernodal *plan; /* NULL: simplicial, with what follows the solution here */
     double *solution; /* [n] of a plan's solves                                */
     cholmod_common common;
     cholmod_factor *symbolic;
     cholmod_dense *b, *x, *work_y, *work_e;
-};
+} Analysis;
 
-/* Numbers of a plan's factor, and for how many there is room. */
-typedef struct Room {
-    double *numbers; /* NULL: none */
-    long count;
-} Room;
-
-struct Factor {
-    int shares;
-    Direct *direct;
-    Room room;               /* of a plan                */
-    cholmod_factor *columns; /* if simplicial, else NULL */
-};
+/* Numbers of a factor: of a plan, with room for so many, or columns if simplicial. */
+typedef struct Numbers {
+    double *values; /* NULL: none */
+    long room;
+    cholmod_factor *columns; /* NULL: none */
+} Numbers;
 
 /* A CHOLMOD view of a pattern; values may be NULL. */
 static cholmod_sparse view(const Pattern *pattern, double *values)
@@ -121,7 +113,7 @@ int *direct_order(const Pattern *pattern, DirectUse use)
 }
 
 /* False where supernodes do not pay. */
-static bool analyse_supernodal(Direct *direct, const Pattern *pattern)
+static bool analyse_supernodal(Analysis *analysis, const Pattern *pattern)
 {
     cholmod_common common;
     cholmod_l_start(&common);
@@ -129,115 +121,105 @@ static bool analyse_supernodal(Direct *direct, const Pattern *pattern)
     cholmod_factor *factor = analyse_pattern(pattern, &common);
     if (factor->is_super) {
         SupernodalDef def = {(int)factor->nsuper, factor->super, factor->pi, factor->s};
-        direct->plan = supernodal_create(pattern, &def);
-        direct->solution = mem_alloc((size_t)direct->n, sizeof *direct->solution);
-        long bytes = supernodal_size(direct->plan) * (long)sizeof(double);
-        direct->cost = (DirectCost){(long)common.lnz, bytes, common.fl};
+        analysis->plan = supernodal_create(pattern, &def);
+        analysis->solution = mem_alloc((size_t)analysis->n, sizeof *analysis->solution);
+        long bytes = supernodal_size(analysis->plan) * (long)sizeof(double);
+        analysis->cost = (DirectCost){.nonzeros = (long)common.lnz, .bytes = bytes, .flops = common.fl};
     }
     cholmod_l_free_factor(&factor, &common);
     cholmod_l_finish(&common);
-    return direct->plan != NULL;
+    return analysis->plan != NULL;
 }
 
-static void analyse_simplicial(Direct *direct, const Pattern *pattern)
+static void analyse_simplicial(Analysis *analysis, const Pattern *pattern)
 {
-    cholmod_common *common = &direct->common;
+    cholmod_common *common = &analysis->common;
     cholmod_sparse a = view(pattern, NULL);
     cholmod_start(common);
     set_options(common, CHOLMOD_NATURAL);
     common->supernodal = CHOLMOD_SIMPLICIAL;
-    common->final_ll = direct->negative == 0; /* LDL' would accept an indefinite matrix */
+    common->final_ll = analysis->negative == 0; /* LDL' would accept an indefinite matrix */
     common->quick_return_if_not_posdef = 1;
-    direct->symbolic = cholmod_analyze(&a, common);
+    analysis->symbolic = cholmod_analyze(&a, common);
     check_memory(common);
-    direct->b = cholmod_zeros((size_t)pattern->n, 1, CHOLMOD_REAL, common);
+    analysis->b = cholmod_zeros((size_t)pattern->n, 1, CHOLMOD_REAL, common);
     check_memory(common);
-    long numbers = (long)direct->symbolic->nzmax;
-    direct->cost =
-        (DirectCost){(long)common->lnz, numbers * (long)(sizeof(double) + sizeof(int)), common->fl};
+    long numbers = (long)analysis->symbolic->nzmax;
+    analysis->cost = (DirectCost){.nonzeros = (long)common->lnz,
+                                  .bytes = numbers * (long)(sizeof(double) + sizeof(int)),
+                                  .flops = common->fl};
 }
 
-Direct *direct_analyse(const Pattern *pattern, const int *rank, int negative)
+static void *analyse(const Pattern *pattern, int negative)
 {
-    Direct *direct = mem_alloc(1, sizeof *direct);
-    direct->shares = 1;
-    direct->n = pattern->n;
-    direct->negative = negative;
-    direct->rank = mem_copy(rank, (size_t)pattern->n, sizeof *rank);
-    if (negative > 0 || !analyse_supernodal(direct, pattern)) analyse_simplicial(direct, pattern);
-    return direct;
+    Analysis *analysis = mem_alloc(1, sizeof *analysis);
+    analysis->n = pattern->n;
+    analysis->negative = negative;
+    if (negative > 0 || !analyse_supernodal(analysis, pattern)) analyse_simplicial(analysis, pattern);
+    return analysis;
 }
 
-Direct *direct_share(Direct *direct)
+static void clear_simplicial(Analysis *analysis)
 {
-    direct->shares++;
-    return direct;
-}
-
-static void clear_simplicial(Direct *direct)
-{
-    cholmod_common *common = &direct->common;
-    cholmod_free_factor(&direct->symbolic, common);
-    cholmod_free_dense(&direct->b, common);
-    cholmod_free_dense(&direct->x, common);
-    cholmod_free_dense(&direct->work_y, common);
-    cholmod_free_dense(&direct->work_e, common);
+    cholmod_common *common = &analysis->common;
+    cholmod_free_factor(&analysis->symbolic, common);
+    cholmod_free_dense(&analysis->b, common);
+    cholmod_free_dense(&analysis->x, common);
+    cholmod_free_dense(&analysis->work_y, common);
+    cholmod_free_dense(&analysis->work_e, common);
     cholmod_finish(common);
 }
 
-void direct_release(Direct *direct)
+static void forget(void *self)
 {
-    if (!direct || --direct->shares > 0) return;
-    if (!direct->plan) clear_simplicial(direct);
-    supernodal_destroy(direct->plan);
-    mem_free(direct->solution);
-    mem_free(direct->rank);
-    mem_free(direct);
+    Analysis *analysis = self;
+    if (!analysis->plan) clear_simplicial(analysis);
+    supernodal_destroy(analysis->plan);
+    mem_free(analysis->solution);
+    mem_free(analysis);
 }
 
-const int *direct_rank(const Direct *direct)
+static DirectCost cost_of(const void *self)
 {
-    return direct->rank;
+    return ((const Analysis *)self)->cost;
 }
 
-DirectCost direct_cost(const Direct *direct)
+static void drop(void *self, void *of)
 {
-    return direct->cost;
+    Analysis *analysis = self;
+    Numbers *numbers = of;
+    if (numbers->columns) cholmod_free_factor(&numbers->columns, &analysis->common);
+    mem_free(numbers->values);
+    mem_free(numbers);
 }
 
-/* That of a factor which nobody else has. */
-static Room take_room(Factor *factor)
+/* For a plan's factor, in the memory at hand if there is enough of it: fresh memory costs half a factorisation, and patterns
+ * of what touches follow each other. Where it was too little, with some to spare. */
+static void give_room(Numbers *numbers, long size)
 {
-    if (!factor || factor->shares > 1) return (Room){0};
-    Room room = factor->room;
-    factor->room = (Room){0};
-    return room;
+    if (numbers->room >= size) return;
+    mem_free(numbers->values);
+    numbers->room = numbers->room > 0 ? size + size / 8 : size;
+    numbers->values = mem_alloc((size_t)numbers->room, sizeof *numbers->values);
 }
 
-/* Room for a factor, the one at hand if there is enough of it: fresh memory costs half a factorisation, and patterns of what
- * touches follow each other. Where it was too little, with some to spare. */
-static Room make_room(Room old, long size)
+static void *make_room(void *self, void *other_self, void *other)
 {
-    if (old.count >= size) return old;
-    mem_free(old.numbers);
-    long count = old.count > 0 ? size + size / 8 : size;
-    return (Room){mem_alloc((size_t)count, sizeof(double)), count};
-}
-
-/* Its numbers are still to come. */
-static Factor *new_factor(Direct *direct, Room room)
-{
-    Factor *factor = mem_alloc(1, sizeof *factor);
-    *factor = (Factor){.shares = 1, .direct = direct};
-    if (direct->plan) {
-        factor->room = make_room(room, supernodal_size(direct->plan));
-    } else {
-        mem_free(room.numbers);
-        factor->columns = cholmod_copy_factor(direct->symbolic, &direct->common);
-        check_memory(&direct->common);
+    Analysis *analysis = self;
+    Numbers *numbers = mem_alloc(1, sizeof *numbers), *from = other;
+    if (from) {
+        *numbers = (Numbers){.values = from->values, .room = from->room};
+        from->values = NULL;
+        drop(other_self, from);
     }
-    direct->shares++;
-    return factor;
+    if (analysis->plan) {
+        give_room(numbers, supernodal_size(analysis->plan));
+        return numbers;
+    }
+    mem_free(numbers->values);
+    *numbers = (Numbers){.columns = cholmod_copy_factor(analysis->symbolic, &analysis->common)};
+    check_memory(&analysis->common);
+    return numbers;
 }
 
 /* Negative pivots of a simplicial LDL^T; they head the columns of L. */
@@ -251,74 +233,51 @@ static int count_negative(const cholmod_factor *factor)
 }
 
 /* cholmod_factorize returns true for an indefinite matrix, too. */
-static bool factor_simplicial(Direct *direct, const Pattern *pattern, double *values, cholmod_factor *columns)
+static bool factor_simplicial(Analysis *analysis, const Pattern *pattern, double *values,
+                              cholmod_factor *columns)
 {
-    cholmod_common *common = &direct->common;
+    cholmod_common *common = &analysis->common;
     cholmod_sparse a = view(pattern, values);
     cholmod_factorize(&a, columns, common);
     check_memory(common);
-    bool complete = common->status == CHOLMOD_OK && columns->minor == (size_t)direct->n;
-    return complete && (direct->negative == 0 || count_negative(columns) == direct->negative);
+    bool complete = common->status == CHOLMOD_OK && columns->minor == (size_t)analysis->n;
+    return complete && (analysis->negative == 0 || count_negative(columns) == analysis->negative);
 }
 
-bool direct_factor(Direct *direct, const Pattern *pattern, double *values, Factor **factor, Workers *workers)
+static bool factor(void *self, const Pattern *pattern, double *values, void *of, Workers *workers)
 {
-    if (!*factor || (*factor)->shares > 1 || (*factor)->direct != direct) {
-        Room room = take_room(*factor);
-        factor_release(*factor);
-        *factor = new_factor(direct, room);
+    Analysis *analysis = self;
+    Numbers *numbers = of;
+    if (analysis->plan) return supernodal_factor(analysis->plan, pattern, values, numbers->values, workers);
+    return factor_simplicial(analysis, pattern, values, numbers->columns);
+}
+
+static const double *solve(void *self, void *of, const double *b, Workers *workers)
+{
+    Analysis *analysis = self;
+    const Numbers *numbers = of;
+    size_t bytes = (size_t)analysis->n * sizeof *b;
+    if (analysis->plan) {
+        memcpy(analysis->solution, b, bytes);
+        supernodal_solve(analysis->plan, numbers->values, analysis->solution, workers);
+        return analysis->solution;
     }
-    if (!dense_is_finite(pattern->start[pattern->n], values)) return false;
-    if (direct->plan)
-        return supernodal_factor(direct->plan, pattern, values, (*factor)->room.numbers, workers);
-    return factor_simplicial(direct, pattern, values, (*factor)->columns);
-}
-
-Factor *factor_share(Factor *factor)
-{
-    if (factor) factor->shares++;
-    return factor;
-}
-
-void factor_release(Factor *factor)
-{
-    if (!factor || --factor->shares > 0) return;
-    if (factor->columns) cholmod_free_factor(&factor->columns, &factor->direct->common);
-    mem_free(factor->room.numbers);
-    direct_release(factor->direct);
-    mem_free(factor);
-}
-
-int factor_size(const Factor *factor)
-{
-    return factor->direct->n;
-}
-
-const int *factor_rank(const Factor *factor)
-{
-    return factor->direct->rank;
-}
-
-const double *factor_solve(const Factor *factor, const double *b, Workers *workers)
-{
-    Direct *direct = factor->direct;
-    size_t bytes = (size_t)direct->n * sizeof *b;
-    if (direct->plan) {
-        memcpy(direct->solution, b, bytes);
-        supernodal_solve(direct->plan, factor->room.numbers, direct->solution, workers);
-        return direct->solution;
-    }
-    memcpy(direct->b->x, b, bytes);
-    cholmod_solve2(CHOLMOD_A, factor->columns, direct->b, NULL, &direct->x, NULL, &direct->work_y,
-                   &direct->work_e, &direct->common);
-    check_memory(&direct->common);
-    return direct->x->x;
+    memcpy(analysis->b->x, b, bytes);
+    cholmod_solve2(CHOLMOD_A, numbers->columns, analysis->b, NULL, &analysis->x, NULL, &analysis->work_y,
+                   &analysis->work_e, &analysis->common);
+    check_memory(&analysis->common);
+    return analysis->x->x;
 }
 
 #define TEXT(x)               #x
 #define VERSION_TEXT(a, b, c) TEXT(a) "." TEXT(b) "." TEXT(c)
 
-const char *direct_version(void)
-{
-    return VERSION_TEXT(CHOLMOD_MAIN_VERSION, CHOLMOD_SUB_VERSION, CHOLMOD_SUBSUB_VERSION);
-}
+const DirectRow direct_cholmod = {
+    .version = "CHOLMOD " VERSION_TEXT(CHOLMOD_MAIN_VERSION, CHOLMOD_SUB_VERSION, CHOLMOD_SUBSUB_VERSION),
+    .analyse = analyse,
+    .forget = forget,
+    .cost = cost_of,
+    .make_room = make_room,
+    .drop = drop,
+    .factor = factor,
+    .solve = solve};

@@ -14,6 +14,13 @@ static const double LONG_STEP = 1e-4;   /* body's measure: shorter ones need no 
 static const double CONVEX_GROWTH = 64; /* of a shift: what is indefinite without contact is so by much */
 static const double BASE_CG_TOL = 1e-4; /* what is left of the base shift's part in a step        */
 
+double newton_round_off(const System *sys, const double *x)
+{
+    double largest = 0;
+    for (int i = 0; i < system_dof_count(sys); i++) largest = fmax(largest, fabs(x[i]));
+    return 8 * DBL_EPSILON * system_stiffness_max(sys) * largest;
+}
+
 NewtonDef newton_default(void)
 {
     return (NewtonDef){.max_iterations = 300,
@@ -249,14 +256,6 @@ static bool is_converged(const Search *s, bool small)
     return (small && s->info.step <= s->def->step_tol) || gain <= s->def->energy_tol * s->now.energy_scale;
 }
 
-/* A largest force below this is rounding of the coordinates times the stiffness. */
-static double round_off(const Search *s)
-{
-    double largest = 0;
-    for (int i = 0; i < s->n; i++) largest = fmax(largest, fabs(s->x[i]));
-    return 8 * DBL_EPSILON * system_stiffness_max(s->sys) * largest;
-}
-
 /* The step to take from x. Near the end the Hessian is the true one: so the end is quadratic, and its factor tells of a
  * minimum. Returns MAX_ITERATIONS as long as there is more to do. */
 static NewtonStatus find_step(Search *s, double *floor, bool *small)
@@ -266,7 +265,7 @@ static NewtonStatus find_step(Search *s, double *floor, bool *small)
     for (bool extrapolate = s->extrapolate;; extrapolate = tangled = false) {
         linearise(s, extrapolate, tangled);
         if (!s->now.finite) return NEWTON_NOT_FINITE;
-        *floor = round_off(s);
+        *floor = newton_round_off(s->sys, s->x);
         *small = s->now.gradient_max <= fmax(s->def->force_tol * s->now.force_scale, *floor);
         if ((extrapolate || tangled) && *small) continue;
         if (!newton_step(s, *small)) return NEWTON_STALLED;

@@ -71,3 +71,6 @@ NewtonInfo newton_minimize(System *sys, const NewtonDef *def, const Point *at, S
 /* One word: "converged", "saddle", ... and a sentence for the user. */
 const char *newton_status_name(NewtonStatus status);
 const char *newton_status_text(NewtonStatus status);
+
+/* A largest force below this is rounding of the coordinates times the stiffness of the last Hessian, N. */
+double newton_round_off(const System *sys, const double *x);

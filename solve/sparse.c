@@ -22,6 +22,7 @@ typedef struct Elimination {
 
 struct Sparse {
     int n, negative;
+    DirectKind direct;
     bool ordered;    /* in an order that was given                             */
     Pattern made;    /* of the groups that it was made of, in their order      */
     Pattern pattern; /* the same, or with others coupled beside them           */
@@ -75,6 +76,9 @@ static void note_cost(Sparse *matrix, const Direct *direct)
     matrix->info.factor_nonzeros = cost.nonzeros;
     matrix->info.factor_bytes = cost.bytes;
     matrix->info.factor_flops = cost.flops;
+    if (cost.all_bytes < matrix->info.all_bytes) return;
+    matrix->info.process_bytes = cost.process_bytes;
+    matrix->info.all_bytes = cost.all_bytes;
 }
 
 Sparse *sparse_create(int n, Groups groups, SparseDef def)
@@ -91,9 +95,10 @@ Sparse *sparse_create(int n, Groups groups, SparseDef def)
         pattern_destroy(&plain);
     }
     matrix->negative = def.negative;
+    matrix->direct = def.direct;
     matrix->ordered = def.order != NULL;
     matrix->made = pattern_create(n, groups, rank);
-    matrix->direct_made = direct_analyse(&matrix->made, rank, def.negative);
+    matrix->direct_made = direct_analyse(matrix->direct, &matrix->made, rank, def.negative);
     mem_free(rank);
     matrix->rank = direct_rank(matrix->direct_made);
     note_cost(matrix, matrix->direct_made);
@@ -128,7 +133,7 @@ static void reorder(const Sparse *matrix, Elimination *e)
     e->other = pattern_permute(&matrix->pattern, to, e->moved);
     for (int i = 0; i < n; i++) rank[i] = to[matrix->rank[i]];
     direct_release(e->direct);
-    e->direct = direct_analyse(&e->other, rank, matrix->negative);
+    e->direct = direct_analyse(matrix->direct, &e->other, rank, matrix->negative);
     mem_free(to);
     mem_free(rank);
 }
@@ -141,7 +146,7 @@ static void analyse(Sparse *matrix)
     if (!matrix->where) {
         e->direct = direct_share(matrix->direct_made);
     } else {
-        e->direct = direct_analyse(&matrix->pattern, matrix->rank, matrix->negative);
+        e->direct = direct_analyse(matrix->direct, &matrix->pattern, matrix->rank, matrix->negative);
         double fill =
             (double)direct_cost(e->direct).nonzeros / (double)direct_cost(matrix->direct_made).nonzeros;
         if (!matrix->ordered && fill > FILL_MOST) reorder(matrix, e);
@@ -258,6 +263,7 @@ bool sparse_factor(Sparse *matrix, const double *shift)
         if (shift) *entry += shift[i];
     }
     bool definite = factor_values(matrix);
+    note_cost(matrix, matrix->elimination.direct);
     for (int i = 0; i < matrix->n; i++) *diagonal_entry(matrix, i) = matrix->diagonal[i];
     matrix->info.factorizations++;
     matrix->info.factor_seconds += clock_seconds() - begin;

@@ -2,7 +2,7 @@
  *
  * The pattern comes from the elements' dof lists, is ordered once for low fill (AMD; METIS for large ones) and stored
  * in the permuted order, so that factoring needs neither a transpose nor a new analysis. Positive definiteness is
- * news, not an error: sparse_factor returns false. Another direct solver would stand behind these same functions. */
+ * news, not an error: sparse_factor returns false. */
 #pragma once
 #include "solve/direct.h"
 #include <stdbool.h>
@@ -17,6 +17,7 @@ typedef struct SparseDef {
      * are negative, that is, where it is definite on what the multipliers allow. Each must come after unknowns that it
      * is coupled with, for there is no pivoting. */
     int negative;
+    DirectKind direct;
 } SparseDef;
 
 /* The pattern of n unknowns that are coupled in groups (pattern.h). */
@@ -75,10 +76,11 @@ bool sparse_use_factor(Sparse *matrix, Factor *factor);
 
 /* What it cost. */
 typedef struct SparseInfo {
-    long factor_nonzeros;        /* of L                                              */
-    double factor_flops;         /* of one factorisation                              */
-    long factor_bytes;           /* of a factor that is kept                          */
-    long factorizations, solves; /* so far, failed factorisations included            */
+    long factor_nonzeros;          /* of L                                              */
+    double factor_flops;           /* of one factorisation                              */
+    long factor_bytes;             /* of a factor that is kept                          */
+    long process_bytes, all_bytes; /* DirectCost's, of the factor that took most */
+    long factorizations, solves;   /* so far, failed factorisations included            */
     double factor_seconds, solve_seconds;
 } SparseInfo;
 SparseInfo sparse_info(const Sparse *matrix);

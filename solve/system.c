@@ -98,6 +98,12 @@ void system_set_base_shift(System *sys, double base)
     sys->base = base;
 }
 
+void system_set_direct(System *sys, DirectKind direct)
+{
+    assert(!sys->matrix);
+    sys->direct = direct;
+}
+
 void system_set_order(System *sys, const int *order)
 {
     mem_free(sys->order);

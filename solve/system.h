@@ -37,6 +37,9 @@ void system_fix(System *sys, int dof);
  * for low fill is found. For chains, and needed with multipliers (SparseDef). */
 void system_set_order(System *sys, const int *order);
 
+/* Which direct solver factors it. Before its matrix is built. */
+void system_set_direct(System *sys, DirectKind direct);
+
 /* base shift, in parts of each class's mean diagonal, that is always added: 1e-10 for bodies with free rigid motions
  * in statics, else 0 (physics: a zero eigenvalue decides nothing). */
 void system_set_base_shift(System *sys, double base);

@@ -85,8 +85,8 @@ static Sparse *create_matrix(const System *sys)
 {
     GroupList list = list_groups(sys, false);
     int *order = unknown_order(sys);
-    Sparse *matrix =
-        sparse_create(sys->free_count, groups_of(&list), (SparseDef){order, sys->multiplier_count});
+    SparseDef def = {order, sys->multiplier_count, sys->direct};
+    Sparse *matrix = sparse_create(sys->free_count, groups_of(&list), def);
     sparse_set_workers(matrix, sys->workers);
     mem_free(order);
     group_list_clear(&list);

@@ -14,6 +14,7 @@ struct System {
     double *bulk_gradient;                                /* [dof] of one of them; NULL without Bulks */
     double energies[SYSTEM_MAX_TERMS + SYSTEM_MAX_BULKS]; /* of the last evaluation     */
     Workers *workers;                                     /* borrowed                   */
+    DirectKind direct;
     DofClass classes[SYSTEM_MAX_CLASSES];
     bool *fixed, factored; /* factored: the last factor may be used */
     bool prepared;

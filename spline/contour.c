@@ -1,15 +1,11 @@
 #include "spline/contour.h"
 #include "base/memory.h"
-
-/* A straight piece of the outline. */
-typedef struct Piece {
-    Vec2 a, b;
-} Piece;
+#include "spline/isolines.h"
 
 typedef struct Contour {
     const SplineField *cover;
     const SplinePage *page;
-    Piece *pieces;
+    IsoPiece *pieces;
     int count, room;
     int *nearest;   /* [rows][columns] piece, -1: none yet */
     double *square; /* [rows][columns] of its distance     */
@@ -20,7 +16,7 @@ static size_t pixel_index(const SplineField *field, int row, int column)
     return (size_t)row * (size_t)field->columns + (size_t)column;
 }
 
-static double piece_square(const Piece *piece, Vec2 p)
+static double piece_square(const IsoPiece *piece, Vec2 p)
 {
     double dx = piece->b.x - piece->a.x, dy = piece->b.y - piece->a.y;
     double x = p.x - piece->a.x, y = p.y - piece->a.y, length = dx * dx + dy * dy;
@@ -39,36 +35,17 @@ static void try_piece(Contour *c, int row, int column, int piece)
     c->nearest[at] = piece;
 }
 
-static void add_piece(Contour *c, int row, int column, Vec2 a, Vec2 b)
+static void add_piece(void *self, int row, int column, const IsoPiece *piece)
 {
+    Contour *c = self;
     if (c->count == c->room) {
         int room = 2 * c->room + 256;
         c->pieces = mem_resize(c->pieces, (size_t)c->room, (size_t)room, sizeof *c->pieces);
         c->room = room;
     }
-    c->pieces[c->count] = (Piece){a, b};
+    c->pieces[c->count] = *piece;
     for (int k = 0; k < 4; k++) try_piece(c, row + k / 2, column + k % 2, c->count);
     c->count++;
-}
-
-/* Between the centres of four pixels, around which the outline comes in and leaves once or twice. */
-static void add_cell(Contour *c, int row, int column)
-{
-    static const int around[5][2] = {{0, 0}, {0, 1}, {1, 1}, {1, 0}, {0, 0}};
-    Vec2 cuts[4];
-    int count = 0;
-    for (int k = 0; k < 4; k++) {
-        int i = row + around[k][0], j = column + around[k][1];
-        int next_i = row + around[k + 1][0], next_j = column + around[k + 1][1];
-        double from = *spline_field_pixel(c->cover, i, j) - 0.5,
-               to = *spline_field_pixel(c->cover, next_i, next_j) - 0.5;
-        if ((from >= 0) == (to >= 0)) continue;
-        Vec2 a = spline_field_center(c->cover, c->page, i, j),
-             b = spline_field_center(c->cover, c->page, next_i, next_j);
-        double s = from / (from - to);
-        cuts[count++] = (Vec2){a.x + s * (b.x - a.x), a.y + s * (b.y - a.y)};
-    }
-    for (int k = 0; k + 1 < count; k += 2) add_piece(c, row, column, cuts[k], cuts[k + 1]);
 }
 
 /* Tries the pieces of neighbours in the row before, and of that one beside. */
@@ -100,8 +77,7 @@ SplineField spline_contour_distance(const SplineField *cover, const SplinePage *
     c.nearest = mem_alloc(count, sizeof *c.nearest);
     c.square = mem_alloc(count, sizeof *c.square);
     for (size_t k = 0; k < count; k++) c.nearest[k] = -1;
-    for (int i = 0; i + 1 < cover->rows; i++)
-        for (int j = 0; j + 1 < cover->columns; j++) add_cell(&c, i, j);
+    isolines_visit(cover, page, 0.5, add_piece, &c);
     sweep(&c, 1);
     sweep(&c, -1);
     for (size_t k = 0; k < count; k++)

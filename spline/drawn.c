@@ -184,13 +184,24 @@ static bool read_picture(Result *result, SplineField *picture, Error *err)
     return ok || error_set(err, "spline/picture is not as slender writes it");
 }
 
+static bool read_profile(Result *result, char **profile, Error *err)
+{
+    Array text;
+    if (!result_has(result, "slender/spline/profile")) return true;
+    if (!read_array(result, "profile", ARRAY_TEXT, -1, &text, err)) return false;
+    *profile = mem_text((const char *)text.data);
+    array_clear(&text);
+    return true;
+}
+
 bool drawn_read(Result *result, Drawn *drawn, Error *err)
 {
     *drawn = (Drawn){0};
     if (!drawn_has(result)) return error_set(err, "the result has no drawing");
     bool ok = read_page(result, drawn, err) && read_plotter(result, &drawn->plotter, err) &&
-              read_pens(result, drawn, err) && read_paper(result, drawn, err) &&
-              read_picture(result, &drawn->picture, err) && read_strokes(result, drawn, &drawn->strokes, err);
+              read_profile(result, &drawn->profile, err) && read_pens(result, drawn, err) &&
+              read_paper(result, drawn, err) && read_picture(result, &drawn->picture, err) &&
+              read_strokes(result, drawn, &drawn->strokes, err);
     if (ok)
         drawn->plot = spline_plot(&drawn->strokes, &drawn->page, drawn->pens, drawn->pen_count, drawn->paper);
     return ok;
@@ -203,6 +214,7 @@ void drawn_clear(Drawn *drawn)
     strokes_clear(&drawn->strokes);
     spline_plot_clear(&drawn->plot);
     spline_field_clear(&drawn->picture);
+    mem_free(drawn->profile);
     *drawn = (Drawn){0};
 }
 
@@ -212,16 +224,34 @@ static bool is_profile_file(const char *language)
     return strchr(language, '.') || strchr(language, '/');
 }
 
+/* The words of a language; *owned: they are to be cleared. */
+static bool profile_of(const Drawn *drawn, const char *language, PlotProfile *profile, bool *owned,
+                       Error *err)
+{
+    bool own = !strcmp(language, "profile");
+    *owned = own || is_profile_file(language);
+    if (own && !drawn->profile) {
+        *owned = false;
+        return error_set(err, "the result has no profile of its own: its scene names none");
+    }
+    return own      ? plot_profile_parse("spline/profile", drawn->profile, profile, err)
+           : *owned ? plot_profile_read(language, profile, err)
+                    : plot_profile(language, profile, err);
+}
+
 bool drawn_write(const Drawn *drawn, const char *language, const char *path, Error *err)
 {
+    return drawn_write_plot(drawn, &drawn->plot, language, path, err);
+}
+
+bool drawn_write_plot(const Drawn *drawn, const Plot *plot, const char *language, const char *path,
+                      Error *err)
+{
     PlotProfile profile;
-    if (!strcmp(language, "svg")) return plot_write_svg(path, &drawn->plot, err);
-    if (is_profile_file(language)) {
-        bool ok = plot_profile_read(language, &profile, err) &&
-                  plot_write_machine(path, &drawn->plot, &profile, &drawn->plotter, err);
-        plot_profile_clear(&profile);
-        return ok;
-    }
-    return plot_profile(language, &profile, err) &&
-           plot_write_machine(path, &drawn->plot, &profile, &drawn->plotter, err);
+    bool owned;
+    if (!strcmp(language, "svg")) return plot_write_svg(path, plot, err);
+    bool ok = profile_of(drawn, language, &profile, &owned, err) &&
+              plot_write_machine(path, plot, &profile, &drawn->plotter, err);
+    if (owned) plot_profile_clear(&profile);
+    return ok;
 }

@@ -5,7 +5,7 @@
  * strokes [S+1] first node of each stroke in the order in which they are plotted, pen [S]; and names (of the
  * pens, a line each), width [pens] m, color [pens,3], opaque [pens] 0 or 1, paper [2] m, paper_color [3], margin [2] m (left and right,
  * above and below), speed [2] m/s (pen down, up),
- * lift s, z [3] (up, down m; m/s), servo (two commands, a line each: up, down), pause s (what G4 P1 waits),
+ * profile (text of the scene's machine, where it names one), lift s, z [3] (up, down m; m/s), servo (two commands, a line each: up, down), pause s (what G4 P1 waits),
  * picture [rows,columns] or [rows,columns,3]: what was to be drawn, 0 white .. 255 black or, of a
  * coloured one, what takes away red, green and blue. */
 #pragma once
@@ -23,6 +23,7 @@ typedef struct Drawn {
     Plot plot;
     SplineField picture; /* as in Drawing */
     Plotter plotter;
+    char *profile; /* text of the scene's machine; NULL: none */
 } Drawn;
 
 bool drawn_has(Result *result);
@@ -32,5 +33,10 @@ bool drawn_has(Result *result);
 bool drawn_read(Result *result, Drawn *drawn, Error *err);
 void drawn_clear(Drawn *drawn);
 
-/* Writes it as "svg", or in the words of a profile (plot_file.h): its name, or the path of its file. */
+/* Writes it as "svg", or in the words of a profile (plot_file.h): its name, the path of its file, or "profile": the
+ * result's own. */
 bool drawn_write(const Drawn *drawn, const char *language, const char *path, Error *err);
+
+/* The same of a plot that is a part of its own (plot_split.h). */
+bool drawn_write_plot(const Drawn *drawn, const Plot *plot, const char *language, const char *path,
+                      Error *err);

@@ -135,21 +135,6 @@ static void add_candidate(const SplineTarget *target, Vec2 center, double rest, 
     mem_free(back);
 }
 
-static Tone tone_of(const SplineTarget *target, const RelaxDef *def, const Strokes *strokes)
-{
-    double *rest = spline_rest_lengths(target, def, strokes);
-    SplineModel *model = spline_model_create(target, strokes, rest, &def->model);
-    SplinePoints points =
-        spline_points_create(&model->rule, model->segment_count, spline_pen_cap(&target->page));
-    spline_points_update(&points, model, strokes->q);
-    Tone tone = tone_create(target, NULL);
-    tone_update(&tone, &points);
-    spline_points_clear(&points);
-    spline_model_destroy(model);
-    mem_free(rest);
-    return tone;
-}
-
 /* A tile and what is missing around it. */
 typedef struct Tile {
     double length;
@@ -193,7 +178,7 @@ void spline_propose_strokes(const SplineTarget *target, const RelaxDef *def, con
     segments = (int)fmax(fmin(segments, spline_ink_budget(target) / rest), 1);
     double length = segments * rest;
     Missing missing = missing_create(&target->page, fmax(length / 3, target->spacing / 2));
-    Tone tone = tone_of(target, def, strokes);
+    Tone tone = tone_of_strokes(target, strokes, target->page.pen);
     sum_missing(&missing, &tone);
     Tile *tiles = sorted_tiles(&missing);
     int count = missing.columns * missing.rows;

@@ -1,4 +1,5 @@
 #include "spline/streamlines.h"
+#include "base/cubic.h"
 #include "base/memory.h"
 #include "base/random.h"
 #include "spline/direction.h"
@@ -26,10 +27,10 @@ SplineStartDef spline_start_default(void)
 typedef struct Demand {
     double blank;    /* density below which the paper stays so */
     double greatest; /* density                                */
-    double length;   /* of all lines                           */
+    double length;   /* of all lines that there are not yet    */
 } Demand;
 
-static Demand tone_demand(const SplineGrid *tone, const SplinePage *page)
+static Demand tone_demand(const SplineGrid *tone, const SplinePage *page, const SplineFixed *fixed)
 {
     Demand demand = {.blank = spline_blank_density(page)};
     int count = tone->columns * tone->rows;
@@ -40,7 +41,7 @@ static Demand tone_demand(const SplineGrid *tone, const SplinePage *page)
         sum += density;
         demand.greatest = fmax(demand.greatest, density);
     }
-    demand.length = sum / count / page->pen;
+    demand.length = fmax(sum / count / page->pen - spline_fixed_length(fixed, page), 0);
     return demand;
 }
 
@@ -202,11 +203,27 @@ static void spread_curves(Spread *spread)
         }
 }
 
+/* Samples of the strokes that are there, as the first curves. */
+static void add_fixed(Spread *spread)
+{
+    Tracer *tracer = &spread->tracer;
+    const Strokes *fixed = spread->def.fixed.strokes;
+    for (int k = 0; fixed && k < fixed->count; k++, tracer->curve++)
+        for (int node = fixed->start[k], along = 0; node < fixed->start[k + 1] - 1; node++) {
+            Vec2 c[4];
+            strokes_bezier(fixed, node, c);
+            int steps = (int)ceil(strokes_segment_length(fixed, node) / tracer->step);
+            for (int i = 0; i <= steps; i++)
+                lanes_add(tracer->lanes, cubic_at(c, (double)i / steps), tracer->curve, along++);
+        }
+}
+
 static Strokes even_strokes(const Tracer *base, const SplineStartDef *def, int layer, double separation)
 {
     Spread spread = {.tracer = *base, .def = *def, .random = random_seed(def->seed), .layer = layer};
     spread.tracer.separation = separation;
     spread.tracer.lanes = lanes_create(base->page, base->step, separation * base->page->pen / base->blank);
+    add_fixed(&spread);
     spread_curves(&spread);
     lanes_destroy(spread.tracer.lanes);
     mem_free(spread.seeds.at);
@@ -217,7 +234,7 @@ static Strokes even_strokes(const Tracer *base, const SplineStartDef *def, int l
 void spline_streamlines(const SplineGrid *tone, const SplineGrid *direction, const SplinePage *page,
                         const SplineStartDef *def, int layer, Strokes *strokes)
 {
-    Demand demand = tone_demand(tone, page);
+    Demand demand = tone_demand(tone, page, &def->fixed);
     if (!(demand.length > 0)) return;
     SplineStartDef whole = *def;
     whole.segment = segment_length(def, tone, page);
@@ -264,7 +281,7 @@ static Vec2 random_place(const SplineGrid *tone, const double *sums, const Splin
 void spline_random_strokes(const SplineGrid *tone, const SplineGrid *direction, const SplinePage *page,
                            const SplineStartDef *def, int layer, Strokes *strokes)
 {
-    Demand demand = tone_demand(tone, page);
+    Demand demand = tone_demand(tone, page, &def->fixed);
     if (!(demand.length > 0)) return;
     double segment = segment_length(def, tone, page);
     double left = (def->ink > 0 ? def->ink : 1) * demand.length;

@@ -2,11 +2,11 @@
  * for.
  *
  * A density D drawn with a pen of width w takes lines of the total length mean(D)/w in a page of area 1 (the
- * budget; where it is not blank). Nodes of a stroke are equally far apart, about `segment`, with v a third of
+ * budget; where it is not blank), less what fixed strokes have of it. Nodes of a stroke are equally far apart, about `segment`, with v a third of
  * that along the stroke. Blank paper (target.h) stays so. The
  * same seed gives the same strokes. */
 #pragma once
-#include "spline/grid.h"
+#include "spline/fixed.h"
 #include "spline/strokes.h"
 #include <stdint.h>
 
@@ -19,6 +19,7 @@ typedef struct SplineStartDef {
     int segments;   /* of a random stroke; default 8                                                */
     uint64_t seed;  /* default 1                                                                    */
     SplineGrid outline; /* of the region (contour.h); default: no columns, the page is the region; borrowed */
+    SplineFixed fixed;  /* strokes that are there, which streamlines keep away from; default: none */
 } SplineStartDef;
 
 SplineStartDef spline_start_default(void);

@@ -28,6 +28,9 @@ typedef struct Tone {
 Tone tone_create(const SplineTarget *target, Workers *workers);
 void tone_clear(Tone *tone);
 
+/* That of strokes drawn by a pen of that width. */
+Tone tone_of_strokes(const SplineTarget *target, const Strokes *strokes, double pen);
+
 /* Ink of all points, and then energy and forces of it. Returns E/K. */
 double tone_update(Tone *tone, const SplinePoints *points);
 

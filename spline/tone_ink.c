@@ -167,3 +167,19 @@ double tone_update(Tone *tone, const SplinePoints *points)
     for (int k = 0; k < tone->row_count; k++) energy += tone->rows[k];
     return energy;
 }
+
+Tone tone_of_strokes(const SplineTarget *target, const Strokes *strokes, double pen)
+{
+    SplineModelDef def = spline_model_default();
+    double *rest = mem_alloc((size_t)strokes_segment_count(strokes), sizeof *rest); /* no matter for ink */
+    SplineModel *model = spline_model_create(target, strokes, rest, &def);
+    SplinePoints points = spline_points_create(&model->rule, model->segment_count, M_PI / 8 * pen);
+    spline_points_update(&points, model, strokes->q);
+    Tone tone = tone_create(target, NULL);
+    tone.pen = pen;
+    tone_update(&tone, &points);
+    spline_points_clear(&points);
+    spline_model_destroy(model);
+    mem_free(rest);
+    return tone;
+}

@@ -5,9 +5,19 @@
 expect 0 "$program" help;                       says "slender run"
 expect 0 "$program" --version;                  says "CHOLMOD"; says "OpenBLAS"; says "NLopt"; says "HDF5"
 expect 2 "$program" fly;                        says "no verb 'fly'"
-for verb in run check info export picture schema mesh help version; do
+verbs=$("$program" help | sed -n 's/^  slender \([a-z]*\) .*/\1/p')
+[ "$(echo "$verbs" | wc -l)" -ge 9 ] || { echo "help lists only" $verbs; bad=1; }
+for verb in $verbs; do # --help names every option that there is
+    expect 0 "$program" $verb --options; mv out.txt options.txt
     expect 0 "$program" $verb --help; [ ! -s err.txt ] && grep -q "^usage: slender $verb" out.txt || { echo "$verb does not say how it is used"; bad=1; }
+    while read -r name letter rest; do
+        case $name in
+        argument) ;;
+        *) grep -q -e "$name" -e "$letter [A-Zk]" out.txt || { echo "$verb --help does not say $name"; bad=1; } ;;
+        esac
+    done < options.txt
 done
+expect 0 "$program" picture --options; says "^argument - value RESULT"; says "^--output -o value .png"; says "^--no-arrows - flag$"; says "^--target - value beside over both$"
 refuses() { # a sentence, what the program is given ..
     sentence=$1; shift
     expect 2 "$program" "$@"; says "$sentence"; [ "$(cat out.txt err.txt | wc -l)" = 1 ] || { echo "more than a sentence:"; cat out.txt err.txt; bad=1; }
@@ -27,6 +37,7 @@ refuses "--frame must be a whole number from 0, and is '-1'" export --frame -1 x
 refuses "-o FILE must be given" export x.vtkhdf
 expect 3 "$program" run missing.yaml;           says "missing.yaml: cannot be read"
 expect 3 "$program" run "$here/broken/wrong_unit.yaml"; says "must be a number in Pa"
+"$program" version | grep -q MUMPS || { expect 3 "$program" run "$here/broken/mumps.yaml"; says "built without it: cmake -DSLENDER_MUMPS=ON"; }
 
 # A million triangles: read, and what they cost foretold, in seconds; a warning of check is one of run, too.
 sed 's/mesh: .*/mesh: {shape: sheet, size: [0.2, 0.1], cells: [1024, 512]}/; s/n: 32//' "$here/../scenes/cantilever.yaml" > million.yaml
@@ -137,7 +148,7 @@ expect 3 "$program" export beam.vtkhdf -o x.csv --dataset scene; says "a text, n
 expect 3 "$program" export beam.vtkhdf -o x.obj --frame 7; says "there is no frame 7"
 expect 3 "$program" picture beam.vtkhdf -o x.png --frame 7; says "frames, from 0"
 expect 2 "$program" export beam.vtkhdf -o x.csv; says "which numbers? --dataset names them"
-for ending in png csv.txt vtk stl; do expect 2 "$program" export beam.vtkhdf -o x.$ending; says "numbers are exported as .csv, with --dataset, a mesh as .obj, a drawing as .svg"; done
+for ending in png csv.txt vtk; do expect 2 "$program" export beam.vtkhdf -o x.$ending; says "numbers are exported as .csv, with --dataset, a mesh as .obj, a drawing as .svg"; done
 expect 2 "$program" export beam.vtkhdf -o x.obj --plotter hpgl; says "plotter is for a drawing"
 expect 2 "$program" export beam.vtkhdf -o x.csv --dataset state/x --frame 0; says "frame is for a mesh"
 expect 2 "$program" export beam.run -o x.vtkhdf --dataset state/x; says "dataset is not used with a run"
@@ -163,6 +174,8 @@ expect 1 "$program" run "$scene" -o short --set solver.max_iterations=2 --set "l
 expect 0 "$program" info short.vtkhdf;          says "state/x"
 expect 0 "$program" run "$scene" -o json --log=json; says '"step": 1, "of": 1, "seconds": [0-9.]*, "left": 0,'
 expect 0 "$program" schema;                     says "json-schema.org"
+expect 0 "$program" schema --keys;              says "^shell.thickness=$"; says "^job=design$"; says "^fix\[0\].ball.radius=$"
+expect 2 "$program" schema --keys --manual;     says "exclude each other"
 expect 0 "$program" schema --manual;            says "| .thickness. |"
 "$program" schema --manual | cmp -s - "$here/../docs/scene.md" || { echo "docs/scene.md is not what slender schema --manual says"; bad=1; }
 

@@ -27,6 +27,24 @@ sed 's/276 mm/70 mm/' near.yaml > small.yaml; sed 's/{feed}/{speed}/' "$here/../
 expect 4 "$program" export out/a.vtkhdf -o d.plt --plotter small.yaml; says "it reaches from (0, 0) to (70, 193) mm"
 expect 4 "$program" export out/a.vtkhdf -o d.gcode --plotter wrong.yaml; says 'wrong.yaml:.*"{speed}" stands for nothing'
 [ ! -e d.plt ] && [ ! -e d.gcode ] || { echo "a refused plot was written"; bad=1; }
+# The scene may name the machine: its file is written by the run, and again from the result alone.
+sed "s/^spline:/output: {plotter: m.plt}\nspline:\n  plotter: {profile: near.yaml}/" "$scene" > machine.yaml
+cp near.yaml kept.yaml
+expect 0 "$program" run machine.yaml --quiet --no-picture -o m; expect 0 "$program" export m.vtkhdf -o c.plt --plotter kept.yaml; same m.plt c.plt
+rm near.yaml
+expect 0 "$program" export m.vtkhdf -o e.plt --plotter profile; same m.plt e.plt
+expect 4 "$program" export out/a.vtkhdf -o e.plt --plotter profile; says "the result has no profile of its own"
+cp small.yaml near.yaml; expect 3 "$program" check machine.yaml; says "near.yaml: the plot has a point where the machine has"
+# A file for each pen, or for so much ink: all strokes once, and no file where one of them may not be.
+expect 0 "$program" export out/a.vtkhdf -o one.gcode --split pen; says "one_1.gcode: black: "; same out/a.gcode one_1.gcode
+[ ! -e one.gcode ] && [ ! -e one_2.gcode ] || { echo "a file too many"; bad=1; }
+expect 0 "$program" export out/a.vtkhdf -o ink.svg --split "1 m"; says "ink_2.svg: black: .* m of ink, about"
+[ "$(cat ink_*.svg | grep "<path")" = "$(grep "<path" out/a.svg)" ] || { echo "split strokes are not all strokes in their order"; bad=1; }
+mkdir no_1.svg; expect 4 "$program" export out/a.vtkhdf -o no.svg --split "1 m"; says "no_1.svg"; [ ! -e no_2.svg ] || { echo "written in part"; bad=1; }
+expect 2 "$program" export out/a.vtkhdf -o x.svg --split "1 mT"; says 'split must be pen, or the ink in a file, as "5 m"'
+expect 0 "$program" run "$scene" --quiet --no-picture -o fine --set spline.draft=true --set spline.pen=0.3mm
+expect 4 "$program" export fine.vtkhdf -o x.svg --split "1 um"; says "files, and 100 are the most"; [ ! -e x_1.svg ] || { echo "too many files"; bad=1; }
+expect 2 "$program" export out/a.vtkhdf -o x.csv --dataset metrics/ink --split pen; says "split is for a drawing"
 # How the pen is lifted is in the files, in the time, and in what is exported later.
 for lift in 0.3 9; do
     expect 0 "$program" run "$scene" --quiet --no-picture -o "lift$lift" --set spline.rounds=0 --set output.gcode="lift$lift.gcode" --set output.gcode_servo=s.nc \
@@ -42,6 +60,8 @@ expect 0 "$program" run "$scene" --quiet --no-picture -o night --set spline.roun
 grep -q 'style="background:#101020"' night.svg && ! grep -q multiply night.svg || { echo "no white paint on black paper"; bad=1; }
 expect 0 "$program" export night.vtkhdf -o c.svg; same night.svg c.svg
 expect 2 "$program" export out/a.vtkhdf -o c.dwg; says "a drawing as .svg"
+for ending in glb stl 3mf ply; do expect 4 "$program" export out/a.vtkhdf -o c.$ending; says "a drawing is exported as .svg"; done
+expect 0 "$program" export out/a.vtkhdf -o c.npz; exists c.npz
 expect 2 "$program" export out/a.vtkhdf -o c.yaml --plotter gcode; says "a drawing as .svg"
 expect 0 "$program" picture out/a.vtkhdf -o c.pdf --width 800; exists c.pdf
 expect 3 "$program" picture out/a.vtkhdf -o c.png --frame 0; says "the drawing has no frames; .output: {film: N}. keeps those of a run"

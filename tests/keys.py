@@ -13,6 +13,7 @@ FREE = {
     "design.tolerance", "rod.curve.where", "output.png",  # no pictures are made here
     "spline.tolerance", "spline.rounds", "spline.draft",  # where iterations are done before
     "shell.coercivity", "solid.coercivity", "rod.coercivity",  # which warn only
+    "solver.direct",  # finds the same
     "time", "time.step", "time.steps",  # the statics of a motion's scene leave them
 }
 
@@ -145,7 +146,7 @@ VALUES = {
     "natural_strain.formula": ['["0", "s", "1"]'], "natural_strain.where": ["{a: s}"], "natural_strain.file": [],
     "velocity.value": ["[0, 0, 0.1]"], "velocity.formula": ['["0", "0", "x"]'], "velocity.where": ["{a: x}"], "velocity.file": [],
     "velocity of water.value": ["[0.1, 0, 0]"], "velocity of water.formula": ['["0.1", "0", "x"]'], "velocity of water.where": ["{a: x}"],
-    "unknown young.bounds": ["[0.1 MPa, 0.2 MPa]"], "unknown fold.bounds": ["[0.5, 0.9]"],
+    "unknown young.bounds": ["[0.1 MPa, 0.2 MPa]"], "unknown thickness.bounds": ["[0.5 mm, 0.9 mm]"], "unknown fold.bounds": ["[0.5, 0.9]"],
     "unknown natural_strain.bounds": ["[-0.5, 0.5]"], "unknown source_strength.bounds": ["[0.5, 0.9]"],
     "unknown source_move.bounds": ["[-1 mm, 1 mm]"], "unknown source_turn.bounds": ["[-0.1, 0.1]"],
     "unknown source_strength.sources": ["[source1]"], "unknown source_move.sources": ["[source1]"],
@@ -171,6 +172,8 @@ VALUES = {
     "curve of a rod.noise": ["0", "1 mm"], "curve of a rod.file": [], "curve of a rod.formula": ['["u", "0", "0"]'],
     "end.frame": ["[[0, 1, 0], [-1, 0, 0], [0, 0, 1]]"], "clamp.frame": ["[[0, 1, 0], [-1, 0, 0], [0, 0, 1]]"],
     "young.groups": ["{flap: 1 MPa}"], "young.other": ["3 MPa"], "young.where": ["{a: x}"], "young.file": [], "young.formula": ['"1e6+x"'],
+    "thickness.groups": ["{flap: 1 mm}"], "thickness.other": ["2 mm"], "thickness.where": ["{a: x}"], "thickness.file": [], "thickness.formula": ['"1e-3+0.01*x"'],
+    "density.groups": ["{flap: 900}"], "density.other": ["800"], "density.where": ["{a: x}"], "density.file": [], "density.formula": ['"900+1e4*x"'],
     "fold.groups": [], "fold.other": ["3"], "fold.where": ["{a: x}"], "fold.file": [], "fold.formula": ['"1+10*x"'],
     "magnetization.groups": [], "magnetization.other": ["[1, 2, 3]"], "magnetization.where": ["{a: x}"], "magnetization.file": [],
     "magnetization.formula": ['["x", "1", "2"]'], "flux_density.file": [], "flux_density.where": ["{a: x}"],
@@ -183,7 +186,7 @@ VALUES = {
     "density of a drawing.where": ["{a: x}"], "density of a drawing.formula": ['"0.5*v"'],
     "output.svg": ["o.svg"], "output.png": ["o.png"], "output.gcode": ["o.g"], "output.gcode_servo": ["o.g"], "output.hpgl": ["o.hpgl"],
     "spline.start": ["random", "{kind: random, segments: 5}", "{kind: random, separation: 1}", "{kind: random, longest: 10 mm}"],
-    "spline.energies": [], "unknowns.young": ["{bounds: [1 MPa, 2 MPa]}"], "unknowns.fold": ["{bounds: [0.5, 2]}"],
+    "spline.energies": [], "unknowns.young": ["{bounds: [1 MPa, 2 MPa]}"], "unknowns.thickness": ["{bounds: [1 mm, 2 mm]}"], "unknowns.fold": ["{bounds: [0.5, 2]}"],
     "unknowns.flux_density": ["{}", "{noise: 0.01}", "{noise: 0.01, per: knot}", "{noise: 0.01, knots: 3}", "{noise: 0.01, start: [0, 0.01, 0]}"],
     "unknowns.magnetization": [], "unknowns.skin_young": ["{bounds: [0.1 MPa, 1 MPa]}"],
     "solid.pose": [], "solid.velocity": ["[0, 0, 0.1]"], "solid.order": ["1"], "solid.averaging": ["0.3"],

@@ -25,11 +25,12 @@ for front in $fronts; do
     check "$front" "$physics|optim|model|job|$body|$front"
 done
 check view 'base|io|spline|view'
+check export 'base|io|view|export'
 check lib "$physics|optim|model|job|lib|[a-z]*/front"
-check cli "$physics|optim|model|job|lib|view|cli|spline"
+check cli "$physics|optim|model|job|lib|view|export|cli|spline"
 
 # What is not alike for bodies and jobs is in their rows (model/rows.h).
-for folder in base solve io field optim surface world model job view lib cli; do
+for folder in base solve io field optim surface world model job view export lib cli; do
     found=$(grep -HnE "(->|\.)($bodies|drawing)\b[^/\"]|\b(JOB|BODY)_[A-Z]" $folder/*.[ch] | grep -v '#include')
     [ -z "$found" ] || { echo "$folder/ asks for the kind of a body or job:"; echo "$found"; bad=1; }
 done

@@ -290,9 +290,35 @@ static void colors(void **state)
     assert_non_null(strstr(err.text, "'ultraviolet' is no colour"));
 }
 
+/* Contours along outlines: half a line within the region, whose tone alone counts them; of crossed sets each a half. */
+static void outline_contours(void **state)
+{
+    (void)state;
+    write_file("circle.svg",
+               "<svg xmlns='http://www.w3.org/2000/svg' width='70mm' height='70mm' viewBox='0 0 70 70'>"
+               "<circle cx='35' cy='35' r='20'/></svg>");
+    Drawing *d =
+        drawing_of("density: 0.4, page: {size: [70 mm, 70 mm], margin: 5 mm}, pen: 0.6 mm, "
+                   "regions: [{svg: circle.svg, fit: paper}], contours: {kind: outlines, width: 0.8 mm}, "
+                   "cross: {angle: 90 deg, from: [0, 0]}");
+    assert_true(d->contours.count == 1 && d->layer_count == 2 && d->pen_count == 1 && d->part_count == 2);
+    for (int k = 0; k < strokes_node_count(&d->contours); k++) {
+        const double *q = d->contours.q + 4 * k;
+        double radius = d->page.unit * hypot(q[0] - d->page.width / 2, q[1] - d->page.height / 2);
+        expect_close(radius, 0.020 - 0.0004, 5e-5);
+    }
+    for (int k = 0; k < 2; k++) {
+        const SplineField *counts = &d->parts[k].counts;
+        expect_close(*spline_field_pixel(counts, counts->rows / 2, counts->columns / 2), 0.5, 1e-12);
+        expect_close(*spline_field_pixel(counts, 2, 2), 0, 1e-12);
+    }
+    drawing_destroy(d);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test_teardown(pages, nothing_leaks),
+                                       cmocka_unit_test_teardown(outline_contours, nothing_leaks),
                                        cmocka_unit_test_teardown(shapes_of_pictures, nothing_leaks),
                                        cmocka_unit_test_teardown(nothing_beside, nothing_leaks),
                                        cmocka_unit_test_teardown(drafts, nothing_leaks),

@@ -1,6 +1,7 @@
 /* Factors and solves of positive definite matrices: right, and the same bits by one thread and by several. */
 #include "base/memory.h"
 #include "base/random.h"
+#include "matrix_fixture.h"
 #include "shell_fixture.h"
 #include "solve/sparse.h"
 #include "solve/supernodal.h"
@@ -10,73 +11,6 @@
 
 static const int threads[] = {1, 2, 3, 5};
 enum { COUNTS = 4 };
-
-/* Elements of `size` unknowns each, whose matrices are c (1 1^T + I): positive definite where every unknown has one. */
-typedef struct Elements {
-    int n, count, size;
-    int *dofs;
-} Elements;
-
-static Elements elements_create(int n, int count, int size)
-{
-    return (Elements){n, count, size, mem_alloc((size_t)count * (size_t)size, sizeof(int))};
-}
-
-static Sparse *matrix_of(Elements *e, const int *order)
-{
-    long *start = mem_alloc((size_t)e->count + 1, sizeof *start);
-    for (int k = 0; k <= e->count; k++) start[k] = (long)k * e->size;
-    Sparse *a = sparse_create(e->n, (Groups){e->count, start, e->dofs}, (SparseDef){.order = order});
-    double *values = sparse_values(a);
-    for (int i = 0; i < e->n; i++) values[sparse_slot(a, i, i)] += 0.01;
-    for (int k = 0; k < e->count; k++)
-        for (int i = 0; i < e->size; i++)
-            for (int j = 0; j <= i; j++) {
-                int p = e->dofs[k * e->size + i], q = e->dofs[k * e->size + j];
-                double c = 1 + 0.1 * (k % 7);
-                values[sparse_slot(a, p, q)] += i == j || p == q ? 2 * c : c;
-            }
-    mem_free(start);
-    mem_free(e->dofs);
-    return a;
-}
-
-/* Unknowns near each other, and a few far: what a mesh with some welds couples. */
-static Elements random_elements(int n, int count, int size, int reach, unsigned seed)
-{
-    Elements e = elements_create(n, count, size);
-    Random random = random_seed(seed);
-    for (int k = 0; k < count; k++) {
-        int at = (int)((long)k * n / count);
-        for (int i = 0; i < size; i++) {
-            double far = k % 50 == 0 ? n : reach;
-            int to = at + (int)(far * random_signed(&random));
-            e.dofs[k * size + i] = to < 0 ? 0 : to >= n ? n - 1 : to;
-        }
-    }
-    return e;
-}
-
-/* A side x side grid of squares, with `dofs` unknowns at each corner. */
-static Elements grid_elements(int side, int dofs)
-{
-    Elements e = elements_create((side + 1) * (side + 1) * dofs, side * side, 4 * dofs);
-    for (int k = 0; k < e.count; k++)
-        for (int i = 0; i < e.size; i++) {
-            int corner = i / dofs, x = k % side + corner % 2, y = k / side + corner / 2;
-            e.dofs[k * e.size + i] = (y * (side + 1) + x) * dofs + i % dofs;
-        }
-    return e;
-}
-
-static double misfit(const Sparse *a, int n, const double *x, const double *b)
-{
-    double *product = mem_alloc((size_t)n, sizeof *product), worst = 0;
-    sparse_multiply(a, x, product);
-    for (int i = 0; i < n; i++) worst = fmax(worst, fabs(product[i] - b[i]));
-    mem_free(product);
-    return worst;
-}
 
 /* Factored and solved by each count of threads, and one's factor by another's: all the same bits, and right. */
 static void check_matrix(Sparse *a, int n)
@@ -102,7 +36,7 @@ static void check_matrix(Sparse *a, int n)
 
 static void check_elements(Elements e, const int *order)
 {
-    Sparse *a = matrix_of(&e, order);
+    Sparse *a = matrix_of(&e, (SparseDef){.order = order});
     check_matrix(a, e.n);
     sparse_destroy(a);
 }
@@ -158,7 +92,7 @@ static void test_indefinite(void **state)
     (void)state;
     enum { STEP = 97 };
     Elements e = grid_elements(24, 3);
-    Sparse *a = matrix_of(&e, NULL);
+    Sparse *a = matrix_of(&e, (SparseDef){0});
     double *shift = mem_alloc(3 * (size_t)e.n, sizeof *shift), *b = shift + e.n, *x = b + e.n;
     for (int i = 0; i < e.n; i++) b[i] = 1;
     for (int t = 0; t < COUNTS; t++) {

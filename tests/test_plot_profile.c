@@ -134,6 +134,10 @@ static void refused_profiles(void **state)
         {OWN "unit: 40\n", "units"},
         {OWN "limits: [0, 1 m]\n", "limits"},
         {"slender: 1\ntravel: a\nup: b\ndown: c\n", "line"},
+        {"slender: 1\ntravel: \"{x},{y}\"\nup: b\ndown: c\nline: \"\"\n",
+         "own.yaml:5:7: line: these words do not say where to: {x} and {y} are needed"},
+        {"slender: 1\ntravel: \"{x}\"\nup: b\ndown: c\nline: \"{x},{y}\"\n",
+         "own.yaml:2:9: travel: these words do not say where to"},
     };
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         Error err = {""};

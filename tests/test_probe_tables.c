@@ -190,6 +190,21 @@ static char *table_of(const char *path, const char *const *settings, int common,
     return file_text(NAME "_probes.csv");
 }
 
+/* Tables of stages end with what acts in them, what is 0 in all left out; every bit of it. */
+static void test_stage_columns(void **state)
+{
+    (void)state;
+    result_close(run_text(mem_format("%sjob: equilibrium\nfix: [{group: root, clamp: true}]\n"
+                                     "sequence: {flux_density: {from: [0, 0, 0], to: [0, 0.3 mT, 0], count: "
+                                     "3}, time: {from: 1, to: 2}}\n"
+                                     "probes: {z: {height: tip}}\n",
+                                     SHEET)));
+    char *text = file_text(NAME "_probes.csv");
+    assert_string_equal(text, "stage,z,t,B.x,B.y,B.z\n0,0,1,0,0,0\n1,0,1.5,0,0.00014999999999999999,0\n"
+                              "2,0,2,0,0.00029999999999999997,0\n");
+    mem_free(text);
+}
+
 /* A motion: the start first, its table as the result, and the same when the run goes on. */
 static void test_motion(void **state)
 {
@@ -406,9 +421,10 @@ static int clean(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_closed_forms), cmocka_unit_test(test_stages),
-        cmocka_unit_test(test_forces),       cmocka_unit_test(test_motion),
-        cmocka_unit_test(test_design),       cmocka_unit_test(test_ranges),
-        cmocka_unit_test(test_load_steps),   cmocka_unit_test(test_stopped_steps)};
+        cmocka_unit_test(test_closed_forms),  cmocka_unit_test(test_stages),
+        cmocka_unit_test(test_forces),        cmocka_unit_test(test_motion),
+        cmocka_unit_test(test_design),        cmocka_unit_test(test_ranges),
+        cmocka_unit_test(test_stage_columns), cmocka_unit_test(test_load_steps),
+        cmocka_unit_test(test_stopped_steps)};
     return cmocka_run_group_tests(tests, clean, clean);
 }

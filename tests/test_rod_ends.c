@@ -147,6 +147,30 @@ static void test_poses(void **state)
     result_close(result);
 }
 
+/* The outline of a rectangle that tapers is that of the first end, corners and all; of a circle it is round. */
+static void test_outline(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 2; k++) {
+        Result *result = run_text(mem_format(
+            "slender: 1\njob: evaluate\nrod:\n  %s\n  young: 1 GPa\n  poisson: 0.5\n  density: 1000\n  "
+            "length: 0.1\n"
+            "  natural_strain: [0, 0, 0]\n  elements: 10\n",
+            k ? "section: {width: {formula: \"0.003*(1 - s/L/2)\"}, height: 1 mm}" : "radius: 2 mm"));
+        Array outline = read_all(result, "slender/rod/section_outline");
+        int corners = 0;
+        for (int i = 0; i < outline.dims[0]; i++) {
+            double y = fabs(numbers(&outline)[2 * i]), z = fabs(numbers(&outline)[2 * i + 1]);
+            if (k) assert_true(fabs(fmax(y / 1.5e-3, z / 0.5e-3) - 1) < 1e-12);
+            if (!k) assert_true(fabs(hypot(y, z) - 2e-3) < 1e-15);
+            corners += fabs(y - 1.5e-3) + fabs(z - 0.5e-3) < 1e-15;
+        }
+        assert_int_equal(corners, k ? 4 : 0);
+        array_clear(&outline);
+        result_close(result);
+    }
+}
+
 /* kg, of a node: half an element at the ends. */
 static double node_mass(double length, int i)
 {
@@ -305,7 +329,7 @@ int main(void)
         cmocka_unit_test(test_weight),      cmocka_unit_test(test_turned_clamp),
         cmocka_unit_test(test_accelerated), cmocka_unit_test(test_wound_up),
         cmocka_unit_test(test_resumed),     cmocka_unit_test(test_poses),
-        cmocka_unit_test(test_pendulum),
+        cmocka_unit_test(test_outline),     cmocka_unit_test(test_pendulum),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -127,6 +127,11 @@ static void test_mass_centre(void **state)
               "        poisson: 0.3, density: 1000, gravity: [0, 0, -9.81]}\n"
               "fix: [{box: [[-1, -1, -1], [0, 1, 1]], move: [x, \"y + 0.001*sin(200*t)\", z]}]\n",
               0.32e-3, 1e-6);
+    check_law(
+        "slender: 1\njob: simulate\noutput: {precision: double}\n"
+        "rod: {natural_strain: [0, 0, 0], length: 0.1, elements: 12, radius: 1 mm, young: 1 MPa, poisson: "
+        "0.4, density: 1000,\n      gravity: [0, 0, -9.81]}\n",
+        1e-7 * acos(-1) * 1000, 1e-6);
 }
 
 /* ---- Runs that went on, and trajectories ---- */

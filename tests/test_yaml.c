@@ -263,6 +263,32 @@ static void test_manual(void **state)
     mem_free(manual);
 }
 
+static bool has_line(const char *text, const char *line)
+{
+    const char *at = strstr(text, line);
+    return at && (at == text || at[-1] == '\n') && at[strlen(line)] == '\n';
+}
+
+/* As --set has them: what a line says is taken by the table. */
+static void test_keys(void **state)
+{
+    (void)state;
+    static const char *const lines[] = {
+        "length=", "inner=", "inner.value=", "entries[0].formula=", "names=", "kind=hinge", "flag=true"};
+    char *keys = yaml_keys(&outer_table);
+    for (size_t k = 0; k < sizeof lines / sizeof *lines; k++) assert_true(has_line(keys, lines[k]));
+    assert_null(strstr(keys, "names."));
+    YamlFile *file = parse(full);
+    Outer o;
+    for (char *line = strtok(keys, "\n"); line; line = strtok(NULL, "\n"))
+        if (line[strlen(line) - 1] != '=') assert_true(yaml_override(file, line));
+    if (!yaml_load(file, &outer_table, &o)) fail_msg("%s", yaml_report(file));
+    assert_false(o.flag); /* false comes after true */
+    yaml_clear(&outer_table, &o);
+    yaml_destroy(file);
+    mem_free(keys);
+}
+
 static Outer load(const char *text)
 {
     Outer o;
@@ -402,6 +428,6 @@ int main(void)
         cmocka_unit_test(test_kinds),  cmocka_unit_test(test_defaults),  cmocka_unit_test(test_round_trip),
         cmocka_unit_test(test_units),  cmocka_unit_test(test_overrides), cmocka_unit_test(test_difference),
         cmocka_unit_test(test_report), cmocka_unit_test(test_mark),      cmocka_unit_test(test_foreign),
-        cmocka_unit_test(test_manual), cmocka_unit_test(test_use)};
+        cmocka_unit_test(test_manual), cmocka_unit_test(test_keys),      cmocka_unit_test(test_use)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

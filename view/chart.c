@@ -69,7 +69,9 @@ static void axis_set_x(Axis *axis, const Chart *chart, int wanted)
     UnitScale scale =
         unit[0] ? unit_scale(unit, fmax(fabs(axis->low), fabs(axis->high))) : (UnitScale){.factor = 1};
     axis->factor = scale.factor;
-    axis->ticks = ticks_linear(axis->low * scale.factor, axis->high * scale.factor, wanted);
+    double low = axis->low * scale.factor, high = axis->high * scale.factor;
+    axis->ticks =
+        chart->x_counts && high - low < wanted ? ticks_every(1, low, high) : ticks_linear(low, high, wanted);
     axis_label(axis, chart->x_label, scale.unit);
 }
 
@@ -88,6 +90,14 @@ static void axis_set_log(Axis *axis)
     axis->ticks = ticks_log(axis->low, axis->high, 5);
 }
 
+/* Where all numbers are 0 there is no scale to show. */
+static void axis_set_zero(Axis *axis, const Chart *chart)
+{
+    axis->low = -1, axis->high = 1, axis->factor = 1;
+    axis->ticks = ticks_linear(0, 0, 1);
+    axis_label(axis, chart->y_label, chart->y_unit ? chart->y_unit : "");
+}
+
 static void axis_set_y(Axis *axis, const Chart *chart)
 {
     chart_range(chart, false, false, &axis->low, &axis->high);
@@ -100,8 +110,12 @@ static void axis_set_y(Axis *axis, const Chart *chart)
         axis_label(axis, chart->y_label, unit_scale(unit, 1).unit);
         return;
     }
+    if (axis->low == 0 && axis->high == 0) {
+        axis_set_zero(axis, chart);
+        return;
+    }
     if (axis->low > 0 && axis->low < 0.5 * axis->high) axis->low = 0;
-    if (axis->low == axis->high) axis->low -= fabs(axis->low) * 0.5 + (axis->low == 0);
+    if (axis->low == axis->high) axis->low -= fabs(axis->low) * 0.5;
     if (axis->low != 0) axis->low -= 0.05 * (axis->high - axis->low);
     axis->high += 0.05 * (axis->high - axis->low);
     UnitScale scale = unit_scale(unit, fmax(fabs(axis->low), fabs(axis->high)));
@@ -147,8 +161,9 @@ static void draw_marks(Canvas *canvas, const Chart *chart, const Axis *x, const 
     }
 }
 
-/* Runs of points that can be shown become one line each. Dots where they are few, and for a lone point. */
-static void draw_series(Canvas *canvas, const ChartSeries *series, const Axis *x, const Axis *y, Color color)
+/* Runs of points that can be shown become one line each; or, after all lines, dots where they are few, and for a lone point. */
+static void draw_series(Canvas *canvas, const ChartSeries *series, const Axis *x, const Axis *y, Color color,
+                        bool dots)
 {
     Vec2 *points = mem_alloc((size_t)series->count, sizeof *points);
     int run = 0;
@@ -157,9 +172,9 @@ static void draw_series(Canvas *canvas, const ChartSeries *series, const Axis *x
         bool shown = chart_shows(px, false) && chart_shows(py, y->log);
         if (shown) points[run++] = (Vec2){axis_place(x, px), axis_place(y, py)};
         if (shown && i + 1 < series->count) continue;
-        if (run > 1) canvas_polyline(canvas, points, run, (Pen){color, 1.3, 0});
-        for (int k = 0; k < run && (series->count <= 40 || run == 1); k++)
-            canvas_circle(canvas, points[k], 1.8, color);
+        if (run > 1 && !dots) canvas_polyline(canvas, points, run, (Pen){color, 1.3, 0});
+        for (int k = 0; dots && k < run && (series->count <= 40 || run == 1); k++)
+            canvas_circle(canvas, points[k], run == 1 ? 2.4 : 1.8, color);
         run = 0;
     }
     mem_free(points);
@@ -241,8 +256,10 @@ void chart_draw(Canvas *canvas, const Chart *chart, Box box)
     canvas_text(canvas, (Vec2){box.x + PAGE_LABEL, 0.5 * (y.from + y.to)}, y.label,
                 (TextStyle){.color = page_ink, .size = PAGE_LABEL, .align = TEXT_CENTER, .upwards = true});
     draw_marks(canvas, chart, &x, &y);
-    for (int s = 0; s < chart->series_count; s++)
-        draw_series(canvas, &chart->series[s], &x, &y, colormap_series(chart->first_color + s));
+    for (int k = 0; k < 2 * chart->series_count; k++) {
+        int s = k % chart->series_count;
+        draw_series(canvas, &chart->series[s], &x, &y, colormap_series(chart->first_color + s), k > s);
+    }
     if (chart->title) canvas_text(canvas, (Vec2){x.from, box.y + PAGE_LABEL}, chart->title, title);
     draw_legend(canvas, chart, &legend, x.to, box.y + PAGE_LABEL);
 }

@@ -39,7 +39,7 @@ typedef enum PictureTarget {
     PICTURE_TARGET_BOTH
 } PictureTarget;
 
-enum { PICTURE_CHARTS_MAX = 2 };
+enum { PICTURE_CHARTS_MAX = 3 };
 
 typedef struct PictureScene {
     const char *title;        /* NULL: none                                                  */

@@ -204,7 +204,7 @@ static int add_charts(Show *show)
 {
     int count = show_probes_charts(show->data, show->charts, PROBE_CHARTS);
     if (count <= 1) count += show_motion_charts(&show->motion, show->charts + count);
-    return count;
+    return count < PICTURE_CHARTS_MAX ? count : PICTURE_CHARTS_MAX;
 }
 
 static bool write_page(Show *show, const char *result, const char *picture, Error *err)

@@ -7,13 +7,20 @@
 
 enum { STILLS = 6, FRAMES_PER_SECOND = 25 };
 
+void show_data_borrow(ShowData *data, Result *result, const ShowDef *def)
+{
+    *data = (ShowData){.def = def, .result = result, .borrowed = true};
+    data->motion =
+        result_has(result, "slender/history/time") || result_has(result, "slender/trajectory/flux_density");
+}
+
 bool show_data_open(ShowData *data, const char *result, const ShowDef *def, Error *err)
 {
-    *data = (ShowData){.def = def, .result = result_open(result, err)};
-    if (!data->result) return false;
-    data->motion = result_has(data->result, "slender/history/time") ||
-                   result_has(data->result, "slender/trajectory/flux_density");
-    return true;
+    Result *own = result_open(result, err);
+    *data = (ShowData){.def = def};
+    if (own) show_data_borrow(data, own, def);
+    data->borrowed = false;
+    return own != NULL;
 }
 
 void show_data_clear(ShowData *data)
@@ -22,7 +29,7 @@ void show_data_clear(ShowData *data)
     for (int k = 0; k < data->block_count; k++) mem_free(data->blocks[k]);
     mem_free(data->arrays);
     mem_free(data->blocks);
-    result_close(data->result);
+    if (!data->borrowed) result_close(data->result);
 }
 
 /* Takes a block over. */
@@ -133,6 +140,7 @@ bool show_history(ShowData *data, Chart *chart)
         .name = "objective", .count = (int)array_count(&history), .y = show_keep(data, history)};
     *chart = (Chart){.x_label = "evaluation",
                      .x_unit = "",
+                     .x_counts = true,
                      .y_label = "objective",
                      .y_unit = "",
                      .series_count = 1,

@@ -6,6 +6,7 @@
 
 typedef struct ShowData {
     Result *result;
+    bool borrowed; /* the result */
     const ShowDef *def;
     bool motion; /* frames are moments in time */
     bool drawn;  /* all was read: what fails now is the writing */
@@ -17,6 +18,9 @@ typedef struct ShowData {
 /* Opens the result. False and a sentence where it cannot be read; clear the data in any case. */
 bool show_data_open(ShowData *data, const char *result, const ShowDef *def, Error *err);
 void show_data_clear(ShowData *data);
+
+/* The same of a result that is open, and the caller's. */
+void show_data_borrow(ShowData *data, Result *result, const ShowDef *def);
 
 /* Zeroed memory. */
 void *show_block(ShowData *data, size_t count, size_t size);

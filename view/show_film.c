@@ -35,6 +35,7 @@ static void read_energy(FilmPage *page)
         *series = (ChartSeries){.name = "energy", .count = count, .x = x, .y = show_keep(data, energy)};
     }
     page->energy = (Chart){.x_label = "iteration",
+                           .x_counts = true,
                            .x_high = series->count,
                            .y_label = "energy",
                            .series_count = 1,

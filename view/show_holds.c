@@ -1,5 +1,6 @@
 #include "view/show_holds.h"
 #include <math.h>
+#include <string.h>
 
 /* Rows of 3x4 matrices: the columns tangent, n1, n2 and place. */
 static Hold hold_of(const double row[12])
@@ -48,4 +49,32 @@ Holds show_holds(ShowData *data, int frame)
     holds.count = count, holds.items = items;
     read_outline(data, &holds);
     return holds;
+}
+
+static void add_squares(ShowData *data, int strand_count, const int *strands, CurvesScene *scene)
+{
+    static const char HELD[] = "slender/rod/held";
+    int from = 0;
+    while (from + 1 < scene->set_count && isnan(scene->sets[from].points[0][0]))
+        from++; /* a target of some points */
+    const double(*points)[3] = scene->sets[from].points;
+    double(*held)[3] = show_block(data, (size_t)strand_count + 1, sizeof *held);
+    Array array;
+    int count = strand_count;
+    for (int k = 0; k < count; k++) memcpy(held[k], points[strands[k]], sizeof *held);
+    if (result_has(data->result, HELD) && result_read(data->result, HELD, &array, NULL)) {
+        if (array_is(&array, ARRAY_FLOAT64, 1, 3)) memcpy(held[count++], array.data, sizeof *held);
+        array_clear(&array);
+    }
+    scene->clamps = (const double(*)[3])held, scene->clamp_count = count;
+}
+
+void show_clamps(ShowData *data, int strand_count, const int *strands, CurvesScene *scene)
+{
+    static const char SUPPORTS[] = "slender/rod/supports";
+    Array array;
+    if (!curves_holds(scene, -1)) add_squares(data, strand_count, strands, scene);
+    if (!result_has(data->result, SUPPORTS) || !result_read(data->result, SUPPORTS, &array, NULL)) return;
+    if (array.type == ARRAY_TEXT && strstr(array.data, "pinned")) scene->clamps_name = "held";
+    array_clear(&array);
 }

@@ -249,10 +249,57 @@ static Chart field_chart(const ShowMotion *motion)
                    .first_color = 3};
 }
 
+/* The line of that number of a text; "" where there is none. */
+static const char *line_of(ShowData *data, const char *path, int number)
+{
+    Array text;
+    if (!result_has(data->result, path) || !result_read_as(data->result, path, ARRAY_TEXT, 1, 0, &text, NULL))
+        return "";
+    const char *line = show_keep(data, text);
+    for (int k = 0; k < number && *line; k++) line += strcspn(line, "\n") + (strchr(line, '\n') != NULL);
+    return show_text(data, "%.*s", (int)strcspn(line, "\n"), line);
+}
+
+/* Of sources whose strengths are unknown over time: those that change, some of them where they are many. */
+static bool strength_chart(const ShowMotion *motion, Chart *chart)
+{
+    enum { SOURCES = 4 };
+    static const char PATH[] = "slender/trajectory/source_strength",
+                      NAMES[] = "slender/trajectory/source_names";
+    ShowData *data = motion->data;
+    Array array;
+    if (!result_has(data->result, PATH) ||
+        !result_read_as(data->result, PATH, ARRAY_FLOAT64, 2, 0, &array, NULL))
+        return false;
+    int steps = array.dims[0], width = array.dims[1], shown = 0;
+    const double *rows = show_keep(data, array);
+    double *times = show_block(data, (size_t)steps, sizeof *times);
+    ChartSeries *series = show_block(data, SOURCES, sizeof *series);
+    for (int n = 0; n < steps; n++)
+        times[n] = motion->begin + (motion->end - motion->begin) * (n + 1) / steps;
+    for (int s = 0; s < width && shown < SOURCES; s++) {
+        double *y = show_block(data, (size_t)steps, sizeof *y), change = 0;
+        for (int n = 0; n < steps; n++) y[n] = rows[n * width + s], change = fmax(change, fabs(y[n] - y[0]));
+        if (change > 0)
+            series[shown++] =
+                (ChartSeries){.name = line_of(data, NAMES, s), .count = steps, .x = times, .y = y};
+    }
+    *chart = (Chart){.x_label = "t",
+                     .x_unit = "s",
+                     .x_low = motion->begin,
+                     .x_high = motion->end,
+                     .y_label = "strength of sources",
+                     .y_unit = "",
+                     .y_axis = CHART_LINEAR,
+                     .series_count = shown,
+                     .series = series};
+    return shown > 0;
+}
+
 int show_motion_charts(const ShowMotion *motion, Chart charts[SHOW_MOTION_CHARTS])
 {
     int count = 0;
     if (motion->row_count > 0) charts[count++] = distance_chart(motion);
     if (motion->field_count > 0) charts[count++] = field_chart(motion);
-    return count;
+    return count + strength_chart(motion, &charts[count]);
 }

@@ -1,14 +1,14 @@
 /* show_motion.h - of a motion, what its pages show beside the body: the curves and places that its points were to follow, their
- * way up to then, and charts of how far they are away and of the uniform field over time.
+ * way up to then, and charts of how far they are away, of the uniform field and of the sources' strengths over time.
  *
- * Reads trajectory/followed, trajectory/reference/.. and trajectory/flux_density, of a simulation frames/flux_density
+ * Reads trajectory/followed, trajectory/reference/.., trajectory/flux_density and trajectory/source_strength, of a simulation frames/flux_density
  * (docs/result.md); what a result has not is not drawn. */
 #pragma once
 #include "view/chart.h"
 #include "view/marks.h"
 #include "view/show_data.h"
 
-enum { SHOW_MOTION_CHARTS = 2 };
+enum { SHOW_MOTION_CHARTS = 3 };
 
 typedef struct ShowMotion {
     ShowData *data;

@@ -36,8 +36,8 @@ static bool read_obstacle(ShowData *data, const char *group, const char *name, S
     if (!read_part(data, group, name, points_part, &points, err) ||
         !read_part(data, group, name, faces_part, &faces, err))
         return false;
-    *obstacle = (ShowObstacle){points.dims[0],     faces.dims[0], (void *)points.data,
-                               (void *)faces.data, .pole = NULL,  .kind = NULL};
+    *obstacle = (ShowObstacle){points.dims[0], faces.dims[0], (void *)points.data, (void *)faces.data,
+                               .pole = NULL,   .name = name,  .kind = NULL};
     for (size_t i = 0; i < array_count(&faces); i++) {
         int point = ((const int *)faces.data)[i];
         if (point < 0 || point >= points.dims[0])
@@ -58,7 +58,7 @@ static bool read_source(ShowData *data, const char *name, ShowObstacle *source, 
            error_set(err, "the poles of sources/%s are not those of its faces", name);
 }
 
-static Color color_of(const ShowObstacle *one, int face)
+Color show_obstacle_color(const ShowObstacle *one, int face)
 {
     if (!one->pole) return plain;
     if (strcmp(one->kind, "magnet") != 0) return copper;
@@ -77,7 +77,7 @@ static void merge(ShowObstacles *o)
         const ShowObstacle *one = &o->list[k];
         for (int f = 0; f < one->face_count; f++, face++) {
             for (int i = 0; i < 3; i++) (*face)[i] = o->point_count + one->faces[f][i];
-            *color++ = color_of(one, f);
+            *color++ = show_obstacle_color(one, f);
         }
         o->point_count += one->point_count;
     }
@@ -137,11 +137,24 @@ static const double *poses_at(const ShowObstacles *o, const char *path, int coun
     return fits ? numbers : NULL;
 }
 
+const double (*show_obstacles_poses(const ShowObstacles *o, int frame))[12]
+{
+    static const double still[12] = {[0] = 1, [5] = 1, [10] = 1};
+    const double *moved = poses_at(o, "slender/frames/obstacle_pose", o->obstacles, frame),
+                 *sources = poses_at(o, "slender/frames/source_pose", o->count - o->obstacles, frame);
+    double(*poses)[12] = show_block(o->data, (size_t)o->count, sizeof *poses);
+    for (int k = 0; k < o->count; k++) {
+        const double *all = k < o->obstacles ? moved : sources;
+        int row = k < o->obstacles ? k : k - o->obstacles;
+        memcpy(poses[k], all ? all + 12 * row : still, sizeof still);
+    }
+    return (const double(*)[12])poses;
+}
+
 Surroundings show_obstacles_at(const ShowObstacles *o, int frame)
 {
     if (o->count == 0) return (Surroundings){0};
-    const double *moved = poses_at(o, "slender/frames/obstacle_pose", o->obstacles, frame),
-                 *sources = poses_at(o, "slender/frames/source_pose", o->count - o->obstacles, frame);
+    const double(*poses)[12] = show_obstacles_poses(o, frame);
     double(*x)[3] = show_block(o->data, (size_t)o->point_count, sizeof *x);
     RasterMesh *mesh = show_block(o->data, 1, sizeof *mesh);
     *mesh = (RasterMesh){.vertex_count = o->point_count,
@@ -153,17 +166,8 @@ Surroundings show_obstacles_at(const ShowObstacles *o, int frame)
                          .edge_color = line,
                          .edge_width = LINE,
                          .one_sided = true};
-    for (int k = 0; k < o->count; k++) {
-        bool source = k >= o->obstacles;
-        const double *poses = source ? sources : moved;
-        for (int v = 0; v < o->list[k].point_count; v++, x++) {
-            const double *X = o->list[k].points[v];
-            if (poses)
-                place(poses + 12 * (source ? k - o->obstacles : k), X, *x);
-            else
-                memcpy(*x, X, sizeof *x);
-        }
-    }
+    for (int k = 0; k < o->count; k++)
+        for (int v = 0; v < o->list[k].point_count; v++, x++) place(poses[k], o->list[k].points[v], *x);
     return (Surroundings){.obstacles = mesh};
 }
 

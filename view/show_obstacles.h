@@ -9,8 +9,8 @@ typedef struct ShowObstacle {
     int point_count, face_count;
     const double (*points)[3]; /* m, in its own frame */
     const int (*faces)[3];
-    const double *pole; /* [face] of a magnet or coil: 1 north .. -1 south; NULL: an obstacle */
-    const char *kind;   /* "magnet", .. */
+    const double *pole;      /* [face] of a magnet or coil: 1 north .. -1 south; NULL: an obstacle */
+    const char *name, *kind; /* "floor"; "magnet", .. */
 } ShowObstacle;
 
 typedef struct ShowObstacles {
@@ -24,6 +24,12 @@ typedef struct ShowObstacles {
 
 /* False and a sentence where they are not as slender writes them. */
 bool show_obstacles_read(ShowObstacles *obstacles, ShowData *data, Error *err);
+
+/* Where they are in a frame (-1: the last): a 3x4 matrix (R | s) by rows for each, x = R X + s; NaN: not there. Kept in the data. */
+const double (*show_obstacles_poses(const ShowObstacles *obstacles, int frame))[12];
+
+/* The colour of its face. */
+Color show_obstacle_color(const ShowObstacle *obstacle, int face);
 
 /* Where they are in a frame; -1: the last. */
 Surroundings show_obstacles_at(const ShowObstacles *obstacles, int frame);

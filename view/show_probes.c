@@ -80,7 +80,8 @@ static void add_line(const Probed *probed, Lines *lines, char *name, const doubl
     lines->change[place] = change;
 }
 
-/* The lines of a probe: "tip z", of several cases "tip z, case 1". Of a vector those along which it changes. */
+/* The lines of a probe: "tip z", of several cases "tip z, case 1". Of a vector those along which it changes; a number that does
+ * not is a line, too. */
 static void add_probe(const Probed *probed, Lines *lines, const char *name, const double *values, int each)
 {
     const double little = 1e-3;
@@ -88,11 +89,48 @@ static void add_probe(const Probed *probed, Lines *lines, const char *name, cons
     double most = 0;
     for (int i = 0; i < each; i++) most = fmax(most, change_of(probed, values + i, each));
     for (int i = 0; i < each; i++) {
-        if (change_of(probed, values + i, each) <= little * most) continue;
+        bool stays = change_of(probed, values + i, each) <= little * most;
+        if (stays && (most > 0 || width > 1)) continue;
         char *component = width > 1 ? show_text(probed->data, " %c", "xyz"[i % width]) : "",
              *of = probed->cases > 1 ? show_text(probed->data, ", case %d", i / width) : "";
         add_line(probed, lines, show_text(probed->data, "%s%s%s", name, component, of), values + i, each);
     }
+}
+
+/* Of the box around the last state, m. */
+static double body_size(const Probed *probed)
+{
+    Array x;
+    double size = 0;
+    if (!result_read_as(probed->data->result, "slender/state/x", ARRAY_FLOAT64, 2, 3, &x, NULL)) return 0;
+    for (int i = 0; i < 3; i++) {
+        double low = INFINITY, high = -INFINITY;
+        for (int v = 0; v < x.dims[0]; v++) {
+            double at = ((const double *)x.data)[3 * v + i];
+            low = fmin(low, at), high = fmax(high, at);
+        }
+        if (low < high) size = hypot(size, high - low);
+    }
+    array_clear(&x);
+    return size;
+}
+
+/* What numbers of a unit are small beside: the body's size, the weight of as much water, or 1. */
+static double scale_of(const Probed *probed, const char *unit)
+{
+    const double water = 1e4; /* N/m^3 */
+    double size = body_size(probed);
+    return !strcmp(unit, "m") ? size : !strcmp(unit, "N") ? water * pow(size, 3) : 1;
+}
+
+/* Numbers that are nothing but rounding beside a size become 0. */
+static void clear_rounding(Array *array, double size)
+{
+    const double rounding = 1e-12;
+    double *values = (double *)array->data, most = 0;
+    size_t count = array_count(array);
+    for (size_t k = 0; k < count; k++) most = fmax(most, fabs(values[k]));
+    if (most < rounding * size) memset(values, 0, count * sizeof *values);
 }
 
 /* Those of a unit, among all datasets of the result. */
@@ -101,11 +139,13 @@ static Chart chart_of(const Probed *probed, int unit, char *const *paths, int co
     ShowData *data = probed->data;
     Chart chart = {.x_label = counts[probed->kind].label,
                    .x_unit = counts[probed->kind].unit,
+                   .x_counts = counts[probed->kind].unit[0] == 0,
                    .y_label = units[unit].label,
                    .y_unit = units[unit].unit,
                    .y_axis = CHART_LINEAR};
     Lines *lines = show_block(data, 1, sizeof *lines);
     chart.series = lines->series;
+    double size = scale_of(probed, units[unit].unit);
     for (int k = 0; k < count; k++) {
         Array array;
         const char *name = paths[k] + strlen(PROBES);
@@ -115,6 +155,7 @@ static Chart chart_of(const Probed *probed, int unit, char *const *paths, int co
         size_t row = (size_t)(probed->rows * probed->cases), each = array_count(&array) / row;
         bool fits = array.type == ARRAY_FLOAT64 && !strcmp(array.unit, units[unit].unit) &&
                     (each == 1 || each == 3) && array_count(&array) == each * row;
+        if (fits) clear_rounding(&array, size);
         if (fits)
             add_probe(probed, lines, name, show_keep(data, array), (int)each * probed->cases);
         else

@@ -301,37 +301,6 @@ static void frame_obstacles(RodPage *page)
         show_obstacles_find_near(&page->obstacles, way, &page->sets[s].around);
 }
 
-/* Where the strands are held, unless the sets say it: where they begin, and where the other end is. */
-static void add_squares(RodPage *page, CurvesScene *scene)
-{
-    Result *result = page->data->result;
-    Array array;
-    int from = 0;
-    while (from + 1 < page->set_count && isnan(page->sets[from].points[0][0]))
-        from++; /* a target of some points */
-    const double(*points)[3] = page->sets[from].points;
-    double(*held)[3] = show_block(page->data, (size_t)page->strand_count + 1, sizeof *held);
-    int count = page->strand_count;
-    for (int k = 0; k < count; k++) memcpy(held[k], points[page->strands[k]], sizeof *held);
-    if (result_has(result, "slender/rod/held") && result_read(result, "slender/rod/held", &array, NULL)) {
-        if (array_is(&array, ARRAY_FLOAT64, 1, 3)) memcpy(held[count++], array.data, sizeof *held);
-        array_clear(&array);
-    }
-    scene->clamps = (const double(*)[3])held, scene->clamp_count = count;
-}
-
-static void add_clamps(RodPage *page, CurvesScene *scene)
-{
-    Result *result = page->data->result;
-    Array array;
-    if (!curves_holds(scene, -1)) add_squares(page, scene);
-    if (result_has(result, "slender/rod/supports") &&
-        result_read(result, "slender/rod/supports", &array, NULL)) {
-        if (array.type == ARRAY_TEXT && strstr(array.data, "pinned")) scene->clamps_name = "held";
-        array_clear(&array);
-    }
-}
-
 /* ---- Charts ---- */
 
 /* A series over s, interrupted between the strands. values: every `stride`-th number. */
@@ -407,13 +376,27 @@ static void add_distance(RodPage *page, const double *s)
                             .first_color = 1});
 }
 
+/* The moments that are shown, in charts over time. */
+static void mark_moments(RodPage *page, int first)
+{
+    double *times = show_block(page->data, (size_t)page->set_count, sizeof *times);
+    int count = 0;
+    for (int k = 0; k < page->set_count; k++)
+        if (page->sets[k].moment) times[count++] = page->sets[k].time;
+    for (int k = first; k < page->chart_count; k++)
+        if (!strcmp(page->charts[k].x_unit, "s"))
+            page->charts[k].marks = times, page->charts[k].mark_count = count;
+}
+
 static void add_over_time(RodPage *page)
 {
     Chart charts[SHOW_MOTION_CHARTS];
+    int first = page->chart_count;
     page->chart_count += show_probes_charts(page->data, page->charts + page->chart_count,
                                             CURVES_CHARTS_MAX - page->chart_count);
     int count = show_motion_charts(&page->motion, charts);
     for (int k = 0; k < count; k++) add_chart(page, charts[k]);
+    mark_moments(page, first);
 }
 
 static void add_charts(RodPage *page)
@@ -459,7 +442,7 @@ static bool write_page(RodPage *page, const char *result, const char *picture, E
     page->lines = show_rod_lines(page->data, page->strand_count, page->point_count);
     scene.lines = page->lines.text, scene.line_count = page->lines.count;
     scene.sets = page->sets, scene.set_count = page->set_count;
-    add_clamps(page, &scene);
+    show_clamps(page->data, page->strand_count, page->strands, &scene);
     const double *gravity = show_dataset(page->data, "slender/rod/gravity", ARRAY_FLOAT64, 3);
     if (gravity) memcpy(scene.gravity, gravity, sizeof scene.gravity);
     memcpy(scene.view, def->view, sizeof scene.view);

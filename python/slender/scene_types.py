@@ -209,11 +209,11 @@ PlaceOfASkinKeys = TypedDict("PlaceOfASkinKeys", {
 Spline = TypedDict("Spline", {
     "image": "str", "density": "DensityOfADrawing", "tone": "Tone", "page": "Page", "pen": "Number",
     "pens": "Rows[Pens]", "paper": "Number", "separation": "Separation", "regions": "Rows[Regions]", "cross": "Cross",
-    "direction": "Direction", "start": "StartOfADrawing", "energies": "Energies", "potential": "Potential",
-    "flow": "Flow", "pair": "Pair", "method": "Literal['auto', 'newton', 'gradient', 'monte_carlo', 'dynamics']",
-    "iterations": "int", "tolerance": "float", "draft": "bool", "rounds": "int", "rest": "float",
-    "monte_carlo": "MonteCarlo", "dynamics": "Dynamics", "seed": "int", "order": "Literal['shortest', 'as_made']",
-    "plotter": "Plotter",
+    "contours": "Contours", "direction": "Direction", "start": "StartOfADrawing", "energies": "Energies",
+    "potential": "Potential", "flow": "Flow", "pair": "Pair",
+    "method": "Literal['auto', 'newton', 'gradient', 'monte_carlo', 'dynamics']", "iterations": "int",
+    "tolerance": "float", "draft": "bool", "rounds": "int", "rest": "float", "monte_carlo": "MonteCarlo",
+    "dynamics": "Dynamics", "seed": "int", "order": "Literal['shortest', 'as_made']", "plotter": "Plotter",
 }, total=False)
 
 DensityOfADrawingKeys = TypedDict("DensityOfADrawingKeys", {
@@ -255,6 +255,11 @@ Cross = TypedDict("Cross", {
     "angle": "Number", "from": "Union[float, Numbers]",
 }, total=False)
 
+ContoursKeys = TypedDict("ContoursKeys", {
+    "kind": "Literal['edges', 'outlines']", "levels": "Union[float, Numbers]", "contrast": "float",
+    "detail": "Number", "shortest": "Number", "width": "Number", "color": "Number",
+}, total=False)
+
 StartOfADrawingKeys = TypedDict("StartOfADrawingKeys", {
     "kind": "Literal['streamlines', 'random']", "file": "str", "separation": "float", "ink": "float",
     "longest": "Number", "segments": "int",
@@ -288,6 +293,7 @@ Dynamics = TypedDict("Dynamics", {
 
 Plotter = TypedDict("Plotter", {
     "down": "Number", "up": "Number", "lift": "Number", "at_most": "Number", "z": "ZAxis", "servo": "Servo",
+    "profile": "str",
 }, total=False)
 
 ZAxis = TypedDict("ZAxis", {
@@ -526,6 +532,7 @@ Reach = TypedDict("Reach", {
 
 Solver = TypedDict("Solver", {
     "max_iterations": "int", "step_tolerance": "float", "force_tolerance": "float",
+    "direct": "Literal['cholmod', 'mumps']",
 }, total=False)
 
 LoadStepsKeys = TypedDict("LoadStepsKeys", {
@@ -547,6 +554,7 @@ FrameOfAStartKeys = TypedDict("FrameOfAStartKeys", {
 Output = TypedDict("Output", {
     "every": "int", "film": "int", "precision": "Literal['single', 'double']", "states": "Literal['last', 'all']",
     "stress": "bool", "svg": "Number", "png": "Number", "gcode": "Number", "gcode_servo": "Number", "hpgl": "Number",
+    "plotter": "Number",
 }, total=False)
 
 Scene = TypedDict("Scene", {
@@ -594,6 +602,7 @@ SizeOfAPage = Union["SizeOfAPageKeys", Number, Numbers]
 Pens = Union["PensKeys", Number]
 Separation = Union["SeparationKeys", Literal['cmyk', 'tones', 'match']]
 Direction = Union["DirectionKeys", Literal['structure_tensor'], Number]
+Contours = Union["ContoursKeys", Literal['edges', 'outlines']]
 StartOfADrawing = Union["StartOfADrawingKeys", Literal['streamlines', 'random']]
 Potential = Union["PotentialKeys", Number]
 Flow = Union["FlowKeys", Numbers]

@@ -191,7 +191,8 @@ static void make_systems(Model *model, bool hanging, bool motion)
     RodModel *rm = model->self;
     for (int k = 0; k < model->case_count; k++) {
         Case *c = &model->cases[k];
-        case_start(c, hanging ? rod_hanging_system(rm->rod) : make_system(model, motion), model->x);
+        System *sys = hanging ? rod_hanging_system(rm->rod) : make_system(model, motion);
+        case_start(c, model_take_system(model, sys), model->x);
     }
 }
 

@@ -232,7 +232,7 @@ static void add_vibrations(const Model *model, const Snapshot *shot, int modes, 
         return;
     }
     RodLayout layout = rod_layout(rm->rod, true);
-    System *sys = rod_system(rm->rod, shot->p[rm->rod->young], false);
+    System *sys = model_take_system(model, rod_system(rm->rod, shot->p[rm->rod->young], false));
     State state = system_state(sys);
     rod_copy_state(rm->rod, &rm->layout, shot->at.x, &layout, state.x);
     state.time = shot->at.time;

@@ -55,7 +55,6 @@ void shell_advise(Model *model, const Scene *scene)
         mesh_warn(&model->report,
                   "the thickness, %.3g m, is more than a fifth of the body's size, %.3g m: no thin shell",
                   shell->thickness, size);
-    advise_value(model, "density", "kg/m^3", shell->density);
     if (bending_length(model, scene) < CELLS_PER_LENGTH * mesh_mean_edge(shell->mesh))
         mesh_warn(
             &model->report,

@@ -2,6 +2,7 @@
 #include "base/memory.h"
 #include "io/paper.h"
 #include "spline/direction.h"
+#include "spline/front/drawing_contours.h"
 #include "spline/front/drawing_fields.h"
 #include "spline/front/drawing_pens.h"
 #include "spline/front/drawing_start.h"
@@ -56,6 +57,7 @@ static void add_parts(Drawing *d, const SplineScene *scene, int pen, const Drawi
                                   region && region->direction.columns ? &region->direction : &d->direction,
                               .outline = region ? &region->outline : NULL};
         part->page.pen = d->pens[pen].width;
+        if (d->contours.count) part->counts = drawing_contours_counted(d, scene, pen, region, sets);
         part->turn = pens_turn(scene, d->pens, pen) + k * (cross ? cross->angle : 0);
     }
     spline_field_clear(&tone);
@@ -226,12 +228,11 @@ Drawing *drawing_create(const SplineScene *scene, YamlFile *file)
 void drawing_destroy(Drawing *d)
 {
     if (!d) return;
-    for (int k = 0; k < d->pen_count; k++) {
-        mem_free((char *)d->pens[k].name);
-        if (d->tones) spline_field_clear(&d->tones[k]);
-    }
+    for (int k = 0; k < d->layer_count; k++) mem_free((char *)d->pens[k].name);
+    for (int k = 0; d->tones && k < d->pen_count; k++) spline_field_clear(&d->tones[k]);
     for (int k = 0; k < d->part_count; k++) {
         spline_field_clear(&d->parts[k].tone);
+        spline_field_clear(&d->parts[k].counts);
         strokes_clear(&d->parts[k].given);
     }
     for (int k = 0; k < d->region_count; k++) {
@@ -239,13 +240,50 @@ void drawing_destroy(Drawing *d)
         spline_field_clear(&d->regions[k].outline);
         spline_field_clear(&d->regions[k].direction);
     }
-    SplineField *fields[] = {&d->direction, &d->potential, &d->flow, &d->picture, &d->outline, &d->light};
-    for (int k = 0; k < 6; k++) spline_field_clear(fields[k]);
+    SplineField *fields[] = {&d->direction, &d->potential, &d->flow, &d->picture,
+                             &d->outline,   &d->contoured, &d->light};
+    for (int k = 0; k < 7; k++) spline_field_clear(fields[k]);
+    strokes_clear(&d->contours);
+    mem_free(d->profile);
     mem_free(d->regions);
     mem_free(d->pens);
     mem_free(d->tones);
     mem_free(d->parts);
     mem_free(d);
+}
+
+/* ---- Contours ---- */
+
+void drawing_add_contours(const Drawing *d, Strokes *strokes)
+{
+    strokes_append(strokes, &d->contours, d->pen_count);
+}
+
+static void take_contours(const Drawing *d, const SplineField *counts, SplineField *tone)
+{
+    for (int i = 0; d->contoured.columns && i < tone->columns * tone->rows; i++)
+        tone->values[i] -= d->contoured.values[i] * (counts->columns ? counts->values[i] : 1);
+}
+
+SplineField drawing_part_left(const Drawing *d, int part)
+{
+    SplineField left = spline_field_copy(&d->parts[part].tone);
+    take_contours(d, &d->parts[part].counts, &left);
+    return left;
+}
+
+SplineField drawing_pen_left(const Drawing *d, int pen)
+{
+    SplineField left = spline_field_copy(&d->tones[pen]);
+    for (int k = 0; k < d->part_count; k++)
+        if (d->parts[k].pen == pen) take_contours(d, &d->parts[k].counts, &left);
+    return left;
+}
+
+static SplineFixed fixed_of(const Drawing *d, int part)
+{
+    if (!d->contours.count) return (SplineFixed){0};
+    return (SplineFixed){&d->contours, d->pens[d->pen_count].width, spline_grid(&d->parts[part].counts)};
 }
 
 /* ---- Parts at work ---- */
@@ -266,6 +304,7 @@ Strokes drawing_first_strokes(const Drawing *d, int part)
     Strokes strokes = {0};
     SplineStartDef def = d->start;
     def.seed += (uint64_t)part;
+    def.fixed = fixed_of(d, part);
     if (from->outline) def.outline = spline_grid(from->outline);
     (d->start_kind == START_RANDOM ? spline_random_strokes : spline_streamlines)(&tone, &along, &from->page,
                                                                                  &def, from->pen, &strokes);
@@ -293,6 +332,8 @@ static SplineTarget *target_of(const Drawing *d, int part, Workers *workers)
     if (d->flow.columns) fields.flow = spline_grid(&d->flow);
     if (from->outline) fields.outline = spline_grid(from->outline);
     SplineTarget *target = spline_target_create(&from->page, &fields, &probes);
+    SplineFixed fixed = fixed_of(d, part);
+    spline_fixed_take_ink(&fixed, target);
     spline_field_clear(&direction);
     spline_field_clear(&light);
     return target;

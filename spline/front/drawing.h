@@ -15,6 +15,8 @@ typedef struct DrawingPart {
     const SplineField *direction; /* the region's                         */
     const SplineField *outline;   /* the region's; NULL: the page         */
     Strokes given;                /* to start from, with `start.file`     */
+    SplineField
+        counts; /* the part of the contours' ink that its tone counts, at each place; no columns: all */
 } DrawingPart;
 
 /* Regions do not overlap. */
@@ -28,10 +30,13 @@ typedef struct DrawingRegion {
 typedef struct Drawing {
     SplinePage page; /* with the finest pen */
     int pen_count, part_count, region_count;
-    SplinePen *pens; /* names owned                                      */
+    int layer_count; /* the pens, and the contours where they are asked for */
+    SplinePen *pens; /* [layer_count] names owned                        */
     Color paper;
-    SplineField *tones; /* [pen_count] what each shall cover, in all its parts; width 1 */
-    DrawingPart *parts; /* in the order of the pens                         */
+    SplineField *tones;    /* [pen_count] what each shall cover, in all its parts; width 1 */
+    Strokes contours;      /* fixed (fixed.h); of layer pen_count, drawn by that pen */
+    SplineField contoured; /* how much of each pixel of a tone they cover; no columns: there are none */
+    DrawingPart *parts;    /* in the order of the pens                         */
     DrawingRegion *regions;
     SplineField outline;   /* of all regions; no columns: there are none, the page is it */
     SplineField direction; /* width 3                                          */
@@ -48,12 +53,21 @@ typedef struct Drawing {
     bool draft; /* it ends where its iterations do */
     DrawOrder order;
     Plotter plotter, timed; /* timed: with the lift of the slowest of the files asked for */
+    char *profile;          /* text of the machine's file; NULL: none                     */
     double at_most;         /* s, what the plot may take; 0: no end                        */
     double thinned;         /* what of its ink the picture keeps for that; 1: all           */
 } Drawing;
 
 /* The strokes that a part starts from; the caller's. */
 Strokes drawing_first_strokes(const Drawing *drawing, int part);
+
+/* Adds the contours, which are part of every drawing. */
+void drawing_add_contours(const Drawing *drawing, Strokes *strokes);
+
+/* What its strokes are to cover of a part's tone, of all parts of a pen: less than 0 where contours cover more. The
+ * caller's. */
+SplineField drawing_part_left(const Drawing *drawing, int part);
+SplineField drawing_pen_left(const Drawing *drawing, int pen);
 
 /* About how many segments its strokes will have. */
 double drawing_segments(const DrawingPart *part);

@@ -3,6 +3,7 @@
 #include "model/build.h"
 #include "spline/direction.h"
 #include "spline/formula_field.h"
+#include "spline/front/drawing_contours.h"
 #include "spline/front/drawing_pens.h"
 #include "spline/front/drawing_regions.h"
 #include "spline/tone_field.h"
@@ -215,19 +216,24 @@ static bool direction_from_formula(const DirectionReader *d)
     return ok;
 }
 
-/* The tone that directions follow goes on beside the picture, so that its frame is no edge. */
+/* A tone that goes on beside the picture, so that its frame is no edge; no finer than `detail` needs it. */
+static bool read_open_tone(const Reader *r, const SplinePage *page, double detail, SplineField *tone)
+{
+    Reader open = *r;
+    open.tone.extend = true;
+    open.pixel = fmax(open.pixel, detail / 2);
+    return read_tone(&open, page, tone);
+}
+
 static bool direction_from_tone(const DirectionReader *d)
 {
     const DirectionScene *from = d->from;
     SplineDirectionDef def = spline_direction_default(d->page);
-    Reader open = *d->reader;
     SplineField tone;
-    open.tone.extend = true;
     if (!isnan(from->detail)) def.detail = from->detail / d->page->unit;
     if (!isnan(from->smooth)) def.smooth = from->smooth / d->page->unit;
     if (!isnan(from->spread)) def.spread = from->spread / d->page->unit;
-    open.pixel = fmax(open.pixel, def.detail / 2); /* no more is looked at */
-    if (!read_tone(&open, d->page, &tone)) return false;
+    if (!read_open_tone(d->reader, d->page, def.detail, &tone)) return false;
     *d->direction = spline_direction_from_tone(&tone, d->page, &def);
     spline_field_clear(&tone);
     return true;
@@ -263,6 +269,23 @@ static bool read_directions(const Reader *r, Drawing *d)
     return ok;
 }
 
+static bool read_contours(const Reader *r, Drawing *d)
+{
+    const ContoursScene *contours = r->scene->contours;
+    SplineField tone;
+    if (!contours) return true;
+    SplineEdgeDef def = drawing_contours_def(d, contours);
+    if (!contours->levels_count && contours->kind == CONTOURS_OUTLINES) {
+        drawing_find_outlines(d, &def);
+        return d->region_count > 0 || yaml_refuse(r->build.file, "spline.contours",
+                                                  "outlines are those of `regions`, and there are none");
+    }
+    if (!read_open_tone(r, &d->page, def.detail, &tone)) return false;
+    drawing_find_contours(d, contours, &def, &tone);
+    spline_field_clear(&tone);
+    return true;
+}
+
 /* Of the energies of Linewise. */
 static bool read_energy_fields(const Reader *r, Drawing *d)
 {
@@ -292,14 +315,15 @@ bool drawing_read_fields(Drawing *d, const SplineScene *scene, YamlFile *file)
     SplineField tone = {0};
     bool ok = read_tone_def(&r) && read_image(&r, &d->page);
     if (ok) fit_page(&r, &d->page);
-    ok = ok && pens_read(scene, file, &d->page, &d->paper, &d->pens, &d->pen_count) &&
-         read_tone(&r, &d->page, &tone);
+    ok = ok && pens_read(scene, file, &d->page, &d->paper, &d->pens, &d->pen_count);
+    d->layer_count = d->pen_count + (scene->contours && d->pens);
+    ok = ok && read_tone(&r, &d->page, &tone);
     if (ok) {
         share_tone(&r, &tone, d);
         make_picture(&r, &tone, d);
     }
     ok = ok && drawing_read_regions(d, scene, file, &r.tone, r.pixel) && read_directions(&r, d) &&
-         read_energy_fields(&r, d);
+         read_energy_fields(&r, d) && read_contours(&r, d);
     if (ok && d->region_count) drawing_mask(d, &d->picture);
     if (ok && d->region_count && d->light.columns) drawing_mask(d, &d->light);
     spline_field_clear(&tone);

@@ -172,7 +172,7 @@ bool pens_read(const SplineScene *scene, YamlFile *file, const SplinePage *page,
         return false;
     bool own = scene->pens_count > 0, ok = true;
     *count = own ? scene->pens_count : is_cmyk(scene) ? INKS : 1;
-    *pens = mem_alloc((size_t)*count, sizeof **pens);
+    *pens = mem_alloc((size_t)*count + 1, sizeof **pens);
     for (int k = 0; k < *count; k++) {
         char *name = (char *)(is_cmyk(scene) ? inks[k].name : "black");
         PenScene given = {.name = name, .width = NAN};
@@ -183,5 +183,8 @@ bool pens_read(const SplineScene *scene, YamlFile *file, const SplinePage *page,
              read_pen(scene, file, page, &given, at, &(*pens)[k]) &&
              check_seen(scene, file, *paper, &(*pens)[k], at);
     }
-    return ok;
+    if (!scene->contours) return ok;
+    PenScene line = {.name = "contours", .color = scene->contours->color, .width = scene->contours->width};
+    (*pens)[*count].name = mem_text(line.name);
+    return ok && read_pen(scene, file, page, &line, key("spline.contours"), &(*pens)[*count]);
 }

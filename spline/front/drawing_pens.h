@@ -7,8 +7,8 @@
 /* The width of the finest pen, m. */
 double pens_finest(const SplineScene *scene);
 
-/* pens[count], with widths in units of the page, and the colour of the paper; names are the caller's. False after a
- * refusal. */
+/* pens[count], with widths in units of the page, and behind them that of contours where there are any; names are the
+ * caller's. False after a refusal. */
 bool pens_read(const SplineScene *scene, YamlFile *file, const SplinePage *page, Color *paper,
                SplinePen **pens, int *count);
 

@@ -2,6 +2,7 @@
 #include "base/memory.h"
 #include "io/polyline_file.h"
 #include "io/result.h"
+#include "spline/along.h"
 #include "spline/drawn.h"
 #include <math.h>
 #include <string.h>
@@ -9,58 +10,16 @@
 
 /* ---- Lines of an SVG file ---- */
 
-/* A strand with the length of it up to each point, m on the paper. */
-typedef struct Strand {
-    const Vec3 *points;
-    double *along;
-    int count;
-} Strand;
-
-static Vec2 strand_at(const Strand *strand, double at)
-{
-    int low = 0, high = strand->count - 1;
-    while (high - low > 1) {
-        int middle = (low + high) / 2;
-        if (strand->along[middle] <= at)
-            low = middle;
-        else
-            high = middle;
-    }
-    Vec3 a = strand->points[low], b = strand->points[high];
-    double s =
-        fmin(fmax((at - strand->along[low]) / fmax(strand->along[high] - strand->along[low], 1e-300), 0), 1);
-    return (Vec2){a.x + s * (b.x - a.x), -(a.y + s * (b.y - a.y))};
-}
-
-/* Nodes equally far apart, about `segment`; tangents are a third of the chord of half a segment to both sides. */
-static void add_strand(const Strand *strand, const SplinePage *page, double segment, Strokes *strokes)
-{
-    double length = strand->along[strand->count - 1];
-    int segments = (int)fmax(lround(length / (segment * page->unit)), 1);
-    double each = length / segments;
-    if (!(length > 0)) return; /* a dot */
-    double(*q)[4] = strokes_extend(strokes, segments + 1, 0);
-    for (int k = 0; k <= segments; k++) {
-        double from = fmax((k - 0.5) * each, 0), to = fmin((k + 0.5) * each, length);
-        Vec2 p = strand_at(strand, k * each), a = strand_at(strand, from), b = strand_at(strand, to);
-        double third = each / (3 * (to - from) * page->unit);
-        q[k][0] = (p.x - page->left) / page->unit, q[k][1] = (p.y - page->top) / page->unit;
-        q[k][2] = third * (b.x - a.x), q[k][3] = third * (b.y - a.y);
-    }
-}
-
+/* A file's y goes up, the page's down. */
 static void add_lines(const PolylineFile *lines, const SplinePage *page, double segment, Strokes *strokes)
 {
-    double *along = mem_alloc((size_t)lines->point_count, sizeof *along);
-    for (int k = 0; k < lines->strand_count; k++) {
-        Strand strand = {lines->points + lines->first[k], along, lines->first[k + 1] - lines->first[k]};
-        along[0] = 0;
-        for (int i = 1; i < strand.count; i++)
-            along[i] = along[i - 1] + hypot(strand.points[i].x - strand.points[i - 1].x,
-                                            strand.points[i].y - strand.points[i - 1].y);
-        add_strand(&strand, page, segment, strokes);
-    }
-    mem_free(along);
+    Vec2 *points = mem_alloc((size_t)lines->point_count, sizeof *points);
+    for (int k = 0; k < lines->point_count; k++)
+        points[k] = (Vec2){(lines->points[k].x - page->left) / page->unit,
+                           (-lines->points[k].y - page->top) / page->unit};
+    for (int k = 0; k < lines->strand_count; k++)
+        strokes_along(points + lines->first[k], lines->first[k + 1] - lines->first[k], segment, 0, strokes);
+    mem_free(points);
 }
 
 static bool read_svg(const Drawing *d, const char *path, Strokes *strokes, Error *err)
@@ -82,9 +41,9 @@ static bool read_svg(const Drawing *d, const char *path, Strokes *strokes, Error
 static bool check_pens(const Drawing *d, const Strokes *strokes, const char *path, Error *err)
 {
     for (int k = 0; k < strokes->count; k++)
-        if (strokes->layer[k] >= d->pen_count)
+        if (strokes->layer[k] >= d->layer_count) /* contours are made anew */
             return error_set(err, "%s: it has strokes of pen %d, the scene has %d pen%s", path,
-                             strokes->layer[k] + 1, d->pen_count, d->pen_count == 1 ? "" : "s");
+                             strokes->layer[k] + 1, d->layer_count, d->layer_count == 1 ? "" : "s");
     return true;
 }
 

@@ -21,6 +21,7 @@ bool draw_put_strokes(Run *run, const Drawing *d, const Strokes *parts, int coun
     Arrays list = {0};
     Strokes all = {0};
     for (int k = 0; k < count; k++) strokes_append(&all, &parts[k], d->parts[k].pen);
+    drawing_add_contours(d, &all);
     drawing_add_strokes(d, &all, &list);
     bool ok = arrays_replace(&list, run->journal, "final", err);
     strokes_clear(&all);
@@ -45,18 +46,20 @@ static const MetricRow rows[] = {{LENGTH(ink_length)}, {LENGTH(ink_budget)},    
 enum { ROWS = sizeof rows / sizeof *rows };
 
 /* A number, or one for each pen. */
-static Array per_pen(const Drawing *d, const char *name, const char *unit, const double *values)
+static Array per_pen(const char *name, const char *unit, const double *values, int pens)
 {
-    return array_float(name, unit, values, d->pen_count > 1, d->pen_count, 0);
+    return array_float(name, unit, values, pens > 1, pens, 0);
 }
 
 static SplineMetrics measure(const Drawing *d, const Strokes *strokes, int pen)
 {
     SplinePage page = d->page;
-    SplineGrid tone = spline_grid(&d->tones[pen]);
+    SplineField left = drawing_pen_left(d, pen);
+    SplineGrid tone = spline_grid(&left);
     page.pen = d->pens[pen].width;
     Strokes own = strokes_of_layer(strokes, pen);
     SplineJudge *judge = spline_judge_create(&page, &tone);
+    spline_field_clear(&left);
     SplineMetrics metrics = spline_judge_measure(judge, &own);
     spline_judge_destroy(judge);
     strokes_clear(&own);
@@ -78,7 +81,7 @@ static void add_metrics(const Drawing *d, const Strokes *strokes, Run *run, Arra
                  m.spacing_cv, 100 * m.crowded);
     }
     for (int r = 0; r < ROWS; r++)
-        arrays_add(list, per_pen(d, rows[r].name, rows[r].unit, values + r * d->pen_count));
+        arrays_add(list, per_pen(rows[r].name, rows[r].unit, values + r * d->pen_count, d->pen_count));
 }
 
 /* Where a picture's colours are matched: how far off they are. */
@@ -96,7 +99,7 @@ static void add_colours(const Drawing *d, const Strokes *strokes, Run *run, Arra
 /* What the plotter does: way of the lifted pen before and after ordering, time. */
 static void add_plot(const Drawing *d, const Strokes *strokes, const OrderInfo *order, Run *run, Arrays *list)
 {
-    double *seconds = arrays_numbers(list, (size_t)d->pen_count), *travel = arrays_numbers(list, 2);
+    double *seconds = arrays_numbers(list, (size_t)d->layer_count), *travel = arrays_numbers(list, 2);
     PlotTime time = drawing_plot_time(d, strokes, seconds);
     travel[0] = order->before * d->page.unit, travel[1] = order->after * d->page.unit;
     host_say(run->host,
@@ -105,8 +108,23 @@ static void add_plot(const Drawing *d, const Strokes *strokes, const OrderInfo *
              strokes->count, 1e-3 * time.ink, travel[1], travel[0], time.seconds / 60);
     arrays_add(list, array_float("metrics/travel_before", "m", &travel[0], 0, 0, 0));
     arrays_add(list, array_float("metrics/travel", "m", &travel[1], 0, 0, 0));
-    arrays_add(list, per_pen(d, "metrics/plot_time", "s", seconds));
+    arrays_add(list, per_pen("metrics/plot_time", "s", seconds, d->layer_count));
     if (d->at_most > 0) arrays_add(list, array_float("metrics/thinned", "", &d->thinned, 0, 0, 0));
+}
+
+/* As they are in the end, in the order in which they are plotted. */
+static void add_contours(const Drawing *d, const Strokes *strokes, Run *run, Arrays *list)
+{
+    Strokes contours = strokes_of_layer(strokes, d->pen_count);
+    double *length = arrays_numbers(list, 1);
+    *length = d->page.unit * strokes_length(&contours);
+    if (contours.count)
+        host_say(run->host, "contours: %d strokes, %.2f m", contours.count, *length);
+    else
+        host_say(run->host, "there are no contours: a lower `contrast`, other `levels` or a shorter "
+                            "`shortest` finds more");
+    arrays_add(list, array_float("metrics/contour_length", "m", length, 0, 0, 0));
+    strokes_clear(&contours);
 }
 
 /* How far the middle of a line leaves the regions at most; more than half a pen is said. */
@@ -207,6 +225,7 @@ bool draw_finish(Run *run, const Drawing *d, const Strokes *parts, const RelaxIn
     Arrays list = {0};
     Strokes all = {0};
     for (int k = 0; k < d->part_count; k++) strokes_append(&all, &parts[k], d->parts[k].pen);
+    drawing_add_contours(d, &all);
     SplineGrid outline = spline_grid(&d->outline);
     OrderInfo order = {0};
     if (d->order == ORDER_SHORTEST)
@@ -224,6 +243,7 @@ bool draw_finish(Run *run, const Drawing *d, const Strokes *parts, const RelaxIn
     add_metrics(d, &all, run, &list);
     if (d->light.columns) add_colours(d, &all, run, &list);
     add_plot(d, &all, &order, run, &list);
+    if (d->layer_count > d->pen_count) add_contours(d, &all, run, &list);
     if (d->region_count) add_outside(d, &all, run, &list);
     if (all.count == 0) explain_blank(d, run);
     bool ok = film_add(run->journal, &list, err);

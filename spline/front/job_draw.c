@@ -170,6 +170,7 @@ static Strokes all_so_far(const DrawJob *job, const Strokes *strokes)
     Strokes all = {0};
     for (int k = 0; k <= job->part; k++)
         strokes_append(&all, k < job->part ? &job->strokes[k] : strokes, job->d->parts[k].pen);
+    drawing_add_contours(job->d, &all);
     return all;
 }
 
@@ -194,7 +195,7 @@ static bool write_svg(DrawJob *job, const Strokes *strokes)
     char *name = mem_format("%.*s-%06d.svg", (int)(strlen(job->run->result) - strlen(".vtkhdf")),
                             job->run->result, job->iteration);
     Strokes all = all_so_far(job, strokes);
-    Plot plot = spline_plot(&all, &job->d->page, job->d->pens, job->d->pen_count, job->d->paper);
+    Plot plot = spline_plot(&all, &job->d->page, job->d->pens, job->d->layer_count, job->d->paper);
     bool ok = plot_write_svg(name, &plot, job->err);
     spline_plot_clear(&plot);
     strokes_clear(&all);
@@ -273,11 +274,13 @@ static bool relax_part(DrawJob *job)
 static bool run_part(DrawJob *job, int part)
 {
     const DrawingPart *from = &job->d->parts[part];
-    SplineGrid tone = spline_grid(&from->tone);
+    SplineField left = drawing_part_left(job->d, part);
+    SplineGrid tone = spline_grid(&left);
     job->part = part;
     job->target = NULL;
     if (job->run->host->step) job->judge = spline_judge_create(&from->page, &tone);
     job->judged = 0;
+    spline_field_clear(&left);
     bool going = relax_part(job);
     spline_judge_destroy(job->judge);
     job->judge = NULL;

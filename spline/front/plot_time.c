@@ -12,9 +12,9 @@ enum { TRIES = 5 };
 
 PlotTime drawing_plot_time(const Drawing *d, const Strokes *strokes, double *seconds)
 {
-    Plot plot = spline_plot(strokes, &d->page, d->pens, d->pen_count, d->paper);
+    Plot plot = spline_plot(strokes, &d->page, d->pens, d->layer_count, d->paper);
     PlotTime time = {.strokes = strokes->count};
-    for (int k = 0; k < d->pen_count; k++) {
+    for (int k = 0; k < d->layer_count; k++) {
         PlotEstimate estimate = plot_estimate(&plot.layers[k], &d->timed);
         if (seconds) seconds[k] = estimate.seconds;
         time.ink += estimate.ink;
@@ -35,6 +35,7 @@ PlotTime drawing_foretell(const Drawing *d)
         strokes_append(&all, &strokes, d->parts[k].pen);
         strokes_clear(&strokes);
     }
+    drawing_add_contours(d, &all);
     if (d->order == ORDER_SHORTEST) order_strokes(&all, &d->page, order);
     PlotTime time = drawing_plot_time(d, &all, NULL);
     strokes_clear(&all);

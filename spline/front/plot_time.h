@@ -8,7 +8,7 @@ typedef struct PlotTime {
     double ink, travel, seconds; /* mm, mm, s; of all pens */
 } PlotTime;
 
-/* Of strokes in their order; seconds[pen_count] of each pen, or NULL. */
+/* Of strokes in their order; seconds[layer_count] of each layer, or NULL. */
 PlotTime drawing_plot_time(const Drawing *drawing, const Strokes *strokes, double *seconds);
 
 /* Of the first strokes, as a plotter would draw them: what relaxes has as much ink, and about as many strokes. */

@@ -6,11 +6,11 @@
 
 static void add_pens(const Drawing *d, Arrays *list)
 {
-    double *width = arrays_numbers(list, (size_t)d->pen_count),
-           *color = arrays_numbers(list, 3 * (size_t)d->pen_count), *paper = arrays_numbers(list, 3);
-    int *opaque = arrays_keep(list, mem_alloc((size_t)d->pen_count, sizeof *opaque));
+    double *width = arrays_numbers(list, (size_t)d->layer_count),
+           *color = arrays_numbers(list, 3 * (size_t)d->layer_count), *paper = arrays_numbers(list, 3);
+    int *opaque = arrays_keep(list, mem_alloc((size_t)d->layer_count, sizeof *opaque));
     char *names = mem_text("");
-    for (int k = 0; k < d->pen_count; k++) {
+    for (int k = 0; k < d->layer_count; k++) {
         const SplinePen *pen = &d->pens[k];
         names = mem_join(names, pen->name, "\n");
         width[k] = pen->width * d->page.unit;
@@ -18,10 +18,10 @@ static void add_pens(const Drawing *d, Arrays *list)
         memcpy(color + 3 * k, (double[]){pen->color.r, pen->color.g, pen->color.b}, 3 * sizeof *color);
     }
     arrays_add(list, array_text("spline/names", arrays_keep(list, names)));
-    arrays_add(list, array_float("spline/width", "m", width, 1, d->pen_count, 0));
+    arrays_add(list, array_float("spline/width", "m", width, 1, d->layer_count, 0));
     memcpy(paper, (double[]){d->paper.r, d->paper.g, d->paper.b}, 3 * sizeof *paper);
-    arrays_add(list, array_float("spline/color", "", color, 2, d->pen_count, 3));
-    arrays_add(list, array_int("spline/opaque", opaque, 1, d->pen_count, 0));
+    arrays_add(list, array_float("spline/color", "", color, 2, d->layer_count, 3));
+    arrays_add(list, array_int("spline/opaque", opaque, 1, d->layer_count, 0));
     arrays_add(list, array_float("spline/paper_color", "", paper, 1, 3, 0));
 }
 
@@ -35,8 +35,9 @@ static void add_picture(const SplineField *picture, Arrays *list)
     arrays_add(list, array);
 }
 
-static void add_plotter(const Plotter *plotter, Arrays *list)
+static void add_plotter(const Drawing *d, Arrays *list)
 {
+    const Plotter *plotter = &d->plotter;
     double *speed = arrays_numbers(list, 2), *z = arrays_numbers(list, 3);
     char *servo = arrays_keep(list, mem_format("%s\n%s\n", plotter->servo_up, plotter->servo_down));
     speed[0] = 1e-3 * plotter->down, speed[1] = 1e-3 * plotter->up;
@@ -45,6 +46,7 @@ static void add_plotter(const Plotter *plotter, Arrays *list)
     arrays_add(list, array_float("spline/lift", "s", &plotter->lift, 0, 0, 0));
     arrays_add(list, array_float("spline/z", "m, m, m/s", z, 1, 3, 0));
     arrays_add(list, array_text("spline/servo", servo));
+    if (d->profile) arrays_add(list, array_text("spline/profile", d->profile));
     arrays_add(list, array_float("spline/pause", "s", &plotter->pause, 0, 0, 0));
 }
 
@@ -60,7 +62,7 @@ void drawing_add_static(const Drawing *d, Arrays *list)
         arrays_numbers(list, 1); /* the scene's: of a picture that is shown whole one of them is wider */
     *least = fmin(margin[0], margin[1]);
     arrays_add(list, array_float("spline/margin", "m", least, 0, 0, 0));
-    add_plotter(&d->plotter, list);
+    add_plotter(d, list);
 }
 
 void drawing_add_strokes(const Drawing *d, const Strokes *strokes, Arrays *list)

@@ -105,6 +105,34 @@ static const YamlTable cross_table = {
              "everywhere"},
         {0}}};
 
+static const YamlTable contours_table = {
+    .name = "contours",
+    .size = sizeof(ContoursScene),
+    .doc = "Strokes along edges or lines of equal tone of the picture, or outlines of regions. They stay "
+           "where they are, are a layer "
+           "of their "
+           "own, `contours`, behind those of the pens, and the tone counts their ink: hatching keeps away "
+           "from them.",
+    .fields = (const YamlField[]){
+        {YAML_CHOICE(ContoursScene, kind), .choices = YAML_NAMES("edges", "outlines"), .one_of = 1,
+         .required = true, .short_form = true,
+         .doc = "edges: where the density changes most, across the way that it does; outlines: of each of "
+                "the `regions`, within it"},
+        {YAML_NUMBERS(ContoursScene, levels), .range = "(0, 1)", .one_of = 1, .required = true,
+         .min_count = 1, .max_count = 32,
+         .doc = "where the density, the part of the paper to be covered, is this"},
+        {YAML_NUMBER(ContoursScene, contrast), .when = "kind: edges", .range = "(0, 1]", .fallback = "0.1",
+         .doc = "of edges: at least so high a step of the density somewhere along them, and half of it "
+                "everywhere"},
+        {YAML_NUMBER(ContoursScene, detail), .unit = "m", .range = "(0, 1]",
+         .doc = "edges and levels are those of the density blurred by a Gaussian of this deviation, outlines "
+                "those of the distance to them; if absent that of the direction, of outlines half a pen"},
+        {YAML_NUMBER(ContoursScene, shortest), .unit = "m", .range = "[0, 10]",
+         .doc = "lines that are shorter are left out; 10 widths if absent"},
+        {YAML_NUMBER(ContoursScene, width), .unit = "m", .range = "(0, 0.1]", .doc = "`pen` if absent"},
+        {YAML_TEXT(ContoursScene, color), .doc = "as of `pens`; black if absent"},
+        {0}}};
+
 static const YamlTable direction_table = {
     .name = "direction",
     .size = sizeof(DirectionScene),
@@ -324,6 +352,9 @@ static const YamlTable plotter_table = {
                 "`check` and `run` say; at least a tenth of its ink stays. No end if absent"},
         {YAML_OPTIONAL(PlotterScene, z, &z_axis_table), .doc = "of a pen on a z axis"},
         {YAML_OPTIONAL(PlotterScene, servo, &servo_table), .doc = "of a pen on a servo"},
+        {YAML_FILE(PlotterScene, profile), .doc = "a machine's own words (docs/line_art.md, "
+                                                  "scenes/plotters), for `output.plotter`; the result keeps "
+                                                  "them for `export --plotter profile`"},
         {0}}};
 
 const YamlTable spline_table = {
@@ -350,6 +381,7 @@ const YamlTable spline_table = {
         {YAML_LIST(SplineScene, regions, &region_table), .max_count = 64,
          .doc = "what is drawn of the page, each with strokes of its own; all of it if absent"},
         {YAML_OPTIONAL(SplineScene, cross, &cross_table), .doc = "crossed strokes, of each pen"},
+        {YAML_OPTIONAL(SplineScene, contours, &contours_table), .doc = "lines around things"},
         {YAML_TABLE(SplineScene, direction, &direction_table), .fallback = "structure_tensor",
          .doc = "of the strokes"},
         {YAML_TABLE(SplineScene, start, &strokes_table), .fallback = "streamlines",

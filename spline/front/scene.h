@@ -50,6 +50,16 @@ typedef struct DirectionScene {
     int formula_count, where_count;
 } DirectionScene;
 
+typedef enum ContoursKind { CONTOURS_EDGES, CONTOURS_OUTLINES } ContoursKind;
+
+/* Edges, outlines, or lines of equal tone. */
+typedef struct ContoursScene {
+    int kind; /* ContoursKind */
+    double *levels, contrast, detail, shortest, width;
+    int levels_count;
+    char *color;
+} ContoursScene;
+
 typedef enum RegionFit { REGION_CONTAIN, REGION_PAPER } RegionFit;
 
 typedef struct RegionScene {
@@ -109,6 +119,7 @@ typedef enum ServoPause { PAUSE_SECONDS, PAUSE_MILLISECONDS } ServoPause;
 
 typedef struct PlotterScene {
     double down, up, lift, at_most;
+    char *profile;
     ZAxisScene *z;     /* NULL: the default */
     ServoScene *servo; /* NULL: the default */
 } PlotterScene;
@@ -124,6 +135,7 @@ typedef struct SplineScene {
     RegionScene *regions;
     SeparationScene *separation;
     CrossScene *cross;
+    ContoursScene *contours;
     DirectionScene direction;
     StrokesScene start;
     SplineWeights energies;

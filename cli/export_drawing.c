@@ -1,0 +1,97 @@
+#include "cli/export_drawing.h"
+#include "base/memory.h"
+#include "cli/say.h"
+#include "io/path.h"
+#include "io/plot_split.h"
+#include "io/yaml.h"
+#include "spline/drawn.h"
+#include <string.h>
+
+enum { FILES_MOST = 100 };
+
+bool drawing_split_take(void *self, const char *text)
+{
+    DrawingSplit *split = self;
+    double length = 0;
+    split->pens = !strcmp(text, "pen");
+    if (!split->pens && (!yaml_number(text, "m", &length) || !(length > 0))) return false;
+    split->ink = 1e3 * length;
+    return true;
+}
+
+static const char *usual_language(const char *path)
+{
+    static const struct {
+        const char *ending, *language;
+    } endings[] = {{".svg", "svg"},  {".gcode", "gcode"}, {".ngc", "gcode"},
+                   {".nc", "gcode"}, {".hpgl", "hpgl"},   {".plt", "hpgl"}};
+    for (size_t k = 0; k < sizeof endings / sizeof *endings; k++)
+        if (path_has_ending(path, endings[k].ending)) return endings[k].language;
+    return NULL;
+}
+
+/* ---- Several files ---- */
+
+/* "a_2.gcode: black, contours: 12 strokes, 3.1 m of ink, about 4.2 min" */
+static void say_part(const char *path, const Plot *plot, const Plotter *plotter)
+{
+    PlotEstimate sum = {0};
+    char *pens = mem_text("");
+    int strokes = 0;
+    for (int k = 0; k < plot->layer_count; k++) {
+        const PlotLayer *layer = &plot->layers[k];
+        if (!layer->count) continue;
+        PlotEstimate one = plot_estimate(layer, plotter);
+        sum.ink += one.ink, sum.seconds += one.seconds, strokes += layer->count;
+        char *next = mem_format("%s%s", *pens ? ", " : "", layer->name);
+        pens = mem_join(pens, next, "");
+        mem_free(next);
+    }
+    say(stdout, "%s: %s: %d stroke%s, %.3g m of ink, about %.2g min", path, pens, strokes,
+        strokes == 1 ? "" : "s", 1e-3 * sum.ink, sum.seconds / 60);
+    mem_free(pens);
+}
+
+static bool write_parts(const Drawn *drawn, const PlotParts *parts, const char *language, const char *path,
+                        bool (*check)(void *self, const char *path, Error *err), void *self, Error *err)
+{
+    bool ok = parts->count > 0 || error_set(err, "the drawing has no strokes to --split");
+    ok = ok && (parts->count <= FILES_MOST ||
+                error_set(err, "--split would make %d files, and %d are the most: say more ink for each",
+                          parts->count, FILES_MOST));
+    for (int pass = 0; pass < 2; pass++) /* no file is written unless all may be */
+        for (int k = 0; ok && k < parts->count; k++) {
+            char *name = path_numbered(path, k + 1);
+            ok = pass ? drawn_write_plot(drawn, &parts->plots[k], language, name, err)
+                      : check(self, name, err);
+            if (ok && pass) say_part(name, &parts->plots[k], &drawn->plotter);
+            mem_free(name);
+        }
+    return ok;
+}
+
+RunStatus export_drawing(Result *result, const char *language, DrawingSplit split, const char *path,
+                         bool (*check)(void *self, const char *path, Error *err), void *self, Error *err)
+{
+    Drawn drawn = {0};
+    const char *usual = usual_language(path);
+    bool ok = true;
+    if (!usual) {
+        error_set(
+            err,
+            "%s: a drawing is exported as .svg, .gcode or .hpgl, numbers as .csv, with --dataset, and .npz",
+            path);
+        return RUN_CANNOT_WRITE;
+    }
+    if (!language) language = usual;
+    RunStatus status = drawn_read(result, &drawn, err) ? RUN_DONE : RUN_REFUSED;
+    if (status == RUN_DONE && (split.pens || split.ink > 0)) {
+        PlotParts parts = split.pens ? plot_split_pens(&drawn.plot) : plot_split_ink(&drawn.plot, split.ink);
+        ok = write_parts(&drawn, &parts, language, path, check, self, err);
+        plot_parts_clear(&parts);
+    } else if (status == RUN_DONE) {
+        ok = drawn_write_plot(&drawn, &drawn.plot, language, path, err);
+    }
+    drawn_clear(&drawn);
+    return ok ? status : RUN_CANNOT_WRITE;
+}
