@@ -5,6 +5,7 @@
 #   ./do run SCENE ..     build, then run a scene (options: build/slender run --help)
 #   ./do test [NAME]      build, then run all tests (or those whose name matches)
 #   ./do bench [NAME ..]  build, then measure (bench/README.md)
+#   ./do verify [NAME ..] build, then run published cases (docs/verification.md, which all of them rewrite)
 #   ./do deb              a Debian package in build-deb/, for any processor of this kind (docs/packages.md)
 #   ./do wheel            the Python package in python/dist/: a wheel, and an sdist
 set -eu
@@ -67,6 +68,11 @@ bench)
     build > /dev/null
     cd build && exec bench/bench "$@"
     ;;
+verify)
+    setup python3-h5py
+    build quiet
+    exec /usr/bin/python3 verify/verify.py build/slender --page docs/verification.md "$@"
+    ;;
 test)
     build
     (setup $tools) || echo "tests that need them are skipped"
@@ -90,5 +96,5 @@ deb)
     quietly cpack
     ls "$PWD"/*.deb
     ;;
-*) sed -n '2,9s/^# \{0,1\}//p' do ;;
+*) sed -n '2,10s/^# \{0,1\}//p' do ;;
 esac
