@@ -222,7 +222,7 @@ static void advise_values(Model *model, const Scene *scene)
         advise_value(model, block->name, block->unit, unusual_in(model, block));
     }
     const NumberUnknown *young = scene->design ? scene->design->unknowns.young : NULL;
-    for (int k = 0; young && k < 2; k++)
+    for (int k = 0; young && !isnan(young->bounds[0]) && k < 2; k++) /* NAN: none are written */
         advise_value(model, "a bound of the unknown young", "Pa", young->bounds[k]);
 }
 

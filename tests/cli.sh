@@ -49,7 +49,11 @@ fix: [{group: root, clamp: true}]
 target: ["x", "y", "5*x^2"]
 design: {unknowns: {magnetization: {noise: 100}}, objectives: [{target: 1}], iterations: 0}
 END
-"$program" check doubt.yaml > out.txt 2> err.txt; [ ! -s err.txt ] || { echo "nothing is doubtful, and it says"; cat err.txt; bad=1; }
+sure() { # settings .. : nothing is doubtful
+    "$program" check doubt.yaml "$@" > out.txt 2> err.txt; [ ! -s err.txt ] || { echo "nothing is doubtful, and it says"; cat err.txt; bad=1; }
+}
+sure
+sure --set "design.unknowns={young: {per: body}}"
 doubts() { # words, settings ..
     words=$1; shift
     for verb in check "run --no-picture --force -o doubt"; do
