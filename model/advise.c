@@ -66,10 +66,22 @@ static bool advise_within(Model *model, const Case *c, const double *p)
     return model->report.warning_count > before;
 }
 
+/* Of a field without a value where the body is at the start: true if there is one. */
+static bool advise_unknown(Model *model, const Case *c)
+{
+    double *place = mem_alloc(3 * (size_t)model->point_count, sizeof *place);
+    Error err;
+    model->body->ops->places(model, c->state.x, place);
+    bool known = model_knows_fields(model, c->stages[0].p, model->time, place, &err);
+    if (!known) mesh_warn(&model->report, "%s: at the start %s", c->name, err.text);
+    mem_free(place);
+    return !known;
+}
+
 static void advise_field(Model *model, const Scene *scene, const Case *c)
 {
     double largest = 0;
-    if (advise_within(model, c, c->stages[0].p)) return;
+    if (advise_unknown(model, c) || advise_within(model, c, c->stages[0].p)) return;
     for (int s = 0; s < c->stage_count; s++)
         largest = fmax(largest, advise_largest_flux(model, scene, c, c->stages[s].p));
     if (largest > STRONG)

@@ -202,7 +202,14 @@ END
 for body in rod shell; do
     expect 1 "$program" run nowhere_$body.yaml --no-picture; says "is not a finite number at x = 0.02"
     is "$body, forces that are no numbers" "$(status nowhere_$body.vtkhdf)" not_finite
+    says "a field has no value where the body is or would go"
+    expect 0 "$program" check nowhere_$body.yaml; says "warning: case1: at the start flux_density: .* is not a finite number at x = 0.02"
 done
+# A strip that bends out of a map: the end says why, and not how many iterations.
+for x in -5 20 45; do for y in -20 0 20; do for z in -3 0 3; do echo "$x.0e-3, $y.0e-3, $z.0e-3, 0, 0, 0.05"; done; done; done > map.csv
+sed '/^flux/d; s/evaluate/equilibrium/' nowhere_shell.yaml > beyond.yaml
+printf '%s\n' 'flux_density: {map: {file: map.csv}}' 'fix: [{group: root, clamp: true}]' 'solver: {max_iterations: 20}' >> beyond.yaml
+expect 1 "$program" run beyond.yaml --no-picture; says "is beyond the map (beyond.yaml:4"; says "a field has no value where the body is or would go"
 
 # A formula of time that is no number is a scene that is refused, whenever that shows.
 cat > formula.yaml <<'END'
