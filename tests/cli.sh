@@ -27,6 +27,7 @@ refuses "--frame must be a whole number from 0, and is '-1'" export --frame -1 x
 refuses "-o FILE must be given" export x.vtkhdf
 expect 3 "$program" run missing.yaml;           says "missing.yaml: cannot be read"
 expect 3 "$program" run "$here/broken/wrong_unit.yaml"; says "must be a number in Pa"
+expect 3 "$program" check "$here/../scenes/spline_night.yaml" --set spline.separation.intent=absolute; says "kind is missing: .*; this mapping takes the place of match"
 
 # A million triangles: read, and what they cost foretold, in seconds; a warning of check is one of run, too.
 sed 's/mesh: .*/mesh: {shape: sheet, size: [0.2, 0.1], cells: [1024, 512]}/; s/n: 32//' "$here/../scenes/cantilever.yaml" > million.yaml
