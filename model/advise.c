@@ -2,6 +2,7 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "model/within.h"
+#include "solve/newton.h"
 #include <math.h>
 #include <string.h>
 
@@ -139,6 +140,34 @@ static void advise_idle(Model *model, const Scene *scene)
         mesh_warn(&model->report, "the flux density moves nothing: nothing is magnetised");
 }
 
+/* Are all forces in balance where a case begins, in each of its stages? */
+static bool is_at_rest(const Case *c)
+{
+    double *gradient = mem_alloc((size_t)c->state.dofs, sizeof *gradient);
+    bool rests = true;
+    for (int s = 0; rests && s < c->stage_count; s++) {
+        Point at = state_point(&c->state, c->stages[s].p);
+        Evaluation now = system_hessian(c->sys, &at, gradient);
+        rests = now.finite && now.gradient_max <= newton_round_off(c->sys, c->state.x);
+    }
+    mem_free(gradient);
+    return rests;
+}
+
+/* How stiff a body is moves it only where something else would. */
+static void advise_stiffness(Model *model, const Scene *scene)
+{
+    const UnknownsScene *unknowns = &scene->design->unknowns;
+    const char *name = unknowns->thickness ? "thickness" : "young";
+    bool only = model->design.unknown_count == (unknowns->thickness != NULL) + (unknowns->young != NULL);
+    if (!only || model->job->motion || model->moves || model->world) return;
+    for (int k = 0; k < model->case_count; k++)
+        if (!is_at_rest(&model->cases[k])) return;
+    mesh_warn(&model->report,
+              "the unknown %s moves nothing: no load, gravity or field acts on the body where it starts",
+              name);
+}
+
 /* ---- Targets ---- */
 
 /* Of the box around the coordinates that are numbers, m. */
@@ -195,7 +224,7 @@ static const Usual usuals[] = {
     {"Pa", 100, 1e13, "a number without a unit is in Pa, `m` is milli and `M` mega: `1 MPa` is 1e6"},
     {"A/m", 0, 3e6, "a number without a unit is in A/m, and `remanence` takes mT"},
     {"m/s^2", 0, 1000, "a number without a unit is in m/s^2: the Earth's gravity is 9.81"},
-    {"kg/m^3", 1, 3e4, "a number without a unit is in kg/m^3: water has 1000, and `1.1 g/cm^3` is 1100"},
+    {"kg/m^3", 10, 3e4, "a number without a unit is in kg/m^3: water has 1000, and `1.1 g/cm^3` is 1100"},
 };
 
 /* NULL: any value is one, of that unit too. */
@@ -248,4 +277,5 @@ void model_advise(Model *model, const Scene *scene)
         advise_target(model, &model->cases[k]);
     }
     if (model->flux_blocks.uniform >= 0) advise_idle(model, scene);
+    if (model->design.unknown_count) advise_stiffness(model, scene);
 }

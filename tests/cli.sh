@@ -71,7 +71,10 @@ doubts "young is 10 Pa, and usual is" --set 'shell.young={formula: "x < 0.01 ? 1
 doubts "a bound of the unknown young is 0.01 Pa" --set "design.unknowns={young: {bounds: [10 mPa, 2 MPa]}}"
 doubts "magnetization is 1e+07 A/m, and usual is 0 to 3e+06" --set "shell.magnetization=[10 MA/m, 0, 0]"
 doubts "gravity is -9.81e+03 m/s^2" --set "shell.gravity=[0, 0, -9810]"
-doubts "density is 0.001 kg/m^3, and usual is 1 to 30000" --set "shell.density=1 g/m^3"
+doubts "density is 0.001 kg/m^3, and usual is 10 to 30000" --set "shell.density=1 g/m^3"
+doubts "density is 1.9 kg/m^3, and usual is 10 to 30000" --set "shell.density=1.9"
+doubts "the upper bound of the unknown thickness, 3 m, is more than a fifth" --set "design.unknowns={thickness: {bounds: [0.05, 3]}}"
+doubts "the unknown thickness moves nothing: no load, gravity or field acts" --set "flux_density=[0, 0, 0]" --set "design.unknowns={thickness: {bounds: [0.1 mm, 3 mm]}}"
 doubts "the thickness, 0.1 m, is more than a fifth of the body's size" --set "shell.thickness=0.1"
 sed '/^target/d; /^design/d; s/job: design/job: simulate/' doubt.yaml > still.yaml; mv still.yaml doubt.yaml
 doubts "case1: a flux density of 3 T" --set 'flux_density=["0", "0", "3*sin(pi*t)"]' --set "time={step: 0.1, steps: 10}"
