@@ -185,6 +185,10 @@ design: {unknowns: {magnetization: {scale: 1.0e+4}, young: {bounds: [1 kPa, 1 MP
 END
 expect 0 "$program" run idle.yaml --no-picture; says "the unknown young does not act on the objective at the start"
 
+# A design of few numbers says them, and how far it is off: the root of F over the points.
+expect 0 "$program" run "$here/../scenes/strip_outline.yaml" --no-picture -o few --set shell.mesh.n=8; says "^found: young 8[0-9.]*e+05 Pa$"
+awk '/^converged/ {F = $6} /off the target/ {rms = $2; n = $(NF - 1)} END {exit !(n == 120 && (rms/sqrt(F/n) - 1)^2 < 1e-4)}' FS='[ ,]+' out.txt || { echo "not the root of F/n:"; cat out.txt; bad=1; }
+
 # A pose in which forces are no numbers is said to be one, whatever the body.
 flux='flux_density: {formula: ["0", "0", "0.01*log(0.02 - x)"]}'
 cat > nowhere_rod.yaml <<END
