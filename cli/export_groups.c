@@ -23,12 +23,26 @@ RunStatus export_frame(Result *result, int frame, const char *path, Error *err)
 
 /* ---- A row for each group ---- */
 
+enum { FURTHER = 2 };
+
+static const struct {
+    const char *name, *unit;
+    bool by_area; /* the mean; else by volume */
+} further[FURTHER] = {{"thickness", "m", true}, {"young", "Pa", false}};
+
+/* A number of each face or tetrahedron, shown where a design has looked for it or it is not the same everywhere. */
+typedef struct Further {
+    Array values;
+    bool shown;
+} Further;
+
 /* Elements of one dimension, with their magnetisation and, as its weight, area (of a shell by thickness) or volume at rest. */
 typedef struct Magnets {
     int count;
     const double (*M)[3];
     double *size;
     bool *named; /* in a group */
+    const Further *further;
 } Magnets;
 
 static Vec3 edge(const MeshFile *file, const int *v, int k)
@@ -36,10 +50,16 @@ static Vec3 edge(const MeshFile *file, const int *v, int k)
     return vec3_sub(vec3_load(file->vertices[v[k]]), vec3_load(file->vertices[v[0]]));
 }
 
-/* Thickness of each face; NULL: all have the same. */
-static Magnets magnets_of(const MeshFile *file, int dim, const double (*M)[3], const double *thickness)
+static const double *values_of(const Magnets *all, int k)
 {
-    Magnets all = {.count = dim == 3 ? file->cell_count : file->face_count, .M = M};
+    const Array *values = &all->further[k].values;
+    return values->data && values->dims[0] == all->count ? values->data : NULL;
+}
+
+static Magnets magnets_of(const MeshFile *file, int dim, const double (*M)[3], const Further *more)
+{
+    Magnets all = {.count = dim == 3 ? file->cell_count : file->face_count, .M = M, .further = more};
+    const double *thickness = dim == 3 ? NULL : values_of(&all, 0);
     all.size = mem_alloc((size_t)all.count, sizeof *all.size);
     all.named = mem_alloc((size_t)all.count, sizeof *all.named);
     for (int e = 0; e < all.count; e++) {
@@ -57,6 +77,32 @@ static bool is_magnet(const Magnets *all, int e)
     return M[0] * M[0] + M[1] * M[1] + M[2] * M[2] > 0; /* false of NaN: none there */
 }
 
+static bool shows_more(const Further *more)
+{
+    bool shows = false;
+    for (int k = 0; k < FURTHER; k++) shows |= more[k].shown;
+    return shows;
+}
+
+/* Adds what else a design may have made of the group, the means; takes the row. Of what has none: an empty field. */
+static char *join_means(const Magnets *all, const int *members, int count, char *row)
+{
+    for (int k = 0; k < FURTHER; k++) {
+        const double *values = values_of(all, k);
+        double sum = 0, size = 0;
+        for (int m = 0; values && m < count; m++) {
+            double value = values[members[m]],
+                   weight = all->size[members[m]] / (further[k].by_area ? value : 1);
+            sum += weight * value;
+            size += weight;
+        }
+        char *mean = size > 0 ? mem_format("%.6g", sum / size) : mem_text("");
+        if (all->further[k].shown) row = mem_join(row, ",", mean);
+        mem_free(mean);
+    }
+    return row;
+}
+
 /* The mean over the group, weighed by size, and the largest angle of a member's to it. */
 static void write_row(const Magnets *all, const char *name, const int *members, int count, char **text)
 {
@@ -70,8 +116,8 @@ static void write_row(const Magnets *all, const char *name, const int *members, 
         sum = vec3_axpy(all->size[members[k]], vec3_load(all->M[members[k]]), sum);
         magnets += is_magnet(all, members[k]);
     }
-    if (!magnets) return;
-    Vec3 M = vec3_scale(1 / size, sum);
+    if (!count || (!magnets && !shows_more(all->further))) return;
+    Vec3 M = vec3_scale(magnets ? 1 / size : 0, sum);
     double length = vec3_length(M), degree = 180 / M_PI;
     for (int k = 0; k < count; k++) {
         if (!is_magnet(all, members[k])) continue;
@@ -85,13 +131,12 @@ static void write_row(const Magnets *all, const char *name, const int *members, 
                      degree * atan2(M.y, M.x), degree * atan2(M.z, hypot(M.x, M.y)), degree * spread);
     mem_free(word);
     mem_free(*text);
-    *text = mem_join(row, "", "\n");
+    *text = mem_join(join_means(all, members, count, row), "", "\n");
 }
 
-static void write_rows(const MeshFile *file, int dim, const double (*M)[3], const double *thickness,
-                       char **text)
+static void write_rows(const MeshFile *file, int dim, const double (*M)[3], const Further *more, char **text)
 {
-    Magnets all = magnets_of(file, dim, M, thickness);
+    Magnets all = magnets_of(file, dim, M, more);
     for (int g = 0; g < file->group_count; g++) {
         const MeshGroup *group = &file->groups[g];
         if (group->dim != dim) continue;
@@ -100,27 +145,64 @@ static void write_rows(const MeshFile *file, int dim, const double (*M)[3], cons
     }
     int *rest = mem_alloc((size_t)all.count, sizeof *rest), count = 0;
     for (int e = 0; e < all.count; e++)
-        if (!all.named[e] && is_magnet(&all, e)) rest[count++] = e;
+        if (!all.named[e] && (is_magnet(&all, e) || (values_of(&all, 1) && shows_more(more))))
+            rest[count++] = e;
     write_row(&all, dim == 3 ? "(other tetrahedra)" : "(other faces)", rest, count, text);
     mem_free(rest);
     mem_free(all.size);
     mem_free(all.named);
 }
 
+static bool is_varied(const Array *values)
+{
+    const double *value = values->data;
+    for (int e = 1; e < values->dims[0]; e++)
+        if (value[e] != value[0]) return true;
+    return false;
+}
+
+/* Of a shell, of each face; of a solid, of each tetrahedron; of what has none nothing. */
+static bool read_further(Result *result, const MeshFile *file, int k, Further *more, Error *err)
+{
+    int count = file->cell_count ? file->cell_count : file->face_count;
+    char *path = mem_format("slender/design/%s", further[k].name),
+         *gradient = mem_format("slender/design/gradient/%s", further[k].name);
+    bool ok = true;
+    if (result_has(result, path)) {
+        ok = result_read_as(result, path, ARRAY_FLOAT64, 1, 0, &more->values, err) &&
+             (more->values.dims[0] == count || error_set(err, "%s is not as slender writes it", path));
+        more->shown = ok && (result_has(result, gradient) || is_varied(&more->values));
+    }
+    mem_free(path);
+    mem_free(gradient);
+    return ok;
+}
+
+static char *header_of(const Further *more)
+{
+    char *text =
+        mem_text("name,count,magnetization [A/m],remanence [mT],azimuth [deg],elevation [deg],spread [deg]");
+    for (int k = 0; k < FURTHER; k++) {
+        char *column = mem_format("%s [%s]", further[k].name, further[k].unit);
+        if (more[k].shown) text = mem_join(text, ",", column);
+        mem_free(column);
+    }
+    return mem_join(text, "", "\n");
+}
+
 /* Of the last frame: tetrahedra first, then faces. */
-static RunStatus write_groups(Result *result, const MeshFile *file, const double *thickness, const char *path,
+static RunStatus write_groups(Result *result, const MeshFile *file, const Further *more, const char *path,
                               Error *err)
 {
     Array M;
     if (!export_magnetization_read(result, file, &M, err)) return RUN_REFUSED;
     RunStatus status = RUN_REFUSED;
-    static const char HEADER[] =
-        "name,count,magnetization [A/m],remanence [mT],azimuth [deg],elevation [deg],spread [deg]\n";
-    char *text = mem_text(HEADER);
+    char *text = header_of(more);
+    size_t header = strlen(text);
     const double(*rows)[3] = (const double(*)[3])M.data;
-    if (file->cell_count) write_rows(file, 3, rows, NULL, &text);
-    write_rows(file, 2, rows + file->cell_count, thickness, &text);
-    if (!strcmp(text, HEADER))
+    if (file->cell_count) write_rows(file, 3, rows, more, &text);
+    write_rows(file, 2, rows + file->cell_count, more, &text);
+    if (strlen(text) == header)
         error_set(err, "nothing is magnetised");
     else
         status = safe_file_write(path, text, strlen(text), false, err) ? RUN_DONE : RUN_CANNOT_WRITE;
@@ -131,16 +213,16 @@ static RunStatus write_groups(Result *result, const MeshFile *file, const double
 
 RunStatus export_groups(Result *result, const char *path, Error *err)
 {
-    Array thickness = {0};
+    Further more[FURTHER] = {0};
     MeshFile file;
     if (!result_has(result, "slender/groups/names")) {
         error_set(err, "the body's mesh has no groups");
         return RUN_REFUSED;
     }
     bool ok = export_mesh_read(result, MESH_REST, &file, err);
-    ok = ok && export_thickness_read(result, &file, &thickness, err);
-    RunStatus status = ok ? write_groups(result, &file, thickness.data, path, err) : RUN_REFUSED;
-    array_clear(&thickness);
+    for (int k = 0; k < FURTHER; k++) ok = ok && read_further(result, &file, k, &more[k], err);
+    RunStatus status = ok ? write_groups(result, &file, more, path, err) : RUN_REFUSED;
+    for (int k = 0; k < FURTHER; k++) array_clear(&more[k].values);
     mesh_file_clear(&file);
     return status;
 }

@@ -304,6 +304,24 @@ static bool is_given(const YamlField *row, const Node *node)
     return item && !(row->kind == FIELD_BOOL && item->kind == NODE_SCALAR && strcmp(item->text, "true"));
 }
 
+/* "; it may be auto or a whole number alone": what stands for a row of the group without its key. */
+static char *alone_text(const YamlTable *table, int group)
+{
+    static const char *const kinds[] = {[FIELD_NUMBER] = "a number",
+                                        [FIELD_INTEGER] = "a whole number",
+                                        [FIELD_TEXT] = "a text",
+                                        [FIELD_FILE] = "a file"};
+    char *text = mem_text("");
+    for (const YamlField *row = table->fields; row->key; row++) {
+        if (row->one_of != group || !row->short_form) continue;
+        bool simple = row->kind < (int)(sizeof kinds / sizeof *kinds) && kinds[row->kind];
+        for (int k = 0; row->choices ? row->choices[k] != NULL : k < simple; k++)
+            text = mem_join(text, *text ? " or " : "; it may be ",
+                            row->choices ? row->choices[k] : kinds[row->kind]);
+    }
+    return *text ? mem_join(text, " alone", "") : text;
+}
+
 /* Rows that exclude each other. */
 static bool check_one_of(Load *load, const YamlTable *table, const Node *node, int group)
 {
@@ -319,14 +337,13 @@ static bool check_one_of(Load *load, const YamlTable *table, const Node *node, i
         snprintf(given + strlen(given), sizeof given - strlen(given), "%s%s", count++ ? " and " : "",
                  row->key);
     }
-    char what[600];
+    char what[600] = "", *alone = alone_text(table, group);
     if (count > 1)
         snprintf(what, sizeof what, "has %s; give only one of %s", given, all);
     else if (count == 0 && required && !misspelt)
-        snprintf(what, sizeof what, "needs one of %s", all);
-    else
-        return true;
-    return load_wrong(load, node, what);
+        snprintf(what, sizeof what, "needs one of %s%s", all, alone);
+    mem_free(alone);
+    return !*what || load_wrong(load, node, what);
 }
 
 static bool group_is_given(const YamlTable *table, const Node *node, int group)
@@ -355,8 +372,9 @@ static bool load_row(Load *load, const YamlTable *table, const YamlField *row, c
         ok = load_value(load, row, node->items[index], scene);
     } else if (row->required && !row->one_of) {
         if (!load_is_misspelt(load, table, node, row))
-            yaml_error(load->file, node, "%s is missing%s%s", load->path, row->doc ? ": " : "",
-                       row->doc ? row->doc : "");
+            yaml_error(load->file, node, "%s is missing%s%s%s%s", load->path, row->doc ? ": " : "",
+                       row->doc ? row->doc : "", node->text ? "; this mapping takes the place of " : "",
+                       node->text ? node->text : "");
         ok = false;
     } else if (!row->one_of || !group_is_given(table, node, row->one_of)) {
         ok = load_default(load, row, scene);

@@ -13,7 +13,7 @@ struct Node {
     NodeKind kind;
     int line, column;   /* from 1; 0: from --set or a default           */
     const char *origin; /* the --set assignment that it comes from, the file's; NULL: the file itself */
-    char *text;
+    char *text;         /* of a mapping or list: what stood in its place before a --set, if anything */
     int count, room;
     Node **items;
     char **keys;

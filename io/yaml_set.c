@@ -56,8 +56,12 @@ static bool put(YamlFile *file, const char *assignment, const char *key, Node *v
         }
         const char *step = index >= 0 ? "[" : name;
         bool leaf = *place && (*place)->kind == NODE_SCALAR;
-        if (leaf) node_destroy(*place), *place = NULL; /* a short form makes way for the long one */
-        if (!*place) *place = make_container(step, assignment);
+        if (leaf || !*place) { /* a short form makes way for the long one, which remembers it */
+            Node *container = make_container(step, assignment);
+            if (leaf) container->text = mem_text((*place)->text);
+            node_destroy(*place);
+            *place = container;
+        }
         place = slot(*place, name, length, index, &what);
         if (!place) break;
     }

@@ -96,7 +96,14 @@ static bool add_scalar(Builder *b, const yaml_event_t *event)
 
 static bool open_container(Builder *b, const yaml_event_t *event, NodeKind kind, const yaml_char_t *anchor)
 {
-    Node *node = node_create(kind, (int)event->start_mark.line + 1, (int)event->start_mark.column + 1);
+    int line = (int)event->start_mark.line + 1, column = (int)event->start_mark.column + 1;
+    bool block = event->type == YAML_MAPPING_START_EVENT &&
+                 event->data.mapping_start.style == YAML_BLOCK_MAPPING_STYLE;
+    if (block && b->depth && b->key[b->depth - 1]) { /* it is where its key is, not at its first one */
+        line = b->key_place[b->depth - 1][0];
+        column = b->key_place[b->depth - 1][1];
+    }
+    Node *node = node_create(kind, line, column);
     if (!add(b, event, node)) return false;
     if (anchor) set_anchor(b, anchor, node);
     if (b->depth == YAML_MAX_DEPTH) return refuse(b, event, "more than 32 levels");
@@ -158,12 +165,25 @@ static bool take(Builder *b, const yaml_event_t *event)
     }
 }
 
-static void syntax_error(YamlFile *file, const yaml_parser_t *parser)
+/* Does a tab stand where that line is indented? */
+static bool has_tab(const char *text, size_t length, size_t line)
+{
+    const char *end = text + length;
+    for (; line > 0 && text; line--) text = memchr(text, '\n', (size_t)(end - text)), text += text != NULL;
+    while (text && text < end && *text == ' ') text++;
+    return text && text < end && *text == '\t';
+}
+
+static void syntax_error(YamlFile *file, const yaml_parser_t *parser, const char *text, size_t length)
 {
     yaml_mark_t mark = parser->problem_mark;
+    bool tab = has_tab(text, length, mark.line);
     if (parser->error == YAML_READER_ERROR)
         yaml_error_at(file, 0, 0, "byte %zu: %s; a scene file is UTF-8 text", parser->problem_offset,
                       parser->problem);
+    else if (tab)
+        yaml_error_at(file, (int)mark.line + 1, (int)mark.column + 1,
+                      "a tab indents this line: YAML takes blanks only");
     else
         yaml_error_at(file, (int)mark.line + 1, (int)mark.column + 1, "no YAML: %s%s%s",
                       parser->problem ? parser->problem : "?", parser->context ? ", " : "",
@@ -181,7 +201,7 @@ Node *tree_parse(YamlFile *file, const char *text, size_t length)
     bool ok = true;
     for (bool end = false; ok && !end; yaml_event_delete(&event)) {
         if (!yaml_parser_parse(&parser, &event)) {
-            syntax_error(file, &parser);
+            syntax_error(file, &parser, text, length);
             ok = false;
             break;
         }

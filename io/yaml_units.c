@@ -173,6 +173,50 @@ static const char *kind_of(const Unit *unit)
     return "of another kind";
 }
 
+/* What others write for a unit that is none here. */
+static const struct {
+    const char *symbol, *name, *is;
+} foreign[] = {
+    {"G", "a gauss", "0.1 mT"},    {"gauss", "a gauss", "0.1 mT"},        {"Oe", "an oersted", "79.577 A/m"},
+    {"in", "an inch", "25.4 mm"},  {"inch", "an inch", "25.4 mm"},        {"psi", "a psi", "6894.76 Pa"},
+    {"lbf", "a pound", "4.448 N"}, {"atm", "an atmosphere", "101325 Pa"},
+};
+
+static bool is_word(const char *at, int length, const char *prefix, const char *symbol)
+{
+    size_t first = strlen(prefix);
+    return (size_t)length == first + strlen(symbol) && !strncasecmp(at, prefix, first) &&
+           !strncasecmp(at + first, symbol, strlen(symbol));
+}
+
+/* The unit of that kind that differs from a word by capitals only; "" is none. Of m and M the one as it is written. */
+static void near_unit(const char *at, int length, const Unit *wanted, char near[16])
+{
+    const size_t none = sizeof prefixes / sizeof *prefixes;
+    near[0] = 0;
+    for (size_t k = 0; k < sizeof units / sizeof *units; k++)
+        for (size_t p = 0; p <= (units[k].prefixed ? none : 0); p++) {
+            const char *prefix = !units[k].prefixed || p == none ? "" : prefixes[p].symbol;
+            bool written = !strncmp(at, prefix, strlen(prefix));
+            if (memcmp(units[k].unit.exponent, wanted->exponent, sizeof wanted->exponent) != 0) continue;
+            if (is_word(at, length, prefix, units[k].symbol) && (written || !near[0]))
+                snprintf(near, 16, "%s%s", prefix, units[k].symbol);
+        }
+}
+
+/* A hint at what may be meant by a word, if there is one: what it is, or what is written nearly so. */
+static char *hint_at(const char *at, int length, const char *wanted)
+{
+    for (size_t k = 0; k < sizeof foreign / sizeof *foreign; k++)
+        if (is_word(at, length, "", foreign[k].symbol))
+            return mem_format("; %s is %s", foreign[k].name, foreign[k].is);
+    Unit unit;
+    char near[16];
+    parse_unit(&wanted, &unit);
+    near_unit(at, length, &unit, near);
+    return near[0] ? mem_format("; did you mean %s?", near) : mem_text("");
+}
+
 /* What of the text from `at` on is no unit, and which there are. */
 static void no_unit(const char *text, const char *at, const char *wanted, char *wrong, size_t size)
 {
@@ -185,6 +229,14 @@ static void no_unit(const char *text, const char *at, const char *wanted, char *
             wanted, text);
         return;
     }
+    char *hint = hint_at(at, length, wanted);
+    if (*hint) {
+        snprintf(wrong, size, "must be a number in %s, and '%.*s' is no unit%s", wanted,
+                 length < 60 ? length : 60, at, hint);
+        mem_free(hint);
+        return;
+    }
+    mem_free(hint);
     Text list = {0};
     unit_list(true, "", &list);
     text_add(&list, ", with ");

@@ -54,7 +54,8 @@ static bool in_range(double value, const char *range)
 
 const char *node_kind_name(const Node *node)
 {
-    return node->kind == NODE_LIST ? "a list" : node->kind == NODE_MAP ? "a mapping" : "a text";
+    if (node->kind != NODE_SCALAR) return node->kind == NODE_LIST ? "a list" : "a mapping";
+    return unit_is_number(node->text) ? "a number" : "a text";
 }
 
 bool load_number(Load *load, const YamlField *row, const Node *node, double *value)

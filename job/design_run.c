@@ -1,6 +1,7 @@
 #include "job/design_run.h"
 #include "base/clock.h"
 #include "base/memory.h"
+#include "io/text.h"
 #include "model/probe.h"
 #include "optim/optimiser.h"
 #include <math.h>
@@ -252,6 +253,71 @@ static void say_stationary(const DesignRun *d)
     mem_free(names);
 }
 
+enum { FEW = 12 };
+
+/* Adds "young 6.23e+05 Pa", with p of that case; of more numbers than a few nothing. */
+static void add_few(const Model *model, const Unknown *unknown, const double *p, const char *of, Text *text)
+{
+    const ParamBlock *block = unknown->block;
+    if (unknown->auxiliary || unknown->group_count * block->width > FEW) return;
+    text_add(text, "%s%s%s", text->length ? "; " : "", design_unknown_name(model, block), of);
+    for (int g = 0; g < unknown->group_count; g++) {
+        int row = 0;
+        while (row < block->count - 1 && unknown->group[row] != g) row++;
+        for (int i = 0; i < block->width; i++)
+            text_add(text, "%s %.4g", g || i ? "," : "", p[block->offset + row * block->width + i]);
+    }
+    text_add(text, "%s%s", block->unit[0] ? " " : "", block->unit);
+}
+
+/* The unknowns of few numbers, where the best design has them. */
+static void say_found(const DesignRun *d, const double *u)
+{
+    const Model *model = d->run->model;
+    const Design *design = &model->design;
+    Text text = {0};
+    for (int c = 0; c < design->case_count; c++) {
+        double *p = mem_copy(model->cases[c].stages[0].p, (size_t)model->params->size, sizeof *p);
+        design_apply(design, c, u, p);
+        char *of = design->case_count > 1 ? mem_format(" of %s", model->cases[c].name) : mem_text("");
+        for (int k = 0; k < design->unknown_count; k++)
+            if (design->unknowns[k].per_case || c == 0)
+                add_few(model, &design->unknowns[k], p, design->unknowns[k].per_case ? of : "", &text);
+        mem_free(of);
+        mem_free(p);
+    }
+    if (text.length) host_say(d->run->host, "found: %s", text.text);
+    mem_free(text.text);
+}
+
+/* Points with a place, or measured ones. */
+static int target_points(const Model *model, const Target *target)
+{
+    int count = 0;
+    for (int v = 0; target->place && v < model->point_count; v++) {
+        const double *at = target->place[v];
+        count += !(isnan(at[0]) && isnan(at[1]) && isnan(at[2]));
+    }
+    return target->place ? count : target->cloud.point_count;
+}
+
+/* How far a case's best state is off its targets; a motion has them in its frames. */
+static void say_target(const DesignRun *d, const Case *c)
+{
+    const Model *model = d->run->model;
+    double sum = 0;
+    int count = 0;
+    for (int k = 0; k < c->target_count; k++) {
+        Objective objective = model_target_objective(&c->targets[k], model->point_count, 1);
+        sum += objective.ops->value(objective.self, 0, c->state.x, c->stages[0].p, NULL, NULL);
+        count += target_points(model, &c->targets[k]);
+        objective_destroy(objective);
+    }
+    if (count && !model->job->motion)
+        host_say(d->run->host, "%s: %.3g m off the target, rms of %d points", c->name, sqrt(sum / count),
+                 count);
+}
+
 /* What has happened, in a sentence. */
 static void say(const DesignRun *d, const OptimiserInfo *info)
 {
@@ -285,7 +351,7 @@ static void say(const DesignRun *d, const OptimiserInfo *info)
 
 /* A start that was to be evaluated and nothing more is done; and so is a design that has used what it was
  * given, whose status says that it could go on. */
-static RunStatus finish(DesignRun *d, const OptimiserInfo *info)
+static RunStatus finish(DesignRun *d, const OptimiserInfo *info, const double *u)
 {
     bool interrupted = d->evaluated.aborted || info->status == OPTIMISER_STOPPED;
     if (d->failed) return RUN_CANNOT_WRITE;
@@ -302,6 +368,8 @@ static RunStatus finish(DesignRun *d, const OptimiserInfo *info)
         !journal_put(d->run->journal, "final", 0, &best, 1, d->err))
         return RUN_CANNOT_WRITE;
     say(d, info);
+    if (!start_only) say_found(d, u);
+    for (int c = 0; c < d->run->model->case_count; c++) say_target(d, &d->run->model->cases[c]);
     if (interrupted) return RUN_INTERRUPTED;
     return limit || info->status == OPTIMISER_CONVERGED ? RUN_DONE : RUN_NOT_CONVERGED;
 }
@@ -359,7 +427,7 @@ RunStatus design_run(Run *run, const DesignOps *ops, void *self, const double *u
     double *start = work + 4 * n;
     memcpy(start, u, (size_t)n * sizeof *u);
     OptimiserInfo info = optimise(&problem, &def, start);
-    RunStatus status = finish(&d, &info);
+    RunStatus status = finish(&d, &info, start);
     mem_free(work);
     return status;
 }

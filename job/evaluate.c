@@ -83,8 +83,8 @@ static RunStatus run_evaluate(Run *run, Error *err)
             (Snapshot){.load_case = c, .p = c->stages[0].p, .at = c->state, .status = judge(run, c, k)};
         bool finite = shots[k].status != NEWTON_NOT_FINITE;
         if (!finite) {
-            host_say(run->host, "%s: %s", c->name, newton_status_text(NEWTON_NOT_FINITE));
             run_say_unknown_field(run, &shots[k], 0);
+            host_say(run->host, "%s: %s", c->name, newton_status_text(shots[k].status));
         }
         if (run_is_crushed(run, &shots[k], false) || !finite) worst = shots[k].status;
         ok = run_put_frame(run, k, k, &shots[k], k == 0, err);

@@ -25,9 +25,10 @@ void predict_measure(System *sys, const Point *at, int repeats, Cost *least)
     for (int k = 0; k < repeats; k++) {
         system_hessian(sys, at, gradient);
         least->hessian = fmin(least->hessian, lap(&time));
-        (void)(system_factor(sys, 0) || system_factor(sys, 1e-6));
+        bool factored =
+            system_factor(sys, 0) || system_factor(sys, 1e-6); /* not where forces are no numbers */
         least->factor = fmin(least->factor, lap(&time));
-        system_solve(sys, gradient, gradient);
+        if (factored) system_solve(sys, gradient, gradient);
         least->solve = fmin(least->solve, lap(&time));
     }
     mem_free(gradient);

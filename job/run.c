@@ -80,7 +80,7 @@ static double *places(const Model *model, const Snapshot *shot, Arrays *list)
     return place;
 }
 
-void run_say_unknown_field(const Run *run, const Snapshot *shot, double dt)
+void run_say_unknown_field(const Run *run, Snapshot *shot, double dt)
 {
     State next = state_clone(&shot->at);
     Snapshot then = *shot;
@@ -89,8 +89,10 @@ void run_say_unknown_field(const Run *run, const Snapshot *shot, double dt)
     for (int i = 0; i < next.dofs; i++) next.x[i] += dt * next.v[i];
     next.time += dt, then.at = next;
     if (!model_knows_fields(run->model, shot->p, shot->at.time, places(run->model, shot, &list), &err) ||
-        !model_knows_fields(run->model, shot->p, next.time, places(run->model, &then, &list), &err))
+        !model_knows_fields(run->model, shot->p, next.time, places(run->model, &then, &list), &err)) {
         host_say(run->host, "%s: %s", shot->load_case->name, err.text);
+        shot->status = NEWTON_UNKNOWN_FIELD;
+    }
     arrays_clear(&list);
     state_destroy(&next);
 }

@@ -52,8 +52,8 @@ void run_add_stability(const Model *model, const Snapshot *shot, int modes, Arra
 void run_add_vibrations(const Model *model, System *sys, const Point *at, int count, Arrays *list);
 
 /* Of a solve that has failed: says which field has no value where the body was, or where it was going to be after a time dt
- * (0: statics). */
-void run_say_unknown_field(const Run *run, const Snapshot *shot, double dt);
+ * (0: statics), if that is so, as its status then does. */
+void run_say_unknown_field(const Run *run, Snapshot *shot, double dt);
 
 /* A frame of the result, shown at a time of its own: viewers want each frame's time to be later than that of
  * the one before. Parameters per face, which seldom change, are left out unless `whole`. */

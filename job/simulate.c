@@ -152,11 +152,13 @@ static RunStatus make_step(Simulation *s, const MarchDef *def)
     if (s->refused) return RUN_REFUSED;
     if (host_stops(s->run->host)) return RUN_INTERRUPTED;
     s->status = reached ? NEWTON_CONVERGED : info.newton.status;
-    if (!reached)
-        host_say(s->run->host, "step %d failed at t = %g s: %s", step, s->now->time,
-                 newton_status_text(info.newton.status));
     Snapshot shot = shown_state(s);
-    if (!reached) run_say_unknown_field(s->run, &shot, scene->time.step);
+    if (!reached) {
+        run_say_unknown_field(s->run, &shot, scene->time.step);
+        host_say(s->run->host, "step %d failed at t = %g s: %s", step, s->now->time,
+                 newton_status_text(shot.status));
+    }
+    s->status = shot.status;
     bool crushed = run_is_crushed(s->run, &shot, !reached);
     if (crushed) s->status = shot.status;
     if (!reached) return RUN_NOT_CONVERGED;

@@ -2,6 +2,7 @@
 #include "base/memory.h"
 #include "base/vec3.h"
 #include "model/within.h"
+#include "solve/newton.h"
 #include <math.h>
 #include <string.h>
 
@@ -66,10 +67,22 @@ static bool advise_within(Model *model, const Case *c, const double *p)
     return model->report.warning_count > before;
 }
 
+/* Of a field without a value where the body is at the start: true if there is one. */
+static bool advise_unknown(Model *model, const Case *c)
+{
+    double *place = mem_alloc(3 * (size_t)model->point_count, sizeof *place);
+    Error err;
+    model->body->ops->places(model, c->state.x, place);
+    bool known = model_knows_fields(model, c->stages[0].p, model->time, place, &err);
+    if (!known) mesh_warn(&model->report, "%s: at the start %s", c->name, err.text);
+    mem_free(place);
+    return !known;
+}
+
 static void advise_field(Model *model, const Scene *scene, const Case *c)
 {
     double largest = 0;
-    if (advise_within(model, c, c->stages[0].p)) return;
+    if (advise_unknown(model, c) || advise_within(model, c, c->stages[0].p)) return;
     for (int s = 0; s < c->stage_count; s++)
         largest = fmax(largest, advise_largest_flux(model, scene, c, c->stages[s].p));
     if (largest > STRONG)
@@ -125,6 +138,34 @@ static void advise_idle(Model *model, const Scene *scene)
                   unknown->block->name);
     if (!unknown && field && !is_magnetised(model))
         mesh_warn(&model->report, "the flux density moves nothing: nothing is magnetised");
+}
+
+/* Are all forces in balance where a case begins, in each of its stages? */
+static bool is_at_rest(const Case *c)
+{
+    double *gradient = mem_alloc((size_t)c->state.dofs, sizeof *gradient);
+    bool rests = true;
+    for (int s = 0; rests && s < c->stage_count; s++) {
+        Point at = state_point(&c->state, c->stages[s].p);
+        Evaluation now = system_hessian(c->sys, &at, gradient);
+        rests = now.finite && now.gradient_max <= newton_round_off(c->sys, c->state.x);
+    }
+    mem_free(gradient);
+    return rests;
+}
+
+/* How stiff a body is moves it only where something else would. */
+static void advise_stiffness(Model *model, const Scene *scene)
+{
+    const UnknownsScene *unknowns = &scene->design->unknowns;
+    const char *name = unknowns->thickness ? "thickness" : "young";
+    bool only = model->design.unknown_count == (unknowns->thickness != NULL) + (unknowns->young != NULL);
+    if (!only || model->job->motion || model->moves || model->world) return;
+    for (int k = 0; k < model->case_count; k++)
+        if (!is_at_rest(&model->cases[k])) return;
+    mesh_warn(&model->report,
+              "the unknown %s moves nothing: no load, gravity or field acts on the body where it starts",
+              name);
 }
 
 /* ---- Targets ---- */
@@ -183,7 +224,7 @@ static const Usual usuals[] = {
     {"Pa", 100, 1e13, "a number without a unit is in Pa, `m` is milli and `M` mega: `1 MPa` is 1e6"},
     {"A/m", 0, 3e6, "a number without a unit is in A/m, and `remanence` takes mT"},
     {"m/s^2", 0, 1000, "a number without a unit is in m/s^2: the Earth's gravity is 9.81"},
-    {"kg/m^3", 1, 3e4, "a number without a unit is in kg/m^3: water has 1000, and `1.1 g/cm^3` is 1100"},
+    {"kg/m^3", 10, 3e4, "a number without a unit is in kg/m^3: water has 1000, and `1.1 g/cm^3` is 1100"},
 };
 
 /* NULL: any value is one, of that unit too. */
@@ -222,7 +263,7 @@ static void advise_values(Model *model, const Scene *scene)
         advise_value(model, block->name, block->unit, unusual_in(model, block));
     }
     const NumberUnknown *young = scene->design ? scene->design->unknowns.young : NULL;
-    for (int k = 0; young && k < 2; k++)
+    for (int k = 0; young && !isnan(young->bounds[0]) && k < 2; k++) /* NAN: none are written */
         advise_value(model, "a bound of the unknown young", "Pa", young->bounds[k]);
 }
 
@@ -236,4 +277,5 @@ void model_advise(Model *model, const Scene *scene)
         advise_target(model, &model->cases[k]);
     }
     if (model->flux_blocks.uniform >= 0) advise_idle(model, scene);
+    if (model->design.unknown_count) advise_stiffness(model, scene);
 }

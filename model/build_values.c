@@ -253,12 +253,17 @@ static bool check_covered(const Build *b, Key at, const double *values, Elements
 }
 
 /* A range check for numbers that come from files and formulas; the table checks those in the scene. */
-static bool check_range(const Build *b, Key at, const double *values, int count, bool zero_allowed)
+static bool check_range(const Build *b, Key at, const double *values, Elements elements)
 {
-    for (int e = 0; e < count; e++)
-        if (!(values[e] > 0 || (zero_allowed && values[e] == 0)))
-            return yaml_refuse(b->file, at.text, "the value of number %d is %g; it must be %s 0", e,
-                               values[e], zero_allowed ? "at least" : "more than");
+    bool zero_allowed = elements.dim == 1;
+    for (int e = 0; e < elements.count; e++) {
+        if (values[e] > 0 || (zero_allowed && values[e] == 0)) continue;
+        double x[3];
+        middle(b->mesh, elements.vertices + e * elements.each, elements.corners, x);
+        return yaml_refuse(b->file, at.text, "at (%.4g, %.4g, %.4g) m, in %s %d, it is %g; it must be %s 0",
+                           x[0], x[1], x[2], element_names[elements.dim], e, values[e],
+                           zero_allowed ? "at least" : "more than");
+    }
     return true;
 }
 
@@ -320,7 +325,7 @@ bool build_numbers(const Build *b, Key at, int dim, const NumberScene *scene, do
         ok = from_formula(b, at, &scene->formula, 1, scene->where, scene->where_count, elements, values);
     }
     return ok && put_numbers(b, at, scene, elements, values) && check_covered(b, at, values, elements, 1) &&
-           check_range(b, at, values, elements.count, elements.dim == 1);
+           check_range(b, at, values, elements);
 }
 
 bool build_vectors(const Build *b, Key at, int dim, const VectorScene *scene, double *values)

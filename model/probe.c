@@ -166,13 +166,32 @@ static bool support_probe(const Model *model, const Build *b, Key at, const char
                              number, model->support_count - 1);
 }
 
+static bool is_held(const Model *model, int point)
+{
+    for (int k = 0; k < model->support_count; k++)
+        for (int i = 0; i < model->supports[k].points.count; i++)
+            if (model->supports[k].points.items[i] == point) return true;
+    return false;
+}
+
+/* On what is held of a group: of one that nothing holds there is no force to tell. */
+static bool held_probe(const Model *model, const Build *b, Key at, const char *name, ModelProbe *probe)
+{
+    at = key("%s.group", at.text);
+    if (!model->body->ops->select(model, b, at.text, name, &probe->held)) return false;
+    for (int i = 0; i < probe->held.count; i++)
+        if (is_held(model, probe->held.items[i])) return true;
+    return yaml_refuse(b->file, at.text,
+                       "nothing holds '%s': a force is that of what holds, or of an obstacle", name);
+}
+
 static bool force_probe(const Model *model, const Build *b, Key at, const ForceScene *from, ModelProbe *probe)
 {
     at = key("%s.force", at.text);
     probe->kind = from->obstacle ? &obstacle_kind : from->group ? &held_kind : &support_kind;
     if (from->obstacle) return obstacle_probe(model, b, at, from->obstacle, probe);
     if (!from->group) return support_probe(model, b, at, "fix", from->fix, probe);
-    return model->body->ops->select(model, b, key("%s.group", at.text).text, from->group, &probe->held);
+    return held_probe(model, b, at, from->group, probe);
 }
 
 /* ---- Probes ---- */

@@ -98,7 +98,8 @@ const YamlTable mesh_table = {
            "kirigami around "
            "the origin. They have groups of vertices: of a sheet or strip `root` (the edge x = 0) and `tip` "
            "(the vertex in "
-           "the middle of the opposite edge), of a disc or kirigami `centre` and `rim`; a hexagram has "
+           "the middle of the opposite edge, of an odd number of cells across the one just below it), of a "
+           "disc or kirigami `centre` and `rim`; a hexagram has "
            "groups of faces, `hub` "
            "and `flap1` (on +x, a tip on the axis) to `flap6`, counter-clockwise. A rod has none; its ends "
            "are the clamp, s = 0, and the tip.",

@@ -24,7 +24,8 @@ const YamlTable probe_table = {
     .doc = "A number, or three along x, y, z, that is followed: a row for each stage of an equilibrium, each "
            "frame of a motion (the start first), or each evaluation of a design. `probes: {tip: {group: "
            "tip}, opening: {distance: [left, right]}}`. A point is a vertex by its number, `mass_center`, or "
-           "a group by its name (of a rod `tip`, `all`, or a node's number): the mean of its vertices.",
+           "a group by its name (of a rod `tip`, which `end` is too, `all`, or a node's number): the mean of "
+           "its vertices.",
     .fields = (const YamlField[]){
         {YAML_TEXT(ProbeScene, vertex), .one_of = 1, .required = true,
          .doc = "the place of a vertex of the mesh's file, from 0 on, of a group of one, or of a rod's node"},

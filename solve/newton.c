@@ -5,13 +5,15 @@
 #include <math.h>
 #include <string.h>
 
-enum { HALVINGS = 30, BASE_CG_MAX = 12, TANGLED_MAX = 10 };
+enum { HALVINGS = 30, BASE_CG_MAX = 12, TANGLED_MAX = 10, ASTRAY_MIN = 20 };
 
 static const double SHIFT_LAST = 1e8;   /* D: beyond this a step is no longer a Newton step       */
 static const double STALL_SHIFT = 1e6;  /* D: no decrease even with such a shift                  */
 static const double SETTLED = 1e-4;     /* of a gap's force: more is a force that goes on growing */
 static const double LONG_STEP = 1e-4;   /* body's measure: shorter ones need no extrapolated stress */
 static const double CONVEX_GROWTH = 64; /* of a shift: what is indefinite without contact is so by much */
+static const double ASTRAY_PART =
+    0.9; /* of the least force of the first half of the iterations: so far the second falls */
 static const double BASE_CG_TOL = 1e-4; /* what is left of the base shift's part in a step        */
 
 double newton_round_off(const System *sys, const double *x)
@@ -53,6 +55,14 @@ static const struct {
     [NEWTON_TANGLED] = {"tangled", "a piece of the body is turned inside out"},
     [NEWTON_BLOCKED] = {"blocked", "what is held was moved through another part of the body"},
     [NEWTON_PIERCED] = {"pierced", "something has gone through the body"},
+    [NEWTON_ASTRAY] =
+        {"max_iterations",
+         "all iterations are done, and the later ones have come no nearer to balance: there may "
+         "be no such equilibrium (what holds the body pulls it too far, or the loads are too "
+         "large), or the way there is long: try more load_steps, then solver.max_iterations"},
+    [NEWTON_UNKNOWN_FIELD] =
+        {"not_finite", "a field has no value where the body is or would go: what is known of the field "
+                       "must reach farther, or the body stay within it"},
     [NEWTON_UNSETTLED] = {"unsettled", "friction and the forces that press do not agree with each other"},
 };
 
@@ -64,6 +74,11 @@ const char *newton_status_name(NewtonStatus status)
 const char *newton_status_text(NewtonStatus status)
 {
     return status_rows[status].text;
+}
+
+bool newton_is_used_up(NewtonStatus status)
+{
+    return status == NEWTON_MAX_ITERATIONS || status == NEWTON_ASTRAY;
 }
 
 void newton_add_counts(NewtonInfo *info, const NewtonInfo *before)
@@ -307,6 +322,19 @@ static NewtonStatus iterate(Search *s)
     return s->shift_kept > STALL_SHIFT ? NEWTON_STALLED : status;
 }
 
+/* The least force of each half of the iterations, in parts of the forces' scale. */
+static void note_force(Search *s)
+{
+    double *least = &s->least_force[2 * s->info.iterations > s->def->max_iterations];
+    *least = fmin(*least, s->now.gradient_max / s->now.force_scale);
+}
+
+static bool is_astray(const Search *s)
+{
+    return s->info.status == NEWTON_MAX_ITERATIONS && s->def->max_iterations >= ASTRAY_MIN &&
+           s->least_force[1] > ASTRAY_PART * s->least_force[0];
+}
+
 /* Where a body is inside out its energy may well be stationary, but it is no equilibrium of such a body. */
 static bool ends_tangled(const Search *s)
 {
@@ -337,6 +365,7 @@ static NewtonInfo minimize(System *sys, const NewtonDef *def, const Point *at, S
                 .gap = work + 8 * n,
                 .change = work + 9 * n,
                 .tangled = TANGLED_MAX,
+                .least_force = {INFINITY, INFINITY},
                 .follows = !at->x_prev && system_has_follow(sys),
                 .circulates = system_circulates(sys),
                 .plain = plain};
@@ -349,10 +378,12 @@ static NewtonInfo minimize(System *sys, const NewtonDef *def, const Point *at, S
         s.info.energy = s.now.energy;
         s.info.gradient_max = s.now.gradient_max;
         s.info.force_scale = s.now.force_scale;
+        note_force(&s);
         if (observer && s.info.status == NEWTON_MAX_ITERATIONS &&
             !observer->iteration(observer->self, &s.info))
             s.info.status = NEWTON_STOPPED;
     }
+    if (is_astray(&s)) s.info.status = NEWTON_ASTRAY;
     if (ends_tangled(&s)) s.info.status = NEWTON_TANGLED;
     mem_free(work);
     return s.info;

@@ -41,6 +41,8 @@ typedef enum NewtonStatus {
     NEWTON_CRUSHED, /* of a body, by whoever knows it: a piece has lost its size, and energies mean nothing */
     NEWTON_TANGLED, /* stationary, and a piece is turned inside out (TermOps.tangles): no equilibrium */
     NEWTON_PIERCED, /* of a motion: something has gone through the body (march.h)                    */
+    NEWTON_ASTRAY,  /* all iterations are done, and the later half has come no nearer to balance     */
+    NEWTON_UNKNOWN_FIELD, /* by whoever knows it: a field has no value where the body is or was to go */
 } NewtonStatus;
 
 typedef struct NewtonInfo {
@@ -67,6 +69,9 @@ typedef struct NewtonObserver {
  * directions that they have seen. */
 NewtonInfo newton_minimize(System *sys, const NewtonDef *def, const Point *at, State *state,
                            const NewtonObserver *observer);
+
+/* Are all iterations done: still falling, or astray? */
+bool newton_is_used_up(NewtonStatus status);
 
 /* One word: "converged", "saddle", ... and a sentence for the user. */
 const char *newton_status_name(NewtonStatus status);

@@ -76,7 +76,7 @@ RampInfo ramp_solve(System *sys, const Params *params, const RampDef *def, const
             info.steps++;
             continue;
         }
-        bool falling = newton.status == NEWTON_MAX_ITERATIONS; /* half a load would not get there sooner */
+        bool falling = newton_is_used_up(newton.status); /* half a load would not get there sooner */
         bool hopeless = falling || newton.status == NEWTON_STOPPED || step / 2 < def->step_min;
         if (hopeless && (falling || info.steps == 0) && newton.status != NEWTON_STOPPED)
             break; /* the iterate says more than the start */

@@ -37,6 +37,7 @@ static RelaxStatus status_of(NewtonStatus status, const Watch *watch)
     case NEWTON_CONVERGED:
         return RELAX_CONVERGED;
     case NEWTON_MAX_ITERATIONS:
+    case NEWTON_ASTRAY:
         return RELAX_MAX_ITERATIONS;
     case NEWTON_NOT_FINITE:
         return RELAX_NOT_FINITE;

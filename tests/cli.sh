@@ -40,6 +40,7 @@ refuses "--frames must be a whole number from 1 to 100000, and is '0'" report x.
 expect 3 "$program" run missing.yaml;           says "missing.yaml: cannot be read"
 expect 3 "$program" run "$here/broken/wrong_unit.yaml"; says "must be a number in Pa"
 "$program" version | grep -q MUMPS || { expect 3 "$program" run "$here/broken/mumps.yaml"; says "built without it: cmake -DSLENDER_MUMPS=ON"; }
+expect 3 "$program" check "$here/../scenes/spline_night.yaml" --set spline.separation.intent=absolute; says "kind is missing: .*; this mapping takes the place of match"
 
 # A million triangles: read, and what they cost foretold, in seconds; a warning of check is one of run, too.
 sed 's/mesh: .*/mesh: {shape: sheet, size: [0.2, 0.1], cells: [1024, 512]}/; s/n: 32//' "$here/../scenes/cantilever.yaml" > million.yaml
@@ -62,7 +63,11 @@ fix: [{group: root, clamp: true}]
 target: ["x", "y", "5*x^2"]
 design: {unknowns: {magnetization: {noise: 100}}, objectives: [{target: 1}], iterations: 0}
 END
-"$program" check doubt.yaml > out.txt 2> err.txt; [ ! -s err.txt ] || { echo "nothing is doubtful, and it says"; cat err.txt; bad=1; }
+sure() { # settings .. : nothing is doubtful
+    "$program" check doubt.yaml "$@" > out.txt 2> err.txt; [ ! -s err.txt ] || { echo "nothing is doubtful, and it says"; cat err.txt; bad=1; }
+}
+sure
+sure --set "design.unknowns={young: {per: body}}"
 doubts() { # words, settings ..
     words=$1; shift
     for verb in check "run --no-picture --force -o doubt"; do
@@ -79,7 +84,10 @@ doubts "young is 10 Pa, and usual is" --set 'shell.young={formula: "x < 0.01 ? 1
 doubts "a bound of the unknown young is 0.01 Pa" --set "design.unknowns={young: {bounds: [10 mPa, 2 MPa]}}"
 doubts "magnetization is 1e+07 A/m, and usual is 0 to 3e+06" --set "shell.magnetization=[10 MA/m, 0, 0]"
 doubts "gravity is -9.81e+03 m/s^2" --set "shell.gravity=[0, 0, -9810]"
-doubts "density is 0.001 kg/m^3, and usual is 1 to 30000" --set "shell.density=1 g/m^3"
+doubts "density is 0.001 kg/m^3, and usual is 10 to 30000" --set "shell.density=1 g/m^3"
+doubts "density is 1.9 kg/m^3, and usual is 10 to 30000" --set "shell.density=1.9"
+doubts "the upper bound of the unknown thickness, 3 m, is more than a fifth" --set "design.unknowns={thickness: {bounds: [0.05, 3]}}"
+doubts "the unknown thickness moves nothing: no load, gravity or field acts" --set "flux_density=[0, 0, 0]" --set "design.unknowns={thickness: {bounds: [0.1 mm, 3 mm]}}"
 doubts "the thickness, 0.1 m, is more than a fifth of the body's size" --set "shell.thickness=0.1"
 sed '/^target/d; /^design/d; s/job: design/job: simulate/' doubt.yaml > still.yaml; mv still.yaml doubt.yaml
 doubts "case1: a flux density of 3 T" --set 'flux_density=["0", "0", "3*sin(pi*t)"]' --set "time={step: 0.1, steps: 10}"

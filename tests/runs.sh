@@ -185,6 +185,10 @@ design: {unknowns: {magnetization: {scale: 1.0e+4}, young: {bounds: [1 kPa, 1 MP
 END
 expect 0 "$program" run idle.yaml --no-picture; says "the unknown young does not act on the objective at the start"
 
+# A design of few numbers says them, and how far it is off: the root of F over the points.
+expect 0 "$program" run "$here/../scenes/strip_outline.yaml" --no-picture -o few --set shell.mesh.n=8; says "^found: young 8[0-9.]*e+05 Pa$"
+awk '/^converged/ {F = $6} /off the target/ {rms = $2; n = $(NF - 1)} END {exit !(n == 120 && (rms/sqrt(F/n) - 1)^2 < 1e-4)}' FS='[ ,]+' out.txt || { echo "not the root of F/n:"; cat out.txt; bad=1; }
+
 # A pose in which forces are no numbers is said to be one, whatever the body.
 flux='flux_density: {formula: ["0", "0", "0.01*log(0.02 - x)"]}'
 cat > nowhere_rod.yaml <<END
@@ -202,7 +206,14 @@ END
 for body in rod shell; do
     expect 1 "$program" run nowhere_$body.yaml --no-picture; says "is not a finite number at x = 0.02"
     is "$body, forces that are no numbers" "$(status nowhere_$body.vtkhdf)" not_finite
+    says "a field has no value where the body is or would go"
+    expect 0 "$program" check nowhere_$body.yaml; says "warning: case1: at the start flux_density: .* is not a finite number at x = 0.02"
 done
+# A strip that bends out of a map: the end says why, and not how many iterations.
+for x in -5 20 45; do for y in -20 0 20; do for z in -3 0 3; do echo "$x.0e-3, $y.0e-3, $z.0e-3, 0, 0, 0.05"; done; done; done > map.csv
+sed '/^flux/d; s/evaluate/equilibrium/' nowhere_shell.yaml > beyond.yaml
+printf '%s\n' 'flux_density: {map: {file: map.csv}}' 'fix: [{group: root, clamp: true}]' 'solver: {max_iterations: 20}' >> beyond.yaml
+expect 1 "$program" run beyond.yaml --no-picture; says "is beyond the map (beyond.yaml:4"; says "a field has no value where the body is or would go"
 
 # A formula of time that is no number is a scene that is refused, whenever that shows.
 cat > formula.yaml <<'END'

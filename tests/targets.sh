@@ -59,7 +59,7 @@ is "flap2" "$(line 3 star.csv)" "flap2,1,33761.9,42.4264,45.0000,0.0000,0.0000"
 # Two of the hub's six faces are thrice as thick and thrice as magnetised: (2 3 3 + 4)/(2 3 + 4) = 2.2
 run star.yaml -o uneven --set 'shell.thickness="y > 0 ? 0.003 : 0.001"' --set 'shell.magnetization=["y > 0 ? 3e4 : 1e4", "0", "0"]' > run.txt 2>&1
 expect 0 "$program" export uneven.vtkhdf -o uneven.csv --per group
-is "hub, by volume" "$(line 2 uneven.csv)" "hub,6,22000,27.646,0.0000,0.0000,0.0000"
+is "hub, by volume" "$(line 2 uneven.csv)" "hub,6,22000,27.646,0.0000,0.0000,0.0000,0.00166667"
 expect 0 "$program" export star.vtkhdf -o star.obj
 is "g lines" "$(grep -c '^g ' star.obj)" 7
 sed 's/shape: hexagram, size: 40 mm, n: 1/file: star.obj/' star.yaml > again.yaml
@@ -107,5 +107,22 @@ is "groups that share faces" "$(cut -d, -f1-3 wedge.csv | sed 1d | tr '\n' ' ')"
 expect 2 "$program" export star.vtkhdf -o x.csv --per face; says "--per must be group"
 expect 2 "$program" export star.vtkhdf -o x.csv --per group --dataset rest; says "exclude each other"
 expect 2 "$program" export star.vtkhdf -o x.obj --per group; says "per group is for a CSV"
-expect 3 "$program" export strip.vtkhdf -o x.csv --per group; says "nothing is magnetised"
+run star.yaml -o plain --set 'shell.magnetization=[0, 0, 0]' > run.txt 2>&1
+expect 3 "$program" export plain.vtkhdf -o x.csv --per group; says "nothing is magnetised"
+
+# Thickness and Young's modulus have columns where they vary, of what is no magnet, too.
+cat > made.yaml <<'END'
+slender: 1
+job: evaluate
+shell: {mesh: {shape: hexagram, size: 40 mm, n: 2}, thickness: {groups: {hub: 2 mm}, other: 1 mm}, young: {groups: {flap1: 3 MPa}, other: 1 MPa}, poisson: 0.3}
+END
+expect 0 "$program" run made.yaml --quiet --no-picture
+expect 0 "$program" export made.vtkhdf -o made.csv --per group
+cat > wanted.csv <<'END'
+hub,24,0,0,0.0000,0.0000,0.0000,0.002,1e+06
+flap1,4,0,0,0.0000,0.0000,0.0000,0.001,3e+06
+flap2,4,0,0,0.0000,0.0000,0.0000,0.001,1e+06
+END
+sed -n 1p made.csv | grep -q ',thickness \[m\],young \[Pa\]$' || { echo "no columns of thickness and young"; bad=1; }
+sed -n 2,4p made.csv > first.csv; same first.csv wanted.csv
 exit $bad

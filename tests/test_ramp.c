@@ -3,17 +3,22 @@
 #include "tests/shell_fixture.h"
 #include <math.h>
 
-static Body make_strip(void)
+static Body make_strip_held(bool held)
 {
     MeshFile file;
     Error err;
     assert_true(shape_strip(0.04, 0.01, 16, PATTERN_RIGHT, &file, &err));
     Shell *shell = shell_of_mesh(&file);
     shell->thickness = 5e-4, shell->poisson = 0.3, shell->density = 1000;
-    hold_root(shell, true);
+    if (held) hold_root(shell, true);
     Body b = body_create(shell, shell_system(shell), 1e6);
     b.p[shell->gravity + 2] = -20;
     return b;
+}
+
+static Body make_strip(void)
+{
+    return make_strip_held(true);
 }
 
 static double farthest(const Body *a, const Body *b)
@@ -69,8 +74,22 @@ static void test_not_reached(void **state)
     body_clear(&s);
 }
 
+/* Nothing balances the weight of what nothing holds; the cut is not for want of iterations. */
+static void test_astray(void **state)
+{
+    (void)state;
+    Body s = make_strip_held(false);
+    RampDef def = ramp_default();
+    def.newton.max_iterations = 40;
+    RampInfo info = ramp_solve(s.sys, &s.shell->params, &def, NULL, s.p, &s.state);
+    assert_true(info.newton.status == NEWTON_ASTRAY && newton_is_used_up(info.newton.status));
+    assert_int_equal(info.newton.iterations, 40);
+    body_clear(&s);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_same_end), cmocka_unit_test(test_not_reached)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_same_end), cmocka_unit_test(test_not_reached),
+                                       cmocka_unit_test(test_astray)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,5 @@
 /* Charts over stages and time: of probes, of currents that a trajectory looks for, and the moments that a page shows. */
+#include "base/memory.h"
 #include "page_fixture.h"
 #include "view/show_motion.h"
 #include "view/show_probes.h"
@@ -34,8 +35,11 @@ static void test_probes(void **state)
     ShowData data = open_data(&def);
     Chart charts[CHARTS];
     int count = show_probes_charts(&data, charts, CHARTS);
-    assert_int_equal(count, 2); /* places and angles: what holds it is rounding */
-    assert_true(charts[0].x_counts && charts[1].x_counts && !strcmp(charts[0].x_label, "stage"));
+    assert_int_equal(count, 2);   /* places and angles: what holds it is rounding */
+    for (int k = 0; k < 2; k++) { /* what the stages differ by counts them */
+        assert_true(!charts[k].x_counts && !strcmp(charts[k].x_label, "flux density"));
+        assert_true(!strcmp(charts[k].x_unit, "T") && fabs(charts[k].series[0].x[1] - 1e-3) < 1e-15);
+    }
     assert_true(!strcmp(charts[0].y_unit, "m") && !strcmp(charts[1].y_unit, "rad"));
     bool side = false, none = false, tip = false;
     assert_int_equal(charts[0].series_count, 3);
@@ -49,6 +53,30 @@ static void test_probes(void **state)
     }
     assert_true(tip && side && none);
     show_data_clear(&data);
+}
+
+/* A field along two directions is no number, nor is one beside another thing that changes: stages count the rows. */
+static void test_stages(void **state)
+{
+    (void)state;
+    static const char *const sequences[] = {
+        "sequence: [{flux_density: [0, 0, 1 mT]}, {flux_density: [0, 1 mT, 0]}]\n",
+        "sequence: [{flux_density: [0, 0, 1 mT]}, {flux_density: [0, 0, 2 mT], gravity: [0, 0, -1]}]\n",
+        "sequence: [{gravity: [0, 0, -1]}, {gravity: [0, 0, -2]}]\n"};
+    static const char *const labels[] = {"stage", "stage", "gravity"};
+    for (int k = 0; k < 3; k++) {
+        char *text = mem_format("slender: 1\njob: equilibrium\n%s%s%s", SHEET, sequences[k],
+                                "probes: {tip: {height: tip}}\n");
+        page_run(NAME, text);
+        ShowDef def = show_default();
+        ShowData data = open_data(&def);
+        Chart chart;
+        assert_int_equal(show_probes_charts(&data, &chart, 1), 1);
+        assert_string_equal(chart.x_label, labels[k]);
+        assert_true(chart.x_counts == (k < 2) && (k < 2 || chart.series[0].x[1] == -2));
+        show_data_clear(&data);
+        mem_free(text);
+    }
 }
 
 /* Two currents over time, by their coils' names; a third one, which stays, has no line. */
@@ -112,8 +140,8 @@ static void test_stills(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_probes), cmocka_unit_test(test_currents),
-                                       cmocka_unit_test(test_stills)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_probes), cmocka_unit_test(test_stages),
+                                       cmocka_unit_test(test_currents), cmocka_unit_test(test_stills)};
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
     page_remove_files(NAME);
     unlink(NAME ".svg");

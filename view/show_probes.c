@@ -1,5 +1,6 @@
 #include "view/show_probes.h"
 #include "base/memory.h"
+#include "base/vec3.h"
 #include <math.h>
 #include <string.h>
 
@@ -28,8 +29,81 @@ typedef struct Lines {
 typedef struct Probed {
     ShowData *data;
     int kind, rows, cases;
-    const double *x; /* [rows] */
+    const double *x;              /* [rows] */
+    const char *x_label, *x_unit; /* of the axis; "": it counts */
 } Probed;
+
+/* ---- What a sequence goes through ---- */
+
+/* What stages may differ by. */
+static const struct {
+    const char *path, *label, *unit;
+    int width;
+} ranges[] = {{"slender/stages/flux_density", "flux density", "T", 3},
+              {"slender/stages/gravity", "gravity", "m/s^2", 3},
+              {"slender/stages/time", "t", "s", 1},
+              {"slender/stages/load_part", "part of the loads", "", 1}};
+
+static bool varies(const double *values, int rows, int width)
+{
+    for (int k = width; k < rows * width; k++)
+        if (values[k] != values[k % width]) return true;
+    return false;
+}
+
+static bool rises(const double *values, int rows)
+{
+    for (int r = 1; r < rows; r++)
+        if (!(values[r] > values[r - 1])) return false;
+    return true;
+}
+
+/* Along the direction of the longest row, whose largest component counts as positive; NULL: not all are along it. */
+static const double *along_one(ShowData *data, const double (*rows)[3], int count)
+{
+    const double little = 1e-9;
+    double *along = show_block(data, (size_t)count, sizeof *along);
+    Vec3 way = vec3(0, 0, 0);
+    for (int r = 0; r < count; r++)
+        if (vec3_length(vec3_load(rows[r])) > vec3_length(way)) way = vec3_load(rows[r]);
+    double length = vec3_length(way), x[3], most = 0;
+    vec3_store(x, way);
+    for (int i = 0; i < 3; i++) most = fabs(x[i]) > fabs(most) ? x[i] : most;
+    way = vec3_scale((most < 0 ? -1 : 1) / length, way);
+    for (int r = 0; r < count; r++) {
+        Vec3 row = vec3_load(rows[r]);
+        if (vec3_length(vec3_cross(row, way)) > little * length) return NULL;
+        along[r] = vec3_dot(row, way);
+    }
+    return along;
+}
+
+/* Where stages differ by one thing that is a number, it counts the rows in their place. */
+static void take_range(Probed *probed)
+{
+    int found = 0;
+    Probed other = *probed;
+    for (size_t k = 0; k < sizeof ranges / sizeof *ranges; k++) {
+        Array array;
+        int width = ranges[k].width;
+        if (!result_has(probed->data->result, ranges[k].path) ||
+            !result_read_as(probed->data->result, ranges[k].path, ARRAY_FLOAT64, width > 1 ? 2 : 1,
+                            width > 1 ? 3 : 0, &array, NULL))
+            continue;
+        bool fits = array.dims[0] == probed->rows;
+        const double *values = show_keep(probed->data, array);
+        if (!fits || !varies(values, probed->rows, width)) continue;
+        found++;
+        other.x = width > 1 ? along_one(probed->data, (const double(*)[3])values, probed->rows)
+                  : rises(values, probed->rows) ? values
+                                                : NULL;
+        other.x_label = ranges[k].label, other.x_unit = ranges[k].unit;
+    }
+    /* Times and parts that begin anew are those of several stages, which differ by what is not stored. */
+    if (found == 1 && other.x) *probed = other;
+}
+
+/* ---- The rows ---- */
 
 /* Load cases of an evaluation; all other rows are of one. */
 static int cases_of(ShowData *data, int kind)
@@ -53,8 +127,11 @@ static bool read_rows(ShowData *data, Probed *probed)
         if (!result_has(data->result, path) || !result_read(data->result, path, &rows, NULL)) continue;
         bool numbers = rows.type == ARRAY_FLOAT64;
         const double *x = show_keep(data, rows);
-        if (numbers) *probed = (Probed){data, k, (int)array_count(&rows), cases_of(data, k), x};
+        if (numbers)
+            *probed = (Probed){
+                data, k, (int)array_count(&rows), cases_of(data, k), x, counts[k].label, counts[k].unit};
     }
+    if (probed->rows > 1 && !strcmp(counts[probed->kind].name, "stage")) take_range(probed);
     return probed->rows > 1 && probed->cases > 0;
 }
 
@@ -137,9 +214,9 @@ static void clear_rounding(Array *array, double size)
 static Chart chart_of(const Probed *probed, int unit, char *const *paths, int count)
 {
     ShowData *data = probed->data;
-    Chart chart = {.x_label = counts[probed->kind].label,
-                   .x_unit = counts[probed->kind].unit,
-                   .x_counts = counts[probed->kind].unit[0] == 0,
+    Chart chart = {.x_label = probed->x_label,
+                   .x_unit = probed->x_unit,
+                   .x_counts = probed->x_label == counts[probed->kind].label && probed->x_unit[0] == 0,
                    .y_label = units[unit].label,
                    .y_unit = units[unit].unit,
                    .y_axis = CHART_LINEAR};

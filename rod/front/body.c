@@ -333,17 +333,18 @@ static bool put_vectors(Model *model, const Build *b, const char *at, const Vect
     return rod_model_vectors(b, at, scene, ((const RodModel *)model->self)->rod, values);
 }
 
-/* All nodes, the ends of its strands, or the node of that number. */
+/* All nodes, the ends of its strands (by either of their names), or the node of that number. */
 static bool select_part(const Model *model, const Build *b, const char *at, const char *name, Indices *found)
 {
     const Rod *rod = ((const RodModel *)model->self)->rod;
     int nodes = model->point_count, first = 0, step = 1, count = nodes;
-    if (!strcmp(name, "tip"))
+    if (!strcmp(name, "tip") || !strcmp(name, "end"))
         first = rod_each(rod), step = first + 1, count = rod->strands;
     else if (model_point_number(name, nodes, &first))
         count = 1;
     else if (strcmp(name, "all"))
-        return yaml_refuse(b->file, at, "'%s' must be `tip`, `all`, or the number of a node, 0 to %d", name,
+        return yaml_refuse(b->file, at,
+                           "'%s' must be `tip` (or `end`), `all`, or the number of a node, 0 to %d", name,
                            nodes - 1);
     *found = (Indices){count, mem_alloc((size_t)count, sizeof(int))};
     for (int i = 0; i < count; i++) found->items[i] = first + step * i;

@@ -43,18 +43,26 @@ static MagnetPart magnet_of(const Shell *shell)
                         .magnetization = shell->magnetization};
 }
 
+static void advise_thickness(Model *model, const char *name, double value, double size)
+{
+    if (value > size / 5)
+        mesh_warn(&model->report,
+                  "%s, %.3g m, is more than a fifth of the body's size, %.3g m: no thin shell", name, value,
+                  size);
+}
+
 void shell_advise(Model *model, const Scene *scene)
 {
+    const NumberUnknown *thickness = scene->design ? scene->design->unknowns.thickness : NULL;
     const Shell *shell = model->self;
     double size = mesh_diagonal(shell->mesh);
     if (size > LARGE_BODY)
         mesh_warn(&model->report,
                   "the body is %.3g m long; if its file is in millimetres, give the mesh `scale: 1.0e-3`",
                   size);
-    if (shell->thickness > size / 5)
-        mesh_warn(&model->report,
-                  "the thickness, %.3g m, is more than a fifth of the body's size, %.3g m: no thin shell",
-                  shell->thickness, size);
+    advise_thickness(model, "the thickness", shell->thickness, size);
+    if (thickness && !isnan(thickness->bounds[0]))
+        advise_thickness(model, "the upper bound of the unknown thickness", thickness->bounds[1], size);
     if (bending_length(model, scene) < CELLS_PER_LENGTH * mesh_mean_edge(shell->mesh))
         mesh_warn(
             &model->report,

@@ -121,7 +121,10 @@ const YamlTable solid_table = {
         {YAML_OPTIONAL(SolidScene, velocity, &velocity_table), .when = "/job: simulate, trajectory & !/start",
          .doc = "of the free coordinates at the start of a motion; at rest if absent"},
         {YAML_NUMBER(SolidScene, damping), .when = "/job: simulate, trajectory", .unit = "N s/m",
-         .range = "[0, inf)", .fallback = "0", .doc = "of a simulation: viscous damping at every node"},
+         .range = "[0, inf)", .fallback = "0",
+         .doc =
+             "of a simulation: viscous damping c at every node: 2 z m w, with a node's mass m, the angular "
+             "frequency w and the part z of critical damping that is wanted (as of a shell)"},
         {YAML_VECTOR(SolidScene, gravity), .unit = "m/s^2", .fallback = "[0, 0, 0]",
          .doc = "acceleration of gravity"},
         {0}}};

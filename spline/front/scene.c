@@ -12,7 +12,8 @@ static const YamlTable tone_table = {
         {YAML_CHOICE(ToneScene, fit), .choices = YAML_NAMES("contain", "cover"), .fallback = "contain",
          .doc = "all of it, centred on the page, and nothing drawn beside it; or the page filled and the "
                 "rest lost"},
-        {YAML_BOOL(ToneScene, invert), .doc = "white is drawn"},
+        {YAML_BOOL(ToneScene, invert),
+         .doc = "white is drawn: for light pens on dark paper, with `separation: tones` too"},
         {YAML_NUMBER(ToneScene, black), .when = "!curve", .range = "[0, 1]", .fallback = "0",
          .doc = "grey level that becomes black, and all that is darker"},
         {YAML_NUMBER(ToneScene, white), .when = "!curve", .range = "[0, 1]", .fallback = "1",
