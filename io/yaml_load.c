@@ -298,61 +298,6 @@ const YamlField *table_row(const YamlTable *table, const char *key)
     return NULL;
 }
 
-static bool is_given(const YamlField *row, const Node *node)
-{
-    const Node *item = load_row_item(row, node);
-    return item && !(row->kind == FIELD_BOOL && item->kind == NODE_SCALAR && strcmp(item->text, "true"));
-}
-
-/* "; it may be auto or a whole number alone": what stands for a row of the group without its key. */
-static char *alone_text(const YamlTable *table, int group)
-{
-    static const char *const kinds[] = {[FIELD_NUMBER] = "a number",
-                                        [FIELD_INTEGER] = "a whole number",
-                                        [FIELD_TEXT] = "a text",
-                                        [FIELD_FILE] = "a file"};
-    char *text = mem_text("");
-    for (const YamlField *row = table->fields; row->key; row++) {
-        if (row->one_of != group || !row->short_form) continue;
-        bool simple = row->kind < (int)(sizeof kinds / sizeof *kinds) && kinds[row->kind];
-        for (int k = 0; row->choices ? row->choices[k] != NULL : k < simple; k++)
-            text = mem_join(text, *text ? " or " : "; it may be ",
-                            row->choices ? row->choices[k] : kinds[row->kind]);
-    }
-    return *text ? mem_join(text, " alone", "") : text;
-}
-
-/* Rows that exclude each other. */
-static bool check_one_of(Load *load, const YamlTable *table, const Node *node, int group)
-{
-    char given[200] = "", all[300] = "";
-    int count = 0;
-    bool required = false, misspelt = false;
-    for (const YamlField *row = table->fields; row->key; row++) {
-        if (row->one_of != group) continue;
-        required |= row->required;
-        misspelt |= row->required && load_is_misspelt(load, table, node, row);
-        snprintf(all + strlen(all), sizeof all - strlen(all), "%s%s", all[0] ? ", " : "", row->key);
-        if (!is_given(row, node)) continue;
-        snprintf(given + strlen(given), sizeof given - strlen(given), "%s%s", count++ ? " and " : "",
-                 row->key);
-    }
-    char what[600] = "", *alone = alone_text(table, group);
-    if (count > 1)
-        snprintf(what, sizeof what, "has %s; give only one of %s", given, all);
-    else if (count == 0 && required && !misspelt)
-        snprintf(what, sizeof what, "needs one of %s%s", all, alone);
-    mem_free(alone);
-    return !*what || load_wrong(load, node, what);
-}
-
-static bool group_is_given(const YamlTable *table, const Node *node, int group)
-{
-    for (const YamlField *row = table->fields; row->key; row++)
-        if (row->one_of == group && is_given(row, node)) return true;
-    return false;
-}
-
 bool load_row_alone(Load *load, const YamlField *row, const Node *item, void *scene)
 {
     set_absent(row, scene);
@@ -376,7 +321,7 @@ static bool load_row(Load *load, const YamlTable *table, const YamlField *row, c
                        row->doc ? row->doc : "", node->text ? "; this mapping takes the place of " : "",
                        node->text ? node->text : "");
         ok = false;
-    } else if (!row->one_of || !group_is_given(table, node, row->one_of)) {
+    } else if (!row->one_of || !load_group_is_given(table, node, row->one_of)) {
         ok = load_default(load, row, scene);
     }
     load_leave(load, length);
@@ -391,7 +336,7 @@ static bool load_map_node(Load *load, const YamlTable *table, const Node *node, 
     for (int group = 1, more = 1; more; group++) {
         more = 0;
         for (const YamlField *row = table->fields; row->key; row++) more |= row->one_of >= group;
-        if (more) ok = check_one_of(load, table, node, group) && ok;
+        if (more) ok = load_check_group(load, table, node, group) && ok;
     }
     return ok;
 }

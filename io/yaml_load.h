@@ -1,4 +1,4 @@
-/* yaml_load.h - where loading stands, its keys and scalars. Private to yaml_load.c, yaml_keys.c
+/* yaml_load.h - where loading stands, its keys and scalars. Private to yaml_load.c, yaml_groups.c, yaml_keys.c
  * and yaml_value.c. */
 #pragma once
 #include "io/yaml_private.h"
@@ -31,6 +31,10 @@ const Node *load_row_item(const YamlField *row, const Node *map);
 
 /* The row that a value which is no mapping goes to; NULL: there is none. */
 const YamlField *load_short_row(const YamlTable *table, const Node *node);
+
+/* Of rows that exclude each other: is one given; is not more than one, and one where one is required? */
+bool load_group_is_given(const YamlTable *table, const Node *node, int group);
+bool load_check_group(Load *load, const YamlTable *table, const Node *node, int group);
 
 /* Refuses the mapping's keys that the table does not have. */
 bool load_keys(Load *load, const YamlTable *table, const Node *node);
