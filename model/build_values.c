@@ -111,12 +111,12 @@ bool build_vectors_at(const Build *b, Key at, char *const *formula, const WhereS
     return ok;
 }
 
-static bool from_table(const Build *b, Key at, const char *path, int width, Elements elements, double *values)
+static bool from_table(const Build *b, Key at, const char *path, const char *columns, int width,
+                       Elements elements, double *values)
 {
     Table table = {0};
     Error err;
-    bool ok = table_read(path, width == 1 ? "value [Pa]" : "x [A/m], y [A/m], z [A/m]", &table, &err) ||
-              yaml_refuse(b->file, at.text, "%s", err.text);
+    bool ok = table_read(path, columns, &table, &err) || yaml_refuse(b->file, at.text, "%s", err.text);
     if (ok && table.rows != elements.count)
         ok = yaml_refuse(b->file, at.text, "%s has %d rows, and the mesh %d %s: one row per %s is needed",
                          path, table.rows, elements.count, build_elements[elements.dim],
@@ -307,14 +307,16 @@ static bool fold_table(const Build *b, Key at, const char *path, double *values)
     return ok;
 }
 
-bool build_numbers(const Build *b, Key at, int dim, const NumberScene *scene, double *values)
+bool build_numbers(const Build *b, Key at, int dim, const char *unit, const NumberScene *scene,
+                   double *values)
 {
     Elements elements = elements_of(b->mesh, dim);
     for (int e = 0; e < elements.count; e++) values[e] = scene->groups_count ? scene->other : scene->value;
     bool ok = true;
     if (scene->file && elements.dim == 1) ok = fold_table(b, key("%s.file", at.text), scene->file, values);
     if (scene->file && elements.dim != 1)
-        ok = from_table(b, key("%s.file", at.text), scene->file, 1, elements, values);
+        ok = from_table(b, key("%s.file", at.text), scene->file, key("value [%s]", unit).text, 1, elements,
+                        values);
     if (scene->formula) {
         at = key("%s.formula", at.text);
         ok = from_formula(b, at, &scene->formula, 1, scene->where, scene->where_count, elements, values);
@@ -333,7 +335,9 @@ bool build_vectors(const Build *b, Key at, int dim, const VectorScene *scene, do
     for (int i = 0; scene->groups_count && i < 3 * count; i++)
         if (isnan(scene->other[0])) values[i] = NAN;
     bool ok = true;
-    if (scene->file) ok = from_table(b, key("%s.file", at.text), scene->file, 3, elements, values);
+    if (scene->file)
+        ok = from_table(b, key("%s.file", at.text), scene->file, "x [A/m], y [A/m], z [A/m]", 3, elements,
+                        values);
     if (scene->formula) {
         at = key("%s.formula", at.text);
         ok = from_formula(b, at, scene->formula, 3, scene->where, scene->where_count, elements, values);
