@@ -5,12 +5,16 @@
 #include "io/hdf5_private.h"
 #include "base/memory.h"
 #include <limits.h>
+#include <math.h>
 #include <string.h>
 
 enum { PATH_MAX_BYTES = 512, DEPTH_MAX = 8, NAMES_MAX = 100000 };
 
 /* Bytes that deflate makes of one, at most. */
 static const double DEFLATE_MOST = 1040;
+
+/* Bytes that may have been left at their fill value, which takes no room in the file. */
+static const double FILL_MOST = 64e6;
 
 /* H5Lexists wants every group on the way to exist. */
 static bool has_link(hid_t file, const char *path)
@@ -69,7 +73,7 @@ static bool is_stored(const Hdf5 *file, hid_t dataset, hid_t type, hid_t space)
     H5Pclose(properties);
     hsize_t stored = H5Dget_storage_size(dataset);
     double bytes = (double)H5Sget_simple_extent_npoints(space) * (double)H5Tget_size(type);
-    return here && stored <= file->size && bytes <= DEFLATE_MOST * (double)stored;
+    return here && stored <= file->size && bytes <= fmax(DEFLATE_MOST * (double)stored, FILL_MOST);
 }
 
 static bool read_text(const Hdf5 *file, hid_t dataset, hid_t type, hid_t space, Array *array)
@@ -135,15 +139,35 @@ static bool read_numbers(hid_t dataset, hid_t type, hid_t space, Array *array)
     return ok;
 }
 
+/* The attribute `unit`, or by others' word `units`; "" where there is none. NULL: it is there and no text. */
+static char *read_unit(const Hdf5 *file, hid_t dataset)
+{
+    const char *name = H5Aexists(dataset, "unit") > 0 ? "unit" : "units";
+    return H5Aexists(dataset, name) > 0 ? attribute_text(file, dataset, name) : mem_text("");
+}
+
+/* Code of plugins is not loaded: these are what HDF5 was built with. */
+static bool has_filters(hid_t dataset)
+{
+    hid_t properties = H5Dget_create_plist(dataset);
+    bool has = true;
+    for (int k = 0; k < H5Pget_nfilters(properties); k++) {
+        unsigned flags, config;
+        size_t values = 0;
+        H5Z_filter_t filter =
+            H5Pget_filter2(properties, (unsigned)k, &flags, &values, NULL, 0, NULL, &config);
+        has = has && H5Zfilter_avail(filter) > 0;
+    }
+    H5Pclose(properties);
+    return has;
+}
+
 /* Texts as they are; numbers of up to 8 bytes, those rows of them. */
-static bool read_dataset(const Hdf5 *file, hid_t dataset, int first, int count, Array *array)
+static bool read_values(const Hdf5 *file, hid_t dataset, int first, int count, Array *array)
 {
     hid_t type = H5Dget_type(dataset), space = H5Dget_space(dataset);
     H5T_class_t class = H5Tget_class(type);
     bool number = (class == H5T_INTEGER || class == H5T_FLOAT) && H5Tget_size(type) <= 8;
-    char *unit = attribute_text(file, dataset, "unit");
-    if (!unit) unit = attribute_text(file, dataset, "units"); /* others' word */
-    array->unit = unit ? unit : mem_text("");
     bool ok = is_stored(file, dataset, type, space);
     if (ok && class == H5T_STRING)
         ok = read_text(file, dataset, type, space, array);
@@ -155,6 +179,19 @@ static bool read_dataset(const Hdf5 *file, hid_t dataset, int first, int count, 
     return ok;
 }
 
+static bool read_dataset(const Hdf5 *file, hid_t dataset, int first, int count, Array *array, Error *err)
+{
+    array->unit = read_unit(file, dataset);
+    if (!array->unit) return error_set(err, "the unit of %s is no text", array->name);
+    if (read_values(file, dataset, first, count, array)) return true;
+    return error_set(
+        err,
+        has_filters(dataset)
+            ? "%s cannot be read: it is no array of numbers of up to three dimensions, and no text"
+            : "%s is compressed by a filter that this HDF5 has not",
+        array->name);
+}
+
 bool hdf5_read(Hdf5 *file, const char *path, int first, int count, Array *array, Error *err)
 {
     *array = (Array){0};
@@ -162,11 +199,10 @@ bool hdf5_read(Hdf5 *file, const char *path, int first, int count, Array *array,
     hid_t dataset = H5Dopen2(file->file, path, H5P_DEFAULT);
     if (dataset < 0) return error_set(err, "%s is no dataset", path);
     array->name = mem_text(path);
-    bool ok = read_dataset(file, dataset, first, count, array);
+    bool ok = read_dataset(file, dataset, first, count, array, err);
     H5Dclose(dataset);
-    if (ok) return true;
-    array_clear(array);
-    return hdf5_failed("read", path, err);
+    if (!ok) array_clear(array);
+    return ok;
 }
 
 bool hdf5_read_attribute_text(Hdf5 *file, const char *group, const char *name, char **text, Error *err)
