@@ -111,6 +111,24 @@ bool build_vectors_at(const Build *b, Key at, char *const *formula, const WhereS
     return ok;
 }
 
+static bool check_value(const Build *b, Key at, const char *where, int number, double value,
+                        bool zero_allowed)
+{
+    return value > 0 || (zero_allowed && value == 0) ||
+           yaml_refuse(b->file, at.text, "%s%d: the value is %g; it must be %s 0", where, number, value,
+                       zero_allowed ? "at least" : "more than");
+}
+
+/* A row of a table; the scene's own numbers have been checked. */
+static bool check_row(const Build *b, Key at, const char *path, const Table *table, int row, double value,
+                      bool zero_allowed)
+{
+    char *where = mem_format("%s:", path);
+    bool ok = check_value(b, at, where, table->line[row], value, zero_allowed);
+    mem_free(where);
+    return ok;
+}
+
 static bool from_table(const Build *b, Key at, const char *path, const char *columns, int width,
                        Elements elements, double *values)
 {
@@ -121,6 +139,8 @@ static bool from_table(const Build *b, Key at, const char *path, const char *col
         ok = yaml_refuse(b->file, at.text, "%s has %d rows, and the mesh %d %s: one row per %s is needed",
                          path, table.rows, elements.count, build_elements[elements.dim],
                          element_names[elements.dim]);
+    for (int row = 0; ok && width == 1 && row < table.rows; row++)
+        ok = check_row(b, at, path, &table, row, table.values[row], false);
     if (ok) memcpy(values, table.values, (size_t)table.rows * (size_t)width * sizeof *values);
     table_clear(&table);
     return ok;
@@ -248,18 +268,20 @@ static bool check_covered(const Build *b, Key at, const double *values, Elements
     for (int e = 0; e < elements.count; e++) missing += isnan(values[e * width]) ? 1 : 0;
     if (!missing) return true;
     return yaml_refuse(b->file, at.text,
-                       "%d %s are in no group listed here: give `other`, the value elsewhere", missing,
-                       build_elements[elements.dim]);
+                       "%d %s %s in no group listed here: give `other`, the value elsewhere", missing,
+                       missing == 1 ? element_names[elements.dim] : build_elements[elements.dim],
+                       missing == 1 ? "is" : "are");
 }
 
-/* A range check for numbers that come from files and formulas; the table checks those in the scene. */
-static bool check_range(const Build *b, Key at, const double *values, int count, bool zero_allowed)
+/* What a formula makes of them. */
+static bool check_range(const Build *b, Key at, const double *values, Elements elements)
 {
-    for (int e = 0; e < count; e++)
-        if (!(values[e] > 0 || (zero_allowed && values[e] == 0)))
-            return yaml_refuse(b->file, at.text, "the value of number %d is %g; it must be %s 0", e,
-                               values[e], zero_allowed ? "at least" : "more than");
-    return true;
+    char *where = mem_format("%s ", element_names[elements.dim]);
+    bool ok = true;
+    for (int e = 0; ok && e < elements.count; e++)
+        ok = check_value(b, at, where, e, values[e], elements.dim == 1);
+    mem_free(where);
+    return ok;
 }
 
 /* The edge that a row names by its vertices, in the file's numbers; -1 after a refusal. */
@@ -294,7 +316,7 @@ static bool fold_table(const Build *b, Key at, const char *path, double *values)
     for (int row = 0; ok && row < table.rows; row++) {
         int edge = fold_edge(b, at, path, &table, row);
         double value = table.values[3 * row + 2];
-        ok = edge >= 0;
+        ok = edge >= 0 && check_row(b, at, path, &table, row, value, true);
         if (ok && owner[edge] && values[edge] != value)
             ok = yaml_refuse(b->file, at.text,
                              "%s:%d: the edge of vertices %g and %g is %g here and %g in line %d", path,
@@ -319,10 +341,10 @@ bool build_numbers(const Build *b, Key at, int dim, const char *unit, const Numb
                         values);
     if (scene->formula) {
         at = key("%s.formula", at.text);
-        ok = from_formula(b, at, &scene->formula, 1, scene->where, scene->where_count, elements, values);
+        ok = from_formula(b, at, &scene->formula, 1, scene->where, scene->where_count, elements, values) &&
+             check_range(b, at, values, elements);
     }
-    return ok && put_numbers(b, at, scene, elements, values) && check_covered(b, at, values, elements, 1) &&
-           check_range(b, at, values, elements.count, elements.dim == 1);
+    return ok && put_numbers(b, at, scene, elements, values) && check_covered(b, at, values, elements, 1);
 }
 
 bool build_vectors(const Build *b, Key at, int dim, const VectorScene *scene, double *values)
