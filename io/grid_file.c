@@ -38,9 +38,7 @@ static double *numbers(const Grid *g, const char *name, const char *unit, Array 
                          g->path, name),
                NULL;
     if (!hdf5_read(g->file, name, 0, -1, array, &inner))
-        return error_set(g->err, "%s: %s cannot be read: it is no array of numbers of up to three dimensions",
-                         g->path, name),
-               NULL;
+        return error_set(g->err, "%s: %s", g->path, inner.text), NULL;
     size_t count = array_count(array);
     double *values = mem_alloc(count, sizeof *values);
     bool ok = array->type != ARRAY_TEXT || error_set(g->err, "%s: %s is a text", g->path, name);
@@ -78,8 +76,9 @@ static bool read_axis(const Grid *g, int axis)
     double *place = numbers(g, name, "m", &array);
     if (!place) return false;
     int count = array.rank == 1 ? array.dims[0] : 0;
-    bool ok = count > 0 || error_set(g->err, "%s: %s is no list of places: it has %d dimensions", g->path,
-                                     name, array.rank);
+    bool ok = array.rank == 1 || error_set(g->err, "%s: %s is no list of places: it has %d dimensions",
+                                           g->path, name, array.rank);
+    if (ok && count == 0) ok = error_set(g->err, "%s: %s is empty: it has no places", g->path, name);
     ok = ok && check_steps(g, name, place, count);
     if (ok) {
         g->to->nodes[axis] = count;

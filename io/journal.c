@@ -182,7 +182,7 @@ static bool open_new(Journal *journal, JournalMode mode, Error *err)
 
 static bool open_old(Journal *journal, Error *err)
 {
-    if (journal->in_memory || !journal_files_exist(journal->path))
+    if (journal->in_memory || access(journal->path, F_OK) != 0)
         return error_set(err, "%s: there is no such run", journal->path);
     if (!(journal->reader ? open_to_read(journal, err) : open_to_write(journal, 0, err)) ||
         !check_identity(journal, err) || !read_finished(journal, err))

@@ -45,12 +45,12 @@ static const double *loads_before(const Case *c, int stage)
     return stage > 0 ? c->stages[stage - 1].p : c->loads;
 }
 
-/* What acts at the end of a piece, maybe in p. */
-static const double *loads_after(const Run *run, const Case *c, Piece piece, double *p)
+/* What acts at a part of a stage, maybe in p. */
+static const double *loads_at(const Run *run, const Case *c, int stage, double part, double *p)
 {
-    const double *all = c->stages[piece.stage].p;
-    if (piece.end >= 1) return all;
-    ramp_loads(run->model->params, loads_before(c, piece.stage), all, piece.end, p);
+    const double *all = c->stages[stage].p;
+    if (part >= 1) return all;
+    ramp_loads(run->model->params, loads_before(c, stage), all, part, p);
     return p;
 }
 
@@ -86,22 +86,23 @@ static double shown_time(const Run *run, const Snapshot *shot, int frame)
     return goes_on ? shot->at.time : frame;
 }
 
-enum { KEPT = 3 };
+enum { KEPT = 4 };
 
-/* What a resumed run needs: the status and the state after each stage. */
-static void kept_rows(const State *state, double *status, Kept rows[KEPT])
+/* What a resumed run needs: the status, the part of the loads and the state after each stage. */
+static void kept_rows(const State *state, double *status, double *part, Kept rows[KEPT])
 {
     rows[0] = (Kept){"status", status, 1};
-    rows[1] = (Kept){"x", state->x, (size_t)state->dofs};
-    rows[2] = (Kept){"memory", state->memory, (size_t)state->memory_count};
+    rows[1] = (Kept){"part", part, 1};
+    rows[2] = (Kept){"x", state->x, (size_t)state->dofs};
+    rows[3] = (Kept){"memory", state->memory, (size_t)state->memory_count};
 }
 
 /* The frame first: what is kept says that it is there. */
 static bool put_progress(Run *run, int frame, const Snapshot *shot, Error *err)
 {
-    double status = shot->status;
+    double status = shot->status, part = shot->part;
     Kept rows[KEPT];
-    kept_rows(&shot->at, &status, rows);
+    kept_rows(&shot->at, &status, &part, rows);
     return run_put_frame(run, frame, shown_time(run, shot, frame), shot, frame == 0, err) &&
            run_put_state(run, frame, rows, KEPT, err);
 }
@@ -110,7 +111,7 @@ static bool get_progress(Run *run, int frame, Snapshot *shot, bool *has, Error *
 {
     double status;
     Kept rows[KEPT];
-    kept_rows(&shot->at, &status, rows);
+    kept_rows(&shot->at, &status, &shot->part, rows);
     if (!run_get_state(run, frame, rows, KEPT, has, err)) return false;
     if (*has) shot->status = (NewtonStatus)status;
     return true;
@@ -124,11 +125,12 @@ static int total_frames(const Run *run)
     return total;
 }
 
-/* One piece, as the frame of that number. False where err has to be said. */
-static bool solve_frame(Run *run, Case *c, Piece piece, int frame, Snapshot *shot, Error *err)
+/* One piece, as the frame of that number; p is for what acts there. False where err has to be said. */
+static bool solve_frame(Run *run, Case *c, Piece piece, int frame, double *p, Snapshot *shot, Error *err)
 {
     RampInfo info = solve_piece(run, c, piece);
-    shot->status = info.newton.status, shot->part = info.reached;
+    shot->status = info.newton.status, shot->part = info.part;
+    shot->p = loads_at(run, c, piece.stage, info.part, p);
     if (shot->status == NEWTON_STOPPED) return true;
     if (shot->status != NEWTON_CONVERGED) run_say_unknown_field(run, shot, 0);
     run_is_crushed(run, shot, shot->status != NEWTON_CONVERGED);
@@ -148,10 +150,11 @@ static bool solve_case(Run *run, Case *c, double *p, Snapshot *shot, int *frame,
     for (int k = 0; ok && !*interrupted && k < piece_count(run, c); k++) {
         Piece piece = piece_of(run, k);
         c->state.time = c->stages[piece.stage].time;
-        *shot = (Snapshot){.load_case = c, .p = loads_after(run, c, piece, p), .at = c->state};
+        *shot = (Snapshot){.load_case = c, .at = c->state};
         bool has;
         ok = get_progress(run, *frame, shot, &has, err);
-        if (ok && !has) ok = solve_frame(run, c, piece, *frame, shot, err);
+        shot->p = loads_at(run, c, piece.stage, shot->part, p);
+        if (ok && !has) ok = solve_frame(run, c, piece, *frame, p, shot, err);
         *interrupted = shot->status == NEWTON_STOPPED;
         if (shot->status > worst) worst = shot->status;
         if (!*interrupted) ++*frame;

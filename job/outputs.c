@@ -160,7 +160,7 @@ bool outputs_check(const Scene *scene, const char *path, const char *result, boo
     char *names[OWN], *base = path_without_ending(result, ".vtkhdf");
     int first = scene->probes_count ? 0 : 1;
     OwnFiles own = {OWN - first, (const char *const *)names + first};
-    bool ok = true;
+    bool ok = check_file(result, err);
     for (int k = 0; k < OWN; k++) {
         names[k] = mem_format("%s%s", base, endings[k]);
         ok = ok && (k < first || outputs_check_source(scene, path, names[k], err));

@@ -283,11 +283,12 @@ static bool is_folder(const char *path)
 }
 
 /* A folder where a file is to be written is refused before hours of work, not after. */
-static bool check_output(const char *name, const char *result, Error *err)
+static bool check_output(const char *name, const char *result, const char *journal, Error *err)
 {
     if (is_folder(name))
         return error_set(err, "the output '%s' is a folder; give the name of a result in it", name);
     if (is_folder(result)) return error_set(err, "the result '%s' is a folder; give another name", result);
+    if (is_folder(journal)) return error_set(err, "the journal '%s' is a folder; give another name", journal);
     return true;
 }
 
@@ -340,7 +341,7 @@ static RunStatus open_and_run(const RecordDef *def, Run *run, Error *err)
 {
     char *journal = mem_format("%s.run", def->name);
     RunStatus status = RUN_CANNOT_WRITE;
-    if (check_output(def->name, run->result, err) &&
+    if (check_output(def->name, run->result, journal, err) &&
         outputs_check(def->scene, def->path, run->result, def->picture, err) &&
         (def->journal != JOURNAL_NEW || check_earlier(run, journal, def->picture, err)))
         run->journal = journal_open(def->in_memory ? NULL : journal, def->journal, err);

@@ -81,8 +81,10 @@ const MeshGroup *build_group(const Build *b, Key at, const char *name, int dim);
 /* The cell, face or edge that is a group's member; -1 after a refusal. */
 int build_element(const Build *b, Key at, const MeshGroup *group, int member);
 
-/* A number, or three, for each of the mesh's edges (dim 1), faces (2) or cells (3): values[count], values[count][3]. */
-bool build_numbers(const Build *b, Key at, int dim, const NumberScene *scene, double *values);
+/* A number, or three, for each of the mesh's edges (dim 1), faces (2) or cells (3): values[count], values[count][3].
+ * Numbers are in this unit, which the header of a table may say otherwise. */
+bool build_numbers(const Build *b, Key at, int dim, const char *unit, const NumberScene *scene,
+                   double *values);
 bool build_vectors(const Build *b, Key at, int dim, const VectorScene *scene, double *values);
 
 /* Magnetisation as it is written, A/m: itself, or a remanence over mu_0. */

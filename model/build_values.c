@@ -111,16 +111,27 @@ bool build_vectors_at(const Build *b, Key at, char *const *formula, const WhereS
     return ok;
 }
 
-static bool from_table(const Build *b, Key at, const char *path, int width, Elements elements, double *values)
+/* A row of a table; the scene's own numbers have been checked. */
+static bool check_row(const Build *b, Key at, const char *path, const Table *table, int row, double value,
+                      bool zero_allowed)
+{
+    return value > 0 || (zero_allowed && value == 0) ||
+           yaml_refuse(b->file, at.text, "%s:%d: the value is %g; it must be %s 0", path, table->line[row],
+                       value, zero_allowed ? "at least" : "more than");
+}
+
+static bool from_table(const Build *b, Key at, const char *path, const char *columns, int width,
+                       Elements elements, double *values)
 {
     Table table = {0};
     Error err;
-    bool ok = table_read(path, width == 1 ? "value [Pa]" : "x [A/m], y [A/m], z [A/m]", &table, &err) ||
-              yaml_refuse(b->file, at.text, "%s", err.text);
+    bool ok = table_read(path, columns, &table, &err) || yaml_refuse(b->file, at.text, "%s", err.text);
     if (ok && table.rows != elements.count)
         ok = yaml_refuse(b->file, at.text, "%s has %d rows, and the mesh %d %s: one row per %s is needed",
                          path, table.rows, elements.count, build_elements[elements.dim],
                          element_names[elements.dim]);
+    for (int row = 0; ok && width == 1 && row < table.rows; row++)
+        ok = check_row(b, at, path, &table, row, table.values[row], false);
     if (ok) memcpy(values, table.values, (size_t)table.rows * (size_t)width * sizeof *values);
     table_clear(&table);
     return ok;
@@ -248,11 +259,12 @@ static bool check_covered(const Build *b, Key at, const double *values, Elements
     for (int e = 0; e < elements.count; e++) missing += isnan(values[e * width]) ? 1 : 0;
     if (!missing) return true;
     return yaml_refuse(b->file, at.text,
-                       "%d %s are in no group listed here: give `other`, the value elsewhere", missing,
-                       build_elements[elements.dim]);
+                       "%d %s %s in no group listed here: give `other`, the value elsewhere", missing,
+                       missing == 1 ? element_names[elements.dim] : build_elements[elements.dim],
+                       missing == 1 ? "is" : "are");
 }
 
-/* A range check for numbers that come from files and formulas; the table checks those in the scene. */
+/* What a formula makes of them; a table's rows are checked as they are read, the scene's own numbers by its table. */
 static bool check_range(const Build *b, Key at, const double *values, Elements elements)
 {
     bool zero_allowed = elements.dim == 1;
@@ -299,7 +311,7 @@ static bool fold_table(const Build *b, Key at, const char *path, double *values)
     for (int row = 0; ok && row < table.rows; row++) {
         int edge = fold_edge(b, at, path, &table, row);
         double value = table.values[3 * row + 2];
-        ok = edge >= 0;
+        ok = edge >= 0 && check_row(b, at, path, &table, row, value, true);
         if (ok && owner[edge] && values[edge] != value)
             ok = yaml_refuse(b->file, at.text,
                              "%s:%d: the edge of vertices %g and %g is %g here and %g in line %d", path,
@@ -312,20 +324,22 @@ static bool fold_table(const Build *b, Key at, const char *path, double *values)
     return ok;
 }
 
-bool build_numbers(const Build *b, Key at, int dim, const NumberScene *scene, double *values)
+bool build_numbers(const Build *b, Key at, int dim, const char *unit, const NumberScene *scene,
+                   double *values)
 {
     Elements elements = elements_of(b->mesh, dim);
     for (int e = 0; e < elements.count; e++) values[e] = scene->groups_count ? scene->other : scene->value;
     bool ok = true;
     if (scene->file && elements.dim == 1) ok = fold_table(b, key("%s.file", at.text), scene->file, values);
     if (scene->file && elements.dim != 1)
-        ok = from_table(b, key("%s.file", at.text), scene->file, 1, elements, values);
+        ok = from_table(b, key("%s.file", at.text), scene->file, key("value [%s]", unit).text, 1, elements,
+                        values);
     if (scene->formula) {
         at = key("%s.formula", at.text);
-        ok = from_formula(b, at, &scene->formula, 1, scene->where, scene->where_count, elements, values);
+        ok = from_formula(b, at, &scene->formula, 1, scene->where, scene->where_count, elements, values) &&
+             check_range(b, at, values, elements);
     }
-    return ok && put_numbers(b, at, scene, elements, values) && check_covered(b, at, values, elements, 1) &&
-           check_range(b, at, values, elements);
+    return ok && put_numbers(b, at, scene, elements, values) && check_covered(b, at, values, elements, 1);
 }
 
 bool build_vectors(const Build *b, Key at, int dim, const VectorScene *scene, double *values)
@@ -338,7 +352,9 @@ bool build_vectors(const Build *b, Key at, int dim, const VectorScene *scene, do
     for (int i = 0; scene->groups_count && i < 3 * count; i++)
         if (isnan(scene->other[0])) values[i] = NAN;
     bool ok = true;
-    if (scene->file) ok = from_table(b, key("%s.file", at.text), scene->file, 3, elements, values);
+    if (scene->file)
+        ok = from_table(b, key("%s.file", at.text), scene->file, "x [A/m], y [A/m], z [A/m]", 3, elements,
+                        values);
     if (scene->formula) {
         at = key("%s.formula", at.text);
         ok = from_formula(b, at, scene->formula, 3, scene->where, scene->where_count, elements, values);

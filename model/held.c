@@ -142,7 +142,8 @@ bool model_put_target(Model *model, const Build *b, const char *at, const Target
 bool model_put_numbers(Model *model, const Build *b, const char *at, const NumberScene *scene,
                        const ParamBlock *block, double *values)
 {
-    return build_numbers(b, key("%s", at), model->body->ops->row_dim(model, block), scene, values);
+    return build_numbers(b, key("%s", at), model->body->ops->row_dim(model, block), block->unit, scene,
+                         values);
 }
 
 bool model_put_vectors(Model *model, const Build *b, const char *at, const VectorScene *scene,

@@ -88,7 +88,7 @@ typedef struct Snapshot {
     const StepStart *from; /* of a step of time, for BodyOps.supports; NULL: as in statics          */
     const WorldSums *felt; /* of a step of time, what it met at its end; NULL: as in statics */
     const double *held;    /* [point_count][3] of a step of time, what its supports do; NULL: as in statics */
-    double part;           /* of an equilibrium's frame: how much of its loads it bears */
+    double part;           /* of an equilibrium's frame: how much of its stage's loads p has */
 } Snapshot;
 
 /* What one evaluation takes on this machine, and the factor; s, bytes (job/predict.h). */

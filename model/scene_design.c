@@ -4,9 +4,9 @@
 
 /* ---- Unknowns ---- */
 
-#define BOUNDS_ROW(S, u)                                                                                     \
+#define BOUNDS_ROW(S, u, r)                                                                                  \
     {                                                                                                        \
-        YAML_VECTOR(S, bounds), .unit = u,                                                                   \
+        YAML_VECTOR(S, bounds), .unit = u, .range = r,                                                       \
                                 .doc = "lower and upper bound; a start beyond them is put on them"           \
     }
 #define ROWS_ROWS(S, element)                                                                                \
@@ -28,7 +28,7 @@ static const YamlTable magnetization_unknown_table = {
          .doc = "size of seeded noise that is added to the start"},
         {YAML_NUMBER(VectorUnknown, scale), .unit = "A/m", .range = "(0, inf)", .fallback = "1.0e+4 A/m",
          .doc = "a natural size: optimisers see the value over it"},
-        BOUNDS_ROW(VectorUnknown, "A/m"),
+        BOUNDS_ROW(VectorUnknown, "A/m", NULL),
         {YAML_NUMBER(VectorUnknown, magnitude), .unit = "A/m", .range = "(0, inf)", .one_of = 1,
          .doc = "fixes |M|: only its direction is free"},
         {YAML_NUMBER(VectorUnknown, max_magnitude), .unit = "A/m", .range = "(0, inf)", .one_of = 1,
@@ -44,7 +44,7 @@ static const YamlTable magnetization_unknown_table = {
         .size = sizeof(NumberUnknown),                                                                       \
         .doc = of " as an unknown.",                                                                         \
         .fields = (const YamlField[]){                                                                       \
-            BOUNDS_ROW(NumberUnknown, u),                                                                    \
+            BOUNDS_ROW(NumberUnknown, u, "(0, inf)"),                                                        \
             {YAML_CHOICE(NumberUnknown, scale), .choices = YAML_NAMES("log", "linear"), .fallback = "log",   \
              .doc = "optimisers see its logarithm, or its ratio to the start's mean"},                       \
             {YAML_NUMBER(NumberUnknown, noise), .unit = u, .range = "[0, inf)", .fallback = "0",             \
@@ -61,7 +61,7 @@ static const YamlTable fold_unknown_table = {
     .size = sizeof(NumberUnknown),
     .doc = "The factor on each edge's curvature as an unknown.",
     .fields = (const YamlField[]){
-        BOUNDS_ROW(NumberUnknown, NULL),
+        BOUNDS_ROW(NumberUnknown, NULL, "[0, inf)"),
         {YAML_CHOICE(NumberUnknown, scale), .choices = YAML_NAMES("log", "linear"), .fallback = "log",
          .doc = "optimisers see its logarithm over 0.2, or its ratio to the start's mean"},
         {YAML_NUMBER(NumberUnknown, noise), .range = "[0, inf)", .fallback = "0",
@@ -80,7 +80,7 @@ static const YamlTable strain_unknown_table = {
                              .fallback = "0", .doc = "size of seeded noise that is added to the start"},
                             {YAML_NUMBER(StrainUnknown, scale), .unit = "1/m", .range = "(0, inf)",
                              .fallback = "10 1/m", .doc = "a natural size: optimisers see the value over it"},
-                            BOUNDS_ROW(StrainUnknown, "1/m"),
+                            BOUNDS_ROW(StrainUnknown, "1/m", NULL),
                             {0}}};
 
 static const YamlTable flux_start_table = {
@@ -134,7 +134,7 @@ static const YamlTable flux_unknown_table = {
          .doc = "size of seeded noise that is added to the start"},                                          \
         {YAML_NUMBER(SourceUnknown, scale), .unit = u, .range = "(0, inf)", .fallback = natural,             \
          .doc = "a natural size: optimisers see the value over it"},                                         \
-        BOUNDS_ROW(SourceUnknown, u)
+        BOUNDS_ROW(SourceUnknown, u, NULL)
 static const YamlTable strength_unknown_table = {
     .name = "unknown source_strength",
     .size = sizeof(SourceUnknown),

@@ -55,7 +55,7 @@ RampInfo ramp_solve(System *sys, const Params *params, const RampDef *def, const
     double *p = mem_alloc((size_t)params->size, sizeof *p);
     State kept = state_clone(state);
     const NewtonObserver *observer = def->observer.iteration ? &def->observer : NULL;
-    RampInfo info = {.reached = def->begin};
+    RampInfo info = {.reached = def->begin, .part = def->begin};
     bool steady = from && !def->move && is_steady(params, from, to);
     double step = (def->end - def->begin) / (steady ? 1 : def->steps);
     while (info.reached < def->end) {
@@ -72,14 +72,16 @@ RampInfo ramp_solve(System *sys, const Params *params, const RampDef *def, const
         newton_add_counts(&newton, &info.newton);
         info.newton = newton;
         if (ramp_reached(newton.status)) {
-            info.reached = part;
+            info.reached = info.part = part;
             info.steps++;
             continue;
         }
         bool falling = newton_is_used_up(newton.status); /* half a load would not get there sooner */
         bool hopeless = falling || newton.status == NEWTON_STOPPED || step / 2 < def->step_min;
-        if (hopeless && (falling || info.steps == 0) && newton.status != NEWTON_STOPPED)
-            break; /* the iterate says more than the start */
+        if (hopeless && (falling || info.steps == 0) && newton.status != NEWTON_STOPPED) {
+            info.part = part; /* the iterate says more than the start */
+            break;
+        }
         state_copy(state, &kept);
         if (hopeless) break;
         info.refused++;

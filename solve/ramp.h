@@ -31,7 +31,8 @@ RampDef ramp_default(void);
 typedef struct RampInfo {
     NewtonInfo newton; /* of the last step; iterations and factorisations are those of all steps */
     int steps, refused;
-    double reached; /* part of the loads that x is in equilibrium with; 1: all */
+    double reached; /* part of the loads that an equilibrium was found with; 1: all */
+    double part;    /* part of the loads that x is under: `reached`, or, of an iterate, what was tried last */
 } RampInfo;
 
 /* The loads at a part of the way, p[params->size]; what is no load is as in `to`. */

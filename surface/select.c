@@ -70,7 +70,7 @@ static bool mark_group(const Mesh *mesh, const char *name, bool *mark, Error *er
     }
     if (found) return true;
     char *names = mesh_group_names(mesh, -1);
-    error_set(err, "group: there is no group '%s'; the mesh has %s", name, names);
+    error_set(err, "there is no group '%s'; the mesh has %s", name, names);
     mem_free(names);
     return false;
 }

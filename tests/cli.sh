@@ -314,6 +314,10 @@ expect 0 "$program" run $long --quiet --no-picture -o live --resume --set design
 for folder in out out/; do
     expect 4 "$program" run "$scene" -o $folder; says "is a folder"
 done
+expect 4 "$program" run "$scene" -o no/such --no-picture; says "cannot be written: its folder is not there"
+mkdir folder.run
+expect 4 "$program" run "$scene" -o folder;     says "the journal 'folder.run' is a folder"
+rmdir folder.run
 mkdir folder.vtkhdf
 expect 4 "$program" run "$scene" -o folder;     says "'folder.vtkhdf' is a folder"
 [ ! -e folder.run ] || { echo "a run that cannot be written has begun"; bad=1; }

@@ -65,6 +65,11 @@ static void fill(hid_t file)
     put_texts(group, "status", 900);
     H5Dclose(unit);
     H5Gclose(group);
+    H5Dclose(put_three(file, "slender/three"));
+    hid_t filled = H5Pcreate(H5P_DATASET_CREATE);
+    H5Pset_fill_value(filled, H5T_NATIVE_DOUBLE, &(double){7});
+    H5Dclose(put_dataset(file, "slender/unwritten", H5T_NATIVE_DOUBLE, 2, (hsize_t[]){1000, 3}, filled));
+    H5Pclose(filled);
 
     hid_t type = text_type(64), here = H5P_DEFAULT, chunks = H5Pcreate(H5P_DATASET_CREATE),
           elsewhere = H5Pcreate(H5P_DATASET_CREATE);
@@ -102,22 +107,26 @@ static Result *make(void (*filler)(hid_t file))
 static void test_texts_and_sizes(void **state)
 {
     (void)state;
-    static const char *const refused[] = {"slender/texts", "slender/huge",  "slender/elsewhere",
-                                          "slender/four",  "slender/wide",  "slender/link",
-                                          "slender/soft",  "slender/status"};
+    static const char *const refused[] = {"slender/texts", "slender/huge",   "slender/elsewhere",
+                                          "slender/four",  "slender/wide",   "slender/link",
+                                          "slender/soft",  "slender/status", "slender/unit_texts"};
     long blocks = mem_live_count();
     Error err;
     Array array;
     Result *result = make(fill);
     for (size_t k = 0; k < sizeof refused / sizeof *refused; k++)
         if (result_read(result, refused[k], &array, &err)) fail_msg("%s is read", refused[k]);
-    assert_true(result_read(result, "slender/unit_texts", &array, &err));
+    assert_string_equal(err.text, "the unit of slender/unit_texts is no text");
+    assert_true(result_read(result, "slender/unwritten", &array, &err));
+    assert_true(array_count(&array) == 3000 && ((const double *)array.data)[2999] == 7);
+    array_clear(&array);
+    assert_true(result_read(result, "slender/three", &array, &err));
     assert_string_equal(array.unit, "");
     assert_true(((const double *)array.data)[2] == 3);
     array_clear(&array);
-    assert_false(result_read_as(result, "slender/unit_texts", ARRAY_FLOAT64, 2, 3, &array, &err));
-    assert_string_equal(err.text, "slender/unit_texts is not as slender writes it");
-    assert_false(result_read_as(result, "slender/unit_texts", ARRAY_INT32, 1, 3, &array, &err));
+    assert_false(result_read_as(result, "slender/three", ARRAY_FLOAT64, 2, 3, &array, &err));
+    assert_string_equal(err.text, "slender/three is not as slender writes it");
+    assert_false(result_read_as(result, "slender/three", ARRAY_INT32, 1, 3, &array, &err));
     result_close(result);
     assert_int_equal(mem_live_count(), blocks);
 }

@@ -278,6 +278,10 @@ static void test_modes(void **state)
     assert_true(journal_close(journal, &err));
     clean();
     expect_refusal(JOURNAL_RESUME, "there is no such run");
+    fclose(fopen(PATH, "w")); /* killed before its first commit */
+    expect_refusal(JOURNAL_RESUME, "is incomplete: its run ended before anything was saved; begin it anew");
+    expect_refusal(JOURNAL_READ, "is incomplete: its run ended before anything was saved; begin it anew");
+    clean();
 }
 
 /* What is no journal is never touched. */

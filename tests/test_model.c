@@ -59,6 +59,43 @@ static void test_values(void **state)
     assert_int_equal(mem_live_count(), blocks);
 }
 
+static void write_numbers(const char *path, const char *header, int count)
+{
+    FILE *file = fopen(path, "w");
+    assert_non_null(file);
+    fprintf(file, "%s\n", header);
+    for (int k = 1; k <= count; k++) fprintf(file, "%d\n", k);
+    fclose(file);
+}
+
+/* The headers of tables say units, each of its own key. */
+static void test_table_units(void **state)
+{
+    (void)state;
+    write_numbers("model_young.csv", "E [MPa]", 16);
+    write_numbers("model_thickness.csv", "h [mm]", 16);
+    write_numbers("model_density.csv", "rho (g/cm^3)", 16);
+    Built b =
+        scene_build(mem_text("slender: 1\njob: design\nshell:\n  mesh: {shape: sheet, size: [40 mm, 20 mm], "
+                             "cells: [4, 2]}\n  thickness: {file: model_thickness.csv}\n"
+                             "  density: {file: model_density.csv}\n  young: 1 Pa\n  poisson: 0.3\n"
+                             "target: {formula: [x, y, z]}\n"
+                             "design: {unknowns: {young: {start: {file: model_young.csv}}}, objectives: "
+                             "[{target: 1}]}\n"));
+    const Shell *shell = shell_of(&b);
+    const double *p = params_of(&b, 0, 0);
+    assert_int_equal(shell->mesh->face_count, 16);
+    for (int f = 0; f < 16; f++) {
+        assert_true(fabs(p[shell->young + f] - 1e6 * (f + 1)) < 1e-6);
+        assert_true(fabs(p[shell->face_thickness + f] - 1e-3 * (f + 1)) < 1e-15);
+        assert_true(fabs(p[shell->face_density + f] - 1e3 * (f + 1)) < 1e-9);
+    }
+    clear(&b);
+    unlink("model_young.csv");
+    unlink("model_thickness.csv");
+    unlink("model_density.csv");
+}
+
 /* N in all, N/m along the boundary, N/m^2 of rest area. */
 static void test_loads(void **state)
 {
@@ -328,16 +365,12 @@ static void test_scale(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_scale),
-                                       cmocka_unit_test(test_nested_groups),
-                                       cmocka_unit_test(test_values),
-                                       cmocka_unit_test(test_loads),
-                                       cmocka_unit_test(test_motion),
-                                       cmocka_unit_test(test_fields),
-                                       cmocka_unit_test(test_timed),
-                                       cmocka_unit_test(test_unknowns),
-                                       cmocka_unit_test(test_rows_of_unknowns),
-                                       cmocka_unit_test(test_targets),
-                                       cmocka_unit_test(test_remanence)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_scale),    cmocka_unit_test(test_nested_groups),
+        cmocka_unit_test(test_values),   cmocka_unit_test(test_table_units),
+        cmocka_unit_test(test_loads),    cmocka_unit_test(test_motion),
+        cmocka_unit_test(test_fields),   cmocka_unit_test(test_timed),
+        cmocka_unit_test(test_unknowns), cmocka_unit_test(test_rows_of_unknowns),
+        cmocka_unit_test(test_targets),  cmocka_unit_test(test_remanence)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -51,6 +51,26 @@ static void test_counts(void **state)
     clear(&on);
 }
 
+/* Load steps that are frames are stored, each of each stage: the result of all of them is in memory. */
+static void test_frames(void **state)
+{
+    (void)state;
+    static const char *const steps[] = {"100", "{count: 100, frames: true}", "{count: 10000, frames: true}"};
+    Prediction r[3];
+    for (int k = 0; k < 3; k++) {
+        char *lines = mem_format("sequence: {flux_density: {from: [0, 0, 0], to: [0, 0, 1], count: "
+                                 "1000}}\nload_steps: %s\n",
+                                 steps[k]);
+        Built b = build("hinge", 4, 2, lines);
+        mem_free(lines);
+        r[k] = predict(b.model, &b.scene);
+        clear(&b);
+    }
+    assert_true(r[0].iterations == r[1].iterations);
+    assert_true(r[1].end > 100 && r[1].bytes - r[0].bytes > 0.4e9 && r[0].end < 3);
+    assert_true(r[2].bytes > 30e9 && r[2].end > 50 * r[1].end);
+}
+
 /* within: factors on numbers and bytes, and on flops. */
 static void check_built(Built b, const char *what, const double within[2])
 {
@@ -106,6 +126,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test_teardown(test_small, nothing_leaks),
                                        cmocka_unit_test_teardown(test_counts, nothing_leaks),
+                                       cmocka_unit_test_teardown(test_frames, nothing_leaks),
                                        cmocka_unit_test_teardown(test_law, nothing_leaks),
                                        cmocka_unit_test_teardown(test_small_parts, nothing_leaks)};
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -358,6 +358,31 @@ static void test_load_steps(void **state)
     }
 }
 
+/* A step that fails ends its case: the part of the loads, these loads, and the forces and energies are of one state. */
+static void test_failed_step(void **state)
+{
+    (void)state;
+    SlenderError err;
+    char *text =
+        mem_text(SHEET "  gravity: [0, 0, -9.81]\njob: equilibrium\nfix: [{group: root, clamp: true}]\n"
+                       "sequence: [{gravity: [0, 0, 0]}, {gravity: [0, 0, -1.0e+6]}]\n"
+                       "load_steps: {count: 4, frames: true}\nsolver: {max_iterations: 5}\n");
+    for (int again = 0; again < 2; again++) {
+        Result *result = run_to(slender_scene_parse(text, NULL, 0, &err), &err, again, SLENDER_NOT_CONVERGED);
+        Array part = read_all(result, "slender/stages/load_part"),
+              gravity = read_all(result, "slender/stages/gravity"),
+              stage = read_all(result, "slender/stages/support_force"),
+              last = read_all(result, "slender/final/support_force");
+        assert_int_equal(part.dims[0], 5); /* the first of the second stage is its last */
+        assert_true(numbers(&part)[4] == 0.25 && numbers(&gravity)[3 * 4 + 2] == -0.25e6);
+        for (int i = 0; i < 3; i++) assert_true(numbers(&stage)[3 * 4 + i] == numbers(&last)[i]);
+        Array *read[] = {&part, &gravity, &stage, &last};
+        for (int i = 0; i < 4; i++) array_clear(read[i]);
+        result_close(result);
+    }
+    mem_free(text);
+}
+
 /* Stops a run after so many frames. */
 static void count_frame(void *self, double time, int points, const double *place)
 {
@@ -425,6 +450,6 @@ int main(void)
         cmocka_unit_test(test_forces),        cmocka_unit_test(test_motion),
         cmocka_unit_test(test_design),        cmocka_unit_test(test_ranges),
         cmocka_unit_test(test_stage_columns), cmocka_unit_test(test_load_steps),
-        cmocka_unit_test(test_stopped_steps)};
+        cmocka_unit_test(test_failed_step),   cmocka_unit_test(test_stopped_steps)};
     return cmocka_run_group_tests(tests, clean, clean);
 }

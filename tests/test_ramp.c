@@ -71,6 +71,7 @@ static void test_not_reached(void **state)
     assert_true(info.newton.status == NEWTON_MAX_ITERATIONS && info.reached < 1);
     assert_true(info.refused == 0 &&
                 info.newton.iterations == 1); /* falling: half a load would not be more */
+    assert_true(info.part == 1);              /* the iterate is under what was tried */
     body_clear(&s);
 }
 
@@ -87,9 +88,35 @@ static void test_astray(void **state)
     body_clear(&s);
 }
 
+static bool move_some(void *self, double from, double to, double *x)
+{
+    (void)self, (void)from, (void)x;
+    return to < 0.6;
+}
+
+/* What gets no further is left under the loads that it is in equilibrium with. */
+static void test_stuck(void **state)
+{
+    (void)state;
+    Body stuck = make_strip(), there = make_strip();
+    double *p = mem_alloc((size_t)stuck.shell->params.size, sizeof *p);
+    RampDef def = ramp_default();
+    def.steps = 4, def.move = move_some;
+    RampInfo info = ramp_solve(stuck.sys, &stuck.shell->params, &def, NULL, stuck.p, &stuck.state);
+    assert_true(!ramp_reached(info.newton.status) && info.reached >= 0.5 && info.part == info.reached);
+    ramp_loads(&stuck.shell->params, NULL, stuck.p, info.part, p);
+    def = ramp_default();
+    info = ramp_solve(there.sys, &there.shell->params, &def, NULL, p, &there.state);
+    assert_true(info.newton.status == NEWTON_CONVERGED && info.part == 1);
+    assert_true(farthest(&stuck, &there) < 1e-9);
+    mem_free(p);
+    body_clear(&stuck);
+    body_clear(&there);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_same_end), cmocka_unit_test(test_not_reached),
-                                       cmocka_unit_test(test_astray)};
+                                       cmocka_unit_test(test_astray), cmocka_unit_test(test_stuck)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -155,7 +155,7 @@ static void refuses_what_makes_no_sense(void **state)
                    "box: its first corner must not exceed its second, but y is 2 and 1");
     assert_refuses(mesh, (Selection){.has_ball = true}, "ball: its radius must be positive, not 0");
     assert_refuses(mesh, (Selection){.group = "tail"},
-                   "group: there is no group 'tail'; the mesh has root, tip, top, side");
+                   "there is no group 'tail'; the mesh has root, tip, top, side");
     assert_refuses(mesh, (Selection){.vertices = {2, (int[]){3, 15}}},
                    "vertices[1]: there is no vertex 15; the mesh has vertices 0 to 14");
 }
@@ -173,7 +173,7 @@ static void lists_are_in_the_files_numbering(void **state)
     assert_selects(mesh, (Selection){.vertices = {2, (int[]){3, 1}}}, (int[]){0, 2}, 2);
     assert_refuses(mesh, (Selection){.vertices = {1, (int[]){0}}},
                    "vertices[0]: vertex 0 is in no face and was removed");
-    assert_refuses(mesh, (Selection){.group = "tail"}, "group: there is no group 'tail'; the mesh has none");
+    assert_refuses(mesh, (Selection){.group = "tail"}, "there is no group 'tail'; the mesh has none");
     mesh_destroy(mesh);
 }
 

@@ -61,15 +61,26 @@ void rod_properties_clear(RodProperties *properties)
     }
 }
 
+/* Linear between its rows, constant beyond them: so are all values above 0 where these are. */
+static bool check_rows(const Build *b, Key at, const RodAlong *along)
+{
+    const Table *table = &along->table;
+    for (int row = 0; row < table->rows; row++)
+        if (!(table->values[2 * row + 1] > 0))
+            return yaml_refuse(b->file, at.text, "%s:%d: the value is %g; it must be more than 0",
+                               along->from->file, table->line[row], table->values[2 * row + 1]);
+    return true;
+}
+
 bool rod_properties_check(const RodProperties *properties, const Build *b, double length)
 {
     bool ok = true;
     for (int k = 0; k < ROD_ALONGS; k++) {
         const RodAlong *along = &properties->along[k];
+        Key at = key("%s.file", rows[k].key);
         if (along->table.rows)
-            ok = rod_table_check(b, key("%s.file", rows[k].key).text, along->from->file, length,
-                                 &along->table) &&
-                 ok;
+            ok = rod_table_check(b, at.text, along->from->file, length, &along->table) &&
+                 check_rows(b, at, along) && ok;
     }
     return ok;
 }

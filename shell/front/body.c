@@ -22,10 +22,10 @@ static double *base_params(Model *model, const Scene *scene, const Build *b, con
     double *p = params_vector(model->params);
     shell_default_params(shell, p);
     const ShellScene *s = shell_scene(scene);
-    bool ok = build_numbers(b, key("shell.young"), 2, &s->young, p + shell->young);
-    ok = build_numbers(b, key("shell.density"), 2, &s->density, p + shell->face_density) && ok;
+    bool ok = build_numbers(b, key("shell.young"), 2, "Pa", &s->young, p + shell->young);
+    ok = build_numbers(b, key("shell.density"), 2, "kg/m^3", &s->density, p + shell->face_density) && ok;
     memcpy(p + shell->face_thickness, thickness, (size_t)shell->mesh->face_count * sizeof *p);
-    ok = build_numbers(b, key("shell.fold"), 1, &s->fold, p + shell->fold) && ok;
+    ok = build_numbers(b, key("shell.fold"), 1, "", &s->fold, p + shell->fold) && ok;
     ok = build_vectors(b, key("shell.magnetization"), 2, &s->magnetization, p + shell->magnetization) && ok;
     memcpy(p + shell->gravity, s->gravity, sizeof s->gravity);
     p[shell->damping] = s->damping;
@@ -96,7 +96,7 @@ static bool create(Model *model, const Scene *scene, YamlFile *file)
     bool ok = model_read_flux(model, &b, scene, &fields);
     Shell *shell = model->self = shell_create(mesh, &fields);
     double *thickness = mem_alloc((size_t)mesh->face_count, sizeof *thickness);
-    bool thick = build_numbers(&b, key("shell.thickness"), 2, &shell_scene(scene)->thickness, thickness);
+    bool thick = build_numbers(&b, key("shell.thickness"), 2, "m", &shell_scene(scene)->thickness, thickness);
     shell->thickness = thick ? largest_of(thickness, mesh->face_count) : mesh_mean_edge(mesh);
     set_material(shell, shell_scene(scene));
     model->mesh = mesh;

@@ -14,7 +14,7 @@ static double *base_params(Model *model, const Scene *scene, const Build *b)
     double *p = params_vector(model->params);
     solid_default_params(solid, p);
     const SolidScene *s = solid_scene(scene);
-    bool ok = build_numbers(b, key("solid.young"), 3, &s->young, p + solid->young);
+    bool ok = build_numbers(b, key("solid.young"), 3, "Pa", &s->young, p + solid->young);
     ok =
         build_vectors(b, key("solid.magnetization"), 3, &s->magnetization, p + solid->volume_magnetization) &&
         ok;
@@ -23,7 +23,7 @@ static double *base_params(Model *model, const Scene *scene, const Build *b)
                            p + solid->magnetization) &&
              ok;
     if (solid->film)
-        ok = build_numbers(b, key("solid.skin.young"), 2, s->skin->young, p + solid->skin_young) && ok;
+        ok = build_numbers(b, key("solid.skin.young"), 2, "Pa", s->skin->young, p + solid->skin_young) && ok;
     for (int f = 0; solid->skin_on && f < b->mesh->face_count; f++) /* what is not there is not shown */
         if (!solid->skin_on[f]) memset(p + solid->magnetization + 3 * f, 0, 3 * sizeof *p);
     memcpy(p + solid->gravity, s->gravity, sizeof s->gravity);
