@@ -184,7 +184,7 @@ static bool read_contours(const SplineScene *scene, YamlFile *file, const Spline
     const ContoursScene *from = scene->contours;
     Key at = key("spline.contours");
     if (!from) return true;
-    PenScene given = {.name = "contours", .color = from->color, .width = from->width, .opaque = from->opaque};
+    PenScene given = {"contours", from->color ? from->color : "black", from->width, .opaque = from->opaque};
     pen->name = mem_text(given.name);
     return read_pen(scene, file, page, &given, at, pen) && check_seen(file, paper, pen, at);
 }
