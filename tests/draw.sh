@@ -47,7 +47,7 @@ expect 4 "$program" export fine.vtkhdf -o x.svg --split "1 um"; says "files, and
 expect 2 "$program" export out/a.vtkhdf -o x.csv --dataset metrics/ink --split pen; says "split is for a drawing"
 # How the pen is lifted is in the files, in the time, and in what is exported later.
 for lift in 0.3 9; do
-    expect 0 "$program" run "$scene" --quiet --no-picture -o "lift$lift" --set spline.rounds=0 --set output.gcode="lift$lift.gcode" --set output.gcode_servo=s.nc \
+    expect 0 "$program" run "$scene" --quiet --no-picture -o "lift$lift" --force --set spline.rounds=0 --set output.gcode="lift$lift.gcode" --set output.gcode_servo=s.nc \
         --set "spline.plotter={lift: $lift s, z: {up: 2 mm, down: -1 mm, speed: 1 mm/s}, servo: {up: M3 S90, down: M3 S10}}"
 done
 grep -q "^G1 Z-1 F60$" lift0.3.gcode || { echo "no z at its speed"; bad=1; }
@@ -195,6 +195,15 @@ same it-000005.svg dot.pgm
 for other in "output.every=0" "output.svg=it-5.svg" "output.svg=at-000010.svg"; do
     expect 0 "$program" run picture.yaml --quiet --no-picture -o it --force --set output.every=5 --set $other
 done
+# Without a result they are somebody else's, as other files are; with another one those of the run before go.
+for file in at-000010.svg at.gcode; do
+    cp dot.pgm $file
+    expect 4 "$program" run picture.yaml --quiet --no-picture -o at --set output.every=5 --set output.gcode=at.gcode; says "'$file' is there, and no 'at.vtkhdf'"
+    same $file dot.pgm; rm $file
+done
+expect 0 "$program" run picture.yaml --quiet --no-picture -o at --set output.every=5; exists at-000005.svg
+expect 0 "$program" run picture.yaml --quiet --no-picture -o at --force --set output.svg=other.svg
+for file in at.svg at-*.svg; do [ ! -e "$file" ] || { echo "$file of another run stays"; bad=1; }; done
 expect 2 "$program" run picture.yaml --threads 2x
 
 # Where ink is asked for there are strokes: a narrow strip, no direction anywhere, too few or too long strokes at the start.
