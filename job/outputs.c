@@ -1,5 +1,6 @@
 #include "job/outputs.h"
 #include "base/memory.h"
+#include "io/canvas.h"
 #include "io/path.h"
 #include "io/replace.h"
 #include "io/safe_file.h"
@@ -7,7 +8,6 @@
 #include "model/stored.h"
 #include <dirent.h>
 #include <string.h>
-#include <strings.h>
 #include <unistd.h>
 
 #define PROBE_TABLE "_probes.csv" /* RESULT_probes.csv */
@@ -136,11 +136,8 @@ static bool check_once(const OutputFile *files, int file, const OwnFiles *own, E
 /* The formats of canvas.h, before the work. */
 static bool check_picture(const char *path, Error *err)
 {
-    static const char *const endings[] = {".png", ".svg", ".pdf"};
-    const char *dot = strrchr(path, '.');
-    for (int k = 0; k < 3; k++)
-        if (dot && !strcasecmp(dot, endings[k])) return true;
-    return error_set(err, "the picture '%s' must be a .png, .svg or .pdf", path);
+    return canvas_check_path(path, NULL) ||
+           error_set(err, "the picture '%s' must be a .png, .svg or .pdf", path);
 }
 
 static bool check_files(const OutputFile *files, const OwnFiles *own, const Scene *scene, const char *path,

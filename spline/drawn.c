@@ -199,8 +199,9 @@ bool drawn_read(Result *result, Drawn *drawn, Error *err)
     *drawn = (Drawn){0};
     if (!drawn_has(result)) return error_set(err, "the result has no drawing");
     bool ok = read_page(result, drawn, err) && read_plotter(result, &drawn->plotter, err) &&
-              read_profile(result, &drawn->profile, err) && read_pens(result, drawn, err) && read_paper(result, drawn, err) &&
-              read_picture(result, &drawn->picture, err) && read_strokes(result, drawn, &drawn->strokes, err);
+              read_profile(result, &drawn->profile, err) && read_pens(result, drawn, err) &&
+              read_paper(result, drawn, err) && read_picture(result, &drawn->picture, err) &&
+              read_strokes(result, drawn, &drawn->strokes, err);
     if (ok)
         drawn->plot = spline_plot(&drawn->strokes, &drawn->page, drawn->pens, drawn->pen_count, drawn->paper);
     return ok;
@@ -236,6 +237,16 @@ static bool profile_of(const Drawn *drawn, const char *language, PlotProfile *pr
     return own      ? plot_profile_parse("spline/profile", drawn->profile, profile, err)
            : *owned ? plot_profile_read(language, profile, err)
                     : plot_profile(language, profile, err);
+}
+
+bool drawn_check_language(const Drawn *drawn, const char *language, Error *err)
+{
+    PlotProfile profile;
+    bool owned;
+    if (!strcmp(language, "svg")) return true;
+    bool ok = profile_of(drawn, language, &profile, &owned, err);
+    if (owned) plot_profile_clear(&profile);
+    return ok;
 }
 
 bool drawn_write(const Drawn *drawn, const char *language, const char *path, Error *err)
