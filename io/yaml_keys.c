@@ -1,4 +1,5 @@
 /* Keys of a mapping that its table does not have. */
+#include "base/memory.h"
 #include "io/yaml_load.h"
 #include <stdio.h>
 #include <string.h>
@@ -23,11 +24,12 @@ static bool unknown_key(Load *load, const YamlTable *table, const Node *node, in
     Node at = {
         .line = node->key_place[i][0], .column = node->key_place[i][1], .origin = node->items[i]->origin};
     load_list_keys(table, known, sizeof known);
-    const char *where = load->path[0] ? load->path : "the scene";
+    char *where = load_where(load);
     if (near)
         yaml_error(load->file, &at, "%s has no key '%.60s'; did you mean '%s'?", where, node->keys[i], near);
     else
         yaml_error(load->file, &at, "%s has no key '%.60s'; its keys are %s", where, node->keys[i], known);
+    mem_free(where);
     return false;
 }
 

@@ -381,17 +381,17 @@ bool yaml_load(YamlFile *file, const YamlTable *table, void *scene)
 {
     memset(scene, 0, table->size);
     if (!file->root && !file->error_count)
-        yaml_error_at(file, 1, 1, "the file is empty; a scene has the key `slender: 1`");
+        yaml_error_at(file, 1, 1, "the file is empty; a %s has the key `slender: 1`", table->name);
     if (!file->root) return false;
     if (file->root->kind != NODE_MAP) {
-        yaml_error(file, file->root, "a scene is a mapping with the key `slender: 1`");
+        yaml_error(file, file->root, "a %s is a mapping with the key `slender: 1`", table->name);
         return false;
     }
     const Node *version = node_find(file->root, VERSION_KEY);
     if (!version || version->kind != NODE_SCALAR || strcmp(version->text, "1"))
         yaml_error(file, version ? version : file->root,
-                   "a scene must have the key `slender: 1`, the format's version");
-    Load load = {.file = file};
+                   "a %s must have the key `slender: 1`, the format's version", table->name);
+    Load load = {.file = file, .name = table->name};
     load_table(&load, table, file->root, scene);
     if (!file->error_count) return true;
     yaml_clear(table, scene);

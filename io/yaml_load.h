@@ -6,15 +6,19 @@
 /* At the root, of the format's version; no row of a table. */
 #define VERSION_KEY "slender"
 
-/* Where loading stands: the key path, for sentences. */
+/* Where loading stands: the key path, for sentences, and what the root is called. */
 typedef struct Load {
     YamlFile *file;
+    const char *name;
     char path[512];
 } Load;
 
 /* Goes down to a key or (key NULL) an index; returns what load_leave needs. */
 size_t load_enter(Load *load, const char *key, int index);
 void load_leave(Load *load, size_t length);
+
+/* The key path, or "the scene" at the root; the caller frees. */
+char *load_where(const Load *load);
 
 /* Adds "key what" at the node; returns false. */
 bool load_wrong(Load *load, const Node *at, const char *what);

@@ -135,7 +135,7 @@ bool row_use_is_sound(const YamlTable *root, const YamlTable *table, const YamlF
 /* Does the value say nothing but the default? */
 static bool is_default(const Place *at, const YamlField *row, const Node *item)
 {
-    Load load = {.file = at->file};
+    Load load = {.file = at->file, .name = at->root->name};
     void *written = mem_alloc(1, at->table->size), *fallback = mem_alloc(1, at->table->size);
     load_row_alone(&load, row, item, written);
     load_row_alone(&load, row, NULL, fallback);

@@ -26,9 +26,16 @@ void load_leave(Load *load, size_t length)
     load->path[length] = 0;
 }
 
+char *load_where(const Load *load)
+{
+    return load->path[0] ? mem_text(load->path) : mem_format("the %s", load->name);
+}
+
 bool load_wrong(Load *load, const Node *at, const char *what)
 {
-    yaml_error(load->file, at, "%s %s", load->path[0] ? load->path : "the scene", what);
+    char *where = load_where(load);
+    yaml_error(load->file, at, "%s %s", where, what);
+    mem_free(where);
     return false;
 }
 

@@ -234,7 +234,7 @@ static bool profile_of(const Drawn *drawn, const char *language, PlotProfile *pr
         *owned = false;
         return error_set(err, "the result has no profile of its own: its scene names none");
     }
-    return own      ? plot_profile_parse("spline/profile", drawn->profile, profile, err)
+    return own ? plot_profile_parse("spline/profile", drawn->profile, strlen(drawn->profile), profile, err)
            : *owned ? plot_profile_read(language, profile, err)
                     : plot_profile(language, profile, err);
 }
