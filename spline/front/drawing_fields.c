@@ -273,6 +273,7 @@ static bool read_contours(const Reader *r, Drawing *d)
 {
     SplineField tone;
     if (!r->scene->contours) return true;
+    if (!drawing_check_levels(r->scene->contours, r->build.file)) return false;
     SplineEdgeDef def = drawing_contours_def(d, r->scene->contours);
     if (!read_open_tone(r, &d->page, def.detail, &tone)) return false;
     drawing_find_contours(d, r->scene->contours, &def, &tone);
