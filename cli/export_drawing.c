@@ -19,15 +19,39 @@ bool drawing_split_take(void *self, const char *text)
     return true;
 }
 
+/* Of the endings a language, and the others of it. */
+static const struct {
+    const char *ending, *language, *all;
+} endings[] = {{".svg", "svg", ".svg"},
+               {".gcode", "gcode", ".gcode, .ngc or .nc"},
+               {".ngc", "gcode", ".gcode, .ngc or .nc"},
+               {".nc", "gcode", ".gcode, .ngc or .nc"},
+               {".hpgl", "hpgl", ".hpgl or .plt"},
+               {".plt", "hpgl", ".hpgl or .plt"}};
+
+enum { ENDINGS = sizeof endings / sizeof *endings };
+
 static const char *usual_language(const char *path)
 {
-    static const struct {
-        const char *ending, *language;
-    } endings[] = {{".svg", "svg"},  {".gcode", "gcode"}, {".ngc", "gcode"},
-                   {".nc", "gcode"}, {".hpgl", "hpgl"},   {".plt", "hpgl"}};
-    for (size_t k = 0; k < sizeof endings / sizeof *endings; k++)
+    for (int k = 0; k < ENDINGS; k++)
         if (path_has_ending(path, endings[k].ending)) return endings[k].language;
     return NULL;
+}
+
+static bool is_kind_of(const char *language, const char *usual)
+{
+    return !strcmp(language, usual) || (!strcmp(language, "gcode_servo") && !strcmp(usual, "gcode"));
+}
+
+/* No language under another one's ending; a profile's words are any but SVG's. */
+static bool check_ending(const char *language, const char *usual, const char *path, Error *err)
+{
+    const char *all = NULL;
+    for (int k = 0; k < ENDINGS; k++)
+        if (is_kind_of(language, endings[k].language)) all = endings[k].all;
+    if (all ? is_kind_of(language, usual) : strcmp(usual, "svg") != 0) return true;
+    return error_set(err, "%s: --plotter %s is for a file of another ending: %s", path, language,
+                     all ? all : ".gcode, .ngc, .nc, .hpgl or .plt");
 }
 
 /* ---- Several files ---- */
@@ -52,13 +76,16 @@ static void say_part(const char *path, const Plot *plot, const Plotter *plotter)
     mem_free(pens);
 }
 
-static bool write_parts(const Drawn *drawn, const PlotParts *parts, const char *language, const char *path,
-                        bool (*check)(void *self, const char *path, Error *err), void *self, Error *err)
+static RunStatus write_parts(const Drawn *drawn, const PlotParts *parts, const char *language,
+                             const char *path, bool (*check)(void *self, const char *path, Error *err),
+                             void *self, Error *err)
 {
     bool ok = parts->count > 0 || error_set(err, "the drawing has no strokes to --split");
-    ok = ok && (parts->count <= FILES_MOST ||
-                error_set(err, "--split would make %d files, and %d are the most: say more ink for each",
-                          parts->count, FILES_MOST));
+    if (parts->count > FILES_MOST) {
+        error_set(err, "--split would make %d files, and %d are the most: say more ink for each",
+                  parts->count, FILES_MOST);
+        return RUN_USAGE;
+    }
     for (int pass = 0; pass < 2; pass++) /* no file is written unless all may be */
         for (int k = 0; ok && k < parts->count; k++) {
             char *name = path_numbered(path, k + 1);
@@ -67,7 +94,16 @@ static bool write_parts(const Drawn *drawn, const PlotParts *parts, const char *
             if (ok && pass) say_part(name, &parts->plots[k], &drawn->plotter);
             mem_free(name);
         }
-    return ok;
+    return ok ? RUN_DONE : RUN_CANNOT_WRITE;
+}
+
+static RunStatus write_split(const Drawn *drawn, const char *language, DrawingSplit split, const char *path,
+                             bool (*check)(void *self, const char *path, Error *err), void *self, Error *err)
+{
+    PlotParts parts = split.pens ? plot_split_pens(&drawn->plot) : plot_split_ink(&drawn->plot, split.ink);
+    RunStatus status = write_parts(drawn, &parts, language, path, check, self, err);
+    plot_parts_clear(&parts);
+    return status;
 }
 
 RunStatus export_drawing(Result *result, const char *language, DrawingSplit split, const char *path,
@@ -75,7 +111,6 @@ RunStatus export_drawing(Result *result, const char *language, DrawingSplit spli
 {
     Drawn drawn = {0};
     const char *usual = usual_language(path);
-    bool ok = true;
     if (!usual) {
         error_set(
             err,
@@ -84,14 +119,15 @@ RunStatus export_drawing(Result *result, const char *language, DrawingSplit spli
         return RUN_CANNOT_WRITE;
     }
     if (!language) language = usual;
-    RunStatus status = drawn_read(result, &drawn, err) ? RUN_DONE : RUN_REFUSED;
-    if (status == RUN_DONE && (split.pens || split.ink > 0)) {
-        PlotParts parts = split.pens ? plot_split_pens(&drawn.plot) : plot_split_ink(&drawn.plot, split.ink);
-        ok = write_parts(&drawn, &parts, language, path, check, self, err);
-        plot_parts_clear(&parts);
-    } else if (status == RUN_DONE) {
-        ok = drawn_write_plot(&drawn, &drawn.plot, language, path, err);
-    }
+    RunStatus status = RUN_CANNOT_WRITE;
+    if (!drawn_read(result, &drawn, err))
+        status = RUN_REFUSED;
+    else if (!drawn_check_language(&drawn, language, err) || !check_ending(language, usual, path, err))
+        status = RUN_USAGE;
+    else if (split.pens || split.ink > 0)
+        status = write_split(&drawn, language, split, path, check, self, err);
+    else if (drawn_write_plot(&drawn, &drawn.plot, language, path, err))
+        status = RUN_DONE;
     drawn_clear(&drawn);
-    return ok ? status : RUN_CANNOT_WRITE;
+    return status;
 }

@@ -5,6 +5,7 @@
 #include "io/result.h"
 #include "job/outputs.h"
 #include "model/stored.h"
+#include "view/animation.h"
 #include "view/show.h"
 #include <limits.h>
 #include <math.h>
@@ -130,10 +131,12 @@ int verb_picture(int argc, char **argv)
     if (width) def.width = width;
     Error err;
     char *picture;
+    animation = animation || (output && animation_check_path(output, NULL));
+    if (output && !(animation ? animation_check_path : canvas_check_path)(output, &err))
+        return verb_fail(RUN_USAGE, err.text);
     RunStatus status = prepare(path, output, animation, &picture, &err);
     if (status != RUN_DONE) return verb_fail(status, err.text);
-    const char *ending = strrchr(picture, '.');
-    if (animation || (ending && !strcmp(ending, ".webp"))) {
+    if (animation) {
         def.seconds = seconds;
         if (!width) def.width = 800; /* pixels; a page of paper's worth is too much for a moving one */
     }

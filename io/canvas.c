@@ -106,14 +106,18 @@ static void disable_hinting(cairo_t *cairo)
     cairo_font_options_destroy(options);
 }
 
+bool canvas_check_path(const char *path, Error *err)
+{
+    return format_from_path(path) != FORMAT_COUNT ||
+           error_set(err,
+                     "%s: pictures are written as .png, .svg or .pdf; give the file one of these endings",
+                     path);
+}
+
 Canvas *canvas_create(const char *path, double width, double height, double resolution, Error *err)
 {
     Format format = format_from_path(path);
-    if (format == FORMAT_COUNT) {
-        error_set(err, "%s: pictures are written as .png, .svg or .pdf; give the file one of these endings",
-                  path);
-        return NULL;
-    }
+    if (!canvas_check_path(path, err)) return NULL;
     double pixels = format == FORMAT_PNG ? resolution : 1;
     bool fits = width >= 1 && height >= 1 && width <= MAX_POINTS && height <= MAX_POINTS &&
                 width * pixels <= CANVAS_MAX_SIDE && height * pixels <= CANVAS_MAX_SIDE;

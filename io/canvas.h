@@ -35,6 +35,9 @@ typedef struct TextStyle {
     bool upwards; /* turned by 90 degrees, to be read from the right; for vertical axes */
 } TextStyle;
 
+/* False and a sentence for another ending than .png, .svg or .pdf, any case. */
+bool canvas_check_path(const char *path, Error *err);
+
 /* The format follows path's ending: .png, .svg or .pdf, any case. NULL and a sentence for another ending, or
  * for a page that is not 1..10000 pt (or, as PNG, 32000 pixels) wide and high. */
 Canvas *canvas_create(const char *path, double width, double height, double resolution, Error *err);

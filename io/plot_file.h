@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/vec3.h"
 #include "io/colormap.h"
+#include <stddef.h>
 
 /* Curve k has the points [start[k]] to [start[k+1] - 1]: 3n + 1 control points of n >= 1 cubic Bezier curves
  * end to end. */
@@ -103,7 +104,7 @@ bool plot_profile(const char *name, PlotProfile *profile, Error *err);
  * line where it is refused. The profile owns its words then: clear it. */
 bool plot_profile_read(const char *path, PlotProfile *profile, Error *err);
 /* The same of such a file's text; `path` is for the sentence. */
-bool plot_profile_parse(const char *path, const char *text, PlotProfile *profile, Error *err);
+bool plot_profile_parse(const char *path, const char *text, size_t length, PlotProfile *profile, Error *err);
 void plot_profile_clear(PlotProfile *profile);
 
 /* Is a place of the paper (mm, as in PlotLayer) within the limits? */

@@ -151,13 +151,14 @@ bool plot_words_check(const char *words, Error *err)
     bool ok = true;
     for (const char *c = strchr(words, '{'); ok && c; c = strchr(c + 1, '{')) {
         const char *end = strchr(c, '}');
+        size_t length = strcspn(c, "} \n");
         ok =
             (end && add_word(&writer, c, (size_t)(end + 1 - c))) ||
             error_set(
                 err,
                 "\"%.*s\" stands for nothing; there are {x}, {y}, {feed}, {travel_feed}, {velocity}, {z_up}, "
                 "{z_down}, {z_feed}, {servo_up}, {servo_down}, {pause}, {half_pause}, {pen} and {name}",
-                (int)strcspn(c, "} \n") + 1, c);
+                (int)length + (c[length] == '}'), c);
     }
     mem_free(writer.text.text);
     return ok;

@@ -3,6 +3,7 @@
 #include "io/plot_text.h"
 #include "io/text.h"
 #include "base/memory.h"
+#include "base/plain.h"
 #include "io/yaml.h"
 #include <math.h>
 #include <stddef.h>
@@ -23,7 +24,7 @@ typedef struct ProfileFile {
         YAML_TEXT(ProfileFile, m), .required = must, .doc = what                                             \
     }
 static const YamlTable table = {
-    .name = "plotter",
+    .name = "profile",
     .size = sizeof(ProfileFile),
     .doc = "The words of a plotter's language, with what stands for numbers in braces (docs/line_art.md).",
     .fields = (const YamlField[]){
@@ -109,21 +110,26 @@ static PlotProfile profile_of(const ProfileFile *from)
     return to;
 }
 
-/* What is wrong with the file, without the lines of it that a report shows below the first sentence. */
-static bool refuse(YamlFile *file, Error *err)
+/* The first thing that is wrong with the file, in one line. */
+static bool refuse(const YamlFile *file, const char *path, Error *err)
 {
-    char *report = yaml_report(file);
-    error_set(err, "%.*s", (int)strcspn(report, "\n"), report);
-    mem_free(report);
+    int count;
+    const YamlError *first = yaml_errors(file, &count);
+    char *sentence = plain_text(first->sentence, "");
+    if (first->line)
+        error_set(err, "%s:%d:%d: %s", path, first->line, first->column, sentence);
+    else
+        error_set(err, "%s: %s", path, sentence);
+    mem_free(sentence);
     return false;
 }
 
-static bool take(YamlFile *file, PlotProfile *profile, Error *err)
+static bool take(YamlFile *file, const char *path, PlotProfile *profile, Error *err)
 {
     ProfileFile from;
     bool ok = (yaml_load(file, &table, &from) && check_place("travel", from.travel, file) &&
                check_place("line", from.line, file) && check_words(&from, file)) ||
-              refuse(file, err);
+              refuse(file, path, err);
     *profile = ok ? profile_of(&from) : (PlotProfile){0};
     yaml_clear(&table, &from);
     yaml_destroy(file);
@@ -132,12 +138,12 @@ static bool take(YamlFile *file, PlotProfile *profile, Error *err)
 
 bool plot_profile_read(const char *path, PlotProfile *profile, Error *err)
 {
-    return take(yaml_read(path), profile, err);
+    return take(yaml_read(path), path, profile, err);
 }
 
-bool plot_profile_parse(const char *path, const char *text, PlotProfile *profile, Error *err)
+bool plot_profile_parse(const char *path, const char *text, size_t length, PlotProfile *profile, Error *err)
 {
-    return take(yaml_parse(path, text, strlen(text)), profile, err);
+    return take(yaml_parse(path, text, length), path, profile, err);
 }
 
 bool plot_profile_lifts_by_z(const PlotProfile *profile)

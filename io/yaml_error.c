@@ -54,9 +54,10 @@ void yaml_error(YamlFile *file, const Node *at, const char *format, ...)
 
 void yaml_error_at(YamlFile *file, int line, int column, const char *format, ...)
 {
+    const Node at = {.line = line, .column = column, .origin = file->setting};
     va_list args;
     va_start(args, format);
-    store(file, line, column, false, format_text(format, args));
+    store_at(file, &at, format_text(format, args));
     va_end(args);
 }
 

@@ -26,7 +26,8 @@ struct YamlFile {
     size_t length;
     Node *root; /* NULL: not readable */
     int set_count;
-    char **set; /* assignments, borrowed by nodes */
+    char **set;          /* assignments, borrowed by nodes */
+    const char *setting; /* whose value is being read; NULL: the file is */
     int error_count, stored_count;
     YamlError *errors;
     bool *error_is_set; /* [stored] the sentence begins with --set, not with a place */

@@ -83,7 +83,9 @@ bool yaml_override(YamlFile *file, const char *assignment)
     if (!file->root) return false; /* its error is there already */
     if (!equal) return refuse(file, kept, "it must be key=value, e.g. shell.thickness=1mm");
     int before = file->error_count;
+    file->setting = kept;
     Node *value = tree_parse(file, equal + 1, strlen(equal + 1));
+    file->setting = NULL;
     if (!value) return file->error_count == before ? refuse(file, kept, "the value is missing") : false;
     mark(value, kept);
     char *key = mem_format("%.*s", (int)(equal - kept), kept);

@@ -40,8 +40,10 @@ static bool take_key(Builder *b, const yaml_event_t *event)
         return refuse(b, event, "merge keys (<<) are no part of YAML 1.2; write the keys out");
     int twin = node_index(map, text, strlen(text));
     if (twin >= 0) {
-        yaml_error_at(b->file, line, column, "the key '%.60s' is there twice; it is in line %d already", text,
-                      map->key_place[twin][0]);
+        char *where = b->file->setting ? mem_text("")
+                                       : mem_format("; it is in line %d already", map->key_place[twin][0]);
+        yaml_error_at(b->file, line, column, "the key '%.60s' is there twice%s", text, where);
+        mem_free(where);
         return false;
     }
     b->key[b->depth - 1] = mem_text(text);
@@ -147,7 +149,7 @@ static bool take(Builder *b, const yaml_event_t *event)
         return take_key(b, event);
     switch (event->type) {
     case YAML_DOCUMENT_START_EVENT:
-        return !b->root || refuse(b, event, "a scene file holds one document");
+        return !b->root || refuse(b, event, "the file must hold one document");
     case YAML_SCALAR_EVENT:
         return add_scalar(b, event);
     case YAML_ALIAS_EVENT:
@@ -179,7 +181,7 @@ static void syntax_error(YamlFile *file, const yaml_parser_t *parser, const char
     yaml_mark_t mark = parser->problem_mark;
     bool tab = has_tab(text, length, mark.line);
     if (parser->error == YAML_READER_ERROR)
-        yaml_error_at(file, 0, 0, "byte %zu: %s; a scene file is UTF-8 text", parser->problem_offset,
+        yaml_error_at(file, 0, 0, "byte %zu: %s; the file must be UTF-8 text", parser->problem_offset,
                       parser->problem);
     else if (tab)
         yaml_error_at(file, (int)mark.line + 1, (int)mark.column + 1,

@@ -1,11 +1,13 @@
 #include "job/outputs.h"
 #include "base/memory.h"
+#include "io/canvas.h"
 #include "io/path.h"
 #include "io/replace.h"
 #include "io/safe_file.h"
 #include "job/probe_table.h"
+#include "model/stored.h"
+#include <dirent.h>
 #include <string.h>
-#include <strings.h>
 #include <unistd.h>
 
 #define PROBE_TABLE "_probes.csv" /* RESULT_probes.csv */
@@ -134,11 +136,8 @@ static bool check_once(const OutputFile *files, int file, const OwnFiles *own, E
 /* The formats of canvas.h, before the work. */
 static bool check_picture(const char *path, Error *err)
 {
-    static const char *const endings[] = {".png", ".svg", ".pdf"};
-    const char *dot = strrchr(path, '.');
-    for (int k = 0; k < 3; k++)
-        if (dot && !strcasecmp(dot, endings[k])) return true;
-    return error_set(err, "the picture '%s' must be a .png, .svg or .pdf", path);
+    return canvas_check_path(path, NULL) ||
+           error_set(err, "the picture '%s' must be a .png, .svg or .pdf", path);
 }
 
 static bool check_files(const OutputFile *files, const OwnFiles *own, const Scene *scene, const char *path,
@@ -181,6 +180,29 @@ bool outputs_check(const Scene *scene, const char *path, const char *result, boo
     return ok;
 }
 
+/* ---- Files that are there already ---- */
+
+static bool makes_iterations(const Scene *scene)
+{
+    return scene_body(scene)->ops->write && scene->output.every > 0;
+}
+
+/* Visits the drawings of iterations that stand by that name, until a visit says false. */
+static void visit_iterations(const char *base, bool (*visit)(void *self, const char *path), void *self)
+{
+    char *folder = replace_folder(base);
+    const char *before = strchr(base, '/') ? folder : "";
+    DIR *files = opendir(folder);
+    bool more = files != NULL;
+    for (struct dirent *file; more && (file = readdir(files));) {
+        char *path = mem_format("%s%s", before, file->d_name);
+        more = !is_iteration(path, base) || visit(self, path);
+        mem_free(path);
+    }
+    if (files) closedir(files);
+    mem_free(folder);
+}
+
 static bool check_new(const char *path, const char *result, Error *err)
 {
     return !path || access(path, F_OK) != 0 ||
@@ -190,21 +212,80 @@ static bool check_new(const char *path, const char *result, Error *err)
                      path, result);
 }
 
+/* Are they new? */
+typedef struct NewIterations {
+    const char *result;
+    bool ok;
+    Error *err;
+} NewIterations;
+
+static bool check_new_iteration(void *self, const char *path)
+{
+    NewIterations *new = self;
+    return new->ok = check_new(path, new->result, new->err);
+}
+
+static bool check_new_iterations(const char *result, Error *err)
+{
+    NewIterations new = {result, true, err};
+    char *base = path_without_ending(result, ".vtkhdf");
+    visit_iterations(base, check_new_iteration, &new);
+    mem_free(base);
+    return new.ok;
+}
+
 bool outputs_check_new(const Scene *scene, const char *result, bool picture, Error *err)
 {
-    enum { NAMED = 4 };
-    const OutputScene *output = &scene->output;
-    bool drawing = scene_body(scene)->ops->write && !output->svg;
-    char *names[NAMED] = {scene->probes_count ? path_of(result, NULL, PROBE_TABLE) : NULL,
-                          path_of(result, NULL, ".xdmf"), drawing ? path_of(result, NULL, ".svg") : NULL,
-                          picture && !output->png ? outputs_picture(scene, result) : NULL};
-    bool ok = true;
-    for (int k = 0; k < NAMED; k++) {
-        ok = ok && check_new(names[k], result, err);
-        mem_free(names[k]);
-    }
+    OutputFile files[FILES];
+    char *table = path_of(result, NULL, PROBE_TABLE), *sidecar = path_of(result, NULL, ".xdmf");
+    files_of(scene, result, files);
+    bool ok = (!scene->probes_count || check_new(table, result, err)) && check_new(sidecar, result, err);
+    for (int k = picture ? 0 : 1; k < FILES; k++) ok = ok && check_new(files[k].path, result, err);
+    ok = ok && (!makes_iterations(scene) || check_new_iterations(result, err));
+    clear_files(files);
+    mem_free(table);
+    mem_free(sidecar);
     return ok;
 }
+
+/* ---- Files of an earlier run ---- */
+
+/* Takes the path. */
+static void remove_old(const Scene *scene, char *path)
+{
+    if (!is_source(scene, path)) unlink(path);
+    mem_free(path);
+}
+
+static bool remove_iteration(void *scene, const char *path)
+{
+    remove_old(scene, mem_text(path));
+    return true;
+}
+
+static void remove_all_old(const Scene *scene, const Scene *old, const char *result)
+{
+    char *base = path_without_ending(result, ".vtkhdf");
+    if (old->probes_count) remove_old(scene, path_of(result, NULL, PROBE_TABLE));
+    if (scene_body(old)->ops->write && !old->output.svg) remove_old(scene, path_of(result, NULL, ".svg"));
+    if (makes_iterations(old)) visit_iterations(base, remove_iteration, (void *)scene);
+    mem_free(base);
+}
+
+void outputs_remove_old(const Scene *scene, const char *result)
+{
+    Scene old;
+    YamlFile *file;
+    Result *before = access(result, F_OK) == 0 ? result_open(result, NULL) : NULL;
+    if (!before) return;
+    bool known = stored_result_scene(before, &file, &old);
+    result_close(before);
+    if (known) remove_all_old(scene, &old, result);
+    yaml_clear(scene_table(), &old);
+    yaml_destroy(file);
+}
+
+/* ---- Writing ---- */
 
 static bool write_drawing(Run *run, Result *result, Error *err)
 {

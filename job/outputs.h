@@ -7,9 +7,13 @@
  * of them the scene of that path (NULL: of none) or a file that it names? Refused before the work, not after it. */
 bool outputs_check(const Scene *scene, const char *path, const char *result, bool picture, Error *err);
 
-/* Of a result that is not there yet: false and a sentence where one of them is, by the result's name: it is somebody else's.
- * Those that the scene names are its own. */
+/* Of a result that is not there yet: false and a sentence where one of them is, or a drawing of an iteration: it is
+ * somebody else's. */
 bool outputs_check_new(const Scene *scene, const char *result, bool picture, Error *err);
+
+/* Removes what the run that left the result has put beside it by its name: the table of probes and drawings, but for files
+ * that the scene, which takes its place, is made of. Pictures stay, and files that a scene named. */
+void outputs_remove_old(const Scene *scene, const char *result);
 
 /* False and a sentence where what is to be written is the input (NULL: there is none), or one of the files that the scene names
  * (NULL: none). */

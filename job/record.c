@@ -346,6 +346,7 @@ static RunStatus open_and_run(const RecordDef *def, Run *run, Error *err)
         (def->journal != JOURNAL_NEW || check_earlier(run, journal, def->picture, err)))
         run->journal = journal_open(def->in_memory ? NULL : journal, def->journal, err);
     if (run->journal) {
+        if (def->journal == JOURNAL_FORCE) outputs_remove_old(def->scene, run->result);
         warn_sidecar(run);
         say_world(run);
         run_share_threads(run, 1);

@@ -9,12 +9,13 @@ bool stored_scene(const Array *text, YamlFile **file, Scene *scene)
     return yaml_load(*file, scene_table(), scene);
 }
 
-void stored_result_scene(Result *result, YamlFile **file, Scene *scene)
+bool stored_result_scene(Result *result, YamlFile **file, Scene *scene)
 {
     Array text;
     *scene = (Scene){0};
     *file = NULL;
-    if (!result_read(result, "slender/scene", &text, NULL)) return;
-    stored_scene(&text, file, scene);
+    if (!result_read(result, "slender/scene", &text, NULL)) return false;
+    bool known = stored_scene(&text, file, scene);
     array_clear(&text);
+    return known;
 }

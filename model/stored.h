@@ -7,4 +7,4 @@
 bool stored_scene(const Array *text, YamlFile **file, Scene *scene);
 
 /* The same of a result; an empty scene where it keeps none that can be read. */
-void stored_result_scene(Result *result, YamlFile **file, Scene *scene);
+bool stored_result_scene(Result *result, YamlFile **file, Scene *scene);

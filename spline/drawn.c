@@ -234,9 +234,19 @@ static bool profile_of(const Drawn *drawn, const char *language, PlotProfile *pr
         *owned = false;
         return error_set(err, "the result has no profile of its own: its scene names none");
     }
-    return own      ? plot_profile_parse("spline/profile", drawn->profile, profile, err)
+    return own ? plot_profile_parse("spline/profile", drawn->profile, strlen(drawn->profile), profile, err)
            : *owned ? plot_profile_read(language, profile, err)
                     : plot_profile(language, profile, err);
+}
+
+bool drawn_check_language(const Drawn *drawn, const char *language, Error *err)
+{
+    PlotProfile profile;
+    bool owned;
+    if (!strcmp(language, "svg")) return true;
+    bool ok = profile_of(drawn, language, &profile, &owned, err);
+    if (owned) plot_profile_clear(&profile);
+    return ok;
 }
 
 bool drawn_write(const Drawn *drawn, const char *language, const char *path, Error *err)

@@ -40,3 +40,6 @@ bool drawn_write(const Drawn *drawn, const char *language, const char *path, Err
 /* The same of a plot that is a part of its own (plot_split.h). */
 bool drawn_write_plot(const Drawn *drawn, const Plot *plot, const char *language, const char *path,
                       Error *err);
+
+/* False and a sentence where there is no such language, or none of the result's own. */
+bool drawn_check_language(const Drawn *drawn, const char *language, Error *err);

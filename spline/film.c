@@ -60,11 +60,13 @@ static bool append_frame(Reel *reel, Journal *journal, int iteration, Error *err
     return ok;
 }
 
-static void add_numbers(Arrays *list, const char *name, const Numbers *numbers, int width)
+static void add_numbers(Arrays *list, const char *name, const char *unit, const Numbers *numbers, int width)
 {
     arrays_keep(list, numbers->values);
     int rows = (int)numbers->count / (width ? width : 1);
-    arrays_add(list, array_int(name, numbers->values, width ? 2 : 1, rows, width));
+    Array array = array_int(name, numbers->values, width ? 2 : 1, rows, width);
+    array.unit = unit;
+    arrays_add(list, array);
 }
 
 bool film_add(Journal *journal, Arrays *list, Error *err)
@@ -78,11 +80,11 @@ bool film_add(Journal *journal, Arrays *list, Error *err)
     if (count == 0) return true;
     append(&reel.frames, &(int){(int)reel.pen.count}, 1, 0);
     append(&reel.strokes, &(int){(int)(reel.nodes.count / 4)}, 1, 0);
-    add_numbers(list, "spline/film/iteration", &reel.iteration, 0);
-    add_numbers(list, "spline/film/frames", &reel.frames, 0);
-    add_numbers(list, "spline/film/strokes", &reel.strokes, 0);
-    add_numbers(list, "spline/film/pen", &reel.pen, 0);
-    add_numbers(list, "spline/film/nodes", &reel.nodes, 4);
+    add_numbers(list, "spline/film/iteration", "", &reel.iteration, 0);
+    add_numbers(list, "spline/film/frames", "", &reel.frames, 0);
+    add_numbers(list, "spline/film/strokes", "", &reel.strokes, 0);
+    add_numbers(list, "spline/film/pen", "", &reel.pen, 0);
+    add_numbers(list, "spline/film/nodes", "um", &reel.nodes, 4);
     return ok;
 }
 

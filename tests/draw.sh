@@ -25,7 +25,7 @@ sed 's/^origin.*/origin: [0, 0]/' "$here/../scenes/plotters/hp7475a.yaml" > near
 expect 0 "$program" export out/a.vtkhdf -o c.plt --plotter near.yaml; grep -q "^SP1;" c.plt || { echo "no HP 7475A"; bad=1; }
 sed 's/276 mm/70 mm/' near.yaml > small.yaml; sed 's/{feed}/{speed}/' "$here/../scenes/plotters/brush.yaml" > wrong.yaml
 expect 4 "$program" export out/a.vtkhdf -o d.plt --plotter small.yaml; says "it reaches from (0, 0) to (70, 193) mm"
-expect 4 "$program" export out/a.vtkhdf -o d.gcode --plotter wrong.yaml; says 'wrong.yaml:.*"{speed}" stands for nothing'
+expect 2 "$program" export out/a.vtkhdf -o d.gcode --plotter wrong.yaml; says 'wrong.yaml:.*"{speed}" stands for nothing'
 [ ! -e d.plt ] && [ ! -e d.gcode ] || { echo "a refused plot was written"; bad=1; }
 # The scene may name the machine: its file is written by the run, and again from the result alone.
 sed "s/^spline:/output: {plotter: m.plt}\nspline:\n  plotter: {profile: near.yaml}/" "$scene" > machine.yaml
@@ -33,7 +33,17 @@ cp near.yaml kept.yaml
 expect 0 "$program" run machine.yaml --quiet --no-picture -o m; expect 0 "$program" export m.vtkhdf -o c.plt --plotter kept.yaml; same m.plt c.plt
 rm near.yaml
 expect 0 "$program" export m.vtkhdf -o e.plt --plotter profile; same m.plt e.plt
-expect 4 "$program" export out/a.vtkhdf -o e.plt --plotter profile; says "the result has no profile of its own"
+expect 2 "$program" export out/a.vtkhdf -o e.plt --plotter profile; says "the result has no profile of its own"
+expect 2 "$program" export out/a.vtkhdf -o e.plt --plotter foo; says "is no plotter's language"
+expect 2 "$program" export out/a.vtkhdf -o e.plt --plotter missing.yaml; says "missing.yaml: cannot be read"
+# Nothing is written in a language under the ending of another one.
+for wrong in "svg gcode" "svg kept.yaml" "gcode hpgl" "plt gcode_servo" "nc svg"; do
+    expect 2 "$program" export out/a.vtkhdf -o "other.${wrong% *}" --plotter "${wrong#* }"; says "is for a file of another ending: "
+    [ ! -e "other.${wrong% *}" ] || { echo "${wrong#* } is written as .${wrong% *}"; bad=1; }
+done
+for words in x.foo x "x.png --animation"; do # shellcheck disable=SC2086
+    expect 2 "$program" picture out/a.vtkhdf -o $words; says "are written as"
+done
 cp small.yaml near.yaml; expect 3 "$program" check machine.yaml; says "near.yaml: the plot has a point where the machine has"
 # A file for each pen, or for so much ink: all strokes once, and no file where one of them may not be.
 expect 0 "$program" export out/a.vtkhdf -o one.gcode --split pen; says "one_1.gcode: black: "; same out/a.gcode one_1.gcode
@@ -43,11 +53,11 @@ expect 0 "$program" export out/a.vtkhdf -o ink.svg --split "1 m"; says "ink_2.sv
 mkdir no_1.svg; expect 4 "$program" export out/a.vtkhdf -o no.svg --split "1 m"; says "no_1.svg"; [ ! -e no_2.svg ] || { echo "written in part"; bad=1; }
 expect 2 "$program" export out/a.vtkhdf -o x.svg --split "1 mT"; says 'split must be pen, or the ink in a file, as "5 m"'
 expect 0 "$program" run "$scene" --quiet --no-picture -o fine --set spline.draft=true --set spline.pen=0.3mm
-expect 4 "$program" export fine.vtkhdf -o x.svg --split "1 um"; says "files, and 100 are the most"; [ ! -e x_1.svg ] || { echo "too many files"; bad=1; }
+expect 2 "$program" export fine.vtkhdf -o x.svg --split "1 um"; says "files, and 100 are the most"; [ ! -e x_1.svg ] || { echo "too many files"; bad=1; }
 expect 2 "$program" export out/a.vtkhdf -o x.csv --dataset metrics/ink --split pen; says "split is for a drawing"
 # How the pen is lifted is in the files, in the time, and in what is exported later.
 for lift in 0.3 9; do
-    expect 0 "$program" run "$scene" --quiet --no-picture -o "lift$lift" --set spline.rounds=0 --set output.gcode="lift$lift.gcode" --set output.gcode_servo=s.nc \
+    expect 0 "$program" run "$scene" --quiet --no-picture -o "lift$lift" --force --set spline.rounds=0 --set output.gcode="lift$lift.gcode" --set output.gcode_servo=s.nc \
         --set "spline.plotter={lift: $lift s, z: {up: 2 mm, down: -1 mm, speed: 1 mm/s}, servo: {up: M3 S90, down: M3 S10}}"
 done
 grep -q "^G1 Z-1 F60$" lift0.3.gcode || { echo "no z at its speed"; bad=1; }
@@ -195,6 +205,15 @@ same it-000005.svg dot.pgm
 for other in "output.every=0" "output.svg=it-5.svg" "output.svg=at-000010.svg"; do
     expect 0 "$program" run picture.yaml --quiet --no-picture -o it --force --set output.every=5 --set $other
 done
+# Without a result they are somebody else's, as other files are; with another one those of the run before go.
+for file in at-000010.svg at.gcode; do
+    cp dot.pgm $file
+    expect 4 "$program" run picture.yaml --quiet --no-picture -o at --set output.every=5 --set output.gcode=at.gcode; says "'$file' is there, and no 'at.vtkhdf'"
+    same $file dot.pgm; rm $file
+done
+expect 0 "$program" run picture.yaml --quiet --no-picture -o at --set output.every=5; exists at-000005.svg
+expect 0 "$program" run picture.yaml --quiet --no-picture -o at --force --set output.svg=other.svg
+for file in at.svg at-*.svg; do [ ! -e "$file" ] || { echo "$file of another run stays"; bad=1; }; done
 expect 2 "$program" run picture.yaml --threads 2x
 
 # Where ink is asked for there are strokes: a narrow strip, no direction anywhere, too few or too long strokes at the start.

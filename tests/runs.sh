@@ -63,6 +63,8 @@ echo mine > own.png
     expect 0 "$program" run $probed --quiet --force; expect 0 "$program" run $probed --quiet; grep -q PNG own.png || { echo "own.png is no picture"; bad=1; }
     rm own.vtkhdf; expect 0 "$program" run $probed --quiet
 }
+expect 0 run earlier.yaml -o own --force; [ ! -e own_probes.csv ] || { echo "the table of probes of another run stays"; bad=1; }
+echo mine > own_probes.csv; expect 0 run earlier.yaml -o own --force; is "a table that no run made" "$(cat own_probes.csv)" mine
 mkdir elsewhere; cp earlier.yaml young.csv elsewhere
 expect 0 run elsewhere/earlier.yaml -o e # by what is in the files, not by where they are
 echo "no result" > f.vtkhdf

@@ -300,7 +300,7 @@ static void streamlines_keep_away(void **state)
     "slender: 1\njob: draw\nspline:\n  density: {formula: \"d < 0.3 ? 0.5 : 0.15\", where: {d: "             \
     "\"sqrt((u-0.5)^2 + (v-0.5)^2)\"}}\n"                                                                    \
     "  direction: 30 deg\n  page: {size: [70 mm, 70 mm], margin: 5 mm}\n  pen: 0.6 mm\n  rounds: 1\n"        \
-    "  contours: {kind: edges, width: 0.9 mm, color: red}\n"
+    "  contours: {kind: edges, width: 0.9 mm, color: red, opaque: true}\n"
 
 static double number_of(Result *result, const char *path)
 {
@@ -323,6 +323,7 @@ static void runs(void **state)
     assert_true(result && drawn_read(result, &drawn, &err));
     assert_int_equal(drawn.pen_count, 2);
     assert_string_equal(drawn.pens[1].name, "contours");
+    assert_true(drawn.pens[1].opaque && !drawn.pens[0].opaque);
     expect_close(drawn.pens[1].width * drawn.page.unit, 0.9e-3, 1e-9);
     const Strokes *strokes = &drawn.strokes;
     assert_true(strokes->layer[strokes->count - 1] == 1 && strokes->layer[strokes->count - 2] == 0);

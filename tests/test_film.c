@@ -47,6 +47,10 @@ static void test_moments(void **state)
     Result *result = result_open(NAME ".vtkhdf", &err);
     assert_non_null(result);
     assert_true(drawn_read(result, &drawn, &err) && film_read(result, &drawn, &film, &err));
+    Array nodes;
+    assert_true(result_read(result, "slender/spline/film/nodes", &nodes, &err));
+    assert_string_equal(nodes.unit, "um");
+    array_clear(&nodes);
     result_close(result);
     int compared = 0, numbers = 0;
     assert_true(film.count > 5);

@@ -230,6 +230,11 @@ static void scenes(void **state)
         }
     }
     drawing_destroy(d);
+    d = drawing_of("image: lights.ppm, page: {size: [80 mm, 20 mm], margin: 0}, separation: match, pens: "
+                   "[red, blue], contours: edges");
+    assert_true(d->layer_count == 3 && !d->pens[2].opaque); /* black, as no colour is said */
+    assert_true(d->pens[2].color.r == 0 && d->pens[2].color.g == 0 && d->pens[2].color.b == 0);
+    drawing_destroy(d);
     write_file("strip.ppm", "P3 40 1 255 " /* of ten pens there is room: blank above and below */);
     FILE *file = fopen("strip.ppm", "a");
     for (int k = 0; k < 40; k++) fputs(" 255 255 255", file);

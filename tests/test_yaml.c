@@ -205,6 +205,10 @@ static void test_overrides(void **state)
     expect_override("length", "--set length: it must be key=value, e.g. shell.thickness=1mm\n");
     expect_override("entries[9]=1", "--set entries[9]=1: the index is beyond the end of the list\n");
     expect_override("count[0]=1", "--set count[0]=1: count must be a number, not a list\n");
+    expect_override("inner={a: 1, a: 2}", "--set inner={a: 1, a: 2}: the key 'a' is there twice\n");
+    expect_override(
+        "inner={a: 1",
+        "--set inner={a: 1: no YAML: did not find expected ',' or '}', while parsing a flow mapping\n");
 }
 
 static void test_difference(void **state)

@@ -14,13 +14,16 @@ struct Animation {
     double seconds; /* when the next page begins */
 };
 
-Animation *animation_create(const char *path, Error *err)
+bool animation_check_path(const char *path, Error *err)
 {
     const char *ending = strrchr(path, '.');
-    if (!ending || strcasecmp(ending, ".webp")) {
-        error_set(err, "%s: animations are written as .webp; give the file this ending", path);
-        return NULL;
-    }
+    return (ending && !strcasecmp(ending, ".webp")) ||
+           error_set(err, "%s: animations are written as .webp; give the file this ending", path);
+}
+
+Animation *animation_create(const char *path, Error *err)
+{
+    if (!animation_check_path(path, err)) return NULL;
     Animation *animation = mem_alloc(1, sizeof *animation);
     animation->path = mem_text(path);
     WebPConfigPreset(&animation->config, WEBP_PRESET_DRAWING, 75);

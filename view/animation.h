@@ -7,7 +7,10 @@
 
 typedef struct Animation Animation;
 
-/* NULL and a sentence where path does not end in .webp. */
+/* False and a sentence where path does not end in .webp, any case. */
+bool animation_check_path(const char *path, Error *err);
+
+/* NULL and a sentence where path does not. */
 Animation *animation_create(const char *path, Error *err);
 void animation_destroy(Animation *animation);
 

@@ -257,7 +257,7 @@ Cross = TypedDict("Cross", {
 
 ContoursKeys = TypedDict("ContoursKeys", {
     "kind": "Literal['edges', 'outlines']", "levels": "Union[float, Numbers]", "contrast": "float",
-    "detail": "Number", "shortest": "Number", "width": "Number", "color": "Number",
+    "detail": "Number", "shortest": "Number", "width": "Number", "color": "Number", "opaque": "bool",
 }, total=False)
 
 StartOfADrawingKeys = TypedDict("StartOfADrawingKeys", {

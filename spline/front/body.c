@@ -38,8 +38,8 @@ static bool read_profile(Drawing *d, const char *path, YamlFile *file, bool *by_
     PlotProfile profile = {0};
     Error err;
     size_t length;
-    bool ok =
-        scan_file(path, &d->profile, &length, &err) && plot_profile_parse(path, d->profile, &profile, &err);
+    bool ok = scan_file(path, &d->profile, &length, &err) &&
+              plot_profile_parse(path, d->profile, length, &profile, &err);
     *by_z = ok && plot_profile_lifts_by_z(&profile);
     if (ok && !check_reach(&d->page, &profile, &err)) ok = error_prefix(&err, "%s", path);
     plot_profile_clear(&profile);

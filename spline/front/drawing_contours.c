@@ -1,6 +1,7 @@
 #include "spline/front/drawing_contours.h"
 #include "spline/coverage.h"
 #include "spline/direction.h"
+#include "model/build.h"
 #include <math.h>
 #include <string.h>
 
@@ -22,6 +23,16 @@ SplineEdgeDef drawing_contours_def(const Drawing *d, const ContoursScene *scene)
     if (d->region_count && !outlines) def.outline = spline_grid(&d->outline);
     def.segment = spline_segment_length(relax_default().rest, spline_line_distance(&tone, &d->page));
     return def;
+}
+
+bool drawing_check_levels(const ContoursScene *scene, YamlFile *file)
+{
+    for (int k = 0; k < scene->levels_count; k++)
+        for (int other = 0; other < k; other++)
+            if (scene->levels[other] == scene->levels[k])
+                return yaml_refuse(file, key("spline.contours.levels[%d]", k).text,
+                                   "%g is there twice, and would draw its lines twice", scene->levels[k]);
+    return true;
 }
 
 static void cover_contours(Drawing *d)

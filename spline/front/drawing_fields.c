@@ -274,6 +274,7 @@ static bool read_contours(const Reader *r, Drawing *d)
     const ContoursScene *contours = r->scene->contours;
     SplineField tone;
     if (!contours) return true;
+    if (!drawing_check_levels(contours, r->build.file)) return false;
     SplineEdgeDef def = drawing_contours_def(d, contours);
     if (!contours->levels_count && contours->kind == CONTOURS_OUTLINES) {
         drawing_find_outlines(d, &def);

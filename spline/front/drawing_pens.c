@@ -16,7 +16,9 @@ static const struct {
 
 enum { INKS = 4 };
 
-static const double SEEN = 1; /* Delta E, about the least difference that is */
+static const double SEEN = 1; /* Delta E, about the least difference that is                              */
+static const double GLARE =
+    0.01; /* of white's light, that the surface sends back anyway [IEC 61966-2-1]       */
 
 static bool is(const SplineScene *scene, SeparationKind kind)
 {
@@ -151,18 +153,35 @@ InkSet pens_inks(Color paper, const SplinePen *pens, int count, Ink *coats)
     return (InkSet){ink_linear(paper), count, coats, 1};
 }
 
-/* Who says what the paper is, or wants colours, means pens that are seen on it. */
-static bool check_seen(const SplineScene *scene, YamlFile *file, Color paper, const SplinePen *pen, Key at)
+static bool is_seen(Color paper, const SplinePen *pen)
 {
     Ink coat;
     InkSet set = pens_inks(paper, pen, 1, &coat);
-    if (pen->opaque || !(scene->paper || is(scene, SEPARATE_MATCH)) ||
-        ink_difference(ink_mix(&set, (const double[]){1}), set.paper) >= SEEN)
-        return true;
-    return yaml_refuse(
-        file, at.text,
-        "its ink is transparent, and not seen on paper of this colour; say `opaque: true` of a "
-        "pen that covers what is below");
+    Vec3 covered = ink_mix(&set, (const double[]){1}), light = vec3_sub(covered, set.paper);
+    return ink_difference(covered, set.paper) >= SEEN &&
+           fmax(fmax(fabs(light.x), fabs(light.y)), fabs(light.z)) >= GLARE;
+}
+
+static bool check_seen(YamlFile *file, Color paper, const SplinePen *pen, Key at)
+{
+    return is_seen(paper, pen) ||
+           yaml_refuse(file, at.text,
+                       pen->opaque
+                           ? "its ink has the colour of the paper, and is not seen on it; say another `color`"
+                           : "its ink is transparent, and not seen on paper of this colour; say `opaque: "
+                             "true` of a pen that covers what is below, and its `color`");
+}
+
+/* The pen of the contours, if there are any. */
+static bool read_contours(const SplineScene *scene, YamlFile *file, const SplinePage *page, Color paper,
+                          SplinePen *pen)
+{
+    const ContoursScene *from = scene->contours;
+    Key at = key("spline.contours");
+    if (!from) return true;
+    PenScene given = {"contours", from->color ? from->color : "black", from->width, .opaque = from->opaque};
+    pen->name = mem_text(given.name);
+    return read_pen(scene, file, page, &given, at, pen) && check_seen(file, paper, pen, at);
 }
 
 bool pens_read(const SplineScene *scene, YamlFile *file, const SplinePage *page, Color *paper,
@@ -181,10 +200,7 @@ bool pens_read(const SplineScene *scene, YamlFile *file, const SplinePage *page,
         (*pens)[k].name = mem_text(given.name);
         ok = ok && (!own || check_name(scene, file, k)) &&
              read_pen(scene, file, page, &given, at, &(*pens)[k]) &&
-             check_seen(scene, file, *paper, &(*pens)[k], at);
+             check_seen(file, *paper, &(*pens)[k], at);
     }
-    if (!scene->contours) return ok;
-    PenScene line = {.name = "contours", .color = scene->contours->color, .width = scene->contours->width};
-    (*pens)[*count].name = mem_text(line.name);
-    return ok && read_pen(scene, file, page, &line, key("spline.contours"), &(*pens)[*count]);
+    return ok && read_contours(scene, file, page, *paper, &(*pens)[*count]);
 }

@@ -132,6 +132,7 @@ static const YamlTable contours_table = {
          .doc = "lines that are shorter are left out; 10 widths if absent"},
         {YAML_NUMBER(ContoursScene, width), .unit = "m", .range = "(0, 0.1]", .doc = "`pen` if absent"},
         {YAML_TEXT(ContoursScene, color), .doc = "as of `pens`; black if absent"},
+        {YAML_BOOL(ContoursScene, opaque), .doc = "as of `pens`: light ones on dark paper are"},
         {0}}};
 
 static const YamlTable direction_table = {

@@ -58,6 +58,7 @@ typedef struct ContoursScene {
     double *levels, contrast, detail, shortest, width;
     int levels_count;
     char *color;
+    bool opaque;
 } ContoursScene;
 
 typedef enum RegionFit { REGION_CONTAIN, REGION_PAPER } RegionFit;

@@ -1,0 +1,2 @@
+slender: 1
+travel: 
