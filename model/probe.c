@@ -121,6 +121,24 @@ static bool add_points(const Model *model, const Build *b, Key at, char *const *
     return ok;
 }
 
+static bool is_same_point(const Probe *a, const Probe *b)
+{
+    size_t count = (size_t)a->count;
+    return a->count == b->count && !memcmp(a->vertices, b->vertices, count * sizeof *a->vertices) &&
+           !memcmp(a->weights, b->weights, count * sizeof *a->weights);
+}
+
+/* Through one point goes no line that would have an angle. */
+static bool check_distinct(const Build *b, Key at, char *const *names, const ModelProbe *probe)
+{
+    for (int k = 0; k < probe->point_count; k++)
+        for (int j = 0; j < k; j++)
+            if (is_same_point(&probe->points[j], &probe->points[k]))
+                return yaml_refuse(b->file, at.text, "'%s' and '%s' are one point; they must be different",
+                                   names[j], names[k]);
+    return true;
+}
+
 static bool angle_probe(const Model *model, const Build *b, Key at, const ProbeScene *from, ModelProbe *probe)
 {
     bool axis = !isnan(from->axis[0]);
@@ -131,7 +149,9 @@ static bool angle_probe(const Model *model, const Build *b, Key at, const ProbeS
     if (axis && vec3_length(vec3_load(from->axis)) == 0)
         return yaml_refuse(b->file, key("%s.axis", at.text).text, "an axis has a direction; it is 0");
     if (axis) memcpy(probe->axis, from->axis, sizeof probe->axis);
-    return add_points(model, b, key("%s.angle", at.text), from->angle, from->angle_count, probe);
+    at = key("%s.angle", at.text);
+    return add_points(model, b, at, from->angle, from->angle_count, probe) &&
+           check_distinct(b, at, from->angle, probe);
 }
 
 /* ---- Forces ---- */

@@ -9,7 +9,7 @@ const YamlTable target_table = {
            "are of. Of several targets, a list, the squared distances are added, each times its weight.",
     .fields = (const YamlField[]){
         {YAML_FILE(TargetScene, file), .one_of = 1, .required = true,
-         .doc = "a mesh file with the vertices of the mesh"},
+         .doc = "a mesh file with the vertices of the mesh; of rods a polyline, divided at equal arclengths"},
         {YAML_FILE(TargetScene, height_map), .one_of = 1, .required = true,
          .doc = "a PNG, JPEG, PGM or PPM image over the body's rectangle in x and y: black is 0, white is "
                 "height, row 0 "
@@ -17,7 +17,9 @@ const YamlTable target_table = {
         {YAML_ROWS(TargetScene, strokes), .unit = "m", .one_of = 1, .required = true,
          .doc = "segments x0, y0, x1, y1: ridges of height, round across"},
         {YAML_TEXTS(TargetScene, formula), .one_of = 1, .required = true, .short_form = true, .min_count = 3,
-         .max_count = 3, .doc = "three expressions, in m, of the rest position x, y, z, r"},
+         .max_count = 3,
+         .doc = "three expressions, in m, of the rest position x, y, z, r; of rods of the arclength s and "
+                "the length L"},
         {YAML_NUMBER(TargetScene, height), .when = "height_map | strokes", .unit = "m",
          .doc = "of a height map or strokes"},
         {YAML_NUMBER(TargetScene, width), .when = "strokes", .unit = "m", .range = "(0, inf)",
