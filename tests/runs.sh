@@ -36,7 +36,7 @@ young 1e6
 expect 0 run earlier.yaml -o e
 expect 0 run earlier.yaml -o e
 cp e.vtkhdf e.copy; cp e.run e.journal
-expect 4 run earlier.yaml -o e --set shell.thickness=2mm; says "e.vtkhdf: it is the result of another scene: shell.thickness is not the same; give another name with -o, replace it with --force$"
+expect 4 run earlier.yaml -o e --set shell.thickness=2mm; says "e.vtkhdf: it is the result of another scene: shell.thickness.value is not the same; give another name with -o, replace it with --force$"
 expect 4 run earlier.yaml -o e --set time.steps=3; says "time.steps is not the same; .* or go on with it with --resume$"
 young 2e6
 expect 4 run earlier.yaml -o e; says "shell.young.file: .*young.csv is not the file that the run began with"
