@@ -55,10 +55,11 @@ void main() {
 const STROKE_FRAGMENT = `#version 300 es
 precision highp float;
 in vec4 ink; in vec2 along; in float reach, radius;
+uniform float inside;
 out vec4 color;
 void main() {
   float d = length(vec2(along.x - clamp(along.x, 0.0, max(reach, 0.0)), along.y)), a = ink.a * clamp(radius + 0.5 - d, 0.0, 1.0);
-  if (a <= 0.0) discard;
+  if (a <= 0.0 || (a > 0.98 * ink.a) != (inside > 0.0)) discard;
   color = vec4(ink.rgb * a, a);
 }`;
 
@@ -144,9 +145,13 @@ function makeRenderer(redraw) {
   /* from, to [3 a stroke], colors [4 bytes a stroke], widths [1 a stroke, pixels]. */
   function drawStrokes(view, strokes, { head = false, raise = 0 } = {}) {
     if (strokes.widths.length === 0) return;
-    draw(stroke, view, [["a", strokes.from, 3, true], ["b", strokes.to, 3, true], ["color", strokes.colors, 4, true], ["width", strokes.widths, 1, true]],
-         { size: [view.width, view.height], head: head ? 1 : 0, raise },
-         () => gl.drawArraysInstanced(gl.TRIANGLES, 0, head ? 9 : 6, strokes.widths.length));
+    const attributes = [["a", strokes.from, 3, true], ["b", strokes.to, 3, true], ["color", strokes.colors, 4, true], ["width", strokes.widths, 1, true]];
+    for (const inside of [1, 0]) { /* soft edges hide nothing: neither the next stroke of their line nor its own end */
+      gl.depthMask(inside === 1);
+      draw(stroke, view, attributes, { size: [view.width, view.height], head: head ? 1 : 0, raise, inside },
+           () => gl.drawArraysInstanced(gl.TRIANGLES, 0, head ? 9 : 6, strokes.widths.length));
+    }
+    gl.depthMask(true);
   }
 
   return { canvas, begin, drawMesh, drawStrokes };
