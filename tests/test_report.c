@@ -259,6 +259,22 @@ static void test_rod(void **unused)
     result_close(result);
 }
 
+/* The frames of an inversion without a round trip have no rod that was simulated: other curves are not called so. */
+static void test_inversion(void **unused)
+{
+    (void)unused;
+    result_close(
+        run_text(mem_text("slender: 1\njob: invert\nrod:\n"
+                          "  curve: {formula: [\"0.05*sin(6*u)\", \"0\", \"-0.2*u\"], range: [0, 1]}\n"
+                          "  radius: 1 mm\n  young: 1.0e+8\n  poisson: 0.5\n  density: 1000\n"
+                          "  elements: 20\n")));
+    Page page = report(0);
+    assert_non_null(strstr(page.json, "\"name\":\"natural\""));
+    assert_non_null(strstr(page.json, "\"name\":\"input\""));
+    assert_null(strstr(page.json, "\"name\":\"rod\""));
+    page_clear(&page);
+}
+
 /* The first group of faces has the faces that the result's has. */
 static void check_group(const Page *page, Result *result, const char *name)
 {
@@ -427,6 +443,7 @@ int main(void)
                                        cmocka_unit_test_teardown(test_shell, nothing_leaks),
                                        cmocka_unit_test_teardown(test_solid, nothing_leaks),
                                        cmocka_unit_test_teardown(test_rod, nothing_leaks),
+                                       cmocka_unit_test_teardown(test_inversion, nothing_leaks),
                                        cmocka_unit_test_teardown(test_drawing, nothing_leaks),
                                        cmocka_unit_test_teardown(test_targets, nothing_leaks),
                                        cmocka_unit_test_teardown(test_stages, nothing_leaks),
