@@ -168,22 +168,31 @@ static bool add_fields(const Body *body, Error *err)
     return true;
 }
 
-/* Of each face, in material space. */
-static void add_magnetization(const Body *body)
+/* Of each face, in material space; faces of a skin that have no layer carry none. */
+static void take_magnetization(const Body *body, int step, double *M)
 {
     const ShowMesh *mesh = &body->mesh;
-    Document *document = body->part->document;
-    size_t faces = (size_t)mesh->body.face_count;
-    double *M = mem_alloc(3 * faces, sizeof *M);
-    for (size_t f = 0; f < faces; f++) {
-        const double *rows = mesh->magnetization.faces;
+    ShowRows of = show_mesh_magnetization(mesh, step);
+    for (size_t f = 0; f < (size_t)mesh->body.face_count; f++) {
+        const double *rows = of.faces;
         size_t row = f;
-        if (!rows && mesh->body.cell_of_face)
-            rows = mesh->magnetization.cells, row = (size_t)mesh->body.cell_of_face[f];
-        for (int i = 0; i < 3; i++) M[3 * f + (size_t)i] = rows ? rows[3 * row + (size_t)i] : 0;
+        if (!rows && mesh->body.cell_of_face) rows = of.cells, row = (size_t)mesh->body.cell_of_face[f];
+        for (size_t i = 0; i < 3; i++) M[3 * f + i] = rows && !isnan(rows[3 * row]) ? rows[3 * row + i] : 0;
     }
+}
+
+/* That of each frame, where it changes; else the final one. */
+static void add_magnetization(const Body *body)
+{
+    const ReportPart *part = body->part;
+    Document *document = part->document;
+    bool own = show_mesh_has_own(&body->mesh, "magnetization");
+    size_t rows = own ? (size_t)part->frame_count : 1, width = 3 * (size_t)body->mesh.body.face_count;
+    double *M = mem_alloc(rows * width, sizeof *M);
+    for (size_t k = 0; k < rows; k++) take_magnetization(body, own ? part->frames[k] : -1, M + k * width);
+    if (is_static(M, rows, width)) rows = 1;
     document_open(document, "magnetization", '{');
-    document_packed(document, "values", M, (Packed){1, 3 * faces, 3, 16, false});
+    document_packed(document, "values", M, (Packed){rows, width, 3, 16, false});
     add_faces(body, "carriers", body->carriers[0], 4);
     add_rest(body);
     document_close(document);

@@ -1,9 +1,12 @@
 /* slender report: what its document packs is read back as it was, within the quantisation; the pages of whole runs hold
  * what their results do. The page itself is tested in a browser: tests/report_browser.sh. */
+#include "base/vec3.h"
 #include "report/document.h"
 #include "report/report.h"
 #include "spline/drawn.h"
 #include "tests/leaks.h"
+#include "view/show.h"
+#include "view/show_mesh.h"
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -214,6 +217,65 @@ static void test_shell(void **unused)
     check_body(&page, result, some, 3);
     assert_non_null(strstr(
         page.json, "\"labels\":[\"t = 0 s\",\"t = 0.015 s\",\"t = 0.03 s\"],\"times\":[0,0.015,0.03]"));
+    page_clear(&page);
+    result_close(result);
+}
+
+static const char PLATE[] =
+    "slender: 1\njob: design\nshell:\n  mesh: {shape: sheet, size: [40 mm, 20 mm], cells: [4, 2]}\n"
+    "  thickness: 1 mm\n  poisson: 0.3\n  density: 1000\n  young: 1 MPa\n  magnetization: [1.0e+4, 0, 0]\n"
+    "fix: [{group: root, clamp: true}]\n"
+    "cases: [{name: up, flux_density: [0, 0, 10 mT], target: {formula: [\"x\", \"y\", \"20*x*x\"]}}]\n"
+    "design: {unknowns: {magnetization: {max_magnitude: 1.0e+5}}, objectives: [{target: 1}], iterations: "
+    "3}\noutput: {every: 1}\n";
+
+/* The numbers of a frame, or of the final design, as pictures have them. */
+static void check_sizes(ShowMesh *mesh, int step, const double *M)
+{
+    Error err;
+    const double *values;
+    const char *name, *unit;
+    if (!show_mesh_field(mesh, step, &values, &name, &unit, &err)) fail_msg("%s", err.text);
+    assert_string_equal(unit, "A/m");
+    ShowRows rows = show_mesh_magnetization(mesh, step);
+    for (int f = 0; f < mesh->body.face_count; f++) {
+        assert_true(values[f] == vec3_length(vec3_load(M + 3 * f)));
+        assert_memory_equal(rows.faces + 3 * f, M + 3 * f, 3 * sizeof *M);
+    }
+}
+
+/* Frames of a design have the magnetisation of their evaluation, in pictures and in the page. */
+static void test_design(void **unused)
+{
+    (void)unused;
+    Error err;
+    ShowData data;
+    ShowMesh mesh;
+    ShowDef def = show_default();
+    def.field = "magnetization";
+    Result *result = run_text(mem_text(PLATE));
+    Array final = read_all(result, "slender/design/magnetization");
+    int frames = result_step_count(result);
+    Page page = report(0);
+    Unpacked arrows = unpack(&page, strstr(page.json, "\"magnetization\":{"), "values");
+    show_data_borrow(&data, result, &def);
+    assert_true(show_mesh_read(&mesh, &data, &err) && show_mesh_has_own(&mesh, "magnetization"));
+    check_sizes(&mesh, -1, final.data);
+    assert_true(frames > 1 && arrows.rows == (size_t)frames);
+    for (int k = 0; k < frames; k++) {
+        Array own;
+        assert_true(result_read_step(result, "CellData/magnetization", k, &own, &err));
+        const double *M = own.data;
+        assert_true(k > 0 || (M[0] == 1e4 && M[1] == 0 && memcmp(M, final.data, 3 * sizeof *M) != 0));
+        check_sizes(&mesh, k, M);
+        for (size_t i = 0; i < arrows.width; i++)
+            assert_true(fabs(arrows.values[(size_t)k * arrows.width + i] - M[i]) < 1e-4 * 1e5);
+        array_clear(&own);
+    }
+    show_mesh_clear(&mesh);
+    show_data_clear(&data);
+    array_clear(&final);
+    mem_free(arrows.values);
     page_clear(&page);
     result_close(result);
 }
@@ -441,6 +503,7 @@ int main(void)
                                        cmocka_unit_test_teardown(test_indices, nothing_leaks),
                                        cmocka_unit_test_teardown(test_json, nothing_leaks),
                                        cmocka_unit_test_teardown(test_shell, nothing_leaks),
+                                       cmocka_unit_test_teardown(test_design, nothing_leaks),
                                        cmocka_unit_test_teardown(test_solid, nothing_leaks),
                                        cmocka_unit_test_teardown(test_rod, nothing_leaks),
                                        cmocka_unit_test_teardown(test_inversion, nothing_leaks),

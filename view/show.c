@@ -40,16 +40,16 @@ ShowDef show_default(void)
 
 /* ---- Panels ---- */
 
-/* Of the body with its vertices at x. */
-static PicturePanel *add_panel(Show *show, const char *name, const double (*x)[3])
+/* Of the body with its vertices at x; step: the frame, -1: none. */
+static PicturePanel *add_panel(Show *show, const char *name, int step, const double (*x)[3])
 {
     size_t count = (size_t)show->panel_count++;
     show->panels = mem_resize(show->panels, count, count + 1, sizeof *show->panels);
     show->steps = mem_resize(show->steps, count, count + 1, sizeof *show->steps);
-    show->steps[count] = -1;
+    show->steps[count] = step;
     PicturePanel *panel = &show->panels[count];
     *panel = (PicturePanel){.name = name, .x = show_mesh_points(&show->mesh, x), .time = NAN};
-    if (show->def->arrows && show->mesh.magnetic) panel->vectors = show_mesh_carried(&show->mesh, x);
+    if (show->def->arrows && show->mesh.magnetic) panel->vectors = show_mesh_carried(&show->mesh, step, x);
     return panel;
 }
 
@@ -97,8 +97,7 @@ static bool add_frame(Show *show, int frame, Error *err)
     const double(*points)[3] = show_keep(show->data, array);
     if (array.dims[0] != show->mesh.body.vertex_count)
         return error_set(err, "the result's frame %d has other points than its mesh", frame);
-    PicturePanel *panel = add_panel(show, show_frame_name(show->data, frame), points);
-    show->steps[show->panel_count - 1] = frame;
+    PicturePanel *panel = add_panel(show, show_frame_name(show->data, frame), frame, points);
     if (show->data->motion) add_moment(show, panel, frame, points);
     if (result_has(result, "slender/frames/flux_density") &&
         result_read_rows(result, "slender/frames/flux_density", frame, 1, &flux, NULL)) {
@@ -119,7 +118,7 @@ static void add_case(Show *show, const char *name)
     size_t count = 3 * (size_t)show->mesh.body.vertex_count;
     const double(*x)[3] = show_case_dataset(show->data, name, "x", count);
     if (!x) return;
-    PicturePanel *panel = add_panel(show, show_text(show->data, "%s", name), x);
+    PicturePanel *panel = add_panel(show, show_text(show->data, "%s", name), -1, x);
     add_target(show, panel, name, x);
     panel->marks = show_motion_marks(&show->motion, NAN, motion_ink);
     if (!panel->marks.dot_count)

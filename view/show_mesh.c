@@ -87,11 +87,50 @@ static ShowRows sizes(const ShowMesh *mesh, ShowRows vectors)
                       lengths(mesh->data, vectors.cells, mesh->body.cell_count)};
 }
 
+bool show_mesh_has_own(const ShowMesh *mesh, const char *name)
+{
+    Array first;
+    ShowData *data = mesh->data;
+    const char *path = show_text(data, "VTKHDF/Steps/CellDataOffsets/%s", name);
+    if (!result_has(data->result, path) ||
+        !result_read_as(data->result, path, ARRAY_INT32, 1, 0, &first, NULL))
+        return false;
+    const int *row = show_keep(data, first);
+    for (int k = 1; k < first.dims[0]; k++)
+        if (row[k] != row[0]) return true;
+    return false;
+}
+
+/* Rows of the final design as they are in a frame, -1: the final ones. */
+static ShowRows rows_at(const ShowMesh *mesh, int step, const char *name, int width, ShowRows final)
+{
+    Array array;
+    ShowData *data = mesh->data;
+    size_t cells = (size_t)mesh->body.cell_count, each = (size_t)width;
+    if (step < 0 || !show_mesh_has_own(mesh, name) ||
+        !result_read_step(data->result, show_text(data, "CellData/%s", name), step, &array, NULL))
+        return final;
+    const double *rows = show_keep(data, array);
+    if (array_count(&array) != each * (cells + (size_t)mesh->body.face_count)) return final;
+    return (ShowRows){final.faces ? rows + each * cells : NULL, final.cells ? rows : NULL};
+}
+
+ShowRows show_mesh_magnetization(const ShowMesh *mesh, int step)
+{
+    return rows_at(mesh, step, "magnetization", 3, mesh->magnetization);
+}
+
+static bool has_own_row(const ShowMesh *mesh, ShowRows rows, int width, int shown)
+{
+    int face = mesh->clip.face[shown];
+    return rows.faces && face >= 0 && !isnan(rows.faces[width * face]);
+}
+
 /* The row of a face that is shown: its own, or its tetrahedron's; NULL: it has none. */
 static const double *row_of(const ShowMesh *mesh, ShowRows rows, int width, int shown)
 {
-    int face = mesh->clip.face[shown], cell = mesh->clip.cell[shown];
-    if (rows.faces && face >= 0 && !isnan(rows.faces[width * face])) return rows.faces + width * face;
+    int cell = mesh->clip.cell[shown];
+    if (has_own_row(mesh, rows, width, shown)) return rows.faces + width * mesh->clip.face[shown];
     return rows.cells && cell >= 0 ? rows.cells + width * cell : NULL;
 }
 
@@ -199,14 +238,15 @@ static Vec3 carry(Edges rest, Edges now, Vec3 M)
     return carried;
 }
 
-const double (*show_mesh_carried(const ShowMesh *mesh, const double (*x)[3]))[3]
+const double (*show_mesh_carried(const ShowMesh *mesh, int step, const double (*x)[3]))[3]
 {
+    ShowRows rows = show_mesh_magnetization(mesh, step);
     const ClipBody *body = &mesh->body;
     double(*vectors)[3] = show_block(mesh->data, (size_t)mesh->clip.face_count, sizeof *vectors);
     for (int f = 0; f < mesh->clip.face_count; f++) {
-        const double *M = row_of(mesh, mesh->magnetization, 3, f);
+        const double *M = row_of(mesh, rows, 3, f);
         if (!M) continue;
-        bool solid = !mesh->magnetization.faces || mesh->clip.face[f] < 0;
+        bool solid = !has_own_row(mesh, rows, 3, f);
         const int *v = solid ? body->cells + (size_t)mesh->clip.cell[f] * (size_t)body->cell_nodes
                              : body->faces[mesh->clip.face[f]];
         vec3_store(vectors[f], carry(edges_of(body->rest, v, solid), edges_of(x, v, solid), vec3_load(M)));
@@ -275,17 +315,20 @@ static bool frame_field(const ShowMesh *mesh, int step, const char *name, const 
     return *values = shown_numbers(mesh, (ShowRows){numbers + body->cell_count, numbers}), true;
 }
 
-/* Parameters that the design has whole, whatever its frames have: of each face a number, or a vector's length. A solid's young is
+/* Parameters of the design, in a frame or the final ones: of each face a number, or a vector's length. A solid's young is
  * two blocks, its own and its film's: the frames have them as one. */
-static bool design_field(const ShowMesh *mesh, const char *name, const double **values, const char **unit)
+static bool design_field(const ShowMesh *mesh, int step, const char *name, const double **values,
+                         const char **unit)
 {
     static const char *const numbers[][2] = {{"young", "Pa"}, {"thickness", "m"}, {"density", "kg/m^3"}};
     ShowRows rows = {NULL, NULL};
     *unit = "A/m";
     for (int k = 0; k < 3 && !mesh->body.cell_count; k++)
-        if (!strcmp(name, numbers[k][0])) rows = design_rows(mesh, name, 1), *unit = numbers[k][1];
-    if (!strcmp(name, "magnetization")) rows = sizes(mesh, mesh->magnetization);
-    if (!strcmp(name, "volume_magnetization")) rows = sizes(mesh, design_rows(mesh, name, 3));
+        if (!strcmp(name, numbers[k][0]))
+            rows = rows_at(mesh, step, name, 1, design_rows(mesh, name, 1)), *unit = numbers[k][1];
+    if (!strcmp(name, "magnetization")) rows = sizes(mesh, show_mesh_magnetization(mesh, step));
+    if (!strcmp(name, "volume_magnetization"))
+        rows = sizes(mesh, rows_at(mesh, step, "magnetization", 3, design_rows(mesh, name, 3)));
     return (rows.faces || rows.cells) && (*values = shown_numbers(mesh, rows), true);
 }
 
@@ -306,7 +349,7 @@ bool show_mesh_field(const ShowMesh *mesh, int step, const double **values, cons
 {
     *name = mesh->data->def->field, *unit = "", *values = NULL;
     if (!*name) *name = telling_field(mesh);
-    if (!strcmp(*name, "none") || design_field(mesh, *name, values, unit)) return true;
+    if (!strcmp(*name, "none") || design_field(mesh, step, *name, values, unit)) return true;
     *unit = "";
     return frame_field(mesh, step, *name, values, unit, err);
 }

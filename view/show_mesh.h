@@ -15,9 +15,9 @@ typedef struct ShowMesh {
     ClipBody body; /* the whole                                                           */
     Clip clip;     /* what is shown of it                                                 */
     int part_count;
-    const int *part; /* [body.face_count] row of the skin's numbers; NULL: each face has its own */
-    ShowRows magnetization;
-    bool magnetic; /* somewhere */
+    const int *part;        /* [body.face_count] row of the skin's numbers; NULL: each face has its own */
+    ShowRows magnetization; /* of the final design */
+    bool magnetic;          /* somewhere */
 } ShowMesh;
 
 /* Reads it and cuts it at the plane of the data's ShowDef, so that one sees the cut. Clear it in any case. */
@@ -27,10 +27,17 @@ void show_mesh_clear(ShowMesh *mesh);
 /* Of the whole body's vertices, what is kept of them and what is new; NULL for NULL. */
 const double (*show_mesh_points(const ShowMesh *mesh, const double (*x)[3]))[3];
 
-/* The magnetisation of each face that is shown, as the body carries it to where its vertices are. */
-const double (*show_mesh_carried(const ShowMesh *mesh, const double (*x)[3]))[3];
+/* Have frames an array of CellData of their own each, as those of a design do, or have all the same one? */
+bool show_mesh_has_own(const ShowMesh *mesh, const char *name);
+
+/* Of a frame, in material space; -1, or where the frames have no other: of the final design. */
+ShowRows show_mesh_magnetization(const ShowMesh *mesh, int step);
+
+/* The magnetisation of each face that is shown, in a frame or the final one (-1), as the body carries it to where its vertices
+ * are. */
+const double (*show_mesh_carried(const ShowMesh *mesh, int step, const double (*x)[3]))[3];
 
 /* A number for each face that is shown, of the field that was asked for; NULL: a plain surface. step: the frame, -1: the
- * last. False where there is no such field. */
+ * last, and the final design. False where there is no such field. */
 bool show_mesh_field(const ShowMesh *mesh, int step, const double **values, const char **name,
                      const char **unit, Error *err);

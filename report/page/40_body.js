@@ -83,14 +83,24 @@ function carry(rest, now, M) {
   return [0, 1, 2].map((k) => parts[0] * now[0][k] + parts[1] * now[1][k] + parts[2] * now[2][k]);
 }
 
+/* Of each face the greatest magnetisation in all rows. */
+function greatestOf({ rows, width, data }) {
+  const sizes = new Float64Array(width / 3);
+  for (let k = 0; k < (rows * width) / 3; k++) {
+    const f = k % sizes.length;
+    sizes[f] = Math.max(sizes[f], Math.hypot(data[3 * k], data[3 * k + 1], data[3 * k + 2]));
+  }
+  return sizes;
+}
+
 /* The faces that carry an arrow: about `most` of them, spread over the surface (each in a cell of space of its own). */
-function chooseFaces(rest, carriers, M, most) {
+function chooseFaces(rest, carriers, sizes, most) {
   const count = carriers.length / 4, { radius } = enclose([rest]), taken = new Map();
   let cell = (2 * radius) / Math.sqrt(most);
   for (let turn = 0; turn < 12; turn++, cell *= 1.25) {
     taken.clear();
     for (let f = 0; f < count; f++) {
-      if (!(Math.hypot(M[3 * f], M[3 * f + 1], M[3 * f + 2]) > 0)) continue;
+      if (!(sizes[f] > 0)) continue;
       const at = [0, 1, 2].map((i) => Math.floor((rest[3 * carriers[4 * f] + i] + rest[3 * carriers[4 * f + 1] + i] + rest[3 * carriers[4 * f + 2] + i]) / 3 / cell));
       if (!taken.has(at.join())) taken.set(at.join(), f);
     }
@@ -100,18 +110,19 @@ function chooseFaces(rest, carriers, M, most) {
 }
 
 function prepareArrows(magnetization, most) {
-  const M = magnetization.values.data, rest = magnetization.rest.data, carriers = magnetization.carriers.data;
-  const { faces, length } = chooseFaces(rest, carriers, M, most);
-  const greatest = Math.max(...faces.map((f) => Math.hypot(M[3 * f], M[3 * f + 1], M[3 * f + 2])), 0);
-  return { M, rest, carriers, faces, length: 0.9 * length, greatest };
+  const { values } = magnetization, sizes = greatestOf(values), rest = magnetization.rest.data, carriers = magnetization.carriers.data;
+  const { faces, length } = chooseFaces(rest, carriers, sizes, most);
+  const greatest = Math.max(...faces.map((f) => sizes[f]), 0);
+  return { values, rest, carriers, faces, length: 0.9 * length, greatest };
 }
 
-/* Strokes of the arrows with the body's points at x. */
-function arrowStrokes(arrows, x, ratio) {
+/* Strokes of the arrows at frame `at`, with the body's points at x. */
+function arrowStrokes(arrows, at, x, ratio) {
+  const row = rowNear(arrows.values, at);
   const count = arrows.faces.length, from = new Float32Array(3 * count), to = new Float32Array(3 * count);
   const colors = new Uint8Array(4 * count), widths = new Float32Array(count).fill(1.6 * ratio);
   arrows.faces.forEach((f, k) => {
-    const v = arrows.carriers.subarray(4 * f, 4 * f + 4), M = arrows.M.subarray(3 * f, 3 * f + 3);
+    const v = arrows.carriers.subarray(4 * f, 4 * f + 4), M = row.subarray(3 * f, 3 * f + 3);
     const now = carry(frameOf(arrows.rest, v), frameOf(x, v), M);
     for (let i = 0; i < 3; i++) {
       const middle = (x[3 * v[0] + i] + x[3 * v[1] + i] + x[3 * v[2] + i]) / 3, half = (0.5 * arrows.length * now[i]) / arrows.greatest;
