@@ -7,6 +7,7 @@ import sys
 import unittest
 import xml.etree.ElementTree as tree
 import zipfile
+import zlib
 
 import numpy as np
 
@@ -376,6 +377,20 @@ class Moving(unittest.TestCase):
         self.assertLess(abs(points - z["VTKHDF/Points"][0][: len(points)]).max(), 1e-8)
         lines = glb.numbers(primitive["indices"]).reshape(-1, 2)
         self.assertTrue(np.array_equal(lines, [[i, i + 1] for i in range(len(z["rod/x"]) - 1)]))
+
+    def test_nowhere(self):
+        """A point that is no number is in no file."""
+        with open("moving.vtkhdf", "rb") as file:
+            stored = file.read()
+        x = self.z["state/x"].tobytes()
+        self.assertIn(x, stored)
+        stored = stored[:-20].replace(x, np.full(3, np.nan).tobytes() + x[24:])
+        with open("nowhere.vtkhdf", "wb") as file:
+            file.write(stored + b"SLENDRCK" + len(stored).to_bytes(8, "little") + zlib.crc32(stored).to_bytes(4, "little"))
+        for ending in ("ply", "obj"):
+            words = slender("export", "nowhere.vtkhdf", "-o", "nowhere." + ending, code=3)
+            self.assertIn("point 0 is nowhere: it is no number", words)
+            self.assertFalse(os.path.exists("nowhere." + ending))
 
     def test_refusals(self):
         for options, code, words in (
