@@ -106,8 +106,8 @@ function prepareArrows(magnetization, most) {
   return { M, rest, carriers, faces, length: 0.9 * length, greatest };
 }
 
-/* Strokes of the arrows with the body's points at x. */
-function arrowStrokes(arrows, x, ratio) {
+/* Strokes of the arrows with the body's points at x, of one ink [r, g, b]. */
+function arrowStrokes(arrows, x, ink, ratio) {
   const count = arrows.faces.length, from = new Float32Array(3 * count), to = new Float32Array(3 * count);
   const colors = new Uint8Array(4 * count), widths = new Float32Array(count).fill(1.6 * ratio);
   arrows.faces.forEach((f, k) => {
@@ -118,7 +118,7 @@ function arrowStrokes(arrows, x, ratio) {
       from[3 * k + i] = middle - half;
       to[3 * k + i] = middle + half;
     }
-    colors.set([20, 20, 22, 235], 4 * k);
+    colors.set([...ink, 235], 4 * k);
   });
   return { from, to, colors, widths };
 }
