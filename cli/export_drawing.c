@@ -116,7 +116,7 @@ RunStatus export_drawing(Result *result, const char *language, DrawingSplit spli
             err,
             "%s: a drawing is exported as .svg, .gcode or .hpgl, numbers as .csv, with --dataset, and .npz",
             path);
-        return RUN_CANNOT_WRITE;
+        return RUN_REFUSED;
     }
     if (!language) language = usual;
     RunStatus status = RUN_CANNOT_WRITE;

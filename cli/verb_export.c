@@ -254,7 +254,7 @@ static RunStatus write_export(Result *result, const Format *format, const Export
         return RUN_USAGE;
     }
     error_set(err, "%s: a mesh is exported as .obj, .ply, .glb, .stl or .3mf", what->output);
-    return RUN_CANNOT_WRITE;
+    return RUN_REFUSED;
 }
 
 static RunStatus export_result(const Export *what, Error *err)

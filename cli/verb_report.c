@@ -8,7 +8,7 @@
 
 static const char usage[] =
     "report RESULT.. [-o FILE.html] [--frames N]\n"
-    "  -o FILE     default: the first result's name with .html\n"
+    "  -o FILE     .html or .htm; default: the first result's name with .html\n"
     "  --frames N  how many of each result's frames are in it, evenly spread, at most; default: as many as\n"
     "              10 MB hold\n"
     "  One file that any browser shows, without a net: frames to play, to turn and to zoom, colours, "
@@ -51,12 +51,15 @@ int verb_report(int argc, char **argv)
     char **results;
     int count, code;
     const Option options[] = {
-        {"output", .letter = 'o', .kind = OPTION_TEXT, .value = &output},
+        {"output", .letter = 'o', .kind = OPTION_TEXT, .value = &output,
+         .words = OPTION_WORDS(".html", ".htm")},
         {"frames", .kind = OPTION_INT, .value = &def.frames, .least = 1, .most = 100000},
     };
     if (!options_parse_all(argc, argv, usage, options, sizeof options / sizeof *options, &results, &count,
                            &code))
         return code;
+    if (output && !path_has_ending(output, ".html") && !path_has_ending(output, ".htm"))
+        return verb_fail(RUN_USAGE, "-o FILE must end in .html or .htm: a report is a page of HTML");
     Error err;
     char *base = path_without_ending(results[0], ".vtkhdf"),
          *page = output ? mem_text(output) : mem_format("%s.html", base);

@@ -1,6 +1,7 @@
 #include "export/mesh.h"
 #include "base/memory.h"
 #include "io/result_groups.h"
+#include <math.h>
 
 /* Of a solid: faces are those of its skin, groups those of all its boundary; of the others the faces that are shown. */
 static bool take_shown(Result *result, MeshFile *file, Error *err)
@@ -72,12 +73,20 @@ static bool read_points(Result *result, int frame, Array *points, Error *err)
                           3, points, err);
 }
 
+bool export_check_points(const double (*x)[3], int count, Error *err)
+{
+    for (int i = 0; i < 3 * count; i++)
+        if (!isfinite(x[i / 3][i % 3])) return error_set(err, "point %d is nowhere: it is no number", i / 3);
+    return true;
+}
+
 bool export_mesh_read(Result *result, int frame, MeshFile *file, Error *err)
 {
     Array points = {0};
     *file = (MeshFile){0};
     if (!read_points(result, frame, &points, err)) return false;
-    bool ok = read_faces(result, points.dims[0], file, err);
+    bool ok = read_faces(result, points.dims[0], file, err) &&
+              export_check_points((const double(*)[3])points.data, points.dims[0], err);
     file->vertices = mem_copy(points.data, (size_t)points.dims[0], sizeof *file->vertices);
     array_clear(&points);
     return ok;

@@ -5,7 +5,11 @@
 
 enum { MESH_FINAL = -1, MESH_REST = -2 };
 
-/* At a frame, or one of these. Clear the file in any case. False and a sentence where there is no such frame, or no mesh. */
+/* False and a sentence where one of them is no number. */
+bool export_check_points(const double (*x)[3], int count, Error *err);
+
+/* At a frame, or one of these. Clear the file in any case. False and a sentence where there is no such frame, no mesh, or a
+ * point is no number. */
 bool export_mesh_read(Result *result, int frame, MeshFile *file, Error *err);
 
 /* The magnetisation at the end: rows of the tetrahedra, then of the faces; NaN where they have none. */

@@ -1,4 +1,5 @@
 #include "export/moments.h"
+#include "export/mesh.h"
 #include <math.h>
 
 bool moments_choose(ShowData *data, const ExportDef *def, Moments *moments, Error *err)
@@ -28,8 +29,5 @@ const double (*moments_points(ShowData *data, int frame, const char *final, int 
     if (!ok) return NULL;
     const double(*x)[3] = show_keep(data, points);
     if (points.dims[0] < count) return error_set(err, "there are fewer points in it than the body has"), NULL;
-    for (int i = 0; i < 3 * count; i++)
-        if (!isfinite(x[i / 3][i % 3]))
-            return error_set(err, "point %d is nowhere: it is no number", i / 3), NULL;
-    return x;
+    return export_check_points(x, count, err) ? x : NULL;
 }

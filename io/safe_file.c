@@ -180,7 +180,10 @@ bool safe_file_read(const char *path, void **bytes, size_t *size, Error *err)
     close(file);
     if (!ok) error_set(err, "%s: cannot be read: %s", path, strerror(errno));
     if (ok && (total < TRAILER || memcmp(all + total - TRAILER, MARK, sizeof MARK)))
-        ok = error_set(err, "%s is no result of slender, or it has been cut off", path);
+        ok = error_set(err,
+                       "%s is no result of slender, or it has been cut off, or another program has opened it "
+                       "for writing (h5py's 'r+'): open results with 'r'",
+                       path);
     if (ok) {
         make_trailer(all, total - TRAILER, trailer);
         ok = !memcmp(trailer, all + total - TRAILER, TRAILER) ||

@@ -22,6 +22,7 @@ static void add_chart(Document *document, const Chart *chart)
     document_open(document, NULL, '{');
     add_axis(document, "x", chart->x_label, chart->x_unit);
     add_axis(document, "y", chart->y_label, chart->y_unit);
+    document_flag(document, "of_stages", chart->of_stages);
     document_flag(document, "linear", chart->y_axis == CHART_LINEAR);
     document_open(document, "series", '[');
     for (int k = 0; k < chart->series_count; k++) {
@@ -60,6 +61,7 @@ static bool chart_energies(ShowData *data, Chart *chart)
     ChartSeries *series = show_block(data, LINES_MAX, sizeof *series);
     *chart = (Chart){.x_label = "stage",
                      .x_unit = "",
+                     .of_stages = true,
                      .y_label = "energy",
                      .y_unit = "J",
                      .y_axis = CHART_LINEAR,
@@ -113,6 +115,7 @@ static bool chart_contact(ShowData *data, Chart *chart)
     ChartSeries *series = show_block(data, LINES_MAX, sizeof *series);
     *chart = (Chart){.x_label = timed ? "t" : "stage",
                      .x_unit = timed ? "s" : "",
+                     .of_stages = !timed,
                      .y_label = "force of contact",
                      .y_unit = "N",
                      .y_axis = CHART_LINEAR,

@@ -6,6 +6,7 @@
 #include "report/page.h"
 #include "report/report_private.h"
 #include "spline/drawn.h"
+#include "view/show_curves.h"
 #include "view/ticks.h"
 #include <math.h>
 #include <stdio.h>
@@ -130,16 +131,20 @@ static void add_frames(const ReportPart *part)
                               : show_frame_name(part->data, part->frames[k]));
     }
     document_close(document);
-    if (part->timed) {
-        document_open(document, "times", '[');
-        for (int k = 0; k < part->frame_count; k++)
-            document_number(document, NULL, show_frame_time(part->data, part->frames[k]));
-        document_close(document);
-    }
+    document_open(document, part->timed ? "times" : "stages", '[');
+    for (int k = 0; k < part->frame_count; k++)
+        document_number(document, NULL,
+                        part->timed ? show_frame_time(part->data, part->frames[k]) : part->frames[k]);
+    document_close(document);
     document_close(document);
 }
 
 /* ---- Results ---- */
+
+static bool is_shown(const ShowData *data)
+{
+    return drawn_has(data->result) || result_has(data->result, "slender/faces") || show_curves_has(data);
+}
 
 static bool add_result(Document *document, ShowData *data, ShowDef *show, const char *path,
                        const ReportDef *def, Error *err)
@@ -155,6 +160,7 @@ static bool add_result(Document *document, ShowData *data, ShowDef *show, const 
     }
     choose_frames(&part, def);
     add_frames(&part);
+    if (!is_shown(data)) return error_set(err, "there is no body and no drawing in it: nothing to show");
     bool ok = drawn_has(data->result)
                   ? report_drawing(&part, err)
                   : report_body(&part, err) && report_curves(&part, err) && report_surroundings(&part, err);

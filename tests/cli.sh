@@ -203,8 +203,11 @@ for output in beam.run ./beam.run beam.run-wal beam.run-shm beam.run-lock beam.p
     expect 4 "$program" mesh own.yaml -o $output; says "a run's journal"
 done
 expect 4 "$program" picture beam.vtkhdf -o beam.png2.png; says "a run's journal"
-expect 4 "$program" report beam.vtkhdf -o beam.run-wal; says "a run's journal"
-expect 4 "$program" report again.vtkhdf beam.vtkhdf -o ./beam.vtkhdf; says "but it is read here"
+for output in beam.run-wal again.vtkhdf own.yaml a.pdf .html; do
+    expect 2 "$program" report beam.vtkhdf -o $output; says "must end in .html or .htm"
+done
+cp beam.vtkhdf beam.html
+expect 4 "$program" report again.vtkhdf beam.html -o ./beam.html; says "but it is read here"; same beam.html beam.vtkhdf; rm beam.html
 expect 4 "$program" export beam.run -o again.vtkhdf.run; says "exported as .vtkhdf"
 expect 4 "$program" mesh own.yaml -o ./own.yaml; says "but it is read here"
 expect 4 "$program" run own.xdmf --quiet --no-picture; says "but it is read here"
@@ -219,8 +222,8 @@ mkdir aside; (cd aside; expect 4 "$program" export ../star.vtkhdf -o ../star.obj
 expect 2 "$program" export star.vtkhdf -o star.yaml --dataset state/x; says "numbers are exported as .csv"
 expect 2 "$program" export star.vtkhdf -o star.yaml; says "a mesh as .obj"
 grep -q "star.obj" star.yaml || { echo "the scene is written over"; bad=1; }
-expect 4 "$program" report beam.vtkhdf star.vtkhdf -o star.obj; says "the scene is made of it"
-ln -s star.obj star.svg
+ln -s star.obj star.svg; ln -s star.obj star.html
+expect 4 "$program" report beam.vtkhdf star.vtkhdf -o star.html; says "the scene is made of it"
 expect 4 "$program" picture star.vtkhdf -o star.svg; says "the scene is made of it"
 echo junk > junk.vtkhdf; echo junk > junk.run
 for input in missing.vtkhdf junk.vtkhdf; do # what cannot be read is refused by every verb alike

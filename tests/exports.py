@@ -7,6 +7,7 @@ import sys
 import unittest
 import xml.etree.ElementTree as tree
 import zipfile
+import zlib
 
 import numpy as np
 
@@ -34,6 +35,16 @@ def run(name, scene, *settings):
 def export(name, output, *options):
     said = slender("export", name + ".vtkhdf", "-o", output, *options)
     return said
+
+
+def changed(name, source, old, new):
+    """The result with other bytes, and a check sum that is right."""
+    with open(source + ".vtkhdf", "rb") as file:
+        stored = file.read()[:-20]
+    assert old in stored
+    stored = stored.replace(old, new)
+    with open(name + ".vtkhdf", "wb") as file:
+        file.write(stored + b"SLENDRCK" + len(stored).to_bytes(8, "little") + zlib.crc32(stored).to_bytes(4, "little"))
 
 
 def numbers(name):
@@ -376,6 +387,21 @@ class Moving(unittest.TestCase):
         self.assertLess(abs(points - z["VTKHDF/Points"][0][: len(points)]).max(), 1e-8)
         lines = glb.numbers(primitive["indices"]).reshape(-1, 2)
         self.assertTrue(np.array_equal(lines, [[i, i + 1] for i in range(len(z["rod/x"]) - 1)]))
+
+    def test_nowhere(self):
+        """A point that is no number is in no file."""
+        x = self.z["state/x"].tobytes()
+        changed("nowhere", "moving", x, np.full(3, np.nan).tobytes() + x[24:])
+        for ending in ("ply", "obj"):
+            words = slender("export", "nowhere.vtkhdf", "-o", "nowhere." + ending, code=3)
+            self.assertIn("point 0 is nowhere: it is no number", words)
+            self.assertFalse(os.path.exists("nowhere." + ending))
+
+    def test_nothing(self):
+        """A mesh whose faces are not there is no page."""
+        changed("faceless", "moving", b"faces\0", b"facez\0")
+        self.assertIn("there is no body and no drawing in it", slender("report", "faceless.vtkhdf", code=3))
+        self.assertFalse(os.path.exists("faceless.html"))
 
     def test_refusals(self):
         for options, code, words in (

@@ -242,6 +242,18 @@ def two():
     page("two")
     check("two panels", browser.evaluate("document.querySelectorAll('canvas').length") == 2)
     check("one time", words() == "t = 40 ms", words())
+    heads = browser.evaluate("[...document.querySelectorAll('.panel h2 small:last-child')].map((head) => head.textContent)")
+    check("each with its moment", heads[0] == "t = 0.04 s" and heads[1].startswith("t = "), heads)
+
+
+def stages():
+    """Charts over what a sequence goes through have the line of the stage; arrows are light in the dark."""
+    page("stages", "theme=dark&at=0.5&field=&edges=0&view=top")
+    places = browser.evaluate("[...document.querySelectorAll('#charts .now')].map((line) => line.getAttribute('visibility') + Number(line.getAttribute('x1')))")
+    check("lines of the stage", len(places) == 2 and set(places) == {"visible233"}, places)
+    names = browser.evaluate("document.getElementById('charts').textContent")
+    check("with a prefix", "flux density, mT" in names, names)
+    check("light arrows", (panel()[:-90].min(axis=2) > 225).sum() > 100)
 
 
 def broken():
@@ -254,7 +266,7 @@ def broken():
         check("a broken page says so", "cannot be read" in str(error), error)
 
 
-for part in (sheet_from_above, colors_of_a_frame, lines, sheet_sinks, keys, calm, lost, printed, touch, theme, rod, drawing, two):
+for part in (sheet_from_above, colors_of_a_frame, lines, sheet_sinks, keys, calm, lost, printed, touch, theme, rod, drawing, two, stages):
     part()
 check("no errors", not browser.errors, browser.errors)
 broken()

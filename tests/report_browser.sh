@@ -24,7 +24,13 @@ expect 0 "$program" run "$here/scene_rod_simulate.yaml" --no-picture --quiet -o 
 expect 0 "$program" run "$here/scene_draw.yaml" --no-picture --quiet -o drawing --set spline.rounds=0
 sed 's/"x < 0.02 .*"/"10^(4 + 150*x)"/; s/gravity: .*/gravity: [0, 0, 0]/' sheet.yaml > stiff.yaml
 expect 0 "$program" run stiff.yaml --no-picture --quiet --set time.steps=1
-for name in sheet stiff rod drawing; do expect 0 "$program" report $name.vtkhdf; done
+sed '/^time:/d; /gravity:/d; s/simulate/equilibrium/' sheet.yaml > stages.yaml
+cat >> stages.yaml <<'END_OF_SCENE'
+probes: {tip: {group: tip}}
+sequence: {flux_density: {from: [0, 0, 0], to: [0, 0, 2 mT], count: 3}}
+END_OF_SCENE
+expect 0 "$program" run stages.yaml --no-picture --quiet
+for name in sheet stiff rod drawing stages; do expect 0 "$program" report $name.vtkhdf; done
 expect 0 "$program" report sheet.vtkhdf rod.vtkhdf -o two.html
 [ $bad = 0 ] || exit 1
 mkdir profile

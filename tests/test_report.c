@@ -410,8 +410,15 @@ static void test_stages(void **unused)
         "slender: 1\njob: equilibrium\nshell:\n  mesh: {shape: sheet, size: [40 mm, 20 mm], cells: [4, 2]}\n"
         "  thickness: 1 mm\n  young: 1 MPa\n  poisson: 0.3\n  magnetization: [1.0e+4, 0, 0]\n"
         "fix: [{group: root, clamp: true}]\n"
+        "probes: {tip: {group: tip}}\n"
         "sequence: {flux_density: {from: [0, 0, 0], to: [0, 0, 1 mT], count: 3}}\n"));
-    Page page = report(0);
+    Page page = report(2);
+    assert_non_null(strstr(page.json, "\"stages\":[0,2]"));
+    const char *probed = strstr(page.json, "{\"x\":{\"label\":\"flux density\",\"unit\":\"T\"}");
+    assert_non_null(probed);
+    assert_int_equal(strncmp(after(probed, "of_stages"), "true", 4), 0);
+    page_clear(&page);
+    page = report(0);
     assert_non_null(strstr(page.json, "\"labels\":[\"stage 0: 0 T\",\"stage 1: 500 µT\",\"stage 2: 1 mT\"]"));
     Array energy = read_all(result, "slender/stages/energy/bending");
     const char *chart = strstr(page.json, "\"y\":{\"label\":\"energy\",\"unit\":\"J\"}");

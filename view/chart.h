@@ -21,6 +21,7 @@ typedef struct Chart {
     const char *x_label, *x_unit; /* "evaluation", "" */
     double x_low, x_high;         /* both 0: from the first to the last number */
     bool x_counts;                /* x are whole numbers, and so are its ticks */
+    bool of_stages;               /* row k of its lines is stage k of a sequence */
     const char *y_label, *y_unit; /* "objective", "m^2"; shown with a fitting SI prefix or power of ten */
     ChartAxis y_axis;
     int series_count;

@@ -217,6 +217,7 @@ static Chart chart_of(const Probed *probed, int unit, char *const *paths, int co
     Chart chart = {.x_label = probed->x_label,
                    .x_unit = probed->x_unit,
                    .x_counts = probed->x_label == counts[probed->kind].label && probed->x_unit[0] == 0,
+                   .of_stages = !strcmp(counts[probed->kind].name, "stage"),
                    .y_label = units[unit].label,
                    .y_unit = units[unit].unit,
                    .y_axis = CHART_LINEAR};

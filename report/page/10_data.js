@@ -52,14 +52,17 @@ function extent(values) {
 const PREFIXES = { "-12": "p", "-9": "n", "-6": "\u00b5", "-3": "m", 0: "", 3: "k", 6: "M", 9: "G" };
 const PREFIXED = /^(m|N|T|J|Pa|A\/m|s|Hz|W|N m|V)$/;
 
-/* Three digits; units that take a prefix get one: "12.5 mm". */
+/* The unit in which a number of that size is said, with a prefix where it takes one, and how large it is: "mm", 1e-3. */
+function prefixed(size, unit) {
+  const power = 3 * Math.floor(Math.log10(Math.abs(size)) / 3 + 1e-9);
+  return PREFIXED.test(unit) && power in PREFIXES ? { unit: PREFIXES[power] + unit, scale: 10 ** power } : { unit, scale: 1 };
+}
+
+/* Three digits: "12.5 mm". */
 function say(value, unit) {
   if (!Number.isFinite(value)) return "\u2013";
-  if (value !== 0 && PREFIXED.test(unit)) {
-    const power = 3 * Math.floor(Math.log10(Math.abs(value)) / 3 + 1e-9);
-    if (power in PREFIXES) return `${trim(value / 10 ** power)} ${PREFIXES[power]}${unit}`;
-  }
-  return `${trim(value)} ${unit}`.trim();
+  const named = prefixed(value, unit);
+  return `${trim(value / named.scale)} ${named.unit}`.trim();
 }
 
 function trim(value) {

@@ -116,8 +116,8 @@ function prepareArrows(magnetization, most) {
   return { values, rest, carriers, faces, length: 0.9 * length, greatest };
 }
 
-/* Strokes of the arrows at frame `at`, with the body's points at x. */
-function arrowStrokes(arrows, at, x, ratio) {
+/* Strokes of the arrows at frame `at`, with the body's points at x, of one ink [r, g, b]. */
+function arrowStrokes(arrows, at, x, ink, ratio) {
   const row = rowNear(arrows.values, at);
   const count = arrows.faces.length, from = new Float32Array(3 * count), to = new Float32Array(3 * count);
   const colors = new Uint8Array(4 * count), widths = new Float32Array(count).fill(1.6 * ratio);
@@ -129,7 +129,7 @@ function arrowStrokes(arrows, at, x, ratio) {
       from[3 * k + i] = middle - half;
       to[3 * k + i] = middle + half;
     }
-    colors.set([20, 20, 22, 235], 4 * k);
+    colors.set([...ink, 235], 4 * k);
   });
   return { from, to, colors, widths };
 }

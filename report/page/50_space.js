@@ -55,7 +55,7 @@ function makeSpacePanel(result, page) {
     pointsNow = rowAt(body.points, at);
     gl.drawMesh(offset, corners(pointsNow, faces), faceColors(faces.length / 3, (f) => (values ? scale.color(values[f]) : plain)),
                 { edges: page.choice.edges ? 1 : 0 });
-    if (arrows && page.choice.arrows) gl.drawStrokes(offset, arrowStrokes(arrows, at, pointsNow, page.ratio), { head: true, raise: 0.004 });
+    if (arrows && page.choice.arrows) gl.drawStrokes(offset, arrowStrokes(arrows, at, pointsNow, parseColor(page.color("--ink")), page.ratio), { head: true, raise: 0.004 });
   }
 
   function drawTarget(gl, at) {
@@ -178,7 +178,7 @@ function makeSpacePanel(result, page) {
   }
 
   const lines = [...new Map(curves.filter((curve) => curve.name).map((curve) => [curve.name, curve.color]))];
-  return { canvas, draw, readAt, field, lines, count, times: result.frames.times, label: (at) => result.frames.labels[Math.min(Math.round(at), count - 1)] };
+  return { canvas, draw, readAt, field, lines, count, times: result.frames.times, stageOf: (at) => (result.frames.stages || [])[Math.round(at)], label: (at) => result.frames.labels[Math.min(Math.round(at), count - 1)] };
 }
 
 /* The names of a face's groups. */

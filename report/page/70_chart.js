@@ -46,15 +46,16 @@ function isLog(chart, values) {
 
 function addAxes(svg, chart, xOf, yOf, xs, ys, log) {
   const { left, right, top, bottom, width, height } = CHART, whole = !chart.x.unit;
+  const { unit, scale } = prefixed(Math.max(...xs.map(Math.abs)), chart.x.unit);
   for (const tick of roundTicks(...xs, 6, whole)) {
     svg.append(svgNode("line", { class: "grid", x1: xOf(tick), x2: xOf(tick), y1: top, y2: height - bottom }));
-    svg.append(svgNode("text", { x: xOf(tick), y: height - bottom + 13, "text-anchor": "middle" }, trim(tick)));
+    svg.append(svgNode("text", { x: xOf(tick), y: height - bottom + 13, "text-anchor": "middle" }, trim(tick / scale)));
   }
   for (const tick of log ? powerTicks(...ys) : roundTicks(...ys, 4, false)) {
     svg.append(svgNode("line", { class: "grid", x1: left, x2: width - right, y1: yOf(tick), y2: yOf(tick) }));
     svg.append(svgNode("text", { x: left - 5, y: yOf(tick) + 4, "text-anchor": "end" }, say(tick, chart.y.unit)));
   }
-  const label = chart.x.unit ? `${chart.x.label}, ${chart.x.unit}` : chart.x.label;
+  const label = unit ? `${chart.x.label}, ${unit}` : chart.x.label;
   svg.append(svgNode("text", { x: (left + width - right) / 2, y: height - 5, "text-anchor": "middle" }, label));
 }
 
@@ -73,7 +74,7 @@ function addSeries(svg, series, xOf, yOf) {
   svg.append(svgNode("path", { d: path, fill: "none", stroke: series.color, "stroke-width": 1.6 }));
 }
 
-/* Returns {svg, mark(x)}: a chart, whose moment can be set. */
+/* Returns {svg, mark(x), markRow(k)}: a chart, whose moment can be set, by its x or by the row of its lines. */
 function makeChart(chart, title) {
   const { width, height, left, right, top, bottom } = CHART;
   const values = chart.series.flatMap((s) => s.y.map((y) => (y === null ? NaN : y))), log = isLog(chart, values);
@@ -101,5 +102,6 @@ function makeChart(chart, title) {
     now.setAttribute("x1", xOf(place));
     now.setAttribute("x2", xOf(place));
   }
-  return { svg, mark };
+  const rows = chart.series.map((series) => series.x).find(Boolean);
+  return { svg, mark, markRow: (k) => mark(rows ? rows[k] : k) };
 }

@@ -58,11 +58,11 @@ function makePage(data) {
   };
   page.draw = () => {
     page.scaleFrames();
-    for (const panel of page.panels) panel.draw(page.frameOf(panel));
+    for (const panel of page.panels) panel.draw(page.frameOf(panel)), panel.head.textContent = page.panels.length > 1 ? panel.label(page.frameOf(panel)) : "";
     for (const { chart, kind, panel } of page.charts) {
+      if (kind === "stage") chart.markRow(panel.stageOf(page.frameOf(panel)));
       if (kind === "t") chart.mark(page.timed() ? page.time() : NaN);
       if (kind === "iteration") chart.mark(panel.iteration(page.frameOf(panel)));
-      if (kind === "stage") chart.mark(Math.round(page.frameOf(panel)));
     }
     document.getElementById("scrub").value = page.at;
     document.getElementById("moment").textContent = page.words();
@@ -112,16 +112,16 @@ function addPanel(page, result) {
   const panel = result.drawing ? makePaperPanel(result, page) : makeSpacePanel(result, page);
   const readout = node("div", { className: "readout" }), legend = node("div", { className: "legend" });
   panel.canvas.setAttribute("aria-label", `${result.name}: drag turns it, the wheel zooms`);
-  panel.legend = legend;
+  panel.legend = legend, panel.head = node("small", {});
   document.getElementById("panels").append(
-    node("article", { className: "panel" }, node("h2", {}, result.name, node("small", {}, result.status || "")),
+    node("article", { className: "panel" }, node("h2", {}, result.name, node("small", {}, result.status || ""), panel.head),
          node("div", { className: "stage" }, panel.canvas, readout), legend));
   if (panel.count === 0) panel.canvas.remove();
   addPointer(panel, page, readout);
   page.panels.push(panel);
   for (const one of result.charts) {
     const chart = makeChart(one, page.data.results.length > 1 ? result.name : "");
-    page.charts.push({ chart, kind: one.x.label, panel });
+    page.charts.push({ chart, kind: one.of_stages ? "stage" : one.x.label, panel });
     document.getElementById("charts").append(chart.svg);
   }
   addWords(page, result);
