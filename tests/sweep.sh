@@ -36,7 +36,7 @@ is energy "$(tail -1 single.csv)" "$(sed -n 6p all.csv | cut -d, -f7)"
 sweep zip 'vary: {zip: true, shell.thickness: [0.5 mm, 1 mm], shell.young: [1 MPa, 2 MPa]}'
 expect 0 "$program" sweep zip.yaml --quiet
 is zip "$(column shell.thickness zip.csv); $(column shell.young zip.csv)" "0.00050000000000000001 0.001; 1000000 2000000"
-printf 'shell.thickness; shell.gravity\n# a remark\n0.5 mm; [0, 0, -1]\n\n"1 mm";"[0, 0, -2]"\n' > runs.csv
+printf '\357\273\277shell.thickness; shell.gravity\n# a remark\n0.5 mm; [0, 0, -1]\n\n"1 mm";"[0, 0, -2]"\n' > runs.csv
 sweep file 'vary: {file: runs.csv}'
 expect 0 "$program" sweep file.yaml --quiet
 is file "$(column shell.gravity.z file.csv)" "-1 -2"
@@ -115,7 +115,7 @@ refused "no.yaml:3:21: shell has no key 'yong'; did you mean 'young'" 'vary: {sh
 refused "no.yaml:3:21: shell.mesh.file: .*none.obj: cannot be read" 'vary: {shell.mesh: [{file: none.obj}]}'
 refused "nothing is varied" 'collect: [status]'
 refused "all keys must have as many values, and shell.young has 2, shell.thickness 1" 'vary: {zip: true, shell.young: [1, 2], shell.thickness: [1]}'
-refused "must be a list of entries, not a text" 'vary: {shell.young: 1 MPa}'
+refused "must be a list of entries, not a number" 'vary: {shell.young: 1 MPa}'
 refused "give only one of zip, file" 'vary: {zip: true, file: runs.csv}'
 refused "the file lists all keys that differ, and 'shell.young' stands beside it" 'vary: {file: runs.csv, shell.young: [1]}'
 refused "none.csv: cannot be read" 'vary: {file: none.csv}'
@@ -125,6 +125,8 @@ printf 'shell.young,shell.thickness\n1 MPa\n' > short.csv
 refused "short.csv:2: 1 cells, and the first line names 2 keys" 'vary: {file: short.csv}'
 printf 'shell.young\n"1 MPa\n' > quote.csv
 refused "quote.csv:2: a quote without an end" 'vary: {file: quote.csv}'
+printf 'shell.young,shell.young\n1 MPa,2 MPa\n' > twin.csv
+refused "twin.csv:1: the key 'shell.young' is there twice" 'vary: {file: twin.csv}'
 printf 'shell.young\n1 Mpa\n' > unit.csv
 refused "unit.csv:2: shell.young.value must be a number in Pa" 'vary: {file: unit.csv}'
 printf 'shell.young\n1 MPa\n' > no.csv

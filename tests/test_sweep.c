@@ -122,7 +122,7 @@ static void test_runs_file(void **state)
     (void)state;
     RunsFile list;
     Error err;
-    write_file("test_sweep.csv", "# runs\na , \"b\"\r\n\n 1 mm,\"[0, \"\"1\"\"]\" \n2,3\n");
+    write_file("test_sweep.csv", "\xef\xbb\xbf# runs\na , \"b\"\r\n\n 1 mm,\"[0, \"\"1\"\"]\" \n2,3\n");
     if (!runs_file_read("test_sweep.csv", &list, &err)) fail_msg("%s", err.text);
     const char *const cells[] = {"a", "b", "1 mm", "[0, \"1\"]", "2", "3"};
     assert_int_equal(list.rows, 2);
@@ -130,8 +130,16 @@ static void test_runs_file(void **state)
     for (int i = 0; i < 6; i++) assert_string_equal(list.cells[i], cells[i]);
     assert_int_equal(list.line[2], 5);
     runs_file_clear(&list);
-    static const char *const wrong[] = {"a,b\n1\n",    "a,b\n1,2,3\n", "a,b\n1,\n", "a\n\"1\n",
-                                        "a\n\"1\"2\n", "a\n",          ""};
+    static const char *const wrong[] = {"a,b\n1\n",
+                                        "a,b\n1,2,3\n",
+                                        "a,b\n1,\n",
+                                        "a\n\"1\n",
+                                        "a\n\"1\"2\n",
+                                        "a\n",
+                                        "",
+                                        "a,b,a\n1,2,3\n",
+                                        "\xff\xfe"
+                                        "a\n1\n"};
     for (size_t k = 0; k < sizeof wrong / sizeof *wrong; k++) {
         write_file("test_sweep.csv", wrong[k]);
         if (runs_file_read("test_sweep.csv", &list, &err)) fail_msg("'%s' is read", wrong[k]);
