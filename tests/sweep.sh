@@ -81,7 +81,7 @@ slender: 1
 job: simulate
 shell: {mesh: {shape: sheet, size: [20 mm, 5 mm], cells: [4, 1]}, thickness: 1 mm, young: 1 MPa, poisson: 0.4, density: 1000 kg/m^3, gravity: [0, 0, -9.81]}
 fix: [{group: root, clamp: true}]
-time: {step: 1 ms, steps: 3000}
+time: {step: 1 ms, steps: 6000}
 output: {every: 100}
 END
 sweep whole 'vary: {shell.young: [1 MPa, 2 MPa]}
@@ -121,6 +121,7 @@ refused "the file lists all keys that differ, and 'shell.young' stands beside it
 refused "none.csv: cannot be read" 'vary: {file: none.csv}'
 refused "design.seed is varied already" 'vary: {design.seed: [1]}
 seeds: 2'
+refused "no.yaml:3:8: seeds: seeds need a design, and .*strip.yaml has none" 'seeds: 2'
 printf 'shell.young,shell.thickness\n1 MPa\n' > short.csv
 refused "short.csv:2: 1 cells, and the first line names 2 keys" 'vary: {file: short.csv}'
 printf 'shell.young\n"1 MPa\n' > quote.csv
@@ -129,6 +130,12 @@ printf 'shell.young,shell.young\n1 MPa,2 MPa\n' > twin.csv
 refused "twin.csv:1: the key 'shell.young' is there twice" 'vary: {file: twin.csv}'
 printf 'shell.young\n1 Mpa\n' > unit.csv
 refused "unit.csv:2: shell.young.value must be a number in Pa" 'vary: {file: unit.csv}'
+printf 'shell.gravity\n"[0, 0"\n' > open.csv
+refused "open.csv:2: shell.gravity: no YAML: did not find expected" 'vary: {file: open.csv}'
+printf 'shell[0\n1\n' > key.csv
+refused "key.csv:2: shell\[0: the key is malformed" 'vary: {file: key.csv}'
+printf 'fix\n[]\n' > free.csv
+refused "strip.yaml:1:1: .*nothing holds.*; found in run 1, .*free.csv:2" 'vary: {file: free.csv}'
 printf 'shell.young\n1 MPa\n' > no.csv
 refused "the sweep's own table will have this name" 'vary: {file: no.csv}'
 sweep no 'vary: {shell.young: [1 MPa]}'
@@ -136,6 +143,12 @@ expect 4 "$program" sweep no.yaml; says "'no.csv' is there, and no table of this
 sed -i 's/strip.yaml/none.yaml/' no.yaml; expect 3 "$program" sweep no.yaml; says "no.yaml:2:8: scene: .*none.yaml: cannot be read"
 echo 'scene: strip.yaml' > no.yaml; expect 3 "$program" sweep no.yaml; says "a sweep must have the key .sweep: 1."
 expect 2 "$program" sweep all.yaml --list --collect
+expect 2 "$program" sweep all.yaml --retry --force; says "one of them can be given"
+for name in . .. ./ out/ ''; do expect 2 "$program" sweep all.yaml -o "$name"; says "the name of a new folder"; done
+expect 3 "$program" sweep strip.yaml; says "strip.yaml:1:.*it is a scene, which is one run: slender run strip.yaml"
+for verb in run check; do
+    expect 3 "$program" $verb all.yaml; says "it is a sweep, .*: slender sweep all.yaml"; is "$verb" "$(wc -l < err.txt)" 1
+done
 expect 2 "$program" sweep all.yaml --index 7
 expect 2 "$program" sweep all.yaml -- --partition=x
 expect 1 "$program" sweep bad.yaml --index 1

@@ -77,7 +77,7 @@ static void test_order(void **state)
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         Sweep sweep;
         char *report, runs[100] = "",
-                      *text = mem_format("sweep: 1\nscene: test_sweep.yaml\n%s", rows[k].vary);
+                      *text = mem_format("sweep: 1\nscene: " SOURCE_DIR "/scenes/letter_a.yaml\n%s", rows[k].vary);
         write_file("test_sweep.yaml", text);
         if (!sweep_read("test_sweep.yaml", NULL, &sweep, &report)) fail_msg("%s", report);
         for (int r = 0; r < sweep.run_count; r++) {
