@@ -105,7 +105,7 @@ bool check_run(const Sweep *sweep, int run, bool force, RunState *state, Problem
     *state = (RunState){0};
     bool ok = sweep_load(sweep, run, &file, &scene);
     if (ok) *state = state_read(sweep, run, &scene);
-    if (ok && state->record == RECORD_OTHER && !force) {
+    if (ok && record_is_kept(state->record) && !force) {
         add(problems, mem_text(state->wrong.text));
         ok = false;
     } else if (ok && !is_settled(state)) {

@@ -64,6 +64,14 @@ sed -i 's/1 mm\]/1 mm, 2 mm]/; s/3 MPa\]/3 MPa, 4 MPa]/' zip.yaml
 expect 0 "$program" sweep zip.yaml --index 3; exists zip/0003.vtkhdf
 expect 0 "$program" sweep zip.yaml; is more "$(column status zip.csv)" "converged converged converged"
 
+# ---- A result that was deleted is made again, one that is damaged is kept until it is said ----
+rm zip/0002.vtkhdf zip/0002.run
+expect 0 "$program" sweep zip.yaml; exists zip/0002.vtkhdf
+truncate -s 1000 zip/0001.vtkhdf
+expect 0 "$program" sweep zip.yaml --list; says "^1  .*damaged$"
+expect 3 "$program" sweep zip.yaml; says "zip/0001.vtkhdf .*; with --force it is replaced"
+expect 0 "$program" sweep zip.yaml --force; is mended "$(column status zip.csv)" "converged converged converged"
+
 # ---- Runs that fail and do not converge end nothing else ----
 sweep bad 'vary: {solver.max_iterations: [1, 50], load_steps: [1, 2]}
 collect: [final/energy/bending]'
@@ -101,6 +109,14 @@ expect 76 "$program" sweep parts.yaml --index 1 # the run that the sweep has lef
 kill -9 "$child"; while kill -0 "$child" 2> err.txt; do sleep 0.02; done
 expect 0 "$program" sweep parts.yaml --jobs 2 --quiet
 same whole.csv parts.csv
+
+# ---- What another process was at, and has done by the end, is done ----
+sweep both 'vary: {time.steps: [2000, 20000]}'
+sed -i 's/strip.yaml/motion.yaml/' both.yaml
+"$program" sweep both.yaml --index 1 --quiet & pid=$!
+until "$program" sweep both.yaml --list | grep -q '^1 .*running'; do kill -0 $pid 2> err.txt || break; done
+expect 0 "$program" sweep both.yaml --jobs 1; says "run 1 was done elsewhere"; says "2 done"; says "0 under way elsewhere"
+wait $pid; is "the other one" $? 0
 
 # ---- What is refused, each wrong value once, before anything is made ----
 refused() { # words, what the file says after its scene

@@ -76,8 +76,9 @@ static void test_order(void **state)
     };
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         Sweep sweep;
-        char *report, runs[100] = "",
-                      *text = mem_format("sweep: 1\nscene: " SOURCE_DIR "/scenes/letter_a.yaml\n%s", rows[k].vary);
+        char *report,
+            runs[100] = "",
+            *text = mem_format("sweep: 1\nscene: " SOURCE_DIR "/scenes/letter_a.yaml\n%s", rows[k].vary);
         write_file("test_sweep.yaml", text);
         if (!sweep_read("test_sweep.yaml", NULL, &sweep, &report)) fail_msg("%s", report);
         for (int r = 0; r < sweep.run_count; r++) {
@@ -172,19 +173,23 @@ static void test_next(void **state)
         RecordState record;
         int code;
         const char *usual, *retry, *force;
+        bool bare;
     } rows[] = {
-        {RECORD_ABSENT, -1, "--quiet", "--quiet", "--quiet"},
-        {RECORD_ABSENT, 3, NULL, "--quiet", "--force"},
-        {RECORD_UNFINISHED, -1, "--resume", "--resume", "--resume"},
-        {RECORD_UNFINISHED, 137, NULL, "--resume", "--force"},
-        {RECORD_FINISHED, 0, NULL, NULL, NULL},
-        {RECORD_FINISHED, 1, NULL, NULL, NULL},
-        {RECORD_FINISHED, 4, NULL, "--quiet", "--force"},
-        {RECORD_FINISHED, -1, "--resume", "--resume", "--resume"},
-        {RECORD_OTHER, 0, NULL, NULL, "--force"},
+        {RECORD_ABSENT, -1, "--force", "--force", "--force", true},
+        {RECORD_ABSENT, 3, NULL, "--force", "--force", true},
+        {RECORD_ABSENT, -1, "--quiet", "--quiet", "--quiet", false},
+        {RECORD_ABSENT, 3, NULL, "--quiet", "--force", false},
+        {RECORD_UNFINISHED, -1, "--resume", "--resume", "--resume", false},
+        {RECORD_UNFINISHED, 137, NULL, "--resume", "--force", false},
+        {RECORD_FINISHED, 0, NULL, NULL, NULL, false},
+        {RECORD_FINISHED, 1, NULL, NULL, NULL, false},
+        {RECORD_FINISHED, 4, NULL, "--quiet", "--force", false},
+        {RECORD_FINISHED, -1, "--resume", "--resume", "--resume", false},
+        {RECORD_OTHER, 0, NULL, NULL, "--force", false},
+        {RECORD_DAMAGED, 0, NULL, NULL, "--force", false},
     };
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
-        RunState at = {.record = rows[k].record, .code = rows[k].code};
+        RunState at = {.record = rows[k].record, .code = rows[k].code, .bare = rows[k].bare};
         const char *next[] = {state_next(&at, false, false), state_next(&at, true, false),
                               state_next(&at, false, true)},
                    *wanted[] = {rows[k].usual, rows[k].retry, rows[k].force};
