@@ -27,6 +27,7 @@ is gravity "$(column shell.gravity.z all.csv)" "-9.8100000000000005 -1 -9.810000
 is status "$(column status all.csv)" "converged converged converged converged converged converged"
 is best "$(column best all.csv)" "0 0 0 0 0 1"
 same all/best.vtkhdf all/0006.vtkhdf; exists all.h5
+for unit in 'm/s^2' J; do tr -c '[:print:]' '\n' < all.h5 | grep -Fqx "$unit" || { echo "all.h5 has no unit $unit"; bad=1; }; done
 expect 0 "$program" run strip.yaml --set shell.thickness=2mm --set 'shell.gravity=[0, 0, -9.81]' -o single --no-picture --quiet
 is tip "$(tail -1 single_probes.csv | cut -d, -f2-4)" "$(sed -n 6p all.csv | cut -d, -f8-10)"
 expect 0 "$program" export single.vtkhdf -o single.csv --dataset final/energy/bending

@@ -118,6 +118,29 @@ static void test_quantities(void **state)
     }
 }
 
+/* Of a number, of a table's short form, within lists and below names; none of what has none. */
+static void test_units(void **state)
+{
+    (void)state;
+    static const char *const rows[][2] = {{"shell.thickness", "m"},
+                                          {"shell.thickness.value", "m"},
+                                          {"shell.gravity", "m/s^2"},
+                                          {"shell.gravity[2]", "m/s^2"},
+                                          {"flux_density", "T"},
+                                          {"fix[0].ball.radius", "m"},
+                                          {"cases[1].flux_density", "T"},
+                                          {"probes.tip", ""},
+                                          {"shell.poisson", ""},
+                                          {"shell.thickness.none", ""},
+                                          {"shell.young.value.none", ""},
+                                          {"none.thickness", ""},
+                                          {"job", ""},
+                                          {"shell[", ""},
+                                          {"", ""}};
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++)
+        assert_string_equal(yaml_unit(scene_table(), rows[k][0]), rows[k][1]);
+}
+
 static void test_runs_file(void **state)
 {
     (void)state;
@@ -256,6 +279,7 @@ int main(void)
                                        cmocka_unit_test_teardown(test_again, check_blocks),
                                        cmocka_unit_test_teardown(test_order, check_blocks),
                                        cmocka_unit_test_teardown(test_quantities, check_blocks),
+                                       cmocka_unit_test_teardown(test_units, check_blocks),
                                        cmocka_unit_test_teardown(test_runs_file, check_blocks),
                                        cmocka_unit_test_teardown(test_lock, check_blocks),
                                        cmocka_unit_test_teardown(test_next, check_blocks),
