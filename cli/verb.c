@@ -3,6 +3,7 @@
 #include "cli/say.h"
 #include "solve/kernels.h"
 #include "solve/ranks.h"
+#include "sweep/sweep.h"
 #include <stdio.h>
 #include <string.h>
 
@@ -30,10 +31,19 @@ static void start_ranks(const Scene *scene)
             ranks_count());
 }
 
+/* A sweep is many runs of a scene, and none itself. */
+static bool refuse_sweep(YamlFile *file, const char *path)
+{
+    if (yaml_says(file, "slender") || !yaml_says(file, sweep_table.version)) return false;
+    say(stderr, "%s: it is a sweep, which is many runs of a scene: slender sweep %s", path, path);
+    return true;
+}
+
 bool verb_load_scene(const char *path, const Settings *settings, YamlFile **file, Scene *scene)
 {
     *scene = (Scene){0};
     *file = yaml_read(path);
+    if (refuse_sweep(*file, path)) return false;
     for (int k = 0; settings && k < settings->count; k++) yaml_override(*file, settings->text[k]);
     if (!yaml_load(*file, scene_table(), scene)) {
         print_report(*file);

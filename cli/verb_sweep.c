@@ -63,6 +63,28 @@ static int processors(void)
     return count < 1 ? 1 : count > THREADS_MAX ? THREADS_MAX : count;
 }
 
+/* Is it more than a folder's path: is there a name for files beside others? */
+static bool is_name(const char *path)
+{
+    const char *slash = strrchr(path, '/'), *last = slash ? slash + 1 : path;
+    return *last && strcmp(last, ".") != 0 && strcmp(last, "..") != 0;
+}
+
+/* What excludes each other; NULL: nothing is wrong. */
+static const char *misuse_of(const SweepOptions *o)
+{
+    if (o->list + o->collect + o->slurm + (o->index > 0) > 1)
+        return "one of --list, --index, --collect and --slurm can be given";
+    if (o->retry && o->force)
+        return "--retry goes on with runs that have failed and --force begins them anew: one of them can be "
+               "given";
+    if (*o->sbatch && !o->slurm) return "what stands behind -- is for sbatch, with --slurm";
+    if (o->output && !is_name(o->output))
+        return "-o takes the name of a new folder and of the tables beside it, as results/thickness, and it "
+               "has none at its end";
+    return NULL;
+}
+
 static bool parse(int argc, char **argv, SweepOptions *o, int *code)
 {
     const Option options[] = {
@@ -80,12 +102,9 @@ static bool parse(int argc, char **argv, SweepOptions *o, int *code)
     argc = split(argc, argv, &o->sbatch);
     if (!options_parse(argc, argv, usage, options, sizeof options / sizeof *options, &o->file, code))
         return false;
-    if (o->list + o->collect + o->slurm + (o->index > 0) > 1) {
-        *code = verb_fail(RUN_USAGE, "one of --list, --index, --collect and --slurm can be given");
-        return false;
-    }
-    if (*o->sbatch && !o->slurm) {
-        *code = verb_fail(RUN_USAGE, "what stands behind -- is for sbatch, with --slurm");
+    const char *misuse = misuse_of(o);
+    if (misuse) {
+        *code = verb_fail(RUN_USAGE, misuse);
         return false;
     }
     if (o->index) o->jobs = 1;

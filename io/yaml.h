@@ -229,6 +229,10 @@ char *yaml_difference(const char *scene, const char *other, const char *const *i
 void yaml_files(const YamlTable *table, const void *scene,
                 void (*visit)(void *self, const char *key, const char *path), void *self);
 
+/* The unit of a key's numbers, "m" of "fix[0].ball.radius", in its table's words; "" where they are plain, or there is no
+ * such key. A table that may be written as one value alone has that value's. */
+const char *yaml_unit(const YamlTable *table, const char *key);
+
 /* JSON Schema (draft-07), for editors that complete and check scenes. */
 char *yaml_schema(const YamlTable *table, const char *title);
 

@@ -74,3 +74,41 @@ bool load_keys(Load *load, const YamlTable *table, const Node *node)
             ok = unknown_key(load, table, node, i);
     return ok;
 }
+
+/* ---- Units ---- */
+
+/* The row of a name; of one that its table leaves free, the row that takes it. */
+static const YamlField *row_of(const YamlTable *table, const char *name, int length)
+{
+    char key[80];
+    snprintf(key, sizeof key, "%.*s", length, name);
+    const YamlField *row = table_row(table, key);
+    return row ? row : table_rest(table);
+}
+
+static const char *short_unit(const YamlTable *table)
+{
+    for (const YamlField *row = table->fields; row->key; row++)
+        if (row->short_form && row->unit) return row->unit;
+    return "";
+}
+
+const char *yaml_unit(const YamlTable *table, const char *key)
+{
+    const YamlField *row = NULL;
+    const char *name;
+    int length, index;
+    bool named = false; /* the name of an entry comes next */
+    while (*key) {
+        if (!path_step(&key, &name, &length, &index)) return "";
+        if (index >= 0 || named) {
+            named = false;
+            continue;
+        }
+        if (row) table = row->table;
+        row = table ? row_of(table, name, length) : NULL;
+        if (!row) return "";
+        named = row->kind == FIELD_MAP && !row->rest;
+    }
+    return !row ? "" : row->table ? short_unit(row->table) : row->unit ? row->unit : "";
+}

@@ -43,17 +43,25 @@ static Node *make_container(const char *path, const char *origin)
     return node;
 }
 
+/* Is it made of names and indices, no deeper than a tree may be? */
+static bool is_key(const char *path)
+{
+    const char *name;
+    int length, index, depth = 0;
+    while (*path)
+        if (++depth >= YAML_MAX_DEPTH || !path_step(&path, &name, &length, &index)) return false;
+    return true;
+}
+
 /* Walks the key and puts the value there; takes the value in any case. */
 static bool put(YamlFile *file, const char *assignment, const char *key, Node *value)
 {
     Node **place = &file->root;
     const char *path = key, *name, *what = NULL;
-    int length, index, depth = 0;
-    while (*path) {
-        if (++depth >= YAML_MAX_DEPTH || !path_step(&path, &name, &length, &index)) {
-            what = "the key is malformed; it is like shell.mesh.n or fix[0].ball.radius";
-            break;
-        }
+    int length, index;
+    if (!is_key(key)) what = "the key is malformed; it is like shell.mesh.n or fix[0].ball.radius";
+    while (!what && *path) {
+        path_step(&path, &name, &length, &index);
         const char *step = index >= 0 ? "[" : name;
         bool leaf = *place && (*place)->kind == NODE_SCALAR;
         if (leaf || !*place) { /* a short form makes way for the long one, which remembers it */

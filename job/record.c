@@ -144,14 +144,22 @@ static bool is_same_run(const Scene *of, Result *result, const char *scene, cons
     return ok;
 }
 
+/* NULL and a sentence, with what helps. */
+static Result *open_earlier(const char *path, Error *err)
+{
+    Error why;
+    Result *result = result_open(path, &why);
+    if (!result) error_set(err, "%.900s; with --force it is replaced", why.text);
+    return result;
+}
+
 /* A finished result is replaced by one of the same scene, of the same files, only; and files beside it together with it. */
 static bool check_earlier(const Run *run, const char *journal, bool picture, Error *err)
 {
     if (access(run->result, F_OK) != 0)
         return access(journal, F_OK) == 0 || outputs_check_new(run->scene, run->result, picture, err);
-    Error why;
-    Result *result = result_open(run->result, &why);
-    if (!result) return error_set(err, "%.900s; with --force it is replaced", why.text);
+    Result *result = open_earlier(run->result, err);
+    if (!result) return false;
     char *scene = yaml_write(scene_table(), run->scene), *inputs = inputs_text(run->scene, err);
     bool ok = inputs != NULL;
     if (ok && is_finished(result))
@@ -203,8 +211,8 @@ RecordState record_state(const Scene *of, const char *name, Error *err)
     if (unfinished) state = journal_state(journal, of, scene, err);
     journal_close(journal, NULL);
     if (!unfinished && access(file, F_OK) == 0) {
-        Result *result = result_open(file, err);
-        state = result ? result_state(result, of, scene, err) : RECORD_OTHER;
+        Result *result = open_earlier(file, err);
+        state = result ? result_state(result, of, scene, err) : RECORD_DAMAGED;
         result_close(result);
     }
     if (state == RECORD_OTHER) error_prefix(err, "%s", unfinished ? path : file);

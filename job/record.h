@@ -25,7 +25,14 @@ typedef enum RecordState {
     RECORD_UNFINISHED, /* a journal of this scene           */
     RECORD_FINISHED,   /* a result of this scene            */
     RECORD_OTHER,      /* what a run of this scene would not replace: err says why */
+    RECORD_DAMAGED,    /* a result that cannot be read: it would not either         */
 } RecordState;
+
+/* Is it kept from a run of this scene? */
+static inline bool record_is_kept(RecordState state)
+{
+    return state == RECORD_OTHER || state == RECORD_DAMAGED;
+}
 
 /* Files are not changed; the run may live. */
 RecordState record_state(const Scene *scene, const char *name, Error *err);

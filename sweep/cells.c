@@ -20,6 +20,7 @@ void columns_clear(Columns *columns)
         for (int r = 0; r < columns->rows; r++) mem_free(columns->columns[k].cells[r]);
         mem_free(columns->columns[k].cells);
         mem_free(columns->columns[k].name);
+        mem_free(columns->columns[k].unit);
     }
     mem_free(columns->columns);
     *columns = (Columns){0};
@@ -46,12 +47,21 @@ static char *part_name(const char *name, int width, int part)
     return width == 3 ? mem_format("%s.%c", name, "xyz"[part]) : mem_format("%s[%d]", name, part);
 }
 
+/* NULL: there is none. */
+static const char *unit_of(const Cells *runs, int count)
+{
+    for (int r = 0; r < count; r++)
+        if (runs[r].unit) return runs[r].unit;
+    return NULL;
+}
+
 void columns_add_cells(Columns *columns, const char *name, Cells *runs)
 {
     int width = 1;
     for (int r = 0; r < columns->rows; r++) width = runs[r].count > width ? runs[r].count : width;
     for (int part = 0; part < width; part++) {
         Column *column = columns_add(columns, part_name(name, width, part));
+        column->unit = mem_text(unit_of(runs, columns->rows));
         for (int r = 0; r < columns->rows; r++)
             if (part < runs[r].count) column->cells[r] = runs[r].texts[part], runs[r].texts[part] = NULL;
     }
@@ -63,6 +73,7 @@ void cells_clear(Cells *cells)
 {
     for (int i = 0; i < cells->count; i++) mem_free(cells->texts[i]);
     mem_free(cells->texts);
+    mem_free(cells->unit);
     *cells = (Cells){0};
 }
 
@@ -107,6 +118,7 @@ static bool take(const Array *array, const char *path, Cells *cells, Error *err)
     if (count > CELLS_WIDTH_MAX)
         return error_set(err, "%s has %zu numbers, and %d can be columns: slender export has the others",
                          path, count, CELLS_WIDTH_MAX);
+    if (array->unit && *array->unit) cells->unit = mem_text(array->unit);
     for (size_t i = all - count; i < all; i++) add_number(cells, array, i);
     return true;
 }

@@ -7,6 +7,7 @@ enum { CELLS_WIDTH_MAX = 64 };
 
 typedef struct Column {
     char *name;
+    char *unit;   /* of its numbers; NULL: none */
     char **cells; /* [runs]; NULL: nothing there */
 } Column;
 
@@ -26,6 +27,7 @@ bool column_is_number(const Column *column, int rows);
 typedef struct Cells {
     int count;
     char **texts;
+    char *unit; /* as in Column */
 } Cells;
 
 /* Of a result; nothing where it has no such path. False and a sentence where that is too much for columns. */
@@ -35,5 +37,5 @@ bool cells_read(Result *result, const char *path, Cells *cells, Error *err);
 Cells cells_of_value(const char *text);
 void cells_clear(Cells *cells);
 
-/* Columns of what all the runs have, whose texts go into them. */
+/* Columns of what all the runs have, whose texts go into them, in the first unit that there is. */
 void columns_add_cells(Columns *columns, const char *name, Cells *runs);

@@ -17,6 +17,12 @@ static void add(Problems *problems, char *sentence)
     problems->sentences[count] = sentence;
 }
 
+/* Does a sentence begin with the key, or with what the key is in? */
+static bool names_key(const char *sentence, const char *key)
+{
+    return !strncmp(sentence, key, strcspn(key, ".["));
+}
+
 /* What is said of an assignment, "--set key=value: ..", is said of the value's place. NULL: it is of none. */
 static char *at_value(const Sweep *sweep, int run, const char *sentence)
 {
@@ -27,11 +33,28 @@ static char *at_value(const Sweep *sweep, int run, const char *sentence)
         size_t length = strlen(assignment);
         const char *rest = sentence + strlen(set) + length;
         if (!strncmp(sentence, set, strlen(set)) && !strncmp(sentence + strlen(set), assignment, length) &&
-            !strncmp(rest, colon, strlen(colon)))
-            placed = mem_format("%s%s%s", sweep_value(sweep, run, k)->where, colon, rest + strlen(colon));
+            !strncmp(rest, colon, strlen(colon))) {
+            const char *said = rest + strlen(colon), *key = sweep->keys[k].name;
+            bool named = names_key(said, key);
+            placed = mem_format("%s: %s%s%s", sweep_value(sweep, run, k)->where, named ? "" : key,
+                                named ? "" : colon, said);
+        }
         mem_free(assignment);
     }
     return placed;
+}
+
+/* What is said of a place in the scene, which the run's values may have brought about: once, with the first run that has it.
+ * Takes the sentence. */
+static void add_of_scene(const Sweep *sweep, int run, char *sentence, Problems *problems)
+{
+    bool told = false;
+    for (int k = 0; k < problems->count && !told; k++)
+        told = !strncmp(problems->sentences[k], sentence, strlen(sentence));
+    if (!told)
+        add(problems,
+            mem_format("%s; found in run %d, %s", sentence, run + 1, sweep_value(sweep, run, 0)->where));
+    mem_free(sentence);
 }
 
 static void add_errors(const Sweep *sweep, int run, const YamlFile *file, Problems *problems)
@@ -40,10 +63,16 @@ static void add_errors(const Sweep *sweep, int run, const YamlFile *file, Proble
     const YamlError *errors = yaml_errors(file, &count);
     for (int k = 0; k < count; k++) {
         const YamlError *error = &errors[k];
-        char *placed = error->line ? mem_format("%s:%d:%d: %s", sweep->scene, error->line, error->column,
-                                                error->sentence)
-                                   : at_value(sweep, run, error->sentence);
-        add(problems, placed ? placed : mem_format("%s: %s", sweep->scene, error->sentence));
+        char *placed = error->line ? NULL : at_value(sweep, run, error->sentence);
+        if (placed)
+            add(problems, placed);
+        else if (error->line)
+            add_of_scene(
+                sweep, run,
+                mem_format("%s:%d:%d: %s", sweep->scene, error->line, error->column, error->sentence),
+                problems);
+        else
+            add(problems, mem_format("%s: %s", sweep->scene, error->sentence));
     }
 }
 
@@ -76,7 +105,7 @@ bool check_run(const Sweep *sweep, int run, bool force, RunState *state, Problem
     *state = (RunState){0};
     bool ok = sweep_load(sweep, run, &file, &scene);
     if (ok) *state = state_read(sweep, run, &scene);
-    if (ok && state->record == RECORD_OTHER && !force) {
+    if (ok && record_is_kept(state->record) && !force) {
         add(problems, mem_text(state->wrong.text));
         ok = false;
     } else if (ok && !is_settled(state)) {

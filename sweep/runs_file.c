@@ -1,5 +1,6 @@
 #include "sweep/runs_file.h"
 #include "base/memory.h"
+#include "io/scan.h"
 #include "sweep/sweep.h"
 #include <errno.h>
 #include <stdio.h>
@@ -38,6 +39,15 @@ static void add_cell(RunsFile *list, const char *cell)
     list->cells[list->cell_count++] = mem_text(cell);
 }
 
+/* A key of the first line that is there before, too; NULL: there is none. */
+static const char *find_twin(const RunsFile *list)
+{
+    for (int k = 1; k < list->columns; k++)
+        for (int i = 0; i < k; i++)
+            if (!strcmp(list->cells[i], list->cells[k])) return list->cells[k];
+    return NULL;
+}
+
 /* The line's cells behind those that there are; the first line says how many. */
 static bool take_line(RunsFile *list, char *text, char mark, int line, const char *path, Error *err)
 {
@@ -55,10 +65,21 @@ static bool take_line(RunsFile *list, char *text, char mark, int line, const cha
     if (count != list->columns)
         return error_set(err, "%s:%d: %d cells, and the first line names %d keys", path, line, count,
                          list->columns);
+    const char *twin = first ? find_twin(list) : NULL;
+    if (twin) return error_set(err, "%s:%d: the key '%s' is there twice", path, line, twin);
     if (!first) list->rows++;
     list->line = mem_resize(list->line, (size_t)list->rows, (size_t)list->rows + 1, sizeof *list->line);
     list->line[list->rows] = line;
     return true;
+}
+
+/* What stands behind the mark that spreadsheets put before a text in UTF-8, of the file's first line. */
+static bool skip_mark(const char *path, char **text, size_t length, Error *err)
+{
+    const char *behind = *text;
+    bool ok = scan_skip_mark(path, &behind, &length, err);
+    *text += behind - *text;
+    return ok;
 }
 
 bool runs_file_read(const char *path, RunsFile *list, Error *err)
@@ -69,12 +90,15 @@ bool runs_file_read(const char *path, RunsFile *list, Error *err)
     char *text = NULL, mark = ',';
     size_t room = 0;
     bool ok = true;
-    for (int line = 1; ok && getline(&text, &room, file) >= 0; line++) {
-        text[strcspn(text, "\r\n")] = 0;
-        const char *begin = text + strspn(text, " \t");
+    ssize_t length;
+    for (int line = 1; ok && (length = getline(&text, &room, file)) >= 0; line++) {
+        char *begin = text;
+        if (line == 1 && !(ok = skip_mark(path, &begin, (size_t)length, err))) break;
+        begin[strcspn(begin, "\r\n")] = 0;
+        begin += strspn(begin, " \t");
         if (!*begin || *begin == '#') continue;
-        if (!list->columns && strchr(text, ';')) mark = ';';
-        ok = take_line(list, text, mark, line, path, err);
+        if (!list->columns && strchr(begin, ';')) mark = ';';
+        ok = take_line(list, begin, mark, line, path, err);
         if (ok && list->rows > SWEEP_RUNS_MAX)
             ok = error_set(err, "%s: more than %d runs", path, SWEEP_RUNS_MAX);
     }

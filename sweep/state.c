@@ -29,12 +29,22 @@ static void read_end(const char *path, RunState *state)
     fclose(file);
 }
 
+static bool is_bare(const Sweep *sweep, int run)
+{
+    char *journal = file_of(sweep, run, ".run"), *result = file_of(sweep, run, ".vtkhdf");
+    bool bare = access(journal, F_OK) != 0 && access(result, F_OK) != 0;
+    mem_free(journal);
+    mem_free(result);
+    return bare;
+}
+
 RunState state_read(const Sweep *sweep, int run, const Scene *scene)
 {
     RunState state = {0};
     char *name = sweep_run_name(sweep, run), *end = file_of(sweep, run, ".end"),
          *lock = file_of(sweep, run, ".lock");
     state.record = record_state(scene, name, &state.wrong);
+    state.bare = is_bare(sweep, run);
     state.held = lock_is_held(lock);
     read_end(end, &state);
     mem_free(name);
@@ -51,16 +61,16 @@ void state_clear(RunState *state)
 
 bool state_is_failed(const RunState *state)
 {
-    return state->code > RUN_NOT_CONVERGED && state->record != RECORD_OTHER;
+    return state->code > RUN_NOT_CONVERGED && !record_is_kept(state->record);
 }
 
 const char *state_next(const RunState *state, bool retry, bool force)
 {
     bool failed = state_is_failed(state);
-    if (state->record == RECORD_OTHER || (failed && force)) return force ? "--force" : NULL;
+    if (record_is_kept(state->record) || (failed && force)) return force ? "--force" : NULL;
     if (failed && !retry) return NULL;
     if (state->record == RECORD_FINISHED && !failed) return state->code < 0 ? "--resume" : NULL;
-    return state->record == RECORD_UNFINISHED ? "--resume" : "--quiet";
+    return state->record == RECORD_UNFINISHED ? "--resume" : state->bare ? "--force" : "--quiet";
 }
 
 static char *result_word(const Sweep *sweep, int run)
@@ -79,7 +89,7 @@ static char *result_word(const Sweep *sweep, int run)
 char *state_word(const RunState *state, const Sweep *sweep, int run)
 {
     if (state->held) return mem_text("running");
-    if (state->record == RECORD_OTHER) return mem_text("changed");
+    if (record_is_kept(state->record)) return mem_text(state->record == RECORD_OTHER ? "changed" : "damaged");
     if (state_is_failed(state)) return mem_format("failed: %d", state->code);
     if (state->record == RECORD_FINISHED) return result_word(sweep, run);
     return mem_text(state->record == RECORD_UNFINISHED ? "interrupted" : "absent");

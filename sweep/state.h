@@ -8,9 +8,10 @@
 typedef struct RunState {
     RecordState record;
     bool held;   /* it is under way */
+    bool bare;   /* neither a journal nor a result: what else has its name is left of an earlier one */
     int code;    /* that it ended with, 128 + the signal that ended it; -1: it did not, or nobody saw it */
     char *said;  /* of a failure; NULL: nothing */
-    Error wrong; /* of RECORD_OTHER */
+    Error wrong; /* of what is kept (record_is_kept) */
 } RunState;
 
 /* Of a scene that was loaded (sweep_load); clear it. */
@@ -21,10 +22,11 @@ bool state_is_failed(const RunState *state);
 
 /* The option with which `slender run` is to do what there is to do; NULL: nothing. `retry`: go on with what has failed;
  * `force`: begin that anew, and what is of another scene. A result whose end nobody saw may lack the files beside it: it is
- * gone through again, which takes no time. */
+ * gone through again, which takes no time. In the sweep's folder files of a run that has neither journal nor result are the
+ * sweep's own, and replaced. */
 const char *state_next(const RunState *state, bool retry, bool force);
 
-/* "converged", "max_iterations", .. of a result; else "absent", "interrupted", "running", "failed: 3", "changed". The caller
+/* "converged", "max_iterations", .. of a result; else "absent", "interrupted", "running", "failed: 3", "changed", "damaged". The caller
  * frees. */
 char *state_word(const RunState *state, const Sweep *sweep, int run);
 

@@ -129,9 +129,24 @@ static bool add_file(Sweep *sweep, YamlFile *file, const VaryScene *vary)
     return ok || yaml_refuse(file, "vary.file", "%s", err.text);
 }
 
-static bool add_seeds(Sweep *sweep, YamlFile *file, int count)
+/* Does the scene have a design, or is one made by what is varied? A scene that cannot be read is told by its runs. */
+static bool has_design(const Sweep *sweep, const char *scene)
+{
+    static const char key[] = "design";
+    YamlFile *file = yaml_read(scene);
+    bool has = yaml_error_count(file) || yaml_says(file, key);
+    yaml_destroy(file);
+    for (int k = 0; k < sweep->key_count && !has; k++) has = !strncmp(sweep->keys[k].name, key, strlen(key));
+    return has;
+}
+
+static bool add_seeds(Sweep *sweep, YamlFile *file, const char *scene, int count)
 {
     static const char name[] = "design.seed";
+    if (!has_design(sweep, scene))
+        return yaml_refuse(file, "seeds",
+                           "seeds need a design, and %s has none; another seed is varied like any key",
+                           scene);
     for (int k = 0; k < sweep->key_count; k++)
         if (!strcmp(sweep->keys[k].name, name))
             return yaml_refuse(file, "seeds", "%s is varied already", name);
@@ -174,7 +189,7 @@ static bool make_runs(Sweep *sweep, YamlFile *file, const SweepScene *said)
     for (int k = 0; k < vary->keys_count; k++) add_varied(sweep, &vary->keys[k]);
     if ((vary->zip && !check_zip(sweep, file)) || (vary->file && !add_file(sweep, file, vary))) return false;
     int together = vary->zip || vary->file ? sweep->key_count : 0;
-    if (said->seeds != YAML_ABSENT && !add_seeds(sweep, file, said->seeds)) return false;
+    if (said->seeds != YAML_ABSENT && !add_seeds(sweep, file, said->scene, said->seeds)) return false;
     if (!sweep->key_count)
         return yaml_refuse(file, "", "nothing is varied: `vary: {shell.thickness: [0.5 mm, 1 mm]}`");
     if (sweep->key_count > SWEEP_KEYS_MAX)
@@ -192,6 +207,12 @@ static char *default_name(const char *path)
     mem_free(folder);
     mem_free(base);
     return name;
+}
+
+static bool is_sweep(YamlFile *file, const char *path)
+{
+    return yaml_says(file, sweep_table.version) || !yaml_says(file, "slender") ||
+           yaml_refuse(file, "slender", "it is a scene, which is one run: slender run %s", path);
 }
 
 static bool check_scene(const SweepScene *said, YamlFile *file)
@@ -214,8 +235,8 @@ bool sweep_read(const char *path, const char *name, Sweep *sweep, char **report)
     SweepScene said = {0};
     YamlFile *file = yaml_read(path);
     *sweep = (Sweep){.path = mem_text(path), .name = name ? mem_text(name) : default_name(path)};
-    bool ok =
-        yaml_load(file, &sweep_table, &said) && check_scene(&said, file) && make_runs(sweep, file, &said);
+    bool ok = is_sweep(file, path) && yaml_load(file, &sweep_table, &said) && check_scene(&said, file) &&
+              make_runs(sweep, file, &said);
     if (ok) take(sweep, &said);
     *report = ok ? NULL : yaml_report(file);
     yaml_clear(&sweep_table, &said);

@@ -110,6 +110,7 @@ static void add_key(Columns *columns, const Sweep *sweep, int key)
         cells[r].texts = mem_alloc(1, sizeof(char *));
         cells[r].texts[cells[r].count++] = mem_text(sweep_value(sweep, r, key)->text);
     }
+    if (alike) cells[0].unit = mem_text(yaml_unit(scene_table(), sweep->keys[key].name));
     columns_add_cells(columns, sweep->keys[key].name, cells);
     for (int r = 0; r < columns->rows; r++) cells_clear(&cells[r]);
     mem_free(cells);
@@ -187,7 +188,7 @@ static Array column_array(const Column *column, int rows)
     if (column_is_number(column, rows)) {
         double *values = mem_alloc((size_t)rows, sizeof *values);
         for (int r = 0; r < rows; r++) values[r] = column->cells[r] ? strtod(column->cells[r], NULL) : NAN;
-        return array_float(column->name, "", values, 1, rows, 0);
+        return array_float(column->name, column->unit ? column->unit : "", values, 1, rows, 0);
     }
     Text text = {0};
     for (int r = 0; r < rows; r++)

@@ -22,6 +22,8 @@ typedef struct Working {
     const SweepWork *work;
     Task *tasks; /* [jobs] */
     int active, done, total;
+    int *held, held_count; /* runs that another process was at, to be looked at again */
+    bool last;             /* for the last time */
     bool stopping;
     SweepTally *tally;
     Error *err;
@@ -77,7 +79,7 @@ static const char *next_of(const SweepWork *work, int run, int *code)
     if (sweep_load(work->sweep, run, &file, &scene)) {
         RunState state = state_read(work->sweep, run, &scene);
         mode = state_next(&state, work->retry, work->force);
-        if (state.record != RECORD_OTHER) *code = state.code;
+        if (!record_is_kept(state.record)) *code = state.code;
         state_clear(&state);
     }
     yaml_clear(scene_table(), &scene);
@@ -102,6 +104,17 @@ static bool start_locked(Working *w, Task *task)
     return !failed || error_set(w->err, "no process can be started: %s", strerror(failed));
 }
 
+/* Another process is at it: by the end of all others it may have ended. */
+static void set_aside(Working *w, int run)
+{
+    if (!w->last) {
+        w->held[w->held_count++] = run;
+        return;
+    }
+    w->tally->held++;
+    host_step(w->work->host, ++w->done, w->total, "run %d is under way elsewhere", run + 1);
+}
+
 static bool start(Working *w, int run)
 {
     Task *task = w->tasks;
@@ -111,11 +124,7 @@ static bool start(Working *w, int run)
     task->lock = lock_take(lock, &held, w->err);
     mem_free(name);
     mem_free(lock);
-    if (held) {
-        w->tally->held++;
-        host_step(w->work->host, ++w->done, w->total, "run %d is under way elsewhere", run + 1);
-        return true;
-    }
+    if (held) return set_aside(w, run), true;
     task->run = task->lock >= 0 ? run : -1;
     return task->lock >= 0 && start_locked(w, task);
 }
@@ -178,6 +187,20 @@ static void stop(Working *w)
         if (w->tasks[k].run >= 0) kill(w->tasks[k].process, SIGINT);
 }
 
+/* Until all of these have ended or are set aside, or the sweep is stopped. */
+static bool do_all(Working *w, const int *runs, int count)
+{
+    bool ok = true;
+    for (int next = 0; w->active || (next < count && ok && !w->stopping);) {
+        if (!w->stopping && (!ok || host_stops(w->work->host))) stop(w);
+        if (!w->stopping && next < count && w->active < w->work->jobs)
+            ok = start(w, runs[next++]);
+        else if (w->active)
+            wait_for_some(w);
+    }
+    return ok;
+}
+
 bool work_run(const SweepWork *work, const int *runs, int total, SweepTally *tally, Error *err)
 {
     if (mkdir(work->sweep->name, 0777) != 0 && errno != EEXIST)
@@ -185,15 +208,12 @@ bool work_run(const SweepWork *work, const int *runs, int total, SweepTally *tal
     Working w = {.work = work, .total = total, .tally = tally, .err = err};
     w.tasks = mem_alloc((size_t)work->jobs, sizeof *w.tasks);
     for (int k = 0; k < work->jobs; k++) w.tasks[k].run = -1;
-    bool ok = true;
-    for (int next = 0; w.active || (next < total && ok && !w.stopping);) {
-        if (!w.stopping && (!ok || host_stops(work->host))) stop(&w);
-        if (!w.stopping && next < total && w.active < work->jobs)
-            ok = start(&w, runs[next++]);
-        else if (w.active)
-            wait_for_some(&w);
-    }
+    w.held = mem_alloc((size_t)total, sizeof *w.held);
+    bool ok = do_all(&w, runs, total);
+    w.last = true;
+    ok = ok && do_all(&w, w.held, w.held_count);
     tally->interrupted += total - w.done; /* those that were not begun */
+    mem_free(w.held);
     mem_free(w.tasks);
     return ok;
 }

@@ -27,6 +27,7 @@ is gravity "$(column shell.gravity.z all.csv)" "-9.8100000000000005 -1 -9.810000
 is status "$(column status all.csv)" "converged converged converged converged converged converged"
 is best "$(column best all.csv)" "0 0 0 0 0 1"
 same all/best.vtkhdf all/0006.vtkhdf; exists all.h5
+for unit in 'm/s^2' J; do tr -c '[:print:]' '\n' < all.h5 | grep -Fqx "$unit" || { echo "all.h5 has no unit $unit"; bad=1; }; done
 expect 0 "$program" run strip.yaml --set shell.thickness=2mm --set 'shell.gravity=[0, 0, -9.81]' -o single --no-picture --quiet
 is tip "$(tail -1 single_probes.csv | cut -d, -f2-4)" "$(sed -n 6p all.csv | cut -d, -f8-10)"
 expect 0 "$program" export single.vtkhdf -o single.csv --dataset final/energy/bending
@@ -36,7 +37,7 @@ is energy "$(tail -1 single.csv)" "$(sed -n 6p all.csv | cut -d, -f7)"
 sweep zip 'vary: {zip: true, shell.thickness: [0.5 mm, 1 mm], shell.young: [1 MPa, 2 MPa]}'
 expect 0 "$program" sweep zip.yaml --quiet
 is zip "$(column shell.thickness zip.csv); $(column shell.young zip.csv)" "0.00050000000000000001 0.001; 1000000 2000000"
-printf 'shell.thickness; shell.gravity\n# a remark\n0.5 mm; [0, 0, -1]\n\n"1 mm";"[0, 0, -2]"\n' > runs.csv
+printf '\357\273\277shell.thickness; shell.gravity\n# a remark\n0.5 mm; [0, 0, -1]\n\n"1 mm";"[0, 0, -2]"\n' > runs.csv
 sweep file 'vary: {file: runs.csv}'
 expect 0 "$program" sweep file.yaml --quiet
 is file "$(column shell.gravity.z file.csv)" "-1 -2"
@@ -64,6 +65,14 @@ sed -i 's/1 mm\]/1 mm, 2 mm]/; s/3 MPa\]/3 MPa, 4 MPa]/' zip.yaml
 expect 0 "$program" sweep zip.yaml --index 3; exists zip/0003.vtkhdf
 expect 0 "$program" sweep zip.yaml; is more "$(column status zip.csv)" "converged converged converged"
 
+# ---- A result that was deleted is made again, one that is damaged is kept until it is said ----
+rm zip/0002.vtkhdf zip/0002.run
+expect 0 "$program" sweep zip.yaml; exists zip/0002.vtkhdf
+truncate -s 1000 zip/0001.vtkhdf
+expect 0 "$program" sweep zip.yaml --list; says "^1  .*damaged$"
+expect 3 "$program" sweep zip.yaml; says "zip/0001.vtkhdf .*; with --force it is replaced"
+expect 0 "$program" sweep zip.yaml --force; is mended "$(column status zip.csv)" "converged converged converged"
+
 # ---- Runs that fail and do not converge end nothing else ----
 sweep bad 'vary: {solver.max_iterations: [1, 50], load_steps: [1, 2]}
 collect: [final/energy/bending]'
@@ -81,7 +90,7 @@ slender: 1
 job: simulate
 shell: {mesh: {shape: sheet, size: [20 mm, 5 mm], cells: [4, 1]}, thickness: 1 mm, young: 1 MPa, poisson: 0.4, density: 1000 kg/m^3, gravity: [0, 0, -9.81]}
 fix: [{group: root, clamp: true}]
-time: {step: 1 ms, steps: 3000}
+time: {step: 1 ms, steps: 6000}
 output: {every: 100}
 END
 sweep whole 'vary: {shell.young: [1 MPa, 2 MPa]}
@@ -102,6 +111,14 @@ kill -9 "$child"; while kill -0 "$child" 2> err.txt; do sleep 0.02; done
 expect 0 "$program" sweep parts.yaml --jobs 2 --quiet
 same whole.csv parts.csv
 
+# ---- What another process was at, and has done by the end, is done ----
+sweep both 'vary: {time.steps: [2000, 20000]}'
+sed -i 's/strip.yaml/motion.yaml/' both.yaml
+"$program" sweep both.yaml --index 1 --quiet & pid=$!
+until "$program" sweep both.yaml --list | grep -q '^1 .*running'; do kill -0 $pid 2> err.txt || break; done
+expect 0 "$program" sweep both.yaml --jobs 1; says "run 1 was done elsewhere"; says "2 done"; says "0 under way elsewhere"
+wait $pid; is "the other one" $? 0
+
 # ---- What is refused, each wrong value once, before anything is made ----
 refused() { # words, what the file says after its scene
     words=$1; shift; sweep no "$*"
@@ -115,18 +132,27 @@ refused "no.yaml:3:21: shell has no key 'yong'; did you mean 'young'" 'vary: {sh
 refused "no.yaml:3:21: shell.mesh.file: .*none.obj: cannot be read" 'vary: {shell.mesh: [{file: none.obj}]}'
 refused "nothing is varied" 'collect: [status]'
 refused "all keys must have as many values, and shell.young has 2, shell.thickness 1" 'vary: {zip: true, shell.young: [1, 2], shell.thickness: [1]}'
-refused "must be a list of entries, not a text" 'vary: {shell.young: 1 MPa}'
+refused "must be a list of entries, not a number" 'vary: {shell.young: 1 MPa}'
 refused "give only one of zip, file" 'vary: {zip: true, file: runs.csv}'
 refused "the file lists all keys that differ, and 'shell.young' stands beside it" 'vary: {file: runs.csv, shell.young: [1]}'
 refused "none.csv: cannot be read" 'vary: {file: none.csv}'
 refused "design.seed is varied already" 'vary: {design.seed: [1]}
 seeds: 2'
+refused "no.yaml:3:8: seeds: seeds need a design, and .*strip.yaml has none" 'seeds: 2'
 printf 'shell.young,shell.thickness\n1 MPa\n' > short.csv
 refused "short.csv:2: 1 cells, and the first line names 2 keys" 'vary: {file: short.csv}'
 printf 'shell.young\n"1 MPa\n' > quote.csv
 refused "quote.csv:2: a quote without an end" 'vary: {file: quote.csv}'
+printf 'shell.young,shell.young\n1 MPa,2 MPa\n' > twin.csv
+refused "twin.csv:1: the key 'shell.young' is there twice" 'vary: {file: twin.csv}'
 printf 'shell.young\n1 Mpa\n' > unit.csv
 refused "unit.csv:2: shell.young.value must be a number in Pa" 'vary: {file: unit.csv}'
+printf 'shell.gravity\n"[0, 0"\n' > open.csv
+refused "open.csv:2: shell.gravity: no YAML: did not find expected" 'vary: {file: open.csv}'
+printf 'shell[0\n1\n' > key.csv
+refused "key.csv:2: shell\[0: the key is malformed" 'vary: {file: key.csv}'
+printf 'fix\n[]\n' > free.csv
+refused "strip.yaml:1:1: .*nothing holds.*; found in run 1, .*free.csv:2" 'vary: {file: free.csv}'
 printf 'shell.young\n1 MPa\n' > no.csv
 refused "the sweep's own table will have this name" 'vary: {file: no.csv}'
 sweep no 'vary: {shell.young: [1 MPa]}'
@@ -134,6 +160,12 @@ expect 4 "$program" sweep no.yaml; says "'no.csv' is there, and no table of this
 sed -i 's/strip.yaml/none.yaml/' no.yaml; expect 3 "$program" sweep no.yaml; says "no.yaml:2:8: scene: .*none.yaml: cannot be read"
 echo 'scene: strip.yaml' > no.yaml; expect 3 "$program" sweep no.yaml; says "a sweep must have the key .sweep: 1."
 expect 2 "$program" sweep all.yaml --list --collect
+expect 2 "$program" sweep all.yaml --retry --force; says "one of them can be given"
+for name in . .. ./ out/ ''; do expect 2 "$program" sweep all.yaml -o "$name"; says "the name of a new folder"; done
+expect 3 "$program" sweep strip.yaml; says "strip.yaml:1:.*it is a scene, which is one run: slender run strip.yaml"
+for verb in run check; do
+    expect 3 "$program" $verb all.yaml; says "it is a sweep, .*: slender sweep all.yaml"; is "$verb" "$(wc -l < err.txt)" 1
+done
 expect 2 "$program" sweep all.yaml --index 7
 expect 2 "$program" sweep all.yaml -- --partition=x
 expect 1 "$program" sweep bad.yaml --index 1

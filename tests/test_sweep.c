@@ -76,8 +76,9 @@ static void test_order(void **state)
     };
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         Sweep sweep;
-        char *report, runs[100] = "",
-                      *text = mem_format("sweep: 1\nscene: test_sweep.yaml\n%s", rows[k].vary);
+        char *report,
+            runs[100] = "",
+            *text = mem_format("sweep: 1\nscene: " SOURCE_DIR "/scenes/letter_a.yaml\n%s", rows[k].vary);
         write_file("test_sweep.yaml", text);
         if (!sweep_read("test_sweep.yaml", NULL, &sweep, &report)) fail_msg("%s", report);
         for (int r = 0; r < sweep.run_count; r++) {
@@ -117,12 +118,35 @@ static void test_quantities(void **state)
     }
 }
 
+/* Of a number, of a table's short form, within lists and below names; none of what has none. */
+static void test_units(void **state)
+{
+    (void)state;
+    static const char *const rows[][2] = {{"shell.thickness", "m"},
+                                          {"shell.thickness.value", "m"},
+                                          {"shell.gravity", "m/s^2"},
+                                          {"shell.gravity[2]", "m/s^2"},
+                                          {"flux_density", "T"},
+                                          {"fix[0].ball.radius", "m"},
+                                          {"cases[1].flux_density", "T"},
+                                          {"probes.tip", ""},
+                                          {"shell.poisson", ""},
+                                          {"shell.thickness.none", ""},
+                                          {"shell.young.value.none", ""},
+                                          {"none.thickness", ""},
+                                          {"job", ""},
+                                          {"shell[", ""},
+                                          {"", ""}};
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++)
+        assert_string_equal(yaml_unit(scene_table(), rows[k][0]), rows[k][1]);
+}
+
 static void test_runs_file(void **state)
 {
     (void)state;
     RunsFile list;
     Error err;
-    write_file("test_sweep.csv", "# runs\na , \"b\"\r\n\n 1 mm,\"[0, \"\"1\"\"]\" \n2,3\n");
+    write_file("test_sweep.csv", "\xef\xbb\xbf# runs\na , \"b\"\r\n\n 1 mm,\"[0, \"\"1\"\"]\" \n2,3\n");
     if (!runs_file_read("test_sweep.csv", &list, &err)) fail_msg("%s", err.text);
     const char *const cells[] = {"a", "b", "1 mm", "[0, \"1\"]", "2", "3"};
     assert_int_equal(list.rows, 2);
@@ -130,8 +154,16 @@ static void test_runs_file(void **state)
     for (int i = 0; i < 6; i++) assert_string_equal(list.cells[i], cells[i]);
     assert_int_equal(list.line[2], 5);
     runs_file_clear(&list);
-    static const char *const wrong[] = {"a,b\n1\n",    "a,b\n1,2,3\n", "a,b\n1,\n", "a\n\"1\n",
-                                        "a\n\"1\"2\n", "a\n",          ""};
+    static const char *const wrong[] = {"a,b\n1\n",
+                                        "a,b\n1,2,3\n",
+                                        "a,b\n1,\n",
+                                        "a\n\"1\n",
+                                        "a\n\"1\"2\n",
+                                        "a\n",
+                                        "",
+                                        "a,b,a\n1,2,3\n",
+                                        "\xff\xfe"
+                                        "a\n1\n"};
     for (size_t k = 0; k < sizeof wrong / sizeof *wrong; k++) {
         write_file("test_sweep.csv", wrong[k]);
         if (runs_file_read("test_sweep.csv", &list, &err)) fail_msg("'%s' is read", wrong[k]);
@@ -164,19 +196,23 @@ static void test_next(void **state)
         RecordState record;
         int code;
         const char *usual, *retry, *force;
+        bool bare;
     } rows[] = {
-        {RECORD_ABSENT, -1, "--quiet", "--quiet", "--quiet"},
-        {RECORD_ABSENT, 3, NULL, "--quiet", "--force"},
-        {RECORD_UNFINISHED, -1, "--resume", "--resume", "--resume"},
-        {RECORD_UNFINISHED, 137, NULL, "--resume", "--force"},
-        {RECORD_FINISHED, 0, NULL, NULL, NULL},
-        {RECORD_FINISHED, 1, NULL, NULL, NULL},
-        {RECORD_FINISHED, 4, NULL, "--quiet", "--force"},
-        {RECORD_FINISHED, -1, "--resume", "--resume", "--resume"},
-        {RECORD_OTHER, 0, NULL, NULL, "--force"},
+        {RECORD_ABSENT, -1, "--force", "--force", "--force", true},
+        {RECORD_ABSENT, 3, NULL, "--force", "--force", true},
+        {RECORD_ABSENT, -1, "--quiet", "--quiet", "--quiet", false},
+        {RECORD_ABSENT, 3, NULL, "--quiet", "--force", false},
+        {RECORD_UNFINISHED, -1, "--resume", "--resume", "--resume", false},
+        {RECORD_UNFINISHED, 137, NULL, "--resume", "--force", false},
+        {RECORD_FINISHED, 0, NULL, NULL, NULL, false},
+        {RECORD_FINISHED, 1, NULL, NULL, NULL, false},
+        {RECORD_FINISHED, 4, NULL, "--quiet", "--force", false},
+        {RECORD_FINISHED, -1, "--resume", "--resume", "--resume", false},
+        {RECORD_OTHER, 0, NULL, NULL, "--force", false},
+        {RECORD_DAMAGED, 0, NULL, NULL, "--force", false},
     };
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
-        RunState at = {.record = rows[k].record, .code = rows[k].code};
+        RunState at = {.record = rows[k].record, .code = rows[k].code, .bare = rows[k].bare};
         const char *next[] = {state_next(&at, false, false), state_next(&at, true, false),
                               state_next(&at, false, true)},
                    *wanted[] = {rows[k].usual, rows[k].retry, rows[k].force};
@@ -243,6 +279,7 @@ int main(void)
                                        cmocka_unit_test_teardown(test_again, check_blocks),
                                        cmocka_unit_test_teardown(test_order, check_blocks),
                                        cmocka_unit_test_teardown(test_quantities, check_blocks),
+                                       cmocka_unit_test_teardown(test_units, check_blocks),
                                        cmocka_unit_test_teardown(test_runs_file, check_blocks),
                                        cmocka_unit_test_teardown(test_lock, check_blocks),
                                        cmocka_unit_test_teardown(test_next, check_blocks),
