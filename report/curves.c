@@ -139,7 +139,8 @@ static bool add_rods(const ReportPart *part, Error *err)
     if (curves.input) add_strands(part, input, curves.input[0], 1);
     add_targets(part, target);
     if (curves.natural) add_strands(part, natural, curves.natural[0], 1);
-    if (!curves.x && !part->data->motion) return true; /* nothing is simulated: the frames have the other curves */
+    if (!curves.x && !part->data->motion)
+        return true; /* nothing is simulated: the frames have the other curves */
     return add_lines(part, lines, rod, part->frame_count, err);
 }
 
