@@ -201,82 +201,58 @@ static void add_magnetization(const Body *body)
 
 /* ---- Targets ---- */
 
-/* A case's, over its last positions where some coordinates do not count; false where it has none. */
-static bool read_target(const Body *body, const char *name, double *row)
-{
-    ShowData *data = body->part->data;
-    int vertices = body->mesh.body.vertex_count;
-    size_t count = 3 * (size_t)vertices;
-    double(*target)[3] =
-        show_dataset(data, show_text(data, "slender/cases/%s/target", name), ARRAY_FLOAT64, count);
-    const double(*x)[3] =
-        show_dataset(data, show_text(data, "slender/cases/%s/x", name), ARRAY_FLOAT64, count);
-    if (!target) return false;
-    if (x) show_fill_places(target, x, vertices);
-    take_points(body, (const double(*)[3])target, row);
-    return true;
-}
-
-/* The targets of the cases, and which of them each frame has. */
-static void add_targets(const Body *body, char **names, int cases)
+/* The targets of the cases, and which of them each frame has; x[case]: where its points are, NULL where that is not known. */
+static void add_targets(const Body *body, const double (*const *x)[3])
 {
     const ReportPart *part = body->part;
+    int cases = part->cases.count, *row = show_block(part->data, (size_t)cases, sizeof *row), count = 0;
     size_t width = 3 * (size_t)body->point_count;
     double *rows = mem_alloc((size_t)cases * width, sizeof *rows);
-    int *row = mem_alloc((size_t)cases, sizeof *row), count = 0;
-    for (int c = 0; c < cases; c++)
-        row[c] = read_target(body, names[c], rows + (size_t)count * width) ? count++ : -1;
+    for (int c = 0; c < cases; c++) {
+        const double(*target)[3] =
+            x[c] ? show_case_target(part->data, part->cases.names[c], x[c], body->mesh.body.vertex_count)
+                 : NULL;
+        if (target) take_points(body, target, rows + (size_t)count * width);
+        row[c] = target ? count++ : -1;
+    }
     if (count) {
         document_open(part->document, "target", '{');
         document_packed(part->document, "points", rows, points_shape(body, count));
-        report_rows(part, row, cases);
+        report_rows(part, row);
         document_close(part->document);
     }
-    mem_free(row);
     mem_free(rows);
 }
 
-/* The points of a case's clouds, those seen in a plane at the body's middle across it; NULL: it has none. */
-static const double *read_cloud(const Body *body, const char *name, int *count)
+static void add_clouds(const Body *body, const double (*const *x)[3])
 {
-    Array cloud;
-    ShowData *data = body->part->data;
-    int vertices = body->mesh.body.vertex_count;
-    const char *path = show_text(data, "slender/cases/%s/cloud", name);
-    const double(*x)[3] =
-        show_dataset(data, show_text(data, "slender/cases/%s/x", name), ARRAY_FLOAT64, 3 * (size_t)vertices);
-    if (!x || !result_has(data->result, path) ||
-        !result_read_as(data->result, path, ARRAY_FLOAT64, 2, 3, &cloud, NULL))
-        return NULL;
-    double(*points)[3] = show_keep(data, cloud), middle[1][3] = {{0}};
-    *count = cloud.dims[0];
-    for (int i = 0; i < 3 * vertices; i++) middle[0][i % 3] += x[i / 3][i % 3] / vertices;
-    for (int k = 0; k < *count; k++) show_fill_places(&points[k], (const double(*)[3])middle, 1);
-    return points[0];
-}
-
-static void add_clouds(const Body *body, char **names, int cases)
-{
-    Document *document = body->part->document;
-    int *row = show_block(body->part->data, (size_t)cases, sizeof *row), clouds = 0, count;
+    const ReportPart *part = body->part;
+    Document *document = part->document;
+    int cases = part->cases.count, *row = show_block(part->data, (size_t)cases, sizeof *row), clouds = 0,
+        count;
     document_open(document, "clouds", '{');
     document_open(document, "sets", '[');
     for (int c = 0; c < cases; c++) {
-        const double *points = read_cloud(body, names[c], &count);
-        if (points) document_packed(document, NULL, points, (Packed){1, 3 * (size_t)count, 3, 16, false});
+        const double(*points)[3] = x[c] ? show_case_cloud_points(part->data, part->cases.names[c], x[c],
+                                                                 body->mesh.body.vertex_count, &count)
+                                        : NULL;
+        if (points) document_packed(document, NULL, points[0], (Packed){1, 3 * (size_t)count, 3, 16, false});
         row[c] = points ? clouds++ : -1;
     }
     document_close(document);
-    report_rows(body->part, row, cases);
+    report_rows(part, row);
     document_close(document);
 }
 
 static void add_cases(const Body *body)
 {
-    ShowData *data = body->part->data;
-    char **names;
-    int cases = report_case_names(data, &names);
-    if (cases) add_targets(body, names, cases), add_clouds(body, names, cases);
+    const ReportPart *part = body->part;
+    int cases = part->cases.count;
+    const double(**x)[3] = show_block(part->data, (size_t)cases, sizeof *x);
+    for (int c = 0; c < cases; c++)
+        x[c] = show_case_dataset(part->data, part->cases.names[c], "x",
+                                 3 * (size_t)body->mesh.body.vertex_count);
+    if (cases) add_targets(body, x), add_clouds(body, x);
 }
 
 /* Whole numbers [count] at a path, 0: as many as there are; NULL: they are not there. */

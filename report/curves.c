@@ -48,8 +48,7 @@ typedef struct Strands {
     double width;
     int count;
     const int *offsets; /* [count + 1] */
-    const int *row;     /* [cases] 0 of those whose frames show it, -1 of others; NULL: all do */
-    int cases;
+    const int *row;     /* [case] 0 of those whose frames show it, -1 of others; NULL: all do */
 } Strands;
 
 /* Of many the lines are thinner: so their density is seen. */
@@ -60,7 +59,7 @@ static void add_strands(const ReportPart *part, Strands strands, const double *x
     document_text(document, "name", strands.name);
     report_color(document, "color", strands.color);
     document_number(document, "width", fmax(1, strands.width * fmin(1, sqrt(FEW / (double)strands.count))));
-    if (strands.row) report_rows(part, strands.row, strands.cases);
+    if (strands.row) report_rows(part, strands.row);
     document_indices(document, "offsets", strands.offsets, (size_t)strands.count + 1, 1);
     document_packed(document, "points", x,
                     (Packed){(size_t)rows, 3 * (size_t)strands.offsets[strands.count], 3, 16, false});
@@ -91,23 +90,17 @@ static bool add_lines(const ReportPart *part, const int (*lines)[2], Strands str
     return true;
 }
 
-/* Of a design: where each case should be. Its points are those of the strands. */
-static void add_targets(const ReportPart *part, Strands strands)
+/* Where each case should be, of those of whose points something is to be somewhere. */
+static void add_targets(const ReportPart *part, const ShowCurves *curves, Strands strands)
 {
-    char **names;
-    ShowData *data = part->data;
-    int cases = report_case_names(data, &names), points = strands.offsets[strands.count];
-    for (int c = 0; c < cases; c++) {
-        double(*target)[3] = show_dataset(data, show_text(data, "slender/cases/%s/target", names[c]),
-                                          ARRAY_FLOAT64, 3 * (size_t)points);
-        const double(*x)[3] = show_dataset(data, show_text(data, "slender/cases/%s/x", names[c]),
-                                           ARRAY_FLOAT64, 3 * (size_t)points);
-        if (!target) continue;
-        if (x) show_fill_places(target, x, points);
-        int *row = show_block(data, (size_t)cases, sizeof *row);
-        for (int k = 0; k < cases; k++) row[k] = k == c ? 0 : -1;
-        strands.row = row, strands.cases = cases;
-        add_strands(part, strands, target[0], 1);
+    int cases = part->cases.count;
+    for (int s = 0; s < curves->state_count; s++) {
+        const ShowCurvesState *state = &curves->states[s];
+        if (!state->target) continue;
+        int *row = show_block(part->data, (size_t)cases, sizeof *row);
+        for (int c = 0; c < cases; c++) row[c] = strcmp(part->cases.names[c], state->load_case) ? -1 : 0;
+        strands.row = row;
+        add_strands(part, strands, state->target[0], 1);
     }
 }
 
@@ -137,7 +130,7 @@ static bool add_rods(const ReportPart *part, Error *err)
     Strands target = input;
     target.name = "target";
     if (curves.input) add_strands(part, input, curves.input[0], 1);
-    add_targets(part, target);
+    add_targets(part, &curves, target);
     if (curves.natural) add_strands(part, natural, curves.natural[0], 1);
     if (!curves.x && !part->data->motion)
         return true; /* nothing is simulated: the frames have the other curves */

@@ -24,32 +24,18 @@ void report_color(Document *document, const char *key, Color color)
     document_text(document, key, text);
 }
 
-int report_case_names(ShowData *data, char ***names)
+/* Of the k-th frame that is shown: the last frames of all are one of each case; of a motion, and of what is before them in
+ * a design, it is the last case's. */
+static int case_of(const ReportPart *part, int k)
 {
-    Array array;
-    *names = NULL;
-    if (!result_has(data->result, "slender/case_names") ||
-        !result_read_as(data->result, "slender/case_names", ARRAY_TEXT, 1, 0, &array, NULL))
-        return 0;
-    char *text = show_keep(data, array), *rest = NULL;
-    int count = 0;
-    *names = show_block(data, strlen(text) + 1, sizeof **names);
-    for (char *name = strtok_r(text, "\n", &rest); name; name = strtok_r(NULL, "\n", &rest))
-        (*names)[count++] = name;
-    return count;
-}
-
-int report_case_of(const ReportPart *part, int k, int cases)
-{
-    int from_end = result_step_count(part->data->result) - part->frames[k];
+    int cases = part->cases.count, from_end = result_step_count(part->data->result) - part->frames[k];
     return from_end > cases ? cases - 1 : cases - from_end;
 }
 
-void report_rows(const ReportPart *part, const int *row, int cases)
+void report_rows(const ReportPart *part, const int *row)
 {
     document_open(part->document, "of", '[');
-    for (int k = 0; k < part->frame_count; k++)
-        document_number(part->document, NULL, row[report_case_of(part, k, cases)]);
+    for (int k = 0; k < part->frame_count; k++) document_number(part->document, NULL, row[case_of(part, k)]);
     document_close(part->document);
 }
 
@@ -115,19 +101,18 @@ static const char *stage_name(const ReportPart *part, const char *quantity, int 
 /* "t = 0.2 s"; the last ones are those of the load cases, if there are several. */
 static void add_frames(const ReportPart *part)
 {
-    char **names;
     Document *document = part->document;
-    int cases = report_case_names(part->data, &names), steps = result_step_count(part->data->result);
+    int cases = part->cases.count, steps = result_step_count(part->data->result);
     document_open(document, "frames", '{');
     bool staged = result_has(part->data->result, "slender/stages/status");
     const char *quantity = staged ? quantity_of(part) : NULL;
     document_open(document, "labels", '[');
     for (int k = 0; k < part->frame_count; k++) {
-        int case_of = cases - (steps - part->frames[k]);
-        bool named = !part->timed && cases > 1 && case_of >= 0;
+        int from_end = steps - part->frames[k];
+        bool named = !part->timed && cases > 1 && from_end <= cases;
         document_text(document, NULL,
                       staged  ? stage_name(part, quantity, part->frames[k])
-                      : named ? names[case_of]
+                      : named ? part->cases.names[cases - from_end]
                               : show_frame_name(part->data, part->frames[k]));
     }
     document_close(document);
@@ -158,6 +143,7 @@ static bool add_result(Document *document, ShowData *data, ShowDef *show, const 
         document_text(document, "status", status.data);
         array_clear(&status);
     }
+    if (!show_cases(data, &part.cases, err)) return false;
     choose_frames(&part, def);
     add_frames(&part);
     if (!is_shown(data)) return error_set(err, "there is no body and no drawing in it: nothing to show");

@@ -2,6 +2,7 @@
 #pragma once
 #include "report/document.h"
 #include "report/report.h"
+#include "view/show_cases.h"
 #include "view/show_data.h"
 
 typedef struct ReportPart {
@@ -11,6 +12,7 @@ typedef struct ReportPart {
     int frame_count;
     const int *frames; /* [frame_count] which of the result's are shown */
     bool timed;        /* they are moments */
+    ShowCases cases;
 } ReportPart;
 
 /* A mesh: its frames with the numbers on its faces, targets, how it is magnetised. Adds nothing where there is none. */
@@ -34,12 +36,5 @@ bool report_facts(const ReportPart *part, Error *err);
 /* "#d55e00" */
 void report_color(Document *document, const char *key, Color color);
 
-/* The names of the load cases, kept in the data, and how many there are. */
-int report_case_names(ShowData *data, char ***names);
-
-/* Of the k-th frame that is shown: the last frames of all are one of each case; of a motion, and of what is before them in
- * a design, it is the last case's. */
-int report_case_of(const ReportPart *part, int k, int cases);
-
-/* "of": [row of each frame's case], row[cases]: which target of a list a case has, -1: none. */
-void report_rows(const ReportPart *part, const int *row, int cases);
+/* "of": [row of each frame's case], row[case]: which target of a list a case has, -1: none. */
+void report_rows(const ReportPart *part, const int *row);

@@ -3,6 +3,7 @@
 #include "io/result.h"
 #include "slender.h"
 #include "tests/scene_fixture.h"
+#include <unistd.h>
 
 /* The scene is destroyed; it may end as badly as that. */
 static inline Result *run_to(SlenderScene *scene, const SlenderError *err, bool resume, SlenderStatus worst)
@@ -44,4 +45,17 @@ static inline Array read_all(Result *result, const char *path)
     Error err;
     if (!result_read(result, path, &array, &err)) fail_msg("%s: %s", path, err.text);
     return array;
+}
+
+/* What runs leave under that name: for the group's setup and teardown. */
+static inline int remove_run(void **state)
+{
+    (void)state;
+    static const char *const endings[] = {".vtkhdf", ".xdmf", ".run", ".run-lock", "_probes.csv"};
+    for (size_t k = 0; k < sizeof endings / sizeof *endings; k++) {
+        char *path = mem_format(NAME "%s", endings[k]);
+        unlink(path);
+        mem_free(path);
+    }
+    return 0;
 }

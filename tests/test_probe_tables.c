@@ -431,18 +431,6 @@ static void test_stopped_steps(void **state)
     mem_free(text);
 }
 
-static int clean(void **state)
-{
-    (void)state;
-    static const char *const endings[] = {".vtkhdf", ".xdmf", ".run", ".run-lock", "_probes.csv"};
-    for (int k = 0; k < 5; k++) {
-        char *path = mem_format(NAME "%s", endings[k]);
-        unlink(path);
-        mem_free(path);
-    }
-    return 0;
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -451,5 +439,5 @@ int main(void)
         cmocka_unit_test(test_design),        cmocka_unit_test(test_ranges),
         cmocka_unit_test(test_stage_columns), cmocka_unit_test(test_load_steps),
         cmocka_unit_test(test_failed_step),   cmocka_unit_test(test_stopped_steps)};
-    return cmocka_run_group_tests(tests, clean, clean);
+    return cmocka_run_group_tests(tests, remove_run, remove_run);
 }

@@ -178,22 +178,10 @@ static void test_trajectory(void **state)
     result_close(result);
 }
 
-static int clean(void **state)
-{
-    (void)state;
-    static const char *const endings[] = {".vtkhdf", ".xdmf", ".run", ".run-lock", "_probes.csv"};
-    for (int k = 0; k < 5; k++) {
-        char *path = mem_format(NAME "%s", endings[k]);
-        unlink(path);
-        mem_free(path);
-    }
-    return 0;
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_accelerated), cmocka_unit_test(test_pendulum),
                                        cmocka_unit_test(test_weight),      cmocka_unit_test(test_mass_centre),
                                        cmocka_unit_test(test_resumed),     cmocka_unit_test(test_trajectory)};
-    return cmocka_run_group_tests(tests, clean, clean);
+    return cmocka_run_group_tests(tests, remove_run, remove_run);
 }

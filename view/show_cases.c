@@ -38,22 +38,30 @@ const double (*show_case_target(ShowData *data, const char *name, const double (
     return (const double(*)[3])target;
 }
 
-int show_case_cloud(ShowData *data, const char *name, const double (*x)[3], int count, Color ink,
-                    const MarkDot **dots)
+const double (*show_case_cloud_points(ShowData *data, const char *name, const double (*x)[3], int count,
+                                      int *points))[3]
 {
     Array cloud;
     char *path = mem_format("slender/cases/%s/cloud", name);
     bool there = result_has(data->result, path) &&
                  result_read_as(data->result, path, ARRAY_FLOAT64, 2, 3, &cloud, NULL);
     mem_free(path);
-    if (!there) return 0;
-    double(*points)[3] = show_keep(data, cloud), middle[3] = {0};
-    MarkDot *made = show_block(data, (size_t)cloud.dims[0], sizeof *made);
+    if (!there) return NULL;
+    double(*at)[3] = show_keep(data, cloud), middle[3] = {0};
+    *points = cloud.dims[0];
     for (int i = 0; i < 3 * count; i++) middle[i % 3] += x[i / 3][i % 3] / count;
-    for (int k = 0; k < cloud.dims[0]; k++) {
-        show_fill_places(&points[k], (const double(*)[3]) & middle, 1);
-        made[k] = (MarkDot){k ? NULL : "cloud", points[k], ink, CLOUD_DOT, false};
-    }
+    for (int k = 0; k < *points; k++) show_fill_places(&at[k], (const double(*)[3]) & middle, 1);
+    return (const double(*)[3])at;
+}
+
+int show_case_cloud(ShowData *data, const char *name, const double (*x)[3], int count, Color ink,
+                    const MarkDot **dots)
+{
+    int points = 0;
+    const double(*at)[3] = show_case_cloud_points(data, name, x, count, &points);
+    if (!at) return 0;
+    MarkDot *made = show_block(data, (size_t)points, sizeof *made);
+    for (int k = 0; k < points; k++) made[k] = (MarkDot){k ? NULL : "cloud", at[k], ink, CLOUD_DOT, false};
     *dots = made;
-    return cloud.dims[0];
+    return points;
 }

@@ -19,6 +19,11 @@ void *show_case_dataset(ShowData *data, const char *name, const char *what, size
  * of the points, rows of points without a place NaN. */
 const double (*show_case_target(ShowData *data, const char *name, const double (*x)[3], int count))[3];
 
+/* The points of the case's clouds, and how many they are, their missing coordinates those of the middle of its points; NULL:
+ * it has none. */
+const double (*show_case_cloud_points(ShowData *data, const char *name, const double (*x)[3], int count,
+                                      int *points))[3];
+
 /* The points of the case's clouds as dots, how many: those seen in a plane at the body's middle across it. */
 int show_case_cloud(ShowData *data, const char *name, const double (*x)[3], int count, Color ink,
                     const MarkDot **dots);
