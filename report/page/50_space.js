@@ -55,7 +55,7 @@ function makeSpacePanel(result, page) {
     pointsNow = rowAt(body.points, at);
     gl.drawMesh(offset, corners(pointsNow, faces), faceColors(faces.length / 3, (f) => (values ? scale.color(values[f]) : plain)),
                 { edges: page.choice.edges ? 1 : 0 });
-    if (arrows && page.choice.arrows) gl.drawStrokes(offset, arrowStrokes(arrows, at, pointsNow, parseColor(page.color("--ink")), page.ratio), { head: true, raise: 0.004 });
+    if (arrows && page.choice.arrows) gl.drawStrokes(offset, arrowStrokes(arrows, at, pointsNow, parseColor(page.color("--arrow")), page.ratio), { head: true, raise: 0.004 });
   }
 
   function drawTarget(gl, at) {
