@@ -247,13 +247,14 @@ def two():
 
 
 def stages():
-    """Charts over what a sequence goes through have the line of the stage; arrows are light in the dark."""
+    """Charts over what a sequence goes through have the line of the stage; arrows are red, lighter in the dark."""
     page("stages", "theme=dark&at=0.5&field=&edges=0&view=top")
     places = browser.evaluate("[...document.querySelectorAll('#charts .now')].map((line) => line.getAttribute('visibility') + Number(line.getAttribute('x1')))")
     check("lines of the stage", len(places) == 2 and set(places) == {"visible233"}, places)
     names = browser.evaluate("document.getElementById('charts').textContent")
     check("with a prefix", "flux density, mT" in names, names)
-    check("light arrows", (panel()[:-90].min(axis=2) > 225).sum() > 100)
+    inks = panel()[:-90].astype(int)
+    check("red arrows", (np.abs(inks - [255, 106, 87]).max(axis=2) < 12).sum() > 100)
 
 
 def broken():
