@@ -1,6 +1,5 @@
 /* The ends of rods where they are held: at what time where, and states that are so or are brought there. */
 #include "base/memory.h"
-#include "job/jobs.h"
 #include "rod/front/front.h"
 #include "solve/ramp.h"
 #include <math.h>
@@ -100,7 +99,7 @@ static void turn_back(EndPose pose, Vec3 pivot, Vec3 *place, Quat *frame)
 
 bool rod_leads_ends(const Model *model)
 {
-    return model->job == &job_equilibrium && !model->general;
+    return model->job->leads && !model->general;
 }
 
 /* Where a hold is at that time. */
