@@ -150,6 +150,12 @@ bool rod_end_is_held(const RodModel *rm, double time, const double *x)
                                                     hold.clamped ? &hold.frame : NULL, rod_length(rm->rod));
 }
 
+bool rod_last_is_near(const RodModel *rm, double time, Vec3 place)
+{
+    Hold hold = last_hold(rm);
+    return !rm->held || (stand_at(&hold, time, NULL) && rod_is_near(place, hold.place, rod_length(rm->rod)));
+}
+
 /* ---- As results show them ---- */
 
 int rod_support_count(const RodModel *rm)
