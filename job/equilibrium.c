@@ -192,6 +192,7 @@ const JobRow job_equilibrium = {
     .noun = "an equilibrium",
     .run = run_equilibrium,
     .rest = true,
+    .leads = true,
     .frames = FRAMES_STAY,
     .free_keys = free_keys,
     .effort = {12, 5, 2, 2, 100e6},

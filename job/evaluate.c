@@ -104,6 +104,7 @@ const JobRow job_evaluate = {
     .name = "evaluate",
     .noun = "an evaluation",
     .run = run_evaluate,
+    .given = true,
     .frames = FRAMES_STAY,
     .free_keys = free_keys,
     .effort = {1, 1, 2, 25, 100e6},

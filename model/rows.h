@@ -58,6 +58,8 @@ typedef struct JobRow {
     bool path;                                     /* all of the motion is kept while it runs              */
     bool design;                                   /* the scene's key `design` says what it looks for      */
     bool rest;                                     /* it looks for rest: forces on a free body must balance */
+    bool leads; /* it leads what is held to its place while loads come on; else it begins with that there  */
+    bool given; /* it looks at the state that it is given, and solves for none                             */
     FramesThen frames;
     ProbeRows probed;
     const char *const *free_keys; /* that a run which goes on may change; ends with NULL */

@@ -163,7 +163,16 @@ static void advise_near(Model *model, const Case *c)
                   world->distance);
 }
 
-/* Each point has its own damping: what falls comes to the speed at which it bears the weight. */
+/* N s/m of all of the body: its points have a damping each, rods one for each metre. */
+static double damping_of_all(const Model *model, double damping)
+{
+    const WorldBody *body = &model->world->body;
+    double length = 0;
+    for (int k = 0; k < body->strands; k++) length += body->length[k];
+    return damping * (body->strands ? length : model->point_count);
+}
+
+/* What falls comes to the speed at which that bears the weight. */
 static void advise_damping(Model *model)
 {
     const ParamBlock *block = params_find(model->params, "damping");
@@ -178,12 +187,11 @@ static void advise_damping(Model *model)
         size = fmax(size, vec3_length(vec3_sub(vec3_load(body->rest[v]), vec3_load(body->rest[0]))));
     }
     mem_free(mass);
-    double speed = sum * g / (damping * model->point_count), fall = sqrt(2 * g * size);
+    double speed = sum * g / damping_of_all(model, damping), fall = sqrt(2 * g * size);
     if (damping > 0 && g > 0 && speed < SLOW * fall)
-        mesh_warn(
-            &model->report,
-            "damping outweighs all else: with %.3g N s/m at each point the body falls at %.2g m/s at most",
-            damping, speed);
+        mesh_warn(&model->report,
+                  "damping outweighs all else: with %.3g %s%s the body falls at %.2g m/s at most", damping,
+                  block->unit, body->strands ? "" : " at each point", speed);
 }
 
 /* What is smaller than a quarter of an edge fits between vertices and the middles of edges and faces. */

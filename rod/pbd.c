@@ -2,6 +2,13 @@
 #include "base/memory.h"
 #include "base/quat.h"
 
+/* Where a held end goes within a step. */
+typedef struct Goal {
+    bool given;
+    Vec3 place;
+    Quat frame;
+} Goal;
+
 struct PbdRod {
     int elements, substeps, sweeps;
     RodSupport start, end;
@@ -15,6 +22,7 @@ struct PbdRod {
     Vec3 *chord;                    /* [elements] natural chord over h, in the element's frame      */
     Quat clamp, end_frame, *turn;   /* [elements + 1] natural rotation from the element before, or from
                                        the clamp, and to the end, in the frame of either            */
+    Goal goal[2];                   /* of the first and the last node                               */
     Vec3 *x, *x_before, *v;         /* [nodes]                                                      */
     Quat *q, *q_before;             /* [elements] frames                                            */
     Vec3 *spin;                     /* [elements] rate of turning in its frame, 1/s                 */
@@ -114,9 +122,8 @@ PbdRod *pbd_rod_create(const PbdRodDef *def)
                         vec3(1 / (def->stretch.x * h), 1 / (def->stretch.y * h), 1 / (def->stretch.z * h)),
                     .turn_compliance = vec3(h / (4 * def->section.twist), h / (4 * def->section.bend1),
                                             h / (4 * def->section.bend2)),
-                    .clamp = quat_from_axes(def->clamp.n0, def->clamp.n1, def->clamp.n2)};
-    if (def->end == ROD_CLAMPED)
-        rod->end_frame = quat_from_axes(def->end_frame.n0, def->end_frame.n1, def->end_frame.n2);
+                    .clamp = def->clamp,
+                    .end_frame = def->end_frame};
     if (def->magnet) rod->magnet = mem_copy(def->magnet, (size_t)n, sizeof *rod->magnet);
     allocate(rod);
     fill_nodes(rod, def);
@@ -211,7 +218,23 @@ static void turn_magnets(PbdRod *rod, double dt)
     }
 }
 
-static void substep(PbdRod *rod, double dt)
+/* That part of the way that is left. */
+static void lead_ends(PbdRod *rod, double part)
+{
+    for (int k = 0; k < 2; k++) {
+        const Goal *goal = &rod->goal[k];
+        Vec3 *x = &rod->x[k ? rod->elements : 0];
+        Quat *frame = k ? &rod->end_frame : &rod->clamp;
+        if (!goal->given) continue;
+        bool clamped = (k ? rod->end : rod->start) == ROD_CLAMPED;
+        Vec3 turn = vec3_scale(part, quat_log(quat_mul(quat_conj(*frame), goal->frame)));
+        *x = part < 1 ? vec3_axpy(part, vec3_sub(goal->place, *x), *x) : goal->place;
+        if (clamped) *frame = part < 1 ? quat_unit(quat_mul(*frame, quat_exp(turn))) : goal->frame;
+    }
+}
+
+/* The ends go by that part of what is left of their way. */
+static void substep(PbdRod *rod, double dt, double part)
 {
     double slowed = 1 / (1 + rod->drag * dt);
     for (int i = 0; i <= rod->elements; i++) {
@@ -220,6 +243,7 @@ static void substep(PbdRod *rod, double dt)
         Vec3 rate = vec3_axpy(rod->inverse_mass[i], rod->force[i], rod->gravity);
         rod->x[i] = vec3_axpy(dt * slowed, vec3_axpy(dt, rate, rod->v[i]), rod->x[i]);
     }
+    lead_ends(rod, part);
     turn_magnets(rod, dt);
     for (int e = 0; e < rod->elements; e++) {
         rod->q_before[e] = rod->q[e];
@@ -239,7 +263,7 @@ static void substep(PbdRod *rod, double dt)
 
 void pbd_rod_step(PbdRod *rod, double dt)
 {
-    for (int k = 0; k < rod->substeps; k++) substep(rod, dt / rod->substeps);
+    for (int k = 0; k < rod->substeps; k++) substep(rod, dt / rod->substeps, 1.0 / (rod->substeps - k));
 }
 
 void pbd_rod_set_field(PbdRod *rod, Vec3 flux_density)
@@ -247,9 +271,9 @@ void pbd_rod_set_field(PbdRod *rod, Vec3 flux_density)
     rod->flux_density = flux_density;
 }
 
-void pbd_rod_move_end(PbdRod *rod, Vec3 place)
+void pbd_rod_lead(PbdRod *rod, bool last, Vec3 place, Quat frame)
 {
-    rod->x[rod->elements] = place;
+    rod->goal[last] = (Goal){true, place, frame};
 }
 
 const Vec3 *pbd_rod_positions(const PbdRod *rod)

@@ -28,8 +28,8 @@ typedef struct PbdRodDef {
     const Vec3 *start_strain;   /* [elements] those it starts with, at rest; NULL: the natural ones */
     Vec3 position;              /* of node 0 at the start                                           */
     const Vec3 *start_places;   /* [elements + 1] of all nodes; NULL: from there, as the strains say */
-    RodFrame clamp;             /* its material frame there, orthonormal                            */
-    RodFrame end_frame;         /* and that at the last node, of a clamped end                      */
+    Quat clamp;                 /* takes the axes to its material frame there, and                  */
+    Quat end_frame;             /* to that at the last node, of a clamped end                       */
     RodSupport start, end;
     const Vec3 *magnet;   /* [elements] magnetic moments in the frames, A m^2; NULL: none     */
     Vec3 gravity;         /* m/s^2                                                            */
@@ -49,8 +49,9 @@ void pbd_rod_step(PbdRod *rod, double dt);
 /* The field that magnets feel from now on, T; none at first. */
 void pbd_rod_set_field(PbdRod *rod, Vec3 flux_density);
 
-/* Moves a last node that is held; a little per step. */
-void pbd_rod_move_end(PbdRod *rod, Vec3 place);
+/* Where what holds the first or the last node is after the next step, and its frame (of a clamp): it goes there evenly, and turns
+ * by less than half a turn. */
+void pbd_rod_lead(PbdRod *rod, bool last, Vec3 place, Quat frame);
 
 /* [elements + 1], m and m/s; valid until the rod is destroyed. */
 const Vec3 *pbd_rod_positions(const PbdRod *rod);

@@ -36,5 +36,7 @@ for folder in base solve io field optim surface world model job view export repo
     found=$(grep -HnE "(->|\.)($bodies|drawing)\b[^/\"]|\b(JOB|BODY)_[A-Z]" $folder/*.[ch] | grep -v '#include')
     [ -z "$found" ] || { echo "$folder/ asks for the kind of a body or job:"; echo "$found"; bad=1; }
 done
+found=$(grep -nE "[!=]= *&job_[a-z]+" */*.[ch] */front/*.[ch])
+[ -z "$found" ] || { echo "a job of all bodies is asked for, where its row should say (model/rows.h):"; echo "$found"; bad=1; }
 ! grep -n '#include "' include/slender.h || { echo "include/slender.h stands alone"; bad=1; }
 exit $bad

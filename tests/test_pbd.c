@@ -13,8 +13,6 @@
 
 enum { MOST = 60 };
 
-static const RodFrame axes = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-
 /* In all three directions. */
 static Vec3 alike(double stretch)
 {
@@ -54,7 +52,7 @@ static PbdRodDef sagging_helix(int elements, Vec3 *places)
                      .start = ROD_CLAMPED,
                      .natural_strain = strain,
                      .position = places[0],
-                     .clamp = frames[0],
+                     .clamp = quat_from_axes(frames[0].n0, frames[0].n1, frames[0].n2),
                      .gravity = vec3(0, 0, -9.8),
                      .drag = 5,
                      .substeps = 100,
@@ -73,7 +71,7 @@ static PbdRodDef straight(int elements, const Vec3 *strain)
         .stretch = alike(1e3),
         .start = ROD_CLAMPED,
         .natural_strain = strain,
-        .clamp = axes,
+        .clamp = quat_identity(),
         .drag = 20,
         .substeps = 20,
         .sweeps = 4};
@@ -309,7 +307,7 @@ static void test_held_end(void **state)
     print_message("a held beam sags by %+.1e too much\n", low / exact - 1);
     assert_true(fabs(low / exact - 1) < 3e-2 && apart(x[N], vec3(0.2, 0, 0)) < 1e-15);
     for (int k = 0; k < 200; k++) {
-        pbd_rod_move_end(rod, vec3(0.2 - 0.05 * k / 199, 0, 0));
+        pbd_rod_lead(rod, true, vec3(0.2 - 0.05 * k / 199, 0, 0), quat_identity());
         pbd_rod_step(rod, 0.01);
     }
     low = depth(x, N);
@@ -367,8 +365,7 @@ static double deflection(Span span, int elements)
     Vec3 strain[MOST] = {{0}};
     PbdRodDef def = straight(elements, strain);
     def.start = def.end = span == HINGES ? ROD_PINNED : ROD_CLAMPED;
-    def.end_frame = span == TURNED ? rod_turned((RodFrame){axes.n2, axes.n0, axes.n1}, angle) : axes;
-    if (span == TURNED) def.end_frame = (RodFrame){def.end_frame.n1, def.end_frame.n2, def.end_frame.n0};
+    def.end_frame = span == TURNED ? quat_exp(vec3(0, 0, angle)) : quat_identity();
     if (span != TURNED) def.gravity = vec3(0, 0, -0.05);
     def.stretch = alike(1e2);
     PbdRod *rod = settle(def, vec3(0, 0, 0));

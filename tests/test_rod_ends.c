@@ -3,6 +3,7 @@
 #include "tests/run_fixture.h"
 #include "base/vec3.h"
 #include <math.h>
+#include <stdio.h>
 
 static const double PI = 3.14159265358979323846;
 
@@ -20,6 +21,15 @@ static const double LENGTH = 0.2, GJ = 1e6 / 3 * 3.14159265358979323846e-12 / 2;
     "  natural_strain: [0, 0, 0]\n  length: 0.2\n"
 #define WEIGHTLESS STRAIGHT "  gravity: [0, 0, 0]\n"
 #define END        "  end: {position: [0.2, 0, 0], hold: clamped, frame: [[1, 0, 0], [0, 1, 0], [0, 0, 1]], "
+
+/* A run that may end without what it looks for. */
+static Result *run_to_end(char *text)
+{
+    SlenderError err;
+    Result *result = run_to(slender_scene_parse(text, NULL, 0, &err), &err, false, SLENDER_NOT_CONVERGED);
+    mem_free(text);
+    return result;
+}
 
 static void check_rows(Result *result, const char *path, const double *wanted, int count, double most)
 {
@@ -122,6 +132,103 @@ static void test_turned_clamp(void **state)
         result_close(result);
     }
     for (int i = 0; i < 3 * (N + 1); i++) assert_true(fabs(numbers(&x[0])[i] - numbers(&x[1])[i]) < 1e-9);
+    for (int k = 0; k < 2; k++) array_clear(&x[k]);
+}
+
+/* A clamp and an end that have moved and turned, at t = 1 s; and the same by numbers. */
+#define LED                                                                                                  \
+    "  clamp: {move: [\"0.01*t\", \"0\", \"0\"], turn: [\"0\", \"0.5*t\", \"0\"]}\n"                         \
+    "  end: {position: [0.15, 0, 0], hold: clamped, frame: [[1, 0, 0], [0, 1, 0], [0, 0, 1]], "              \
+    "move: [\"-0.02*t\", \"0\", \"0\"], turn: [\"3*t\", \"0\", \"0\"]}\n"
+
+static char *placed(void)
+{
+    double c = cos(0.5), s = sin(0.5), C = cos(3.0), S = sin(3.0);
+    return mem_format("  clamp: {position: [0.01, 0, 0], frame: [[%.17g, 0, %.17g], [0, 1, 0], [%.17g, 0, "
+                      "%.17g]]}\n  end: {position: [0.13, 0, 0], hold: clamped, frame: [[1, 0, 0], [0, "
+                      "%.17g, %.17g], [0, %.17g, %.17g]]}\n",
+                      c, -s, s, c, C, S, -S, C);
+}
+
+/* To that part of the largest number. */
+static void check_alike(const Array *a, const Array *b, double part)
+{
+    double largest = 0;
+    assert_int_equal((int)array_count(a), (int)array_count(b));
+    for (size_t i = 0; i < array_count(a); i++) largest = fmax(largest, fabs(numbers(a)[i]));
+    for (size_t i = 0; i < array_count(a); i++)
+        if (!(fabs(numbers(a)[i] - numbers(b)[i]) <= part * largest))
+            fail_msg("number %zu is %.12g, not %.12g", i, numbers(a)[i], numbers(b)[i]);
+    assert_true(largest > 0);
+}
+
+/* A design of a rod whose ends have moved is that of one which is held where they are then. */
+static void test_design(void **state)
+{
+    (void)state;
+    static const char *const paths[] = {"slender/state/x", "slender/design/gradient/natural_strain",
+                                        "slender/final/support_force"};
+    char *by_numbers = placed();
+    Array array[2][3];
+    for (int k = 0; k < 2; k++) {
+        Result *result = run_to_end(
+            mem_format("%s%sjob: design\ntime: {at: 1}\ntarget: {formula: [\"0.6*s\", \"0.02*sin(pi*s/L)\", "
+                       "\"0.03*sin(pi*s/L)\"]}\ndesign: {unknowns: {natural_strain: {bounds: [-50, 50]}}, "
+                       "objectives: [{target: 1}], iterations: 3}\n",
+                       STRAIGHT, k ? by_numbers : LED));
+        for (int i = 0; i < 3; i++) array[k][i] = read_all(result, paths[i]);
+        result_close(result);
+    }
+    for (int i = 0; i < 3; i++) check_alike(&array[0][i], &array[1][i], 1e-7);
+    for (int i = 0; i < 6; i++) array_clear(&array[i / 3][i % 3]);
+    mem_free(by_numbers);
+}
+
+/* Stages of a sequence are equilibria at their times, and at no other one. */
+static void test_evaluate(void **state)
+{
+    (void)state;
+    static const char first[] = NAME "_first.vtkhdf";
+    SlenderError err, trouble;
+    result_close(run_text(mem_format("%s%sjob: equilibrium\nsequence: {time: {from: 0, to: 2, count: "
+                                     "5}}\noutput: {states: all, precision: double}\n",
+                                     STRAIGHT, LED)));
+    assert_int_equal(rename(NAME ".vtkhdf", first), 0);
+    for (int frame = 0; frame < 5; frame += 2) {
+        Result *result = run_text(mem_format("%s%sjob: evaluate\nstart: {result: %s, frame: %d}\ntime: {at: "
+                                             "%g}\n",
+                                             STRAIGHT, LED, first, frame, frame / 2.0));
+        Array status = read_all(result, "slender/status");
+        assert_string_equal(status.data, "evaluated");
+        array_clear(&status);
+        result_close(result);
+    }
+    char *text = mem_format("%s%sjob: evaluate\nstart: {result: %s, frame: 2}\ntime: {at: 1.5}\n", STRAIGHT,
+                            LED, first);
+    SlenderScene *scene = slender_scene_parse(text, NULL, 0, &err);
+    assert_non_null(scene);
+    assert_int_equal(slender_run(scene, &(SlenderRun){.output = NAME, .threads = 1, .force = true}, &trouble),
+                     SLENDER_REFUSED);
+    assert_non_null(strstr(trouble.text, "than the scene's at t = 1.5 s"));
+    slender_scene_destroy(scene);
+    mem_free(text);
+    unlink(first);
+}
+
+/* The pose of a rod with a free end goes with its clamp. */
+static void test_pose_with_clamp(void **state)
+{
+    (void)state;
+    Array x[2];
+    for (int k = 0; k < 2; k++) {
+        Result *result =
+            run_to_end(mem_format("%s  clamp: {%s}\njob: evaluate\ntime: {at: 2}\n", STRAIGHT,
+                                  k ? "frame: [[0, 1, 0], [-1, 0, 0], [0, 0, 1]], position: [0, 0, 0.1]"
+                                    : "move: [\"0\", \"0\", \"0.05*t\"], turn: [0, 0, \"pi/4*t\"]"));
+        x[k] = read_all(result, "slender/state/x");
+        result_close(result);
+    }
+    check_alike(&x[0], &x[1], 1e-12);
     for (int k = 0; k < 2; k++) array_clear(&x[k]);
 }
 
@@ -325,11 +432,13 @@ static void test_resumed(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_torque),      cmocka_unit_test(test_elastica),
-        cmocka_unit_test(test_weight),      cmocka_unit_test(test_turned_clamp),
-        cmocka_unit_test(test_accelerated), cmocka_unit_test(test_wound_up),
-        cmocka_unit_test(test_resumed),     cmocka_unit_test(test_poses),
-        cmocka_unit_test(test_outline),     cmocka_unit_test(test_pendulum),
+        cmocka_unit_test(test_torque),          cmocka_unit_test(test_elastica),
+        cmocka_unit_test(test_weight),          cmocka_unit_test(test_turned_clamp),
+        cmocka_unit_test(test_accelerated),     cmocka_unit_test(test_wound_up),
+        cmocka_unit_test(test_resumed),         cmocka_unit_test(test_poses),
+        cmocka_unit_test(test_outline),         cmocka_unit_test(test_pendulum),
+        cmocka_unit_test(test_design),          cmocka_unit_test(test_evaluate),
+        cmocka_unit_test(test_pose_with_clamp),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, remove_run, remove_run);
 }

@@ -232,11 +232,43 @@ static void test_rest_again(void **state)
     }
 }
 
+/* The pull at the ends of a chain that long, between places so far apart and one so much higher than the other:
+ * 2 a sinh(apart/2a) = sqrt(L^2 - h^2), H = w a. */
+static double catenary_pull(double length, double apart, double high, double weight)
+{
+    double low = 0.1 * apart, up = 10 * apart, chord = sqrt(length * length - high * high);
+    for (int k = 0; k < 100; k++) {
+        double a = 0.5 * (low + up);
+        *(2 * a * sinh(apart / (2 * a)) > chord ? &low : &up) = a;
+    }
+    return weight * low;
+}
+
+/* A cable between two towers, of a rod that is hardly bent: a motion by long steps brings it near, an equilibrium goes on from there. */
+static void test_cable(void **state)
+{
+    (void)state;
+    static const char text[] =
+        "slender: 1\njob: %s\nrod:\n  model: cosserat\n  natural_strain: [0, -0.01, 0]\n  length: 110\n"
+        "  radius: 15 mm\n  young: 60 GPa\n  poisson: 0.3\n  density: 4000\n  elements: 120\n  hold: pinned\n"
+        "  end: {position: [100, 0, 10]}\n%s";
+    expect_status(mem_format(text, "simulate", "time: {step: 0.5, steps: 60}\n"), "converged");
+    assert_int_equal(rename(NAME ".vtkhdf", "rest.vtkhdf"), 0);
+    Result *result = run_text(mem_format(text, "equilibrium", "start: {result: rest.vtkhdf}\n"));
+    Array force = read_all(result, "slender/final/support_force");
+    double exact = catenary_pull(110, 100, 10, 4000 * 9.81 * M_PI * 0.015 * 0.015),
+           pull = -((const double *)force.data)[0];
+    print_message("a cable pulls with %.1f N, a chain with %.1f N\n", pull, exact);
+    assert_true(fabs(pull / exact - 1) < 5e-3);
+    array_clear(&force);
+    result_close(result);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_stream),    cmocka_unit_test(test_rest),
-                                       cmocka_unit_test(test_pipe),      cmocka_unit_test(test_comb),
-                                       cmocka_unit_test(test_extended),  cmocka_unit_test(test_column),
-                                       cmocka_unit_test(test_rest_again)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_stream),     cmocka_unit_test(test_rest),
+                                       cmocka_unit_test(test_pipe),       cmocka_unit_test(test_comb),
+                                       cmocka_unit_test(test_extended),   cmocka_unit_test(test_column),
+                                       cmocka_unit_test(test_rest_again), cmocka_unit_test(test_cable)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

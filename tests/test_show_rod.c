@@ -26,6 +26,8 @@ typedef struct Rods {
     int strands;                  /* each the helix, moved aside */
     bool simulated, motion, held; /* at the other end, too */
     bool designed;                /* the motion, by a field over time */
+    bool poses;                   /* how its clamp stands, and            */
+    double leads;                 /* m, how far it moves between frames   */
 } Rods;
 
 /* Columns of tests/rod/helix.csv for every strand; strands lie 4 cm apart. */
@@ -69,6 +71,15 @@ static void put_supports(Journal *journal)
     static const double end[] = {0.01132041885583, 0.009841144086364, -0.06221722076589};
     put(journal, "static", 0, array_float("rod/held", "m", end, 1, 3, 0));
     put(journal, "static", 0, array_text("rod/supports", "clamped"));
+}
+
+/* The clamp at the origin, which goes along x. */
+static void put_poses(Journal *journal, double leads)
+{
+    double pose[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+    put(journal, "static", 0, array_float("rod/support_pose", "1, m", pose, 2, 1, 12));
+    for (int k = 0; k < FRAMES; k++, pose[3] += leads)
+        put(journal, "frame", k, array_float("support_pose", "1, m", pose, 2, 1, 12));
 }
 
 /* A field over time, and the end of the last rod, which goes past a place. */
@@ -120,6 +131,7 @@ static void put_rods(Journal *journal, Rods rods, const Table *table)
     put(journal, "final", 0, array_text("status", "converged"));
     if (rods.held) put_supports(journal);
     if (rods.designed) put_design(journal, (const double(*)[3])input, (const double(*)[3])natural, count);
+    if (rods.poses) put_poses(journal, rods.leads);
     if (rods.motion) put_frames(journal, input, natural, count);
     mem_free(input);
     mem_free(natural);
@@ -271,6 +283,25 @@ static void designed(void **state)
     assert_int_equal(field[1] - field[0], 2); /* of Bz, and in the legend */
 }
 
+/* The way of a clamp that has moved, dashed, in three views of all moments but the first one, and in the legend. */
+static void ways(void **state)
+{
+    (void)state;
+    ShowDef def = show_default();
+    int dashes[2];
+    for (int k = 0; k < 2; k++) {
+        Error err = {""};
+        write_result(
+            (Rods){.strands = 1, .simulated = true, .motion = true, .poses = true, .leads = k * 0.01});
+        assert_int_equal(show_result(RESULT, "test_show_rod.svg", &def, &err), SHOW_DONE);
+        dashes[k] = count_words("test_show_rod.svg", "stroke-dasharray:2");
+    }
+    unlink("test_show_rod.svg");
+    print_message("dashed ways: %d, of a clamp that moves %d\n", dashes[0], dashes[1]);
+    assert_int_equal(dashes[0], 0);
+    assert_int_equal(dashes[1], 3 * (FRAMES - 1) + 1);
+}
+
 /* Strands side by side fill the page that one leaves white; many are not shown in moments unless that is
  * asked for. */
 static void bundles(void **state)
@@ -321,6 +352,7 @@ int main(void)
         cmocka_unit_test_teardown(curves, nothing_leaks),  cmocka_unit_test_teardown(held, nothing_leaks),
         cmocka_unit_test_teardown(motion, nothing_leaks),  cmocka_unit_test_teardown(bundles, nothing_leaks),
         cmocka_unit_test_teardown(refused, nothing_leaks), cmocka_unit_test_teardown(designed, nothing_leaks),
+        cmocka_unit_test_teardown(ways, nothing_leaks),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -103,7 +103,7 @@ static void test_files(void **state)
     }
 }
 
-/* 1e-4 kg of nine vertices fall at m g/(9 gamma). */
+/* 1e-4 kg of nine vertices fall at m g/(9 gamma); a rod at that of a metre, which is much for one that is little damped. */
 static void test_damping(void **state)
 {
     (void)state;
@@ -118,6 +118,20 @@ static void test_damping(void **state)
                         "damping outweighs all else: with 0.01 N s/m at each point the body falls at 0.011 "
                         "m/s at most");
     clear(&b);
+    static const char *const damping[] = {"0.003", "0.3"};
+    for (int k = 0; k < 2; k++) {
+        b = scene_build(
+            mem_format("slender: 1\njob: simulate\nrod:\n  natural_strain: [0, 0, 0]\n  length: 0.1\n"
+                       "  radius: 1 mm\n  young: 1 MPa\n  poisson: 0.3\n  density: 1000\n"
+                       "  damping: %s\nobstacles: [{plane: {point: [0, 0, -1 mm]}}]\n"
+                       "time: {step: 1 ms, steps: 10}\n",
+                       damping[k]));
+        assert_int_equal(b.model->report.warning_count, k);
+        if (k)
+            assert_string_equal(b.model->report.warnings[0], "damping outweighs all else: with 0.3 N s/m^2 "
+                                                             "the body falls at 0.1 m/s at most");
+        clear(&b);
+    }
 }
 
 int main(void)

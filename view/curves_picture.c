@@ -90,6 +90,9 @@ static void legend_add_holds(Legend *legend, const CurvesScene *scene, int only)
         at = legend_place(legend, SAMPLE, names[k]);
         if (legend->canvas) holds_draw_axis(legend->canvas, k + 1, at, SAMPLE);
     }
+    if (!holds || !holds_have_ways(holds)) return;
+    at = legend_place(legend, SAMPLE, "its way");
+    if (legend->canvas) holds_draw_way(legend->canvas, at, SAMPLE);
 }
 
 /* Returns where the legend ends. The names of moments come last: in an animation nothing else moves. */

@@ -31,6 +31,13 @@ static void widen(double low[3], double high[3], Mat3 directions, const double *
     }
 }
 
+static void widen_by_holds(double low[3], double high[3], Mat3 directions, const Holds *holds)
+{
+    for (int k = 0; k < holds->count; k++)
+        for (int i = 0; i < holds->items[k].way_count; i++)
+            widen(low, high, directions, holds->items[k].way[i]);
+}
+
 /* Bounds of all points along three directions; false where there is none. */
 static bool bounds(const CurvesScene *scene, Mat3 directions, double low[3], double high[3])
 {
@@ -44,6 +51,7 @@ static bool bounds(const CurvesScene *scene, Mat3 directions, double low[3], dou
             for (int i = 0; i < set->marks.lines[k].count; i++)
                 widen(low, high, directions, set->marks.lines[k].points[i]);
         for (int k = 0; k < set->marks.dot_count; k++) widen(low, high, directions, set->marks.dots[k].at);
+        widen_by_holds(low, high, directions, &set->holds);
     }
     return low[0] <= high[0];
 }

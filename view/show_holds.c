@@ -5,7 +5,7 @@
 /* Rows of 3x4 matrices: the columns tangent, n1, n2 and place. */
 static Hold hold_of(const double row[12])
 {
-    Hold hold;
+    Hold hold = {0};
     for (int i = 0; i < 3; i++) {
         hold.n1[i] = row[4 * i + 1], hold.n2[i] = row[4 * i + 2];
         hold.at[i] = row[4 * i + 3];
@@ -13,19 +13,55 @@ static Hold hold_of(const double row[12])
     return hold;
 }
 
-/* Of a frame where they move, else as they stand; NULL: not known. */
-static const double *read_rows(ShowData *data, int frame, int *count)
+/* Matrices of `count` holds: as the scene says them, and, where they move, in the frames up to one. */
+typedef struct Poses {
+    int count, frames;
+    const double *stands, *moved; /* [count][12], [frames][count][12]; NULL: not known */
+} Poses;
+
+/* So many rows of a dataset, the first ones (0: it has no rows); NULL: it is not there. */
+static const double *read_rows(ShowData *data, const char *path, int rows, int *count)
 {
-    static const char MOVED[] = "slender/frames/support_pose", STANDS[] = "slender/rod/support_pose";
-    Array rows;
-    if (frame < 0) frame = result_step_count(data->result) - 1;
-    bool moved = frame >= 0 && result_has(data->result, MOVED);
-    if (!moved && !result_has(data->result, STANDS)) return NULL;
-    if (!(moved ? result_read_rows(data->result, MOVED, frame, 1, &rows, NULL)
-                : result_read(data->result, STANDS, &rows, NULL)))
+    Array array;
+    if (!result_has(data->result, path)) return NULL;
+    if (!(rows ? result_read_rows(data->result, path, 0, rows, &array, NULL)
+               : result_read(data->result, path, &array, NULL)))
         return NULL;
-    *count = rows.type == ARRAY_FLOAT64 ? (int)(array_count(&rows) / 12) : 0;
-    return show_keep(data, rows);
+    *count = array.type == ARRAY_FLOAT64 ? (int)(array_count(&array) / 12) / (rows ? rows : 1) : 0;
+    return show_keep(data, array);
+}
+
+static Poses read_poses(ShowData *data, int frame)
+{
+    if (frame < 0) frame = result_step_count(data->result) - 1;
+    Poses poses = {.frames = frame + 1};
+    poses.stands = read_rows(data, "slender/rod/support_pose", 0, &poses.count);
+    if (poses.frames > 0)
+        poses.moved = read_rows(data, "slender/frames/support_pose", poses.frames, &poses.count);
+    return poses;
+}
+
+static void put_place(const double row[12], double at[3])
+{
+    for (int i = 0; i < 3; i++) at[i] = row[4 * i + 3];
+}
+
+/* Through the frames; of one that stays as it is in these, from where the scene has it before it moves. */
+static void put_way(ShowData *data, const Poses *poses, int k, Hold *hold)
+{
+    int count = poses->frames;
+    double(*way)[3] = show_block(data, (size_t)count + 1, sizeof *way), extent[2] = {0};
+    put_place(poses->stands + 12 * k, way[0]);
+    for (int n = 0; n < count; n++) put_place(poses->moved + 12 * (n * poses->count + k), way[n + 1]);
+    for (int n = 1; n <= count; n++)
+        for (int i = 0; i < 3; i++) {
+            extent[0] = fmax(extent[0], fabs(way[n][i] - way[0][i]));
+            extent[1] = fmax(extent[1], fabs(way[n][i] - way[1][i]));
+        }
+    bool moves = extent[1] > 0;
+    if (!(extent[0] > 0)) return;
+    hold->way = (const double(*)[3])way + moves;
+    hold->way_count = count + !moves;
 }
 
 static void read_outline(ShowData *data, Holds *holds)
@@ -41,12 +77,15 @@ static void read_outline(ShowData *data, Holds *holds)
 Holds show_holds(ShowData *data, int frame)
 {
     Holds holds = {0};
-    int count = 0;
-    const double *rows = read_rows(data, frame, &count);
-    if (!rows || count > HOLDS_MOST) return holds;
-    Hold *items = show_block(data, (size_t)count, sizeof *items);
-    for (int k = 0; k < count; k++) items[k] = hold_of(rows + 12 * k);
-    holds.count = count, holds.items = items;
+    Poses poses = read_poses(data, frame);
+    if (!poses.stands || poses.count > HOLDS_MOST) return holds;
+    const double *rows = poses.moved ? poses.moved + 12 * (poses.frames - 1) * poses.count : poses.stands;
+    Hold *items = show_block(data, (size_t)poses.count, sizeof *items);
+    for (int k = 0; k < poses.count; k++) {
+        items[k] = hold_of(rows + 12 * k);
+        if (poses.moved) put_way(data, &poses, k, &items[k]);
+    }
+    holds.count = poses.count, holds.items = items;
     read_outline(data, &holds);
     return holds;
 }

@@ -228,11 +228,11 @@ static bool fill_cases(Model *model, const Scene *scene, const Build *b, bool re
     model_put_flux(model, 0, p);
     if (ok && rm->curves) take_curve(rm, rod_scene(scene), b->time, p, curve);
     ok = ok && model_cases(model, b, scene, p) && load_stages(model, b) && stand(model, scene, b, curve);
-    bool posed = model->job == &job_evaluate, statics = posed || model->job == &job_equilibrium;
-    bool hanging = !model->general && statics && rod->start == ROD_CLAMPED && rod->end == ROD_FREE &&
-                   rod->fields.count == 0 && rod->potentials.count == 0 && !rod->world && !model->moves;
+    bool hanging = !model->general && !motion && !model->job->design && rod->start == ROD_CLAMPED &&
+                   rod->end == ROD_FREE && rod->fields.count == 0 && rod->potentials.count == 0 &&
+                   !rod->world && !model->moves;
     if (ok) make_states(model, rod_scene(scene), hanging, p, curve);
-    if (ok && posed && !scene->start)
+    if (ok && model->job->given && !scene->start)
         ok = rod_end_is_held(rm, model->time, model->x) ||
              yaml_refuse(b->file, "rod.end", "the pose has its end elsewhere than where this holds it");
     else if (ok && rm->held && !rod_leads_ends(model) && !scene->start)

@@ -1,5 +1,4 @@
 /* What a rod's evaluation and factor take. */
-#include "job/jobs.h"
 #include "job/predict.h"
 #include "rod/front/front.h"
 
@@ -17,5 +16,5 @@ void rod_cost(const Model *model, Cost *cost)
     predict_take_factor(system_info(c->sys), cost);
     cost->elements = ((const RodModel *)model->self)->rod->elements;
     cost->system_bytes = SYSTEM_BYTES;
-    if (model->job == &job_equilibrium) cost->effort = rest;
+    if (model->job->rest && !model->job->design) cost->effort = rest;
 }

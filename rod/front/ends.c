@@ -1,6 +1,5 @@
 /* The ends of rods where they are held: at what time where, and states that are so or are brought there. */
 #include "base/memory.h"
-#include "job/jobs.h"
 #include "rod/front/front.h"
 #include "solve/ramp.h"
 #include <math.h>
@@ -100,7 +99,7 @@ static void turn_back(EndPose pose, Vec3 pivot, Vec3 *place, Quat *frame)
 
 bool rod_leads_ends(const Model *model)
 {
-    return model->job == &job_equilibrium && !model->general;
+    return model->job->leads && !model->general;
 }
 
 /* Where a hold is at that time. */
@@ -149,6 +148,12 @@ bool rod_end_is_held(const RodModel *rm, double time, const double *x)
     if (!rm->held) return true;
     return stand_at(&hold, time, NULL) && rod_is_at(&rm->layout, x, hold.node, hold.place,
                                                     hold.clamped ? &hold.frame : NULL, rod_length(rm->rod));
+}
+
+bool rod_last_is_near(const RodModel *rm, double time, Vec3 place)
+{
+    Hold hold = last_hold(rm);
+    return !rm->held || (stand_at(&hold, time, NULL) && rod_is_near(place, hold.place, rod_length(rm->rod)));
 }
 
 /* ---- As results show them ---- */

@@ -10,6 +10,9 @@ void rod_add_static(const Model *model, Arrays *list);
 void rod_add_sections(const RodModel *rm, int strands, int each, Arrays *list);
 void rod_body_places(const Model *model, const double *x, double *place);
 void rod_add_frame(const Model *model, const Snapshot *shot, bool whole, Arrays *list);
+
+/* Of a frame, where what holds its ends is in a state, if these move. */
+void rod_add_poses(const RodModel *rm, const double *x, Arrays *list);
 void rod_add_stress(const Model *model, const Snapshot *shot, Arrays *list);
 void rod_add_state(const Model *model, const Snapshot *shot, const char *prefix, Arrays *list);
 void rod_add_final(const Model *model, const Snapshot *shot, int modes, Arrays *list);
@@ -31,11 +34,12 @@ bool rod_read_supports(RodModel *rm, const RodScene *scene, const Build *b);
 /* ends.c: */
 
 /* Is a place where it is wanted, to 1e-6 of a size? A node, with that frame to 1e-6 rad (NULL: any)? The other end, if it is
- * held? */
+ * held, in a state, or as a place alone? */
 bool rod_is_near(Vec3 place, Vec3 wanted, double size);
 bool rod_is_at(const RodLayout *layout, const double *x, int node, Vec3 place, const Quat *frame,
                double size);
 bool rod_end_is_held(const RodModel *rm, double time, const double *x);
+bool rod_last_is_near(const RodModel *rm, double time, Vec3 place);
 
 /* Keeps where the first ends are before they move; unless the job leads them, the strands of the rod and the state x, of turns
  * only, stand where it begins. */

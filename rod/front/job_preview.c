@@ -10,15 +10,10 @@ typedef struct Preview {
     PbdRod *rod;
     int nodes;
     double now;    /* s */
+    double *x;     /* [dofs] of the model, with its ends where they are; of those that move */
     double *state; /* pbd_rod_get_state, as it was put last */
     Error *err;
 } Preview;
-
-static RodFrame frame_of(Quat q)
-{
-    return (RodFrame){quat_rotate(q, vec3(1, 0, 0)), quat_rotate(q, vec3(0, 1, 0)),
-                      quat_rotate(q, vec3(0, 0, 1))};
-}
 
 /* Magnetic moments of the elements; NULL: it has none. Caller: mem_free. */
 static Vec3 *magnets(const Rod *rod, const double *p)
@@ -34,13 +29,13 @@ static Vec3 *magnets(const Rod *rod, const double *p)
     return any ? magnet : NULL;
 }
 
-static PbdRod *create(const Run *run)
+static PbdRod *create(const Run *run, const double *x)
 {
     const RodModel *rm = run->model->self;
     const Rod *rod = rm->rod;
     const RodScene *scene = rod_scene(run->scene);
     const RodSection *section = &rm->section;
-    const double *p = run->model->cases[0].stages[0].p, *x = run->model->x;
+    const double *p = run->model->cases[0].stages[0].p;
     Vec3 *start = mem_alloc((size_t)rod->elements, sizeof *start), *magnet = magnets(rod, p);
     double inextensible =
         rm->young * rm->unit.area; /* as stiff in all directions: what is left of it is the error */
@@ -54,8 +49,9 @@ static PbdRod *create(const Run *run)
                      .start_strain = start,
                      .position = rod->strand[0].position,
                      .start_places = rm->held ? (const Vec3 *)(x + rm->layout.position) : NULL,
-                     .clamp = frame_of(rod_reference(&rm->layout, x, 0)),
-                     .end_frame = frame_of(rm->end_frame),
+                     .clamp = rod_reference(&rm->layout, x, 0),
+                     .end_frame =
+                         run->model->moves ? rod_reference(&rm->layout, x, rod->elements) : rm->end_frame,
                      .start = rod->start,
                      .end = rod->end,
                      .magnet = magnet,
@@ -88,10 +84,15 @@ static Array whole_state(const Preview *o, bool row)
 
 static bool put_frame(const Preview *o, int frame)
 {
-    bool whole = o->run->scene->output.states == STATES_ALL;
-    Array arrays[] = {positions(o, "x"), array_float("time", "s", &o->now, 0, 0, 0), whole_state(o, true),
-                      array_float("state/time", "s", &o->now, 1, 1, 0)};
-    return journal_put(o->run->journal, "frame", frame, arrays, whole ? 4 : 2, o->err);
+    Arrays list = {0};
+    arrays_add(&list, positions(o, "x"));
+    arrays_add(&list, array_float("time", "s", &o->now, 0, 0, 0));
+    rod_add_poses(o->run->model->self, o->x, &list);
+    if (o->run->scene->output.states == STATES_ALL) {
+        arrays_add(&list, whole_state(o, true));
+        arrays_add(&list, array_float("state/time", "s", &o->now, 1, 1, 0));
+    }
+    return arrays_put(&list, o->run->journal, "frame", frame, o->err);
 }
 
 static bool put_step(const Preview *o, int step)
@@ -124,28 +125,40 @@ static bool put_final(const Preview *o, const char *status)
     return arrays_replace(&list, o->run->journal, "final", o->err);
 }
 
-/* The field at the end of a step, as all loads. */
+static void lead_ends(const Preview *o)
+{
+    const RodModel *rm = o->run->model->self;
+    for (int k = 0; k < 1 + rm->held; k++) {
+        int node = k ? o->nodes - 1 : 0;
+        pbd_rod_lead(o->rod, k, vec3_load(o->x + rm->layout.position + 3 * node),
+                     rod_reference(&rm->layout, o->x, node));
+    }
+}
+
+/* The field at the end of a step, as all loads, and where the ends are then. */
 static bool put_field(const Preview *o, double time)
 {
     const Model *model = o->run->model;
     double *p = model->cases[0].stages[0].p;
-    if (!model_load(model, time, false, p, o->err)) return false;
+    if (!model_load(model, time, false, p, o->err) || !model_move(model, held_way(time), o->x, o->err))
+        return false;
     pbd_rod_set_field(o->rod, vec3_load(p + model->flux_blocks.uniform));
+    if (model->moves) lead_ends(o);
     return true;
 }
 
 static RunStatus preview(Run *run, Error *err)
 {
     const TimeScene *time = &run->scene->time;
-    Preview o = {.run = run,
-                 .rod = create(run),
-                 .nodes = run->model->point_count,
-                 .now = run->model->time,
-                 .err = err};
+    const Model *model = run->model;
+    Preview o = {.run = run, .nodes = model->point_count, .now = model->time, .err = err};
     o.state = mem_alloc((size_t)pbd_rod_state_count(o.nodes - 1), sizeof *o.state);
+    o.x = mem_copy(model->x, (size_t)((const RodModel *)model->self)->layout.dofs, sizeof *o.x);
     int every = run->scene->output.every ? run->scene->output.every : 1, step = 0;
-    bool known = true, ok = journal_forget(run->journal, "frame", err) &&
-                            journal_forget(run->journal, "evaluation", err) && put_frame(&o, 0);
+    bool known = model_move(model, held_way(o.now), o.x, err);
+    o.rod = create(run, o.x);
+    bool ok = known && journal_forget(run->journal, "frame", err) &&
+              journal_forget(run->journal, "evaluation", err) && put_frame(&o, 0);
     for (; ok && step < time->steps && !host_stops(run->host);) {
         known = ok = put_field(&o, o.now + time->step);
         if (!ok) break;
@@ -160,6 +173,7 @@ static RunStatus preview(Run *run, Error *err)
     ok = ok && put_final(&o, interrupted ? "interrupted" : "converged");
     pbd_rod_destroy(o.rod);
     mem_free(o.state);
+    mem_free(o.x);
     return !known ? RUN_REFUSED : !ok ? RUN_CANNOT_WRITE : interrupted ? RUN_INTERRUPTED : RUN_DONE;
 }
 

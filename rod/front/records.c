@@ -94,16 +94,20 @@ static void add_means(const RodLayout *layout, const char *name, const char *uni
     arrays_add(list, array_float(name, unit, mean, 2, layout->nodes, 3));
 }
 
+void rod_add_poses(const RodModel *rm, const double *x, Arrays *list)
+{
+    if (!rod_ends_move(rm)) return;
+    double *poses = arrays_numbers(list, 12 * (size_t)rod_support_count(rm));
+    rod_support_poses_in(rm, x, poses);
+    arrays_add(list, array_float("support_pose", "1, m", poses, 2, rod_support_count(rm), 12));
+}
+
 void rod_add_frame(const Model *model, const Snapshot *shot, bool whole, Arrays *list)
 {
     (void)whole;
     const RodModel *rm = model->self;
     const RodLayout *layout = &rm->layout;
-    if (rod_ends_move(rm)) {
-        double *poses = arrays_numbers(list, 12 * (size_t)rod_support_count(rm));
-        rod_support_poses_in(rm, shot->at.x, poses);
-        arrays_add(list, array_float("support_pose", "1, m", poses, 2, rod_support_count(rm), 12));
-    }
+    rod_add_poses(rm, shot->at.x, list);
     if (layout->strain >= 0) add_means(layout, "point/stretch", "", shot->at.x + layout->strain, list);
 }
 

@@ -35,10 +35,11 @@ void rod_advise(Model *model, const Scene *scene)
 {
     const RodModel *rm = model->self;
     double longest = rod_model_longest(rm);
+    const RodCurveScene *curve = rod_scene(scene)->curve;
     if (longest > LARGE_BODY)
-        mesh_warn(&model->report,
-                  "a rod is %.3g m long; if its file is in millimetres, give the curve `scale: 1.0e-3`",
-                  longest);
+        mesh_warn(&model->report, "a rod is %.3g m long; %s", longest,
+                  curve && curve->file ? "if its file is in millimetres, give the curve `scale: 1.0e-3`"
+                                       : "numbers without a unit are in metres");
     if (rm->section.reach > longest / 5 && longest > 0)
         mesh_warn(&model->report, "the section, %.3g m, is more than a fifth of the length: no thin rod",
                   rm->section.reach);

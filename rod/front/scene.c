@@ -3,8 +3,7 @@
 #include "model/scene_tables.h"
 
 #define MOTIONS "/job: simulate, trajectory"
-#define MOVES   "/job: equilibrium, simulate, trajectory & /rod.solver: newton" /* whose ends may move */
-#define STATES  "/job: equilibrium, evaluate, design, simulate, trajectory"     /* what has a discrete rod */
+#define STATES  "/job: equilibrium, evaluate, design, simulate, trajectory" /* what has a discrete rod */
 
 static const YamlTable noise_table = {
     .name = "noise",
@@ -131,8 +130,8 @@ static const YamlTable clamp_table = {
          .doc = "of its first end"},
         {YAML_ROWS(ClampScene, frame), .when = "!/rod.curve", .min_count = 3, .max_count = 3,
          .doc = "tangent, n1 and n2 there; the axes x, y, z if absent"},
-        {YAML_OPTIONAL(ClampScene, move, &path_table), .when = MOVES, .doc = "how far it has moved, m"},
-        {YAML_OPTIONAL(ClampScene, turn, &path_table), .when = MOVES " & /rod.hold: clamped",
+        {YAML_OPTIONAL(ClampScene, move, &path_table), .when = STATES, .doc = "how far it has moved, m"},
+        {YAML_OPTIONAL(ClampScene, turn, &path_table), .when = STATES " & /rod.hold: clamped",
          .doc = "how far it has turned about where it is: a rotation vector, rad, of any size"},
         {0}}};
 
@@ -146,9 +145,9 @@ static const YamlTable end_table = {
          .doc = "with its frame, or free to turn"},
         {YAML_ROWS(EndScene, frame), .when = "hold: clamped & " STATES, .min_count = 3, .max_count = 3,
          .doc = "of a clamped end: tangent, n1 and n2 there"},
-        {YAML_OPTIONAL(EndScene, move, &path_table), .when = MOVES,
+        {YAML_OPTIONAL(EndScene, move, &path_table), .when = STATES,
          .doc = "how far it has moved from there, m"},
-        {YAML_OPTIONAL(EndScene, turn, &path_table), .when = "hold: clamped & " MOVES,
+        {YAML_OPTIONAL(EndScene, turn, &path_table), .when = "hold: clamped & " STATES,
          .doc = "of a clamped end: how far it has turned about where it is: a rotation vector, rad, of any "
                 "size"},
         {YAML_VECTOR(EndScene, force), .when = "/job: invert", .unit = "N", .one_of = 1,

@@ -4,17 +4,26 @@
 #include <string.h>
 
 #define START_ELSEWHERE "its first end is elsewhere, or clamped along another direction, than the scene's"
+#define END_ELSEWHERE   "its other end is not where rod.end holds it"
 
-static bool take_preview(RodModel *rm, const double *from, int dofs, Error *err)
+/* Where ends move it depends on the time. */
+static bool refuse_elsewhere(const Model *model, Error *err, const char *what, const char *then)
 {
+    if (!rod_ends_move(model->self)) return error_set(err, "%s%s", what, then);
+    return error_set(err, "%s at t = %g s%s", what, model->time, then);
+}
+
+static bool take_preview(const Model *model, const double *from, int dofs, Error *err)
+{
+    RodModel *rm = model->self;
     const Rod *rod = rm->rod;
     if (dofs != pbd_rod_state_count(rod->elements))
         return error_set(err, "its state is not that of `solver: pbd`, which goes on from its own only");
     const RodStrand *strand = &rod->strand[0];
     if (!rod_is_near(vec3_load(from), strand->position, strand->length))
-        return error_set(err, START_ELSEWHERE);
-    if (rm->held && !rod_is_near(vec3_load(from + 3 * rod->elements), rm->end_position, strand->length))
-        return error_set(err, "its other end is not where rod.end holds it");
+        return refuse_elsewhere(model, err, START_ELSEWHERE, "");
+    if (!rod_last_is_near(rm, model->time, vec3_load(from + 3 * rod->elements)))
+        return refuse_elsewhere(model, err, END_ELSEWHERE, "");
     rm->moving = mem_copy(from, (size_t)dofs, sizeof *from);
     return true;
 }
@@ -34,7 +43,7 @@ bool rod_take_state(const Model *model, const double *from, int dofs, double *x,
 {
     RodModel *rm = model->self;
     const Rod *rod = rm->rod;
-    if (rm->preview) return take_preview(rm, from, dofs, err);
+    if (rm->preview) return take_preview(model, from, dofs, err);
     if (dofs == pbd_rod_state_count(rod->elements))
         return error_set(err, "its state is that of `solver: pbd`, from which only that goes on");
     RodLayout own = form_of(rod, rod->cosserat, dofs);
@@ -50,8 +59,8 @@ bool rod_take_state(const Model *model, const double *from, int dofs, double *x,
         const RodStrand *strand = &rod->strand[k];
         const Quat *frame = rod->start == ROD_CLAMPED ? &strand->frame : NULL;
         if (!rod_is_at(&own, from, k * (own.each + 1), strand->position, frame, strand->length))
-            return error_set(err, START_ELSEWHERE);
+            return refuse_elsewhere(model, err, START_ELSEWHERE, "");
     }
     return rod_leads_ends(model) || rod_end_is_held(rm, model->time, x) ||
-           error_set(err, "its other end is not where rod.end holds it: an equilibrium leads it there");
+           refuse_elsewhere(model, err, END_ELSEWHERE, ": an equilibrium leads it there");
 }
