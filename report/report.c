@@ -39,6 +39,13 @@ void report_rows(const ReportPart *part, const int *row)
     document_close(part->document);
 }
 
+bool report_is_static(const double *rows, size_t count, size_t width)
+{
+    for (size_t k = 1; k < count; k++)
+        if (memcmp(rows, rows + k * width, width * sizeof *rows) != 0) return false;
+    return true;
+}
+
 /* ---- Frames ---- */
 
 /* As many as there is room for, of what takes two bytes for a coordinate and, say, six for the numbers of a face. */
@@ -147,9 +154,9 @@ static bool add_result(Document *document, ShowData *data, ShowDef *show, const 
     choose_frames(&part, def);
     add_frames(&part);
     if (!is_shown(data)) return error_set(err, "there is no body and no drawing in it: nothing to show");
-    bool ok = drawn_has(data->result)
-                  ? report_drawing(&part, err)
-                  : report_body(&part, err) && report_curves(&part, err) && report_surroundings(&part, err);
+    bool ok = drawn_has(data->result) ? report_drawing(&part, err)
+                                      : report_body(&part, err) && report_curves(&part, err) &&
+                                            report_surroundings(&part, err) && report_flux(&part, err);
     ok = ok && report_charts(&part, err) && report_facts(&part, err);
     if (ok) document_close(document);
     return ok;

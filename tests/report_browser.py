@@ -257,6 +257,24 @@ def stages():
     check("red arrows", (np.abs(inks - [255, 106, 87]).max(axis=2) < 12).sum() > 100)
 
 
+def flux():
+    """Blue arrows above the north pole point away from it; b takes them away and brings them back; the scale is told."""
+    page("magnet", "theme=light&view=front&field=&arrows=0&edges=0")
+    legend = browser.evaluate("[...document.querySelectorAll('.legend:not([hidden])')].map((one) => one.textContent).join()")
+    check("the scale of the field", "mT" in legend and "flux density" in legend, legend)
+    blue = lambda: (lambda image: (image[..., 2] - image[..., 0] > 40) & (image[..., 2] - image[..., 1] > 15))(panel()[:-90].astype(int))
+    seen = blue()
+    check("arrows around", seen.sum() > 1500 and seen[:, :seen.shape[1] // 2].any() and seen[:, seen.shape[1] // 2:].any(), seen.sum())
+    browser.key("b")
+    browser.settle()
+    check("none of them", blue().sum() < 100 and browser.evaluate("document.querySelectorAll('.legend[hidden]').length") == 1, blue().sum())
+    browser.key("b")
+    browser.settle()
+    check("they are back", (blue() == seen).all())
+    page("magnet", "flux=0&theme=light&view=front&field=&arrows=0")
+    check("as asked for", blue().sum() < 100)
+
+
 def broken():
     html = open(f"{folder}/sheet.html").read()
     open(f"{folder}/broken.html", "w").write(re.sub(r'(<script id="block" type="text/plain">.{200})[^<]*', r"\1", html))
@@ -267,7 +285,7 @@ def broken():
         check("a broken page says so", "cannot be read" in str(error), error)
 
 
-for part in (sheet_from_above, colors_of_a_frame, lines, sheet_sinks, keys, calm, lost, printed, touch, theme, rod, drawing, two, stages):
+for part in (sheet_from_above, colors_of_a_frame, lines, sheet_sinks, keys, calm, lost, printed, touch, theme, rod, drawing, two, stages, flux):
     part()
 check("no errors", not browser.errors, browser.errors)
 broken()

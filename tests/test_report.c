@@ -1,6 +1,7 @@
 /* slender report: the pages of whole runs hold what their results do. The page itself is tested in a browser:
  * tests/report_browser.sh; what its document packs by test_report_document.c. */
 #include "base/vec3.h"
+#include "model/frame_flux.h"
 #include "report/document.h"
 #include "report/report.h"
 #include "spline/drawn.h"
@@ -328,6 +329,48 @@ static void test_drawing(void **unused)
     result_close(result);
 }
 
+/* A coil whose current grows, and a magnet that comes, turns and is beside the body. */
+static const char MAGNET[] =
+    "slender: 1\njob: simulate\nshell:\n  mesh: {shape: sheet, size: [40 mm, 20 mm], cells: [8, 4]}\n"
+    "  thickness: 1 mm\n  young: 1 MPa\n  poisson: 0.3\n  density: 1000\n  magnetization: [1.0e+4, 0, 0]\n"
+    "fix: [{group: root, clamp: true}]\ntime: {step: 5 ms, steps: 4}\nflux_density:\n  - [1 mT, 0, 0]\n"
+    "  - {magnet: {at: [20 mm, 10 mm, 30 mm], size: [8 mm, 8 mm, 8 mm], remanence: [0, 0, 1.2]},\n"
+    "     move: [\"0\", \"0\", \"-t/2\"], turn: [\"20*t\", \"0\", \"0\"]}\n";
+
+/* The arrows of the page are the field at their places, in each frame; within the magnet there are none. */
+static void test_arrows(void **unused)
+{
+    (void)unused;
+    Error err;
+    FrameFlux flux;
+    Result *result = run_text(mem_text(MAGNET));
+    Page page = report(3);
+    const char *arrows = after(page.json, "arrows");
+    Unpacked points = unpack(&page, arrows, "points"), ways = unpack(&page, arrows, "directions"),
+             sizes = unpack(&page, arrows, "sizes");
+    size_t count = sizes.width, hidden = 0;
+    if (!frame_flux_open(&flux, result, &err)) fail_msg("%s", err.text);
+    assert_true(points.rows == 3 && sizes.rows == 3 && count > 200 && count < 400);
+    assert_true(sizes.low > 1e-4 && sizes.high > 0.1);
+    for (size_t n = 0; n < 3 * count; n++) {
+        double B[3], size, at[3];
+        int frame = 2 * (int)(n / count);
+        assert_true(frame_flux_take(&flux, result, frame, 5e-3 * frame, &err));
+        memcpy(at, points.values + 3 * n, sizeof at);
+        frame_flux_at(&flux, at, B);
+        size = vec3_length(vec3_load(B));
+        if (isnan(size)) assert_true(isnan(sizes.values[n]) && ++hidden);
+        if (isnan(size)) continue;
+        assert_true(fabs(sizes.values[n] / size - 1) < 0.02);
+        for (size_t i = 0; i < 3; i++) assert_true(fabs(ways.values[3 * n + i] - B[i] / size) < 0.01);
+    }
+    assert_true(hidden > 0 && hidden < count / 10);
+    frame_flux_clear(&flux);
+    mem_free(points.values), mem_free(ways.values), mem_free(sizes.values);
+    page_clear(&page);
+    result_close(result);
+}
+
 /* ---- Several, and none ---- */
 
 static void test_several(void **unused)
@@ -379,6 +422,7 @@ int main(void)
                                        cmocka_unit_test_teardown(test_drawing, nothing_leaks),
                                        cmocka_unit_test_teardown(test_targets, nothing_leaks),
                                        cmocka_unit_test_teardown(test_stages, nothing_leaks),
+                                       cmocka_unit_test_teardown(test_arrows, nothing_leaks),
                                        cmocka_unit_test_teardown(test_several, nothing_leaks),
                                        cmocka_unit_test_teardown(test_refused, nothing_leaks)};
     return cmocka_run_group_tests(tests, NULL, NULL);

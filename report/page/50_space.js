@@ -91,6 +91,11 @@ function makeSpacePanel(result, page) {
     for (const place of places) gl.drawStrokes(view, dotStrokes(place.at, parseColor(place.color), 8 * page.ratio), { raise: 0.02 });
   }
 
+  function drawFlux(gl, at) {
+    if (!result.arrows || !page.choice.flux) return;
+    gl.drawStrokes(view, fluxStrokes(result.arrows, at, page.fluxScale, parseColor(page.color("--accent")), page.ratio), { head: true, raise: 0.003 });
+  }
+
   /* ---- Over it ---- */
 
   function arrow(x, y, dx, dy, text) {
@@ -162,6 +167,7 @@ function makeSpacePanel(result, page) {
       if (body) drawTarget(gl, at);
       drawCurves(gl, at);
       drawObstacles(gl, at);
+      drawFlux(gl, at);
       context.drawImage(gl.canvas, 0, 0);
     }
     drawGauges(at);
@@ -178,7 +184,7 @@ function makeSpacePanel(result, page) {
   }
 
   const lines = [...new Map(curves.filter((curve) => curve.name).map((curve) => [curve.name, curve.color]))];
-  return { canvas, draw, readAt, field, lines, count, times: result.frames.times, stageOf: (at) => (result.frames.stages || [])[Math.round(at)], label: (at) => result.frames.labels[Math.min(Math.round(at), count - 1)] };
+  return { canvas, draw, readAt, field, lines, count, arrows: result.arrows, times: result.frames.times, stageOf: (at) => (result.frames.stages || [])[Math.round(at)], label: (at) => result.frames.labels[Math.min(Math.round(at), count - 1)] };
 }
 
 /* The names of a face's groups. */
