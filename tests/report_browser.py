@@ -204,11 +204,14 @@ def rod():
         page("rod", f"view=front&at={begin}")
         image = panel()
         size = image.shape[1], image.shape[0]
-        places, _ = projection(frames_of("rod"), size, [1, 0, 0], [0, 0, 1])
+        places, scale = projection(frames_of("rod"), size, [1, 0, 0], [0, 0, 1])
         inked = image.max(axis=2) - image.min(axis=2) > 60
         hits = [inked[round(v) - 1:round(v) + 2, round(u) - 1:round(u) + 2].any() for u, v in places[frame][:41]]
         check(f"the rod at {begin}", np.mean(hits) > 0.95, np.mean(hits))
         inked[-90:] = False  # axes and field
+        orange = (image[..., 0].astype(int) - image[..., 2] > 60)[:-90].sum()
+        seen = np.hypot(*np.diff(places[frame][:41], axis=0).T).sum() * 1.2e-3 * scale
+        check(f"as thick as it is at {begin}", 0.85 < orange / seen < 1.3, orange / seen)
         far = inked & (np.abs(np.indices(inked.shape)[..., None] - places[frame][:41, ::-1].T[:, None, None, :]).max(axis=0).min(axis=2) > 30)
         check(f"nothing but the rod at {begin}", far.sum() < 200, far.sum())
 

@@ -183,8 +183,54 @@ static void test_rod(void **unused)
             assert_true(fabs(points.values[(size_t)k * points.width + i] - ((double *)x.data)[i]) < 2e-6);
         array_clear(&x);
     }
+    Unpacked radius = unpack(&page, rod, "radius");
+    assert_int_equal(radius.width, 41);
+    for (size_t k = 0; k < 41; k++) assert_true(fabs(radius.values[k] - 0.6e-3) < 1e-9);
+    mem_free(radius.values);
     mem_free(offsets.values);
     mem_free(points.values);
+    page_clear(&page);
+    result_close(result);
+}
+
+/* Rods at rest are coloured by what they have at their nodes; they are as thick as they are there. */
+static void test_rod_fields(void **unused)
+{
+    (void)unused;
+    static const struct {
+        const char *name, *array;
+        int first, count;
+    } fields[] = {{"curvature", "strain", 1, 2}, {"twist", "strain", 0, 1}, {"moment", "moment", 0, 3}};
+    Error err;
+    Result *result = run_text(
+        mem_text("slender: 1\njob: equilibrium\nrod:\n  natural_strain: [1, \"20*s\", 3]\n  length: 80 mm\n"
+                 "  elements: 20\n  radius: {formula: \"1e-3*(1 - s/2/L)\"}\n  young: 1 MPa\n  poisson: 0.4\n"
+                 "  density: 1000\n  gravity: [0, 0, -9.81]\n"));
+    Page page = report(0);
+    const char *rod = strstr(page.json, "\"name\":\"rod\"");
+    Unpacked radius = unpack(&page, rod, "radius");
+    for (int k = 1; k < 20; k++) assert_true(fabs(radius.values[k] - 1e-3 * (1 - k / 40.)) < 1e-7);
+    for (int f = 0; f < 3; f++) {
+        char name[40], path[40];
+        snprintf(name, sizeof name, "\"name\":\"%s\"", fields[f].name);
+        snprintf(path, sizeof path, "PointData/%s", fields[f].array);
+        Unpacked values = unpack(&page, strstr(rod, name), "values");
+        Array rows;
+        if (!result_read_step(result, path, 0, &rows, &err)) fail_msg("%s", err.text);
+        assert_int_equal(values.width, 21);
+        for (int k = 0; k < 21; k++) {
+            const double *row = (const double *)rows.data + 3 * k + fields[f].first;
+            double square = 0, size;
+            for (int i = 0; i < fields[f].count; i++) square += row[i] * row[i];
+            size = fields[f].count == 1 ? *row : sqrt(square);
+            assert_true(fabs(values.values[k] - size) <=
+                        1e-4 * (values.high - values.low) + 1e-6 * fabs(size));
+        }
+        assert_true(values.high > values.low);
+        array_clear(&rows);
+        mem_free(values.values);
+    }
+    mem_free(radius.values);
     page_clear(&page);
     result_close(result);
 }
@@ -418,6 +464,7 @@ int main(void)
                                        cmocka_unit_test_teardown(test_design, nothing_leaks),
                                        cmocka_unit_test_teardown(test_solid, nothing_leaks),
                                        cmocka_unit_test_teardown(test_rod, nothing_leaks),
+                                       cmocka_unit_test_teardown(test_rod_fields, nothing_leaks),
                                        cmocka_unit_test_teardown(test_inversion, nothing_leaks),
                                        cmocka_unit_test_teardown(test_drawing, nothing_leaks),
                                        cmocka_unit_test_teardown(test_targets, nothing_leaks),

@@ -5,7 +5,7 @@ function makePage(data) {
   const page = { data, camera: { ...CAMERA_START }, renderer: makeRenderer(() => page.redraw()), at: 1, playing: false, panels: [], charts: [], hidden: new Set(),
                  choice: { field: null, target: "over", range: "whole", shown: "ink", arrows: true, flux: true, edges: true } };
   Object.defineProperty(page, "ratio", { get: () => window.devicePixelRatio || 1 }); /* it changes with the browser's zoom */
-  const fields = data.results.flatMap((result) => (result.body ? result.body.fields : []));
+  const fields = data.results.flatMap(fieldsOf);
   page.fieldNames = [...new Set(fields.map((one) => one.name))];
   page.greatestFlux = Math.max(extent(data.results.flatMap((result) => (result.flux || []).map(Math.abs))).high, 1e-30);
 
@@ -195,7 +195,7 @@ function addChoices(page) {
   const has = (key) => results.some((result) => result[key]), body = has("body");
   const set = (key) => (value) => { page.choice[key] = value; page.redraw(); };
   const fields = addSelect(bar, "colours", [...page.fieldNames.map((name) => [name, name.replaceAll("_", " ")]), ["", "none"]], page.choice.field, set("field"));
-  const changes = results.some((result) => result.body && result.body.fields.some((one) => one.values.rows > 1));
+  const changes = results.some((result) => fieldsOf(result).some((one) => one.values.rows > 1));
   if (changes) addSelect(bar, "from", [["whole", "all frames"], ["frame", "this frame"]], page.choice.range, set("range"));
   const lines = results.some((result) => (result.curves || []).some((curve) => curve.of)), clouds = results.some((result) => result.clouds && result.clouds.sets.length);
   const targets = has("target") ? [["over", "over"], ["beside", "beside"], ["none", "hidden"]] : clouds || lines ? [["over", "shown"], ["none", "hidden"]] : has("drawing") ? [["none", "hidden"], ["beside", "beside"]] : [];
@@ -244,7 +244,7 @@ function readHash(page) {
 async function start() {
   const page = makePage(await readDocument()), results = page.data.results;
   document.getElementById("title").textContent = results.length > 1 ? `${results.length} results` : results[0].name;
-  page.choice.field = page.fieldNames.find((name) => page.varies(name)) || "";
+  page.choice.field = results.some((result) => result.body) ? page.fieldNames.find((name) => page.varies(name)) || "" : ""; /* curves have their own inks */
   if (results.every((result) => result.drawing)) page.choice.target = "beside";
   page.at = readHash(page);
   if (page.choice.field && !page.fieldNames.includes(page.choice.field)) page.choice.field = "";
