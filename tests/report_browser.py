@@ -249,6 +249,14 @@ def two():
     check("each with its moment", heads[0] == "t = 0.04 s" and heads[1].startswith("t = "), heads)
 
 
+def mixed():
+    """A motion beside stages: each chart has the mark of its own result, the bar says where both are."""
+    page("mixed", "at=0.5")
+    check("both moments", words() == "t = 0.02 s | stage 1: 1 mT", words())
+    marks = browser.evaluate("[...document.querySelectorAll('#charts svg')].map((svg) => svg.querySelector('.now').getAttribute('visibility') + Math.round(svg.querySelector('.now').getAttribute('x1')))")
+    check("marks half way", len(marks) >= 3 and set(marks) <= {"visible233", "visible234"}, marks)
+
+
 def stages():
     """Charts over what a sequence goes through have the line of the stage; arrows are red, lighter in the dark."""
     page("stages", "theme=dark&at=0.5&field=&edges=0&view=top")
@@ -288,7 +296,7 @@ def broken():
         check("a broken page says so", "cannot be read" in str(error), error)
 
 
-for part in (sheet_from_above, colors_of_a_frame, lines, sheet_sinks, keys, calm, lost, printed, touch, theme, rod, drawing, two, stages, flux):
+for part in (sheet_from_above, colors_of_a_frame, lines, sheet_sinks, keys, calm, lost, printed, touch, theme, rod, drawing, two, mixed, stages, flux):
     part()
 check("no errors", not browser.errors, browser.errors)
 broken()

@@ -38,6 +38,7 @@ END_OF_SCENE
 expect 0 "$program" run magnet.yaml --no-picture --quiet
 for name in sheet stiff rod drawing stages magnet; do expect 0 "$program" report $name.vtkhdf; done
 expect 0 "$program" report sheet.vtkhdf rod.vtkhdf -o two.html
+expect 0 "$program" report sheet.vtkhdf stages.vtkhdf -o mixed.html
 [ $bad = 0 ] || exit 1
 mkdir profile
 PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 "$here/report_browser.py" "$chromium" "$work"

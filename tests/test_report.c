@@ -24,11 +24,7 @@
 
 static Page report(int frames)
 {
-    Error err;
-    const char *const results[] = {RESULT};
-    if (report_write(results, 1, HTML, &(ReportDef){.frames = frames}, &err) != SHOW_DONE)
-        fail_msg("%s", err.text);
-    return page_read(HTML);
+    return page_of(RESULT, HTML, frames);
 }
 
 /* Frames 0, middle and last of `steps`: the corners of all faces are where they are in the result. */
@@ -316,38 +312,6 @@ static void test_targets(void **unused)
     result_close(result);
 }
 
-/* Frames of a sequence are called after what it changes; its energies are a chart. */
-static void test_stages(void **unused)
-{
-    (void)unused;
-    Result *result = run_text(mem_format(
-        "slender: 1\njob: equilibrium\nshell:\n  mesh: {shape: sheet, size: [40 mm, 20 mm], cells: [4, 2]}\n"
-        "  thickness: 1 mm\n  young: 1 MPa\n  poisson: 0.3\n  magnetization: [1.0e+4, 0, 0]\n"
-        "fix: [{group: root, clamp: true}]\n"
-        "probes: {tip: {group: tip}}\n"
-        "sequence: {flux_density: {from: [0, 0, 0], to: [0, 0, 1 mT], count: 3}}\n"));
-    Page page = report(2);
-    assert_non_null(strstr(page.json, "\"stages\":[0,2]"));
-    const char *probed = strstr(page.json, "{\"x\":{\"label\":\"flux density\",\"unit\":\"T\"}");
-    assert_non_null(probed);
-    assert_int_equal(strncmp(after(probed, "of_stages"), "true", 4), 0);
-    page_clear(&page);
-    page = report(0);
-    assert_non_null(strstr(page.json, "\"labels\":[\"stage 0: 0 T\",\"stage 1: 500 µT\",\"stage 2: 1 mT\"]"));
-    Array energy = read_all(result, "slender/stages/energy/bending");
-    const char *chart = strstr(page.json, "\"y\":{\"label\":\"energy\",\"unit\":\"J\"}");
-    assert_non_null(chart);
-    const char *y = after(strstr(chart, "\"name\":\"bending\""), "y");
-    char *rest;
-    for (int k = 0; k < 3; k++, y = rest) {
-        double is = ((double *)energy.data)[k], got = strtod(y + 1, &rest);
-        assert_true(fabs(got - is) <= 1e-6 * fabs(is));
-    }
-    array_clear(&energy);
-    page_clear(&page);
-    result_close(result);
-}
-
 static void test_drawing(void **unused)
 {
     (void)unused;
@@ -468,7 +432,6 @@ int main(void)
                                        cmocka_unit_test_teardown(test_inversion, nothing_leaks),
                                        cmocka_unit_test_teardown(test_drawing, nothing_leaks),
                                        cmocka_unit_test_teardown(test_targets, nothing_leaks),
-                                       cmocka_unit_test_teardown(test_stages, nothing_leaks),
                                        cmocka_unit_test_teardown(test_arrows, nothing_leaks),
                                        cmocka_unit_test_teardown(test_several, nothing_leaks),
                                        cmocka_unit_test_teardown(test_refused, nothing_leaks)};

@@ -46,10 +46,19 @@ function makePage(data) {
     return low + page.at * (high - low);
   };
 
+  /* s, of a panel whose frames are moments; beside others that are none each is at its own. */
+  page.timeOf = (panel) => {
+    if (page.timed() || !panel.times) return page.timed() ? page.time() : NaN;
+    const at = page.frameOf(panel), k = Math.min(Math.floor(at), panel.count - 1), next = Math.min(k + 1, panel.count - 1);
+    return panel.times[k] + (at - k) * (panel.times[next] - panel.times[k]);
+  };
+
+  /* One time for all; of two results that have none in common what each shows, of more how far they are. */
   page.words = () => {
     if (page.timed()) return `t = ${say(page.time(), "s")}`;
-    const panel = page.panels.find((one) => one.count > 1) || page.panels[0];
-    return panel ? panel.label(page.frameOf(panel)) : "";
+    const moving = page.panels.filter((one) => one.count > 1), shown = moving.length ? moving : page.panels.slice(0, 1);
+    const words = [...new Set(shown.map((panel) => panel.label(page.frameOf(panel))))];
+    return words.length > 2 ? `${Math.round(100 * page.at)} % of each` : words.join(" | ");
   };
 
   let asked = false;
@@ -63,7 +72,7 @@ function makePage(data) {
     for (const panel of page.panels) panel.draw(page.frameOf(panel)), panel.head.textContent = page.panels.length > 1 ? panel.label(page.frameOf(panel)) : "";
     for (const { chart, kind, panel } of page.charts) {
       if (kind === "stage") chart.markRow(panel.stageOf(page.frameOf(panel)));
-      if (kind === "t") chart.mark(page.timed() ? page.time() : NaN);
+      if (kind === "t") chart.mark(page.timeOf(panel));
       if (kind === "iteration") chart.mark(panel.iteration(page.frameOf(panel)));
     }
     document.getElementById("scrub").value = page.at;
