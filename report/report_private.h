@@ -27,6 +27,9 @@ bool report_surroundings(const ReportPart *part, Error *err);
 /* Arrows of a flux density that varies in space. */
 bool report_flux(const ReportPart *part, Error *err);
 
+/* [frame] what it is called as a stage of a sequence: "stage 3: 20 mT, t = 2 s". */
+const char *const *report_stages(const ReportPart *part);
+
 /* A drawing: its strokes as they are plotted, its pens, what was to be drawn. */
 bool report_drawing(const ReportPart *part, Error *err);
 

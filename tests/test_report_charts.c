@@ -95,6 +95,38 @@ static void test_stages(void **unused)
     result_close(result);
 }
 
+/* Each after what changes from the one before: the field and where it points to, the time, gravity, the part of a load. */
+static void test_names(void **unused)
+{
+    (void)unused;
+    static const struct {
+        const char *scene, *labels;
+    } rows[] = {
+        {"sequence:\n  - {flux_density: [0, 0, 1 mT]}\n  - {flux_density: [0.6 mT, 0, 0.8 mT], time: 1}\n"
+         "  - {time: 3}\n  - {loads: [{force: [0, 0, 1.0e-6], on: {group: tip}}]}\n  - {gravity: [0, 0, -1]}\n",
+         "[\"stage 0: 1 mT along (0, 0, 1), t = 0 s, gravity 0 m/s²\","
+         "\"stage 1: 1 mT along (0.6, 0, 0.8), t = 1 s\",\"stage 2: t = 3 s\",\"stage 3\","
+         "\"stage 4: gravity 1 m/s²\"]"},
+        {"flux_density: [0, 0, 1 mT]\nload_steps: {count: 2, frames: true}\n",
+         "[\"stage 0: 500 µT, 0.5 of the loads\",\"stage 1: 1 mT, 1 of the loads\"]"},
+        {"sequence: {time: {from: 0, to: 0.5, count: 3}}\nflux_density: [\"0\", \"0\", \"1e-3*(1 - 2*t)\"]\n",
+         "[\"stage 0: 1 mT, t = 0 s\",\"stage 1: 500 µT, t = 250 ms\",\"stage 2: 0 T, t = 500 ms\"]"}};
+    for (int k = 0; k < 3; k++) {
+        Result *result = run_text(mem_format("slender: 1\njob: equilibrium\nshell:\n  mesh: {shape: sheet, "
+                                             "size: [40 mm, 20 mm], cells: [4, 2]}\n"
+                                             "  thickness: 1 mm\n  young: 1 MPa\n  poisson: 0.3\n  density: "
+                                             "1000\n  magnetization: [1.0e+4, 0, 0]\n"
+                                             "fix: [{group: root, clamp: true}]\n%s",
+                                             rows[k].scene));
+        Page page = report(0);
+        const char *labels = after(page.json, "labels");
+        if (strncmp(labels, rows[k].labels, strlen(rows[k].labels)) != 0)
+            fail_msg("%.300s instead of %s", labels, rows[k].labels);
+        page_clear(&page);
+        result_close(result);
+    }
+}
+
 static int remove_page(void **state)
 {
     unlink(HTML);
@@ -104,6 +136,7 @@ static int remove_page(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test_teardown(test_energies, nothing_leaks),
-                                       cmocka_unit_test_teardown(test_stages, nothing_leaks)};
+                                       cmocka_unit_test_teardown(test_stages, nothing_leaks),
+                                       cmocka_unit_test_teardown(test_names, nothing_leaks)};
     return cmocka_run_group_tests(tests, NULL, remove_page);
 }
