@@ -174,17 +174,16 @@ static bool make_arrows(Arrows *a, Error *err)
     return true;
 }
 
-bool report_flux(const ReportPart *part, Error *err)
+/* All else is there where they cannot be made. */
+void report_flux(const ReportPart *part)
 {
     Arrows arrows = {.part = part, .way = show_way()};
     Error gone;
-    bool ok = true;
-    if (!frame_flux_open(&arrows.flux, part->data->result, &gone))
-        document_text(part->document, "no_arrows", gone.text); /* all else is there */
-    else if (arrows.flux.fields.count && part->frame_count) {
-        ok = make_arrows(&arrows, err);
-        if (ok && split(&arrows)) add_arrows(&arrows);
-    }
+    bool ok = frame_flux_open(&arrows.flux, part->data->result, &gone), any = ok && arrows.flux.fields.count;
+    if (any && part->frame_count) ok = make_arrows(&arrows, &gone);
+    if (!ok)
+        document_text(part->document, "no_arrows", gone.text);
+    else if (arrows.count && split(&arrows))
+        add_arrows(&arrows);
     frame_flux_clear(&arrows.flux);
-    return ok;
 }

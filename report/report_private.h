@@ -24,8 +24,8 @@ bool report_curves(const ReportPart *part, Error *err);
 /* Obstacles, magnets and coils, and where they are; field and gravity. */
 bool report_surroundings(const ReportPart *part, Error *err);
 
-/* Arrows of a flux density that varies in space. */
-bool report_flux(const ReportPart *part, Error *err);
+/* Arrows of a flux density that varies in space, or why there are none. */
+void report_flux(const ReportPart *part);
 
 /* [frame] what it is called as a stage of a sequence: "stage 3: 20 mT, t = 2 s". */
 const char *const *report_stages(const ReportPart *part);

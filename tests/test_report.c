@@ -381,6 +381,27 @@ static void test_arrows(void **unused)
     result_close(result);
 }
 
+/* Where the sources cannot be made again all else is there, and the page says why. */
+static void test_no_arrows(void **unused)
+{
+    (void)unused;
+    FILE *file = fopen(NAME ".csv", "w");
+    assert_non_null(file);
+    fputs("x [mm], y [mm], z [mm], Bx [mT], By [mT], Bz [mT]\n-5, 0, 0, 0, 0, 0\n50, 0, 0, 0, 0, 1\n", file);
+    assert_int_equal(fclose(file), 0);
+    Result *result = run_text(mem_format("%sflux_density: {map: {file: " NAME ".csv}}\n", SHEET));
+    Page page = report(0);
+    assert_true(strstr(page.json, "\"arrows\":{") && !strstr(page.json, "\"no_arrows\""));
+    page_clear(&page);
+    unlink(NAME ".csv");
+    page = report(0);
+    assert_false(strstr(page.json, "\"arrows\":{"));
+    assert_non_null(strstr(after(page.json, "no_arrows"), NAME ".csv"));
+    assert_non_null(strstr(page.json, "\"charts\""));
+    page_clear(&page);
+    result_close(result);
+}
+
 /* ---- Several, and none ---- */
 
 static void test_several(void **unused)
@@ -433,6 +454,7 @@ int main(void)
                                        cmocka_unit_test_teardown(test_drawing, nothing_leaks),
                                        cmocka_unit_test_teardown(test_targets, nothing_leaks),
                                        cmocka_unit_test_teardown(test_arrows, nothing_leaks),
+                                       cmocka_unit_test_teardown(test_no_arrows, nothing_leaks),
                                        cmocka_unit_test_teardown(test_several, nothing_leaks),
                                        cmocka_unit_test_teardown(test_refused, nothing_leaks)};
     return cmocka_run_group_tests(tests, NULL, NULL);
