@@ -15,8 +15,9 @@ static const char usage[] =
     "targets,\n"
     "  charts, facts and the scene. Several results are beside each other, at one time and seen from one "
     "side.\n"
-    "  In the page: space plays, arrows step, f colours, t target, m magnetisation, e edges, d dark, 0 as at "
-    "first;\n"
+    "  In the page: space plays, arrows step, f colours, t target, m magnetisation, b flux density, e "
+    "edges,\n"
+    "  d dark, 0 as at first;\n"
     "  FILE.html#at=0.5&field=young&target=beside&view=top&theme=dark begins so (docs/report.md).";
 
 /* The page is neither a result that it is made of nor a file of its scene. */

@@ -1,8 +1,9 @@
 #include "base/vec3.h"
 #include "export/body.h"
+#include "view/show_curves.h"
 #include <math.h>
 
-enum { SIDES = 12, OUTLINE = 24 };
+enum { SIDES = 12 };
 
 /* Strands of nodes, and how thick they are there. */
 typedef struct Strands {
@@ -31,25 +32,6 @@ static bool read_strands(ShowData *data, Strands *strands, Error *err)
     for (int k = 0; ok && k < strands->count; k++) ok = strands->first[k + 1] >= strands->first[k] + 2;
     strands->node_count = ok ? strands->first[strands->count] : 0;
     return ok || error_set(err, "slender/rod/strands is not as slender writes it");
-}
-
-/* Of elements the mean of those beside a node, of an even rod how far its section reaches. */
-static void read_radii(ShowData *data, Strands *strands)
-{
-    size_t nodes = (size_t)strands->node_count, elements = nodes - (size_t)strands->count;
-    const double *each = show_dataset(data, "slender/rod/radius", ARRAY_FLOAT64, elements),
-                 *outline = show_dataset(data, "slender/rod/section_outline", ARRAY_FLOAT64, 2 * OUTLINE);
-    if (!each && !outline) return;
-    double *radius = show_block(data, nodes, sizeof *radius), reach = 0;
-    for (int i = 0; outline && i < OUTLINE; i++)
-        reach = fmax(reach, hypot(outline[2 * i], outline[2 * i + 1]));
-    for (int k = 0; k < strands->count; k++)
-        for (int i = strands->first[k]; i < strands->first[k + 1]; i++) {
-            int before = i > strands->first[k] ? i - 1 - k : i - k,
-                after = i + 1 < strands->first[k + 1] ? i - k : i - 1 - k;
-            radius[i] = each ? (each[before] + each[after]) / 2 : reach;
-        }
-    strands->radius = radius;
 }
 
 /* ---- Tubes ---- */
@@ -142,7 +124,7 @@ bool body_of_rods(ShowData *data, const Moments *moments, ExportBody *body, Erro
 {
     Strands strands = {0};
     if (!read_strands(data, &strands, err)) return false;
-    read_radii(data, &strands);
+    strands.radius = show_curves_radii(data, strands.count, strands.first);
     *body = (ExportBody){.name = "rod"};
     (strands.radius ? make_tubes : make_lines)(data, &strands, body);
     Vec3 *sides = show_block(data, (size_t)strands.count, sizeof *sides);

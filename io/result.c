@@ -145,13 +145,6 @@ static bool put_last_x(VtkFrames *w, Error *err)
     return ok;
 }
 
-bool result_is_pose(const char *field)
-{
-    static const char END[] = "_pose";
-    size_t length = strlen(field), end = sizeof END - 1;
-    return length > end && !strcmp(field + length - end, END);
-}
-
 /* The texts that frames have, a line each. */
 static bool put_lines(VtkFrames *w, const char *field, const char *path, Error *err)
 {
@@ -174,19 +167,33 @@ static bool begins(const char *name, const char *start)
     return !strncmp(name, start, strlen(start));
 }
 
+/* A row for each of several things. */
+static bool is_pose(const char *field)
+{
+    static const char END[] = "_pose";
+    size_t length = strlen(field), end = sizeof END - 1;
+    return length > end && !strcmp(field + length - end, END);
+}
+
+bool result_is_around(const char *field)
+{
+    return is_pose(field) || begins(field, "flux_");
+}
+
 /* Of a stage: rows for each obstacle or support. */
 static bool has_rows(const char *stage)
 {
     return strstr(stage, "_force") || strstr(stage, "_couple");
 }
 
-/* What else the frames hold: frames/flux_density and poses, frames/NAME of state/NAME, what is kept of whole
+/* What else the frames hold: flux densities and poses, frames/NAME of state/NAME, what is kept of whole
  * states; probes/NAME, and stages/NAME of the stages of a sequence. */
 static bool put_frames(VtkFrames *w, const char *field, Error *err)
 {
     bool stage = begins(field, "stages/"), own = stage || is_probe(field), state = begins(field, "state/"),
-         many = result_is_pose(field) || (stage && has_rows(field));
-    if (!own && !state && !many && strcmp(field, "flux_density") != 0) return true;
+         around = result_is_around(field),
+         many = is_pose(field) || !strcmp(field, "flux_sources") || (stage && has_rows(field));
+    if (!own && !state && !around) return true;
     char *path = mem_format("slender/%s%s", own ? "" : "frames/", state ? field + 6 : field);
     bool ok = !strcmp(field, "stages/status") ? put_lines(w, field, path, err)
                                               : vtk_frames_put(w, field, path, NULL, many, err);

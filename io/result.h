@@ -63,8 +63,8 @@ void result_close(Result *result);
 /* The CRC32 of the trailer: no other result has it. */
 uint32_t result_sum(const Result *result);
 
-/* Is that what frames say of where rigid things are: obstacle_pose, source_pose? */
-bool result_is_pose(const char *field);
+/* Is that what frames say of what is around the body, in rows: obstacle_pose, source_pose, flux_density, ..? */
+bool result_is_around(const char *field);
 
 /* The paths of all datasets, e.g. "slender/state/x", sorted by group. One block, to be freed by mem_free. */
 bool result_list(Result *result, char ***paths, int *count, Error *err);

@@ -80,30 +80,26 @@ static bool read_positions(Result *result, int step, Array *x, Error *err)
 
 static bool recall_step(Journal *journal, Result *result, int step, Error *err)
 {
-    Array x, time, flux;
+    Array x, time;
     if (!read_positions(result, step, &x, err)) return false;
     bool ok = put(journal, step, &x, "x", 2, err);
     array_clear(&x);
     if (!ok || !result_read_rows(result, "VTKHDF/Steps/Values", step, 1, &time, err)) return false;
     ok = put(journal, step, &time, "time", 0, err);
     array_clear(&time);
-    if (!ok || !result_has(result, "slender/frames/flux_density")) return ok;
-    if (!result_read_rows(result, "slender/frames/flux_density", step, 1, &flux, err)) return false;
-    ok = put(journal, step, &flux, "flux_density", 2, err);
-    array_clear(&flux);
     return ok;
 }
 
-/* Of whole states: frames/NAME is state/NAME of the frame; and where obstacles are. */
+/* Of whole states: frames/NAME is state/NAME of the frame; and what is around. */
 static bool recall_state(Journal *journal, Result *result, const char *name, int step, Error *err)
 {
     Array array;
-    bool pose = result_is_pose(name);
-    if (!strcmp(name, "x") || !strcmp(name, "flux_density")) return true;
-    char *from = mem_format("%s%s", FRAMES, name), *to = mem_format("%s%s", pose ? "" : "state/", name);
+    bool around = result_is_around(name);
+    if (!strcmp(name, "x")) return true;
+    char *from = mem_format("%s%s", FRAMES, name), *to = mem_format("%s%s", around ? "" : "state/", name);
     bool ok = result_read_rows(result, from, step, 1, &array, err);
     if (ok) {
-        ok = put(journal, step, &array, to, pose ? 2 : array.rank, err);
+        ok = put(journal, step, &array, to, around ? 2 : array.rank, err);
         array_clear(&array);
     }
     mem_free(from);

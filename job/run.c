@@ -182,6 +182,7 @@ bool run_put_frame(Run *run, int index, double shown, const Snapshot *shot, bool
     add_felt(&list, model, shot, NULL);
     obstacles_add_poses(model, shot->at.time, &list);
     sources_add_poses(model, shot, &list);
+    sources_add_numbers(model, shot, &list);
     sources_tell_within(run, shot, index);
     if (model->body->ops->add_frame) model->body->ops->add_frame(model, shot, whole, &list);
     bool stress = !model->job->motion || run->scene->output.stress; /* frames of rest are few */

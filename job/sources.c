@@ -1,6 +1,7 @@
 #include "job/sources.h"
 #include "base/memory.h"
 #include "job/pose_rows.h"
+#include "model/frame_flux.h"
 #include "model/within.h"
 #include <math.h>
 #include <string.h>
@@ -40,6 +41,18 @@ void sources_add_poses(const Model *model, const Snapshot *shot, Arrays *list)
             for (int i = 0; i < 12; i++) rows[12 * s + i] = NAN;
     }
     arrays_add(list, array_float("source_pose", "1, m", rows, 2, count, 12));
+}
+
+void sources_add_numbers(const Model *model, const Snapshot *shot, Arrays *list)
+{
+    const FluxBlocks *blocks = &model->flux_blocks;
+    int count = model->fields ? model->fields->count : 0;
+    if (!count) return;
+    double *uniform = arrays_numbers(list, 3), *rows = arrays_numbers(list, FRAME_FLUX_WIDTH * (size_t)count);
+    memcpy(uniform, shot->p + blocks->uniform, 3 * sizeof *uniform);
+    for (int k = 0; k < count; k++) frame_flux_numbers(blocks, shot->p, k, rows + FRAME_FLUX_WIDTH * k);
+    arrays_add(list, array_float("flux_uniform", "T", uniform, 2, 1, 3));
+    arrays_add(list, array_float("flux_sources", "1, m, rad", rows, 2, count, FRAME_FLUX_WIDTH));
 }
 
 static char *path_of(Arrays *list, const FluxField *field, const char *what)

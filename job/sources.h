@@ -11,6 +11,11 @@ void sources_add(const Model *model, Arrays *list);
  * it. Nothing where there are none. */
 void sources_add_poses(const Model *model, const Snapshot *shot, Arrays *list);
 
+/* Of a frame: flux_uniform [3] T, the part of the flux density that is the same everywhere, and flux_sources [field][7], what the
+ * others are then: the factor on what the scene says, how far they are moved (m) and turned (a rotation vector, rad) beyond where
+ * it has them. Nothing where there are no others. */
+void sources_add_numbers(const Model *model, const Snapshot *shot, Arrays *list);
+
 /* Warns of each magnet and coil that the body is in, or at the winding of, the first time that it is: in a step of time, or in
  * the frame of that number. */
 void sources_tell_within(Run *run, const Snapshot *shot, int frame);

@@ -96,13 +96,6 @@ static void add_rest(const Body *body)
 
 /* ---- Numbers on the faces ---- */
 
-static bool is_static(const double *rows, size_t count, size_t width)
-{
-    for (size_t k = 1; k < count; k++)
-        if (memcmp(rows, rows + k * width, width * sizeof *rows) != 0) return false;
-    return true;
-}
-
 /* False where the field is not one number per face, or says nothing anywhere: nothing is added. */
 static bool read_field(const Body *body, const char *name, double *rows, const char **unit)
 {
@@ -128,7 +121,7 @@ static void add_field(const Body *body, const char *name)
     const char *unit = "";
     double *rows = mem_alloc(count * faces, sizeof *rows);
     if (read_field(body, name, rows, &unit)) {
-        bool still = is_static(rows, count, faces);
+        bool still = report_is_static(rows, count, faces);
         double low, high;
         document_range(rows, count * faces, &low, &high);
         document_open(part->document, NULL, '{');
@@ -190,7 +183,7 @@ static void add_magnetization(const Body *body)
     size_t rows = own ? (size_t)part->frame_count : 1, width = 3 * (size_t)body->mesh.body.face_count;
     double *M = mem_alloc(rows * width, sizeof *M);
     for (size_t k = 0; k < rows; k++) take_magnetization(body, own ? part->frames[k] : -1, M + k * width);
-    if (is_static(M, rows, width)) rows = 1;
+    if (report_is_static(M, rows, width)) rows = 1;
     document_open(document, "magnetization", '{');
     document_packed(document, "values", M, (Packed){rows, width, 3, 16, false});
     add_faces(body, "carriers", body->carriers[0], 4);

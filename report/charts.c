@@ -80,6 +80,85 @@ static bool chart_energies(ShowData *data, Chart *chart)
     return chart->series_count > 0;
 }
 
+/* Of a frame the sum over the cells: NaN where it has none. */
+static double sum_of_cells(const ReportPart *part, const char *path, int frame)
+{
+    Array array;
+    double sum = 0;
+    if (!result_read_step(part->data->result, path, frame, &array, NULL)) return NAN;
+    for (size_t k = 0; array.type == ARRAY_FLOAT64 && k < array_count(&array); k++) {
+        double value = ((double *)array.data)[k];
+        if (!isnan(value)) sum += value;
+    }
+    array_clear(&array);
+    return sum;
+}
+
+/* That of a term in the frames of a motion, unless it is 0 all the time. */
+static void add_energy(const ReportPart *part, const char *path, const char *name, const double *times,
+                       Chart *chart, ChartSeries *series)
+{
+    double most = 0, *sum = show_block(part->data, (size_t)part->frame_count, sizeof *sum);
+    for (int k = 0; k < part->frame_count; k++) {
+        sum[k] = sum_of_cells(part, path, part->frames[k]);
+        most = fmax(most, fabs(sum[k]));
+    }
+    if (most > 0)
+        series[chart->series_count++] =
+            (ChartSeries){show_text(part->data, "%s", name), part->frame_count, times, sum};
+}
+
+/* Of a motion over time: what the cells have in its frames, all of a term's energy. */
+static bool chart_motion(const ReportPart *part, Chart *chart)
+{
+    static const char cells[] = "VTKHDF/CellData/energy_";
+    ShowData *data = part->data;
+    char **paths;
+    int count;
+    ChartSeries *series = show_block(data, LINES_MAX, sizeof *series);
+    double *times = show_block(data, (size_t)part->frame_count, sizeof *times);
+    *chart = (Chart){.x_label = "t",
+                     .x_unit = "s",
+                     .y_label = "energy",
+                     .y_unit = "J",
+                     .y_axis = CHART_LINEAR,
+                     .series = series};
+    if (!part->timed || part->frame_count < 2 || !result_list(data->result, &paths, &count, NULL))
+        return false;
+    for (int k = 0; k < part->frame_count; k++) times[k] = show_frame_time(data, part->frames[k]);
+    for (int k = 0; k < count && chart->series_count < LINES_MAX; k++)
+        if (!strncmp(paths[k], cells, strlen(cells)))
+            add_energy(part, paths[k] + strlen("VTKHDF/"), paths[k] + strlen(cells), times, chart, series);
+    mem_free(paths);
+    return chart->series_count > 0;
+}
+
+/* What friction or water has taken from a motion up to then. */
+static bool chart_taken(ShowData *data, Chart *chart)
+{
+    static const char *const names[] = {"friction", "water"};
+    int steps, count;
+    const double *times = read_numbers(data, "slender/history/time", &steps);
+    ChartSeries *series = show_block(data, 2, sizeof *series);
+    *chart = (Chart){.x_label = "t",
+                     .x_unit = "s",
+                     .y_label = "energy taken",
+                     .y_unit = "J",
+                     .y_axis = CHART_LINEAR,
+                     .series = series};
+    for (int k = 0; times && k < 2; k++) {
+        const double *work = read_numbers(data, show_text(data, "slender/history/%s_work", names[k]), &count);
+        if (!work || count != steps) continue;
+        double *sum = show_block(data, (size_t)count, sizeof *sum), most = 0;
+        for (int t = 0; t < count; t++) {
+            sum[t] = (t ? sum[t - 1] : 0) + work[t];
+            most = fmax(most, fabs(sum[t]));
+        }
+        if (most > 0) series[chart->series_count++] = (ChartSeries){names[k], count, times, sum};
+    }
+    return chart->series_count > 0;
+}
+
 /* In the iterations of a drawing. */
 static bool chart_relaxation(ShowData *data, Chart *chart)
 {
@@ -137,13 +216,15 @@ bool report_charts(const ReportPart *part, Error *err)
 {
     ShowMotion motion;
     ShowCurves curves;
-    Chart charts[PROBE_CHARTS + SHOW_MOTION_CHARTS + FRAMING_CHARTS + 5];
+    Chart charts[PROBE_CHARTS + SHOW_MOTION_CHARTS + FRAMING_CHARTS + 7];
     bool rods = show_curves_has(part->data);
     if (!show_motion_read(&motion, part->data, err) || (rods && !show_curves_read(&curves, part->data, err)))
         return false;
     int count = show_probes_charts(part->data, charts, PROBE_CHARTS);
     count += show_motion_charts(&motion, charts + count);
     count += chart_energies(part->data, &charts[count]);
+    count += chart_motion(part, &charts[count]);
+    count += chart_taken(part->data, &charts[count]);
     count += chart_contact(part->data, &charts[count]);
     count += chart_relaxation(part->data, &charts[count]);
     count += show_history(part->data, &charts[count]);

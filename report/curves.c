@@ -1,8 +1,10 @@
 /* Curves of a result, for its report: rods, and of a motion what was to be followed and how it went. */
+#include "base/memory.h"
 #include "report/report_private.h"
 #include "view/show_curves.h"
 #include "view/show_motion.h"
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 /* ---- A motion ---- */
@@ -39,7 +41,7 @@ static void add_places(Document *document, const ShowMotion *motion, const Marks
 
 /* ---- Rods ---- */
 
-enum { FEW = 20 };
+enum { FEW = 20, UNIT_MAX = 32 };
 
 /* Curves of one kind, and where their points begin. */
 typedef struct Strands {
@@ -47,9 +49,75 @@ typedef struct Strands {
     Color color;
     double width;
     int count;
-    const int *offsets; /* [count + 1] */
-    const int *row;     /* [case] 0 of those whose frames show it, -1 of others; NULL: all do */
+    const int *offsets;   /* [count + 1] */
+    const int *row;       /* [case] 0 of those whose frames show it, -1 of others; NULL: all do */
+    bool measured;        /* frames have numbers at its nodes */
+    const double *radius; /* [node] m; NULL: it is a line */
 } Strands;
+
+/* What rods are coloured by: the size of some columns of an array that frames have at their nodes. */
+typedef struct NodeField {
+    const char *name, *array;
+    int first, count;
+} NodeField;
+
+static const NodeField node_fields[] = {{"curvature", "strain", 1, 2},
+                                        {"twist", "strain", 0, 1},
+                                        {"stretch", "stretch", 0, 1},
+                                        {"shear", "stretch", 1, 2},
+                                        {"moment", "moment", 0, 3},
+                                        {"force", "force", 0, 3},
+                                        {"contact_force", "contact_force", 0, 3}};
+
+/* A single column with its sign. */
+static void take_columns(const double *rows, int count, const NodeField *field, double *values)
+{
+    for (int v = 0; v < count; v++) {
+        const double *row = rows + 3 * v + field->first;
+        double square = 0;
+        for (int i = 0; i < field->count; i++) square += row[i] * row[i];
+        values[v] = field->count == 1 ? *row : sqrt(square);
+    }
+}
+
+/* Its numbers in all frames; false where they do not have it. */
+static bool read_field(const ReportPart *part, const NodeField *field, int nodes, double *values, char *unit)
+{
+    const char *path = show_text(part->data, "PointData/%s", field->array);
+    if (!result_has(part->data->result, show_text(part->data, "VTKHDF/%s", path))) return false;
+    for (int k = 0; k < part->frame_count; k++) {
+        Array array;
+        if (!result_read_step(part->data->result, path, part->frames[k], &array, NULL)) return false;
+        bool fits =
+            array.type == ARRAY_FLOAT64 && array.rank == 2 && array.dims[0] >= nodes && array.dims[1] == 3;
+        if (fits) take_columns(array.data, nodes, field, values + (size_t)k * (size_t)nodes);
+        snprintf(unit, UNIT_MAX, "%s", array.unit ? array.unit : "");
+        array_clear(&array);
+        if (!fits) return false;
+    }
+    return true;
+}
+
+static void add_fields(const ReportPart *part, int nodes)
+{
+    Document *document = part->document;
+    size_t count = (size_t)part->frame_count, width = (size_t)nodes;
+    double *values = mem_alloc(count * width, sizeof *values);
+    char unit[UNIT_MAX];
+    document_open(document, "fields", '[');
+    for (size_t f = 0; f < sizeof node_fields / sizeof *node_fields; f++) {
+        if (!read_field(part, &node_fields[f], nodes, values, unit)) continue;
+        bool still = report_is_static(values, count, width);
+        document_open(document, NULL, '{');
+        document_text(document, "name", node_fields[f].name);
+        document_text(document, "unit", unit);
+        document_packed(document, "values", values,
+                        (Packed){still ? 1 : count, width, 1, still ? 16 : 8, false});
+        document_close(document);
+    }
+    document_close(document);
+    mem_free(values);
+}
 
 /* Of many the lines are thinner: so their density is seen. */
 static void add_strands(const ReportPart *part, Strands strands, const double *x, int rows)
@@ -60,9 +128,13 @@ static void add_strands(const ReportPart *part, Strands strands, const double *x
     report_color(document, "color", strands.color);
     document_number(document, "width", fmax(1, strands.width * fmin(1, sqrt(FEW / (double)strands.count))));
     if (strands.row) report_rows(part, strands.row);
+    if (strands.radius)
+        document_packed(document, "radius", strands.radius,
+                        (Packed){1, (size_t)strands.offsets[strands.count], 1, 16, false});
     document_indices(document, "offsets", strands.offsets, (size_t)strands.count + 1, 1);
     document_packed(document, "points", x,
                     (Packed){(size_t)rows, 3 * (size_t)strands.offsets[strands.count], 3, 16, false});
+    if (strands.measured) add_fields(part, strands.offsets[strands.count]);
     document_close(document);
 }
 
@@ -134,6 +206,11 @@ static bool add_rods(const ReportPart *part, Error *err)
     if (curves.natural) add_strands(part, natural, curves.natural[0], 1);
     if (!curves.x && !part->data->motion)
         return true; /* nothing is simulated: the frames have the other curves */
+    bool own = true; /* all lines are strands, point by point */
+    for (int k = 0; k < strands; k++)
+        own &= lines[k][0] == curves.strands[k] && lines[k][1] == curves.strands[k + 1] - curves.strands[k];
+    rod.measured = own;
+    rod.radius = own ? show_curves_radii(part->data, strands, curves.strands) : NULL;
     return add_lines(part, lines, rod, part->frame_count, err);
 }
 

@@ -39,6 +39,13 @@ void report_rows(const ReportPart *part, const int *row)
     document_close(part->document);
 }
 
+bool report_is_static(const double *rows, size_t count, size_t width)
+{
+    for (size_t k = 1; k < count; k++)
+        if (memcmp(rows, rows + k * width, width * sizeof *rows) != 0) return false;
+    return true;
+}
+
 /* ---- Frames ---- */
 
 /* As many as there is room for, of what takes two bytes for a coordinate and, say, six for the numbers of a face. */
@@ -62,42 +69,6 @@ static void choose_frames(ReportPart *part, const ReportDef *def)
     part->timed = part->data->motion;
 }
 
-/* Of a frame's rows at a path the size of the one, a number or a vector; NAN: there is none. */
-static double size_of_row(const ReportPart *part, const char *path, int frame)
-{
-    Array row;
-    double square = 0;
-    if (!result_has(part->data->result, path) ||
-        !result_read_rows(part->data->result, path, frame, 1, &row, NULL))
-        return NAN;
-    for (size_t i = 0; row.type == ARRAY_FLOAT64 && i < array_count(&row); i++)
-        square += ((double *)row.data)[i] * ((double *)row.data)[i];
-    array_clear(&row);
-    return sqrt(square);
-}
-
-/* What a sequence changes first: its field, or the time of its formulas; NULL: neither. */
-static const char *quantity_of(const ReportPart *part)
-{
-    static const char *const paths[] = {"slender/frames/flux_density", "slender/stages/time"};
-    for (int p = 0; p < 2; p++)
-        for (int k = 1; k < part->frame_count; k++) {
-            double first = size_of_row(part, paths[p], part->frames[0]);
-            if (fabs(size_of_row(part, paths[p], part->frames[k]) - first) > 1e-9 * first) return paths[p];
-        }
-    return NULL;
-}
-
-/* "stage 3: 20 mT" */
-static const char *stage_name(const ReportPart *part, const char *quantity, int frame)
-{
-    char number[64];
-    if (!quantity) return show_text(part->data, "stage %d", frame);
-    unit_format(size_of_row(part, quantity, frame), strstr(quantity, "time") ? "s" : "T", number,
-                sizeof number);
-    return show_text(part->data, "stage %d: %s", frame, number);
-}
-
 /* "t = 0.2 s"; the last ones are those of the load cases, if there are several. */
 static void add_frames(const ReportPart *part)
 {
@@ -105,13 +76,13 @@ static void add_frames(const ReportPart *part)
     int cases = part->cases.count, steps = result_step_count(part->data->result);
     document_open(document, "frames", '{');
     bool staged = result_has(part->data->result, "slender/stages/status");
-    const char *quantity = staged ? quantity_of(part) : NULL;
+    const char *const *stages = staged ? report_stages(part) : NULL;
     document_open(document, "labels", '[');
     for (int k = 0; k < part->frame_count; k++) {
         int from_end = steps - part->frames[k];
         bool named = !part->timed && cases > 1 && from_end <= cases;
         document_text(document, NULL,
-                      staged  ? stage_name(part, quantity, part->frames[k])
+                      staged  ? stages[k]
                       : named ? part->cases.names[cases - from_end]
                               : show_frame_name(part->data, part->frames[k]));
     }
@@ -150,6 +121,7 @@ static bool add_result(Document *document, ShowData *data, ShowDef *show, const 
     bool ok = drawn_has(data->result)
                   ? report_drawing(&part, err)
                   : report_body(&part, err) && report_curves(&part, err) && report_surroundings(&part, err);
+    if (ok) report_flux(&part);
     ok = ok && report_charts(&part, err) && report_facts(&part, err);
     if (ok) document_close(document);
     return ok;

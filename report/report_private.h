@@ -24,6 +24,12 @@ bool report_curves(const ReportPart *part, Error *err);
 /* Obstacles, magnets and coils, and where they are; field and gravity. */
 bool report_surroundings(const ReportPart *part, Error *err);
 
+/* Arrows of a flux density that varies in space, or why there are none. */
+void report_flux(const ReportPart *part);
+
+/* [frame] what it is called as a stage of a sequence: "stage 3: 20 mT, t = 2 s". */
+const char *const *report_stages(const ReportPart *part);
+
 /* A drawing: its strokes as they are plotted, its pens, what was to be drawn. */
 bool report_drawing(const ReportPart *part, Error *err);
 
@@ -38,3 +44,6 @@ void report_color(Document *document, const char *key, Color color);
 
 /* "of": [row of each frame's case], row[case]: which target of a list a case has, -1: none. */
 void report_rows(const ReportPart *part, const int *row);
+
+/* Are rows[count][width] all alike? One is then kept. */
+bool report_is_static(const double *rows, size_t count, size_t width);

@@ -26,7 +26,7 @@ for front in $fronts; do
 done
 check view 'base|io|spline|view'
 check export 'base|io|view|export'
-check report 'base|io|spline|view|report'
+check report 'base|io|spline|model|view|report'
 check lib "$physics|optim|model|job|lib|[a-z]*/front"
 check sweep "$physics|optim|model|job|sweep"
 check cli "$physics|optim|model|job|lib|view|export|report|sweep|cli|spline"

@@ -204,11 +204,14 @@ def rod():
         page("rod", f"view=front&at={begin}")
         image = panel()
         size = image.shape[1], image.shape[0]
-        places, _ = projection(frames_of("rod"), size, [1, 0, 0], [0, 0, 1])
+        places, scale = projection(frames_of("rod"), size, [1, 0, 0], [0, 0, 1])
         inked = image.max(axis=2) - image.min(axis=2) > 60
         hits = [inked[round(v) - 1:round(v) + 2, round(u) - 1:round(u) + 2].any() for u, v in places[frame][:41]]
         check(f"the rod at {begin}", np.mean(hits) > 0.95, np.mean(hits))
         inked[-90:] = False  # axes and field
+        orange = (image[..., 0].astype(int) - image[..., 2] > 60)[:-90].sum()
+        seen = np.hypot(*np.diff(places[frame][:41], axis=0).T).sum() * 1.2e-3 * scale
+        check(f"as thick as it is at {begin}", 0.85 < orange / seen < 1.3, orange / seen)
         far = inked & (np.abs(np.indices(inked.shape)[..., None] - places[frame][:41, ::-1].T[:, None, None, :]).max(axis=0).min(axis=2) > 30)
         check(f"nothing but the rod at {begin}", far.sum() < 200, far.sum())
 
@@ -246,6 +249,14 @@ def two():
     check("each with its moment", heads[0] == "t = 0.04 s" and heads[1].startswith("t = "), heads)
 
 
+def mixed():
+    """A motion beside stages: each chart has the mark of its own result, the bar says where both are."""
+    page("mixed", "at=0.5")
+    check("both moments", words() == "t = 0.02 s | stage 1: 1 mT", words())
+    marks = browser.evaluate("[...document.querySelectorAll('#charts svg')].map((svg) => svg.querySelector('.now').getAttribute('visibility') + Math.round(svg.querySelector('.now').getAttribute('x1')))")
+    check("marks half way", len(marks) >= 3 and set(marks) <= {"visible233", "visible234"}, marks)
+
+
 def stages():
     """Charts over what a sequence goes through have the line of the stage; arrows are red, lighter in the dark."""
     page("stages", "theme=dark&at=0.5&field=&edges=0&view=top")
@@ -255,6 +266,24 @@ def stages():
     check("with a prefix", "flux density, mT" in names, names)
     inks = panel()[:-90].astype(int)
     check("red arrows", (np.abs(inks - [255, 106, 87]).max(axis=2) < 12).sum() > 100)
+
+
+def flux():
+    """Blue arrows above the north pole point away from it; b takes them away and brings them back; the scale is told."""
+    page("magnet", "theme=light&view=front&field=&arrows=0&edges=0")
+    legend = browser.evaluate("[...document.querySelectorAll('.legend:not([hidden])')].map((one) => one.textContent).join()")
+    check("the scale of the field", "mT" in legend and "flux density" in legend, legend)
+    blue = lambda: (lambda image: (image[..., 2] - image[..., 0] > 40) & (image[..., 2] - image[..., 1] > 15))(panel()[:-90].astype(int))
+    seen = blue()
+    check("arrows around", seen.sum() > 1500 and seen[:, :seen.shape[1] // 2].any() and seen[:, seen.shape[1] // 2:].any(), seen.sum())
+    browser.key("b")
+    browser.settle()
+    check("none of them", blue().sum() < 100 and browser.evaluate("document.querySelectorAll('.legend[hidden]').length") == 1, blue().sum())
+    browser.key("b")
+    browser.settle()
+    check("they are back", (blue() == seen).all())
+    page("magnet", "flux=0&theme=light&view=front&field=&arrows=0")
+    check("as asked for", blue().sum() < 100)
 
 
 def broken():
@@ -267,7 +296,7 @@ def broken():
         check("a broken page says so", "cannot be read" in str(error), error)
 
 
-for part in (sheet_from_above, colors_of_a_frame, lines, sheet_sinks, keys, calm, lost, printed, touch, theme, rod, drawing, two, stages):
+for part in (sheet_from_above, colors_of_a_frame, lines, sheet_sinks, keys, calm, lost, printed, touch, theme, rod, drawing, two, mixed, stages, flux):
     part()
 check("no errors", not browser.errors, browser.errors)
 broken()

@@ -30,8 +30,15 @@ probes: {tip: {group: tip}}
 sequence: {flux_density: {from: [0, 0, 0], to: [0, 0, 2 mT], count: 3}}
 END_OF_SCENE
 expect 0 "$program" run stages.yaml --no-picture --quiet
-for name in sheet stiff rod drawing stages; do expect 0 "$program" report $name.vtkhdf; done
+sed '/^time:/d' sheet.yaml > magnet.yaml
+cat >> magnet.yaml <<'END_OF_SCENE'
+time: {step: 4 ms, steps: 2}
+flux_density: {magnet: {at: [20 mm, 10 mm, 30 mm], size: [8 mm, 8 mm, 8 mm], remanence: [0, 0, 1.2]}}
+END_OF_SCENE
+expect 0 "$program" run magnet.yaml --no-picture --quiet
+for name in sheet stiff rod drawing stages magnet; do expect 0 "$program" report $name.vtkhdf; done
 expect 0 "$program" report sheet.vtkhdf rod.vtkhdf -o two.html
+expect 0 "$program" report sheet.vtkhdf stages.vtkhdf -o mixed.html
 [ $bad = 0 ] || exit 1
 mkdir profile
 PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 "$here/report_browser.py" "$chromium" "$work"

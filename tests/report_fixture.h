@@ -1,6 +1,7 @@
 /* report_fixture.h - what a report's page holds, read anew as its page does; after cmocka.h. */
 #pragma once
 #include "base/memory.h"
+#include "report/report.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -83,6 +84,15 @@ static inline void page_clear(Page *page)
 {
     mem_free(page->text);
     mem_free(page->bytes);
+}
+
+/* The page of one result, of so many frames; 0: as many as there is room for. */
+static inline Page page_of(const char *result, const char *html, int frames)
+{
+    Error err;
+    if (report_write(&result, 1, html, &(ReportDef){.frames = frames}, &err) != SHOW_DONE)
+        fail_msg("%s", err.text);
+    return page_read(html);
 }
 
 /* What stands after a key, the first one from there on. */

@@ -1,6 +1,7 @@
 /* slender report: the pages of whole runs hold what their results do. The page itself is tested in a browser:
  * tests/report_browser.sh; what its document packs by test_report_document.c. */
 #include "base/vec3.h"
+#include "model/frame_flux.h"
 #include "report/document.h"
 #include "report/report.h"
 #include "spline/drawn.h"
@@ -23,11 +24,7 @@
 
 static Page report(int frames)
 {
-    Error err;
-    const char *const results[] = {RESULT};
-    if (report_write(results, 1, HTML, &(ReportDef){.frames = frames}, &err) != SHOW_DONE)
-        fail_msg("%s", err.text);
-    return page_read(HTML);
+    return page_of(RESULT, HTML, frames);
 }
 
 /* Frames 0, middle and last of `steps`: the corners of all faces are where they are in the result. */
@@ -182,8 +179,54 @@ static void test_rod(void **unused)
             assert_true(fabs(points.values[(size_t)k * points.width + i] - ((double *)x.data)[i]) < 2e-6);
         array_clear(&x);
     }
+    Unpacked radius = unpack(&page, rod, "radius");
+    assert_int_equal(radius.width, 41);
+    for (size_t k = 0; k < 41; k++) assert_true(fabs(radius.values[k] - 0.6e-3) < 1e-9);
+    mem_free(radius.values);
     mem_free(offsets.values);
     mem_free(points.values);
+    page_clear(&page);
+    result_close(result);
+}
+
+/* Rods at rest are coloured by what they have at their nodes; they are as thick as they are there. */
+static void test_rod_fields(void **unused)
+{
+    (void)unused;
+    static const struct {
+        const char *name, *array;
+        int first, count;
+    } fields[] = {{"curvature", "strain", 1, 2}, {"twist", "strain", 0, 1}, {"moment", "moment", 0, 3}};
+    Error err;
+    Result *result = run_text(
+        mem_text("slender: 1\njob: equilibrium\nrod:\n  natural_strain: [1, \"20*s\", 3]\n  length: 80 mm\n"
+                 "  elements: 20\n  radius: {formula: \"1e-3*(1 - s/2/L)\"}\n  young: 1 MPa\n  poisson: 0.4\n"
+                 "  density: 1000\n  gravity: [0, 0, -9.81]\n"));
+    Page page = report(0);
+    const char *rod = strstr(page.json, "\"name\":\"rod\"");
+    Unpacked radius = unpack(&page, rod, "radius");
+    for (int k = 1; k < 20; k++) assert_true(fabs(radius.values[k] - 1e-3 * (1 - k / 40.)) < 1e-7);
+    for (int f = 0; f < 3; f++) {
+        char name[40], path[40];
+        snprintf(name, sizeof name, "\"name\":\"%s\"", fields[f].name);
+        snprintf(path, sizeof path, "PointData/%s", fields[f].array);
+        Unpacked values = unpack(&page, strstr(rod, name), "values");
+        Array rows;
+        if (!result_read_step(result, path, 0, &rows, &err)) fail_msg("%s", err.text);
+        assert_int_equal(values.width, 21);
+        for (int k = 0; k < 21; k++) {
+            const double *row = (const double *)rows.data + 3 * k + fields[f].first;
+            double square = 0, size;
+            for (int i = 0; i < fields[f].count; i++) square += row[i] * row[i];
+            size = fields[f].count == 1 ? *row : sqrt(square);
+            assert_true(fabs(values.values[k] - size) <=
+                        1e-4 * (values.high - values.low) + 1e-6 * fabs(size));
+        }
+        assert_true(values.high > values.low);
+        array_clear(&rows);
+        mem_free(values.values);
+    }
+    mem_free(radius.values);
     page_clear(&page);
     result_close(result);
 }
@@ -269,38 +312,6 @@ static void test_targets(void **unused)
     result_close(result);
 }
 
-/* Frames of a sequence are called after what it changes; its energies are a chart. */
-static void test_stages(void **unused)
-{
-    (void)unused;
-    Result *result = run_text(mem_format(
-        "slender: 1\njob: equilibrium\nshell:\n  mesh: {shape: sheet, size: [40 mm, 20 mm], cells: [4, 2]}\n"
-        "  thickness: 1 mm\n  young: 1 MPa\n  poisson: 0.3\n  magnetization: [1.0e+4, 0, 0]\n"
-        "fix: [{group: root, clamp: true}]\n"
-        "probes: {tip: {group: tip}}\n"
-        "sequence: {flux_density: {from: [0, 0, 0], to: [0, 0, 1 mT], count: 3}}\n"));
-    Page page = report(2);
-    assert_non_null(strstr(page.json, "\"stages\":[0,2]"));
-    const char *probed = strstr(page.json, "{\"x\":{\"label\":\"flux density\",\"unit\":\"T\"}");
-    assert_non_null(probed);
-    assert_int_equal(strncmp(after(probed, "of_stages"), "true", 4), 0);
-    page_clear(&page);
-    page = report(0);
-    assert_non_null(strstr(page.json, "\"labels\":[\"stage 0: 0 T\",\"stage 1: 500 µT\",\"stage 2: 1 mT\"]"));
-    Array energy = read_all(result, "slender/stages/energy/bending");
-    const char *chart = strstr(page.json, "\"y\":{\"label\":\"energy\",\"unit\":\"J\"}");
-    assert_non_null(chart);
-    const char *y = after(strstr(chart, "\"name\":\"bending\""), "y");
-    char *rest;
-    for (int k = 0; k < 3; k++, y = rest) {
-        double is = ((double *)energy.data)[k], got = strtod(y + 1, &rest);
-        assert_true(fabs(got - is) <= 1e-6 * fabs(is));
-    }
-    array_clear(&energy);
-    page_clear(&page);
-    result_close(result);
-}
-
 static void test_drawing(void **unused)
 {
     (void)unused;
@@ -325,6 +336,69 @@ static void test_drawing(void **unused)
     mem_free(points.values);
     page_clear(&page);
     drawn_clear(&drawn);
+    result_close(result);
+}
+
+/* A coil whose current grows, and a magnet that comes, turns and is beside the body. */
+static const char MAGNET[] =
+    "slender: 1\njob: simulate\nshell:\n  mesh: {shape: sheet, size: [40 mm, 20 mm], cells: [8, 4]}\n"
+    "  thickness: 1 mm\n  young: 1 MPa\n  poisson: 0.3\n  density: 1000\n  magnetization: [1.0e+4, 0, 0]\n"
+    "fix: [{group: root, clamp: true}]\ntime: {step: 5 ms, steps: 4}\nflux_density:\n  - [1 mT, 0, 0]\n"
+    "  - {magnet: {at: [20 mm, 10 mm, 30 mm], size: [8 mm, 8 mm, 8 mm], remanence: [0, 0, 1.2]},\n"
+    "     move: [\"0\", \"0\", \"-t/2\"], turn: [\"20*t\", \"0\", \"0\"]}\n";
+
+/* The arrows of the page are the field at their places, in each frame; within the magnet there are none. */
+static void test_arrows(void **unused)
+{
+    (void)unused;
+    Error err;
+    FrameFlux flux;
+    Result *result = run_text(mem_text(MAGNET));
+    Page page = report(3);
+    const char *arrows = after(page.json, "arrows");
+    Unpacked points = unpack(&page, arrows, "points"), ways = unpack(&page, arrows, "directions"),
+             sizes = unpack(&page, arrows, "sizes");
+    size_t count = sizes.width, hidden = 0;
+    if (!frame_flux_open(&flux, result, &err)) fail_msg("%s", err.text);
+    assert_true(points.rows == 3 && sizes.rows == 3 && count > 200 && count < 400);
+    assert_true(sizes.low > 1e-4 && sizes.high > 0.1);
+    for (size_t n = 0; n < 3 * count; n++) {
+        double B[3], size, at[3];
+        int frame = 2 * (int)(n / count);
+        assert_true(frame_flux_take(&flux, result, frame, 5e-3 * frame, &err));
+        memcpy(at, points.values + 3 * n, sizeof at);
+        frame_flux_at(&flux, at, B);
+        size = vec3_length(vec3_load(B));
+        if (isnan(size)) assert_true(isnan(sizes.values[n]) && ++hidden);
+        if (isnan(size)) continue;
+        assert_true(fabs(sizes.values[n] / size - 1) < 0.02);
+        for (size_t i = 0; i < 3; i++) assert_true(fabs(ways.values[3 * n + i] - B[i] / size) < 0.01);
+    }
+    assert_true(hidden > 0 && hidden < count / 10);
+    frame_flux_clear(&flux);
+    mem_free(points.values), mem_free(ways.values), mem_free(sizes.values);
+    page_clear(&page);
+    result_close(result);
+}
+
+/* Where the sources cannot be made again all else is there, and the page says why. */
+static void test_no_arrows(void **unused)
+{
+    (void)unused;
+    FILE *file = fopen(NAME ".csv", "w");
+    assert_non_null(file);
+    fputs("x [mm], y [mm], z [mm], Bx [mT], By [mT], Bz [mT]\n-5, 0, 0, 0, 0, 0\n50, 0, 0, 0, 0, 1\n", file);
+    assert_int_equal(fclose(file), 0);
+    Result *result = run_text(mem_format("%sflux_density: {map: {file: " NAME ".csv}}\n", SHEET));
+    Page page = report(0);
+    assert_true(strstr(page.json, "\"arrows\":{") && !strstr(page.json, "\"no_arrows\""));
+    page_clear(&page);
+    unlink(NAME ".csv");
+    page = report(0);
+    assert_false(strstr(page.json, "\"arrows\":{"));
+    assert_non_null(strstr(after(page.json, "no_arrows"), NAME ".csv"));
+    assert_non_null(strstr(page.json, "\"charts\""));
+    page_clear(&page);
     result_close(result);
 }
 
@@ -375,10 +449,12 @@ int main(void)
                                        cmocka_unit_test_teardown(test_design, nothing_leaks),
                                        cmocka_unit_test_teardown(test_solid, nothing_leaks),
                                        cmocka_unit_test_teardown(test_rod, nothing_leaks),
+                                       cmocka_unit_test_teardown(test_rod_fields, nothing_leaks),
                                        cmocka_unit_test_teardown(test_inversion, nothing_leaks),
                                        cmocka_unit_test_teardown(test_drawing, nothing_leaks),
                                        cmocka_unit_test_teardown(test_targets, nothing_leaks),
-                                       cmocka_unit_test_teardown(test_stages, nothing_leaks),
+                                       cmocka_unit_test_teardown(test_arrows, nothing_leaks),
+                                       cmocka_unit_test_teardown(test_no_arrows, nothing_leaks),
                                        cmocka_unit_test_teardown(test_several, nothing_leaks),
                                        cmocka_unit_test_teardown(test_refused, nothing_leaks)};
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -83,6 +83,24 @@ bool show_curves_read(ShowCurves *curves, ShowData *data, Error *err)
     return curves->input || curves->x || error_set(err, "the result's curves are not as slender writes them");
 }
 
+const double *show_curves_radii(ShowData *data, int strand_count, const int *first)
+{
+    enum { OUTLINE = 24 };
+    size_t nodes = (size_t)first[strand_count], elements = nodes - (size_t)strand_count;
+    const double *each = show_dataset(data, "slender/rod/radius", ARRAY_FLOAT64, elements),
+                 *outline = show_dataset(data, "slender/rod/section_outline", ARRAY_FLOAT64, 2 * OUTLINE);
+    if (!each && !outline) return NULL;
+    double *radius = show_block(data, nodes, sizeof *radius), reach = 0;
+    for (int i = 0; outline && i < OUTLINE; i++)
+        reach = fmax(reach, hypot(outline[2 * i], outline[2 * i + 1]));
+    for (int k = 0; k < strand_count; k++)
+        for (int i = first[k]; i < first[k + 1]; i++) {
+            int before = i > first[k] ? i - 1 - k : i - k, after = i + 1 < first[k + 1] ? i - k : i - 1 - k;
+            radius[i] = each ? (each[before] + each[after]) / 2 : reach;
+        }
+    return radius;
+}
+
 /* ---- Charts ---- */
 
 /* A series over s, interrupted between the strands. values: every `stride`-th number. */

@@ -33,6 +33,10 @@ bool show_curves_has(const ShowData *data);
 /* False and a sentence where they are not as slender writes them. */
 bool show_curves_read(ShowCurves *curves, ShowData *data, Error *err);
 
+/* [node] m, how thick strands are, whose first nodes are first[strand_count + 1]: of elements the mean of those beside a node, of
+ * an even rod how far its section reaches. Kept in the data; NULL: the result does not say it. */
+const double *show_curves_radii(ShowData *data, int strand_count, const int *first);
+
 /* Has any of the states one? */
 bool show_curves_have_target(const ShowCurves *curves);
 

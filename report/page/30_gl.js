@@ -26,41 +26,44 @@ void main() {
   color.rgb *= color.a;
 }`;
 
-/* An instance is a stroke from a to b: 6 vertices of a rectangle with room for round ends, 3 of a head. */
+/* An instance is a stroke from a to b: 6 vertices of a rectangle with room for round ends, 3 of a head. As a tube it is lit as a
+ * surface is, across it. */
 const STROKE_VERTEX = `#version 300 es
 in vec3 a, b; in vec4 color; in float width;
 uniform mat4 view; uniform vec2 size; uniform float head, raise;
-out vec4 ink; out vec2 along; out float reach, radius;
+out vec4 ink; out vec2 along; out float reach, radius; flat out vec2 side;
 void main() {
   vec4 A = view * vec4(a, 1.0), B = view * vec4(b, 1.0);
   vec2 p = A.xy * size / 2.0, q = B.xy * size / 2.0, d = q - p;
   float l = length(d), r = width / 2.0 + 0.75;
   vec2 t = l > 1e-4 ? d / l : vec2(1.0, 0.0), n = vec2(-t.y, t.x);
   float tip = head > 0.0 ? min(4.5 * width, 0.6 * l) : 0.0;
-  ink = color; reach = l - tip; radius = width / 2.0;
+  ink = color; reach = l - tip; radius = width / 2.0; side = n;
   int k = gl_VertexID;
   vec2 at; float z;
   if (k < 6) {
-    float end = (k == 1 || k == 2 || k == 4) ? 1.0 : 0.0, side = (k == 2 || k == 4 || k == 5) ? 1.0 : -1.0;
-    along = vec2(mix(-r, l - tip + r, end), side * r);
+    float end = (k == 1 || k == 2 || k == 4) ? 1.0 : 0.0, edge = (k == 2 || k == 4 || k == 5) ? 1.0 : -1.0;
+    along = vec2(mix(-r, l - tip + r, end), edge * r);
     at = p + t * along.x + n * along.y; z = mix(A.z, B.z, end);
   } else {
-    float side = k == 6 ? 0.0 : k == 7 ? 1.0 : -1.0;
+    float edge = k == 6 ? 0.0 : k == 7 ? 1.0 : -1.0;
     along = vec2(0.0); reach = 1.0;
-    at = q - (k == 6 ? vec2(0.0) : t * tip) + n * side * tip * 0.38; z = B.z;
+    at = q - (k == 6 ? vec2(0.0) : t * tip) + n * edge * tip * 0.38; z = B.z;
   }
   gl_Position = vec4(at * 2.0 / size, z - raise, 1.0);
 }`;
 
 const STROKE_FRAGMENT = `#version 300 es
 precision highp float;
-in vec4 ink; in vec2 along; in float reach, radius;
-uniform float inside;
+in vec4 ink; in vec2 along; in float reach, radius; flat in vec2 side;
+uniform float inside, tube;
 out vec4 color;
 void main() {
   float d = length(vec2(along.x - clamp(along.x, 0.0, max(reach, 0.0)), along.y)), a = ink.a * clamp(radius + 0.5 - d, 0.0, 1.0);
   if (a <= 0.0 || (a > 0.98 * ink.a) != (inside > 0.0)) discard;
-  color = vec4(ink.rgb * a, a);
+  float across = clamp(along.y / radius, -1.0, 1.0), toward = sqrt(1.0 - across * across);
+  float light = 0.42 + 0.34 * toward + 0.28 * max(dot(vec3(side * across, toward), vec3(-0.5, 0.67, 0.55)), 0.0);
+  color = vec4(ink.rgb * mix(1.0, min(light, 1.06), tube) * a, a);
 }`;
 
 function makeProgram(gl, vertex, fragment) {
@@ -143,12 +146,12 @@ function makeRenderer(redraw) {
   }
 
   /* from, to [3 a stroke], colors [4 bytes a stroke], widths [1 a stroke, pixels]. */
-  function drawStrokes(view, strokes, { head = false, raise = 0 } = {}) {
+  function drawStrokes(view, strokes, { head = false, tube = false, raise = 0 } = {}) {
     if (strokes.widths.length === 0) return;
     const attributes = [["a", strokes.from, 3, true], ["b", strokes.to, 3, true], ["color", strokes.colors, 4, true], ["width", strokes.widths, 1, true]];
     for (const inside of [1, 0]) { /* soft edges hide nothing: neither the next stroke of their line nor its own end */
       gl.depthMask(inside === 1);
-      draw(stroke, view, attributes, { size: [view.width, view.height], head: head ? 1 : 0, raise, inside },
+      draw(stroke, view, attributes, { size: [view.width, view.height], head: head ? 1 : 0, tube: tube ? 1 : 0, raise, inside },
            () => gl.drawArraysInstanced(gl.TRIANGLES, 0, head ? 9 : 6, strokes.widths.length));
     }
     gl.depthMask(true);

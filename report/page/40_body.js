@@ -173,6 +173,19 @@ function lineStrokes(points, segments, color, width, end = Infinity) {
   return makeStrokes(from.subarray(0, count), to.subarray(0, count), [...color, 255], width);
 }
 
+/* The same as tubes: as thick as they are, but `least` pixels; value(point), if there is one, is coloured by the scale. */
+function tubeStrokes(points, segments, color, { radius, pixels, least, value, scale }) {
+  const strokes = lineStrokes(points, segments, color, least);
+  for (let k = 0, n = 0; k < segments.length; k += 2) {
+    const a = segments[k], b = segments[k + 1];
+    if (!Number.isFinite(points[3 * a] + points[3 * b])) continue;
+    if (radius) strokes.widths[n] = Math.max(least, (radius[a] + radius[b]) * pixels);
+    if (value) strokes.colors.set(scale.color((value[a] + value[b]) / 2), 4 * n);
+    n++;
+  }
+  return strokes;
+}
+
 /* Points of polylines between points that are NaN, [3 each]. */
 function lonePoints(points, offsets) {
   const lone = [], has = (k, s) => k >= offsets[s] && k < offsets[s + 1] && Number.isFinite(points[3 * k]);

@@ -27,6 +27,11 @@ function nearPoints(obstacles, sphere, count) {
   });
 }
 
+/* What its faces or its nodes are coloured by. */
+function fieldsOf({ body, curves = [] }) {
+  return body ? body.fields : curves.flatMap((curve) => curve.fields || []);
+}
+
 function makeSpacePanel(result, page) {
   const { body, target, clouds, obstacles = [], curves = [], places = [] } = result, count = result.frames.labels.length;
   const moving = [...(body ? [body.points.data] : []), ...curves.map((curve) => curve.points.data), ...(target ? [target.points.data] : []), ...(clouds ? clouds.sets.map((set) => set.data) : [])];
@@ -36,7 +41,7 @@ function makeSpacePanel(result, page) {
   let view = null, pointsNow = null;
 
   function field() {
-    return body ? body.fields.find((one) => one.name === page.choice.field) : null;
+    return fieldsOf(result).find((one) => one.name === page.choice.field);
   }
 
   /* The target of a frame, and the points of its cloud; null: it has none. */
@@ -78,6 +83,16 @@ function makeSpacePanel(result, page) {
     }
   }
 
+  function shownOf(curve) {
+    return (curve.fields || []).find((one) => one.name === page.choice.field);
+  }
+
+  function drawTubes(gl, at, curve, points, segments, { raise }) {
+    const shown = shownOf(curve), least = (curve.radius ? Math.min(2, curve.width) : curve.width) * page.ratio;
+    const look = { radius: curve.radius && curve.radius.data, pixels: view.scale, least, value: shown && rowNear(shown.values, at), scale: page.scale };
+    gl.drawStrokes(view, tubeStrokes(points, segments, page.ink(curve.color), look), { tube: Boolean(curve.radius), raise });
+  }
+
   function drawCurves(gl, at) {
     curves.forEach((curve, k) => { /* later ones over those before them */
       if (curve.of && (curve.of[Math.round(at)] < 0 || page.choice.target === "none")) return;
@@ -85,10 +100,16 @@ function makeSpacePanel(result, page) {
       const offsets = curve.offsets.data, part = count > 1 ? at / (count - 1) : 1;
       const end = curve.grows ? Math.round(part * (offsets[offsets.length - 1] - 1)) : Infinity;
       const points = rowAt(curve.points, at), ink = page.ink(curve.color);
-      gl.drawStrokes(view, lineStrokes(points, segments[k], ink, curve.width * page.ratio, end), { raise: 0.01 + 0.002 * k });
+      if (curve.radius || shownOf(curve)) drawTubes(gl, at, curve, points, segments[k], { raise: 0.01 + 0.002 * k });
+      else gl.drawStrokes(view, lineStrokes(points, segments[k], ink, curve.width * page.ratio, end), { raise: 0.01 + 0.002 * k });
       if (curve.of) gl.drawStrokes(view, dotStrokes(lonePoints(points, offsets), ink, 9 * page.ratio), { raise: 0.02 });
     });
     for (const place of places) gl.drawStrokes(view, dotStrokes(place.at, parseColor(place.color), 8 * page.ratio), { raise: 0.02 });
+  }
+
+  function drawFlux(gl, at) {
+    if (!result.arrows || !page.choice.flux) return;
+    gl.drawStrokes(view, fluxStrokes(result.arrows, at, page.fluxScale, parseColor(page.color("--accent")), page.ratio), { head: true, raise: 0.003 });
   }
 
   /* ---- Over it ---- */
@@ -162,6 +183,7 @@ function makeSpacePanel(result, page) {
       if (body) drawTarget(gl, at);
       drawCurves(gl, at);
       drawObstacles(gl, at);
+      drawFlux(gl, at);
       context.drawImage(gl.canvas, 0, 0);
     }
     drawGauges(at);
@@ -178,7 +200,7 @@ function makeSpacePanel(result, page) {
   }
 
   const lines = [...new Map(curves.filter((curve) => curve.name).map((curve) => [curve.name, curve.color]))];
-  return { canvas, draw, readAt, field, lines, count, times: result.frames.times, stageOf: (at) => (result.frames.stages || [])[Math.round(at)], label: (at) => result.frames.labels[Math.min(Math.round(at), count - 1)] };
+  return { canvas, draw, readAt, field, lines, count, arrows: result.arrows, times: result.frames.times, stageOf: (at) => (result.frames.stages || [])[Math.round(at)], label: (at) => result.frames.labels[Math.min(Math.round(at), count - 1)] };
 }
 
 /* The names of a face's groups. */

@@ -3,11 +3,13 @@
 /* One report's state. Panels ask it for colours and the camera; it tells them the moment. */
 function makePage(data) {
   const page = { data, camera: { ...CAMERA_START }, renderer: makeRenderer(() => page.redraw()), at: 1, playing: false, panels: [], charts: [], hidden: new Set(),
-                 choice: { field: null, target: "over", range: "whole", shown: "ink", arrows: true, edges: true } };
+                 choice: { field: null, target: "over", range: "whole", shown: "ink", arrows: true, flux: true, edges: true } };
   Object.defineProperty(page, "ratio", { get: () => window.devicePixelRatio || 1 }); /* it changes with the browser's zoom */
-  const fields = data.results.flatMap((result) => (result.body ? result.body.fields : []));
+  const fields = data.results.flatMap(fieldsOf);
   page.fieldNames = [...new Set(fields.map((one) => one.name))];
   page.greatestFlux = Math.max(extent(data.results.flatMap((result) => (result.flux || []).map(Math.abs))).high, 1e-30);
+
+  page.fluxScale = fluxScaleOf(data.results);
 
   /* One for all results, so that colours can be compared: of all frames, or of the one that is shown. */
   page.scale = null;
@@ -44,10 +46,19 @@ function makePage(data) {
     return low + page.at * (high - low);
   };
 
+  /* s, of a panel whose frames are moments; beside others that are none each is at its own. */
+  page.timeOf = (panel) => {
+    if (page.timed() || !panel.times) return page.timed() ? page.time() : NaN;
+    const at = page.frameOf(panel), k = Math.min(Math.floor(at), panel.count - 1), next = Math.min(k + 1, panel.count - 1);
+    return panel.times[k] + (at - k) * (panel.times[next] - panel.times[k]);
+  };
+
+  /* One time for all; of two results that have none in common what each shows, of more how far they are. */
   page.words = () => {
     if (page.timed()) return `t = ${say(page.time(), "s")}`;
-    const panel = page.panels.find((one) => one.count > 1) || page.panels[0];
-    return panel ? panel.label(page.frameOf(panel)) : "";
+    const moving = page.panels.filter((one) => one.count > 1), shown = moving.length ? moving : page.panels.slice(0, 1);
+    const words = [...new Set(shown.map((panel) => panel.label(page.frameOf(panel))))];
+    return words.length > 2 ? `${Math.round(100 * page.at)} % of each` : words.join(" | ");
   };
 
   let asked = false;
@@ -61,7 +72,7 @@ function makePage(data) {
     for (const panel of page.panels) panel.draw(page.frameOf(panel)), panel.head.textContent = page.panels.length > 1 ? panel.label(page.frameOf(panel)) : "";
     for (const { chart, kind, panel } of page.charts) {
       if (kind === "stage") chart.markRow(panel.stageOf(page.frameOf(panel)));
-      if (kind === "t") chart.mark(page.timed() ? page.time() : NaN);
+      if (kind === "t") chart.mark(page.timeOf(panel));
       if (kind === "iteration") chart.mark(panel.iteration(page.frameOf(panel)));
     }
     document.getElementById("scrub").value = page.at;
@@ -110,12 +121,13 @@ function node(name, properties, ...children) {
 
 function addPanel(page, result) {
   const panel = result.drawing ? makePaperPanel(result, page) : makeSpacePanel(result, page);
-  const readout = node("div", { className: "readout" }), legend = node("div", { className: "legend" });
+  const readout = node("div", { className: "readout" }), legend = node("div", { className: "legend" }), arrows = node("div", { className: "legend" });
   panel.canvas.setAttribute("aria-label", `${result.name}: drag turns it, the wheel zooms`);
-  panel.legend = legend, panel.head = node("small", {});
+  panel.legend = legend, panel.arrowLegend = arrows, panel.head = node("small", {});
   document.getElementById("panels").append(
     node("article", { className: "panel" }, node("h2", {}, result.name, node("small", {}, result.status || ""), panel.head),
-         node("div", { className: "stage" }, panel.canvas, readout), legend));
+         node("div", { className: "stage" }, panel.canvas, readout), legend, arrows));
+  if (result.no_arrows) panel.head.before(node("small", { textContent: `no arrows of the flux density: ${result.no_arrows}` }));
   if (panel.count === 0) panel.canvas.remove();
   addPointer(panel, page, readout);
   page.panels.push(panel);
@@ -142,6 +154,20 @@ function showLegends(page) {
     if (scale && field()) legend.append(say(scale.low, page.unitOf(name)), colorBar(scale, page.unitOf(name)), say(scale.high, page.unitOf(name)),
                                node("span", { className: "faint", textContent: name.replaceAll("_", " ") }));
   }
+  showFluxLegends(page);
+}
+
+/* How long and how strong an arrow of the flux density is. */
+function showFluxLegends(page) {
+  for (const { arrowLegend, arrows } of page.panels) {
+    const shown = arrows && page.choice.flux, { low, high } = page.fluxScale || {};
+    arrowLegend.hidden = !shown;
+    if (!shown) continue;
+    const ink = parseColor(page.color("--accent")), color = (size) => [...ink, fluxAlpha(fluxPart(page.fluxScale, size))];
+    arrowLegend.classList.add("ticked");
+    arrowLegend.replaceChildren(say(low, "T"), colorBar({ low, high, log: high > low, color }, "T"), say(high, "T"),
+                                node("span", { className: "faint", textContent: "flux density: arrows by its logarithm", title: "the weakest are 0.3 as long as the strongest" }));
+  }
 }
 
 /* A curve's name, which hides it and shows it again. */
@@ -157,11 +183,15 @@ function lineSwitch(page, name, color) {
   return button;
 }
 
+function cssColor([r, g, b, a = 1]) {
+  return `rgb(${[r, g, b].map(Math.round)}, ${a})`;
+}
+
 /* The colours from the least to the greatest, with powers of ten where they are of logarithms. */
 function colorBar(scale, unit) {
   const { low, high, log } = scale, at = (t) => (log ? low * (high / low) ** t : low + (high - low) * t);
   const bar = node("i", {});
-  bar.style.background = `linear-gradient(to right, ${Array.from({ length: 17 }, (_, i) => `rgb(${scale.color(at(i / 16)).map(Math.round)})`)})`;
+  bar.style.background = `linear-gradient(to right, ${Array.from({ length: 17 }, (_, i) => cssColor(scale.color(at(i / 16))))})`;
   for (const tick of log ? powerTicks(low, high) : []) {
     const mark = bar.appendChild(node("s", { textContent: say(tick, unit) }));
     mark.style.left = `${(100 * Math.log(tick / low)) / Math.log(high / low)}%`;
@@ -174,20 +204,21 @@ function addChoices(page) {
   const has = (key) => results.some((result) => result[key]), body = has("body");
   const set = (key) => (value) => { page.choice[key] = value; page.redraw(); };
   const fields = addSelect(bar, "colours", [...page.fieldNames.map((name) => [name, name.replaceAll("_", " ")]), ["", "none"]], page.choice.field, set("field"));
-  const changes = results.some((result) => result.body && result.body.fields.some((one) => one.values.rows > 1));
+  const changes = results.some((result) => fieldsOf(result).some((one) => one.values.rows > 1));
   if (changes) addSelect(bar, "from", [["whole", "all frames"], ["frame", "this frame"]], page.choice.range, set("range"));
   const lines = results.some((result) => (result.curves || []).some((curve) => curve.of)), clouds = results.some((result) => result.clouds && result.clouds.sets.length);
   const targets = has("target") ? [["over", "over"], ["beside", "beside"], ["none", "hidden"]] : clouds || lines ? [["over", "shown"], ["none", "hidden"]] : has("drawing") ? [["none", "hidden"], ["beside", "beside"]] : [];
   const target = addSelect(bar, "target", targets, page.choice.target, set("target"));
   if (results.some((result) => result.drawing && result.drawing.film)) addSelect(bar, "shown", [["ink", "stroke by stroke"], ["film", "as it relaxed"]], page.choice.shown, set("shown"));
   const arrows = results.some((result) => result.body && result.body.magnetization) ? addSwitch(bar, "magnetisation", page.choice.arrows, set("arrows")) : null;
+  const flux = page.fluxScale ? addSwitch(bar, "flux density", page.choice.flux, (on) => { set("flux")(on); showLegends(page); }) : null;
   const edges = body ? addSwitch(bar, "edges", page.choice.edges, set("edges")) : null;
   if (results.some((result) => !result.drawing)) addSelect(bar, "view", [["", "free"], ...Object.keys(VIEWS).map((name) => [name, name])], "", (name, select) => { page.look(VIEWS[name]); select.value = ""; });
   const theme = node("button", { type: "button", textContent: "light / dark" });
   theme.addEventListener("click", () => setTheme(page, page.dark() ? "light" : "dark"));
   bar.append(theme);
   const next = (select) => () => { if (select) (select.selectedIndex = (select.selectedIndex + 1) % select.length), select.dispatchEvent(new Event("change")); };
-  addKeys(page, { f: next(fields), t: next(target), m: () => arrows && arrows.click(), e: () => edges && edges.click(), d: () => theme.click() });
+  addKeys(page, { f: next(fields), t: next(target), m: () => arrows && arrows.click(), b: () => flux && flux.click(), e: () => edges && edges.click(), d: () => theme.click() });
 }
 
 function setTheme(page, theme) {
@@ -212,6 +243,7 @@ function readHash(page) {
   if (asked.has("target")) page.choice.target = asked.get("target");
   if (asked.has("view") && VIEWS[asked.get("view")]) Object.assign(page.camera, VIEWS[asked.get("view")]);
   if (asked.has("arrows")) page.choice.arrows = asked.get("arrows") !== "0";
+  if (asked.has("flux")) page.choice.flux = asked.get("flux") !== "0";
   if (asked.has("edges")) page.choice.edges = asked.get("edges") !== "0";
   const dark = asked.get("theme") || (matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light");
   document.documentElement.dataset.theme = dark;
@@ -221,7 +253,7 @@ function readHash(page) {
 async function start() {
   const page = makePage(await readDocument()), results = page.data.results;
   document.getElementById("title").textContent = results.length > 1 ? `${results.length} results` : results[0].name;
-  page.choice.field = page.fieldNames.find((name) => page.varies(name)) || "";
+  page.choice.field = results.some((result) => result.body) ? page.fieldNames.find((name) => page.varies(name)) || "" : ""; /* curves have their own inks */
   if (results.every((result) => result.drawing)) page.choice.target = "beside";
   page.at = readHash(page);
   if (page.choice.field && !page.fieldNames.includes(page.choice.field)) page.choice.field = "";
