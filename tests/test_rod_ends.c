@@ -331,5 +331,5 @@ int main(void)
         cmocka_unit_test(test_resumed),     cmocka_unit_test(test_poses),
         cmocka_unit_test(test_outline),     cmocka_unit_test(test_pendulum),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, NULL, remove_run);
 }
