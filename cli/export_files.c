@@ -1,6 +1,7 @@
 #include "cli/export_files.h"
 #include "base/memory.h"
 #include "cli/say.h"
+#include "export/mesh.h"
 #include "io/path.h"
 #include "io/safe_file.h"
 
@@ -26,6 +27,22 @@ RunStatus export_file_ply(Result *result, int frame, const char *path, Error *er
 {
     Bytes bytes = {0};
     return write_made(export_ply(result, frame, &bytes, err), &bytes, path, err);
+}
+
+RunStatus export_file_groups(Result *result, const char *path, Error *err)
+{
+    Bytes bytes = {0};
+    return write_made(export_groups(result, &bytes, err), &bytes, path, err);
+}
+
+RunStatus export_file_obj(Result *result, int frame, const char *path, Error *err)
+{
+    MeshFile file;
+    RunStatus status = RUN_REFUSED;
+    if (export_mesh_read(result, frame, &file, err))
+        status = mesh_file_write_obj(path, &file, err) ? RUN_DONE : RUN_CANNOT_WRITE;
+    mesh_file_clear(&file);
+    return status;
 }
 
 RunStatus export_file_npz(Result *result, const char *path, Error *err)

@@ -3,7 +3,6 @@
 #include "base/plain.h"
 #include "cli/export_drawing.h"
 #include "cli/export_files.h"
-#include "cli/export_groups.h"
 #include "cli/verb.h"
 #include "io/path.h"
 #include "io/replace.h"
@@ -110,7 +109,7 @@ static RunStatus export_probes(Result *result, const char *path, Error *err)
 
 static RunStatus write_numbers(Result *result, const Export *what, Error *err)
 {
-    if (what->per) return export_groups(result, what->output, err);
+    if (what->per) return export_file_groups(result, what->output, err);
     if (what->probes) return export_probes(result, what->output, err);
     if (what->dataset) return export_dataset(result, what->dataset, what->output, err);
     error_set(err, "%s: which numbers? --dataset names them; slender info lists what there is", what->output);
@@ -124,7 +123,7 @@ static RunStatus write_npz(Result *result, const Export *what, Error *err)
 
 static RunStatus write_obj(Result *result, const Export *what, Error *err)
 {
-    return export_frame(result, what->how.frame, what->output, err);
+    return export_file_obj(result, what->how.frame, what->output, err);
 }
 
 static RunStatus write_ply(Result *result, const Export *what, Error *err)
