@@ -80,16 +80,16 @@ static bool check_source(Result *result, const char *input, const char *output, 
 
 /* ---- Formats ---- */
 
-/* A file beside the one that was asked for. */
-typedef struct Further {
+/* A result, and the file that it is. */
+typedef struct Source {
     Result *result;
     const char *input;
-} Further;
+} Source;
 
-static bool check_further(void *self, const char *path, Error *err)
+static bool allows_further(const void *self, const char *path, Error *err)
 {
-    const Further *further = self;
-    return check_source(further->result, further->input, path, err) && replace_check(path, err);
+    const Source *source = self;
+    return check_source(source->result, source->input, path, err) && replace_check(path, err);
 }
 
 static RunStatus export_probes(Result *result, const char *path, Error *err)
@@ -141,13 +141,14 @@ static RunStatus write_glb(Result *result, const Export *what, Error *err)
 static RunStatus write_parts(Result *result, const Export *what, Error *err)
 {
     PartsDef def = {what->how.frame, what->levels, what->per != 0};
-    return export_file_parts(result, &def, what->output, check_further, &(Further){result, what->input}, err);
+    FurtherFiles further = {allows_further, &(Source){result, what->input}};
+    return export_file_parts(result, &def, what->output, further, err);
 }
 
 static RunStatus write_drawing(Result *result, const Export *what, Error *err)
 {
-    return export_drawing(result, what->language, what->split, what->output, check_further,
-                          &(Further){result, what->input}, err);
+    FurtherFiles further = {allows_further, &(Source){result, what->input}};
+    return export_drawing(result, what->language, what->split, what->output, further, err);
 }
 
 /* The options that say what of a result, and how. */
