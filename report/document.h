@@ -17,7 +17,7 @@ typedef struct Document Document;
 Document *document_create(void);
 void document_destroy(Document *document);
 
-/* key: NULL within a list. */
+/* What is added stands in the innermost object or list that is open. key: NULL within a list. */
 void document_open(Document *document, const char *key, char bracket); /* '{' or '[' */
 void document_close(Document *document);
 void document_text(Document *document, const char *key, const char *text); /* NULL: null */
