@@ -3,7 +3,7 @@
 #   ./do setup            install the Debian packages that slender needs
 #   ./do build            Release build in build/
 #   ./do run SCENE ..     build, then run a scene (options: build/slender run --help)
-#   ./do test [NAME]      build, then run all tests (or those whose name matches)
+#   ./do test [NAME ..]   build, then run all tests (or those whose name matches one)
 #   ./do bench [NAME ..]  build, then measure (bench/README.md)
 #   ./do verify [NAME ..] build, then run published cases (docs/verification.md, which all of them rewrite)
 #   ./do deb              a Debian package in build-deb/, for any processor of this kind (docs/packages.md)
@@ -76,7 +76,8 @@ verify)
 test)
     build
     (setup $tools) || echo "tests that need them are skipped"
-    ctest --test-dir build --output-on-failure ${1:+-R "$1"}
+    names=$(IFS='|'; echo "$*")
+    ctest --test-dir build --output-on-failure ${names:+-R "$names"}
     ;;
 wheel)
     # shellcheck disable=SC2086

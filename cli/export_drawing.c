@@ -7,8 +7,6 @@
 #include "spline/drawn.h"
 #include <string.h>
 
-enum { FILES_MOST = 100 };
-
 bool drawing_split_take(void *self, const char *text)
 {
     DrawingSplit *split = self;
@@ -77,37 +75,35 @@ static void say_part(const char *path, const Plot *plot, const Plotter *plotter)
 }
 
 static RunStatus write_parts(const Drawn *drawn, const PlotParts *parts, const char *language,
-                             const char *path, bool (*check)(void *self, const char *path, Error *err),
-                             void *self, Error *err)
+                             const char *path, FurtherFiles further, Error *err)
 {
     bool ok = parts->count > 0 || error_set(err, "the drawing has no strokes to --split");
-    if (parts->count > FILES_MOST) {
+    if (parts->count > FURTHER_FILES_MOST) {
         error_set(err, "--split would make %d files, and %d are the most: say more ink for each",
-                  parts->count, FILES_MOST);
+                  parts->count, FURTHER_FILES_MOST);
         return RUN_USAGE;
     }
-    for (int pass = 0; pass < 2; pass++) /* no file is written unless all may be */
-        for (int k = 0; ok && k < parts->count; k++) {
-            char *name = path_numbered(path, k + 1);
-            ok = pass ? drawn_write_plot(drawn, &parts->plots[k], language, name, err)
-                      : check(self, name, err);
-            if (ok && pass) say_part(name, &parts->plots[k], &drawn->plotter);
-            mem_free(name);
-        }
+    ok = ok && further_files_allow(further, path, parts->count, err);
+    for (int k = 0; ok && k < parts->count; k++) {
+        char *name = path_numbered(path, k + 1);
+        ok = drawn_write_plot(drawn, &parts->plots[k], language, name, err);
+        if (ok) say_part(name, &parts->plots[k], &drawn->plotter);
+        mem_free(name);
+    }
     return ok ? RUN_DONE : RUN_CANNOT_WRITE;
 }
 
 static RunStatus write_split(const Drawn *drawn, const char *language, DrawingSplit split, const char *path,
-                             bool (*check)(void *self, const char *path, Error *err), void *self, Error *err)
+                             FurtherFiles further, Error *err)
 {
     PlotParts parts = split.pens ? plot_split_pens(&drawn->plot) : plot_split_ink(&drawn->plot, split.ink);
-    RunStatus status = write_parts(drawn, &parts, language, path, check, self, err);
+    RunStatus status = write_parts(drawn, &parts, language, path, further, err);
     plot_parts_clear(&parts);
     return status;
 }
 
 RunStatus export_drawing(Result *result, const char *language, DrawingSplit split, const char *path,
-                         bool (*check)(void *self, const char *path, Error *err), void *self, Error *err)
+                         FurtherFiles further, Error *err)
 {
     Drawn drawn = {0};
     const char *usual = usual_language(path);
@@ -125,7 +121,7 @@ RunStatus export_drawing(Result *result, const char *language, DrawingSplit spli
     else if (!drawn_check_language(&drawn, language, err) || !check_ending(language, usual, path, err))
         status = RUN_USAGE;
     else if (split.pens || split.ink > 0)
-        status = write_split(&drawn, language, split, path, check, self, err);
+        status = write_split(&drawn, language, split, path, further, err);
     else if (drawn_write_plot(&drawn, &drawn.plot, language, path, err))
         status = RUN_DONE;
     drawn_clear(&drawn);

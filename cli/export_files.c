@@ -1,10 +1,20 @@
 #include "cli/export_files.h"
 #include "base/memory.h"
 #include "cli/say.h"
+#include "export/mesh.h"
 #include "io/path.h"
 #include "io/safe_file.h"
 
-enum { FILES_MOST = 100 };
+bool further_files_allow(FurtherFiles files, const char *path, int count, Error *err)
+{
+    bool ok = true;
+    for (int k = 1; ok && k <= count; k++) {
+        char *name = path_numbered(path, k);
+        ok = files.allows(files.self, name, err);
+        mem_free(name);
+    }
+    return ok;
+}
 
 /* Writes what was made, if it was, and clears it. */
 static RunStatus write_made(bool made, Bytes *bytes, const char *path, Error *err)
@@ -26,6 +36,22 @@ RunStatus export_file_ply(Result *result, int frame, const char *path, Error *er
 {
     Bytes bytes = {0};
     return write_made(export_ply(result, frame, &bytes, err), &bytes, path, err);
+}
+
+RunStatus export_file_groups(Result *result, const char *path, Error *err)
+{
+    Bytes bytes = {0};
+    return write_made(export_groups(result, &bytes, err), &bytes, path, err);
+}
+
+RunStatus export_file_obj(Result *result, int frame, const char *path, Error *err)
+{
+    MeshFile file;
+    RunStatus status = RUN_REFUSED;
+    if (export_mesh_read(result, frame, &file, err))
+        status = mesh_file_write_obj(path, &file, err) ? RUN_DONE : RUN_CANNOT_WRITE;
+    mesh_file_clear(&file);
+    return status;
 }
 
 RunStatus export_file_npz(Result *result, const char *path, Error *err)
@@ -59,34 +85,31 @@ static RunStatus write_stl(const Part *part, const char *path, Error *err)
     return status;
 }
 
-static RunStatus write_stls(const Parts *parts, const char *path,
-                            bool (*check)(void *self, const char *path, Error *err), void *self, Error *err)
+static RunStatus write_stls(const Parts *parts, const char *path, FurtherFiles further, Error *err)
 {
-    if (parts->count > FILES_MOST) {
+    if (parts->count > FURTHER_FILES_MOST) {
         error_set(err, "it would be %d files, and %d are the most: a .3mf has all parts in one", parts->count,
-                  FILES_MOST);
+                  FURTHER_FILES_MOST);
         return RUN_CANNOT_WRITE;
     }
-    RunStatus status = RUN_DONE;
-    for (int pass = 0; pass < 2; pass++) /* no file is written unless all may be */
-        for (int k = 0; status == RUN_DONE && k < parts->count; k++) {
-            char *name = path_numbered(path, k + 1);
-            if (!pass && !check(self, name, err)) status = RUN_CANNOT_WRITE;
-            if (pass) status = write_stl(&parts->list[k], name, err);
-            mem_free(name);
-        }
+    RunStatus status = further_files_allow(further, path, parts->count, err) ? RUN_DONE : RUN_CANNOT_WRITE;
+    for (int k = 0; status == RUN_DONE && k < parts->count; k++) {
+        char *name = path_numbered(path, k + 1);
+        status = write_stl(&parts->list[k], name, err);
+        mem_free(name);
+    }
     return status;
 }
 
-RunStatus export_file_parts(Result *result, const PartsDef *def, const char *path,
-                            bool (*check)(void *self, const char *path, Error *err), void *self, Error *err)
+RunStatus export_file_parts(Result *result, const PartsDef *def, const char *path, FurtherFiles further,
+                            Error *err)
 {
     Parts parts;
     RunStatus status = parts_make(result, def, &parts, err) ? RUN_DONE : RUN_REFUSED;
     if (status == RUN_DONE && path_has_ending(path, ".3mf"))
         status = write_3mf(&parts, path, err);
     else if (status == RUN_DONE && (def->levels || def->groups))
-        status = write_stls(&parts, path, check, self, err);
+        status = write_stls(&parts, path, further, err);
     else if (status == RUN_DONE)
         status = write_stl(&parts.list[0], path, err);
     parts_clear(&parts);

@@ -3,7 +3,6 @@
 #include "base/plain.h"
 #include "cli/export_drawing.h"
 #include "cli/export_files.h"
-#include "cli/export_groups.h"
 #include "cli/verb.h"
 #include "io/path.h"
 #include "io/replace.h"
@@ -81,16 +80,16 @@ static bool check_source(Result *result, const char *input, const char *output, 
 
 /* ---- Formats ---- */
 
-/* A file beside the one that was asked for. */
-typedef struct Further {
+/* A result, and the file that it is. */
+typedef struct Source {
     Result *result;
     const char *input;
-} Further;
+} Source;
 
-static bool check_further(void *self, const char *path, Error *err)
+static bool allows_further(const void *self, const char *path, Error *err)
 {
-    const Further *further = self;
-    return check_source(further->result, further->input, path, err) && replace_check(path, err);
+    const Source *source = self;
+    return check_source(source->result, source->input, path, err) && replace_check(path, err);
 }
 
 static RunStatus export_probes(Result *result, const char *path, Error *err)
@@ -110,7 +109,7 @@ static RunStatus export_probes(Result *result, const char *path, Error *err)
 
 static RunStatus write_numbers(Result *result, const Export *what, Error *err)
 {
-    if (what->per) return export_groups(result, what->output, err);
+    if (what->per) return export_file_groups(result, what->output, err);
     if (what->probes) return export_probes(result, what->output, err);
     if (what->dataset) return export_dataset(result, what->dataset, what->output, err);
     error_set(err, "%s: which numbers? --dataset names them; slender info lists what there is", what->output);
@@ -124,7 +123,7 @@ static RunStatus write_npz(Result *result, const Export *what, Error *err)
 
 static RunStatus write_obj(Result *result, const Export *what, Error *err)
 {
-    return export_frame(result, what->how.frame, what->output, err);
+    return export_file_obj(result, what->how.frame, what->output, err);
 }
 
 static RunStatus write_ply(Result *result, const Export *what, Error *err)
@@ -142,13 +141,14 @@ static RunStatus write_glb(Result *result, const Export *what, Error *err)
 static RunStatus write_parts(Result *result, const Export *what, Error *err)
 {
     PartsDef def = {what->how.frame, what->levels, what->per != 0};
-    return export_file_parts(result, &def, what->output, check_further, &(Further){result, what->input}, err);
+    FurtherFiles further = {allows_further, &(Source){result, what->input}};
+    return export_file_parts(result, &def, what->output, further, err);
 }
 
 static RunStatus write_drawing(Result *result, const Export *what, Error *err)
 {
-    return export_drawing(result, what->language, what->split, what->output, check_further,
-                          &(Further){result, what->input}, err);
+    FurtherFiles further = {allows_further, &(Source){result, what->input}};
+    return export_drawing(result, what->language, what->split, what->output, further, err);
 }
 
 /* The options that say what of a result, and how. */

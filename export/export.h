@@ -22,5 +22,9 @@ bool export_glb(Result *result, const ExportDef *def, Bytes *file, Error *err);
 /* PLY 1.0, binary: the mesh at a frame (-1: the final state), with the frame's numbers on points and faces. */
 bool export_ply(Result *result, int frame, Bytes *file, Error *err);
 
+/* CSV: a row for each named group of faces or tetrahedra that is magnetised, and one for what is in none: what stands at the
+ * magnetiser. The mean magnetisation, and thickness and modulus where a design has looked for them or they vary. */
+bool export_groups(Result *result, Bytes *file, Error *err);
+
 /* NumPy's .npz: every dataset of /slender by its path, and the frames of /VTKHDF with a dimension of time. */
 bool export_npz(Result *result, Bytes *file, Error *err);

@@ -82,6 +82,16 @@ static bool same_side(const Side *a, const Side *b)
     return !memcmp(a->key, b->key, sizeof a->key);
 }
 
+/* Has another element of its part the side, too? They stand beside each other. */
+static bool is_shared(const Side *sides, int count, int s, const int *part)
+{
+    for (int other = s - 1; other <= s + 1; other += 2)
+        if (other >= 0 && other < count && same_side(&sides[s], &sides[other]) &&
+            part[sides[other].element] == part[sides[s].element])
+            return true;
+    return false;
+}
+
 /* ---- Shells ---- */
 
 /* Corners of faces that are one point: sets of [3 * face + corner]. */
@@ -185,10 +195,7 @@ static void make_shells(const MeshFile *mesh, const double *thickness, const int
     }
     for (int s = 0; s < corners; s++) {
         int f = sides[s].element, a = 3 * f + (sides[s].k + 1) % 3, b = 3 * f + (sides[s].k + 2) % 3;
-        bool shared =
-            (s > 0 && same_side(&sides[s], &sides[s - 1]) && part[sides[s - 1].element] == part[f]) ||
-            (s + 1 < corners && same_side(&sides[s], &sides[s + 1]) && part[sides[s + 1].element] == part[f]);
-        if (!shared) add_wall(&parts->list[part[f]], upper, lower, a, b);
+        if (!is_shared(sides, corners, s, part)) add_wall(&parts->list[part[f]], upper, lower, a, b);
     }
     mem_free(sides);
     mem_free(whole);
@@ -237,13 +244,9 @@ static void make_solids(const MeshFile *mesh, const int *part, Parts *parts)
     int *of = mem_alloc((size_t)mesh->vertex_count, sizeof *of);
     for (int p = 0; p < parts->count; p++) {
         memset(of, 0, (size_t)mesh->vertex_count * sizeof *of);
-        for (int s = 0; s < count; s++) {
-            if (part[sides[s].element] != p) continue;
-            bool shared =
-                (s > 0 && same_side(&sides[s], &sides[s - 1]) && part[sides[s - 1].element] == p) ||
-                (s + 1 < count && same_side(&sides[s], &sides[s + 1]) && part[sides[s + 1].element] == p);
-            if (!shared) add_side(mesh, &sides[s], &parts->list[p], of);
-        }
+        for (int s = 0; s < count; s++)
+            if (part[sides[s].element] == p && !is_shared(sides, count, s, part))
+                add_side(mesh, &sides[s], &parts->list[p], of);
     }
     mem_free(sides);
     mem_free(of);

@@ -2,7 +2,7 @@
  * which may have tetrahedra, too; docs/meshes.md says what is read of each.
  *
  * Reads what the file says, with the line of every face, and judges only the file (syntax, numbers, indices
- * out of range); whether the mesh is a valid shell is for shell/mesh.h. Polygons become triangles
+ * out of range); whether the mesh is a valid shell is for surface/mesh.h. Polygons become triangles
  * (polygon.h). Coordinates in metres unless the scene gives a unit. */
 #pragma once
 #include "base/error.h"

@@ -7,7 +7,8 @@
 
 static void write_table(Text *text, const YamlTable *table, const void *scene, int depth);
 
-bool row_is_given(const YamlField *row, const void *scene)
+/* Is the value there, or as it is when absent? */
+static bool is_given(const YamlField *row, const void *scene)
 {
     const void *member = row_member(row, scene);
     switch (row->kind) {
@@ -159,7 +160,7 @@ static void write_table(Text *text, const YamlTable *table, const void *scene, i
 {
     int written = 0;
     for (const YamlField *row = table->fields; row->key; row++) {
-        if (!row_is_given(row, scene)) continue;
+        if (!is_given(row, scene)) continue;
         write_row(text, row, scene, depth);
         written++;
     }
@@ -172,7 +173,7 @@ char *row_text(const YamlField *row, const void *scene)
 {
     Text text = {0};
     text_add(&text, "%s", "");
-    if (row_is_given(row, scene)) write_row(&text, row, scene, 0);
+    if (is_given(row, scene)) write_row(&text, row, scene, 0);
     return text.text;
 }
 
@@ -215,7 +216,7 @@ static void visit_row(const Visit *visit, const YamlField *row, const void *scen
 static void visit_table(const Visit *visit, const YamlTable *table, const void *scene, const char *path)
 {
     for (const YamlField *row = table->fields; row->key; row++) {
-        if (!row_is_given(row, scene)) continue;
+        if (!is_given(row, scene)) continue;
         char *key = mem_format("%s%s%s", path, *path ? "." : "", row->key);
         visit_row(visit, row, scene, key);
         mem_free(key);

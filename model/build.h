@@ -122,9 +122,6 @@ bool build_pose(const Build *b, Key at, const PoseScene *scene, BuildFits *fits,
 bool build_flux(const Build *b, Key at, const FluxScene *list, int count, double *uniform,
                 FluxFields *fields);
 
-/* Three numbers in time; NULL: nothing. The columns of a file as in table_read. */
-bool build_path(const Build *b, Key at, const PathScene *scene, const char *columns, Timed *path);
-
 /* How something moves and turns, the scene's keys `move` and `turn` below `at`; its pivot stays. */
 bool build_rigid_move(const Build *b, Key at, const PathScene *move, const PathScene *turn,
                       RigidMove *motion);

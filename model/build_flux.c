@@ -108,7 +108,8 @@ static bool check_path(const Build *b, Key at, const Timed *path)
     return true;
 }
 
-bool build_path(const Build *b, Key at, const PathScene *scene, const char *columns, Timed *path)
+/* Three numbers in time; NULL: nothing. The columns of a file as in table_read. */
+static bool read_path(const Build *b, Key at, const PathScene *scene, const char *columns, Timed *path)
 {
     *path = (Timed){.first = TIMED_ALONE};
     if (!scene) return true;
@@ -119,8 +120,8 @@ bool build_path(const Build *b, Key at, const PathScene *scene, const char *colu
 
 bool build_rigid_move(const Build *b, Key at, const PathScene *move, const PathScene *turn, RigidMove *motion)
 {
-    bool ok = build_path(b, key("%s.move", at.text), move, "t [s], x [m], y [m], z [m]", &motion->move);
-    return build_path(b, key("%s.turn", at.text), turn, "t [s], x [rad], y [rad], z [rad]", &motion->turn) &&
+    bool ok = read_path(b, key("%s.move", at.text), move, "t [s], x [m], y [m], z [m]", &motion->move);
+    return read_path(b, key("%s.turn", at.text), turn, "t [s], x [rad], y [rad], z [rad]", &motion->turn) &&
            ok;
 }
 

@@ -13,9 +13,6 @@ typedef struct Best {
     OptimiserInfo info;
 } Best;
 
-Best best_create(const Problem *problem, const OptimiserDef *def);
-void best_destroy(Best *best);
-
 /* Evaluates; keeps and accepts the point if it is the best so far. */
 double best_evaluate(Best *best, const double *u, double *gradient);
 
@@ -24,9 +21,6 @@ bool best_is_done(Best *best);
 
 /* Is an unknown at a bound, and drawn (by -gradient) beyond it? */
 bool best_is_held(const Problem *problem, int i, double at, double pull);
-
-/* Norm of the gradient without what pushes against the bounds. */
-double best_projected_norm(const Problem *problem, const double *u, const double *gradient);
 
 /* The three methods, from u. */
 void mma_run(Best *best, double *u);

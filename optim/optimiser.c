@@ -18,7 +18,7 @@ const char *optimiser_status_name(OptimiserStatus status)
     return names[status];
 }
 
-Best best_create(const Problem *problem, const OptimiserDef *def)
+static Best create(const Problem *problem, const OptimiserDef *def)
 {
     size_t n = (size_t)problem->n;
     return (Best){.problem = problem,
@@ -29,7 +29,7 @@ Best best_create(const Problem *problem, const OptimiserDef *def)
                   .info = {.status = OPTIMISER_FAILED, .objective = INFINITY}};
 }
 
-void best_destroy(Best *best)
+static void destroy(Best *best)
 {
     mem_free(best->u);
     mem_free(best->gradient);
@@ -40,7 +40,8 @@ bool best_is_held(const Problem *problem, int i, double at, double pull)
     return (at <= problem->lower[i] && pull < 0) || (at >= problem->upper[i] && pull > 0);
 }
 
-double best_projected_norm(const Problem *problem, const double *u, const double *gradient)
+/* Norm of the gradient without what pushes against the bounds. */
+static double projected_norm(const Problem *problem, const double *u, const double *gradient)
 {
     double sum = 0;
     for (int i = 0; i < problem->n; i++)
@@ -65,7 +66,7 @@ double best_evaluate(Best *best, const double *u, double *gradient)
         best->objective = best->info.objective = objective;
         memcpy(best->u, u, (size_t)problem->n * sizeof *u);
         memcpy(best->gradient, gradient, (size_t)problem->n * sizeof *gradient);
-        best->info.gradient_norm = best_projected_norm(problem, u, gradient);
+        best->info.gradient_norm = projected_norm(problem, u, gradient);
         if (best->info.first_norm == 0) best->info.first_norm = best->info.gradient_norm;
         if (!best->succeeded) best->stationary = optimiser_is_zero(gradient, problem->n, objective);
         best->succeeded = true;
@@ -115,7 +116,7 @@ static bool is_rounding(const Best *best)
 
 OptimiserInfo optimise(const Problem *problem, const OptimiserDef *def, double *u)
 {
-    Best best = best_create(problem, def);
+    Best best = create(problem, def);
     for (int i = 0; i < problem->n; i++) u[i] = fmin(fmax(u[i], problem->lower[i]), problem->upper[i]);
     runs[def->method](&best, u);
     bool ended = best.info.status == OPTIMISER_STALLED || best.info.status == OPTIMISER_MAX_ITERATIONS;
@@ -125,6 +126,6 @@ OptimiserInfo optimise(const Problem *problem, const OptimiserDef *def, double *
         info.status = OPTIMISER_FAILED;
     else
         memcpy(u, best.u, (size_t)problem->n * sizeof *u);
-    best_destroy(&best);
+    destroy(&best);
     return info;
 }

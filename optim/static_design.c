@@ -292,10 +292,3 @@ const double *static_design_params(const StaticDesign *sd, int load_case)
 {
     return sd->work[load_case].best_p;
 }
-
-long static_design_factorizations(const StaticDesign *sd)
-{
-    long count = 0;
-    for (int c = 0; c < sd->design->case_count; c++) count += system_info(sd->cases[c].sys).factorizations;
-    return count;
-}

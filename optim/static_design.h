@@ -65,6 +65,3 @@ void static_design_product(StaticDesign *sd, const double *v, double soft, doubl
 /* dF/dp[params] of one case at the best design, weighted, in the blocks' own units; p of it may be had too. */
 void static_design_param_gradient(StaticDesign *sd, int load_case, double *dp);
 const double *static_design_params(const StaticDesign *sd, int load_case);
-
-/* Factorisations so far, all cases. */
-long static_design_factorizations(const StaticDesign *sd);

@@ -2,7 +2,7 @@
 
     build/slender schema | python3 python/make_scene_types.py > python/slender/scene_types.py
 
-tests/test_types.py says so where it is no longer what the schema gives."""
+tests/test_package.py says so where it is no longer what the schema gives."""
 import json
 import re
 import sys

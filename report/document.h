@@ -1,11 +1,13 @@
 /* document.h - what a report tells its page: JSON, in which arrays of many numbers are references to one block of bytes
- * that is compressed at the end. page/data.js reads it.
+ * that is compressed at the end. page/10_data.js reads it.
  *
- *     {"at": first byte, "type": "i32" | "q8" | "q16", "rows": R, "width": W, "stride": .., "low": .., "high": .., "log": true | false}
+ *     {"at": first byte, "type": "i32" | "q8" | "q16", "rows": R, "width": W, "stride": S,
+ *      "low": .., "high": .., "log": true | false}
  *
- * is R x W numbers. q8 and q16 are quantised: low + (high - low) q / (2^bits - 2), with log low (high / low)^(q / (2^bits - 2)), the last q means NaN. Every number is kept as its
- * difference from the same one of the row before, in the first row from the one `stride` before it, modulo 2^bits; the lowest
- * bytes of all come first, then the next ones. So a motion takes a byte or two a number before it is compressed, and half after. */
+ * is R x W numbers. q8 and q16 are quantised to whole numbers q of 8 or 16 bits: they mean low + (high - low) q / (2^bits - 2),
+ * with log low (high / low)^(q / (2^bits - 2)), and NaN where q is the largest, 2^bits - 1. Every q is kept as its difference
+ * from the same one of the row before, in the first row from the one `stride` before it, modulo 2^bits; the lowest bytes of
+ * all come first, then the next ones. So a motion takes a byte or two a number before it is compressed, and half after. */
 #pragma once
 #include <stdbool.h>
 #include <stddef.h>
@@ -15,7 +17,7 @@ typedef struct Document Document;
 Document *document_create(void);
 void document_destroy(Document *document);
 
-/* key: NULL within a list. */
+/* What is added stands in the innermost object or list that is open. key: NULL within a list. */
 void document_open(Document *document, const char *key, char bracket); /* '{' or '[' */
 void document_close(Document *document);
 void document_text(Document *document, const char *key, const char *text); /* NULL: null */

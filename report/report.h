@@ -10,6 +10,7 @@ typedef struct ReportDef {
     int frames; /* of each result, evenly spread, the first and the last among them; 0: as many as some 10 MB hold */
 } ReportDef;
 
-/* Writes the page of one result, or of several beside each other. */
+/* Writes the page of one result, or of several beside each other. SHOW_HAS_NOT with a sentence where one of them cannot be
+ * read or has nothing to show, SHOW_CANNOT_WRITE with one where the file cannot be written: it is then as it was. */
 ShowStatus report_write(const char *const *results, int count, const char *path, const ReportDef *def,
                         Error *err);

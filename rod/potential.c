@@ -18,7 +18,8 @@ RodPotential *rod_potential_create(Formula *formula, double length)
     return potential;
 }
 
-void rod_potential_eval(const RodPotential *potential, RodPlace at, FormulaJet *jet)
+/* As rod_potential_known; NaN where u is not finite. */
+static void eval_jet(const RodPotential *potential, RodPlace at, FormulaJet *jet)
 {
     double numbers[NUMBERS] = {at.time, at.s, at.L};
     formula_jet(&potential->of, at.x, numbers, jet);
@@ -32,7 +33,7 @@ static bool find_value(const RodPotential *potential, RodPlace at, double *u, Er
 
 bool rod_potential_known(const RodPotential *potential, RodPlace at, FormulaJet *jet, Error *err)
 {
-    rod_potential_eval(potential, at, jet);
+    eval_jet(potential, at, jet);
     if (isfinite(jet->value[0])) return true;
     double u;
     return find_value(potential, at, &u, err) &&
@@ -86,7 +87,7 @@ static FormulaJet jet_at(const RodTerm *term, int node, RodPlace place, const do
     for (int k = 0; k < term->rod->potentials.count; k++) {
         double a = factor[k] * share(term->rod, node);
         if (a == 0) continue;
-        rod_potential_eval(term->rod->potentials.items[k], place, &own);
+        eval_jet(term->rod->potentials.items[k], place, &own);
         sum.value[0] += a * own.value[0];
         for (int i = 0; i < 3; i++) {
             sum.gradient[0][i] += a * own.gradient[0][i];
@@ -139,7 +140,7 @@ static void potential_param(const void *self, int pack, int lanes, const Point *
         int node = rod_term_node(term, pack, l);
         RodPlace place = place_of(term, node, at, x, l);
         for (int k = 0; k < rod->potentials.count; k++) {
-            rod_potential_eval(rod->potentials.items[k], place, &jet);
+            eval_jet(rod->potentials.items[k], place, &jet);
             double sum = 0;
             for (int i = 0; i < 3; i++) sum += w[i][l] * jet.gradient[0][i];
             dp[rod->potential_scale + k] += share(rod, node) * sum;

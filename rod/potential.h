@@ -20,11 +20,8 @@ extern const char *const rod_place_variables[];
  * formula. */
 RodPotential *rod_potential_create(Formula *formula, double length);
 
-/* u with its derivatives in space, in row 0. Re-entrant; where u is not finite, there or at one of the places around it that
- * tell the derivatives, it is NaN. */
-void rod_potential_eval(const RodPotential *potential, RodPlace at, FormulaJet *jet);
-
-/* The same; false and a sentence where it is not finite. */
+/* u with its derivatives in space, in row 0; false and a sentence where it is not finite, there or at one of the places around
+ * it that tell the derivatives. Re-entrant. */
 bool rod_potential_known(const RodPotential *potential, RodPlace at, FormulaJet *jet, Error *err);
 
 /* Potentials around a rod, each with a factor in its block potential_scale. */

@@ -162,10 +162,6 @@ const Term *system_term(const System *sys, int t)
 {
     return &sys->entries[t].term;
 }
-int system_bulk_count(const System *sys)
-{
-    return sys->bulk_count;
-}
 const Bulk *system_bulk(const System *sys, int b)
 {
     return &sys->bulks[b];

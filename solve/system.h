@@ -66,7 +66,6 @@ const Term *system_term(const System *sys, int t);
 /* The point as that term sees it: of memory its own part. */
 Point system_term_point(const System *sys, int t, const Point *at);
 
-int system_bulk_count(const System *sys);
 const Bulk *system_bulk(const System *sys, int b);
 
 /* Largest |d_i| over the class's size, over all classes: the length of a step in the body's own measure. */

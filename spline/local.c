@@ -269,8 +269,3 @@ void local_destroy(Local *local)
     mem_free(local->q);
     mem_free(local);
 }
-
-const double *local_x(const Local *local)
-{
-    return local->x;
-}

@@ -19,6 +19,3 @@ void local_reject(Local *local);
 
 /* Sums the ink anew, in which round-off has gathered. */
 void local_renew(Local *local);
-
-/* Dofs of all strokes. */
-const double *local_x(const Local *local);

@@ -3,7 +3,7 @@
 #include "base/memory.h"
 #include "io/canvas.h"
 
-const double PREVIEW_TRUE = 72 / 25.4;
+static const double TRUE_SCALE = 72 / 25.4;   /* points a millimetre: the paper's own size */
 static const Color edge = {0.6, 0.6, 0.6, 1}; /* between the two papers */
 
 void preview_draw_target(Canvas *canvas, const SplinePage *page, const SplineGrid *target, Vec2 origin,
@@ -71,7 +71,7 @@ void preview_draw(Canvas *canvas, const Plot *plot, Vec2 origin, double scale)
 bool spline_preview(const char *path, const Plot *plot, const SplinePage *page, const SplineGrid *target,
                     int width, Error *err)
 {
-    double scale = PREVIEW_TRUE, paper[2] = {scale * plot->paper[0], scale * plot->paper[1]};
+    double scale = TRUE_SCALE, paper[2] = {scale * plot->paper[0], scale * plot->paper[1]};
     Canvas *canvas = canvas_create(path, target ? 2 * paper[0] : paper[0], paper[1], width / paper[0], err);
     if (!canvas) return false;
     if (target) {

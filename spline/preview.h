@@ -13,7 +13,6 @@ bool spline_preview(const char *path, const Plot *plot, const SplinePage *page, 
                     int width, Error *err);
 
 /* What of it a page of other things shows: with the paper's corner at the origin and so many points a millimetre. */
-extern const double PREVIEW_TRUE; /* of the paper's own size */
 void preview_draw(Canvas *canvas, const Plot *plot, Vec2 origin, double scale);
 void preview_draw_target(Canvas *canvas, const SplinePage *page, const SplineGrid *target, Vec2 origin,
                          double scale);

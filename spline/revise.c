@@ -89,7 +89,10 @@ int spline_remove_strokes(const SplineTarget *target, const RelaxDef *def, int l
     return strokes->count ? revise(target, def, strokes->count, least, strokes) : 0;
 }
 
-int spline_insert_strokes(const SplineTarget *target, const RelaxDef *def, const Strokes *candidates,
+/* Puts in those of the candidates with which the energy is less, and at least so many, in the same manner.
+ * (In a relaxed drawing that lacks ink everywhere there may be none: the others must make room first.)
+ * Returns how many. */
+static int insert_strokes(const SplineTarget *target, const RelaxDef *def, const Strokes *candidates,
                           int least, Strokes *strokes)
 {
     int before = strokes->count;
@@ -115,7 +118,7 @@ bool spline_refine_once(const SplineTarget *target, const RelaxDef *def, int seg
     Strokes trial = strokes_copy(strokes), candidates = {0};
     int changed = spline_remove_strokes(target, def, surplus(target, def, strokes), &trial);
     spline_propose_strokes(target, def, &trial, segments, &candidates);
-    changed += spline_insert_strokes(target, def, &candidates, candidates.count, &trial);
+    changed += insert_strokes(target, def, &candidates, candidates.count, &trial);
     strokes_clear(&candidates);
     RelaxInfo info = *best;
     if (changed) info = spline_relax(target, def, &trial, observer);

@@ -10,12 +10,6 @@
  * each judged anew when its turn comes. Returns how many went. */
 int spline_remove_strokes(const SplineTarget *target, const RelaxDef *def, int least, Strokes *strokes);
 
-/* Puts in those of the candidates with which the energy is less, and at least so many, in the same manner.
- * (In a relaxed drawing that lacks ink everywhere there may be none: the others must make room first.)
- * Returns how many. */
-int spline_insert_strokes(const SplineTarget *target, const RelaxDef *def, const Strokes *candidates,
-                          int least, Strokes *strokes);
-
 /* Appends candidates: strokes of up to so many segments of the rest length (RelaxDef) along the target's
  * directions, where within a square as wide as a stroke is long more than half a stroke of ink is missing; no
  * two in one such square. */

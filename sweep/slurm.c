@@ -146,21 +146,23 @@ static char *task_list(const Submission *s, const bool *todo, int offset, int *c
 
 static bool submit_array(const Submission *s, const char *job, const char *tasks, int offset, Error *err)
 {
-    enum { OPTIONS_MAX = 64 };
-    const char *arguments[OPTIONS_MAX + 8];
-    int count = 0;
+    enum { OWN = 7 }; /* arguments, and the NULL that ends them */
+    size_t given = 0, count = 0;
+    while (s->def->options[given]) given++;
+    const char **arguments = mem_alloc(given + OWN, sizeof *arguments);
     char *name = mem_format("--job-name=%s+%d", s->name, offset), *array = mem_format("--array=%s", tasks),
          *output = mem_format("--output=%s/slurm-%%A.log", s->folder), *first = mem_format("%d", offset),
          *said;
     arguments[count++] = "sbatch";
     arguments[count++] = output;
-    for (const char *const *o = s->def->options; *o && count < OPTIONS_MAX; o++) arguments[count++] = *o;
+    for (size_t k = 0; k < given; k++) arguments[count++] = s->def->options[k];
     arguments[count++] = name;
     arguments[count++] = array;
     arguments[count++] = job;
     arguments[count++] = first;
     arguments[count] = NULL;
     bool ok = ask(s, arguments, &said, err);
+    mem_free(arguments);
     mem_free(said);
     mem_free(name);
     mem_free(array);

@@ -178,19 +178,29 @@ class Printing(unittest.TestCase):
         export("uneven", "uneven.stl")
         self.check(read_stl("uneven.stl"), (area(1e3 * z["rest"], z["faces"]) * 1e3 * z["design/thickness"]).sum(), 1e-5)
 
-    def test_fold_keeps_its_thickness(self):
+    def roof(self, top):
+        """Of 2 mm, its ridge so many mm above its sides, which are 20 mm apart: points, faces, and the ridge's heights."""
         with open("roof.obj", "w") as file:
-            for x, height in ((-0.01, 0), (0, 0.01), (0.01, 0)):
+            for x, height in ((-0.01, 0), (0, 1e-3 * top), (0.01, 0)):
                 file.write("".join(f"v {x} {y} {height}\n" for y in (0, 0.005, 0.01)))
             for k in (1, 2, 4, 5):
                 file.write(f"f {k} {k + 3} {k + 4}\nf {k} {k + 4} {k + 1}\n")
-        run("roof", EVALUATE % ("file: roof.obj", "2 mm", "[0, 0, 1e4]"))
-        export("roof", "roof.stl")
+        name = f"roof_{top}"
+        run(name, EVALUATE % ("file: roof.obj", "2 mm", "[0, 0, 1e4]"))
+        export(name, "roof.stl")
         points, faces = read_stl("roof.stl")
+        return points, faces, points[abs(points[:, 0]) < 1e-6][:, 2]
+
+    def test_fold_keeps_its_thickness(self):
+        points, faces, ridge = self.roof(10)
         self.check((points, faces), 2 * 10 * 10 * 2**0.5 * 2, 1e-6)
-        ridge = points[abs(points[:, 0]) < 1e-6][:, 2]  # 1 mm from both faces: sqrt 2 above and below the fold
-        self.assertLess(abs(ridge - 10).max() - 2**0.5, 1e-5)
+        self.assertLess(abs(ridge - 10).max() - 2**0.5, 1e-5)  # 1 mm from both faces: sqrt 2 above and below the fold
         self.assertLess(abs(ridge.max() - ridge.min() - 2 * 2**0.5), 1e-5)
+
+    def test_sharp_fold_is_cut(self):
+        points, faces, ridge = self.roof(30)  # sqrt 10 mm would keep the thickness; twice 1 mm is the most
+        self.assertTrue(is_closed(faces))
+        self.assertLess(abs(abs(ridge - 30) - 2).max(), 1e-5)
 
     def test_slits(self):
         run("slit", EVALUATE % ("shape: kirigami, size: 44 mm, n: 3", "0.5 mm", "[0, 0, 1e4]"))
@@ -344,12 +354,13 @@ class Moving(unittest.TestCase):
         all_times = z["VTKHDF/Steps/Values"]
         self.assertEqual((len(times), times[0]), (4, 0))
         self.assertLess(abs(times[-1] - all_times[-1]), 1e-7)
-        export("moving", "one.glb", "--frame", "3")
-        glb = Glb("one.glb")
-        self.assertNotIn("animations", glb.json)
-        faces = glb.numbers(glb.primitive("body")["indices"]).reshape(-1, 3)
-        points = glb.numbers(glb.primitive("body")["attributes"]["POSITION"])
-        self.assertLess(abs(points[faces] - z["VTKHDF/Points"][3][z["faces"]]).max(), 1e-8)
+        for option, value, frame in (("--frame", "3", 3), ("--frames", "1", -1)):  # of one frame the last
+            export("moving", "one.glb", option, value)
+            glb = Glb("one.glb")
+            self.assertNotIn("animations", glb.json)
+            faces = glb.numbers(glb.primitive("body")["indices"]).reshape(-1, 3)
+            points = glb.numbers(glb.primitive("body")["attributes"]["POSITION"])
+            self.assertLess(abs(points[faces] - z["VTKHDF/Points"][frame][z["faces"]]).max(), 1e-8)
 
     def test_plain_shares_vertices(self):
         export("moving", "plain.glb", "--field", "none")
@@ -505,7 +516,10 @@ class Moving(unittest.TestCase):
         face = np.frombuffer(data[-row.itemsize * len(z["faces"]) :], row)
         cells = z["VTKHDF/CellData/magnetization"][-1][: len(z["cells"]), 0]
         self.assertTrue(np.array_equal(face["magnetization_x"], cells[z["cell_of_face"]]))
-        self.assertIn("cauchy_stress_yz", fields)
+        stress = z["VTKHDF/CellData/cauchy_stress"][-1][z["cell_of_face"]]
+        for column, of in enumerate(("xx", "yy", "zz", "xy", "yz", "xz")):  # docs/result.md
+            self.assertTrue(np.array_equal(face["cauchy_stress_" + of], stress[:, column]))
+        self.assertTrue((stress[:, 4] != stress[:, 5]).any())
 
 
 if __name__ == "__main__":

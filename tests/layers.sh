@@ -25,7 +25,7 @@ for front in $fronts; do
     check "$front" "$physics|optim|model|job|$body|$front"
 done
 check view 'base|io|spline|view'
-check export 'base|io|view|export'
+check export 'base|io|field|view|export'
 check report 'base|io|spline|model|view|report'
 check lib "$physics|optim|model|job|lib|[a-z]*/front"
 check sweep "$physics|optim|model|job|sweep"

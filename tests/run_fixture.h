@@ -47,15 +47,22 @@ static inline Array read_all(Result *result, const char *path)
     return array;
 }
 
-/* What runs leave under that name: for the group's setup and teardown. */
-static inline int remove_run(void **state)
+/* What a run leaves under a name, and what a test may have put beside it. */
+static inline void remove_files(const char *name)
 {
-    (void)state;
-    static const char *const endings[] = {".vtkhdf", ".xdmf", ".run", ".run-lock", "_probes.csv"};
+    static const char *const endings[] = {".vtkhdf", ".xdmf", ".run", ".run-lock", "_probes.csv",
+                                          ".csv",    ".h5",   ".obj", ".html"};
     for (size_t k = 0; k < sizeof endings / sizeof *endings; k++) {
-        char *path = mem_format(NAME "%s", endings[k]);
+        char *path = mem_format("%s%s", name, endings[k]);
         unlink(path);
         mem_free(path);
     }
+}
+
+/* The same of NAME, for the group's setup and teardown. */
+static inline int remove_run(void **state)
+{
+    (void)state;
+    remove_files(NAME);
     return 0;
 }

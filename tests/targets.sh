@@ -60,6 +60,10 @@ is "flap2" "$(line 3 star.csv)" "flap2,1,33761.9,42.4264,45.0000,0.0000,0.0000"
 run star.yaml -o uneven --set 'shell.thickness="y > 0 ? 0.003 : 0.001"' --set 'shell.magnetization=["y > 0 ? 3e4 : 1e4", "0", "0"]' > run.txt 2>&1
 expect 0 "$program" export uneven.vtkhdf -o uneven.csv --per group
 is "hub, by volume" "$(line 2 uneven.csv)" "hub,6,22000,27.646,0.0000,0.0000,0.0000,0.00166667"
+# .. and two across the other four: the mean is nearer to these, the spread the angle to those.
+run star.yaml -o across --set 'shell.magnetization=["y > 0 ? 1e4 : 0", "y > 0 ? 0 : 1e4", "0"]' > run.txt 2>&1
+expect 0 "$program" export across.vtkhdf -o across.csv --per group
+is "hub, spread" "$(line 2 across.csv)" "hub,6,7453.56,9.36642,63.4349,0.0000,63.4349"
 expect 0 "$program" export star.vtkhdf -o star.obj
 is "g lines" "$(grep -c '^g ' star.obj)" 7
 sed 's/shape: hexagram, size: 40 mm, n: 1/file: star.obj/' star.yaml > again.yaml

@@ -54,7 +54,7 @@ static const double places[][3] = {{0.02, 0.015, 0.012},   {0.003, 0.002, 0.012}
                                    {0.016, 0.001, 0.002},  {0, 0.02, 0},          {0.1, 0.2, -0.3},
                                    {-0.01, -0.006, -0.01}, {0.004, 0.003, 0.001}};
 
-/* Of eighth order, as in field/flux_formula.c. */
+/* Of eighth order, as in field/formula_jet.c. */
 static double difference(const double *plus, const double *minus, double h)
 {
     static const double c[] = {4.0 / 5, -1.0 / 5, 4.0 / 105, -1.0 / 280};

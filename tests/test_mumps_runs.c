@@ -86,7 +86,7 @@ int main(void)
         tests[k] = (struct CMUnitTest){trials[k].scene, check_trial, NULL, NULL, (void *)&trials[k]};
     ranks_start();
     if (ranks_serve()) return 0;
-    int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    int failed = cmocka_run_group_tests(tests, NULL, remove_run);
     ranks_end();
     return failed;
 }

@@ -104,6 +104,7 @@ static void test_stuck(void **state)
     def.steps = 4, def.move = move_some;
     RampInfo info = ramp_solve(stuck.sys, &stuck.shell->params, &def, NULL, stuck.p, &stuck.state);
     assert_true(!ramp_reached(info.newton.status) && info.reached >= 0.5 && info.part == info.reached);
+    assert_true(info.reached == 614. / 1024 && info.refused == 8); /* by steps from 1/4 down to step_min */
     ramp_loads(&stuck.shell->params, NULL, stuck.p, info.part, p);
     def = ramp_default();
     info = ramp_solve(there.sys, &there.shell->params, &def, NULL, p, &there.state);

@@ -270,14 +270,15 @@ static void check_group(const Page *page, Result *result, const char *name)
 static void test_targets(void **unused)
 {
     (void)unused;
-    static const char *const settings[] = {"design.iterations=0", "shell.mesh.n=2"};
+    static const char *const settings[] = {"design.iterations=0", "output.every=1", "shell.mesh.n=2"};
     SlenderError trouble;
-    Result *result = run_to(slender_scene_read(SOURCE_DIR "/tests/scene_small.yaml", settings, 2, &trouble),
+    Result *result = run_to(slender_scene_read(SOURCE_DIR "/tests/scene_small.yaml", settings, 3, &trouble),
                             &trouble, false, SLENDER_NOT_CONVERGED);
     Page page = report(0);
     const char *target = after(page.json, "target");
-    assert_true(!strncmp(strchr(after(target, "of"), ']') - 3, "0,1]",
-                         4)); /* the last frames are those of the cases */
+    static const char of[] =
+        "[1,0,1]"; /* the last frames are those of the cases, the others the last case's */
+    assert_int_equal(strncmp(after(target, "of"), of, strlen(of)), 0);
     Unpacked points = unpack(&page, target, "points");
     static const char *const paths[] = {"slender/cases/up/target", "slender/cases/down/target"};
     for (size_t k = 0; k < 2; k++) {
@@ -308,6 +309,31 @@ static void test_targets(void **unused)
     array_clear(&names);
     mem_free(path);
     mem_free(points.values);
+    page_clear(&page);
+    result_close(result);
+}
+
+/* Each obstacle is where it is in the result, in every frame. */
+static void test_obstacles(void **unused)
+{
+    (void)unused;
+    static const char *const settings[] = {"time.steps=6"};
+    Result *result = run_file(SOURCE_DIR "/tests/scene_contact.yaml", settings, 1, false);
+    Page page = report(0);
+    Array poses = read_all(result, "slender/frames/obstacle_pose");
+    const double *pose = poses.data;
+    const char *at = after(page.json, "obstacles");
+    int frames = result_step_count(result);
+    assert_true(frames > 2 && array_count(&poses) == 24 * (size_t)frames);
+    for (int o = 0; o < 2; o++) {
+        char *rest = (char *)(at = after(at, "poses"));
+        for (int k = 0; k < frames; k++)
+            for (int i = 0; i < 12; i++) {
+                double got = strtod(rest + 1, &rest), is = pose[12 * (2 * k + o) + i];
+                assert_true(fabs(got - is) <= 1e-6 * fabs(is));
+            }
+    }
+    array_clear(&poses);
     page_clear(&page);
     result_close(result);
 }
@@ -455,7 +481,8 @@ int main(void)
                                        cmocka_unit_test_teardown(test_targets, nothing_leaks),
                                        cmocka_unit_test_teardown(test_arrows, nothing_leaks),
                                        cmocka_unit_test_teardown(test_no_arrows, nothing_leaks),
+                                       cmocka_unit_test_teardown(test_obstacles, nothing_leaks),
                                        cmocka_unit_test_teardown(test_several, nothing_leaks),
                                        cmocka_unit_test_teardown(test_refused, nothing_leaks)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, NULL, remove_run);
 }

@@ -149,5 +149,5 @@ int main(void)
                                        cmocka_unit_test_teardown(test_log, nothing_leaks),
                                        cmocka_unit_test_teardown(test_indices, nothing_leaks),
                                        cmocka_unit_test_teardown(test_json, nothing_leaks)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, NULL, remove_run);
 }

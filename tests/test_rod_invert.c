@@ -264,6 +264,7 @@ static double strains_off(int elements, bool files, const char *loads)
     array_clear(&strain);
     array_clear(&s);
     result_close(result);
+    remove_files(NAME "_motion");
     return sqrt(sum);
 }
 
@@ -301,5 +302,5 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_input),    cmocka_unit_test(test_held),   cmocka_unit_test(test_held_loads),
         cmocka_unit_test(test_framings), cmocka_unit_test(test_motion), cmocka_unit_test(test_motion_loads)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, NULL, remove_run);
 }

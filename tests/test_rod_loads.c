@@ -285,5 +285,5 @@ int main(void)
         cmocka_unit_test(test_helix),           cmocka_unit_test(test_deflections),
         cmocka_unit_test(test_times),           cmocka_unit_test(test_identify),
         cmocka_unit_test(test_identify_weight), cmocka_unit_test(test_ranges)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, NULL, remove_run);
 }

@@ -230,6 +230,7 @@ static void test_rest_again(void **state)
             mem_free(here);
         }
     }
+    unlink("rest.vtkhdf");
 }
 
 /* The pull at the ends of a chain that long, between places so far apart and one so much higher than the other:
@@ -270,5 +271,5 @@ int main(void)
                                        cmocka_unit_test(test_pipe),       cmocka_unit_test(test_comb),
                                        cmocka_unit_test(test_extended),   cmocka_unit_test(test_column),
                                        cmocka_unit_test(test_rest_again), cmocka_unit_test(test_cable)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, NULL, remove_run);
 }

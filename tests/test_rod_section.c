@@ -289,5 +289,5 @@ int main(void)
                                        cmocka_unit_test(test_inversion),
                                        cmocka_unit_test(test_shear),
                                        cmocka_unit_test(test_result)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, NULL, remove_run);
 }

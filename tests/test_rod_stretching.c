@@ -157,5 +157,5 @@ int main(void)
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_result), cmocka_unit_test(test_unstretched),
                                        cmocka_unit_test(test_column), cmocka_unit_test(test_resumed),
                                        cmocka_unit_test(test_preview)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, NULL, remove_run);
 }

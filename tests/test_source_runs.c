@@ -332,5 +332,5 @@ int main(void)
                                        cmocka_unit_test(test_within),
                                        cmocka_unit_test(test_meets),
                                        cmocka_unit_test(test_currents_over_time)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, NULL, remove_run);
 }

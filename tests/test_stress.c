@@ -316,5 +316,5 @@ int main(void)
         cmocka_unit_test(test_blocks),  cmocka_unit_test(test_bar),    cmocka_unit_test(test_twisted),
         cmocka_unit_test(test_hanging),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, NULL, remove_run);
 }

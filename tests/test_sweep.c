@@ -16,6 +16,9 @@
 #include <unistd.h>
 #include <cmocka.h>
 
+#define NAME "test_sweep_run"
+#include "tests/run_fixture.h"
+
 static void write_file(const char *path, const char *text)
 {
     FILE *file = fopen(path, "w");
@@ -222,6 +225,39 @@ static void test_next(void **state)
     }
 }
 
+/* Of what has a row for each stage the last one is collected, of other arrays all. */
+static void test_rows(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *path;
+        int width, rows;
+    } arrays[] = {{"probes/tip", 3, 3}, {"stages/energy/bending", 1, 3}, {"design/gravity", 3, 1}};
+    Error err;
+    Result *result = run_text(
+        mem_text("slender: 1\njob: equilibrium\nshell:\n  mesh: {shape: sheet, size: [40 mm, 20 mm], "
+                 "cells: [4, 2]}\n  thickness: 1 mm\n  young: 1 MPa\n  poisson: 0.3\n"
+                 "  magnetization: [1.0e+4, 0, 0]\nfix: [{group: root, clamp: true}]\n"
+                 "probes: {tip: {group: tip}}\n"
+                 "sequence: {flux_density: {from: [0, 0, 0], to: [0, 0, 1 mT], count: 3}}\n"));
+    for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++) {
+        Cells cells = {0};
+        char *path = mem_format("slender/%s", arrays[k].path);
+        Array all = read_all(result, path);
+        int width = arrays[k].width, last = width * (arrays[k].rows - 1);
+        if (!cells_read(result, arrays[k].path, &cells, &err)) fail_msg("%s", err.text);
+        assert_int_equal(array_count(&all), last + width);
+        assert_int_equal(cells.count, width);
+        for (int i = 0; i < width; i++)
+            assert_true(strtod(cells.texts[i], NULL) == ((const double *)all.data)[last + i]);
+        cells_clear(&cells);
+        array_clear(&all);
+        mem_free(path);
+    }
+    result_close(result);
+    remove_run(state);
+}
+
 /* Of runs that are not there; a table that the scene is made of is refused. */
 static void test_absent(void **state)
 {
@@ -283,6 +319,7 @@ int main(void)
                                        cmocka_unit_test_teardown(test_runs_file, check_blocks),
                                        cmocka_unit_test_teardown(test_lock, check_blocks),
                                        cmocka_unit_test_teardown(test_next, check_blocks),
+                                       cmocka_unit_test_teardown(test_rows, check_blocks),
                                        cmocka_unit_test_teardown(test_absent, check_blocks)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -352,5 +352,5 @@ int main(void)
         cmocka_unit_test(test_frequency),    cmocka_unit_test(test_found),
         cmocka_unit_test(test_taper),        cmocka_unit_test(test_found_in_motion),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, NULL, remove_run);
 }

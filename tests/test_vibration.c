@@ -125,5 +125,5 @@ int main(void)
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_clamped_strip),
                                        cmocka_unit_test(test_free_strip), cmocka_unit_test(test_clamped_bar),
                                        cmocka_unit_test(test_rod), cmocka_unit_test(test_hanging_rod)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return cmocka_run_group_tests(tests, NULL, remove_run);
 }

@@ -5,7 +5,8 @@ enum { ADVANCES = 200 }; /* beyond that they slide along each other: what was fo
 
 static const double NEAR = 1.1; /* of the distance to keep: near enough to stop */
 
-double ccd_approach(const double from[DISTANCE_DOFS], const double to[DISTANCE_DOFS], int second)
+/* Largest |dx_i - dx_j|, dx = to - from, over vertices i of the first and j of the other, which begins at vertex `second`. */
+static double approach_of(const double from[DISTANCE_DOFS], const double to[DISTANCE_DOFS], int second)
 {
     double largest = 0;
     for (int i = 0; i < second; i++)
@@ -23,7 +24,7 @@ double ccd_approach(const double from[DISTANCE_DOFS], const double to[DISTANCE_D
 double ccd_reach(DistanceOf *distance, const double from[DISTANCE_DOFS], const double to[DISTANCE_DOFS],
                  double keep, double most)
 {
-    double approach = ccd_approach(from, to, distance == distance_edges ? 2 : 1);
+    double approach = approach_of(from, to, distance == distance_edges ? 2 : 1);
     double d = sqrt(distance(from).square), least = keep * d, part = 0, x[DISTANCE_DOFS];
     if (!(d > 0) || !(approach > 0) || approach * most <= d - least) return most;
     for (int k = 0; k < ADVANCES; k++) {

@@ -11,6 +11,3 @@
  * of a point and a triangle. */
 double ccd_reach(DistanceOf *distance, const double from[DISTANCE_DOFS], const double to[DISTANCE_DOFS],
                  double keep, double most);
-
-/* Largest |dx_i - dx_j|, dx = to - from, over vertices i of the first and j of the other, which begins at vertex `second`. */
-double ccd_approach(const double from[DISTANCE_DOFS], const double to[DISTANCE_DOFS], int second);

@@ -1,4 +1,4 @@
-/* rod_curves.h - the curves of a scene's rod, from formulas or files, and the frames along them. */
+/* curves.h - the curves of a scene's rod, from formulas or files, and the frames along them. */
 #pragma once
 #include "io/table.h"
 #include "model/build.h"

@@ -1,4 +1,4 @@
-/* draw_final.h - what a drawing leaves: its strokes as a plotter draws them, energies and metrics. Part of
+/* final.h - what a drawing leaves: its strokes as a plotter draws them, energies and metrics. Part of
  * job_draw. */
 #pragma once
 #include "job/run.h"

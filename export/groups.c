@@ -1,27 +1,12 @@
-#include "cli/export_groups.h"
+/* The table of groups: what stands at the magnetiser. */
 #include "base/memory.h"
 #include "base/plain.h"
 #include "base/vec3.h"
+#include "export/export.h"
 #include "export/mesh.h"
 #include "field/flux_field.h"
-#include "io/mesh_file.h"
-#include "io/safe_file.h"
+#include "io/text.h"
 #include <math.h>
-#include <string.h>
-
-/* ---- Meshes with groups ---- */
-
-RunStatus export_frame(Result *result, int frame, const char *path, Error *err)
-{
-    MeshFile file;
-    RunStatus status = RUN_REFUSED;
-    if (export_mesh_read(result, frame, &file, err))
-        status = mesh_file_write_obj(path, &file, err) ? RUN_DONE : RUN_CANNOT_WRITE;
-    mesh_file_clear(&file);
-    return status;
-}
-
-/* ---- A row for each group ---- */
 
 enum { FURTHER = 2 };
 
@@ -84,27 +69,36 @@ static bool shows_more(const Further *more)
     return shows;
 }
 
-/* Adds what else a design may have made of the group, the means; takes the row. Of what has none: an empty field. */
-static char *join_means(const Magnets *all, const int *members, int count, char *row)
+/* The name as a cell: no comma and no quote ends it. */
+static void add_name(Text *text, const char *name)
+{
+    char *word = plain_text(name, "");
+    for (char *c = word; *c; c++)
+        if (*c == ',' || *c == '"') *c = '_';
+    text_add(text, "%s", word);
+    mem_free(word);
+}
+
+/* What else a design may have made of the group, the means. Of what has none: an empty cell. */
+static void add_means(const Magnets *all, const int *members, int count, Text *text)
 {
     for (int k = 0; k < FURTHER; k++) {
         const double *values = values_of(all, k);
         double sum = 0, size = 0;
+        if (!all->further[k].shown) continue;
         for (int m = 0; values && m < count; m++) {
             double value = values[members[m]],
                    weight = all->size[members[m]] / (further[k].by_area ? value : 1);
             sum += weight * value;
             size += weight;
         }
-        char *mean = size > 0 ? mem_format("%.6g", sum / size) : mem_text("");
-        if (all->further[k].shown) row = mem_join(row, ",", mean);
-        mem_free(mean);
+        text_add(text, ",");
+        if (size > 0) text_add(text, "%.6g", sum / size);
     }
-    return row;
 }
 
 /* The mean over the group, weighed by size, and the largest angle of a member's to it. */
-static void write_row(const Magnets *all, const char *name, const int *members, int count, char **text)
+static void write_row(const Magnets *all, const char *name, const int *members, int count, Text *text)
 {
     Vec3 sum = vec3(0, 0, 0);
     double size = 0, spread = 0;
@@ -124,17 +118,14 @@ static void write_row(const Magnets *all, const char *name, const int *members, 
         Vec3 own = vec3_load(all->M[members[k]]);
         spread = fmax(spread, atan2(vec3_length(vec3_cross(own, M)), vec3_dot(own, M)));
     }
-    char *word = plain_text(name, ""), *row;
-    for (char *c = word; *c; c++)
-        if (*c == ',' || *c == '"') *c = '_';
-    row = mem_format("%s%s,%d,%.6g,%.6g,%.4f,%.4f,%.4f", *text, word, there, length, 1e3 * FLUX_MU_0 * length,
-                     degree * atan2(M.y, M.x), degree * atan2(M.z, hypot(M.x, M.y)), degree * spread);
-    mem_free(word);
-    mem_free(*text);
-    *text = mem_join(join_means(all, members, count, row), "", "\n");
+    add_name(text, name);
+    text_add(text, ",%d,%.6g,%.6g,%.4f,%.4f,%.4f", there, length, 1e3 * FLUX_MU_0 * length,
+             degree * atan2(M.y, M.x), degree * atan2(M.z, hypot(M.x, M.y)), degree * spread);
+    add_means(all, members, count, text);
+    text_add(text, "\n");
 }
 
-static void write_rows(const MeshFile *file, int dim, const double (*M)[3], const Further *more, char **text)
+static void write_rows(const MeshFile *file, int dim, const double (*M)[3], const Further *more, Text *text)
 {
     Magnets all = magnets_of(file, dim, M, more);
     for (int g = 0; g < file->group_count; g++) {
@@ -178,51 +169,42 @@ static bool read_further(Result *result, const MeshFile *file, int k, Further *m
     return ok;
 }
 
-static char *header_of(const Further *more)
+static void add_header(const Further *more, Text *text)
 {
-    char *text =
-        mem_text("name,count,magnetization [A/m],remanence [mT],azimuth [deg],elevation [deg],spread [deg]");
-    for (int k = 0; k < FURTHER; k++) {
-        char *column = mem_format("%s [%s]", further[k].name, further[k].unit);
-        if (more[k].shown) text = mem_join(text, ",", column);
-        mem_free(column);
-    }
-    return mem_join(text, "", "\n");
+    text_add(text,
+             "name,count,magnetization [A/m],remanence [mT],azimuth [deg],elevation [deg],spread [deg]");
+    for (int k = 0; k < FURTHER; k++)
+        if (more[k].shown) text_add(text, ",%s [%s]", further[k].name, further[k].unit);
+    text_add(text, "\n");
 }
 
 /* Of the last frame: tetrahedra first, then faces. */
-static RunStatus write_groups(Result *result, const MeshFile *file, const Further *more, const char *path,
-                              Error *err)
+static bool write_groups(Result *result, const MeshFile *mesh, const Further *more, Bytes *file, Error *err)
 {
     Array M;
-    if (!export_magnetization_read(result, file, &M, err)) return RUN_REFUSED;
-    RunStatus status = RUN_REFUSED;
-    char *text = header_of(more);
-    size_t header = strlen(text);
+    if (!export_magnetization_read(result, mesh, &M, err)) return false;
+    Text text = {0};
+    add_header(more, &text);
+    size_t header = text.length;
     const double(*rows)[3] = (const double(*)[3])M.data;
-    if (file->cell_count) write_rows(file, 3, rows, more, &text);
-    write_rows(file, 2, rows + file->cell_count, more, &text);
-    if (strlen(text) == header)
-        error_set(err, "nothing is magnetised");
-    else
-        status = safe_file_write(path, text, strlen(text), false, err) ? RUN_DONE : RUN_CANNOT_WRITE;
-    mem_free(text);
+    if (mesh->cell_count) write_rows(mesh, 3, rows, more, &text);
+    write_rows(mesh, 2, rows + mesh->cell_count, more, &text);
+    bool any = text.length > header;
+    if (any) bytes_add(file, text.text, text.length);
+    mem_free(text.text);
     array_clear(&M);
-    return status;
+    return any || error_set(err, "nothing is magnetised");
 }
 
-RunStatus export_groups(Result *result, const char *path, Error *err)
+bool export_groups(Result *result, Bytes *file, Error *err)
 {
     Further more[FURTHER] = {0};
-    MeshFile file;
-    if (!result_has(result, "slender/groups/names")) {
-        error_set(err, "the body's mesh has no groups");
-        return RUN_REFUSED;
-    }
-    bool ok = export_mesh_read(result, MESH_REST, &file, err);
-    for (int k = 0; k < FURTHER; k++) ok = ok && read_further(result, &file, k, &more[k], err);
-    RunStatus status = ok ? write_groups(result, &file, more, path, err) : RUN_REFUSED;
+    MeshFile mesh;
+    if (!result_has(result, "slender/groups/names")) return error_set(err, "the body's mesh has no groups");
+    bool ok = export_mesh_read(result, MESH_REST, &mesh, err);
+    for (int k = 0; k < FURTHER; k++) ok = ok && read_further(result, &mesh, k, &more[k], err);
+    ok = ok && write_groups(result, &mesh, more, file, err);
     for (int k = 0; k < FURTHER; k++) array_clear(&more[k].values);
-    mesh_file_clear(&file);
-    return status;
+    mesh_file_clear(&mesh);
+    return ok;
 }
