@@ -33,6 +33,19 @@ is tip "$(tail -1 single_probes.csv | cut -d, -f2-4)" "$(sed -n 6p all.csv | cut
 expect 0 "$program" export single.vtkhdf -o single.csv --dataset final/energy/bending
 is energy "$(tail -1 single.csv)" "$(sed -n 6p all.csv | cut -d, -f7)"
 
+# ---- What has too many numbers for columns is in NAME.h5, each run's in its rows ----
+sweep wide 'vary: {shell.mesh.cells: [[4, 1], [12, 1]]}
+collect: [cases/case1/x, probes/tip]'
+expect 0 "$program" sweep wide.yaml; says "cases/case1/x has up to 78 numbers for a run, .* they are in wide.h5 only"
+is "narrow" "$(head -1 wide.csv)" "run,shell.mesh.cells[0],shell.mesh.cells[1],status,probes/tip.x,probes/tip.y,probes/tip.z"
+! /usr/bin/python3 -c 'import h5py' 2> err.txt || is "wide" "$(/usr/bin/python3 - <<'END'
+import h5py, numpy as np
+x = h5py.File("wide.h5")["cases/case1/x"]
+of = [h5py.File(f"wide/000{k}.vtkhdf")["slender/cases/case1/x"][:] for k in (1, 2)]
+print(x.shape, x.attrs["unit"].decode(), (x[0, :10] == of[0]).all(), np.isnan(x[0, 10:]).all(), (x[1] == of[1]).all())
+END
+)" "(2, 26, 3) m True True True"
+
 # ---- Keys that go together, runs from a file, seeds ----
 sweep zip 'vary: {zip: true, shell.thickness: [0.5 mm, 1 mm], shell.young: [1 MPa, 2 MPa]}'
 expect 0 "$program" sweep zip.yaml --quiet
