@@ -103,34 +103,54 @@ slender: 1
 job: simulate
 shell: {mesh: {shape: sheet, size: [20 mm, 5 mm], cells: [4, 1]}, thickness: 1 mm, young: 1 MPa, poisson: 0.4, density: 1000 kg/m^3, gravity: [0, 0, -9.81]}
 fix: [{group: root, clamp: true}]
-time: {step: 1 ms, steps: 6000}
+time: {step: 1 ms, steps: 2000}
 output: {every: 100}
 END
-sweep whole 'vary: {shell.young: [1 MPa, 2 MPa]}
+try_hold() { # a sweep's name, options: run 1 is under way in $pid, and its own process, $child, stands still
+    rm -rf "$1"
+    "$program" sweep "$1.yaml" --jobs 1 --quiet $2 & pid=$!
+    until "$program" info "$1/0001.run" > out.txt 2>&1; do kill -0 $pid 2> err.txt || break; done
+    child=$(pgrep -P $pid) && kill -STOP "$child" && "$program" sweep "$1.yaml" --list | grep -q '^1 .*running'
+}
+hold() { until try_hold "$@"; do kill -CONT "$child" 2> err.txt; wait $pid; done; } # again where it had ended before
+for name in whole parts left; do
+    sweep $name 'vary: {shell.young: [1 MPa, 2 MPa]}
 collect: [final/energy/bending, final/energy/membrane]'
-sed -i 's/strip.yaml/motion.yaml/' whole.yaml; cp whole.yaml parts.yaml
+    sed -i 's/strip.yaml/motion.yaml/' $name.yaml
+done
 "$program" sweep whole.yaml --quiet
-"$program" sweep parts.yaml --jobs 1 --quiet & pid=$!
-until "$program" info parts/0001.run > out.txt 2>&1; do sleep 0.02; kill -0 $pid || break; done
+hold parts
 expect 76 "$program" sweep parts.yaml --index 1; says "under way elsewhere"
 expect 0 "$program" sweep parts.yaml --list; says "1  .*running"
-kill -INT $pid; wait $pid; is "Ctrl-C" $? 75
+kill -INT $pid; kill -CONT "$child"; wait $pid; is "Ctrl-C" $? 75
 is interrupted "$(column status parts.csv)" "interrupted absent"
-"$program" sweep parts.yaml --jobs 1 --quiet & pid=$!
-until child=$(pgrep -P $pid); do sleep 0.02; done
-kill -9 $pid; wait $pid 2> err.txt
-expect 76 "$program" sweep parts.yaml --index 1 # the run that the sweep has left behind
-kill -9 "$child"; while kill -0 "$child" 2> err.txt; do sleep 0.02; done
 expect 0 "$program" sweep parts.yaml --jobs 2 --quiet
 same whole.csv parts.csv
+trap '' HUP # what stands still when its parent dies is sent one, and goes on
+try_left() {
+    hold left
+    kill -9 $pid; wait $pid 2> err.txt
+    kill -STOP "$child" && "$program" sweep left.yaml --list | grep -q '^1 .*running'
+}
+until try_left; do kill -9 "$child" 2> err.txt; done
+expect 76 "$program" sweep left.yaml --index 1 # the run that the sweep has left behind
+kill -9 "$child"; while kill -0 "$child" 2> err.txt; do sleep 0.02; done
+expect 0 "$program" sweep left.yaml --jobs 2 --quiet
+same whole.csv left.csv
 
 # ---- What another process was at, and has done by the end, is done ----
-sweep both 'vary: {time.steps: [2000, 20000]}'
+sweep both 'vary: {time.steps: [1999, 2000]}'
 sed -i 's/strip.yaml/motion.yaml/' both.yaml
-"$program" sweep both.yaml --index 1 --quiet & pid=$!
-until "$program" sweep both.yaml --list | grep -q '^1 .*running'; do kill -0 $pid 2> err.txt || break; done
-expect 0 "$program" sweep both.yaml --jobs 1; says "run 1 was done elsewhere"; says "2 done"; says "0 under way elsewhere"
-wait $pid; is "the other one" $? 0
+try_both() { # run 1 is held, and the sweep $main, which set it aside and is at run 2, stands still
+    hold both "--index 1"
+    "$program" sweep both.yaml --jobs 1 > main.txt 2>&1 & main=$!
+    until "$program" sweep both.yaml --list | grep -q '^2 .*running'; do kill -0 $main 2> err.txt || break; done
+    kill -STOP $main && pgrep -P $main > out.txt
+}
+until try_both; do kill -CONT "$child" $main; wait $pid $main; done
+kill -CONT "$child"; wait $pid; is "the other one" $? 0
+kill -CONT $main; wait $main; is "the sweep" $? 0
+cp main.txt out.txt; says "run 1 was done elsewhere"; says "2 done"; says "0 under way elsewhere"
 
 # ---- What is refused, each wrong value once, before anything is made ----
 refused() { # words, what the file says after its scene
