@@ -72,18 +72,10 @@ static int spawn(const SweepWork *work, int run, const char *mode, int lock, pid
 /* The option to begin it with; NULL: another process has done it meanwhile, with *code. */
 static const char *next_of(const SweepWork *work, int run, int *code)
 {
-    YamlFile *file;
-    Scene scene;
-    const char *mode = NULL;
-    *code = RUN_REFUSED;
-    if (sweep_load(work->sweep, run, &file, &scene)) {
-        RunState state = state_read(work->sweep, run, &scene);
-        mode = state_next(&state, work->retry, work->force);
-        if (!record_is_kept(state.record)) *code = state.code;
-        state_clear(&state);
-    }
-    yaml_clear(scene_table(), &scene);
-    yaml_destroy(file);
+    RunState state;
+    const char *mode = state_look(work->sweep, run, work->retry, work->force, &state);
+    *code = record_is_kept(state.record) ? RUN_REFUSED : state.code;
+    state_clear(&state);
     return mode;
 }
 

@@ -107,12 +107,17 @@ time: {step: 1 ms, steps: 2000}
 output: {every: 100}
 END
 try_hold() { # a sweep's name, options: run 1 is under way in $pid, and its own process, $child, stands still
-    rm -rf "$1"
+    rm -rf "$1" "$1.csv" "$1.h5"
     "$program" sweep "$1.yaml" --jobs 1 --quiet $2 & pid=$!
     until "$program" info "$1/0001.run" > out.txt 2>&1; do kill -0 $pid 2> err.txt || break; done
     child=$(pgrep -P $pid) && kill -STOP "$child" && "$program" sweep "$1.yaml" --list | grep -q '^1 .*running'
 }
-hold() { until try_hold "$@"; do kill -CONT "$child" 2> err.txt; wait $pid; done; } # again where it had ended before
+hold() { # again where it had ended before
+    until try_hold "$@"; do
+        kill -CONT "$child" 2> err.txt
+        wait $pid || { echo "$1 cannot be held"; exit 1; }
+    done
+}
 for name in whole parts left; do
     sweep $name 'vary: {shell.young: [1 MPa, 2 MPa]}
 collect: [final/energy/bending, final/energy/membrane]'
@@ -147,10 +152,46 @@ try_both() { # run 1 is held, and the sweep $main, which set it aside and is at 
     until "$program" sweep both.yaml --list | grep -q '^2 .*running'; do kill -0 $main 2> err.txt || break; done
     kill -STOP $main && pgrep -P $main > out.txt
 }
-until try_both; do kill -CONT "$child" $main; wait $pid $main; done
+until try_both; do
+    kill -CONT "$child" $main
+    wait $pid || { echo "both cannot be held"; exit 1; }
+    wait $main
+done
 kill -CONT "$child"; wait $pid; is "the other one" $? 0
 kill -CONT $main; wait $main; is "the sweep" $? 0
 cp main.txt out.txt; says "run 1 was done elsewhere"; says "2 done"; says "0 under way elsewhere"
+
+# ---- A cluster gets what is neither with it, nor under way, nor at its end, when it is asked ----
+mkdir bin
+echo 'echo "MaxArraySize = 4"' > bin/scontrol
+printf '%s\n' '[ ! -x ./meanwhile ] || ./meanwhile > meanwhile.txt 2>&1' 'cat queue.txt' > bin/squeue
+cat > bin/sbatch <<'END'
+for word; do case $word in --job-name=*) name=${word#*=} ;; --array=*) array=${word#*=} ;; esac; done
+echo "$array of ${name##*+}" >> submitted.txt
+echo "$array" | tr , '\n' | while IFS=- read -r from to; do seq "$from" "${to:-$from}" | sed "s/^/$name /"; done >> queue.txt
+END
+for tool in scontrol squeue sbatch; do sed -i '1i #!/bin/sh' bin/$tool; chmod +x bin/$tool; done
+: > queue.txt
+submit() { # a sweep; what it says
+    PATH="$work/bin:$PATH" expect 0 "$program" sweep "$1" --slurm; says "^$2$"
+}
+sweep tasks 'vary: {shell.thickness: [1 mm, 2 mm, 3 mm, 4 mm, 5 mm, 6 mm]}'
+"$program" sweep tasks.yaml --index 2 --quiet
+submit tasks.yaml "5 runs submitted, 0 are with Slurm already, 0 are under way elsewhere, 1 have ended"
+is arrays "$(paste -sd';' submitted.txt)" "1,3 of 0;1-3 of 3"
+submit tasks.yaml "0 runs submitted, 5 are with Slurm already, 0 are under way elsewhere, 1 have ended"
+cat > meanwhile <<END
+#!/bin/sh
+for run in 1 3 4; do "$program" sweep tasks.yaml --index \$run; done
+sed -i '1,3d; \$d' queue.txt # those, and run 6, which was killed
+END
+chmod +x meanwhile
+submit tasks.yaml "1 runs submitted, 1 are with Slurm already, 0 are under way elsewhere, 4 have ended"
+is again "$(tail -1 submitted.txt)" "3 of 3"
+rm meanwhile; : > queue.txt
+hold parts
+submit parts.yaml "1 runs submitted, 0 are with Slurm already, 1 are under way elsewhere, 0 have ended"
+kill -KILL $pid "$child"; wait $pid 2> err.txt
 
 # ---- What is refused, each wrong value once, before anything is made ----
 refused() { # words, what the file says after its scene
