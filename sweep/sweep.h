@@ -40,5 +40,10 @@ const SweepValue *sweep_value(const Sweep *sweep, int run, int key);
 char *sweep_assignment(const Sweep *sweep, int run, int key);
 char *sweep_run_name(const Sweep *sweep, int run);
 
-/* The run's scene; clear and destroy it in any case. */
+/* All that `slender run` is to be told, as for --set; returns how many. */
+enum { SWEEP_OUTPUTS = 6, SWEEP_ASSIGNMENTS_MAX = SWEEP_KEYS_MAX + SWEEP_OUTPUTS };
+int sweep_assignments(const Sweep *sweep, int run, char *assignments[SWEEP_ASSIGNMENTS_MAX]);
+
+/* The run's scene; clear and destroy it in any case. The files that its `output` names are the run's own: plot.gcode is
+ * 0001_plot.gcode. */
 bool sweep_load(const Sweep *sweep, int run, YamlFile **file, Scene *scene);

@@ -54,15 +54,16 @@ static int spawn(const SweepWork *work, int run, const char *mode, int lock, pid
     const Sweep *sweep = work->sweep;
     enum { FIXED = 9 };
     char *name = sweep_run_name(sweep, run), *log = mem_format("%s.log", name),
-         *threads = mem_format("%d", work->threads), *assignments[SWEEP_KEYS_MAX];
-    const char *arguments[FIXED + 2 * SWEEP_KEYS_MAX + 1] = {
+         *threads = mem_format("%d", work->threads), *assignments[SWEEP_ASSIGNMENTS_MAX];
+    const char *arguments[FIXED + 2 * SWEEP_ASSIGNMENTS_MAX + 1] = {
         "/proc/self/exe", "run", sweep->scene, "-o", name, "--no-picture", "--threads", threads, mode};
-    for (int k = 0; k < sweep->key_count; k++) {
+    int count = sweep_assignments(sweep, run, assignments);
+    for (int k = 0; k < count; k++) {
         arguments[FIXED + 2 * k] = "--set";
-        arguments[FIXED + 2 * k + 1] = assignments[k] = sweep_assignment(sweep, run, k);
+        arguments[FIXED + 2 * k + 1] = assignments[k];
     }
     int failed = program_start(arguments, log, lock, process);
-    for (int k = 0; k < sweep->key_count; k++) mem_free(assignments[k]);
+    for (int k = 0; k < count; k++) mem_free(assignments[k]);
     mem_free(name);
     mem_free(log);
     mem_free(threads);

@@ -193,6 +193,22 @@ hold parts
 submit parts.yaml "1 runs submitted, 0 are with Slurm already, 1 are under way elsewhere, 0 have ended"
 kill -KILL $pid "$child"; wait $pid 2> err.txt
 
+# ---- Files that the scene names, or what is varied, are each run's own ----
+mkdir plots
+sweep drawn "vary: {zip: true, spline.iterations: [1, 2], output.hpgl: [a.plt, '../plots/it''s: b.plt']}"
+{ cat "$here/scene_draw.yaml"; echo 'output: {gcode: plot.gcode}'; } > drawing.yaml
+sed -i 's/strip.yaml/drawing.yaml/' drawn.yaml
+"$program" sweep drawn.yaml --index 1 --quiet
+: > queue.txt
+submit drawn.yaml "1 runs submitted, 0 are with Slurm already, 0 are under way elsewhere, 1 have ended"
+"$program" sweep drawn.yaml --quiet
+for run in 1 2; do exists drawn/000${run}_plot.gcode; exists drawn/000$run.svg; done
+exists drawn/0001_a.plt; exists "plots/0002_it's: b.plt"
+expect 0 "$program" export drawn/0002.vtkhdf -o last.gcode; same last.gcode drawn/0002_plot.gcode
+touch -d 2001-01-01 drawn/000*.vtkhdf
+"$program" sweep drawn.yaml --quiet
+is "drawings kept" "$(find drawn -name '000*.vtkhdf' ! -newermt 2001-01-02 | wc -l)" 2
+
 # ---- What is refused, each wrong value once, before anything is made ----
 refused() { # words, what the file says after its scene
     words=$1; shift; sweep no "$*"
