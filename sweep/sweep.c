@@ -225,7 +225,9 @@ static bool check_scene(const SweepScene *said, YamlFile *file)
 
 static void take(Sweep *sweep, SweepScene *said)
 {
+    Error unread; /* its reading will say so */
     sweep->scene = mem_text(said->scene);
+    file_sum(sweep->scene, &sweep->sum, &unread);
     sweep->collect_count = said->collect_count;
     sweep->collect = mem_alloc((size_t)said->collect_count, sizeof *sweep->collect);
     for (int k = 0; k < said->collect_count; k++) sweep->collect[k] = mem_text(said->collect[k]);
@@ -283,6 +285,13 @@ char *sweep_run_name(const Sweep *sweep, int run)
 }
 
 /* ---- A run's scene ---- */
+
+bool sweep_has_changed(const Sweep *sweep)
+{
+    Error err;
+    FileSum now;
+    return !file_sum(sweep->scene, &now, &err) || now.crc != sweep->sum.crc || now.bytes != sweep->sum.bytes;
+}
 
 static const struct {
     const char *key;

@@ -3,6 +3,7 @@
 #include "io/arrays_file.h"
 #include "io/safe_file.h"
 #include "io/text.h"
+#include "model/start.h"
 #include "sweep/cells.h"
 #include "sweep/state.h"
 #include <errno.h>
@@ -114,7 +115,7 @@ static void add_key(Columns *columns, const Sweep *sweep, int key)
     mem_free(cells);
 }
 
-/* The run with the best finite number. */
+/* The run with the best finite number, of those whose states can be trusted. */
 static int find_best(const Reading *reading)
 {
     const Sweep *sweep = reading->sweep;
@@ -123,7 +124,9 @@ static int find_best(const Reading *reading)
     int best = -1;
     for (int r = 0; r < sweep->run_count; r++) {
         double value = !cells[r].text && cells_count(&cells[r]) == 1 ? cells[r].numbers[0] : NAN;
-        if (!isfinite(value) || !(best < 0 || (sweep->least ? value < record : value > record))) continue;
+        if (!isfinite(value) || start_is_doubtful(reading->status[r]) ||
+            !(best < 0 || (sweep->least ? value < record : value > record)))
+            continue;
         best = r;
         record = value;
     }

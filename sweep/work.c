@@ -24,7 +24,7 @@ typedef struct Working {
     int active, done, total;
     int *held, held_count; /* runs that another process was at, to be looked at again */
     bool last;             /* for the last time */
-    bool stopping;
+    bool stopping, halted; /* those under way are to end, and no further one is begun */
     SweepTally *tally;
     Error *err;
 } Working;
@@ -89,7 +89,7 @@ static bool start_locked(Working *w, Task *task)
         state_put_begin(w->work->sweep, task->run);
         failed = spawn(w->work, task->run, mode, task->lock, &task->process);
     } else {
-        count(w, task->run, code, "was done elsewhere");
+        count(w, task->run, code, code == RUN_REFUSED ? "is refused now" : "was done elsewhere");
     }
     if (mode && !failed) return w->active++, true;
     close(task->lock);
@@ -175,21 +175,33 @@ static void wait_for_some(Working *w)
 /* Each saves and ends, as by a Ctrl-C of its own. */
 static void stop(Working *w)
 {
-    w->stopping = true;
+    w->stopping = w->halted = true;
     for (int k = 0; k < w->work->jobs; k++)
         if (w->tasks[k].run >= 0) kill(w->tasks[k].process, SIGINT);
+}
+
+/* Runs of one sweep are of one scene. */
+static bool may_begin(Working *w)
+{
+    const Sweep *sweep = w->work->sweep;
+    w->halted = sweep_has_changed(sweep);
+    if (w->halted)
+        host_warn(w->work->host, "%s has changed since the sweep began: no further run is begun",
+                  sweep->scene);
+    return !w->halted;
 }
 
 /* Until all of these have ended or are set aside, or the sweep is stopped. */
 static bool do_all(Working *w, const int *runs, int count)
 {
     bool ok = true;
-    for (int next = 0; w->active || (next < count && ok && !w->stopping);) {
+    for (int next = 0; w->active || (next < count && ok && !w->halted);) {
         if (!w->stopping && (!ok || host_stops(w->work->host))) stop(w);
-        if (!w->stopping && next < count && w->active < w->work->jobs)
+        if (w->halted || next == count || w->active == w->work->jobs) {
+            if (w->active) wait_for_some(w);
+        } else if (may_begin(w)) {
             ok = start(w, runs[next++]);
-        else if (w->active)
-            wait_for_some(w);
+        }
     }
     return ok;
 }

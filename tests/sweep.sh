@@ -97,6 +97,21 @@ expect 0 "$program" sweep bad.yaml --list; says "3  .*failed: 4: .*not a journal
 rm bad/0003.run
 expect 1 "$program" sweep bad.yaml --retry; says "2 done, 2 did not converge, 0 failed"
 
+# ---- What has gone through an obstacle is not the best ----
+cat > throw.yaml <<'END'
+slender: 1
+job: simulate
+shell: {mesh: {shape: sheet, size: [10 mm, 10 mm], cells: [10, 10], pattern: alternate}, thickness: 0.2 mm, young: 0.2 MPa, poisson: 0.3}
+obstacles: [{sphere: {center: [5.3 mm, 4.8 mm, -2.3 mm], radius: 0.5 mm}}]
+time: {step: 1 ms, steps: 1}
+END
+sweep thrown 'vary: {shell.velocity: [[0, 0, -100], [1, 0, -1], [0, 0, -0.5]]}
+best: {of: final/energy/bending}'
+sed -i 's/strip.yaml/throw.yaml/' thrown.yaml
+expect 1 "$program" sweep thrown.yaml; says "the best is run [23]"
+is "thrown" "$(column status thrown.csv)" "pierced converged converged"
+is "the most bent" "$(column final/energy/bending thrown.csv | tr ' ' '\n' | sort -g | tail -1)" "$(column final/energy/bending thrown.csv | cut -d' ' -f1)"
+
 # ---- Interrupted and killed runs go on to the numbers of those that were not ----
 cat > motion.yaml <<'END'
 slender: 1
@@ -142,6 +157,17 @@ expect 76 "$program" sweep left.yaml --index 1 # the run that the sweep has left
 kill -9 "$child"; while kill -0 "$child" 2> err.txt; do sleep 0.02; done
 expect 0 "$program" sweep left.yaml --jobs 2 --quiet
 same whole.csv left.csv
+
+# ---- A scene that is edited meanwhile: no run of another one is begun; put back, it goes on ----
+cp motion.yaml before.yaml
+hold parts 2> edited.txt
+sed -i 's/poisson: 0.4/poisson: 0.3/' motion.yaml
+kill -CONT "$child"; wait $pid; is "edited" $? 75
+grep -q "motion.yaml has changed since the sweep began: no further run is begun" edited.txt || { echo "nothing says why it ends"; bad=1; }
+is "edited" "$(column status parts.csv)" "changed absent"
+expect 3 "$program" sweep parts.yaml; says "parts/0001.vtkhdf: it is the result of another scene: shell.poisson is not the same"
+cp before.yaml motion.yaml
+expect 0 "$program" sweep parts.yaml; same whole.csv parts.csv
 
 # ---- What another process was at, and has done by the end, is done ----
 sweep both 'vary: {time.steps: [1999, 2000]}'
