@@ -246,6 +246,9 @@ refused "no.yaml:3:32: shell.thickness.value must be a number in m, and '1 T' is
 is "sentences" "$(wc -l < err.txt)" 1
 refused "no.yaml:3:21: shell has no key 'yong'; did you mean 'young'" 'vary: {shell.yong: [1 MPa]}'
 refused "no.yaml:3:21: shell.mesh.file: .*none.obj: cannot be read" 'vary: {shell.mesh: [{file: none.obj}]}'
+sweep no 'vary: {shell.mesh.cells: [[4, 1], [1500, 1500], [1, -1]]}' # what does not fit leaves the others to be said
+(ulimit -v 500000; exec "$program" sweep no.yaml) > out.txt 2> err.txt; is "large" $? 3
+says "no.yaml:3:35: run 2: out of memory"; says "no.yaml:3:49: shell.mesh.cells.1. is -1"
 refused "nothing is varied" 'collect: [status]'
 refused "all keys must have as many values, and shell.young has 2, shell.thickness 1" 'vary: {zip: true, shell.young: [1, 2], shell.thickness: [1]}'
 refused "must be a list of entries, not a number" 'vary: {shell.young: 1 MPa}'
