@@ -240,14 +240,16 @@ static int run_all(const Sweep *sweep, const SweepOptions *o, const int *runs, i
 static int submit(const Sweep *sweep, const SweepOptions *o, const int *runs, int count)
 {
     Error err;
-    int submitted, waiting;
+    SlurmTally tally;
     bool *todo = mem_alloc((size_t)sweep->run_count, sizeof *todo);
     for (int k = 0; k < count; k++) todo[runs[k]] = true;
     SlurmDef def = {.sweep = sweep, .options = o->sbatch, .retry = o->retry, .force = o->force};
-    bool ok = slurm_submit(&def, todo, &submitted, &waiting, &err);
+    bool ok = slurm_submit(&def, todo, &tally, &err);
     mem_free(todo);
     if (!ok) return verb_fail(RUN_CANNOT_WRITE, err.text);
-    say(stdout, "%d runs submitted, %d are with Slurm already", submitted, waiting);
+    say(stdout, "%d runs submitted, %d are with Slurm already, %d are under way elsewhere, %d have ended",
+        tally.submitted, tally.waiting, tally.held,
+        sweep->run_count - tally.submitted - tally.waiting - tally.held);
     return RUN_DONE;
 }
 

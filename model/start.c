@@ -254,16 +254,22 @@ static bool take_case(const StatePlace *place, const Model *model, Case *c, Erro
            take_velocities(place, model, c, err) && take_anchor(place, model, c, err);
 }
 
+bool start_is_doubtful(const char *status)
+{
+    static const char *const doubtful[] = {"pierced", "crushed", "tangled", "not_finite"};
+    for (int k = 0; k < 4; k++)
+        if (!strcmp(status, doubtful[k])) return true;
+    return false;
+}
+
 /* What the run ended as, where its state cannot be trusted: nothing in the state itself tells. */
 static void warn_end(Model *model, const char *path)
 {
-    static const char *const doubtful[] = {"pierced", "crushed", "tangled", "not_finite"};
     Array status;
     if (!result_read(model->start->result, "slender/status", &status, NULL)) return;
-    for (int k = 0; k < 4; k++)
-        if (!strcmp(status.data, doubtful[k]))
-            mesh_warn(&model->report, "%s: %s ended as %s, and what starts from it has that in it", KEY, path,
-                      doubtful[k]);
+    if (start_is_doubtful(status.data))
+        mesh_warn(&model->report, "%s: %s ended as %s, and what starts from it has that in it", KEY, path,
+                  (const char *)status.data);
     array_clear(&status);
 }
 

@@ -1,5 +1,6 @@
 #include "sweep/cells.h"
 #include "base/memory.h"
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -19,6 +20,7 @@ void columns_clear(Columns *columns)
     for (int k = 0; k < columns->count; k++) {
         for (int r = 0; r < columns->rows; r++) mem_free(columns->columns[k].cells[r]);
         mem_free(columns->columns[k].cells);
+        mem_free(columns->columns[k].numbers);
         mem_free(columns->columns[k].name);
         mem_free(columns->columns[k].unit);
     }
@@ -55,15 +57,41 @@ static const char *unit_of(const Cells *runs, int count)
     return NULL;
 }
 
-void columns_add_cells(Columns *columns, const char *name, Cells *runs)
+/* NULL: it is not there; the caller frees. */
+static char *part_text(const Cells *cells, int part)
+{
+    if (part >= cells_count(cells)) return NULL;
+    return cells->text ? mem_text(cells->text) : mem_format("%.17g", cells->numbers[part]);
+}
+
+/* Each run's numbers stand in the first of as many rows and places as any run has. */
+static void add_wide(Column *column, const Cells *runs, int count)
+{
+    for (int r = 0; r < count; r++) {
+        column->rows = runs[r].rows > column->rows ? runs[r].rows : column->rows;
+        column->width = runs[r].width > column->width ? runs[r].width : column->width;
+    }
+    size_t size = (size_t)column->rows * (size_t)column->width, all = size * (size_t)count;
+    column->numbers = mem_alloc(all, sizeof *column->numbers);
+    for (size_t i = 0; i < all; i++) column->numbers[i] = NAN;
+    for (int r = 0; r < count; r++)
+        for (int i = 0; i < runs[r].rows; i++)
+            memcpy(&column->numbers[(size_t)r * size + (size_t)i * (size_t)column->width],
+                   &runs[r].numbers[(size_t)i * (size_t)runs[r].width],
+                   (size_t)runs[r].width * sizeof(double));
+}
+
+void columns_add_cells(Columns *columns, const char *name, const Cells *runs)
 {
     int width = 1;
-    for (int r = 0; r < columns->rows; r++) width = runs[r].count > width ? runs[r].count : width;
-    for (int part = 0; part < width; part++) {
-        Column *column = columns_add(columns, part_name(name, width, part));
+    for (int r = 0; r < columns->rows; r++)
+        width = cells_count(&runs[r]) > width ? cells_count(&runs[r]) : width;
+    bool wide = width > CELLS_WIDTH_MAX;
+    for (int part = 0; part < (wide ? 1 : width); part++) {
+        Column *column = columns_add(columns, wide ? mem_text(name) : part_name(name, width, part));
         column->unit = mem_text(unit_of(runs, columns->rows));
-        for (int r = 0; r < columns->rows; r++)
-            if (part < runs[r].count) column->cells[r] = runs[r].texts[part], runs[r].texts[part] = NULL;
+        for (int r = 0; r < columns->rows && !wide; r++) column->cells[r] = part_text(&runs[r], part);
+        if (wide) add_wide(column, runs, columns->rows);
     }
 }
 
@@ -71,17 +99,15 @@ void columns_add_cells(Columns *columns, const char *name, Cells *runs)
 
 void cells_clear(Cells *cells)
 {
-    for (int i = 0; i < cells->count; i++) mem_free(cells->texts[i]);
-    mem_free(cells->texts);
+    mem_free(cells->numbers);
+    mem_free(cells->text);
     mem_free(cells->unit);
     *cells = (Cells){0};
 }
 
-static void add(Cells *cells, char *text)
+int cells_count(const Cells *cells)
 {
-    size_t count = (size_t)cells->count++;
-    cells->texts = mem_resize(cells->texts, count, count + 1, sizeof *cells->texts);
-    cells->texts[count] = text;
+    return cells->text ? 1 : cells->rows * cells->width;
 }
 
 /* Has it a row for each time, stage or evaluation? */
@@ -93,34 +119,35 @@ static bool has_rows(const char *path)
     return false;
 }
 
-static void add_number(Cells *cells, const Array *array, size_t i)
-{
-    add(cells, array->type == ARRAY_INT32 ? mem_format("%d", ((const int *)array->data)[i])
-                                          : mem_format("%.17g", ((const double *)array->data)[i]));
-}
-
 /* Of lines the last one. */
-static void add_text(Cells *cells, const char *text, bool rows)
+static char *last_line(const char *text, bool rows)
 {
     const char *line = rows ? strrchr(text, '\n') : NULL;
-    add(cells, mem_text(line && line[1] ? line + 1 : text));
+    return mem_text(line && line[1] ? line + 1 : text);
 }
 
-static bool take(const Array *array, const char *path, Cells *cells, Error *err)
+/* All of it, or its last row. */
+static void take_numbers(const Array *array, bool rows, Cells *cells)
+{
+    bool last = rows && array->rank && array->dims[0] > 0;
+    size_t all = array_count(array), count = last ? all / (size_t)array->dims[0] : all, from = all - count;
+    int first = last ? 1 : 0;
+    cells->rows = array->rank > first ? array->dims[first] : 1;
+    cells->width = cells->rows ? (int)(count / (size_t)cells->rows) : 0;
+    cells->numbers = mem_alloc(count, sizeof *cells->numbers);
+    for (size_t i = 0; i < count; i++)
+        cells->numbers[i] = array->type == ARRAY_INT32 ? ((const int *)array->data)[from + i]
+                                                       : ((const double *)array->data)[from + i];
+    if (array->unit && *array->unit) cells->unit = mem_text(array->unit);
+}
+
+static void take(const Array *array, const char *path, Cells *cells)
 {
     bool rows = has_rows(path);
-    if (array->type == ARRAY_TEXT) {
-        add_text(cells, array->data, rows);
-        return true;
-    }
-    size_t all = array_count(array),
-           count = rows && array->rank && array->dims[0] > 0 ? all / (size_t)array->dims[0] : all;
-    if (count > CELLS_WIDTH_MAX)
-        return error_set(err, "%s has %zu numbers, and %d can be columns: slender export has the others",
-                         path, count, CELLS_WIDTH_MAX);
-    if (array->unit && *array->unit) cells->unit = mem_text(array->unit);
-    for (size_t i = all - count; i < all; i++) add_number(cells, array, i);
-    return true;
+    if (array->type == ARRAY_TEXT)
+        cells->text = last_line(array->data, rows);
+    else
+        take_numbers(array, rows, cells);
 }
 
 bool cells_read(Result *result, const char *path, Cells *cells, Error *err)
@@ -130,13 +157,21 @@ bool cells_read(Result *result, const char *path, Cells *cells, Error *err)
     bool status = !strcmp(path, "status") || !strcmp(path, "kernels"), ok = true;
     if (status || result_has(result, full)) {
         ok = result_read(result, full, &array, err);
-        if (ok) ok = take(&array, path, cells, err), array_clear(&array);
+        if (ok) take(&array, path, cells), array_clear(&array);
     }
     mem_free(full);
     return ok;
 }
 
 /* ---- Values ---- */
+
+static void add(Cells *cells, double value)
+{
+    size_t count = (size_t)cells->rows++;
+    cells->numbers = mem_resize(cells->numbers, count, count + 1, sizeof *cells->numbers);
+    cells->numbers[count] = value;
+    cells->width = 1;
+}
 
 /* "[0, 0, 10 mT]": numbers, up to CELLS_WIDTH_MAX. */
 static bool add_list(Cells *cells, const char *text)
@@ -147,11 +182,11 @@ static bool add_list(Cells *cells, const char *text)
     for (char *item = ok ? strtok_r(copy, ",", &rest) : NULL; item && ok; item = strtok_r(NULL, ",", &rest)) {
         double value;
         item += strspn(item, " ");
-        ok = cells->count < CELLS_WIDTH_MAX && yaml_quantity(item, &value);
-        if (ok) add(cells, mem_format("%.17g", value));
+        ok = cells->rows < CELLS_WIDTH_MAX && yaml_quantity(item, &value);
+        if (ok) add(cells, value);
     }
     mem_free(copy);
-    return ok && cells->count;
+    return ok && cells->rows;
 }
 
 Cells cells_of_value(const char *text)
@@ -159,10 +194,10 @@ Cells cells_of_value(const char *text)
     double value;
     Cells cells = {0};
     if (yaml_quantity(text, &value))
-        add(&cells, mem_format("%.17g", value));
+        add(&cells, value);
     else if (*text != '[' || !add_list(&cells, text)) {
         cells_clear(&cells);
-        add(&cells, mem_text(text));
+        cells.text = mem_text(text);
     }
     return cells;
 }

@@ -1,4 +1,5 @@
 #include "sweep/check.h"
+#include "base/guard.h"
 #include "base/memory.h"
 #include "job/outputs.h"
 #include "model/model.h"
@@ -98,7 +99,7 @@ static bool is_settled(const RunState *state)
     return state->record == RECORD_FINISHED || state->held;
 }
 
-bool check_run(const Sweep *sweep, int run, bool force, RunState *state, Problems *problems)
+static bool check_one(const Sweep *sweep, int run, bool force, RunState *state, Problems *problems)
 {
     YamlFile *file;
     Scene scene;
@@ -118,6 +119,31 @@ bool check_run(const Sweep *sweep, int run, bool force, RunState *state, Problem
     yaml_clear(scene_table(), &scene);
     yaml_destroy(file);
     return ok;
+}
+
+typedef struct Checking {
+    const Sweep *sweep;
+    int run;
+    bool force, ok;
+    RunState *state;
+    Problems *problems;
+} Checking;
+
+static void check_within(void *self)
+{
+    Checking *c = self;
+    c->ok = check_one(c->sweep, c->run, c->force, c->state, c->problems);
+}
+
+/* One run that is too large for this machine leaves what is wrong with the others to be said. */
+bool check_run(const Sweep *sweep, int run, bool force, RunState *state, Problems *problems)
+{
+    Error err;
+    Checking c = {.sweep = sweep, .run = run, .force = force, .state = state, .problems = problems};
+    if (guard_call(check_within, &c, &err)) return c.ok;
+    *state = (RunState){0};
+    add(problems, mem_format("%s: run %d: %s", sweep_value(sweep, run, 0)->where, run + 1, err.text));
+    return false;
 }
 
 void problems_clear(Problems *problems)

@@ -6,6 +6,7 @@
 #include "io/safe_file.h"
 #include "io/text.h"
 #include "sweep/lock.h"
+#include "sweep/state.h"
 #include <ctype.h>
 #include <errno.h>
 #include <limits.h>
@@ -21,7 +22,8 @@ typedef struct Submission {
     char folder[PATH_MAX]; /* of the results, absolute */
     char *name;            /* of the jobs, without +OFFSET */
     int lock, block;       /* tasks of an array: 1 to block */
-    bool *waiting;         /* [runs] Slurm has it */
+    bool *waiting, *todo;  /* [runs] Slurm has it; it is to be submitted */
+    SlurmTally *tally;
 } Submission;
 
 /* ---- Slurm's programs ---- */
@@ -89,6 +91,21 @@ static bool read_waiting(Submission *s, Error *err)
     return ok;
 }
 
+/* What has left the queue before Slurm was asked has ended by now: a look at the results before would not tell. */
+static void choose(Submission *s, const bool *wanted)
+{
+    const SlurmDef *def = s->def;
+    for (int r = 0; r < def->sweep->run_count; r++) {
+        RunState state;
+        s->tally->waiting += s->waiting[r];
+        if (!wanted[r] || s->waiting[r]) continue;
+        bool next = state_look(def->sweep, r, def->retry, def->force, &state) != NULL;
+        s->tally->held += state.held;
+        s->todo[r] = next && !state.held;
+        state_clear(&state);
+    }
+}
+
 /* ---- Submitting ---- */
 
 /* Within single quotes of a shell. */
@@ -127,15 +144,13 @@ static bool write_job(const Submission *s, char **path, Error *err)
 }
 
 /* "1-7,9"; NULL: none. The caller frees. */
-static char *task_list(const Submission *s, const bool *todo, int offset, int *count)
+static char *task_list(const Submission *s, int offset, int *count)
 {
     Text text = {0};
     *count = 0;
     for (int t = 1; t <= s->block && offset + t <= s->def->sweep->run_count; t++) {
         int from = t;
-        while (t <= s->block && offset + t <= s->def->sweep->run_count && todo[offset + t - 1] &&
-               !s->waiting[offset + t - 1])
-            t++;
+        while (t <= s->block && offset + t <= s->def->sweep->run_count && s->todo[offset + t - 1]) t++;
         if (t == from) continue;
         text_add(&text, *count ? ",%d" : "%d", from);
         if (t - 1 > from) text_add(&text, "-%d", t - 1);
@@ -171,15 +186,16 @@ static bool submit_array(const Submission *s, const char *job, const char *tasks
     return ok;
 }
 
-static bool submit_all(Submission *s, const bool *todo, int *submitted, Error *err)
+static bool submit_all(Submission *s, const bool *wanted, Error *err)
 {
     char *job = NULL;
     bool ok = read_block(s, err) && read_waiting(s, err) && write_job(s, &job, err);
+    if (ok) choose(s, wanted);
     for (int offset = 0; ok && offset < s->def->sweep->run_count; offset += s->block) {
         int count;
-        char *tasks = task_list(s, todo, offset, &count);
+        char *tasks = task_list(s, offset, &count);
         ok = !count || submit_array(s, job, tasks, offset, err);
-        if (ok) *submitted += count;
+        if (ok) s->tally->submitted += count;
         mem_free(tasks);
     }
     mem_free(job);
@@ -201,19 +217,20 @@ static bool begin(Submission *s, Error *err)
     if (held) error_set(err, "%s: another submitter is at work", s->folder);
     s->name = mem_format("slender-%s-%08x", base, (unsigned)lookup_hash(0, s->folder, strlen(s->folder)));
     s->waiting = mem_alloc((size_t)s->def->sweep->run_count, sizeof *s->waiting);
+    s->todo = mem_alloc((size_t)s->def->sweep->run_count, sizeof *s->todo);
     mem_free(lock);
     mem_free(base);
     return s->lock >= 0;
 }
 
-bool slurm_submit(const SlurmDef *def, const bool *todo, int *submitted, int *waiting, Error *err)
+bool slurm_submit(const SlurmDef *def, const bool *todo, SlurmTally *tally, Error *err)
 {
-    Submission s = {.def = def, .lock = -1};
-    *submitted = *waiting = 0;
-    bool ok = begin(&s, err) && submit_all(&s, todo, submitted, err);
-    for (int r = 0; s.waiting && r < def->sweep->run_count; r++) *waiting += s.waiting[r];
+    Submission s = {.def = def, .lock = -1, .tally = tally};
+    *tally = (SlurmTally){0};
+    bool ok = begin(&s, err) && submit_all(&s, todo, err);
     if (s.lock >= 0) close(s.lock);
     mem_free(s.waiting);
+    mem_free(s.todo);
     mem_free(s.name);
     return ok;
 }

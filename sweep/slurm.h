@@ -13,6 +13,10 @@ typedef struct SlurmDef {
     bool retry, force;          /* that tasks are to be given too */
 } SlurmDef;
 
-/* Submits those to be done, [runs], that Slurm does not have. Counts them, and those that it has. False and a sentence, after
- * some perhaps. */
-bool slurm_submit(const SlurmDef *def, const bool *todo, int *submitted, int *waiting, Error *err);
+typedef struct SlurmTally {
+    int submitted, waiting, held; /* given to Slurm; it had them already; under way elsewhere */
+} SlurmTally;
+
+/* Submits of those that were to be done, [runs], what Slurm does not have and what has neither ended nor begun elsewhere by
+ * then. False and a sentence, after some perhaps. */
+bool slurm_submit(const SlurmDef *def, const bool *todo, SlurmTally *tally, Error *err);

@@ -73,6 +73,17 @@ const char *state_next(const RunState *state, bool retry, bool force)
     return state->record == RECORD_UNFINISHED ? "--resume" : state->bare ? "--force" : "--quiet";
 }
 
+const char *state_look(const Sweep *sweep, int run, bool retry, bool force, RunState *state)
+{
+    YamlFile *file;
+    Scene scene;
+    bool ok = sweep_load(sweep, run, &file, &scene);
+    *state = ok ? state_read(sweep, run, &scene) : (RunState){.code = RUN_REFUSED};
+    yaml_clear(scene_table(), &scene);
+    yaml_destroy(file);
+    return ok ? state_next(state, retry, force) : NULL;
+}
+
 static char *result_word(const Sweep *sweep, int run)
 {
     Array status;

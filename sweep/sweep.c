@@ -2,8 +2,10 @@
 #include "base/memory.h"
 #include "io/path.h"
 #include "io/replace.h"
+#include "io/text.h"
 #include "sweep/runs_file.h"
 #include <errno.h>
+#include <stddef.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -223,7 +225,9 @@ static bool check_scene(const SweepScene *said, YamlFile *file)
 
 static void take(Sweep *sweep, SweepScene *said)
 {
+    Error unread; /* its reading will say so */
     sweep->scene = mem_text(said->scene);
+    file_sum(sweep->scene, &sweep->sum, &unread);
     sweep->collect_count = said->collect_count;
     sweep->collect = mem_alloc((size_t)said->collect_count, sizeof *sweep->collect);
     for (int k = 0; k < said->collect_count; k++) sweep->collect[k] = mem_text(said->collect[k]);
@@ -280,6 +284,43 @@ char *sweep_run_name(const Sweep *sweep, int run)
     return mem_format("%s/%04d", sweep->name, run + 1);
 }
 
+/* ---- A run's scene ---- */
+
+bool sweep_has_changed(const Sweep *sweep)
+{
+    Error err;
+    FileSum now;
+    return !file_sum(sweep->scene, &now, &err) || now.crc != sweep->sum.crc || now.bytes != sweep->sum.bytes;
+}
+
+static const struct {
+    const char *key;
+    size_t offset;
+} outputs[SWEEP_OUTPUTS] = {{"output.svg", offsetof(Scene, output.svg)},
+                            {"output.png", offsetof(Scene, output.png)},
+                            {"output.gcode", offsetof(Scene, output.gcode)},
+                            {"output.gcode_servo", offsetof(Scene, output.gcode_servo)},
+                            {"output.hpgl", offsetof(Scene, output.hpgl)},
+                            {"output.plotter", offsetof(Scene, output.plotter)}};
+
+static char **output_of(Scene *scene, int k)
+{
+    return (char **)((char *)scene + outputs[k].offset);
+}
+
+/* "dir/plot.gcode" becomes "dir/0001_plot.gcode": else each run would write over the others'. */
+static void own_outputs(Scene *scene, int run)
+{
+    for (int k = 0; k < SWEEP_OUTPUTS; k++) {
+        char **name = output_of(scene, k), *before = *name;
+        if (!before) continue;
+        const char *slash = strrchr(before, '/');
+        int folder = slash ? (int)(slash + 1 - before) : 0;
+        *name = mem_format("%.*s%04d_%s", folder, before, run + 1, before + folder);
+        mem_free(before);
+    }
+}
+
 bool sweep_load(const Sweep *sweep, int run, YamlFile **file, Scene *scene)
 {
     *scene = (Scene){0};
@@ -289,5 +330,27 @@ bool sweep_load(const Sweep *sweep, int run, YamlFile **file, Scene *scene)
         yaml_override(*file, assignment);
         mem_free(assignment);
     }
-    return yaml_load(*file, scene_table(), scene);
+    bool ok = yaml_load(*file, scene_table(), scene);
+    if (ok) own_outputs(scene, run);
+    return ok;
+}
+
+int sweep_assignments(const Sweep *sweep, int run, char *assignments[SWEEP_ASSIGNMENTS_MAX])
+{
+    YamlFile *file;
+    Scene scene;
+    int count = 0;
+    for (; count < sweep->key_count; count++) assignments[count] = sweep_assignment(sweep, run, count);
+    bool ok = sweep_load(sweep, run, &file, &scene);
+    for (int k = 0; k < SWEEP_OUTPUTS && ok; k++) {
+        Text text = {0};
+        const char *name = *output_of(&scene, k);
+        if (!name) continue;
+        text_add(&text, "%s=", outputs[k].key);
+        text_add_quoted(&text, name);
+        assignments[count++] = text.text;
+    }
+    yaml_clear(scene_table(), &scene);
+    yaml_destroy(file);
+    return count;
 }

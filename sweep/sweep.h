@@ -3,6 +3,7 @@
  * Run r gives each key a value: choice r / stride % count of the key's. Keys that go together have the same stride; the
  * last one steps fastest, so that values added to the first one add runs at the end. */
 #pragma once
+#include "io/file_sum.h"
 #include "model/scene.h"
 
 enum { SWEEP_RUNS_MAX = 100000, SWEEP_KEYS_MAX = 60 };
@@ -20,6 +21,7 @@ typedef struct SweepKey {
 /* All is owned. */
 typedef struct Sweep {
     char *path, *scene; /* the sweep's file, the scene's */
+    FileSum sum;        /* of the scene as it was then */
     char *name;         /* of the folder of results and of the tables, NAME.csv and NAME.h5 */
     int key_count, run_count, collect_count;
     SweepKey *keys;
@@ -40,5 +42,13 @@ const SweepValue *sweep_value(const Sweep *sweep, int run, int key);
 char *sweep_assignment(const Sweep *sweep, int run, int key);
 char *sweep_run_name(const Sweep *sweep, int run);
 
-/* The run's scene; clear and destroy it in any case. */
+/* Is the scene another one than it was when the sweep was read? */
+bool sweep_has_changed(const Sweep *sweep);
+
+/* All that `slender run` is to be told, as for --set; returns how many. */
+enum { SWEEP_OUTPUTS = 6, SWEEP_ASSIGNMENTS_MAX = SWEEP_KEYS_MAX + SWEEP_OUTPUTS };
+int sweep_assignments(const Sweep *sweep, int run, char *assignments[SWEEP_ASSIGNMENTS_MAX]);
+
+/* The run's scene; clear and destroy it in any case. The files that its `output` names are the run's own: plot.gcode is
+ * 0001_plot.gcode. */
 bool sweep_load(const Sweep *sweep, int run, YamlFile **file, Scene *scene);

@@ -3,6 +3,7 @@
 #include "io/arrays_file.h"
 #include "io/safe_file.h"
 #include "io/text.h"
+#include "model/start.h"
 #include "sweep/cells.h"
 #include "sweep/state.h"
 #include <errno.h>
@@ -101,14 +102,12 @@ static void add_key(Columns *columns, const Sweep *sweep, int key)
     Cells *cells = mem_alloc((size_t)columns->rows, sizeof *cells);
     bool alike = true;
     for (int r = 0; r < columns->rows; r++) {
-        double value;
         cells[r] = cells_of_value(sweep_value(sweep, r, key)->text);
-        alike = alike && cells[r].count == cells[0].count && yaml_quantity(cells[r].texts[0], &value);
+        alike = alike && !cells[r].text && cells_count(&cells[r]) == cells_count(&cells[0]);
     }
     for (int r = 0; r < columns->rows && !alike; r++) {
         cells_clear(&cells[r]);
-        cells[r].texts = mem_alloc(1, sizeof(char *));
-        cells[r].texts[cells[r].count++] = mem_text(sweep_value(sweep, r, key)->text);
+        cells[r].text = mem_text(sweep_value(sweep, r, key)->text);
     }
     if (alike) cells[0].unit = mem_text(yaml_unit(scene_table(), sweep->keys[key].name));
     columns_add_cells(columns, sweep->keys[key].name, cells);
@@ -116,7 +115,7 @@ static void add_key(Columns *columns, const Sweep *sweep, int key)
     mem_free(cells);
 }
 
-/* The run with the best finite number. */
+/* The run with the best finite number, of those whose states can be trusted. */
 static int find_best(const Reading *reading)
 {
     const Sweep *sweep = reading->sweep;
@@ -124,8 +123,10 @@ static int find_best(const Reading *reading)
     double record = NAN;
     int best = -1;
     for (int r = 0; r < sweep->run_count; r++) {
-        double value = cells[r].count == 1 ? strtod(cells[r].texts[0], NULL) : NAN;
-        if (!isfinite(value) || !(best < 0 || (sweep->least ? value < record : value > record))) continue;
+        double value = !cells[r].text && cells_count(&cells[r]) == 1 ? cells[r].numbers[0] : NAN;
+        if (!isfinite(value) || start_is_doubtful(reading->status[r]) ||
+            !(best < 0 || (sweep->least ? value < record : value > record)))
+            continue;
         best = r;
         record = value;
     }
@@ -171,6 +172,7 @@ static bool write_csv(const char *path, const Columns *columns, Error *err)
     for (int r = -1; r < columns->rows; r++) {
         for (int k = 0; k < columns->count; k++) {
             const Column *column = &columns->columns[k];
+            if (column->numbers) continue;
             const char *cell = r < 0 ? column->name : column->cells[r];
             if (k) text_add(&text, ",");
             add_quoted(&text, cell ? cell : "");
@@ -182,9 +184,19 @@ static bool write_csv(const char *path, const Columns *columns, Error *err)
     return ok;
 }
 
+/* [runs][rows], [runs][rows][width]; the column's own. */
+static Array wide_array(const Column *column, int runs)
+{
+    Array array = array_float(column->name, column->unit ? column->unit : "", column->numbers,
+                              column->width > 1 ? 3 : 2, runs, column->rows);
+    array.dims[2] = column->width;
+    return array;
+}
+
 /* Numbers, or a text of a line for each run. */
 static Array column_array(const Column *column, int rows)
 {
+    if (column->numbers) return wide_array(column, rows);
     if (column_is_number(column, rows)) {
         double *values = mem_alloc((size_t)rows, sizeof *values);
         for (int r = 0; r < rows; r++) values[r] = column->cells[r] ? strtod(column->cells[r], NULL) : NAN;
@@ -201,7 +213,8 @@ static bool write_h5(const char *path, const Columns *columns, Error *err)
     Array *arrays = mem_alloc((size_t)columns->count, sizeof *arrays);
     for (int k = 0; k < columns->count; k++) arrays[k] = column_array(&columns->columns[k], columns->rows);
     bool ok = arrays_file_write(path, arrays, columns->count, err);
-    for (int k = 0; k < columns->count; k++) mem_free((void *)arrays[k].data);
+    for (int k = 0; k < columns->count; k++)
+        if (!columns->columns[k].numbers) mem_free((void *)arrays[k].data);
     mem_free(arrays);
     return ok;
 }
@@ -236,10 +249,20 @@ static void warn_of_missing(const Reading *reading, const Host *host)
     for (int r = 0; r < runs; r++) any = any || reading->read[r];
     for (int k = 0; k < reading->path_count && any; k++) {
         int r = 0;
-        while (r < runs && !reading->cells[k * runs + r].count) r++;
+        while (r < runs && !cells_count(&reading->cells[k * runs + r])) r++;
         if (r == runs)
             host_warn(host, "%s is in none of the results; slender info lists what is there",
                       reading->paths[k]);
+    }
+}
+
+static void say_wide(const Sweep *sweep, const Columns *columns, const Host *host)
+{
+    for (int k = 0; k < columns->count; k++) {
+        const Column *column = &columns->columns[k];
+        if (column->numbers)
+            host_say(host, "%s has up to %d numbers for a run, and %d can be columns: they are in %s.h5 only",
+                     column->name, column->rows * column->width, CELLS_WIDTH_MAX, sweep->name);
     }
 }
 
@@ -253,6 +276,7 @@ bool table_collect(const Sweep *sweep, const Host *host, int *best, Error *err)
         warn_of_missing(&reading, host);
         if (sweep->best) *best = find_best(&reading);
         Columns columns = make_columns(&reading, *best);
+        say_wide(sweep, &columns, host);
         ok = write_files(sweep, &columns, err) && (!sweep->best || link_best(sweep, *best, err));
         columns_clear(&columns);
     }

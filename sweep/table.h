@@ -3,7 +3,7 @@
  * Columns: `run` (from 1); the varied keys, in SI where all their values are numbers; `status`; what is collected; with `best`
  * a last one, `best`, 1 of the best run and 0 of the others. Three numbers are NAME.x, NAME.y, NAME.z, others NAME[0], ..; of
  * what has a row for each time, stage or evaluation (probes, history, stages, frames) it is the last row. What is not there
- * is an empty cell, and NaN. */
+ * is an empty cell, and NaN. More than 64 numbers are a dataset [runs, ..] of NAME.h5 only. */
 #pragma once
 #include "base/error.h"
 #include "job/host.h"

@@ -24,7 +24,7 @@ typedef struct Working {
     int active, done, total;
     int *held, held_count; /* runs that another process was at, to be looked at again */
     bool last;             /* for the last time */
-    bool stopping;
+    bool stopping, halted; /* those under way are to end, and no further one is begun */
     SweepTally *tally;
     Error *err;
 } Working;
@@ -54,15 +54,16 @@ static int spawn(const SweepWork *work, int run, const char *mode, int lock, pid
     const Sweep *sweep = work->sweep;
     enum { FIXED = 9 };
     char *name = sweep_run_name(sweep, run), *log = mem_format("%s.log", name),
-         *threads = mem_format("%d", work->threads), *assignments[SWEEP_KEYS_MAX];
-    const char *arguments[FIXED + 2 * SWEEP_KEYS_MAX + 1] = {
+         *threads = mem_format("%d", work->threads), *assignments[SWEEP_ASSIGNMENTS_MAX];
+    const char *arguments[FIXED + 2 * SWEEP_ASSIGNMENTS_MAX + 1] = {
         "/proc/self/exe", "run", sweep->scene, "-o", name, "--no-picture", "--threads", threads, mode};
-    for (int k = 0; k < sweep->key_count; k++) {
+    int count = sweep_assignments(sweep, run, assignments);
+    for (int k = 0; k < count; k++) {
         arguments[FIXED + 2 * k] = "--set";
-        arguments[FIXED + 2 * k + 1] = assignments[k] = sweep_assignment(sweep, run, k);
+        arguments[FIXED + 2 * k + 1] = assignments[k];
     }
     int failed = program_start(arguments, log, lock, process);
-    for (int k = 0; k < sweep->key_count; k++) mem_free(assignments[k]);
+    for (int k = 0; k < count; k++) mem_free(assignments[k]);
     mem_free(name);
     mem_free(log);
     mem_free(threads);
@@ -72,18 +73,10 @@ static int spawn(const SweepWork *work, int run, const char *mode, int lock, pid
 /* The option to begin it with; NULL: another process has done it meanwhile, with *code. */
 static const char *next_of(const SweepWork *work, int run, int *code)
 {
-    YamlFile *file;
-    Scene scene;
-    const char *mode = NULL;
-    *code = RUN_REFUSED;
-    if (sweep_load(work->sweep, run, &file, &scene)) {
-        RunState state = state_read(work->sweep, run, &scene);
-        mode = state_next(&state, work->retry, work->force);
-        if (!record_is_kept(state.record)) *code = state.code;
-        state_clear(&state);
-    }
-    yaml_clear(scene_table(), &scene);
-    yaml_destroy(file);
+    RunState state;
+    const char *mode = state_look(work->sweep, run, work->retry, work->force, &state);
+    *code = record_is_kept(state.record) ? RUN_REFUSED : state.code;
+    state_clear(&state);
     return mode;
 }
 
@@ -96,7 +89,7 @@ static bool start_locked(Working *w, Task *task)
         state_put_begin(w->work->sweep, task->run);
         failed = spawn(w->work, task->run, mode, task->lock, &task->process);
     } else {
-        count(w, task->run, code, "was done elsewhere");
+        count(w, task->run, code, code == RUN_REFUSED ? "is refused now" : "was done elsewhere");
     }
     if (mode && !failed) return w->active++, true;
     close(task->lock);
@@ -182,21 +175,33 @@ static void wait_for_some(Working *w)
 /* Each saves and ends, as by a Ctrl-C of its own. */
 static void stop(Working *w)
 {
-    w->stopping = true;
+    w->stopping = w->halted = true;
     for (int k = 0; k < w->work->jobs; k++)
         if (w->tasks[k].run >= 0) kill(w->tasks[k].process, SIGINT);
+}
+
+/* Runs of one sweep are of one scene. */
+static bool may_begin(Working *w)
+{
+    const Sweep *sweep = w->work->sweep;
+    w->halted = sweep_has_changed(sweep);
+    if (w->halted)
+        host_warn(w->work->host, "%s has changed since the sweep began: no further run is begun",
+                  sweep->scene);
+    return !w->halted;
 }
 
 /* Until all of these have ended or are set aside, or the sweep is stopped. */
 static bool do_all(Working *w, const int *runs, int count)
 {
     bool ok = true;
-    for (int next = 0; w->active || (next < count && ok && !w->stopping);) {
+    for (int next = 0; w->active || (next < count && ok && !w->halted);) {
         if (!w->stopping && (!ok || host_stops(w->work->host))) stop(w);
-        if (!w->stopping && next < count && w->active < w->work->jobs)
+        if (w->halted || next == count || w->active == w->work->jobs) {
+            if (w->active) wait_for_some(w);
+        } else if (may_begin(w)) {
             ok = start(w, runs[next++]);
-        else if (w->active)
-            wait_for_some(w);
+        }
     }
     return ok;
 }

@@ -114,8 +114,10 @@ done
 # ---- Every run once, none twice ----
 "$program" sweep s.yaml --collect
 awk -F, 'NR > 1 { n[$1]++; s[$3]++ } END { for (k in n) if (n[k] != 1) print "row " k " " n[k] " times"; for (k in s) print s[k], k }' s.csv
-echo "computed to the end: $(grep -ho 'run [0-9]* done' s/slurm-*.log | wc -l), different: $(grep -ho 'run [0-9]* done' s/slurm-*.log | sort -u | wc -l)"
+grep -ho 'run [0-9]* done' s/slurm-*.log > done.txt
+computed=$(wc -l < done.txt) different=$(sort -u done.txt | wc -l)
+echo "computed to the end: $computed, different: $different"
 began=$(date +%s.%N)
 "$program" sweep here.yaml --quiet
 echo "here alone: $(date +%s.%N | awk -v b="$began" '{ printf "%.0f s", $1 - b }')"
-cmp s.csv here.csv && echo "the same table"
+cmp s.csv here.csv && echo "the same table" && [ "$computed $different" = "$runs $runs" ]

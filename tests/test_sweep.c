@@ -5,6 +5,7 @@
 #include "sweep/lock.h"
 #include "sweep/runs_file.h"
 #include "sweep/table.h"
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -108,10 +109,8 @@ static void test_quantities(void **state)
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         Cells cells = cells_of_value(rows[k].text);
         char *all = mem_text("");
-        for (int i = 0; i < cells.count; i++) {
-            double value;
-            char *shown =
-                yaml_quantity(cells.texts[i], &value) ? mem_format("%g", value) : mem_text(cells.texts[i]);
+        for (int i = 0; i < cells_count(&cells); i++) {
+            char *shown = cells.text ? mem_text(cells.text) : mem_format("%g", cells.numbers[i]);
             all = mem_join(all, i ? " " : "", shown);
             mem_free(shown);
         }
@@ -119,6 +118,40 @@ static void test_quantities(void **state)
         mem_free(all);
         cells_clear(&cells);
     }
+}
+
+/* What runs have of unequal counts: columns up to 64 numbers; of more one block, each run's numbers in their own rows. */
+static void test_columns(void **state)
+{
+    (void)state;
+    double few[] = {1, 2, 3, 4}, many[66];
+    for (int i = 0; i < 66; i++) many[i] = i;
+    const Cells narrow[] = {{.rows = 2, .width = 2, .numbers = few}, {.rows = 1, .width = 1, .numbers = few}},
+                wide[] = {{.rows = 22, .width = 3, .numbers = many},
+                          {.rows = 2, .width = 2, .numbers = few},
+                          {.text = "none"}};
+    Columns columns = {.rows = 2};
+    columns_add_cells(&columns, "few", narrow);
+    assert_int_equal(columns.count, 4);
+    assert_string_equal(columns.columns[1].name, "few[1]");
+    assert_string_equal(columns.columns[1].cells[0], "2");
+    assert_null(columns.columns[1].cells[1]);
+    columns_clear(&columns);
+    columns.rows = 3;
+    columns_add_cells(&columns, "many", wide);
+    const Column *block = columns.columns;
+    assert_int_equal(columns.count, 1);
+    assert_int_equal(block->rows, 22);
+    assert_int_equal(block->width, 3);
+    assert_memory_equal(block->numbers, many, sizeof many);
+    for (int i = 66; i < 198; i++) {
+        int row = (i - 66) / 3, place = i % 3;
+        if (row < 2 && place < 2)
+            assert_true(block->numbers[i] == few[2 * row + place]);
+        else
+            assert_true(isnan(block->numbers[i]));
+    }
+    columns_clear(&columns);
 }
 
 /* Of a number, of a table's short form, within lists and below names; none of what has none. */
@@ -315,6 +348,7 @@ int main(void)
                                        cmocka_unit_test_teardown(test_again, check_blocks),
                                        cmocka_unit_test_teardown(test_order, check_blocks),
                                        cmocka_unit_test_teardown(test_quantities, check_blocks),
+                                       cmocka_unit_test_teardown(test_columns, check_blocks),
                                        cmocka_unit_test_teardown(test_units, check_blocks),
                                        cmocka_unit_test_teardown(test_runs_file, check_blocks),
                                        cmocka_unit_test_teardown(test_lock, check_blocks),
