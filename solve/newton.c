@@ -52,7 +52,7 @@ static const struct {
     [NEWTON_STOPPED] = {"stopped", "interrupted"},
     [NEWTON_UNBALANCED] = {"evaluated", "a pose whose forces are not in balance"},
     [NEWTON_CRUSHED] = {"crushed", "a piece of the body is crushed to nothing"},
-    [NEWTON_TANGLED] = {"tangled", "a piece of the body is turned inside out"},
+    [NEWTON_TANGLED] = {"tangled", "a piece of the body is turned inside out, or flattened to nothing"},
     [NEWTON_BLOCKED] = {"blocked", "what is held was moved through another part of the body"},
     [NEWTON_PIERCED] = {"pierced", "something has gone through the body"},
     [NEWTON_ASTRAY] =
@@ -335,7 +335,7 @@ static bool is_astray(const Search *s)
            s->least_force[1] > ASTRAY_PART * s->least_force[0];
 }
 
-/* Where a body is inside out its energy may well be stationary, but it is no equilibrium of such a body. */
+/* Where a body is inside out, or flat, its energy may well be stationary, but it is no equilibrium of such a body. */
 static bool ends_tangled(const Search *s)
 {
     NewtonStatus status = s->info.status;

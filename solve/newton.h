@@ -39,7 +39,7 @@ typedef enum NewtonStatus {
     NEWTON_UNSETTLED, /* of a step of time: friction and the forces that it follows do not agree (march.h) */
     NEWTON_BLOCKED,   /* of a step of time: what is held was to go where the body does not let it */
     NEWTON_CRUSHED, /* of a body, by whoever knows it: a piece has lost its size, and energies mean nothing */
-    NEWTON_TANGLED, /* stationary, and a piece is turned inside out (TermOps.tangles): no equilibrium */
+    NEWTON_TANGLED, /* stationary, and a piece is inside out, or flat (TermOps.tangles): no equilibrium */
     NEWTON_PIERCED, /* of a motion: something has gone through the body (march.h)                    */
     NEWTON_ASTRAY,  /* all iterations are done, and the later half has come no nearer to balance     */
     NEWTON_UNKNOWN_FIELD, /* by whoever knows it: a field has no value where the body is or was to go */

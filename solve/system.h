@@ -182,7 +182,7 @@ bool system_has_follow(const System *sys);
 /* Does a term heed Point.convex, with the elements at hand? */
 bool system_convexes(const System *sys);
 
-/* Is the body turned inside out somewhere (TermOps.tangles)? */
+/* Is the body turned inside out or flat somewhere (TermOps.tangles)? */
 bool system_tangles(const System *sys, const Point *at);
 
 /* The largest part of a step d from at->x that the terms admit, in (0, 1] (TermOps.reach). */
