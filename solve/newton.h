@@ -10,8 +10,9 @@
 #include "solve/system.h"
 
 typedef struct NewtonDef {
-    int max_iterations;  /* default 300 */
-    double step_tol;     /* converged when the Newton step is smaller, in the body's measure; default 1e-8 */
+    int max_iterations; /* default 300 */
+    double
+        step_tol; /* converged when the Newton step is smaller, in the body's measure, or is rounding; default 1e-8 */
     double force_tol;    /* ... and no force exceeds this part of the element forces; default 1e-6 */
     double energy_tol;   /* ... or when the step will gain less than this part of the energies; 0: not */
     int cg_iterations;   /* at most so many conjugate gradients with the last factor; default 0 */
