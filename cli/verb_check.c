@@ -112,7 +112,7 @@ static bool check_derivatives(const Model *model, const Scene *scene)
     Random random = random_seed(1);
     model->body->ops->dof_sizes(model, sizes);
     if (model->world && model->world->obstacle_count)
-        world_lean(model->world, state.time, 0.1 * sizes[model->world->body.first], x);
+        world_lean(model->world, state.time, c->stages[0].p, 0.1 * sizes[model->world->body.first], x);
     for (int i = 0; i < dofs; i++)
         if (sizes[i] > 0) x[i] += (i < positions ? 0.1 : 0.3) * sizes[i] * random_signed(&random);
     double *p = params_at_work(model->params, c->stages[0].p, &random);

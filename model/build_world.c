@@ -61,10 +61,12 @@ bool model_read_world(Model *model, const Build *b, const Scene *scene, const Wo
     World *w = *world = world_create(body, obstacles, scene->obstacles_count);
     model->world = w;
     w->offset = contact->offset.mode == 0 ? body->outside : contact->offset.value;
+    w->local = contact->offset.mode == 0 && body->outsides;
     w->slip_speed = contact->slip_speed;
     w->implicit = contact->coupling == COUPLING_IMPLICIT;
     w->self = self;
     w->distance = isnan(contact->self.distance) ? body->thickness : contact->self.distance;
+    w->self_local = isnan(contact->self.distance) && body->outsides;
     w->rubs = contact->friction > 0;
     for (int k = 0; k < scene->obstacles_count; k++)
         w->rubs = w->rubs || scene->obstacles[k].friction > 0; /* NaN is not */
@@ -147,10 +149,11 @@ static double pressed(const WorldBody *body, double young)
 static double stiffness_of(const Model *model, const Scene *scene, const Case *c, const double *p)
 {
     const WorldBody *body = &model->world->body;
-    double sunk = SUNK * world_body_measure(body), mass = largest_mass(model, p);
+    double sunk = SUNK * world_body_measure(body), least = sunk * world_thinnest(body),
+           mass = largest_mass(model, p);
     double gravity = model->gravity < 0 ? 0 : vec3_length(vec3_load(p + model->gravity));
     double k = fmax(pressed(body, largest_young(model, p)), WEIGHTS * mass * gravity / sunk);
-    k = fmax(k, largest_load(model, p) / sunk);
+    k = fmax(k, largest_load(model, p) / least);
     if (!model->job->motion) return k;
     return fmax(k, mass * likely_speed(model, c, gravity, scene->start != NULL) / (scene->time.step * sunk));
 }

@@ -181,9 +181,9 @@ static const YamlTable unknowns_table = {
         {YAML_OPTIONAL(UnknownsScene, skin_young, &young_unknown_table),
          .doc = "of a solid's film, a number per face of the surface"},
         {YAML_OPTIONAL(UnknownsScene, thickness, &thickness_unknown_table),
-         .doc =
-             "of a shell, a number per face; what it keeps from obstacles and from itself stays that of the "
-             "scene's thickness, and nothing may ask for its centre of mass"},
+         .doc = "of a shell, a number per face. Obstacles feel it; what the body keeps from itself stays "
+                "that of the "
+                "scene's thickness, and nothing may ask for its centre of mass"},
         {YAML_OPTIONAL(UnknownsScene, fold, &fold_unknown_table), .doc = "a number per edge"},
         {YAML_OPTIONAL(UnknownsScene, natural_strain, &strain_unknown_table),
          .doc = "of a rod, three numbers per element"},

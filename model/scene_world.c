@@ -145,11 +145,12 @@ static const YamlTable self_contact_table = {
     .fields = (const YamlField[]){
         {YAML_BOOL(SelfContactScene, enabled), .short_form = true, .doc = "they do"},
         {YAML_NUMBER(SelfContactScene, distance), .unit = "m", .range = "(0, inf)",
-         .doc = "between middles at which they begin to; the (largest) thickness of a shell, twice the "
+         .doc = "between middles at which they begin to; the thickness of a shell, twice the "
                 "radius of a rod, a "
                 "fifth of the mean edge of a solid's surface if absent"},
         {YAML_NUMBER(SelfContactScene, stiffness), .unit = "J", .range = "(0, inf)",
-         .doc = "scale of its energy, per pair; Young's modulus times the cube of the distance if absent"},
+         .doc = "scale of its energy, per pair; Young's modulus times the cube of the (largest) distance if "
+                "absent"},
         {0}}};
 
 bool self_contact_is_asked(const SelfContactScene *self)
@@ -176,7 +177,7 @@ AUTO_TABLE(
     "per contact point");
 AUTO_TABLE(contact_offset, "offset of contact", "m", "[0, inf)",
            "How far from an obstacle the body's middle surface or line stays.",
-           "half the thickness of a shell (everywhere of its largest), the radius of a rod, 0 of a solid",
+           "half the thickness of a shell, the radius of a rod, each where it touches; 0 of a solid",
            "a distance");
 
 const YamlTable contact_table = {

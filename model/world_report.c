@@ -73,14 +73,22 @@ static char *samples_text(const World *world)
     return text;
 }
 
+/* A distance that the body keeps: one, or from where it is thinnest to where it is thickest. */
+static char *distance_text(const World *world, bool local, double largest)
+{
+    double least = local ? largest * world_thinnest(&world->body) : largest;
+    return least < largest ? mem_format("%.3g to %.3g m", least, largest) : mem_format("%.3g m", largest);
+}
+
 static char *contact_line(const Model *model, const Scene *scene)
 {
     const World *world = model->world;
-    char *samples = samples_text(world),
-         *line = mem_format("contact: %s; the body stays %.3g m away, with %.3g N/m at each%s", samples,
-                            world->offset, first_params(model)[world->stiffness],
+    char *samples = samples_text(world), *away = distance_text(world, world->local, world->offset),
+         *line = mem_format("contact: %s; the body stays %s away, with %.3g N/m at each%s", samples, away,
+                            first_params(model)[world->stiffness],
                             scene->contact.stiffness.mode == 0 ? ", as follows from it" : "");
     mem_free(samples);
+    mem_free(away);
     return line;
 }
 
@@ -108,8 +116,10 @@ char *world_describe(const Model *model, const Scene *scene)
     }
     if (world->self) {
         const double *p = first_params(model);
-        text = add_line(text, mem_format("self contact: parts nearer than %.3g m, with %.3g J; friction %.3g",
-                                         world->distance, p[world->self_stiffness], p[world->self_friction]));
+        char *near = distance_text(world, world->self_local, world->distance);
+        text = add_line(text, mem_format("self contact: parts nearer than %s, with %.3g J; friction %.3g",
+                                         near, p[world->self_stiffness], p[world->self_friction]));
+        mem_free(near);
     }
     if (world->wet) text = add_line(text, water_line(model));
     return text;
@@ -117,15 +127,21 @@ char *world_describe(const Model *model, const Scene *scene)
 
 /* ---- What is doubtful ---- */
 
-/* How deep is it where it is deepest, with its outside, m? */
-static double depth_in(const World *world, int obstacle, const RigidPose *pose, const double *x, int *vertex)
+/* Where is the body deepest in an obstacle, and how deep with its outside, m? */
+typedef struct Deepest {
+    int vertex;
+    double depth, outside;
+} Deepest;
+
+static Deepest deepest_in(const World *world, int obstacle, const RigidPose *pose, const Case *c)
 {
-    double deepest = -INFINITY;
-    for (int v = 0; v < world->body.vertex_count; v++) {
+    Deepest deepest = {.depth = -INFINITY};
+    for (int e = 0; e < world->contacts[0].samples.count; e++) {
         Gap gap;
-        obstacle_gap(&world->obstacles[obstacle], pose, x + world->body.first + 3 * v, &gap);
-        double deep = world->offset - gap.value;
-        if (deep > deepest) deepest = deep, *vertex = v;
+        int v = world_vertex(world, e);
+        double outside = world_offset(world, e, c->stages[0].p);
+        obstacle_gap(&world->obstacles[obstacle], pose, c->state.x + world->body.first + 3 * v, &gap);
+        if (outside - gap.value > deepest.depth) deepest = (Deepest){v, outside - gap.value, outside};
     }
     return deepest;
 }
@@ -136,15 +152,14 @@ static void advise_start(Model *model, const Case *c)
     Poses poses = poses_create(world->obstacles, world->obstacle_count);
     poses_update(&poses, &(Point){.time = c->state.time});
     for (int k = 0; k < world->obstacle_count; k++) {
-        int vertex = 0;
-        double deep = depth_in(world, k, &poses.end[k], c->state.x, &vertex);
-        if (deep > INSIDE * world->body.thickness)
+        Deepest at = deepest_in(world, k, &poses.end[k], c);
+        double part = world->local ? at.outside / world->offset : 1; /* of the largest thickness */
+        if (at.depth > INSIDE * part * world->body.thickness)
             mesh_warn(&model->report,
                       "where %s starts, the body is inside the obstacle '%s': %s %d by %.3g m (its outside "
-                      "is %.3g m "
-                      "off). It is driven out at once",
-                      c->name, world->obstacles[k].name, world->body.face_count ? "vertex" : "node", vertex,
-                      deep, world->offset);
+                      "is %.3g m off). It is driven out at once",
+                      c->name, world->obstacles[k].name, world->body.face_count ? "vertex" : "node",
+                      at.vertex, at.depth, at.outside);
     }
     poses_destroy(&poses);
 }

@@ -106,6 +106,8 @@ WorldBody rod_world_body(Rod *rod)
         rod->part[node] = rod->part[next] = e / layout.each;
     }
     double reach = rod_largest_section(rod).reach;
+    bool same = true;
+    for (int e = 0; e < rod->elements; e++) same = same && rod->radii[e] == reach;
     return (WorldBody){.vertex_count = layout.nodes,
                        .first = layout.position,
                        .edge_count = rod->elements,
@@ -114,6 +116,8 @@ WorldBody rod_world_body(Rod *rod)
                        .part = rod->part,
                        .thickness = 2 * reach,
                        .outside = reach,
+                       .outsides = same ? NULL : rod->radii,
+                       .doubled = -1,
                        .strands = rod->strands,
                        .length = rod->lengths,
                        .radius = rod->radii};

@@ -59,6 +59,7 @@ void shell_destroy(Shell *shell)
     mesh_destroy(shell->mesh);
     flux_fields_clear(&shell->fields);
     params_clear(&shell->params);
+    mem_free(shell->outsides);
     mem_free(shell->rest_angle);
     mem_free(shell->fixed);
     mem_free(shell->clamped);
@@ -77,7 +78,9 @@ WorldBody shell_world_body(const Shell *shell)
                        .part = mesh->vertex_component,
                        .fixed = shell->fixed,
                        .thickness = shell->thickness,
-                       .outside = shell->thickness / 2};
+                       .outside = shell->thickness / 2,
+                       .outsides = shell->outsides,
+                       .doubled = shell->face_thickness};
 }
 
 void shell_fix(Shell *shell, int vertex, int axis)

@@ -19,13 +19,15 @@ typedef enum BendingModel {
 
 typedef struct Shell {
     Mesh *mesh; /* owned                                                          */
-    /* m: the largest, by which it keeps its distance to the world; kg/m^3; both the default of all faces. */
+    /* m: the largest; kg/m^3; both the default of all faces. */
     double thickness, density;
     double poisson;
     double coercivity;         /* A/m, of what it is magnetised with; NAN: not known             */
     MembraneMaterial material; /* of the stretching; bending is of small strains                 */
     BendingModel bending;
-    FluxFields fields;  /* parts of the flux density that vary in space; owned                          */
+    FluxFields fields; /* parts of the flux density that vary in space; owned                          */
+    double *
+        outsides; /* [face] m, half of each thickness as the world is to meet it; owned; NULL: that of `thickness` */
     double *rest_angle; /* [edge] dihedral angle of the rest shape, rad; 0 on the boundary; owned         */
     bool *fixed;        /* [3*vertex_count] coordinates that are held; owned                              */
     bool *clamped;      /* [edge] the slope is held as at rest; owned                                     */

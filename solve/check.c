@@ -106,6 +106,12 @@ static void check_dof(Check *c, int i, double h)
     }
 }
 
+/* The elements at the point where the check stands. */
+static void update(Check *c)
+{
+    if (c->term->ops->update) c->term->ops->update(c->term->self, &c->at);
+}
+
 /* The gradient's change along some of the lines against r; of w, chosen at random, returns w.r. */
 static double check_forward(Check *c, int first, int last, const Pack *r, Pack *w, Worst *forward)
 {
@@ -113,9 +119,11 @@ static double check_forward(Check *c, int first, int last, const Pack *r, Pack *
     double product = 0;
     for (int k = 0; k < 4; k++) {
         for (int n = first; n <= last; n++) line_move(&c->lines[n], stencil[k] * STEP);
+        if (first == PARAMETERS) update(c); /* what a term keeps of them */
         c->term->ops->eval(c->term->self, c->pack, &c->at, c->x, g[k], NULL);
     }
     for (int n = first; n <= last; n++) line_move(&c->lines[n], 0);
+    if (first == PARAMETERS) update(c);
     for (int i = 0; i < c->size; i++) {
         compare(forward, r[i], difference((Pack[]){g[0][i], g[1][i], g[2][i], g[3][i]}, STEP), c->lanes);
         for (int l = 0; l < PACK_LANES; l++) w[i][l] = random_signed(c->random);
@@ -204,12 +212,6 @@ static void choose_start(Check *c, const double *dof_size)
     line_move(x, 0);
     line_move(v, 0);
     line_move(lag, 0);
-}
-
-/* The elements at the point where the check stands. */
-static void update(Check *c)
-{
-    if (c->term->ops->update) c->term->ops->update(c->term->self, &c->at);
 }
 
 static void check_pack(Check *c, const double *dof_size)

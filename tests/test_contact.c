@@ -9,10 +9,21 @@
 
 /* ---- Derivatives ---- */
 
-/* Points about a ball that turns and moves and a floor, as vertices, edges and faces. */
-static void check_terms(int corners, bool moving)
+enum { POINTS = 24 };
+
+/* So many faces, each of three points in turn, are the body's cells. */
+static Outside *random_outside(const Samples *samples, const double *x, int doubled)
 {
-    enum { POINTS = 24 };
+    int corners[3 * POINTS];
+    for (int i = 0; i < 3 * POINTS; i++) corners[i] = (i / 3 + i % 3) % POINTS;
+    Samples cells = {POINTS, 3, corners, 0};
+    return outside_create(samples, &cells, (const double(*)[3])x, POINTS, NULL, doubled);
+}
+
+/* Points about a ball that turns and moves and a floor, as vertices, edges and faces; the same everywhere, or each with a
+ * thickness. */
+static void check_terms(int corners, bool moving, bool local)
+{
     Random random = random_seed(11);
     Obstacle obstacles[] = {obstacle_sphere((double[]){0, 0, 0}, 0.02, false),
                             obstacle_plane((double[]){0, 0, -0.01}, (double[]){0.1, 0, 1})};
@@ -20,7 +31,7 @@ static void check_terms(int corners, bool moving)
         obstacles[0].motion.move = of_time("0.02*t", "0.01*sin(3*t)", "0");
         obstacles[0].motion.turn = of_time("t", "2*t", "-t*t");
     }
-    double x[3 * POINTS], p[4] = {300, 0.4, 0.7, 0};
+    double x[3 * POINTS], p[3 + POINTS] = {300, 0.4, 0.7};
     for (int v = 0; v < POINTS; v++) {
         double r = 0.0195 + 5e-4 * random_signed(&random), a[3], size = 0;
         for (int i = 0; i < 3; i++) a[i] = random_signed(&random), size += a[i] * a[i];
@@ -31,6 +42,8 @@ static void check_terms(int corners, bool moving)
     Params params = {0};
     params_add(&params, "contact_stiffness", "N/m", 1, 1, false);
     params_add(&params, "friction", "", 2, 1, false);
+    if (local) params_add(&params, "thickness", "m", POINTS, 1, false);
+    for (int c = 0; c < POINTS; c++) p[3 + c] = local ? 2e-3 * (0.75 + 0.25 * random_signed(&random)) : 0;
     ContactDef def = {.obstacles = obstacles,
                       .obstacle_count = 2,
                       .samples = {POINTS / corners, corners, vertices, 0},
@@ -38,17 +51,21 @@ static void check_terms(int corners, bool moving)
                       .smoothing = 2e-3,
                       .slip_speed = 0.02,
                       .friction = 1};
+    Outside *outside = local ? random_outside(&def.samples, x, 3) : NULL;
+    def.outside = outside;
     Point at = {.x = x, .p = p, .time = 0.3, .dt = 0.01};
     double dof_size[9] = {1e-4, 1e-4, 1e-4, 1e-4, 1e-4, 1e-4, 1e-4, 1e-4, 1e-4};
     Term terms[] = {contact_term(&def), friction_term(&def)};
     for (int t = 0; t < 2; t++) {
         TermError error = check_term(&terms[t], &params, &at, 3 * POINTS, dof_size, &random);
-        print_message("%s, %d corners%s: differences %.1e, products %.1e\n", terms[t].ops->name, corners,
-                      moving ? ", moving" : "", check_differences(error), check_products(error));
+        print_message("%s, %d corners%s%s: differences %.1e, products %.1e\n", terms[t].ops->name, corners,
+                      moving ? ", moving" : "", local ? ", local" : "", check_differences(error),
+                      check_products(error));
         assert_true(check_differences(error) < 1e-7 && check_products(error) < 1e-11);
         terms[t].ops->destroy(terms[t].self);
     }
     for (int k = 0; k < 2; k++) obstacle_clear(&obstacles[k]);
+    outside_destroy(outside);
     params_clear(&params);
 }
 
@@ -56,7 +73,7 @@ static void test_derivatives(void **state)
 {
     (void)state;
     for (int corners = 1; corners <= 3; corners++)
-        for (int moving = 0; moving < 2; moving++) check_terms(corners, moving);
+        for (int k = 0; k < 4; k++) check_terms(corners, k % 2, k / 2);
 }
 
 /* ---- A plate on a slope ---- */

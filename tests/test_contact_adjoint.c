@@ -257,9 +257,54 @@ static void test_self(void **unused)
     }
 }
 
+/* ---- A strip whose thickness is looked for: a taper, of which obstacles feel each place's own ---- */
+
+static Body taper_over(Obstacle *list, int count, Friction friction)
+{
+    Random random = random_seed(9);
+    Shell *shell = shell_of_sheet((double[]){12 * MM, 4 * MM}, (int[]){6, 2}, PATTERN_ALTERNATE);
+    const Mesh *mesh = shell->mesh;
+    shell->thickness = 5e-4, shell->poisson = 0.4, shell->density = 1000, shell->bending = BENDING_MIDEDGE;
+    shell->outsides = mem_alloc((size_t)mesh->face_count, sizeof *shell->outsides);
+    for (int f = 0; f < mesh->face_count; f++)
+        shell->outsides[f] = 2.5e-4 * (1 - mesh->rest[mesh->faces[f][0]][0] / (18 * MM));
+    for (int k = 0; k < count; k++) list[k].feature = 1 * MM;
+    WorldBody shown = shell_world_body(shell);
+    World *world = world_create(&shown, mem_copy(list, (size_t)count, sizeof *list), count);
+    world->local = true;
+    add_world(shell, world, friction);
+    Body body = body_create(shell, shell_dynamic_system(shell), 1e5);
+    for (int f = 0; f < mesh->face_count; f++) body.p[shell->face_thickness + f] = 2 * shell->outsides[f];
+    body.p[shell->gravity + 2] = -200;
+    body.p[world->stiffness] = 100;
+    for (int k = 0; k < count; k++) body.p[world->friction + k] = 0.5;
+    for (int i = 0; i < system_position_count(body.sys); i++)
+        body.state.v[i] = (i % 3 == 0 ? 0.1 : 0) + 0.02 * random_signed(&random);
+    return body;
+}
+
+static void test_thickness(void **unused)
+{
+    (void)unused;
+    for (Friction friction = SMOOTH; friction <= IMPLICIT; friction++) {
+        Obstacle list[2] = {make_obstacle(0), make_obstacle(1)};
+        if (friction) set_moving(&list[1]);
+        Body body = taper_over(list, 2, friction);
+        Motion m =
+            motion_create(body.sys, &body.shell->params, body.p, &body.state, body.shell->mesh->vertex_count);
+        m.def.march.implicit = friction == IMPLICIT;
+        m.problem.step = STEP, m.problem.steps = STEPS;
+        motion_unknown(&m, "thickness", UNKNOWN_LOG, 0.1, false);
+        motion_unknown(&m, "contact_stiffness", UNKNOWN_LOG, 0.1, false);
+        char *name = mem_format("thickness, %s", frictions[friction]);
+        check(&body, &m, name, false);
+        mem_free(name);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_obstacles), cmocka_unit_test(test_together),
-                                       cmocka_unit_test(test_self)};
+                                       cmocka_unit_test(test_self), cmocka_unit_test(test_thickness)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

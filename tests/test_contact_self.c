@@ -12,6 +12,7 @@ enum { STRANDS = 8, ENDS = 2 * STRANDS };
 typedef struct Tangle {
     double rest[ENDS + STRANDS][3], memory[3 * (ENDS + STRANDS)], p[3];
     int edges[STRANDS][2], faces[STRANDS][3], part[ENDS + STRANDS];
+    double outsides[ENDS + STRANDS], thick[STRANDS]; /* of vertices, and of edges and faces */
     SelfContactDef def;
     Params params;
 } Tangle;
@@ -45,6 +46,14 @@ static void tangle_make(Tangle *t, Random *random, bool faces, double parallel)
     t->p[0] = 3, t->p[1] = 0.4;
 }
 
+/* Each with a thickness of its own. */
+static void tangle_thin(Tangle *t, Random *random)
+{
+    for (int v = 0; v < ENDS + STRANDS; v++) t->outsides[v] = 0.25 * (0.8 + 0.2 * random_signed(random));
+    for (int k = 0; k < STRANDS; k++) t->thick[k] = 0.25 * (0.8 + 0.2 * random_signed(random));
+    t->def.vertex_outside = t->outsides, t->def.edge_outside = t->def.face_outside = t->thick;
+}
+
 /* Near a random point no class changes, nothing begins to slip and nothing stands still, but rarely: then differences are
  * worse. */
 static void check_derivatives(Term (*create)(const SelfContactDef *), bool faces, double parallel)
@@ -56,6 +65,7 @@ static void check_derivatives(Term (*create)(const SelfContactDef *), bool faces
     for (int run = 0; run < 20; run++) {
         Tangle t;
         tangle_make(&t, &random, faces, parallel);
+        if (run % 2) tangle_thin(&t, &random);
         Term term = create(&t.def);
         Point at = {
             .x = t.memory, .p = t.p, .memory = t.memory, .x_lag = t.memory, .x_prev = t.memory, .dt = 1e-3};

@@ -4,7 +4,8 @@
  *
  *     E = 0 | k d^3/(6 e) | k (d^2/2 - e d/2 + e^2/6)     for d <= 0 | 0 < d < e | d >= e,    N = dE/dd,
  *
- * so that what is pressed by N sinks in by N/k + e/2. Energies of several obstacles are summed.
+ * so that what is pressed by N sinks in by N/k + e/2. Energies of several obstacles are summed. Where the body's outside is
+ * not the same everywhere, each sample has its own offset, and e is the same part of it.
  *
  * Friction is the incremental potential dt mu N |grad phi| f0(|u|/dt), u the part of the sample's motion in the step that
  * is tangential to the obstacle and beyond the obstacle's own; f0' is 1 from the slip speed v on and 2 y/v - y^2/v^2 below
@@ -18,7 +19,7 @@
  * What obstacles that are thin or fast go through in a step (pierce.h) is asked for at its end. */
 #pragma once
 #include "world/obstacle.h"
-#include "world/samples.h"
+#include "world/outside.h"
 
 typedef struct ContactDef {
     const Obstacle *obstacles; /* borrowed, as long as the terms */
@@ -26,14 +27,15 @@ typedef struct ContactDef {
     Samples samples; /* copied                                              */
     Samples
         faces; /* of the body, or a rod's elements, that nothing is to go through; copied; count 0: not asked */
-    int vertex_count;  /* of the body                                         */
-    const bool *fixed; /* [3*vertex_count] held; borrowed; NULL: nothing      */
-    bool derived;      /* positions follow from other dofs, a rod's from its turns */
-    double offset;     /* m, from the sample to the body's outside: half a thickness */
-    double smoothing;  /* m, e                                                */
-    double slip_speed; /* m/s                                                 */
-    int stiffness;     /* first entries in p: k, N/m;                         */
-    int friction;      /* mu of each obstacle                                 */
+    int vertex_count;       /* of the body                                         */
+    const bool *fixed;      /* [3*vertex_count] held; borrowed; NULL: nothing      */
+    bool derived;           /* positions follow from other dofs, a rod's from its turns */
+    double offset;          /* m, from the sample to the body's outside: half a thickness; the largest */
+    double smoothing;       /* m, e there                                          */
+    const Outside *outside; /* [sample] its own offset; borrowed; NULL: all have the largest */
+    double slip_speed;      /* m/s                                                 */
+    int stiffness;          /* first entries in p: k, N/m;                         */
+    int friction;           /* mu of each obstacle                                 */
 } ContactDef;
 
 Term contact_term(const ContactDef *def);

@@ -6,14 +6,14 @@
 static const double DEEP =
     50; /* smoothing lengths: half a thickness, or half of what is thin in an obstacle */
 
-/* The part of the way from `from` to `to` that keeps a sample above the level of one obstacle, by sphere tracing [Hart 1996]:
+/* The part of the way from `from` to `to` that keeps sample e above the level of one obstacle, by sphere tracing [Hart 1996]:
  * phi changes by no more than its steepest slope. What is below it already goes where it likes. */
-static double trace(const Contact *c, int k, const double from[3], const double to[3])
+static double trace(const Contact *c, int k, int e, const double from[3], const double to[3])
 {
     enum { STEPS = 200 };
     const Obstacle *obstacle = &c->def.obstacles[k];
-    double level = c->def.offset - fmin(DEEP * c->def.smoothing, obstacle->feature / 2),
-           little = 0.01 * c->def.smoothing, length = 0, t = 0;
+    double level = c->offset[e] - fmin(DEEP * c->smoothing[e], obstacle->feature / 2),
+           little = 0.01 * c->smoothing[e], length = 0, t = 0;
     for (int i = 0; i < 3; i++) length += (to[i] - from[i]) * (to[i] - from[i]);
     length = sqrt(length) * fmax(1, obstacle->steepest);
     if (obstacle_is_beyond(obstacle, &c->poses.end[k], from, fmax(level, 0) + length)) return 1;
@@ -40,7 +40,7 @@ static double part_of_way(const Contact *c, const double *from, const double *to
         if (c->held[e]) continue;
         samples_place(samples, e / PACK_LANES, e % PACK_LANES, from, start);
         samples_place(samples, e / PACK_LANES, e % PACK_LANES, to, end);
-        for (int k = 0; k < c->def.obstacle_count; k++) part = fmin(part, trace(c, k, start, end));
+        for (int k = 0; k < c->def.obstacle_count; k++) part = fmin(part, trace(c, k, e, start, end));
     }
     return part;
 }

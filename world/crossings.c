@@ -46,8 +46,16 @@ static int rod_crossings(Neighbours *n, const double *x, int (*pairs)[2], int ma
 {
     PairList near = {0};
     neighbours_find(n, x, ROD_CROSSES * n->def.distance, &near);
-    int count = near.count - near.points;
-    for (int k = 0; k < count && k < max; k++) memcpy(pairs[k], near.pairs[near.points + k], sizeof *pairs);
+    int count = 0;
+    for (int k = near.points; k < near.count; k++) {
+        double reach = ROD_CROSSES * neighbours_range(n, near.pairs[k], true), own[DISTANCE_DOFS];
+        int vertices[4];
+        neighbours_vertices(n, &near, k, vertices);
+        neighbours_gather(vertices, x, own);
+        if (distance_edges(own).square >= reach * reach) continue;
+        if (count < max) memcpy(pairs[count], near.pairs[k], sizeof *pairs);
+        count++;
+    }
     pair_list_clear(&near);
     return count;
 }

@@ -8,6 +8,7 @@
 typedef struct Grip {
     double force, unit;           /* N: with the coefficient, and without       */
     double normal[3], carried[3]; /* carried: m                                 */
+    double swell;                 /* d unit/d offset, N/m                       */
     double fall[3];               /* d unit/d place, N/m                        */
     double tilt[3][3];            /* d normal/d place, 1/m                      */
     double turned[3][3];          /* d carried/d place                          */
@@ -34,21 +35,21 @@ static void carry(const Contact *c, int k, const Point *at, const double place[3
     }
 }
 
-/* False where they do not touch. */
-static bool grip_at(const Contact *c, int k, const Point *at, const double place[3], Grip *grip)
+/* Of sample e at a place; false where they do not touch. */
+static bool grip_at(const Contact *c, int k, const Point *at, int e, const double place[3], Grip *grip)
 {
     Gap gap;
-    const Obstacle *obstacle = &c->def.obstacles[k];
     const RigidPose *pose = &poses_lag(&c->poses, at)[k];
-    if (obstacle_is_beyond(obstacle, pose, place, c->def.offset)) return false;
-    obstacle_gap(obstacle, pose, place, &gap);
-    double depth = c->def.offset - gap.value, size = 0;
+    if (contact_is_beyond(c, k, pose, e, place)) return false;
+    obstacle_gap(&c->def.obstacles[k], pose, place, &gap);
+    double depth = c->offset[e] - gap.value, size = 0;
     if (depth <= 0) return false;
-    Penalty penalty = penalty_at(depth, c->def.smoothing, at->p[c->def.stiffness]);
+    Penalty penalty = penalty_at(depth, c->smoothing[e], at->p[c->def.stiffness]);
     for (int i = 0; i < 3; i++) size += gap.gradient[i] * gap.gradient[i];
     size = sqrt(size);
     if (size == 0) return false; /* in the very middle of a solid, which has no plane */
     grip->unit = penalty.force * size;
+    grip->swell = c->def.outside ? penalty_of_offset(&c->def, &penalty) * size : 0;
     grip->force = at->p[c->def.friction + k] * grip->unit;
     for (int i = 0; i < 3; i++) grip->normal[i] = gap.gradient[i] / size;
     for (int i = 0; i < 3; i++) {
@@ -67,13 +68,13 @@ static bool grip_at(const Contact *c, int k, const Point *at, const double place
 
 /* A sample in its step: where it is, and where the lagged quantities are taken. */
 typedef struct Moved {
-    int pack, lane;
+    int pack, lane, sample;
     double now[3], lag[3];
 } Moved;
 
 static Moved moved(const Contact *c, int pack, int lane, const Point *at, Pack3 place)
 {
-    Moved m = {pack, lane, {0}, {0}};
+    Moved m = {pack, lane, contact_sample(c, pack, lane), {0}, {0}};
     samples_place(&c->def.samples, pack, lane, point_lag(at), m.lag);
     lane_get(place, lane, m.now);
     return m;
@@ -126,7 +127,7 @@ static double rub(const Contact *c, const Point *at, const Moved *m, double g[3]
     for (int i = 0; H && i < 9; i++) H[i / 3][i % 3] = 0;
     for (int k = 0; k < c->def.obstacle_count; k++) {
         Grip grip;
-        if (!grip_at(c, k, at, m->lag, &grip)) continue;
+        if (!grip_at(c, k, at, m->sample, m->lag, &grip)) continue;
         Slip s = slip_at(c, &grip, m, at);
         energy += at->dt * grip.force * s.potential;
         for (int i = 0; i < 3; i++) {
@@ -206,7 +207,7 @@ static void lag_times(const Contact *c, const Point *at, const Moved *m, bool tr
     for (int i = 0; i < 3; i++) out[i] = 0;
     for (int k = 0; k < c->def.obstacle_count; k++) {
         Grip grip;
-        if (!grip_at(c, k, at, m->lag, &grip)) continue;
+        if (!grip_at(c, k, at, m->sample, m->lag, &grip)) continue;
         Slip s = slip_at(c, &grip, m, at);
         double mu = at->p[c->def.friction + k], normal = 0, du[3][3], L[3][3];
         for (int i = 0; i < 3; i++) normal += grip.normal[i] * s.v[i];
@@ -271,11 +272,13 @@ static void friction_param(const void *self, int pack, int lanes, const Point *a
         lane_get(b, l, from);
         for (int k = 0; k < c->def.obstacle_count; k++) {
             Grip grip;
-            if (!grip_at(c, k, at, m.lag, &grip)) continue;
+            if (!grip_at(c, k, at, m.sample, m.lag, &grip)) continue;
             Slip s = slip_at(c, &grip, &m, at);
             double along = s.psi * (s.u[0] * from[0] + s.u[1] * from[1] + s.u[2] * from[2]);
             dp[c->def.friction + k] += grip.unit * along;
             dp[c->def.stiffness] += grip.force * along / at->p[c->def.stiffness];
+            if (c->def.outside)
+                outside_back(c->def.outside, m.sample, at->p[c->def.friction + k] * grip.swell * along, dp);
         }
     }
 }
@@ -288,13 +291,15 @@ static void friction_param_forward(const void *self, int pack, const Point *at, 
     for (int l = 0; l < PACK_LANES; l++) {
         double f[3] = {0};
         Moved m = {0};
+        double grown = c->def.outside ? outside_change(c->def.outside, contact_sample(c, pack, l), dp) : 0;
         if (at->dt > 0) m = moved(c, pack, l, at, place);
         for (int k = 0; at->dt > 0 && k < c->def.obstacle_count; k++) {
             Grip grip;
-            if (!grip_at(c, k, at, m.lag, &grip)) continue;
+            if (!grip_at(c, k, at, m.sample, m.lag, &grip)) continue;
             Slip s = slip_at(c, &grip, &m, at);
             double change = grip.unit * dp[c->def.friction + k] +
-                            grip.force * dp[c->def.stiffness] / at->p[c->def.stiffness];
+                            grip.force * dp[c->def.stiffness] / at->p[c->def.stiffness] +
+                            at->p[c->def.friction + k] * grip.swell * grown;
             for (int i = 0; i < 3; i++) f[i] += change * s.psi * s.u[i];
         }
         lane_put(&sum, l, f);
@@ -308,18 +313,18 @@ static void friction_param_forward(const void *self, int pack, const Point *at, 
     .prev = friction_prev, .prev_forward = friction_prev_forward, .lag = friction_lag,                       \
     .lag_forward = friction_lag_forward, .destroy = contact_destroy
 
-static const TermOps still_ops = {FRICTION_OPS}, moving_ops = {FRICTION_OPS, .update = contact_update};
+static const TermOps still_ops = {FRICTION_OPS}, changing_ops = {FRICTION_OPS, .update = contact_update};
 
 Term friction_term(const ContactDef *def)
 {
     Contact *c = contact_create(def);
-    return (Term){c->poses.moves ? &moving_ops : &still_ops, c};
+    return (Term){contact_changes(c) ? &changing_ops : &still_ops, c};
 }
 
 /* ---- Sums ---- */
 
-/* What the obstacles do to one sample; `pushed` is over its corners. */
-static void measure_sample(const Contact *c, const Point *at, const double place[3], const Moved *m,
+/* What the obstacles do to sample e; `pushed` is over its corners. */
+static void measure_sample(const Contact *c, const Point *at, int e, const double place[3], const Moved *m,
                            ContactSums *sums, double pushed[3])
 {
     bool touches = false;
@@ -328,13 +333,13 @@ static void measure_sample(const Contact *c, const Point *at, const double place
         Grip grip;
         double f[3] = {0};
         obstacle_gap(&c->def.obstacles[k], &c->poses.end[k], place, &gap);
-        double depth = c->def.offset - gap.value;
+        double depth = c->offset[e] - gap.value;
         touches = touches || depth > 0;
         sums->depth = fmax(sums->depth, depth);
         if (depth > 0)
             for (int i = 0; i < 3; i++)
-                f[i] = gap.gradient[i] * penalty_at(depth, c->def.smoothing, at->p[c->def.stiffness]).force;
-        if (m && grip_at(c, k, at, m->lag, &grip)) {
+                f[i] = gap.gradient[i] * penalty_at(depth, c->smoothing[e], at->p[c->def.stiffness]).force;
+        if (m && grip_at(c, k, at, e, m->lag, &grip)) {
             Slip s = slip_at(c, &grip, m, at);
             for (int i = 0; i < 3; i++) {
                 f[i] -= grip.force * s.psi * s.u[i];
@@ -352,7 +357,7 @@ static void measure_sample(const Contact *c, const Point *at, const double place
 void contact_measure(const ContactDef *def, const Point *at, ContactSums *sums)
 {
     Contact *c = contact_create(def);
-    poses_update(&c->poses, at);
+    contact_update(c, at);
     const Samples *samples = &def->samples;
     for (int e = 0; e < samples->count; e++) {
         int pack = e / PACK_LANES, lane = e % PACK_LANES, dof[TERM_MAX_DOF];
@@ -361,7 +366,7 @@ void contact_measure(const ContactDef *def, const Point *at, ContactSums *sums)
         Pack3 here = pack3(pack_set(place[0]), pack_set(place[1]), pack_set(place[2]));
         Moved m = {0};
         if (at->dt > 0) m = moved(c, pack, lane, at, here);
-        measure_sample(c, at, place, at->dt > 0 ? &m : NULL, sums, pushed);
+        measure_sample(c, at, e, place, at->dt > 0 ? &m : NULL, sums, pushed);
         samples_dofs(samples, e, dof);
         for (int i = 0; sums->point && i < 3 * samples->corners; i++)
             sums->point[dof[i]] += pushed[i % 3] / samples->corners;

@@ -187,31 +187,38 @@ static bool vertices_are_near(const double x[DISTANCE_DOFS], int second, double 
     return near;
 }
 
-/* Pairs of one piece nearer at rest than 1.6 D are left out. Of most of them the middles are: that is soon found. */
-static bool sits_near(const Neighbours *n, const Seat *a, const Seat *b)
+double neighbours_range(const Neighbours *n, const int pair[2], bool edges)
 {
-    double least = SELF_CONTACT_REST * n->def.distance;
+    const SelfContactDef *def = &n->def;
+    if (!def->vertex_outside) return def->distance;
+    return edges ? def->edge_outside[pair[0]] + def->edge_outside[pair[1]]
+                 : def->vertex_outside[pair[0]] + def->face_outside[pair[1]];
+}
+
+/* Pairs of one piece nearer at rest than `least`, 1.6 D, are left out. Of most of them the middles are: that is soon found. */
+static bool sits_near(double least, const Seat *a, const Seat *b)
+{
     Vec3 d = vec3_sub(vec3_load(a->centre), vec3_load(b->centre));
     return a->part == b->part && vec3_dot(d, d) < least * least;
 }
 
-static bool is_near_at_rest(const Neighbours *n, const int vertices[4], bool edges)
+static bool is_near_at_rest(const Neighbours *n, const int vertices[4], bool edges, double least)
 {
     const SelfContactDef *def = &n->def;
-    double x[DISTANCE_DOFS], least = SELF_CONTACT_REST * def->distance;
+    double x[DISTANCE_DOFS];
     if (def->part && def->part[vertices[0]] != def->part[vertices[2]]) return false;
     neighbours_gather(vertices, def->rest[0], x);
     return vertices_are_near(x, edges ? 2 : 1, least) ||
            distance_between(def, edges)(x).square < least * least;
 }
 
-static bool may_meet(const Neighbours *n, const int vertices[4], bool edges)
+static bool may_meet(const Neighbours *n, const int vertices[4], bool edges, double least)
 {
     int second = edges ? 2 : 1;
     for (int i = 0; i < second; i++)
         for (int j = second; j < 4; j++)
             if (vertices[i] == vertices[j]) return false;
-    return !is_held(&n->def, vertices) && !is_near_at_rest(n, vertices, edges);
+    return !is_held(&n->def, vertices) && !is_near_at_rest(n, vertices, edges, least);
 }
 
 /* ---- Who is near ---- */
@@ -250,10 +257,11 @@ static void take(const Neighbours *n, bool edges, Wanted wanted, PairList *list)
     for (int k = 0; k < n->found.count; k++) {
         const int *pair = n->found.list[k];
         if (!edges && n->within[pair[0]]) continue;
-        if (sits_near(n, &s[pair[0]], &t[pair[1]])) continue;
+        double least = SELF_CONTACT_REST * neighbours_range(n, pair, edges);
+        if (sits_near(least, &s[pair[0]], &t[pair[1]])) continue;
         if (box_gap_square(&a[pair[0]], &b[pair[1]]) > wanted.radius * wanted.radius) continue;
         pair_vertices(n, pair, edges, vertices);
-        if (may_meet(n, vertices, edges) && is_near(n, vertices, edges, wanted))
+        if (may_meet(n, vertices, edges, least) && is_near(n, vertices, edges, wanted))
             add_pair(list, pair[0], pair[1]);
     }
     if (list->count > first) near_pairs_sort(list->pairs + first, list->count - first);

@@ -51,6 +51,9 @@ NearPairs *neighbours_edges_and_faces(Neighbours *n, const double *x);
 void neighbours_vertices(const Neighbours *n, const PairList *list, int k, int vertices[4]);
 void neighbours_gather(const int vertices[4], const double *x, double to[DISTANCE_DOFS]);
 
+/* D of such a pair (of edges, or of a vertex and a face), m. */
+double neighbours_range(const Neighbours *n, const int pair[2], bool edges);
+
 /* How distant the features of pair k are. */
 DistanceOf *neighbours_distance(const Neighbours *n, const PairList *list, int k);
 

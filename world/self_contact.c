@@ -178,6 +178,7 @@ SelfContactFigures self_contact_figures(const Term *self_contact, const double *
         neighbours_vertices(pairs->n, &near, k, vertices);
         neighbours_gather(vertices, x + def->first, own);
         Touch touch = touch_at(pairs->n, &near, k, stiffness, own);
+        if (!touch.acts) continue;
         figures.pairs++;
         figures.distance = fmin(figures.distance, touch.d);
         figures.force += touch_force(&touch);
@@ -198,7 +199,8 @@ double self_contact_nearest(const SelfContactDef *def, const double *x, double p
         neighbours_vertices(n, &near, k, of);
         neighbours_gather(of, x + def->first, own);
         double distance = sqrt(neighbours_distance(n, &near, k)(own).square);
-        if (!(distance < least)) continue;
+        if (!(distance < least && distance < parts * neighbours_range(n, near.pairs[k], k >= near.points)))
+            continue;
         least = distance;
         vertices[0] = of[0], vertices[1] = of[k < near.points ? 1 : 2];
     }
@@ -215,5 +217,8 @@ double self_contact_nothing(const SelfContactDef *def)
         box_add(&box, def->rest[v]);
     }
     Vec3 size = vec3_sub(vec3_load(box.high), vec3_load(box.low));
-    return vec3_length(size) <= SELF_CONTACT_REST * def->distance ? vec3_length(size) : INFINITY;
+    double distance = def->distance;
+    for (int v = 0; def->vertex_outside && v < def->vertex_count; v++)
+        distance = fmin(distance, 2 * def->vertex_outside[v]);
+    return vec3_length(size) <= SELF_CONTACT_REST * distance ? vec3_length(size) : INFINITY;
 }

@@ -9,6 +9,9 @@
  * m takes edges that are nearly parallel out (distance.h), for their distance has kinks: their ends are vertices, and stand
  * against the other's face or edge.
  *
+ * Where the body's outside is not the same everywhere, D is a pair's own, the sum of what its two sides have, and k is that
+ * of the largest D there is: k (D/largest)^3 of others, as a stiffness Y D^3 is of them. It does not change with x.
+ *
  * Left out are pairs that share a vertex, pairs of one piece nearer than 1.6 D at rest, and pairs that are held as a
  * whole. Pieces always meet.
  *
@@ -36,7 +39,9 @@ typedef struct SelfContactDef {
     const int *part;         /* [vertex] piece that it belongs to; NULL: one                  */
     const bool *fixed;       /* [3*vertex_count] held; NULL: nothing                          */
     bool derived;            /* positions follow from other dofs, a rod's from its turns      */
-    double distance;         /* D, m: a shell's thickness, twice a rod's radius               */
+    double distance;         /* D, m: a shell's thickness, twice a rod's radius; the largest  */
+    /* m, from each vertex, edge, face (of a rod edge) to its outside; borrowed; NULL: half of the distance. */
+    const double *vertex_outside, *edge_outside, *face_outside;
     double margin;           /* in parts of D; 0: 1/4                                         */
     int stiffness, friction; /* first entries in p: k, J; the coefficient of friction         */
     double slip_speed;       /* m/s: friction is full from there on                           */

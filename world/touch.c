@@ -25,10 +25,11 @@ Touch touch_at(const Neighbours *n, const PairList *list, int k, double stiffnes
 {
     const int *pair = list->pairs[k];
     Distance at = neighbours_distance(n, list, k)(x);
-    double D = n->def.distance;
+    double D = neighbours_range(n, pair, k >= list->points), part = D / n->def.distance;
     if (at.square >= D * D) return (Touch){0};
     Touch t = {.acts = true, .edges = k >= list->points, .at = at, .range = D, .d = sqrt(at.square), .m = 1};
     set_potential(&t);
+    stiffness *= part * part * part;
     if (!t.edges) {
         t.scale = stiffness * n->vertex_weight[pair[0]];
         return t;

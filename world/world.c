@@ -14,6 +14,14 @@ double world_body_measure(const WorldBody *body)
     return body->face_count ? body->thickness : body->thickness / 2;
 }
 
+double world_thinnest(const WorldBody *body)
+{
+    double least = body->outside;
+    int cells = body->face_count ? body->face_count : body->edge_count;
+    for (int f = 0; body->outsides && f < cells; f++) least = fmin(least, body->outsides[f]);
+    return body->outsides ? least / body->outside : 1;
+}
+
 /* From other dofs: those of rods do. */
 static bool positions_follow(const WorldBody *body)
 {
@@ -60,6 +68,14 @@ static Samples faces_of(const WorldBody *body)
     return (Samples){rod ? body->edge_count : body->face_count, rod ? 2 : 3, (int *)corners, body->first};
 }
 
+/* NULL: the same everywhere. */
+static Outside *outside_of(const WorldBody *body, const Samples *parts)
+{
+    Samples cells = faces_of(body);
+    if (!body->outsides) return NULL;
+    return outside_create(parts, &cells, body->rest, body->vertex_count, body->outsides, body->doubled);
+}
+
 /* Takes the samples; the first of them ask for all faces, too. */
 static void add_contact(World *world, Samples samples)
 {
@@ -68,6 +84,7 @@ static void add_contact(World *world, Samples samples)
         return;
     }
     Samples faces = world->contact_kinds == 0 ? faces_of(&world->body) : (Samples){0};
+    world->outside[world->contact_kinds] = outside_of(&world->body, &samples);
     world->contacts[world->contact_kinds++] =
         (ContactDef){.obstacles = world->obstacles,
                      .obstacle_count = world->obstacle_count,
@@ -79,10 +96,32 @@ static void add_contact(World *world, Samples samples)
                      .smoothing = SMOOTHING * world_body_measure(&world->body)};
 }
 
+static double *outsides_of(const WorldBody *body, Samples parts)
+{
+    Outside *outside = outside_of(body, &parts);
+    double *m = mem_alloc((size_t)parts.count, sizeof *m);
+    for (int e = 0; e < parts.count; e++) m[e] = outside_at(outside, e, NULL);
+    outside_destroy(outside);
+    return m;
+}
+
+/* Of vertices and edges, by which parts of the body meet each other. */
+static void find_outsides(World *world)
+{
+    const WorldBody *body = &world->body;
+    if (!body->outsides) return;
+    int *all = mem_alloc((size_t)body->vertex_count, sizeof *all);
+    for (int v = 0; v < body->vertex_count; v++) all[v] = v;
+    world->vertex_outside = outsides_of(body, (Samples){body->vertex_count, 1, all, body->first});
+    world->edge_outside = outsides_of(body, (Samples){body->edge_count, 2, (int *)body->edges, body->first});
+    mem_free(all);
+}
+
 World *world_create(const WorldBody *body, Obstacle *obstacles, int obstacle_count)
 {
     World *world = mem_alloc(1, sizeof *world);
     *world = (World){.body = *body, .obstacles = obstacles, .obstacle_count = obstacle_count};
+    find_outsides(world);
     double feature = INFINITY;
     for (int k = 0; k < obstacle_count; k++) feature = fmin(feature, obstacles[k].feature);
     if (obstacle_count == 0) return world;
@@ -97,7 +136,12 @@ void world_destroy(World *world)
 {
     if (!world) return;
     for (int k = 0; k < world->obstacle_count; k++) obstacle_clear(&world->obstacles[k]);
-    for (int k = 0; k < world->contact_kinds; k++) mem_free(world->contacts[k].samples.vertices);
+    for (int k = 0; k < world->contact_kinds; k++) {
+        mem_free(world->contacts[k].samples.vertices);
+        outside_destroy(world->outside[k]);
+    }
+    mem_free(world->vertex_outside);
+    mem_free(world->edge_outside);
     mem_free(world->obstacles);
     flux_field_destroy(world->flow);
     mem_free(world);
@@ -125,6 +169,7 @@ static ContactDef contact_of(const World *world, int kind)
 {
     ContactDef def = world->contacts[kind];
     def.offset = world->offset;
+    def.outside = world->local ? world->outside[kind] : NULL;
     def.slip_speed = world->slip_speed;
     def.stiffness = world->stiffness;
     def.friction = world->friction;
@@ -145,6 +190,9 @@ static SelfContactDef self_of(const World *world)
                             .fixed = body->fixed,
                             .derived = positions_follow(body),
                             .distance = world->distance,
+                            .vertex_outside = world->self_local ? world->vertex_outside : NULL,
+                            .edge_outside = world->self_local ? world->edge_outside : NULL,
+                            .face_outside = world->self_local ? body->outsides : NULL,
                             .stiffness = world->self_stiffness,
                             .friction = world->self_friction,
                             .slip_speed = world->slip_speed};
@@ -205,17 +253,28 @@ bool world_stands(const World *world, double time, Error *err)
     return true;
 }
 
-void world_lean(const World *world, double time, double depth, double *x)
+int world_vertex(const World *world, int e)
+{
+    return world->contacts[0].samples.vertices[e];
+}
+
+double world_offset(const World *world, int e, const double *p)
+{
+    return world->local && world->outside[0] ? outside_at(world->outside[0], e, p) : world->offset;
+}
+
+void world_lean(const World *world, double time, const double *p, double depth, double *x)
 {
     Poses poses = poses_create(world->obstacles, world->obstacle_count);
     double *place = x + world->body.first, way = INFINITY, normal[3] = {0};
     poses_update(&poses, &(Point){.time = time});
     for (int k = 0; k < world->obstacle_count; k++)
-        for (int v = 0; v < world->body.vertex_count; v++) {
+        for (int e = 0; e < world->contacts[0].samples.count; e++) {
             Gap gap;
-            obstacle_gap(&world->obstacles[k], &poses.end[k], place + 3 * v, &gap);
-            if (!(gap.value - world->offset + depth < way)) continue;
-            way = gap.value - world->offset + depth;
+            obstacle_gap(&world->obstacles[k], &poses.end[k], place + 3 * world_vertex(world, e), &gap);
+            double free = gap.value - world_offset(world, e, p);
+            if (!(free + depth < way)) continue;
+            way = free + depth;
             vec3_store(normal, vec3_unit(vec3_load(gap.gradient)));
         }
     poses_destroy(&poses);
@@ -329,5 +388,6 @@ double world_longest_edge(const World *world, const double *x)
 
 bool world_slips_between(const World *world, int obstacle, double longest)
 {
-    return world->obstacles[obstacle].feature + world->offset < longest / 4;
+    double least = world->local ? world->offset * world_thinnest(&world->body) : world->offset;
+    return world->obstacles[obstacle].feature + least < longest / 4;
 }

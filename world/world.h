@@ -17,8 +17,12 @@ typedef struct WorldBody {
     const bool *fixed;                  /* [3*vertex_count] held; NULL: nothing              */
     double thickness;                   /* m; a rod's diameter, a fifth of the edges of a solid's skin */
     double outside; /* m, from its points to its outside: half a thickness, a rod's radius; 0 of a solid */
-    bool closed;    /* its faces bound a solid: there is no water within  */
-    int strands;    /* rods, one after the other; of a shell 0           */
+    const double *
+        outsides; /* [face, or edge of a rod] m, where it is not the same everywhere, of which the above are the
+                             * largest; NULL: it is, and stays so */
+    int doubled;          /* first entry in p of twice `outsides`; -1: not in p */
+    bool closed;          /* its faces bound a solid: there is no water within  */
+    int strands;          /* rods, one after the other; of a shell 0           */
     const double *length; /* [strands] m                                       */
     const double *radius; /* [edges] m, of rods: what water flows round        */
 } WorldBody;
@@ -28,20 +32,28 @@ double world_body_measure(const WorldBody *body);
 
 enum { SAMPLE_KINDS = 3 }; /* vertices, middles of edges, of faces */
 
+/* Where it is thinnest, in parts of where it is thickest. */
+double world_thinnest(const WorldBody *body);
+
 typedef struct World {
     WorldBody body;
     Obstacle *obstacles; /* [obstacle_count] owned */
     int obstacle_count;
-    bool rubs;                         /* there is friction                                            */
-    bool implicit;                     /* what friction lags is the step's end's (MarchDef.implicit)    */
-    double offset, slip_speed;         /* m, m/s                                                       */
+    bool rubs;                 /* there is friction                                            */
+    bool implicit;             /* what friction lags is the step's end's (MarchDef.implicit)    */
+    bool local;                /* the offset is the body's own, part by part, not the same everywhere */
+    double offset, slip_speed; /* m, the largest; m/s                                          */
     ContactDef contacts[SAMPLE_KINDS]; /* of those that the obstacles need                            */
+    Outside *outside[SAMPLE_KINDS];    /* of their samples; owned; NULL: the body's is the same everywhere */
     int contact_kinds;
 
     bool self;       /* it meets itself, and its pieces each other, ..               */
-    double distance; /* .. nearer than this, m                                       */
-    bool wet, outer; /* there is water; it knows only the outer sides of faces      */
-    FluxField *flow; /* of the water, beside its uniform velocity; owned; NULL: none */
+    double distance; /* .. nearer than this, m; the largest                          */
+    bool self_local; /* that is the body's own, part by part, not the same everywhere */
+    double *vertex_outside,
+        *edge_outside; /* [vertex], [edge] m: by which it is; owned; NULL: it is the same */
+    bool wet, outer;   /* there is water; it knows only the outer sides of faces      */
+    FluxField *flow;   /* of the water, beside its uniform velocity; owned; NULL: none */
     Water water;
 
     /* First entries in p, of the blocks that there are: */
@@ -94,7 +106,11 @@ bool world_stands(const World *world, double time, Error *err);
 
 /* Moves the body at x, whole vector, as it is and by the shortest way, until a vertex is so deep in what an obstacle keeps
  * free of it (its offset); not if one is already. */
-void world_lean(const World *world, double time, double depth, double *x);
+void world_lean(const World *world, double time, const double *p, double depth, double *x);
+
+/* Of where vertices feel obstacles, place e of contacts[0]: the vertex, and how far its outside is from it, m. */
+int world_vertex(const World *world, int e);
+double world_offset(const World *world, int e, const double *p);
 
 /* Adds its terms to a system that is not prepared yet: of statics, or of steps of time. The world outlives it. */
 void world_add_terms(const World *world, System *sys, bool motion);

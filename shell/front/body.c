@@ -76,6 +76,17 @@ static bool fill(Model *model, const Scene *scene, const Build *b, const double 
             model_velocity(model, b, "shell.velocity", from->velocity, b->mesh->rest[0]));
 }
 
+/* The world meets each face's own, where these are not the same, now or later. */
+static double *outsides_of(const Scene *scene, const double *thickness, int count)
+{
+    bool same = !scene->design || !scene->design->unknowns.thickness;
+    for (int f = 1; f < count; f++) same = same && thickness[f] == thickness[0];
+    if (same) return NULL;
+    double *outsides = mem_alloc((size_t)count, sizeof *outsides);
+    for (int f = 0; f < count; f++) outsides[f] = thickness[f] / 2;
+    return outsides;
+}
+
 static void set_material(Shell *shell, const ShellScene *from)
 {
     shell->poisson = from->poisson;
@@ -98,6 +109,7 @@ static bool create(Model *model, const Scene *scene, YamlFile *file)
     double *thickness = mem_alloc((size_t)mesh->face_count, sizeof *thickness);
     bool thick = build_numbers(&b, key("shell.thickness"), 2, "m", &shell_scene(scene)->thickness, thickness);
     shell->thickness = thick ? largest_of(thickness, mesh->face_count) : mesh_mean_edge(mesh);
+    if (thick) shell->outsides = outsides_of(scene, thickness, mesh->face_count);
     set_material(shell, shell_scene(scene));
     model->mesh = mesh;
     model->params = &shell->params;
