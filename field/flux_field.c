@@ -331,38 +331,6 @@ static void own_place(const Stand *stand, const double x[3], double own[3])
         own[i] = stand->axes[i][0] * r[0] + stand->axes[i][1] * r[1] + stand->axes[i][2] * r[2];
 }
 
-static void turn_vector(const double (*axes)[3], double v[3])
-{
-    double own[3] = {v[0], v[1], v[2]};
-    for (int i = 0; i < 3; i++) v[i] = axes[0][i] * own[0] + axes[1][i] * own[1] + axes[2][i] * own[2];
-}
-
-/* v^T a v for the axes a: of the columns, then of the rows. */
-static void turn_matrix(const double (*axes)[3], double v[3][3])
-{
-    for (int i = 0; i < 3; i++) turn_vector(axes, v[i]);
-    for (int j = 0; j < 3; j++) {
-        double column[3] = {v[0][j], v[1][j], v[2][j]};
-        turn_vector(axes, column);
-        for (int i = 0; i < 3; i++) v[i][j] = column[i];
-    }
-}
-
-/* From the own axes to those of space. */
-static void turn_sample(const double (*axes)[3], FluxSample *sample)
-{
-    turn_vector(axes, sample->flux);
-    turn_matrix(axes, sample->gradient);
-    for (int k = 0; k < 3; k++) turn_matrix(axes, sample->curvature[k]);
-    for (int l = 0; l < 3; l++)
-        for (int m = 0; m < 3; m++) {
-            double along[3] = {sample->curvature[0][l][m], sample->curvature[1][l][m],
-                               sample->curvature[2][l][m]};
-            turn_vector(axes, along);
-            for (int k = 0; k < 3; k++) sample->curvature[k][l][m] = along[k];
-        }
-}
-
 void flux_field_eval(const FluxField *field, const double x[3], FluxPlace place, FluxSample *sample)
 {
     Stand stand;
@@ -373,7 +341,7 @@ void flux_field_eval(const FluxField *field, const double x[3], FluxPlace place,
     }
     own_place(&stand, x, own);
     field->kind->eval(field, own, place.time, sample);
-    if (stand.axes) turn_sample(stand.axes, sample);
+    if (stand.axes) flux_sample_turn(stand.axes, sample);
 }
 
 /* The value in space; false and a sentence where it is not known. */
@@ -390,7 +358,7 @@ static bool value_at(const FluxField *field, const double x[3], FluxPlace place,
         field->kind->eval(field, own, place.time, &sample);
         memcpy(flux, sample.flux, sizeof sample.flux);
     }
-    if (stand.axes) turn_vector(stand.axes, flux);
+    if (stand.axes) flux_vector_turn(stand.axes, flux);
     return true;
 }
 
