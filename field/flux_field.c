@@ -14,6 +14,7 @@ typedef struct FluxKind {
     bool poles;                                             /* its strength is a remanence */
     /* Is it itself there, or a winding so near that the field is not known? NULL: never. */
     bool (*within)(const FluxField *field, const double x[3]);
+    const char *infinite; /* where it is that; NULL: nowhere */
 } FluxKind;
 
 struct FluxField {
@@ -146,7 +147,7 @@ static bool within_cylinder(const FluxField *field, const double x[3])
     return hypot(x[0], x[1]) < field->half[0] && fabs(x[2]) < field->half[1];
 }
 
-static const double NEAR = 0.01; /* of the radius: docs/theory.md */
+static const double NEAR = 0.01; /* of the radius: windings are thicker */
 
 static bool within_round(const FluxField *field, const double x[3])
 {
@@ -164,14 +165,15 @@ static bool within_rectangle(const FluxField *field, const double x[3])
     return hypot(away, x[2]) < NEAR * least;
 }
 
-static const FluxKind by_formula = {"formula", eval_formula, value_formula, NULL, false, NULL},
-                      by_map = {"map", eval_map, value_map, NULL, false, NULL},
-                      of_dipole = {"dipole", eval_dipole, NULL, NULL, false, NULL},
-                      of_block = {"magnet", eval_block, NULL, shape_block, true, within_block},
-                      of_cylinder = {"magnet", eval_cylinder, NULL, shape_cylinder, true, within_cylinder},
-                      of_round_coil = {"coil", eval_round_coil, NULL, shape_round_coil, false, within_round},
-                      of_rectangular_coil = {"coil", eval_rectangular_coil, NULL, shape_rectangular_coil,
-                                             false,  within_rectangle};
+static const FluxKind
+    by_formula = {"formula", eval_formula, value_formula, NULL, false, NULL, NULL},
+    by_map = {"map", eval_map, value_map, NULL, false, NULL, NULL},
+    of_dipole = {"dipole", eval_dipole, NULL, NULL, false, NULL, "at its own place"},
+    of_block = {"magnet", eval_block, NULL, shape_block, true, within_block, "on its edges"},
+    of_cylinder = {"magnet", eval_cylinder, NULL, shape_cylinder, true, within_cylinder, "on its rims"},
+    of_round_coil = {"coil", eval_round_coil, NULL, shape_round_coil, false, within_round, "on its wire"},
+    of_rectangular_coil = {"coil", eval_rectangular_coil, NULL,         shape_rectangular_coil,
+                           false,  within_rectangle,      "on its wire"};
 
 /* ---- Making them ---- */
 
@@ -357,6 +359,10 @@ static bool value_at(const FluxField *field, const double x[3], FluxPlace place,
         FluxSample sample;
         field->kind->eval(field, own, place.time, &sample);
         memcpy(flux, sample.flux, sizeof sample.flux);
+        if (!isfinite(flux[0] + flux[1] + flux[2]))
+            return error_set(err, "the field of the %s '%s', at (%.4g, %.4g, %.4g) m, is infinite %s",
+                             field->kind->name, flux_field_name(field), x[0], x[1], x[2],
+                             field->kind->infinite);
     }
     if (stand.axes) flux_vector_turn(stand.axes, flux);
     return true;
