@@ -14,6 +14,7 @@ typedef struct FluxKind {
     bool poles;                                             /* its strength is a remanence */
     /* Is it itself there, or a winding so near that the field is not known? NULL: never. */
     bool (*within)(const FluxField *field, const double x[3]);
+    const char *infinite; /* where it is that; NULL: nowhere */
 } FluxKind;
 
 struct FluxField {
@@ -146,7 +147,7 @@ static bool within_cylinder(const FluxField *field, const double x[3])
     return hypot(x[0], x[1]) < field->half[0] && fabs(x[2]) < field->half[1];
 }
 
-static const double NEAR = 0.01; /* of the radius: docs/theory.md */
+static const double NEAR = 0.01; /* of the radius: windings are thicker */
 
 static bool within_round(const FluxField *field, const double x[3])
 {
@@ -164,14 +165,15 @@ static bool within_rectangle(const FluxField *field, const double x[3])
     return hypot(away, x[2]) < NEAR * least;
 }
 
-static const FluxKind by_formula = {"formula", eval_formula, value_formula, NULL, false, NULL},
-                      by_map = {"map", eval_map, value_map, NULL, false, NULL},
-                      of_dipole = {"dipole", eval_dipole, NULL, NULL, false, NULL},
-                      of_block = {"magnet", eval_block, NULL, shape_block, true, within_block},
-                      of_cylinder = {"magnet", eval_cylinder, NULL, shape_cylinder, true, within_cylinder},
-                      of_round_coil = {"coil", eval_round_coil, NULL, shape_round_coil, false, within_round},
-                      of_rectangular_coil = {"coil", eval_rectangular_coil, NULL, shape_rectangular_coil,
-                                             false,  within_rectangle};
+static const FluxKind
+    by_formula = {"formula", eval_formula, value_formula, NULL, false, NULL, NULL},
+    by_map = {"map", eval_map, value_map, NULL, false, NULL, NULL},
+    of_dipole = {"dipole", eval_dipole, NULL, NULL, false, NULL, "at its own place"},
+    of_block = {"magnet", eval_block, NULL, shape_block, true, within_block, "on its edges"},
+    of_cylinder = {"magnet", eval_cylinder, NULL, shape_cylinder, true, within_cylinder, "on its rims"},
+    of_round_coil = {"coil", eval_round_coil, NULL, shape_round_coil, false, within_round, "on its wire"},
+    of_rectangular_coil = {"coil", eval_rectangular_coil, NULL,         shape_rectangular_coil,
+                           false,  within_rectangle,      "on its wire"};
 
 /* ---- Making them ---- */
 
@@ -331,38 +333,6 @@ static void own_place(const Stand *stand, const double x[3], double own[3])
         own[i] = stand->axes[i][0] * r[0] + stand->axes[i][1] * r[1] + stand->axes[i][2] * r[2];
 }
 
-static void turn_vector(const double (*axes)[3], double v[3])
-{
-    double own[3] = {v[0], v[1], v[2]};
-    for (int i = 0; i < 3; i++) v[i] = axes[0][i] * own[0] + axes[1][i] * own[1] + axes[2][i] * own[2];
-}
-
-/* v^T a v for the axes a: of the columns, then of the rows. */
-static void turn_matrix(const double (*axes)[3], double v[3][3])
-{
-    for (int i = 0; i < 3; i++) turn_vector(axes, v[i]);
-    for (int j = 0; j < 3; j++) {
-        double column[3] = {v[0][j], v[1][j], v[2][j]};
-        turn_vector(axes, column);
-        for (int i = 0; i < 3; i++) v[i][j] = column[i];
-    }
-}
-
-/* From the own axes to those of space. */
-static void turn_sample(const double (*axes)[3], FluxSample *sample)
-{
-    turn_vector(axes, sample->flux);
-    turn_matrix(axes, sample->gradient);
-    for (int k = 0; k < 3; k++) turn_matrix(axes, sample->curvature[k]);
-    for (int l = 0; l < 3; l++)
-        for (int m = 0; m < 3; m++) {
-            double along[3] = {sample->curvature[0][l][m], sample->curvature[1][l][m],
-                               sample->curvature[2][l][m]};
-            turn_vector(axes, along);
-            for (int k = 0; k < 3; k++) sample->curvature[k][l][m] = along[k];
-        }
-}
-
 void flux_field_eval(const FluxField *field, const double x[3], FluxPlace place, FluxSample *sample)
 {
     Stand stand;
@@ -373,7 +343,7 @@ void flux_field_eval(const FluxField *field, const double x[3], FluxPlace place,
     }
     own_place(&stand, x, own);
     field->kind->eval(field, own, place.time, sample);
-    if (stand.axes) turn_sample(stand.axes, sample);
+    if (stand.axes) flux_sample_turn(stand.axes, sample);
 }
 
 /* The value in space; false and a sentence where it is not known. */
@@ -389,8 +359,12 @@ static bool value_at(const FluxField *field, const double x[3], FluxPlace place,
         FluxSample sample;
         field->kind->eval(field, own, place.time, &sample);
         memcpy(flux, sample.flux, sizeof sample.flux);
+        if (!isfinite(flux[0] + flux[1] + flux[2]))
+            return error_set(err, "the field of the %s '%s', at (%.4g, %.4g, %.4g) m, is infinite %s",
+                             field->kind->name, flux_field_name(field), x[0], x[1], x[2],
+                             field->kind->infinite);
     }
-    if (stand.axes) turn_vector(stand.axes, flux);
+    if (stand.axes) flux_vector_turn(stand.axes, flux);
     return true;
 }
 

@@ -68,14 +68,14 @@ void flux_field_shape(const FluxField *field, MeshFile *shape, double **pole);
 /* Re-entrant. A value that is not finite leaves NaN, which the solver notices. */
 void flux_field_eval(const FluxField *field, const double x[3], FluxPlace place, FluxSample *sample);
 
-/* False and a sentence where a formula's value is not finite, or a map has ended. */
+/* False and a sentence where its value is not finite, or a map has ended. */
 bool flux_field_is_known(const FluxField *field, const double x[3], FluxPlace place, Error *err);
 
 /* The value alone, for a fiftieth where it is a formula. */
 void flux_field_value(const FluxField *field, const double x[3], FluxPlace place, double flux[3]);
 
-/* The first of so many places, x[count][3], that is within a magnet, or so near to the winding of a coil, if it has one, that
- * its field is not known there; -1: none is. */
+/* The first of so many places, x[count][3], that is within a magnet, or, of what has a winding, nearer to it than a hundredth of
+ * its radius, where none is without thickness; -1: none is. */
 int flux_field_find_within(const FluxField *field, const double *x, int count, FluxPlace place);
 bool flux_field_has_winding(const FluxField *field);
 

@@ -1,6 +1,8 @@
 #include "field/flux_sources.h"
 #include "field/line_charge.h"
+#include "field/ring_nodes.h"
 #include <stdbool.h>
+#include <string.h>
 
 static const double PER_4PI = 1 / (4 * M_PI);
 
@@ -29,12 +31,6 @@ static double third_of(const LineSum *sum, int i, int j, int k)
                                     {{1, 3, 4}, {3, 6, 7}, {4, 7, 8}},
                                     {{2, 4, 5}, {4, 7, 8}, {5, 8, 9}}};
     return sum->f[LINE_FIRST + LINE_SECOND + at[i][j][k]];
-}
-
-/* sum += weights.f, over the lanes */
-static void add_lines(LineSum *sum, Pack weights, const LineField *line)
-{
-    for (int k = 0; k < LINE_ALL; k++) sum->f[k] += pack_sum(weights * line->f[k], PACK_LANES);
 }
 
 /* sample += scale t x F, for a sum of lines whose axes 0, 1, 2 are axis[..] of the sample's, or scale F (t NULL). */
@@ -135,45 +131,62 @@ void flux_of_block(const double half[3], const double remanence[3], const double
 
 /* ---- Around an axis ---- */
 
-/* Sums around a circle, over 2 pi times their weights: 1, cos, sin. */
+/* Sums around a circle, over 2 pi times their weights cos psi and sin psi, psi from the point, which is at (rho, 0, z). */
 typedef struct RingSum {
-    LineSum even, cosine, sine;
+    LineSum cosine, sine;
 } RingSum;
 
-/* Nodes for rounding: the integrand has a pole at the complex angle i k from the point, cosh k = (r^2 + a^2)/(2 a rho), and
- * the rule's error goes with exp(-n k). Nearer than a hundredth of the radius it grows. */
-static int ring_nodes(double radius, double half, const double x[3])
+/* A circle, or a cylinder around it from -half to half, and where the point is. */
+typedef struct Ring {
+    double radius, half, rho, z;
+} Ring;
+
+/* Level with a cylinder the point is nearer to its side than to its rims, or it is deep within. */
+static bool is_beside(const Ring *ring)
 {
-    const double digits = 45;
-    const int most = 4096;
-    double rho = hypot(x[0], x[1]), beyond = fmax(0, fabs(x[2]) - half);
-    double cosh_k = (radius * radius + rho * rho + beyond * beyond) / (2 * radius * rho);
-    double n = rho > 0 ? fmin(ceil(digits / (PACK_LANES * acosh(cosh_k))), most / PACK_LANES) : 2;
-    return PACK_LANES * (int)fmax(n, 2); /* acosh(1) = 0: the most */
+    return fabs(ring->rho - ring->radius) < ring->half - fabs(ring->z);
 }
 
-/* Lines along z of half a length around a circle, or, 0, points: those of a charge[0] cos + charge[1] sin (NULL: none), and,
- * for a current, of cos and of sin. */
-static RingSum ring(double radius, double half, const double charge[2], bool current, const double x[3])
+/* Of a cylinder without ends: within it constant, beyond it a dipole in the plane. */
+static void add_endless(const Ring *ring, LineSum *sum)
 {
-    RingSum sum = {0};
-    int n = ring_nodes(radius, half, x);
-    for (int k = 0; k < n; k += PACK_LANES) {
-        Pack c, s;
-        for (int l = 0; l < PACK_LANES; l++) {
-            double angle = 2 * M_PI * (k + l) / n;
-            c[l] = cos(angle), s[l] = sin(angle);
-        }
-        Pack u = x[0] - radius * c, v = x[1] - radius * s;
-        LineField field = half > 0 ? line_field(u, v, pack_set(-half - x[2]), pack_set(half - x[2]))
-                                   : point_field(pack3(u, v, pack_set(x[2])));
-        Pack weight = pack_set(1.0 / n);
-        if (charge) add_lines(&sum.even, weight * (charge[0] * c + charge[1] * s), &field);
-        if (!current) continue;
-        add_lines(&sum.cosine, weight * c, &field);
-        add_lines(&sum.sine, weight * s, &field);
+    double a = ring->radius, rho = ring->rho, first = a / (rho * rho), second = 2 * first / rho,
+           third = 3 * second / rho;
+    if (rho < a) {
+        sum->f[0] -= 1 / a, sum->f[1] -= 1 / a;
+        return;
     }
-    return sum;
+    sum->f[0] += first, sum->f[1] -= first;
+    sum->f[3] -= second, sum->f[4] += second, sum->f[6] += second;
+    sum->f[9] += third, sum->f[10] -= third, sum->f[12] -= third, sum->f[15] += third;
+}
+
+/* Around the circle, of lines or, a half of 0, of points: beside them those of their ends, and the rest in closed form. What is
+ * odd in y goes with sin psi, all else with cos psi. */
+static RingSum ring_sum(const Ring *ring)
+{
+    static const bool odd[LINE_ALL] = {
+        [1] = true, [4] = true, [7] = true, [10] = true, [13] = true, [15] = true, [17] = true};
+    bool beside = is_beside(ring);
+    double level = beside ? -1 : 1, away = fmax(0, level * (fabs(ring->z) - ring->half)),
+           delta = ring->rho - ring->radius;
+    RingNodes nodes = ring_nodes(ring->radius, ring->rho, away);
+    Pack z = pack_set(ring->z), low = -ring->half - z, high = ring->half - z;
+    LineSum sum = {{0}};
+    for (int k = 0; k < nodes.packs; k++) {
+        RingNode at = ring_node(&nodes, k);
+        Pack x = delta + 2 * ring->radius * at.sine * at.sine, y = -2 * ring->radius * at.sine * at.cosine;
+        LineField field = beside           ? line_ends(x, y, low, high)
+                          : ring->half > 0 ? line_field(x, y, low, high)
+                                           : point_field(pack3(x, y, z));
+        Pack cosine = at.share * (1 - 2 * at.sine * at.sine), sine = at.share * (2 * at.sine * at.cosine);
+        for (int i = 0; i < LINE_ALL; i++)
+            sum.f[i] += pack_sum((odd[i] ? sine : cosine) * field.f[i], PACK_LANES);
+    }
+    if (beside) add_endless(ring, &sum);
+    RingSum parts = {{{0}}, {{0}}};
+    for (int i = 0; i < LINE_ALL; i++) *(odd[i] ? &parts.sine.f[i] : &parts.cosine.f[i]) = sum.f[i];
+    return parts;
 }
 
 static const int same_axes[3] = {0, 1, 2};
@@ -186,17 +199,33 @@ static void add_current(FluxSample *sample, double scale, const RingSum *sum)
     add_flux(sample, scale, y_axis, &sum->cosine, same_axes);
 }
 
+/* The ring that x is beside, and axes from it to x: on the axis those of x. */
+static Ring ring_of(double radius, double half, const double x[3], double axes[3][3])
+{
+    Ring ring = {radius, half, hypot(x[0], x[1]), x[2]};
+    double c = ring.rho > 0 ? x[0] / ring.rho : 1, s = ring.rho > 0 ? x[1] / ring.rho : 0;
+    double rows[3][3] = {{c, s, 0}, {-s, c, 0}, {0, 0, 1}};
+    memcpy(axes, rows, sizeof rows);
+    return ring;
+}
+
 /* Across its axis it is a charge on its side, along it a sheet of current there [Caciagli et al. 2018, Derby & Olbert
  * 2010, before their elliptic integrals]. */
 void flux_of_cylinder(double radius, double half, const double remanence[3], const double x[3],
                       FluxSample *sample)
 {
-    bool charged = remanence[0] != 0 || remanence[1] != 0;
-    RingSum sum = ring(radius, half, charged ? remanence : NULL, remanence[2] != 0, x);
+    double axes[3][3];
+    Ring ring = ring_of(radius, half, x, axes);
+    RingSum sum = ring_sum(&ring);
     *sample = (FluxSample){0};
     add_current(sample, radius / 2 * remanence[2], &sum);
-    add_flux(sample, radius / 2, NULL, &sum.even, same_axes);
-    if (hypot(x[0], x[1]) >= radius || fabs(x[2]) >= half) return;
+    const LineSum *charges[2] = {&sum.cosine, &sum.sine};
+    for (int k = 0; k < 2; k++) {
+        double across = axes[k][0] * remanence[0] + axes[k][1] * remanence[1];
+        add_flux(sample, radius / 2 * across, NULL, charges[k], same_axes);
+    }
+    flux_sample_turn((const double(*)[3])axes, sample);
+    if (ring.rho >= radius || fabs(x[2]) >= half) return;
     for (int k = 0; k < 2; k++) sample->flux[k] += remanence[k]; /* B = H + B_r */
 }
 
@@ -205,9 +234,12 @@ static const double MU_0_PER_4PI = 1e-7;
 /* I around, on a cylinder I/(2 half) along it. */
 void flux_of_round_coil(double radius, double half, double current, const double x[3], FluxSample *sample)
 {
-    RingSum sum = ring(radius, half, NULL, true, x);
+    double axes[3][3];
+    Ring ring = ring_of(radius, half, x, axes);
+    RingSum sum = ring_sum(&ring);
     *sample = (FluxSample){0};
     add_current(sample, MU_0_PER_4PI * 2 * M_PI * radius * current / (half > 0 ? 2 * half : 1), &sum);
+    flux_sample_turn((const double(*)[3])axes, sample);
 }
 
 void flux_of_rectangular_coil(const double half[2], double current, const double x[3], FluxSample *sample)

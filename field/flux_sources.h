@@ -1,14 +1,12 @@
 /* flux_sources.h - what the flux densities of magnets and coils are, in their own frames: the middle at 0, the axis along z.
  *
  * Blocks [Engel-Herbert & Hesjedal 2005] and rectangular coils are exact, cylinders and round coils exact to rounding: what
- * is left of the integral around the axis is taken by the trapezoidal rule, whose error falls exponentially, with as many
- * nodes as the distance to the nearest edge asks for (docs/theory.md). All are B, within the magnets too. */
+ * is left of the integral around the axis is taken by the trapezoidal rule in a variable in which the error falls
+ * exponentially (ring_nodes.h, docs/theory.md). All are B, within the magnets too; through faces and windings it jumps, towards
+ * the edges of magnets it grows with the logarithm of the distance, towards wires and a winding's ends without bounds. On edges
+ * and wires it is not finite. */
 #pragma once
-
-/* B at a point x (m) and time (s): flux[3] in T, gradient[k][l] = dB_k/dx_l in T/m, curvature[k][l][m] in T/m^2. */
-typedef struct FluxSample {
-    double flux[3], gradient[3][3], curvature[3][3][3];
-} FluxSample;
+#include "field/flux_sample.h"
 
 /* Of remanence[3] (T); half its size[3] (m). */
 void flux_of_block(const double half[3], const double remanence[3], const double x[3], FluxSample *sample);

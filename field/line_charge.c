@@ -1,4 +1,5 @@
 #include "field/line_charge.h"
+#include <stdbool.h>
 
 /* One end of a line: z of it, from the point. */
 typedef struct End {
@@ -23,10 +24,11 @@ typedef struct Integrals {
     Pack i3, i5, i7;
 } Integrals;
 
-static Integrals integrals(Pack square, const End *low, const End *high)
+static Integrals integrals(Pack square, const End *low, const End *high, bool ends_alone)
 {
     PackMask beside = low->sign != high->sign;
-    Pack inverse = pack_select(beside, 1 / square, (Pack){0}), a = low->a, b = high->a;
+    Pack inverse = ends_alone ? (Pack){0} : pack_select(beside, 1 / square, (Pack){0}), a = low->a,
+         b = high->a;
     Pack whole = (low->sign - high->sign) * inverse;
     Pack f5a = a * a * (square * a / 3 - 1), f5b = b * b * (square * b / 3 - 1);
     Pack f7a = -a * a * a * (4.0 / 3 - square * a * (1 - square * a / 5)),
@@ -36,11 +38,11 @@ static Integrals integrals(Pack square, const End *low, const End *high)
                        .i7 = 8.0 / 15 * whole * inverse * inverse + low->sign * f7a - high->sign * f7b};
 }
 
-LineField line_field(Pack x, Pack y, Pack low, Pack high)
+static inline LineField field_of(Pack x, Pack y, Pack low, Pack high, bool ends_alone)
 {
     Pack square = x * x + y * y;
     End ends[2] = {end_at(square, low), end_at(square, high)};
-    Integrals I = integrals(square, &ends[0], &ends[1]);
+    Integrals I = integrals(square, &ends[0], &ends[1], ends_alone);
     Pack f = I.i3, f1 = -3 * I.i5, f2 = 15 * I.i7; /* derivatives of f of D^2/2 */
     LineField o = {{{0}}};
     Pack zz = {0}, xzz = {0}, zzz = {0};
@@ -63,6 +65,16 @@ LineField line_field(Pack x, Pack y, Pack low, Pack high)
     o.f[15] = y * (3 * f1 + y * y * f2), o.f[16] = 3 * y * y * sum5 - sum3, o.f[17] = y * xzz;
     o.f[18] = zzz;
     return o;
+}
+
+LineField line_field(Pack x, Pack y, Pack low, Pack high)
+{
+    return field_of(x, y, low, high, false);
+}
+
+LineField line_ends(Pack x, Pack y, Pack low, Pack high)
+{
+    return field_of(x, y, low, high, true);
 }
 
 static Pack pack_log(Pack a)

@@ -21,6 +21,9 @@ typedef struct LineField {
 /* Of lines along z from low to high, at the distance (x, y) from them; z of the point is 0. */
 LineField line_field(Pack x, Pack y, Pack low, Pack high);
 
+/* Beside such lines (low < 0 < high) less the field 2 (x, y)/(x^2 + y^2) of lines without ends: finite at the lines. */
+LineField line_ends(Pack x, Pack y, Pack low, Pack high);
+
 /* U of them. */
 Pack line_potential(Pack x, Pack y, Pack low, Pack high);
 

@@ -98,11 +98,8 @@ void sources_tell_within(Run *run, const Snapshot *shot, int frame)
     Model *model = run->model;
     if (!model->fields || model->fields->count == 0) return;
     const char *name = shot->load_case->name;
-    double *place = mem_alloc(3 * (size_t)model->point_count, sizeof *place);
     char *where = model->job->motion ? mem_format("%s, t = %g s: the body is in", name, shot->at.time)
                                      : mem_format("%s, frame %d: the body is in", name, frame);
-    model->body->ops->places(model, shot->at.x, place);
-    model_tell_within(model, shot->p, shot->at.time, place, where, warn, (void *)run->host);
+    model_tell_within(model, shot->p, shot->at.time, shot->at.x, where, warn, (void *)run->host);
     mem_free(where);
-    mem_free(place);
 }

@@ -57,25 +57,19 @@ static void warn(void *report, const char *sentence)
 /* Of a magnet or coil that the body is in at the start: true if there is one. */
 static bool advise_within(Model *model, const Case *c, const double *p)
 {
-    double *place = mem_alloc(3 * (size_t)model->point_count, sizeof *place);
     char *where = mem_format("%s: the body starts in", c->name);
     int before = model->report.warning_count;
-    model->body->ops->places(model, c->state.x, place);
-    model_tell_within(model, p, model->time, place, where, warn, &model->report);
+    model_tell_within(model, p, model->time, c->state.x, where, warn, &model->report);
     mem_free(where);
-    mem_free(place);
     return model->report.warning_count > before;
 }
 
 /* Of a field without a value where the body is at the start: true if there is one. */
 static bool advise_unknown(Model *model, const Case *c)
 {
-    double *place = mem_alloc(3 * (size_t)model->point_count, sizeof *place);
     Error err;
-    model->body->ops->places(model, c->state.x, place);
-    bool known = model_knows_fields(model, c->stages[0].p, model->time, place, &err);
+    bool known = model_knows_fields(model, c->stages[0].p, model->time, c->state.x, &err);
     if (!known) mesh_warn(&model->report, "%s: at the start %s", c->name, err.text);
-    mem_free(place);
     return !known;
 }
 

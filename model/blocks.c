@@ -2,6 +2,7 @@
 #include "base/memory.h"
 #include "model/model.h"
 #include "model/sequence.h"
+#include "model/within.h"
 #include <math.h>
 #include <string.h>
 
@@ -92,27 +93,36 @@ void model_flux(const Model *model, const double *p, double time, double flux[3]
     mem_free(place);
 }
 
-static bool knows_field(const Model *model, const FluxField *field, FluxPlace where, const double *place,
-                        Error *err)
+static bool knows_field(const FluxField *field, FluxPlace where, const double *place, int count, Error *err)
 {
-    for (int k = 0; k < model->point_count; k++)
+    for (int k = 0; k < count; k++)
         if (!flux_field_is_known(field, place + 3 * k, where, err)) return false;
     return true;
 }
 
-bool model_knows_fields(const Model *model, const double *p, double time, const double *place, Error *err)
+static bool knows_all(const Model *model, const double *p, double time, const double *place, int count,
+                      Error *err)
 {
     const FluxBlocks *blocks = &model->flux_blocks;
     for (int k = 0; model->fields && k < model->fields->count; k++) {
         FluxPlace where = {time, p + blocks->move + 3 * k, p + blocks->turn + 3 * k};
-        if (p[blocks->scale + k] != 0 && !knows_field(model, model->fields->items[k], where, place, err))
+        if (p[blocks->scale + k] != 0 && !knows_field(model->fields->items[k], where, place, count, err))
             return model_unknown(model, "flux_density", err);
     }
     const BodyOps *ops = model->body->ops;
     if (ops->knows && !ops->knows(model, time, place, err)) return false;
     const FluxField *flow = model->world ? model->world->flow : NULL;
-    return !flow || knows_field(model, flow, (FluxPlace){.time = time}, place, err) ||
+    return !flow || knows_field(flow, (FluxPlace){.time = time}, place, model->point_count, err) ||
            model_unknown(model, "water.velocity", err);
+}
+
+bool model_knows_fields(const Model *model, const double *p, double time, const double *x, Error *err)
+{
+    int count;
+    double *place = model_field_places(model, x, &count);
+    bool known = knows_all(model, p, time, place, count, err);
+    mem_free(place);
+    return known;
 }
 
 /* ---- Trajectories ---- */

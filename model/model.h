@@ -95,9 +95,9 @@ System *model_take_system(const Model *model, System *sys);
  * has a formula that is not finite then. */
 bool model_load(const Model *model, double time, bool flux_given, double *p, Error *err);
 
-/* Are the fields in which a case is, the water's stream and the body's own loads known at all points, place[point_count][3]? False and a sentence
+/* Are the fields in which a case is, the water's stream and the body's own loads known where it is in the state x? False and a sentence
  * that says where which of them is not: to be asked when a solve has failed. */
-bool model_knows_fields(const Model *model, const double *p, double time, const double *place, Error *err);
+bool model_knows_fields(const Model *model, const double *p, double time, const double *x, Error *err);
 
 /* What the scene's key `fix` holds of a body with a mesh: coordinates, fixed[3*vertex_count], and slopes, clamped[edge_count];
  * and how it moves them, into the model. False after a refusal. model_move_held is then BodyOps.move. */

@@ -26,11 +26,10 @@ static const YamlTable dipole_table = {
 static const YamlTable magnet_table = {
     .name = "magnet",
     .size = sizeof(MagnetScene),
-    .doc = "The field of a permanent magnet, magnetised the same all through: of a block or a cylinder as it "
-           "is, near "
-           "and far; of a volume that of a dipole remanence*volume/mu_0 at its centre, right from some of "
-           "its own "
-           "sizes on.",
+    .doc =
+        "The field of a permanent magnet, magnetised the same all through: of a block or a cylinder as it "
+        "is, at its faces and far away, but on its edges, where it is infinite; of a volume that of a dipole "
+        "remanence*volume/mu_0 at its centre, right from some of its own sizes on.",
     .fields = (const YamlField[]){
         {YAML_VECTOR(MagnetScene, at), .unit = "m", .required = true, .doc = "its centre"},
         {YAML_VECTOR(MagnetScene, remanence), .unit = "T", .required = true,
@@ -51,8 +50,8 @@ static const YamlTable coil_table = {
     .name = "coil",
     .size = sizeof(CoilScene),
     .doc = "The field of a current around an axis, counter-clockwise as the axis points to one; of a winding "
-           "without "
-           "thickness.",
+           "without thickness: it jumps through one that has a length, and grows without bounds at a wire "
+           "and at the ends of a length.",
     .fields = (const YamlField[]){
         {YAML_VECTOR(CoilScene, at), .unit = "m", .required = true, .doc = "its centre"},
         {YAML_VECTOR(CoilScene, axis), .fallback = "[0, 0, 1]", .doc = "its direction, of any length but 0"},

@@ -2,12 +2,28 @@
 #include "base/memory.h"
 #include <string.h>
 
-/* A point of the body that is in the field's source; -1: none. */
-static int point_within(const Model *model, int field, const double *p, double time, const double *place)
+double *model_field_places(const Model *model, const double *x, int *count)
+{
+    int points = model->point_count, faces = model->mesh ? model->mesh->face_count : 0;
+    double *place = mem_alloc(3 * ((size_t)points + (size_t)faces), sizeof *place);
+    model->body->ops->places(model, x, place);
+    for (int f = 0; f < faces; f++) {
+        const int *v = model->mesh->faces[f];
+        for (int i = 0; i < 3; i++)
+            place[3 * (points + f) + i] =
+                (place[3 * v[0] + i] + place[3 * v[1] + i] + place[3 * v[2] + i]) / 3;
+    }
+    *count = points + faces;
+    return place;
+}
+
+/* The first of the places that is in the field's source; -1: none. */
+static int first_within(const Model *model, int field, const double *p, double time, const double *place,
+                        int count)
 {
     const FluxBlocks *blocks = &model->flux_blocks;
     FluxPlace where = {time, p + blocks->move + 3 * field, p + blocks->turn + 3 * field};
-    return flux_field_find_within(model->fields->items[field], place, model->point_count, where);
+    return flux_field_find_within(model->fields->items[field], place, count, where);
 }
 
 /* Stages have fields of their own for what is one thing. */
@@ -24,23 +40,26 @@ static char *sentence(const FluxField *field, const double x[3], const char *whe
         "obstacle",
         where, flux_field_kind(field), flux_field_name(field), x[0], x[1], x[2],
         flux_field_has_winding(field)
-            ? "its field there is not known and grows towards the wire, so that solves take long"
+            ? "its field there is that of a winding without thickness, which jumps or grows without "
+              "bounds, so that solves take long"
             : "its field there is that within it");
 }
 
-void model_tell_within(Model *model, const double *p, double time, const double *place, const char *where,
+void model_tell_within(Model *model, const double *p, double time, const double *x, const char *where,
                        void (*tell)(void *self, const char *sentence), void *self)
 {
-    int count = model->flux_blocks.uniform < 0 ? 0 : model->fields->count;
-    if (count && !model->told_within)
-        model->told_within = mem_alloc((size_t)count, sizeof *model->told_within);
-    for (int k = 0; k < count; k++) {
+    int fields = model->flux_blocks.uniform < 0 ? 0 : model->fields->count, places;
+    if (!fields) return;
+    if (!model->told_within) model->told_within = mem_alloc((size_t)fields, sizeof *model->told_within);
+    double *place = model_field_places(model, x, &places);
+    for (int k = 0; k < fields; k++) {
         bool acts = p[model->flux_blocks.scale + k] != 0 && !model->told_within[k];
-        int v = acts ? point_within(model, k, p, time, place) : -1;
+        int v = acts ? first_within(model, k, p, time, place, places) : -1;
         if (v < 0) continue;
         char *text = sentence(model->fields->items[k], place + 3 * v, where);
         mark_told(model, flux_field_name(model->fields->items[k]));
         tell(self, text);
         mem_free(text);
     }
+    mem_free(place);
 }

@@ -62,8 +62,8 @@ static const struct {
          "be no such equilibrium (what holds the body pulls it too far, or the loads are too "
          "large), or the way there is long: try more load_steps, then solver.max_iterations"},
     [NEWTON_UNKNOWN_FIELD] =
-        {"not_finite", "a field has no value where the body is or would go: what is known of the field "
-                       "must reach farther, or the body stay within it"},
+        {"not_finite", "a field has no value where the body is or would go, and it must stay where the "
+                       "field is known"},
     [NEWTON_UNSETTLED] = {"unsettled", "friction and the forces that press do not agree with each other"},
 };
 

@@ -217,19 +217,20 @@ static void test_stages_of_time(void **unused)
     }
 }
 
-/* A body that starts in a magnet is told so, by its name. */
+/* A body that starts in a magnet is told so, by its name, be the magnet so small that no vertex is in it. */
 static void test_within(void **unused)
 {
     (void)unused;
     static const char *const sources[] = {
         "{name: in, magnet: {at: [20 mm, 0, 0], size: [8 mm, 8 mm, 8 mm], remanence: [0, 0, 1 mT]}}",
         "{name: in, magnet: {at: [20 mm, 0, 0], radius: 4 mm, length: 8 mm, remanence: [0, 0, 1 mT]}}",
+        "{name: in, magnet: {at: [22.5 mm, 2.5 mm, 0], size: [3 mm, 3 mm, 3 mm], remanence: [0, 0, 1 mT]}}",
         "{name: in, coil: {at: [20 mm, 0, 0], radius: 20 mm, current: 1 mA}}",
         "{name: in, coil: {at: [20 mm, 0, 0], size: [40 mm, 20 mm], current: 1 mA}}",
         "{name: in, coil: {at: [20 mm, 0, 0], size: [60 mm, 10 mm], current: 1 mA}}",
         "{name: by, coil: {at: [20 mm, 0, 0], size: [60 mm, 20 mm], current: 1 mA}}",
         "{name: by, magnet: {at: [20 mm, 0, 5 mm], size: [8 mm, 8 mm, 8 mm], remanence: [0, 0, 1 mT]}}"};
-    for (int k = 0; k < 7; k++) {
+    for (int k = 0; k < 8; k++) {
         char *more = mem_format("job: equilibrium\nflux_density: %s\n", sources[k]);
         Built b = scene_build(text_of(more));
         bool told = false;
@@ -238,6 +239,55 @@ static void test_within(void **unused)
         assert_true(told == !strncmp(sources[k], "{name: in", 9));
         clear(&b);
         mem_free(more);
+    }
+}
+
+typedef struct Said {
+    const char *sentence;
+    bool found;
+} Said;
+
+static void look_for(void *self, const char *sentence)
+{
+    Said *said = self;
+    said->found = said->found || strstr(sentence, said->sentence);
+}
+
+/* A face whose middle is on the wire of a coil: whatever the job, `check` says so, and the run, which ends as not finite. */
+static void test_infinite(void **unused)
+{
+    (void)unused;
+    static const char *const jobs[] = {"equilibrium", "evaluate", "simulate\ntime: {step: 1 ms, steps: 2}"};
+    static const char said[] =
+        "flux_density: the field of the coil 'ring', at (0.01562, 0.01562, 0) m, is infinite "
+        "on its wire";
+    FILE *file = fopen(NAME ".obj", "w"); /* sums of powers of 2 */
+    assert_non_null(file);
+    fprintf(file, "v 0 0 0\nv 0.046875 0 0\nv 0 0.046875 0\nf 1 2 3\n");
+    fclose(file);
+    for (int k = 0; k < 3; k++) {
+        char *text = mem_format(
+            "slender: 1\njob: %s\nshell: {mesh: {file: " NAME
+            ".obj}, thickness: 1 mm, young: 1 MPa, poisson: 0.4, "
+            "density: 1000, magnetization: [1 kA/m, 0, 0]}\nfix: [{vertices: [0]}]\n"
+            "flux_density: {name: ring, coil: {at: [0, 0, 0], size: [0.03125, 0.25], current: 1}}\n",
+            jobs[k]);
+        Built b = scene_build(mem_text(text));
+        bool told = false;
+        for (int w = 0; w < b.model->report.warning_count; w++)
+            told = told || strstr(b.model->report.warnings[w], said);
+        assert_true(told);
+        clear(&b);
+        SlenderError err;
+        Said of = {.sentence = said};
+        SlenderScene *scene = slender_scene_parse(text, NULL, 0, &err);
+        if (!scene) fail_msg("%s", err.text);
+        SlenderRun def = {.output = NAME, .threads = 1, .force = true};
+        def.host = (SlenderHost){.self = &of, .say = look_for};
+        assert_int_equal(slender_run(scene, &def, &err), SLENDER_NOT_CONVERGED);
+        assert_true(of.found);
+        slender_scene_destroy(scene);
+        mem_free(text);
     }
 }
 
@@ -325,12 +375,10 @@ static void test_currents_over_time(void **unused)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_sum),
-                                       cmocka_unit_test(test_map),
-                                       cmocka_unit_test(test_design),
-                                       cmocka_unit_test(test_stages_of_time),
-                                       cmocka_unit_test(test_within),
-                                       cmocka_unit_test(test_meets),
-                                       cmocka_unit_test(test_currents_over_time)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_sum),    cmocka_unit_test(test_map),
+        cmocka_unit_test(test_design), cmocka_unit_test(test_stages_of_time),
+        cmocka_unit_test(test_within), cmocka_unit_test(test_infinite),
+        cmocka_unit_test(test_meets),  cmocka_unit_test(test_currents_over_time)};
     return cmocka_run_group_tests(tests, NULL, remove_run);
 }
