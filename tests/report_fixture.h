@@ -64,7 +64,7 @@ static inline void unpack_block(Page *page, const char *block)
         for (size_t i = 0; i < 3; i++) packed[k / 4 * 3 + i] = (unsigned char)(three >> (16 - 8 * i));
     }
     while (letters && block[letters - 1] == '=') letters--, size--;
-    uLongf length = 64 * size + 1024;
+    uLongf length = 1100 * size + 1024; /* zeros take a thousandth */
     page->bytes = mem_alloc(length, 1);
     assert_int_equal(uncompress(page->bytes, &length, packed, size), Z_OK);
     page->length = length;

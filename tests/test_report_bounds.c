@@ -1,0 +1,39 @@
+/* slender report at its bounds: what is empty, far away, of many names. */
+#include "report/report.h"
+#include "tests/leaks.h"
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+#define NAME "test_report_bounds"
+#include "tests/run_fixture.h"
+#include "tests/report_fixture.h"
+
+#define RESULT NAME ".vtkhdf"
+#define HTML   NAME ".html"
+
+static const char EMPTY[] =
+    "slender: 1\njob: draw\nspline:\n  density: {formula: \"0\"}\n  direction: {formula: [\"1\", \"0\"]}\n"
+    "  page: {size: [90 mm, 60 mm], margin: 5 mm}\n  pen: 0.6 mm\n  rounds: 0\n  iterations: 4\noutput: "
+    "{film: "
+    "1}\n";
+
+/* Of a drawing without strokes the page has its paper, and layers and a film without curves. */
+static void test_empty_drawing(void **unused)
+{
+    (void)unused;
+    result_close(run_text(mem_text(EMPTY)));
+    Page page = page_of(RESULT, HTML, 0);
+    Unpacked offsets = unpack(&page, after(page.json, "layers"), "offsets"),
+             points = unpack(&page, after(page.json, "layers"), "points");
+    assert_true(offsets.width == 1 && offsets.values[0] == 0 && points.width == 0);
+    mem_free(offsets.values), mem_free(points.values);
+    page_clear(&page);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test_teardown(test_empty_drawing, nothing_leaks)};
+    return cmocka_run_group_tests(tests, NULL, remove_run);
+}
