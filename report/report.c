@@ -49,19 +49,19 @@ bool report_is_static(const double *rows, size_t count, size_t width)
 /* ---- Frames ---- */
 
 /* As many as there is room for, of what takes two bytes for a coordinate and, say, six for the numbers of a face. */
-static int most_frames(ShowData *data, const ReportDef *def)
+static int most_frames(const ReportPart *part)
 {
     Array points;
-    if (def->frames) return def->frames;
-    if (!result_read_step(data->result, "Points", 0, &points, NULL)) return 1;
+    if (part->most) return part->most;
+    if (!result_read_step(part->data->result, "Points", 0, &points, NULL)) return 1;
     double bytes = 18. * points.dims[0];
     array_clear(&points);
     return (int)fmax(2, BYTES_MAX / fmax(bytes, 1));
 }
 
-static void choose_frames(ReportPart *part, const ReportDef *def)
+static void choose_frames(ReportPart *part)
 {
-    int steps = result_step_count(part->data->result), most = steps ? most_frames(part->data, def) : 0;
+    int steps = result_step_count(part->data->result), most = steps ? most_frames(part) : 0;
     part->frame_count = steps < most ? steps : most;
     int *frames = show_block(part->data, (size_t)part->frame_count, sizeof *frames);
     for (int k = 0; k < part->frame_count; k++) frames[k] = show_moment(steps, part->frame_count, k);
@@ -105,7 +105,7 @@ static bool is_shown(const ShowData *data)
 static bool add_result(Document *document, ShowData *data, ShowDef *show, const char *path,
                        const ReportDef *def, Error *err)
 {
-    ReportPart part = {.document = document, .data = data, .show = show};
+    ReportPart part = {.document = document, .data = data, .show = show, .most = def->frames};
     Array status;
     const char *slash = strrchr(path, '/');
     document_open(document, NULL, '{');
@@ -115,7 +115,7 @@ static bool add_result(Document *document, ShowData *data, ShowDef *show, const 
         array_clear(&status);
     }
     if (!show_cases(data, &part.cases, err)) return false;
-    choose_frames(&part, def);
+    choose_frames(&part);
     add_frames(&part);
     if (!is_shown(data)) return error_set(err, "there is no body and no drawing in it: nothing to show");
     bool ok = drawn_has(data->result)

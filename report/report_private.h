@@ -9,6 +9,7 @@ typedef struct ReportPart {
     Document *document;
     ShowData *data;
     ShowDef *show; /* the data's, whose field may be set */
+    int most;      /* frames that are shown; 0: as many as there is room for */
     int frame_count;
     const int *frames; /* [frame_count] which of the result's are shown */
     bool timed;        /* they are moments */

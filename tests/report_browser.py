@@ -239,6 +239,17 @@ def drawing():
     check("half of it half way", 0.45 < inks[1] / inks[0] < 0.58, inks)
 
 
+def film():
+    """A drawing as it relaxed has all of its strokes."""
+    inks = []
+    for shown, begin in (("ink", 1), ("film", 0.9), ("film", 0)):
+        page("drawing", f"target=none&at={begin}&shown={shown}", color_scheme="light")
+        image = panel()
+        inks.append((255.0 - image.min(axis=2)).sum())
+    check("words of a film", words() == "iteration 0", words())
+    check("all strokes of a film", 0.8 < inks[1] / inks[0] < 1.2 and inks[2] > 0.3 * inks[0], inks)
+
+
 # ---- What goes wrong ----
 
 def two():
@@ -296,7 +307,7 @@ def broken():
         check("a broken page says so", "cannot be read" in str(error), error)
 
 
-for part in (sheet_from_above, colors_of_a_frame, lines, sheet_sinks, keys, calm, lost, printed, touch, theme, rod, drawing, two, mixed, stages, flux):
+for part in (sheet_from_above, colors_of_a_frame, lines, sheet_sinks, keys, calm, lost, printed, touch, theme, rod, drawing, film, two, mixed, stages, flux):
     part()
 check("no errors", not browser.errors, browser.errors)
 broken()

@@ -21,7 +21,7 @@ time: {step: 4 ms, steps: 10}
 END_OF_SCENE
 expect 0 "$program" run sheet.yaml --no-picture --quiet
 expect 0 "$program" run "$here/scene_rod_simulate.yaml" --no-picture --quiet -o rod --set time.steps=30
-expect 0 "$program" run "$here/scene_draw.yaml" --no-picture --quiet -o drawing --set spline.rounds=0
+expect 0 "$program" run "$here/scene_draw.yaml" --no-picture --quiet -o drawing --set spline.rounds=0 --set output.film=20
 sed 's/"x < 0.02 .*"/"10^(4 + 150*x)"/; s/gravity: .*/gravity: [0, 0, 0]/' sheet.yaml > stiff.yaml
 expect 0 "$program" run stiff.yaml --no-picture --quiet --set time.steps=1
 sed '/^time:/d; /gravity:/d; s/simulate/equilibrium/' sheet.yaml > stages.yaml

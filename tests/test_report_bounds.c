@@ -32,8 +32,35 @@ static void test_empty_drawing(void **unused)
     page_clear(&page);
 }
 
+static int count_of(const char *text, const char *word)
+{
+    int count = 0;
+    for (; (text = strstr(text, word)); text++) count++;
+    return count;
+}
+
+/* Of a film as many frames as are asked for. */
+static void test_film_frames(void **unused)
+{
+    (void)unused;
+    static const char *const settings[] = {"spline.rounds=0", "spline.iterations=6", "output.film=1"};
+    SlenderError trouble;
+    Result *result = run_to(slender_scene_read(SOURCE_DIR "/tests/scene_draw.yaml", settings, 3, &trouble),
+                            &trouble, false, SLENDER_NOT_CONVERGED);
+    Array iterations = read_all(result, "slender/spline/film/iteration");
+    assert_true(iterations.dims[0] > 5);
+    for (int frames = 0; frames < 4; frames++) {
+        Page page = page_of(RESULT, HTML, frames);
+        assert_int_equal(count_of(page.json, "\"iteration\":"), frames ? frames : iterations.dims[0]);
+        page_clear(&page);
+    }
+    array_clear(&iterations);
+    result_close(result);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test_teardown(test_empty_drawing, nothing_leaks)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test_teardown(test_empty_drawing, nothing_leaks),
+                                       cmocka_unit_test_teardown(test_film_frames, nothing_leaks)};
     return cmocka_run_group_tests(tests, NULL, remove_run);
 }
