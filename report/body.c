@@ -81,7 +81,7 @@ static bool add_points(const Body *body, Error *err)
         if (ok) take_points(body, (const double(*)[3])array.data, rows + (size_t)k * width);
         array_clear(&array);
     }
-    if (ok) document_packed(part->document, "points", rows, points_shape(body, part->frame_count));
+    if (ok) report_places(part, "points", rows, points_shape(body, part->frame_count));
     mem_free(rows);
     return ok;
 }
@@ -90,7 +90,7 @@ static void add_rest(const Body *body)
 {
     double *row = mem_alloc(3 * (size_t)body->point_count, sizeof *row);
     take_points(body, body->mesh.body.rest, row);
-    document_packed(body->part->document, "rest", row, points_shape(body, 1));
+    report_places(body->part, "rest", row, points_shape(body, 1));
     mem_free(row);
 }
 
@@ -210,7 +210,7 @@ static void add_targets(const Body *body, const double (*const *x)[3])
     }
     if (count) {
         document_open(part->document, "target", '{');
-        document_packed(part->document, "points", rows, points_shape(body, count));
+        report_places(part, "points", rows, points_shape(body, count));
         report_rows(part, row);
         document_close(part->document);
     }
@@ -229,7 +229,7 @@ static void add_clouds(const Body *body, const double (*const *x)[3])
         const double(*points)[3] = x[c] ? show_case_cloud_points(part->data, part->cases.names[c], x[c],
                                                                  body->mesh.body.vertex_count, &count)
                                         : NULL;
-        if (points) document_packed(document, NULL, points[0], (Packed){1, 3 * (size_t)count, 3, 16, false});
+        if (points) report_places(part, NULL, points[0], (Packed){1, 3 * (size_t)count, 3, 16, false});
         row[c] = points ? clouds++ : -1;
     }
     document_close(document);

@@ -1,6 +1,7 @@
 #include "report/report.h"
 #include "base/memory.h"
 #include "base/plain.h"
+#include "base/vec3.h"
 #include "io/safe_file.h"
 #include "io/text.h"
 #include "report/page.h"
@@ -39,6 +40,15 @@ void report_rows(const ReportPart *part, const int *row)
     document_close(part->document);
 }
 
+void report_places(const ReportPart *part, const char *key, const double *places, Packed shape)
+{
+    size_t count = shape.rows * shape.width;
+    double *from_origin = mem_copy(places, count, sizeof *places);
+    for (size_t i = 0; i < count; i++) from_origin[i] -= part->origin[i % 3];
+    document_packed(part->document, key, from_origin, shape);
+    mem_free(from_origin);
+}
+
 bool report_is_static(const double *rows, size_t count, size_t width)
 {
     for (size_t k = 1; k < count; k++)
@@ -67,6 +77,22 @@ static void choose_frames(ReportPart *part)
     for (int k = 0; k < part->frame_count; k++) frames[k] = show_moment(steps, part->frame_count, k);
     part->frames = frames;
     part->timed = part->data->motion;
+}
+
+/* Where the points of all frames are. */
+static void find_origin(ReportPart *part)
+{
+    part->way = show_way();
+    for (int k = 0; k < part->frame_count; k++) {
+        Array points;
+        if (!result_read_step(part->data->result, "Points", part->frames[k], &points, NULL)) continue;
+        if (array_is(&points, ARRAY_FLOAT64, 2, 3))
+            show_way_add(&part->way, (const double(*)[3])points.data, points.dims[0]);
+        array_clear(&points);
+    }
+    Vec3 middle = vec3_scale(0.5, vec3_add(part->way.low, part->way.high));
+    if (isfinite(vec3_length(middle))) vec3_store(part->origin, middle);
+    document_numbers(part->document, "origin", part->origin, 3);
 }
 
 /* "t = 0.2 s"; the last ones are those of the load cases, if there are several. */
@@ -116,6 +142,7 @@ static bool add_result(Document *document, ShowData *data, ShowDef *show, const 
     }
     if (!show_cases(data, &part.cases, err)) return false;
     choose_frames(&part);
+    find_origin(&part);
     add_frames(&part);
     if (!is_shown(data)) return error_set(err, "there is no body and no drawing in it: nothing to show");
     bool ok = drawn_has(data->result)

@@ -4,6 +4,7 @@
 #include "report/report.h"
 #include "view/show_cases.h"
 #include "view/show_data.h"
+#include "view/show_obstacles.h"
 
 typedef struct ReportPart {
     Document *document;
@@ -13,6 +14,8 @@ typedef struct ReportPart {
     int frame_count;
     const int *frames; /* [frame_count] which of the result's are shown */
     bool timed;        /* they are moments */
+    ShowWay way;       /* of their points */
+    double origin[3];  /* m, its middle: places in the page are from there, however far away that is */
     ShowCases cases;
 } ReportPart;
 
@@ -42,6 +45,9 @@ bool report_facts(const ReportPart *part, Error *err);
 
 /* "#d55e00" */
 void report_color(Document *document, const char *key, Color color);
+
+/* Places, shape.rows x shape.width / 3, from the origin. */
+void report_places(const ReportPart *part, const char *key, const double *places, Packed shape);
 
 /* "of": [row of each frame's case], row[case]: which target of a list a case has, -1: none. */
 void report_rows(const ReportPart *part, const int *row);

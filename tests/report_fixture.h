@@ -138,3 +138,14 @@ static inline Unpacked unpack(const Page *page, const char *json, const char *ke
     mem_free(q);
     return array;
 }
+
+/* Places of the page's first result, as they are in the world. */
+static inline Unpacked unpack_places(const Page *page, const char *json, const char *key)
+{
+    Unpacked places = unpack(page, json, key);
+    const char *origin = after(page->json, "origin");
+    double at[3];
+    assert_int_equal(sscanf(origin, "[%lf,%lf,%lf]", &at[0], &at[1], &at[2]), 3);
+    for (size_t i = 0; i < places.rows * places.width; i++) places.values[i] += at[i % 3];
+    return places;
+}

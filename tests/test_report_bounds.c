@@ -58,9 +58,42 @@ static void test_film_frames(void **unused)
     result_close(result);
 }
 
+/* Far away from the origin a body is as exact as near it. */
+static void test_far(void **unused)
+{
+    (void)unused;
+    FILE *file = fopen(NAME ".obj", "w");
+    assert_non_null(file);
+    for (int k = 0; k < 10; k++) fprintf(file, "v %.9g %.9g 0\n", 1e4 + 0.01 * (k / 2), 1e4 + 0.01 * (k % 2));
+    for (int k = 0; k < 4; k++)
+        fprintf(file, "f %d %d %d\nf %d %d %d\n", 2 * k + 1, 2 * k + 3, 2 * k + 2, 2 * k + 3, 2 * k + 4,
+                2 * k + 2);
+    assert_int_equal(fclose(file), 0);
+    Result *result = run_text(mem_text(
+        "slender: 1\njob: equilibrium\nshell: {mesh: {file: " NAME ".obj}, thickness: 0.1 mm, young: 1 "
+        "MPa, poisson: 0.4, magnetization: [1000, 0, 0]}\nfix: [{vertices: [0, 1], clamp: true}]\n"
+        "flux_density: [0, 0, 1 mT]\n"));
+    Page page = page_of(RESULT, HTML, 0);
+    Unpacked points = unpack(&page, after(page.json, "body"), "points");
+    Array x;
+    Error err;
+    assert_true(result_read_step(result, "Points", 0, &x, &err));
+    const double *own = x.data;
+    assert_true(points.width == 30 && points.low >= -0.021 && points.high <= 0.021);
+    for (int v = 0; v < 10; v++)
+        for (int i = 0; i < 3; i++)
+            assert_true(fabs(points.values[3 * v + i] - points.values[i] - (own[3 * v + i] - own[i])) < 2e-6);
+    array_clear(&x);
+    mem_free(points.values);
+    page_clear(&page);
+    result_close(result);
+    unlink(NAME ".obj");
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test_teardown(test_empty_drawing, nothing_leaks),
-                                       cmocka_unit_test_teardown(test_film_frames, nothing_leaks)};
+                                       cmocka_unit_test_teardown(test_film_frames, nothing_leaks),
+                                       cmocka_unit_test_teardown(test_far, nothing_leaks)};
     return cmocka_run_group_tests(tests, NULL, remove_run);
 }
