@@ -279,6 +279,13 @@ def stages():
     check("red arrows", (np.abs(inks - [255, 106, 87]).max(axis=2) < 12).sum() > 100)
 
 
+def clamped():
+    """A moment before the first or after the last one is that; what is no number is the last."""
+    for asked, seen in (("2", 1), ("-1", 0), ("x", 1), ("", 0)):
+        page("sheet", f"at={asked}")
+        check(f"at={asked}", at() == seen and words() == ("t = 40 ms" if seen else "t = 0 s"), (at(), words()))
+
+
 def flux():
     """Blue arrows above the north pole point away from it; b takes them away and brings them back; the scale is told."""
     page("magnet", "theme=light&view=front&field=&arrows=0&edges=0")
@@ -307,7 +314,7 @@ def broken():
         check("a broken page says so", "cannot be read" in str(error), error)
 
 
-for part in (sheet_from_above, colors_of_a_frame, lines, sheet_sinks, keys, calm, lost, printed, touch, theme, rod, drawing, film, two, mixed, stages, flux):
+for part in (sheet_from_above, colors_of_a_frame, lines, sheet_sinks, keys, calm, lost, printed, touch, theme, rod, drawing, film, two, mixed, stages, clamped, flux):
     part()
 check("no errors", not browser.errors, browser.errors)
 broken()

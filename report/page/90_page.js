@@ -247,7 +247,8 @@ function readHash(page) {
   if (asked.has("edges")) page.choice.edges = asked.get("edges") !== "0";
   const dark = asked.get("theme") || (matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light");
   document.documentElement.dataset.theme = dark;
-  return asked.has("at") ? Number(asked.get("at")) : 1;
+  const at = asked.has("at") ? Number(asked.get("at")) : 1;
+  return Number.isFinite(at) ? Math.min(Math.max(at, 0), 1) : 1;
 }
 
 async function start() {
