@@ -123,19 +123,39 @@ static void add_frames(const ReportPart *part)
 
 /* ---- Results ---- */
 
+static bool ends_with(const char *path, const char *name)
+{
+    size_t length = strlen(path), end = strlen(name);
+    return length > end && path[length - end - 1] == '/' && !strcmp(path + length - end, name);
+}
+
+/* The end of a path from as late a folder on as no other one has, but for the same path. */
+static const char *name_of(const char *const *results, int count, int which)
+{
+    const char *path = results[which], *name = path + strlen(path);
+    bool shared = true;
+    while (shared && name > path) {
+        for (name--; name > path && name[-1] != '/';) name--;
+        shared = false;
+        for (int k = 0; k < count; k++)
+            shared |=
+                strcmp(results[k], path) != 0 && (!strcmp(results[k], name) || ends_with(results[k], name));
+    }
+    return name;
+}
+
 static bool is_shown(const ShowData *data)
 {
     return drawn_has(data->result) || result_has(data->result, "slender/faces") || show_curves_has(data);
 }
 
-static bool add_result(Document *document, ShowData *data, ShowDef *show, const char *path,
+static bool add_result(Document *document, ShowData *data, ShowDef *show, const char *name,
                        const ReportDef *def, Error *err)
 {
     ReportPart part = {.document = document, .data = data, .show = show, .most = def->frames};
     Array status;
-    const char *slash = strrchr(path, '/');
     document_open(document, NULL, '{');
-    document_text(document, "name", slash ? slash + 1 : path);
+    document_text(document, "name", name);
     if (result_read(data->result, "slender/status", &status, NULL)) {
         document_text(document, "status", status.data);
         array_clear(&status);
@@ -154,11 +174,12 @@ static bool add_result(Document *document, ShowData *data, ShowDef *show, const 
     return ok;
 }
 
-static bool read_result(Document *document, const char *path, const ReportDef *def, Error *err)
+static bool read_result(Document *document, const char *path, const char *name, const ReportDef *def,
+                        Error *err)
 {
     ShowDef show = show_default();
     ShowData data;
-    bool ok = show_data_open(&data, path, &show, err) && add_result(document, &data, &show, path, def, err);
+    bool ok = show_data_open(&data, path, &show, err) && add_result(document, &data, &show, name, def, err);
     show_data_clear(&data);
     return ok || (error_prefix(err, "%s", path), false);
 }
@@ -207,7 +228,8 @@ ShowStatus report_write(const char *const *results, int count, const char *path,
     add_colormaps(document);
     document_open(document, "results", '[');
     bool ok = true, read;
-    for (int k = 0; ok && k < count; k++) ok = read_result(document, results[k], def, err);
+    for (int k = 0; ok && k < count; k++)
+        ok = read_result(document, results[k], name_of(results, count, k), def, err);
     document_close(document);
     document_close(document);
     read = ok;

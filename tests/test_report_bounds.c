@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #define NAME "test_report_bounds"
@@ -90,10 +91,31 @@ static void test_far(void **unused)
     unlink(NAME ".obj");
 }
 
+/* Results of one name are called after the folders in which they differ. */
+static void test_names(void **unused)
+{
+    (void)unused;
+    Error err;
+    result_close(run_text(mem_text(EMPTY)));
+    mkdir(NAME "_a", 0777), mkdir(NAME "_b", 0777);
+    unlink(NAME "_a/1.vtkhdf"), unlink(NAME "_b/1.vtkhdf");
+    assert_int_equal(link(RESULT, NAME "_a/1.vtkhdf") | link(RESULT, NAME "_b/1.vtkhdf"), 0);
+    const char *const results[] = {NAME "_a/1.vtkhdf", "./" NAME "_b/1.vtkhdf", "./" RESULT};
+    if (report_write(results, 3, HTML, &(ReportDef){0}, &err) != SHOW_DONE) fail_msg("%s", err.text);
+    Page page = page_read(HTML);
+    assert_non_null(strstr(page.json, "\"name\":\"" NAME "_a/1.vtkhdf\""));
+    assert_non_null(strstr(page.json, "\"name\":\"" NAME "_b/1.vtkhdf\""));
+    assert_non_null(strstr(page.json, "\"name\":\"" RESULT "\""));
+    page_clear(&page);
+    for (int k = 0; k < 2; k++) unlink(results[k]);
+    rmdir(NAME "_a"), rmdir(NAME "_b"), unlink(HTML);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test_teardown(test_empty_drawing, nothing_leaks),
                                        cmocka_unit_test_teardown(test_film_frames, nothing_leaks),
-                                       cmocka_unit_test_teardown(test_far, nothing_leaks)};
+                                       cmocka_unit_test_teardown(test_far, nothing_leaks),
+                                       cmocka_unit_test_teardown(test_names, nothing_leaks)};
     return cmocka_run_group_tests(tests, NULL, remove_run);
 }
