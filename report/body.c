@@ -135,7 +135,7 @@ static void add_field(const Body *body, const char *name)
     mem_free(rows);
 }
 
-/* What faces are coloured by: first what the picture shows, then all that the frames have. */
+/* What faces are coloured by: first what the picture shows, with which the page opens, then all that the frames have. */
 static bool add_fields(const Body *body, Error *err)
 {
     static const char *const kinds[] = {"VTKHDF/CellData/", "VTKHDF/PointData/"};
@@ -157,6 +157,7 @@ static bool add_fields(const Body *body, Error *err)
                 add_field(body, show_text(data, "%s", paths[k] + length));
         }
     document_close(body->part->document);
+    document_text(body->part->document, "opens", values ? first : "");
     mem_free(paths);
     return true;
 }

@@ -23,7 +23,6 @@ function makePage(data) {
     page.scale = scale;
     showLegends(page);
   };
-  page.varies = (name) => fields.some((one) => one.name === name && one.values.high - one.values.low > 1e-3 * Math.max(Math.abs(one.values.low), Math.abs(one.values.high)));
   page.unitOf = (name) => fields.find((one) => one.name === name).unit;
   page.color = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
   page.dark = () => document.documentElement.dataset.theme === "dark";
@@ -254,7 +253,7 @@ function readHash(page) {
 async function start() {
   const page = makePage(await readDocument()), results = page.data.results;
   document.getElementById("title").textContent = results.length > 1 ? `${results.length} results` : results[0].name;
-  page.choice.field = results.some((result) => result.body) ? page.fieldNames.find((name) => page.varies(name)) || "" : ""; /* curves have their own inks */
+  page.choice.field = results.map(({ body }) => body && body.opens).find(Boolean) || ""; /* curves have their own inks */
   if (results.every((result) => result.drawing)) page.choice.target = "beside";
   page.at = readHash(page);
   if (page.choice.field && !page.fieldNames.includes(page.choice.field)) page.choice.field = "";
