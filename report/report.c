@@ -118,6 +118,7 @@ static void add_frames(const ReportPart *part)
         document_number(document, NULL,
                         part->timed ? show_frame_time(part->data, part->frames[k]) : part->frames[k]);
     document_close(document);
+    report_evaluations(part);
     document_close(document);
 }
 

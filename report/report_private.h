@@ -25,7 +25,7 @@ bool report_body(const ReportPart *part, Error *err);
 /* Strands of rods, and of motions the curves and places that were to be followed. */
 bool report_curves(const ReportPart *part, Error *err);
 
-/* Obstacles, magnets and coils, and where they are; field and gravity. */
+/* Obstacles, magnets and coils, and where they are; where rods are held; field and gravity. */
 bool report_surroundings(const ReportPart *part, Error *err);
 
 /* Arrows of a flux density that varies in space, or why there are none. */
@@ -33,6 +33,9 @@ void report_flux(const ReportPart *part);
 
 /* [frame] what it is called as a stage of a sequence: "stage 3: 20 mT, t = 2 s". */
 const char *const *report_stages(const ReportPart *part);
+
+/* Within the object of the frames: of a design which evaluation each is, counted from 0. */
+void report_evaluations(const ReportPart *part);
 
 /* A drawing: its strokes as they are plotted, its pens, what was to be drawn. */
 bool report_drawing(const ReportPart *part, Error *err);

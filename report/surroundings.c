@@ -1,5 +1,6 @@
 /* What is around a body: obstacles, magnets and coils, the field and gravity. */
 #include "report/report_private.h"
+#include "view/show_holds.h"
 #include <math.h>
 #include <string.h>
 
@@ -88,9 +89,26 @@ static void add_gravity(const ReportPart *part)
     }
 }
 
+/* Places that hold rods, of each frame; one row where they stand still. */
+static void add_holds(const ReportPart *part)
+{
+    size_t frames = (size_t)part->frame_count, count = (size_t)show_holds(part->data, part->frames[0]).count;
+    double *places = show_block(part->data, 3 * frames * count, sizeof *places);
+    for (size_t k = 0; k < frames; k++) {
+        Holds holds = show_holds(part->data, part->frames[k]);
+        if ((size_t)holds.count != count) return;
+        for (size_t h = 0; h < count; h++)
+            memcpy(places + 3 * (k * count + h), holds.items[h].at, 3 * sizeof *places);
+    }
+    if (count == 0) return;
+    size_t rows = report_is_static(places, frames, 3 * count) ? 1 : frames;
+    report_places(part, "holds", places, (Packed){rows, 3 * count, 3, 16, false});
+}
+
 bool report_surroundings(const ReportPart *part, Error *err)
 {
     if (part->frame_count == 0) return true;
+    add_holds(part);
     add_field(part);
     add_gravity(part);
     return add_obstacles(part, err);

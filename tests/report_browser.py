@@ -40,11 +40,13 @@ def box_of(mask):
 
 def projection(points, size, right, up):
     """Pixels of points [frames][n][3], as the page projects what fills it, and its scale."""
-    flat = points.reshape(-1, 3)
-    center = (flat.min(axis=0) + flat.max(axis=0)) / 2
-    scale = 0.47 * min(size) / np.sqrt(((flat - center) ** 2).sum(axis=1).max())
-    d = points - center
-    return np.stack([size[0] / 2 + scale * d @ np.array(right), size[1] / 2 - scale * d @ np.array(up)], axis=-1), scale
+    seen = np.stack([points @ np.array(right), points @ np.array(up)], axis=-1)
+    low, high = seen.reshape(-1, 2).min(axis=0), seen.reshape(-1, 2).max(axis=0)
+    margin = 0.05 * min(size)
+    room = np.array([size[0] - 2 * margin, size[1] - margin - min(92, size[1] / 4)])
+    scale = min(room / np.maximum(high - low, 1e-12))
+    d = scale * (seen - (low + high) / 2)
+    return np.stack([size[0] / 2 + d[..., 0], margin + room[1] / 2 - d[..., 1]], axis=-1), scale
 
 
 def frames_of(name, first=None):
@@ -117,7 +119,7 @@ def sheet_sinks():
         image = panel()
         size = image.shape[1], image.shape[0]
         places, scale = projection(frames_of("sheet"), size, [0, 1, 0], [0, 0, 1])
-        body = box_of(near(image, image[round(places[frame][:, 1].max()) - 3, round(size[0] / 2)]))
+        body = box_of((image.max(axis=2).astype(int) - image.min(axis=2) > 40)[:-92])
         check(f"the tip of frame {frame}", abs(body[3] - places[frame][:, 1].max()) <= 2, (body, places[frame][:, 1].max()))
         check(f"the width of frame {frame}", abs(body[2] - body[0] - 0.02 * scale) <= 2, (body, 0.02 * scale))
 
@@ -209,6 +211,7 @@ def rod():
         hits = [inked[round(v) - 1:round(v) + 2, round(u) - 1:round(u) + 2].any() for u, v in places[frame][:41]]
         check(f"the rod at {begin}", np.mean(hits) > 0.95, np.mean(hits))
         inked[-90:] = False  # axes and field
+        inked &= image[..., 0] >= image[..., 2]  # the natural shape is blue
         orange = (image[..., 0].astype(int) - image[..., 2] > 60)[:-90].sum()
         seen = np.hypot(*np.diff(places[frame][:41], axis=0).T).sum() * 1.2e-3 * scale
         check(f"as thick as it is at {begin}", 0.85 < orange / seen < 1.3, orange / seen)
@@ -286,6 +289,28 @@ def clamped():
         check(f"at={asked}", at() == seen and words() == ("t = 40 ms" if seen else "t = 0 s"), (at(), words()))
 
 
+def design():
+    """The objective's chart has the line of the evaluation; all numbers of an axis are said in one way; arrows have a scale."""
+    page("design", "at=0")
+    place = lambda: browser.evaluate("(() => { const chart = [...document.querySelectorAll('#charts svg')].find((svg) => svg.textContent.includes('evaluation')), now = chart.querySelector('.now'); return [now.getAttribute('visibility'), Number(now.getAttribute('x1'))]; })()")
+    check("the start", place() == ["visible", 58], place())
+    browser.key("End")
+    browser.settle()
+    check("the best", place()[0] == "visible" and place()[1] > 100, place())
+    check("the scale of arrows", "\u2192 " in browser.evaluate("document.querySelector('.magnetization').textContent"))
+    ticks = browser.evaluate("[sayTicks([1e-4, 1e-3, 1e-2], '', true), sayTicks([0, 5e-4, 1e-3], 'J'), sayTicks([0, 5e-4, 1e-3], '')]")
+    check("one way", ticks == [["1e-4", "1e-3", "1e-2"], ["0 mJ", "0.5 mJ", "1 mJ"], ["0", "5e-4", "1e-3"]], ticks)
+
+
+def filled():
+    """A flat body fills the panel's width or height, and nothing of it is where the gauges are."""
+    page("sheet", "view=top&at=0&edges=0&arrows=0&field=young&theme=light")
+    image = panel().astype(int)
+    seen = box_of((image.max(axis=2) - image.min(axis=2))[:-92] > 40)
+    size = image.shape[1], image.shape[0] - 92
+    check("fills the panel", max((seen[2] - seen[0]) / size[0], (seen[3] - seen[1]) / size[1]) > 0.85, (seen, size))
+
+
 def flux():
     """Blue arrows above the north pole point away from it; b takes them away and brings them back; the scale is told."""
     page("magnet", "theme=light&view=front&field=&arrows=0&edges=0")
@@ -314,7 +339,7 @@ def broken():
         check("a broken page says so", "cannot be read" in str(error), error)
 
 
-for part in (sheet_from_above, colors_of_a_frame, lines, sheet_sinks, keys, calm, lost, printed, touch, theme, rod, drawing, film, two, mixed, stages, clamped, flux):
+for part in (sheet_from_above, colors_of_a_frame, lines, sheet_sinks, keys, calm, lost, printed, touch, theme, rod, drawing, film, two, mixed, stages, clamped, design, filled, flux):
     part()
 check("no errors", not browser.errors, browser.errors)
 broken()

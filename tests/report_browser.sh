@@ -36,7 +36,8 @@ time: {step: 4 ms, steps: 2}
 flux_density: {magnet: {at: [20 mm, 10 mm, 30 mm], size: [8 mm, 8 mm, 8 mm], remanence: [0, 0, 1.2]}}
 END_OF_SCENE
 expect 0 "$program" run magnet.yaml --no-picture --quiet
-for name in sheet stiff rod drawing stages magnet; do expect 0 "$program" report $name.vtkhdf; done
+expect 0 "$program" run "$here/scene_small.yaml" --no-picture --quiet -o design --set design.iterations=8 --set shell.mesh.n=2 --set output.every=2
+for name in sheet stiff rod drawing stages magnet design; do expect 0 "$program" report $name.vtkhdf; done
 expect 0 "$program" report sheet.vtkhdf rod.vtkhdf -o two.html
 expect 0 "$program" report sheet.vtkhdf stages.vtkhdf -o mixed.html
 [ $bad = 0 ] || exit 1

@@ -182,6 +182,9 @@ static void test_rod(void **unused)
     Unpacked radius = unpack(&page, rod, "radius");
     assert_int_equal(radius.width, 41);
     for (size_t k = 0; k < 41; k++) assert_true(fabs(radius.values[k] - 0.6e-3) < 1e-9);
+    Unpacked held = unpack_places(&page, page.json, "holds"); /* its first end, where the rod begins */
+    for (size_t i = 0; i < 3; i++) assert_true(fabs(held.values[i] - points.values[i]) < 2e-6);
+    mem_free(held.values);
     mem_free(radius.values);
     mem_free(offsets.values);
     mem_free(points.values);

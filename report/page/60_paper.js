@@ -87,5 +87,5 @@ function makePaperPanel(result, page) {
     if (beside) context.drawImage(target, paper[0] + gap + area[0], area[1], area[2], area[3]);
   }
 
-  return { canvas, draw, readAt: () => "", field: () => null, lines: [], count: 2, times: null, paper: true, label, iteration };
+  return { canvas, draw, readAt: () => "", field: () => null, lines: [], count: 2, times: null, paper: true, label, iteration, evaluationOf: () => NaN };
 }

@@ -72,6 +72,7 @@ function makePage(data) {
     for (const { chart, kind, panel } of page.charts) {
       if (kind === "stage") chart.markRow(panel.stageOf(page.frameOf(panel)));
       if (kind === "t") chart.mark(page.timeOf(panel));
+      if (kind === "evaluation") chart.mark(panel.evaluationOf(page.frameOf(panel)));
       if (kind === "iteration") chart.mark(panel.iteration(page.frameOf(panel)));
     }
     document.getElementById("scrub").value = page.at;
@@ -90,7 +91,8 @@ function makePage(data) {
     const between = frames > 0 && stops[here] > page.at + 1e-9 ? 1 : 0; /* the next one is at hand */
     page.go(stops[Math.min(Math.max(here + frames - between, 0), stops.length - 1)]);
   };
-  page.look = (camera) => { Object.assign(page.camera, { zoom: 1, panX: 0, panY: 0 }, camera); page.redraw(); };
+  page.first = CAMERA_START;
+  page.look = (camera) => { Object.assign(page.camera, { zoom: 1, panX: 0, panY: 0 }, camera); page.first = camera; page.redraw(); };
   page.play = (on) => {
     page.playing = on;
     document.getElementById("play").textContent = on ? "\u275a\u275a" : "\u25b6";
@@ -147,11 +149,13 @@ function addWords(page, result) {
 
 function showLegends(page) {
   const name = page.choice.field, { scale } = page;
-  for (const { legend, field, lines } of page.panels) {
+  for (const { legend, field, lines, magnetization, held } of page.panels) {
     legend.replaceChildren(...lines.map(([name, color]) => lineSwitch(page, name, color)));
     legend.classList.toggle("ticked", Boolean(scale && scale.log && field()));
     if (scale && field()) legend.append(say(scale.low, page.unitOf(name)), colorBar(scale, page.unitOf(name)), say(scale.high, page.unitOf(name)),
                                node("span", { className: "faint", textContent: name.replaceAll("_", " ") }));
+    if (held) legend.append(node("span", { textContent: "\u25cf held" }));
+    if (magnetization && page.choice.arrows) legend.append(node("span", { className: "magnetization", textContent: `\u2192 ${say(magnetization, "A/m")}`, title: "the longest arrow of the magnetisation" }));
   }
   showFluxLegends(page);
 }
@@ -209,7 +213,7 @@ function addChoices(page) {
   const targets = has("target") ? [["over", "over"], ["beside", "beside"], ["none", "hidden"]] : clouds || lines ? [["over", "shown"], ["none", "hidden"]] : has("drawing") ? [["none", "hidden"], ["beside", "beside"]] : [];
   const target = addSelect(bar, "target", targets, page.choice.target, set("target"));
   if (results.some((result) => result.drawing && result.drawing.film)) addSelect(bar, "shown", [["ink", "stroke by stroke"], ["film", "as it relaxed"]], page.choice.shown, set("shown"));
-  const arrows = results.some((result) => result.body && result.body.magnetization) ? addSwitch(bar, "magnetisation", page.choice.arrows, set("arrows")) : null;
+  const arrows = results.some((result) => result.body && result.body.magnetization) ? addSwitch(bar, "magnetisation", page.choice.arrows, (on) => { set("arrows")(on); showLegends(page); }) : null;
   const flux = page.fluxScale ? addSwitch(bar, "flux density", page.choice.flux, (on) => { set("flux")(on); showLegends(page); }) : null;
   const edges = body ? addSwitch(bar, "edges", page.choice.edges, set("edges")) : null;
   if (results.some((result) => !result.drawing)) addSelect(bar, "view", [["", "free"], ...Object.keys(VIEWS).map((name) => [name, name])], "", (name, select) => { page.look(VIEWS[name]); select.value = ""; });
@@ -240,7 +244,7 @@ function readHash(page) {
   if (asked.has("shown")) page.choice.shown = asked.get("shown") === "film" ? "film" : "ink";
   if (asked.has("range")) page.choice.range = asked.get("range") === "frame" ? "frame" : "whole";
   if (asked.has("target")) page.choice.target = asked.get("target");
-  if (asked.has("view") && VIEWS[asked.get("view")]) Object.assign(page.camera, VIEWS[asked.get("view")]);
+  if (asked.has("view") && VIEWS[asked.get("view")]) page.look(VIEWS[asked.get("view")]);
   if (asked.has("arrows")) page.choice.arrows = asked.get("arrows") !== "0";
   if (asked.has("flux")) page.choice.flux = asked.get("flux") !== "0";
   if (asked.has("edges")) page.choice.edges = asked.get("edges") !== "0";
