@@ -263,6 +263,14 @@ def two():
     check("each with its moment", heads[0] == "t = 0.04 s" and heads[1].startswith("t = "), heads)
 
 
+def pair():
+    """Runs of a sweep have their folders and what was varied in their heads, and among their facts."""
+    page("pair")
+    heads = browser.evaluate("[...document.querySelectorAll('.panel h2')].map((head) => [head.firstChild.textContent, head.querySelector('.differs').textContent])")
+    check("names", heads == [["soft/0001.vtkhdf", "shell.thickness 0.001"], ["thick/0001.vtkhdf", "shell.thickness 0.002"]], heads)
+    check("among the facts", "shell.thickness" in browser.evaluate("document.getElementById('words').querySelector('table').textContent"))
+
+
 def mixed():
     """A motion beside stages: each chart has the mark of its own result, the bar says where both are."""
     page("mixed", "at=0.5")
@@ -339,7 +347,7 @@ def broken():
         check("a broken page says so", "cannot be read" in str(error), error)
 
 
-for part in (sheet_from_above, colors_of_a_frame, lines, sheet_sinks, keys, calm, lost, printed, touch, theme, rod, drawing, film, two, mixed, stages, clamped, design, filled, flux):
+for part in (sheet_from_above, colors_of_a_frame, lines, sheet_sinks, keys, calm, lost, printed, touch, theme, rod, drawing, film, two, pair, mixed, stages, clamped, design, filled, flux):
     part()
 check("no errors", not browser.errors, browser.errors)
 broken()

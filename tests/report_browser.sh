@@ -40,6 +40,11 @@ expect 0 "$program" run "$here/scene_small.yaml" --no-picture --quiet -o design 
 for name in sheet stiff rod drawing stages magnet design; do expect 0 "$program" report $name.vtkhdf; done
 expect 0 "$program" report sheet.vtkhdf rod.vtkhdf -o two.html
 expect 0 "$program" report sheet.vtkhdf stages.vtkhdf -o mixed.html
+mkdir soft thick
+for name in soft thick; do
+    expect 0 "$program" run sheet.yaml --no-picture --quiet -o $name/0001 --set time.steps=1 --set "shell.thickness=$([ $name = soft ] && echo 1 || echo 2) mm"
+done
+expect 0 "$program" report soft/0001.vtkhdf thick/0001.vtkhdf -o pair.html
 [ $bad = 0 ] || exit 1
 mkdir profile
 PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 "$here/report_browser.py" "$chromium" "$work"

@@ -10,6 +10,7 @@ function makePage(data) {
   page.greatestFlux = Math.max(extent(data.results.flatMap((result) => (result.flux || []).map(Math.abs))).high, 1e-30);
 
   page.fluxScale = fluxScaleOf(data.results);
+  page.differences = new Map(differencesOf(data.results).map((one, k) => [data.results[k], one]));
 
   /* One for all results, so that colours can be compared: of all frames, or of the one that is shown. */
   page.scale = null;
@@ -126,7 +127,7 @@ function addPanel(page, result) {
   panel.canvas.setAttribute("aria-label", `${result.name}: drag turns it, the wheel zooms`);
   panel.legend = legend, panel.arrowLegend = arrows, panel.head = node("small", {});
   document.getElementById("panels").append(
-    node("article", { className: "panel" }, node("h2", {}, result.name, node("small", {}, result.status || ""), panel.head),
+    node("article", { className: "panel" }, node("h2", {}, result.name, node("small", {}, result.status || ""), node("small", { className: "differs" }, page.differences.get(result).map((one) => one.join(" ")).join(", ")), panel.head),
          node("div", { className: "stage" }, panel.canvas, readout), legend, arrows));
   if (result.no_arrows) panel.head.before(node("small", { textContent: `no arrows of the flux density: ${result.no_arrows}` }));
   if (panel.count === 0) panel.canvas.remove();
@@ -142,7 +143,7 @@ function addPanel(page, result) {
 
 function addWords(page, result) {
   const many = page.data.results.length > 1, of = many ? ` of ${result.name}` : "", words = document.getElementById("words");
-  const rows = result.facts.map(([name, value]) => node("tr", {}, node("th", { textContent: name }), node("td", { textContent: value })));
+  const rows = [...page.differences.get(result), ...result.facts].map(([name, value]) => node("tr", {}, node("th", { textContent: name }), node("td", { textContent: value })));
   if (rows.length) words.append(node("details", { open: !many }, node("summary", { textContent: `facts${of}` }), node("table", {}, ...rows)));
   if (result.scene) words.append(node("details", {}, node("summary", { textContent: `the scene${of}` }), node("pre", { textContent: result.scene })));
 }
