@@ -307,6 +307,7 @@ def design():
     check("the best", place()[0] == "visible" and place()[1] > 100, place())
     check("the scale of arrows", "\u2192 " in browser.evaluate("document.querySelector('.magnetization').textContent"))
     ticks = browser.evaluate("[sayTicks([1e-4, 1e-3, 1e-2], '', true), sayTicks([0, 5e-4, 1e-3], 'J'), sayTicks([0, 5e-4, 1e-3], '')]")
+    check("two ticks", browser.evaluate("roundTicks(-4.4, 4.3, 4, false)") == [-4, -2, 0, 2, 4])
     check("one way", ticks == [["1e-4", "1e-3", "1e-2"], ["0 mJ", "0.5 mJ", "1 mJ"], ["0", "5e-4", "1e-3"]], ticks)
 
 

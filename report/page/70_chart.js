@@ -17,7 +17,7 @@ function roundTicks(low, high, wanted, whole) {
   if (whole) step = Math.max(1, Math.round(step));
   const ticks = [];
   for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * (high - low); k++) ticks.push(k * step);
-  return ticks;
+  return ticks.length > 1 || wanted > 20 ? ticks : roundTicks(low, high, 2 * wanted, whole); /* one tells no scale */
 }
 
 function powerTicks(low, high) {
