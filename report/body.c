@@ -81,7 +81,7 @@ static bool add_points(const Body *body, Error *err)
         if (ok) take_points(body, (const double(*)[3])array.data, rows + (size_t)k * width);
         array_clear(&array);
     }
-    if (ok) document_packed(part->document, "points", rows, points_shape(body, part->frame_count));
+    if (ok) report_places(part, "points", rows, points_shape(body, part->frame_count));
     mem_free(rows);
     return ok;
 }
@@ -90,7 +90,7 @@ static void add_rest(const Body *body)
 {
     double *row = mem_alloc(3 * (size_t)body->point_count, sizeof *row);
     take_points(body, body->mesh.body.rest, row);
-    document_packed(body->part->document, "rest", row, points_shape(body, 1));
+    report_places(body->part, "rest", row, points_shape(body, 1));
     mem_free(row);
 }
 
@@ -135,7 +135,7 @@ static void add_field(const Body *body, const char *name)
     mem_free(rows);
 }
 
-/* What faces are coloured by: first what the picture shows, then all that the frames have. */
+/* What faces are coloured by: first what the picture shows, with which the page opens, then all that the frames have. */
 static bool add_fields(const Body *body, Error *err)
 {
     static const char *const kinds[] = {"VTKHDF/CellData/", "VTKHDF/PointData/"};
@@ -157,6 +157,7 @@ static bool add_fields(const Body *body, Error *err)
                 add_field(body, show_text(data, "%s", paths[k] + length));
         }
     document_close(body->part->document);
+    document_text(body->part->document, "opens", values ? first : "");
     mem_free(paths);
     return true;
 }
@@ -210,7 +211,7 @@ static void add_targets(const Body *body, const double (*const *x)[3])
     }
     if (count) {
         document_open(part->document, "target", '{');
-        document_packed(part->document, "points", rows, points_shape(body, count));
+        report_places(part, "points", rows, points_shape(body, count));
         report_rows(part, row);
         document_close(part->document);
     }
@@ -229,7 +230,7 @@ static void add_clouds(const Body *body, const double (*const *x)[3])
         const double(*points)[3] = x[c] ? show_case_cloud_points(part->data, part->cases.names[c], x[c],
                                                                  body->mesh.body.vertex_count, &count)
                                         : NULL;
-        if (points) document_packed(document, NULL, points[0], (Packed){1, 3 * (size_t)count, 3, 16, false});
+        if (points) report_places(part, NULL, points[0], (Packed){1, 3 * (size_t)count, 3, 16, false});
         row[c] = points ? clouds++ : -1;
     }
     document_close(document);

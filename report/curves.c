@@ -14,8 +14,9 @@ static const MotionInk ink_of_bodies = {{0.835, 0.369, 0, 1}, {0.25, 0.25, 0.27,
 static const MotionInk ink_of_rods = {{0.62, 0.62, 0.64, 1}, {0, 0.62, 0.451, 1}, 3};
 
 /* From one line of points on; `grows`: as the motion goes on. */
-static void add_line(Document *document, const MarkLine *line, bool grows)
+static void add_line(const ReportPart *part, const MarkLine *line, bool grows)
 {
+    Document *document = part->document;
     int ends[2] = {0, line->count};
     document_open(document, NULL, '{');
     document_text(document, "name", line->name);
@@ -23,17 +24,20 @@ static void add_line(Document *document, const MarkLine *line, bool grows)
     document_number(document, "width", line->width);
     document_flag(document, "grows", grows);
     document_indices(document, "offsets", ends, 2, 1);
-    document_packed(document, "points", line->points[0], (Packed){1, 3 * (size_t)line->count, 3, 16, false});
+    report_places(part, "points", line->points[0], (Packed){1, 3 * (size_t)line->count, 3, 16, false});
     document_close(document);
 }
 
-static void add_places(Document *document, const ShowMotion *motion, const Marks *marks)
+static void add_places(const ReportPart *part, const ShowMotion *motion, const Marks *marks)
 {
+    Document *document = part->document;
     document_open(document, "places", '[');
     for (int k = 0; k < marks->dot_count - motion->followed_count; k++) {
+        double at[3];
+        for (int i = 0; i < 3; i++) at[i] = marks->dots[k].at[i] - part->origin[i];
         document_open(document, NULL, '{');
         report_color(document, "color", marks->dots[k].color);
-        document_numbers(document, "at", marks->dots[k].at, 3);
+        document_numbers(document, "at", at, 3);
         document_close(document);
     }
     document_close(document);
@@ -132,8 +136,8 @@ static void add_strands(const ReportPart *part, Strands strands, const double *x
         document_packed(document, "radius", strands.radius,
                         (Packed){1, (size_t)strands.offsets[strands.count], 1, 16, false});
     document_indices(document, "offsets", strands.offsets, (size_t)strands.count + 1, 1);
-    document_packed(document, "points", x,
-                    (Packed){(size_t)rows, 3 * (size_t)strands.offsets[strands.count], 3, 16, false});
+    report_places(part, "points", x,
+                  (Packed){(size_t)rows, 3 * (size_t)strands.offsets[strands.count], 3, 16, false});
     if (strands.measured) add_fields(part, strands.offsets[strands.count]);
     document_close(document);
 }
@@ -223,9 +227,9 @@ bool report_curves(const ReportPart *part, Error *err)
     Marks marks = show_motion_marks(&motion, NAN, show_curves_has(part->data) ? ink_of_rods : ink_of_bodies);
     document_open(document, "curves", '[');
     for (int k = 0; k < marks.line_count; k++)
-        add_line(document, &marks.lines[k], k >= marks.line_count - motion.followed_count);
+        add_line(part, &marks.lines[k], k >= marks.line_count - motion.followed_count);
     bool ok = add_rods(part, err);
     document_close(document);
-    add_places(document, &motion, &marks);
+    add_places(part, &motion, &marks);
     return ok;
 }

@@ -28,14 +28,14 @@ static void add_picture(Document *document, const SplineField *picture)
     document_close(document);
 }
 
-/* How it relaxed: what its pens would have drawn after some iterations, 40 at most. */
+/* How it relaxed: what its pens would have drawn after some iterations. */
 static bool add_film(const ReportPart *part, const Drawn *drawn, Error *err)
 {
-    enum { MOST = 40 };
+    enum { ROOM = 40 };
     Film film;
     Document *document = part->document;
     bool ok = film_read(part->data->result, drawn, &film, err);
-    int count = ok && film.count > MOST ? MOST : ok ? film.count : 0;
+    int most = part->most ? part->most : ROOM, count = !ok ? 0 : film.count < most ? film.count : most;
     if (count) document_open(document, "film", '[');
     for (int k = 0; k < count; k++) {
         int frame = show_moment(film.count, count, k);

@@ -3,7 +3,6 @@
 #include "base/vec3.h"
 #include "model/frame_flux.h"
 #include "report/report_private.h"
-#include "view/show_obstacles.h"
 #include <math.h>
 #include <string.h>
 
@@ -14,12 +13,11 @@ enum { ON_BODY = 16, AROUND = 320 };
 static const double BESIDE = 0.25, FAR = 4, WEAKEST = 1e-4;
 
 typedef struct Arrows {
-    const ReportPart *part;
+    const ReportPart *part; /* its way is the body's */
     FrameFlux flux;
     int count, on_body; /* the first ones are points of the body */
     int vertex[ON_BODY];
     double grid[AROUND][3];
-    ShowWay way;               /* of the body in all frames */
     double *points, *B, *size; /* [frame][count][3] m, T; [frame][count] T */
 } Arrows;
 
@@ -58,26 +56,23 @@ static void choose_vertices(Arrows *a, const double (*x)[3], int count)
 /* The way of the body, and what a grid beside it has to reach. */
 static bool find_box(Arrows *a, double low[3], double high[3], Error *err)
 {
-    int frames = a->part->frame_count;
-    for (int k = 0; k < frames; k++) {
-        Array x;
-        if (!read_points(a, k, &x, err)) return false;
-        show_way_add(&a->way, (const double(*)[3])x.data, x.dims[0]);
-        if (k == 0) choose_vertices(a, (const double(*)[3])x.data, x.dims[0]);
-        array_clear(&x);
-    }
-    Vec3 side = vec3_sub(a->way.high, a->way.low);
+    const ShowWay *way = &a->part->way;
+    Array x;
+    if (!read_points(a, 0, &x, err)) return false;
+    choose_vertices(a, (const double(*)[3])x.data, x.dims[0]);
+    array_clear(&x);
+    Vec3 side = vec3_sub(way->high, way->low);
     double more = BESIDE * fmax(side.x, fmax(side.y, side.z));
     Vec3 beside = vec3(more, more, more);
-    vec3_store(low, vec3_sub(a->way.low, beside));
-    vec3_store(high, vec3_add(a->way.high, beside));
+    vec3_store(low, vec3_sub(way->low, beside));
+    vec3_store(high, vec3_add(way->high, beside));
     return true;
 }
 
 static bool reach_sources(Arrows *a, double low[3], double high[3], Error *err)
 {
-    Vec3 middle = vec3_scale(0.5, vec3_add(a->way.low, a->way.high));
-    double radius = vec3_length(vec3_sub(a->way.high, middle)), source[3];
+    Vec3 middle = vec3_load(a->part->origin);
+    double radius = vec3_length(vec3_sub(a->part->way.high, middle)), source[3];
     for (int k = 0; k < a->part->frame_count; k++) {
         if (!take_frame(a, k, err)) return false;
         for (int s = 0; s < a->flux.fields.count; s++) {
@@ -141,11 +136,12 @@ static bool split(Arrows *a)
     return high > 0;
 }
 
-static void add_rows(const Arrows *a, const char *key, const double *rows, Packed shape)
+/* One row of what is the same in all frames. */
+static Packed rows_of(const Arrows *a, const double *rows, Packed shape)
 {
     shape.rows = (size_t)a->part->frame_count;
     if (report_is_static(rows, shape.rows, shape.width)) shape.rows = 1;
-    document_packed(a->part->document, key, rows, shape);
+    return shape;
 }
 
 static void add_arrows(const Arrows *a)
@@ -154,9 +150,12 @@ static void add_arrows(const Arrows *a)
     size_t count = (size_t)a->count;
     document_open(document, "arrows", '{');
     document_number(document, "on_body", a->on_body);
-    add_rows(a, "points", a->points, (Packed){.width = 3 * count, .stride = 3, .bits = 16});
-    add_rows(a, "directions", a->B, (Packed){.width = 3 * count, .stride = 3, .bits = 8});
-    add_rows(a, "sizes", a->size, (Packed){.width = count, .stride = 1, .bits = 8, .log = true});
+    Packed points = rows_of(a, a->points, (Packed){.width = 3 * count, .stride = 3, .bits = 16}),
+           ways = rows_of(a, a->B, (Packed){.width = 3 * count, .stride = 3, .bits = 8}),
+           sizes = rows_of(a, a->size, (Packed){.width = count, .stride = 1, .bits = 8, .log = true});
+    report_places(a->part, "points", a->points, points);
+    document_packed(document, "directions", a->B, ways);
+    document_packed(document, "sizes", a->size, sizes);
     document_close(document);
 }
 
@@ -177,7 +176,7 @@ static bool make_arrows(Arrows *a, Error *err)
 /* All else is there where they cannot be made. */
 void report_flux(const ReportPart *part)
 {
-    Arrows arrows = {.part = part, .way = show_way()};
+    Arrows arrows = {.part = part};
     Error gone;
     bool ok = frame_flux_open(&arrows.flux, part->data->result, &gone), any = ok && arrows.flux.fields.count;
     if (any && part->frame_count) ok = make_arrows(&arrows, &gone);

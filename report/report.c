@@ -1,6 +1,7 @@
 #include "report/report.h"
 #include "base/memory.h"
 #include "base/plain.h"
+#include "base/vec3.h"
 #include "io/safe_file.h"
 #include "io/text.h"
 #include "report/page.h"
@@ -39,6 +40,15 @@ void report_rows(const ReportPart *part, const int *row)
     document_close(part->document);
 }
 
+void report_places(const ReportPart *part, const char *key, const double *places, Packed shape)
+{
+    size_t count = shape.rows * shape.width;
+    double *from_origin = mem_copy(places, count, sizeof *places);
+    for (size_t i = 0; i < count; i++) from_origin[i] -= part->origin[i % 3];
+    document_packed(part->document, key, from_origin, shape);
+    mem_free(from_origin);
+}
+
 bool report_is_static(const double *rows, size_t count, size_t width)
 {
     for (size_t k = 1; k < count; k++)
@@ -49,24 +59,40 @@ bool report_is_static(const double *rows, size_t count, size_t width)
 /* ---- Frames ---- */
 
 /* As many as there is room for, of what takes two bytes for a coordinate and, say, six for the numbers of a face. */
-static int most_frames(ShowData *data, const ReportDef *def)
+static int most_frames(const ReportPart *part)
 {
     Array points;
-    if (def->frames) return def->frames;
-    if (!result_read_step(data->result, "Points", 0, &points, NULL)) return 1;
+    if (part->most) return part->most;
+    if (!result_read_step(part->data->result, "Points", 0, &points, NULL)) return 1;
     double bytes = 18. * points.dims[0];
     array_clear(&points);
     return (int)fmax(2, BYTES_MAX / fmax(bytes, 1));
 }
 
-static void choose_frames(ReportPart *part, const ReportDef *def)
+static void choose_frames(ReportPart *part)
 {
-    int steps = result_step_count(part->data->result), most = steps ? most_frames(part->data, def) : 0;
+    int steps = result_step_count(part->data->result), most = steps ? most_frames(part) : 0;
     part->frame_count = steps < most ? steps : most;
     int *frames = show_block(part->data, (size_t)part->frame_count, sizeof *frames);
     for (int k = 0; k < part->frame_count; k++) frames[k] = show_moment(steps, part->frame_count, k);
     part->frames = frames;
     part->timed = part->data->motion;
+}
+
+/* Where the points of all frames are. */
+static void find_origin(ReportPart *part)
+{
+    part->way = show_way();
+    for (int k = 0; k < part->frame_count; k++) {
+        Array points;
+        if (!result_read_step(part->data->result, "Points", part->frames[k], &points, NULL)) continue;
+        if (array_is(&points, ARRAY_FLOAT64, 2, 3))
+            show_way_add(&part->way, (const double(*)[3])points.data, points.dims[0]);
+        array_clear(&points);
+    }
+    Vec3 middle = vec3_scale(0.5, vec3_add(part->way.low, part->way.high));
+    if (isfinite(vec3_length(middle))) vec3_store(part->origin, middle);
+    document_numbers(part->document, "origin", part->origin, 3);
 }
 
 /* "t = 0.2 s"; the last ones are those of the load cases, if there are several. */
@@ -92,30 +118,52 @@ static void add_frames(const ReportPart *part)
         document_number(document, NULL,
                         part->timed ? show_frame_time(part->data, part->frames[k]) : part->frames[k]);
     document_close(document);
+    report_evaluations(part);
     document_close(document);
 }
 
 /* ---- Results ---- */
+
+static bool ends_with(const char *path, const char *name)
+{
+    size_t length = strlen(path), end = strlen(name);
+    return length > end && path[length - end - 1] == '/' && !strcmp(path + length - end, name);
+}
+
+/* The end of a path from as late a folder on as no other one has, but for the same path. */
+static const char *name_of(const char *const *results, int count, int which)
+{
+    const char *path = results[which], *name = path + strlen(path);
+    bool shared = true;
+    while (shared && name > path) {
+        for (name--; name > path && name[-1] != '/';) name--;
+        shared = false;
+        for (int k = 0; k < count; k++)
+            shared |=
+                strcmp(results[k], path) != 0 && (!strcmp(results[k], name) || ends_with(results[k], name));
+    }
+    return name;
+}
 
 static bool is_shown(const ShowData *data)
 {
     return drawn_has(data->result) || result_has(data->result, "slender/faces") || show_curves_has(data);
 }
 
-static bool add_result(Document *document, ShowData *data, ShowDef *show, const char *path,
+static bool add_result(Document *document, ShowData *data, ShowDef *show, const char *name,
                        const ReportDef *def, Error *err)
 {
-    ReportPart part = {.document = document, .data = data, .show = show};
+    ReportPart part = {.document = document, .data = data, .show = show, .most = def->frames};
     Array status;
-    const char *slash = strrchr(path, '/');
     document_open(document, NULL, '{');
-    document_text(document, "name", slash ? slash + 1 : path);
+    document_text(document, "name", name);
     if (result_read(data->result, "slender/status", &status, NULL)) {
         document_text(document, "status", status.data);
         array_clear(&status);
     }
     if (!show_cases(data, &part.cases, err)) return false;
-    choose_frames(&part, def);
+    choose_frames(&part);
+    find_origin(&part);
     add_frames(&part);
     if (!is_shown(data)) return error_set(err, "there is no body and no drawing in it: nothing to show");
     bool ok = drawn_has(data->result)
@@ -127,11 +175,12 @@ static bool add_result(Document *document, ShowData *data, ShowDef *show, const 
     return ok;
 }
 
-static bool read_result(Document *document, const char *path, const ReportDef *def, Error *err)
+static bool read_result(Document *document, const char *path, const char *name, const ReportDef *def,
+                        Error *err)
 {
     ShowDef show = show_default();
     ShowData data;
-    bool ok = show_data_open(&data, path, &show, err) && add_result(document, &data, &show, path, def, err);
+    bool ok = show_data_open(&data, path, &show, err) && add_result(document, &data, &show, name, def, err);
     show_data_clear(&data);
     return ok || (error_prefix(err, "%s", path), false);
 }
@@ -180,7 +229,8 @@ ShowStatus report_write(const char *const *results, int count, const char *path,
     add_colormaps(document);
     document_open(document, "results", '[');
     bool ok = true, read;
-    for (int k = 0; ok && k < count; k++) ok = read_result(document, results[k], def, err);
+    for (int k = 0; ok && k < count; k++)
+        ok = read_result(document, results[k], name_of(results, count, k), def, err);
     document_close(document);
     document_close(document);
     read = ok;

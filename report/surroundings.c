@@ -1,12 +1,12 @@
 /* What is around a body: obstacles, magnets and coils, the field and gravity. */
 #include "report/report_private.h"
-#include "view/show_obstacles.h"
+#include "view/show_holds.h"
 #include <math.h>
 #include <string.h>
 
 /* ---- Obstacles ---- */
 
-/* [frame][12]; false where it stands still. */
+/* [frame][12], to places from the origin; false where it stands still. */
 static bool read_poses(const ReportPart *part, const char *path, int count, int index, double *poses)
 {
     for (int k = 0; k < part->frame_count; k++) {
@@ -18,6 +18,7 @@ static bool read_poses(const ReportPart *part, const char *path, int count, int 
         if (fits) memcpy(poses + 12 * k, (const double *)rows.data + 12 * index, 12 * sizeof *poses);
         array_clear(&rows);
         if (!fits) return false;
+        for (int i = 0; i < 3; i++) poses[12 * k + 4 * i + 3] -= part->origin[i];
     }
     return true;
 }
@@ -30,7 +31,6 @@ static void add_obstacle(const ReportPart *part, const ShowObstacles *all, int i
     bool source = index >= all->obstacles;
     document_open(document, NULL, '{');
     document_text(document, "kind", source ? one->kind : "obstacle");
-    document_packed(document, "points", one->points[0], (Packed){1, 3 * points, 3, 16, false});
     document_indices(document, "faces", one->faces[0], 3 * faces, 3);
     double *rgb = show_block(part->data, 3 * faces, sizeof *rgb);
     for (size_t f = 0; f < faces; f++)
@@ -39,8 +39,11 @@ static void add_obstacle(const ReportPart *part, const ShowObstacles *all, int i
     double *poses = show_block(part->data, 12 * (size_t)part->frame_count, sizeof *poses);
     const char *path = source ? "slender/frames/source_pose" : "slender/frames/obstacle_pose";
     int of = source ? index - all->obstacles : index;
-    if (read_poses(part, path, source ? all->count - all->obstacles : all->obstacles, of, poses))
-        document_numbers(document, "poses", poses, 12 * (size_t)part->frame_count);
+    Packed shape = {1, 3 * points, 3, 16, false};
+    bool moves = read_poses(part, path, source ? all->count - all->obstacles : all->obstacles, of, poses);
+    if (moves) document_packed(document, "points", one->points[0], shape);
+    if (moves) document_numbers(document, "poses", poses, 12 * (size_t)part->frame_count);
+    if (!moves) report_places(part, "points", one->points[0], shape);
     document_close(document);
 }
 
@@ -86,9 +89,26 @@ static void add_gravity(const ReportPart *part)
     }
 }
 
+/* Places that hold rods, of each frame; one row where they stand still. */
+static void add_holds(const ReportPart *part)
+{
+    size_t frames = (size_t)part->frame_count, count = (size_t)show_holds(part->data, part->frames[0]).count;
+    double *places = show_block(part->data, 3 * frames * count, sizeof *places);
+    for (size_t k = 0; k < frames; k++) {
+        Holds holds = show_holds(part->data, part->frames[k]);
+        if ((size_t)holds.count != count) return;
+        for (size_t h = 0; h < count; h++)
+            memcpy(places + 3 * (k * count + h), holds.items[h].at, 3 * sizeof *places);
+    }
+    if (count == 0) return;
+    size_t rows = report_is_static(places, frames, 3 * count) ? 1 : frames;
+    report_places(part, "holds", places, (Packed){rows, 3 * count, 3, 16, false});
+}
+
 bool report_surroundings(const ReportPart *part, Error *err)
 {
     if (part->frame_count == 0) return true;
+    add_holds(part);
     add_field(part);
     add_gravity(part);
     return add_obstacles(part, err);

@@ -122,6 +122,7 @@ Plot spline_plot(const Strokes *strokes, const SplinePage *page, const SplinePen
     double scale = 1e3 * page->unit;
     for (int layer = 0; layer < pen_count; layer++) {
         Builder builder = {.layer = {.name = mem_text(pens[layer].name),
+                                     .start = mem_alloc(1, sizeof(int)),
                                      .color = pens[layer].color,
                                      .opaque = pens[layer].opaque,
                                      .pen = scale * pens[layer].width}};

@@ -40,11 +40,13 @@ def box_of(mask):
 
 def projection(points, size, right, up):
     """Pixels of points [frames][n][3], as the page projects what fills it, and its scale."""
-    flat = points.reshape(-1, 3)
-    center = (flat.min(axis=0) + flat.max(axis=0)) / 2
-    scale = 0.47 * min(size) / np.sqrt(((flat - center) ** 2).sum(axis=1).max())
-    d = points - center
-    return np.stack([size[0] / 2 + scale * d @ np.array(right), size[1] / 2 - scale * d @ np.array(up)], axis=-1), scale
+    seen = np.stack([points @ np.array(right), points @ np.array(up)], axis=-1)
+    low, high = seen.reshape(-1, 2).min(axis=0), seen.reshape(-1, 2).max(axis=0)
+    margin = 0.05 * min(size)
+    room = np.array([size[0] - 2 * margin, size[1] - margin - min(92, size[1] / 4)])
+    scale = min(room / np.maximum(high - low, 1e-12))
+    d = scale * (seen - (low + high) / 2)
+    return np.stack([size[0] / 2 + d[..., 0], margin + room[1] / 2 - d[..., 1]], axis=-1), scale
 
 
 def frames_of(name, first=None):
@@ -117,7 +119,7 @@ def sheet_sinks():
         image = panel()
         size = image.shape[1], image.shape[0]
         places, scale = projection(frames_of("sheet"), size, [0, 1, 0], [0, 0, 1])
-        body = box_of(near(image, image[round(places[frame][:, 1].max()) - 3, round(size[0] / 2)]))
+        body = box_of((image.max(axis=2).astype(int) - image.min(axis=2) > 40)[:-92])
         check(f"the tip of frame {frame}", abs(body[3] - places[frame][:, 1].max()) <= 2, (body, places[frame][:, 1].max()))
         check(f"the width of frame {frame}", abs(body[2] - body[0] - 0.02 * scale) <= 2, (body, 0.02 * scale))
 
@@ -209,6 +211,7 @@ def rod():
         hits = [inked[round(v) - 1:round(v) + 2, round(u) - 1:round(u) + 2].any() for u, v in places[frame][:41]]
         check(f"the rod at {begin}", np.mean(hits) > 0.95, np.mean(hits))
         inked[-90:] = False  # axes and field
+        inked &= image[..., 0] >= image[..., 2]  # the natural shape is blue
         orange = (image[..., 0].astype(int) - image[..., 2] > 60)[:-90].sum()
         seen = np.hypot(*np.diff(places[frame][:41], axis=0).T).sum() * 1.2e-3 * scale
         check(f"as thick as it is at {begin}", 0.85 < orange / seen < 1.3, orange / seen)
@@ -239,6 +242,17 @@ def drawing():
     check("half of it half way", 0.45 < inks[1] / inks[0] < 0.58, inks)
 
 
+def film():
+    """A drawing as it relaxed has all of its strokes."""
+    inks = []
+    for shown, begin in (("ink", 1), ("film", 0.9), ("film", 0)):
+        page("drawing", f"target=none&at={begin}&shown={shown}", color_scheme="light")
+        image = panel()
+        inks.append((255.0 - image.min(axis=2)).sum())
+    check("words of a film", words() == "iteration 0", words())
+    check("all strokes of a film", 0.8 < inks[1] / inks[0] < 1.2 and inks[2] > 0.3 * inks[0], inks)
+
+
 # ---- What goes wrong ----
 
 def two():
@@ -247,6 +261,14 @@ def two():
     check("one time", words() == "t = 40 ms", words())
     heads = browser.evaluate("[...document.querySelectorAll('.panel h2 small:last-child')].map((head) => head.textContent)")
     check("each with its moment", heads[0] == "t = 0.04 s" and heads[1].startswith("t = "), heads)
+
+
+def pair():
+    """Runs of a sweep have their folders and what was varied in their heads, and among their facts."""
+    page("pair")
+    heads = browser.evaluate("[...document.querySelectorAll('.panel h2')].map((head) => [head.firstChild.textContent, head.querySelector('.differs').textContent])")
+    check("names", heads == [["soft/0001.vtkhdf", "shell.thickness 0.001"], ["thick/0001.vtkhdf", "shell.thickness 0.002"]], heads)
+    check("among the facts", "shell.thickness" in browser.evaluate("document.getElementById('words').querySelector('table').textContent"))
 
 
 def mixed():
@@ -266,6 +288,36 @@ def stages():
     check("with a prefix", "flux density, mT" in names, names)
     inks = panel()[:-90].astype(int)
     check("red arrows", (np.abs(inks - [255, 106, 87]).max(axis=2) < 12).sum() > 100)
+
+
+def clamped():
+    """A moment before the first or after the last one is that; what is no number is the last."""
+    for asked, seen in (("2", 1), ("-1", 0), ("x", 1), ("", 0)):
+        page("sheet", f"at={asked}")
+        check(f"at={asked}", at() == seen and words() == ("t = 40 ms" if seen else "t = 0 s"), (at(), words()))
+
+
+def design():
+    """The objective's chart has the line of the evaluation; all numbers of an axis are said in one way; arrows have a scale."""
+    page("design", "at=0")
+    place = lambda: browser.evaluate("(() => { const chart = [...document.querySelectorAll('#charts svg')].find((svg) => svg.textContent.includes('evaluation')), now = chart.querySelector('.now'); return [now.getAttribute('visibility'), Number(now.getAttribute('x1'))]; })()")
+    check("the start", place() == ["visible", 58], place())
+    browser.key("End")
+    browser.settle()
+    check("the best", place()[0] == "visible" and place()[1] > 100, place())
+    check("the scale of arrows", "\u2192 " in browser.evaluate("document.querySelector('.magnetization').textContent"))
+    ticks = browser.evaluate("[sayTicks([1e-4, 1e-3, 1e-2], '', true), sayTicks([0, 5e-4, 1e-3], 'J'), sayTicks([0, 5e-4, 1e-3], '')]")
+    check("two ticks", browser.evaluate("roundTicks(-4.4, 4.3, 4, false)") == [-4, -2, 0, 2, 4])
+    check("one way", ticks == [["1e-4", "1e-3", "1e-2"], ["0 mJ", "0.5 mJ", "1 mJ"], ["0", "5e-4", "1e-3"]], ticks)
+
+
+def filled():
+    """A flat body fills the panel's width or height, and nothing of it is where the gauges are."""
+    page("sheet", "view=top&at=0&edges=0&arrows=0&field=young&theme=light")
+    image = panel().astype(int)
+    seen = box_of((image.max(axis=2) - image.min(axis=2))[:-92] > 40)
+    size = image.shape[1], image.shape[0] - 92
+    check("fills the panel", max((seen[2] - seen[0]) / size[0], (seen[3] - seen[1]) / size[1]) > 0.85, (seen, size))
 
 
 def flux():
@@ -296,7 +348,7 @@ def broken():
         check("a broken page says so", "cannot be read" in str(error), error)
 
 
-for part in (sheet_from_above, colors_of_a_frame, lines, sheet_sinks, keys, calm, lost, printed, touch, theme, rod, drawing, two, mixed, stages, flux):
+for part in (sheet_from_above, colors_of_a_frame, lines, sheet_sinks, keys, calm, lost, printed, touch, theme, rod, drawing, film, two, pair, mixed, stages, clamped, design, filled, flux):
     part()
 check("no errors", not browser.errors, browser.errors)
 broken()

@@ -21,7 +21,7 @@ time: {step: 4 ms, steps: 10}
 END_OF_SCENE
 expect 0 "$program" run sheet.yaml --no-picture --quiet
 expect 0 "$program" run "$here/scene_rod_simulate.yaml" --no-picture --quiet -o rod --set time.steps=30
-expect 0 "$program" run "$here/scene_draw.yaml" --no-picture --quiet -o drawing --set spline.rounds=0
+expect 0 "$program" run "$here/scene_draw.yaml" --no-picture --quiet -o drawing --set spline.rounds=0 --set output.film=20
 sed 's/"x < 0.02 .*"/"10^(4 + 150*x)"/; s/gravity: .*/gravity: [0, 0, 0]/' sheet.yaml > stiff.yaml
 expect 0 "$program" run stiff.yaml --no-picture --quiet --set time.steps=1
 sed '/^time:/d; /gravity:/d; s/simulate/equilibrium/' sheet.yaml > stages.yaml
@@ -36,9 +36,15 @@ time: {step: 4 ms, steps: 2}
 flux_density: {magnet: {at: [20 mm, 10 mm, 30 mm], size: [8 mm, 8 mm, 8 mm], remanence: [0, 0, 1.2]}}
 END_OF_SCENE
 expect 0 "$program" run magnet.yaml --no-picture --quiet
-for name in sheet stiff rod drawing stages magnet; do expect 0 "$program" report $name.vtkhdf; done
+expect 0 "$program" run "$here/scene_small.yaml" --no-picture --quiet -o design --set design.iterations=8 --set shell.mesh.n=2 --set output.every=2
+for name in sheet stiff rod drawing stages magnet design; do expect 0 "$program" report $name.vtkhdf; done
 expect 0 "$program" report sheet.vtkhdf rod.vtkhdf -o two.html
 expect 0 "$program" report sheet.vtkhdf stages.vtkhdf -o mixed.html
+mkdir soft thick
+for name in soft thick; do
+    expect 0 "$program" run sheet.yaml --no-picture --quiet -o $name/0001 --set time.steps=1 --set "shell.thickness=$([ $name = soft ] && echo 1 || echo 2) mm"
+done
+expect 0 "$program" report soft/0001.vtkhdf thick/0001.vtkhdf -o pair.html
 [ $bad = 0 ] || exit 1
 mkdir profile
 PYTHONDONTWRITEBYTECODE=1 /usr/bin/python3 "$here/report_browser.py" "$chromium" "$work"

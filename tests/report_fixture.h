@@ -64,7 +64,7 @@ static inline void unpack_block(Page *page, const char *block)
         for (size_t i = 0; i < 3; i++) packed[k / 4 * 3 + i] = (unsigned char)(three >> (16 - 8 * i));
     }
     while (letters && block[letters - 1] == '=') letters--, size--;
-    uLongf length = 64 * size + 1024;
+    uLongf length = 1100 * size + 1024; /* zeros take a thousandth */
     page->bytes = mem_alloc(length, 1);
     assert_int_equal(uncompress(page->bytes, &length, packed, size), Z_OK);
     page->length = length;
@@ -137,4 +137,15 @@ static inline Unpacked unpack(const Page *page, const char *json, const char *ke
     }
     mem_free(q);
     return array;
+}
+
+/* Places of the page's first result, as they are in the world. */
+static inline Unpacked unpack_places(const Page *page, const char *json, const char *key)
+{
+    Unpacked places = unpack(page, json, key);
+    const char *origin = after(page->json, "origin");
+    double at[3];
+    assert_int_equal(sscanf(origin, "[%lf,%lf,%lf]", &at[0], &at[1], &at[2]), 3);
+    for (size_t i = 0; i < places.rows * places.width; i++) places.values[i] += at[i % 3];
+    return places;
 }

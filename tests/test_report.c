@@ -31,7 +31,7 @@ static Page report(int frames)
 static void check_body(const Page *page, Result *result, const int *frames, int count)
 {
     const char *body = after(page->json, "body");
-    Unpacked faces = unpack(page, body, "faces"), points = unpack(page, body, "points");
+    Unpacked faces = unpack(page, body, "faces"), points = unpack_places(page, body, "points");
     Array own = read_all(result, "slender/faces");
     assert_int_equal(faces.width, array_count(&own));
     assert_int_equal(points.rows, count);
@@ -167,7 +167,7 @@ static void test_rod(void **unused)
     Result *result = run_file(SOURCE_DIR "/tests/scene_rod_simulate.yaml", settings, 1, false);
     Page page = report(0);
     const char *rod = strstr(page.json, "\"name\":\"rod\"");
-    Unpacked offsets = unpack(&page, rod, "offsets"), points = unpack(&page, rod, "points");
+    Unpacked offsets = unpack(&page, rod, "offsets"), points = unpack_places(&page, rod, "points");
     assert_int_equal(offsets.width, 2);
     assert_int_equal((int)offsets.values[1], 41);
     assert_int_equal(points.rows, 4);
@@ -182,6 +182,9 @@ static void test_rod(void **unused)
     Unpacked radius = unpack(&page, rod, "radius");
     assert_int_equal(radius.width, 41);
     for (size_t k = 0; k < 41; k++) assert_true(fabs(radius.values[k] - 0.6e-3) < 1e-9);
+    Unpacked held = unpack_places(&page, page.json, "holds"); /* its first end, where the rod begins */
+    for (size_t i = 0; i < 3; i++) assert_true(fabs(held.values[i] - points.values[i]) < 2e-6);
+    mem_free(held.values);
     mem_free(radius.values);
     mem_free(offsets.values);
     mem_free(points.values);
@@ -279,7 +282,7 @@ static void test_targets(void **unused)
     static const char of[] =
         "[1,0,1]"; /* the last frames are those of the cases, the others the last case's */
     assert_int_equal(strncmp(after(target, "of"), of, strlen(of)), 0);
-    Unpacked points = unpack(&page, target, "points");
+    Unpacked points = unpack_places(&page, target, "points");
     static const char *const paths[] = {"slender/cases/up/target", "slender/cases/down/target"};
     for (size_t k = 0; k < 2; k++) {
         Array own = read_all(result, paths[k]);
@@ -297,7 +300,7 @@ static void test_targets(void **unused)
     page = report(0);
     target = strstr(page.json, "\"name\":\"target\"");
     assert_non_null(target);
-    points = unpack(&page, target, "points");
+    points = unpack_places(&page, target, "points");
     Array names = read_all(result, "slender/case_names");
     char *path = mem_format("slender/cases/%.*s/target", (int)strcspn(names.data, "\n"), (char *)names.data);
     Array own = read_all(result, path);
@@ -382,7 +385,7 @@ static void test_arrows(void **unused)
     Result *result = run_text(mem_text(MAGNET));
     Page page = report(3);
     const char *arrows = after(page.json, "arrows");
-    Unpacked points = unpack(&page, arrows, "points"), ways = unpack(&page, arrows, "directions"),
+    Unpacked points = unpack_places(&page, arrows, "points"), ways = unpack(&page, arrows, "directions"),
              sizes = unpack(&page, arrows, "sizes");
     size_t count = sizes.width, hidden = 0;
     if (!frame_flux_open(&flux, result, &err)) fail_msg("%s", err.text);

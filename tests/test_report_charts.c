@@ -103,7 +103,8 @@ static void test_names(void **unused)
         const char *scene, *labels;
     } rows[] = {
         {"sequence:\n  - {flux_density: [0, 0, 1 mT]}\n  - {flux_density: [0.6 mT, 0, 0.8 mT], time: 1}\n"
-         "  - {time: 3}\n  - {loads: [{force: [0, 0, 1.0e-6], on: {group: tip}}]}\n  - {gravity: [0, 0, -1]}\n",
+         "  - {time: 3}\n  - {loads: [{force: [0, 0, 1.0e-6], on: {group: tip}}]}\n  - {gravity: [0, 0, "
+         "-1]}\n",
          "[\"stage 0: 1 mT along (0, 0, 1), t = 0 s, gravity 0 m/s²\","
          "\"stage 1: 1 mT along (0.6, 0, 0.8), t = 1 s\",\"stage 2: t = 3 s\",\"stage 3\","
          "\"stage 4: gravity 1 m/s²\"]"},
@@ -133,9 +134,45 @@ static int remove_page(void **state)
     return remove_run(state);
 }
 
+/* Frames of a design know which evaluation they are: every other one that was better than all before, and the best. */
+static void test_evaluations(void **unused)
+{
+    (void)unused;
+    static const char *const settings[] = {"design.iterations=12", "shell.mesh.n=2", "output.every=2"};
+    SlenderError trouble;
+    Result *result = run_to(slender_scene_read(SOURCE_DIR "/tests/scene_small.yaml", settings, 3, &trouble),
+                            &trouble, false, SLENDER_NOT_CONVERGED);
+    Page page = page_of(RESULT, HTML, 0);
+    Array history = read_all(result, "slender/history/objective");
+    const double *objective = history.data;
+    const char *list = after(page.json, "evaluations");
+    int frames = result_step_count(result), better = 0, best = 0, last = 0;
+    assert_true(frames > 4);
+    for (int k = 0; k < history.dims[0]; k++) {
+        if (k > 0 && !(objective[k] < objective[best])) continue;
+        best = k;
+        if (better++ % 2) continue;
+        char *end;
+        last = (int)strtol(list + 1, &end, 10);
+        assert_int_equal(last, k);
+        list = end;
+    }
+    assert_int_equal((better + 1) / 2, frames - 2); /* two cases */
+    for (int c = 0; c < 2; c++) {
+        char *end;
+        assert_int_equal(strtol(list + 1, &end, 10), best);
+        list = end;
+    }
+    assert_int_equal(*list, ']');
+    array_clear(&history);
+    page_clear(&page);
+    result_close(result);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test_teardown(test_energies, nothing_leaks),
+                                       cmocka_unit_test_teardown(test_evaluations, nothing_leaks),
                                        cmocka_unit_test_teardown(test_stages, nothing_leaks),
                                        cmocka_unit_test_teardown(test_names, nothing_leaks)};
     return cmocka_run_group_tests(tests, NULL, remove_page);

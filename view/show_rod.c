@@ -53,15 +53,25 @@ static void add_dots(RodPage *page, const MarkDot *more, int count)
     given->dots = dots, given->dot_count += count;
 }
 
-/* Of a state's target, what is no line of it: points whose neighbours have no place. */
+/* Has it two neighbours? */
+static bool has_line(const RodPage *page, const double (*target)[3])
+{
+    int count = page->curves.point_count, i = 1;
+    while (i < count && !(has_place(target, i - 1, count) && has_place(target, i, count))) i++;
+    return i < count;
+}
+
+/* Of a state's target, what is no line of it: points whose neighbours have no place. Where there is a line, it is what the legend
+ * names. */
 static void add_alone(RodPage *page, const ShowCurvesState *state)
 {
+    const char *name = has_line(page, state->target) ? NULL : "target";
     int count = page->curves.point_count, alone = 0;
     MarkDot *places = show_block(page->data, (size_t)count, sizeof *places);
     for (int i = 0; i < count; i++) {
         bool joined = has_place(state->target, i - 1, count) || has_place(state->target, i + 1, count);
         if (has_place(state->target, i, count) && !joined)
-            places[alone++] = (MarkDot){"target", state->target[i], input_ink, PLACE_DOT, false};
+            places[alone++] = (MarkDot){name, state->target[i], input_ink, PLACE_DOT, false};
     }
     add_dots(page, places, alone);
 }
@@ -102,8 +112,9 @@ static const char *state_words(RodPage *page, const char *word, const ShowCurves
 
 static void add_target(RodPage *page, const ShowCurvesState *state)
 {
-    if (state->target)
-        add_set(page, state_words(page, "target", state), state->target, input_ink)->width = 3.4;
+    if (!state->target) return;
+    const char *name = has_line(page, state->target) ? state_words(page, "target", state) : NULL;
+    add_set(page, name, state->target, input_ink)->width = 3.4;
 }
 
 /* Over the input, so that both are seen. */

@@ -32,12 +32,26 @@ function enclose(arrays) {
   return { center, radius: Math.sqrt(most) || 1 };
 }
 
-/* What a panel of width x height pixels sees: `scale` pixels a metre, `shift` pixels beside the middle. */
-function makeView(camera, sphere, width, height, beside) {
-  const room = Math.min(beside ? width / 2 : width, height);
-  const scale = (0.47 * room * camera.zoom) / sphere.radius;
+/* How far points [..3n] of several arrays reach to the right and upward of a centre, as a camera sees them: {middle, size}, [2] each. */
+function reachOf(arrays, center, [right, up]) {
+  const low = [Infinity, Infinity], high = [-Infinity, -Infinity], axes = [right, up], of_center = axes.map((axis) => dot(axis, center));
+  for (const points of arrays)
+    for (let i = 0; i + 2 < points.length; i += 3)
+      for (let k = 0; k < 2; k++) {
+        const axis = axes[k], at = axis[0] * points[i] + axis[1] * points[i + 1] + axis[2] * points[i + 2] - of_center[k];
+        if (at < low[k]) low[k] = at;
+        if (at > high[k]) high[k] = at;
+      }
+  return low[0] <= high[0] ? { middle: low.map((l, k) => (l + high[k]) / 2), size: low.map((l, k) => high[k] - l) } : { middle: [0, 0], size: [0, 0] };
+}
+
+/* What a panel of width x height pixels sees: `scale` pixels a metre. What there is of `sphere` fills it as it reaches at first,
+ * but for a margin, and gauges below. */
+function makeView(camera, sphere, reach, { width, height, ratio, beside }) {
+  const margin = 0.05 * Math.min(width, height), room = [(beside ? width / 2 : width) - 2 * margin, height - margin - Math.min(92 * ratio, height / 4)];
+  const scale = camera.zoom * Math.min(...room.map((pixels, k) => pixels / Math.max(reach.size[k], 1e-3 * sphere.radius)));
   return { axes: cameraAxes(camera), center: sphere.center, radius: sphere.radius, scale, width, height,
-           x: width / 2 + camera.panX * width - (beside ? width / 4 : 0), y: height / 2 + camera.panY * height };
+           x: (beside ? width / 4 : width / 2) + camera.panX * width - scale * reach.middle[0], y: margin + room[1] / 2 + camera.panY * height + scale * reach.middle[1] };
 }
 
 /* Pixels from the upper left corner, and height towards the eye in metres. */

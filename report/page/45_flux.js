@@ -17,11 +17,15 @@ function fluxAlpha(part) {
   return 0.25 + 0.75 * part;
 }
 
-/* Arrows of the grid reach from one place to the next at most; those at the body are wider. */
+/* How long the longest arrow is: from one place of the grid to the next. */
+function fluxLength({ points, on_body }) {
+  return 0.9 * Math.hypot(...[0, 1, 2].map((i) => points.data[3 * on_body + 3 + i] - points.data[3 * on_body + i]));
+}
+
+/* Those at the body are wider. */
 function fluxStrokes(arrows, at, scale, ink, ratio) {
   const points = rowNear(arrows.points, at), directions = rowNear(arrows.directions, at), sizes = rowNear(arrows.sizes, at), first = arrows.on_body;
-  const longest = 0.9 * Math.hypot(...[0, 1, 2].map((i) => points[3 * first + 3 + i] - points[3 * first + i]));
-  const count = sizes.length, from = new Float32Array(3 * count), to = new Float32Array(3 * count), colors = new Uint8Array(4 * count), widths = new Float32Array(count);
+  const longest = fluxLength(arrows), count = sizes.length, from = new Float32Array(3 * count), to = new Float32Array(3 * count), colors = new Uint8Array(4 * count), widths = new Float32Array(count);
   for (let k = 0; k < count; k++) {
     if (!Number.isFinite(sizes[k])) continue; /* no width, no ink */
     const part = fluxPart(scale, sizes[k]), half = 0.5 * longest * (WEAK + (1 - WEAK) * part);

@@ -35,10 +35,18 @@ function fieldsOf({ body, curves = [] }) {
 function makeSpacePanel(result, page) {
   const { body, target, clouds, obstacles = [], curves = [], places = [] } = result, count = result.frames.labels.length;
   const moving = [...(body ? [body.points.data] : []), ...curves.map((curve) => curve.points.data), ...(target ? [target.points.data] : []), ...(clouds ? clouds.sets.map((set) => set.data) : [])];
-  const sphere = enclose([...moving, ...nearPoints(obstacles, enclose(moving), count)]), arrows = body && body.magnetization ? prepareArrows(body.magnetization, 260) : null;
+  const shown = [...moving, ...nearPoints(obstacles, enclose(moving), count)], sphere = enclose(shown), reach = new Map();
+  const arrows = body && body.magnetization ? prepareArrows(body.magnetization, 260) : null;
   const segments = curves.map((curve) => segmentsOf(curve.offsets.data)), edges = body && target ? edgesOf(body.faces.data) : [];
   const canvas = document.createElement("canvas"), context = canvas.getContext("2d");
   let view = null, pointsNow = null;
+  if (result.arrows) for (const half of [-0.5, 0.5]) shown.push(result.arrows.points.data.map((x) => x + half * fluxLength(result.arrows))); /* their ends */
+
+  /* As the camera looks at first: what is turned does not become larger or smaller. */
+  function reachNow() {
+    if (!reach.has(page.first)) reach.set(page.first, reachOf(shown, sphere.center, cameraAxes(page.first)));
+    return reach.get(page.first);
+  }
 
   function field() {
     return fieldsOf(result).find((one) => one.name === page.choice.field);
@@ -105,6 +113,10 @@ function makeSpacePanel(result, page) {
       if (curve.of) gl.drawStrokes(view, dotStrokes(lonePoints(points, offsets), ink, 9 * page.ratio), { raise: 0.02 });
     });
     for (const place of places) gl.drawStrokes(view, dotStrokes(place.at, parseColor(place.color), 8 * page.ratio), { raise: 0.02 });
+  }
+
+  function drawHolds(gl, at) {
+    if (result.holds) gl.drawStrokes(view, dotStrokes(rowAt(result.holds, at), parseColor(page.color("--ink")), 8 * page.ratio), { raise: 0.03 });
   }
 
   function drawFlux(gl, at) {
@@ -175,7 +187,7 @@ function makeSpacePanel(result, page) {
     const width = Math.round(canvas.clientWidth * page.ratio), height = Math.round(canvas.clientHeight * page.ratio), gl = page.renderer;
     if (!width || !height || count === 0) return;
     if (canvas.width !== width || canvas.height !== height) (canvas.width = width), (canvas.height = height);
-    view = makeView(page.camera, sphere, width, height, target && page.choice.target === "beside");
+    view = makeView(page.camera, sphere, reachNow(), { width, height, ratio: page.ratio, beside: target && page.choice.target === "beside" });
     context.clearRect(0, 0, width, height);
     if (gl) {
       gl.begin(width, height);
@@ -183,6 +195,7 @@ function makeSpacePanel(result, page) {
       if (body) drawTarget(gl, at);
       drawCurves(gl, at);
       drawObstacles(gl, at);
+      drawHolds(gl, at);
       drawFlux(gl, at);
       context.drawImage(gl.canvas, 0, 0);
     }
@@ -200,7 +213,7 @@ function makeSpacePanel(result, page) {
   }
 
   const lines = [...new Map(curves.filter((curve) => curve.name).map((curve) => [curve.name, curve.color]))];
-  return { canvas, draw, readAt, field, lines, count, arrows: result.arrows, times: result.frames.times, stageOf: (at) => (result.frames.stages || [])[Math.round(at)], label: (at) => result.frames.labels[Math.min(Math.round(at), count - 1)] };
+  return { canvas, draw, readAt, field, lines, count, magnetization: arrows && arrows.greatest, held: Boolean(result.holds), arrows: result.arrows, times: result.frames.times, evaluationOf: (at) => (result.frames.evaluations || [])[Math.round(at)], stageOf: (at) => (result.frames.stages || [])[Math.round(at)], label: (at) => result.frames.labels[Math.min(Math.round(at), count - 1)] };
 }
 
 /* The names of a face's groups. */

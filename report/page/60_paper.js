@@ -21,11 +21,12 @@ function curveLength(points, first, end) {
 function makePaperPanel(result, page) {
   const { paper, area, layers, picture, film = [] } = result.drawing;
   const canvas = document.createElement("canvas"), context = canvas.getContext("2d"), target = pictureCanvas(picture);
-  const ends = []; /* [layer][curve] ink up to its end, mm */
+  const begins = []; /* [layer][curve] ink before it, mm */
   let ink = 0;
   for (const layer of layers) {
     const offsets = layer.offsets.data;
-    ends.push(Float32Array.from({ length: offsets.length - 1 }, (_, k) => (ink += curveLength(layer.points.data, offsets[k], offsets[k + 1]))));
+    const lengths = Array.from({ length: offsets.length - 1 }, (_, k) => curveLength(layer.points.data, offsets[k], offsets[k + 1]));
+    begins.push(lengths.map((length) => (ink += length) - length));
   }
 
   function drawCurve(points, first, end) {
@@ -34,15 +35,20 @@ function makePaperPanel(result, page) {
       context.bezierCurveTo(points[2 * k], points[2 * k + 1], points[2 * k + 2], points[2 * k + 3], points[2 * k + 4], points[2 * k + 5]);
   }
 
-  /* Those that have been begun with so much ink. */
-  function drawLayer(layer, last, used) {
+  /* Its first curves, so many. */
+  function drawLayer(layer, count) {
     const offsets = layer.offsets.data;
     context.strokeStyle = layer.color;
     context.lineWidth = layer.width;
     context.lineCap = context.lineJoin = "round";
     context.beginPath();
-    for (let k = 0; k + 1 < offsets.length && (k ? last[k - 1] : 0) < used; k++) drawCurve(layer.points.data, offsets[k], offsets[k + 1]);
+    for (let k = 0; k < count; k++) drawCurve(layer.points.data, offsets[k], offsets[k + 1]);
     context.stroke();
+  }
+
+  /* How many curves of a layer have been begun at that moment. */
+  function begun(layer, at) {
+    return at >= 1 ? begins[layer].length : begins[layer].filter((before) => before < at * ink).length;
   }
 
   /* What is shown of how it relaxed; null: the drawing itself. */
@@ -76,10 +82,10 @@ function makePaperPanel(result, page) {
     }
     context.globalCompositeOperation = "multiply"; /* inks shine through each other */
     const frame = filmAt(at);
-    (frame ? frame.layers : layers).forEach((layer, k) => drawLayer(layer, frame ? [] : ends[k], frame || at >= 1 ? Infinity : at * ink));
+    (frame ? frame.layers : layers).forEach((layer, k) => drawLayer(layer, frame ? layer.offsets.data.length - 1 : begun(k, at)));
     context.globalCompositeOperation = "source-over";
     if (beside) context.drawImage(target, paper[0] + gap + area[0], area[1], area[2], area[3]);
   }
 
-  return { canvas, draw, readAt: () => "", field: () => null, lines: [], count: 2, times: null, paper: true, label, iteration };
+  return { canvas, draw, readAt: () => "", field: () => null, lines: [], count: 2, times: null, paper: true, label, iteration, evaluationOf: () => NaN };
 }

@@ -17,7 +17,7 @@ function roundTicks(low, high, wanted, whole) {
   if (whole) step = Math.max(1, Math.round(step));
   const ticks = [];
   for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * (high - low); k++) ticks.push(k * step);
-  return ticks;
+  return ticks.length > 1 || wanted > 20 ? ticks : roundTicks(low, high, 2 * wanted, whole); /* one tells no scale */
 }
 
 function powerTicks(low, high) {
@@ -44,17 +44,26 @@ function isLog(chart, values) {
   return !chart.linear && finite.length > 1 && low > 0 && high > 100 * low;
 }
 
+/* Ticks of an axis, all in one way: with one prefix or, of powers, their own; with powers of ten if any has one. */
+function sayTicks(ticks, unit, log) {
+  const one = prefixed(Math.max(...ticks.map(Math.abs)), unit), named = ticks.map((tick) => (log ? prefixed(tick, unit) : one));
+  const numbers = ticks.map((tick, k) => tick / named[k].scale), far = numbers.some((number) => trim(number).includes("e"));
+  return numbers.map((number, k) => `${far && number ? Number(number.toPrecision(3)).toExponential() : trim(number)} ${named[k].unit}`.trim());
+}
+
 function addAxes(svg, chart, xOf, yOf, xs, ys, log) {
   const { left, right, top, bottom, width, height } = CHART, whole = !chart.x.unit;
   const { unit, scale } = prefixed(Math.max(...xs.map(Math.abs)), chart.x.unit);
-  for (const tick of roundTicks(...xs, 6, whole)) {
+  const across = roundTicks(...xs, 6, whole), upward = log ? powerTicks(...ys) : roundTicks(...ys, 4, false);
+  const names = { x: sayTicks(across.map((tick) => tick / scale), ""), y: sayTicks(upward, chart.y.unit, log) };
+  across.forEach((tick, k) => {
     svg.append(svgNode("line", { class: "grid", x1: xOf(tick), x2: xOf(tick), y1: top, y2: height - bottom }));
-    svg.append(svgNode("text", { x: xOf(tick), y: height - bottom + 13, "text-anchor": "middle" }, trim(tick / scale)));
-  }
-  for (const tick of log ? powerTicks(...ys) : roundTicks(...ys, 4, false)) {
+    svg.append(svgNode("text", { x: xOf(tick), y: height - bottom + 13, "text-anchor": "middle" }, names.x[k]));
+  });
+  upward.forEach((tick, k) => {
     svg.append(svgNode("line", { class: "grid", x1: left, x2: width - right, y1: yOf(tick), y2: yOf(tick) }));
-    svg.append(svgNode("text", { x: left - 5, y: yOf(tick) + 4, "text-anchor": "end" }, say(tick, chart.y.unit)));
-  }
+    svg.append(svgNode("text", { x: left - 5, y: yOf(tick) + 4, "text-anchor": "end" }, names.y[k]));
+  });
   const label = unit ? `${chart.x.label}, ${unit}` : chart.x.label;
   svg.append(svgNode("text", { x: (left + width - right) / 2, y: height - 5, "text-anchor": "middle" }, label));
 }

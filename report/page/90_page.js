@@ -10,6 +10,7 @@ function makePage(data) {
   page.greatestFlux = Math.max(extent(data.results.flatMap((result) => (result.flux || []).map(Math.abs))).high, 1e-30);
 
   page.fluxScale = fluxScaleOf(data.results);
+  page.differences = new Map(differencesOf(data.results).map((one, k) => [data.results[k], one]));
 
   /* One for all results, so that colours can be compared: of all frames, or of the one that is shown. */
   page.scale = null;
@@ -23,7 +24,6 @@ function makePage(data) {
     page.scale = scale;
     showLegends(page);
   };
-  page.varies = (name) => fields.some((one) => one.name === name && one.values.high - one.values.low > 1e-3 * Math.max(Math.abs(one.values.low), Math.abs(one.values.high)));
   page.unitOf = (name) => fields.find((one) => one.name === name).unit;
   page.color = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
   page.dark = () => document.documentElement.dataset.theme === "dark";
@@ -73,6 +73,7 @@ function makePage(data) {
     for (const { chart, kind, panel } of page.charts) {
       if (kind === "stage") chart.markRow(panel.stageOf(page.frameOf(panel)));
       if (kind === "t") chart.mark(page.timeOf(panel));
+      if (kind === "evaluation") chart.mark(panel.evaluationOf(page.frameOf(panel)));
       if (kind === "iteration") chart.mark(panel.iteration(page.frameOf(panel)));
     }
     document.getElementById("scrub").value = page.at;
@@ -91,7 +92,8 @@ function makePage(data) {
     const between = frames > 0 && stops[here] > page.at + 1e-9 ? 1 : 0; /* the next one is at hand */
     page.go(stops[Math.min(Math.max(here + frames - between, 0), stops.length - 1)]);
   };
-  page.look = (camera) => { Object.assign(page.camera, { zoom: 1, panX: 0, panY: 0 }, camera); page.redraw(); };
+  page.first = CAMERA_START;
+  page.look = (camera) => { Object.assign(page.camera, { zoom: 1, panX: 0, panY: 0 }, camera); page.first = camera; page.redraw(); };
   page.play = (on) => {
     page.playing = on;
     document.getElementById("play").textContent = on ? "\u275a\u275a" : "\u25b6";
@@ -125,7 +127,7 @@ function addPanel(page, result) {
   panel.canvas.setAttribute("aria-label", `${result.name}: drag turns it, the wheel zooms`);
   panel.legend = legend, panel.arrowLegend = arrows, panel.head = node("small", {});
   document.getElementById("panels").append(
-    node("article", { className: "panel" }, node("h2", {}, result.name, node("small", {}, result.status || ""), panel.head),
+    node("article", { className: "panel" }, node("h2", {}, result.name, node("small", {}, result.status || ""), node("small", { className: "differs" }, page.differences.get(result).map((one) => one.join(" ")).join(", ")), panel.head),
          node("div", { className: "stage" }, panel.canvas, readout), legend, arrows));
   if (result.no_arrows) panel.head.before(node("small", { textContent: `no arrows of the flux density: ${result.no_arrows}` }));
   if (panel.count === 0) panel.canvas.remove();
@@ -141,18 +143,20 @@ function addPanel(page, result) {
 
 function addWords(page, result) {
   const many = page.data.results.length > 1, of = many ? ` of ${result.name}` : "", words = document.getElementById("words");
-  const rows = result.facts.map(([name, value]) => node("tr", {}, node("th", { textContent: name }), node("td", { textContent: value })));
+  const rows = [...page.differences.get(result), ...result.facts].map(([name, value]) => node("tr", {}, node("th", { textContent: name }), node("td", { textContent: value })));
   if (rows.length) words.append(node("details", { open: !many }, node("summary", { textContent: `facts${of}` }), node("table", {}, ...rows)));
   if (result.scene) words.append(node("details", {}, node("summary", { textContent: `the scene${of}` }), node("pre", { textContent: result.scene })));
 }
 
 function showLegends(page) {
   const name = page.choice.field, { scale } = page;
-  for (const { legend, field, lines } of page.panels) {
+  for (const { legend, field, lines, magnetization, held } of page.panels) {
     legend.replaceChildren(...lines.map(([name, color]) => lineSwitch(page, name, color)));
     legend.classList.toggle("ticked", Boolean(scale && scale.log && field()));
     if (scale && field()) legend.append(say(scale.low, page.unitOf(name)), colorBar(scale, page.unitOf(name)), say(scale.high, page.unitOf(name)),
                                node("span", { className: "faint", textContent: name.replaceAll("_", " ") }));
+    if (held) legend.append(node("span", { textContent: "\u25cf held" }));
+    if (magnetization && page.choice.arrows) legend.append(node("span", { className: "magnetization", textContent: `\u2192 ${say(magnetization, "A/m")}`, title: "the longest arrow of the magnetisation" }));
   }
   showFluxLegends(page);
 }
@@ -210,7 +214,7 @@ function addChoices(page) {
   const targets = has("target") ? [["over", "over"], ["beside", "beside"], ["none", "hidden"]] : clouds || lines ? [["over", "shown"], ["none", "hidden"]] : has("drawing") ? [["none", "hidden"], ["beside", "beside"]] : [];
   const target = addSelect(bar, "target", targets, page.choice.target, set("target"));
   if (results.some((result) => result.drawing && result.drawing.film)) addSelect(bar, "shown", [["ink", "stroke by stroke"], ["film", "as it relaxed"]], page.choice.shown, set("shown"));
-  const arrows = results.some((result) => result.body && result.body.magnetization) ? addSwitch(bar, "magnetisation", page.choice.arrows, set("arrows")) : null;
+  const arrows = results.some((result) => result.body && result.body.magnetization) ? addSwitch(bar, "magnetisation", page.choice.arrows, (on) => { set("arrows")(on); showLegends(page); }) : null;
   const flux = page.fluxScale ? addSwitch(bar, "flux density", page.choice.flux, (on) => { set("flux")(on); showLegends(page); }) : null;
   const edges = body ? addSwitch(bar, "edges", page.choice.edges, set("edges")) : null;
   if (results.some((result) => !result.drawing)) addSelect(bar, "view", [["", "free"], ...Object.keys(VIEWS).map((name) => [name, name])], "", (name, select) => { page.look(VIEWS[name]); select.value = ""; });
@@ -241,19 +245,20 @@ function readHash(page) {
   if (asked.has("shown")) page.choice.shown = asked.get("shown") === "film" ? "film" : "ink";
   if (asked.has("range")) page.choice.range = asked.get("range") === "frame" ? "frame" : "whole";
   if (asked.has("target")) page.choice.target = asked.get("target");
-  if (asked.has("view") && VIEWS[asked.get("view")]) Object.assign(page.camera, VIEWS[asked.get("view")]);
+  if (asked.has("view") && VIEWS[asked.get("view")]) page.look(VIEWS[asked.get("view")]);
   if (asked.has("arrows")) page.choice.arrows = asked.get("arrows") !== "0";
   if (asked.has("flux")) page.choice.flux = asked.get("flux") !== "0";
   if (asked.has("edges")) page.choice.edges = asked.get("edges") !== "0";
   const dark = asked.get("theme") || (matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light");
   document.documentElement.dataset.theme = dark;
-  return asked.has("at") ? Number(asked.get("at")) : 1;
+  const at = asked.has("at") ? Number(asked.get("at")) : 1;
+  return Number.isFinite(at) ? Math.min(Math.max(at, 0), 1) : 1;
 }
 
 async function start() {
   const page = makePage(await readDocument()), results = page.data.results;
   document.getElementById("title").textContent = results.length > 1 ? `${results.length} results` : results[0].name;
-  page.choice.field = results.some((result) => result.body) ? page.fieldNames.find((name) => page.varies(name)) || "" : ""; /* curves have their own inks */
+  page.choice.field = results.map(({ body }) => body && body.opens).find(Boolean) || ""; /* curves have their own inks */
   if (results.every((result) => result.drawing)) page.choice.target = "beside";
   page.at = readHash(page);
   if (page.choice.field && !page.fieldNames.includes(page.choice.field)) page.choice.field = "";
