@@ -182,7 +182,7 @@ static void add_header(const Further *more, Text *text)
 static bool write_groups(Result *result, const MeshFile *mesh, const Further *more, Bytes *file, Error *err)
 {
     Array M;
-    if (!export_magnetization_read(result, mesh, &M, err)) return false;
+    if (!export_magnetization_read(result, MESH_FINAL, mesh, &M, err)) return false;
     Text text = {0};
     add_header(more, &text);
     size_t header = text.length;

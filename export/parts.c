@@ -110,10 +110,16 @@ static void take_level(Sorting *sorting, const double (*M)[3], double low, doubl
     if (part >= 0) sorting->parts->list[part].name = level_name(least, most);
 }
 
-static bool by_levels(Sorting *sorting, Result *result, int levels, Error *err)
+static int frame_of(const PartsDef *def)
+{
+    return def->frame < 0 ? MESH_REST : def->frame;
+}
+
+static bool by_levels(Sorting *sorting, Result *result, const PartsDef *def, Error *err)
 {
     Array array;
-    if (!export_magnetization_read(result, sorting->mesh, &array, err)) return false;
+    int levels = def->levels;
+    if (!export_magnetization_read(result, frame_of(def), sorting->mesh, &array, err)) return false;
     const double(*M)[3] = (const double(*)[3])array.data;
     double low = INFINITY, high = 0;
     for (int e = 0; e < sorting->count; e++) {
@@ -133,7 +139,7 @@ static bool by_levels(Sorting *sorting, Result *result, int levels, Error *err)
 static bool sort(Sorting *sorting, Result *result, const PartsDef *def, Error *err)
 {
     if (def->groups) return by_groups(sorting, err);
-    if (def->levels) return by_levels(sorting, result, def->levels, err);
+    if (def->levels) return by_levels(sorting, result, def, err);
     take_rest(sorting, "body");
     return true;
 }
@@ -143,8 +149,8 @@ bool parts_make(Result *result, const PartsDef *def, Parts *parts, Error *err)
     MeshFile mesh;
     Array thickness = {0};
     *parts = (Parts){0};
-    bool ok = export_mesh_read(result, def->frame < 0 ? MESH_REST : def->frame, &mesh, err) &&
-              export_thickness_read(result, &mesh, &thickness, err);
+    bool ok = export_mesh_read(result, frame_of(def), &mesh, err) &&
+              export_thickness_read(result, frame_of(def), &mesh, &thickness, err);
     if (ok && !mesh.cell_count && !thickness.data)
         ok = error_set(err, "the result does not say how thick its shell is");
     Sorting sorting = {

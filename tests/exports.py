@@ -73,6 +73,26 @@ solid:
 """
 
 
+DESIGN = """slender: 1
+job: design
+shell:
+  mesh: {shape: hexagram, size: 40 mm, n: 4}
+  thickness: 1 mm
+  young: 0.1 MPa
+  poisson: 0.5
+fix:
+  - {ball: {center: [0, 0, 0], radius: 8 mm}}
+cases:
+  - {name: up, flux_density: [0, 0, 0.05], target: ["x", "y", "20*r^2"]}
+  - {name: down, flux_density: [0, 0, -0.05], target: ["x", "y", "-10*r^2"]}
+design:
+  unknowns: {magnetization: {noise: 100}, young: {bounds: [5.0e4, 2.0e5]}, thickness: {bounds: [0.5 mm, 2 mm]}}
+  objectives: [{target: 1}]
+  optimizer: gauss_newton
+  iterations: 6
+output: {every: 2}
+"""
+
 MOVING = """slender: 1
 job: simulate
 shell:
@@ -177,6 +197,21 @@ class Printing(unittest.TestCase):
         z = numbers("uneven")
         export("uneven", "uneven.stl")
         self.check(read_stl("uneven.stl"), (area(1e3 * z["rest"], z["faces"]) * 1e3 * z["design/thickness"]).sum(), 1e-5)
+
+    def test_design_in_a_frame(self):
+        """Each frame has its own thickness and magnetisation; at rest they are the final ones."""
+        run("found", DESIGN)
+        z = numbers("found")
+        thickness, M = z["VTKHDF/CellData/thickness"], np.linalg.norm(z["VTKHDF/CellData/magnetization"], axis=2)
+        self.assertTrue(np.allclose(thickness[-1], z["design/thickness"], rtol=1e-6))
+        for frame in (0, 1, -1):
+            x = z["VTKHDF/Points"][frame] if frame >= 0 else z["rest"]
+            self.assertTrue(frame < 0 or abs(thickness[frame].mean() / thickness[-1].mean() - 1) > 0.03)
+            options = ("--frame", str(frame)) if frame >= 0 else ()
+            export("found", "found.stl", *options)
+            self.check(read_stl("found.stl"), (area(1e3 * x, z["faces"]) * 1e3 * thickness[frame]).sum(), 0.01)
+            (level,) = read_3mf("found.3mf") if export("found", "found.3mf", "--levels", "1", *options) else ()
+            self.assertEqual(level[0], f"{M[frame].min():.4g} to {M[frame].max():.4g} A/m")
 
     def roof(self, top):
         """Of 2 mm, its ridge so many mm above its sides, which are 20 mm apart: points, faces, and the ridge's heights."""
