@@ -69,6 +69,7 @@ static bool read_points(Result *result, int frame, Array *points, Error *err)
             err,
             "there is no mesh in it: rods are exported as .glb, numbers as .csv, with --dataset, and .npz");
     if (frame >= 0) return result_read_step(result, "Points", frame, points, err);
+    if (frame == MESH_FINAL && !result_check_state(result, err)) return false;
     return result_read_as(result, frame == MESH_REST ? "slender/rest" : "slender/state/x", ARRAY_FLOAT64, 2,
                           3, points, err);
 }
@@ -97,6 +98,7 @@ static bool read_cells(Result *result, int frame, const char *name, int width, c
                        Array *rows, Error *err)
 {
     int step = frame < 0 ? result_step_count(result) - 1 : frame;
+    if (step < 0 && !result_check_state(result, err)) return false;
     if (!result_read_step(result, name, step, rows, err)) return false;
     bool fits = array_is(rows, ARRAY_FLOAT64, width > 1 ? 2 : 1, width > 1 ? width : 0) &&
                 rows->dims[0] == file->cell_count + file->face_count;

@@ -5,6 +5,7 @@
 bool moments_choose(ShowData *data, const ExportDef *def, Moments *moments, Error *err)
 {
     int all = result_step_count(data->result), count = def->frame >= 0 ? 1 : all;
+    if (!result_check_state(data->result, err)) return false;
     if (def->frame >= 0 && !show_check_frame(data, def->frame, err)) return false;
     if (count > def->frames) count = def->frames;
     bool final = count == 0;

@@ -152,7 +152,8 @@ bool parts_make(Result *result, const PartsDef *def, Parts *parts, Error *err)
     bool ok = export_mesh_read(result, frame_of(def), &mesh, err) &&
               export_thickness_read(result, frame_of(def), &mesh, &thickness, err);
     if (ok && !mesh.cell_count && !thickness.data)
-        ok = error_set(err, "the result does not say how thick its shell is");
+        ok = result_check_state(result, err) &&
+             error_set(err, "how thick the shell is, its result says when the run has finished");
     Sorting sorting = {
         .mesh = &mesh, .parts = parts, .count = mesh.cell_count ? mesh.cell_count : mesh.face_count};
     sorting.part = mem_alloc((size_t)sorting.count, sizeof *sorting.part);

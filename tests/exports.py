@@ -449,6 +449,22 @@ class Moving(unittest.TestCase):
         self.assertIn("there is no body and no drawing in it", slender("report", "faceless.vtkhdf", code=3))
         self.assertFalse(os.path.exists("faceless.html"))
 
+    def test_no_state(self):
+        """A design whose start is not solved is nowhere; one that has not finished is where its last frame is."""
+        path = "unsolved.yaml"
+        with open(path, "w") as file:
+            file.write(DESIGN.replace("0.05]", "50000]"))
+        slender("run", path, "--quiet", "--no-picture", code=1)
+        for verb, output in (("picture", "x.png"), ("picture", "x.webp"), ("report", "x.html"), ("export", "x.glb"), ("export", "x.ply"),
+                             ("export", "x.obj"), ("export", "x.stl"), ("export", "x.3mf")):  # fmt: skip
+            self.assertIn("the result has no state yet", slender(verb, "unsolved.vtkhdf", "-o", output, code=3), output)
+            self.assertFalse(os.path.exists(output))
+        run("solved", DESIGN)
+        changed("unfinished", "solved", b"case_names\0", b"case_namez\0")
+        slender("picture", "unfinished.vtkhdf", "-o", "unfinished.svg")
+        with open("unfinished.svg") as file:
+            self.assertIn("<svg", file.read())
+
     def test_refusals(self):
         for options, code, words in (
             (("-o", "x.glb", "--frame", "99"), 3, "the result has 9 frames, from 0"),
