@@ -465,6 +465,39 @@ class Moving(unittest.TestCase):
         with open("unfinished.svg") as file:
             self.assertIn("<svg", file.read())
 
+    def test_foreign(self):
+        """A file that slender has not made is replaced by force only; its own, and empty ones, at once."""
+        run("mine", EVALUATE % ("shape: sheet, size: [20 mm, 10 mm], cells: [2, 1]", "1 mm", "[0, 0, 1e4]"))
+        names = {"picture": ("png", "svg", "pdf"), "report": ("html",), "export": ("glb", "ply", "obj", "stl", "3mf", "npz")}
+        for verb, endings in names.items():
+            for ending in endings:
+                path = "mine." + ending
+                words = (verb, "mine.vtkhdf", "-o", path)
+                with open(path, "w") as file:
+                    file.write("made by hand, slender: 1\n")
+                self.assertIn(f"'{path}' is there, and slender has not made it", slender(*words, code=4))
+                with open(path) as file:
+                    self.assertEqual(file.read(), "made by hand, slender: 1\n")
+                slender(*words, "--force")
+                slender(*words)
+                with open(path, "w"):
+                    pass
+                slender(*words)
+                self.assertGreater(os.path.getsize(path), 0)
+        with open("mine.obj", "w") as file:
+            file.write("v 0 0 0\n")
+        for words in (("mesh", "mine.yaml"), ("export", "mine.vtkhdf", "-o", "mine.obj")):
+            self.assertIn("'mine.obj' is there", slender(*words, code=4))
+        with open("mine.html", "w") as file:
+            file.write("by hand")
+        self.assertIn("'mine.html' is there", slender("report", "mine.vtkhdf", code=4))  # by its own choice of names, too
+        slender("picture", "moving.vtkhdf", "-o", "moving.webp", "--seconds", "0.1", "--width", "400")
+        with open("moving.webp", "rb") as file:
+            data = file.read()
+        self.assertEqual(int.from_bytes(data[4:8], "little") + 8, len(data))
+        self.assertIn(b"XMP ", data)
+        slender("picture", "moving.vtkhdf", "-o", "moving.webp", "--seconds", "0.1", "--width", "400")
+
     def test_refusals(self):
         for options, code, words in (
             (("-o", "x.glb", "--frame", "99"), 3, "the result has 9 frames, from 0"),
