@@ -103,19 +103,24 @@ static int add_body_mesh(Glb *glb, const ExportBody *body)
     return mesh;
 }
 
-static int add_node(Gltf *gltf, const char *name, int mesh)
+/* What is far away stands there by its node, whose numbers have all digits. */
+static int add_node(Gltf *gltf, const char *name, int mesh, Vec3 place)
 {
     int node = gltf_next(&gltf->nodes);
     text_add(&gltf->nodes.text, "{\"name\":");
     text_add_quoted(&gltf->nodes.text, name);
-    text_add(&gltf->nodes.text, ",\"mesh\":%d}", mesh);
+    text_add(&gltf->nodes.text, ",\"mesh\":%d", mesh);
+    if (vec3_length(place) > 0)
+        text_add(&gltf->nodes.text, ",\"translation\":[%.17g,%.17g,%.17g]", place.x, place.y, place.z);
+    text_add(&gltf->nodes.text, "}");
     return node;
 }
 
 /* At each moment its own target alone. */
 static void add_body(Glb *glb, const ExportBody *body)
 {
-    int node = add_node(&glb->gltf, body->name, add_body_mesh(glb, body)), count = glb->moments.count;
+    int node = add_node(&glb->gltf, body->name, add_body_mesh(glb, body), body->middle),
+        count = glb->moments.count;
     if (count < 2) return;
     int first = first_target(body), targets = count - first;
     float *weights = show_block(glb->data, (size_t)count * (size_t)targets, sizeof *weights);

@@ -93,6 +93,11 @@ design:
 output: {every: 2}
 """
 
+ROD_FAR = """slender: 1
+job: evaluate
+rod: {curve: {formula: ["1.0e4 + 0.01*u", "0.001*u*u", "0"], range: [0, 3]}, elements: 20, radius: 1 mm, young: 1 MPa, poisson: 0.4, density: 1000}
+"""
+
 MOVING = """slender: 1
 job: simulate
 shell:
@@ -448,6 +453,21 @@ class Moving(unittest.TestCase):
         changed("faceless", "moving", b"faces\0", b"facez\0")
         self.assertIn("there is no body and no drawing in it", slender("report", "faceless.vtkhdf", code=3))
         self.assertFalse(os.path.exists("faceless.html"))
+
+    def test_far(self):
+        """10 km from the origin single numbers are 1 mm apart: the body's middle is its node's place."""
+        with open("far.obj", "w") as file:
+            file.write("".join(f"v {1e4 + 0.01 * i:.9g} {-1e4 + 0.01 * j:.9g} 0\n" for i in range(5) for j in range(2)))
+            file.write("".join(f"f {2 * i + 1} {2 * i + 3} {2 * i + 2}\nf {2 * i + 3} {2 * i + 4} {2 * i + 2}\n" for i in range(4)))
+        run("far", EVALUATE % ("file: far.obj", "1 mm", "[0, 0, 1e4]"))
+        run("far_rod", ROD_FAR)
+        for name, node in (("far", "body"), ("far_rod", "rod")):
+            export(name, name + ".glb")
+            glb, z = Glb(name + ".glb"), numbers(name)
+            points = glb.numbers(glb.primitive(node)["attributes"]["POSITION"]) + np.array(glb.json["nodes"][glb.node(node)]["translation"])
+            wanted = z["state/x" if node == "body" else "rod/x"]
+            away = [np.linalg.norm(points - p, axis=1).min() for p in wanted]
+            self.assertLess(max(away), 1e-8 if node == "body" else 1e-3 + 1e-8)  # within the rod, whose radius is 1 mm
 
     def test_no_state(self):
         """A design whose start is not solved is nowhere; one that has not finished is where its last frame is."""
