@@ -2,6 +2,7 @@
 #include "export/body.h"
 #include "export/gltf.h"
 #include "view/show_obstacles.h"
+#include "view/show_cases.h"
 #include "view/show_curves.h"
 #include <ctype.h>
 #include <math.h>
@@ -12,6 +13,7 @@ static const Color plain = {0.62, 0.72, 0.84, 1}, white = {1, 1, 1, 1};
 typedef struct Glb {
     ShowData *data;
     Moments moments;
+    ShowCases cases;
     int times; /* accessor of them; of more than one moment */
     Gltf gltf;
 } Glb;
@@ -60,7 +62,7 @@ static void add_targets(Glb *glb, const ExportBody *body, Text *names)
                      add_difference(glb, body->colors[k], base_colors(body), points));
         text_add(text, "}");
         if (k > first) text_add(names, ",");
-        text_add_quoted(names, show_frame_name(glb->data, glb->moments.frames[k]));
+        text_add_quoted(names, show_cases_frame(glb->data, &glb->cases, glb->moments.frames[k]));
     }
     text_add(text, "]");
 }
@@ -272,6 +274,7 @@ static bool make(Glb *glb, const ExportDef *def, Bytes *file, Error *err)
     bool rods = show_curves_has(glb->data);
     if (rods && def->field) return error_set(err, "--field is of meshes, and the result has rods");
     if (!moments_choose(glb->data, def, &glb->moments, err)) return false;
+    if (!show_cases(glb->data, &glb->cases, err)) return false;
     if (!(rods ? body_of_rods : body_of_mesh)(glb->data, &glb->moments, &body, err)) return false;
     if (!show_obstacles_read(&obstacles, glb->data, err)) return false;
     if (glb->moments.count > 1)

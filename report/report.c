@@ -103,19 +103,14 @@ static const char *stage_name(const ReportPart *part, const char *quantity, int 
 static void add_frames(const ReportPart *part)
 {
     Document *document = part->document;
-    int cases = part->cases.count, steps = result_step_count(part->data->result);
     document_open(document, "frames", '{');
     bool staged = result_has(part->data->result, "slender/stages/status");
     const char *quantity = staged ? quantity_of(part) : NULL;
     document_open(document, "labels", '[');
-    for (int k = 0; k < part->frame_count; k++) {
-        int from_end = steps - part->frames[k];
-        bool named = !part->timed && cases > 1 && from_end <= cases;
+    for (int k = 0; k < part->frame_count; k++)
         document_text(document, NULL,
-                      staged  ? stage_name(part, quantity, part->frames[k])
-                      : named ? part->cases.names[cases - from_end]
-                              : show_frame_name(part->data, part->frames[k]));
-    }
+                      staged ? stage_name(part, quantity, part->frames[k])
+                             : show_cases_frame(part->data, &part->cases, part->frames[k]));
     document_close(document);
     document_open(document, part->timed ? "times" : "stages", '[');
     for (int k = 0; k < part->frame_count; k++)

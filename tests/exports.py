@@ -1,4 +1,5 @@
 """What slender exports, read by other means: glTF, PLY, STL, 3MF and npz against the result's own numbers.    exports.py PROGRAM"""
+import csv
 import json
 import os
 import struct
@@ -469,6 +470,19 @@ class Moving(unittest.TestCase):
             away = [np.linalg.norm(points - p, axis=1).min() for p in wanted]
             self.assertLess(max(away), 1e-8 if node == "body" else 1e-3 + 1e-8)  # within the rod, whose radius is 1 mm
 
+    def test_group_names(self):
+        """Commas and quotes of names are in a table as they are in the mesh."""
+        names = ['a,"b', "c,d", 'e"f']
+        with open("named.obj", "w") as file:
+            file.write("".join(f"v {0.01 * i} {0.01 * j} 0\n" for i in range(4) for j in range(2)))
+            file.write("".join(f"g {n}\nf {2 * i + 1} {2 * i + 3} {2 * i + 2}\nf {2 * i + 3} {2 * i + 4} {2 * i + 2}\n" for i, n in enumerate(names)))
+        run("named", EVALUATE % ("file: named.obj", "1 mm", "[0, 0, 1e4]"))
+        export("named", "named.csv", "--per", "group")
+        with open("named.csv", newline="") as file:
+            rows = list(csv.reader(file))
+        self.assertEqual([r[0] for r in rows[1:]], names)
+        self.assertEqual({len(r) for r in rows}, {7})
+
     def test_no_state(self):
         """A design whose start is not solved is nowhere; one that has not finished is where its last frame is."""
         path = "unsolved.yaml"
@@ -480,6 +494,9 @@ class Moving(unittest.TestCase):
             self.assertIn("the result has no state yet", slender(verb, "unsolved.vtkhdf", "-o", output, code=3), output)
             self.assertFalse(os.path.exists(output))
         run("solved", DESIGN)
+        export("solved", "solved.glb")
+        names = Glb("solved.glb").json["meshes"][0]["extras"]["targetNames"]
+        self.assertEqual((names[0], names[-2:]), ("frame 0", ["up", "down"]))  # as a report has them
         changed("unfinished", "solved", b"case_names\0", b"case_namez\0")
         slender("picture", "unfinished.vtkhdf", "-o", "unfinished.svg")
         with open("unfinished.svg") as file:
