@@ -169,11 +169,12 @@ static bool refuse_other(const char *path, const char *bytes, size_t size, Error
 {
     static const char database[] = "SQLite format 3";
     if (path_has_ending(path, ".yaml") || path_has_ending(path, ".yml"))
-        return error_set(err, "%s is no result, but a scene: slender run makes its result, NAME.vtkhdf",
-                         path);
+        return error_set(
+            err, "%s is no result of slender, but a scene: slender run makes its result, NAME.vtkhdf", path);
     if (size >= sizeof database && !memcmp(bytes, database, sizeof database))
-        return error_set(err, "%s is no result, but a run's journal: slender export makes a result of it",
-                         path);
+        return error_set(
+            err, "%s is no result of slender, but a run's journal: slender export makes a result of it",
+            path);
     return error_set(err,
                      "%s is no result of slender, or it has been cut off, or another program has opened it "
                      "for writing (h5py's 'r+'): open results with 'r'",

@@ -230,8 +230,8 @@ expect 4 "$program" report beam.vtkhdf star.vtkhdf -o star.html; says "the scene
 expect 4 "$program" picture star.vtkhdf -o star.svg; says "the scene is made of it"
 mkfifo pipe.vtkhdf; cp beam.run beam-run.vtkhdf
 for verb in "picture -o p.png" "report -o p.html" info "export -o o.obj"; do # what is no result is named, and what to do
-    expect 3 "$program" ${verb} "$here/scene_small.yaml"; says "scene_small.yaml is no result, but a scene: slender run"
-    expect 3 "$program" ${verb} beam-run.vtkhdf; says "beam-run.vtkhdf is no result, but a run's journal: slender export"
+    expect 3 "$program" ${verb} "$here/scene_small.yaml"; says "scene_small.yaml is no result of slender, but a scene: slender run"
+    expect 3 "$program" ${verb} beam-run.vtkhdf; says "beam-run.vtkhdf is no result of slender, but a run's journal: slender export"
     expect 3 timeout 5 "$program" ${verb} pipe.vtkhdf; says "it is no file, but a device or pipe"
 done
 echo junk > junk.vtkhdf; echo junk > junk.run
