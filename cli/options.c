@@ -165,12 +165,19 @@ static const Option *row_of(const Option *options, int count, int name)
     return NULL;
 }
 
+/* Else the last of two would win in silence. What others make of several is their own: --set. */
+static bool has_one_value(const Option *option)
+{
+    return option->kind != OPTION_FLAG && option->kind != OPTION_OTHER;
+}
+
 /* Leaves optind at the arguments. */
 static bool take_all(int argc, char **argv, const char *usage, const Option *options, int count, int *code)
 {
     struct option *table = long_options(options, count);
     char *letters = short_options(options, count);
     bool ok = true;
+    bool *given = mem_alloc((size_t)count, sizeof *given);
     opterr = 0;
     for (int c; ok && (c = getopt_long(argc, argv, letters, table, NULL)) >= 0;) {
         const Option *option = row_of(options, count, c == ':' ? optopt : c);
@@ -185,9 +192,16 @@ static bool take_all(int argc, char **argv, const char *usage, const Option *opt
             ok = refuse(usage, unknown_sentence(argv), code);
         else if (c == ':' || !take(option, optarg))
             ok = refuse(usage, value_sentence(option, c == ':' ? NULL : optarg), code);
+        else if (has_one_value(option) && given[option - options])
+            ok = refuse(usage,
+                        mem_format("--%s is given twice, the second time as '%s'", option->name, optarg),
+                        code);
+        else
+            given[option - options] = true;
     }
     mem_free(table);
     mem_free(letters);
+    mem_free(given);
     return ok;
 }
 

@@ -1,7 +1,7 @@
 /* options.h - what is given to a verb: rows of options, and one argument.
  *
- * A row says where its value goes and what is allowed; whatever else is given is refused with one sentence that names
- * it. --help prints how the verb is used, and --options, for shells that complete what is typed, its rows. */
+ * A row says where its value goes and what is allowed; whatever else is given, or a value twice, is refused with one
+ * sentence that names it. --help prints how the verb is used, and --options, for shells that complete what is typed, its rows. */
 #pragma once
 #include <stdbool.h>
 

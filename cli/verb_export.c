@@ -4,6 +4,7 @@
 #include "cli/export_drawing.h"
 #include "cli/export_files.h"
 #include "cli/verb.h"
+#include "io/mark.h"
 #include "io/path.h"
 #include "io/replace.h"
 #include "io/result.h"
@@ -60,7 +61,7 @@ static RunStatus export_dataset(Result *result, const char *dataset, const char 
 typedef struct Export {
     const char *input, *output, *dataset, *language;
     int per; /* 1: group */
-    bool probes;
+    bool probes, force;
     ExportDef how; /* of a .glb; others take its frame */
     int levels;
     DrawingSplit split;
@@ -84,12 +85,13 @@ static bool check_source(Result *result, const char *input, const char *output, 
 typedef struct Source {
     Result *result;
     const char *input;
+    bool force;
 } Source;
 
-static bool allows_further(const void *self, const char *path, Error *err)
+static bool may_write(const void *self, const char *path, Error *err)
 {
     const Source *source = self;
-    return check_source(source->result, source->input, path, err) && replace_check(path, err);
+    return check_source(source->result, source->input, path, err) && mark_check(path, source->force, err);
 }
 
 static RunStatus export_probes(Result *result, const char *path, Error *err)
@@ -141,13 +143,13 @@ static RunStatus write_glb(Result *result, const Export *what, Error *err)
 static RunStatus write_parts(Result *result, const Export *what, Error *err)
 {
     PartsDef def = {what->how.frame, what->levels, what->per != 0};
-    FurtherFiles further = {allows_further, &(Source){result, what->input}};
+    FurtherFiles further = {may_write, &(Source){result, what->input, what->force}};
     return export_file_parts(result, &def, what->output, further, err);
 }
 
 static RunStatus write_drawing(Result *result, const Export *what, Error *err)
 {
-    FurtherFiles further = {allows_further, &(Source){result, what->input}};
+    FurtherFiles further = {may_write, &(Source){result, what->input, what->force}};
     return export_drawing(result, what->language, what->split, what->output, further, err);
 }
 
@@ -263,7 +265,7 @@ static RunStatus export_result(const Export *what, Error *err)
     Result *result = result_open(input, err);
     if (!result) return RUN_REFUSED;
     RunStatus status = RUN_CANNOT_WRITE;
-    if (check_source(result, input, what->output, err) && replace_check(what->output, err)) {
+    if (may_write(&(Source){result, input, what->force}, what->output, err)) {
         const Format *format = format_of(what->output, err);
         bool ok = format && check_options(what, format, err);
         status = ok ? write_export(result, format, what, err) : RUN_USAGE;
@@ -306,7 +308,7 @@ static RunStatus export_journal(const Export *what, Error *err)
     char *sidecar = result_sidecar(path);
     bool free = outputs_check_source(NULL, input, sidecar, err) && replace_check(sidecar, err);
     mem_free(sidecar);
-    if (!free) return RUN_CANNOT_WRITE;
+    if (!free || !mark_check(path, what->force, err)) return RUN_CANNOT_WRITE;
     Journal *journal = journal_open(input, JOURNAL_READ, err);
     if (!journal) return RUN_REFUSED;
     int frames;
@@ -348,7 +350,10 @@ int verb_export(int argc, char **argv)
         "              --split pen, or --split \"5 m\": a file for each pen, or for so much ink, "
         "FILE_1.gcode, ..\n"
         "       slender export NAME.run -o NAME.vtkhdf              the result of a running or interrupted "
-        "job";
+        "job\n"
+        "       --force replaces files of these names that slender has not made; .csv, .gcode and .hpgl are "
+        "replaced "
+        "without";
     Export what = {.how = {.frame = -1}};
     int code;
     const char *endings[FORMATS + 1] = {NULL};
@@ -365,7 +370,8 @@ int verb_export(int argc, char **argv)
         {"plotter", .kind = OPTION_TEXT, .value = &what.language,
          .words = OPTION_WORDS("gcode", "gcode_servo", "hpgl", "profile", ".yaml")},
         {"split", .kind = OPTION_OTHER, .value = &what.split, .take = drawing_split_take,
-         .allowed = DRAWING_SPLIT_ALLOWED, .words = OPTION_WORDS("pen")}};
+         .allowed = DRAWING_SPLIT_ALLOWED, .words = OPTION_WORDS("pen")},
+        {"force", .value = &what.force}};
     if (!options_parse(argc, argv, usage, options, sizeof options / sizeof *options, &what.input, &code))
         return code;
     if (!what.output) return verb_fail(RUN_USAGE, "-o FILE must be given; slender export --help says more");

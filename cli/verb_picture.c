@@ -1,6 +1,7 @@
 /* slender picture: a result as PNG, SVG or PDF, or in motion as animated WebP. */
 #include "base/memory.h"
 #include "cli/verb.h"
+#include "io/mark.h"
 #include "io/path.h"
 #include "io/result.h"
 #include "job/outputs.h"
@@ -17,7 +18,7 @@ static const char usage[] =
     "picture RESULT [-o FILE.png|.svg|.pdf|.webp] [--animation | --stills N | --frame N | --case NAME] "
     "[--field NAME]\n"
     "               [--target beside|over|both] [--view X,Y,Z] [--clip PLANE] [--width PIXELS] [--seconds S] "
-    "[--no-arrows] [--no-history]\n"
+    "[--no-arrows] [--no-history] [--force]\n"
     "  -o FILE        default: the result's name with .png, of an animation .webp\n"
     "  --animation    all frames one after the other, 25 a second (of a drawing with output.film: how it "
     "relaxed); so does a\n"
@@ -35,7 +36,8 @@ static const char usage[] =
     "top\n"
     "  --clip PLANE   cuts a shell or solid open: x=0.01 (or y, z; m), or a point and a normal, "
     "PX,PY,PZ,NX,NY,NZ; of the\n"
-    "                 body at rest, whose cut moves with it; what is on the eye's side is left out";
+    "                 body at rest, whose cut moves with it; what is on the eye's side is left out\n"
+    "  --force        replaces a file of that name that slender has not made";
 
 static const char *const target_words[] = {[PICTURE_TARGET_BESIDE - 1] = "beside",
                                            [PICTURE_TARGET_OVER - 1] = "over",
@@ -79,7 +81,8 @@ static char *picture_name(const Scene *scene, const char *path, const char *outp
 
 /* *name: where the picture goes; the caller frees. A sentence where there is no result, and where the name is that of
  * the result or of a file that its scene was made of. */
-static RunStatus prepare(const char *path, const char *output, bool animation, char **name, Error *err)
+static RunStatus prepare(const char *path, const char *output, bool animation, bool force, char **name,
+                         Error *err)
 {
     Scene scene;
     YamlFile *file;
@@ -88,7 +91,7 @@ static RunStatus prepare(const char *path, const char *output, bool animation, c
     stored_result_scene(result, &file, &scene);
     result_close(result);
     *name = picture_name(&scene, path, output, animation);
-    bool ok = outputs_check_source(&scene, path, *name, err);
+    bool ok = outputs_check_source(&scene, path, *name, err) && mark_check(*name, force, err);
     if (!ok) mem_free(*name);
     yaml_clear(scene_table(), &scene);
     yaml_destroy(file);
@@ -100,7 +103,7 @@ int verb_picture(int argc, char **argv)
     ShowDef def = show_default();
     const char *output = NULL, *path;
     double seconds = 6;
-    bool animation = false, no_arrows = false, no_history = false;
+    bool animation = false, no_arrows = false, no_history = false, force = false;
     int width = 0, code; /* 0: as usual */
     const Option options[] = {
         {"output", .letter = 'o', .kind = OPTION_TEXT, .value = &output,
@@ -119,6 +122,7 @@ int verb_picture(int argc, char **argv)
         {"width", .kind = OPTION_INT, .value = &width, .least = 400, .most = 4000},
         {"no-arrows", .value = &no_arrows},
         {"no-history", .value = &no_history},
+        {"force", .value = &force},
     };
     if (!options_parse(argc, argv, usage, options, sizeof options / sizeof *options, &path, &code))
         return code;
@@ -134,7 +138,7 @@ int verb_picture(int argc, char **argv)
     animation = animation || (output && animation_check_path(output, NULL));
     if (output && !(animation ? animation_check_path : canvas_check_path)(output, &err))
         return verb_fail(RUN_USAGE, err.text);
-    RunStatus status = prepare(path, output, animation, &picture, &err);
+    RunStatus status = prepare(path, output, animation, force, &picture, &err);
     if (status != RUN_DONE) return verb_fail(status, err.text);
     if (animation) {
         def.seconds = seconds;

@@ -1,16 +1,18 @@
 /* slender report: results as a page of HTML. */
 #include "base/memory.h"
 #include "cli/verb.h"
+#include "io/mark.h"
 #include "io/path.h"
 #include "job/outputs.h"
 #include "model/stored.h"
 #include "report/report.h"
 
 static const char usage[] =
-    "report RESULT.. [-o FILE.html] [--frames N]\n"
+    "report RESULT.. [-o FILE.html] [--frames N] [--force]\n"
     "  -o FILE     .html or .htm; default: the first result's name with .html\n"
     "  --frames N  how many of each result's frames are in it, evenly spread, at most; default: as many as\n"
     "              10 MB hold\n"
+    "  --force     replaces a file of that name that slender has not made\n"
     "  One file that any browser shows, without a net: frames to play, to turn and to zoom, colours, "
     "targets,\n"
     "  charts, facts and the scene. Several results are beside each other, at one time and seen from one "
@@ -35,12 +37,14 @@ static RunStatus check_output(const char *result, const char *page, Error *err)
     return ok ? RUN_DONE : RUN_CANNOT_WRITE;
 }
 
-static RunStatus write_report(char **results, int count, const char *page, const ReportDef *def, Error *err)
+static RunStatus write_report(char **results, int count, const char *page, const ReportDef *def, bool force,
+                              Error *err)
 {
     for (int k = 0; k < count; k++) {
         RunStatus status = check_output(results[k], page, err);
         if (status != RUN_DONE) return status;
     }
+    if (!mark_check(page, force, err)) return RUN_CANNOT_WRITE;
     ShowStatus shown = report_write((const char *const *)results, count, page, def, err);
     return shown == SHOW_DONE ? RUN_DONE : shown == SHOW_HAS_NOT ? RUN_REFUSED : RUN_CANNOT_WRITE;
 }
@@ -49,12 +53,14 @@ int verb_report(int argc, char **argv)
 {
     ReportDef def = {0};
     const char *output = NULL;
+    bool force = false;
     char **results;
     int count, code;
     const Option options[] = {
         {"output", .letter = 'o', .kind = OPTION_TEXT, .value = &output,
          .words = OPTION_WORDS(".html", ".htm")},
         {"frames", .kind = OPTION_INT, .value = &def.frames, .least = 1, .most = 100000},
+        {"force", .value = &force},
     };
     if (!options_parse_all(argc, argv, usage, options, sizeof options / sizeof *options, &results, &count,
                            &code))
@@ -64,7 +70,7 @@ int verb_report(int argc, char **argv)
     Error err;
     char *base = path_without_ending(results[0], ".vtkhdf"),
          *page = output ? mem_text(output) : mem_format("%s.html", base);
-    RunStatus status = write_report(results, count, page, &def, &err);
+    RunStatus status = write_report(results, count, page, &def, force, &err);
     mem_free(base);
     mem_free(page);
     return status == RUN_DONE ? RUN_DONE : verb_fail(status, err.text);

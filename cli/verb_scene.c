@@ -1,6 +1,7 @@
 /* slender schema and slender mesh: what can be had from scenes without running them. */
 #include "base/memory.h"
 #include "cli/verb.h"
+#include "io/mark.h"
 #include "io/path.h"
 #include "job/outputs.h"
 #include "sweep/sweep.h"
@@ -42,12 +43,15 @@ static bool write_mesh(const Mesh *mesh, const char *path, Error *err)
 int verb_mesh(int argc, char **argv)
 {
     static const char usage[] =
-        "mesh SCENE [-o FILE.obj]\n  Writes the scene's mesh, generated or read, as OBJ with its groups.";
+        "mesh SCENE [-o FILE.obj] [--force]\n  Writes the scene's mesh, generated or read, as OBJ with its "
+        "groups; --force replaces a file of\n  that name that slender has not made.";
     const char *output = NULL, *scene_path;
+    bool force = false;
     int code;
     const Option options[] = {
-        {"output", .letter = 'o', .kind = OPTION_TEXT, .value = &output, .words = OPTION_WORDS(".obj")}};
-    if (!options_parse(argc, argv, usage, options, 1, &scene_path, &code)) return code;
+        {"output", .letter = 'o', .kind = OPTION_TEXT, .value = &output, .words = OPTION_WORDS(".obj")},
+        {"force", .value = &force}};
+    if (!options_parse(argc, argv, usage, options, 2, &scene_path, &code)) return code;
     YamlFile *file;
     Scene scene;
     Error err;
@@ -57,7 +61,8 @@ int verb_mesh(int argc, char **argv)
     if (model && !model->mesh)
         code = verb_fail(RUN_REFUSED, "the scene has no mesh");
     else if (model) {
-        bool ok = outputs_check_source(&scene, scene_path, path, &err) && write_mesh(model->mesh, path, &err);
+        bool ok = outputs_check_source(&scene, scene_path, path, &err) && mark_check(path, force, &err) &&
+                  write_mesh(model->mesh, path, &err);
         code = ok ? RUN_DONE : verb_fail(RUN_CANNOT_WRITE, err.text);
     }
     model_destroy(model);

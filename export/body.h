@@ -7,7 +7,8 @@ typedef struct ExportBody {
     bool lines; /* else triangles */
     int point_count, index_count;
     const int *indices;        /* [index_count] points: three for each triangle, two for each line */
-    const float (**x)[3];      /* [moment][point] m                                   */
+    Vec3 middle;               /* m; the origin, but for what is far away (moments_middle) */
+    const float (**x)[3];      /* [moment][point] m, from the middle                  */
     int color_count;           /* 0: plain; 1: the same at all moments; else as many as these */
     const float (**colors)[3]; /* [color_count][point] light, 0..1 */
     const float

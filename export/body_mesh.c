@@ -122,15 +122,18 @@ static bool read_paint(ShowData *data, const ShowMesh *mesh, const Moments *mome
 static bool place_corners(ShowData *data, const ShowMesh *mesh, const Corners *corners,
                           const Moments *moments, ExportBody *body, Error *err)
 {
+    int count = mesh->body.vertex_count;
+    const double(**x)[3] = moments_points(data, moments, "slender/state/x", count, err);
+    if (!x) return false;
+    body->middle = moments_middle(moments, x, count);
     body->x = show_block(data, (size_t)moments->count, sizeof *body->x);
     for (int k = 0; k < moments->count; k++) {
-        const double(*x)[3] =
-            moments_points(data, moments->frames[k], "slender/state/x", mesh->body.vertex_count, err);
-        if (!x) return false;
-        const double(*points)[3] = show_mesh_points(mesh, x);
+        const double(*points)[3] = show_mesh_points(mesh, x[k]);
         float(*places)[3] = show_block(data, (size_t)corners->count, sizeof *places);
-        for (int c = 0; c < corners->count; c++)
-            for (int i = 0; i < 3; i++) places[c][i] = (float)points[corners->from[c]][i];
+        for (int c = 0; c < corners->count; c++) {
+            Vec3 from = vec3_sub(vec3_load(points[corners->from[c]]), body->middle);
+            places[c][0] = (float)from.x, places[c][1] = (float)from.y, places[c][2] = (float)from.z;
+        }
         body->x[k] = (const float(*)[3])places;
     }
     return true;

@@ -120,6 +120,13 @@ static void make_lines(ShowData *data, const Strands *strands, ExportBody *body)
     body->index_count = (int)(index - body->indices);
 }
 
+static const double (*from_middle(ShowData *data, Vec3 middle, const double (*x)[3], int count))[3]
+{
+    double(*from)[3] = show_block(data, (size_t)count, sizeof *from);
+    for (int i = 0; i < count; i++) vec3_store(from[i], vec3_sub(vec3_load(x[i]), middle));
+    return (const double(*)[3])from;
+}
+
 bool body_of_rods(ShowData *data, const Moments *moments, ExportBody *body, Error *err)
 {
     Strands strands = {0};
@@ -128,15 +135,16 @@ bool body_of_rods(ShowData *data, const Moments *moments, ExportBody *body, Erro
     *body = (ExportBody){.name = "rod"};
     (strands.radius ? make_tubes : make_lines)(data, &strands, body);
     Vec3 *sides = show_block(data, (size_t)strands.count, sizeof *sides);
+    const double(**x)[3] = moments_points(data, moments, "slender/rod/x", strands.node_count, err);
+    if (!x) return false;
+    body->middle = moments_middle(moments, x, strands.node_count);
     body->x = show_block(data, (size_t)moments->count, sizeof *body->x);
     for (int k = 0; k < moments->count; k++) {
-        const double(*x)[3] =
-            moments_points(data, moments->frames[k], "slender/rod/x", strands.node_count, err);
-        if (!x) return false;
+        const double(*from)[3] = from_middle(data, body->middle, x[k], strands.node_count);
         float(*points)[3] = show_block(data, (size_t)body->point_count, sizeof *points);
         for (int s = 0; strands.radius && s < strands.count; s++)
-            sweep(&strands, s, x, &sides[s], points + points_before(&strands, s));
-        for (int i = 0; !strands.radius && i < body->point_count; i++) put(points[i], vec3_load(x[i]));
+            sweep(&strands, s, from, &sides[s], points + points_before(&strands, s));
+        for (int i = 0; !strands.radius && i < body->point_count; i++) put(points[i], vec3_load(from[i]));
         body->x[k] = (const float(*)[3])points;
     }
     return true;

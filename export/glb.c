@@ -2,6 +2,7 @@
 #include "export/body.h"
 #include "export/gltf.h"
 #include "view/show_obstacles.h"
+#include "view/show_cases.h"
 #include "view/show_curves.h"
 #include <ctype.h>
 #include <math.h>
@@ -12,6 +13,7 @@ static const Color plain = {0.62, 0.72, 0.84, 1}, white = {1, 1, 1, 1};
 typedef struct Glb {
     ShowData *data;
     Moments moments;
+    ShowCases cases;
     int times; /* accessor of them; of more than one moment */
     Gltf gltf;
 } Glb;
@@ -60,7 +62,7 @@ static void add_targets(Glb *glb, const ExportBody *body, Text *names)
                      add_difference(glb, body->colors[k], base_colors(body), points));
         text_add(text, "}");
         if (k > first) text_add(names, ",");
-        text_add_quoted(names, show_frame_name(glb->data, glb->moments.frames[k]));
+        text_add_quoted(names, show_cases_frame(glb->data, &glb->cases, glb->moments.frames[k]));
     }
     text_add(text, "]");
 }
@@ -103,19 +105,24 @@ static int add_body_mesh(Glb *glb, const ExportBody *body)
     return mesh;
 }
 
-static int add_node(Gltf *gltf, const char *name, int mesh)
+/* What is far away stands there by its node, whose numbers have all digits. */
+static int add_node(Gltf *gltf, const char *name, int mesh, Vec3 place)
 {
     int node = gltf_next(&gltf->nodes);
     text_add(&gltf->nodes.text, "{\"name\":");
     text_add_quoted(&gltf->nodes.text, name);
-    text_add(&gltf->nodes.text, ",\"mesh\":%d}", mesh);
+    text_add(&gltf->nodes.text, ",\"mesh\":%d", mesh);
+    if (vec3_length(place) > 0)
+        text_add(&gltf->nodes.text, ",\"translation\":[%.17g,%.17g,%.17g]", place.x, place.y, place.z);
+    text_add(&gltf->nodes.text, "}");
     return node;
 }
 
 /* At each moment its own target alone. */
 static void add_body(Glb *glb, const ExportBody *body)
 {
-    int node = add_node(&glb->gltf, body->name, add_body_mesh(glb, body)), count = glb->moments.count;
+    int node = add_node(&glb->gltf, body->name, add_body_mesh(glb, body), body->middle),
+        count = glb->moments.count;
     if (count < 2) return;
     int first = first_target(body), targets = count - first;
     float *weights = show_block(glb->data, (size_t)count * (size_t)targets, sizeof *weights);
@@ -267,6 +274,7 @@ static bool make(Glb *glb, const ExportDef *def, Bytes *file, Error *err)
     bool rods = show_curves_has(glb->data);
     if (rods && def->field) return error_set(err, "--field is of meshes, and the result has rods");
     if (!moments_choose(glb->data, def, &glb->moments, err)) return false;
+    if (!show_cases(glb->data, &glb->cases, err)) return false;
     if (!(rods ? body_of_rods : body_of_mesh)(glb->data, &glb->moments, &body, err)) return false;
     if (!show_obstacles_read(&obstacles, glb->data, err)) return false;
     if (glb->moments.count > 1)

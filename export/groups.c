@@ -7,6 +7,7 @@
 #include "field/flux_field.h"
 #include "io/text.h"
 #include <math.h>
+#include <string.h>
 
 enum { FURTHER = 2 };
 
@@ -69,13 +70,14 @@ static bool shows_more(const Further *more)
     return shows;
 }
 
-/* The name as a cell: no comma and no quote ends it. */
+/* The name as a cell: what has commas or quotes stands in quotes [RFC 4180]. */
 static void add_name(Text *text, const char *name)
 {
     char *word = plain_text(name, "");
-    for (char *c = word; *c; c++)
-        if (*c == ',' || *c == '"') *c = '_';
-    text_add(text, "%s", word);
+    bool quoted = strpbrk(word, ",\"") != NULL;
+    if (quoted) text_add(text, "\"");
+    for (const char *c = word; *c; c++) text_add(text, *c == '"' ? "\"\"" : "%c", *c);
+    if (quoted) text_add(text, "\"");
     mem_free(word);
 }
 
@@ -182,7 +184,7 @@ static void add_header(const Further *more, Text *text)
 static bool write_groups(Result *result, const MeshFile *mesh, const Further *more, Bytes *file, Error *err)
 {
     Array M;
-    if (!export_magnetization_read(result, mesh, &M, err)) return false;
+    if (!export_magnetization_read(result, MESH_FINAL, mesh, &M, err)) return false;
     Text text = {0};
     add_header(more, &text);
     size_t header = text.length;

@@ -69,6 +69,7 @@ static bool read_points(Result *result, int frame, Array *points, Error *err)
             err,
             "there is no mesh in it: rods are exported as .glb, numbers as .csv, with --dataset, and .npz");
     if (frame >= 0) return result_read_step(result, "Points", frame, points, err);
+    if (frame == MESH_FINAL && !result_check_state(result, err)) return false;
     return result_read_as(result, frame == MESH_REST ? "slender/rest" : "slender/state/x", ARRAY_FLOAT64, 2,
                           3, points, err);
 }
@@ -92,19 +93,32 @@ bool export_mesh_read(Result *result, int frame, MeshFile *file, Error *err)
     return ok;
 }
 
-bool export_magnetization_read(Result *result, const MeshFile *file, Array *M, Error *err)
+/* Numbers of all cells, tetrahedra first, in a frame or the last one. */
+static bool read_cells(Result *result, int frame, const char *name, int width, const MeshFile *file,
+                       Array *rows, Error *err)
 {
-    if (!result_read_step(result, "CellData/magnetization", result_step_count(result) - 1, M, err))
-        return false;
-    bool fits = array_is(M, ARRAY_FLOAT64, 2, 3) && M->dims[0] == file->cell_count + file->face_count;
-    if (!fits) array_clear(M);
-    return fits || error_set(err, "CellData/magnetization is not as slender writes it");
+    int step = frame < 0 ? result_step_count(result) - 1 : frame;
+    if (step < 0 && !result_check_state(result, err)) return false;
+    if (!result_read_step(result, name, step, rows, err)) return false;
+    bool fits = array_is(rows, ARRAY_FLOAT64, width > 1 ? 2 : 1, width > 1 ? width : 0) &&
+                rows->dims[0] == file->cell_count + file->face_count;
+    if (!fits) array_clear(rows);
+    return fits || error_set(err, "%s is not as slender writes it", name);
 }
 
-bool export_thickness_read(Result *result, const MeshFile *file, Array *thickness, Error *err)
+bool export_magnetization_read(Result *result, int frame, const MeshFile *file, Array *M, Error *err)
+{
+    return read_cells(result, frame, "CellData/magnetization", 3, file, M, err);
+}
+
+/* The final one has all its digits; frames have theirs where it differs from face to face, or a design looks for it. */
+bool export_thickness_read(Result *result, int frame, const MeshFile *file, Array *thickness, Error *err)
 {
     static const char path[] = "slender/design/thickness";
     *thickness = (Array){0};
+    bool final = frame < 0 && result_has(result, path);
+    if (!final && result_has(result, "VTKHDF/CellData/thickness"))
+        return read_cells(result, frame, "CellData/thickness", 1, file, thickness, err);
     if (!result_has(result, path)) return true;
     if (!result_read_as(result, path, ARRAY_FLOAT64, 1, 0, thickness, err)) return false;
     return thickness->dims[0] == file->face_count || error_set(err, "%s is not as slender writes it", path);

@@ -12,8 +12,10 @@ bool export_check_points(const double (*x)[3], int count, Error *err);
  * point is no number. */
 bool export_mesh_read(Result *result, int frame, MeshFile *file, Error *err);
 
-/* The magnetisation at the end: rows of the tetrahedra, then of the faces; NaN where they have none. */
-bool export_magnetization_read(Result *result, const MeshFile *file, Array *M, Error *err);
+/* ---- Of a frame, or of one of these, where the last frame's are the final ones ---- */
+
+/* The magnetisation: rows of the tetrahedra, then of the faces; NaN where they have none. */
+bool export_magnetization_read(Result *result, int frame, const MeshFile *file, Array *M, Error *err);
 
 /* m, of each face of a shell; the array is empty of what has none. */
-bool export_thickness_read(Result *result, const MeshFile *file, Array *thickness, Error *err);
+bool export_thickness_read(Result *result, int frame, const MeshFile *file, Array *thickness, Error *err);

@@ -4,6 +4,7 @@
 #include "export/hull.h"
 #include "export/mesh.h"
 #include "export/zip.h"
+#include "io/mark.h"
 #include "io/text.h"
 #include <math.h>
 #include <string.h>
@@ -110,10 +111,16 @@ static void take_level(Sorting *sorting, const double (*M)[3], double low, doubl
     if (part >= 0) sorting->parts->list[part].name = level_name(least, most);
 }
 
-static bool by_levels(Sorting *sorting, Result *result, int levels, Error *err)
+static int frame_of(const PartsDef *def)
+{
+    return def->frame < 0 ? MESH_REST : def->frame;
+}
+
+static bool by_levels(Sorting *sorting, Result *result, const PartsDef *def, Error *err)
 {
     Array array;
-    if (!export_magnetization_read(result, sorting->mesh, &array, err)) return false;
+    int levels = def->levels;
+    if (!export_magnetization_read(result, frame_of(def), sorting->mesh, &array, err)) return false;
     const double(*M)[3] = (const double(*)[3])array.data;
     double low = INFINITY, high = 0;
     for (int e = 0; e < sorting->count; e++) {
@@ -133,7 +140,7 @@ static bool by_levels(Sorting *sorting, Result *result, int levels, Error *err)
 static bool sort(Sorting *sorting, Result *result, const PartsDef *def, Error *err)
 {
     if (def->groups) return by_groups(sorting, err);
-    if (def->levels) return by_levels(sorting, result, def->levels, err);
+    if (def->levels) return by_levels(sorting, result, def, err);
     take_rest(sorting, "body");
     return true;
 }
@@ -143,10 +150,11 @@ bool parts_make(Result *result, const PartsDef *def, Parts *parts, Error *err)
     MeshFile mesh;
     Array thickness = {0};
     *parts = (Parts){0};
-    bool ok = export_mesh_read(result, def->frame < 0 ? MESH_REST : def->frame, &mesh, err) &&
-              export_thickness_read(result, &mesh, &thickness, err);
+    bool ok = export_mesh_read(result, frame_of(def), &mesh, err) &&
+              export_thickness_read(result, frame_of(def), &mesh, &thickness, err);
     if (ok && !mesh.cell_count && !thickness.data)
-        ok = error_set(err, "the result does not say how thick its shell is");
+        ok = result_check_state(result, err) &&
+             error_set(err, "how thick the shell is, its result says when the run has finished");
     Sorting sorting = {
         .mesh = &mesh, .parts = parts, .count = mesh.cell_count ? mesh.cell_count : mesh.face_count};
     sorting.part = mem_alloc((size_t)sorting.count, sizeof *sorting.part);
@@ -181,7 +189,7 @@ static void add_vector(Bytes *file, Vec3 v)
 
 void parts_write_stl(const Part *part, Bytes *file)
 {
-    char header[80] = "slender, lengths in mm"; /* must not begin with "solid": that is the other format */
+    char header[80] = MARK_TEXT ", lengths in mm"; /* must not begin with "solid": that is the other format */
     bytes_add(file, header, sizeof header);
     bytes_add_u32(file, (uint32_t)part->face_count);
     for (int f = 0; f < part->face_count; f++) {

@@ -14,7 +14,7 @@
 #include "io/result.h"
 
 typedef struct PartsDef {
-    int frame; /* -1: at rest                                                                            */
+    int frame; /* -1: at rest, with the final thickness and magnetisation; of a frame its own */
     int levels; /* of |M|, equal steps from the least to the largest; what is not magnetised is a part of its own; 0: none */
     bool groups; /* the named groups, the smallest where there are several; and what is in none */
 } PartsDef;

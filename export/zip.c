@@ -1,5 +1,6 @@
 #include "export/zip.h"
 #include "base/memory.h"
+#include "io/mark.h"
 #include <string.h>
 #include <zlib.h>
 
@@ -70,6 +71,7 @@ bool zip_add(Zip *zip, const char *name, const void *data, size_t size, Error *e
 
 void zip_end(Zip *zip)
 {
+    static const char comment[] = MARK_TEXT;
     uint32_t start = (uint32_t)zip->file->size;
     bytes_add(zip->file, zip->entries.data, zip->entries.size);
     bytes_add(zip->file, "PK\5\6", 4);
@@ -78,6 +80,7 @@ void zip_end(Zip *zip)
     bytes_add_u16(zip->file, zip->count);
     bytes_add_u32(zip->file, (uint32_t)zip->entries.size);
     bytes_add_u32(zip->file, start);
-    bytes_add_u16(zip->file, 0);
+    bytes_add_u16(zip->file, sizeof comment - 1);
+    bytes_add_text(zip->file, comment);
     bytes_clear(&zip->entries);
 }

@@ -1,6 +1,7 @@
 #include "io/canvas.h"
 #include "base/memory.h"
 #include "base/plain.h"
+#include "io/mark.h"
 #include "io/safe_file.h"
 #include <cairo-pdf.h>
 #include <cairo-svg.h>
@@ -156,6 +157,25 @@ double canvas_resolution(const Canvas *canvas)
     return canvas->resolution;
 }
 
+/* The whole file says who has made it, before its end, which has so many bytes. */
+static void add_mark(Bytes *file, Format format)
+{
+    static const size_t ends[FORMAT_COUNT] = {MARK_PNG_END, sizeof "</svg>\n" - 1, sizeof "%%EOF\n" - 1};
+    static const char *const comments[FORMAT_COUNT] = {
+        [FORMAT_SVG] = "<!-- " MARK_TEXT " -->\n", [FORMAT_PDF] = "% " MARK_TEXT "\n"};
+    unsigned char end[MARK_PNG_END], *chunk = NULL;
+    size_t size = 0;
+    if (format == FORMAT_PNG) chunk = mark_png_chunk(&size);
+    file->length -= ends[format];
+    memcpy(end, file->data + file->length, ends[format]);
+    if (chunk)
+        bytes_append(file, chunk, (unsigned)size);
+    else
+        bytes_append(file, (const unsigned char *)comments[format], (unsigned)strlen(comments[format]));
+    bytes_append(file, end, (unsigned)ends[format]);
+    mem_free(chunk);
+}
+
 bool canvas_save(Canvas *canvas, Error *err)
 {
     cairo_status_t status = cairo_status(canvas->cairo);
@@ -166,6 +186,7 @@ bool canvas_save(Canvas *canvas, Error *err)
     check_memory(status);
     if (status != CAIRO_STATUS_SUCCESS)
         return error_set(err, "%s: cannot be drawn: %s", canvas->path, cairo_status_to_string(status));
+    add_mark(&canvas->file, canvas->format);
     return safe_file_write(canvas->path, canvas->file.data, canvas->file.length, false, err);
 }
 

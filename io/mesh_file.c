@@ -1,5 +1,6 @@
 #include "io/mesh_file.h"
 #include "base/memory.h"
+#include "io/mark.h"
 #include "io/mesh_reader.h"
 #include "io/safe_file.h"
 #include "io/text.h"
@@ -140,12 +141,13 @@ static void write_groups(Text *text, const MeshFile *mesh)
 bool mesh_file_write_obj(const char *path, const MeshFile *mesh, Error *err)
 {
     Text text = {0};
+    text_add(&text, "# " MARK_TEXT "\n");
     for (int v = 0; v < mesh->vertex_count; v++)
         text_add(&text, "v %.17g %.17g %.17g\n", mesh->vertices[v][0], mesh->vertices[v][1],
                  mesh->vertices[v][2]);
     write_faces(&text, mesh);
     write_groups(&text, mesh);
-    bool ok = safe_file_write(path, text.text ? text.text : "", text.length, false, err);
+    bool ok = safe_file_write(path, text.text, text.length, false, err);
     mem_free(text.text);
     return ok;
 }

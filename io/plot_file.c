@@ -2,6 +2,7 @@
 #include "base/cubic.h"
 #include "base/memory.h"
 #include "io/plot_text.h"
+#include "io/mark.h"
 #include "io/safe_file.h"
 #include <math.h>
 
@@ -93,7 +94,7 @@ bool plot_write_svg(const char *path, const Plot *plot, Error *err)
     text_add(&text, ">\n");
     for (int k = 0; k < plot->layer_count; k++)
         if (plot->layers[k].count) add_layer(&text, &plot->layers[k], k + 1);
-    text_add(&text, "</svg>\n");
+    text_add(&text, "<metadata>" MARK_TEXT "</metadata>\n</svg>\n");
     bool ok = safe_file_write(path, text.text, text.length, false, err);
     mem_free(width.text);
     mem_free(height.text);

@@ -356,6 +356,12 @@ int result_step_count(Result *result)
     return result->step_count;
 }
 
+bool result_check_state(Result *result, Error *err)
+{
+    return result->step_count > 0 || result_has(result, "slender/state/x") ||
+           result_has(result, "slender/rod/x") || error_set(err, "the result has no state yet");
+}
+
 /* The number in a dataset of int64 at an index, or its only one. */
 static bool offset_at(Result *result, const char *path, int index, int *value, Error *err)
 {

@@ -85,6 +85,9 @@ bool result_read_rows(Result *result, const char *path, int first, int count, Ar
 /* Stored steps, 0 if there is no /VTKHDF. */
 int result_step_count(Result *result);
 
+/* False and a sentence where a body is nowhere yet: there is no step, and no final state (unsolved, or hardly begun). */
+bool result_check_state(Result *result, Error *err);
+
 /* One step of /VTKHDF: name is "Points", "CellData/<name>" or "PointData/<name>"; the array of doubles has one row per
  * vertex or cell, those of Points three numbers. */
 bool result_read_step(Result *result, const char *name, int step, Array *array, Error *err);

@@ -1,5 +1,6 @@
 #include "io/safe_file.h"
 #include "base/memory.h"
+#include "io/path.h"
 #include "io/replace.h"
 #include <dirent.h>
 #include <errno.h>
@@ -163,13 +164,32 @@ bool safe_file_write(const char *path, const void *bytes, size_t size, bool chec
     return error_set(err, "%s: cannot be written: %s", path, strerror(code));
 }
 
+/* What it is instead, and what to do. */
+static bool refuse_other(const char *path, const char *bytes, size_t size, Error *err)
+{
+    static const char database[] = "SQLite format 3";
+    if (path_has_ending(path, ".yaml") || path_has_ending(path, ".yml"))
+        return error_set(
+            err, "%s is no result of slender, but a scene: slender run makes its result, NAME.vtkhdf", path);
+    if (size >= sizeof database && !memcmp(bytes, database, sizeof database))
+        return error_set(
+            err, "%s is no result of slender, but a run's journal: slender export makes a result of it",
+            path);
+    return error_set(err,
+                     "%s is no result of slender, or it has been cut off, or another program has opened it "
+                     "for writing (h5py's 'r+'): open results with 'r'",
+                     path);
+}
+
 bool safe_file_read(const char *path, void **bytes, size_t *size, Error *err)
 {
     struct stat info;
     *bytes = NULL;
-    int file = open(path, O_RDONLY | O_CLOEXEC);
-    if (file < 0 || fstat(file, &info) != 0) {
-        error_set(err, "%s: cannot be read: %s", path, strerror(errno));
+    int file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK); /* a pipe would wait for its writer */
+    bool known = file >= 0 && fstat(file, &info) == 0;
+    if (!known || (!S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode))) {
+        error_set(err, "%s: cannot be read: %s", path,
+                  known ? "it is no file, but a device or pipe" : strerror(errno));
         if (file >= 0) close(file);
         return false;
     }
@@ -180,10 +200,7 @@ bool safe_file_read(const char *path, void **bytes, size_t *size, Error *err)
     close(file);
     if (!ok) error_set(err, "%s: cannot be read: %s", path, strerror(errno));
     if (ok && (total < TRAILER || memcmp(all + total - TRAILER, MARK, sizeof MARK)))
-        ok = error_set(err,
-                       "%s is no result of slender, or it has been cut off, or another program has opened it "
-                       "for writing (h5py's 'r+'): open results with 'r'",
-                       path);
+        ok = refuse_other(path, all, total, err);
     if (ok) {
         make_trailer(all, total - TRAILER, trailer);
         ok = !memcmp(trailer, all + total - TRAILER, TRAILER) ||

@@ -2,6 +2,7 @@
 #include "base/memory.h"
 #include "base/plain.h"
 #include "base/vec3.h"
+#include "io/mark.h"
 #include "io/safe_file.h"
 #include "io/text.h"
 #include "report/page.h"
@@ -99,19 +100,13 @@ static void find_origin(ReportPart *part)
 static void add_frames(const ReportPart *part)
 {
     Document *document = part->document;
-    int cases = part->cases.count, steps = result_step_count(part->data->result);
     document_open(document, "frames", '{');
     bool staged = result_has(part->data->result, "slender/stages/status");
     const char *const *stages = staged ? report_stages(part) : NULL;
     document_open(document, "labels", '[');
-    for (int k = 0; k < part->frame_count; k++) {
-        int from_end = steps - part->frames[k];
-        bool named = !part->timed && cases > 1 && from_end <= cases;
+    for (int k = 0; k < part->frame_count; k++)
         document_text(document, NULL,
-                      staged  ? stages[k]
-                      : named ? part->cases.names[cases - from_end]
-                              : show_frame_name(part->data, part->frames[k]));
-    }
+                      staged ? stages[k] : show_cases_frame(part->data, &part->cases, part->frames[k]));
     document_close(document);
     document_open(document, part->timed ? "times" : "stages", '[');
     for (int k = 0; k < part->frame_count; k++)
@@ -168,7 +163,8 @@ static bool add_result(Document *document, ShowData *data, ShowDef *show, const 
     if (!is_shown(data)) return error_set(err, "there is no body and no drawing in it: nothing to show");
     bool ok = drawn_has(data->result)
                   ? report_drawing(&part, err)
-                  : report_body(&part, err) && report_curves(&part, err) && report_surroundings(&part, err);
+                  : result_check_state(data->result, err) && report_body(&part, err) &&
+                        report_curves(&part, err) && report_surroundings(&part, err);
     if (ok) report_flux(&part);
     ok = ok && report_charts(&part, err) && report_facts(&part, err);
     if (ok) document_close(document);
@@ -206,7 +202,8 @@ static bool write_page(const Document *document, const char *title, const char *
     Text page = {0};
     char *block = document_block(document);
     text_add(&page, "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-                    "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>");
+                    "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<meta "
+                    "name=\"generator\" content=\"" MARK_TEXT "\">\n<title>");
     text_add_xml(&page, title);
     text_add(&page,
              "</title>\n<style>\n%s</style>\n</head>\n%s\n<script id=\"document\" type=\"application/json\">",

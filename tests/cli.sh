@@ -35,6 +35,9 @@ refuses "one of them" run --resume --force x.yaml
 refuses "--seconds must be a number from 0.04 to 600, and is 'nan'" picture --seconds nan x.vtkhdf
 refuses "--frame must be a whole number from 0, and is '-1'" export --frame -1 x.vtkhdf -o x.obj
 refuses "-o FILE must be given" export x.vtkhdf
+for verb in run sweep picture report export mesh; do # the second one does not win in silence
+    refuses "--output is given twice, the second time as 'b.obj'" $verb x -o a.obj --output b.obj
+done
 refuses "a RESULT.. must be given" report
 refuses "--frames must be a whole number from 1 to 100000, and is '0'" report x.vtkhdf --frames 0
 expect 3 "$program" run missing.yaml;           says "missing.yaml: cannot be read"
@@ -225,6 +228,12 @@ grep -q "star.obj" star.yaml || { echo "the scene is written over"; bad=1; }
 ln -s star.obj star.svg; ln -s star.obj star.html
 expect 4 "$program" report beam.vtkhdf star.vtkhdf -o star.html; says "the scene is made of it"
 expect 4 "$program" picture star.vtkhdf -o star.svg; says "the scene is made of it"
+mkfifo pipe.vtkhdf; cp beam.run beam-run.vtkhdf
+for verb in "picture -o p.png" "report -o p.html" info "export -o o.obj"; do # what is no result is named, and what to do
+    expect 3 "$program" ${verb} "$here/scene_small.yaml"; says "scene_small.yaml is no result of slender, but a scene: slender run"
+    expect 3 "$program" ${verb} beam-run.vtkhdf; says "beam-run.vtkhdf is no result of slender, but a run's journal: slender export"
+    expect 3 timeout 5 "$program" ${verb} pipe.vtkhdf; says "it is no file, but a device or pipe"
+done
 echo junk > junk.vtkhdf; echo junk > junk.run
 for input in missing.vtkhdf junk.vtkhdf; do # what cannot be read is refused by every verb alike
     expect 3 "$program" info $input; expect 3 "$program" picture $input -o p.png; expect 3 "$program" export $input -o o.obj

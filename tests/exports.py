@@ -1,4 +1,5 @@
 """What slender exports, read by other means: glTF, PLY, STL, 3MF and npz against the result's own numbers.    exports.py PROGRAM"""
+import csv
 import json
 import os
 import struct
@@ -72,6 +73,31 @@ solid:
   magnetization: {formula: ["x < 0.01 ? 1e4 : 3e4", "0", "0"]}
 """
 
+
+DESIGN = """slender: 1
+job: design
+shell:
+  mesh: {shape: hexagram, size: 40 mm, n: 4}
+  thickness: 1 mm
+  young: 0.1 MPa
+  poisson: 0.5
+fix:
+  - {ball: {center: [0, 0, 0], radius: 8 mm}}
+cases:
+  - {name: up, flux_density: [0, 0, 0.05], target: ["x", "y", "20*r^2"]}
+  - {name: down, flux_density: [0, 0, -0.05], target: ["x", "y", "-10*r^2"]}
+design:
+  unknowns: {magnetization: {noise: 100}, young: {bounds: [5.0e4, 2.0e5]}, thickness: {bounds: [0.5 mm, 2 mm]}}
+  objectives: [{target: 1}]
+  optimizer: gauss_newton
+  iterations: 6
+output: {every: 2}
+"""
+
+ROD_FAR = """slender: 1
+job: evaluate
+rod: {curve: {formula: ["1.0e4 + 0.01*u", "0.001*u*u", "0"], range: [0, 3]}, elements: 20, radius: 1 mm, young: 1 MPa, poisson: 0.4, density: 1000}
+"""
 
 MOVING = """slender: 1
 job: simulate
@@ -177,6 +203,21 @@ class Printing(unittest.TestCase):
         z = numbers("uneven")
         export("uneven", "uneven.stl")
         self.check(read_stl("uneven.stl"), (area(1e3 * z["rest"], z["faces"]) * 1e3 * z["design/thickness"]).sum(), 1e-5)
+
+    def test_design_in_a_frame(self):
+        """Each frame has its own thickness and magnetisation; at rest they are the final ones."""
+        run("found", DESIGN)
+        z = numbers("found")
+        thickness, M = z["VTKHDF/CellData/thickness"], np.linalg.norm(z["VTKHDF/CellData/magnetization"], axis=2)
+        self.assertTrue(np.allclose(thickness[-1], z["design/thickness"], rtol=1e-6))
+        for frame in (0, 1, -1):
+            x = z["VTKHDF/Points"][frame] if frame >= 0 else z["rest"]
+            self.assertTrue(frame < 0 or abs(thickness[frame].mean() / thickness[-1].mean() - 1) > 0.03)
+            options = ("--frame", str(frame)) if frame >= 0 else ()
+            export("found", "found.stl", *options)
+            self.check(read_stl("found.stl"), (area(1e3 * x, z["faces"]) * 1e3 * thickness[frame]).sum(), 0.01)
+            (level,) = read_3mf("found.3mf") if export("found", "found.3mf", "--levels", "1", *options) else ()
+            self.assertEqual(level[0], f"{M[frame].min():.4g} to {M[frame].max():.4g} A/m")
 
     def roof(self, top):
         """Of 2 mm, its ridge so many mm above its sides, which are 20 mm apart: points, faces, and the ridge's heights."""
@@ -413,6 +454,86 @@ class Moving(unittest.TestCase):
         changed("faceless", "moving", b"faces\0", b"facez\0")
         self.assertIn("there is no body and no drawing in it", slender("report", "faceless.vtkhdf", code=3))
         self.assertFalse(os.path.exists("faceless.html"))
+
+    def test_far(self):
+        """10 km from the origin single numbers are 1 mm apart: the body's middle is its node's place."""
+        with open("far.obj", "w") as file:
+            file.write("".join(f"v {1e4 + 0.01 * i:.9g} {-1e4 + 0.01 * j:.9g} 0\n" for i in range(5) for j in range(2)))
+            file.write("".join(f"f {2 * i + 1} {2 * i + 3} {2 * i + 2}\nf {2 * i + 3} {2 * i + 4} {2 * i + 2}\n" for i in range(4)))
+        run("far", EVALUATE % ("file: far.obj", "1 mm", "[0, 0, 1e4]"))
+        run("far_rod", ROD_FAR)
+        for name, node in (("far", "body"), ("far_rod", "rod")):
+            export(name, name + ".glb")
+            glb, z = Glb(name + ".glb"), numbers(name)
+            points = glb.numbers(glb.primitive(node)["attributes"]["POSITION"]) + np.array(glb.json["nodes"][glb.node(node)]["translation"])
+            wanted = z["state/x" if node == "body" else "rod/x"]
+            away = [np.linalg.norm(points - p, axis=1).min() for p in wanted]
+            self.assertLess(max(away), 1e-8 if node == "body" else 1e-3 + 1e-8)  # within the rod, whose radius is 1 mm
+
+    def test_group_names(self):
+        """Commas and quotes of names are in a table as they are in the mesh."""
+        names = ['a,"b', "c,d", 'e"f']
+        with open("named.obj", "w") as file:
+            file.write("".join(f"v {0.01 * i} {0.01 * j} 0\n" for i in range(4) for j in range(2)))
+            file.write("".join(f"g {n}\nf {2 * i + 1} {2 * i + 3} {2 * i + 2}\nf {2 * i + 3} {2 * i + 4} {2 * i + 2}\n" for i, n in enumerate(names)))
+        run("named", EVALUATE % ("file: named.obj", "1 mm", "[0, 0, 1e4]"))
+        export("named", "named.csv", "--per", "group")
+        with open("named.csv", newline="") as file:
+            rows = list(csv.reader(file))
+        self.assertEqual([r[0] for r in rows[1:]], names)
+        self.assertEqual({len(r) for r in rows}, {7})
+
+    def test_no_state(self):
+        """A design whose start is not solved is nowhere; one that has not finished is where its last frame is."""
+        path = "unsolved.yaml"
+        with open(path, "w") as file:
+            file.write(DESIGN.replace("0.05]", "50000]"))
+        slender("run", path, "--quiet", "--no-picture", code=1)
+        for verb, output in (("picture", "x.png"), ("picture", "x.webp"), ("report", "x.html"), ("export", "x.glb"), ("export", "x.ply"),
+                             ("export", "x.obj"), ("export", "x.stl"), ("export", "x.3mf")):  # fmt: skip
+            self.assertIn("the result has no state yet", slender(verb, "unsolved.vtkhdf", "-o", output, code=3), output)
+            self.assertFalse(os.path.exists(output))
+        run("solved", DESIGN)
+        export("solved", "solved.glb")
+        names = Glb("solved.glb").json["meshes"][0]["extras"]["targetNames"]
+        self.assertEqual((names[0], names[-2:]), ("frame 0", ["up", "down"]))  # as a report has them
+        changed("unfinished", "solved", b"case_names\0", b"case_namez\0")
+        slender("picture", "unfinished.vtkhdf", "-o", "unfinished.svg")
+        with open("unfinished.svg") as file:
+            self.assertIn("<svg", file.read())
+
+    def test_foreign(self):
+        """A file that slender has not made is replaced by force only; its own, and empty ones, at once."""
+        run("mine", EVALUATE % ("shape: sheet, size: [20 mm, 10 mm], cells: [2, 1]", "1 mm", "[0, 0, 1e4]"))
+        names = {"picture": ("png", "svg", "pdf"), "report": ("html",), "export": ("glb", "ply", "obj", "stl", "3mf", "npz")}
+        for verb, endings in names.items():
+            for ending in endings:
+                path = "mine." + ending
+                words = (verb, "mine.vtkhdf", "-o", path)
+                with open(path, "w") as file:
+                    file.write("made by hand, slender: 1\n")
+                self.assertIn(f"'{path}' is there, and slender has not made it", slender(*words, code=4))
+                with open(path) as file:
+                    self.assertEqual(file.read(), "made by hand, slender: 1\n")
+                slender(*words, "--force")
+                slender(*words)
+                with open(path, "w"):
+                    pass
+                slender(*words)
+                self.assertGreater(os.path.getsize(path), 0)
+        with open("mine.obj", "w") as file:
+            file.write("v 0 0 0\n")
+        for words in (("mesh", "mine.yaml"), ("export", "mine.vtkhdf", "-o", "mine.obj")):
+            self.assertIn("'mine.obj' is there", slender(*words, code=4))
+        with open("mine.html", "w") as file:
+            file.write("by hand")
+        self.assertIn("'mine.html' is there", slender("report", "mine.vtkhdf", code=4))  # by its own choice of names, too
+        slender("picture", "moving.vtkhdf", "-o", "moving.webp", "--seconds", "0.1", "--width", "400")
+        with open("moving.webp", "rb") as file:
+            data = file.read()
+        self.assertEqual(int.from_bytes(data[4:8], "little") + 8, len(data))
+        self.assertIn(b"XMP ", data)
+        slender("picture", "moving.vtkhdf", "-o", "moving.webp", "--seconds", "0.1", "--width", "400")
 
     def test_refusals(self):
         for options, code, words in (

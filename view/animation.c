@@ -1,5 +1,6 @@
 #include "view/animation.h"
 #include "base/memory.h"
+#include "io/mark.h"
 #include "io/safe_file.h"
 #include <math.h>
 #include <string.h>
@@ -70,14 +71,34 @@ bool animation_add(Animation *animation, Canvas *page, double seconds, Error *er
     return true;
 }
 
+/* What it says of who has made it. */
+static const char mark[] =
+    "<x:xmpmeta xmlns:x=\"adobe:ns:meta/\"><rdf:RDF "
+    "xmlns:rdf=\"http://www.w3.org/1999/02/22-rdf-syntax-ns#\">"
+    "<rdf:Description xmlns:xmp=\"http://ns.adobe.com/xap/1.0/\" xmp:CreatorTool=\"" MARK_TEXT
+    "\"/></rdf:RDF></x:xmpmeta>";
+
+/* Source: Adobe XMP 1.2; the WebP container has it as a chunk of its own. */
+static bool add_mark(WebPData *data)
+{
+    WebPData xmp = {(const uint8_t *)mark, sizeof mark - 1}, whole = {0};
+    WebPMux *mux = WebPMuxCreate(data, 0);
+    bool ok = mux && WebPMuxSetChunk(mux, "XMP ", &xmp, 0) == WEBP_MUX_OK &&
+              WebPMuxAssemble(mux, &whole) == WEBP_MUX_OK;
+    WebPMuxDelete(mux);
+    WebPDataClear(data);
+    *data = whole;
+    return ok;
+}
+
 bool animation_save(Animation *animation, Error *err)
 {
     WebPData data = {0};
     bool ok = animation->encoder &&
               WebPAnimEncoderAdd(animation->encoder, NULL, milliseconds(animation), NULL) &&
-              WebPAnimEncoderAssemble(animation->encoder, &data);
-    if (!ok) return error_set(err, "%s: the animation cannot be put together", animation->path);
-    ok = safe_file_write(animation->path, data.bytes, data.size, false, err);
+              WebPAnimEncoderAssemble(animation->encoder, &data) && add_mark(&data);
+    ok = ok || error_set(err, "%s: the animation cannot be put together", animation->path);
+    ok = ok && safe_file_write(animation->path, data.bytes, data.size, false, err);
     WebPDataClear(&data);
     return ok;
 }

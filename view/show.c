@@ -141,7 +141,7 @@ static bool add_cases(Show *show, Error *err)
     ShowCases cases;
     if (!show_cases(show->data, &cases, err)) return false;
     for (int k = 0; k < cases.count; k++) add_case(show, cases.names[k]);
-    return show->panel_count > 0 || error_set(err, "the result has no state yet");
+    return true;
 }
 
 /* The colours, and what the arrows are. */
@@ -158,13 +158,16 @@ static bool dress(Show *show, PictureScene *page, Error *err)
 /* What was asked for: moments for an animation or stills, one frame, or the final state of each case. */
 static bool add_panels(Show *show, Error *err)
 {
+    if (!result_check_state(show->data->result, err)) return false;
     if (show->def->frame >= 0) return add_frame(show, show->def->frame, err);
     int count = show_frame_count(show->data);
     for (int k = 0; k < count; k++)
         if (!add_frame(show, show_frame(show->data, k), err)) return false;
     if (count > 0) return true;
-    bool frames = show->def->seconds > 0 || show->def->stills > 0;
-    return frames ? show_check_frame(show->data, 0, err) : add_cases(show, err);
+    if (show->def->seconds > 0 || show->def->stills > 0) return show_check_frame(show->data, 0, err);
+    if (!add_cases(show, err)) return false;
+    return show->panel_count > 0 ||
+           add_frame(show, result_step_count(show->data->result) - 1, err); /* unfinished */
 }
 
 /* What the body meets, in each panel; what of it the pictures have room for follows from where the body is in all. */

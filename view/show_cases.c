@@ -23,6 +23,13 @@ bool show_cases(ShowData *data, ShowCases *cases, Error *err)
     return cases->count > 0 || !only || error_set(err, "the result has no load case '%s'", only);
 }
 
+const char *show_cases_frame(ShowData *data, const ShowCases *cases, int frame)
+{
+    int from_end = result_step_count(data->result) - frame;
+    bool named = !data->motion && cases->count > 1 && frame >= 0 && from_end <= cases->count;
+    return named ? cases->names[cases->count - from_end] : show_frame_name(data, frame);
+}
+
 void *show_case_dataset(ShowData *data, const char *name, const char *what, size_t count)
 {
     char *path = mem_format("slender/cases/%s/%s", name, what);

@@ -12,6 +12,10 @@ typedef struct ShowCases {
 /* Kept in the data. False and a sentence where the one asked for is not there. */
 bool show_cases(ShowData *data, ShowCases *cases, Error *err);
 
+/* The last frames of a result are those of its cases, if there are several and it is no motion: such a frame's name is its
+ * case's, of others show_frame_name. */
+const char *show_cases_frame(ShowData *data, const ShowCases *cases, int frame);
+
 /* cases/NAME/what, of so many float64; NULL: it is not there. */
 void *show_case_dataset(ShowData *data, const char *name, const char *what, size_t count);
 

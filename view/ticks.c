@@ -1,4 +1,5 @@
 #include "view/ticks.h"
+#include <float.h>
 #include <math.h>
 #include <stdbool.h>
 #include <stdio.h>
@@ -103,29 +104,29 @@ static bool unit_takes_prefix(const char *unit)
     return false;
 }
 
-UnitScale unit_scale(const char *unit, double greatest)
+/* A power of ten that says how large it is. */
+static UnitScale power_scale(const char *unit, double size)
 {
-    static const char *const prefixes[] = {"p", "n", "\u00b5", "m", "", "k", "M", "G"};
-    UnitScale scale = {.factor = 1};
-    char plain[TICKS_TEXT - 24];
-    unit_text(unit, plain, sizeof plain);
-    double size = fabs(greatest);
-    if (!(size > 0) || !isfinite(size)) size = 1;
-    if (unit_takes_prefix(unit)) {
-        int thousands = (int)fmin(fmax(floor(log10(size) / 3 + 1e-9), -4), 3);
-        scale.factor = pow(1000, -thousands);
-        snprintf(scale.unit, sizeof scale.unit, "%s%s", prefixes[thousands + 4], plain);
-        return scale;
-    }
-    if (size >= 0.01 && size < 10000) {
-        snprintf(scale.unit, sizeof scale.unit, "%s", plain);
-        return scale;
-    }
+    UnitScale scale;
     int exponent = (int)floor(log10(size) + 1e-9);
     char power[TICKS_TEXT];
     power_text(exponent, power);
     scale.factor = pow(10, -exponent);
-    snprintf(scale.unit, sizeof scale.unit, "%.22s%s%s", power, plain[0] ? " " : "", plain);
+    snprintf(scale.unit, sizeof scale.unit, "%.22s%s%s", power, unit[0] ? " " : "", unit);
+    return scale;
+}
+
+UnitScale unit_scale(const char *unit, double greatest)
+{
+    static const char *const prefixes[] = {"p", "n", "\u00b5", "m", "", "k", "M", "G"};
+    char plain[TICKS_TEXT - 24];
+    unit_text(unit, plain, sizeof plain);
+    double size = fabs(greatest);
+    if (!(size >= DBL_MIN) || !isfinite(size)) size = 1;
+    int thousands = unit_takes_prefix(unit) ? (int)fmin(fmax(floor(log10(size) / 3 + 1e-9), -4), 3) : 0;
+    UnitScale scale = {.factor = pow(1000, -thousands)};
+    if (size * scale.factor < 0.01 || size * scale.factor >= 10000) return power_scale(plain, size);
+    snprintf(scale.unit, sizeof scale.unit, "%s%s", prefixes[thousands + 4], plain);
     return scale;
 }
 
@@ -137,10 +138,6 @@ void unit_format(double number, const char *unit, char *text, size_t size)
     }
     UnitScale scale = unit_scale(unit, number);
     double shown = number * scale.factor;
-    if (number != 0 && fabs(shown) < 1e-3) { /* less than the least prefix can say */
-        snprintf(text, size, "%.3g%s%s", number, *unit ? " " : "", unit);
-        return;
-    }
     char digits[TICKS_TEXT];
     int whole = shown == 0 ? 1 : (int)floor(log10(fabs(shown)) + 1e-9) + 1;
     int decimals = whole >= 3 ? 0 : 3 - whole;

@@ -35,8 +35,8 @@ typedef struct UnitScale {
 } UnitScale;
 
 /* Picks the SI prefix (p .. G) that shows the greatest number as 1..1000. Units that take none (products,
- * powers, 1/m, rad, no unit) get a power of ten instead, unless the number is within 0.01..10000. "m^2" is
- * written "m²". */
+ * powers, 1/m, rad, no unit), and numbers beyond the prefixes, get a power of ten instead, unless the number is shown
+ * within 0.01..10000. "m^2" is written "m²". */
 UnitScale unit_scale(const char *unit, double greatest);
 
 /* number with three significant digits and its scaled unit: "50 mT", "1.25 kA/m", "3.1·10⁻⁶ m²". */
