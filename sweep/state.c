@@ -3,9 +3,11 @@
 #include "io/safe_file.h"
 #include "io/result.h"
 #include "sweep/lock.h"
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 static char *file_of(const Sweep *sweep, int run, const char *ending)
@@ -104,6 +106,12 @@ char *state_word(const RunState *state, const Sweep *sweep, int run)
     if (state_is_failed(state)) return mem_format("failed: %d", state->code);
     if (state->record == RECORD_FINISHED) return result_word(sweep, run);
     return mem_text(state->record == RECORD_UNFINISHED ? "interrupted" : "absent");
+}
+
+bool state_make_folder(const Sweep *sweep, Error *err)
+{
+    return mkdir(sweep->name, 0777) == 0 || errno == EEXIST ||
+           error_set(err, "%s: cannot be made: %s", sweep->name, strerror(errno));
 }
 
 void state_put_begin(const Sweep *sweep, int run)

@@ -236,7 +236,7 @@ static bool link_best(const Sweep *sweep, int best, Error *err)
 static bool write_files(const Sweep *sweep, const Columns *columns, Error *err)
 {
     char *csv = mem_format("%s.csv", sweep->name), *h5 = mem_format("%s.h5", sweep->name);
-    bool ok = write_csv(csv, columns, err) && write_h5(h5, columns, err);
+    bool ok = state_make_folder(sweep, err) && write_csv(csv, columns, err) && write_h5(h5, columns, err);
     mem_free(csv);
     mem_free(h5);
     return ok;

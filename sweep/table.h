@@ -9,6 +9,6 @@
 #include "job/host.h"
 #include "sweep/sweep.h"
 
-/* Writes both files, and makes NAME/best.vtkhdf a link to the best run's result. *best: that run, -1: none. Warns of
+/* Writes both files, with the sweep's folder beside them, and makes NAME/best.vtkhdf a link to the best run's result. *best: that run, -1: none. Warns of
  * paths that no result has. */
 bool table_collect(const Sweep *sweep, const Host *host, int *best, Error *err);

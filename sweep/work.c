@@ -3,11 +3,9 @@
 #include "io/program.h"
 #include "sweep/lock.h"
 #include "sweep/state.h"
-#include <errno.h>
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
@@ -208,8 +206,7 @@ static bool do_all(Working *w, const int *runs, int count)
 
 bool work_run(const SweepWork *work, const int *runs, int total, SweepTally *tally, Error *err)
 {
-    if (mkdir(work->sweep->name, 0777) != 0 && errno != EEXIST)
-        return error_set(err, "%s: cannot be made: %s", work->sweep->name, strerror(errno));
+    if (!state_make_folder(work->sweep, err)) return false;
     Working w = {.work = work, .total = total, .tally = tally, .err = err};
     w.tasks = mem_alloc((size_t)work->jobs, sizeof *w.tasks);
     for (int k = 0; k < work->jobs; k++) w.tasks[k].run = -1;

@@ -20,6 +20,12 @@ is tip "$(tail -1 single_probes.csv | cut -d, -f2-4)" "$(sed -n 6p all.csv | cut
 expect 0 "$program" export single.vtkhdf -o single.csv --dataset final/energy/bending
 is energy "$(tail -1 single.csv)" "$(sed -n 6p all.csv | cut -d, -f7)"
 
+# ---- A table made before the first run is the sweep's own ----
+sweep early 'vary: {shell.thickness: [1 mm]}
+best: {of: final/energy/bending}'
+expect 0 "$program" sweep early.yaml --collect; is early "$(column status early.csv)" absent
+expect 0 "$program" sweep early.yaml --quiet; is later "$(column status early.csv)" converged
+
 # ---- What has too many numbers for columns is in NAME.h5, each run's in its rows ----
 sweep wide 'vary: {shell.mesh.cells: [[4, 1], [12, 1]]}
 collect: [cases/case1/x, probes/tip]'
