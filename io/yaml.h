@@ -166,8 +166,8 @@ bool yaml_number(const char *text, const char *unit, double *value);
 void yaml_destroy(YamlFile *file);
 
 /* Sets one value before loading: "shell.mesh.n=7", "fix[0].ball.radius=1 mm", "gravity=[0, 0, -9.81]".
- * Mappings on the way are made; an index may be one beyond the end, to append. Its errors begin with "--set
- * shell.mesh.n=7: ". */
+ * Mappings on the way are made; an index may be one beyond the end, to append. What an earlier one has set is not set
+ * again: that is an error. Errors begin with "--set shell.mesh.n=7: ". */
 bool yaml_override(YamlFile *file, const char *assignment);
 
 /* Fills the table's struct, defaults included. The file must have the key `slender: 1` (YamlTable.version), which no
@@ -220,6 +220,9 @@ char *yaml_report(const YamlFile *file);
 /* The effective scene: every key with its value, defaults filled in, in SI units without suffix. Loading it
  * gives the same struct bit by bit. */
 char *yaml_write(const YamlTable *table, const void *scene);
+
+/* What it says of one of the table's keys, as --set has it: "shell=..", in several lines perhaps. */
+char *yaml_write_key(const YamlTable *table, const void *scene, const char *key);
 
 /* The first key in which two effective scenes differ ("shell.young.value"), or NULL. Keys at or below one of
  * `ignored` (NULL-terminated: {"output", "time.steps", NULL}; may be NULL) do not count. */

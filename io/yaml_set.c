@@ -18,6 +18,24 @@ static bool refuse(YamlFile *file, const char *assignment, const char *what)
     return false;
 }
 
+/* Settings say different things, in whatever order they come: none is lost. */
+static bool refuse_twin(YamlFile *file, const char *assignment, const char *twin)
+{
+    char *what =
+        mem_format("it and %.*s say the same: one of them can be set", (int)strcspn(twin, "="), twin);
+    refuse(file, assignment, what);
+    mem_free(what);
+    return false;
+}
+
+/* The setting that a node, or what is in it, comes from; NULL: none. */
+static const char *setting_of(const Node *node)
+{
+    const char *setting = node ? node->origin : NULL;
+    for (int i = 0; node && !setting && i < node->count; i++) setting = setting_of(node->items[i]);
+    return setting;
+}
+
 /* The slot of a name or an index in a container; made where it is missing. NULL with a sentence where it
  * cannot be. */
 static Node **slot(Node *node, const char *name, int length, int index, const char **what)
@@ -57,13 +75,14 @@ static bool is_key(const char *path)
 static bool put(YamlFile *file, const char *assignment, const char *key, Node *value)
 {
     Node **place = &file->root;
-    const char *path = key, *name, *what = NULL;
+    const char *path = key, *name, *what = NULL, *twin = NULL;
     int length, index;
     if (!is_key(key)) what = "the key is malformed; it is like shell.mesh.n or fix[0].ball.radius";
     while (!what && *path) {
         path_step(&path, &name, &length, &index);
         const char *step = index >= 0 ? "[" : name;
         bool leaf = *place && (*place)->kind == NODE_SCALAR;
+        if (leaf && (twin = setting_of(*place))) break;
         if (leaf || !*place) { /* a short form makes way for the long one, which remembers it */
             Node *container = make_container(step, assignment);
             if (leaf) container->text = mem_text((*place)->text);
@@ -73,9 +92,11 @@ static bool put(YamlFile *file, const char *assignment, const char *key, Node *v
         place = slot(*place, name, length, index, &what);
         if (!place) break;
     }
-    if (what || !*key) {
+    if (!what && !twin) twin = setting_of(*place);
+    if (what || twin || !*key) {
         node_destroy(value);
-        return refuse(file, assignment, what ? what : "the key is missing; it is like shell.mesh.n=7");
+        return twin ? refuse_twin(file, assignment, twin)
+                    : refuse(file, assignment, what ? what : "the key is missing; it is like shell.mesh.n=7");
     }
     node_destroy(*place);
     *place = value;

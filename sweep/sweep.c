@@ -2,10 +2,8 @@
 #include "base/memory.h"
 #include "io/path.h"
 #include "io/replace.h"
-#include "io/text.h"
 #include "sweep/runs_file.h"
 #include <errno.h>
-#include <stddef.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -293,26 +291,15 @@ bool sweep_has_changed(const Sweep *sweep)
     return !file_sum(sweep->scene, &now, &err) || now.crc != sweep->sum.crc || now.bytes != sweep->sum.bytes;
 }
 
-static const struct {
-    const char *key;
-    size_t offset;
-} outputs[SWEEP_OUTPUTS] = {{"output.svg", offsetof(Scene, output.svg)},
-                            {"output.png", offsetof(Scene, output.png)},
-                            {"output.gcode", offsetof(Scene, output.gcode)},
-                            {"output.gcode_servo", offsetof(Scene, output.gcode_servo)},
-                            {"output.hpgl", offsetof(Scene, output.hpgl)},
-                            {"output.plotter", offsetof(Scene, output.plotter)}};
-
-static char **output_of(Scene *scene, int k)
-{
-    return (char **)((char *)scene + outputs[k].offset);
-}
+static const char OUTPUT[] = "output";
 
 /* "dir/plot.gcode" becomes "dir/0001_plot.gcode": else each run would write over the others'. */
-static void own_outputs(Scene *scene, int run)
+static void own_outputs(OutputScene *output, int run)
 {
-    for (int k = 0; k < SWEEP_OUTPUTS; k++) {
-        char **name = output_of(scene, k), *before = *name;
+    char **const names[] = {&output->svg,         &output->png,  &output->gcode,
+                            &output->gcode_servo, &output->hpgl, &output->plotter};
+    for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
+        char **name = names[k], *before = *name;
         if (!before) continue;
         const char *slash = strrchr(before, '/');
         int folder = slash ? (int)(slash + 1 - before) : 0;
@@ -331,8 +318,14 @@ bool sweep_load(const Sweep *sweep, int run, YamlFile **file, Scene *scene)
         mem_free(assignment);
     }
     bool ok = yaml_load(*file, scene_table(), scene);
-    if (ok) own_outputs(scene, run);
+    if (ok) own_outputs(&scene->output, run);
     return ok;
+}
+
+/* Is it a key of the scene's `output`, or all of it? */
+static bool is_output(const char *key)
+{
+    return strcspn(key, ".[") == strlen(OUTPUT) && !strncmp(key, OUTPUT, strlen(OUTPUT));
 }
 
 int sweep_assignments(const Sweep *sweep, int run, char *assignments[SWEEP_ASSIGNMENTS_MAX])
@@ -340,16 +333,10 @@ int sweep_assignments(const Sweep *sweep, int run, char *assignments[SWEEP_ASSIG
     YamlFile *file;
     Scene scene;
     int count = 0;
-    for (; count < sweep->key_count; count++) assignments[count] = sweep_assignment(sweep, run, count);
-    bool ok = sweep_load(sweep, run, &file, &scene);
-    for (int k = 0; k < SWEEP_OUTPUTS && ok; k++) {
-        Text text = {0};
-        const char *name = *output_of(&scene, k);
-        if (!name) continue;
-        text_add(&text, "%s=", outputs[k].key);
-        text_add_quoted(&text, name);
-        assignments[count++] = text.text;
-    }
+    for (int k = 0; k < sweep->key_count; k++)
+        if (!is_output(sweep->keys[k].name)) assignments[count++] = sweep_assignment(sweep, run, k);
+    if (sweep_load(sweep, run, &file, &scene))
+        assignments[count++] = yaml_write_key(scene_table(), &scene, OUTPUT);
     yaml_clear(scene_table(), &scene);
     yaml_destroy(file);
     return count;

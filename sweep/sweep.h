@@ -45,8 +45,8 @@ char *sweep_run_name(const Sweep *sweep, int run);
 /* Is the scene another one than it was when the sweep was read? */
 bool sweep_has_changed(const Sweep *sweep);
 
-/* All that `slender run` is to be told, as for --set; returns how many. */
-enum { SWEEP_OUTPUTS = 6, SWEEP_ASSIGNMENTS_MAX = SWEEP_KEYS_MAX + SWEEP_OUTPUTS };
+/* All that `slender run` is to be told, as for --set: the run's values, and its `output` as a whole; returns how many. */
+enum { SWEEP_ASSIGNMENTS_MAX = SWEEP_KEYS_MAX + 1 };
 int sweep_assignments(const Sweep *sweep, int run, char *assignments[SWEEP_ASSIGNMENTS_MAX]);
 
 /* The run's scene; clear and destroy it in any case. The files that its `output` names are the run's own: plot.gcode is

@@ -119,6 +119,9 @@ refused "no.yaml:3:21: shell.mesh.file: .*none.obj: cannot be read" 'vary: {shel
 sweep no 'vary: {shell.mesh.cells: [[4, 1], [1500, 1500], [1, -1]]}' # what does not fit leaves the others to be said
 (ulimit -v 500000; exec "$program" sweep no.yaml) > out.txt 2> err.txt; is "large" $? 3
 says "no.yaml:3:35: run 2: out of memory"; says "no.yaml:3:49: shell.mesh.cells.1. is -1"
+refused "no.yaml:3:63: shell.thickness: it and shell.thickness.value say the same: one of them can be set" 'vary: {shell.thickness.value: [1 mm, 3 mm], shell.thickness: [2 mm]}'
+is "sentences" "$(wc -l < err.txt)" 1
+refused "no.yaml:3:61: shell.young.value: it and shell.young say the same" 'vary: {zip: true, shell.young: [1 MPa], shell.young.value: [2 MPa]}'
 refused "nothing is varied" 'collect: [status]'
 refused "all keys must have as many values, and shell.young has 2, shell.thickness 1" 'vary: {zip: true, shell.young: [1, 2], shell.thickness: [1]}'
 refused "must be a list of entries, not a number" 'vary: {shell.young: 1 MPa}'
@@ -127,6 +130,8 @@ refused "the file lists all keys that differ, and 'shell.young' stands beside it
 refused "none.csv: cannot be read" 'vary: {file: none.csv}'
 refused "design.seed is varied already" 'vary: {design.seed: [1]}
 seeds: 2'
+refused "no.yaml:4:8: design.seed: it and design say the same" 'vary: {design: [{seed: 5, unknowns: {young: {noise: 0.2 MPa}}, objectives: [{height: 1}]}]}
+seeds: 2'
 refused "no.yaml:3:8: seeds: seeds need a design, and .*strip.yaml has none" 'seeds: 2'
 printf 'shell.young,shell.thickness\n1 MPa\n' > short.csv
 refused "short.csv:2: 1 cells, and the first line names 2 keys" 'vary: {file: short.csv}'
@@ -134,6 +139,8 @@ printf 'shell.young\n"1 MPa\n' > quote.csv
 refused "quote.csv:2: a quote without an end" 'vary: {file: quote.csv}'
 printf 'shell.young,shell.young\n1 MPa,2 MPa\n' > twin.csv
 refused "twin.csv:1: the key 'shell.young' is there twice" 'vary: {file: twin.csv}'
+printf 'shell.young,shell\n1 MPa,{}\n' > holds.csv
+refused "holds.csv:2: shell: it and shell.young say the same" 'vary: {file: holds.csv}'
 printf 'shell.young\n1 Mpa\n' > unit.csv
 refused "unit.csv:2: shell.young.value must be a number in Pa" 'vary: {file: unit.csv}'
 printf 'shell.gravity\n"[0, 0"\n' > open.csv
@@ -155,6 +162,8 @@ expect 3 "$program" sweep strip.yaml; says "strip.yaml:1:.*it is a scene, which 
 for verb in run check; do
     expect 3 "$program" $verb all.yaml; says "it is a sweep, .*: slender sweep all.yaml"; is "$verb" "$(wc -l < err.txt)" 1
 done
+expect 3 "$program" run strip.yaml --set shell.thickness.value=1mm --set shell.thickness=2mm
+says "^--set shell.thickness=2mm: it and shell.thickness.value say the same: one of them can be set"
 expect 2 "$program" sweep all.yaml --index 7
 expect 2 "$program" sweep all.yaml -- --partition=x
 expect 1 "$program" sweep bad.yaml --index 1
