@@ -205,7 +205,7 @@ static int collect(const Sweep *sweep, const Host *host)
     host_say(host, "table: %s.csv", sweep->name);
     if (best >= 0) host_say(host, "the best is run %d: %s/best.vtkhdf", best + 1, sweep->name);
     if (sweep->best && best < 0)
-        host_say(host, "no result has a number at %s: none is the best", sweep->best);
+        host_say(host, "no result that is a solution has a number at %s: none is the best", sweep->best);
     return RUN_DONE;
 }
 

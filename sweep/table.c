@@ -3,7 +3,6 @@
 #include "io/arrays_file.h"
 #include "io/safe_file.h"
 #include "io/text.h"
-#include "model/start.h"
 #include "sweep/cells.h"
 #include "sweep/state.h"
 #include <errno.h>
@@ -20,7 +19,7 @@ typedef struct Reading {
     const char **paths;
     Cells *cells;
     char **status;
-    bool *read; /* [runs] there is a result */
+    bool *read, *solved; /* [runs] there is a result; it is a solution */
 } Reading;
 
 /* ---- Reading ---- */
@@ -39,6 +38,13 @@ static bool read_result(Reading *reading, int run, Error *err)
     return ok;
 }
 
+/* Has it come to what the job looks for? What a design leaves is the best that it found, however it ended. */
+static bool is_solved(const RunState *state, const Scene *scene, const char *status)
+{
+    return state->code == RUN_DONE ||
+           (scene_job(scene)->design && state->code == RUN_NOT_CONVERGED && strcmp(status, "unsolved") != 0);
+}
+
 static bool read_run(Reading *reading, int run, Error *err)
 {
     YamlFile *file;
@@ -47,6 +53,7 @@ static bool read_run(Reading *reading, int run, Error *err)
     if (sweep_load(reading->sweep, run, &file, &scene)) {
         RunState state = state_read(reading->sweep, run, &scene);
         reading->status[run] = state_word(&state, reading->sweep, run);
+        reading->solved[run] = is_solved(&state, &scene, reading->status[run]);
         if (state.record == RECORD_FINISHED) ok = read_result(reading, run, err);
         state_clear(&state);
     } else {
@@ -74,6 +81,7 @@ static Reading begin_reading(const Sweep *sweep)
     if (sweep->best) reading.best = add_path(&reading, sweep->best);
     reading.cells = mem_alloc((size_t)reading.path_count * (size_t)sweep->run_count, sizeof *reading.cells);
     reading.read = mem_alloc((size_t)sweep->run_count, sizeof *reading.read);
+    reading.solved = mem_alloc((size_t)sweep->run_count, sizeof *reading.solved);
     reading.status = mem_alloc((size_t)sweep->run_count, sizeof *reading.status);
     return reading;
 }
@@ -86,6 +94,7 @@ static void end_reading(Reading *reading)
     mem_free(reading->paths);
     mem_free(reading->status);
     mem_free(reading->read);
+    mem_free(reading->solved);
 }
 
 /* ---- Columns ---- */
@@ -115,7 +124,7 @@ static void add_key(Columns *columns, const Sweep *sweep, int key)
     mem_free(cells);
 }
 
-/* The run with the best finite number, of those whose states can be trusted. */
+/* The run with the best finite number, of those that are solutions. */
 static int find_best(const Reading *reading)
 {
     const Sweep *sweep = reading->sweep;
@@ -124,7 +133,7 @@ static int find_best(const Reading *reading)
     int best = -1;
     for (int r = 0; r < sweep->run_count; r++) {
         double value = !cells[r].text && cells_count(&cells[r]) == 1 ? cells[r].numbers[0] : NAN;
-        if (!isfinite(value) || start_is_doubtful(reading->status[r]) ||
+        if (!isfinite(value) || !reading->solved[r] ||
             !(best < 0 || (sweep->least ? value < record : value > record)))
             continue;
         best = r;

@@ -81,14 +81,26 @@ expect 0 "$program" sweep zip.yaml --force; is mended "$(column status zip.csv)"
 
 # ---- Runs that fail and do not converge end nothing else ----
 sweep bad 'vary: {solver.max_iterations: [1, 50], load_steps: [1, 2]}
-collect: [final/energy/bending]'
+best: {of: final/energy/bending}'
 mkdir bad; echo junk > bad/0003.run
 expect 1 "$program" sweep bad.yaml; says "run 3 has failed with code 4: .*not a journal"
 is ends "$(column status bad.csv | sed 's/[a-z_]* [a-z_]* /_ _ /')" "_ _ failed: 4 converged"
+is "one solution" "$(column best bad.csv)" "0 0 0 1"; same bad/best.vtkhdf bad/0004.vtkhdf
 expect 1 "$program" sweep bad.yaml; says "1 done, 2 did not converge, 1 failed"
 expect 0 "$program" sweep bad.yaml --list; says "3  .*failed: 4: .*not a journal"
 rm bad/0003.run
 expect 1 "$program" sweep bad.yaml --retry; says "2 done, 2 did not converge, 0 failed"
+
+# ---- Where none converges none is the best; of designs that stall one is ----
+sed -i 's/\[1, 50\]/[1]/; s/load_steps: \[1, 2\]/load_steps: [1]/' bad.yaml
+expect 1 "$program" sweep bad.yaml -o unsolved; says "no result that is a solution has a number at final/energy/bending: none is the best"
+is none "$(column best unsolved.csv)" 0; [ ! -e unsolved/best.vtkhdf ] || { echo "none is the best, and is linked"; bad=1; }
+cp "$here/scene_small.yaml" .
+sweep still 'vary: {shell.mesh.n: [2], design.unknowns.magnetization.noise: [0], "cases[0].flux_density": [[0, 0, 0]], "cases[1].flux_density": [[0, 0, 0]]}
+best: {of: final/objective}'
+sed -i 's/strip.yaml/scene_small.yaml/' still.yaml
+expect 1 "$program" sweep still.yaml --quiet
+is still "$(column status still.csv) $(column best still.csv)" "stationary 1"
 
 # ---- What has gone through an obstacle is not the best ----
 cat > throw.yaml <<'END'
