@@ -166,8 +166,8 @@ bool yaml_number(const char *text, const char *unit, double *value);
 void yaml_destroy(YamlFile *file);
 
 /* Sets one value before loading: "shell.mesh.n=7", "fix[0].ball.radius=1 mm", "gravity=[0, 0, -9.81]".
- * Mappings on the way are made; an index may be one beyond the end, to append. What an earlier one has set is not set
- * again: that is an error. Errors begin with "--set shell.mesh.n=7: ". */
+ * Mappings on the way are made; an index may be one beyond the end, to append. Of one key the last one counts; what another
+ * key has set is not set again: that is an error. Errors begin with "--set shell.mesh.n=7: ". */
 bool yaml_override(YamlFile *file, const char *assignment);
 
 /* Fills the table's struct, defaults included. The file must have the key `slender: 1` (YamlTable.version), which no

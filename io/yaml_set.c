@@ -18,21 +18,22 @@ static bool refuse(YamlFile *file, const char *assignment, const char *what)
     return false;
 }
 
-/* Settings say different things, in whatever order they come: none is lost. */
-static bool refuse_twin(YamlFile *file, const char *assignment, const char *twin)
+static bool refuse_other(YamlFile *file, const char *assignment, const char *other)
 {
     char *what =
-        mem_format("it and %.*s say the same: one of them can be set", (int)strcspn(twin, "="), twin);
+        mem_format("it and %.*s say the same: one of them can be set", (int)strcspn(other, "="), other);
     refuse(file, assignment, what);
     mem_free(what);
     return false;
 }
 
-/* The setting that a node, or what is in it, comes from; NULL: none. */
-static const char *setting_of(const Node *node)
+/* The setting of another key that a node, or what is in it, comes from, and that would be lost; NULL: none. */
+static const char *other_setting(const Node *node, const char *key)
 {
     const char *setting = node ? node->origin : NULL;
-    for (int i = 0; node && !setting && i < node->count; i++) setting = setting_of(node->items[i]);
+    size_t length = strlen(key);
+    if (setting && !strncmp(setting, key, length) && setting[length] == '=') setting = NULL;
+    for (int i = 0; node && !setting && i < node->count; i++) setting = other_setting(node->items[i], key);
     return setting;
 }
 
@@ -75,14 +76,14 @@ static bool is_key(const char *path)
 static bool put(YamlFile *file, const char *assignment, const char *key, Node *value)
 {
     Node **place = &file->root;
-    const char *path = key, *name, *what = NULL, *twin = NULL;
+    const char *path = key, *name, *what = NULL, *other = NULL;
     int length, index;
     if (!is_key(key)) what = "the key is malformed; it is like shell.mesh.n or fix[0].ball.radius";
     while (!what && *path) {
         path_step(&path, &name, &length, &index);
         const char *step = index >= 0 ? "[" : name;
         bool leaf = *place && (*place)->kind == NODE_SCALAR;
-        if (leaf && (twin = setting_of(*place))) break;
+        if (leaf && (other = other_setting(*place, key))) break;
         if (leaf || !*place) { /* a short form makes way for the long one, which remembers it */
             Node *container = make_container(step, assignment);
             if (leaf) container->text = mem_text((*place)->text);
@@ -92,11 +93,12 @@ static bool put(YamlFile *file, const char *assignment, const char *key, Node *v
         place = slot(*place, name, length, index, &what);
         if (!place) break;
     }
-    if (!what && !twin) twin = setting_of(*place);
-    if (what || twin || !*key) {
+    if (!what && !other) other = other_setting(*place, key);
+    if (what || other || !*key) {
         node_destroy(value);
-        return twin ? refuse_twin(file, assignment, twin)
-                    : refuse(file, assignment, what ? what : "the key is missing; it is like shell.mesh.n=7");
+        return other
+                   ? refuse_other(file, assignment, other)
+                   : refuse(file, assignment, what ? what : "the key is missing; it is like shell.mesh.n=7");
     }
     node_destroy(*place);
     *place = value;

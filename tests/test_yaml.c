@@ -211,16 +211,17 @@ static void test_overrides(void **state)
         "--set inner={a: 1: no YAML: did not find expected ',' or '}', while parsing a flow mapping\n");
 }
 
-/* What one setting says, no other one says again, whichever comes first; beside each other they are in order. */
+/* What one key sets, no other one sets again, whichever comes first; of one key the last counts. */
 static void test_twins(void **state)
 {
     (void)state;
     static const struct {
         const char *first, *second, *twin;
-    } rows[] = {{"length=1", "length=2", "length"},
+    } rows[] = {{"length=1", "length=2", NULL},
                 {"inner.value=1", "inner=2", "inner.value"},
                 {"inner=1", "inner.value=2", "inner"},
                 {"inner={value: 1}", "inner.value=2", "inner"},
+                {"inner={value: 1}", "inner={value: 2}", NULL},
                 {"entries=[1, 2]", "entries[1]=3", "entries"},
                 {"entries[1]=3", "entries=[1, 2]", "entries[1]"},
                 {"entries[0]=9", "entries[1]=3", NULL},
