@@ -221,6 +221,56 @@ static bool check_scene(const SweepScene *said, YamlFile *file)
            yaml_refuse(file, "scene", "%s: cannot be read: %s", said->scene, strerror(errno));
 }
 
+/* Is it made of names, as those of datasets? */
+static bool is_path(const char *path)
+{
+    for (const char *part = path;; part++) {
+        size_t length = strcspn(part, "/\n");
+        if (!length || (length <= 2 && !strncmp(part, "..", length)) || part[length] == '\n') return false;
+        part += length;
+        if (!*part) return true;
+    }
+}
+
+/* Is one of them a group that the other one is in? */
+static bool is_within(const char *one, const char *other)
+{
+    size_t length = strlen(one);
+    return !strncmp(one, other, length) && other[length] == '/';
+}
+
+/* Does the table have a column of that name without it? */
+static bool is_column(const Sweep *sweep, const char *path)
+{
+    bool is = !strcmp(path, "run") || !strcmp(path, "best");
+    for (int k = 0; k < sweep->key_count && !is; k++) is = !strcmp(path, sweep->keys[k].name);
+    return is;
+}
+
+/* Paths that no result can have, or no table: known before the first run. */
+static bool check_path(const Sweep *sweep, YamlFile *file, const SweepScene *said, const char *path,
+                       const char *key)
+{
+    if (!is_path(path))
+        return yaml_refuse(file, key, "'%s' is no path in a result; it is like final/energy/bending", path);
+    if (is_column(sweep, path)) return yaml_refuse(file, key, "the table has a column %s of its own", path);
+    for (int k = 0; k < said->collect_count; k++)
+        if (is_within(said->collect[k], path) || is_within(path, said->collect[k]))
+            return yaml_refuse(file, key, "one of %s and %s is no dataset", said->collect[k], path);
+    return true;
+}
+
+static bool check_paths(const Sweep *sweep, YamlFile *file, const SweepScene *said)
+{
+    bool ok = !said->best || check_path(sweep, file, said, said->best->of, "best.of");
+    for (int k = 0; k < said->collect_count; k++) {
+        char *key = mem_format("collect[%d]", k);
+        ok = check_path(sweep, file, said, said->collect[k], key) && ok;
+        mem_free(key);
+    }
+    return ok;
+}
+
 static void take(Sweep *sweep, SweepScene *said)
 {
     Error unread; /* its reading will say so */
@@ -238,7 +288,7 @@ bool sweep_read(const char *path, const char *name, Sweep *sweep, char **report)
     YamlFile *file = yaml_read(path);
     *sweep = (Sweep){.path = mem_text(path), .name = name ? mem_text(name) : default_name(path)};
     bool ok = is_sweep(file, path) && yaml_load(file, &sweep_table, &said) && check_scene(&said, file) &&
-              make_runs(sweep, file, &said);
+              make_runs(sweep, file, &said) && check_paths(sweep, file, &said);
     if (ok) take(sweep, &said);
     *report = ok ? NULL : yaml_report(file);
     yaml_clear(&sweep_table, &said);

@@ -15,27 +15,38 @@
 /* What is read of each run: [paths][runs], those to be collected and the one that says which is best. */
 typedef struct Reading {
     const Sweep *sweep;
+    const Host *host;
     int path_count, best; /* which of them that is */
     const char **paths;
     Cells *cells;
     char **status;
+    bool *told;          /* [paths] it cannot be read, or is nowhere: that was said */
     bool *read, *solved; /* [runs] there is a result; it is a solution */
 } Reading;
 
 /* ---- Reading ---- */
 
-static bool read_result(Reading *reading, int run, Error *err)
+/* What cannot be read is an empty cell: all else is there. Said once. */
+static void warn_of_unread(Reading *reading, int k, const char *file, const Error *err)
 {
+    if (!reading->told[k])
+        host_warn(reading->host, "%s: %s; its cells are empty where it cannot be read", file, err->text);
+    reading->told[k] = true;
+}
+
+static void read_result(Reading *reading, int run)
+{
+    Error err;
     char *name = sweep_run_name(reading->sweep, run), *path = mem_format("%s.vtkhdf", name);
-    Result *result = result_open(path, err);
-    bool ok = reading->read[run] = result != NULL;
-    for (int k = 0; k < reading->path_count && ok; k++)
-        ok = cells_read(result, reading->paths[k], &reading->cells[k * reading->sweep->run_count + run], err);
-    if (!ok && result) error_prefix(err, "collect: %s", path);
+    Result *result = result_open(path, &err);
+    reading->read[run] = result != NULL;
+    for (int k = 0; k < reading->path_count; k++)
+        if (!result || !cells_read(result, reading->paths[k],
+                                   &reading->cells[k * reading->sweep->run_count + run], &err))
+            warn_of_unread(reading, k, path, &err);
     result_close(result);
     mem_free(name);
     mem_free(path);
-    return ok;
 }
 
 /* Has it come to what the job looks for? What a design leaves is the best that it found, however it ended. */
@@ -45,23 +56,21 @@ static bool is_solved(const RunState *state, const Scene *scene, const char *sta
            (scene_job(scene)->design && state->code == RUN_NOT_CONVERGED && strcmp(status, "unsolved") != 0);
 }
 
-static bool read_run(Reading *reading, int run, Error *err)
+static void read_run(Reading *reading, int run)
 {
     YamlFile *file;
     Scene scene;
-    bool ok = true;
     if (sweep_load(reading->sweep, run, &file, &scene)) {
         RunState state = state_read(reading->sweep, run, &scene);
         reading->status[run] = state_word(&state, reading->sweep, run);
         reading->solved[run] = is_solved(&state, &scene, reading->status[run]);
-        if (state.record == RECORD_FINISHED) ok = read_result(reading, run, err);
+        if (state.record == RECORD_FINISHED) read_result(reading, run);
         state_clear(&state);
     } else {
         reading->status[run] = mem_text("refused");
     }
     yaml_clear(scene_table(), &scene);
     yaml_destroy(file);
-    return ok;
 }
 
 static int add_path(Reading *reading, const char *path)
@@ -72,14 +81,15 @@ static int add_path(Reading *reading, const char *path)
     return k;
 }
 
-static Reading begin_reading(const Sweep *sweep)
+static Reading begin_reading(const Sweep *sweep, const Host *host)
 {
-    Reading reading = {.sweep = sweep};
+    Reading reading = {.sweep = sweep, .host = host};
     reading.paths = mem_alloc((size_t)sweep->collect_count + 1, sizeof *reading.paths);
     for (int k = 0; k < sweep->collect_count; k++)
         if (strcmp(sweep->collect[k], "status")) add_path(&reading, sweep->collect[k]);
     if (sweep->best) reading.best = add_path(&reading, sweep->best);
     reading.cells = mem_alloc((size_t)reading.path_count * (size_t)sweep->run_count, sizeof *reading.cells);
+    reading.told = mem_alloc((size_t)reading.path_count, sizeof *reading.told);
     reading.read = mem_alloc((size_t)sweep->run_count, sizeof *reading.read);
     reading.solved = mem_alloc((size_t)sweep->run_count, sizeof *reading.solved);
     reading.status = mem_alloc((size_t)sweep->run_count, sizeof *reading.status);
@@ -93,6 +103,7 @@ static void end_reading(Reading *reading)
     mem_free(reading->cells);
     mem_free(reading->paths);
     mem_free(reading->status);
+    mem_free(reading->told);
     mem_free(reading->read);
     mem_free(reading->solved);
 }
@@ -251,7 +262,7 @@ static bool write_files(const Sweep *sweep, const Columns *columns, Error *err)
     return ok;
 }
 
-static void warn_of_missing(const Reading *reading, const Host *host)
+static void warn_of_missing(const Reading *reading)
 {
     int runs = reading->sweep->run_count;
     bool any = false;
@@ -259,8 +270,8 @@ static void warn_of_missing(const Reading *reading, const Host *host)
     for (int k = 0; k < reading->path_count && any; k++) {
         int r = 0;
         while (r < runs && !cells_count(&reading->cells[k * runs + r])) r++;
-        if (r == runs)
-            host_warn(host, "%s is in none of the results; slender info lists what is there",
+        if (r == runs && !reading->told[k])
+            host_warn(reading->host, "%s is in none of the results; slender info lists what is there",
                       reading->paths[k]);
     }
 }
@@ -277,18 +288,14 @@ static void say_wide(const Sweep *sweep, const Columns *columns, const Host *hos
 
 bool table_collect(const Sweep *sweep, const Host *host, int *best, Error *err)
 {
-    Reading reading = begin_reading(sweep);
-    bool ok = true;
-    *best = -1;
-    for (int r = 0; r < sweep->run_count && ok; r++) ok = read_run(&reading, r, err);
-    if (ok) {
-        warn_of_missing(&reading, host);
-        if (sweep->best) *best = find_best(&reading);
-        Columns columns = make_columns(&reading, *best);
-        say_wide(sweep, &columns, host);
-        ok = write_files(sweep, &columns, err) && (!sweep->best || link_best(sweep, *best, err));
-        columns_clear(&columns);
-    }
+    Reading reading = begin_reading(sweep, host);
+    for (int r = 0; r < sweep->run_count; r++) read_run(&reading, r);
+    warn_of_missing(&reading);
+    *best = sweep->best ? find_best(&reading) : -1;
+    Columns columns = make_columns(&reading, *best);
+    say_wide(sweep, &columns, host);
+    bool ok = write_files(sweep, &columns, err) && (!sweep->best || link_best(sweep, *best, err));
+    columns_clear(&columns);
     end_reading(&reading);
     return ok;
 }

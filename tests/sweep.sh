@@ -39,6 +39,14 @@ print(x.shape, x.attrs["unit"].decode(), (x[0, :10] == of[0]).all(), np.isnan(x[
 END
 )" "(2, 26, 3) m True True True"
 
+# ---- A group is no column: all else is in the table ----
+sweep group 'vary: {shell.thickness: [1 mm, 2 mm]}
+collect: [final/energy, probes/tip, none/such]'
+expect 0 "$program" sweep group.yaml; says "group/0001.vtkhdf: slender/final/energy is no dataset; its cells are empty"
+says "none/such is in none of the results"; is "warnings" "$(grep -c '^warning' err.txt)" 2
+is "group" "$(column status group.csv); $(column final/energy group.csv); $(column none/such group.csv)" "converged converged;  ;  "
+is "beside" "$(column probes/tip.x group.csv | wc -w)" 2; exists group.h5
+
 # ---- Keys that go together, runs from a file, seeds ----
 sweep zip 'vary: {zip: true, shell.thickness: [0.5 mm, 1 mm], shell.young: [1 MPa, 2 MPa]}'
 expect 0 "$program" sweep zip.yaml --quiet
@@ -134,6 +142,18 @@ says "no.yaml:3:35: run 2: out of memory"; says "no.yaml:3:49: shell.mesh.cells.
 refused "no.yaml:3:63: shell.thickness: it and shell.thickness.value say the same: one of them can be set" 'vary: {shell.thickness.value: [1 mm, 3 mm], shell.thickness: [2 mm]}'
 is "sentences" "$(wc -l < err.txt)" 1
 refused "no.yaml:3:61: shell.young.value: it and shell.young say the same" 'vary: {zip: true, shell.young: [1 MPa], shell.young.value: [2 MPa]}'
+for path in '' / . .. /probes/tip probes/ probes//tip probes/./tip; do
+    refused "no.yaml:4:11: collect.0.: '$path' is no path in a result" "vary: {shell.young: [1 MPa]}
+collect: [\"$path\"]"
+done
+for path in run best shell.young; do
+    refused "no.yaml:4:19: collect.1.: the table has a column $path of its own" "vary: {shell.young: [1 MPa]}
+collect: [status, $path]"
+done
+refused "no.yaml:4:7: best.of: 'x/' is no path in a result" 'vary: {shell.young: [1 MPa]}
+best: x/'
+refused "no.yaml:4:18: collect.1.: one of final and final/energy is no dataset" 'vary: {shell.young: [1 MPa]}
+collect: [final, final/energy]'
 refused "nothing is varied" 'collect: [status]'
 refused "all keys must have as many values, and shell.young has 2, shell.thickness 1" 'vary: {zip: true, shell.young: [1, 2], shell.thickness: [1]}'
 refused "must be a list of entries, not a number" 'vary: {shell.young: 1 MPa}'
