@@ -182,9 +182,10 @@ static int list_runs(const Sweep *sweep)
         char *word = loaded ? state_word(&state, sweep, r) : mem_text("refused"),
              *line = mem_format("%d", r + 1);
         for (int k = 0; k < sweep->key_count; k++) {
-            char *assignment = sweep_assignment(sweep, r, k);
-            line = mem_join(line, "  ", assignment);
-            mem_free(assignment);
+            char *said = yaml_value_text(sweep_value(sweep, r, k)->text);
+            line = mem_join(line, "  ", sweep->keys[k].name);
+            line = mem_join(line, "=", said);
+            mem_free(said);
         }
         say(stdout, "%s  %s%s%s", line, word, state.said && state_is_failed(&state) ? ": " : "",
             state.said && state_is_failed(&state) ? state.said : "");

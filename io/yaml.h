@@ -182,6 +182,15 @@ bool yaml_check_use(YamlFile *file, const YamlTable *table);
 /* The number that a text is, with a unit or not, in SI; false: it is none. */
 bool yaml_quantity(const char *text, double *value);
 
+/* A value of any kind as YamlValue.text has it, without comments; NULL: it is none. */
+char *yaml_value_line(const char *text);
+
+/* What a value says: a scalar without its quotes, all else on one line; what is none, as it is. */
+char *yaml_value_text(const char *text);
+
+/* The shortest text that reads back bit by bit. */
+void number_format(double value, char text[40]);
+
 /* Frees what the struct owns, by the same table, and zeroes it. (libyaml already has a yaml_free.) */
 void yaml_clear(const YamlTable *table, void *scene);
 

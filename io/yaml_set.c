@@ -1,4 +1,4 @@
-/* --set key=value: changes of the tree before it is loaded. */
+/* --set key=value: changes of the tree before it is loaded; values as they are written there. */
 #include "base/memory.h"
 #include "io/yaml_private.h"
 #include <string.h>
@@ -123,4 +123,28 @@ bool yaml_override(YamlFile *file, const char *assignment)
     bool ok = put(file, kept, key, value);
     mem_free(key);
     return ok;
+}
+
+static char *value_as(const char *text, bool said)
+{
+    YamlFile *file = yaml_parse("value", text, strlen(text));
+    const Node *root = file->error_count ? NULL : file->root;
+    Text line = {0};
+    if (root && said && root->kind == NODE_SCALAR)
+        text_add(&line, "%s", root->text);
+    else if (root)
+        node_write(root, &line);
+    yaml_destroy(file);
+    return line.text;
+}
+
+char *yaml_value_line(const char *text)
+{
+    return value_as(text, false);
+}
+
+char *yaml_value_text(const char *text)
+{
+    char *said = value_as(text, true);
+    return said ? said : mem_text(text);
 }

@@ -127,7 +127,7 @@ static void add_key(Columns *columns, const Sweep *sweep, int key)
     }
     for (int r = 0; r < columns->rows && !alike; r++) {
         cells_clear(&cells[r]);
-        cells[r].text = mem_text(sweep_value(sweep, r, key)->text);
+        cells[r].text = yaml_value_text(sweep_value(sweep, r, key)->text);
     }
     if (alike) cells[0].unit = mem_text(yaml_unit(scene_table(), sweep->keys[key].name));
     columns_add_cells(columns, sweep->keys[key].name, cells);
@@ -213,7 +213,7 @@ static Array wide_array(const Column *column, int runs)
     return array;
 }
 
-/* Numbers, or a text of a line for each run. */
+/* Numbers, or a text of a line for each run, in which a line's end is \n, and a backslash two. */
 static Array column_array(const Column *column, int rows)
 {
     if (column->numbers) return wide_array(column, rows);
@@ -223,8 +223,11 @@ static Array column_array(const Column *column, int rows)
         return array_float(column->name, column->unit ? column->unit : "", values, 1, rows, 0);
     }
     Text text = {0};
-    for (int r = 0; r < rows; r++)
-        text_add(&text, "%s%s", r ? "\n" : "", column->cells[r] ? column->cells[r] : "");
+    for (int r = 0; r < rows; r++) {
+        text_add(&text, "%s", r ? "\n" : "");
+        for (const char *c = column->cells[r]; c && *c; c++)
+            text_add(&text, *c == '\n' ? "\\n" : *c == '\\' ? "\\\\" : "%c", *c);
+    }
     return array_text(column->name, text.text);
 }
 

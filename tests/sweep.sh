@@ -9,16 +9,17 @@ best: {of: final/energy/bending, least: true}'
 expect 0 "$program" sweep all.yaml --jobs 2; says "6 done"; says "the best is run 6"
 is columns "$(head -1 all.csv)" "run,shell.thickness,shell.gravity.x,shell.gravity.y,shell.gravity.z,status,final/energy/bending,probes/tip.x,probes/tip.y,probes/tip.z,best"
 is runs "$(column run all.csv)" "1 2 3 4 5 6"
-is thickness "$(column shell.thickness all.csv)" "0.00050000000000000001 0.00050000000000000001 0.001 0.001 0.002 0.002"
-is gravity "$(column shell.gravity.z all.csv)" "-9.8100000000000005 -1 -9.8100000000000005 -1 -9.8100000000000005 -1"
+is thickness "$(column shell.thickness all.csv)" "0.0005 0.0005 0.001 0.001 0.002 0.002"
+is gravity "$(column shell.gravity.z all.csv)" "-9.81 -1 -9.81 -1 -9.81 -1"
 is status "$(column status all.csv)" "converged converged converged converged converged converged"
 is best "$(column best all.csv)" "0 0 0 0 0 1"
 same all/best.vtkhdf all/0006.vtkhdf; exists all.h5
 for unit in 'm/s^2' J; do tr -c '[:print:]' '\n' < all.h5 | grep -Fqx "$unit" || { echo "all.h5 has no unit $unit"; bad=1; }; done
 expect 0 "$program" run strip.yaml --set shell.thickness=2mm --set 'shell.gravity=[0, 0, -9.81]' -o single --no-picture --quiet
-is tip "$(tail -1 single_probes.csv | cut -d, -f2-4)" "$(sed -n 6p all.csv | cut -d, -f8-10)"
+numbers() { tr , '\n' | awk '{ printf "%.17g ", $1 }'; }
+is tip "$(tail -1 single_probes.csv | cut -d, -f2-4 | numbers)" "$(sed -n 6p all.csv | cut -d, -f8-10 | numbers)"
 expect 0 "$program" export single.vtkhdf -o single.csv --dataset final/energy/bending
-is energy "$(tail -1 single.csv)" "$(sed -n 6p all.csv | cut -d, -f7)"
+is energy "$(tail -1 single.csv | numbers)" "$(sed -n 6p all.csv | cut -d, -f7 | numbers)"
 
 # ---- A table made before the first run is the sweep's own ----
 sweep early 'vary: {shell.thickness: [1 mm]}
@@ -50,7 +51,7 @@ is "beside" "$(column probes/tip.x group.csv | wc -w)" 2; exists group.h5
 # ---- Keys that go together, runs from a file, seeds ----
 sweep zip 'vary: {zip: true, shell.thickness: [0.5 mm, 1 mm], shell.young: [1 MPa, 2 MPa]}'
 expect 0 "$program" sweep zip.yaml --quiet
-is zip "$(column shell.thickness zip.csv); $(column shell.young zip.csv)" "0.00050000000000000001 0.001; 1000000 2000000"
+is zip "$(column shell.thickness zip.csv); $(column shell.young zip.csv)" "0.0005 0.001; 1000000 2000000"
 printf '\357\273\277shell.thickness; shell.gravity\n# a remark\n0.5 mm; [0, 0, -1]\n\n"1 mm";"[0, 0, -2]"\n' > runs.csv
 sweep file 'vary: {file: runs.csv}'
 expect 0 "$program" sweep file.yaml --quiet
@@ -64,6 +65,25 @@ sed -i 's/strip.yaml/seeded.yaml/' seeds.yaml
 expect 0 "$program" sweep seeds.yaml --quiet
 is seeds "$(column design.seed seeds.csv)" "1 2 3 1 2 3"
 is "six starts" "$(column final/objective seeds.csv | tr ' ' '\n' | sort -u | wc -l)" 6
+
+# ---- Values are what they say, in quotes or not; texts are a line for each run ----
+expect 0 "$program" mesh strip.yaml -o m.obj; mkdir parts; cp m.obj parts/n.obj
+cat > parts/scene.yaml <<'END'
+slender: 1
+job: equilibrium
+shell: {mesh: {file: n.obj}, thickness: 1 mm, young: 1 MPa, poisson: 0.4, density: 1000 kg/m^3}
+fix: [{box: [[-1, -1, -1], [1 mm, 1, 1]], clamp: true}]
+cases: [{name: up, gravity: [0, 0, 1]}, {name: down, gravity: [0, 0, -1]}]
+END
+printf 'shell.mesh.file,shell.thickness\n"../m.obj",0.3 mm # thin\nn.obj,300 \302\265m\n' > values.csv
+sweep values 'vary: {file: values.csv}
+collect: [case_names]'
+sed -i 's/strip.yaml/parts\/scene.yaml/' values.yaml
+expect 0 "$program" sweep values.yaml -o said --quiet
+printf '%s\n' run,shell.mesh.file,shell.thickness,status,case_names '1,../m.obj,0.0003,converged,"up' 'down"' '2,n.obj,0.0003,converged,"up' 'down"' > wanted.csv
+same wanted.csv said.csv
+for line in 'up\ndown' ../m.obj; do tr -c '[:print:]' '\n' < said.h5 | grep -Fq "$line" || { echo "said.h5 lacks a line"; bad=1; }; done
+expect 0 "$program" sweep values.yaml -o said --list; says '^1  shell.mesh.file=../m.obj  shell.thickness=0.3 mm  converged$'
 
 # ---- What has finished is kept; another sweep's results are refused; a run more is one run more ----
 touch -d 2001-01-01 zip/000*.vtkhdf
