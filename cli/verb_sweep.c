@@ -172,6 +172,28 @@ static bool check_runs(const Sweep *sweep, const SweepOptions *o, int *runs, int
 
 /* ---- What can be done ---- */
 
+/* "1  shell.thickness=1 mm"; the caller frees. */
+static char *line_of(const Sweep *sweep, int run)
+{
+    char *line = mem_format("%d", run + 1);
+    for (int k = 0; k < sweep->key_count; k++) {
+        char *said = yaml_value_text(sweep_value(sweep, run, k)->text);
+        line = mem_join(line, "  ", sweep->keys[k].name);
+        line = mem_join(line, "=", said);
+        mem_free(said);
+    }
+    return line;
+}
+
+/* Of a scene that cannot be loaded, of what a run would not replace, of a failure; NULL: there is none. */
+static const char *reason_of(const YamlFile *file, const RunState *state)
+{
+    int count;
+    const YamlError *errors = yaml_errors(file, &count);
+    if (count) return errors[0].sentence;
+    return record_is_kept(state->record) ? state->wrong.text : state_is_failed(state) ? state->said : NULL;
+}
+
 static int list_runs(const Sweep *sweep)
 {
     for (int r = 0; r < sweep->run_count; r++) {
@@ -179,16 +201,9 @@ static int list_runs(const Sweep *sweep)
         Scene scene;
         bool loaded = sweep_load(sweep, r, &file, &scene);
         RunState state = loaded ? state_read(sweep, r, &scene) : (RunState){0};
-        char *word = loaded ? state_word(&state, sweep, r) : mem_text("refused"),
-             *line = mem_format("%d", r + 1);
-        for (int k = 0; k < sweep->key_count; k++) {
-            char *said = yaml_value_text(sweep_value(sweep, r, k)->text);
-            line = mem_join(line, "  ", sweep->keys[k].name);
-            line = mem_join(line, "=", said);
-            mem_free(said);
-        }
-        say(stdout, "%s  %s%s%s", line, word, state.said && state_is_failed(&state) ? ": " : "",
-            state.said && state_is_failed(&state) ? state.said : "");
+        char *word = loaded ? state_word(&state, sweep, r) : mem_text("refused"), *line = line_of(sweep, r);
+        const char *reason = reason_of(file, &state);
+        say(stdout, "%s  %s%s%s", line, word, reason ? ": " : "", reason ? reason : "");
         state_clear(&state);
         mem_free(word);
         mem_free(line);

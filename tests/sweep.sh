@@ -91,7 +91,7 @@ expect 0 "$program" sweep zip.yaml
 is kept "$(find zip -name '000*.vtkhdf' ! -newermt 2001-01-02 | wc -l)" 2
 sed -i 's/\[1 MPa, 2 MPa\]/[1 MPa, 3 MPa]/' zip.yaml
 expect 3 "$program" sweep zip.yaml; says "zip/0002.vtkhdf: it is the result of another scene: shell.young.value is not the same"
-expect 0 "$program" sweep zip.yaml --list; says "2  shell.thickness=1 mm  shell.young=3 MPa  changed"
+expect 0 "$program" sweep zip.yaml --list; says "2  shell.thickness=1 mm  shell.young=3 MPa  changed: zip/0002.vtkhdf: it is the result of another scene: shell.young.value is not the same"
 expect 0 "$program" sweep zip.yaml --collect; is changed "$(column status zip.csv)" "converged changed"
 expect 0 "$program" sweep zip.yaml --force
 is replaced "$(find zip -name '000*.vtkhdf' ! -newermt 2001-01-02)" zip/0001.vtkhdf
@@ -103,7 +103,7 @@ expect 0 "$program" sweep zip.yaml; is more "$(column status zip.csv)" "converge
 rm zip/0002.vtkhdf zip/0002.run
 expect 0 "$program" sweep zip.yaml; exists zip/0002.vtkhdf
 truncate -s 1000 zip/0001.vtkhdf
-expect 0 "$program" sweep zip.yaml --list; says "^1  .*damaged$"
+expect 0 "$program" sweep zip.yaml --list; says "^1  .*damaged: zip/0001.vtkhdf.*: "
 expect 3 "$program" sweep zip.yaml; says "zip/0001.vtkhdf .*; with --force it is replaced"
 expect 0 "$program" sweep zip.yaml --force; is mended "$(column status zip.csv)" "converged converged converged"
 
@@ -154,6 +154,7 @@ refused() { # words, what the file says after its scene
 refused "no.yaml:3:1: the sweep has no key 'colect'; did you mean 'collect'" 'colect: [a]'
 refused "no.yaml:3:32: shell.thickness.value must be a number in m, and '1 T' is a flux density" 'vary: {shell.thickness: [1 mm, 1 T], shell.young: [1 MPa, 2 MPa]}'
 is "sentences" "$(wc -l < err.txt)" 1
+expect 0 "$program" sweep no.yaml --list; says "^3  .*shell.thickness=1 T  shell.young=1 MPa  refused: .*must be a number in m, and '1 T' is a flux density"
 refused "no.yaml:3:21: shell has no key 'yong'; did you mean 'young'" 'vary: {shell.yong: [1 MPa]}'
 refused "no.yaml:3:21: shell.mesh.file: .*none.obj: cannot be read" 'vary: {shell.mesh: [{file: none.obj}]}'
 sweep no 'vary: {shell.mesh.cells: [[4, 1], [1500, 1500], [1, -1]]}' # what does not fit leaves the others to be said
