@@ -156,8 +156,7 @@ static bool check_one(const Sweep *sweep, const SweepOptions *o, int run, Proble
     return next;
 }
 
-/* Before the first one starts: leaves of these runs those that are to be done. False after printing what is wrong. */
-static bool check_runs(const Sweep *sweep, const SweepOptions *o, int *runs, int *count, SweepTally *tally)
+static bool check_each(const Sweep *sweep, const SweepOptions *o, int *runs, int *count, SweepTally *tally)
 {
     Problems problems = {0};
     int left = 0;
@@ -168,6 +167,18 @@ static bool check_runs(const Sweep *sweep, const SweepOptions *o, int *runs, int
     bool ok = problems.count == 0;
     problems_clear(&problems);
     return ok;
+}
+
+/* Before the first one starts: leaves of these runs those that are to be done. RUN_DONE, or a code after printing what is
+ * wrong, and nothing is left of a sweep that has not begun. */
+static int check_runs(const Sweep *sweep, const SweepOptions *o, int *runs, int *count, SweepTally *tally)
+{
+    Error err;
+    bool fresh = access(sweep->name, F_OK) != 0;
+    if (!state_make_folder(sweep, &err)) return verb_fail(RUN_CANNOT_WRITE, err.text);
+    if (check_each(sweep, o, runs, count, tally)) return RUN_DONE;
+    if (fresh) rmdir(sweep->name);
+    return RUN_REFUSED;
 }
 
 /* ---- What can be done ---- */
@@ -281,9 +292,9 @@ static int do_runs(const Sweep *sweep, const SweepOptions *o)
     if (o->collect) return collect(sweep, &host);
     int count = o->index ? 1 : sweep->run_count, *runs = mem_alloc((size_t)count, sizeof *runs);
     for (int k = 0; k < count; k++) runs[k] = o->index ? o->index - 1 : k;
-    int code = !check_runs(sweep, o, runs, &count, &tally) ? RUN_REFUSED
-               : o->slurm                                  ? submit(sweep, o, runs, count)
-                                                           : run_all(sweep, o, runs, count, &tally, &host);
+    int code = check_runs(sweep, o, runs, &count, &tally);
+    if (!code)
+        code = o->slurm ? submit(sweep, o, runs, count) : run_all(sweep, o, runs, count, &tally, &host);
     mem_free(runs);
     return code;
 }

@@ -204,7 +204,6 @@ static bool begin(Submission *s, Error *err)
 {
     const char *name = s->def->sweep->name;
     bool held;
-    if (!state_make_folder(s->def->sweep, err)) return false;
     if (!realpath(name, s->folder)) return error_set(err, "%s: cannot be found: %s", name, strerror(errno));
     char *lock = mem_format("%s/submit.lock", s->folder), *base = path_base_name(s->folder);
     for (char *c = base; *c; c++)

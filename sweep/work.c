@@ -206,7 +206,6 @@ static bool do_all(Working *w, const int *runs, int count)
 
 bool work_run(const SweepWork *work, const int *runs, int total, SweepTally *tally, Error *err)
 {
-    if (!state_make_folder(work->sweep, err)) return false;
     Working w = {.work = work, .total = total, .tally = tally, .err = err};
     w.tasks = mem_alloc((size_t)work->jobs, sizeof *w.tasks);
     for (int k = 0; k < work->jobs; k++) w.tasks[k].run = -1;

@@ -110,10 +110,12 @@ submit parts.yaml "1 runs submitted, 0 are with Slurm already, 1 are under way e
 kill -KILL $pid "$child"; wait $pid 2> err.txt
 
 # ---- Files that the scene names, or what is varied, are each run's own ----
-mkdir plots
 sweep drawn "vary: {zip: true, spline.iterations: [1, 2], output.hpgl: [a.plt, '../plots/it''s: b.plt']}"
 { cat "$here/scene_draw.yaml"; echo 'output: {gcode: plot.gcode}'; } > drawing.yaml
 sed -i 's/strip.yaml/drawing.yaml/' drawn.yaml
+expect 3 "$program" sweep drawn.yaml; says "drawing.yaml: the folder 'drawn/../plots/', where .output. has files, is not there"
+is "sentences" "$(wc -l < err.txt)" 1; [ ! -e drawn ] || { echo "a folder is left of what has not begun"; bad=1; }
+mkdir plots
 "$program" sweep drawn.yaml --index 1 --quiet
 : > queue.txt
 submit drawn.yaml "1 runs submitted, 0 are with Slurm already, 0 are under way elsewhere, 1 have ended"
