@@ -237,6 +237,9 @@ char *yaml_write_key(const YamlTable *table, const void *scene, const char *key)
  * `ignored` (NULL-terminated: {"output", "time.steps", NULL}; may be NULL) do not count. */
 char *yaml_difference(const char *scene, const char *other, const char *const *ignored);
 
+/* The number that an effective scene has at a key; false: there is none. */
+bool yaml_number_at(const char *scene, const char *key, double *value);
+
 /* Visits every file that the struct names: its key as above ("cases.up.target.file") and its absolute path. */
 void yaml_files(const YamlTable *table, const void *scene,
                 void (*visit)(void *self, const char *key, const char *path), void *self);

@@ -148,3 +148,13 @@ char *yaml_value_text(const char *text)
     char *said = value_as(text, true);
     return said ? said : mem_text(text);
 }
+
+bool yaml_number_at(const char *scene, const char *key, double *value)
+{
+    YamlFile *file = yaml_parse("scene", scene, strlen(scene));
+    const char *rest = key;
+    const Node *node = file->root ? tree_follow(file, key, &rest) : NULL;
+    bool is = node && !*rest && node->kind == NODE_SCALAR && yaml_quantity(node->text, value);
+    yaml_destroy(file);
+    return is;
+}

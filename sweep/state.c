@@ -72,6 +72,7 @@ const char *state_next(const RunState *state, bool retry, bool force)
     if (record_is_kept(state->record) || (failed && force)) return force ? "--force" : NULL;
     if (failed && !retry) return NULL;
     if (state->record == RECORD_FINISHED && !failed) return state->code < 0 ? "--resume" : NULL;
+    if (state->record == RECORD_SHORT) return "--resume";
     return state->record == RECORD_UNFINISHED ? "--resume" : state->bare ? "--force" : "--quiet";
 }
 
@@ -104,6 +105,7 @@ char *state_word(const RunState *state, const Sweep *sweep, int run)
     if (state->held) return mem_text("running");
     if (record_is_kept(state->record)) return mem_text(state->record == RECORD_OTHER ? "changed" : "damaged");
     if (state_is_failed(state)) return mem_format("failed: %d", state->code);
+    if (state->record == RECORD_SHORT) return mem_text("shorter");
     if (state->record == RECORD_FINISHED) return result_word(sweep, run);
     return mem_text(state->record == RECORD_UNFINISHED ? "interrupted" : "absent");
 }

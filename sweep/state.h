@@ -29,7 +29,7 @@ const char *state_next(const RunState *state, bool retry, bool force);
 /* What there is to do of a run as it is now; *state: clear it. Where its scene is refused: nothing, with that code. */
 const char *state_look(const Sweep *sweep, int run, bool retry, bool force, RunState *state);
 
-/* "converged", "max_iterations", .. of a result; else "absent", "interrupted", "running", "failed: 3", "changed", "damaged". The caller
+/* "converged", "max_iterations", .. of a result; else "absent", "interrupted", "shorter", "running", "failed: 3", "changed", "damaged". The caller
  * frees. */
 char *state_word(const RunState *state, const Sweep *sweep, int run);
 

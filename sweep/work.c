@@ -73,6 +73,8 @@ static const char *next_of(const SweepWork *work, int run, int *code)
 {
     RunState state;
     const char *mode = state_look(work->sweep, run, work->retry, work->force, &state);
+    if (mode && state.record == RECORD_SHORT)
+        host_say(work->host, "run %d goes on: it was shorter than the scene says now", run + 1);
     *code = record_is_kept(state.record) ? RUN_REFUSED : state.code;
     state_clear(&state);
     return mode;

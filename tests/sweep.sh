@@ -99,6 +99,18 @@ sed -i 's/1 mm\]/1 mm, 2 mm]/; s/3 MPa\]/3 MPa, 4 MPa]/' zip.yaml
 expect 0 "$program" sweep zip.yaml --index 3; exists zip/0003.vtkhdf
 expect 0 "$program" sweep zip.yaml; is more "$(column status zip.csv)" "converged converged converged"
 
+# ---- What is to be longer goes on, to the result of a run in one go; what is to be shorter is refused ----
+sweep longer 'vary: {shell.mesh.n: [2], design.iterations: [1, 2]}
+collect: [final/objective, history/objective]'
+sed -i 's/strip.yaml/scene_small.yaml/' longer.yaml; cp "$here/scene_small.yaml" .
+expect 0 "$program" sweep longer.yaml -o whole --quiet
+sed -i 's/\[1, 2\]/[1, 1]/' longer.yaml; expect 0 "$program" sweep longer.yaml --quiet
+sed -i 's/\[1, 1\]/[1, 2]/' longer.yaml
+expect 0 "$program" sweep longer.yaml --list; says "^2 .*shorter"
+expect 0 "$program" sweep longer.yaml; says "^run 2 goes on: it was shorter than the scene says now"; same whole.csv longer.csv
+sed -i 's/\[1, 2\]/[1, 1]/' longer.yaml
+expect 3 "$program" sweep longer.yaml; says "longer/0002.vtkhdf: it is the result of another scene: design.iterations is not the same"
+
 # ---- A result that was deleted is made again, one that is damaged is kept until it is said ----
 rm zip/0002.vtkhdf zip/0002.run
 expect 0 "$program" sweep zip.yaml; exists zip/0002.vtkhdf

@@ -246,6 +246,8 @@ static void test_next(void **state)
         {RECORD_ABSENT, 3, NULL, "--quiet", "--force", false},
         {RECORD_UNFINISHED, -1, "--resume", "--resume", "--resume", false},
         {RECORD_UNFINISHED, 137, NULL, "--resume", "--force", false},
+        {RECORD_SHORT, 0, "--resume", "--resume", "--resume", false},
+        {RECORD_SHORT, 3, NULL, "--resume", "--force", false},
         {RECORD_FINISHED, 0, NULL, NULL, NULL, false},
         {RECORD_FINISHED, 1, NULL, NULL, NULL, false},
         {RECORD_FINISHED, 4, NULL, "--quiet", "--force", false},
