@@ -271,6 +271,8 @@ static bool check_paths(const Sweep *sweep, YamlFile *file, const SweepScene *sa
     return ok;
 }
 
+static char *meaning_of(const Sweep *sweep);
+
 static void take(Sweep *sweep, SweepScene *said)
 {
     Error unread; /* its reading will say so */
@@ -279,6 +281,7 @@ static void take(Sweep *sweep, SweepScene *said)
     sweep->collect_count = said->collect_count;
     sweep->collect = mem_alloc((size_t)said->collect_count, sizeof *sweep->collect);
     for (int k = 0; k < said->collect_count; k++) sweep->collect[k] = mem_text(said->collect[k]);
+    sweep->meaning = meaning_of(sweep);
     if (said->best) sweep->best = mem_text(said->best->of), sweep->least = said->best->least;
 }
 
@@ -309,6 +312,7 @@ void sweep_clear(Sweep *sweep)
     mem_free(sweep->keys);
     mem_free(sweep->best);
     mem_free(sweep->scene);
+    mem_free(sweep->meaning);
     mem_free(sweep->path);
     mem_free(sweep->name);
     *sweep = (Sweep){0};
@@ -333,13 +337,6 @@ char *sweep_run_name(const Sweep *sweep, int run)
 }
 
 /* ---- A run's scene ---- */
-
-bool sweep_has_changed(const Sweep *sweep)
-{
-    Error err;
-    FileSum now;
-    return !file_sum(sweep->scene, &now, &err) || now.crc != sweep->sum.crc || now.bytes != sweep->sum.bytes;
-}
 
 static const char OUTPUT[] = "output";
 
@@ -390,4 +387,29 @@ int sweep_assignments(const Sweep *sweep, int run, char *assignments[SWEEP_ASSIG
     yaml_clear(scene_table(), &scene);
     yaml_destroy(file);
     return count;
+}
+
+/* ---- Was it edited? ---- */
+
+/* All keys that differ are set in each run, so that one run tells for all. NULL: it cannot be loaded. */
+static char *meaning_of(const Sweep *sweep)
+{
+    YamlFile *file;
+    Scene scene;
+    char *text = sweep_load(sweep, 0, &file, &scene) ? yaml_write(scene_table(), &scene) : NULL;
+    yaml_clear(scene_table(), &scene);
+    yaml_destroy(file);
+    return text;
+}
+
+bool sweep_has_changed(const Sweep *sweep)
+{
+    Error err;
+    FileSum now;
+    if (file_sum(sweep->scene, &now, &err) && now.crc == sweep->sum.crc && now.bytes == sweep->sum.bytes)
+        return false;
+    char *meaning = meaning_of(sweep);
+    bool same = meaning && sweep->meaning && !strcmp(meaning, sweep->meaning);
+    mem_free(meaning);
+    return !same;
 }

@@ -22,6 +22,7 @@ typedef struct SweepKey {
 typedef struct Sweep {
     char *path, *scene; /* the sweep's file, the scene's */
     FileSum sum;        /* of the scene as it was then */
+    char *meaning;      /* the first run's effective scene, then; NULL: it cannot be loaded */
     char *name;         /* of the folder of results and of the tables, NAME.csv and NAME.h5 */
     int key_count, run_count, collect_count;
     SweepKey *keys;
@@ -42,7 +43,7 @@ const SweepValue *sweep_value(const Sweep *sweep, int run, int key);
 char *sweep_assignment(const Sweep *sweep, int run, int key);
 char *sweep_run_name(const Sweep *sweep, int run);
 
-/* Is the scene another one than it was when the sweep was read? */
+/* Does the scene say something else than it did when the sweep was read? Remarks may change. */
 bool sweep_has_changed(const Sweep *sweep);
 
 /* All that `slender run` is to be told, as for --set: the run's values, and its `output` as a whole; returns how many. */

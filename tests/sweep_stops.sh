@@ -49,6 +49,9 @@ expect 0 "$program" sweep left.yaml --jobs 2 --quiet
 same whole.csv left.csv
 
 # ---- A scene that is edited meanwhile: no run of another one is begun; put back, it goes on ----
+hold parts
+echo '# a remark' >> motion.yaml # is no other scene
+kill -CONT "$child"; wait $pid; is "remark" $? 0; same whole.csv parts.csv
 cp motion.yaml before.yaml
 hold parts 2> edited.txt
 sed -i 's/poisson: 0.4/poisson: 0.3/' motion.yaml
