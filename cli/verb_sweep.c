@@ -156,8 +156,7 @@ static bool check_one(const Sweep *sweep, const SweepOptions *o, int run, Proble
     return next;
 }
 
-/* Before the first one starts: leaves of these runs those that are to be done. False after printing what is wrong. */
-static bool check_runs(const Sweep *sweep, const SweepOptions *o, int *runs, int *count, SweepTally *tally)
+static bool check_each(const Sweep *sweep, const SweepOptions *o, int *runs, int *count, SweepTally *tally)
 {
     Problems problems = {0};
     int left = 0;
@@ -170,7 +169,41 @@ static bool check_runs(const Sweep *sweep, const SweepOptions *o, int *runs, int
     return ok;
 }
 
+/* Before the first one starts: leaves of these runs those that are to be done. RUN_DONE, or a code after printing what is
+ * wrong, and nothing is left of a sweep that has not begun. */
+static int check_runs(const Sweep *sweep, const SweepOptions *o, int *runs, int *count, SweepTally *tally)
+{
+    Error err;
+    bool fresh = access(sweep->name, F_OK) != 0;
+    if (!state_make_folder(sweep, &err)) return verb_fail(RUN_CANNOT_WRITE, err.text);
+    if (check_each(sweep, o, runs, count, tally)) return RUN_DONE;
+    if (fresh) rmdir(sweep->name);
+    return RUN_REFUSED;
+}
+
 /* ---- What can be done ---- */
+
+/* "1  shell.thickness=1 mm"; the caller frees. */
+static char *line_of(const Sweep *sweep, int run)
+{
+    char *line = mem_format("%d", run + 1);
+    for (int k = 0; k < sweep->key_count; k++) {
+        char *said = yaml_value_text(sweep_value(sweep, run, k)->text);
+        line = mem_join(line, "  ", sweep->keys[k].name);
+        line = mem_join(line, "=", said);
+        mem_free(said);
+    }
+    return line;
+}
+
+/* Of a scene that cannot be loaded, of what a run would not replace, of a failure; NULL: there is none. */
+static const char *reason_of(const YamlFile *file, const RunState *state)
+{
+    int count;
+    const YamlError *errors = yaml_errors(file, &count);
+    if (count) return errors[0].sentence;
+    return record_is_kept(state->record) ? state->wrong.text : state_is_failed(state) ? state->said : NULL;
+}
 
 static int list_runs(const Sweep *sweep)
 {
@@ -179,15 +212,9 @@ static int list_runs(const Sweep *sweep)
         Scene scene;
         bool loaded = sweep_load(sweep, r, &file, &scene);
         RunState state = loaded ? state_read(sweep, r, &scene) : (RunState){0};
-        char *word = loaded ? state_word(&state, sweep, r) : mem_text("refused"),
-             *line = mem_format("%d", r + 1);
-        for (int k = 0; k < sweep->key_count; k++) {
-            char *assignment = sweep_assignment(sweep, r, k);
-            line = mem_join(line, "  ", assignment);
-            mem_free(assignment);
-        }
-        say(stdout, "%s  %s%s%s", line, word, state.said && state_is_failed(&state) ? ": " : "",
-            state.said && state_is_failed(&state) ? state.said : "");
+        char *word = loaded ? state_word(&state, sweep, r) : mem_text("refused"), *line = line_of(sweep, r);
+        const char *reason = reason_of(file, &state);
+        say(stdout, "%s  %s%s%s", line, word, reason ? ": " : "", reason ? reason : "");
         state_clear(&state);
         mem_free(word);
         mem_free(line);
@@ -205,7 +232,7 @@ static int collect(const Sweep *sweep, const Host *host)
     host_say(host, "table: %s.csv", sweep->name);
     if (best >= 0) host_say(host, "the best is run %d: %s/best.vtkhdf", best + 1, sweep->name);
     if (sweep->best && best < 0)
-        host_say(host, "no result has a number at %s: none is the best", sweep->best);
+        host_say(host, "no result that is a solution has a number at %s: none is the best", sweep->best);
     return RUN_DONE;
 }
 
@@ -265,9 +292,9 @@ static int do_runs(const Sweep *sweep, const SweepOptions *o)
     if (o->collect) return collect(sweep, &host);
     int count = o->index ? 1 : sweep->run_count, *runs = mem_alloc((size_t)count, sizeof *runs);
     for (int k = 0; k < count; k++) runs[k] = o->index ? o->index - 1 : k;
-    int code = !check_runs(sweep, o, runs, &count, &tally) ? RUN_REFUSED
-               : o->slurm                                  ? submit(sweep, o, runs, count)
-                                                           : run_all(sweep, o, runs, count, &tally, &host);
+    int code = check_runs(sweep, o, runs, &count, &tally);
+    if (!code)
+        code = o->slurm ? submit(sweep, o, runs, count) : run_all(sweep, o, runs, count, &tally, &host);
     mem_free(runs);
     return code;
 }

@@ -166,8 +166,8 @@ bool yaml_number(const char *text, const char *unit, double *value);
 void yaml_destroy(YamlFile *file);
 
 /* Sets one value before loading: "shell.mesh.n=7", "fix[0].ball.radius=1 mm", "gravity=[0, 0, -9.81]".
- * Mappings on the way are made; an index may be one beyond the end, to append. Its errors begin with "--set
- * shell.mesh.n=7: ". */
+ * Mappings on the way are made; an index may be one beyond the end, to append. Of one key the last one counts; what another
+ * key has set is not set again: that is an error. Errors begin with "--set shell.mesh.n=7: ". */
 bool yaml_override(YamlFile *file, const char *assignment);
 
 /* Fills the table's struct, defaults included. The file must have the key `slender: 1` (YamlTable.version), which no
@@ -181,6 +181,15 @@ bool yaml_check_use(YamlFile *file, const YamlTable *table);
 
 /* The number that a text is, with a unit or not, in SI; false: it is none. */
 bool yaml_quantity(const char *text, double *value);
+
+/* A value of any kind as YamlValue.text has it, without comments; NULL: it is none. */
+char *yaml_value_line(const char *text);
+
+/* What a value says: a scalar without its quotes, all else on one line; what is none, as it is. */
+char *yaml_value_text(const char *text);
+
+/* The shortest text that reads back bit by bit. */
+void number_format(double value, char text[40]);
 
 /* Frees what the struct owns, by the same table, and zeroes it. (libyaml already has a yaml_free.) */
 void yaml_clear(const YamlTable *table, void *scene);
@@ -221,9 +230,15 @@ char *yaml_report(const YamlFile *file);
  * gives the same struct bit by bit. */
 char *yaml_write(const YamlTable *table, const void *scene);
 
+/* What it says of one of the table's keys, as --set has it: "shell=..", in several lines perhaps. */
+char *yaml_write_key(const YamlTable *table, const void *scene, const char *key);
+
 /* The first key in which two effective scenes differ ("shell.young.value"), or NULL. Keys at or below one of
  * `ignored` (NULL-terminated: {"output", "time.steps", NULL}; may be NULL) do not count. */
 char *yaml_difference(const char *scene, const char *other, const char *const *ignored);
+
+/* The number that an effective scene has at a key; false: there is none. */
+bool yaml_number_at(const char *scene, const char *key, double *value);
 
 /* Visits every file that the struct names: its key as above ("cases.up.target.file") and its absolute path. */
 void yaml_files(const YamlTable *table, const void *scene,

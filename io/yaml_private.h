@@ -90,9 +90,6 @@ void unit_list_prefixes(const char *mark, Text *text);
 /* Is it a unit that the table of units can read? */
 bool unit_is_known(const char *unit);
 
-/* Shortest text that reads back bit by bit. */
-void number_format(double value, char text[40]);
-
 /* ---- Tables ---- */
 
 const YamlField *table_row(const YamlTable *table, const char *key);

@@ -1,4 +1,4 @@
-/* --set key=value: changes of the tree before it is loaded. */
+/* --set key=value: changes of the tree before it is loaded; values as they are written there. */
 #include "base/memory.h"
 #include "io/yaml_private.h"
 #include <string.h>
@@ -16,6 +16,25 @@ static bool refuse(YamlFile *file, const char *assignment, const char *what)
     Node at = {.origin = assignment};
     yaml_error(file, &at, "%s", what);
     return false;
+}
+
+static bool refuse_other(YamlFile *file, const char *assignment, const char *other)
+{
+    char *what =
+        mem_format("it and %.*s say the same: one of them can be set", (int)strcspn(other, "="), other);
+    refuse(file, assignment, what);
+    mem_free(what);
+    return false;
+}
+
+/* The setting of another key that a node, or what is in it, comes from, and that would be lost; NULL: none. */
+static const char *other_setting(const Node *node, const char *key)
+{
+    const char *setting = node ? node->origin : NULL;
+    size_t length = strlen(key);
+    if (setting && !strncmp(setting, key, length) && setting[length] == '=') setting = NULL;
+    for (int i = 0; node && !setting && i < node->count; i++) setting = other_setting(node->items[i], key);
+    return setting;
 }
 
 /* The slot of a name or an index in a container; made where it is missing. NULL with a sentence where it
@@ -57,13 +76,14 @@ static bool is_key(const char *path)
 static bool put(YamlFile *file, const char *assignment, const char *key, Node *value)
 {
     Node **place = &file->root;
-    const char *path = key, *name, *what = NULL;
+    const char *path = key, *name, *what = NULL, *other = NULL;
     int length, index;
     if (!is_key(key)) what = "the key is malformed; it is like shell.mesh.n or fix[0].ball.radius";
     while (!what && *path) {
         path_step(&path, &name, &length, &index);
         const char *step = index >= 0 ? "[" : name;
         bool leaf = *place && (*place)->kind == NODE_SCALAR;
+        if (leaf && (other = other_setting(*place, key))) break;
         if (leaf || !*place) { /* a short form makes way for the long one, which remembers it */
             Node *container = make_container(step, assignment);
             if (leaf) container->text = mem_text((*place)->text);
@@ -73,9 +93,12 @@ static bool put(YamlFile *file, const char *assignment, const char *key, Node *v
         place = slot(*place, name, length, index, &what);
         if (!place) break;
     }
-    if (what || !*key) {
+    if (!what && !other) other = other_setting(*place, key);
+    if (what || other || !*key) {
         node_destroy(value);
-        return refuse(file, assignment, what ? what : "the key is missing; it is like shell.mesh.n=7");
+        return other
+                   ? refuse_other(file, assignment, other)
+                   : refuse(file, assignment, what ? what : "the key is missing; it is like shell.mesh.n=7");
     }
     node_destroy(*place);
     *place = value;
@@ -100,4 +123,38 @@ bool yaml_override(YamlFile *file, const char *assignment)
     bool ok = put(file, kept, key, value);
     mem_free(key);
     return ok;
+}
+
+static char *value_as(const char *text, bool said)
+{
+    YamlFile *file = yaml_parse("value", text, strlen(text));
+    const Node *root = file->error_count ? NULL : file->root;
+    Text line = {0};
+    if (root && said && root->kind == NODE_SCALAR)
+        text_add(&line, "%s", root->text);
+    else if (root)
+        node_write(root, &line);
+    yaml_destroy(file);
+    return line.text;
+}
+
+char *yaml_value_line(const char *text)
+{
+    return value_as(text, false);
+}
+
+char *yaml_value_text(const char *text)
+{
+    char *said = value_as(text, true);
+    return said ? said : mem_text(text);
+}
+
+bool yaml_number_at(const char *scene, const char *key, double *value)
+{
+    YamlFile *file = yaml_parse("scene", scene, strlen(scene));
+    const char *rest = key;
+    const Node *node = file->root ? tree_follow(file, key, &rest) : NULL;
+    bool is = node && !*rest && node->kind == NODE_SCALAR && yaml_quantity(node->text, value);
+    yaml_destroy(file);
+    return is;
 }

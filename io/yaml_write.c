@@ -185,6 +185,14 @@ char *yaml_write(const YamlTable *table, const void *scene)
     return text.text;
 }
 
+char *yaml_write_key(const YamlTable *table, const void *scene, const char *key)
+{
+    char *row = row_text(table_row(table, key), scene), *colon = strchr(row, ':');
+    char *assignment = mem_format("%s=%s", key, colon ? colon + 1 : "");
+    mem_free(row);
+    return assignment;
+}
+
 /* ---- Files ---- */
 
 typedef struct Visit {

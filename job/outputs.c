@@ -180,6 +180,22 @@ bool outputs_check(const Scene *scene, const char *path, const char *result, boo
     return ok;
 }
 
+bool outputs_check_folders(const Scene *scene, const char *result, Error *err)
+{
+    OutputFile files[FILES];
+    bool ok = true;
+    files_of(scene, result, files);
+    for (int k = 1; ok && k < FILES; k++) {
+        char *folder = files[k].path ? replace_folder(files[k].path) : NULL;
+        if (folder && access(folder, W_OK) != 0)
+            ok = error_set(err, "the folder '%s', where `output` has files, is not there, or is read-only",
+                           folder);
+        mem_free(folder);
+    }
+    clear_files(files);
+    return ok;
+}
+
 /* ---- Files that are there already ---- */
 
 static bool makes_iterations(const Scene *scene)

@@ -7,6 +7,9 @@
  * of them the scene of that path (NULL: of none) or a file that it names? Refused before the work, not after it. */
 bool outputs_check(const Scene *scene, const char *path, const char *result, bool picture, Error *err);
 
+/* Are the folders there, of all but the picture? Touches nothing: the run may live. */
+bool outputs_check_folders(const Scene *scene, const char *result, Error *err);
+
 /* Of a result that is not there yet: false and a sentence where one of them is, or a drawing of an iteration: it is
  * somebody else's. */
 bool outputs_check_new(const Scene *scene, const char *result, bool picture, Error *err);

@@ -172,6 +172,38 @@ static bool check_earlier(const Run *run, const char *journal, bool picture, Err
 
 /* ---- What there is of a run ---- */
 
+/* How long runs are; what a resumed run has done is not undone, so that they can only be raised. */
+static const char *const LENGTHS[] = {"design.iterations", "time.steps", "spline.rounds", NULL};
+
+static bool has_key(const char *const *keys, const char *key)
+{
+    while (*keys && strcmp(*keys, key) != 0) keys++;
+    return *keys != NULL;
+}
+
+/* Is a run of that scene (text) this one but for a length that a resumed run may raise, and that is raised now? */
+static bool is_shorter(const Array *text, const Scene *of, const char *scene, char *const *files)
+{
+    const char *lengths[sizeof LENGTHS / sizeof *LENGTHS] = {NULL};
+    double had, wanted;
+    int count = 0;
+    bool raised = true;
+    char *before = scene_of_journal(text);
+    for (int k = 0; LENGTHS[k]; k++) {
+        if (!has_key(scene_job(of)->free_keys, LENGTHS[k])) continue;
+        lengths[count++] = LENGTHS[k];
+        raised = raised && (!yaml_number_at(before, LENGTHS[k], &had) ||
+                            (yaml_number_at(scene, LENGTHS[k], &wanted) && wanted >= had));
+    }
+    const char **keys = ignored_keys(lengths, files);
+    char *changed = yaml_difference(before, scene, keys);
+    bool shorter = raised && !changed;
+    mem_free(keys);
+    mem_free(changed);
+    mem_free(before);
+    return shorter;
+}
+
 /* Of an unfinished one, which nobody could go on with where nothing was put. */
 static RecordState journal_state(Journal *journal, const Scene *of, const char *scene, Error *err)
 {
@@ -183,7 +215,9 @@ static RecordState journal_state(Journal *journal, const Scene *of, const char *
     const char **keys = ignored_keys(none, files);
     changed = difference(&text, scene, keys);
     if (changed) error_set(err, "it is an unfinished run of another scene: %s is not the same", changed);
-    RecordState state = changed ? RECORD_OTHER : RECORD_UNFINISHED;
+    RecordState state = !changed                              ? RECORD_UNFINISHED
+                        : is_shorter(&text, of, scene, files) ? RECORD_SHORT
+                                                              : RECORD_OTHER;
     mem_free(changed);
     mem_free(keys);
     mem_free(files);
@@ -191,12 +225,25 @@ static RecordState journal_state(Journal *journal, const Scene *of, const char *
     return state;
 }
 
+/* Whether its files are the same is asked when it goes on. */
+static RecordState other_state(Result *result, const Scene *of, const char *scene)
+{
+    Array text;
+    if (!result_read(result, "slender/scene", &text, NULL)) return RECORD_OTHER;
+    char **files = inputs_keys(of);
+    bool shorter = is_shorter(&text, of, scene, files);
+    mem_free(files);
+    array_clear(&text);
+    return shorter ? RECORD_SHORT : RECORD_OTHER;
+}
+
 static RecordState result_state(Result *result, const Scene *of, const char *scene, Error *err)
 {
     if (!is_finished(result)) return RECORD_ABSENT;
     char *inputs = inputs_text(of, err);
-    RecordState state =
-        inputs && is_same_run(of, result, scene, inputs, err) ? RECORD_FINISHED : RECORD_OTHER;
+    RecordState state = !inputs                                       ? RECORD_OTHER
+                        : is_same_run(of, result, scene, inputs, err) ? RECORD_FINISHED
+                                                                      : other_state(result, of, scene);
     mem_free(inputs);
     return state;
 }

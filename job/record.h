@@ -23,6 +23,7 @@ RunStatus record_run(const RecordDef *def, bool *drawable, Error *err);
 typedef enum RecordState {
     RECORD_ABSENT,     /* nothing that one could go on with */
     RECORD_UNFINISHED, /* a journal of this scene           */
+    RECORD_SHORT,      /* either one, of this scene but for its length, which is now more: --resume goes on */
     RECORD_FINISHED,   /* a result of this scene            */
     RECORD_OTHER,      /* what a run of this scene would not replace: err says why */
     RECORD_DAMAGED,    /* a result that cannot be read: it would not either         */

@@ -254,7 +254,8 @@ static bool take_case(const StatePlace *place, const Model *model, Case *c, Erro
            take_velocities(place, model, c, err) && take_anchor(place, model, c, err);
 }
 
-bool start_is_doubtful(const char *status)
+/* Can the state of a run that ended with that status not be trusted? */
+static bool is_doubtful(const char *status)
 {
     static const char *const doubtful[] = {"pierced", "crushed", "tangled", "not_finite"};
     for (int k = 0; k < 4; k++)
@@ -267,7 +268,7 @@ static void warn_end(Model *model, const char *path)
 {
     Array status;
     if (!result_read(model->start->result, "slender/status", &status, NULL)) return;
-    if (start_is_doubtful(status.data))
+    if (is_doubtful(status.data))
         mesh_warn(&model->report, "%s: %s ended as %s, and what starts from it has that in it", KEY, path,
                   (const char *)status.data);
     array_clear(&status);

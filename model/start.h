@@ -12,7 +12,4 @@ bool start_open(Model *model, const Scene *scene, YamlFile *file);
  * be the one that the result is of (BodyOps.known_by, BodyOps.take_state). */
 bool start_take(Model *model, const Scene *scene, YamlFile *file);
 
-/* Can the state of a run that ended with that status not be trusted? */
-bool start_is_doubtful(const char *status);
-
 void start_close(Start *start);

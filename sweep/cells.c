@@ -61,7 +61,10 @@ static const char *unit_of(const Cells *runs, int count)
 static char *part_text(const Cells *cells, int part)
 {
     if (part >= cells_count(cells)) return NULL;
-    return cells->text ? mem_text(cells->text) : mem_format("%.17g", cells->numbers[part]);
+    if (cells->text) return mem_text(cells->text);
+    char number[40];
+    number_format(cells->numbers[part], number);
+    return mem_text(number);
 }
 
 /* Each run's numbers stand in the first of as many rows and places as any run has. */
@@ -119,11 +122,16 @@ static bool has_rows(const char *path)
     return false;
 }
 
-/* Of lines the last one. */
-static char *last_line(const char *text, bool rows)
+/* Without the end of its last line; of lines the last one. */
+static char *text_of(const char *text, bool rows)
 {
-    const char *line = rows ? strrchr(text, '\n') : NULL;
-    return mem_text(line && line[1] ? line + 1 : text);
+    char *lines = mem_text(text), *end = strrchr(lines, '\n');
+    if (end && !end[1]) *end = 0;
+    char *line = rows ? strrchr(lines, '\n') : NULL;
+    if (!line) return lines;
+    line = mem_text(line + 1);
+    mem_free(lines);
+    return line;
 }
 
 /* All of it, or its last row. */
@@ -145,7 +153,7 @@ static void take(const Array *array, const char *path, Cells *cells)
 {
     bool rows = has_rows(path);
     if (array->type == ARRAY_TEXT)
-        cells->text = last_line(array->data, rows);
+        cells->text = text_of(array->data, rows);
     else
         take_numbers(array, rows, cells);
 }
@@ -181,9 +189,10 @@ static bool add_list(Cells *cells, const char *text)
     if (ok) *end = 0;
     for (char *item = ok ? strtok_r(copy, ",", &rest) : NULL; item && ok; item = strtok_r(NULL, ",", &rest)) {
         double value;
-        item += strspn(item, " ");
-        ok = cells->rows < CELLS_WIDTH_MAX && yaml_quantity(item, &value);
+        char *said = yaml_value_text(item);
+        ok = cells->rows < CELLS_WIDTH_MAX && yaml_quantity(said, &value);
         if (ok) add(cells, value);
+        mem_free(said);
     }
     mem_free(copy);
     return ok && cells->rows;
@@ -193,11 +202,13 @@ Cells cells_of_value(const char *text)
 {
     double value;
     Cells cells = {0};
-    if (yaml_quantity(text, &value))
+    char *said = yaml_value_text(text);
+    if (yaml_quantity(said, &value))
         add(&cells, value);
-    else if (*text != '[' || !add_list(&cells, text)) {
+    else if (*said != '[' || !add_list(&cells, said)) {
         cells_clear(&cells);
-        cells.text = mem_text(text);
+        cells.text = mem_text(said);
     }
+    mem_free(said);
     return cells;
 }

@@ -93,6 +93,17 @@ static bool check_tables(const Sweep *sweep, const Scene *scene, Problems *probl
     return ok;
 }
 
+static bool check_folders(const Sweep *sweep, int run, const Scene *scene, Problems *problems)
+{
+    Error err;
+    char *name = sweep_run_name(sweep, run), *result = mem_format("%s.vtkhdf", name);
+    bool ok = outputs_check_folders(scene, result, &err);
+    if (!ok) add(problems, mem_format("%s: %s", sweep->scene, err.text));
+    mem_free(name);
+    mem_free(result);
+    return ok;
+}
+
 /* Will nothing be computed? */
 static bool is_settled(const RunState *state)
 {
@@ -113,6 +124,7 @@ static bool check_one(const Sweep *sweep, int run, bool force, RunState *state, 
         Model *model = model_create(&scene, file);
         ok = model != NULL;
         model_destroy(model);
+        ok = ok && check_folders(sweep, run, &scene, problems);
     }
     ok = ok && check_tables(sweep, &scene, problems);
     add_errors(sweep, run, file, problems);

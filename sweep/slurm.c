@@ -13,7 +13,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -207,8 +206,6 @@ static bool begin(Submission *s, Error *err)
 {
     const char *name = s->def->sweep->name;
     bool held;
-    if (mkdir(name, 0777) != 0 && errno != EEXIST)
-        return error_set(err, "%s: cannot be made: %s", name, strerror(errno));
     if (!realpath(name, s->folder)) return error_set(err, "%s: cannot be found: %s", name, strerror(errno));
     char *lock = mem_format("%s/submit.lock", s->folder), *base = path_base_name(s->folder);
     for (char *c = base; *c; c++)

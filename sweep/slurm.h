@@ -17,6 +17,6 @@ typedef struct SlurmTally {
     int submitted, waiting, held; /* given to Slurm; it had them already; under way elsewhere */
 } SlurmTally;
 
-/* Submits of those that were to be done, [runs], what Slurm does not have and what has neither ended nor begun elsewhere by
+/* The sweep's folder is there. Submits of those that were to be done, [runs], what Slurm does not have and what has neither ended nor begun elsewhere by
  * then. False and a sentence, after some perhaps. */
 bool slurm_submit(const SlurmDef *def, const bool *todo, SlurmTally *tally, Error *err);

@@ -3,9 +3,11 @@
 #include "io/safe_file.h"
 #include "io/result.h"
 #include "sweep/lock.h"
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 static char *file_of(const Sweep *sweep, int run, const char *ending)
@@ -70,6 +72,7 @@ const char *state_next(const RunState *state, bool retry, bool force)
     if (record_is_kept(state->record) || (failed && force)) return force ? "--force" : NULL;
     if (failed && !retry) return NULL;
     if (state->record == RECORD_FINISHED && !failed) return state->code < 0 ? "--resume" : NULL;
+    if (state->record == RECORD_SHORT) return "--resume";
     return state->record == RECORD_UNFINISHED ? "--resume" : state->bare ? "--force" : "--quiet";
 }
 
@@ -102,8 +105,15 @@ char *state_word(const RunState *state, const Sweep *sweep, int run)
     if (state->held) return mem_text("running");
     if (record_is_kept(state->record)) return mem_text(state->record == RECORD_OTHER ? "changed" : "damaged");
     if (state_is_failed(state)) return mem_format("failed: %d", state->code);
+    if (state->record == RECORD_SHORT) return mem_text("shorter");
     if (state->record == RECORD_FINISHED) return result_word(sweep, run);
     return mem_text(state->record == RECORD_UNFINISHED ? "interrupted" : "absent");
+}
+
+bool state_make_folder(const Sweep *sweep, Error *err)
+{
+    return mkdir(sweep->name, 0777) == 0 || errno == EEXIST ||
+           error_set(err, "%s: cannot be made: %s", sweep->name, strerror(errno));
 }
 
 void state_put_begin(const Sweep *sweep, int run)

@@ -29,9 +29,12 @@ const char *state_next(const RunState *state, bool retry, bool force);
 /* What there is to do of a run as it is now; *state: clear it. Where its scene is refused: nothing, with that code. */
 const char *state_look(const Sweep *sweep, int run, bool retry, bool force, RunState *state);
 
-/* "converged", "max_iterations", .. of a result; else "absent", "interrupted", "running", "failed: 3", "changed", "damaged". The caller
+/* "converged", "max_iterations", .. of a result; else "absent", "interrupted", "shorter", "running", "failed: 3", "changed", "damaged". The caller
  * frees. */
 char *state_word(const RunState *state, const Sweep *sweep, int run);
+
+/* The folder of the results, by which tables of its name are the sweep's own: made where it is not there. */
+bool state_make_folder(const Sweep *sweep, Error *err);
 
 /* The run begins: it has not ended. It has, with a code, and these words (NULL: none). */
 void state_put_begin(const Sweep *sweep, int run);

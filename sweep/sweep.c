@@ -2,10 +2,8 @@
 #include "base/memory.h"
 #include "io/path.h"
 #include "io/replace.h"
-#include "io/text.h"
 #include "sweep/runs_file.h"
 #include <errno.h>
-#include <stddef.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -223,6 +221,58 @@ static bool check_scene(const SweepScene *said, YamlFile *file)
            yaml_refuse(file, "scene", "%s: cannot be read: %s", said->scene, strerror(errno));
 }
 
+/* Is it made of names, as those of datasets? */
+static bool is_path(const char *path)
+{
+    for (const char *part = path;; part++) {
+        size_t length = strcspn(part, "/\n");
+        if (!length || (length <= 2 && !strncmp(part, "..", length)) || part[length] == '\n') return false;
+        part += length;
+        if (!*part) return true;
+    }
+}
+
+/* Is one of them a group that the other one is in? */
+static bool is_within(const char *one, const char *other)
+{
+    size_t length = strlen(one);
+    return !strncmp(one, other, length) && other[length] == '/';
+}
+
+/* Does the table have a column of that name without it? */
+static bool is_column(const Sweep *sweep, const char *path)
+{
+    bool is = !strcmp(path, "run") || !strcmp(path, "best");
+    for (int k = 0; k < sweep->key_count && !is; k++) is = !strcmp(path, sweep->keys[k].name);
+    return is;
+}
+
+/* Paths that no result can have, or no table: known before the first run. */
+static bool check_path(const Sweep *sweep, YamlFile *file, const SweepScene *said, const char *path,
+                       const char *key)
+{
+    if (!is_path(path))
+        return yaml_refuse(file, key, "'%s' is no path in a result; it is like final/energy/bending", path);
+    if (is_column(sweep, path)) return yaml_refuse(file, key, "the table has a column %s of its own", path);
+    for (int k = 0; k < said->collect_count; k++)
+        if (is_within(said->collect[k], path) || is_within(path, said->collect[k]))
+            return yaml_refuse(file, key, "one of %s and %s is no dataset", said->collect[k], path);
+    return true;
+}
+
+static bool check_paths(const Sweep *sweep, YamlFile *file, const SweepScene *said)
+{
+    bool ok = !said->best || check_path(sweep, file, said, said->best->of, "best.of");
+    for (int k = 0; k < said->collect_count; k++) {
+        char *key = mem_format("collect[%d]", k);
+        ok = check_path(sweep, file, said, said->collect[k], key) && ok;
+        mem_free(key);
+    }
+    return ok;
+}
+
+static char *meaning_of(const Sweep *sweep);
+
 static void take(Sweep *sweep, SweepScene *said)
 {
     Error unread; /* its reading will say so */
@@ -231,6 +281,7 @@ static void take(Sweep *sweep, SweepScene *said)
     sweep->collect_count = said->collect_count;
     sweep->collect = mem_alloc((size_t)said->collect_count, sizeof *sweep->collect);
     for (int k = 0; k < said->collect_count; k++) sweep->collect[k] = mem_text(said->collect[k]);
+    sweep->meaning = meaning_of(sweep);
     if (said->best) sweep->best = mem_text(said->best->of), sweep->least = said->best->least;
 }
 
@@ -240,7 +291,7 @@ bool sweep_read(const char *path, const char *name, Sweep *sweep, char **report)
     YamlFile *file = yaml_read(path);
     *sweep = (Sweep){.path = mem_text(path), .name = name ? mem_text(name) : default_name(path)};
     bool ok = is_sweep(file, path) && yaml_load(file, &sweep_table, &said) && check_scene(&said, file) &&
-              make_runs(sweep, file, &said);
+              make_runs(sweep, file, &said) && check_paths(sweep, file, &said);
     if (ok) take(sweep, &said);
     *report = ok ? NULL : yaml_report(file);
     yaml_clear(&sweep_table, &said);
@@ -261,6 +312,7 @@ void sweep_clear(Sweep *sweep)
     mem_free(sweep->keys);
     mem_free(sweep->best);
     mem_free(sweep->scene);
+    mem_free(sweep->meaning);
     mem_free(sweep->path);
     mem_free(sweep->name);
     *sweep = (Sweep){0};
@@ -286,33 +338,15 @@ char *sweep_run_name(const Sweep *sweep, int run)
 
 /* ---- A run's scene ---- */
 
-bool sweep_has_changed(const Sweep *sweep)
-{
-    Error err;
-    FileSum now;
-    return !file_sum(sweep->scene, &now, &err) || now.crc != sweep->sum.crc || now.bytes != sweep->sum.bytes;
-}
-
-static const struct {
-    const char *key;
-    size_t offset;
-} outputs[SWEEP_OUTPUTS] = {{"output.svg", offsetof(Scene, output.svg)},
-                            {"output.png", offsetof(Scene, output.png)},
-                            {"output.gcode", offsetof(Scene, output.gcode)},
-                            {"output.gcode_servo", offsetof(Scene, output.gcode_servo)},
-                            {"output.hpgl", offsetof(Scene, output.hpgl)},
-                            {"output.plotter", offsetof(Scene, output.plotter)}};
-
-static char **output_of(Scene *scene, int k)
-{
-    return (char **)((char *)scene + outputs[k].offset);
-}
+static const char OUTPUT[] = "output";
 
 /* "dir/plot.gcode" becomes "dir/0001_plot.gcode": else each run would write over the others'. */
-static void own_outputs(Scene *scene, int run)
+static void own_outputs(OutputScene *output, int run)
 {
-    for (int k = 0; k < SWEEP_OUTPUTS; k++) {
-        char **name = output_of(scene, k), *before = *name;
+    char **const names[] = {&output->svg,         &output->png,  &output->gcode,
+                            &output->gcode_servo, &output->hpgl, &output->plotter};
+    for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
+        char **name = names[k], *before = *name;
         if (!before) continue;
         const char *slash = strrchr(before, '/');
         int folder = slash ? (int)(slash + 1 - before) : 0;
@@ -331,8 +365,14 @@ bool sweep_load(const Sweep *sweep, int run, YamlFile **file, Scene *scene)
         mem_free(assignment);
     }
     bool ok = yaml_load(*file, scene_table(), scene);
-    if (ok) own_outputs(scene, run);
+    if (ok) own_outputs(&scene->output, run);
     return ok;
+}
+
+/* Is it a key of the scene's `output`, or all of it? */
+static bool is_output(const char *key)
+{
+    return strcspn(key, ".[") == strlen(OUTPUT) && !strncmp(key, OUTPUT, strlen(OUTPUT));
 }
 
 int sweep_assignments(const Sweep *sweep, int run, char *assignments[SWEEP_ASSIGNMENTS_MAX])
@@ -340,17 +380,36 @@ int sweep_assignments(const Sweep *sweep, int run, char *assignments[SWEEP_ASSIG
     YamlFile *file;
     Scene scene;
     int count = 0;
-    for (; count < sweep->key_count; count++) assignments[count] = sweep_assignment(sweep, run, count);
-    bool ok = sweep_load(sweep, run, &file, &scene);
-    for (int k = 0; k < SWEEP_OUTPUTS && ok; k++) {
-        Text text = {0};
-        const char *name = *output_of(&scene, k);
-        if (!name) continue;
-        text_add(&text, "%s=", outputs[k].key);
-        text_add_quoted(&text, name);
-        assignments[count++] = text.text;
-    }
+    for (int k = 0; k < sweep->key_count; k++)
+        if (!is_output(sweep->keys[k].name)) assignments[count++] = sweep_assignment(sweep, run, k);
+    if (sweep_load(sweep, run, &file, &scene))
+        assignments[count++] = yaml_write_key(scene_table(), &scene, OUTPUT);
     yaml_clear(scene_table(), &scene);
     yaml_destroy(file);
     return count;
+}
+
+/* ---- Was it edited? ---- */
+
+/* All keys that differ are set in each run, so that one run tells for all. NULL: it cannot be loaded. */
+static char *meaning_of(const Sweep *sweep)
+{
+    YamlFile *file;
+    Scene scene;
+    char *text = sweep_load(sweep, 0, &file, &scene) ? yaml_write(scene_table(), &scene) : NULL;
+    yaml_clear(scene_table(), &scene);
+    yaml_destroy(file);
+    return text;
+}
+
+bool sweep_has_changed(const Sweep *sweep)
+{
+    Error err;
+    FileSum now;
+    if (file_sum(sweep->scene, &now, &err) && now.crc == sweep->sum.crc && now.bytes == sweep->sum.bytes)
+        return false;
+    char *meaning = meaning_of(sweep);
+    bool same = meaning && sweep->meaning && !strcmp(meaning, sweep->meaning);
+    mem_free(meaning);
+    return !same;
 }

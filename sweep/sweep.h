@@ -22,6 +22,7 @@ typedef struct SweepKey {
 typedef struct Sweep {
     char *path, *scene; /* the sweep's file, the scene's */
     FileSum sum;        /* of the scene as it was then */
+    char *meaning;      /* the first run's effective scene, then; NULL: it cannot be loaded */
     char *name;         /* of the folder of results and of the tables, NAME.csv and NAME.h5 */
     int key_count, run_count, collect_count;
     SweepKey *keys;
@@ -42,11 +43,11 @@ const SweepValue *sweep_value(const Sweep *sweep, int run, int key);
 char *sweep_assignment(const Sweep *sweep, int run, int key);
 char *sweep_run_name(const Sweep *sweep, int run);
 
-/* Is the scene another one than it was when the sweep was read? */
+/* Does the scene say something else than it did when the sweep was read? Remarks may change. */
 bool sweep_has_changed(const Sweep *sweep);
 
-/* All that `slender run` is to be told, as for --set; returns how many. */
-enum { SWEEP_OUTPUTS = 6, SWEEP_ASSIGNMENTS_MAX = SWEEP_KEYS_MAX + SWEEP_OUTPUTS };
+/* All that `slender run` is to be told, as for --set: the run's values, and its `output` as a whole; returns how many. */
+enum { SWEEP_ASSIGNMENTS_MAX = SWEEP_KEYS_MAX + 1 };
 int sweep_assignments(const Sweep *sweep, int run, char *assignments[SWEEP_ASSIGNMENTS_MAX]);
 
 /* The run's scene; clear and destroy it in any case. The files that its `output` names are the run's own: plot.gcode is

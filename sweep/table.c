@@ -3,7 +3,6 @@
 #include "io/arrays_file.h"
 #include "io/safe_file.h"
 #include "io/text.h"
-#include "model/start.h"
 #include "sweep/cells.h"
 #include "sweep/state.h"
 #include <errno.h>
@@ -16,45 +15,62 @@
 /* What is read of each run: [paths][runs], those to be collected and the one that says which is best. */
 typedef struct Reading {
     const Sweep *sweep;
+    const Host *host;
     int path_count, best; /* which of them that is */
     const char **paths;
     Cells *cells;
     char **status;
-    bool *read; /* [runs] there is a result */
+    bool *told;          /* [paths] it cannot be read, or is nowhere: that was said */
+    bool *read, *solved; /* [runs] there is a result; it is a solution */
 } Reading;
 
 /* ---- Reading ---- */
 
-static bool read_result(Reading *reading, int run, Error *err)
+/* What cannot be read is an empty cell: all else is there. Said once. */
+static void warn_of_unread(Reading *reading, int k, const char *file, const Error *err)
 {
+    if (!reading->told[k])
+        host_warn(reading->host, "%s: %s; its cells are empty where it cannot be read", file, err->text);
+    reading->told[k] = true;
+}
+
+static void read_result(Reading *reading, int run)
+{
+    Error err;
     char *name = sweep_run_name(reading->sweep, run), *path = mem_format("%s.vtkhdf", name);
-    Result *result = result_open(path, err);
-    bool ok = reading->read[run] = result != NULL;
-    for (int k = 0; k < reading->path_count && ok; k++)
-        ok = cells_read(result, reading->paths[k], &reading->cells[k * reading->sweep->run_count + run], err);
-    if (!ok && result) error_prefix(err, "collect: %s", path);
+    Result *result = result_open(path, &err);
+    reading->read[run] = result != NULL;
+    for (int k = 0; k < reading->path_count; k++)
+        if (!result || !cells_read(result, reading->paths[k],
+                                   &reading->cells[k * reading->sweep->run_count + run], &err))
+            warn_of_unread(reading, k, path, &err);
     result_close(result);
     mem_free(name);
     mem_free(path);
-    return ok;
 }
 
-static bool read_run(Reading *reading, int run, Error *err)
+/* Has it come to what the job looks for? What a design leaves is the best that it found, however it ended. */
+static bool is_solved(const RunState *state, const Scene *scene, const char *status)
+{
+    return state->code == RUN_DONE ||
+           (scene_job(scene)->design && state->code == RUN_NOT_CONVERGED && strcmp(status, "unsolved") != 0);
+}
+
+static void read_run(Reading *reading, int run)
 {
     YamlFile *file;
     Scene scene;
-    bool ok = true;
     if (sweep_load(reading->sweep, run, &file, &scene)) {
         RunState state = state_read(reading->sweep, run, &scene);
         reading->status[run] = state_word(&state, reading->sweep, run);
-        if (state.record == RECORD_FINISHED) ok = read_result(reading, run, err);
+        reading->solved[run] = is_solved(&state, &scene, reading->status[run]);
+        if (state.record == RECORD_FINISHED) read_result(reading, run);
         state_clear(&state);
     } else {
         reading->status[run] = mem_text("refused");
     }
     yaml_clear(scene_table(), &scene);
     yaml_destroy(file);
-    return ok;
 }
 
 static int add_path(Reading *reading, const char *path)
@@ -65,15 +81,17 @@ static int add_path(Reading *reading, const char *path)
     return k;
 }
 
-static Reading begin_reading(const Sweep *sweep)
+static Reading begin_reading(const Sweep *sweep, const Host *host)
 {
-    Reading reading = {.sweep = sweep};
+    Reading reading = {.sweep = sweep, .host = host};
     reading.paths = mem_alloc((size_t)sweep->collect_count + 1, sizeof *reading.paths);
     for (int k = 0; k < sweep->collect_count; k++)
         if (strcmp(sweep->collect[k], "status")) add_path(&reading, sweep->collect[k]);
     if (sweep->best) reading.best = add_path(&reading, sweep->best);
     reading.cells = mem_alloc((size_t)reading.path_count * (size_t)sweep->run_count, sizeof *reading.cells);
+    reading.told = mem_alloc((size_t)reading.path_count, sizeof *reading.told);
     reading.read = mem_alloc((size_t)sweep->run_count, sizeof *reading.read);
+    reading.solved = mem_alloc((size_t)sweep->run_count, sizeof *reading.solved);
     reading.status = mem_alloc((size_t)sweep->run_count, sizeof *reading.status);
     return reading;
 }
@@ -85,7 +103,9 @@ static void end_reading(Reading *reading)
     mem_free(reading->cells);
     mem_free(reading->paths);
     mem_free(reading->status);
+    mem_free(reading->told);
     mem_free(reading->read);
+    mem_free(reading->solved);
 }
 
 /* ---- Columns ---- */
@@ -107,7 +127,7 @@ static void add_key(Columns *columns, const Sweep *sweep, int key)
     }
     for (int r = 0; r < columns->rows && !alike; r++) {
         cells_clear(&cells[r]);
-        cells[r].text = mem_text(sweep_value(sweep, r, key)->text);
+        cells[r].text = yaml_value_text(sweep_value(sweep, r, key)->text);
     }
     if (alike) cells[0].unit = mem_text(yaml_unit(scene_table(), sweep->keys[key].name));
     columns_add_cells(columns, sweep->keys[key].name, cells);
@@ -115,7 +135,7 @@ static void add_key(Columns *columns, const Sweep *sweep, int key)
     mem_free(cells);
 }
 
-/* The run with the best finite number, of those whose states can be trusted. */
+/* The run with the best finite number, of those that are solutions. */
 static int find_best(const Reading *reading)
 {
     const Sweep *sweep = reading->sweep;
@@ -124,7 +144,7 @@ static int find_best(const Reading *reading)
     int best = -1;
     for (int r = 0; r < sweep->run_count; r++) {
         double value = !cells[r].text && cells_count(&cells[r]) == 1 ? cells[r].numbers[0] : NAN;
-        if (!isfinite(value) || start_is_doubtful(reading->status[r]) ||
+        if (!isfinite(value) || !reading->solved[r] ||
             !(best < 0 || (sweep->least ? value < record : value > record)))
             continue;
         best = r;
@@ -193,7 +213,7 @@ static Array wide_array(const Column *column, int runs)
     return array;
 }
 
-/* Numbers, or a text of a line for each run. */
+/* Numbers, or a text of a line for each run, in which a line's end is \n, and a backslash two. */
 static Array column_array(const Column *column, int rows)
 {
     if (column->numbers) return wide_array(column, rows);
@@ -203,8 +223,11 @@ static Array column_array(const Column *column, int rows)
         return array_float(column->name, column->unit ? column->unit : "", values, 1, rows, 0);
     }
     Text text = {0};
-    for (int r = 0; r < rows; r++)
-        text_add(&text, "%s%s", r ? "\n" : "", column->cells[r] ? column->cells[r] : "");
+    for (int r = 0; r < rows; r++) {
+        text_add(&text, "%s", r ? "\n" : "");
+        for (const char *c = column->cells[r]; c && *c; c++)
+            text_add(&text, *c == '\n' ? "\\n" : *c == '\\' ? "\\\\" : "%c", *c);
+    }
     return array_text(column->name, text.text);
 }
 
@@ -236,13 +259,13 @@ static bool link_best(const Sweep *sweep, int best, Error *err)
 static bool write_files(const Sweep *sweep, const Columns *columns, Error *err)
 {
     char *csv = mem_format("%s.csv", sweep->name), *h5 = mem_format("%s.h5", sweep->name);
-    bool ok = write_csv(csv, columns, err) && write_h5(h5, columns, err);
+    bool ok = state_make_folder(sweep, err) && write_csv(csv, columns, err) && write_h5(h5, columns, err);
     mem_free(csv);
     mem_free(h5);
     return ok;
 }
 
-static void warn_of_missing(const Reading *reading, const Host *host)
+static void warn_of_missing(const Reading *reading)
 {
     int runs = reading->sweep->run_count;
     bool any = false;
@@ -250,8 +273,8 @@ static void warn_of_missing(const Reading *reading, const Host *host)
     for (int k = 0; k < reading->path_count && any; k++) {
         int r = 0;
         while (r < runs && !cells_count(&reading->cells[k * runs + r])) r++;
-        if (r == runs)
-            host_warn(host, "%s is in none of the results; slender info lists what is there",
+        if (r == runs && !reading->told[k])
+            host_warn(reading->host, "%s is in none of the results; slender info lists what is there",
                       reading->paths[k]);
     }
 }
@@ -268,18 +291,14 @@ static void say_wide(const Sweep *sweep, const Columns *columns, const Host *hos
 
 bool table_collect(const Sweep *sweep, const Host *host, int *best, Error *err)
 {
-    Reading reading = begin_reading(sweep);
-    bool ok = true;
-    *best = -1;
-    for (int r = 0; r < sweep->run_count && ok; r++) ok = read_run(&reading, r, err);
-    if (ok) {
-        warn_of_missing(&reading, host);
-        if (sweep->best) *best = find_best(&reading);
-        Columns columns = make_columns(&reading, *best);
-        say_wide(sweep, &columns, host);
-        ok = write_files(sweep, &columns, err) && (!sweep->best || link_best(sweep, *best, err));
-        columns_clear(&columns);
-    }
+    Reading reading = begin_reading(sweep, host);
+    for (int r = 0; r < sweep->run_count; r++) read_run(&reading, r);
+    warn_of_missing(&reading);
+    *best = sweep->best ? find_best(&reading) : -1;
+    Columns columns = make_columns(&reading, *best);
+    say_wide(sweep, &columns, host);
+    bool ok = write_files(sweep, &columns, err) && (!sweep->best || link_best(sweep, *best, err));
+    columns_clear(&columns);
     end_reading(&reading);
     return ok;
 }

@@ -9,6 +9,7 @@
 #include "job/host.h"
 #include "sweep/sweep.h"
 
-/* Writes both files, and makes NAME/best.vtkhdf a link to the best run's result. *best: that run, -1: none. Warns of
- * paths that no result has. False and a sentence where a result or a path cannot be taken, or a file not be written. */
+/* Writes both files, with the sweep's folder beside them, and makes NAME/best.vtkhdf a link to the best run's result.
+ * *best: that run, -1: none. Warns of paths that no result has. False and a sentence where a result or a path cannot be
+ * taken, or a file not be written. */
 bool table_collect(const Sweep *sweep, const Host *host, int *best, Error *err);

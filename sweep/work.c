@@ -3,11 +3,9 @@
 #include "io/program.h"
 #include "sweep/lock.h"
 #include "sweep/state.h"
-#include <errno.h>
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
@@ -75,6 +73,8 @@ static const char *next_of(const SweepWork *work, int run, int *code)
 {
     RunState state;
     const char *mode = state_look(work->sweep, run, work->retry, work->force, &state);
+    if (mode && state.record == RECORD_SHORT)
+        host_say(work->host, "run %d goes on: it was shorter than the scene says now", run + 1);
     *code = record_is_kept(state.record) ? RUN_REFUSED : state.code;
     state_clear(&state);
     return mode;
@@ -208,8 +208,6 @@ static bool do_all(Working *w, const int *runs, int count)
 
 bool work_run(const SweepWork *work, const int *runs, int total, SweepTally *tally, Error *err)
 {
-    if (mkdir(work->sweep->name, 0777) != 0 && errno != EEXIST)
-        return error_set(err, "%s: cannot be made: %s", work->sweep->name, strerror(errno));
     Working w = {.work = work, .total = total, .tally = tally, .err = err};
     w.tasks = mem_alloc((size_t)work->jobs, sizeof *w.tasks);
     for (int k = 0; k < work->jobs; k++) w.tasks[k].run = -1;

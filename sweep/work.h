@@ -19,6 +19,6 @@ typedef struct SweepTally {
 /* Counts a run that has ended with that code. */
 void tally_add(SweepTally *tally, int code);
 
-/* Does these runs, and counts them: returns when all are done, or the host has stopped it and all is saved. False and a sentence where no run can be
+/* Does these runs, whose folder is there, and counts them: returns when all are done, or the host has stopped it and all is saved. False and a sentence where no run can be
  * started at all. */
 bool work_run(const SweepWork *work, const int *runs, int count, SweepTally *tally, Error *err);

@@ -1,19 +1,6 @@
 #!/bin/sh
 # Sweeps: what their files say and may not say, runs that end in all ways, tables.    tests/sweep.sh PROGRAM
-. "$(dirname "$0")/expect.sh"
-is() { [ "$2" = "$3" ] || { echo "$1: '$2', not '$3'"; bad=1; }; }
-column() { # of a table without quotes: its name, the file
-    awk -F, -v name="$1" 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == name) k = i; if (!k) print "no column " name }
-                          NR > 1 && k { printf "%s%s", (NR > 2 ? " " : ""), $k } END { print "" }' "$2"
-}
-sweep() { name=$1; shift; printf 'sweep: 1\nscene: strip.yaml\n%s\n' "$*" > "$name.yaml"; }
-cat > strip.yaml <<'END'
-slender: 1
-job: equilibrium
-shell: {mesh: {shape: sheet, size: [20 mm, 5 mm], cells: [4, 1]}, thickness: 1 mm, young: 1 MPa, poisson: 0.4, density: 1000 kg/m^3, gravity: [0, 0, -9.81]}
-fix: [{group: root, clamp: true}]
-probes: {tip: {group: tip}}
-END
+. "$(dirname "$0")/expect_sweep.sh"
 
 # ---- All combinations, the last key fastest; the numbers are those of single runs ----
 sweep all 'vary: {shell.thickness: [0.5 mm, 1 mm, 2 mm], shell.gravity: [[0, 0, -9.81], [0, 0, -1]]}
@@ -22,16 +9,23 @@ best: {of: final/energy/bending, least: true}'
 expect 0 "$program" sweep all.yaml --jobs 2; says "6 done"; says "the best is run 6"
 is columns "$(head -1 all.csv)" "run,shell.thickness,shell.gravity.x,shell.gravity.y,shell.gravity.z,status,final/energy/bending,probes/tip.x,probes/tip.y,probes/tip.z,best"
 is runs "$(column run all.csv)" "1 2 3 4 5 6"
-is thickness "$(column shell.thickness all.csv)" "0.00050000000000000001 0.00050000000000000001 0.001 0.001 0.002 0.002"
-is gravity "$(column shell.gravity.z all.csv)" "-9.8100000000000005 -1 -9.8100000000000005 -1 -9.8100000000000005 -1"
+is thickness "$(column shell.thickness all.csv)" "0.0005 0.0005 0.001 0.001 0.002 0.002"
+is gravity "$(column shell.gravity.z all.csv)" "-9.81 -1 -9.81 -1 -9.81 -1"
 is status "$(column status all.csv)" "converged converged converged converged converged converged"
 is best "$(column best all.csv)" "0 0 0 0 0 1"
 same all/best.vtkhdf all/0006.vtkhdf; exists all.h5
 for unit in 'm/s^2' J; do tr -c '[:print:]' '\n' < all.h5 | grep -Fqx "$unit" || { echo "all.h5 has no unit $unit"; bad=1; }; done
 expect 0 "$program" run strip.yaml --set shell.thickness=2mm --set 'shell.gravity=[0, 0, -9.81]' -o single --no-picture --quiet
-is tip "$(tail -1 single_probes.csv | cut -d, -f2-4)" "$(sed -n 6p all.csv | cut -d, -f8-10)"
+numbers() { tr , '\n' | awk '{ printf "%.17g ", $1 }'; }
+is tip "$(tail -1 single_probes.csv | cut -d, -f2-4 | numbers)" "$(sed -n 6p all.csv | cut -d, -f8-10 | numbers)"
 expect 0 "$program" export single.vtkhdf -o single.csv --dataset final/energy/bending
-is energy "$(tail -1 single.csv)" "$(sed -n 6p all.csv | cut -d, -f7)"
+is energy "$(tail -1 single.csv | numbers)" "$(sed -n 6p all.csv | cut -d, -f7 | numbers)"
+
+# ---- A table made before the first run is the sweep's own ----
+sweep early 'vary: {shell.thickness: [1 mm]}
+best: {of: final/energy/bending}'
+expect 0 "$program" sweep early.yaml --collect; is early "$(column status early.csv)" absent
+expect 0 "$program" sweep early.yaml --quiet; is later "$(column status early.csv)" converged
 
 # ---- What has too many numbers for columns is in NAME.h5, each run's in its rows ----
 sweep wide 'vary: {shell.mesh.cells: [[4, 1], [12, 1]]}
@@ -46,10 +40,18 @@ print(x.shape, x.attrs["unit"].decode(), (x[0, :10] == of[0]).all(), np.isnan(x[
 END
 )" "(2, 26, 3) m True True True"
 
+# ---- A group is no column: all else is in the table ----
+sweep group 'vary: {shell.thickness: [1 mm, 2 mm]}
+collect: [final/energy, probes/tip, none/such]'
+expect 0 "$program" sweep group.yaml; says "group/0001.vtkhdf: slender/final/energy is no dataset; its cells are empty"
+says "none/such is in none of the results"; is "warnings" "$(grep -c '^warning' err.txt)" 2
+is "group" "$(column status group.csv); $(column final/energy group.csv); $(column none/such group.csv)" "converged converged;  ;  "
+is "beside" "$(column probes/tip.x group.csv | wc -w)" 2; exists group.h5
+
 # ---- Keys that go together, runs from a file, seeds ----
 sweep zip 'vary: {zip: true, shell.thickness: [0.5 mm, 1 mm], shell.young: [1 MPa, 2 MPa]}'
 expect 0 "$program" sweep zip.yaml --quiet
-is zip "$(column shell.thickness zip.csv); $(column shell.young zip.csv)" "0.00050000000000000001 0.001; 1000000 2000000"
+is zip "$(column shell.thickness zip.csv); $(column shell.young zip.csv)" "0.0005 0.001; 1000000 2000000"
 printf '\357\273\277shell.thickness; shell.gravity\n# a remark\n0.5 mm; [0, 0, -1]\n\n"1 mm";"[0, 0, -2]"\n' > runs.csv
 sweep file 'vary: {file: runs.csv}'
 expect 0 "$program" sweep file.yaml --quiet
@@ -64,13 +66,32 @@ expect 0 "$program" sweep seeds.yaml --quiet
 is seeds "$(column design.seed seeds.csv)" "1 2 3 1 2 3"
 is "six starts" "$(column final/objective seeds.csv | tr ' ' '\n' | sort -u | wc -l)" 6
 
+# ---- Values are what they say, in quotes or not; texts are a line for each run ----
+expect 0 "$program" mesh strip.yaml -o m.obj; mkdir parts; cp m.obj parts/n.obj
+cat > parts/scene.yaml <<'END'
+slender: 1
+job: equilibrium
+shell: {mesh: {file: n.obj}, thickness: 1 mm, young: 1 MPa, poisson: 0.4, density: 1000 kg/m^3}
+fix: [{box: [[-1, -1, -1], [1 mm, 1, 1]], clamp: true}]
+cases: [{name: up, gravity: [0, 0, 1]}, {name: down, gravity: [0, 0, -1]}]
+END
+printf 'shell.mesh.file,shell.thickness\n"../m.obj",0.3 mm # thin\nn.obj,300 \302\265m\n' > values.csv
+sweep values 'vary: {file: values.csv}
+collect: [case_names]'
+sed -i 's/strip.yaml/parts\/scene.yaml/' values.yaml
+expect 0 "$program" sweep values.yaml -o said --quiet
+printf '%s\n' run,shell.mesh.file,shell.thickness,status,case_names '1,../m.obj,0.0003,converged,"up' 'down"' '2,n.obj,0.0003,converged,"up' 'down"' > wanted.csv
+same wanted.csv said.csv
+for line in 'up\ndown' ../m.obj; do tr -c '[:print:]' '\n' < said.h5 | grep -Fq "$line" || { echo "said.h5 lacks a line"; bad=1; }; done
+expect 0 "$program" sweep values.yaml -o said --list; says '^1  shell.mesh.file=../m.obj  shell.thickness=0.3 mm  converged$'
+
 # ---- What has finished is kept; another sweep's results are refused; a run more is one run more ----
 touch -d 2001-01-01 zip/000*.vtkhdf
 expect 0 "$program" sweep zip.yaml
 is kept "$(find zip -name '000*.vtkhdf' ! -newermt 2001-01-02 | wc -l)" 2
 sed -i 's/\[1 MPa, 2 MPa\]/[1 MPa, 3 MPa]/' zip.yaml
 expect 3 "$program" sweep zip.yaml; says "zip/0002.vtkhdf: it is the result of another scene: shell.young.value is not the same"
-expect 0 "$program" sweep zip.yaml --list; says "2  shell.thickness=1 mm  shell.young=3 MPa  changed"
+expect 0 "$program" sweep zip.yaml --list; says "2  shell.thickness=1 mm  shell.young=3 MPa  changed: zip/0002.vtkhdf: it is the result of another scene: shell.young.value is not the same"
 expect 0 "$program" sweep zip.yaml --collect; is changed "$(column status zip.csv)" "converged changed"
 expect 0 "$program" sweep zip.yaml --force
 is replaced "$(find zip -name '000*.vtkhdf' ! -newermt 2001-01-02)" zip/0001.vtkhdf
@@ -78,24 +99,48 @@ sed -i 's/1 mm\]/1 mm, 2 mm]/; s/3 MPa\]/3 MPa, 4 MPa]/' zip.yaml
 expect 0 "$program" sweep zip.yaml --index 3; exists zip/0003.vtkhdf
 expect 0 "$program" sweep zip.yaml; is more "$(column status zip.csv)" "converged converged converged"
 
+# ---- What is to be longer goes on, to the result of a run in one go; what is to be shorter is refused ----
+sweep longer 'vary: {shell.mesh.n: [2], design.iterations: [1, 2]}
+collect: [final/objective, history/objective]'
+sed -i 's/strip.yaml/scene_small.yaml/' longer.yaml; cp "$here/scene_small.yaml" .
+expect 0 "$program" sweep longer.yaml -o whole --quiet
+sed -i 's/\[1, 2\]/[1, 1]/' longer.yaml; expect 0 "$program" sweep longer.yaml --quiet
+sed -i 's/\[1, 1\]/[1, 2]/' longer.yaml
+expect 0 "$program" sweep longer.yaml --list; says "^2 .*shorter"
+expect 0 "$program" sweep longer.yaml; says "^run 2 goes on: it was shorter than the scene says now"; same whole.csv longer.csv
+sed -i 's/\[1, 2\]/[1, 1]/' longer.yaml
+expect 3 "$program" sweep longer.yaml; says "longer/0002.vtkhdf: it is the result of another scene: design.iterations is not the same"
+
 # ---- A result that was deleted is made again, one that is damaged is kept until it is said ----
 rm zip/0002.vtkhdf zip/0002.run
 expect 0 "$program" sweep zip.yaml; exists zip/0002.vtkhdf
 truncate -s 1000 zip/0001.vtkhdf
-expect 0 "$program" sweep zip.yaml --list; says "^1  .*damaged$"
+expect 0 "$program" sweep zip.yaml --list; says "^1  .*damaged: zip/0001.vtkhdf.*: "
 expect 3 "$program" sweep zip.yaml; says "zip/0001.vtkhdf .*; with --force it is replaced"
 expect 0 "$program" sweep zip.yaml --force; is mended "$(column status zip.csv)" "converged converged converged"
 
 # ---- Runs that fail and do not converge end nothing else ----
 sweep bad 'vary: {solver.max_iterations: [1, 50], load_steps: [1, 2]}
-collect: [final/energy/bending]'
+best: {of: final/energy/bending}'
 mkdir bad; echo junk > bad/0003.run
 expect 1 "$program" sweep bad.yaml; says "run 3 has failed with code 4: .*not a journal"
 is ends "$(column status bad.csv | sed 's/[a-z_]* [a-z_]* /_ _ /')" "_ _ failed: 4 converged"
+is "one solution" "$(column best bad.csv)" "0 0 0 1"; same bad/best.vtkhdf bad/0004.vtkhdf
 expect 1 "$program" sweep bad.yaml; says "1 done, 2 did not converge, 1 failed"
 expect 0 "$program" sweep bad.yaml --list; says "3  .*failed: 4: .*not a journal"
 rm bad/0003.run
 expect 1 "$program" sweep bad.yaml --retry; says "2 done, 2 did not converge, 0 failed"
+
+# ---- Where none converges none is the best; of designs that stall one is ----
+sed -i 's/\[1, 50\]/[1]/; s/load_steps: \[1, 2\]/load_steps: [1]/' bad.yaml
+expect 1 "$program" sweep bad.yaml -o unsolved; says "no result that is a solution has a number at final/energy/bending: none is the best"
+is none "$(column best unsolved.csv)" 0; [ ! -e unsolved/best.vtkhdf ] || { echo "none is the best, and is linked"; bad=1; }
+cp "$here/scene_small.yaml" .
+sweep still 'vary: {shell.mesh.n: [2], design.unknowns.magnetization.noise: [0], "cases[0].flux_density": [[0, 0, 0]], "cases[1].flux_density": [[0, 0, 0]]}
+best: {of: final/objective}'
+sed -i 's/strip.yaml/scene_small.yaml/' still.yaml
+expect 1 "$program" sweep still.yaml --quiet
+is still "$(column status still.csv) $(column best still.csv)" "stationary 1"
 
 # ---- What has gone through an obstacle is not the best ----
 cat > throw.yaml <<'END'
@@ -112,129 +157,6 @@ expect 1 "$program" sweep thrown.yaml; says "the best is run [23]"
 is "thrown" "$(column status thrown.csv)" "pierced converged converged"
 is "the most bent" "$(column final/energy/bending thrown.csv | tr ' ' '\n' | sort -g | tail -1)" "$(column final/energy/bending thrown.csv | cut -d' ' -f1)"
 
-# ---- Interrupted and killed runs go on to the numbers of those that were not ----
-cat > motion.yaml <<'END'
-slender: 1
-job: simulate
-shell: {mesh: {shape: sheet, size: [20 mm, 5 mm], cells: [4, 1]}, thickness: 1 mm, young: 1 MPa, poisson: 0.4, density: 1000 kg/m^3, gravity: [0, 0, -9.81]}
-fix: [{group: root, clamp: true}]
-time: {step: 1 ms, steps: 2000}
-output: {every: 100}
-END
-try_hold() { # a sweep's name, options: run 1 is under way in $pid, and its own process, $child, stands still
-    rm -rf "$1" "$1.csv" "$1.h5"
-    "$program" sweep "$1.yaml" --jobs 1 --quiet $2 & pid=$!
-    until "$program" info "$1/0001.run" > out.txt 2>&1; do kill -0 $pid 2> err.txt || break; done
-    child=$(pgrep -P $pid) && kill -STOP "$child" && "$program" sweep "$1.yaml" --list | grep -q '^1 .*running'
-}
-hold() { # again where it had ended before
-    until try_hold "$@"; do
-        kill -CONT "$child" 2> err.txt
-        wait $pid || { echo "$1 cannot be held"; exit 1; }
-    done
-}
-for name in whole parts left; do
-    sweep $name 'vary: {shell.young: [1 MPa, 2 MPa]}
-collect: [final/energy/bending, final/energy/membrane]'
-    sed -i 's/strip.yaml/motion.yaml/' $name.yaml
-done
-"$program" sweep whole.yaml --quiet
-hold parts
-expect 76 "$program" sweep parts.yaml --index 1; says "under way elsewhere"
-expect 0 "$program" sweep parts.yaml --list; says "1  .*running"
-kill -INT $pid; kill -CONT "$child"; wait $pid; is "Ctrl-C" $? 75
-is interrupted "$(column status parts.csv)" "interrupted absent"
-expect 0 "$program" sweep parts.yaml --jobs 2 --quiet
-same whole.csv parts.csv
-trap '' HUP # what stands still when its parent dies is sent one, and goes on
-try_left() {
-    hold left
-    kill -9 $pid; wait $pid 2> err.txt
-    kill -STOP "$child" && "$program" sweep left.yaml --list | grep -q '^1 .*running'
-}
-until try_left; do kill -9 "$child" 2> err.txt; done
-expect 76 "$program" sweep left.yaml --index 1 # the run that the sweep has left behind
-kill -9 "$child"; while kill -0 "$child" 2> err.txt; do sleep 0.02; done
-expect 0 "$program" sweep left.yaml --jobs 2 --quiet
-same whole.csv left.csv
-
-# ---- A scene that is edited meanwhile: no run of another one is begun; put back, it goes on ----
-cp motion.yaml before.yaml
-hold parts 2> edited.txt
-sed -i 's/poisson: 0.4/poisson: 0.3/' motion.yaml
-kill -CONT "$child"; wait $pid; is "edited" $? 75
-grep -q "motion.yaml has changed since the sweep began: no further run is begun" edited.txt || { echo "nothing says why it ends"; bad=1; }
-is "edited" "$(column status parts.csv)" "changed absent"
-expect 3 "$program" sweep parts.yaml; says "parts/0001.vtkhdf: it is the result of another scene: shell.poisson is not the same"
-cp before.yaml motion.yaml
-expect 0 "$program" sweep parts.yaml; same whole.csv parts.csv
-
-# ---- What another process was at, and has done by the end, is done ----
-sweep both 'vary: {time.steps: [1999, 2000]}'
-sed -i 's/strip.yaml/motion.yaml/' both.yaml
-try_both() { # run 1 is held, and the sweep $main, which set it aside and is at run 2, stands still
-    hold both "--index 1"
-    "$program" sweep both.yaml --jobs 1 > main.txt 2>&1 & main=$!
-    until "$program" sweep both.yaml --list | grep -q '^2 .*running'; do kill -0 $main 2> err.txt || break; done
-    kill -STOP $main && pgrep -P $main > out.txt
-}
-until try_both; do
-    kill -CONT "$child" $main
-    wait $pid || { echo "both cannot be held"; exit 1; }
-    wait $main
-done
-kill -CONT "$child"; wait $pid; is "the other one" $? 0
-kill -CONT $main; wait $main; is "the sweep" $? 0
-cp main.txt out.txt; says "run 1 was done elsewhere"; says "2 done"; says "0 under way elsewhere"
-
-# ---- A cluster gets what is neither with it, nor under way, nor at its end, when it is asked ----
-mkdir bin
-echo 'echo "MaxArraySize = 4"' > bin/scontrol
-printf '%s\n' '[ ! -x ./meanwhile ] || ./meanwhile > meanwhile.txt 2>&1' 'cat queue.txt' > bin/squeue
-cat > bin/sbatch <<'END'
-for word; do case $word in --job-name=*) name=${word#*=} ;; --array=*) array=${word#*=} ;; esac; done
-echo "$array of ${name##*+}" >> submitted.txt
-echo "$array" | tr , '\n' | while IFS=- read -r from to; do seq "$from" "${to:-$from}" | sed "s/^/$name /"; done >> queue.txt
-END
-for tool in scontrol squeue sbatch; do sed -i '1i #!/bin/sh' bin/$tool; chmod +x bin/$tool; done
-: > queue.txt
-submit() { # a sweep; what it says
-    PATH="$work/bin:$PATH" expect 0 "$program" sweep "$1" --slurm; says "^$2$"
-}
-sweep tasks 'vary: {shell.thickness: [1 mm, 2 mm, 3 mm, 4 mm, 5 mm, 6 mm]}'
-"$program" sweep tasks.yaml --index 2 --quiet
-submit tasks.yaml "5 runs submitted, 0 are with Slurm already, 0 are under way elsewhere, 1 have ended"
-is arrays "$(paste -sd';' submitted.txt)" "1,3 of 0;1-3 of 3"
-submit tasks.yaml "0 runs submitted, 5 are with Slurm already, 0 are under way elsewhere, 1 have ended"
-cat > meanwhile <<END
-#!/bin/sh
-for run in 1 3 4; do "$program" sweep tasks.yaml --index \$run; done
-sed -i '1,3d; \$d' queue.txt # those, and run 6, which was killed
-END
-chmod +x meanwhile
-submit tasks.yaml "1 runs submitted, 1 are with Slurm already, 0 are under way elsewhere, 4 have ended"
-is again "$(tail -1 submitted.txt)" "3 of 3"
-rm meanwhile; : > queue.txt
-hold parts
-submit parts.yaml "1 runs submitted, 0 are with Slurm already, 1 are under way elsewhere, 0 have ended"
-kill -KILL $pid "$child"; wait $pid 2> err.txt
-
-# ---- Files that the scene names, or what is varied, are each run's own ----
-mkdir plots
-sweep drawn "vary: {zip: true, spline.iterations: [1, 2], output.hpgl: [a.plt, '../plots/it''s: b.plt']}"
-{ cat "$here/scene_draw.yaml"; echo 'output: {gcode: plot.gcode}'; } > drawing.yaml
-sed -i 's/strip.yaml/drawing.yaml/' drawn.yaml
-"$program" sweep drawn.yaml --index 1 --quiet
-: > queue.txt
-submit drawn.yaml "1 runs submitted, 0 are with Slurm already, 0 are under way elsewhere, 1 have ended"
-"$program" sweep drawn.yaml --quiet
-for run in 1 2; do exists drawn/000${run}_plot.gcode; exists drawn/000$run.svg; done
-exists drawn/0001_a.plt; exists "plots/0002_it's: b.plt"
-expect 0 "$program" export drawn/0002.vtkhdf -o last.gcode; same last.gcode drawn/0002_plot.gcode
-touch -d 2001-01-01 drawn/000*.vtkhdf
-"$program" sweep drawn.yaml --quiet
-is "drawings kept" "$(find drawn -name '000*.vtkhdf' ! -newermt 2001-01-02 | wc -l)" 2
-
 # ---- What is refused, each wrong value once, before anything is made ----
 refused() { # words, what the file says after its scene
     words=$1; shift; sweep no "$*"
@@ -244,11 +166,27 @@ refused() { # words, what the file says after its scene
 refused "no.yaml:3:1: the sweep has no key 'colect'; did you mean 'collect'" 'colect: [a]'
 refused "no.yaml:3:32: shell.thickness.value must be a number in m, and '1 T' is a flux density" 'vary: {shell.thickness: [1 mm, 1 T], shell.young: [1 MPa, 2 MPa]}'
 is "sentences" "$(wc -l < err.txt)" 1
+expect 0 "$program" sweep no.yaml --list; says "^3  .*shell.thickness=1 T  shell.young=1 MPa  refused: .*must be a number in m, and '1 T' is a flux density"
 refused "no.yaml:3:21: shell has no key 'yong'; did you mean 'young'" 'vary: {shell.yong: [1 MPa]}'
 refused "no.yaml:3:21: shell.mesh.file: .*none.obj: cannot be read" 'vary: {shell.mesh: [{file: none.obj}]}'
 sweep no 'vary: {shell.mesh.cells: [[4, 1], [1500, 1500], [1, -1]]}' # what does not fit leaves the others to be said
 (ulimit -v 500000; exec "$program" sweep no.yaml) > out.txt 2> err.txt; is "large" $? 3
 says "no.yaml:3:35: run 2: out of memory"; says "no.yaml:3:49: shell.mesh.cells.1. is -1"
+refused "no.yaml:3:63: shell.thickness: it and shell.thickness.value say the same: one of them can be set" 'vary: {shell.thickness.value: [1 mm, 3 mm], shell.thickness: [2 mm]}'
+is "sentences" "$(wc -l < err.txt)" 1
+refused "no.yaml:3:61: shell.young.value: it and shell.young say the same" 'vary: {zip: true, shell.young: [1 MPa], shell.young.value: [2 MPa]}'
+for path in '' / . .. /probes/tip probes/ probes//tip probes/./tip; do
+    refused "no.yaml:4:11: collect.0.: '$path' is no path in a result" "vary: {shell.young: [1 MPa]}
+collect: [\"$path\"]"
+done
+for path in run best shell.young; do
+    refused "no.yaml:4:19: collect.1.: the table has a column $path of its own" "vary: {shell.young: [1 MPa]}
+collect: [status, $path]"
+done
+refused "no.yaml:4:7: best.of: 'x/' is no path in a result" 'vary: {shell.young: [1 MPa]}
+best: x/'
+refused "no.yaml:4:18: collect.1.: one of final and final/energy is no dataset" 'vary: {shell.young: [1 MPa]}
+collect: [final, final/energy]'
 refused "nothing is varied" 'collect: [status]'
 refused "all keys must have as many values, and shell.young has 2, shell.thickness 1" 'vary: {zip: true, shell.young: [1, 2], shell.thickness: [1]}'
 refused "must be a list of entries, not a number" 'vary: {shell.young: 1 MPa}'
@@ -257,6 +195,8 @@ refused "the file lists all keys that differ, and 'shell.young' stands beside it
 refused "none.csv: cannot be read" 'vary: {file: none.csv}'
 refused "design.seed is varied already" 'vary: {design.seed: [1]}
 seeds: 2'
+refused "no.yaml:4:8: design.seed: it and design say the same" 'vary: {design: [{seed: 5, unknowns: {young: {noise: 0.2 MPa}}, objectives: [{height: 1}]}]}
+seeds: 2'
 refused "no.yaml:3:8: seeds: seeds need a design, and .*strip.yaml has none" 'seeds: 2'
 printf 'shell.young,shell.thickness\n1 MPa\n' > short.csv
 refused "short.csv:2: 1 cells, and the first line names 2 keys" 'vary: {file: short.csv}'
@@ -264,6 +204,8 @@ printf 'shell.young\n"1 MPa\n' > quote.csv
 refused "quote.csv:2: a quote without an end" 'vary: {file: quote.csv}'
 printf 'shell.young,shell.young\n1 MPa,2 MPa\n' > twin.csv
 refused "twin.csv:1: the key 'shell.young' is there twice" 'vary: {file: twin.csv}'
+printf 'shell.young,shell\n1 MPa,{}\n' > holds.csv
+refused "holds.csv:2: shell: it and shell.young say the same" 'vary: {file: holds.csv}'
 printf 'shell.young\n1 Mpa\n' > unit.csv
 refused "unit.csv:2: shell.young.value must be a number in Pa" 'vary: {file: unit.csv}'
 printf 'shell.gravity\n"[0, 0"\n' > open.csv
@@ -285,6 +227,8 @@ expect 3 "$program" sweep strip.yaml; says "strip.yaml:1:.*it is a scene, which 
 for verb in run check; do
     expect 3 "$program" $verb all.yaml; says "it is a sweep, .*: slender sweep all.yaml"; is "$verb" "$(wc -l < err.txt)" 1
 done
+expect 3 "$program" run strip.yaml --set shell.thickness.value=1mm --set shell.thickness=2mm
+says "^--set shell.thickness=2mm: it and shell.thickness.value say the same: one of them can be set"
 expect 2 "$program" sweep all.yaml --index 7
 expect 2 "$program" sweep all.yaml -- --partition=x
 expect 1 "$program" sweep bad.yaml --index 1

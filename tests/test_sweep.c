@@ -102,10 +102,19 @@ static void test_quantities(void **state)
     (void)state;
     static const struct {
         const char *text, *cells;
-    } rows[] = {{"1 mm", "0.001"},       {"[0, 0, 10 mT]", "0 0 0.01"},
-                {"2.5 kg/m^3", "2.5"},   {"up", "up"},
-                {"[a, 1]", "[a, 1]"},    {"[[1, 2], [3, 4]]", "[[1, 2], [3, 4]]"},
-                {"1 mm * x", "1 mm * x"}};
+    } rows[] = {{"1 mm", "0.001"},
+                {"[0, 0, 10 mT]", "0 0 0.01"},
+                {"2.5 kg/m^3", "2.5"},
+                {"up", "up"},
+                {"[a, 1]", "[a, 1]"},
+                {"[[1, 2], [3, 4]]", "[[1, 2], [3, 4]]"},
+                {"1 mm * x", "1 mm * x"},
+                {"\"../s/m.obj\"", "../s/m.obj"},
+                {"\"1 \xc2\xb5m\"", "1e-06"},
+                {"[0, \"1 \xc2\xb5T\"]", "0 1e-06"},
+                {"1 mm # thin", "0.001"},
+                {"'it''s'", "it's"},
+                {"[1", "[1"}};
     for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
         Cells cells = cells_of_value(rows[k].text);
         char *all = mem_text("");
@@ -240,6 +249,8 @@ static void test_next(void **state)
         {RECORD_ABSENT, 3, NULL, "--quiet", "--force", false},
         {RECORD_UNFINISHED, -1, "--resume", "--resume", "--resume", false},
         {RECORD_UNFINISHED, 137, NULL, "--resume", "--force", false},
+        {RECORD_SHORT, 0, "--resume", "--resume", "--resume", false},
+        {RECORD_SHORT, 3, NULL, "--resume", "--force", false},
         {RECORD_FINISHED, 0, NULL, NULL, NULL, false},
         {RECORD_FINISHED, 1, NULL, NULL, NULL, false},
         {RECORD_FINISHED, 4, NULL, "--quiet", "--force", false},

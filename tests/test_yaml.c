@@ -211,6 +211,37 @@ static void test_overrides(void **state)
         "--set inner={a: 1: no YAML: did not find expected ',' or '}', while parsing a flow mapping\n");
 }
 
+/* What one key sets, no other one sets again, whichever comes first; of one key the last counts. */
+static void test_twins(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *first, *second, *twin;
+    } rows[] = {{"length=1", "length=2", NULL},
+                {"inner.value=1", "inner=2", "inner.value"},
+                {"inner=1", "inner.value=2", "inner"},
+                {"inner={value: 1}", "inner.value=2", "inner"},
+                {"inner={value: 1}", "inner={value: 2}", NULL},
+                {"entries=[1, 2]", "entries[1]=3", "entries"},
+                {"entries[1]=3", "entries=[1, 2]", "entries[1]"},
+                {"entries[0]=9", "entries[1]=3", NULL},
+                {"names={left: 1}", "names.right=2", NULL},
+                {"entries=[1, 2]", "entries[2]=3", NULL}};
+    for (size_t k = 0; k < sizeof rows / sizeof *rows; k++) {
+        YamlFile *file = parse(full);
+        assert_true(yaml_override(file, rows[k].first));
+        if (yaml_override(file, rows[k].second) != !rows[k].twin) fail_msg("row %zu", k);
+        char *report = yaml_report(file), *wanted = NULL;
+        if (rows[k].twin)
+            wanted = mem_format("--set %s: it and %s say the same: one of them can be set\n", rows[k].second,
+                                rows[k].twin);
+        assert_string_equal(report, wanted ? wanted : "");
+        mem_free(report);
+        mem_free(wanted);
+        yaml_destroy(file);
+    }
+}
+
 static void test_difference(void **state)
 {
     (void)state;
@@ -282,14 +313,16 @@ static void test_keys(void **state)
     char *keys = yaml_keys(&outer_table);
     for (size_t k = 0; k < sizeof lines / sizeof *lines; k++) assert_true(has_line(keys, lines[k]));
     assert_null(strstr(keys, "names."));
-    YamlFile *file = parse(full);
-    Outer o;
-    for (char *line = strtok(keys, "\n"); line; line = strtok(NULL, "\n"))
-        if (line[strlen(line) - 1] != '=') assert_true(yaml_override(file, line));
-    if (!yaml_load(file, &outer_table, &o)) fail_msg("%s", yaml_report(file));
-    assert_false(o.flag); /* false comes after true */
-    yaml_clear(&outer_table, &o);
-    yaml_destroy(file);
+    for (char *line = strtok(keys, "\n"); line; line = strtok(NULL, "\n")) {
+        Outer o;
+        if (line[strlen(line) - 1] == '=') continue;
+        YamlFile *file = parse(full);
+        assert_true(yaml_override(file, line));
+        if (!yaml_load(file, &outer_table, &o)) fail_msg("%s: %s", line, yaml_report(file));
+        if (!strncmp(line, "flag", 4)) assert_true(o.flag == !strcmp(line, "flag=true"));
+        yaml_clear(&outer_table, &o);
+        yaml_destroy(file);
+    }
     mem_free(keys);
 }
 
@@ -428,10 +461,12 @@ static void test_use(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_kinds),  cmocka_unit_test(test_defaults),  cmocka_unit_test(test_round_trip),
-        cmocka_unit_test(test_units),  cmocka_unit_test(test_overrides), cmocka_unit_test(test_difference),
-        cmocka_unit_test(test_report), cmocka_unit_test(test_mark),      cmocka_unit_test(test_foreign),
-        cmocka_unit_test(test_manual), cmocka_unit_test(test_keys),      cmocka_unit_test(test_use)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_kinds),      cmocka_unit_test(test_defaults),
+                                       cmocka_unit_test(test_round_trip), cmocka_unit_test(test_units),
+                                       cmocka_unit_test(test_overrides),  cmocka_unit_test(test_twins),
+                                       cmocka_unit_test(test_difference), cmocka_unit_test(test_report),
+                                       cmocka_unit_test(test_mark),       cmocka_unit_test(test_foreign),
+                                       cmocka_unit_test(test_manual),     cmocka_unit_test(test_keys),
+                                       cmocka_unit_test(test_use)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
