@@ -83,8 +83,7 @@ bool path_step(const char **path, const char **name, int *length, int *index)
     return *length > 0;
 }
 
-/* Follows "a.b[2].c" from the root as far as it is written; *rest is what is left. */
-static Node *follow(const YamlFile *file, const char *key, const char **rest)
+Node *tree_follow(const YamlFile *file, const char *key, const char **rest)
 {
     Node *node = file->root;
     const char *name = NULL;
@@ -114,20 +113,20 @@ bool yaml_refuse(YamlFile *file, const char *key, const char *format, ...)
         mem_free(sentence);
         sentence = whole;
     }
-    store_at(file, follow(file, key, &rest), sentence);
+    store_at(file, tree_follow(file, key, &rest), sentence);
     return false;
 }
 
 bool yaml_says(const YamlFile *file, const char *key)
 {
     const char *rest;
-    return follow(file, key, &rest) != NULL && !*rest;
+    return tree_follow(file, key, &rest) != NULL && !*rest;
 }
 
 char *yaml_where(const YamlFile *file, const char *key)
 {
     const char *rest;
-    const Node *node = follow(file, key, &rest);
+    const Node *node = tree_follow(file, key, &rest);
     if (node && node->origin) return mem_format("--set %s", node->origin);
     if (!node || !node->line) return mem_text(file->path);
     return mem_format("%s:%d:%d", file->path, node->line, node->column);

@@ -67,6 +67,9 @@ void yaml_error(YamlFile *file, const Node *at, const char *format, ...)
 void yaml_error_at(YamlFile *file, int line, int column, const char *format, ...)
     __attribute__((format(printf, 4, 5)));
 
+/* Follows "a.b[2].c" from the root as far as it is written; *rest is what is left. */
+Node *tree_follow(const YamlFile *file, const char *key, const char **rest);
+
 /* The next step of a key path: a name (length of it) or an index (>= 0). False at the end or where it is
  * malformed. */
 bool path_step(const char **path, const char **name, int *length, int *index);
