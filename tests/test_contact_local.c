@@ -29,7 +29,7 @@ static double borne(const Built *b)
     WorldSums sums = {.contact = {.force = force}};
     Point at = state_point(&c->state, c->stages[0].p);
     world_measure(b->model->world, &at, &sums);
-    b->model->body->ops->masses(b->model, c->stages[0].p, mass);
+    model_masses(b->model, c->stages[0].p, mass);
     for (int v = 0; v < b->model->point_count; v++) sum += mass[v];
     mem_free(mass);
     return force[0][2] / (G * sum);
