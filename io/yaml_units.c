@@ -204,6 +204,18 @@ static void near_unit(const char *at, int length, const Unit *wanted, char near[
         }
 }
 
+/* Is one that near with m or M before it, of a word whose capitals say nothing of which? */
+static bool is_milli_or_mega(const char *at, int length, const char *near)
+{
+    bool lower = false, upper = false;
+    for (int i = 0; i < length; i++) {
+        lower = lower || islower((unsigned char)at[i]);
+        upper = upper || isupper((unsigned char)at[i]);
+    }
+    return (near[0] == 'm' || near[0] == 'M') && !(lower && upper) &&
+           find_unit(near + 1, strlen(near + 1), true);
+}
+
 /* A hint at what may be meant by a word, if there is one: what it is, or what is written nearly so. */
 static char *hint_at(const char *at, int length, const char *wanted)
 {
@@ -214,6 +226,8 @@ static char *hint_at(const char *at, int length, const char *wanted)
     char near[16];
     parse_unit(&wanted, &unit);
     near_unit(at, length, &unit, near);
+    if (is_milli_or_mega(at, length, near))
+        return mem_format("; capitals matter: M%s is mega, m%s is milli", near + 1, near + 1);
     return near[0] ? mem_format("; did you mean %s?", near) : mem_text("");
 }
 

@@ -278,9 +278,11 @@ static char *case_names(const Snapshot *shots, int count)
 static void say_vibrations(const Run *run, const Arrays *list)
 {
     enum { SAID = 10 };
+    bool found = false;
     for (size_t k = 0; k < list->count; k++) {
         const Array *hz = &list->arrays[k];
         if (strcmp(hz->name, "final/modes_hz") != 0) continue;
+        found = true;
         char *text = mem_text("");
         for (int i = 0; i < hz->dims[0] && i < SAID; i++) {
             char *number = mem_format("%.4g", ((const double *)hz->data)[i]);
@@ -290,6 +292,10 @@ static void say_vibrations(const Run *run, const Arrays *list)
         host_say(run->host, "vibrations: %s%s Hz", text, hz->dims[0] > SAID ? ", .." : "");
         mem_free(text);
     }
+    if (run->scene->modes && !found)
+        host_say(run->host,
+                 "no vibrations are told: a point without mass, or a motion that nothing holds and "
+                 "no mass has");
 }
 
 static void say_doubt(Run *run, const Snapshot *shot)

@@ -243,7 +243,8 @@ static const YamlTable solver_table = {
         {YAML_INTEGER(SolverScene, max_iterations), .range = "[1, inf)", .fallback = "300",
          .doc = "Newton iterations of a solve"},
         {YAML_NUMBER(SolverScene, step_tolerance), .range = "(0, 1)", .fallback = "1.0e-8",
-         .doc = "largest last step, in parts of the body's size (radians of edge angles); a step of time "
+         .doc = "largest last step, in parts of the body's size (radians of edge angles), unless rounding "
+                "lets none be so small; a step of time "
                 "also ends where the "
                 "next one would gain less than 1e-10 of the energies"},
         {YAML_NUMBER(SolverScene, force_tolerance), .range = "(0, 1)", .fallback = "1.0e-6",

@@ -166,6 +166,13 @@ static inline Quat rod_reference(const RodLayout *layout, const double *x, int n
 /* The state with these rotations: q[nodes], turns, strains and multipliers 0, positions from the first node on. */
 void rod_set_state(const Rod *rod, const RodLayout *layout, const Quat *q, double *x);
 
+/* Of a rod that stretches: the least length of an element along its section's normal, in parts of that at rest; and which
+ * (NULL: not asked for). */
+double rod_least_stretch(const RodLayout *layout, const double *x, int *element);
+
+/* Is a rod with that none any more: is an element pressed to a thousandth of its length and less, or does it go backwards? */
+bool rod_is_tangled(double least_stretch);
+
 /* The natural shape, from the clamp on. */
 void rod_natural_state(const Rod *rod, const RodLayout *layout, const double *p, double *x);
 

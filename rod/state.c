@@ -2,6 +2,7 @@
 #include "base/memory.h"
 #include "rod/chord.h"
 #include "solve/dense.h"
+#include <math.h>
 #include <string.h>
 
 RodLayout rod_layout(const Rod *rod, bool positions)
@@ -28,6 +29,23 @@ static void gather(const RodLayout *layout, int pack, const double *x, Pack own[
         for (int i = 0; i < 6; i++) own[i][l] = x[layout->turn + 3 * node + i];
         for (int i = 0; i < 3; i++) own[6 + i][l] = layout->strain < 0 ? 0 : x[layout->strain + 3 * e + i];
     }
+}
+
+double rod_least_stretch(const RodLayout *layout, const double *x, int *element)
+{
+    double least = INFINITY;
+    for (int e = 0; e < layout->elements; e++) {
+        double stretch = 1 + x[layout->strain + 3 * e];
+        if (stretch >= least) continue;
+        least = stretch;
+        if (element) *element = e;
+    }
+    return least;
+}
+
+bool rod_is_tangled(double least_stretch)
+{
+    return least_stretch <= 1e-3;
 }
 
 void rod_places(const Rod *rod, const RodLayout *layout, const double *x, int count, double *place)

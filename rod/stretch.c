@@ -38,6 +38,13 @@ static Pack stretch_eval(const void *self, int pack, const Point *at, const Pack
     return pack3_dot(force, G) / 2;
 }
 
+/* The law is linear: pushed by EA and more, an element has no length, and then one that goes backwards. */
+static bool stretch_tangles(const void *self, const Point *at)
+{
+    const RodTerm *term = self;
+    return rod_is_tangled(rod_least_stretch(&term->layout, at->x, NULL));
+}
+
 static void stretch_param(const void *self, int pack, int lanes, const Point *at, const Pack *x,
                           const Pack *w, double *dp)
 {
@@ -62,6 +69,7 @@ static const TermOps stretch_ops = {
     .size = stretch_size,
     .dofs = rod_term_strain_dofs,
     .eval = stretch_eval,
+    .tangles = stretch_tangles,
     .param = stretch_param,
     .param_forward = stretch_param_forward,
     .destroy = mem_free,

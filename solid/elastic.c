@@ -84,10 +84,10 @@ static Pack elastic_eval(const void *self, int pack, const Point *at, const Pack
     return energy;
 }
 
-/* Inside out somewhere: there are equilibria there, too, and steps by the Hessian find them. */
+/* Inside out or flat somewhere: there are equilibria there, too, and steps by the Hessian find them. */
 static bool elastic_tangles(const void *self, const Point *at)
 {
-    return solid_least_jacobian(((const Elastic *)self)->solid, at->x, NULL) <= 0;
+    return solid_is_tangled(solid_least_jacobian(((const Elastic *)self)->solid, at->x, NULL));
 }
 
 /* The force is linear in Young's modulus. */

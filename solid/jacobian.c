@@ -4,6 +4,8 @@
 #include "solid/solid.h"
 #include "surface/face.h"
 
+static const double FLAT = 1e-3; /* det F: bars that are crushed to 40 % still have 1e-2 at their corners */
+
 /* Least det F of each tetrahedron of a pack over the places that count. */
 static Pack least_of_pack(const Tets *tets, int pack, const double *x)
 {
@@ -36,6 +38,11 @@ void solid_jacobians(const Solid *solid, const double *x, double *least)
         Pack J = least_of_pack(solid->tets, k, x);
         for (int l = 0; l < PACK_LANES; l++) least[pack_element(count, k, l)] = J[l];
     }
+}
+
+bool solid_is_tangled(double least_jacobian)
+{
+    return least_jacobian <= FLAT;
 }
 
 double solid_least_jacobian(const Solid *solid, const double *x, int *tet)

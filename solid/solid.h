@@ -83,5 +83,10 @@ Masses solid_masses(const Solid *solid);
  * out there; and the tetrahedron (NULL: not asked for). */
 double solid_least_jacobian(const Solid *solid, const double *x, int *tet);
 
+/* Is a solid with that least det F none any more: inside out somewhere, or flattened to a thousandth of its volume and less?
+ * St. Venant-Kirchhoff's is at rest so, and stable, where the principal strains E of the other two sum to more than
+ * (1 - nu)/(2 nu). */
+bool solid_is_tangled(double least_jacobian);
+
 /* That of each tetrahedron. */
 void solid_jacobians(const Solid *solid, const double *x, double *least);

@@ -8,7 +8,9 @@
 
 enum { STEPS_MAX = 300, STEPS_FIRST = 20 };
 
-static const double RESIDUAL = 1e-10; /* of an eigenvalue, relative */
+static const double RESIDUAL = 1e-10; /* of an eigenvalue, relative                           */
+static const double ZERO = 1e-2;      /* of sigma: an eigenvalue that is less is a zero's rounding */
+static const double ROUNDING = 1e-5;  /* of sigma: what solves with a sigma of 1e-9 leave of that  */
 
 /* LAPACK: eigenvalues (ascending, into d) and vectors of a symmetric tridiagonal matrix. */
 void dstev_(const char *jobz, const int *n, double *d, double *e, double *z, const int *ldz, double *work,
@@ -84,6 +86,14 @@ static bool extend(Lanczos *l)
     return normalise(l, next, &l->beta[k]) && l->beta[k] > 1e-14 * fabs(l->alpha[0]);
 }
 
+/* How well an eigenvalue is to be known. One that is zero is rounding soon; of several the others that are zero, too, come
+ * out of this rounding, in their time. */
+static double tolerance(const Lanczos *l, double lambda)
+{
+    if (l->count == 1 && fabs(lambda) < ZERO * l->sigma) return ROUNDING * l->sigma;
+    return RESIDUAL * fmax(fabs(lambda), 1e-6 * (l->sigma + fabs(lambda + l->sigma)));
+}
+
 /* Ritz values, and whether the wanted ones (the largest theta) have converged. */
 static bool converged(Lanczos *l)
 {
@@ -99,8 +109,7 @@ static bool converged(Lanczos *l)
         double theta = l->theta[j],
                residual = l->beta[n - 1] * fabs(l->ritz[(size_t)j * (size_t)n + (size_t)n - 1]);
         double lambda = 1 / theta - l->sigma; /* d(lambda) = residual/theta^2 */
-        done =
-            residual / (theta * theta) <= RESIDUAL * fmax(fabs(lambda), 1e-6 * (l->sigma + fabs(1 / theta)));
+        done = residual / (theta * theta) <= tolerance(l, lambda);
     }
     return done;
 }

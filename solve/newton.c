@@ -5,11 +5,12 @@
 #include <math.h>
 #include <string.h>
 
-enum { HALVINGS = 30, BASE_CG_MAX = 12, TANGLED_MAX = 10, ASTRAY_MIN = 20 };
+enum { HALVINGS = 30, BASE_CG_MAX = 12, TANGLED_MAX = 10, ASTRAY_MIN = 20, UNHALVED_MAX = 3 };
 
 static const double SHIFT_LAST = 1e8;   /* D: beyond this a step is no longer a Newton step       */
 static const double STALL_SHIFT = 1e6;  /* D: no decrease even with such a shift                  */
 static const double SETTLED = 1e-4;     /* of a gap's force: more is a force that goes on growing */
+static const double LAST_STEP = 1e-8;   /* body's measure: longer ones are no rounding           */
 static const double LONG_STEP = 1e-4;   /* body's measure: shorter ones need no extrapolated stress */
 static const double CONVEX_GROWTH = 64; /* of a shift: what is indefinite without contact is so by much */
 static const double ASTRAY_PART =
@@ -52,7 +53,7 @@ static const struct {
     [NEWTON_STOPPED] = {"stopped", "interrupted"},
     [NEWTON_UNBALANCED] = {"evaluated", "a pose whose forces are not in balance"},
     [NEWTON_CRUSHED] = {"crushed", "a piece of the body is crushed to nothing"},
-    [NEWTON_TANGLED] = {"tangled", "a piece of the body is turned inside out"},
+    [NEWTON_TANGLED] = {"tangled", "a piece of the body is turned inside out, or flattened to nothing"},
     [NEWTON_BLOCKED] = {"blocked", "what is held was moved through another part of the body"},
     [NEWTON_PIERCED] = {"pierced", "something has gone through the body"},
     [NEWTON_ASTRAY] =
@@ -257,6 +258,14 @@ static bool newton_step(Search *s, bool small)
     return true;
 }
 
+/* Near the end each step is a small part of the one before, unless it is rounding. */
+static void note_step(Search *s, bool small)
+{
+    bool falls = s->info.step < s->least_step / 2 || s->info.step > LAST_STEP;
+    s->unhalved = small && !falls ? s->unhalved + 1 : 0;
+    s->least_step = fmin(s->least_step, s->info.step);
+}
+
 static bool is_converged(const Search *s, bool small)
 {
     if ((s->shift > 0 && !s->plain) || s->convex || system_gap(s->sys) > 0 ||
@@ -268,7 +277,8 @@ static bool is_converged(const Search *s, bool small)
         if (system_is_multiplier(s->sys, i))
             gain += s->gradient[i] * s->step[i] + fabs(s->gradient[i] * s->step[i]);
     if (s->plain) gain = fabs(gain); /* a step may lead up */
-    return (small && s->info.step <= s->def->step_tol) || gain <= s->def->energy_tol * s->now.energy_scale;
+    return (small && (s->info.step <= s->def->step_tol || s->unhalved >= UNHALVED_MAX)) ||
+           gain <= s->def->energy_tol * s->now.energy_scale;
 }
 
 /* The step to take from x. Near the end the Hessian is the true one: so the end is quadratic, and its factor tells of a
@@ -297,6 +307,7 @@ static NewtonStatus iterate(Search *s)
     if (status != NEWTON_MAX_ITERATIONS) return status;
     s->extrapolate = false;
     gap_note(s);
+    note_step(s, small);
     /* A convex part has no way down, and plain steps seek none. */
     s->shifted = s->shift > 0 && !s->convex && !s->plain ? s->shifted + 1 : 0;
     if (is_converged(s, small)) {
@@ -335,7 +346,7 @@ static bool is_astray(const Search *s)
            s->least_force[1] > ASTRAY_PART * s->least_force[0];
 }
 
-/* Where a body is inside out its energy may well be stationary, but it is no equilibrium of such a body. */
+/* Where a body is inside out, or flat, its energy may well be stationary, but it is no equilibrium of such a body. */
 static bool ends_tangled(const Search *s)
 {
     NewtonStatus status = s->info.status;
@@ -366,6 +377,7 @@ static NewtonInfo minimize(System *sys, const NewtonDef *def, const Point *at, S
                 .change = work + 9 * n,
                 .tangled = TANGLED_MAX,
                 .least_force = {INFINITY, INFINITY},
+                .least_step = INFINITY,
                 .follows = !at->x_prev && system_has_follow(sys),
                 .circulates = system_circulates(sys),
                 .plain = plain};

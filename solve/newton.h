@@ -10,8 +10,9 @@
 #include "solve/system.h"
 
 typedef struct NewtonDef {
-    int max_iterations;  /* default 300 */
-    double step_tol;     /* converged when the Newton step is smaller, in the body's measure; default 1e-8 */
+    int max_iterations; /* default 300 */
+    double
+        step_tol; /* converged when the Newton step is smaller, in the body's measure, or is rounding; default 1e-8 */
     double force_tol;    /* ... and no force exceeds this part of the element forces; default 1e-6 */
     double energy_tol;   /* ... or when the step will gain less than this part of the energies; 0: not */
     int cg_iterations;   /* at most so many conjugate gradients with the last factor; default 0 */
@@ -39,7 +40,7 @@ typedef enum NewtonStatus {
     NEWTON_UNSETTLED, /* of a step of time: friction and the forces that it follows do not agree (march.h) */
     NEWTON_BLOCKED,   /* of a step of time: what is held was to go where the body does not let it */
     NEWTON_CRUSHED, /* of a body, by whoever knows it: a piece has lost its size, and energies mean nothing */
-    NEWTON_TANGLED, /* stationary, and a piece is turned inside out (TermOps.tangles): no equilibrium */
+    NEWTON_TANGLED, /* stationary, and a piece is inside out, or flat (TermOps.tangles): no equilibrium */
     NEWTON_PIERCED, /* of a motion: something has gone through the body (march.h)                    */
     NEWTON_ASTRAY,  /* all iterations are done, and the later half has come no nearer to balance     */
     NEWTON_UNKNOWN_FIELD, /* by whoever knows it: a field has no value where the body is or was to go */

@@ -24,6 +24,8 @@ typedef struct Search {
     int tangled; /* iterations left without negative parts, if it starts inside out (TermOps.tangles) */
     bool convex; /* the step is by the convex part of what terms have one (Point.convex)     */
     double shift, shift_kept; /* in use; remembered                                      */
+    double least_step;        /* so far, body's measure                                  */
+    int unhalved;             /* iterations in a row that did not halve it: rounding     */
     double least_force[2];    /* of the first half of the iterations, and of the second      */
     int shifted;              /* iterations in a row that needed one                     */
     Evaluation now;

@@ -115,8 +115,9 @@ const double *system_linearised(const System *sys);
  * not so on what they allow. */
 bool system_factor(System *sys, double shift);
 
-/* Factor of H + sigma M with M on the diagonal of the free positions only, M[position_count] (NULL: 1, and sigma N/m),
- * without the base shift; for eigen.h. */
+/* Factor of H + sigma M with M on the diagonal of the free positions only, M[position_count] (NULL: 1, and sigma N/m), and the
+ * base shift on the other dofs only: nothing else may hold them (a rod on hinges spins, and turns have no mass). Multipliers are
+ * regularised as above (a straight rod between hinges). For eigen.h. */
 bool system_factor_positions(System *sys, double sigma, const double *M);
 
 /* Of the last factor, where it is known (not of one that was shared); else 0. */
@@ -182,7 +183,7 @@ bool system_has_follow(const System *sys);
 /* Does a term heed Point.convex, with the elements at hand? */
 bool system_convexes(const System *sys);
 
-/* Is the body turned inside out somewhere (TermOps.tangles)? */
+/* Is the body turned inside out or flat somewhere (TermOps.tangles)? */
 bool system_tangles(const System *sys, const Point *at);
 
 /* The largest part of a step d from at->x that the terms admit, in (0, 1] (TermOps.reach). */

@@ -100,7 +100,9 @@ bool system_factor_positions(System *sys, double sigma, const double *M)
 {
     for (int i = 0; i < sys->dof_count; i++)
         if (sys->unknown[i] >= 0)
-            sys->work[sys->unknown[i]] = i < sys->classes[0].count ? sigma * (M ? M[i] : 1) : 0;
+            sys->work[sys->unknown[i]] = i < sys->classes[0].count
+                                             ? sigma * (M ? M[i] : 1)
+                                             : sys->base * sys->scale[i] - sys->compliance[i];
     sys->anchor[ANCHOR_USABLE] = 0;
     return sys->factored = sparse_factor(sys->matrix, sys->work);
 }

@@ -58,8 +58,8 @@ typedef struct TermOps {
     /* Does its Hessian, with the elements at hand, heed Point.convex? NULL: no. */
     bool (*convexes)(const void *self);
 
-    /* Is the body turned inside out somewhere? Its Hessian heeds Point.tangled then, and the first steps are by
-     * that. NULL: never. */
+    /* Is the body turned inside out, or flattened to nothing, somewhere? Its Hessian heeds Point.tangled then, if it can be
+     * indefinite, and the first steps are by that. NULL: never. */
     bool (*tangles)(const void *self, const Point *at);
 
     int (*count)(const void *self); /* elements                                    */

@@ -292,12 +292,38 @@ static void test_vibration(void **state)
     rod_destroy(rod);
 }
 
+/* Pushed by EA and more an element would go backwards: that is no equilibrium, by neither form. So thick a rod does not
+ * buckle before. */
+static void test_pushed_through(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 4; k++) {
+        double part = k < 2 ? 0.9 : 1.1;
+        Rod *rod = make_rod(2, rod_circle(10 * length, 1, poisson, density), true);
+        Bar bar = bar_create(rod, k % 2);
+        bar.p[rod->load + 3 * rod->elements] = -part * rod->unit->stretch * young;
+        rod_sum_loads(rod, bar.p);
+        RampInfo info = rod_relax(rod, bar.sys, 1, bar.p, &bar.now);
+        double least = rod_least_stretch(&bar.layout, bar.now.x, NULL);
+        print_message("pushed by %.1f EA: %s, %.3f of its length\n", part,
+                      newton_status_name(info.newton.status), least);
+        if (k < 2) {
+            assert_int_equal(info.newton.status, NEWTON_CONVERGED);
+            assert_true(fabs(least - (1 - part)) < 1e-9);
+        } else {
+            assert_int_equal(info.newton.status, NEWTON_TANGLED);
+            assert_true(!rod_is_tangled(least));
+        }
+        bar_clear(&bar);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_own_weight),         cmocka_unit_test(test_timoshenko),
         cmocka_unit_test(test_shear_coefficients), cmocka_unit_test(test_haringx),
         cmocka_unit_test(test_both_forms),         cmocka_unit_test(test_limit),
-        cmocka_unit_test(test_vibration)};
+        cmocka_unit_test(test_vibration),          cmocka_unit_test(test_pushed_through)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

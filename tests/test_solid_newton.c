@@ -161,8 +161,30 @@ static void test_anchor(void **state)
     solid_body_clear(&other);
 }
 
+/* A last step that no rounding lets be so small: the end is as good as it can be, soon, and converged. */
+static void test_rounding(void **state)
+{
+    (void)state;
+    const Problem problem = {.order = 1, .poisson = .45, .start = rest, .gravity = 60};
+    double last[2];
+    for (int k = 0; k < 2; k++) {
+        SolidBody b = make_body(&problem);
+        NewtonDef newton = newton_default();
+        if (k) newton.step_tol = 1e-20;
+        NewtonInfo info = solid_solve(&b, &newton);
+        last[k] = info.step;
+        print_message("step tolerance %.0e: %s, %d iterations, last step %.1e\n", newton.step_tol,
+                      newton_status_name(info.status), info.iterations, info.step);
+        assert_int_equal(info.status, NEWTON_CONVERGED);
+        assert_true(info.iterations < 20);
+        solid_body_clear(&b);
+    }
+    assert_true(last[1] < 1e-12);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_hard), cmocka_unit_test(test_anchor)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_hard), cmocka_unit_test(test_anchor),
+                                       cmocka_unit_test(test_rounding)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

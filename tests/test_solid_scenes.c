@@ -49,6 +49,42 @@ static double deflection(const Built *b, const double *x, double least, int axis
 
 /* ---- Elements ---- */
 
+static Built pulled_cube(int order, double young, double poisson, double pull)
+{
+    return scene_build(mem_format(
+        "slender: 1\njob: equilibrium\nsolid:\n  mesh: {shape: box, size: [0.01, 0.01, 0.01], cells: [2, 2, "
+        "2]}\n"
+        "  order: %d\n  young: %.17g\n  poisson: %.17g\n  material: st_venant_kirchhoff\nfix:\n"
+        "  - {group: left, axes: x}\n  - {group: front, axes: y}\n  - {group: bottom, axes: z}\nloads:\n"
+        "  - {area: [%.17g, 0, 0], on: {group: right}}\n  - {area: [0, %.17g, 0], on: {group: back}}\n",
+        order, young, poisson, pull, pull));
+}
+
+/* A cube of St. Venant-Kirchhoff pulled along two sides has no thickness from E1 + E2 = (1 - nu)/(2 nu) on. Below it has that
+ * of plane stress, c^2 = 1 - 2 nu/(1 - nu) (E1 + E2); beyond, its state of rest is none of a body. */
+static void test_flattened(void **state)
+{
+    (void)state;
+    const double young = 1e5, poisson = 0.3, limit = (1 - poisson) / (4 * poisson);
+    for (int k = 0; k < 4; k++) {
+        bool beyond = k >= 2;
+        double E = limit * (beyond ? 1.01 : 0.99), pull = young / (1 - poisson) * E * sqrt(1 + 2 * E);
+        Built b = pulled_cube(1 + k % 2, young, poisson, pull);
+        Case *c = &b.model->cases[0];
+        const Solid *solid = b.model->self;
+        NewtonDef def = newton_default();
+        Point at = state_point(&c->state, c->stages[0].p);
+        NewtonStatus status = newton_minimize(c->sys, &def, &at, &c->state, NULL).status;
+        double least = solid_least_jacobian(solid, c->state.x, NULL),
+               thickness = sqrt(1 - 4 * poisson / (1 - poisson) * E);
+        print_message("pulled to %.2f of its limit: %s, det F %.2g\n", E / limit, newton_status_name(status),
+                      least);
+        assert_int_equal(status, beyond ? NEWTON_TANGLED : NEWTON_CONVERGED);
+        if (!beyond) assert_true(fabs(least - (1 + 2 * E) * thickness) < 1e-7);
+        clear(&b);
+    }
+}
+
 /* A uniform load makes a uniform stretch, exactly: what it does to the nodes is the integral of their shape functions. */
 static void test_uniform_load(void **state)
 {
@@ -257,9 +293,9 @@ static void test_hearts(void **state)
 int main(int argc, char **argv)
 {
     (void)argv;
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_uniform_load), cmocka_unit_test(test_bending),
-                                       cmocka_unit_test(test_plate), cmocka_unit_test(test_known),
-                                       cmocka_unit_test(test_hearts)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_flattened), cmocka_unit_test(test_uniform_load),
+                                       cmocka_unit_test(test_bending),   cmocka_unit_test(test_plate),
+                                       cmocka_unit_test(test_known),     cmocka_unit_test(test_hearts)};
     if (argc > 1) return print_plate(), 0;
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

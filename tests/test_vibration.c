@@ -101,6 +101,43 @@ static void test_rod(void **state)
         check(rod("0", k), 4, (int[]){0, 1, 2, 3, -1}, (double[]){first, first, second, second}, 0.01);
 }
 
+static char *held_rod(const char *hold, const char *end, double young)
+{
+    return mem_format("slender: 1\njob: equilibrium\nrod:\n  natural_strain: [0, 0, 0]\n  length: 0.1\n"
+                      "  elements: 50\n  radius: 1 mm\n  young: %g\n  poisson: 0.3\n  density: 1100\n"
+                      "  gravity: [0, 0, 0]\n  hold: %s\n  end: {position: [0.1, 0, 0], %s}\nmodes: 4\n",
+                      young, hold, end);
+}
+
+/* Straight between its ends: what holds them depends on no turn, and on hinges it spins, which nothing holds and no mass has. */
+static void test_held_rod(void **state)
+{
+    (void)state;
+    for (double young = YOUNG; young <= 1e12; young *= 1e3) {
+        double stiff = sqrt(young / YOUNG), hinged[2], clamped[2];
+        for (int k = 0; k < 2; k++) {
+            hinged[k] = stiff * beam((k + 1) * M_PI, sqrt(3) * 1e-3, 1100);
+            clamped[k] = stiff * beam(k ? 7.853205 : 4.730041, sqrt(3) * 1e-3, 1100);
+        }
+        check(held_rod("pinned", "hold: pinned", young), 4, (int[]){0, 1, 2, 3, -1},
+              (double[]){hinged[0], hinged[0], hinged[1], hinged[1]}, 0.01);
+        check(held_rod("clamped", "hold: clamped, frame: [[1, 0, 0], [0, 1, 0], [0, 0, 1]]", young), 4,
+              (int[]){0, 1, 2, 3, -1}, (double[]){clamped[0], clamped[0], clamped[1], clamped[1]}, 0.01);
+    }
+}
+
+/* A stiff rod on one hinge swings as a stick does, f^2 = 3 g/(2 L)/(2 pi)^2. */
+static void test_rod_pendulum(void **state)
+{
+    (void)state;
+    double exact = sqrt(3 * 9.81 / (2 * LENGTH)) / (2 * M_PI);
+    char *scene =
+        mem_format("slender: 1\njob: equilibrium\nrod:\n  natural_strain: [0, 0, 0]\n  length: 0.1\n"
+                   "  elements: 50\n  radius: 1 mm\n  young: 10 GPa\n  poisson: 0.3\n  density: 1100\n"
+                   "  hold: pinned\nmodes: 2\n");
+    check(scene, 2, (int[]){0, 1, -1}, (double[]){exact, exact}, 1e-3);
+}
+
 /* Hanging down it swings faster: with w = rho A g L^3/(EI) the square is Rayleigh's of the clamped rod's mode,
  * 1 + 1.5709 w/3.51602^2, from above. */
 static void test_hanging_rod(void **state)
@@ -122,8 +159,10 @@ static void test_hanging_rod(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_clamped_strip),
-                                       cmocka_unit_test(test_free_strip), cmocka_unit_test(test_clamped_bar),
-                                       cmocka_unit_test(test_rod), cmocka_unit_test(test_hanging_rod)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_clamped_strip), cmocka_unit_test(test_free_strip),
+        cmocka_unit_test(test_clamped_bar),   cmocka_unit_test(test_rod),
+        cmocka_unit_test(test_held_rod),      cmocka_unit_test(test_rod_pendulum),
+        cmocka_unit_test(test_hanging_rod)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -85,5 +85,5 @@ def cantilever(poisson: float) -> Case:
 
 CASES = [square(pattern, clamped, 48 if pattern == "crossed" else 64)
          for clamped in (False, True) for pattern in ("right", "crossed", "unstructured")]
-CASES += [square("unstructured", False, 64, "hinge"), central_force(), circle(True), circle(False), skew()]
+CASES += [square("unstructured", False, 64, "hinge"), square("crossed", True, 48, "hinge"), central_force(), circle(True), circle(False), skew()]
 CASES += [cantilever(nu) for nu in (0, 0.3, 0.49)]

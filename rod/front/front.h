@@ -14,6 +14,7 @@ void rod_add_stress(const Model *model, const Snapshot *shot, Arrays *list);
 void rod_add_state(const Model *model, const Snapshot *shot, const char *prefix, Arrays *list);
 void rod_add_final(const Model *model, const Snapshot *shot, int modes, Arrays *list);
 char *rod_doubt(const Model *model, const Snapshot *shot);
+char *rod_crushed(const Model *model, const Snapshot *shot, bool failed);
 
 /* motion.c: the curves of a moving rod become strands, with their inertia and drag as loads. */
 bool rod_read_motion(RodModel *rm, const RodScene *scene, const Build *b);

@@ -189,6 +189,21 @@ static void add_stability(const RodModel *rm, const Snapshot *shot, Arrays *list
     mem_free(work);
 }
 
+char *rod_crushed(const Model *model, const Snapshot *shot, bool failed)
+{
+    const RodModel *rm = model->self;
+    if (!rm->rod->cosserat) return NULL;
+    int element;
+    double least = rod_least_stretch(&rm->layout, shot->at.x, &element);
+    bool tangled = rod_is_tangled(least);
+    if (!tangled && !(failed && shot->status == NEWTON_TANGLED)) return NULL;
+    return mem_format("%selement %d is pressed to %.2g of its length: what acts on it is too strong for its "
+                      "Young's modulus of "
+                      "%.3g Pa",
+                      tangled ? "" : "next, something would be turned inside out; ", element, least,
+                      shot->p[rm->rod->young + element]);
+}
+
 static const double LARGE_STRAIN = 0.2;
 
 /* A stretch or shear beyond the linear law. */

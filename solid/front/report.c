@@ -104,22 +104,30 @@ char *solid_describe(const Model *model, const Scene *scene)
     return text;
 }
 
+static const char *weakness(const Solid *solid)
+{
+    return solid->material == SOLID_ST_VENANT_KIRCHHOFF
+               ? "; st_venant_kirchhoff resists less and less as it is pressed, neo_hookean more and more"
+               : "";
+}
+
 char *solid_crushed(const Model *model, const Snapshot *shot, bool failed)
 {
     const Solid *solid = model->self;
     int tet;
     double least = solid_least_jacobian(solid, shot->at.x, &tet);
     double young = shot->p[solid->young + tet];
-    if (failed && least > 0 && shot->status == NEWTON_TANGLED)
+    bool tangled = solid_is_tangled(least);
+    if (failed && !tangled && shot->status == NEWTON_TANGLED)
         return mem_format(
-            "next, something would be turned inside out; tetrahedron %d is pressed most (det F is %.2g "
-            "there): what acts on it is too strong for its Young's modulus of %.3g Pa",
-            tet, least, young);
-    if (least > 0) return NULL;
-    return mem_format(
-        "tetrahedron %d is turned inside out (det F is %.2g there): what acts on it is too strong for its "
-        "Young's modulus of %.3g Pa, or it started so",
-        tet, least, young);
+            "next, something would be turned inside out or flattened; tetrahedron %d is pressed most (det F "
+            "is %.2g there): what acts on it is too strong for its Young's modulus of %.3g Pa%s",
+            tet, least, young, weakness(solid));
+    if (!tangled) return NULL;
+    return mem_format("tetrahedron %d is %s (det F is %.2g there): what acts on it is too strong for its "
+                      "Young's modulus of %.3g Pa, or it started so%s",
+                      tet, least > 0 ? "flattened to nothing" : "turned inside out", least, young,
+                      weakness(solid));
 }
 
 /* An edge's length. */
